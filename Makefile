@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Plantcast: `make run` and `make test` do everything; the README says the rest.
+# config = release | debug | asan | tsan | fuzz;  CC = gcc | clang;  build = folder for all that is made.
+config ?= release
+build  ?= build
+ifeq ($(origin CC),default)
+CC := gcc
+endif
+CXX := $(if $(findstring clang,$(CC)),clang++,g++)
+
+flags_release := -O3 -DNDEBUG -g1
+flags_debug   := -O0 -g3
+flags_asan    := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer
+flags_tsan    := -O1 -g -fsanitize=thread
+flags_fuzz    := -O1 -g -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined
+ifeq ($(flags_$(config)),)
+$(error config=$(config) is unknown: release, debug, asan, tsan or fuzz)
+endif
+
+out := $(build)/$(config)
+gen := $(build)/gen
+bin := $(if $(filter release,$(config)),$(build),$(out)/bin)
+
+packages := yaml-0.1 jansson libmodbus cglm libwebsockets libturbojpeg libpng cairo libxxhash OpenImageIO
+pkg_cflags := $(shell pkg-config --cflags $(packages) 2>/dev/null)
+pkg_libs   := $(shell pkg-config --libs $(packages) 2>/dev/null) -lflann -lcholmod -lopenblas -lmeshoptimizer -ltinygltf -lm -ldl
+
+warn   := -Wall -Wextra -Wshadow -Wpointer-arith -Wvla -Wundef
+common := $(flags_$(config)) -I. -Iserver -I$(gen) -isystem $(gen)/glad/include -I/usr/include/suitesparse -MMD -MP -pthread -fno-math-errno $(pkg_cflags)
+cflags   = -std=c11 -D_GNU_SOURCE $(warn) -Wstrict-prototypes -Wmissing-prototypes $(common) $(CFLAGS)
+cxxflags = -std=c++17 -D_GNU_SOURCE $(warn) $(common) $(CXXFLAGS)
+ldflags  = $(flags_$(config)) -pthread -Wl,--as-needed $(LDFLAGS)
+
+# --- what is built: one archive per layer, left to right ------------------------------------------------------------------
+layers   := base plant surface value history scene field gpu render encode net
+layers   := $(foreach l,$(layers),$(if $(wildcard server/$(l)/*.c),$(l)))
+archives := $(foreach l,$(layers),$(out)/lib/$(l).a) $(out)/lib/protocol.a
+objects   = $(patsubst %,$(out)/obj/%.o,$(basename $(1)))
+link      = @mkdir -p $(@D); echo "  LINK $@"; $(CXX) $(ldflags) -o $@ $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group $(pkg_libs)
+
+sim_sources      := $(filter-out %/generate.c,$(wildcard deploy/demo/*.c))
+generate_sources := $(wildcard deploy/demo/generate*.c deploy/demo/generate/*.c)
+sim_sources      := $(filter-out $(generate_sources),$(sim_sources))
+programs := $(if $(wildcard server/main.c),$(bin)/plantcastd) $(if $(wildcard preprocess/main.c),$(bin)/plantcast-prep) \
+            $(if $(wildcard clients/cli/main.c),$(bin)/plantcast) $(if $(sim_sources),$(bin)/plantcast-sim) \
+            $(if $(generate_sources),$(bin)/plantcast-demo)
+
+.PHONY: all programs run demo test test-long bench gpu-bench style layers headers deps test-deps golden-update install clean help
+all: $(programs)
+programs: all
+
+$(bin)/plantcastd: $(call objects,$(wildcard server/*.c)) $(archives)
+	$(link)
+$(bin)/plantcast-prep: $(call objects,$(wildcard preprocess/*.c preprocess/*.cc)) $(archives)
+	$(link)
+$(bin)/plantcast: $(call objects,$(wildcard clients/cli/*.c)) $(archives)
+	$(link)
+$(bin)/plantcast-sim: $(call objects,$(sim_sources)) $(archives)
+	$(link)
+$(bin)/plantcast-demo: $(call objects,$(generate_sources)) $(archives)
+	$(link)
+
+embedded := $(out)/obj/gen/embedded.o
+glad     := $(out)/obj/gen/glad/src/gl.o $(out)/obj/gen/glad/src/egl.o
+define archive_rule
+$(out)/lib/$(1).a: $(call objects,$(wildcard server/$(1)/*.c)) $(if $(filter base,$(1)),$(embedded)) $(if $(filter gpu,$(1)),$(glad))
+endef
+$(foreach l,$(layers),$(eval $(call archive_rule,$(l))))
+$(out)/lib/protocol.a: $(call objects,$(wildcard protocol/*.c))
+$(out)/lib/%.a:
+	@mkdir -p $(@D); rm -f $@; $(AR) rcs $@ $^
+
+$(out)/obj/%.o: %.c Makefile | $(gen)/glad/include/glad/gl.h
+	@mkdir -p $(@D); echo "  CC   $<"
+	@$(CC) $(cflags) -c -o $@ $<
+$(out)/obj/%.o: %.cc Makefile
+	@mkdir -p $(@D); echo "  CXX  $<"
+	@$(CXX) $(cxxflags) -c -o $@ $<
+$(out)/obj/gen/%.o: $(gen)/%.c
+	@mkdir -p $(@D)
+	@$(CC) $(cflags) -w -c -o $@ $<
+
+# The GL and EGL loaders, made without a network.
+$(gen)/glad/src/gl.c $(gen)/glad/src/egl.c: $(gen)/glad/include/glad/gl.h
+$(gen)/glad/include/glad/gl.h:
+	@mkdir -p $(gen); echo "  GLAD $(gen)/glad"
+	@/usr/bin/python3 /usr/bin/glad --quiet --reproducible --api gl:core=4.5,egl=1.5 --out-path $(gen)/glad.new c --loader >$(gen)/glad.log 2>&1 || { cat $(gen)/glad.log; exit 1; }
+	@rm -rf $(gen)/glad; mv $(gen)/glad.new $(gen)/glad
+
+# Shaders and colour maps, as C strings found by name (server/base/embedded.h).
+embedded_files := $(wildcard shaders/*.vert shaders/*.frag shaders/*.comp shaders/*.glsl shaders/maps/*.csv)
+$(gen)/embedded.c: deploy/embed $(embedded_files)
+	@mkdir -p $(@D); deploy/embed $(embedded_files) >$@.new && mv $@.new $@
+
+# --- tests: one program per file --------------------------------------------------------------------------------------------
+unit_tests := $(patsubst tests/%.c,$(out)/tests/%,$(wildcard tests/unit/*_test.c))
+gpu_tests  := $(patsubst tests/%.c,$(out)/tests/%,$(wildcard tests/gpu/*_test.c))
+support    := $(call objects,$(wildcard tests/support/*.c))
+$(out)/tests/%: $(out)/obj/tests/%.o $(support) $(archives)
+	@mkdir -p $(@D); echo "  LINK $@"
+	@$(CXX) $(ldflags) -o $@ $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group $(pkg_libs) -lcmocka
+.SECONDARY:
+
+include tests/tests.mk
+include deploy/deploy.mk
+
+clean:
+	rm -rf $(build)
+
+-include $(shell find $(out)/obj -name '*.d' 2>/dev/null)

@@ -1,0 +1,97 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Named numbers for /metrics. */
+#include "base/counters.h"
+
+#include <inttypes.h>
+#include <pthread.h>
+#include <string.h>
+
+#include "base/mem.h"
+
+struct entry {
+    char *name, *type, *help;
+    counter value;
+    struct entry *next;
+};
+
+struct counters {
+    pthread_mutex_t lock;
+    /* --- below: under lock; entries are only ever added */
+    struct entry *first, **last;
+};
+
+struct counters *counters_create(void)
+{
+    struct counters *counters = mem_new(sizeof(*counters));
+    pthread_mutex_init(&counters->lock, NULL);
+    counters->last = &counters->first;
+    return counters;
+}
+
+void counters_destroy(struct counters **counters)
+{
+    if (!*counters)
+        return;
+    for (struct entry *e = (*counters)->first, *next; e; e = next) {
+        next = e->next;
+        mem_free(e->name);
+        mem_free(e->type);
+        mem_free(e->help);
+        mem_free(e);
+    }
+    pthread_mutex_destroy(&(*counters)->lock);
+    mem_free(*counters);
+    *counters = NULL;
+}
+
+counter *counters_add(struct counters *counters, const char *name, const char *type, const char *help)
+{
+    pthread_mutex_lock(&counters->lock);
+    struct entry *e = counters->first;
+    while (e && strcmp(e->name, name) != 0)
+        e = e->next;
+    if (!e) {
+        e = mem_new(sizeof(*e));
+        e->name = mem_strdup(name);
+        e->type = mem_strdup(type);
+        e->help = mem_strdup(help);
+        *counters->last = e;
+        counters->last = &e->next;
+    }
+    pthread_mutex_unlock(&counters->lock);
+    return &e->value;
+}
+
+static size_t family_length(const char *name)
+{
+    return strcspn(name, "{");
+}
+
+static bool same_family(const struct entry *a, const struct entry *b)
+{
+    size_t n = family_length(a->name);
+    return n == family_length(b->name) && !strncmp(a->name, b->name, n);
+}
+
+static bool family_printed(const struct entry *first, const struct entry *e)
+{
+    for (; first != e; first = first->next)
+        if (same_family(first, e))
+            return true;
+    return false;
+}
+
+void counters_print(struct counters *counters, struct text *out)
+{
+    pthread_mutex_lock(&counters->lock);
+    for (struct entry *e = counters->first; e; e = e->next) {
+        if (family_printed(counters->first, e))
+            continue;
+        int n = (int)family_length(e->name);
+        text_add(out, "# HELP %.*s %s\n# TYPE %.*s %s\n", n, e->name, e->help, n, e->name, e->type);
+        for (struct entry *f = e; f; f = f->next)
+            if (same_family(e, f))
+                text_add(out, "%s %" PRId64 "\n", f->name, atomic_load_explicit(&f->value, memory_order_relaxed));
+    }
+    pthread_mutex_unlock(&counters->lock);
+}

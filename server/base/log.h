@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One line per event, to stderr: time, level, text. Thread: any. Repeated lines are counted and said once a second. */
+#ifndef BASE_LOG_H
+#define BASE_LOG_H
+#include <stdarg.h>
+
+enum log_level { LOG_ERROR, LOG_WARN, LOG_INFO, LOG_DEBUG };
+
+struct log;
+
+/* Never NULL. Lines above `level` are dropped. */
+struct log *log_create(enum log_level level);
+/* Says what repeats were still held back. &NULL is fine; leaves NULL. */
+void log_destroy(struct log **log);
+
+void log_at(struct log *log, enum log_level level, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
+void log_at_v(struct log *log, enum log_level level, const char *fmt, va_list ap) __attribute__((format(printf, 3, 0)));
+
+#define log_err(log, ...) log_at(log, LOG_ERROR, __VA_ARGS__)
+#define log_warn(log, ...) log_at(log, LOG_WARN, __VA_ARGS__)
+#define log_info(log, ...) log_at(log, LOG_INFO, __VA_ARGS__)
+#define log_debug(log, ...) log_at(log, LOG_DEBUG, __VA_ARGS__)
+
+#endif

@@ -1,0 +1,108 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A growing string, and whole files in and out. */
+#include "base/text.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "base/mem.h"
+
+void text_add_bytes(struct text *text, const void *bytes, size_t count)
+{
+    mem_grow(&text->at, &text->capacity, text->length + count + 1, 1);
+    memcpy(text->at + text->length, bytes, count);
+    text->length += count;
+    text->at[text->length] = 0;
+}
+
+void text_add_v(struct text *text, const char *fmt, va_list ap)
+{
+    va_list again;
+    va_copy(again, ap);
+    int count = vsnprintf(NULL, 0, fmt, again);
+    va_end(again);
+    if (count < 0)
+        return;
+    mem_grow(&text->at, &text->capacity, text->length + (size_t)count + 1, 1);
+    vsnprintf(text->at + text->length, (size_t)count + 1, fmt, ap);
+    text->length += (size_t)count;
+}
+
+void text_add(struct text *text, const char *fmt, ...)
+{
+    va_list ap;
+    va_start(ap, fmt);
+    text_add_v(text, fmt, ap);
+    va_end(ap);
+}
+
+void text_finish(struct text *text)
+{
+    mem_free(text->at);
+    *text = (struct text){ 0 };
+}
+
+char *text_read_file(const char *path, size_t max_bytes, size_t *out_bytes)
+{
+    struct stat st;
+    char *bytes = NULL;
+    FILE *file = fopen(path, "rb");
+    if (!file)
+        return NULL;
+    if (fstat(fileno(file), &st) != 0)
+        goto error;
+    if (!S_ISREG(st.st_mode)) {
+        errno = S_ISDIR(st.st_mode) ? EISDIR : EINVAL;
+        goto error;
+    }
+    if ((size_t)st.st_size > max_bytes) {
+        errno = EFBIG;
+        goto error;
+    }
+    size_t size = (size_t)st.st_size;
+    bytes = mem_try_array(size + 1, 1);
+    if (!bytes) {
+        errno = ENOMEM;
+        goto error;
+    }
+    size_t got = fread(bytes, 1, size, file);
+    if (got < size && ferror(file)) {
+        errno = EIO;
+        goto error;
+    }
+    bytes[got] = 0;
+    *out_bytes = got;
+    fclose(file);
+    return bytes;
+error:;
+    int cause = errno;
+    fclose(file);
+    mem_free(bytes);
+    errno = cause;
+    return NULL;
+}
+
+int text_write_file(const char *path, const void *bytes, size_t count)
+{
+    int status = 0;
+    char *beside = mem_printf("%s.%ld.new", path, (long)getpid());
+    FILE *file = fopen(beside, "wb");
+    if (!file) {
+        status = -errno;
+        goto done;
+    }
+    if (fwrite(bytes, 1, count, file) != count || fflush(file) != 0 || fsync(fileno(file)) != 0)
+        status = errno ? -errno : -EIO;
+    if (fclose(file) != 0 && !status)
+        status = -errno;
+    if (!status && rename(beside, path) != 0)
+        status = -errno;
+    if (status)
+        unlink(beside);
+done:
+    mem_free(beside);
+    return status;
+}

@@ -1,0 +1,175 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A fixed pool of threads fed from one list of jobs. */
+#include "base/workers.h"
+
+#include <pthread.h>
+#include <stdbool.h>
+#include <unistd.h>
+
+#include "base/mem.h"
+
+struct job {
+    void (*run)(void *arg);
+    void *arg;
+    struct job *next;
+};
+
+struct workers {
+    int count;
+    pthread_t *threads;
+    pthread_mutex_t lock;
+    pthread_cond_t wake;
+    /* --- below: under lock */
+    struct job *first, **last;
+    bool stopping;
+};
+
+static void *worker_main(void *arg)
+{
+    struct workers *workers = arg;
+    pthread_mutex_lock(&workers->lock);
+    for (;;) {
+        while (!workers->first && !workers->stopping)
+            pthread_cond_wait(&workers->wake, &workers->lock);
+        struct job *job = workers->first;
+        if (!job)
+            break;
+        workers->first = job->next;
+        if (!workers->first)
+            workers->last = &workers->first;
+        pthread_mutex_unlock(&workers->lock);
+        job->run(job->arg);
+        mem_free(job);
+        pthread_mutex_lock(&workers->lock);
+    }
+    pthread_mutex_unlock(&workers->lock);
+    return NULL;
+}
+
+struct workers *workers_create(int threads)
+{
+    if (threads <= 0) {
+        long cores = sysconf(_SC_NPROCESSORS_ONLN);
+        threads = cores > 0 ? (int)cores : 1;
+    }
+    struct workers *workers = mem_new(sizeof(*workers));
+    workers->threads = mem_array((size_t)threads, sizeof(*workers->threads));
+    workers->last = &workers->first;
+    pthread_mutex_init(&workers->lock, NULL);
+    pthread_cond_init(&workers->wake, NULL);
+    for (; workers->count < threads; workers->count++)
+        if (pthread_create(&workers->threads[workers->count], NULL, worker_main, workers) != 0)
+            break;
+    return workers;
+}
+
+void workers_destroy(struct workers **workers_ptr)
+{
+    struct workers *workers = *workers_ptr;
+    if (!workers)
+        return;
+    pthread_mutex_lock(&workers->lock);
+    workers->stopping = true;
+    pthread_cond_broadcast(&workers->wake);
+    pthread_mutex_unlock(&workers->lock);
+    for (int i = 0; i < workers->count; i++)
+        pthread_join(workers->threads[i], NULL);
+    pthread_cond_destroy(&workers->wake);
+    pthread_mutex_destroy(&workers->lock);
+    mem_free(workers->threads);
+    mem_free(workers);
+    *workers_ptr = NULL;
+}
+
+int workers_count(const struct workers *workers)
+{
+    return workers->count;
+}
+
+void workers_submit(struct workers *workers, void (*run)(void *arg), void *arg)
+{
+    if (workers->count == 0) { /* no thread could be started: the caller does the work */
+        run(arg);
+        return;
+    }
+    struct job *job = mem_new(sizeof(*job));
+    *job = (struct job){ .run = run, .arg = arg };
+    pthread_mutex_lock(&workers->lock);
+    *workers->last = job;
+    workers->last = &job->next;
+    pthread_cond_signal(&workers->wake);
+    pthread_mutex_unlock(&workers->lock);
+}
+
+/* One workers_for in flight. Shared by the caller and its helpers; the last one out frees it. */
+struct loop {
+    size_t count, grain;
+    void (*body)(void *arg, size_t begin, size_t end);
+    void *arg;
+    pthread_mutex_t lock;
+    pthread_cond_t done;
+    /* --- below: under lock */
+    size_t next, finished;
+    int users;
+};
+
+static void loop_unref(struct loop *loop)
+{
+    pthread_mutex_lock(&loop->lock);
+    bool last = --loop->users == 0;
+    pthread_mutex_unlock(&loop->lock);
+    if (last) {
+        pthread_cond_destroy(&loop->done);
+        pthread_mutex_destroy(&loop->lock);
+        mem_free(loop);
+    }
+}
+
+static void loop_work(struct loop *loop)
+{
+    pthread_mutex_lock(&loop->lock);
+    while (loop->next < loop->count) {
+        size_t begin = loop->next;
+        size_t end = begin + loop->grain < loop->count ? begin + loop->grain : loop->count;
+        loop->next = end;
+        pthread_mutex_unlock(&loop->lock);
+        loop->body(loop->arg, begin, end);
+        pthread_mutex_lock(&loop->lock);
+        loop->finished += end - begin;
+        if (loop->finished == loop->count)
+            pthread_cond_broadcast(&loop->done);
+    }
+    pthread_mutex_unlock(&loop->lock);
+}
+
+static void loop_help(void *arg)
+{
+    loop_work(arg);
+    loop_unref(arg);
+}
+
+void workers_for(struct workers *workers, size_t count, size_t grain, void (*body)(void *arg, size_t begin, size_t end), void *arg)
+{
+    if (count == 0)
+        return;
+    if (grain == 0)
+        grain = 1;
+    if (count <= grain || workers->count <= 1) {
+        body(arg, 0, count);
+        return;
+    }
+    size_t pieces = (count + grain - 1) / grain;
+    int helpers = pieces - 1 < (size_t)(workers->count - 1) ? (int)(pieces - 1) : workers->count - 1;
+    struct loop *loop = mem_new(sizeof(*loop));
+    *loop = (struct loop){ .count = count, .grain = grain, .body = body, .arg = arg, .users = helpers + 1 };
+    pthread_mutex_init(&loop->lock, NULL);
+    pthread_cond_init(&loop->done, NULL);
+    for (int i = 0; i < helpers; i++)
+        workers_submit(workers, loop_help, loop);
+    loop_work(loop);
+    pthread_mutex_lock(&loop->lock);
+    while (loop->finished < loop->count)
+        pthread_cond_wait(&loop->done, &loop->lock);
+    pthread_mutex_unlock(&loop->lock);
+    loop_unref(loop);
+}

@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A fixed pool of threads: single jobs in the background, and loops cut over all cores. Thread: any. */
+#ifndef BASE_WORKERS_H
+#define BASE_WORKERS_H
+#include <stddef.h>
+
+struct workers;
+
+struct workers *workers_create(int threads); /* 0: one per core. Never NULL. */
+/* Runs what was submitted, then ends. &NULL is fine; leaves NULL. */
+void workers_destroy(struct workers **workers);
+int workers_count(const struct workers *workers);
+
+/* Runs job(arg) on some worker, later. Jobs start in order of submission. */
+void workers_submit(struct workers *workers, void (*job)(void *arg), void *arg);
+/* Runs body(arg, begin, end) over [0, count) in pieces of about `grain`, on the caller's thread and on idle workers, until
+   all is done. May be called from a job. */
+void workers_for(struct workers *workers, size_t count, size_t grain, void (*body)(void *arg, size_t begin, size_t end), void *arg);
+
+#endif

@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* From readings to a scalar at every vertex. Algorithm 1 of Kim & Suh, Electronics 2025, 14(15), 2938 (`paper`) and inverse
+   distance weights (Shepard, 1968; `shepard`), on Euclidean or geodesic distance, with the truth rules of the design.
+
+   paper:    w_i = exp(d_i s_i) / sum_k exp(d_k s_k),  value = sum_i v~_i w_i d_i^o_i,  d = max(0, 1 - D/R),
+             v~ = clamp((v - MIN)/(MAX - MIN));  the scalar handed out is MIN + value (MAX - MIN)
+   shepard:  value = sum_i s_i v_i / D_i^p  /  sum_i s_i / D_i^p; exactly v_i where D_i = 0
+
+   A sensor takes part at a point if it is of the group and the asset, its quality is not Bad, D is finite and D <= reach_m.
+   Thread: one at a time per field (it spreads its work over `workers`). */
+#ifndef FIELD_FIELD_H
+#define FIELD_FIELD_H
+#include "base/workers.h"
+#include "field/scalars.h"
+#include "plant/plant.h"
+#include "scene/scene.h"
+#include "value/snapshot.h"
+
+/* What a session may choose. Compared byte for byte: zero-initialise, then field_params_default. */
+struct field_params {
+    int group;
+    enum interpolation interpolation;
+    enum distance_mode distance;
+    enum fill_mode fill;
+    double strength, decay;  /* factors on each sensor's own; 1 = as configured */
+    double power;            /* shepard's p */
+    double radius_m;         /* paper's R; 0 = the largest distance on the asset over all its configured sensors */
+    double reach_m;          /* INFINITY: no limit */
+};
+void field_params_default(const struct plant *plant, int group, struct field_params *params);
+bool field_params_equal(const struct field_params *a, const struct field_params *b);
+/* Ranges: 0 <= strength, decay <= 100; 0.5 <= power <= 16; radius 0 or 1e-3..1e6 m; reach > 0. NULL if good, else what is wrong. */
+const char *field_params_wrong(const struct plant *plant, const struct field_params *params);
+
+struct field;
+struct field *field_create(struct workers *workers, const struct scene *scene); /* both must outlive it */
+void field_destroy(struct field **field);
+
+/* The scalars of one asset, brought up to date with the snapshot. Belongs to `field`, valid until the next call with other
+   parameters; scalars->version grows only when a value or a flag really changed. NULL: the asset has no sensor of the group,
+   or out of memory. Shared by all who ask with equal parameters; the least recently used are dropped beyond the bound. */
+const struct scalars *field_scalars(struct field *field, int asset, const struct field_params *params, const struct snapshot *snapshot);
+
+enum probe_kind { PROBE_NO_DATA, PROBE_MEASURED, PROBE_BETWEEN };
+struct probe {
+    enum probe_kind kind;
+    double value;
+    int nearest_tag[4];           /* good sensors, nearest first; -1: none */
+    double nearest_m[4];
+};
+/* The field at one vertex, from the same sums. */
+void field_probe(struct field *field, int asset, const struct field_params *params, const struct snapshot *snapshot, unsigned vertex, struct probe *out);
+
+#endif

@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The field of one asset: one scalar and its flags per vertex, as the renderer uploads it. */
+#ifndef FIELD_SCALARS_H
+#define FIELD_SCALARS_H
+#include <stddef.h>
+#include <stdint.h>
+
+struct scalar {
+    float value;        /* engineering units; may pass MIN and MAX. Finite even where there is no data, so that it can be interpolated */
+    uint8_t no_data;    /* 255: no good sensor reaches, or the nearest configured one is Bad; else 0 */
+    uint8_t uncertain;  /* 255: at least half of the weight is on Uncertain sensors (or filled by neighbours); else 0 */
+    uint8_t reserved[2];
+};
+
+struct scalars {
+    int asset;
+    uint64_t version;   /* grows with every real change */
+    size_t count;       /* = vertex_count of the asset file */
+    const struct scalar *at;
+    int64_t oldest_age_ns; /* of the readings that take part; INT64_MAX: none does */
+};
+
+#endif

@@ -1,0 +1,106 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A plant as its people wrote it: the plant file (YAML) and its tag list (CSV), checked for syntax and meaning.
+   Immutable once loaded. Thread: any may read. Used by plantcastd, plantcast-prep and plantcast-sim alike. */
+#ifndef PLANT_PLANT_H
+#define PLANT_PLANT_H
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "base/diag.h"
+
+enum interpolation { INTERPOLATION_SHEPARD, INTERPOLATION_PAPER };
+enum distance_mode { DISTANCE_GEODESIC, DISTANCE_EUCLIDEAN };
+enum fill_mode { FILL_NONE, FILL_NEIGHBOURS };       /* may neighbours paint the place of a lost sensor? */
+enum axis { AXIS_Y, AXIS_Z };                        /* which way is up */
+enum data_type { DATA_BIT, DATA_INT16, DATA_UINT16, DATA_INT32, DATA_UINT32, DATA_FLOAT32, DATA_INT64, DATA_UINT64, DATA_FLOAT64, DATA_BCD };
+enum byte_order { BYTE_ORDER_NONE, BYTE_ORDER_ABCD, BYTE_ORDER_CDAB, BYTE_ORDER_BADC, BYTE_ORDER_DCBA }; /* NONE: not stated */
+enum register_table { TABLE_COIL, TABLE_DISCRETE, TABLE_INPUT, TABLE_HOLDING }; /* function codes 1, 2, 4, 3 */
+enum scaling { SCALING_NONE, SCALING_LINEAR, SCALING_SQUARE_ROOT };
+enum limit { LIMIT_LL, LIMIT_L, LIMIT_H, LIMIT_HH, LIMIT_COUNT };
+
+struct plant_view { /* where a client starts looking from; plant frame, metres */
+    bool set;
+    double eye_m[3], target_m[3], fov_deg;
+};
+
+struct plant_asset {
+    char *id, *tag, *description; /* tag defaults to id */
+    char *model;                  /* path, relative names resolved against the plant file's folder */
+    char *nodes;                  /* glob (fnmatch) on node names; every node that matches brings its whole sub-tree. NULL: the whole model */
+    double unit_m;                /* metres per model unit */
+    enum axis up;                 /* of the model */
+    double placement[16];         /* plant from asset frame, column-major, metres (asset frame: Z up, metres) */
+    bool sensors_in_asset_frame;  /* X, Y, Z of its tags; else plant frame */
+    int line;
+};
+
+struct plant_group {
+    char *id, *quantity, *unit;
+    double min, max;
+    double limits[LIMIT_COUNT];   /* NaN: none */
+    enum interpolation interpolation;
+    enum distance_mode distance;
+    double strength, decay, power;
+    double radius_m;              /* R of Algorithm 1; 0 = the largest distance on the asset */
+    double reach_m;               /* INFINITY: no limit */
+    enum fill_mode fill;
+    int line;
+};
+
+struct plant_source {
+    char *id, *kind;              /* "modbus" */
+    char *host;
+    int port, unit;               /* unit: Modbus unit identifier */
+    int poll_ms, timeout_ms;
+    enum byte_order byte_order;
+    int address_base;             /* 0 or 1: what the first register is called in plain addresses */
+    int line;
+};
+
+struct plant_tag {
+    char *name, *description, *unit;  /* unit: engineering units */
+    int source, group, asset;         /* index, or -1 */
+    char *address;                    /* as written */
+    int modbus_unit;                  /* -1: the source's */
+    enum register_table table;
+    int register_index;               /* from 0, as on the wire */
+    int bit;                          /* bit of a register, or -1 */
+    enum data_type type;
+    enum byte_order byte_order;       /* resolved; NONE only for 16-bit and bit tags */
+    int scan_ms;                      /* 0: the source's poll_ms */
+    enum scaling scaling;
+    double raw_low, raw_high, scaled_low, scaled_high;
+    bool negate;
+    bool has_position;                /* position_m is set; else see node */
+    double position_m[3];             /* in the frame that the asset states */
+    char *node;                       /* name of the model node whose place this is, or NULL */
+    double strength, decay;           /* resolved: own, else the group's */
+    double stale_s;                   /* resolved; default 3 polls, at least 5 s */
+    double limits[LIMIT_COUNT];       /* resolved: own, else the group's; NaN: none */
+    int line;                         /* in the tag list */
+};
+
+struct plant {
+    char *path, *folder;              /* of the plant file; folder without trailing slash */
+    char *tags_path;
+    char *name, *time_zone;           /* IANA name; default UTC */
+    enum axis up;                     /* of the plant frame */
+    struct plant_view view;
+    struct plant_asset *assets;
+    struct plant_group *groups;
+    struct plant_source *sources;
+    struct plant_tag *tags;
+    size_t asset_count, group_count, source_count, tag_count;
+};
+
+/* Reads the plant file and its tag list. Every finding goes to diag. NULL if there was any error. */
+struct plant *plant_load(const char *path, struct diag *diag);
+void plant_destroy(struct plant **plant); /* &NULL is fine; leaves NULL */
+
+int plant_find_asset(const struct plant *plant, const char *id); /* index or -1; so below */
+int plant_find_group(const struct plant *plant, const char *id);
+int plant_find_tag(const struct plant *plant, const char *name);
+/* Where prepared asset files of this plant are kept: FOLDER/prepared. Free with mem_free. */
+char *plant_prepared_folder(const struct plant *plant);
+
+#endif

@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A rendered picture and what it means. Immutable once handed out; counted; may be released on any thread. */
+#ifndef RENDER_FRAME_H
+#define RENDER_FRAME_H
+#include <stddef.h>
+#include <stdint.h>
+
+#include "render/view.h"
+
+struct frame_marker {
+    int tag;
+    float x_px, y_px;   /* from the top left; may lie outside */
+    uint8_t occluded;   /* behind something, or outside the picture */
+};
+
+struct frame {
+    _Atomic int refs;
+    struct view view;            /* what it was drawn with */
+    int width_px, height_px, stride_bytes;
+    uint8_t *bgrx;               /* 4 bytes per pixel, rows from the top */
+    struct frame_marker *markers; /* sensors of the shown group */
+    size_t marker_count;
+    int64_t data_utc_ns;         /* of the snapshot it shows */
+    int64_t oldest_age_ns;       /* INT64_MAX: no value takes part */
+    int64_t field_ns, render_ns, readback_ns; /* stage times */
+    uint64_t content;            /* equal for equal pictures: hash of view and field versions, without seq numbers and times */
+    int triangles;
+};
+
+struct frame *frame_create(int width_px, int height_px); /* NULL: out of memory */
+struct frame *frame_ref(struct frame *frame);
+void frame_unref(struct frame **frame);
+
+#endif

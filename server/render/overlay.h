@@ -1,0 +1,10 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Legend, markers, labels, clock and data age drawn into a frame, for snapshots, clips and walls (streams leave it to the client). */
+#ifndef RENDER_OVERLAY_H
+#define RENDER_OVERLAY_H
+#include "render/frame.h"
+
+/* Draws over frame->bgrx. The frame must not be shared yet. */
+void overlay_draw(struct frame *frame, const struct scene *scene, const struct snapshot *snapshot);
+
+#endif

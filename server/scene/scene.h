@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The plant as it stands: every asset in its place, with its sensors. Immutable once made. Thread: any. */
+#ifndef SCENE_SCENE_H
+#define SCENE_SCENE_H
+#include <stddef.h>
+
+#include "base/log.h"
+#include "plant/plant.h"
+#include "scene/asset.h"
+
+struct scene_sensor {
+    int tag;                     /* index in plant->tags */
+    int column;                  /* index in the asset file's sensors */
+    double position_m[3];        /* plant frame, as configured */
+    double surface_m[3];         /* plant frame, on the surface */
+    double surface_distance_m;
+};
+
+struct scene_asset {
+    const struct plant_asset *plant;
+    struct asset *file;          /* instances share one */
+    double placement[16];        /* plant from file positions (origin_m taken in), column-major */
+    double bounds_min_m[3], bounds_max_m[3]; /* plant frame, axis-aligned */
+    struct scene_sensor *sensors; /* of every group, in the order of the tag list */
+    size_t sensor_count;
+};
+
+struct scene {
+    const struct plant *plant;
+    struct scene_asset *assets;  /* by index in plant->assets */
+    size_t asset_count;
+    double bounds_min_m[3], bounds_max_m[3];
+};
+
+/* Opens the prepared files of the plant (folder: as plant_prepared_folder). Refuses files that do not fit the plant as it is
+   written now, naming asset and reason. NULL on failure, everything wrong is logged. plant must outlive it. */
+struct scene *scene_create(struct log *log, const struct plant *plant, const char *prepared_folder);
+void scene_destroy(struct scene **scene);
+
+#endif

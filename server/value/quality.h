@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Quality of a reading, as an OPC UA status code (Part 4, 7.39; Part 8, annex A): the two top bits are the severity. */
+#ifndef VALUE_QUALITY_H
+#define VALUE_QUALITY_H
+#include <stdbool.h>
+#include <stdint.h>
+
+enum {
+    QUALITY_GOOD = 0x00000000,
+    QUALITY_UNCERTAIN_LAST_USABLE = 0x40900000,
+    QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE = 0x408F0000,
+    QUALITY_UNCERTAIN_UNITS_EXCEEDED = 0x40940000,
+};
+#define QUALITY_BAD_COMMUNICATION_ERROR 0x80050000u
+#define QUALITY_BAD_NO_COMMUNICATION 0x80310000u
+#define QUALITY_BAD_WAITING 0x80320000u /* BadWaitingForInitialData */
+#define QUALITY_BAD_CONFIGURATION 0x80890000u
+#define QUALITY_BAD_DEVICE_FAILURE 0x808B0000u
+#define QUALITY_BAD_SENSOR_FAILURE 0x808C0000u
+#define QUALITY_BAD_OUT_OF_SERVICE 0x808D0000u
+
+static inline bool quality_is_good(uint32_t q)
+{
+    return (q >> 30) == 0;
+}
+static inline bool quality_is_uncertain(uint32_t q)
+{
+    return (q >> 30) == 1;
+}
+static inline bool quality_is_bad(uint32_t q)
+{
+    return (q >> 30) >= 2;
+}
+const char *quality_name(uint32_t q); /* "Good", "Bad_CommunicationError", ...; "Bad" where the code has no name here */
+/* "good", "uncertain" or "bad", as in JSON messages. */
+const char *quality_class(uint32_t q);
+
+#endif

@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The latest reading of every tag. Sources write, anyone takes snapshots; the newest sample wins. Thread: any. */
+#ifndef VALUE_STORE_H
+#define VALUE_STORE_H
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "plant/plant.h"
+#include "value/snapshot.h"
+
+struct store;
+
+/* What a source says of one tag. */
+struct sample {
+    int tag;          /* index in plant->tags */
+    double value;     /* engineering units; not used while quality is Bad. NaN or infinite becomes Bad_SensorFailure */
+    uint32_t quality;
+};
+
+struct store *store_create(const struct plant *plant); /* plant must outlive it */
+void store_destroy(struct store **store);
+/* Times are of arrival. A failed read is not a sample: see store_link_lost. */
+void store_write(struct store *store, const struct sample *samples, size_t count, int64_t now_mono_ns, int64_t now_utc_ns);
+/* The source cannot be read since now. Its tags keep their last values: Uncertain_NoCommunicationLastUsableValue until
+   stale_s has passed since they arrived, then Bad_CommunicationError; those that never had one are Bad_NoCommunication. */
+void store_link_lost(struct store *store, int source, int64_t now_mono_ns);
+void store_link_up(struct store *store, int source, int64_t now_mono_ns);
+bool store_link_is_up(const struct store *store, int source);
+/* Applies staleness as of now. `into` was made for the same plant. */
+void store_snapshot(struct store *store, int64_t now_mono_ns, int64_t now_utc_ns, struct snapshot *into);
+
+#endif
