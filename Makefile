@@ -26,7 +26,8 @@ pkg_cflags := $(shell pkg-config --cflags $(packages) 2>/dev/null)
 pkg_libs   := $(shell pkg-config --libs $(packages) 2>/dev/null) -lflann -lcholmod -lopenblas -lmeshoptimizer -ltinygltf -lm -ldl
 
 warn   := -Wall -Wextra -Wshadow -Wpointer-arith -Wvla -Wundef
-common := $(flags_$(config)) -I. -Iserver -I$(gen) -isystem $(gen)/glad/include -I/usr/include/suitesparse -MMD -MP -pthread -fno-math-errno $(pkg_cflags)
+include := -I. -Iserver -I$(gen) -isystem $(gen)/glad/include -isystem /usr/include/suitesparse $(pkg_cflags)
+common := $(flags_$(config)) $(include) -MMD -MP -pthread -fno-math-errno
 cflags   = -std=c11 -D_GNU_SOURCE $(warn) -Wstrict-prototypes -Wmissing-prototypes $(common) $(CFLAGS)
 cxxflags = -std=c++17 -D_GNU_SOURCE $(warn) $(common) $(CXXFLAGS)
 ldflags  = $(flags_$(config)) -pthread -Wl,--as-needed $(LDFLAGS)
@@ -36,7 +37,8 @@ layers   := base plant surface value history scene field gpu render encode net
 layers   := $(foreach l,$(layers),$(if $(wildcard server/$(l)/*.c),$(l)))
 archives := $(foreach l,$(layers),$(out)/lib/$(l).a) $(out)/lib/protocol.a
 objects   = $(patsubst %,$(out)/obj/%.o,$(basename $(1)))
-link      = @mkdir -p $(@D); echo "  LINK $@"; $(CXX) $(ldflags) -o $@ $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group $(pkg_libs)
+link      = @mkdir -p $(@D); echo "  LINK $@"; \
+            $(CXX) $(ldflags) -o $@ $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group $(pkg_libs)
 
 sim_sources      := $(filter-out %/generate.c,$(wildcard deploy/demo/*.c))
 generate_sources := $(wildcard deploy/demo/generate*.c deploy/demo/generate/*.c)
@@ -84,7 +86,8 @@ $(out)/obj/gen/%.o: $(gen)/%.c
 $(gen)/glad/src/gl.c $(gen)/glad/src/egl.c: $(gen)/glad/include/glad/gl.h
 $(gen)/glad/include/glad/gl.h:
 	@mkdir -p $(gen); echo "  GLAD $(gen)/glad"
-	@/usr/bin/python3 /usr/bin/glad --quiet --reproducible --api gl:core=4.5,egl=1.5 --out-path $(gen)/glad.new c --loader >$(gen)/glad.log 2>&1 || { cat $(gen)/glad.log; exit 1; }
+	@/usr/bin/python3 /usr/bin/glad --quiet --reproducible --api gl:core=4.5,egl=1.5 --out-path $(gen)/glad.new \
+	    c --loader >$(gen)/glad.log 2>&1 || { cat $(gen)/glad.log; exit 1; }
 	@rm -rf $(gen)/glad; mv $(gen)/glad.new $(gen)/glad
 
 # Shaders and colour maps, as C strings found by name (server/base/embedded.h).
@@ -97,8 +100,7 @@ unit_tests := $(patsubst tests/%.c,$(out)/tests/%,$(wildcard tests/unit/*_test.c
 gpu_tests  := $(patsubst tests/%.c,$(out)/tests/%,$(wildcard tests/gpu/*_test.c))
 support    := $(call objects,$(wildcard tests/support/*.c))
 $(out)/tests/%: $(out)/obj/tests/%.o $(support) $(archives)
-	@mkdir -p $(@D); echo "  LINK $@"
-	@$(CXX) $(ldflags) -o $@ $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group $(pkg_libs) -lcmocka
+	$(link) -lcmocka
 .SECONDARY:
 
 include tests/tests.mk

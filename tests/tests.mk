@@ -1,11 +1,35 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Running the tests. `make test` does all set-up; `make check` only builds and runs what needs no set-up.
+# Running the tests, the checks of the source, and the bench.
 test: test-deps
-	@$(MAKE) --no-print-directory all $(unit_tests) $(gpu_tests)
+	@$(MAKE) --no-print-directory checked
 	@tests/run $(out) $(bin) quick
-test-long: test-deps
-	@$(MAKE) --no-print-directory all $(unit_tests) $(gpu_tests)
-	@tests/run $(out) $(bin) long
-unit: $(unit_tests)
+# What `make test` does, under each sanitizer, and once more built by clang.
+test-long: test
+	@deploy/deps build test long
+	@$(MAKE) --no-print-directory CC=clang build=$(build)/clang all tests
+	@for c in asan tsan; do \
+	    $(MAKE) --no-print-directory config=$$c all tests && tests/run $(build)/$$c $(build)/$$c/bin unit && \
+	    tests/run $(build)/$$c $(build)/$$c/bin gpu || exit 1; \
+	done
+
+checked: all tests demo style layers headers
+tests: $(unit_tests) $(gpu_tests)
+unit: tests
 	@tests/run $(out) $(bin) unit
-.PHONY: unit
+gpu: tests
+	@tests/run $(out) $(bin) gpu
+
+style:
+	@tests/style
+layers:
+	@tests/layers
+# Every header stands alone.
+headers: | $(gen)/glad/include/glad/gl.h
+	@for h in $$(git ls-files '*.h'); do $(CC) $(cflags) -MF /dev/null -fsyntax-only -x c $$h || exit 1; done
+
+bench_programs := $(patsubst tests/%.c,$(out)/tests/%,$(wildcard tests/bench/*_bench.c))
+bench: test-deps
+	@$(MAKE) --no-print-directory all demo $(bench_programs)
+	@tests/bench/run $(out) $(bin)
+
+.PHONY: checked tests unit gpu

@@ -49,6 +49,7 @@ struct probe {
     double nearest_m[4];
 };
 /* The field at one vertex, from the same sums. */
-void field_probe(struct field *field, int asset, const struct field_params *params, const struct snapshot *snapshot, unsigned vertex, struct probe *out);
+void field_probe(struct field *field, int asset, const struct field_params *params, const struct snapshot *snapshot, unsigned vertex,
+                 struct probe *out);
 
 #endif

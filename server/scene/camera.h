@@ -14,6 +14,7 @@ bool camera_valid(const struct camera *camera);
 /* Looks at the whole box from a raised corner (south-west unless the plant says otherwise). */
 void camera_fit(struct camera *camera, const double min_m[3], const double max_m[3], double aspect);
 /* near and far planes are chosen to hold the box. view_from_plant and clip_from_view, each 16 doubles. */
-void camera_matrices(const struct camera *camera, double aspect, const double min_m[3], const double max_m[3], double view[16], double projection[16]);
+void camera_matrices(const struct camera *camera, double aspect, const double min_m[3], const double max_m[3],
+                     double view[16], double projection[16]);
 
 #endif
