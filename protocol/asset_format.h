@@ -101,4 +101,29 @@ struct asset_view {
    (with numbers), the view is not usable. bytes must be aligned to ASSET_ALIGN. */
 bool asset_view_init(struct asset_view *view, const void *bytes, size_t size, char why[200]);
 
+/* What an asset file is made of. Pointers are only read. Zero-initialise. */
+struct asset_parts {
+    uint64_t key;
+    double origin_m[3];
+    const float (*positions_m)[3];
+    const float (*normals)[3];
+    const float (*texcoords)[2];  /* NULL: none */
+    const uint8_t (*colors)[4];   /* NULL: none */
+    const uint32_t *indices;
+    const struct asset_primitive *primitives;
+    const struct asset_level *levels; /* NULL: one level that holds everything */
+    const struct asset_material *materials;
+    const struct asset_texture *textures;
+    const uint8_t *texels;
+    const struct asset_sensor *sensors;
+    const float *geodesic_m;
+    const char *names;            /* NULL: one empty name */
+    uint32_t vertex_count, index_count, primitive_count, level_count, material_count, texture_count, sensor_count;
+    size_t texel_bytes, name_bytes;
+};
+
+/* The file's bytes, aligned to ASSET_ALIGN: sections laid out, bounds and checksum computed. Contents are not checked; that is
+   asset_view_init's. NULL: out of memory. Free with free(). */
+void *asset_build(const struct asset_parts *parts, size_t *bytes);
+
 #endif

@@ -1,0 +1,374 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Asset files: what is built is read back, and every kind of damage is refused with its reason. */
+#include "protocol/asset_format.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+#include <xxhash.h>
+
+/* Two levels: two triangles of four vertices, then one triangle of the first three. One texture, two sensors. */
+static const float positions[4][3] = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 1, 1, 0.5f } };
+static const float normals[4][3] = { { 0, 0, 1 }, { 0, 0, 1 }, { 0, 0, 1 }, { 0, 0, 1 } };
+static const float texcoords[4][2] = { { 0, 0 }, { 1, 0 }, { 0, 1 }, { 1, 1 } };
+static const uint8_t colors[4][4] = { { 255, 0, 0, 255 } };
+static const uint32_t indices[9] = { 0, 1, 2, 1, 3, 2, 0, 1, 2 };
+static const struct asset_primitive primitives[2] = { { .index_count = 6, .name = 1 }, { .first_index = 6, .index_count = 3, .name = 1 } };
+static const struct asset_level levels[2] = { { .primitive_count = 1, .vertex_count = 4 }, { .first_primitive = 1, .primitive_count = 1, .vertex_count = 3, .error_m = 0.5f } };
+static const struct asset_material materials[1] = { {
+    .base_color = { 0.5f, 0.5f, 0.5f, 1 }, .roughness = 0.5f, .normal_scale = 1, .occlusion_strength = 1, .alpha_cutoff = 0.5f,
+    .metallic_roughness_texture = ASSET_NO_TEXTURE, .normal_texture = ASSET_NO_TEXTURE, .occlusion_texture = ASSET_NO_TEXTURE, .emissive_texture = ASSET_NO_TEXTURE,
+} };
+static const struct asset_texture textures[1] = { { .width_px = 2, .height_px = 1, .srgb = 1 } };
+static const uint8_t texels[8] = { 1, 2, 3, 4, 5, 6, 7, 8 };
+static const struct asset_sensor sensors[2] = { { .position_m = { 0, 0, 0.1f }, .surface_distance_m = 0.1f }, { .nearest_vertex = 3 } };
+static const float geodesic[8] = { 0, 1, 1, 2, 2, 1, INFINITY, 0 };
+
+static const struct asset_parts good = {
+    .key = 0x1234, .origin_m = { 1e6, 2e6, 3 }, .positions_m = positions, .normals = normals, .texcoords = texcoords, .colors = colors, .indices = indices,
+    .primitives = primitives, .levels = levels, .materials = materials, .textures = textures, .texels = texels, .sensors = sensors, .geodesic_m = geodesic,
+    .names = "\0part", .vertex_count = 4, .index_count = 9, .primitive_count = 2, .level_count = 2, .material_count = 1, .texture_count = 1, .sensor_count = 2,
+    .texel_bytes = 8, .name_bytes = 6,
+};
+
+struct file {
+    char *bytes;
+    size_t size;
+    struct asset_header *header;
+};
+
+static struct file build(const struct asset_parts *parts)
+{
+    struct file f;
+    f.bytes = asset_build(parts, &f.size);
+    assert_non_null(f.bytes);
+    f.header = (struct asset_header *)f.bytes;
+    return f;
+}
+
+/* The checksum made right again, the way the format's page words it. */
+static void seal(struct file *f)
+{
+    f->header->checksum = 0;
+    f->header->checksum = XXH3_64bits(f->bytes, f->size);
+}
+
+static void *part(const struct file *f, enum asset_section section)
+{
+    return f->bytes + f->header->sections[section].offset;
+}
+
+static void refused(struct file *f, size_t size, const char *reason)
+{
+    struct asset_view view;
+    char why[200] = "";
+    if (asset_view_init(&view, f->bytes, size, why))
+        fail_msg("accepted; expected to be refused for: %s", reason);
+    if (!strstr(why, reason))
+        fail_msg("refused for '%s', expected '%s'", why, reason);
+    free(f->bytes);
+}
+
+static void refused_sealed(struct file *f, const char *reason)
+{
+    seal(f);
+    refused(f, f->size, reason);
+}
+
+static void what_is_built_is_read_back(void **state)
+{
+    (void)state;
+    struct file f = build(&good);
+    struct asset_view v;
+    char why[200] = "";
+    if (!asset_view_init(&v, f.bytes, f.size, why))
+        fail_msg("%s", why);
+    assert_int_equal(f.size % ASSET_ALIGN, 0);
+    assert_int_equal(v.header->key, 0x1234);
+    assert_true(v.header->origin_m[1] == 2e6);
+    assert_true(v.header->bounds_max_m[2] == 0.5f && v.header->bounds_min_m[0] == 0);
+    assert_memory_equal(v.positions_m, positions, sizeof(positions));
+    assert_memory_equal(v.normals, normals, sizeof(normals));
+    assert_memory_equal(v.texcoords, texcoords, sizeof(texcoords));
+    assert_memory_equal(v.colors, colors, sizeof(colors));
+    assert_memory_equal(v.indices, indices, sizeof(indices));
+    assert_memory_equal(v.levels, levels, sizeof(levels));
+    assert_memory_equal(v.sensors, sensors, sizeof(sensors));
+    assert_memory_equal(v.geodesic_m, geodesic, sizeof(geodesic));
+    assert_memory_equal(v.texels, texels, sizeof(texels));
+    assert_string_equal(v.names + v.primitives[1].name, "part");
+    free(f.bytes);
+}
+
+static void the_smallest_asset_is_good(void **state)
+{
+    (void)state;
+    struct asset_material plain = materials[0];
+    struct asset_primitive one = { .index_count = 6 };
+    plain.base_color_texture = ASSET_NO_TEXTURE;
+    struct asset_parts small = { .positions_m = positions, .normals = normals, .indices = indices, .primitives = &one, .materials = &plain,
+                                 .vertex_count = 4, .index_count = 6, .primitive_count = 1, .material_count = 1 };
+    struct file f = build(&small);
+    struct asset_view v;
+    char why[200] = "";
+    if (!asset_view_init(&v, f.bytes, f.size, why))
+        fail_msg("%s", why);
+    assert_int_equal(v.header->level_count, 1);
+    assert_int_equal(v.levels[0].vertex_count, 4);
+    assert_null(v.texcoords);
+    assert_null(v.colors);
+    assert_string_equal(v.names, "");
+    free(f.bytes);
+}
+
+static void the_layout_is_pinned(void **state)
+{
+    (void)state;
+    assert_int_equal(sizeof(struct asset_header), 328);
+    assert_int_equal(offsetof(struct asset_header, checksum), 24);
+    assert_int_equal(offsetof(struct asset_header, key), 32);
+    assert_int_equal(offsetof(struct asset_header, bounds_min_m), 64);
+    assert_int_equal(offsetof(struct asset_header, vertex_count), 88);
+    assert_int_equal(offsetof(struct asset_header, sections), 120);
+    assert_int_equal(sizeof(struct asset_material), 80);
+    assert_int_equal(offsetof(struct asset_material, base_color_texture), 48);
+    assert_int_equal(sizeof(struct asset_texture), 24);
+    assert_int_equal(sizeof(struct asset_sensor), 40);
+    assert_int_equal(ASSET_SECTION_COUNT, 13);
+    struct file f = build(&good);
+    assert_memory_equal(f.bytes, "PLCASSET\1\0\0\0\x48\1\0\0", 16);
+    assert_int_equal(XXH3_64bits(f.bytes + 328, f.size - 328), 0xa9b61e8188a9c99full); /* changes only with the format's version */
+    free(f.bytes);
+}
+
+static void truncated_or_foreign_files_are_refused(void **state)
+{
+    (void)state;
+    struct asset_view view;
+    char why[200] = "";
+    assert_false(asset_view_init(&view, NULL, 0, why));
+    for (size_t cut = 1; cut < 1000; cut += 37) {
+        struct file f = build(&good);
+        refused(&f, cut < f.size ? f.size - cut : 0, "");
+    }
+    struct file f = build(&good);
+    refused(&f, f.size - 64, "truncated: ");
+    f = build(&good);
+    refused(&f, 100, "truncated: 100 bytes, the header alone has 328");
+    f = build(&good);
+    f.header->file_bytes -= 64;
+    refused(&f, f.size, "too long");
+    f = build(&good);
+    memcpy(f.bytes, "glTF", 4);
+    refused_sealed(&f, "magic");
+    f = build(&good);
+    f.header->version = 2;
+    refused_sealed(&f, "version 2, this program reads version 1");
+    f = build(&good);
+    f.header->header_bytes = 320;
+    refused_sealed(&f, "header of 320 bytes");
+    f = build(&good);
+    assert_false(asset_view_init(&view, f.bytes + 8, f.size - 8, why));
+    assert_non_null(strstr(why, "aligned"));
+    free(f.bytes);
+}
+
+static void every_flipped_bit_is_noticed(void **state)
+{
+    (void)state;
+    struct file f = build(&good);
+    struct asset_view view;
+    char why[200];
+    for (size_t i = 0; i < f.size; i++) {
+        f.bytes[i] ^= 0x10;
+        if (asset_view_init(&view, f.bytes, f.size, why))
+            fail_msg("byte %zu changed and not noticed", i);
+        f.bytes[i] ^= 0x10;
+    }
+    assert_true(asset_view_init(&view, f.bytes, f.size, why));
+    f.bytes[f.size - 1] ^= 1;
+    refused(&f, f.size, "checksum ");
+}
+
+static void sections_out_of_bounds_are_refused(void **state)
+{
+    (void)state;
+    for (int i = 0; i < ASSET_SECTION_COUNT; i++) {
+        struct file f = build(&good);
+        f.header->sections[i].offset = f.size + 64;
+        refused_sealed(&f, "outside the file");
+        f = build(&good);
+        f.header->sections[i].offset = UINT64_MAX - 63;
+        refused_sealed(&f, "outside the file");
+        f = build(&good);
+        f.header->sections[i].bytes = UINT64_MAX;
+        refused_sealed(&f, "outside the file");
+        f = build(&good);
+        f.header->sections[i].offset = 0;
+        refused_sealed(&f, "over another section");
+        f = build(&good);
+        f.header->sections[i].offset += 4;
+        refused_sealed(&f, "section");
+    }
+    struct file f = build(&good);
+    f.header->sections[ASSET_GEODESIC].bytes -= 4;
+    refused_sealed(&f, "section geodesic: 28 bytes, expected 32");
+    f = build(&good);
+    f.header->sensor_count = UINT32_MAX;
+    refused_sealed(&f, "section sensors");
+    f = build(&good);
+    f.header->index_count = 8;
+    refused_sealed(&f, "8 indices are not whole triangles");
+    f = build(&good);
+    f.header->vertex_count = 0;
+    refused_sealed(&f, "nothing to draw");
+    f = build(&good);
+    ((char *)part(&f, ASSET_NAMES))[5] = 'x';
+    refused_sealed(&f, "the last name has no end");
+}
+
+static void wrong_vertices_are_refused(void **state)
+{
+    (void)state;
+    struct file f = build(&good);
+    ((float *)part(&f, ASSET_POSITIONS))[7] = NAN;
+    refused_sealed(&f, "vertex 2: position is not finite");
+    f = build(&good);
+    ((float *)part(&f, ASSET_POSITIONS))[7] = 9;
+    refused_sealed(&f, "vertex 2: position 9 m lies outside the bounds 0..1 m");
+    f = build(&good);
+    ((float *)part(&f, ASSET_NORMALS))[2] = NAN;
+    refused_sealed(&f, "vertex 0: normal");
+    f = build(&good);
+    ((float *)part(&f, ASSET_NORMALS))[5] = 0;
+    refused_sealed(&f, "vertex 1: normal of length 0");
+    f = build(&good);
+    ((float *)part(&f, ASSET_TEXCOORDS))[6] = INFINITY;
+    refused_sealed(&f, "vertex 3: texture coordinate");
+    f = build(&good);
+    f.header->origin_m[1] = INFINITY;
+    refused_sealed(&f, "origin");
+    f = build(&good);
+    f.header->bounds_min_m[1] = -INFINITY;
+    refused_sealed(&f, "bounds are not finite");
+}
+
+static void wrong_primitives_and_levels_are_refused(void **state)
+{
+    (void)state;
+    struct file f = build(&good);
+    ((uint32_t *)part(&f, ASSET_INDICES))[4] = 4;
+    refused_sealed(&f, "primitive 0: index 4 names vertex 4 of 4");
+    f = build(&good);
+    ((uint32_t *)part(&f, ASSET_INDICES))[7] = 3;
+    refused_sealed(&f, "primitive 1: index 7 names vertex 3 of 3"); /* within the file, not within the level's prefix */
+    f = build(&good);
+    ((struct asset_primitive *)part(&f, ASSET_PRIMITIVES))[1].first_index = UINT32_MAX - 2;
+    refused_sealed(&f, "primitive 1: indices");
+    f = build(&good);
+    ((struct asset_primitive *)part(&f, ASSET_PRIMITIVES))[1].index_count = 2;
+    refused_sealed(&f, "primitive 1: indices 6+2 of 9");
+    f = build(&good);
+    ((struct asset_primitive *)part(&f, ASSET_PRIMITIVES))[0].material = 1;
+    refused_sealed(&f, "primitive 0: material 1 of 1");
+    f = build(&good);
+    ((struct asset_primitive *)part(&f, ASSET_PRIMITIVES))[0].name = 6;
+    refused_sealed(&f, "primitive 0: name at 6");
+    f = build(&good);
+    ((struct asset_level *)part(&f, ASSET_LEVELS))[1].vertex_count = 5;
+    refused_sealed(&f, "level 1: the first 5 vertices, expected at most 4");
+    f = build(&good);
+    ((struct asset_level *)part(&f, ASSET_LEVELS))[0].vertex_count = 3;
+    refused_sealed(&f, "level 0: the first 3 vertices, expected 4");
+    f = build(&good);
+    ((struct asset_level *)part(&f, ASSET_LEVELS))[1].first_primitive = 0;
+    refused_sealed(&f, "level 1: primitives 0+1, expected them to begin at 1 of 2");
+    f = build(&good);
+    ((struct asset_level *)part(&f, ASSET_LEVELS))[1].primitive_count = UINT32_MAX;
+    refused_sealed(&f, "level 1: primitives");
+    f = build(&good);
+    ((struct asset_level *)part(&f, ASSET_LEVELS))[1].error_m = -1;
+    refused_sealed(&f, "level 1: error of -1 m after 0 m");
+    f = build(&good);
+    f.header->level_count = 1;
+    f.header->sections[ASSET_LEVELS].bytes = sizeof(struct asset_level);
+    refused_sealed(&f, "the levels hold 1 primitives of 2");
+}
+
+static void wrong_materials_and_textures_are_refused(void **state)
+{
+    (void)state;
+    struct file f = build(&good);
+    ((struct asset_material *)part(&f, ASSET_MATERIALS))->normal_texture = 1;
+    refused_sealed(&f, "material 0: texture 1 of 1");
+    f = build(&good);
+    f.header->sections[ASSET_TEXCOORDS].bytes = 0;
+    refused_sealed(&f, "material 0: texture 0 of 1, without coordinates");
+    f = build(&good);
+    ((struct asset_material *)part(&f, ASSET_MATERIALS))->base_color[1] = NAN;
+    refused_sealed(&f, "material 0: a factor");
+    f = build(&good);
+    ((struct asset_material *)part(&f, ASSET_MATERIALS))->metallic = 1.5f;
+    refused_sealed(&f, "material 0: a factor");
+    f = build(&good);
+    ((struct asset_material *)part(&f, ASSET_MATERIALS))->emissive[2] = INFINITY;
+    refused_sealed(&f, "material 0: a factor is not finite");
+    f = build(&good);
+    ((struct asset_material *)part(&f, ASSET_MATERIALS))->alpha = 3;
+    refused_sealed(&f, "material 0: alpha mode 3");
+    f = build(&good);
+    ((struct asset_texture *)part(&f, ASSET_TEXTURES))->offset = 4;
+    refused_sealed(&f, "texture 0: bytes 4+8 of 8");
+    f = build(&good);
+    ((struct asset_texture *)part(&f, ASSET_TEXTURES))->width_px = 0;
+    refused_sealed(&f, "texture 0: 0 x 1 pixels");
+    f = build(&good);
+    ((struct asset_texture *)part(&f, ASSET_TEXTURES))->height_px = UINT32_MAX;
+    refused_sealed(&f, "texture 0: 2 x 4294967295 pixels");
+    f = build(&good);
+    ((struct asset_texture *)part(&f, ASSET_TEXTURES))->srgb = 2;
+    refused_sealed(&f, "texture 0: srgb 2");
+}
+
+static void wrong_sensors_are_refused(void **state)
+{
+    (void)state;
+    struct file f = build(&good);
+    ((struct asset_sensor *)part(&f, ASSET_SENSORS))[1].surface_m[0] = NAN;
+    refused_sealed(&f, "sensor 1: place is not finite");
+    f = build(&good);
+    ((struct asset_sensor *)part(&f, ASSET_SENSORS))[1].surface_distance_m = -1;
+    refused_sealed(&f, "sensor 1: place");
+    f = build(&good);
+    ((struct asset_sensor *)part(&f, ASSET_SENSORS))[1].nearest_vertex = 4;
+    refused_sealed(&f, "sensor 1: nearest vertex 4 of 4");
+    f = build(&good);
+    ((float *)part(&f, ASSET_GEODESIC))[5] = NAN;
+    refused_sealed(&f, "sensor 1: distance nan m at vertex 1");
+    f = build(&good);
+    ((float *)part(&f, ASSET_GEODESIC))[2] = -1;
+    refused_sealed(&f, "sensor 0: distance -1 m at vertex 2");
+}
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_is_built_is_read_back),
+        cmocka_unit_test(the_smallest_asset_is_good),
+        cmocka_unit_test(the_layout_is_pinned),
+        cmocka_unit_test(truncated_or_foreign_files_are_refused),
+        cmocka_unit_test(every_flipped_bit_is_noticed),
+        cmocka_unit_test(sections_out_of_bounds_are_refused),
+        cmocka_unit_test(wrong_vertices_are_refused),
+        cmocka_unit_test(wrong_primitives_and_levels_are_refused),
+        cmocka_unit_test(wrong_materials_and_textures_are_refused),
+        cmocka_unit_test(wrong_sensors_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
