@@ -32,7 +32,8 @@ struct wire_frame { /* in the order of the bytes */
 };
 
 void wire_put_frame(const struct wire_frame *frame, uint8_t out[WIRE_FRAME_HEADER_BYTES]);
-/* Checks length, ranges and finiteness. False: not a frame of this protocol. */
+/* bytes: the whole message, header and payload. Checks length, ranges and finiteness; unknown flags pass. False: not a frame of this
+   protocol; *frame is then undefined. */
 bool wire_get_frame(const uint8_t *bytes, size_t count, struct wire_frame *frame);
 
 #endif
