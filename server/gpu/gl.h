@@ -14,6 +14,7 @@ struct gl {
     bool software;              /* llvmpipe, softpipe, swrast */
     int max_texture_px, max_samples;
     const struct gl_impl *impl;
+    struct log *log;
 };
 
 /* "auto", "egl-device", "egl-surfaceless", "osmesa". False: unknown. */
@@ -22,6 +23,10 @@ const char *gl_kind_name(enum gl_kind kind);
 /* Tries in the order EGL device (`device`: index, -1 = first with hardware), EGL surfaceless, OSMesa, or only the one asked for.
    NULL: none works; every reason is logged. */
 struct gl *gl_create(struct log *log, enum gl_kind kind, int device);
-void gl_destroy(struct gl **gl);
+void gl_destroy(struct gl **gl); /* &NULL is fine; leaves NULL */
+
+/* Around everything a pass does: a debug group, and on leaving the GL errors of the pass, logged by its name. False: there was one. */
+void gl_pass_enter(const char *name);
+bool gl_pass_leave(struct gl *gl, const char *name);
 
 #endif

@@ -1,0 +1,121 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Chooses a way to a GL context and reads what it can do. */
+#include "gpu/gl.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include <glad/gl.h>
+
+#include "gpu/gl_impl.h"
+
+struct attempt {
+    const struct gl_impl *impl;
+    bool automatic, software; /* tried by `auto`; may be a software device then */
+};
+static const struct attempt attempts[] = {
+    { &gl_egl_device_impl, true, false },
+    { &gl_egl_surfaceless_impl, true, true },
+    { &gl_egl_device_impl, true, true },
+    { &gl_osmesa_impl, true, true },
+};
+enum { ATTEMPTS = sizeof(attempts) / sizeof(attempts[0]) };
+
+bool gl_kind_parse(const char *name, enum gl_kind *kind)
+{
+    if (!strcmp(name, "auto")) {
+        *kind = GL_AUTO;
+        return true;
+    }
+    for (int i = 0; i < ATTEMPTS; i++)
+        if (!strcmp(name, attempts[i].impl->name)) {
+            *kind = attempts[i].impl->kind;
+            return true;
+        }
+    return false;
+}
+
+const char *gl_kind_name(enum gl_kind kind)
+{
+    for (int i = 0; i < ATTEMPTS; i++)
+        if (attempts[i].impl->kind == kind)
+            return attempts[i].impl->name;
+    return "auto";
+}
+
+static void GLAD_API_PTR on_debug_message(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei length, const GLchar *text, const void *log)
+{
+    (void)source, (void)id, (void)length;
+    if (type == GL_DEBUG_TYPE_ERROR || severity == GL_DEBUG_SEVERITY_HIGH)
+        log_at((struct log *)log, type == GL_DEBUG_TYPE_ERROR ? LOG_ERROR : LOG_WARN, "gl: %s", text);
+}
+
+static void copy_string(char out[128], GLenum name)
+{
+    const GLubyte *text = glGetString(name);
+    snprintf(out, 128, "%s", text ? (const char *)text : "?");
+}
+
+static void read_capabilities(struct gl *gl)
+{
+    copy_string(gl->vendor, GL_VENDOR);
+    copy_string(gl->renderer, GL_RENDERER);
+    copy_string(gl->version, GL_VERSION);
+    gl->software = strstr(gl->renderer, "llvmpipe") || strstr(gl->renderer, "softpipe") || strstr(gl->renderer, "swrast");
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &gl->max_texture_px);
+    glGetIntegerv(GL_MAX_SAMPLES, &gl->max_samples);
+}
+
+/* What every pass relies on: rows from the top, depth 1 (near) to 0 (far). */
+static void set_conventions(struct gl *gl)
+{
+    glClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE);
+    glClearDepth(0.0);
+    glDepthFunc(GL_GEQUAL);
+    glPixelStorei(GL_PACK_ALIGNMENT, 4);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    glDisable(GL_DITHER);
+    glDebugMessageCallback(on_debug_message, gl->log);
+}
+
+struct gl *gl_create(struct log *log, enum gl_kind kind, int device)
+{
+    for (int i = 0; i < ATTEMPTS; i++) {
+        const struct attempt *attempt = &attempts[i];
+        if (kind != GL_AUTO && attempt->impl->kind != kind)
+            continue;
+        struct gl *gl = attempt->impl->create(log, device, kind != GL_AUTO || attempt->software);
+        if (!gl)
+            continue;
+        gl->log = log;
+        read_capabilities(gl);
+        set_conventions(gl);
+        log_info(log, "gl: %s: %s, %s", attempt->impl->name, gl->renderer, gl->version);
+        return gl;
+    }
+    log_err(log, "no OpenGL 4.5 context (%s): install libegl1 and libgl1-mesa-dri, or libosmesa6; the reasons are above", gl_kind_name(kind));
+    return NULL;
+}
+
+void gl_destroy(struct gl **gl)
+{
+    if (!*gl)
+        return;
+    (*gl)->impl->destroy(*gl);
+    *gl = NULL;
+}
+
+void gl_pass_enter(const char *name)
+{
+    glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, -1, name);
+}
+
+bool gl_pass_leave(struct gl *gl, const char *name)
+{
+    glPopDebugGroup();
+    GLenum error = glGetError();
+    if (error == GL_NO_ERROR)
+        return true;
+    log_err(gl->log, "gl: pass %s: error 0x%04x", name, error);
+    return false;
+}

@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The geometry of one asset file on the GPU, shared by all its instances. Thread: the one of the GL context. */
+#ifndef GPU_MESH_H
+#define GPU_MESH_H
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <glad/gl.h>
+
+#include "base/log.h"
+
+/* Vertex attributes, by the location that every shader uses. Light and scalar come from the instance. */
+enum mesh_attribute { MESH_POSITION, MESH_NORMAL, MESH_TEXCOORD, MESH_COLOR, MESH_LIGHT, MESH_SCALAR, MESH_FLAGS };
+
+struct mesh_params { /* pointers need only live for the call */
+    size_t vertex_count, index_count;
+    const float (*positions_m)[3];
+    const float (*normals)[3];
+    const float (*texcoords)[2]; /* NULL: none */
+    const uint8_t (*colors)[4];  /* NULL: none */
+    const uint32_t *indices;
+};
+
+struct mesh {
+    GLuint vao, positions, normals, texcoords, colors, indices;
+    size_t vertex_count, index_count;
+};
+
+bool mesh_init(struct mesh *mesh, struct log *log, const char *name, const struct mesh_params *params); /* false: out of GPU memory, logged */
+void mesh_finish(struct mesh *mesh);
+/* Light (4 bytes a vertex) and scalars (8 bytes a vertex, struct scalar) for the next draw; 0: none. */
+void mesh_bind(const struct mesh *mesh, GLuint light, GLuint scalars);
+
+/* An immutable buffer, or 0 when the GPU is out of memory (logged). */
+GLuint mesh_buffer(struct log *log, const char *name, size_t bytes, const void *data, GLbitfield flags);
+
+#endif

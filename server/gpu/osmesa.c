@@ -1,0 +1,80 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A GL context from OSMesa, looked for at run time: Mesa 25.1 and later have none. */
+#include <dlfcn.h>
+
+#include <glad/gl.h>
+
+#include "base/mem.h"
+#include "gpu/gl_impl.h"
+
+/* From GL/osmesa.h, which is not needed to build. */
+enum {
+    OSMESA_FORMAT = 0x22,
+    OSMESA_DEPTH_BITS = 0x30,
+    OSMESA_PROFILE = 0x33,
+    OSMESA_CORE_PROFILE = 0x34,
+    OSMESA_CONTEXT_MAJOR_VERSION = 0x36,
+    OSMESA_CONTEXT_MINOR_VERSION = 0x37,
+    OSMESA_RGBA = 0x1908,
+    OSMESA_UNSIGNED_BYTE = 0x1401
+};
+
+struct osmesa {
+    struct gl base;
+    void *library, *context;
+    void *(*create)(const int *attributes, void *share);
+    void (*destroy)(void *context);
+    unsigned char (*make_current)(void *context, void *buffer, unsigned type, int width, int height);
+    GLADapiproc (*get_proc)(const char *name);
+    unsigned char buffer[4 * 4 * 4]; /* OSMesa wants one to be current with; we draw to our own targets */
+};
+
+static void osmesa_destroy(struct gl *gl)
+{
+    struct osmesa *osmesa = (struct osmesa *)gl;
+    if (osmesa->context)
+        osmesa->destroy(osmesa->context);
+    mem_free(osmesa); /* the library stays: its threads may still be ending */
+}
+
+static bool osmesa_load(struct osmesa *osmesa)
+{
+    static const char *const names[] = { "libOSMesa.so.8", "libOSMesa.so.6" };
+    for (size_t i = 0; i < sizeof(names) / sizeof(names[0]) && !osmesa->library; i++)
+        osmesa->library = dlopen(names[i], RTLD_NOW | RTLD_LOCAL);
+    if (!osmesa->library)
+        return false;
+    *(void **)&osmesa->create = dlsym(osmesa->library, "OSMesaCreateContextAttribs");
+    *(void **)&osmesa->destroy = dlsym(osmesa->library, "OSMesaDestroyContext");
+    *(void **)&osmesa->make_current = dlsym(osmesa->library, "OSMesaMakeCurrent");
+    *(void **)&osmesa->get_proc = dlsym(osmesa->library, "OSMesaGetProcAddress");
+    return osmesa->create && osmesa->destroy && osmesa->make_current && osmesa->get_proc;
+}
+
+static struct gl *osmesa_create(struct log *log, int device, bool software)
+{
+    static const int attributes[] = { OSMESA_FORMAT, OSMESA_RGBA, OSMESA_DEPTH_BITS, 24, OSMESA_PROFILE, OSMESA_CORE_PROFILE,
+                                      OSMESA_CONTEXT_MAJOR_VERSION, 4, OSMESA_CONTEXT_MINOR_VERSION, 5, 0 };
+    struct osmesa *osmesa = mem_new(sizeof(*osmesa));
+    (void)device, (void)software;
+    osmesa->base = (struct gl){ .kind = GL_OSMESA, .impl = &gl_osmesa_impl };
+    if (!osmesa_load(osmesa)) {
+        log_info(log, "gl: osmesa: libOSMesa.so.8 or .6 cannot be loaded");
+        goto error;
+    }
+    osmesa->context = osmesa->create(attributes, NULL);
+    if (!osmesa->context || !osmesa->make_current(osmesa->context, osmesa->buffer, OSMESA_UNSIGNED_BYTE, 4, 4)) {
+        log_info(log, "gl: osmesa: no OpenGL 4.5 core context");
+        goto error;
+    }
+    if (gladLoadGL(osmesa->get_proc) < GLAD_MAKE_VERSION(4, 5)) {
+        log_info(log, "gl: osmesa: OpenGL is older than 4.5");
+        goto error;
+    }
+    return &osmesa->base;
+error:
+    osmesa_destroy(&osmesa->base);
+    return NULL;
+}
+
+const struct gl_impl gl_osmesa_impl = { .kind = GL_OSMESA, .name = "osmesa", .create = osmesa_create, .destroy = osmesa_destroy };

@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Gets a picture out of the GPU, started and finished apart so that other work fits between. Thread: the one of the GL context. */
+#ifndef GPU_READBACK_H
+#define GPU_READBACK_H
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "gpu/target.h"
+
+struct readback { /* zero-initialise */
+    GLuint buffer;
+    size_t capacity_bytes;
+    int width_px, height_px;
+    GLsync done;
+};
+
+/* Of the resolved picture. False: out of GPU memory, logged. */
+bool readback_start(struct readback *readback, struct log *log, const struct target *target);
+/* Waits for the picture: 4 bytes a pixel (B, G, R, X), rows from the top, stride_bytes apart. False: the context is lost, logged. */
+bool readback_get(struct readback *readback, struct log *log, uint8_t *bgrx, size_t stride_bytes);
+void readback_finish(struct readback *readback);
+
+#endif

@@ -1,0 +1,59 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Framebuffers. */
+#include "gpu/target.h"
+
+static bool make(GLuint *framebuffer, GLuint *color, GLuint *depth, int width_px, int height_px, int samples)
+{
+    GLenum kind = samples > 1 ? GL_TEXTURE_2D_MULTISAMPLE : GL_TEXTURE_2D;
+    glCreateTextures(kind, 1, color);
+    glCreateTextures(kind, 1, depth);
+    if (samples > 1) {
+        glTextureStorage2DMultisample(*color, samples, GL_RGBA8, width_px, height_px, GL_TRUE);
+        glTextureStorage2DMultisample(*depth, samples, GL_DEPTH_COMPONENT32F, width_px, height_px, GL_TRUE);
+    } else {
+        glTextureStorage2D(*color, 1, GL_RGBA8, width_px, height_px);
+        glTextureStorage2D(*depth, 1, GL_DEPTH_COMPONENT32F, width_px, height_px);
+        glTextureParameteri(*color, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+        glTextureParameteri(*depth, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+        glTextureParameteri(*depth, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    }
+    glCreateFramebuffers(1, framebuffer);
+    glNamedFramebufferTexture(*framebuffer, GL_COLOR_ATTACHMENT0, *color, 0);
+    glNamedFramebufferTexture(*framebuffer, GL_DEPTH_ATTACHMENT, *depth, 0);
+    return glCheckNamedFramebufferStatus(*framebuffer, GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE && glGetError() == GL_NO_ERROR;
+}
+
+bool target_init(struct target *target, struct log *log, int width_px, int height_px, int samples)
+{
+    *target = (struct target){ .width_px = width_px, .height_px = height_px, .samples = samples };
+    bool good = make(&target->framebuffer, &target->color, &target->depth, width_px, height_px, samples);
+    if (good && samples > 1) {
+        good = make(&target->resolved_framebuffer, &target->resolved_color, &target->resolved_depth, width_px, height_px, 1);
+    } else {
+        target->resolved_framebuffer = target->framebuffer;
+        target->resolved_color = target->color;
+        target->resolved_depth = target->depth;
+    }
+    if (good)
+        return true;
+    log_err(log, "picture of %dx%d with %d samples: out of GPU memory", width_px, height_px, samples);
+    target_finish(target);
+    return false;
+}
+
+void target_finish(struct target *target)
+{
+    GLuint textures[] = { target->color, target->depth, target->resolved_color, target->resolved_depth };
+    GLuint framebuffers[] = { target->framebuffer, target->resolved_framebuffer };
+    int count = target->samples > 1 ? 2 : 1;
+    glDeleteFramebuffers(count, framebuffers);
+    glDeleteTextures(2 * count, textures);
+    *target = (struct target){ 0 };
+}
+
+void target_resolve(const struct target *target)
+{
+    if (target->samples > 1)
+        glBlitNamedFramebuffer(target->framebuffer, target->resolved_framebuffer, 0, 0, target->width_px, target->height_px, 0, 0,
+                               target->width_px, target->height_px, GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT, GL_NEAREST);
+}

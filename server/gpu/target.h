@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* An offscreen picture: 8-bit colour and 32-bit depth, with or without multisampling. Thread: the one of the GL context. */
+#ifndef GPU_TARGET_H
+#define GPU_TARGET_H
+#include <stdbool.h>
+
+#include <glad/gl.h>
+
+#include "base/log.h"
+
+struct target {
+    int width_px, height_px, samples;
+    GLuint framebuffer, color, depth;                        /* what is drawn to */
+    GLuint resolved_framebuffer, resolved_color, resolved_depth; /* one sample; the same objects when samples = 1 */
+};
+
+/* False: out of GPU memory, logged. */
+bool target_init(struct target *target, struct log *log, int width_px, int height_px, int samples);
+void target_finish(struct target *target);
+void target_resolve(const struct target *target); /* colour averaged, depth of one sample; nothing to do for one sample */
+
+#endif
