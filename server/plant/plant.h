@@ -12,8 +12,11 @@ enum interpolation { INTERPOLATION_SHEPARD, INTERPOLATION_PAPER };
 enum distance_mode { DISTANCE_GEODESIC, DISTANCE_EUCLIDEAN };
 enum fill_mode { FILL_NONE, FILL_NEIGHBOURS };       /* may neighbours paint the place of a lost sensor? */
 enum axis { AXIS_Y, AXIS_Z };                        /* which way is up */
-enum data_type { DATA_BIT, DATA_INT16, DATA_UINT16, DATA_INT32, DATA_UINT32, DATA_FLOAT32, DATA_INT64, DATA_UINT64, DATA_FLOAT64, DATA_BCD };
-enum byte_order { BYTE_ORDER_NONE, BYTE_ORDER_ABCD, BYTE_ORDER_CDAB, BYTE_ORDER_BADC, BYTE_ORDER_DCBA }; /* NONE: not stated */
+enum data_type { DATA_BIT, DATA_INT16, DATA_UINT16, DATA_INT32, DATA_UINT32, DATA_FLOAT32, DATA_INT64, DATA_UINT64, DATA_FLOAT64,
+                 DATA_BCD /* 4 digits, one register */, DATA_LBCD /* 8 digits, two */ };
+/* What register bytes of a value A B C D (most significant first) come in; for 64 bits likewise: CDAB reverses the registers, BADC
+   the bytes of each, DCBA both. NONE: not stated. */
+enum byte_order { BYTE_ORDER_NONE, BYTE_ORDER_ABCD, BYTE_ORDER_CDAB, BYTE_ORDER_BADC, BYTE_ORDER_DCBA };
 enum register_table { TABLE_COIL, TABLE_DISCRETE, TABLE_INPUT, TABLE_HOLDING }; /* function codes 1, 2, 4, 3 */
 enum scaling { SCALING_NONE, SCALING_LINEAR, SCALING_SQUARE_ROOT };
 enum limit { LIMIT_LL, LIMIT_L, LIMIT_H, LIMIT_HH, LIMIT_COUNT };
@@ -66,7 +69,7 @@ struct plant_tag {
     int register_index;               /* from 0, as on the wire */
     int bit;                          /* bit of a register, or -1 */
     enum data_type type;
-    enum byte_order byte_order;       /* resolved; NONE only for 16-bit and bit tags */
+    enum byte_order byte_order;       /* resolved for 32 and 64 bits. 16 bits: as the row says, else NONE (the standard order); bits: NONE */
     int scan_ms;                      /* 0: the source's poll_ms */
     enum scaling scaling;
     double raw_low, raw_high, scaled_low, scaled_high;
@@ -77,7 +80,7 @@ struct plant_tag {
     double strength, decay;           /* resolved: own, else the group's */
     double stale_s;                   /* resolved; default 3 polls, at least 5 s */
     double limits[LIMIT_COUNT];       /* resolved: own, else the group's; NaN: none */
-    int line;                         /* in the tag list */
+    int line, column;                 /* of its name in the tag list */
 };
 
 struct plant {
@@ -91,6 +94,7 @@ struct plant {
     struct plant_source *sources;
     struct plant_tag *tags;
     size_t asset_count, group_count, source_count, tag_count;
+    int *tags_by_name;                /* indices of tags, sorted by name */
 };
 
 /* Reads the plant file and its tag list. Every finding goes to diag. NULL if there was any error. */

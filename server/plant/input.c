@@ -1,0 +1,105 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Text files, checked for size and encoding. */
+#include "plant/input.h"
+
+#include <errno.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "base/text.h"
+
+/* Bytes of the UTF-8 character at p (Unicode table 3-7), 0 if it is not one. */
+static size_t character_bytes(const unsigned char *p, size_t left)
+{
+    unsigned char first = p[0], low = 0x80, high = 0xBF;
+    size_t count;
+    if (first < 0x80)
+        return first != 0;
+    if (first >= 0xC2 && first <= 0xDF)
+        count = 2;
+    else if (first >= 0xE0 && first <= 0xEF)
+        count = 3;
+    else if (first >= 0xF0 && first <= 0xF4)
+        count = 4;
+    else
+        return 0;
+    if (first == 0xE0)
+        low = 0xA0;
+    else if (first == 0xED)
+        high = 0x9F;
+    else if (first == 0xF0)
+        low = 0x90;
+    else if (first == 0xF4)
+        high = 0x8F;
+    if (count > left || p[1] < low || p[1] > high)
+        return 0;
+    for (size_t i = 2; i < count; i++)
+        if (p[i] < 0x80 || p[i] > 0xBF)
+            return 0;
+    return count;
+}
+
+static void check_characters(char *text, size_t bytes, const char *path, struct diag *diag)
+{
+    int line = 1, column = 1, reported_line = 0;
+    for (size_t i = 0; i < bytes;) {
+        size_t count = character_bytes((unsigned char *)text + i, bytes - i);
+        if (count == 0) {
+            if (reported_line != line)
+                diag_error(diag, path, line, column, "byte 0x%02X is not UTF-8 text; save the file as UTF-8", (unsigned char)text[i]);
+            reported_line = line;
+            text[i] = '?';
+            count = 1;
+        }
+        column++;
+        if (text[i] == '\n') {
+            line++;
+            column = 1;
+        }
+        i += count;
+    }
+}
+
+static bool starts_with(const char *text, size_t bytes, const char *mark, size_t mark_bytes)
+{
+    return bytes >= mark_bytes && !memcmp(text, mark, mark_bytes);
+}
+
+static bool is_blank(const char *text, size_t bytes)
+{
+    for (size_t i = 0; i < bytes; i++)
+        if (!memchr(" \t\r\n", text[i], 4))
+            return false;
+    return true;
+}
+
+char *input_read(const char *path, struct diag *diag, size_t *bytes)
+{
+    char *text = text_read_file(path, INPUT_MAX_BYTES, bytes);
+    if (!text) {
+        if (errno == EFBIG)
+            diag_error(diag, path, 0, 0, "larger than %u MiB, which is the most that is read", INPUT_MAX_BYTES / (1024 * 1024));
+        else
+            diag_error(diag, path, 0, 0, "cannot be read: %s", strerror(errno));
+        return NULL;
+    }
+    if (starts_with(text, *bytes, "\xFF\xFE", 2) || starts_with(text, *bytes, "\xFE\xFF", 2)) {
+        diag_error(diag, path, 1, 1, "is UTF-16; save the file as UTF-8");
+        goto error;
+    }
+    if (starts_with(text, *bytes, "\xEF\xBB\xBF", 3)) {
+        *bytes -= 3;
+        memmove(text, text + 3, *bytes + 1);
+    }
+    if (is_blank(text, *bytes)) {
+        diag_error(diag, path, 1, 1, "is empty");
+        goto error;
+    }
+    check_characters(text, *bytes, path, diag);
+    return text;
+error:
+    mem_free(text);
+    return NULL;
+}

@@ -1,0 +1,128 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Loading a plant, and finding things in it. */
+#include "plant/plant.h"
+
+#include <string.h>
+
+#include "base/mem.h"
+#include "plant/plant_parts.h"
+
+static char *folder_of(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    if (!slash)
+        return mem_strdup(".");
+    return slash == path ? mem_strdup("/.") : mem_printf("%.*s", (int)(slash - path), path);
+}
+
+struct plant *plant_load(const char *path, struct diag *diag)
+{
+    int errors = diag->errors;
+    struct plant *plant = mem_new(sizeof(*plant));
+    plant->path = mem_strdup(path);
+    plant->folder = folder_of(path);
+    plant_file_read(plant, diag);
+    if (plant->tags_path)
+        tag_list_read(plant, diag);
+    if (diag->errors != errors)
+        plant_destroy(&plant);
+    return plant;
+}
+
+static void free_assets(struct plant *plant)
+{
+    for (size_t i = 0; i < plant->asset_count; i++) {
+        struct plant_asset *asset = &plant->assets[i];
+        char *const texts[] = { asset->id, asset->tag, asset->description, asset->model, asset->nodes };
+        for (size_t k = 0; k < sizeof(texts) / sizeof(*texts); k++)
+            mem_free(texts[k]);
+    }
+    mem_free(plant->assets);
+}
+
+static void free_groups(struct plant *plant)
+{
+    for (size_t i = 0; i < plant->group_count; i++) {
+        mem_free(plant->groups[i].id);
+        mem_free(plant->groups[i].quantity);
+        mem_free(plant->groups[i].unit);
+    }
+    mem_free(plant->groups);
+}
+
+static void free_sources(struct plant *plant)
+{
+    for (size_t i = 0; i < plant->source_count; i++) {
+        mem_free(plant->sources[i].id);
+        mem_free(plant->sources[i].kind);
+        mem_free(plant->sources[i].host);
+    }
+    mem_free(plant->sources);
+}
+
+static void free_tags(struct plant *plant)
+{
+    for (size_t i = 0; i < plant->tag_count; i++) {
+        struct plant_tag *tag = &plant->tags[i];
+        char *const texts[] = { tag->name, tag->description, tag->unit, tag->address, tag->node };
+        for (size_t k = 0; k < sizeof(texts) / sizeof(*texts); k++)
+            mem_free(texts[k]);
+    }
+    mem_free(plant->tags);
+    mem_free(plant->tags_by_name);
+}
+
+void plant_destroy(struct plant **plant_ptr)
+{
+    struct plant *plant = *plant_ptr;
+    if (!plant)
+        return;
+    free_assets(plant);
+    free_groups(plant);
+    free_sources(plant);
+    free_tags(plant);
+    mem_free(plant->path);
+    mem_free(plant->folder);
+    mem_free(plant->tags_path);
+    mem_free(plant->name);
+    mem_free(plant->time_zone);
+    mem_free(plant);
+    *plant_ptr = NULL;
+}
+
+int plant_find_asset(const struct plant *plant, const char *id)
+{
+    for (size_t i = 0; i < plant->asset_count; i++)
+        if (!strcmp(plant->assets[i].id, id))
+            return (int)i;
+    return -1;
+}
+
+int plant_find_group(const struct plant *plant, const char *id)
+{
+    for (size_t i = 0; i < plant->group_count; i++)
+        if (!strcmp(plant->groups[i].id, id))
+            return (int)i;
+    return -1;
+}
+
+int plant_find_tag(const struct plant *plant, const char *name)
+{
+    size_t low = 0, high = plant->tag_count;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        int tag = plant->tags_by_name[middle], order = strcmp(plant->tags[tag].name, name);
+        if (order == 0)
+            return tag;
+        if (order < 0)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return -1;
+}
+
+char *plant_prepared_folder(const struct plant *plant)
+{
+    return mem_printf("%s/prepared", plant->folder);
+}

@@ -1,0 +1,367 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* plant.yaml: the tables of its keys, and what must hold between their values. PLANT.md describes the form. */
+#include <errno.h>
+#include <limits.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "base/mem.h"
+#include "plant/plant_parts.h"
+#include "plant/transform.h"
+#include "plant/yaml_reader.h"
+
+#define ZONE_FOLDER "/usr/share/zoneinfo"
+
+/* Record of the whole file while it is read. */
+struct plant_file {
+    struct plant *plant;
+    char *tags;
+};
+
+static const struct choice up_choices[] = { { "z", AXIS_Z }, { "y", AXIS_Y }, { 0 } };
+static const struct choice unit_choices[] = { { "m", 1 }, { "mm", 1e-3 }, { "cm", 1e-2 }, { "in", 0.0254 }, { "ft", 0.3048 }, { 0 } };
+static const struct choice frame_choices[] = { { "plant", 0 }, { "asset", 1 }, { 0 } };
+static const struct choice interpolation_choices[] = { { "shepard", INTERPOLATION_SHEPARD }, { "paper", INTERPOLATION_PAPER }, { 0 } };
+static const struct choice distance_choices[] = { { "geodesic", DISTANCE_GEODESIC }, { "euclidean", DISTANCE_EUCLIDEAN }, { 0 } };
+static const struct choice fill_choices[] = { { "none", FILL_NONE }, { "neighbours", FILL_NEIGHBOURS }, { 0 } };
+static const struct choice order_choices[] = { { "ABCD", BYTE_ORDER_ABCD }, { "CDAB", BYTE_ORDER_CDAB }, { "BADC", BYTE_ORDER_BADC },
+                                               { "DCBA", BYTE_ORDER_DCBA }, { 0 } };
+
+/* --- plant ------------------------------------------------------------------------------------------------------------------ */
+
+static bool zone_known(const char *zone)
+{
+    char path[PATH_MAX], magic[4] = { 0 };
+    if (access(ZONE_FOLDER, R_OK) != 0)
+        return true;
+    if (!*zone || *zone == '/' || strstr(zone, "..") || (size_t)snprintf(path, sizeof(path), ZONE_FOLDER "/%s", zone) >= sizeof(path))
+        return false;
+    struct stat st;
+    FILE *file = stat(path, &st) == 0 && S_ISREG(st.st_mode) ? fopen(path, "rb") : NULL;
+    if (!file)
+        return false;
+    size_t got = fread(magic, 1, sizeof(magic), file);
+    fclose(file);
+    return got == sizeof(magic) && !memcmp(magic, "TZif", sizeof(magic));
+}
+
+static void read_view(struct yaml_reader *reader, yaml_node_t *node, void *record)
+{
+    static const struct key keys[] = {
+        { "eye", KEY_POINT, true, offsetof(struct plant_view, eye_m), -PLANT_MAX_M, PLANT_MAX_M, NULL, NULL },
+        { "target", KEY_POINT, true, offsetof(struct plant_view, target_m), -PLANT_MAX_M, PLANT_MAX_M, NULL, NULL },
+        { "fov", KEY_NUMBER, false, offsetof(struct plant_view, fov_deg), 1, 120, NULL, NULL },
+        { 0 }
+    };
+    struct plant_view *view = &((struct plant *)record)->view;
+    struct yaml_map map;
+    if (!yaml_map_read(reader, node, "view", keys, view, &map) || !yaml_map_good(&map, "eye") || !yaml_map_good(&map, "target"))
+        return;
+    for (int i = 0; i < 3; i++)
+        view->set |= fabs(view->eye_m[i] - view->target_m[i]) > 1e-3;
+    if (!view->set)
+        yaml_error(reader, yaml_map_place(&map, "target"), "target: expected another point than eye");
+}
+
+static void read_plant(struct yaml_reader *reader, yaml_node_t *node, void *record)
+{
+    static const struct key keys[] = {
+        { "name", KEY_NAME, true, offsetof(struct plant, name), 0, 0, NULL, NULL },
+        { "time_zone", KEY_NAME, false, offsetof(struct plant, time_zone), 0, 0, NULL, NULL },
+        { "up", KEY_CHOICE, false, offsetof(struct plant, up), 0, 0, up_choices, NULL },
+        { "view", KEY_CUSTOM, false, 0, 0, 0, NULL, read_view },
+        { 0 }
+    };
+    struct plant *plant = ((struct plant_file *)record)->plant;
+    struct yaml_map map;
+    if (yaml_map_read(reader, node, "plant", keys, plant, &map) && yaml_map_good(&map, "time_zone") && !zone_known(plant->time_zone))
+        yaml_error(reader, yaml_map_place(&map, "time_zone"), "time_zone: unknown time zone '%s'; expected an IANA name such as Europe/Berlin or UTC",
+                   plant->time_zone);
+}
+
+/* --- lists of things with an id --------------------------------------------------------------------------------------------- */
+
+/* Things begin with `char *id`; the last one was just read. */
+static void check_id(struct yaml_reader *reader, const struct yaml_map *map, const char *what, const void *things, size_t count, size_t stride,
+                     size_t line_offset)
+{
+    const char *last = (const char *)things + (count - 1) * stride;
+    const char *id, *other;
+    memcpy(&id, last, sizeof(id));
+    for (const char *thing = things; id && thing < last; thing += stride) {
+        memcpy(&other, thing, sizeof(other));
+        if (!other || strcmp(id, other) != 0)
+            continue;
+        int line;
+        memcpy(&line, thing + line_offset, sizeof(line));
+        yaml_error(reader, yaml_map_place(map, "id"), "id: %s '%s' is there twice (first at line %d)", what, id, line);
+        break;
+    }
+}
+
+/* Room for the items of a list. NULL: not a list, or too long (reported). */
+static void *make_list(struct yaml_reader *reader, yaml_node_t *node, const char *name, int least, size_t bytes_each, int *count)
+{
+    *count = yaml_list_count(reader, node, name);
+    if (*count >= 0 && *count < least)
+        yaml_error(reader, yaml_place(node), "%s: expected at least one, found an empty list", name);
+    void *things = *count < 0 ? NULL : mem_try_array((size_t)*count, bytes_each);
+    if (*count >= 0 && !things)
+        yaml_error(reader, yaml_place(node), "%s: out of memory for %d", name, *count);
+    if (!things)
+        *count = 0;
+    return things;
+}
+
+/* --- assets ----------------------------------------------------------------------------------------------------------------- */
+
+struct placement {
+    double translate_m[3], rotate_deg[3], scale;
+};
+
+static void read_placement(struct yaml_reader *reader, yaml_node_t *node, void *record)
+{
+    static const struct key keys[] = {
+        { "translate", KEY_POINT, false, offsetof(struct placement, translate_m), -PLANT_MAX_M, PLANT_MAX_M, NULL, NULL },
+        { "rotate_deg", KEY_POINT, false, offsetof(struct placement, rotate_deg), -36000, 36000, NULL, NULL },
+        { "scale", KEY_NUMBER, false, offsetof(struct placement, scale), 1e-6, 1e6, NULL, NULL },
+        { 0 }
+    };
+    struct placement placement = { .scale = 1 };
+    struct yaml_map map;
+    if (yaml_map_read(reader, node, "placement", keys, &placement, &map))
+        transform_compose(placement.translate_m, placement.rotate_deg, placement.scale, ((struct plant_asset *)record)->placement);
+}
+
+/* Relative names are relative to the plant file. */
+static void resolve_path(const struct plant *plant, char **path)
+{
+    if (!*path || **path == '/')
+        return;
+    char *whole = mem_printf("%s/%s", plant->folder, *path);
+    mem_free(*path);
+    *path = whole;
+}
+
+static void check_model(struct yaml_reader *reader, const struct yaml_map *map, const char *path)
+{
+    struct stat st;
+    FILE *file = NULL;
+    if (stat(path, &st) != 0 || (S_ISREG(st.st_mode) && !(file = fopen(path, "rb"))))
+        yaml_error(reader, yaml_map_place(map, "model"), "model: '%s' cannot be read: %s", path, strerror(errno));
+    else if (!S_ISREG(st.st_mode))
+        yaml_error(reader, yaml_map_place(map, "model"), "model: '%s' is not a file", path);
+    if (file)
+        fclose(file);
+}
+
+static void read_asset(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant, struct plant_asset *asset)
+{
+    static const struct key keys[] = {
+        { "id", KEY_NAME, true, offsetof(struct plant_asset, id), 0, 0, NULL, NULL },
+        { "tag", KEY_TEXT, false, offsetof(struct plant_asset, tag), 0, 0, NULL, NULL },
+        { "description", KEY_TEXT, false, offsetof(struct plant_asset, description), 0, 0, NULL, NULL },
+        { "model", KEY_NAME, true, offsetof(struct plant_asset, model), 0, 0, NULL, NULL },
+        { "nodes", KEY_NAME, false, offsetof(struct plant_asset, nodes), 0, 0, NULL, NULL },
+        { "units", KEY_FACTOR, false, offsetof(struct plant_asset, unit_m), 0, 0, unit_choices, NULL },
+        { "up", KEY_CHOICE, false, offsetof(struct plant_asset, up), 0, 0, up_choices, NULL },
+        { "placement", KEY_CUSTOM, false, 0, 0, 0, NULL, read_placement },
+        { "sensor_frame", KEY_FLAG, false, offsetof(struct plant_asset, sensors_in_asset_frame), 0, 0, frame_choices, NULL },
+        { 0 }
+    };
+    struct yaml_map map;
+    *asset = (struct plant_asset){ .unit_m = 1, .up = AXIS_Y, .line = yaml_place(node).line };
+    memcpy(asset->placement, transform_identity, sizeof(asset->placement));
+    if (!yaml_map_read(reader, node, "an asset", keys, asset, &map))
+        return;
+    resolve_path(plant, &asset->model);
+    if (yaml_map_good(&map, "model"))
+        check_model(reader, &map, asset->model);
+    if (!asset->tag && asset->id)
+        asset->tag = mem_strdup(asset->id);
+    if (!asset->description)
+        asset->description = mem_strdup("");
+    check_id(reader, &map, "asset", plant->assets, plant->asset_count, sizeof(*asset), offsetof(struct plant_asset, line));
+}
+
+static void read_assets(struct yaml_reader *reader, yaml_node_t *node, void *record)
+{
+    struct plant *plant = ((struct plant_file *)record)->plant;
+    int count;
+    plant->assets = make_list(reader, node, "assets", 1, sizeof(*plant->assets), &count);
+    for (int i = 0; i < count; i++)
+        read_asset(reader, yaml_list_item(reader, node, i), plant, &plant->assets[plant->asset_count++]);
+}
+
+/* In a plant that is Y up, an asset that is not turned still stands upright. */
+static void stand_upright(struct plant *plant)
+{
+    static const double y_up_from_z_up[16] = { 1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1 };
+    for (size_t i = 0; plant->up == AXIS_Y && i < plant->asset_count; i++) {
+        double turned[16];
+        transform_multiply(plant->assets[i].placement, y_up_from_z_up, turned);
+        memcpy(plant->assets[i].placement, turned, sizeof(turned));
+    }
+}
+
+/* --- groups ----------------------------------------------------------------------------------------------------------------- */
+
+const char *const plant_limit_names[LIMIT_COUNT] = { "LL", "L", "H", "HH" };
+
+bool plant_limits_wrong(const double limits[LIMIT_COUNT], int *lower, int *upper)
+{
+    *lower = -1;
+    for (*upper = 0; *upper < LIMIT_COUNT; ++*upper) {
+        if (isnan(limits[*upper]))
+            continue;
+        if (*lower >= 0 && !(limits[*lower] < limits[*upper]))
+            return true;
+        *lower = *upper;
+    }
+    return false;
+}
+
+static void read_limits(struct yaml_reader *reader, yaml_node_t *node, void *record)
+{
+    static const struct key keys[] = {
+        { "LL", KEY_NUMBER, false, LIMIT_LL * sizeof(double), -PLANT_MAX_VALUE, PLANT_MAX_VALUE, NULL, NULL },
+        { "L", KEY_NUMBER, false, LIMIT_L * sizeof(double), -PLANT_MAX_VALUE, PLANT_MAX_VALUE, NULL, NULL },
+        { "H", KEY_NUMBER, false, LIMIT_H * sizeof(double), -PLANT_MAX_VALUE, PLANT_MAX_VALUE, NULL, NULL },
+        { "HH", KEY_NUMBER, false, LIMIT_HH * sizeof(double), -PLANT_MAX_VALUE, PLANT_MAX_VALUE, NULL, NULL },
+        { 0 }
+    };
+    double *limits = ((struct plant_group *)record)->limits;
+    struct yaml_map map;
+    int lower, upper;
+    if (yaml_map_read(reader, node, "limits", keys, limits, &map) && plant_limits_wrong(limits, &lower, &upper))
+        yaml_error(reader, yaml_map_place(&map, plant_limit_names[upper]), "%s: expected more than %s, which is %.9g, found %.9g (LL < L < H < HH)",
+                   plant_limit_names[upper], plant_limit_names[lower], limits[lower], limits[upper]);
+}
+
+static void read_radius(struct yaml_reader *reader, yaml_node_t *node, void *record)
+{
+    struct plant_group *group = record;
+    const char *text = yaml_text(node);
+    if (text && !strcmp(text, "auto"))
+        group->radius_m = 0;
+    else if (node->type == YAML_SCALAR_NODE)
+        yaml_number(reader, node, "radius_m", 1e-3, 1e6, &group->radius_m);
+    else
+        yaml_expected(reader, node, "radius_m", "auto or a number");
+}
+
+static void read_group(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant, struct plant_group *group)
+{
+    static const struct key keys[] = {
+        { "id", KEY_NAME, true, offsetof(struct plant_group, id), 0, 0, NULL, NULL },
+        { "quantity", KEY_TEXT, false, offsetof(struct plant_group, quantity), 0, 0, NULL, NULL },
+        { "unit", KEY_TEXT, true, offsetof(struct plant_group, unit), 0, 0, NULL, NULL },
+        { "min", KEY_NUMBER, true, offsetof(struct plant_group, min), -PLANT_MAX_VALUE, PLANT_MAX_VALUE, NULL, NULL },
+        { "max", KEY_NUMBER, true, offsetof(struct plant_group, max), -PLANT_MAX_VALUE, PLANT_MAX_VALUE, NULL, NULL },
+        { "limits", KEY_CUSTOM, false, 0, 0, 0, NULL, read_limits },
+        { "interpolation", KEY_CHOICE, false, offsetof(struct plant_group, interpolation), 0, 0, interpolation_choices, NULL },
+        { "distance", KEY_CHOICE, false, offsetof(struct plant_group, distance), 0, 0, distance_choices, NULL },
+        { "strength", KEY_NUMBER, false, offsetof(struct plant_group, strength), 0, 100, NULL, NULL },
+        { "decay", KEY_NUMBER, false, offsetof(struct plant_group, decay), 0, 100, NULL, NULL },
+        { "power", KEY_NUMBER, false, offsetof(struct plant_group, power), 0.5, 16, NULL, NULL },
+        { "radius_m", KEY_CUSTOM, false, 0, 0, 0, NULL, read_radius },
+        { "reach_m", KEY_NUMBER, false, offsetof(struct plant_group, reach_m), 1e-3, 1e6, NULL, NULL },
+        { "fill", KEY_CHOICE, false, offsetof(struct plant_group, fill), 0, 0, fill_choices, NULL },
+        { 0 }
+    };
+    struct yaml_map map;
+    *group = (struct plant_group){ .limits = { NAN, NAN, NAN, NAN }, .strength = 1, .decay = 1, .power = 2, .reach_m = INFINITY,
+                                   .line = yaml_place(node).line };
+    if (!yaml_map_read(reader, node, "a group", keys, group, &map))
+        return;
+    if (!group->quantity && group->id)
+        group->quantity = mem_strdup(group->id);
+    if (yaml_map_good(&map, "min") && yaml_map_good(&map, "max") && group->min >= group->max)
+        yaml_error(reader, yaml_map_place(&map, "min"), "min: expected less than max, which is %.9g, found %.9g", group->max, group->min);
+    check_id(reader, &map, "group", plant->groups, plant->group_count, sizeof(*group), offsetof(struct plant_group, line));
+}
+
+static void read_groups(struct yaml_reader *reader, yaml_node_t *node, void *record)
+{
+    struct plant *plant = ((struct plant_file *)record)->plant;
+    int count;
+    plant->groups = make_list(reader, node, "groups", 1, sizeof(*plant->groups), &count);
+    for (int i = 0; i < count; i++)
+        read_group(reader, yaml_list_item(reader, node, i), plant, &plant->groups[plant->group_count++]);
+}
+
+/* --- sources ---------------------------------------------------------------------------------------------------------------- */
+
+static void read_kind(struct yaml_reader *reader, yaml_node_t *node, void *record)
+{
+    struct plant_source *source = record;
+    if (yaml_text(node) && !strcmp(yaml_text(node), "modbus"))
+        source->kind = mem_strdup("modbus");
+    else
+        yaml_expected(reader, node, "type", "modbus");
+}
+
+static void read_source(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant, struct plant_source *source)
+{
+    static const struct key keys[] = {
+        { "id", KEY_NAME, true, offsetof(struct plant_source, id), 0, 0, NULL, NULL },
+        { "type", KEY_CUSTOM, true, 0, 0, 0, NULL, read_kind },
+        { "host", KEY_NAME, true, offsetof(struct plant_source, host), 0, 0, NULL, NULL },
+        { "port", KEY_INT, false, offsetof(struct plant_source, port), 1, 65535, NULL, NULL },
+        { "unit", KEY_INT, false, offsetof(struct plant_source, unit), 0, 255, NULL, NULL },
+        { "poll_ms", KEY_INT, false, offsetof(struct plant_source, poll_ms), 10, 86400000, NULL, NULL },
+        { "timeout_ms", KEY_INT, false, offsetof(struct plant_source, timeout_ms), 10, 60000, NULL, NULL },
+        { "byte_order", KEY_CHOICE, false, offsetof(struct plant_source, byte_order), 0, 0, order_choices, NULL },
+        { "address_base", KEY_INT, false, offsetof(struct plant_source, address_base), 0, 1, NULL, NULL },
+        { 0 }
+    };
+    struct yaml_map map;
+    *source = (struct plant_source){ .port = 502, .unit = 1, .poll_ms = 1000, .timeout_ms = 1000, .address_base = 1, .line = yaml_place(node).line };
+    if (yaml_map_read(reader, node, "a source", keys, source, &map))
+        check_id(reader, &map, "source", plant->sources, plant->source_count, sizeof(*source), offsetof(struct plant_source, line));
+}
+
+static void read_sources(struct yaml_reader *reader, yaml_node_t *node, void *record)
+{
+    struct plant *plant = ((struct plant_file *)record)->plant;
+    int count;
+    plant->sources = make_list(reader, node, "sources", 0, sizeof(*plant->sources), &count);
+    for (int i = 0; i < count; i++)
+        read_source(reader, yaml_list_item(reader, node, i), plant, &plant->sources[plant->source_count++]);
+}
+
+/* --- the whole file --------------------------------------------------------------------------------------------------------- */
+
+void plant_file_read(struct plant *plant, struct diag *diag)
+{
+    static const struct key keys[] = {
+        { "plant", KEY_CUSTOM, true, 0, 0, 0, NULL, read_plant },
+        { "assets", KEY_CUSTOM, true, 0, 0, 0, NULL, read_assets },
+        { "groups", KEY_CUSTOM, true, 0, 0, 0, NULL, read_groups },
+        { "sources", KEY_CUSTOM, false, 0, 0, 0, NULL, read_sources },
+        { "tags", KEY_NAME, true, offsetof(struct plant_file, tags), 0, 0, NULL, NULL },
+        { 0 }
+    };
+    struct plant_file file = { .plant = plant };
+    struct yaml_reader reader;
+    struct yaml_map map;
+    plant->up = AXIS_Z;
+    plant->view.fov_deg = 45;
+    if (!yaml_reader_open(&reader, plant->path, diag))
+        return;
+    yaml_map_read(&reader, yaml_document_get_root_node(&reader.doc), "the plant file", keys, &file, &map);
+    if (!plant->time_zone)
+        plant->time_zone = mem_strdup("UTC");
+    stand_upright(plant);
+    plant->tags_path = file.tags;
+    resolve_path(plant, &plant->tags_path);
+    if (plant->tags_path && access(plant->tags_path, R_OK) != 0) {
+        yaml_error(&reader, yaml_map_place(&map, "tags"), "tags: '%s' cannot be read: %s", plant->tags_path, strerror(errno));
+        mem_free(plant->tags_path);
+        plant->tags_path = NULL;
+    }
+    yaml_reader_close(&reader);
+}

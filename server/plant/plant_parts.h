@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The two files that plant_load reads. Only for the files of this folder. */
+#ifndef PLANT_PLANT_PARTS_H
+#define PLANT_PLANT_PARTS_H
+#include "plant/plant.h"
+
+#define PLANT_MAX_M 1e6      /* nothing is further from the origin */
+#define PLANT_MAX_VALUE 1e30 /* of a reading or a limit: the field is computed in floats */
+
+/* Reads plant.yaml into a plant whose path and folder are set. Findings go to diag. tags_path stays NULL if it cannot be read. */
+void plant_file_read(struct plant *plant, struct diag *diag);
+/* Reads plant->tags_path; assets, groups and sources are known. */
+void tag_list_read(struct plant *plant, struct diag *diag);
+/* The first two limits that do not rise (LL < L < H < HH; NaN: none): true, with their indices. */
+bool plant_limits_wrong(const double limits[LIMIT_COUNT], int *lower, int *upper);
+extern const char *const plant_limit_names[LIMIT_COUNT];
+
+#endif

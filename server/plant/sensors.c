@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Which tags are sensors of an asset, and where in its own frame. */
+#include "plant/sensors.h"
+
+#include <string.h>
+#include <xxhash.h>
+
+#include "base/mem.h"
+#include "plant/transform.h"
+
+static bool is_sensor(const struct plant_tag *tag, int asset)
+{
+    return tag->asset == asset && tag->group >= 0;
+}
+
+size_t plant_sensors(const struct plant *plant, int asset, struct plant_sensor **out)
+{
+    const struct plant_asset *of = &plant->assets[asset];
+    size_t count = 0;
+    double asset_from_plant[16];
+    if (!transform_invert(of->placement, asset_from_plant)) /* plant_load refuses such a placement */
+        memcpy(asset_from_plant, transform_identity, sizeof(asset_from_plant));
+    for (size_t i = 0; i < plant->tag_count; i++)
+        count += is_sensor(&plant->tags[i], asset);
+    *out = mem_array(count, sizeof(**out));
+    struct plant_sensor *sensor = *out;
+    for (size_t i = 0; i < plant->tag_count; i++) {
+        const struct plant_tag *tag = &plant->tags[i];
+        if (!is_sensor(tag, asset))
+            continue;
+        sensor->tag = (int)i;
+        if (!tag->has_position) {
+            sensor->node = tag->node;
+            sensor->node_hash = XXH3_64bits(tag->node, strlen(tag->node));
+        } else {
+            transform_point(of->sensors_in_asset_frame ? transform_identity : asset_from_plant, tag->position_m, sensor->position_m);
+        }
+        sensor++;
+    }
+    return count;
+}

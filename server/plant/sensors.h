@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The sensors of one asset as its prepared file must hold them. plantcast-prep writes this list and scene_create compares with
+   it, so both call this. Thread: any. */
+#ifndef PLANT_SENSORS_H
+#define PLANT_SENSORS_H
+#include <stdint.h>
+
+#include "plant/plant.h"
+
+struct plant_sensor {
+    int tag;               /* index in plant->tags */
+    const char *node;      /* the model node whose place it has; NULL: position_m. Belongs to the plant */
+    uint64_t node_hash;    /* XXH3-64 of node; 0: position_m */
+    double position_m[3];  /* asset frame (metres, Z up); 0 where node is set */
+};
+
+/* Tags with this asset and a group, in the order of the tag list. *out: free with mem_free. */
+size_t plant_sensors(const struct plant *plant, int asset, struct plant_sensor **out);
+
+#endif
