@@ -29,6 +29,8 @@ static const struct type_name type_names[] = {
     { "bcd", DATA_BCD },        { "lbcd", DATA_LBCD },
 };
 
+const char data_type_all[] = "bool, int16, uint16, int32, uint32, float32, int64, uint64, float64, bcd, lbcd, or Kepware's names";
+
 bool data_type_parse(const char *text, enum data_type *out)
 {
     for (size_t i = 0; i < COUNT(type_names); i++)
@@ -140,17 +142,19 @@ static bool read_digit_table(const char **p, int address_base, struct modbus_add
     long number;
     int digits = read_digits(p, &number);
     if (digits != 5 && digits != 6) {
-        snprintf(why, 200, "has %d%s digit%s; expected 5 or 6 such as 40001 or 400001 (or hr:0, counted from 0)", digits > 6 ? 6 : digits,
+        snprintf(why, 200, "%d%s digit%s; expected 5 or 6 such as 40001 or 400001 (or hr:0, counted from 0)", digits > 6 ? 6 : digits,
                  digits > 6 ? " and more" : "", digits == 1 ? "" : "s");
         return false;
     }
     if (!strchr("0134", first)) {
-        snprintf(why, 200, "begins with %c; expected 0 (coil), 1 (discrete input), 3 (input register) or 4 (holding register)", first);
+        snprintf(why, 200, "the first digit is %c; expected 0 (coil), 1 (discrete input), 3 (input register) or 4 (holding register)",
+                 first);
         return false;
     }
     long index = number - (first - '0') * (digits == 5 ? 10000L : 100000L) - address_base;
     if (index < 0 || index > 65535) {
-        snprintf(why, 200, "is outside of %d..%d (address_base is %d)", address_base, 65535 + address_base, address_base);
+        snprintf(why, 200, "expected a number from %d to %d after the first digit (address_base is %d)",
+                 address_base, 65535 + address_base, address_base);
         return false;
     }
     out->table = tables[first - '0'];

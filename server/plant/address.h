@@ -18,6 +18,7 @@ struct modbus_address {
 bool address_parse(const char *text, int address_base, struct modbus_address *out, char why[200]);
 
 bool data_type_parse(const char *text, enum data_type *out); /* ours and Kepware's names; not "Default" */
+extern const char data_type_all[];                           /* "bool, int16, ...", for messages */
 const char *data_type_suggest(const char *text);             /* the nearest name, or NULL */
 const char *data_type_name(enum data_type type);             /* ours: "int16", "float32", ... */
 int data_type_registers(enum data_type type);                /* 1, 2 or 4 */

@@ -195,7 +195,8 @@ bool csv_next(struct csv *csv)
         const struct csv_cell *cell = &csv->row.cells[i];
         if (!cell->text[0])
             continue;
-        diag_error(csv->diag, csv->path, cell->line, cell->column, "cell %zu, but the header has only %zu columns", i + 1, csv->header.count);
+        diag_error(csv->diag, csv->path, cell->line, cell->column, "cell %zu, but the header has only %zu columns", i + 1,
+                   csv->header.count);
         break;
     }
     return true;

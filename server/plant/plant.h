@@ -29,7 +29,7 @@ struct plant_view { /* where a client starts looking from; plant frame, metres *
 struct plant_asset {
     char *id, *tag, *description; /* tag defaults to id */
     char *model;                  /* path, relative names resolved against the plant file's folder */
-    char *nodes;                  /* glob (fnmatch) on node names; every node that matches brings its whole sub-tree. NULL: the whole model */
+    char *nodes;                  /* glob (fnmatch) on node names; a node that matches brings its whole sub-tree. NULL: the whole model */
     double unit_m;                /* metres per model unit */
     enum axis up;                 /* of the model */
     double placement[16];         /* plant from asset frame, column-major, metres (asset frame: Z up, metres) */
@@ -69,7 +69,7 @@ struct plant_tag {
     int register_index;               /* from 0, as on the wire */
     int bit;                          /* bit of a register, or -1 */
     enum data_type type;
-    enum byte_order byte_order;       /* resolved for 32 and 64 bits. 16 bits: as the row says, else NONE (the standard order); bits: NONE */
+    enum byte_order byte_order;       /* resolved for 32 and 64 bits. 16 bits: as the row says, else NONE (the standard); bits: NONE */
     int scan_ms;                      /* 0: the source's poll_ms */
     enum scaling scaling;
     double raw_low, raw_high, scaled_low, scaled_high;

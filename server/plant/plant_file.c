@@ -78,15 +78,15 @@ static void read_plant(struct yaml_reader *reader, yaml_node_t *node, void *reco
     struct plant *plant = ((struct plant_file *)record)->plant;
     struct yaml_map map;
     if (yaml_map_read(reader, node, "plant", keys, plant, &map) && yaml_map_good(&map, "time_zone") && !zone_known(plant->time_zone))
-        yaml_error(reader, yaml_map_place(&map, "time_zone"), "time_zone: unknown time zone '%s'; expected an IANA name such as Europe/Berlin or UTC",
-                   plant->time_zone);
+        yaml_error(reader, yaml_map_place(&map, "time_zone"),
+                   "time_zone: unknown time zone '%.60s'; expected an IANA name such as Europe/Berlin or UTC", plant->time_zone);
 }
 
 /* --- lists of things with an id --------------------------------------------------------------------------------------------- */
 
 /* Things begin with `char *id`; the last one was just read. */
-static void check_id(struct yaml_reader *reader, const struct yaml_map *map, const char *what, const void *things, size_t count, size_t stride,
-                     size_t line_offset)
+static void check_id(struct yaml_reader *reader, const struct yaml_map *map, const char *what, const void *things, size_t count,
+                     size_t stride, size_t line_offset)
 {
     const char *last = (const char *)things + (count - 1) * stride;
     const char *id, *other;
@@ -237,8 +237,9 @@ static void read_limits(struct yaml_reader *reader, yaml_node_t *node, void *rec
     struct yaml_map map;
     int lower, upper;
     if (yaml_map_read(reader, node, "limits", keys, limits, &map) && plant_limits_wrong(limits, &lower, &upper))
-        yaml_error(reader, yaml_map_place(&map, plant_limit_names[upper]), "%s: expected more than %s, which is %.9g, found %.9g (LL < L < H < HH)",
-                   plant_limit_names[upper], plant_limit_names[lower], limits[lower], limits[upper]);
+        yaml_error(reader, yaml_map_place(&map, plant_limit_names[upper]),
+                   "%s: expected more than %s, which is %.9g, found %.9g (LL < L < H < HH)", plant_limit_names[upper],
+                   plant_limit_names[lower], limits[lower], limits[upper]);
 }
 
 static void read_radius(struct yaml_reader *reader, yaml_node_t *node, void *record)
@@ -319,7 +320,8 @@ static void read_source(struct yaml_reader *reader, yaml_node_t *node, struct pl
         { 0 }
     };
     struct yaml_map map;
-    *source = (struct plant_source){ .port = 502, .unit = 1, .poll_ms = 1000, .timeout_ms = 1000, .address_base = 1, .line = yaml_place(node).line };
+    *source = (struct plant_source){ .port = 502, .unit = 1, .poll_ms = 1000, .timeout_ms = 1000, .address_base = 1 };
+    source->line = yaml_place(node).line;
     if (yaml_map_read(reader, node, "a source", keys, source, &map))
         check_id(reader, &map, "source", plant->sources, plant->source_count, sizeof(*source), offsetof(struct plant_source, line));
 }

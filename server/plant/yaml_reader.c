@@ -164,7 +164,8 @@ void yaml_expected(struct yaml_reader *reader, const yaml_node_t *node, const ch
         yaml_error(reader, place, "%s: expected %s, found the text \"%.60s\"", name, expected, text);
 }
 
-static void expected_number(struct yaml_reader *reader, const yaml_node_t *node, const char *name, const char *what, double low, double high)
+static void expected_number(struct yaml_reader *reader, const yaml_node_t *node, const char *name, const char *what, double low,
+                            double high)
 {
     char expected[120];
     if ((low == 0 && high == 0) || high >= 1e30)
@@ -207,7 +208,8 @@ static void read_text(struct yaml_reader *reader, const yaml_node_t *node, const
 static void read_int(struct yaml_reader *reader, const yaml_node_t *node, const struct key *key, int *out)
 {
     double value;
-    if (is_plain(node) && number_parse(yaml_text(node), &value) == NUMBER_GOOD && value == floor(value) && value >= key->low && value <= key->high)
+    bool good = is_plain(node) && number_parse(yaml_text(node), &value) == NUMBER_GOOD && value == floor(value);
+    if (good && value >= key->low && value <= key->high)
         *out = (int)value;
     else
         expected_number(reader, node, key->name, "whole number", key->low, key->high);
@@ -337,7 +339,8 @@ static void read_pair(struct yaml_reader *reader, const yaml_node_pair_t *pair, 
     }
 }
 
-bool yaml_map_read(struct yaml_reader *reader, yaml_node_t *node, const char *what, const struct key *keys, void *record, struct yaml_map *map)
+bool yaml_map_read(struct yaml_reader *reader, yaml_node_t *node, const char *what, const struct key *keys, void *record,
+                   struct yaml_map *map)
 {
     *map = (struct yaml_map){ .keys = keys, .place = yaml_place(node) };
     if (node->type != YAML_MAPPING_NODE) {

@@ -70,7 +70,8 @@ bool yaml_number(struct yaml_reader *reader, const yaml_node_t *node, const char
 
 /* Reads a mapping into record. Keys that are absent or null leave it as it is. what names the mapping in messages ("a group").
    False: not a mapping at all. */
-bool yaml_map_read(struct yaml_reader *reader, yaml_node_t *node, const char *what, const struct key *keys, void *record, struct yaml_map *map);
+bool yaml_map_read(struct yaml_reader *reader, yaml_node_t *node, const char *what, const struct key *keys, void *record,
+                   struct yaml_map *map);
 bool yaml_map_good(const struct yaml_map *map, const char *name);
 /* Of the value; of the mapping where the key is absent. */
 struct place yaml_map_place(const struct yaml_map *map, const char *name);
