@@ -24,6 +24,9 @@ void store_write(struct store *store, const struct sample *samples, size_t count
 /* The source cannot be read since now. Its tags keep their last values: Uncertain_NoCommunicationLastUsableValue until
    stale_s has passed since they arrived, then Bad_CommunicationError; those that never had one are Bad_NoCommunication. */
 void store_link_lost(struct store *store, int source, int64_t now_mono_ns);
+/* The same for some tags only: one unit behind a gateway is gone while others still answer. */
+void store_tags_lost(struct store *store, const int *tags, size_t count, int64_t now_mono_ns);
+/* Tags become usable again one by one, with their next sample. */
 void store_link_up(struct store *store, int source, int64_t now_mono_ns);
 bool store_link_is_up(const struct store *store, int source);
 /* Applies staleness as of now. `into` was made for the same plant. */

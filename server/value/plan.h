@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Which registers to ask for together: the tags of a Modbus source, coalesced into blocks. No I/O, no clock. Thread: one. */
+#ifndef VALUE_PLAN_H
+#define VALUE_PLAN_H
+#include <stddef.h>
+#include <stdint.h>
+
+#include "plant/plant.h"
+
+enum { PLAN_MAX_REGISTERS = 125, PLAN_MAX_BITS = 2000 }; /* one request, Modbus Application Protocol 6.1-6.4 */
+
+struct plan_block { /* one request: no register in it that no tag asks for, no tag in two blocks */
+    int unit;                  /* Modbus unit identifier */
+    enum register_table table;
+    int scan_ms;
+    int first, count;          /* registers or bits */
+    size_t first_tag, tag_count; /* in plan.tags */
+    int64_t due_ns;            /* for the reader; 0 in a new plan, copied by plan_split */
+};
+
+struct plan { /* zero-initialise */
+    int *tags;                 /* indices in plant->tags, in the order of their registers */
+    size_t tag_count;
+    struct plan_block *blocks;
+    size_t block_count, block_capacity;
+    int *units;                /* every unit that is asked, once */
+    size_t unit_count;
+};
+
+void plan_init(struct plan *plan, const struct plant *plant, int source);
+void plan_finish(struct plan *plan);
+/* Cuts a block of at least two tags between two of them: the second half becomes block index + 1. */
+void plan_split(struct plan *plan, const struct plant *plant, size_t index);
+
+#endif

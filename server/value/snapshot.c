@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Makes and frees snapshots. */
+#include "value/snapshot.h"
+
+#include "base/mem.h"
+#include "value/quality.h"
+
+struct snapshot *snapshot_create(size_t tag_count)
+{
+    struct snapshot *snapshot = mem_new(sizeof(*snapshot));
+    snapshot->count = tag_count;
+    snapshot->readings = mem_array(tag_count, sizeof(*snapshot->readings));
+    for (size_t i = 0; i < tag_count; i++)
+        snapshot->readings[i] = (struct reading){ .quality = QUALITY_BAD_WAITING, .age_ns = INT64_MAX };
+    return snapshot;
+}
+
+void snapshot_destroy(struct snapshot **snapshot)
+{
+    if (!*snapshot)
+        return;
+    mem_free((*snapshot)->readings);
+    mem_free(*snapshot);
+    *snapshot = NULL;
+}

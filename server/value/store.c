@@ -1,0 +1,190 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The latest reading of every tag, and what has become of it since. */
+#include "value/store.h"
+
+#include <math.h>
+#include <pthread.h>
+
+#include "base/mem.h"
+#include "value/quality.h"
+
+struct held {
+    double value;               /* the last usable one */
+    uint32_t quality;           /* of the last sample */
+    bool has_value, lost;       /* lost: could not be read since the last sample */
+    int64_t sampled_mono_ns;    /* last sample, Bad ones too */
+    int64_t received_mono_ns, received_utc_ns; /* last usable value */
+    int64_t stale_ns;
+    uint32_t shown_quality;     /* as last counted in changes */
+    uint32_t changes;
+};
+
+struct link {
+    bool up;
+    int64_t changed_mono_ns;
+};
+
+struct store {
+    const struct plant *plant;
+    pthread_mutex_t lock;
+    /* --- below: under lock */
+    struct held *tags;
+    struct link *links;
+};
+
+static int64_t stale_ns_of(const struct plant_tag *tag)
+{
+    double ns = tag->stale_s * 1e9;
+    return ns < 9e18 ? (int64_t)ns : INT64_MAX;
+}
+
+struct store *store_create(const struct plant *plant)
+{
+    struct store *store = mem_new(sizeof(*store));
+    store->plant = plant;
+    store->tags = mem_array(plant->tag_count, sizeof(*store->tags));
+    store->links = mem_array(plant->source_count, sizeof(*store->links));
+    for (size_t i = 0; i < plant->tag_count; i++)
+        store->tags[i] = (struct held){
+            .quality = QUALITY_BAD_WAITING,
+            .shown_quality = QUALITY_BAD_WAITING,
+            .sampled_mono_ns = INT64_MIN,
+            .stale_ns = stale_ns_of(&plant->tags[i]),
+        };
+    for (size_t i = 0; i < plant->source_count; i++)
+        store->links[i].changed_mono_ns = INT64_MIN;
+    pthread_mutex_init(&store->lock, NULL);
+    return store;
+}
+
+void store_destroy(struct store **store)
+{
+    if (!*store)
+        return;
+    pthread_mutex_destroy(&(*store)->lock);
+    mem_free((*store)->tags);
+    mem_free((*store)->links);
+    mem_free(*store);
+    *store = NULL;
+}
+
+static uint32_t quality_now(const struct held *held, int64_t now_mono_ns)
+{
+    bool stale = held->has_value && now_mono_ns - held->received_mono_ns >= held->stale_ns;
+    if (held->lost && !held->has_value)
+        return QUALITY_BAD_NO_COMMUNICATION;
+    if (held->lost && (stale || quality_is_bad(held->quality)))
+        return QUALITY_BAD_COMMUNICATION_ERROR;
+    if (quality_is_bad(held->quality))
+        return held->quality;
+    if (stale)
+        return QUALITY_BAD_COMMUNICATION_ERROR;
+    return held->lost ? QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE : held->quality;
+}
+
+static void count_change(struct held *held, bool value_changed, int64_t now_mono_ns)
+{
+    uint32_t quality = quality_now(held, now_mono_ns);
+    if (value_changed || quality != held->shown_quality)
+        held->changes++;
+    held->shown_quality = quality;
+}
+
+static void hold(struct held *held, const struct sample *sample, int64_t now_mono_ns, int64_t now_utc_ns)
+{
+    bool bad = quality_is_bad(sample->quality), finite = isfinite(sample->value), value_changed = false;
+    if (now_mono_ns < held->sampled_mono_ns)
+        return;
+    held->quality = bad || finite ? sample->quality : QUALITY_BAD_SENSOR_FAILURE;
+    held->sampled_mono_ns = now_mono_ns;
+    held->lost = false;
+    if (!bad && finite) {
+        value_changed = !held->has_value || held->value != sample->value;
+        held->value = sample->value;
+        held->has_value = true;
+        held->received_mono_ns = now_mono_ns;
+        held->received_utc_ns = now_utc_ns;
+    }
+    count_change(held, value_changed, now_mono_ns);
+}
+
+void store_write(struct store *store, const struct sample *samples, size_t count, int64_t now_mono_ns, int64_t now_utc_ns)
+{
+    pthread_mutex_lock(&store->lock);
+    for (size_t i = 0; i < count; i++)
+        hold(&store->tags[samples[i].tag], &samples[i], now_mono_ns, now_utc_ns);
+    pthread_mutex_unlock(&store->lock);
+}
+
+static void lose(struct held *held, int64_t now_mono_ns)
+{
+    if (now_mono_ns < held->sampled_mono_ns)
+        return;
+    held->lost = true;
+    count_change(held, false, now_mono_ns);
+}
+
+void store_tags_lost(struct store *store, const int *tags, size_t count, int64_t now_mono_ns)
+{
+    pthread_mutex_lock(&store->lock);
+    for (size_t i = 0; i < count; i++)
+        lose(&store->tags[tags[i]], now_mono_ns);
+    pthread_mutex_unlock(&store->lock);
+}
+
+static void set_link(struct link *link, bool up, int64_t now_mono_ns)
+{
+    if (now_mono_ns < link->changed_mono_ns)
+        return;
+    link->up = up;
+    link->changed_mono_ns = now_mono_ns;
+}
+
+void store_link_lost(struct store *store, int source, int64_t now_mono_ns)
+{
+    pthread_mutex_lock(&store->lock);
+    set_link(&store->links[source], false, now_mono_ns);
+    for (size_t i = 0; i < store->plant->tag_count; i++)
+        if (store->plant->tags[i].source == source)
+            lose(&store->tags[i], now_mono_ns);
+    pthread_mutex_unlock(&store->lock);
+}
+
+void store_link_up(struct store *store, int source, int64_t now_mono_ns)
+{
+    pthread_mutex_lock(&store->lock);
+    set_link(&store->links[source], true, now_mono_ns);
+    pthread_mutex_unlock(&store->lock);
+}
+
+bool store_link_is_up(const struct store *store, int source)
+{
+    pthread_mutex_t *lock = (pthread_mutex_t *)&store->lock;
+    pthread_mutex_lock(lock);
+    bool up = store->links[source].up;
+    pthread_mutex_unlock(lock);
+    return up;
+}
+
+static void read_held(struct held *held, int64_t now_mono_ns, struct reading *out)
+{
+    int64_t age_ns = now_mono_ns - held->received_mono_ns;
+    count_change(held, false, now_mono_ns);
+    *out = (struct reading){
+        .value = held->value,
+        .quality = held->shown_quality,
+        .changes = held->changes,
+        .received_utc_ns = held->received_utc_ns,
+        .age_ns = held->has_value ? (age_ns > 0 ? age_ns : 0) : INT64_MAX,
+    };
+}
+
+void store_snapshot(struct store *store, int64_t now_mono_ns, int64_t now_utc_ns, struct snapshot *into)
+{
+    pthread_mutex_lock(&store->lock);
+    for (size_t i = 0; i < store->plant->tag_count; i++)
+        read_held(&store->tags[i], now_mono_ns, &into->readings[i]);
+    pthread_mutex_unlock(&store->lock);
+    into->taken_mono_ns = now_mono_ns;
+    into->taken_utc_ns = now_utc_ns;
+}

@@ -1,0 +1,71 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A plant made in a test, without files. */
+#include "plant_by_hand.h"
+
+#include <assert.h>
+#include <math.h>
+
+#include "base/mem.h"
+
+enum { MAX_SOURCES = 8 };
+
+struct plant *plant_by_hand_create(size_t max_tags)
+{
+    struct plant *plant = mem_new(sizeof(*plant));
+    plant->tags = mem_array(max_tags, sizeof(*plant->tags));
+    plant->sources = mem_array(MAX_SOURCES, sizeof(*plant->sources));
+    return plant;
+}
+
+void plant_by_hand_destroy(struct plant **plant_ptr)
+{
+    struct plant *plant = *plant_ptr;
+    for (size_t i = 0; i < plant->tag_count; i++)
+        mem_free(plant->tags[i].name);
+    for (size_t i = 0; i < plant->source_count; i++) {
+        mem_free(plant->sources[i].id);
+        mem_free(plant->sources[i].kind);
+        mem_free(plant->sources[i].host);
+    }
+    mem_free(plant->tags);
+    mem_free(plant->sources);
+    mem_free(plant);
+    *plant_ptr = NULL;
+}
+
+struct plant_source *plant_by_hand_source(struct plant *plant, const char *id, int port)
+{
+    assert(plant->source_count < MAX_SOURCES);
+    struct plant_source *source = &plant->sources[plant->source_count++];
+    *source = (struct plant_source){
+        .id = mem_strdup(id),
+        .kind = mem_strdup("modbus"),
+        .host = mem_strdup("127.0.0.1"),
+        .port = port,
+        .unit = 1,
+        .poll_ms = 100,
+        .timeout_ms = 300,
+    };
+    return source;
+}
+
+struct plant_tag *plant_by_hand_tag(struct plant *plant, const char *name, enum register_table table, int register_index, enum data_type type)
+{
+    bool one_register = type == DATA_BIT || type == DATA_INT16 || type == DATA_UINT16 || type == DATA_BCD;
+    struct plant_tag *tag = &plant->tags[plant->tag_count++];
+    *tag = (struct plant_tag){
+        .name = mem_strdup(name),
+        .source = (int)plant->source_count - 1,
+        .group = -1,
+        .asset = -1,
+        .modbus_unit = -1,
+        .table = table,
+        .register_index = register_index,
+        .bit = -1,
+        .type = type,
+        .byte_order = one_register ? BYTE_ORDER_NONE : BYTE_ORDER_ABCD,
+        .stale_s = 5,
+        .limits = { NAN, NAN, NAN, NAN },
+    };
+    return tag;
+}

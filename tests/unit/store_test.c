@@ -1,0 +1,260 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Store: what becomes of a reading when it is exact zero, not a number, old, or cut off. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "tests/support/plant_by_hand.h"
+#include "value/quality.h"
+#include "value/store.h"
+
+#define S INT64_C(1000000000)
+
+struct setup {
+    struct plant *plant; /* tags 0 and 1 of source 0, tag 2 of source 1; stale after 5 s */
+    struct store *store;
+    struct snapshot *snapshot;
+};
+
+static int set_up(void **state)
+{
+    static struct setup s;
+    s.plant = plant_by_hand_create(3);
+    plant_by_hand_source(s.plant, "a", 1);
+    plant_by_hand_tag(s.plant, "a0", TABLE_HOLDING, 0, DATA_INT16);
+    plant_by_hand_tag(s.plant, "a1", TABLE_HOLDING, 1, DATA_INT16);
+    plant_by_hand_source(s.plant, "b", 2);
+    plant_by_hand_tag(s.plant, "b0", TABLE_HOLDING, 0, DATA_INT16);
+    s.store = store_create(s.plant);
+    s.snapshot = snapshot_create(s.plant->tag_count);
+    *state = &s;
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    struct setup *s = *state;
+    snapshot_destroy(&s->snapshot);
+    assert_null(s->snapshot);
+    store_destroy(&s->store);
+    store_destroy(&s->store);
+    plant_by_hand_destroy(&s->plant);
+    return 0;
+}
+
+static void write_one(struct setup *s, int tag, double value, uint32_t quality, int64_t now_ns)
+{
+    store_write(s->store, &(struct sample){ tag, value, quality }, 1, now_ns, now_ns + 1000 * S);
+}
+
+static const struct reading *look(struct setup *s, int tag, int64_t now_ns)
+{
+    store_snapshot(s->store, now_ns, now_ns + 1000 * S, s->snapshot);
+    return &s->snapshot->readings[tag];
+}
+
+#define assert_quality(q, wanted) assert_string_equal(quality_name(q), quality_name(wanted))
+
+static void waits_for_the_first_value(void **state)
+{
+    const struct reading *r = look(*state, 0, 10 * S);
+    assert_quality(r->quality, QUALITY_BAD_WAITING);
+    assert_true(r->age_ns == INT64_MAX);
+    assert_true(r->received_utc_ns == 0);
+    assert_int_equal(r->changes, 0);
+    assert_quality(look(*state, 0, 10000 * S)->quality, QUALITY_BAD_WAITING);
+}
+
+static void zero_is_a_reading(void **state)
+{
+    write_one(*state, 0, 0.0, QUALITY_GOOD, 10 * S);
+    const struct reading *r = look(*state, 0, 12 * S);
+    assert_quality(r->quality, QUALITY_GOOD);
+    assert_true(r->value == 0.0);
+    assert_true(r->age_ns == 2 * S);
+    assert_true(r->received_utc_ns == 1010 * S);
+    assert_int_equal(r->changes, 1);
+}
+
+static void not_a_number_is_a_sensor_failure(void **state)
+{
+    const double none[] = { NAN, INFINITY, -INFINITY };
+    for (int i = 0; i < 3; i++) {
+        write_one(*state, 0, 7, QUALITY_GOOD, (10 + i) * S);
+        write_one(*state, 0, none[i], QUALITY_GOOD, (10 + i) * S);
+        const struct reading *r = look(*state, 0, (11 + i) * S);
+        assert_quality(r->quality, QUALITY_BAD_SENSOR_FAILURE);
+        assert_true(isfinite(r->value));
+    }
+}
+
+static void a_bad_sample_does_not_make_the_value_younger(void **state)
+{
+    write_one(*state, 0, 7, QUALITY_GOOD, 10 * S);
+    write_one(*state, 0, 99, QUALITY_BAD_CONFIGURATION, 12 * S);
+    const struct reading *r = look(*state, 0, 13 * S);
+    assert_quality(r->quality, QUALITY_BAD_CONFIGURATION);
+    assert_true(r->age_ns == 3 * S);
+    assert_true(r->value == 7);
+    assert_quality(look(*state, 0, 100 * S)->quality, QUALITY_BAD_CONFIGURATION); /* the reason stays */
+}
+
+static void goes_stale(void **state)
+{
+    write_one(*state, 0, 7, QUALITY_GOOD, 10 * S);
+    assert_quality(look(*state, 0, 15 * S - 1)->quality, QUALITY_GOOD);
+    uint32_t before = look(*state, 0, 15 * S - 1)->changes;
+    assert_quality(look(*state, 0, 15 * S)->quality, QUALITY_BAD_COMMUNICATION_ERROR);
+    assert_int_equal(look(*state, 0, 16 * S)->changes, before + 1); /* once, however often it is looked at */
+    write_one(*state, 0, 7, QUALITY_GOOD, 20 * S);
+    const struct reading *r = look(*state, 0, 20 * S);
+    assert_quality(r->quality, QUALITY_GOOD);
+    assert_int_equal(r->changes, before + 2); /* the same value, but usable again */
+}
+
+static void uncertain_stays_uncertain(void **state)
+{
+    write_one(*state, 0, 700, QUALITY_UNCERTAIN_UNITS_EXCEEDED, 10 * S);
+    assert_quality(look(*state, 0, 11 * S)->quality, QUALITY_UNCERTAIN_UNITS_EXCEEDED);
+    assert_true(look(*state, 0, 11 * S)->value == 700);
+    assert_quality(look(*state, 0, 15 * S)->quality, QUALITY_BAD_COMMUNICATION_ERROR);
+}
+
+static void link_lost_keeps_the_value_until_stale(void **state)
+{
+    struct setup *s = *state;
+    write_one(s, 0, 7, QUALITY_GOOD, 10 * S);
+    write_one(s, 2, 8, QUALITY_GOOD, 10 * S);
+    store_link_up(s->store, 0, 10 * S);
+    assert_true(store_link_is_up(s->store, 0));
+    store_link_lost(s->store, 0, 11 * S);
+    assert_false(store_link_is_up(s->store, 0));
+    assert_quality(look(s, 0, 11 * S)->quality, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE);
+    assert_true(look(s, 0, 11 * S)->value == 7);
+    assert_quality(look(s, 1, 11 * S)->quality, QUALITY_BAD_NO_COMMUNICATION); /* never had one */
+    assert_quality(look(s, 2, 11 * S)->quality, QUALITY_GOOD);                 /* another source */
+    assert_quality(look(s, 0, 15 * S - 1)->quality, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE);
+    assert_quality(look(s, 0, 15 * S)->quality, QUALITY_BAD_COMMUNICATION_ERROR);
+    assert_quality(look(s, 1, 100 * S)->quality, QUALITY_BAD_NO_COMMUNICATION);
+}
+
+static void link_back_is_not_yet_a_reading(void **state)
+{
+    struct setup *s = *state;
+    write_one(s, 0, 7, QUALITY_GOOD, 10 * S);
+    store_link_lost(s->store, 0, 11 * S);
+    store_link_up(s->store, 0, 12 * S);
+    assert_true(store_link_is_up(s->store, 0));
+    assert_quality(look(s, 0, 12 * S)->quality, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE);
+    assert_quality(look(s, 1, 12 * S)->quality, QUALITY_BAD_NO_COMMUNICATION);
+    write_one(s, 0, 7, QUALITY_GOOD, 13 * S);
+    write_one(s, 1, 3, QUALITY_GOOD, 13 * S);
+    assert_quality(look(s, 0, 13 * S)->quality, QUALITY_GOOD);
+    assert_quality(look(s, 1, 13 * S)->quality, QUALITY_GOOD);
+    assert_true(look(s, 1, 13 * S)->age_ns == 0);
+}
+
+static void a_refused_tag_that_is_cut_off_says_so(void **state)
+{
+    struct setup *s = *state;
+    write_one(s, 0, 7, QUALITY_GOOD, 10 * S);
+    write_one(s, 0, 0, QUALITY_BAD_CONFIGURATION, 11 * S);
+    store_link_lost(s->store, 0, 12 * S);
+    assert_quality(look(s, 0, 12 * S)->quality, QUALITY_BAD_COMMUNICATION_ERROR); /* never the value from before the refusal */
+}
+
+static void some_tags_can_be_lost(void **state)
+{
+    struct setup *s = *state;
+    write_one(s, 0, 7, QUALITY_GOOD, 10 * S);
+    write_one(s, 1, 8, QUALITY_GOOD, 10 * S);
+    store_link_up(s->store, 0, 10 * S);
+    store_tags_lost(s->store, (int[]){ 1 }, 1, 11 * S);
+    assert_quality(look(s, 0, 11 * S)->quality, QUALITY_GOOD);
+    assert_quality(look(s, 1, 11 * S)->quality, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE);
+    assert_true(store_link_is_up(s->store, 0));
+}
+
+static void counts_every_change(void **state)
+{
+    struct setup *s = *state;
+    uint32_t wanted = 0;
+    write_one(s, 0, 7, QUALITY_GOOD, 10 * S);
+    assert_int_equal(look(s, 0, 10 * S)->changes, ++wanted);
+    write_one(s, 0, 7, QUALITY_GOOD, 11 * S); /* the same again */
+    assert_int_equal(look(s, 0, 11 * S)->changes, wanted);
+    write_one(s, 0, 7.5, QUALITY_GOOD, 12 * S);
+    assert_int_equal(look(s, 0, 12 * S)->changes, ++wanted);
+    write_one(s, 0, 7.5, QUALITY_UNCERTAIN_UNITS_EXCEEDED, 12 * S);
+    assert_int_equal(look(s, 0, 12 * S)->changes, ++wanted);
+    write_one(s, 0, 8, QUALITY_GOOD, 12 * S);
+    write_one(s, 0, 9, QUALITY_GOOD, 12 * S); /* two that nobody looked at between */
+    wanted += 2;
+    assert_int_equal(look(s, 0, 12 * S)->changes, wanted);
+    store_link_lost(s->store, 0, 13 * S);
+    store_link_lost(s->store, 0, 13 * S);
+    assert_int_equal(look(s, 0, 13 * S)->changes, ++wanted);
+    assert_int_equal(look(s, 0, 17 * S)->changes, ++wanted); /* Uncertain to Bad, by age alone */
+    write_one(s, 0, 0, QUALITY_BAD_DEVICE_FAILURE, 18 * S);
+    assert_int_equal(look(s, 0, 18 * S)->changes, ++wanted);
+    write_one(s, 0, 5, QUALITY_BAD_DEVICE_FAILURE, 19 * S); /* the value of a Bad sample is nobody's business */
+    assert_int_equal(look(s, 0, 19 * S)->changes, wanted);
+}
+
+static void the_newest_sample_wins(void **state)
+{
+    write_one(*state, 0, 7, QUALITY_GOOD, 12 * S);
+    write_one(*state, 0, 6, QUALITY_GOOD, 11 * S);
+    assert_true(look(*state, 0, 12 * S)->value == 7);
+    store_link_lost(((struct setup *)*state)->store, 0, 11 * S); /* known before the sample came */
+    assert_quality(look(*state, 0, 12 * S)->quality, QUALITY_GOOD);
+}
+
+static void the_snapshot_says_when(void **state)
+{
+    struct setup *s = *state;
+    look(s, 0, 12 * S);
+    assert_true(s->snapshot->taken_mono_ns == 12 * S);
+    assert_true(s->snapshot->taken_utc_ns == 1012 * S);
+    assert_int_equal(s->snapshot->count, 3);
+}
+
+static void qualities_have_names_and_classes(void **state)
+{
+    (void)state;
+    assert_string_equal(quality_name(QUALITY_GOOD), "Good");
+    assert_string_equal(quality_name(QUALITY_BAD_COMMUNICATION_ERROR), "Bad_CommunicationError");
+    assert_string_equal(quality_name(0x80FF0000u), "Bad");
+    assert_string_equal(quality_name(0x40FF0000u), "Uncertain");
+    assert_string_equal(quality_class(QUALITY_GOOD), "good");
+    assert_string_equal(quality_class(QUALITY_UNCERTAIN_UNITS_EXCEEDED), "uncertain");
+    assert_string_equal(quality_class(QUALITY_BAD_WAITING), "bad");
+    assert_string_equal(quality_class(0xC0000000u), "bad");
+}
+
+#define store_test(f) cmocka_unit_test_setup_teardown(f, set_up, tear_down)
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        store_test(waits_for_the_first_value),
+        store_test(zero_is_a_reading),
+        store_test(not_a_number_is_a_sensor_failure),
+        store_test(a_bad_sample_does_not_make_the_value_younger),
+        store_test(goes_stale),
+        store_test(uncertain_stays_uncertain),
+        store_test(link_lost_keeps_the_value_until_stale),
+        store_test(link_back_is_not_yet_a_reading),
+        store_test(a_refused_tag_that_is_cut_off_says_so),
+        store_test(some_tags_can_be_lost),
+        store_test(counts_every_change),
+        store_test(the_newest_sample_wins),
+        store_test(the_snapshot_says_when),
+        cmocka_unit_test(qualities_have_names_and_classes),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
