@@ -1,0 +1,210 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Decoding: every type in every byte order from bytes written out by hand, and every scaling. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "value/decode.h"
+#include "value/quality.h"
+
+static struct plant_tag tag_of(enum data_type type, enum byte_order order)
+{
+    return (struct plant_tag){ .table = TABLE_HOLDING, .bit = -1, .type = type, .byte_order = order };
+}
+
+static struct sample decode(const struct plant_tag *tag, const uint16_t *words)
+{
+    struct sample sample = { .tag = -1, .value = -12345, .quality = 0xFFFFFFFF };
+    decode_sample(tag, words, &sample);
+    return sample;
+}
+
+static const struct {
+    enum data_type type;
+    enum byte_order order;
+    uint16_t words[4];
+    double value;
+} vectors[] = {
+    /* -2 = FFFE */
+    { DATA_INT16, BYTE_ORDER_NONE, { 0xFFFE }, -2 },
+    { DATA_INT16, BYTE_ORDER_ABCD, { 0xFFFE }, -2 },
+    { DATA_INT16, BYTE_ORDER_CDAB, { 0xFFFE }, -2 },
+    { DATA_INT16, BYTE_ORDER_BADC, { 0xFEFF }, -2 },
+    { DATA_INT16, BYTE_ORDER_DCBA, { 0xFEFF }, -2 },
+    { DATA_UINT16, BYTE_ORDER_NONE, { 0xFFFE }, 65534 },
+    { DATA_UINT16, BYTE_ORDER_DCBA, { 0xFEFF }, 65534 },
+    { DATA_BCD, BYTE_ORDER_NONE, { 0x1234 }, 1234 },
+    { DATA_BCD, BYTE_ORDER_BADC, { 0x3412 }, 1234 },
+    { DATA_BCD, BYTE_ORDER_NONE, { 0x9999 }, 9999 },
+    { DATA_BCD, BYTE_ORDER_NONE, { 0x0000 }, 0 },
+    /* -123456789 = F8A432EB */
+    { DATA_INT32, BYTE_ORDER_ABCD, { 0xF8A4, 0x32EB }, -123456789 },
+    { DATA_INT32, BYTE_ORDER_CDAB, { 0x32EB, 0xF8A4 }, -123456789 },
+    { DATA_INT32, BYTE_ORDER_BADC, { 0xA4F8, 0xEB32 }, -123456789 },
+    { DATA_INT32, BYTE_ORDER_DCBA, { 0xEB32, 0xA4F8 }, -123456789 },
+    { DATA_UINT32, BYTE_ORDER_ABCD, { 0xF8A4, 0x32EB }, 4171510507.0 },
+    { DATA_UINT32, BYTE_ORDER_CDAB, { 0x32EB, 0xF8A4 }, 4171510507.0 },
+    { DATA_UINT32, BYTE_ORDER_BADC, { 0xA4F8, 0xEB32 }, 4171510507.0 },
+    { DATA_UINT32, BYTE_ORDER_DCBA, { 0xEB32, 0xA4F8 }, 4171510507.0 },
+    /* -118.625 = C2ED4000 */
+    { DATA_FLOAT32, BYTE_ORDER_ABCD, { 0xC2ED, 0x4000 }, -118.625 },
+    { DATA_FLOAT32, BYTE_ORDER_CDAB, { 0x4000, 0xC2ED }, -118.625 },
+    { DATA_FLOAT32, BYTE_ORDER_BADC, { 0xEDC2, 0x0040 }, -118.625 },
+    { DATA_FLOAT32, BYTE_ORDER_DCBA, { 0x0040, 0xEDC2 }, -118.625 },
+    /* 4886718345 = 1 2345 6789; -4886718345 = FFFF FFFE DCBA 9877 */
+    { DATA_INT64, BYTE_ORDER_ABCD, { 0xFFFF, 0xFFFE, 0xDCBA, 0x9877 }, -4886718345.0 },
+    { DATA_INT64, BYTE_ORDER_CDAB, { 0x9877, 0xDCBA, 0xFFFE, 0xFFFF }, -4886718345.0 },
+    { DATA_INT64, BYTE_ORDER_BADC, { 0xFFFF, 0xFEFF, 0xBADC, 0x7798 }, -4886718345.0 },
+    { DATA_INT64, BYTE_ORDER_DCBA, { 0x7798, 0xBADC, 0xFEFF, 0xFFFF }, -4886718345.0 },
+    { DATA_UINT64, BYTE_ORDER_ABCD, { 0x0000, 0x0001, 0x2345, 0x6789 }, 4886718345.0 },
+    { DATA_UINT64, BYTE_ORDER_CDAB, { 0x6789, 0x2345, 0x0001, 0x0000 }, 4886718345.0 },
+    { DATA_UINT64, BYTE_ORDER_BADC, { 0x0000, 0x0100, 0x4523, 0x8967 }, 4886718345.0 },
+    { DATA_UINT64, BYTE_ORDER_DCBA, { 0x8967, 0x4523, 0x0100, 0x0000 }, 4886718345.0 },
+    { DATA_UINT64, BYTE_ORDER_ABCD, { 0xFFFF, 0xFFFF, 0xFFFF, 0xFFFF }, 18446744073709551615.0 },
+    /* 0.1 = 3FB999999999999A */
+    { DATA_FLOAT64, BYTE_ORDER_ABCD, { 0x3FB9, 0x9999, 0x9999, 0x999A }, 0.1 },
+    { DATA_FLOAT64, BYTE_ORDER_CDAB, { 0x999A, 0x9999, 0x9999, 0x3FB9 }, 0.1 },
+    { DATA_FLOAT64, BYTE_ORDER_BADC, { 0xB93F, 0x9999, 0x9999, 0x9A99 }, 0.1 },
+    { DATA_FLOAT64, BYTE_ORDER_DCBA, { 0x9A99, 0x9999, 0x9999, 0xB93F }, 0.1 },
+};
+
+static void every_type_in_every_byte_order(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < sizeof(vectors) / sizeof(vectors[0]); i++) {
+        struct plant_tag tag = tag_of(vectors[i].type, vectors[i].order);
+        struct sample sample = decode(&tag, vectors[i].words);
+        if (sample.value != vectors[i].value)
+            fail_msg("vector %zu: %.17g, not %.17g", i, sample.value, vectors[i].value);
+        assert_int_equal(sample.quality, QUALITY_GOOD);
+        assert_int_equal(sample.tag, -1); /* the caller's */
+    }
+}
+
+static void takes_as_many_registers_as_its_type(void **state)
+{
+    (void)state;
+    const int widths[] = { [DATA_BIT] = 1, [DATA_INT16] = 1, [DATA_UINT16] = 1, [DATA_BCD] = 1, [DATA_INT32] = 2, [DATA_UINT32] = 2,
+                           [DATA_FLOAT32] = 2, [DATA_INT64] = 4, [DATA_UINT64] = 4, [DATA_FLOAT64] = 4 };
+    for (int type = DATA_BIT; type <= DATA_BCD; type++) {
+        struct plant_tag tag = tag_of((enum data_type)type, BYTE_ORDER_ABCD);
+        assert_int_equal(decode_width(&tag), widths[type]);
+        tag.table = TABLE_COIL;
+        assert_int_equal(decode_width(&tag), 1);
+    }
+}
+
+static void bits(void **state)
+{
+    (void)state;
+    struct plant_tag tag = tag_of(DATA_BIT, BYTE_ORDER_NONE);
+    const uint16_t word = 0x8005;
+    for (tag.bit = 0; tag.bit < 16; tag.bit++)
+        assert_true(decode(&tag, &word).value == (tag.bit == 0 || tag.bit == 2 || tag.bit == 15));
+    tag.byte_order = BYTE_ORDER_BADC; /* 0x0580 */
+    tag.bit = 7;
+    assert_true(decode(&tag, &word).value == 1);
+    tag.negate = true;
+    assert_true(decode(&tag, &word).value == 0);
+
+    struct plant_tag coil = { .table = TABLE_COIL, .type = DATA_BIT, .bit = -1 };
+    assert_true(decode(&coil, (uint16_t[]){ 1 }).value == 1);
+    assert_true(decode(&coil, (uint16_t[]){ 0 }).value == 0);
+    coil.negate = true;
+    assert_true(decode(&coil, (uint16_t[]){ 0 }).value == 1);
+}
+
+static struct plant_tag scaled(enum scaling scaling, double raw_low, double raw_high, double low, double high)
+{
+    struct plant_tag tag = tag_of(DATA_INT16, BYTE_ORDER_NONE);
+    tag.scaling = scaling;
+    tag.raw_low = raw_low;
+    tag.raw_high = raw_high;
+    tag.scaled_low = low;
+    tag.scaled_high = high;
+    return tag;
+}
+
+static void check_scaled(const struct plant_tag *tag, int raw, double value, uint32_t quality)
+{
+    struct sample sample = decode(tag, (uint16_t[]){ (uint16_t)raw });
+    if (fabs(sample.value - value) > 1e-9)
+        fail_msg("raw %d: %.12g, not %.12g", raw, sample.value, value);
+    assert_string_equal(quality_name(sample.quality), quality_name(quality));
+}
+
+static void linear_scaling(void **state)
+{
+    (void)state;
+    struct plant_tag tag = scaled(SCALING_LINEAR, 4000, 20000, -50, 350); /* 4..20 mA in microamperes */
+    check_scaled(&tag, 4000, -50, QUALITY_GOOD);
+    check_scaled(&tag, 6000, 0, QUALITY_GOOD); /* exactly 0 is a reading */
+    check_scaled(&tag, 12000, 150, QUALITY_GOOD);
+    check_scaled(&tag, 20000, 350, QUALITY_GOOD);
+    check_scaled(&tag, 20800, 370, QUALITY_UNCERTAIN_UNITS_EXCEEDED); /* goes on beyond its range */
+    check_scaled(&tag, 3600, -60, QUALITY_UNCERTAIN_UNITS_EXCEEDED);
+    tag.negate = true;
+    check_scaled(&tag, 12000, -150, QUALITY_GOOD);
+    struct plant_tag reversed = scaled(SCALING_LINEAR, 0, 1000, 100, 0);
+    check_scaled(&reversed, 250, 75, QUALITY_GOOD);
+    check_scaled(&reversed, 1010, -1, QUALITY_UNCERTAIN_UNITS_EXCEEDED);
+    struct plant_tag falling = scaled(SCALING_LINEAR, 1000, 0, 0, 100);
+    check_scaled(&falling, 250, 75, QUALITY_GOOD);
+    check_scaled(&falling, -10, 101, QUALITY_UNCERTAIN_UNITS_EXCEEDED);
+}
+
+static void square_root_scaling(void **state)
+{
+    (void)state;
+    struct plant_tag tag = scaled(SCALING_SQUARE_ROOT, 0, 10000, 0, 50); /* flow from a differential pressure */
+    check_scaled(&tag, 0, 0, QUALITY_GOOD);
+    check_scaled(&tag, 2500, 25, QUALITY_GOOD);
+    check_scaled(&tag, 10000, 50, QUALITY_GOOD);
+    check_scaled(&tag, 12100, 55, QUALITY_UNCERTAIN_UNITS_EXCEEDED);
+    check_scaled(&tag, -5, 0, QUALITY_UNCERTAIN_UNITS_EXCEEDED); /* no root of a negative number */
+}
+
+static void unscaled_negation(void **state)
+{
+    (void)state;
+    struct plant_tag tag = tag_of(DATA_INT16, BYTE_ORDER_NONE);
+    tag.negate = true;
+    assert_true(decode(&tag, (uint16_t[]){ 5 }).value == -5);
+}
+
+static void what_is_no_number_is_a_sensor_failure(void **state)
+{
+    (void)state;
+    const uint16_t floats[][2] = { { 0x7FC0, 0 }, { 0x7F80, 0 }, { 0xFF80, 0 } }; /* NaN, +Inf, -Inf */
+    for (int i = 0; i < 3; i++) {
+        struct plant_tag tag = tag_of(DATA_FLOAT32, BYTE_ORDER_ABCD);
+        assert_int_equal(decode(&tag, floats[i]).quality, QUALITY_BAD_SENSOR_FAILURE);
+        tag.scaling = SCALING_SQUARE_ROOT; /* would make 0 of a NaN */
+        tag.raw_high = tag.scaled_high = 1;
+        assert_int_equal(decode(&tag, floats[i]).quality, QUALITY_BAD_SENSOR_FAILURE);
+        assert_true(isfinite(decode(&tag, floats[i]).value));
+    }
+    struct plant_tag wide = tag_of(DATA_FLOAT64, BYTE_ORDER_ABCD);
+    assert_int_equal(decode(&wide, (uint16_t[]){ 0x7FF8, 0, 0, 0 }).quality, QUALITY_BAD_SENSOR_FAILURE);
+    struct plant_tag bcd = tag_of(DATA_BCD, BYTE_ORDER_NONE);
+    assert_int_equal(decode(&bcd, (uint16_t[]){ 0x123A }).quality, QUALITY_BAD_SENSOR_FAILURE);
+    assert_int_equal(decode(&bcd, (uint16_t[]){ 0xFFFF }).quality, QUALITY_BAD_SENSOR_FAILURE);
+}
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_type_in_every_byte_order),
+        cmocka_unit_test(takes_as_many_registers_as_its_type),
+        cmocka_unit_test(bits),
+        cmocka_unit_test(linear_scaling),
+        cmocka_unit_test(square_root_scaling),
+        cmocka_unit_test(unscaled_negation),
+        cmocka_unit_test(what_is_no_number_is_a_sensor_failure),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,236 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Plan: which registers are asked for together, on random tag lists against the rules counted out one by one. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "tests/support/plant_by_hand.h"
+#include "value/backoff.h"
+#include "value/decode.h"
+#include "value/plan.h"
+
+static struct plant *plant_of_registers(const int *registers, size_t count, enum register_table table, enum data_type type)
+{
+    struct plant *plant = plant_by_hand_create(count);
+    plant_by_hand_source(plant, "a", 1);
+    for (size_t i = 0; i < count; i++) {
+        char name[20];
+        snprintf(name, sizeof(name), "t%zu", i);
+        plant_by_hand_tag(plant, name, table, registers[i], type);
+    }
+    return plant;
+}
+
+static void assert_block(const struct plan *plan, size_t index, int first, int count, size_t tags)
+{
+    assert_true(index < plan->block_count);
+    assert_int_equal(plan->blocks[index].first, first);
+    assert_int_equal(plan->blocks[index].count, count);
+    assert_int_equal(plan->blocks[index].tag_count, tags);
+}
+
+static void neighbours_go_together_and_gaps_part(void **state)
+{
+    (void)state;
+    struct plan plan;
+    struct plant *plant = plant_of_registers((int[]){ 14, 10, 12, 20, 22, 18 }, 6, TABLE_HOLDING, DATA_FLOAT32);
+    plan_init(&plan, plant, 0);
+    assert_int_equal(plan.block_count, 2);
+    assert_block(&plan, 0, 10, 6, 3);
+    assert_block(&plan, 1, 18, 6, 3);
+    assert_int_equal(plan.tags[0], 1); /* sorted by register, tags named by index */
+    assert_int_equal(plan.tags[5], 4);
+    plan_finish(&plan);
+    plant_by_hand_destroy(&plant);
+}
+
+static void units_tables_scans_and_sources_part(void **state)
+{
+    (void)state;
+    struct plan plan;
+    struct plant *plant = plant_of_registers((int[]){ 0, 1, 2, 3, 4 }, 5, TABLE_HOLDING, DATA_INT16);
+    plant->tags[1].modbus_unit = 7;
+    plant->tags[2].table = TABLE_INPUT;
+    plant->tags[3].scan_ms = 5000;
+    plant_by_hand_source(plant, "b", 2);
+    plant->tags[4].source = 1;
+    plan_init(&plan, plant, 0);
+    assert_int_equal(plan.block_count, 4);
+    assert_int_equal(plan.tag_count, 4);
+    assert_int_equal(plan.unit_count, 2);
+    assert_int_equal(plan.units[0], 1);
+    assert_int_equal(plan.units[1], 7);
+    plan_finish(&plan);
+    plan_init(&plan, plant, 1);
+    assert_int_equal(plan.block_count, 1);
+    assert_block(&plan, 0, 4, 1, 1);
+    plan_finish(&plan);
+    plant_by_hand_destroy(&plant);
+}
+
+static void many(enum register_table table, enum data_type type, int width, int count, const int *block_counts, size_t blocks)
+{
+    struct plan plan;
+    int *registers = mem_array((size_t)count, sizeof(*registers));
+    for (int i = 0; i < count; i++)
+        registers[i] = 100 + i * width;
+    struct plant *plant = plant_of_registers(registers, (size_t)count, table, type);
+    plan_init(&plan, plant, 0);
+    assert_int_equal(plan.block_count, blocks);
+    for (size_t i = 0; i < blocks; i++)
+        assert_int_equal(plan.blocks[i].count, block_counts[i]);
+    plan_finish(&plan);
+    plant_by_hand_destroy(&plant);
+    mem_free(registers);
+}
+
+static void a_request_is_full_at_its_limit_and_splits_no_value(void **state)
+{
+    (void)state;
+    many(TABLE_HOLDING, DATA_INT16, 1, 125, (int[]){ 125 }, 1);
+    many(TABLE_HOLDING, DATA_INT16, 1, 126, (int[]){ 125, 1 }, 2);
+    many(TABLE_INPUT, DATA_INT16, 1, 251, (int[]){ 125, 125, 1 }, 3);
+    many(TABLE_HOLDING, DATA_FLOAT32, 2, 63, (int[]){ 124, 2 }, 2);
+    many(TABLE_HOLDING, DATA_FLOAT64, 4, 32, (int[]){ 124, 4 }, 2);
+    many(TABLE_COIL, DATA_BIT, 1, 2000, (int[]){ 2000 }, 1);
+    many(TABLE_DISCRETE, DATA_BIT, 1, 2001, (int[]){ 2000, 1 }, 2);
+}
+
+static void two_tags_may_share_registers(void **state)
+{
+    (void)state;
+    struct plan plan;
+    struct plant *plant = plant_of_registers((int[]){ 10, 10, 11, 10 }, 4, TABLE_HOLDING, DATA_FLOAT32);
+    plant->tags[1].type = DATA_BIT; /* bits of one register */
+    plant->tags[1].bit = 3;
+    plant->tags[3].type = DATA_BIT;
+    plant->tags[3].bit = 4;
+    plan_init(&plan, plant, 0);
+    assert_int_equal(plan.block_count, 1);
+    assert_block(&plan, 0, 10, 3, 4);
+    plan_split(&plan, plant, 0);
+    assert_block(&plan, 0, 10, 1, 2);
+    assert_block(&plan, 1, 10, 3, 2);
+    plan_finish(&plan);
+    plant_by_hand_destroy(&plant);
+}
+
+static void splitting_ends_at_single_tags(void **state)
+{
+    (void)state;
+    struct plan plan;
+    struct plant *plant = plant_of_registers((int[]){ 0, 2, 4, 6, 8 }, 5, TABLE_HOLDING, DATA_FLOAT32);
+    plan_init(&plan, plant, 0);
+    plan.blocks[0].due_ns = 77;
+    for (size_t i = 0; i < plan.block_count;)
+        if (plan.blocks[i].tag_count > 1)
+            plan_split(&plan, plant, i);
+        else
+            i++;
+    assert_int_equal(plan.block_count, 5);
+    for (size_t i = 0; i < 5; i++) {
+        assert_block(&plan, i, (int)i * 2, 2, 1);
+        assert_int_equal(plan.tags[plan.blocks[i].first_tag], i);
+        assert_true(plan.blocks[i].due_ns == 77);
+    }
+    plan_finish(&plan);
+    plant_by_hand_destroy(&plant);
+}
+
+enum { REGISTERS = 1000 };
+
+/* Every tag in one block, blocks within the limits, and no register asked for that no tag is on: it might not exist. */
+static void check_rules(const struct plant *plant, const struct plan *plan)
+{
+    char wanted[2][REGISTERS + 4] = { { 0 } };
+    size_t seen = 0;
+    for (size_t i = 0; i < plant->tag_count; i++)
+        for (int r = 0; r < decode_width(&plant->tags[i]); r++)
+            wanted[plant->tags[i].table == TABLE_COIL][plant->tags[i].register_index + r] = 1;
+    for (size_t b = 0; b < plan->block_count; b++) {
+        const struct plan_block *block = &plan->blocks[b];
+        assert_true(block->count >= 1 && block->count <= (block->table == TABLE_COIL ? PLAN_MAX_BITS : PLAN_MAX_REGISTERS));
+        assert_int_equal(block->first_tag, seen);
+        for (size_t t = 0; t < block->tag_count; t++, seen++) {
+            const struct plant_tag *tag = &plant->tags[plan->tags[seen]];
+            int offset = tag->register_index - block->first;
+            assert_int_equal(tag->table, block->table);
+            assert_true(offset >= 0 && offset + decode_width(tag) <= block->count);
+        }
+        for (int i = 0; i < block->count; i++)
+            assert_int_equal(wanted[block->table == TABLE_COIL][block->first + i], 1);
+    }
+    assert_int_equal(seen, plan->tag_count);
+}
+
+static void random_tag_lists_obey_the_rules(void **state)
+{
+    (void)state;
+    const enum data_type types[] = { DATA_INT16, DATA_FLOAT32, DATA_FLOAT64 };
+    unsigned seed = 20240617;
+    print_message("# seed %u\n", seed);
+    srand(seed);
+    for (int round = 0; round < 200; round++) {
+        struct plan plan;
+        size_t count = 1 + (size_t)rand() % 400;
+        struct plant *plant = plant_by_hand_create(count);
+        plant_by_hand_source(plant, "a", 1);
+        for (size_t i = 0; i < count; i++) {
+            char name[20];
+            snprintf(name, sizeof(name), "t%zu", i);
+            enum register_table table = rand() % 4 ? TABLE_HOLDING : TABLE_COIL;
+            plant_by_hand_tag(plant, name, table, rand() % REGISTERS, types[rand() % 3]);
+        }
+        plan_init(&plan, plant, 0);
+        assert_int_equal(plan.tag_count, count);
+        check_rules(plant, &plan);
+        for (int i = 0; i < 20; i++) {
+            size_t b = (size_t)rand() % plan.block_count;
+            if (plan.blocks[b].tag_count > 1)
+                plan_split(&plan, plant, b);
+        }
+        check_rules(plant, &plan);
+        plan_finish(&plan);
+        plant_by_hand_destroy(&plant);
+    }
+}
+
+static void backoff_grows_from_half_a_second_to_ten(void **state)
+{
+    (void)state;
+    struct backoff backoff = { 0 };
+    int64_t first_ns = backoff_next_ns(&backoff, 1), spread_ns = 0, last_ns = 0;
+    assert_true(first_ns >= 500000000 && first_ns <= 750000000);
+    for (int i = 0; i < 100; i++) {
+        int64_t next_ns = backoff_next_ns(&backoff, (uint64_t)i);
+        assert_true(next_ns >= 500000000 && next_ns <= 10000000000);
+        if (i > 10) {
+            assert_true(next_ns >= 9000000000);
+            spread_ns += llabs(next_ns - last_ns);
+        }
+        last_ns = next_ns;
+    }
+    assert_true(spread_ns > 1000000000); /* jitter */
+    backoff = (struct backoff){ 0 };
+    assert_true(backoff_next_ns(&backoff, 5) <= 750000000);
+}
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(neighbours_go_together_and_gaps_part),
+        cmocka_unit_test(units_tables_scans_and_sources_part),
+        cmocka_unit_test(a_request_is_full_at_its_limit_and_splits_no_value),
+        cmocka_unit_test(two_tags_may_share_registers),
+        cmocka_unit_test(splitting_ends_at_single_tags),
+        cmocka_unit_test(random_tag_lists_obey_the_rules),
+        cmocka_unit_test(backoff_grows_from_half_a_second_to_ten),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
