@@ -1,0 +1,220 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A Modbus TCP device for tests, with the bad manners that devices have. */
+#include "modbus_device.h"
+
+#include <modbus.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <pthread.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/eventfd.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+
+enum { MAX_CLIENTS = 8, REGISTERS = 2000, HEADER_BYTES = 7 };
+
+struct device_thread {
+    pthread_t thread;
+    struct device *device;
+    modbus_t *modbus;
+    modbus_mapping_t *mapping, *wrong;
+    int listen_fd, stop_fd;
+    int clients[MAX_CLIENTS];
+    size_t client_count;
+};
+
+static void must(bool condition, const char *what)
+{
+    if (condition)
+        return;
+    perror(what);
+    abort();
+}
+
+static int bound_port(int fd)
+{
+    struct sockaddr_in at;
+    socklen_t bytes = sizeof(at);
+    must(getsockname(fd, (struct sockaddr *)&at, &bytes) == 0, "getsockname");
+    return ntohs(at.sin_port);
+}
+
+int device_free_port(void)
+{
+    struct sockaddr_in at = { .sin_family = AF_INET, .sin_addr.s_addr = htonl(INADDR_LOOPBACK) };
+    int fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    must(fd >= 0 && bind(fd, (struct sockaddr *)&at, sizeof(at)) == 0, "bind");
+    int port = bound_port(fd);
+    close(fd);
+    return port;
+}
+
+static void drop_client(struct device_thread *t, size_t index, bool reset)
+{
+    struct linger linger = { .l_onoff = 1 };
+    if (reset)
+        setsockopt(t->clients[index], SOL_SOCKET, SO_LINGER, &linger, sizeof(linger));
+    close(t->clients[index]);
+    t->clients[index] = t->clients[--t->client_count];
+}
+
+static bool stopped_within(struct device_thread *t, int ms)
+{
+    struct pollfd stop = { .fd = t->stop_fd, .events = POLLIN };
+    return poll(&stop, 1, ms) > 0;
+}
+
+/* The answer's bytes, as libmodbus would send them: caught in a pair of sockets. */
+static int catch_reply(struct device_thread *t, const uint8_t *request, int bytes, modbus_mapping_t *mapping, uint8_t *reply)
+{
+    int pair[2], fd = modbus_get_socket(t->modbus);
+    must(socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, pair) == 0, "socketpair");
+    modbus_set_socket(t->modbus, pair[0]);
+    modbus_reply(t->modbus, request, bytes, mapping);
+    modbus_set_socket(t->modbus, fd);
+    ssize_t got = recv(pair[1], reply, MODBUS_TCP_MAX_ADU_LENGTH, MSG_DONTWAIT);
+    close(pair[0]);
+    close(pair[1]);
+    return got > 0 ? (int)got : 0;
+}
+
+static void drip(struct device_thread *t, int fd, const uint8_t *request, int bytes)
+{
+    uint8_t reply[MODBUS_TCP_MAX_ADU_LENGTH];
+    int count = catch_reply(t, request, bytes, t->mapping, reply);
+    for (int i = 0; i < count && !stopped_within(t, 300); i++)
+        if (send(fd, reply + i, 1, MSG_NOSIGNAL) != 1)
+            break;
+}
+
+/* A wrong answer numbered `behind` requests ago. */
+static void reply_wrong(struct device_thread *t, int fd, const uint8_t *request, int bytes, int behind)
+{
+    uint8_t reply[MODBUS_TCP_MAX_ADU_LENGTH];
+    int count = catch_reply(t, request, bytes, t->wrong, reply);
+    int number = ((reply[0] << 8) + reply[1] - behind) & 0xFFFF;
+    reply[0] = (uint8_t)(number >> 8);
+    reply[1] = (uint8_t)number;
+    send(fd, reply, (size_t)count, MSG_NOSIGNAL); /* the client may have had enough */
+}
+
+static bool asks_for(const uint8_t *request, int wanted)
+{
+    int first = request[HEADER_BYTES + 1] << 8 | request[HEADER_BYTES + 2], count = request[HEADER_BYTES + 3] << 8 | request[HEADER_BYTES + 4];
+    return wanted >= first && wanted < first + count;
+}
+
+static void refuse(struct device_thread *t, const uint8_t *request, int code)
+{
+    atomic_fetch_add(&t->device->refused, 1);
+    modbus_reply_exception(t->modbus, request, (unsigned)code);
+}
+
+/* False: the connection is to be reset. */
+static bool answer(struct device_thread *t, int fd, const uint8_t *request, int bytes)
+{
+    struct device *device = t->device;
+    int unit = request[HEADER_BYTES - 1], manner = device->manner;
+    atomic_fetch_add(&device->requests, 1);
+    atomic_fetch_or(&device->functions, 1 << (request[HEADER_BYTES] & 31));
+    if (manner == DEVICE_RESETTING)
+        return false;
+    if (manner == DEVICE_SILENT || (device->silent_unit && unit == device->silent_unit))
+        return true;
+    if (device->dead_unit && unit == device->dead_unit) {
+        refuse(t, request, MODBUS_EXCEPTION_GATEWAY_TARGET);
+        return true;
+    }
+    if (device->bad_code && asks_for(request, device->bad_register)) {
+        refuse(t, request, device->bad_code);
+        return true;
+    }
+    if (manner == DEVICE_DRIPPING) {
+        drip(t, fd, request, bytes);
+        return true;
+    }
+    if (manner == DEVICE_LATE && stopped_within(t, device->late_ms))
+        return true;
+    if (manner == DEVICE_BEHIND)
+        reply_wrong(t, fd, request, bytes, 1);
+    modbus_reply(t->modbus, request, bytes, t->mapping);
+    if (manner == DEVICE_TWICE)
+        reply_wrong(t, fd, request, bytes, 0);
+    return true;
+}
+
+static void serve(struct device_thread *t, size_t index)
+{
+    uint8_t request[MODBUS_TCP_MAX_ADU_LENGTH];
+    modbus_set_socket(t->modbus, t->clients[index]);
+    int bytes = modbus_receive(t->modbus, request);
+    if (bytes < 0)
+        drop_client(t, index, false);
+    else if (bytes > 0 && !answer(t, t->clients[index], request, bytes))
+        drop_client(t, index, true);
+}
+
+static void *device_main(void *arg)
+{
+    struct device_thread *t = arg;
+    for (;;) {
+        struct pollfd fds[2 + MAX_CLIENTS] = { { .fd = t->stop_fd, .events = POLLIN }, { .fd = t->listen_fd, .events = POLLIN } };
+        size_t count = t->client_count;
+        for (size_t i = 0; i < count; i++)
+            fds[2 + i] = (struct pollfd){ .fd = t->clients[i], .events = POLLIN };
+        poll(fds, (nfds_t)(2 + count), -1);
+        if (fds[0].revents)
+            return NULL;
+        for (size_t i = count; i-- > 0;)
+            if (fds[2 + i].revents)
+                serve(t, i);
+        if (fds[1].revents && t->client_count < MAX_CLIENTS) {
+            t->clients[t->client_count++] = accept4(t->listen_fd, NULL, NULL, SOCK_CLOEXEC);
+            atomic_fetch_add(&t->device->connections, 1);
+        }
+    }
+}
+
+void device_start(struct device *device)
+{
+    struct device_thread *t = mem_new(sizeof(*t));
+    t->device = device;
+    t->modbus = modbus_new_tcp("127.0.0.1", device->port);
+    t->listen_fd = modbus_tcp_listen(t->modbus, MAX_CLIENTS);
+    must(t->listen_fd >= 0, "modbus_tcp_listen");
+    device->port = bound_port(t->listen_fd);
+    t->mapping = modbus_mapping_new(REGISTERS, REGISTERS, REGISTERS, REGISTERS);
+    t->wrong = modbus_mapping_new(REGISTERS, REGISTERS, REGISTERS, REGISTERS);
+    for (int i = 0; i < REGISTERS; i++) {
+        t->mapping->tab_registers[i] = (uint16_t)i;
+        t->mapping->tab_input_registers[i] = (uint16_t)(10000 + i);
+        t->mapping->tab_bits[i] = i % 3 == 0;
+        t->mapping->tab_input_bits[i] = i % 3 == 1;
+        t->wrong->tab_registers[i] = DEVICE_WRONG_VALUE;
+    }
+    t->stop_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+    device->thread = t;
+    must(pthread_create(&t->thread, NULL, device_main, t) == 0, "pthread_create");
+}
+
+void device_stop(struct device *device)
+{
+    struct device_thread *t = device->thread;
+    eventfd_write(t->stop_fd, 1);
+    pthread_join(t->thread, NULL);
+    while (t->client_count)
+        drop_client(t, 0, true); /* reset: no TIME_WAIT, so that the port is free at once */
+    close(t->listen_fd);
+    close(t->stop_fd);
+    modbus_free(t->modbus);
+    modbus_mapping_free(t->mapping);
+    modbus_mapping_free(t->wrong);
+    mem_free(t);
+    device->thread = NULL;
+}
