@@ -16,9 +16,9 @@
 
 struct lookup {
     char *host, port[12];
-    int done_fd;               /* readable once `found` and `failed` are final */
+    int done_fd;               /* readable once all is known */
     struct addrinfo *found;
-    int failed;
+    _Atomic int failed;        /* written after `found`, read before it */
     _Atomic int users;
 };
 
@@ -70,8 +70,10 @@ int lookup_wait(struct lookup *lookup, int stop_fd, int64_t deadline_mono_ns, co
     int status = wait_for(lookup->done_fd, POLLIN, stop_fd, deadline_mono_ns);
     if (status)
         return status;
+    if (lookup->failed)
+        return -EHOSTUNREACH;
     *out = lookup->found;
-    return lookup->failed ? -EHOSTUNREACH : 0;
+    return 0;
 }
 
 int wait_for(int fd, short events, int stop_fd, int64_t deadline_mono_ns)

@@ -19,7 +19,7 @@ static struct plant *plant_of_registers(const int *registers, size_t count, enum
     struct plant *plant = plant_by_hand_create(count);
     plant_by_hand_source(plant, "a", 1);
     for (size_t i = 0; i < count; i++) {
-        char name[20];
+        char name[24];
         snprintf(name, sizeof(name), "t%zu", i);
         plant_by_hand_tag(plant, name, table, registers[i], type);
     }
@@ -181,7 +181,7 @@ static void random_tag_lists_obey_the_rules(void **state)
         struct plant *plant = plant_by_hand_create(count);
         plant_by_hand_source(plant, "a", 1);
         for (size_t i = 0; i < count; i++) {
-            char name[20];
+            char name[24];
             snprintf(name, sizeof(name), "t%zu", i);
             enum register_table table = rand() % 4 ? TABLE_HOLDING : TABLE_COIL;
             plant_by_hand_tag(plant, name, table, rand() % REGISTERS, types[rand() % 3]);
