@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The card of one sensor: what it is, what it says, whether that may be trusted, and how old it is.
+import { ageText, decimalsFor, numberText, qualityText, unitText } from '../core/format.js';
+import { limitState } from '../core/model.js';
+import { byId, glyph, icon, make, setText } from './dom.js';
+
+const LIMIT_WORDS = { HH: 'above the highest limit', H: 'above the high limit', L: 'below the low limit', LL: 'below the lowest limit' };
+const AWAY_PX = 16, WIDTH_PX = 248;
+
+export class Card {
+    constructor({ session, selection, overlay, viewport, onClose }) {
+        Object.assign(this, { session, selection, overlay, viewport, onClose });
+        this.element = byId('card');
+    }
+
+    get tag() {
+        return this.selection.hover ?? this.session.model?.tag(this.selection.tag) ?? null;
+    }
+
+    show() {
+        const { tag } = this;
+        const marker = tag && this.overlay.marker(tag);
+        this.element.hidden = !tag || (!marker && tag === this.selection.hover);
+        if (this.element.hidden)
+            return;
+        this.element.classList.toggle('hover', tag === this.selection.hover && tag.name !== this.selection.tag);
+        this.fill(tag);
+        this.place(marker);
+    }
+
+    fill(tag) {
+        const { model } = this.session;
+        if (this.filled !== tag) {
+            this.filled = tag;
+            this.build(tag, model.asset(tag.asset));
+        }
+        const reading = model.readings[tag.index], group = model.group(tag.group);
+        const known = reading.value !== null;
+        const number = known ? numberText(reading.value, group ? decimalsFor(group.max - group.min) : 2) : 'No value';
+        const unit = known ? ` ${unitText(tag.unit || group?.unit)}` : '';
+        if (this.value.textContent !== number + unit)
+            this.value.replaceChildren(number, make('i', {}, unit));
+        const quality = qualityText(reading.quality, reading.qualityName);
+        if (this.quality.textContent !== quality)
+            this.quality.replaceChildren(glyph(reading.quality), quality);
+        setText(this.age, ageText(model.ageMs(tag.index, performance.now())));
+        const limit = limitState(tag, reading.value);
+        this.limit.hidden = !limit;
+        if (limit)
+            this.limit.replaceChildren(make('span', { class: `limit-flag ${limit}` }, limit), ` ${LIMIT_WORDS[limit]}`);
+    }
+
+    build(tag, asset) {
+        const on = asset ? [asset.tag || asset.id, asset.description].filter(Boolean).join(', ') : '–';
+        this.value = make('p', { class: 'value' });
+        this.limit = make('p', { hidden: true });
+        this.quality = make('dd');
+        this.age = make('dd');
+        this.element.replaceChildren(
+            make('button', { type: 'button', class: 'icon small', 'aria-label': 'Close', onclick: () => this.onClose() }, icon('i-close')),
+            make('h3', {}, tag.name), make('p', { class: 'about' }, tag.description ?? ''), this.value, this.limit,
+            make('dl', {}, make('dt', {}, 'Quality'), this.quality, make('dt', {}, 'Age'), this.age,
+                make('dt', {}, 'On'), make('dd', {}, on)));
+    }
+
+    // Beside its marker, on the side with more room; in a corner while the marker is out of the picture.
+    place(marker) {
+        const { width, height } = this.viewport;
+        const tall = this.element.offsetHeight;
+        let x = 12, y = height - tall - 12;
+        if (marker) {
+            x = marker.x < width / 2 ? marker.x + AWAY_PX : marker.x - AWAY_PX - WIDTH_PX;
+            y = marker.y - tall / 2;
+        }
+        x = Math.max(8, Math.min(width - WIDTH_PX - 8, x));
+        y = Math.max(8, Math.min(height - tall - 8, y));
+        this.element.style.transform = `translate(${Math.round(x)}px, ${Math.round(y)}px)`;
+    }
+}

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Small helpers around the document. Nothing here writes inline markup: the page runs under a strict content policy.
+
+const SVG = 'http://www.w3.org/2000/svg';
+
+export const byId = (id) => document.getElementById(id);
+
+// make('button', { class: 'x', onclick: f, 'aria-label': 'y' }, 'text', node, ...)
+export function make(name, attributes = {}, ...children) {
+    return furnish(document.createElement(name), attributes, children);
+}
+
+export function makeSvg(name, attributes = {}, ...children) {
+    return furnish(document.createElementNS(SVG, name), attributes, children);
+}
+
+function furnish(element, attributes, children) {
+    for (const [name, value] of Object.entries(attributes)) {
+        if (typeof value === 'function')
+            element.addEventListener(name.slice(2), value);
+        else if (value !== null && value !== undefined && value !== false)
+            element.setAttribute(name, value === true ? '' : value);
+    }
+    element.append(...children.filter((child) => child !== null && child !== undefined));
+    return element;
+}
+
+// Writes only what differs: screen readers and the layout are left alone otherwise.
+export function setText(element, text) {
+    if (element.textContent !== text)
+        element.textContent = text;
+}
+
+export const setVariable = (element, name, value) => element.style.setProperty(name, value);
+
+// The shape that stands for a quality, the same in lists, cards and over the picture (overlay.js draws it there).
+const GLYPHS = {
+    good: ['circle', { r: 4.5 }],
+    uncertain: ['path', { d: 'M0-6 6 0 0 6-6 0z' }],
+    bad: ['path', { d: 'M-5-5h10v10h-10zM-2.5-2.5l5 5M2.5-2.5l-5 5' }],
+    none: ['circle', { r: 2.5 }],
+};
+export function glyph(quality) {
+    const [name, shape] = GLYPHS[quality] ?? GLYPHS.none;
+    return makeSvg('svg', { viewBox: '-8 -8 16 16', class: `glyph ${GLYPHS[quality] ? quality : 'none'}`, 'aria-hidden': 'true' },
+        makeSvg(name, { class: 'mark', ...shape }));
+}
+
+export function icon(id) {
+    return makeSvg('svg', { 'aria-hidden': 'true' }, makeSvg('use', { href: `#${id}` }));
+}

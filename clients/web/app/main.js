@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Puts the page together: one session, the viewport, and the panels around it.
+import { readAddress, writeAddress } from '../core/address.js';
+import { Connection } from '../core/connection.js';
+import { Session } from '../core/session.js';
+import { Assets } from './assets.js';
+import { Card } from './card.js';
+import { byId, setText } from './dom.js';
+import { Legend } from './legend.js';
+import { Overlay } from './overlay.js';
+import { Pilot } from './pilot.js';
+import { Status } from './status.js';
+import { Toolbar } from './toolbar.js';
+import { Viewport } from './viewport.js';
+
+const ADDRESS_WAIT_MS = 400, TOAST_MS = 6000;
+const ARRIVAL_MARGIN = 1.7; // around one piece of equipment
+const TAG_BOX_M = 0.8;
+
+const clock = { now: () => performance.now(), setTimeout: (f, ms) => setTimeout(f, ms), clearTimeout: (id) => clearTimeout(id) };
+const address = readAddress(location.hash);
+const selection = { tag: address.tag, hover: null };
+
+const streamUrl = new URL('stream', location.href.replace(/^http/, 'ws').replace(/#.*$/, '')).href;
+const connection = new Connection({ url: streamUrl, open: (url, protocol) => new WebSocket(url, protocol), clock });
+const session = new Session({ connection, now: clock.now, wanted: address });
+
+const assets = new Assets({ session, selection });
+const toolbar = new Toolbar({ session });
+const legend = new Legend({ session });
+const viewport = new Viewport({ element: byId('viewport'), canvas: byId('picture'), session });
+const overlay = new Overlay({ canvas: byId('overlay'), viewport, session, selection });
+const pilot = new Pilot({ viewport, session });
+const status = new Status({ session, viewport });
+const card = new Card({ session, selection, overlay, viewport, onClose: () => selectTag(null) });
+
+// --- selection
+
+function refresh() {
+    overlay.dirty = true;
+    viewport.invalidate();
+}
+
+function selectTag(tag) {
+    selection.tag = tag?.name ?? null;
+    selection.hover = null;
+    assets.update();
+    saveAddress();
+    refresh();
+}
+
+function showTag(tag) {
+    if (tag.group && tag.group !== session.params.group)
+        session.setParams({ group: tag.group });
+    selectTag(tag);
+    if (!overlay.marker(tag) || overlay.marker(tag).occluded)
+        flyToTag(tag);
+}
+
+function flyToTag(tag) {
+    if (!tag.position)
+        return;
+    const half = TAG_BOX_M / 2;
+    pilot.flyToBox({ min: tag.position.map((x) => x - half), max: tag.position.map((x) => x + half) }, 2.5);
+}
+
+function selectAsset(asset) {
+    const again = session.params.selected === asset.id;
+    if (!again)
+        session.setParams({ selected: asset.id });
+    pilot.flyToBox(asset.bounds, ARRIVAL_MARGIN);
+}
+
+function clearSelection() {
+    if (selection.tag)
+        selectTag(null);
+    else if (session.params.selected)
+        session.setParams({ selected: null });
+}
+
+// --- commands
+
+function fitView() {
+    const chosen = session.model?.asset(session.params.selected);
+    if (session.model)
+        pilot.flyToBox(chosen ? chosen.bounds : session.model.plant.bounds, chosen ? ARRIVAL_MARGIN : undefined);
+}
+
+const commands = {
+    fit: fitView,
+    home: () => session.model && pilot.flyHome(),
+    help: () => byId('help').showModal(),
+    assets: () => assets.setOpen(!assets.open),
+    search: () => assets.openSearch(),
+    escape() {
+        toolbar.closeDisplay();
+        clearSelection();
+    },
+};
+pilot.onCommand = (name) => commands[name]();
+pilot.onGroup = (index) => toolbar.chooseGroup(index);
+pilot.onClick = (x, y, kind) => selectTag(overlay.at(x, y, kind));
+pilot.onPoint = (place) => {
+    const tag = place ? overlay.at(place.x, place.y, 'mouse') : null;
+    byId('viewport').classList.toggle('pointing', tag !== null);
+    if (tag !== selection.hover) {
+        selection.hover = tag;
+        refresh();
+    }
+};
+assets.onAsset = selectAsset;
+assets.onTag = showTag;
+byId('fit').addEventListener('click', fitView);
+byId('home').addEventListener('click', commands.home);
+byId('help-open').addEventListener('click', commands.help);
+byId('help-close').addEventListener('click', () => byId('help').close());
+byId('help').addEventListener('click', (event) => event.target === event.currentTarget && byId('help').close());
+
+// --- the picture and what lies over it
+
+viewport.onTick = (now) => pilot.tick(now);
+viewport.onDrawn = (newPicture) => {
+    if (newPicture)
+        byId('waiting').hidden = true;
+    if (newPicture || overlay.dirty) {
+        overlay.draw();
+        card.show();
+    }
+};
+new ResizeObserver(refresh).observe(byId('viewport'));
+setInterval(() => card.tag && refresh(), 500); // its age goes on
+
+session.on('tags', refresh);
+session.on('params', () => {
+    saveAddress();
+    refresh();
+});
+session.on('camera', () => {
+    saveAddress();
+    viewport.invalidate();
+});
+session.on('welcome', () => {
+    viewport.forget();
+    status.show();
+    arrive();
+    viewport.invalidate();
+});
+session.on('status', () => status.show());
+session.on('ignored', (what) => console.warn(`ignored: ${what}`));
+
+// A link that names equipment or a tag but no camera opens there.
+let arrived = false;
+function arrive() {
+    if (arrived)
+        return;
+    arrived = true;
+    const tag = session.model.tag(selection.tag), asset = session.model.asset(session.params.selected);
+    if (address.camera)
+        return;
+    if (tag) {
+        if (tag.group && tag.group !== session.params.group)
+            session.setParams({ group: tag.group });
+        flyToTag(tag);
+    } else if (asset) {
+        pilot.flyToBox(asset.bounds, ARRIVAL_MARGIN);
+    }
+}
+
+let toastTimer;
+session.on('error', ({ text }) => {
+    setText(byId('toast'), `The server refused: ${text}`);
+    byId('toast').hidden = false;
+    clearTimeout(toastTimer);
+    toastTimer = setTimeout(() => { byId('toast').hidden = true; }, TOAST_MS);
+});
+
+// --- the page
+
+let addressTimer;
+function saveAddress() {
+    clearTimeout(addressTimer);
+    addressTimer = setTimeout(() => {
+        const hash = writeAddress({ camera: session.camera, params: session.params, tag: selection.tag });
+        history.replaceState(null, '', location.pathname + location.search + hash);
+    }, ADDRESS_WAIT_MS);
+}
+
+window.addEventListener('hashchange', () => location.reload());
+window.addEventListener('online', () => connection.retryNow());
+document.addEventListener('visibilitychange', () => {
+    session.setVisible(!document.hidden);
+    if (!document.hidden) {
+        connection.retryNow();
+        refresh();
+    }
+});
+connection.start();
+
+// For the console and for tests of the whole.
+globalThis.plantcast = { session, selection, overlay, legend };

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Markers and labels, drawn crisply over the picture with the camera that the picture was drawn with.
+import { projector } from '../core/camera.js';
+import { decimalsFor, numberText, unitText } from '../core/format.js';
+import { nearestMarker, placeLabels } from '../core/labels.js';
+import { limitState } from '../core/model.js';
+
+const INK = '#1d252d', INK_2 = '#4d5964', ACCENT = '#2a5f8f';
+const LIMIT_COLOURS = { HH: ['#c62828', '#fff'], LL: ['#c62828', '#fff'], H: ['#f0a30a', '#1b1300'], L: ['#f0a30a', '#1b1300'] };
+const LABEL_HEIGHT = 20, PADDING = 6, NAMES_UP_TO = 24;
+const REACH_PX = { mouse: 14, pen: 18, touch: 26 };
+
+const SHAPES = {
+    good: (c, r) => c.arc(0, 0, r, 0, 2 * Math.PI),
+    uncertain: (c, r) => polygon(c, [[0, -r - 1.5], [r + 1.5, 0], [0, r + 1.5], [-r - 1.5, 0]]),
+    bad: (c, r) => polygon(c, [[-r, -r], [r, -r], [r, r], [-r, r]]),
+};
+
+function polygon(c, points) {
+    points.forEach(([x, y], i) => (i === 0 ? c.moveTo(x, y) : c.lineTo(x, y)));
+    c.closePath();
+}
+
+export class Overlay {
+    constructor({ canvas, viewport, session, selection }) {
+        Object.assign(this, { canvas, viewport, session, selection });
+        this.context = canvas.getContext('2d');
+        this.font = getComputedStyle(document.body).fontFamily;
+        this.markers = []; // { tag, x, y, depth, occluded, reading }, CSS pixels
+        this.places = new Map();
+        this.widths = new Map();
+        this.dirty = true;
+    }
+
+    // Sensors of the shown group, where the last drawn picture has them.
+    project() {
+        const { model, picture, params } = this.session;
+        if (!model || !picture)
+            return [];
+        const { width, height } = this.viewport;
+        const scale = [width / picture.fullWidth, height / picture.fullHeight];
+        const project = projector(picture.camera, picture.fullWidth, picture.fullHeight);
+        const occluded = this.session.markersOf(picture.seq);
+        const markers = [];
+        for (const tag of model.tags) {
+            const place = tag.group === params.group && tag.position ? project(tag.position) : null;
+            if (!place)
+                continue;
+            const x = place[0] * scale[0], y = place[1] * scale[1];
+            const reading = model.readings[tag.index];
+            if (x > -20 && y > -20 && x < width + 20 && y < height + 20)
+                markers.push({ tag, x, y, depth: place[2], occluded: occluded.get(tag.index) ?? false, reading });
+        }
+        return markers;
+    }
+
+    at(x, y, kind) {
+        return nearestMarker(this.markers, x, y, REACH_PX[kind] ?? REACH_PX.mouse)?.tag ?? null;
+    }
+
+    marker(tag) {
+        return this.markers.find((marker) => marker.tag === tag) ?? null;
+    }
+
+    draw() {
+        this.dirty = false;
+        const { width, height } = this.viewport, ratio = window.devicePixelRatio;
+        const c = this.context;
+        const pixels = [Math.round(width * ratio), Math.round(height * ratio)];
+        if (this.canvas.width !== pixels[0] || this.canvas.height !== pixels[1])
+            [this.canvas.width, this.canvas.height] = pixels;
+        c.setTransform(ratio, 0, 0, ratio, 0, 0);
+        c.clearRect(0, 0, width, height);
+        this.markers = this.project().sort((a, b) => b.depth - a.depth);
+        const labels = this.labels();
+        this.places = placeLabels(labels, { width, height, before: this.places });
+        for (const marker of this.markers)
+            this.drawMarker(marker);
+        for (const label of labels) {
+            const place = this.places.get(label.id);
+            if (place)
+                this.drawLabel(label, place);
+        }
+    }
+
+    isChosen(tag) {
+        return tag.name === this.selection.tag || tag === this.selection.hover;
+    }
+
+    labels() {
+        const shown = this.markers.filter((marker) => !marker.occluded || this.isChosen(marker.tag));
+        const named = shown.length <= NAMES_UP_TO;
+        const nearest = Math.min(...shown.map((marker) => marker.depth));
+        return shown.map((marker) => {
+            const { tag, reading } = marker;
+            const limit = limitState(tag, reading.value);
+            const chosen = this.isChosen(tag), onSelected = tag.asset === this.session.params.selected;
+            const parts = this.parts(marker, limit, named || chosen || onSelected);
+            const width = Math.ceil(parts.reduce((sum, part) => sum + this.width(part), 0) + 2 * PADDING + (parts.length - 1) * 5);
+            const doubtful = reading.quality !== 'good';
+            const priority = 100 * chosen + (limit ? 20 : 0) + 10 * onSelected + 5 * doubtful + nearest / marker.depth;
+            return { id: tag.index, x: marker.x, y: marker.y, width, height: LABEL_HEIGHT, priority, parts, marker, limit };
+        });
+    }
+
+    // Pieces of a label: [text, weight, colour].
+    parts({ tag, reading }, limit, withName) {
+        const parts = withName ? [[tag.name, 400, INK_2]] : [];
+        const group = this.session.group;
+        if (reading.value === null || reading.quality === 'bad') {
+            parts.push(['no value', 400, INK_2]);
+        } else {
+            parts.push([numberText(reading.value, decimalsFor(group.max - group.min)), 650, INK]);
+            parts.push([unitText(tag.unit || group.unit), 400, INK_2]);
+        }
+        if (limit)
+            parts.push([limit, 700, null]);
+        return parts;
+    }
+
+    width([text, weight]) {
+        const key = weight + text.replace(/\d/g, '0'); // figures are equally wide
+        if (!this.widths.has(key)) {
+            this.setFont(weight);
+            this.widths.set(key, this.context.measureText(text.replace(/\d/g, '0')).width);
+        }
+        return this.widths.get(key);
+    }
+
+    setFont(weight) {
+        this.context.font = `${weight} 12.5px ${this.font}`;
+    }
+
+    drawMarker({ tag, x, y, occluded, reading }) {
+        const c = this.context, chosen = this.isChosen(tag);
+        c.save();
+        c.translate(x, y);
+        c.beginPath();
+        (SHAPES[reading.quality] ?? SHAPES.bad)(c, occluded ? 3 : 4.5);
+        c.lineWidth = 1.5;
+        if (occluded && !chosen) {
+            c.globalAlpha = 0.45;
+            c.setLineDash([2, 2]);
+        } else {
+            c.fillStyle = '#fff';
+            c.fill();
+        }
+        c.strokeStyle = INK;
+        c.stroke();
+        if (reading.quality === 'bad' && !occluded) {
+            c.beginPath();
+            c.moveTo(-2.5, -2.5);
+            c.lineTo(2.5, 2.5);
+            c.moveTo(2.5, -2.5);
+            c.lineTo(-2.5, 2.5);
+            c.stroke();
+        }
+        if (chosen) {
+            c.beginPath();
+            c.arc(0, 0, 9.5, 0, 2 * Math.PI);
+            c.lineWidth = 2.5;
+            c.strokeStyle = ACCENT;
+            c.stroke();
+        }
+        c.restore();
+    }
+
+    drawLabel({ width, height, parts, limit, marker }, { left, top }) {
+        const c = this.context;
+        const x = Math.round(left), y = Math.round(top);
+        c.beginPath();
+        c.roundRect(x + 0.5, y + 0.5, width - 1, height - 1, 4);
+        c.fillStyle = 'rgb(255 255 255 / 0.9)';
+        c.fill();
+        c.lineWidth = this.isChosen(marker.tag) ? 1.5 : 1;
+        c.strokeStyle = this.isChosen(marker.tag) ? ACCENT : 'rgb(29 37 45 / 0.3)';
+        c.stroke();
+        c.textBaseline = 'middle';
+        let at = x + PADDING;
+        for (const part of parts) {
+            const wide = this.width(part);
+            if (part[2] === null) {
+                c.fillStyle = LIMIT_COLOURS[limit][0];
+                c.fillRect(at - 3, y + 2.5, wide + 6, height - 5);
+            }
+            this.setFont(part[1]);
+            c.fillStyle = part[2] ?? LIMIT_COLOURS[limit][1];
+            c.fillText(part[0], at, y + height / 2 + 0.5);
+            at += wide + 5;
+        }
+    }
+}

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Hands to camera: pointers, wheel and keys over the viewport, and flights between views.
+import { depthAt, elevation, fit, home, orbit, pan, zoom } from '../core/camera.js';
+import { flight, FLIGHT_MS } from '../core/flight.js';
+import { Gestures, wheelZoom } from '../core/gestures.js';
+import { HeldKeys, keyMeaning } from '../core/keys.js';
+
+const DEGREES_PER_HEIGHT = 180; // a drag over the whole height of the picture
+const DOUBLE_CLICK_MS = 350, DOUBLE_CLICK_PX = 24;
+const LEAST_ARRIVAL_DEG = 15;   // nobody wants to arrive below the floor
+
+export class Pilot {
+    // Handlers: onClick(x, y, kind), onPoint(x, y or null), onCommand(name), onGroup(index).
+    constructor({ viewport, session }) {
+        Object.assign(this, { viewport, session });
+        this.gestures = new Gestures();
+        this.keys = new HeldKeys();
+        this.fly = null;
+        this.lastTick = null;
+        this.lastClick = null;
+        this.onClick = this.onPoint = this.onCommand = this.onGroup = () => {};
+        this.listen(viewport.element);
+    }
+
+    listen(element) {
+        const on = (name, f) => element.addEventListener(name, f, { passive: false });
+        on('pointerdown', (event) => this.pointerDown(event));
+        on('pointermove', (event) => this.pointerMove(event));
+        on('pointerup', (event) => this.pointerUp(event));
+        on('pointercancel', (event) => this.gestures.cancel({ id: event.pointerId }));
+        on('pointerleave', () => this.onPoint(null));
+        on('wheel', (event) => this.wheel(event));
+        on('contextmenu', (event) => event.preventDefault());
+        on('auxclick', (event) => event.preventDefault());
+        document.addEventListener('keydown', (event) => this.keyDown(event));
+        document.addEventListener('keyup', (event) => this.keys.release(event));
+        window.addEventListener('blur', () => this.keys.clear());
+    }
+
+    place(event) {
+        const box = this.viewport.element.getBoundingClientRect();
+        return { id: event.pointerId, x: event.clientX - box.left, y: event.clientY - box.top, time: event.timeStamp };
+    }
+
+    // Controls that lie over the picture keep their own clicks.
+    isOurs(event) {
+        return !event.target.closest('button, .card, .banner, .legend');
+    }
+
+    pointerDown(event) {
+        if (!this.isOurs(event))
+            return;
+        this.viewport.element.setPointerCapture(event.pointerId);
+        this.viewport.element.focus({ preventScroll: true });
+        if (event.button === 1)
+            event.preventDefault(); // no scrolling by the middle button
+        this.fly = null;
+        this.gestures.down({ ...this.place(event), kind: event.pointerType, button: event.button, shift: event.shiftKey });
+    }
+
+    pointerMove(event) {
+        const place = this.place(event);
+        if (!this.gestures.active) {
+            this.onPoint(this.isOurs(event) && event.pointerType !== 'touch' ? place : null);
+            return;
+        }
+        this.apply(this.gestures.move(place), event.timeStamp);
+        this.viewport.element.classList.toggle('moving', this.gestures.moved);
+        if (this.gestures.moved)
+            this.onPoint(null);
+    }
+
+    pointerUp(event) {
+        const moves = this.gestures.up(this.place(event));
+        this.viewport.element.classList.toggle('moving', this.gestures.active && this.gestures.moved);
+        for (const { click } of moves)
+            this.click(click, event);
+    }
+
+    click([x, y], event) {
+        const last = this.lastClick;
+        this.lastClick = { x, y, time: event.timeStamp };
+        if (last && event.timeStamp - last.time < DOUBLE_CLICK_MS && Math.hypot(x - last.x, y - last.y) < DOUBLE_CLICK_PX) {
+            this.lastClick = null;
+            this.onCommand('fit');
+            return;
+        }
+        this.onClick(x, y, event.pointerType);
+    }
+
+    wheel(event) {
+        event.preventDefault();
+        if (!this.isOurs(event))
+            return;
+        this.fly = null;
+        const { x, y } = this.place(event);
+        this.apply([{ zoom: wheelZoom(event), at: [x, y] }], event.timeStamp);
+    }
+
+    keyDown(event) {
+        if (document.querySelector('dialog[open]') || event.target.closest('input[type="search"], input[type="text"], select'))
+            return;
+        const meaning = keyMeaning(event);
+        if (!meaning || (meaning.motion?.startsWith('Arrow') && event.target.closest('fieldset')))
+            return; // arrows inside a group of buttons choose among them
+        event.preventDefault();
+        if (meaning.motion) {
+            this.fly = null;
+            this.apply(this.keys.press(meaning.motion), event.timeStamp);
+            this.viewport.invalidate();
+        } else if (meaning.command) {
+            this.onCommand(meaning.command);
+        } else {
+            this.onGroup(meaning.group);
+        }
+    }
+
+    apply(moves, time) {
+        const { width, height } = this.viewport;
+        let camera = this.session.camera;
+        if (!camera || moves.length === 0)
+            return;
+        for (const move of moves) {
+            if (move.orbit)
+                camera = orbit(camera, (-move.orbit[0] * DEGREES_PER_HEIGHT) / height, (move.orbit[1] * DEGREES_PER_HEIGHT) / height);
+            if (move.orbitDeg)
+                camera = orbit(camera, move.orbitDeg[0], move.orbitDeg[1]);
+            if (move.pan)
+                camera = pan(camera, move.pan[0], move.pan[1], height);
+            if (move.panHeights)
+                camera = pan(camera, -move.panHeights[0] * height, move.panHeights[1] * height, height);
+            if (move.zoom)
+                camera = this.zoomed(camera, move.zoom, move.at ?? [width / 2, height / 2]);
+        }
+        this.session.setCamera(camera, time);
+    }
+
+    zoomed(camera, factor, [x, y]) {
+        const { width, height } = this.viewport;
+        const boxes = this.session.model ? this.session.model.assets.map((asset) => asset.bounds) : [];
+        return zoom(camera, factor, x, y, width, height, depthAt(camera, x, y, width, height, boxes));
+    }
+
+    // --- flights
+
+    get aspect() {
+        return this.viewport.width / this.viewport.height;
+    }
+
+    flyTo(camera) {
+        const still = window.matchMedia('(prefers-reduced-motion: reduce)').matches;
+        this.fly = { path: flight(this.session.camera, camera, still ? 0 : FLIGHT_MS), start: null };
+        this.viewport.invalidate();
+    }
+
+    flyHome() {
+        this.flyTo(home(this.session.model.plant, this.aspect));
+    }
+
+    flyToBox(box, margin) {
+        const camera = this.session.camera;
+        const rise = Math.max(0, LEAST_ARRIVAL_DEG - elevation(camera));
+        this.flyTo(fit(orbit(camera, 0, rise), box, this.aspect, margin));
+    }
+
+    tick(now) {
+        const seconds = this.lastTick === null ? 0 : Math.min(0.1, (now - this.lastTick) / 1000);
+        if (this.fly) {
+            this.fly.start = this.fly.start ?? now;
+            const camera = this.fly.path(now - this.fly.start);
+            if (camera === this.fly.path(Infinity))
+                this.fly = null;
+            this.session.setCamera(camera, now);
+        }
+        if (this.keys.moving)
+            this.apply(this.keys.step(seconds), now);
+        this.lastTick = this.fly || this.keys.moving ? now : null;
+        if (this.lastTick !== null)
+            this.viewport.invalidate();
+    }
+}

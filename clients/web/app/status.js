@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Status bar, connection state and banner: always there, in words, aged by this page's own clock.
+import { ageText, zoneClock } from '../core/format.js';
+import { health } from '../core/health.js';
+import { byId, make, setText } from './dom.js';
+
+const LATE_MS = 10000; // data older than this is pointed out
+
+export class Status {
+    constructor({ session, viewport }) {
+        Object.assign(this, { session, viewport });
+        session.on('welcome', () => {
+            this.clock = zoneClock(session.model.plant.time_zone);
+        });
+        setInterval(() => this.show(), 250);
+        session.connection.onState = () => this.show();
+        byId('retry').addEventListener('click', () => session.connection.retryNow());
+    }
+
+    show() {
+        const now = performance.now();
+        const state = health(this.session, now);
+        this.showHealth(state);
+        this.showBar(state, now);
+    }
+
+    showHealth({ kind, words, detail, banner }) {
+        const chip = byId('health'), strip = byId('banner');
+        chip.dataset.kind = kind;
+        chip.title = detail;
+        setText(chip.querySelector('.words'), words);
+        byId('viewport').classList.toggle('is-old', kind === 'lost' || kind === 'silent');
+        strip.hidden = !banner;
+        strip.dataset.kind = kind;
+        setText(strip.querySelector('strong'), words);
+        setText(strip.querySelector('.detail'), detail);
+        byId('retry').hidden = kind !== 'lost';
+    }
+
+    showBar({ kind }, now) {
+        const { session } = this;
+        const us = session.clockUs(now);
+        if (us !== null && this.clock) {
+            const { date, time, offset } = this.clock(us / 1000);
+            const text = `${date} ${time} ${offset}`;
+            if (byId('clock').textContent !== text)
+                byId('clock').replaceChildren(make('span', {}, `${date} `), make('b', {}, time), make('span', {}, ` ${offset}`));
+        }
+        const age = session.model ? session.model.oldestAgeMs(session.params.group, now) : null;
+        setText(byId('age'), age === null ? 'none' : ageText(age));
+        byId('age').parentElement.classList.toggle('late', age === null || age > LATE_MS);
+        const rate = session.rate.perSecond(now);
+        setText(byId('rate'), rate > 0 ? `${Math.round(rate)}/s` : kind === 'live' || kind === 'partial' ? 'still' : 'none');
+        const latency = session.latency.median(now);
+        setText(byId('latency'), latency === null ? '–' : `${Math.round(latency)} ms`);
+        const { picture } = session;
+        if (picture)
+            setText(byId('size'), `${picture.fullWidth}×${picture.fullHeight} ${picture.codec.toUpperCase()}`);
+    }
+}

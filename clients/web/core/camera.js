@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The camera of one viewer and how it moves. A camera is { eye, target, up, fov }: metres in the plant frame, fov vertical in
+// degrees; target is what it turns about. Every function returns a new camera. Picture places are pixels from the top left.
+import { add, along, cross, dot, finite, length, middle, scale, subtract, turn, unit } from './vector.js';
+
+const RADIANS = Math.PI / 180;
+export const MAX_ELEVATION_DEG = 89; // straight up or down the horizon has no direction, and the picture would spin
+export const MIN_DISTANCE_M = 0.05;
+export const MAX_DISTANCE_M = 1e5;
+const MAX_COORDINATE_M = 1e6; // what the server accepts
+
+export function valid(camera) {
+    if (!camera || !finite(camera.eye) || !finite(camera.target) || !finite(camera.up) || !Number.isFinite(camera.fov))
+        return false;
+    if (camera.fov < 1 || camera.fov > 120 || [...camera.eye, ...camera.target].some((m) => Math.abs(m) > MAX_COORDINATE_M))
+        return false;
+    const view = subtract(camera.target, camera.eye);
+    return length(view) > 1e-9 && length(camera.up) > 1e-9 && length(cross(unit(view), unit(camera.up))) > 1e-6;
+}
+
+export function same(a, b) {
+    return a === b || (!!a && !!b && a.fov === b.fov && ['eye', 'target', 'up'].every((k) => a[k].every((x, i) => x === b[k][i])));
+}
+
+export const distance = (camera) => length(subtract(camera.target, camera.eye));
+
+// Unit vectors of the picture: forward into it, right, and up within it (camera.up is the vertical of the plant).
+export function basis(camera) {
+    const forward = unit(subtract(camera.target, camera.eye));
+    const right = unit(cross(forward, camera.up));
+    return { forward, right, up: cross(right, forward) };
+}
+
+// How far above the target the eye stands, degrees.
+export function elevation(camera) {
+    return Math.asin(Math.max(-1, Math.min(1, -dot(basis(camera).forward, unit(camera.up))))) / RADIANS;
+}
+
+// Turns about the vertical through `pivot`, then tilts about the picture's horizontal, so the horizon stays level.
+export function orbit(camera, azimuthDeg, elevationDeg, pivot = camera.target) {
+    const vertical = unit(camera.up);
+    const before = elevation(camera);
+    const limit = Math.max(MAX_ELEVATION_DEG, Math.abs(before));
+    const tilt = Math.max(-limit, Math.min(limit, before + elevationDeg)) - before;
+    const right = basis(camera).right;
+    const move = (point) => {
+        const tilted = turn(subtract(point, pivot), right, -tilt * RADIANS);
+        return add(pivot, turn(tilted, vertical, azimuthDeg * RADIANS));
+    };
+    return { ...camera, eye: move(camera.eye), target: move(camera.target) };
+}
+
+const metresPerPixel = (camera, heightPx, depth) => (2 * depth * Math.tan((camera.fov * RADIANS) / 2)) / heightPx;
+
+// What lies at the target's depth follows the pointer exactly.
+export function pan(camera, dxPx, dyPx, heightPx) {
+    const { right, up } = basis(camera);
+    const step = metresPerPixel(camera, heightPx, distance(camera));
+    const move = along(scale(right, -dxPx * step), up, dyPx * step);
+    return { ...camera, eye: add(camera.eye, move), target: add(camera.target, move) };
+}
+
+// The line of sight through a place of the picture, one metre deep along `forward` per unit.
+export function ray(camera, xPx, yPx, widthPx, heightPx) {
+    const { forward, right, up } = basis(camera);
+    const step = metresPerPixel(camera, heightPx, 1);
+    return along(along(forward, right, (xPx - widthPx / 2) * step), up, (heightPx / 2 - yPx) * step);
+}
+
+// Factor < 1 goes nearer. What is under (xPx, yPx) stays there at any depth; `depth` says how far off it is, and the target
+// is brought to that depth, so that the next turn is about what was looked at.
+export function zoom(camera, factor, xPx, yPx, widthPx, heightPx, depth = distance(camera)) {
+    const wanted = Math.max(MIN_DISTANCE_M, Math.min(MAX_DISTANCE_M, depth * factor));
+    const eye = along(camera.eye, ray(camera, xPx, yPx, widthPx, heightPx), depth - wanted);
+    return { ...camera, eye, target: along(eye, basis(camera).forward, wanted) };
+}
+
+// Where a line enters a box, in units of the direction; null: it misses, or starts inside.
+export function enterBox(origin, direction, box) {
+    let near = -Infinity, far = Infinity;
+    for (let i = 0; i < 3; i++) {
+        const a = (box.min[i] - origin[i]) / direction[i], b = (box.max[i] - origin[i]) / direction[i];
+        if (Number.isNaN(a) || Number.isNaN(b)) // parallel to this pair of faces and exactly in one of them
+            continue;
+        near = Math.max(near, Math.min(a, b));
+        far = Math.min(far, Math.max(a, b));
+    }
+    return near <= far && near > 0 ? near : null;
+}
+
+// The depth of the nearest box under a place of the picture, else the target's.
+export function depthAt(camera, xPx, yPx, widthPx, heightPx, boxes) {
+    const direction = ray(camera, xPx, yPx, widthPx, heightPx);
+    let depth = Infinity;
+    for (const box of boxes)
+        depth = Math.min(depth, enterBox(camera.eye, direction, box) ?? Infinity);
+    return Number.isFinite(depth) && depth > MIN_DISTANCE_M ? depth : distance(camera);
+}
+
+const corners = (box) => [0, 1, 2, 3, 4, 5, 6, 7].map((n) => [0, 1, 2].map((i) => (n & (1 << i) ? box.max[i] : box.min[i])));
+
+// Looks the same way at the middle of a box, from just so far that all of it is inside the picture with a margin around.
+export function fit(camera, box, aspect, margin = 1.08) {
+    const { forward, right, up } = basis(camera);
+    const centre = middle(box.min, box.max);
+    const tall = Math.tan((camera.fov * RADIANS) / 2) / margin, wide = tall * aspect;
+    let far = MIN_DISTANCE_M;
+    for (const corner of corners(box)) {
+        const c = subtract(corner, centre);
+        far = Math.max(far, Math.abs(dot(c, right)) / wide - dot(c, forward), Math.abs(dot(c, up)) / tall - dot(c, forward));
+    }
+    return { ...camera, eye: along(centre, forward, -Math.min(far, MAX_DISTANCE_M)), target: centre };
+}
+
+// Function from a point in the plant to [x, y, depth in metres] in the picture; null: behind the eye.
+export function projector(camera, widthPx, heightPx) {
+    const { forward, right, up } = basis(camera);
+    const perMetre = 1 / metresPerPixel(camera, heightPx, 1);
+    return (point) => {
+        const v = subtract(point, camera.eye);
+        const depth = dot(v, forward);
+        const step = perMetre / depth;
+        return depth > 1e-6 ? [widthPx / 2 + dot(v, right) * step, heightPx / 2 - dot(v, up) * step, depth] : null;
+    };
+}
+
+// The plant's own first view; where the picture is too narrow to hold what it was made for, the whole plant from there.
+export function home(plant, aspect) {
+    const view = { ...plant.home };
+    return aspect >= 1.3 ? view : fit(view, plant.bounds, aspect);
+}

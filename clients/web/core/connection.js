@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A WebSocket that comes back: waits between tries, notices a peer that has fallen silent, and says what state it is in.
+import { SUBPROTOCOL } from './wire.js';
+
+export const FIRST_WAIT_MS = 500, LONGEST_WAIT_MS = 8000, JITTER = 0.25;
+export const QUIET_MS = 5000;  // the server speaks at least every 2 s
+export const DEAD_MS = 12000;
+const OPENING_MS = 10000;
+const CLOSE_REASONS = {
+    1001: 'the server went down', 1002: 'this page and the server speak different versions', 1008: 'not allowed',
+    1009: 'a message was too long', 1013: 'the server is full',
+};
+
+export class Connection {
+    // open(url, protocol): a WebSocket. clock: { now(), setTimeout(f, ms), clearTimeout(id) }. Handlers: onState(connection),
+    // onOpen(), onText(string), onBytes(ArrayBuffer).
+    constructor({ url, open, clock, random = Math.random }) {
+        Object.assign(this, { url, openSocket: open, clock, random });
+        this.state = 'stopped'; // connecting | open | waiting
+        this.quiet = false;     // open, but nothing was heard for QUIET_MS
+        this.reason = '';       // why the last connection ended
+        this.tries = 0;         // failed ones since the last good connection
+        this.retryAt = null;
+        this.lostAt = null;     // when the last good connection ended
+        this.onState = this.onOpen = this.onText = this.onBytes = () => {};
+    }
+
+    start() {
+        if (this.state === 'stopped')
+            this.connect();
+    }
+
+    stop() {
+        this.drop();
+        this.become('stopped');
+    }
+
+    // Tries now instead of when the wait is over: the network came back, or somebody asks.
+    retryNow() {
+        if (this.state === 'waiting')
+            this.connect();
+    }
+
+    // The peer has proved that it speaks with us: the next loss starts with the shortest wait again.
+    settle() {
+        this.tries = 0;
+        this.lostAt = null;
+        this.reason = '';
+    }
+
+    send(message) {
+        if (this.state !== 'open')
+            return false;
+        this.socket.send(JSON.stringify(message));
+        return true;
+    }
+
+    get backlogBytes() {
+        return this.socket?.bufferedAmount ?? 0;
+    }
+
+    become(state, quiet = false) {
+        this.state = state;
+        this.quiet = quiet;
+        this.onState(this);
+    }
+
+    connect() {
+        this.drop();
+        let socket;
+        try {
+            socket = this.openSocket(this.url, SUBPROTOCOL);
+        } catch (error) {
+            this.lose(error.message);
+            return;
+        }
+        this.socket = socket;
+        socket.binaryType = 'arraybuffer';
+        socket.onopen = () => this.opened();
+        socket.onmessage = (event) => this.heard(event.data);
+        socket.onclose = (event) => this.lose(event.reason || CLOSE_REASONS[event.code] || 'the server cannot be reached');
+        this.timer = this.clock.setTimeout(() => this.lose('the server does not answer'), OPENING_MS);
+        this.become('connecting');
+    }
+
+    opened() {
+        this.lastHeard = this.clock.now();
+        this.watch();
+        this.become('open');
+        this.onOpen();
+    }
+
+    heard(data) {
+        this.lastHeard = this.clock.now();
+        if (this.quiet)
+            this.become('open', false);
+        if (typeof data === 'string')
+            this.onText(data);
+        else
+            this.onBytes(data);
+    }
+
+    watch() {
+        this.clock.clearTimeout(this.timer);
+        this.timer = this.clock.setTimeout(() => {
+            const silent = this.clock.now() - this.lastHeard;
+            if (silent >= DEAD_MS) {
+                this.lose('the server fell silent');
+                return;
+            }
+            if (!this.quiet && silent >= QUIET_MS)
+                this.become('open', true);
+            this.watch();
+        }, 500);
+    }
+
+    // Lets go of the socket at once: a close over a dead line can take minutes.
+    drop() {
+        this.clock.clearTimeout(this.timer);
+        const socket = this.socket;
+        this.socket = null;
+        if (!socket)
+            return;
+        socket.onopen = socket.onmessage = socket.onclose = null;
+        socket.close();
+    }
+
+    lose(reason) {
+        const was = this.state;
+        this.drop();
+        this.reason = reason;
+        if (was === 'open')
+            this.lostAt = this.lostAt ?? this.clock.now();
+        const wait = Math.min(LONGEST_WAIT_MS, FIRST_WAIT_MS * 2 ** this.tries) * (1 + JITTER * (2 * this.random() - 1));
+        this.tries++;
+        this.retryAt = this.clock.now() + wait;
+        this.timer = this.clock.setTimeout(() => this.connect(), wait);
+        this.become('waiting');
+    }
+}

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Pointers and the wheel to camera moves. Places in CSS pixels of the viewport. Each call returns a list of moves:
+// { orbit: [dx, dy] }, { pan: [dx, dy] }, { zoom: factor, at: [x, y] }, { click: [x, y] }. No momentum: what stops, stops.
+
+const CLICK_MS = 500;
+const SLOP_PX = { mouse: 3, pen: 5, touch: 8 };
+const LINE_PX = 16, PAGE_PX = 400;
+const WHEEL_PER_PX = 0.0016, PINCH_PER_PX = 0.01, MOST_PER_EVENT = 0.5;
+
+const centre = ([a, b]) => [(a.x + b.x) / 2, (a.y + b.y) / 2];
+const apart = ([a, b]) => Math.hypot(a.x - b.x, a.y - b.y);
+
+export class Gestures {
+    constructor() {
+        this.pointers = new Map(); // id -> { x, y, mode }
+        this.moved = false;
+    }
+
+    get active() {
+        return this.pointers.size > 0;
+    }
+
+    down({ id, x, y, kind = 'mouse', button = 0, shift = false, time = 0 }) {
+        this.pointers.set(id, { x, y, mode: button !== 0 || shift ? 'pan' : 'orbit' });
+        if (this.pointers.size === 1)
+            this.first = { x, y, time, slop: SLOP_PX[kind] ?? SLOP_PX.mouse, button };
+        this.moved = this.pointers.size > 1;
+        return [];
+    }
+
+    move({ id, x, y }) {
+        const pointer = this.pointers.get(id);
+        if (!pointer)
+            return [];
+        if (!this.moved && Math.hypot(x - this.first.x, y - this.first.y) < this.first.slop)
+            return [];
+        this.moved = true;
+        const before = [...this.pointers.values()].map((p) => ({ ...p }));
+        const dx = x - pointer.x, dy = y - pointer.y;
+        Object.assign(pointer, { x, y });
+        if (this.pointers.size === 1)
+            return [{ [pointer.mode]: [dx, dy] }];
+        return this.pinch(before);
+    }
+
+    // Two fingers: the plant stays under both of them. Further fingers only hold on.
+    pinch(before) {
+        const then = before.slice(0, 2), now = [...this.pointers.values()].slice(0, 2);
+        const from = centre(then), to = centre(now);
+        const moves = [{ pan: [to[0] - from[0], to[1] - from[1]] }];
+        if (apart(then) > 1 && apart(now) > 1)
+            moves.push({ zoom: apart(then) / apart(now), at: to });
+        return moves;
+    }
+
+    up({ id, x, y, time = 0 }) {
+        if (!this.pointers.delete(id) || this.pointers.size > 0 || this.moved)
+            return [];
+        return this.first.button === 0 && time - this.first.time <= CLICK_MS ? [{ click: [x, y] }] : [];
+    }
+
+    cancel({ id }) {
+        this.pointers.delete(id);
+        this.moved = true;
+        return [];
+    }
+}
+
+// A track pad's pinch arrives as a wheel with ctrl held.
+export function wheelZoom({ deltaY, deltaMode = 0, ctrlKey = false }) {
+    const px = deltaY * [1, LINE_PX, PAGE_PX][deltaMode];
+    const power = px * (ctrlKey ? PINCH_PER_PX : WHEEL_PER_PX);
+    return Math.exp(Math.max(-MOST_PER_EVENT, Math.min(MOST_PER_EVENT, power)));
+}

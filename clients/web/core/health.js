@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The one answer to "may I trust this picture?": kind, words for it, and how long it has been so.
+import { ageText } from './format.js';
+
+const seconds = (ms) => `${Math.max(1, Math.ceil(ms / 1000))} s`;
+
+// { kind: connecting | live | partial | nodata | silent | lost, words, detail, banner (bool) }
+export function health(session, now) {
+    const { connection, model, picture } = session;
+    const old = picture ? `This picture is ${ageText(now - session.freshAt)} old.` : '';
+    if (connection.state === 'open' && connection.quiet) {
+        const detail = `The server has been silent for ${ageText(now - connection.lastHeard)}. ${old}`;
+        return { kind: 'silent', words: 'No answer', detail, banner: true };
+    }
+    if (connection.state !== 'open' || !session.welcomed)
+        return lost(connection, picture, old, now);
+    if (model.live === false)
+        return { kind: 'nodata', words: 'No live data', detail: downText(model), banner: true };
+    const down = model.links.filter((link) => !link.up).length;
+    if (down > 0)
+        return { kind: 'partial', words: `Live, ${down} of ${model.links.length} sources down`, detail: downText(model), banner: false };
+    return { kind: 'live', words: 'Live', detail: '', banner: false };
+}
+
+function downText(model) {
+    const down = model.links.filter((link) => !link.up).map((link) => link.source);
+    if (down.length === 0)
+        return 'No sensor delivers values.';
+    return down.length === 1 ? `Source ${down[0]} does not answer.` : `Sources ${down.join(', ')} do not answer.`;
+}
+
+function lost(connection, picture, old, now) {
+    if (!picture && connection.tries === 0)
+        return { kind: 'connecting', words: 'Connecting', detail: '', banner: false };
+    const reason = connection.reason ? `${connection.reason[0].toUpperCase()}${connection.reason.slice(1)}.` : '';
+    const next = connection.state === 'waiting' ? `Trying again in ${seconds(connection.retryAt - now)}.` : 'Trying again now.';
+    return { kind: 'lost', words: 'Disconnected', detail: [reason, old, next].filter(Boolean).join(' '), banner: true };
+}

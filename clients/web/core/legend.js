@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The legend's arithmetic: ticks, ramp steps, and the colour of a value by the server's own rule.
+
+// Steps of 1, 2 or 5 times a power of ten, at most `most` of them over the range.
+export function niceStep(range, most) {
+    const power = 10 ** Math.floor(Math.log10(range / most));
+    return power * [1, 2, 5, 10].find((m) => range / (m * power) <= most * (1 + 1e-9));
+}
+
+function multiples(min, max, step) {
+    const slack = (max - min) * 1e-9, list = [];
+    for (let n = Math.ceil((min - slack) / step); n * step <= max + slack; n++)
+        list.push(Number((n * step).toPrecision(12)));
+    return list;
+}
+
+// Round values within [min, max], with both ends, which push away what would touch them.
+export function ticks(min, max, most = 6) {
+    if (!(max > min))
+        return [];
+    const step = niceStep(max - min, most);
+    const inner = multiples(min, max, step).filter((v) => v - min > step * 0.45 && max - v > step * 0.45);
+    return [min, ...inner, max];
+}
+
+// The steps of a ramp, from below: { from, to, value }, where `value` is what the step's colour stands for.
+export function rampSteps(min, max, interval) {
+    if (!(interval > 0) || !(max > min) || (max - min) / interval > 1000)
+        return [];
+    const edges = [min, ...multiples(min, max, interval).filter((v) => v > min && v < max), max];
+    return edges.slice(1).map((to, i) => ({ from: edges[i], to, value: (edges[i] + to) / 2 }));
+}
+
+// What to offer as ramp intervals: between 4 and 25 steps over the range.
+export function rampChoices(min, max) {
+    if (!(max > min))
+        return [];
+    return [...new Set([25, 16, 10, 8, 5, 4].map((n) => Number(niceStep(max - min, n).toPrecision(12))))].sort((a, b) => a - b);
+}
+
+// map: { rgb: Uint8Array(768), below, above }. Returns [r, g, b].
+export function colourOf(map, value, min, max, interval = 0) {
+    if (value < min)
+        return map.below;
+    if (value > max)
+        return map.above;
+    const step = rampSteps(min, max, interval).find((s) => value < s.to || s.to === max);
+    const t = ((step ? step.value : value) - min) / (max - min);
+    const i = 3 * Math.max(0, Math.min(255, Math.floor(t * 256)));
+    return [map.rgb[i], map.rgb[i + 1], map.rgb[i + 2]];
+}

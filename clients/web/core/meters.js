@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the status bar measures: drawn pictures per second, and the time from an input to the picture that shows it.
+
+export class RateMeter {
+    constructor(windowMs = 1000) {
+        this.windowMs = windowMs;
+        this.times = [];
+    }
+
+    count(now) {
+        this.times.push(now);
+    }
+
+    perSecond(now) {
+        while (this.times.length > 0 && now - this.times[0] > this.windowMs)
+            this.times.shift();
+        return (this.times.length * 1000) / this.windowMs;
+    }
+}
+
+export class LatencyMeter {
+    constructor(keepMs = 3000) {
+        this.keepMs = keepMs;
+        this.inputs = new Map(); // seq -> time of the input
+        this.samples = [];       // { time, ms }
+    }
+
+    sent(seq, inputTime) {
+        this.inputs.set(seq, inputTime);
+    }
+
+    // A drawn picture answers its own camera and all before it; only its own input is measured, once.
+    drawn(seq, now) {
+        const input = this.inputs.get(seq);
+        if (input !== undefined)
+            this.samples.push({ time: now, ms: now - input });
+        for (const known of this.inputs.keys()) {
+            if (known <= seq)
+                this.inputs.delete(known);
+        }
+    }
+
+    clear() {
+        this.inputs.clear();
+    }
+
+    // The median of the last moments of motion; null before any.
+    median(now) {
+        while (this.samples.length > 1 && now - this.samples[0].time > this.keepMs)
+            this.samples.shift();
+        const sorted = this.samples.map((s) => s.ms).sort((a, b) => a - b);
+        return sorted.length > 0 ? sorted[sorted.length >> 1] : null;
+    }
+}

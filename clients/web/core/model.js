@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What is known of the plant: what `welcome` said, and the newest value, quality and age of every tag.
+import { worst } from './format.js';
+import { decodeBase64 } from './wire.js';
+
+export class Model {
+    constructor(welcome) {
+        this.plant = welcome.plant;
+        this.groups = welcome.groups;
+        this.tags = welcome.tags.map((tag, index) => ({ ...tag, index }));
+        this.colormaps = welcome.colormaps.map((map) => ({ ...map, rgb: decodeBase64(map.rgb) }));
+        this.readings = this.tags.map(() => ({ value: null, quality: 'bad', qualityName: '', ageMs: null, at: 0 }));
+        this.assets = welcome.assets.map((asset) => ({ ...asset, tags: this.tags.filter((tag) => tag.asset === asset.id) }));
+        this.links = [];
+        this.live = null; // nothing was said yet
+    }
+
+    get identity() {
+        return JSON.stringify([this.plant.name, this.plant.bounds]);
+    }
+
+    group(id) {
+        return this.groups.find((group) => group.id === id) ?? null;
+    }
+
+    asset(id) {
+        return this.assets.find((asset) => asset.id === id) ?? null;
+    }
+
+    tag(name) {
+        return this.tags.find((tag) => tag.name === name) ?? null;
+    }
+
+    colormap(name) {
+        return this.colormaps.find((map) => map.name === name) ?? this.colormaps[0];
+    }
+
+    // Returns the indices of the tags whose value or quality changed.
+    update(values, now) {
+        const changed = [];
+        for (const [index, value, quality, qualityName, ageMs] of values) {
+            const before = this.readings[index];
+            if (!before)
+                continue;
+            if (before.value !== value || before.quality !== quality || before.qualityName !== qualityName)
+                changed.push(index);
+            this.readings[index] = { value, quality, qualityName, ageMs, at: now };
+        }
+        return changed;
+    }
+
+    // Aged by the client's own clock since the server spoke of it; null: there never was a value.
+    ageMs(index, now) {
+        const { ageMs, at } = this.readings[index];
+        return ageMs === null ? null : ageMs + (now - at);
+    }
+
+    // Age of the oldest reading of a group that takes part in its picture; null: none does.
+    oldestAgeMs(groupId, now) {
+        let oldest = null;
+        for (const { index, group } of this.tags) {
+            if (group === groupId && this.readings[index].quality !== 'bad')
+                oldest = Math.max(oldest ?? 0, this.ageMs(index, now) ?? 0);
+        }
+        return oldest;
+    }
+
+    worstQuality(asset) {
+        return worst(asset.tags.map((tag) => this.readings[tag.index].quality));
+    }
+}
+
+// Beyond a limit, by the tag's own limits where the server sends them: "HH", "H", "L", "LL", or null.
+export function limitState(tag, value) {
+    const limits = tag.limits;
+    if (!limits || value === null)
+        return null;
+    const beyond = { HH: value >= limits.HH, LL: value <= limits.LL, H: value >= limits.H, L: value <= limits.L };
+    return ['HH', 'LL', 'H', 'L'].find((name) => Number.isFinite(limits[name]) && beyond[name]) ?? null;
+}

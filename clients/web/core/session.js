@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One viewer's conversation with the server: it owns the camera and the parameters, and says both again after a reconnect.
+import { home, same, valid } from './camera.js';
+import { LatencyMeter, RateMeter } from './meters.js';
+import { Model } from './model.js';
+import { decodeFrame, decodeMessage, WireError } from './wire.js';
+
+export const PARAMS = [
+    'group', 'interpolation', 'distance', 'fill', 'strength', 'decay', 'power', 'radius_m', 'reach_m', 'colormap', 'ramp_interval', 'range',
+    'look', 'light', 'selected',
+];
+const GROUPS_OWN = ['interpolation', 'distance', 'fill', 'power', 'radius_m', 'reach_m'];
+const CODECS = ['jpeg', 'png'];
+const MOST_BACKLOG_BYTES = 64 * 1024;
+
+const pick = (from, names) => Object.fromEntries(names.filter((name) => from[name] !== undefined).map((name) => [name, from[name]]));
+
+export class Session {
+    // wanted: { camera or null, params } from the page's address. Events: welcome, params, tags (indices), status, frame (frame),
+    // camera, error (message), ignored (what).
+    constructor({ connection, now, wanted = { camera: null, params: {} } }) {
+        Object.assign(this, { connection, now });
+        this.listeners = new Map();
+        this.model = null;
+        this.camera = wanted.camera;
+        this.params = { ...wanted.params };
+        this.confirmed = null;   // what the server last said is in force
+        this.size = { width: 640, height: 360 };
+        this.visible = true;
+        this.cameraSeq = this.paramsSeq = 0;
+        this.cameraInput = null; // when the newest unsent camera was made
+        this.markers = new Map();
+        this.serverTime = null;  // { us, at }
+        this.freshAt = null;     // when a greeted server last spoke: how old the picture is once it stops
+        this.rate = new RateMeter();
+        this.latency = new LatencyMeter();
+        connection.onOpen = () => this.hello(['camera', 'params']);
+        connection.onText = (text) => this.guard(() => this.heard(decodeMessage(text)));
+        connection.onBytes = (bytes) => this.guard(() => {
+            this.freshAt = this.now();
+            this.emit('frame', decodeFrame(bytes));
+        });
+    }
+
+    on(name, listener) {
+        this.listeners.set(name, [...(this.listeners.get(name) ?? []), listener]);
+    }
+
+    emit(name, value) {
+        for (const listener of this.listeners.get(name) ?? [])
+            listener(value);
+    }
+
+    guard(f) {
+        try {
+            f();
+        } catch (error) {
+            if (!(error instanceof WireError))
+                throw error;
+            this.emit('ignored', error.message);
+        }
+    }
+
+    // --- to the server
+
+    // parts: what of our view to ask for.
+    hello(parts) {
+        this.welcomed = false;
+        this.helloParts = parts;
+        this.markers.clear();
+        this.latency.clear();
+        const message = { type: 'hello', ...this.size, codecs: CODECS };
+        if (parts.includes('camera') && this.camera)
+            message.camera = this.camera;
+        const params = pick(this.params, PARAMS);
+        if (parts.includes('params') && Object.keys(params).length > 0)
+            message.params = params;
+        this.connection.send(message);
+    }
+
+    // inputTime: when the hand moved; latency counts from there.
+    setCamera(camera, inputTime = this.now()) {
+        if (!valid(camera) || same(camera, this.camera))
+            return;
+        this.camera = camera;
+        this.cameraInput = this.cameraInput ?? inputTime;
+        this.emit('camera');
+    }
+
+    setParams(change) {
+        const own = change.group && change.group !== this.params.group ? pick(this.model?.group(change.group) ?? {}, GROUPS_OWN) : {};
+        this.params = { ...this.params, ...own, ...change };
+        if (this.welcomed)
+            this.connection.send({ type: 'params', seq: ++this.paramsSeq, ...change });
+        this.emit('params');
+    }
+
+    resize(size) {
+        if (size.width === this.size.width && size.height === this.size.height)
+            return;
+        this.size = size;
+        if (this.welcomed)
+            this.connection.send({ type: 'resize', ...size });
+    }
+
+    setVisible(visible) {
+        this.visible = visible;
+        if (this.welcomed)
+            this.connection.send({ type: 'visible', visible });
+    }
+
+    // Once per animation frame: the newest camera goes out, the ones in between never do.
+    flush() {
+        if (this.cameraInput === null || !this.welcomed || this.connection.backlogBytes > MOST_BACKLOG_BYTES)
+            return;
+        if (this.connection.send({ type: 'camera', seq: ++this.cameraSeq, ...this.camera }))
+            this.latency.sent(this.cameraSeq, this.cameraInput);
+        this.cameraInput = null;
+    }
+
+    // This frame is on the screen.
+    drawn(frame, decodeMs) {
+        const now = this.now();
+        this.rate.count(now);
+        this.latency.drawn(frame.cameraSeq, now);
+        this.picture = { ...frame, payload: null, at: now };
+        this.connection.send({ type: 'ack', seq: frame.seq, decode_ms: Math.round(decodeMs * 100) / 100 });
+    }
+
+    // --- from the server
+
+    heard(message) {
+        if (message.time_us !== undefined)
+            this.serverTime = { us: message.time_us, at: this.now() };
+        if (this.welcomed)
+            this.freshAt = this.now();
+        const handler = HANDLERS[message.type];
+        if (!handler)
+            this.emit('ignored', `message of type ${message.type}`);
+        else if (message.type === 'welcome' || message.type === 'error' || this.model)
+            handler.call(this, message);
+    }
+
+    hearWelcome(message) {
+        const before = this.model;
+        this.model = new Model(message);
+        this.welcomed = true;
+        this.codec = message.codec;
+        this.connection.settle();
+        this.confirmed = this.params = pick(message.view, PARAMS);
+        if (!this.helloParts.includes('camera') || (before && before.identity !== this.model.identity))
+            this.camera = null;
+        if (!this.camera) {
+            this.camera = home(this.model.plant, this.size.width / this.size.height);
+            this.cameraInput = this.now();
+        }
+        if (!this.visible)
+            this.setVisible(false);
+        this.emit('welcome');
+        this.emit('params');
+    }
+
+    hearParams(message) {
+        if (message.seq < this.paramsSeq)
+            return; // an answer to what was changed again since
+        this.confirmed = this.params = pick(message, PARAMS);
+        this.emit('params');
+    }
+
+    hearTags(message) {
+        this.emit('tags', this.model.update(message.values, this.now()));
+    }
+
+    hearMarkers(message) {
+        this.markers.set(message.seq, new Map(message.markers.map(([tag, , , occluded]) => [tag, occluded !== 0])));
+    }
+
+    hearStatus(message) {
+        this.model.links = message.links;
+        this.model.live = message.live;
+        this.emit('status');
+    }
+
+    hearError(message) {
+        if (message.about === 'hello' && !this.welcomed && this.helloParts.length > 0) {
+            this.hello(this.helloParts.slice(0, -1)); // our view is of another plant, or of another version
+            return;
+        }
+        if (message.about === 'params' && this.confirmed) {
+            this.params = this.confirmed;
+            this.emit('params');
+        }
+        this.emit('error', message);
+    }
+
+    // Map from tag to occluded for a picture; those of earlier ones are forgotten.
+    markersOf(seq) {
+        let newest = null;
+        for (const known of [...this.markers.keys()].sort((a, b) => a - b)) {
+            if (known > seq)
+                break;
+            if (newest !== null)
+                this.markers.delete(newest);
+            newest = known;
+        }
+        return this.markers.get(newest) ?? new Map();
+    }
+
+    // --- what the screen asks
+
+    get group() {
+        return this.model?.group(this.params.group) ?? null;
+    }
+
+    // [min, max] of the colours.
+    get range() {
+        return this.params.range ?? (this.group ? [this.group.min, this.group.max] : [0, 1]);
+    }
+
+    // The server's clock, carried on by ours; null before it spoke.
+    clockUs(now = this.now()) {
+        return this.serverTime && this.serverTime.us + (now - this.serverTime.at) * 1000;
+    }
+}
+
+const HANDLERS = {
+    welcome: Session.prototype.hearWelcome,
+    params: Session.prototype.hearParams,
+    tags: Session.prototype.hearTags,
+    markers: Session.prototype.hearMarkers,
+    status: Session.prototype.hearStatus,
+    error: Session.prototype.hearError,
+    pong() {},
+};

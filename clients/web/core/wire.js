@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Bytes of plantcast.v1 (protocol/PROTOCOL.md) to objects. The one place that looks at them; what it lets through is sound.
+
+export const SUBPROTOCOL = 'plantcast.v1';
+export const FRAME_HEADER_BYTES = 112;
+export const MAX_SIDE_PX = 8192;
+export const MAX_PIXELS = 16 * 1024 * 1024;
+export const MIN_SIDE_PX = 16;
+export const NO_AGE = 0xffffffff;
+export const CODECS = { 1: 'jpeg', 2: 'png', 3: 'h264' };
+export const FLAG_KEY = 1, FLAG_STILL = 2, FLAG_NO_LIVE_DATA = 4;
+const MAX_PAYLOAD_BYTES = 64 * 1024 * 1024;
+
+class WireError extends Error {}
+export { WireError };
+
+function need(condition, what) {
+    if (!condition)
+        throw new WireError(what);
+}
+
+// u64 microseconds since 1970 fit a double exactly until the year 2255.
+function time(view, offset) {
+    const us = Number(view.getBigUint64(offset, true));
+    need(Number.isSafeInteger(us), `time at byte ${offset} is beyond all dates`);
+    return us;
+}
+
+const triple = (view, offset) => [0, 4, 8].map((o) => view.getFloat32(offset + o, true));
+
+// Throws WireError. The payload is a view into the same bytes.
+export function decodeFrame(bytes) {
+    const data = bytes instanceof Uint8Array ? bytes : new Uint8Array(bytes);
+    need(data.length >= FRAME_HEADER_BYTES, `${data.length} bytes are no frame header`);
+    const view = new DataView(data.buffer, data.byteOffset, data.byteLength);
+    const u16 = (o) => view.getUint16(o, true), u32 = (o) => view.getUint32(o, true);
+    need(view.getUint8(0) === 1, `message type ${view.getUint8(0)} is unknown`);
+    const flags = u16(2);
+    const frame = {
+        codec: CODECS[view.getUint8(1)],
+        key: (flags & FLAG_KEY) !== 0, still: (flags & FLAG_STILL) !== 0, noLiveData: (flags & FLAG_NO_LIVE_DATA) !== 0,
+        seq: u32(8), cameraSeq: u32(12), paramsSeq: u32(16),
+        oldestAgeMs: u32(20) === NO_AGE ? null : u32(20),
+        dataTimeUs: time(view, 24), sentTimeUs: time(view, 32),
+        waitUs: u32(40), fieldUs: u32(44), renderUs: u32(48), encodeUs: u32(52),
+        x: u16(56), y: u16(58), width: u16(60), height: u16(62), fullWidth: u16(64), fullHeight: u16(66),
+        camera: { eye: triple(view, 68), target: triple(view, 80), up: triple(view, 92), fov: view.getFloat32(104, true) },
+        payload: data.subarray(FRAME_HEADER_BYTES),
+    };
+    need(frame.codec, `codec ${view.getUint8(1)} is unknown`);
+    need(frame.seq > 0, 'a frame without a number');
+    need(u32(4) >= 1 && u32(4) <= MAX_PAYLOAD_BYTES, `payload of ${u32(4)} bytes`);
+    need(u32(4) === frame.payload.length, `payload of ${u32(4)} bytes stated, ${frame.payload.length} there`);
+    need(frame.fullWidth >= 1 && frame.fullWidth <= MAX_SIDE_PX && frame.fullHeight >= 1 && frame.fullHeight <= MAX_SIDE_PX,
+        `picture of ${frame.fullWidth}x${frame.fullHeight}`);
+    need(frame.width >= 1 && frame.height >= 1 && frame.x + frame.width <= frame.fullWidth && frame.y + frame.height <= frame.fullHeight,
+        `part ${frame.width}x${frame.height}+${frame.x}+${frame.y} of ${frame.fullWidth}x${frame.fullHeight}`);
+    const { eye, target, up, fov } = frame.camera;
+    need([...eye, ...target, ...up].every(Number.isFinite), 'camera is not finite');
+    need(fov >= 1 && fov <= 120, `field of view of ${fov} degrees`);
+    return frame;
+}
+
+// Does it hold the whole picture, so that it stands without the one before?
+export const isWhole = (frame) => frame.width === frame.fullWidth && frame.height === frame.fullHeight;
+
+// One text message to an object with a type.
+export function decodeMessage(text) {
+    let message;
+    try {
+        message = JSON.parse(text);
+    } catch (error) {
+        throw new WireError(`not JSON: ${error.message}`);
+    }
+    need(message && typeof message === 'object' && !Array.isArray(message), 'not an object');
+    need(typeof message.type === 'string', 'no type');
+    return message;
+}
+
+export function decodeBase64(text) {
+    return Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+}
+
+// The size to ask for: device pixels, within what the server draws, the shape of the window kept.
+export function pictureSize(widthPx, heightPx) {
+    const shrink = Math.min(1, MAX_SIDE_PX / widthPx, MAX_SIDE_PX / heightPx, Math.sqrt(MAX_PIXELS / (widthPx * heightPx)));
+    const side = (px) => Math.max(MIN_SIDE_PX, Math.floor(px * shrink));
+    return { width: side(widthPx), height: side(heightPx) };
+}

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The camera's mathematics: what must stay put stays put, the horizon stays level, and what should fit fits.
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import {
+    basis, depthAt, distance, elevation, enterBox, fit, home, MAX_ELEVATION_DEG, MIN_DISTANCE_M, orbit, pan, projector, ray, same, valid, zoom,
+} from '../../clients/web/core/camera.js';
+import { flight, FLIGHT_MS } from '../../clients/web/core/flight.js';
+import { along, dot, length, subtract } from '../../clients/web/core/vector.js';
+
+const camera = { eye: [35, -42, 24], target: [1, 0.5, 6], up: [0, 0, 1], fov: 45 };
+const close = (a, b, tolerance = 1e-9) => assert.ok(Math.abs(a - b) <= tolerance, `${a} is not ${b}`);
+const closeTo = (a, b, tolerance = 1e-9) => a.forEach((x, i) => close(x, b[i], tolerance));
+
+// A generator with a printed seed, so that a failure can be repeated.
+const seed = Number(process.env.SEED ?? Math.floor(Math.random() * 2 ** 31));
+console.log(`# seed ${seed}`);
+let state = seed;
+function random(low, high) {
+    state = (Math.imul(state, 1664525) + 1013904223) >>> 0;
+    return low + (high - low) * (state / 2 ** 32);
+}
+
+test('projection: target in the middle, a point above it above, one behind the eye nowhere', () => {
+    const project = projector(camera, 1600, 1000);
+    closeTo(project(camera.target), [800, 500, distance(camera)], 1e-9);
+    const above = project([1, 0.5, 8]);
+    close(above[0], 800);
+    assert.ok(above[1] < 500);
+    assert.equal(project(along(camera.eye, basis(camera).forward, -1)), null);
+});
+
+test('projection agrees with the field of view: its edge is at the edge of the picture', () => {
+    const looking = { eye: [0, -10, 0], target: [0, 0, 0], up: [0, 0, 1], fov: 90 };
+    const project = projector(looking, 2000, 1000);
+    closeTo(project([0, 0, 10]), [1000, 0, 10]);
+    closeTo(project([20, 0, 0]), [2000, 500, 10]);
+});
+
+test('a ray through a place of the picture comes back to that place at every depth', () => {
+    const project = projector(camera, 1608, 996);
+    for (let n = 0; n < 200; n++) {
+        const x = random(0, 1608), y = random(0, 996), depth = random(0.1, 500);
+        closeTo(project(along(camera.eye, ray(camera, x, y, 1608, 996), depth)), [x, y, depth], 1e-6);
+    }
+});
+
+test('orbit keeps the distance, the target and a level horizon, whatever was done before', () => {
+    let c = camera;
+    for (let n = 0; n < 2000; n++)
+        c = orbit(c, random(-90, 90), random(-60, 60));
+    close(distance(c), distance(camera), 1e-6);
+    closeTo(c.target, camera.target, 1e-9);
+    close(dot(basis(c).right, [0, 0, 1]), 0, 1e-12);
+    assert.ok(valid(c));
+});
+
+test('orbit stops short of straight down, and comes straight back', () => {
+    const down = orbit(camera, 0, 500);
+    close(elevation(down), MAX_ELEVATION_DEG, 1e-6);
+    close(elevation(orbit(camera, 0, -500)), -MAX_ELEVATION_DEG, 1e-6);
+    close(elevation(orbit(down, 0, -40)), MAX_ELEVATION_DEG - 40, 1e-6);
+    closeTo(basis(down).right, basis(camera).right, 1e-9);
+});
+
+test('orbit to the right by quarter turns comes home after four', () => {
+    let c = camera;
+    for (let n = 0; n < 4; n++)
+        c = orbit(c, 90, 0);
+    closeTo(c.eye, camera.eye, 1e-9);
+});
+
+test('orbit about another point keeps that point where it is in depth', () => {
+    const pivot = [4, 3, 2];
+    const turned = orbit(camera, 30, 10, pivot);
+    close(length(subtract(turned.eye, pivot)), length(subtract(camera.eye, pivot)), 1e-9);
+    close(elevation(turned), elevation(camera) + 10, 1e-6);
+});
+
+test('orbit works with Y up', () => {
+    const lying = { eye: [10, 5, 10], target: [0, 0, 0], up: [0, 1, 0], fov: 40 };
+    const turned = orbit(lying, 90, 0);
+    close(turned.eye[1], 5, 1e-9);
+    close(elevation(orbit(lying, 0, 200)), MAX_ELEVATION_DEG, 1e-6);
+});
+
+test('pan: what is at the target follows the pointer by the pixel', () => {
+    const moved = pan(camera, 120, -75, 996);
+    const [x, y] = projector(moved, 1608, 996)(camera.target);
+    closeTo([x, y], [804 + 120, 498 - 75], 1e-9);
+});
+
+test('zoom keeps what is under the cursor there, at any depth, and goes back exactly', () => {
+    for (let n = 0; n < 200; n++) {
+        const x = random(0, 1608), y = random(0, 996), depth = random(5, 80);
+        const point = along(camera.eye, ray(camera, x, y, 1608, 996), depth);
+        const nearer = zoom(camera, 0.5, x, y, 1608, 996, depth);
+        closeTo(projector(nearer, 1608, 996)(point), [x, y, depth / 2], 1e-6);
+        close(distance(nearer), depth / 2, 1e-6);
+        const back = zoom(nearer, 2, x, y, 1608, 996);
+        closeTo(back.eye, camera.eye, 1e-6);
+    }
+});
+
+test('zoom never passes through the target', () => {
+    let c = camera;
+    for (let n = 0; n < 500; n++)
+        c = zoom(c, 0.8, 804, 498, 1608, 996);
+    close(distance(c), MIN_DISTANCE_M, 1e-9);
+    assert.ok(valid(c));
+});
+
+test('boxes: entered from outside, missed, started inside, parallel to a face', () => {
+    const box = { min: [-1, -1, -1], max: [1, 1, 1] };
+    assert.equal(enterBox([-5, 0, 0], [1, 0, 0], box), 4);
+    assert.equal(enterBox([-5, 0, 0], [2, 0, 0], box), 2);
+    assert.equal(enterBox([-5, 3, 0], [1, 0, 0], box), null);
+    assert.equal(enterBox([-5, 0, 0], [-1, 0, 0], box), null);
+    assert.equal(enterBox([0, 0, 0], [1, 0, 0], box), null);
+    assert.equal(enterBox([-5, 1, 0], [1, 0, 0], box), 4);
+});
+
+test('depth under the cursor: the nearest box, else the target', () => {
+    const looking = { eye: [0, -10, 0], target: [0, 0, 0], up: [0, 0, 1], fov: 60 };
+    const near = { min: [-1, -4, -1], max: [1, -2, 1] }, far = { min: [-5, 4, -5], max: [5, 6, 5] };
+    close(depthAt(looking, 500, 500, 1000, 1000, [far, near]), 6);
+    close(depthAt(looking, 800, 500, 1000, 1000, [far, near]), 14);
+    close(depthAt(looking, 5, 5, 1000, 1000, [near]), 10);
+});
+
+test('fit: all eight corners inside, one side touching the margin, the direction kept', () => {
+    for (let n = 0; n < 200; n++) {
+        const min = [random(-50, 0), random(-50, 0), random(-5, 0)];
+        const box = { min, max: min.map((x) => x + random(0.5, 40)) };
+        const aspect = random(0.4, 2.5);
+        const from = orbit(camera, random(0, 360), random(-80, 80));
+        const c = fit(from, box, aspect, 1);
+        const project = projector(c, 1000 * aspect, 1000);
+        let most = 0;
+        for (let corner = 0; corner < 8; corner++) {
+            const [x, y] = project([0, 1, 2].map((i) => (corner & (1 << i) ? box.max[i] : box.min[i])));
+            most = Math.max(most, Math.abs(x / (500 * aspect) - 1), Math.abs(y / 500 - 1));
+        }
+        close(most, 1, 1e-6);
+        closeTo(basis(c).forward, basis(from).forward, 1e-6);
+    }
+});
+
+test('home is the plant\'s own view, and the whole plant in a narrow window', () => {
+    const plant = { home: camera, bounds: { min: [-20, -15, 0], max: [22, 16, 14] } };
+    assert.ok(same(home(plant, 1.6), camera));
+    const narrow = home(plant, 0.46);
+    const project = projector(narrow, 390, 844);
+    for (const x of [-20, 22]) {
+        for (const y of [-15, 16])
+            assert.ok(project([x, y, 0])[0] > 0 && project([x, y, 0])[0] < 390);
+    }
+});
+
+test('valid refuses what the server refuses', () => {
+    assert.ok(valid(camera));
+    for (const bad of [
+        null, {}, { ...camera, eye: [NaN, 0, 0] }, { ...camera, eye: [1, 2] }, { ...camera, eye: camera.target }, { ...camera, fov: 0.5 },
+        { ...camera, fov: 121 }, { ...camera, eye: [2e6, 0, 0] }, { ...camera, up: [0, 0, 0] }, { ...camera, eye: [1, 0.5, 20] },
+    ])
+        assert.ok(!valid(bad), JSON.stringify(bad));
+});
+
+test('a flight starts and ends where it should, level all the way, and turns by the shorter side', () => {
+    const to = { eye: [30, 40, 10], target: [5, 5, 2], up: [0, 0, 1], fov: 45 };
+    const path = flight(camera, to);
+    closeTo(path(0).eye, camera.eye, 1e-9);
+    assert.equal(path(FLIGHT_MS), to);
+    assert.equal(path(Infinity), to);
+    let eastMost = -Infinity;
+    for (let ms = 0; ms <= FLIGHT_MS; ms += 20) {
+        const c = path(ms);
+        assert.ok(valid(c));
+        close(dot(basis(c).right, [0, 0, 1]), 0, 1e-9);
+        eastMost = Math.max(eastMost, c.eye[0]);
+    }
+    assert.ok(eastMost > 40, 'by the east, not around by the west');
+});

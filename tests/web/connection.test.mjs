@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The connection's states, with the clock turned by hand.
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { DEAD_MS, JITTER, LONGEST_WAIT_MS, QUIET_MS } from '../../clients/web/core/connection.js';
+import { makeConnection } from './fixtures.mjs';
+
+const waitOf = ({ connection, clock }) => connection.retryAt - clock.now();
+
+test('asks for the subprotocol and says what state it is in', () => {
+    const { connection, sockets } = makeConnection();
+    const states = [];
+    connection.onState = ({ state }) => states.push(state);
+    connection.start();
+    connection.start();
+    assert.equal(sockets.length, 1);
+    assert.equal(sockets[0].protocol, 'plantcast.v1');
+    assert.equal(sockets[0].binaryType, 'arraybuffer');
+    sockets[0].accept();
+    sockets[0].fail(1001);
+    assert.deepEqual(states, ['connecting', 'open', 'waiting']);
+    assert.equal(connection.reason, 'the server went down');
+});
+
+test('waits 0.5, 1, 2, 4, 8, 8 seconds between tries', () => {
+    const bench = makeConnection();
+    const { connection, sockets, clock } = bench;
+    const waits = [];
+    connection.start();
+    for (let n = 0; n < 6; n++) {
+        sockets.at(-1).fail();
+        waits.push(waitOf(bench));
+        clock.advance(waits.at(-1) - 1);
+        assert.equal(sockets.length, n + 1, 'not a moment early');
+        clock.advance(1);
+        assert.equal(sockets.length, n + 2);
+    }
+    assert.deepEqual(waits, [500, 1000, 2000, 4000, 8000, 8000]);
+});
+
+test('jitter spreads the tries of many clients, within bounds', () => {
+    for (const [dice, factor] of [[0, 1 - JITTER], [1, 1 + JITTER]]) {
+        const bench = makeConnection({ random: () => dice });
+        bench.connection.start();
+        for (let n = 0; n < 8; n++) {
+            bench.sockets.at(-1).fail();
+            assert.ok(Math.abs(waitOf(bench) - Math.min(LONGEST_WAIT_MS, 500 * 2 ** n) * factor) < 1e-6);
+            bench.clock.advance(waitOf(bench));
+        }
+    }
+});
+
+test('an open socket alone does not shorten the waits; a greeting does', () => {
+    const bench = makeConnection();
+    const { connection, sockets, clock } = bench;
+    connection.start();
+    sockets[0].fail();
+    clock.advance(500);
+    sockets[1].accept();
+    sockets[1].fail(1013, 'full: 8 sessions');
+    assert.equal(waitOf(bench), 1000);
+    assert.equal(connection.reason, 'full: 8 sessions');
+    clock.advance(1000);
+    sockets[2].accept();
+    connection.settle();
+    sockets[2].fail();
+    assert.equal(waitOf(bench), 500);
+});
+
+test('retryNow cuts a wait short, and does nothing else', () => {
+    const { connection, sockets, clock } = makeConnection();
+    connection.start();
+    connection.retryNow();
+    assert.equal(sockets.length, 1);
+    sockets[0].fail();
+    connection.retryNow();
+    assert.equal(sockets.length, 2);
+    clock.advance(600);
+    assert.equal(sockets.length, 2, 'the old timer is gone');
+});
+
+test('a server that falls silent is noticed, then given up without waiting for its goodbye', () => {
+    const { connection, sockets, clock } = makeConnection();
+    connection.start();
+    sockets[0].accept();
+    clock.advance(QUIET_MS - 1000);
+    assert.equal(connection.quiet, false);
+    clock.advance(1500);
+    assert.equal(connection.quiet, true);
+    sockets[0].say({ type: 'pong' });
+    assert.equal(connection.quiet, false);
+    clock.advance(DEAD_MS + 100);
+    assert.equal(connection.state, 'waiting');
+    assert.equal(connection.reason, 'the server fell silent');
+    assert.ok(sockets[0].closed);
+    assert.equal(sockets[0].onmessage, null, 'what still comes is not heard');
+});
+
+test('a server that speaks every two seconds is never given up', () => {
+    const { connection, sockets, clock } = makeConnection();
+    connection.start();
+    sockets[0].accept();
+    for (let n = 0; n < 30; n++) {
+        clock.advance(2000);
+        sockets[0].say({ type: 'status' });
+        assert.equal(connection.quiet, false);
+    }
+    assert.equal(sockets.length, 1);
+});
+
+test('a server that never opens is given up', () => {
+    const { connection, clock, sockets } = makeConnection();
+    connection.start();
+    clock.advance(10001);
+    assert.equal(connection.reason, 'the server does not answer');
+    assert.ok(sockets[0].closed);
+});
+
+test('nothing is sent while it is not open, and stop is final', () => {
+    const { connection, sockets, clock } = makeConnection();
+    connection.start();
+    assert.equal(connection.send({ type: 'ping' }), false);
+    sockets[0].accept();
+    assert.equal(connection.send({ type: 'ping' }), true);
+    connection.stop();
+    clock.advance(60000);
+    assert.equal(connection.state, 'stopped');
+    assert.equal(sockets.length, 1);
+    assert.equal(clock.timers.size, 0);
+});

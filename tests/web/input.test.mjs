@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Pointers, wheel and keys to camera moves.
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { Gestures, wheelZoom } from '../../clients/web/core/gestures.js';
+import { HeldKeys, HOLD_S, keyMeaning, TAP_S } from '../../clients/web/core/keys.js';
+
+const touch = (id, x, y, time = 0) => ({ id, x, y, time, kind: 'touch' });
+
+test('left drag turns; right, middle and shift drags move', () => {
+    for (const [options, name] of [[{}, 'orbit'], [{ button: 2 }, 'pan'], [{ button: 1 }, 'pan'], [{ shift: true }, 'pan']]) {
+        const g = new Gestures();
+        g.down({ id: 1, x: 10, y: 10, ...options });
+        assert.deepEqual(g.move({ id: 1, x: 20, y: 15 }), [{ [name]: [10, 5] }]);
+        assert.deepEqual(g.move({ id: 1, x: 21, y: 15 }), [{ [name]: [1, 0] }]);
+        assert.deepEqual(g.up({ id: 1, x: 21, y: 15 }), []);
+        assert.equal(g.active, false);
+    }
+});
+
+test('a short press without motion is a click; a long, a moved or a right one is not', () => {
+    const press = (options, x, time) => {
+        const g = new Gestures();
+        g.down({ id: 1, x: 5, y: 5, time: 0, ...options });
+        g.move({ id: 1, x, y: 5 });
+        return g.up({ id: 1, x, y: 5, time });
+    };
+    assert.deepEqual(press({}, 6, 100), [{ click: [6, 5] }]);
+    assert.deepEqual(press({ kind: 'touch' }, 11, 100), [{ click: [11, 5] }]);
+    assert.deepEqual(press({}, 6, 900), []);
+    assert.deepEqual(press({}, 15, 100), []);
+    assert.deepEqual(press({ button: 2 }, 5, 100), []);
+});
+
+test('a trembling finger does not move the picture', () => {
+    const g = new Gestures();
+    g.down(touch(1, 100, 100));
+    assert.deepEqual(g.move(touch(1, 104, 103)), []);
+    assert.deepEqual(g.move(touch(1, 120, 100)), [{ orbit: [20, 0] }]);
+});
+
+test('two fingers: both move on average, and zoom about the middle between them', () => {
+    const g = new Gestures();
+    g.down(touch(1, 100, 100));
+    g.down(touch(2, 200, 100));
+    const [pan, zoom] = g.move(touch(2, 300, 100));
+    assert.deepEqual(pan, { pan: [50, 0] });
+    assert.deepEqual(zoom, { zoom: 0.5, at: [200, 100] });
+    assert.deepEqual(g.up(touch(2, 300, 100)), []);
+    assert.deepEqual(g.move(touch(1, 110, 100)), [{ orbit: [10, 0] }], 'the finger that stays turns, without a jump');
+    assert.deepEqual(g.up(touch(1, 110, 100)), [], 'and is no click');
+});
+
+test('a third finger changes nothing, a lost pointer ends its gesture, a stranger is ignored', () => {
+    const g = new Gestures();
+    g.down(touch(1, 0, 0));
+    g.down(touch(2, 100, 0));
+    g.down(touch(3, 500, 500));
+    assert.deepEqual(g.move(touch(3, 600, 600))[0], { pan: [0, 0] });
+    g.cancel(touch(1));
+    g.cancel(touch(2));
+    g.cancel(touch(3));
+    assert.equal(g.active, false);
+    assert.deepEqual(g.move(touch(1, 50, 50)), []);
+});
+
+test('wheel: there and back is the same, lines count as pixels, one turn is never wild', () => {
+    assert.ok(Math.abs(wheelZoom({ deltaY: 100 }) * wheelZoom({ deltaY: -100 }) - 1) < 1e-12);
+    assert.ok(wheelZoom({ deltaY: -100 }) < 1);
+    assert.equal(wheelZoom({ deltaY: 3, deltaMode: 1 }), wheelZoom({ deltaY: 48 }));
+    assert.equal(wheelZoom({ deltaY: 1e9 }), Math.exp(0.5));
+    assert.ok(wheelZoom({ deltaY: 10, ctrlKey: true }) > wheelZoom({ deltaY: 10 }));
+});
+
+test('keys and their meanings', () => {
+    const key = (k, code = '', more = {}) => keyMeaning({ key: k, code, ctrlKey: false, altKey: false, metaKey: false, shiftKey: false, ...more });
+    assert.deepEqual(key('ArrowLeft', 'ArrowLeft'), { motion: 'ArrowLeft' });
+    assert.deepEqual(key('ArrowLeft', 'ArrowLeft', { shiftKey: true }), { motion: 'KeyA' });
+    assert.deepEqual(key('w', 'KeyW'), { motion: 'KeyW' });
+    assert.deepEqual(key('=', 'Equal'), { motion: '+' });
+    assert.deepEqual(key('-', 'NumpadSubtract'), { motion: '-' });
+    assert.deepEqual(key('F', 'KeyF', { shiftKey: true }), { command: 'fit' });
+    assert.deepEqual(key('?', 'Slash', { shiftKey: true }), { command: 'help' });
+    assert.deepEqual(key('2', 'Digit2'), { group: 1 });
+    assert.equal(key('f', 'KeyF', { ctrlKey: true }), null, 'find in page stays the browser\'s');
+    assert.equal(key('x', 'KeyX'), null);
+});
+
+test('a tap moves by one step, holding goes on steadily, repeat of the keyboard counts nothing', () => {
+    const keys = new HeldKeys();
+    assert.deepEqual(keys.press('ArrowRight'), [{ orbitDeg: [45 * TAP_S, 0] }]);
+    assert.deepEqual(keys.press('ArrowRight'), []);
+    assert.deepEqual(keys.step(HOLD_S), []);
+    let turned = 0;
+    for (let n = 0; n < 100; n++)
+        turned += keys.step(0.01)[0].orbitDeg[0];
+    assert.ok(Math.abs(turned - 45) < 1e-9);
+    keys.release({ key: 'ArrowRight', code: 'ArrowRight' });
+    assert.equal(keys.moving, false);
+    assert.deepEqual(keys.step(1), []);
+});
+
+test('a key whose shift was let go first does not stay down', () => {
+    const keys = new HeldKeys();
+    keys.press('KeyA');
+    keys.release({ key: 'ArrowLeft', code: 'ArrowLeft', shiftKey: false });
+    assert.equal(keys.moving, false);
+});

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What is written on the screen: numbers, ages, clock, legend, labels, meters and the page's address.
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { readAddress, writeAddress } from '../../clients/web/core/address.js';
+import { ageText, decimalsFor, numberText, qualityText, unitText, worst, zoneClock } from '../../clients/web/core/format.js';
+import { nearestMarker, placeLabels } from '../../clients/web/core/labels.js';
+import { colourOf, niceStep, rampChoices, rampSteps, ticks } from '../../clients/web/core/legend.js';
+import { LatencyMeter, RateMeter } from '../../clients/web/core/meters.js';
+
+test('decimals follow the range, zero has no minus, what is missing is a dash', () => {
+    assert.deepEqual([1000, 160, 16, 5, 0.02, 0, NaN].map(decimalsFor), [0, 1, 2, 2, 5, 2, 2]);
+    assert.equal(numberText(-0.04, 1), '0.0');
+    assert.equal(numberText(-12.34, 1), '−12.3');
+    assert.equal(numberText(0, 1), '0.0');
+    assert.equal(numberText(null, 1), '–');
+    assert.equal(numberText(NaN, 1), '–');
+});
+
+test('units as engineers write them', () => {
+    assert.deepEqual(['degC', '°C', 'bar', 'mm/s', 'm3/h', 'kg/cm2', 'um'].map(unitText), ['°C', '°C', 'bar', 'mm/s', 'm³/h', 'kg/cm²', 'µm']);
+});
+
+test('ages', () => {
+    assert.deepEqual([0, 940, 9940, 9960, 119000, 121000, 7.3e6, 1.8e8, null].map(ageText),
+        ['0.0 s', '0.9 s', '9.9 s', '10 s', '119 s', '2 min', '2 h', '2 d', '–']);
+});
+
+test('the plant clock is in the plant\'s zone and says the offset, winter and summer', () => {
+    const oslo = zoneClock('Europe/Oslo');
+    assert.deepEqual(oslo(Date.UTC(2026, 0, 1, 0, 0, 7)), { date: '2026-01-01', time: '01:00:07', offset: 'UTC+01:00' });
+    assert.deepEqual(oslo(Date.UTC(2026, 6, 1, 22, 30)), { date: '2026-07-02', time: '00:30:00', offset: 'UTC+02:00' });
+    assert.equal(zoneClock('America/St_Johns')(Date.UTC(2026, 0, 1)).offset, 'UTC−03:30');
+    assert.deepEqual(zoneClock('Nowhere/At_All')(Date.UTC(2026, 0, 1)), { date: '2026-01-01', time: '00:00:00', offset: 'UTC' });
+});
+
+test('qualities in words', () => {
+    assert.equal(qualityText('good', 'Good'), 'Good');
+    assert.equal(qualityText('bad', 'Bad_WaitingForInitialData'), 'Bad: waiting for initial data');
+    assert.equal(qualityText('uncertain', 'Uncertain_NoCommunicationLastUsableValue'), 'Uncertain: no communication last usable value');
+    assert.equal(worst(['good', 'uncertain', 'good']), 'uncertain');
+    assert.equal(worst([]), null);
+});
+
+test('ticks: round, both ends, none crowding an end', () => {
+    assert.deepEqual(ticks(0, 100), [0, 20, 40, 60, 80, 100]);
+    assert.deepEqual(ticks(20, 180), [20, 50, 100, 150, 180]);
+    assert.deepEqual(ticks(0, 16), [0, 5, 10, 16]);
+    assert.deepEqual(ticks(-1, 1, 4), [-1, -0.5, 0, 0.5, 1]);
+    assert.deepEqual(ticks(5, 5), []);
+    for (const [min, max] of [[0, 7.1], [-273, 12], [0.001, 0.0093], [1e6, 3e6]]) {
+        const list = ticks(min, max);
+        assert.ok(list.length >= 3 && list.length <= 8, `${list}`);
+        assert.ok(list.every((v, i) => i === 0 || v > list[i - 1]));
+    }
+});
+
+test('nice steps, and ramps to choose from', () => {
+    assert.equal(niceStep(100, 6), 20);
+    assert.equal(niceStep(0.3, 6), 0.05);
+    assert.deepEqual(rampChoices(20, 180), [10, 20, 50]);
+    assert.deepEqual(rampChoices(0, 12), [0.5, 1, 2, 5]);
+});
+
+test('ramp steps begin and end with the range and break at multiples', () => {
+    assert.deepEqual(rampSteps(15, 50, 10).map((s) => [s.from, s.to]), [[15, 20], [20, 30], [30, 40], [40, 50]]);
+    assert.deepEqual(rampSteps(0, 10, 0), []);
+    assert.deepEqual(rampSteps(0, 1e9, 1e-6), [], 'more steps than any screen shows');
+});
+
+const grey = { rgb: Uint8Array.from({ length: 768 }, (_, i) => Math.floor(i / 3)), below: [0, 0, 255], above: [255, 0, 255] };
+
+test('colours: the map inside, its own colours outside, one per ramp step', () => {
+    assert.deepEqual(colourOf(grey, 0, 0, 100), [0, 0, 0]);
+    assert.deepEqual(colourOf(grey, 100, 0, 100), [255, 255, 255]);
+    assert.deepEqual(colourOf(grey, -0.1, 0, 100), [0, 0, 255]);
+    assert.deepEqual(colourOf(grey, 100.1, 0, 100), [255, 0, 255]);
+    assert.deepEqual(colourOf(grey, 51, 0, 100, 25), colourOf(grey, 74, 0, 100, 25));
+    assert.notDeepEqual(colourOf(grey, 49, 0, 100, 25), colourOf(grey, 51, 0, 100, 25));
+    assert.deepEqual(colourOf(grey, 100, 0, 100, 25), colourOf(grey, 76, 0, 100, 25), 'MAX is in the last step');
+});
+
+const label = (id, x, y, priority = 0) => ({ id, x, y, width: 80, height: 20, priority });
+const area = { width: 1000, height: 800 };
+
+test('labels never overlap each other or a marker, and stay in the picture', () => {
+    const items = Array.from({ length: 300 }, (_, i) => label(i, (i * 137) % 1000, (i * 71) % 800));
+    const placed = placeLabels(items, area);
+    const boxes = [...placed].map(([id, p]) => ({ id, left: p.left, top: p.top, right: p.left + 80, bottom: p.top + 20 }));
+    assert.ok(boxes.length > 30 && boxes.length < 300);
+    for (const a of boxes) {
+        assert.ok(a.left >= 0 && a.top >= 0 && a.right <= 1000 && a.bottom <= 800);
+        for (const b of boxes)
+            assert.ok(a === b || a.left >= b.right || b.left >= a.right || a.top >= b.bottom || b.top >= a.bottom);
+        for (const { id, x, y } of items)
+            assert.ok(id === a.id || x + 5 <= a.left || x - 5 >= a.right || y + 5 <= a.top || y - 5 >= a.bottom);
+    }
+});
+
+test('the important label wins; one that stood there does not give way to an equal', () => {
+    const two = [label(1, 500, 400), label(2, 503, 400), label(3, 500, 404), label(4, 503, 404), label(5, 501, 402)];
+    const important = placeLabels(two.map((l) => ({ ...l, priority: l.id === 5 ? 9 : 0 })), area);
+    assert.ok(important.has(5));
+    const before = new Map([[4, { left: 510, top: 394, side: 'right' }]]);
+    assert.ok(placeLabels(two, { ...area, before }).has(4));
+});
+
+test('the nearest marker, in sight before hidden ones, within reach only', () => {
+    const markers = [{ x: 10, y: 10, occluded: true }, { x: 16, y: 10, occluded: false }, { x: 90, y: 90 }];
+    assert.equal(nearestMarker(markers, 10, 10, 14), markers[1]);
+    assert.equal(nearestMarker(markers, 50, 50, 14), null);
+});
+
+test('frame rate counts the last second', () => {
+    const rate = new RateMeter();
+    for (let t = 0; t < 2000; t += 40)
+        rate.count(t);
+    assert.equal(rate.perSecond(1999), 25);
+    assert.equal(rate.perSecond(4000), 0);
+});
+
+test('latency: from the input to the picture that shows it, once; the median of the last moments', () => {
+    const latency = new LatencyMeter();
+    assert.equal(latency.median(0), null);
+    latency.sent(1, 100);
+    latency.sent(2, 116);
+    latency.sent(3, 132);
+    latency.drawn(2, 160);
+    latency.drawn(2, 500);
+    assert.equal(latency.median(500), 44);
+    latency.drawn(3, 150);
+    assert.equal(latency.inputs.size, 0);
+});
+
+test('the address carries the view there and back', () => {
+    const view = {
+        camera: { eye: [35, -42.1234, 24], target: [1, 0.5, 6], up: [0, 0, 1], fov: 45 },
+        params: { group: 'temperature', interpolation: 'paper', distance: 'euclidean', colormap: 'cividis', ramp_interval: 2.5, look: 'flat', selected: 'E-101 A&B' },
+        tag: 'TT-101',
+    };
+    assert.deepEqual(readAddress(writeAddress(view)), view);
+});
+
+test('an address that makes no sense is as good as none', () => {
+    for (const hash of ['', '#', '#camera=1,2,3', '#camera=NaN,0,0,0,0,0,0,0,1,45', '#ramp=-3', '#ramp=x', '#look=psychedelic', '#%%%', '#camera=1,1,1,1,1,1,0,0,1,45'])
+        assert.deepEqual(readAddress(hash), { camera: null, params: {}, tag: null }, hash);
+    assert.deepEqual(readAddress('#asset=E-101'), { camera: null, params: { selected: 'E-101' }, tag: null });
+});

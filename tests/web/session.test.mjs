@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The conversation with the server: what is said first, what is said again, what is ignored.
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { health } from '../../clients/web/core/health.js';
+import { orbit } from '../../clients/web/core/camera.js';
+import { limitState } from '../../clients/web/core/model.js';
+import { makeSession, vector, vectorBytes } from './fixtures.mjs';
+
+const welcome = vector('server/welcome.json');
+const WANTED = { camera: { eye: [1, 2, 3], target: [4, 5, 6], up: [0, 0, 1], fov: 30 }, params: { group: 'pressure' } };
+
+function greeted(wanted) {
+    const bench = makeSession(wanted);
+    bench.connection.start();
+    bench.socket = bench.sockets[0];
+    bench.socket.accept();
+    bench.socket.say(welcome);
+    bench.events.length = 0;
+    return bench;
+}
+const last = (list) => list[list.length - 1];
+
+test('hello states size and codecs, and the view of the address', () => {
+    const { connection, session, sockets } = makeSession(WANTED);
+    session.resize({ width: 800, height: 600 });
+    connection.start();
+    sockets[0].accept();
+    assert.deepEqual(sockets[0].sent, [
+        { type: 'hello', width: 800, height: 600, codecs: ['jpeg', 'png'], camera: WANTED.camera, params: WANTED.params },
+    ]);
+});
+
+test('without a view of its own it takes the plant\'s', () => {
+    const { session, socket } = greeted();
+    assert.deepEqual(socket.sent[0], { type: 'hello', width: 640, height: 360, codecs: ['jpeg', 'png'] });
+    assert.deepEqual(session.camera, welcome.plant.home);
+    assert.equal(session.params.group, welcome.view.group);
+    assert.equal(session.connection.tries, 0);
+});
+
+test('a view that is refused is given up in steps', () => {
+    const { connection, sockets } = makeSession(WANTED);
+    connection.start();
+    const refuse = () => sockets[0].say({ type: 'error', code: 'bad_field', text: 'params.group: unknown', about: 'hello' });
+    sockets[0].accept();
+    refuse();
+    refuse();
+    refuse();
+    assert.deepEqual(sockets[0].sent.map((m) => [!!m.camera, !!m.params]), [[true, true], [true, false], [false, false]]);
+});
+
+test('at most one camera per animation frame, the newest', () => {
+    const { session, socket, clock } = greeted(WANTED);
+    const before = socket.sent.length;
+    for (let n = 0; n < 5; n++)
+        session.setCamera(orbit(session.camera, 3, 0), clock.now());
+    session.flush();
+    session.flush();
+    assert.equal(socket.sent.length, before + 1);
+    assert.deepEqual(last(socket.sent), { type: 'camera', seq: 1, ...session.camera });
+    session.setCamera(session.camera);
+    session.flush();
+    assert.equal(socket.sent.length, before + 1, 'the same camera is no news');
+});
+
+test('a congested line gets no camera; the newest goes out when it has cleared', () => {
+    const { session, socket } = greeted(WANTED);
+    socket.bufferedAmount = 1e6;
+    session.setCamera(orbit(session.camera, 3, 0));
+    session.flush();
+    session.setCamera(orbit(session.camera, 3, 0));
+    socket.bufferedAmount = 0;
+    session.flush();
+    assert.deepEqual(last(socket.sent).eye, session.camera.eye);
+    assert.equal(last(socket.sent).seq, 1);
+});
+
+test('after a reconnect the same camera and the same parameters are asked for', () => {
+    const { session, socket, sockets, clock } = greeted();
+    session.setCamera(orbit(session.camera, 33, 5));
+    session.flush();
+    session.setParams({ distance: 'euclidean', ramp_interval: 10 });
+    socket.say({ ...vector('server/params.json'), seq: 1, distance: 'euclidean', ramp_interval: 10 });
+    const { camera, params } = session;
+    socket.fail();
+    clock.advance(500);
+    sockets[1].accept();
+    assert.deepEqual(sockets[1].sent[0].camera, camera);
+    assert.equal(sockets[1].sent[0].params.distance, 'euclidean');
+    assert.equal(sockets[1].sent[0].params.ramp_interval, 10);
+    assert.equal(sockets[1].sent[0].params.seq, undefined);
+    sockets[1].say({ ...welcome, view: { ...welcome.view, ...params } });
+    assert.deepEqual(session.camera, camera);
+    assert.equal(session.params.ramp_interval, 10);
+});
+
+test('after a reconnect to another plant it looks from that plant\'s home', () => {
+    const { session, socket, sockets, clock } = greeted(WANTED);
+    socket.fail();
+    clock.advance(500);
+    sockets[1].accept();
+    sockets[1].say({ ...welcome, plant: { ...welcome.plant, name: 'Unit 200' } });
+    assert.deepEqual(session.camera, welcome.plant.home);
+});
+
+test('parameters: shown at once, corrected by the answer, restored when refused', () => {
+    const { session, socket } = greeted();
+    session.setParams({ group: 'pressure' });
+    assert.equal(session.params.interpolation, 'paper', 'a group brings its own settings');
+    assert.deepEqual(last(socket.sent), { type: 'params', seq: 1, group: 'pressure' });
+    session.setParams({ colormap: 'viridis' });
+    socket.say({ ...vector('server/params.json'), seq: 1, group: 'pressure', colormap: 'relief' });
+    assert.equal(session.params.colormap, 'viridis', 'the answer to an older question changes nothing');
+    socket.say({ ...vector('server/params.json'), seq: 2, group: 'pressure', colormap: 'viridis' });
+    session.setParams({ colormap: 'plaid' });
+    socket.say({ type: 'error', code: 'bad_field', text: 'colormap: plaid', about: 'params' });
+    assert.equal(session.params.colormap, 'viridis');
+});
+
+test('a drawn frame is acknowledged and measured', () => {
+    const { session, socket, clock, events } = greeted(WANTED);
+    session.setCamera(orbit(session.camera, 3, 0), clock.now());
+    session.flush();
+    clock.advance(40);
+    socket.sayBytes(vectorBytes('frame/jpeg-key.bin').buffer);
+    const [name, frame] = last(events);
+    assert.equal(name, 'frame');
+    session.drawn({ ...frame, cameraSeq: 1 }, 2.345);
+    assert.deepEqual(last(socket.sent), { type: 'ack', seq: 1, decode_ms: 2.35 });
+    assert.equal(session.latency.median(clock.now()), 40);
+    assert.equal(session.picture.payload, null);
+});
+
+test('a hidden page says so, also to a new connection', () => {
+    const { session, socket, sockets, clock } = greeted();
+    session.setVisible(false);
+    assert.deepEqual(last(socket.sent), { type: 'visible', visible: false });
+    socket.fail();
+    clock.advance(500);
+    sockets[1].accept();
+    sockets[1].say(welcome);
+    assert.deepEqual(sockets[1].sent[1], { type: 'visible', visible: false });
+});
+
+test('tags: values, qualities, and ages that go on by our own clock', () => {
+    const { session, socket, clock } = greeted();
+    socket.say({ type: 'tags', time_us: 1, values: [[0, 87.25, 'good', 'Good', 140], [1, null, 'bad', 'Bad_SensorFailure', null], [999, 1, 'good', 'Good', 0]] });
+    clock.advance(1000);
+    assert.equal(session.model.readings[0].value, 87.25);
+    assert.equal(session.model.ageMs(0, clock.now()), 1140);
+    assert.equal(session.model.ageMs(1, clock.now()), null);
+    assert.equal(session.model.oldestAgeMs(session.model.tags[0].group, clock.now()), 1140);
+    assert.equal(session.model.worstQuality({ tags: [session.model.tags[0], session.model.tags[1]] }), 'bad');
+    assert.equal(session.model.worstQuality({ tags: [] }), null);
+});
+
+test('markers go with their frame, not with the next', () => {
+    const { session, socket } = greeted();
+    socket.say({ type: 'markers', seq: 4, markers: [[0, 1, 2, 1]] });
+    socket.say({ type: 'markers', seq: 5, markers: [[0, 1, 2, 0]] });
+    assert.equal(session.markersOf(4).get(0), true);
+    assert.equal(session.markersOf(6).get(0), false);
+    assert.equal(session.markers.has(4), false);
+});
+
+test('messages of unknown types and without sense are ignored, the session lives', () => {
+    const { session, socket, events } = greeted();
+    socket.say(vector('server/unknown-type.json'));
+    socket.say('{');
+    socket.say('[1]');
+    socket.sayBytes(new ArrayBuffer(10));
+    assert.deepEqual(events.map(([name]) => name), ['ignored', 'ignored', 'ignored', 'ignored']);
+    socket.say(vector('server/unknown-field.json'));
+    socket.say(vector('server/status.json'));
+    assert.equal(session.model.live, true);
+});
+
+test('what comes before the welcome does no harm', () => {
+    const { connection, sockets, session } = makeSession();
+    connection.start();
+    sockets[0].accept();
+    for (const name of ['tags', 'markers', 'status', 'params'])
+        sockets[0].say(vector(`server/${name}.json`));
+    assert.equal(session.model, null);
+});
+
+test('every vector of a server\'s message is understood', () => {
+    for (const name of ['welcome', 'params', 'tags', 'markers', 'markers-none', 'status', 'pong', 'error', 'error-no-about']) {
+        const { socket, events } = greeted();
+        socket.say(vector(`server/${name}.json`));
+        assert.ok(!events.some(([event]) => event === 'ignored'), name);
+    }
+});
+
+test('the server\'s clock goes on by ours', () => {
+    const { session, clock } = greeted();
+    clock.advance(2500);
+    assert.equal(session.clockUs(), welcome.time_us + 2500000);
+});
+
+test('health: each state has its own kind and words', () => {
+    const bench = makeSession();
+    const { connection, session, clock, sockets } = bench;
+    const now = () => health(session, clock.now());
+    connection.start();
+    assert.equal(now().kind, 'connecting');
+    sockets[0].accept();
+    sockets[0].say(welcome);
+    const link = (source, up) => ({ source, up });
+    sockets[0].say({ type: 'status', time_us: 1, live: true, links: [link('plc1', true), link('plc2', true)] });
+    assert.equal(now().words, 'Live');
+    sockets[0].say({ type: 'status', time_us: 1, live: true, links: [link('plc1', true), link('plc2', false)] });
+    assert.deepEqual([now().kind, now().words, now().detail], ['partial', 'Live, 1 of 2 sources down', 'Source plc2 does not answer.']);
+    sockets[0].say({ type: 'status', time_us: 1, live: false, links: [link('plc1', false), link('plc2', false)] });
+    assert.deepEqual([now().kind, now().banner], ['nodata', true]);
+    session.drawn({ seq: 1, cameraSeq: 0 }, 1);
+    clock.advance(6000);
+    assert.equal(now().kind, 'silent');
+    sockets[0].fail(1001);
+    clock.advance(250);
+    assert.equal(now().kind, 'lost');
+    assert.equal(now().detail, 'The server went down. This picture is 6.3 s old. Trying again in 1 s.');
+});
+
+test('a value beyond a limit, by the tag\'s own limits only', () => {
+    const tag = { limits: { LL: null, L: 10, H: 80, HH: 90 } };
+    assert.deepEqual([5, 10, 50, 80, 95].map((v) => limitState(tag, v)), ['L', 'L', null, 'H', 'HH']);
+    assert.equal(limitState(tag, null), null);
+    assert.equal(limitState({}, 95), null);
+});
