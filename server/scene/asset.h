@@ -8,6 +8,7 @@
 struct asset {
     char *path;
     struct asset_view view;
+    void *map;
     size_t bytes;
     _Atomic int refs;
 };

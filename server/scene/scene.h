@@ -7,6 +7,7 @@
 #include "base/log.h"
 #include "plant/plant.h"
 #include "scene/asset.h"
+#include "scene/camera.h"
 
 struct scene_sensor {
     int tag;                     /* index in plant->tags */
@@ -20,6 +21,7 @@ struct scene_asset {
     const struct plant_asset *plant;
     struct asset *file;          /* instances share one */
     double placement[16];        /* plant from file positions (origin_m taken in), column-major */
+    double scale;                /* metres in the plant per metre in the file: its distances times this are the plant's */
     double bounds_min_m[3], bounds_max_m[3]; /* plant frame, axis-aligned */
     struct scene_sensor *sensors; /* of every group, in the order of the tag list */
     size_t sensor_count;
@@ -36,5 +38,7 @@ struct scene {
    written now, naming asset and reason. NULL on failure, everything wrong is logged. plant must outlive it. */
 struct scene *scene_create(struct log *log, const struct plant *plant, const char *prepared_folder);
 void scene_destroy(struct scene **scene);
+/* Where a client starts: the plant file's view, else the whole plant from a raised corner. */
+void scene_home(const struct scene *scene, double aspect, struct camera *camera);
 
 #endif

@@ -1,0 +1,69 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Asset files, mapped and checked. */
+#include "scene/asset.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdatomic.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "base/mem.h"
+
+/* MAP_FAILED, with errno. prep never writes into a file that is there (it renames a new one over it), so a map stays whole. */
+static void *map_file(const char *path, size_t *bytes)
+{
+    struct stat st;
+    void *map = MAP_FAILED;
+    int file = open(path, O_RDONLY | O_CLOEXEC);
+    if (file < 0)
+        return MAP_FAILED;
+    if (fstat(file, &st) == 0) {
+        *bytes = (size_t)st.st_size;
+        if (S_ISREG(st.st_mode) && st.st_size > 0)
+            map = mmap(NULL, *bytes, PROT_READ, MAP_PRIVATE, file, 0);
+        else
+            errno = S_ISDIR(st.st_mode) ? EISDIR : ENODATA;
+    }
+    int cause = errno;
+    close(file);
+    errno = cause;
+    return map;
+}
+
+struct asset *asset_open(struct log *log, const char *path)
+{
+    size_t bytes = 0;
+    char why[200];
+    void *map = map_file(path, &bytes);
+    if (map == MAP_FAILED) {
+        log_err(log, "asset file %s: cannot be read: %s", path, strerror(errno));
+        return NULL;
+    }
+    struct asset *asset = mem_new(sizeof(*asset));
+    *asset = (struct asset){ .path = mem_strdup(path), .map = map, .bytes = bytes, .refs = 1 };
+    if (!asset_view_init(&asset->view, map, bytes, why)) {
+        log_err(log, "asset file %s: %s", path, why);
+        asset_unref(&asset);
+    }
+    return asset;
+}
+
+struct asset *asset_ref(struct asset *asset)
+{
+    atomic_fetch_add_explicit(&asset->refs, 1, memory_order_relaxed);
+    return asset;
+}
+
+void asset_unref(struct asset **asset_ptr)
+{
+    struct asset *asset = *asset_ptr;
+    *asset_ptr = NULL;
+    if (!asset || atomic_fetch_sub_explicit(&asset->refs, 1, memory_order_acq_rel) != 1)
+        return;
+    munmap(asset->map, asset->bytes);
+    mem_free(asset->path);
+    mem_free(asset);
+}

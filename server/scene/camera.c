@@ -1,0 +1,193 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Where a camera stands and what it sees, in double precision: plants may lie far from their origin. */
+#include "scene/camera.h"
+
+#include <math.h>
+#include <string.h>
+
+#define FAR_M 1e6
+#define FIT_MARGIN 1.06      /* the box may fill 1/1.06 of the picture */
+#define LEAST_BOX_M 0.1      /* a smaller box, or one that is empty, is looked at as if it had this size */
+#define NEAR_TO_FAR 1e-4     /* never less, so that 24 bits of depth resolve what is near */
+#define LEAST_NEAR_M 1e-3
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void cross(const double a[3], const double b[3], double out[3])
+{
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+/* Returns the length it had; leaves 0 alone. */
+static double normalize(double v[3])
+{
+    double length = sqrt(dot(v, v));
+    for (int i = 0; i < 3 && length > 0; i++)
+        v[i] /= length;
+    return length;
+}
+
+/* --- which way it looks ----------------------------------------------------------------------------------------------------- */
+
+struct basis {
+    double right[3], up[3], forward[3];
+};
+
+/* False: there is none, since up lies along the view. */
+static bool basis_of(const double forward[3], const double up[3], struct basis *basis)
+{
+    double sure_up[3] = { up[0], up[1], up[2] };
+    memcpy(basis->forward, forward, sizeof(basis->forward));
+    if (!(normalize(basis->forward) > 0) || !(normalize(sure_up) > 0))
+        return false;
+    cross(basis->forward, sure_up, basis->right);
+    if (!(normalize(basis->right) > 1e-6))
+        return false;
+    cross(basis->right, basis->forward, basis->up);
+    return true;
+}
+
+bool camera_valid(const struct camera *camera)
+{
+    struct basis basis;
+    double forward[3], apart_m = 0;
+    for (int i = 0; i < 3; i++) {
+        if (!(fabs(camera->eye_m[i]) <= FAR_M) || !(fabs(camera->target_m[i]) <= FAR_M) || !(fabs(camera->up[i]) <= FAR_M))
+            return false;
+        forward[i] = camera->target_m[i] - camera->eye_m[i];
+        apart_m += fabs(forward[i]);
+    }
+    return apart_m > 1e-6 && camera->fov_deg >= 1 && camera->fov_deg <= 120 && basis_of(forward, camera->up, &basis);
+}
+
+/* --- fitting a box ---------------------------------------------------------------------------------------------------------- */
+
+static void corner_of(const double min_m[3], const double max_m[3], int corner, double out[3])
+{
+    for (int i = 0; i < 3; i++)
+        out[i] = corner >> i & 1 ? max_m[i] : min_m[i];
+}
+
+static void safe_box(const double min_m[3], const double max_m[3], double safe_min_m[3], double safe_max_m[3])
+{
+    double largest_m = 0;
+    for (int i = 0; i < 3; i++)
+        largest_m = fmax(largest_m, max_m[i] - min_m[i]);
+    double grow_m = largest_m < LEAST_BOX_M ? LEAST_BOX_M / 2 : 0;
+    for (int i = 0; i < 3; i++) {
+        bool good = isfinite(min_m[i]) && isfinite(max_m[i]) && min_m[i] <= max_m[i];
+        safe_min_m[i] = (good ? min_m[i] : 0) - grow_m;
+        safe_max_m[i] = (good ? max_m[i] : 0) + grow_m;
+    }
+}
+
+/* Along one axis of the picture, the planes of the view touch the box where low = max(-x - z t) and high = max(x - z t), with
+   z forward and t the tangent of half the angle. Between them stands the eye, at least this far back. */
+struct side {
+    double low, high;
+};
+
+static void side_add(struct side *side, double x, double z, double t)
+{
+    side->high = fmax(side->high, x - z * t);
+    side->low = fmax(side->low, -x - z * t);
+}
+
+static void place_eye(struct camera *camera, const struct basis *basis, const double min_m[3], const double max_m[3], double aspect)
+{
+    double t_up = tan(camera->fov_deg * M_PI / 360) / FIT_MARGIN, t_right = t_up * aspect;
+    struct side right = { -INFINITY, -INFINITY }, up = { -INFINITY, -INFINITY };
+    double nearest_m = INFINITY, center_m[3];
+    for (int i = 0; i < 3; i++)
+        center_m[i] = (min_m[i] + max_m[i]) / 2;
+    for (int corner = 0; corner < 8; corner++) {
+        double p[3];
+        corner_of(min_m, max_m, corner, p);
+        for (int i = 0; i < 3; i++)
+            p[i] -= center_m[i];
+        double z = dot(p, basis->forward);
+        nearest_m = fmin(nearest_m, z);
+        side_add(&right, dot(p, basis->right), z, t_right);
+        side_add(&up, dot(p, basis->up), z, t_up);
+    }
+    double back_m = fmax((right.low + right.high) / (2 * t_right), (up.low + up.high) / (2 * t_up));
+    double sideways_m = (right.high - right.low) / 2, upwards_m = (up.high - up.low) / 2;
+    back_m = fmax(back_m, -nearest_m * 1.001);
+    for (int i = 0; i < 3; i++) {
+        camera->target_m[i] = center_m[i] + sideways_m * basis->right[i] + upwards_m * basis->up[i];
+        camera->eye_m[i] = camera->target_m[i] - back_m * basis->forward[i];
+    }
+}
+
+void camera_fit_up(struct camera *camera, enum axis up, const double min_m[3], const double max_m[3], double aspect)
+{
+    static const double forward[2][3] = { [AXIS_Z] = { 0.62, 0.68, -0.42 }, [AXIS_Y] = { 0.62, -0.42, -0.68 } };
+    static const double ups[2][3] = { [AXIS_Z] = { 0, 0, 1 }, [AXIS_Y] = { 0, 1, 0 } };
+    double safe_min_m[3], safe_max_m[3];
+    struct basis basis;
+    memcpy(camera->up, ups[up], sizeof(camera->up));
+    camera->fov_deg = 45;
+    basis_of(forward[up], ups[up], &basis);
+    safe_box(min_m, max_m, safe_min_m, safe_max_m);
+    place_eye(camera, &basis, safe_min_m, safe_max_m, aspect);
+}
+
+void camera_fit(struct camera *camera, const double min_m[3], const double max_m[3], double aspect)
+{
+    camera_fit_up(camera, AXIS_Z, min_m, max_m, aspect);
+}
+
+/* --- matrices --------------------------------------------------------------------------------------------------------------- */
+
+static void depth_range(const struct camera *camera, const struct basis *basis, const double min_m[3], const double max_m[3],
+                        double *near_m, double *far_m)
+{
+    double nearest = INFINITY, farthest = -INFINITY;
+    for (int corner = 0; corner < 8; corner++) {
+        double p[3];
+        corner_of(min_m, max_m, corner, p);
+        for (int i = 0; i < 3; i++)
+            p[i] -= camera->eye_m[i];
+        double z = dot(p, basis->forward);
+        nearest = fmin(nearest, z);
+        farthest = fmax(farthest, z);
+    }
+    *far_m = fmax(farthest * 1.001, 2 * LEAST_NEAR_M); /* a box behind the camera: any range will do */
+    *near_m = fmax(fmax(nearest * 0.999, *far_m * NEAR_TO_FAR), LEAST_NEAR_M);
+    if (*near_m >= *far_m) /* a box without depth */
+        *near_m = *far_m / 2;
+}
+
+void camera_matrices(const struct camera *camera, double aspect, const double min_m[3], const double max_m[3], double view[16],
+                     double projection[16])
+{
+    struct basis basis;
+    double forward[3], near_m, far_m;
+    for (int i = 0; i < 3; i++)
+        forward[i] = camera->target_m[i] - camera->eye_m[i];
+    if (!basis_of(forward, camera->up, &basis)) /* camera_valid says no; looking north keeps the numbers finite */
+        basis_of((double[]){ 0, 1, 0 }, (double[]){ 0, 0, 1 }, &basis);
+    depth_range(camera, &basis, min_m, max_m, &near_m, &far_m);
+    for (int i = 0; i < 3; i++) {
+        view[i * 4] = basis.right[i];
+        view[i * 4 + 1] = basis.up[i];
+        view[i * 4 + 2] = -basis.forward[i];
+        view[i * 4 + 3] = 0;
+    }
+    view[12] = -dot(basis.right, camera->eye_m);
+    view[13] = -dot(basis.up, camera->eye_m);
+    view[14] = dot(basis.forward, camera->eye_m);
+    view[15] = 1;
+    double f = 1 / tan(camera->fov_deg * M_PI / 360);
+    memset(projection, 0, 16 * sizeof(*projection));
+    projection[0] = f / aspect;
+    projection[5] = f;
+    projection[10] = (far_m + near_m) / (near_m - far_m);
+    projection[11] = -1;
+    projection[14] = 2 * far_m * near_m / (near_m - far_m);
+}

@@ -1,0 +1,90 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The manifest, by jansson. */
+#include "scene/manifest.h"
+
+#include <errno.h>
+#include <jansson.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "base/text.h"
+
+#define MANIFEST_FORMAT 1
+#define MANIFEST_MAX_BYTES (16u * 1024 * 1024)
+
+static json_t *load(struct log *log, const char *path)
+{
+    json_error_t error;
+    size_t bytes;
+    char *text = text_read_file(path, MANIFEST_MAX_BYTES, &bytes);
+    if (!text) {
+        log_err(log, "%s: cannot be read: %s; run plantcast-prep", path, strerror(errno));
+        return NULL;
+    }
+    json_t *root = json_loadb(text, bytes, JSON_REJECT_DUPLICATES, &error);
+    if (!root)
+        log_err(log, "%s:%d:%d: %s; run plantcast-prep", path, error.line, error.column, error.text);
+    mem_free(text);
+    return root;
+}
+
+/* A name in the manifest's own folder, and nothing else. */
+static bool file_name_good(const char *file)
+{
+    return file && *file && *file != '.' && !strchr(file, '/');
+}
+
+static bool read_entry(struct log *log, struct manifest *manifest, size_t index, const json_t *item)
+{
+    const char *id = json_string_value(json_object_get(item, "id")), *file = json_string_value(json_object_get(item, "file"));
+    if (!id || !file_name_good(file)) {
+        log_err(log, "%s: asset %zu: expected an id and the name of a file; run plantcast-prep", manifest->path, index);
+        return false;
+    }
+    manifest->entries[index] = (struct manifest_entry){ mem_strdup(id), mem_strdup(file) };
+    manifest->count = index + 1;
+    return true;
+}
+
+bool manifest_read(struct log *log, const char *folder, struct manifest *manifest)
+{
+    *manifest = (struct manifest){ .path = mem_printf("%s/manifest.json", folder) };
+    json_t *root = load(log, manifest->path);
+    bool good = root;
+    if (good && json_integer_value(json_object_get(root, "format")) != MANIFEST_FORMAT) {
+        log_err(log, "%s: expected format %d; run plantcast-prep", manifest->path, MANIFEST_FORMAT);
+        good = false;
+    }
+    const json_t *assets = json_object_get(root, "assets");
+    if (good && !json_is_array(assets)) {
+        log_err(log, "%s: expected a list of assets; run plantcast-prep", manifest->path);
+        good = false;
+    }
+    if (good)
+        manifest->entries = mem_array(json_array_size(assets), sizeof(*manifest->entries));
+    for (size_t i = 0; good && i < json_array_size(assets); i++)
+        good = read_entry(log, manifest, i, json_array_get(assets, i));
+    json_decref(root);
+    if (!good)
+        manifest_finish(manifest);
+    return good;
+}
+
+void manifest_finish(struct manifest *manifest)
+{
+    for (size_t i = 0; i < manifest->count; i++) {
+        mem_free(manifest->entries[i].id);
+        mem_free(manifest->entries[i].file);
+    }
+    mem_free(manifest->entries);
+    mem_free(manifest->path);
+    *manifest = (struct manifest){ 0 };
+}
+
+const char *manifest_find(const struct manifest *manifest, const char *id)
+{
+    for (size_t i = 0; i < manifest->count; i++)
+        if (!strcmp(manifest->entries[i].id, id))
+            return manifest->entries[i].file;
+    return NULL;
+}

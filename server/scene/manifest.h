@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* FOLDER/manifest.json: which prepared file belongs to which asset (protocol/ASSET.md). Thread: one. */
+#ifndef SCENE_MANIFEST_H
+#define SCENE_MANIFEST_H
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "base/log.h"
+
+struct manifest {
+    char *path;
+    struct manifest_entry {
+        char *id, *file; /* file: a name in the same folder */
+    } *entries;
+    size_t count;
+};
+
+/* False: logged, with what to do about it. */
+bool manifest_read(struct log *log, const char *folder, struct manifest *manifest);
+void manifest_finish(struct manifest *manifest);
+const char *manifest_find(const struct manifest *manifest, const char *id); /* the file's name, or NULL */
+
+#endif

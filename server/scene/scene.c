@@ -1,0 +1,192 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Puts the prepared assets into the plant, after checking that they are of this plant. */
+#include "scene/scene.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "plant/sensors.h"
+#include "plant/transform.h"
+#include "scene/manifest.h"
+
+#define SAME_PLACE_M 1e-4
+
+/* --- does the file fit? ----------------------------------------------------------------------------------------------------- */
+
+/* Positions in the file are floats relative to its origin, so a place far from it is only known as well as a float is. */
+static bool same_place(const struct asset_header *header, const struct asset_sensor *in_file, const struct plant_sensor *in_plant)
+{
+    if (in_file->node_hash || in_plant->node)
+        return in_file->node_hash == in_plant->node_hash;
+    for (int i = 0; i < 3; i++) {
+        double expected_m = in_plant->position_m[i] - header->origin_m[i];
+        if (!(fabs(in_file->position_m[i] - expected_m) <= SAME_PLACE_M + fabs(expected_m) * 1e-6))
+            return false;
+    }
+    return true;
+}
+
+static bool sensors_fit(struct log *log, const struct plant *plant, const struct scene_asset *asset, const struct plant_sensor *sensors,
+                        size_t count)
+{
+    const struct asset_view *view = &asset->file->view;
+    if (view->header->sensor_count != count) {
+        log_err(log, "asset %s: %s has %u sensors, the tag list has %zu; run plantcast-prep %s", asset->plant->id, asset->file->path,
+                view->header->sensor_count, count, plant->path);
+        return false;
+    }
+    for (size_t i = 0; i < count; i++) {
+        if (same_place(view->header, &view->sensors[i], &sensors[i]))
+            continue;
+        log_err(log, "asset %s: sensor %s stands elsewhere in %s than in the tag list; run plantcast-prep %s", asset->plant->id,
+                plant->tags[sensors[i].tag].name, asset->file->path, plant->path);
+        return false;
+    }
+    return true;
+}
+
+/* --- one asset -------------------------------------------------------------------------------------------------------------- */
+
+static void grow_box(double min_m[3], double max_m[3], const double point_m[3])
+{
+    for (int i = 0; i < 3; i++) {
+        min_m[i] = fmin(min_m[i], point_m[i]);
+        max_m[i] = fmax(max_m[i], point_m[i]);
+    }
+}
+
+static void empty_box(double min_m[3], double max_m[3])
+{
+    for (int i = 0; i < 3; i++) {
+        min_m[i] = INFINITY;
+        max_m[i] = -INFINITY;
+    }
+}
+
+static void place(struct scene_asset *asset)
+{
+    const struct asset_header *header = asset->file->view.header;
+    double to_asset_frame[16];
+    memcpy(to_asset_frame, transform_identity, sizeof(to_asset_frame));
+    memcpy(&to_asset_frame[12], header->origin_m, sizeof(header->origin_m));
+    transform_multiply(asset->plant->placement, to_asset_frame, asset->placement);
+    asset->scale = sqrt(asset->placement[0] * asset->placement[0] + asset->placement[1] * asset->placement[1] +
+                        asset->placement[2] * asset->placement[2]);
+    empty_box(asset->bounds_min_m, asset->bounds_max_m);
+    for (int corner = 0; corner < 8; corner++) {
+        double point[3];
+        for (int i = 0; i < 3; i++)
+            point[i] = (corner >> i & 1 ? header->bounds_max_m : header->bounds_min_m)[i];
+        transform_point(asset->placement, point, point);
+        grow_box(asset->bounds_min_m, asset->bounds_max_m, point);
+    }
+}
+
+static void place_sensor(const struct scene_asset *asset, int column, int tag, struct scene_sensor *out)
+{
+    const struct asset_sensor *sensor = &asset->file->view.sensors[column];
+    double position[3], surface[3];
+    for (int i = 0; i < 3; i++) {
+        position[i] = sensor->position_m[i];
+        surface[i] = sensor->surface_m[i];
+    }
+    *out = (struct scene_sensor){ .tag = tag, .column = column, .surface_distance_m = sensor->surface_distance_m * asset->scale };
+    transform_point(asset->placement, position, out->position_m);
+    transform_point(asset->placement, surface, out->surface_m);
+}
+
+/* The file of an asset before it, if that has the same name; else opened. */
+static struct asset *open_file(struct log *log, const struct scene *scene, int index, const char *path)
+{
+    for (int i = 0; i < index; i++)
+        if (scene->assets[i].file && !strcmp(scene->assets[i].file->path, path))
+            return asset_ref(scene->assets[i].file);
+    return asset_open(log, path);
+}
+
+static bool create_asset(struct log *log, struct scene *scene, int index, const struct manifest *manifest, const char *folder)
+{
+    struct scene_asset *asset = &scene->assets[index];
+    struct plant_sensor *sensors = NULL;
+    bool good = false;
+    asset->plant = &scene->plant->assets[index];
+    const char *name = manifest_find(manifest, asset->plant->id);
+    if (!name) {
+        log_err(log, "asset %s: is not in %s; run plantcast-prep %s", asset->plant->id, manifest->path, scene->plant->path);
+        return false;
+    }
+    char *path = mem_printf("%s/%s", folder, name);
+    asset->file = open_file(log, scene, index, path);
+    if (!asset->file) {
+        log_err(log, "asset %s: has no usable file; run plantcast-prep %s", asset->plant->id, scene->plant->path);
+        goto done;
+    }
+    size_t count = plant_sensors(scene->plant, index, &sensors);
+    if (!sensors_fit(log, scene->plant, asset, sensors, count))
+        goto done;
+    place(asset);
+    asset->sensors = mem_array(count, sizeof(*asset->sensors));
+    asset->sensor_count = count;
+    for (size_t i = 0; i < count; i++)
+        place_sensor(asset, (int)i, sensors[i].tag, &asset->sensors[i]);
+    good = true;
+done:
+    mem_free(sensors);
+    mem_free(path);
+    return good;
+}
+
+/* --- all of them ------------------------------------------------------------------------------------------------------------ */
+
+struct scene *scene_create(struct log *log, const struct plant *plant, const char *prepared_folder)
+{
+    struct manifest manifest;
+    if (!manifest_read(log, prepared_folder, &manifest))
+        return NULL;
+    struct scene *scene = mem_new(sizeof(*scene));
+    scene->plant = plant;
+    scene->asset_count = plant->asset_count;
+    scene->assets = mem_array(plant->asset_count, sizeof(*scene->assets));
+    empty_box(scene->bounds_min_m, scene->bounds_max_m);
+    bool good = true;
+    for (size_t i = 0; i < plant->asset_count; i++) {
+        if (!create_asset(log, scene, (int)i, &manifest, prepared_folder)) {
+            good = false;
+            continue;
+        }
+        grow_box(scene->bounds_min_m, scene->bounds_max_m, scene->assets[i].bounds_min_m);
+        grow_box(scene->bounds_min_m, scene->bounds_max_m, scene->assets[i].bounds_max_m);
+    }
+    manifest_finish(&manifest);
+    if (!good)
+        scene_destroy(&scene);
+    return scene;
+}
+
+void scene_destroy(struct scene **scene_ptr)
+{
+    struct scene *scene = *scene_ptr;
+    if (!scene)
+        return;
+    for (size_t i = 0; i < scene->asset_count; i++) {
+        asset_unref(&scene->assets[i].file);
+        mem_free(scene->assets[i].sensors);
+    }
+    mem_free(scene->assets);
+    mem_free(scene);
+    *scene_ptr = NULL;
+}
+
+void scene_home(const struct scene *scene, double aspect, struct camera *camera)
+{
+    const struct plant_view *view = &scene->plant->view;
+    camera_fit_up(camera, scene->plant->up, scene->bounds_min_m, scene->bounds_max_m, aspect);
+    if (!view->set)
+        return;
+    memcpy(camera->eye_m, view->eye_m, sizeof(camera->eye_m));
+    memcpy(camera->target_m, view->target_m, sizeof(camera->target_m));
+    camera->fov_deg = view->fov_deg;
+    if (!camera_valid(camera)) /* straight down: a plan, north above */
+        memcpy(camera->up, scene->plant->up == AXIS_Y ? (double[]){ 0, 0, -1 } : (double[]){ 0, 1, 0 }, sizeof(camera->up));
+}

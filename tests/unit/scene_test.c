@@ -1,0 +1,271 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Scenes from real plant and asset files: everything in its place, and files of another plant refused with the reason. */
+#include "scene/scene.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include <cmocka.h>
+#include <xxhash.h>
+
+#include "base/mem.h"
+#include "base/text.h"
+#include "plant/sensors.h"
+#include "tests/support/temp.h"
+
+static const char plant_text[] =
+    "plant: { name: Test%s }\n"
+    "assets:\n"
+    "- { id: A, model: m.glb }\n"
+    "- { id: B, model: m.glb, placement: { translate: [10, 20, 30], rotate_deg: [0, 0, 90], scale: 2 } }\n"
+    "- { id: C, model: m.glb, sensor_frame: asset, placement: { translate: [-5, 0, 0], rotate_deg: [90, 0, 0] } }\n"
+    "groups: [{ id: t, unit: K, min: 0, max: 1 }]\n"
+    "tags: tags.csv\n";
+
+/* B's places are where those of the asset frame come to lie: (x, y, z) -> (10 - 2y, 20 + 2x, 30 + 2z). */
+static const char tags_text[] =
+    "Tag Name,Group,Asset,Node,X,Y,Z\n"
+    "a1,t,A,,1,2,3\n"
+    "b1,t,B,,6,22,36\n"
+    "c1,t,C,,1,2,3\n"
+    "a2,t,A,TI-2,,,\n"
+    "b2,t,B,TI-2,,,\n"
+    "c2,t,C,TI-2,,,\n"
+    "x,t,,,,,\n";
+
+struct fixture {
+    char *folder, *prepared;
+    struct plant *plant;
+    struct log *log;
+};
+
+/* A triangle and two sensors, at (1, 2, 3) and at the node TI-2 in (4, 2, 0) of the asset frame; origin (1, 1, 1). */
+static void write_asset(const struct fixture *f, const char *name, double sensor_x_m, const char *node, uint32_t sensor_count)
+{
+    const float positions[3][3] = { { -1, 0, 0 }, { 3, 0, 0 }, { 0, 1, 2 } }, normals[3][3] = { { 0, 0, 1 }, { 0, 0, 1 }, { 0, 0, 1 } };
+    const uint32_t indices[3] = { 0, 1, 2 };
+    const struct asset_primitive primitive = { .index_count = 3 };
+    const uint32_t none = ASSET_NO_TEXTURE;
+    const struct asset_material plain = { .base_color_texture = none, .metallic_roughness_texture = none, .normal_texture = none,
+                                          .occlusion_texture = none, .emissive_texture = none };
+    const struct asset_sensor sensors[2] = {
+        { .position_m = { (float)(sensor_x_m - 1), 1, 2 }, .surface_m = { 0, 1, 1.5f }, .surface_distance_m = 0.5f },
+        { .position_m = { 3, 1, -1 }, .surface_m = { 3, 0, 0 }, .node_hash = XXH3_64bits(node, strlen(node)) },
+    };
+    const float geodesic[6] = { 0, 1, 2, 3, 4, 5 };
+    const struct asset_parts parts = {
+        .key = 7, .origin_m = { 1, 1, 1 }, .positions_m = positions, .normals = normals, .indices = indices, .primitives = &primitive,
+        .materials = &plain, .sensors = sensors, .geodesic_m = geodesic, .vertex_count = 3, .index_count = 3, .primitive_count = 1,
+        .material_count = 1, .sensor_count = sensor_count,
+    };
+    size_t bytes;
+    void *file = asset_build(&parts, &bytes);
+    assert_non_null(file);
+    mem_free(temp_write(f->prepared, name, file, bytes));
+    free(file);
+}
+
+static void write_manifest(const struct fixture *f, const char *text)
+{
+    mem_free(temp_write_text(f->prepared, "manifest.json", text));
+}
+
+static const char good_manifest[] = "{\"format\": 1, \"assets\": [{\"id\": \"C\", \"file\": \"1.asset\", \"key\": \"1\"},"
+                                    "{\"id\": \"A\", \"file\": \"1.asset\"}, {\"id\": \"B\", \"file\": \"1.asset\"}]}";
+
+static struct plant *load(const struct fixture *f, const char *more)
+{
+    struct diag diag = { 0 };
+    char text[1000];
+    snprintf(text, sizeof(text), plant_text, more);
+    char *path = temp_write_text(f->folder, "plant.yaml", text);
+    mem_free(temp_write_text(f->folder, "tags.csv", tags_text));
+    mem_free(temp_write_text(f->folder, "m.glb", "glTF"));
+    struct plant *plant = plant_load(path, &diag);
+    if (!plant)
+        diag_print(&diag, stderr);
+    diag_finish(&diag);
+    mem_free(path);
+    assert_non_null(plant);
+    return plant;
+}
+
+static int set_up(void **state)
+{
+    struct fixture *f = mem_new(sizeof(*f));
+    f->folder = temp_folder_create();
+    f->plant = load(f, "");
+    f->prepared = plant_prepared_folder(f->plant);
+    f->log = log_create(LOG_ERROR);
+    write_asset(f, "1.asset", 1, "TI-2", 2);
+    write_manifest(f, good_manifest);
+    *state = f;
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    struct fixture *f = *state;
+    plant_destroy(&f->plant);
+    log_destroy(&f->log);
+    mem_free(f->prepared);
+    temp_folder_destroy(&f->folder);
+    mem_free(f);
+    return 0;
+}
+
+static void assert_point(const double point[3], double x, double y, double z)
+{
+    const double expected[3] = { x, y, z };
+    for (int i = 0; i < 3; i++)
+        if (!(fabs(point[i] - expected[i]) < 1e-5))
+            fail_msg("(%g, %g, %g) is not (%g, %g, %g)", point[0], point[1], point[2], x, y, z);
+}
+
+static void everything_is_in_its_place(void **state)
+{
+    struct fixture *f = *state;
+    struct scene *scene = scene_create(f->log, f->plant, f->prepared);
+    assert_non_null(scene);
+    assert_int_equal(scene->asset_count, 3);
+    const struct scene_asset *a = &scene->assets[0], *b = &scene->assets[1], *c = &scene->assets[2];
+    assert_ptr_equal(a->file, b->file);
+    assert_ptr_equal(a->file, c->file);
+    assert_int_equal(a->file->refs, 3);
+    assert_int_equal(b->sensor_count, 2);
+    assert_int_equal(b->sensors[0].tag, 1);
+    assert_int_equal(b->sensors[1].tag, 4);
+    assert_int_equal(b->sensors[1].column, 1);
+    assert_point(a->sensors[0].position_m, 1, 2, 3);
+    assert_point(a->sensors[1].position_m, 4, 2, 0);
+    assert_point(b->sensors[0].position_m, 6, 22, 36);
+    assert_point(b->sensors[1].position_m, 6, 28, 30);
+    assert_point(b->sensors[0].surface_m, 6, 22, 35);
+    assert_float_equal(b->sensors[0].surface_distance_m, 1, 1e-6);
+    assert_float_equal(b->scale, 2, 1e-12);
+    assert_point(c->sensors[0].position_m, -4, -3, 2); /* turned about x: y to z, z to -y */
+    assert_point(a->bounds_min_m, 0, 1, 1);
+    assert_point(a->bounds_max_m, 4, 2, 3);
+    assert_point(b->bounds_min_m, 6, 20, 32);
+    assert_point(b->bounds_max_m, 8, 28, 36);
+    assert_point(scene->bounds_min_m, -5, -3, 1);
+    assert_point(scene->bounds_max_m, 8, 28, 36);
+    scene_destroy(&scene);
+    assert_null(scene);
+}
+
+/* The log goes to stderr; here it goes to a file for a while, and `words` must be in it. */
+static void assert_refused(struct fixture *f, const char *words)
+{
+    char *path = temp_path(f->folder, "log.txt");
+    size_t bytes;
+    fflush(stderr);
+    int kept = dup(STDERR_FILENO);
+    assert_non_null(freopen(path, "w", stderr));
+    struct log *log = log_create(LOG_ERROR); /* a new one, which has said nothing yet that it could count as a repeat */
+    struct scene *scene = scene_create(log, f->plant, f->prepared);
+    log_destroy(&log);
+    fflush(stderr);
+    dup2(kept, STDERR_FILENO);
+    close(kept);
+    char *text = text_read_file(path, 1 << 20, &bytes);
+    assert_non_null(text);
+    assert_null(scene);
+    if (!strstr(text, words) || !strstr(text, "run plantcast-prep"))
+        fail_msg("expected '%s' and what to do in: %s", words, text);
+    mem_free(text);
+    mem_free(path);
+}
+
+static void other_sensors_are_refused(void **state)
+{
+    struct fixture *f = *state;
+    write_asset(f, "1.asset", 1.00005, "TI-2", 2); /* half of the tolerance */
+    struct scene *scene = scene_create(f->log, f->plant, f->prepared);
+    assert_non_null(scene);
+    scene_destroy(&scene);
+    write_asset(f, "1.asset", 1.0003, "TI-2", 2);
+    assert_refused(f, "asset A: sensor a1 stands elsewhere");
+    write_asset(f, "1.asset", 1, "TI-3", 2);
+    assert_refused(f, "asset B: sensor b2 stands elsewhere");
+    write_asset(f, "1.asset", 1, "TI-2", 1);
+    assert_refused(f, "1.asset has 1 sensors, the tag list has 2");
+}
+
+static void broken_files_are_refused(void **state)
+{
+    struct fixture *f = *state;
+    char *path = temp_path(f->prepared, "1.asset");
+    assert_int_equal(truncate(path, 1000), 0);
+    assert_refused(f, "1.asset: truncated");
+    assert_int_equal(truncate(path, 0), 0);
+    assert_refused(f, "1.asset: cannot be read");
+    mem_free(temp_write_text(f->prepared, "1.asset", "glTF and so on"));
+    assert_refused(f, "1.asset: not an asset file");
+    unlink(path);
+    assert_refused(f, "asset C: has no usable file");
+    mem_free(path);
+}
+
+static void broken_manifests_are_refused(void **state)
+{
+    struct fixture *f = *state;
+    static const char *const cases[][2] = {
+        { "{\"format\": 1, \"assets\": [{\"id\": \"A\", \"file\": \"1.asset\"}]}", "asset B: is not in" },
+        { "{\"format\": 2, \"assets\": []}", "expected format 1" },
+        { "{\"format\": 1}", "expected a list of assets" },
+        { "{\"format\": 1, \"assets\": [{\"id\": \"A\", \"file\": \"../1.asset\"}]}", "expected an id and the name of a file" },
+        { "{\"format\": 1, \"assets\": [{\"file\": \"1.asset\"}]}", "expected an id and the name of a file" },
+        { "{\"format\": 1,\n \"assets\": [}", "manifest.json:2:" },
+        { "[]", "expected format 1" },
+    };
+    for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
+        write_manifest(f, cases[i][0]);
+        assert_refused(f, cases[i][1]);
+    }
+    char *path = temp_path(f->prepared, "manifest.json");
+    unlink(path);
+    assert_refused(f, "manifest.json: cannot be read");
+    mem_free(path);
+}
+
+static void home_is_the_view_of_the_plant(void **state)
+{
+    struct fixture *f = *state;
+    struct camera camera;
+    struct scene *scene = scene_create(f->log, f->plant, f->prepared);
+    assert_non_null(scene);
+    scene_home(scene, 1.5, &camera);
+    assert_true(camera_valid(&camera));
+    assert_true(camera.eye_m[0] < scene->bounds_min_m[0] && camera.eye_m[1] < scene->bounds_min_m[1] && camera.eye_m[2] > scene->bounds_max_m[2]);
+    scene_destroy(&scene);
+    plant_destroy(&f->plant);
+    f->plant = load(f, ", view: { eye: [0, 0, 50], target: [0, 0, 0], fov: 30 }");
+    scene = scene_create(f->log, f->plant, f->prepared);
+    assert_non_null(scene);
+    scene_home(scene, 1.5, &camera);
+    assert_true(camera_valid(&camera)); /* straight down, with north above */
+    assert_point(camera.eye_m, 0, 0, 50);
+    assert_point(camera.up, 0, 1, 0);
+    assert_float_equal(camera.fov_deg, 30, 0);
+    scene_destroy(&scene);
+}
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(everything_is_in_its_place, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(other_sensors_are_refused, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(broken_files_are_refused, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(broken_manifests_are_refused, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(home_is_the_view_of_the_plant, set_up, tear_down),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
