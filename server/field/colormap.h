@@ -6,7 +6,7 @@
 #include <stdint.h>
 
 struct colormap {
-    const char *name;      /* "relief" (the default, low contrast, for shaded 3D), "viridis", "cividis", "diverging", "turbo" */
+    const char *name; /* "relief" (the default, low contrast, for shaded 3D), "viridis", "cividis", "diverging", "turbo" */
     uint8_t rgb[256][3];
     uint8_t below[3], above[3]; /* colours for < MIN and > MAX; not on the map */
 };

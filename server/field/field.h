@@ -7,6 +7,12 @@
    shepard:  value = sum_i s_i v_i / D_i^p  /  sum_i s_i / D_i^p; exactly v_i where D_i = 0
 
    A sensor takes part at a point if it is of the group and the asset, its quality is not Bad, D is finite and D <= reach_m.
+   In shepard a sensor of strength 0 never takes part; a common factor on all strengths cancels out, and decay has no part.
+   There is no data where nobody takes part, and where a configured sensor that does not is nearer than all that do (`fill` may ask to
+   have such places filled; they are flagged uncertain). The value there is carried on from the nearest that takes part; else MIN.
+
+   Both are linear in the readings: value = G v / G 1. G is kept in a bounded cache or made anew for each sum, with the same bits;
+   a changed reading adds one column times its change, a changed quality sums all anew.
    Thread: one at a time per field (it spreads its work over `workers`). */
 #ifndef FIELD_FIELD_H
 #define FIELD_FIELD_H
@@ -22,10 +28,10 @@ struct field_params {
     enum interpolation interpolation;
     enum distance_mode distance;
     enum fill_mode fill;
-    double strength, decay;  /* factors on each sensor's own; 1 = as configured */
-    double power;            /* shepard's p */
-    double radius_m;         /* paper's R; 0 = the largest distance on the asset over all its configured sensors */
-    double reach_m;          /* INFINITY: no limit */
+    double strength, decay; /* factors on each sensor's own; 1 = as configured */
+    double power;           /* shepard's p */
+    double radius_m;        /* paper's R; 0 = the largest distance on the asset over all its configured sensors */
+    double reach_m;         /* INFINITY: no limit */
 };
 void field_params_default(const struct plant *plant, int group, struct field_params *params);
 bool field_params_equal(const struct field_params *a, const struct field_params *b);
@@ -34,7 +40,11 @@ const char *field_params_wrong(const struct plant *plant, const struct field_par
 
 struct field;
 struct field *field_create(struct workers *workers, const struct scene *scene); /* both must outlive it */
-void field_destroy(struct field **field);
+void field_destroy(struct field **field);                                       /* &NULL is fine; leaves NULL */
+/* The bound on what is kept, FIELD_DEFAULT_BYTES at first. What the parameters asked for last need for themselves may pass it. */
+#define FIELD_DEFAULT_BYTES ((size_t)512 << 20)
+void field_set_bound(struct field *field, size_t bytes);
+size_t field_bytes(const struct field *field); /* kept now */
 
 /* The scalars of one asset, brought up to date with the snapshot. Belongs to `field`, valid until the next call with other
    parameters; scalars->version grows only when a value or a flag really changed. NULL: the asset has no sensor of the group,
@@ -42,14 +52,26 @@ void field_destroy(struct field **field);
 const struct scalars *field_scalars(struct field *field, int asset, const struct field_params *params, const struct snapshot *snapshot);
 
 enum probe_kind { PROBE_NO_DATA, PROBE_MEASURED, PROBE_BETWEEN };
+#define PROBE_NEAREST 4
 struct probe {
-    enum probe_kind kind;
+    enum probe_kind kind; /* measured: at a sensor's own vertex, in an interpolation that keeps readings */
+    bool uncertain;       /* as scalar.uncertain */
     double value;
-    int nearest_tag[4];           /* good sensors, nearest first; -1: none */
-    double nearest_m[4];
+    int nearest_tag[PROBE_NEAREST]; /* sensors that take part there, nearest first; -1: none */
+    double nearest_m[PROBE_NEAREST];
 };
-/* The field at one vertex, from the same sums. */
+/* The field at one vertex, from the same sums. An asset without a sensor of the group has no data. */
 void field_probe(struct field *field, int asset, const struct field_params *params, const struct snapshot *snapshot, unsigned vertex,
                  struct probe *out);
+
+/* The distance in metres from one sensor (a tag) to every vertex of its asset, for the paper's Figs. 7 and 11. Where it cannot be
+   reached: no_data, and the value is the largest distance. NULL: the tag stands on no asset, or out of memory. The caller owns it. */
+struct scalars *field_distance(struct field *field, int tag, enum distance_mode mode);
+void field_distance_destroy(struct scalars **distance); /* &NULL is fine; leaves NULL */
+
+/* The distance in metres from one sensor (a tag) to every vertex of its asset, for the paper's Figs. 7 and 11. Where it cannot be
+   reached: no_data, and the value is the largest distance. NULL: the tag stands on no asset, or out of memory. The caller owns it. */
+struct scalars *field_distance(struct field *field, int tag, enum distance_mode mode);
+void field_distance_destroy(struct scalars **distance); /* &NULL is fine; leaves NULL */
 
 #endif

@@ -6,16 +6,18 @@
 #include <stdint.h>
 
 struct scalar {
-    float value;        /* engineering units; may pass MIN and MAX. Finite even where there is no data, so that it can be interpolated */
-    uint8_t no_data;    /* 255: no good sensor reaches, or the nearest configured one is Bad; else 0 */
-    uint8_t uncertain;  /* 255: at least half of the weight is on Uncertain sensors (or filled by neighbours); else 0 */
+    float value;       /* engineering units; may pass MIN and MAX. Finite even where there is no data, so that it can be interpolated */
+    uint8_t no_data;   /* 255: no good sensor reaches, or the nearest configured one is Bad; else 0 */
+    uint8_t uncertain; /* 255: at least half of the weight is on Uncertain sensors (or filled by neighbours); else 0 */
     uint8_t reserved[2];
 };
 
 struct scalars {
     int asset;
-    uint64_t version;   /* grows with every real change */
-    size_t count;       /* = vertex_count of the asset file */
+    uint64_t version;       /* grows with every real change; one count for the whole field, so that equal versions are equal contents */
+    uint64_t flags_version; /* version of the last change of a flag */
+    double travel;          /* grows by the largest change of a value at each version: what was uploaded at t errs by at most travel - t */
+    size_t count;           /* = vertex_count of the asset file */
     const struct scalar *at;
     int64_t oldest_age_ns; /* of the readings that take part; INT64_MAX: none does */
 };

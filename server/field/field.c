@@ -1,0 +1,215 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The fields that someone looks at, each kept once, and the bound on what they take. */
+#include "field/field.h"
+
+#include "base/mem.h"
+#include "field/field_impl.h"
+
+struct field *field_create(struct workers *workers, const struct scene *scene)
+{
+    struct field *field = mem_new(sizeof(*field));
+    field->workers = workers;
+    field->scene = scene;
+    field->bound = FIELD_DEFAULT_BYTES;
+    field->layouts = mem_array(scene->asset_count * scene->plant->group_count, sizeof(struct layout *));
+    field->states = mem_array(scene->asset_count, sizeof(*field->states));
+    return field;
+}
+
+/* --- the cache ----------------------------------------------------------------------------------------------------------- */
+
+static void columns_drop(struct field *field, struct weights *weights)
+{
+    field->bytes -= weights_column_bytes(weights);
+    weights_drop_columns(weights);
+}
+
+static void weights_remove(struct field *field, struct weights *weights)
+{
+    struct weights **link = &field->weights;
+    while (*link != weights)
+        link = &(*link)->next;
+    *link = weights->next;
+    if (weights->columns)
+        columns_drop(field, weights);
+    field->bytes -= weights_bytes(weights->layout);
+    weights_destroy(&weights);
+}
+
+static void weights_release(struct state *state)
+{
+    if (state->weights)
+        state->weights->users--;
+    state->weights = NULL;
+}
+
+static void state_remove(struct field *field, struct state *state)
+{
+    struct state **link = &field->states[state->scalars.asset];
+    while (*link != state)
+        link = &(*link)->next;
+    *link = state->next;
+    weights_release(state);
+    field->bytes -= state_bytes(state->layout);
+    state_destroy(&state);
+}
+
+void field_destroy(struct field **field_ptr)
+{
+    struct field *field = *field_ptr;
+    if (!field)
+        return;
+    for (size_t i = 0; i < field->scene->asset_count; i++)
+        while (field->states[i])
+            state_remove(field, field->states[i]);
+    while (field->weights)
+        weights_remove(field, field->weights);
+    for (size_t i = 0; i < field->scene->asset_count * field->scene->plant->group_count; i++)
+        layout_destroy(&field->layouts[i]);
+    mem_free(field->layouts);
+    mem_free(field->states);
+    mem_free(field);
+    *field_ptr = NULL;
+}
+
+void field_set_bound(struct field *field, size_t bytes)
+{
+    field->bound = bytes;
+}
+
+size_t field_bytes(const struct field *field)
+{
+    return field->bytes;
+}
+
+struct oldest { /* what may go: one of the two */
+    struct state *state;
+    struct weights *weights;
+    uint64_t used;
+};
+
+static void find_oldest(const struct field *field, const struct field_params *keep, struct oldest *oldest)
+{
+    for (size_t i = 0; i < field->scene->asset_count; i++)
+        for (struct state *state = field->states[i]; state; state = state->next)
+            if (state->used < oldest->used && !field_params_equal(&state->params, keep))
+                *oldest = (struct oldest){ .state = state, .used = state->used };
+    for (struct weights *weights = field->weights; weights; weights = weights->next)
+        if (weights->used < oldest->used && (weights->users == 0 || weights->columns))
+            *oldest = (struct oldest){ .weights = weights, .used = weights->used };
+}
+
+/* Drops what was last used before tick `before`, oldest first, but no state of the parameters `keep`, until `need` more bytes
+   fit under the bound. False: they do not. */
+static bool make_room(struct field *field, size_t need, const struct field_params *keep, uint64_t before)
+{
+    while (field->bytes + need > field->bound) {
+        struct oldest oldest = { .used = before };
+        find_oldest(field, keep, &oldest);
+        if (oldest.state)
+            state_remove(field, oldest.state);
+        else if (oldest.weights && oldest.weights->users == 0)
+            weights_remove(field, oldest.weights);
+        else if (oldest.weights)
+            columns_drop(field, oldest.weights);
+        else
+            return false;
+    }
+    return true;
+}
+
+/* Columns are worth their memory from the second sum on: while somebody drags a parameter there is none. They only push out what was
+   used longer ago than these weights before, or two busy fields would push each other out for ever. */
+static void keep_columns(struct field *field, struct weights *weights, const struct field_params *params, uint64_t previous)
+{
+    size_t bytes = weights_column_bytes(weights);
+    if (weights->columns || weights->sums == 0 || bytes == 0 || !make_room(field, bytes, params, previous))
+        return;
+    if (weights_keep(weights))
+        field->bytes += bytes;
+}
+
+/* --- finding what is there, making what is not -------------------------------------------------------------------------- */
+
+struct layout *field_layout(struct field *field, int asset, int group)
+{
+    struct layout **at = &field->layouts[(size_t)asset * field->scene->plant->group_count + (size_t)group];
+    if (!*at)
+        *at = layout_create(field->scene, asset, group);
+    return *at;
+}
+
+static float radius_of(const struct field *field, struct layout *layout, const struct field_params *params)
+{
+    if (params->interpolation != INTERPOLATION_PAPER)
+        return 1;
+    return params->radius_m > 0 ? (float)params->radius_m : layout_largest(layout, params->distance, field->workers);
+}
+
+static bool weights_take(struct field *field, struct state *state)
+{
+    float radius_m = radius_of(field, state->layout, &state->params);
+    struct weights_key key;
+    weights_key_init(&key, state->layout, &state->params, radius_m, state->usable);
+    struct weights *weights = field->weights;
+    while (weights && !weights_key_equal(&weights->key, &key))
+        weights = weights->next;
+    weights_release(state);
+    if (!weights) {
+        make_room(field, weights_bytes(state->layout), &state->params, field->tick);
+        weights = weights_create(state->layout, &state->params, radius_m, state->usable, &key);
+        if (weights) {
+            weights->next = field->weights;
+            field->weights = weights;
+            field->bytes += weights_bytes(state->layout);
+        }
+    }
+    weights_key_finish(&key);
+    state->weights = weights;
+    if (weights)
+        weights->users++;
+    return weights;
+}
+
+struct state *field_state(struct field *field, int asset, const struct field_params *params)
+{
+    struct state *state = field->states[asset];
+    while (state && !field_params_equal(&state->params, params))
+        state = state->next;
+    if (state)
+        return state;
+    struct layout *layout = field_layout(field, asset, params->group);
+    if (!layout)
+        return NULL;
+    make_room(field, state_bytes(layout), params, field->tick);
+    state = state_create(asset, layout, params);
+    if (!state)
+        return NULL;
+    state->next = field->states[asset];
+    field->states[asset] = state;
+    field->bytes += state_bytes(layout);
+    return state;
+}
+
+const struct scalars *field_scalars(struct field *field, int asset, const struct field_params *params, const struct snapshot *snapshot)
+{
+    field->tick++;
+    struct state *state = field_state(field, asset, params);
+    if (!state)
+        return NULL;
+    state->used = field->tick;
+    state_read(state, snapshot);
+    if (state_needs_weights(state) && !weights_take(field, state)) {
+        state_remove(field, state);
+        return NULL;
+    }
+    struct weights *weights = state->weights;
+    uint64_t previous = weights->used;
+    weights->used = field->tick;
+    if (state_is_behind(state)) {
+        keep_columns(field, weights, params, previous);
+        state_update(state, field->workers, weights->sums == 0, &field->versions);
+        weights->sums++;
+    }
+    return &state->scalars;
+}

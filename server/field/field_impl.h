@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What field.c and field_ask.c share. Private to field/. */
+#ifndef FIELD_FIELD_IMPL_H
+#define FIELD_FIELD_IMPL_H
+#include "field/field.h"
+#include "field/state.h"
+
+struct field {
+    struct workers *workers;
+    const struct scene *scene;
+    struct layout **layouts; /* [asset][group]; NULL: not looked for, or none */
+    struct state **states;   /* by asset: a list */
+    struct weights *weights; /* all of them */
+    size_t bytes, bound;
+    uint64_t tick; /* counts calls: what was used last */
+    uint64_t versions;
+};
+
+/* NULL: no sensor of the group on the asset. */
+struct layout *field_layout(struct field *field, int asset, int group);
+/* Found or made; not brought up to date. NULL: no sensor of the group on the asset, or out of memory. */
+struct state *field_state(struct field *field, int asset, const struct field_params *params);
+
+#endif

@@ -1,0 +1,228 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The field's inner loops: branch-free, elementwise, in order of the sensors, so that every machine and every cut gives equal bits. */
+#include "field/kernels.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "field/scalars.h"
+
+/* Built for wider registers too; the loader takes what the machine has. Not under sanitizers, whose run time starts after the loader. */
+#if defined(__x86_64__) && defined(__linux__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && !defined(__clang__)
+#define KERNEL __attribute__((target_clones("avx512f", "avx2", "default")))
+#else
+#define KERNEL
+#endif
+
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC optimize("no-trapping-math") /* both sides of a choice may be computed, which SIMD needs */
+#endif
+
+#define TINY 1e-37f
+
+/* log2 of x, or of TINY where x is less; to 1e-7, exactly 0 at 1. Minimax polynomial of log2(1 + x)/x over
+   [sqrt(1/2) - 1, sqrt(2) - 1]. Limits are put on integers: a limit on floats splits the loop into paths, which ends SIMD. */
+static inline float log2_from_tiny(float x)
+{
+    int32_t bits, tiny = 0x02081cea; /* of TINY */
+    memcpy(&bits, &x, sizeof(bits));
+    bits = bits > tiny ? bits : tiny;
+    int32_t exponent = (bits - 0x3f3504f3) >> 23;
+    bits -= exponent * (1 << 23);
+    memcpy(&x, &bits, sizeof(x));
+    x -= 1.0f;
+    float p = -0.1457575112581253f;
+    p = p * x + 0.23688247799873352f;
+    p = p * x - 0.25006118416786194f;
+    p = p * x + 0.2867085337638855f;
+    p = p * x - 0.3600881099700928f;
+    p = p * x + 0.4809393882751465f;
+    p = p * x - 0.7213571071624756f;
+    p = p * x + 1.4426947832107544f;
+    return (float)exponent + x * p;
+}
+
+/* 2^x, to 2e-7 of itself, for -2e6 <= x <= 0; exactly 1 at 0, exactly 0 below -126.5. Above 0, to 2e6: some finite number.
+   Minimax polynomial of (2^f - 1)/f over [-1/2, 1/2]. */
+static inline float exp2_down(float x)
+{
+    int32_t whole = (int32_t)(x - 0.5f);
+    whole = whole > -127 ? whole : -127;
+    whole = whole < 0 ? whole : 0;
+    float f = x - (float)whole;
+    float p = 0.0013407237129285932f;
+    p = p * f + 0.009671861305832863f;
+    p = p * f + 0.055503085255622864f;
+    p = p * f + 0.24022234976291656f;
+    p = p * f + 0.6931472420692444f;
+    p = p * f + 1.0f;
+    int32_t bits = (whole + 127) * (1 << 23);
+    float power;
+    memcpy(&power, &bits, sizeof(power));
+    return p * power;
+}
+
+static inline bool takes_part(float distance_m, float near_m, float reach_m)
+{
+    float limit_m = near_m > reach_m ? near_m : reach_m;
+    limit_m = limit_m < FLT_MAX ? limit_m : FLT_MAX;
+    return distance_m <= limit_m;
+}
+
+KERNEL void kernel_euclidean(const float (*positions_m)[3], size_t count, const float point_m[3], float *restrict out_m)
+{
+    float px = point_m[0], py = point_m[1], pz = point_m[2];
+    for (size_t j = 0; j < count; j++) {
+        float x = positions_m[j][0] - px, y = positions_m[j][1] - py, z = positions_m[j][2] - pz;
+        out_m[j] = sqrtf(x * x + y * y + z * z);
+    }
+}
+
+KERNEL void kernel_nearest(const float *restrict distance_m, size_t count, float *restrict near_m)
+{
+    for (size_t j = 0; j < count; j++)
+        near_m[j] = distance_m[j] < near_m[j] ? distance_m[j] : near_m[j];
+}
+
+/* Floats >= 0 are in the order of their bits, and integers may be compared in any order. */
+KERNEL float kernel_largest(const float *distance_m, size_t count, float most_m)
+{
+    int32_t most, infinity = 0x7f800000;
+    memcpy(&most, &most_m, sizeof(most));
+    for (size_t j = 0; j < count; j++) {
+        int32_t bits;
+        memcpy(&bits, &distance_m[j], sizeof(bits));
+        bits = bits < infinity ? bits : 0;
+        most = bits > most ? bits : most;
+    }
+    memcpy(&most_m, &most, sizeof(most_m));
+    return most_m;
+}
+
+KERNEL void kernel_top_shepard(const float *restrict distance_m, const float *restrict near_m, size_t count, float strength,
+                               float *restrict top)
+{
+    for (size_t j = 0; j < count; j++) {
+        float mine = distance_m[j] <= near_m[j] ? strength : 0.0f;
+        top[j] = mine > top[j] ? mine : top[j];
+    }
+}
+
+/* log2(e) d strength */
+static inline float exponent_of(float distance_m, float inverse_radius, float strength, float *d)
+{
+    float near_one = 1.0f - distance_m * inverse_radius;
+    *d = near_one > 0.0f ? near_one : 0.0f;
+    return *d * (strength * 1.44269504f);
+}
+
+KERNEL void kernel_top_paper(const float *restrict distance_m, const float *restrict near_m, size_t count, float reach_m,
+                             float inverse_radius, float strength, float *restrict top)
+{
+    for (size_t j = 0; j < count; j++) {
+        float d, mine = exponent_of(distance_m[j], inverse_radius, strength, &d);
+        mine = takes_part(distance_m[j], near_m[j], reach_m) ? mine : 0.0f;
+        top[j] = mine > top[j] ? mine : top[j];
+    }
+}
+
+/* raised = base^power, 0 < power; exactly 1 at 1. What it makes of a base below TINY is not used. */
+static inline void raise(const float *restrict base, size_t count, float power, float *restrict raised)
+{
+    for (size_t j = 0; j < count; j++)
+        raised[j] = exp2_down(power * log2_from_tiny(base[j]));
+}
+
+KERNEL void kernel_shepard(const struct kernel_column *column, float *restrict weight)
+{
+    const float *distance_m = column->distance_m, *near_m = column->near_m, *top = column->top;
+    const float reach_m = column->reach_m, strength = column->strength;
+    float ratio[KERNEL_BLOCK];
+    for (size_t j = 0; j < column->count; j++) {
+        float below_one = near_m[j] / distance_m[j];
+        ratio[j] = distance_m[j] <= near_m[j] ? 1.0f : below_one;
+    }
+    if (column->power == 2.0f)
+        for (size_t j = 0; j < column->count; j++)
+            weight[j] = ratio[j] * ratio[j];
+    else
+        raise(ratio, column->count, column->power, weight);
+    for (size_t j = 0; j < column->count; j++) {
+        float scaled = weight[j] * strength / top[j];
+        scaled = ratio[j] > TINY ? scaled : 0.0f;
+        weight[j] = takes_part(distance_m[j], near_m[j], reach_m) ? scaled : 0.0f;
+    }
+}
+
+KERNEL void kernel_paper(const struct kernel_column *column, float *restrict weight, float *restrict term)
+{
+    const float *distance_m = column->distance_m, *near_m = column->near_m, *top = column->top;
+    const float reach_m = column->reach_m, strength = column->strength, decay = column->decay, inverse_radius = column->inverse_radius;
+    float d[KERNEL_BLOCK];
+    for (size_t j = 0; j < column->count; j++) {
+        float exponent = exponent_of(distance_m[j], inverse_radius, strength, &d[j]);
+        float w = exp2_down(exponent - top[j]);
+        weight[j] = takes_part(distance_m[j], near_m[j], reach_m) ? w : 0.0f;
+    }
+    if (decay == 1.0f)
+        for (size_t j = 0; j < column->count; j++)
+            term[j] = weight[j] * d[j];
+    else if (decay == 0.0f) /* 0^0 is 1 */
+        memcpy(term, weight, column->count * sizeof(*term));
+    else {
+        raise(d, column->count, decay, term);
+        for (size_t j = 0; j < column->count; j++)
+            term[j] = d[j] > TINY ? weight[j] * term[j] : 0.0f;
+    }
+}
+
+KERNEL static void add_one(double *restrict sum, const float *restrict a, double factor, size_t count)
+{
+    for (size_t j = 0; j < count; j++)
+        sum[j] += (double)a[j] * factor;
+}
+
+KERNEL void kernel_add(double *restrict sum, const float *const *columns, const double *factors, size_t column_count, size_t count)
+{
+    if (column_count < KERNEL_COLUMNS) {
+        for (size_t i = 0; i < column_count; i++)
+            add_one(sum, columns[i], factors[i], count);
+        return;
+    }
+    const float *restrict a = columns[0], *restrict b = columns[1], *restrict c = columns[2], *restrict d = columns[3];
+    const float *restrict e = columns[4], *restrict f = columns[5], *restrict g = columns[6], *restrict h = columns[7];
+    const double fa = factors[0], fb = factors[1], fc = factors[2], fd = factors[3], fe = factors[4], ff = factors[5], fg = factors[6],
+                 fh = factors[7];
+    for (size_t j = 0; j < count; j++) {
+        double first = ((double)a[j] * fa + (double)b[j] * fb) + ((double)c[j] * fc + (double)d[j] * fd);
+        double second = ((double)e[j] * fe + (double)f[j] * ff) + ((double)g[j] * fg + (double)h[j] * fh);
+        sum[j] += first + second;
+    }
+}
+
+KERNEL void kernel_value(const struct kernel_value *rule, const double *restrict sum, const float *restrict weight, size_t count,
+                         float *restrict value)
+{
+    const float low = rule->low, high = rule->high, scale = rule->scale, offset = rule->offset, empty = rule->empty;
+    for (size_t j = 0; j < count; j++) {
+        float v = (float)sum[j] / weight[j] * scale + offset;
+        v = v > low ? v : low;
+        v = v < high ? v : high;
+        value[j] = weight[j] > 0.0f ? v : empty;
+    }
+}
+
+float kernel_store(const float *restrict value, size_t count, struct scalar *restrict at, bool *changed)
+{
+    float most = 0.0f;
+    bool any = false;
+    for (size_t j = 0; j < count; j++) {
+        float change = fabsf(value[j] - at[j].value);
+        most = change > most ? change : most;
+        any |= value[j] != at[j].value;
+        at[j].value = value[j];
+    }
+    *changed |= any;
+    return most;
+}

@@ -1,0 +1,102 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Sensors of one group on one asset, and their distances from the asset file. */
+#include "field/layout.h"
+
+#include <math.h>
+#include <pthread.h>
+
+#include "base/mem.h"
+#include "field/kernels.h"
+
+static bool of_group(const struct scene *scene, const struct scene_sensor *sensor, int group)
+{
+    return scene->plant->tags[sensor->tag].group == group;
+}
+
+static float not_negative(double x)
+{
+    return x > 0 && x < 1e30 ? (float)x : 0.0f;
+}
+
+struct layout *layout_create(const struct scene *scene, int asset, int group)
+{
+    const struct scene_asset *from = &scene->assets[asset];
+    size_t count = 0;
+    for (size_t i = 0; i < from->sensor_count; i++)
+        count += of_group(scene, &from->sensors[i], group);
+    if (count == 0)
+        return NULL;
+    struct layout *layout = mem_new(sizeof(*layout));
+    layout->file = from->file;
+    layout->group = &scene->plant->groups[group];
+    layout->vertex_count = from->file->view.header->vertex_count;
+    layout->sensors = mem_array(count, sizeof(*layout->sensors));
+    for (size_t i = 0; i < from->sensor_count; i++) {
+        const struct scene_sensor *sensor = &from->sensors[i];
+        const struct plant_tag *tag = &scene->plant->tags[sensor->tag];
+        if (of_group(scene, sensor, group))
+            layout->sensors[layout->sensor_count++] = (struct layout_sensor){
+                .tag = sensor->tag,
+                .column = (uint32_t)sensor->column,
+                .strength = not_negative(tag->strength),
+                .decay = not_negative(tag->decay),
+            };
+    }
+    return layout;
+}
+
+void layout_destroy(struct layout **layout_ptr)
+{
+    struct layout *layout = *layout_ptr;
+    if (!layout)
+        return;
+    mem_free(layout->sensors);
+    mem_free(layout);
+    *layout_ptr = NULL;
+}
+
+const float *layout_distances(const struct layout *layout, enum distance_mode mode, size_t sensor, size_t begin, size_t count,
+                              float *scratch)
+{
+    const struct asset_view *view = &layout->file->view;
+    uint32_t column = layout->sensors[sensor].column;
+    if (mode == DISTANCE_GEODESIC)
+        return view->geodesic_m + (size_t)column * layout->vertex_count + begin;
+    kernel_euclidean(view->positions_m + begin, count, view->sensors[column].surface_m, scratch);
+    return scratch;
+}
+
+struct search {
+    const struct layout *layout;
+    enum distance_mode mode;
+    pthread_mutex_t lock;
+    /* --- below: under lock */
+    float most_m;
+};
+
+static void search_blocks(void *arg, size_t begin, size_t end)
+{
+    struct search *search = arg;
+    const struct layout *layout = search->layout;
+    float scratch[KERNEL_BLOCK], most_m = 0;
+    for (size_t at = begin * KERNEL_BLOCK; at < end * KERNEL_BLOCK && at < layout->vertex_count; at += KERNEL_BLOCK) {
+        size_t left = layout->vertex_count - at, count = left < KERNEL_BLOCK ? left : KERNEL_BLOCK;
+        for (size_t i = 0; i < layout->sensor_count; i++)
+            most_m = kernel_largest(layout_distances(layout, search->mode, i, at, count, scratch), count, most_m);
+    }
+    pthread_mutex_lock(&search->lock);
+    search->most_m = fmaxf(search->most_m, most_m);
+    pthread_mutex_unlock(&search->lock);
+}
+
+float layout_largest(struct layout *layout, enum distance_mode mode, struct workers *workers)
+{
+    if (layout->largest_m[mode] == 0) {
+        struct search search = { .layout = layout, .mode = mode };
+        pthread_mutex_init(&search.lock, NULL);
+        workers_for(workers, (layout->vertex_count + KERNEL_BLOCK - 1) / KERNEL_BLOCK, 16, search_blocks, &search);
+        pthread_mutex_destroy(&search.lock);
+        layout->largest_m[mode] = search.most_m > 0 ? search.most_m : 1.0f;
+    }
+    return layout->largest_m[mode];
+}

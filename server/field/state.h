@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The field of one asset for one set of parameters, and the readings it shows. Thread: one at a time. */
+#ifndef FIELD_STATE_H
+#define FIELD_STATE_H
+#include "base/workers.h"
+#include "field/weights.h"
+
+struct state_input { /* what one sensor says, as the sums take it */
+    double value;    /* engineering units; for `paper` 0..1 */
+    uint8_t usable, uncertain;
+};
+
+struct state {
+    struct field_params params;
+    struct layout *layout;
+    struct weights *weights; /* counted in weights->users */
+    struct scalars scalars;  /* scalars.version 0: nothing computed yet */
+    struct scalar *at;
+    double *sums;                    /* by vertex: numerator */
+    struct state_input *now, *shown; /* by sensor of the layout: asked for, and in the scalars */
+    uint8_t *usable;                 /* by sensor of the layout, of `now` */
+    uint32_t *list;                  /* room for one update: members, factors, marks */
+    double *factors;
+    uint8_t *marked;
+    uint64_t used;
+    struct state *next;
+};
+
+/* NULL: out of memory. */
+struct state *state_create(int asset, struct layout *layout, const struct field_params *params);
+void state_destroy(struct state **state); /* &NULL is fine; leaves NULL */
+size_t state_bytes(const struct layout *layout);
+
+/* Reads the snapshot into state->now and state->usable, and its ages. */
+void state_read(struct state *state, const struct snapshot *snapshot);
+/* True: the weights that state holds are for other sensors than those usable now. */
+bool state_needs_weights(const struct state *state);
+/* True: state_update has something to do. */
+bool state_is_behind(const struct state *state);
+/* Brings sums and scalars up to state->now. fresh: the weights are new and prepared on the way. */
+void state_update(struct state *state, struct workers *workers, bool fresh, uint64_t *versions);
+
+#endif

@@ -1,0 +1,265 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* G of the linear form, block by block: from distances to columns to sums. */
+#include "field/weights.h"
+
+#include <math.h>
+#include <string.h>
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include "base/mem.h"
+
+struct key_head { /* without holes: compared as bytes */
+    const struct asset *file;
+    uint32_t interpolation, distance;
+    float power, reach_m, radius_m;
+    uint32_t sensor_count;
+};
+struct key_sensor {
+    uint32_t column, usable;
+    float strength, decay;
+};
+
+/* Shepard's sum does not change when all strengths do, and has no decay. */
+static float strength_of(const struct layout_sensor *sensor, const struct field_params *params)
+{
+    float strength = params->interpolation == INTERPOLATION_PAPER ? sensor->strength * (float)params->strength : sensor->strength;
+    return fminf(strength, KERNEL_FACTOR_LIMIT);
+}
+
+static float decay_of(const struct layout_sensor *sensor, const struct field_params *params)
+{
+    return params->interpolation == INTERPOLATION_PAPER ? fminf(sensor->decay * (float)params->decay, KERNEL_FACTOR_LIMIT) : 0.0f;
+}
+
+void weights_key_init(struct weights_key *key, const struct layout *layout, const struct field_params *params, float radius_m,
+                      const uint8_t *usable)
+{
+    bool paper = params->interpolation == INTERPOLATION_PAPER;
+    key->count = sizeof(struct key_head) + layout->sensor_count * sizeof(struct key_sensor);
+    key->bytes = mem_array(1, key->count);
+    struct key_head *head = key->bytes;
+    *head = (struct key_head){
+        .file = layout->file,
+        .interpolation = params->interpolation,
+        .distance = params->distance,
+        .power = paper ? 0 : (float)params->power,
+        .reach_m = (float)params->reach_m,
+        .radius_m = paper ? radius_m : 0,
+        .sensor_count = (uint32_t)layout->sensor_count,
+    };
+    struct key_sensor *sensors = (struct key_sensor *)(head + 1);
+    for (size_t i = 0; i < layout->sensor_count; i++)
+        sensors[i] = (struct key_sensor){
+            .column = layout->sensors[i].column,
+            .usable = usable[i],
+            .strength = strength_of(&layout->sensors[i], params),
+            .decay = decay_of(&layout->sensors[i], params),
+        };
+    key->hash = XXH3_64bits(key->bytes, key->count);
+}
+
+void weights_key_finish(struct weights_key *key)
+{
+    mem_free(key->bytes);
+    *key = (struct weights_key){ 0 };
+}
+
+bool weights_key_equal(const struct weights_key *a, const struct weights_key *b)
+{
+    return a->hash == b->hash && a->count == b->count && memcmp(a->bytes, b->bytes, a->count) == 0;
+}
+
+static size_t block_count(size_t vertex_count)
+{
+    return (vertex_count + KERNEL_BLOCK - 1) / KERNEL_BLOCK;
+}
+
+static void choose_members(struct weights *weights, const struct field_params *params, const uint8_t *usable)
+{
+    const struct layout *layout = weights->layout;
+    for (size_t i = 0; i < layout->sensor_count; i++) {
+        weights->strength[i] = strength_of(&layout->sensors[i], params);
+        weights->decay[i] = decay_of(&layout->sensors[i], params);
+        weights->configured[i] = weights->interpolation == INTERPOLATION_PAPER || weights->strength[i] > 0;
+        if (usable[i] && weights->configured[i])
+            weights->members[weights->member_count++] = (uint32_t)i;
+    }
+}
+
+struct weights *weights_create(const struct layout *layout, const struct field_params *params, float radius_m, const uint8_t *usable,
+                               struct weights_key *key)
+{
+    struct weights *weights = mem_new(sizeof(*weights));
+    weights->layout = layout;
+    weights->interpolation = params->interpolation;
+    weights->distance = params->distance;
+    weights->power = (float)params->power;
+    weights->reach_m = (float)params->reach_m;
+    weights->inverse_radius = 1.0f / radius_m;
+    weights->strength = mem_array(layout->sensor_count, sizeof(float));
+    weights->decay = mem_array(layout->sensor_count, sizeof(float));
+    weights->configured = mem_array(layout->sensor_count, 1);
+    weights->members = mem_array(layout->sensor_count, sizeof(*weights->members));
+    weights->kept = mem_array(layout->sensor_count, 1);
+    weights->near_m = mem_try_array(layout->vertex_count, sizeof(float));
+    weights->top = mem_try_array(layout->vertex_count, sizeof(float));
+    weights->total = mem_try_array(layout->vertex_count, sizeof(float));
+    weights->place = mem_try_array(layout->vertex_count, 1);
+    if (!weights->near_m || !weights->top || !weights->total || !weights->place)
+        goto error;
+    choose_members(weights, params, usable);
+    weights->key = *key;
+    *key = (struct weights_key){ 0 };
+    return weights;
+error:
+    weights_destroy(&weights);
+    return NULL;
+}
+
+void weights_destroy(struct weights **weights_ptr)
+{
+    struct weights *weights = *weights_ptr;
+    if (!weights)
+        return;
+    weights_key_finish(&weights->key);
+    mem_free(weights->strength);
+    mem_free(weights->decay);
+    mem_free(weights->configured);
+    mem_free(weights->members);
+    mem_free(weights->kept);
+    mem_free(weights->near_m);
+    mem_free(weights->top);
+    mem_free(weights->total);
+    mem_free(weights->place);
+    mem_free(weights->columns);
+    mem_free(weights);
+    *weights_ptr = NULL;
+}
+
+size_t weights_bytes(const struct layout *layout)
+{
+    size_t each_vertex = 3 * sizeof(float) + 1;
+    size_t each_sensor = 2 * sizeof(float) + 2 + sizeof(uint32_t) + sizeof(struct key_sensor);
+    return sizeof(struct weights) + sizeof(struct key_head) + layout->vertex_count * each_vertex + layout->sensor_count * each_sensor;
+}
+
+size_t weights_column_bytes(const struct weights *weights)
+{
+    return block_count(weights->layout->vertex_count) * weights->member_count * KERNEL_BLOCK * sizeof(float);
+}
+
+bool weights_keep(struct weights *weights)
+{
+    weights->columns = mem_try_array(block_count(weights->layout->vertex_count) * weights->member_count, KERNEL_BLOCK * sizeof(float));
+    return weights->columns;
+}
+
+void weights_drop_columns(struct weights *weights)
+{
+    mem_free(weights->columns);
+    weights->columns = NULL;
+    memset(weights->kept, 0, weights->member_count);
+}
+
+static const float *distances(const struct weights *weights, size_t sensor, size_t begin, size_t count, float *scratch)
+{
+    return layout_distances(weights->layout, weights->distance, sensor, begin, count, scratch);
+}
+
+static void nearest(struct weights *weights, size_t begin, size_t count)
+{
+    float scratch[KERNEL_BLOCK], configured_m[KERNEL_BLOCK], *near_m = weights->near_m + begin;
+    for (size_t j = 0; j < count; j++)
+        configured_m[j] = near_m[j] = INFINITY;
+    for (size_t m = 0; m < weights->member_count; m++)
+        kernel_nearest(distances(weights, weights->members[m], begin, count, scratch), count, near_m);
+    for (size_t i = 0, m = 0; i < weights->layout->sensor_count; i++) {
+        if (m < weights->member_count && weights->members[m] == i)
+            m++;
+        else if (weights->configured[i])
+            kernel_nearest(distances(weights, i, begin, count, scratch), count, configured_m);
+    }
+    for (size_t j = 0; j < count; j++)
+        weights->place[begin + j] = !(near_m[j] <= weights->reach_m) || near_m[j] == INFINITY ? PLACE_NOBODY
+                                    : configured_m[j] < near_m[j]                             ? PLACE_LOST
+                                                                                              : PLACE_GOOD;
+}
+
+void weights_prepare(struct weights *weights, size_t begin, size_t count)
+{
+    float scratch[KERNEL_BLOCK], *top = weights->top + begin;
+    const float *near_m = weights->near_m + begin;
+    nearest(weights, begin, count);
+    memset(top, 0, count * sizeof(*top));
+    for (size_t m = 0; m < weights->member_count; m++) {
+        uint32_t sensor = weights->members[m];
+        const float *distance_m = distances(weights, sensor, begin, count, scratch);
+        if (weights->interpolation == INTERPOLATION_PAPER)
+            kernel_top_paper(distance_m, near_m, count, weights->reach_m, weights->inverse_radius, weights->strength[sensor], top);
+        else
+            kernel_top_shepard(distance_m, near_m, count, weights->strength[sensor], top);
+    }
+}
+
+/* Room for the columns that are made for one step of a sum. */
+struct workroom {
+    float distance_m[KERNEL_BLOCK], weights[KERNEL_COLUMNS][KERNEL_BLOCK], terms[KERNEL_COLUMNS][KERNEL_BLOCK];
+};
+
+static void make_column(const struct weights *weights, uint32_t member, size_t begin, size_t count, float *distance_m, float *weight,
+                        float *term)
+{
+    uint32_t sensor = weights->members[member];
+    const struct kernel_column column = {
+        .distance_m = distances(weights, sensor, begin, count, distance_m),
+        .near_m = weights->near_m + begin,
+        .top = weights->top + begin,
+        .count = count,
+        .reach_m = weights->reach_m,
+        .strength = weights->strength[sensor],
+        .decay = weights->decay[sensor],
+        .power = weights->power,
+        .inverse_radius = weights->inverse_radius,
+    };
+    if (weights->interpolation == INTERPOLATION_PAPER)
+        kernel_paper(&column, weight, term);
+    else
+        kernel_shepard(&column, term);
+}
+
+static float *column_place(const struct weights *weights, uint32_t member, size_t begin)
+{
+    return weights->columns + (begin / KERNEL_BLOCK * weights->member_count + member) * KERNEL_BLOCK;
+}
+
+void weights_add(struct weights *weights, size_t begin, size_t count, const struct weights_terms *terms, const struct weights_sums *sums)
+{
+    static const double ones[KERNEL_COLUMNS] = { 1, 1, 1, 1, 1, 1, 1, 1 };
+    bool paper = weights->interpolation == INTERPOLATION_PAPER;
+    struct workroom room;
+    for (size_t first = 0; first < terms->count; first += KERNEL_COLUMNS) {
+        size_t left = terms->count - first, number = left < KERNEL_COLUMNS ? left : KERNEL_COLUMNS;
+        const float *columns[KERNEL_COLUMNS], *heavy[KERNEL_COLUMNS];
+        for (size_t k = 0; k < number; k++) {
+            uint32_t member = terms->members[first + k];
+            float *column = weights->columns ? column_place(weights, member, begin) : room.terms[k];
+            if (!weights->kept[member] || (paper && sums->total))
+                make_column(weights, member, begin, count, room.distance_m, room.weights[k], column);
+            columns[k] = column;
+            heavy[k] = paper ? room.weights[k] : column;
+        }
+        kernel_add(sums->values, columns, terms->factors + first, number, count);
+        if (sums->total)
+            kernel_add(sums->total, heavy, ones, number, count);
+        for (size_t k = 0; sums->marked && k < number; k++)
+            if (terms->marked[first + k])
+                kernel_add(sums->marked, &heavy[k], ones, 1, count);
+    }
+}
+
+void weights_added(struct weights *weights, const struct weights_terms *terms)
+{
+    for (size_t i = 0; weights->columns && i < terms->count; i++)
+        weights->kept[terms->members[i]] = 1;
+}

@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* G of the linear form: what each usable sensor weighs at each vertex, for one set of parameters and one set of usable sensors.
+   Nothing in it depends on readings, so instances of one asset and sessions with equal parameters share it. The columns of G may be kept
+   or made anew for each sum; the sums are bit for bit the same. Thread: one, but weights_prepare and weights_add may run on
+   different vertices at once. */
+#ifndef FIELD_WEIGHTS_H
+#define FIELD_WEIGHTS_H
+#include "field/field.h"
+#include "field/kernels.h"
+#include "field/layout.h"
+
+/* How the nearest sensors stand to a vertex. */
+enum place {
+    PLACE_GOOD,  /* the nearest configured sensor is usable and within reach */
+    PLACE_LOST,  /* it is not usable; another one is within reach */
+    PLACE_NOBODY /* no usable sensor within reach */
+};
+
+struct weights_key { /* what G depends on, as bytes */
+    void *bytes;
+    size_t count;
+    uint64_t hash;
+};
+
+struct weights {
+    struct weights_key key;
+    const struct layout *layout;
+    enum interpolation interpolation;
+    enum distance_mode distance;
+    float power, reach_m, inverse_radius;
+    float *strength, *decay; /* by sensor of the layout */
+    uint8_t *configured;     /* by sensor of the layout: may take part, were it good */
+    uint32_t *members;       /* usable sensors of the layout; a column's number is its place here */
+    size_t member_count;
+    float *near_m, *top; /* by vertex: distance of the nearest usable sensor; scale (kernels.h) */
+    float *total;        /* by vertex: the weights' sum */
+    uint8_t *place;      /* by vertex: enum place */
+    float *columns;      /* [block][member][KERNEL_BLOCK], or NULL: made anew each time */
+    uint8_t *kept;       /* by member: its column is filled */
+    int users;           /* states that hold it */
+    uint64_t used, sums; /* tick of the last use; how often it was summed */
+    struct weights *next;
+};
+
+/* usable: by sensor of the layout. radius_m: R of `paper`, already resolved. */
+void weights_key_init(struct weights_key *key, const struct layout *layout, const struct field_params *params, float radius_m,
+                      const uint8_t *usable);
+void weights_key_finish(struct weights_key *key);
+bool weights_key_equal(const struct weights_key *a, const struct weights_key *b);
+
+/* Takes over the key. NULL: out of memory. Nothing is computed yet. */
+struct weights *weights_create(const struct layout *layout, const struct field_params *params, float radius_m, const uint8_t *usable,
+                               struct weights_key *key);
+void weights_destroy(struct weights **weights); /* &NULL is fine; leaves NULL */
+size_t weights_bytes(const struct layout *layout);
+size_t weights_column_bytes(const struct weights *weights); /* of all columns, kept or not */
+/* From now on columns are kept as they are made. False: out of memory, nothing changed. */
+bool weights_keep(struct weights *weights);
+void weights_drop_columns(struct weights *weights);
+
+/* Fills near_m, top and place of a block (begin: a multiple of KERNEL_BLOCK; count <= KERNEL_BLOCK). */
+void weights_prepare(struct weights *weights, size_t begin, size_t count);
+
+struct weights_terms { /* which members, by what factor */
+    const uint32_t *members;
+    const double *factors;
+    const uint8_t *marked; /* by place in this list: counts in sums->marked too */
+    size_t count;
+};
+struct weights_sums {       /* of one block; added to */
+    double *values;         /* sum of factor times column */
+    double *total, *marked; /* sum of weights: all of the list, those marked; NULL: not asked for (marked only beside total) */
+};
+/* Adds the terms at a block. Fills the columns of those members, where columns are kept. */
+void weights_add(struct weights *weights, size_t begin, size_t count, const struct weights_terms *terms, const struct weights_sums *sums);
+/* After weights_add has been through all blocks: these columns need not be made again. */
+void weights_added(struct weights *weights, const struct weights_terms *terms);
+
+#endif

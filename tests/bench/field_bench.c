@@ -1,0 +1,120 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Cost of the field: one JSON line per row. */
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "field/field.h"
+#include "tests/support/synthetic.h"
+#include "value/quality.h"
+
+#define VERTICES 66000
+#define ROUNDS 60
+
+struct bench {
+    struct synthetic *plant;
+    struct field *field;
+    struct field_params params;
+    size_t sensors;
+    uint64_t random;
+};
+
+static int by_size(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static void change_reading(struct bench *bench, size_t sensor)
+{
+    bench->plant->snapshot->readings[sensor].value = 100 * synthetic_random_unit(&bench->random);
+}
+
+static void change_all(struct bench *bench)
+{
+    for (size_t i = 0; i < bench->sensors; i++)
+        change_reading(bench, i);
+}
+
+static void change_one(struct bench *bench)
+{
+    change_reading(bench, synthetic_random(&bench->random) % bench->sensors);
+}
+
+static void change_quality(struct bench *bench)
+{
+    struct reading *reading = &bench->plant->snapshot->readings[synthetic_random(&bench->random) % bench->sensors];
+    reading->quality = quality_is_bad(reading->quality) ? QUALITY_GOOD : QUALITY_BAD_SENSOR_FAILURE;
+}
+
+static void change_nothing(struct bench *bench)
+{
+    (void)bench;
+}
+
+static void drag_power(struct bench *bench)
+{
+    bench->params.power = 1 + 4 * synthetic_random_unit(&bench->random);
+}
+
+static void drag_decay(struct bench *bench)
+{
+    bench->params.decay = 0.5 + synthetic_random_unit(&bench->random);
+}
+
+static void measure(struct bench *bench, const char *name, void (*change)(struct bench *))
+{
+    double ms[ROUNDS];
+    for (int i = -5; i < ROUNDS; i++) {
+        change(bench);
+        int64_t began_ns = clock_mono_ns();
+        if (!field_scalars(bench->field, 0, &bench->params, bench->plant->snapshot))
+            abort();
+        if (i >= 0)
+            ms[i] = (double)(clock_mono_ns() - began_ns) / 1e6;
+    }
+    qsort(ms, ROUNDS, sizeof(*ms), by_size);
+    printf("{\"name\": \"%s\", \"value\": %.4f, \"p95\": %.4f, \"unit\": \"ms\"}\n", name, ms[ROUNDS / 2], ms[ROUNDS * 95 / 100]);
+    fflush(stdout);
+}
+
+static void measure_named(struct bench *bench, const char *kind, void (*change)(struct bench *))
+{
+    char *name = mem_printf("field_%zu_%s_ms", bench->sensors, kind);
+    measure(bench, name, change);
+    mem_free(name);
+}
+
+static void measure_plant(struct workers *workers, size_t sensors)
+{
+    struct bench bench = { .plant = synthetic_create(.vertices = VERTICES, .sensors = sensors, .seed = 1), .sensors = sensors };
+    bench.field = field_create(workers, &bench.plant->scene);
+    field_params_default(&bench.plant->plant, 0, &bench.params);
+    measure_named(&bench, "all_readings", change_all);
+    measure_named(&bench, "one_reading", change_one);
+    measure_named(&bench, "no_reading", change_nothing);
+    measure_named(&bench, "one_quality", change_quality);
+    bench.params.distance = DISTANCE_EUCLIDEAN;
+    measure_named(&bench, "euclidean_one_quality", change_quality);
+    measure_named(&bench, "drag_power", drag_power);
+    bench.params.interpolation = INTERPOLATION_PAPER;
+    measure_named(&bench, "paper_all_readings", change_all);
+    measure_named(&bench, "paper_one_reading", change_one);
+    measure_named(&bench, "paper_one_quality", change_quality);
+    measure_named(&bench, "paper_drag_decay", drag_decay);
+    field_set_bound(bench.field, 0);
+    bench.params.decay = 1;
+    measure_named(&bench, "paper_all_readings_uncached", change_all);
+    field_destroy(&bench.field);
+    synthetic_destroy(&bench.plant);
+}
+
+int main(void)
+{
+    struct workers *workers = workers_create(0);
+    measure_plant(workers, 5);
+    measure_plant(workers, 512);
+    workers_destroy(&workers);
+    return 0;
+}
