@@ -34,6 +34,8 @@ bool target_init(struct target *target, struct log *log, int width_px, int heigh
         target->resolved_color = target->color;
         target->resolved_depth = target->depth;
     }
+    glCreateFramebuffers(1, &target->over_framebuffer);
+    glNamedFramebufferTexture(target->over_framebuffer, GL_COLOR_ATTACHMENT0, target->resolved_color, 0);
     if (good)
         return true;
     log_err(log, "picture of %dx%d with %d samples: out of GPU memory", width_px, height_px, samples);
@@ -46,6 +48,7 @@ void target_finish(struct target *target)
     GLuint textures[] = { target->color, target->depth, target->resolved_color, target->resolved_depth };
     GLuint framebuffers[] = { target->framebuffer, target->resolved_framebuffer };
     int count = target->samples > 1 ? 2 : 1;
+    glDeleteFramebuffers(1, &target->over_framebuffer);
     glDeleteFramebuffers(count, framebuffers);
     glDeleteTextures(2 * count, textures);
     *target = (struct target){ 0 };

@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Hashes a view field by field, since structs have padding. */
+#include "render/content.h"
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+static void add(XXH3_state_t *state, const void *bytes, size_t count)
+{
+    XXH3_64bits_update(state, bytes, count);
+}
+
+static void add_field_params(XXH3_state_t *state, const struct field_params *params)
+{
+    int32_t choices[] = { params->group, params->interpolation, params->distance, params->fill };
+    double numbers[] = { params->strength, params->decay, params->power, params->radius_m, params->reach_m };
+    add(state, choices, sizeof(choices));
+    add(state, numbers, sizeof(numbers));
+}
+
+static void add_view(XXH3_state_t *state, const struct view *view)
+{
+    int32_t choices[] = { view->width_px, view->height_px, view->colormap, (int32_t)view->look, (int32_t)view->tier, view->selected_asset };
+    double numbers[] = { view->camera.fov_deg, view->ramp_interval, view->range_min, view->range_max };
+    add(state, choices, sizeof(choices));
+    add(state, numbers, sizeof(numbers));
+    add(state, view->camera.eye_m, sizeof(view->camera.eye_m));
+    add(state, view->camera.target_m, sizeof(view->camera.target_m));
+    add(state, view->camera.up, sizeof(view->camera.up));
+    add(state, view->light_dir, sizeof(view->light_dir));
+    add_field_params(state, &view->field);
+}
+
+uint64_t content_hash(const struct picture *picture)
+{
+    XXH3_state_t state;
+    XXH3_INITSTATE(&state);
+    XXH3_64bits_reset(&state);
+    add_view(&state, picture->view);
+    for (size_t i = 0; i < picture->visible_count; i++) {
+        int asset = picture->visible[i];
+        uint64_t one[2] = { (uint64_t)asset, picture->fields[asset] ? picture->fields[asset]->content : 0 };
+        add(&state, one, sizeof(one));
+    }
+    return XXH3_64bits_digest(&state);
+}

@@ -1,0 +1,10 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a picture would show, as a number: equal for equal pictures. */
+#ifndef RENDER_CONTENT_H
+#define RENDER_CONTENT_H
+#include "render/picture.h"
+
+/* Of the view without its sequence numbers and times, and of every field in sight. */
+uint64_t content_hash(const struct picture *picture);
+
+#endif

@@ -1,0 +1,109 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Keeps scalars on the GPU up to date, as far as one can see. */
+#include "render/fields.h"
+
+#include <math.h>
+#include <string.h>
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include "base/mem.h"
+#include "gpu/mesh.h"
+
+static const size_t BOUND_BYTES = (size_t)384 << 20; /* on the GPU, and as much again here: some 700 assets of 66,000 vertices */
+
+void fields_init(struct fields *fields, struct log *log, struct field *field)
+{
+    *fields = (struct fields){ .log = log, .field = field };
+}
+
+static void entry_destroy(struct fields *fields, struct fields_entry *entry)
+{
+    fields->bytes -= entry->count * sizeof(*entry->shown);
+    glDeleteBuffers(1, &entry->buffer);
+    mem_free(entry->shown);
+    mem_free(entry);
+}
+
+void fields_finish(struct fields *fields)
+{
+    for (size_t i = 0; i < fields->count; i++)
+        entry_destroy(fields, fields->entries[i]);
+    mem_free(fields->entries);
+    *fields = (struct fields){ 0 };
+}
+
+static struct fields_entry *entry_find(const struct fields *fields, int asset, const struct field_params *params, double step)
+{
+    for (size_t i = 0; i < fields->count; i++) {
+        struct fields_entry *entry = fields->entries[i];
+        if (entry->asset == asset && entry->step == step && field_params_equal(&entry->params, params))
+            return entry;
+    }
+    return NULL;
+}
+
+static struct fields_entry *entry_create(struct fields *fields, int asset, const struct field_params *params, double step, size_t count)
+{
+    size_t bytes = count * sizeof(struct scalar);
+    struct fields_entry *entry = mem_new(sizeof(*entry));
+    *entry = (struct fields_entry){ .asset = asset, .params = *params, .step = step, .count = count };
+    entry->shown = mem_try_array(count, sizeof(*entry->shown));
+    entry->buffer = mesh_buffer(fields->log, "field", bytes, NULL, GL_DYNAMIC_STORAGE_BIT);
+    fields->bytes += bytes;
+    if (!entry->shown || !entry->buffer) {
+        entry_destroy(fields, entry);
+        return NULL;
+    }
+    mem_grow(&fields->entries, &fields->capacity, fields->count + 1, sizeof(*fields->entries));
+    fields->entries[fields->count++] = entry;
+    return entry;
+}
+
+static bool can_be_seen(const struct fields_entry *entry, const struct scalar *now)
+{
+    float half = (float)(0.5 * entry->step);
+    for (size_t i = 0; i < entry->count; i++) {
+        const struct scalar *was = &entry->shown[i];
+        if (fabsf(now[i].value - was->value) >= half || now[i].no_data != was->no_data || now[i].uncertain != was->uncertain)
+            return true;
+    }
+    return false;
+}
+
+const struct fields_entry *fields_get(struct fields *fields, int asset, const struct field_params *params, double range, const struct snapshot *snapshot)
+{
+    double step = range / 256;
+    const struct scalars *scalars = field_scalars(fields->field, asset, params, snapshot);
+    if (!scalars)
+        return NULL;
+    struct fields_entry *entry = entry_find(fields, asset, params, step);
+    bool fresh = !entry;
+    if (fresh)
+        entry = entry_create(fields, asset, params, step, scalars->count);
+    if (!entry)
+        return NULL;
+    if (fresh || (entry->version != scalars->version && can_be_seen(entry, scalars->at))) {
+        size_t bytes = entry->count * sizeof(*entry->shown);
+        memcpy(entry->shown, scalars->at, bytes);
+        glNamedBufferSubData(entry->buffer, 0, (GLsizeiptr)bytes, entry->shown);
+        entry->content = XXH3_64bits(entry->shown, bytes);
+    }
+    entry->version = scalars->version;
+    entry->oldest_age_ns = scalars->oldest_age_ns;
+    entry->used = ++fields->uses;
+    return entry;
+}
+
+void fields_trim(struct fields *fields)
+{
+    while (fields->bytes > BOUND_BYTES && fields->count > 1) {
+        size_t oldest = 0;
+        for (size_t i = 1; i < fields->count; i++)
+            if (fields->entries[i]->used < fields->entries[oldest]->used)
+                oldest = i;
+        entry_destroy(fields, fields->entries[oldest]);
+        fields->entries[oldest] = fields->entries[--fields->count];
+    }
+}

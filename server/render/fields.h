@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The scalars of assets on the GPU, per asset and field parameters: uploaded when they differ by half a colour step or more from
+   what is there. Least recently used ones go beyond a bound. Thread: the one of the GL context. */
+#ifndef RENDER_FIELDS_H
+#define RENDER_FIELDS_H
+#include "field/field.h"
+#include <glad/gl.h>
+
+#include "gpu/gl.h"
+
+struct fields_entry {
+    int asset;
+    struct field_params params;
+    double step;              /* a value step that can be seen: the range over 256 */
+    uint64_t version;         /* of the scalars when they were last looked at */
+    uint64_t content;         /* hash of what is shown */
+    struct scalar *shown;
+    size_t count;
+    GLuint buffer;
+    int64_t oldest_age_ns;
+    uint64_t used;
+};
+
+struct fields {
+    struct log *log;
+    struct field *field;
+    struct fields_entry **entries;
+    size_t count, capacity, bytes;
+    uint64_t uses;
+};
+
+void fields_init(struct fields *fields, struct log *log, struct field *field);
+void fields_finish(struct fields *fields);
+/* NULL: the asset has no sensor of the group (or there is no room, logged). Valid until the next fields_trim. */
+const struct fields_entry *fields_get(struct fields *fields, int asset, const struct field_params *params, double range, const struct snapshot *snapshot);
+/* Between frames: drops what is beyond the bound. */
+void fields_trim(struct fields *fields);
+
+#endif

@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The passes that draw lines over the resolved picture: edges of shapes, and the outline of the selected asset.
+   Thread: the one of the GL context. */
+#ifndef RENDER_LINES_H
+#define RENDER_LINES_H
+#include "render/picture.h"
+
+struct lines {
+    GLuint edge_program, outline_program, vao;
+    GLuint mask_framebuffer, mask;
+    int mask_width_px, mask_height_px;
+};
+
+bool lines_init(struct lines *lines, struct log *log); /* false: logged */
+void lines_finish(struct lines *lines);
+void lines_draw_edges(const struct lines *lines, const struct picture *picture);
+/* Of view->selected_asset, also where something stands before it. */
+void lines_draw_outline(struct lines *lines, const struct picture *picture);
+
+#endif

@@ -1,0 +1,105 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Markers by a compute shader that looks at the depth buffer. */
+#include "render/markers.h"
+
+#include <math.h>
+
+#include "base/mem.h"
+#include "gpu/program.h"
+
+bool markers_init(struct markers *markers, struct log *log)
+{
+    markers->program = program_create(log, program_params(.compute = "markers.comp"));
+    return markers->program != 0;
+}
+
+void markers_finish(struct markers *markers)
+{
+    program_destroy(&markers->program);
+    glDeleteBuffers(1, &markers->buffer);
+}
+
+static bool is_shown(const struct picture *picture, const struct scene_sensor *sensor)
+{
+    return picture->stage->scene->plant->tags[sensor->tag].group == picture->view->field.group;
+}
+
+static size_t count_shown(const struct picture *picture)
+{
+    const struct scene *scene = picture->stage->scene;
+    size_t count = 0;
+    for (size_t a = 0; a < scene->asset_count; a++)
+        for (size_t s = 0; s < scene->assets[a].sensor_count; s++)
+            count += is_shown(picture, &scene->assets[a].sensors[s]);
+    return count;
+}
+
+/* A marker sits on the surface; curved triangles may put it a little behind. */
+static double slack_m(const struct scene_asset *asset)
+{
+    double size = 0;
+    for (int c = 0; c < 3; c++)
+        size = fmax(size, asset->bounds_max_m[c] - asset->bounds_min_m[c]);
+    return fmin(fmax(0.01 * size, 0.005), 0.10);
+}
+
+static void fill_places(const struct picture *picture, float (*places)[4])
+{
+    const struct scene *scene = picture->stage->scene;
+    for (size_t a = 0; a < scene->asset_count; a++)
+        for (size_t s = 0; s < scene->assets[a].sensor_count; s++) {
+            const struct scene_sensor *sensor = &scene->assets[a].sensors[s];
+            if (!is_shown(picture, sensor))
+                continue;
+            for (int c = 0; c < 3; c++)
+                (*places)[c] = (float)(sensor->surface_m[c] - picture->shot.eye_m[c]);
+            (*places++)[3] = (float)slack_m(&scene->assets[a]);
+        }
+}
+
+bool markers_start(struct markers *markers, const struct picture *picture)
+{
+    size_t count = count_shown(picture), bytes = count * sizeof(float[4]);
+    if (count == 0)
+        return true;
+    if (count > markers->capacity) {
+        glDeleteBuffers(1, &markers->buffer);
+        markers->buffer = mesh_buffer(picture->stage->gl->log, "markers", bytes, NULL, GL_DYNAMIC_STORAGE_BIT);
+        markers->capacity = markers->buffer ? count : 0;
+        if (!markers->buffer)
+            return false;
+    }
+    float (*places)[4] = mem_array(count, sizeof(*places));
+    fill_places(picture, places);
+    glNamedBufferSubData(markers->buffer, 0, (GLsizeiptr)bytes, places);
+    mem_free(places);
+    gl_pass_enter("markers");
+    glUseProgram(markers->program);
+    glUniform1i(0, (GLint)count);
+    glBindTextureUnit(0, picture->target->resolved_depth);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, markers->buffer);
+    glDispatchCompute(((GLuint)count + 63) / 64, 1, 1);
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    return gl_pass_leave(picture->stage->gl, "markers");
+}
+
+void markers_get(const struct markers *markers, const struct picture *picture, struct frame *frame)
+{
+    const struct scene *scene = picture->stage->scene;
+    size_t count = count_shown(picture);
+    if (count == 0)
+        return;
+    float (*places)[4] = mem_array(count, sizeof(*places)), (*place)[4] = places;
+    glGetNamedBufferSubData(markers->buffer, 0, (GLsizeiptr)(count * sizeof(*places)), places);
+    frame->markers = mem_array(count, sizeof(*frame->markers));
+    for (size_t a = 0; a < scene->asset_count; a++)
+        for (size_t s = 0; s < scene->assets[a].sensor_count; s++) {
+            const struct scene_sensor *sensor = &scene->assets[a].sensors[s];
+            if (!is_shown(picture, sensor))
+                continue;
+            frame->markers[frame->marker_count++] =
+                (struct frame_marker){ .tag = sensor->tag, .x_px = (*place)[0], .y_px = (*place)[1], .occluded = (*place)[2] > 0.5f };
+            place++;
+        }
+    mem_free(places);
+}

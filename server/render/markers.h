@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Finds the sensors of the shown group in the picture, and which of them are hidden. Thread: the one of the GL context. */
+#ifndef RENDER_MARKERS_H
+#define RENDER_MARKERS_H
+#include "render/frame.h"
+#include "render/picture.h"
+
+struct markers {
+    GLuint program, buffer;
+    size_t capacity;
+};
+
+bool markers_init(struct markers *markers, struct log *log); /* false: logged */
+void markers_finish(struct markers *markers);
+/* Started once the picture is resolved; read into the frame when the GPU is done with it. False: out of GPU memory, logged. */
+bool markers_start(struct markers *markers, const struct picture *picture);
+void markers_get(const struct markers *markers, const struct picture *picture, struct frame *frame);
+
+#endif

@@ -1,0 +1,109 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Uploads an asset file and sorts its triangles by material. */
+#include "render/model.h"
+
+#include <math.h>
+
+#include "base/mem.h"
+#include "render/materials.h"
+
+static bool make_mesh(struct model *model, struct gl *gl)
+{
+    const struct asset_view *view = &model->file->view;
+    struct mesh_params params = {
+        .vertex_count = view->header->vertex_count,
+        .index_count = view->header->index_count,
+        .positions_m = view->positions_m,
+        .normals = view->normals,
+        .texcoords = view->texcoords,
+        .colors = view->colors,
+        .indices = view->indices,
+    };
+    return mesh_init(&model->mesh, gl->log, model->file->path, &params);
+}
+
+/* All primitives of one level that have that material. */
+static void fill_batch(struct model_batch *batch, const struct asset_view *view, const struct asset_level *level, uint32_t material)
+{
+    batch->material = material;
+    batch->blend = view->materials[material].alpha == ASSET_ALPHA_BLEND;
+    batch->double_sided = view->materials[material].double_sided != 0;
+    batch->counts = mem_array(level->primitive_count, sizeof(*batch->counts));
+    batch->offsets = mem_array(level->primitive_count, sizeof(*batch->offsets));
+    for (uint32_t i = 0; i < level->primitive_count; i++) {
+        const struct asset_primitive *primitive = &view->primitives[level->first_primitive + i];
+        if (primitive->material != material || primitive->index_count == 0)
+            continue;
+        batch->counts[batch->draws] = (GLsizei)primitive->index_count;
+        batch->offsets[batch->draws++] = (const void *)((uintptr_t)primitive->first_index * 4);
+        batch->triangles += (int)(primitive->index_count / 3);
+    }
+}
+
+static void make_level(struct model_level *level, const struct asset_view *view, const struct asset_level *from)
+{
+    uint32_t materials = view->header->material_count;
+    level->error_m = from->error_m;
+    level->vertex_count = from->vertex_count;
+    level->batches = mem_array(materials, sizeof(*level->batches));
+    for (int blend = 0; blend < 2; blend++)
+        for (uint32_t m = 0; m < materials; m++) {
+            if ((view->materials[m].alpha == ASSET_ALPHA_BLEND) != blend)
+                continue;
+            struct model_batch *batch = &level->batches[level->batch_count];
+            fill_batch(batch, view, from, m);
+            if (batch->draws) {
+                level->batch_count++;
+            } else {
+                mem_free(batch->counts);
+                mem_free(batch->offsets);
+                *batch = (struct model_batch){ 0 };
+            }
+        }
+}
+
+bool model_init(struct model *model, struct gl *gl, const struct asset *file, GLuint ramp_program)
+{
+    const struct asset_header *header = file->view.header;
+    *model = (struct model){ .file = file };
+    if (!make_mesh(model, gl) || !materials_upload(model, gl, ramp_program)) {
+        log_err(gl->log, "%s: not drawn: %u vertices, %u textures do not fit on the GPU", file->path, header->vertex_count, header->texture_count);
+        return false;
+    }
+    model->levels = mem_array(header->level_count, sizeof(*model->levels));
+    model->level_count = header->level_count;
+    for (uint32_t i = 0; i < header->level_count; i++)
+        make_level(&model->levels[i], &file->view, &file->view.levels[i]);
+    return true;
+}
+
+void model_finish(struct model *model)
+{
+    for (size_t i = 0; i < model->level_count; i++) {
+        for (size_t b = 0; b < model->levels[i].batch_count; b++) {
+            mem_free(model->levels[i].batches[b].counts);
+            mem_free(model->levels[i].batches[b].offsets);
+        }
+        mem_free(model->levels[i].batches);
+    }
+    mem_free(model->levels);
+    materials_finish(model);
+    mesh_finish(&model->mesh);
+    *model = (struct model){ 0 };
+}
+
+const struct model_level *model_level(const struct model *model, double error_m)
+{
+    size_t best = 0;
+    for (size_t i = 1; i < model->level_count && model->levels[i].error_m <= error_m; i++)
+        best = i;
+    return &model->levels[best];
+}
+
+void model_draw_batch(const struct model_batch *batch)
+{
+    if (batch->draws == 1)
+        glDrawElements(GL_TRIANGLES, batch->counts[0], GL_UNSIGNED_INT, batch->offsets[0]);
+    else
+        glMultiDrawElements(GL_TRIANGLES, batch->counts, GL_UNSIGNED_INT, batch->offsets, batch->draws);
+}

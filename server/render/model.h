@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One asset file on the GPU: geometry, materials, textures, and the order in which to draw them. Shared by all its instances.
+   Thread: the one of the GL context. */
+#ifndef RENDER_MODEL_H
+#define RENDER_MODEL_H
+#include "gpu/gl.h"
+#include "gpu/mesh.h"
+#include "scene/asset.h"
+
+enum model_map { MODEL_BASE_COLOR, MODEL_METALLIC_ROUGHNESS, MODEL_NORMAL, MODEL_OCCLUSION, MODEL_EMISSIVE, MODEL_MAPS };
+enum { MODEL_LIGHT_STEPS = 64 }; /* of a ramp */
+
+struct model_batch { /* the triangles of one material in one level */
+    uint32_t material;
+    bool blend, double_sided;
+    GLsizei draws;
+    GLsizei *counts;        /* for glMultiDrawElements */
+    const void **offsets;
+    int triangles;
+};
+
+struct model_level {
+    struct model_batch *batches; /* opaque ones first */
+    size_t batch_count;
+    float error_m;
+    uint32_t vertex_count;
+};
+
+struct model_material {
+    GLuint maps[MODEL_MAPS]; /* 0: none; owned by the model's textures */
+    int mask;                /* bit per map that is there */
+};
+
+struct model {
+    const struct asset *file;
+    struct mesh mesh;
+    struct model_level *levels;
+    struct model_material *materials;
+    GLuint *textures;
+    size_t level_count, material_count, texture_count;
+    GLuint material_buffer, ramps; /* ramps: a row per material, muted sRGB by light */
+};
+
+/* ramp_program: compiled ramp.comp. False: logged; finish copes with what is half-made. */
+bool model_init(struct model *model, struct gl *gl, const struct asset *file, GLuint ramp_program);
+void model_finish(struct model *model);
+/* The coarsest level that errs by at most that. */
+const struct model_level *model_level(const struct model *model, double error_m);
+void model_draw_batch(const struct model_batch *batch);
+
+#endif

@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One picture being drawn: what every pass needs to know. Thread: the one of the GL context. */
+#ifndef RENDER_PICTURE_H
+#define RENDER_PICTURE_H
+#include "gpu/target.h"
+#include "render/fields.h"
+#include "render/light.h"
+#include "render/view.h"
+
+struct picture {
+    const struct stage *stage;
+    const struct view *view;
+    struct shot shot;
+    const struct light_set *light;
+    const struct target *target;
+    const struct fields_entry **fields; /* per asset; NULL: context */
+    const int *visible;                 /* assets, nearest first */
+    size_t visible_count;
+    GLuint palette;
+    int triangles;                      /* counted as they are drawn */
+};
+
+#endif

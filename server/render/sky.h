@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The pass that fills what the plant leaves open: backdrop, and the shadow on the ground. Thread: the one of the GL context. */
+#ifndef RENDER_SKY_H
+#define RENDER_SKY_H
+#include "render/picture.h"
+
+struct sky_pass {
+    GLuint programs[2]; /* by tier */
+    GLuint vao;         /* without attributes */
+};
+
+bool sky_init(struct sky_pass *sky, struct log *log); /* false: logged */
+void sky_finish(struct sky_pass *sky);
+void sky_draw(const struct sky_pass *sky, const struct picture *picture);
+
+#endif

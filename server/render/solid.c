@@ -1,0 +1,112 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Draws assets: with their field, or as muted context. */
+#include "render/solid.h"
+
+#include "gpu/program.h"
+#include "render/matrix.h"
+
+/* Uniform locations and texture units, as in the shaders. */
+enum { CLIP_FROM_FILE = 0, EYE_FROM_FILE = 1, MATERIAL = 2, TEXTURES = 3, EYE_FROM_NORMAL = 4 };
+enum { UNIT_PALETTE = 0, UNIT_RAMPS = 1, UNIT_SUN_MAP = 2, UNIT_MAPS = 3 };
+
+bool solid_init(struct solid *solid, struct log *log)
+{
+    static const char *const stages[2][2] = { { "moving.vert", "moving.frag" }, { "still.vert", "still.frag" } };
+    bool good = true;
+    for (int tier = 0; tier < 2; tier++)
+        for (int field = 0; field < 2; field++) {
+            solid->programs[tier][field] = program_create(log, program_params(.vertex = stages[tier][0], .fragment = stages[tier][1],
+                                                                              .defines = field ? "#define FIELD\n" : NULL));
+            good = good && solid->programs[tier][field];
+        }
+    return good;
+}
+
+void solid_finish(struct solid *solid)
+{
+    for (int i = 0; i < 4; i++)
+        program_destroy(&solid->programs[i / 2][i % 2]);
+}
+
+static void set_placement(const struct picture *picture, const struct scene_asset *asset)
+{
+    const struct shot *shot = &picture->shot;
+    double clip_from_file[16], eye_from_file[16];
+    float matrix[16], normals[9];
+    matrix_multiply(shot->clip_from_plant, asset->placement, clip_from_file);
+    matrix_to_float(clip_from_file, matrix);
+    glUniformMatrix4fv(CLIP_FROM_FILE, 1, GL_FALSE, matrix);
+    if (picture->view->tier == TIER_MOVING)
+        return;
+    matrix_translation((double[3]){ -shot->eye_m[0], -shot->eye_m[1], -shot->eye_m[2] }, eye_from_file);
+    matrix_multiply(eye_from_file, asset->placement, eye_from_file);
+    matrix_to_float(eye_from_file, matrix);
+    glUniformMatrix4fv(EYE_FROM_FILE, 1, GL_FALSE, matrix);
+    matrix_normals(asset->placement, normals);
+    glUniformMatrix3fv(EYE_FROM_NORMAL, 1, GL_FALSE, normals);
+}
+
+static void set_material(const struct picture *picture, const struct model *model, const struct model_batch *batch, bool field)
+{
+    const struct model_material *material = &model->materials[batch->material];
+    if (batch->double_sided)
+        glDisable(GL_CULL_FACE);
+    else
+        glEnable(GL_CULL_FACE);
+    if (picture->view->tier == TIER_MOVING) {
+        if (!field)
+            glUniform1i(MATERIAL, (GLint)batch->material);
+        return;
+    }
+    glUniform1i(MATERIAL, (GLint)batch->material);
+    glUniform1i(TEXTURES, material->mask);
+    for (GLuint i = 0; i < MODEL_MAPS; i++)
+        if (material->maps[i])
+            glBindTextureUnit(UNIT_MAPS + i, material->maps[i]);
+}
+
+/* One asset's surfaces, those that are blended or those that are not. A field is never blended: it would mix its colours. */
+static void draw_asset(const struct solid *solid, struct picture *picture, int index, bool blend)
+{
+    const struct model *model = picture->stage->of_asset[index];
+    const struct model_level *level = stage_level(picture->stage, &picture->shot, index);
+    const struct fields_entry *field = picture->fields[index];
+    bool bound = false;
+    for (size_t b = 0; b < level->batch_count; b++) {
+        const struct model_batch *batch = &level->batches[b];
+        if ((batch->blend && !field) != blend)
+            continue;
+        if (!bound) {
+            glUseProgram(solid->programs[picture->view->tier == TIER_STILL][field != NULL]);
+            set_placement(picture, &picture->stage->scene->assets[index]);
+            stage_set_front_face(&picture->stage->scene->assets[index]);
+            mesh_bind(&model->mesh, picture->light->baked[index], field ? field->buffer : 0);
+            glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, model->material_buffer);
+            glBindTextureUnit(UNIT_RAMPS, model->ramps);
+            bound = true;
+        }
+        set_material(picture, model, batch, field != NULL);
+        model_draw_batch(batch);
+        picture->triangles += batch->triangles;
+    }
+}
+
+void solid_draw(const struct solid *solid, struct picture *picture)
+{
+    gl_pass_enter("solid");
+    glEnable(GL_DEPTH_TEST);
+    glDepthMask(GL_TRUE);
+    glDisable(GL_BLEND);
+    glBindTextureUnit(UNIT_PALETTE, picture->palette);
+    glBindTextureUnit(UNIT_SUN_MAP, picture->light->sun_map);
+    glVertexAttrib4f(MESH_COLOR, 1, 1, 1, 1);
+    for (size_t i = 0; i < picture->visible_count; i++)
+        draw_asset(solid, picture, picture->visible[i], false);
+    glEnable(GL_BLEND);
+    glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE);
+    for (size_t i = picture->visible_count; i-- > 0;)
+        draw_asset(solid, picture, picture->visible[i], true);
+    glDisable(GL_BLEND);
+    glDisable(GL_CULL_FACE);
+    gl_pass_leave(picture->stage->gl, "solid");
+}

@@ -1,0 +1,128 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Models by asset, frustum and levels of detail. */
+#include "render/stage.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "gpu/program.h"
+#include "render/matrix.h"
+
+static const double LEVEL_ERROR_PX = 0.7;
+
+static struct model *find_model(struct stage *stage, const struct asset *file)
+{
+    for (size_t i = 0; i < stage->model_count; i++)
+        if (stage->models[i].file == file)
+            return &stage->models[i];
+    return NULL;
+}
+
+static void find_ball(struct stage *stage)
+{
+    double square = 0;
+    for (int i = 0; i < 3; i++) {
+        double half = 0.5 * (stage->scene->bounds_max_m[i] - stage->scene->bounds_min_m[i]);
+        stage->middle_m[i] = stage->scene->bounds_min_m[i] + half;
+        square += half * half;
+    }
+    stage->radius_m = fmax(sqrt(square) * 1.001, 1e-3);
+}
+
+bool stage_init(struct stage *stage, struct gl *gl, const struct scene *scene)
+{
+    *stage = (struct stage){ .gl = gl, .scene = scene, .up = { 0, scene->plant->up == AXIS_Y, scene->plant->up == AXIS_Z } };
+    stage->models = mem_array(scene->asset_count, sizeof(*stage->models));
+    stage->of_asset = mem_array(scene->asset_count, sizeof(*stage->of_asset));
+    stage->depth_program = program_create(gl->log, program_params(.vertex = "depth.vert", .fragment = "depth.frag"));
+    GLuint ramp_program = program_create(gl->log, program_params(.compute = "ramp.comp"));
+    bool good = stage->depth_program && ramp_program;
+    find_ball(stage);
+    for (size_t i = 0; i < scene->asset_count && good; i++) {
+        struct model *model = find_model(stage, scene->assets[i].file);
+        if (!model) {
+            model = &stage->models[stage->model_count++];
+            good = model_init(model, gl, scene->assets[i].file, ramp_program);
+        }
+        stage->of_asset[i] = model;
+    }
+    program_destroy(&ramp_program);
+    return good;
+}
+
+void stage_finish(struct stage *stage)
+{
+    for (size_t i = 0; i < stage->model_count; i++)
+        model_finish(&stage->models[i]);
+    mem_free(stage->models);
+    mem_free(stage->of_asset);
+    program_destroy(&stage->depth_program);
+    *stage = (struct stage){ 0 };
+}
+
+void shot_init(struct shot *shot, const double eye_m[3], const double clip_from_eye[16], double pixel_per_radian)
+{
+    double eye_from_plant[16];
+    *shot = (struct shot){ .pixel_per_radian = pixel_per_radian };
+    memcpy(shot->eye_m, eye_m, sizeof(shot->eye_m));
+    memcpy(shot->clip_from_eye, clip_from_eye, sizeof(shot->clip_from_eye));
+    matrix_translation((double[3]){ -eye_m[0], -eye_m[1], -eye_m[2] }, eye_from_plant);
+    matrix_multiply(clip_from_eye, eye_from_plant, shot->clip_from_plant);
+    const double *m = shot->clip_from_plant;
+    for (int p = 0; p < 6; p++) /* w + x, w - x, w + y, w - y, z, w - z: all >= 0 inside */
+        for (int c = 0; c < 4; c++) {
+            double row = m[4 * c + p / 2], w = m[4 * c + 3];
+            shot->planes[p][c] = p == 4 ? row : p % 2 ? w - row : w + row;
+        }
+}
+
+bool shot_sees(const struct shot *shot, const struct scene_asset *asset)
+{
+    for (int p = 0; p < 6; p++) {
+        double far = shot->planes[p][3]; /* of the corner that lies farthest inward */
+        for (int c = 0; c < 3; c++)
+            far += shot->planes[p][c] * (shot->planes[p][c] > 0 ? asset->bounds_max_m[c] : asset->bounds_min_m[c]);
+        if (far < 0)
+            return false;
+    }
+    return true;
+}
+
+const struct model_level *stage_level(const struct stage *stage, const struct shot *shot, int asset)
+{
+    const struct scene_asset *at = &stage->scene->assets[asset];
+    double square = 0;
+    for (int c = 0; c < 3; c++) {
+        double outside = fmax(fmax(at->bounds_min_m[c] - shot->eye_m[c], shot->eye_m[c] - at->bounds_max_m[c]), 0);
+        square += outside * outside;
+    }
+    return model_level(stage->of_asset[asset], LEVEL_ERROR_PX * sqrt(square) / shot->pixel_per_radian);
+}
+
+void stage_draw_depth(const struct stage *stage, const double clip_from_plant[16], int asset, double error_m)
+{
+    glUseProgram(stage->depth_program);
+    glDisable(GL_CULL_FACE);
+    for (size_t i = 0; i < stage->scene->asset_count; i++) {
+        if (asset >= 0 && i != (size_t)asset)
+            continue;
+        const struct model_level *level = model_level(stage->of_asset[i], error_m);
+        double clip_from_file[16];
+        float matrix[16];
+        matrix_multiply(clip_from_plant, stage->scene->assets[i].placement, clip_from_file);
+        matrix_to_float(clip_from_file, matrix);
+        glUniformMatrix4fv(0, 1, GL_FALSE, matrix);
+        mesh_bind(&stage->of_asset[i]->mesh, 0, 0);
+        for (size_t b = 0; b < level->batch_count; b++)
+            if (!level->batches[b].blend || asset >= 0)
+                model_draw_batch(&level->batches[b]);
+    }
+}
+
+void stage_set_front_face(const struct scene_asset *asset)
+{
+    const double *m = asset->placement;
+    double determinant = m[0] * (m[5] * m[10] - m[6] * m[9]) - m[4] * (m[1] * m[10] - m[2] * m[9]) + m[8] * (m[1] * m[6] - m[2] * m[5]);
+    glFrontFace(determinant < 0 ? GL_CW : GL_CCW);
+}

@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The whole scene on the GPU, and what of it a camera sees. Thread: the one of the GL context. */
+#ifndef RENDER_STAGE_H
+#define RENDER_STAGE_H
+#include "gpu/gl.h"
+#include "render/model.h"
+#include "scene/scene.h"
+
+struct stage {
+    struct gl *gl;
+    const struct scene *scene;
+    struct model *models;
+    size_t model_count;
+    const struct model **of_asset; /* by index in scene->assets */
+    double middle_m[3], radius_m;  /* a ball that holds the scene */
+    double up[3];
+    GLuint depth_program;
+};
+
+/* A camera, ready to draw with. Eye space: axes of the plant frame, origin at the camera. */
+struct shot {
+    double eye_m[3];
+    double clip_from_eye[16]; /* depth 1 near, 0 far */
+    double clip_from_plant[16];
+    double pixel_per_radian;
+    double planes[6][4];      /* of the frustum, inward, plant frame */
+};
+
+bool stage_init(struct stage *stage, struct gl *gl, const struct scene *scene); /* false: logged */
+void stage_finish(struct stage *stage);
+
+/* clip_from_plant: depth 1 near, 0 far. */
+void shot_init(struct shot *shot, const double eye_m[3], const double clip_from_eye[16], double pixel_per_radian);
+bool shot_sees(const struct shot *shot, const struct scene_asset *asset);
+/* The coarsest level of detail that stays within a pixel here. */
+const struct model_level *stage_level(const struct stage *stage, const struct shot *shot, int asset);
+
+/* Only depth, of everything (asset -1) or of one asset, with errors up to error_m. Framebuffer and viewport are the caller's. */
+void stage_draw_depth(const struct stage *stage, const double clip_from_plant[16], int asset, double error_m);
+/* For drawing one-sided surfaces of this asset: a mirrored placement turns them round. */
+void stage_set_front_face(const struct scene_asset *asset);
+
+#endif

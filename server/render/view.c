@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a session sees before it asks for anything. */
+#include "render/view.h"
+
+#include <math.h>
+#include <string.h>
+
+/* A late-morning sun over the viewer's left shoulder: shapes read best, shadows stay short. */
+static void default_light(const struct scene *scene, const struct camera *camera, double towards[3])
+{
+    int up = scene->plant->up == AXIS_Y ? 1 : 2, a = 0, b = up == 1 ? 2 : 1;
+    double away[3];
+    for (int i = 0; i < 3; i++)
+        away[i] = camera->eye_m[i] - camera->target_m[i];
+    double flat = hypot(away[a], away[b]), turn = (up == 1 ? 1 : -1) * 0.85, height = 0.87;
+    double x = flat > 0 ? away[a] / flat : 1, y = flat > 0 ? away[b] / flat : 0, across = sqrt(1 - height * height);
+    towards[a] = across * (x * cos(turn) - y * sin(turn));
+    towards[b] = across * (x * sin(turn) + y * cos(turn));
+    towards[up] = height;
+}
+
+void view_default(const struct scene *scene, int width_px, int height_px, struct view *view)
+{
+    const struct plant *plant = scene->plant;
+    memset(view, 0, sizeof(*view));
+    view->width_px = width_px;
+    view->height_px = height_px;
+    camera_fit_up(&view->camera, plant->up, scene->bounds_min_m, scene->bounds_max_m, (double)width_px / height_px);
+    if (plant->view.set) {
+        memcpy(view->camera.eye_m, plant->view.eye_m, sizeof(view->camera.eye_m));
+        memcpy(view->camera.target_m, plant->view.target_m, sizeof(view->camera.target_m));
+        view->camera.fov_deg = plant->view.fov_deg;
+    }
+    view->selected_asset = -1;
+    view->tier = TIER_STILL;
+    field_params_default(plant, 0, &view->field);
+    if (plant->group_count > 0) {
+        view->range_min = plant->groups[0].min;
+        view->range_max = plant->groups[0].max;
+    }
+    default_light(scene, &view->camera, view->light_dir);
+}

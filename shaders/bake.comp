@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Light that reaches each vertex (or each texel of the ground) while nothing moves: seen through depth maps taken from many directions.
+#include "light.glsl"
+#include "shadow.glsl"
+layout(local_size_x = 64) in;
+layout(binding = 1) uniform sampler2DArrayShadow sky_maps;
+layout(std430, binding = 1) readonly buffer Directions {
+    mat4 map_from_plant[64];
+    vec4 direction[64]; // towards the light; w: its brightness
+};
+layout(location = 0) uniform mat4 plant_from_here; // relative to the middle of the scene
+layout(location = 1) uniform mat4 sun_from_plant;
+layout(location = 4) uniform mat3 plant_from_normal;
+layout(location = 8) uniform vec4 sun;             // direction; w: texel of its map, in metres
+layout(location = 9) uniform float sky_texel_m;
+layout(location = 10) uniform int count;
+#ifdef GROUND
+layout(rg8, binding = 0) uniform image2D ground; // sun, openness
+layout(location = 11) uniform vec3 ground_up;
+#else
+layout(std430, binding = 2) readonly buffer Positions { float positions_m[]; };
+layout(std430, binding = 3) readonly buffer Normals { float normals[]; };
+layout(std430, binding = 4) buffer Light { uint baked[]; }; // light, ambient, openness, sun
+#endif
+
+// x: ambient light, 0..1; y: openness, 0..1.
+vec2 ambient(vec3 place, vec3 normal)
+{
+    float light = 0.0, open = 0.0, all = 0.0;
+    vec3 off = place + normal * (1.6 * sky_texel_m);
+    for (int i = 0; i < 64; i++) {
+        float facing = dot(normal, direction[i].xyz);
+        if (facing <= 0.0)
+            continue;
+        vec3 p = (map_from_plant[i] * vec4(off, 1.0)).xyz;
+        float seen = facing * texture(sky_maps, vec4(p.xy, float(i), p.z));
+        light += seen * direction[i].w;
+        open += seen;
+        all += facing;
+    }
+    return vec2(light, open) / max(all, 1e-3);
+}
+
+void main()
+{
+    int i = int(gl_GlobalInvocationID.x);
+    if (i >= count)
+        return;
+#ifdef GROUND
+    ivec2 size = imageSize(ground), at = ivec2(i % size.x, i / size.x);
+    vec3 place = (plant_from_here * vec4((vec2(at) + 0.5) / vec2(size), 0.0, 1.0)).xyz;
+    float sun_visible = sun_visibility(sun_from_plant, place, ground_up, sun.w, 2.5);
+#ifdef SKY
+    float open = ambient(place, ground_up).y;
+#else
+    float open = imageLoad(ground, at).g;
+#endif
+    imageStore(ground, at, vec4(sun_visible, open, 0.0, 0.0));
+#else
+    vec3 place = (plant_from_here * vec4(positions_m[3 * i], positions_m[3 * i + 1], positions_m[3 * i + 2], 1.0)).xyz;
+    vec3 normal = normalize(plant_from_normal * vec3(normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]));
+#ifdef SKY
+    vec2 seen = ambient(place, normal);
+#else
+    vec2 seen = unpackUnorm4x8(baked[i]).yz;
+#endif
+    float facing = max(dot(normal, sun.xyz), 0.0);
+    float sun_visible = facing > 0.0 ? sun_visibility(sun_from_plant, place, normal, sun.w, 2.0) : 0.0;
+    baked[i] = packUnorm4x8(vec4(light_scalar(seen.x, facing * sun_visible), seen, sun_visible));
+#endif
+}

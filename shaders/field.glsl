@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The colour of the field at a pixel. The palette holds sRGB colours: one column for each colour of the map, then those of
+// below, above and the two of the hatching; one row for each step of light (render/palette.c).
+layout(binding = 0) uniform sampler2D palette;
+
+const int MAP_COLORS = 256, BELOW = 256, ABOVE = 257, HATCH_LIGHT = 258, HATCH_DARK = 259, STIPPLE = 260;
+
+// The legend's rule (field/colormap.c). value: (v - MIN)/(MAX - MIN).
+int palette_column(float value)
+{
+    if (value < 0.0)
+        return BELOW;
+    if (value > 1.0)
+        return ABOVE;
+    float interval = frame.range.z;
+    if (interval > 0.0)
+        value = min((floor(value / interval) + 0.5) * interval, 1.0);
+    return min(int(value * float(MAP_COLORS)), MAP_COLORS - 1);
+}
+
+int palette_row(float light)
+{
+    float rows = float(textureSize(palette, 0).y - 1);
+    return int((frame.look.x == LOOK_DEFAULT ? light_row(light) : 0.5) * rows + 0.5);
+}
+
+vec3 palette_color(int column, int row)
+{
+    return texelFetch(palette, ivec2(column, row), 0).rgb;
+}
+
+// Coverage of diagonal stripes at this pixel, with soft edges.
+float hatch(vec2 pixel)
+{
+    float phase = fract((pixel.x + pixel.y) / (frame.range.w * 1.4142));
+    return clamp((abs(phase - 0.5) - 0.25) * frame.range.w + 0.5, 0.0, 1.0);
+}
+
+float stipple(vec2 pixel)
+{
+    vec2 cell = pixel / frame.range.w;
+    cell.x += 0.5 * floor(mod(cell.y, 2.0));
+    return clamp((0.26 - length(fract(cell) - 0.5)) * frame.range.w + 0.5, 0.0, 1.0);
+}
+
+// sRGB. flags: no data, uncertain; 0..1 between vertices.
+vec3 field_color(float value, vec2 flags, float light)
+{
+    int row = palette_row(light);
+    if (flags.x > 0.5)
+        return mix(palette_color(HATCH_LIGHT, row), palette_color(HATCH_DARK, row), hatch(gl_FragCoord.xy));
+    vec3 color = palette_color(palette_column(value), row);
+    if (flags.y > 0.5)
+        color = mix(color, palette_color(STIPPLE, row), stipple(gl_FragCoord.xy));
+    return color;
+}

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How much light falls on a point, and what it makes of it. Shared by both tiers and by the ramps, so that they agree.
+
+// Scalar light, 0 (a hidden corner) to 1 (faces the sun under the open sky). ambient: sky and ground seen, 0..1; sun: cosine times visibility.
+float light_scalar(float ambient, float sun)
+{
+    return clamp(0.52 * ambient + 0.48 * sun, 0.0, 1.0);
+}
+
+// Place on the palette's light axis, 0..1; 0.5 leaves the colour alone.
+float light_row(float light)
+{
+    return clamp((light - 0.14) / 0.72, 0.0, 1.0);
+}
+
+vec3 linear_from_srgb(vec3 c)
+{
+    return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), step(0.04045, c));
+}
+
+vec3 srgb_from_linear(vec3 c)
+{
+    c = clamp(c, 0.0, 1.0);
+    return mix(c * 12.92, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, step(0.0031308, c));
+}
+
+// Khronos PBR Neutral: keeps base colours, rolls off highlights.
+vec3 tone_map(vec3 c)
+{
+    const float start = 0.8 - 0.04, desaturation = 0.15;
+    float x = min(c.r, min(c.g, c.b));
+    c -= x < 0.08 ? x - 6.25 * x * x : 0.04;
+    float peak = max(c.r, max(c.g, c.b));
+    if (peak < start)
+        return c;
+    const float d = 1.0 - start;
+    float new_peak = 1.0 - d * d / (peak + d - start);
+    c *= new_peak / peak;
+    return mix(c, vec3(new_peak), 1.0 - 1.0 / (desaturation * (peak - new_peak) + 1.0));
+}
+
+// Irradiance of white light, relative to what makes a white surface white.
+float irradiance(float ambient, float sun)
+{
+    return 0.50 * ambient + 0.78 * sun;
+}
+
+// Assets without a field are context: paler and greyer than they are, so that no material is taken for a value. sRGB in and out.
+vec3 mute(vec3 c)
+{
+    float grey = dot(c, vec3(0.30, 0.59, 0.11));
+    return mix(mix(vec3(grey), c, 0.30), vec3(0.84), 0.40);
+}

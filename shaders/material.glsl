@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// glTF 2.0 metallic-roughness materials, laid out as render/materials.c writes them.
+struct Material {
+    vec4 base_color;
+    vec4 factors;  // metallic, roughness, normal scale, occlusion strength
+    vec4 emissive; // rgb; alpha cutoff (0: opaque)
+    vec4 mean;     // base colour with its texture's mean, for the moving tier
+};
+layout(std430, binding = 0) readonly buffer Materials {
+    Material materials[];
+};

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Moving tier: one light scalar and one look-up a pixel.
+#include "frame.glsl"
+#include "light.glsl"
+layout(location = 0) in float light;
+#ifdef FIELD
+layout(location = 1) in vec3 field;
+#include "field.glsl"
+#else
+layout(binding = 1) uniform sampler2D ramps; // one row a material, light from left to right; sRGB
+layout(location = 2) uniform int material;
+#endif
+layout(location = 0) out vec4 color;
+
+void main()
+{
+#ifdef FIELD
+    color.rgb = field_color(field.x, field.yz, light);
+    if (frame.look.x == LOOK_GLOSSY)
+        color.rgb = srgb_from_linear(tone_map(linear_from_srgb(color.rgb) * (0.10 + 1.15 * light)));
+#else
+    int last = textureSize(ramps, 0).x - 1;
+    color.rgb = texelFetch(ramps, ivec2(int(light * float(last) + 0.5), material), 0).rgb;
+#endif
+    color.a = 1.0;
+}

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Moving tier: a place, a baked light and, on assets with a field, a scalar. llvmpipe runs this on one thread: keep it short.
+#include "frame.glsl"
+layout(location = 0) in vec3 position_m;
+layout(location = 4) in vec4 baked;
+layout(location = 5) in float value;
+layout(location = 6) in vec2 flags;
+layout(location = 0) uniform mat4 clip_from_file;
+layout(location = 0) out float light;
+#ifdef FIELD
+layout(location = 1) out vec3 field;
+#endif
+
+void main()
+{
+    gl_Position = clip_from_file * vec4(position_m, 1.0);
+    light = baked.x;
+#ifdef FIELD
+    field = vec3((value - frame.range.x) * frame.range.y, flags);
+#endif
+}

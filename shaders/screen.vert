@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One triangle over the whole picture, at the far plane.
+layout(location = 0) out vec2 clip;
+
+void main()
+{
+    clip = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
+    gl_Position = vec4(clip, 0.0, 1.0);
+}

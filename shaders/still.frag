@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Still tier: physically based shading with every texture of the material; on the field only lightness, as in the moving tier.
+#include "frame.glsl"
+#include "light.glsl"
+#include "material.glsl"
+#include "environment.glsl"
+#include "pbr.glsl"
+#include "shadow.glsl"
+#include "field.glsl"
+layout(location = 0) centroid in vec3 place;
+layout(location = 1) centroid in vec3 surface_normal;
+layout(location = 2) centroid in vec2 uv;
+layout(location = 3) centroid in vec4 tint;
+layout(location = 4) centroid in vec2 sky; // ambient light and openness, baked
+layout(location = 5) centroid in vec3 field;
+layout(location = 2) uniform int material;
+layout(location = 3) uniform int textures; // bits: base colour, metallic-roughness, normal, occlusion, emissive
+layout(binding = 3) uniform sampler2D base_color_map;
+layout(binding = 4) uniform sampler2D metallic_roughness_map;
+layout(binding = 5) uniform sampler2D normal_map;
+layout(binding = 6) uniform sampler2D occlusion_map;
+layout(binding = 7) uniform sampler2D emissive_map;
+layout(location = 0) out vec4 color;
+
+// The surface's normal with the normal map on it; the tangents come from the derivatives of place and uv.
+vec3 mapped_normal(vec3 n, float scale)
+{
+    vec3 dx = dFdx(place), dy = dFdy(place);
+    vec2 du = dFdx(uv), dv = dFdy(uv);
+    vec3 cross_y = cross(dy, n), cross_x = cross(n, dx);
+    vec3 t = cross_y * du.x + cross_x * dv.x, b = cross_y * du.y + cross_x * dv.y;
+    float size = max(dot(t, t), dot(b, b));
+    if (size < 1e-20)
+        return n;
+    vec3 m = texture(normal_map, uv).xyz * 2.0 - 1.0;
+    m.xy *= scale;
+    t *= inversesqrt(size), b *= inversesqrt(size);
+    return normalize(t * m.x - b * m.y + n * m.z);
+}
+
+void main()
+{
+    Material m = materials[material];
+    vec3 v = normalize(-place), n = normalize(surface_normal), l = frame.sun.xyz;
+    if (dot(n, v) < 0.0 && !gl_FrontFacing)
+        n = -n;
+    vec4 base = m.base_color * tint;
+    if ((textures & 1) != 0)
+        base *= texture(base_color_map, uv);
+    if (base.a < m.emissive.a)
+        discard;
+    float sun_visible = dot(n, l) > 0.0 ? sun_visibility(frame.sun_from_eye, place, n, frame.sun.w, 2.0) : 0.0;
+    float ambient = sky.x, open = sky.y;
+#ifdef FIELD
+    float light = light_scalar(ambient, max(dot(n, l), 0.0) * sun_visible);
+    color = vec4(field_color(field.x, field.yz, light), 1.0);
+    if (frame.look.x != LOOK_GLOSSY)
+        return;
+    base.rgb = linear_from_srgb(color.rgb);
+#endif
+    float metallic = m.factors.x, roughness = m.factors.y;
+    if ((textures & 2) != 0) {
+        vec4 t = texture(metallic_roughness_map, uv);
+        roughness *= t.g;
+        metallic *= t.b;
+    }
+#ifdef FIELD
+    metallic *= 0.3; // a mirror would show the sky instead of the field
+#endif
+    if ((textures & 4) != 0)
+        n = mapped_normal(n, m.factors.z);
+    if ((textures & 8) != 0) {
+        float occlusion = mix(1.0, texture(occlusion_map, uv).r, m.factors.w);
+        ambient *= occlusion;
+        open *= occlusion;
+    }
+    vec3 c = shade(base.rgb, metallic, roughness, n, v, frame.up.xyz, l, ambient, sun_visible, open);
+    vec3 glow = m.emissive.rgb;
+    if ((textures & 16) != 0)
+        glow *= texture(emissive_map, uv).rgb;
+    c = srgb_from_linear(tone_map(c + glow));
+#ifdef FIELD
+    color.rgb = c;
+#else
+    color = vec4(mute(c), base.a);
+#endif
+}

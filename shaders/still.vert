@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Still tier: all that shading by pixel needs.
+#include "frame.glsl"
+layout(location = 0) in vec3 position_m;
+layout(location = 1) in vec3 normal;
+layout(location = 2) in vec2 texcoord;
+layout(location = 3) in vec4 vertex_color;
+layout(location = 4) in vec4 baked;
+layout(location = 5) in float value;
+layout(location = 6) in vec2 flags;
+layout(location = 0) uniform mat4 clip_from_file;
+layout(location = 1) uniform mat4 eye_from_file;
+layout(location = 4) uniform mat3 eye_from_normal;
+layout(location = 0) centroid out vec3 place;
+layout(location = 1) centroid out vec3 surface_normal;
+layout(location = 2) centroid out vec2 uv;
+layout(location = 3) centroid out vec4 tint;
+layout(location = 4) centroid out vec2 sky;
+layout(location = 5) centroid out vec3 field;
+
+void main()
+{
+    gl_Position = clip_from_file * vec4(position_m, 1.0);
+    place = (eye_from_file * vec4(position_m, 1.0)).xyz;
+    surface_normal = eye_from_normal * normal;
+    uv = texcoord;
+    tint = vertex_color;
+    sky = baked.yz;
+    field = vec3((value - frame.range.x) * frame.range.y, flags);
+}

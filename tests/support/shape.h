@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Simple solids for tests: triangles in metres, Z up, each call one primitive. */
+#ifndef TESTS_SUPPORT_SHAPE_H
+#define TESTS_SUPPORT_SHAPE_H
+#include <stddef.h>
+#include <stdint.h>
+
+#include "protocol/asset_format.h"
+
+struct shape { /* zero-initialise */
+    float (*positions)[3], (*normals)[3];
+    uint32_t *indices;
+    struct asset_primitive *primitives;
+    size_t vertex_count, index_count, primitive_count;
+    size_t position_capacity, normal_capacity, index_capacity, primitive_capacity;
+};
+
+/* A grid of n x n squares in a plane through `corner`, along u and v; its normal is u x v. */
+void shape_plate(struct shape *shape, uint32_t material, const double corner[3], const double u[3], const double v[3], int n);
+void shape_box(struct shape *shape, uint32_t material, const double low[3], const double high[3]);
+/* From a to b; the radius goes from ra to rb. Round caps where round is set, else flat. */
+void shape_cylinder(struct shape *shape, uint32_t material, const double a[3], const double b[3], double ra, double rb, int round);
+void shape_finish(struct shape *shape);
+
+#endif

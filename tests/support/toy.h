@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A plant made in memory, for tests of what comes after preprocessing: assets from shapes, with real asset files. */
+#ifndef TESTS_SUPPORT_TOY_H
+#define TESTS_SUPPORT_TOY_H
+#include "scene/scene.h"
+#include "tests/support/shape.h"
+#include "value/snapshot.h"
+
+enum toy_material { TOY_STEEL, TOY_BLUE, TOY_CONCRETE, TOY_MATERIALS };
+
+struct toy {
+    struct plant plant;
+    struct scene scene;
+};
+
+/* One group, "temperature", 0..100 degC, shepard, geodesic. */
+struct toy *toy_create(void);
+void toy_destroy(struct toy **toy);
+/* Takes the shape's content and leaves it empty. at_m: where its origin stands. Sensors: places in the shape's own frame. Tags are
+   named ASSET-1, ASSET-2, ... Distances are straight lines from the nearest vertex. Returns the asset's index. */
+int toy_add(struct toy *toy, const char *id, struct shape *shape, const double at_m[3], const double (*sensors)[3], size_t sensor_count);
+/* After the last asset: readings for every tag, all Bad_WaitingForInitialData. */
+struct snapshot *toy_snapshot(const struct toy *toy);
+void toy_set(struct snapshot *snapshot, int tag, double value, uint32_t quality);
+
+/* An exchanger with 5 sensors on saddles, a tank with 3, pipes and a pump without. */
+struct toy *toy_unit(void);
+
+#endif
