@@ -28,17 +28,28 @@ bool readback_start(struct readback *readback, struct log *log, const struct tar
     return true;
 }
 
-bool readback_get(struct readback *readback, struct log *log, uint8_t *bgrx, size_t stride_bytes)
+static void complain(const struct readback *readback, struct log *log)
 {
-    size_t row_bytes = (size_t)readback->width_px * 4, rows = (size_t)readback->height_px;
+    log_err(log, "readback of %dx%d: the GL context does not answer", readback->width_px, readback->height_px);
+}
+
+bool readback_wait(struct readback *readback, struct log *log)
+{
     GLenum status = glClientWaitSync(readback->done, GL_SYNC_FLUSH_COMMANDS_BIT, TIMEOUT_NS);
     glDeleteSync(readback->done);
     readback->done = NULL;
-    const uint8_t *from = NULL;
     if (status == GL_ALREADY_SIGNALED || status == GL_CONDITION_SATISFIED)
-        from = glMapNamedBufferRange(readback->buffer, 0, (GLsizeiptr)(row_bytes * rows), GL_MAP_READ_BIT);
+        return true;
+    complain(readback, log);
+    return false;
+}
+
+bool readback_get(struct readback *readback, struct log *log, uint8_t *bgrx, size_t stride_bytes)
+{
+    size_t row_bytes = (size_t)readback->width_px * 4, rows = (size_t)readback->height_px;
+    const uint8_t *from = glMapNamedBufferRange(readback->buffer, 0, (GLsizeiptr)(row_bytes * rows), GL_MAP_READ_BIT);
     if (!from) {
-        log_err(log, "readback of %dx%d: the GL context does not answer", readback->width_px, readback->height_px);
+        complain(readback, log);
         return false;
     }
     if (stride_bytes == row_bytes) {

@@ -17,7 +17,8 @@ struct readback { /* zero-initialise */
 
 /* Of the resolved picture. False: out of GPU memory, logged. */
 bool readback_start(struct readback *readback, struct log *log, const struct target *target);
-/* Waits for the picture: 4 bytes a pixel (B, G, R, X), rows from the top, stride_bytes apart. False: the context is lost, logged. */
+bool readback_wait(struct readback *readback, struct log *log); /* until the picture is there. False: the GL context is lost, logged */
+/* After that: 4 bytes a pixel (B, G, R, X), rows from the top, stride_bytes apart. False: as above. */
 bool readback_get(struct readback *readback, struct log *log, uint8_t *bgrx, size_t stride_bytes);
 void readback_finish(struct readback *readback);
 

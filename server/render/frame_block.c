@@ -19,29 +19,25 @@ static void from_eye(const double from_plant[16], const double eye_m[3], float o
     matrix_to_float(plant_from_eye, out);
 }
 
-void frame_block_fill(struct frame_block *block, const struct picture *picture, const struct light *light)
+void frame_block_fill(struct frame_block *block, const struct picture *picture)
 {
     const struct view *view = picture->view;
     const struct shot *shot = &picture->shot;
-    double inverse[16], range = view->range_max - view->range_min, eye_height_m = 0;
+    double inverse[16], range = view->range_max - view->range_min;
     matrix_to_float(shot->clip_from_eye, block->clip_from_eye);
     matrix_invert(shot->clip_from_eye, inverse);
     matrix_to_float(inverse, block->eye_from_clip);
     from_eye(picture->light->texture_from_plant, shot->eye_m, block->sun_from_eye);
-    from_eye(light->ground_from_plant, shot->eye_m, block->ground_from_eye);
     for (int i = 0; i < 3; i++) {
         block->sun[i] = (float)view->light_dir[i];
         block->up[i] = (float)picture->stage->up[i];
-        eye_height_m += picture->stage->up[i] * shot->eye_m[i];
     }
     block->sun[3] = (float)picture->light->texel_m;
-    block->up[3] = (float)(light->ground_height_m - eye_height_m);
+    block->up[3] = 0;
     block->range[0] = (float)view->range_min;
     block->range[1] = (float)(1 / range);
     block->range[2] = (float)(view->ramp_interval > 0 ? view->ramp_interval / range : 0);
     block->range[3] = (float)frame_block_pattern_px(view);
     block->look[0] = (int32_t)view->look;
-    block->look[1] = eye_height_m > light->ground_height_m;
-    block->look[2] = 0;
-    block->look[3] = view->height_px;
+    block->look[1] = block->look[2] = block->look[3] = 0;
 }

@@ -5,12 +5,12 @@
 #include "render/picture.h"
 
 struct frame_block { /* std140 */
-    float clip_from_eye[16], eye_from_clip[16], sun_from_eye[16], ground_from_eye[16];
+    float clip_from_eye[16], eye_from_clip[16], sun_from_eye[16];
     float sun[4], up[4], range[4];
     int32_t look[4];
 };
 
-void frame_block_fill(struct frame_block *block, const struct picture *picture, const struct light *light);
+void frame_block_fill(struct frame_block *block, const struct picture *picture);
 /* Side of a cell of the hatching and stippling. */
 double frame_block_pattern_px(const struct view *view);
 

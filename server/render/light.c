@@ -18,7 +18,7 @@ struct directions_block {
 };
 
 /* Depth maps from all round, needed only while the first set is baked. */
-struct sky {
+struct sky_maps {
     GLuint maps, directions;
     double texel_m;
 };
@@ -32,15 +32,15 @@ static void find_ground(struct light *light)
     for (int i = 0; i < 2; i++)
         side_m = fmax(side_m, scene->bounds_max_m[across[i]] - scene->bounds_min_m[across[i]]);
     side_m += 1.2 * stage->radius_m;
-    light->ground_height_m = scene->bounds_min_m[up];
-    memset(light->ground_from_plant, 0, sizeof(light->ground_from_plant));
+    light->ground_height_m = scene->bounds_min_m[up] - 0.001 * stage->radius_m; /* nothing of the plant in its plane */
+    memset(light->plant_from_ground, 0, sizeof(light->plant_from_ground));
     for (int i = 0; i < 2; i++) {
-        light->ground_from_plant[4 * across[i] + i] = 1 / side_m;
-        light->ground_from_plant[12 + i] = 0.5 - stage->middle_m[across[i]] / side_m;
+        light->plant_from_ground[4 * i + across[i]] = side_m;
+        light->plant_from_ground[12 + across[i]] = stage->middle_m[across[i]] - 0.5 * side_m;
     }
-    light->ground_from_plant[4 * up + 2] = 1;
-    light->ground_from_plant[14] = -light->ground_height_m;
-    light->ground_from_plant[15] = 1;
+    light->plant_from_ground[8 + up] = 1;
+    light->plant_from_ground[12 + up] = light->ground_height_m;
+    light->plant_from_ground[15] = 1;
 }
 
 bool light_init(struct light *light, const struct stage *stage)
@@ -131,12 +131,12 @@ static void sky_direction(const struct stage *stage, int i, double towards[3], f
     *brightness = (float)(height > 0 ? 0.92 + 0.12 * height : 0.42);
 }
 
-static bool sky_init(struct sky *sky, const struct stage *stage)
+static bool sky_maps_init(struct sky_maps *sky, const struct stage *stage)
 {
     struct directions_block *block = mem_new(sizeof(*block));
     double to_middle[16];
     matrix_translation(stage->middle_m, to_middle);
-    *sky = (struct sky){ .texel_m = 2 * stage->radius_m / SKY_MAP_PX };
+    *sky = (struct sky_maps){ .texel_m = 2 * stage->radius_m / SKY_MAP_PX };
     sky->maps = make_map(GL_TEXTURE_2D_ARRAY, SKY_MAP_PX, SKY_DIRECTIONS);
     for (int i = 0; i < SKY_DIRECTIONS; i++) {
         double towards[3], texture_from_plant[16];
@@ -152,13 +152,13 @@ static bool sky_init(struct sky *sky, const struct stage *stage)
     return sky->directions != 0;
 }
 
-static void sky_finish(struct sky *sky)
+static void sky_maps_finish(struct sky_maps *sky)
 {
     glDeleteTextures(1, &sky->maps);
     glDeleteBuffers(1, &sky->directions);
 }
 
-static void set_uniforms(const struct light *light, const struct light_set *set, const struct sky *sky, const double plant_from_here[16])
+static void set_uniforms(const struct light *light, const struct light_set *set, const struct sky_maps *sky, const double plant_from_here[16])
 {
     double around_middle[16];
     float matrix[16], normals[9];
@@ -177,7 +177,7 @@ static void set_uniforms(const struct light *light, const struct light_set *set,
     glUniform1f(9, sky ? (float)sky->texel_m : 0);
 }
 
-static void bake_asset(struct light *light, struct light_set *set, const struct sky *sky, size_t asset)
+static void bake_asset(struct light *light, struct light_set *set, const struct sky_maps *sky, size_t asset)
 {
     const struct scene_asset *at = &light->stage->scene->assets[asset];
     const struct mesh *mesh = &light->stage->of_asset[asset]->mesh;
@@ -189,12 +189,10 @@ static void bake_asset(struct light *light, struct light_set *set, const struct 
     glDispatchCompute(((GLuint)mesh->vertex_count + 63) / 64, 1, 1);
 }
 
-static void bake_ground(struct light *light, struct light_set *set, const struct sky *sky)
+static void bake_ground(struct light *light, struct light_set *set, const struct sky_maps *sky)
 {
-    double plant_from_ground[16];
-    matrix_invert(light->ground_from_plant, plant_from_ground);
     glUseProgram(sky ? light->ground_sky_program : light->ground_sun_program);
-    set_uniforms(light, set, sky, plant_from_ground);
+    set_uniforms(light, set, sky, light->plant_from_ground);
     glUniform1i(10, GROUND_PX * GROUND_PX);
     glUniform3f(11, (float)light->stage->up[0], (float)light->stage->up[1], (float)light->stage->up[2]);
     glBindImageTexture(0, set->ground, 0, GL_FALSE, 0, GL_READ_WRITE, GL_RG8);
@@ -228,12 +226,12 @@ static bool set_buffers(struct light *light, struct light_set *set, const struct
 static bool set_init(struct light *light, struct light_set *set, const double towards[3], const struct light_set *from)
 {
     const struct stage *stage = light->stage;
-    struct sky sky = { 0 };
+    struct sky_maps sky = { 0 };
     int size_px = SUN_MAP_PX < stage->gl->max_texture_px ? SUN_MAP_PX : stage->gl->max_texture_px;
     *set = (struct light_set){ .texel_m = 2 * stage->radius_m / size_px };
     memcpy(set->towards, towards, sizeof(set->towards));
     gl_pass_enter("light");
-    bool good = set_buffers(light, set, from) && (from || sky_init(&sky, stage));
+    bool good = set_buffers(light, set, from) && (from || sky_maps_init(&sky, stage));
     set->sun_map = make_map(GL_TEXTURE_2D, size_px, 1);
     if (good) {
         draw_map(stage, set->sun_map, -1, size_px, towards, set->texture_from_plant);
@@ -246,7 +244,7 @@ static bool set_init(struct light *light, struct light_set *set, const double to
             bake_asset(light, set, from ? NULL : &sky, i);
         glMemoryBarrier(GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
     }
-    sky_finish(&sky);
+    sky_maps_finish(&sky);
     return gl_pass_leave(stage->gl, "light") && good;
 }
 

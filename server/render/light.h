@@ -19,7 +19,7 @@ enum { LIGHT_SETS = 3 };
 struct light {
     const struct stage *stage;
     GLuint sky_program, sun_program, ground_sky_program, ground_sun_program;
-    double ground_from_plant[16]; /* texture coordinates on the ground */
+    double plant_from_ground[16]; /* from texture coordinates on the ground, and height over it */
     double ground_height_m;       /* along `up` */
     struct light_set sets[LIGHT_SETS]; /* sun_map 0: empty */
     uint64_t uses;

@@ -9,7 +9,6 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "gpu/readback.h"
-#include "gpu/timer.h"
 #include "render/content.h"
 #include "render/frame_block.h"
 #include "render/lines.h"
@@ -28,11 +27,10 @@ struct renderer {
     struct light light;
     struct fields fields;
     struct solid solid;
-    struct sky_pass sky;
+    struct sky sky;
     struct lines lines;
     struct markers markers;
     struct readback readback;
-    struct timer timer;
     GLuint frame_buffer;           /* struct frame_block */
     GLuint *palettes;              /* by colour map; 0: not made yet */
     struct target targets[TARGETS]; /* least recently used last; width 0: empty */
@@ -51,7 +49,6 @@ struct renderer *renderer_create(struct log *log, struct gl *gl, const struct sc
     renderer->visible = mem_array(scene->asset_count, sizeof(*renderer->visible));
     renderer->distance_m = mem_array(scene->asset_count, sizeof(*renderer->distance_m));
     fields_init(&renderer->fields, log, field);
-    timer_init(&renderer->timer);
     renderer->frame_buffer = mesh_buffer(log, "frame block", sizeof(struct frame_block), NULL, GL_DYNAMIC_STORAGE_BIT);
     if (!renderer->frame_buffer || !stage_init(&renderer->stage, gl, scene) || !light_init(&renderer->light, &renderer->stage) ||
         !solid_init(&renderer->solid, log) || !sky_init(&renderer->sky, log) || !lines_init(&renderer->lines, log) ||
@@ -71,7 +68,6 @@ void renderer_destroy(struct renderer **renderer_ptr)
     glDeleteTextures((GLsizei)colormap_count(), renderer->palettes);
     glDeleteBuffers(1, &renderer->frame_buffer);
     readback_finish(&renderer->readback);
-    timer_finish(&renderer->timer);
     markers_finish(&renderer->markers);
     lines_finish(&renderer->lines);
     sky_finish(&renderer->sky);
@@ -177,14 +173,14 @@ static GLuint get_palette(struct renderer *renderer, int colormap)
 static void draw_passes(struct renderer *renderer, struct picture *picture)
 {
     struct frame_block block;
-    frame_block_fill(&block, picture, &renderer->light);
+    frame_block_fill(&block, picture);
     glNamedBufferSubData(renderer->frame_buffer, 0, sizeof(block), &block);
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, renderer->frame_buffer);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, picture->target->framebuffer);
     glViewport(0, 0, picture->target->width_px, picture->target->height_px);
     glClear(GL_DEPTH_BUFFER_BIT);
     solid_draw(&renderer->solid, picture);
-    sky_draw(&renderer->sky, picture);
+    sky_draw(&renderer->sky, picture, &renderer->light);
     target_resolve(picture->target);
     if (picture->view->tier == TIER_STILL)
         lines_draw_edges(&renderer->lines, picture);
@@ -223,18 +219,19 @@ struct frame *renderer_draw(struct renderer *renderer, const struct view *view, 
     picture.palette = get_palette(renderer, view->colormap);
     if (!picture.light || !picture.target)
         goto error;
-    timer_start(&renderer->timer);
     draw_passes(renderer, &picture);
-    timer_stop(&renderer->timer);
     if (!markers_start(&renderer->markers, &picture) || !readback_start(&renderer->readback, renderer->gl->log, picture.target))
         goto error;
     describe(frame, &picture, snapshot);
+    if (!readback_wait(&renderer->readback, renderer->gl->log))
+        goto error;
+    int64_t drawn_ns = clock_mono_ns();
     if (!readback_get(&renderer->readback, renderer->gl->log, frame->bgrx, (size_t)frame->stride_bytes))
         goto error;
     markers_get(&renderer->markers, &picture, frame);
     frame->field_ns = field_done_ns - start_ns;
-    frame->render_ns = timer_elapsed_ns(&renderer->timer);
-    frame->readback_ns = clock_mono_ns() - field_done_ns - frame->render_ns;
+    frame->render_ns = drawn_ns - field_done_ns;
+    frame->readback_ns = clock_mono_ns() - drawn_ns;
     return frame;
 error:
     frame_unref(&frame);

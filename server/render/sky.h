@@ -4,13 +4,14 @@
 #define RENDER_SKY_H
 #include "render/picture.h"
 
-struct sky_pass {
-    GLuint programs[2]; /* by tier */
-    GLuint vao;         /* without attributes */
+struct sky {
+    GLuint sky_program, ground_programs[2]; /* by tier */
+    GLuint backdrops;                       /* by height over the horizon */
+    GLuint vao;                             /* without attributes */
 };
 
-bool sky_init(struct sky_pass *sky, struct log *log); /* false: logged */
-void sky_finish(struct sky_pass *sky);
-void sky_draw(const struct sky_pass *sky, const struct picture *picture);
+bool sky_init(struct sky *sky, struct log *log); /* false: logged */
+void sky_finish(struct sky *sky);
+void sky_draw(const struct sky *sky, const struct picture *picture, const struct light *light);
 
 #endif
