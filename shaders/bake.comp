@@ -15,13 +15,26 @@ layout(location = 8) uniform vec4 sun;             // direction; w: texel of its
 layout(location = 9) uniform float sky_texel_m;
 layout(location = 10) uniform int count;
 #ifdef GROUND
+const int TAPS = 16;
+const float SPREAD = 0.05;  // of the map's side
 layout(rg8, binding = 0) uniform image2D ground; // sun, openness
 layout(location = 11) uniform vec3 ground_up;
 #else
+const int TAPS = 4;
+const float SPREAD = 0.004;
 layout(std430, binding = 2) readonly buffer Positions { float positions_m[]; };
 layout(std430, binding = 3) readonly buffer Normals { float normals[]; };
 layout(std430, binding = 4) buffer Light { uint baked[]; }; // light, ambient, openness, sun
 #endif
+
+// How much of the sky map's surroundings lies open: 64 directions are few, so each one stands for the cone around it.
+float opening(vec3 p, int i)
+{
+    float sum = 0.0;
+    for (int k = 0; k < TAPS; k++)
+        sum += texture(sky_maps, vec4(p.xy + disc[k] * SPREAD, float(i), p.z));
+    return sum / float(TAPS);
+}
 
 // x: ambient light, 0..1; y: openness, 0..1.
 vec2 ambient(vec3 place, vec3 normal)
@@ -33,7 +46,7 @@ vec2 ambient(vec3 place, vec3 normal)
         if (facing <= 0.0)
             continue;
         vec3 p = (map_from_plant[i] * vec4(off, 1.0)).xyz;
-        float seen = facing * texture(sky_maps, vec4(p.xy, float(i), p.z));
+        float seen = facing * opening(p, i);
         light += seen * direction[i].w;
         open += seen;
         all += facing;

@@ -61,15 +61,36 @@ static struct fields_entry *entry_create(struct fields *fields, int asset, const
     return entry;
 }
 
-static bool can_be_seen(const struct fields_entry *entry, const struct scalar *now)
+/* How far the values have moved from what is shown. */
+static double error_of(const struct fields_entry *entry, const struct scalar *now)
 {
-    float half = (float)(0.5 * entry->step);
-    for (size_t i = 0; i < entry->count; i++) {
-        const struct scalar *was = &entry->shown[i];
-        if (fabsf(now[i].value - was->value) >= half || now[i].no_data != was->no_data || now[i].uncertain != was->uncertain)
-            return true;
-    }
-    return false;
+    float most = 0;
+    for (size_t i = 0; i < entry->count; i++)
+        most = fmaxf(most, fabsf(now[i].value - entry->shown[i].value));
+    return most;
+}
+
+/* Less than half a colour step is not shown. Most of the time the field's own bound tells; else every value is compared. */
+static bool can_be_seen(struct fields_entry *entry, const struct scalars *now)
+{
+    double half = 0.5 * entry->step;
+    if (now->flags_version != entry->flags_version)
+        return true;
+    if (now->travel - entry->travel < half)
+        return false;
+    double error = error_of(entry, now->at);
+    entry->travel = now->travel - error;
+    return error >= half;
+}
+
+static void show(struct fields_entry *entry, const struct scalars *now)
+{
+    size_t bytes = entry->count * sizeof(*entry->shown);
+    memcpy(entry->shown, now->at, bytes);
+    glNamedBufferSubData(entry->buffer, 0, (GLsizeiptr)bytes, entry->shown);
+    entry->content = XXH3_64bits(entry->shown, bytes);
+    entry->flags_version = now->flags_version;
+    entry->travel = now->travel;
 }
 
 const struct fields_entry *fields_get(struct fields *fields, int asset, const struct field_params *params, double range, const struct snapshot *snapshot)
@@ -84,13 +105,8 @@ const struct fields_entry *fields_get(struct fields *fields, int asset, const st
         entry = entry_create(fields, asset, params, step, scalars->count);
     if (!entry)
         return NULL;
-    if (fresh || (entry->version != scalars->version && can_be_seen(entry, scalars->at))) {
-        size_t bytes = entry->count * sizeof(*entry->shown);
-        memcpy(entry->shown, scalars->at, bytes);
-        glNamedBufferSubData(entry->buffer, 0, (GLsizeiptr)bytes, entry->shown);
-        entry->content = XXH3_64bits(entry->shown, bytes);
-    }
-    entry->version = scalars->version;
+    if (fresh || can_be_seen(entry, scalars))
+        show(entry, scalars);
     entry->oldest_age_ns = scalars->oldest_age_ns;
     entry->used = ++fields->uses;
     return entry;

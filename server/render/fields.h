@@ -12,7 +12,8 @@ struct fields_entry {
     int asset;
     struct field_params params;
     double step;              /* a value step that can be seen: the range over 256 */
-    uint64_t version;         /* of the scalars when they were last looked at */
+    uint64_t flags_version;   /* of the scalars that are shown */
+    double travel;            /* of the scalars, less how far what is shown is known to be off: scalars->travel - travel bounds the error */
     uint64_t content;         /* hash of what is shown */
     struct scalar *shown;
     size_t count;

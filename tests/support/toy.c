@@ -113,7 +113,7 @@ static struct asset *make_file(const char *id, const struct shape *shape, const 
     char why[200] = "out of memory";
     void *bytes = asset_build(&parts, &file->bytes);
     if (!bytes || !asset_view_init(&file->view, bytes, file->bytes, why)) {
-        fprintf(stderr, "synthetic asset %s: %s\n", id, why);
+        fprintf(stderr, "toy asset %s: %s\n", id, why);
         abort();
     }
     file->path = mem_strdup(id);
