@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How much light falls on a point, and what it makes of it. Shared by both tiers and by the ramps, so that they agree.
 
-// Scalar light, 0 (a hidden corner) to 1 (faces the sun under the open sky). ambient: sky and ground seen, 0..1; sun: cosine times visibility.
+// Scalar light, 0 (a hidden corner) to 1 (faces the sun under the open sky).
+// ambient: sky and ground seen, 0..1; sun: cosine times visibility.
 float light_scalar(float ambient, float sun)
 {
     return clamp(0.52 * ambient + 0.48 * sun, 0.0, 1.0);

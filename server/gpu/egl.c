@@ -58,8 +58,10 @@ static bool load_client(struct log *log, const char *name)
 static bool make_current(struct log *log, struct egl *egl, const char *name)
 {
     static const EGLint config_attributes[] = { EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE };
-    static const EGLint context_attributes[] = { EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5, EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                                                 EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE };
+    static const EGLint context_attributes[] = {
+        EGL_CONTEXT_MAJOR_VERSION,           4,       EGL_CONTEXT_MINOR_VERSION, 5, EGL_CONTEXT_OPENGL_PROFILE_MASK,
+        EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE
+    };
     EGLConfig config = EGL_NO_CONFIG_KHR;
     EGLint configs = 0;
     EGLint major = 0, minor = 0;
@@ -158,7 +160,9 @@ static struct gl *egl_surfaceless_create(struct log *log, int device, bool softw
     return egl_from_display(log, impl, eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, NULL));
 }
 
-const struct gl_impl gl_egl_device_impl = { .kind = GL_EGL_DEVICE, .name = "egl-device", .create = egl_device_create, .destroy = egl_destroy };
+const struct gl_impl gl_egl_device_impl = {
+    .kind = GL_EGL_DEVICE, .name = "egl-device", .create = egl_device_create, .destroy = egl_destroy
+};
 const struct gl_impl gl_egl_surfaceless_impl = {
     .kind = GL_EGL_SURFACELESS, .name = "egl-surfaceless", .create = egl_surfaceless_create, .destroy = egl_destroy
 };

@@ -43,7 +43,8 @@ const char *gl_kind_name(enum gl_kind kind)
     return "auto";
 }
 
-static void GLAD_API_PTR on_debug_message(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei length, const GLchar *text, const void *log)
+static void GLAD_API_PTR on_debug_message(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei length, const GLchar *text,
+                                          const void *log)
 {
     (void)source, (void)id, (void)length;
     if (type == GL_DEBUG_TYPE_ERROR || severity == GL_DEBUG_SEVERITY_HIGH)
@@ -93,7 +94,8 @@ struct gl *gl_create(struct log *log, enum gl_kind kind, int device)
         log_info(log, "gl: %s: %s, %s", attempt->impl->name, gl->renderer, gl->version);
         return gl;
     }
-    log_err(log, "no OpenGL 4.5 context (%s): install libegl1 and libgl1-mesa-dri, or libosmesa6; the reasons are above", gl_kind_name(kind));
+    log_err(log, "no OpenGL 4.5 context (%s): install libegl1 and libgl1-mesa-dri, or libosmesa6; the reasons are above",
+            gl_kind_name(kind));
     return NULL;
 }
 

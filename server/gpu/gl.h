@@ -9,9 +9,9 @@
 enum gl_kind { GL_AUTO, GL_EGL_DEVICE, GL_EGL_SURFACELESS, GL_OSMESA };
 
 struct gl {
-    enum gl_kind kind;          /* what it became; never GL_AUTO */
+    enum gl_kind kind; /* what it became; never GL_AUTO */
     char vendor[128], renderer[128], version[128];
-    bool software;              /* llvmpipe, softpipe, swrast */
+    bool software; /* llvmpipe, softpipe, swrast */
     int max_texture_px, max_samples;
     const struct gl_impl *impl;
     struct log *log;

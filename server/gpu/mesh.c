@@ -18,7 +18,8 @@ GLuint mesh_buffer(struct log *log, const char *name, size_t bytes, const void *
     return 0;
 }
 
-static void attribute(GLuint vao, enum mesh_attribute location, GLuint binding, GLint size, GLenum type, GLboolean normalized, GLuint offset)
+static void attribute(GLuint vao, enum mesh_attribute location, GLuint binding, GLint size, GLenum type, GLboolean normalized,
+                      GLuint offset)
 {
     glEnableVertexArrayAttrib(vao, location);
     glVertexArrayAttribFormat(vao, location, size, type, normalized, offset);
@@ -59,7 +60,8 @@ bool mesh_init(struct mesh *mesh, struct log *log, const char *name, const struc
         mesh->texcoords = mesh_buffer(log, name, vertices * 8, params->texcoords, 0);
     if (params->colors)
         mesh->colors = mesh_buffer(log, name, vertices * 4, params->colors, 0);
-    if (!mesh->positions || !mesh->normals || !mesh->indices || (params->texcoords && !mesh->texcoords) || (params->colors && !mesh->colors)) {
+    if (!mesh->positions || !mesh->normals || !mesh->indices || (params->texcoords && !mesh->texcoords) ||
+        (params->colors && !mesh->colors)) {
         mesh_finish(mesh);
         return false;
     }

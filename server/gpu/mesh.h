@@ -27,7 +27,8 @@ struct mesh {
     size_t vertex_count, index_count;
 };
 
-bool mesh_init(struct mesh *mesh, struct log *log, const char *name, const struct mesh_params *params); /* false: out of GPU memory, logged */
+bool mesh_init(struct mesh *mesh, struct log *log, const char *name,
+               const struct mesh_params *params); /* false: out of GPU memory, logged */
 void mesh_finish(struct mesh *mesh);
 /* Light (4 bytes a vertex) and scalars (8 bytes a vertex, struct scalar) for the next draw; 0: none. */
 void mesh_bind(const struct mesh *mesh, GLuint light, GLuint scalars);

@@ -53,8 +53,17 @@ static bool osmesa_load(struct osmesa *osmesa)
 
 static struct gl *osmesa_create(struct log *log, int device, bool software)
 {
-    static const int attributes[] = { OSMESA_FORMAT, OSMESA_RGBA, OSMESA_DEPTH_BITS, 24, OSMESA_PROFILE, OSMESA_CORE_PROFILE,
-                                      OSMESA_CONTEXT_MAJOR_VERSION, 4, OSMESA_CONTEXT_MINOR_VERSION, 5, 0 };
+    static const int attributes[] = { OSMESA_FORMAT,
+                                      OSMESA_RGBA,
+                                      OSMESA_DEPTH_BITS,
+                                      24,
+                                      OSMESA_PROFILE,
+                                      OSMESA_CORE_PROFILE,
+                                      OSMESA_CONTEXT_MAJOR_VERSION,
+                                      4,
+                                      OSMESA_CONTEXT_MINOR_VERSION,
+                                      5,
+                                      0 };
     struct osmesa *osmesa = mem_new(sizeof(*osmesa));
     (void)device, (void)software;
     osmesa->base = (struct gl){ .kind = GL_OSMESA, .impl = &gl_osmesa_impl };

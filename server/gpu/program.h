@@ -9,7 +9,7 @@
 struct program_params {
     const char *vertex, *fragment; /* names of embedded files; or */
     const char *compute;
-    const char *defines;           /* lines put before the source, or NULL */
+    const char *defines; /* lines put before the source, or NULL */
 };
 #define program_params(...) (&(struct program_params){ __VA_ARGS__ })
 

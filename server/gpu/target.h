@@ -10,9 +10,9 @@
 
 struct target {
     int width_px, height_px, samples;
-    GLuint framebuffer, color, depth;                        /* what is drawn to */
+    GLuint framebuffer, color, depth;                            /* what is drawn to */
     GLuint resolved_framebuffer, resolved_color, resolved_depth; /* one sample; the same objects when samples = 1 */
-    GLuint over_framebuffer;                                 /* resolved colour alone: to draw over it while reading its depth */
+    GLuint over_framebuffer;                                     /* resolved colour alone: to draw over it while reading its depth */
 };
 
 /* False: out of GPU memory, logged. */

@@ -93,7 +93,8 @@ static void show(struct fields_entry *entry, const struct scalars *now)
     entry->travel = now->travel;
 }
 
-const struct fields_entry *fields_get(struct fields *fields, int asset, const struct field_params *params, double range, const struct snapshot *snapshot)
+const struct fields_entry *fields_get(struct fields *fields, int asset, const struct field_params *params, double range,
+                                      const struct snapshot *snapshot)
 {
     double step = range / 256;
     const struct scalars *scalars = field_scalars(fields->field, asset, params, snapshot);

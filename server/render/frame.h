@@ -9,21 +9,21 @@
 
 struct frame_marker {
     int tag;
-    float x_px, y_px;   /* from the top left; may lie outside */
-    uint8_t occluded;   /* behind something, or outside the picture */
+    float x_px, y_px; /* from the top left; may lie outside */
+    uint8_t occluded; /* behind something, or outside the picture */
 };
 
 struct frame {
     _Atomic int refs;
-    struct view view;            /* what it was drawn with */
+    struct view view; /* what it was drawn with */
     int width_px, height_px, stride_bytes;
-    uint8_t *bgrx;               /* 4 bytes per pixel, rows from the top */
+    uint8_t *bgrx;                /* 4 bytes per pixel, rows from the top */
     struct frame_marker *markers; /* sensors of the shown group */
     size_t marker_count;
-    int64_t data_utc_ns;         /* of the snapshot it shows */
-    int64_t oldest_age_ns;       /* INT64_MAX: no value takes part */
+    int64_t data_utc_ns;                      /* of the snapshot it shows */
+    int64_t oldest_age_ns;                    /* INT64_MAX: no value takes part */
     int64_t field_ns, render_ns, readback_ns; /* stage times */
-    uint64_t content;            /* equal for equal pictures: hash of view and field versions, without seq numbers and times */
+    uint64_t content;                         /* equal for equal pictures: hash of view and field versions, without seq numbers and times */
     int triangles;
 };
 

@@ -158,7 +158,8 @@ static void sky_maps_finish(struct sky_maps *sky)
     glDeleteBuffers(1, &sky->directions);
 }
 
-static void set_uniforms(const struct light *light, const struct light_set *set, const struct sky_maps *sky, const double plant_from_here[16])
+static void set_uniforms(const struct light *light, const struct light_set *set, const struct sky_maps *sky,
+                         const double plant_from_here[16])
 {
     double around_middle[16];
     float matrix[16], normals[9];

@@ -10,8 +10,8 @@ struct light_set { /* for one place of the sun */
     double texture_from_plant[16]; /* texture coordinates and depth of sun_map */
     double texel_m;
     GLuint sun_map;
-    GLuint ground;         /* RG8: sun and openness on the ground */
-    GLuint *baked;         /* per asset: 4 bytes a vertex: light, ambient, openness, sun */
+    GLuint ground; /* RG8: sun and openness on the ground */
+    GLuint *baked; /* per asset: 4 bytes a vertex: light, ambient, openness, sun */
     uint64_t used;
 };
 
@@ -19,8 +19,8 @@ enum { LIGHT_SETS = 3 };
 struct light {
     const struct stage *stage;
     GLuint sky_program, sun_program, ground_sky_program, ground_sun_program;
-    double plant_from_ground[16]; /* from texture coordinates on the ground, and height over it */
-    double ground_height_m;       /* along `up` */
+    double plant_from_ground[16];      /* from texture coordinates on the ground, and height over it */
+    double ground_height_m;            /* along `up` */
     struct light_set sets[LIGHT_SETS]; /* sun_map 0: empty */
     uint64_t uses;
 };

@@ -69,7 +69,7 @@ bool markers_start(struct markers *markers, const struct picture *picture)
         if (!markers->buffer)
             return false;
     }
-    float (*places)[4] = mem_array(count, sizeof(*places));
+    float(*places)[4] = mem_array(count, sizeof(*places));
     fill_places(picture, places);
     glNamedBufferSubData(markers->buffer, 0, (GLsizeiptr)bytes, places);
     mem_free(places);
@@ -89,7 +89,7 @@ void markers_get(const struct markers *markers, const struct picture *picture, s
     size_t count = count_shown(picture);
     if (count == 0)
         return;
-    float (*places)[4] = mem_array(count, sizeof(*places)), (*place)[4] = places;
+    float(*places)[4] = mem_array(count, sizeof(*places)), (*place)[4] = places;
     glGetNamedBufferSubData(markers->buffer, 0, (GLsizeiptr)(count * sizeof(*places)), places);
     frame->markers = mem_array(count, sizeof(*frame->markers));
     for (size_t a = 0; a < scene->asset_count; a++)

@@ -67,7 +67,8 @@ bool model_init(struct model *model, struct gl *gl, const struct asset *file, GL
     const struct asset_header *header = file->view.header;
     *model = (struct model){ .file = file };
     if (!make_mesh(model, gl) || !materials_upload(model, gl, ramp_program)) {
-        log_err(gl->log, "%s: not drawn: %u vertices, %u textures do not fit on the GPU", file->path, header->vertex_count, header->texture_count);
+        log_err(gl->log, "%s: not drawn: %u vertices, %u textures do not fit on the GPU", file->path, header->vertex_count,
+                header->texture_count);
         return false;
     }
     model->levels = mem_array(header->level_count, sizeof(*model->levels));

@@ -14,7 +14,7 @@ struct model_batch { /* the triangles of one material in one level */
     uint32_t material;
     bool blend, double_sided;
     GLsizei draws;
-    GLsizei *counts;        /* for glMultiDrawElements */
+    GLsizei *counts; /* for glMultiDrawElements */
     const void **offsets;
     int triangles;
 };

@@ -25,7 +25,9 @@ static double srgb_from_linear(double c)
 
 static void lab_from_rgb(const uint8_t rgb[3], double lab[3])
 {
-    static const double to_xyz[3][3] = { { 0.4124564, 0.3575761, 0.1804375 }, { 0.2126729, 0.7151522, 0.0721750 }, { 0.0193339, 0.1191920, 0.9503041 } };
+    static const double to_xyz[3][3] = { { 0.4124564, 0.3575761, 0.1804375 },
+                                         { 0.2126729, 0.7151522, 0.0721750 },
+                                         { 0.0193339, 0.1191920, 0.9503041 } };
     double f[3];
     for (int i = 0; i < 3; i++) {
         double t = 0;
@@ -42,7 +44,9 @@ static void lab_from_rgb(const uint8_t rgb[3], double lab[3])
 /* False: sRGB has no such colour. */
 static bool rgb_from_lab(const double lab[3], uint8_t rgb[3])
 {
-    static const double to_rgb[3][3] = { { 3.2404542, -1.5371385, -0.4985314 }, { -0.9692660, 1.8760108, 0.0415560 }, { 0.0556434, -0.2040259, 1.0572252 } };
+    static const double to_rgb[3][3] = { { 3.2404542, -1.5371385, -0.4985314 },
+                                         { -0.9692660, 1.8760108, 0.0415560 },
+                                         { 0.0556434, -0.2040259, 1.0572252 } };
     static const double slack = 0.5 / 255;
     double f1 = (lab[0] + 16) / 116, f[3] = { f1 + lab[1] / 500, f1, f1 - lab[2] / 200 }, xyz[3];
     for (int i = 0; i < 3; i++)
@@ -86,7 +90,7 @@ static const uint8_t *column_color(const struct colormap *map, int column)
 
 GLuint palette_create(const struct colormap *map)
 {
-    uint8_t (*texels)[PALETTE_COLUMNS][3] = mem_array(PALETTE_ROWS, sizeof(*texels));
+    uint8_t(*texels)[PALETTE_COLUMNS][3] = mem_array(PALETTE_ROWS, sizeof(*texels));
     GLuint texture = 0;
     for (int row = 0; row < PALETTE_ROWS; row++)
         for (int column = 0; column < PALETTE_COLUMNS; column++)

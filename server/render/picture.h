@@ -17,7 +17,7 @@ struct picture {
     const int *visible;                 /* assets, nearest first */
     size_t visible_count;
     GLuint palette;
-    int triangles;                      /* counted as they are drawn */
+    int triangles; /* counted as they are drawn */
 };
 
 #endif

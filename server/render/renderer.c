@@ -31,12 +31,12 @@ struct renderer {
     struct lines lines;
     struct markers markers;
     struct readback readback;
-    GLuint frame_buffer;           /* struct frame_block */
-    GLuint *palettes;              /* by colour map; 0: not made yet */
-    struct target targets[TARGETS]; /* least recently used last; width 0: empty */
+    GLuint frame_buffer;                      /* struct frame_block */
+    GLuint *palettes;                         /* by colour map; 0: not made yet */
+    struct target targets[TARGETS];           /* least recently used last; width 0: empty */
     const struct fields_entry **asset_fields; /* per asset, of the picture being drawn */
     int *visible;
-    double *distance_m;            /* per asset */
+    double *distance_m; /* per asset */
 };
 
 struct renderer *renderer_create(struct log *log, struct gl *gl, const struct scene *scene, struct field *field)

@@ -23,7 +23,7 @@ struct shot {
     double clip_from_eye[16]; /* depth 1 near, 0 far */
     double clip_from_plant[16];
     double pixel_per_radian;
-    double planes[6][4];      /* of the frustum, inward, plant frame */
+    double planes[6][4]; /* of the frustum, inward, plant frame */
 };
 
 bool stage_init(struct stage *stage, struct gl *gl, const struct scene *scene); /* false: logged */

@@ -8,28 +8,28 @@
 #include "scene/camera.h"
 
 enum look {
-    LOOK_DEFAULT,  /* field colours shaded only by an additive L* within +-7; PBR elsewhere */
-    LOOK_GLOSSY,   /* PBR with the field as albedo (the paper's Fig. 13); labelled, since shading changes the colours */
-    LOOK_FLAT      /* no shading */
+    LOOK_DEFAULT, /* field colours shaded only by an additive L* within +-7; PBR elsewhere */
+    LOOK_GLOSSY,  /* PBR with the field as albedo (the paper's Fig. 13); labelled, since shading changes the colours */
+    LOOK_FLAT     /* no shading */
 };
 enum tier { TIER_MOVING, TIER_STILL };
 #define VIEW_MAX_SIDE_PX 8192
 #define VIEW_MAX_PIXELS (16 * 1024 * 1024)
 
 struct view {
-    int width_px, height_px;     /* 16..VIEW_MAX_SIDE_PX, at most VIEW_MAX_PIXELS */
+    int width_px, height_px; /* 16..VIEW_MAX_SIDE_PX, at most VIEW_MAX_PIXELS */
     struct camera camera;
-    uint32_t camera_seq;         /* the client's number of this camera, echoed */
-    uint32_t params_seq;         /* likewise of the parameters */
-    int64_t input_ns;            /* monotonic: when the newest input came in */
+    uint32_t camera_seq; /* the client's number of this camera, echoed */
+    uint32_t params_seq; /* likewise of the parameters */
+    int64_t input_ns;    /* monotonic: when the newest input came in */
     struct field_params field;
     int colormap;                /* index */
     double ramp_interval;        /* engineering units; 0 = continuous */
     double range_min, range_max; /* of the colour map; the group's unless the client says otherwise */
     enum look look;
     enum tier tier;
-    int selected_asset;          /* outlined; -1: none */
-    double light_dir[3];         /* towards the sun, plant frame, unit length */
+    int selected_asset;  /* outlined; -1: none */
+    double light_dir[3]; /* towards the sun, plant frame, unit length */
 };
 
 void view_default(const struct scene *scene, int width_px, int height_px, struct view *view);

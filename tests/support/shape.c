@@ -31,7 +31,8 @@ static void add_triangle(struct shape *shape, uint32_t a, uint32_t b, uint32_t c
 static void begin(struct shape *shape, uint32_t material)
 {
     mem_grow(&shape->primitives, &shape->primitive_capacity, shape->primitive_count + 1, sizeof(*shape->primitives));
-    shape->primitives[shape->primitive_count] = (struct asset_primitive){ .first_index = (uint32_t)shape->index_count, .material = material };
+    shape->primitives[shape->primitive_count] =
+        (struct asset_primitive){ .first_index = (uint32_t)shape->index_count, .material = material };
 }
 
 static void end(struct shape *shape)

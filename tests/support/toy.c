@@ -23,8 +23,15 @@ struct toy *toy_create(void)
     plant->tags = mem_array(MAX_TAGS, sizeof(*plant->tags));
     plant->groups = mem_array(1, sizeof(*plant->groups));
     plant->group_count = 1;
-    plant->groups[0] = (struct plant_group){ .id = mem_strdup("temperature"), .quantity = mem_strdup("Temperature"), .unit = mem_strdup("°C"),
-        .max = 100, .limits = { NAN, NAN, NAN, NAN }, .strength = 1, .decay = 1, .power = 2, .reach_m = INFINITY };
+    plant->groups[0] = (struct plant_group){ .id = mem_strdup("temperature"),
+                                             .quantity = mem_strdup("Temperature"),
+                                             .unit = mem_strdup("°C"),
+                                             .max = 100,
+                                             .limits = { NAN, NAN, NAN, NAN },
+                                             .strength = 1,
+                                             .decay = 1,
+                                             .power = 2,
+                                             .reach_m = INFINITY };
     toy->scene.plant = plant;
     toy->scene.assets = mem_array(MAX_ASSETS, sizeof(*toy->scene.assets));
     for (int c = 0; c < 3; c++) {
@@ -104,11 +111,19 @@ static struct asset *make_file(const char *id, const struct shape *shape, const 
         own[i].base_color_texture = own[i].metallic_roughness_texture = own[i].normal_texture = own[i].occlusion_texture =
             own[i].emissive_texture = ASSET_NO_TEXTURE;
     }
-    struct asset_parts parts = { .positions_m = (void *)shape->positions, .normals = (void *)shape->normals, .indices = shape->indices,
-        .primitives = shape->primitives, .materials = own, .sensors = places, .geodesic_m = distances,
-        .vertex_count = (uint32_t)shape->vertex_count, .index_count = (uint32_t)shape->index_count,
-        .primitive_count = (uint32_t)shape->primitive_count, .level_count = 1, .material_count = TOY_MATERIALS,
-        .sensor_count = (uint32_t)sensor_count };
+    struct asset_parts parts = { .positions_m = (void *)shape->positions,
+                                 .normals = (void *)shape->normals,
+                                 .indices = shape->indices,
+                                 .primitives = shape->primitives,
+                                 .materials = own,
+                                 .sensors = places,
+                                 .geodesic_m = distances,
+                                 .vertex_count = (uint32_t)shape->vertex_count,
+                                 .index_count = (uint32_t)shape->index_count,
+                                 .primitive_count = (uint32_t)shape->primitive_count,
+                                 .level_count = 1,
+                                 .material_count = TOY_MATERIALS,
+                                 .sensor_count = (uint32_t)sensor_count };
     struct asset *file = mem_new(sizeof(*file));
     char why[200] = "out of memory";
     void *bytes = asset_build(&parts, &file->bytes);
@@ -130,8 +145,14 @@ static void add_tags(struct toy *toy, struct scene_asset *asset, int index)
     for (size_t i = 0; i < asset->sensor_count; i++) {
         int tag = (int)toy->plant.tag_count++;
         struct scene_sensor *sensor = &asset->sensors[i];
-        toy->plant.tags[tag] = (struct plant_tag){ .name = mem_printf("%s-%zu", asset->plant->id, i + 1), .unit = toy->plant.groups[0].unit,
-            .source = -1, .asset = index, .strength = 1, .decay = 1, .has_position = true, .limits = { NAN, NAN, NAN, NAN } };
+        toy->plant.tags[tag] = (struct plant_tag){ .name = mem_printf("%s-%zu", asset->plant->id, i + 1),
+                                                   .unit = toy->plant.groups[0].unit,
+                                                   .source = -1,
+                                                   .asset = index,
+                                                   .strength = 1,
+                                                   .decay = 1,
+                                                   .has_position = true,
+                                                   .limits = { NAN, NAN, NAN, NAN } };
         *sensor = (struct scene_sensor){ .tag = tag, .column = (int)i, .surface_distance_m = view->sensors[i].surface_distance_m };
         for (int c = 0; c < 3; c++) {
             sensor->position_m[c] = view->sensors[i].position_m[c] + asset->placement[12 + c];
