@@ -73,7 +73,8 @@ test('wheel: there and back is the same, lines count as pixels, one turn is neve
 });
 
 test('keys and their meanings', () => {
-    const key = (k, code = '', more = {}) => keyMeaning({ key: k, code, ctrlKey: false, altKey: false, metaKey: false, shiftKey: false, ...more });
+    const plain = { ctrlKey: false, altKey: false, metaKey: false, shiftKey: false };
+    const key = (k, code = '', more = {}) => keyMeaning({ key: k, code, ...plain, ...more });
     assert.deepEqual(key('ArrowLeft', 'ArrowLeft'), { motion: 'ArrowLeft' });
     assert.deepEqual(key('ArrowLeft', 'ArrowLeft', { shiftKey: true }), { motion: 'KeyA' });
     assert.deepEqual(key('w', 'KeyW'), { motion: 'KeyW' });

@@ -5,7 +5,8 @@ import { test } from 'node:test';
 import { readAddress, writeAddress } from '../../clients/web/core/address.js';
 import { ageText, decimalsFor, numberText, qualityText, unitText, worst, zoneClock } from '../../clients/web/core/format.js';
 import { nearestMarker, placeLabels } from '../../clients/web/core/labels.js';
-import { colourOf, niceStep, rampChoices, rampSteps, ticks } from '../../clients/web/core/legend.js';
+import { colourOf, niceStep, rampChoices, ticks } from '../../clients/web/core/legend.js';
+import { hatchAt, patternPeriodPx, stippleAt } from '../../clients/web/core/patterns.js';
 import { LatencyMeter, RateMeter } from '../../clients/web/core/meters.js';
 
 test('decimals follow the range, zero has no minus, what is missing is a dash', () => {
@@ -18,7 +19,8 @@ test('decimals follow the range, zero has no minus, what is missing is a dash', 
 });
 
 test('units as engineers write them', () => {
-    assert.deepEqual(['degC', '°C', 'bar', 'mm/s', 'm3/h', 'kg/cm2', 'um'].map(unitText), ['°C', '°C', 'bar', 'mm/s', 'm³/h', 'kg/cm²', 'µm']);
+    assert.deepEqual(['degC', '°C', 'bar', 'mm/s', 'm3/h', 'kg/cm2', 'um'].map(unitText),
+        ['°C', '°C', 'bar', 'mm/s', 'm³/h', 'kg/cm²', 'µm']);
 });
 
 test('ages', () => {
@@ -62,12 +64,6 @@ test('nice steps, and ramps to choose from', () => {
     assert.deepEqual(rampChoices(0, 12), [0.5, 1, 2, 5]);
 });
 
-test('ramp steps begin and end with the range and break at multiples', () => {
-    assert.deepEqual(rampSteps(15, 50, 10).map((s) => [s.from, s.to]), [[15, 20], [20, 30], [30, 40], [40, 50]]);
-    assert.deepEqual(rampSteps(0, 10, 0), []);
-    assert.deepEqual(rampSteps(0, 1e9, 1e-6), [], 'more steps than any screen shows');
-});
-
 const grey = { rgb: Uint8Array.from({ length: 768 }, (_, i) => Math.floor(i / 3)), below: [0, 0, 255], above: [255, 0, 255] };
 
 test('colours: the map inside, its own colours outside, one per ramp step', () => {
@@ -77,7 +73,27 @@ test('colours: the map inside, its own colours outside, one per ramp step', () =
     assert.deepEqual(colourOf(grey, 100.1, 0, 100), [255, 0, 255]);
     assert.deepEqual(colourOf(grey, 51, 0, 100, 25), colourOf(grey, 74, 0, 100, 25));
     assert.notDeepEqual(colourOf(grey, 49, 0, 100, 25), colourOf(grey, 51, 0, 100, 25));
-    assert.deepEqual(colourOf(grey, 100, 0, 100, 25), colourOf(grey, 76, 0, 100, 25), 'MAX is in the last step');
+    assert.deepEqual(colourOf(grey, 62, 0, 100, 25), [160, 160, 160], 'the colour of the middle of the step');
+    assert.deepEqual(colourOf(grey, 26, 15, 50, 10), colourOf(grey, 34, 15, 50, 10), 'steps count from MIN');
+    assert.deepEqual(colourOf(grey, 100, 0, 100, 25), [255, 255, 255]);
+});
+
+test('patterns: half of the hatching is dark, a fifth of the stipple is dots, both as large as the picture asks', () => {
+    const darkness = (colourAt, light, dark) => {
+        let sum = 0;
+        for (let y = 0; y < 300; y++) {
+            for (let x = 0; x < 300; x++)
+                sum += (light - colourAt(x, y)[0]) / (light - dark);
+        }
+        return sum / 90000;
+    };
+    const period = patternPeriodPx(1080);
+    assert.equal(period, 12);
+    assert.equal(patternPeriodPx(360), 6);
+    assert.ok(Math.abs(darkness((x, y) => hatchAt(x, y, 300, period), 244, 128) - 0.5) < 0.02);
+    assert.ok(Math.abs(darkness((x, y) => stippleAt(x, y, 300, period, [200, 200, 200]), 200, 64) - Math.PI * 0.26 ** 2) < 0.02);
+    assert.deepEqual(hatchAt(3, 50, 300, 10 / 1.4142), hatchAt(13, 50, 300, 10 / 1.4142), 'stripes repeat after the diagonal of a period');
+    assert.deepEqual(hatchAt(40, 50, 300, 12), hatchAt(41, 51, 300, 12), 'and fall from left to right');
 });
 
 const label = (id, x, y, priority = 0) => ({ id, x, y, width: 80, height: 20, priority });
@@ -95,6 +111,12 @@ test('labels never overlap each other or a marker, and stay in the picture', () 
         for (const { id, x, y } of items)
             assert.ok(id === a.id || x + 5 <= a.left || x - 5 >= a.right || y + 5 <= a.top || y - 5 >= a.bottom);
     }
+});
+
+test('labels keep off what lies over the picture', () => {
+    const blocked = [{ left: 490, right: 1000, top: 0, bottom: 800 }];
+    assert.equal(placeLabels([label(1, 480, 400)], { ...area, blocked }).get(1).side, 'left');
+    assert.equal(placeLabels([label(1, 700, 400)], { ...area, blocked }).size, 0);
 });
 
 test('the important label wins; one that stood there does not give way to an equal', () => {
@@ -135,14 +157,21 @@ test('latency: from the input to the picture that shows it, once; the median of 
 test('the address carries the view there and back', () => {
     const view = {
         camera: { eye: [35, -42.1234, 24], target: [1, 0.5, 6], up: [0, 0, 1], fov: 45 },
-        params: { group: 'temperature', interpolation: 'paper', distance: 'euclidean', colormap: 'cividis', ramp_interval: 2.5, look: 'flat', selected: 'E-101 A&B' },
+        params: {
+            group: 'temperature', interpolation: 'paper', distance: 'euclidean', colormap: 'cividis', ramp_interval: 2.5, look: 'flat',
+            selected: 'E-101 A&B',
+        },
         tag: 'TT-101',
     };
     assert.deepEqual(readAddress(writeAddress(view)), view);
 });
 
 test('an address that makes no sense is as good as none', () => {
-    for (const hash of ['', '#', '#camera=1,2,3', '#camera=NaN,0,0,0,0,0,0,0,1,45', '#ramp=-3', '#ramp=x', '#look=psychedelic', '#%%%', '#camera=1,1,1,1,1,1,0,0,1,45'])
+    const senseless = [
+        '', '#', '#camera=1,2,3', '#camera=NaN,0,0,0,0,0,0,0,1,45', '#ramp=-3', '#ramp=x', '#look=psychedelic', '#%%%',
+        '#camera=1,1,1,1,1,1,0,0,1,45',
+    ];
+    for (const hash of senseless)
         assert.deepEqual(readAddress(hash), { camera: null, params: {}, tag: null }, hash);
     assert.deepEqual(readAddress('#asset=E-101'), { camera: null, params: { selected: 'E-101' }, tag: null });
 });

@@ -90,6 +90,7 @@ test('after a reconnect the same camera and the same parameters are asked for', 
     assert.equal(sockets[1].sent[0].params.distance, 'euclidean');
     assert.equal(sockets[1].sent[0].params.ramp_interval, 10);
     assert.equal(sockets[1].sent[0].params.seq, undefined);
+    assert.equal(sockets[1].sent[0].params.range, undefined, 'what is only the group\'s own may have changed there');
     sockets[1].say({ ...welcome, view: { ...welcome.view, ...params } });
     assert.deepEqual(session.camera, camera);
     assert.equal(session.params.ramp_interval, 10);
@@ -145,7 +146,8 @@ test('a hidden page says so, also to a new connection', () => {
 
 test('tags: values, qualities, and ages that go on by our own clock', () => {
     const { session, socket, clock } = greeted();
-    socket.say({ type: 'tags', time_us: 1, values: [[0, 87.25, 'good', 'Good', 140], [1, null, 'bad', 'Bad_SensorFailure', null], [999, 1, 'good', 'Good', 0]] });
+    const values = [[0, 87.25, 'good', 'Good', 140], [1, null, 'bad', 'Bad_SensorFailure', null], [999, 1, 'good', 'Good', 0]];
+    socket.say({ type: 'tags', time_us: 1, values });
     clock.advance(1000);
     assert.equal(session.model.readings[0].value, 87.25);
     assert.equal(session.model.ageMs(0, clock.now()), 1140);

@@ -2,9 +2,10 @@
 // The legend: the colours as the server uses them, with units, limits, and the patterns for what is not known.
 import { decimalsFor, numberText, unitText } from '../core/format.js';
 import { colourOf, ticks } from '../core/legend.js';
-import { drawHatch, drawStipple } from './patterns.js';
-import { byId, make } from './dom.js';
+import { hatchAt, patternPeriodPx, stippleAt } from '../core/patterns.js';
+import { byId, make, setVariable } from './dom.js';
 
+const BAR_TEXELS = 1024;
 const css = ([r, g, b]) => `rgb(${r} ${g} ${b})`;
 
 function swatch(width, height, draw) {
@@ -12,7 +13,7 @@ function swatch(width, height, draw) {
     const ratio = window.devicePixelRatio;
     canvas.width = Math.round(width * ratio);
     canvas.height = Math.round(height * ratio);
-    draw(canvas.getContext('2d'), canvas.width, canvas.height, ratio);
+    draw(canvas.getContext('2d'), canvas.width, canvas.height);
     return canvas;
 }
 
@@ -21,9 +22,25 @@ const solid = (colour) => (c, width, height) => {
     c.fillRect(0, 0, width, height);
 };
 
+const pixels = (colourAt) => (c, width, height) => {
+    const image = c.createImageData(width, height);
+    for (let y = 0; y < height; y++) {
+        for (let x = 0; x < width; x++)
+            image.data.set([...colourAt(x, y, height), 255], 4 * (y * width + x));
+    }
+    c.putImageData(image, 0, 0);
+};
+
+function at(element, value, min, max) {
+    setVariable(element, '--at', `${(100 * (value - min)) / (max - min)}%`);
+    return element;
+}
+
 export class Legend {
     constructor({ session }) {
         this.session = session;
+        this.lying = window.matchMedia('(max-width: 719px)');
+        this.lying.addEventListener('change', () => this.show(true));
         this.element = byId('legend');
         this.shown = '';
         session.on('params', () => this.show());
@@ -53,48 +70,47 @@ export class Legend {
     scale(map, [min, max], group) {
         const decimals = decimalsFor(max - min);
         const text = (value) => numberText(value, decimals).replace(/\.0+$/, '');
-        const end = (colour, words) => [
-            make('div', { class: 'end' }, swatch(18, 14, solid(colour))), make('div', { class: 'end-text' }, words),
+        const end = (name, colour, words) => [
+            make('div', { class: `end ${name}` }, swatch(18, 14, solid(colour))), make('div', { class: 'end-text' }, words),
         ];
-        const gap = () => make('div', { class: 'gap' });
         return make('div', { class: 'scale' },
-            ...end(map.above, `> ${text(max)}`), gap(),
-            make('div', { class: 'bar-box' }, this.bar(map, min, max)), this.ticks(min, max, group, text), gap(),
-            ...end(map.below, `< ${text(min)}`));
+            ...end('above', map.above, `> ${text(max)}`),
+            this.limits(min, max, group, text), this.bar(map, min, max), this.ticks(min, max, text),
+            ...end('below', map.below, `< ${text(min)}`));
     }
 
-    // One row of canvas per device pixel would blur; 1024 rows are finer than any screen shows here.
+    // A texture along the bar, finer than any screen shows it.
     bar(map, min, max) {
-        const canvas = make('canvas', { role: 'img', 'aria-label': `Colours from ${min} to ${max}` });
-        canvas.width = 1;
-        canvas.height = 1024;
+        const canvas = make('canvas', { class: 'bar', role: 'img', 'aria-label': `Colours from ${min} to ${max}` });
+        const lying = this.lying.matches;
+        canvas.width = lying ? BAR_TEXELS : 1;
+        canvas.height = lying ? 1 : BAR_TEXELS;
         const c = canvas.getContext('2d');
-        for (let y = 0; y < 1024; y++) {
-            c.fillStyle = css(colourOf(map, max - ((y + 0.5) / 1024) * (max - min), min, max, this.session.params.ramp_interval));
-            c.fillRect(0, y, 1, 1);
+        for (let i = 0; i < BAR_TEXELS; i++) {
+            c.fillStyle = css(colourOf(map, min + ((i + 0.5) / BAR_TEXELS) * (max - min), min, max, this.session.params.ramp_interval));
+            c.fillRect(lying ? i : 0, lying ? 0 : BAR_TEXELS - 1 - i, 1, 1);
         }
         return canvas;
     }
 
-    ticks(min, max, group, text) {
-        const box = make('div', { class: 'ticks' });
-        const place = (element, value) => {
-            element.style.top = `${(100 * (max - value)) / (max - min)}%`;
-            box.append(element);
-        };
-        for (const value of ticks(min, max))
-            place(make('span', {}, text(value)), value);
-        for (const [name, value] of Object.entries(group.limits ?? {})) {
-            if (value !== null && value >= min && value <= max)
-                place(make('span', { class: 'limit', title: `${name} ${text(value)}` }, `◂${name}`), value);
-        }
-        return box;
+    ticks(min, max, text) {
+        return make('div', { class: 'ticks' }, ...ticks(min, max).map((value) => at(make('span', {}, text(value)), value, min, max)));
     }
 
+    limits(min, max, group, text) {
+        const inside = Object.entries(group.limits ?? {}).filter(([, value]) => value !== null && value >= min && value <= max);
+        const mark = this.lying.matches ? '▾' : '▸';
+        return make('div', { class: 'limits' },
+            ...inside.map(([name, value]) => at(make('span', { title: `${name} ${text(value)}` }, `${name}${mark}`), value, min, max)));
+    }
+
+    // In small, the pattern is drawn no coarser than can be recognised.
     keys(map) {
-        const colour = css(colourOf(map, 0.5, 0, 1));
+        const colour = colourOf(map, 0.5, 0, 1);
+        const period = (height) => Math.min(height / 2, patternPeriodPx(this.session.size.height));
+        const noData = pixels((x, y, height) => hatchAt(x, y, height, period(height)));
+        const uncertain = pixels((x, y, height) => stippleAt(x, y, height, period(height), colour));
         return make('div', { class: 'keys' },
-            swatch(18, 14, drawHatch), make('span', {}, 'No data'),
-            swatch(18, 14, (c, width, height, ratio) => drawStipple(c, width, height, ratio, colour)), make('span', {}, 'Uncertain'));
+            swatch(18, 14, noData), make('span', {}, 'No data'), swatch(18, 14, uncertain), make('span', {}, 'Uncertain'));
     }
 }

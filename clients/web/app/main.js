@@ -31,7 +31,7 @@ const legend = new Legend({ session });
 const viewport = new Viewport({ element: byId('viewport'), canvas: byId('picture'), session });
 const overlay = new Overlay({ canvas: byId('overlay'), viewport, session, selection });
 const pilot = new Pilot({ viewport, session });
-const status = new Status({ session, viewport });
+const status = new Status({ session, onFreshness: (fresh) => { overlay.fresh = fresh; refresh(); } });
 const card = new Card({ session, selection, overlay, viewport, onClose: () => selectTag(null) });
 
 // --- selection
@@ -123,8 +123,8 @@ viewport.onDrawn = (newPicture) => {
     if (newPicture)
         byId('waiting').hidden = true;
     if (newPicture || overlay.dirty) {
-        overlay.draw();
         card.show();
+        overlay.draw();
     }
 };
 new ResizeObserver(refresh).observe(byId('viewport'));

@@ -30,6 +30,7 @@ export class Overlay {
         this.places = new Map();
         this.widths = new Map();
         this.dirty = true;
+        this.fresh = true; // false: the values are those of a lost connection
     }
 
     // Sensors of the shown group, where the last drawn picture has them.
@@ -73,7 +74,7 @@ export class Overlay {
         c.clearRect(0, 0, width, height);
         this.markers = this.project().sort((a, b) => b.depth - a.depth);
         const labels = this.labels();
-        this.places = placeLabels(labels, { width, height, before: this.places });
+        this.places = placeLabels(labels, { width, height, before: this.places, blocked: this.blocked() });
         for (const marker of this.markers)
             this.drawMarker(marker);
         for (const label of labels) {
@@ -83,23 +84,32 @@ export class Overlay {
         }
     }
 
+    // What lies over the picture already.
+    blocked() {
+        const origin = this.viewport.element.getBoundingClientRect();
+        const boxes = [...this.viewport.element.querySelectorAll('.legend, .banner, .card')].map((e) => e.getBoundingClientRect());
+        return boxes.filter((box) => box.width > 0).map((box) => ({
+            left: box.left - origin.left, right: box.right - origin.left, top: box.top - origin.top, bottom: box.bottom - origin.top,
+        }));
+    }
+
     isChosen(tag) {
         return tag.name === this.selection.tag || tag === this.selection.hover;
     }
 
     labels() {
-        const shown = this.markers.filter((marker) => !marker.occluded || this.isChosen(marker.tag));
+        const shown = this.markers.filter((marker) => !marker.occluded && !this.isChosen(marker.tag)); // the card speaks for the chosen
         const named = shown.length <= NAMES_UP_TO;
         const nearest = Math.min(...shown.map((marker) => marker.depth));
         return shown.map((marker) => {
             const { tag, reading } = marker;
             const limit = limitState(tag, reading.value);
-            const chosen = this.isChosen(tag), onSelected = tag.asset === this.session.params.selected;
-            const parts = this.parts(marker, limit, named || chosen || onSelected);
+            const onSelected = tag.asset === this.session.params.selected;
+            const parts = this.parts(marker, limit, named || onSelected);
             const width = Math.ceil(parts.reduce((sum, part) => sum + this.width(part), 0) + 2 * PADDING + (parts.length - 1) * 5);
             const doubtful = reading.quality !== 'good';
-            const priority = 100 * chosen + (limit ? 20 : 0) + 10 * onSelected + 5 * doubtful + nearest / marker.depth;
-            return { id: tag.index, x: marker.x, y: marker.y, width, height: LABEL_HEIGHT, priority, parts, marker, limit };
+            const priority = (limit ? 20 : 0) + 10 * onSelected + 5 * doubtful + nearest / marker.depth;
+            return { id: tag.index, x: marker.x, y: marker.y, width, height: LABEL_HEIGHT, priority, parts, limit };
         });
     }
 
@@ -110,7 +120,7 @@ export class Overlay {
         if (reading.value === null || reading.quality === 'bad') {
             parts.push(['no value', 400, INK_2]);
         } else {
-            parts.push([numberText(reading.value, decimalsFor(group.max - group.min)), 650, INK]);
+            parts.push([numberText(reading.value, decimalsFor(group.max - group.min)), ...(this.fresh ? [650, INK] : [400, INK_2])]);
             parts.push([unitText(tag.unit || group.unit), 400, INK_2]);
         }
         if (limit)
@@ -136,11 +146,10 @@ export class Overlay {
         c.save();
         c.translate(x, y);
         c.beginPath();
-        (SHAPES[reading.quality] ?? SHAPES.bad)(c, occluded ? 3 : 4.5);
-        c.lineWidth = 1.5;
+        (SHAPES[reading.quality] ?? SHAPES.bad)(c, occluded ? 2.5 : 4.5);
+        c.lineWidth = occluded ? 1.25 : 1.5;
         if (occluded && !chosen) {
-            c.globalAlpha = 0.45;
-            c.setLineDash([2, 2]);
+            c.globalAlpha = 0.5;
         } else {
             c.fillStyle = '#fff';
             c.fill();
@@ -165,15 +174,15 @@ export class Overlay {
         c.restore();
     }
 
-    drawLabel({ width, height, parts, limit, marker }, { left, top }) {
+    drawLabel({ width, height, parts, limit }, { left, top }) {
         const c = this.context;
         const x = Math.round(left), y = Math.round(top);
         c.beginPath();
         c.roundRect(x + 0.5, y + 0.5, width - 1, height - 1, 4);
         c.fillStyle = 'rgb(255 255 255 / 0.9)';
         c.fill();
-        c.lineWidth = this.isChosen(marker.tag) ? 1.5 : 1;
-        c.strokeStyle = this.isChosen(marker.tag) ? ACCENT : 'rgb(29 37 45 / 0.3)';
+        c.lineWidth = 1;
+        c.strokeStyle = 'rgb(29 37 45 / 0.3)';
         c.stroke();
         c.textBaseline = 'middle';
         let at = x + PADDING;

@@ -4,11 +4,11 @@ import { ageText, zoneClock } from '../core/format.js';
 import { health } from '../core/health.js';
 import { byId, make, setText } from './dom.js';
 
-const LATE_MS = 10000; // data older than this is pointed out
-
 export class Status {
-    constructor({ session, viewport }) {
-        Object.assign(this, { session, viewport });
+    // onFreshness(bool): whether what is shown comes from a server that speaks to us.
+    constructor({ session, onFreshness }) {
+        Object.assign(this, { session, onFreshness });
+        this.fresh = true;
         session.on('welcome', () => {
             this.clock = zoneClock(session.model.plant.time_zone);
         });
@@ -29,7 +29,11 @@ export class Status {
         chip.dataset.kind = kind;
         chip.title = detail;
         setText(chip.querySelector('.words'), words);
-        byId('viewport').classList.toggle('is-old', kind === 'lost' || kind === 'silent');
+        const fresh = kind !== 'lost' && kind !== 'silent';
+        byId('viewport').classList.toggle('is-old', !fresh);
+        if (fresh !== this.fresh)
+            this.onFreshness(fresh);
+        this.fresh = fresh;
         strip.hidden = !banner;
         strip.dataset.kind = kind;
         setText(strip.querySelector('strong'), words);
@@ -48,7 +52,7 @@ export class Status {
         }
         const age = session.model ? session.model.oldestAgeMs(session.params.group, now) : null;
         setText(byId('age'), age === null ? 'none' : ageText(age));
-        byId('age').parentElement.classList.toggle('late', age === null || age > LATE_MS);
+        byId('age').parentElement.classList.toggle('late', age === null || (kind !== 'live' && kind !== 'partial'));
         const rate = session.rate.perSecond(now);
         setText(byId('rate'), rate > 0 ? `${Math.round(rate)}/s` : kind === 'live' || kind === 'partial' ? 'still' : 'none');
         const latency = session.latency.median(now);

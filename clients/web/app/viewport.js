@@ -13,6 +13,12 @@ function decode(frame) {
     return createImageBitmap(new Blob([frame.payload], { type }));
 }
 
+// What the browser states exactly, unless it leaves out the page's zoom, as emulated screens do.
+function devicePixels(cssPx, exact) {
+    const px = Math.round(cssPx * window.devicePixelRatio);
+    return exact !== undefined && Math.abs(exact - px) <= 2 ? exact : px;
+}
+
 export class Viewport {
     // onTick(now): once per animation frame, before drawing. onDrawn(frame): after.
     constructor({ element, canvas, session }) {
@@ -42,13 +48,12 @@ export class Viewport {
 
     watchSize() {
         const box = this.element.getBoundingClientRect();
-        const ratio = window.devicePixelRatio;
-        this.session.resize(pictureSize(Math.round(box.width * ratio), Math.round(box.height * ratio)));
+        this.session.resize(pictureSize(devicePixels(box.width), devicePixels(box.height)));
         let timer;
         const observer = new ResizeObserver(([entry]) => {
             const exact = entry.devicePixelContentBoxSize?.[0];
-            const width = exact ? exact.inlineSize : Math.round(entry.contentRect.width * window.devicePixelRatio);
-            const height = exact ? exact.blockSize : Math.round(entry.contentRect.height * window.devicePixelRatio);
+            const width = devicePixels(entry.contentRect.width, exact?.inlineSize);
+            const height = devicePixels(entry.contentRect.height, exact?.blockSize);
             clearTimeout(timer);
             timer = setTimeout(() => this.session.resize(pictureSize(width, height)), RESIZE_WAIT_MS);
             this.invalidate();

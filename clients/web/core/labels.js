@@ -41,9 +41,12 @@ class Taken {
 }
 
 // items: { id, x, y (the marker), width, height, priority (larger first) }. Returns Map id -> { left, top, side }. The markers
-// themselves stay free too. `before`, the last answer, keeps labels from jumping from side to side, and from giving way to equals.
-export function placeLabels(items, { width, height, markerPx = 5, before = new Map() }) {
+// themselves stay free too, and the boxes in `blocked`. `before`, the last answer, keeps labels from jumping from side to side,
+// and from giving way to equals.
+export function placeLabels(items, { width, height, markerPx = 5, before = new Map(), blocked = [] }) {
     const taken = new Taken(96);
+    for (const box of blocked)
+        taken.add(box);
     for (const { id, x, y } of items)
         taken.add({ left: x - markerPx, right: x + markerPx, top: y - markerPx, bottom: y + markerPx, owner: id });
     const rank = (item) => item.priority + (before.has(item.id) ? 0.5 : 0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The legend's arithmetic: ticks, ramp steps, and the colour of a value by the server's own rule.
+// The legend's arithmetic: ticks, ramps, and the colour of a value by the server's own rule (shaders/field.glsl).
 
 // Steps of 1, 2 or 5 times a power of ten, at most `most` of them over the range.
 export function niceStep(range, most) {
@@ -23,13 +23,6 @@ export function ticks(min, max, most = 6) {
     return [min, ...inner, max];
 }
 
-// The steps of a ramp, from below: { from, to, value }, where `value` is what the step's colour stands for.
-export function rampSteps(min, max, interval) {
-    if (!(interval > 0) || !(max > min) || (max - min) / interval > 1000)
-        return [];
-    const edges = [min, ...multiples(min, max, interval).filter((v) => v > min && v < max), max];
-    return edges.slice(1).map((to, i) => ({ from: edges[i], to, value: (edges[i] + to) / 2 }));
-}
 
 // What to offer as ramp intervals: between 4 and 25 steps over the range.
 export function rampChoices(min, max) {
@@ -38,14 +31,13 @@ export function rampChoices(min, max) {
     return [...new Set([25, 16, 10, 8, 5, 4].map((n) => Number(niceStep(max - min, n).toPrecision(12))))].sort((a, b) => a - b);
 }
 
-// map: { rgb: Uint8Array(768), below, above }. Returns [r, g, b].
+// map: { rgb: Uint8Array(768), below, above }. Returns [r, g, b]. Ramp steps count from `min` and have the colour of their middle.
 export function colourOf(map, value, min, max, interval = 0) {
     if (value < min)
         return map.below;
     if (value > max)
         return map.above;
-    const step = rampSteps(min, max, interval).find((s) => value < s.to || s.to === max);
-    const t = ((step ? step.value : value) - min) / (max - min);
-    const i = 3 * Math.max(0, Math.min(255, Math.floor(t * 256)));
+    const stepped = interval > 0 ? Math.min(max, min + (Math.floor((value - min) / interval) + 0.5) * interval) : value;
+    const i = 3 * Math.min(255, Math.floor(((stepped - min) / (max - min)) * 256));
     return [map.rgb[i], map.rgb[i + 1], map.rgb[i + 2]];
 }

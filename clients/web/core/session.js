@@ -72,10 +72,19 @@ export class Session {
         const message = { type: 'hello', ...this.size, codecs: CODECS };
         if (parts.includes('camera') && this.camera)
             message.camera = this.camera;
-        const params = pick(this.params, PARAMS);
+        const params = this.carried();
         if (parts.includes('params') && Object.keys(params).length > 0)
             message.params = params;
         this.connection.send(message);
+    }
+
+    // The parameters to ask for again: not those that only are the group's own, which may have been changed there since.
+    carried() {
+        const params = pick(this.params, PARAMS), { group } = this;
+        if (!group)
+            return params;
+        const own = { ...pick(group, GROUPS_OWN), range: [group.min, group.max] };
+        return pick(params, PARAMS.filter((name) => JSON.stringify(params[name]) !== JSON.stringify(own[name])));
     }
 
     // inputTime: when the hand moved; latency counts from there.

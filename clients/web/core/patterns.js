@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The patterns that say "no data" and "uncertain", as the server draws them (shaders/field.glsl, server/render/palette.c).
+
+const HATCH = [[244, 244, 244], [128, 128, 128]], STIPPLE = [64, 64, 64];
+const fract = (x) => x - Math.floor(x);
+const clamp = (x) => Math.max(0, Math.min(1, x));
+const mix = (a, b, t) => a.map((x, i) => Math.round(x + (b[i] - x) * t));
+
+// Size of the pattern in a picture of that height.
+export const patternPeriodPx = (heightPx) => Math.max(6, heightPx / 90);
+
+// Coverage of the pattern at the middle of a pixel; y upwards, as GL has it.
+const hatch = (x, y, period) => clamp((Math.abs(fract((x + y) / (period * 1.4142)) - 0.5) - 0.25) * period + 0.5);
+
+function stipple(x, y, period) {
+    const row = y / period, column = x / period + 0.5 * Math.floor(row % 2);
+    return clamp((0.26 - Math.hypot(fract(column) - 0.5, fract(row) - 0.5)) * period + 0.5);
+}
+
+// [r, g, b] of a pixel; row 0 is the top one.
+export function hatchAt(x, row, heightPx, period) {
+    return mix(HATCH[0], HATCH[1], hatch(x + 0.5, heightPx - row - 0.5, period));
+}
+
+export function stippleAt(x, row, heightPx, period, colour) {
+    return mix(colour, STIPPLE, stipple(x + 0.5, heightPx - row - 0.5, period));
+}
