@@ -20,6 +20,7 @@ int decode_width(const struct plant_tag *tag)
     case DATA_INT32:
     case DATA_UINT32:
     case DATA_FLOAT32:
+    case DATA_LBCD:
         return 2;
     case DATA_INT64:
     case DATA_UINT64:
@@ -60,11 +61,11 @@ static double double_of(uint64_t bits)
     return value;
 }
 
-static double bcd_of(uint16_t word)
+static double bcd_of(uint32_t digits)
 {
-    int value = 0;
-    for (int shift = 12; shift >= 0; shift -= 4) {
-        int digit = word >> shift & 15;
+    double value = 0;
+    for (int shift = 28; shift >= 0; shift -= 4) {
+        unsigned digit = digits >> shift & 15;
         if (digit > 9)
             return NAN;
         value = value * 10 + digit;
@@ -87,7 +88,8 @@ static double raw_of(const struct plant_tag *tag, const uint16_t *words)
     case DATA_FLOAT64:
         return double_of(joined);
     case DATA_BCD:
-        return bcd_of((uint16_t)joined);
+    case DATA_LBCD:
+        return bcd_of((uint32_t)joined);
     default:
         return (double)joined;
     }

@@ -40,6 +40,11 @@ static const struct {
     { DATA_BCD, BYTE_ORDER_BADC, { 0x3412 }, 1234 },
     { DATA_BCD, BYTE_ORDER_NONE, { 0x9999 }, 9999 },
     { DATA_BCD, BYTE_ORDER_NONE, { 0x0000 }, 0 },
+    { DATA_LBCD, BYTE_ORDER_ABCD, { 0x1234, 0x5678 }, 12345678 },
+    { DATA_LBCD, BYTE_ORDER_CDAB, { 0x5678, 0x1234 }, 12345678 },
+    { DATA_LBCD, BYTE_ORDER_BADC, { 0x3412, 0x7856 }, 12345678 },
+    { DATA_LBCD, BYTE_ORDER_DCBA, { 0x7856, 0x3412 }, 12345678 },
+    { DATA_LBCD, BYTE_ORDER_ABCD, { 0x9999, 0x9999 }, 99999999 },
     /* -123456789 = F8A432EB */
     { DATA_INT32, BYTE_ORDER_ABCD, { 0xF8A4, 0x32EB }, -123456789 },
     { DATA_INT32, BYTE_ORDER_CDAB, { 0x32EB, 0xF8A4 }, -123456789 },
@@ -88,8 +93,8 @@ static void takes_as_many_registers_as_its_type(void **state)
 {
     (void)state;
     const int widths[] = { [DATA_BIT] = 1, [DATA_INT16] = 1, [DATA_UINT16] = 1, [DATA_BCD] = 1, [DATA_INT32] = 2, [DATA_UINT32] = 2,
-                           [DATA_FLOAT32] = 2, [DATA_INT64] = 4, [DATA_UINT64] = 4, [DATA_FLOAT64] = 4 };
-    for (int type = DATA_BIT; type <= DATA_BCD; type++) {
+                           [DATA_FLOAT32] = 2, [DATA_LBCD] = 2, [DATA_INT64] = 4, [DATA_UINT64] = 4, [DATA_FLOAT64] = 4 };
+    for (int type = DATA_BIT; type <= DATA_LBCD; type++) {
         struct plant_tag tag = tag_of((enum data_type)type, BYTE_ORDER_ABCD);
         assert_int_equal(decode_width(&tag), widths[type]);
         tag.table = TABLE_COIL;
@@ -192,6 +197,8 @@ static void what_is_no_number_is_a_sensor_failure(void **state)
     struct plant_tag bcd = tag_of(DATA_BCD, BYTE_ORDER_NONE);
     assert_int_equal(decode(&bcd, (uint16_t[]){ 0x123A }).quality, QUALITY_BAD_SENSOR_FAILURE);
     assert_int_equal(decode(&bcd, (uint16_t[]){ 0xFFFF }).quality, QUALITY_BAD_SENSOR_FAILURE);
+    struct plant_tag lbcd = tag_of(DATA_LBCD, BYTE_ORDER_ABCD);
+    assert_int_equal(decode(&lbcd, (uint16_t[]){ 0x1234, 0x567A }).quality, QUALITY_BAD_SENSOR_FAILURE);
 }
 
 int main(void)
