@@ -43,6 +43,7 @@ link      = @mkdir -p $(@D); echo "  LINK $@"; \
 sim_sources      := $(filter-out %/generate.c,$(wildcard deploy/demo/*.c))
 generate_sources := $(wildcard deploy/demo/generate*.c deploy/demo/generate/*.c)
 sim_sources      := $(filter-out $(generate_sources),$(sim_sources))
+sim_archive      := $(if $(sim_sources),$(out)/lib/sim.a)
 programs := $(if $(wildcard server/main.c),$(bin)/plantcastd) $(if $(wildcard preprocess/main.c),$(bin)/plantcast-prep) \
             $(if $(wildcard clients/cli/main.c),$(bin)/plantcast) $(if $(sim_sources),$(bin)/plantcast-sim) \
             $(if $(generate_sources),$(bin)/plantcast-demo)
@@ -69,6 +70,7 @@ $(out)/lib/$(1).a: $(call objects,$(wildcard server/$(1)/*.c)) $(if $(filter bas
 endef
 $(foreach l,$(layers),$(eval $(call archive_rule,$(l))))
 $(out)/lib/protocol.a: $(call objects,$(wildcard protocol/*.c))
+$(out)/lib/sim.a: $(call objects,$(filter-out %/sim.c,$(sim_sources)))
 $(out)/lib/%.a:
 	@mkdir -p $(@D); rm -f $@; $(AR) rcs $@ $^
 
@@ -99,7 +101,7 @@ $(gen)/embedded.c: deploy/embed $(embedded_files)
 unit_tests := $(patsubst tests/%.c,$(out)/tests/%,$(wildcard tests/unit/*_test.c))
 gpu_tests  := $(patsubst tests/%.c,$(out)/tests/%,$(wildcard tests/gpu/*_test.c))
 support    := $(call objects,$(wildcard tests/support/*.c))
-$(out)/tests/%: $(out)/obj/tests/%.o $(support) $(archives)
+$(out)/tests/%: $(out)/obj/tests/%.o $(support) $(archives) $(sim_archive)
 	$(link) -lcmocka
 .SECONDARY:
 

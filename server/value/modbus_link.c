@@ -167,11 +167,10 @@ static int read_words(modbus_t *modbus, enum register_table table, int first, in
 int modbus_link_read(struct modbus_link *link, int unit, enum register_table table, int first, int count, uint16_t *words)
 {
     bool bits = table == TABLE_COIL || table == TABLE_DISCRETE;
-    int got;
     if (modbus_set_slave(link->modbus, unit) != 0)
         return MODBUS_EXCEPTION_ILLEGAL_DATA_VALUE; /* libmodbus asks units 0..247 and 255 */
     modbus_flush(link->modbus); /* a reply sent twice */
-    got = bits ? read_bits(link->modbus, table, first, count, words) : read_words(link->modbus, table, first, count, words);
+    int got = bits ? read_bits(link->modbus, table, first, count, words) : read_words(link->modbus, table, first, count, words);
     int cause = errno;
     if (got == count)
         return 0;

@@ -1,0 +1,240 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* plantcast-sim: the devices of a plant as Modbus TCP servers, fed by a simulated process or by recorded series. */
+#include "sim.h"
+
+#include <arpa/inet.h>
+#include <errno.h>
+#include <getopt.h>
+#include <math.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/signalfd.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "sim_process.h"
+
+enum { TICK_MS = 100, EXIT_USAGE = 2 };
+
+static const char usage_text[] =
+    "usage: plantcast-sim PLANT.yaml [options]\n"
+    "Serves every register that the tags of the plant's Modbus sources name. Writes are refused.\n"
+    "\n"
+    "  --port N         listen there instead of at the port of the first source; further ports follow it\n"
+    "  --bind ADDRESS   IPv4 address to listen at (127.0.0.1)\n"
+    "  --values FILE    CSV of recorded series; may be given several times. Wide: a header line, the time in a column whose\n"
+    "                   name ends in _ms, _s, _min or _h. Long: no header, lines of time in ms,type,entity,property,value\n"
+    "  --map TAG=SERIES[*SCALE[+OFFSET]]\n"
+    "                   feed the tag from a column, or from entity/property of a long file; may be given several times\n"
+    "  --map-file FILE  lines as for --map, `values FILE` (beside the map file), `speed X`, `loop`, # comments.\n"
+    "                   Without it, PLANT.map beside PLANT.yaml is read where there is one\n"
+    "  --speed X        run X times as fast (1)\n"
+    "  --loop           start recorded series again at their end; else they stay at their last value\n"
+    "  --control PORT   take commands there, on 127.0.0.1 only\n"
+    "  --help           print this\n"
+    "\n"
+    "Tags without a series follow a process around the column `Sim Value` of the tag list (without it: 40 % of their range).\n"
+    "The column `Sim Loop` says where in the process a tag is; any word will do. Upsets, one after the other:\n";
+
+struct options {
+    const char *plant, *bind, *map_file;
+    int port, control;
+    double speed;
+    bool loop;
+    struct sim_map map;
+};
+
+/* --- arguments -------------------------------------------------------------------------------------------------------------- */
+
+static void print_help(void)
+{
+    printf("%s%s\nCommands at the control port:\n%s", usage_text, process_upset_help(), sim_control_help);
+}
+
+static bool read_port(const char *name, const char *text, int *out)
+{
+    char *end;
+    long port = strtol(text, &end, 10);
+    *out = (int)port;
+    if (end != text && !*end && port >= 1 && port <= 65535)
+        return true;
+    fprintf(stderr, "plantcast-sim: --%s %s: expected a port number, 1 to 65535\n", name, text);
+    return false;
+}
+
+static bool read_speed(const char *text, double *out)
+{
+    char *end;
+    *out = strtod(text, &end);
+    if (end != text && !*end && isfinite(*out) && *out > 0 && *out <= 1e6)
+        return true;
+    fprintf(stderr, "plantcast-sim: --speed %s: expected a number above 0\n", text);
+    return false;
+}
+
+static bool take_option(struct options *options, int option, const char *text, struct diag *diag)
+{
+    struct in_addr address;
+    switch (option) {
+    case 'p':
+        return read_port("port", text, &options->port);
+    case 'c':
+        return read_port("control", text, &options->control);
+    case 's':
+        return read_speed(text, &options->speed);
+    case 'b':
+        options->bind = text;
+        if (inet_pton(AF_INET, text, &address) == 1)
+            return true;
+        fprintf(stderr, "plantcast-sim: --bind %s: expected an IPv4 address\n", text);
+        return false;
+    case 'v':
+        sim_map_add_file(&options->map, text);
+        return true;
+    case 'm':
+        sim_map_add(&options->map, text, "--map", 0, diag);
+        return true;
+    case 'f':
+        options->map_file = text;
+        return true;
+    case 'l':
+        options->loop = true;
+        return true;
+    default:
+        return false;
+    }
+}
+
+/* EXIT_SUCCESS: go on. EXIT_USAGE: said what is wrong. -1: only help was wanted. */
+static int read_options(struct options *options, int argc, char **argv)
+{
+    static const struct option known[] = {
+        { "port", required_argument, NULL, 'p' },  { "bind", required_argument, NULL, 'b' },     { "values", required_argument, NULL, 'v' },
+        { "map", required_argument, NULL, 'm' },   { "map-file", required_argument, NULL, 'f' }, { "speed", required_argument, NULL, 's' },
+        { "loop", no_argument, NULL, 'l' },        { "control", required_argument, NULL, 'c' },  { "help", no_argument, NULL, 'h' },
+        { 0 },
+    };
+    struct diag diag = { 0 };
+    int option, status = EXIT_SUCCESS;
+    while (status == EXIT_SUCCESS && (option = getopt_long(argc, argv, "", known, NULL)) >= 0)
+        if (option == 'h')
+            status = -1;
+        else if (!take_option(options, option, optarg, &diag))
+            status = EXIT_USAGE;
+    if (status == EXIT_SUCCESS && (optind != argc - 1 || diag.errors)) {
+        if (!diag.errors)
+            fprintf(stderr, "plantcast-sim: expected one plant file\n");
+        status = EXIT_USAGE;
+    }
+    diag_print(&diag, stderr);
+    diag_finish(&diag);
+    if (status == EXIT_USAGE)
+        fprintf(stderr, "plantcast-sim --help says more\n");
+    options->plant = optind < argc ? argv[optind] : NULL;
+    return status;
+}
+
+/* PLANT.map beside PLANT.yaml. */
+static void read_map_file(struct options *options, struct diag *diag)
+{
+    const char *dot = strrchr(options->plant, '.'), *slash = strrchr(options->plant, '/');
+    int stem = dot && (!slash || dot > slash) ? (int)(dot - options->plant) : (int)strlen(options->plant);
+    char *path = options->map_file ? mem_strdup(options->map_file) : mem_printf("%.*s.map", stem, options->plant);
+    if (options->map_file || access(path, R_OK) == 0)
+        sim_map_read(&options->map, path, diag);
+    mem_free(path);
+}
+
+/* --- running ---------------------------------------------------------------------------------------------------------------- */
+
+static bool open_port(struct sim_port *port, const char *address, int number, sim_take *take, void *arg)
+{
+    int status = sim_port_open(port, address, number, take, arg);
+    if (status)
+        fprintf(stderr, "plantcast-sim: cannot listen on %s:%d: %s\n", address, number, strerror(-status));
+    return status == 0;
+}
+
+static int signal_file(void)
+{
+    sigset_t set;
+    sigemptyset(&set);
+    sigaddset(&set, SIGINT);
+    sigaddset(&set, SIGTERM);
+    sigprocmask(SIG_BLOCK, &set, NULL);
+    return signalfd(-1, &set, SFD_CLOEXEC | SFD_NONBLOCK);
+}
+
+static void serve(struct sim *sim, struct sim_port *ports, size_t count, double speed, int signal_fd)
+{
+    int64_t last_ns = clock_mono_ns();
+    while (!sim->quit && !sim_ports_serve(ports, count, signal_fd, TICK_MS)) {
+        int64_t now_ns = clock_mono_ns();
+        sim_values_step(sim->values, (double)(now_ns - last_ns) / 1e9 * speed);
+        sim_update(sim);
+        last_ns = now_ns;
+    }
+}
+
+static bool listen_and_serve(struct sim *sim, const struct options *options)
+{
+    size_t count = sim->device_count + (options->control > 0), open = 0;
+    struct sim_port *ports = mem_array(count, sizeof(*ports));
+    int signal_fd = signal_file();
+    double speed = options->speed > 0 ? options->speed : options->map.speed > 0 ? options->map.speed : 1;
+    bool good = signal_fd >= 0;
+    for (; good && open < sim->device_count; open += good)
+        good = open_port(&ports[open], options->bind, sim->devices[open].listen_port, sim_modbus_take, &sim->devices[open].modbus);
+    if (good && options->control > 0) {
+        good = open_port(&ports[open], "127.0.0.1", options->control, sim_control_take, sim);
+        open += good;
+    }
+    for (size_t i = 0; good && i < sim->device_count; i++)
+        printf("plantcast-sim: listening on %s:%d, %zu tags\n", options->bind, sim->devices[i].listen_port, sim->devices[i].tag_count);
+    fflush(stdout);
+    if (good)
+        serve(sim, ports, count, speed, signal_fd);
+    while (open)
+        sim_port_close(&ports[--open]);
+    if (signal_fd >= 0)
+        close(signal_fd);
+    mem_free(ports);
+    return good;
+}
+
+static int run(struct options *options)
+{
+    struct diag diag = { 0 };
+    struct sim sim = { 0 };
+    struct sim_values *values = NULL;
+    bool good = false;
+    struct plant *plant = plant_load(options->plant, &diag);
+    if (plant) {
+        read_map_file(options, &diag);
+        values = sim_values_create(plant, &options->map, options->loop || options->map.loop, &diag);
+    }
+    if (diag.errors)
+        diag_print(&diag, stderr);
+    if (values && sim_init(&sim, plant, values, options->port))
+        good = listen_and_serve(&sim, options);
+    sim_finish(&sim);
+    sim_values_destroy(&values);
+    plant_destroy(&plant);
+    diag_finish(&diag);
+    return good ? EXIT_SUCCESS : EXIT_FAILURE;
+}
+
+int main(int argc, char **argv)
+{
+    struct options options = { .bind = "127.0.0.1" };
+    int status = read_options(&options, argc, argv);
+    if (status == -1)
+        print_help();
+    else if (status == EXIT_SUCCESS)
+        status = run(&options);
+    sim_map_finish(&options.map);
+    return status > 0 ? status : EXIT_SUCCESS;
+}

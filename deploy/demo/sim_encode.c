@@ -1,0 +1,103 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Scaling turned round, the value as bytes with the most significant first, and the bytes put where the byte order says. */
+#include "sim_encode.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Which byte of the value (A the most significant) stands at each place on the wire. */
+static const char *const places_16[] = { "AB", "AB", "AB", "BA", "BA" };
+static const char *const places_32[] = { "ABCD", "ABCD", "CDAB", "BADC", "DCBA" };
+static const char *const places_64[] = { "ABCDEFGH", "ABCDEFGH", "GHEFCDAB", "BADCFEHG", "HGFEDCBA" };
+
+int sim_encode_width(const struct plant_tag *tag)
+{
+    static const int widths[] = {
+        [DATA_BIT] = 1,    [DATA_INT16] = 1, [DATA_UINT16] = 1, [DATA_BCD] = 1,    [DATA_INT32] = 2, [DATA_UINT32] = 2,
+        [DATA_FLOAT32] = 2, [DATA_LBCD] = 2, [DATA_INT64] = 4,  [DATA_UINT64] = 4, [DATA_FLOAT64] = 4,
+    };
+    bool one_bit = tag->table == TABLE_COIL || tag->table == TABLE_DISCRETE || tag->bit >= 0;
+    return one_bit ? 1 : widths[tag->type];
+}
+
+static double unscale(const struct plant_tag *tag, double value)
+{
+    if (tag->negate)
+        value = -value;
+    if (tag->scaling == SCALING_NONE)
+        return value;
+    double share = (value - tag->scaled_low) / (tag->scaled_high - tag->scaled_low);
+    if (tag->scaling == SCALING_SQUARE_ROOT)
+        share = share < 0 ? 0 : share * share;
+    return tag->raw_low + share * (tag->raw_high - tag->raw_low);
+}
+
+static uint64_t whole(double raw, double low, double high)
+{
+    raw = nearbyint(raw);
+    if (raw <= low)
+        raw = low;
+    if (raw >= high) /* 2^63 and 2^64 are doubles, the numbers before them are not */
+        return high >= 18446744073709551615.0 ? UINT64_MAX : high >= 9223372036854775807.0 ? INT64_MAX : (uint64_t)high;
+    return raw < 0 ? (uint64_t)(int64_t)raw : (uint64_t)raw;
+}
+
+static uint64_t bcd(uint64_t number)
+{
+    uint64_t digits = 0;
+    for (int shift = 0; number; shift += 4, number /= 10)
+        digits |= number % 10 << shift;
+    return digits;
+}
+
+/* The bits of the raw value, right-aligned. */
+static uint64_t bits_of(enum data_type type, double raw)
+{
+    uint64_t bits = 0;
+    float single = (float)raw;
+    switch (type) {
+    case DATA_INT16: return whole(raw, -32768, 32767);
+    case DATA_UINT16: return whole(raw, 0, 65535);
+    case DATA_INT32: return whole(raw, -2147483648.0, 2147483647.0);
+    case DATA_UINT32: return whole(raw, 0, 4294967295.0);
+    case DATA_INT64: return whole(raw, -9223372036854775808.0, 9223372036854775807.0);
+    case DATA_UINT64: return whole(raw, 0, 18446744073709551615.0);
+    case DATA_BCD: return bcd(whole(raw, 0, 9999));
+    case DATA_LBCD: return bcd(whole(raw, 0, 99999999));
+    case DATA_FLOAT32: memcpy(&bits, &single, sizeof(single)); return bits;
+    case DATA_FLOAT64: memcpy(&bits, &raw, sizeof(raw)); return bits;
+    default: return raw != 0;
+    }
+}
+
+static void place(const char *places, uint64_t bits, uint16_t *words)
+{
+    int count = (int)strlen(places);
+    for (int i = 0; i < count; i++) {
+        int shift = 8 * (count - 1 - (places[i] - 'A'));
+        uint16_t byte = bits >> shift & 0xFF;
+        words[i / 2] = (uint16_t)(i % 2 ? words[i / 2] | byte : byte << 8);
+    }
+}
+
+static void encode_bit(const struct plant_tag *tag, bool on, uint16_t *word)
+{
+    bool swapped = tag->byte_order == BYTE_ORDER_BADC || tag->byte_order == BYTE_ORDER_DCBA;
+    int bit = swapped ? tag->bit ^ 8 : tag->bit;
+    *word = (uint16_t)(tag->bit < 0 ? on : (*word & ~(1u << bit)) | (unsigned)on << bit);
+}
+
+bool sim_encode(const struct plant_tag *tag, double value, uint16_t *words)
+{
+    bool one_bit = tag->table == TABLE_COIL || tag->table == TABLE_DISCRETE || tag->bit >= 0 || tag->type == DATA_BIT;
+    bool holds_nan = !one_bit && (tag->type == DATA_FLOAT32 || tag->type == DATA_FLOAT64);
+    if (!isfinite(value) && !holds_nan)
+        return false;
+    if (one_bit) {
+        encode_bit(tag, (value != 0) != tag->negate, words);
+        return true;
+    }
+    const char *const *places = sim_encode_width(tag) == 4 ? places_64 : sim_encode_width(tag) == 2 ? places_32 : places_16;
+    place(places[tag->byte_order], bits_of(tag->type, isfinite(value) ? unscale(tag, value) : value), words);
+    return true;
+}

@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Answers Modbus TCP requests from an image. It is read only: what would write is refused and counted. Thread: one. */
+#ifndef DEMO_SIM_MODBUS_H
+#define DEMO_SIM_MODBUS_H
+#include "sim_image.h"
+#include "sim_port.h"
+
+struct sim_modbus {
+    struct sim_image image;
+    modbus_t *modbus;        /* for making replies */
+    bool paused;             /* requests are taken and not answered */
+    long reads, refusals, writes_refused;
+};
+
+/* False: libmodbus has no memory. */
+bool sim_modbus_init(struct sim_modbus *device);
+void sim_modbus_finish(struct sim_modbus *device);
+sim_take sim_modbus_take; /* arg: struct sim_modbus */
+
+#endif

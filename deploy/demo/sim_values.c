@@ -1,0 +1,187 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Chooses for each tag where its value comes from. */
+#include "sim_values.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "plant/csv.h"
+#include "sim_process.h"
+#include "sim_series.h"
+
+struct tag_value {
+    bool forced;
+    double forced_to;
+    const struct sim_series *series; /* NULL: the process */
+    double scale, offset;
+};
+
+struct sim_values {
+    const struct plant *plant;
+    struct tag_value *tags;
+    struct sim_series *series;
+    size_t series_count;
+    struct process *process;
+    double now_s;
+    bool loop;
+};
+
+/* --- the process ------------------------------------------------------------------------------------------------------------ */
+
+static bool mentions(const char *text, const char *const *words)
+{
+    for (; text && *words; words++)
+        if (strcasestr(text, *words))
+            return true;
+    return false;
+}
+
+static enum process_kind kind_of(const struct plant *plant, const struct plant_tag *tag)
+{
+    static const char *const temperature[] = { "temp", NULL }, *const pressure[] = { "press", NULL }, *const vibration[] = { "vibr", NULL };
+    static const char *const degrees[] = { "°", "degc", "degf", "deg c", "deg f", NULL };
+    static const char *const bars[] = { "bar", "pa", "psi", NULL }, *const speeds[] = { "mm/s", "in/s", NULL };
+    const char *quantity = tag->group >= 0 ? plant->groups[tag->group].quantity : "";
+    const char *unit = tag->unit ? tag->unit : "";
+    if (mentions(quantity, temperature) || mentions(unit, degrees))
+        return PROCESS_TEMPERATURE;
+    if (mentions(quantity, pressure) || mentions(unit, bars))
+        return PROCESS_PRESSURE;
+    return mentions(quantity, vibration) || mentions(unit, speeds) ? PROCESS_VIBRATION : PROCESS_OTHER;
+}
+
+/* Where nothing is said, the tag runs at 40 % of its range. */
+static void choose_range(const struct plant *plant, const struct plant_tag *tag, struct process_tag *out)
+{
+    double low = 0, high = 100;
+    if (tag->group >= 0) {
+        low = plant->groups[tag->group].min;
+        high = plant->groups[tag->group].max;
+    } else if (tag->scaling != SCALING_NONE) {
+        low = tag->scaled_low;
+        high = tag->scaled_high;
+    } else if (tag->type == DATA_BIT || tag->bit >= 0) {
+        high = 0;
+    }
+    out->normal = low + 0.4 * (high - low);
+    out->span = high - low;
+}
+
+static struct process *make_process(const struct plant *plant, struct diag *diag)
+{
+    struct csv csv;
+    if (!csv_open(&csv, plant->tags_path, diag))
+        return NULL;
+    struct process_tag *tags = mem_array(plant->tag_count, sizeof(*tags));
+    int value_column = csv_find(&csv, "Sim Value"), loop_column = csv_find(&csv, "Sim Loop");
+    for (size_t i = 0; i < plant->tag_count && csv_next(&csv); i++) {
+        const char *normal = csv_text(&csv, value_column);
+        char *end = NULL;
+        tags[i] = (struct process_tag){ .kind = kind_of(plant, &plant->tags[i]), .name = plant->tags[i].name, .loop = csv_text(&csv, loop_column) };
+        choose_range(plant, &plant->tags[i], &tags[i]);
+        if (!*normal)
+            continue;
+        tags[i].normal = strtod(normal, &end);
+        if (*end || !isfinite(tags[i].normal))
+            csv_error(&csv, value_column, "Sim Value %s: expected a number", normal);
+    }
+    struct process *process = diag->errors ? NULL : process_create(tags, plant->tag_count, 1);
+    mem_free(tags);
+    csv_close(&csv);
+    return process;
+}
+
+/* --- recorded series -------------------------------------------------------------------------------------------------------- */
+
+static const struct sim_series *find_series(struct sim_values *values, const struct sim_map *map, const struct sim_map_entry *entry, struct diag *diag)
+{
+    char why[200] = "no file of values is given";
+    bool found = false;
+    for (size_t i = 0; i < values->series_count; i++)
+        if (!strcmp(values->series[i].name, entry->series))
+            return &values->series[i];
+    for (size_t i = 0; i < map->file_count && !found; i++)
+        if (!sim_series_read(&values->series[values->series_count], map->files[i], entry->series, &found, why))
+            break;
+    if (!found)
+        diag_error(diag, entry->file, entry->line, 0, "%s: %s", entry->tag, why);
+    return found ? &values->series[values->series_count++] : NULL;
+}
+
+static void apply_map(struct sim_values *values, const struct sim_map *map, struct diag *diag)
+{
+    values->series = mem_array(map->count, sizeof(*values->series));
+    for (size_t i = 0; i < map->count; i++) {
+        const struct sim_map_entry *entry = &map->entries[i];
+        int tag = plant_find_tag(values->plant, entry->tag);
+        if (tag < 0) {
+            diag_error(diag, entry->file, entry->line, 0, "%s: the plant has no such tag", entry->tag);
+            continue;
+        }
+        values->tags[tag].series = find_series(values, map, entry, diag);
+        values->tags[tag].scale = entry->scale;
+        values->tags[tag].offset = entry->offset;
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------------------------------------- */
+
+struct sim_values *sim_values_create(const struct plant *plant, const struct sim_map *map, bool loop, struct diag *diag)
+{
+    struct sim_values *values = mem_new(sizeof(*values));
+    values->plant = plant;
+    values->loop = loop;
+    values->tags = mem_array(plant->tag_count, sizeof(*values->tags));
+    values->process = make_process(plant, diag);
+    apply_map(values, map, diag);
+    if (!values->process || diag->errors)
+        sim_values_destroy(&values);
+    return values;
+}
+
+void sim_values_destroy(struct sim_values **values)
+{
+    if (!*values)
+        return;
+    for (size_t i = 0; i < (*values)->series_count; i++)
+        sim_series_finish(&(*values)->series[i]);
+    mem_free((*values)->series);
+    mem_free((*values)->tags);
+    process_destroy(&(*values)->process);
+    mem_free(*values);
+    *values = NULL;
+}
+
+void sim_values_step(struct sim_values *values, double dt_s)
+{
+    values->now_s += dt_s;
+    process_step(values->process, dt_s);
+}
+
+double sim_values_at(const struct sim_values *values, size_t tag)
+{
+    const struct tag_value *value = &values->tags[tag];
+    if (value->forced)
+        return value->forced_to;
+    if (value->series)
+        return sim_series_at(value->series, values->now_s, values->loop) * value->scale + value->offset;
+    return process_value(values->process, tag);
+}
+
+void sim_values_force(struct sim_values *values, size_t tag, double value)
+{
+    values->tags[tag].forced = true;
+    values->tags[tag].forced_to = value;
+}
+
+void sim_values_release(struct sim_values *values, size_t tag)
+{
+    values->tags[tag].forced = false;
+}
+
+double sim_values_upset(const struct sim_values *values, const char **name)
+{
+    return process_upset(values->process, name);
+}

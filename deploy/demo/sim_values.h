@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The present value of every tag: forced from the control port, replayed from a series, or from the process. Thread: one. */
+#ifndef DEMO_SIM_VALUES_H
+#define DEMO_SIM_VALUES_H
+#include "base/diag.h"
+#include "plant/plant.h"
+#include "sim_map.h"
+
+struct sim_values;
+
+/* Reads the columns `Sim Value` (operating value) and `Sim Loop` of the tag list, and the series that the map names. NULL: errors
+   are in diag. plant must outlive it, map need only live for the call. */
+struct sim_values *sim_values_create(const struct plant *plant, const struct sim_map *map, bool loop, struct diag *diag);
+void sim_values_destroy(struct sim_values **values); /* &NULL is fine; leaves NULL */
+void sim_values_step(struct sim_values *values, double dt_s);
+double sim_values_at(const struct sim_values *values, size_t tag);
+void sim_values_force(struct sim_values *values, size_t tag, double value);
+void sim_values_release(struct sim_values *values, size_t tag);
+/* As process_upset. */
+double sim_values_upset(const struct sim_values *values, const char **name);
+
+#endif

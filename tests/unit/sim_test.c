@@ -1,0 +1,381 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* plantcast-sim's parts: encoding against the daemon's decoding, the process, recorded series and their map. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "base/text.h"
+#include "deploy/demo/sim_encode.h"
+#include "deploy/demo/sim_image.h"
+#include "deploy/demo/sim_map.h"
+#include "deploy/demo/sim_process.h"
+#include "deploy/demo/sim_series.h"
+#include "value/decode.h"
+#include "value/quality.h"
+
+/* --- encoding --------------------------------------------------------------------------------------------------------------- */
+
+static double random_between(double low, double high)
+{
+    return low + (high - low) * (rand() / (double)RAND_MAX);
+}
+
+/* Largest error that the raw type makes: half a step, or a float's own precision. */
+static double tolerance(const struct plant_tag *tag, double raw_low, double raw_high)
+{
+    double step = tag->type == DATA_FLOAT32 ? fmax(fabs(raw_low), fabs(raw_high)) * 1.2e-7 : tag->type == DATA_FLOAT64 ? 1e-9 : 0.500001;
+    double per_raw = tag->scaling == SCALING_NONE ? 1 : fabs((tag->scaled_high - tag->scaled_low) / (raw_high - raw_low));
+    return step * per_raw + 1e-9;
+}
+
+static void check_there_and_back(const struct plant_tag *tag, double value, double allowed)
+{
+    uint16_t words[4] = { 0x5555, 0x5555, 0x5555, 0x5555 };
+    struct sample sample;
+    assert_true(sim_encode(tag, value, words));
+    decode_sample(tag, words, &sample);
+    if (tag->scaling == SCALING_SQUARE_ROOT) { /* a step of the raw value is a step of the square */
+        double low = tag->negate ? -tag->scaled_low : tag->scaled_low;
+        allowed = allowed * fabs(tag->scaled_high - tag->scaled_low) / fmax(fabs(value - low), sqrt(allowed * fabs(tag->scaled_high - tag->scaled_low)));
+    }
+    if (fabs(sample.value - value) > allowed)
+        fail_msg("type %d order %d scaling %d negate %d: %.12g came back as %.12g (allowed %.3g)", tag->type, tag->byte_order, tag->scaling,
+                 tag->negate, value, sample.value, allowed);
+    assert_int_equal(sample.quality, QUALITY_GOOD);
+}
+
+static void what_is_encoded_is_decoded(void **state)
+{
+    (void)state;
+    static const double raws[][2] = {
+        [DATA_INT16] = { -32000, 32000 }, [DATA_UINT16] = { 0, 65000 }, [DATA_INT32] = { -2e9, 2e9 }, [DATA_UINT32] = { 0, 4e9 },
+        [DATA_FLOAT32] = { -1000, 1000 }, [DATA_INT64] = { -1e12, 1e12 }, [DATA_UINT64] = { 0, 1e13 }, [DATA_FLOAT64] = { -1e5, 1e5 },
+        [DATA_BCD] = { 0, 9999 },         [DATA_LBCD] = { 0, 99999999 },
+    };
+    srand(1);
+    for (int type = DATA_INT16; type <= DATA_LBCD; type++)
+        for (int order = BYTE_ORDER_ABCD; order <= BYTE_ORDER_DCBA; order++)
+            for (int scaling = SCALING_NONE; scaling <= SCALING_SQUARE_ROOT; scaling++)
+                for (int negate = 0; negate < 2; negate++) {
+                    double low = raws[type][0], high = raws[type][1];
+                    struct plant_tag tag = { .table = TABLE_HOLDING, .bit = -1, .type = (enum data_type)type, .byte_order = (enum byte_order)order,
+                                             .scaling = (enum scaling)scaling, .raw_low = low, .raw_high = high, .scaled_low = -40,
+                                             .scaled_high = 260, .negate = negate };
+                    assert_int_equal(sim_encode_width(&tag), decode_width(&tag));
+                    double from = scaling ? -40 : low, to = scaling ? 260 : high;
+                    for (int i = 0; i < 50; i++) {
+                        double value = i == 0 ? from : i == 1 ? to : random_between(from, to);
+                        check_there_and_back(&tag, negate ? -value : value, tolerance(&tag, low, high));
+                    }
+                }
+}
+
+static void bytes_lie_as_the_order_says(void **state)
+{
+    (void)state;
+    const uint16_t wanted[][2] = { { 0xC2ED, 0x4000 }, { 0xC2ED, 0x4000 }, { 0x4000, 0xC2ED }, { 0xEDC2, 0x0040 }, { 0x0040, 0xEDC2 } };
+    for (int order = BYTE_ORDER_ABCD; order <= BYTE_ORDER_DCBA; order++) {
+        struct plant_tag tag = { .table = TABLE_INPUT, .bit = -1, .type = DATA_FLOAT32, .byte_order = (enum byte_order)order };
+        uint16_t words[2];
+        assert_true(sim_encode(&tag, -118.625, words));
+        assert_int_equal(words[0], wanted[order][0]);
+        assert_int_equal(words[1], wanted[order][1]);
+    }
+}
+
+static void bits_leave_their_neighbours_alone(void **state)
+{
+    (void)state;
+    for (int order = BYTE_ORDER_NONE; order <= BYTE_ORDER_DCBA; order++)
+        for (int bit = 0; bit < 16; bit++)
+            for (int negate = 0; negate < 2; negate++) {
+                struct plant_tag tag = { .table = TABLE_HOLDING, .bit = bit, .type = DATA_BIT, .byte_order = (enum byte_order)order, .negate = negate };
+                uint16_t word = 0xA5C3;
+                check_there_and_back(&tag, 1, 0);
+                check_there_and_back(&tag, 0, 0);
+                assert_true(sim_encode(&tag, 1, &word) && sim_encode(&tag, 0, &word));
+                int changed = word ^ 0xA5C3;
+                assert_true((changed & (changed - 1)) == 0); /* one bit at most */
+            }
+    struct plant_tag coil = { .table = TABLE_COIL, .bit = -1, .type = DATA_BIT };
+    check_there_and_back(&coil, 1, 0);
+    check_there_and_back(&coil, 0, 0);
+}
+
+static void too_much_becomes_the_most(void **state)
+{
+    (void)state;
+    const struct {
+        enum data_type type;
+        double value, wanted;
+    } cases[] = {
+        { DATA_INT16, 1e9, 32767 },     { DATA_INT16, -1e9, -32768 },  { DATA_UINT16, -5, 0 },
+        { DATA_UINT16, 70000, 65535 },  { DATA_BCD, 12345, 9999 },     { DATA_LBCD, 1e9, 99999999 },
+        { DATA_INT64, 1e30, 0x1p63 },   { DATA_UINT64, 1e30, 0x1p64 }, { DATA_INT64, -1e30, -0x1p63 },
+        { DATA_INT32, 3e9, 2147483647 }, { DATA_UINT32, -1, 0 },
+    };
+    for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
+        struct plant_tag tag = { .table = TABLE_HOLDING, .bit = -1, .type = cases[i].type, .byte_order = BYTE_ORDER_ABCD };
+        uint16_t words[4];
+        struct sample sample;
+        assert_true(sim_encode(&tag, cases[i].value, words));
+        decode_sample(&tag, words, &sample);
+        assert_true(sample.value == cases[i].wanted);
+    }
+}
+
+static void only_floats_hold_no_number(void **state)
+{
+    (void)state;
+    struct plant_tag tag = { .table = TABLE_HOLDING, .bit = -1, .type = DATA_FLOAT32, .byte_order = BYTE_ORDER_CDAB };
+    uint16_t words[4] = { 0 };
+    struct sample sample;
+    assert_true(sim_encode(&tag, NAN, words));
+    decode_sample(&tag, words, &sample);
+    assert_int_equal(sample.quality, QUALITY_BAD_SENSOR_FAILURE);
+    tag.type = DATA_INT16;
+    words[0] = 77;
+    assert_false(sim_encode(&tag, NAN, words));
+    assert_false(sim_encode(&tag, INFINITY, words));
+    assert_int_equal(words[0], 77);
+}
+
+static void only_named_registers_exist(void **state)
+{
+    (void)state;
+    struct sim_image image = { 0 };
+    struct plant_tag tag = { .table = TABLE_HOLDING, .register_index = 10, .bit = -1, .type = DATA_FLOAT32, .byte_order = BYTE_ORDER_ABCD };
+    sim_image_add(&image, 3, &tag);
+    assert_int_equal(sim_image_refusal(&image, 3, TABLE_HOLDING, 10, 2), 0);
+    assert_int_equal(sim_image_refusal(&image, 3, TABLE_HOLDING, 10, 3), 2);
+    assert_int_equal(sim_image_refusal(&image, 3, TABLE_HOLDING, 9, 2), 2);
+    assert_int_equal(sim_image_refusal(&image, 3, TABLE_INPUT, 10, 2), 2);
+    assert_int_equal(sim_image_refusal(&image, 3, TABLE_HOLDING, 10, 0), 3);
+    assert_int_equal(sim_image_refusal(&image, 3, TABLE_HOLDING, 10, 126), 3);
+    assert_int_equal(sim_image_refusal(&image, 3, TABLE_HOLDING, 65535, 2), 2);
+    assert_int_equal(sim_image_refusal(&image, 4, TABLE_HOLDING, 10, 2), 11);
+    sim_image_fail(&image, 3, &tag, true);
+    assert_int_equal(sim_image_refusal(&image, 3, TABLE_HOLDING, 11, 1), 2);
+    sim_image_fail(&image, 3, &tag, false);
+    assert_int_equal(sim_image_refusal(&image, 3, TABLE_HOLDING, 11, 1), 0);
+    sim_image_finish(&image);
+}
+
+/* --- the process ------------------------------------------------------------------------------------------------------------ */
+
+static const struct process_tag unit[] = {
+    { PROCESS_TEMPERATURE, 80, 100, "TI-1", "overhead" },      { PROCESS_PRESSURE, 5, 10, "PI-1", "overhead" },
+    { PROCESS_TEMPERATURE, 60, 100, "TI-2", "feed preheat" },  { PROCESS_VIBRATION, 2, 12, "VI-1", "P-101 pump" },
+    { PROCESS_TEMPERATURE, 40, 100, "TI-3", "no such word" },  { PROCESS_OTHER, 0, 0, "XI-1", "" },
+};
+enum { TAGS = sizeof(unit) / sizeof(unit[0]) };
+
+static void process_behaves(void **state)
+{
+    (void)state;
+    struct process *process = process_create(unit, TAGS, 1);
+    double least[TAGS], most[TAGS], calm[TAGS] = { 0 }, last[TAGS], jump[TAGS] = { 0 };
+    int calm_count = 0, upsets = 0;
+    const char *name, *before = "";
+    for (size_t i = 0; i < TAGS; i++)
+        least[i] = most[i] = last[i] = process_value(process, i);
+    for (int tick = 0; tick < 13800; tick++) { /* two cycles of 690 s */
+        process_step(process, 0.1);
+        process_upset(process, &name);
+        upsets += *name && strcmp(name, before) != 0;
+        before = name;
+        bool is_calm = fmod(tick * 0.1, 690) < 60;
+        calm_count += is_calm;
+        for (size_t i = 0; i < TAGS; i++) {
+            double value = process_value(process, i);
+            assert_true(isfinite(value));
+            least[i] = fmin(least[i], value);
+            most[i] = fmax(most[i], value);
+            jump[i] = fmax(jump[i], fabs(value - last[i]));
+            calm[i] += is_calm ? value : 0;
+            last[i] = value;
+        }
+    }
+    assert_int_equal(upsets, 6);
+    for (size_t i = 0; i < TAGS; i++) {
+        assert_true(fabs(calm[i] / calm_count - unit[i].normal) <= 0.05 * unit[i].span); /* runs at its operating value, comes back to it */
+        assert_true(least[i] >= unit[i].normal - 0.5 * unit[i].span && most[i] <= unit[i].normal + 0.7 * unit[i].span);
+        assert_true(jump[i] <= 0.035 * unit[i].span); /* no sensor leaps in 0.1 s */
+    }
+    assert_true(most[0] - unit[0].normal > 15); /* overhead warms up */
+    assert_true(most[1] - unit[1].normal > 1.5);
+    assert_true(unit[2].normal - least[2] > 12); /* fouled preheater */
+    assert_true(most[3] - unit[3].normal > 3);   /* bearing */
+    assert_true(most[4] - least[4] > 1 && most[4] - unit[4].normal < 10); /* an unknown loop only drifts */
+    assert_true(least[3] >= 0);
+    process_destroy(&process);
+    assert_null(process);
+}
+
+static void process_repeats_with_its_seed(void **state)
+{
+    (void)state;
+    struct process *a = process_create(unit, TAGS, 5), *b = process_create(unit, TAGS, 5), *other = process_create(unit, TAGS, 6);
+    for (int i = 0; i < 100; i++) {
+        process_step(a, 0.1);
+        process_step(b, 0.1);
+        process_step(other, 0.1);
+    }
+    assert_true(process_value(a, 0) == process_value(b, 0));
+    assert_true(process_value(a, 0) != process_value(other, 0));
+    process_destroy(&a);
+    process_destroy(&b);
+    process_destroy(&other);
+}
+
+/* --- series and map --------------------------------------------------------------------------------------------------------- */
+
+static char *write_file(const char *name, const char *text)
+{
+    char *path = mem_printf("/tmp/plantcast-sim-test-%ld-%s", (long)getpid(), name);
+    assert_int_equal(text_write_file(path, text, strlen(text)), 0);
+    return path;
+}
+
+static void drop_file(char *path)
+{
+    unlink(path);
+    mem_free(path);
+}
+
+static void wide_series(void **state)
+{
+    (void)state;
+    char why[200], *path = write_file("wide.csv", "t_min,a,b\r\n10,1.5,-2\r\n13,2.5,\r\n16,3.5,4e1\r\n");
+    struct sim_series series;
+    bool found;
+    assert_true(sim_series_read(&series, path, "a", &found, why) && found);
+    assert_int_equal(series.count, 3);
+    assert_true(series.length_s == 540); /* 6 min and one step */
+    assert_true(sim_series_at(&series, 0, false) == 1.5);
+    assert_true(sim_series_at(&series, 179.9, false) == 1.5); /* held, nothing invented */
+    assert_true(sim_series_at(&series, 180, false) == 2.5);
+    assert_true(sim_series_at(&series, 1e9, false) == 3.5);
+    assert_true(sim_series_at(&series, 539, true) == 3.5);
+    assert_true(sim_series_at(&series, 541, true) == 1.5);
+    sim_series_finish(&series);
+    assert_true(sim_series_read(&series, path, "b", &found, why) && found);
+    assert_int_equal(series.count, 2); /* an empty cell is no value */
+    assert_true(sim_series_at(&series, 200, false) == -2);
+    sim_series_finish(&series);
+    assert_true(sim_series_read(&series, path, "c", &found, why));
+    assert_false(found);
+    assert_non_null(strstr(why, "has no series c"));
+    drop_file(path);
+}
+
+static void long_series(void **state)
+{
+    (void)state;
+    char why[200], *path = write_file("long.csv", "1636070400000,Alarm,M-1,state,NORMAL,VARCHAR\n1636070400001,Mixer,M-1,T,100,DOUBLE\n"
+                                                  "1636070400002,Mixer,M-1,RPM,60,DOUBLE\n1636070406001,Mixer,M-1,T,101.5,DOUBLE");
+    struct sim_series series;
+    bool found;
+    assert_true(sim_series_read(&series, path, "M-1/T", &found, why) && found);
+    assert_int_equal(series.count, 2);
+    assert_true(fabs(series.time_s[1] - 6.001) < 1e-9);
+    assert_true(sim_series_at(&series, 7, false) == 101.5);
+    sim_series_finish(&series);
+    assert_true(sim_series_read(&series, path, "M-2/T", &found, why));
+    assert_false(found);
+    assert_false(sim_series_read(&series, path, "M-1/state", &found, why));
+    assert_non_null(strstr(why, ":1: M-1/state: expected a number"));
+    drop_file(path);
+}
+
+static void bad_series(void **state)
+{
+    (void)state;
+    const char *const texts[] = { "t_s,a\n0,1\n2,x\n", "t_s,a\n5,1\n4,1\n", "time,a\n0,1\n", "", "t_s,a\n0\n", "t_s,a\nnan,1\n" };
+    const char *const wanted[] = { ":3: a: expected a number", ":3: expected a time", ":1: no column is the time", "is empty", ":2: expected", ":2: expected" };
+    for (int i = 0; i < 6; i++) {
+        char why[200] = "", *path = write_file("bad.csv", texts[i]);
+        struct sim_series series;
+        bool found;
+        assert_false(sim_series_read(&series, path, "a", &found, why));
+        if (!strstr(why, wanted[i]))
+            fail_msg("%s: said %s", wanted[i], why);
+        drop_file(path);
+    }
+    char why[200];
+    struct sim_series series;
+    bool found;
+    assert_false(sim_series_read(&series, "/nowhere/at/all.csv", "a", &found, why));
+    assert_non_null(strstr(why, "No such file"));
+}
+
+static void map_lines(void **state)
+{
+    (void)state;
+    struct diag diag = { 0 };
+    struct sim_map map = { 0 };
+    sim_map_add(&map, "TT-1=XMEAS09", "f", 1, &diag);
+    sim_map_add(&map, " TT 2 = Mixer_0-a/T * 1.8 + 32 ", "f", 2, &diag);
+    sim_map_add(&map, "TT-3=TS1*-1e-1-5", "f", 3, &diag);
+    assert_int_equal(diag.errors, 0);
+    assert_string_equal(map.entries[0].series, "XMEAS09");
+    assert_true(map.entries[0].scale == 1 && map.entries[0].offset == 0);
+    assert_string_equal(map.entries[1].tag, "TT 2");
+    assert_string_equal(map.entries[1].series, "Mixer_0-a/T");
+    assert_true(map.entries[1].scale == 1.8 && map.entries[1].offset == 32);
+    assert_true(map.entries[2].scale == -0.1 && map.entries[2].offset == -5);
+    const char *const bad[] = { "TT-1", "=a", "TT-1=", "TT-1=a*", "TT-1=a*x", "TT-1=a*2+", "TT-1=a*2/3" };
+    for (int i = 0; i < 7; i++) {
+        sim_map_add(&map, bad[i], "f", 4 + i, &diag);
+        assert_int_equal(diag.errors, i + 1);
+    }
+    assert_int_equal(map.count, 3);
+    diag_finish(&diag);
+    sim_map_finish(&map);
+}
+
+static void map_files(void **state)
+{
+    (void)state;
+    struct diag diag = { 0 };
+    struct sim_map map = { 0 };
+    char *path = write_file("a.map", "# what feeds what\nvalues ../data/x.csv\nvalues /abs/y.csv\n\nspeed 60\nloop\nT1 = a\nT2 : b\nspeed -1\n");
+    sim_map_read(&map, path, &diag);
+    assert_int_equal(map.file_count, 2);
+    assert_string_equal(map.files[0], "/tmp/../data/x.csv");
+    assert_string_equal(map.files[1], "/abs/y.csv");
+    assert_true(map.loop);
+    assert_int_equal(map.count, 1);
+    assert_int_equal(map.entries[0].line, 7);
+    assert_int_equal(diag.errors, 2);
+    assert_int_equal(diag.items[0].line, 8);
+    assert_int_equal(diag.items[1].line, 9);
+    sim_map_read(&map, "/nowhere/b.map", &diag);
+    assert_int_equal(diag.errors, 3);
+    diag_finish(&diag);
+    sim_map_finish(&map);
+    drop_file(path);
+}
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_is_encoded_is_decoded), cmocka_unit_test(bytes_lie_as_the_order_says),
+        cmocka_unit_test(bits_leave_their_neighbours_alone), cmocka_unit_test(too_much_becomes_the_most),
+        cmocka_unit_test(only_floats_hold_no_number), cmocka_unit_test(only_named_registers_exist),
+        cmocka_unit_test(process_behaves), cmocka_unit_test(process_repeats_with_its_seed),
+        cmocka_unit_test(wide_series), cmocka_unit_test(long_series),
+        cmocka_unit_test(bad_series), cmocka_unit_test(map_lines),
+        cmocka_unit_test(map_files),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
