@@ -1,0 +1,226 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Sweeping a pipe along its corner points. */
+#include "pipe.h"
+
+#include <assert.h>
+
+#include "fitting.h"
+#include "shape.h"
+
+#define STEP_M 0.5
+#define STATION_MAX 512
+
+static void push(struct pipe *pipe, struct vec point)
+{
+    if (pipe->count && vec_length(vec_sub(point, pipe->points[pipe->count - 1])) < 1e-6)
+        return;
+    if (pipe->count >= 2) { /* straight on: one leg */
+        struct vec *last = pipe->points + pipe->count - 1;
+        if (vec_dot(vec_unit(vec_sub(*last, last[-1])), vec_unit(vec_sub(point, *last))) > 1.0 - 1e-9) {
+            *last = point;
+            return;
+        }
+    }
+    assert(pipe->count < PIPE_MAX_POINTS);
+    pipe->points[pipe->count++] = point;
+}
+
+static struct mesh *bare_mesh(struct pipe *pipe)
+{
+    return item_part(pipe->item, pipe->material == MATERIAL_COOLING_WATER ? "water pipe" : "pipe", pipe->material);
+}
+
+static double stub_m(const struct pipe *pipe)
+{
+    return fitting_flange_thickness(pipe->r) * 2.6 + pipe->r * 3.2 + 0.05;
+}
+
+static void mating_flange(struct pipe *pipe, const struct model_nozzle *nozzle)
+{
+    struct frame face = frame_facing(nozzle->at.o, vec_scale(nozzle->at.z, -1.0), nozzle->at.x);
+    fitting_flange(bare_mesh(pipe), face, pipe->r);
+    fitting_studs(item_part(pipe->item, "bolts", MATERIAL_BOLTING), face, pipe->r);
+}
+
+struct pipe pipe_from_point(struct site *site, struct item *item, struct vec point, double r, enum material material, double insulation)
+{
+    struct pipe pipe = { .site = site, .item = item, .material = material, .r = r, .insulation = insulation };
+    push(&pipe, point);
+    return pipe;
+}
+
+struct pipe pipe_from_nozzle(struct site *site, struct item *item, const char *name, double r, enum material material, double insulation)
+{
+    const struct model_nozzle *nozzle = model_nozzle(&site->model, name);
+    struct pipe pipe = pipe_from_point(site, item, nozzle->at.o, r, material, insulation);
+    mating_flange(&pipe, nozzle);
+    push(&pipe, vec_along(nozzle->at.o, nozzle->at.z, stub_m(&pipe)));
+    return pipe;
+}
+
+void pipe_go(struct pipe *pipe, const char *axes, struct vec to)
+{
+    struct vec p = pipe->points[pipe->count - 1];
+    for (; *axes; axes++) {
+        if (*axes == 'x')
+            p.x = to.x;
+        else if (*axes == 'y')
+            p.y = to.y;
+        else
+            p.z = to.z;
+        push(pipe, p);
+    }
+}
+
+void pipe_into_nozzle(struct pipe *pipe, const char *axes, const char *name)
+{
+    const struct model_nozzle *nozzle = model_nozzle(&pipe->site->model, name);
+    pipe_go(pipe, axes, vec_along(nozzle->at.o, nozzle->at.z, stub_m(pipe)));
+    push(pipe, nozzle->at.o);
+    mating_flange(pipe, nozzle);
+}
+
+static struct frame on_last_leg(const struct pipe *pipe, double along, struct vec x)
+{
+    struct vec a = pipe->points[pipe->count - 2], dir = vec_unit(vec_sub(pipe->points[pipe->count - 1], a));
+    return frame_facing(vec_along(a, dir, along), dir, x);
+}
+
+void pipe_gate_valve(struct pipe *pipe, double along, struct vec wheel)
+{
+    fitting_gate_valve(pipe->item, on_last_leg(pipe, along, wheel), pipe->r);
+}
+
+void pipe_control_valve(struct pipe *pipe, double along, struct vec actuator)
+{
+    fitting_control_valve(pipe->item, on_last_leg(pipe, along, actuator), pipe->r);
+}
+
+void pipe_flanges(struct pipe *pipe, double along)
+{
+    struct frame at = on_last_leg(pipe, along, vec(0, 0, 1));
+    fitting_flange(bare_mesh(pipe), at, pipe->r);
+    fitting_flange(bare_mesh(pipe), frame_facing(at.o, vec_scale(at.z, -1.0), at.x), pipe->r);
+    fitting_studs(item_part(pipe->item, "bolts", MATERIAL_BOLTING), at, pipe->r);
+}
+
+void pipe_post(struct pipe *pipe, double along)
+{
+    struct frame at = on_last_leg(pipe, along, vec(0, 0, 1));
+    fitting_post(pipe->item, vec(at.o.x, at.o.y, at.o.z - pipe->r - pipe->insulation), pipe->r);
+}
+
+struct track { /* the centre line, finely */
+    struct station stations[STATION_MAX];
+    double at_m[STATION_MAX];
+    int count;
+};
+
+static void track_push(struct track *track, struct vec centre, struct vec tangent)
+{
+    assert(track->count < STATION_MAX);
+    double length = track->count ? vec_length(vec_sub(centre, track->stations[track->count - 1].centre)) : 0.0;
+    if (track->count && length < 1e-6)
+        return;
+    track->at_m[track->count] = track->count ? track->at_m[track->count - 1] + length : 0.0;
+    track->stations[track->count++] = (struct station){ centre, tangent };
+}
+
+static void track_straight(struct track *track, struct vec from, struct vec to)
+{
+    struct vec d = vec_sub(to, from), dir = vec_unit(d);
+    int pieces = (int)fmax(1.0, ceil(vec_length(d) / STEP_M));
+    for (int i = 0; i <= pieces; i++)
+        track_push(track, vec_along(from, d, (double)i / pieces), dir);
+}
+
+/* Long-radius elbow (1.5 D), shorter where the legs are. */
+static void track_bend(struct track *track, const struct vec *corner, double r)
+{
+    struct vec in = vec_unit(vec_sub(corner[0], corner[-1])), out = vec_unit(vec_sub(corner[1], corner[0]));
+    double angle = acos(fmax(-1.0, fmin(1.0, vec_dot(in, out)))), room = 0.5 * fmin(vec_length(vec_sub(corner[0], corner[-1])), vec_length(vec_sub(corner[1], corner[0])));
+    double cut = fmin(3.0 * r * tan(angle / 2), room), radius = cut / tan(angle / 2);
+    struct vec centre = vec_along(vec_along(corner[0], in, -cut), vec_unit(vec_sub(out, vec_scale(in, vec_dot(in, out)))), radius);
+    struct vec arm = vec_unit(vec_sub(vec_along(corner[0], in, -cut), centre));
+    int pieces = (int)ceil(angle / RADIANS(18.0));
+    for (int i = 0; i <= pieces; i++) {
+        double a = angle * i / pieces;
+        struct vec tangent = vec_add(vec_scale(in, cos(a)), vec_scale(arm, -sin(a)));
+        track_push(track, vec_add(centre, vec_add(vec_scale(arm, radius * cos(a)), vec_scale(in, radius * sin(a)))), tangent);
+    }
+}
+
+static double bend_cut(const struct vec *corner, double r)
+{
+    struct vec in = vec_unit(vec_sub(corner[0], corner[-1])), out = vec_unit(vec_sub(corner[1], corner[0]));
+    double angle = acos(fmax(-1.0, fmin(1.0, vec_dot(in, out))));
+    return fmin(3.0 * r * tan(angle / 2), 0.5 * fmin(vec_length(vec_sub(corner[0], corner[-1])), vec_length(vec_sub(corner[1], corner[0]))));
+}
+
+static void track_build(struct track *track, const struct pipe *pipe)
+{
+    struct vec from = pipe->points[0];
+    for (int i = 1; i < pipe->count; i++) {
+        const struct vec *corner = pipe->points + i;
+        struct vec dir = vec_unit(vec_sub(corner[0], corner[-1]));
+        double cut = i + 1 < pipe->count ? bend_cut(corner, pipe->r) : 0.0;
+        track_straight(track, from, vec_along(corner[0], dir, -cut));
+        if (i + 1 == pipe->count)
+            break;
+        track_bend(track, corner, pipe->r);
+        from = vec_along(corner[0], vec_unit(vec_sub(corner[1], corner[0])), cut);
+    }
+}
+
+static struct station track_at(const struct track *track, double at_m)
+{
+    int i = 1;
+    while (i + 1 < track->count && track->at_m[i] < at_m)
+        i++;
+    double t = (at_m - track->at_m[i - 1]) / (track->at_m[i] - track->at_m[i - 1]);
+    const struct station *a = track->stations + i - 1, *b = a + 1;
+    return (struct station){ vec_lerp(a->centre, b->centre, t), vec_unit(vec_lerp(a->tangent, b->tangent, t)) };
+}
+
+static int pipe_sides(double r)
+{
+    return r < 0.04 ? 10 : r < 0.07 ? 14 : r < 0.13 ? 18 : r < 0.19 ? 22 : 26;
+}
+
+static void sweep_between(struct mesh *mesh, const struct track *track, double from_m, double to_m, double r)
+{
+    struct station stations[STATION_MAX + 2];
+    int count = 0;
+    stations[count++] = track_at(track, from_m);
+    for (int i = 0; i < track->count; i++)
+        if (track->at_m[i] > from_m + 1e-4 && track->at_m[i] < to_m - 1e-4)
+            stations[count++] = track->stations[i];
+    stations[count++] = track_at(track, to_m);
+    shape_sweep(mesh, stations, count, r, pipe_sides(r));
+}
+
+static void cladding_end(struct mesh *mesh, struct station at, double sign, double r, double thick)
+{
+    struct profile profile = { 0 };
+    profile_edge(&profile, r + thick, 0);
+    profile_edge(&profile, r * 0.98, 0.012);
+    shape_revolve(mesh, frame_facing(at.centre, vec_scale(at.tangent, sign), vec(0, 0, 1)), &profile, pipe_sides(r + thick), 0);
+}
+
+void pipe_end(struct pipe *pipe)
+{
+    struct track track = { .count = 0 };
+    track_build(&track, pipe);
+    double length = track.at_m[track.count - 1], open = fitting_flange_thickness(pipe->r) * 2.6 + 0.09;
+    struct mesh *bare = bare_mesh(pipe);
+    if (pipe->insulation <= 0.0 || length < 3 * open) {
+        sweep_between(bare, &track, 0, length, pipe->r);
+        return;
+    }
+    struct mesh *cladding = item_part(pipe->item, "cladding", MATERIAL_CLADDING);
+    sweep_between(bare, &track, 0, open + 0.02, pipe->r);
+    sweep_between(bare, &track, length - open - 0.02, length, pipe->r);
+    sweep_between(cladding, &track, open, length - open, pipe->r + pipe->insulation);
+    cladding_end(cladding, track_at(&track, open), -1, pipe->r, pipe->insulation);
+    cladding_end(cladding, track_at(&track, length - open), 1, pipe->r, pipe->insulation);
+}

@@ -1,0 +1,120 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* plant.yaml and tags.csv as text. */
+#include "plant_file.h"
+
+#include "base/text.h"
+#include "layout.h"
+
+static const char head[] =
+    "# SPDX-License-Identifier: GPL-3.0-or-later\n"
+    "# The demo plant, made by plantcast-demo. Metres; plant frame: x east, y north, z up, origin on the slab.\n"
+    "plant:\n"
+    "  name: Stabiliser unit 100 (demo)\n"
+    "  time_zone: UTC\n"
+    "  up: z\n"
+    "  view: { eye: [-29.5, -33.0, 24.5], target: [-0.5, -1.0, 4.6], fov: 38 }\n"
+    "\n"
+    "groups:\n"
+    "  - id: temperature\n"
+    "    quantity: Temperature\n"
+    "    unit: °C\n"
+    "    min: 20\n"
+    "    max: 180\n"
+    "    limits: { H: 172, HH: 178 }\n"
+    "    interpolation: shepard\n"
+    "    distance: geodesic\n"
+    "    reach_m: 8\n"
+    "  - id: pressure\n"
+    "    quantity: Pressure\n"
+    "    unit: bar\n"
+    "    min: 0\n"
+    "    max: 16\n"
+    "    limits: { H: 14.5, HH: 15.5 }\n"
+    "    interpolation: shepard\n"
+    "    distance: geodesic\n"
+    "  - id: vibration\n"
+    "    quantity: Vibration velocity\n"
+    "    unit: mm/s\n"
+    "    min: 0\n"
+    "    max: 12\n"
+    "    limits: { H: 4.5, HH: 7.1 }\n"
+    "    interpolation: shepard\n"
+    "    distance: euclidean\n"
+    "    reach_m: 1.2\n"
+    "\n"
+    "sources:\n"
+    "  - id: plc1\n"
+    "    type: modbus\n"
+    "    host: 127.0.0.1\n"
+    "    port: 1502\n"
+    "    unit: 1\n"
+    "    poll_ms: 500\n"
+    "    byte_order: CDAB\n"
+    "    address_base: 1\n"
+    "\n"
+    "tags: tags.csv\n"
+    "\n"
+    "assets:\n";
+
+int plant_file_write(const char *path)
+{
+    struct text out = { 0 };
+    text_add(&out, "%s", head);
+    for (int i = 0; i < layout_asset_count; i++)
+        text_add(&out, "  - { id: %s, model: plant.glb, nodes: %s, up: y, description: \"%s\" }\n", layout_assets[i].name, layout_assets[i].name,
+                 layout_assets[i].description);
+    int status = text_write_file(path, out.at, out.length);
+    text_finish(&out);
+    return status;
+}
+
+struct kind {
+    const char *group, *unit, *type, *scaling, *byte_order;
+    int decimals; /* of limits */
+    double low;   /* no limit at or below it: the range's own end */
+};
+static const struct kind kinds[] = {
+    [TAG_TEMPERATURE] = { "temperature", "°C", "Float32", "None,,,,", "CDAB", 0, 15.0 },
+    [TAG_WINDING] = { "temperature", "°C", "Int16", "Linear,0,2000,0,200", "", 0, 15.0 },
+    [TAG_PRESSURE] = { "pressure", "bar", "Int16", "Linear,0,27648,0,16", "", 1, 0.0 },
+    [TAG_VIBRATION] = { "vibration", "mm/s", "Float32", "None,,,,", "CDAB", 1, 0.0 },
+};
+
+static void add_limit(struct text *out, const struct tag *tag, double bands)
+{
+    const struct kind *kind = kinds + tag->kind;
+    double limit = tag->value + bands * tag->band;
+    if (tag->band > 0.0 && limit > kind->low)
+        text_add(out, ",%.*f", kind->decimals, limit);
+    else
+        text_add(out, ",");
+}
+
+static void add_tag(struct text *out, const struct tag *tag)
+{
+    const struct kind *kind = kinds + tag->kind;
+    text_add(out, "%s,%d,%s,500,%s,%s,,\"%s\",plc1,%s,%s,", tag->name, tag->address, kind->type, kind->scaling, kind->unit, tag->description, kind->group,
+             tag->asset);
+    if (tag->node)
+        text_add(out, "%s,,,", tag->name);
+    else
+        text_add(out, ",%.4f,%.4f,%.4f", tag->position.x, tag->position.y, tag->position.z);
+    text_add(out, ",%s", kind->byte_order);
+    add_limit(out, tag, -1.6);
+    add_limit(out, tag, -1.0);
+    add_limit(out, tag, 1.0);
+    add_limit(out, tag, 1.6);
+    text_add(out, ",%.4g,%s\n", tag->value, tag->loop);
+}
+
+int tag_list_write(const struct tags *tags, const char *path)
+{
+    struct text out = { 0 };
+    text_add(&out, "Tag Name,Address,Data Type,Scan Rate,Scaling,Raw Low,Raw High,Scaled Low,Scaled High,Eng Units,Negate Value,Description,"
+                   "Source,Group,Asset,Node,X,Y,Z,Byte Order,LL,L,H,HH,Sim Value,Sim Loop\n");
+    for (size_t i = 0; i < tags->count; i++)
+        add_tag(&out, tags->at + i);
+    int status = text_write_file(path, out.at, out.length);
+    text_finish(&out);
+    return status;
+}
