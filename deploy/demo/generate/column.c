@@ -60,10 +60,10 @@ static void column_platforms(struct item *item, const struct column_spec *spec)
             shape_bar(steel, vec(foot.x, foot.y, z), vec_polar(spec->r, deg, z), 0.02, 6);
         below = levels[i].z;
     }
-    struct vec mast = vec_polar(spec->r + 0.30, 90.0, top); /* davit */
+    struct vec mast = vec_polar(spec->r + 0.30, 20.0, top); /* davit */
     shape_bar(rail, mast, vec_along(mast, vec(0, 0, 1), 2.3), 0.06, 10);
-    shape_bar(rail, vec_along(mast, vec(0, 0, 1), 2.25), vec_polar(spec->r + 1.9, 90.0, top + 2.45), 0.05, 8);
-    shape_bar(rail, vec_along(mast, vec(0, 0, 1), 1.5), vec_polar(spec->r + 1.2, 90.0, top + 2.35), 0.03, 6);
+    shape_bar(rail, vec_along(mast, vec(0, 0, 1), 2.25), vec_polar(spec->r + 1.9, 20.0, top + 2.45), 0.05, 8);
+    shape_bar(rail, vec_along(mast, vec(0, 0, 1), 1.5), vec_polar(spec->r + 1.2, 20.0, top + 2.35), 0.03, 6);
 }
 
 void column_build(struct site *site, const char *name, struct frame at, const struct column_spec *spec)
@@ -86,11 +86,10 @@ void column_build(struct site *site, const char *name, struct frame at, const st
     double r = spec->r;
     item_nozzle(&item, "N1", vec(0, 0, spec->height + r * 0.5), vec(0, 0, 1), 0.162, 0.30);
     item_nozzle(&item, "N2", vec_polar(r, 60, spec->height - 0.9), vec_polar(1, 60, 0), 0.057, 0.22);
-    item_nozzle(&item, "N3", vec_polar(r, 60, 10.4), vec_polar(1, 60, 0), 0.084, 0.22);
+    item_nozzle(&item, "N3", vec_polar(r, 30, 10.4), vec_polar(1, 30, 0), 0.084, 0.22);
     item_nozzle(&item, "N4", vec_polar(r, 180, 4.6), vec_polar(1, 180, 0), 0.162, 0.25);
-    item_nozzle(&item, "N6", vec_polar(r * 0.6, 180, spec->skirt - r * 0.40), vec(0, 0, -1), 0.110, 0.45);
     struct frame outlet = frame_facing(vec(0, 0, spec->skirt - r * 0.5), vec(0, 0, -1), vec(1, 0, 0));
-    item_connect(&item, "N5", outlet, 0.084); /* continuous pipe through the skirt, no flange inside it */
+    item_connect(&item, "N5", outlet, 0.110); /* continuous pipe through the skirt, no flange inside it */
     const double manways[] = { 4.4, 7.2, 12.2, 17.2 };
     for (int i = 0; i < 4; i++) {
         double deg = i ? 250.0 : 270.0;

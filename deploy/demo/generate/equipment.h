@@ -28,7 +28,7 @@ void kettle_build(struct site *site, const char *name, struct frame at);
 struct column_spec {
     double r, skirt, height; /* height: upper tangent line above the slab */
 };
-/* Nozzles: N1 overhead, N2 reflux, N3 feed, N4 reboiler return, N5 bottoms (below the skirt), N6 to reboiler. */
+/* Nozzles: N1 overhead, N2 reflux, N3 feed, N4 reboiler return, N5 bottoms (inside the skirt). */
 void column_build(struct site *site, const char *name, struct frame at, const struct column_spec *spec);
 
 /* Horizontal drum with boot, axis along x, saddles on base_z. N1 inlet (top), N2 liquid (bottom), N3 vapour (top), N4 water (boot). */

@@ -121,7 +121,7 @@ void exchanger_build(struct site *site, const char *name, struct frame at, const
 
 void kettle_build(struct site *site, const char *name, struct frame at)
 {
-    const double small = 0.46, large = 0.82, axis_z = 1.30, shift = large - small, bundle = 0.55, cone = 0.75, body = 3.6, base_z = 0.30;
+    const double small = 0.46, large = 0.82, axis_z = 1.75, shift = large - small, bundle = 0.55, cone = 0.75, body = 3.6, base_z = 0.75;
     const int sides = 56;
     struct item item = item_begin(&site->model, name, at);
     struct mesh *shell = item_part(&item, "shell", MATERIAL_CLADDING), *heads = item_part(&item, "heads", MATERIAL_CHANNEL);

@@ -32,6 +32,7 @@ const struct layout_asset layout_assets[] = {
     { "L-105", "Off-gas lines" },
     { "L-106", "Cooling water lines" },
     { "L-107", "Steam and condensate lines" },
+    { "L-108", "Lines that pass through" },
     { "PR-101", "Pipe rack" },
     { "ST-101", "Overhead structure" },
     { "CIVIL", "Slab, foundations and kerbs" },
@@ -45,15 +46,15 @@ static struct frame facing(double x, double y, double deg)
 
 static void build_exchangers(struct site *site)
 {
-    const struct exchanger_spec feed = { 0.58, 5.4, 1.45, 0.45, 0.110, 0.110, 96, 44, 0.055, MATERIAL_CLADDING };
-    const struct exchanger_spec trim = { 0.46, 4.2, STRUCTURE_HIGH_M + 0.95, STRUCTURE_HIGH_M, 0.084, 0.110, 48, 20, 0.13, MATERIAL_VESSEL };
-    const struct exchanger_spec low = { 0.44, 4.0, 1.15, 0.35, 0.084, 0.084, 48, 20, 0.13, MATERIAL_CLADDING };
-    const struct exchanger_spec high = { 0.44, 4.0, 1.15, 0.35, 0.084, 0.084, 48, 20, 0.13, MATERIAL_VESSEL };
+    const struct exchanger_spec feed = { 0.58, 5.4, 1.60, 0.60, 0.110, 0.110, 96, 44, 0.055, MATERIAL_CLADDING };
+    const struct exchanger_spec trim = { 0.46, 4.2, STRUCTURE_HIGH_M + 1.0, STRUCTURE_HIGH_M, 0.084, 0.110, 48, 20, 0.13, MATERIAL_VESSEL };
+    const struct exchanger_spec low = { 0.44, 4.0, 1.30, 0.50, 0.084, 0.084, 48, 20, 0.13, MATERIAL_CLADDING };
+    const struct exchanger_spec high = { 0.44, 4.0, 1.30, 0.50, 0.084, 0.084, 48, 20, 0.13, MATERIAL_VESSEL };
     exchanger_build(site, "E-101", facing(-16.0, -6.2, 90), &feed); /* channels to the south, where bundles are pulled */
     exchanger_build(site, "E-103", facing(0.6, 3.4, 0), &trim);
     exchanger_build(site, "E-104", facing(-11.6, -6.6, 90), &low);
     exchanger_build(site, "E-105", facing(-8.6, -6.6, 90), &high);
-    kettle_build(site, "E-102", facing(-14.2, 3.4, 0));
+    kettle_build(site, "E-102", facing(-14.2, 3.6, 0));
     air_cooler_build(site, "EA-101", frame_at(9.0, 9.5, RACK_TOP_M), 4.4, 6.6);
 }
 
@@ -85,7 +86,7 @@ void layout_build(struct site *site)
     structure_build(site, "ST-101");
     build_exchangers(site);
     column_build(site, "T-101", frame_at(-8.2, 3.6, 0), &column);
-    drum_build(site, "V-101", frame_at(0.8, 3.0, 0), 0.85, 4.2, STRUCTURE_LOW_M);
+    drum_build(site, "V-101", frame_at(0.68, 3.4, 0), 0.85, 4.2, STRUCTURE_LOW_M);
     knockout_build(site, "V-102", frame_at(9.2, 3.6, 0), 0.65, 3.2);
     compressor_build(site, "K-101", frame_at(14.6, 3.4, 0));
     build_pumps(site);

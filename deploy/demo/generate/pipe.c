@@ -38,8 +38,13 @@ static double stub_m(const struct pipe *pipe)
 static void mating_flange(struct pipe *pipe, const struct model_nozzle *nozzle)
 {
     struct frame face = frame_facing(nozzle->at.o, vec_scale(nozzle->at.z, -1.0), nozzle->at.x);
-    fitting_flange(bare_mesh(pipe), face, pipe->r);
-    fitting_studs(item_part(pipe->item, "bolts", MATERIAL_BOLTING), face, pipe->r);
+    fitting_flange(bare_mesh(pipe), face, nozzle->r);
+    fitting_studs(item_part(pipe->item, "bolts", MATERIAL_BOLTING), face, nozzle->r);
+    if (fabs(nozzle->r - pipe->r) > 1e-3) { /* reducer */
+        double hub = fitting_flange_thickness(nozzle->r) * 2.5;
+        shape_tube(bare_mesh(pipe), frame_moved(frame_facing(nozzle->at.o, nozzle->at.z, nozzle->at.x), 0, 0, hub), nozzle->r, pipe->r,
+                   1.6 * fmax(nozzle->r, pipe->r), 20, 0);
+    }
 }
 
 struct pipe pipe_from_point(struct site *site, struct item *item, struct vec point, double r, enum material material, double insulation)

@@ -26,7 +26,7 @@ static void pump_casing(struct item *item)
     profile_edge(&profile, 0.084, 0.34);
     shape_revolve(casing, suction, &profile, 40, 0.035);
     struct frame up = frame_at(-0.32, 0, SHAFT_M);
-    shape_tube(casing, frame_moved(up, 0, 0, 0.15), 0.105, 0.057, 0.26, 28, 0.035);
+    shape_tube(casing, frame_moved(up, 0, 0, 0.15), 0.105, 0.070, 0.26, 28, 0.035);
     for (int i = 0; i < 12; i++) /* casing bolts */
         shape_hexagon(item->flanges, frame_moved(frame_turned(suction, 30.0 * i + 15.0), 0.248, 0, 0), 0.013, -0.175, -0.075);
     for (int i = -1; i <= 1; i += 2)
@@ -73,9 +73,9 @@ void pump_build(struct site *site, const char *name, struct frame at)
     struct frame suction = frame_facing(vec(-0.70, 0, SHAFT_M), vec(-1, 0, 0), vec(0, 0, 1));
     struct frame discharge = frame_facing(vec(-0.32, 0, SHAFT_M + 0.46), vec(0, 0, 1), vec(1, 0, 0));
     fitting_flange(item.flanges, suction, 0.084);
-    fitting_flange(item.flanges, discharge, 0.057);
+    fitting_flange(item.flanges, discharge, 0.070);
     item_connect(&item, "N1", suction, 0.084);
-    item_connect(&item, "N2", discharge, 0.057);
+    item_connect(&item, "N2", discharge, 0.070);
     pump_plinth(site, at);
     item_end(&item);
 }
