@@ -46,7 +46,7 @@ static struct frame facing(double x, double y, double deg)
 
 static void build_exchangers(struct site *site)
 {
-    const struct exchanger_spec feed = { 0.58, 5.4, 1.60, 0.60, 0.110, 0.110, 96, 44, 0.055, MATERIAL_CLADDING };
+    const struct exchanger_spec feed = { 0.58, 5.4, 1.60, 0.60, 0.110, 0.110, 96, 44, 0.047, MATERIAL_CLADDING };
     const struct exchanger_spec trim = { 0.46, 4.2, STRUCTURE_HIGH_M + 1.0, STRUCTURE_HIGH_M, 0.084, 0.110, 48, 20, 0.13, MATERIAL_VESSEL };
     const struct exchanger_spec low = { 0.44, 4.0, 1.30, 0.50, 0.084, 0.084, 48, 20, 0.13, MATERIAL_CLADDING };
     const struct exchanger_spec high = { 0.44, 4.0, 1.30, 0.50, 0.084, 0.084, 48, 20, 0.13, MATERIAL_VESSEL };

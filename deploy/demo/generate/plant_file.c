@@ -12,7 +12,7 @@ static const char head[] =
     "  name: Stabiliser unit 100 (demo)\n"
     "  time_zone: UTC\n"
     "  up: z\n"
-    "  view: { eye: [-29.5, -33.0, 24.5], target: [-0.5, -1.0, 4.6], fov: 38 }\n"
+    "  view: { eye: [-36.0, -38.0, 26.0], target: [-0.5, 0.0, 6.2], fov: 36 }\n"
     "\n"
     "groups:\n"
     "  - id: temperature\n"
