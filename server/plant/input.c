@@ -50,7 +50,7 @@ static void check_characters(char *text, size_t bytes, const char *path, struct 
             if (reported_line != line)
                 diag_error(diag, path, line, column, "byte 0x%02X is not UTF-8 text; save the file as UTF-8", (unsigned char)text[i]);
             reported_line = line;
-            text[i] = '?';
+            text[i] = '_';
             count = 1;
         }
         column++;

@@ -9,7 +9,7 @@
 #define INPUT_MAX_BYTES (64u * 1024 * 1024)
 
 /* The file without a byte order mark, ended by one 0 byte. Bytes that are not text are reported, the first of each line, and
-   replaced by '?', so that what follows can still be checked. NULL: reported (unreadable, empty, larger than
+   replaced by '_', so that what follows can still be checked. NULL: reported (unreadable, empty, larger than
    INPUT_MAX_BYTES, UTF-16). Free with mem_free. */
 char *input_read(const char *path, struct diag *diag, size_t *bytes);
 

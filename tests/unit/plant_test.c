@@ -1,0 +1,498 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Plant files: what a good one means, and every kind of mistake with its line, column and words. */
+#include "plant/plant.h"
+
+#include <locale.h>
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "base/text.h"
+#include "plant/sensors.h"
+#include "tests/support/plant_case.h"
+#include "tests/support/temp.h"
+
+/* --- good input ------------------------------------------------------------------------------------------------------------- */
+
+static const char small_yaml[] = "plant: { name: P }\n"
+                                 "assets: [{ id: E-1, model: m.glb }, { id: E-2, model: m.glb }]\n"
+                                 "groups: [{ id: temp, unit: °C, min: 0, max: 100 }, { id: pressure, unit: bar, min: 0, max: 16 }]\n"
+                                 "sources: [{ id: plc, type: modbus, host: h }]\n"
+                                 "tags: tags.csv\n";
+static const char small_csv[] = "Tag Name,Address\nT1,40001\n";
+
+static void defaults_are_as_documented(void **state)
+{
+    struct plant_case *f = *state;
+    plant_case_load(f, small_yaml, small_csv);
+    plant_case_assert_loaded(f, 0);
+    const struct plant *p = f->plant;
+    assert_string_equal(p->time_zone, "UTC");
+    assert_int_equal(p->up, AXIS_Z);
+    assert_false(p->view.set);
+    assert_string_equal(p->assets[0].tag, "E-1");
+    assert_string_equal(p->assets[0].description, "");
+    assert_null(p->assets[0].nodes);
+    assert_float_equal(p->assets[0].unit_m, 1, 0);
+    assert_int_equal(p->assets[0].up, AXIS_Y);
+    assert_false(p->assets[0].sensors_in_asset_frame);
+    assert_int_equal(p->assets[1].line, 2);
+    const struct plant_group *g = &p->groups[1];
+    assert_string_equal(g->quantity, "pressure");
+    assert_true(isnan(g->limits[LIMIT_LL]) && isnan(g->limits[LIMIT_HH]));
+    assert_int_equal(g->interpolation, INTERPOLATION_SHEPARD);
+    assert_int_equal(g->distance, DISTANCE_GEODESIC);
+    assert_true(g->strength == 1 && g->decay == 1 && g->power == 2 && g->radius_m == 0 && isinf(g->reach_m));
+    assert_int_equal(g->fill, FILL_NONE);
+    const struct plant_source *s = &p->sources[0];
+    assert_true(s->port == 502 && s->unit == 1 && s->poll_ms == 1000 && s->timeout_ms == 1000 && s->address_base == 1);
+    assert_int_equal(s->byte_order, BYTE_ORDER_NONE);
+    const struct plant_tag *t = &p->tags[0];
+    assert_true(t->source == 0 && t->group == -1 && t->asset == -1 && t->modbus_unit == -1 && t->bit == -1 && t->scan_ms == 0);
+    assert_int_equal(t->type, DATA_UINT16);
+    assert_int_equal(t->scaling, SCALING_NONE);
+    assert_float_equal(t->stale_s, 5, 0);
+    assert_false(t->has_position || t->negate || t->node);
+    char *folder = plant_prepared_folder(p), *expected = temp_path(f->folder, "prepared");
+    assert_string_equal(folder, expected);
+    mem_free(folder);
+    mem_free(expected);
+}
+
+static void everything_is_read(void **state)
+{
+    struct plant_case *f = *state;
+    plant_case_load(f,
+         "plant:\n"
+         "  name: Werk Süd\n"
+         "  time_zone: Europe/Berlin\n"
+         "  up: y\n"
+         "  view: { eye: [1, 2.5, -3], target: [0, 0, 1e1], fov: 60 }\n"
+         "assets:\n"
+         "  - { id: 101, tag: T, description: d, model: m.glb, nodes: 'E*', units: ft, up: z, sensor_frame: asset }\n"
+         "groups:\n"
+         "  - { id: g, quantity: q, unit: '', min: -1, max: 1, limits: { L: -0.5, HH: 0.5 }, interpolation: paper, distance: euclidean,\n"
+         "      strength: 2, decay: 3, power: 4, radius_m: 5, reach_m: 6, fill: neighbours }\n"
+         "sources:\n"
+         "  - { id: s, type: modbus, host: h, port: 5020, unit: 9, poll_ms: 2000, timeout_ms: 99, byte_order: CDAB, address_base: 0 }\n"
+         "tags: tags.csv\n",
+         "Tag Name,Address,Data Type,Scan Rate,Scaling,Raw Low,Raw High,Scaled Low,Scaled High,Engineering Units,Negate Value,Description,"
+         "Source,Group,Asset,Node,X,Y,Z,Strength,Decay,Byte Order,Stale s,LL,L,H,HH\n"
+         "A,40001,Float,500,Square Root,0,27648,-50,150,mm,1,say \"hi\",s,g,101,,1,2,3,7,8,BADC,9,-2,,,2\n"
+         "B,3!300007.4,,,,,,,,,,,,g,101,TI-B,,,,,,,,,,,\n");
+    plant_case_assert_loaded(f, 1); /* mm is not the group's unit */
+    const struct plant *p = f->plant;
+    assert_string_equal(p->name, "Werk Süd");
+    assert_true(p->up == AXIS_Y && p->view.set && p->view.eye_m[1] == 2.5 && p->view.target_m[2] == 10 && p->view.fov_deg == 60);
+    const struct plant_asset *a = &p->assets[0];
+    assert_string_equal(a->id, "101");
+    assert_string_equal(a->nodes, "E*");
+    assert_true(fabs(a->unit_m - 0.3048) < 1e-12 && a->up == AXIS_Z && a->sensors_in_asset_frame);
+    const struct plant_group *g = &p->groups[0];
+    assert_true(g->limits[LIMIT_L] == -0.5 && g->limits[LIMIT_HH] == 0.5 && isnan(g->limits[LIMIT_H]));
+    assert_true(g->interpolation == INTERPOLATION_PAPER && g->distance == DISTANCE_EUCLIDEAN && g->fill == FILL_NEIGHBOURS);
+    assert_true(g->strength == 2 && g->decay == 3 && g->power == 4 && g->radius_m == 5 && g->reach_m == 6);
+    const struct plant_tag *t = &p->tags[0];
+    assert_true(t->register_index == 1 && t->table == TABLE_HOLDING && t->type == DATA_FLOAT32 && t->byte_order == BYTE_ORDER_BADC);
+    assert_true(t->scan_ms == 500 && t->scaling == SCALING_SQUARE_ROOT && t->raw_high == 27648 && t->scaled_low == -50 && t->negate);
+    assert_true(t->strength == 7 && t->decay == 8 && t->stale_s == 9 && t->has_position && t->position_m[2] == 3);
+    assert_true(t->limits[LIMIT_LL] == -2 && t->limits[LIMIT_L] == -0.5 && t->limits[LIMIT_HH] == 2);
+    assert_string_equal(t->description, "say \"hi\"");
+    const struct plant_tag *b = &p->tags[1];
+    assert_true(b->modbus_unit == 3 && b->table == TABLE_INPUT && b->register_index == 7 && b->bit == 4 && b->type == DATA_BIT);
+    assert_true(b->strength == 2 && b->decay == 3 && b->stale_s == 6 && b->line == 3);
+    assert_string_equal(b->node, "TI-B");
+    assert_string_equal(b->unit, "");
+    assert_int_equal(plant_find_asset(p, "101"), 0);
+    assert_int_equal(plant_find_group(p, "x"), -1);
+    assert_int_equal(plant_find_tag(p, "B"), 1);
+    assert_int_equal(plant_find_tag(p, "AB"), -1);
+}
+
+static void names_of_a_long_list_are_found(void **state)
+{
+    struct plant_case *f = *state;
+    struct text csv = { 0 };
+    text_add(&csv, "Tag Name,Address\n");
+    for (int i = 0; i < 500; i++)
+        text_add(&csv, "TT-%d,hr:%d\n", i * 7919 % 500, i);
+    plant_case_load(f, small_yaml, csv.at);
+    plant_case_assert_loaded(f, 0);
+    for (int i = 0; i < 500; i++)
+        assert_int_equal(plant_find_tag(f->plant, f->plant->tags[i].name), i);
+    text_finish(&csv);
+}
+
+static void assert_point(const double point[3], double x, double y, double z)
+{
+    const double expected[3] = { x, y, z };
+    for (int i = 0; i < 3; i++)
+        if (!(fabs(point[i] - expected[i]) < 1e-9))
+            fail_msg("(%g, %g, %g) is not (%g, %g, %g)", point[0], point[1], point[2], x, y, z);
+}
+
+static const char placed_csv[] = "Tag Name,Address,Group,Asset,Node,X,Y,Z\n"
+                                 "P,hr:0,g,A,,1,2,3\n"
+                                 "Q,hr:1,g,B,,1,2,3\n"
+                                 "N,hr:2,g,A,TI,,,\n"
+                                 "-,hr:3,,A,,1,2,3\n";
+
+static void sensors_are_given_in_the_asset_frame(void **state)
+{
+    struct plant_case *f = *state;
+    struct plant_sensor *s;
+    plant_case_load(f,
+         "plant: { name: P }\n"
+         "assets:\n"
+         "- { id: A, model: m.glb, placement: { translate: [1, 0, 0], rotate_deg: [90, 0, 90], scale: 2 } }\n"
+         "- { id: B, model: m.glb, sensor_frame: asset, placement: { translate: [1, 0, 0] } }\n"
+         "groups: [{ id: g, unit: K, min: 0, max: 1 }]\n"
+         "sources: [{ id: s, type: modbus, host: h }]\n"
+         "tags: tags.csv\n",
+         placed_csv);
+    plant_case_assert_loaded(f, 0);
+    assert_int_equal(plant_sensors(f->plant, 0, &s), 2);
+    /* About x: (x, y, z) -> (x, -z, y); then about z: (x, y, z) -> (-y, x, z); so (a, b, c) -> (c, a, b). Back from (0, 2, 3) / 2. */
+    assert_point(s[0].position_m, 1, 1.5, 0);
+    assert_true(s[0].tag == 0 && s[0].node_hash == 0 && !s[0].node);
+    assert_true(s[1].tag == 2 && s[1].node_hash != 0);
+    assert_string_equal(s[1].node, "TI");
+    mem_free(s);
+    assert_int_equal(plant_sensors(f->plant, 1, &s), 1);
+    assert_point(s[0].position_m, 1, 2, 3);
+    mem_free(s);
+}
+
+static void an_asset_stands_upright_in_a_plant_that_is_y_up(void **state)
+{
+    struct plant_case *f = *state;
+    struct plant_sensor *s;
+    plant_case_load(f,
+         "assets: [{ id: A, model: m.glb, placement: { translate: [0, 10, 0] } }, { id: B, model: m.glb }]\n"
+         "groups: [{ id: g, unit: K, min: 0, max: 1 }]\n"
+         "sources: [{ id: s, type: modbus, host: h }]\n"
+         "tags: tags.csv\n"
+         "plant: { name: P, up: y }\n",
+         placed_csv);
+    plant_case_assert_loaded(f, 0);
+    assert_int_equal(plant_sensors(f->plant, 0, &s), 2);
+    assert_point(s[0].position_m, 1, -3, -8); /* 8 below the foot; 3 towards the south, which is z there and -y here */
+    mem_free(s);
+}
+
+static void the_locale_changes_nothing(void **state)
+{
+    struct plant_case *f = *state;
+    char *command = mem_printf("localedef -i de_DE -f UTF-8 %s/de_DE.UTF-8 2>&1", f->folder);
+    setenv("LOCPATH", f->folder, 1);
+    bool german = system(command) == 0 && setlocale(LC_NUMERIC, "de_DE.UTF-8");
+    mem_free(command);
+    if (!german) {
+        print_message("# a locale with a decimal comma cannot be made: the package locales is missing\n");
+        skip();
+    }
+    assert_string_equal(localeconv()->decimal_point, ",");
+    plant_case_load(f, "plant: { name: P }\nassets: [{ id: A, model: m.glb }]\ngroups: [{ id: g, unit: K, min: 0.25, max: 1.5 }]\ntags: tags.csv\n",
+         "Tag Name,L\nT,0.5\n");
+    setlocale(LC_NUMERIC, "C");
+    plant_case_assert_loaded(f, 0);
+    assert_float_equal(f->plant->groups[0].max, 1.5, 0);
+    assert_float_equal(f->plant->tags[0].limits[LIMIT_L], 0.5, 0);
+}
+
+/* --- plant.yaml, bad -------------------------------------------------------------------------------------------------------- */
+
+/* small_yaml with one line replaced; line 0: nothing. */
+static void load_with(struct plant_case *f, int line, const char *text)
+{
+    struct text yaml = { 0 };
+    const char *p = small_yaml;
+    for (int i = 1; *p; i++) {
+        size_t length = strcspn(p, "\n") + 1;
+        if (i == line)
+            text_add(&yaml, "%s\n", text);
+        else
+            text_add_bytes(&yaml, p, length);
+        p += length;
+    }
+    plant_case_load(f, yaml.at, small_csv);
+    text_finish(&yaml);
+    assert_null(f->plant);
+}
+
+static void unknown_keys_are_named(void **state)
+{
+    struct plant_case *f = *state;
+    load_with(f, 1, "plant: { name: P, timezone: UTC }");
+    FOUND(f, { "plant.yaml", 1, 19, "unknown key 'timezone' in plant; did you mean 'time_zone'?" });
+    load_with(f, 1, "plant: { name: P, colour: red }");
+    FOUND(f, { "plant.yaml", 1, 19, "unknown key 'colour' in plant; expected one of: name, time_zone, up, view" });
+    load_with(f, 5, "tags: tags.csv\nsorces: []");
+    FOUND(f, { "plant.yaml", 6, 1, "did you mean 'sources'?" });
+    load_with(f, 1, "plant: { name: P, [a]: 1 }");
+    FOUND(f, { "plant.yaml", 1, 19, "expected the name of a key, found a list" });
+}
+
+static void missing_keys_are_named(void **state)
+{
+    struct plant_case *f = *state;
+    plant_case_load(f, "plant: {}\n", small_csv);
+    assert_null(f->plant);
+    FOUND(f, { "plant.yaml", 1, 1, "needs the key 'assets'" }, { "plant.yaml", 1, 1, "needs the key 'groups'" },
+          { "plant.yaml", 1, 1, "needs the key 'tags'" }, { "plant.yaml", 1, 8, "plant needs the key 'name'" });
+    load_with(f, 3, "groups:\n- id: temp\n  unit: K");
+    FOUND(f, { "plant.yaml", 4, 3, "a group needs the key 'min'" }, { "plant.yaml", 4, 3, "a group needs the key 'max'" });
+    load_with(f, 4, "sources: [{ id: plc, type: modbus, host: }]");
+    FOUND(f, { "plant.yaml", 4, 42, "host: expected a value, found ''" });
+    load_with(f, 2, "assets: []");
+    FOUND(f, { "plant.yaml", 2, 9, "assets: expected at least one" });
+}
+
+static void wrong_types_are_named(void **state)
+{
+    struct plant_case *f = *state;
+    load_with(f, 1, "plant: P");
+    FOUND(f, { "plant.yaml", 1, 8, "plant: expected a mapping (key: value), found 'P'" });
+    load_with(f, 2, "assets: { id: E-1 }");
+    FOUND(f, { "plant.yaml", 2, 9, "assets: expected a list (lines that begin with -), found a mapping" });
+    load_with(f, 2, "assets: [E-1]");
+    FOUND(f, { "plant.yaml", 2, 10, "an asset: expected a mapping (key: value), found 'E-1'" });
+    load_with(f, 2, "assets: [{ id: [1], model: m.glb }]");
+    FOUND(f, { "plant.yaml", 2, 16, "id: expected text, found a list" });
+    load_with(f, 2, "assets: [{ id: '', model: m.glb }]");
+    FOUND(f, { "plant.yaml", 2, 16, "id: expected text, found ''" });
+    load_with(f, 3, "groups: [{ id: g, unit: K, min: \"0\", max: ten }]");
+    FOUND(f, { "plant.yaml", 3, 33, "min: expected a number, found the text \"0\"" },
+          { "plant.yaml", 3, 43, "max: expected a number, found 'ten'" });
+    load_with(f, 4, "sources: [{ id: s, type: modbus, host: h, port: 502.5, poll_ms: [1] }]");
+    FOUND(f, { "plant.yaml", 4, 49, "port: expected a whole number from 1 to 65535, found '502.5'" },
+          { "plant.yaml", 4, 65, "poll_ms: expected a whole number from 10 to 86400000, found a list" });
+    load_with(f, 2, "assets: [{ id: E, model: m.glb, placement: { translate: [1, 2], rotate_deg: [1, x, 3], scale: big } }]");
+    FOUND(f, { "plant.yaml", 2, 57, "translate: expected a list of three numbers" },
+          { "plant.yaml", 2, 81, "rotate_deg: expected a number from -36000 to 36000, found 'x'" },
+          { "plant.yaml", 2, 95, "scale: expected a number from 1e-06 to 1000000, found 'big'" });
+    load_with(f, 3, "groups: [{ id: g, unit: K, min: 0, max: 1, radius_m: [], limits: 5 }]");
+    FOUND(f, { "plant.yaml", 3, 54, "radius_m: expected auto or a number, found a list" },
+          { "plant.yaml", 3, 66, "limits: expected a mapping" });
+}
+
+static void bad_choices_list_the_allowed(void **state)
+{
+    struct plant_case *f = *state;
+    load_with(f, 2, "assets: [{ id: E, model: m.glb, units: yd, up: x, sensor_frame: world }]");
+    FOUND(f, { "plant.yaml", 2, 40, "units: expected m, mm, cm, in or ft, found 'yd'" },
+          { "plant.yaml", 2, 48, "up: expected z or y, found 'x'" },
+          { "plant.yaml", 2, 65, "sensor_frame: expected plant or asset, found 'world'" });
+    load_with(f, 3, "groups: [{ id: g, unit: K, min: 0, max: 1, interpolation: idw, distance: [geodesic], fill: some }]");
+    FOUND(f, { "plant.yaml", 3, 59, "interpolation: expected shepard or paper, found 'idw'" },
+          { "plant.yaml", 3, 74, "distance: expected geodesic or euclidean, found a list" },
+          { "plant.yaml", 3, 92, "fill: expected none or neighbours, found 'some'" });
+    load_with(f, 4, "sources: [{ id: s, type: opcua, host: h, byte_order: abcd, address_base: 2 }]");
+    FOUND(f, { "plant.yaml", 4, 26, "type: expected modbus, found 'opcua'" },
+          { "plant.yaml", 4, 54, "byte_order: expected ABCD, CDAB, BADC or DCBA, found 'abcd'" },
+          { "plant.yaml", 4, 74, "address_base: expected a whole number from 0 to 1, found '2'" });
+}
+
+static void numbers_have_ranges(void **state)
+{
+    struct plant_case *f = *state;
+    load_with(f, 3, "groups: [{ id: g, unit: K, min: .nan, max: .inf, strength: -1, power: 99, reach_m: 0, radius_m: 1e999 }]");
+    FOUND(f, { "plant.yaml", 3, 33, "min: expected a finite number, found '.nan'" },
+          { "plant.yaml", 3, 44, "max: expected a finite number, found '.inf'" },
+          { "plant.yaml", 3, 60, "strength: expected a number from 0 to 100, found '-1'" },
+          { "plant.yaml", 3, 71, "power: expected a number from 0.5 to 16, found '99'" },
+          { "plant.yaml", 3, 84, "reach_m: expected a number from 0.001 to 1000000, found '0'" },
+          { "plant.yaml", 3, 97, "radius_m: expected a finite number from 0.001 to 1000000, found '1e999'" });
+    load_with(f, 4, "sources: [{ id: s, type: modbus, host: h, port: 0, unit: 256, poll_ms: 5, timeout_ms: 1e9 }]");
+    FOUND(f, { "plant.yaml", 4, 49, "port: expected a whole number from 1 to 65535" },
+          { "plant.yaml", 4, 58, "unit: expected a whole number from 0 to 255" },
+          { "plant.yaml", 4, 72, "poll_ms: expected a whole number from 10 to 86400000" },
+          { "plant.yaml", 4, 87, "timeout_ms: expected a whole number from 10 to 60000" });
+    load_with(f, 1, "plant: { name: P, view: { eye: [1, 1, 1], target: [1, 1, 1], fov: 180 } }");
+    FOUND(f, { "plant.yaml", 1, 51, "target: expected another point than eye" },
+          { "plant.yaml", 1, 67, "fov: expected a number from 1 to 120" });
+    load_with(f, 2, "assets: [{ id: E, model: m.glb, placement: { translate: [0, 2e6, 0], scale: 0 } }]");
+    FOUND(f, { "plant.yaml", 2, 61, "translate: expected a number from -1000000 to 1000000" }, { "plant.yaml", 2, 77, "scale: expected" });
+}
+
+static void meaning_is_checked(void **state)
+{
+    struct plant_case *f = *state;
+    load_with(f, 3, "groups:\n- id: temp\n  unit: K\n  min: 100\n  max: 100");
+    FOUND(f, { "plant.yaml", 6, 8, "min: expected less than max, which is 100, found 100" });
+    load_with(f, 3, "groups: [{ id: g, unit: K, min: 0, max: 9, limits: { LL: 1, L: 1, H: 8, HH: 7.5 } }]");
+    FOUND(f, { "plant.yaml", 3, 64, "L: expected more than LL, which is 1, found 1 (LL < L < H < HH)" });
+    load_with(f, 3, "groups: [{ id: g, unit: K, min: 0, max: 9, limits: { HH: 1, LL: 2 } }]");
+    FOUND(f, { "plant.yaml", 3, 58, "HH: expected more than LL, which is 2, found 1" });
+    load_with(f, 3, "groups: [{ id: g, unit: K, min: 0, max: 9, limits: { H: hot } }]");
+    FOUND(f, { "plant.yaml", 3, 57, "H: expected a number, found 'hot'" });
+    load_with(f, 2, "assets:\n- { id: A, model: m.glb }\n- { id: B, model: m.glb }\n- { model: m.glb, id: A }");
+    FOUND(f, { "plant.yaml", 5, 23, "id: asset 'A' is there twice (first at line 3)" });
+    load_with(f, 4, "sources: [{ id: s, type: modbus, host: h }, { id: s, type: modbus, host: h }]");
+    FOUND(f, { "plant.yaml", 4, 51, "id: source 's' is there twice" },
+          { "tags.csv", 2, 1, "Source: expected the id of one of the 2 sources" });
+    load_with(f, 2, "assets: [{ id: A, model: nowhere/x.glb }, { id: B, model: . }]");
+    FOUND(f, { "plant.yaml", 2, 26, "nowhere/x.glb' cannot be read: No such file or directory" },
+          { "plant.yaml", 2, 59, "is not a file" });
+    load_with(f, 5, "tags: no.csv");
+    FOUND(f, { "plant.yaml", 5, 7, "no.csv' cannot be read: No such file or directory" });
+}
+
+static void time_zones_are_looked_up(void **state)
+{
+    struct plant_case *f = *state;
+    static const char *const wrong[] = { "Europe/Berln", "Europe", "../zoneinfo/UTC", "/usr/share/zoneinfo/UTC", "tzdata.zi", "CEST+1?" };
+    if (access("/usr/share/zoneinfo/Europe/Berlin", R_OK) != 0) {
+        print_message("# no time zone database is installed\n");
+        skip();
+    }
+    for (size_t i = 0; i < sizeof(wrong) / sizeof(*wrong); i++) {
+        char line[100];
+        snprintf(line, sizeof(line), "plant: { name: P, time_zone: %s }", wrong[i]);
+        load_with(f, 1, line);
+        FOUND(f, { "plant.yaml", 1, 30, "expected an IANA name such as Europe/Berlin or UTC" });
+    }
+}
+
+static void all_errors_come_at_once(void **state)
+{
+    struct plant_case *f = *state;
+    plant_case_load(f,
+         "plant: { nam: P }\n"
+         "assets: [{ id: A, model: gone.glb, units: yd }]\n"
+         "groups: [{ id: g, unit: K, min: 2, max: 1 }]\n"
+         "sources: [{ id: s, type: modbus, host: h, port: -1 }]\n"
+         "tags: tags.csv\n",
+         "Tag Name,Address,Group\nT1,4,g\nT1,40001,gg\n");
+    FOUND(f, { "plant.yaml", 1, 8, "plant needs the key 'name'" }, { "plant.yaml", 1, 10, "did you mean 'name'?" },
+          { "plant.yaml", 2, 26, "cannot be read" }, { "plant.yaml", 2, 43, "units: expected" },
+          { "plant.yaml", 3, 33, "min: expected less" },
+          { "plant.yaml", 4, 49, "port: expected" }, { "tags.csv", 2, 4, "Address: '4'" },
+          { "tags.csv", 2, 6, "'T1' has a group but no asset" },
+          { "tags.csv", 3, 1, "Tag Name: 'T1' is there twice (first at line 2)" },
+          { "tags.csv", 3, 10, "unknown group 'gg'; the plant file has no such id" },
+          { "tags.csv", 3, 10, "'T1' has a group but no asset" });
+    assert_int_equal(f->diag.errors, 9);
+}
+
+/* --- plant.yaml, not YAML --------------------------------------------------------------------------------------------------- */
+
+static void syntax_errors_have_a_place(void **state)
+{
+    struct plant_case *f = *state;
+    load_with(f, 2, "assets: [{ id: A, model: m.glb }");
+    FOUND(f, { "plant.yaml", 3, 1, "not YAML: did not find expected ',' or ']', while parsing a flow sequence that begins at line 2" });
+    load_with(f, 1, "plant: { name: 'P }");
+    FOUND(f, { "plant.yaml", 6, 1, "not YAML: found unexpected end of stream" });
+    load_with(f, 1, "plant: { name: *P }");
+    FOUND(f, { "plant.yaml", 1, 16, "not YAML: found undefined alias" });
+    load_with(f, 1, "plant:\n\tname: P\n\ttime_zone: UTC");
+    FOUND(f, { "plant.yaml", 2, 1, "tab in the indentation" }, { "plant.yaml", 3, 1, "tab in the indentation" });
+    load_with(f, 1, "plant: { name: P\x01 }");
+    FOUND(f, { "plant.yaml", 1, 17, "not YAML: control characters are not allowed" });
+    load_with(f, 5, "tags: tags.csv\n---\nplant: 1");
+    FOUND(f, { "plant.yaml", 7, 1, "a second document begins here" });
+}
+
+static void keys_that_come_twice_are_named(void **state)
+{
+    struct plant_case *f = *state;
+    load_with(f, 1, "plant:\n  name: P\n  name: Q");
+    FOUND(f, { "plant.yaml", 3, 3, "key 'name' is there twice (first at line 2)" });
+    load_with(f, 5, "tags: tags.csv\nplant: { name: Q }");
+    FOUND(f, { "plant.yaml", 6, 1, "key 'plant' is there twice (first at line 1)" });
+}
+
+static void what_is_not_utf8_text_has_a_place(void **state)
+{
+    struct plant_case *f = *state;
+    load_with(f, 1, "plant: { name: K\xFChler } # \xFC");
+    FOUND(f, { "plant.yaml", 1, 17, "byte 0xFC is not UTF-8 text" });
+    load_with(f, 3, "groups: [{ id: ä, unit: \xB0"
+                    "C, min: 1, max: 0 }]");
+    FOUND(f, { "plant.yaml", 3, 25, "byte 0xB0 is not UTF-8 text" }, { "plant.yaml", 3, 34, "min: expected less than max" });
+    const char utf16[] = "\xFF\xFEp\0l\0a\0n\0t\0";
+    mem_free(temp_write(f->folder, "plant.yaml", utf16, sizeof(utf16)));
+    plant_case_forget(f);
+    f->plant = plant_load(f->path, &f->diag);
+    FOUND(f, { "plant.yaml", 1, 1, "is UTF-16" });
+    plant_case_load(f, "\xEF\xBB\xBFplant: { nam: P }\nassets: [{ id: A, model: m.glb }]\ngroups: [{ id: g, unit: K, min: 0, max: 1 }]\n"
+            "tags: tags.csv\n",
+         small_csv);
+    FOUND(f, { "plant.yaml", 1, 8, "needs the key 'name'" }, { "plant.yaml", 1, 10, "did you mean 'name'?" });
+}
+
+static void files_without_content_are_refused(void **state)
+{
+    struct plant_case *f = *state;
+    plant_case_load(f, "", small_csv);
+    FOUND(f, { "plant.yaml", 1, 1, "is empty" });
+    plant_case_load(f, " \n\n", small_csv);
+    FOUND(f, { "plant.yaml", 1, 1, "is empty" });
+    plant_case_load(f, "# nothing but this\n", small_csv);
+    FOUND(f, { "plant.yaml", 1, 1, "is empty" });
+    plant_case_load(f, "[]", small_csv);
+    FOUND(f, { "plant.yaml", 1, 1, "the plant file: expected a mapping" });
+    plant_case_load(f, small_yaml, "");
+    FOUND(f, { "tags.csv", 1, 1, "is empty" });
+}
+
+static void files_that_cannot_be_read_are_named(void **state)
+{
+    struct plant_case *f = *state;
+    f->plant = plant_load(f->path, &f->diag);
+    assert_null(f->plant);
+    FOUND(f, { "plant.yaml", 0, 0, "cannot be read: No such file or directory" });
+    plant_case_forget(f);
+    f->plant = plant_load(f->folder, &f->diag);
+    FOUND(f, { "", 0, 0, "cannot be read: Is a directory" });
+    plant_case_load(f, small_yaml, small_csv);
+    plant_case_forget(f);
+    char *path = temp_path(f->folder, "tags.csv");
+    assert_int_equal(truncate(path, 64 * 1024 * 1024 + 1), 0);
+    f->plant = plant_load(f->path, &f->diag);
+    assert_null(f->plant);
+    FOUND(f, { "tags.csv", 0, 0, "larger than 64 MiB" });
+    assert_int_equal(truncate(f->path, 64 * 1024 * 1024 + 1), 0);
+    plant_case_forget(f);
+    f->plant = plant_load(f->path, &f->diag);
+    FOUND(f, { "plant.yaml", 0, 0, "larger than 64 MiB" });
+    mem_free(path);
+}
+
+#define TEST(function) cmocka_unit_test_setup_teardown(function, plant_case_set_up, plant_case_tear_down)
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        TEST(defaults_are_as_documented),
+        TEST(everything_is_read),
+        TEST(names_of_a_long_list_are_found),
+        TEST(sensors_are_given_in_the_asset_frame),
+        TEST(an_asset_stands_upright_in_a_plant_that_is_y_up),
+        TEST(the_locale_changes_nothing),
+        TEST(unknown_keys_are_named),
+        TEST(missing_keys_are_named),
+        TEST(wrong_types_are_named),
+        TEST(bad_choices_list_the_allowed),
+        TEST(numbers_have_ranges),
+        TEST(meaning_is_checked),
+        TEST(time_zones_are_looked_up),
+        TEST(all_errors_come_at_once),
+        TEST(syntax_errors_have_a_place),
+        TEST(keys_that_come_twice_are_named),
+        TEST(what_is_not_utf8_text_has_a_place),
+        TEST(files_without_content_are_refused),
+        TEST(files_that_cannot_be_read_are_named),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,304 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Tag lists: Kepware's form and ours, and every kind of mistake with its line, column and words. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "base/text.h"
+#include "tests/support/plant_case.h"
+#include "tests/support/temp.h"
+
+#define YAML(source) \
+    "plant: { name: P }\n" \
+    "assets: [{ id: E-101, model: m.glb }, { id: E-102, model: m.glb }]\n" \
+    "groups: [{ id: temp, unit: °C, min: 0, max: 100, limits: { L: 10, H: 90 }, strength: 3, decay: 4 }]\n" \
+    "sources: " source "\n" \
+    "tags: tags.csv\n"
+static const char yaml[] = YAML("[{ id: plc, type: modbus, host: h, byte_order: CDAB, poll_ms: 3000 }]");
+static const char yaml_no_order[] = YAML("[{ id: plc, type: modbus, host: h }]");
+static const char yaml_two_sources[] =
+    YAML("[{ id: plc1, type: modbus, host: h, byte_order: ABCD }, { id: plc2, type: modbus, host: h, byte_order: DCBA, address_base: 0 }]");
+static const char yaml_no_source[] = YAML("[]");
+
+static void a_kepware_export_is_read(void **state)
+{
+    struct plant_case *c = *state;
+    plant_case_load(c, yaml,
+                    "\xEF\xBB\xBFTag Name,Address,Data Type,Respect Data Type,Client Access,Scan Rate,Scaling,Raw Low,Raw High,Scaled Low,"
+                    "Scaled High,Scaled Data Type,Clamp Low,Clamp High,Eng. Units,Description,Negate Value\r\n"
+                    "\"TT-101\",\"400001\",Float,1,RO,500,,,,,,,0,0,degC,\"Inlet, shell\",0\r\n"
+                    "\"FT-1\",300005,Word,1,R/W,100,Linear,0,65535,0,120,Double,0,0,m3/h,,1\r\n"
+                    "\"XS-1\",000017,Boolean,1,RO,100,None,,,,,,,,,,\r\n"
+                    "\"XS-2\",100003,Default,1,RO,0,,,,,,,,,,,\r\n"
+                    "\"LT-1\",400100,Default,1,RO,100,,,,,,,,,,,\r\n"
+                    "\"QI-1\",400200,LLong,1,RO,100,,,,,,,,,,,\r\n"
+                    "\"XB-1\",400300.07,,1,RO,100,,,,,,,,,,,\r\n");
+    plant_case_assert_loaded(c, 0);
+    const struct plant_tag *t = c->plant->tags;
+    assert_int_equal(c->plant->tag_count, 7);
+    assert_string_equal(t[0].description, "Inlet, shell");
+    assert_string_equal(t[0].unit, "degC");
+    assert_true(t[0].type == DATA_FLOAT32 && t[0].byte_order == BYTE_ORDER_CDAB && t[0].scan_ms == 500 && t[0].table == TABLE_HOLDING);
+    assert_true(t[1].type == DATA_UINT16 && t[1].byte_order == BYTE_ORDER_NONE && t[1].table == TABLE_INPUT && t[1].register_index == 4);
+    assert_true(t[1].scaling == SCALING_LINEAR && t[1].raw_high == 65535 && t[1].scaled_high == 120 && t[1].negate);
+    assert_true(t[2].type == DATA_BIT && t[2].table == TABLE_COIL && t[2].register_index == 16 && t[2].scaling == SCALING_NONE);
+    assert_true(t[3].type == DATA_BIT && t[3].table == TABLE_DISCRETE && t[3].scan_ms == 0 && t[3].stale_s == 9);
+    assert_true(t[4].type == DATA_UINT16 && t[5].type == DATA_INT64 && t[5].byte_order == BYTE_ORDER_CDAB);
+    assert_true(t[6].type == DATA_BIT && t[6].bit == 7 && t[6].byte_order == BYTE_ORDER_NONE);
+}
+
+static void blank_cells_take_the_group_s_values(void **state)
+{
+    struct plant_case *c = *state;
+    plant_case_load(c, yaml,
+                    "tag name;ADDRESS;group;asset;x;y;z;Strength;Decay;HH;Sim Kind;sim anything\n"
+                    "A;40001;temp;E-101;1.5;-2;3e0;;;;ramp;1\n"
+                    "B;40002;temp;E-102;0;0;0;1;2;95;;\n");
+    plant_case_assert_loaded(c, 0);
+    const struct plant_tag *t = c->plant->tags;
+    assert_true(t[0].strength == 3 && t[0].decay == 4 && t[0].limits[LIMIT_L] == 10 && t[0].limits[LIMIT_H] == 90);
+    assert_true(isnan(t[0].limits[LIMIT_HH]) && t[0].position_m[0] == 1.5 && t[0].position_m[1] == -2 && t[0].position_m[2] == 3);
+    assert_true(t[1].strength == 1 && t[1].decay == 2 && t[1].limits[LIMIT_HH] == 95 && t[1].asset == 1 && t[1].has_position);
+    assert_string_equal(t[0].unit, "°C");
+}
+
+static void byte_orders_are_resolved(void **state)
+{
+    struct plant_case *c = *state;
+    plant_case_load(c, yaml_two_sources,
+                    "Tag Name,Address,Data Type,Byte Order,Source\n"
+                    "A,400001,Float,,plc1\n"
+                    "B,400001,Float,,plc2\n"
+                    "C,400003,Float,BADC,plc2\n"
+                    "D,400005#BL,DWord,,plc1\n"
+                    "E,400005#BL,DWord,cdab,plc1\n"
+                    "F,400007,Short,,plc2\n"
+                    "G,400007,Short,DCBA,plc1\n"
+                    "H,400009,LBCD,,plc1\n");
+    plant_case_assert_loaded(c, 0);
+    static const enum byte_order orders[] = { BYTE_ORDER_ABCD, BYTE_ORDER_DCBA, BYTE_ORDER_BADC, BYTE_ORDER_CDAB, BYTE_ORDER_CDAB,
+                                              BYTE_ORDER_NONE, BYTE_ORDER_DCBA, BYTE_ORDER_ABCD };
+    for (int i = 0; i < 8; i++)
+        assert_int_equal(c->plant->tags[i].byte_order, orders[i]);
+    assert_int_equal(c->plant->tags[0].register_index, 0);
+    assert_int_equal(c->plant->tags[1].register_index, 1); /* address_base 0 */
+    plant_case_load(c, yaml_no_order, "Tag Name,Address,Data Type,Byte Order\nA,400001,Float,\nB,400003,Double,\nC,400007,Word,\n");
+    assert_null(c->plant);
+    FOUND(c, { "tags.csv", 2, 16, "Byte Order: float32 has 32 bits, so one is needed: ABCD, CDAB, BADC or DCBA" },
+          { "tags.csv", 3, 17, "float64 has 64 bits" });
+    plant_case_load(c, yaml_no_order, "Tag Name,Address,Data Type\nA,400001,Float\n");
+    FOUND(c, { "tags.csv", 2, 10, "float32 has 32 bits, so one is needed" });
+    plant_case_load(c, yaml, "Tag Name,Address,Data Type,Byte Order\nA,400001,Float,big\nB,400001#BB,Float,ABCD\n");
+    FOUND(c, { "tags.csv", 2, 16, "Byte Order: expected ABCD, CDAB, BADC or DCBA, found 'big'" },
+          { "tags.csv", 3, 19, "Byte Order: 'ABCD' contradicts the address '400001#BB'" });
+}
+
+static void references_are_looked_up(void **state)
+{
+    struct plant_case *c = *state;
+    plant_case_load(c, yaml_two_sources,
+                    "Tag Name,Address,Source,Group,Asset,Node\n"
+                    "A,40001,plc3,tmp,E-103,N\n"
+                    "B,40001,,,Vessel,\n"
+                    "C,40001,plc2,temp,E-101,N\n");
+    assert_null(c->plant);
+    FOUND(c, { "tags.csv", 2, 9, "Source: unknown source 'plc3'; did you mean 'plc1'?" },
+          { "tags.csv", 2, 14, "Group: unknown group 'tmp'; did you mean 'temp'?" },
+          { "tags.csv", 2, 18, "Asset: unknown asset 'E-103'; did you mean 'E-101'?" },
+          { "tags.csv", 3, 9, "Source: expected the id of one of the 2 sources" },
+          { "tags.csv", 3, 11, "Asset: unknown asset 'Vessel'; the plant file has no such id" });
+}
+
+static void addresses_and_types_are_checked(void **state)
+{
+    struct plant_case *c = *state;
+    plant_case_load(c, yaml,
+                    "Tag Name,Address,Data Type\n"
+                    "A,4x1,Word\n"
+                    "B,,Word\n"
+                    "C,40001,String\n"
+                    "D,40001,Flot\n"
+                    "E,40001,Boolean\n"
+                    "F,00001,Word\n"
+                    "G,40001.3,Short\n"
+                    "H,465536,Long\n"
+                    "I,hr:65533,Double\n");
+    assert_null(c->plant);
+    FOUND(c, { "tags.csv", 2, 3, "Address: '4x1': 1 digit; expected 5 or 6 such as 40001 or 400001" },
+          { "tags.csv", 3, 3, "Address: expected the address of a register, such as 400001 or hr:0" },
+          { "tags.csv", 4, 9, "Data Type: unknown type 'String'; expected one of: bool, int16" },
+          { "tags.csv", 5, 9, "Data Type: unknown type 'Flot'; did you mean 'float'?" },
+          { "tags.csv", 6, 3, "Address: expected a bit such as 40001.0, since the type is Boolean" },
+          { "tags.csv", 7, 9, "Data Type: expected Boolean, since '00001' is one bit, found 'Word'" },
+          { "tags.csv", 8, 11, "Data Type: expected Boolean, since '40001.3' is one bit, found 'Short'" },
+          { "tags.csv", 9, 3, "int32 takes 2 registers, and the last one there is has the index 65535" },
+          { "tags.csv", 10, 3, "float64 takes 4 registers" });
+    plant_case_load(c, yaml, "Tag Name,Data Type\nA,Word\n");
+    FOUND(c, { "tags.csv", 1, 1, "the header has no column 'Address'" });
+    plant_case_load(c, yaml_no_source, "Tag Name\nA\n"); /* a plant without sources is shown with values from elsewhere */
+    plant_case_assert_loaded(c, 0);
+    assert_int_equal(c->plant->tags[0].source, -1);
+}
+
+static void places_are_whole(void **state)
+{
+    struct plant_case *c = *state;
+    plant_case_load(c, yaml,
+                    "Tag Name,Address,Group,Asset,Node,X,Y,Z\n"
+                    "A,40001,temp,E-101,,,,\n"
+                    "B,40001,temp,E-101,,1,,3\n"
+                    "C,40001,temp,E-101,,1,nan,3\n"
+                    "D,40001,temp,E-101,,1,2,abc\n"
+                    "E,40001,temp,E-101,,1,2,\"3,5\"\n"
+                    "F,40001,temp,E-101,,1,2,1e7\n"
+                    "G,40001,temp,E-101,N,1,2,3\n"
+                    "H,40001,temp,,,,,\n"
+                    "I,40001,,E-101,,,,\n");
+    assert_null(c->plant);
+    FOUND(c, { "tags.csv", 2, 20, "'A' has a group and an asset but no place: expected Node, or X, Y and Z" },
+          { "tags.csv", 3, 23, "Y: expected a number, since a position needs X, Y and Z" },
+          { "tags.csv", 4, 23, "Y: expected a finite number, found 'nan'" }, { "tags.csv", 5, 25, "Z: expected a number, found 'abc'" },
+          { "tags.csv", 6, 25, "Z: expected a number with a decimal point, found '3,5'" },
+          { "tags.csv", 7, 25, "Z: expected a number from -1000000 to 1000000, found '1e7'" },
+          { "tags.csv", 8, 20, "Node has no effect, since X, Y, Z are given too" },
+          { "tags.csv", 9, 14, "'H' has a group but no asset, so it is in no field" });
+    plant_case_load(c, yaml, "Tag Name,Address,Group,Asset\nA,40001,temp,E-101\n");
+    FOUND(c, { "tags.csv", 2, 14, "'A' has a group and an asset but no place" });
+}
+
+static void scaling_is_whole(void **state)
+{
+    struct plant_case *c = *state;
+    plant_case_load(c, yaml,
+                    "Tag Name,Address,Scaling,Raw Low,Raw High,Scaled Low,Scaled High,Negate Value,Clamp Low\n"
+                    "A,40001,Cubic,0,1,0,1,,\n"
+                    "B,40001,Linear,0,1,5,5,,\n"
+                    "C,40001,Linear,2,1,0,1,,\n"
+                    "D,40001,Square Root,,1,0,inf,,\n"
+                    "E,40001,linear,0,1,0,1,maybe,\n"
+                    "F,40001,,0,1,0,1,,1\n");
+    assert_null(c->plant);
+    FOUND(c, { "tags.csv", 2, 9, "Scaling: expected None, Linear or Square Root, found 'Cubic'" },
+          { "tags.csv", 3, 20, "Scaled Low: expected less than Scaled High, which is 5, found 5" },
+          { "tags.csv", 4, 16, "Raw Low: expected less than Raw High, which is 1, found 2" },
+          { "tags.csv", 5, 21, "Raw Low: expected a number, since Scaling is Square Root" },
+          { "tags.csv", 5, 26, "Scaled High: expected a finite number, found 'inf'" },
+          { "tags.csv", 6, 24, "Negate Value: expected 0 or 1, found 'maybe'" },
+          { "tags.csv", 7, 10, "Scaling is blank, so the raw and scaled ranges have no effect" },
+          { "tags.csv", 7, 19, "Clamp Low has no effect" });
+}
+
+static void numbers_have_ranges_and_limits_rise(void **state)
+{
+    struct plant_case *c = *state;
+    plant_case_load(c, yaml,
+                    "Tag Name,Address,Group,Asset,Node,Scan Rate,Stale s,Strength,LL,L,H,HH\n"
+                    "A,40001,temp,E-101,N,5,,,,,,\n"
+                    "B,40001,temp,E-101,N,,0,-1,,,,\n"
+                    "C,40001,temp,E-101,N,,,,50,40,,\n"
+                    "D,40001,temp,E-101,N,,,,20,,,\n"
+                    "E,40001,temp,E-101,N,,,,,,,80\n"
+                    "F,40001,temp,E-101,N,,,,,,hot,\n");
+    assert_null(c->plant);
+    FOUND(c, { "tags.csv", 2, 22, "Scan Rate: expected a number from 10 to 86400000, found '5'" },
+          { "tags.csv", 3, 23, "Stale s: expected a number from 0.001" }, { "tags.csv", 3, 25, "Strength: expected a number from 0 to 100" },
+          { "tags.csv", 4, 28, "LL is 50, but L is 40; expected LL < L < H < HH" },
+          { "tags.csv", 5, 25, "LL is 20, but L of the group is 10; expected" },
+          { "tags.csv", 6, 28, "H of the group is 90, but HH is 80; expected" }, { "tags.csv", 7, 27, "H: expected a number, found 'hot'" });
+}
+
+static void names_are_unique(void **state)
+{
+    struct plant_case *c = *state;
+    plant_case_load(c, yaml, "Address,Tag Name\n40001,A\n40002,B\n40003,A\n40004,\n40005,A\n");
+    assert_null(c->plant);
+    FOUND(c, { "tags.csv", 4, 7, "Tag Name: 'A' is there twice (first at line 2)" }, { "tags.csv", 5, 7, "Tag Name: expected a name, found none" },
+          { "tags.csv", 6, 7, "Tag Name: 'A' is there twice (first at line 2)" });
+    plant_case_load(c, yaml, "Name,Address\nA,40001\n");
+    FOUND(c, { "tags.csv", 1, 1, "the header has no column 'Tag Name'" }, { "tags.csv", 1, 1, "unknown column 'Name' is ignored" });
+}
+
+static void columns_are_known(void **state)
+{
+    struct plant_case *c = *state;
+    plant_case_load(c, yaml,
+                    "Tag Name,Adress,Address,Sim Kind,,Colour,Flatline s,Eng Units\n"
+                    "A,x,40001,ramp,,red,60,bar\n"
+                    "B,x,40001,ramp,,red,60,\n");
+    plant_case_assert_loaded(c, 4);
+    FOUND(c, { "tags.csv", 1, 10, "unknown column 'Adress' is ignored; did you mean 'Address'?" },
+          { "tags.csv", 1, 34, "a column without a name is ignored" }, { "tags.csv", 1, 35, "unknown column 'Colour' is ignored" },
+          { "tags.csv", 2, 21, "Flatline s has no effect in this version" });
+    plant_case_load(c, yaml, "Tag Name,Address,Eng Units,Engineering Units\n");
+    FOUND(c, { "tags.csv", 1, 28, "column 'Engineering Units' means the same as 'Eng Units' at column 18" });
+    plant_case_load(c, yaml, "Tag Name,Address,Priority,Deadband\nA,40001,high,-1\n");
+    FOUND(c, { "tags.csv", 2, 9, "Priority: expected a number, found 'high'" }, { "tags.csv", 2, 14, "Deadband: expected a number from 0" },
+          { "tags.csv", 2, 9, "Priority has no effect" }, { "tags.csv", 2, 14, "Deadband has no effect" });
+}
+
+static void units_agree_with_the_group(void **state)
+{
+    struct plant_case *c = *state;
+    plant_case_load(c, yaml,
+                    "Tag Name,Address,Group,Asset,Node,Eng Units\n"
+                    "A,40001,temp,E-101,N,degC\n"
+                    "B,40001,temp,E-101,N,C\n"
+                    "C,40001,temp,E-101,N,°c\n"
+                    "D,40001,temp,E-101,N,°F\n"
+                    "E,40001,temp,E-101,N,\n");
+    plant_case_assert_loaded(c, 1);
+    FOUND(c, { "tags.csv", 5, 22, "Eng Units: '°F' is not the unit of its group, '°C'" });
+}
+
+/* A plant file that lacks its groups is one error, not one for every row. */
+static void a_broken_plant_file_does_not_flood(void **state)
+{
+    struct plant_case *c = *state;
+    plant_case_load(c,
+                    "plant: { name: P }\nassets: [{ id: A, model: m.glb }]\ngroups: 5\nsources: [{ id: s, type: modbus, host: h }]\n"
+                    "tags: tags.csv\n",
+                    "Tag Name,Address,Group,Asset,Node\nT,40001,g,A,N\nU,40001,g,A,N\n");
+    FOUND(c, { "plant.yaml", 3, 9, "groups: expected a list" });
+}
+
+static void long_lists_are_read(void **state)
+{
+    struct plant_case *c = *state;
+    struct text csv = { 0 };
+    text_add(&csv, "Tag Name,Address,Data Type,Group,Asset,X,Y,Z\n");
+    for (int i = 0; i < 20000; i++)
+        text_add(&csv, "TT-%05d,hr:%d,Float,temp,E-101,%d,2,3\n", i, i * 2, i % 100);
+    plant_case_load(c, yaml, csv.at);
+    plant_case_assert_loaded(c, 0);
+    assert_int_equal(c->plant->tag_count, 20000);
+    text_finish(&csv);
+}
+
+#define TEST(function) cmocka_unit_test_setup_teardown(function, plant_case_set_up, plant_case_tear_down)
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        TEST(a_kepware_export_is_read),
+        TEST(blank_cells_take_the_group_s_values),
+        TEST(byte_orders_are_resolved),
+        TEST(references_are_looked_up),
+        TEST(addresses_and_types_are_checked),
+        TEST(places_are_whole),
+        TEST(scaling_is_whole),
+        TEST(numbers_have_ranges_and_limits_rise),
+        TEST(names_are_unique),
+        TEST(columns_are_known),
+        TEST(units_agree_with_the_group),
+        TEST(a_broken_plant_file_does_not_flood),
+        TEST(long_lists_are_read),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
