@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From the register of a PLC to the pixels of a browser, and back to life after the daemon died.
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { grab, healthKind, markers, openPage, settle, shoot, view, waitForHealth, waitForPicture } from './support/browser.mjs';
+import { contrast, countOutside, difference, meanAround } from './support/pixels.mjs';
+import { missing, startPlant } from './support/plant.mjs';
+
+const why = missing();
+const options = { skip: why ?? false, timeout: 200000 };
+const GROUP = 'temperature';
+let plant, browser, page;
+
+before(async () => {
+    if (why)
+        return;
+    plant = await startPlant();
+    browser = await openPage(plant.url);
+    page = browser.page;
+});
+after(async () => {
+    await browser?.close();
+    await plant?.stop();
+});
+
+// The asset's corners in the picture, with a margin for the glow of the encoder.
+const assetBox = (id) => page.evaluate(async (asset) => {
+    const { projector } = await import('/core/camera.js');
+    const { session } = globalThis.plantcast;
+    const { camera, fullWidth, fullHeight } = session.picture;
+    const { min, max } = session.model.asset(asset).bounds;
+    const project = projector(camera, fullWidth, fullHeight);
+    const places = [0, 1, 2, 3, 4, 5, 6, 7].map((n) => project([0, 1, 2].map((i) => (n & (1 << i) ? max[i] : min[i]))));
+    const xs = places.map((p) => p[0]), ys = places.map((p) => p[1]);
+    return { left: Math.min(...xs) - 16, right: Math.max(...xs) + 16, top: Math.min(...ys) - 16, bottom: Math.max(...ys) + 16 };
+}, id);
+
+test('live frames arrive, and the page says so', options, async () => {
+    await waitForPicture(page);
+    await waitForHealth(page, 'live');
+    await settle(page);
+    const picture = await grab(page);
+    assert.ok(contrast(picture) > 10, `contrast ${contrast(picture)}`);
+    const box = await page.locator('#viewport').boundingBox();
+    assert.deepEqual([picture.width, picture.height], [Math.round(box.width), Math.round(box.height)], 'one pixel of it per pixel of the screen');
+    assert.match(await page.locator('#clock').textContent(), /^\d{4}-\d\d-\d\d \d\d:\d\d:\d\d UTC/);
+    assert.match(await page.locator('#age').textContent(), /^\d+(\.\d)? s$/);
+    await shoot(page, 'desktop');
+});
+
+test('one reading changes: the picture changes at its sensor, and nowhere but on its equipment', options, async (t) => {
+    await page.evaluate((group) => globalThis.plantcast.session.setParams({ group }), GROUP);
+    const tags = await page.evaluate(() => globalThis.plantcast.session.model.tags.map((tag) => tag.name));
+    await plant.freeze(tags);
+    await page.waitForTimeout(2000); // two polls: what was read before the freeze has passed
+    await settle(page);
+    const before = await grab(page), seen = await markers(page);
+    const inside = seen.filter((m) => !m.occluded && m.quality === 'good' && m.x > 60 && m.y > 60 && m.x < before.width - 60 && m.y < before.height - 60);
+    const one = inside.sort((a, b) => Math.hypot(a.x - before.width / 2, a.y - before.height / 2) - Math.hypot(b.x - before.width / 2, b.y - before.height / 2))[0];
+    assert.ok(one, 'a sensor in sight');
+    const wanted = one.value > 100 ? 40 : 160;
+    t.diagnostic(`${one.name} on ${one.asset}: ${one.value} -> ${wanted}`);
+
+    await plant.ask(`set ${one.name} ${wanted}`);
+    await page.waitForFunction(([name, value]) => {
+        const { model } = globalThis.plantcast.session;
+        return Math.abs(model.readings[model.tag(name).index].value - value) < 0.5;
+    }, [one.name, wanted], { timeout: 20000 });
+    await page.waitForTimeout(500);
+    await settle(page);
+    const change = difference(before, await grab(page));
+
+    const there = meanAround(change, one.x, one.y, 3);
+    assert.ok(there > 40, `at the sensor the colour changed by ${there}`);
+    const others = inside.filter((m) => m.asset !== one.asset);
+    assert.ok(others.length >= 3, 'other equipment is in sight');
+    for (const other of others) {
+        const box = await assetBox(one.asset);
+        if (other.x < box.left || other.x > box.right || other.y < box.top || other.y > box.bottom)
+            assert.ok(meanAround(change, other.x, other.y, 3) < 6, `${other.name} on ${other.asset}: ${meanAround(change, other.x, other.y, 3)}`);
+    }
+    assert.equal(countOutside(change, 24, await assetBox(one.asset)), 0, 'pixels that changed elsewhere');
+    await page.mouse.move(one.pageX, one.pageY);
+    await page.locator('#card').waitFor();
+    assert.match(await page.locator('#card').textContent(), new RegExp(`^${one.name}`));
+    assert.match(await page.locator('#card .value').textContent(), new RegExp(`^${wanted}\\.\\d °C$`));
+    await shoot(page, 'one-reading');
+});
+
+test('mouse, wheel and keys move the camera, and the picture follows', options, async () => {
+    const box = await page.locator('#viewport').boundingBox();
+    const start = await view(page);
+    const centre = [box.x + box.width / 2, box.y + box.height / 2];
+    await page.mouse.move(...centre);
+    await page.mouse.down();
+    await page.mouse.move(centre[0] + 220, centre[1] + 40, { steps: 12 });
+    await page.mouse.up();
+    const turned = await view(page);
+    assert.deepEqual(turned.camera.target, start.camera.target);
+    assert.notDeepEqual(turned.camera.eye, start.camera.eye);
+    await page.mouse.wheel(0, -400);
+    const zoomed = await view(page);
+    const distance = ({ camera }) => Math.hypot(...camera.eye.map((x, i) => x - camera.target[i]));
+    assert.ok(distance(zoomed) < distance(turned));
+    await page.keyboard.press('ArrowRight');
+    assert.notDeepEqual((await view(page)).camera, zoomed.camera);
+    await settle(page);
+    const drawn = await page.evaluate(() => globalThis.plantcast.session.picture.camera.eye);
+    (await view(page)).camera.eye.forEach((x, i) => assert.ok(Math.abs(x - drawn[i]) < 1e-3, 'the picture shows the newest camera'));
+    assert.ok(Number.isFinite(parseInt(await page.locator('#latency').textContent(), 10)), 'latency is measured');
+});
+
+test('the daemon dies: said in words, the picture stays; it returns: the same view, by itself', options, async () => {
+    await page.evaluate(() => globalThis.plantcast.session.setParams({ distance: 'euclidean', ramp_interval: 20 }));
+    await settle(page);
+    const before = await grab(page), asked = await view(page);
+    await plant.stopDaemon('SIGKILL');
+    await waitForHealth(page, 'lost', 5000);
+    assert.equal(await page.locator('#health .words').textContent(), 'Disconnected');
+    await page.waitForTimeout(1500);
+    assert.match(await page.locator('#banner').textContent(), /This picture is \d+(\.\d)? s old/);
+    const frozen = difference(before, await grab(page));
+    assert.equal(countOutside(frozen, 0, {}), 0, 'the last picture stays as it was');
+    await shoot(page, 'disconnected');
+
+    await plant.startDaemon();
+    await waitForHealth(page, 'live');
+    assert.equal(await page.locator('#banner').isVisible(), false);
+    await settle(page);
+    const now = await view(page);
+    assert.deepEqual(now.camera, asked.camera);
+    for (const name of ['group', 'distance', 'interpolation', 'ramp_interval', 'colormap', 'look'])
+        assert.equal(now.params[name], asked.params[name], name);
+    const again = difference(before, await grab(page));
+    assert.ok(countOutside(again, 32, {}) < again.at.length * 0.01, 'the same picture again');
+    await shoot(page, 'reconnected');
+});
+
+test('the address carries the view over a reload', options, async () => {
+    const asked = await view(page);
+    await page.waitForTimeout(600);
+    await page.reload();
+    await waitForPicture(page);
+    await settle(page);
+    const now = await view(page);
+    now.camera.eye.forEach((x, i) => assert.ok(Math.abs(x - asked.camera.eye[i]) < 1e-3));
+    assert.equal(now.params.distance, 'euclidean');
+    assert.equal(now.params.ramp_interval, 20);
+});
+
+test('the PLC falls silent: no live data, in words; it answers again: live', options, async () => {
+    await plant.ask('pause');
+    await waitForHealth(page, 'nodata', 40000);
+    assert.match(await page.locator('#banner').textContent(), /No live data/i);
+    await settle(page);
+    await shoot(page, 'no-live-data');
+    await plant.ask('resume');
+    await waitForHealth(page, 'live', 40000);
+});
+
+test('nothing went wrong in the page, and nothing was asked from elsewhere', options, async () => {
+    assert.equal(await healthKind(page), 'live');
+    assert.deepEqual(browser.errors, []);
+});

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The page on a tablet and on a phone, by touch.
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { markers, openPage, PHONE, settle, shoot, TABLET, view, waitForHealth, waitForPicture } from './support/browser.mjs';
+import { missing, startPlant } from './support/plant.mjs';
+
+const why = missing();
+const options = { skip: why ?? false, timeout: 200000 };
+let plant;
+
+before(async () => {
+    if (!why)
+        plant = await startPlant();
+});
+after(() => plant?.stop());
+
+async function withPage(screen, f) {
+    const browser = await openPage(plant.url, screen);
+    try {
+        await waitForPicture(browser.page);
+        await waitForHealth(browser.page, 'live');
+        await settle(browser.page);
+        await f(browser.page);
+        assert.deepEqual(browser.errors, []);
+    } finally {
+        await browser.close();
+    }
+}
+
+// Touches as the hardware reports them; playwright itself has only the tap.
+async function touches(page) {
+    const client = await page.context().newCDPSession(page);
+    const send = (type, points) => client.send('Input.dispatchTouchEvent', { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) });
+    return {
+        async drag(from, to, steps = 10) {
+            await send('touchStart', from);
+            for (let n = 1; n <= steps; n++)
+                await send('touchMove', from.map(([x, y], i) => [x + ((to[i][0] - x) * n) / steps, y + ((to[i][1] - y) * n) / steps]));
+            await send('touchEnd', []);
+        },
+    };
+}
+
+const distance = ({ camera }) => Math.hypot(...camera.eye.map((x, i) => x - camera.target[i]));
+
+// What is pressed by a finger and smaller than it.
+const tooSmall = (page) => page.evaluate(() => [...document.querySelectorAll('button, select, .segments label, input[type="search"]')]
+    .filter((e) => e.getClientRects().length > 0)
+    .map((e) => ({ what: e.id || e.textContent, box: e.getBoundingClientRect() }))
+    .filter(({ box }) => box.height < 43.5 || box.width < 41.5)
+    .map(({ what, box }) => `${what}: ${box.width}x${box.height}`));
+
+const sticksOut = (page) => page.evaluate(() => document.documentElement.scrollWidth > window.innerWidth ||
+    document.documentElement.scrollHeight > window.innerHeight);
+
+test('tablet: one finger turns, two pan and zoom; device pixels', options, () => withPage(TABLET, async (page) => {
+    const box = await page.locator('#viewport').boundingBox();
+    const size = await page.evaluate(() => [document.getElementById('picture').width, document.getElementById('picture').height]);
+    assert.deepEqual(size, [box.width * 2, box.height * 2]);
+    const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+    const hand = await touches(page);
+    const start = await view(page);
+    await hand.drag([[x, y]], [[x + 120, y]]);
+    const turned = await view(page);
+    assert.deepEqual(turned.camera.target, start.camera.target);
+    assert.notDeepEqual(turned.camera.eye, start.camera.eye);
+    await hand.drag([[x - 40, y], [x + 40, y]], [[x - 120, y], [x + 120, y]]);
+    const pinched = await view(page);
+    assert.ok(distance(pinched) < distance(turned) * 0.6, `${distance(turned)} -> ${distance(pinched)}`);
+    await page.locator('#home').tap();
+    await page.waitForTimeout(1200);
+    const back = await view(page);
+    back.camera.eye.forEach((m, i) => assert.ok(Math.abs(m - start.camera.eye[i]) < 1e-6, 'home again'));
+    await settle(page);
+    assert.deepEqual(await tooSmall(page), []);
+    assert.equal(await sticksOut(page), false);
+    await shoot(page, 'tablet');
+    await page.locator('#display-toggle').tap();
+    assert.deepEqual(await tooSmall(page), []);
+    await shoot(page, 'tablet-display');
+}));
+
+test('tablet upright', options, () => withPage({ ...TABLET, viewport: { width: 768, height: 1024 } }, async (page) => {
+    assert.equal(await page.locator('#assets').isVisible(), false, 'the list is folded away');
+    assert.equal(await sticksOut(page), false);
+    await shoot(page, 'tablet-upright');
+}));
+
+test('phone: choose equipment from the list, fly there, tap a sensor', options, () => withPage(PHONE, async (page) => {
+    assert.equal(await sticksOut(page), false);
+    assert.deepEqual(await tooSmall(page), []);
+    await shoot(page, 'phone');
+    await page.locator('#assets-toggle').tap();
+    const row = page.locator('.asset', { hasText: 'sensors' }).first();
+    await shoot(page, 'phone-list');
+    await row.tap();
+    assert.equal(await page.locator('#assets').isVisible(), false, 'the list gives way');
+    await page.waitForTimeout(1000);
+    await settle(page);
+    const selected = (await view(page)).params.selected;
+    const sensor = (await markers(page)).find((m) => m.asset === selected && !m.occluded);
+    assert.ok(sensor, `a sensor of ${selected} in sight`);
+    await page.touchscreen.tap(sensor.pageX, sensor.pageY);
+    await page.locator('#card').waitFor();
+    assert.match(await page.locator('#card h3').textContent(), new RegExp(sensor.name));
+    assert.equal(await sticksOut(page), false);
+    await shoot(page, 'phone-card');
+}));

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Debian's chromium, driven by playwright-core, and questions to ask the page.
+import { mkdirSync, mkdtempSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { BUILD } from './plant.mjs';
+
+const CHROMIUM = process.env.CHROMIUM ?? '/usr/bin/chromium';
+const QUIET = [
+    '--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update',
+    '--disable-sync',
+];
+export const SCREENSHOTS = join(BUILD, 'screenshots');
+export const DESKTOP = { viewport: { width: 1920, height: 1080 } };
+export const TABLET = { viewport: { width: 1024, height: 768 }, deviceScaleFactor: 2, hasTouch: true };
+export const PHONE = { viewport: { width: 390, height: 844 }, deviceScaleFactor: 2, hasTouch: true, isMobile: true };
+
+// { page, errors, close }. errors: what went wrong in the page and what it tried to fetch from elsewhere.
+export async function openPage(url, screen = DESKTOP) {
+    const { chromium } = await import('playwright-core');
+    const folder = mkdtempSync(join(tmpdir(), 'plantcast-chromium-'));
+    const context = await chromium.launchPersistentContext(folder, { executablePath: CHROMIUM, args: QUIET, ...screen });
+    const page = context.pages()[0] ?? await context.newPage();
+    const errors = [];
+    page.on('pageerror', (error) => errors.push(String(error)));
+    page.on('console', (message) => {
+        if (/Content Security Policy|Uncaught/.test(message.text()))
+            errors.push(message.text());
+    });
+    page.on('request', (request) => {
+        if (new URL(request.url()).host !== new URL(url).host && !request.url().startsWith('blob:'))
+            errors.push(`asked ${request.url()}`);
+    });
+    await page.goto(url);
+    return {
+        page, errors,
+        async close() {
+            await context.close();
+            rmSync(folder, { recursive: true, force: true });
+        },
+    };
+}
+
+export async function shoot(page, name) {
+    mkdirSync(SCREENSHOTS, { recursive: true });
+    await page.screenshot({ path: join(SCREENSHOTS, `${name}.png`) });
+}
+
+export const healthKind = (page) => page.evaluate(() => document.getElementById('health').dataset.kind);
+export const waitForHealth = (page, kind, timeout = 60000) =>
+    page.waitForFunction((k) => document.getElementById('health').dataset.kind === k, kind, { timeout });
+export const waitForPicture = (page) => page.waitForFunction(() => globalThis.plantcast?.session.picture, null, { timeout: 60000 });
+
+// Until the refined picture of the newest camera and parameters is on the screen and nothing has come after it for a while.
+export const settle = (page, quietMs = 1500) => page.waitForFunction((quiet) => {
+    const { session } = globalThis.plantcast;
+    const { picture } = session;
+    return picture && picture.still && picture.cameraSeq === session.cameraSeq && picture.paramsSeq === session.paramsSeq &&
+        session.cameraInput === null && performance.now() - picture.at > quiet;
+}, quietMs, { timeout: 60000, polling: 100 });
+
+// The view as the page would say it: camera and parameters.
+export const view = (page) => page.evaluate(() => {
+    const { camera, params } = globalThis.plantcast.session;
+    return { camera, params };
+});
+
+// Markers of the shown group: name, asset, place in pixels of the picture, in sight or not.
+export const markers = (page) => page.evaluate(() => {
+    const { overlay, session } = globalThis.plantcast;
+    const box = document.getElementById('viewport').getBoundingClientRect();
+    const scale = session.picture.fullWidth / box.width;
+    return overlay.markers.map(({ tag, x, y, occluded, reading }) => ({
+        name: tag.name, asset: tag.asset, x: Math.round(x * scale), y: Math.round(y * scale), pageX: box.left + x, pageY: box.top + y,
+        occluded, value: reading.value, quality: reading.quality,
+    }));
+});
+
+// The picture as it was received, { width, height, rgba }: no marker, label or panel in it.
+export async function grab(page) {
+    const { width, height, text } = await page.evaluate(() => {
+        const canvas = document.getElementById('picture');
+        const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+        let binary = '';
+        for (let i = 0; i < data.length; i += 32768)
+            binary += String.fromCharCode(...data.subarray(i, i + 32768));
+        return { width: canvas.width, height: canvas.height, text: btoa(binary) };
+    });
+    return { width, height, rgba: Buffer.from(text, 'base64') };
+}

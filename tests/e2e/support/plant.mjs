@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The demo plant running on free ports: its simulated PLC with a control port, and the daemon.
+import { spawn } from 'node:child_process';
+import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
+import { connect, createServer } from 'node:net';
+import { tmpdir } from 'node:os';
+import { join, resolve } from 'node:path';
+
+export const BIN = resolve(process.env.PLANTCAST_BIN ?? 'build');
+export const BUILD = resolve('build');
+const DEMO = join(BUILD, 'demo');
+const START_MS = 60000;
+
+// Why this test cannot run here, or null.
+export function missing() {
+    const needed = [join(BIN, 'plantcastd'), join(BIN, 'plantcast-sim'), join(DEMO, 'plant.yaml'), join(DEMO, 'prepared')];
+    const absent = needed.filter((path) => !existsSync(path));
+    return absent.length > 0 ? `not built: ${absent.join(', ')}` : null;
+}
+
+async function freePort() {
+    const server = createServer().listen(0, '127.0.0.1');
+    await new Promise((done) => server.once('listening', done));
+    const { port } = server.address();
+    await new Promise((done) => server.close(done));
+    return port;
+}
+
+// Started when it prints a line that begins with `ready`; what it says afterwards is kept for the report.
+function start(program, args, ready) {
+    const child = spawn(join(BIN, program), args, { stdio: ['ignore', 'pipe', 'pipe'] });
+    let said = '';
+    const exit = new Promise((done) => child.once('exit', done));
+    const up = new Promise((done, fail) => {
+        const timer = setTimeout(() => fail(new Error(`${program}: not ready after ${START_MS} ms\n${said}`)), START_MS);
+        const hear = (chunk) => {
+            said = (said + chunk).slice(-20000);
+            if (said.split('\n').some((line) => line.startsWith(ready))) {
+                clearTimeout(timer);
+                done();
+            }
+        };
+        child.stdout.on('data', hear);
+        child.stderr.on('data', hear);
+        exit.then((code) => {
+            clearTimeout(timer);
+            fail(new Error(`${program} ended with ${code}\n${said}`));
+        });
+    });
+    const end = async (signal) => {
+        child.kill(signal);
+        await exit;
+    };
+    return up.then(() => ({ end, said: () => said, running: () => child.exitCode === null && child.signalCode === null }));
+}
+
+// One line to the simulator, one line back.
+function ask(port, line) {
+    return new Promise((done, fail) => {
+        const socket = connect(port, '127.0.0.1', () => socket.write(`${line}\n`));
+        let answer = '';
+        socket.setEncoding('utf8');
+        socket.on('data', (text) => {
+            answer += text;
+            if (!answer.endsWith('\n'))
+                return;
+            socket.destroy();
+            if (answer.startsWith('ok'))
+                done(answer.slice(2).trim());
+            else
+                fail(new Error(`${line}: ${answer.trim()}`));
+        });
+        socket.on('error', fail);
+    });
+}
+
+// A plant file of its own, with a port of its own; everything else is the demo's.
+function copyPlant(folder, modbusPort) {
+    for (const name of readdirSync(DEMO)) {
+        if (name !== 'plant.yaml')
+            symlinkSync(join(DEMO, name), join(folder, name));
+    }
+    const text = readFileSync(join(DEMO, 'plant.yaml'), 'utf8');
+    const moved = text.replace(/^(\s+port:\s*)\d+/m, `$1${modbusPort}`);
+    if (moved === text)
+        throw new Error('the demo plant has no source with a port');
+    writeFileSync(join(folder, 'plant.yaml'), moved);
+    return join(folder, 'plant.yaml');
+}
+
+export async function startPlant() {
+    const folder = mkdtempSync(join(tmpdir(), 'plantcast-e2e-'));
+    const [modbusPort, controlPort, httpPort] = [await freePort(), await freePort(), await freePort()];
+    const file = copyPlant(folder, modbusPort);
+    const startDaemon = () => start('plantcastd', [file, '--port', String(httpPort)], 'plantcastd: ready');
+    let sim, daemon;
+    const plant = {
+        url: `http://127.0.0.1:${httpPort}/`,
+        ask: (line) => ask(controlPort, line),
+        stopDaemon: (signal) => daemon.end(signal),
+        async startDaemon() {
+            daemon = await startDaemon();
+        },
+        // Holds every tag at the value that it has: from now on nothing changes by itself.
+        async freeze(tags) {
+            for (const tag of tags)
+                await plant.ask(`set ${tag} ${await plant.ask(`get ${tag}`)}`);
+        },
+        async stop() {
+            for (const process of [daemon, sim]) {
+                if (process?.running())
+                    await process.end('SIGTERM');
+            }
+            rmSync(folder, { recursive: true, force: true });
+        },
+    };
+    try {
+        sim = await start('plantcast-sim', [file, '--port', String(modbusPort), '--control', String(controlPort)], 'plantcast-sim:');
+        await plant.startDaemon();
+    } catch (error) {
+        await plant.stop();
+        throw error;
+    }
+    return plant;
+}
