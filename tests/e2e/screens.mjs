@@ -31,7 +31,9 @@ async function withPage(screen, f) {
 // Touches as the hardware reports them; playwright itself has only the tap.
 async function touches(page) {
     const client = await page.context().newCDPSession(page);
-    const send = (type, points) => client.send('Input.dispatchTouchEvent', { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) });
+    const send = (type, points) => client.send('Input.dispatchTouchEvent', {
+        type, touchPoints: points.map(([x, y], id) => ({ x, y, id })),
+    });
     return {
         async drag(from, to, steps = 10) {
             await send('touchStart', from);

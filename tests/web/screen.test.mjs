@@ -75,7 +75,8 @@ test('colours: the map inside, its own colours outside, one per ramp step', () =
     assert.notDeepEqual(colourOf(grey, 49, 0, 100, 25), colourOf(grey, 51, 0, 100, 25));
     assert.deepEqual(colourOf(grey, 62, 0, 100, 25), [160, 160, 160], 'the colour of the middle of the step');
     assert.deepEqual(colourOf(grey, 26, 15, 50, 10), colourOf(grey, 34, 15, 50, 10), 'steps count from MIN');
-    assert.deepEqual(colourOf(grey, 100, 0, 100, 25), [255, 255, 255]);
+    assert.deepEqual(colourOf(grey, 100, 0, 100, 25), colourOf(grey, 76, 0, 100, 25), 'MAX is in the last step');
+    assert.deepEqual(colourOf(grey, 95, 0, 100, 30), [243, 243, 243], 'a last step that is cut short');
 });
 
 test('patterns: half of the hatching is dark, a fifth of the stipple is dots, both as large as the picture asks', () => {

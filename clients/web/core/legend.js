@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The legend's arithmetic: ticks, ramps, and the colour of a value by the server's own rule (shaders/field.glsl).
+// The legend's arithmetic: ticks, ramps, and the colour of a value by the server's own rule (server/field/colormap.c).
 
 // Steps of 1, 2 or 5 times a power of ten, at most `most` of them over the range.
 export function niceStep(range, most) {
@@ -31,13 +31,20 @@ export function rampChoices(min, max) {
     return [...new Set([25, 16, 10, 8, 5, 4].map((n) => Number(niceStep(max - min, n).toPrecision(12))))].sort((a, b) => a - b);
 }
 
+// The last step ends at MAX, and MAX belongs to it.
+function stepMiddle(value, min, max, interval) {
+    const steps = Math.max(1, Math.ceil((max - min) / interval - 0.001));
+    const begin = min + Math.min(steps - 1, Math.floor((value - min) / interval)) * interval;
+    return (begin + Math.min(begin + interval, max)) / 2;
+}
+
 // map: { rgb: Uint8Array(768), below, above }. Returns [r, g, b]. Ramp steps count from `min` and have the colour of their middle.
 export function colourOf(map, value, min, max, interval = 0) {
     if (value < min)
         return map.below;
     if (value > max)
         return map.above;
-    const stepped = interval > 0 ? Math.min(max, min + (Math.floor((value - min) / interval) + 0.5) * interval) : value;
+    const stepped = interval > 0 ? stepMiddle(value, min, max, interval) : value;
     const i = 3 * Math.min(255, Math.floor(((stepped - min) / (max - min)) * 256));
     return [map.rgb[i], map.rgb[i + 1], map.rgb[i + 2]];
 }
