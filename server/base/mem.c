@@ -3,6 +3,7 @@
 #include "base/mem.h"
 
 #include <stdarg.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,7 +16,10 @@ static void out_of_memory(size_t bytes)
 
 void *mem_try_array(size_t count, size_t bytes_each)
 {
-    return calloc(count ? count : 1, bytes_each ? bytes_each : 1);
+    size_t bytes;
+    if (__builtin_mul_overflow(count, bytes_each, &bytes) || bytes > PTRDIFF_MAX)
+        return NULL;
+    return calloc(1, bytes ? bytes : 1);
 }
 
 void *mem_array(size_t count, size_t bytes_each)

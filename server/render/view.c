@@ -25,12 +25,7 @@ void view_default(const struct scene *scene, int width_px, int height_px, struct
     memset(view, 0, sizeof(*view));
     view->width_px = width_px;
     view->height_px = height_px;
-    camera_fit_up(&view->camera, plant->up, scene->bounds_min_m, scene->bounds_max_m, (double)width_px / height_px);
-    if (plant->view.set) {
-        memcpy(view->camera.eye_m, plant->view.eye_m, sizeof(view->camera.eye_m));
-        memcpy(view->camera.target_m, plant->view.target_m, sizeof(view->camera.target_m));
-        view->camera.fov_deg = plant->view.fov_deg;
-    }
+    scene_home(scene, (double)width_px / height_px, &view->camera);
     view->selected_asset = -1;
     view->tier = TIER_STILL;
     field_params_default(plant, 0, &view->field);

@@ -115,8 +115,9 @@ static void types_have_two_names(void **state)
         { "bcd", "BCD", DATA_BCD, 1 },           { "lbcd", "LBCD", DATA_LBCD, 2 },
     };
     for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
-        enum data_type ours, kepware;
-        assert_true(data_type_parse(cases[i].ours, &ours) && data_type_parse(cases[i].kepware, &kepware));
+        enum data_type ours = DATA_BIT, kepware = DATA_BIT;
+        assert_true(data_type_parse(cases[i].ours, &ours));
+        assert_true(data_type_parse(cases[i].kepware, &kepware));
         assert_int_equal(ours, cases[i].type);
         assert_int_equal(kepware, cases[i].type);
         assert_int_equal(data_type_registers(ours), cases[i].registers);

@@ -1,0 +1,182 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Text, files, findings, memory, counters and the log. */
+#include <errno.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include <cmocka.h>
+
+#include "base/counters.h"
+#include "base/diag.h"
+#include "base/log.h"
+#include "base/mem.h"
+#include "base/text.h"
+#include "tests/support/temp.h"
+
+static void text_grows(void **state)
+{
+    (void)state;
+    struct text text = { 0 };
+    for (int i = 0; i < 1000; i++)
+        text_add(&text, "%d,", i);
+    text_add_bytes(&text, "a\0b", 3);
+    assert_int_equal(text.length, 10 * 2 + 90 * 3 + 900 * 4 + 3);
+    assert_memory_equal(text.at, "0,1,2,", 6);
+    assert_memory_equal(text.at + text.length - 3, "a\0b", 4);
+    text_finish(&text);
+    assert_null(text.at);
+    assert_int_equal(text.length, 0);
+}
+
+static void files_are_read_whole_and_replaced_at_once(void **state)
+{
+    (void)state;
+    char *folder = temp_folder_create(), *path = temp_path(folder, "f"), *nowhere = temp_path(folder, "no/f");
+    size_t bytes = 99;
+    assert_int_equal(text_write_file(path, "one\0two", 7), 0);
+    assert_int_equal(text_write_file(path, "12\0" "456", 6), 0);
+    char *text = text_read_file(path, 6, &bytes);
+    assert_non_null(text);
+    assert_int_equal(bytes, 6);
+    assert_memory_equal(text, "12\0" "456", 7); /* one 0 byte more than the file */
+    mem_free(text);
+    assert_null(text_read_file(path, 5, &bytes));
+    assert_int_equal(errno, EFBIG);
+    assert_null(text_read_file(nowhere, 5, &bytes));
+    assert_int_equal(errno, ENOENT);
+    assert_null(text_read_file(folder, 1 << 20, &bytes));
+    assert_int_equal(errno, EISDIR);
+    assert_int_equal(text_write_file(nowhere, "x", 1), -ENOENT);
+    assert_int_equal(text_write_file(folder, "x", 1), -EISDIR);
+    assert_int_equal(unlink(path), 0);
+    temp_folder_destroy(&folder);
+    mem_free(path);
+    mem_free(nowhere);
+}
+
+static void memory_is_zeroed_and_checked(void **state)
+{
+    (void)state;
+    int *numbers = NULL;
+    size_t capacity = 0;
+    mem_grow(&numbers, &capacity, 3, sizeof(*numbers));
+    assert_true(capacity >= 3);
+    numbers[2] = 7;
+    mem_grow(&numbers, &capacity, 5000, sizeof(*numbers));
+    assert_true(capacity >= 5000);
+    for (size_t i = 0; i < capacity; i++)
+        assert_int_equal(numbers[i], i == 2 ? 7 : 0);
+    mem_free(numbers);
+    assert_null(mem_try_array(SIZE_MAX / 2, 4));
+    char *none = mem_try_array(0, 0);
+    assert_non_null(none);
+    mem_free(none);
+    char *text = mem_printf("%s-%d", "a", 5);
+    assert_string_equal(text, "a-5");
+    mem_free(text);
+}
+
+static void findings_come_in_the_order_of_the_text(void **state)
+{
+    (void)state;
+    struct diag diag = { 0 };
+    char *printed = NULL;
+    size_t bytes = 0;
+    FILE *out = open_memstream(&printed, &bytes);
+    diag_error(&diag, "b", 1, 1, "last");
+    diag_warning(&diag, "a", 10, 2, "third of %s", "a");
+    diag_error(&diag, "a", 9, 30, "second");
+    diag_error(&diag, "a", 10, 2, "fourth");
+    diag_error(&diag, "a", 0, 0, "first");
+    diag_print(&diag, out);
+    fclose(out);
+    assert_string_equal(printed, "a: error: first\n"
+                                 "a:9:30: error: second\n"
+                                 "a:10:2: warning: third of a\n"
+                                 "a:10:2: error: fourth\n"
+                                 "b:1:1: error: last\n");
+    assert_int_equal(diag.errors, 4);
+    assert_int_equal(diag.warnings, 1);
+    free(printed);
+    diag_finish(&diag);
+    assert_int_equal(diag.count, 0);
+}
+
+static void counters_are_printed_by_family(void **state)
+{
+    (void)state;
+    struct counters *counters = counters_create();
+    struct text text = { 0 };
+    counter *a = counters_add(counters, "reads_total{source=\"a\"}", "counter", "Reads.");
+    counter_set(counters_add(counters, "sessions", "gauge", "Sessions."), 3);
+    counter_inc(counters_add(counters, "reads_total{source=\"b\"}", "counter", "Reads."), 2);
+    counter_inc(a, 40);
+    assert_ptr_equal(counters_add(counters, "reads_total{source=\"a\"}", "counter", "Reads."), a);
+    counter_inc(a, 2);
+    counters_print(counters, &text);
+    assert_string_equal(text.at, "# HELP reads_total Reads.\n# TYPE reads_total counter\n"
+                                 "reads_total{source=\"a\"} 42\nreads_total{source=\"b\"} 2\n"
+                                 "# HELP sessions Sessions.\n# TYPE sessions gauge\nsessions 3\n");
+    text_finish(&text);
+    counters_destroy(&counters);
+    assert_null(counters);
+}
+
+static int lines_with(const char *text, const char *words)
+{
+    int count = 0;
+    for (; (text = strstr(text, words)); text++)
+        count++;
+    return count;
+}
+
+static void repeats_in_the_log_are_counted(void **state)
+{
+    (void)state;
+    char *folder = temp_folder_create(), *path = temp_path(folder, "log");
+    size_t bytes;
+    fflush(stderr);
+    int kept = dup(STDERR_FILENO);
+    assert_non_null(freopen(path, "w", stderr));
+    struct log *log = log_create(LOG_WARN);
+    for (int i = 0; i < 5; i++)
+        log_warn(log, "disk %d is full", 1);
+    log_err(log, "other");
+    log_info(log, "not at this level");
+    log_warn(log, "disk %d is full", 1);
+    log_warn(log, "disk %d is full", 1);
+    log_destroy(&log);
+    fflush(stderr);
+    dup2(kept, STDERR_FILENO);
+    close(kept);
+    char *text = text_read_file(path, 1 << 20, &bytes);
+    assert_non_null(text);
+    assert_null(log);
+    assert_int_equal(lines_with(text, "warn  disk 1 is full\n"), 2);
+    assert_int_equal(lines_with(text, "warn  disk 1 is full (4 more)\n"), 1);
+    assert_int_equal(lines_with(text, "warn  disk 1 is full (1 more)\n"), 1);
+    assert_int_equal(lines_with(text, "error other\n"), 1);
+    assert_int_equal(lines_with(text, "\n"), 5);
+    mem_free(text);
+    mem_free(path);
+    temp_folder_destroy(&folder);
+}
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(text_grows),
+        cmocka_unit_test(files_are_read_whole_and_replaced_at_once),
+        cmocka_unit_test(memory_is_zeroed_and_checked),
+        cmocka_unit_test(findings_come_in_the_order_of_the_text),
+        cmocka_unit_test(counters_are_printed_by_family),
+        cmocka_unit_test(repeats_in_the_log_are_counted),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,135 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The pool of threads: every job once, in order of start, loops that cover their range, also from within a job. */
+#include "base/workers.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdatomic.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "base/mem.h"
+
+enum { COUNT = 10007 };
+
+static void count_one(void *arg)
+{
+    atomic_fetch_add((_Atomic int *)arg, 1);
+}
+
+static void destroy_runs_what_was_submitted(void **state)
+{
+    (void)state;
+    for (int threads = 1; threads <= 4; threads++) {
+        _Atomic int done = 0;
+        struct workers *workers = workers_create(threads);
+        assert_int_equal(workers_count(workers), threads);
+        for (int i = 0; i < 1000; i++)
+            workers_submit(workers, count_one, &done);
+        workers_destroy(&workers);
+        assert_null(workers);
+        assert_int_equal(done, 1000);
+    }
+}
+
+struct ordered {
+    int *order, *next, number;
+};
+
+static void note_order(void *arg)
+{
+    struct ordered *job = arg;
+    job->order[(*job->next)++] = job->number; /* one worker: no two at a time */
+}
+
+static void one_worker_keeps_the_order(void **state)
+{
+    (void)state;
+    int order[100], next = 0;
+    struct ordered jobs[100];
+    struct workers *workers = workers_create(1);
+    for (int i = 0; i < 100; i++) {
+        jobs[i] = (struct ordered){ order, &next, i };
+        workers_submit(workers, note_order, &jobs[i]);
+    }
+    workers_destroy(&workers);
+    for (int i = 0; i < 100; i++)
+        assert_int_equal(order[i], i);
+}
+
+struct range {
+    _Atomic int *visits;
+    size_t grain;
+    _Atomic int too_long;
+};
+
+static void visit(void *arg, size_t begin, size_t end)
+{
+    struct range *range = arg;
+    if (end - begin > range->grain)
+        atomic_fetch_add(&range->too_long, 1);
+    for (size_t i = begin; i < end; i++)
+        atomic_fetch_add(&range->visits[i], 1);
+}
+
+static void a_loop_covers_its_range_once(void **state)
+{
+    (void)state;
+    static const size_t counts[] = { 0, 1, 7, 64, COUNT }, grains[] = { 1, 3, 64, 100000 };
+    static _Atomic int visits[COUNT];
+    struct workers *workers = workers_create(3);
+    for (size_t c = 0; c < 5; c++)
+        for (size_t g = 0; g < 4; g++) {
+            struct range range = { .visits = visits, .grain = grains[g] };
+            memset((void *)visits, 0, sizeof(visits));
+            workers_for(workers, counts[c], grains[g], visit, &range);
+            for (size_t i = 0; i < COUNT; i++)
+                assert_int_equal(visits[i], i < counts[c]);
+            assert_int_equal(range.too_long, 0);
+        }
+    workers_destroy(&workers);
+}
+
+struct nested {
+    struct workers *workers;
+    struct range range;
+};
+
+static void loop_in_a_job(void *arg)
+{
+    struct nested *nested = arg;
+    workers_for(nested->workers, COUNT, 16, visit, &nested->range);
+}
+
+/* More loops than threads, all at once: none may wait for a helper that never comes. */
+static void loops_inside_of_jobs_end(void **state)
+{
+    (void)state;
+    struct nested jobs[8];
+    _Atomic int *visits = mem_array(8 * COUNT, sizeof(*visits));
+    struct workers *workers = workers_create(2);
+    for (int i = 0; i < 8; i++) {
+        jobs[i] = (struct nested){ workers, { .visits = visits + i * COUNT, .grain = 16 } };
+        workers_submit(workers, loop_in_a_job, &jobs[i]);
+    }
+    struct range mine = { .visits = visits, .grain = 16 };
+    workers_for(workers, 100, 16, visit, &mine);
+    workers_destroy(&workers);
+    for (int i = 0; i < 8 * COUNT; i++)
+        assert_int_equal(visits[i], i < 100 ? 2 : 1);
+    mem_free(visits);
+}
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(destroy_runs_what_was_submitted),
+        cmocka_unit_test(one_worker_keeps_the_order),
+        cmocka_unit_test(a_loop_covers_its_range_once),
+        cmocka_unit_test(loops_inside_of_jobs_end),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
