@@ -119,6 +119,20 @@ test('parameters: shown at once, corrected by the answer, restored when refused'
     assert.equal(session.params.colormap, 'viridis');
 });
 
+test('what is chosen or resized between hello and welcome is not lost', () => {
+    const { connection, sockets, session } = makeSession();
+    connection.start();
+    sockets[0].accept();
+    session.setParams({ look: 'flat' });
+    session.setParams({ ramp_interval: 5 });
+    session.resize({ width: 900, height: 700 });
+    sockets[0].say(welcome);
+    assert.deepEqual(sockets[0].sent.slice(1), [
+        { type: 'resize', width: 900, height: 700 }, { type: 'params', seq: 1, look: 'flat', ramp_interval: 5 },
+    ]);
+    assert.equal(session.params.look, 'flat');
+});
+
 test('a drawn frame is acknowledged and measured', () => {
     const { session, socket, clock, events } = greeted(WANTED);
     session.setCamera(orbit(session.camera, 3, 0), clock.now());

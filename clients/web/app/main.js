@@ -167,7 +167,10 @@ function arrive() {
 }
 
 let toastTimer;
-session.on('error', ({ text }) => {
+session.on('error', ({ text, about }) => {
+    console.warn(`error about ${about}: ${text}`);
+    if (about === 'ack')
+        return; // nothing that a person did
     setText(byId('toast'), `The server refused: ${text}`);
     byId('toast').hidden = false;
     clearTimeout(toastTimer);

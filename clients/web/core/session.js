@@ -27,6 +27,7 @@ export class Session {
         this.confirmed = null;   // what the server last said is in force
         this.size = { width: 640, height: 360 };
         this.visible = true;
+        this.unsent = {};        // parameters that were changed while nobody listened
         this.cameraSeq = this.paramsSeq = 0;
         this.cameraInput = null; // when the newest unsent camera was made
         this.markers = new Map();
@@ -67,6 +68,8 @@ export class Session {
     hello(parts) {
         this.welcomed = false;
         this.helloParts = parts;
+        this.greetedSize = this.size;
+        this.unsent = {};
         this.markers.clear();
         this.latency.clear();
         const message = { type: 'hello', ...this.size, codecs: CODECS };
@@ -101,6 +104,8 @@ export class Session {
         this.params = { ...this.params, ...own, ...change };
         if (this.welcomed)
             this.connection.send({ type: 'params', seq: ++this.paramsSeq, ...change });
+        else
+            Object.assign(this.unsent, change);
         this.emit('params');
     }
 
@@ -163,10 +168,19 @@ export class Session {
             this.camera = home(this.model.plant, this.size.width / this.size.height);
             this.cameraInput = this.now();
         }
-        if (!this.visible)
-            this.setVisible(false);
+        this.catchUp();
         this.emit('welcome');
         this.emit('params');
+    }
+
+    // What changed between hello and welcome.
+    catchUp() {
+        if (!this.visible)
+            this.setVisible(false);
+        if (this.size !== this.greetedSize)
+            this.connection.send({ type: 'resize', ...this.size });
+        if (Object.keys(this.unsent).length > 0)
+            this.setParams(this.unsent);
     }
 
     hearParams(message) {
