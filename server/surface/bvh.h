@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Boxes around boxes around triangles: nearest place, and triangles whose boxes meet. Immutable once built. Thread: any. */
+#ifndef SURFACE_BVH_H
+#define SURFACE_BVH_H
+#include <stdbool.h>
+
+#include "surface/trimesh.h"
+
+struct bvh;
+
+struct bvh *bvh_create(const struct trimesh *mesh); /* mesh must outlive it, unchanged */
+void bvh_destroy(struct bvh **bvh);
+
+struct bvh_place {
+    uint32_t tri;           /* TRIMESH_NONE: nothing within reach */
+    double weights[3];      /* of its corners */
+    double point[3], distance_m;
+};
+/* The nearest place within limit_m (may be INFINITY) on triangles for which allowed(arg, tri) holds; allowed may be NULL. */
+void bvh_nearest(const struct bvh *bvh, const double point[3], double limit_m, bool (*allowed)(const void *arg, uint32_t tri), const void *arg,
+                 struct bvh_place *place);
+
+/* Calls visit(arg, tri) for every triangle whose box comes within margin_m of the box low..high. */
+void bvh_overlaps(const struct bvh *bvh, const double low[3], const double high[3], double margin_m, void (*visit)(void *arg, uint32_t tri), void *arg);
+
+/* The place of the triangle nearest to a point, as weights of its corners. */
+void triangle_nearest(const double p[3], const double a[3], const double b[3], const double c[3], double weights[3]);
+
+#endif

@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Distances around a source, unfolded triangle by triangle (Novotni & Klein 2002): exact where the surface is flat or unrolls. */
+#ifndef SURFACE_LOCAL_H
+#define SURFACE_LOCAL_H
+#include "surface/trimesh.h"
+
+struct local {             /* which triangles meet at a point; shared by all walks */
+    const struct trimesh *mesh;
+    uint32_t *first, *tris;
+};
+void local_init(struct local *local, const struct trimesh *mesh); /* mesh must outlive it */
+void local_finish(struct local *local);
+
+struct local_walk {        /* one thread's; zero-initialise, used again and again */
+    double *distance_m;    /* of all points; INFINITY where not reached */
+    struct local_item { double distance_m; uint32_t point; } *heap;
+    uint32_t *reached;     /* points with a finite distance */
+    char *settled;
+    size_t reached_count, reached_capacity, heap_count, heap_capacity;
+};
+void local_walk_finish(struct local_walk *walk);
+
+/* Distances up to limit_m from the place with these weights on triangle tri. Clears what the last walk left. */
+void local_from(const struct local *local, struct local_walk *walk, uint32_t tri, const double weights[3], double limit_m);
+
+#endif

@@ -1,0 +1,291 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* From a model's triangles to geodesic distances: weld, bridge, sample, factor, solve. */
+#include "surface/surface.h"
+
+#include <math.h>
+#include <stdatomic.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "surface/bvh.h"
+#include "surface/heat.h"
+#include "surface/intrinsic.h"
+#include "surface/local.h"
+#include "surface/trimesh.h"
+#include "surface/vec.h"
+
+#define WELD_OF_SIZE 1e-6        /* vertices this near are one: float positions are no finer */
+#define TOLERANCE_OF_SIZE 5e-4
+#define SAMPLES 30000.0          /* at least about so many points carry the heat */
+#define POINTS_PER_SPACING 2.7   /* points on one square spacing of a surface sampled by halving edges: measured */
+#define TIME_OF_SPACING 3.0      /* t in mean edge lengths squared */
+#define LONGEST_DECAY 500.0      /* the farthest point is no more than this many roots of t away, so that its heat is a number */
+#define BLOCK_SOURCES 8
+
+struct surface {
+    struct log *log;
+    struct workers *workers;
+    size_t vertex_count;
+    uint32_t *vertex_point;      /* of the model's vertices */
+    struct trimesh mesh;         /* welded, bridged, sampled */
+    uint32_t *component;         /* of its points */
+    struct intrinsic intrinsic;
+    struct heat *heat;
+    struct local local;
+    struct bvh *bvh;
+    double edge_m;               /* mean edge length */
+    struct surface_report report;
+};
+
+static double size_of(const float (*positions)[3], const uint32_t *triangles, size_t triangle_count)
+{
+    double low[3] = { INFINITY, INFINITY, INFINITY }, high[3] = { -INFINITY, -INFINITY, -INFINITY };
+    for (size_t i = 0; i < 3 * triangle_count; i++)
+        for (int axis = 0; axis < 3; axis++) {
+            low[axis] = fmin(low[axis], (double)positions[triangles[i]][axis]);
+            high[axis] = fmax(high[axis], (double)positions[triangles[i]][axis]);
+        }
+    return vec_distance(low, high);
+}
+
+static double seconds_since(int64_t *since_ns)
+{
+    int64_t now_ns = clock_mono_ns();
+    double seconds = (double)(now_ns - *since_ns) / NS_PER_S;
+    *since_ns = now_ns;
+    return seconds;
+}
+
+static size_t border_edges(const struct trimesh *mesh)
+{
+    struct edge_table edges;
+    edge_table_init(&edges, mesh->tri_count * 3 / 2);
+    unsigned char *faces = mem_array(mesh->tri_count * 3, 1);
+    size_t count = 0;
+    for (size_t t = 0; t < mesh->tri_count; t++)
+        for (int i = 0; i < 3; i++) {
+            uint32_t e = edge_table_add(&edges, mesh->tris[t][i], mesh->tris[t][(i + 1) % 3]);
+            faces[e] = (unsigned char)(faces[e] < 2 ? faces[e] + 1 : 2);
+        }
+    for (size_t e = 0; e < edges.count; e++)
+        count += faces[e] == 1;
+    mem_free(faces);
+    edge_table_finish(&edges);
+    return count;
+}
+
+static bool weld(struct surface *surface, const float (*positions)[3], const uint32_t *triangles, size_t triangle_count, double size_m)
+{
+    struct surface_report *report = &surface->report;
+    surface->vertex_point = mem_try_array(surface->vertex_count, sizeof(*surface->vertex_point));
+    if (!surface->vertex_point
+        || !trimesh_weld(&surface->mesh, positions, surface->vertex_count, triangles, triangle_count, size_m * WELD_OF_SIZE, surface->vertex_point,
+                         &report->degenerate_triangles, &report->repeated_triangles)) {
+        log_err(surface->log, "surface of %zu vertices: out of memory", surface->vertex_count);
+        return false;
+    }
+    report->triangles = triangle_count;
+    report->welded_vertices = surface->mesh.point_count;
+    if (surface->mesh.tri_count == 0) {
+        log_err(surface->log, "surface of %zu triangles: none has an area", triangle_count);
+        return false;
+    }
+    return true;
+}
+
+static void sample(struct surface *surface)
+{
+    struct surface_report *report = &surface->report;
+    double wanted = fmax(SAMPLES, (double)surface->mesh.point_count);
+    if (report->spacing_m <= 0)
+        report->spacing_m = sqrt(POINTS_PER_SPACING * trimesh_area(&surface->mesh) / wanted);
+    size_t before = surface->mesh.point_count;
+    trimesh_sample(&surface->mesh, report->spacing_m, before + (size_t)(2 * wanted));
+    report->samples = surface->mesh.point_count - before;
+}
+
+/* The way from some point to the farthest one from it, on the piece of surface with most triangles. */
+static double reach_of(const struct surface *surface)
+{
+    const struct trimesh *mesh = &surface->mesh;
+    uint32_t *counts = mem_array(mesh->point_count, sizeof(*counts)), best = 0;
+    for (uint32_t t = 0; t < mesh->tri_count; t++)
+        if (++counts[surface->component[mesh->tris[t][0]]] > counts[surface->component[mesh->tris[best][0]]])
+            best = t;
+    struct local_walk walk = { 0 };
+    local_from(&surface->local, &walk, best, (const double[3]){ 1, 0, 0 }, INFINITY);
+    double reach_m = 0;
+    for (size_t i = 0; i < walk.reached_count; i++)
+        reach_m = fmax(reach_m, walk.distance_m[walk.reached[i]]);
+    local_walk_finish(&walk);
+    mem_free(counts);
+    return reach_m;
+}
+
+static double mean_edge(const struct intrinsic *in)
+{
+    double sum = 0;
+    for (size_t t = 0; t < in->tri_count; t++)
+        sum += in->lengths[t][0] + in->lengths[t][1] + in->lengths[t][2];
+    return sum / (3.0 * (double)in->tri_count);
+}
+
+struct surface *surface_create(struct log *log, struct workers *workers, const float (*positions_m)[3], size_t vertex_count, const uint32_t *triangles,
+                               size_t triangle_count, const struct surface_params *params)
+{
+    struct surface *surface = mem_new(sizeof(*surface));
+    struct surface_report *report = &surface->report;
+    int64_t since_ns = clock_mono_ns();
+    double size_m = size_of(positions_m, triangles, triangle_count);
+    surface->log = log;
+    surface->workers = workers;
+    surface->vertex_count = vertex_count;
+    report->tolerance_m = params->tolerance_m > 0 ? params->tolerance_m : size_m * TOLERANCE_OF_SIZE;
+    report->spacing_m = params->spacing_m;
+    if (!weld(surface, positions_m, triangles, triangle_count, size_m))
+        goto error;
+    report->border_edges = report->border_edges_after = border_edges(&surface->mesh);
+    report->weld_s = seconds_since(&since_ns);
+    sample(surface);
+    report->sample_s = seconds_since(&since_ns);
+    surface->component = mem_array(surface->mesh.point_count, sizeof(*surface->component));
+    report->components = report->components_after = trimesh_components(&surface->mesh, surface->component);
+    local_init(&surface->local, &surface->mesh);
+    surface->bvh = bvh_create(&surface->mesh);
+    intrinsic_init(&surface->intrinsic, &surface->mesh);
+    surface->edge_m = mean_edge(&surface->intrinsic);
+    double decay_m = fmax(sqrt(TIME_OF_SPACING) * surface->edge_m, 2 * reach_of(surface) / LONGEST_DECAY);
+    report->time_m2 = decay_m * decay_m;
+    report->laplacian_s = seconds_since(&since_ns);
+    surface->heat = heat_create(log, &surface->intrinsic, report->time_m2);
+    if (!surface->heat)
+        goto error;
+    report->factor_s = seconds_since(&since_ns);
+    return surface;
+error:
+    surface_destroy(&surface);
+    return NULL;
+}
+
+void surface_destroy(struct surface **surface_ptr)
+{
+    struct surface *surface = *surface_ptr;
+    if (!surface)
+        return;
+    heat_destroy(&surface->heat);
+    intrinsic_finish(&surface->intrinsic);
+    local_finish(&surface->local);
+    bvh_destroy(&surface->bvh);
+    trimesh_finish(&surface->mesh);
+    mem_free(surface->vertex_point);
+    mem_free(surface->component);
+    mem_free(surface);
+    *surface_ptr = NULL;
+}
+
+const struct surface_report *surface_report(const struct surface *surface)
+{
+    return &surface->report;
+}
+
+void surface_nearest(const struct surface *surface, const double point_m[3], struct surface_place *place)
+{
+    struct bvh_place at;
+    bvh_nearest(surface->bvh, point_m, INFINITY, NULL, NULL, &at);
+    memcpy(place->position_m, at.point, sizeof(at.point));
+    place->distance_m = at.distance_m;
+    double best2 = INFINITY;
+    for (size_t v = 0; v < surface->vertex_count; v++) {
+        double d2 = vec_distance2(surface->mesh.points[surface->vertex_point[v]], at.point);
+        if (d2 < best2) {
+            best2 = d2;
+            place->vertex = (uint32_t)v;
+        }
+    }
+}
+
+/* --- solving ------------------------------------------------------------------------------------------------------------- */
+
+struct solve {
+    struct surface *surface;
+    const double (*points_m)[3];
+    size_t point_count;
+    float *out;
+    double *disagreement;        /* of each point */
+    atomic_bool failed;
+};
+
+/* How far the two methods differ, as a share of the largest distance. Heat leaves a constant open: it is taken so that they agree on
+   average. Heat smooths ridges and borders over about one root of t, so some percent at single points are its nature; more is a sign that
+   the surface does not hang together as it looks. */
+static double disagreement_of(const struct local_walk *walk, const double *heat_m)
+{
+    double sum = 0, squares = 0, largest_m = 0;
+    for (size_t i = 0; i < walk->reached_count; i++) {
+        uint32_t p = walk->reached[i];
+        double difference_m = walk->distance_m[p] - heat_m[p];
+        sum += difference_m;
+        squares += difference_m * difference_m;
+        largest_m = fmax(largest_m, walk->distance_m[p]);
+    }
+    double count = (double)walk->reached_count, mean = sum / count;
+    return largest_m > 0 ? sqrt(fmax(squares / count - mean * mean, 0)) / largest_m : 0;
+}
+
+static void finish_source(const struct solve *solve, size_t source, const struct bvh_place *at, struct local_walk *walk, const double *heat_m)
+{
+    const struct surface *surface = solve->surface;
+    float *out = solve->out + source * surface->vertex_count;
+    local_from(&surface->local, walk, at->tri, at->weights, INFINITY);
+    solve->disagreement[source] = disagreement_of(walk, heat_m);
+    for (size_t v = 0; v < surface->vertex_count; v++)
+        out[v] = (float)walk->distance_m[surface->vertex_point[v]];
+}
+
+static void solve_block(void *arg, size_t begin, size_t end)
+{
+    struct solve *solve = arg;
+    struct surface *surface = solve->surface;
+    size_t count = end - begin, points = surface->mesh.point_count;
+    struct heat_source *sources = mem_array(count, sizeof(*sources));
+    struct bvh_place *places = mem_array(count, sizeof(*places));
+    double *heat_m = mem_try_array(count * points, sizeof(*heat_m));
+    for (size_t s = 0; s < count; s++) {
+        bvh_nearest(surface->bvh, solve->points_m[begin + s], INFINITY, NULL, NULL, &places[s]);
+        memcpy(sources[s].points, surface->mesh.tris[places[s].tri], sizeof(sources[s].points));
+        memcpy(sources[s].weights, places[s].weights, sizeof(sources[s].weights));
+    }
+    if (!heat_m || !heat_solve(surface->heat, sources, count, heat_m)) {
+        solve->failed = true;
+        goto done;
+    }
+    struct local_walk walk = { 0 };
+    for (size_t s = 0; s < count; s++)
+        finish_source(solve, begin + s, &places[s], &walk, heat_m + s * points);
+    local_walk_finish(&walk);
+done:
+    mem_free(sources);
+    mem_free(places);
+    mem_free(heat_m);
+}
+
+bool surface_distances(struct surface *surface, const double (*points_m)[3], size_t point_count, float *out)
+{
+    struct solve solve = { .surface = surface, .points_m = points_m, .point_count = point_count, .out = out };
+    solve.disagreement = mem_array(point_count, sizeof(*solve.disagreement));
+    size_t threads = surface->workers ? (size_t)workers_count(surface->workers) : 1;
+    size_t block = (point_count + threads - 1) / threads;
+    block = block < BLOCK_SOURCES ? block : BLOCK_SOURCES;
+    if (surface->workers)
+        workers_for(surface->workers, point_count, block, solve_block, &solve);
+    else
+        for (size_t i = 0; i < point_count; i += BLOCK_SOURCES)
+            solve_block(&solve, i, i + BLOCK_SOURCES < point_count ? i + BLOCK_SOURCES : point_count);
+    for (size_t i = 0; i < point_count; i++)
+        surface->report.heat_disagreement = fmax(surface->report.heat_disagreement, solve.disagreement[i]);
+    mem_free(solve.disagreement);
+    if (solve.failed)
+        log_err(surface->log, "distances of %zu places to %zu vertices: out of memory", point_count, surface->vertex_count);
+    return !solve.failed;
+}

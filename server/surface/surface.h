@@ -1,0 +1,71 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Geodesic distances on CAD surfaces as they really are. Layer: after base and plant; used by plantcast-prep, and by the daemon
+   when a sensor moves.
+
+   The paper (Kim & Suh 2025, section 3.3) throws the mesh away: samples and vertices become a point cloud, kNN joins them, and the
+   heat method runs on that graph. On clean CAD this loses what the mesh knows (neighbours reach through thin walls and across
+   narrow slots); on broken CAD it is what still works. So here:
+     1. what the mesh knows is kept: vertices at one place are welded, repeated faces dropped (trimesh.h);
+     2. what is broken is bridged: open borders and parts that touch or cross are joined within one tolerance. The candidates come
+        from the point cloud, by kNN (cloud.h, stitch.h, cross.h);
+     3. the surface is sampled evenly: long edges are split until no edge is longer than the spacing (trimesh.h);
+     4. the heat method (Crane, Weischedel, Wardetzky 2013) with the cotangent Laplacian of the intrinsic Delaunay triangulation, which
+        has no negative weights inside a patch (intrinsic.h, heat.h). Diffusion time: 3 times the spacing squared, more where the surface is
+        so long that the heat would fall below the smallest number. The gradient is taken of the logarithm of heat: it is nearly
+        linear in a triangle, heat itself is not;
+     5. the heat method still errs by 0.05 to 0.4 % on average and up to 4 % at borders and ridges (measured on planes, spheres and
+        cylinders of 30,000 points; with t = h^2 it is 0.4 % and 3 %). So the distances handed out are unfolded triangle by triangle from the
+        source (local.h): 0.00 to 0.06 %, at most 0.6 %. The heat method is what they are held against: two methods that share nothing but the
+        mesh. Where they differ by more than some percent the report says so.
+   Distances are kept at the model's own vertices. */
+#ifndef SURFACE_SURFACE_H
+#define SURFACE_SURFACE_H
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/log.h"
+#include "base/workers.h"
+
+struct surface;
+
+struct surface_params {    /* zero: chosen from the model */
+    double tolerance_m;    /* gaps up to this are closed */
+    double spacing_m;      /* longest edge of the sampled surface */
+};
+
+struct surface_report {
+    double tolerance_m, spacing_m, time_m2; /* as chosen; time_m2: the heat method's t */
+    size_t triangles, welded_vertices, degenerate_triangles, repeated_triangles;
+    size_t border_edges, border_edges_after; /* edges with one face, before and after bridging */
+    size_t components, components_after;    /* pieces of surface that hang together, before and after bridging */
+    size_t bridges;        /* vertices joined to another place of the surface */
+    double longest_bridge_m;
+    int k;                 /* neighbours asked for; 0: nothing to bridge */
+    size_t samples;        /* points added */
+    size_t hidden_vertices; /* of the model: inside another closed part */
+    double heat_disagreement; /* root of the mean square difference to the heat method, of the worst source so far, as a share of its largest distance */
+    double weld_s, bridge_s, sample_s, laplacian_s, factor_s;
+};
+
+/* positions: count vertices in metres; triangles: indices, 3 each. Everything is copied. workers may be NULL, else it must
+   outlive the surface. NULL on failure, already logged: no triangle has an area, or out of memory.
+   Thread: one call at a time per surface; different surfaces are independent. */
+struct surface *surface_create(struct log *log, struct workers *workers, const float (*positions_m)[3], size_t vertex_count, const uint32_t *triangles,
+                               size_t triangle_count, const struct surface_params *params);
+void surface_destroy(struct surface **surface); /* &NULL is fine; leaves NULL */
+const struct surface_report *surface_report(const struct surface *surface);
+
+struct surface_place {
+    double position_m[3];  /* on the surface */
+    double distance_m;     /* from the point asked for */
+    uint32_t vertex;       /* the model's vertex nearest to it, along straight lines */
+};
+void surface_nearest(const struct surface *surface, const double point_m[3], struct surface_place *place);
+
+/* Metres along the surface from each point (dropped onto the surface first) to every vertex of the model:
+   out[point * vertex_count + vertex]. INFINITY where no way leads. Points are solved in blocks over all workers.
+   False: out of memory, logged. */
+bool surface_distances(struct surface *surface, const double (*points_m)[3], size_t point_count, float *out);
+
+#endif

@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A heap of triangles that share points; edges may have any number of faces. The stage between a model and its Laplacian. */
+#ifndef SURFACE_TRIMESH_H
+#define SURFACE_TRIMESH_H
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#define TRIMESH_NONE UINT32_MAX
+
+struct trimesh {
+    double (*points)[3];
+    uint32_t (*tris)[3];
+    uint32_t *tri_source;  /* the model's triangle that this one is a piece of */
+    size_t point_count, point_capacity, tri_count, tri_capacity, source_capacity;
+};
+
+/* The model with vertices closer than weld_m made one. vertex_point[vertex] = point. Triangles without area are left out, and of
+   triangles with the same three points all but one. False: out of memory. */
+bool trimesh_weld(struct trimesh *mesh, const float (*positions)[3], size_t vertex_count, const uint32_t *triangles, size_t triangle_count, double weld_m,
+                  uint32_t *vertex_point, size_t *degenerate, size_t *repeated);
+void trimesh_finish(struct trimesh *mesh);
+
+uint32_t trimesh_add_point(struct trimesh *mesh, const double point[3]);
+void trimesh_add_tri(struct trimesh *mesh, uint32_t a, uint32_t b, uint32_t c, uint32_t source);
+
+/* Renames points (point[i] becomes target[i]) and drops triangles that lost their area or became repeated. */
+void trimesh_rename(struct trimesh *mesh, const uint32_t *target, size_t *degenerate, size_t *repeated);
+
+/* Adds points until no edge is longer than spacing_m, or there are point_limit points: triangles higher than that are halved, then long
+   edges are cut into equal parts. */
+void trimesh_sample(struct trimesh *mesh, double spacing_m, size_t point_limit);
+
+/* component[point]: the lowest point that hangs together with it. Returns how many there are among points that have triangles. */
+size_t trimesh_components(const struct trimesh *mesh, uint32_t *component);
+
+double trimesh_area(const struct trimesh *mesh);
+
+/* Edges in a hash table: (a, b) in any order -> a number from 0. */
+struct edge_table {
+    uint64_t *keys;
+    uint32_t *numbers;
+    size_t mask, count;
+};
+void edge_table_init(struct edge_table *table, size_t expected);
+void edge_table_finish(struct edge_table *table);
+/* The edge's number; a new edge gets table->count. */
+uint32_t edge_table_add(struct edge_table *table, uint32_t a, uint32_t b);
+uint32_t edge_table_find(const struct edge_table *table, uint32_t a, uint32_t b); /* TRIMESH_NONE: not there */
+
+#endif
