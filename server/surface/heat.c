@@ -11,8 +11,8 @@
 
 #include "base/mem.h"
 
-/* L alone is singular; this much of M, scaled by the area, moves distances by less than their eighth digit. */
-#define REGULARISATION 1e-9
+/* L alone is singular on every piece of surface; this much of M, in shares of the piece's area, moves distances by a millionth. */
+#define REGULARISATION 1e-6
 
 struct slope { /* gradients of the three hat functions in the triangle's plane, and its area */
     double x1, y1, y2, area; /* of corner 1: (x1, y1), of corner 2: (0, y2), of corner 0: minus both */
@@ -62,8 +62,8 @@ static void measure(struct heat *heat)
     }
 }
 
-/* mass * M + stiffness * L, lower triangle. */
-static cholmod_sparse *assemble(struct heat *heat, double mass, double stiffness)
+/* diag(mass) + stiffness * L, lower triangle. */
+static cholmod_sparse *assemble(struct heat *heat, const double *mass, double stiffness)
 {
     const struct intrinsic *in = heat->in;
     cholmod_triplet *list = cholmod_allocate_triplet(heat->row_count, heat->row_count, heat->row_count + 6 * in->tri_count, -1, CHOLMOD_REAL, &heat->common);
@@ -74,7 +74,7 @@ static cholmod_sparse *assemble(struct heat *heat, double mass, double stiffness
     size_t n = 0;
     for (size_t i = 0; i < heat->row_count; i++, n++) {
         rows[n] = columns[n] = (int)i;
-        values[n] = mass * heat->mass_m2[i];
+        values[n] = mass[i];
     }
     for (size_t t = 0; t < in->tri_count; t++) {
         const struct slope *s = &heat->slopes[t];
@@ -95,14 +95,25 @@ static cholmod_sparse *assemble(struct heat *heat, double mass, double stiffness
     return matrix;
 }
 
-static bool factor(struct heat *heat)
+/* Shares of each piece's own area. */
+static double *regularisation(const struct heat *heat, const uint32_t *component)
 {
-    cholmod_sparse *diffusion = assemble(heat, 1, heat->time_m2), *poisson = NULL;
-    double area = 0;
-    for (size_t i = 0; i < heat->row_count; i++)
-        area += heat->mass_m2[i];
-    if (diffusion)
-        poisson = assemble(heat, REGULARISATION / area, 1);
+    double *area_m2 = mem_array(heat->in->point_count, sizeof(*area_m2)), *share = mem_array(heat->row_count, sizeof(*share));
+    for (size_t i = 0; i < heat->in->point_count; i++)
+        if (heat->row_of[i] != TRIMESH_NONE)
+            area_m2[component[i]] += heat->mass_m2[heat->row_of[i]];
+    for (size_t i = 0; i < heat->in->point_count; i++)
+        if (heat->row_of[i] != TRIMESH_NONE)
+            share[heat->row_of[i]] = REGULARISATION * heat->mass_m2[heat->row_of[i]] / area_m2[component[i]];
+    mem_free(area_m2);
+    return share;
+}
+
+static bool factor(struct heat *heat, const uint32_t *component)
+{
+    double *share = regularisation(heat, component);
+    cholmod_sparse *diffusion = assemble(heat, heat->mass_m2, heat->time_m2), *poisson = diffusion ? assemble(heat, share, 1) : NULL;
+    mem_free(share);
     if (poisson) {
         heat->diffusion = cholmod_analyze(diffusion, &heat->common);
         heat->poisson = heat->diffusion ? cholmod_copy_factor(heat->diffusion, &heat->common) : NULL;
@@ -114,7 +125,7 @@ static bool factor(struct heat *heat)
     return good;
 }
 
-struct heat *heat_create(struct log *log, const struct intrinsic *in, double time_m2)
+struct heat *heat_create(struct log *log, const struct intrinsic *in, const uint32_t *component, double time_m2)
 {
     struct heat *heat = mem_new(sizeof(*heat));
     *heat = (struct heat){ .log = log, .in = in, .time_m2 = time_m2 };
@@ -132,7 +143,7 @@ struct heat *heat_create(struct log *log, const struct intrinsic *in, double tim
         goto error;
     number_rows(heat);
     measure(heat);
-    if (!factor(heat))
+    if (!factor(heat, component))
         goto error;
     return heat;
 error:

@@ -7,8 +7,9 @@
 
 struct heat;
 
-/* (M + t L) u = source and L d = div(grad / |grad|), t = time_m2. NULL: out of memory, logged. in must outlive it. */
-struct heat *heat_create(struct log *log, const struct intrinsic *in, double time_m2);
+/* (M + t L) u = source and L d = div(grad / |grad|), t = time_m2; component[point]: the piece of surface it is on. NULL: out of memory,
+   logged. in must outlive it. */
+struct heat *heat_create(struct log *log, const struct intrinsic *in, const uint32_t *component, double time_m2);
 void heat_destroy(struct heat **heat);
 
 struct heat_source { /* a place: weights of three points */

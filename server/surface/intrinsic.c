@@ -8,6 +8,7 @@
 #include "base/mem.h"
 #include "surface/vec.h"
 
+#define MOLLIFY 1e-4
 #define FLIPS_PER_EDGE 50u /* never met; ends what rounding could keep going */
 
 void intrinsic_finish(struct intrinsic *in)
@@ -163,6 +164,21 @@ static bool flip(struct intrinsic *in, uint32_t t, int i)
     return true;
 }
 
+/* Lengthens all sides by the same little, so that no triangle is flatter than MOLLIFY mean edges (Sharp & Crane 2020, section 4.5). */
+static void mollify(struct intrinsic *in)
+{
+    double sum = 0, lack = 0;
+    for (size_t t = 0; t < in->tri_count; t++)
+        sum += in->lengths[t][0] + in->lengths[t][1] + in->lengths[t][2];
+    double margin = MOLLIFY * sum / (3.0 * (double)in->tri_count);
+    for (size_t t = 0; t < in->tri_count; t++)
+        for (int i = 0; i < 3; i++)
+            lack = fmax(lack, margin + in->lengths[t][i] - in->lengths[t][(i + 1) % 3] - in->lengths[t][(i + 2) % 3]);
+    for (size_t t = 0; t < in->tri_count; t++)
+        for (int i = 0; i < 3; i++)
+            in->lengths[t][i] += lack;
+}
+
 static void push(uint32_t **stack, size_t *depth, size_t *capacity, uint32_t side)
 {
     mem_grow(stack, capacity, *depth + 1, sizeof(**stack));
@@ -206,6 +222,7 @@ void intrinsic_init(struct intrinsic *in, const struct trimesh *mesh)
     for (size_t t = 0; t < mesh->tri_count; t++)
         for (int i = 0; i < 3; i++)
             in->lengths[t][i] = vec_distance(mesh->points[in->points[t][i]], mesh->points[in->points[t][(i + 1) % 3]]);
+    mollify(in);
     make_delaunay(in);
     mem_free(other);
 }

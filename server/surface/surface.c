@@ -158,7 +158,7 @@ struct surface *surface_create(struct log *log, struct workers *workers, const f
     double decay_m = fmax(sqrt(TIME_OF_SPACING) * surface->edge_m, 2 * reach_of(surface) / LONGEST_DECAY);
     report->time_m2 = decay_m * decay_m;
     report->laplacian_s = seconds_since(&since_ns);
-    surface->heat = heat_create(log, &surface->intrinsic, report->time_m2);
+    surface->heat = heat_create(log, &surface->intrinsic, surface->component, report->time_m2);
     if (!surface->heat)
         goto error;
     report->factor_s = seconds_since(&since_ns);

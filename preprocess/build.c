@@ -1,0 +1,194 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One asset from a parsed model to the bytes of its file. */
+#include "preprocess/build.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#define XXH_STATIC_LINKING_ONLY /* the hash state on the stack */
+#include <xxhash.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+
+static void hash_text(XXH3_state_t *state, const char *text)
+{
+    XXH3_64bits_update(state, text ? text : "", text ? strlen(text) + 1 : 1);
+}
+
+uint64_t build_key(uint64_t model_hash, const struct geometry_params *geometry, const struct plant_sensor *sensors, size_t sensor_count)
+{
+    const uint32_t numbers[3] = { ASSET_VERSION, BUILD_REVISION, (uint32_t)geometry->up };
+    XXH3_state_t state;
+    XXH3_INITSTATE(&state);
+    XXH3_64bits_reset(&state);
+    XXH3_64bits_update(&state, numbers, sizeof(numbers));
+    XXH3_64bits_update(&state, &model_hash, sizeof(model_hash));
+    XXH3_64bits_update(&state, geometry->nodes ? "n" : "a", 1);
+    hash_text(&state, geometry->nodes);
+    XXH3_64bits_update(&state, &geometry->unit_m, sizeof(geometry->unit_m));
+    for (size_t i = 0; i < sensor_count; i++) {
+        hash_text(&state, sensors[i].node);
+        XXH3_64bits_update(&state, sensors[i].position_m, sizeof(sensors[i].position_m));
+    }
+    return XXH3_64bits_digest(&state);
+}
+
+/* Where each sensor is, less the origin. */
+static bool place_sensors(const struct build_input *input, const struct geometry *geometry, double (*places)[3], int *missing, char *why)
+{
+    for (size_t i = 0; i < input->sensor_count; i++) {
+        const struct plant_sensor *sensor = &input->sensors[i];
+        double place[3] = { sensor->position_m[0], sensor->position_m[1], sensor->position_m[2] };
+        if (sensor->node && !geometry_node_place(input->model, &input->geometry, sensor->node, place)) {
+            *missing = (int)i;
+            snprintf(why, MODEL_WHY_BYTES, "the model has no node '%.200s'", sensor->node);
+            return false;
+        }
+        for (int axis = 0; axis < 3; axis++)
+            places[i][axis] = place[axis] - geometry->origin_m[axis];
+    }
+    return true;
+}
+
+static void drop_sensors(const struct surface *surface, const struct build_input *input, const double (*places)[3], struct asset_sensor *out)
+{
+    for (size_t i = 0; i < input->sensor_count; i++) {
+        struct surface_place at;
+        surface_nearest(surface, places[i], &at);
+        for (int axis = 0; axis < 3; axis++) {
+            out[i].position_m[axis] = (float)places[i][axis];
+            out[i].surface_m[axis] = (float)at.position_m[axis];
+        }
+        out[i].surface_distance_m = (float)at.distance_m;
+        out[i].nearest_vertex = at.vertex;
+        out[i].node_hash = input->sensors[i].node_hash;
+    }
+}
+
+static size_t unreachable(const float *distances, size_t sensor_count, size_t vertex_count)
+{
+    size_t count = 0;
+    for (size_t v = 0; v < vertex_count; v++) {
+        bool reached = false;
+        for (size_t s = 0; s < sensor_count && !reached; s++)
+            reached = isfinite(distances[s * vertex_count + v]);
+        count += !reached;
+    }
+    return count;
+}
+
+static double seconds_since(int64_t *since_ns)
+{
+    int64_t now_ns = clock_mono_ns();
+    double seconds = (double)(now_ns - *since_ns) / NS_PER_S;
+    *since_ns = now_ns;
+    return seconds;
+}
+
+static bool measure(struct log *log, struct workers *workers, const struct build_input *input, const struct geometry *g, struct asset_sensor *sensors,
+                    float *distances, struct build_output *output, char *why)
+{
+    struct build_report *report = &output->report;
+    int64_t since_ns = clock_mono_ns();
+    double (*places)[3] = mem_array(input->sensor_count, sizeof(*places));
+    struct surface *surface = NULL;
+    bool good = place_sensors(input, g, places, &output->missing_node, why);
+    if (good) {
+        surface = surface_create(log, workers, (const float (*)[3])g->positions_m, g->vertex_count, g->indices, g->index_count / 3, &(struct surface_params){ 0 });
+        report->surface_s = seconds_since(&since_ns);
+        good = surface && surface_distances(surface, (const double (*)[3])places, input->sensor_count, distances);
+        if (!good)
+            snprintf(why, MODEL_WHY_BYTES, "its distances cannot be computed");
+    }
+    if (good) {
+        drop_sensors(surface, input, (const double (*)[3])places, sensors);
+        report->surface = *surface_report(surface);
+        report->unreachable_vertices = unreachable(distances, input->sensor_count, g->vertex_count);
+        report->solve_s = seconds_since(&since_ns);
+    }
+    surface_destroy(&surface);
+    mem_free(places);
+    return good;
+}
+
+static bool lay_out(const struct build_input *input, const struct geometry *g, const struct asset_sensor *sensors, const float *distances,
+                    struct build_output *output, char *why)
+{
+    struct asset_parts parts = {
+        .key = input->key,
+        .positions_m = (const float (*)[3])g->positions_m,
+        .normals = (const float (*)[3])g->normals,
+        .texcoords = (const float (*)[2])g->texcoords,
+        .colors = (const uint8_t (*)[4])g->colors,
+        .indices = g->indices,
+        .primitives = g->primitives,
+        .materials = g->materials,
+        .textures = g->textures,
+        .texels = g->texels,
+        .sensors = sensors,
+        .geodesic_m = distances,
+        .names = g->names.at,
+        .vertex_count = g->vertex_count,
+        .index_count = g->index_count,
+        .primitive_count = g->primitive_count,
+        .material_count = g->material_count,
+        .texture_count = g->texture_count,
+        .sensor_count = (uint32_t)input->sensor_count,
+        .texel_bytes = g->texel_bytes,
+        .name_bytes = g->names.length,
+    };
+    char view_why[200];
+    struct asset_view view;
+    memcpy(parts.origin_m, g->origin_m, sizeof(parts.origin_m));
+    output->bytes = asset_build(&parts, &output->size);
+    if (!output->bytes) {
+        snprintf(why, MODEL_WHY_BYTES, "out of memory for its file");
+        return false;
+    }
+    if (!asset_view_init(&view, output->bytes, output->size, view_why)) { /* what a reader would refuse is not written */
+        snprintf(why, MODEL_WHY_BYTES, "its file would be wrong: %s", view_why);
+        return false;
+    }
+    return true;
+}
+
+bool build_asset(struct log *log, struct workers *workers, const struct build_input *input, struct build_output *output, char why[MODEL_WHY_BYTES])
+{
+    struct geometry geometry = { 0 };
+    struct asset_sensor *sensors = NULL;
+    float *distances = NULL;
+    int64_t since_ns = clock_mono_ns();
+    *output = (struct build_output){ .missing_node = -1 };
+    if (!geometry_cut(&geometry, input->model, &input->geometry, why))
+        return false;
+    output->report = (struct build_report){ .nodes = geometry.node_count,
+                                            .triangles = geometry.index_count / 3,
+                                            .vertices = geometry.vertex_count,
+                                            .primitives = geometry.primitive_count,
+                                            .materials = geometry.material_count,
+                                            .textures = geometry.texture_count,
+                                            .degenerate_triangles = geometry.degenerate_triangles,
+                                            .computed_normals = geometry.computed_normals,
+                                            .read_s = seconds_since(&since_ns) };
+    bool good = true;
+    if (input->sensor_count) {
+        sensors = mem_array(input->sensor_count, sizeof(*sensors));
+        distances = mem_try_array(input->sensor_count * (size_t)geometry.vertex_count, sizeof(*distances));
+        good = distances != NULL;
+        if (good)
+            good = measure(log, workers, input, &geometry, sensors, distances, output, why);
+        else
+            snprintf(why, MODEL_WHY_BYTES, "out of memory for %zu sensors on %u vertices", input->sensor_count, geometry.vertex_count);
+    }
+    good = good && lay_out(input, &geometry, sensors, distances, output, why);
+    mem_free(sensors);
+    mem_free(distances);
+    geometry_finish(&geometry);
+    if (!good) {
+        free(output->bytes);
+        output->bytes = NULL;
+    }
+    return good;
+}

@@ -1,0 +1,150 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Keeping the folder of prepared files. */
+#include "preprocess/folder.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <jansson.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "base/mem.h"
+#include "base/text.h"
+
+#define KEY_DIGITS 16
+#define MANIFEST "manifest.json"
+#define MANIFEST_MAX_BYTES ((size_t)64 << 20)
+
+char *folder_file_name(uint64_t key)
+{
+    return mem_printf("%016" PRIx64 ".asset", key);
+}
+
+static char *path_of(const char *folder, uint64_t key)
+{
+    return mem_printf("%s/%016" PRIx64 ".asset", folder, key);
+}
+
+int folder_open(struct folder_file *file, const char *folder, uint64_t key, char why[200])
+{
+    struct stat st;
+    char *path = path_of(folder, key);
+    int fd = open(path, O_RDONLY | O_CLOEXEC), result = -1;
+    *file = (struct folder_file){ 0 };
+    mem_free(path);
+    if (fd < 0 && errno == ENOENT)
+        return 0;
+    if (fd < 0 || fstat(fd, &st) != 0) {
+        snprintf(why, 200, "%s", strerror(errno));
+        goto done;
+    }
+    if (!S_ISREG(st.st_mode) || st.st_size == 0) {
+        snprintf(why, 200, "%s", S_ISREG(st.st_mode) ? "truncated: 0 bytes" : "not a file");
+        goto done;
+    }
+    file->size = (size_t)st.st_size;
+    file->bytes = mmap(NULL, file->size, PROT_READ, MAP_PRIVATE, fd, 0);
+    if (file->bytes == MAP_FAILED) {
+        file->bytes = NULL;
+        snprintf(why, 200, "%s", strerror(errno));
+        goto done;
+    }
+    if (!asset_view_init(&file->view, file->bytes, file->size, why))
+        goto done;
+    if (file->view.header->key != key) {
+        snprintf(why, 200, "holds key %016" PRIx64, file->view.header->key);
+        goto done;
+    }
+    result = 1;
+done:
+    if (fd >= 0)
+        close(fd);
+    if (result < 0)
+        folder_close(file);
+    return result;
+}
+
+void folder_close(struct folder_file *file)
+{
+    if (file->bytes)
+        munmap(file->bytes, file->size);
+    *file = (struct folder_file){ 0 };
+}
+
+int folder_write(const char *folder, uint64_t key, const void *bytes, size_t size)
+{
+    char *path = path_of(folder, key);
+    int status = text_write_file(path, bytes, size);
+    mem_free(path);
+    return status;
+}
+
+static char *manifest_text(const struct folder_entry *entries, size_t count)
+{
+    json_t *assets = json_array(), *root = json_pack("{s:i, s:o}", "format", 1, "assets", assets);
+    for (size_t i = 0; i < count; i++) {
+        char key[KEY_DIGITS + 1], *file = folder_file_name(entries[i].key);
+        snprintf(key, sizeof(key), "%016" PRIx64, entries[i].key);
+        json_array_append_new(assets, json_pack("{s:s, s:s, s:s}", "id", entries[i].id, "file", file, "key", key));
+        mem_free(file);
+    }
+    char *text = json_dumps(root, JSON_INDENT(1));
+    json_decref(root);
+    return text;
+}
+
+static bool named(const char *name, const struct folder_entry *entries, size_t count)
+{
+    uint64_t key = strtoull(name, NULL, 16);
+    for (size_t i = 0; i < count; i++)
+        if (entries[i].key == key)
+            return true;
+    return false;
+}
+
+/* 16 hexadecimal digits and `.asset`, with nothing behind or with what an interrupted write left. */
+static bool is_asset_name(const char *name)
+{
+    if (strspn(name, "0123456789abcdef") != KEY_DIGITS || strncmp(name + KEY_DIGITS, ".asset", 6) != 0)
+        return false;
+    const char *rest = name + KEY_DIGITS + 6;
+    return rest[0] == 0 || (strlen(rest) > 4 && strcmp(rest + strlen(rest) - 4, ".new") == 0);
+}
+
+static void remove_unnamed(const char *folder, const struct folder_entry *entries, size_t count, size_t *removed)
+{
+    DIR *dir = opendir(folder);
+    const struct dirent *entry;
+    while (dir && (entry = readdir(dir)) != NULL) {
+        size_t length = strlen(entry->d_name);
+        bool whole = length == KEY_DIGITS + 6;
+        if (!is_asset_name(entry->d_name) || (whole && named(entry->d_name, entries, count)))
+            continue;
+        if (unlinkat(dirfd(dir), entry->d_name, 0) == 0)
+            ++*removed;
+    }
+    if (dir)
+        closedir(dir);
+}
+
+int folder_finish(const char *folder, const struct folder_entry *entries, size_t count, size_t *removed)
+{
+    char *path = mem_printf("%s/" MANIFEST, folder), *text = manifest_text(entries, count);
+    size_t size = 0;
+    char *old = text_read_file(path, MANIFEST_MAX_BYTES, &size);
+    int status = text ? 0 : -ENOMEM;
+    if (text && (!old || size != strlen(text) || memcmp(old, text, size) != 0))
+        status = text_write_file(path, text, strlen(text));
+    if (status == 0)
+        remove_unnamed(folder, entries, count, removed);
+    mem_free(old);
+    free(text);
+    mem_free(path);
+    return status;
+}

@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The folder of prepared files: KEY.asset files and manifest.json (protocol/ASSET.md). */
+#ifndef PREPROCESS_FOLDER_H
+#define PREPROCESS_FOLDER_H
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "protocol/asset_format.h"
+
+/* A file mapped for reading. */
+struct folder_file {
+    void *bytes;
+    size_t size;
+    struct asset_view view;
+};
+
+/* KEY.asset. Free with mem_free. */
+char *folder_file_name(uint64_t key);
+
+/* 1: there is a whole file with this key (file holds it until folder_close). 0: there is none. -1: there is one, and why says why it is no
+   good. */
+int folder_open(struct folder_file *file, const char *folder, uint64_t key, char why[200]);
+void folder_close(struct folder_file *file);
+
+/* Writes KEY.asset. 0 or -errno. */
+int folder_write(const char *folder, uint64_t key, const void *bytes, size_t size);
+
+struct folder_entry {
+    const char *id;
+    uint64_t key;
+};
+/* Writes the manifest unless it says the same already, then removes asset files that it does not name. 0 or -errno; *removed counts. */
+int folder_finish(const char *folder, const struct folder_entry *entries, size_t count, size_t *removed);
+
+#endif

@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One asset cut out of a model: the nodes that a pattern names with their sub-trees, in the asset frame, ready to be drawn. */
+#ifndef PREPROCESS_GEOMETRY_H
+#define PREPROCESS_GEOMETRY_H
+#include "base/text.h"
+#include "plant/plant.h"
+#include "preprocess/gltf_shim.h"
+
+struct geometry {
+    double origin_m[3];      /* the middle of its box; positions are relative to it */
+    float (*positions_m)[3];
+    float (*normals)[3];
+    float (*texcoords)[2];   /* NULL: no part has any */
+    uint8_t (*colors)[4];    /* NULL: likewise */
+    uint32_t *indices;
+    struct asset_primitive *primitives;
+    struct asset_material *materials;
+    struct asset_texture *textures;
+    uint8_t *texels;
+    struct text names;
+    uint32_t vertex_count, index_count, primitive_count, material_count, texture_count;
+    size_t texel_bytes;
+    uint32_t node_count, degenerate_triangles, computed_normals; /* said in the report; computed_normals: primitives that had none */
+};
+
+struct geometry_params {
+    const char *nodes;       /* pattern (fnmatch); NULL: all */
+    double unit_m;
+    enum axis up;
+};
+
+/* False: why says what is wrong; nothing to finish. */
+bool geometry_cut(struct geometry *geometry, const struct gltf_model *model, const struct geometry_params *params, char why[MODEL_WHY_BYTES]);
+void geometry_finish(struct geometry *geometry);
+
+/* The place of a node, in the asset frame: the middle of the box around its sub-tree's meshes, else its origin. Nodes inside the asset are
+   preferred to others of the same name. False: no node has this name. */
+bool geometry_node_place(const struct gltf_model *model, const struct geometry_params *params, const char *name, double place_m[3]);
+
+#endif

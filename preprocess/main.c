@@ -1,0 +1,132 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* plantcast-prep: from CAD models to the files that plantcastd maps. */
+#include <getopt.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "preprocess/distances.h"
+#include "preprocess/report.h"
+
+static const char usage[] =
+    "usage: plantcast-prep PLANT.yaml [--output DIR] [--report text|json]\n"
+    "       plantcast-prep distances PLANT.yaml --asset ID --sensor TAG [--output DIR]\n"
+    "\n"
+    "Prepares the models that a plant file names: triangles cut out, sensors dropped onto them, and the distance along the surface from every\n"
+    "sensor to every vertex. What has not changed since the last time is left as it is.\n"
+    "\n"
+    "  --output DIR    where the prepared files go (default: `prepared` beside the plant file)\n"
+    "  --report KIND   what is printed at the end (default: text); json goes to standard output, progress to standard error\n"
+    "  --asset ID      asset of the table\n"
+    "  --sensor TAG    tag whose distances are printed, as CSV: x,y,z,geodesic_m,euclidean_m (plant frame, metres)\n"
+    "  --help          this text\n"
+    "\n"
+    "Exit status: 0 good, 1 something is wrong with the input or the disk, 2 wrong use.\n";
+
+struct options {
+    bool distances, json, help;
+    const char *plant, *output, *asset, *sensor;
+};
+
+static int wrong_use(const char *what, const char *about)
+{
+    fprintf(stderr, "plantcast-prep: %s%s\n\n%s", what, about, usage);
+    return 2;
+}
+
+/* 0, or the exit status. */
+static int read_options(int argc, char **argv, struct options *options)
+{
+    static const struct option known[] = { { "output", required_argument, NULL, 'o' }, { "report", required_argument, NULL, 'r' },
+                                           { "asset", required_argument, NULL, 'a' },  { "sensor", required_argument, NULL, 's' },
+                                           { "help", no_argument, NULL, 'h' },         { 0 } };
+    int c;
+    while ((c = getopt_long(argc, argv, "ho:r:", known, NULL)) != -1) {
+        switch (c) {
+        case 'o': options->output = optarg; break;
+        case 'a': options->asset = optarg; break;
+        case 's': options->sensor = optarg; break;
+        case 'h': options->help = true; break;
+        case 'r':
+            if (strcmp(optarg, "json") != 0 && strcmp(optarg, "text") != 0)
+                return wrong_use("--report is text or json, not ", optarg);
+            options->json = strcmp(optarg, "json") == 0;
+            break;
+        default: return wrong_use("", "the option is not known");
+        }
+    }
+    if (options->help)
+        return 0;
+    if (optind < argc && strcmp(argv[optind], "distances") == 0) {
+        options->distances = true;
+        optind++;
+    }
+    if (optind >= argc)
+        return wrong_use("", "no plant file is named");
+    options->plant = argv[optind++];
+    if (optind < argc)
+        return wrong_use("too many arguments: ", argv[optind]);
+    if (options->distances && (!options->asset || !options->sensor))
+        return wrong_use("", "distances needs --asset and --sensor");
+    if (!options->distances && (options->asset || options->sensor))
+        return wrong_use("", "--asset and --sensor belong to distances");
+    return 0;
+}
+
+static bool run_distances(const struct options *options, struct log *log, struct workers *workers, const struct plant *plant, const char *folder,
+                          struct diag *diag)
+{
+    struct prepare prepare;
+    int asset = plant_find_asset(plant, options->asset), tag = plant_find_tag(plant, options->sensor);
+    if (asset < 0)
+        diag_error(diag, plant->path, 0, 0, "there is no asset %s", options->asset);
+    if (tag < 0)
+        diag_error(diag, plant->tags_path, 0, 0, "there is no tag %s", options->sensor);
+    if (asset < 0 || tag < 0)
+        return false;
+    struct prepare_params params = { .folder = folder, .only = options->asset };
+    bool good = prepare_run(&prepare, log, workers, plant, &params, diag) && distances_print(&prepare, folder, asset, tag, stdout, diag);
+    prepare_finish(&prepare);
+    return good;
+}
+
+static bool run_all(const struct options *options, struct log *log, struct workers *workers, const struct plant *plant, const char *folder, struct diag *diag)
+{
+    struct prepare prepare;
+    struct prepare_params params = { .folder = folder, .progress = stderr };
+    bool good = prepare_run(&prepare, log, workers, plant, &params, diag);
+    if (options->json)
+        good = report_json(&prepare, stdout) && good;
+    else
+        report_text(&prepare, stdout);
+    prepare_finish(&prepare);
+    return good;
+}
+
+int main(int argc, char **argv)
+{
+    struct options options = { 0 };
+    struct diag diag = { 0 };
+    int status = read_options(argc, argv, &options);
+    if (status != 0)
+        return status;
+    if (options.help) {
+        fputs(usage, stdout);
+        return 0;
+    }
+    struct log *log = log_create(LOG_INFO);
+    struct plant *plant = plant_load(options.plant, &diag);
+    bool good = plant != NULL;
+    if (plant) {
+        struct workers *workers = workers_create(0);
+        char *folder = options.output ? mem_strdup(options.output) : plant_prepared_folder(plant);
+        good = (options.distances ? run_distances : run_all)(&options, log, workers, plant, folder, &diag);
+        mem_free(folder);
+        workers_destroy(&workers);
+    }
+    diag_print(&diag, stderr);
+    diag_finish(&diag);
+    plant_destroy(&plant);
+    log_destroy(&log);
+    return good && fflush(stdout) == 0 ? 0 : 1;
+}
