@@ -33,3 +33,16 @@ bench: test-deps
 	@tests/bench/run $(out) $(bin)
 
 .PHONY: checked tests unit gpu
+
+# `make fuzz seconds=600`: each fuzzer in turn, from its seeds in tests/fuzz/NAME; what it finds is written to build/.
+seconds ?= 60
+fuzzers := $(patsubst tests/%.c,$(out)/tests/%,$(wildcard tests/fuzz/*_fuzz.c))
+fuzz:
+	@$(MAKE) --no-print-directory config=fuzz CC=clang build=$(build)/clang fuzzed
+fuzzed: $(fuzzers)
+	@for f in $(fuzzers); do seeds=$$(basename $$f _fuzz); mkdir -p $(out)/corpus/$$seeds; \
+	    $$f -max_total_time=$(seconds) -timeout=10 -artifact_prefix=$(out)/ $(out)/corpus/$$seeds tests/fuzz/$$seeds || exit 1; done
+$(out)/tests/fuzz/%: $(out)/obj/tests/fuzz/%.o $(support) $(archives)
+	@mkdir -p $(@D); echo "  LINK $@"
+	@$(CXX) $(ldflags) -fsanitize=fuzzer -o $@ $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group $(pkg_libs) -lcmocka
+.PHONY: fuzz fuzzed
