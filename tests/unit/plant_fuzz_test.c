@@ -10,7 +10,7 @@
 #include "base/text.h"
 
 #define SEEDS "tests/fuzz/plant"
-enum { CHANGED = 400, MAX_BYTES = 1 << 16 };
+enum { CHANGED = 200, MAX_BYTES = 1 << 16 };
 
 /* Flips, drops, doubles or moves a piece, as a careless editor would. Returns the new length. */
 static size_t change(uint8_t *bytes, size_t count, size_t room)

@@ -200,7 +200,9 @@ static void the_locale_changes_nothing(void **state)
         skip();
     }
     assert_string_equal(localeconv()->decimal_point, ",");
-    plant_case_load(f, "plant: { name: P }\nassets: [{ id: A, model: m.glb }]\ngroups: [{ id: g, unit: K, min: 0.25, max: 1.5 }]\ntags: tags.csv\n",
+    plant_case_load(f,
+         "plant: { name: P }\nassets: [{ id: A, model: m.glb }]\n"
+         "groups: [{ id: g, unit: K, min: 0.25, max: 1.5 }]\ntags: tags.csv\n",
          "Tag Name,L\nT,0.5\n");
     setlocale(LC_NUMERIC, "C");
     plant_case_assert_loaded(f, 0);

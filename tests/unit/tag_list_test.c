@@ -207,10 +207,12 @@ static void numbers_have_ranges_and_limits_rise(void **state)
                     "F,40001,temp,E-101,N,,,,,,hot,\n");
     assert_null(c->plant);
     FOUND(c, { "tags.csv", 2, 22, "Scan Rate: expected a number from 10 to 86400000, found '5'" },
-          { "tags.csv", 3, 23, "Stale s: expected a number from 0.001" }, { "tags.csv", 3, 25, "Strength: expected a number from 0 to 100" },
+          { "tags.csv", 3, 23, "Stale s: expected a number from 0.001" },
+          { "tags.csv", 3, 25, "Strength: expected a number from 0 to 100" },
           { "tags.csv", 4, 28, "LL is 50, but L is 40; expected LL < L < H < HH" },
           { "tags.csv", 5, 25, "LL is 20, but L of the group is 10; expected" },
-          { "tags.csv", 6, 28, "H of the group is 90, but HH is 80; expected" }, { "tags.csv", 7, 27, "H: expected a number, found 'hot'" });
+          { "tags.csv", 6, 28, "H of the group is 90, but HH is 80; expected" },
+          { "tags.csv", 7, 27, "H: expected a number, found 'hot'" });
 }
 
 static void names_are_unique(void **state)
@@ -218,7 +220,8 @@ static void names_are_unique(void **state)
     struct plant_case *c = *state;
     plant_case_load(c, yaml, "Address,Tag Name\n40001,A\n40002,B\n40003,A\n40004,\n40005,A\n");
     assert_null(c->plant);
-    FOUND(c, { "tags.csv", 4, 7, "Tag Name: 'A' is there twice (first at line 2)" }, { "tags.csv", 5, 7, "Tag Name: expected a name, found none" },
+    FOUND(c, { "tags.csv", 4, 7, "Tag Name: 'A' is there twice (first at line 2)" },
+          { "tags.csv", 5, 7, "Tag Name: expected a name, found none" },
           { "tags.csv", 6, 7, "Tag Name: 'A' is there twice (first at line 2)" });
     plant_case_load(c, yaml, "Name,Address\nA,40001\n");
     FOUND(c, { "tags.csv", 1, 1, "the header has no column 'Tag Name'" }, { "tags.csv", 1, 1, "unknown column 'Name' is ignored" });
