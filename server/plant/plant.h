@@ -30,9 +30,9 @@ struct plant_asset {
     char *id, *tag, *description; /* tag defaults to id */
     char *model;                  /* path, relative names resolved against the plant file's folder */
     char *nodes;                  /* glob (fnmatch) on node names; a node that matches brings its whole sub-tree. NULL: the whole model */
-    double unit_m;                /* metres per model unit */
+    double unit_m;                /* metres per model unit, placement's scale taken in */
     enum axis up;                 /* of the model */
-    double placement[16];         /* plant from asset frame, column-major, metres (asset frame: Z up, metres) */
+    double placement[16];         /* plant from asset frame (Z up), column-major; turns and moves only: both are in the same metres */
     bool sensors_in_asset_frame;  /* X, Y, Z of its tags; else plant frame */
     int line;
 };

@@ -118,22 +118,21 @@ static void *make_list(struct yaml_reader *reader, yaml_node_t *node, const char
 
 /* --- assets ----------------------------------------------------------------------------------------------------------------- */
 
-struct placement {
+struct asset_record {
+    struct plant_asset asset;
     double translate_m[3], rotate_deg[3], scale;
 };
 
 static void read_placement(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
     static const struct key keys[] = {
-        { "translate", KEY_POINT, false, offsetof(struct placement, translate_m), -PLANT_MAX_M, PLANT_MAX_M, NULL, NULL },
-        { "rotate_deg", KEY_POINT, false, offsetof(struct placement, rotate_deg), -36000, 36000, NULL, NULL },
-        { "scale", KEY_NUMBER, false, offsetof(struct placement, scale), 1e-6, 1e6, NULL, NULL },
+        { "translate", KEY_POINT, false, offsetof(struct asset_record, translate_m), -PLANT_MAX_M, PLANT_MAX_M, NULL, NULL },
+        { "rotate_deg", KEY_POINT, false, offsetof(struct asset_record, rotate_deg), -36000, 36000, NULL, NULL },
+        { "scale", KEY_NUMBER, false, offsetof(struct asset_record, scale), 1e-6, 1e6, NULL, NULL },
         { 0 }
     };
-    struct placement placement = { .scale = 1 };
     struct yaml_map map;
-    if (yaml_map_read(reader, node, "placement", keys, &placement, &map))
-        transform_compose(placement.translate_m, placement.rotate_deg, placement.scale, ((struct plant_asset *)record)->placement);
+    yaml_map_read(reader, node, "placement", keys, record, &map);
 }
 
 /* Relative names are relative to the plant file. */
@@ -161,21 +160,24 @@ static void check_model(struct yaml_reader *reader, const struct yaml_map *map, 
 static void read_asset(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant, struct plant_asset *asset)
 {
     static const struct key keys[] = {
-        { "id", KEY_NAME, true, offsetof(struct plant_asset, id), 0, 0, NULL, NULL },
-        { "tag", KEY_TEXT, false, offsetof(struct plant_asset, tag), 0, 0, NULL, NULL },
-        { "description", KEY_TEXT, false, offsetof(struct plant_asset, description), 0, 0, NULL, NULL },
-        { "model", KEY_NAME, true, offsetof(struct plant_asset, model), 0, 0, NULL, NULL },
-        { "nodes", KEY_NAME, false, offsetof(struct plant_asset, nodes), 0, 0, NULL, NULL },
-        { "units", KEY_FACTOR, false, offsetof(struct plant_asset, unit_m), 0, 0, unit_choices, NULL },
-        { "up", KEY_CHOICE, false, offsetof(struct plant_asset, up), 0, 0, up_choices, NULL },
+        { "id", KEY_NAME, true, offsetof(struct asset_record, asset.id), 0, 0, NULL, NULL },
+        { "tag", KEY_TEXT, false, offsetof(struct asset_record, asset.tag), 0, 0, NULL, NULL },
+        { "description", KEY_TEXT, false, offsetof(struct asset_record, asset.description), 0, 0, NULL, NULL },
+        { "model", KEY_NAME, true, offsetof(struct asset_record, asset.model), 0, 0, NULL, NULL },
+        { "nodes", KEY_NAME, false, offsetof(struct asset_record, asset.nodes), 0, 0, NULL, NULL },
+        { "units", KEY_FACTOR, false, offsetof(struct asset_record, asset.unit_m), 0, 0, unit_choices, NULL },
+        { "up", KEY_CHOICE, false, offsetof(struct asset_record, asset.up), 0, 0, up_choices, NULL },
         { "placement", KEY_CUSTOM, false, 0, 0, 0, NULL, read_placement },
-        { "sensor_frame", KEY_FLAG, false, offsetof(struct plant_asset, sensors_in_asset_frame), 0, 0, frame_choices, NULL },
+        { "sensor_frame", KEY_FLAG, false, offsetof(struct asset_record, asset.sensors_in_asset_frame), 0, 0, frame_choices, NULL },
         { 0 }
     };
+    struct asset_record record = { .asset = { .unit_m = 1, .up = AXIS_Y, .line = yaml_place(node).line }, .scale = 1 };
     struct yaml_map map;
-    *asset = (struct plant_asset){ .unit_m = 1, .up = AXIS_Y, .line = yaml_place(node).line };
-    memcpy(asset->placement, transform_identity, sizeof(asset->placement));
-    if (!yaml_map_read(reader, node, "an asset", keys, asset, &map))
+    bool is_map = yaml_map_read(reader, node, "an asset", keys, &record, &map);
+    *asset = record.asset;
+    asset->unit_m *= record.scale; /* distances are measured on the model as it stands, not as it was drawn */
+    transform_compose(record.translate_m, record.rotate_deg, asset->placement);
+    if (!is_map)
         return;
     resolve_path(plant, &asset->model);
     if (yaml_map_good(&map, "model"))

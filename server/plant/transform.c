@@ -34,16 +34,16 @@ static void sin_cos_deg(double deg, double *sine, double *cosine)
     *cosine = cos(turn * M_PI / 180);
 }
 
-void transform_compose(const double translate[3], const double rotate_deg[3], double scale, double out[16])
+void transform_compose(const double translate[3], const double rotate_deg[3], double out[16])
 {
     double sx, cx, sy, cy, sz, cz;
     sin_cos_deg(rotate_deg[0], &sx, &cx);
     sin_cos_deg(rotate_deg[1], &sy, &cy);
     sin_cos_deg(rotate_deg[2], &sz, &cz);
     const double m[16] = {
-        scale * cz * cy, scale * sz * cy, scale * -sy, 0,
-        scale * (cz * sy * sx - sz * cx), scale * (sz * sy * sx + cz * cx), scale * cy * sx, 0,
-        scale * (cz * sy * cx + sz * sx), scale * (sz * sy * cx - cz * sx), scale * cy * cx, 0,
+        cz * cy, sz * cy, -sy, 0,
+        cz * sy * sx - sz * cx, sz * sy * sx + cz * cx, cy * sx, 0,
+        cz * sy * cx + sz * sx, sz * sy * cx - cz * sx, cy * cx, 0,
         translate[0], translate[1], translate[2], 1,
     };
     memcpy(out, m, sizeof(m));

@@ -8,8 +8,8 @@ extern const double transform_identity[16];
 
 /* out = a * b; out may be neither. */
 void transform_multiply(const double a[16], const double b[16], double out[16]);
-/* Translate * Rz * Ry * Rx * scale: turned about x, then y, then z. */
-void transform_compose(const double translate[3], const double rotate_deg[3], double scale, double out[16]);
+/* Translate * Rz * Ry * Rx: turned about x, then y, then z. */
+void transform_compose(const double translate[3], const double rotate_deg[3], double out[16]);
 /* Of an affine transform (last row 0 0 0 1). False: it has no inverse. */
 bool transform_invert(const double m[16], double out[16]);
 void transform_point(const double m[16], const double point[3], double out[3]);

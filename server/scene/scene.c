@@ -71,8 +71,6 @@ static void place(struct scene_asset *asset)
     memcpy(to_asset_frame, transform_identity, sizeof(to_asset_frame));
     memcpy(&to_asset_frame[12], header->origin_m, sizeof(header->origin_m));
     transform_multiply(asset->plant->placement, to_asset_frame, asset->placement);
-    asset->scale = sqrt(asset->placement[0] * asset->placement[0] + asset->placement[1] * asset->placement[1] +
-                        asset->placement[2] * asset->placement[2]);
     empty_box(asset->bounds_min_m, asset->bounds_max_m);
     for (int corner = 0; corner < 8; corner++) {
         double point[3];
@@ -91,7 +89,7 @@ static void place_sensor(const struct scene_asset *asset, int column, int tag, s
         position[i] = sensor->position_m[i];
         surface[i] = sensor->surface_m[i];
     }
-    *out = (struct scene_sensor){ .tag = tag, .column = column, .surface_distance_m = sensor->surface_distance_m * asset->scale };
+    *out = (struct scene_sensor){ .tag = tag, .column = column, .surface_distance_m = sensor->surface_distance_m };
     transform_point(asset->placement, position, out->position_m);
     transform_point(asset->placement, surface, out->surface_m);
 }

@@ -21,7 +21,6 @@ struct scene_asset {
     const struct plant_asset *plant;
     struct asset *file;          /* instances share one */
     double placement[16];        /* plant from file positions (origin_m taken in), column-major */
-    double scale;                /* metres in the plant per metre in the file: its distances times this are the plant's */
     double bounds_min_m[3], bounds_max_m[3]; /* plant frame, axis-aligned */
     struct scene_sensor *sensors; /* of every group, in the order of the tag list */
     size_t sensor_count;

@@ -152,7 +152,7 @@ static void sensors_are_given_in_the_asset_frame(void **state)
     plant_case_load(f,
          "plant: { name: P }\n"
          "assets:\n"
-         "- { id: A, model: m.glb, placement: { translate: [1, 0, 0], rotate_deg: [90, 0, 90], scale: 2 } }\n"
+         "- { id: A, model: m.glb, placement: { translate: [1, 0, 0], rotate_deg: [90, 0, 90], scale: 2 }, units: mm }\n"
          "- { id: B, model: m.glb, sensor_frame: asset, placement: { translate: [1, 0, 0] } }\n"
          "groups: [{ id: g, unit: K, min: 0, max: 1 }]\n"
          "sources: [{ id: s, type: modbus, host: h }]\n"
@@ -160,9 +160,10 @@ static void sensors_are_given_in_the_asset_frame(void **state)
          placed_csv);
     plant_case_assert_loaded(f, 0);
     assert_int_equal(plant_sensors(f->plant, 0, &s), 2);
-    /* About x: (x, y, z) -> (x, -z, y); then about z: (x, y, z) -> (-y, x, z); so (a, b, c) -> (c, a, b). Back from (0, 2, 3) / 2. */
-    assert_point(s[0].position_m, 1, 1.5, 0);
+    /* About x: (x, y, z) -> (x, -z, y); then about z: (x, y, z) -> (-y, x, z); so (a, b, c) -> (c, a, b). Back from (0, 2, 3). */
+    assert_point(s[0].position_m, 2, 3, 0); /* larger by the scale, in the same metres */
     assert_true(s[0].tag == 0 && s[0].node_hash == 0 && !s[0].node);
+    assert_float_equal(f->plant->assets[0].unit_m, 2e-3, 1e-15);
     assert_true(s[1].tag == 2 && s[1].node_hash != 0);
     assert_string_equal(s[1].node, "TI");
     mem_free(s);

@@ -23,16 +23,16 @@ static const char plant_text[] =
     "plant: { name: Test%s }\n"
     "assets:\n"
     "- { id: A, model: m.glb }\n"
-    "- { id: B, model: m.glb, placement: { translate: [10, 20, 30], rotate_deg: [0, 0, 90], scale: 2 } }\n"
+    "- { id: B, model: m.glb, placement: { translate: [10, 20, 30], rotate_deg: [0, 0, 90] } }\n"
     "- { id: C, model: m.glb, sensor_frame: asset, placement: { translate: [-5, 0, 0], rotate_deg: [90, 0, 0] } }\n"
     "groups: [{ id: t, unit: K, min: 0, max: 1 }]\n"
     "tags: tags.csv\n";
 
-/* B's places are where those of the asset frame come to lie: (x, y, z) -> (10 - 2y, 20 + 2x, 30 + 2z). */
+/* B's places are where those of the asset frame come to lie: (x, y, z) -> (10 - y, 20 + x, 30 + z). */
 static const char tags_text[] =
     "Tag Name,Group,Asset,Node,X,Y,Z\n"
     "a1,t,A,,1,2,3\n"
-    "b1,t,B,,6,22,36\n"
+    "b1,t,B,,8,21,33\n"
     "c1,t,C,,1,2,3\n"
     "a2,t,A,TI-2,,,\n"
     "b2,t,B,TI-2,,,\n"
@@ -144,18 +144,17 @@ static void everything_is_in_its_place(void **state)
     assert_int_equal(b->sensors[1].column, 1);
     assert_point(a->sensors[0].position_m, 1, 2, 3);
     assert_point(a->sensors[1].position_m, 4, 2, 0);
-    assert_point(b->sensors[0].position_m, 6, 22, 36);
-    assert_point(b->sensors[1].position_m, 6, 28, 30);
-    assert_point(b->sensors[0].surface_m, 6, 22, 35);
-    assert_float_equal(b->sensors[0].surface_distance_m, 1, 1e-6);
-    assert_float_equal(b->scale, 2, 1e-12);
+    assert_point(b->sensors[0].position_m, 8, 21, 33);
+    assert_point(b->sensors[1].position_m, 8, 24, 30);
+    assert_point(b->sensors[0].surface_m, 8, 21, 32.5);
+    assert_float_equal(b->sensors[0].surface_distance_m, 0.5, 1e-6);
     assert_point(c->sensors[0].position_m, -4, -3, 2); /* turned about x: y to z, z to -y */
     assert_point(a->bounds_min_m, 0, 1, 1);
     assert_point(a->bounds_max_m, 4, 2, 3);
-    assert_point(b->bounds_min_m, 6, 20, 32);
-    assert_point(b->bounds_max_m, 8, 28, 36);
+    assert_point(b->bounds_min_m, 8, 20, 31);
+    assert_point(b->bounds_max_m, 9, 24, 33);
     assert_point(scene->bounds_min_m, -5, -3, 1);
-    assert_point(scene->bounds_max_m, 8, 28, 36);
+    assert_point(scene->bounds_max_m, 9, 24, 33);
     scene_destroy(&scene);
     assert_null(scene);
 }
