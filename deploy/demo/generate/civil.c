@@ -23,7 +23,7 @@ static void field(struct mesh *mesh, double x0, double x1, double y0, double y1,
 
 static void slab(struct item *item)
 {
-    const double joint = 0.02;
+    const double joint = 0.014;
     struct mesh *concrete = item_part(item, "slab", MATERIAL_CONCRETE);
     field(item_part(item, "joints", MATERIAL_JOINT), GRADE_WEST_M, GRADE_EAST_M, GRADE_SOUTH_M, GRADE_NORTH_M, -0.025, 3.0);
     for (double x = GRADE_WEST_M; x < GRADE_EAST_M - 0.1; x += PANEL_M)
@@ -37,6 +37,39 @@ static void slab(struct item *item)
     shape_block(concrete, frame_at(0, 0, 0), GRADE_EAST_M, GRADE_EAST_M + 0.15, GRADE_SOUTH_M, GRADE_NORTH_M, -0.4, 0.10);
 }
 
+static void lamp_pole(struct site *site, double x, double y, double towards_deg)
+{
+    struct mesh *steel = item_part(&site->civil, "lamp poles", MATERIAL_GALVANISED);
+    struct frame at = frame_turned(frame_at(x, y, 0), towards_deg);
+    civil_plinth(site, at, -0.25, 0.25, -0.25, 0.25, 0.25);
+    shape_tube(steel, at, 0.075, 0.045, 7.5, 10, 0);
+    shape_bar(steel, frame_point(&at, vec(0, 0, 7.45)), frame_point(&at, vec(0.9, 0, 7.75)), 0.03, 8);
+    shape_block(steel, at, 0.75, 1.35, -0.15, 0.15, 7.70, 7.80);
+    shape_block(item_part(&site->civil, "lamps", MATERIAL_TANK), at, 0.80, 1.30, -0.12, 0.12, 7.685, 7.70);
+}
+
+static void fire_monitor(struct site *site, double x, double y, double towards_deg)
+{
+    struct mesh *red = item_part(&site->civil, "fire monitors", MATERIAL_HANDWHEEL);
+    struct frame at = frame_turned(frame_at(x, y, 0), towards_deg);
+    shape_cylinder(red, at, 0.085, 1.0, 16, 0);
+    shape_cylinder(red, frame_moved(at, 0, 0, 0.55), 0.15, 0.05, 16, 0);
+    shape_cylinder(red, frame_moved(at, 0, 0, 1.0), 0.12, 0.16, 16, 0);
+    struct frame barrel = frame_facing(frame_point(&at, vec(0, 0, 1.12)), frame_dir(&at, vec(0.86, 0, 0.5)), vec(0, 0, 1));
+    shape_tube(red, barrel, 0.075, 0.045, 0.75, 14, 0);
+    shape_torus(red, frame_facing(frame_point(&at, vec(-0.22, 0, 1.08)), at.x, at.z), 0.13, 0.012, 0, 360, 16, 6);
+    shape_bar(red, frame_point(&at, vec(-0.22, 0, 1.08)), frame_point(&at, vec(0, 0, 1.08)), 0.015, 6);
+}
+
+/* A drain channel with a grated cover, along x. */
+static void gutter(struct item *item, double x0, double x1, double y)
+{
+    struct mesh *grate = item_part(item, "gutters", MATERIAL_GALVANISED), *frame = item_part(item, "joints", MATERIAL_JOINT);
+    shape_block(frame, frame_at(0, y, 0), x0, x1, -0.20, 0.20, -0.05, 0.004);
+    for (double x = x0; x < x1 - 0.1; x += 1.0)
+        shape_block(grate, frame_at(x, y, 0), 0.01, fmin(1.0, x1 - x) - 0.01, -0.17, 0.17, -0.02, 0.008);
+}
+
 void civil_build(struct site *site)
 {
     const double around = 4.0;
@@ -47,6 +80,12 @@ void civil_build(struct site *site)
     struct mesh *marks = item_part(&site->civil, "walkway marks", MATERIAL_SAFETY_YELLOW); /* the way along the rack and to the pumps */
     for (int side = 0; side < 2; side++)
         field(marks, GRADE_WEST_M + 1.0, GRADE_EAST_M - 1.0, -0.75 - 1.5 * side, -0.65 - 1.5 * side, 0.006, 2.0);
+    gutter(&site->civil, -19.0, 5.0, -12.3);
+    lamp_pole(site, -20.2, -3.2, 0);
+    lamp_pole(site, 7.2, -1.2, 135);
+    lamp_pole(site, 19.9, -0.6, 180);
+    fire_monitor(site, -19.4, -11.6, 50);
+    fire_monitor(site, 7.6, -2.0, 130);
 }
 
 void civil_kerb(struct site *site, double x0, double x1, double y0, double y1, double height)

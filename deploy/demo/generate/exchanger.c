@@ -31,6 +31,10 @@ static void girth_flanges(struct mesh *mesh, double x, double axis_z, double r, 
     }
     for (int i = 0; i < studs; i++) {
         struct frame stud = frame_moved(frame_turned(at, 360.0 * (i + 0.5) / studs), r + 0.075, 0, 0);
+        if (sides < 64) { /* plain bolts */
+            shape_hexagon(mesh, stud, 0.024, -thick - 0.035, thick + 0.035);
+            continue;
+        }
         shape_cylinder(mesh, frame_moved(stud, 0, 0, -thick - 0.055), 0.013, 2 * (thick + 0.055), 8, 0);
         shape_hexagon(mesh, stud, 0.024, thick - 0.005, thick + 0.03);
         shape_hexagon(mesh, stud, 0.024, -thick - 0.03, -thick + 0.005);
@@ -56,7 +60,7 @@ static void lugs_and_bands(struct mesh *mesh, const struct exchanger_spec *spec)
     int bands = (int)round(spec->length / 0.55);
     for (int i = 0; i <= bands; i++) {
         double x = -half + BARE_M + 0.08 + (spec->length - 2 * BARE_M - 0.16) * i / bands;
-        shape_sector(mesh, along_axis(x, spec->axis_z), spec->r, spec->r + 0.005, -0.012, 0.012, 0, 360, spec->sides);
+        shape_band(mesh, along_axis(x, spec->axis_z), spec->r + 0.006, 0.024, spec->sides);
     }
     struct frame plate = frame_facing(vec(-half * 0.35, -spec->r * 0.94, spec->axis_z + spec->r * 0.34), vec(0, -0.94, 0.34), vec(0, 0, 1));
     shape_block(mesh, plate, -0.09, 0.09, -0.13, 0.13, -0.06, 0.012); /* name plate on its bracket */
@@ -153,6 +157,6 @@ void kettle_build(struct site *site, const char *name, struct frame at)
         civil_plinth(site, at, i * 1.05 - 0.24, i * 1.05 + 0.24, -0.86, 0.86, base_z);
     }
     for (int i = 0; i < 5; i++)
-        shape_sector(item_part(&item, "bands", MATERIAL_STAINLESS), along_axis(x0 + 0.35 + 0.72 * i, axis_z), large, large + 0.005, -0.012, 0.012, 0, 360, sides);
+        shape_band(item_part(&item, "bands", MATERIAL_STAINLESS), along_axis(x0 + 0.35 + 0.72 * i, axis_z), large + 0.007, 0.024, sides);
     item_end(&item);
 }

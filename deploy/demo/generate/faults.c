@@ -84,10 +84,10 @@ static void spoil(struct mesh *mesh, int stride)
     size_t count = mesh->index_count;
     for (size_t i = 0; i + 2 < count; i += 3 * (size_t)stride) {
         mesh_triangle(mesh, mesh->indices[i], mesh->indices[i + 1], mesh->indices[i + 2]);
-        size_t sliver = i + 3 * (size_t)stride / 3;
+        size_t sliver = i + 3 * (size_t)(stride / 3);
         if (sliver + 2 < count)
             cut_sliver(mesh, sliver);
-        for (size_t k = i + 3 * (size_t)stride / 2; k + 2 < count && k < i + 3 * (size_t)stride; k += 3) {
+        for (size_t k = i + 3 * (size_t)(stride / 2); k + 2 < count && k < i + 3 * (size_t)stride; k += 3) {
             if (mesh->vertices[mesh->indices[k]].normal[2] > -0.9f)
                 continue;
             uint32_t swap = mesh->indices[k + 1];

@@ -6,7 +6,7 @@
      unwelded          every hard edge and every joint of two solids has vertices of its own; no two solids share one
      open ends         pipes, necks and bars have no caps; wrapper plates lie on shells without touching them everywhere
      long thin faces   beams, rails and tube caps are two triangles per length or fans from one rim vertex
-   By faults_apply, on some shells (E-101, E-102, T-101, V-101, TK-101, L-101):
+   By faults_apply, on some shells (E-101, E-102, T-101, V-101, TK-101):
      unwelded patch    a patch of a smooth surface whose vertices are doubled: no edge joins it to the rest
      hair gap          such a patch drawn 0.2 to 1 mm to its own middle: the gap is smaller than the eye sees
      repeated faces    some triangles are there twice

@@ -46,7 +46,7 @@ static struct frame facing(double x, double y, double deg)
 
 static void build_exchangers(struct site *site)
 {
-    const struct exchanger_spec feed = { 0.58, 5.4, 1.60, 0.60, 0.110, 0.110, 96, 44, 0.047, MATERIAL_CLADDING };
+    const struct exchanger_spec feed = { 0.58, 5.4, 1.60, 0.60, 0.110, 0.110, 96, 44, 0.0375, MATERIAL_CLADDING };
     const struct exchanger_spec trim = { 0.46, 4.2, STRUCTURE_HIGH_M + 1.0, STRUCTURE_HIGH_M, 0.084, 0.110, 48, 20, 0.13, MATERIAL_VESSEL };
     const struct exchanger_spec low = { 0.44, 4.0, 1.30, 0.50, 0.084, 0.084, 48, 20, 0.13, MATERIAL_CLADDING };
     const struct exchanger_spec high = { 0.44, 4.0, 1.30, 0.50, 0.084, 0.084, 48, 20, 0.13, MATERIAL_VESSEL };
@@ -80,7 +80,7 @@ static void build_pumps(struct site *site)
 void layout_build(struct site *site)
 {
     const struct column_spec column = { 0.85, 3.0, 20.0 };
-    const struct tank_spec feed_tank = { 2.9, 7.2, 150 }, distillate_tank = { 2.3, 5.6, 165 };
+    const struct tank_spec feed_tank = { 2.9, 7.2, 240 }, distillate_tank = { 2.3, 5.6, 246 };
     civil_build(site);
     rack_build(site, "PR-101");
     structure_build(site, "ST-101");

@@ -15,11 +15,15 @@
 #define SLEEPER_Y_M -11.3 /* low pipes along the south edge */
 
 /* A run along the rack from x0 to x1, its underside 0.1 m above the steel, on shoes. */
-static void rack_run(struct site *site, struct item *item, double y, double steel_z, double x0, double x1, double r, enum material material, double insulation)
+static void rack_run(struct site *site, struct item *item, double y, double steel_z, double x0, double x1, double r, enum material material,
+                     double insulation, double step_m)
 {
     double z = steel_z + 0.1 + r + insulation;
     struct pipe pipe = pipe_from_point(site, item, vec(x0, y, z), r, material, insulation);
+    pipe.step_m = step_m;
     pipe_go(&pipe, "x", vec(x1, y, z));
+    pipe_blind_first(&pipe);
+    pipe_blind_last(&pipe);
     pipe_end(&pipe);
     for (int i = 0; i < RACK_BENT_COUNT; i++) {
         double x = RACK_BENT_M * (i - (RACK_BENT_COUNT - 1) / 2.0);
@@ -141,7 +145,7 @@ static void reflux_lines(struct site *site)
     pipe_into_nozzle(&product, "yxz", "E-105/N3");
     pipe_end(&product);
     struct pipe rundown = pipe_from_nozzle(site, &item, "E-105/N4", 0.057, MATERIAL_PIPE, 0);
-    pipe_go(&rundown, "xy", vec(-7.3, SLEEPER_Y_M - 0.55, 0));
+    pipe_go(&rundown, "xy", vec(-7.3, SLEEPER_Y_M + 0.35, 0));
     pipe_go(&rundown, "x", vec(6.5, 0, 0));
     posts_along(&rundown, 2.0, 3.2, 4);
     pipe_go(&rundown, "y", vec(0, -6.75, 0));
@@ -154,7 +158,7 @@ static void bottoms_lines(struct site *site)
 {
     struct item item = item_begin(&site->model, "L-104", frame_at(0, 0, 0));
     struct pipe feed = pipe_from_nozzle(site, &item, "T-101/N5", 0.110, MATERIAL_PIPE, HOT_M);
-    pipe_go(&feed, "zy", vec(0, 1.9, 0.40));
+    pipe_go(&feed, "zy", vec(0, 5.2, 0.40)); /* north of the kettle; its suction line leaves to the south */
     pipe_go(&feed, "x", vec(-15.65, 0, 0));
     pipe_into_nozzle(&feed, "xyz", "E-102/N4");
     pipe_end(&feed);
@@ -195,10 +199,11 @@ static void bottoms_lines(struct site *site)
     pipe_go(&product, "x", vec(-10.1, 0, 0));
     pipe_go(&product, "y", vec(0, -6.0, 0));
     pipe_control_valve(&product, 1.0, UP);
-    pipe_go(&product, "yx", vec(-11.0, -3.2, 0));
+    pipe_go(&product, "yxz", vec(-11.0, -3.6, 1.2)); /* over the suction and reboiler lines */
     pipe_go(&product, "y", vec(0, 8.2, 0));
     posts_along(&product, 1.6, 2.8, 3);
     pipe_go(&product, "zx", vec(-BATTERY_LIMIT_M, 0, 4.47));
+    pipe_blind_last(&product);
     pipe_end(&product);
     item_end(&item);
 }
@@ -222,6 +227,7 @@ static void offgas_lines(struct site *site)
     pipe_gate_valve(&discharge, 0.8, SOUTH);
     pipe_go(&discharge, "y", vec(0, 8.0, 0));
     pipe_go(&discharge, "zx", vec(BATTERY_LIMIT_M, 0, RACK_HIGH_M + 0.22));
+    pipe_blind_last(&discharge);
     pipe_end(&discharge);
     item_end(&item);
 }
@@ -243,8 +249,8 @@ static void water_riser(struct site *site, struct item *item, const char *supply
 static void water_lines(struct site *site)
 {
     struct item item = item_begin(&site->model, "L-106", frame_at(0, 0, 0));
-    rack_run(site, &item, 9.2, RACK_LOW_M, -BATTERY_LIMIT_M, 16.0, 0.162, MATERIAL_COOLING_WATER, 0);
-    rack_run(site, &item, 9.9, RACK_LOW_M, -BATTERY_LIMIT_M, 16.0, 0.162, MATERIAL_COOLING_WATER, 0);
+    rack_run(site, &item, 9.2, RACK_LOW_M, -BATTERY_LIMIT_M, 16.0, 0.162, MATERIAL_COOLING_WATER, 0, 0.8);
+    rack_run(site, &item, 9.9, RACK_LOW_M, -BATTERY_LIMIT_M, 16.0, 0.162, MATERIAL_COOLING_WATER, 0, 0.8);
     water_riser(site, &item, "E-104/N1", "E-104/N2", -11.6, -9.0);
     water_riser(site, &item, "E-105/N1", "E-105/N2", -8.6, -9.0);
     struct pipe supply = pipe_from_nozzle(site, &item, "E-103/N1", 0.084, MATERIAL_COOLING_WATER, 0);
@@ -264,7 +270,7 @@ static void steam_lines(struct site *site)
 {
     struct item item = item_begin(&site->model, "L-107", frame_at(0, 0, 0));
     const double z = RACK_HIGH_M + 0.1 + 0.110 + HOT_M, x = model_nozzle(&site->model, "E-102/N1")->at.o.x;
-    rack_run(site, &item, 8.0, RACK_HIGH_M, -BATTERY_LIMIT_M, 12.6, 0.110, MATERIAL_PIPE, HOT_M);
+    rack_run(site, &item, 8.0, RACK_HIGH_M, -BATTERY_LIMIT_M, 12.6, 0.110, MATERIAL_PIPE, HOT_M, 0.8);
     struct pipe drop = pipe_from_point(site, &item, vec(x, 8.0, z), 0.084, MATERIAL_PIPE, HOT_M);
     pipe_go(&drop, "zy", vec(0, 3.6, z + 0.6));
     pipe_into_nozzle(&drop, "xyz", "E-102/N1");
@@ -273,6 +279,7 @@ static void steam_lines(struct site *site)
     struct pipe condensate = pipe_from_nozzle(site, &item, "E-102/N2", 0.045, MATERIAL_PIPE, 0.04);
     pipe_go(&condensate, "xy", vec(-18.7, 8.9, 0));
     pipe_go(&condensate, "zx", vec(-BATTERY_LIMIT_M, 0, RACK_LOW_M + 0.19));
+    pipe_blind_last(&condensate);
     pipe_end(&condensate);
     item_end(&item);
 }
@@ -281,12 +288,12 @@ static void steam_lines(struct site *site)
 static void passing_lines(struct site *site)
 {
     struct item item = item_begin(&site->model, "L-108", frame_at(0, 0, 0));
-    rack_run(site, &item, 10.7, RACK_LOW_M, -BATTERY_LIMIT_M, BATTERY_LIMIT_M, 0.084, MATERIAL_PIPE, 0);
-    rack_run(site, &item, 11.3, RACK_LOW_M, -BATTERY_LIMIT_M, BATTERY_LIMIT_M, 0.057, MATERIAL_STAINLESS, 0);
-    rack_run(site, &item, 8.8, RACK_HIGH_M, -BATTERY_LIMIT_M, BATTERY_LIMIT_M, 0.110, MATERIAL_PIPE, HOT_M);
-    rack_run(site, &item, 9.5, RACK_HIGH_M, -BATTERY_LIMIT_M, BATTERY_LIMIT_M, 0.070, MATERIAL_PIPE, HOT_M);
-    rack_run(site, &item, 10.2, RACK_HIGH_M, -BATTERY_LIMIT_M, BATTERY_LIMIT_M, 0.084, MATERIAL_PIPE, 0);
-    rack_run(site, &item, 10.8, RACK_HIGH_M, -BATTERY_LIMIT_M, BATTERY_LIMIT_M, 0.045, MATERIAL_PIPE, 0);
+    rack_run(site, &item, 10.7, RACK_LOW_M, -BATTERY_LIMIT_M, BATTERY_LIMIT_M, 0.084, MATERIAL_PIPE, 0, 6.0);
+    rack_run(site, &item, 11.3, RACK_LOW_M, -BATTERY_LIMIT_M, BATTERY_LIMIT_M, 0.057, MATERIAL_STAINLESS, 0, 6.0);
+    rack_run(site, &item, 8.8, RACK_HIGH_M, -BATTERY_LIMIT_M, BATTERY_LIMIT_M, 0.110, MATERIAL_PIPE, HOT_M, 6.0);
+    rack_run(site, &item, 9.5, RACK_HIGH_M, -BATTERY_LIMIT_M, BATTERY_LIMIT_M, 0.070, MATERIAL_PIPE, HOT_M, 6.0);
+    rack_run(site, &item, 10.2, RACK_HIGH_M, -BATTERY_LIMIT_M, BATTERY_LIMIT_M, 0.084, MATERIAL_PIPE, 0, 6.0);
+    rack_run(site, &item, 10.8, RACK_HIGH_M, -BATTERY_LIMIT_M, BATTERY_LIMIT_M, 0.045, MATERIAL_PIPE, 0, 6.0);
     item_end(&item);
 }
 

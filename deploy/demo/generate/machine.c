@@ -8,7 +8,8 @@ void machine_motor(struct item *item, struct frame at, double r, double length, 
 {
     struct mesh *body = item_part(item, "motor", MATERIAL_MOTOR);
     const double cowl = length * 0.22, fin = r * 0.11;
-    const int sides = 36;
+    const bool small = r < 0.2; /* seen from afar only */
+    const int sides = small ? 16 : 36;
     struct profile profile = { 0 };
     profile_edge(&profile, r * 0.18, -0.02);
     profile_edge(&profile, r * 0.30, 0.0);
@@ -24,9 +25,9 @@ void machine_motor(struct item *item, struct frame at, double r, double length, 
     profile_edge(&profile, r * 1.05, length - cowl * 0.25);
     profile_smooth(&profile, r * 0.98, length - cowl * 0.06);
     profile_edge(&profile, r * 0.80, length);
-    shape_revolve(body, at, &profile, sides, r * 0.22);
+    shape_revolve(body, at, &profile, sides, small ? 0 : r * 0.22);
     shape_cylinder(item_part(item, "grilles", MATERIAL_BLACK), frame_moved(at, 0, 0, length - 0.02), r * 0.82, 0.018, sides, 0);
-    for (int i = 0; i < sides; i++) {
+    for (int i = 0; i < sides && !small; i++) {
         double deg = 360.0 * (i + 0.5) / sides;
         if (fabs(deg - 180.0) < 28.0) /* the feet are there */
             continue;

@@ -7,7 +7,6 @@
 #include "fitting.h"
 #include "shape.h"
 
-#define STEP_M 0.5
 #define STATION_MAX 512
 
 static void push(struct pipe *pipe, struct vec point)
@@ -49,7 +48,7 @@ static void mating_flange(struct pipe *pipe, const struct model_nozzle *nozzle)
 
 struct pipe pipe_from_point(struct site *site, struct item *item, struct vec point, double r, enum material material, double insulation)
 {
-    struct pipe pipe = { .site = site, .item = item, .material = material, .r = r, .insulation = insulation };
+    struct pipe pipe = { .site = site, .item = item, .material = material, .r = r, .insulation = insulation, .step_m = 0.5 };
     push(&pipe, point);
     return pipe;
 }
@@ -91,13 +90,21 @@ static struct frame on_last_leg(const struct pipe *pipe, double along, struct ve
     return frame_facing(vec_along(a, dir, along), dir, x);
 }
 
+static void open_cladding(struct pipe *pipe, struct vec centre)
+{
+    assert(pipe->gap_count < 4);
+    pipe->gaps[pipe->gap_count++] = (struct pipe_gap){ centre, fitting_valve_length(pipe->r) / 2 + 0.12 };
+}
+
 void pipe_gate_valve(struct pipe *pipe, double along, struct vec wheel)
 {
+    open_cladding(pipe, on_last_leg(pipe, along, wheel).o);
     fitting_gate_valve(pipe->item, on_last_leg(pipe, along, wheel), pipe->r);
 }
 
 void pipe_control_valve(struct pipe *pipe, double along, struct vec actuator)
 {
+    open_cladding(pipe, on_last_leg(pipe, along, actuator).o);
     fitting_control_valve(pipe->item, on_last_leg(pipe, along, actuator), pipe->r);
 }
 
@@ -113,6 +120,22 @@ void pipe_post(struct pipe *pipe, double along)
 {
     struct frame at = on_last_leg(pipe, along, vec(0, 0, 1));
     fitting_post(pipe->item, vec(at.o.x, at.o.y, at.o.z - pipe->r - pipe->insulation), pipe->r);
+}
+
+static void blind(struct pipe *pipe, struct vec end, struct vec dir)
+{
+    double r = fitting_flange_radius(pipe->r), thick = fitting_flange_thickness(pipe->r);
+    shape_cylinder(bare_mesh(pipe), frame_moved(frame_facing(end, dir, vec(0, 0, 1)), 0, 0, -thick), r, 2 * thick, 20, 0);
+}
+
+void pipe_blind_first(struct pipe *pipe)
+{
+    blind(pipe, pipe->points[0], vec_sub(pipe->points[0], pipe->points[1]));
+}
+
+void pipe_blind_last(struct pipe *pipe)
+{
+    blind(pipe, pipe->points[pipe->count - 1], vec_sub(pipe->points[pipe->count - 1], pipe->points[pipe->count - 2]));
 }
 
 struct track { /* the centre line, finely */
@@ -131,10 +154,10 @@ static void track_push(struct track *track, struct vec centre, struct vec tangen
     track->stations[track->count++] = (struct station){ centre, tangent };
 }
 
-static void track_straight(struct track *track, struct vec from, struct vec to)
+static void track_straight(struct track *track, struct vec from, struct vec to, double step_m)
 {
     struct vec d = vec_sub(to, from), dir = vec_unit(d);
-    int pieces = (int)fmax(1.0, ceil(vec_length(d) / STEP_M));
+    int pieces = (int)fmax(1.0, ceil(vec_length(d) / step_m));
     for (int i = 0; i <= pieces; i++)
         track_push(track, vec_along(from, d, (double)i / pieces), dir);
 }
@@ -169,7 +192,7 @@ static void track_build(struct track *track, const struct pipe *pipe)
         const struct vec *corner = pipe->points + i;
         struct vec dir = vec_unit(vec_sub(corner[0], corner[-1]));
         double cut = i + 1 < pipe->count ? bend_cut(corner, pipe->r) : 0.0;
-        track_straight(track, from, vec_along(corner[0], dir, -cut));
+        track_straight(track, from, vec_along(corner[0], dir, -cut), pipe->step_m);
         if (i + 1 == pipe->count)
             break;
         track_bend(track, corner, pipe->r);
@@ -189,7 +212,7 @@ static struct station track_at(const struct track *track, double at_m)
 
 static int pipe_sides(double r)
 {
-    return r < 0.04 ? 10 : r < 0.07 ? 14 : r < 0.13 ? 18 : r < 0.19 ? 22 : 26;
+    return r < 0.04 ? 10 : r < 0.07 ? 14 : r < 0.13 ? 18 : 20;
 }
 
 static void sweep_between(struct mesh *mesh, const struct track *track, double from_m, double to_m, double r)
@@ -212,6 +235,29 @@ static void cladding_end(struct mesh *mesh, struct station at, double sign, doub
     shape_revolve(mesh, frame_facing(at.centre, vec_scale(at.tangent, sign), vec(0, 0, 1)), &profile, pipe_sides(r + thick), 0);
 }
 
+static double track_nearest(const struct track *track, struct vec point)
+{
+    double best = INFINITY, at_m = 0.0;
+    for (double m = 0.0; m < track->at_m[track->count - 1]; m += 0.02) {
+        double distance = vec_length(vec_sub(track_at(track, m).centre, point));
+        if (distance < best) {
+            best = distance;
+            at_m = m;
+        }
+    }
+    return at_m;
+}
+
+static void clad(struct pipe *pipe, const struct track *track, double from_m, double to_m)
+{
+    if (to_m - from_m < 0.05)
+        return;
+    struct mesh *cladding = item_part(pipe->item, "cladding", MATERIAL_CLADDING);
+    sweep_between(cladding, track, from_m, to_m, pipe->r + pipe->insulation);
+    cladding_end(cladding, track_at(track, from_m), -1, pipe->r, pipe->insulation);
+    cladding_end(cladding, track_at(track, to_m), 1, pipe->r, pipe->insulation);
+}
+
 void pipe_end(struct pipe *pipe)
 {
     struct track track = { .count = 0 };
@@ -222,10 +268,14 @@ void pipe_end(struct pipe *pipe)
         sweep_between(bare, &track, 0, length, pipe->r);
         return;
     }
-    struct mesh *cladding = item_part(pipe->item, "cladding", MATERIAL_CLADDING);
-    sweep_between(bare, &track, 0, open + 0.02, pipe->r);
-    sweep_between(bare, &track, length - open - 0.02, length, pipe->r);
-    sweep_between(cladding, &track, open, length - open, pipe->r + pipe->insulation);
-    cladding_end(cladding, track_at(&track, open), -1, pipe->r, pipe->insulation);
-    cladding_end(cladding, track_at(&track, length - open), 1, pipe->r, pipe->insulation);
+    double bare_from = 0.0, clad_from = open;
+    for (int i = 0; i <= pipe->gap_count; i++) { /* the gaps were made in order along the pipe */
+        bool last = i == pipe->gap_count;
+        double centre = last ? length : track_nearest(&track, pipe->gaps[i].centre), half = last ? open : pipe->gaps[i].half_m;
+        sweep_between(bare, &track, bare_from, clad_from + 0.02, pipe->r);
+        clad(pipe, &track, clad_from, centre - half);
+        bare_from = fmax(centre - half - 0.02, clad_from);
+        clad_from = centre + half;
+    }
+    sweep_between(bare, &track, bare_from, length, pipe->r);
 }

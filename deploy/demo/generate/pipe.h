@@ -12,8 +12,14 @@ struct pipe {
     enum material material; /* of bare pipe */
     double r;
     double insulation;      /* thickness, 0: none; clad in aluminium */
+    double step_m;          /* longest edge along the pipe; 0.5 unless set */
     struct vec points[PIPE_MAX_POINTS];
     int count;
+    struct pipe_gap {       /* in the cladding, around valves */
+        struct vec centre;
+        double half_m;
+    } gaps[4];
+    int gap_count;
 };
 
 /* Starts at the face of a nozzle with a mating flange, or at a free point. */
@@ -28,6 +34,9 @@ void pipe_gate_valve(struct pipe *pipe, double along, struct vec wheel);
 void pipe_control_valve(struct pipe *pipe, double along, struct vec actuator);
 void pipe_flanges(struct pipe *pipe, double along);
 void pipe_post(struct pipe *pipe, double along);
+/* Closes the first or the last point with a blind. */
+void pipe_blind_first(struct pipe *pipe);
+void pipe_blind_last(struct pipe *pipe);
 void pipe_end(struct pipe *pipe); /* builds it */
 
 #endif

@@ -23,7 +23,7 @@ static const char head[] =
     "    limits: { H: 172, HH: 178 }\n"
     "    interpolation: shepard\n"
     "    distance: geodesic\n"
-    "    reach_m: 8\n"
+    "    reach_m: 12\n"
     "  - id: pressure\n"
     "    quantity: Pressure\n"
     "    unit: bar\n"

@@ -200,6 +200,11 @@ void shape_sector(struct mesh *mesh, struct frame at, double r0, double r1, doub
     mesh_quad(mesh, frame_point(&end, vec(r0, 0, z0)), frame_point(&end, vec(r0, 0, z1)), frame_point(&end, vec(r1, 0, z1)), frame_point(&end, vec(r1, 0, z0)));
 }
 
+void shape_band(struct mesh *mesh, struct frame at, double r, double width, int sides)
+{
+    shape_tube(mesh, frame_moved(at, 0, 0, -width / 2), r, r, width, sides, 0);
+}
+
 void shape_bar(struct mesh *mesh, struct vec a, struct vec b, double r, int sides)
 {
     struct vec dir = vec_sub(b, a);

@@ -17,9 +17,9 @@ static void tank_shell(struct item *item, const struct tank_spec *spec)
     profile_edge(&profile, spec->r, 0.012);
     for (int i = 1; i <= 4; i++) { /* plate courses, thinner towards the top, with weld seams */
         double z = spec->height * i / 5;
-        profile_smooth(&profile, spec->r - 0.003 * (i - 1), z - 0.02);
-        profile_smooth(&profile, spec->r + 0.005 - 0.003 * (i - 1), z);
-        profile_smooth(&profile, spec->r - 0.003 * i, z + 0.02);
+        profile_edge(&profile, spec->r - 0.003 * (i - 1), z - 0.02);
+        profile_smooth(&profile, spec->r + 0.006 - 0.003 * (i - 1), z);
+        profile_edge(&profile, spec->r - 0.003 * i, z + 0.02);
     }
     profile_edge(&profile, spec->r - 0.012, spec->height - 0.1);
     profile_edge(&profile, spec->r + 0.06, spec->height - 0.1);
@@ -87,7 +87,7 @@ void tank_build(struct site *site, const char *name, struct frame at, const stru
     tank_roof(&item, spec);
     item_nozzle(&item, "N1", vec(-spec->r, 0, BASE_M + 0.45), vec(-1, 0, 0), 0.084, 0.25);
     item_nozzle(&item, "N2", vec_polar(spec->r, 120, BASE_M + spec->height - 0.55), vec_polar(1, 120, 0), 0.057, 0.25);
-    item_manway(&item, vec_polar(spec->r, 215, BASE_M + 0.75), vec_polar(1, 215, 0), 0.30, 0.25);
+    item_manway(&item, vec_polar(spec->r, 225, BASE_M + 0.75), vec_polar(1, 225, 0), 0.30, 0.25);
     struct vec low = vec_polar(spec->r + 0.05, 200, BASE_M + 0.6), high = vec_polar(spec->r + 0.05, 200, BASE_M + spec->height - 0.4);
     struct frame board = frame_facing(low, vec_sub(high, low), vec_polar(1, 200, 0));
     shape_block(item_part(&item, "level board", MATERIAL_INSTRUMENT), board, 0, 0.02, -0.11, 0.11, 0, vec_length(vec_sub(high, low)));

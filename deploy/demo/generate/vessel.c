@@ -28,9 +28,9 @@ void drum_build(struct site *site, const char *name, struct frame at, double r, 
     struct profile profile = { 0 };
     profile_bowl(&profile, r, 0, r * 0.5, 14);
     for (int i = 1; i < 3; i++) { /* weld seams */
-        profile_smooth(&profile, r, length * i / 3 - 0.012);
+        profile_edge(&profile, r, length * i / 3 - 0.012);
         profile_smooth(&profile, r + 0.004, length * i / 3);
-        profile_smooth(&profile, r, length * i / 3 + 0.012);
+        profile_edge(&profile, r, length * i / 3 + 0.012);
     }
     profile_dome(&profile, r, length, r * 0.5, 14);
     shape_revolve(shell, frame_facing(vec(-half, 0, axis_z), vec(1, 0, 0), vec(0, 0, 1)), &profile, sides, 0.12);
@@ -59,9 +59,9 @@ void knockout_build(struct site *site, const char *name, struct frame at, double
     item.flanges = item_part(&item, "flanges", MATERIAL_BOLTING);
     struct profile profile = { 0 };
     profile_bowl(&profile, r, skirt, r * 0.5, 10);
-    profile_smooth(&profile, r, (skirt + top) / 2 - 0.012);
+    profile_edge(&profile, r, (skirt + top) / 2 - 0.012);
     profile_smooth(&profile, r + 0.004, (skirt + top) / 2);
-    profile_smooth(&profile, r, (skirt + top) / 2 + 0.012);
+    profile_edge(&profile, r, (skirt + top) / 2 + 0.012);
     profile_dome(&profile, r, top, r * 0.5, 10);
     shape_revolve(item_part(&item, "shell", MATERIAL_VESSEL), frame_at(0, 0, 0), &profile, 48, 0.12);
     struct mesh *legs = item_part(&item, "skirt", MATERIAL_STRUCTURE);
