@@ -17,7 +17,8 @@ static void bundle(struct item *item, double x, double width, double length)
     const int count = 20;
     double half = width / 2 - 0.12, y = length / 2;
     for (int i = 0; i < count; i++) {
-        struct frame at = frame_facing(vec(x - half + 0.08 + (2 * half - 0.16) * i / (count - 1), -y + 0.3, BUNDLE_Z + 0.34), vec(0, 1, 0), vec(0, 0, 1));
+        struct frame at = frame_facing(vec(x - half + 0.08 + (2 * half - 0.16) * i / (count - 1), -y + 0.3, BUNDLE_Z + 0.34),
+                                       vec(0, 1, 0), vec(0, 0, 1));
         shape_tube(tubes, at, 0.068, 0.068, length - 0.6, 8, 0.5);
     }
     shape_block(tubes, frame_at(x, 0, 0), -half + 0.02, half - 0.02, -y + 0.3, y - 0.3, BUNDLE_Z + 0.02, BUNDLE_Z + 0.28);
@@ -68,7 +69,8 @@ static void bay(struct item *item, double x, double width, double length)
     for (int i = -1; i <= 1; i += 2) {
         fan(item, x, i * length * 0.25, width * 0.36);
         for (int side = -1; side <= 1; side += 2)
-            steel_beam(legs, vec(x + side * half, i * (y - 0.1), 0), vec(x + side * half, i * (y - 0.1), BUNDLE_Z), vec(1, 0, 0), 0.16, 0.16);
+            steel_beam(legs, vec(x + side * half, i * (y - 0.1), 0), vec(x + side * half, i * (y - 0.1), BUNDLE_Z), vec(1, 0, 0), 0.16,
+                       0.16);
     }
 }
 
@@ -89,11 +91,13 @@ void air_cooler_build(struct site *site, const char *name, struct frame at, doub
     for (int side = -1; side <= 1; side += 2) {
         double inner = side * (y + 0.05), outer = side * (y + 0.95);
         steel_floor(steel, frame_at(0, 0, 0), -bay_width, bay_width, fmin(inner, outer), fmax(inner, outer), BUNDLE_Z - 0.35);
-        struct vec points[] = { vec(-bay_width, inner, BUNDLE_Z - 0.35), vec(-bay_width, outer, BUNDLE_Z - 0.35), vec(bay_width, outer, BUNDLE_Z - 0.35),
+        struct vec points[] = { vec(-bay_width, inner, BUNDLE_Z - 0.35), vec(-bay_width, outer, BUNDLE_Z - 0.35),
+                                vec(bay_width, outer, BUNDLE_Z - 0.35),
                                 vec(bay_width, inner, BUNDLE_Z - 0.35) };
         steel_handrail(rail, points, 4);
         for (int i = -2; i <= 2; i++)
-            shape_bar(steel, vec(i * bay_width / 2, outer - side * 0.1, BUNDLE_Z - 0.39), vec(i * bay_width / 2, side * (y - 0.25), 0.8), 0.04, 6);
+            shape_bar(steel, vec(i * bay_width / 2, outer - side * 0.1, BUNDLE_Z - 0.39), vec(i * bay_width / 2, side * (y - 0.25), 0.8),
+                      0.04, 6);
     }
     item_end(&item);
 }

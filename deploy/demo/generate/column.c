@@ -21,7 +21,8 @@ static void column_skirt(struct item *item, const struct column_spec *spec)
         shape_block(skirt, frame_turned(at, 6), spec->r, spec->r + 0.19, -0.008, 0.008, 0.34, 0.56);
     }
     for (int i = 0; i < 2; i++) { /* access and pipe openings, framed */
-        struct frame hole = frame_facing(vec_polar(spec->r - 0.05, 235.0 + 120.0 * i, 1.45), vec_polar(1, 235.0 + 120.0 * i, 0), vec(0, 0, 1));
+        struct frame hole = frame_facing(vec_polar(spec->r - 0.05, 235.0 + 120.0 * i, 1.45), vec_polar(1, 235.0 + 120.0 * i, 0),
+                                         vec(0, 0, 1));
         shape_tube(skirt, hole, 0.27, 0.27, 0.14, 24, 0);
         shape_cylinder(item_part(item, "openings", MATERIAL_BLACK), hole, 0.255, 0.09, 24, 0);
     }

@@ -52,7 +52,8 @@ static void compressor_gear(struct item *item)
     shape_block(gear, at, -0.34, 0.34, -0.46, 0.46, SHAFT_M + 0.03, SHAFT_M + 0.26);
     shape_block(gear, at, -0.26, 0.26, -0.36, 0.36, SHAFT_M + 0.26, SHAFT_M + 0.34);
     for (int i = 0; i < 10; i++)
-        shape_hexagon(item->flanges, frame_at(-0.02 + 0.60 * (i % 2), -0.4 + 0.2 * (i / 2.0 - (i % 2) / 2.0), 0), 0.02, SHAFT_M - 0.06, SHAFT_M + 0.06);
+        shape_hexagon(item->flanges, frame_at(-0.02 + 0.60 * (i % 2), -0.4 + 0.2 * (i / 2.0 - (i % 2) / 2.0), 0), 0.02, SHAFT_M - 0.06,
+                      SHAFT_M + 0.06);
     for (int i = -1; i <= 1; i += 2)
         shape_cylinder(gear, frame_facing(vec(0.28 + i * 0.30, 0, SHAFT_M), vec(i, 0, 0), vec(0, 0, 1)), 0.15, 0.12, 24, 0);
 }
@@ -78,9 +79,11 @@ static void compressor_auxiliaries(struct item *item)
     shape_bar(steel, vec(-1.8, -0.80, 0.75), vec(1.15, -0.80, 0.75), 0.03, 10);
     struct mesh *panel = item_part(item, "local panel", MATERIAL_VESSEL);
     shape_block(panel, frame_at(-2.35, -1.15, 0), -0.1, 0.1, -0.4, 0.4, 0.3, 1.75);
-    for (int i = 0; i < 6; i++) /* gauges face west */
-        shape_cylinder(item_part(item, "gauges", MATERIAL_BLACK),
-                       frame_facing(vec(-2.44, -1.4 + 0.25 * (i % 3), 1.35 + 0.22 * (i / 3)), vec(-1, 0, 0), vec(0, 0, 1)), 0.075, 0.03, 18, 0);
+    struct mesh *gauges = item_part(item, "gauges", MATERIAL_BLACK);
+    for (int i = 0; i < 6; i++) { /* facing west */
+        struct vec middle = vec(-2.44, -1.4 + 0.25 * (i % 3), 1.35 + 0.22 * (i / 3));
+        shape_cylinder(gauges, frame_facing(middle, vec(-1, 0, 0), vec(0, 0, 1)), 0.075, 0.03, 18, 0);
+    }
 }
 
 void compressor_build(struct site *site, const char *name, struct frame at)

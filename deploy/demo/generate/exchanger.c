@@ -65,7 +65,8 @@ static void lugs_and_bands(struct mesh *mesh, const struct exchanger_spec *spec)
     struct frame plate = frame_facing(vec(-half * 0.35, -spec->r * 0.94, spec->axis_z + spec->r * 0.34), vec(0, -0.94, 0.34), vec(0, 0, 1));
     shape_block(mesh, plate, -0.09, 0.09, -0.13, 0.13, -0.06, 0.012); /* name plate on its bracket */
     for (int i = -1; i <= 1; i += 2) {                               /* lifting lugs on the channel and rear cover */
-        struct frame lug = frame_facing(vec(i * (half + 0.33), 0, spec->axis_z + spec->r - INSULATION_M + 0.045), vec(0, 1, 0), vec(0, 0, 1));
+        struct frame lug = frame_facing(vec(i * (half + 0.33), 0, spec->axis_z + spec->r - INSULATION_M + 0.045), vec(0, 1, 0),
+                                        vec(0, 0, 1));
         shape_torus(mesh, lug, 0.045, 0.014, 0, 360, 14, 8);
     }
 }

@@ -14,9 +14,14 @@ struct patch {
 };
 
 static const struct patch patches[] = {
-    { "E-101 shell", 0.3, -0.5, 1.6, 0.45, 0.0004 },  { "E-101 shell", -1.2, 0.5, 1.4, 0.40, 0.0010 }, { "E-101 heads", 3.0, 0.0, 1.45, 0.35, 0.0 },
-    { "E-102 shell", 0.2, -0.8, 1.3, 0.60, 0.0008 },  { "T-101 shell", 0.0, -0.85, 9.0, 0.90, 0.0010 }, { "T-101 shell", 0.0, 0.85, 14.0, 0.90, 0.0 },
-    { "V-101 shell", 0.5, -0.8, 6.0, 0.60, 0.0002 },  { "TK-101 shell", 0.0, -2.9, 4.0, 1.40, 0.0006 },
+    { "E-101 shell", 0.3, -0.5, 1.6, 0.45, 0.0004 },
+    { "E-101 shell", -1.2, 0.5, 1.4, 0.40, 0.0010 },
+    { "E-101 heads", 3.0, 0.0, 1.6, 0.50, 0.0 },
+    { "E-102 shell", 0.2, -0.8, 1.6, 0.60, 0.0008 },
+    { "T-101 shell", 0.0, -0.85, 9.0, 0.90, 0.0010 },
+    { "T-101 shell", 0.0, 0.85, 14.0, 0.90, 0.0 },
+    { "V-101 shell", 0.5, -0.8, 5.0, 0.60, 0.0002 },
+    { "TK-101 shell", 0.0, -2.9, 4.0, 1.40, 0.0006 },
 };
 
 static const struct {
@@ -72,7 +77,8 @@ static struct vec vertex_normal(const struct mesh *mesh, uint32_t vertex)
 static void cut_sliver(struct mesh *mesh, size_t triangle)
 {
     uint32_t a = mesh->indices[triangle], b = mesh->indices[triangle + 1], c = mesh->indices[triangle + 2];
-    struct vec middle = vec_lerp(mesh_position(mesh, a), mesh_position(mesh, b), 0.5), to_c = vec_unit(vec_sub(mesh_position(mesh, c), middle));
+    struct vec middle = vec_lerp(mesh_position(mesh, a), mesh_position(mesh, b), 0.5);
+    struct vec to_c = vec_unit(vec_sub(mesh_position(mesh, c), middle));
     uint32_t m = mesh_vertex(mesh, vec_along(middle, to_c, 0.0001), vec_unit(vec_add(vertex_normal(mesh, a), vertex_normal(mesh, b))));
     mesh->indices[triangle + 2] = m;
     mesh_triangle(mesh, b, c, m);

@@ -40,7 +40,8 @@ static int stud_count(double r)
 void fitting_studs(struct mesh *mesh, struct frame at, double r)
 {
     int count = stud_count(r);
-    double size = 0.010 + 0.035 * r, circle = fitting_flange_radius(r) - 1.35 * size - 0.004, half = fitting_flange_thickness(r) + size * 1.1;
+    double size = 0.010 + 0.035 * r, circle = fitting_flange_radius(r) - 1.35 * size - 0.004;
+    double half = fitting_flange_thickness(r) + size * 1.1;
     for (int i = 0; i < count; i++) {
         struct frame stud = frame_turned(at, 360.0 * (i + 0.5) / count);
         shape_hexagon(mesh, frame_moved(stud, circle, 0, 0), size, -half, half);

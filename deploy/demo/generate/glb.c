@@ -36,7 +36,8 @@ static json_int_t add_accessor(struct glb *glb, size_t offset, size_t count, int
 {
     json_array_append_new(glb->views, json_pack("{s:i,s:I,s:I,s:i}", "buffer", 0, "byteOffset", (json_int_t)offset, "byteLength",
                                                 (json_int_t)(glb->buffer.length - offset), "target", target));
-    json_array_append_new(glb->accessors, json_pack("{s:I,s:i,s:I,s:s}", "bufferView", (json_int_t)json_array_size(glb->views) - 1, "componentType",
+    json_array_append_new(glb->accessors, json_pack("{s:I,s:i,s:I,s:s}", "bufferView", (json_int_t)json_array_size(glb->views) - 1,
+                                                    "componentType",
                                                     component, "count", (json_int_t)count, "type", type));
     return (json_int_t)json_array_size(glb->accessors) - 1;
 }
@@ -66,7 +67,8 @@ static void add_mesh(struct glb *glb, const struct model_mesh *part)
     for (size_t i = 0; i < mesh->index_count; i++)
         append_u32(&glb->buffer, mesh->indices[i]);
     json_int_t indices = add_accessor(glb, offset, mesh->index_count, GL_UNSIGNED_INT, "SCALAR", GL_ELEMENT_ARRAY_BUFFER);
-    json_array_append_new(glb->meshes, json_pack("{s:s,s:[{s:{s:I,s:I},s:I,s:i}]}", "name", part->name, "primitives", "attributes", "POSITION",
+    json_array_append_new(glb->meshes, json_pack("{s:s,s:[{s:{s:I,s:I},s:I,s:i}]}", "name", part->name, "primitives", "attributes",
+                                                 "POSITION",
                                                  positions, "NORMAL", normals, "indices", indices, "material", (int)part->material));
 }
 
@@ -79,10 +81,11 @@ static void add_materials(struct glb *glb)
 {
     for (int i = 0; i < MATERIAL_COUNT; i++) {
         const struct material_look *look = material_looks + i;
-        json_array_append_new(glb->materials,
-                              json_pack("{s:s,s:{s:[f,f,f,f],s:f,s:f}}", "name", look->name, "pbrMetallicRoughness", "baseColorFactor",
-                                        linear(look->srgb[0]), linear(look->srgb[1]), linear(look->srgb[2]), 1.0, "metallicFactor", look->metallic,
-                                        "roughnessFactor", look->roughness));
+        const double *srgb = look->srgb;
+        json_t *color = json_pack("[f,f,f,f]", linear(srgb[0]), linear(srgb[1]), linear(srgb[2]), 1.0);
+        json_t *pbr = json_pack("{s:o,s:f,s:f}", "baseColorFactor", color, "metallicFactor", look->metallic, "roughnessFactor",
+                                look->roughness);
+        json_array_append_new(glb->materials, json_pack("{s:s,s:o}", "name", look->name, "pbrMetallicRoughness", pbr));
     }
 }
 
@@ -90,7 +93,8 @@ static void add_placement(json_t *node, const struct frame *at)
 {
     const struct frame straight = frame_at(at->o.x, at->o.y, at->o.z);
     if (memcmp(&straight, at, sizeof(straight)) != 0)
-        json_object_set_new(node, "matrix", json_pack("[f,f,f,i,f,f,f,i,f,f,f,i,f,f,f,i]", at->x.x, at->x.y, at->x.z, 0, at->y.x, at->y.y, at->y.z, 0,
+        json_object_set_new(node, "matrix", json_pack("[f,f,f,i,f,f,f,i,f,f,f,i,f,f,f,i]", at->x.x, at->x.y, at->x.z, 0, at->y.x, at->y.y,
+                                                      at->y.z, 0,
                                                       at->z.x, at->z.y, at->z.z, 0, at->o.x, at->o.y, at->o.z, 1));
     else if (vec_length(at->o) > 0.0)
         json_object_set_new(node, "translation", json_pack("[f,f,f]", at->o.x, at->o.y, at->o.z));
@@ -101,7 +105,8 @@ static void add_nodes(struct glb *glb)
 {
     const struct model *model = glb->model;
     json_t **children = mem_array(model->node_count + 1, sizeof(*children));
-    json_t *root = json_pack("{s:s,s:[i,i,i,i,i,i,i,i,i,i,i,i,i,i,i,i]}", "name", "plant", "matrix", 1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1);
+    json_t *root = json_pack("{s:s,s:[i,i,i,i,i,i,i,i,i,i,i,i,i,i,i,i]}", "name", "plant", "matrix", 1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0,
+                             0, 0, 0, 1);
     json_array_append_new(glb->nodes, root);
     for (size_t i = 0; i < model->node_count; i++) {
         const struct model_node *node = model->nodes + i;
@@ -147,10 +152,12 @@ int glb_write(const struct model *model, const char *path)
         add_mesh(&glb, model->meshes[i]);
     add_materials(&glb);
     add_nodes(&glb);
-    json_t *root = json_pack("{s:{s:s,s:s,s:s},s:i,s:[{s:s,s:[i]}],s:o,s:o,s:o,s:o,s:o,s:[{s:I}]}", "asset", "version", "2.0", "generator",
-                             "plantcast-demo", "copyright", "GPL-3.0-or-later", "scene", 0, "scenes", "name", "demo plant", "nodes", 0, "nodes", glb.nodes,
-                             "meshes", glb.meshes, "materials", glb.materials, "accessors", glb.accessors, "bufferViews", glb.views, "buffers",
-                             "byteLength", (json_int_t)glb.buffer.length);
+    json_t *asset = json_pack("{s:s,s:s,s:s}", "version", "2.0", "generator", "plantcast-demo", "copyright", "GPL-3.0-or-later");
+    json_t *scenes = json_pack("[{s:s,s:[i]}]", "name", "demo plant", "nodes", 0);
+    json_t *buffers = json_pack("[{s:I}]", "byteLength", (json_int_t)glb.buffer.length);
+    json_t *root = json_pack("{s:o,s:i,s:o,s:o,s:o,s:o,s:o,s:o,s:o}", "asset", asset, "scene", 0, "scenes", scenes, "nodes", glb.nodes,
+                             "meshes", glb.meshes, "materials", glb.materials, "accessors", glb.accessors, "bufferViews", glb.views,
+                             "buffers", buffers);
     char *json = json_dumps(root, JSON_COMPACT | JSON_REAL_PRECISION(9));
     int status = write_chunks(json, &glb.buffer, path);
     mem_free(json);

@@ -63,7 +63,8 @@ static void build_pumps(struct site *site)
     const struct {
         const char *name;
         double x, y;
-    } pumps[] = { { "P-101A", 3.4, -8.4 }, { "P-101B", 5.6, -8.4 }, { "P-102A", -1.6, -4.4 }, { "P-102B", 0.6, -4.4 }, { "P-103A", -6.0, -4.4 }, { "P-103B", -3.8, -4.4 } };
+    } pumps[] = { { "P-101A", 3.4, -8.4 }, { "P-101B", 5.6, -8.4 }, { "P-102A", -1.6, -4.4 }, { "P-102B", 0.6, -4.4 },
+                  { "P-103A", -6.0, -4.4 }, { "P-103B", -3.8, -4.4 } };
     for (int i = 0; i < 6; i++) {
         struct frame at = facing(pumps[i].x, pumps[i].y, -90); /* pump end to the north, motor to the south */
         if (i == 0) {

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* plantcast-demo OUTDIR: writes the demo plant (plant.glb, plant.yaml, tags.csv), the same bytes each time. */
+#include <errno.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "base/mem.h"
 #include "faults.h"
@@ -41,6 +43,8 @@ int main(int argc, char **argv)
         fprintf(stderr, "usage: plantcast-demo OUTDIR\nwrites plant.glb, plant.yaml and tags.csv\n");
         return 2;
     }
+    if (mkdir(argv[1], 0777) != 0 && errno != EEXIST)
+        return report(-errno, argv[1]);
     struct site site = { 0 };
     struct tags tags = { 0 };
     tags_make(&tags);
@@ -49,7 +53,8 @@ int main(int argc, char **argv)
     sensors_place(&site.model, &tags);
     int failed = write_all(&site.model, &tags, argv[1]);
     if (!failed)
-        printf("plantcast-demo: %s: %d assets, %zu tags, %zu triangles\n", argv[1], layout_asset_count, tags.count, triangle_count(&site.model));
+        printf("plantcast-demo: %s: %d assets, %zu tags, %zu triangles\n", argv[1], layout_asset_count, tags.count,
+               triangle_count(&site.model));
     tags_finish(&tags);
     model_finish(&site.model);
     return failed;

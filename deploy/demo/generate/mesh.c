@@ -48,7 +48,8 @@ struct vec mesh_position(const struct mesh *mesh, size_t vertex)
 static struct vec triangle_nearest(struct vec p, struct vec a, struct vec b, struct vec c)
 {
     struct vec ab = vec_sub(b, a), ac = vec_sub(c, a), ap = vec_sub(p, a), bp = vec_sub(p, b), cp = vec_sub(p, c);
-    double d1 = vec_dot(ab, ap), d2 = vec_dot(ac, ap), d3 = vec_dot(ab, bp), d4 = vec_dot(ac, bp), d5 = vec_dot(ab, cp), d6 = vec_dot(ac, cp);
+    double d1 = vec_dot(ab, ap), d2 = vec_dot(ac, ap), d3 = vec_dot(ab, bp);
+    double d4 = vec_dot(ac, bp), d5 = vec_dot(ab, cp), d6 = vec_dot(ac, cp);
     double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
     if (d1 <= 0.0 && d2 <= 0.0)
         return a;

@@ -162,42 +162,45 @@ static void track_straight(struct track *track, struct vec from, struct vec to, 
         track_push(track, vec_along(from, d, (double)i / pieces), dir);
 }
 
-/* Long-radius elbow (1.5 D), shorter where the legs are. */
-static void track_bend(struct track *track, const struct vec *corner, double r)
+struct bend { /* long-radius elbow (1.5 D), shorter where the legs are */
+    struct vec in, out;
+    double angle, cut; /* cut: from the corner to where the arc begins */
+};
+
+static struct bend bend_at(const struct vec *corner, double r)
 {
-    struct vec in = vec_unit(vec_sub(corner[0], corner[-1])), out = vec_unit(vec_sub(corner[1], corner[0]));
-    double angle = acos(fmax(-1.0, fmin(1.0, vec_dot(in, out)))), room = 0.5 * fmin(vec_length(vec_sub(corner[0], corner[-1])), vec_length(vec_sub(corner[1], corner[0])));
-    double cut = fmin(3.0 * r * tan(angle / 2), room), radius = cut / tan(angle / 2);
-    struct vec centre = vec_along(vec_along(corner[0], in, -cut), vec_unit(vec_sub(out, vec_scale(in, vec_dot(in, out)))), radius);
-    struct vec arm = vec_unit(vec_sub(vec_along(corner[0], in, -cut), centre));
-    int pieces = (int)ceil(angle / RADIANS(18.0));
-    for (int i = 0; i <= pieces; i++) {
-        double a = angle * i / pieces;
-        struct vec tangent = vec_add(vec_scale(in, cos(a)), vec_scale(arm, -sin(a)));
-        track_push(track, vec_add(centre, vec_add(vec_scale(arm, radius * cos(a)), vec_scale(in, radius * sin(a)))), tangent);
-    }
+    struct vec before = vec_sub(corner[0], corner[-1]), after = vec_sub(corner[1], corner[0]);
+    struct bend bend = { .in = vec_unit(before), .out = vec_unit(after) };
+    bend.angle = acos(fmax(-1.0, fmin(1.0, vec_dot(bend.in, bend.out))));
+    bend.cut = fmin(3.0 * r * tan(bend.angle / 2), 0.5 * fmin(vec_length(before), vec_length(after)));
+    return bend;
 }
 
-static double bend_cut(const struct vec *corner, double r)
+static void track_bend(struct track *track, struct vec corner, const struct bend *bend)
 {
-    struct vec in = vec_unit(vec_sub(corner[0], corner[-1])), out = vec_unit(vec_sub(corner[1], corner[0]));
-    double angle = acos(fmax(-1.0, fmin(1.0, vec_dot(in, out))));
-    return fmin(3.0 * r * tan(angle / 2), 0.5 * fmin(vec_length(vec_sub(corner[0], corner[-1])), vec_length(vec_sub(corner[1], corner[0]))));
+    double radius = bend->cut / tan(bend->angle / 2);
+    struct vec begin = vec_along(corner, bend->in, -bend->cut);
+    struct vec inward = vec_unit(vec_sub(bend->out, vec_scale(bend->in, vec_dot(bend->in, bend->out))));
+    struct vec centre = vec_along(begin, inward, radius);
+    int pieces = (int)ceil(bend->angle / RADIANS(18.0));
+    for (int i = 0; i <= pieces; i++) {
+        double a = bend->angle * i / pieces;
+        struct vec arm = vec_add(vec_scale(inward, -radius * cos(a)), vec_scale(bend->in, radius * sin(a)));
+        track_push(track, vec_add(centre, arm), vec_add(vec_scale(bend->in, cos(a)), vec_scale(inward, sin(a))));
+    }
 }
 
 static void track_build(struct track *track, const struct pipe *pipe)
 {
-    struct vec from = pipe->points[0];
-    for (int i = 1; i < pipe->count; i++) {
-        const struct vec *corner = pipe->points + i;
-        struct vec dir = vec_unit(vec_sub(corner[0], corner[-1]));
-        double cut = i + 1 < pipe->count ? bend_cut(corner, pipe->r) : 0.0;
-        track_straight(track, from, vec_along(corner[0], dir, -cut), pipe->step_m);
-        if (i + 1 == pipe->count)
-            break;
-        track_bend(track, corner, pipe->r);
-        from = vec_along(corner[0], vec_unit(vec_sub(corner[1], corner[0])), cut);
+    struct vec from = pipe->points[0], last = pipe->points[pipe->count - 1];
+    for (int i = 1; i + 1 < pipe->count; i++) {
+        struct vec corner = pipe->points[i];
+        struct bend bend = bend_at(pipe->points + i, pipe->r);
+        track_straight(track, from, vec_along(corner, bend.in, -bend.cut), pipe->step_m);
+        track_bend(track, corner, &bend);
+        from = vec_along(corner, bend.out, bend.cut);
     }
+    track_straight(track, from, last, pipe->step_m);
 }
 
 static struct station track_at(const struct track *track, double at_m)

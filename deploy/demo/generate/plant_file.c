@@ -61,7 +61,8 @@ int plant_file_write(const char *path)
     struct text out = { 0 };
     text_add(&out, "%s", head);
     for (int i = 0; i < layout_asset_count; i++)
-        text_add(&out, "  - { id: %s, model: plant.glb, nodes: %s, up: y, description: \"%s\" }\n", layout_assets[i].name, layout_assets[i].name,
+        text_add(&out, "  - { id: %s, model: plant.glb, nodes: %s, up: y, description: \"%s\" }\n", layout_assets[i].name,
+                 layout_assets[i].name,
                  layout_assets[i].description);
     int status = text_write_file(path, out.at, out.length);
     text_finish(&out);
@@ -93,7 +94,8 @@ static void add_limit(struct text *out, const struct tag *tag, double bands)
 static void add_tag(struct text *out, const struct tag *tag)
 {
     const struct kind *kind = kinds + tag->kind;
-    text_add(out, "%s,%d,%s,500,%s,%s,,\"%s\",plc1,%s,%s,", tag->name, tag->address, kind->type, kind->scaling, kind->unit, tag->description, kind->group,
+    text_add(out, "%s,%d,%s,500,%s,%s,,\"%s\",plc1,%s,%s,", tag->name, tag->address, kind->type, kind->scaling, kind->unit,
+             tag->description, kind->group,
              tag->asset);
     if (tag->node)
         text_add(out, "%s,,,", tag->name);
@@ -110,7 +112,8 @@ static void add_tag(struct text *out, const struct tag *tag)
 int tag_list_write(const struct tags *tags, const char *path)
 {
     struct text out = { 0 };
-    text_add(&out, "Tag Name,Address,Data Type,Scan Rate,Scaling,Raw Low,Raw High,Scaled Low,Scaled High,Eng Units,Negate Value,Description,"
+    text_add(&out,
+             "Tag Name,Address,Data Type,Scan Rate,Scaling,Raw Low,Raw High,Scaled Low,Scaled High,Eng Units,Negate Value,Description,"
                    "Source,Group,Asset,Node,X,Y,Z,Byte Order,LL,L,H,HH,Sim Value,Sim Loop\n");
     for (size_t i = 0; i < tags->count; i++)
         add_tag(&out, tags->at + i);

@@ -34,7 +34,8 @@ static void cable_tray(struct item *item, double y, double z, double width)
     for (double x = x0; x < x1; x += 0.6)
         shape_block(tray, frame_at(x, y, z), 0, 0.05, -width / 2, width / 2, 0, 0.012);
     for (int i = 0; i < 4; i++)
-        shape_cylinder(cable, frame_facing(vec(x0 + 0.1, y - width * 0.3 + width * 0.18 * i, z + 0.035), vec(1, 0, 0), UP), 0.024, x1 - x0 - 0.2, 6, 6);
+        shape_cylinder(cable, frame_facing(vec(x0 + 0.1, y - width * 0.3 + width * 0.18 * i, z + 0.035), vec(1, 0, 0), UP), 0.024,
+                       x1 - x0 - 0.2, 6, 6);
 }
 
 void rack_build(struct site *site, const char *name)
@@ -46,7 +47,8 @@ void rack_build(struct site *site, const char *name)
     for (int i = 0; i + 1 < RACK_BENT_COUNT; i++)
         for (int side = 0; side < 2; side++) {
             double y = side ? RACK_NORTH_M : RACK_SOUTH_M, x0 = bent_x(i), x1 = bent_x(i + 1);
-            steel_beam(steel, vec(x0, y, (RACK_LOW_M + RACK_HIGH_M) / 2 - 0.2), vec(x1, y, (RACK_LOW_M + RACK_HIGH_M) / 2 - 0.2), UP, 0.28, 0.16);
+            steel_beam(steel, vec(x0, y, (RACK_LOW_M + RACK_HIGH_M) / 2 - 0.2), vec(x1, y, (RACK_LOW_M + RACK_HIGH_M) / 2 - 0.2), UP,
+                       0.28, 0.16);
             steel_beam(steel, vec(x0, y, RACK_TOP_M - 0.16), vec(x1, y, RACK_TOP_M - 0.16), UP, 0.32, 0.18);
             if (i == 1 || i == 4) {
                 shape_bar(steel, vec(x0, y, 3.3), vec((x0 + x1) / 2, y, RACK_HIGH_M - 1.2), 0.05, 6);

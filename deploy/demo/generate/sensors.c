@@ -59,7 +59,8 @@ static void build_instrument(struct mesh *mesh, struct frame at, enum tag_kind k
 /* One mesh per kind, shared by all nodes. */
 static int instrument_mesh(struct model *model, enum tag_kind kind)
 {
-    static const char *const names[] = { [TAG_TEMPERATURE] = "thermometer", [TAG_WINDING] = "winding thermometer", [TAG_PRESSURE] = "pressure transmitter",
+    static const char *const names[] = { [TAG_TEMPERATURE] = "thermometer", [TAG_WINDING] = "winding thermometer",
+                                         [TAG_PRESSURE] = "pressure transmitter",
                                          [TAG_VIBRATION] = "accelerometer" };
     for (size_t i = 0; i < model->mesh_count; i++)
         if (strcmp(model->meshes[i]->name, names[kind]) == 0)
@@ -89,7 +90,8 @@ static void place(struct model *model, struct tag *tag)
     if (!tag->node)
         return;
     struct frame at = frame_facing(surface, normal, vec(0, 0, 1));
-    char *fittings_name = mem_printf("%s fittings", tag->asset); /* such an asset keeps its sub-meshes: the instrument becomes part of one */
+    char *fittings_name = mem_printf("%s fittings",
+                                     tag->asset); /* such an asset keeps its sub-meshes: the instrument becomes part of one */
     int fittings = model_find_node(model, fittings_name), mesh = -1;
     mem_free(fittings_name);
     if (fittings >= 0)

@@ -169,7 +169,8 @@ void shape_block(struct mesh *mesh, struct frame at, double x0, double x1, doubl
 }
 
 /* One face of a sector: a strip between two arcs (r0, z0) and (r1, z1), with the normal n in (radial, axial). */
-static void sector_face(struct mesh *mesh, const struct frame *at, double r0, double z0, double r1, double z1, struct vec n, double from_deg,
+static void sector_face(struct mesh *mesh, const struct frame *at, double r0, double z0, double r1, double z1, struct vec n,
+                        double from_deg,
                         double to_deg, int pieces)
 {
     uint32_t first = (uint32_t)mesh->vertex_count;
@@ -186,7 +187,8 @@ static void sector_face(struct mesh *mesh, const struct frame *at, double r0, do
     }
 }
 
-void shape_sector(struct mesh *mesh, struct frame at, double r0, double r1, double z0, double z1, double from_deg, double to_deg, int pieces)
+void shape_sector(struct mesh *mesh, struct frame at, double r0, double r1, double z0, double z1, double from_deg, double to_deg,
+                  int pieces)
 {
     sector_face(mesh, &at, r1, z0, r1, z1, vec(1, 0, 0), from_deg, to_deg, pieces);
     sector_face(mesh, &at, r0, z1, r0, z0, vec(-1, 0, 0), from_deg, to_deg, pieces);
@@ -195,9 +197,11 @@ void shape_sector(struct mesh *mesh, struct frame at, double r0, double r1, doub
     if (to_deg - from_deg > 359.99)
         return;
     struct frame end = frame_turned(at, from_deg);
-    mesh_quad(mesh, frame_point(&end, vec(r0, 0, z0)), frame_point(&end, vec(r1, 0, z0)), frame_point(&end, vec(r1, 0, z1)), frame_point(&end, vec(r0, 0, z1)));
+    mesh_quad(mesh, frame_point(&end, vec(r0, 0, z0)), frame_point(&end, vec(r1, 0, z0)), frame_point(&end, vec(r1, 0, z1)),
+              frame_point(&end, vec(r0, 0, z1)));
     end = frame_turned(at, to_deg);
-    mesh_quad(mesh, frame_point(&end, vec(r0, 0, z0)), frame_point(&end, vec(r0, 0, z1)), frame_point(&end, vec(r1, 0, z1)), frame_point(&end, vec(r1, 0, z0)));
+    mesh_quad(mesh, frame_point(&end, vec(r0, 0, z0)), frame_point(&end, vec(r0, 0, z1)), frame_point(&end, vec(r1, 0, z1)),
+              frame_point(&end, vec(r1, 0, z0)));
 }
 
 void shape_band(struct mesh *mesh, struct frame at, double r, double width, int sides)

@@ -25,14 +25,16 @@ void profile_laps(struct profile *profile, double r, double z0, double z1, doubl
 void shape_revolve(struct mesh *mesh, struct frame at, const struct profile *profile, int sides, double step);
 /* From the origin along z. Ends are closed by fans from one rim vertex, as CAD kernels do: long thin triangles. */
 void shape_cylinder(struct mesh *mesh, struct frame at, double r, double length, int sides, double step);
-void shape_tube(struct mesh *mesh, struct frame at, double r0, double r1, double length, int sides, double step); /* open; cone if r0 != r1 */
+void shape_tube(struct mesh *mesh, struct frame at, double r0, double r1, double length, int sides,
+                double step); /* open; cone if r0 != r1 */
 /* Between circles that are not coaxial: the second lies at (shift, 0, length). */
 void shape_reducer(struct mesh *mesh, struct frame at, double r0, double r1, double shift, double length, int sides, double step);
 /* Part of a torus about the frame's z. */
 void shape_torus(struct mesh *mesh, struct frame at, double radius, double r, double from_deg, double to_deg, int rings, int sides);
 void shape_block(struct mesh *mesh, struct frame at, double x0, double x1, double y0, double y1, double z0, double z1);
 /* A block bent around the frame's z. */
-void shape_sector(struct mesh *mesh, struct frame at, double r0, double r1, double z0, double z1, double from_deg, double to_deg, int pieces);
+void shape_sector(struct mesh *mesh, struct frame at, double r0, double r1, double z0, double z1, double from_deg, double to_deg,
+                  int pieces);
 /* A strap around a cylinder: only its outer face. */
 void shape_band(struct mesh *mesh, struct frame at, double r, double width, int sides);
 void shape_bar(struct mesh *mesh, struct vec a, struct vec b, double r, int sides); /* open ends */

@@ -29,7 +29,8 @@ void steel_floor(struct mesh *mesh, struct frame at, double x0, double x1, doubl
     double wide = (x1 - x0) / columns, deep = (y1 - y0) / rows;
     for (int i = 0; i < columns; i++)
         for (int j = 0; j < rows; j++)
-            shape_block(mesh, at, x0 + wide * i + gap, x0 + wide * (i + 1) - gap, y0 + deep * j + gap, y0 + deep * (j + 1) - gap, z - 0.035, z);
+            shape_block(mesh, at, x0 + wide * i + gap, x0 + wide * (i + 1) - gap, y0 + deep * j + gap, y0 + deep * (j + 1) - gap,
+                        z - 0.035, z);
 }
 
 static void rail_span(struct mesh *mesh, struct vec a, struct vec b, bool toe)

@@ -41,7 +41,8 @@ static void tank_stair(struct item *item, const struct tank_spec *spec)
         double deg = spec->stair_from_deg + going_deg * i, z = BASE_M + (spec->height + 0.12) * i / treads;
         shape_sector(steel, frame_at(0, 0, z), r0, r1, -0.03, 0, deg - going_deg * 0.55, deg + going_deg * 0.55, 2);
         for (int side = 0; side < 2; side++) {
-            struct vec a = vec_polar(side ? r1 : r0, deg - going_deg / 2, z - 0.15), b = vec_polar(side ? r1 : r0, deg + going_deg / 2, z + 0.05);
+            double r = side ? r1 : r0;
+            struct vec a = vec_polar(r, deg - going_deg / 2, z - 0.15), b = vec_polar(r, deg + going_deg / 2, z + 0.05);
             shape_block(steel, frame_facing(a, vec_sub(b, a), vec(0, 0, 1)), -0.10, 0.10, -0.006, 0.006, 0, vec_length(vec_sub(b, a)));
         }
         if ((i % 3 == 1 || i == treads) && count < 16)
