@@ -17,7 +17,7 @@ run: deps
 demo: $(build)/demo/plant.yaml $(bin)/plantcast-prep
 	@$(bin)/plantcast-prep $(build)/demo/plant.yaml
 $(build)/demo/plant.yaml: $(bin)/plantcast-demo
-	@$(bin)/plantcast-demo $(build)/demo
+	@mkdir -p $(@D); $(bin)/plantcast-demo $(@D)
 
 prefix ?= /usr/local
 install: all
