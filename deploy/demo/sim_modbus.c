@@ -25,9 +25,9 @@ static int word_at(const uint8_t *bytes, int at)
 
 static bool is_write(int function)
 {
-    return function == MODBUS_FC_WRITE_SINGLE_COIL || function == MODBUS_FC_WRITE_SINGLE_REGISTER || function == MODBUS_FC_WRITE_MULTIPLE_COILS ||
-           function == MODBUS_FC_WRITE_MULTIPLE_REGISTERS || function == MODBUS_FC_MASK_WRITE_REGISTER ||
-           function == MODBUS_FC_WRITE_AND_READ_REGISTERS;
+    return function == MODBUS_FC_WRITE_SINGLE_COIL || function == MODBUS_FC_WRITE_SINGLE_REGISTER ||
+           function == MODBUS_FC_WRITE_MULTIPLE_COILS || function == MODBUS_FC_WRITE_MULTIPLE_REGISTERS ||
+           function == MODBUS_FC_MASK_WRITE_REGISTER || function == MODBUS_FC_WRITE_AND_READ_REGISTERS;
 }
 
 static int refusal(struct sim_modbus *device, const uint8_t *request, size_t bytes)

@@ -3,13 +3,17 @@
 #include "sim_process.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
-#include <strings.h>
 
 #include "base/mem.h"
 
-enum { MAX_EFFECTS = 12, UPSETS = 3, CYCLE_S = 690 };
+enum { MAX_EFFECTS = 20, UPSETS = 3, CYCLE_S = 690 };
 static const double MAX_STEP_S = 1.0, TAU = 6.283185307179586;
+#define T PROCESS_TEMPERATURE
+#define P PROCESS_PRESSURE
+#define V PROCESS_VIBRATION
+#define MACHINE "machine" /* one machine in each cycle, in turn */
 
 struct effect {
     const char *word;  /* in the name of the loop */
@@ -26,31 +30,33 @@ struct upset {
 
 static const struct upset upsets[UPSETS] = {
     { "cooling water lost", 60, 60, 40, 80, {
-        { "cooling", PROCESS_TEMPERATURE, 0.30, 0 },    { "condenser", PROCESS_TEMPERATURE, 0.28, 4 },
-        { "overhead", PROCESS_TEMPERATURE, 0.25, 10 },  { "reflux", PROCESS_TEMPERATURE, 0.22, 15 },
-        { "drum", PROCESS_TEMPERATURE, 0.20, 20 },      { "column", PROCESS_TEMPERATURE, 0.10, 30 },
-        { "condenser", PROCESS_PRESSURE, 0.24, 4 },     { "overhead", PROCESS_PRESSURE, 0.24, 6 },
-        { "drum", PROCESS_PRESSURE, 0.22, 8 },          { "column", PROCESS_PRESSURE, 0.18, 8 },
-        { "reboiler", PROCESS_TEMPERATURE, 0.04, 50 },
+        { "water", T, 0.10, 0 },      { "cooling", T, 0.10, 0 },   { "condenser", T, 0.16, 4 }, { "overhead", T, 0.15, 8 },
+        { "reflux", T, 0.13, 15 },    { "drum", T, 0.13, 18 },     { "offgas", T, 0.12, 20 },   { "distillate", T, 0.12, 25 },
+        { "column", T, 0.05, 30 },    { "reboiler", T, 0.02, 50 }, { "water", P, -0.12, 0 },    { "condenser", P, 0.08, 4 },
+        { "overhead", P, 0.08, 6 },   { "drum", P, 0.08, 8 },      { "column", P, 0.07, 8 },    { "offgas", P, 0.07, 10 },
+        { "reboiler", P, 0.06, 12 },
     } },
     { "exchanger fouled", 280, 110, 40, 40, {
-        { "preheat", PROCESS_TEMPERATURE, -0.22, 0 },   { "exchanger", PROCESS_TEMPERATURE, -0.22, 0 },
-        { "feed", PROCESS_TEMPERATURE, -0.16, 6 },      { "column", PROCESS_TEMPERATURE, -0.06, 30 },
-        { "bottoms", PROCESS_TEMPERATURE, 0.12, 12 },   { "product", PROCESS_TEMPERATURE, 0.10, 20 },
-        { "feed", PROCESS_PRESSURE, 0.18, 0 },          { "preheat", PROCESS_PRESSURE, 0.18, 0 },
-        { "exchanger", PROCESS_PRESSURE, 0.18, 0 },     { "reboiler", PROCESS_TEMPERATURE, 0.05, 40 },
+        { "feed", T, -0.12, 0 },      { "preheat", T, -0.12, 0 },  { "exchanger", T, -0.12, 0 }, { "bottoms", T, 0.07, 10 },
+        { "product", T, 0.06, 20 },   { "column", T, -0.03, 30 },  { "feed", P, 0.06, 0 },       { "preheat", P, 0.06, 0 },
+        { "exchanger", P, 0.06, 0 },
     } },
-    { "pump bearing worn", 510, 90, 45, 15, {
-        { "pump", PROCESS_VIBRATION, 0.40, 0 },         { "pump", PROCESS_TEMPERATURE, 0.12, 20 },
-        { "motor", PROCESS_VIBRATION, 0.25, 4 },        { "motor", PROCESS_TEMPERATURE, 0.08, 30 },
+    { "bearing worn", 510, 90, 45, 15, {
+        { MACHINE, V, 0.40, 0 },      { MACHINE, T, 0.10, 20 },
     } },
 };
+
+static const struct {
+    const char *word;
+    double lag; /* times as slow as others */
+} slow_loops[] = { { "storage", 60 }, { "weather", 60 }, { "steam", 20 } };
 
 struct state {
     enum process_kind kind;
     double normal, span;
     double shares[UPSETS], dead_s[UPSETS];
     uint32_t loop;             /* hash of its name: phase of its drift */
+    int machine;               /* number of the machine it is on, or -1 */
     double dead_own_s, lag_s;
     double lagged, drift, noise, value;
     uint64_t random;
@@ -60,6 +66,7 @@ struct process {
     double now_s;
     size_t count;
     struct state *states;
+    int machine_count;
 };
 
 static uint32_t hash_of(const char *text)
@@ -101,17 +108,55 @@ static double level(const struct upset *upset, double time_s)
     return 1 - smooth((t - upset->rise_s - upset->hold_s) / upset->fall_s);
 }
 
+/* A machine by its name: a pump, a motor, a compressor, a fan, or a tag of one (P-101, K-101, EA-101). */
+static bool is_machine(const char *loop)
+{
+    static const char *const words[] = { "pump", "motor", "compressor", "fan", "machine" }, *const starts[] = { "P-", "K-", "C-", "EA-" };
+    for (size_t i = 0; i < sizeof(words) / sizeof(words[0]); i++)
+        if (strcasestr(loop, words[i]))
+            return true;
+    for (size_t i = 0; i < sizeof(starts) / sizeof(starts[0]); i++)
+        if (!strncmp(loop, starts[i], strlen(starts[i])))
+            return true;
+    return false;
+}
+
+/* Machines are numbered as they come; all tags of one loop are on one. */
+static int machine_of(struct process *process, const struct process_tag *tags, size_t tag)
+{
+    if (!is_machine(tags[tag].loop))
+        return -1;
+    for (size_t i = 0; i < tag; i++)
+        if (!strcmp(tags[i].loop, tags[tag].loop))
+            return process->states[i].machine;
+    return process->machine_count++;
+}
+
+static bool feels(const struct state *state, const struct effect *effect, const char *loop)
+{
+    bool there = !strcmp(effect->word, MACHINE) ? state->machine >= 0 : strcasestr(loop, effect->word) != NULL;
+    return there && effect->kind == state->kind;
+}
+
 /* The strongest effect of each upset on this loop. */
 static void find_effects(struct state *state, const char *loop)
 {
     for (int u = 0; u < UPSETS; u++)
         for (int e = 0; e < MAX_EFFECTS && upsets[u].effects[e].word; e++) {
             const struct effect *effect = &upsets[u].effects[e];
-            if (effect->kind != state->kind || !strcasestr(loop, effect->word) || fabs(effect->share) <= fabs(state->shares[u]))
+            if (!feels(state, effect, loop) || fabs(effect->share) <= fabs(state->shares[u]))
                 continue;
             state->shares[u] = effect->share;
             state->dead_s[u] = effect->dead_s;
         }
+}
+
+static double slowness(const char *loop)
+{
+    for (size_t i = 0; i < sizeof(slow_loops) / sizeof(slow_loops[0]); i++)
+        if (strcasestr(loop, slow_loops[i].word))
+            return slow_loops[i].lag;
+    return 1;
 }
 
 static double drift_of_loop(uint32_t loop, double time_s)
@@ -120,12 +165,19 @@ static double drift_of_loop(uint32_t loop, double time_s)
     return 0.012 * sin(TAU * (time_s / slow_s + loop % 1000 / 1000.0)) + 0.005 * sin(TAU * (time_s / fast_s + loop % 777 / 777.0));
 }
 
-static double target(const struct state *state, double time_s)
+static bool spared(const struct state *state, int machine_count, double time_s)
+{
+    return state->machine >= 0 && time_s >= 0 && (int)fmod(time_s / CYCLE_S, machine_count) != state->machine;
+}
+
+static double target(const struct state *state, int machine_count, double time_s)
 {
     double share = drift_of_loop(state->loop, time_s - state->dead_own_s) + state->drift;
-    for (int u = 0; u < UPSETS; u++)
-        if (state->shares[u] != 0)
-            share += state->shares[u] * level(&upsets[u], time_s - state->dead_s[u] - state->dead_own_s);
+    for (int u = 0; u < UPSETS; u++) {
+        double felt_s = time_s - state->dead_s[u] - state->dead_own_s;
+        if (state->shares[u] != 0 && !spared(state, machine_count, felt_s))
+            share += state->shares[u] * level(&upsets[u], felt_s);
+    }
     return state->normal + share * state->span;
 }
 
@@ -144,15 +196,17 @@ struct process *process_create(const struct process_tag *tags, size_t count, uin
     process->states = mem_array(count, sizeof(*process->states));
     for (size_t i = 0; i < count; i++) {
         struct state *state = &process->states[i];
-        *state = (struct state){ .kind = tags[i].kind, .normal = tags[i].normal, .span = fabs(tags[i].span), .loop = hash_of(tags[i].loop) };
+        *state =
+            (struct state){ .kind = tags[i].kind, .normal = tags[i].normal, .span = fabs(tags[i].span), .loop = hash_of(tags[i].loop) };
         state->random = seed ^ (uint64_t)hash_of(tags[i].name) << 20;
+        state->machine = machine_of(process, tags, i);
         find_effects(state, tags[i].loop);
         double own = 0.75 + 0.5 * uniform(&state->random); /* no two feel it alike */
         for (int u = 0; u < UPSETS; u++)
             state->shares[u] *= own;
         state->dead_own_s = 6 * uniform(&state->random);
-        state->lag_s = lags_s[tags[i].kind] * (0.6 + 0.8 * uniform(&state->random));
-        state->lagged = target(state, 0);
+        state->lag_s = lags_s[tags[i].kind] * (0.6 + 0.8 * uniform(&state->random)) * slowness(tags[i].loop);
+        state->lagged = target(state, 1, 0);
         show(state);
     }
     return process;
@@ -174,14 +228,14 @@ static double wander(double x, double sigma, double time_constant_s, double dt_s
     return x * keep + sigma * sqrt(1 - keep * keep) * normal_deviate(random);
 }
 
-static void step_tag(struct state *state, double time_s, double dt_s)
+static void step_tag(struct state *state, int machine_count, double time_s, double dt_s)
 {
     static const double noises[] = {
         [PROCESS_TEMPERATURE] = 0.0012, [PROCESS_PRESSURE] = 0.003, [PROCESS_VIBRATION] = 0.008, [PROCESS_OTHER] = 0.003
     };
     state->drift = wander(state->drift, 0.006, 150, dt_s, &state->random);
     state->noise = wander(state->noise, noises[state->kind], 0.8, dt_s, &state->random);
-    state->lagged += (target(state, time_s) - state->lagged) * (1 - exp(-dt_s / state->lag_s));
+    state->lagged += (target(state, machine_count, time_s) - state->lagged) * (1 - exp(-dt_s / state->lag_s));
     show(state);
 }
 
@@ -191,7 +245,7 @@ void process_step(struct process *process, double dt_s)
         double step_s = dt_s < MAX_STEP_S ? dt_s : MAX_STEP_S;
         process->now_s += step_s;
         for (size_t i = 0; i < process->count; i++)
-            step_tag(&process->states[i], process->now_s, step_s);
+            step_tag(&process->states[i], process->machine_count, process->now_s, step_s);
         dt_s -= step_s;
     }
 }
@@ -216,7 +270,9 @@ double process_upset(const struct process *process, const char **name)
 
 const char *process_upset_help(void)
 {
-    return "  cooling water lost   loops named *cooling*, *condenser*, *overhead*, *reflux*, *drum*, *column*, *reboiler*\n"
-           "  exchanger fouled     loops named *preheat*, *exchanger*, *feed*, *column*, *bottoms*, *product*, *reboiler*\n"
-           "  pump bearing worn    loops named *pump*, *motor*\n";
+    return "  cooling water lost   loops named *water*, *cooling*, *condenser*, *overhead*, *reflux*, *drum*, *offgas*, *distillate*,\n"
+           "                       *column*, *reboiler*\n"
+           "  exchanger fouled     loops named *feed*, *preheat*, *exchanger*, *bottoms*, *product*, *column*\n"
+           "  bearing worn         loops named *pump*, *motor*, *compressor*, *fan*, P-..., K-..., C-..., EA-...: one each time\n"
+           "Loops named *storage*, *weather* and *steam* change slowly.\n";
 }

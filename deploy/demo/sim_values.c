@@ -79,7 +79,9 @@ static struct process *make_process(const struct plant *plant, struct diag *diag
     for (size_t i = 0; i < plant->tag_count && csv_next(&csv); i++) {
         const char *normal = csv_text(&csv, value_column);
         char *end = NULL;
-        tags[i] = (struct process_tag){ .kind = kind_of(plant, &plant->tags[i]), .name = plant->tags[i].name, .loop = csv_text(&csv, loop_column) };
+        tags[i] = (struct process_tag){ .kind = kind_of(plant, &plant->tags[i]),
+                                        .name = plant->tags[i].name,
+                                        .loop = csv_text(&csv, loop_column) };
         choose_range(plant, &plant->tags[i], &tags[i]);
         if (!*normal)
             continue;
@@ -95,7 +97,8 @@ static struct process *make_process(const struct plant *plant, struct diag *diag
 
 /* --- recorded series -------------------------------------------------------------------------------------------------------- */
 
-static const struct sim_series *find_series(struct sim_values *values, const struct sim_map *map, const struct sim_map_entry *entry, struct diag *diag)
+static const struct sim_series *find_series(struct sim_values *values, const struct sim_map *map, const struct sim_map_entry *entry,
+                                            struct diag *diag)
 {
     char why[200] = "no file of values is given";
     bool found = false;

@@ -67,8 +67,8 @@ static struct unit *unit_of(const struct modbus_source *modbus, const struct pla
 static void link_lost(struct modbus_source *modbus, const char *why)
 {
     int64_t now_ns = clock_mono_ns();
-    log_at(modbus->log, modbus->link_up || !modbus->link_known ? LOG_WARN : LOG_DEBUG, "source %s: %s:%d: no readings (%s)", modbus->config->id,
-           modbus->config->host, modbus->config->port, why);
+    log_at(modbus->log, modbus->link_up || !modbus->link_known ? LOG_WARN : LOG_DEBUG, "source %s: %s:%d: no readings (%s)",
+           modbus->config->id, modbus->config->host, modbus->config->port, why);
     modbus->link_up = false;
     modbus->link_known = true;
     counter_set(modbus->up, 0);
@@ -151,8 +151,8 @@ static void note_refused(struct modbus_source *modbus, const struct plan_block *
         modbus->refused[tag] = refused;
     }
     if (changed)
-        log_at(modbus->log, refused ? LOG_WARN : LOG_INFO, "source %s: unit %d: %s%s (%d from %d): %s", modbus->config->id, block->unit, first,
-               changed > 1 ? " and others" : "", block->count, block->first, why);
+        log_at(modbus->log, refused ? LOG_WARN : LOG_INFO, "source %s: unit %d: %s%s (%d from %d): %s", modbus->config->id, block->unit,
+               first, changed > 1 ? " and others" : "", block->count, block->first, why);
 }
 
 static void take_values(struct modbus_source *modbus, const struct plan_block *block, const uint16_t *words)
@@ -313,7 +313,8 @@ static void modbus_stop(struct source *source)
     mem_free(modbus);
 }
 
-static counter *add_counter(struct counters *counters, const char *name, const char *source, const char *more, const char *type, const char *help)
+static counter *add_counter(struct counters *counters, const char *name, const char *source, const char *more, const char *type,
+                            const char *help)
 {
     char *full = mem_printf("plantcast_source_%s{source=\"%s\"%s}", name, source, more);
     counter *added = counters_add(counters, full, type, help);

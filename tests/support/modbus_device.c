@@ -106,7 +106,8 @@ static void reply_wrong(struct device_thread *t, int fd, const uint8_t *request,
 
 static bool asks_for(const uint8_t *request, int wanted)
 {
-    int first = request[HEADER_BYTES + 1] << 8 | request[HEADER_BYTES + 2], count = request[HEADER_BYTES + 3] << 8 | request[HEADER_BYTES + 4];
+    int first = request[HEADER_BYTES + 1] << 8 | request[HEADER_BYTES + 2],
+        count = request[HEADER_BYTES + 3] << 8 | request[HEADER_BYTES + 4];
     return wanted >= first && wanted < first + count;
 }
 

@@ -49,7 +49,8 @@ struct plant_source *plant_by_hand_source(struct plant *plant, const char *id, i
     return source;
 }
 
-struct plant_tag *plant_by_hand_tag(struct plant *plant, const char *name, enum register_table table, int register_index, enum data_type type)
+struct plant_tag *plant_by_hand_tag(struct plant *plant, const char *name, enum register_table table, int register_index,
+                                    enum data_type type)
 {
     bool one_register = type == DATA_BIT || type == DATA_INT16 || type == DATA_UINT16 || type == DATA_BCD;
     struct plant_tag *tag = &plant->tags[plant->tag_count++];

@@ -10,6 +10,7 @@ void plant_by_hand_destroy(struct plant **plant);
 /* Modbus at 127.0.0.1:port, unit 1, polled every 100 ms, timeout 300 ms. */
 struct plant_source *plant_by_hand_source(struct plant *plant, const char *id, int port);
 /* Of the newest source; a whole register, not scaled, stale after 5 s; ABCD where it takes more than one register. */
-struct plant_tag *plant_by_hand_tag(struct plant *plant, const char *name, enum register_table table, int register_index, enum data_type type);
+struct plant_tag *plant_by_hand_tag(struct plant *plant, const char *name, enum register_table table, int register_index,
+                                    enum data_type type);
 
 #endif

@@ -15,6 +15,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "base/text.h"
 #include "tests/support/modbus_device.h"
 #include "tests/support/plant_by_hand.h"
 #include "value/quality.h"
@@ -530,6 +531,26 @@ static void unknown_kind_is_refused(void **state)
     assert_null(source_start(s->log, s->plant, 0, s->store, s->counters));
 }
 
+/* The promise that the daemon only reads can be checked: nothing in it calls what could write. */
+static void calls_nothing_that_writes(void **state)
+{
+    (void)state;
+    static const char *const writers[] = { "modbus_write", "modbus_mask_write", "modbus_send_raw" };
+    const char *folder = getenv("PLANTCAST_OUT");
+    size_t bytes;
+    char *path = mem_printf("%s/lib/value.a", folder ? folder : "build/release"), *archive = text_read_file(path, 64 << 20, &bytes);
+    if (!archive) {
+        print_message("# %s is not there\n", path);
+        mem_free(path);
+        skip();
+    }
+    assert_non_null(memmem(archive, bytes, "modbus_read_registers", 21));
+    for (int i = 0; i < 3; i++)
+        assert_null(memmem(archive, bytes, writers[i], strlen(writers[i])));
+    mem_free(archive);
+    mem_free(path);
+}
+
 #define modbus_test(f) cmocka_unit_test_setup_teardown(f, set_up, tear_down)
 
 int main(void)
@@ -560,6 +581,7 @@ int main(void)
         modbus_test(two_sources_may_name_one_device),
         modbus_test(reconnects_with_a_thousand_files_open),
         modbus_test(unknown_kind_is_refused),
+        cmocka_unit_test(calls_nothing_that_writes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,469 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* plantcast-sim as a program, and the daemon's Modbus source reading from it: every data type over a real wire. */
+#include <arpa/inet.h>
+#include <errno.h>
+#include <math.h>
+#include <modbus.h>
+#include <poll.h>
+#include <setjmp.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#include <cmocka.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "base/text.h"
+#include "tests/support/modbus_device.h"
+#include "value/quality.h"
+#include "value/source.h"
+
+static const char plant_text[] = "plant: { name: Test }\n"
+                                 "assets: [ { id: V-1, model: none.glb } ]\n"
+                                 "groups: [ { id: temperature, unit: °C, min: 0, max: 200 } ]\n"
+                                 "sources: [ { id: plc, type: modbus, host: 127.0.0.1, port: %d, poll_ms: 50, timeout_ms: 300, byte_order: CDAB } ]\n"
+                                 "tags: sim-test.csv\n";
+static const char tags_text[] =
+    "Tag Name,Address,Data Type,Byte Order,Scaling,Raw Low,Raw High,Scaled Low,Scaled High,Negate Value,Sim Value,Sim Loop\n"
+    "int16,40001,Short,,,,,,,,-1234,\n"
+    "uint16,40002,Word,BADC,,,,,,,54321,\n"
+    "int32,40003,Long,ABCD,,,,,,,-123456,\n"
+    "uint32,40005,DWord,CDAB,,,,,,,123456,\n"
+    "float32,40007,Float,,,,,,,,80.25,\n"
+    "int64,40009,LLong,BADC,,,,,,,-5000000000,\n"
+    "uint64,40013,QWord,DCBA,,,,,,,5000000000,\n"
+    "float64,40017,Double,DCBA,,,,,,1,33.125,\n"
+    "bcd,40021,BCD,,,,,,,,1234,\n"
+    "lbcd,40022,LBCD,CDAB,,,,,,,12345678,\n"
+    "linear,30001,Short,,Linear,0,27648,0,200,,63.5,\n"
+    "root,30002,Word,,Square Root,0,65535,0,50,,20,\n"
+    "bit 3,40024.3,Boolean,,,,,,,,1,\n"
+    "bit 4,40024.4,Boolean,,,,,,,,0,\n"
+    "coil,000001,Boolean,,,,,,,1,1,\n"
+    "contact,100001,Boolean,,,,,,,,1,\n"
+    "unit 9,9!40001,Word,,,,,,,,77,\n";
+
+struct setup {
+    char folder[40], *plant_path, *tags_path, *model_path;
+    int port, control_port, control_fd;
+    pid_t pid;
+    FILE *out;
+    struct plant *plant;
+};
+
+static pid_t spawn(char *const arguments[], FILE **out)
+{
+    int pipes[2];
+    const char *folder = getenv("PLANTCAST_BIN");
+    char *program = mem_printf("%s/plantcast-sim", folder ? folder : "build");
+    if (access(program, X_OK) != 0) {
+        print_message("# %s is not there\n", program);
+        mem_free(program);
+        skip();
+    }
+    assert_int_equal(pipe(pipes), 0);
+    pid_t pid = fork();
+    if (pid == 0) {
+        dup2(pipes[1], STDOUT_FILENO);
+        dup2(pipes[1], STDERR_FILENO);
+        close(pipes[0]);
+        close(pipes[1]);
+        execv(program, arguments);
+        _exit(127);
+    }
+    close(pipes[1]);
+    *out = fdopen(pipes[0], "r");
+    mem_free(program);
+    return pid;
+}
+
+static int exit_status(struct setup *s)
+{
+    int status = 0;
+    assert_int_equal(waitpid(s->pid, &status, 0), s->pid);
+    s->pid = 0;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
+}
+
+static int set_up(void **state)
+{
+    static struct setup s;
+    s = (struct setup){ .folder = "/tmp/plantcast-sim-XXXXXX", .control_fd = -1 };
+    assert_non_null(mkdtemp(s.folder));
+    s.port = device_free_port();
+    s.control_port = device_free_port();
+    s.plant_path = mem_printf("%s/sim-test.yaml", s.folder);
+    s.tags_path = mem_printf("%s/sim-test.csv", s.folder);
+    s.model_path = mem_printf("%s/none.glb", s.folder);
+    assert_int_equal(text_write_file(s.model_path, "glTF", 4), 0); /* nobody opens it here */
+    char *text = mem_printf(plant_text, s.port);
+    assert_int_equal(text_write_file(s.plant_path, text, strlen(text)), 0);
+    assert_int_equal(text_write_file(s.tags_path, tags_text, strlen(tags_text)), 0);
+    mem_free(text);
+    struct diag diag = { 0 };
+    s.plant = plant_load(s.plant_path, &diag);
+    if (!s.plant)
+        diag_print(&diag, stderr);
+    diag_finish(&diag);
+    assert_non_null(s.plant);
+    *state = &s;
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    struct setup *s = *state;
+    if (s->control_fd >= 0)
+        close(s->control_fd);
+    if (s->pid > 0) {
+        kill(s->pid, SIGKILL);
+        waitpid(s->pid, NULL, 0);
+    }
+    if (s->out)
+        fclose(s->out);
+    plant_destroy(&s->plant);
+    unlink(s->plant_path);
+    unlink(s->tags_path);
+    unlink(s->model_path);
+    mem_free(s->model_path);
+    rmdir(s->folder);
+    mem_free(s->plant_path);
+    mem_free(s->tags_path);
+    return 0;
+}
+
+static void start(struct setup *s)
+{
+    char control[12], line[200], wanted[200];
+    snprintf(control, sizeof(control), "%d", s->control_port);
+    char *const arguments[] = { "plantcast-sim", s->plant_path, "--control", control, NULL };
+    s->pid = spawn(arguments, &s->out);
+    snprintf(wanted, sizeof(wanted), "plantcast-sim: listening on 127.0.0.1:%d, 17 tags\n", s->port);
+    assert_non_null(fgets(line, sizeof(line), s->out));
+    assert_string_equal(line, wanted);
+}
+
+static int connect_to(int port)
+{
+    struct sockaddr_in at = { .sin_family = AF_INET, .sin_port = htons((uint16_t)port), .sin_addr.s_addr = htonl(INADDR_LOOPBACK) };
+    int fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    assert_int_equal(connect(fd, (struct sockaddr *)&at, sizeof(at)), 0);
+    return fd;
+}
+
+/* One command, one line back. */
+static const char *control(struct setup *s, const char *command)
+{
+    static char reply[300];
+    size_t count = 0;
+    if (s->control_fd < 0)
+        s->control_fd = connect_to(s->control_port);
+    struct pollfd readable = { .fd = s->control_fd, .events = POLLIN };
+    assert_int_equal(dprintf(s->control_fd, "%s\n", command), (int)strlen(command) + 1);
+    while (count == 0 || reply[count - 1] != '\n') {
+        assert_int_equal(poll(&readable, 1, 3000), 1);
+        ssize_t got = recv(s->control_fd, reply + count, sizeof(reply) - 1 - count, 0);
+        assert_true(got > 0);
+        count += (size_t)got;
+    }
+    reply[count - 1] = 0;
+    return reply;
+}
+
+/* --- the daemon's side ------------------------------------------------------------------------------------------------------ */
+
+struct reader {
+    struct log *log;
+    struct counters *counters;
+    struct store *store;
+    struct snapshot *snapshot;
+    struct source *source;
+};
+
+static void reader_start(struct reader *reader, const struct plant *plant)
+{
+    reader->log = log_create(LOG_ERROR);
+    reader->counters = counters_create();
+    reader->store = store_create(plant);
+    reader->snapshot = snapshot_create(plant->tag_count);
+    reader->source = source_start(reader->log, plant, 0, reader->store, reader->counters);
+    assert_non_null(reader->source);
+}
+
+static void reader_stop(struct reader *reader)
+{
+    source_stop(&reader->source);
+    snapshot_destroy(&reader->snapshot);
+    store_destroy(&reader->store);
+    counters_destroy(&reader->counters);
+    log_destroy(&reader->log);
+}
+
+static const struct reading *look(struct reader *reader, int tag)
+{
+    store_snapshot(reader->store, clock_mono_ns(), clock_utc_ns(), reader->snapshot);
+    return &reader->snapshot->readings[tag];
+}
+
+/* Waits for quality and, where it is not NAN, value within 1e-4 of it. */
+static void expect(struct reader *reader, const struct plant *plant, const char *name, uint32_t quality, double value)
+{
+    int64_t end_ns = clock_mono_ns() + 8 * NS_PER_S;
+    int tag = plant_find_tag(plant, name);
+    assert_true(tag >= 0);
+    const struct reading *r = look(reader, tag);
+    while ((r->quality != quality || fabs(r->value - value) > 1e-4 * fmax(1, fabs(value))) && clock_mono_ns() < end_ns) {
+        clock_sleep_ns(10 * NS_PER_MS);
+        r = look(reader, tag);
+        if (isnan(value) && r->quality == quality)
+            return;
+    }
+    if (r->quality != quality || (!isnan(value) && fabs(r->value - value) > 1e-4 * fmax(1, fabs(value))))
+        fail_msg("%s: %s %.9g, not %s %.9g", name, quality_name(r->quality), r->value, quality_name(quality), value);
+}
+
+static void every_type_over_the_wire(void **state)
+{
+    struct setup *s = *state;
+    struct reader reader;
+    start(s);
+    reader_start(&reader, s->plant);
+    const struct {
+        const char *name;
+        double value;
+    } sets[] = {
+        { "int16", -32000 }, { "uint16", 60001 },       { "int32", -2000000001 }, { "uint32", 4000000001.0 }, { "float32", -0.125 },
+        { "int64", -1e15 },  { "uint64", 1e15 },        { "float64", 0 },         { "bcd", 9071 },            { "lbcd", 90210345 },
+        { "linear", 156.25 }, { "root", 50 },          { "bit 3", 0 },           { "bit 4", 1 },             { "coil", 0 },
+        { "contact", 0 },    { "unit 9", 4711 },        { "coil", 1 },            { "contact", 1 },           { "bit 3", 1 },
+        { "root", 0 },       { "linear", 0 },           { "float64", 1e-3 },      { "int32", 0 },             { "float32", 1e6 },
+    };
+    for (size_t i = 0; i < sizeof(sets) / sizeof(sets[0]); i++) {
+        char command[60];
+        snprintf(command, sizeof(command), "set %s %.17g", sets[i].name, sets[i].value);
+        assert_string_equal(control(s, command), "ok");
+        expect(&reader, s->plant, sets[i].name, QUALITY_GOOD, sets[i].value);
+    }
+    expect(&reader, s->plant, "bit 4", QUALITY_GOOD, 1); /* its neighbour did not change it */
+    reader_stop(&reader);
+}
+
+static void process_values_come_near_their_operating_point(void **state)
+{
+    struct setup *s = *state;
+    struct reader reader;
+    start(s);
+    reader_start(&reader, s->plant);
+    expect(&reader, s->plant, "float32", QUALITY_GOOD, NAN);
+    expect(&reader, s->plant, "linear", QUALITY_GOOD, NAN);
+    assert_true(fabs(look(&reader, plant_find_tag(s->plant, "float32"))->value - 80.25) < 8);
+    assert_true(fabs(look(&reader, plant_find_tag(s->plant, "linear"))->value - 63.5) < 12);
+    reader_stop(&reader);
+}
+
+static void tests_can_fail_and_pause_it(void **state)
+{
+    struct setup *s = *state;
+    struct reader reader;
+    start(s);
+    reader_start(&reader, s->plant);
+    assert_string_equal(control(s, "set float32 42"), "ok");
+    expect(&reader, s->plant, "float32", QUALITY_GOOD, 42);
+    assert_string_equal(control(s, "set float32 nan"), "ok");
+    expect(&reader, s->plant, "float32", QUALITY_BAD_SENSOR_FAILURE, NAN);
+    assert_string_equal(control(s, "set linear 260"), "ok");
+    expect(&reader, s->plant, "linear", QUALITY_UNCERTAIN_UNITS_EXCEEDED, NAN);
+    assert_string_equal(control(s, "fail int32"), "ok");
+    expect(&reader, s->plant, "int32", QUALITY_BAD_CONFIGURATION, NAN);
+    expect(&reader, s->plant, "uint16", QUALITY_GOOD, NAN); /* same block */
+    assert_string_equal(control(s, "set uint16 7"), "ok");
+    expect(&reader, s->plant, "uint16", QUALITY_GOOD, 7);
+    assert_string_equal(control(s, "pause"), "ok");
+    expect(&reader, s->plant, "uint16", QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE, 7);
+    assert_string_equal(control(s, "set uint16 8"), "ok");
+    assert_string_equal(control(s, "resume"), "ok");
+    expect(&reader, s->plant, "uint16", QUALITY_GOOD, 8);
+    reader_stop(&reader);
+}
+
+static void control_says_what_is_wrong(void **state)
+{
+    struct setup *s = *state;
+    start(s);
+    assert_string_equal(control(s, "set nobody 1"), "error: no tag nobody");
+    assert_string_equal(control(s, "set int16 much"), "error: much is not a number");
+    assert_string_equal(control(s, "set int16 nan"), "error: the data type of int16 cannot hold nan");
+    assert_string_equal(control(s, "dance"), "error: unknown command dance");
+    assert_string_equal(control(s, "set bit 3 0"), "ok"); /* a blank in the name */
+    assert_string_equal(control(s, "get bit 3"), "ok 0");
+    assert_string_equal(control(s, "release bit 3"), "ok");
+    assert_string_equal(control(s, "get bit 3"), "ok 1");
+    assert_string_equal(control(s, "quit"), "ok");
+    assert_int_equal(exit_status(s), 0);
+}
+
+/* --- the device's side ------------------------------------------------------------------------------------------------------ */
+
+static void writes_are_refused_and_counted(void **state)
+{
+    struct setup *s = *state;
+    const uint16_t words[2] = { 1, 2 };
+    const uint8_t bits[2] = { 1, 0 };
+    start(s);
+    assert_string_equal(control(s, "set int16 5"), "ok");
+    modbus_t *modbus = modbus_new_tcp("127.0.0.1", s->port);
+    modbus_set_slave(modbus, 1);
+    assert_int_equal(modbus_connect(modbus), 0);
+    assert_int_equal(modbus_write_register(modbus, 0, 9), -1);
+    assert_int_equal(errno, EMBXILFUN);
+    assert_int_equal(modbus_write_registers(modbus, 0, 2, words), -1);
+    assert_int_equal(errno, EMBXILFUN);
+    assert_int_equal(modbus_write_bit(modbus, 0, 1), -1);
+    assert_int_equal(errno, EMBXILFUN);
+    assert_int_equal(modbus_write_bits(modbus, 0, 2, bits), -1);
+    assert_int_equal(errno, EMBXILFUN);
+    uint16_t read = 0;
+    assert_int_equal(modbus_read_registers(modbus, 0, 1, &read), 1);
+    assert_int_equal(read, 5);
+    assert_non_null(strstr(control(s, "stats"), "writes_refused=4"));
+    modbus_close(modbus);
+    modbus_free(modbus);
+}
+
+static void many_clients_at_once_and_one_talks_nonsense(void **state)
+{
+    enum { CLIENTS = 20 };
+    struct setup *s = *state;
+    modbus_t *clients[CLIENTS];
+    char byte;
+    start(s);
+    assert_string_equal(control(s, "set int16 5"), "ok");
+    int silent = connect_to(s->port), nonsense = connect_to(s->port);
+    assert_int_equal(send(silent, "\0\1\0", 3, 0), 3); /* half a request, for ever */
+    assert_int_equal(send(nonsense, "GET / HTTP/1.1\r\n\r\n", 18, 0), 18);
+    for (int i = 0; i < CLIENTS; i++) {
+        clients[i] = modbus_new_tcp("127.0.0.1", s->port);
+        modbus_set_slave(clients[i], 1);
+        assert_int_equal(modbus_connect(clients[i]), 0);
+    }
+    for (int round = 0; round < 3; round++)
+        for (int i = 0; i < CLIENTS; i++) {
+            uint16_t read = 0;
+            assert_int_equal(modbus_read_registers(clients[i], 0, 1, &read), 1);
+            assert_int_equal(read, 5);
+        }
+    assert_true(recv(nonsense, &byte, 1, 0) <= 0);
+    for (int i = 0; i < CLIENTS; i++) {
+        modbus_close(clients[i]);
+        modbus_free(clients[i]);
+    }
+    close(silent);
+    close(nonsense);
+}
+
+static void ends_cleanly_on_signals(void **state)
+{
+    struct setup *s = *state;
+    const int signals[] = { SIGTERM, SIGINT };
+    for (int i = 0; i < 2; i++) {
+        start(s);
+        kill(s->pid, signals[i]);
+        assert_int_equal(exit_status(s), 0);
+        fclose(s->out);
+        s->out = NULL;
+    }
+}
+
+static int run(struct setup *s, char *const arguments[], char said[300])
+{
+    s->pid = spawn(arguments, &s->out);
+    size_t count = fread(said, 1, 299, s->out);
+    said[count] = 0;
+    fclose(s->out);
+    s->out = NULL;
+    return exit_status(s);
+}
+
+static void says_what_stops_it(void **state)
+{
+    struct setup *s = *state;
+    char said[300], wanted[100];
+    assert_int_equal(run(s, (char *[]){ "plantcast-sim", NULL }, said), 2);
+    assert_int_equal(run(s, (char *[]){ "plantcast-sim", s->plant_path, "--port", "70000", NULL }, said), 2);
+    assert_non_null(strstr(said, "--port 70000: expected a port number"));
+    assert_int_equal(run(s, (char *[]){ "plantcast-sim", "/nowhere/plant.yaml", NULL }, said), 1);
+    assert_non_null(strstr(said, "/nowhere/plant.yaml"));
+    assert_int_equal(run(s, (char *[]){ "plantcast-sim", s->plant_path, "--map", "nobody=a", NULL }, said), 1);
+    assert_non_null(strstr(said, "nobody: the plant has no such tag"));
+    start(s);
+    pid_t first = s->pid;
+    FILE *first_out = s->out;
+    assert_int_equal(run(s, (char *[]){ "plantcast-sim", s->plant_path, NULL }, said), 1);
+    snprintf(wanted, sizeof(wanted), "cannot listen on 127.0.0.1:%d: Address already in use", s->port);
+    assert_non_null(strstr(said, wanted));
+    s->pid = first;
+    s->out = first_out;
+}
+
+/* The plants of real models and recorded series: only there where the data is. */
+static void real_plants_are_served(void **state)
+{
+    struct setup *s = *state;
+    const char *const plants[] = { "tests/plants/plant_room.yaml", "tests/plants/cookie_line.yaml" };
+    if (access("../shared/data/sensors/tep", R_OK) != 0) {
+        print_message("# ../shared/data is not there\n");
+        skip();
+    }
+    for (int i = 0; i < 2; i++) {
+        struct diag diag = { 0 };
+        struct reader reader;
+        char port[12];
+        struct plant *plant = plant_load(plants[i], &diag);
+        assert_non_null(plant);
+        assert_int_equal(diag.errors + diag.warnings, 0);
+        plant->sources[0].port = s->port;
+        snprintf(port, sizeof(port), "%d", s->port);
+        s->pid = spawn((char *[]){ "plantcast-sim", (char *)plants[i], "--port", port, NULL }, &s->out);
+        reader_start(&reader, plant);
+        for (size_t t = 0; t < plant->tag_count; t++) {
+            expect(&reader, plant, plant->tags[t].name, QUALITY_GOOD, NAN);
+            int group = plant->tags[t].group;
+            double value = look(&reader, (int)t)->value;
+            if (group >= 0 && (value < plant->groups[group].min || value > plant->groups[group].max))
+                fail_msg("%s: %g is outside of its group", plant->tags[t].name, value);
+        }
+        reader_stop(&reader);
+        kill(s->pid, SIGTERM);
+        assert_int_equal(exit_status(s), 0);
+        fclose(s->out);
+        s->out = NULL;
+        plant_destroy(&plant);
+        diag_finish(&diag);
+    }
+}
+
+#define sim_test(f) cmocka_unit_test_setup_teardown(f, set_up, tear_down)
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        sim_test(every_type_over_the_wire),
+        sim_test(process_values_come_near_their_operating_point),
+        sim_test(tests_can_fail_and_pause_it),
+        sim_test(control_says_what_is_wrong),
+        sim_test(writes_are_refused_and_counted),
+        sim_test(many_clients_at_once_and_one_talks_nonsense),
+        sim_test(ends_cleanly_on_signals),
+        sim_test(says_what_stops_it),
+        sim_test(real_plants_are_served),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
