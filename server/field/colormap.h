@@ -2,8 +2,8 @@
 /* Colour maps: 256 sRGB colours each, from shaders/maps/NAME.csv (r,g,b per line, 0..255), embedded at build. Immutable. Thread: any.
    The legend's rule, which shaders follow too, with t = (value - MIN)/(MAX - MIN), all in 32-bit floats:
      value < MIN: below;  value > MAX: above;  else the colour number min(255, floor(256 t)), never a mixture of two.
-     In steps of `interval`: bands start at MIN + k interval, k = min(floor((value - MIN)/interval), bands - 1),
-     bands = max(1, ceil((MAX - MIN)/interval - 0.001)), and the whole band has the colour of its centre; the last band may be cut short by MAX. */
+     In steps of `interval`: bands start at MIN + k interval, k = min(floor((value - MIN)/interval), bands - 1), with
+     bands = max(1, ceil((MAX - MIN)/interval - 0.001)). A whole band has the colour of its centre; MAX may cut the last one short. */
 #ifndef FIELD_COLORMAP_H
 #define FIELD_COLORMAP_H
 #include <stddef.h>

@@ -110,18 +110,18 @@ KERNEL void kernel_top_shepard(const float *restrict distance_m, const float *re
 }
 
 /* log2(e) d strength */
-static inline float exponent_of(float distance_m, float inverse_radius, float strength, float *d)
+static inline float exponent_of(float distance_m, float radius_m, float strength, float *d)
 {
-    float near_one = 1.0f - distance_m * inverse_radius;
+    float near_one = 1.0f - distance_m / radius_m;
     *d = near_one > 0.0f ? near_one : 0.0f;
     return *d * (strength * 1.44269504f);
 }
 
-KERNEL void kernel_top_paper(const float *restrict distance_m, const float *restrict near_m, size_t count, float reach_m,
-                             float inverse_radius, float strength, float *restrict top)
+KERNEL void kernel_top_paper(const float *restrict distance_m, const float *restrict near_m, size_t count, float reach_m, float radius_m,
+                             float strength, float *restrict top)
 {
     for (size_t j = 0; j < count; j++) {
-        float d, mine = exponent_of(distance_m[j], inverse_radius, strength, &d);
+        float d, mine = exponent_of(distance_m[j], radius_m, strength, &d);
         mine = takes_part(distance_m[j], near_m[j], reach_m) ? mine : 0.0f;
         top[j] = mine > top[j] ? mine : top[j];
     }
@@ -158,10 +158,10 @@ KERNEL void kernel_shepard(const struct kernel_column *column, float *restrict w
 KERNEL void kernel_paper(const struct kernel_column *column, float *restrict weight, float *restrict term)
 {
     const float *distance_m = column->distance_m, *near_m = column->near_m, *top = column->top;
-    const float reach_m = column->reach_m, strength = column->strength, decay = column->decay, inverse_radius = column->inverse_radius;
+    const float reach_m = column->reach_m, strength = column->strength, decay = column->decay, radius_m = column->radius_m;
     float d[KERNEL_BLOCK];
     for (size_t j = 0; j < column->count; j++) {
-        float exponent = exponent_of(distance_m[j], inverse_radius, strength, &d[j]);
+        float exponent = exponent_of(distance_m[j], radius_m, strength, &d[j]);
         float w = exp2_down(exponent - top[j]);
         weight[j] = takes_part(distance_m[j], near_m[j], reach_m) ? w : 0.0f;
     }

@@ -23,15 +23,15 @@ float kernel_largest(const float *distance_m, size_t count, float most_m);
    nearest sensors, for Algorithm 1 the largest exponent. A sensor takes part where distance <= max(reach, near): where none is within
    reach, the nearest alone carries its value on, so that a triangle with one reached corner can be interpolated. */
 void kernel_top_shepard(const float *restrict distance_m, const float *restrict near_m, size_t count, float strength, float *restrict top);
-void kernel_top_paper(const float *restrict distance_m, const float *restrict near_m, size_t count, float reach_m, float inverse_radius,
+void kernel_top_paper(const float *restrict distance_m, const float *restrict near_m, size_t count, float reach_m, float radius_m,
                       float strength, float *restrict top);
 
 struct kernel_column {
     const float *distance_m, *near_m, *top;
     size_t count;
     float reach_m, strength, decay;
-    float power;          /* shepard */
-    float inverse_radius; /* paper */
+    float power;    /* shepard */
+    float radius_m; /* paper */
 };
 /* (strength / top) (near / distance)^power; exactly 1 for the strongest of the nearest, exactly 0 for all others where near is 0. */
 void kernel_shepard(const struct kernel_column *column, float *restrict weight);

@@ -96,7 +96,7 @@ struct weights *weights_create(const struct layout *layout, const struct field_p
     weights->distance = params->distance;
     weights->power = (float)params->power;
     weights->reach_m = (float)params->reach_m;
-    weights->inverse_radius = 1.0f / radius_m;
+    weights->radius_m = radius_m;
     weights->strength = mem_array(layout->sensor_count, sizeof(float));
     weights->decay = mem_array(layout->sensor_count, sizeof(float));
     weights->configured = mem_array(layout->sensor_count, 1);
@@ -196,7 +196,7 @@ void weights_prepare(struct weights *weights, size_t begin, size_t count)
         uint32_t sensor = weights->members[m];
         const float *distance_m = distances(weights, sensor, begin, count, scratch);
         if (weights->interpolation == INTERPOLATION_PAPER)
-            kernel_top_paper(distance_m, near_m, count, weights->reach_m, weights->inverse_radius, weights->strength[sensor], top);
+            kernel_top_paper(distance_m, near_m, count, weights->reach_m, weights->radius_m, weights->strength[sensor], top);
         else
             kernel_top_shepard(distance_m, near_m, count, weights->strength[sensor], top);
     }
@@ -220,7 +220,7 @@ static void make_column(const struct weights *weights, uint32_t member, size_t b
         .strength = weights->strength[sensor],
         .decay = weights->decay[sensor],
         .power = weights->power,
-        .inverse_radius = weights->inverse_radius,
+        .radius_m = weights->radius_m,
     };
     if (weights->interpolation == INTERPOLATION_PAPER)
         kernel_paper(&column, weight, term);

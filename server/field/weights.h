@@ -27,7 +27,7 @@ struct weights {
     const struct layout *layout;
     enum interpolation interpolation;
     enum distance_mode distance;
-    float power, reach_m, inverse_radius;
+    float power, reach_m, radius_m;
     float *strength, *decay; /* by sensor of the layout */
     uint8_t *configured;     /* by sensor of the layout: may take part, were it good */
     uint32_t *members;       /* usable sensors of the layout; a column's number is its place here */

@@ -1,0 +1,982 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The field against plain double-precision loops, and each rule that keeps it true. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "base/mem.h"
+#include "field/field.h"
+#include "tests/support/synthetic.h"
+#include "value/quality.h"
+
+/* --- slow truth ----------------------------------------------------------------------------------------------------------- */
+
+struct truth {
+    double value;
+    bool no_data, uncertain;
+    bool near_tie; /* flags hang on less than the rounding of a float */
+};
+
+#define MAX_SENSORS 4096
+struct sight { /* what one vertex sees of each sensor */
+    double distance_m[MAX_SENSORS], weight[MAX_SENSORS], term[MAX_SENSORS];
+    bool usable[MAX_SENSORS], configured[MAX_SENSORS];
+};
+
+static double truth_distance(const struct synthetic *plant, const struct field_params *params, size_t sensor, size_t vertex)
+{
+    const struct asset_view *view = &plant->file.view;
+    if (params->distance == DISTANCE_GEODESIC)
+        return (double)view->geodesic_m[sensor * view->header->vertex_count + vertex];
+    double sum = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        double d = (double)view->sensors[sensor].surface_m[axis] - (double)view->positions_m[vertex][axis];
+        sum += d * d;
+    }
+    return sqrt(sum);
+}
+
+static double truth_radius(const struct synthetic *plant, const struct field_params *params)
+{
+    double most = 0;
+    if (params->radius_m > 0)
+        return params->radius_m;
+    for (size_t i = 0; i < plant->scene.assets[0].sensor_count; i++)
+        for (size_t j = 0; j < plant->file.view.header->vertex_count; j++) {
+            double d = truth_distance(plant, params, i, j);
+            if (isfinite(d) && d > most)
+                most = d;
+        }
+    return most;
+}
+
+/* Weights of those that take part: all within `limit_m`. */
+static void truth_weights(struct sight *s, size_t count, const struct plant_tag *tags, const struct field_params *params, double limit_m,
+                          double radius_m)
+{
+    bool at_sensor = false;
+    double top = -INFINITY;
+    for (size_t i = 0; i < count; i++) {
+        bool in = s->usable[i] && isfinite(s->distance_m[i]) && s->distance_m[i] <= limit_m;
+        double d = fmax(0, 1 - s->distance_m[i] / radius_m);
+        at_sensor |= in && s->distance_m[i] == 0;
+        if (in)
+            top = fmax(top, d * tags[i].strength * params->strength);
+    }
+    for (size_t i = 0; i < count; i++) {
+        s->weight[i] = s->term[i] = 0;
+        if (!s->usable[i] || !isfinite(s->distance_m[i]) || s->distance_m[i] > limit_m)
+            continue;
+        if (params->interpolation == INTERPOLATION_PAPER) {
+            double d = fmax(0, 1 - s->distance_m[i] / radius_m);
+            s->weight[i] = exp(d * tags[i].strength * params->strength - top);
+            s->term[i] = s->weight[i] * pow(d, tags[i].decay * params->decay);
+        } else if (at_sensor) {
+            s->weight[i] = s->term[i] = s->distance_m[i] == 0 ? tags[i].strength : 0;
+        } else {
+            s->weight[i] = s->term[i] = tags[i].strength / pow(s->distance_m[i], params->power);
+        }
+    }
+}
+
+static struct truth truth_at(const struct synthetic *plant, const struct field_params *params, double radius_m, size_t vertex)
+{
+    static struct sight s;
+    size_t count = plant->scene.assets[0].sensor_count;
+    bool paper = params->interpolation == INTERPOLATION_PAPER;
+    double nearest_usable = INFINITY, nearest_configured = INFINITY, sum = 0, total = 0, uncertain = 0;
+    for (size_t i = 0; i < count; i++) {
+        const struct reading *r = &plant->snapshot->readings[i];
+        s.distance_m[i] = truth_distance(plant, params, i, vertex);
+        s.configured[i] = paper || plant->plant.tags[i].strength > 0;
+        s.usable[i] = s.configured[i] && !quality_is_bad(r->quality) && isfinite(r->value);
+        if (s.configured[i])
+            nearest_configured = fmin(nearest_configured, s.distance_m[i]);
+        if (s.usable[i])
+            nearest_usable = fmin(nearest_usable, s.distance_m[i]);
+    }
+    bool reached = isfinite(nearest_usable) && nearest_usable <= params->reach_m, lost = nearest_configured < nearest_usable;
+    struct truth truth = { .value = plant->group.min, .no_data = !reached || (lost && params->fill == FILL_NONE) };
+    truth.near_tie = fabs(nearest_usable - params->reach_m) < 1e-5;
+    truth_weights(&s, count, plant->plant.tags, params, reached ? params->reach_m : nearest_usable, radius_m);
+    for (size_t i = 0; i < count; i++) {
+        const struct reading *r = &plant->snapshot->readings[i];
+        if (s.weight[i] == 0)
+            continue;
+        double unit = fmin(fmax((r->value - plant->group.min) / (plant->group.max - plant->group.min), 0), 1);
+        sum += s.term[i] * (paper ? unit : r->value);
+        total += s.weight[i];
+        uncertain += quality_is_uncertain(r->quality) ? s.weight[i] : 0;
+        truth.near_tie |= s.distance_m[i] > params->reach_m - 1e-5;
+    }
+    for (size_t i = 0; i < count; i++) {
+        truth.near_tie |= fabs(s.distance_m[i] - params->reach_m) < 1e-5;
+        truth.near_tie |= s.configured[i] && !s.usable[i] && fabs(s.distance_m[i] - nearest_usable) < 1e-5;
+    }
+    if (total > 0)
+        truth.value = paper ? plant->group.min + (plant->group.max - plant->group.min) * sum / total : sum / total;
+    truth.near_tie |= total > 0 && fabs(2 * uncertain - total) < 1e-4 * total && uncertain != total / 2;
+    truth.uncertain = (total > 0 && uncertain >= total / 2 && uncertain > 0) || (reached && lost && params->fill == FILL_NEIGHBOURS);
+    return truth;
+}
+
+/* --- helpers -------------------------------------------------------------------------------------------------------------- */
+
+static struct workers *workers;
+
+struct rig {
+    struct synthetic *plant;
+    struct field *field;
+    struct field_params params;
+};
+
+static struct rig rig_create(struct synthetic *plant)
+{
+    struct rig rig = { .plant = plant, .field = field_create(workers, &plant->scene) };
+    field_params_default(&plant->plant, 0, &rig.params);
+    return rig;
+}
+
+static void rig_finish(struct rig *rig)
+{
+    field_destroy(&rig->field);
+    synthetic_destroy(&rig->plant);
+}
+
+static const struct scalars *show(const struct rig *rig)
+{
+    const struct scalars *scalars = field_scalars(rig->field, 0, &rig->params, rig->plant->snapshot);
+    assert_non_null(scalars);
+    return scalars;
+}
+
+static void set(const struct rig *rig, size_t sensor, double value, uint32_t quality)
+{
+    rig->plant->snapshot->readings[sensor].value = value;
+    rig->plant->snapshot->readings[sensor].quality = quality;
+}
+
+static void assert_all_finite(const struct scalars *scalars)
+{
+    for (size_t j = 0; j < scalars->count; j++)
+        assert_true(isfinite(scalars->at[j].value));
+}
+
+/* Equal bits as a field that has never seen anything else. */
+static void assert_as_fresh(const struct rig *rig)
+{
+    struct field *fresh = field_create(workers, &rig->plant->scene);
+    const struct scalars *want = field_scalars(fresh, 0, &rig->params, rig->plant->snapshot), *got = show(rig);
+    assert_memory_equal(got->at, want->at, want->count * sizeof(*want->at));
+    assert_int_equal(got->oldest_age_ns, want->oldest_age_ns);
+    field_destroy(&fresh);
+}
+
+static void assert_true_field(const struct rig *rig, double tolerance)
+{
+    const struct scalars *scalars = show(rig);
+    double range = rig->plant->group.max - rig->plant->group.min, radius_m = truth_radius(rig->plant, &rig->params);
+    for (size_t j = 0; j < scalars->count; j++) {
+        struct truth truth = truth_at(rig->plant, &rig->params, radius_m, j);
+        if (truth.near_tie)
+            continue;
+        if (fabs((double)scalars->at[j].value - truth.value) > tolerance * range || !scalars->at[j].no_data != !truth.no_data ||
+            !scalars->at[j].uncertain != !truth.uncertain)
+            fail_msg("vertex %zu: %g no_data %d uncertain %d, truth %g %d %d", j, (double)scalars->at[j].value, scalars->at[j].no_data,
+                     scalars->at[j].uncertain, truth.value, truth.no_data, truth.uncertain);
+    }
+}
+
+static uint64_t fresh_seed(void)
+{
+    const char *given = getenv("SEED");
+    uint64_t seed = given ? strtoull(given, NULL, 0) : (uint64_t)time(NULL);
+    print_message("# SEED=%llu\n", (unsigned long long)seed);
+    return seed;
+}
+
+static double between(uint64_t *random, double low, double high)
+{
+    return low + (high - low) * synthetic_random_unit(random);
+}
+
+/* --- against the truth ---------------------------------------------------------------------------------------------------- */
+
+static void test_worked_example_of_the_paper(void **state)
+{
+    (void)state;
+    struct rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 2, .max = 1));
+    rig.params.interpolation = INTERPOLATION_PAPER;
+    rig.params.radius_m = 10;
+    synthetic_geodesic(rig.plant, 0)[7] = 1; /* d = 0.9 */
+    synthetic_geodesic(rig.plant, 1)[7] = 8; /* d = 0.2 */
+    set(&rig, 0, 0.8, QUALITY_GOOD);
+    set(&rig, 1, 0.3, QUALITY_GOOD);
+    double value = (double)show(&rig)->at[7].value;
+    double w0 = exp(0.9) / (exp(0.9) + exp(0.2)), w1 = 1 - w0;
+    assert_true(fabs(value - 0.501) < 0.0005);
+    assert_true(fabs(value - (0.8 * w0 * 0.9 + 0.3 * w1 * 0.2)) < 1e-6);
+    rig_finish(&rig);
+}
+
+static void randomize(struct rig *rig, uint64_t *random)
+{
+    struct field_params *p = &rig->params;
+    p->interpolation = synthetic_random(random) % 2 ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
+    p->distance = synthetic_random(random) % 2 ? DISTANCE_EUCLIDEAN : DISTANCE_GEODESIC;
+    p->fill = synthetic_random(random) % 2 ? FILL_NEIGHBOURS : FILL_NONE;
+    p->strength = synthetic_random(random) % 3 ? between(random, 0, 4) : 1;
+    p->decay = synthetic_random(random) % 3 ? between(random, 0, 3) : synthetic_random(random) % 2;
+    p->power = synthetic_random(random) % 3 ? between(random, 0.5, 6) : 2;
+    p->radius_m = synthetic_random(random) % 2 ? 0 : between(random, 2, 20);
+    p->reach_m = synthetic_random(random) % 3 ? (double)INFINITY : between(random, 1, 8);
+    size_t mood = synthetic_random(random) % 4; /* none, some, many, all but few Bad */
+    for (size_t i = 0; i < rig->plant->scene.assets[0].sensor_count; i++) {
+        double dice = synthetic_random_unit(random);
+        rig->plant->plant.tags[i].strength = dice < 0.5 ? 1 : between(random, 0, 2);
+        rig->plant->plant.tags[i].decay = dice < 0.5 ? 1 : between(random, 0, 2);
+        uint32_t quality = synthetic_random(random) % 4 < mood ? QUALITY_BAD_SENSOR_FAILURE : QUALITY_GOOD;
+        if (quality == QUALITY_GOOD && dice < 0.3)
+            quality = QUALITY_UNCERTAIN_LAST_USABLE;
+        set(rig, i, between(random, -20, 120), quality);
+    }
+}
+
+static void test_random_input_is_as_plain_loops_say(void **state)
+{
+    (void)state;
+    uint64_t seed = fresh_seed(), random = seed;
+    for (int round = 0; round < 60; round++) {
+        size_t sensors = 1 + synthetic_random(&random) % 24, vertices = 260 + synthetic_random(&random) % 600;
+        struct synthetic *plant = synthetic_create(.vertices = vertices, .sensors = sensors, .island = 10, .seed = seed + (uint64_t)round);
+        struct rig rig = rig_create(plant);
+        randomize(&rig, &random);
+        assert_true_field(&rig, 1e-4);
+        for (int change = 0; change < 4; change++) {
+            set(&rig, synthetic_random(&random) % sensors, between(&random, -20, 120), QUALITY_GOOD);
+            assert_true_field(&rig, 1e-4);
+        }
+        rig_finish(&rig);
+    }
+}
+
+static void test_extreme_parameters(void **state)
+{
+    (void)state;
+    uint64_t random = fresh_seed();
+    struct rig rig = rig_create(synthetic_create(.vertices = 1500, .sensors = 9, .seed = random));
+    const double powers[] = { 0.5, 2, 16 }, strengths[] = { 0, 1, 100 };
+    for (int i = 0; i < 3; i++)
+        for (int bad = 0; bad < 2; bad++)
+            for (int fill = 0; fill < 2; fill++) {
+                set(&rig, 3, 95, bad ? QUALITY_BAD_NO_COMMUNICATION : QUALITY_GOOD);
+                rig.params.fill = fill ? FILL_NEIGHBOURS : FILL_NONE;
+                rig.params.interpolation = INTERPOLATION_SHEPARD;
+                rig.params.power = powers[i];
+                assert_true_field(&rig, 1e-4);
+                rig.params.interpolation = INTERPOLATION_PAPER;
+                rig.params.strength = strengths[i];
+                rig.params.decay = strengths[i];
+                assert_true_field(&rig, 1e-3);
+            }
+    rig_finish(&rig);
+}
+
+static void test_4096_sensors(void **state)
+{
+    (void)state;
+    uint64_t random = fresh_seed();
+    struct rig rig = rig_create(synthetic_create(.vertices = 4400, .sensors = 4096, .seed = random));
+    for (size_t i = 0; i < 4096; i += 7)
+        set(&rig, i, 1e3, QUALITY_BAD_SENSOR_FAILURE);
+    const struct scalars *scalars = show(&rig);
+    for (size_t i = 0; i < 4096; i++)
+        if (i % 7)
+            assert_true(scalars->at[i].value == (float)rig.plant->snapshot->readings[i].value && !scalars->at[i].no_data);
+    double radius_m = truth_radius(rig.plant, &rig.params);
+    for (size_t j = 4096; j < 4400; j++)
+        assert_true(fabs((double)scalars->at[j].value - truth_at(rig.plant, &rig.params, radius_m, j).value) < 1e-3);
+    rig_finish(&rig);
+}
+
+/* --- truth rules ---------------------------------------------------------------------------------------------------------- */
+
+static void test_exact_at_the_sensor(void **state)
+{
+    (void)state;
+    struct rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 12, .seed = fresh_seed()));
+    const double powers[] = { 0.5, 1, 2, 3.7, 16 };
+    for (int k = 0; k < 5; k++)
+        for (int mode = 0; mode < 2; mode++) {
+            rig.params.power = powers[k];
+            rig.params.distance = mode ? DISTANCE_EUCLIDEAN : DISTANCE_GEODESIC;
+            for (size_t i = 0; i < 12; i++) {
+                rig.plant->plant.tags[i].strength = 0.3 + 0.17 * (double)i;
+                set(&rig, i, 0.1 + 7.3 * (double)i, QUALITY_GOOD);
+            }
+            for (size_t i = 0; i < 12; i++)
+                assert_true(show(&rig)->at[i].value == (float)(0.1 + 7.3 * (double)i));
+            set(&rig, 5, 1e5, QUALITY_GOOD); /* one column */
+            set(&rig, 5, 33.3, QUALITY_GOOD);
+            for (size_t i = 0; i < 12; i++)
+                assert_true(show(&rig)->at[i].value == (float)(i == 5 ? 33.3 : 0.1 + 7.3 * (double)i));
+        }
+    rig_finish(&rig);
+}
+
+static void test_two_sensors_at_one_place_are_averaged(void **state)
+{
+    (void)state;
+    struct rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 3));
+    memcpy(synthetic_geodesic(rig.plant, 1), synthetic_geodesic(rig.plant, 0), 300 * sizeof(float));
+    rig.plant->plant.tags[1].strength = 3;
+    set(&rig, 0, 10, QUALITY_GOOD);
+    set(&rig, 1, 30, QUALITY_GOOD);
+    assert_true(fabsf(show(&rig)->at[0].value - 25) < 1e-4f);
+    rig_finish(&rig);
+}
+
+static void test_losing_the_hottest_is_not_painted_over(void **state)
+{
+    (void)state;
+    struct rig rig = rig_create(synthetic_create(.vertices = 2000, .sensors = 5, .seed = fresh_seed()));
+    for (size_t i = 0; i < 5; i++)
+        set(&rig, i, i == 2 ? 95 : 20, i == 2 ? QUALITY_BAD_SENSOR_FAILURE : QUALITY_GOOD);
+    for (int fill = 0; fill < 2; fill++) {
+        rig.params.fill = fill ? FILL_NEIGHBOURS : FILL_NONE;
+        const struct scalars *scalars = show(&rig);
+        size_t lost = 0;
+        for (size_t j = 0; j < scalars->count; j++) {
+            size_t nearest = 0;
+            for (size_t i = 1; i < 5; i++)
+                if (synthetic_geodesic(rig.plant, i)[j] < synthetic_geodesic(rig.plant, nearest)[j])
+                    nearest = i;
+            lost += nearest == 2;
+            assert_int_equal(scalars->at[j].no_data, nearest == 2 && !fill ? 255 : 0);
+            assert_int_equal(scalars->at[j].uncertain, nearest == 2 && fill ? 255 : 0);
+            assert_true(fabsf(scalars->at[j].value - 20) < 1e-3f); /* nothing of the lost 95 */
+        }
+        assert_true(lost > 20);
+        assert_int_equal(scalars->at[2].no_data, fill ? 0 : 255);
+    }
+    rig_finish(&rig);
+}
+
+static void test_a_good_twin_keeps_the_place(void **state)
+{
+    (void)state;
+    struct rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 3));
+    memcpy(synthetic_geodesic(rig.plant, 1), synthetic_geodesic(rig.plant, 0), 300 * sizeof(float));
+    set(&rig, 0, 50, QUALITY_BAD_SENSOR_FAILURE);
+    set(&rig, 1, 60, QUALITY_GOOD);
+    const struct scalars *scalars = show(&rig);
+    for (size_t j = 0; j < scalars->count; j++)
+        assert_int_equal(scalars->at[j].no_data, 0);
+    assert_true(scalars->at[0].value == 60);
+    rig_finish(&rig);
+}
+
+static void test_zero_is_a_reading(void **state)
+{
+    (void)state;
+    struct rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 2, .min = -10, .max = 10));
+    set(&rig, 0, 0.0, QUALITY_GOOD);
+    set(&rig, 1, 8, QUALITY_GOOD);
+    const struct scalars *scalars = show(&rig);
+    assert_true(scalars->at[0].value == 0 && scalars->at[0].no_data == 0);
+    for (size_t j = 2; j < scalars->count; j++)
+        assert_true(scalars->at[j].value > 0 && scalars->at[j].value < 8);
+    set(&rig, 1, 0.0, QUALITY_GOOD);
+    for (size_t j = 0; j < scalars->count; j++)
+        assert_true(show(&rig)->at[j].value == 0 && !scalars->at[j].no_data);
+    rig_finish(&rig);
+}
+
+static void test_all_bad_is_no_data(void **state)
+{
+    (void)state;
+    struct rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 6, .min = 20, .max = 90));
+    for (int paper = 0; paper < 2; paper++)
+        for (int fill = 0; fill < 2; fill++) {
+            rig.params.interpolation = paper ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
+            rig.params.fill = fill ? FILL_NEIGHBOURS : FILL_NONE;
+            for (size_t i = 0; i < 6; i++)
+                set(&rig, i, 70, QUALITY_BAD_NO_COMMUNICATION);
+            const struct scalars *scalars = show(&rig);
+            assert_true(scalars->oldest_age_ns == INT64_MAX);
+            for (size_t j = 0; j < scalars->count; j++)
+                assert_true(scalars->at[j].no_data == 255 && scalars->at[j].uncertain == 0 && scalars->at[j].value == 20);
+        }
+    rig_finish(&rig);
+}
+
+static void test_one_sensor_is_everywhere(void **state)
+{
+    (void)state;
+    struct rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 1));
+    set(&rig, 0, 41.7, QUALITY_GOOD);
+    const struct scalars *scalars = show(&rig);
+    for (size_t j = 0; j < scalars->count; j++)
+        assert_true(scalars->at[j].value == 41.7f && !scalars->at[j].no_data && !scalars->at[j].uncertain);
+    rig_finish(&rig);
+}
+
+static void test_over_range_passes_shepard_and_not_paper(void **state)
+{
+    (void)state;
+    struct rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 3));
+    set(&rig, 0, 250, QUALITY_GOOD);
+    set(&rig, 1, -40, QUALITY_GOOD);
+    const struct scalars *scalars = show(&rig);
+    assert_true(scalars->at[0].value == 250);
+    assert_true(scalars->at[1].value == -40);
+    rig.params.interpolation = INTERPOLATION_PAPER;
+    scalars = show(&rig);
+    for (size_t j = 0; j < scalars->count; j++)
+        assert_true(scalars->at[j].value >= 0 && scalars->at[j].value <= 100);
+    rig_finish(&rig);
+}
+
+/* Rounding must not turn a plant at exactly MAX into one beyond it. */
+static void test_equal_readings_make_exactly_that(void **state)
+{
+    (void)state;
+    struct rig rig = rig_create(synthetic_create(.vertices = 3000, .sensors = 11, .min = 0.1, .max = 0.3, .seed = fresh_seed()));
+    rig.params.power = 3.3;
+    for (size_t i = 0; i < 11; i++)
+        set(&rig, i, 0.3, QUALITY_GOOD);
+    const struct scalars *scalars = show(&rig);
+    for (size_t j = 0; j < scalars->count; j++)
+        assert_true(scalars->at[j].value == 0.3f);
+    rig.params.interpolation = INTERPOLATION_PAPER;
+    scalars = show(&rig);
+    for (size_t j = 0; j < scalars->count; j++)
+        assert_true(scalars->at[j].value <= 0.3f && scalars->at[j].value >= 0.1f);
+    rig_finish(&rig);
+}
+
+static void test_not_a_number_does_not_poison(void **state)
+{
+    (void)state;
+    struct rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 4));
+    const double poison[] = { (double)NAN, (double)INFINITY, -(double)INFINITY };
+    for (int paper = 0; paper < 2; paper++)
+        for (int k = 0; k < 3; k++) {
+            rig.params.interpolation = paper ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
+            set(&rig, 1, poison[k], QUALITY_GOOD);
+            assert_all_finite(show(&rig));
+            assert_int_equal(show(&rig)->at[1].no_data, 255);
+            set(&rig, 1, 50, QUALITY_GOOD);
+            assert_as_fresh(&rig);
+            assert_int_equal(show(&rig)->at[1].no_data, 0);
+        }
+    rig_finish(&rig);
+}
+
+static void test_a_mad_reading_leaves_nothing_behind(void **state)
+{
+    (void)state;
+    struct rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 9));
+    const double mad[] = { 1e300, -1e300, 1e12, 3e7 };
+    for (int k = 0; k < 4; k++) {
+        set(&rig, 4, 50, QUALITY_GOOD);
+        show(&rig);
+        set(&rig, 4, mad[k], QUALITY_GOOD);
+        assert_all_finite(show(&rig));
+        set(&rig, 4, 50, QUALITY_GOOD);
+        assert_true_field(&rig, 1e-5);
+    }
+    rig_finish(&rig);
+}
+
+static void test_half_the_weight_uncertain(void **state)
+{
+    (void)state;
+    struct rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 2));
+    for (int paper = 0; paper < 2; paper++) {
+        rig.params.interpolation = paper ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
+        for (size_t j = 0; j < 3; j++) { /* nearer to the good one, between, nearer to the uncertain one */
+            synthetic_geodesic(rig.plant, 0)[10 + j] = 1 + (float)j;
+            synthetic_geodesic(rig.plant, 1)[10 + j] = 3 - (float)j;
+        }
+        set(&rig, 0, 10, QUALITY_GOOD);
+        set(&rig, 1, 20, QUALITY_UNCERTAIN_LAST_USABLE);
+        const struct scalars *scalars = show(&rig);
+        assert_int_equal(scalars->at[10].uncertain, 0);
+        assert_int_equal(scalars->at[11].uncertain, 255);
+        assert_int_equal(scalars->at[12].uncertain, 255);
+        assert_int_equal(scalars->at[11].no_data, 0);
+        set(&rig, 1, 20, QUALITY_GOOD);
+        show(&rig);
+        assert_int_equal(scalars->at[12].uncertain, 0);
+    }
+    rig_finish(&rig);
+}
+
+static void test_a_part_that_nobody_reaches(void **state)
+{
+    (void)state;
+    struct rig rig = rig_create(synthetic_create(.vertices = 900, .sensors = 4, .island = 50, .min = -5, .max = 5));
+    for (int paper = 0; paper < 2; paper++) {
+        rig.params.interpolation = paper ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
+        rig.params.distance = DISTANCE_GEODESIC;
+        const struct scalars *scalars = show(&rig);
+        for (size_t j = 0; j < scalars->count; j++)
+            assert_int_equal(scalars->at[j].no_data, j < 850 ? 0 : 255);
+        for (size_t j = 850; j < scalars->count; j++)
+            assert_true(scalars->at[j].value == -5 && !scalars->at[j].uncertain);
+        rig.params.distance = DISTANCE_EUCLIDEAN;
+        scalars = show(&rig);
+        for (size_t j = 0; j < scalars->count; j++)
+            assert_int_equal(scalars->at[j].no_data, 0);
+    }
+    rig_finish(&rig);
+}
+
+static void test_a_sensor_out_of_reach_does_not_make_its_place_lost(void **state)
+{
+    (void)state;
+    struct rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 2));
+    for (size_t j = 0; j < 300; j++)
+        synthetic_geodesic(rig.plant, 0)[j] = INFINITY; /* Bad, and on another part */
+    set(&rig, 0, 90, QUALITY_BAD_SENSOR_FAILURE);
+    set(&rig, 1, 40, QUALITY_GOOD);
+    const struct scalars *scalars = show(&rig);
+    for (size_t j = 0; j < scalars->count; j++)
+        assert_true(scalars->at[j].no_data == 0 && scalars->at[j].value == 40);
+    rig_finish(&rig);
+}
+
+static void test_reach_ends_the_field(void **state)
+{
+    (void)state;
+    struct rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 2));
+    rig.params.reach_m = 2;
+    set(&rig, 0, 30, QUALITY_GOOD);
+    set(&rig, 1, 70, QUALITY_GOOD);
+    const float near_m[] = { 1.5f, 2.0f, 2.001f, 5 };
+    for (size_t k = 0; k < 4; k++) {
+        synthetic_geodesic(rig.plant, 0)[20 + k] = near_m[k];
+        synthetic_geodesic(rig.plant, 1)[20 + k] = 7;
+    }
+    const struct scalars *scalars = show(&rig);
+    for (size_t k = 0; k < 4; k++) {
+        assert_int_equal(scalars->at[20 + k].no_data, k < 2 ? 0 : 255);
+        assert_true(scalars->at[20 + k].value == 30); /* carried on beyond the edge, for interpolation */
+    }
+    rig_finish(&rig);
+}
+
+static void test_a_sensor_of_strength_0_has_no_say(void **state)
+{
+    (void)state;
+    struct rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 2));
+    rig.plant->plant.tags[0].strength = 0;
+    set(&rig, 0, 90, QUALITY_BAD_SENSOR_FAILURE);
+    set(&rig, 1, 40, QUALITY_GOOD);
+    const struct scalars *scalars = show(&rig);
+    for (size_t j = 0; j < scalars->count; j++)
+        assert_true(scalars->at[j].no_data == 0 && scalars->at[j].value == 40);
+    set(&rig, 0, 90, QUALITY_GOOD);
+    set(&rig, 1, 40, QUALITY_BAD_SENSOR_FAILURE);
+    for (size_t j = 0; j < scalars->count; j++)
+        assert_int_equal(show(&rig)->at[j].no_data, 255);
+    rig_finish(&rig);
+}
+
+static void test_a_sensor_acts_on_its_own_asset_only(void **state)
+{
+    (void)state;
+    struct rig rig = rig_create(synthetic_create(.vertices = 600, .sensors = 3, .assets = 2));
+    struct scalar *before = mem_array(600, sizeof(*before));
+    const struct scalars *other = field_scalars(rig.field, 1, &rig.params, rig.plant->snapshot);
+    memcpy(before, other->at, 600 * sizeof(*before));
+    uint64_t version = other->version;
+    for (size_t i = 0; i < 3; i++)
+        set(&rig, i, 99, QUALITY_BAD_SENSOR_FAILURE);
+    show(&rig);
+    other = field_scalars(rig.field, 1, &rig.params, rig.plant->snapshot);
+    assert_int_equal(other->version, version);
+    assert_memory_equal(other->at, before, 600 * sizeof(*before));
+    mem_free(before);
+    rig_finish(&rig);
+}
+
+static void test_an_asset_without_sensors_of_the_group_has_no_field(void **state)
+{
+    (void)state;
+    struct rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 2));
+    rig.plant->plant.tags[0].group = rig.plant->plant.tags[1].group = 3;
+    assert_null(field_scalars(rig.field, 0, &rig.params, rig.plant->snapshot));
+    struct probe probe;
+    field_probe(rig.field, 0, &rig.params, rig.plant->snapshot, 5, &probe);
+    assert_int_equal(probe.kind, PROBE_NO_DATA);
+    assert_int_equal(probe.nearest_tag[0], -1);
+    rig_finish(&rig);
+}
+
+/* --- what does not drift -------------------------------------------------------------------------------------------------- */
+
+static void test_an_hour_of_flicker_leaves_no_drift(void **state)
+{
+    (void)state;
+    uint64_t random = fresh_seed();
+    struct rig rig = rig_create(synthetic_create(.vertices = 800, .sensors = 12, .seed = random));
+    for (int paper = 0; paper < 2; paper++) {
+        rig.params.interpolation = paper ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
+        for (int tick = 0; tick < 3600; tick++) {
+            set(&rig, 4, 80.1, tick % 2 ? QUALITY_BAD_COMMUNICATION_ERROR : QUALITY_GOOD);
+            set(&rig, synthetic_random(&random) % 4, between(&random, 0, 100), QUALITY_GOOD);
+            show(&rig);
+            if (tick % 400 < 2)
+                assert_as_fresh(&rig);
+        }
+    }
+    rig_finish(&rig);
+}
+
+static void test_a_day_of_changes_leaves_no_drift(void **state)
+{
+    (void)state;
+    uint64_t random = fresh_seed();
+    struct rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 8, .seed = random));
+    for (int tick = 0; tick < 86400; tick++) {
+        set(&rig, synthetic_random(&random) % 8, between(&random, -1000, 1000), QUALITY_GOOD);
+        show(&rig);
+    }
+    for (size_t i = 0; i < 8; i++)
+        set(&rig, i, 30 + (double)i, QUALITY_GOOD);
+    set(&rig, 0, 31, QUALITY_GOOD);
+    assert_true_field(&rig, 1e-5);
+    rig_finish(&rig);
+}
+
+static void test_cut_of_the_work_does_not_matter(void **state)
+{
+    (void)state;
+    uint64_t random = fresh_seed();
+    struct rig rig = rig_create(synthetic_create(.vertices = 70000, .sensors = 9, .seed = random));
+    struct workers *one = workers_create(1), *many = workers_create(5);
+    struct field *alone = field_create(one, &rig.plant->scene), *crowd = field_create(many, &rig.plant->scene);
+    for (int tick = 0; tick < 12; tick++) {
+        rig.params.interpolation = tick % 6 < 3 ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
+        set(&rig, synthetic_random(&random) % 9, between(&random, 0, 100), tick % 4 ? QUALITY_GOOD : QUALITY_BAD_SENSOR_FAILURE);
+        const struct scalars *a = field_scalars(alone, 0, &rig.params, rig.plant->snapshot);
+        const struct scalars *b = field_scalars(crowd, 0, &rig.params, rig.plant->snapshot);
+        assert_memory_equal(a->at, b->at, a->count * sizeof(*a->at));
+        assert_int_equal(a->version, b->version);
+        assert_true(a->travel == b->travel);
+    }
+    field_destroy(&alone);
+    field_destroy(&crowd);
+    workers_destroy(&one);
+    workers_destroy(&many);
+    rig_finish(&rig);
+}
+
+/* --- versions ------------------------------------------------------------------------------------------------------------- */
+
+static void test_version_grows_with_real_changes_only(void **state)
+{
+    (void)state;
+    struct rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 3));
+    const struct scalars *scalars = show(&rig);
+    uint64_t version = scalars->version, flags = scalars->flags_version;
+    double travel = scalars->travel;
+    assert_true(version > 0 && flags == version);
+    rig.plant->snapshot->readings[1].age_ns = 7;
+    show(&rig);
+    assert_int_equal(scalars->version, version);
+    assert_int_equal(scalars->oldest_age_ns, 7);
+    float before = scalars->at[1].value;
+    set(&rig, 1, (double)before + 2.5, QUALITY_GOOD);
+    show(&rig);
+    assert_true(scalars->version > version);
+    assert_int_equal(scalars->flags_version, flags);
+    assert_true(fabs(scalars->travel - travel - 2.5) < 1e-3); /* most where the sensor is */
+    version = scalars->version;
+    set(&rig, 1, (double)before + 2.5, QUALITY_UNCERTAIN_UNITS_EXCEEDED);
+    show(&rig);
+    assert_true(scalars->version > version && scalars->flags_version == scalars->version);
+    version = scalars->version;
+    rig.params.interpolation = INTERPOLATION_PAPER;
+    set(&rig, 1, 300, QUALITY_GOOD);
+    uint64_t paper = show(&rig)->version;
+    assert_true(paper > version); /* one count for all */
+    set(&rig, 1, 400, QUALITY_GOOD);
+    assert_int_equal(show(&rig)->version, paper); /* both are clamped to MAX */
+    rig_finish(&rig);
+}
+
+static void test_a_bad_reading_that_moves_changes_nothing(void **state)
+{
+    (void)state;
+    struct rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 3));
+    set(&rig, 1, 10, QUALITY_BAD_SENSOR_FAILURE);
+    uint64_t version = show(&rig)->version;
+    set(&rig, 1, 90, QUALITY_BAD_DEVICE_FAILURE);
+    assert_int_equal(show(&rig)->version, version);
+    rig_finish(&rig);
+}
+
+/* --- sharing and the bound ------------------------------------------------------------------------------------------------ */
+
+static void test_equal_parameters_share(void **state)
+{
+    (void)state;
+    struct rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 3));
+    struct field_params again;
+    field_params_default(&rig.plant->plant, 0, &again);
+    const struct scalars *first = show(&rig);
+    size_t bytes = field_bytes(rig.field);
+    assert_ptr_equal(field_scalars(rig.field, 0, &again, rig.plant->snapshot), first);
+    assert_int_equal(field_bytes(rig.field), bytes);
+    again.power = 3;
+    assert_ptr_not_equal(field_scalars(rig.field, 0, &again, rig.plant->snapshot), first);
+    assert_true(field_bytes(rig.field) > bytes);
+    rig_finish(&rig);
+}
+
+static void test_instances_share_their_weights(void **state)
+{
+    (void)state;
+    struct rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 16, .assets = 10));
+    size_t bytes[3] = { 0 };
+    for (int round = 0; round < 3; round++) {
+        for (int asset = 0; asset < 10; asset++) {
+            set(&rig, (size_t)asset * 16, 5 + round, QUALITY_GOOD);
+            field_scalars(rig.field, asset, &rig.params, rig.plant->snapshot);
+            bytes[0] = asset == 0 && round == 0 ? field_bytes(rig.field) : bytes[0];
+        }
+        bytes[1 + (round > 0)] = field_bytes(rig.field);
+    }
+    size_t columns = (size_t)3 * 256 * 16 * sizeof(float), state_bytes = (bytes[2] - columns - bytes[0]) / 9;
+    assert_int_equal(bytes[1], bytes[2]); /* columns are kept once, from the second sum on */
+    assert_true(state_bytes < bytes[0] && state_bytes >= 700 * 16);
+    for (int asset = 0; asset < 10; asset++)
+        assert_true(field_scalars(rig.field, asset, &rig.params, rig.plant->snapshot)->at[0].value == 7);
+    rig_finish(&rig);
+}
+
+static void test_dragging_stays_under_the_bound(void **state)
+{
+    (void)state;
+    struct rig rig = rig_create(synthetic_create(.vertices = 5000, .sensors = 20, .assets = 2));
+    size_t bound = 3 << 20;
+    field_set_bound(rig.field, bound);
+    rig.params.interpolation = INTERPOLATION_PAPER;
+    for (int step = 0; step < 60; step++)
+        for (int session = 0; session < 50; session++) {
+            rig.params.decay = 0.5 + 0.001 * step + 0.02 * session;
+            for (int asset = 0; asset < 2; asset++)
+                assert_non_null(field_scalars(rig.field, asset, &rig.params, rig.plant->snapshot));
+            assert_true(field_bytes(rig.field) <= bound);
+            if (step % 20 == 19 && session % 10 == 0)
+                assert_as_fresh(&rig);
+        }
+    rig_finish(&rig);
+}
+
+/* Columns pushed out or never kept give the same bits as kept ones. */
+static void test_without_room_for_columns_the_bits_are_the_same(void **state)
+{
+    (void)state;
+    uint64_t random = fresh_seed();
+    struct rig rig = rig_create(synthetic_create(.vertices = 3000, .sensors = 37, .seed = random));
+    struct field *tight = field_create(workers, &rig.plant->scene);
+    field_set_bound(tight, 1);
+    for (int tick = 0; tick < 60; tick++) {
+        rig.params.interpolation = tick / 20 == 1 ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
+        rig.params.power = tick / 20 == 2 ? 3.1 : 2;
+        set(&rig, synthetic_random(&random) % 37, between(&random, 0, 100), QUALITY_GOOD);
+        if (tick % 7 == 0)
+            set(&rig, 11, 50, QUALITY_UNCERTAIN_LAST_USABLE + (synthetic_random(&random) % 2 ? 0x40000000u : 0));
+        const struct scalars *want = show(&rig), *got = field_scalars(tight, 0, &rig.params, rig.plant->snapshot);
+        assert_memory_equal(got->at, want->at, want->count * sizeof(*want->at));
+    }
+    assert_true(field_bytes(tight) < (size_t)3000 * 37 * sizeof(float));
+    assert_true(field_bytes(rig.field) > (size_t)3000 * 37 * sizeof(float));
+    field_destroy(&tight);
+    rig_finish(&rig);
+}
+
+/* Two sessions that look at all assets in turn, with room for less than one of them: all pointers of one round stay good. */
+static void test_scalars_of_the_same_parameters_stay(void **state)
+{
+    (void)state;
+    struct rig rig = rig_create(synthetic_create(.vertices = 2000, .sensors = 5, .assets = 8));
+    field_set_bound(rig.field, 100000);
+    for (int round = 0; round < 6; round++) {
+        const struct scalars *all[8];
+        rig.params.power = 2 + round % 2;
+        for (int asset = 0; asset < 8; asset++)
+            all[asset] = field_scalars(rig.field, asset, &rig.params, rig.plant->snapshot);
+        for (int asset = 0; asset < 8; asset++) {
+            assert_int_equal(all[asset]->asset, asset);
+            assert_true(all[asset]->at[0].value == (float)rig.plant->snapshot->readings[asset * 5].value);
+        }
+    }
+    rig_finish(&rig);
+}
+
+/* --- parameters, probe, distance ------------------------------------------------------------------------------------------ */
+
+static void test_parameters_out_of_range(void **state)
+{
+    (void)state;
+    struct rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 1));
+    const struct plant *plant = &rig.plant->plant;
+    assert_null(field_params_wrong(plant, &rig.params));
+#define WRONG(field_name, bad, word)                                                                                                       \
+    do {                                                                                                                                   \
+        struct field_params p = rig.params;                                                                                                \
+        p.field_name = bad;                                                                                                                \
+        const char *why = field_params_wrong(plant, &p);                                                                                   \
+        assert_non_null(why);                                                                                                              \
+        assert_int_equal(strncmp(why, word, strlen(word)), 0);                                                                             \
+        assert_false(field_params_equal(&p, &rig.params));                                                                                 \
+    } while (0)
+    WRONG(group, 1, "group");
+    WRONG(group, -1, "group");
+    WRONG(strength, -0.1, "strength");
+    WRONG(strength, (double)NAN, "strength");
+    WRONG(decay, 100.5, "decay");
+    WRONG(power, 0.4, "power");
+    WRONG(power, 17, "power");
+    WRONG(power, (double)INFINITY, "power");
+    WRONG(radius_m, -1, "radius_m");
+    WRONG(radius_m, 2e6, "radius_m");
+    WRONG(radius_m, (double)NAN, "radius_m");
+    WRONG(reach_m, 0, "reach_m");
+    WRONG(reach_m, (double)NAN, "reach_m");
+#undef WRONG
+    rig.params.radius_m = 12;
+    rig.params.reach_m = (double)INFINITY;
+    assert_null(field_params_wrong(plant, &rig.params));
+    rig_finish(&rig);
+}
+
+static void test_probe(void **state)
+{
+    (void)state;
+    struct rig rig = rig_create(synthetic_create(.vertices = 900, .sensors = 6, .island = 3, .seed = fresh_seed()));
+    struct probe probe;
+    field_probe(rig.field, 0, &rig.params, rig.plant->snapshot, 2, &probe);
+    assert_int_equal(probe.kind, PROBE_MEASURED);
+    assert_true(probe.value == (double)(float)rig.plant->snapshot->readings[2].value);
+    assert_int_equal(probe.nearest_tag[0], 2);
+    assert_true(probe.nearest_m[0] == 0);
+    set(&rig, 2, 1, QUALITY_BAD_SENSOR_FAILURE);
+    field_probe(rig.field, 0, &rig.params, rig.plant->snapshot, 2, &probe);
+    assert_int_equal(probe.kind, PROBE_NO_DATA);
+    for (int k = 0; k < PROBE_NEAREST; k++) {
+        assert_true(probe.nearest_tag[k] >= 0 && probe.nearest_tag[k] != 2);
+        assert_true(probe.nearest_m[k] == (double)synthetic_geodesic(rig.plant, (size_t)probe.nearest_tag[k])[2]);
+        assert_true(k == 0 || probe.nearest_m[k] >= probe.nearest_m[k - 1]);
+    }
+    set(&rig, 2, 50, QUALITY_UNCERTAIN_LAST_USABLE);
+    field_probe(rig.field, 0, &rig.params, rig.plant->snapshot, 2, &probe);
+    assert_true(probe.kind == PROBE_MEASURED && probe.uncertain);
+    for (unsigned vertex = 6; vertex < 897; vertex += 50) {
+        field_probe(rig.field, 0, &rig.params, rig.plant->snapshot, vertex, &probe);
+        assert_int_equal(probe.kind, PROBE_BETWEEN);
+        assert_true(probe.value == (double)show(&rig)->at[vertex].value);
+    }
+    field_probe(rig.field, 0, &rig.params, rig.plant->snapshot, 898, &probe);
+    assert_true(probe.kind == PROBE_NO_DATA && probe.nearest_tag[0] == -1);
+    field_probe(rig.field, 0, &rig.params, rig.plant->snapshot, 900, &probe);
+    assert_int_equal(probe.kind, PROBE_NO_DATA);
+    rig.params.interpolation = INTERPOLATION_PAPER; /* does not keep readings */
+    field_probe(rig.field, 0, &rig.params, rig.plant->snapshot, 2, &probe);
+    assert_int_equal(probe.kind, PROBE_BETWEEN);
+    rig_finish(&rig);
+}
+
+static void test_distance_from_one_sensor(void **state)
+{
+    (void)state;
+    struct rig rig = rig_create(synthetic_create(.vertices = 500, .sensors = 3, .assets = 2, .island = 20));
+    struct scalars *way = field_distance(rig.field, 4, DISTANCE_GEODESIC), *line = field_distance(rig.field, 4, DISTANCE_EUCLIDEAN);
+    assert_int_equal(way->asset, 1);
+    assert_int_equal(way->count, 500);
+    assert_true(line->version > way->version);
+    const float *want = synthetic_geodesic(rig.plant, 1);
+    float most = 0;
+    for (size_t j = 0; j < 480; j++) {
+        assert_true(way->at[j].value == want[j] && !way->at[j].no_data);
+        assert_true(line->at[j].value <= way->at[j].value + 1e-5f);
+        most = fmaxf(most, want[j]);
+    }
+    assert_true(way->at[1].value == 0 && line->at[1].value == 0);
+    for (size_t j = 480; j < 500; j++)
+        assert_true(way->at[j].no_data == 255 && way->at[j].value == most && line->at[j].no_data == 0);
+    field_distance_destroy(&way);
+    field_distance_destroy(&line);
+    assert_null(way);
+    assert_null(field_distance(rig.field, 6, DISTANCE_GEODESIC));
+    rig_finish(&rig);
+}
+
+static int set_up(void **state)
+{
+    (void)state;
+    workers = workers_create(3);
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    workers_destroy(&workers);
+    return 0;
+}
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_worked_example_of_the_paper),
+        cmocka_unit_test(test_random_input_is_as_plain_loops_say),
+        cmocka_unit_test(test_extreme_parameters),
+        cmocka_unit_test(test_4096_sensors),
+        cmocka_unit_test(test_exact_at_the_sensor),
+        cmocka_unit_test(test_two_sensors_at_one_place_are_averaged),
+        cmocka_unit_test(test_losing_the_hottest_is_not_painted_over),
+        cmocka_unit_test(test_a_good_twin_keeps_the_place),
+        cmocka_unit_test(test_zero_is_a_reading),
+        cmocka_unit_test(test_all_bad_is_no_data),
+        cmocka_unit_test(test_one_sensor_is_everywhere),
+        cmocka_unit_test(test_over_range_passes_shepard_and_not_paper),
+        cmocka_unit_test(test_equal_readings_make_exactly_that),
+        cmocka_unit_test(test_not_a_number_does_not_poison),
+        cmocka_unit_test(test_a_mad_reading_leaves_nothing_behind),
+        cmocka_unit_test(test_half_the_weight_uncertain),
+        cmocka_unit_test(test_a_part_that_nobody_reaches),
+        cmocka_unit_test(test_a_sensor_out_of_reach_does_not_make_its_place_lost),
+        cmocka_unit_test(test_reach_ends_the_field),
+        cmocka_unit_test(test_a_sensor_of_strength_0_has_no_say),
+        cmocka_unit_test(test_a_sensor_acts_on_its_own_asset_only),
+        cmocka_unit_test(test_an_asset_without_sensors_of_the_group_has_no_field),
+        cmocka_unit_test(test_an_hour_of_flicker_leaves_no_drift),
+        cmocka_unit_test(test_a_day_of_changes_leaves_no_drift),
+        cmocka_unit_test(test_cut_of_the_work_does_not_matter),
+        cmocka_unit_test(test_version_grows_with_real_changes_only),
+        cmocka_unit_test(test_a_bad_reading_that_moves_changes_nothing),
+        cmocka_unit_test(test_equal_parameters_share),
+        cmocka_unit_test(test_instances_share_their_weights),
+        cmocka_unit_test(test_dragging_stays_under_the_bound),
+        cmocka_unit_test(test_without_room_for_columns_the_bits_are_the_same),
+        cmocka_unit_test(test_scalars_of_the_same_parameters_stay),
+        cmocka_unit_test(test_parameters_out_of_range),
+        cmocka_unit_test(test_probe),
+        cmocka_unit_test(test_distance_from_one_sensor),
+    };
+    return cmocka_run_group_tests_name("field", tests, set_up, tear_down);
+}
