@@ -4,7 +4,8 @@
 #define RENDER_OVERLAY_H
 #include "render/frame.h"
 
-/* Draws over frame->bgrx. The frame must not be shared yet. */
+/* Draws over frame->bgrx. The frame must not be shared yet. The clock is shown in the time zone of the process (TZ), which its main
+   file sets to the plant's. */
 void overlay_draw(struct frame *frame, const struct scene *scene, const struct snapshot *snapshot);
 
 #endif

@@ -1,0 +1,176 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The overlay: what plant, when, how fresh; and the parts that the other overlay files draw. */
+#include "render/overlay.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <time.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "render/overlay_pen.h"
+#include "value/quality.h"
+
+bool pen_is_free(const struct pen *pen, const struct box *box)
+{
+    if (box->x < 0 || box->y < 0 || box->x + box->width > pen->frame->width_px || box->y + box->height > pen->frame->height_px)
+        return false;
+    for (int i = 0; i < pen->taken_count; i++) {
+        const struct box *other = &pen->taken[i];
+        if (box->x < other->x + other->width && other->x < box->x + box->width && box->y < other->y + other->height &&
+            other->y < box->y + box->height)
+            return false;
+    }
+    return true;
+}
+
+void pen_take(struct pen *pen, const struct box *box)
+{
+    if (pen->taken_count < PEN_MAX_TAKEN)
+        pen->taken[pen->taken_count++] = *box;
+}
+
+static void round_path(cairo_t *cairo, const struct box *box, double radius)
+{
+    double x = box->x, y = box->y, right = x + box->width, bottom = y + box->height;
+    cairo_new_path(cairo);
+    cairo_arc(cairo, right - radius, y + radius, radius, -M_PI / 2, 0);
+    cairo_arc(cairo, right - radius, bottom - radius, radius, 0, M_PI / 2);
+    cairo_arc(cairo, x + radius, bottom - radius, radius, M_PI / 2, M_PI);
+    cairo_arc(cairo, x + radius, y + radius, radius, M_PI, 3 * M_PI / 2);
+    cairo_close_path(cairo);
+}
+
+void pen_card(struct pen *pen, const struct box *box)
+{
+    round_path(pen->cairo, box, 4 * pen->unit);
+    cairo_set_source_rgba(pen->cairo, 1, 1, 1, 0.88);
+    cairo_fill_preserve(pen->cairo);
+    cairo_set_source_rgba(pen->cairo, 0.35, 0.40, 0.46, 0.35);
+    cairo_set_line_width(pen->cairo, fmax(1, pen->unit));
+    cairo_stroke(pen->cairo);
+}
+
+void pen_rgb(struct pen *pen, const uint8_t rgb[3])
+{
+    cairo_set_source_rgb(pen->cairo, rgb[0] / 255.0, rgb[1] / 255.0, rgb[2] / 255.0);
+}
+
+void pen_ink(struct pen *pen, double alpha)
+{
+    cairo_set_source_rgba(pen->cairo, 0.10, 0.13, 0.17, alpha);
+}
+
+void pen_font(struct pen *pen, double size, bool bold)
+{
+    cairo_select_font_face(pen->cairo, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL, bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
+    cairo_set_font_size(pen->cairo, size * pen->text_px);
+}
+
+double pen_text_width(struct pen *pen, const char *text)
+{
+    cairo_text_extents_t extents;
+    cairo_text_extents(pen->cairo, text, &extents);
+    return extents.x_advance;
+}
+
+void pen_text(struct pen *pen, double x, double y, const char *text)
+{
+    cairo_move_to(pen->cairo, x, y);
+    cairo_show_text(pen->cairo, text);
+}
+
+int pen_decimals(double range)
+{
+    double decimals = 3 - floor(log10(range));
+    return (int)fmin(fmax(decimals, 0), 6);
+}
+
+static void format_age(int64_t age_ns, char out[40])
+{
+    double age_s = (double)age_ns / NS_PER_S;
+    if (age_s < 10)
+        snprintf(out, 40, "%.1f s old", age_s);
+    else if (age_s < 120)
+        snprintf(out, 40, "%.0f s old", age_s);
+    else if (age_s < 7200)
+        snprintf(out, 40, "%.0f min old", age_s / 60);
+    else
+        snprintf(out, 40, "%.0f h old", age_s / 3600);
+}
+
+/* Plant name; its clock, in its own time zone; the age of the oldest value that takes part. */
+static void draw_header(struct pen *pen)
+{
+    char clock[64] = "", line[120], age[40] = "no values";
+    time_t seconds = (time_t)(pen->frame->data_utc_ns / NS_PER_S);
+    struct tm local;
+    if (localtime_r(&seconds, &local))
+        strftime(clock, sizeof(clock), "%Y-%m-%d %H:%M:%S %Z", &local);
+    if (pen->frame->oldest_age_ns != INT64_MAX)
+        format_age(pen->frame->oldest_age_ns, age);
+    snprintf(line, sizeof(line), "%s  ·  %s", clock, age);
+    double pad = 8 * pen->unit;
+    pen_font(pen, 1.15, true);
+    double name_width = pen_text_width(pen, pen->scene->plant->name);
+    pen_font(pen, 0.92, false);
+    double line_width = pen_text_width(pen, line);
+    struct box box = { pad, pad, fmax(name_width, line_width) + 2 * pad, 2.6 * pen->text_px + 1.5 * pad };
+    pen_card(pen, &box);
+    pen_ink(pen, 1);
+    pen_font(pen, 1.15, true);
+    pen_text(pen, box.x + pad, box.y + pad + pen->text_px, pen->scene->plant->name);
+    pen_font(pen, 0.92, false);
+    pen_ink(pen, 0.8);
+    pen_text(pen, box.x + pad, box.y + pad + 2.45 * pen->text_px, line);
+    pen_take(pen, &box);
+}
+
+/* Whether any sensor of the group tells a value. */
+static bool is_live(const struct pen *pen)
+{
+    const struct plant *plant = pen->scene->plant;
+    for (size_t i = 0; i < plant->tag_count && i < pen->snapshot->count; i++)
+        if (plant->tags[i].group == pen->frame->view.field.group && !quality_is_bad(pen->snapshot->readings[i].quality))
+            return true;
+    return false;
+}
+
+static void draw_banner(struct pen *pen)
+{
+    static const char text[] = "NO LIVE DATA";
+    pen_font(pen, 1.5, true);
+    double width = pen_text_width(pen, text), pad = 12 * pen->unit;
+    struct box box = { 0.5 * (pen->frame->width_px - width) - pad, 0, width + 2 * pad, 1.5 * pen->text_px + 1.4 * pad };
+    box.y = pen->taken[0].y + pen->taken[0].height + pad;
+    if (box.x > pen->taken[0].x + pen->taken[0].width + pad)
+        box.y = pad;
+    round_path(pen->cairo, &box, 4 * pen->unit);
+    cairo_set_source_rgb(pen->cairo, 0.66, 0.12, 0.10);
+    cairo_fill(pen->cairo);
+    cairo_set_source_rgb(pen->cairo, 1, 1, 1);
+    pen_text(pen, box.x + pad, box.y + 0.7 * pad + 1.3 * pen->text_px, text);
+    pen_take(pen, &box);
+}
+
+void overlay_draw(struct frame *frame, const struct scene *scene, const struct snapshot *snapshot)
+{
+    cairo_surface_t *surface =
+        cairo_image_surface_create_for_data(frame->bgrx, CAIRO_FORMAT_RGB24, frame->width_px, frame->height_px, frame->stride_bytes);
+    struct pen *pen = mem_new(sizeof(*pen));
+    pen->cairo = cairo_create(surface);
+    pen->frame = frame;
+    pen->scene = scene;
+    pen->snapshot = snapshot;
+    pen->unit = fmin(fmax(fmin(frame->width_px / 1280.0, frame->height_px / 720.0), 0.5), 8);
+    pen->text_px = fmax(13 * pen->unit, 9.5);
+    draw_header(pen);
+    overlay_legend(pen);
+    if (!is_live(pen))
+        draw_banner(pen);
+    overlay_markers(pen);
+    cairo_destroy(pen->cairo);
+    cairo_surface_finish(surface);
+    cairo_surface_destroy(surface);
+    mem_free(pen);
+}

@@ -1,0 +1,102 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Sensors: a mark at each place, and a label wherever it covers nothing else. */
+#include <math.h>
+#include <stdio.h>
+
+#include "render/overlay_pen.h"
+#include "value/quality.h"
+
+/* Filled: in sight. Hollow: something stands before it. Crossed: bad. */
+static void draw_mark(struct pen *pen, const struct frame_marker *marker, bool bad)
+{
+    double radius = 4.2 * pen->unit, x = marker->x_px, y = marker->y_px;
+    cairo_new_path(pen->cairo);
+    cairo_arc(pen->cairo, x, y, radius, 0, 2 * M_PI);
+    cairo_set_source_rgba(pen->cairo, 1, 1, 1, marker->occluded ? 0.35 : 0.95);
+    cairo_fill_preserve(pen->cairo);
+    pen_ink(pen, marker->occluded ? 0.7 : 1);
+    cairo_set_line_width(pen->cairo, fmax(1.2, 1.6 * pen->unit));
+    cairo_stroke(pen->cairo);
+    if (bad) {
+        double arm = 0.62 * radius;
+        cairo_move_to(pen->cairo, x - arm, y - arm);
+        cairo_line_to(pen->cairo, x + arm, y + arm);
+        cairo_move_to(pen->cairo, x - arm, y + arm);
+        cairo_line_to(pen->cairo, x + arm, y - arm);
+        cairo_stroke(pen->cairo);
+    } else if (!marker->occluded) {
+        cairo_arc(pen->cairo, x, y, 0.45 * radius, 0, 2 * M_PI);
+        cairo_fill(pen->cairo);
+    }
+}
+
+static void format_value(const struct pen *pen, const struct frame_marker *marker, char out[64])
+{
+    const struct reading *reading = &pen->snapshot->readings[marker->tag];
+    const struct plant_tag *tag = &pen->scene->plant->tags[marker->tag];
+    const struct view *view = &pen->frame->view;
+    if (quality_is_bad(reading->quality))
+        snprintf(out, 64, "BAD");
+    else
+        snprintf(out, 64, "%.*f %s%s", pen_decimals(view->range_max - view->range_min), reading->value, tag->unit ? tag->unit : "",
+                 quality_is_uncertain(reading->quality) ? " ?" : "");
+}
+
+static void draw_label(struct pen *pen, const struct box *box, const char *name, double name_width, const char *value, bool occluded)
+{
+    double pad = 4 * pen->unit;
+    pen_card(pen, box);
+    pen_font(pen, 0.85, false);
+    pen_ink(pen, occluded ? 0.6 : 0.85);
+    pen_text(pen, box->x + pad, box->y + pad + 0.72 * pen->text_px, name);
+    pen_font(pen, 0.85, true);
+    pen_text(pen, box->x + pad + name_width, box->y + pad + 0.72 * pen->text_px, value);
+}
+
+/* Tries the places around the mark, nearest first; none free: no label. */
+static void place_label(struct pen *pen, const struct frame_marker *marker)
+{
+    static const double places[8][2] = { { 1, -0.5 }, { -1, -0.5 }, { 1, -1.3 }, { 1, 0.3 }, { -1, -1.3 }, { -1, 0.3 }, { 0, -1.9 }, { 0, 0.9 } };
+    char name[140], value[64];
+    double pad = 4 * pen->unit, gap = 8 * pen->unit;
+    format_value(pen, marker, value);
+    snprintf(name, sizeof(name), "%s  ", pen->scene->plant->tags[marker->tag].name);
+    pen_font(pen, 0.85, false);
+    double name_width = pen_text_width(pen, name);
+    pen_font(pen, 0.85, true);
+    struct box box = { .width = name_width + pen_text_width(pen, value) + 2 * pad, .height = 0.95 * pen->text_px + 2 * pad };
+    for (int i = 0; i < 8; i++) {
+        box.x = marker->x_px + places[i][0] * gap - (places[i][0] < 0 ? box.width : places[i][0] == 0 ? 0.5 * box.width : 0);
+        box.y = marker->y_px + places[i][1] * box.height;
+        if (!pen_is_free(pen, &box))
+            continue;
+        pen_take(pen, &box);
+        draw_label(pen, &box, name, name_width, value, marker->occluded);
+        return;
+    }
+}
+
+static bool is_inside(const struct pen *pen, const struct frame_marker *marker)
+{
+    return marker->x_px >= 0 && marker->y_px >= 0 && marker->x_px < pen->frame->width_px && marker->y_px < pen->frame->height_px;
+}
+
+/* Those in sight go first: a hidden sensor must not take their place. */
+void overlay_markers(struct pen *pen)
+{
+    const struct frame *frame = pen->frame;
+    double radius = 5 * pen->unit;
+    for (size_t i = 0; i < frame->marker_count; i++) {
+        const struct frame_marker *marker = &frame->markers[i];
+        if (!is_inside(pen, marker))
+            continue;
+        struct box mark = { marker->x_px - radius, marker->y_px - radius, 2 * radius, 2 * radius };
+        if (!marker->occluded)
+            pen_take(pen, &mark);
+        draw_mark(pen, marker, quality_is_bad(pen->snapshot->readings[marker->tag].quality));
+    }
+    for (int occluded = 0; occluded < 2; occluded++)
+        for (size_t i = 0; i < frame->marker_count; i++)
+            if (is_inside(pen, &frame->markers[i]) && frame->markers[i].occluded == occluded)
+                place_label(pen, &frame->markers[i]);
+}
