@@ -74,6 +74,7 @@ void main()
     vec3 normal = normalize(plant_from_normal * vec3(normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]));
 #ifdef SKY
     vec2 seen = ambient(place, normal);
+    seen = round(seen * 255.0) / 255.0; // as it will be read back when the sun moves
 #else
     vec2 seen = unpackUnorm4x8(baked[i]).yz;
 #endif

@@ -11,8 +11,8 @@ void main()
     float c = texelFetch(depth, at, 0).r;
     float l = texelFetch(depth, max(at - ivec2(1, 0), ivec2(0)), 0).r, r = texelFetch(depth, min(at + ivec2(1, 0), last), 0).r;
     float u = texelFetch(depth, max(at - ivec2(0, 1), ivec2(0)), 0).r, d = texelFetch(depth, min(at + ivec2(0, 1), last), 0).r;
-    float step = max(2.0 * c - l - r, 2.0 * c - u - d); // only on the nearer side: one pixel wide
-    float edge = smoothstep(0.004, 0.03, step / max(c, 1e-9));
+    float step = max(l + r, u + d) - 2.0 * c; // only on the farther side: one pixel wide, and not on the field of what stands in front
+    float edge = smoothstep(0.004, 0.03, step / max(max(max(l, r), max(u, d)), 1e-9));
     if (edge <= 0.0)
         discard;
     color = vec4(0.08, 0.10, 0.14, 0.55 * edge);

@@ -5,17 +5,21 @@ layout(binding = 0) uniform sampler2D palette;
 
 const int MAP_COLORS = 256, BELOW = 256, ABOVE = 257, HATCH_LIGHT = 258, HATCH_DARK = 259, STIPPLE = 260;
 
-// The legend's rule (field/colormap.c). value: (v - MIN)/(MAX - MIN).
+// The legend's rule (field/colormap.h). value: (v - MIN)/(MAX - MIN). Interpolating equal values may round: the ends have some slack.
 int palette_column(float value)
 {
-    if (value < 0.0)
+    const float slack = 1e-5;
+    if (value < -slack)
         return BELOW;
-    if (value > 1.0)
+    if (value > 1.0 + slack)
         return ABOVE;
     float interval = frame.range.z;
-    if (interval > 0.0)
-        value = min((floor(value / interval) + 0.5) * interval, 1.0);
-    return min(int(value * float(MAP_COLORS)), MAP_COLORS - 1);
+    if (interval > 0.0) {
+        float bands = max(ceil(1.0 / interval - 0.001), 1.0);
+        float begin = clamp(floor(value / interval + slack), 0.0, bands - 1.0) * interval;
+        value = 0.5 * (begin + min(begin + interval, 1.0));
+    }
+    return clamp(int(value * float(MAP_COLORS)), 0, MAP_COLORS - 1);
 }
 
 int palette_row(float light)

@@ -12,7 +12,7 @@ void matrix_invert(const double m[16], double out[16]);
 /* How normals turn under m: inverse transpose of its 3x3 part, columns one after another. */
 void matrix_normals(const double m[16], float out[9]);
 void matrix_to_float(const double m[16], float out[16]);
-/* A map seen from far away in the direction `towards`, that holds a ball. Clip space: depth 1 nearest to where it is seen from, 0 farthest. */
+/* A map of a ball, seen from far away in the direction `towards`. Clip space: depth 1 nearest to where it is seen from, 0 farthest. */
 void matrix_parallel(const double center[3], double radius, const double towards[3], double out[16]);
 /* From clip space to texture coordinates, with rows from the top (GL_UPPER_LEFT). */
 void matrix_texture_from_clip(const double clip[16], double out[16]);

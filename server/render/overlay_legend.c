@@ -48,7 +48,8 @@ static void lay_out(struct pen *pen, struct layout *layout)
     layout->card = (struct box){ 0, 0, width + 2 * layout->pad, bar_height + others };
     layout->card.x = frame->width_px - layout->card.width - layout->pad;
     layout->card.y = 0.5 * (frame->height_px - layout->card.height);
-    layout->bar = (struct box){ layout->card.x + layout->pad, layout->card.y + layout->pad + 3.3 * pen->text_px, 1.6 * pen->text_px, bar_height };
+    layout->bar =
+        (struct box){ layout->card.x + layout->pad, layout->card.y + layout->pad + 3.3 * pen->text_px, 1.6 * pen->text_px, bar_height };
 }
 
 static void draw_swatch(struct pen *pen, const struct layout *layout, double y, const uint8_t rgb[3], const char *text)

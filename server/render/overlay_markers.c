@@ -56,7 +56,8 @@ static void draw_label(struct pen *pen, const struct box *box, const char *name,
 /* Tries the places around the mark, nearest first; none free: no label. */
 static void place_label(struct pen *pen, const struct frame_marker *marker)
 {
-    static const double places[8][2] = { { 1, -0.5 }, { -1, -0.5 }, { 1, -1.3 }, { 1, 0.3 }, { -1, -1.3 }, { -1, 0.3 }, { 0, -1.9 }, { 0, 0.9 } };
+    static const double places[8][2] = { { 1, -0.5 },  { -1, -0.5 }, { 1, -1.3 }, { 1, 0.3 },
+                                         { -1, -1.3 }, { -1, 0.3 },  { 0, -1.9 }, { 0, 0.9 } };
     char name[140], value[64];
     double pad = 4 * pen->unit, gap = 8 * pen->unit;
     format_value(pen, marker, value);

@@ -27,7 +27,7 @@ bool pen_is_free(const struct pen *pen, const struct box *box); /* inside the pi
 void pen_take(struct pen *pen, const struct box *box);
 void pen_card(struct pen *pen, const struct box *box); /* a light plate with a thin rim, for text to stand on */
 void pen_rgb(struct pen *pen, const uint8_t rgb[3]);
-void pen_ink(struct pen *pen, double alpha);           /* the colour of text */
+void pen_ink(struct pen *pen, double alpha);            /* the colour of text */
 void pen_font(struct pen *pen, double size, bool bold); /* size: of text_px */
 double pen_text_width(struct pen *pen, const char *text);
 void pen_text(struct pen *pen, double x, double y, const char *text); /* from x, on a line through y; left where it starts */

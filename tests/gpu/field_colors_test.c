@@ -1,0 +1,265 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The picture tells the field's values, and only those: pixel by pixel on a flat plate, against the legend's own rule. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+#include "render/palette.h"
+#include "tests/support/rig.h"
+#include "value/quality.h"
+
+enum { CELLS = 12, SIDE_PX = 256, PLATE_TAGS = 3 };
+static const double side_m = 4;
+static struct rig rig;
+static struct stand stand;
+
+/* Seen from above, x to the right, y upward, filling the picture. */
+static void look_down(struct view *view)
+{
+    view_default(&stand.toy->scene, SIDE_PX, SIDE_PX, view);
+    view->camera = (struct camera){ .eye_m = { side_m / 2, side_m / 2, 10 }, .target_m = { side_m / 2, side_m / 2, 0 }, .up = { 0, 1, 0 } };
+    view->camera.fov_deg = 2 * atan(side_m / 2 / 10) * 180 / M_PI;
+    view->look = LOOK_FLAT;
+}
+
+static int set_up(void **state)
+{
+    static const double sensors[PLATE_TAGS][3] = { { 0, 0, 0 }, { 4, 1, 0 }, { 2, 4, 0 } };
+    struct shape shape = { 0 };
+    struct toy *toy = toy_create();
+    (void)state;
+    shape_plate(&shape, TOY_STEEL, (double[3]){ 0, 0, 0 }, (double[3]){ side_m, 0, 0 }, (double[3]){ 0, side_m, 0 }, CELLS);
+    toy_add(toy, "PLATE", &shape, (double[3]){ 0, 0, 0 }, sensors, PLATE_TAGS);
+    stand_init(&stand, &rig, toy);
+    toy_set(stand.snapshot, 0, 10, QUALITY_GOOD);
+    toy_set(stand.snapshot, 1, 50, QUALITY_GOOD);
+    toy_set(stand.snapshot, 2, 95, QUALITY_GOOD);
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    stand_finish(&stand);
+    return 0;
+}
+
+/* The field where the middle of a pixel lies, from the corners of its triangle. The plate's squares are cut from (0, 0) to (1, 1). */
+static double value_at(const struct scalars *scalars, int x, int y)
+{
+    double u = (x + 0.5) / SIDE_PX * CELLS, v = (1 - (y + 0.5) / SIDE_PX) * CELLS;
+    int column = (int)u, row = (int)v, first = row * (CELLS + 1) + column;
+    u -= column;
+    v -= row;
+    double a = scalars->at[first].value, b = scalars->at[first + (u > v ? 1 : CELLS + 1)].value, c = scalars->at[first + CELLS + 2].value;
+    return u > v ? a + u * (b - a) + v * (c - b) : a + v * (b - a) + u * (c - b);
+}
+
+/* One colour of the map, as it is. Where the still tier averages over the samples of a pixel, colours next to each other may mix. */
+static bool is_color_of(const struct view *view, double value, const uint8_t *bgrx)
+{
+    const struct colormap *map = colormap_at((size_t)view->colormap);
+    double slack = 1e-4 * (view->range_max - view->range_min);
+    int mix = view->tier == TIER_STILL ? 4 : 0;
+    for (int side = -1; side <= 1; side++) {
+        uint8_t rgb[3];
+        colormap_look_up(map, value + side * slack, view->range_min, view->range_max, view->ramp_interval, rgb);
+        if (abs(rgb[0] - bgrx[2]) <= mix && abs(rgb[1] - bgrx[1]) <= mix && abs(rgb[2] - bgrx[0]) <= mix)
+            return true;
+    }
+    return false;
+}
+
+/* How many pixels inside the plate have a colour that the legend does not give their value. */
+static int count_wrong(const struct view *view)
+{
+    const struct scalars *scalars = field_scalars(stand.field, 0, &view->field, stand.snapshot);
+    struct frame *frame = stand_draw(&stand, view);
+    int wrong = 0;
+    for (int y = 2; y < SIDE_PX - 2; y++)
+        for (int x = 2; x < SIDE_PX - 2; x++)
+            wrong += !is_color_of(view, value_at(scalars, x, y), frame_pixel(frame, x, y));
+    frame_unref(&frame);
+    return wrong;
+}
+
+static void test_every_pixel_has_the_legends_color(void **state)
+{
+    struct view view;
+    (void)state;
+    look_down(&view);
+    for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++)
+        for (int interpolation = INTERPOLATION_SHEPARD; interpolation <= INTERPOLATION_PAPER; interpolation++)
+            for (int map = 0; map < (int)colormap_count(); map++) {
+                view.tier = (enum tier)tier;
+                view.field.interpolation = (enum interpolation)interpolation;
+                view.colormap = map;
+                assert_int_equal(count_wrong(&view), 0);
+            }
+}
+
+static void test_ramp_has_bands(void **state)
+{
+    struct view view;
+    (void)state;
+    look_down(&view);
+    for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++)
+        for (double interval = 10; interval < 80; interval += 13.3) {
+            view.tier = (enum tier)tier;
+            view.ramp_interval = interval;
+            int cut = tier == TIER_STILL ? SIDE_PX * SIDE_PX / 50 : 0; /* pixels on a band's edge are averaged over their samples */
+            assert_in_range(count_wrong(&view), 0, cut);
+        }
+}
+
+static void test_beyond_the_range_has_its_own_colors(void **state)
+{
+    const struct colormap *map = colormap_at(0);
+    struct view view;
+    (void)state;
+    look_down(&view);
+    view.range_min = 40;
+    view.range_max = 60;
+    for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++) {
+        view.tier = (enum tier)tier;
+        struct frame *frame = stand_draw(&stand, &view);
+        const uint8_t *low = frame_pixel(frame, 6, SIDE_PX - 7), *high = frame_pixel(frame, SIDE_PX / 2, 6);
+        for (int c = 0; c < 3; c++) {
+            assert_int_equal(low[c], map->below[2 - c]);
+            assert_int_equal(high[c], map->above[2 - c]);
+        }
+        frame_unref(&frame);
+    }
+}
+
+static void test_readings_at_the_ends_stay_on_the_map(void **state)
+{
+    struct view view;
+    (void)state;
+    look_down(&view);
+    for (int end = 0; end < 2; end++) {
+        for (int tag = 0; tag < PLATE_TAGS; tag++)
+            toy_set(stand.snapshot, tag, end ? 100 : 0, QUALITY_GOOD);
+        struct frame *frame = stand_draw(&stand, &view);
+        for (int y = 2; y < SIDE_PX - 2; y++)
+            for (int x = 2; x < SIDE_PX - 2; x++)
+                assert_int_equal(map_index_exact(colormap_at(0), frame_pixel(frame, x, y)), end ? 255 : 0);
+        frame_unref(&frame);
+    }
+}
+
+static bool is_grey(const uint8_t *bgrx)
+{
+    return bgrx[0] == bgrx[1] && bgrx[1] == bgrx[2];
+}
+
+static void test_no_data_is_grey_stripes(void **state)
+{
+    struct view view;
+    (void)state;
+    look_down(&view);
+    for (int tag = 0; tag < PLATE_TAGS; tag++)
+        toy_set(stand.snapshot, tag, 0, QUALITY_BAD_SENSOR_FAILURE);
+    for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++) {
+        int light = 0, dark = 0;
+        view.tier = (enum tier)tier;
+        struct frame *frame = stand_draw(&stand, &view);
+        for (int y = 2; y < SIDE_PX - 2; y++)
+            for (int x = 2; x < SIDE_PX - 2; x++) {
+                const uint8_t *pixel = frame_pixel(frame, x, y);
+                assert_true(is_grey(pixel));
+                light += pixel[0] == palette_no_data[0][0];
+                dark += pixel[0] == palette_no_data[1][0];
+            }
+        assert_true(light > SIDE_PX * SIDE_PX / 5 && dark > SIDE_PX * SIDE_PX / 5);
+        assert_true(frame->oldest_age_ns == INT64_MAX);
+        frame_unref(&frame);
+    }
+}
+
+/* A lost sensor's place shows no colour of the map; elsewhere all stays. */
+static void test_lost_sensor_leaves_its_place_empty(void **state)
+{
+    struct view view;
+    (void)state;
+    look_down(&view);
+    toy_set(stand.snapshot, 2, 95, QUALITY_BAD_SENSOR_FAILURE);
+    struct frame *frame = stand_draw(&stand, &view);
+    for (int y = 4; y < 40; y++)
+        for (int x = SIDE_PX / 2 - 30; x < SIDE_PX / 2 + 30; x++)
+            assert_true(is_grey(frame_pixel(frame, x, y)));
+    assert_true(map_index_exact(colormap_at(0), frame_pixel(frame, 6, SIDE_PX - 7)) >= 0);
+    frame_unref(&frame);
+}
+
+static void test_uncertain_is_stippled(void **state)
+{
+    struct view view;
+    (void)state;
+    look_down(&view);
+    for (int tag = 0; tag < PLATE_TAGS; tag++)
+        toy_set(stand.snapshot, tag, 50.2, QUALITY_UNCERTAIN_LAST_USABLE);
+    for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++) {
+        int map = 0, dots = 0;
+        view.tier = (enum tier)tier;
+        struct frame *frame = stand_draw(&stand, &view);
+        for (int y = 2; y < SIDE_PX - 2; y++)
+            for (int x = 2; x < SIDE_PX - 2; x++) {
+                map += is_color_of(&view, 50.2, frame_pixel(frame, x, y));
+                dots += frame_pixel(frame, x, y)[1] < colormap_at(0)->rgb[128][1] / 2 + palette_uncertain[1] / 2;
+            }
+        assert_true(map > SIDE_PX * SIDE_PX / 2);
+        assert_true(dots > SIDE_PX * SIDE_PX / 10);
+        frame_unref(&frame);
+    }
+}
+
+static void test_default_look_keeps_to_the_palette(void **state)
+{
+    struct view view;
+    (void)state;
+    look_down(&view);
+    view.look = LOOK_DEFAULT;
+    view.ramp_interval = 200; /* one band: one colour, only lightness may differ */
+    uint8_t rgb[3], shaded[3];
+    colormap_look_up(colormap_at(0), 50, 0, 100, 200, rgb);
+    for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++) {
+        view.tier = (enum tier)tier;
+        struct frame *frame = stand_draw(&stand, &view);
+        const uint8_t *pixel = frame_pixel(frame, SIDE_PX / 2, SIDE_PX / 2);
+        bool found = false;
+        for (int row = 0; row < PALETTE_ROWS; row++) {
+            palette_shade(rgb, PALETTE_SHADING * (2.0 * row / (PALETTE_ROWS - 1) - 1), shaded);
+            found = found || (shaded[0] == pixel[2] && shaded[1] == pixel[1] && shaded[2] == pixel[0]);
+        }
+        assert_true(found);
+        frame_unref(&frame);
+    }
+}
+
+#define each(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        each(test_every_pixel_has_the_legends_color),
+        each(test_ramp_has_bands),
+        each(test_beyond_the_range_has_its_own_colors),
+        each(test_readings_at_the_ends_stay_on_the_map),
+        each(test_no_data_is_grey_stripes),
+        each(test_lost_sensor_leaves_its_place_empty),
+        each(test_uncertain_is_stippled),
+        each(test_default_look_keeps_to_the_palette),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    if (!rig_init(&rig, "field_colors_test"))
+        return 0;
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    rig_finish(&rig);
+    return failed;
+}

@@ -1,0 +1,148 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Contexts, programs and pictures: what every pass relies on. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+#include <glad/gl.h>
+
+#include "gpu/program.h"
+#include "gpu/readback.h"
+#include "tests/support/rig.h"
+
+static struct rig rig;
+
+static void test_names_of_contexts(void **state)
+{
+    (void)state;
+    enum gl_kind kind = GL_OSMESA;
+    assert_true(gl_kind_parse("auto", &kind) && kind == GL_AUTO);
+    for (enum gl_kind k = GL_AUTO; k <= GL_OSMESA; k++)
+        assert_true(gl_kind_parse(gl_kind_name(k), &kind) && kind == k);
+    assert_false(gl_kind_parse("glx", &kind));
+}
+
+static void test_context_tells_what_it_is(void **state)
+{
+    (void)state;
+    GLint major = 0, minor = 0;
+    glGetIntegerv(GL_MAJOR_VERSION, &major);
+    glGetIntegerv(GL_MINOR_VERSION, &minor);
+    assert_true(major * 10 + minor >= 45);
+    assert_true(strlen(rig.gl->renderer) > 1);
+    assert_true(rig.gl->max_texture_px >= 8192 && rig.gl->max_samples >= 4);
+    assert_int_equal(rig.gl->software, strstr(rig.gl->renderer, "llvmpipe") != NULL);
+}
+
+static void test_pass_tells_its_errors(void **state)
+{
+    (void)state;
+    gl_pass_enter("good");
+    assert_true(gl_pass_leave(rig.gl, "good"));
+    gl_pass_enter("bad on purpose");
+    glEnable(GL_TEXTURE_2D_ARRAY);
+    assert_false(gl_pass_leave(rig.gl, "bad on purpose"));
+    gl_pass_enter("good again");
+    assert_true(gl_pass_leave(rig.gl, "good again"));
+}
+
+static void test_program_that_does_not_compile(void **state)
+{
+    (void)state;
+    assert_int_equal(program_compile(rig.log, GL_FRAGMENT_SHADER, "broken", "void main() { nonsense }\n", NULL), 0);
+    assert_int_equal(program_compile(rig.log, GL_FRAGMENT_SHADER, "lost", "#include \"nowhere.glsl\"\nvoid main() {}\n", NULL), 0);
+    assert_int_equal(program_compile(rig.log, GL_FRAGMENT_SHADER, "unquoted", "#include light.glsl\nvoid main() {}\n", NULL), 0);
+    assert_int_equal(program_create(rig.log, program_params(.vertex = "nowhere.vert", .fragment = "depth.frag")), 0);
+}
+
+static void test_program_that_does_not_link(void **state)
+{
+    (void)state;
+    GLuint stages[2] = {
+        program_compile(rig.log, GL_VERTEX_SHADER, "one", "out vec4 a;\nvoid main() { a = vec4(1); gl_Position = a; }\n", NULL),
+        program_compile(rig.log, GL_FRAGMENT_SHADER, "two", "in vec2 a;\nout vec4 c;\nvoid main() { c = a.xyxy; }\n", NULL),
+    };
+    assert_int_not_equal(stages[0], 0);
+    assert_int_not_equal(stages[1], 0);
+    assert_int_equal(program_link(rig.log, "mismatch", stages), 0);
+}
+
+static void test_defines_and_includes_reach_the_compiler(void **state)
+{
+    (void)state;
+    GLuint shader = program_compile(rig.log, GL_FRAGMENT_SHADER, "good",
+                                    "#include \"light.glsl\"\nout vec4 c;\nvoid main() { c = vec4(light_scalar(VALUE, 0.5)); }\n",
+                                    "#define VALUE 0.25\n");
+    assert_int_not_equal(shader, 0);
+    glDeleteShader(shader);
+}
+
+/* Blue above, red below, with a green pixel in the corner: rows must come from the top, bytes as b, g, r. */
+static void draw_flag(const struct target *target)
+{
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target->framebuffer);
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(0, 0, target->width_px, 2);
+    glClearColor(0, 0, 1, 1);
+    glClear(GL_COLOR_BUFFER_BIT);
+    glScissor(0, 2, target->width_px, target->height_px - 2);
+    glClearColor(1, 0, 0, 1);
+    glClear(GL_COLOR_BUFFER_BIT);
+    glScissor(0, 0, 1, 1);
+    glClearColor(0, 1, 0, 1);
+    glClear(GL_COLOR_BUFFER_BIT);
+    glDisable(GL_SCISSOR_TEST);
+    target_resolve(target);
+}
+
+static void check_flag(int samples)
+{
+    enum { WIDTH = 5, HEIGHT = 4, STRIDE = 32 };
+    struct target target;
+    struct readback readback = { 0 };
+    uint8_t out[HEIGHT * STRIDE];
+    memset(out, 77, sizeof(out));
+    assert_true(target_init(&target, rig.log, WIDTH, HEIGHT, samples));
+    draw_flag(&target);
+    assert_true(readback_start(&readback, rig.log, &target) && readback_wait(&readback, rig.log));
+    assert_true(readback_get(&readback, rig.log, out, STRIDE));
+    assert_memory_equal(out, "\0\377\0", 3);
+    assert_memory_equal(out + 4, "\377\0\0", 3);
+    assert_memory_equal(out + 3 * STRIDE, "\0\0\377", 3);
+    assert_int_equal(out[WIDTH * 4], 77);
+    readback_finish(&readback);
+    target_finish(&target);
+}
+
+static void test_readback_from_the_top(void **state)
+{
+    (void)state;
+    check_flag(1);
+    check_flag(4);
+}
+
+static void test_target_too_large_is_refused(void **state)
+{
+    (void)state;
+    struct target target;
+    assert_false(target_init(&target, rig.log, rig.gl->max_texture_px * 2, 16, 1));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_names_of_contexts),          cmocka_unit_test(test_context_tells_what_it_is),
+        cmocka_unit_test(test_pass_tells_its_errors),      cmocka_unit_test(test_program_that_does_not_compile),
+        cmocka_unit_test(test_program_that_does_not_link), cmocka_unit_test(test_defines_and_includes_reach_the_compiler),
+        cmocka_unit_test(test_readback_from_the_top),      cmocka_unit_test(test_target_too_large_is_refused),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    if (!rig_init(&rig, "gl_test"))
+        return 0;
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    rig_finish(&rig);
+    return failed;
+}

@@ -1,0 +1,313 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What comes with a picture: its content hash, markers, ages; culling; lights; views that are hard. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "tests/support/rig.h"
+#include "value/quality.h"
+
+static struct rig rig;
+static struct stand stand;
+static struct view view;
+
+static int reset(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 8; i++)
+        toy_set(stand.snapshot, i, 20 + 7 * i, QUALITY_GOOD);
+    view_default(&stand.toy->scene, 320, 180, &view);
+    view.tier = TIER_MOVING;
+    return 0;
+}
+
+static uint64_t content(void)
+{
+    return renderer_content(stand.renderer, &view, stand.snapshot);
+}
+
+static void test_content_is_that_of_the_frame(void **state)
+{
+    (void)state;
+    uint64_t before = content();
+    struct frame *frame = stand_draw(&stand, &view);
+    assert_true(frame->content == before && before == content());
+    frame_unref(&frame);
+}
+
+static void test_content_ignores_numbers_and_times(void **state)
+{
+    (void)state;
+    uint64_t before = content();
+    view.camera_seq = 7;
+    view.params_seq = 8;
+    view.input_ns = 9;
+    stand.snapshot->taken_mono_ns += 1000;
+    stand.snapshot->taken_utc_ns += 1000;
+    assert_true(content() == before);
+}
+
+static void test_content_sees_what_is_drawn(void **state)
+{
+    (void)state;
+    uint64_t before = content();
+    struct view first = view;
+    view.camera.eye_m[0] += 0.01;
+    assert_true(content() != before);
+    view = first;
+    view.tier = TIER_STILL;
+    assert_true(content() != before);
+    view = first;
+    view.look = LOOK_FLAT;
+    assert_true(content() != before);
+    view = first;
+    view.ramp_interval = 10;
+    assert_true(content() != before);
+    view = first;
+    view.selected_asset = 1;
+    assert_true(content() != before);
+    view = first;
+    view.light_dir[2] *= 0.99;
+    assert_true(content() != before);
+    view = first;
+    assert_true(content() == before);
+}
+
+static void test_content_counts_what_can_be_seen(void **state)
+{
+    (void)state;
+    double step = 100.0 / 256;
+    uint64_t before = content();
+    toy_set(stand.snapshot, 2, 34 + 0.3 * step, QUALITY_GOOD);
+    assert_true(content() == before);
+    toy_set(stand.snapshot, 2, 34 - 0.3 * step, QUALITY_GOOD);
+    assert_true(content() == before);
+    toy_set(stand.snapshot, 2, 34 + 0.8 * step, QUALITY_GOOD);
+    assert_true(content() != before);
+    toy_set(stand.snapshot, 2, 34, QUALITY_GOOD);
+    assert_true(content() == before);
+    toy_set(stand.snapshot, 2, 34, QUALITY_UNCERTAIN_LAST_USABLE);
+    assert_true(content() != before);
+}
+
+/* Many steps, each too small to see: together they must be seen. */
+static void test_slow_drift_is_not_lost(void **state)
+{
+    (void)state;
+    uint64_t before = content();
+    for (int i = 1; i <= 40; i++) {
+        toy_set(stand.snapshot, 2, 34 + 0.05 * i, QUALITY_GOOD);
+        content();
+    }
+    assert_true(content() != before);
+}
+
+static void test_content_is_the_same_elsewhere(void **state)
+{
+    struct stand other;
+    (void)state;
+    stand_init(&other, &rig, toy_unit());
+    for (int i = 0; i < 8; i++)
+        toy_set(other.snapshot, i, 20 + 7 * i, QUALITY_GOOD);
+    assert_true(renderer_content(other.renderer, &view, other.snapshot) == content());
+    struct frame *here = stand_draw(&stand, &view), *there = stand_draw(&other, &view);
+    assert_memory_equal(here->bgrx, there->bgrx, (size_t)here->stride_bytes * (size_t)here->height_px);
+    frame_unref(&here);
+    frame_unref(&there);
+    stand_finish(&other);
+}
+
+static void test_what_is_out_of_sight_costs_nothing(void **state)
+{
+    (void)state;
+    struct frame *all = stand_draw(&stand, &view);
+    memcpy(view.camera.target_m, (double[3]){ 4.2, 1.2, 50 }, sizeof(view.camera.target_m));
+    memcpy(view.camera.eye_m, (double[3]){ 4.2, -1.2, 20 }, sizeof(view.camera.eye_m));
+    struct frame *none = stand_draw(&stand, &view);
+    assert_true(all->triangles > 20000);
+    assert_int_equal(none->triangles, 0);
+    uint64_t before = content();
+    toy_set(stand.snapshot, 2, 90, QUALITY_GOOD);
+    assert_true(content() == before);
+    frame_unref(&all);
+    frame_unref(&none);
+}
+
+/* The first sensor of the tank, at (3.5, 0.5, 0.6) and facing south-west, from three sides. */
+static const struct frame_marker *tank_marker(struct frame *frame)
+{
+    for (size_t i = 0; i < frame->marker_count; i++)
+        if (frame->markers[i].tag == 5)
+            return &frame->markers[i];
+    return NULL;
+}
+
+static void look(double ex, double ey, double ez, double tx, double ty, double tz)
+{
+    view.camera = (struct camera){ .eye_m = { ex, ey, ez }, .target_m = { tx, ty, tz }, .up = { 0, 0, 1 }, .fov_deg = 45 };
+}
+
+static void test_markers(void **state)
+{
+    (void)state;
+    const double *at = stand.toy->scene.assets[1].sensors[0].surface_m;
+    for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++) {
+        view.tier = (enum tier)tier;
+        look(at[0] - 2, at[1] - 2, at[2], at[0], at[1], at[2]);
+        struct frame *frame = stand_draw(&stand, &view);
+        const struct frame_marker *marker = tank_marker(frame);
+        assert_int_equal(frame->marker_count, 8);
+        assert_true(fabs(marker->x_px - 160) < 0.6 && fabs(marker->y_px - 90) < 0.6);
+        assert_false(marker->occluded);
+        frame_unref(&frame);
+        look(at[0] + 5, at[1] + 5, at[2], at[0], at[1], at[2]);
+        frame = stand_draw(&stand, &view);
+        assert_true(tank_marker(frame)->occluded);
+        assert_true(fabs(tank_marker(frame)->x_px - 160) < 0.6);
+        frame_unref(&frame);
+        look(at[0] - 2, at[1] - 2, at[2], at[0] - 4, at[1] - 4, at[2]);
+        frame = stand_draw(&stand, &view);
+        assert_true(tank_marker(frame)->occluded);
+        frame_unref(&frame);
+    }
+}
+
+/* 45 degrees from top to bottom: a point 1 m above the target at 1 m / tan(22.5) away lies on the upper edge. */
+static void test_marker_upward_is_upward(void **state)
+{
+    (void)state;
+    const double *at = stand.toy->scene.assets[1].sensors[0].surface_m;
+    look(at[0] - 2, at[1] - 2, at[2] - 0.5, at[0], at[1], at[2] - 0.5);
+    struct frame *frame = stand_draw(&stand, &view);
+    double expected = 90 - 0.5 / (sqrt(8) * tan(22.5 * M_PI / 180)) * 90;
+    assert_true(fabs(tank_marker(frame)->y_px - expected) < 0.6);
+    frame_unref(&frame);
+}
+
+static void test_age_of_the_oldest(void **state)
+{
+    (void)state;
+    stand.snapshot->readings[3].age_ns = 42;
+    for (int i = 0; i < 8; i++)
+        stand.snapshot->readings[i].age_ns = i == 3 ? 9000000000 : 1000000000;
+    struct frame *frame = stand_draw(&stand, &view);
+    assert_true(frame->oldest_age_ns == 9000000000);
+    frame_unref(&frame);
+    for (int i = 0; i < 8; i++)
+        toy_set(stand.snapshot, i, 0, QUALITY_BAD_COMMUNICATION_ERROR);
+    frame = stand_draw(&stand, &view);
+    assert_true(frame->oldest_age_ns == INT64_MAX);
+    frame_unref(&frame);
+}
+
+static long brightness(const struct frame *frame)
+{
+    long sum = 0;
+    for (int y = 0; y < frame->height_px; y++)
+        for (int x = 0; x < frame->width_px; x++)
+            sum += frame_pixel(frame, x, y)[1];
+    return sum;
+}
+
+/* More lights than are kept: each comes back as it was. */
+static void test_light_can_be_chosen(void **state)
+{
+    (void)state;
+    long first[5];
+    for (int round = 0; round < 2; round++)
+        for (int i = 0; i < 5; i++) {
+            double turn = 1.2 * i, height = 0.5;
+            memcpy(view.light_dir, (double[3]){ sqrt(1 - height * height) * cos(turn), sqrt(1 - height * height) * sin(turn), height },
+                   sizeof(view.light_dir));
+            struct frame *frame = stand_draw(&stand, &view);
+            if (round == 0)
+                first[i] = brightness(frame);
+            assert_int_equal(brightness(frame), first[i]);
+            assert_true(i == 0 || first[i] != first[i - 1]);
+            frame_unref(&frame);
+        }
+}
+
+static void test_selection_is_outlined(void **state)
+{
+    (void)state;
+    for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++) {
+        view.tier = (enum tier)tier;
+        view.selected_asset = -1;
+        struct frame *plain = stand_draw(&stand, &view);
+        view.selected_asset = 1;
+        struct frame *outlined = stand_draw(&stand, &view);
+        int changed = 0;
+        for (int y = 0; y < 180; y++)
+            for (int x = 0; x < 320; x++)
+                changed += memcmp(frame_pixel(plain, x, y), frame_pixel(outlined, x, y), 3) != 0;
+        assert_in_range(changed, 200, 3000);
+        frame_unref(&plain);
+        frame_unref(&outlined);
+    }
+}
+
+static void test_many_sizes(void **state)
+{
+    static const int sizes[][2] = { { 16, 16 },   { 640, 360 }, { 16, 1200 }, { 1201, 17 },
+                                    { 333, 211 }, { 640, 360 }, { 800, 600 }, { 801, 601 } };
+    (void)state;
+    for (size_t i = 0; i < sizeof(sizes) / sizeof(sizes[0]); i++)
+        for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++) {
+            view.width_px = sizes[i][0];
+            view.height_px = sizes[i][1];
+            view.tier = (enum tier)tier;
+            struct frame *frame = stand_draw(&stand, &view);
+            assert_true(frame->width_px == sizes[i][0] && frame->height_px == sizes[i][1] && brightness(frame) > 0);
+            frame_unref(&frame);
+        }
+}
+
+static void test_camera_within_the_plant(void **state)
+{
+    (void)state;
+    look(0, 0, 1.2, 1, 0, 1.2); /* in the shell */
+    struct frame *frame = stand_draw(&stand, &view);
+    assert_true(brightness(frame) > 0);
+    frame_unref(&frame);
+    look(2, -3, -4, 2, 0, 1); /* under the ground */
+    frame = stand_draw(&stand, &view);
+    assert_true(brightness(frame) > 0);
+    frame_unref(&frame);
+}
+
+#define each(test) cmocka_unit_test_setup(test, reset)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        each(test_content_is_that_of_the_frame),
+        each(test_content_ignores_numbers_and_times),
+        each(test_content_sees_what_is_drawn),
+        each(test_content_counts_what_can_be_seen),
+        each(test_slow_drift_is_not_lost),
+        each(test_content_is_the_same_elsewhere),
+        each(test_what_is_out_of_sight_costs_nothing),
+        each(test_markers),
+        each(test_marker_upward_is_upward),
+        each(test_age_of_the_oldest),
+        each(test_light_can_be_chosen),
+        each(test_selection_is_outlined),
+        each(test_many_sizes),
+        each(test_camera_within_the_plant),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    if (!rig_init(&rig, "renderer_test"))
+        return 0;
+    stand_init(&stand, &rig, toy_unit());
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    stand_finish(&stand);
+    rig_finish(&rig);
+    return failed;
+}

@@ -1,0 +1,109 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Contexts, stands and pixels for GL tests. */
+#include "tests/support/rig.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+
+bool rig_init(struct rig *rig, const char *test)
+{
+    const char *name = getenv("PLANTCAST_GL");
+    enum gl_kind kind = GL_EGL_SURFACELESS;
+    *rig = (struct rig){ .log = log_create(LOG_INFO) };
+    if (name && !gl_kind_parse(name, &kind)) {
+        fprintf(stderr, "PLANTCAST_GL=%s is unknown\n", name);
+        exit(1);
+    }
+    rig->gl = gl_create(rig->log, kind, -1);
+    rig->workers = workers_create(0);
+    if (rig->gl)
+        return true;
+    printf("TAP version 13\n1..1\nok 1 - %s # SKIP no %s context on this machine\n", test, gl_kind_name(kind));
+    rig_finish(rig);
+    return false;
+}
+
+void rig_finish(struct rig *rig)
+{
+    gl_destroy(&rig->gl);
+    workers_destroy(&rig->workers);
+    log_destroy(&rig->log);
+}
+
+void stand_init(struct stand *stand, struct rig *rig, struct toy *toy)
+{
+    *stand = (struct stand){ .rig = rig, .toy = toy };
+    stand->field = field_create(rig->workers, &toy->scene);
+    stand->renderer = renderer_create(rig->log, rig->gl, &toy->scene, stand->field);
+    stand->snapshot = toy_snapshot(toy);
+    if (!stand->renderer)
+        abort();
+}
+
+void stand_finish(struct stand *stand)
+{
+    renderer_destroy(&stand->renderer);
+    field_destroy(&stand->field);
+    snapshot_destroy(&stand->snapshot);
+    toy_destroy(&stand->toy);
+}
+
+struct frame *stand_draw(struct stand *stand, const struct view *view)
+{
+    struct frame *frame = renderer_draw(stand->renderer, view, stand->snapshot);
+    if (!frame)
+        abort();
+    return frame;
+}
+
+const uint8_t *frame_pixel(const struct frame *frame, int x, int y)
+{
+    return frame->bgrx + (size_t)y * (size_t)frame->stride_bytes + (size_t)x * 4;
+}
+
+int map_index_exact(const struct colormap *map, const uint8_t *bgrx)
+{
+    for (int i = 0; i < 256; i++)
+        if (map->rgb[i][0] == bgrx[2] && map->rgb[i][1] == bgrx[1] && map->rgb[i][2] == bgrx[0])
+            return i;
+    return -1;
+}
+
+/* sRGB to CIELAB, D65; written apart from the palette's. */
+static void lab_of(double r, double g, double b, double lab[3])
+{
+    double rgb[3] = { r / 255, g / 255, b / 255 }, f[3];
+    for (int i = 0; i < 3; i++)
+        rgb[i] = rgb[i] > 0.04045 ? pow((rgb[i] + 0.055) / 1.055, 2.4) : rgb[i] / 12.92;
+    double xyz[3] = { (0.4124 * rgb[0] + 0.3576 * rgb[1] + 0.1805 * rgb[2]) / 0.9505, 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2],
+                      (0.0193 * rgb[0] + 0.1192 * rgb[1] + 0.9505 * rgb[2]) / 1.089 };
+    for (int i = 0; i < 3; i++)
+        f[i] = xyz[i] > 0.008856 ? cbrt(xyz[i]) : 7.787 * xyz[i] + 16.0 / 116;
+    lab[0] = 116 * f[1] - 16;
+    lab[1] = 500 * (f[0] - f[1]);
+    lab[2] = 200 * (f[1] - f[2]);
+}
+
+int map_index_nearest(const struct colormap *map, const uint8_t *bgrx)
+{
+    static const struct colormap *known;
+    static double labs[256][3];
+    double lab[3], least = INFINITY;
+    int nearest = -1;
+    for (int i = 0; i < 256 && known != map; i++)
+        lab_of(map->rgb[i][0], map->rgb[i][1], map->rgb[i][2], labs[i]);
+    known = map;
+    lab_of(bgrx[2], bgrx[1], bgrx[0], lab);
+    for (int i = 0; i < 256; i++) {
+        double square = 0;
+        for (int c = 0; c < 3; c++)
+            square += (lab[c] - labs[i][c]) * (lab[c] - labs[i][c]);
+        if (square < least) {
+            least = square;
+            nearest = i;
+        }
+    }
+    return nearest;
+}
