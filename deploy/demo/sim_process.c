@@ -32,7 +32,7 @@ static const struct upset upsets[UPSETS] = {
     { "cooling water lost", 60, 60, 40, 80, {
         { "water", T, 0.10, 0 },      { "cooling", T, 0.10, 0 },   { "condenser", T, 0.16, 4 }, { "overhead", T, 0.15, 8 },
         { "reflux", T, 0.13, 15 },    { "drum", T, 0.13, 18 },     { "offgas", T, 0.12, 20 },   { "distillate", T, 0.12, 25 },
-        { "column", T, 0.05, 30 },    { "reboiler", T, 0.02, 50 }, { "water", P, -0.12, 0 },    { "condenser", P, 0.08, 4 },
+        { "column", T, 0.07, 30 },    { "reboiler", T, 0.02, 50 }, { "water", P, -0.12, 0 },    { "condenser", P, 0.08, 4 },
         { "overhead", P, 0.08, 6 },   { "drum", P, 0.08, 8 },      { "column", P, 0.07, 8 },    { "offgas", P, 0.07, 10 },
         { "reboiler", P, 0.06, 12 },
     } },
@@ -108,26 +108,29 @@ static double level(const struct upset *upset, double time_s)
     return 1 - smooth((t - upset->rise_s - upset->hold_s) / upset->fall_s);
 }
 
-/* A machine by its name: a pump, a motor, a compressor, a fan, or a tag of one (P-101, K-101, EA-101). */
+/* A machine by its name: a pump or motor, or the tag of a pump, compressor or air cooler (P-101, K-101, EA-101). */
 static bool is_machine(const char *loop)
 {
-    static const char *const words[] = { "pump", "motor", "compressor", "fan", "machine" }, *const starts[] = { "P-", "K-", "C-", "EA-" };
-    for (size_t i = 0; i < sizeof(words) / sizeof(words[0]); i++)
-        if (strcasestr(loop, words[i]))
-            return true;
+    static const char *const starts[] = { "P-", "K-", "C-", "EA-" };
     for (size_t i = 0; i < sizeof(starts) / sizeof(starts[0]); i++)
         if (!strncmp(loop, starts[i], strlen(starts[i])))
             return true;
-    return false;
+    return strcasestr(loop, "pump") || strcasestr(loop, "motor");
 }
 
-/* Machines are numbered as they come; all tags of one loop are on one. */
+static bool has_number(const char *loop)
+{
+    return strpbrk(loop, "0123456789") != NULL;
+}
+
+/* Machines are numbered as they come. All tags of one loop are on one, and so are all loops that bear no number. */
 static int machine_of(struct process *process, const struct process_tag *tags, size_t tag)
 {
     if (!is_machine(tags[tag].loop))
         return -1;
     for (size_t i = 0; i < tag; i++)
-        if (!strcmp(tags[i].loop, tags[tag].loop))
+        if (process->states[i].machine >= 0 &&
+            (!strcmp(tags[i].loop, tags[tag].loop) || (!has_number(tags[i].loop) && !has_number(tags[tag].loop))))
             return process->states[i].machine;
     return process->machine_count++;
 }
@@ -273,6 +276,6 @@ const char *process_upset_help(void)
     return "  cooling water lost   loops named *water*, *cooling*, *condenser*, *overhead*, *reflux*, *drum*, *offgas*, *distillate*,\n"
            "                       *column*, *reboiler*\n"
            "  exchanger fouled     loops named *feed*, *preheat*, *exchanger*, *bottoms*, *product*, *column*\n"
-           "  bearing worn         loops named *pump*, *motor*, *compressor*, *fan*, P-..., K-..., C-..., EA-...: one each time\n"
+           "  bearing worn         loops named *pump*, *motor*, P-..., K-..., C-..., EA-...: one machine each time\n"
            "Loops named *storage*, *weather* and *steam* change slowly.\n";
 }
