@@ -24,11 +24,15 @@ static void columns_drop(struct field *field, struct weights *weights)
     weights_drop_columns(weights);
 }
 
-static void weights_remove(struct field *field, struct weights *weights)
+static struct weights **bucket_of(struct field *field, uint64_t hash)
 {
-    struct weights **link = &field->weights;
-    while (*link != weights)
-        link = &(*link)->next;
+    return &field->weights[hash % FIELD_BUCKETS];
+}
+
+/* *link is taken out of its list. */
+static void weights_remove(struct field *field, struct weights **link)
+{
+    struct weights *weights = *link;
     *link = weights->next;
     if (weights->columns)
         columns_drop(field, weights);
@@ -43,11 +47,9 @@ static void weights_release(struct state *state)
     state->weights = NULL;
 }
 
-static void state_remove(struct field *field, struct state *state)
+static void state_remove(struct field *field, struct state **link)
 {
-    struct state **link = &field->states[state->scalars.asset];
-    while (*link != state)
-        link = &(*link)->next;
+    struct state *state = *link;
     *link = state->next;
     weights_release(state);
     field->bytes -= state_bytes(state->layout);
@@ -61,9 +63,10 @@ void field_destroy(struct field **field_ptr)
         return;
     for (size_t i = 0; i < field->scene->asset_count; i++)
         while (field->states[i])
-            state_remove(field, field->states[i]);
-    while (field->weights)
-        weights_remove(field, field->weights);
+            state_remove(field, &field->states[i]);
+    for (size_t i = 0; i < FIELD_BUCKETS; i++)
+        while (field->weights[i])
+            weights_remove(field, &field->weights[i]);
     for (size_t i = 0; i < field->scene->asset_count * field->scene->plant->group_count; i++)
         layout_destroy(&field->layouts[i]);
     mem_free(field->layouts);
@@ -82,38 +85,58 @@ size_t field_bytes(const struct field *field)
     return field->bytes;
 }
 
-struct oldest { /* what may go: one of the two */
-    struct state *state;
-    struct weights *weights;
-    uint64_t used;
-};
-
-static void find_oldest(const struct field *field, const struct field_params *keep, struct oldest *oldest)
+static bool weights_may_go(const struct weights *weights)
 {
-    for (size_t i = 0; i < field->scene->asset_count; i++)
-        for (struct state *state = field->states[i]; state; state = state->next)
-            if (state->used < oldest->used && !field_params_equal(&state->params, keep))
-                *oldest = (struct oldest){ .state = state, .used = state->used };
-    for (struct weights *weights = field->weights; weights; weights = weights->next)
-        if (weights->used < oldest->used && (weights->users == 0 || weights->columns))
-            *oldest = (struct oldest){ .weights = weights, .used = weights->used };
+    return weights->users == 0 || weights->columns;
 }
 
-/* Drops what was last used before tick `before`, oldest first, but no state of the parameters `keep`, until `need` more bytes
-   fit under the bound. False: they do not. */
+/* The least tick of use of all that may go; UINT64_MAX: nothing may. */
+static uint64_t oldest_use(const struct field *field, const struct field_params *keep)
+{
+    uint64_t oldest = UINT64_MAX;
+    for (size_t i = 0; i < field->scene->asset_count; i++)
+        for (const struct state *state = field->states[i]; state; state = state->next)
+            if (state->used < oldest && !field_params_equal(&state->params, keep))
+                oldest = state->used;
+    for (size_t i = 0; i < FIELD_BUCKETS; i++)
+        for (const struct weights *weights = field->weights[i]; weights; weights = weights->next)
+            if (weights->used < oldest && weights_may_go(weights))
+                oldest = weights->used;
+    return oldest;
+}
+
+static void drop_used_before(struct field *field, const struct field_params *keep, uint64_t before)
+{
+    for (size_t i = 0; i < field->scene->asset_count; i++)
+        for (struct state **link = &field->states[i]; *link;) {
+            if ((*link)->used < before && !field_params_equal(&(*link)->params, keep))
+                state_remove(field, link);
+            else
+                link = &(*link)->next;
+        }
+    for (size_t i = 0; i < FIELD_BUCKETS; i++)
+        for (struct weights **link = &field->weights[i]; *link;) {
+            struct weights *weights = *link;
+            if (weights->used < before && weights->users == 0) {
+                weights_remove(field, link);
+                continue;
+            }
+            if (weights->used < before && weights->columns)
+                columns_drop(field, weights);
+            link = &weights->next;
+        }
+}
+
+/* Drops what was last used before tick `before`, but no state of the parameters `keep`, until `need` more bytes fit under the
+   bound. The oldest go first, an eighth of the time at once, so that looking for them is seldom. False: they do not fit. */
 static bool make_room(struct field *field, size_t need, const struct field_params *keep, uint64_t before)
 {
     while (field->bytes + need > field->bound) {
-        struct oldest oldest = { .used = before };
-        find_oldest(field, keep, &oldest);
-        if (oldest.state)
-            state_remove(field, oldest.state);
-        else if (oldest.weights && oldest.weights->users == 0)
-            weights_remove(field, oldest.weights);
-        else if (oldest.weights)
-            columns_drop(field, oldest.weights);
-        else
+        uint64_t oldest = oldest_use(field, keep);
+        if (oldest >= before)
             return false;
+        uint64_t until = oldest + (field->tick - oldest) / 8 + 1;
+        drop_used_before(field, keep, until < before ? until : before);
     }
     return true;
 }
@@ -123,7 +146,7 @@ static bool make_room(struct field *field, size_t need, const struct field_param
 static void keep_columns(struct field *field, struct weights *weights, const struct field_params *params, uint64_t previous)
 {
     size_t bytes = weights_column_bytes(weights);
-    if (weights->columns || weights->sums == 0 || bytes == 0 || !make_room(field, bytes, params, previous))
+    if (weights->columns || weights->sums == 0 || bytes == 0 || bytes > field->bound || !make_room(field, bytes, params, previous))
         return;
     if (weights_keep(weights))
         field->bytes += bytes;
@@ -151,7 +174,7 @@ static bool weights_take(struct field *field, struct state *state)
     float radius_m = radius_of(field, state->layout, &state->params);
     struct weights_key key;
     weights_key_init(&key, state->layout, &state->params, radius_m, state->usable);
-    struct weights *weights = field->weights;
+    struct weights **bucket = bucket_of(field, key.hash), *weights = *bucket;
     while (weights && !weights_key_equal(&weights->key, &key))
         weights = weights->next;
     weights_release(state);
@@ -159,8 +182,8 @@ static bool weights_take(struct field *field, struct state *state)
         make_room(field, weights_bytes(state->layout), &state->params, field->tick);
         weights = weights_create(state->layout, &state->params, radius_m, state->usable, &key);
         if (weights) {
-            weights->next = field->weights;
-            field->weights = weights;
+            weights->next = *bucket;
+            *bucket = weights;
             field->bytes += weights_bytes(state->layout);
         }
     }
@@ -200,7 +223,10 @@ const struct scalars *field_scalars(struct field *field, int asset, const struct
     state->used = field->tick;
     state_read(state, snapshot);
     if (state_needs_weights(state) && !weights_take(field, state)) {
-        state_remove(field, state);
+        struct state **link = &field->states[asset];
+        while (*link != state)
+            link = &(*link)->next;
+        state_remove(field, link);
         return NULL;
     }
     struct weights *weights = state->weights;

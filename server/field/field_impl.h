@@ -5,12 +5,14 @@
 #include "field/field.h"
 #include "field/state.h"
 
+#define FIELD_BUCKETS 256
+
 struct field {
     struct workers *workers;
     const struct scene *scene;
-    struct layout **layouts; /* [asset][group]; NULL: not looked for, or none */
-    struct state **states;   /* by asset: a list */
-    struct weights *weights; /* all of them */
+    struct layout **layouts;                /* [asset][group]; NULL: not looked for, or none */
+    struct state **states;                  /* by asset: a list */
+    struct weights *weights[FIELD_BUCKETS]; /* all of them, by hash of the key */
     size_t bytes, bound;
     uint64_t tick; /* counts calls: what was used last */
     uint64_t versions;

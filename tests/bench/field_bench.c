@@ -48,6 +48,12 @@ static void change_quality(struct bench *bench)
     reading->quality = quality_is_bad(reading->quality) ? QUALITY_GOOD : QUALITY_BAD_SENSOR_FAILURE;
 }
 
+static void mend_all(struct bench *bench)
+{
+    for (size_t i = 0; i < bench->sensors; i++)
+        bench->plant->snapshot->readings[i].quality = QUALITY_GOOD;
+}
+
 static void change_nothing(struct bench *bench)
 {
     (void)bench;
@@ -75,6 +81,7 @@ static void measure(struct bench *bench, const char *name, void (*change)(struct
             ms[i] = (double)(clock_mono_ns() - began_ns) / 1e6;
     }
     qsort(ms, ROUNDS, sizeof(*ms), by_size);
+    mend_all(bench);
     printf("{\"name\": \"%s\", \"value\": %.4f, \"p95\": %.4f, \"unit\": \"ms\"}\n", name, ms[ROUNDS / 2], ms[ROUNDS * 95 / 100]);
     fflush(stdout);
 }

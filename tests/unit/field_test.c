@@ -391,6 +391,10 @@ static void test_zero_is_a_reading(void **state)
     set(&rig, 1, 8, QUALITY_GOOD);
     const struct scalars *scalars = show(&rig);
     assert_true(scalars->at[0].value == 0 && scalars->at[0].no_data == 0);
+    rig.params.power = 0.5;
+    assert_true(show(&rig)->at[0].value == 0);
+    rig.params.power = 2;
+    scalars = show(&rig);
     for (size_t j = 2; j < scalars->count; j++)
         assert_true(scalars->at[j].value > 0 && scalars->at[j].value < 8);
     set(&rig, 1, 0.0, QUALITY_GOOD);
@@ -726,6 +730,17 @@ static void test_a_bad_reading_that_moves_changes_nothing(void **state)
     rig_finish(&rig);
 }
 
+static void test_a_reading_without_weight_changes_nothing(void **state)
+{
+    (void)state;
+    struct rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 3));
+    rig.plant->plant.tags[1].strength = 0;
+    uint64_t version = show(&rig)->version;
+    set(&rig, 1, 77, QUALITY_GOOD);
+    assert_int_equal(show(&rig)->version, version);
+    rig_finish(&rig);
+}
+
 /* --- sharing and the bound ------------------------------------------------------------------------------------------------ */
 
 static void test_equal_parameters_share(void **state)
@@ -969,6 +984,7 @@ int main(void)
         cmocka_unit_test(test_cut_of_the_work_does_not_matter),
         cmocka_unit_test(test_version_grows_with_real_changes_only),
         cmocka_unit_test(test_a_bad_reading_that_moves_changes_nothing),
+        cmocka_unit_test(test_a_reading_without_weight_changes_nothing),
         cmocka_unit_test(test_equal_parameters_share),
         cmocka_unit_test(test_instances_share_their_weights),
         cmocka_unit_test(test_dragging_stays_under_the_bound),
