@@ -6,6 +6,7 @@
 #include "shape.h"
 #include "steel.h"
 
+#define LEG_Y 2.5 /* the legs stand on the rack's edge beams */
 #define FAN_Z 1.25
 #define PLENUM_Z 1.60
 #define BUNDLE_Z 2.25
@@ -68,9 +69,10 @@ static void bay(struct item *item, double x, double width, double length)
             shape_block(plenum, frame_at(x + side * half, i * y / 3.2, 0), -0.04, 0.04, -0.02, 0.02, PLENUM_Z, BUNDLE_Z);
     for (int i = -1; i <= 1; i += 2) {
         fan(item, x, i * length * 0.25, width * 0.36);
-        for (int side = -1; side <= 1; side += 2)
-            steel_beam(legs, vec(x + side * half, i * (y - 0.1), 0), vec(x + side * half, i * (y - 0.1), BUNDLE_Z), vec(1, 0, 0), 0.16,
-                       0.16);
+        for (int side = -1; side <= 1; side += 2) {
+            double leg_x = x + side * half, leg_y = i * LEG_Y;
+            steel_beam(legs, vec(leg_x, leg_y, 0), vec(leg_x, leg_y, BUNDLE_Z), vec(1, 0, 0), 0.16, 0.16);
+        }
     }
 }
 

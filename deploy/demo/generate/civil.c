@@ -72,7 +72,7 @@ static void gutter(struct item *item, double x0, double x1, double y)
 
 void civil_build(struct site *site)
 {
-    const double around = 4.0;
+    const double around = 2.5;
     site->civil = item_begin(&site->model, "CIVIL", frame_at(0, 0, 0));
     slab(&site->civil);
     struct mesh *gravel = item_part(&site->civil, "gravel", MATERIAL_GRAVEL);
@@ -81,10 +81,10 @@ void civil_build(struct site *site)
     for (int side = 0; side < 2; side++)
         field(marks, GRADE_WEST_M + 1.0, GRADE_EAST_M - 1.0, -0.75 - 1.5 * side, -0.65 - 1.5 * side, 0.006, 2.0);
     gutter(&site->civil, -19.0, 5.0, -12.3);
-    lamp_pole(site, -20.2, -3.2, 0);
+    lamp_pole(site, -20.2, 5.6, -45);
     lamp_pole(site, 7.2, -1.2, 135);
     lamp_pole(site, 19.9, -0.6, 180);
-    fire_monitor(site, -19.4, -11.6, 50);
+    fire_monitor(site, -19.9, -3.4, 20);
     fire_monitor(site, 7.6, -2.0, 130);
 }
 

@@ -29,6 +29,6 @@ void structure_build(struct site *site, const char *name);
 #define STRUCTURE_SOUTH_M 0.4
 #define STRUCTURE_NORTH_M 5.6
 #define STRUCTURE_LOW_M 3.8
-#define STRUCTURE_HIGH_M 7.4
+#define STRUCTURE_HIGH_M 7.3
 
 #endif

@@ -71,7 +71,7 @@ static void feed_lines(struct site *site)
     struct pipe warm = pipe_from_nozzle(site, &item, "E-101/N2", 0.084, MATERIAL_PIPE, HOT_M);
     pipe_go(&warm, "zy", vec(0, 7.7, 3.3));
     posts_along(&warm, 5.6, 4.6, 2);
-    pipe_go(&warm, "zx", vec(-6.92, 0, 4.53));
+    pipe_go(&warm, "z", vec(0, 0, 4.53));
     pipe_into_nozzle(&warm, "xyz", "T-101/N3");
     pipe_end(&warm);
     item_end(&item);
@@ -99,11 +99,11 @@ static void overhead_lines(struct site *site)
         shape_block(steel, frame_at(-8.2, 0, 14.0 + 2.6 * i), -0.3, 0.3, 4.4, 5.2, -0.06, 0.06);
 
     struct pipe condensed = pipe_from_nozzle(site, &item, "EA-101/N4", 0.110, MATERIAL_PIPE, 0);
-    pipe_go(&condensed, "zx", vec(5.6, 0, 9.45));
+    pipe_go(&condensed, "zx", vec(4.2, 0, 9.475)); /* west of the fans */
     pipe_into_nozzle(&condensed, "yxz", "E-103/N3");
     pipe_end(&condensed);
     struct pipe west = pipe_from_nozzle(site, &item, "EA-101/N3", 0.084, MATERIAL_PIPE, 0);
-    pipe_go(&west, "z", vec(0, 0, 9.45));
+    pipe_go(&west, "z", vec(0, 0, 9.475));
     pipe_end(&west);
     struct pipe down = pipe_from_nozzle(site, &item, "E-103/N4", 0.110, MATERIAL_PIPE, 0);
     pipe_into_nozzle(&down, "xyz", "V-101/N1");
@@ -131,7 +131,6 @@ static void reflux_lines(struct site *site)
     pipe_gate_valve(&reflux, 0.60, SOUTH);
     pipe_go(&reflux, "xy", vec(-4.9, 6.2, 0));
     posts_along(&reflux, 2.0, 3.6, 2);
-    pipe_go(&reflux, "x", vec(-7.5, 0, 0));
     pipe_into_nozzle(&reflux, "xyz", "T-101/N2");
     pipe_end(&reflux);
     struct pipe riser = pipe_from_nozzle(site, &item, "P-102A/N2", 0.070, MATERIAL_PIPE, 0);
@@ -158,7 +157,7 @@ static void bottoms_lines(struct site *site)
 {
     struct item item = item_begin(&site->model, "L-104", frame_at(0, 0, 0));
     struct pipe feed = pipe_from_nozzle(site, &item, "T-101/N5", 0.110, MATERIAL_PIPE, HOT_M);
-    pipe_go(&feed, "zy", vec(0, 5.2, 0.40)); /* north of the kettle; its suction line leaves to the south */
+    pipe_go(&feed, "zy", vec(0, 5.2, 0.27)); /* north of the kettle; its suction line leaves to the south */
     pipe_go(&feed, "x", vec(-15.65, 0, 0));
     pipe_into_nozzle(&feed, "xyz", "E-102/N4");
     pipe_end(&feed);
@@ -213,7 +212,7 @@ static void offgas_lines(struct site *site)
     struct item item = item_begin(&site->model, "L-105", frame_at(0, 0, 0));
     struct pipe vapour = pipe_from_nozzle(site, &item, "V-101/N3", 0.084, MATERIAL_PIPE, 0);
     pipe_go(&vapour, "x", vec(6.6, 0, 0));
-    pipe_control_valve(&vapour, 1.2, UP);
+    pipe_control_valve(&vapour, 1.2, SOUTH);
     pipe_go(&vapour, "z", vec(0, 0, 2.4));
     pipe_into_nozzle(&vapour, "zyx", "V-102/N1");
     pipe_end(&vapour);

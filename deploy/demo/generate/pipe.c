@@ -15,7 +15,9 @@ static void push(struct pipe *pipe, struct vec point)
         return;
     if (pipe->count >= 2) { /* straight on: one leg */
         struct vec *last = pipe->points + pipe->count - 1;
-        if (vec_dot(vec_unit(vec_sub(*last, last[-1])), vec_unit(vec_sub(point, *last))) > 1.0 - 1e-9) {
+        double turn = vec_dot(vec_unit(vec_sub(*last, last[-1])), vec_unit(vec_sub(point, *last)));
+        assert(turn > -0.99); /* no way back along itself */
+        if (turn > 1.0 - 1e-9) {
             *last = point;
             return;
         }

@@ -12,7 +12,7 @@ static const char head[] =
     "  name: Stabiliser unit 100 (demo)\n"
     "  time_zone: UTC\n"
     "  up: z\n"
-    "  view: { eye: [-36.0, -38.0, 26.0], target: [-0.5, 0.0, 6.2], fov: 36 }\n"
+    "  view: { eye: [-37.0, -38.5, 27.0], target: [-0.2, -0.6, 6.2], fov: 36 }\n"
     "\n"
     "groups:\n"
     "  - id: temperature\n"
