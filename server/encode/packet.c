@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Packets: an encoded picture and what it means, without the pixels. */
+#include "encode/packet.h"
+
+#include <string.h>
+
+#include "base/mem.h"
+
+/* A packet may wait for a slow peer: it keeps what the frame says, not its megabytes of pixels. */
+static struct frame *without_pixels(const struct frame *frame)
+{
+    struct frame *copy = mem_new(sizeof(*copy));
+    size_t bytes = frame->marker_count * sizeof(*frame->markers);
+    memcpy(copy, frame, sizeof(*copy));
+    atomic_init(&copy->refs, 1);
+    copy->bgrx = NULL;
+    copy->markers = mem_new(bytes);
+    if (bytes)
+        memcpy(copy->markers, frame->markers, bytes);
+    return copy;
+}
+
+struct packet *packet_create(const struct frame *frame, enum wire_codec codec, bool key, const void *bytes, size_t count)
+{
+    struct packet *packet = mem_new(sizeof(*packet));
+    atomic_init(&packet->refs, 1);
+    packet->bytes = mem_try_array(count, 1);
+    if (!packet->bytes) {
+        mem_free(packet);
+        return NULL;
+    }
+    memcpy(packet->bytes, bytes, count);
+    packet->count = count;
+    packet->codec = codec;
+    packet->key = key;
+    packet->frame = without_pixels(frame);
+    return packet;
+}
+
+struct packet *packet_ref(struct packet *packet)
+{
+    atomic_fetch_add_explicit(&packet->refs, 1, memory_order_relaxed);
+    return packet;
+}
+
+void packet_unref(struct packet **packet_ptr)
+{
+    struct packet *packet = *packet_ptr;
+    *packet_ptr = NULL;
+    if (!packet || atomic_fetch_sub_explicit(&packet->refs, 1, memory_order_acq_rel) != 1)
+        return;
+    frame_unref(&packet->frame);
+    mem_free(packet->bytes);
+    mem_free(packet);
+}

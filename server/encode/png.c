@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Lossless PNG by libpng, for snapshots and for still pictures on request. */
+#include <errno.h>
+#include <png.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "encode/encoder_impl.h"
+
+static void png_destroy(struct encoder *encoder)
+{
+    mem_free(encoder);
+}
+
+static struct encoder *png_create(struct log *log)
+{
+    struct encoder *encoder = mem_new(sizeof(*encoder));
+    *encoder = (struct encoder){ .impl = &png_impl, .log = log };
+    return encoder;
+}
+
+static uint8_t *pack_bgr(const struct frame *frame)
+{
+    uint8_t *packed = mem_try_array((size_t)frame->width_px * (size_t)frame->height_px, 3);
+    if (!packed)
+        return NULL;
+    uint8_t *to = packed;
+    for (int y = 0; y < frame->height_px; y++) {
+        const uint8_t *from = frame->bgrx + (size_t)y * (size_t)frame->stride_bytes;
+        for (int x = 0; x < frame->width_px; x++, from += 4, to += 3)
+            memcpy(to, from, 3);
+    }
+    return packed;
+}
+
+static int png_send(struct encoder *encoder, struct frame *frame, const struct encoder_params *params)
+{
+    (void)params; /* nothing to choose: it is lossless */
+    png_image image = {
+        .version = PNG_IMAGE_VERSION, .format = PNG_FORMAT_BGR, .flags = PNG_IMAGE_FLAG_FAST,
+        .width = (png_uint_32)frame->width_px, .height = (png_uint_32)frame->height_px,
+    };
+    png_alloc_size_t count = PNG_IMAGE_PNG_SIZE_MAX(image);
+    uint8_t *packed = pack_bgr(frame), *out = mem_try_array(count, 1);
+    int status = -ENOMEM;
+    if (packed && out && png_image_write_to_memory(&image, out, &count, 0, packed, 0, NULL)) {
+        encoder->ready = packet_create(frame, WIRE_CODEC_PNG, true, out, count);
+        status = encoder->ready ? 0 : -ENOMEM;
+    }
+    if (status)
+        log_err(encoder->log, "png %dx%d: %s", frame->width_px, frame->height_px, image.message[0] ? image.message : "no memory for it");
+    mem_free(out);
+    mem_free(packed);
+    return status;
+}
+
+const struct encoder_impl png_impl = { .name = "png", .create = png_create, .send = png_send, .destroy = png_destroy };

@@ -1,0 +1,304 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* HTTP beside the stream: the web client, the state of the server, pictures on request. */
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "net/hub.h"
+#include "net/query.h"
+#include "net/reply.h"
+#include "net/site.h"
+
+static const struct encoder_params LOSSLESS = { .quality = 100, .full_chroma = true };
+
+struct request {
+    struct lws *wsi;
+    bool head;              /* no body is wanted */
+    bool close;             /* after the answer */
+    char *body;
+    size_t count, sent;
+    uint64_t client;        /* of the painter, while a picture is awaited */
+    struct request *next;   /* in hub->snapshots */
+};
+
+static const char *const security[][2] = {
+    { "content-security-policy:", "default-src 'self'; connect-src 'self' ws: wss:; img-src 'self' data: blob:; worker-src 'self' blob:; "
+                                  "object-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'self'" },
+    { "x-content-type-options:", "nosniff" },
+    { "referrer-policy:", "no-referrer" },
+    { "cross-origin-resource-policy:", "same-origin" },
+    { "cache-control:", "no-cache" },
+};
+
+static bool add_header(struct lws *wsi, const char *name, const char *value, unsigned char **p, unsigned char *end)
+{
+    return lws_add_http_header_by_name(wsi, (const unsigned char *)name, (const unsigned char *)value, (int)strlen(value), p, end) == 0;
+}
+
+static bool write_head(struct request *request, int status, const char *type, const char *extra_name, const char *extra)
+{
+    unsigned char buffer[LWS_PRE + 2048], *start = buffer + LWS_PRE, *p = start, *end = buffer + sizeof(buffer) - 1;
+    struct lws *wsi = request->wsi;
+    if (lws_add_http_common_headers(wsi, (unsigned)status, type, status == HTTP_STATUS_NOT_MODIFIED ? 0 : request->count, &p, end))
+        return false;
+    for (size_t i = 0; i < sizeof(security) / sizeof(security[0]); i++)
+        if (!add_header(wsi, security[i][0], security[i][1], &p, end))
+            return false;
+    if (extra_name && !add_header(wsi, extra_name, extra, &p, end))
+        return false;
+    return lws_finalize_write_http_header(wsi, start, &p, end) == 0;
+}
+
+static int done(struct request *request)
+{
+    mem_free(request->body);
+    request->body = NULL;
+    request->count = request->sent = 0;
+    return request->close || lws_http_transaction_completed(request->wsi) ? -1 : 0;
+}
+
+/* Takes body. The rest happens as the socket takes it. */
+static int answer(struct request *request, int status, const char *type, char *body, size_t count, const char *extra_name, const char *extra)
+{
+    mem_free(request->body);
+    request->body = body;
+    request->count = count;
+    request->sent = 0;
+    if (!write_head(request, status, type, extra_name, extra))
+        return -1;
+    if (request->head || count == 0)
+        return done(request);
+    lws_callback_on_writable(request->wsi);
+    return 0;
+}
+
+static int answer_text(struct request *request, int status, const char *text)
+{
+    return answer(request, status, "text/plain; charset=utf-8", mem_strdup(text), strlen(text), NULL, NULL);
+}
+
+static int answer_json(struct request *request, char *text)
+{
+    return answer(request, HTTP_STATUS_OK, "application/json", text, strlen(text), NULL, NULL);
+}
+
+int http_answer(struct lws *wsi, int status, const char *text)
+{
+    struct request request = { .wsi = wsi, .count = strlen(text) };
+    if (!write_head(&request, status, "text/plain; charset=utf-8", NULL, NULL))
+        return -1;
+    return lws_write(wsi, (unsigned char *)text, strlen(text), LWS_WRITE_HTTP_FINAL) < 0 ? -1 : 0;
+}
+
+/* --- pictures --------------------------------------------------------------------------------------------------------------- */
+
+static void forget_snapshot(struct hub *hub, struct request *request)
+{
+    struct request **at = &hub->snapshots;
+    while (*at && *at != request)
+        at = &(*at)->next;
+    if (!*at)
+        return;
+    *at = request->next;
+    hub->snapshot_count--;
+    painter_forget(hub->params.painter, request->client);
+}
+
+static bool read_query(struct hub *hub, struct lws *wsi, struct view *view, struct message_error *error)
+{
+    enum { MAX_ARGS = 32, MAX_BYTES = 256 };
+    char args[MAX_ARGS][MAX_BYTES];
+    const char *list[MAX_ARGS];
+    int count = 0;
+    for (; count < MAX_ARGS; count++) {
+        int n = lws_hdr_copy_fragment(wsi, args[count], MAX_BYTES, WSI_TOKEN_HTTP_URI_ARGS, count);
+        if (n == -1)
+            break;
+        if (n < 0) {
+            message_fail(error, "bad_field", "argument %d is longer than %d bytes", count + 1, MAX_BYTES - 1);
+            return false;
+        }
+        list[count] = args[count];
+    }
+    return query_parse(hub->params.scene, list, (size_t)count, view, error);
+}
+
+static int ask_snapshot(struct hub *hub, struct request *request)
+{
+    struct wish wish = { .codec = WIRE_CODEC_PNG, .quality = LOSSLESS, .urgency = URGENCY_SNAPSHOT, .always = true, .overlay = true };
+    struct message_error error = { 0 };
+    if (!read_query(hub, request->wsi, &wish.view, &error)) {
+        char *text = mem_printf("%s\n", error.text);
+        return answer(request, HTTP_STATUS_BAD_REQUEST, "text/plain; charset=utf-8", text, strlen(text), NULL, NULL);
+    }
+    if (hub->snapshot_count >= MAX_SNAPSHOTS)
+        return answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "too many pictures are being made; try again\n");
+    wish.asked_ns = wish.view.input_ns = clock_mono_ns();
+    request->client = hub->next_client++;
+    request->next = hub->snapshots;
+    hub->snapshots = request;
+    hub->snapshot_count++;
+    lws_set_timeout(request->wsi, PENDING_TIMEOUT_HTTP_CONTENT, 60);
+    painter_ask(hub->params.painter, request->client, &wish);
+    return 0;
+}
+
+void http_on_picture(struct hub *hub, struct picture *picture)
+{
+    struct request *request = hub->snapshots;
+    while (request && request->client != picture->client)
+        request = request->next;
+    if (request) {
+        int status;
+        forget_snapshot(hub, request);
+        if (picture->packet) {
+            char *body = mem_array(picture->packet->count, 1);
+            memcpy(body, picture->packet->bytes, picture->packet->count);
+            status = answer(request, HTTP_STATUS_OK, "image/png", body, picture->packet->count, NULL, NULL);
+        } else {
+            status = answer_text(request, HTTP_STATUS_INTERNAL_SERVER_ERROR, "the picture could not be made\n");
+        }
+        if (status < 0)
+            lws_set_timeout(request->wsi, PENDING_TIMEOUT_CLOSE_SEND, LWS_TO_KILL_ASYNC);
+    }
+    picture_destroy(&picture);
+}
+
+/* --- routes ----------------------------------------------------------------------------------------------------------------- */
+
+static int metrics(struct hub *hub, struct request *request)
+{
+    struct text text = { 0 };
+    counters_print(hub->params.counters, &text);
+    return answer(request, HTTP_STATUS_OK, "text/plain; version=0.0.4; charset=utf-8", text.at, text.length, NULL, NULL);
+}
+
+static int api_plant(struct hub *hub, struct request *request)
+{
+    return answer_json(request, reply_api_plant_text(&hub->world));
+}
+
+static int api_tags(struct hub *hub, struct request *request)
+{
+    return answer_json(request, reply_api_tags_text(&hub->world));
+}
+
+static int alive(struct hub *hub, struct request *request)
+{
+    (void)hub;
+    return answer_text(request, HTTP_STATUS_OK, "ok\n");
+}
+
+static int stream_without_upgrade(struct hub *hub, struct request *request)
+{
+    (void)hub;
+    static const char text[] = "a WebSocket with the subprotocol " WIRE_SUBPROTOCOL " is here\n";
+    return answer(request, 426, "text/plain; charset=utf-8", mem_strdup(text), strlen(text), "upgrade:", "websocket");
+}
+
+static int file(struct hub *hub, struct request *request, const char *path)
+{
+    struct site_file found;
+    char seen[64] = "";
+    bool cached = false;
+    if (lws_hdr_copy(request->wsi, seen, sizeof(seen), WSI_TOKEN_HTTP_IF_NONE_MATCH) > 0)
+        cached = site_read(hub->params.web_folder, path, true, &found) && !strcmp(seen, found.etag);
+    if (cached)
+        return answer(request, HTTP_STATUS_NOT_MODIFIED, found.type, NULL, 0, "etag:", found.etag);
+    if (!site_read(hub->params.web_folder, path, false, &found))
+        return answer_text(request, HTTP_STATUS_NOT_FOUND, "not found\n");
+    return answer(request, HTTP_STATUS_OK, found.type, found.bytes, found.count, "etag:", found.etag);
+}
+
+static const struct {
+    const char *path;
+    int (*serve)(struct hub *hub, struct request *request);
+    bool picture; /* for viewers too */
+} routes[] = {
+    { "/healthz", alive, true },
+    { "/readyz", alive, true }, /* the loop only runs once model, GL and store are there */
+    { "/stream", stream_without_upgrade, true },
+    { "/snapshot.png", ask_snapshot, true },
+    { "/metrics", metrics, false },
+    { "/api/v1/plant", api_plant, false },
+    { "/api/v1/tags", api_tags, false },
+};
+
+static int serve(struct hub *hub, struct request *request, const char *path)
+{
+    bool get = lws_hdr_total_length(request->wsi, WSI_TOKEN_GET_URI) > 0;
+    request->head = lws_hdr_total_length(request->wsi, WSI_TOKEN_HEAD_URI) > 0;
+    counter_inc(hub->counters.requests, 1);
+    if (!get && !request->head) {
+        request->close = true; /* there may be a body that nobody reads */
+        static const char text[] = "only GET and HEAD\n";
+        return answer(request, HTTP_STATUS_METHOD_NOT_ALLOWED, "text/plain; charset=utf-8", mem_strdup(text), strlen(text), "allow:", "GET, HEAD");
+    }
+    for (size_t i = 0; i < sizeof(routes) / sizeof(routes[0]); i++) {
+        if (strcmp(routes[i].path, path) != 0)
+            continue;
+        if (hub->params.open_viewers && !routes[i].picture && !hub_peer_is_local(request->wsi))
+            return answer_text(request, HTTP_STATUS_FORBIDDEN, "viewers get pictures only\n");
+        return routes[i].serve(hub, request);
+    }
+    return file(hub, request, path);
+}
+
+static int on_writeable(struct hub *hub, struct request *request)
+{
+    size_t left = request->count - request->sent, slice = left < SLICE_BYTES ? left : SLICE_BYTES;
+    if (!request->body)
+        return 0;
+    if (!hub_write(hub, request->wsi, request->body + request->sent, slice, slice == left ? LWS_WRITE_HTTP_FINAL : LWS_WRITE_HTTP))
+        return -1;
+    request->sent += slice;
+    if (slice == left)
+        return done(request);
+    lws_set_timeout(request->wsi, PENDING_TIMEOUT_HTTP_CONTENT, 20);
+    lws_callback_on_writable(request->wsi);
+    return 0;
+}
+
+static struct request *request_of(struct lws *wsi, struct request **slot)
+{
+    if (!*slot) {
+        *slot = mem_new(sizeof(**slot));
+        (*slot)->wsi = wsi;
+    }
+    return *slot;
+}
+
+static void request_end(struct hub *hub, struct request **slot)
+{
+    if (!slot || !*slot)
+        return;
+    forget_snapshot(hub, *slot);
+    mem_free((*slot)->body);
+    mem_free(*slot);
+    *slot = NULL;
+}
+
+int http_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t len)
+{
+    struct request **slot = user;
+    (void)len;
+    switch (reason) {
+    case LWS_CALLBACK_HTTP:
+        return serve(hub_of(wsi), request_of(wsi, slot), in);
+    case LWS_CALLBACK_HTTP_WRITEABLE:
+        return *slot ? on_writeable(hub_of(wsi), *slot) : 0;
+    case LWS_CALLBACK_HTTP_DROP_PROTOCOL: /* also when the connection is upgraded */
+    case LWS_CALLBACK_CLOSED_HTTP:
+        request_end(hub_of(wsi), slot);
+        return 0;
+    case LWS_CALLBACK_HTTP_CONFIRM_UPGRADE:
+        return strcasecmp(in, "websocket") == 0 ? stream_check_upgrade(hub_of(wsi), wsi) : -1;
+    case LWS_CALLBACK_ESTABLISHED: { /* a WebSocket without a subprotocol lands here */
+        static unsigned char text[] = "the subprotocol is " WIRE_SUBPROTOCOL;
+        lws_close_reason(wsi, LWS_CLOSE_STATUS_PROTOCOL_ERR, text, sizeof(text) - 1);
+        return -1;
+    }
+    default:
+        return 0;
+    }
+}

@@ -1,0 +1,56 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the parts of the loop share. Private to net/. Thread: the loop. */
+#ifndef NET_HUB_H
+#define NET_HUB_H
+#include <libwebsockets.h>
+
+#include "net/net.h"
+#include "net/session.h"
+
+enum { SLICE_BYTES = 32 * 1024, MAX_STREAMS = 1024, MAX_SNAPSHOTS = 8 };
+
+struct stream; /* stream.c */
+struct request; /* http.c */
+
+struct hub {
+    struct net_params params;
+    struct session_world world;
+    struct snapshot *snapshot;
+    uint32_t *changes;          /* reading.changes at the last tick, by tag */
+    bool *links_up;
+    struct lws_context *context;
+    struct stream *streams;
+    struct request *snapshots;  /* HTTP requests that wait for their picture */
+    int stream_count, snapshot_count;
+    uint64_t next_client;
+    bool closing;
+    uint8_t out[LWS_PRE + SLICE_BYTES]; /* lws writes its framing in front of what is sent */
+    struct {
+        counter *sessions, *sessions_all, *frames, *frame_bytes, *messages, *errors, *dropped, *requests, *refused;
+    } counters;
+};
+
+static inline struct hub *hub_of(struct lws *wsi)
+{
+    return lws_context_user(lws_get_context(wsi));
+}
+
+/* Writes up to SLICE_BYTES through hub->out. False: the connection is gone. */
+bool hub_write(struct hub *hub, struct lws *wsi, const void *bytes, size_t count, enum lws_write_protocol how);
+/* The client's address is of this machine. */
+bool hub_peer_is_local(struct lws *wsi);
+
+int stream_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t len);
+void stream_on_picture(struct hub *hub, struct picture *picture); /* takes it over; false owner: destroys it */
+bool stream_owns(const struct hub *hub, uint64_t client);
+void streams_on_tick(struct hub *hub, bool data_changed, bool links_changed);
+void streams_close(struct hub *hub); /* server goes down */
+/* 0: upgrade; 1: answered with an HTTP error. */
+int stream_check_upgrade(struct hub *hub, struct lws *wsi);
+
+int http_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t len);
+void http_on_picture(struct hub *hub, struct picture *picture); /* takes it over */
+/* A complete short answer in plain text. Returns what the callback is to return. */
+int http_answer(struct lws *wsi, int status, const char *text);
+
+#endif

@@ -1,0 +1,179 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* JSON text of a client to a checked struct. */
+#include "net/message.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "net/fields.h"
+
+void message_fail(struct message_error *error, const char *code, const char *fmt, ...)
+{
+    va_list ap;
+    va_start(ap, fmt);
+    error->code = code;
+    vsnprintf(error->text, sizeof(error->text), fmt, ap);
+    va_end(ap);
+}
+
+bool view_size_valid(double w, double h)
+{
+    return w >= 16 && h >= 16 && w <= VIEW_MAX_SIDE_PX && h <= VIEW_MAX_SIDE_PX && w * h <= VIEW_MAX_PIXELS && w == floor(w) &&
+           h == floor(h);
+}
+
+static bool size_parse(const json_t *o, struct message *out, struct message_error *error)
+{
+    double w, h;
+    if (!need_number(o, "width", 16, VIEW_MAX_SIDE_PX, &w, error) || !need_number(o, "height", 16, VIEW_MAX_SIDE_PX, &h, error))
+        return false;
+    if (!view_size_valid(w, h)) {
+        message_fail(error, "bad_field", "width, height: whole numbers of pixels expected, at most %d together", VIEW_MAX_PIXELS);
+        return false;
+    }
+    out->width_px = (int)w;
+    out->height_px = (int)h;
+    return true;
+}
+
+bool camera_parse(const json_t *o, struct camera *out, struct message_error *error)
+{
+    *out = (struct camera){ .up = { 0, 0, 1 }, .fov_deg = 45 };
+    if (!need_vector(o, "eye", out->eye_m, error) || !need_vector(o, "target", out->target_m, error) ||
+        !may_vector(o, "up", out->up, NULL, error) || !may_number(o, "fov", 1, 120, &out->fov_deg, NULL, error))
+        return false;
+    if (!camera_valid(out)) {
+        message_fail(error, "bad_field", "eye, target, up: eye must be apart from target, and up not along the view");
+        return false;
+    }
+    return true;
+}
+
+static bool parse_camera(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
+{
+    (void)plant;
+    return need_seq(o, &out->seq, error) && camera_parse(o, &out->camera, error);
+}
+
+static bool parse_params(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
+{
+    uint32_t seq;
+    if (!need_seq(o, &seq, error) || !params_parse(plant, o, &out->params, error))
+        return false;
+    out->params.seq = seq;
+    return true;
+}
+
+static bool parse_codecs(const json_t *o, struct message *out, struct message_error *error)
+{
+    const json_t *codecs = json_object_get(o, "codecs");
+    for (size_t i = 0; i < json_array_size(codecs); i++) {
+        const char *name = json_string_value(json_array_get(codecs, i));
+        int codec = name ? name_find(names_codec, name) : -1;
+        if (codec > 0) {
+            out->codec = (enum wire_codec)codec;
+            return true;
+        }
+    }
+    message_fail(error, "bad_field", "codecs: a list with 'jpeg' or 'png' in it expected");
+    return false;
+}
+
+static bool parse_hello(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
+{
+    const json_t *camera = json_object_get(o, "camera"), *params = json_object_get(o, "params");
+    if (!size_parse(o, out, error) || !parse_codecs(o, out, error))
+        return false;
+    out->has_camera = json_is_object(camera);
+    out->has_params = json_is_object(params);
+    if ((camera && !out->has_camera) || (params && !out->has_params)) {
+        message_fail(error, "bad_field", "camera, params: objects expected");
+        return false;
+    }
+    return (!out->has_camera || parse_camera(plant, camera, out, error)) && (!out->has_params || parse_params(plant, params, out, error));
+}
+
+static bool parse_resize(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
+{
+    (void)plant;
+    return size_parse(o, out, error);
+}
+
+static bool parse_ack(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
+{
+    (void)plant;
+    out->decode_ms = -1;
+    return need_seq(o, &out->seq, error) && may_number(o, "decode_ms", 0, 1e7, &out->decode_ms, NULL, error);
+}
+
+static bool parse_visible(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
+{
+    (void)plant;
+    const json_t *visible = json_object_get(o, "visible");
+    out->visible = json_is_true(visible);
+    if (json_is_boolean(visible))
+        return true;
+    message_fail(error, "bad_field", "visible: true or false expected");
+    return false;
+}
+
+static bool parse_ping(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
+{
+    (void)plant;
+    return need_number(o, "t", -1e300, 1e300, &out->t, error);
+}
+
+static const struct {
+    const char *name;
+    enum message_type type;
+    bool (*parse)(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
+} types[] = {
+    { "hello", MESSAGE_HELLO, parse_hello },    { "camera", MESSAGE_CAMERA, parse_camera },    { "params", MESSAGE_PARAMS, parse_params },
+    { "resize", MESSAGE_RESIZE, parse_resize }, { "ack", MESSAGE_ACK, parse_ack },             { "ping", MESSAGE_PING, parse_ping },
+    { "visible", MESSAGE_VISIBLE, parse_visible },
+};
+
+static bool parse_object(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
+{
+    const char *type = json_string_value(json_object_get(o, "type"));
+    char name[48];
+    if (!json_is_object(o)) {
+        message_fail(error, "not_object", "a JSON object with a 'type' expected");
+        return false;
+    }
+    if (!type) {
+        message_fail(error, "no_type", "the message has no 'type' that is a text");
+        return false;
+    }
+    for (size_t i = 0; i < sizeof(types) / sizeof(types[0]); i++) {
+        if (strcmp(types[i].name, type) != 0)
+            continue;
+        snprintf(error->about, sizeof(error->about), "%s", types[i].name);
+        out->type = types[i].type;
+        return types[i].parse(plant, o, out, error);
+    }
+    message_fail(error, "unknown_type", "type '%s' is unknown", quoted(type, name));
+    return false;
+}
+
+bool message_parse(const struct plant *plant, const char *text, size_t count, struct message *out, struct message_error *error)
+{
+    json_error_t cause;
+    *out = (struct message){ 0 };
+    *error = (struct message_error){ 0 };
+    if (count > WIRE_MAX_MESSAGE_BYTES) {
+        message_fail(error, "too_long", "%zu bytes; a message holds at most %u", count, WIRE_MAX_MESSAGE_BYTES);
+        return false;
+    }
+    json_t *o = json_loadb(text, count, JSON_DECODE_ANY, &cause);
+    if (!o) {
+        char why[48];
+        message_fail(error, "not_json", "at byte %d: %s", cause.position, quoted(cause.text, why));
+        return false;
+    }
+    bool good = parse_object(plant, o, out, error);
+    json_decref(o);
+    return good;
+}

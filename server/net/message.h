@@ -1,0 +1,62 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a client says: JSON text to a checked struct. The one place where input of clients is read and judged; pure. */
+#ifndef NET_MESSAGE_H
+#define NET_MESSAGE_H
+#include <jansson.h>
+
+#include "protocol/wire.h"
+#include "render/view.h"
+
+enum message_type { MESSAGE_HELLO, MESSAGE_CAMERA, MESSAGE_PARAMS, MESSAGE_RESIZE, MESSAGE_ACK, MESSAGE_VISIBLE, MESSAGE_PING };
+
+struct message_error {
+    const char *code; /* of PROTOCOL.md */
+    char text[240];
+    char about[24];   /* type of the message; "": unknown */
+};
+
+enum params_given { /* which fields of a params message were there */
+    GIVEN_GROUP = 1 << 0, GIVEN_INTERPOLATION = 1 << 1, GIVEN_DISTANCE = 1 << 2, GIVEN_FILL = 1 << 3, GIVEN_STRENGTH = 1 << 4,
+    GIVEN_DECAY = 1 << 5, GIVEN_POWER = 1 << 6, GIVEN_RADIUS = 1 << 7, GIVEN_REACH = 1 << 8, GIVEN_COLORMAP = 1 << 9,
+    GIVEN_RAMP = 1 << 10, GIVEN_RANGE = 1 << 11, GIVEN_LOOK = 1 << 12, GIVEN_LIGHT = 1 << 13, GIVEN_SELECTED = 1 << 14,
+};
+
+struct params_change {
+    uint32_t seq;
+    unsigned given;              /* enum params_given */
+    struct field_params field;   /* only what was given is set; so below */
+    int colormap;
+    double ramp_interval;
+    bool range_of_group;         /* range: null */
+    double range_min, range_max;
+    enum look look;
+    double light_dir[3];
+    int selected_asset;
+};
+
+struct message {
+    enum message_type type;
+    int width_px, height_px;     /* hello, resize */
+    enum wire_codec codec;       /* hello: the first of the client's that we have */
+    bool has_camera, has_params; /* hello */
+    struct camera camera;        /* camera, hello */
+    uint32_t seq;                /* camera (hello: the camera's), ack */
+    struct params_change params; /* params, hello */
+    bool visible;
+    double decode_ms;            /* ack; negative: not said */
+    double t;                    /* ping */
+};
+
+/* False: *error is what to answer. text need not end in 0. */
+bool message_parse(const struct plant *plant, const char *text, size_t count, struct message *out, struct message_error *error);
+void message_fail(struct message_error *error, const char *code, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
+
+/* Reads the fields of a params message from an object that may hold others. False: *error names the field. */
+bool params_parse(const struct plant *plant, const json_t *object, struct params_change *out, struct message_error *error);
+/* Applies a change to a view: all of it, or nothing and *error. A new group brings its own settings first. */
+bool params_apply(const struct plant *plant, const struct params_change *change, struct view *view, struct message_error *error);
+/* Reads the fields of a camera message, but for seq. */
+bool camera_parse(const json_t *object, struct camera *out, struct message_error *error);
+bool view_size_valid(double width_px, double height_px);
+
+#endif

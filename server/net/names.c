@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* How the choices of a view are called in messages. */
+#include "net/names.h"
+
+#include <stddef.h>
+#include <string.h>
+
+#include "render/view.h"
+
+const struct name names_interpolation[] = { { "shepard", INTERPOLATION_SHEPARD }, { "paper", INTERPOLATION_PAPER }, { NULL, 0 } };
+const struct name names_distance[] = { { "geodesic", DISTANCE_GEODESIC }, { "euclidean", DISTANCE_EUCLIDEAN }, { NULL, 0 } };
+const struct name names_fill[] = { { "none", FILL_NONE }, { "neighbours", FILL_NEIGHBOURS }, { NULL, 0 } };
+const struct name names_look[] = { { "default", LOOK_DEFAULT }, { "glossy", LOOK_GLOSSY }, { "flat", LOOK_FLAT }, { NULL, 0 } };
+const struct name names_codec[] = { { "jpeg", WIRE_CODEC_JPEG }, { "png", WIRE_CODEC_PNG }, { NULL, 0 } };
+
+int name_find(const struct name *names, const char *text)
+{
+    for (; names->text; names++)
+        if (!strcmp(names->text, text))
+            return names->value;
+    return -1;
+}
+
+const char *name_of(const struct name *names, int value)
+{
+    for (; names->text; names++)
+        if (names->value == value)
+            return names->text;
+    return NULL;
+}

@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* How the choices of a view are called in messages (PROTOCOL.md). */
+#ifndef NET_NAMES_H
+#define NET_NAMES_H
+#include "protocol/wire.h"
+
+struct name {
+    const char *text;
+    int value;
+};
+
+extern const struct name names_interpolation[], names_distance[], names_fill[], names_look[], names_codec[]; /* each ends with NULL */
+
+/* The value of a name, or -1. */
+int name_find(const struct name *names, const char *text);
+const char *name_of(const struct name *names, int value);
+
+#endif

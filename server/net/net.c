@@ -1,0 +1,244 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The loop: its context, its tick, its end. */
+#include "net/net.h"
+
+#include <arpa/inet.h>
+#include <errno.h>
+#include <stdatomic.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "net/hub.h"
+
+static const int64_t TICK_NS = 100 * NS_PER_MS;
+static const int64_t GOODBYE_NS = 500 * NS_PER_MS; /* for the close frames to leave */
+enum { MAX_FILES = 8192 };
+
+struct net {
+    struct hub hub;
+    struct lws_vhost *vhost;
+    lws_sorted_usec_list_t tick;
+    _Atomic bool stopping;
+};
+
+static const struct lws_protocols protocols[] = {
+    { .name = "http", .callback = http_callback, .per_session_data_size = sizeof(void *) },
+    { .name = WIRE_SUBPROTOCOL, .callback = stream_callback, .per_session_data_size = sizeof(void *), .rx_buffer_size = 4096 },
+    { 0 },
+};
+
+static const lws_retry_bo_t idle_policy = { .secs_since_valid_ping = 20, .secs_since_valid_hangup = 40 };
+
+/* lws has one place for its log in a process: ours has one loop. */
+static struct log *_Atomic lws_log_to;
+
+static void lws_log_line(int level, const char *line)
+{
+    struct log *log = atomic_load(&lws_log_to);
+    if (log)
+        log_at(log, level == LLL_ERR ? LOG_WARN : LOG_DEBUG, "lws: %.*s", (int)strcspn(line, "\n"), line);
+}
+
+bool hub_write(struct hub *hub, struct lws *wsi, const void *bytes, size_t count, enum lws_write_protocol how)
+{
+    memcpy(hub->out + LWS_PRE, bytes, count);
+    return lws_write(wsi, hub->out + LWS_PRE, count, how) >= (int)count;
+}
+
+bool hub_peer_is_local(struct lws *wsi)
+{
+    char peer[64] = "";
+    lws_get_peer_simple(wsi, peer, sizeof(peer));
+    return !strncmp(peer, "127.", 4) || !strcmp(peer, "::1") || !strncmp(peer, "::ffff:127.", 11);
+}
+
+/* --- what happens by itself ---------------------------------------------------------------------------------------------- */
+
+static bool take_snapshot(struct hub *hub)
+{
+    bool changed = false;
+    store_snapshot(hub->params.store, clock_mono_ns(), clock_utc_ns(), hub->snapshot);
+    for (size_t i = 0; i < hub->snapshot->count; i++) {
+        changed |= hub->changes[i] != hub->snapshot->readings[i].changes;
+        hub->changes[i] = hub->snapshot->readings[i].changes;
+    }
+    return changed;
+}
+
+static bool look_at_links(struct hub *hub)
+{
+    bool changed = false, any = false;
+    for (size_t i = 0; i < hub->world.plant->source_count; i++) {
+        bool up = store_link_is_up(hub->params.store, (int)i);
+        changed |= hub->links_up[i] != up;
+        hub->links_up[i] = up;
+        any |= up;
+    }
+    hub->world.live = any;
+    return changed;
+}
+
+static void on_tick(lws_sorted_usec_list_t *sul)
+{
+    struct net *net = lws_container_of(sul, struct net, tick);
+    bool data_changed = take_snapshot(&net->hub), links_changed = look_at_links(&net->hub);
+    if (data_changed)
+        painter_new_data(net->hub.params.painter);
+    streams_on_tick(&net->hub, data_changed, links_changed);
+    lws_sul_schedule(net->hub.context, 0, sul, on_tick, TICK_NS / 1000);
+}
+
+static void collect(struct hub *hub)
+{
+    for (struct picture *picture = painter_collect(hub->params.painter), *next; picture; picture = next) {
+        next = picture->next;
+        picture->next = NULL;
+        if (stream_owns(hub, picture->client))
+            stream_on_picture(hub, picture);
+        else
+            http_on_picture(hub, picture);
+    }
+}
+
+/* --- life ------------------------------------------------------------------------------------------------------------------ */
+
+static void raise_file_limit(struct log *log)
+{
+    struct rlimit limit;
+    if (getrlimit(RLIMIT_NOFILE, &limit) != 0)
+        return;
+    rlim_t wanted = limit.rlim_max == RLIM_INFINITY || limit.rlim_max > MAX_FILES ? MAX_FILES : limit.rlim_max;
+    if (limit.rlim_cur == wanted)
+        return;
+    limit.rlim_cur = wanted;
+    if (setrlimit(RLIMIT_NOFILE, &limit) != 0)
+        log_warn(log, "files: the limit stays as it is: %s", strerror(errno));
+}
+
+/* lws does not say why it cannot listen; this does. */
+static bool port_free(struct log *log, const char *address, int port)
+{
+    struct sockaddr_in6 six = { .sin6_family = AF_INET6, .sin6_port = htons((uint16_t)port) };
+    struct sockaddr_in four = { .sin_family = AF_INET, .sin_port = htons((uint16_t)port) };
+    bool is_six = strchr(address, ':') != NULL;
+    if (inet_pton(is_six ? AF_INET6 : AF_INET, address, is_six ? (void *)&six.sin6_addr : (void *)&four.sin_addr) != 1) {
+        log_err(log, "listen %s: not an IP address", address);
+        return false;
+    }
+    int fd = socket(is_six ? AF_INET6 : AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0), on = 1;
+    bool good = fd >= 0 && setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &on, sizeof(on)) == 0 &&
+                bind(fd, is_six ? (struct sockaddr *)&six : (struct sockaddr *)&four, is_six ? sizeof(six) : sizeof(four)) == 0 &&
+                listen(fd, 1) == 0;
+    if (!good)
+        log_err(log, "listen %s port %d: %s", address, port, strerror(errno));
+    if (fd >= 0)
+        close(fd);
+    return good;
+}
+
+static void add_counters(struct hub *hub)
+{
+    struct counters *c = hub->params.counters;
+    hub->counters.sessions = counters_add(c, "plantcast_sessions", "gauge", "Clients that are connected.");
+    hub->counters.sessions_all = counters_add(c, "plantcast_sessions_total", "counter", "Clients that ever were.");
+    hub->counters.refused = counters_add(c, "plantcast_sessions_refused_total", "counter", "Clients that were not let in.");
+    hub->counters.frames = counters_add(c, "plantcast_frames_sent_total", "counter", "Frames sent.");
+    hub->counters.frame_bytes = counters_add(c, "plantcast_frame_bytes_total", "counter", "Bytes of frames sent.");
+    hub->counters.dropped = counters_add(c, "plantcast_frames_dropped_total", "counter", "Frames made and overtaken before they were sent.");
+    hub->counters.messages = counters_add(c, "plantcast_messages_total", "counter", "Messages of clients.");
+    hub->counters.errors = counters_add(c, "plantcast_message_errors_total", "counter", "Messages of clients answered with an error.");
+    hub->counters.requests = counters_add(c, "plantcast_http_requests_total", "counter", "HTTP requests.");
+}
+
+static bool open_context(struct net *net)
+{
+    struct hub *hub = &net->hub;
+    struct lws_context_creation_info info = {
+        .port = hub->params.port, .iface = hub->params.address, .protocols = protocols, .user = hub, .gid = -1, .uid = -1,
+        .options = LWS_SERVER_OPTION_FAIL_UPON_UNABLE_TO_BIND | LWS_SERVER_OPTION_DISABLE_OS_CA_CERTS |
+                   (strchr(hub->params.address, ':') ? 0 : LWS_SERVER_OPTION_DISABLE_IPV6),
+        .timeout_secs = 10, .keepalive_timeout = 30, .pt_serv_buf_size = 16 * 1024, .fd_limit_per_thread = 0,
+        .retry_and_idle_policy = &idle_policy, .vhost_name = "plantcast",
+    };
+    lws_set_log_level(LLL_ERR | LLL_WARN, lws_log_line);
+    atomic_store(&lws_log_to, hub->params.log);
+    if (!port_free(hub->params.log, hub->params.address, hub->params.port))
+        return false;
+    hub->context = lws_create_context(&info);
+    if (!hub->context) {
+        log_err(hub->params.log, "listen %s port %d: libwebsockets could not start", hub->params.address, hub->params.port);
+        return false;
+    }
+    net->vhost = lws_get_vhost_by_name(hub->context, "plantcast");
+    return true;
+}
+
+struct net *net_create(const struct net_params *params)
+{
+    struct net *net = mem_new(sizeof(*net));
+    struct hub *hub = &net->hub;
+    const struct plant *plant = params->scene->plant;
+    hub->params = *params;
+    hub->snapshot = snapshot_create(plant->tag_count);
+    hub->changes = mem_array(plant->tag_count, sizeof(*hub->changes));
+    hub->links_up = mem_array(plant->source_count, sizeof(*hub->links_up));
+    hub->next_client = 1;
+    hub->world = (struct session_world){
+        .plant = plant, .scene = params->scene, .snapshot = hub->snapshot, .links_up = hub->links_up, .version = params->version,
+    };
+    add_counters(hub);
+    take_snapshot(hub);
+    look_at_links(hub);
+    raise_file_limit(params->log);
+    if (!open_context(net))
+        net_destroy(&net);
+    return net;
+}
+
+void net_destroy(struct net **net_ptr)
+{
+    struct net *net = *net_ptr;
+    if (!net)
+        return;
+    lws_sul_cancel(&net->tick);
+    if (net->hub.context)
+        lws_context_destroy(net->hub.context);
+    atomic_store(&lws_log_to, NULL);
+    snapshot_destroy(&net->hub.snapshot);
+    mem_free(net->hub.changes);
+    mem_free(net->hub.links_up);
+    mem_free(net);
+    *net_ptr = NULL;
+}
+
+int net_port(const struct net *net)
+{
+    return lws_get_vhost_listen_port(net->vhost);
+}
+
+void net_run(struct net *net)
+{
+    struct hub *hub = &net->hub;
+    on_tick(&net->tick);
+    while (!atomic_load(&net->stopping) && lws_service(hub->context, 0) >= 0)
+        collect(hub);
+    hub->closing = true;
+    streams_close(hub);
+    for (int64_t end_ns = clock_mono_ns() + GOODBYE_NS; hub->stream_count > 0 && clock_mono_ns() < end_ns;)
+        lws_service(hub->context, 0);
+}
+
+void net_wake(struct net *net)
+{
+    lws_cancel_service(net->hub.context);
+}
+
+void net_stop(struct net *net)
+{
+    atomic_store(&net->stopping, true);
+    lws_cancel_service(net->hub.context);
+}

@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The loop: HTTP and WebSocket on one port, sessions, timers. Thread: the one that calls net_run; net_wake and net_stop from any. */
+#ifndef NET_NET_H
+#define NET_NET_H
+#include <stdbool.h>
+
+#include "base/counters.h"
+#include "base/log.h"
+#include "net/painter.h"
+
+struct net;
+struct net_params {
+    struct log *log;
+    const struct scene *scene;
+    struct store *store;
+    struct painter *painter;
+    struct counters *counters;
+    const char *address;     /* numeric */
+    int port;                /* 0: any that is free */
+    bool open_viewers;       /* peers beyond loopback get pictures, and nothing else */
+    const char *web_folder;  /* NULL: no client is served */
+    const char *version;
+};
+
+/* Binds the port. NULL on failure, logged. All in params must outlive it. */
+struct net *net_create(const struct net_params *params);
+void net_destroy(struct net **net); /* &NULL is fine; leaves NULL */
+int net_port(const struct net *net);
+/* Serves until net_stop, then says good-bye to the clients. */
+void net_run(struct net *net);
+void net_wake(struct net *net); /* pictures are there */
+void net_stop(struct net *net); /* safe in a signal handler */
+
+#endif

@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The render thread: takes wishes, draws the one that is due first, has it encoded by the workers and hands pictures back.
+   One wish per client, newest wins. Thread: any, unless said otherwise. */
+#ifndef NET_PAINTER_H
+#define NET_PAINTER_H
+#include "base/counters.h"
+#include "gpu/gl.h"
+#include "net/picture.h"
+#include "value/store.h"
+
+struct painter;
+struct painter_params {
+    struct log *log;
+    enum gl_kind gl;
+    const struct scene *scene;
+    struct store *store;
+    struct workers *workers;
+    struct counters *counters;
+    void (*notify)(void *arg); /* pictures are there to be collected; called on any thread */
+    void *notify_arg;
+};
+
+/* Makes the thread, GL and the renderer, and waits for them. NULL on failure, logged. All in params must outlive it. */
+struct painter *painter_create(const struct painter_params *params);
+void painter_destroy(struct painter **painter); /* &NULL is fine; leaves NULL; ends the thread and what it gave to the workers */
+const char *painter_gl_text(const struct painter *painter); /* what draws, for the log */
+
+enum painter_answer { PAINTER_ADDED, PAINTER_REPLACED, PAINTER_REFUSED };
+/* Each wish that was added brings one picture, unless the client is forgotten. */
+enum painter_answer painter_ask(struct painter *painter, uint64_t client, const struct wish *wish);
+void painter_forget(struct painter *painter, uint64_t client);
+void painter_new_data(struct painter *painter); /* readings changed: look again before the next picture */
+/* All pictures made so far, oldest first; the caller owns them. NULL: none. */
+struct picture *painter_collect(struct painter *painter);
+
+#endif

@@ -1,0 +1,129 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The query of /snapshot.png, turned into the JSON of a message and then judged as one. */
+#include "net/query.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "net/fields.h"
+
+enum kind { NUMBER, STRING, NUMBERS };
+
+static const struct {
+    const char *name;
+    enum kind kind;
+} known[] = {
+    { "width", NUMBER },  { "height", NUMBER },   { "camera", NUMBERS }, { "group", STRING },         { "interpolation", STRING },
+    { "distance", STRING }, { "fill", STRING },   { "strength", NUMBER }, { "decay", NUMBER },        { "power", NUMBER },
+    { "radius_m", NUMBER }, { "reach_m", NUMBER }, { "colormap", STRING }, { "ramp_interval", NUMBER }, { "range", NUMBERS },
+    { "look", STRING },   { "light", NUMBERS },   { "selected", STRING },
+};
+
+/* NULL: not a finite number. */
+static json_t *number(const char *text, const char **end)
+{
+    char *stop;
+    double value = strtod(text, &stop);
+    *end = stop;
+    return stop == text ? NULL : json_real(value);
+}
+
+static json_t *numbers(const char *text)
+{
+    json_t *array = json_array(), *item;
+    const char *end = "";
+    while ((item = number(text, &end))) {
+        json_array_append_new(array, item);
+        if (*end != ',')
+            break;
+        text = end + 1;
+    }
+    if (item && *end == 0)
+        return array;
+    json_decref(array);
+    return NULL;
+}
+
+static json_t *value_of(enum kind kind, const char *text)
+{
+    const char *end = "";
+    json_t *value;
+    switch (kind) {
+    case STRING:
+        return json_string(text);
+    case NUMBERS:
+        return numbers(text);
+    case NUMBER:
+        value = number(text, &end);
+        if (value && *end == 0)
+            return value;
+        json_decref(value);
+    }
+    return NULL;
+}
+
+static bool add(json_t *o, const char *arg, struct message_error *error)
+{
+    size_t n = strcspn(arg, "=");
+    char name[48];
+    for (size_t i = 0; i < sizeof(known) / sizeof(known[0]); i++) {
+        if (strlen(known[i].name) != n || strncmp(known[i].name, arg, n) != 0)
+            continue;
+        json_t *value = arg[n] == '=' ? value_of(known[i].kind, arg + n + 1) : NULL;
+        if (value)
+            return json_object_set_new(o, known[i].name, value) == 0;
+        message_fail(error, "bad_field", "%s: %s expected", known[i].name,
+                     known[i].kind == STRING ? "a text" : known[i].kind == NUMBER ? "a number" : "numbers with commas");
+        return false;
+    }
+    message_fail(error, "bad_field", "'%s' is unknown", quoted(arg, name));
+    return false;
+}
+
+static bool apply_camera(const json_t *o, struct view *view, struct message_error *error)
+{
+    const json_t *list = json_object_get(o, "camera");
+    size_t count = json_array_size(list);
+    if (!list)
+        return true;
+    if (count != 6 && count != 7) {
+        message_fail(error, "bad_field", "camera: ex,ey,ez,tx,ty,tz or ex,ey,ez,tx,ty,tz,fov expected");
+        return false;
+    }
+    double n[7] = { 0 };
+    for (size_t i = 0; i < count; i++)
+        n[i] = json_number_value(json_array_get(list, i));
+    json_t *camera = json_pack("{s:[f,f,f],s:[f,f,f]}", "eye", n[0], n[1], n[2], "target", n[3], n[4], n[5]);
+    if (count == 7)
+        json_object_set_new(camera, "fov", json_real(n[6]));
+    bool good = camera_parse(camera, &view->camera, error);
+    json_decref(camera);
+    return good;
+}
+
+static bool apply(const struct scene *scene, const json_t *o, struct view *view, struct message_error *error)
+{
+    double w = 1280, h = 720;
+    struct params_change change;
+    if (!may_number(o, "width", 16, VIEW_MAX_SIDE_PX, &w, NULL, error) || !may_number(o, "height", 16, VIEW_MAX_SIDE_PX, &h, NULL, error))
+        return false;
+    if (!view_size_valid(w, h)) {
+        message_fail(error, "bad_field", "width, height: whole numbers of pixels expected, at most %d together", VIEW_MAX_PIXELS);
+        return false;
+    }
+    view_default(scene, (int)w, (int)h, view);
+    view->tier = TIER_STILL;
+    return apply_camera(o, view, error) && params_parse(scene->plant, o, &change, error) &&
+           params_apply(scene->plant, &change, view, error);
+}
+
+bool query_parse(const struct scene *scene, const char *const *args, size_t count, struct view *view, struct message_error *error)
+{
+    json_t *o = json_object();
+    bool good = true;
+    for (size_t i = 0; i < count && good; i++)
+        good = add(o, args[i], error);
+    good = good && apply(scene, o, view, error);
+    json_decref(o);
+    return good;
+}

@@ -1,0 +1,263 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* JSON that the server sends. */
+#include "net/reply.h"
+
+#include <libwebsockets.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "field/colormap.h"
+#include "net/names.h"
+#include "value/quality.h"
+
+enum { DIGITS = 9, EXACT_DIGITS = 17 };
+
+/* Takes the object. */
+static char *print(json_t *object, int digits)
+{
+    char *dumped = json_dumps(object, JSON_COMPACT | JSON_REAL_PRECISION(digits));
+    char *text = mem_strdup(dumped ? dumped : "{}");
+    free(dumped);
+    json_decref(object);
+    return text;
+}
+
+static json_t *number(double value)
+{
+    return isfinite(value) ? json_real(value) : json_null();
+}
+
+static json_t *string(const char *text)
+{
+    json_t *value = text ? json_string(text) : json_null();
+    return value ? value : json_string("(not UTF-8)");
+}
+
+static json_t *vector(const double v[3])
+{
+    return json_pack("[o,o,o]", number(v[0]), number(v[1]), number(v[2]));
+}
+
+static json_t *colour(const uint8_t rgb[3])
+{
+    return json_pack("[i,i,i]", rgb[0], rgb[1], rgb[2]);
+}
+
+static json_t *box(const double min_m[3], const double max_m[3])
+{
+    return json_pack("{s:o,s:o}", "min", vector(min_m), "max", vector(max_m));
+}
+
+static json_int_t us(int64_t ns)
+{
+    return ns / 1000;
+}
+
+static void set_params(json_t *object, const struct plant *plant, const struct view *view)
+{
+    const struct field_params *field = &view->field;
+    json_object_set_new(object, "group", string(plant->groups[field->group].id));
+    json_object_set_new(object, "interpolation", string(name_of(names_interpolation, field->interpolation)));
+    json_object_set_new(object, "distance", string(name_of(names_distance, field->distance)));
+    json_object_set_new(object, "fill", string(name_of(names_fill, field->fill)));
+    json_object_set_new(object, "strength", number(field->strength));
+    json_object_set_new(object, "decay", number(field->decay));
+    json_object_set_new(object, "power", number(field->power));
+    json_object_set_new(object, "radius_m", number(field->radius_m));
+    json_object_set_new(object, "reach_m", number(field->reach_m));
+    json_object_set_new(object, "colormap", string(colormap_at((size_t)view->colormap)->name));
+    json_object_set_new(object, "ramp_interval", number(view->ramp_interval));
+    json_object_set_new(object, "range", json_pack("[o,o]", number(view->range_min), number(view->range_max)));
+    json_object_set_new(object, "look", string(name_of(names_look, view->look)));
+    json_object_set_new(object, "light", vector(view->light_dir));
+    json_object_set_new(object, "selected", view->selected_asset < 0 ? json_null() : string(plant->assets[view->selected_asset].id));
+}
+
+static json_t *limits(const double values[LIMIT_COUNT])
+{
+    return json_pack("{s:o,s:o,s:o,s:o}", "LL", number(values[LIMIT_LL]), "L", number(values[LIMIT_L]), "H", number(values[LIMIT_H]), "HH",
+                     number(values[LIMIT_HH]));
+}
+
+static json_t *groups(const struct plant *plant)
+{
+    json_t *list = json_array();
+    for (size_t i = 0; i < plant->group_count; i++) {
+        const struct plant_group *g = &plant->groups[i];
+        json_array_append_new(list, json_pack("{s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o}", "id", string(g->id), "quantity",
+                                              string(g->quantity), "unit", string(g->unit), "min", number(g->min), "max", number(g->max),
+                                              "limits", limits(g->limits), "interpolation",
+                                              string(name_of(names_interpolation, g->interpolation)), "distance",
+                                              string(name_of(names_distance, g->distance)), "fill", string(name_of(names_fill, g->fill)),
+                                              "power", number(g->power), "radius_m", number(g->radius_m), "reach_m", number(g->reach_m)));
+    }
+    return list;
+}
+
+static json_t *colormaps(void)
+{
+    json_t *list = json_array();
+    for (size_t i = 0; i < colormap_count(); i++) {
+        const struct colormap *map = colormap_at(i);
+        char base64[sizeof(map->rgb) / 3 * 4 + 1];
+        lws_b64_encode_string((const char *)map->rgb, sizeof(map->rgb), base64, sizeof(base64));
+        json_array_append_new(list, json_pack("{s:o,s:o,s:o,s:o}", "name", string(map->name), "rgb", string(base64), "below",
+                                              colour(map->below), "above", colour(map->above)));
+    }
+    return list;
+}
+
+static json_t *assets(const struct scene *scene)
+{
+    json_t *list = json_array();
+    for (size_t i = 0; i < scene->asset_count; i++) {
+        const struct scene_asset *a = &scene->assets[i];
+        json_array_append_new(list, json_pack("{s:o,s:o,s:o,s:o}", "id", string(a->plant->id), "tag", string(a->plant->tag), "description",
+                                              string(a->plant->description ? a->plant->description : ""), "bounds",
+                                              box(a->bounds_min_m, a->bounds_max_m)));
+    }
+    return list;
+}
+
+static json_t *tag(const struct plant *plant, const struct plant_tag *t)
+{
+    return json_pack("{s:o,s:o,s:o,s:o,s:o}", "name", string(t->name), "description", string(t->description ? t->description : ""), "unit",
+                     string(t->unit ? t->unit : ""), "group", t->group < 0 ? json_null() : string(plant->groups[t->group].id), "asset",
+                     t->asset < 0 ? json_null() : string(plant->assets[t->asset].id));
+}
+
+static json_t *tags(const struct session_world *world)
+{
+    const struct plant *plant = world->plant;
+    json_t *list = json_array();
+    for (size_t i = 0; i < plant->tag_count; i++) {
+        json_t *object = tag(plant, &plant->tags[i]);
+        json_object_set_new(object, "position", json_null());
+        json_array_append_new(list, object);
+    }
+    for (size_t a = 0; a < world->scene->asset_count; a++)
+        for (size_t s = 0; s < world->scene->assets[a].sensor_count; s++) {
+            const struct scene_sensor *sensor = &world->scene->assets[a].sensors[s];
+            json_object_set_new(json_array_get(list, (size_t)sensor->tag), "position", vector(sensor->surface_m));
+        }
+    return list;
+}
+
+static json_t *plant_object(const struct session_world *world, const struct camera *home)
+{
+    json_t *object = json_pack("{s:o,s:o,s:o}", "name", string(world->plant->name), "time_zone", string(world->plant->time_zone), "bounds",
+                               box(world->scene->bounds_min_m, world->scene->bounds_max_m));
+    json_object_set_new(object, "home", json_pack("{s:o,s:o,s:o,s:o}", "eye", vector(home->eye_m), "target", vector(home->target_m), "up",
+                                                  vector(home->up), "fov", number(home->fov_deg)));
+    return object;
+}
+
+static void set_plant(json_t *object, const struct session_world *world, int width_px, int height_px)
+{
+    struct view home;
+    view_default(world->scene, width_px, height_px, &home);
+    json_object_set_new(object, "server", string(world->version));
+    json_object_set_new(object, "plant", plant_object(world, &home.camera));
+    json_object_set_new(object, "groups", groups(world->plant));
+    json_object_set_new(object, "colormaps", colormaps());
+    json_object_set_new(object, "assets", assets(world->scene));
+    json_object_set_new(object, "tags", tags(world));
+}
+
+char *reply_welcome_text(const struct session_world *world, uint64_t session, enum wire_codec codec, const struct view *view,
+                         int64_t now_utc_ns)
+{
+    json_t *object = json_pack("{s:s,s:I,s:o,s:I}", "type", "welcome", "session", (json_int_t)session, "codec",
+                               string(name_of(names_codec, (int)codec)), "time_us", us(now_utc_ns));
+    json_t *params = json_object();
+    set_plant(object, world, view->width_px, view->height_px);
+    set_params(params, world->plant, view);
+    json_object_set_new(object, "view", params);
+    return print(object, DIGITS);
+}
+
+char *reply_params_text(const struct plant *plant, const struct view *view, uint32_t seq)
+{
+    json_t *object = json_pack("{s:s,s:I}", "type", "params", "seq", (json_int_t)seq);
+    set_params(object, plant, view);
+    return print(object, DIGITS);
+}
+
+static json_t *age_ms(const struct reading *reading)
+{
+    return reading->age_ns == INT64_MAX ? json_null() : json_integer(reading->age_ns / 1000000);
+}
+
+static json_t *value_of(const struct reading *reading)
+{
+    return quality_is_bad(reading->quality) ? json_null() : number(reading->value);
+}
+
+char *reply_tags_text(const struct snapshot *snapshot, uint32_t *sent, bool all)
+{
+    json_t *values = json_array();
+    for (size_t i = 0; i < snapshot->count; i++) {
+        const struct reading *r = &snapshot->readings[i];
+        if (!all && sent[i] == r->changes)
+            continue;
+        sent[i] = r->changes;
+        json_array_append_new(values, json_pack("[I,o,o,o,o]", (json_int_t)i, value_of(r), string(quality_class(r->quality)),
+                                                string(quality_name(r->quality)), age_ms(r)));
+    }
+    return print(json_pack("{s:s,s:I,s:o}", "type", "tags", "time_us", us(snapshot->taken_utc_ns), "values", values), DIGITS);
+}
+
+char *reply_markers_text(const struct frame *frame, uint32_t seq)
+{
+    json_t *markers = json_array();
+    for (size_t i = 0; i < frame->marker_count; i++) {
+        const struct frame_marker *m = &frame->markers[i];
+        if (isfinite(m->x_px) && isfinite(m->y_px))
+            json_array_append_new(markers, json_pack("[i,f,f,i]", m->tag, (double)m->x_px, (double)m->y_px, m->occluded ? 1 : 0));
+    }
+    return print(json_pack("{s:s,s:I,s:o}", "type", "markers", "seq", (json_int_t)seq, "markers", markers), DIGITS);
+}
+
+char *reply_status_text(const struct session_world *world, int64_t now_utc_ns)
+{
+    json_t *links = json_array();
+    for (size_t i = 0; i < world->plant->source_count; i++)
+        json_array_append_new(links, json_pack("{s:o,s:b}", "source", string(world->plant->sources[i].id), "up", world->links_up[i]));
+    return print(json_pack("{s:s,s:o,s:I,s:b}", "type", "status", "links", links, "time_us", us(now_utc_ns), "live", world->live), DIGITS);
+}
+
+char *reply_pong_text(double t, int64_t now_utc_ns)
+{
+    return print(json_pack("{s:s,s:f,s:I}", "type", "pong", "t", t, "time_us", us(now_utc_ns)), EXACT_DIGITS);
+}
+
+char *reply_error_text(const struct message_error *error)
+{
+    return print(json_pack("{s:s,s:s,s:o,s:o}", "type", "error", "code", error->code, "text", string(error->text), "about",
+                           error->about[0] ? string(error->about) : json_null()), DIGITS);
+}
+
+char *reply_api_plant_text(const struct session_world *world)
+{
+    json_t *object = json_object();
+    set_plant(object, world, 1920, 1080);
+    return print(object, DIGITS);
+}
+
+char *reply_api_tags_text(const struct session_world *world)
+{
+    const struct plant *plant = world->plant;
+    json_t *list = json_array();
+    for (size_t i = 0; i < plant->tag_count; i++) {
+        const struct reading *r = &world->snapshot->readings[i];
+        json_t *object = tag(plant, &plant->tags[i]);
+        json_object_set_new(object, "value", value_of(r));
+        json_object_set_new(object, "quality", string(quality_class(r->quality)));
+        json_object_set_new(object, "quality_name", string(quality_name(r->quality)));
+        json_object_set_new(object, "age_ms", age_ms(r));
+        json_array_append_new(list, object);
+    }
+    return print(json_pack("{s:I,s:o}", "time_us", us(world->snapshot->taken_utc_ns), "tags", list), DIGITS);
+}

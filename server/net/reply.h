@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the server says in text: JSON messages of PROTOCOL.md and the bodies of /api. Pure. Every result is freed with mem_free. */
+#ifndef NET_REPLY_H
+#define NET_REPLY_H
+#include "net/message.h"
+#include "net/session.h"
+
+char *reply_welcome_text(const struct session_world *world, uint64_t session, enum wire_codec codec, const struct view *view,
+                         int64_t now_utc_ns);
+char *reply_params_text(const struct plant *plant, const struct view *view, uint32_t seq);
+/* All values, or those that differ from `sent` (reading.changes by tag index), which is brought up to date. */
+char *reply_tags_text(const struct snapshot *snapshot, uint32_t *sent, bool all);
+char *reply_markers_text(const struct frame *frame, uint32_t seq);
+char *reply_status_text(const struct session_world *world, int64_t now_utc_ns);
+char *reply_pong_text(double t, int64_t now_utc_ns);
+char *reply_error_text(const struct message_error *error);
+char *reply_api_plant_text(const struct session_world *world);
+char *reply_api_tags_text(const struct session_world *world);
+
+#endif

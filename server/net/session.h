@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One client: its view, what it is owed, what it may have. Pure: no socket, no clock, no GL; time is handed in. Thread: the loop. */
+#ifndef NET_SESSION_H
+#define NET_SESSION_H
+#include "base/text.h"
+#include "net/message.h"
+#include "net/pacer.h"
+#include "net/picture.h"
+#include "scene/scene.h"
+#include "value/snapshot.h"
+
+enum { SESSION_MAX_REPLIES = 64, SESSION_MAX_MESSAGES_PER_S = 1000 };
+#define SESSION_MAX_INPUT_BYTES (1024 * 1024) /* beyond that the connection is closed */
+
+/* What all sessions look at. Filled by the loop, never changed by a session. */
+struct session_world {
+    const struct plant *plant;
+    const struct scene *scene;
+    const struct snapshot *snapshot;
+    const bool *links_up;   /* by source index */
+    bool live;              /* values are coming in */
+    const char *version;
+};
+
+struct session {
+    uint64_t id;
+    const struct session_world *world;
+    bool hello, hidden;
+    enum wire_codec codec;
+    struct view view;
+
+    bool input_pending, data_pending, always_pending; /* why a picture is wanted */
+    int64_t input_ns, data_ns; /* the newest input; the oldest change of a reading that is not yet asked for */
+    bool refined;           /* the view as it is has been asked for in the still tier */
+    struct pacer pacer;
+    uint64_t newest_number; /* of the pictures that came */
+    struct picture *ready;  /* next to be sent */
+
+    bool owes_welcome, owes_params, owes_tags_all, owes_tags, owes_status;
+    uint32_t params_seq;    /* to be answered */
+    int64_t tags_ns, tags_all_ns, status_ns; /* last sent */
+    uint32_t *tag_changes;  /* reading.changes as last sent, by tag */
+    char *replies[SESSION_MAX_REPLIES]; /* pongs and errors, oldest first */
+    int reply_count;
+
+    int64_t rate_begin_ns;
+    int rate_count;
+    bool too_fast;          /* read nothing more until session_tick */
+    int64_t messages, errors, dropped; /* for the log and the counters */
+};
+
+struct session *session_create(const struct session_world *world, uint64_t id, int64_t now_ns);
+void session_destroy(struct session **session); /* &NULL is fine; leaves NULL */
+
+/* One text message. Bad ones are answered with an error and change nothing. */
+void session_on_message(struct session *session, const char *text, size_t count, int64_t now_ns, int64_t now_utc_ns);
+void session_on_oversize(struct session *session, size_t count, int64_t now_ns); /* a message too long to be kept */
+void session_on_tick(struct session *session, int64_t now_ns); /* every 100 ms or so */
+void session_on_data(struct session *session, int64_t now_ns); /* a reading changed */
+/* Takes the picture over. */
+void session_on_picture(struct session *session, struct picture *picture);
+
+/* True: *wish is what to ask the render thread for, now. If it takes the wish, session_asked says whether as one more, or in place
+   of one that was not begun. */
+bool session_wish(const struct session *session, int64_t now_ns, struct wish *wish);
+void session_asked(struct session *session, const struct wish *wish, bool replaced);
+
+/* The next text message to send, if any is due: into `out`. Markers of a picture are session_markers. */
+bool session_next_text(struct session *session, int64_t now_ns, int64_t now_utc_ns, struct text *out);
+bool session_has_text(const struct session *session, int64_t now_ns);
+/* The next picture, if one waits: the caller owns it, *seq is its number. */
+struct picture *session_next_picture(struct session *session, int64_t now_ns, uint32_t *seq);
+
+#endif
