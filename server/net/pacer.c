@@ -41,7 +41,7 @@ enum pacer_ack pacer_acked(struct pacer *pacer, uint32_t seq, int64_t now_ns)
         memmove(pacer->flight, pacer->flight + i + 1, (size_t)pacer->flight_count * sizeof(pacer->flight[0]));
         return PACER_ACK_NEW;
     }
-    return (int32_t)(pacer->last_seq - seq) >= 0 && seq > 0 && pacer->last_seq > 0 ? PACER_ACK_OLD : PACER_ACK_NEVER_SENT;
+    return seq > 0 && seq <= pacer->last_seq ? PACER_ACK_OLD : PACER_ACK_NEVER_SENT;
 }
 
 size_t pacer_bytes_in_flight(const struct pacer *pacer)

@@ -72,15 +72,6 @@ struct encode_job {
 
 /* --- pictures on their way back ------------------------------------------------------------------------------------------ */
 
-void picture_destroy(struct picture **picture)
-{
-    if (!*picture)
-        return;
-    packet_unref(&(*picture)->packet);
-    mem_free(*picture);
-    *picture = NULL;
-}
-
 static struct picture *picture_create(const struct order *order, struct packet *packet, bool failed)
 {
     struct picture *picture = mem_new(sizeof(*picture));

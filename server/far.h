@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Sensors that lie too far from the surface of their asset to be believed. */
+#ifndef SERVER_FAR_H
+#define SERVER_FAR_H
+#include "scene/scene.h"
+
+struct far_sensor {
+    const struct scene_asset *asset;
+    const struct scene_sensor *sensor;
+    double limit_m; /* 0.25 m, or 5 % of the asset's size, whichever is less */
+};
+
+/* Sorted, farthest first. Free with mem_free. */
+struct far_sensor *far_sensors(const struct scene *scene, size_t *count);
+
+#endif

@@ -1,0 +1,144 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* plantcastd: reads a plant, renders it and serves it. Here: the command line. */
+#include <arpa/inet.h>
+#include <getopt.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "server.h"
+#include "version.h"
+
+enum { GOOD = 0, FAILED = 1, USAGE = 2 };
+
+static void print_usage(FILE *out)
+{
+    fputs("usage: plantcastd PLANT.yaml [--listen ADDR] [--port N] [--gl auto|egl-device|egl-surfaceless|osmesa] [--prepared DIR]\n"
+          "                  [--web DIR] [--log-level error|warn|info|debug] [--threads N] [--open-viewers]\n"
+          "       plantcastd --check PLANT.yaml [--prepared DIR]\n"
+          "       plantcastd --version | --help\n"
+          "\n"
+          "Serves live pictures of a plant to browsers and other clients.\n"
+          "\n"
+          "  --listen ADDR    IP address to listen on (127.0.0.1)\n"
+          "  --port N         TCP port (8080); 0 takes any that is free\n"
+          "  --gl KIND        how to draw (auto: EGL device, EGL surfaceless, OSMesa, in this order)\n"
+          "  --prepared DIR   the files that plantcast-prep made (beside the plant file)\n"
+          "  --web DIR        the web client's files (found from where this program is)\n"
+          "  --threads N      workers for the field and for encoding (one per core)\n"
+          "  --open-viewers   let anyone who reaches ADDR look at the pictures\n"
+          "  --check          read everything, report every error, start nothing\n", out);
+}
+
+static bool parse_int(const char *text, long low, long high, int *out)
+{
+    char *end;
+    long value = strtol(text, &end, 10);
+    if (end == text || *end || value < low || value > high)
+        return false;
+    *out = (int)value;
+    return true;
+}
+
+static bool parse_level(const char *text, enum log_level *level)
+{
+    static const char *const names[] = { "error", "warn", "info", "debug" };
+    for (size_t i = 0; i < sizeof(names) / sizeof(names[0]); i++)
+        if (!strcmp(names[i], text)) {
+            *level = (enum log_level)i;
+            return true;
+        }
+    return false;
+}
+
+static bool is_loopback(const char *address)
+{
+    struct in_addr four;
+    struct in6_addr six;
+    if (!strcmp(address, "localhost"))
+        return true;
+    if (inet_pton(AF_INET, address, &four) == 1)
+        return ntohl(four.s_addr) >> 24 == 127;
+    return inet_pton(AF_INET6, address, &six) == 1 && IN6_IS_ADDR_LOOPBACK(&six);
+}
+
+static int usage_error(const char *what, const char *value)
+{
+    fprintf(stderr, "plantcastd: %s '%s'\n\n", what, value);
+    print_usage(stderr);
+    return USAGE;
+}
+
+enum { OPTION_LISTEN = 256, OPTION_PORT, OPTION_GL, OPTION_PREPARED, OPTION_WEB, OPTION_LEVEL, OPTION_THREADS, OPTION_OPEN, OPTION_CHECK, OPTION_VERSION,
+       OPTION_HELP };
+
+static const struct option options[] = {
+    { "listen", required_argument, NULL, OPTION_LISTEN },     { "port", required_argument, NULL, OPTION_PORT },
+    { "gl", required_argument, NULL, OPTION_GL },             { "prepared", required_argument, NULL, OPTION_PREPARED },
+    { "web", required_argument, NULL, OPTION_WEB },           { "log-level", required_argument, NULL, OPTION_LEVEL },
+    { "threads", required_argument, NULL, OPTION_THREADS },   { "open-viewers", no_argument, NULL, OPTION_OPEN },
+    { "check", no_argument, NULL, OPTION_CHECK },             { "version", no_argument, NULL, OPTION_VERSION },
+    { "help", no_argument, NULL, OPTION_HELP },               { NULL, 0, NULL, 0 },
+};
+
+/* -1: go on; else the exit code. */
+static int take_option(int option, struct server_params *params, bool *check)
+{
+    switch (option) {
+    case OPTION_LISTEN:
+        params->address = optarg;
+        return -1;
+    case OPTION_PORT:
+        return parse_int(optarg, 0, 65535, &params->port) ? -1 : usage_error("--port: not a port", optarg);
+    case OPTION_GL:
+        return gl_kind_parse(optarg, &params->gl) ? -1 : usage_error("--gl: unknown", optarg);
+    case OPTION_PREPARED:
+        params->prepared = optarg;
+        return -1;
+    case OPTION_WEB:
+        params->web = optarg;
+        return -1;
+    case OPTION_LEVEL:
+        return parse_level(optarg, &params->log_level) ? -1 : usage_error("--log-level: unknown", optarg);
+    case OPTION_THREADS:
+        return parse_int(optarg, 0, 1024, &params->threads) ? -1 : usage_error("--threads: not a number of threads", optarg);
+    case OPTION_OPEN:
+        params->open_viewers = true;
+        return -1;
+    case OPTION_CHECK:
+        *check = true;
+        return -1;
+    case OPTION_VERSION:
+        puts("plantcastd " PLANTCAST_VERSION);
+        return GOOD;
+    case OPTION_HELP:
+        print_usage(stdout);
+        return GOOD;
+    default: /* getopt has said what is wrong */
+        print_usage(stderr);
+        return USAGE;
+    }
+}
+
+int main(int argc, char **argv)
+{
+    struct server_params params = { .address = "127.0.0.1", .port = 8080, .log_level = LOG_INFO };
+    bool check = false;
+    for (int option; (option = getopt_long(argc, argv, "", options, NULL)) != -1;) {
+        int code = take_option(option, &params, &check);
+        if (code >= 0)
+            return code;
+    }
+    if (optind + 1 != argc)
+        return usage_error("one plant file is expected, not", optind == argc ? "none" : argv[optind + 1]);
+    params.plant_path = argv[optind];
+    if (check)
+        return server_check(&params);
+    if (!is_loopback(params.address) && !params.open_viewers) {
+        fprintf(stderr, "plantcastd: --listen %s: everyone who reaches that address could look in. Only loopback addresses are served without\n"
+                        "TLS and tokens, which this version does not have yet; --open-viewers serves pictures, and nothing else, to anyone.\n",
+                params.address);
+        return FAILED;
+    }
+    return server_run(&params);
+}

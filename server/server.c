@@ -1,0 +1,267 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The daemon as a whole. */
+#include "server.h"
+
+#include <errno.h>
+#include <limits.h>
+#include <pthread.h>
+#include <signal.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/counters.h"
+#include "base/mem.h"
+#include "base/workers.h"
+#include "far.h"
+#include "net/net.h"
+#include "value/source.h"
+#include "version.h"
+
+struct server {
+    struct server_params params;
+    struct log *log;
+    struct counters *counters;
+    struct plant *plant;
+    struct scene *scene;
+    struct store *store;
+    struct source **sources; /* by index in plant->sources */
+    struct workers *workers;
+    struct painter *painter;
+    pthread_mutex_t wake_lock; /* holds net alive while the render thread wakes it */
+    struct net *net;
+    char *web;
+};
+
+static struct net *_Atomic to_stop;
+
+static void on_signal(int number)
+{
+    (void)number;
+    int cause = errno;
+    struct net *net = atomic_load(&to_stop);
+    if (net)
+        net_stop(net);
+    errno = cause;
+}
+
+static void on_pictures(void *arg)
+{
+    struct server *server = arg;
+    pthread_mutex_lock(&server->wake_lock);
+    if (server->net)
+        net_wake(server->net);
+    pthread_mutex_unlock(&server->wake_lock);
+}
+
+/* --- what lies on disk ----------------------------------------------------------------------------------------------------- */
+
+static struct plant *load_plant(const char *path)
+{
+    struct diag diag = { 0 };
+    struct plant *plant = plant_load(path, &diag);
+    diag_print(&diag, stderr);
+    if (!plant)
+        fprintf(stderr, "plantcastd: %s: %d error%s\n", path, diag.errors, diag.errors == 1 ? "" : "s");
+    diag_finish(&diag);
+    return plant;
+}
+
+static char *prepared_folder(const struct server_params *params, const struct plant *plant)
+{
+    return params->prepared ? mem_strdup(params->prepared) : plant_prepared_folder(plant);
+}
+
+static struct scene *open_scene(struct log *log, const struct server_params *params, const struct plant *plant)
+{
+    char *folder = prepared_folder(params, plant);
+    struct scene *scene = scene_create(log, plant, folder);
+    if (!scene)
+        log_err(log, "%s: the prepared files in %s cannot be used; run plantcast-prep %s", params->plant_path, folder, params->plant_path);
+    mem_free(folder);
+    return scene;
+}
+
+/* The client's files lie beside an installed program, or in the tree that it was built in. */
+static char *find_web(const char *given)
+{
+    static const char *const places[] = { "../share/plantcast/web", "../clients/web", "../../../clients/web" };
+    char program[PATH_MAX];
+    if (given)
+        return mem_strdup(given);
+    ssize_t n = readlink("/proc/self/exe", program, sizeof(program) - 1);
+    program[n > 0 ? n : 0] = 0;
+    char *slash = strrchr(program, '/');
+    if (!slash)
+        return NULL;
+    *slash = 0;
+    for (size_t i = 0; i < sizeof(places) / sizeof(places[0]); i++) {
+        char *folder = mem_printf("%s/%s", program, places[i]), *index = mem_printf("%s/index.html", folder);
+        bool found = access(index, R_OK) == 0;
+        mem_free(index);
+        if (found)
+            return folder;
+        mem_free(folder);
+    }
+    return NULL;
+}
+
+static void warn_of_far_sensors(struct log *log, const struct scene *scene)
+{
+    size_t count;
+    struct far_sensor *far = far_sensors(scene, &count);
+    for (size_t i = 0; i < count && i < 10; i++)
+        log_warn(log, "%s: sensor %s is %.3f m from the surface of %s (at most %.3f m is expected)", scene->plant->tags_path,
+                 scene->plant->tags[far[i].sensor->tag].name, far[i].sensor->surface_distance_m, far[i].asset->plant->id, far[i].limit_m);
+    if (count > 10)
+        log_warn(log, "%s: %zu more sensors are far from their surface; plantcastd --check lists them", scene->plant->tags_path, count - 10);
+    mem_free(far);
+}
+
+/* --- life ------------------------------------------------------------------------------------------------------------------ */
+
+static bool start_sources(struct server *server)
+{
+    server->sources = mem_array(server->plant->source_count, sizeof(*server->sources));
+    for (size_t i = 0; i < server->plant->source_count; i++)
+        if (!(server->sources[i] = source_start(server->log, server->plant, (int)i, server->store, server->counters)))
+            return false;
+    return true;
+}
+
+static bool start_painter(struct server *server)
+{
+    struct painter_params params = {
+        .log = server->log, .gl = server->params.gl, .scene = server->scene, .store = server->store, .workers = server->workers,
+        .counters = server->counters, .notify = on_pictures, .notify_arg = server,
+    };
+    server->painter = painter_create(&params);
+    if (server->painter)
+        log_info(server->log, "GL: %s", painter_gl_text(server->painter));
+    return server->painter != NULL;
+}
+
+static bool start_net(struct server *server)
+{
+    const char *address = strcmp(server->params.address, "localhost") == 0 ? "127.0.0.1" : server->params.address;
+    struct net_params params = {
+        .log = server->log, .scene = server->scene, .store = server->store, .painter = server->painter, .counters = server->counters,
+        .address = address, .port = server->params.port, .open_viewers = server->params.open_viewers, .web_folder = server->web,
+        .version = PLANTCAST_VERSION,
+    };
+    if (!server->web)
+        log_warn(server->log, "no web client was found beside the program; --web FOLDER names it");
+    struct net *net = net_create(&params);
+    pthread_mutex_lock(&server->wake_lock);
+    server->net = net;
+    pthread_mutex_unlock(&server->wake_lock);
+    return net != NULL;
+}
+
+static bool server_start(struct server *server)
+{
+    server->plant = load_plant(server->params.plant_path);
+    if (!server->plant || !(server->scene = open_scene(server->log, &server->params, server->plant)))
+        return false;
+    warn_of_far_sensors(server->log, server->scene);
+    server->counters = counters_create();
+    server->store = store_create(server->plant);
+    server->workers = workers_create(server->params.threads);
+    server->web = find_web(server->params.web);
+    return start_sources(server) && start_painter(server) && start_net(server);
+}
+
+/* Against the flow of data: first who takes, last who gives. */
+static void server_finish(struct server *server)
+{
+    pthread_mutex_lock(&server->wake_lock);
+    struct net *net = server->net;
+    server->net = NULL;
+    pthread_mutex_unlock(&server->wake_lock);
+    net_destroy(&net);
+    painter_destroy(&server->painter);
+    for (size_t i = 0; server->sources && i < server->plant->source_count; i++)
+        source_stop(&server->sources[i]);
+    mem_free(server->sources);
+    workers_destroy(&server->workers);
+    store_destroy(&server->store);
+    counters_destroy(&server->counters);
+    scene_destroy(&server->scene);
+    plant_destroy(&server->plant);
+    mem_free(server->web);
+    pthread_mutex_destroy(&server->wake_lock);
+    log_destroy(&server->log);
+}
+
+static void handle_signals(struct net *net)
+{
+    struct sigaction action = { .sa_handler = on_signal };
+    sigemptyset(&action.sa_mask);
+    atomic_store(&to_stop, net);
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+}
+
+static void say_ready(const struct server *server)
+{
+    bool six = strchr(server->params.address, ':') != NULL;
+    printf("plantcastd: ready http://%s%s%s:%d/\n", six ? "[" : "", server->params.address, six ? "]" : "", net_port(server->net));
+    fflush(stdout);
+}
+
+int server_run(const struct server_params *params)
+{
+    struct server server = { .params = *params, .log = log_create(params->log_level) };
+    pthread_mutex_init(&server.wake_lock, NULL);
+    signal(SIGPIPE, SIG_IGN);
+    bool good = server_start(&server);
+    if (good) {
+        handle_signals(server.net);
+        say_ready(&server);
+        net_run(server.net);
+        atomic_store(&to_stop, NULL);
+        log_info(server.log, "stopping");
+    }
+    server_finish(&server);
+    return good ? 0 : 1;
+}
+
+static int check_prepared(const struct server_params *params, const struct plant *plant)
+{
+    char *folder = prepared_folder(params, plant);
+    bool exists = access(folder, F_OK) == 0;
+    if (!exists)
+        printf("%s: not prepared yet (%s)\n", params->plant_path, folder);
+    mem_free(folder);
+    if (!exists)
+        return 0;
+    struct log *log = log_create(LOG_WARN);
+    struct scene *scene = open_scene(log, params, plant);
+    int status = scene ? 0 : 1;
+    if (scene) {
+        size_t count;
+        struct far_sensor *far = far_sensors(scene, &count);
+        for (size_t i = 0; i < count; i++) {
+            const struct plant_tag *tag = &plant->tags[far[i].sensor->tag];
+            printf("%s:%d: warning: sensor %s is %.3f m from the surface of %s (at most %.3f m is expected)\n", plant->tags_path, tag->line,
+                   tag->name, far[i].sensor->surface_distance_m, far[i].asset->plant->id, far[i].limit_m);
+        }
+        mem_free(far);
+    }
+    scene_destroy(&scene);
+    log_destroy(&log);
+    return status;
+}
+
+int server_check(const struct server_params *params)
+{
+    struct plant *plant = load_plant(params->plant_path);
+    if (!plant)
+        return 1;
+    int status = check_prepared(params, plant);
+    printf("%s: %zu assets, %zu groups, %zu sources, %zu tags: %s\n", params->plant_path, plant->asset_count, plant->group_count,
+           plant->source_count, plant->tag_count, status ? "not good" : "good");
+    plant_destroy(&plant);
+    return status;
+}

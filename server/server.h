@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The daemon as a whole: builds the layers in order, serves, takes them down again. */
+#ifndef SERVER_SERVER_H
+#define SERVER_SERVER_H
+#include "base/log.h"
+#include "gpu/gl.h"
+
+struct server_params {
+    const char *plant_path;
+    const char *address;   /* to listen on; numeric or "localhost" */
+    int port;              /* 0: any that is free */
+    enum gl_kind gl;
+    const char *prepared;  /* NULL: beside the plant file */
+    const char *web;       /* NULL: found from where the program is */
+    enum log_level log_level;
+    int threads;           /* workers; 0: one per core */
+    bool open_viewers;
+};
+
+/* Both return the exit code: 0 good, 1 anything wrong, said on stderr. */
+int server_run(const struct server_params *params);   /* until SIGINT or SIGTERM */
+int server_check(const struct server_params *params); /* reads everything, starts nothing */
+
+#endif

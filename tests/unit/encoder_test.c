@@ -1,0 +1,145 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Encoders: what comes out decodes to what went in, within what the codec may lose. */
+#include "encode/encoder.h"
+
+#include <errno.h>
+#include <png.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <turbojpeg.h>
+
+#include <cmocka.h>
+
+#include "base/mem.h"
+
+static struct frame *gradient(int w, int h)
+{
+    struct frame *frame = frame_create(w, h);
+    for (int y = 0; y < h; y++)
+        for (int x = 0; x < w; x++) {
+            uint8_t *p = frame->bgrx + (size_t)y * (size_t)frame->stride_bytes + (size_t)x * 4;
+            p[0] = (uint8_t)(x * 255 / w);
+            p[1] = (uint8_t)(y * 255 / h);
+            p[2] = x < w / 2 ? 200 : 40;
+            p[3] = 0x5a; /* not part of the picture */
+        }
+    frame->marker_count = 1;
+    frame->markers = mem_new(sizeof(*frame->markers));
+    frame->markers[0] = (struct frame_marker){ .tag = 3, .x_px = 1.5f, .y_px = 2.5f, .occluded = 1 };
+    return frame;
+}
+
+static struct packet *encode(const char *name, struct frame *frame, int quality, bool full_chroma)
+{
+    struct log *log = log_create(LOG_ERROR);
+    struct encoder *encoder = encoder_create(log, name);
+    struct packet *packet = NULL, *none = NULL;
+    assert_non_null(encoder);
+    assert_int_equal(encoder_receive(encoder, &none), -EAGAIN);
+    assert_int_equal(encoder_send(encoder, frame, &(struct encoder_params){ .quality = quality, .full_chroma = full_chroma }), 0);
+    assert_int_equal(encoder_send(encoder, frame, &(struct encoder_params){ .quality = quality }), -EAGAIN);
+    assert_int_equal(encoder_receive(encoder, &packet), 0);
+    assert_int_equal(encoder_receive(encoder, &none), -EAGAIN);
+    encoder_destroy(&encoder);
+    assert_null(encoder);
+    log_destroy(&log);
+    return packet;
+}
+
+static double worst_difference(const struct frame *frame, const uint8_t *bgr, int border)
+{
+    double worst = 0;
+    for (int y = 0; y < frame->height_px; y++)
+        for (int x = 0; x < frame->width_px; x++)
+            for (int c = 0; c < 3 && abs(x - frame->width_px / 2) > border; c++) {
+                int want = frame->bgrx[(size_t)y * (size_t)frame->stride_bytes + (size_t)x * 4 + (size_t)c];
+                int got = bgr[((size_t)y * (size_t)frame->width_px + (size_t)x) * 3 + (size_t)c];
+                worst = abs(want - got) > worst ? abs(want - got) : worst;
+            }
+    return worst;
+}
+
+static void check_jpeg(int w, int h, int quality, bool full_chroma, double tolerance, int border)
+{
+    struct frame *frame = gradient(w, h);
+    struct packet *packet = encode("jpeg", frame, quality, full_chroma);
+    tjhandle turbo = tjInitDecompress();
+    uint8_t *bgr = mem_array((size_t)w * (size_t)h, 3);
+    int got_w, got_h, sampling, space;
+    assert_int_equal(packet->codec, WIRE_CODEC_JPEG);
+    assert_true(packet->key && packet->encode_ns > 0);
+    assert_int_equal(tjDecompressHeader3(turbo, packet->bytes, packet->count, &got_w, &got_h, &sampling, &space), 0);
+    assert_int_equal(got_w, w);
+    assert_int_equal(got_h, h);
+    assert_int_equal(sampling, full_chroma ? TJSAMP_444 : TJSAMP_420);
+    assert_int_equal(tjDecompress2(turbo, packet->bytes, packet->count, bgr, w, w * 3, h, TJPF_BGR, 0), 0);
+    assert_true(worst_difference(frame, bgr, border) <= tolerance);
+    tjDestroy(turbo);
+    mem_free(bgr);
+    packet_unref(&packet);
+    frame_unref(&frame);
+}
+
+static void jpeg_keeps_the_picture(void **state)
+{
+    (void)state;
+    check_jpeg(320, 200, 78, false, 24, 16);
+    check_jpeg(320, 200, 95, true, 12, 0);
+    check_jpeg(333, 77, 78, false, 30, 16); /* no multiple of a block */
+    check_jpeg(16, 16, 90, true, 40, 8);
+}
+
+static void png_keeps_every_pixel(void **state)
+{
+    (void)state;
+    struct frame *frame = gradient(123, 45);
+    struct packet *packet = encode("png", frame, 0, false);
+    png_image image = { .version = PNG_IMAGE_VERSION };
+    assert_int_equal(packet->codec, WIRE_CODEC_PNG);
+    assert_true(png_image_begin_read_from_memory(&image, packet->bytes, packet->count));
+    image.format = PNG_FORMAT_BGR;
+    uint8_t *bgr = mem_array(PNG_IMAGE_SIZE(image), 1);
+    assert_true(image.width == 123 && image.height == 45);
+    assert_true(png_image_finish_read(&image, NULL, bgr, 0, NULL));
+    assert_true(worst_difference(frame, bgr, -1) == 0);
+    mem_free(bgr);
+    packet_unref(&packet);
+    frame_unref(&frame);
+}
+
+static void packets_outlive_frames_without_their_pixels(void **state)
+{
+    (void)state;
+    struct frame *frame = gradient(64, 64);
+    struct packet *packet = encode("jpeg", frame, 80, false), *second = packet_ref(packet);
+    frame_unref(&frame);
+    assert_null(packet->frame->bgrx);
+    assert_int_equal(packet->frame->width_px, 64);
+    assert_true(packet->frame->marker_count == 1 && packet->frame->markers[0].tag == 3 && packet->frame->markers[0].x_px == 1.5f);
+    packet_unref(&packet);
+    assert_null(packet);
+    assert_int_equal(second->bytes[0], 0xff);
+    packet_unref(&second);
+}
+
+static void unknown_codecs_are_refused(void **state)
+{
+    (void)state;
+    struct log *log = log_create(LOG_ERROR);
+    assert_null(encoder_create(log, "gif"));
+    log_destroy(&log);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(jpeg_keeps_the_picture),
+        cmocka_unit_test(png_keeps_every_pixel),
+        cmocka_unit_test(packets_outlive_frames_without_their_pixels),
+        cmocka_unit_test(unknown_codecs_are_refused),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

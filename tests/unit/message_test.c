@@ -1,0 +1,224 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What clients say: the vectors, the merging of parameters, the query of snapshots, and text that was damaged at random. */
+#include "net/message.h"
+
+#include <dirent.h>
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "base/text.h"
+#include "field/colormap.h"
+#include "net/query.h"
+#include "tests/support/small_scene.h"
+
+#define FOLDER "protocol/vectors/client"
+
+static const struct plant *plant(void)
+{
+    return small_scene()->plant;
+}
+
+/* As a session does: parse, and for parameters apply. */
+static bool take(const char *text, size_t count, struct message_error *error)
+{
+    struct message message;
+    struct view view;
+    view_default(small_scene(), 640, 360, &view);
+    if (!message_parse(plant(), text, count, &message, error))
+        return false;
+    bool params = message.type == MESSAGE_PARAMS || message.has_params;
+    return !params || params_apply(plant(), &message.params, &view, error);
+}
+
+static void check_vector(const char *file, int *accepted, int *refused)
+{
+    size_t count, n = strcspn(file, "-");
+    struct message_error error = { 0 };
+    char *path = mem_printf("%s/%s", FOLDER, file), *text = text_read_file(path, 1 << 20, &count);
+    assert_non_null(text);
+    bool good = take(text, count, &error);
+    if (!strncmp(file, "accepted--", 10)) {
+        if (!good)
+            fail_msg("%s: refused: %s: %s", file, error.code, error.text);
+        ++*accepted;
+    } else {
+        if (good)
+            fail_msg("%s: taken", file);
+        if (strlen(error.code) != n || strncmp(error.code, file, n) != 0)
+            fail_msg("%s: refused with %s: %s", file, error.code, error.text);
+        assert_true(error.text[0] != 0);
+        ++*refused;
+    }
+    mem_free(text);
+    mem_free(path);
+}
+
+static void vectors_are_taken_or_refused(void **state)
+{
+    (void)state;
+    int accepted = 0, refused = 0;
+    DIR *folder = opendir(FOLDER);
+    assert_non_null(folder);
+    for (struct dirent *entry; (entry = readdir(folder));)
+        if (strstr(entry->d_name, "--"))
+            check_vector(entry->d_name, &accepted, &refused);
+    closedir(folder);
+    assert_true(accepted >= 13 && refused >= 50);
+}
+
+static struct message parse(const char *text)
+{
+    struct message message;
+    struct message_error error;
+    if (!message_parse(plant(), text, strlen(text), &message, &error))
+        fail_msg("%s: %s: %s", text, error.code, error.text);
+    return message;
+}
+
+static void fields_arrive(void **state)
+{
+    (void)state;
+    struct message m = parse("{\"type\":\"hello\",\"width\":640,\"height\":360,\"codecs\":[\"av1\",\"png\",\"jpeg\"],"
+                             "\"camera\":{\"seq\":9,\"eye\":[1,2,3],\"target\":[4,5,6],\"fov\":50}}");
+    assert_int_equal(m.type, MESSAGE_HELLO);
+    assert_int_equal(m.width_px, 640);
+    assert_int_equal(m.height_px, 360);
+    assert_int_equal(m.codec, WIRE_CODEC_PNG);
+    assert_true(m.has_camera && !m.has_params);
+    assert_int_equal(m.seq, 9);
+    assert_true(m.camera.eye_m[2] == 3 && m.camera.target_m[0] == 4 && m.camera.up[2] == 1 && m.camera.fov_deg == 50);
+    m = parse("{\"type\":\"ack\",\"seq\":12,\"decode_ms\":3.5}");
+    assert_true(m.seq == 12 && m.decode_ms == 3.5);
+    m = parse("{\"type\":\"ack\",\"seq\":12}");
+    assert_true(m.decode_ms < 0);
+}
+
+static struct view changed(struct view view, const char *text)
+{
+    struct message m = parse(text);
+    struct message_error error;
+    if (!params_apply(plant(), &m.params, &view, &error))
+        fail_msg("%s: %s", text, error.text);
+    return view;
+}
+
+static void what_is_left_out_stays(void **state)
+{
+    (void)state;
+    struct view view;
+    view_default(small_scene(), 640, 360, &view);
+    view = changed(view, "{\"type\":\"params\",\"seq\":1,\"power\":4,\"colormap\":\"viridis\",\"selected\":\"P-101A\",\"light\":[0,0,9]}");
+    view = changed(view, "{\"type\":\"params\",\"seq\":2,\"ramp_interval\":5}");
+    assert_true(view.field.power == 4 && view.ramp_interval == 5 && view.selected_asset == 1 && view.light_dir[2] == 1);
+    assert_int_equal(view.colormap, colormap_find("viridis"));
+    view = changed(view, "{\"type\":\"params\",\"seq\":3,\"selected\":null,\"reach_m\":2}");
+    assert_true(view.selected_asset == -1 && view.field.reach_m == 2 && view.field.power == 4);
+    view = changed(view, "{\"type\":\"params\",\"seq\":4,\"reach_m\":null}");
+    assert_true(isinf(view.field.reach_m));
+}
+
+static void a_new_group_brings_its_settings(void **state)
+{
+    (void)state;
+    struct view view;
+    view_default(small_scene(), 640, 360, &view);
+    view = changed(view, "{\"type\":\"params\",\"seq\":1,\"power\":4,\"range\":[0,50],\"ramp_interval\":5,\"colormap\":\"viridis\"}");
+    struct view same = changed(view, "{\"type\":\"params\",\"seq\":2,\"group\":\"temperature\"}");
+    assert_true(same.field.power == 4 && same.range_max == 50 && same.ramp_interval == 5);
+    struct view other = changed(view, "{\"type\":\"params\",\"seq\":3,\"group\":\"pressure\",\"distance\":\"geodesic\"}");
+    assert_int_equal(other.field.group, 1);
+    assert_true(other.field.power == 3 && other.field.radius_m == 2.5 && other.field.reach_m == 4);
+    assert_true(other.range_min == 0 && other.range_max == 16 && other.ramp_interval == 0);
+    assert_int_equal(other.field.interpolation, INTERPOLATION_PAPER);
+    assert_int_equal(other.field.distance, DISTANCE_GEODESIC);
+    assert_int_equal(other.colormap, view.colormap);
+}
+
+static bool query(const char *const *args, size_t count, struct view *view, struct message_error *error)
+{
+    *error = (struct message_error){ 0 };
+    return query_parse(small_scene(), args, count, view, error);
+}
+
+static void queries_make_views(void **state)
+{
+    (void)state;
+    static const char *const args[] = { "width=320", "height=200", "camera=1,2,3,4,5,6,50", "group=pressure", "range=1,2.5", "reach_m=3",
+                                        "selected=E-101", "look=flat", "light=0,0,2" };
+    struct view view;
+    struct message_error error;
+    assert_true(query(args, sizeof(args) / sizeof(args[0]), &view, &error));
+    assert_true(view.width_px == 320 && view.height_px == 200 && view.camera.eye_m[1] == 2 && view.camera.target_m[2] == 6);
+    assert_true(view.camera.fov_deg == 50 && view.field.group == 1 && view.range_max == 2.5 && view.field.reach_m == 3);
+    assert_true(view.selected_asset == 0 && view.look == LOOK_FLAT && view.light_dir[2] == 1 && view.tier == TIER_STILL);
+    assert_true(query(NULL, 0, &view, &error));
+    assert_true(view.width_px == 1280 && view.height_px == 720);
+}
+
+static void bad_queries_are_named(void **state)
+{
+    (void)state;
+    static const char *const bad[] = { "width=0", "width=1e9", "width=", "width", "width=640px", "width=100.5", "height=nan", "camera=1,2,3",
+                                       "camera=1,2,3,1,2,3", "camera=1,2,3,4,5,inf", "camera=,,,,,", "group=none", "range=2,1", "range=1",
+                                       "colour=red", "=", "", "look=", "selected=x", "light=0,0,0", "power=1e400" };
+    for (size_t i = 0; i < sizeof(bad) / sizeof(bad[0]); i++) {
+        struct view view;
+        struct message_error error;
+        if (query(&bad[i], 1, &view, &error))
+            fail_msg("'%s' was taken", bad[i]);
+        assert_true(error.text[0] != 0);
+    }
+}
+
+/* Damaged text never makes a view that the renderer must not see. */
+static void damaged_messages_stay_harmless(void **state)
+{
+    (void)state;
+    static const char *const seeds[] = {
+        "{\"type\":\"camera\",\"seq\":17,\"eye\":[12.5,-20.25,8],\"target\":[0,1.5,2],\"up\":[0,0,1],\"fov\":45}",
+        "{\"type\":\"params\",\"seq\":3,\"group\":\"pressure\",\"power\":3,\"reach_m\":4,\"range\":[0,12.5],\"light\":[0.3,-0.4,0.8]}",
+        "{\"type\":\"hello\",\"width\":1920,\"height\":1080,\"codecs\":[\"png\",\"jpeg\"]}",
+    };
+    static const char alphabet[] = "0123456789eE+-.,:[]{}\"nulltrue \\";
+    unsigned seed = (unsigned)time(NULL);
+    int taken = 0;
+    print_message("# seed %u\n", seed);
+    for (int i = 0; i < 100000; i++) {
+        char text[256];
+        struct message m;
+        struct message_error error;
+        size_t n = strlen(strcpy(text, seeds[i % 3]));
+        for (int k = rand_r(&seed) % 3 + 1; k > 0; k--)
+            text[(size_t)rand_r(&seed) % n] = alphabet[(size_t)rand_r(&seed) % (sizeof(alphabet) - 1)];
+        if (!message_parse(plant(), text, n, &m, &error))
+            continue;
+        taken++;
+        if (m.type == MESSAGE_CAMERA)
+            assert_true(camera_valid(&m.camera));
+        if (m.type == MESSAGE_HELLO)
+            assert_true(view_size_valid(m.width_px, m.height_px));
+    }
+    assert_true(taken > 1000);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(vectors_are_taken_or_refused),
+        cmocka_unit_test(fields_arrive),
+        cmocka_unit_test(what_is_left_out_stays),
+        cmocka_unit_test(a_new_group_brings_its_settings),
+        cmocka_unit_test(queries_make_views),
+        cmocka_unit_test(bad_queries_are_named),
+        cmocka_unit_test(damaged_messages_stay_harmless),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

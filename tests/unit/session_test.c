@@ -1,0 +1,431 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A session without socket, clock or renderer: what it wants, what it is told, what it answers. */
+#include "net/session.h"
+
+#include <jansson.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "net/reply.h"
+#include "tests/support/small_scene.h"
+#include "value/quality.h"
+
+#define HELLO "{\"type\":\"hello\",\"width\":640,\"height\":360,\"codecs\":[\"jpeg\"]}"
+static const int64_t MS = NS_PER_MS;
+
+struct fixture {
+    struct session_world world;
+    struct snapshot *snapshot;
+    bool up[1];
+    struct session *session;
+    int64_t now_ns;
+    uint64_t number;
+};
+
+static int set_up(void **state)
+{
+    struct fixture *f = mem_new(sizeof(*f));
+    f->snapshot = snapshot_create(small_scene()->plant->tag_count);
+    f->up[0] = true;
+    f->world = (struct session_world){ .plant = small_scene()->plant, .scene = small_scene(), .snapshot = f->snapshot, .links_up = f->up,
+                                       .live = true, .version = "1.2.3" };
+    f->now_ns = 1000 * NS_PER_S;
+    f->session = session_create(&f->world, 7, f->now_ns);
+    *state = f;
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    struct fixture *f = *state;
+    session_destroy(&f->session);
+    snapshot_destroy(&f->snapshot);
+    mem_free(f);
+    return 0;
+}
+
+static void say(struct fixture *f, const char *text)
+{
+    session_on_message(f->session, text, strlen(text), f->now_ns, f->now_ns);
+}
+
+/* The next text, as JSON; NULL: none is due. */
+static json_t *hear(struct fixture *f)
+{
+    struct text text = { 0 };
+    json_t *message = NULL;
+    bool due = session_has_text(f->session, f->now_ns);
+    assert_int_equal(session_next_text(f->session, f->now_ns, f->now_ns, &text), due);
+    if (due)
+        assert_non_null(message = json_loads(text.at, 0, NULL));
+    text_finish(&text);
+    return message;
+}
+
+static const char *type_of(const json_t *message)
+{
+    return message ? json_string_value(json_object_get(message, "type")) : "(nothing)";
+}
+
+/* Takes all that is due; fails unless it is of these types, in this order. */
+static void expect(struct fixture *f, const char *types)
+{
+    char got[256] = "";
+    for (json_t *message; (message = hear(f)); json_decref(message))
+        snprintf(got + strlen(got), sizeof(got) - strlen(got), "%s ", type_of(message));
+    assert_string_equal(got, types);
+}
+
+static void expect_error(struct fixture *f, const char *code)
+{
+    json_t *message = hear(f);
+    assert_string_equal(type_of(message), "error");
+    assert_string_equal(json_string_value(json_object_get(message, "code")), code);
+    json_decref(message);
+}
+
+static void greet(struct fixture *f)
+{
+    say(f, HELLO);
+    expect(f, "welcome status tags ");
+}
+
+/* Asks the painter that there is not. False: the session wants nothing, or the painter would refuse. */
+static bool ask(struct fixture *f, struct wish *wish)
+{
+    if (!session_wish(f->session, f->now_ns, wish) || wish->only_replace)
+        return false;
+    session_asked(f->session, wish, false);
+    return true;
+}
+
+static void paint(struct fixture *f, const struct wish *wish, bool same)
+{
+    struct picture *picture = mem_new(sizeof(*picture));
+    *picture = (struct picture){ .client = 7, .number = ++f->number, .wish = *wish };
+    if (!same) {
+        struct frame *frame = frame_create(16, 16);
+        frame->view = wish->view;
+        picture->packet = packet_create(frame, WIRE_CODEC_JPEG, true, "jpeg", 4);
+        frame_unref(&frame);
+    }
+    session_on_picture(f->session, picture);
+}
+
+static uint32_t send_picture(struct fixture *f)
+{
+    uint32_t seq = 0;
+    struct picture *picture = session_next_picture(f->session, f->now_ns, &seq);
+    picture_destroy(&picture);
+    return seq;
+}
+
+static void ack(struct fixture *f, uint32_t seq)
+{
+    char text[64];
+    snprintf(text, sizeof(text), "{\"type\":\"ack\",\"seq\":%u}", seq);
+    say(f, text);
+}
+
+/* One picture all the way. */
+static struct wish show(struct fixture *f)
+{
+    struct wish wish = { 0 };
+    if (!ask(f, &wish))
+        fail_msg("no picture is wanted");
+    paint(f, &wish, false);
+    ack(f, send_picture(f));
+    return wish;
+}
+
+static void nothing_before_hello(void **state)
+{
+    struct fixture *f = *state;
+    struct wish wish;
+    assert_false(session_wish(f->session, f->now_ns, &wish));
+    session_on_data(f->session, f->now_ns);
+    expect(f, "");
+    say(f, "{\"type\":\"resize\",\"width\":640,\"height\":360}");
+    expect_error(f, "hello_first");
+    assert_false(session_wish(f->session, f->now_ns, &wish));
+    say(f, HELLO);
+    say(f, HELLO);
+    expect(f, "welcome error status tags ");
+}
+
+static void welcome_tells_the_plant_and_no_addresses(void **state)
+{
+    struct fixture *f = *state;
+    struct text text = { 0 };
+    say(f, HELLO);
+    assert_true(session_next_text(f->session, f->now_ns, f->now_ns, &text));
+    assert_null(strstr(text.at, "10.20.30.40"));
+    assert_null(strstr(text.at, "400123"));
+    json_t *welcome = json_loads(text.at, 0, NULL), *tag, *limits, *rgb;
+    assert_non_null(welcome);
+    assert_int_equal(json_array_size(json_object_get(welcome, "groups")), 2);
+    tag = json_array_get(json_object_get(welcome, "tags"), 0);
+    assert_true(json_number_value(json_array_get(json_object_get(tag, "position"), 2)) == 2.375);
+    assert_true(json_is_null(json_object_get(json_array_get(json_object_get(welcome, "tags"), 2), "position")));
+    limits = json_object_get(json_array_get(json_object_get(welcome, "groups"), 0), "limits");
+    assert_true(json_is_null(json_object_get(limits, "LL")) && json_number_value(json_object_get(limits, "H")) == 150);
+    rgb = json_object_get(json_array_get(json_object_get(welcome, "colormaps"), 0), "rgb");
+    assert_int_equal(json_string_length(rgb), 1024);
+    assert_string_equal(json_string_value(json_object_get(json_object_get(welcome, "view"), "group")), "temperature");
+    json_decref(welcome);
+    text_finish(&text);
+}
+
+static void first_picture_comes_at_once_then_refined_then_nothing(void **state)
+{
+    struct fixture *f = *state;
+    struct wish wish;
+    greet(f);
+    assert_true(ask(f, &wish));
+    assert_true(wish.always && wish.urgency == URGENCY_INPUT && wish.view.tier == TIER_MOVING && !wish.quality.full_chroma);
+    paint(f, &wish, false);
+    assert_int_equal(send_picture(f), 1);
+    ack(f, 1);
+    f->now_ns += 100 * MS;
+    assert_false(ask(f, &wish));
+    f->now_ns += 150 * MS;
+    assert_true(ask(f, &wish));
+    assert_true(wish.urgency == URGENCY_REFINE && wish.view.tier == TIER_STILL && wish.quality.full_chroma && wish.quality.quality >= 90);
+    paint(f, &wish, false);
+    ack(f, send_picture(f));
+    f->now_ns += 60 * NS_PER_S;
+    assert_false(ask(f, &wish));
+}
+
+static void newest_camera_wins_and_the_last_state_arrives(void **state)
+{
+    struct fixture *f = *state;
+    struct wish wish;
+    greet(f);
+    show(f);
+    for (uint32_t seq = 1; seq <= 50; seq++) { /* nobody acknowledges: two pictures, then none */
+        char text[128];
+        snprintf(text, sizeof(text), "{\"type\":\"camera\",\"seq\":%u,\"eye\":[%u,-9,4],\"target\":[0,0,1]}", seq, seq + 5);
+        say(f, text);
+        if (ask(f, &wish)) {
+            paint(f, &wish, false);
+            send_picture(f);
+        }
+    }
+    assert_int_equal(f->session->pacer.flight_count, PACER_WINDOW);
+    assert_int_equal(wish.only_replace ? 2 : wish.view.camera_seq, 2);
+    ack(f, f->session->pacer.last_seq);
+    assert_true(ask(f, &wish));
+    assert_int_equal(wish.view.camera_seq, 50);
+    assert_true(wish.view.camera.eye_m[0] == 55);
+}
+
+static void a_full_window_only_replaces(void **state)
+{
+    struct fixture *f = *state;
+    struct wish wish;
+    greet(f);
+    assert_true(ask(f, &wish));
+    say(f, "{\"type\":\"camera\",\"seq\":1,\"eye\":[9,9,9],\"target\":[0,0,1]}");
+    assert_true(ask(f, &wish));
+    say(f, "{\"type\":\"camera\",\"seq\":2,\"eye\":[8,9,9],\"target\":[0,0,1]}");
+    assert_true(session_wish(f->session, f->now_ns, &wish));
+    assert_true(wish.only_replace && wish.view.camera_seq == 2);
+    session_asked(f->session, &wish, true);
+    assert_int_equal(f->session->pacer.asked, 2);
+    assert_false(session_wish(f->session, f->now_ns, &wish));
+}
+
+static void equal_pictures_free_their_place(void **state)
+{
+    struct fixture *f = *state;
+    struct wish wish;
+    greet(f);
+    for (int i = 0; i < 10; i++) {
+        say(f, "{\"type\":\"camera\",\"seq\":1,\"eye\":[9,9,9],\"target\":[0,0,1]}");
+        assert_true(ask(f, &wish));
+        paint(f, &wish, true);
+    }
+    assert_int_equal(f->session->pacer.asked, 0);
+    assert_int_equal(send_picture(f), 0);
+}
+
+static void overtaken_pictures_are_not_sent(void **state)
+{
+    struct fixture *f = *state;
+    struct wish wish;
+    greet(f);
+    assert_true(ask(f, &wish));
+    say(f, "{\"type\":\"camera\",\"seq\":1,\"eye\":[9,9,9],\"target\":[0,0,1]}");
+    struct wish first = wish;
+    assert_true(ask(f, &wish));
+    f->number = 1;
+    paint(f, &wish, false);  /* number 2 */
+    f->number = 0;
+    paint(f, &first, false); /* number 1 comes later */
+    uint32_t seq;
+    struct picture *picture = session_next_picture(f->session, f->now_ns, &seq);
+    assert_int_equal(picture->wish.view.camera_seq, 1);
+    picture_destroy(&picture);
+    assert_null(session_next_picture(f->session, f->now_ns, &seq));
+    assert_int_equal(f->session->pacer.asked, 0);
+    assert_int_equal(f->session->dropped, 1);
+}
+
+static void data_under_a_still_view_is_drawn_once_and_refined(void **state)
+{
+    struct fixture *f = *state;
+    struct wish wish;
+    greet(f);
+    show(f);
+    f->now_ns += NS_PER_S;
+    assert_true(show(f).view.tier == TIER_STILL);
+    session_on_data(f->session, f->now_ns);
+    assert_true(ask(f, &wish));
+    assert_true(!wish.always && wish.view.tier == TIER_STILL && wish.view.input_ns == f->now_ns);
+    paint(f, &wish, true);
+    assert_false(ask(f, &wish));
+}
+
+static void hidden_pages_get_nothing(void **state)
+{
+    struct fixture *f = *state;
+    struct wish wish;
+    greet(f);
+    show(f);
+    say(f, "{\"type\":\"visible\",\"visible\":false}");
+    f->now_ns += 10 * NS_PER_S;
+    session_on_data(f->session, f->now_ns);
+    say(f, "{\"type\":\"camera\",\"seq\":1,\"eye\":[9,9,9],\"target\":[0,0,1]}");
+    assert_false(ask(f, &wish));
+    expect(f, "");
+    say(f, "{\"type\":\"visible\",\"visible\":true}");
+    assert_true(ask(f, &wish));
+    assert_true(wish.always && wish.view.camera_seq == 1);
+}
+
+static void tags_come_whole_then_by_change_then_whole_again(void **state)
+{
+    struct fixture *f = *state;
+    greet(f);
+    f->snapshot->readings[1] = (struct reading){ .value = 3.25, .quality = QUALITY_GOOD, .changes = 5, .age_ns = 40 * MS };
+    session_on_data(f->session, f->now_ns);
+    expect(f, ""); /* at most twice a second */
+    f->now_ns += 600 * MS;
+    json_t *tags = hear(f), *values = json_object_get(tags, "values"), *row = json_array_get(values, 0);
+    assert_string_equal(type_of(tags), "tags");
+    assert_int_equal(json_array_size(values), 1);
+    assert_int_equal(json_integer_value(json_array_get(row, 0)), 1);
+    assert_true(json_number_value(json_array_get(row, 1)) == 3.25);
+    assert_string_equal(json_string_value(json_array_get(row, 2)), "good");
+    assert_int_equal(json_integer_value(json_array_get(row, 4)), 40);
+    json_decref(tags);
+    f->now_ns += 2 * NS_PER_S;
+    expect(f, "status tags ");
+    f->snapshot->readings[1].quality = QUALITY_BAD_COMMUNICATION_ERROR;
+    f->now_ns += 2 * NS_PER_S;
+    json_decref(hear(f));
+    tags = hear(f);
+    values = json_object_get(tags, "values");
+    assert_int_equal(json_array_size(values), 3);
+    assert_true(json_is_null(json_array_get(json_array_get(values, 1), 1)));
+    json_decref(tags);
+}
+
+static void params_are_confirmed_and_bad_ones_change_nothing(void **state)
+{
+    struct fixture *f = *state;
+    greet(f);
+    say(f, "{\"type\":\"params\",\"seq\":4,\"group\":\"pressure\",\"ramp_interval\":2}");
+    json_t *params = hear(f);
+    assert_string_equal(type_of(params), "params");
+    assert_int_equal(json_integer_value(json_object_get(params, "seq")), 4);
+    assert_string_equal(json_string_value(json_object_get(params, "group")), "pressure");
+    assert_true(json_number_value(json_object_get(params, "ramp_interval")) == 2);
+    json_decref(params);
+    struct view before = f->session->view;
+    say(f, "{\"type\":\"params\",\"seq\":5,\"ramp_interval\":3,\"power\":0}");
+    expect_error(f, "bad_field");
+    assert_memory_equal(&before, &f->session->view, sizeof(before));
+    assert_int_equal(f->session->view.params_seq, 4);
+}
+
+static void a_client_that_does_not_read_costs_a_bounded_list(void **state)
+{
+    struct fixture *f = *state;
+    greet(f);
+    for (int i = 0; i < 10000; i++)
+        say(f, "{\"type\":\"ping\",\"t\":1.5}");
+    assert_true(f->session->reply_count <= SESSION_MAX_REPLIES);
+}
+
+static void too_many_messages_are_put_off(void **state)
+{
+    struct fixture *f = *state;
+    greet(f);
+    for (int i = 0; i < SESSION_MAX_MESSAGES_PER_S; i++)
+        say(f, "{\"type\":\"camera\",\"seq\":1,\"eye\":[9,9,9],\"target\":[0,0,1]}");
+    assert_true(f->session->too_fast);
+    expect_error(f, "too_fast");
+    expect(f, "");
+    f->now_ns += 500 * MS;
+    session_on_tick(f->session, f->now_ns);
+    assert_true(f->session->too_fast);
+    f->now_ns += 600 * MS;
+    session_on_tick(f->session, f->now_ns);
+    assert_false(f->session->too_fast);
+}
+
+static void acks_for_nothing_are_errors(void **state)
+{
+    struct fixture *f = *state;
+    greet(f);
+    ack(f, 1);
+    expect_error(f, "bad_field");
+    show(f);
+    ack(f, 1);
+    expect(f, "");
+    ack(f, 4000000000u);
+    expect_error(f, "bad_field");
+}
+
+static void pings_come_back_exactly(void **state)
+{
+    struct fixture *f = *state;
+    say(f, "{\"type\":\"ping\",\"t\":123456.78901234567}");
+    json_t *pong = hear(f);
+    assert_string_equal(type_of(pong), "pong");
+    assert_true(json_number_value(json_object_get(pong, "t")) == 123456.78901234567);
+    assert_int_equal(json_integer_value(json_object_get(pong, "time_us")), f->now_ns / 1000);
+    json_decref(pong);
+}
+
+int main(void)
+{
+#define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
+    const struct CMUnitTest tests[] = {
+        TEST(nothing_before_hello),
+        TEST(welcome_tells_the_plant_and_no_addresses),
+        TEST(first_picture_comes_at_once_then_refined_then_nothing),
+        TEST(newest_camera_wins_and_the_last_state_arrives),
+        TEST(a_full_window_only_replaces),
+        TEST(equal_pictures_free_their_place),
+        TEST(overtaken_pictures_are_not_sent),
+        TEST(data_under_a_still_view_is_drawn_once_and_refined),
+        TEST(hidden_pages_get_nothing),
+        TEST(tags_come_whole_then_by_change_then_whole_again),
+        TEST(params_are_confirmed_and_bad_ones_change_nothing),
+        TEST(a_client_that_does_not_read_costs_a_bounded_list),
+        TEST(too_many_messages_are_put_off),
+        TEST(acks_for_nothing_are_errors),
+        TEST(pings_come_back_exactly),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
