@@ -1,0 +1,107 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* HTTP requests to a daemon. */
+#include "daemon.h"
+
+#include <errno.h>
+#include <libwebsockets.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "commands.h"
+
+enum { MAX_BODY_BYTES = 256 * 1024 * 1024, RECEIVE_BYTES = 16 * 1024 };
+
+bool daemon_url_parse(const char *text, struct daemon_url *url)
+{
+    const char *scheme, *host, *path;
+    char *copy = mem_strdup(text);
+    bool good = lws_parse_uri(copy, &scheme, &host, &url->port, &path) == 0 && (!strcmp(scheme, "http") || !strcmp(scheme, "ws")) &&
+                host[0] && strlen(host) < sizeof(url->host);
+    if (good)
+        strcpy(url->host, host);
+    else
+        fprintf(stderr, "plantcast: '%s' is not http://HOST:PORT/\n", text);
+    mem_free(copy);
+    return good;
+}
+
+struct exchange {
+    int status;
+    bool done;
+    struct text *body;
+    char why[200];
+};
+
+static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t len)
+{
+    struct exchange *exchange = user;
+    char buffer[LWS_PRE + RECEIVE_BYTES], *at = buffer + LWS_PRE;
+    int room = RECEIVE_BYTES;
+    switch (reason) {
+    case LWS_CALLBACK_CLIENT_CONNECTION_ERROR:
+        snprintf(exchange->why, sizeof(exchange->why), "%s", in ? (const char *)in : "no connection");
+        exchange->done = true;
+        break;
+    case LWS_CALLBACK_ESTABLISHED_CLIENT_HTTP:
+        exchange->status = (int)lws_http_client_http_response(wsi);
+        break;
+    case LWS_CALLBACK_RECEIVE_CLIENT_HTTP: /* lws asks for a buffer, and calls back with its content */
+        return lws_http_client_read(wsi, &at, &room) < 0 ? -1 : 0;
+    case LWS_CALLBACK_RECEIVE_CLIENT_HTTP_READ:
+        if (exchange->body->length + len > MAX_BODY_BYTES)
+            return -1;
+        text_add_bytes(exchange->body, in, len);
+        break;
+    case LWS_CALLBACK_COMPLETED_CLIENT_HTTP:
+    case LWS_CALLBACK_CLOSED_CLIENT_HTTP:
+        exchange->done = true;
+        break;
+    default:
+        break;
+    }
+    return 0;
+}
+
+int daemon_get(const struct daemon_url *url, const char *path, struct text *body)
+{
+    static const struct lws_protocols protocols[] = { { .name = "http", .callback = on_event }, { 0 } };
+    struct exchange exchange = { .body = body };
+    struct lws_context_creation_info info = {
+        .port = CONTEXT_PORT_NO_LISTEN, .protocols = protocols, .gid = -1, .uid = -1, .timeout_secs = 70,
+    };
+    lws_set_log_level(0, NULL);
+    struct lws_context *context = lws_create_context(&info);
+    struct lws_client_connect_info connect = {
+        .context = context, .address = url->host, .host = url->host, .port = url->port, .path = path, .method = "GET", .userdata = &exchange,
+        .protocol = "http",
+    };
+    if (!context || !lws_client_connect_via_info(&connect))
+        exchange.done = true;
+    while (!exchange.done)
+        lws_service(context, 0);
+    if (!exchange.status)
+        fprintf(stderr, "plantcast: http://%s:%d%s: %s\n", url->host, url->port, path, exchange.why[0] ? exchange.why : "no answer");
+    if (context)
+        lws_context_destroy(context);
+    return exchange.status;
+}
+
+int daemon_download(const char *url_text, const char *path, const char *out)
+{
+    struct daemon_url url;
+    struct text body = { 0 };
+    if (!daemon_url_parse(url_text, &url))
+        return 1;
+    int status = daemon_get(&url, path, &body), result = 1;
+    if (status == 200) {
+        int error = text_write_file(out, body.at ? body.at : "", body.length);
+        if (error)
+            fprintf(stderr, "plantcast: %s: %s\n", out, strerror(-error));
+        result = error ? 1 : 0;
+    } else if (status) {
+        fprintf(stderr, "plantcast: %s: the daemon answers %d: %s\n", url_text, status, body.at ? body.at : "");
+    }
+    text_finish(&body);
+    return result;
+}

@@ -1,0 +1,118 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* `plantcast tags URL`: a table of tags with value, quality and age. */
+#include <getopt.h>
+#include <jansson.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "commands.h"
+#include "daemon.h"
+
+static void print_usage(FILE *out)
+{
+    fputs("usage: plantcast tags URL [--json]\n"
+          "\n"
+          "Prints the tags of a daemon (http://HOST:PORT/) with value, quality and age.\n", out);
+}
+
+static const char *text_of(const json_t *o, const char *name)
+{
+    const char *text = json_string_value(json_object_get(o, name));
+    return text ? text : "-";
+}
+
+static int chars_of(const char *utf8)
+{
+    int count = 0;
+    for (; *utf8; utf8++)
+        count += ((unsigned char)*utf8 & 0xc0) != 0x80;
+    return count;
+}
+
+static void print_cell(const char *text, int width)
+{
+    printf("%s%*s", text, width > chars_of(text) ? width - chars_of(text) : 0, "");
+}
+
+static int widest(const json_t *tags, const char *field)
+{
+    int width = (int)strlen(field);
+    for (size_t i = 0; i < json_array_size(tags); i++) {
+        int n = chars_of(text_of(json_array_get(tags, i), field));
+        width = n > width ? n : width;
+    }
+    return width + 2;
+}
+
+static void print_tag(const json_t *tag, const int widths[5])
+{
+    const json_t *value = json_object_get(tag, "value"), *age = json_object_get(tag, "age_ms");
+    print_cell(text_of(tag, "name"), widths[0]);
+    if (json_is_number(value))
+        printf("%14.6g ", json_number_value(value));
+    else
+        printf("%14s ", "-");
+    print_cell(text_of(tag, "unit"), widths[1]);
+    print_cell(text_of(tag, "quality_name"), widths[2]);
+    if (json_is_integer(age))
+        printf("%10.1f s  ", (double)json_integer_value(age) / 1000);
+    else
+        printf("%10s    ", "never");
+    print_cell(text_of(tag, "group"), widths[3]);
+    print_cell(text_of(tag, "asset"), widths[4]);
+    putchar('\n');
+}
+
+static bool print_table(const char *text)
+{
+    json_t *o = json_loads(text, 0, NULL), *tags = json_object_get(o, "tags");
+    bool good = json_is_array(tags);
+    static const char *const fields[] = { "name", "unit", "quality_name", "group", "asset" };
+    int widths[5];
+    for (int i = 0; i < 5; i++)
+        widths[i] = widest(tags, fields[i]);
+    if (good) {
+        print_cell("tag", widths[0]);
+        printf("%14s ", "value");
+        print_cell("unit", widths[1]);
+        print_cell("quality", widths[2]);
+        printf("%10s    ", "age");
+        print_cell("group", widths[3]);
+        puts("asset");
+    }
+    for (size_t i = 0; good && i < json_array_size(tags); i++)
+        print_tag(json_array_get(tags, i), widths);
+    json_decref(o);
+    return good;
+}
+
+int cmd_tags(int argc, char **argv)
+{
+    static const struct option options[] = { { "json", no_argument, NULL, 'j' }, { "help", no_argument, NULL, 'h' }, { NULL, 0, NULL, 0 } };
+    struct daemon_url url;
+    struct text body = { 0 };
+    bool as_json = false;
+    for (int option; (option = getopt_long(argc, argv, "", options, NULL)) != -1;) {
+        if (option != 'j') {
+            print_usage(option == 'h' ? stdout : stderr);
+            return option == 'h' ? 0 : 2;
+        }
+        as_json = true;
+    }
+    if (optind + 1 != argc) {
+        print_usage(stderr);
+        return 2;
+    }
+    if (!daemon_url_parse(argv[optind], &url))
+        return 2;
+    int status = daemon_get(&url, "/api/v1/tags", &body);
+    bool good = status == 200 && body.at;
+    if (status && !good)
+        fprintf(stderr, "plantcast: %s: the daemon answers %d: %s\n", argv[optind], status, body.at ? body.at : "");
+    if (good && as_json)
+        puts(body.at);
+    else if (good)
+        good = print_table(body.at);
+    text_finish(&body);
+    return good ? 0 : 1;
+}
