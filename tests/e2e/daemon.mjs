@@ -1,0 +1,347 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The daemon as a stranger meets it: HTTP, a client written from PROTOCOL.md, bad input of every kind, a PLC that dies.
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { connect, createServer } from 'node:net';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { encodeFrame, get, http, PlainClient } from './support/plain_client.mjs';
+import { BIN, missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+
+const VECTORS = 'protocol/vectors/client';
+const absent = missing();
+const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
+let plant;
+
+before(async () => {
+    if (skip)
+        return;
+    plant = await TinyPlant.create();
+    const prepared = plant.prepare();
+    assert.equal(prepared.code, 0, prepared.err);
+    await plant.startSim();
+    await plant.startDaemon();
+});
+after(() => plant?.destroy());
+
+const valueOf = (message, index) => message.values.find((row) => row[0] === index);
+const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
+
+// The newest said of a tag, whenever it comes to satisfy the question.
+const tagUntil = (client, index, what, question, timeoutMs) => client.until(`tag ${index}: ${what}`, () => {
+    const rows = client.texts.filter((m) => m.type === 'tags').map((m) => valueOf(m, index)).filter(Boolean);
+    const row = rows.at(-1);
+    return row && question(row) ? row : null;
+}, timeoutMs);
+
+test('the command line: exit codes and reasons', { skip }, async () => {
+    const busy = createServer().listen(0, '127.0.0.1');
+    await new Promise((done) => busy.once('listening', done));
+    const cases = [
+        [['--version'], 0, /^plantcastd \d+\.\d+/, null], [['--help'], 0, /^usage/, null], [[], 2, null, /usage/],
+        [['a.yaml', 'b.yaml'], 2, null, /b\.yaml/], [[plant.file, '--gl', 'vulkan'], 2, null, /vulkan/],
+        [[plant.file, '--port', '70000'], 2, null, /70000/], [[plant.file, '--colour'], 2, null, /colour/],
+        [[join(plant.folder, 'none.yaml')], 1, null, /none\.yaml/], [['--check', plant.file], 0, /2 assets, 2 groups, 1 sources, 3 tags/, null],
+        [[plant.file, '--listen', '0.0.0.0'], 1, null, /--open-viewers/], [[plant.file, '--listen', 'elsewhere', '--open-viewers'], 1, null, /elsewhere/],
+        [[plant.file, '--prepared', join(plant.folder, 'nothing')], 1, null, /plantcast-prep/],
+        [[plant.file, '--port', String(busy.address().port)], 1, null, /in use/],
+    ];
+    for (const [args, code, out, err] of cases) {
+        const result = runProgram('plantcastd', args);
+        assert.equal(result.code, code, `plantcastd ${args.join(' ')}: ${result.err}`);
+        if (out)
+            assert.match(result.out, out);
+        if (err)
+            assert.match(result.err, err);
+    }
+    busy.close();
+});
+
+test('--check names every fault with its place', { skip }, () => {
+    const file = join(plant.folder, 'bad.yaml');
+    writeFileSync(file, readFileSync(plant.file, 'utf8').replace('max: 100', 'max: -1').replace('distance: euclidean', 'distance: straight'));
+    const result = runProgram('plantcastd', ['--check', file]);
+    assert.equal(result.code, 1);
+    assert.match(result.err, /bad\.yaml:7:\d+: error: /);
+    assert.match(result.err, /bad\.yaml:8:\d+: error: /);
+});
+
+test('HTTP: what is there, what is not, and how it is said', { skip }, async () => {
+    const { port } = plant;
+    for (const [path, type] of [['/', 'text/html'], ['/app/main.js', 'text/javascript'], ['/healthz', 'text/plain'], ['/readyz', 'text/plain'],
+        ['/metrics', 'text/plain'], ['/api/v1/plant', 'application/json'], ['/api/v1/tags', 'application/json']]) {
+        const answer = await get(port, path);
+        assert.equal(answer.status, 200, path);
+        assert.ok(answer.headers['content-type'].startsWith(type), `${path}: ${answer.headers['content-type']}`);
+        assert.equal(answer.body.length, Number(answer.headers['content-length']), path);
+        assert.match(answer.headers['content-security-policy'], /default-src 'self'/);
+        assert.equal(answer.headers['x-content-type-options'], 'nosniff');
+        const head = await get(port, path, 'HEAD');
+        assert.deepEqual([head.status, head.body.length], [200, 0], path);
+    }
+    for (const path of ['/none', '/app', '/app/', '/app/../../server/main.c', '/../Makefile', '/%2e%2e/Makefile', '/..%2fMakefile', '/.git/config',
+        '//etc/passwd', '/app/main.js/', '/package.json%00.js'])
+        assert.ok([403, 404].includes((await get(port, path)).status), path);
+    for (const method of ['POST', 'PUT', 'DELETE', 'PATCH', 'OPTIONS']) {
+        const answer = await get(port, '/api/v1/tags', method, 'Content-Length: 0\r\n');
+        assert.deepEqual([answer.status, answer.headers.allow], [405, 'GET, HEAD'], method);
+    }
+    const page = await get(port, '/'), again = await get(port, '/', 'GET', `If-None-Match: ${page.headers.etag}\r\n`);
+    assert.deepEqual([again.status, again.body.length], [304, 0]);
+    assert.equal((await get(port, '/stream')).status, 426);
+});
+
+test('the API tells tags and plant, and no addresses', { skip }, async () => {
+    const tags = JSON.parse((await get(plant.port, '/api/v1/tags')).body), whole = JSON.parse((await get(plant.port, '/api/v1/plant')).body);
+    assert.deepEqual(tags.tags.map((tag) => tag.name), ['TI-1', 'TI-2', 'PI-1']);
+    assert.deepEqual(Object.keys(tags.tags[0]).sort(), ['age_ms', 'asset', 'description', 'group', 'name', 'quality', 'quality_name', 'unit', 'value']);
+    assert.deepEqual(whole.assets.map((asset) => asset.id), ['E-101', 'P-101A']);
+    assert.ok(!/40000|127\.0\.0\.1|\.gltf/.test(JSON.stringify([tags, whole])));
+});
+
+test('snapshots: a picture, or what is wrong with the question', { skip }, async () => {
+    const good = await get(plant.port, '/snapshot.png?width=320&height=200&group=temperature&camera=4,-4,3,1,0,0,50&look=flat');
+    assert.deepEqual([good.status, good.headers['content-type']], [200, 'image/png']);
+    assert.deepEqual([good.body.readUInt32BE(16), good.body.readUInt32BE(20)], [320, 200]);
+    for (const query of ['width=0', 'width=1000000000', 'height=nan', 'group=none', 'camera=1,2', 'colour=red', 'power=1e999', 'look=%00', 'x'.repeat(2000)])
+        assert.equal((await get(plant.port, `/snapshot.png?${query}`)).status, 400, query);
+});
+
+test('the smallest client of the protocol gets a picture and acknowledges it', { skip }, async () => {
+    const client = await PlainClient.open(plant.port);
+    const welcome = await client.hello();
+    assert.equal(welcome.codec, 'jpeg');
+    assert.deepEqual(welcome.tags.map((tag) => tag.name), ['TI-1', 'TI-2', 'PI-1']);
+    assert.equal(Buffer.from(welcome.colormaps[0].rgb, 'base64').length, 768);
+    const frame = await client.frameWhere('a first frame', () => true);
+    assert.deepEqual([frame.type, frame.codec, frame.seq, frame.full_width, frame.full_height], [1, 1, 1, 320, 180]);
+    assert.equal(frame.payload.length, frame.payload_bytes);
+    assert.deepEqual([frame.payload.readUInt16BE(0), frame.payload.readUInt16BE(frame.payload.length - 2)], [0xffd8, 0xffd9]);
+    assert.ok(Math.abs(frame.sent_time_us / 1000 - Date.now()) < 60000);
+    assert.ok(welcome.plant.home.eye.every((v, i) => Math.abs(v - frame.eye[i]) < 1e-3));
+    const still = await client.frameWhere('a refined frame', (f) => (f.flags & 2) !== 0);
+    assert.ok(still.seq > frame.seq);
+    client.close();
+});
+
+test('cameras and parameters are echoed, markers go before their frame', { skip }, async () => {
+    const client = await PlainClient.open(plant.port);
+    await client.hello();
+    client.say({ type: 'camera', seq: 7, eye: [5, -6, 4], target: [1, 0, 0], fov: 40 });
+    const frame = await client.frameWhere('camera 7', (f) => f.camera_seq === 7);
+    assert.deepEqual([frame.eye, frame.fov], [[5, -6, 4], 40]);
+    client.say({ type: 'params', seq: 3, group: 'pressure', ramp_interval: 2 });
+    const params = await client.text('params');
+    assert.deepEqual([params.seq, params.group, params.ramp_interval, params.range, params.distance], [3, 'pressure', 2, [0, 10], 'euclidean']);
+    const changed = await client.frameWhere('parameters 3', (f) => f.params_seq === 3);
+    const markers = client.texts.find((m) => m.type === 'markers' && m.seq === changed.seq);
+    assert.deepEqual(markers.markers.map((row) => row[0]), [2]);
+    client.say({ type: 'resize', width: 200, height: 100 });
+    await client.frameWhere('the new size', (f) => f.full_width === 200 && f.full_height === 100);
+    client.say({ type: 'ping', t: 12345.678 });
+    assert.equal((await client.text('pong')).t, 12345.678);
+    client.close();
+});
+
+test('a second page hears the same, another codec too', { skip }, async () => {
+    const client = await PlainClient.open(plant.port);
+    const welcome = await client.hello({ codecs: ['av1', 'png'], params: { seq: 1, group: 'pressure' } });
+    assert.deepEqual([welcome.codec, welcome.view.group], ['png', 'pressure']);
+    const frame = await client.frameWhere('a frame', () => true);
+    assert.deepEqual([frame.codec, frame.payload.subarray(1, 4).toString()], [2, 'PNG']);
+    client.close();
+});
+
+test('without acknowledgements frames stop; the last state arrives all the same', { skip }, async () => {
+    const client = await PlainClient.open(plant.port, { acknowledge: false });
+    await client.hello();
+    for (let seq = 1; seq <= 30; seq++) {
+        client.say({ type: 'camera', seq, eye: [5, -6 - seq / 10, 4], target: [1, 0, 0] });
+        await sleep(20);
+    }
+    await sleep(300);
+    assert.equal(client.frames.length, 2);
+    client.acknowledge = true;
+    client.say({ type: 'ack', seq: client.frames.at(-1).seq });
+    await client.frameWhere('the last camera', (f) => f.camera_seq === 30);
+    client.close();
+});
+
+test('hidden pages get no frames, and one when they come back', { skip }, async () => {
+    const client = await PlainClient.open(plant.port);
+    await client.hello();
+    await client.frameWhere('a refined frame', (f) => (f.flags & 2) !== 0);
+    client.say({ type: 'visible', visible: false });
+    await sleep(200);
+    const before = client.frames.length;
+    client.say({ type: 'camera', seq: 1, eye: [5, -6, 4], target: [1, 0, 0] });
+    await sleep(700);
+    assert.equal(client.frames.length, before);
+    client.say({ type: 'visible', visible: true });
+    await client.frameWhere('a frame', (f) => f.camera_seq === 1);
+    client.close();
+});
+
+test('who may connect', { skip }, async () => {
+    const { port } = plant, open = (options) => PlainClient.open(port, options);
+    await assert.rejects(open({ protocol: 'plantcast.v9' }), /400/);
+    await assert.rejects(open({ origin: 'http://evil.example' }), /403/);
+    await assert.rejects(open({ origin: 'null' }), /403/);
+    await assert.rejects(open({ path: '/elsewhere' }), /404/);
+    (await open({ origin: `http://127.0.0.1:${port}` })).close();
+    (await open({ protocol: 'chat, plantcast.v1' })).close();
+    const none = await open({ protocol: null });
+    assert.equal((await none.until('a close', (c) => c.closed)).code, 1002);
+});
+
+test('every bad message is answered by its name, and the session lives', { skip }, async () => {
+    const client = await PlainClient.open(plant.port), other = await PlainClient.open(plant.port);
+    await other.hello();
+    client.say({ type: 'camera', seq: 1, eye: [5, -6, 4], target: [1, 0, 0] });
+    assert.equal((await client.text('error')).code, 'hello_first');
+    await client.hello();
+    client.say({ type: 'hello', width: 320, height: 180, codecs: ['jpeg'] });
+    assert.equal((await client.text('error')).code, 'hello_again');
+    const files = readdirSync(VECTORS).filter((name) => name.endsWith('.txt') && !name.includes('--hello-'));
+    assert.ok(files.length > 40);
+    for (const name of files) {
+        client.write(encodeFrame(1, readFileSync(join(VECTORS, name))));
+        const error = await client.text('error');
+        assert.equal(error.code, name.slice(0, name.indexOf('--')), `${name}: ${error.text}`);
+        assert.ok(error.text.length > 0 && error.text.length < 300, name);
+    }
+    client.write(encodeFrame(2, Buffer.from([1, 2, 3])));
+    assert.equal((await client.text('error')).code, 'not_json');
+    client.say({ type: 'ack', seq: 4000000000 });
+    assert.equal((await client.text('error')).about, 'ack');
+    client.say({ type: 'camera', seq: 9, eye: [5, -6, 4], target: [1, 0, 0] });
+    await client.frameWhere('a frame after it all', (f) => f.camera_seq === 9);
+    assert.equal(other.closed, null);
+    assert.equal(other.texts.filter((m) => m.type === 'error').length, 0);
+    client.close();
+    other.close();
+});
+
+test('messages in pieces, one byte at a time, half a message, and beyond all measure', { skip }, async () => {
+    const client = await PlainClient.open(plant.port);
+    const text = '{"type":"ping","t":5}';
+    client.write(encodeFrame(1, text.slice(0, 7), { fin: false }));
+    client.write(encodeFrame(9, 'are you there'));
+    client.write(encodeFrame(0, text.slice(7, 12), { fin: false }));
+    client.write(encodeFrame(0, text.slice(12)));
+    assert.equal((await client.text('pong')).t, 5);
+    for (const byte of encodeFrame(1, '{"type":"ping","t":6}')) {
+        client.write(Buffer.from([byte]));
+        await sleep(1);
+    }
+    assert.equal((await client.text('pong')).t, 6);
+    client.write(encodeFrame(1, ' '.repeat(900000)));
+    assert.equal((await client.text('error')).code, 'too_long');
+    client.write(encodeFrame(1, ' '.repeat(1100000)));
+    assert.equal((await client.until('a close', (c) => c.closed)).code, 1009);
+    const half = await PlainClient.open(plant.port);
+    half.write(encodeFrame(1, '{"type":"hello"').subarray(0, 9));
+    const unmasked = await PlainClient.open(plant.port);
+    unmasked.write(encodeFrame(1, '{"type":"ping","t":7}', { mask: false }));
+    await unmasked.until('a close', (c) => c.closed);
+    half.close();
+});
+
+test('a hostile client is not felt by another', { skip }, async () => {
+    const calm = await PlainClient.open(plant.port), hostile = await PlainClient.open(plant.port, { acknowledge: false });
+    await calm.hello();
+    await hostile.hello({ width: 1024, height: 1024 });
+    hostile.socket.pause(); /* and it does not read */
+    const flood = encodeFrame(1, '{"type":"camera","seq":1,"eye":[1e300,0,0],"target":[0,0,0]}');
+    const many = Buffer.concat(Array(500).fill(flood));
+    const silent = Array.from({ length: 200 }, () => connect(plant.port, '127.0.0.1').on('error', () => {}));
+    const times = [];
+    for (let seq = 1; seq <= 20; seq++) {
+        hostile.write(many);
+        const sent = performance.now();
+        calm.say({ type: 'camera', seq, eye: [5, -6 - seq / 10, 4], target: [1, 0, 0] });
+        const frame = await calm.frameWhere(`camera ${seq}`, (f) => f.camera_seq === seq);
+        times.push(frame.at - sent);
+    }
+    times.sort((a, b) => a - b);
+    assert.ok(times[10] < 500, `median of ${times[10].toFixed(1)} ms beside 10,000 bad messages`);
+    assert.equal(calm.closed, null);
+    for (const socket of silent)
+        socket.destroy();
+    hostile.close();
+    calm.close();
+});
+
+test('requests that are no requests', { skip }, async () => {
+    const { port } = plant;
+    for (const head of ['\r\n\r\n', 'GET\r\n\r\n', 'GET / HTTP/9.9\r\n\r\n', `GET / HTTP/1.1\r\nHost: x\r\nX: ${'y'.repeat(100000)}\r\n\r\n`, `GET /${'a'.repeat(20000)} HTTP/1.1\r\n\r\n`,
+        '\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03', 'CONNECT evil.example:443 HTTP/1.1\r\n\r\n', 'GET http://evil.example/ HTTP/1.1\r\nHost: x\r\n\r\n'])
+        await http(port, head, { timeoutMs: 2000 }).catch(() => null);
+    assert.equal((await get(port, '/healthz')).status, 200);
+});
+
+test('a reading that changes is told and drawn; a PLC that dies is seen, and comes back', { skip }, async () => {
+    const client = await PlainClient.open(plant.port);
+    await client.hello();
+    assert.match(await plant.tell('set TI-1 20'), /^ok/);
+    await tagUntil(client, 0, 'is 20', (row) => row[1] === 20 && row[2] === 'good');
+    await client.frameWhere('a refined frame', (f) => (f.flags & 2) !== 0);
+    await sleep(600);
+    const before = client.frames.at(-1);
+    const told = performance.now();
+    assert.match(await plant.tell('set TI-1 90'), /^ok/);
+    const changed = await client.until('another frame', (c) => c.frames.at(-1).seq > before.seq && c.frames.at(-1));
+    assert.ok(!changed.payload.equals(before.payload));
+    assert.ok(changed.at - told < 1500, `drawn after ${(changed.at - told).toFixed(0)} ms`);
+    await tagUntil(client, 0, 'is 90', (row) => row[1] === 90);
+    assert.equal(changed.flags & 4, 0);
+
+    await plant.sim.stop('SIGKILL');
+    await client.until('a status without a link', (c) => c.texts.find((m) => m.type === 'status' && !m.live && !m.links[0].up));
+    await tagUntil(client, 0, 'is bad', (row) => row[1] === null && row[2] === 'bad');
+    const dead = await client.until('a frame without live data', (c) => (c.frames.at(-1).flags & 4) !== 0 && c.frames.at(-1));
+    assert.equal(dead.oldest_age_ms, 0xffffffff);
+    assert.equal((await get(plant.port, '/readyz')).status, 200);
+
+    await plant.startSim();
+    assert.match(await plant.tell('set TI-1 55'), /^ok/);
+    await tagUntil(client, 0, 'is 55', (row) => row[1] === 55 && row[2] === 'good', 30000);
+    await client.until('a frame with live data', (c) => (c.frames.at(-1).flags & 4) === 0);
+    await client.until('a status with the link', (c) => c.texts.findLast((m) => m.type === 'status').live);
+    client.close();
+});
+
+test('plantcast tags and plantcast probe', { skip }, () => {
+    const url = `http://127.0.0.1:${plant.port}/`;
+    const tags = runProgram('plantcast', ['tags', url]);
+    assert.equal(tags.code, 0, tags.err);
+    assert.match(tags.out, /TI-1 .*°C .*Good .*temperature .*E-101/);
+    const probe = runProgram('plantcast', ['probe', url, '--sessions', '2', '--seconds', '1', '--size', '320x180', '--json']);
+    assert.equal(probe.code, 0, probe.err);
+    const report = JSON.parse(probe.out);
+    assert.ok(report.frames > 4 && report.fps > 1 && report.input_to_frame_ms.p50 > 0 && report.failures.length === 0);
+    assert.equal(runProgram('plantcast', ['probe', 'http://127.0.0.1:1/', '--seconds', '1']).code, 1);
+    assert.equal(runProgram('plantcast', ['probe', url, '--motion', 'jump']).code, 2);
+    assert.equal(runProgram('plantcast', ['tags']).code, 2);
+});
+
+test('SIGTERM: clients are told, everything ends cleanly', { skip }, async () => {
+    const client = await PlainClient.open(plant.port);
+    await client.hello();
+    client.say({ type: 'camera', seq: 1, eye: [5, -6, 4], target: [1, 0, 0] });
+    const begin = performance.now();
+    const ended = await plant.daemon.stop('SIGTERM');
+    assert.deepEqual(ended, { code: 0, signal: null }, plant.daemon.said);
+    assert.ok(performance.now() - begin < 5000);
+    assert.equal((await client.until('a close', (c) => c.closed)).code, 1001);
+    assert.ok(!/ERROR: |WARNING: ThreadSanitizer/.test(plant.daemon.said), plant.daemon.said);
+});
+
+test('no GL at all is said, and ends with 1', { skip }, () => {
+    const { status, stderr } = spawnSync(join(BIN, 'plantcastd'), [plant.file, '--port', '0', '--gl', 'egl-device'], {
+        encoding: 'utf8', timeout: 30000, env: { ...process.env, __EGL_VENDOR_LIBRARY_DIRS: '/nonexistent' },
+    });
+    assert.equal(status, 1);
+    assert.match(stderr, /egl-device/);
+});

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A client of plantcast.v1 written from PROTOCOL.md and RFC 6455 alone, on a plain socket, so that it can also misbehave.
+import { createHash, randomBytes } from 'node:crypto';
+import { connect } from 'node:net';
+
+const OPCODE = { continuation: 0, text: 1, binary: 2, close: 8, ping: 9, pong: 10 };
+
+// { status, headers (lower case), body } of one HTTP request, written as given.
+export function http(port, head, { timeoutMs = 15000 } = {}) {
+    return new Promise((done, fail) => {
+        const socket = connect(port, '127.0.0.1', () => socket.write(head));
+        let bytes = Buffer.alloc(0);
+        const timer = setTimeout(() => socket.destroy(new Error(`no answer to ${JSON.stringify(head.slice(0, 80))}`)), timeoutMs);
+        const finish = (ended) => {
+            const end = bytes.indexOf('\r\n\r\n');
+            if (end < 0)
+                return ended ? (clearTimeout(timer), done({ status: 0, headers: {}, body: Buffer.alloc(0) })) : undefined;
+            const [first, ...lines] = bytes.subarray(0, end).toString().split('\r\n');
+            const headers = Object.fromEntries(lines.map((line) => [line.slice(0, line.indexOf(':')).toLowerCase(), line.slice(line.indexOf(':') + 1).trim()]));
+            const body = bytes.subarray(end + 4), length = /^HEAD /.test(head) ? 0 : Number(headers['content-length'] ?? 0);
+            if (!ended && body.length < length)
+                return undefined;
+            clearTimeout(timer);
+            socket.destroy();
+            return done({ status: Number(first.split(' ')[1]), headers, body });
+        };
+        socket.on('data', (chunk) => { bytes = Buffer.concat([bytes, chunk]); finish(false); });
+        socket.on('end', () => finish(true));
+        socket.on('error', (error) => { clearTimeout(timer); fail(error); });
+    });
+}
+export const get = (port, path, method = 'GET', more = '') =>
+    http(port, `${method} ${path} HTTP/1.1\r\nHost: 127.0.0.1:${port}\r\n${more}\r\n`);
+
+export function encodeFrame(opcode, payload, { fin = true, mask = true } = {}) {
+    const body = Buffer.from(payload), n = body.length;
+    const size = n < 126 ? Buffer.from([n]) : n < 65536 ? Buffer.from([126, n >> 8, n & 255]) : Buffer.concat([Buffer.from([127]), big(n)]);
+    size[0] |= mask ? 0x80 : 0;
+    const key = mask ? randomBytes(4) : Buffer.alloc(0);
+    const masked = mask ? Buffer.from(body.map((byte, i) => byte ^ key[i & 3])) : body;
+    return Buffer.concat([Buffer.from([opcode | (fin ? 0x80 : 0)]), size, key, masked]);
+}
+
+function big(n) {
+    const out = Buffer.alloc(8);
+    out.writeBigUInt64BE(BigInt(n));
+    return out;
+}
+
+// The header of a frame, by the names of PROTOCOL.md.
+export function readFrame(bytes) {
+    const f32 = (at, count) => Array.from({ length: count }, (_, i) => bytes.readFloatLE(at + 4 * i));
+    const u32 = (at) => bytes.readUInt32LE(at), u16 = (at) => bytes.readUInt16LE(at);
+    return {
+        type: bytes[0], codec: bytes[1], flags: u16(2), payload_bytes: u32(4), seq: u32(8), camera_seq: u32(12), params_seq: u32(16),
+        oldest_age_ms: u32(20), data_time_us: Number(bytes.readBigUInt64LE(24)), sent_time_us: Number(bytes.readBigUInt64LE(32)),
+        wait_us: u32(40), field_us: u32(44), render_us: u32(48), encode_us: u32(52), x: u16(56), y: u16(58), width: u16(60),
+        height: u16(62), full_width: u16(64), full_height: u16(66), eye: f32(68, 3), target: f32(80, 3), up: f32(92, 3), fov: f32(104, 1)[0],
+        payload: bytes.subarray(112),
+    };
+}
+
+export class PlainClient {
+    // Resolves once the server has agreed. options: protocol (null: none), origin, path, acknowledge (true).
+    static open(port, options = {}) {
+        const { protocol = 'plantcast.v1', origin = null, path = '/stream', acknowledge = true } = options;
+        const key = randomBytes(16).toString('base64');
+        const client = new PlainClient();
+        client.acknowledge = acknowledge;
+        return new Promise((done, fail) => {
+            const socket = connect(port, '127.0.0.1', () => socket.write([
+                `GET ${path} HTTP/1.1`, `Host: 127.0.0.1:${port}`, 'Upgrade: websocket', 'Connection: Upgrade', `Sec-WebSocket-Key: ${key}`,
+                'Sec-WebSocket-Version: 13', ...(protocol ? [`Sec-WebSocket-Protocol: ${protocol}`] : []),
+                ...(origin ? [`Origin: ${origin}`] : []), '', '',
+            ].join('\r\n')));
+            const accept = createHash('sha1').update(`${key}258EAFA5-E914-47DA-95CA-C5AB0DC85B11`).digest('base64');
+            client.socket = socket;
+            const greet = (chunk) => {
+                client.bytes = Buffer.concat([client.bytes, chunk]);
+                const end = client.bytes.indexOf('\r\n\r\n');
+                if (end < 0)
+                    return;
+                const head = client.bytes.subarray(0, end).toString();
+                client.bytes = client.bytes.subarray(end + 4);
+                socket.off('data', greet);
+                if (!head.startsWith('HTTP/1.1 101') || !head.includes(accept))
+                    return fail(new Error(head.split('\r\n')[0]));
+                socket.on('data', (more) => client.take(more));
+                client.take(Buffer.alloc(0));
+                done(client);
+            };
+            socket.setNoDelay(true);
+            socket.on('data', greet);
+            socket.on('error', (error) => { client.finish(null); fail(error); });
+            socket.on('close', () => { client.finish(null); fail(new Error('closed before it was open')); });
+        });
+    }
+
+    constructor() {
+        Object.assign(this, { bytes: Buffer.alloc(0), parts: [], opcode: 0, texts: [], frames: [], closed: null, waiting: [] });
+    }
+
+    take(chunk) {
+        this.bytes = this.bytes.length ? Buffer.concat([this.bytes, chunk]) : chunk;
+        while (this.bytes.length >= 2) {
+            let n = this.bytes[1] & 127, at = 2;
+            if (n === 126)
+                [n, at] = this.bytes.length < 4 ? [Infinity, 4] : [this.bytes.readUInt16BE(2), 4];
+            else if (n === 127)
+                [n, at] = this.bytes.length < 10 ? [Infinity, 10] : [Number(this.bytes.readBigUInt64BE(2)), 10];
+            if (this.bytes.length < at + n)
+                return;
+            const first = this.bytes[0];
+            this.onFrame(first & 15, (first & 0x80) !== 0, this.bytes.subarray(at, at + n));
+            this.bytes = this.bytes.subarray(at + n);
+        }
+    }
+
+    onFrame(opcode, fin, payload) {
+        if (opcode === OPCODE.close) {
+            this.finish({ code: payload.length >= 2 ? payload.readUInt16BE(0) : 1005, text: payload.subarray(2).toString() });
+        } else if (opcode === OPCODE.ping) {
+            this.write(encodeFrame(OPCODE.pong, payload));
+        } else if (opcode <= OPCODE.binary) {
+            this.opcode = opcode || this.opcode;
+            this.parts.push(payload);
+            if (fin)
+                this.onMessage(Buffer.concat(this.parts.splice(0)));
+        }
+    }
+
+    onMessage(message) {
+        if (this.opcode === OPCODE.text) {
+            this.texts.push(JSON.parse(message.toString()));
+        } else {
+            const frame = readFrame(message);
+            this.frames.push({ ...frame, at: performance.now() });
+            if (this.acknowledge)
+                this.say({ type: 'ack', seq: frame.seq });
+        }
+        this.wake();
+    }
+
+    finish(how) {
+        this.closed ??= how ?? { code: 1006, text: '' };
+        this.socket.destroy();
+        this.wake();
+    }
+
+    wake() {
+        for (const look of this.waiting.splice(0))
+            look();
+    }
+
+    write(bytes) {
+        if (!this.socket.destroyed)
+            this.socket.write(bytes);
+    }
+
+    say(message) {
+        this.write(encodeFrame(OPCODE.text, typeof message === 'string' ? message : JSON.stringify(message)));
+    }
+
+    // Until question(this) is neither null nor false nor undefined; what it was.
+    async until(what, question, timeoutMs = 15000) {
+        const end = performance.now() + timeoutMs;
+        for (;;) {
+            const answer = question(this);
+            if (answer !== null && answer !== undefined && answer !== false)
+                return answer;
+            if (performance.now() > end)
+                throw new Error(`waited ${timeoutMs} ms for ${what}; closed: ${JSON.stringify(this.closed)}`);
+            await new Promise((done) => { this.waiting.push(done); setTimeout(done, 50); });
+        }
+    }
+
+    // The first text of that type that has not been taken yet.
+    text(type, timeoutMs) {
+        return this.until(`a message of type ${type}`, () => {
+            const i = this.texts.findIndex((message) => message.type === type);
+            return i < 0 ? null : this.texts.splice(i, 1)[0];
+        }, timeoutMs);
+    }
+
+    async hello(more = {}) {
+        this.say({ type: 'hello', width: 320, height: 180, codecs: ['jpeg'], ...more });
+        return this.text('welcome');
+    }
+
+    frameWhere(what, question, timeoutMs) {
+        return this.until(what, () => this.frames.find(question), timeoutMs);
+    }
+
+    close() {
+        this.closed ??= { code: 1000, text: 'by us' };
+        this.socket.destroy();
+    }
+}

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A plant of two boxes and three tags in a folder of its own, prepared and served on free ports.
+import { spawn, spawnSync } from 'node:child_process';
+import { existsSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { connect, createServer } from 'node:net';
+import { tmpdir } from 'node:os';
+import { join, resolve } from 'node:path';
+
+export const BIN = resolve(process.env.PLANTCAST_BIN ?? 'build');
+export const PROGRAMS = ['plantcastd', 'plantcast-prep', 'plantcast-sim', 'plantcast'];
+export const missing = () => PROGRAMS.filter((name) => !existsSync(join(BIN, name)));
+
+// A glTF of one box, a metre wide, deep and high, every face with its own corners.
+function boxModel() {
+    const positions = [], normals = [], indices = [];
+    for (let axis = 0; axis < 3; axis++) {
+        for (const side of [-1, 1]) {
+            const base = positions.length / 3, n = [0, 0, 0];
+            n[axis] = side;
+            for (const [u, v] of [[-1, -1], [1, -1], [1, 1], [-1, 1]]) {
+                const p = [0, 0, 0];
+                p[axis] = 0.5 * side;
+                p[(axis + 1) % 3] = 0.5 * u * side;
+                p[(axis + 2) % 3] = 0.5 * v;
+                positions.push(...p);
+                normals.push(...n);
+            }
+            indices.push(base, base + 1, base + 2, base, base + 2, base + 3);
+        }
+    }
+    const bytes = Buffer.concat([Buffer.from(new Float32Array(positions).buffer), Buffer.from(new Float32Array(normals).buffer),
+        Buffer.from(new Uint16Array(indices).buffer)]);
+    const at = positions.length * 4;
+    return JSON.stringify({
+        asset: { version: '2.0' }, scene: 0, scenes: [{ nodes: [0] }], nodes: [{ name: 'box', mesh: 0 }],
+        meshes: [{ primitives: [{ attributes: { POSITION: 0, NORMAL: 1 }, indices: 2 }] }],
+        buffers: [{ byteLength: bytes.length, uri: `data:application/octet-stream;base64,${bytes.toString('base64')}` }],
+        bufferViews: [{ buffer: 0, byteOffset: 0, byteLength: at }, { buffer: 0, byteOffset: at, byteLength: at },
+            { buffer: 0, byteOffset: 2 * at, byteLength: indices.length * 2 }],
+        accessors: [
+            { bufferView: 0, componentType: 5126, count: 24, type: 'VEC3', min: [-0.5, -0.5, -0.5], max: [0.5, 0.5, 0.5] },
+            { bufferView: 1, componentType: 5126, count: 24, type: 'VEC3' },
+            { bufferView: 2, componentType: 5123, count: indices.length, type: 'SCALAR' },
+        ],
+    });
+}
+
+const plantYaml = (port) => `plant:
+  name: Two boxes
+assets:
+  - { id: E-101, model: box.gltf, description: warm }
+  - { id: P-101A, model: box.gltf, placement: { translate: [3, 0, 0] } }
+groups:
+  - { id: temperature, quantity: Temperature, unit: °C, min: 0, max: 100 }
+  - { id: pressure, quantity: Pressure, unit: bar, min: 0, max: 10, distance: euclidean }
+sources:
+  - { id: plc1, type: modbus, host: 127.0.0.1, port: ${port}, poll_ms: 100, timeout_ms: 300, byte_order: ABCD }
+tags: tags.csv
+`;
+const TAGS = `Tag Name,Address,Data Type,Eng Units,Description,Group,Asset,X,Y,Z,Stale s
+TI-1,400001,Float,°C,left,temperature,E-101,0.5,0,0,1
+TI-2,400003,Float,°C,right,temperature,E-101,-0.5,0,0,1
+PI-1,400005,Float,bar,pump,pressure,P-101A,3,0,0.5,1
+`;
+
+export async function freePort() {
+    const server = createServer().listen(0, '127.0.0.1');
+    await new Promise((done) => server.once('listening', done));
+    const { port } = server.address();
+    await new Promise((done) => server.close(done));
+    return port;
+}
+
+// Ends by itself: { code, out, err }.
+export function runProgram(name, args, timeout = 30000) {
+    const { status, stdout, stderr } = spawnSync(join(BIN, name), args, { encoding: 'utf8', timeout });
+    return { code: status, out: stdout, err: stderr };
+}
+
+class Program {
+    constructor(name, args) {
+        this.said = '';
+        this.child = spawn(join(BIN, name), args, { stdio: ['ignore', 'pipe', 'pipe'] });
+        this.ended = new Promise((done) => this.child.once('exit', (code, signal) => done({ code, signal })));
+        for (const pipe of [this.child.stdout, this.child.stderr])
+            pipe.on('data', (chunk) => { this.said = (this.said + chunk).slice(-100000); });
+    }
+
+    async line(pattern, timeoutMs = 60000) {
+        for (const end = performance.now() + timeoutMs; ;) {
+            const found = this.said.match(pattern);
+            if (found)
+                return found;
+            if (this.child.exitCode !== null || performance.now() > end)
+                throw new Error(`no ${pattern} in:\n${this.said}`);
+            await new Promise((done) => setTimeout(done, 20));
+        }
+    }
+
+    async stop(signal = 'SIGTERM') {
+        this.child.kill(signal);
+        return this.ended;
+    }
+}
+
+export class TinyPlant {
+    static async create() {
+        const plant = new TinyPlant();
+        plant.folder = mkdtempSync(join(tmpdir(), 'plantcast-tiny-'));
+        plant.file = join(plant.folder, 'plant.yaml');
+        plant.modbusPort = await freePort();
+        writeFileSync(join(plant.folder, 'box.gltf'), boxModel());
+        writeFileSync(plant.file, plantYaml(plant.modbusPort));
+        writeFileSync(join(plant.folder, 'tags.csv'), TAGS);
+        return plant;
+    }
+
+    prepare() {
+        return runProgram('plantcast-prep', [this.file], 60000);
+    }
+
+    async startSim() {
+        this.controlPort = await freePort();
+        this.sim = new Program('plantcast-sim', [this.file, '--control', String(this.controlPort)]);
+        await this.sim.line(/^plantcast-sim: listening/m);
+    }
+
+    // One line to the simulator, one line back.
+    tell(line) {
+        return new Promise((done, fail) => {
+            const socket = connect(this.controlPort, '127.0.0.1', () => socket.write(`${line}\n`));
+            socket.once('data', (answer) => { socket.destroy(); done(answer.toString().trim()); });
+            socket.on('error', fail);
+        });
+    }
+
+    async startDaemon(...args) {
+        this.daemon = new Program('plantcastd', [this.file, '--port', '0', ...args]);
+        const [, port] = await this.daemon.line(/^plantcastd: ready http:\/\/127\.0\.0\.1:(\d+)\/$/m);
+        this.port = Number(port);
+    }
+
+    async destroy() {
+        for (const program of [this.daemon, this.sim])
+            if (program && program.child.exitCode === null)
+                await program.stop('SIGKILL');
+        rmSync(this.folder, { recursive: true, force: true });
+    }
+}
