@@ -110,11 +110,8 @@ static bool read_query(struct hub *hub, struct lws *wsi, struct view *view, stru
     char args[MAX_ARGS][MAX_BYTES];
     const char *list[MAX_ARGS];
     int count = 0;
-    for (; count < MAX_ARGS; count++) {
-        int n = lws_hdr_copy_fragment(wsi, args[count], MAX_BYTES, WSI_TOKEN_HTTP_URI_ARGS, count);
-        if (n == -1)
-            break;
-        if (n < 0) {
+    for (; count < MAX_ARGS && lws_hdr_fragment_length(wsi, WSI_TOKEN_HTTP_URI_ARGS, count) > 0; count++) {
+        if (lws_hdr_copy_fragment(wsi, args[count], MAX_BYTES, WSI_TOKEN_HTTP_URI_ARGS, count) < 0) {
             message_fail(error, "bad_field", "argument %d is longer than %d bytes", count + 1, MAX_BYTES - 1);
             return false;
         }

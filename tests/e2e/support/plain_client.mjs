@@ -32,12 +32,11 @@ export function http(port, head, { timeoutMs = 15000 } = {}) {
 export const get = (port, path, method = 'GET', more = '') =>
     http(port, `${method} ${path} HTTP/1.1\r\nHost: 127.0.0.1:${port}\r\n${more}\r\n`);
 
-export function encodeFrame(opcode, payload, { fin = true, mask = true } = {}) {
-    const body = Buffer.from(payload), n = body.length;
+export function encodeFrame(opcode, payload, { fin = true } = {}) {
+    const body = Buffer.from(payload), n = body.length, key = randomBytes(4);
     const size = n < 126 ? Buffer.from([n]) : n < 65536 ? Buffer.from([126, n >> 8, n & 255]) : Buffer.concat([Buffer.from([127]), big(n)]);
-    size[0] |= mask ? 0x80 : 0;
-    const key = mask ? randomBytes(4) : Buffer.alloc(0);
-    const masked = mask ? Buffer.from(body.map((byte, i) => byte ^ key[i & 3])) : body;
+    const masked = Buffer.from(body.map((byte, i) => byte ^ key[i & 3]));
+    size[0] |= 0x80;
     return Buffer.concat([Buffer.from([opcode | (fin ? 0x80 : 0)]), size, key, masked]);
 }
 
