@@ -17,7 +17,8 @@ static double limit_m(const struct scene_asset *asset)
 static int farthest_first(const void *pa, const void *pb)
 {
     const struct far_sensor *a = pa, *b = pb;
-    return (b->sensor->surface_distance_m > a->sensor->surface_distance_m) - (b->sensor->surface_distance_m < a->sensor->surface_distance_m);
+    return (b->sensor->surface_distance_m > a->sensor->surface_distance_m) -
+           (b->sensor->surface_distance_m < a->sensor->surface_distance_m);
 }
 
 struct far_sensor *far_sensors(const struct scene *scene, size_t *count)

@@ -27,7 +27,8 @@ static void print_usage(FILE *out)
           "  --web DIR        the web client's files (found from where this program is)\n"
           "  --threads N      workers for the field and for encoding (one per core)\n"
           "  --open-viewers   let anyone who reaches ADDR look at the pictures\n"
-          "  --check          read everything, report every error, start nothing\n", out);
+          "  --check          read everything, report every error, start nothing\n",
+          out);
 }
 
 static bool parse_int(const char *text, long low, long high, int *out)
@@ -69,54 +70,52 @@ static int usage_error(const char *what, const char *value)
     return USAGE;
 }
 
-enum { OPTION_LISTEN = 256, OPTION_PORT, OPTION_GL, OPTION_PREPARED, OPTION_WEB, OPTION_LEVEL, OPTION_THREADS, OPTION_OPEN, OPTION_CHECK, OPTION_VERSION,
-       OPTION_HELP };
+enum {
+    OPTION_LISTEN = 256,
+    OPTION_PORT,
+    OPTION_GL,
+    OPTION_PREPARED,
+    OPTION_WEB,
+    OPTION_LEVEL,
+    OPTION_THREADS,
+    OPTION_OPEN,
+    OPTION_CHECK,
+    OPTION_VERSION,
+    OPTION_HELP
+};
 
 static const struct option options[] = {
-    { "listen", required_argument, NULL, OPTION_LISTEN },     { "port", required_argument, NULL, OPTION_PORT },
-    { "gl", required_argument, NULL, OPTION_GL },             { "prepared", required_argument, NULL, OPTION_PREPARED },
-    { "web", required_argument, NULL, OPTION_WEB },           { "log-level", required_argument, NULL, OPTION_LEVEL },
-    { "threads", required_argument, NULL, OPTION_THREADS },   { "open-viewers", no_argument, NULL, OPTION_OPEN },
-    { "check", no_argument, NULL, OPTION_CHECK },             { "version", no_argument, NULL, OPTION_VERSION },
-    { "help", no_argument, NULL, OPTION_HELP },               { NULL, 0, NULL, 0 },
+    { "listen", required_argument, NULL, OPTION_LISTEN },
+    { "port", required_argument, NULL, OPTION_PORT },
+    { "gl", required_argument, NULL, OPTION_GL },
+    { "prepared", required_argument, NULL, OPTION_PREPARED },
+    { "web", required_argument, NULL, OPTION_WEB },
+    { "log-level", required_argument, NULL, OPTION_LEVEL },
+    { "threads", required_argument, NULL, OPTION_THREADS },
+    { "open-viewers", no_argument, NULL, OPTION_OPEN },
+    { "check", no_argument, NULL, OPTION_CHECK },
+    { "version", no_argument, NULL, OPTION_VERSION },
+    { "help", no_argument, NULL, OPTION_HELP },
+    { NULL, 0, NULL, 0 },
 };
 
 /* -1: go on; else the exit code. */
 static int take_option(int option, struct server_params *params, bool *check)
 {
     switch (option) {
-    case OPTION_LISTEN:
-        params->address = optarg;
-        return -1;
-    case OPTION_PORT:
-        return parse_int(optarg, 0, 65535, &params->port) ? -1 : usage_error("--port: not a port", optarg);
-    case OPTION_GL:
-        return gl_kind_parse(optarg, &params->gl) ? -1 : usage_error("--gl: unknown", optarg);
-    case OPTION_PREPARED:
-        params->prepared = optarg;
-        return -1;
-    case OPTION_WEB:
-        params->web = optarg;
-        return -1;
-    case OPTION_LEVEL:
-        return parse_level(optarg, &params->log_level) ? -1 : usage_error("--log-level: unknown", optarg);
+    case OPTION_LISTEN: params->address = optarg; return -1;
+    case OPTION_PORT: return parse_int(optarg, 0, 65535, &params->port) ? -1 : usage_error("--port: not a port", optarg);
+    case OPTION_GL: return gl_kind_parse(optarg, &params->gl) ? -1 : usage_error("--gl: unknown", optarg);
+    case OPTION_PREPARED: params->prepared = optarg; return -1;
+    case OPTION_WEB: params->web = optarg; return -1;
+    case OPTION_LEVEL: return parse_level(optarg, &params->log_level) ? -1 : usage_error("--log-level: unknown", optarg);
     case OPTION_THREADS:
         return parse_int(optarg, 0, 1024, &params->threads) ? -1 : usage_error("--threads: not a number of threads", optarg);
-    case OPTION_OPEN:
-        params->open_viewers = true;
-        return -1;
-    case OPTION_CHECK:
-        *check = true;
-        return -1;
-    case OPTION_VERSION:
-        puts("plantcastd " PLANTCAST_VERSION);
-        return GOOD;
-    case OPTION_HELP:
-        print_usage(stdout);
-        return GOOD;
-    default: /* getopt has said what is wrong */
-        print_usage(stderr);
-        return USAGE;
+    case OPTION_OPEN: params->open_viewers = true; return -1;
+    case OPTION_CHECK: *check = true; return -1;
+    case OPTION_VERSION: puts("plantcastd " PLANTCAST_VERSION); return GOOD;
+    case OPTION_HELP: print_usage(stdout); return GOOD;
+    default: /* getopt has said what is wrong */ print_usage(stderr); return USAGE;
     }
 }
 
@@ -135,8 +134,9 @@ int main(int argc, char **argv)
     if (check)
         return server_check(&params);
     if (!is_loopback(params.address) && !params.open_viewers) {
-        fprintf(stderr, "plantcastd: --listen %s: everyone who reaches that address could look in. Only loopback addresses are served without\n"
-                        "TLS and tokens, which this version does not have yet; --open-viewers serves pictures, and nothing else, to anyone.\n",
+        fprintf(stderr,
+                "plantcastd: --listen %s: everyone who reaches that address could look in. Only loopback addresses are served without\n"
+                "TLS and tokens, which this version does not have yet; --open-viewers serves pictures, and nothing else, to anyone.\n",
                 params.address);
         return FAILED;
     }

@@ -115,7 +115,8 @@ static void warn_of_far_sensors(struct log *log, const struct scene *scene)
         log_warn(log, "%s: sensor %s is %.3f m from the surface of %s (at most %.3f m is expected)", scene->plant->tags_path,
                  scene->plant->tags[far[i].sensor->tag].name, far[i].sensor->surface_distance_m, far[i].asset->plant->id, far[i].limit_m);
     if (count > 10)
-        log_warn(log, "%s: %zu more sensors are far from their surface; plantcastd --check lists them", scene->plant->tags_path, count - 10);
+        log_warn(log, "%s: %zu more sensors are far from their surface; plantcastd --check lists them", scene->plant->tags_path,
+                 count - 10);
     mem_free(far);
 }
 
@@ -133,8 +134,14 @@ static bool start_sources(struct server *server)
 static bool start_painter(struct server *server)
 {
     struct painter_params params = {
-        .log = server->log, .gl = server->params.gl, .scene = server->scene, .store = server->store, .workers = server->workers,
-        .counters = server->counters, .notify = on_pictures, .notify_arg = server,
+        .log = server->log,
+        .gl = server->params.gl,
+        .scene = server->scene,
+        .store = server->store,
+        .workers = server->workers,
+        .counters = server->counters,
+        .notify = on_pictures,
+        .notify_arg = server,
     };
     server->painter = painter_create(&params);
     if (server->painter)
@@ -146,8 +153,15 @@ static bool start_net(struct server *server)
 {
     const char *address = strcmp(server->params.address, "localhost") == 0 ? "127.0.0.1" : server->params.address;
     struct net_params params = {
-        .log = server->log, .scene = server->scene, .store = server->store, .painter = server->painter, .counters = server->counters,
-        .address = address, .port = server->params.port, .open_viewers = server->params.open_viewers, .web_folder = server->web,
+        .log = server->log,
+        .scene = server->scene,
+        .store = server->store,
+        .painter = server->painter,
+        .counters = server->counters,
+        .address = address,
+        .port = server->params.port,
+        .open_viewers = server->params.open_viewers,
+        .web_folder = server->web,
         .version = PLANTCAST_VERSION,
     };
     if (!server->web)

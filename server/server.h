@@ -7,13 +7,13 @@
 
 struct server_params {
     const char *plant_path;
-    const char *address;   /* to listen on; numeric or "localhost" */
-    int port;              /* 0: any that is free */
+    const char *address; /* to listen on; numeric or "localhost" */
+    int port;            /* 0: any that is free */
     enum gl_kind gl;
-    const char *prepared;  /* NULL: beside the plant file */
-    const char *web;       /* NULL: found from where the program is */
+    const char *prepared; /* NULL: beside the plant file */
+    const char *web;      /* NULL: found from where the program is */
     enum log_level log_level;
-    int threads;           /* workers; 0: one per core */
+    int threads; /* workers; 0: one per core */
     bool open_viewers;
 };
 

@@ -43,9 +43,7 @@ static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *use
         snprintf(exchange->why, sizeof(exchange->why), "%s", in ? (const char *)in : "no connection");
         exchange->done = true;
         break;
-    case LWS_CALLBACK_ESTABLISHED_CLIENT_HTTP:
-        exchange->status = (int)lws_http_client_http_response(wsi);
-        break;
+    case LWS_CALLBACK_ESTABLISHED_CLIENT_HTTP: exchange->status = (int)lws_http_client_http_response(wsi); break;
     case LWS_CALLBACK_RECEIVE_CLIENT_HTTP: /* lws asks for a buffer, and calls back with its content */
         return lws_http_client_read(wsi, &at, &room) < 0 ? -1 : 0;
     case LWS_CALLBACK_RECEIVE_CLIENT_HTTP_READ:
@@ -54,11 +52,8 @@ static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *use
         text_add_bytes(exchange->body, in, len);
         break;
     case LWS_CALLBACK_COMPLETED_CLIENT_HTTP:
-    case LWS_CALLBACK_CLOSED_CLIENT_HTTP:
-        exchange->done = true;
-        break;
-    default:
-        break;
+    case LWS_CALLBACK_CLOSED_CLIENT_HTTP: exchange->done = true; break;
+    default: break;
     }
     return 0;
 }
@@ -68,12 +63,22 @@ int daemon_get(const struct daemon_url *url, const char *path, struct text *body
     static const struct lws_protocols protocols[] = { { .name = "http", .callback = on_event }, { 0 } };
     struct exchange exchange = { .body = body };
     struct lws_context_creation_info info = {
-        .port = CONTEXT_PORT_NO_LISTEN, .protocols = protocols, .gid = -1, .uid = -1, .timeout_secs = 70,
+        .port = CONTEXT_PORT_NO_LISTEN,
+        .protocols = protocols,
+        .gid = -1,
+        .uid = -1,
+        .timeout_secs = 70,
     };
     lws_set_log_level(0, NULL);
     struct lws_context *context = lws_create_context(&info);
     struct lws_client_connect_info connect = {
-        .context = context, .address = url->host, .host = url->host, .port = url->port, .path = path, .method = "GET", .userdata = &exchange,
+        .context = context,
+        .address = url->host,
+        .host = url->host,
+        .port = url->port,
+        .path = path,
+        .method = "GET",
+        .userdata = &exchange,
         .protocol = "http",
     };
     if (!context || !lws_client_connect_via_info(&connect))

@@ -32,7 +32,8 @@ static void print_usage(FILE *out)
     fputs("usage: plantcast probe URL [--sessions N] [--seconds S] [--motion still|orbit] [--size WxH] [--json]\n"
           "\n"
           "Opens N sessions on a daemon (http://HOST:PORT/), decodes every frame before it acknowledges it, and prints rates and\n"
-          "latencies. Input to frame: from sending a camera to the first frame drawn with it (or a newer one) decoded.\n", out);
+          "latencies. Input to frame: from sending a camera to the first frame drawn with it (or a newer one) decoded.\n",
+          out);
 }
 
 /* --- numbers ------------------------------------------------------------------------------------------------------------------ */
@@ -67,7 +68,7 @@ static void sort(struct samples *samples)
 
 struct summary {
     int frames, still_frames, errors, failed;
-    double fps, fps_lowest;     /* mean and least over the sessions */
+    double fps, fps_lowest; /* mean and least over the sessions */
     double kb_per_frame, mbit_per_s;
     struct samples input, first, stages[STAGE_COUNT];
 };
@@ -164,8 +165,8 @@ static void print_json(const struct probe *probe, const struct summary *sum)
     for (int i = 0; i < probe->sessions; i++)
         if (viewer_result(probe->viewers[i])->failure[0])
             json_array_append_new(failures, json_string(viewer_result(probe->viewers[i])->failure));
-    json_t *o = json_pack("{s:s,s:i,s:f,s:s,s:i,s:i}", "url", probe->url_text, "sessions", probe->sessions, "seconds", probe->seconds, "motion",
-                          motion_names[probe->motion], "width", probe->width_px, "height", probe->height_px);
+    json_t *o = json_pack("{s:s,s:i,s:f,s:s,s:i,s:i}", "url", probe->url_text, "sessions", probe->sessions, "seconds", probe->seconds,
+                          "motion", motion_names[probe->motion], "width", probe->width_px, "height", probe->height_px);
     json_object_update_new(o, json_pack("{s:i,s:i,s:i,s:f,s:f,s:f,s:f}", "frames", sum->frames, "still_frames", sum->still_frames, "errors",
                                         sum->errors, "fps", sum->fps, "fps_lowest", sum->fps_lowest, "kb_per_frame", sum->kb_per_frame,
                                         "mbit_per_s", sum->mbit_per_s));
@@ -193,8 +194,12 @@ static bool run_viewers(struct probe *probe)
     int started = 0;
     probe->viewers = mem_array((size_t)probe->sessions, sizeof(*probe->viewers));
     for (int i = 0; i < probe->sessions; i++) {
-        struct viewer_params params = { .url = &probe->url, .width_px = probe->width_px, .height_px = probe->height_px,
-                                        .motion = probe->motion, .seconds = probe->seconds, .start_deg = 360.0 * i / probe->sessions };
+        struct viewer_params params = { .url = &probe->url,
+                                        .width_px = probe->width_px,
+                                        .height_px = probe->height_px,
+                                        .motion = probe->motion,
+                                        .seconds = probe->seconds,
+                                        .start_deg = 360.0 * i / probe->sessions };
         if (!(probe->viewers[i] = viewer_create(&params)))
             goto done;
     }
@@ -240,30 +245,26 @@ static bool take_option(int option, struct probe *probe)
 {
     char *end = "";
     switch (option) {
-    case 'n':
-        probe->sessions = (int)strtol(optarg, &end, 10);
-        return !*end && probe->sessions >= 1 && probe->sessions <= MAX_SESSIONS;
-    case 's':
-        probe->seconds = strtod(optarg, &end);
-        return !*end && probe->seconds > 0 && probe->seconds <= 1e6;
+    case 'n': probe->sessions = (int)strtol(optarg, &end, 10); return !*end && probe->sessions >= 1 && probe->sessions <= MAX_SESSIONS;
+    case 's': probe->seconds = strtod(optarg, &end); return !*end && probe->seconds > 0 && probe->seconds <= 1e6;
     case 'm':
         probe->motion = strcmp(optarg, "orbit") == 0 ? MOTION_ORBIT : MOTION_STILL;
         return !strcmp(optarg, motion_names[probe->motion]);
-    case 'z':
-        return parse_size(optarg, &probe->width_px, &probe->height_px);
-    case 'j':
-        probe->as_json = true;
-        return true;
-    default:
-        return false;
+    case 'z': return parse_size(optarg, &probe->width_px, &probe->height_px);
+    case 'j': probe->as_json = true; return true;
+    default: return false;
     }
 }
 
 int cmd_probe(int argc, char **argv)
 {
     static const struct option options[] = {
-        { "sessions", required_argument, NULL, 'n' }, { "seconds", required_argument, NULL, 's' }, { "motion", required_argument, NULL, 'm' },
-        { "size", required_argument, NULL, 'z' },     { "json", no_argument, NULL, 'j' },          { "help", no_argument, NULL, 'h' },
+        { "sessions", required_argument, NULL, 'n' },
+        { "seconds", required_argument, NULL, 's' },
+        { "motion", required_argument, NULL, 'm' },
+        { "size", required_argument, NULL, 'z' },
+        { "json", no_argument, NULL, 'j' },
+        { "help", no_argument, NULL, 'h' },
         { NULL, 0, NULL, 0 },
     };
     struct probe probe = { .sessions = 1, .seconds = 5, .motion = MOTION_ORBIT, .width_px = 1280, .height_px = 720 };

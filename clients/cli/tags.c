@@ -12,7 +12,8 @@ static void print_usage(FILE *out)
 {
     fputs("usage: plantcast tags URL [--json]\n"
           "\n"
-          "Prints the tags of a daemon (http://HOST:PORT/) with value, quality and age.\n", out);
+          "Prints the tags of a daemon (http://HOST:PORT/) with value, quality and age.\n",
+          out);
 }
 
 static const char *text_of(const json_t *o, const char *name)

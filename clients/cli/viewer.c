@@ -173,8 +173,9 @@ static int say_camera(struct viewer *viewer)
     viewer->camera_due = false;
     viewer->sent_ns[++viewer->camera_seq % SENT_RING] = now_ns;
     return say(viewer->wsi, "{\"type\":\"camera\",\"seq\":%u,\"eye\":[%.6f,%.6f,%.6f],\"target\":[%.6f,%.6f,%.6f],\"fov\":%.3f}",
-               viewer->camera_seq, viewer->target[0] + dx * cos(angle) - dy * sin(angle), viewer->target[1] + dx * sin(angle) + dy * cos(angle),
-               viewer->eye[2], viewer->target[0], viewer->target[1], viewer->target[2], viewer->fov_deg);
+               viewer->camera_seq, viewer->target[0] + dx * cos(angle) - dy * sin(angle),
+               viewer->target[1] + dx * sin(angle) + dy * cos(angle), viewer->eye[2], viewer->target[0], viewer->target[1],
+               viewer->target[2], viewer->fov_deg);
 }
 
 static int on_writable(struct viewer *viewer)
@@ -215,24 +216,19 @@ static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *use
 {
     struct viewer *viewer = user;
     switch (reason) {
-    case LWS_CALLBACK_CLIENT_CONNECTION_ERROR:
-        fail(viewer, in ? (const char *)in : "no connection");
-        break;
+    case LWS_CALLBACK_CLIENT_CONNECTION_ERROR: fail(viewer, in ? (const char *)in : "no connection"); break;
     case LWS_CALLBACK_CLIENT_ESTABLISHED:
         viewer->wsi = wsi;
         lws_callback_on_writable(wsi);
         break;
-    case LWS_CALLBACK_CLIENT_RECEIVE:
-        return on_receive(viewer, wsi, in, len);
-    case LWS_CALLBACK_CLIENT_WRITEABLE:
-        return viewer->done ? -1 : on_writable(viewer);
+    case LWS_CALLBACK_CLIENT_RECEIVE: return on_receive(viewer, wsi, in, len);
+    case LWS_CALLBACK_CLIENT_WRITEABLE: return viewer->done ? -1 : on_writable(viewer);
     case LWS_CALLBACK_CLIENT_CLOSED:
         viewer->wsi = NULL;
         if (!viewer->done)
             fail(viewer, "the daemon closed the connection");
         break;
-    default:
-        break;
+    default: break;
     }
     return 0;
 }
@@ -246,7 +242,11 @@ struct viewer *viewer_create(const struct viewer_params *params)
         { 0 },
     };
     struct lws_context_creation_info info = {
-        .port = CONTEXT_PORT_NO_LISTEN, .protocols = protocols, .gid = -1, .uid = -1, .pt_serv_buf_size = 64 * 1024,
+        .port = CONTEXT_PORT_NO_LISTEN,
+        .protocols = protocols,
+        .gid = -1,
+        .uid = -1,
+        .pt_serv_buf_size = 64 * 1024,
     };
     struct viewer *viewer = mem_new(sizeof(*viewer));
     viewer->params = *params;
@@ -262,8 +262,13 @@ void viewer_run(struct viewer *viewer)
 {
     const struct daemon_url *url = viewer->params.url;
     struct lws_client_connect_info connect = {
-        .context = viewer->context, .address = url->host, .host = url->host, .port = url->port, .path = "/stream",
-        .protocol = WIRE_SUBPROTOCOL, .userdata = viewer,
+        .context = viewer->context,
+        .address = url->host,
+        .host = url->host,
+        .port = url->port,
+        .path = "/stream",
+        .protocol = WIRE_SUBPROTOCOL,
+        .userdata = viewer,
     };
     viewer->begin_ns = clock_mono_ns();
     if (!lws_client_connect_via_info(&connect))

@@ -15,7 +15,7 @@ struct viewer_params {
     int width_px, height_px;
     enum motion motion;
     double seconds;
-    double start_deg;   /* of the orbit */
+    double start_deg; /* of the orbit */
 };
 
 struct samples { /* milliseconds */
@@ -27,16 +27,16 @@ enum viewer_stage { STAGE_WAIT, STAGE_FIELD, STAGE_RENDER, STAGE_ENCODE, STAGE_D
 
 struct viewer_result {
     int frames, still_frames, errors;
-    int64_t bytes, first_ns, last_ns;   /* of frames; monotonic */
-    struct samples input;               /* from sending a camera to its frame decoded */
-    struct samples first;               /* from connecting to the first frame decoded: one */
+    int64_t bytes, first_ns, last_ns; /* of frames; monotonic */
+    struct samples input;             /* from sending a camera to its frame decoded */
+    struct samples first;             /* from connecting to the first frame decoded: one */
     struct samples stages[STAGE_COUNT];
-    char failure[200];                  /* "": went well */
+    char failure[200]; /* "": went well */
 };
 
 struct viewer;
 struct viewer *viewer_create(const struct viewer_params *params); /* NULL: out of memory */
-void viewer_run(struct viewer *viewer); /* until params.seconds after the first frame, or failure */
+void viewer_run(struct viewer *viewer);                           /* until params.seconds after the first frame, or failure */
 const struct viewer_result *viewer_result(const struct viewer *viewer);
 void viewer_destroy(struct viewer **viewer);
 

@@ -9,7 +9,7 @@
 
 struct packet {
     _Atomic int refs;
-    struct frame *frame;      /* what it shows, without pixels (frame->bgrx is NULL) */
+    struct frame *frame; /* what it shows, without pixels (frame->bgrx is NULL) */
     enum wire_codec codec;
     bool key;
     uint8_t *bytes;

@@ -37,8 +37,11 @@ static int png_send(struct encoder *encoder, struct frame *frame, const struct e
 {
     (void)params; /* nothing to choose: it is lossless */
     png_image image = {
-        .version = PNG_IMAGE_VERSION, .format = PNG_FORMAT_BGR, .flags = PNG_IMAGE_FLAG_FAST,
-        .width = (png_uint_32)frame->width_px, .height = (png_uint_32)frame->height_px,
+        .version = PNG_IMAGE_VERSION,
+        .format = PNG_FORMAT_BGR,
+        .flags = PNG_IMAGE_FLAG_FAST,
+        .width = (png_uint_32)frame->width_px,
+        .height = (png_uint_32)frame->height_px,
     };
     png_alloc_size_t count = PNG_IMAGE_PNG_SIZE_MAX(image);
     uint8_t *packed = pack_bgr(frame), *out = mem_try_array(count, 1);

@@ -13,12 +13,12 @@ static const struct encoder_params LOSSLESS = { .quality = 100, .full_chroma = t
 
 struct request {
     struct lws *wsi;
-    bool head;              /* no body is wanted */
-    bool close;             /* after the answer */
+    bool head;  /* no body is wanted */
+    bool close; /* after the answer */
     char *body;
     size_t count, sent;
-    uint64_t client;        /* of the painter, while a picture is awaited */
-    struct request *next;   /* in hub->snapshots */
+    uint64_t client;      /* of the painter, while a picture is awaited */
+    struct request *next; /* in hub->snapshots */
 };
 
 static const char *const security[][2] = {
@@ -58,7 +58,8 @@ static int done(struct request *request)
 }
 
 /* Takes body. The rest happens as the socket takes it. */
-static int answer(struct request *request, int status, const char *type, char *body, size_t count, const char *extra_name, const char *extra)
+static int answer(struct request *request, int status, const char *type, char *body, size_t count, const char *extra_name,
+                  const char *extra)
 {
     mem_free(request->body);
     request->body = body;
@@ -229,7 +230,8 @@ static int serve(struct hub *hub, struct request *request, const char *path)
     if (!get && !request->head) {
         request->close = true; /* there may be a body that nobody reads */
         static const char text[] = "only GET and HEAD\n";
-        return answer(request, HTTP_STATUS_METHOD_NOT_ALLOWED, "text/plain; charset=utf-8", mem_strdup(text), strlen(text), "allow:", "GET, HEAD");
+        return answer(request, HTTP_STATUS_METHOD_NOT_ALLOWED, "text/plain; charset=utf-8", mem_strdup(text), strlen(text),
+                      "allow:", "GET, HEAD");
     }
     for (size_t i = 0; i < sizeof(routes) / sizeof(routes[0]); i++) {
         if (strcmp(routes[i].path, path) != 0)
@@ -280,22 +282,16 @@ int http_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user,
     struct request **slot = user;
     (void)len;
     switch (reason) {
-    case LWS_CALLBACK_HTTP:
-        return serve(hub_of(wsi), request_of(wsi, slot), in);
-    case LWS_CALLBACK_HTTP_WRITEABLE:
-        return *slot ? on_writeable(hub_of(wsi), *slot) : 0;
+    case LWS_CALLBACK_HTTP: return serve(hub_of(wsi), request_of(wsi, slot), in);
+    case LWS_CALLBACK_HTTP_WRITEABLE: return *slot ? on_writeable(hub_of(wsi), *slot) : 0;
     case LWS_CALLBACK_HTTP_DROP_PROTOCOL: /* also when the connection is upgraded */
-    case LWS_CALLBACK_CLOSED_HTTP:
-        request_end(hub_of(wsi), slot);
-        return 0;
-    case LWS_CALLBACK_HTTP_CONFIRM_UPGRADE:
-        return strcasecmp(in, "websocket") == 0 ? stream_check_upgrade(hub_of(wsi), wsi) : -1;
+    case LWS_CALLBACK_CLOSED_HTTP: request_end(hub_of(wsi), slot); return 0;
+    case LWS_CALLBACK_HTTP_CONFIRM_UPGRADE: return strcasecmp(in, "websocket") == 0 ? stream_check_upgrade(hub_of(wsi), wsi) : -1;
     case LWS_CALLBACK_ESTABLISHED: { /* a WebSocket without a subprotocol lands here */
         static unsigned char text[] = "the subprotocol is " WIRE_SUBPROTOCOL;
         lws_close_reason(wsi, LWS_CLOSE_STATUS_PROTOCOL_ERR, text, sizeof(text) - 1);
         return -1;
     }
-    default:
-        return 0;
+    default: return 0;
     }
 }

@@ -9,18 +9,18 @@
 
 enum { SLICE_BYTES = 32 * 1024, MAX_STREAMS = 1024, MAX_SNAPSHOTS = 8 };
 
-struct stream; /* stream.c */
+struct stream;  /* stream.c */
 struct request; /* http.c */
 
 struct hub {
     struct net_params params;
     struct session_world world;
     struct snapshot *snapshot;
-    uint32_t *changes;          /* reading.changes at the last tick, by tag */
+    uint32_t *changes; /* reading.changes at the last tick, by tag */
     bool *links_up;
     struct lws_context *context;
     struct stream *streams;
-    struct request *snapshots;  /* HTTP requests that wait for their picture */
+    struct request *snapshots; /* HTTP requests that wait for their picture */
     int stream_count, snapshot_count;
     uint64_t next_client;
     bool closing;

@@ -130,8 +130,8 @@ static const struct {
     enum message_type type;
     bool (*parse)(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 } types[] = {
-    { "hello", MESSAGE_HELLO, parse_hello },    { "camera", MESSAGE_CAMERA, parse_camera },    { "params", MESSAGE_PARAMS, parse_params },
-    { "resize", MESSAGE_RESIZE, parse_resize }, { "ack", MESSAGE_ACK, parse_ack },             { "ping", MESSAGE_PING, parse_ping },
+    { "hello", MESSAGE_HELLO, parse_hello },       { "camera", MESSAGE_CAMERA, parse_camera }, { "params", MESSAGE_PARAMS, parse_params },
+    { "resize", MESSAGE_RESIZE, parse_resize },    { "ack", MESSAGE_ACK, parse_ack },          { "ping", MESSAGE_PING, parse_ping },
     { "visible", MESSAGE_VISIBLE, parse_visible },
 };
 

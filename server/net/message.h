@@ -12,22 +12,34 @@ enum message_type { MESSAGE_HELLO, MESSAGE_CAMERA, MESSAGE_PARAMS, MESSAGE_RESIZ
 struct message_error {
     const char *code; /* of PROTOCOL.md */
     char text[240];
-    char about[24];   /* type of the message; "": unknown */
+    char about[24]; /* type of the message; "": unknown */
 };
 
 enum params_given { /* which fields of a params message were there */
-    GIVEN_GROUP = 1 << 0, GIVEN_INTERPOLATION = 1 << 1, GIVEN_DISTANCE = 1 << 2, GIVEN_FILL = 1 << 3, GIVEN_STRENGTH = 1 << 4,
-    GIVEN_DECAY = 1 << 5, GIVEN_POWER = 1 << 6, GIVEN_RADIUS = 1 << 7, GIVEN_REACH = 1 << 8, GIVEN_COLORMAP = 1 << 9,
-    GIVEN_RAMP = 1 << 10, GIVEN_RANGE = 1 << 11, GIVEN_LOOK = 1 << 12, GIVEN_LIGHT = 1 << 13, GIVEN_SELECTED = 1 << 14,
+                    GIVEN_GROUP = 1 << 0,
+                    GIVEN_INTERPOLATION = 1 << 1,
+                    GIVEN_DISTANCE = 1 << 2,
+                    GIVEN_FILL = 1 << 3,
+                    GIVEN_STRENGTH = 1 << 4,
+                    GIVEN_DECAY = 1 << 5,
+                    GIVEN_POWER = 1 << 6,
+                    GIVEN_RADIUS = 1 << 7,
+                    GIVEN_REACH = 1 << 8,
+                    GIVEN_COLORMAP = 1 << 9,
+                    GIVEN_RAMP = 1 << 10,
+                    GIVEN_RANGE = 1 << 11,
+                    GIVEN_LOOK = 1 << 12,
+                    GIVEN_LIGHT = 1 << 13,
+                    GIVEN_SELECTED = 1 << 14,
 };
 
 struct params_change {
     uint32_t seq;
-    unsigned given;              /* enum params_given */
-    struct field_params field;   /* only what was given is set; so below */
+    unsigned given;            /* enum params_given */
+    struct field_params field; /* only what was given is set; so below */
     int colormap;
     double ramp_interval;
-    bool range_of_group;         /* range: null */
+    bool range_of_group; /* range: null */
     double range_min, range_max;
     enum look look;
     double light_dir[3];
@@ -43,8 +55,8 @@ struct message {
     uint32_t seq;                /* camera (hello: the camera's), ack */
     struct params_change params; /* params, hello */
     bool visible;
-    double decode_ms;            /* ack; negative: not said */
-    double t;                    /* ping */
+    double decode_ms; /* ack; negative: not said */
+    double t;         /* ping */
 };
 
 /* False: *error is what to answer. text need not end in 0. */

@@ -148,7 +148,8 @@ static void add_counters(struct hub *hub)
     hub->counters.refused = counters_add(c, "plantcast_sessions_refused_total", "counter", "Clients that were not let in.");
     hub->counters.frames = counters_add(c, "plantcast_frames_sent_total", "counter", "Frames sent.");
     hub->counters.frame_bytes = counters_add(c, "plantcast_frame_bytes_total", "counter", "Bytes of frames sent.");
-    hub->counters.dropped = counters_add(c, "plantcast_frames_dropped_total", "counter", "Frames made and overtaken before they were sent.");
+    hub->counters.dropped =
+        counters_add(c, "plantcast_frames_dropped_total", "counter", "Frames made and overtaken before they were sent.");
     hub->counters.messages = counters_add(c, "plantcast_messages_total", "counter", "Messages of clients.");
     hub->counters.errors = counters_add(c, "plantcast_message_errors_total", "counter", "Messages of clients answered with an error.");
     hub->counters.requests = counters_add(c, "plantcast_http_requests_total", "counter", "HTTP requests.");
@@ -158,11 +159,20 @@ static bool open_context(struct net *net)
 {
     struct hub *hub = &net->hub;
     struct lws_context_creation_info info = {
-        .port = hub->params.port, .iface = hub->params.address, .protocols = protocols, .user = hub, .gid = -1, .uid = -1,
+        .port = hub->params.port,
+        .iface = hub->params.address,
+        .protocols = protocols,
+        .user = hub,
+        .gid = -1,
+        .uid = -1,
         .options = LWS_SERVER_OPTION_FAIL_UPON_UNABLE_TO_BIND | LWS_SERVER_OPTION_DISABLE_OS_CA_CERTS |
                    (strchr(hub->params.address, ':') ? 0 : LWS_SERVER_OPTION_DISABLE_IPV6),
-        .timeout_secs = 10, .keepalive_timeout = 30, .pt_serv_buf_size = 16 * 1024, .fd_limit_per_thread = 0,
-        .retry_and_idle_policy = &idle_policy, .vhost_name = "plantcast",
+        .timeout_secs = 10,
+        .keepalive_timeout = 30,
+        .pt_serv_buf_size = 16 * 1024,
+        .fd_limit_per_thread = 0,
+        .retry_and_idle_policy = &idle_policy,
+        .vhost_name = "plantcast",
     };
     lws_set_log_level(LLL_ERR | LLL_WARN, lws_log_line);
     atomic_store(&lws_log_to, hub->params.log);
@@ -188,7 +198,11 @@ struct net *net_create(const struct net_params *params)
     hub->links_up = mem_array(plant->source_count, sizeof(*hub->links_up));
     hub->next_client = 1;
     hub->world = (struct session_world){
-        .plant = plant, .scene = params->scene, .snapshot = hub->snapshot, .links_up = hub->links_up, .version = params->version,
+        .plant = plant,
+        .scene = params->scene,
+        .snapshot = hub->snapshot,
+        .links_up = hub->links_up,
+        .version = params->version,
     };
     add_counters(hub);
     take_snapshot(hub);

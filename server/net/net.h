@@ -15,10 +15,10 @@ struct net_params {
     struct store *store;
     struct painter *painter;
     struct counters *counters;
-    const char *address;     /* numeric */
-    int port;                /* 0: any that is free */
-    bool open_viewers;       /* peers beyond loopback get pictures, and nothing else */
-    const char *web_folder;  /* NULL: no client is served */
+    const char *address;    /* numeric */
+    int port;               /* 0: any that is free */
+    bool open_viewers;      /* peers beyond loopback get pictures, and nothing else */
+    const char *web_folder; /* NULL: no client is served */
     const char *version;
 };
 

@@ -14,12 +14,12 @@ struct pacer_flight {
     int64_t sent_ns;
 };
 
-struct pacer { /* zero-initialise */
-    int asked;                                 /* pictures asked for, and not sent yet */
-    struct pacer_flight flight[PACER_WINDOW];  /* sent and not acknowledged, oldest first */
+struct pacer {                                /* zero-initialise */
+    int asked;                                /* pictures asked for, and not sent yet */
+    struct pacer_flight flight[PACER_WINDOW]; /* sent and not acknowledged, oldest first */
     int flight_count;
     uint32_t last_seq;
-    int64_t ack_ns;                            /* from sent to acknowledged, the newest */
+    int64_t ack_ns; /* from sent to acknowledged, the newest */
 };
 
 enum pacer_ack { PACER_ACK_NEW, PACER_ACK_OLD, PACER_ACK_NEVER_SENT };

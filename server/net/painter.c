@@ -8,7 +8,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
-#include "net/names.h"
+#include "net/encoding.h"
 #include "render/overlay.h"
 #include "render/renderer.h"
 
@@ -21,29 +21,13 @@ struct client {
     uint64_t content; /* of the last picture drawn for it */
 };
 
-struct order { /* a wish that was begun */
-    uint64_t client, number;
-    struct wish wish;
-    int64_t wait_ns;
-    bool same;
-};
-
-struct batch { /* orders that one picture answers */
-    struct order *orders;
-    size_t count, capacity;
-};
-
-struct idle_encoder {
-    enum wire_codec codec;
-    struct encoder *encoder;
-    struct idle_encoder *next;
-};
-
 struct painter {
     struct painter_params params;
     char gl_text[320];
-    counter *renders, *render_us, *same, *encodes, *encode_us, *failures;
+    counter *renders, *render_us, *same, *failures;
+    struct encoding *encoding;
     pthread_t thread;
+    bool has_thread;
     pthread_mutex_t lock;
     pthread_cond_t wake;
     /* --- below: under lock */
@@ -52,8 +36,6 @@ struct painter {
     struct client *clients;
     size_t client_count, client_capacity;
     struct picture *done, **done_last;
-    struct idle_encoder *idle;
-    int jobs; /* at the workers */
 };
 
 struct drawing { /* what only the render thread touches */
@@ -62,13 +44,17 @@ struct drawing { /* what only the render thread touches */
     struct field *field;
     struct renderer *renderer;
     struct snapshot *snapshot;
+    struct batch same;
 };
 
-struct encode_job {
-    struct painter *painter;
-    struct frame *frame;
-    struct batch batch; /* all of one codec and quality */
-};
+/* Under lock. NULL: none. */
+static struct client *client_find(struct painter *painter, uint64_t id)
+{
+    for (size_t i = 0; i < painter->client_count; i++)
+        if (painter->clients[i].id == id)
+            return &painter->clients[i];
+    return NULL;
+}
 
 /* --- pictures on their way back ------------------------------------------------------------------------------------------ */
 
@@ -76,29 +62,35 @@ static struct picture *picture_create(const struct order *order, struct packet *
 {
     struct picture *picture = mem_new(sizeof(*picture));
     *picture = (struct picture){
-        .client = order->client, .number = order->number, .packet = packet ? packet_ref(packet) : NULL, .failed = failed,
-        .wish = order->wish, .wait_ns = order->wait_ns,
+        .client = order->client,
+        .number = order->number,
+        .packet = packet ? packet_ref(packet) : NULL,
+        .failed = failed,
+        .wish = order->wish,
+        .wait_ns = order->wait_ns,
     };
     return picture;
 }
 
-/* Answers every order of the batch for which `same` is as given. */
-static void post(struct painter *painter, const struct batch *batch, bool same, struct packet *packet, bool failed)
+/* Answers every order of the batch. */
+static void post(struct painter *painter, const struct batch *batch, struct packet *packet, bool failed)
 {
-    bool was_empty = false, posted = false;
+    bool was_empty = false;
     for (size_t i = 0; i < batch->count; i++) {
-        if (batch->orders[i].same != same)
-            continue;
         struct picture *picture = picture_create(&batch->orders[i], packet, failed);
         pthread_mutex_lock(&painter->lock);
         was_empty |= painter->done == NULL;
         *painter->done_last = picture;
         painter->done_last = &picture->next;
         pthread_mutex_unlock(&painter->lock);
-        posted = true;
     }
-    if (posted && was_empty)
+    if (was_empty)
         painter->params.notify(painter->params.notify_arg);
+}
+
+static void on_encoded(void *arg, const struct batch *batch, struct packet *packet)
+{
+    post(arg, batch, packet, !packet);
 }
 
 struct picture *painter_collect(struct painter *painter)
@@ -111,92 +103,6 @@ struct picture *painter_collect(struct painter *painter)
     return done;
 }
 
-/* --- encoding, on the workers ---------------------------------------------------------------------------------------------- */
-
-static struct encoder *encoder_take(struct painter *painter, enum wire_codec codec)
-{
-    struct encoder *encoder = NULL;
-    pthread_mutex_lock(&painter->lock);
-    for (struct idle_encoder **at = &painter->idle; *at && !encoder; at = *at ? &(*at)->next : at) {
-        struct idle_encoder *idle = *at;
-        if (idle->codec != codec)
-            continue;
-        encoder = idle->encoder;
-        *at = idle->next;
-        mem_free(idle);
-        break;
-    }
-    pthread_mutex_unlock(&painter->lock);
-    return encoder ? encoder : encoder_create(painter->params.log, name_of(names_codec, (int)codec));
-}
-
-static void encoder_give(struct painter *painter, enum wire_codec codec, struct encoder *encoder)
-{
-    struct idle_encoder *idle = mem_new(sizeof(*idle));
-    pthread_mutex_lock(&painter->lock);
-    *idle = (struct idle_encoder){ .codec = codec, .encoder = encoder, .next = painter->idle };
-    painter->idle = idle;
-    pthread_mutex_unlock(&painter->lock);
-}
-
-static void encode(void *arg)
-{
-    struct encode_job *job = arg;
-    struct painter *painter = job->painter;
-    const struct wish *wish = &job->batch.orders[0].wish;
-    struct packet *packet = NULL;
-    struct encoder *encoder = encoder_take(painter, wish->codec);
-    if (encoder && encoder_send(encoder, job->frame, &wish->quality) == 0 && encoder_receive(encoder, &packet) == 0) {
-        counter_inc(painter->encodes, 1);
-        counter_inc(painter->encode_us, packet->encode_ns / 1000);
-    } else {
-        counter_inc(painter->failures, 1);
-    }
-    if (encoder)
-        encoder_give(painter, wish->codec, encoder);
-    frame_unref(&job->frame);
-    post(painter, &job->batch, false, packet, !packet);
-    packet_unref(&packet);
-    mem_free(job->batch.orders);
-    mem_free(job);
-    pthread_mutex_lock(&painter->lock);
-    painter->jobs--;
-    pthread_cond_broadcast(&painter->wake);
-    pthread_mutex_unlock(&painter->lock);
-}
-
-static void batch_add(struct batch *batch, const struct order *order)
-{
-    mem_grow(&batch->orders, &batch->capacity, batch->count + 1, sizeof(*batch->orders));
-    batch->orders[batch->count++] = *order;
-}
-
-static bool same_coding(const struct wish *a, const struct wish *b)
-{
-    return a->codec == b->codec && a->quality.quality == b->quality.quality && a->quality.full_chroma == b->quality.full_chroma;
-}
-
-/* One job for each codec and quality in the batch. */
-static void submit(struct painter *painter, struct frame *frame, struct batch *batch)
-{
-    for (size_t i = 0; i < batch->count; i++) {
-        if (batch->orders[i].same)
-            continue;
-        struct encode_job *job = mem_new(sizeof(*job));
-        *job = (struct encode_job){ .painter = painter, .frame = frame_ref(frame) };
-        for (size_t k = i; k < batch->count; k++)
-            if (!batch->orders[k].same && same_coding(&batch->orders[i].wish, &batch->orders[k].wish)) {
-                batch_add(&job->batch, &batch->orders[k]);
-                batch->orders[k].same = k > i; /* taken */
-            }
-        batch->orders[i].same = true;
-        pthread_mutex_lock(&painter->lock);
-        painter->jobs++;
-        pthread_mutex_unlock(&painter->lock);
-        workers_submit(painter->params.workers, encode, job);
-    }
-}
-
 /* --- drawing, on the render thread ----------------------------------------------------------------------------------------- */
 
 static bool same_vector(const double a[3], const double b[3])
@@ -206,7 +112,8 @@ static bool same_vector(const double a[3], const double b[3])
 
 static bool same_camera(const struct camera *a, const struct camera *b)
 {
-    return same_vector(a->eye_m, b->eye_m) && same_vector(a->target_m, b->target_m) && same_vector(a->up, b->up) && a->fov_deg == b->fov_deg;
+    return same_vector(a->eye_m, b->eye_m) && same_vector(a->target_m, b->target_m) && same_vector(a->up, b->up) &&
+           a->fov_deg == b->fov_deg;
 }
 
 static bool same_picture(const struct view *a, const struct view *b)
@@ -237,8 +144,9 @@ static struct client *first_due(struct painter *painter)
 static void begin(struct client *client, struct batch *batch, int64_t now_ns)
 {
     client->pending = false;
-    batch_add(batch, &(struct order){ .client = client->id, .number = ++client->number, .wish = client->wish,
-                                      .wait_ns = now_ns - client->wish.view.input_ns });
+    batch_add(batch,
+              &(struct order){
+                  .client = client->id, .number = ++client->number, .wish = client->wish, .wait_ns = now_ns - client->wish.view.input_ns });
 }
 
 /* Waits for work. False: stop. */
@@ -278,51 +186,58 @@ static void refresh(struct drawing *drawing)
         store_snapshot(painter->params.store, now_ns, clock_utc_ns(), drawing->snapshot);
 }
 
-/* Marks the orders whose client has this picture already. True: at least one has not. */
-static bool someone_needs(struct painter *painter, struct batch *batch, uint64_t content)
+struct content_of {
+    struct painter *painter;
+    uint64_t content;
+};
+
+/* Under lock: the client has this picture already. */
+static bool has_it(const struct order *order, void *arg)
 {
-    bool needed = false;
-    pthread_mutex_lock(&painter->lock);
-    for (size_t i = 0; i < batch->count; i++) {
-        struct order *order = &batch->orders[i];
-        for (size_t k = 0; k < painter->client_count && !order->wish.always; k++)
-            if (painter->clients[k].id == order->client)
-                order->same = painter->clients[k].has_content && painter->clients[k].content == content;
-        needed |= !order->same;
-    }
-    pthread_mutex_unlock(&painter->lock);
-    return needed;
+    const struct content_of *now = arg;
+    const struct client *client = client_find(now->painter, order->client);
+    return !order->wish.always && client && client->has_content && client->content == now->content;
 }
 
 static void remember(struct painter *painter, const struct batch *batch, uint64_t content)
 {
     pthread_mutex_lock(&painter->lock);
-    for (size_t i = 0; i < batch->count; i++)
-        for (size_t k = 0; k < painter->client_count; k++)
-            if (painter->clients[k].id == batch->orders[i].client) {
-                painter->clients[k].has_content = true;
-                painter->clients[k].content = content;
-            }
+    for (size_t i = 0; i < batch->count; i++) {
+        struct client *client = client_find(painter, batch->orders[i].client);
+        if (client) {
+            client->has_content = true;
+            client->content = content;
+        }
+    }
     pthread_mutex_unlock(&painter->lock);
+}
+
+/* Answers those for whom nothing changed, and takes them out of the batch. */
+static void leave_out_same(struct drawing *drawing, struct batch *batch)
+{
+    struct painter *painter = drawing->painter;
+    struct content_of now = { .painter = painter };
+    now.content = renderer_content(drawing->renderer, &batch->orders[0].wish.view, drawing->snapshot);
+    pthread_mutex_lock(&painter->lock);
+    batch_split(batch, has_it, &now, &drawing->same);
+    pthread_mutex_unlock(&painter->lock);
+    counter_inc(painter->same, (int64_t)drawing->same.count);
+    post(painter, &drawing->same, NULL, false);
 }
 
 static void draw(struct drawing *drawing, struct batch *batch)
 {
     struct painter *painter = drawing->painter;
-    const struct wish *wish = &batch->orders[0].wish;
     refresh(drawing);
-    uint64_t content = renderer_content(drawing->renderer, &wish->view, drawing->snapshot);
-    bool needed = someone_needs(painter, batch, content);
-    post(painter, batch, true, NULL, false);
-    if (!needed) {
-        counter_inc(painter->same, 1);
+    leave_out_same(drawing, batch);
+    if (batch->count == 0)
         return;
-    }
+    const struct wish *wish = &batch->orders[0].wish;
     int64_t begin_ns = clock_mono_ns();
     struct frame *frame = renderer_draw(drawing->renderer, &wish->view, drawing->snapshot);
     if (!frame) {
         counter_inc(painter->failures, 1);
-        post(painter, batch, false, NULL, true);
+        post(painter, batch, NULL, true);
         return;
     }
     if (wish->overlay)
@@ -330,7 +245,7 @@ static void draw(struct drawing *drawing, struct batch *batch)
     counter_inc(painter->renders, 1);
     counter_inc(painter->render_us, (clock_mono_ns() - begin_ns) / 1000);
     remember(painter, batch, frame->content);
-    submit(painter, frame, batch);
+    encoding_submit(painter->encoding, frame, batch);
     frame_unref(&frame);
 }
 
@@ -356,6 +271,7 @@ static void drawing_finish(struct drawing *drawing)
     field_destroy(&drawing->field);
     gl_destroy(&drawing->gl);
     snapshot_destroy(&drawing->snapshot);
+    batch_finish(&drawing->same);
 }
 
 static void *painter_main(void *arg)
@@ -370,21 +286,12 @@ static void *painter_main(void *arg)
     pthread_mutex_unlock(&painter->lock);
     while (next_batch(painter, &batch))
         draw(&drawing, &batch);
-    mem_free(batch.orders);
+    batch_finish(&batch);
     drawing_finish(&drawing);
     return NULL;
 }
 
 /* --- wishes, from any thread ----------------------------------------------------------------------------------------------- */
-
-/* Under lock. NULL: none. */
-static struct client *client_find(struct painter *painter, uint64_t id)
-{
-    for (size_t i = 0; i < painter->client_count; i++)
-        if (painter->clients[i].id == id)
-            return &painter->clients[i];
-    return NULL;
-}
 
 /* The newer view stands; what made the older one urgent stays. */
 static void replace(struct wish *old, const struct wish *wish)
@@ -440,6 +347,39 @@ void painter_new_data(struct painter *painter)
 
 /* --- life ------------------------------------------------------------------------------------------------------------------ */
 
+static bool thread_start(struct painter *painter)
+{
+    if (pthread_create(&painter->thread, NULL, painter_main, painter) != 0) {
+        log_err(painter->params.log, "painter: no thread could be started");
+        return false;
+    }
+    painter->has_thread = true;
+    pthread_mutex_lock(&painter->lock);
+    while (painter->state == STARTING)
+        pthread_cond_wait(&painter->wake, &painter->lock);
+    bool good = painter->state == RUNNING;
+    pthread_mutex_unlock(&painter->lock);
+    return good;
+}
+
+static void thread_stop(struct painter *painter)
+{
+    pthread_mutex_lock(&painter->lock);
+    painter->state = STOPPING;
+    pthread_cond_broadcast(&painter->wake);
+    pthread_mutex_unlock(&painter->lock);
+    if (painter->has_thread)
+        pthread_join(painter->thread, NULL);
+}
+
+static void add_counters(struct painter *painter, struct counters *counters)
+{
+    painter->renders = counters_add(counters, "plantcast_renders_total", "counter", "Pictures drawn.");
+    painter->render_us = counters_add(counters, "plantcast_render_us_total", "counter", "Microseconds spent drawing.");
+    painter->same = counters_add(counters, "plantcast_renders_saved_total", "counter", "Pictures not drawn: nothing had changed.");
+    painter->failures = counters_add(counters, "plantcast_render_failures_total", "counter", "Pictures that could not be drawn.");
+}
+
 struct painter *painter_create(const struct painter_params *params)
 {
     struct painter *painter = mem_new(sizeof(*painter));
@@ -447,30 +387,12 @@ struct painter *painter_create(const struct painter_params *params)
     painter->done_last = &painter->done;
     pthread_mutex_init(&painter->lock, NULL);
     pthread_cond_init(&painter->wake, NULL);
-    painter->renders = counters_add(params->counters, "plantcast_renders_total", "counter", "Pictures drawn.");
-    painter->render_us = counters_add(params->counters, "plantcast_render_us_total", "counter", "Microseconds spent drawing.");
-    painter->same = counters_add(params->counters, "plantcast_renders_saved_total", "counter", "Pictures not drawn: nothing had changed.");
-    painter->encodes = counters_add(params->counters, "plantcast_encodes_total", "counter", "Pictures encoded.");
-    painter->encode_us = counters_add(params->counters, "plantcast_encode_us_total", "counter", "Microseconds spent encoding.");
-    painter->failures = counters_add(params->counters, "plantcast_picture_failures_total", "counter", "Pictures that could not be made.");
-    if (pthread_create(&painter->thread, NULL, painter_main, painter) != 0) {
-        log_err(params->log, "painter: no thread could be started");
-        painter->state = FAILED;
-        goto error;
-    }
-    pthread_mutex_lock(&painter->lock);
-    while (painter->state == STARTING)
-        pthread_cond_wait(&painter->wake, &painter->lock);
-    bool good = painter->state == RUNNING;
-    pthread_mutex_unlock(&painter->lock);
-    if (good)
-        return painter;
-    pthread_join(painter->thread, NULL);
-error:
-    pthread_cond_destroy(&painter->wake);
-    pthread_mutex_destroy(&painter->lock);
-    mem_free(painter);
-    return NULL;
+    add_counters(painter, params->counters);
+    painter->encoding = encoding_create(&(struct encoding_params){
+        .log = params->log, .workers = params->workers, .counters = params->counters, .done = on_encoded, .done_arg = painter });
+    if (!thread_start(painter))
+        painter_destroy(&painter);
+    return painter;
 }
 
 void painter_destroy(struct painter **painter_ptr)
@@ -478,23 +400,11 @@ void painter_destroy(struct painter **painter_ptr)
     struct painter *painter = *painter_ptr;
     if (!painter)
         return;
-    pthread_mutex_lock(&painter->lock);
-    painter->state = STOPPING;
-    pthread_cond_broadcast(&painter->wake);
-    pthread_mutex_unlock(&painter->lock);
-    pthread_join(painter->thread, NULL);
-    pthread_mutex_lock(&painter->lock);
-    while (painter->jobs > 0)
-        pthread_cond_wait(&painter->wake, &painter->lock);
-    pthread_mutex_unlock(&painter->lock);
+    thread_stop(painter);
+    encoding_destroy(&painter->encoding);
     for (struct picture *picture = painter_collect(painter), *next; picture; picture = next) {
         next = picture->next;
         picture_destroy(&picture);
-    }
-    for (struct idle_encoder *idle = painter->idle, *next; idle; idle = next) {
-        next = idle->next;
-        encoder_destroy(&idle->encoder);
-        mem_free(idle);
     }
     mem_free(painter->clients);
     pthread_cond_destroy(&painter->wake);

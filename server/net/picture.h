@@ -11,19 +11,19 @@ struct wish {
     enum wire_codec codec;
     struct encoder_params quality;
     enum urgency urgency;
-    int64_t asked_ns;   /* monotonic */
-    bool only_replace;  /* the client may have no more pictures: good only in place of a wish that is not begun */
-    bool always;        /* draw even if the picture would be the same as the last one of this client */
-    bool overlay;       /* legend, markers and clock drawn in */
+    int64_t asked_ns;  /* monotonic */
+    bool only_replace; /* the client may have no more pictures: good only in place of a wish that is not begun */
+    bool always;       /* draw even if the picture would be the same as the last one of this client */
+    bool overlay;      /* legend, markers and clock drawn in */
 };
 
-struct picture {        /* belongs to whoever collected it: picture_destroy */
+struct picture { /* belongs to whoever collected it: picture_destroy */
     uint64_t client;
-    uint64_t number;    /* counts the client's wishes as they were begun: a larger one shows a newer state */
-    struct packet *packet;  /* NULL: the picture would be the same as before, or could not be made */
+    uint64_t number;       /* counts the client's wishes as they were begun: a larger one shows a newer state */
+    struct packet *packet; /* NULL: the picture would be the same as before, or could not be made */
     bool failed;
     struct wish wish;
-    int64_t wait_ns;    /* from input to the start of drawing */
+    int64_t wait_ns; /* from input to the start of drawing */
     struct picture *next;
 };
 

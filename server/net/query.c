@@ -13,10 +13,10 @@ static const struct {
     const char *name;
     enum kind kind;
 } known[] = {
-    { "width", NUMBER },  { "height", NUMBER },   { "camera", NUMBERS }, { "group", STRING },         { "interpolation", STRING },
-    { "distance", STRING }, { "fill", STRING },   { "strength", NUMBER }, { "decay", NUMBER },        { "power", NUMBER },
+    { "width", NUMBER },    { "height", NUMBER },  { "camera", NUMBERS },  { "group", STRING },         { "interpolation", STRING },
+    { "distance", STRING }, { "fill", STRING },    { "strength", NUMBER }, { "decay", NUMBER },         { "power", NUMBER },
     { "radius_m", NUMBER }, { "reach_m", NUMBER }, { "colormap", STRING }, { "ramp_interval", NUMBER }, { "range", NUMBERS },
-    { "look", STRING },   { "light", NUMBERS },   { "selected", STRING },
+    { "look", STRING },     { "light", NUMBERS },  { "selected", STRING },
 };
 
 /* NULL: not a finite number. */
@@ -49,10 +49,8 @@ static json_t *value_of(enum kind kind, const char *text)
     const char *end = "";
     json_t *value;
     switch (kind) {
-    case STRING:
-        return json_string(text);
-    case NUMBERS:
-        return numbers(text);
+    case STRING: return json_string(text);
+    case NUMBERS: return numbers(text);
     case NUMBER:
         value = number(text, &end);
         if (value && *end == 0)
@@ -73,7 +71,9 @@ static bool add(json_t *o, const char *arg, struct message_error *error)
         if (value)
             return json_object_set_new(o, known[i].name, value) == 0;
         message_fail(error, "bad_field", "%s: %s expected", known[i].name,
-                     known[i].kind == STRING ? "a text" : known[i].kind == NUMBER ? "a number" : "numbers with commas");
+                     known[i].kind == STRING   ? "a text"
+                     : known[i].kind == NUMBER ? "a number"
+                                               : "numbers with commas");
         return false;
     }
     message_fail(error, "bad_field", "'%s' is unknown", quoted(arg, name));

@@ -149,8 +149,9 @@ static json_t *plant_object(const struct session_world *world, const struct came
 {
     json_t *object = json_pack("{s:o,s:o,s:o}", "name", string(world->plant->name), "time_zone", string(world->plant->time_zone), "bounds",
                                box(world->scene->bounds_min_m, world->scene->bounds_max_m));
-    json_object_set_new(object, "home", json_pack("{s:o,s:o,s:o,s:o}", "eye", vector(home->eye_m), "target", vector(home->target_m), "up",
-                                                  vector(home->up), "fov", number(home->fov_deg)));
+    json_object_set_new(object, "home",
+                        json_pack("{s:o,s:o,s:o,s:o}", "eye", vector(home->eye_m), "target", vector(home->target_m), "up", vector(home->up),
+                                  "fov", number(home->fov_deg)));
     return object;
 }
 
@@ -236,7 +237,8 @@ char *reply_pong_text(double t, int64_t now_utc_ns)
 char *reply_error_text(const struct message_error *error)
 {
     return print(json_pack("{s:s,s:s,s:o,s:o}", "type", "error", "code", error->code, "text", string(error->text), "about",
-                           error->about[0] ? string(error->about) : json_null()), DIGITS);
+                           error->about[0] ? string(error->about) : json_null()),
+                 DIGITS);
 }
 
 char *reply_api_plant_text(const struct session_world *world)

@@ -8,9 +8,9 @@
 #include "base/mem.h"
 #include "net/reply.h"
 
-static const int64_t STILL_NS = 200 * NS_PER_MS;      /* without input: refine */
-static const int64_t TAGS_NS = 500 * NS_PER_MS;       /* changed values, at most this often */
-static const int64_t REPEAT_NS = 2000 * NS_PER_MS;    /* all values and the links, at least this often */
+static const int64_t STILL_NS = 200 * NS_PER_MS;   /* without input: refine */
+static const int64_t TAGS_NS = 500 * NS_PER_MS;    /* changed values, at most this often */
+static const int64_t REPEAT_NS = 2000 * NS_PER_MS; /* all values and the links, at least this often */
 static const struct encoder_params MOVING = { .quality = 78, .full_chroma = false }, STILL = { .quality = 92, .full_chroma = true };
 
 struct session *session_create(const struct session_world *world, uint64_t id, int64_t now_ns)
@@ -107,29 +107,20 @@ static void on_visible(struct session *session, bool visible)
 static bool act(struct session *session, const struct message *message, int64_t now_ns, int64_t now_utc_ns, struct message_error *error)
 {
     switch (message->type) {
-    case MESSAGE_HELLO:
-        on_input(session, now_ns);
-        return on_hello(session, message, error);
+    case MESSAGE_HELLO: on_input(session, now_ns); return on_hello(session, message, error);
     case MESSAGE_CAMERA:
         set_camera(session, message);
         on_input(session, now_ns);
         return true;
-    case MESSAGE_PARAMS:
-        on_input(session, now_ns);
-        return on_params(session, message, error);
+    case MESSAGE_PARAMS: on_input(session, now_ns); return on_params(session, message, error);
     case MESSAGE_RESIZE:
         session->view.width_px = message->width_px;
         session->view.height_px = message->height_px;
         on_input(session, now_ns);
         return true;
-    case MESSAGE_ACK:
-        return on_ack(session, message, now_ns, error);
-    case MESSAGE_VISIBLE:
-        on_visible(session, message->visible);
-        return true;
-    case MESSAGE_PING:
-        reply(session, reply_pong_text(message->t, now_utc_ns));
-        return true;
+    case MESSAGE_ACK: return on_ack(session, message, now_ns, error);
+    case MESSAGE_VISIBLE: on_visible(session, message->visible); return true;
+    case MESSAGE_PING: reply(session, reply_pong_text(message->t, now_utc_ns)); return true;
     }
     return true;
 }

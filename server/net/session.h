@@ -17,8 +17,8 @@ struct session_world {
     const struct plant *plant;
     const struct scene *scene;
     const struct snapshot *snapshot;
-    const bool *links_up;   /* by source index */
-    bool live;              /* values are coming in */
+    const bool *links_up; /* by source index */
+    bool live;            /* values are coming in */
     const char *version;
 };
 
@@ -30,22 +30,22 @@ struct session {
     struct view view;
 
     bool input_pending, data_pending, always_pending; /* why a picture is wanted */
-    int64_t input_ns, data_ns; /* the newest input; the oldest change of a reading that is not yet asked for */
-    bool refined;           /* the view as it is has been asked for in the still tier */
+    int64_t input_ns, data_ns;                        /* the newest input; the oldest change of a reading that is not yet asked for */
+    bool refined;                                     /* the view as it is has been asked for in the still tier */
     struct pacer pacer;
     uint64_t newest_number; /* of the pictures that came */
     struct picture *ready;  /* next to be sent */
 
     bool owes_welcome, owes_params, owes_tags_all, owes_tags, owes_status;
-    uint32_t params_seq;    /* to be answered */
+    uint32_t params_seq;                     /* to be answered */
     int64_t tags_ns, tags_all_ns, status_ns; /* last sent */
-    uint32_t *tag_changes;  /* reading.changes as last sent, by tag */
-    char *replies[SESSION_MAX_REPLIES]; /* pongs and errors, oldest first */
+    uint32_t *tag_changes;                   /* reading.changes as last sent, by tag */
+    char *replies[SESSION_MAX_REPLIES];      /* pongs and errors, oldest first */
     int reply_count;
 
     int64_t rate_begin_ns;
     int rate_count;
-    bool too_fast;          /* read nothing more until session_tick */
+    bool too_fast;                     /* read nothing more until session_tick */
     int64_t messages, errors, dropped; /* for the log and the counters */
 };
 
@@ -55,8 +55,8 @@ void session_destroy(struct session **session); /* &NULL is fine; leaves NULL */
 /* One text message. Bad ones are answered with an error and change nothing. */
 void session_on_message(struct session *session, const char *text, size_t count, int64_t now_ns, int64_t now_utc_ns);
 void session_on_oversize(struct session *session, size_t count, int64_t now_ns); /* a message too long to be kept */
-void session_on_tick(struct session *session, int64_t now_ns); /* every 100 ms or so */
-void session_on_data(struct session *session, int64_t now_ns); /* a reading changed */
+void session_on_tick(struct session *session, int64_t now_ns);                   /* every 100 ms or so */
+void session_on_data(struct session *session, int64_t now_ns);                   /* a reading changed */
 /* Takes the picture over. */
 void session_on_picture(struct session *session, struct picture *picture);
 

@@ -17,10 +17,18 @@ enum { MAX_FILE_BYTES = 32 * 1024 * 1024 };
 static const struct {
     const char *ending, *type;
 } types[] = {
-    { ".html", "text/html; charset=utf-8" },   { ".js", "text/javascript; charset=utf-8" }, { ".mjs", "text/javascript; charset=utf-8" },
-    { ".css", "text/css; charset=utf-8" },     { ".json", "application/json" },             { ".svg", "image/svg+xml" },
-    { ".png", "image/png" },                   { ".jpg", "image/jpeg" },                    { ".ico", "image/x-icon" },
-    { ".webmanifest", "application/manifest+json" }, { ".woff2", "font/woff2" },            { ".txt", "text/plain; charset=utf-8" },
+    { ".html", "text/html; charset=utf-8" },
+    { ".js", "text/javascript; charset=utf-8" },
+    { ".mjs", "text/javascript; charset=utf-8" },
+    { ".css", "text/css; charset=utf-8" },
+    { ".json", "application/json" },
+    { ".svg", "image/svg+xml" },
+    { ".png", "image/png" },
+    { ".jpg", "image/jpeg" },
+    { ".ico", "image/x-icon" },
+    { ".webmanifest", "application/manifest+json" },
+    { ".woff2", "font/woff2" },
+    { ".txt", "text/plain; charset=utf-8" },
 };
 
 /* Only what we know is served. */

@@ -6,10 +6,10 @@
 #include <stddef.h>
 
 struct site_file {
-    char *bytes;            /* mem_free */
+    char *bytes; /* mem_free */
     size_t count;
-    const char *type;       /* MIME, static */
-    char etag[48];          /* with its quotes */
+    const char *type; /* MIME, static */
+    char etag[48];    /* with its quotes */
 };
 
 /* path: decoded, starts with '/'. False: there is no such file that may be served. bytes stay NULL if only_etag. */

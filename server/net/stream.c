@@ -15,14 +15,14 @@ struct stream {
     struct lws *wsi;
     struct session *session;
     struct stream *next;
-    struct text in;             /* the message so far */
-    size_t in_count;            /* its bytes, kept or not */
+    struct text in;  /* the message so far */
+    size_t in_count; /* its bytes, kept or not */
     struct picture *sending;
     uint32_t seq;
     enum { SEND_MARKERS, SEND_HEADER, SEND_PAYLOAD } step;
-    size_t sent;                /* of the payload */
+    size_t sent; /* of the payload */
     bool throttled;
-    int close_code;             /* 0: stays open */
+    int close_code; /* 0: stays open */
     const char *close_text;
     int64_t messages, errors, dropped; /* of the session, as counted already */
 };
@@ -282,15 +282,25 @@ static struct wire_frame frame_header(const struct picture *picture, uint32_t se
     const struct frame *frame = packet->frame;
     bool live = frame->oldest_age_ns != INT64_MAX;
     struct wire_frame out = {
-        .type = WIRE_TYPE_FRAME, .codec = (uint8_t)packet->codec, .payload_bytes = (uint32_t)packet->count, .seq = seq,
+        .type = WIRE_TYPE_FRAME,
+        .codec = (uint8_t)packet->codec,
+        .payload_bytes = (uint32_t)packet->count,
+        .seq = seq,
         .flags = (uint16_t)((packet->key ? WIRE_FLAG_KEY : 0) | (frame->view.tier == TIER_STILL ? WIRE_FLAG_STILL : 0) |
                             (live ? 0 : WIRE_FLAG_NO_LIVE_DATA)),
-        .camera_seq = picture->wish.view.camera_seq, .params_seq = picture->wish.view.params_seq,
+        .camera_seq = picture->wish.view.camera_seq,
+        .params_seq = picture->wish.view.params_seq,
         .oldest_age_ms = live ? us_of(frame->oldest_age_ns / 1000) : WIRE_NO_AGE,
-        .data_time_us = (uint64_t)(frame->data_utc_ns / 1000), .sent_time_us = (uint64_t)(clock_utc_ns() / 1000),
-        .wait_us = us_of(picture->wait_ns), .field_us = us_of(frame->field_ns), .render_us = us_of(frame->render_ns + frame->readback_ns),
-        .encode_us = us_of(packet->encode_ns), .width_px = (uint16_t)frame->width_px, .height_px = (uint16_t)frame->height_px,
-        .full_width_px = (uint16_t)frame->width_px, .full_height_px = (uint16_t)frame->height_px,
+        .data_time_us = (uint64_t)(frame->data_utc_ns / 1000),
+        .sent_time_us = (uint64_t)(clock_utc_ns() / 1000),
+        .wait_us = us_of(picture->wait_ns),
+        .field_us = us_of(frame->field_ns),
+        .render_us = us_of(frame->render_ns + frame->readback_ns),
+        .encode_us = us_of(packet->encode_ns),
+        .width_px = (uint16_t)frame->width_px,
+        .height_px = (uint16_t)frame->height_px,
+        .full_width_px = (uint16_t)frame->width_px,
+        .full_height_px = (uint16_t)frame->height_px,
     };
     camera_to_wire(&frame->view.camera, &out);
     return out;
@@ -324,14 +334,9 @@ static bool write_slice(struct hub *hub, struct stream *stream)
 static bool write_picture(struct hub *hub, struct stream *stream)
 {
     switch (stream->step) {
-    case SEND_MARKERS:
-        stream->step = SEND_HEADER;
-        return write_markers(stream);
-    case SEND_HEADER:
-        stream->step = SEND_PAYLOAD;
-        return write_header(hub, stream);
-    case SEND_PAYLOAD:
-        break;
+    case SEND_MARKERS: stream->step = SEND_HEADER; return write_markers(stream);
+    case SEND_HEADER: stream->step = SEND_PAYLOAD; return write_header(hub, stream);
+    case SEND_PAYLOAD: break;
     }
     return write_slice(hub, stream);
 }
@@ -374,19 +379,11 @@ int stream_callback(struct lws *wsi, enum lws_callback_reasons reason, void *use
 {
     struct stream **slot = user;
     switch (reason) {
-    case LWS_CALLBACK_ESTABLISHED:
-        on_open(hub_of(wsi), wsi, slot);
-        break;
-    case LWS_CALLBACK_CLOSED:
-        on_close(hub_of(wsi), slot);
-        break;
-    case LWS_CALLBACK_RECEIVE:
-        on_receive(hub_of(wsi), *slot, in, len);
-        break;
-    case LWS_CALLBACK_SERVER_WRITEABLE:
-        return on_writeable(hub_of(wsi), *slot);
-    default:
-        break;
+    case LWS_CALLBACK_ESTABLISHED: on_open(hub_of(wsi), wsi, slot); break;
+    case LWS_CALLBACK_CLOSED: on_close(hub_of(wsi), slot); break;
+    case LWS_CALLBACK_RECEIVE: on_receive(hub_of(wsi), *slot, in, len); break;
+    case LWS_CALLBACK_SERVER_WRITEABLE: return on_writeable(hub_of(wsi), *slot);
+    default: break;
     }
     return 0;
 }

@@ -9,21 +9,58 @@ static struct plant_asset plant_assets[] = {
     { .id = "P-101A", .tag = "P-101 A", .description = NULL, .unit_m = 1 },
 };
 static struct plant_group groups[] = {
-    { .id = "temperature", .quantity = "Temperature", .unit = "\302\260C", .min = 20, .max = 180, .limits = { NAN, 30, 150, NAN },
-      .interpolation = INTERPOLATION_SHEPARD, .distance = DISTANCE_GEODESIC, .strength = 1, .decay = 1, .power = 2, .reach_m = INFINITY },
-    { .id = "pressure", .quantity = "Pressure", .unit = "bar", .min = 0, .max = 16, .limits = { NAN, NAN, 12, 14 },
-      .interpolation = INTERPOLATION_PAPER, .distance = DISTANCE_EUCLIDEAN, .strength = 1, .decay = 1, .power = 3, .radius_m = 2.5,
-      .reach_m = 4, .fill = FILL_NEIGHBOURS },
+    { .id = "temperature",
+      .quantity = "Temperature",
+      .unit = "\302\260C",
+      .min = 20,
+      .max = 180,
+      .limits = { NAN, 30, 150, NAN },
+      .interpolation = INTERPOLATION_SHEPARD,
+      .distance = DISTANCE_GEODESIC,
+      .strength = 1,
+      .decay = 1,
+      .power = 2,
+      .reach_m = INFINITY },
+    { .id = "pressure",
+      .quantity = "Pressure",
+      .unit = "bar",
+      .min = 0,
+      .max = 16,
+      .limits = { NAN, NAN, 12, 14 },
+      .interpolation = INTERPOLATION_PAPER,
+      .distance = DISTANCE_EUCLIDEAN,
+      .strength = 1,
+      .decay = 1,
+      .power = 3,
+      .radius_m = 2.5,
+      .reach_m = 4,
+      .fill = FILL_NEIGHBOURS },
 };
 static struct plant_source sources[] = { { .id = "plc1", .kind = "modbus", .host = "10.20.30.40", .port = 502 } };
 static struct plant_tag tags[] = {
-    { .name = "TI-1", .description = "shell \342\200\234inlet\342\200\235", .unit = "\302\260C", .address = "400123", .group = 0, .asset = 0 },
+    { .name = "TI-1",
+      .description = "shell \342\200\234inlet\342\200\235",
+      .unit = "\302\260C",
+      .address = "400123",
+      .group = 0,
+      .asset = 0 },
     { .name = "PI-1", .description = NULL, .unit = "bar", .address = "400124", .group = 1, .asset = 0 },
     { .name = "XI-1", .description = "not shown", .unit = NULL, .address = "400125", .group = -1, .asset = -1 },
 };
 static struct plant plant = {
-    .path = "plant.yaml", .folder = ".", .tags_path = "tags.csv", .name = "Unit 100", .time_zone = "Europe/Oslo", .up = AXIS_Z,
-    .assets = plant_assets, .groups = groups, .sources = sources, .tags = tags, .asset_count = 2, .group_count = 2, .source_count = 1,
+    .path = "plant.yaml",
+    .folder = ".",
+    .tags_path = "tags.csv",
+    .name = "Unit 100",
+    .time_zone = "Europe/Oslo",
+    .up = AXIS_Z,
+    .assets = plant_assets,
+    .groups = groups,
+    .sources = sources,
+    .tags = tags,
+    .asset_count = 2,
+    .group_count = 2,
+    .source_count = 1,
     .tag_count = 3,
 };
 static struct scene_sensor sensors[] = {
@@ -35,7 +72,11 @@ static struct scene_asset assets[] = {
     { .plant = &plant_assets[1], .bounds_min_m = { 5, -1, 0 }, .bounds_max_m = { 6.5, 1, 1.25 } },
 };
 static const struct scene scene = {
-    .plant = &plant, .assets = assets, .asset_count = 2, .bounds_min_m = { -3, -1, 0 }, .bounds_max_m = { 6.5, 1, 2.5 },
+    .plant = &plant,
+    .assets = assets,
+    .asset_count = 2,
+    .bounds_min_m = { -3, -1, 0 },
+    .bounds_max_m = { 6.5, 1, 2.5 },
 };
 
 const struct scene *small_scene(void)

@@ -150,8 +150,9 @@ static bool query(const char *const *args, size_t count, struct view *view, stru
 static void queries_make_views(void **state)
 {
     (void)state;
-    static const char *const args[] = { "width=320", "height=200", "camera=1,2,3,4,5,6,50", "group=pressure", "range=1,2.5", "reach_m=3",
-                                        "selected=E-101", "look=flat", "light=0,0,2" };
+    static const char *const args[] = { "width=320",      "height=200",  "camera=1,2,3,4,5,6,50",
+                                        "group=pressure", "range=1,2.5", "reach_m=3",
+                                        "selected=E-101", "look=flat",   "light=0,0,2" };
     struct view view;
     struct message_error error;
     assert_true(query(args, sizeof(args) / sizeof(args[0]), &view, &error));
@@ -165,9 +166,27 @@ static void queries_make_views(void **state)
 static void bad_queries_are_named(void **state)
 {
     (void)state;
-    static const char *const bad[] = { "width=0", "width=1e9", "width=", "width", "width=640px", "width=100.5", "height=nan", "camera=1,2,3",
-                                       "camera=1,2,3,1,2,3", "camera=1,2,3,4,5,inf", "camera=,,,,,", "group=none", "range=2,1", "range=1",
-                                       "colour=red", "=", "", "look=", "selected=x", "light=0,0,0", "power=1e400" };
+    static const char *const bad[] = { "width=0",
+                                       "width=1e9",
+                                       "width=",
+                                       "width",
+                                       "width=640px",
+                                       "width=100.5",
+                                       "height=nan",
+                                       "camera=1,2,3",
+                                       "camera=1,2,3,1,2,3",
+                                       "camera=1,2,3,4,5,inf",
+                                       "camera=,,,,,",
+                                       "group=none",
+                                       "range=2,1",
+                                       "range=1",
+                                       "colour=red",
+                                       "=",
+                                       "",
+                                       "look=",
+                                       "selected=x",
+                                       "light=0,0,0",
+                                       "power=1e400" };
     for (size_t i = 0; i < sizeof(bad) / sizeof(bad[0]); i++) {
         struct view view;
         struct message_error error;
@@ -211,12 +230,8 @@ static void damaged_messages_stay_harmless(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(vectors_are_taken_or_refused),
-        cmocka_unit_test(fields_arrive),
-        cmocka_unit_test(what_is_left_out_stays),
-        cmocka_unit_test(a_new_group_brings_its_settings),
-        cmocka_unit_test(queries_make_views),
-        cmocka_unit_test(bad_queries_are_named),
+        cmocka_unit_test(vectors_are_taken_or_refused),    cmocka_unit_test(fields_arrive),      cmocka_unit_test(what_is_left_out_stays),
+        cmocka_unit_test(a_new_group_brings_its_settings), cmocka_unit_test(queries_make_views), cmocka_unit_test(bad_queries_are_named),
         cmocka_unit_test(damaged_messages_stay_harmless),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);

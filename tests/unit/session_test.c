@@ -33,8 +33,9 @@ static int set_up(void **state)
     struct fixture *f = mem_new(sizeof(*f));
     f->snapshot = snapshot_create(small_scene()->plant->tag_count);
     f->up[0] = true;
-    f->world = (struct session_world){ .plant = small_scene()->plant, .scene = small_scene(), .snapshot = f->snapshot, .links_up = f->up,
-                                       .live = true, .version = "1.2.3" };
+    f->world = (struct session_world){
+        .plant = small_scene()->plant, .scene = small_scene(), .snapshot = f->snapshot, .links_up = f->up, .live = true, .version = "1.2.3"
+    };
     f->now_ns = 1000 * NS_PER_S;
     f->session = session_create(&f->world, 7, f->now_ns);
     *state = f;
@@ -266,7 +267,7 @@ static void overtaken_pictures_are_not_sent(void **state)
     struct wish first = wish;
     assert_true(ask(f, &wish));
     f->number = 1;
-    paint(f, &wish, false);  /* number 2 */
+    paint(f, &wish, false); /* number 2 */
     f->number = 0;
     paint(f, &first, false); /* number 1 comes later */
     uint32_t seq;

@@ -16,7 +16,10 @@ export function http(port, head, { timeoutMs = 15000 } = {}) {
             if (end < 0)
                 return ended ? (clearTimeout(timer), done({ status: 0, headers: {}, body: Buffer.alloc(0) })) : undefined;
             const [first, ...lines] = bytes.subarray(0, end).toString().split('\r\n');
-            const headers = Object.fromEntries(lines.map((line) => [line.slice(0, line.indexOf(':')).toLowerCase(), line.slice(line.indexOf(':') + 1).trim()]));
+            const headers = Object.fromEntries(lines.map((line) => {
+                const colon = line.indexOf(':');
+                return [line.slice(0, colon).toLowerCase(), line.slice(colon + 1).trim()];
+            }));
             const body = bytes.subarray(end + 4), length = /^HEAD /.test(head) ? 0 : Number(headers['content-length'] ?? 0);
             if (!ended && body.length < length)
                 return undefined;
@@ -54,7 +57,8 @@ export function readFrame(bytes) {
         type: bytes[0], codec: bytes[1], flags: u16(2), payload_bytes: u32(4), seq: u32(8), camera_seq: u32(12), params_seq: u32(16),
         oldest_age_ms: u32(20), data_time_us: Number(bytes.readBigUInt64LE(24)), sent_time_us: Number(bytes.readBigUInt64LE(32)),
         wait_us: u32(40), field_us: u32(44), render_us: u32(48), encode_us: u32(52), x: u16(56), y: u16(58), width: u16(60),
-        height: u16(62), full_width: u16(64), full_height: u16(66), eye: f32(68, 3), target: f32(80, 3), up: f32(92, 3), fov: f32(104, 1)[0],
+        height: u16(62), full_width: u16(64), full_height: u16(66), eye: f32(68, 3), target: f32(80, 3), up: f32(92, 3),
+        fov: f32(104, 1)[0],
         payload: bytes.subarray(112),
     };
 }
@@ -68,8 +72,8 @@ export class PlainClient {
         client.acknowledge = acknowledge;
         return new Promise((done, fail) => {
             const socket = connect(port, '127.0.0.1', () => socket.write([
-                `GET ${path} HTTP/1.1`, `Host: 127.0.0.1:${port}`, 'Upgrade: websocket', 'Connection: Upgrade', `Sec-WebSocket-Key: ${key}`,
-                'Sec-WebSocket-Version: 13', ...(protocol ? [`Sec-WebSocket-Protocol: ${protocol}`] : []),
+                `GET ${path} HTTP/1.1`, `Host: 127.0.0.1:${port}`, 'Upgrade: websocket', 'Connection: Upgrade',
+                `Sec-WebSocket-Key: ${key}`, 'Sec-WebSocket-Version: 13', ...(protocol ? [`Sec-WebSocket-Protocol: ${protocol}`] : []),
                 ...(origin ? [`Origin: ${origin}`] : []), '', '',
             ].join('\r\n')));
             const accept = createHash('sha1').update(`${key}258EAFA5-E914-47DA-95CA-C5AB0DC85B11`).digest('base64');
