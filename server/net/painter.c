@@ -274,6 +274,16 @@ static void drawing_finish(struct drawing *drawing)
     batch_finish(&drawing->same);
 }
 
+/* What only the first picture costs (shaders, baked light) is paid before anyone asks. */
+static void warm_up(struct drawing *drawing)
+{
+    struct view view;
+    view_default(drawing->painter->params.scene, 64, 36, &view);
+    struct frame *frame = renderer_draw(drawing->renderer, &view, drawing->snapshot);
+    if (frame)
+        frame_unref(&frame);
+}
+
 static void *painter_main(void *arg)
 {
     struct painter *painter = arg;
@@ -284,6 +294,8 @@ static void *painter_main(void *arg)
     painter->state = good ? RUNNING : FAILED;
     pthread_cond_broadcast(&painter->wake);
     pthread_mutex_unlock(&painter->lock);
+    if (good)
+        warm_up(&drawing);
     while (next_batch(painter, &batch))
         draw(&drawing, &batch);
     batch_finish(&batch);
