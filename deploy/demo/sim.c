@@ -17,7 +17,7 @@
 #include "base/mem.h"
 #include "sim_process.h"
 
-enum { TICK_MS = 100, EXIT_USAGE = 2 };
+enum { TICK_MS = 100, EXIT_USAGE = 2, MAX_SPEED = 10000 };
 
 static const char usage_text[] =
     "usage: plantcast-sim PLANT.yaml [options]\n"
@@ -69,9 +69,9 @@ static bool read_speed(const char *text, double *out)
 {
     char *end;
     *out = strtod(text, &end);
-    if (end != text && !*end && isfinite(*out) && *out > 0 && *out <= 1e6)
+    if (end != text && !*end && isfinite(*out) && *out > 0 && *out <= MAX_SPEED)
         return true;
-    fprintf(stderr, "plantcast-sim: --speed %s: expected a number above 0\n", text);
+    fprintf(stderr, "plantcast-sim: --speed %s: expected a number above 0, at most %d\n", text, MAX_SPEED);
     return false;
 }
 
@@ -184,7 +184,7 @@ static bool listen_and_serve(struct sim *sim, const struct options *options)
     size_t count = sim->device_count + (options->control > 0), open = 0;
     struct sim_port *ports = mem_array(count, sizeof(*ports));
     int signal_fd = signal_file();
-    double speed = options->speed > 0 ? options->speed : options->map.speed > 0 ? options->map.speed : 1;
+    double speed = options->speed > 0 ? options->speed : options->map.speed > 0 ? fmin(options->map.speed, MAX_SPEED) : 1;
     bool good = signal_fd >= 0;
     for (; good && open < sim->device_count; open += good)
         good = open_port(&ports[open], options->bind, sim->devices[open].listen_port, sim_modbus_take, &sim->devices[open].modbus);

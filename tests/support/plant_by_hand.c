@@ -44,7 +44,7 @@ struct plant_source *plant_by_hand_source(struct plant *plant, const char *id, i
         .port = port,
         .unit = 1,
         .poll_ms = 100,
-        .timeout_ms = 300,
+        .timeout_ms = 2000,
     };
     return source;
 }

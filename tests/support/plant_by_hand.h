@@ -7,7 +7,7 @@
 /* Room for at most max_tags tags and 8 sources; none yet. */
 struct plant *plant_by_hand_create(size_t max_tags);
 void plant_by_hand_destroy(struct plant **plant);
-/* Modbus at 127.0.0.1:port, unit 1, polled every 100 ms, timeout 300 ms. */
+/* Modbus at 127.0.0.1:port, unit 1, polled every 100 ms, timeout 2 s. */
 struct plant_source *plant_by_hand_source(struct plant *plant, const char *id, int port);
 /* Of the newest source; a whole register, not scaled, stale after 5 s; ABCD where it takes more than one register. */
 struct plant_tag *plant_by_hand_tag(struct plant *plant, const char *name, enum register_table table, int register_index,
