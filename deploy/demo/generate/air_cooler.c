@@ -53,9 +53,9 @@ static void fan(struct item *item, double x, double y, double r)
     shape_block(item_part(item, "side frames", MATERIAL_GALVANISED), frame_at(x, y, 0), -r, r, -0.36, -0.28, FAN_Z - 0.62, FAN_Z - 0.48);
 }
 
-static void bay(struct item *item, double x, double width, double length)
+static void bay(struct item *item, struct item *access, double x, double width, double length)
 {
-    struct mesh *plenum = item_part(item, "plenums", MATERIAL_GALVANISED), *legs = item_part(item, "legs", MATERIAL_STRUCTURE);
+    struct mesh *plenum = item_part(item, "plenums", MATERIAL_GALVANISED), *legs = item_part(access, "legs", MATERIAL_STRUCTURE);
     double half = width / 2 - 0.1, y = length / 2 - 0.15;
     bundle(item, x, width, length);
     struct frame at = frame_at(x, 0, 0);
@@ -79,14 +79,15 @@ static void bay(struct item *item, double x, double width, double length)
 void air_cooler_build(struct site *site, const char *name, struct frame at, double bay_width, double tube_length)
 {
     struct item item = item_begin(&site->model, name, at);
-    struct mesh *steel = item_part(&item, "walkways", MATERIAL_GALVANISED), *rail = item_part(&item, "handrails", MATERIAL_SAFETY_YELLOW);
+    struct item access = item_begin_group(&site->access, name, at);
+    struct mesh *steel = item_part(&access, "walkways", MATERIAL_GALVANISED), *rail = item_part(&access, "handrails", MATERIAL_SAFETY_YELLOW);
     item.necks = item_part(&item, "nozzles", MATERIAL_VESSEL);
     item.flanges = item_part(&item, "flanges", MATERIAL_BOLTING);
     double y = tube_length / 2;
     for (int i = 0; i < 2; i++) {
         double x = (i ? 0.5 : -0.5) * bay_width;
         const char *inlets[] = { "N1", "N2" }, *outlets[] = { "N3", "N4" };
-        bay(&item, x, bay_width, tube_length);
+        bay(&item, &access, x, bay_width, tube_length);
         item_nozzle(&item, inlets[i], vec(x, -y + 0.16, BUNDLE_Z + 0.46), vec(0, 0, 1), 0.110, 0.2);
         item_nozzle(&item, outlets[i], vec(x, y - 0.16, BUNDLE_Z), vec(0, 0, -1), 0.084, 0.2);
     }
@@ -101,5 +102,6 @@ void air_cooler_build(struct site *site, const char *name, struct frame at, doub
             shape_bar(steel, vec(i * bay_width / 2, outer - side * 0.1, BUNDLE_Z - 0.39), vec(i * bay_width / 2, side * (y - 0.25), 0.8),
                       0.04, 6);
     }
+    item_end(&access);
     item_end(&item);
 }

@@ -41,6 +41,7 @@ static void column_shell(struct item *item, const struct column_spec *spec)
         shape_band(bands, frame_at(0, 0, z), spec->r + 0.007, 0.028, 56);
 }
 
+/* item: a group of the access asset */
 static void column_platforms(struct item *item, const struct column_spec *spec)
 {
     struct mesh *steel = item_part(item, "platforms", MATERIAL_GALVANISED), *rail = item_part(item, "handrails", MATERIAL_SAFETY_YELLOW);
@@ -82,7 +83,9 @@ void column_build(struct site *site, const char *name, struct frame at, const st
     shape_prism(item_part(&site->civil, "plinths", MATERIAL_PLINTH), pad, (const double(*)[2])outline, 8, -0.1, 0.30);
     column_skirt(&item, spec);
     column_shell(&item, spec);
-    column_platforms(&item, spec);
+    struct item access = item_begin_group(&site->access, name, at);
+    column_platforms(&access, spec);
+    item_end(&access);
 
     double r = spec->r;
     item_nozzle(&item, "N1", vec(0, 0, spec->height + r * 0.5), vec(0, 0, 1), 0.162, 0.30);

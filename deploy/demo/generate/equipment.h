@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The families of equipment. Each call builds one asset in its place and names its nozzles; z = 0 is the slab.
-   Concrete under it goes to the civil asset, so that an asset is the thing that the tag names. */
+   Concrete under it goes to the civil asset, platforms, ladders and supports to the access asset: what a sensor's field covers is
+   the thing that the tag names. */
 #ifndef GENERATE_EQUIPMENT_H
 #define GENERATE_EQUIPMENT_H
 #include "model.h"
 
 struct site {
     struct model model;
-    struct item civil;
+    struct item civil, access;
 };
 
 void civil_plinth(struct site *site, struct frame at, double x0, double x1, double y0, double y1, double height);

@@ -170,9 +170,9 @@ void fitting_control_valve(struct item *item, struct frame at, double r)
     shape_block(item_part(item, "positioners", MATERIAL_BLACK), up, 0.05, 0.15, -0.06, 0.06, yoke + 0.08, yoke + 0.22);
 }
 
-void fitting_post(struct item *item, struct vec under, double r)
+void fitting_post(struct item *access, struct item *civil, struct vec under, double r)
 {
-    struct mesh *steel = item_part(item, "supports", MATERIAL_STRUCTURE), *plinth = item_part(item, "plinths", MATERIAL_PLINTH);
+    struct mesh *steel = item_part(access, "supports", MATERIAL_STRUCTURE), *plinth = item_part(civil, "plinths", MATERIAL_PLINTH);
     struct frame at = frame_at(under.x, under.y, 0);
     double wide = fmax(0.06, r * 0.8);
     shape_block(plinth, at, -wide - 0.09, wide + 0.09, -wide - 0.09, wide + 0.09, -0.05, 0.12);
@@ -181,10 +181,10 @@ void fitting_post(struct item *item, struct vec under, double r)
     shape_block(steel, at, -wide - 0.03, wide + 0.03, -wide - 0.03, wide + 0.03, under.z - 0.02, under.z + 0.004);
 }
 
-void fitting_pipe_shoe(struct item *item, struct vec under, struct vec along, double height)
+void fitting_pipe_shoe(struct item *access, struct vec under, struct vec along, double height)
 {
     struct frame at = frame_facing(under, vec(0, 0, 1), along);
-    struct mesh *steel = item_part(item, "supports", MATERIAL_STRUCTURE);
+    struct mesh *steel = item_part(access, "supports", MATERIAL_STRUCTURE);
     shape_block(steel, at, -0.15, 0.15, -0.006, 0.006, -height, 0.01);
     shape_block(steel, at, -0.15, 0.15, -0.06, 0.06, -height, -height + 0.01);
 }

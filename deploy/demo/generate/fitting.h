@@ -22,8 +22,8 @@ double fitting_valve_length(double r);
 void fitting_gate_valve(struct item *item, struct frame at, double r);
 void fitting_control_valve(struct item *item, struct frame at, double r);
 
-/* A steel post on a small plinth that holds a pipe whose underside is at `under`. */
-void fitting_post(struct item *item, struct vec under, double r);
-void fitting_pipe_shoe(struct item *item, struct vec under, struct vec along, double height);
+/* A steel post that holds a pipe whose underside is at `under`; access, civil: where steel and plinth go. All in the plant frame. */
+void fitting_post(struct item *access, struct item *civil, struct vec under, double r);
+void fitting_pipe_shoe(struct item *access, struct vec under, struct vec along, double height);
 
 #endif

@@ -35,6 +35,7 @@ const struct layout_asset layout_assets[] = {
     { "L-108", "Lines that pass through" },
     { "PR-101", "Pipe rack" },
     { "ST-101", "Overhead structure" },
+    { "AS-101", "Access and support steel" },
     { "CIVIL", "Slab, foundations and kerbs" },
 };
 const int layout_asset_count = sizeof(layout_assets) / sizeof(layout_assets[0]);
@@ -83,6 +84,7 @@ void layout_build(struct site *site)
     const struct column_spec column = { 0.85, 3.0, 20.0 };
     const struct tank_spec feed_tank = { 2.9, 7.2, 240 }, distillate_tank = { 2.3, 5.6, 246 };
     civil_build(site);
+    site->access = item_begin(&site->model, "AS-101", frame_at(0, 0, 0));
     rack_build(site, "PR-101");
     structure_build(site, "ST-101");
     build_exchangers(site);
@@ -95,5 +97,6 @@ void layout_build(struct site *site)
     tank_build(site, "TK-102", frame_at(10.0, -9.0, 0), &distillate_tank);
     civil_kerb(site, 6.9, 19.9, -12.4, -2.9, 0.35);
     lines_build(site);
+    item_end(&site->access);
     item_end(&site->civil);
 }

@@ -28,7 +28,7 @@ static void rack_run(struct site *site, struct item *item, double y, double stee
     for (int i = 0; i < RACK_BENT_COUNT; i++) {
         double x = RACK_BENT_M * (i - (RACK_BENT_COUNT - 1) / 2.0);
         if (x > fmin(x0, x1) && x < fmax(x0, x1))
-            fitting_pipe_shoe(item, vec(x, y, z - r - insulation), vec(1, 0, 0), 0.1);
+            fitting_pipe_shoe(&site->access, vec(x, y, z - r - insulation), vec(1, 0, 0), 0.1);
     }
 }
 
@@ -88,7 +88,7 @@ static void overhead_lines(struct site *site)
     struct pipe branch = pipe_from_point(site, &item, vec(6.8, 5.35, 12.0), 0.110, MATERIAL_PIPE, HOT_M);
     pipe_into_nozzle(&branch, "yxz", "EA-101/N1");
     pipe_end(&branch);
-    struct mesh *steel = item_part(&item, "supports", MATERIAL_STRUCTURE);
+    struct mesh *steel = item_part(&site->access, "supports", MATERIAL_STRUCTURE);
     for (int i = 0; i < 2; i++) { /* goal posts on the structure's top floor */
         double x = i ? 4.6 : -3.0;
         shape_block(steel, frame_at(x, 5.35, 0), -0.08, 0.08, -0.45, -0.33, STRUCTURE_HIGH_M, 11.78);

@@ -64,6 +64,13 @@ struct item item_begin(struct model *model, const char *name, struct frame at)
     return (struct item){ .model = model, .name = mem_strdup(name), .node = model_add_node(model, name, -1, -1, at), .at = at };
 }
 
+struct item item_begin_group(struct item *asset, const char *name, struct frame at)
+{
+    char *whole_name = mem_printf("%s %s", asset->name, name);
+    int node = model_add_node(asset->model, whole_name, asset->node, -1, frame_inside(&asset->at, at));
+    return (struct item){ .model = asset->model, .name = whole_name, .node = node, .at = at };
+}
+
 void item_end(struct item *item)
 {
     mem_free(item->name);
@@ -107,11 +114,7 @@ void model_add_instance(struct model *model, const char *name, const char *origi
         const struct frame *from = &model->nodes[source].at;
         if (strncmp(nozzle->name, original, original_length) != 0 || nozzle->name[original_length] != '/')
             continue;
-        struct frame local = { frame_local(from, nozzle->at.o), vec(0, 0, 0), vec(0, 0, 0), vec(0, 0, 0) };
-        struct frame turn = { vec(0, 0, 0), from->x, from->y, from->z };
-        local.x = frame_local(&turn, nozzle->at.x);
-        local.y = frame_local(&turn, nozzle->at.y);
-        local.z = frame_local(&turn, nozzle->at.z);
+        struct frame local = frame_inside(from, nozzle->at);
         model_add_nozzle(model, mem_printf("%s%s", name, nozzle->name + original_length), frame_in(&at, local), nozzle->r);
     }
 }

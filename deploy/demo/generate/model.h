@@ -46,6 +46,8 @@ int model_add_mesh(struct model *model, const char *name, enum material material
 const struct model_nozzle *model_nozzle(const struct model *model, const char *name); /* a missing one is our bug: aborts */
 
 struct item item_begin(struct model *model, const char *name, struct frame at);
+/* A group of parts with a frame of its own (plant frame) below another asset. */
+struct item item_begin_group(struct item *asset, const char *name, struct frame at);
 void item_end(struct item *item);
 /* The mesh of the child node `NAME part`, made on first call. */
 struct mesh *item_part(struct item *item, const char *part, enum material material);

@@ -121,7 +121,8 @@ void pipe_flanges(struct pipe *pipe, double along)
 void pipe_post(struct pipe *pipe, double along)
 {
     struct frame at = on_last_leg(pipe, along, vec(0, 0, 1));
-    fitting_post(pipe->item, vec(at.o.x, at.o.y, at.o.z - pipe->r - pipe->insulation), pipe->r);
+    struct vec under = vec(at.o.x, at.o.y, at.o.z - pipe->r - pipe->insulation);
+    fitting_post(&pipe->site->access, &pipe->site->civil, under, pipe->r);
 }
 
 static void blind(struct pipe *pipe, struct vec end, struct vec dir)

@@ -160,16 +160,16 @@ static const struct row rows[] = {
 struct pump {
     const char *name;
     int base;
-    const char *liquid_loop, *pump_loop, *motor_loop;
+    const char *liquid_loop, *machine_loop;
     double liquid, bearing, winding, suction_bar, discharge_bar, vibration; /* degC, bar, mm/s */
 };
 static const struct pump pumps[] = {
-    { "P-101A", 210, "charge", "P-101", "P-101", 34.0, 52.0, 78.0, 1.2, 12.4, 2.2 },
-    { "P-101B", 220, "charge", "spare", "spare", 33.0, 27.0, 26.0, 1.2, 1.2, 0.3 },
-    { "P-102A", 230, "reflux", "pump", "motor", 39.0, 55.0, 81.0, 6.3, 11.9, 2.7 }, /* the one whose bearing wears */
-    { "P-102B", 240, "reflux", "spare", "spare", 38.0, 28.0, 26.0, 6.3, 6.3, 0.4 },
-    { "P-103A", 250, "reboiler", "P-103", "P-103", 163.0, 74.0, 84.0, 7.6, 12.8, 3.0 },
-    { "P-103B", 260, "reboiler", "spare", "spare", 118.0, 41.0, 28.0, 7.6, 7.6, 0.4 },
+    { "P-101A", 210, "charge", "P-101", 34.0, 52.0, 78.0, 1.2, 12.4, 2.2 },
+    { "P-101B", 220, "charge", "spare", 33.0, 27.0, 26.0, 1.2, 1.2, 0.3 },
+    { "P-102A", 230, "reflux", "P-102", 39.0, 55.0, 81.0, 6.3, 11.9, 2.7 },
+    { "P-102B", 240, "reflux", "spare", 38.0, 28.0, 26.0, 6.3, 6.3, 0.4 },
+    { "P-103A", 250, "reboiler", "P-103", 163.0, 74.0, 84.0, 7.6, 12.8, 3.0 },
+    { "P-103B", 260, "reboiler", "spare", 118.0, 41.0, 28.0, 7.6, 7.6, 0.4 },
 };
 
 static void add(struct tags *tags, const struct row *row, char *owned_name, char *owned_description)
@@ -193,14 +193,14 @@ static void add_pump(struct tags *tags, const struct pump *pump)
     const double surge_bar = pump->discharge_bar > pump->suction_bar ? 1.5 : 0.0, v = pump->vibration;
     const struct row instruments[] = {
         { "TE-", name, "casing", -0.25, -0.25, 0.95, T, true, pump->liquid, 10, pump->liquid_loop, "casing" },
-        { "TE-", name, "bearing housing", 0.19, -0.05, 0.95, T, false, pump->bearing, 14, pump->pump_loop, "bearing" },
-        { "TE-", name, "motor", 1.0, -0.2, 0.9, TAG_WINDING, false, pump->winding, 20, pump->motor_loop, "motor winding" },
+        { "TE-", name, "bearing housing", 0.19, -0.05, 0.95, T, false, pump->bearing, 14, pump->machine_loop, "bearing" },
+        { "TE-", name, "motor", 1.0, -0.2, 0.9, TAG_WINDING, false, pump->winding, 20, pump->machine_loop, "motor winding" },
         { "PT-", name, "casing", -0.60, -0.05, 0.93, P, false, pump->suction_bar, 0, pump->liquid_loop, "suction" },
         { "PT-", name, "casing", -0.32, -0.09, 1.10, P, true, pump->discharge_bar, surge_bar, discharge, "discharge" },
-        { "VT-", name, "bearing housing", -0.08, 0.0, 0.97, V, true, v, 0, pump->pump_loop, "pump, casing end" },
-        { "VT-", name, "bearing housing", 0.19, 0.05, 0.97, V, false, v * 1.12, 0, pump->pump_loop, "pump, coupling end" },
-        { "VT-", name, "motor", 0.64, 0.0, 1.07, V, true, v * 0.8, 0, pump->motor_loop, "motor, coupling end" },
-        { "VT-", name, "motor", 1.30, 0.0, 1.07, V, false, v * 0.65, 0, pump->motor_loop, "motor, fan end" },
+        { "VT-", name, "bearing housing", -0.08, 0.0, 0.97, V, true, v, 0, pump->machine_loop, "pump, casing end" },
+        { "VT-", name, "bearing housing", 0.19, 0.05, 0.97, V, false, v * 1.12, 0, pump->machine_loop, "pump, coupling end" },
+        { "VT-", name, "motor", 0.64, 0.0, 1.07, V, true, v * 0.8, 0, pump->machine_loop, "motor, coupling end" },
+        { "VT-", name, "motor", 1.30, 0.0, 1.07, V, false, v * 0.65, 0, pump->machine_loop, "motor, fan end" },
     };
     for (int i = 0; i < (int)(sizeof(instruments) / sizeof(instruments[0])); i++) {
         const struct row *row = instruments + i;

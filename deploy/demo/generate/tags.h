@@ -1,23 +1,22 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What is measured, where, and what it reads when the unit runs well.
 
-   Sim Value is the reading in normal operation. Sim Loop says what the reading follows; in brackets, the upset that it feels
-   (see plantcast-sim --help):
-     charge     cold feed, tank to E-101            feed       its pressure behind the pumps [exchanger fouled]
-     preheat    feed behind E-101 [exchanger fouled]
-     column     T-101 and its vapour [both]         reboiler   E-102, column bottom [both, weakly]
-     bottoms    cold half of E-101's shell [exchanger fouled]  product  behind E-104 [exchanger fouled]
-     overhead   pressure at the top [cooling water lost]       fans     behind EA-101
-     condenser  E-103's shell [cooling water lost]  cooling    its water, and all returns [cooling water lost]
-     drum       V-101 [cooling water lost]          reflux     V-101 to T-101 and E-105 [cooling water lost]
-     offgas     V-102 and the gas through K-101     water      supply
-     distillate to TK-102                           steam      supply and condensate
-     storage    tanks                               weather    what follows the air
-     pump, motor   P-102A [pump bearing worn]       P-101 P-103 K-101 EA-101   machines that run
-     spare      machines that stand by
+   Sim Value is the reading in normal operation. Sim Loop says what the reading follows (which upsets a loop feels:
+   plantcast-sim --help):
+     charge      cold feed, tank to E-101             feed       its pressure behind the pumps
+     preheat     feed behind E-101                    column     T-101 and its vapour
+     reboiler    E-102, column bottom                 bottoms    cold half of E-101's shell, to E-104
+     product     behind E-104                         overhead   pressure at the top
+     fans        behind EA-101                        condenser  E-103's shell
+     drum        V-101                                reflux     V-101 to T-101 and E-105
+     distillate  behind E-105                         offgas     V-102 and the gas through K-101
+     water       cooling water supply                 cooling    cooling water in channels and returns
+     steam       supply and condensate                storage    tanks
+     weather     what follows the air                 spare      machines that stand by
+     P-101 P-102 P-103 K-101 EA-101                   machines that run
 
    Modbus map, plc1, unit 1, holding registers, first register 40001:
-     40001..  temperatures, Float32 CDAB (two registers), windings Int16 0..2000 = 0..200 degC
+     40001..  temperatures, Float32 CDAB (two registers), windings Int16 0..2000 = 0..200 °C
      40401..  pressures, Int16 0..27648 = 0..16 bar
      40601..  vibration velocities, Float32 CDAB */
 #ifndef GENERATE_TAGS_H

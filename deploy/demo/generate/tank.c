@@ -55,9 +55,9 @@ static void tank_stair(struct item *item, const struct tank_spec *spec)
     steel_ring_platform(steel, rail, frame_at(0, 0, top), spec->r - 0.5, r1, end, end + 30.0);
 }
 
-static void tank_roof(struct item *item, const struct tank_spec *spec)
+static void tank_roof(struct item *item, struct item *access, const struct tank_spec *spec)
 {
-    struct mesh *rail = item_part(item, "handrails", MATERIAL_SAFETY_YELLOW), *fittings = item_part(item, "roof fittings", MATERIAL_TANK);
+    struct mesh *rail = item_part(access, "handrails", MATERIAL_SAFETY_YELLOW), *fittings = item_part(item, "roof fittings", MATERIAL_TANK);
     const double going_deg = 0.25 / (spec->r + 0.5) * 180.0 / M_PI, treads = round((spec->height + 0.12) / 0.2);
     double landing = spec->stair_from_deg + going_deg * (treads + 0.5) + 30.0;
     struct vec points[20];
@@ -84,8 +84,10 @@ void tank_build(struct site *site, const char *name, struct frame at, const stru
     item.flanges = item_part(&item, "flanges", MATERIAL_BOLTING);
     shape_sector(item_part(&site->civil, "plinths", MATERIAL_PLINTH), at, spec->r - 0.5, spec->r + 0.35, -0.05, BASE_M, 0, 360, 64);
     tank_shell(&item, spec);
-    tank_stair(&item, spec);
-    tank_roof(&item, spec);
+    struct item access = item_begin_group(&site->access, name, at);
+    tank_stair(&access, spec);
+    tank_roof(&item, &access, spec);
+    item_end(&access);
     item_nozzle(&item, "N1", vec(-spec->r, 0, BASE_M + 0.45), vec(-1, 0, 0), 0.084, 0.25);
     item_nozzle(&item, "N2", vec_polar(spec->r, 120, BASE_M + spec->height - 0.55), vec_polar(1, 120, 0), 0.057, 0.25);
     item_manway(&item, vec_polar(spec->r, 225, BASE_M + 0.75), vec_polar(1, 225, 0), 0.30, 0.25);

@@ -81,6 +81,11 @@ static inline struct frame frame_in(const struct frame *outer, struct frame f)
 {
     return (struct frame){ frame_point(outer, f.o), frame_dir(outer, f.x), frame_dir(outer, f.y), frame_dir(outer, f.z) };
 }
+static inline struct frame frame_inside(const struct frame *outer, struct frame f) /* the inverse of frame_in */
+{
+    struct frame turn = { vec(0, 0, 0), outer->x, outer->y, outer->z };
+    return (struct frame){ frame_local(outer, f.o), frame_local(&turn, f.x), frame_local(&turn, f.y), frame_local(&turn, f.z) };
+}
 static inline struct frame frame_moved(struct frame f, double x, double y, double z) /* along its own axes */
 {
     f.o = frame_point(&f, vec(x, y, z));
