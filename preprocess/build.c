@@ -52,7 +52,8 @@ static bool place_sensors(const struct build_input *input, const struct geometry
     return true;
 }
 
-static void drop_sensors(const struct surface *surface, const struct build_input *input, const double (*places)[3], struct asset_sensor *out)
+static void drop_sensors(const struct surface *surface, const struct build_input *input, const double (*places)[3],
+                         struct asset_sensor *out)
 {
     for (size_t i = 0; i < input->sensor_count; i++) {
         struct surface_place at;
@@ -87,23 +88,24 @@ static double seconds_since(int64_t *since_ns)
     return seconds;
 }
 
-static bool measure(struct log *log, struct workers *workers, const struct build_input *input, const struct geometry *g, struct asset_sensor *sensors,
-                    float *distances, struct build_output *output, char *why)
+static bool measure(struct log *log, struct workers *workers, const struct build_input *input, const struct geometry *g,
+                    struct asset_sensor *sensors, float *distances, struct build_output *output, char *why)
 {
     struct build_report *report = &output->report;
     int64_t since_ns = clock_mono_ns();
-    double (*places)[3] = mem_array(input->sensor_count, sizeof(*places));
+    double(*places)[3] = mem_array(input->sensor_count, sizeof(*places));
     struct surface *surface = NULL;
     bool good = place_sensors(input, g, places, &output->missing_node, why);
     if (good) {
-        surface = surface_create(log, workers, (const float (*)[3])g->positions_m, g->vertex_count, g->indices, g->index_count / 3, &(struct surface_params){ 0 });
+        surface = surface_create(log, workers, (const float(*)[3])g->positions_m, g->vertex_count, g->indices, g->index_count / 3,
+                                 &(struct surface_params){ 0 });
         report->surface_s = seconds_since(&since_ns);
-        good = surface && surface_distances(surface, (const double (*)[3])places, input->sensor_count, distances);
+        good = surface && surface_distances(surface, (const double(*)[3])places, input->sensor_count, distances);
         if (!good)
             snprintf(why, MODEL_WHY_BYTES, "its distances cannot be computed");
     }
     if (good) {
-        drop_sensors(surface, input, (const double (*)[3])places, sensors);
+        drop_sensors(surface, input, (const double(*)[3])places, sensors);
         report->surface = *surface_report(surface);
         report->unreachable_vertices = unreachable(distances, input->sensor_count, g->vertex_count);
         report->solve_s = seconds_since(&since_ns);
@@ -118,10 +120,10 @@ static bool lay_out(const struct build_input *input, const struct geometry *g, c
 {
     struct asset_parts parts = {
         .key = input->key,
-        .positions_m = (const float (*)[3])g->positions_m,
-        .normals = (const float (*)[3])g->normals,
-        .texcoords = (const float (*)[2])g->texcoords,
-        .colors = (const uint8_t (*)[4])g->colors,
+        .positions_m = (const float(*)[3])g->positions_m,
+        .normals = (const float(*)[3])g->normals,
+        .texcoords = (const float(*)[2])g->texcoords,
+        .colors = (const uint8_t(*)[4])g->colors,
         .indices = g->indices,
         .primitives = g->primitives,
         .materials = g->materials,
@@ -154,7 +156,8 @@ static bool lay_out(const struct build_input *input, const struct geometry *g, c
     return true;
 }
 
-bool build_asset(struct log *log, struct workers *workers, const struct build_input *input, struct build_output *output, char why[MODEL_WHY_BYTES])
+bool build_asset(struct log *log, struct workers *workers, const struct build_input *input, struct build_output *output,
+                 char why[MODEL_WHY_BYTES])
 {
     struct geometry geometry = { 0 };
     struct asset_sensor *sensors = NULL;

@@ -8,7 +8,7 @@
 #include "preprocess/geometry.h"
 #include "surface/surface.h"
 
-#define BUILD_REVISION 1u /* grows when the same input shall give another file */
+#define BUILD_REVISION 2u /* grows when the same input shall give another file */
 
 struct build_input {
     const struct gltf_model *model;
@@ -20,20 +20,21 @@ struct build_input {
 
 struct build_report {
     uint32_t nodes, triangles, vertices, primitives, materials, textures, degenerate_triangles, computed_normals;
-    struct surface_report surface;   /* zero where the asset has no sensor */
-    size_t unreachable_vertices;     /* no sensor's distance is finite there */
+    struct surface_report surface; /* zero where the asset has no sensor */
+    size_t unreachable_vertices;   /* no sensor's distance is finite there */
     double read_s, surface_s, solve_s;
 };
 
 struct build_output {
-    void *bytes;                     /* free() */
+    void *bytes; /* free() */
     size_t size;
     struct build_report report;
-    int missing_node;                /* index of a sensor whose node is not in the model, -1: none */
+    int missing_node; /* index of a sensor whose node is not in the model, -1: none */
 };
 
 /* False: why says what is wrong; output->missing_node names the sensor if it is one's fault. Thread: any; work is spread over workers. */
-bool build_asset(struct log *log, struct workers *workers, const struct build_input *input, struct build_output *output, char why[MODEL_WHY_BYTES]);
+bool build_asset(struct log *log, struct workers *workers, const struct build_input *input, struct build_output *output,
+                 char why[MODEL_WHY_BYTES]);
 
 /* The key of a file that would be made of this. */
 uint64_t build_key(uint64_t model_hash, const struct geometry_params *geometry, const struct plant_sensor *sensors, size_t sensor_count);

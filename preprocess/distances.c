@@ -30,8 +30,8 @@ bool distances_print(const struct prepare *prepare, const char *folder, int asse
     struct folder_file file;
     char why[200] = "there is none";
     if (column < 0) {
-        diag_error(diag, prepare->plant->tags_path, prepare->plant->tags[tag].line, 0, "tag %s is no sensor of asset %s", prepare->plant->tags[tag].name,
-                   asset->plant->id);
+        diag_error(diag, prepare->plant->tags_path, prepare->plant->tags[tag].line, 0, "tag %s is no sensor of asset %s",
+                   prepare->plant->tags[tag].name, asset->plant->id);
         return false;
     }
     if (folder_open(&file, folder, asset->key, why) != 1) {

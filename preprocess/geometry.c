@@ -110,7 +110,8 @@ static bool find_parts(struct parts *parts, const struct gltf_model *model, cons
     for (size_t i = 0; i < parts->count; i++)
         corners += parts->at[i].primitive->index_count;
     if (corners == 0)
-        return wrong(why, "%s%s%s has no triangles", params->nodes ? "'" : "the model", params->nodes ? params->nodes : "", params->nodes ? "'" : "");
+        return wrong(why, "%s%s%s has no triangles", params->nodes ? "'" : "the model", params->nodes ? params->nodes : "",
+                     params->nodes ? "'" : "");
     if (corners > MAX_CORNERS)
         return wrong(why, "%llu triangles are more than %llu", (unsigned long long)(corners / 3), MAX_CORNERS / 3);
     qsort(parts->at, parts->count, sizeof(*parts->at), by_material);
@@ -250,7 +251,8 @@ static bool has_area(const float (*p)[3], const uint32_t v[3])
 }
 
 /* Indices of triangles with an area, wound so that the outside stays outside under a mirroring transform. */
-static size_t take_triangles(const struct gltf_primitive *primitive, const float (*positions)[3], bool mirrored, uint32_t *out, uint32_t *degenerate)
+static size_t take_triangles(const struct gltf_primitive *primitive, const float (*positions)[3], bool mirrored, uint32_t *out,
+                             uint32_t *degenerate)
 {
     size_t count = 0;
     for (uint32_t i = 0; i < primitive->index_count; i += 3) {
@@ -266,8 +268,8 @@ static size_t take_triangles(const struct gltf_primitive *primitive, const float
     return count;
 }
 
-static void fill_vertex(const struct gltf_primitive *primitive, uint32_t v, const float (*positions)[3], const double normals[9], const float *computed,
-                        struct vertex *out)
+static void fill_vertex(const struct gltf_primitive *primitive, uint32_t v, const float (*positions)[3], const double normals[9],
+                        const float *computed, struct vertex *out)
 {
     memcpy(out->position, positions[v], sizeof(out->position));
     if (!primitive->normals || !turn_normal(normals, primitive->normals[v], out->normal))
@@ -290,11 +292,13 @@ static bool mesh_weld(struct mesh *mesh)
     mesh->indices = mem_try_array(mesh->index_count, sizeof(*mesh->indices));
     bool good = remap && mesh->indices;
     if (good) {
-        size_t unique = meshopt_generateVertexRemap(remap, NULL, mesh->index_count, mesh->vertices, mesh->index_count, sizeof(*mesh->vertices));
+        size_t unique =
+            meshopt_generateVertexRemap(remap, NULL, mesh->index_count, mesh->vertices, mesh->index_count, sizeof(*mesh->vertices));
         meshopt_remapIndexBuffer(mesh->indices, NULL, mesh->index_count, remap);
         meshopt_remapVertexBuffer(mesh->vertices, mesh->vertices, mesh->index_count, sizeof(*mesh->vertices), remap);
         meshopt_optimizeVertexCache(mesh->indices, mesh->indices, mesh->index_count, unique);
-        mesh->vertex_count = meshopt_optimizeVertexFetch(mesh->vertices, mesh->indices, mesh->index_count, mesh->vertices, unique, sizeof(*mesh->vertices));
+        mesh->vertex_count =
+            meshopt_optimizeVertexFetch(mesh->vertices, mesh->indices, mesh->index_count, mesh->vertices, unique, sizeof(*mesh->vertices));
     }
     mem_free(remap);
     return good;
@@ -304,9 +308,9 @@ static bool mesh_of_part(struct mesh *mesh, const struct part *part, const struc
 {
     const struct gltf_primitive *primitive = part->primitive;
     double world[16], normals[9];
-    float (*positions)[3] = mem_try_array(primitive->vertex_count, sizeof(*positions));
+    float(*positions)[3] = mem_try_array(primitive->vertex_count, sizeof(*positions));
     uint32_t *indices = mem_try_array(primitive->index_count, sizeof(*indices));
-    float (*computed)[3] = mem_try_array(primitive->index_count, sizeof(*computed));
+    float(*computed)[3] = mem_try_array(primitive->index_count, sizeof(*computed));
     mesh->vertices = mem_try_array(primitive->index_count, sizeof(*mesh->vertices));
     bool good = positions && indices && computed && mesh->vertices;
     world_of(params, part->node, world);
@@ -319,7 +323,7 @@ static bool mesh_of_part(struct mesh *mesh, const struct part *part, const struc
             positions[i][axis] = (float)(q[axis] - geometry->origin_m[axis]);
     }
     if (good) {
-        const float (*places)[3] = (const float (*)[3])positions;
+        const float(*places)[3] = (const float(*)[3])positions;
         mesh->index_count = take_triangles(primitive, places, determinant(world) < 0, indices, &geometry->degenerate_triangles);
         good = normals_compute(places, primitive->vertex_count, indices, mesh->index_count, computed);
         for (size_t i = 0; good && i < mesh->index_count; i++)
@@ -349,7 +353,8 @@ static uint32_t add_name(struct geometry *geometry, const char *name)
     return at;
 }
 
-static void append(struct geometry *geometry, struct room *room, const struct mesh *mesh, const struct part *part, uint32_t material, uint32_t name)
+static void append(struct geometry *geometry, struct room *room, const struct mesh *mesh, const struct part *part, uint32_t material,
+                   uint32_t name)
 {
     size_t vertices = geometry->vertex_count + mesh->vertex_count;
     mem_grow(&geometry->positions_m, &room->positions, vertices, sizeof(*geometry->positions_m));
@@ -368,8 +373,9 @@ static void append(struct geometry *geometry, struct room *room, const struct me
     }
     for (size_t i = 0; i < mesh->index_count; i++)
         geometry->indices[geometry->index_count + i] = geometry->vertex_count + mesh->indices[i];
-    geometry->primitives[geometry->primitive_count++] =
-        (struct asset_primitive){ .first_index = geometry->index_count, .index_count = (uint32_t)mesh->index_count, .material = material, .name = name };
+    geometry->primitives[geometry->primitive_count++] = (struct asset_primitive){
+        .first_index = geometry->index_count, .index_count = (uint32_t)mesh->index_count, .material = material, .name = name
+    };
     geometry->vertex_count = (uint32_t)vertices;
     geometry->index_count += (uint32_t)mesh->index_count;
     room->any_texcoords |= part->primitive->texcoords != NULL;
@@ -378,9 +384,17 @@ static void append(struct geometry *geometry, struct room *room, const struct me
 
 /* What a model without materials looks like: grey paint, seen from both sides since nobody vouches for its faces. */
 static const struct asset_material plain_material = {
-    .base_color = { 0.6f, 0.62f, 0.64f, 1 }, .roughness = 0.6f, .normal_scale = 1, .occlusion_strength = 1, .alpha_cutoff = 0.5f,
-    .base_color_texture = ASSET_NO_TEXTURE, .metallic_roughness_texture = ASSET_NO_TEXTURE, .normal_texture = ASSET_NO_TEXTURE,
-    .occlusion_texture = ASSET_NO_TEXTURE, .emissive_texture = ASSET_NO_TEXTURE, .double_sided = 1,
+    .base_color = { 0.6f, 0.62f, 0.64f, 1 },
+    .roughness = 0.6f,
+    .normal_scale = 1,
+    .occlusion_strength = 1,
+    .alpha_cutoff = 0.5f,
+    .base_color_texture = ASSET_NO_TEXTURE,
+    .metallic_roughness_texture = ASSET_NO_TEXTURE,
+    .normal_texture = ASSET_NO_TEXTURE,
+    .occlusion_texture = ASSET_NO_TEXTURE,
+    .emissive_texture = ASSET_NO_TEXTURE,
+    .double_sided = 1,
 };
 
 /* The asset's number of a model's material: parts come sorted, so it is the last one or a new one. */
@@ -395,7 +409,8 @@ static uint32_t material_number(struct geometry *geometry, const struct gltf_mod
     return geometry->material_count++;
 }
 
-static bool join_parts(struct geometry *geometry, const struct parts *parts, const struct gltf_model *model, const struct geometry_params *params, char *why)
+static bool join_parts(struct geometry *geometry, const struct parts *parts, const struct gltf_model *model,
+                       const struct geometry_params *params, char *why)
 {
     struct room room = { 0 };
     const struct gltf_node *named = NULL;
@@ -442,8 +457,11 @@ static bool add_texture(struct geometry *geometry, const struct gltf_model *mode
     if (!image_decode(&image, encoded->bytes, encoded->size, TEXTURE_MAX_PX, image_why))
         return wrong(why, "image %u '%.80s': %s", from->image, encoded->name, image_why);
     size_t bytes = 4 * (size_t)image.width_px * image.height_px;
-    geometry->textures[geometry->texture_count++] = (struct asset_texture){
-        .offset = geometry->texel_bytes, .width_px = image.width_px, .height_px = image.height_px, .srgb = from->srgb, .wrap_repeat = from->wrap_repeat };
+    geometry->textures[geometry->texture_count++] = (struct asset_texture){ .offset = geometry->texel_bytes,
+                                                                            .width_px = image.width_px,
+                                                                            .height_px = image.height_px,
+                                                                            .srgb = from->srgb,
+                                                                            .wrap_repeat = from->wrap_repeat };
     mem_grow(&geometry->texels, texel_capacity, geometry->texel_bytes + bytes, 1);
     memcpy(geometry->texels + geometry->texel_bytes, image.rgba, bytes);
     geometry->texel_bytes += bytes;
@@ -461,8 +479,8 @@ static bool join_textures(struct geometry *geometry, const struct gltf_model *mo
     memset(number, 0xff, model->texture_count * sizeof(*number));
     for (uint32_t m = 0; good && m < geometry->material_count; m++) {
         struct asset_material *material = &geometry->materials[m];
-        uint32_t *uses[] = { &material->base_color_texture, &material->metallic_roughness_texture, &material->normal_texture, &material->occlusion_texture,
-                             &material->emissive_texture };
+        uint32_t *uses[] = { &material->base_color_texture, &material->metallic_roughness_texture, &material->normal_texture,
+                             &material->occlusion_texture, &material->emissive_texture };
         for (int i = 0; good && i < 5; i++) {
             if (*uses[i] == ASSET_NO_TEXTURE || !geometry->texcoords) {
                 *uses[i] = ASSET_NO_TEXTURE;
@@ -479,12 +497,13 @@ static bool join_textures(struct geometry *geometry, const struct gltf_model *mo
     return good;
 }
 
-bool geometry_cut(struct geometry *geometry, const struct gltf_model *model, const struct geometry_params *params, char why[MODEL_WHY_BYTES])
+bool geometry_cut(struct geometry *geometry, const struct gltf_model *model, const struct geometry_params *params,
+                  char why[MODEL_WHY_BYTES])
 {
     struct parts parts = { 0 };
     *geometry = (struct geometry){ 0 };
-    bool good = find_parts(&parts, model, params, why) && find_origin(geometry, &parts, params, why) && join_parts(geometry, &parts, model, params, why)
-                && join_textures(geometry, model, why);
+    bool good = find_parts(&parts, model, params, why) && find_origin(geometry, &parts, params, why) &&
+                join_parts(geometry, &parts, model, params, why) && join_textures(geometry, model, why);
     geometry->node_count = parts.node_count;
     mem_free(parts.at);
     if (!good)

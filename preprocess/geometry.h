@@ -7,11 +7,11 @@
 #include "preprocess/gltf_shim.h"
 
 struct geometry {
-    double origin_m[3];      /* the middle of its box; positions are relative to it */
+    double origin_m[3]; /* the middle of its box; positions are relative to it */
     float (*positions_m)[3];
     float (*normals)[3];
-    float (*texcoords)[2];   /* NULL: no part has any */
-    uint8_t (*colors)[4];    /* NULL: likewise */
+    float (*texcoords)[2]; /* NULL: no part has any */
+    uint8_t (*colors)[4];  /* NULL: likewise */
     uint32_t *indices;
     struct asset_primitive *primitives;
     struct asset_material *materials;
@@ -24,13 +24,14 @@ struct geometry {
 };
 
 struct geometry_params {
-    const char *nodes;       /* pattern (fnmatch); NULL: all */
+    const char *nodes; /* pattern (fnmatch); NULL: all */
     double unit_m;
     enum axis up;
 };
 
 /* False: why says what is wrong; nothing to finish. */
-bool geometry_cut(struct geometry *geometry, const struct gltf_model *model, const struct geometry_params *params, char why[MODEL_WHY_BYTES]);
+bool geometry_cut(struct geometry *geometry, const struct gltf_model *model, const struct geometry_params *params,
+                  char why[MODEL_WHY_BYTES]);
 void geometry_finish(struct geometry *geometry);
 
 /* The place of a node, in the asset frame: the middle of the box around its sub-tree's meshes, else its origin. Nodes inside the asset are

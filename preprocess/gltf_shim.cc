@@ -17,16 +17,17 @@ extern "C" {
 #include "base/text.h"
 }
 
-namespace {
+namespace
+{
 
 constexpr uint32_t MAX_NODES = 4'000'000, MAX_DEPTH = 512;
 constexpr uint64_t MAX_ELEMENTS = 1u << 30; /* vertices or indices of one accessor */
 
 /* Extensions that a file may require: those that change the look only, or are done here. */
 const char *const known_extensions[] = {
-    "KHR_mesh_quantization", "KHR_texture_transform", "EXT_mesh_gpu_instancing", "KHR_lights_punctual", "KHR_materials_unlit", "KHR_materials_emissive_strength",
-    "KHR_materials_ior", "KHR_materials_specular", "KHR_materials_clearcoat", "KHR_materials_sheen", "KHR_materials_transmission", "KHR_materials_volume",
-    "KHR_materials_variants", "KHR_xmp_json_ld",
+    "KHR_mesh_quantization",           "KHR_texture_transform", "EXT_mesh_gpu_instancing", "KHR_lights_punctual",     "KHR_materials_unlit",
+    "KHR_materials_emissive_strength", "KHR_materials_ior",     "KHR_materials_specular",  "KHR_materials_clearcoat", "KHR_materials_sheen",
+    "KHR_materials_transmission",      "KHR_materials_volume",  "KHR_materials_variants",  "KHR_xmp_json_ld",
 };
 
 struct refusal : std::runtime_error {
@@ -44,7 +45,7 @@ void refuse(const char *fmt, ...)
     throw refusal(text);
 }
 
-template<typename T> T *new_array(size_t count)
+template <typename T> T *new_array(size_t count)
 {
     T *array = static_cast<T *>(mem_try_array(count, sizeof(T)));
     if (!array)
@@ -105,7 +106,8 @@ void parse(tinygltf::Model *parsed, const model_source *source)
         refuse("%zu bytes: larger than a glTF file can be", source->size);
     unsigned size = static_cast<unsigned>(source->size);
     bool good = source->binary ? loader.LoadBinaryFromMemory(parsed, &error, &warning, source->bytes, size, source->folder)
-                               : loader.LoadASCIIFromString(parsed, &error, &warning, reinterpret_cast<const char *>(source->bytes), size, source->folder);
+                               : loader.LoadASCIIFromString(parsed, &error, &warning, reinterpret_cast<const char *>(source->bytes), size,
+                                                            source->folder);
     while (!error.empty() && error.back() == '\n')
         error.pop_back();
     if (!good)
@@ -131,7 +133,8 @@ struct span { /* checked: element i lies at bytes + i * stride */
 };
 
 /* count elements of `element` bytes at `offset` in a buffer view. */
-span view_span(const tinygltf::Model &m, int view_number, uint64_t offset, uint64_t element, uint64_t count, uint64_t stride, const std::string &what)
+span view_span(const tinygltf::Model &m, int view_number, uint64_t offset, uint64_t element, uint64_t count, uint64_t stride,
+               const std::string &what)
 {
     if (view_number < 0 || static_cast<size_t>(view_number) >= m.bufferViews.size())
         refuse("%s: there is no bufferView %d", what.c_str(), view_number);
@@ -140,9 +143,11 @@ span view_span(const tinygltf::Model &m, int view_number, uint64_t offset, uint6
         refuse("%s: bufferView %d: there is no buffer %d", what.c_str(), view_number, view.buffer);
     const std::vector<unsigned char> &data = m.buffers[static_cast<size_t>(view.buffer)].data;
     if (view.byteOffset > data.size() || view.byteLength > data.size() - view.byteOffset)
-        refuse("%s: bufferView %d: bytes %zu+%zu of a buffer of %zu", what.c_str(), view_number, view.byteOffset, view.byteLength, data.size());
+        refuse("%s: bufferView %d: bytes %zu+%zu of a buffer of %zu", what.c_str(), view_number, view.byteOffset, view.byteLength,
+               data.size());
     if (count > 0 && (offset > view.byteLength || (count - 1) * stride + element > view.byteLength - offset))
-        refuse("%s: %llu elements do not fit into bufferView %d of %zu bytes", what.c_str(), static_cast<unsigned long long>(count), view_number, view.byteLength);
+        refuse("%s: %llu elements do not fit into bufferView %d of %zu bytes", what.c_str(), static_cast<unsigned long long>(count),
+               view_number, view.byteLength);
     return { data.data() + view.byteOffset + offset, static_cast<size_t>(stride), static_cast<size_t>(count) };
 }
 
@@ -159,7 +164,7 @@ size_t component_bytes(int type)
     }
 }
 
-template<typename T> T load(const unsigned char *at)
+template <typename T> T load(const unsigned char *at)
 {
     T value;
     memcpy(&value, at, sizeof(value));
@@ -180,7 +185,9 @@ double component(const unsigned char *at, int type, bool normalized)
 
 uint32_t integer(const unsigned char *at, int type)
 {
-    return type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ? *at : type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ? load<uint16_t>(at) : load<uint32_t>(at);
+    return type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE    ? *at
+           : type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ? load<uint16_t>(at)
+                                                            : load<uint32_t>(at);
 }
 
 const tinygltf::Accessor &accessor_at(const tinygltf::Model &m, int number, const std::string &what)
@@ -198,19 +205,23 @@ const tinygltf::Accessor &accessor_at(const tinygltf::Model &m, int number, cons
 void read_sparse(const tinygltf::Model &m, const tinygltf::Accessor &a, int width, std::vector<double> *out, const std::string &what)
 {
     int index_type = a.sparse.indices.componentType;
-    if (a.sparse.count < 0 || static_cast<size_t>(a.sparse.count) > a.count || a.sparse.indices.byteOffset < 0 || a.sparse.values.byteOffset < 0
-        || component_bytes(index_type) == 0 || index_type == TINYGLTF_COMPONENT_TYPE_FLOAT)
+    if (a.sparse.count < 0 || static_cast<size_t>(a.sparse.count) > a.count || a.sparse.indices.byteOffset < 0 ||
+        a.sparse.values.byteOffset < 0 || component_bytes(index_type) == 0 || index_type == TINYGLTF_COMPONENT_TYPE_FLOAT)
         refuse("%s: sparse: %d of %zu elements, or a wrong offset or type", what.c_str(), a.sparse.count, a.count);
-    size_t count = static_cast<size_t>(a.sparse.count), element = component_bytes(a.componentType) * static_cast<size_t>(width), index_bytes = component_bytes(index_type);
-    span places = view_span(m, a.sparse.indices.bufferView, static_cast<uint64_t>(a.sparse.indices.byteOffset), index_bytes, count, index_bytes, what);
-    span values = view_span(m, a.sparse.values.bufferView, static_cast<uint64_t>(a.sparse.values.byteOffset), element, count, element, what);
+    size_t count = static_cast<size_t>(a.sparse.count), element = component_bytes(a.componentType) * static_cast<size_t>(width),
+           index_bytes = component_bytes(index_type);
+    span places = view_span(m, a.sparse.indices.bufferView, static_cast<uint64_t>(a.sparse.indices.byteOffset), index_bytes, count,
+                            index_bytes, what);
+    span values =
+        view_span(m, a.sparse.values.bufferView, static_cast<uint64_t>(a.sparse.values.byteOffset), element, count, element, what);
     for (size_t i = 0; i < count; i++) {
         size_t place = integer(places.bytes + i * index_bytes, index_type);
         if (place >= a.count)
             refuse("%s: sparse: element %zu of %zu", what.c_str(), place, a.count);
         for (int c = 0; c < width; c++)
             (*out)[place * static_cast<size_t>(width) + static_cast<size_t>(c)] =
-                component(values.bytes + i * element + static_cast<size_t>(c) * component_bytes(a.componentType), a.componentType, a.normalized);
+                component(values.bytes + i * element + static_cast<size_t>(c) * component_bytes(a.componentType), a.componentType,
+                          a.normalized);
     }
 }
 
@@ -224,7 +235,8 @@ std::vector<double> read_numbers(const tinygltf::Model &m, int number, int width
     size_t w = static_cast<size_t>(width), bytes = component_bytes(a.componentType), element = bytes * static_cast<size_t>(has);
     std::vector<double> out(a.count * w, 0.0);
     if (a.bufferView >= 0) {
-        size_t stride = static_cast<size_t>(a.bufferView) < m.bufferViews.size() ? m.bufferViews[static_cast<size_t>(a.bufferView)].byteStride : 0;
+        size_t stride =
+            static_cast<size_t>(a.bufferView) < m.bufferViews.size() ? m.bufferViews[static_cast<size_t>(a.bufferView)].byteStride : 0;
         span s = view_span(m, a.bufferView, a.byteOffset, element, a.count, stride ? stride : element, what);
         for (size_t i = 0; i < a.count; i++)
             for (size_t c = 0; c < w; c++)
@@ -241,8 +253,8 @@ std::vector<double> read_numbers(const tinygltf::Model &m, int number, int width
 std::vector<uint32_t> read_indices(const tinygltf::Model &m, int number, uint32_t vertex_count, const std::string &what)
 {
     const tinygltf::Accessor &a = accessor_at(m, number, what);
-    if (a.componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE && a.componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT
-        && a.componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT)
+    if (a.componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE && a.componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
+        a.componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT)
         refuse("%s: component type %d is no index", what.c_str(), a.componentType);
     std::vector<double> numbers = read_numbers(m, number, 1, what);
     std::vector<uint32_t> out(numbers.size());
@@ -285,7 +297,9 @@ double number_in(const tinygltf::Value &value, const char *key, size_t index, do
         return otherwise;
     const tinygltf::Value &entry = value.Get(key);
     if (entry.IsArray())
-        return index < entry.ArrayLen() && entry.Get(static_cast<int>(index)).IsNumber() ? entry.Get(static_cast<int>(index)).GetNumberAsDouble() : otherwise;
+        return index < entry.ArrayLen() && entry.Get(static_cast<int>(index)).IsNumber()
+                   ? entry.Get(static_cast<int>(index)).GetNumberAsDouble()
+                   : otherwise;
     return entry.IsNumber() ? entry.GetNumberAsDouble() : otherwise;
 }
 
@@ -314,7 +328,7 @@ float (*read_vectors(const tinygltf::Model &m, int number, uint32_t vertex_count
     std::vector<double> numbers = read_numbers(m, number, 3, what);
     if (numbers.size() != 3u * vertex_count)
         refuse("%s: %zu elements, positions have %u", what.c_str(), numbers.size() / 3, vertex_count);
-    float (*out)[3] = reinterpret_cast<float (*)[3]>(new_array<float>(numbers.size()));
+    float(*out)[3] = reinterpret_cast<float(*)[3]>(new_array<float>(numbers.size()));
     for (size_t i = 0; i < numbers.size(); i++)
         out[i / 3][i % 3] = static_cast<float>(numbers[i]);
     return out;
@@ -325,7 +339,7 @@ float (*read_texcoords(const tinygltf::Model &m, int number, uint32_t vertex_cou
     std::vector<double> numbers = read_numbers(m, number, 2, what);
     if (numbers.size() != 2u * vertex_count)
         refuse("%s: %zu elements, positions have %u", what.c_str(), numbers.size() / 2, vertex_count);
-    float (*out)[2] = reinterpret_cast<float (*)[2]>(new_array<float>(numbers.size()));
+    float(*out)[2] = reinterpret_cast<float(*)[2]>(new_array<float>(numbers.size()));
     double c = std::cos(uv.rotation), s = std::sin(uv.rotation);
     for (size_t i = 0; i < vertex_count; i++) {
         double u = numbers[2 * i] * uv.scale[0], v = numbers[2 * i + 1] * uv.scale[1];
@@ -342,7 +356,7 @@ uint8_t (*read_colors(const tinygltf::Model &m, int number, uint32_t vertex_coun
     std::vector<double> numbers = read_numbers(m, number, width, what);
     if (numbers.size() != static_cast<size_t>(width) * vertex_count)
         refuse("%s: %zu elements, positions have %u", what.c_str(), numbers.size() / static_cast<size_t>(width), vertex_count);
-    uint8_t (*out)[4] = reinterpret_cast<uint8_t (*)[4]>(new_array<uint8_t>(4u * vertex_count));
+    uint8_t(*out)[4] = reinterpret_cast<uint8_t(*)[4]>(new_array<uint8_t>(4u * vertex_count));
     for (size_t i = 0; i < vertex_count; i++)
         for (size_t c = 0; c < 4; c++) {
             double value = c < static_cast<size_t>(width) ? numbers[i * static_cast<size_t>(width) + c] : 1;
@@ -415,7 +429,8 @@ void read_meshes(const tinygltf::Model &m, gltf_model *model)
         out->name = mem_strdup(mesh.name.c_str());
         out->first_primitive = model->primitive_count;
         for (size_t i = 0; i < mesh.primitives.size(); i++) {
-            std::string what = "mesh " + std::to_string(model->mesh_count) + " '" + mesh.name.substr(0, 80) + "', primitive " + std::to_string(i);
+            std::string what =
+                "mesh " + std::to_string(model->mesh_count) + " '" + mesh.name.substr(0, 80) + "', primitive " + std::to_string(i);
             gltf_primitive *primitive = &model->primitives[model->primitive_count];
             model->primitive_count++; /* counted first, so that a half-read one is freed */
             if (!read_primitive(m, mesh.primitives[i], primitive, model, what))
@@ -442,8 +457,9 @@ void multiply(const double a[16], const double b[16], double out[16])
 void compose(const double t[3], const double q[4], const double s[3], double out[16])
 {
     double x = q[0], y = q[1], z = q[2], w = q[3], n = x * x + y * y + z * z + w * w, k = n > 0 ? 2 / n : 0;
-    const double r[9] = { 1 - k * (y * y + z * z), k * (x * y + w * z), k * (x * z - w * y), k * (x * y - w * z), 1 - k * (x * x + z * z),
-                          k * (y * z + w * x), k * (x * z + w * y), k * (y * z - w * x), 1 - k * (x * x + y * y) };
+    const double r[9] = { 1 - k * (y * y + z * z), k * (x * y + w * z),     k * (x * z - w * y),
+                          k * (x * y - w * z),     1 - k * (x * x + z * z), k * (y * z + w * x),
+                          k * (x * z + w * y),     k * (y * z - w * x),     1 - k * (x * x + y * y) };
     for (int c = 0; c < 3; c++)
         for (int i = 0; i < 3; i++)
             out[4 * c + i] = r[3 * c + i] * s[c];

@@ -9,14 +9,14 @@
 extern "C" {
 #endif
 
-struct gltf_primitive {   /* triangles of one material; model units, the mesh's own frame */
+struct gltf_primitive { /* triangles of one material; model units, the mesh's own frame */
     uint32_t vertex_count, index_count;
     float (*positions)[3];
-    float (*normals)[3];     /* NULL: the model has none */
-    float (*texcoords)[2];   /* NULL: none */
-    uint8_t (*colors)[4];    /* NULL: none */
-    uint32_t *indices;       /* a list of triangles, whatever it was */
-    int material;            /* -1: none */
+    float (*normals)[3];   /* NULL: the model has none */
+    float (*texcoords)[2]; /* NULL: none */
+    uint8_t (*colors)[4];  /* NULL: none */
+    uint32_t *indices;     /* a list of triangles, whatever it was */
+    int material;          /* -1: none */
 };
 
 struct gltf_mesh {
@@ -24,11 +24,11 @@ struct gltf_mesh {
     uint32_t first_primitive, primitive_count;
 };
 
-struct gltf_node {       /* depth first: a node's sub-tree are the nodes [node, end) */
-    char *name;              /* "" where it has none */
-    int parent, mesh;        /* or -1 */
+struct gltf_node {    /* depth first: a node's sub-tree are the nodes [node, end) */
+    char *name;       /* "" where it has none */
+    int parent, mesh; /* or -1 */
     uint32_t end;
-    double world[16];        /* column-major */
+    double world[16]; /* column-major */
 };
 
 struct gltf_texture {
@@ -38,7 +38,7 @@ struct gltf_texture {
 
 struct gltf_image {
     char *name;
-    unsigned char *bytes;    /* as it lies in the file: PNG, JPEG */
+    unsigned char *bytes; /* as it lies in the file: PNG, JPEG */
     size_t size;
 };
 

@@ -15,7 +15,8 @@ extern "C" {
 #include "base/mem.h"
 }
 
-namespace {
+namespace
+{
 
 constexpr int MAX_SIDE_PX = 1 << 15;
 
@@ -48,7 +49,8 @@ void shrink(struct image *image, uint32_t max_px)
         return;
     int width = static_cast<int>(std::max<uint64_t>(1, static_cast<uint64_t>(image->width_px) * max_px / longest));
     int height = static_cast<int>(std::max<uint64_t>(1, static_cast<uint64_t>(image->height_px) * max_px / longest));
-    OIIO::ImageBuf from(OIIO::ImageSpec(static_cast<int>(image->width_px), static_cast<int>(image->height_px), 4, OIIO::TypeDesc::UINT8), image->rgba);
+    OIIO::ImageBuf from(OIIO::ImageSpec(static_cast<int>(image->width_px), static_cast<int>(image->height_px), 4, OIIO::TypeDesc::UINT8),
+                        image->rgba);
     OIIO::ImageBuf to = OIIO::ImageBufAlgo::resize(from, "", 0, OIIO::ROI(0, width, 0, height, 0, 1, 0, 4), 1);
     if (to.has_error() || !to.get_pixels(OIIO::ROI(0, width, 0, height, 0, 1, 0, 4), OIIO::TypeDesc::UINT8, image->rgba))
         throw std::runtime_error(to.geterror());
@@ -72,8 +74,10 @@ bool decode(struct image *image, const void *bytes, size_t size, uint32_t max_px
         snprintf(why, IMAGE_WHY_BYTES, "%s", in ? in->geterror().c_str() : OIIO::geterror().c_str());
         return false;
     }
-    if (spec.width < 1 || spec.width > MAX_SIDE_PX || spec.height < 1 || spec.height > MAX_SIDE_PX || spec.nchannels < 1 || spec.nchannels > 4) {
-        snprintf(why, IMAGE_WHY_BYTES, "%d x %d pixels of %d channels: at most %d x %d of 4", spec.width, spec.height, spec.nchannels, MAX_SIDE_PX, MAX_SIDE_PX);
+    if (spec.width < 1 || spec.width > MAX_SIDE_PX || spec.height < 1 || spec.height > MAX_SIDE_PX || spec.nchannels < 1 ||
+        spec.nchannels > 4) {
+        snprintf(why, IMAGE_WHY_BYTES, "%d x %d pixels of %d channels: at most %d x %d of 4", spec.width, spec.height, spec.nchannels,
+                 MAX_SIDE_PX, MAX_SIDE_PX);
         return false;
     }
     size_t pixels = static_cast<size_t>(spec.width) * static_cast<size_t>(spec.height);

@@ -12,7 +12,8 @@ static const char usage[] =
     "usage: plantcast-prep PLANT.yaml [--output DIR] [--report text|json]\n"
     "       plantcast-prep distances PLANT.yaml --asset ID --sensor TAG [--output DIR]\n"
     "\n"
-    "Prepares the models that a plant file names: triangles cut out, sensors dropped onto them, and the distance along the surface from every\n"
+    "Prepares the models that a plant file names: triangles cut out, sensors dropped onto them, and the distance along the surface from "
+    "every\n"
     "sensor to every vertex. What has not changed since the last time is left as it is.\n"
     "\n"
     "  --output DIR    where the prepared files go (default: `prepared` beside the plant file)\n"
@@ -73,8 +74,8 @@ static int read_options(int argc, char **argv, struct options *options)
     return 0;
 }
 
-static bool run_distances(const struct options *options, struct log *log, struct workers *workers, const struct plant *plant, const char *folder,
-                          struct diag *diag)
+static bool run_distances(const struct options *options, struct log *log, struct workers *workers, const struct plant *plant,
+                          const char *folder, struct diag *diag)
 {
     struct prepare prepare;
     int asset = plant_find_asset(plant, options->asset), tag = plant_find_tag(plant, options->sensor);
@@ -90,7 +91,8 @@ static bool run_distances(const struct options *options, struct log *log, struct
     return good;
 }
 
-static bool run_all(const struct options *options, struct log *log, struct workers *workers, const struct plant *plant, const char *folder, struct diag *diag)
+static bool run_all(const struct options *options, struct log *log, struct workers *workers, const struct plant *plant, const char *folder,
+                    struct diag *diag)
 {
     struct prepare prepare;
     struct prepare_params params = { .folder = folder, .progress = stderr };

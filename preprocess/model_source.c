@@ -80,15 +80,18 @@ static bool views_good(const json_t *root, char *why)
 {
     const json_t *buffers = json_object_get(root, "buffers"), *view;
     size_t i;
-    json_array_foreach(json_object_get(root, "bufferViews"), i, view) {
+    json_array_foreach(json_object_get(root, "bufferViews"), i, view)
+    {
         json_int_t buffer = json_integer_value(json_object_get(view, "buffer"));
-        json_int_t offset = json_integer_value(json_object_get(view, "byteOffset")), length = json_integer_value(json_object_get(view, "byteLength"));
+        json_int_t offset = json_integer_value(json_object_get(view, "byteOffset")),
+                   length = json_integer_value(json_object_get(view, "byteLength"));
         const json_t *target = buffer >= 0 ? json_array_get(buffers, (size_t)buffer) : NULL;
         json_int_t size = json_integer_value(json_object_get(target, "byteLength"));
         if (!target)
             return wrong(why, "bufferView %zu: there is no buffer %lld", i, (long long)buffer);
         if (offset < 0 || length < 1 || offset > size || length > size - offset)
-            return wrong(why, "bufferView %zu: bytes %lld+%lld of a buffer of %lld", i, (long long)offset, (long long)length, (long long)size);
+            return wrong(why, "bufferView %zu: bytes %lld+%lld of a buffer of %lld", i, (long long)offset, (long long)length,
+                         (long long)size);
     }
     return true;
 }
@@ -122,7 +125,8 @@ char *model_source_resolve(const char *folder, const char *name)
     char *real = realpath(joined, NULL);
     size_t length = strlen(folder);
     mem_free(joined);
-    if (real && strncmp(real, folder, length) == 0 && (real[length] == '/' || strcmp(folder, "/") == 0) && stat(real, &st) == 0 && S_ISREG(st.st_mode))
+    if (real && strncmp(real, folder, length) == 0 && (real[length] == '/' || strcmp(folder, "/") == 0) && stat(real, &st) == 0 &&
+        S_ISREG(st.st_mode))
         return real;
     free(real);
     return NULL;
@@ -161,7 +165,8 @@ static bool uris_good(struct model_source *source, const json_t *root, char *why
     for (int l = 0; l < 2 && good; l++) {
         size_t i;
         const json_t *item;
-        json_array_foreach(json_object_get(root, lists[l]), i, item) {
+        json_array_foreach(json_object_get(root, lists[l]), i, item)
+        {
             good = hash_uri(source, names[l], i, json_object_get(item, "uri"), hash, why);
             if (!good)
                 break;

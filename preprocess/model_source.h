@@ -15,11 +15,11 @@ extern "C" {
 #define MODEL_MAX_BYTES ((size_t)4 << 30)
 
 struct model_source {
-    char *path, *folder;     /* folder: as realpath names it */
+    char *path, *folder; /* folder: as realpath names it */
     unsigned char *bytes;
     size_t size;
-    bool binary;             /* GLB */
-    uint64_t hash;           /* XXH3-64 over the file and the files its URIs name */
+    bool binary;   /* GLB */
+    uint64_t hash; /* XXH3-64 over the file and the files its URIs name */
 };
 
 /* False: why says what is wrong; nothing to finish. Checked: a GLB's lengths, JSON syntax and depth, URIs that leave the folder, buffer

@@ -51,11 +51,11 @@ static double corner_angle(const float at[3], const float b[3], const float c[3]
     return acos(fmin(fmax(dot(ab, ac), -1), 1));
 }
 
-struct around { /* which corners meet at a place */
+struct around {      /* which corners meet at a place */
     unsigned *place; /* of each vertex: the first vertex at the same place */
     uint32_t *first, *corners;
     double (*faces)[3];
-    double *angles;  /* of each corner */
+    double *angles; /* of each corner */
 };
 
 static void around_finish(struct around *a)
@@ -109,7 +109,8 @@ static void corner_normal(const struct around *a, uint32_t corner, unsigned plac
         out[axis] = (float)sum[axis];
 }
 
-bool normals_compute(const float (*positions)[3], size_t vertex_count, const uint32_t *indices, size_t index_count, float (*corner_normals)[3])
+bool normals_compute(const float (*positions)[3], size_t vertex_count, const uint32_t *indices, size_t index_count,
+                     float (*corner_normals)[3])
 {
     struct around around;
     bool good = around_init(&around, positions, vertex_count, indices, index_count);

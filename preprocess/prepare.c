@@ -13,12 +13,12 @@
 #include "base/mem.h"
 #include "preprocess/folder.h"
 
-#define FAR_M 0.25          /* a sensor farther from its surface than this, */
-#define FAR_OF_SIZE 0.05    /* or than this share of the asset, is worth a warning */
+#define FAR_M 0.25       /* a sensor farther from its surface than this, */
+#define FAR_OF_SIZE 0.05 /* or than this share of the asset, is worth a warning */
 
-struct model {              /* one model file; parsed once, while its assets are built */
+struct model { /* one model file; parsed once, while its assets are built */
     const char *path;
-    int line;               /* in the plant file, of the first asset that names it */
+    int line; /* in the plant file, of the first asset that names it */
     struct model_source source;
     bool good;
 };
@@ -31,8 +31,8 @@ struct run {
     struct model *models;
     size_t model_count;
     size_t *asset_model;
-    struct gltf_model *parsed;  /* of the model in hand */
-    size_t *todo;               /* assets to build from it */
+    struct gltf_model *parsed; /* of the model in hand */
+    size_t *todo;              /* assets to build from it */
     size_t todo_count;
     pthread_mutex_t lock;
     /* --- below: under lock */
@@ -121,8 +121,8 @@ static void warn_of_far_sensors(struct run *run, const struct prepare_asset *ass
         const struct plant_tag *tag = &plant->tags[asset->sensors[s].tag];
         double distance_m = (double)asset->surface_distances_m[s];
         if (distance_m > limit_m)
-            diag_warning(run->diag, plant->tags_path, tag->line, 0, "tag %s: %.3f m from the surface of asset %s (more than %.3f m)", tag->name, distance_m,
-                         asset->plant->id, limit_m);
+            diag_warning(run->diag, plant->tags_path, tag->line, 0, "tag %s: %.3f m from the surface of asset %s (more than %.3f m)",
+                         tag->name, distance_m, asset->plant->id, limit_m);
     }
 }
 
@@ -140,10 +140,10 @@ static void finish_asset(struct run *run, struct prepare_asset *asset)
     run->finished++;
     size_t total = run->params->only ? 1 : run->prepare->asset_count;
     if (run->params->progress) {
-        fprintf(run->params->progress, "%3zu %%  %zu/%zu  %-16s %-9s %8u triangles %7u vertices %4zu sensors %6.2f s%s%s%s\n", 100 * run->finished / total,
-                run->finished, total, asset->plant->id, words[asset->state], asset->triangles, asset->vertices, asset->sensor_count, asset->seconds,
-                asset->rebuilt_because ? " (the file there was no good: " : "", asset->rebuilt_because ? asset->rebuilt_because : "",
-                asset->rebuilt_because ? ")" : "");
+        fprintf(run->params->progress, "%3zu %%  %zu/%zu  %-16s %-9s %8u triangles %7u vertices %4zu sensors %6.2f s%s%s%s\n",
+                100 * run->finished / total, run->finished, total, asset->plant->id, words[asset->state], asset->triangles, asset->vertices,
+                asset->sensor_count, asset->seconds, asset->rebuilt_because ? " (the file there was no good: " : "",
+                asset->rebuilt_because ? asset->rebuilt_because : "", asset->rebuilt_because ? ")" : "");
         fflush(run->params->progress);
     }
 }
@@ -179,8 +179,11 @@ static bool is_there(struct run *run, struct prepare_asset *asset)
 
 static void build_one(struct run *run, struct prepare_asset *asset)
 {
-    struct build_input input = { .model = run->parsed, .geometry = geometry_params_of(asset->plant), .sensors = asset->sensors,
-                                 .sensor_count = asset->sensor_count, .key = asset->key };
+    struct build_input input = { .model = run->parsed,
+                                 .geometry = geometry_params_of(asset->plant),
+                                 .sensors = asset->sensors,
+                                 .sensor_count = asset->sensor_count,
+                                 .key = asset->key };
     struct build_output output;
     char why[MODEL_WHY_BYTES];
     int64_t start_ns = clock_mono_ns();
@@ -196,7 +199,8 @@ static void build_one(struct run *run, struct prepare_asset *asset)
     } else if (!good) {
         fail_asset(run, asset, why);
     } else if (status != 0) {
-        fail(run, plant->path, asset->plant->line, "asset %s: %s cannot be written: %s", asset->plant->id, run->params->folder, strerror(-status));
+        fail(run, plant->path, asset->plant->line, "asset %s: %s cannot be written: %s", asset->plant->id, run->params->folder,
+             strerror(-status));
     } else {
         asset->state = PREPARE_BUILT;
         asset->report = output.report;
@@ -244,8 +248,8 @@ static void build_from(struct run *run, size_t model)
         return;
     }
     if (run->params->progress && (parsed.skipped_lines || parsed.skipped_points))
-        fprintf(run->params->progress, "%s: %u primitives of lines and %u of points are skipped\n", run->models[model].path, parsed.skipped_lines,
-                parsed.skipped_points);
+        fprintf(run->params->progress, "%s: %u primitives of lines and %u of points are skipped\n", run->models[model].path,
+                parsed.skipped_lines, parsed.skipped_points);
     qsort_r(run->todo, run->todo_count, sizeof(*run->todo), larger_first, run);
     run->parsed = &parsed;
     workers_for(run->workers, run->todo_count, 1, build_some, run);
@@ -277,8 +281,8 @@ static void write_manifest(struct run *run)
     mem_free(entries);
 }
 
-bool prepare_run(struct prepare *prepare, struct log *log, struct workers *workers, const struct plant *plant, const struct prepare_params *params,
-                 struct diag *diag)
+bool prepare_run(struct prepare *prepare, struct log *log, struct workers *workers, const struct plant *plant,
+                 const struct prepare_params *params, struct diag *diag)
 {
     struct run run = { .prepare = prepare, .log = log, .workers = workers, .params = params, .diag = diag };
     int64_t start_ns = clock_mono_ns();

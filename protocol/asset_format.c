@@ -15,8 +15,8 @@
 #define TEXTURE_MAX_PX 16384u
 
 static const char *const section_names[ASSET_SECTION_COUNT] = {
-    "positions", "normals", "texcoords", "colors", "indices", "primitives", "levels",
-    "materials", "textures", "texels", "sensors", "geodesic", "names",
+    "positions", "normals",  "texcoords", "colors",  "indices",  "primitives", "levels",
+    "materials", "textures", "texels",    "sensors", "geodesic", "names",
 };
 
 static uint64_t align_up(uint64_t n)
@@ -78,7 +78,8 @@ static bool header_good(struct check *c)
     if (h->header_bytes != sizeof(*h))
         return wrong(c, "header of %u bytes, expected %zu", h->header_bytes, sizeof(*h));
     if (h->file_bytes != c->size)
-        return wrong(c, "%s: %zu bytes, the header says %llu", h->file_bytes > c->size ? "truncated" : "too long", c->size, (unsigned long long)h->file_bytes);
+        return wrong(c, "%s: %zu bytes, the header says %llu", h->file_bytes > c->size ? "truncated" : "too long", c->size,
+                     (unsigned long long)h->file_bytes);
     uint64_t sum = checksum(c->bytes, c->size);
     if (sum != h->checksum)
         return wrong(c, "checksum %016llx, the header says %016llx", (unsigned long long)sum, (unsigned long long)h->checksum);
@@ -90,8 +91,8 @@ static bool counts_good(struct check *c)
 {
     const struct asset_header *h = c->view.header;
     if (h->vertex_count < 3 || h->index_count < 3 || h->primitive_count < 1 || h->level_count < 1 || h->material_count < 1)
-        return wrong(c, "nothing to draw: %u vertices, %u indices, %u primitives, %u levels, %u materials", h->vertex_count, h->index_count, h->primitive_count,
-                     h->level_count, h->material_count);
+        return wrong(c, "nothing to draw: %u vertices, %u indices, %u primitives, %u levels, %u materials", h->vertex_count, h->index_count,
+                     h->primitive_count, h->level_count, h->material_count);
     if (h->index_count % 3 != 0)
         return wrong(c, "%u indices are not whole triangles", h->index_count);
     for (int axis = 0; axis < 3; axis++)
@@ -129,10 +130,11 @@ static bool sections_good(struct check *c)
         bool optional;
         uint64_t need = section_bytes(h, i, &optional);
         if (s->offset % ASSET_ALIGN != 0 || s->offset < end || s->offset > c->size || s->bytes > c->size - s->offset)
-            return wrong(c, "section %s: bytes %llu..%llu+%llu lie outside the file or over another section", section_names[i], (unsigned long long)s->offset,
-                         (unsigned long long)s->offset, (unsigned long long)s->bytes);
+            return wrong(c, "section %s: bytes %llu..%llu+%llu lie outside the file or over another section", section_names[i],
+                         (unsigned long long)s->offset, (unsigned long long)s->offset, (unsigned long long)s->bytes);
         if (need != UINT64_MAX && s->bytes != need && !(optional && s->bytes == 0))
-            return wrong(c, "section %s: %llu bytes, expected %llu", section_names[i], (unsigned long long)s->bytes, (unsigned long long)need);
+            return wrong(c, "section %s: %llu bytes, expected %llu", section_names[i], (unsigned long long)s->bytes,
+                         (unsigned long long)need);
         end = s->offset + s->bytes;
     }
     return true;
@@ -187,7 +189,8 @@ static bool vertices_good(struct check *c)
             if (!isfinite(x))
                 return wrong(c, "vertex %u: position is not finite", i);
             if (x < h->bounds_min_m[axis] || x > h->bounds_max_m[axis])
-                return wrong(c, "vertex %u: position %g m lies outside the bounds %g..%g m", i, (double)x, (double)h->bounds_min_m[axis], (double)h->bounds_max_m[axis]);
+                return wrong(c, "vertex %u: position %g m lies outside the bounds %g..%g m", i, (double)x, (double)h->bounds_min_m[axis],
+                             (double)h->bounds_max_m[axis]);
         }
         const float *n = v->normals[i];
         float length2 = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
@@ -224,7 +227,8 @@ static bool levels_good(struct check *c)
     for (uint32_t i = 0; i < h->level_count; i++) {
         const struct asset_level *l = &v->levels[i];
         if (l->first_primitive != next || l->primitive_count == 0 || l->primitive_count > h->primitive_count - next)
-            return wrong(c, "level %u: primitives %u+%u, expected them to begin at %u of %u", i, l->first_primitive, l->primitive_count, next, h->primitive_count);
+            return wrong(c, "level %u: primitives %u+%u, expected them to begin at %u of %u", i, l->first_primitive, l->primitive_count,
+                         next, h->primitive_count);
         if (l->vertex_count > vertices || (i == 0 && l->vertex_count != vertices))
             return wrong(c, "level %u: the first %u vertices, expected %s%u", i, l->vertex_count, i ? "at most " : "", vertices);
         if (!isfinite(l->error_m) || l->error_m < error_m || (i == 0 && l->error_m != 0))
@@ -257,16 +261,20 @@ static bool unit_range(const float *values, int count)
 static bool material_good(struct check *c, uint32_t number)
 {
     const struct asset_material *m = &c->view.materials[number];
-    const uint32_t textures[] = { m->base_color_texture, m->metallic_roughness_texture, m->normal_texture, m->occlusion_texture, m->emissive_texture };
+    const uint32_t textures[] = { m->base_color_texture, m->metallic_roughness_texture, m->normal_texture, m->occlusion_texture,
+                                  m->emissive_texture };
     for (int i = 0; i < 5; i++)
         if (!texture_good(c, textures[i]))
-            return wrong(c, "material %u: texture %u of %u%s", number, textures[i], c->view.header->texture_count, c->view.texcoords ? "" : ", without coordinates");
-    if (!unit_range(m->base_color, 4) || !unit_range(&m->metallic, 1) || !unit_range(&m->roughness, 1) || !unit_range(&m->occlusion_strength, 1))
+            return wrong(c, "material %u: texture %u of %u%s", number, textures[i], c->view.header->texture_count,
+                         c->view.texcoords ? "" : ", without coordinates");
+    if (!unit_range(m->base_color, 4) || !unit_range(&m->metallic, 1) || !unit_range(&m->roughness, 1) ||
+        !unit_range(&m->occlusion_strength, 1))
         return wrong(c, "material %u: a factor lies outside 0..1", number);
     if (!isfinite(m->normal_scale) || !finite_all(m->emissive, 3) || !isfinite(m->alpha_cutoff))
         return wrong(c, "material %u: a factor is not finite", number);
     if (m->alpha > ASSET_ALPHA_BLEND || m->double_sided > 1 || !name_good(c, m->name))
-        return wrong(c, "material %u: alpha mode %u, double_sided %u or name at %u out of range", number, m->alpha, m->double_sided, m->name);
+        return wrong(c, "material %u: alpha mode %u, double_sided %u or name at %u out of range", number, m->alpha, m->double_sided,
+                     m->name);
     return true;
 }
 
@@ -280,7 +288,8 @@ static bool materials_good(struct check *c)
             return wrong(c, "texture %u: %u x %u pixels, at most %u x %u", i, t->width_px, t->height_px, TEXTURE_MAX_PX, TEXTURE_MAX_PX);
         uint64_t need = 4ull * t->width_px * t->height_px;
         if (t->offset > texel_bytes || need > texel_bytes - t->offset)
-            return wrong(c, "texture %u: bytes %llu+%llu of %llu", i, (unsigned long long)t->offset, (unsigned long long)need, (unsigned long long)texel_bytes);
+            return wrong(c, "texture %u: bytes %llu+%llu of %llu", i, (unsigned long long)t->offset, (unsigned long long)need,
+                         (unsigned long long)texel_bytes);
         if (t->srgb > 1 || t->wrap_repeat > 1)
             return wrong(c, "texture %u: srgb %u or wrap_repeat %u is neither 0 nor 1", i, t->srgb, t->wrap_repeat);
     }
@@ -352,8 +361,19 @@ void *asset_build(const struct asset_parts *parts, size_t *out_bytes)
         .sensor_count = parts->sensor_count,
     };
     const void *from[ASSET_SECTION_COUNT] = {
-        parts->positions_m, parts->normals, parts->texcoords, parts->colors, parts->indices, parts->primitives, parts->levels ? parts->levels : &all,
-        parts->materials, parts->textures, parts->texels, parts->sensors, parts->geodesic_m, parts->names ? parts->names : "",
+        parts->positions_m,
+        parts->normals,
+        parts->texcoords,
+        parts->colors,
+        parts->indices,
+        parts->primitives,
+        parts->levels ? parts->levels : &all,
+        parts->materials,
+        parts->textures,
+        parts->texels,
+        parts->sensors,
+        parts->geodesic_m,
+        parts->names ? parts->names : "",
     };
     memcpy(h.magic, ASSET_MAGIC, sizeof(h.magic));
     memcpy(h.origin_m, parts->origin_m, sizeof(h.origin_m));

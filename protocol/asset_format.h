@@ -13,19 +13,19 @@
 #define ASSET_NO_TEXTURE UINT32_MAX
 
 enum asset_section {
-    ASSET_POSITIONS,   /* float[3] per vertex: asset frame (metres, Z up) minus header.origin_m */
-    ASSET_NORMALS,     /* float[3] per vertex, unit length */
-    ASSET_TEXCOORDS,   /* float[2] per vertex; 0 bytes: no texture anywhere in the asset */
-    ASSET_COLORS,      /* uint8[4] per vertex, linear RGBA; 0 bytes: none */
-    ASSET_INDICES,     /* uint32 per corner */
-    ASSET_PRIMITIVES,  /* struct asset_primitive */
-    ASSET_LEVELS,      /* struct asset_level, finest first */
-    ASSET_MATERIALS,   /* struct asset_material */
-    ASSET_TEXTURES,    /* struct asset_texture */
-    ASSET_TEXELS,      /* bytes: RGBA8, rows from the top, as asset_texture says */
-    ASSET_SENSORS,     /* struct asset_sensor, in the order of the tag list's rows for this asset */
-    ASSET_GEODESIC,    /* float[sensor][vertex]: metres along the surface; INFINITY where it cannot be reached */
-    ASSET_NAMES,       /* bytes: strings, each ended by 0 */
+    ASSET_POSITIONS,  /* float[3] per vertex: asset frame (metres, Z up) minus header.origin_m */
+    ASSET_NORMALS,    /* float[3] per vertex, unit length */
+    ASSET_TEXCOORDS,  /* float[2] per vertex; 0 bytes: no texture anywhere in the asset */
+    ASSET_COLORS,     /* uint8[4] per vertex, linear RGBA; 0 bytes: none */
+    ASSET_INDICES,    /* uint32 per corner */
+    ASSET_PRIMITIVES, /* struct asset_primitive */
+    ASSET_LEVELS,     /* struct asset_level, finest first */
+    ASSET_MATERIALS,  /* struct asset_material */
+    ASSET_TEXTURES,   /* struct asset_texture */
+    ASSET_TEXELS,     /* bytes: RGBA8, rows from the top, as asset_texture says */
+    ASSET_SENSORS,    /* struct asset_sensor, in the order of the tag list's rows for this asset */
+    ASSET_GEODESIC,   /* float[sensor][vertex]: metres along the surface; INFINITY where it cannot be reached */
+    ASSET_NAMES,      /* bytes: strings, each ended by 0 */
     ASSET_SECTION_COUNT
 };
 
@@ -37,18 +37,18 @@ struct asset_header {
     char magic[8];
     uint32_t version, header_bytes;
     uint64_t file_bytes;
-    uint64_t checksum;        /* XXH3-64 of the file with this field 0 */
-    uint64_t key;             /* XXH3-64 of all that went in: model bytes, node pattern, units, sensor places, program's format version */
-    double origin_m[3];       /* asset frame */
+    uint64_t checksum;  /* XXH3-64 of the file with this field 0 */
+    uint64_t key;       /* XXH3-64 of all that went in: model bytes, node pattern, units, sensor places, program's format version */
+    double origin_m[3]; /* asset frame */
     float bounds_min_m[3], bounds_max_m[3]; /* of the positions, relative to origin_m */
     uint32_t vertex_count, index_count, primitive_count, level_count, material_count, texture_count, sensor_count, reserved;
     struct asset_section_entry sections[ASSET_SECTION_COUNT];
 };
 
-struct asset_primitive { /* a run of triangles with one material, from one node of the model */
+struct asset_primitive {               /* a run of triangles with one material, from one node of the model */
     uint32_t first_index, index_count; /* into ASSET_INDICES; a multiple of 3 */
     uint32_t material;
-    uint32_t name;                     /* offset in ASSET_NAMES: the node's name */
+    uint32_t name; /* offset in ASSET_NAMES: the node's name */
 };
 
 struct asset_level { /* a level of detail: its primitives, and the prefix of the vertices that it uses */
@@ -76,7 +76,7 @@ struct asset_sensor {
     float surface_m[3];       /* nearest point of the surface, likewise */
     float surface_distance_m; /* between the two */
     uint32_t nearest_vertex;
-    uint64_t node_hash;       /* XXH3-64 of the node name the place came from, 0 = from X, Y, Z */
+    uint64_t node_hash; /* XXH3-64 of the node name the place came from, 0 = from X, Y, Z */
 };
 
 /* A checked asset file in memory. Pointers go into the bytes, which must outlive it. */
@@ -84,8 +84,8 @@ struct asset_view {
     const struct asset_header *header;
     const float (*positions_m)[3];
     const float (*normals)[3];
-    const float (*texcoords)[2];  /* NULL: none */
-    const uint8_t (*colors)[4];   /* NULL: none */
+    const float (*texcoords)[2]; /* NULL: none */
+    const uint8_t (*colors)[4];  /* NULL: none */
     const uint32_t *indices;
     const struct asset_primitive *primitives;
     const struct asset_level *levels;
@@ -93,7 +93,7 @@ struct asset_view {
     const struct asset_texture *textures;
     const uint8_t *texels;
     const struct asset_sensor *sensors;
-    const float *geodesic_m;      /* [sensor * vertex_count + vertex] */
+    const float *geodesic_m; /* [sensor * vertex_count + vertex] */
     const char *names;
 };
 
@@ -107,8 +107,8 @@ struct asset_parts {
     double origin_m[3];
     const float (*positions_m)[3];
     const float (*normals)[3];
-    const float (*texcoords)[2];  /* NULL: none */
-    const uint8_t (*colors)[4];   /* NULL: none */
+    const float (*texcoords)[2]; /* NULL: none */
+    const uint8_t (*colors)[4];  /* NULL: none */
     const uint32_t *indices;
     const struct asset_primitive *primitives;
     const struct asset_level *levels; /* NULL: one level that holds everything */
@@ -117,7 +117,7 @@ struct asset_parts {
     const uint8_t *texels;
     const struct asset_sensor *sensors;
     const float *geodesic_m;
-    const char *names;            /* NULL: one empty name */
+    const char *names; /* NULL: one empty name */
     uint32_t vertex_count, index_count, primitive_count, level_count, material_count, texture_count, sensor_count;
     size_t texel_bytes, name_bytes;
 };

@@ -189,8 +189,8 @@ static void try_tri(const struct bvh *bvh, uint32_t tri, const double p[3], doub
     memcpy(place->point, q, sizeof(q));
 }
 
-void bvh_nearest(const struct bvh *bvh, const double point[3], double limit_m, bool (*allowed)(const void *arg, uint32_t tri), const void *arg,
-                 struct bvh_place *place)
+void bvh_nearest(const struct bvh *bvh, const double point[3], double limit_m, bool (*allowed)(const void *arg, uint32_t tri),
+                 const void *arg, struct bvh_place *place)
 {
     uint32_t stack[STACK_NODES];
     int depth = 0;
@@ -218,7 +218,8 @@ void bvh_nearest(const struct bvh *bvh, const double point[3], double limit_m, b
         place->distance_m = sqrt(best2);
 }
 
-void bvh_overlaps(const struct bvh *bvh, const double low[3], const double high[3], double margin_m, void (*visit)(void *arg, uint32_t tri), void *arg)
+void bvh_overlaps(const struct bvh *bvh, const double low[3], const double high[3], double margin_m, void (*visit)(void *arg, uint32_t tri),
+                  void *arg)
 {
     uint32_t stack[STACK_NODES];
     int depth = 0;
@@ -236,6 +237,68 @@ void bvh_overlaps(const struct bvh *bvh, const double low[3], const double high[
             for (uint32_t i = node->first; i < node->first + node->count; i++)
                 visit(arg, bvh->order[i]);
         } else {
+            stack[depth++] = node->first;
+            stack[depth++] = at + 1;
+        }
+    }
+}
+
+/* Moeller & Trumbore 1997. t in lengths of direction, unbounded. */
+static bool line_meets(const double p[3], const double direction[3], const double a[3], const double b[3], const double c[3], double *t, double weights[3])
+{
+    double ab[3], ac[3], ap[3], h[3], q[3];
+    vec_sub(b, a, ab);
+    vec_sub(c, a, ac);
+    vec_cross(direction, ac, h);
+    double det = vec_dot(ab, h);
+    if (det == 0)
+        return false;
+    vec_sub(p, a, ap);
+    weights[1] = vec_dot(ap, h) / det;
+    vec_cross(ap, ab, q);
+    weights[2] = vec_dot(direction, q) / det;
+    weights[0] = 1 - weights[1] - weights[2];
+    *t = vec_dot(ac, q) / det;
+    return weights[0] >= 0 && weights[1] >= 0 && weights[2] >= 0;
+}
+
+bool triangle_crossed(const double p[3], const double q[3], const double a[3], const double b[3], const double c[3], double *t, double weights[3])
+{
+    double direction[3];
+    vec_sub(q, p, direction);
+    return line_meets(p, direction, a, b, c, t, weights) && *t >= 0 && *t <= 1;
+}
+
+static bool box_meets_ray(const struct node *node, const double origin[3], const double inverse[3])
+{
+    double near = 0, far = INFINITY;
+    for (int axis = 0; axis < 3; axis++) {
+        double t0 = (node->low[axis] - origin[axis]) * inverse[axis], t1 = (node->high[axis] - origin[axis]) * inverse[axis];
+        near = fmax(near, fmin(t0, t1));
+        far = fmin(far, fmax(t0, t1));
+    }
+    return near <= far;
+}
+
+void bvh_ray(const struct bvh *bvh, const double origin[3], const double direction[3], void (*visit)(void *arg, uint32_t tri, double t), void *arg)
+{
+    uint32_t stack[STACK_NODES];
+    int depth = 0;
+    const double inverse[3] = { 1 / direction[0], 1 / direction[1], 1 / direction[2] };
+    if (bvh->node_count)
+        stack[depth++] = 0;
+    while (depth) {
+        uint32_t at = stack[--depth];
+        const struct node *node = &bvh->nodes[at];
+        if (!box_meets_ray(node, origin, inverse))
+            continue;
+        for (uint32_t i = node->first; i < node->first + node->count; i++) {
+            const uint32_t *v = bvh->mesh->tris[bvh->order[i]];
+            double t, weights[3];
+            if (line_meets(origin, direction, bvh->mesh->points[v[0]], bvh->mesh->points[v[1]], bvh->mesh->points[v[2]], &t, weights) && t > 0)
+                visit(arg, bvh->order[i], t);
+        }
+        if (!node->count) {
             stack[depth++] = node->first;
             stack[depth++] = at + 1;
         }

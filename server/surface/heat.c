@@ -14,7 +14,7 @@
 /* L alone is singular on every piece of surface; this much of M, in shares of the piece's area, moves distances by a millionth. */
 #define REGULARISATION 1e-6
 
-struct slope { /* gradients of the three hat functions in the triangle's plane, and its area */
+struct slope {               /* gradients of the three hat functions in the triangle's plane, and its area */
     double x1, y1, y2, area; /* of corner 1: (x1, y1), of corner 2: (0, y2), of corner 0: minus both */
 };
 
@@ -22,7 +22,7 @@ struct heat {
     struct log *log;
     const struct intrinsic *in;
     double time_m2;
-    uint32_t *row_of;      /* point -> row, TRIMESH_NONE: no triangle */
+    uint32_t *row_of; /* point -> row, TRIMESH_NONE: no triangle */
     size_t row_count;
     struct slope *slopes;
     double *mass_m2;
@@ -66,7 +66,8 @@ static void measure(struct heat *heat)
 static cholmod_sparse *assemble(struct heat *heat, const double *mass, double stiffness)
 {
     const struct intrinsic *in = heat->in;
-    cholmod_triplet *list = cholmod_allocate_triplet(heat->row_count, heat->row_count, heat->row_count + 6 * in->tri_count, -1, CHOLMOD_REAL, &heat->common);
+    cholmod_triplet *list =
+        cholmod_allocate_triplet(heat->row_count, heat->row_count, heat->row_count + 6 * in->tri_count, -1, CHOLMOD_REAL, &heat->common);
     if (!list)
         return NULL;
     int *rows = list->i, *columns = list->j;
@@ -118,8 +119,8 @@ static bool factor(struct heat *heat, const uint32_t *component)
         heat->diffusion = cholmod_analyze(diffusion, &heat->common);
         heat->poisson = heat->diffusion ? cholmod_copy_factor(heat->diffusion, &heat->common) : NULL;
     }
-    bool good = heat->poisson && cholmod_factorize(diffusion, heat->diffusion, &heat->common) && heat->common.status == CHOLMOD_OK
-                && cholmod_factorize(poisson, heat->poisson, &heat->common) && heat->common.status == CHOLMOD_OK;
+    bool good = heat->poisson && cholmod_factorize(diffusion, heat->diffusion, &heat->common) && heat->common.status == CHOLMOD_OK &&
+                cholmod_factorize(poisson, heat->poisson, &heat->common) && heat->common.status == CHOLMOD_OK;
     cholmod_free_sparse(&diffusion, &heat->common);
     cholmod_free_sparse(&poisson, &heat->common);
     return good;

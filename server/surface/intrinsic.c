@@ -34,7 +34,7 @@ static void find_neighbours(const struct trimesh *mesh, uint32_t (*other)[3])
 {
     struct edge_table edges;
     edge_table_init(&edges, mesh->tri_count * 3 / 2);
-    uint32_t (*faces)[2] = mem_array(mesh->tri_count * 3, sizeof(*faces));
+    uint32_t(*faces)[2] = mem_array(mesh->tri_count * 3, sizeof(*faces));
     uint32_t *counts = mem_array(mesh->tri_count * 3, sizeof(*counts));
     for (uint32_t t = 0; t < mesh->tri_count; t++)
         for (int i = 0; i < 3; i++) {
@@ -138,14 +138,16 @@ static bool flip(struct intrinsic *in, uint32_t t, int i)
         return false;
     double rs = hypot(rx - sx, ry - sy);
     uint32_t p = in->points[t][i], q = in->points[t][(i + 1) % 3], r = in->points[t][(i + 2) % 3], s = in->points[u][(j + 2) % 3];
-    uint32_t g_qr = in->glue[t][(i + 1) % 3], g_rp = in->glue[t][(i + 2) % 3], g_ps = in->glue[u][(j + 1) % 3], g_sq = in->glue[u][(j + 2) % 3];
+    uint32_t g_qr = in->glue[t][(i + 1) % 3], g_rp = in->glue[t][(i + 2) % 3], g_ps = in->glue[u][(j + 1) % 3],
+             g_sq = in->glue[u][(j + 2) % 3];
     memcpy(in->points[t], (const uint32_t[3]){ s, r, p }, sizeof(in->points[t]));
     memcpy(in->points[u], (const uint32_t[3]){ r, s, q }, sizeof(in->points[u]));
     memcpy(in->lengths[t], (const double[3]){ rs, rp, ps }, sizeof(in->lengths[t]));
     memcpy(in->lengths[u], (const double[3]){ rs, sq, qr }, sizeof(in->lengths[u]));
     /* A side may be glued to a side of the same pair; rename those before they are written back. */
     uint32_t outer[4] = { g_rp, g_ps, g_sq, g_qr };
-    const uint32_t was[4] = { 3 * t + (uint32_t)((i + 2) % 3), 3 * u + (uint32_t)((j + 1) % 3), 3 * u + (uint32_t)((j + 2) % 3), 3 * t + (uint32_t)((i + 1) % 3) };
+    const uint32_t was[4] = { 3 * t + (uint32_t)((i + 2) % 3), 3 * u + (uint32_t)((j + 1) % 3), 3 * u + (uint32_t)((j + 2) % 3),
+                              3 * t + (uint32_t)((i + 1) % 3) };
     const uint32_t is[4] = { 3 * t + 1, 3 * t + 2, 3 * u + 1, 3 * u + 2 };
     for (int k = 0; k < 4; k++)
         for (int m = 0; m < 4; m++)
@@ -214,7 +216,7 @@ void intrinsic_init(struct intrinsic *in, const struct trimesh *mesh)
     in->points = mem_array(mesh->tri_count, sizeof(*in->points));
     in->lengths = mem_array(mesh->tri_count, sizeof(*in->lengths));
     in->glue = mem_array(mesh->tri_count, sizeof(*in->glue));
-    uint32_t (*other)[3] = mem_array(mesh->tri_count, sizeof(*other));
+    uint32_t(*other)[3] = mem_array(mesh->tri_count, sizeof(*other));
     memcpy(in->points, mesh->tris, mesh->tri_count * sizeof(*in->points));
     find_neighbours(mesh, other);
     orient(in, other);

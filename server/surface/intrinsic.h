@@ -7,9 +7,9 @@
 
 struct intrinsic {
     size_t tri_count, point_count;
-    uint32_t (*points)[3];  /* of each triangle, turned the same way throughout a patch */
-    double (*lengths)[3];   /* side i: from corner i to corner i + 1 */
-    uint32_t (*glue)[3];    /* 3 * triangle + side on the other side, TRIMESH_NONE: not flippable */
+    uint32_t (*points)[3]; /* of each triangle, turned the same way throughout a patch */
+    double (*lengths)[3];  /* side i: from corner i to corner i + 1 */
+    uint32_t (*glue)[3];   /* 3 * triangle + side on the other side, TRIMESH_NONE: not flippable */
     size_t flips;
 };
 

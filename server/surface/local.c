@@ -2,12 +2,20 @@
 /* Unfolding distances outwards from a source, nearest point first. */
 #include "surface/local.h"
 
+#include <string.h>
+
 #include "base/mem.h"
 #include "surface/vec.h"
 
-void local_init(struct local *local, const struct trimesh *mesh)
+void local_init(struct local *local, const struct trimesh *mesh, size_t visible_count)
 {
     local->mesh = mesh;
+    local->visible_count = visible_count;
+    local->hidden = mem_array(mesh->point_count, 1);
+    memset(local->hidden, 1, mesh->point_count);
+    for (size_t t = 0; t < visible_count; t++)
+        for (int i = 0; i < 3; i++)
+            local->hidden[mesh->tris[t][i]] = 0;
     local->first = mem_array(mesh->point_count + 2, sizeof(*local->first));
     local->tris = mem_array(mesh->tri_count * 3, sizeof(*local->tris));
     for (size_t t = 0; t < mesh->tri_count; t++)
@@ -24,6 +32,7 @@ void local_finish(struct local *local)
 {
     mem_free(local->first);
     mem_free(local->tris);
+    mem_free(local->hidden);
     *local = (struct local){ 0 };
 }
 
@@ -102,8 +111,11 @@ static void spread(const struct local *local, struct local_walk *walk, uint32_t 
         uint32_t a = v[(at + 1) % 3], b = v[(at + 2) % 3];
         double pa = vec_distance(mesh->points[point], mesh->points[a]), pb = vec_distance(mesh->points[point], mesh->points[b]);
         double ab = vec_distance(mesh->points[a], mesh->points[b]), d = walk->distance_m[point];
-        offer(walk, a, walk->settled[b] ? unfold(d, walk->distance_m[b], pb, pa, ab) : d + pa);
-        offer(walk, b, walk->settled[a] ? unfold(d, walk->distance_m[a], pa, pb, ab) : d + pb);
+        bool inside = local->tris[i] >= local->visible_count;
+        if (!inside || local->hidden[a])
+            offer(walk, a, walk->settled[b] ? unfold(d, walk->distance_m[b], pb, pa, ab) : d + pa);
+        if (!inside || local->hidden[b])
+            offer(walk, b, walk->settled[a] ? unfold(d, walk->distance_m[a], pa, pb, ab) : d + pb);
     }
 }
 
@@ -129,7 +141,8 @@ void local_from(const struct local *local, struct local_walk *walk, uint32_t tri
     double source[3];
     clear(local, walk);
     for (int axis = 0; axis < 3; axis++)
-        source[axis] = weights[0] * mesh->points[v[0]][axis] + weights[1] * mesh->points[v[1]][axis] + weights[2] * mesh->points[v[2]][axis];
+        source[axis] =
+            weights[0] * mesh->points[v[0]][axis] + weights[1] * mesh->points[v[1]][axis] + weights[2] * mesh->points[v[2]][axis];
     for (int i = 0; i < 3; i++)
         offer(walk, v[i], vec_distance(source, mesh->points[v[i]]));
     while (walk->heap_count) {

@@ -4,17 +4,24 @@
 #define SURFACE_LOCAL_H
 #include "surface/trimesh.h"
 
-struct local {             /* which triangles meet at a point; shared by all walks */
+struct local { /* which triangles meet at a point; shared by all walks */
     const struct trimesh *mesh;
+    size_t visible_count; /* the first so many triangles are outside; the others are hidden inside another part */
     uint32_t *first, *tris;
+    char *hidden;         /* of each point: it has no visible triangle */
 };
-void local_init(struct local *local, const struct trimesh *mesh); /* mesh must outlive it */
+/* Walks go over visible triangles; from there on into hidden ones, so that a triangle that passes through a surface has a distance at its
+   hidden end too, but never back. mesh must outlive it. */
+void local_init(struct local *local, const struct trimesh *mesh, size_t visible_count);
 void local_finish(struct local *local);
 
-struct local_walk {        /* one thread's; zero-initialise, used again and again */
-    double *distance_m;    /* of all points; INFINITY where not reached */
-    struct local_item { double distance_m; uint32_t point; } *heap;
-    uint32_t *reached;     /* points with a finite distance */
+struct local_walk {     /* one thread's; zero-initialise, used again and again */
+    double *distance_m; /* of all points; INFINITY where not reached */
+    struct local_item {
+        double distance_m;
+        uint32_t point;
+    } * heap;
+    uint32_t *reached; /* points with a finite distance */
     char *settled;
     size_t reached_count, reached_capacity, heap_count, heap_capacity;
 };

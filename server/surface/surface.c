@@ -10,31 +10,41 @@
 #include "base/mem.h"
 #include "surface/bvh.h"
 #include "surface/heat.h"
+#include "surface/hidden.h"
 #include "surface/intrinsic.h"
 #include "surface/local.h"
+#include "surface/stitch.h"
 #include "surface/trimesh.h"
 #include "surface/vec.h"
 
-#define WELD_OF_SIZE 1e-6        /* vertices this near are one: float positions are no finer */
+#define WELD_OF_SIZE 1e-6 /* vertices this near are one: float positions are no finer */
 #define TOLERANCE_OF_SIZE 5e-4
-#define SAMPLES 30000.0          /* at least about so many points carry the heat */
-#define POINTS_PER_SPACING 2.7   /* points on one square spacing of a surface sampled by halving edges: measured */
-#define TIME_OF_SPACING 3.0      /* t in mean edge lengths squared */
-#define LONGEST_DECAY 500.0      /* the farthest point is no more than this many roots of t away, so that its heat is a number */
+#define SAMPLES 30000.0        /* at least about so many points carry the heat */
+#define POINTS_PER_SPACING 2.7 /* points on one square spacing of a surface sampled by halving edges: measured */
+#define TIME_OF_SPACING 3.0    /* t in mean edge lengths squared */
+#define LONGEST_DECAY 500.0    /* the farthest point is no more than this many roots of t away, so that its heat is a number */
 #define BLOCK_SOURCES 8
+
+struct stray { /* a vertex of the model whose triangles have no area: it takes the nearest place's distance */
+    uint32_t vertex, points[3];
+    double weights[3];
+};
 
 struct surface {
     struct log *log;
     struct workers *workers;
     size_t vertex_count;
-    uint32_t *vertex_point;      /* of the model's vertices */
-    struct trimesh mesh;         /* welded, bridged, sampled */
-    uint32_t *component;         /* of its points */
+    uint32_t *vertex_point; /* of the model's vertices */
+    struct trimesh mesh;    /* welded, bridged, sampled; visible triangles first */
+    struct trimesh visible; /* the same without the hidden ones; its arrays are the mesh's */
+    uint32_t *component;    /* of its points, over visible triangles */
+    struct stray *strays;
+    size_t stray_count;
     struct intrinsic intrinsic;
     struct heat *heat;
     struct local local;
     struct bvh *bvh;
-    double edge_m;               /* mean edge length */
+    double edge_m; /* mean edge length */
     struct surface_report report;
 };
 
@@ -75,23 +85,162 @@ static size_t border_edges(const struct trimesh *mesh)
     return count;
 }
 
+static size_t components_of(const struct trimesh *mesh)
+{
+    uint32_t *component = mem_array(mesh->point_count, sizeof(*component));
+    size_t count = trimesh_components(mesh, component);
+    mem_free(component);
+    return count;
+}
+
 static bool weld(struct surface *surface, const float (*positions)[3], const uint32_t *triangles, size_t triangle_count, double size_m)
 {
     struct surface_report *report = &surface->report;
     surface->vertex_point = mem_try_array(surface->vertex_count, sizeof(*surface->vertex_point));
-    if (!surface->vertex_point
-        || !trimesh_weld(&surface->mesh, positions, surface->vertex_count, triangles, triangle_count, size_m * WELD_OF_SIZE, surface->vertex_point,
-                         &report->degenerate_triangles, &report->repeated_triangles)) {
+    if (!surface->vertex_point ||
+        !trimesh_weld(&surface->mesh, positions, surface->vertex_count, triangles, triangle_count, size_m * WELD_OF_SIZE,
+                      surface->vertex_point, &report->degenerate_triangles, &report->repeated_triangles)) {
         log_err(surface->log, "surface of %zu vertices: out of memory", surface->vertex_count);
         return false;
     }
     report->triangles = triangle_count;
     report->welded_vertices = surface->mesh.point_count;
+    report->border_edges = border_edges(&surface->mesh);
+    report->components = components_of(&surface->mesh);
     if (surface->mesh.tri_count == 0) {
         log_err(surface->log, "surface of %zu triangles: none has an area", triangle_count);
         return false;
     }
     return true;
+}
+
+static void follow(struct surface *surface, const uint32_t *target)
+{
+    for (size_t v = 0; v < surface->vertex_count; v++)
+        surface->vertex_point[v] = target[surface->vertex_point[v]];
+}
+
+static void note_bridges(struct surface_report *report, const struct stitch_report *made)
+{
+    report->bridges += made->bridges;
+    report->longest_bridge_m = fmax(report->longest_bridge_m, made->longest_m);
+    report->k = report->k > made->k ? report->k : made->k;
+}
+
+static bool close_seams(struct surface *surface)
+{
+    struct stitch_report made = { 0 };
+    uint32_t *target = mem_array(surface->mesh.point_count, sizeof(*target));
+    stitch_seams(&surface->mesh, surface->report.tolerance_m, target, &made);
+    follow(surface, target);
+    note_bridges(&surface->report, &made);
+    mem_free(target);
+    if (made.k < 0)
+        log_err(surface->log, "neighbours of %zu points: out of memory", surface->mesh.point_count);
+    return made.k >= 0;
+}
+
+/* Parts are what hangs together before parts are joined to each other; numbered from 0. part[tri]. */
+static size_t number_parts(const struct trimesh *mesh, uint32_t *part)
+{
+    uint32_t *component = mem_array(mesh->point_count, sizeof(*component)), *number = mem_array(mesh->point_count, sizeof(*number));
+    uint32_t count = 0;
+    trimesh_components(mesh, component);
+    memset(number, 0xff, mesh->point_count * sizeof(*number));
+    for (size_t t = 0; t < mesh->tri_count; t++) {
+        uint32_t root = component[mesh->tris[t][0]];
+        if (number[root] == TRIMESH_NONE)
+            number[root] = count++;
+        part[t] = number[root];
+    }
+    mem_free(component);
+    mem_free(number);
+    return count;
+}
+
+static void copy_mesh(struct trimesh *to, const struct trimesh *from)
+{
+    *to = (struct trimesh){ .point_count = from->point_count, .tri_count = from->tri_count };
+    to->points = mem_array(from->point_count, sizeof(*to->points));
+    to->tris = mem_array(from->tri_count, sizeof(*to->tris));
+    memcpy(to->points, from->points, from->point_count * sizeof(*to->points));
+    memcpy(to->tris, from->tris, from->tri_count * sizeof(*to->tris));
+}
+
+struct parts {                   /* as they were before they were cut up and joined */
+    struct trimesh solid;
+    uint32_t *of_tri, *of_source; /* of the solid's triangles; of the model's */
+    char *closed;
+    size_t count;
+};
+
+static void parts_init(struct parts *parts, const struct surface *surface)
+{
+    const struct trimesh *mesh = &surface->mesh;
+    *parts = (struct parts){ 0 };
+    copy_mesh(&parts->solid, mesh);
+    parts->of_tri = mem_array(mesh->tri_count, sizeof(*parts->of_tri));
+    parts->of_source = mem_array(surface->report.triangles, sizeof(*parts->of_source));
+    parts->count = number_parts(mesh, parts->of_tri);
+    for (size_t t = 0; t < mesh->tri_count; t++)
+        parts->of_source[mesh->tri_source[t]] = parts->of_tri[t];
+    parts->closed = mem_array(parts->count, 1);
+    hidden_closed_parts(mesh, parts->of_tri, parts->count, parts->closed);
+}
+
+static void parts_finish(struct parts *parts)
+{
+    trimesh_finish(&parts->solid);
+    mem_free(parts->of_tri);
+    mem_free(parts->of_source);
+    mem_free(parts->closed);
+}
+
+static uint32_t *parts_now(const struct parts *parts, const struct trimesh *mesh)
+{
+    uint32_t *part = mem_array(mesh->tri_count, sizeof(*part));
+    for (size_t t = 0; t < mesh->tri_count; t++)
+        part[t] = parts->of_source[mesh->tri_source[t]];
+    return part;
+}
+
+/* Puts visible triangles first. Returns how many there are. */
+static size_t sort_hidden(struct trimesh *mesh, char *hidden)
+{
+    size_t front = 0;
+    for (size_t t = 0; t < mesh->tri_count; t++) {
+        if (hidden[t])
+            continue;
+        for (int i = 0; i < 3; i++) {
+            uint32_t swap = mesh->tris[t][i];
+            mesh->tris[t][i] = mesh->tris[front][i];
+            mesh->tris[front][i] = swap;
+        }
+        uint32_t swap = mesh->tri_source[t];
+        mesh->tri_source[t] = mesh->tri_source[front];
+        mesh->tri_source[front] = swap;
+        hidden[t] = hidden[front];
+        hidden[front++] = 0;
+    }
+    return front;
+}
+
+static void join_parts(struct surface *surface, const struct parts *parts)
+{
+    struct stitch_report made = { 0 };
+    uint32_t *part = parts_now(parts, &surface->mesh), *target = mem_array(surface->mesh.point_count, sizeof(*target));
+    stitch_parts(&surface->mesh, part, surface->report.tolerance_m, target, &made);
+    follow(surface, target);
+    note_bridges(&surface->report, &made);
+    mem_free(part);
+    mem_free(target);
+    char *hidden = mem_array(surface->mesh.tri_count, 1);
+    part = parts_now(parts, &surface->mesh);
+    hidden_find(&surface->mesh, part, &parts->solid, parts->of_tri, parts->closed, surface->report.tolerance_m, surface->workers, hidden);
+    surface->visible = surface->mesh;
+    surface->visible.tri_count = sort_hidden(&surface->mesh, hidden);
+    mem_free(part);
+    mem_free(hidden);
 }
 
 static void sample(struct surface *surface)
@@ -108,7 +257,7 @@ static void sample(struct surface *surface)
 /* The way from some point to the farthest one from it, on the piece of surface with most triangles. */
 static double reach_of(const struct surface *surface)
 {
-    const struct trimesh *mesh = &surface->mesh;
+    const struct trimesh *mesh = &surface->visible;
     uint32_t *counts = mem_array(mesh->point_count, sizeof(*counts)), best = 0;
     for (uint32_t t = 0; t < mesh->tri_count; t++)
         if (++counts[surface->component[mesh->tris[t][0]]] > counts[surface->component[mesh->tris[best][0]]])
@@ -123,6 +272,30 @@ static double reach_of(const struct surface *surface)
     return reach_m;
 }
 
+/* Model vertices that no triangle is left at, and how many are hidden. */
+static void find_strays(struct surface *surface)
+{
+    char *used = mem_array(surface->mesh.point_count, 1);
+    size_t capacity = 0;
+    for (size_t t = 0; t < surface->mesh.tri_count; t++)
+        for (int i = 0; i < 3; i++)
+            used[surface->mesh.tris[t][i]] = 1;
+    for (uint32_t v = 0; v < surface->vertex_count; v++) {
+        uint32_t p = surface->vertex_point[v];
+        struct bvh_place place;
+        surface->report.hidden_vertices += used[p] && surface->local.hidden[p];
+        if (used[p])
+            continue;
+        bvh_nearest(surface->bvh, surface->mesh.points[p], INFINITY, NULL, NULL, &place);
+        mem_grow(&surface->strays, &capacity, surface->stray_count + 1, sizeof(*surface->strays));
+        struct stray *stray = &surface->strays[surface->stray_count++];
+        stray->vertex = v;
+        memcpy(stray->points, surface->visible.tris[place.tri], sizeof(stray->points));
+        memcpy(stray->weights, place.weights, sizeof(stray->weights));
+    }
+    mem_free(used);
+}
+
 static double mean_edge(const struct intrinsic *in)
 {
     double sum = 0;
@@ -131,11 +304,12 @@ static double mean_edge(const struct intrinsic *in)
     return sum / (3.0 * (double)in->tri_count);
 }
 
-struct surface *surface_create(struct log *log, struct workers *workers, const float (*positions_m)[3], size_t vertex_count, const uint32_t *triangles,
-                               size_t triangle_count, const struct surface_params *params)
+struct surface *surface_create(struct log *log, struct workers *workers, const float (*positions_m)[3], size_t vertex_count,
+                               const uint32_t *triangles, size_t triangle_count, const struct surface_params *params)
 {
     struct surface *surface = mem_new(sizeof(*surface));
     struct surface_report *report = &surface->report;
+    struct parts parts;
     int64_t since_ns = clock_mono_ns();
     double size_m = size_of(positions_m, triangles, triangle_count);
     surface->log = log;
@@ -145,15 +319,23 @@ struct surface *surface_create(struct log *log, struct workers *workers, const f
     report->spacing_m = params->spacing_m;
     if (!weld(surface, positions_m, triangles, triangle_count, size_m))
         goto error;
-    report->border_edges = report->border_edges_after = border_edges(&surface->mesh);
     report->weld_s = seconds_since(&since_ns);
+    if (!close_seams(surface))
+        goto error;
+    parts_init(&parts, surface);
+    report->border_edges_after = border_edges(&surface->mesh);
+    report->bridge_s = seconds_since(&since_ns);
     sample(surface);
     report->sample_s = seconds_since(&since_ns);
+    join_parts(surface, &parts);
+    parts_finish(&parts);
+    report->bridge_s += seconds_since(&since_ns);
     surface->component = mem_array(surface->mesh.point_count, sizeof(*surface->component));
-    report->components = report->components_after = trimesh_components(&surface->mesh, surface->component);
-    local_init(&surface->local, &surface->mesh);
-    surface->bvh = bvh_create(&surface->mesh);
-    intrinsic_init(&surface->intrinsic, &surface->mesh);
+    report->components_after = trimesh_components(&surface->visible, surface->component);
+    local_init(&surface->local, &surface->mesh, surface->visible.tri_count);
+    surface->bvh = bvh_create(&surface->visible);
+    find_strays(surface);
+    intrinsic_init(&surface->intrinsic, &surface->visible);
     surface->edge_m = mean_edge(&surface->intrinsic);
     double decay_m = fmax(sqrt(TIME_OF_SPACING) * surface->edge_m, 2 * reach_of(surface) / LONGEST_DECAY);
     report->time_m2 = decay_m * decay_m;
@@ -180,6 +362,7 @@ void surface_destroy(struct surface **surface_ptr)
     trimesh_finish(&surface->mesh);
     mem_free(surface->vertex_point);
     mem_free(surface->component);
+    mem_free(surface->strays);
     mem_free(surface);
     *surface_ptr = NULL;
 }
@@ -212,35 +395,46 @@ struct solve {
     const double (*points_m)[3];
     size_t point_count;
     float *out;
-    double *disagreement;        /* of each point */
+    double *disagreement; /* of each point */
     atomic_bool failed;
 };
 
 /* How far the two methods differ, as a share of the largest distance. Heat leaves a constant open: it is taken so that they agree on
    average. Heat smooths ridges and borders over about one root of t, so some percent at single points are its nature; more is a sign that
    the surface does not hang together as it looks. */
-static double disagreement_of(const struct local_walk *walk, const double *heat_m)
+static double disagreement_of(const struct local *local, const struct local_walk *walk, const double *heat_m)
 {
-    double sum = 0, squares = 0, largest_m = 0;
+    double sum = 0, squares = 0, largest_m = 0, count = 0;
     for (size_t i = 0; i < walk->reached_count; i++) {
         uint32_t p = walk->reached[i];
+        if (local->hidden[p])
+            continue;
+        count++;
         double difference_m = walk->distance_m[p] - heat_m[p];
         sum += difference_m;
         squares += difference_m * difference_m;
         largest_m = fmax(largest_m, walk->distance_m[p]);
     }
-    double count = (double)walk->reached_count, mean = sum / count;
+    double mean = sum / count;
     return largest_m > 0 ? sqrt(fmax(squares / count - mean * mean, 0)) / largest_m : 0;
 }
 
-static void finish_source(const struct solve *solve, size_t source, const struct bvh_place *at, struct local_walk *walk, const double *heat_m)
+static void finish_source(const struct solve *solve, size_t source, const struct bvh_place *at, struct local_walk *walk,
+                          const double *heat_m)
 {
     const struct surface *surface = solve->surface;
     float *out = solve->out + source * surface->vertex_count;
     local_from(&surface->local, walk, at->tri, at->weights, INFINITY);
-    solve->disagreement[source] = disagreement_of(walk, heat_m);
+    solve->disagreement[source] = disagreement_of(&surface->local, walk, heat_m);
     for (size_t v = 0; v < surface->vertex_count; v++)
         out[v] = (float)walk->distance_m[surface->vertex_point[v]];
+    for (size_t i = 0; i < surface->stray_count; i++) {
+        const struct stray *stray = &surface->strays[i];
+        double sum = 0;
+        for (int c = 0; c < 3; c++)
+            sum += stray->weights[c] > 0 ? stray->weights[c] * walk->distance_m[stray->points[c]] : 0;
+        out[stray->vertex] = (float)sum;
+    }
 }
 
 static void solve_block(void *arg, size_t begin, size_t end)
@@ -253,7 +447,7 @@ static void solve_block(void *arg, size_t begin, size_t end)
     double *heat_m = mem_try_array(count * points, sizeof(*heat_m));
     for (size_t s = 0; s < count; s++) {
         bvh_nearest(surface->bvh, solve->points_m[begin + s], INFINITY, NULL, NULL, &places[s]);
-        memcpy(sources[s].points, surface->mesh.tris[places[s].tri], sizeof(sources[s].points));
+        memcpy(sources[s].points, surface->visible.tris[places[s].tri], sizeof(sources[s].points));
         memcpy(sources[s].weights, places[s].weights, sizeof(sources[s].weights));
     }
     if (!heat_m || !heat_solve(surface->heat, sources, count, heat_m)) {

@@ -29,37 +29,38 @@
 
 struct surface;
 
-struct surface_params {    /* zero: chosen from the model */
-    double tolerance_m;    /* gaps up to this are closed */
-    double spacing_m;      /* longest edge of the sampled surface */
+struct surface_params { /* zero: chosen from the model */
+    double tolerance_m; /* gaps up to this are closed */
+    double spacing_m;   /* longest edge of the sampled surface */
 };
 
 struct surface_report {
     double tolerance_m, spacing_m, time_m2; /* as chosen; time_m2: the heat method's t */
     size_t triangles, welded_vertices, degenerate_triangles, repeated_triangles;
     size_t border_edges, border_edges_after; /* edges with one face, before and after bridging */
-    size_t components, components_after;    /* pieces of surface that hang together, before and after bridging */
-    size_t bridges;        /* vertices joined to another place of the surface */
+    size_t components, components_after;     /* pieces of surface that hang together, before and after bridging */
+    size_t bridges;                          /* vertices joined to another place of the surface */
     double longest_bridge_m;
-    int k;                 /* neighbours asked for; 0: nothing to bridge */
-    size_t samples;        /* points added */
+    int k;                  /* neighbours asked for; 0: nothing to bridge */
+    size_t samples;         /* points added */
     size_t hidden_vertices; /* of the model: inside another closed part */
-    double heat_disagreement; /* root of the mean square difference to the heat method, of the worst source so far, as a share of its largest distance */
+    double
+        heat_disagreement; /* root of the mean square difference to the heat method, of the worst source so far, as a share of its largest distance */
     double weld_s, bridge_s, sample_s, laplacian_s, factor_s;
 };
 
 /* positions: count vertices in metres; triangles: indices, 3 each. Everything is copied. workers may be NULL, else it must
    outlive the surface. NULL on failure, already logged: no triangle has an area, or out of memory.
    Thread: one call at a time per surface; different surfaces are independent. */
-struct surface *surface_create(struct log *log, struct workers *workers, const float (*positions_m)[3], size_t vertex_count, const uint32_t *triangles,
-                               size_t triangle_count, const struct surface_params *params);
+struct surface *surface_create(struct log *log, struct workers *workers, const float (*positions_m)[3], size_t vertex_count,
+                               const uint32_t *triangles, size_t triangle_count, const struct surface_params *params);
 void surface_destroy(struct surface **surface); /* &NULL is fine; leaves NULL */
 const struct surface_report *surface_report(const struct surface *surface);
 
 struct surface_place {
-    double position_m[3];  /* on the surface */
-    double distance_m;     /* from the point asked for */
-    uint32_t vertex;       /* the model's vertex nearest to it, along straight lines */
+    double position_m[3]; /* on the surface */
+    double distance_m;    /* from the point asked for */
+    uint32_t vertex;      /* the model's vertex nearest to it, along straight lines */
 };
 void surface_nearest(const struct surface *surface, const double point_m[3], struct surface_place *place);
 

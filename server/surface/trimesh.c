@@ -120,7 +120,9 @@ struct grid {
 
 static size_t grid_slot(const struct grid *grid, const int64_t cell[3])
 {
-    return hash64((uint64_t)cell[0] * 0x9e3779b97f4a7c15ull ^ hash64((uint64_t)cell[1]) ^ hash64((uint64_t)cell[2] + 0x632be59bd9b4e019ull)) & grid->mask;
+    return hash64((uint64_t)cell[0] * 0x9e3779b97f4a7c15ull ^ hash64((uint64_t)cell[1]) ^
+                  hash64((uint64_t)cell[2] + 0x632be59bd9b4e019ull)) &
+           grid->mask;
 }
 
 static uint32_t grid_find(const struct grid *grid, const struct trimesh *mesh, const double p[3], double within_m)
@@ -204,7 +206,8 @@ static bool tri_has_area(const struct trimesh *mesh, uint32_t a, uint32_t b, uin
     vec_sub(mesh->points[c], mesh->points[b], bc);
     vec_cross(ab, ac, n);
     double longest2 = fmax(vec_dot(ab, ab), fmax(vec_dot(ac, ac), vec_dot(bc, bc)));
-    return sqrt(vec_dot(n, n)) > 1e-6 * longest2; /* height over a millionth of the longest edge; else its corner hangs on that edge (stitch.h) */
+    return sqrt(vec_dot(n, n)) >
+           1e-6 * longest2; /* height over a millionth of the longest edge; else its corner hangs on that edge (stitch.h) */
 }
 
 /* Keeps triangles that have an area and are not there yet. */
@@ -232,8 +235,8 @@ static void clean(struct trimesh *mesh, size_t *degenerate, size_t *repeated)
     edge_table_finish(&seen);
 }
 
-bool trimesh_weld(struct trimesh *mesh, const float (*positions)[3], size_t vertex_count, const uint32_t *triangles, size_t triangle_count, double weld_m,
-                  uint32_t *vertex_point, size_t *degenerate, size_t *repeated)
+bool trimesh_weld(struct trimesh *mesh, const float (*positions)[3], size_t vertex_count, const uint32_t *triangles, size_t triangle_count,
+                  double weld_m, uint32_t *vertex_point, size_t *degenerate, size_t *repeated)
 {
     *mesh = (struct trimesh){ 0 };
     *degenerate = *repeated = 0;

@@ -19,10 +19,18 @@ static const float texcoords[4][2] = { { 0, 0 }, { 1, 0 }, { 0, 1 }, { 1, 1 } };
 static const uint8_t colors[4][4] = { { 255, 0, 0, 255 } };
 static const uint32_t indices[9] = { 0, 1, 2, 1, 3, 2, 0, 1, 2 };
 static const struct asset_primitive primitives[2] = { { .index_count = 6, .name = 1 }, { .first_index = 6, .index_count = 3, .name = 1 } };
-static const struct asset_level levels[2] = { { .primitive_count = 1, .vertex_count = 4 }, { .first_primitive = 1, .primitive_count = 1, .vertex_count = 3, .error_m = 0.5f } };
+static const struct asset_level levels[2] = { { .primitive_count = 1, .vertex_count = 4 },
+                                              { .first_primitive = 1, .primitive_count = 1, .vertex_count = 3, .error_m = 0.5f } };
 static const struct asset_material materials[1] = { {
-    .base_color = { 0.5f, 0.5f, 0.5f, 1 }, .roughness = 0.5f, .normal_scale = 1, .occlusion_strength = 1, .alpha_cutoff = 0.5f,
-    .metallic_roughness_texture = ASSET_NO_TEXTURE, .normal_texture = ASSET_NO_TEXTURE, .occlusion_texture = ASSET_NO_TEXTURE, .emissive_texture = ASSET_NO_TEXTURE,
+    .base_color = { 0.5f, 0.5f, 0.5f, 1 },
+    .roughness = 0.5f,
+    .normal_scale = 1,
+    .occlusion_strength = 1,
+    .alpha_cutoff = 0.5f,
+    .metallic_roughness_texture = ASSET_NO_TEXTURE,
+    .normal_texture = ASSET_NO_TEXTURE,
+    .occlusion_texture = ASSET_NO_TEXTURE,
+    .emissive_texture = ASSET_NO_TEXTURE,
 } };
 static const struct asset_texture textures[1] = { { .width_px = 2, .height_px = 1, .srgb = 1 } };
 static const uint8_t texels[8] = { 1, 2, 3, 4, 5, 6, 7, 8 };
@@ -30,10 +38,30 @@ static const struct asset_sensor sensors[2] = { { .position_m = { 0, 0, 0.1f }, 
 static const float geodesic[8] = { 0, 1, 1, 2, 2, 1, INFINITY, 0 };
 
 static const struct asset_parts good = {
-    .key = 0x1234, .origin_m = { 1e6, 2e6, 3 }, .positions_m = positions, .normals = normals, .texcoords = texcoords, .colors = colors, .indices = indices,
-    .primitives = primitives, .levels = levels, .materials = materials, .textures = textures, .texels = texels, .sensors = sensors, .geodesic_m = geodesic,
-    .names = "\0part", .vertex_count = 4, .index_count = 9, .primitive_count = 2, .level_count = 2, .material_count = 1, .texture_count = 1, .sensor_count = 2,
-    .texel_bytes = 8, .name_bytes = 6,
+    .key = 0x1234,
+    .origin_m = { 1e6, 2e6, 3 },
+    .positions_m = positions,
+    .normals = normals,
+    .texcoords = texcoords,
+    .colors = colors,
+    .indices = indices,
+    .primitives = primitives,
+    .levels = levels,
+    .materials = materials,
+    .textures = textures,
+    .texels = texels,
+    .sensors = sensors,
+    .geodesic_m = geodesic,
+    .names = "\0part",
+    .vertex_count = 4,
+    .index_count = 9,
+    .primitive_count = 2,
+    .level_count = 2,
+    .material_count = 1,
+    .texture_count = 1,
+    .sensor_count = 2,
+    .texel_bytes = 8,
+    .name_bytes = 6,
 };
 
 struct file {
@@ -111,8 +139,15 @@ static void the_smallest_asset_is_good(void **state)
     struct asset_material plain = materials[0];
     struct asset_primitive one = { .index_count = 6 };
     plain.base_color_texture = ASSET_NO_TEXTURE;
-    struct asset_parts small = { .positions_m = positions, .normals = normals, .indices = indices, .primitives = &one, .materials = &plain,
-                                 .vertex_count = 4, .index_count = 6, .primitive_count = 1, .material_count = 1 };
+    struct asset_parts small = { .positions_m = positions,
+                                 .normals = normals,
+                                 .indices = indices,
+                                 .primitives = &one,
+                                 .materials = &plain,
+                                 .vertex_count = 4,
+                                 .index_count = 6,
+                                 .primitive_count = 1,
+                                 .material_count = 1 };
     struct file f = build(&small);
     struct asset_view v;
     char why[200] = "";

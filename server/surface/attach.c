@@ -1,0 +1,354 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Setting points into edges and faces, and cutting up the triangles that they touch. */
+#include "surface/attach.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "surface/bvh.h"
+#include "surface/vec.h"
+
+#define ON_EDGE 1e-9 /* a weight below this is on the edge */
+
+void attach_init(struct attach *attach)
+{
+    *attach = (struct attach){ 0 };
+}
+
+void attach_finish(struct attach *attach)
+{
+    mem_free(attach->items);
+    mem_free(attach->pairs);
+    *attach = (struct attach){ 0 };
+}
+
+void attach_points(struct attach *attach, uint32_t a, uint32_t b, double distance_m)
+{
+    mem_grow(&attach->pairs, &attach->pair_capacity, attach->pair_count + 1, sizeof(*attach->pairs));
+    attach->pairs[attach->pair_count++] = (struct attach_pair){ a, b };
+    attach->longest_m = fmax(attach->longest_m, distance_m);
+}
+
+static void add_item(struct attach *attach, struct attach_item item, double distance_m)
+{
+    mem_grow(&attach->items, &attach->item_capacity, attach->item_count + 1, sizeof(*attach->items));
+    attach->items[attach->item_count++] = item;
+    attach->longest_m = fmax(attach->longest_m, distance_m);
+}
+
+void attach_to_edge(struct attach *attach, uint32_t point, uint32_t a, uint32_t b, double t, double distance_m)
+{
+    bool swap = a > b;
+    add_item(attach, (struct attach_item){ .point = point, .a = swap ? b : a, .b = swap ? a : b, .tri = TRIMESH_NONE, .t = swap ? 1 - t : t }, distance_m);
+}
+
+void attach_to_tri(struct attach *attach, uint32_t point, uint32_t tri, double distance_m)
+{
+    add_item(attach, (struct attach_item){ .point = point, .a = TRIMESH_NONE, .b = TRIMESH_NONE, .tri = tri }, distance_m);
+}
+
+/* --- carrying it out ------------------------------------------------------------------------------------------------------ */
+
+static uint32_t root_of(uint32_t *target, uint32_t i)
+{
+    while (target[i] != i) {
+        target[i] = target[target[i]];
+        i = target[i];
+    }
+    return i;
+}
+
+static void find_targets(const struct attach *attach, size_t point_count, uint32_t *target)
+{
+    for (uint32_t i = 0; i < point_count; i++)
+        target[i] = i;
+    for (size_t i = 0; i < attach->pair_count; i++) {
+        uint32_t a = root_of(target, attach->pairs[i].a), b = root_of(target, attach->pairs[i].b);
+        target[a < b ? b : a] = a < b ? a : b;
+    }
+    for (uint32_t i = 0; i < point_count; i++)
+        target[i] = root_of(target, i);
+}
+
+struct lists { /* items by edge (lower points first, then by t) and by triangle */
+    struct edge_table edges;
+    uint32_t *edge_first, *tri_first; /* of each edge number, each triangle; one more at the end */
+    struct attach_item *by_edge;
+    uint32_t *by_tri;
+};
+
+static int by_t(const void *a, const void *b)
+{
+    const struct attach_item *p = a, *q = b;
+    return p->t < q->t ? -1 : p->t > q->t;
+}
+
+static void lists_init(struct lists *lists, const struct attach *attach, const struct trimesh *mesh)
+{
+    edge_table_init(&lists->edges, attach->item_count);
+    for (size_t i = 0; i < attach->item_count; i++)
+        if (attach->items[i].a != TRIMESH_NONE)
+            edge_table_add(&lists->edges, attach->items[i].a, attach->items[i].b);
+    lists->edge_first = mem_array(lists->edges.count + 2, sizeof(*lists->edge_first));
+    lists->tri_first = mem_array(mesh->tri_count + 2, sizeof(*lists->tri_first));
+    lists->by_edge = mem_array(attach->item_count, sizeof(*lists->by_edge));
+    lists->by_tri = mem_array(attach->item_count, sizeof(*lists->by_tri));
+    for (size_t i = 0; i < attach->item_count; i++) {
+        const struct attach_item *item = &attach->items[i];
+        if (item->a != TRIMESH_NONE)
+            lists->edge_first[edge_table_find(&lists->edges, item->a, item->b) + 2]++;
+        else
+            lists->tri_first[item->tri + 2]++;
+    }
+    for (size_t e = 2; e < lists->edges.count + 2; e++)
+        lists->edge_first[e] += lists->edge_first[e - 1];
+    for (size_t t = 2; t < mesh->tri_count + 2; t++)
+        lists->tri_first[t] += lists->tri_first[t - 1];
+    for (size_t i = 0; i < attach->item_count; i++) {
+        const struct attach_item *item = &attach->items[i];
+        if (item->a != TRIMESH_NONE)
+            lists->by_edge[lists->edge_first[edge_table_find(&lists->edges, item->a, item->b) + 1]++] = *item;
+        else
+            lists->by_tri[lists->tri_first[item->tri + 1]++] = item->point;
+    }
+    for (size_t e = 0; e < lists->edges.count; e++)
+        qsort(lists->by_edge + lists->edge_first[e], lists->edge_first[e + 1] - lists->edge_first[e], sizeof(*lists->by_edge), by_t);
+}
+
+static void lists_finish(struct lists *lists)
+{
+    edge_table_finish(&lists->edges);
+    mem_free(lists->edge_first);
+    mem_free(lists->tri_first);
+    mem_free(lists->by_edge);
+    mem_free(lists->by_tri);
+}
+
+struct piece { /* one triangle on the way to being cut up: local points, in its plane */
+    uint32_t *ids;
+    double (*at)[2];
+    uint32_t (*tris)[3];
+    size_t count, capacity, at_capacity, tri_count, tri_capacity;
+};
+
+static uint32_t piece_point(struct piece *piece, uint32_t id, double x, double y)
+{
+    mem_grow(&piece->ids, &piece->capacity, piece->count + 1, sizeof(*piece->ids));
+    mem_grow(&piece->at, &piece->at_capacity, piece->count + 1, sizeof(*piece->at));
+    piece->ids[piece->count] = id;
+    piece->at[piece->count][0] = x;
+    piece->at[piece->count][1] = y;
+    return (uint32_t)piece->count++;
+}
+
+static void piece_tri(struct piece *piece, uint32_t a, uint32_t b, uint32_t c)
+{
+    mem_grow(&piece->tris, &piece->tri_capacity, piece->tri_count + 1, sizeof(*piece->tris));
+    memcpy(piece->tris[piece->tri_count++], (const uint32_t[3]){ a, b, c }, sizeof(*piece->tris));
+}
+
+/* Local points on the side from a to b (global c0 to c1), in that order, without the ends. */
+static size_t side(struct piece *piece, const struct lists *lists, const uint32_t corners[3], uint32_t a, uint32_t b, uint32_t *out)
+{
+    uint32_t e = edge_table_find(&lists->edges, corners[a], corners[b]);
+    size_t count = 0;
+    if (e == TRIMESH_NONE)
+        return 0;
+    uint32_t first = lists->edge_first[e], n = lists->edge_first[e + 1] - first;
+    for (uint32_t i = 0; i < n; i++) {
+        const struct attach_item *item = &lists->by_edge[corners[a] < corners[b] ? first + i : first + n - 1 - i];
+        double t = corners[a] < corners[b] ? item->t : 1 - item->t;
+        if (item->point == corners[0] || item->point == corners[1] || item->point == corners[2])
+            continue;
+        out[count++] = piece_point(piece, item->point, piece->at[a][0] + t * (piece->at[b][0] - piece->at[a][0]),
+                                   piece->at[a][1] + t * (piece->at[b][1] - piece->at[a][1]));
+    }
+    return count;
+}
+
+static double distance2(const struct piece *piece, uint32_t a, uint32_t b)
+{
+    double x = piece->at[a][0] - piece->at[b][0], y = piece->at[a][1] - piece->at[b][1];
+    return x * x + y * y;
+}
+
+/* The chains a-b and a-c-b, with what was set into them, closed like a zip (as trimesh_sample does). */
+static void zip(struct piece *piece, const uint32_t *low, size_t low_count, const uint32_t *high, size_t high_count)
+{
+    size_t i = 1, j = 1;
+    piece_tri(piece, low[0], low[1], high[1]);
+    while (i < low_count - 1 || j < high_count - 2) {
+        bool take_low = i < low_count - 1
+                        && (j == high_count - 2 || distance2(piece, low[i + 1], high[j]) < distance2(piece, low[i], high[j + 1]));
+        if (take_low) {
+            piece_tri(piece, low[i], low[i + 1], high[j]);
+            i++;
+        } else {
+            piece_tri(piece, low[i], high[j + 1], high[j]);
+            j++;
+        }
+    }
+}
+
+static double twice_area(const struct piece *piece, uint32_t a, uint32_t b, uint32_t c)
+{
+    const double *p = piece->at[a], *q = piece->at[b], *r = piece->at[c];
+    return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
+}
+
+/* The sub-triangle that holds a local point: the one whose smallest weight is largest. */
+static size_t locate(const struct piece *piece, uint32_t point, double weights[3])
+{
+    size_t best = 0;
+    double best_weight = -INFINITY;
+    for (size_t t = 0; t < piece->tri_count; t++) {
+        const uint32_t *v = piece->tris[t];
+        double area = twice_area(piece, v[0], v[1], v[2]), w[3];
+        if (!(fabs(area) > 0))
+            continue;
+        for (int i = 0; i < 3; i++)
+            w[i] = twice_area(piece, point, v[(i + 1) % 3], v[(i + 2) % 3]) / area;
+        double least = fmin(w[0], fmin(w[1], w[2]));
+        if (least > best_weight) {
+            best_weight = least;
+            best = t;
+            memcpy(weights, w, sizeof(w));
+        }
+    }
+    return best;
+}
+
+/* Splits every sub-triangle that has the side u-v at the point. */
+static void split_side(struct piece *piece, uint32_t u, uint32_t v, uint32_t point)
+{
+    size_t count = piece->tri_count;
+    for (size_t t = 0; t < count; t++)
+        for (int i = 0; i < 3; i++) {
+            uint32_t a = piece->tris[t][i], b = piece->tris[t][(i + 1) % 3], c = piece->tris[t][(i + 2) % 3];
+            if (!((a == u && b == v) || (a == v && b == u)))
+                continue;
+            memcpy(piece->tris[t], (const uint32_t[3]){ a, point, c }, sizeof(*piece->tris));
+            piece_tri(piece, point, b, c);
+            break;
+        }
+}
+
+static void set_inside(struct piece *piece, uint32_t point)
+{
+    double w[3] = { 0 };
+    size_t t = locate(piece, point, w);
+    uint32_t v[3];
+    memcpy(v, piece->tris[t], sizeof(v));
+    for (int i = 0; i < 3; i++)
+        if (w[i] < ON_EDGE) {
+            split_side(piece, v[(i + 1) % 3], v[(i + 2) % 3], point);
+            return;
+        }
+    memcpy(piece->tris[t], (const uint32_t[3]){ v[0], v[1], point }, sizeof(*piece->tris));
+    piece_tri(piece, v[1], v[2], point);
+    piece_tri(piece, v[2], v[0], point);
+}
+
+static size_t list_chain(struct piece *piece, const struct lists *lists, const uint32_t corners[3], const uint32_t *way, int steps, uint32_t **chain,
+                         size_t *capacity)
+{
+    size_t count = 0, most = 2;
+    for (int s = 0; s < steps; s++) {
+        uint32_t e = edge_table_find(&lists->edges, corners[way[s]], corners[way[s + 1]]);
+        most += e == TRIMESH_NONE ? 1 : lists->edge_first[e + 1] - lists->edge_first[e] + 1;
+    }
+    mem_grow(chain, capacity, most, sizeof(**chain));
+    for (int s = 0; s < steps; s++) {
+        (*chain)[count++] = way[s];
+        count += side(piece, lists, corners, way[s], way[s + 1], *chain + count);
+    }
+    (*chain)[count++] = way[steps];
+    return count;
+}
+
+struct cutter {
+    struct piece piece;
+    uint32_t *low, *high;
+    size_t low_capacity, high_capacity;
+};
+
+static void lay_out(struct piece *piece, const struct trimesh *mesh, const uint32_t corners[3])
+{
+    const double *p = mesh->points[corners[0]], *q = mesh->points[corners[1]], *r = mesh->points[corners[2]];
+    double pq[3], pr[3], n[3], length = vec_distance(p, q);
+    vec_sub(q, p, pq);
+    vec_sub(r, p, pr);
+    vec_cross(pq, pr, n);
+    piece->count = piece->tri_count = 0;
+    piece_point(piece, corners[0], 0, 0);
+    piece_point(piece, corners[1], length, 0);
+    piece_point(piece, corners[2], vec_dot(pq, pr) / length, sqrt(vec_dot(n, n)) / length);
+}
+
+static bool touched(const struct lists *lists, const uint32_t v[3], size_t t)
+{
+    return lists->tri_first[t + 1] > lists->tri_first[t] || edge_table_find(&lists->edges, v[0], v[1]) != TRIMESH_NONE
+           || edge_table_find(&lists->edges, v[1], v[2]) != TRIMESH_NONE || edge_table_find(&lists->edges, v[2], v[0]) != TRIMESH_NONE;
+}
+
+/* A point in the plane of the triangle, from its place in space. */
+static void set_point(struct piece *piece, const struct trimesh *mesh, const uint32_t corners[3], uint32_t id)
+{
+    double w[3];
+    triangle_nearest(mesh->points[id], mesh->points[corners[0]], mesh->points[corners[1]], mesh->points[corners[2]], w);
+    double x = 0, y = 0;
+    for (int i = 0; i < 3; i++) {
+        x += w[i] * piece->at[i][0];
+        y += w[i] * piece->at[i][1];
+    }
+    for (size_t i = 0; i < piece->count; i++)
+        if (piece->ids[i] == id)
+            return; /* it is there already, as a corner or on a side */
+    set_inside(piece, piece_point(piece, id, x, y));
+}
+
+static void cut(struct cutter *cutter, const struct lists *lists, struct trimesh *mesh, size_t t)
+{
+    struct piece *piece = &cutter->piece;
+    uint32_t corners[3], source = mesh->tri_source[t];
+    memcpy(corners, mesh->tris[t], sizeof(corners));
+    lay_out(piece, mesh, corners);
+    uint32_t a = 0; /* the longest side begins at a */
+    for (uint32_t i = 1; i < 3; i++)
+        if (distance2(piece, i, (i + 1) % 3) > distance2(piece, a, (a + 1) % 3))
+            a = i;
+    uint32_t b = (a + 1) % 3, c = (a + 2) % 3;
+    size_t low = list_chain(piece, lists, corners, (const uint32_t[2]){ a, b }, 1, &cutter->low, &cutter->low_capacity);
+    size_t high = list_chain(piece, lists, corners, (const uint32_t[3]){ a, c, b }, 2, &cutter->high, &cutter->high_capacity);
+    zip(piece, cutter->low, low, cutter->high, high);
+    for (uint32_t i = lists->tri_first[t]; i < lists->tri_first[t + 1]; i++)
+        set_point(piece, mesh, corners, lists->by_tri[i]);
+    for (size_t i = 0; i < piece->tri_count; i++) {
+        const uint32_t *v = piece->tris[i];
+        if (i == 0)
+            memcpy(mesh->tris[t], (const uint32_t[3]){ piece->ids[v[0]], piece->ids[v[1]], piece->ids[v[2]] }, sizeof(*mesh->tris));
+        else
+            trimesh_add_tri(mesh, piece->ids[v[0]], piece->ids[v[1]], piece->ids[v[2]], source);
+    }
+}
+
+void attach_apply(const struct attach *attach, struct trimesh *mesh, uint32_t *target)
+{
+    struct lists lists;
+    struct cutter cutter = { 0 };
+    size_t tri_count = mesh->tri_count, dropped = 0, repeated = 0;
+    lists_init(&lists, attach, mesh);
+    for (size_t t = 0; t < tri_count; t++)
+        if (touched(&lists, mesh->tris[t], t))
+            cut(&cutter, &lists, mesh, t);
+    lists_finish(&lists);
+    mem_free(cutter.piece.ids);
+    mem_free(cutter.piece.at);
+    mem_free(cutter.piece.tris);
+    mem_free(cutter.low);
+    mem_free(cutter.high);
+    find_targets(attach, mesh->point_count, target);
+    trimesh_rename(mesh, target, &dropped, &repeated);
+}

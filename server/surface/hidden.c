@@ -1,0 +1,151 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Triangles inside another, closed part, by counting what rays meet. */
+#include "surface/hidden.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "surface/bvh.h"
+#include "surface/vec.h"
+
+#define OPEN_OF_SIZE 0.05 /* open edges together, in roots of the part's area: a hair gap's leftovers, not a pipe's end */
+#define RAYS 5
+#define RAYS_INSIDE 4     /* so many must agree */
+#define HITS 512          /* parts met by one ray that are told apart */
+
+void hidden_closed_parts(const struct trimesh *mesh, const uint32_t *part, size_t parts, char *closed)
+{
+    struct edge_table edges;
+    double *area_m2 = mem_array(parts, sizeof(*area_m2)), *open_m = mem_array(parts, sizeof(*open_m));
+    unsigned char *faces = mem_array(mesh->tri_count * 3, 1);
+    edge_table_init(&edges, mesh->tri_count * 3 / 2);
+    for (size_t t = 0; t < mesh->tri_count; t++) {
+        const uint32_t *v = mesh->tris[t];
+        double ab[3], ac[3], n[3];
+        vec_sub(mesh->points[v[1]], mesh->points[v[0]], ab);
+        vec_sub(mesh->points[v[2]], mesh->points[v[0]], ac);
+        vec_cross(ab, ac, n);
+        area_m2[part[t]] += sqrt(vec_dot(n, n)) / 2;
+        for (int i = 0; i < 3; i++) {
+            uint32_t e = edge_table_add(&edges, v[i], v[(i + 1) % 3]);
+            faces[e] = (unsigned char)(faces[e] < 2 ? faces[e] + 1 : 2);
+        }
+    }
+    for (size_t t = 0; t < mesh->tri_count; t++)
+        for (int i = 0; i < 3; i++) {
+            const uint32_t a = mesh->tris[t][i], b = mesh->tris[t][(i + 1) % 3];
+            if (faces[edge_table_find(&edges, a, b)] == 1)
+                open_m[part[t]] += vec_distance(mesh->points[a], mesh->points[b]);
+        }
+    for (size_t p = 0; p < parts; p++)
+        closed[p] = open_m[p] <= OPEN_OF_SIZE * sqrt(area_m2[p]);
+    edge_table_finish(&edges);
+    mem_free(area_m2);
+    mem_free(open_m);
+    mem_free(faces);
+}
+
+struct search {
+    const struct trimesh *mesh, *solid;
+    const uint32_t *part, *solid_part;
+    const char *closed;
+    const struct bvh *bvh;
+    double tolerance_m;
+    char *hidden;
+};
+
+struct hits { /* parts that a ray met, each with how often modulo 2 */
+    const struct search *search;
+    uint32_t own, parts[HITS];
+    unsigned char odd[HITS];
+    size_t count;
+};
+
+static void count_hit(void *arg, uint32_t tri, double t)
+{
+    struct hits *hits = arg;
+    uint32_t part = hits->search->solid_part[tri];
+    (void)t;
+    if (part == hits->own || !hits->search->closed[part])
+        return;
+    for (size_t i = 0; i < hits->count; i++)
+        if (hits->parts[i] == part) {
+            hits->odd[i] ^= 1;
+            return;
+        }
+    if (hits->count < HITS) {
+        hits->parts[hits->count] = part;
+        hits->odd[hits->count++] = 1;
+    }
+}
+
+/* Directions that no model is aligned to. */
+static const double directions[RAYS][3] = {
+    { 0.3572, 0.6129, 0.7048 }, { -0.7741, 0.2417, 0.5851 }, { 0.1693, -0.8846, 0.4345 }, { -0.4419, -0.3251, -0.8361 }, { 0.8523, 0.2951, -0.4318 },
+};
+
+struct only_part {
+    const uint32_t *solid_part;
+    uint32_t part;
+};
+
+static bool of_part(const void *arg, uint32_t tri)
+{
+    const struct only_part *only = arg;
+    return only->solid_part[tri] == only->part;
+}
+
+/* Is the place on the part's surface rather than inside? */
+static bool on_surface(const struct search *s, const double place[3], uint32_t part)
+{
+    struct bvh_place at;
+    struct only_part only = { s->solid_part, part };
+    bvh_nearest(s->bvh, place, s->tolerance_m, of_part, &only, &at);
+    return at.tri != TRIMESH_NONE;
+}
+
+static bool is_hidden(const struct search *s, const double place[3], uint32_t own)
+{
+    struct hits hits = { .search = s, .own = own };
+    bvh_ray(s->bvh, place, directions[0], count_hit, &hits);
+    for (size_t i = 0; i < hits.count; i++) {
+        int inside = hits.odd[i];
+        if (!inside) /* one ray of five may err, the first too; but a part met an even number of times is rarely one we are inside */
+            continue;
+        for (int r = 1; r < RAYS; r++) {
+            struct hits more = { .search = s, .own = own };
+            bvh_ray(s->bvh, place, directions[r], count_hit, &more);
+            for (size_t j = 0; j < more.count; j++)
+                inside += more.parts[j] == hits.parts[i] && more.odd[j];
+        }
+        if (inside >= RAYS_INSIDE && !on_surface(s, place, hits.parts[i]))
+            return true;
+    }
+    return false;
+}
+
+static void search_some(void *arg, size_t begin, size_t end)
+{
+    struct search *s = arg;
+    for (size_t t = begin; t < end; t++) {
+        const uint32_t *v = s->mesh->tris[t];
+        double middle[3];
+        for (int axis = 0; axis < 3; axis++)
+            middle[axis] = (s->mesh->points[v[0]][axis] + s->mesh->points[v[1]][axis] + s->mesh->points[v[2]][axis]) / 3;
+        s->hidden[t] = is_hidden(s, middle, s->part[t]);
+    }
+}
+
+void hidden_find(const struct trimesh *mesh, const uint32_t *part, const struct trimesh *solid, const uint32_t *solid_part, const char *closed,
+                 double tolerance_m, struct workers *workers, char *hidden)
+{
+    struct bvh *bvh = bvh_create(solid);
+    struct search search = { .mesh = mesh, .solid = solid, .part = part, .solid_part = solid_part, .closed = closed, .bvh = bvh,
+                             .tolerance_m = tolerance_m, .hidden = hidden };
+    if (workers)
+        workers_for(workers, mesh->tri_count, 1024, search_some, &search);
+    else
+        search_some(&search, 0, mesh->tri_count);
+    bvh_destroy(&bvh);
+}

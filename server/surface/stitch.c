@@ -1,0 +1,362 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Bridging what is broken: seams along open edges, and parts that touch or cross. */
+#include "surface/stitch.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "surface/attach.h"
+#include "surface/bvh.h"
+#include "surface/cloud.h"
+#include "surface/vec.h"
+
+#define GAP_OF_EDGE 0.45 /* two points become one only if they are nearer than this share of the shortest edge at either */
+#define AT_END 1e-3      /* this near to an end of an edge, as a share of its length, it is the end */
+
+/* --- open edges ------------------------------------------------------------------------------------------------------------ */
+
+struct borders {
+    uint32_t (*edges)[2], *edge_tri; /* open edges and their one triangle */
+    size_t edge_count;
+    uint32_t *points;                /* points on them */
+    size_t point_count;
+    uint32_t *slot;                  /* point -> place in points, or TRIMESH_NONE */
+    double *shortest_m;              /* of each point in points: the shortest edge of any triangle at it */
+    uint32_t *first, *at;            /* open edges at each point in points */
+};
+
+static void borders_finish(struct borders *b)
+{
+    mem_free(b->edges);
+    mem_free(b->edge_tri);
+    mem_free(b->points);
+    mem_free(b->slot);
+    mem_free(b->shortest_m);
+    mem_free(b->first);
+    mem_free(b->at);
+}
+
+static void find_open_edges(struct borders *b, const struct trimesh *mesh)
+{
+    struct edge_table edges;
+    edge_table_init(&edges, mesh->tri_count * 3 / 2);
+    unsigned char *faces = mem_array(mesh->tri_count * 3, 1);
+    for (size_t t = 0; t < mesh->tri_count; t++)
+        for (int i = 0; i < 3; i++) {
+            uint32_t e = edge_table_add(&edges, mesh->tris[t][i], mesh->tris[t][(i + 1) % 3]);
+            faces[e] = (unsigned char)(faces[e] < 2 ? faces[e] + 1 : 2);
+        }
+    for (size_t e = 0; e < edges.count; e++)
+        b->edge_count += faces[e] == 1;
+    b->edges = mem_array(b->edge_count, sizeof(*b->edges));
+    b->edge_tri = mem_array(b->edge_count, sizeof(*b->edge_tri));
+    size_t n = 0;
+    for (uint32_t t = 0; t < mesh->tri_count; t++)
+        for (int i = 0; i < 3; i++) {
+            uint32_t p = mesh->tris[t][i], q = mesh->tris[t][(i + 1) % 3];
+            if (faces[edge_table_find(&edges, p, q)] != 1)
+                continue;
+            b->edges[n][0] = p;
+            b->edges[n][1] = q;
+            b->edge_tri[n++] = t;
+        }
+    mem_free(faces);
+    edge_table_finish(&edges);
+}
+
+static void find_border_points(struct borders *b, const struct trimesh *mesh)
+{
+    b->slot = mem_array(mesh->point_count, sizeof(*b->slot));
+    b->points = mem_array(2 * b->edge_count, sizeof(*b->points));
+    memset(b->slot, 0xff, mesh->point_count * sizeof(*b->slot));
+    for (size_t e = 0; e < b->edge_count; e++)
+        for (int i = 0; i < 2; i++) {
+            uint32_t p = b->edges[e][i];
+            if (b->slot[p] == TRIMESH_NONE) {
+                b->slot[p] = (uint32_t)b->point_count;
+                b->points[b->point_count++] = p;
+            }
+        }
+    b->shortest_m = mem_array(b->point_count, sizeof(*b->shortest_m));
+    for (size_t i = 0; i < b->point_count; i++)
+        b->shortest_m[i] = INFINITY;
+    for (size_t t = 0; t < mesh->tri_count; t++)
+        for (int i = 0; i < 3; i++)
+            for (int j = 0; j < 3; j++) {
+                uint32_t s = b->slot[mesh->tris[t][i]];
+                if (i != j && s != TRIMESH_NONE)
+                    b->shortest_m[s] = fmin(b->shortest_m[s], vec_distance(mesh->points[mesh->tris[t][i]], mesh->points[mesh->tris[t][j]]));
+            }
+}
+
+static void find_edges_at(struct borders *b)
+{
+    b->first = mem_array(b->point_count + 2, sizeof(*b->first));
+    b->at = mem_array(2 * b->edge_count, sizeof(*b->at));
+    for (size_t e = 0; e < b->edge_count; e++)
+        for (int i = 0; i < 2; i++)
+            b->first[b->slot[b->edges[e][i]] + 2]++;
+    for (size_t i = 2; i < b->point_count + 2; i++)
+        b->first[i] += b->first[i - 1];
+    for (uint32_t e = 0; e < b->edge_count; e++)
+        for (int i = 0; i < 2; i++)
+            b->at[b->first[b->slot[b->edges[e][i]] + 1]++] = e;
+}
+
+static void borders_init(struct borders *b, const struct trimesh *mesh)
+{
+    *b = (struct borders){ 0 };
+    find_open_edges(b, mesh);
+    find_border_points(b, mesh);
+    find_edges_at(b);
+}
+
+/* --- seams: one round joins points, the next sets points into edges ---------------------------------------------------------- */
+
+struct seams {
+    const struct trimesh *mesh;
+    const struct borders *borders;
+    struct attach *attach;
+    double tolerance_m;
+    struct nearest { /* of each border point: the best place found on an open edge that is not its own */
+        double distance_m, t;
+        uint32_t edge;
+    } *nearest;
+};
+
+static void join_near(void *arg, size_t i, size_t j, double distance_m)
+{
+    struct seams *s = arg;
+    const struct borders *b = s->borders;
+    if (i < j && distance_m < GAP_OF_EDGE * fmin(b->shortest_m[i], b->shortest_m[j]))
+        attach_points(s->attach, b->points[i], b->points[j], distance_m);
+}
+
+static bool tri_has(const struct trimesh *mesh, uint32_t tri, uint32_t point)
+{
+    return mesh->tris[tri][0] == point || mesh->tris[tri][1] == point || mesh->tris[tri][2] == point;
+}
+
+static void try_edge(struct seams *s, size_t i, uint32_t e)
+{
+    const struct borders *b = s->borders;
+    uint32_t p = b->points[i], u = b->edges[e][0], v = b->edges[e][1];
+    if (tri_has(s->mesh, b->edge_tri[e], p))
+        return;
+    const double *a = s->mesh->points[u], *c = s->mesh->points[v], *q = s->mesh->points[p];
+    double ac[3], aq[3], at[3], length2;
+    vec_sub(c, a, ac);
+    vec_sub(q, a, aq);
+    length2 = vec_dot(ac, ac);
+    double t = length2 > 0 ? vec_dot(aq, ac) / length2 : 0;
+    if (t <= AT_END || t >= 1 - AT_END)
+        return;
+    vec_mix(a, c, t, at);
+    double distance_m = vec_distance(at, q);
+    if (distance_m <= s->tolerance_m && distance_m < s->nearest[i].distance_m)
+        s->nearest[i] = (struct nearest){ .distance_m = distance_m, .t = t, .edge = e };
+}
+
+struct edge_search {
+    struct seams *seams;
+    size_t point;
+};
+
+static void visit_border_tri(void *arg, uint32_t tri)
+{
+    struct edge_search *search = arg;
+    const struct borders *b = search->seams->borders;
+    for (int i = 0; i < 3; i++) {
+        uint32_t s = b->slot[search->seams->mesh->tris[tri][i]];
+        for (uint32_t n = s == TRIMESH_NONE ? 0 : b->first[s]; s != TRIMESH_NONE && n < b->first[s + 1]; n++)
+            if (b->edge_tri[b->at[n]] == tri)
+                try_edge(search->seams, search->point, b->at[n]);
+    }
+}
+
+static void set_into_edges(struct seams *s)
+{
+    const struct borders *b = s->borders;
+    struct bvh *bvh = bvh_create(s->mesh);
+    s->nearest = mem_array(b->point_count, sizeof(*s->nearest));
+    for (size_t i = 0; i < b->point_count; i++) {
+        struct edge_search search = { .seams = s, .point = i };
+        const double *p = s->mesh->points[b->points[i]];
+        s->nearest[i].distance_m = INFINITY;
+        bvh_overlaps(bvh, p, p, s->tolerance_m, visit_border_tri, &search);
+        const struct nearest *n = &s->nearest[i];
+        if (n->distance_m < INFINITY)
+            attach_to_edge(s->attach, b->points[i], b->edges[n->edge][0], b->edges[n->edge][1], n->t, n->distance_m);
+    }
+    bvh_destroy(&bvh);
+    mem_free(s->nearest);
+}
+
+static void compose(uint32_t *target, size_t count, const uint32_t *then)
+{
+    for (size_t i = 0; i < count; i++)
+        target[i] = then[target[i]];
+}
+
+/* Applies what was collected, and counts it. */
+static void carry_out(struct attach *attach, struct trimesh *mesh, uint32_t *target, size_t target_count, struct stitch_report *report)
+{
+    uint32_t *then = mem_array(mesh->point_count, sizeof(*then));
+    report->bridges += attach->item_count + attach->pair_count;
+    report->longest_m = fmax(report->longest_m, attach->longest_m);
+    if (attach->item_count + attach->pair_count) {
+        attach_apply(attach, mesh, then);
+        compose(target, target_count, then);
+    }
+    attach_finish(attach);
+    mem_free(then);
+}
+
+void stitch_seams(struct trimesh *mesh, double tolerance_m, uint32_t *target, struct stitch_report *report)
+{
+    size_t target_count = mesh->point_count;
+    for (uint32_t i = 0; i < target_count; i++)
+        target[i] = i;
+    for (int round = 0; round < 2; round++) {
+        struct borders borders;
+        struct attach attach;
+        struct seams seams = { .mesh = mesh, .borders = &borders, .attach = &attach, .tolerance_m = tolerance_m };
+        borders_init(&borders, mesh);
+        attach_init(&attach);
+        if (round == 0) {
+            double (*cloud)[3] = mem_array(borders.point_count, sizeof(*cloud));
+            for (size_t i = 0; i < borders.point_count; i++)
+                memcpy(cloud[i], mesh->points[borders.points[i]], sizeof(*cloud));
+            report->k = cloud_near((const double (*)[3])cloud, borders.point_count, tolerance_m, join_near, &seams);
+            mem_free(cloud);
+        } else {
+            set_into_edges(&seams);
+        }
+        borders_finish(&borders);
+        carry_out(&attach, mesh, target, target_count, report);
+    }
+}
+
+/* --- parts that touch or cross ------------------------------------------------------------------------------------------------ */
+
+struct contacts {
+    struct trimesh *mesh;
+    const uint32_t *part;
+    const struct bvh *bvh;
+    struct attach *attach;
+    double tolerance_m;
+    uint32_t own_part;   /* of the edge or point in hand */
+    uint32_t edge[2];
+    struct crossing { uint32_t tri, a, b; double t, weights[3]; } *crossings;
+    size_t crossing_count, crossing_capacity;
+};
+
+static void visit_crossed(void *arg, uint32_t tri)
+{
+    struct contacts *c = arg;
+    const uint32_t *v = c->mesh->tris[tri];
+    double t, w[3];
+    if (c->part[tri] == c->own_part)
+        return;
+    const double *p = c->mesh->points[c->edge[0]], *q = c->mesh->points[c->edge[1]];
+    if (!triangle_crossed(p, q, c->mesh->points[v[0]], c->mesh->points[v[1]], c->mesh->points[v[2]], &t, w))
+        return;
+    double length = vec_distance(p, q);
+    if (t * length < c->tolerance_m || (1 - t) * length < c->tolerance_m)
+        return; /* the end of the edge touches; that is found by points */
+    mem_grow(&c->crossings, &c->crossing_capacity, c->crossing_count + 1, sizeof(*c->crossings));
+    struct crossing *found = &c->crossings[c->crossing_count++];
+    *found = (struct crossing){ .tri = tri, .a = c->edge[0], .b = c->edge[1], .t = t };
+    memcpy(found->weights, w, sizeof(w));
+}
+
+/* Sets a point into the face tri at the place with these weights: into the side it is on, or made one with the corner it is at. */
+static void set_into_face(const struct contacts *c, uint32_t point, uint32_t tri, const double w[3], double distance_m)
+{
+    const uint32_t *v = c->mesh->tris[tri];
+    for (int i = 0; i < 3; i++)
+        if (w[i] > 1 - AT_END) {
+            attach_points(c->attach, point, v[i], distance_m);
+            return;
+        }
+    for (int i = 0; i < 3; i++)
+        if (w[i] < AT_END) {
+            uint32_t a = v[(i + 1) % 3], b = v[(i + 2) % 3];
+            attach_to_edge(c->attach, point, a, b, w[(i + 2) % 3] / (w[(i + 1) % 3] + w[(i + 2) % 3]), distance_m);
+            return;
+        }
+    attach_to_tri(c->attach, point, tri, distance_m);
+}
+
+static void find_crossings(struct contacts *c)
+{
+    struct edge_table edges;
+    edge_table_init(&edges, c->mesh->tri_count * 3 / 2);
+    for (uint32_t t = 0; t < c->mesh->tri_count; t++)
+        for (int i = 0; i < 3; i++) {
+            size_t before = edges.count;
+            c->edge[0] = c->mesh->tris[t][i];
+            c->edge[1] = c->mesh->tris[t][(i + 1) % 3];
+            edge_table_add(&edges, c->edge[0], c->edge[1]);
+            if (edges.count == before)
+                continue;
+            double low[3], high[3];
+            const double *p = c->mesh->points[c->edge[0]], *q = c->mesh->points[c->edge[1]];
+            for (int axis = 0; axis < 3; axis++) {
+                low[axis] = fmin(p[axis], q[axis]);
+                high[axis] = fmax(p[axis], q[axis]);
+            }
+            c->own_part = c->part[t];
+            bvh_overlaps(c->bvh, low, high, 0, visit_crossed, c);
+        }
+    edge_table_finish(&edges);
+    for (size_t i = 0; i < c->crossing_count; i++) { /* points are added only now: the search above looks at the array they are in */
+        const struct crossing *x = &c->crossings[i];
+        double place[3];
+        vec_mix(c->mesh->points[x->a], c->mesh->points[x->b], x->t, place);
+        uint32_t point = trimesh_add_point(c->mesh, place);
+        attach_to_edge(c->attach, point, x->a, x->b, x->t, 0);
+        set_into_face(c, point, x->tri, x->weights, 0);
+    }
+    mem_free(c->crossings);
+}
+
+static bool other_part(const void *arg, uint32_t tri)
+{
+    const struct contacts *c = arg;
+    return c->part[tri] != c->own_part;
+}
+
+static void find_touches(struct contacts *c)
+{
+    char *seen = mem_array(c->mesh->point_count, 1);
+    for (uint32_t t = 0; t < c->mesh->tri_count; t++)
+        for (int i = 0; i < 3; i++) {
+            uint32_t p = c->mesh->tris[t][i];
+            struct bvh_place place;
+            if (seen[p])
+                continue;
+            seen[p] = 1;
+            c->own_part = c->part[t];
+            bvh_nearest(c->bvh, c->mesh->points[p], c->tolerance_m, other_part, c, &place);
+            if (place.tri != TRIMESH_NONE && !tri_has(c->mesh, place.tri, p))
+                set_into_face(c, p, place.tri, place.weights, place.distance_m);
+        }
+    mem_free(seen);
+}
+
+void stitch_parts(struct trimesh *mesh, const uint32_t *part, double tolerance_m, uint32_t *target, struct stitch_report *report)
+{
+    struct attach attach;
+    struct bvh *bvh = bvh_create(mesh);
+    struct contacts contacts = { .mesh = mesh, .part = part, .bvh = bvh, .attach = &attach, .tolerance_m = tolerance_m };
+    size_t target_count = mesh->point_count;
+    attach_init(&attach);
+    for (uint32_t i = 0; i < target_count; i++)
+        target[i] = i;
+    find_touches(&contacts);
+    find_crossings(&contacts);
+    bvh_destroy(&bvh);
+    carry_out(&attach, mesh, target, target_count, report);
+}

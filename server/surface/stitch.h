@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Bridging what is broken, within one tolerance. */
+#ifndef SURFACE_STITCH_H
+#define SURFACE_STITCH_H
+#include "surface/trimesh.h"
+
+struct stitch_report {
+    size_t bridges;
+    double longest_m;
+    int k; /* neighbours asked of the point cloud; -1: out of memory */
+};
+
+/* Seams: points on open edges become one with other points on open edges (unwelded vertices), or are set into open edges (hanging vertices,
+   hair gaps). The candidates come from the cloud of border points. Points closer to each other along an edge of theirs than 2.2 times the
+   gap are left alone, so that nothing small collapses. target[point] (of mesh->point_count before): what it has become. */
+void stitch_seams(struct trimesh *mesh, double tolerance_m, uint32_t *target, struct stitch_report *report);
+
+/* Contacts between parts (part[tri]): where an edge of one passes through a face of another, a point is set into both; where a point lies
+   within the tolerance of another part's surface, it is set into that. */
+void stitch_parts(struct trimesh *mesh, const uint32_t *part, double tolerance_m, uint32_t *target, struct stitch_report *report);
+
+#endif
