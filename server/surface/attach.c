@@ -28,20 +28,22 @@ void attach_points(struct attach *attach, uint32_t a, uint32_t b, double distanc
 {
     mem_grow(&attach->pairs, &attach->pair_capacity, attach->pair_count + 1, sizeof(*attach->pairs));
     attach->pairs[attach->pair_count++] = (struct attach_pair){ a, b };
-    attach->longest_m = fmax(attach->longest_m, distance_m);
+    attach->longest_m = max_of(attach->longest_m, distance_m);
 }
 
 static void add_item(struct attach *attach, struct attach_item item, double distance_m)
 {
     mem_grow(&attach->items, &attach->item_capacity, attach->item_count + 1, sizeof(*attach->items));
     attach->items[attach->item_count++] = item;
-    attach->longest_m = fmax(attach->longest_m, distance_m);
+    attach->longest_m = max_of(attach->longest_m, distance_m);
 }
 
 void attach_to_edge(struct attach *attach, uint32_t point, uint32_t a, uint32_t b, double t, double distance_m)
 {
     bool swap = a > b;
-    add_item(attach, (struct attach_item){ .point = point, .a = swap ? b : a, .b = swap ? a : b, .tri = TRIMESH_NONE, .t = swap ? 1 - t : t }, distance_m);
+    add_item(attach,
+             (struct attach_item){ .point = point, .a = swap ? b : a, .b = swap ? a : b, .tri = TRIMESH_NONE, .t = swap ? 1 - t : t },
+             distance_m);
 }
 
 void attach_to_tri(struct attach *attach, uint32_t point, uint32_t tri, double distance_m)
@@ -180,8 +182,8 @@ static void zip(struct piece *piece, const uint32_t *low, size_t low_count, cons
     size_t i = 1, j = 1;
     piece_tri(piece, low[0], low[1], high[1]);
     while (i < low_count - 1 || j < high_count - 2) {
-        bool take_low = i < low_count - 1
-                        && (j == high_count - 2 || distance2(piece, low[i + 1], high[j]) < distance2(piece, low[i], high[j + 1]));
+        bool take_low =
+            i < low_count - 1 && (j == high_count - 2 || distance2(piece, low[i + 1], high[j]) < distance2(piece, low[i], high[j + 1]));
         if (take_low) {
             piece_tri(piece, low[i], low[i + 1], high[j]);
             i++;
@@ -210,7 +212,7 @@ static size_t locate(const struct piece *piece, uint32_t point, double weights[3
             continue;
         for (int i = 0; i < 3; i++)
             w[i] = twice_area(piece, point, v[(i + 1) % 3], v[(i + 2) % 3]) / area;
-        double least = fmin(w[0], fmin(w[1], w[2]));
+        double least = min_of(w[0], min_of(w[1], w[2]));
         if (least > best_weight) {
             best_weight = least;
             best = t;
@@ -251,8 +253,8 @@ static void set_inside(struct piece *piece, uint32_t point)
     piece_tri(piece, v[2], v[0], point);
 }
 
-static size_t list_chain(struct piece *piece, const struct lists *lists, const uint32_t corners[3], const uint32_t *way, int steps, uint32_t **chain,
-                         size_t *capacity)
+static size_t list_chain(struct piece *piece, const struct lists *lists, const uint32_t corners[3], const uint32_t *way, int steps,
+                         uint32_t **chain, size_t *capacity)
 {
     size_t count = 0, most = 2;
     for (int s = 0; s < steps; s++) {
@@ -289,8 +291,8 @@ static void lay_out(struct piece *piece, const struct trimesh *mesh, const uint3
 
 static bool touched(const struct lists *lists, const uint32_t v[3], size_t t)
 {
-    return lists->tri_first[t + 1] > lists->tri_first[t] || edge_table_find(&lists->edges, v[0], v[1]) != TRIMESH_NONE
-           || edge_table_find(&lists->edges, v[1], v[2]) != TRIMESH_NONE || edge_table_find(&lists->edges, v[2], v[0]) != TRIMESH_NONE;
+    return lists->tri_first[t + 1] > lists->tri_first[t] || edge_table_find(&lists->edges, v[0], v[1]) != TRIMESH_NONE ||
+           edge_table_find(&lists->edges, v[1], v[2]) != TRIMESH_NONE || edge_table_find(&lists->edges, v[2], v[0]) != TRIMESH_NONE;
 }
 
 /* A point in the plane of the triangle, from its place in space. */

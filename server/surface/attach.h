@@ -8,8 +8,10 @@ struct attach {
     struct attach_item { /* point set into the edge a-b, at share t of the way from a; or into triangle tri (a = TRIMESH_NONE) */
         uint32_t point, a, b, tri;
         double t;
-    } *items;
-    struct attach_pair { uint32_t a, b; } *pairs; /* points that are one */
+    } * items;
+    struct attach_pair {
+        uint32_t a, b;
+    } * pairs; /* points that are one */
     size_t item_count, item_capacity, pair_count, pair_capacity;
     double longest_m;
 };

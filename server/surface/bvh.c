@@ -33,8 +33,8 @@ static void box_of(const struct bvh *bvh, uint32_t first, uint32_t count, double
         for (int corner = 0; corner < 3; corner++) {
             const double *p = bvh->mesh->points[bvh->mesh->tris[bvh->order[i]][corner]];
             for (int axis = 0; axis < 3; axis++) {
-                low[axis] = fmin(low[axis], p[axis]);
-                high[axis] = fmax(high[axis], p[axis]);
+                low[axis] = min_of(low[axis], p[axis]);
+                high[axis] = max_of(high[axis], p[axis]);
             }
         }
 }
@@ -127,7 +127,7 @@ static void weights_on_edge(const double p[3], const double a[3], const double b
     vec_sub(b, a, ab);
     vec_sub(p, a, ap);
     double length2 = vec_dot(ab, ab), t = length2 > 0 ? vec_dot(ap, ab) / length2 : 0;
-    *wb = fmin(fmax(t, 0), 1);
+    *wb = min_of(max_of(t, 0), 1);
     *wa = 1 - *wb;
 }
 
@@ -166,7 +166,7 @@ static double box_distance2(const struct node *node, const double p[3])
 {
     double sum = 0;
     for (int axis = 0; axis < 3; axis++) {
-        double d = fmax(fmax(node->low[axis] - p[axis], p[axis] - node->high[axis]), 0);
+        double d = max_of(max_of(node->low[axis] - p[axis], p[axis] - node->high[axis]), 0);
         sum += d * d;
     }
     return sum;
@@ -244,7 +244,8 @@ void bvh_overlaps(const struct bvh *bvh, const double low[3], const double high[
 }
 
 /* Moeller & Trumbore 1997. t in lengths of direction, unbounded. */
-static bool line_meets(const double p[3], const double direction[3], const double a[3], const double b[3], const double c[3], double *t, double weights[3])
+static bool line_meets(const double p[3], const double direction[3], const double a[3], const double b[3], const double c[3], double *t,
+                       double weights[3])
 {
     double ab[3], ac[3], ap[3], h[3], q[3];
     vec_sub(b, a, ab);
@@ -262,7 +263,8 @@ static bool line_meets(const double p[3], const double direction[3], const doubl
     return weights[0] >= 0 && weights[1] >= 0 && weights[2] >= 0;
 }
 
-bool triangle_crossed(const double p[3], const double q[3], const double a[3], const double b[3], const double c[3], double *t, double weights[3])
+bool triangle_crossed(const double p[3], const double q[3], const double a[3], const double b[3], const double c[3], double *t,
+                      double weights[3])
 {
     double direction[3];
     vec_sub(q, p, direction);
@@ -274,13 +276,14 @@ static bool box_meets_ray(const struct node *node, const double origin[3], const
     double near = 0, far = INFINITY;
     for (int axis = 0; axis < 3; axis++) {
         double t0 = (node->low[axis] - origin[axis]) * inverse[axis], t1 = (node->high[axis] - origin[axis]) * inverse[axis];
-        near = fmax(near, fmin(t0, t1));
-        far = fmin(far, fmax(t0, t1));
+        near = max_of(near, min_of(t0, t1));
+        far = min_of(far, max_of(t0, t1));
     }
     return near <= far;
 }
 
-void bvh_ray(const struct bvh *bvh, const double origin[3], const double direction[3], void (*visit)(void *arg, uint32_t tri, double t), void *arg)
+void bvh_ray(const struct bvh *bvh, const double origin[3], const double direction[3], void (*visit)(void *arg, uint32_t tri, double t),
+             void *arg)
 {
     uint32_t stack[STACK_NODES];
     int depth = 0;
@@ -295,7 +298,8 @@ void bvh_ray(const struct bvh *bvh, const double origin[3], const double directi
         for (uint32_t i = node->first; i < node->first + node->count; i++) {
             const uint32_t *v = bvh->mesh->tris[bvh->order[i]];
             double t, weights[3];
-            if (line_meets(origin, direction, bvh->mesh->points[v[0]], bvh->mesh->points[v[1]], bvh->mesh->points[v[2]], &t, weights) && t > 0)
+            if (line_meets(origin, direction, bvh->mesh->points[v[0]], bvh->mesh->points[v[1]], bvh->mesh->points[v[2]], &t, weights) &&
+                t > 0)
                 visit(arg, bvh->order[i], t);
         }
         if (!node->count) {

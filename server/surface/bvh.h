@@ -24,11 +24,13 @@ void bvh_nearest(const struct bvh *bvh, const double point[3], double limit_m, b
 void bvh_overlaps(const struct bvh *bvh, const double low[3], const double high[3], double margin_m, void (*visit)(void *arg, uint32_t tri),
                   void *arg);
 
-/* Calls visit(arg, tri, t) for every triangle that the ray from origin along direction meets, at origin + t direction, t > 0; in no order. */
-void bvh_ray(const struct bvh *bvh, const double origin[3], const double direction[3], void (*visit)(void *arg, uint32_t tri, double t), void *arg);
+/* Calls visit(arg, tri, t) for every triangle that the ray from origin along direction meets, at origin + t direction, t > 0. No order. */
+void bvh_ray(const struct bvh *bvh, const double origin[3], const double direction[3], void (*visit)(void *arg, uint32_t tri, double t),
+             void *arg);
 
 /* Where the line from p to q passes through the triangle: its share of the way (0..1) and the weights of the corners. False: nowhere. */
-bool triangle_crossed(const double p[3], const double q[3], const double a[3], const double b[3], const double c[3], double *t, double weights[3]);
+bool triangle_crossed(const double p[3], const double q[3], const double a[3], const double b[3], const double c[3], double *t,
+                      double weights[3]);
 
 /* The place of the triangle nearest to a point, as weights of its corners. */
 void triangle_nearest(const double p[3], const double a[3], const double b[3], const double c[3], double weights[3]);

@@ -32,7 +32,8 @@ struct round {
 
 static bool ask(struct round *round, flann_index_t index, struct FLANNParameters *params, int k, bool last)
 {
-    float *asked = mem_try_array(round->count * 3, sizeof(*asked)), *distances2 = mem_try_array(round->count * (size_t)k, sizeof(*distances2));
+    float *asked = mem_try_array(round->count * 3, sizeof(*asked)),
+          *distances2 = mem_try_array(round->count * (size_t)k, sizeof(*distances2));
     int *found = mem_try_array(round->count * (size_t)k, sizeof(*found));
     bool good = asked && distances2 && found;
     size_t kept = 0;
@@ -47,8 +48,11 @@ static bool ask(struct round *round, flann_index_t index, struct FLANNParameters
         }
         for (int j = 0; j < k; j++) {
             int other = found[i * (size_t)k + (size_t)j];
-            double distance_m = other < 0 ? INFINITY : hypot(hypot(round->points[point][0] - round->points[other][0], round->points[point][1] - round->points[other][1]),
-                                                             round->points[point][2] - round->points[other][2]);
+            double distance_m =
+                other < 0
+                    ? INFINITY
+                    : hypot(hypot(round->points[point][0] - round->points[other][0], round->points[point][1] - round->points[other][1]),
+                            round->points[point][2] - round->points[other][2]);
             if (other >= 0 && (size_t)other != point && distance_m <= round->radius_m)
                 round->visit(round->arg, point, (size_t)other, distance_m);
         }
@@ -60,8 +64,8 @@ static bool ask(struct round *round, flann_index_t index, struct FLANNParameters
     return good;
 }
 
-int cloud_near(const double (*points)[3], size_t count, double radius_m, void (*visit)(void *arg, size_t point, size_t other, double distance_m),
-               void *arg)
+int cloud_near(const double (*points)[3], size_t count, double radius_m,
+               void (*visit)(void *arg, size_t point, size_t other, double distance_m), void *arg)
 {
     struct FLANNParameters params = DEFAULT_FLANN_PARAMETERS;
     struct round round = { .points = points, .count = count, .radius_m = radius_m, .visit = visit, .arg = arg };

@@ -9,7 +9,7 @@
    asked for, doubles until every point's farthest neighbour lies beyond the radius (or there are no more, or k is CLOUD_MAX_K); it is
    returned. -1: out of memory. Thread: any. */
 #define CLOUD_MAX_K 256
-int cloud_near(const double (*points)[3], size_t count, double radius_m, void (*visit)(void *arg, size_t point, size_t other, double distance_m),
-               void *arg);
+int cloud_near(const double (*points)[3], size_t count, double radius_m,
+               void (*visit)(void *arg, size_t point, size_t other, double distance_m), void *arg);
 
 #endif

@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "surface/vec.h"
 
 /* L alone is singular on every piece of surface; this much of M, in shares of the piece's area, moves distances by a millionth. */
 #define REGULARISATION 1e-6
@@ -55,7 +56,7 @@ static void measure(struct heat *heat)
     for (size_t t = 0; t < in->tri_count; t++) {
         double x, y, a = in->lengths[t][0];
         intrinsic_layout(in->lengths[t], &x, &y);
-        y = fmax(y, 1e-6 * a); /* a triangle that rounding made flat */
+        y = max_of(y, 1e-6 * a); /* a triangle that rounding made flat */
         heat->slopes[t] = (struct slope){ .x1 = 1 / a, .y1 = -x / (a * y), .y2 = 1 / y, .area = a * y / 2 };
         for (int i = 0; i < 3; i++)
             heat->mass_m2[heat->row_of[in->points[t][i]]] += a * y / 6;
@@ -175,7 +176,7 @@ static void flow(const struct heat *heat, double *u, double *b)
     const struct intrinsic *in = heat->in;
     memset(b, 0, heat->row_count * sizeof(*b));
     for (size_t i = 0; i < heat->row_count; i++)
-        u[i] = -log(fmax(u[i], DBL_MIN)); /* Varadhan: distance over the root of t */
+        u[i] = -log(max_of(u[i], DBL_MIN)); /* Varadhan: distance over the root of t */
     for (size_t t = 0; t < in->tri_count; t++) {
         const struct slope *s = &heat->slopes[t];
         const uint32_t r0 = heat->row_of[in->points[t][0]], r1 = heat->row_of[in->points[t][1]], r2 = heat->row_of[in->points[t][2]];

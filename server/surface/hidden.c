@@ -11,8 +11,9 @@
 
 #define OPEN_OF_SIZE 0.05 /* open edges together, in roots of the part's area: a hair gap's leftovers, not a pipe's end */
 #define RAYS 5
-#define RAYS_INSIDE 4     /* so many must agree */
-#define HITS 512          /* parts met by one ray that are told apart */
+#define RAYS_INSIDE 4 /* so many must agree */
+#define VOTES 5       /* triangles asked of each region */
+#define HITS 512      /* parts met by one ray that are told apart */
 
 void hidden_closed_parts(const struct trimesh *mesh, const uint32_t *part, size_t parts, char *closed)
 {
@@ -52,6 +53,7 @@ struct search {
     const char *closed;
     const struct bvh *bvh;
     double tolerance_m;
+    const size_t *asked; /* triangles to look at */
     char *hidden;
 };
 
@@ -82,7 +84,8 @@ static void count_hit(void *arg, uint32_t tri, double t)
 
 /* Directions that no model is aligned to. */
 static const double directions[RAYS][3] = {
-    { 0.3572, 0.6129, 0.7048 }, { -0.7741, 0.2417, 0.5851 }, { 0.1693, -0.8846, 0.4345 }, { -0.4419, -0.3251, -0.8361 }, { 0.8523, 0.2951, -0.4318 },
+    { 0.3572, 0.6129, 0.7048 },    { -0.7741, 0.2417, 0.5851 }, { 0.1693, -0.8846, 0.4345 },
+    { -0.4419, -0.3251, -0.8361 }, { 0.8523, 0.2951, -0.4318 },
 };
 
 struct only_part {
@@ -125,27 +128,121 @@ static bool is_hidden(const struct search *s, const double place[3], uint32_t ow
     return false;
 }
 
+static bool tri_is_hidden(const struct search *s, size_t t)
+{
+    const uint32_t *v = s->mesh->tris[t];
+    double middle[3];
+    for (int axis = 0; axis < 3; axis++)
+        middle[axis] = (s->mesh->points[v[0]][axis] + s->mesh->points[v[1]][axis] + s->mesh->points[v[2]][axis]) / 3;
+    return is_hidden(s, middle, s->part[t]);
+}
+
 static void search_some(void *arg, size_t begin, size_t end)
 {
     struct search *s = arg;
-    for (size_t t = begin; t < end; t++) {
-        const uint32_t *v = s->mesh->tris[t];
-        double middle[3];
-        for (int axis = 0; axis < 3; axis++)
-            middle[axis] = (s->mesh->points[v[0]][axis] + s->mesh->points[v[1]][axis] + s->mesh->points[v[2]][axis]) / 3;
-        s->hidden[t] = is_hidden(s, middle, s->part[t]);
-    }
+    for (size_t i = begin; i < end; i++)
+        s->hidden[s->asked[i]] = tri_is_hidden(s, s->asked[i]);
 }
 
-void hidden_find(const struct trimesh *mesh, const uint32_t *part, const struct trimesh *solid, const uint32_t *solid_part, const char *closed,
-                 double tolerance_m, struct workers *workers, char *hidden)
+/* --- regions ------------------------------------------------------------------------------------------------------------------ */
+
+/* Of each point the one part whose triangles meet there, or TRIMESH_NONE: parts meet. A part passes from outside to inside only there. */
+static uint32_t *parts_of_points(const struct trimesh *mesh, const uint32_t *part, char *mixed)
+{
+    uint32_t *of_point = mem_array(mesh->point_count, sizeof(*of_point));
+    memset(of_point, 0xff, mesh->point_count * sizeof(*of_point));
+    for (size_t t = 0; t < mesh->tri_count; t++)
+        for (int i = 0; i < 3; i++) {
+            uint32_t p = mesh->tris[t][i];
+            mixed[p] = mixed[p] || (of_point[p] != TRIMESH_NONE && of_point[p] != part[t]);
+            of_point[p] = part[t];
+        }
+    return of_point;
+}
+
+static uint32_t root_of(uint32_t *parent, uint32_t i)
+{
+    while (parent[i] != i) {
+        parent[i] = parent[parent[i]];
+        i = parent[i];
+    }
+    return i;
+}
+
+/* region[point]: points that hang together without passing a point where parts meet. */
+static uint32_t *find_regions(const struct trimesh *mesh, const char *mixed)
+{
+    uint32_t *region = mem_array(mesh->point_count, sizeof(*region));
+    for (uint32_t i = 0; i < mesh->point_count; i++)
+        region[i] = i;
+    for (size_t t = 0; t < mesh->tri_count; t++)
+        for (int i = 0; i < 3; i++) {
+            uint32_t a = mesh->tris[t][i], b = mesh->tris[t][(i + 1) % 3];
+            if (!mixed[a] && !mixed[b])
+                region[root_of(region, a)] = root_of(region, b);
+        }
+    for (uint32_t i = 0; i < mesh->point_count; i++)
+        region[i] = root_of(region, i);
+    return region;
+}
+
+/* The region that a triangle belongs to, TRIMESH_NONE: all its corners are where parts meet. */
+static uint32_t region_of(const struct trimesh *mesh, size_t t, const char *mixed, const uint32_t *region)
+{
+    for (int i = 0; i < 3; i++)
+        if (!mixed[mesh->tris[t][i]])
+            return region[mesh->tris[t][i]];
+    return TRIMESH_NONE;
+}
+
+static bool untouched(const struct trimesh *mesh, size_t t, const char *mixed)
+{
+    return !mixed[mesh->tris[t][0]] && !mixed[mesh->tris[t][1]] && !mixed[mesh->tris[t][2]];
+}
+
+void hidden_find(const struct trimesh *mesh, const uint32_t *part, const struct trimesh *solid, const uint32_t *solid_part,
+                 const char *closed, double tolerance_m, struct workers *workers, char *hidden)
 {
     struct bvh *bvh = bvh_create(solid);
-    struct search search = { .mesh = mesh, .solid = solid, .part = part, .solid_part = solid_part, .closed = closed, .bvh = bvh,
-                             .tolerance_m = tolerance_m, .hidden = hidden };
+    char *mixed = mem_array(mesh->point_count, 1);
+    uint32_t *of_point = parts_of_points(mesh, part, mixed), *region = find_regions(mesh, mixed);
+    size_t *asked = mem_array(mesh->tri_count, sizeof(*asked)), asked_count = 0;
+    struct vote {
+        unsigned asked, hidden;
+    } *votes = mem_array(mesh->point_count, sizeof(*votes));
+    for (size_t t = 0; t < mesh->tri_count; t++) {
+        uint32_t r = region_of(mesh, t, mixed, region);
+        if (untouched(mesh, t, mixed) && votes[r].asked >= VOTES)
+            continue;
+        if (r != TRIMESH_NONE && untouched(mesh, t, mixed))
+            votes[r].asked++;
+        asked[asked_count++] = t;
+    }
+    struct search search = { .mesh = mesh,
+                             .solid = solid,
+                             .part = part,
+                             .solid_part = solid_part,
+                             .closed = closed,
+                             .bvh = bvh,
+                             .tolerance_m = tolerance_m,
+                             .asked = asked,
+                             .hidden = hidden };
     if (workers)
-        workers_for(workers, mesh->tri_count, 1024, search_some, &search);
+        workers_for(workers, asked_count, 256, search_some, &search);
     else
-        search_some(&search, 0, mesh->tri_count);
+        search_some(&search, 0, asked_count);
+    for (size_t i = 0; i < asked_count; i++)
+        if (untouched(mesh, asked[i], mixed))
+            votes[region_of(mesh, asked[i], mixed, region)].hidden += (unsigned)hidden[asked[i]];
+    for (size_t t = 0; t < mesh->tri_count; t++)
+        if (untouched(mesh, t, mixed)) {
+            const struct vote *vote = &votes[region_of(mesh, t, mixed, region)];
+            hidden[t] = 2 * vote->hidden > vote->asked;
+        }
     bvh_destroy(&bvh);
+    mem_free(mixed);
+    mem_free(of_point);
+    mem_free(region);
+    mem_free(asked);
+    mem_free(votes);
 }

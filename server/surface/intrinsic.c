@@ -111,14 +111,14 @@ void intrinsic_layout(const double lengths[3], double *x, double *y)
 {
     double a = lengths[0], b = lengths[1], c = lengths[2]; /* corners 0-1, 1-2, 2-0 */
     *x = (a * a + c * c - b * b) / (2 * a);
-    *y = sqrt(fmax(c * c - *x * *x, 0));
+    *y = sqrt(max_of(c * c - *x * *x, 0));
 }
 
 static double cotangent_opposite(const double lengths[3], int side)
 {
     double a = lengths[side], b = lengths[(side + 1) % 3], c = lengths[(side + 2) % 3], s = (a + b + c) / 2;
     double area2 = 4 * s * (s - a) * (s - b) * (s - c); /* (2 area)^2 */
-    return (b * b + c * c - a * a) / (2 * sqrt(fmax(area2, 1e-300)));
+    return (b * b + c * c - a * a) / (2 * sqrt(max_of(area2, 1e-300)));
 }
 
 /* Flips the edge between two triangles of one patch. False: it cannot be (both sides of one triangle, or not convex). */
@@ -131,8 +131,8 @@ static bool flip(struct intrinsic *in, uint32_t t, int i)
     /* t = (p, q, r) with side pq; u = (q, p, s). */
     const double *lt = in->lengths[t], *lu = in->lengths[u];
     double pq = lt[i], qr = lt[(i + 1) % 3], rp = lt[(i + 2) % 3], ps = lu[(j + 1) % 3], sq = lu[(j + 2) % 3];
-    double rx = (pq * pq + rp * rp - qr * qr) / (2 * pq), ry = sqrt(fmax(rp * rp - rx * rx, 0));
-    double sx = (pq * pq + ps * ps - sq * sq) / (2 * pq), sy = -sqrt(fmax(ps * ps - sx * sx, 0));
+    double rx = (pq * pq + rp * rp - qr * qr) / (2 * pq), ry = sqrt(max_of(rp * rp - rx * rx, 0));
+    double sx = (pq * pq + ps * ps - sq * sq) / (2 * pq), sy = -sqrt(max_of(ps * ps - sx * sx, 0));
     double cut = ry - sy > 0 ? rx + (sx - rx) * ry / (ry - sy) : -1; /* where the new edge crosses the old one */
     if (cut <= 0 || cut >= pq)
         return false;
@@ -175,7 +175,7 @@ static void mollify(struct intrinsic *in)
     double margin = MOLLIFY * sum / (3.0 * (double)in->tri_count);
     for (size_t t = 0; t < in->tri_count; t++)
         for (int i = 0; i < 3; i++)
-            lack = fmax(lack, margin + in->lengths[t][i] - in->lengths[t][(i + 1) % 3] - in->lengths[t][(i + 2) % 3]);
+            lack = max_of(lack, margin + in->lengths[t][i] - in->lengths[t][(i + 1) % 3] - in->lengths[t][(i + 2) % 3]);
     for (size_t t = 0; t < in->tri_count; t++)
         for (int i = 0; i < 3; i++)
             in->lengths[t][i] += lack;

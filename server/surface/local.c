@@ -91,7 +91,7 @@ static void offer(struct local_walk *walk, uint32_t point, double distance_m)
 /* The distance of c when a and b, on one edge with it, have theirs: the source is laid out in the triangle's plane. */
 static double unfold(double da, double db, double ab, double ac, double bc)
 {
-    double along_edges = fmin(da + ac, db + bc);
+    double along_edges = min_of(da + ac, db + bc);
     double sx = (da * da - db * db + ab * ab) / (2 * ab), sy2 = da * da - sx * sx;
     double cx = (ac * ac - bc * bc + ab * ab) / (2 * ab), cy2 = ac * ac - cx * cx;
     if (sy2 < 0 || cy2 <= 0)

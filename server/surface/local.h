@@ -8,7 +8,7 @@ struct local { /* which triangles meet at a point; shared by all walks */
     const struct trimesh *mesh;
     size_t visible_count; /* the first so many triangles are outside; the others are hidden inside another part */
     uint32_t *first, *tris;
-    char *hidden;         /* of each point: it has no visible triangle */
+    char *hidden; /* of each point: it has no visible triangle */
 };
 /* Walks go over visible triangles; from there on into hidden ones, so that a triangle that passes through a surface has a distance at its
    hidden end too, but never back. mesh must outlive it. */

@@ -19,11 +19,11 @@
 struct borders {
     uint32_t (*edges)[2], *edge_tri; /* open edges and their one triangle */
     size_t edge_count;
-    uint32_t *points;                /* points on them */
+    uint32_t *points; /* points on them */
     size_t point_count;
-    uint32_t *slot;                  /* point -> place in points, or TRIMESH_NONE */
-    double *shortest_m;              /* of each point in points: the shortest edge of any triangle at it */
-    uint32_t *first, *at;            /* open edges at each point in points */
+    uint32_t *slot;       /* point -> place in points, or TRIMESH_NONE */
+    double *shortest_m;   /* of each point in points: the shortest edge of any triangle at it */
+    uint32_t *first, *at; /* open edges at each point in points */
 };
 
 static void borders_finish(struct borders *b)
@@ -86,7 +86,8 @@ static void find_border_points(struct borders *b, const struct trimesh *mesh)
             for (int j = 0; j < 3; j++) {
                 uint32_t s = b->slot[mesh->tris[t][i]];
                 if (i != j && s != TRIMESH_NONE)
-                    b->shortest_m[s] = fmin(b->shortest_m[s], vec_distance(mesh->points[mesh->tris[t][i]], mesh->points[mesh->tris[t][j]]));
+                    b->shortest_m[s] =
+                        min_of(b->shortest_m[s], vec_distance(mesh->points[mesh->tris[t][i]], mesh->points[mesh->tris[t][j]]));
             }
 }
 
@@ -122,14 +123,14 @@ struct seams {
     struct nearest { /* of each border point: the best place found on an open edge that is not its own */
         double distance_m, t;
         uint32_t edge;
-    } *nearest;
+    } * nearest;
 };
 
 static void join_near(void *arg, size_t i, size_t j, double distance_m)
 {
     struct seams *s = arg;
     const struct borders *b = s->borders;
-    if (i < j && distance_m < GAP_OF_EDGE * fmin(b->shortest_m[i], b->shortest_m[j]))
+    if (i < j && distance_m < GAP_OF_EDGE * min_of(b->shortest_m[i], b->shortest_m[j]))
         attach_points(s->attach, b->points[i], b->points[j], distance_m);
 }
 
@@ -200,11 +201,12 @@ static void compose(uint32_t *target, size_t count, const uint32_t *then)
 }
 
 /* Applies what was collected, and counts it. */
-static void carry_out(struct attach *attach, struct trimesh *mesh, uint32_t *target, size_t target_count, struct stitch_report *report)
+static void carry_out(struct attach *attach, struct trimesh *mesh, uint32_t *target, size_t target_count, size_t crossings,
+                      struct stitch_report *report)
 {
     uint32_t *then = mem_array(mesh->point_count, sizeof(*then));
-    report->bridges += attach->item_count + attach->pair_count;
-    report->longest_m = fmax(report->longest_m, attach->longest_m);
+    report->bridges += attach->item_count + attach->pair_count - crossings; /* a crossing is set into both parts, and is one */
+    report->longest_m = max_of(report->longest_m, attach->longest_m);
     if (attach->item_count + attach->pair_count) {
         attach_apply(attach, mesh, then);
         compose(target, target_count, then);
@@ -225,16 +227,16 @@ void stitch_seams(struct trimesh *mesh, double tolerance_m, uint32_t *target, st
         borders_init(&borders, mesh);
         attach_init(&attach);
         if (round == 0) {
-            double (*cloud)[3] = mem_array(borders.point_count, sizeof(*cloud));
+            double(*cloud)[3] = mem_array(borders.point_count, sizeof(*cloud));
             for (size_t i = 0; i < borders.point_count; i++)
                 memcpy(cloud[i], mesh->points[borders.points[i]], sizeof(*cloud));
-            report->k = cloud_near((const double (*)[3])cloud, borders.point_count, tolerance_m, join_near, &seams);
+            report->k = cloud_near((const double(*)[3])cloud, borders.point_count, tolerance_m, join_near, &seams);
             mem_free(cloud);
         } else {
             set_into_edges(&seams);
         }
         borders_finish(&borders);
-        carry_out(&attach, mesh, target, target_count, report);
+        carry_out(&attach, mesh, target, target_count, 0, report);
     }
 }
 
@@ -246,9 +248,12 @@ struct contacts {
     const struct bvh *bvh;
     struct attach *attach;
     double tolerance_m;
-    uint32_t own_part;   /* of the edge or point in hand */
+    uint32_t own_part; /* of the edge or point in hand */
     uint32_t edge[2];
-    struct crossing { uint32_t tri, a, b; double t, weights[3]; } *crossings;
+    struct crossing {
+        uint32_t tri, a, b;
+        double t, weights[3];
+    } * crossings;
     size_t crossing_count, crossing_capacity;
 };
 
@@ -304,8 +309,8 @@ static void find_crossings(struct contacts *c)
             double low[3], high[3];
             const double *p = c->mesh->points[c->edge[0]], *q = c->mesh->points[c->edge[1]];
             for (int axis = 0; axis < 3; axis++) {
-                low[axis] = fmin(p[axis], q[axis]);
-                high[axis] = fmax(p[axis], q[axis]);
+                low[axis] = min_of(p[axis], q[axis]);
+                high[axis] = max_of(p[axis], q[axis]);
             }
             c->own_part = c->part[t];
             bvh_overlaps(c->bvh, low, high, 0, visit_crossed, c);
@@ -358,5 +363,5 @@ void stitch_parts(struct trimesh *mesh, const uint32_t *part, double tolerance_m
     find_touches(&contacts);
     find_crossings(&contacts);
     bvh_destroy(&bvh);
-    carry_out(&attach, mesh, target, target_count, report);
+    carry_out(&attach, mesh, target, target_count, contacts.crossing_count, report);
 }

@@ -53,8 +53,8 @@ static double size_of(const float (*positions)[3], const uint32_t *triangles, si
     double low[3] = { INFINITY, INFINITY, INFINITY }, high[3] = { -INFINITY, -INFINITY, -INFINITY };
     for (size_t i = 0; i < 3 * triangle_count; i++)
         for (int axis = 0; axis < 3; axis++) {
-            low[axis] = fmin(low[axis], (double)positions[triangles[i]][axis]);
-            high[axis] = fmax(high[axis], (double)positions[triangles[i]][axis]);
+            low[axis] = min_of(low[axis], (double)positions[triangles[i]][axis]);
+            high[axis] = max_of(high[axis], (double)positions[triangles[i]][axis]);
         }
     return vec_distance(low, high);
 }
@@ -123,7 +123,7 @@ static void follow(struct surface *surface, const uint32_t *target)
 static void note_bridges(struct surface_report *report, const struct stitch_report *made)
 {
     report->bridges += made->bridges;
-    report->longest_bridge_m = fmax(report->longest_bridge_m, made->longest_m);
+    report->longest_bridge_m = max_of(report->longest_bridge_m, made->longest_m);
     report->k = report->k > made->k ? report->k : made->k;
 }
 
@@ -167,7 +167,7 @@ static void copy_mesh(struct trimesh *to, const struct trimesh *from)
     memcpy(to->tris, from->tris, from->tri_count * sizeof(*to->tris));
 }
 
-struct parts {                   /* as they were before they were cut up and joined */
+struct parts { /* as they were before they were cut up and joined */
     struct trimesh solid;
     uint32_t *of_tri, *of_source; /* of the solid's triangles; of the model's */
     char *closed;
@@ -246,7 +246,7 @@ static void join_parts(struct surface *surface, const struct parts *parts)
 static void sample(struct surface *surface)
 {
     struct surface_report *report = &surface->report;
-    double wanted = fmax(SAMPLES, (double)surface->mesh.point_count);
+    double wanted = max_of(SAMPLES, (double)surface->mesh.point_count);
     if (report->spacing_m <= 0)
         report->spacing_m = sqrt(POINTS_PER_SPACING * trimesh_area(&surface->mesh) / wanted);
     size_t before = surface->mesh.point_count;
@@ -266,7 +266,7 @@ static double reach_of(const struct surface *surface)
     local_from(&surface->local, &walk, best, (const double[3]){ 1, 0, 0 }, INFINITY);
     double reach_m = 0;
     for (size_t i = 0; i < walk.reached_count; i++)
-        reach_m = fmax(reach_m, walk.distance_m[walk.reached[i]]);
+        reach_m = max_of(reach_m, walk.distance_m[walk.reached[i]]);
     local_walk_finish(&walk);
     mem_free(counts);
     return reach_m;
@@ -337,7 +337,7 @@ struct surface *surface_create(struct log *log, struct workers *workers, const f
     find_strays(surface);
     intrinsic_init(&surface->intrinsic, &surface->visible);
     surface->edge_m = mean_edge(&surface->intrinsic);
-    double decay_m = fmax(sqrt(TIME_OF_SPACING) * surface->edge_m, 2 * reach_of(surface) / LONGEST_DECAY);
+    double decay_m = max_of(sqrt(TIME_OF_SPACING) * surface->edge_m, 2 * reach_of(surface) / LONGEST_DECAY);
     report->time_m2 = decay_m * decay_m;
     report->laplacian_s = seconds_since(&since_ns);
     surface->heat = heat_create(log, &surface->intrinsic, surface->component, report->time_m2);
@@ -413,10 +413,10 @@ static double disagreement_of(const struct local *local, const struct local_walk
         double difference_m = walk->distance_m[p] - heat_m[p];
         sum += difference_m;
         squares += difference_m * difference_m;
-        largest_m = fmax(largest_m, walk->distance_m[p]);
+        largest_m = max_of(largest_m, walk->distance_m[p]);
     }
     double mean = sum / count;
-    return largest_m > 0 ? sqrt(fmax(squares / count - mean * mean, 0)) / largest_m : 0;
+    return largest_m > 0 ? sqrt(max_of(squares / count - mean * mean, 0)) / largest_m : 0;
 }
 
 static void finish_source(const struct solve *solve, size_t source, const struct bvh_place *at, struct local_walk *walk,
@@ -477,7 +477,7 @@ bool surface_distances(struct surface *surface, const double (*points_m)[3], siz
         for (size_t i = 0; i < point_count; i += BLOCK_SOURCES)
             solve_block(&solve, i, i + BLOCK_SOURCES < point_count ? i + BLOCK_SOURCES : point_count);
     for (size_t i = 0; i < point_count; i++)
-        surface->report.heat_disagreement = fmax(surface->report.heat_disagreement, solve.disagreement[i]);
+        surface->report.heat_disagreement = max_of(surface->report.heat_disagreement, solve.disagreement[i]);
     mem_free(solve.disagreement);
     if (solve.failed)
         log_err(surface->log, "distances of %zu places to %zu vertices: out of memory", point_count, surface->vertex_count);

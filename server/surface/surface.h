@@ -6,17 +6,17 @@
    heat method runs on that graph. On clean CAD this loses what the mesh knows (neighbours reach through thin walls and across
    narrow slots); on broken CAD it is what still works. So here:
      1. what the mesh knows is kept: vertices at one place are welded, repeated faces dropped (trimesh.h);
-     2. what is broken is bridged: open borders and parts that touch or cross are joined within one tolerance. The candidates come
-        from the point cloud, by kNN (cloud.h, stitch.h, cross.h);
+     2. what is broken is bridged: open borders and parts that touch or cross are joined within one tolerance. Candidates on open
+        borders come from the point cloud, by kNN (cloud.h, stitch.h); what lies inside another closed part leaves (hidden.h);
      3. the surface is sampled evenly: long edges are split until no edge is longer than the spacing (trimesh.h);
      4. the heat method (Crane, Weischedel, Wardetzky 2013) with the cotangent Laplacian of the intrinsic Delaunay triangulation, which
-        has no negative weights inside a patch (intrinsic.h, heat.h). Diffusion time: 3 times the spacing squared, more where the surface is
-        so long that the heat would fall below the smallest number. The gradient is taken of the logarithm of heat: it is nearly
-        linear in a triangle, heat itself is not;
+        has no negative weights inside a patch (intrinsic.h, heat.h). Diffusion time: 3 times the mean edge squared, more where the
+        surface is so long that the heat would fall below the smallest number. The gradient is taken of the logarithm of heat: that
+        is nearly linear in a triangle, heat itself is not;
      5. the heat method still errs by 0.05 to 0.4 % on average and up to 4 % at borders and ridges (measured on planes, spheres and
-        cylinders of 30,000 points; with t = h^2 it is 0.4 % and 3 %). So the distances handed out are unfolded triangle by triangle from the
-        source (local.h): 0.00 to 0.06 %, at most 0.6 %. The heat method is what they are held against: two methods that share nothing but the
-        mesh. Where they differ by more than some percent the report says so.
+        cylinders of 30,000 points; with t = h^2 it is 0.7 % and 3 %). So the distances handed out are unfolded triangle by triangle
+        from the source (local.h): 0.00 to 0.06 %, at most 0.6 %. The heat method is what they are held against: two methods that
+        share nothing but the mesh. Where they differ by more than some percent the report says so.
    Distances are kept at the model's own vertices. */
 #ifndef SURFACE_SURFACE_H
 #define SURFACE_SURFACE_H
@@ -44,8 +44,7 @@ struct surface_report {
     int k;                  /* neighbours asked for; 0: nothing to bridge */
     size_t samples;         /* points added */
     size_t hidden_vertices; /* of the model: inside another closed part */
-    double
-        heat_disagreement; /* root of the mean square difference to the heat method, of the worst source so far, as a share of its largest distance */
+    double heat_disagreement; /* root mean square difference to the heat method, as a share of the largest distance; worst source so far */
     double weld_s, bridge_s, sample_s, laplacian_s, factor_s;
 };
 

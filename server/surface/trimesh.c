@@ -205,7 +205,7 @@ static bool tri_has_area(const struct trimesh *mesh, uint32_t a, uint32_t b, uin
     vec_sub(mesh->points[c], mesh->points[a], ac);
     vec_sub(mesh->points[c], mesh->points[b], bc);
     vec_cross(ab, ac, n);
-    double longest2 = fmax(vec_dot(ab, ab), fmax(vec_dot(ac, ac), vec_dot(bc, bc)));
+    double longest2 = max_of(vec_dot(ab, ab), max_of(vec_dot(ac, ac), vec_dot(bc, bc)));
     return sqrt(vec_dot(n, n)) >
            1e-6 * longest2; /* height over a millionth of the longest edge; else its corner hangs on that edge (stitch.h) */
 }
@@ -399,7 +399,7 @@ static void cut_long_edges(struct trimesh *mesh, double spacing_m, size_t point_
             uint32_t a = mesh->tris[t][i], b = mesh->tris[t][(i + 1) % 3];
             double parts = ceil(sqrt(edge2(mesh, a, b)) / spacing_m);
             if (parts > 1)
-                cut_edge(mesh, &cuts, a, b, (uint32_t)fmin(parts, (double)(point_limit - mesh->point_count) + 2));
+                cut_edge(mesh, &cuts, a, b, (uint32_t)min_of(parts, (double)(point_limit - mesh->point_count) + 2));
         }
     zip_all(mesh, &cuts);
     cuts_finish(&cuts);
