@@ -69,7 +69,8 @@ static void drag_decay(struct bench *bench)
     bench->params.decay = 0.5 + synthetic_random_unit(&bench->random);
 }
 
-static void measure(struct bench *bench, const char *name, void (*change)(struct bench *))
+/* goal_ms 0: none */
+static void measure(struct bench *bench, const char *name, void (*change)(struct bench *), double goal_ms)
 {
     double ms[ROUNDS];
     for (int i = -5; i < ROUNDS; i++) {
@@ -82,14 +83,17 @@ static void measure(struct bench *bench, const char *name, void (*change)(struct
     }
     qsort(ms, ROUNDS, sizeof(*ms), by_size);
     mend_all(bench);
-    printf("{\"name\": \"%s\", \"value\": %.4f, \"p95\": %.4f, \"unit\": \"ms\"}\n", name, ms[ROUNDS / 2], ms[ROUNDS * 95 / 100]);
+    printf("{\"name\": \"%s\", \"value\": %.4f, \"p95\": %.4f, \"unit\": \"ms\"", name, ms[ROUNDS / 2], ms[ROUNDS * 95 / 100]);
+    if (goal_ms > 0)
+        printf(", \"goal\": [\"<=\", %g]", goal_ms);
+    printf("}\n");
     fflush(stdout);
 }
 
-static void measure_named(struct bench *bench, const char *kind, void (*change)(struct bench *))
+static void measure_named(struct bench *bench, const char *kind, void (*change)(struct bench *), double goal_ms)
 {
     char *name = mem_printf("field_%zu_%s_ms", bench->sensors, kind);
-    measure(bench, name, change);
+    measure(bench, name, change, goal_ms);
     mem_free(name);
 }
 
@@ -98,21 +102,21 @@ static void measure_plant(struct workers *workers, size_t sensors)
     struct bench bench = { .plant = synthetic_create(.vertices = VERTICES, .sensors = sensors, .seed = 1), .sensors = sensors };
     bench.field = field_create(workers, &bench.plant->scene);
     field_params_default(&bench.plant->plant, 0, &bench.params);
-    measure_named(&bench, "all_readings", change_all);
-    measure_named(&bench, "one_reading", change_one);
-    measure_named(&bench, "no_reading", change_nothing);
-    measure_named(&bench, "one_quality", change_quality);
+    measure_named(&bench, "all_readings", change_all, 5);
+    measure_named(&bench, "one_reading", change_one, 0.1);
+    measure_named(&bench, "no_reading", change_nothing, 0);
+    measure_named(&bench, "one_quality", change_quality, 0);
     bench.params.distance = DISTANCE_EUCLIDEAN;
-    measure_named(&bench, "euclidean_one_quality", change_quality);
-    measure_named(&bench, "drag_power", drag_power);
+    measure_named(&bench, "euclidean_one_quality", change_quality, 0);
+    measure_named(&bench, "drag_power", drag_power, 0);
     bench.params.interpolation = INTERPOLATION_PAPER;
-    measure_named(&bench, "paper_all_readings", change_all);
-    measure_named(&bench, "paper_one_reading", change_one);
-    measure_named(&bench, "paper_one_quality", change_quality);
-    measure_named(&bench, "paper_drag_decay", drag_decay);
+    measure_named(&bench, "paper_all_readings", change_all, 5);
+    measure_named(&bench, "paper_one_reading", change_one, 0.1);
+    measure_named(&bench, "paper_one_quality", change_quality, 0);
+    measure_named(&bench, "paper_drag_decay", drag_decay, 0);
     field_set_bound(bench.field, 0);
     bench.params.decay = 1;
-    measure_named(&bench, "paper_all_readings_uncached", change_all);
+    measure_named(&bench, "paper_all_readings_uncached", change_all, 0);
     field_destroy(&bench.field);
     synthetic_destroy(&bench.plant);
 }
