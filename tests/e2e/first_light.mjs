@@ -2,7 +2,9 @@
 // From the register of a PLC to the pixels of a browser, and back to life after the daemon died.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
-import { grab, healthKind, markers, openPage, settle, shoot, view, waitForHealth, waitForPicture } from './support/browser.mjs';
+import {
+    grab, healthKind, markers, openPage, settle, shoot, view, waitForChange, waitForHealth, waitForPicture,
+} from './support/browser.mjs';
 import { contrast, countOutside, difference, meanAround } from './support/pixels.mjs';
 import { missing, startPlant } from './support/plant.mjs';
 
@@ -65,16 +67,11 @@ test('one reading changes: the picture changes at its sensor, and nowhere but on
     t.diagnostic(`${one.name} on ${one.asset}: ${one.value} -> ${wanted}`);
 
     await plant.ask(`set ${one.name} ${wanted}`);
-    await page.waitForFunction(([name, value]) => {
-        const { model } = globalThis.plantcast.session;
-        return Math.abs(model.readings[model.tag(name).index].value - value) < 0.5;
-    }, [one.name, wanted], { timeout: 20000 });
-    await page.waitForTimeout(500);
+    await waitForChange(page, one, before, 30);
     await settle(page);
     const change = difference(before, await grab(page));
 
-    const there = meanAround(change, one.x, one.y, 3);
-    assert.ok(there > 40, `at the sensor the colour changed by ${there}`);
+    assert.ok(meanAround(change, one.x, one.y, 2) > 30, `at the sensor the colour changed by ${meanAround(change, one.x, one.y, 2)}`);
     const others = inside.filter((m) => m.asset !== one.asset);
     assert.ok(others.length >= 3, 'other equipment is in sight');
     const box = await assetBox(one.asset);

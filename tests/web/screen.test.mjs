@@ -5,7 +5,7 @@ import { test } from 'node:test';
 import { readAddress, writeAddress } from '../../clients/web/core/address.js';
 import { ageText, decimalsFor, numberText, qualityText, unitText, worst, zoneClock } from '../../clients/web/core/format.js';
 import { nearestMarker, placeLabels } from '../../clients/web/core/labels.js';
-import { colourOf, niceStep, rampChoices, ticks } from '../../clients/web/core/legend.js';
+import { colourOf, niceStep, rampChoices, spread, ticks } from '../../clients/web/core/legend.js';
 import { hatchAt, patternPeriodPx, stippleAt } from '../../clients/web/core/patterns.js';
 import { LatencyMeter, RateMeter } from '../../clients/web/core/meters.js';
 
@@ -55,6 +55,15 @@ test('ticks: round, both ends, none crowding an end', () => {
         assert.ok(list.length >= 3 && list.length <= 8, `${list}`);
         assert.ok(list.every((v, i) => i === 0 || v > list[i - 1]));
     }
+});
+
+test('marks that are close are moved apart, and stay on the bar', () => {
+    const near = (a, b) => a.forEach((x, i) => assert.ok(Math.abs(x - b[i]) < 1e-9, `${a} is not ${b}`));
+    near(spread([0.1, 0.5], 0.1), [0.1, 0.5]);
+    near(spread([0.95, 0.98], 0.1), [0.9, 1]);
+    near(spread([0.5, 0.52, 0.54], 0.1), [0.5, 0.6, 0.7]);
+    near(spread([0.94, 0.96, 0.98], 0.1), [0.8, 0.9, 1]);
+    assert.deepEqual(spread([], 0.1), []);
 });
 
 test('nice steps, and ramps to choose from', () => {

@@ -27,14 +27,37 @@ test('hello states size and codecs, and the view of the address', () => {
     connection.start();
     sockets[0].accept();
     assert.deepEqual(sockets[0].sent, [
-        { type: 'hello', width: 800, height: 600, codecs: ['jpeg', 'png'], camera: WANTED.camera, params: WANTED.params },
+        {
+            type: 'hello', width: 800, height: 600, codecs: ['jpeg', 'png'], camera: { seq: 1, ...WANTED.camera },
+            params: { seq: 1, ...WANTED.params },
+        },
     ]);
+});
+
+test('what it says has the form of the vectors that the server accepts', () => {
+    const shape = (message) => Object.keys(message).sort();
+    const { session, socket } = greeted(WANTED);
+    const full = vector('client/accepted--hello-full.json');
+    delete full.future; // the server ignores what it does not know
+    assert.deepEqual(shape(socket.sent[0]), shape(full));
+    assert.deepEqual(shape(socket.sent[0].camera), shape(full.camera));
+    session.setCamera(orbit(session.camera, 3, 0));
+    session.flush();
+    assert.deepEqual(shape(last(socket.sent)), shape(vector('client/accepted--camera.json')));
+    session.resize({ width: 100, height: 100 });
+    assert.deepEqual(shape(last(socket.sent)), shape(vector('client/accepted--resize.json')));
+    session.setVisible(false);
+    assert.deepEqual(shape(last(socket.sent)), shape(vector('client/accepted--visible.json')));
+    session.drawn({ seq: 1, cameraSeq: 0 }, 1);
+    assert.deepEqual(shape(last(socket.sent)), shape(vector('client/accepted--ack.json')));
 });
 
 test('without a view of its own it takes the plant\'s', () => {
     const { session, socket } = greeted();
     assert.deepEqual(socket.sent[0], { type: 'hello', width: 640, height: 360, codecs: ['jpeg', 'png'] });
     assert.deepEqual(session.camera, welcome.plant.home);
+    session.flush();
+    assert.equal(socket.sent.length, 1, 'the server knows its own home');
     assert.equal(session.params.group, welcome.view.group);
     assert.equal(session.connection.tries, 0);
 });
@@ -58,7 +81,7 @@ test('at most one camera per animation frame, the newest', () => {
     session.flush();
     session.flush();
     assert.equal(socket.sent.length, before + 1);
-    assert.deepEqual(last(socket.sent), { type: 'camera', seq: 1, ...session.camera });
+    assert.deepEqual(last(socket.sent), { type: 'camera', seq: 2, ...session.camera });
     session.setCamera(session.camera);
     session.flush();
     assert.equal(socket.sent.length, before + 1, 'the same camera is no news');
@@ -73,7 +96,7 @@ test('a congested line gets no camera; the newest goes out when it has cleared',
     socket.bufferedAmount = 0;
     session.flush();
     assert.deepEqual(last(socket.sent).eye, session.camera.eye);
-    assert.equal(last(socket.sent).seq, 1);
+    assert.equal(last(socket.sent).seq, 2);
 });
 
 test('after a reconnect the same camera and the same parameters are asked for', () => {
@@ -86,10 +109,10 @@ test('after a reconnect the same camera and the same parameters are asked for', 
     socket.fail();
     clock.advance(500);
     sockets[1].accept();
-    assert.deepEqual(sockets[1].sent[0].camera, camera);
+    assert.deepEqual(sockets[1].sent[0].camera, { seq: 1, ...camera });
     assert.equal(sockets[1].sent[0].params.distance, 'euclidean');
     assert.equal(sockets[1].sent[0].params.ramp_interval, 10);
-    assert.equal(sockets[1].sent[0].params.seq, undefined);
+    assert.equal(sockets[1].sent[0].params.seq, 1);
     assert.equal(sockets[1].sent[0].params.range, undefined, 'what is only the group\'s own may have changed there');
     sockets[1].say({ ...welcome, view: { ...welcome.view, ...params } });
     assert.deepEqual(session.camera, camera);
@@ -141,7 +164,7 @@ test('a drawn frame is acknowledged and measured', () => {
     socket.sayBytes(vectorBytes('frame/jpeg-key.bin').buffer);
     const [name, frame] = last(events);
     assert.equal(name, 'frame');
-    session.drawn({ ...frame, cameraSeq: 1 }, 2.345);
+    session.drawn({ ...frame, cameraSeq: 2 }, 2.345);
     assert.deepEqual(last(socket.sent), { type: 'ack', seq: 1, decode_ms: 2.35 });
     assert.equal(session.latency.median(clock.now()), 40);
     assert.equal(session.picture.payload, null);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The legend: the colours as the server uses them, with units, limits, and the patterns for what is not known.
 import { decimalsFor, numberText, unitText } from '../core/format.js';
-import { colourOf, ticks } from '../core/legend.js';
+import { colourOf, spread, ticks } from '../core/legend.js';
 import { hatchAt, patternPeriodPx, stippleAt } from '../core/patterns.js';
 import { byId, make, setVariable } from './dom.js';
 
@@ -97,11 +97,14 @@ export class Legend {
         return make('div', { class: 'ticks' }, ...ticks(min, max).map((value) => at(make('span', {}, text(value)), value, min, max)));
     }
 
+    // A line at the limit itself, its name beside it.
     limits(min, max, group, text) {
         const inside = Object.entries(group.limits ?? {}).filter(([, value]) => value !== null && value >= min && value <= max);
-        const mark = this.lying.matches ? '▾' : '▸';
-        return make('div', { class: 'limits' },
-            ...inside.map(([name, value]) => at(make('span', { title: `${name} ${text(value)}` }, `${name}${mark}`), value, min, max)));
+        inside.sort((a, b) => a[1] - b[1]);
+        const places = spread(inside.map(([, value]) => (value - min) / (max - min)), this.lying.matches ? 0.085 : 0.06);
+        return make('div', { class: 'limits' }, ...inside.flatMap(([name, value], i) => [
+            at(make('i', {}), value, min, max), at(make('span', { title: `${name} ${text(value)}` }, name), places[i], 0, 1),
+        ]));
     }
 
     // In small, the pattern is drawn no coarser than can be recognised.

@@ -24,6 +24,16 @@ export function ticks(min, max, most = 6) {
 }
 
 
+// Moves places along a bar (0..1, ascending) apart, so that what is written there can be read; none leaves the bar.
+export function spread(places, gap) {
+    const out = [...places];
+    for (let i = 1; i < out.length; i++)
+        out[i] = Math.max(out[i], out[i - 1] + gap);
+    for (let i = out.length - 1, top = 1; i >= 0; i--, top = out[i + 1] - gap)
+        out[i] = Math.min(out[i], top);
+    return out;
+}
+
 // What to offer as ramp intervals: between 4 and 25 steps over the range.
 export function rampChoices(min, max) {
     if (!(max > min))

@@ -29,7 +29,8 @@ export class Session {
         this.visible = true;
         this.unsent = {};        // parameters that were changed while nobody listened
         this.cameraSeq = this.paramsSeq = 0;
-        this.cameraInput = null; // when the newest unsent camera was made
+        this.cameraNews = false; // the server does not know the camera yet
+        this.cameraInput = null; // when a hand made it; latency counts from there
         this.markers = new Map();
         this.serverTime = null;  // { us, at }
         this.freshAt = null;     // when a greeted server last spoke: how old the picture is once it stops
@@ -72,12 +73,14 @@ export class Session {
         this.unsent = {};
         this.markers.clear();
         this.latency.clear();
+        this.cameraSeq = this.paramsSeq = 0;
+        this.greetedCamera = parts.includes('camera') ? this.camera : null;
         const message = { type: 'hello', ...this.size, codecs: CODECS };
-        if (parts.includes('camera') && this.camera)
-            message.camera = this.camera;
+        if (this.greetedCamera)
+            message.camera = { seq: ++this.cameraSeq, ...this.greetedCamera };
         const params = this.carried();
         if (parts.includes('params') && Object.keys(params).length > 0)
-            message.params = params;
+            message.params = { seq: ++this.paramsSeq, ...params };
         this.connection.send(message);
     }
 
@@ -95,6 +98,7 @@ export class Session {
         if (!valid(camera) || same(camera, this.camera))
             return;
         this.camera = camera;
+        this.cameraNews = true;
         this.cameraInput = this.cameraInput ?? inputTime;
         this.emit('camera');
     }
@@ -125,10 +129,11 @@ export class Session {
 
     // Once per animation frame: the newest camera goes out, the ones in between never do.
     flush() {
-        if (this.cameraInput === null || !this.welcomed || this.connection.backlogBytes > MOST_BACKLOG_BYTES)
+        if (!this.cameraNews || !this.welcomed || this.connection.backlogBytes > MOST_BACKLOG_BYTES)
             return;
-        if (this.connection.send({ type: 'camera', seq: ++this.cameraSeq, ...this.camera }))
+        if (this.connection.send({ type: 'camera', seq: ++this.cameraSeq, ...this.camera }) && this.cameraInput !== null)
             this.latency.sent(this.cameraSeq, this.cameraInput);
+        this.cameraNews = false;
         this.cameraInput = null;
     }
 
@@ -164,10 +169,8 @@ export class Session {
         this.confirmed = this.params = pick(message.view, PARAMS);
         if (!this.helloParts.includes('camera') || (before && before.identity !== this.model.identity))
             this.camera = null;
-        if (!this.camera) {
-            this.camera = home(this.model.plant, this.size.width / this.size.height);
-            this.cameraInput = this.now();
-        }
+        this.camera = this.camera ?? home(this.model.plant, this.size.width / this.size.height);
+        this.cameraNews = !same(this.camera, this.greetedCamera ?? this.model.plant.home);
         this.catchUp();
         this.emit('welcome');
         this.emit('params');
@@ -206,7 +209,8 @@ export class Session {
 
     hearError(message) {
         if (message.about === 'hello' && !this.welcomed && this.helloParts.length > 0) {
-            this.hello(this.helloParts.slice(0, -1)); // our view is of another plant, or of another version
+            this.emit('ignored', `our view of before: ${message.text}`); // it is of another plant, or of another version
+            this.hello(this.helloParts.slice(0, -1));
             return;
         }
         if (message.about === 'params' && this.confirmed) {

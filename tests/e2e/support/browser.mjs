@@ -59,6 +59,12 @@ export const settle = (page, quietMs = 1500) => page.waitForFunction((quiet) => 
         session.cameraInput === null && performance.now() - picture.at > quiet;
 }, quietMs, { timeout: 60000, polling: 100 });
 
+// Until the picture at a place is another colour than it was.
+export const waitForChange = (page, { x, y }, { width, rgba }, least) => page.waitForFunction(([px, py, was, step]) => {
+    const now = document.getElementById('picture').getContext('2d').getImageData(px, py, 1, 1).data;
+    return was.some((value, i) => Math.abs(value - now[i]) > step);
+}, [x, y, [...rgba.subarray(4 * (y * width + x), 4 * (y * width + x) + 3)], least], { timeout: 30000, polling: 100 });
+
 // The view as the page would say it: camera and parameters.
 export const view = (page) => page.evaluate(() => {
     const { camera, params } = globalThis.plantcast.session;
