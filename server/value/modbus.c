@@ -77,6 +77,8 @@ static void link_lost(struct modbus_source *modbus, const char *why)
 
 static void unit_is_up(struct modbus_source *modbus, struct unit *unit)
 {
+    if (unit->state == UNIT_DOWN && modbus->replan_ns != INT64_MAX)
+        modbus->replan_ns = 0; /* it may have come back another: what it refused before is asked anew */
     if (unit->state == UNIT_DOWN && modbus->link_up)
         log_info(modbus->log, "source %s: unit %d answers again", modbus->config->id, unit->id);
     unit->state = UNIT_UP;

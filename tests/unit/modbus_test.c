@@ -317,6 +317,27 @@ static void one_bad_register_does_not_lose_the_rest(void **state)
     assert_true(store_link_is_up(s->store, 0));
 }
 
+static void what_was_refused_is_asked_anew_when_the_link_is_back(void **state)
+{
+    struct setup *s = *state;
+    add_registers(s, 20);
+    s->device.bad_register = 7;
+    s->device.bad_code = 2;
+    device_start(&s->device);
+    start(s);
+    expect(s, 7, QUALITY_BAD_CONFIGURATION, 3);
+    device_stop(&s->device);
+    expect(s, 7, QUALITY_BAD_NO_COMMUNICATION, 3);
+    device_start(&s->device);
+    expect(s, 7, QUALITY_BAD_CONFIGURATION, 8);
+    expect(s, 8, QUALITY_GOOD, 3);
+    device_stop(&s->device);
+    expect(s, 7, QUALITY_BAD_NO_COMMUNICATION, 3);
+    s->device.bad_code = 0; /* repaired meanwhile */
+    device_start(&s->device);
+    expect(s, 7, QUALITY_GOOD, 8);
+}
+
 static void exceptions_become_qualities(void **state)
 {
     const struct {
@@ -579,6 +600,7 @@ int main(void)
         modbus_test(reply_sent_twice_does_not_poison),
         modbus_test(reply_to_an_older_request_is_never_taken),
         modbus_test(one_bad_register_does_not_lose_the_rest),
+        modbus_test(what_was_refused_is_asked_anew_when_the_link_is_back),
         modbus_test(exceptions_become_qualities),
         modbus_test(device_failure_is_asked_again),
         modbus_test(busy_is_no_verdict),
