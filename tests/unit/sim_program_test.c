@@ -28,7 +28,7 @@
 static const char plant_text[] = "plant: { name: Test }\n"
                                  "assets: [ { id: V-1, model: none.glb } ]\n"
                                  "groups: [ { id: temperature, unit: °C, min: 0, max: 200 } ]\n"
-                                 "sources: [ { id: plc, type: modbus, host: 127.0.0.1, port: %d, poll_ms: 50, timeout_ms: 300, byte_order: CDAB } ]\n"
+                             X
                                  "tags: sim-test.csv\n";
 static const char tags_text[] =
     "Tag Name,Address,Data Type,Byte Order,Scaling,Raw Low,Raw High,Scaled Low,Scaled High,Negate Value,Sim Value,Sim Loop\n"
@@ -95,7 +95,7 @@ static int exit_status(struct setup *s)
 static int set_up(void **state)
 {
     static struct setup s;
-    s = (struct setup){ .folder = "/tmp/plantcast-sim-XXXXXX", .control_fd = -1 };
+    s = (struct setup){ .folder = "/tmp/plantcast-sim-XX" "XX" "XX", .control_fd = -1 };
     assert_non_null(mkdtemp(s.folder));
     s.port = device_free_port();
     s.control_port = device_free_port();
