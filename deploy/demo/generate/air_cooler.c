@@ -80,7 +80,8 @@ void air_cooler_build(struct site *site, const char *name, struct frame at, doub
 {
     struct item item = item_begin(&site->model, name, at);
     struct item access = item_begin_group(&site->access, name, at);
-    struct mesh *steel = item_part(&access, "walkways", MATERIAL_GALVANISED), *rail = item_part(&access, "handrails", MATERIAL_SAFETY_YELLOW);
+    struct mesh *steel = item_part(&access, "walkways", MATERIAL_GALVANISED);
+    struct mesh *rail = item_part(&access, "handrails", MATERIAL_SAFETY_YELLOW);
     item.necks = item_part(&item, "nozzles", MATERIAL_VESSEL);
     item.flanges = item_part(&item, "flanges", MATERIAL_BOLTING);
     double y = tube_length / 2;

@@ -76,7 +76,8 @@ void knockout_build(struct site *site, const char *name, struct frame at, double
     item_manway(&item, vec(0, -r, skirt + 0.75), vec(0, -1, 0), 0.25, 0.22);
     level_gauge(&item, vec_polar(r, -35, skirt + 1.2), vec_polar(r, -35, skirt + 2.3), vec_polar(1, -35, 0));
     struct item access = item_begin_group(&site->access, name, at);
-    struct mesh *steel = item_part(&access, "platform", MATERIAL_GALVANISED), *rail = item_part(&access, "handrails", MATERIAL_SAFETY_YELLOW);
+    struct mesh *steel = item_part(&access, "platform", MATERIAL_GALVANISED);
+    struct mesh *rail = item_part(&access, "handrails", MATERIAL_SAFETY_YELLOW);
     steel_ring_platform(steel, rail, frame_at(0, 0, top - 0.1), r + 0.03, r + 0.95, 180, 330);
     struct vec foot = vec_polar(r + 1.08, 225, 0);
     steel_ladder(steel, frame_facing(foot, vec(0, 0, 1), vec_polar(1, 135, 0)), top - 0.1);
