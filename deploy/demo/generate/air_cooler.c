@@ -51,6 +51,9 @@ static void fan(struct item *item, double x, double y, double r)
     shape_cylinder(blades, frame_at(x, y, FAN_Z - 0.08), 0.17, 0.16, 20, 0);
     machine_motor(item, frame_facing(vec(x, y, FAN_Z - 0.20), vec(0, 0, -1), vec(0, 1, 0)), 0.16, 0.55, 0.30);
     shape_block(item_part(item, "side frames", MATERIAL_GALVANISED), frame_at(x, y, 0), -r, r, -0.36, -0.28, FAN_Z - 0.62, FAN_Z - 0.48);
+    shape_cylinder(blades, frame_at(x, y, FAN_Z - 0.24), 0.04, 0.2, 10, 0);
+    for (int side = -1; side <= 1; side += 2) /* hangers of the motor beam */
+        shape_block(ring, frame_at(x + side * (r - 0.04), y - 0.32, 0), -0.06, 0.06, -0.05, 0.05, FAN_Z - 0.62, PLENUM_Z);
 }
 
 static void bay(struct item *item, struct item *access, double x, double width, double length)

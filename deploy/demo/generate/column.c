@@ -38,7 +38,7 @@ static void column_shell(struct item *item, const struct column_spec *spec)
     shape_revolve(item_part(item, "shell", MATERIAL_CLADDING), frame_at(0, 0, 0), &profile, 56, 0.26);
     struct mesh *bands = item_part(item, "bands", MATERIAL_STAINLESS);
     for (double z = spec->skirt + 0.5; z < spec->height; z += 1.0)
-        shape_band(bands, frame_at(0, 0, z), spec->r + 0.007, 0.028, 56);
+        shape_band(bands, frame_at(0, 0, z), spec->r, 0.045, 56);
 }
 
 /* item: a group of the access asset */

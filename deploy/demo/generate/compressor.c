@@ -70,7 +70,7 @@ static void compressor_auxiliaries(struct item *item)
         profile_dome(&filter, 0.10, 1.40, 0.06, 4);
         shape_revolve(console, frame_moved(at, 0.5 + i * 0.15, 0.1, 0), &filter, 18, 0);
     }
-    shape_cylinder(steel, frame_facing(vec(-0.5, -1.25, 1.12), vec(1, 0, 0), vec(0, 0, 1)), 0.12, 0.7, 20, 0); /* oil cooler */
+    shape_cylinder(steel, frame_facing(vec(-0.5, -1.25, 1.06), vec(1, 0, 0), vec(0, 0, 1)), 0.12, 0.7, 20, 0); /* oil cooler */
     for (int i = 0; i < 4; i++) {
         double x = -1.75 + 0.95 * i;
         shape_bar(steel, vec(x, -0.80, 0.75), vec(x, -0.80, SHAFT_M - 0.05), 0.02, 8);
@@ -98,8 +98,8 @@ void compressor_build(struct site *site, const char *name, struct frame at)
     compressor_casing(&item);
     compressor_gear(&item);
     compressor_auxiliaries(&item);
-    machine_guard(&item, along_shaft(-0.52), 0.17, 0.46);
-    machine_guard(&item, along_shaft(0.70), 0.17, 0.32);
+    machine_guard(&item, along_shaft(-0.52), 0.17, 0.46, SHAFT_M - DECK_M + 0.01);
+    machine_guard(&item, along_shaft(0.70), 0.17, 0.32, SHAFT_M - DECK_M + 0.01);
     machine_motor(&item, along_shaft(1.04), 0.56, 1.40, SHAFT_M - DECK_M);
     struct mesh *motor = item_part(&item, "motor", MATERIAL_MOTOR);
     shape_block(motor, frame_at(1.62, 0, 0), -0.36, 0.36, -0.42, 0.42, SHAFT_M + 0.48, SHAFT_M + 0.86); /* air-to-air cooler */

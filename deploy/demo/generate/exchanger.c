@@ -60,7 +60,7 @@ static void lugs_and_bands(struct mesh *mesh, const struct exchanger_spec *spec)
     int bands = (int)round(spec->length / 0.55);
     for (int i = 0; i <= bands; i++) {
         double x = -half + BARE_M + 0.08 + (spec->length - 2 * BARE_M - 0.16) * i / bands;
-        shape_band(mesh, along_axis(x, spec->axis_z), spec->r + 0.006, 0.024, spec->sides);
+        shape_band(mesh, along_axis(x, spec->axis_z), spec->r, 0.04, spec->sides);
     }
     struct frame plate = frame_facing(vec(-half * 0.35, -spec->r * 0.94, spec->axis_z + spec->r * 0.34), vec(0, -0.94, 0.34), vec(0, 0, 1));
     shape_block(mesh, plate, -0.09, 0.09, -0.13, 0.13, -0.06, 0.012); /* name plate on its bracket */
@@ -134,7 +134,11 @@ void kettle_build(struct site *site, const char *name, struct frame at)
     item.flanges = item_part(&item, "flanges", MATERIAL_BOLTING);
     double x0 = -body / 2, low_z = axis_z - shift; /* the bundle lies on the bottom line */
     shape_reducer(shell, along_axis(x0 - cone, low_z), small, large, shift, cone, sides, 0.1);
-    shape_tube(shell, along_axis(x0 - cone - bundle + 0.16, low_z), small, small, bundle - 0.16, sides, 0.1);
+    struct profile sleeve = { 0 };
+    profile_edge(&sleeve, small - 0.06, 0);
+    profile_edge(&sleeve, small, 0);
+    profile_edge(&sleeve, small, bundle - 0.16);
+    shape_revolve(shell, along_axis(x0 - cone - bundle + 0.16, low_z), &sleeve, sides, 0.1);
     struct profile profile = { 0 };
     profile_laps(&profile, large, 0, body - 0.05, 0.9);
     profile_smooth(&profile, large, body);
@@ -158,6 +162,6 @@ void kettle_build(struct site *site, const char *name, struct frame at)
         civil_plinth(site, at, i * 1.05 - 0.24, i * 1.05 + 0.24, -0.86, 0.86, base_z);
     }
     for (int i = 0; i < 5; i++)
-        shape_band(item_part(&item, "bands", MATERIAL_STAINLESS), along_axis(x0 + 0.35 + 0.72 * i, axis_z), large + 0.007, 0.024, sides);
+        shape_band(item_part(&item, "bands", MATERIAL_STAINLESS), along_axis(x0 + 0.35 + 0.72 * i, axis_z), large, 0.04, sides);
     item_end(&item);
 }

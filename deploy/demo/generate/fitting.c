@@ -23,7 +23,7 @@ void fitting_flange(struct mesh *mesh, struct frame at, double r)
 {
     double outer = fitting_flange_radius(r), thick = fitting_flange_thickness(r);
     struct profile profile = { 0 };
-    profile_edge(&profile, r, -thick * 2.6);
+    profile_edge(&profile, r * 0.985, -thick * 2.6);
     profile_edge(&profile, r * 1.22, -thick);
     profile_edge(&profile, outer, -thick);
     profile_edge(&profile, outer, -0.002);
@@ -65,7 +65,7 @@ static struct frame nozzle_neck(struct item *item, struct vec surface, struct ve
 {
     struct frame base = frame_facing(surface, dir, vec(0, 0, 1)), face = frame_moved(base, 0, 0, length);
     double inside = 0.35 * r + 0.03;
-    shape_tube(item->necks, frame_moved(base, 0, 0, -inside), r, r, length + inside - fitting_flange_thickness(r) * 2.5, round_sides(r), 0);
+    shape_tube(item->necks, frame_moved(base, 0, 0, -inside), r, r, length + inside - fitting_flange_thickness(r) * 1.5, round_sides(r), 0);
     struct profile pad = { 0 }; /* reinforcing pad, half sunk into the shell */
     profile_edge(&pad, r * 1.5 + 0.02, -inside);
     profile_edge(&pad, r * 1.5 + 0.02, 0.004);
@@ -90,7 +90,7 @@ void item_manway(struct item *item, struct vec surface, struct vec dir, double r
     struct vec side = face.y; /* the handle and the davit on which the cover swings */
     struct vec grip = frame_point(&face, vec(0, 0, thick));
     shape_torus(item->flanges, frame_facing(grip, side, face.x), 0.07, 0.011, 0, 180, 6, 6);
-    struct vec foot = vec_along(face.o, side, fitting_flange_radius(r) + 0.05);
+    struct vec foot = vec_along(face.o, side, fitting_flange_radius(r) + 0.012);
     shape_bar(item->necks, vec_along(foot, face.z, -length * 0.8), vec_along(foot, face.z, thick), 0.02, 8);
 }
 

@@ -36,15 +36,15 @@ void machine_motor(struct item *item, struct frame at, double r, double length, 
     for (int i = -1; i <= 1; i += 2)
         shape_block(body, at, -feet, -r * 0.6, i * r * 0.75 - r * 0.2, i * r * 0.75 + r * 0.2, 0.16 * length, 0.66 * length);
     shape_block(body, at, r * 0.1, r * 0.8, r * 0.8, r * 1.45, 0.30 * length, 0.55 * length); /* terminal box */
-    struct frame eye = frame_facing(frame_point(&at, vec(r * 1.16, 0, length * 0.42)), at.y, at.x);
+    struct frame eye = frame_facing(frame_point(&at, vec(r * 1.08, 0, length * 0.42)), at.y, at.x);
     shape_torus(body, eye, r * 0.14, r * 0.04, 0, 360, 12, 6);
 }
 
-void machine_guard(struct item *item, struct frame at, double r, double length)
+void machine_guard(struct item *item, struct frame at, double r, double length, double down)
 {
     struct mesh *guard = item_part(item, "coupling guard", MATERIAL_SAFETY_YELLOW);
     shape_sector(guard, at, r - 0.006, r, 0, length, -90, 90, 14);
     for (int i = -1; i <= 1; i += 2)
-        shape_block(guard, at, -r * 1.6, 0.0, i * r - 0.003, i * r + 0.003, 0, length);
+        shape_block(guard, at, -down, 0.0, i * r - 0.003, i * r + 0.003, 0, length);
     shape_cylinder(item_part(item, "shaft", MATERIAL_STAINLESS), frame_moved(at, 0, 0, -0.03), r * 0.25, length + 0.06, 12, 0);
 }

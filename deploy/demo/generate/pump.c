@@ -50,7 +50,7 @@ static void pump_bearings(struct item *item)
     shape_revolve(frame, frame_facing(vec(-0.10, 0, SHAFT_M), vec(1, 0, 0), vec(0, 0, 1)), &profile, 32, 0.035);
     shape_block(frame, frame_at(0.05, 0, 0), -0.09, 0.09, -0.07, 0.07, 0.40, SHAFT_M - 0.08);
     shape_cylinder(frame, frame_at(0.05, 0, SHAFT_M + 0.10), 0.018, 0.06, 10, 0);                               /* oil filler */
-    shape_cylinder(item_part(item, "oiler", MATERIAL_STAINLESS), frame_at(0.05, -0.15, SHAFT_M - 0.06), 0.028, 0.09, 12, 0);
+    shape_cylinder(item_part(item, "oiler", MATERIAL_STAINLESS), frame_at(0.05, -0.12, SHAFT_M - 0.06), 0.028, 0.09, 12, 0);
 }
 
 void pump_plinth(struct site *site, struct frame at)
@@ -68,7 +68,7 @@ void pump_build(struct site *site, const char *name, struct frame at)
     shape_block(base, frame_at(0, 0, 0), -0.71, 1.53, -0.39, 0.39, 0.38, 0.40);
     pump_casing(&item);
     pump_bearings(&item);
-    machine_guard(&item, frame_facing(vec(0.245, 0, SHAFT_M), vec(1, 0, 0), vec(0, 0, 1)), 0.13, 0.30);
+    machine_guard(&item, frame_facing(vec(0.245, 0, SHAFT_M), vec(1, 0, 0), vec(0, 0, 1)), 0.13, 0.30, SHAFT_M - 0.39);
     machine_motor(&item, frame_facing(vec(0.57, 0, SHAFT_M), vec(1, 0, 0), vec(0, 0, 1)), 0.235, 0.86, SHAFT_M - 0.40);
     struct frame suction = frame_facing(vec(-0.70, 0, SHAFT_M), vec(-1, 0, 0), vec(0, 0, 1));
     struct frame discharge = frame_facing(vec(-0.32, 0, SHAFT_M + 0.46), vec(0, 0, 1), vec(1, 0, 0));

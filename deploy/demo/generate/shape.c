@@ -206,7 +206,7 @@ void shape_sector(struct mesh *mesh, struct frame at, double r0, double r1, doub
 
 void shape_band(struct mesh *mesh, struct frame at, double r, double width, int sides)
 {
-    shape_tube(mesh, frame_moved(at, 0, 0, -width / 2), r, r, width, sides, 0);
+    shape_tube(mesh, frame_moved(at, 0, 0, -width / 2), r - 0.006, r + 0.010, width, sides, 0);
 }
 
 void shape_bar(struct mesh *mesh, struct vec a, struct vec b, double r, int sides)

@@ -35,7 +35,7 @@ void shape_block(struct mesh *mesh, struct frame at, double x0, double x1, doubl
 /* A block bent around the frame's z. */
 void shape_sector(struct mesh *mesh, struct frame at, double r0, double r1, double z0, double z1, double from_deg, double to_deg,
                   int pieces);
-/* A strap around a cylinder: only its outer face. */
+/* A strap around a cylinder of radius r, laid slanting: one edge under the surface, the other 8 mm above it. */
 void shape_band(struct mesh *mesh, struct frame at, double r, double width, int sides);
 void shape_bar(struct mesh *mesh, struct vec a, struct vec b, double r, int sides); /* open ends */
 /* A convex outline (counter-clockwise, x and y) from z0 to z1, hard edges. */

@@ -150,6 +150,8 @@ static const struct row rows[] = {
     { "TE-354", "L-106", "water pipe", 7.0, 9.9, 4.8, T, false, 36.5, 5, "cooling", "Cooling water return, east" },
     { "TE-355", "L-106", "water pipe", -10.85, -9.0, 1.6, T, false, 36.0, 5, "cooling", "Return from E-104" },
     { "TE-356", "L-106", "water pipe", -7.85, -9.0, 1.6, T, false, 33.0, 5, "cooling", "Return from E-105" },
+    { "TE-357", "L-106", "water pipe", -11.6, -10.2, 0.5, T, false, 25.5, 4, "water", "Supply to E-104" },
+    { "TE-358", "L-106", "water pipe", -8.6, -10.2, 0.5, T, false, 25.5, 4, "water", "Supply to E-105" },
     { "TE-361", "L-107", "cladding", -14.5, 8.0, 6.7, T, true, 179.0, 6, "steam", "Steam header, west" },
     { "TE-362", "L-107", "cladding", 2.0, 8.0, 6.7, T, false, 177.0, 6, "steam", "Steam header, east" },
     { "TE-363", "L-107", "cladding", -17.6, 3.6, 5.8, T, false, 178.0, 6, "steam", "Steam to E-102" },

@@ -65,7 +65,7 @@ static void tank_roof(struct item *item, struct item *access, const struct tank_
         points[i] = vec_polar(spec->r - 0.05, landing + 330.0 * i / 19, BASE_M + spec->height + 0.01);
     steel_handrail(rail, points, 20);
     double peak = BASE_M + spec->height + spec->r * 0.18;
-    shape_cylinder(fittings, frame_at(0, 0, peak - 0.1), 0.11, 0.45, 18, 0);
+    shape_cylinder(fittings, frame_at(0, 0, peak - 0.1), 0.11, 0.58, 18, 0);
     struct profile cap = { 0 };
     profile_edge(&cap, 0.20, peak + 0.32);
     profile_edge(&cap, 0.22, peak + 0.40);
@@ -91,8 +91,11 @@ void tank_build(struct site *site, const char *name, struct frame at, const stru
     item_nozzle(&item, "N1", vec(-spec->r, 0, BASE_M + 0.45), vec(-1, 0, 0), 0.084, 0.25);
     item_nozzle(&item, "N2", vec_polar(spec->r, 120, BASE_M + spec->height - 0.55), vec_polar(1, 120, 0), 0.057, 0.25);
     item_manway(&item, vec_polar(spec->r, 225, BASE_M + 0.75), vec_polar(1, 225, 0), 0.30, 0.25);
-    struct vec low = vec_polar(spec->r + 0.05, 200, BASE_M + 0.6), high = vec_polar(spec->r + 0.05, 200, BASE_M + spec->height - 0.4);
+    struct vec low = vec_polar(spec->r + 0.03, 200, BASE_M + 0.6), high = vec_polar(spec->r + 0.03, 200, BASE_M + spec->height - 0.4);
     struct frame board = frame_facing(low, vec_sub(high, low), vec_polar(1, 200, 0));
-    shape_block(item_part(&item, "level board", MATERIAL_INSTRUMENT), board, 0, 0.02, -0.11, 0.11, 0, vec_length(vec_sub(high, low)));
+    struct mesh *level = item_part(&item, "level board", MATERIAL_INSTRUMENT);
+    shape_block(level, board, 0, 0.02, -0.11, 0.11, 0, vec_length(vec_sub(high, low)));
+    for (int i = 1; i <= 3; i++) /* brackets */
+        shape_block(level, board, -0.08, 0.01, -0.06, 0.06, i * spec->height * 0.2, i * spec->height * 0.2 + 0.05);
     item_end(&item);
 }

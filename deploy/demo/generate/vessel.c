@@ -64,9 +64,12 @@ void knockout_build(struct site *site, const char *name, struct frame at, double
     profile_edge(&profile, r, (skirt + top) / 2 + 0.012);
     profile_dome(&profile, r, top, r * 0.5, 10);
     shape_revolve(item_part(&item, "shell", MATERIAL_VESSEL), frame_at(0, 0, 0), &profile, 48, 0.12);
-    struct mesh *legs = item_part(&item, "skirt", MATERIAL_STRUCTURE);
-    shape_sector(legs, frame_at(0, 0, 0), r - 0.015, r + 0.003, 0.22, skirt + 0.12, 0, 360, 48);
-    shape_sector(legs, frame_at(0, 0, 0), r - 0.05, r + 0.14, 0.20, 0.23, 0, 360, 48);
+    struct profile cone = { 0 };
+    profile_edge(&cone, r + 0.14, 0.20);
+    profile_edge(&cone, r + 0.14, 0.23);
+    profile_edge(&cone, r + 0.015, 0.23);
+    profile_edge(&cone, r - 0.015, skirt + 0.12);
+    shape_revolve(item_part(&item, "skirt", MATERIAL_STRUCTURE), frame_at(0, 0, 0), &cone, 48, 0.2);
     for (int i = 0; i < 8; i++)
         shape_hexagon(item.flanges, frame_moved(frame_turned(frame_at(0, 0, 0), 45.0 * i), r + 0.09, 0, 0), 0.024, 0.22, 0.31);
     civil_plinth(site, at, -r - 0.3, r + 0.3, -r - 0.3, r + 0.3, 0.20);
