@@ -56,8 +56,6 @@ static bool is_loopback(const char *address)
 {
     struct in_addr four;
     struct in6_addr six;
-    if (!strcmp(address, "localhost"))
-        return true;
     if (inet_pton(AF_INET, address, &four) == 1)
         return ntohl(four.s_addr) >> 24 == 127;
     return inet_pton(AF_INET6, address, &six) == 1 && IN6_IS_ADDR_LOOPBACK(&six);
@@ -103,7 +101,7 @@ static const struct option options[] = {
 static int take_option(int option, struct server_params *params, bool *check)
 {
     switch (option) {
-    case OPTION_LISTEN: params->address = optarg; return -1;
+    case OPTION_LISTEN: params->address = strcmp(optarg, "localhost") == 0 ? "127.0.0.1" : optarg; return -1;
     case OPTION_PORT: return parse_int(optarg, 0, 65535, &params->port) ? -1 : usage_error("--port: not a port", optarg);
     case OPTION_GL: return gl_kind_parse(optarg, &params->gl) ? -1 : usage_error("--gl: unknown", optarg);
     case OPTION_PREPARED: params->prepared = optarg; return -1;

@@ -151,14 +151,13 @@ static bool start_painter(struct server *server)
 
 static bool start_net(struct server *server)
 {
-    const char *address = strcmp(server->params.address, "localhost") == 0 ? "127.0.0.1" : server->params.address;
     struct net_params params = {
         .log = server->log,
         .scene = server->scene,
         .store = server->store,
         .painter = server->painter,
         .counters = server->counters,
-        .address = address,
+        .address = server->params.address,
         .port = server->params.port,
         .open_viewers = server->params.open_viewers,
         .web_folder = server->web,
@@ -179,6 +178,8 @@ static bool server_start(struct server *server)
     if (!server->plant || !(server->scene = open_scene(server->log, &server->params, server->plant)))
         return false;
     warn_of_far_sensors(server->log, server->scene);
+    if (!net_port_free(server->log, server->params.address, server->params.port))
+        return false;
     server->counters = counters_create();
     server->store = store_create(server->plant);
     server->workers = workers_create(server->params.threads);

@@ -7,7 +7,7 @@
 
 struct server_params {
     const char *plant_path;
-    const char *address; /* to listen on; numeric or "localhost" */
+    const char *address; /* to listen on; numeric */
     int port;            /* 0: any that is free */
     enum gl_kind gl;
     const char *prepared; /* NULL: beside the plant file */

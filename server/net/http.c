@@ -138,6 +138,7 @@ static int ask_snapshot(struct hub *hub, struct request *request)
     hub->snapshot_count++;
     lws_set_timeout(request->wsi, PENDING_TIMEOUT_HTTP_CONTENT, 60);
     painter_ask(hub->params.painter, request->client, &wish);
+    painter_go(hub->params.painter);
     return 0;
 }
 

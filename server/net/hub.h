@@ -23,7 +23,8 @@ struct hub {
     struct request *snapshots; /* HTTP requests that wait for their picture */
     int stream_count, snapshot_count;
     uint64_t next_client;
-    bool closing;
+    bool asked;                         /* wishes were made: painter_go is due */
+    int64_t still_ns;                   /* what the last refined picture cost */
     uint8_t out[LWS_PRE + SLICE_BYTES]; /* lws writes its framing in front of what is sent */
     struct {
         counter *sessions, *sessions_all, *frames, *frame_bytes, *messages, *errors, *dropped, *requests, *refused;
@@ -39,6 +40,7 @@ static inline struct hub *hub_of(struct lws *wsi)
 bool hub_write(struct hub *hub, struct lws *wsi, const void *bytes, size_t count, enum lws_write_protocol how);
 /* The client's address is of this machine. */
 bool hub_peer_is_local(struct lws *wsi);
+void hub_go(struct hub *hub); /* after all wishes of one event are made */
 
 int stream_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t len);
 void stream_on_picture(struct hub *hub, struct picture *picture); /* takes it over; false owner: destroys it */

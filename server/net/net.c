@@ -56,6 +56,13 @@ bool hub_peer_is_local(struct lws *wsi)
     return !strncmp(peer, "127.", 4) || !strcmp(peer, "::1") || !strncmp(peer, "::ffff:127.", 11);
 }
 
+void hub_go(struct hub *hub)
+{
+    if (hub->asked)
+        painter_go(hub->params.painter);
+    hub->asked = false;
+}
+
 /* --- what happens by itself ---------------------------------------------------------------------------------------------- */
 
 static bool take_snapshot(struct hub *hub)
@@ -89,6 +96,7 @@ static void on_tick(lws_sorted_usec_list_t *sul)
     if (data_changed)
         painter_new_data(net->hub.params.painter);
     streams_on_tick(&net->hub, data_changed, links_changed);
+    hub_go(&net->hub);
     lws_sul_schedule(net->hub.context, 0, sul, on_tick, TICK_NS / 1000);
 }
 
@@ -102,6 +110,7 @@ static void collect(struct hub *hub)
         else
             http_on_picture(hub, picture);
     }
+    hub_go(hub);
 }
 
 /* --- life ------------------------------------------------------------------------------------------------------------------ */
@@ -120,7 +129,7 @@ static void raise_file_limit(struct log *log)
 }
 
 /* lws does not say why it cannot listen; this does. */
-static bool port_free(struct log *log, const char *address, int port)
+bool net_port_free(struct log *log, const char *address, int port)
 {
     struct sockaddr_in6 six = { .sin6_family = AF_INET6, .sin6_port = htons((uint16_t)port) };
     struct sockaddr_in four = { .sin_family = AF_INET, .sin_port = htons((uint16_t)port) };
@@ -176,7 +185,7 @@ static bool open_context(struct net *net)
     };
     lws_set_log_level(LLL_ERR | LLL_WARN, lws_log_line);
     atomic_store(&lws_log_to, hub->params.log);
-    if (!port_free(hub->params.log, hub->params.address, hub->params.port))
+    if (!net_port_free(hub->params.log, hub->params.address, hub->params.port))
         return false;
     hub->context = lws_create_context(&info);
     if (!hub->context) {
@@ -240,7 +249,6 @@ void net_run(struct net *net)
     on_tick(&net->tick);
     while (!atomic_load(&net->stopping) && lws_service(hub->context, 0) >= 0)
         collect(hub);
-    hub->closing = true;
     streams_close(hub);
     for (int64_t end_ns = clock_mono_ns() + GOODBYE_NS; hub->stream_count > 0 && clock_mono_ns() < end_ns;)
         lws_service(hub->context, 0);

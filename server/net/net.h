@@ -22,6 +22,8 @@ struct net_params {
     const char *version;
 };
 
+/* Whether the port could be bound now; if not, the reason is logged. For before the slow part of starting. */
+bool net_port_free(struct log *log, const char *address, int port);
 /* Binds the port. NULL on failure, logged. All in params must outlive it. */
 struct net *net_create(const struct net_params *params);
 void net_destroy(struct net **net); /* &NULL is fine; leaves NULL */

@@ -335,10 +335,16 @@ enum painter_answer painter_ask(struct painter *painter, uint64_t id, const stru
         }
         client->wish = *wish;
         client->pending = true;
-        pthread_cond_broadcast(&painter->wake);
     }
     pthread_mutex_unlock(&painter->lock);
     return answer;
+}
+
+void painter_go(struct painter *painter)
+{
+    pthread_mutex_lock(&painter->lock);
+    pthread_cond_broadcast(&painter->wake);
+    pthread_mutex_unlock(&painter->lock);
 }
 
 void painter_forget(struct painter *painter, uint64_t id)

@@ -26,8 +26,10 @@ void painter_destroy(struct painter **painter); /* &NULL is fine; leaves NULL; e
 const char *painter_gl_text(const struct painter *painter); /* what draws, for the log */
 
 enum painter_answer { PAINTER_ADDED, PAINTER_REPLACED, PAINTER_REFUSED };
-/* Each wish that was added brings one picture, unless the client is forgotten. */
+/* Each wish that was added brings one picture, unless the client is forgotten. painter_go, after the last of those made at one time,
+   so that equal ones share a picture. */
 enum painter_answer painter_ask(struct painter *painter, uint64_t client, const struct wish *wish);
+void painter_go(struct painter *painter);
 void painter_forget(struct painter *painter, uint64_t client);
 void painter_new_data(struct painter *painter); /* readings changed: look again before the next picture */
 /* All pictures made so far, oldest first; the caller owns them. NULL: none. */

@@ -8,9 +8,11 @@
 #include "base/mem.h"
 #include "net/reply.h"
 
-static const int64_t STILL_NS = 200 * NS_PER_MS;   /* without input: refine */
-static const int64_t TAGS_NS = 500 * NS_PER_MS;    /* changed values, at most this often */
-static const int64_t REPEAT_NS = 2000 * NS_PER_MS; /* all values and the links, at least this often */
+static const int64_t STILL_NS = 200 * NS_PER_MS;         /* nothing moved for so long: refine */
+static const int64_t LOADED_STILL_NS = 1000 * NS_PER_MS; /* likewise, when not all can be refined */
+static const int64_t PATIENCE_NS = 10 * NS_PER_S;        /* others may move for so long before one is refined all the same */
+static const int64_t TAGS_NS = 500 * NS_PER_MS;          /* changed values, at most this often */
+static const int64_t REPEAT_NS = 2000 * NS_PER_MS;       /* all values and the links, at least this often */
 static const struct encoder_params MOVING = { .quality = 78, .full_chroma = false }, STILL = { .quality = 92, .full_chroma = true };
 
 struct session *session_create(const struct session_world *world, uint64_t id, int64_t now_ns)
@@ -194,6 +196,8 @@ void session_on_picture(struct session *session, struct picture *picture)
         return;
     }
     session->newest_number = picture->number;
+    if (picture->wish.view.tier == TIER_MOVING)
+        session->moved_ns = picture->wish.asked_ns;
     if (session->ready) { /* newer than what the socket has not yet taken */
         session->dropped++;
         pacer_dropped(&session->pacer);
@@ -204,6 +208,14 @@ void session_on_picture(struct session *session, struct picture *picture)
 
 /* --- wishes --------------------------------------------------------------------------------------------------------------- */
 
+static bool refine_due(const struct session *session, int64_t now_ns)
+{
+    const struct session_world *world = session->world;
+    bool others_move = now_ns < world->moving_until_ns && now_ns - session->input_ns < PATIENCE_NS;
+    bool data_moves = world->loaded && now_ns - session->moved_ns < LOADED_STILL_NS;
+    return !session->refined && session->pacer.asked == 0 && !others_move && !data_moves && now_ns - session->input_ns >= STILL_NS;
+}
+
 static bool wants(const struct session *session, int64_t now_ns, struct wish *wish)
 {
     enum tier tier = TIER_MOVING;
@@ -211,14 +223,15 @@ static bool wants(const struct session *session, int64_t now_ns, struct wish *wi
     if (session->input_pending || session->always_pending) {
         wish->urgency = URGENCY_INPUT;
         wish->always = session->always_pending;
-    } else if (session->data_pending) {
-        wish->urgency = session->refined ? URGENCY_REFINE : URGENCY_DATA;
-        tier = session->refined ? TIER_STILL : TIER_MOVING;
-        since_ns = session->data_ns;
-    } else if (!session->refined && now_ns - session->input_ns >= STILL_NS && session->pacer.asked == 0) {
+    } else if (refine_due(session, now_ns)) {
         wish->urgency = URGENCY_REFINE;
         tier = TIER_STILL;
         since_ns = now_ns;
+    } else if (session->data_pending) {
+        bool still = session->refined && !session->world->loaded && now_ns >= session->world->moving_until_ns;
+        wish->urgency = still ? URGENCY_REFINE : URGENCY_DATA;
+        tier = still ? TIER_STILL : TIER_MOVING;
+        since_ns = session->data_ns;
     } else {
         return false;
     }

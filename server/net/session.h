@@ -17,8 +17,10 @@ struct session_world {
     const struct plant *plant;
     const struct scene *scene;
     const struct snapshot *snapshot;
-    const bool *links_up; /* by source index */
-    bool live;            /* values are coming in */
+    const bool *links_up;    /* by source index */
+    bool live;               /* values are coming in */
+    int64_t moving_until_ns; /* somebody moves; a refined picture of another would make it stutter */
+    bool loaded;             /* refined pictures for all, whenever a reading changes, are more than can be drawn */
     const char *version;
 };
 
@@ -31,6 +33,7 @@ struct session {
 
     bool input_pending, data_pending, always_pending; /* why a picture is wanted */
     int64_t input_ns, data_ns;                        /* the newest input; the oldest change of a reading that is not yet asked for */
+    int64_t moved_ns;                                 /* when the newest picture of the moving tier was asked for */
     bool refined;                                     /* the view as it is has been asked for in the still tier */
     struct pacer pacer;
     uint64_t newest_number; /* of the pictures that came */

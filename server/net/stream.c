@@ -11,6 +11,8 @@
 #include "net/hub.h"
 #include "net/reply.h"
 
+static const int64_t MOVING_NS = 200 * NS_PER_MS; /* after an input somebody is taken to be moving */
+
 struct stream {
     struct lws *wsi;
     struct session *session;
@@ -156,6 +158,7 @@ static void pump(struct hub *hub, struct stream *stream)
         enum painter_answer answer = painter_ask(hub->params.painter, session->id, &wish);
         if (answer != PAINTER_REFUSED)
             session_asked(session, &wish, answer == PAINTER_REPLACED);
+        hub->asked = true;
     }
     if (session->too_fast != stream->throttled) {
         stream->throttled = session->too_fast;
@@ -165,9 +168,19 @@ static void pump(struct hub *hub, struct stream *stream)
         lws_callback_on_writable(stream->wsi);
 }
 
+/* When every session is refined for every change of a reading, and there is one each second. */
+static bool is_loaded(const struct hub *hub)
+{
+    int count = 0;
+    for (const struct stream *stream = hub->streams; stream; stream = stream->next)
+        count += stream->session->hello && !stream->session->hidden;
+    return count * hub->still_ns > NS_PER_S;
+}
+
 void streams_on_tick(struct hub *hub, bool data_changed, bool links_changed)
 {
     int64_t now_ns = clock_mono_ns();
+    hub->world.loaded = is_loaded(hub);
     for (struct stream *stream = hub->streams; stream; stream = stream->next) {
         session_on_tick(stream->session, now_ns);
         if (data_changed)
@@ -200,13 +213,16 @@ bool stream_owns(const struct hub *hub, uint64_t client)
 void stream_on_picture(struct hub *hub, struct picture *picture)
 {
     struct stream *stream = find(hub, picture->client);
+    const struct frame *frame = picture->packet ? picture->packet->frame : NULL;
+    if (frame && frame->view.tier == TIER_STILL)
+        hub->still_ns = frame->render_ns + frame->readback_ns;
     session_on_picture(stream->session, picture);
     pump(hub, stream);
 }
 
 /* --- input ------------------------------------------------------------------------------------------------------------------ */
 
-static void on_message(struct stream *stream)
+static void on_message(struct hub *hub, struct stream *stream)
 {
     struct session *session = stream->session;
     int64_t now_ns = clock_mono_ns();
@@ -214,6 +230,8 @@ static void on_message(struct stream *stream)
         session_on_oversize(session, stream->in_count, now_ns);
     else
         session_on_message(session, stream->in.at ? stream->in.at : "", stream->in.length, now_ns, clock_utc_ns());
+    if (session->input_pending)
+        hub->world.moving_until_ns = now_ns + MOVING_NS;
     stream->in.length = 0;
     stream->in_count = 0;
     if (stream->in.capacity > 4096)
@@ -231,7 +249,7 @@ static void on_receive(struct hub *hub, struct stream *stream, const void *bytes
     if (stream->in_count <= WIRE_MAX_MESSAGE_BYTES)
         text_add_bytes(&stream->in, bytes, len);
     if (lws_remaining_packet_payload(stream->wsi) == 0 && lws_is_final_fragment(stream->wsi))
-        on_message(stream);
+        on_message(hub, stream);
     pump(hub, stream);
 }
 
@@ -372,6 +390,7 @@ static int on_writeable(struct hub *hub, struct stream *stream)
     if (!write_next(hub, stream))
         return -1;
     pump(hub, stream);
+    hub_go(hub);
     return 0;
 }
 
@@ -381,7 +400,10 @@ int stream_callback(struct lws *wsi, enum lws_callback_reasons reason, void *use
     switch (reason) {
     case LWS_CALLBACK_ESTABLISHED: on_open(hub_of(wsi), wsi, slot); break;
     case LWS_CALLBACK_CLOSED: on_close(hub_of(wsi), slot); break;
-    case LWS_CALLBACK_RECEIVE: on_receive(hub_of(wsi), *slot, in, len); break;
+    case LWS_CALLBACK_RECEIVE:
+        on_receive(hub_of(wsi), *slot, in, len);
+        hub_go(hub_of(wsi));
+        break;
     case LWS_CALLBACK_SERVER_WRITEABLE: return on_writeable(hub_of(wsi), *slot);
     default: break;
     }

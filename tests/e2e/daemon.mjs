@@ -194,6 +194,26 @@ test('hidden pages get no frames, and one when they come back', { skip }, async 
     client.close();
 });
 
+test('equal views share a render', { skip }, async () => {
+    const counts = async () => {
+        const text = (await get(plant.port, '/metrics')).body.toString();
+        return ['plantcast_renders_total', 'plantcast_frames_sent_total'].map((name) => Number(text.match(new RegExp(`^${name} (\\d+)`, 'm'))[1]));
+    };
+    const clients = await Promise.all(Array.from({ length: 6 }, () => PlainClient.open(plant.port)));
+    await Promise.all(clients.map((client) => client.hello()));
+    await Promise.all(clients.map((client) => client.frameWhere('a refined frame', (f) => (f.flags & 2) !== 0)));
+    await sleep(500);
+    const before = await counts();
+    for (let i = 0; i < 8; i++) {
+        await plant.tell(`set TI-1 ${i % 2 ? 10 : 90}`);
+        await sleep(400);
+    }
+    const after = await counts(), renders = after[0] - before[0], frames = after[1] - before[1];
+    assert.ok(renders >= 4 && frames >= 3 * renders, `${frames} frames of ${renders} renders`);
+    for (const client of clients)
+        client.close();
+});
+
 test('who may connect', { skip }, async () => {
     const { port } = plant, open = (options) => PlainClient.open(port, options);
     await assert.rejects(open({ protocol: 'plantcast.v9' }), /400/);

@@ -294,6 +294,55 @@ static void data_under_a_still_view_is_drawn_once_and_refined(void **state)
     assert_false(ask(f, &wish));
 }
 
+static void nobody_is_refined_while_another_moves(void **state)
+{
+    struct fixture *f = *state;
+    struct wish wish;
+    greet(f);
+    show(f);
+    for (int i = 0; i < 9; i++) {
+        f->now_ns += NS_PER_S;
+        f->world.moving_until_ns = f->now_ns + 200 * MS;
+        assert_false(ask(f, &wish));
+        session_on_data(f->session, f->now_ns);
+        assert_true(show(f).view.tier == TIER_MOVING);
+    }
+    f->now_ns += 250 * MS;
+    assert_true(ask(f, &wish));
+    assert_true(wish.view.tier == TIER_STILL);
+}
+
+static void others_may_move_for_a_while_not_for_ever(void **state)
+{
+    struct fixture *f = *state;
+    struct wish wish;
+    greet(f);
+    show(f);
+    f->now_ns += 11 * NS_PER_S;
+    f->world.moving_until_ns = f->now_ns + 200 * MS;
+    assert_true(ask(f, &wish));
+    assert_true(wish.view.tier == TIER_STILL);
+}
+
+static void data_on_a_loaded_server_is_not_refined_at_once(void **state)
+{
+    struct fixture *f = *state;
+    struct wish wish;
+    greet(f);
+    show(f);
+    f->now_ns += NS_PER_S;
+    assert_true(show(f).view.tier == TIER_STILL);
+    f->world.loaded = true;
+    session_on_data(f->session, f->now_ns);
+    wish = show(f);
+    assert_true(wish.view.tier == TIER_MOVING && wish.urgency == URGENCY_DATA);
+    f->now_ns += 900 * MS;
+    assert_false(ask(f, &wish));
+    f->now_ns += 200 * MS;
+    assert_true(ask(f, &wish));
+    assert_true(wish.view.tier == TIER_STILL);
+}
+
 static void hidden_pages_get_nothing(void **state)
 {
     struct fixture *f = *state;
@@ -419,6 +468,9 @@ int main(void)
         TEST(equal_pictures_free_their_place),
         TEST(overtaken_pictures_are_not_sent),
         TEST(data_under_a_still_view_is_drawn_once_and_refined),
+        TEST(nobody_is_refined_while_another_moves),
+        TEST(others_may_move_for_a_while_not_for_ever),
+        TEST(data_on_a_loaded_server_is_not_refined_at_once),
         TEST(hidden_pages_get_nothing),
         TEST(tags_come_whole_then_by_change_then_whole_again),
         TEST(params_are_confirmed_and_bad_ones_change_nothing),

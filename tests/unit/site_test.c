@@ -1,0 +1,135 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The files of the web client: those below the folder, by every honest path, and nothing by any other. */
+#include "net/site.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "base/text.h"
+
+struct fixture {
+    char root[64], web[80];
+};
+
+static void write_file(const char *folder, const char *name, const char *content)
+{
+    char *path = mem_printf("%s/%s", folder, name);
+    assert_int_equal(text_write_file(path, content, strlen(content)), 0);
+    mem_free(path);
+}
+
+static int set_up(void **state)
+{
+    struct fixture *f = mem_new(sizeof(*f));
+    char *core = NULL, *link = NULL;
+    strcpy(f->root, "/tmp/plantcast-site-XXXXXX");
+    assert_non_null(mkdtemp(f->root));
+    snprintf(f->web, sizeof(f->web), "%s/web", f->root);
+    core = mem_printf("%s/core", f->web);
+    link = mem_printf("%s/escape.js", f->web);
+    assert_int_equal(mkdir(f->web, 0700) | mkdir(core, 0700), 0);
+    write_file(f->root, "secret.js", "secret");
+    write_file(f->web, "index.html", "<p>");
+    write_file(f->web, ".hidden.js", "hidden");
+    write_file(f->web, "notes", "no ending");
+    write_file(f->web, "x.exe", "unknown ending");
+    write_file(core, "wire.js", "export {};");
+    assert_int_equal(symlink("../secret.js", link), 0);
+    mem_free(link);
+    mem_free(core);
+    *state = f;
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    struct fixture *f = *state;
+    char *command = mem_printf("rm -rf '%s'", f->root);
+    assert_int_equal(system(command), 0);
+    mem_free(command);
+    mem_free(f);
+    return 0;
+}
+
+static void expect(const struct fixture *f, const char *path, const char *content, const char *type)
+{
+    struct site_file file;
+    if (!site_read(f->web, path, false, &file))
+        fail_msg("%s is not served", path);
+    assert_int_equal(file.count, strlen(content));
+    assert_memory_equal(file.bytes, content, file.count);
+    assert_string_equal(file.type, type);
+    assert_true(file.etag[0] == '"' && strlen(file.etag) > 4);
+    mem_free(file.bytes);
+}
+
+static void honest_paths_are_served(void **state)
+{
+    expect(*state, "/", "<p>", "text/html; charset=utf-8");
+    expect(*state, "/index.html", "<p>", "text/html; charset=utf-8");
+    expect(*state, "/core/wire.js", "export {};", "text/javascript; charset=utf-8");
+}
+
+static void nothing_else_is(void **state)
+{
+    struct fixture *f = *state;
+    static const char *const bad[] = { "",
+                                       "index.html",
+                                       "/none.html",
+                                       "/core",
+                                       "/core/",
+                                       "/notes",
+                                       "/x.exe",
+                                       "/.hidden.js",
+                                       "/../secret.js",
+                                       "/core/../../secret.js",
+                                       "/core/..",
+                                       "//index.html",
+                                       "/./index.html",
+                                       "/escape.js",
+                                       "/index.html/",
+                                       "/core\\wire.js",
+                                       "/index.html\n",
+                                       "/in dex.html",
+                                       "/%2e%2e/secret.js",
+                                       "/\xc3\xa9.js" };
+    for (size_t i = 0; i < sizeof(bad) / sizeof(bad[0]); i++) {
+        struct site_file file;
+        if (site_read(f->web, bad[i], false, &file))
+            fail_msg("'%s' is served", bad[i]);
+    }
+    struct site_file file;
+    assert_false(site_read(NULL, "/", false, &file));
+    assert_false(site_read("/nonexistent", "/", false, &file));
+}
+
+static void etags_change_with_the_file(void **state)
+{
+    struct fixture *f = *state;
+    struct site_file before, after;
+    assert_true(site_read(f->web, "/index.html", true, &before));
+    assert_null(before.bytes);
+    write_file(f->web, "index.html", "<p>more");
+    assert_true(site_read(f->web, "/index.html", true, &after));
+    assert_string_not_equal(before.etag, after.etag);
+}
+
+int main(void)
+{
+#define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
+    const struct CMUnitTest tests[] = {
+        TEST(honest_paths_are_served),
+        TEST(nothing_else_is),
+        TEST(etags_change_with_the_file),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
