@@ -124,5 +124,8 @@ int plant_find_tag(const struct plant *plant, const char *name)
 
 char *plant_prepared_folder(const struct plant *plant)
 {
-    return mem_printf("%s/prepared", plant->folder);
+    const char *name = strrchr(plant->path, '/');
+    name = name ? name + 1 : plant->path;
+    const char *end = strrchr(name, '.');
+    return mem_printf("%s/%.*s.prepared", plant->folder, end && end > name ? (int)(end - name) : (int)strlen(name), name);
 }

@@ -104,7 +104,7 @@ void plant_destroy(struct plant **plant); /* &NULL is fine; leaves NULL */
 int plant_find_asset(const struct plant *plant, const char *id); /* index or -1; so below */
 int plant_find_group(const struct plant *plant, const char *id);
 int plant_find_tag(const struct plant *plant, const char *name);
-/* Where prepared asset files of this plant are kept: FOLDER/prepared. Free with mem_free. */
+/* Where prepared asset files of this plant are kept: FOLDER/NAME.prepared beside NAME.yaml. Free with mem_free. */
 char *plant_prepared_folder(const struct plant *plant);
 
 #endif

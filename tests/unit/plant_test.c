@@ -61,7 +61,7 @@ static void defaults_are_as_documented(void **state)
     assert_int_equal(t->scaling, SCALING_NONE);
     assert_float_equal(t->stale_s, 5, 0);
     assert_false(t->has_position || t->negate || t->node);
-    char *folder = plant_prepared_folder(p), *expected = temp_path(f->folder, "prepared");
+    char *folder = plant_prepared_folder(p), *expected = temp_path(f->folder, "plant.prepared");
     assert_string_equal(folder, expected);
     mem_free(folder);
     mem_free(expected);
