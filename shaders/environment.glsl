@@ -5,7 +5,7 @@
 vec3 backdrop(float height)
 {
     const vec3 zenith = vec3(0.757, 0.816, 0.870), horizon = vec3(0.957, 0.963, 0.967), nadir = vec3(0.866, 0.874, 0.880);
-    return height > 0.0 ? mix(horizon, zenith, sqrt(min(height, 1.0)) * 0.9) : mix(horizon, nadir, pow(min(-height * 1.6, 1.0), 0.6));
+    return height > 0.0 ? mix(horizon, zenith, pow(min(height, 1.0), 0.65)) : mix(horizon, nadir, pow(min(-height * 1.6, 1.0), 0.65));
 }
 
 // What a surface of that roughness mirrors; linear radiance, 1 = white. height: of the mirrored ray.

@@ -13,12 +13,11 @@ int palette_column(float value)
         return BELOW;
     if (value > 1.0 + slack)
         return ABOVE;
-    float interval = frame.range.z;
-    if (interval > 0.0) {
-        float bands = max(ceil(1.0 / interval - 0.001), 1.0);
-        float begin = clamp(floor(value / interval + slack), 0.0, bands - 1.0) * interval;
-        value = 0.5 * (begin + min(begin + interval, 1.0));
-    }
+#ifdef RAMP
+    float interval = frame.range.z, bands = max(ceil(1.0 / interval - 0.001), 1.0);
+    float begin = clamp(floor(value / interval + slack), 0.0, bands - 1.0) * interval;
+    value = 0.5 * (begin + min(begin + interval, 1.0));
+#endif
     return clamp(int(value * float(MAP_COLORS)), 0, MAP_COLORS - 1);
 }
 
@@ -33,28 +32,37 @@ vec3 palette_color(int column, int row)
     return texelFetch(palette, ivec2(column, row), 0).rgb;
 }
 
-// Coverage of diagonal stripes at this pixel, with soft edges.
+// Diagonal stripes: over 0.5 on the dark ones.
 float hatch(vec2 pixel)
 {
     float phase = fract((pixel.x + pixel.y) / (frame.range.w * 1.4142));
-    return clamp((abs(phase - 0.5) - 0.25) * frame.range.w + 0.5, 0.0, 1.0);
+    return (abs(phase - 0.5) - 0.25) * frame.range.w + 0.5;
 }
 
 float stipple(vec2 pixel)
 {
     vec2 cell = pixel / frame.range.w;
     cell.x += 0.5 * floor(mod(cell.y, 2.0));
-    return clamp((0.26 - length(fract(cell) - 0.5)) * frame.range.w + 0.5, 0.0, 1.0);
+    return (0.26 - length(fract(cell) - 0.5)) * frame.range.w + 0.5;
 }
 
 // sRGB. flags: no data, uncertain; 0..1 between vertices.
 vec3 field_color(float value, vec2 flags, float light)
 {
-    int row = palette_row(light);
-    if (flags.x > 0.5)
-        return mix(palette_color(HATCH_LIGHT, row), palette_color(HATCH_DARK, row), hatch(gl_FragCoord.xy));
-    vec3 color = palette_color(palette_column(value), row);
-    if (flags.y > 0.5)
-        color = mix(color, palette_color(STIPPLE, row), stipple(gl_FragCoord.xy));
-    return color;
+    int row = palette_row(light), column = palette_column(value), second = column;
+    float part = 0.0;
+    if (flags.y > 0.5) {
+        second = STIPPLE;
+        part = stipple(gl_FragCoord.xy);
+    }
+    if (flags.x > 0.5) {
+        column = HATCH_LIGHT;
+        second = HATCH_DARK;
+        part = hatch(gl_FragCoord.xy);
+    }
+#ifdef STILL
+    return mix(palette_color(column, row), palette_color(second, row), clamp(part, 0.0, 1.0));
+#else
+    return palette_color(part > 0.5 ? second : column, row); // one look-up
+#endif
 }

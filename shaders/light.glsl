@@ -50,5 +50,5 @@ float irradiance(float ambient, float sun)
 vec3 mute(vec3 c)
 {
     float grey = dot(c, vec3(0.30, 0.59, 0.11));
-    return mix(mix(vec3(grey), c, 0.30), vec3(0.84), 0.40);
+    return mix(mix(vec3(grey), c, 0.30), vec3(0.88), 0.48);
 }

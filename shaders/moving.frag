@@ -16,8 +16,9 @@ void main()
 {
 #ifdef FIELD
     color.rgb = field_color(field.x, field.yz, light);
-    if (frame.look.x == LOOK_GLOSSY)
-        color.rgb = srgb_from_linear(tone_map(linear_from_srgb(color.rgb) * (0.10 + 1.15 * light)));
+#ifdef GLOSSY
+    color.rgb = srgb_from_linear(tone_map(linear_from_srgb(color.rgb) * (0.10 + 1.15 * light)));
+#endif
 #else
     int last = textureSize(ramps, 0).x - 1;
     color.rgb = texelFetch(ramps, ivec2(int(light * float(last) + 0.5), material), 0).rgb;

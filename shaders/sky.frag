@@ -8,5 +8,6 @@ layout(location = 0) out vec4 color;
 void main()
 {
     float height = dot(ray, frame.up.xyz) * inversesqrt(dot(ray, ray));
-    color = texelFetch(backdrops, ivec2(int(height * 511.5 + 512.0), 0), 0);
+    ivec2 tile = ivec2(gl_FragCoord.xy) & 3;
+    color = texelFetch(backdrops, ivec2(int(height * 1023.5 + 1024.0), tile.y * 4 + tile.x), 0);
 }

@@ -40,33 +40,37 @@ vec3 mapped_normal(vec3 n, float scale)
 
 void main()
 {
-    Material m = materials[material];
     vec3 v = normalize(-place), n = normalize(surface_normal), l = frame.sun.xyz;
     if (dot(n, v) < 0.0 && !gl_FrontFacing)
         n = -n;
+#if defined(TEXTURED) || !defined(FIELD) || defined(GLOSSY)
+    Material m = materials[material];
     vec4 base = m.base_color * tint;
+#endif
+#ifdef TEXTURED
     if ((textures & 1) != 0)
         base *= texture(base_color_map, uv);
     if (base.a < m.emissive.a)
         discard;
-    float sun_visible = dot(n, l) > 0.0 ? sun_visibility(frame.sun_from_eye, place, n, frame.sun.w, 2.0) : 0.0;
+#endif
+    float sun_visible = sun_visibility(frame.sun_from_eye, place, n, frame.sun.w, 2.0);
     float ambient = sky.x, open = sky.y;
 #ifdef FIELD
-    float light = light_scalar(ambient, max(dot(n, l), 0.0) * sun_visible);
-    color = vec4(field_color(field.x, field.yz, light), 1.0);
-    if (frame.look.x != LOOK_GLOSSY)
-        return;
-    base.rgb = linear_from_srgb(color.rgb);
+    color = vec4(field_color(field.x, field.yz, light_scalar(ambient, max(dot(n, l), 0.0) * sun_visible)), 1.0);
 #endif
+#if !defined(FIELD) || defined(GLOSSY)
     float metallic = m.factors.x, roughness = m.factors.y;
+    vec3 glow = m.emissive.rgb;
+#ifdef GLOSSY
+    base.rgb = linear_from_srgb(color.rgb);
+    metallic *= 0.3; // a mirror would show the sky instead of the field
+#endif
+#ifdef TEXTURED
     if ((textures & 2) != 0) {
         vec4 t = texture(metallic_roughness_map, uv);
         roughness *= t.g;
         metallic *= t.b;
     }
-#ifdef FIELD
-    metallic *= 0.3; // a mirror would show the sky instead of the field
-#endif
     if ((textures & 4) != 0)
         n = mapped_normal(n, m.factors.z);
     if ((textures & 8) != 0) {
@@ -74,14 +78,15 @@ void main()
         ambient *= occlusion;
         open *= occlusion;
     }
-    vec3 c = shade(base.rgb, metallic, roughness, n, v, frame.up.xyz, l, ambient, sun_visible, open);
-    vec3 glow = m.emissive.rgb;
     if ((textures & 16) != 0)
         glow *= texture(emissive_map, uv).rgb;
+#endif
+    vec3 c = shade(base.rgb, metallic, roughness, n, v, frame.up.xyz, l, ambient, sun_visible, open);
     c = srgb_from_linear(tone_map(c + glow));
-#ifdef FIELD
+#ifdef GLOSSY
     color.rgb = c;
 #else
     color = vec4(mute(c), base.a);
+#endif
 #endif
 }

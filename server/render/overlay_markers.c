@@ -3,8 +3,16 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "base/mem.h"
 #include "render/overlay_pen.h"
 #include "value/quality.h"
+
+static const double LABELS_PART = 0.05; /* of the picture may lie under labels: a hundred would hide the plant */
+
+struct labels {
+    double room_px;
+    bool *done; /* by marker */
+};
 
 /* Filled: in sight. Hollow: something stands before it. Crossed: bad. */
 static void draw_mark(struct pen *pen, const struct frame_marker *marker, bool bad)
@@ -53,8 +61,8 @@ static void draw_label(struct pen *pen, const struct box *box, const char *name,
     pen_text(pen, box->x + pad + name_width, box->y + pad + 0.72 * pen->text_px, value);
 }
 
-/* Tries the places around the mark, nearest first; none free: no label. */
-static void place_label(struct pen *pen, const struct frame_marker *marker)
+/* Tries the places around the mark, nearest first. False: none is free. */
+static bool place_label(struct pen *pen, const struct frame_marker *marker, struct labels *labels)
 {
     static const double places[8][2] = { { 1, -0.5 },  { -1, -0.5 }, { 1, -1.3 }, { 1, 0.3 },
                                          { -1, -1.3 }, { -1, 0.3 },  { 0, -1.9 }, { 0, 0.9 } };
@@ -72,9 +80,16 @@ static void place_label(struct pen *pen, const struct frame_marker *marker)
         if (!pen_is_free(pen, &box))
             continue;
         pen_take(pen, &box);
+        labels->room_px -= box.width * box.height;
         draw_label(pen, &box, name, name_width, value, marker->occluded);
-        return;
+        return true;
     }
+    return false;
+}
+
+static bool is_bad(const struct pen *pen, const struct frame_marker *marker)
+{
+    return quality_is_bad(pen->snapshot->readings[marker->tag].quality);
 }
 
 static bool is_inside(const struct pen *pen, const struct frame_marker *marker)
@@ -82,22 +97,49 @@ static bool is_inside(const struct pen *pen, const struct frame_marker *marker)
     return marker->x_px >= 0 && marker->y_px >= 0 && marker->x_px < pen->frame->width_px && marker->y_px < pen->frame->height_px;
 }
 
-/* Those in sight go first: a hidden sensor must not take their place. */
+/* Bad ones first, then those in sight: a hidden sensor must not take their place. */
+static int rank_of(const struct pen *pen, const struct frame_marker *marker)
+{
+    return is_bad(pen, marker) && !marker->occluded ? 0 : marker->occluded ? 2 : 1;
+}
+
+static bool is_apart(const struct pen *pen, const struct labels *labels, const struct frame_marker *marker, double least_px)
+{
+    for (size_t i = 0; i < pen->frame->marker_count; i++)
+        if (labels->done[i] && hypot(pen->frame->markers[i].x_px - marker->x_px, pen->frame->markers[i].y_px - marker->y_px) < least_px)
+            return false;
+    return true;
+}
+
+/* Far apart at first, then in between, so that every part of the plant gets some. */
+static void place_labels(struct pen *pen)
+{
+    static const double spacings[] = { 0.16, 0.08, 0 }; /* of the picture's width */
+    const struct frame *frame = pen->frame;
+    struct labels labels = { .room_px = LABELS_PART * frame->width_px * frame->height_px };
+    labels.done = mem_array(frame->marker_count, sizeof(*labels.done));
+    for (int rank = 0; rank < 3; rank++)
+        for (int pass = 0; pass < 3; pass++)
+            for (size_t i = 0; i < frame->marker_count && labels.room_px > 0; i++) {
+                const struct frame_marker *marker = &frame->markers[i];
+                if (!labels.done[i] && rank_of(pen, marker) == rank && is_inside(pen, marker) &&
+                    is_apart(pen, &labels, marker, spacings[pass] * frame->width_px))
+                    labels.done[i] = place_label(pen, marker, &labels);
+            }
+    mem_free(labels.done);
+}
+
 void overlay_markers(struct pen *pen)
 {
-    const struct frame *frame = pen->frame;
     double radius = 5 * pen->unit;
-    for (size_t i = 0; i < frame->marker_count; i++) {
-        const struct frame_marker *marker = &frame->markers[i];
+    for (size_t i = 0; i < pen->frame->marker_count; i++) {
+        const struct frame_marker *marker = &pen->frame->markers[i];
+        struct box mark = { marker->x_px - radius, marker->y_px - radius, 2 * radius, 2 * radius };
         if (!is_inside(pen, marker))
             continue;
-        struct box mark = { marker->x_px - radius, marker->y_px - radius, 2 * radius, 2 * radius };
         if (!marker->occluded)
             pen_take(pen, &mark);
-        draw_mark(pen, marker, quality_is_bad(pen->snapshot->readings[marker->tag].quality));
+        draw_mark(pen, marker, is_bad(pen, marker));
     }
-    for (int occluded = 0; occluded < 2; occluded++)
-        for (size_t i = 0; i < frame->marker_count; i++)
-            if (is_inside(pen, &frame->markers[i]) && frame->markers[i].occluded == occluded)
-                place_label(pen, &frame->markers[i]);
+    place_labels(pen);
 }

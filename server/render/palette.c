@@ -8,7 +8,7 @@
 
 #include "base/mem.h"
 
-const uint8_t palette_no_data[2][3] = { { 244, 244, 244 }, { 128, 128, 128 } };
+const uint8_t palette_no_data[2][3] = { { 240, 240, 240 }, { 150, 150, 150 } };
 const uint8_t palette_uncertain[3] = { 64, 64, 64 };
 
 static const double white[3] = { 0.95047, 1.0, 1.08883 };

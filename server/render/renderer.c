@@ -39,6 +39,14 @@ struct renderer {
     double *distance_m; /* per asset */
 };
 
+/* Bakes the light that most views have, so that the first picture does not wait for it. */
+static bool bake_default_light(struct renderer *renderer)
+{
+    struct view view;
+    view_default(renderer->scene, 16, 16, &view);
+    return light_get(&renderer->light, view.light_dir) != NULL;
+}
+
 struct renderer *renderer_create(struct log *log, struct gl *gl, const struct scene *scene, struct field *field)
 {
     struct renderer *renderer = mem_new(sizeof(*renderer));
@@ -52,7 +60,7 @@ struct renderer *renderer_create(struct log *log, struct gl *gl, const struct sc
     renderer->frame_buffer = mesh_buffer(log, "frame block", sizeof(struct frame_block), NULL, GL_DYNAMIC_STORAGE_BIT);
     if (!renderer->frame_buffer || !stage_init(&renderer->stage, gl, scene) || !light_init(&renderer->light, &renderer->stage) ||
         !solid_init(&renderer->solid, log) || !sky_init(&renderer->sky, log) || !lines_init(&renderer->lines, log) ||
-        !markers_init(&renderer->markers, log))
+        !markers_init(&renderer->markers, log) || !bake_default_light(renderer))
         renderer_destroy(&renderer);
     return renderer;
 }

@@ -5,7 +5,7 @@
 #include "gpu/program.h"
 #include "render/matrix.h"
 
-enum { BACKDROPS = 1024 };
+enum { BACKDROPS = 2048, ROUNDINGS = 16 };
 
 static bool make_backdrops(struct sky *sky, struct log *log)
 {
@@ -13,11 +13,11 @@ static bool make_backdrops(struct sky *sky, struct log *log)
     if (!program)
         return false;
     glCreateTextures(GL_TEXTURE_2D, 1, &sky->backdrops);
-    glTextureStorage2D(sky->backdrops, 1, GL_RGBA8, BACKDROPS, 1);
+    glTextureStorage2D(sky->backdrops, 1, GL_RGBA8, BACKDROPS, ROUNDINGS);
     glTextureParameteri(sky->backdrops, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     glUseProgram(program);
     glBindImageTexture(0, sky->backdrops, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA8);
-    glDispatchCompute(BACKDROPS / 64, 1, 1);
+    glDispatchCompute(BACKDROPS / 64, ROUNDINGS, 1);
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
     program_destroy(&program);
     return true;

@@ -2,6 +2,7 @@
 /* Draws assets: with their field, or as muted context. */
 #include "render/solid.h"
 
+#include "base/text.h"
 #include "gpu/program.h"
 #include "render/matrix.h"
 
@@ -9,23 +10,54 @@
 enum { CLIP_FROM_FILE = 0, EYE_FROM_FILE = 1, MATERIAL = 2, TEXTURES = 3, EYE_FROM_NORMAL = 4 };
 enum { UNIT_PALETTE = 0, UNIT_RAMPS = 1, UNIT_SUN_MAP = 2, UNIT_MAPS = 3 };
 
-bool solid_init(struct solid *solid, struct log *log)
+/* The moving tier has no textures; ramps and gloss go with a field, and gloss brings ramps along. */
+static bool is_used(int tier, int variant)
+{
+    if (!(variant & SOLID_FIELD))
+        return variant == 0 || (variant == SOLID_TEXTURED && tier == TIER_STILL);
+    return !(tier == TIER_MOVING && variant & SOLID_TEXTURED);
+}
+
+static GLuint make_program(struct log *log, int tier, int variant)
 {
     static const char *const stages[2][2] = { { "moving.vert", "moving.frag" }, { "still.vert", "still.frag" } };
+    struct text defines = { 0 };
+    text_add(&defines, "%s%s%s%s%s", tier == TIER_STILL ? "#define STILL\n" : "", variant & SOLID_FIELD ? "#define FIELD\n" : "",
+             variant & SOLID_RAMP ? "#define RAMP\n" : "", variant & SOLID_GLOSSY ? "#define GLOSSY\n" : "",
+             variant & SOLID_TEXTURED ? "#define TEXTURED\n" : "");
+    GLuint program = program_create(log, program_params(.vertex = stages[tier][0], .fragment = stages[tier][1], .defines = defines.at));
+    text_finish(&defines);
+    return program;
+}
+
+bool solid_init(struct solid *solid, struct log *log)
+{
     bool good = true;
     for (int tier = 0; tier < 2; tier++)
-        for (int field = 0; field < 2; field++) {
-            solid->programs[tier][field] = program_create(log, program_params(.vertex = stages[tier][0], .fragment = stages[tier][1],
-                                                                              .defines = field ? "#define FIELD\n" : NULL));
-            good = good && solid->programs[tier][field];
-        }
+        for (int variant = 0; variant < SOLID_VARIANTS; variant++)
+            if (is_used(tier, variant)) {
+                solid->programs[tier][variant] = make_program(log, tier, variant);
+                good = good && solid->programs[tier][variant];
+            }
     return good;
 }
 
 void solid_finish(struct solid *solid)
 {
-    for (int i = 0; i < 4; i++)
-        program_destroy(&solid->programs[i / 2][i % 2]);
+    for (int i = 0; i < 2 * SOLID_VARIANTS; i++)
+        program_destroy(&solid->programs[i / SOLID_VARIANTS][i % SOLID_VARIANTS]);
+}
+
+static GLuint choose_program(const struct solid *solid, const struct view *view, const struct model_material *material, bool field)
+{
+    int variant = field ? SOLID_FIELD : 0;
+    if (field && view->ramp_interval > 0)
+        variant |= SOLID_RAMP;
+    if (field && view->look == LOOK_GLOSSY)
+        variant |= SOLID_GLOSSY;
+    if (view->tier == TIER_STILL && material->mask && (!field || view->look == LOOK_GLOSSY || material->masked))
+        variant |= SOLID_TEXTURED;
+    return solid->programs[view->tier][variant];
 }
 
 static void set_placement(const struct picture *picture, const struct scene_asset *asset)
@@ -46,19 +78,17 @@ static void set_placement(const struct picture *picture, const struct scene_asse
     glUniformMatrix3fv(EYE_FROM_NORMAL, 1, GL_FALSE, normals);
 }
 
-static void set_material(const struct picture *picture, const struct model *model, const struct model_batch *batch, bool field)
+static void set_material(const struct picture *picture, const struct model_material *material, const struct model_batch *batch, bool field)
 {
-    const struct model_material *material = &model->materials[batch->material];
     if (batch->double_sided)
         glDisable(GL_CULL_FACE);
     else
         glEnable(GL_CULL_FACE);
-    if (picture->view->tier == TIER_MOVING) {
-        if (!field)
-            glUniform1i(MATERIAL, (GLint)batch->material);
+    if (picture->view->tier == TIER_MOVING && field)
         return;
-    }
     glUniform1i(MATERIAL, (GLint)batch->material);
+    if (picture->view->tier == TIER_MOVING)
+        return;
     glUniform1i(TEXTURES, material->mask);
     for (GLuint i = 0; i < MODEL_MAPS; i++)
         if (material->maps[i])
@@ -71,21 +101,25 @@ static void draw_asset(const struct solid *solid, struct picture *picture, int i
     const struct model *model = picture->stage->of_asset[index];
     const struct model_level *level = stage_level(picture->stage, &picture->shot, index);
     const struct fields_entry *field = picture->fields[index];
-    bool bound = false;
+    GLuint bound = 0;
     for (size_t b = 0; b < level->batch_count; b++) {
         const struct model_batch *batch = &level->batches[b];
+        const struct model_material *material = &model->materials[batch->material];
+        GLuint program = choose_program(solid, picture->view, material, field != NULL);
         if ((batch->blend && !field) != blend)
             continue;
         if (!bound) {
-            glUseProgram(solid->programs[picture->view->tier == TIER_STILL][field != NULL]);
-            set_placement(picture, &picture->stage->scene->assets[index]);
             stage_set_front_face(&picture->stage->scene->assets[index]);
             mesh_bind(&model->mesh, picture->light->baked[index], field ? field->buffer : 0);
             glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, model->material_buffer);
             glBindTextureUnit(UNIT_RAMPS, model->ramps);
-            bound = true;
         }
-        set_material(picture, model, batch, field != NULL);
+        if (bound != program) {
+            glUseProgram(program);
+            set_placement(picture, &picture->stage->scene->assets[index]);
+            bound = program;
+        }
+        set_material(picture, material, batch, field != NULL);
         model_draw_batch(batch);
         picture->triangles += batch->triangles;
     }
