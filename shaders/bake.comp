@@ -24,7 +24,7 @@ const int TAPS = 4;
 const float SPREAD = 0.004;
 layout(std430, binding = 2) readonly buffer Positions { float positions_m[]; };
 layout(std430, binding = 3) readonly buffer Normals { float normals[]; };
-layout(std430, binding = 4) buffer Light { uint baked[]; }; // light, ambient, openness, sun
+layout(std430, binding = 4) buffer Light { uint baked[]; }; // light, ambient, openness, how far it faces the sun
 #endif
 
 // How much of the sky map's surroundings lies open: 64 directions are few, so each one stands for the cone around it.
@@ -80,6 +80,6 @@ void main()
 #endif
     float facing = max(dot(normal, sun.xyz), 0.0);
     float sun_visible = facing > 0.0 ? sun_visibility(sun_from_plant, place, normal, sun.w, 2.0) : 0.0;
-    baked[i] = packUnorm4x8(vec4(light_scalar(seen.x, facing * sun_visible), seen, sun_visible));
+    baked[i] = packUnorm4x8(vec4(light_scalar(seen.x, facing * sun_visible), seen, facing));
 #endif
 }

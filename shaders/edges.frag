@@ -1,19 +1,30 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Thin dark lines where depth breaks: silhouettes and sharp steps. Depth over screen is a plane on any flat surface, so a
-// second difference that is not zero is an edge.
+// Thin dark lines around shapes: where depth breaks, on the farther side, so that they do not lie on the field of what stands in
+// front. Shapes of a few pixels' width get none: lines on both sides would bury them.
 layout(binding = 0) uniform sampler2D depth;
 layout(location = 0) in vec2 clip;
 layout(location = 0) out vec4 color;
 
+float at(ivec2 pixel)
+{
+    return texelFetch(depth, clamp(pixel, ivec2(0), textureSize(depth, 0) - 1), 0).r;
+}
+
+// From here, one pixel to that side: how much nearer, as a part. Depth is 1/distance; over a flat surface it is a plane on the screen.
+float rise(ivec2 pixel, float here, ivec2 side)
+{
+    float next = at(pixel + side), wide = min(at(pixel + 3 * side), at(pixel + 4 * side)), back = at(pixel - side);
+    return (min(next, wide) - here - max(here - back, 0.0)) / max(next, 1e-9);
+}
+
 void main()
 {
-    ivec2 at = ivec2(gl_FragCoord.xy), last = textureSize(depth, 0) - 1;
-    float c = texelFetch(depth, at, 0).r;
-    float l = texelFetch(depth, max(at - ivec2(1, 0), ivec2(0)), 0).r, r = texelFetch(depth, min(at + ivec2(1, 0), last), 0).r;
-    float u = texelFetch(depth, max(at - ivec2(0, 1), ivec2(0)), 0).r, d = texelFetch(depth, min(at + ivec2(0, 1), last), 0).r;
-    float step = max(l + r, u + d) - 2.0 * c; // only on the farther side: one pixel wide, and not on the field of what stands in front
-    float edge = smoothstep(0.004, 0.03, step / max(max(max(l, r), max(u, d)), 1e-9));
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    float here = at(pixel);
+    float most = max(max(rise(pixel, here, ivec2(1, 0)), rise(pixel, here, ivec2(-1, 0))),
+                     max(rise(pixel, here, ivec2(0, 1)), rise(pixel, here, ivec2(0, -1))));
+    float edge = smoothstep(0.006, 0.03, most);
     if (edge <= 0.0)
         discard;
-    color = vec4(0.08, 0.10, 0.14, 0.55 * edge);
+    color = vec4(0.08, 0.10, 0.14, 0.5 * edge);
 }

@@ -2,12 +2,15 @@
 // Moving tier: one light scalar and one look-up a pixel.
 #include "frame.glsl"
 #include "light.glsl"
-layout(location = 0) in float light;
 #ifdef FIELD
+layout(location = 0) in float light;
 layout(location = 1) in vec3 field;
 #include "field.glsl"
 #else
+layout(location = 0) in vec2 light;
+layout(location = 1) in vec3 sun_place;
 layout(binding = 1) uniform sampler2D ramps; // one row a material, light from left to right; sRGB
+layout(binding = 2) uniform sampler2DShadow sun_map;
 layout(location = 2) uniform int material;
 #endif
 layout(location = 0) out vec4 color;
@@ -20,8 +23,8 @@ void main()
     color.rgb = srgb_from_linear(tone_map(linear_from_srgb(color.rgb) * (0.10 + 1.15 * light)));
 #endif
 #else
-    int last = textureSize(ramps, 0).x - 1;
-    color.rgb = texelFetch(ramps, ivec2(int(light * float(last) + 0.5), material), 0).rgb;
+    float sum = light_scalar(light.x, light.y * texture(sun_map, sun_place));
+    color.rgb = texelFetch(ramps, ivec2(int(sum * float(textureSize(ramps, 0).x - 1) + 0.5), material), 0).rgb;
 #endif
     color.a = 1.0;
 }

@@ -6,16 +6,23 @@ layout(location = 4) in vec4 baked;
 layout(location = 5) in float value;
 layout(location = 6) in vec2 flags;
 layout(location = 0) uniform mat4 clip_from_file;
-layout(location = 0) out float light;
+layout(location = 1) uniform mat4 sun_from_file; // texture coordinates and depth of the shadow map
 #ifdef FIELD
+layout(location = 0) out float light;
 layout(location = 1) out vec3 field;
+#else
+layout(location = 0) out vec2 light; // ambient, facing the sun
+layout(location = 1) out vec3 sun_place;
 #endif
 
 void main()
 {
     gl_Position = clip_from_file * vec4(position_m, 1.0);
-    light = baked.x;
 #ifdef FIELD
+    light = baked.x;
     field = vec3((value - frame.range.x) * frame.range.y, flags);
+#else
+    light = baked.yw;
+    sun_place = (sun_from_file * vec4(position_m, 1.0)).xyz;
 #endif
 }

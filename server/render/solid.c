@@ -7,7 +7,8 @@
 #include "render/matrix.h"
 
 /* Uniform locations and texture units, as in the shaders. */
-enum { CLIP_FROM_FILE = 0, EYE_FROM_FILE = 1, MATERIAL = 2, TEXTURES = 3, EYE_FROM_NORMAL = 4 };
+enum { CLIP_FROM_FILE = 0, EYE_FROM_FILE = 1, SUN_FROM_FILE = 1, MATERIAL = 2, TEXTURES = 3, EYE_FROM_NORMAL = 4 };
+static const double SUN_SLACK_TEXELS = 3; /* against surfaces that shade themselves */
 enum { UNIT_PALETTE = 0, UNIT_RAMPS = 1, UNIT_SUN_MAP = 2, UNIT_MAPS = 3 };
 
 /* The moving tier has no textures; ramps and gloss go with a field, and gloss brings ramps along. */
@@ -63,13 +64,18 @@ static GLuint choose_program(const struct solid *solid, const struct view *view,
 static void set_placement(const struct picture *picture, const struct scene_asset *asset)
 {
     const struct shot *shot = &picture->shot;
-    double clip_from_file[16], eye_from_file[16];
+    double clip_from_file[16], eye_from_file[16], sun_from_file[16];
     float matrix[16], normals[9];
     matrix_multiply(shot->clip_from_plant, asset->placement, clip_from_file);
     matrix_to_float(clip_from_file, matrix);
     glUniformMatrix4fv(CLIP_FROM_FILE, 1, GL_FALSE, matrix);
-    if (picture->view->tier == TIER_MOVING)
+    if (picture->view->tier == TIER_MOVING) {
+        matrix_multiply(picture->light->texture_from_plant, asset->placement, sun_from_file);
+        sun_from_file[14] += SUN_SLACK_TEXELS * picture->light->texel_m / (2 * picture->stage->radius_m);
+        matrix_to_float(sun_from_file, matrix);
+        glUniformMatrix4fv(SUN_FROM_FILE, 1, GL_FALSE, matrix);
         return;
+    }
     matrix_translation((double[3]){ -shot->eye_m[0], -shot->eye_m[1], -shot->eye_m[2] }, eye_from_file);
     matrix_multiply(eye_from_file, asset->placement, eye_from_file);
     matrix_to_float(eye_from_file, matrix);
