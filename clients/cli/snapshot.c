@@ -1,0 +1,200 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* `plantcast snapshot`: reads the command line; asks a daemon, or draws by itself. */
+#include "snapshot.h"
+
+#include <ctype.h>
+#include <getopt.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "base/text.h"
+#include "commands.h"
+
+static const char usage[] =
+    "usage: plantcast snapshot (PLANT.yaml | http://HOST:PORT/) -o OUT.png [options]\n"
+    "\n"
+    "  -o, --out FILE          PNG file to write\n"
+    "  --size WxH              pixels; 1280x720\n"
+    "  --camera EX,EY,EZ,TX,TY,TZ[,FOV]   eye, target (metres, plant frame), vertical degrees; the plant's own view\n"
+    "  --group ID              sensor group to show; the first one\n"
+    "  --distance MODE         geodesic or euclidean; the group's own, and so below\n"
+    "  --interpolation NAME    shepard or paper\n"
+    "  --fill MODE             none or neighbours\n"
+    "  --strength F, --decay F factors; --power P of shepard\n"
+    "  --radius M              R of paper; 0: automatic          --reach M   how far a sensor reaches\n"
+    "  --ramp UNITS            colours in steps; 0: continuous   --range MIN,MAX\n"
+    "  --colormap NAME         relief, viridis, cividis, diverging, turbo\n"
+    "  --look NAME             default, glossy, flat             --light X,Y,Z   towards the sun\n"
+    "  --select ASSET          outline this asset\n"
+    "offline only:\n"
+    "  --values FILE           CSV of tag,value[,quality]; may be repeated. Tags without a value have no data\n"
+    "  --at TIME               of the values: 2026-01-31T12:00:00Z; now\n"
+    "  --prepared FOLDER       where plantcast-prep put its files; prepared/ beside the plant file\n"
+    "  --tier TIER             still or moving\n"
+    "  --no-overlay            no legend, markers and clock\n"
+    "  --gl KIND               auto, egl-device, egl-surfaceless, osmesa;  --gl-device N\n";
+
+/* Options that are parameters of /snapshot.png too, under that name. */
+static const struct {
+    const char *option, *name;
+} shared[] = {
+    { "camera", "camera" },     { "group", "group" },       { "distance", "distance" },  { "interpolation", "interpolation" },
+    { "fill", "fill" },         { "strength", "strength" }, { "decay", "decay" },        { "power", "power" },
+    { "radius", "radius_m" },   { "reach", "reach_m" },     { "ramp", "ramp_interval" }, { "range", "range" },
+    { "colormap", "colormap" }, { "look", "look" },         { "light", "light" },        { "select", "selected" },
+};
+enum { SHARED = sizeof(shared) / sizeof(shared[0]) };
+enum own_option {
+    OPTION_SIZE = SHARED,
+    OPTION_OUT,
+    OPTION_VALUES,
+    OPTION_AT,
+    OPTION_PREPARED,
+    OPTION_TIER,
+    OPTION_NO_OVERLAY,
+    OPTION_GL,
+    OPTION_GL_DEVICE,
+    OPTION_HELP,
+    OPTIONS
+};
+
+static const struct option own[] = {
+    { "size", required_argument, NULL, OPTION_SIZE },           { "out", required_argument, NULL, OPTION_OUT },
+    { "values", required_argument, NULL, OPTION_VALUES },       { "at", required_argument, NULL, OPTION_AT },
+    { "prepared", required_argument, NULL, OPTION_PREPARED },   { "tier", required_argument, NULL, OPTION_TIER },
+    { "no-overlay", no_argument, NULL, OPTION_NO_OVERLAY },     { "gl", required_argument, NULL, OPTION_GL },
+    { "gl-device", required_argument, NULL, OPTION_GL_DEVICE }, { "help", no_argument, NULL, OPTION_HELP },
+};
+
+static bool add_arg(struct snapshot_options *options, const char *name, const char *value)
+{
+    if (options->arg_count == SNAPSHOT_MAX)
+        return false;
+    options->args[options->arg_count++] = mem_printf("%s=%s", name, value);
+    return true;
+}
+
+static bool add_size(struct snapshot_options *options, const char *text)
+{
+    unsigned width, height;
+    char number[16], rest;
+    if (sscanf(text, "%ux%u%c", &width, &height, &rest) != 2)
+        return false;
+    snprintf(number, sizeof(number), "%u", width);
+    if (!add_arg(options, "width", number))
+        return false;
+    snprintf(number, sizeof(number), "%u", height);
+    return add_arg(options, "height", number);
+}
+
+static bool parse_time(const char *text, int64_t *utc_ns)
+{
+    struct tm utc = { 0 };
+    const char *end = strptime(text, "%Y-%m-%dT%H:%M:%S", &utc);
+    if (!end || (strcmp(end, "Z") && strcmp(end, "")))
+        return false;
+    *utc_ns = (int64_t)timegm(&utc) * NS_PER_S;
+    return true;
+}
+
+static bool parse_tier(struct snapshot_options *options, const char *text)
+{
+    options->moving = !strcmp(text, "moving");
+    return options->moving || !strcmp(text, "still");
+}
+
+static bool parse_device(const char *text, int *device)
+{
+    char rest;
+    return sscanf(text, "%d%c", device, &rest) == 1 && *device >= 0;
+}
+
+/* False: the option's argument is wrong. */
+static bool take_own(struct snapshot_options *options, int option, const char *text)
+{
+    options->offline_only = options->offline_only || option > OPTION_OUT;
+    switch (option) {
+    case OPTION_SIZE: return add_size(options, text);
+    case OPTION_OUT: options->out = text; return true;
+    case OPTION_AT: return parse_time(text, &options->at_utc_ns);
+    case OPTION_PREPARED: options->prepared = text; return true;
+    case OPTION_TIER: return parse_tier(options, text);
+    case OPTION_NO_OVERLAY: return options->no_overlay = true;
+    case OPTION_GL: return gl_kind_parse(text, &options->gl);
+    case OPTION_GL_DEVICE: return parse_device(text, &options->gl_device);
+    case OPTION_VALUES:
+        if (options->value_count == SNAPSHOT_MAX)
+            return false;
+        options->values[options->value_count++] = text;
+        return true;
+    default: return false;
+    }
+}
+
+/* Exit code, or -1: go on. */
+static int parse(int argc, char **argv, struct snapshot_options *options)
+{
+    struct option list[OPTIONS + 1] = { 0 };
+    for (int i = 0; i < SHARED; i++)
+        list[i] = (struct option){ shared[i].option, required_argument, NULL, i };
+    memcpy(list + SHARED, own, sizeof(own));
+    for (int option; (option = getopt_long(argc, argv, "o:h", list, NULL)) != -1;) {
+        if (option == 'h' || option == OPTION_HELP) {
+            fputs(usage, stdout);
+            return 0;
+        }
+        if (option == '?')
+            return 2;
+        if (option < SHARED ? add_arg(options, shared[option].name, optarg)
+                            : take_own(options, option == 'o' ? OPTION_OUT : option, optarg))
+            continue;
+        fprintf(stderr, "plantcast: --%s: '%s' is not what is expected; see plantcast snapshot --help\n",
+                option == 'o' ? "out" : list[option].name, optarg);
+        return 2;
+    }
+    if (optind + 1 != argc || !options->out) {
+        fputs(optind + 1 != argc ? "plantcast: one plant file or URL expected\n" : "plantcast: -o FILE.png is missing\n", stderr);
+        fputs(usage, stderr);
+        return 2;
+    }
+    options->from = argv[optind];
+    return -1;
+}
+
+static void add_encoded(struct text *path, const char *arg)
+{
+    for (; *arg; arg++)
+        text_add(path, isalnum((unsigned char)*arg) || strchr("-_.=,", *arg) ? "%c" : "%%%02X", (unsigned char)*arg);
+}
+
+static int from_daemon(const struct snapshot_options *options)
+{
+    struct text path = { 0 };
+    if (options->offline_only) {
+        fputs("plantcast: --values, --at, --prepared, --tier, --no-overlay and --gl only go with a plant file\n", stderr);
+        return 2;
+    }
+    text_add(&path, "/snapshot.png");
+    for (size_t i = 0; i < options->arg_count; i++) {
+        text_add(&path, i ? "&" : "?");
+        add_encoded(&path, options->args[i]);
+    }
+    int code = daemon_download(options->from, path.at, options->out);
+    text_finish(&path);
+    return code;
+}
+
+int cmd_snapshot(int argc, char **argv)
+{
+    struct snapshot_options options = { .gl_device = -1 };
+    int code = parse(argc, argv, &options);
+    if (code < 0)
+        code = strstr(options.from, "://") ? from_daemon(&options) : snapshot_offline(&options);
+    for (size_t i = 0; i < options.arg_count; i++)
+        mem_free(options.args[i]);
+    return code;
+}

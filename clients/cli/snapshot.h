@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What `plantcast snapshot` was asked for. */
+#ifndef CLI_SNAPSHOT_H
+#define CLI_SNAPSHOT_H
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "gpu/gl.h"
+
+enum { SNAPSHOT_MAX = 64 };
+struct snapshot_options {
+    const char *from, *out;   /* plant file or URL; file to write */
+    char *args[SNAPSHOT_MAX]; /* name=value, as in the query of /snapshot.png; owned */
+    size_t arg_count;
+    const char *values[SNAPSHOT_MAX]; /* CSV files */
+    size_t value_count;
+    const char *prepared; /* NULL: beside the plant file */
+    enum gl_kind gl;
+    int gl_device;
+    int64_t at_utc_ns;                     /* 0: now */
+    bool moving, no_overlay, offline_only; /* offline_only: something was asked for that a daemon does not offer */
+};
+
+int snapshot_offline(const struct snapshot_options *options); /* exit code */
+
+#endif

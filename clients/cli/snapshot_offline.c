@@ -1,0 +1,126 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Draws one picture of a prepared plant, without a daemon. */
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "base/text.h"
+#include "encode/encoder.h"
+#include "net/query.h"
+#include "render/overlay.h"
+#include "render/renderer.h"
+#include "snapshot.h"
+#include "values.h"
+
+/* All that a picture needs; freed in the opposite order. */
+struct studio {
+    struct log *log;
+    struct plant *plant;
+    struct scene *scene;
+    struct snapshot *snapshot;
+    struct workers *workers;
+    struct field *field;
+    struct gl *gl;
+    struct renderer *renderer;
+};
+
+static bool load_plant(struct studio *studio, const struct snapshot_options *options)
+{
+    struct diag diag = { 0 };
+    studio->plant = plant_load(options->from, &diag);
+    bool good = studio->plant != NULL;
+    if (good) {
+        studio->snapshot = snapshot_create(studio->plant->tag_count);
+        studio->snapshot->taken_mono_ns = clock_mono_ns();
+        studio->snapshot->taken_utc_ns = options->at_utc_ns ? options->at_utc_ns : clock_utc_ns();
+        setenv("TZ", studio->plant->time_zone, 1);
+        tzset();
+    }
+    for (size_t i = 0; i < options->value_count && studio->plant; i++)
+        good = values_read(studio->plant, options->values[i], studio->snapshot, &diag) && good;
+    diag_print(&diag, stderr);
+    diag_finish(&diag);
+    return good;
+}
+
+static bool load_scene(struct studio *studio, const struct snapshot_options *options)
+{
+    char *folder = options->prepared ? mem_strdup(options->prepared) : plant_prepared_folder(studio->plant);
+    studio->scene = scene_create(studio->log, studio->plant, folder);
+    mem_free(folder);
+    return studio->scene != NULL;
+}
+
+static bool set_up(struct studio *studio, const struct snapshot_options *options)
+{
+    studio->workers = workers_create(0);
+    studio->field = field_create(studio->workers, studio->scene);
+    studio->gl = gl_create(studio->log, options->gl, options->gl_device);
+    if (studio->gl)
+        studio->renderer = renderer_create(studio->log, studio->gl, studio->scene, studio->field);
+    return studio->renderer != NULL;
+}
+
+static void tear_down(struct studio *studio)
+{
+    renderer_destroy(&studio->renderer);
+    gl_destroy(&studio->gl);
+    field_destroy(&studio->field);
+    workers_destroy(&studio->workers);
+    snapshot_destroy(&studio->snapshot);
+    scene_destroy(&studio->scene);
+    plant_destroy(&studio->plant);
+    log_destroy(&studio->log);
+}
+
+static bool save(struct studio *studio, struct frame *frame, const char *path)
+{
+    struct encoder *encoder = encoder_create(studio->log, "png");
+    struct packet *packet = NULL;
+    bool good = encoder && encoder_send(encoder, frame, &(struct encoder_params){ 0 }) == 0 && encoder_receive(encoder, &packet) == 0;
+    int status = good ? text_write_file(path, packet->bytes, packet->count) : 0;
+    if (status < 0)
+        log_err(studio->log, "%s: %s", path, strerror(-status));
+    packet_unref(&packet);
+    encoder_destroy(&encoder);
+    return good && status == 0;
+}
+
+static bool draw(struct studio *studio, const struct snapshot_options *options, struct view *view)
+{
+    view->tier = options->moving ? TIER_MOVING : TIER_STILL;
+    struct frame *frame = renderer_draw(studio->renderer, view, studio->snapshot);
+    if (!frame)
+        return false;
+    if (!options->no_overlay)
+        overlay_draw(frame, studio->scene, studio->snapshot);
+    log_info(studio->log, "%s: %dx%d, %d triangles, field %.1f ms, render %.1f ms", options->out, frame->width_px, frame->height_px,
+             frame->triangles, frame->field_ns / 1e6, frame->render_ns / 1e6);
+    bool good = save(studio, frame, options->out);
+    frame_unref(&frame);
+    return good;
+}
+
+int snapshot_offline(const struct snapshot_options *options)
+{
+    struct studio studio = { .log = log_create(LOG_INFO) };
+    struct message_error error;
+    struct view view;
+    int code = 1;
+    if (!load_plant(&studio, options) || !load_scene(&studio, options))
+        goto end;
+    if (!query_parse(studio.scene, (const char *const *)options->args, options->arg_count, &view, &error)) {
+        fprintf(stderr, "plantcast: %s\n", error.text);
+        code = 2;
+        goto end;
+    }
+    if (set_up(&studio, options) && draw(&studio, options, &view))
+        code = 0;
+end:
+    tear_down(&studio);
+    return code;
+}

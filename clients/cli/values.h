@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Readings from a CSV file: `tag,value[,quality]`, with or without that header; quality is good (default), uncertain or bad;
+   an empty value is bad. */
+#ifndef CLI_VALUES_H
+#define CLI_VALUES_H
+#include <stdbool.h>
+
+#include "base/diag.h"
+#include "plant/plant.h"
+#include "value/snapshot.h"
+
+/* Sets the readings of the tags that the file names. False: everything wrong is in diag. */
+bool values_read(const struct plant *plant, const char *path, struct snapshot *snapshot, struct diag *diag);
+
+#endif
