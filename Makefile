@@ -44,6 +44,7 @@ sim_sources      := $(filter-out %/generate.c,$(wildcard deploy/demo/*.c))
 generate_sources := $(wildcard deploy/demo/generate*.c deploy/demo/generate/*.c)
 sim_sources      := $(filter-out $(generate_sources),$(sim_sources))
 sim_archive      := $(if $(sim_sources),$(out)/lib/sim.a)
+prep_sources     := $(filter-out %/main.c,$(wildcard preprocess/*.c preprocess/*.cc))
 programs := $(if $(wildcard server/main.c),$(bin)/plantcastd) $(if $(wildcard preprocess/main.c),$(bin)/plantcast-prep) \
             $(if $(wildcard clients/cli/main.c),$(bin)/plantcast) $(if $(sim_sources),$(bin)/plantcast-sim) \
             $(if $(generate_sources),$(bin)/plantcast-demo)
@@ -54,7 +55,7 @@ programs: all
 
 $(bin)/plantcastd: $(call objects,$(wildcard server/*.c)) $(archives)
 	$(link)
-$(bin)/plantcast-prep: $(call objects,$(wildcard preprocess/*.c preprocess/*.cc)) $(archives)
+$(bin)/plantcast-prep: $(call objects,preprocess/main.c) $(out)/lib/prep.a $(archives)
 	$(link)
 $(bin)/plantcast: $(call objects,$(wildcard clients/cli/*.c)) $(archives)
 	$(link)
@@ -70,6 +71,7 @@ $(out)/lib/$(1).a: $(call objects,$(wildcard server/$(1)/*.c)) $(if $(filter bas
 endef
 $(foreach l,$(layers),$(eval $(call archive_rule,$(l))))
 $(out)/lib/protocol.a: $(call objects,$(wildcard protocol/*.c))
+$(out)/lib/prep.a: $(call objects,$(prep_sources))
 $(out)/lib/sim.a: $(call objects,$(filter-out %/sim.c,$(sim_sources)))
 $(out)/lib/%.a:
 	@mkdir -p $(@D); rm -f $@; $(AR) rcs $@ $^
@@ -101,7 +103,7 @@ $(gen)/embedded.c: deploy/embed $(embedded_files)
 unit_tests := $(patsubst tests/%.c,$(out)/tests/%,$(wildcard tests/unit/*_test.c))
 gpu_tests  := $(patsubst tests/%.c,$(out)/tests/%,$(wildcard tests/gpu/*_test.c))
 support    := $(call objects,$(wildcard tests/support/*.c))
-$(out)/tests/%: $(out)/obj/tests/%.o $(support) $(archives) $(sim_archive)
+$(out)/tests/%: $(out)/obj/tests/%.o $(support) $(archives) $(out)/lib/prep.a $(sim_archive)
 	$(link) -lcmocka
 .SECONDARY:
 

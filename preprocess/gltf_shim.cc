@@ -425,19 +425,17 @@ void read_meshes(const tinygltf::Model &m, gltf_model *model)
     model->meshes = new_array<gltf_mesh>(m.meshes.size());
     model->primitives = new_array<gltf_primitive>(primitives);
     for (const tinygltf::Mesh &mesh : m.meshes) {
-        gltf_mesh *out = &model->meshes[model->mesh_count];
+        uint32_t number = model->mesh_count++; /* counted first, here and below, so that what is half read is freed */
+        gltf_mesh *out = &model->meshes[number];
         out->name = mem_strdup(mesh.name.c_str());
         out->first_primitive = model->primitive_count;
         for (size_t i = 0; i < mesh.primitives.size(); i++) {
-            std::string what =
-                "mesh " + std::to_string(model->mesh_count) + " '" + mesh.name.substr(0, 80) + "', primitive " + std::to_string(i);
-            gltf_primitive *primitive = &model->primitives[model->primitive_count];
-            model->primitive_count++; /* counted first, so that a half-read one is freed */
+            std::string what = "mesh " + std::to_string(number) + " '" + mesh.name.substr(0, 80) + "', primitive " + std::to_string(i);
+            gltf_primitive *primitive = &model->primitives[model->primitive_count++];
             if (!read_primitive(m, mesh.primitives[i], primitive, model, what))
                 model->primitive_count--;
         }
         out->primitive_count = model->primitive_count - out->first_primitive;
-        model->mesh_count++;
     }
 }
 

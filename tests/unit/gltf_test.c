@@ -1,0 +1,477 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Models: what glTF files may hold is read as it is meant, and what is wrong is refused by name. */
+#include "preprocess/geometry.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "tests/support/glb.h"
+#include "tests/support/temp.h"
+
+/* One binary chunk for every model here; what lies where is said by the accessors below. */
+struct bin {
+    float square[4][3];      /* 0: in the x-y plane, corners (0,0) (1,0) (0,1) (1,1) */
+    uint16_t list16[6];      /* 48: two triangles */
+    uint8_t strip8[4];       /* 60 */
+    uint32_t strip32[4];     /* 64 */
+    int16_t quantized[4][4]; /* 80: the square, normalised, stride 8 */
+    uint16_t sparse_at[2];   /* 112: vertex 3 */
+    float sparse_to[3];      /* 116: (2, 2, 0) */
+    float broken[4][3];      /* 128: one is not a number */
+    uint16_t wrong16[6];     /* 176: names vertex 4 */
+    float normals[4][3];     /* 188: up, one of length 0 */
+    uint8_t colors[4][4];    /* 236 */
+    float texcoords[4][2];   /* 252 */
+    float instances[2][3];   /* 284: places of two instances */
+};
+
+static const struct bin bin = {
+    .square = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 1, 1, 0 } },
+    .list16 = { 0, 1, 2, 2, 1, 3 },
+    .strip8 = { 0, 1, 2, 3 },
+    .strip32 = { 0, 1, 2, 3 },
+    .quantized = { { 0, 0, 0 }, { 32767, 0, 0 }, { 0, 32767, 0 }, { 32767, 32767, 0 } },
+    .sparse_at = { 3 },
+    .sparse_to = { 2, 2, 0 },
+    .broken = { { 0, 0, 0 }, { 1, NAN, 0 }, { 0, 1, 0 }, { 1, 1, 0 } },
+    .wrong16 = { 0, 1, 2, 2, 1, 4 },
+    .normals = { { 0, 0, 1 }, { 0, 0, 1 }, { 0, 0, 0 }, { 0, 0, 1 } },
+    .colors = { { 255, 0, 0, 255 } },
+    .texcoords = { { 0, 0 }, { 1, 0 }, { 0, 1 }, { 1, 1 } },
+    .instances = { { 0, 0, 0 }, { 5, 0, 0 } },
+};
+
+#define VIEWS                                                                                                                              \
+    "\"buffers\":[{\"byteLength\":308}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":308},"                                               \
+    "{\"buffer\":0,\"byteOffset\":80,\"byteLength\":32,\"byteStride\":8}],"
+#define ACCESSORS                                                                                                                          \
+    "\"accessors\":["                                                                                                                      \
+    "{\"bufferView\":0,\"componentType\":5126,\"count\":4,\"type\":\"VEC3\"},"                        /* 0 square */                       \
+    "{\"bufferView\":0,\"byteOffset\":48,\"componentType\":5123,\"count\":6,\"type\":\"SCALAR\"},"    /* 1 list16 */                       \
+    "{\"bufferView\":0,\"byteOffset\":60,\"componentType\":5121,\"count\":4,\"type\":\"SCALAR\"},"    /* 2 strip8 */                       \
+    "{\"bufferView\":0,\"byteOffset\":64,\"componentType\":5125,\"count\":4,\"type\":\"SCALAR\"},"    /* 3 strip32 */                      \
+    "{\"bufferView\":1,\"componentType\":5122,\"normalized\":true,\"count\":4,\"type\":\"VEC3\"},"    /* 4 quantized */                    \
+    "{\"bufferView\":0,\"componentType\":5126,\"count\":4,\"type\":\"VEC3\",\"sparse\":{\"count\":1," /* 5 sparse */                       \
+    "\"indices\":{\"bufferView\":0,\"byteOffset\":112,\"componentType\":5123},\"values\":{\"bufferView\":0,\"byteOffset\":116}}},"         \
+    "{\"bufferView\":0,\"byteOffset\":128,\"componentType\":5126,\"count\":4,\"type\":\"VEC3\"},"                     /* 6 broken */       \
+    "{\"bufferView\":0,\"byteOffset\":176,\"componentType\":5123,\"count\":6,\"type\":\"SCALAR\"},"                   /* 7 wrong16 */      \
+    "{\"bufferView\":0,\"byteOffset\":188,\"componentType\":5126,\"count\":4,\"type\":\"VEC3\"},"                     /* 8 normals */      \
+    "{\"bufferView\":0,\"byteOffset\":236,\"componentType\":5121,\"normalized\":true,\"count\":4,\"type\":\"VEC4\"}," /* 9 colors */       \
+    "{\"bufferView\":0,\"byteOffset\":252,\"componentType\":5126,\"count\":4,\"type\":\"VEC2\"},"                     /* 10 texcoords */   \
+    "{\"bufferView\":0,\"byteOffset\":284,\"componentType\":5126,\"count\":2,\"type\":\"VEC3\"},"                     /* 11 instances */   \
+    "{\"bufferView\":0,\"byteOffset\":300,\"componentType\":5126,\"count\":4,\"type\":\"VEC3\"}," /* 12 past the end */                    \
+    "{\"bufferView\":0,\"componentType\":5126,\"count\":4611686018427387904,\"type\":\"VEC3\"},"  /* 13 absurd */                          \
+    "{\"bufferView\":7,\"componentType\":5126,\"count\":4,\"type\":\"VEC3\"},"                    /* 14 no such view */                    \
+    "{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}]"                    /* 15 three positions */
+#define HEAD "{\"asset\":{\"version\":\"2.0\"}," VIEWS
+#define PLAIN_NODES "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"name\":\"part\",\"mesh\":0}],"
+#define MESH(primitive) "\"meshes\":[{\"name\":\"m\",\"primitives\":[" primitive "]}],"
+#define SQUARE "{\"attributes\":{\"POSITION\":0},\"indices\":1}"
+
+struct loaded {
+    char *folder;
+    struct gltf_model model;
+    char why[MODEL_WHY_BYTES];
+    bool good;
+};
+
+static int set_up(void **state)
+{
+    struct loaded *l = mem_new(sizeof(*l));
+    l->folder = temp_folder_create();
+    *state = l;
+    return 0;
+}
+
+static void forget(struct loaded *l)
+{
+    if (l->good)
+        gltf_free(&l->model);
+    l->good = false;
+}
+
+static int tear_down(void **state)
+{
+    struct loaded *l = *state;
+    forget(l);
+    temp_folder_destroy(&l->folder);
+    mem_free(l);
+    return 0;
+}
+
+static void load_bytes(struct loaded *l, const char *name, const void *bytes, size_t size)
+{
+    struct model_source source;
+    char *path = temp_write(l->folder, name, bytes, size);
+    forget(l);
+    l->why[0] = 0;
+    if (model_source_open(&source, path, l->why)) {
+        l->good = gltf_load(&l->model, &source, l->why);
+        model_source_finish(&source);
+    }
+    mem_free(path);
+}
+
+static void load(struct loaded *l, const char *json)
+{
+    size_t size;
+    char *bytes = glb_build(json, &bin, sizeof(bin), &size);
+    load_bytes(l, "model.glb", bytes, size);
+    mem_free(bytes);
+}
+
+static void good(struct loaded *l, const char *json)
+{
+    load(l, json);
+    if (!l->good)
+        fail_msg("refused: %s", l->why);
+}
+
+static void refused(struct loaded *l, const char *json, const char *reason)
+{
+    load(l, json);
+    if (l->good)
+        fail_msg("accepted; expected: %s", reason);
+    if (!strstr(l->why, reason))
+        fail_msg("refused for '%s', expected '%s'", l->why, reason);
+}
+
+static void assert_square(const struct gltf_primitive *p)
+{
+    assert_int_equal(p->vertex_count, 4);
+    assert_int_equal(p->index_count, 6);
+    assert_memory_equal(p->indices, ((const uint32_t[6]){ 0, 1, 2, 2, 1, 3 }), sizeof(uint32_t[6]));
+    for (int i = 0; i < 4; i++)
+        for (int axis = 0; axis < 3; axis++)
+            assert_float_equal(p->positions[i][axis], bin.square[i][axis], 1e-4);
+}
+
+static void every_kind_of_index_and_position_is_read(void **state)
+{
+    struct loaded *l = *state;
+    assert_int_equal(sizeof(bin), 308);
+    good(l, HEAD PLAIN_NODES MESH(SQUARE) ACCESSORS "}");
+    assert_square(&l->model.primitives[0]);
+    good(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":4},\"indices\":2,\"mode\":5}") ACCESSORS "}");
+    assert_square(&l->model.primitives[0]);
+    good(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":0},\"indices\":3,\"mode\":5}") ACCESSORS "}");
+    assert_square(&l->model.primitives[0]);
+    good(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":0},\"mode\":6}") ACCESSORS "}");
+    assert_memory_equal(l->model.primitives[0].indices, ((const uint32_t[6]){ 0, 1, 2, 0, 2, 3 }), sizeof(uint32_t[6]));
+    good(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":5},\"indices\":1}") ACCESSORS "}");
+    assert_float_equal(l->model.primitives[0].positions[3][0], 2, 0);
+    good(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":0,\"NORMAL\":8,\"COLOR_0\":9,\"TEXCOORD_0\":10},\"indices\":1}") ACCESSORS
+         "}");
+    assert_int_equal(l->model.primitives[0].colors[0][0], 255);
+    assert_float_equal(l->model.primitives[0].texcoords[3][1], 1, 0);
+}
+
+static void lines_and_points_are_skipped_and_counted(void **state)
+{
+    struct loaded *l = *state;
+    good(l,
+         HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":0},\"mode\":1}," SQUARE
+                               ",{\"attributes\":{\"POSITION\":0},\"mode\":0},{\"attributes\":{\"POSITION\":0},\"mode\":3}") ACCESSORS "}");
+    assert_int_equal(l->model.primitive_count, 1);
+    assert_int_equal(l->model.skipped_lines, 2);
+    assert_int_equal(l->model.skipped_points, 1);
+}
+
+static void nodes_are_put_in_place(void **state)
+{
+    struct loaded *l = *state;
+    good(l, HEAD
+         "\"scenes\":[{\"nodes\":[1]}],\"nodes\":[{\"name\":\"b\",\"mesh\":0,\"translation\":[1,2,3]},"
+         "{\"name\":\"a\",\"children\":[0,2],\"scale\":[2,2,2]},{\"name\":\"c\",\"rotation\":[0,0,0.70710678,0.70710678]}]," MESH(SQUARE)
+             ACCESSORS "}");
+    assert_int_equal(l->model.node_count, 3);
+    assert_string_equal(l->model.nodes[0].name, "a");
+    assert_int_equal(l->model.nodes[0].end, 3);
+    assert_string_equal(l->model.nodes[1].name, "b");
+    assert_int_equal(l->model.nodes[1].parent, 0);
+    assert_float_equal(l->model.nodes[1].world[13], 4, 1e-12);
+    assert_float_equal(l->model.nodes[2].world[1], 2, 1e-6); /* x turned to y, and doubled */
+    good(l, HEAD "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"name\":\"i\",\"mesh\":0,\"extensions\":{\"EXT_mesh_gpu_instancing\":"
+                 "{\"attributes\":{\"TRANSLATION\":11}}}}]," MESH(SQUARE) ACCESSORS "}");
+    assert_int_equal(l->model.node_count, 3);
+    assert_int_equal(l->model.nodes[0].mesh, -1);
+    assert_float_equal(l->model.nodes[2].world[12], 5, 0);
+}
+
+static void wrong_numbers_are_refused(void **state)
+{
+    struct loaded *l = *state;
+    refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":0},\"indices\":7}") ACCESSORS "}",
+            "mesh 0 'm', primitive 0: indices: index 5 names vertex 4 of 4");
+    refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":6},\"indices\":1}") ACCESSORS "}", "POSITION: element 1 is not finite");
+    refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":12},\"indices\":1}") ACCESSORS "}",
+            "4 elements do not fit into bufferView 0");
+    refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":13},\"indices\":1}") ACCESSORS "}", "elements are more than");
+    refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":14},\"indices\":1}") ACCESSORS "}", "there is no bufferView 7");
+    refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":99},\"indices\":1}") ACCESSORS "}", "there is no accessor 99");
+    refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":1},\"indices\":1}") ACCESSORS "}", "1 components, expected 3");
+    refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":0,\"NORMAL\":15},\"indices\":1}") ACCESSORS "}",
+            "NORMAL: 3 elements, positions have 4");
+    refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":0},\"indices\":0}") ACCESSORS "}", "is no index");
+    refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"NORMAL\":0},\"indices\":1}") ACCESSORS "}", "has no POSITION");
+    refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":0},\"indices\":2}") ACCESSORS "}", "4 indices are not whole triangles");
+    refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":0},\"indices\":1,\"mode\":7}") ACCESSORS "}", "mode 7");
+    refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":0},\"indices\":1,\"material\":3}") ACCESSORS "}",
+            "there is no material 3");
+}
+
+static void wrong_trees_are_refused(void **state)
+{
+    struct loaded *l = *state;
+    refused(l,
+            HEAD "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"children\":[1]},{\"name\":\"x\",\"children\":[0]}]," MESH(SQUARE) ACCESSORS
+            "}",
+            "reached twice");
+    refused(l, HEAD "\"nodes\":[{\"children\":[1]},{\"children\":[0]}]," MESH(SQUARE) ACCESSORS "}", "a cycle");
+    refused(l,
+            HEAD "\"scenes\":[{\"nodes\":[0,1]}],\"nodes\":[{\"children\":[2]},{\"children\":[2]},{\"name\":\"shared\"}]," MESH(SQUARE)
+                ACCESSORS "}",
+            "node 2 'shared' is reached twice");
+    refused(l, HEAD "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"children\":[9]}]," MESH(SQUARE) ACCESSORS "}", "there is no node 9");
+    refused(l, HEAD "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":4}]," MESH(SQUARE) ACCESSORS "}", "there is no mesh 4");
+    struct text deep = { 0 };
+    text_add(&deep, HEAD "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[");
+    for (int i = 0; i < 1000; i++)
+        text_add(&deep, "{\"children\":[%d]},", i + 1);
+    text_add(&deep, "{}]," MESH(SQUARE) ACCESSORS "}");
+    refused(l, deep.at, "nested deeper than 512 levels");
+    text_finish(&deep);
+}
+
+static void unknown_extensions_are_refused(void **state)
+{
+    struct loaded *l = *state;
+    refused(l, HEAD "\"extensionsRequired\":[\"ACME_secret\"]," PLAIN_NODES MESH(SQUARE) ACCESSORS "}", "ACME_secret");
+    refused(l,
+            HEAD PLAIN_NODES MESH(
+                "{\"attributes\":{\"POSITION\":0},\"extensions\":{\"KHR_draco_mesh_compression\":{\"bufferView\":0,\"attributes\":{}}}}")
+                ACCESSORS "}",
+            "KHR_draco_mesh_compression");
+    good(l, HEAD "\"extensionsRequired\":[\"KHR_mesh_quantization\"]," PLAIN_NODES MESH(SQUARE) ACCESSORS "}");
+}
+
+static void broken_files_are_refused(void **state)
+{
+    struct loaded *l = *state;
+    size_t size;
+    char *bytes = glb_build(HEAD PLAIN_NODES MESH(SQUARE) ACCESSORS "}", &bin, sizeof(bin), &size);
+    for (size_t cut = 0; cut < size; cut += 1 + cut / 16) { /* everything but the whole file */
+        load_bytes(l, "cut.glb", bytes, cut);
+        if (l->good || !l->why[0])
+            fail_msg("the first %zu bytes of %zu: %s", cut, size, l->good ? "accepted" : "refused without a reason");
+    }
+    mem_free(bytes);
+    refused(l, "{\"asset\":{\"version\":\"2.0\"},,}", "JSON: line 1");
+    refused(l, "[1]", "the top is not an object");
+    refused(l,
+            "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":308}],\"bufferViews\":[{\"buffer\":0,\"byteOffset\":300,"
+            "\"byteLength\":9}]}",
+            "bufferView 0: bytes 300+9 of a buffer of 308");
+    refused(l, "{\"asset\":{\"version\":\"2.0\"},\"bufferViews\":[{\"buffer\":-1,\"byteLength\":9}]}", "there is no buffer -1");
+    struct text deep = { 0 };
+    text_add(&deep, "{\"extras\":");
+    for (int i = 0; i < 200000; i++)
+        text_add(&deep, "[");
+    refused(l, deep.at, "nested deeper");
+    text_finish(&deep);
+    load_bytes(l, "text.glb", "hello", 5);
+    assert_false(l->good);
+}
+
+static void files_outside_the_folder_are_refused(void **state)
+{
+    struct loaded *l = *state;
+    const char *json = "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"uri\":\"%s\",\"byteLength\":308}],\"bufferViews\":[{\"buffer\":0,"
+                       "\"byteLength\":308},"
+                       "{\"buffer\":0,\"byteOffset\":80,\"byteLength\":32,\"byteStride\":8}]," PLAIN_NODES MESH(SQUARE) ACCESSORS "}";
+    char *inside = temp_write(l->folder, "inner/with space.bin", &bin, sizeof(bin)),
+         *outside = temp_write(l->folder, "outside.bin", &bin, sizeof(bin));
+    const char *const bad[] = { "../outside.bin", "%2e%2e/outside.bin", outside, "link.bin", "missing.bin", "http://localhost/x.bin", "." };
+    char *link = temp_path(l->folder, "inner/link.bin");
+    assert_int_equal(symlink(outside, link), 0);
+    for (size_t i = 0; i < sizeof(bad) / sizeof(bad[0]); i++) {
+        char *text = mem_printf(json, bad[i]);
+        load_bytes(l, "inner/model.gltf", text, strlen(text));
+        if (l->good || !strstr(l->why, "is not a readable file inside the model's folder"))
+            fail_msg("%s: %s", bad[i], l->good ? "accepted" : l->why);
+        mem_free(text);
+    }
+    char *text = mem_printf(json, "with%20space.bin");
+    load_bytes(l, "inner/model.gltf", text, strlen(text));
+    if (!l->good)
+        fail_msg("%s", l->why);
+    assert_square(&l->model.primitives[0]);
+    mem_free(text);
+    mem_free(inside);
+    mem_free(outside);
+    mem_free(link);
+}
+
+/* --- cutting assets ------------------------------------------------------------------------------------------------------- */
+
+static struct geometry cut(struct loaded *l, const struct geometry_params *params)
+{
+    struct geometry g;
+    char why[MODEL_WHY_BYTES];
+    if (!geometry_cut(&g, &l->model, params, why))
+        fail_msg("%s", why);
+    return g;
+}
+
+static void face_normal(const struct geometry *g, uint32_t tri, float out[3])
+{
+    const float *a = g->positions_m[g->indices[3 * tri]], *b = g->positions_m[g->indices[3 * tri + 1]],
+                *c = g->positions_m[g->indices[3 * tri + 2]];
+    float ab[3] = { b[0] - a[0], b[1] - a[1], b[2] - a[2] }, ac[3] = { c[0] - a[0], c[1] - a[1], c[2] - a[2] };
+    out[0] = ab[1] * ac[2] - ab[2] * ac[1];
+    out[1] = ab[2] * ac[0] - ab[0] * ac[2];
+    out[2] = ab[0] * ac[1] - ab[1] * ac[0];
+}
+
+#define FACILITY                                                                                                                           \
+    HEAD "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"name\":\"site\",\"children\":[1,2,4]},{\"name\":\"P-101A\",\"mesh\":0},"              \
+         "{\"name\":\"P-101B\",\"mesh\":0,\"translation\":[10,0,0],\"children\":[3]},{\"name\":\"P-101B/"                                  \
+         "seal\",\"translation\":[0,0,1],\"mesh\":0},"                                                                                     \
+         "{\"name\":\"E-7\",\"mesh\":0,\"translation\":[1000000,2000000,0]}]," MESH(SQUARE) ACCESSORS "}"
+
+static void nodes_are_chosen_by_pattern_and_taken_once(void **state)
+{
+    struct loaded *l = *state;
+    good(l, FACILITY);
+    struct geometry g = cut(l, &(struct geometry_params){ .nodes = "P-101*", .unit_m = 1, .up = AXIS_Z });
+    assert_int_equal(g.primitive_count, 3); /* the seal matches too, and comes once */
+    assert_string_equal(g.names.at + g.primitives[2].name, "P-101B/seal");
+    geometry_finish(&g);
+    g = cut(l, &(struct geometry_params){ .nodes = "E-7", .unit_m = 1, .up = AXIS_Z });
+    assert_float_equal(g.origin_m[0], 1000000.5, 0);
+    assert_float_equal(g.positions_m[0][0], -0.5, 0); /* a million metres away, and exact */
+    geometry_finish(&g);
+    char why[MODEL_WHY_BYTES];
+    assert_false(geometry_cut(&g, &l->model, &(struct geometry_params){ .nodes = "X*", .unit_m = 1 }, why));
+    assert_non_null(strstr(why, "no node's name matches 'X*'"));
+}
+
+static void units_and_axes_are_turned_to_metres_and_z_up(void **state)
+{
+    struct loaded *l = *state;
+    good(l, HEAD "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"name\":\"p\",\"mesh\":0,\"translation\":[0,0,7000]}]," MESH(SQUARE) ACCESSORS
+         "}");
+    struct geometry g = cut(l, &(struct geometry_params){ .unit_m = 0.001, .up = AXIS_Y });
+    assert_float_equal(g.origin_m[1], -7, 1e-9);     /* z of the model is -y of the asset */
+    assert_float_equal(g.origin_m[2], 0.0005, 1e-9); /* y is z */
+    float n[3];
+    face_normal(&g, 0, n);
+    assert_true(n[1] < 0 && fabsf(g.normals[0][1] + 1) < 1e-5f); /* faced +z, faces -y */
+    geometry_finish(&g);
+}
+
+static void mirrored_nodes_keep_their_outside(void **state)
+{
+    struct loaded *l = *state;
+    good(l, HEAD "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0,\"scale\":[-1,1,2]}]," MESH(
+                "{\"attributes\":{\"POSITION\":0,\"NORMAL\":8},\"indices\":1}") ACCESSORS "}");
+    struct geometry g = cut(l, &(struct geometry_params){ .unit_m = 1, .up = AXIS_Z });
+    for (uint32_t t = 0; t < 2; t++) {
+        float n[3];
+        face_normal(&g, t, n);
+        assert_true(n[2] > 0);
+    }
+    for (uint32_t v = 0; v < g.vertex_count; v++)
+        assert_float_equal(g.normals[v][2], 1, 1e-6); /* also where the model's own has no length */
+    geometry_finish(&g);
+}
+
+static void triangles_without_area_are_left_out(void **state)
+{
+    struct loaded *l = *state;
+    good(l, HEAD "\"scenes\":[{\"nodes\":[0,1]}],\"nodes\":[{\"mesh\":0},{\"mesh\":0,\"scale\":[1,0,1]}]," MESH(SQUARE) ACCESSORS "}");
+    struct geometry g = cut(l, &(struct geometry_params){ .unit_m = 1, .up = AXIS_Z });
+    assert_int_equal(g.index_count, 6);
+    assert_int_equal(g.degenerate_triangles, 2);
+    assert_int_equal(g.vertex_count, 4);
+    geometry_finish(&g);
+}
+
+static void a_nodes_place_is_the_middle_of_its_meshes(void **state)
+{
+    struct loaded *l = *state;
+    double place[3];
+    struct geometry_params params = { .nodes = "P-101B", .unit_m = 1, .up = AXIS_Z };
+    good(l, FACILITY);
+    assert_true(geometry_node_place(&l->model, &params, "P-101B/seal", place));
+    assert_float_equal(place[0], 10.5, 1e-9);
+    assert_float_equal(place[2], 1, 1e-9);
+    assert_true(geometry_node_place(&l->model, &params, "P-101B", place));
+    assert_float_equal(place[2], 0.5, 1e-9); /* with its seal */
+    assert_true(geometry_node_place(&l->model, &params, "P-101A", place));
+    assert_false(geometry_node_place(&l->model, &params, "TT-1", place));
+}
+
+static void real_models_go_through(void **state)
+{
+    static const char *const names[] = {
+        "plm_plant_equipment",        "plm_plant_5parts",     "plm_plant_hierarchy",       "huldra_wd1_psup",  "duplex_mep",
+        "offshore_platform_overview", "cookie_factory_mixer", "cookie_factory_water_tank", "industrial_tanker"
+    };
+    struct loaded *l = *state;
+    if (access("../shared/data/models", R_OK) != 0) {
+        print_message("# ../shared/data/models is not there\n");
+        skip();
+    }
+    for (size_t i = 0; i < sizeof(names) / sizeof(names[0]); i++) {
+        struct model_source source;
+        char *path = mem_printf("../shared/data/models/%s.glb", names[i]), why[MODEL_WHY_BYTES];
+        if (!model_source_open(&source, path, why))
+            fail_msg("%s: %s", path, why);
+        forget(l);
+        l->good = gltf_load(&l->model, &source, why);
+        if (!l->good)
+            fail_msg("%s: %s", path, why);
+        struct geometry g = cut(l, &(struct geometry_params){ .unit_m = 1, .up = AXIS_Y });
+        assert_true(g.index_count > 3000);
+        for (uint32_t v = 0; v < g.vertex_count; v++) {
+            const float *n = g.normals[v];
+            assert_float_equal(n[0] * n[0] + n[1] * n[1] + n[2] * n[2], 1, 1e-3);
+        }
+        geometry_finish(&g);
+        model_source_finish(&source);
+        mem_free(path);
+    }
+}
+
+#define WITH_MODEL(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        WITH_MODEL(every_kind_of_index_and_position_is_read),
+        WITH_MODEL(lines_and_points_are_skipped_and_counted),
+        WITH_MODEL(nodes_are_put_in_place),
+        WITH_MODEL(wrong_numbers_are_refused),
+        WITH_MODEL(wrong_trees_are_refused),
+        WITH_MODEL(unknown_extensions_are_refused),
+        WITH_MODEL(broken_files_are_refused),
+        WITH_MODEL(files_outside_the_folder_are_refused),
+        WITH_MODEL(nodes_are_chosen_by_pattern_and_taken_once),
+        WITH_MODEL(units_and_axes_are_turned_to_metres_and_z_up),
+        WITH_MODEL(mirrored_nodes_keep_their_outside),
+        WITH_MODEL(triangles_without_area_are_left_out),
+        WITH_MODEL(a_nodes_place_is_the_middle_of_its_meshes),
+        WITH_MODEL(real_models_go_through),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
