@@ -16,7 +16,7 @@ static const char usage[] =
     "every\n"
     "sensor to every vertex. What has not changed since the last time is left as it is.\n"
     "\n"
-    "  --output DIR    where the prepared files go (default: `prepared` beside the plant file)\n"
+    "  --output DIR    where the prepared files go (default: NAME.prepared beside NAME.yaml)\n"
     "  --report KIND   what is printed at the end (default: text); json goes to standard output, progress to standard error\n"
     "  --asset ID      asset of the table\n"
     "  --sensor TAG    tag whose distances are printed, as CSV: x,y,z,geodesic_m,euclidean_m (plant frame, metres)\n"

@@ -181,9 +181,9 @@ static void assert_states(struct setup *s, const char *a, const char *b, const c
 static char *file_of(struct setup *s, size_t asset)
 {
     struct text text = { 0 };
-    read_back(s, "prepared/manifest.json", &text);
+    read_back(s, "plant.prepared/manifest.json", &text);
     json_t *manifest = json_of(&text);
-    char *name = mem_printf("%s/prepared/%s", s->folder, json_string_value(json_object_get(asset_of(manifest, asset), "file")));
+    char *name = mem_printf("%s/plant.prepared/%s", s->folder, json_string_value(json_object_get(asset_of(manifest, asset), "file")));
     assert_int_equal(json_integer_value(json_object_get(manifest, "format")), 1);
     json_decref(manifest);
     text_finish(&text);
@@ -202,7 +202,7 @@ static void a_plant_is_prepared(void **state)
     assert_string_equal(a, b); /* two places of one thing, with sensors at the same places of it */
     assert_string_not_equal(a, c);
     struct folder_file file;
-    char why[200], *folder = temp_path(s->folder, "prepared");
+    char why[200], *folder = temp_path(s->folder, "plant.prepared");
     assert_int_equal(folder_open(&file, folder, strtoull(strrchr(a, '/') + 1, NULL, 16), why), 1);
     const struct asset_view *v = &file.view;
     assert_int_equal(v->header->sensor_count, 2);
@@ -300,7 +300,7 @@ static void what_is_wrong_is_said_with_its_place(void **state)
     says(&s->err, "no node's name matches 'tank*'");
     says(&s->err, "plant.yaml:7: error: asset E:");
     says(&s->err, "truncated GLB: 4 bytes");
-    char *manifest = temp_path(s->folder, "prepared/manifest.json");
+    char *manifest = temp_path(s->folder, "plant.prepared/manifest.json");
     assert_int_not_equal(access(manifest, F_OK), 0); /* nothing half-made is offered */
     mem_free(manifest);
     expect(s, "$PLANT --output /proc/no/such/place", 1);
