@@ -153,7 +153,9 @@ test('the PLC falls silent: no live data, in words; it answers again: live', opt
     await plant.ask('pause');
     await waitForHealth(page, 'nodata', 40000);
     assert.match(await page.locator('#banner').textContent(), /No live data/i);
+    await page.waitForFunction(() => globalThis.plantcast.session.picture.oldestAgeMs === null, null, { timeout: 30000 });
     await settle(page);
+    assert.ok((await markers(page)).every((m) => m.quality === 'bad' && m.value === null), 'no value stays on the screen');
     await shoot(page, 'no-live-data');
     await plant.ask('resume');
     await waitForHealth(page, 'live', 40000);

@@ -21,6 +21,13 @@ function polygon(c, points) {
     c.closePath();
 }
 
+// Smaller where they crowd, so that the plant is still seen.
+function markerRadius(markers) {
+    const xs = markers.map((marker) => marker.x), ys = markers.map((marker) => marker.y);
+    const area = (Math.max(...xs) - Math.min(...xs)) * (Math.max(...ys) - Math.min(...ys));
+    return markers.length < 2 ? 4.5 : Math.max(2.75, Math.min(4.5, 0.12 * Math.sqrt(area / markers.length)));
+}
+
 export class Overlay {
     constructor({ canvas, viewport, session, selection }) {
         Object.assign(this, { canvas, viewport, session, selection });
@@ -73,6 +80,7 @@ export class Overlay {
         c.setTransform(ratio, 0, 0, ratio, 0, 0);
         c.clearRect(0, 0, width, height);
         this.markers = this.project().sort((a, b) => b.depth - a.depth);
+        this.radius = markerRadius(this.markers.filter((marker) => !marker.occluded));
         const labels = this.labels();
         this.places = placeLabels(labels, { width, height, before: this.places, blocked: this.blocked() });
         for (const marker of this.markers)
@@ -146,7 +154,7 @@ export class Overlay {
         c.save();
         c.translate(x, y);
         c.beginPath();
-        (SHAPES[reading.quality] ?? SHAPES.bad)(c, occluded ? 2.5 : 4.5);
+        (SHAPES[reading.quality] ?? SHAPES.bad)(c, occluded ? 2.5 : this.radius);
         c.lineWidth = occluded ? 1.25 : 1.5;
         if (occluded && !chosen) {
             c.globalAlpha = 0.5;
@@ -158,10 +166,11 @@ export class Overlay {
         c.stroke();
         if (reading.quality === 'bad' && !occluded) {
             c.beginPath();
-            c.moveTo(-2.5, -2.5);
-            c.lineTo(2.5, 2.5);
-            c.moveTo(2.5, -2.5);
-            c.lineTo(-2.5, 2.5);
+            const arm = this.radius - 2;
+            c.moveTo(-arm, -arm);
+            c.lineTo(arm, arm);
+            c.moveTo(arm, -arm);
+            c.lineTo(-arm, arm);
             c.stroke();
         }
         if (chosen) {
