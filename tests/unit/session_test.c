@@ -173,6 +173,7 @@ static void welcome_tells_the_plant_and_no_addresses(void **state)
     assert_int_equal(json_array_size(json_object_get(welcome, "groups")), 2);
     tag = json_array_get(json_object_get(welcome, "tags"), 0);
     assert_true(json_number_value(json_array_get(json_object_get(tag, "position"), 2)) == 2.375);
+    assert_true(json_is_object(json_object_get(tag, "limits")) && json_object_size(json_object_get(tag, "limits")) == 4);
     assert_true(json_is_null(json_object_get(json_array_get(json_object_get(welcome, "tags"), 2), "position")));
     limits = json_object_get(json_array_get(json_object_get(welcome, "groups"), 0), "limits");
     assert_true(json_is_null(json_object_get(limits, "LL")) && json_number_value(json_object_get(limits, "H")) == 150);
