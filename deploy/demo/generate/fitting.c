@@ -23,7 +23,7 @@ void fitting_flange(struct mesh *mesh, struct frame at, double r)
 {
     double outer = fitting_flange_radius(r), thick = fitting_flange_thickness(r);
     struct profile profile = { 0 };
-    profile_edge(&profile, r * 0.985, -thick * 2.6);
+    profile_edge(&profile, r - 0.001, -thick * 2.6);
     profile_edge(&profile, r * 1.22, -thick);
     profile_edge(&profile, outer, -thick);
     profile_edge(&profile, outer, -0.002);
@@ -65,7 +65,7 @@ static struct frame nozzle_neck(struct item *item, struct vec surface, struct ve
 {
     struct frame base = frame_facing(surface, dir, vec(0, 0, 1)), face = frame_moved(base, 0, 0, length);
     double inside = 0.35 * r + 0.03;
-    shape_tube(item->necks, frame_moved(base, 0, 0, -inside), r, r, length + inside - fitting_flange_thickness(r) * 1.5, round_sides(r), 0);
+    shape_tube(item->necks, frame_moved(base, 0, 0, -inside), r, r, length + inside - fitting_flange_thickness(r) * 2.59, round_sides(r), 0);
     struct profile pad = { 0 }; /* reinforcing pad, half sunk into the shell */
     profile_edge(&pad, r * 1.5 + 0.02, -inside);
     profile_edge(&pad, r * 1.5 + 0.02, 0.004);
@@ -154,10 +154,10 @@ void fitting_control_valve(struct item *item, struct frame at, double r)
     valve_bonnet(item, up, r, yoke);
     struct mesh *steel = item_part(item, "bolts", MATERIAL_BOLTING), *actuator = item_part(item, "actuators", MATERIAL_ACTUATOR);
     for (int side = -1; side <= 1; side += 2)
-        shape_bar(steel, frame_point(&up, vec(0, side * 0.06, yoke - 0.05)), frame_point(&up, vec(0, side * 0.06, top)), 0.014, 6);
-    shape_cylinder(steel, up, 0.012, top, 8, 0);
+        shape_bar(steel, frame_point(&up, vec(0, side * 0.06, yoke - 0.05)), frame_point(&up, vec(0, side * 0.06, top + 0.02)), 0.014, 6);
+    shape_cylinder(steel, up, 0.012, top + 0.05, 8, 0);
     struct profile head = { 0 }; /* spring-and-diaphragm: two dished halves with a flanged rim */
-    profile_edge(&head, 0.05, top - 0.02);
+    profile_edge(&head, 0.011, top - 0.02);
     profile_edge(&head, wide * 0.75, top + 0.01);
     profile_smooth(&head, wide * 0.95, top + 0.05);
     profile_edge(&head, wide * 1.1, top + 0.065);
@@ -167,7 +167,7 @@ void fitting_control_valve(struct item *item, struct frame at, double r)
     profile_smooth(&head, wide * 0.25, top + 0.185);
     profile_smooth(&head, 0, top + 0.19);
     shape_revolve(actuator, up, &head, 22, 0);
-    shape_block(item_part(item, "positioners", MATERIAL_BLACK), up, 0.05, 0.15, -0.06, 0.06, yoke + 0.08, yoke + 0.22);
+    shape_block(item_part(item, "positioners", MATERIAL_BLACK), up, 0.0, 0.13, -0.06, 0.06, yoke + 0.08, yoke + 0.22);
 }
 
 void fitting_post(struct item *access, struct item *civil, struct vec under, double r)
