@@ -124,20 +124,33 @@ static bool same_picture(const struct view *a, const struct view *b)
            a->selected_asset == b->selected_asset && same_vector(a->light_dir, b->light_dir);
 }
 
-/* Under lock. */
-static struct client *first_due(struct painter *painter)
+/* Under lock. NULL: none before *wait_until_ns. */
+static struct client *first_due(struct painter *painter, const struct schedule *schedule, int64_t *wait_until_ns)
 {
-    struct client *first = NULL;
-    int64_t first_ns = INT64_MAX;
+    struct client *oldest[URGENCY_COUNT] = { NULL };
+    int64_t asked_ns[URGENCY_COUNT];
+    for (int i = 0; i < URGENCY_COUNT; i++)
+        asked_ns[i] = INT64_MAX;
     for (size_t i = 0; i < painter->client_count; i++) {
         struct client *client = &painter->clients[i];
-        int64_t due_ns = schedule_due_ns(client->wish.urgency, client->wish.asked_ns);
-        if (client->pending && due_ns < first_ns) {
-            first = client;
-            first_ns = due_ns;
+        enum urgency urgency = client->wish.urgency;
+        if (client->pending && client->wish.asked_ns < asked_ns[urgency]) {
+            oldest[urgency] = client;
+            asked_ns[urgency] = client->wish.asked_ns;
         }
     }
-    return first;
+    enum urgency urgency = schedule_choose(schedule, asked_ns, clock_mono_ns(), wait_until_ns);
+    return urgency == URGENCY_COUNT ? NULL : oldest[urgency];
+}
+
+/* Under lock. */
+static void wait_until(struct painter *painter, int64_t mono_ns)
+{
+    struct timespec until = { .tv_sec = mono_ns / NS_PER_S, .tv_nsec = mono_ns % NS_PER_S };
+    if (mono_ns == INT64_MAX)
+        pthread_cond_wait(&painter->wake, &painter->lock);
+    else
+        pthread_cond_timedwait(&painter->wake, &painter->lock, &until);
 }
 
 /* Under lock. */
@@ -150,12 +163,13 @@ static void begin(struct client *client, struct batch *batch, int64_t now_ns)
 }
 
 /* Waits for work. False: stop. */
-static bool next_batch(struct painter *painter, struct batch *batch)
+static bool next_batch(struct painter *painter, const struct schedule *schedule, struct batch *batch)
 {
+    int64_t wait_until_ns;
     pthread_mutex_lock(&painter->lock);
     struct client *first = NULL;
-    while (painter->state == RUNNING && !(first = first_due(painter)))
-        pthread_cond_wait(&painter->wake, &painter->lock);
+    while (painter->state == RUNNING && !(first = first_due(painter, schedule, &wait_until_ns)))
+        wait_until(painter, wait_until_ns);
     bool running = painter->state == RUNNING;
     batch->count = 0;
     if (running) {
@@ -289,6 +303,7 @@ static void *painter_main(void *arg)
     struct painter *painter = arg;
     struct drawing drawing;
     struct batch batch = { 0 };
+    struct schedule schedule = { 0 };
     bool good = drawing_init(&drawing, painter);
     pthread_mutex_lock(&painter->lock);
     painter->state = good ? RUNNING : FAILED;
@@ -296,8 +311,11 @@ static void *painter_main(void *arg)
     pthread_mutex_unlock(&painter->lock);
     if (good)
         warm_up(&drawing);
-    while (next_batch(painter, &batch))
+    while (next_batch(painter, &schedule, &batch)) {
+        enum urgency urgency = batch.orders[0].wish.urgency;
         draw(&drawing, &batch);
+        schedule_done(&schedule, urgency, clock_mono_ns());
+    }
     batch_finish(&batch);
     drawing_finish(&drawing);
     return NULL;
@@ -398,13 +416,22 @@ static void add_counters(struct painter *painter, struct counters *counters)
     painter->failures = counters_add(counters, "plantcast_render_failures_total", "counter", "Pictures that could not be drawn.");
 }
 
+static void init_wake(pthread_cond_t *wake)
+{
+    pthread_condattr_t attributes;
+    pthread_condattr_init(&attributes);
+    pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
+    pthread_cond_init(wake, &attributes);
+    pthread_condattr_destroy(&attributes);
+}
+
 struct painter *painter_create(const struct painter_params *params)
 {
     struct painter *painter = mem_new(sizeof(*painter));
     painter->params = *params;
     painter->done_last = &painter->done;
     pthread_mutex_init(&painter->lock, NULL);
-    pthread_cond_init(&painter->wake, NULL);
+    init_wake(&painter->wake);
     add_counters(painter, params->counters);
     painter->encoding = encoding_create(&(struct encoding_params){
         .log = params->log, .workers = params->workers, .counters = params->counters, .done = on_encoded, .done_arg = painter });

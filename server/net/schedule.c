@@ -4,13 +4,43 @@
 
 #include "base/clock.h"
 
-int64_t schedule_due_ns(enum urgency urgency, int64_t asked_ns)
+static const int64_t PAUSE_NS = 150 * NS_PER_MS; /* after a moving picture the next of the same session may come */
+static const int64_t SHARE_NS = 3 * NS_PER_S;    /* what takes long gets one turn in this time, whoever moves */
+
+static bool is_pending(int64_t asked_ns)
 {
-    static const int64_t patience_ns[] = {
-        [URGENCY_INPUT] = 0,
-        [URGENCY_DATA] = 50 * NS_PER_MS,
-        [URGENCY_REFINE] = 400 * NS_PER_MS,
-        [URGENCY_SNAPSHOT] = 400 * NS_PER_MS,
-    };
-    return asked_ns + patience_ns[urgency];
+    return asked_ns != INT64_MAX;
+}
+
+static bool share_due(const struct schedule *schedule, int64_t asked_ns, int64_t now_ns)
+{
+    return is_pending(asked_ns) && now_ns - asked_ns >= SHARE_NS && now_ns - schedule->long_ns >= SHARE_NS;
+}
+
+enum urgency schedule_choose(const struct schedule *schedule, const int64_t asked_ns[URGENCY_COUNT], int64_t now_ns, int64_t *wait_until_ns)
+{
+    bool input = is_pending(asked_ns[URGENCY_INPUT]), data = is_pending(asked_ns[URGENCY_DATA]);
+    enum urgency slow = asked_ns[URGENCY_SNAPSHOT] < asked_ns[URGENCY_REFINE] ? URGENCY_SNAPSHOT : URGENCY_REFINE;
+    *wait_until_ns = INT64_MAX;
+    if (share_due(schedule, asked_ns[slow], now_ns))
+        return slow;
+    if (input && !(data && schedule->data_next))
+        return URGENCY_INPUT;
+    if (data)
+        return URGENCY_DATA;
+    if (!is_pending(asked_ns[slow]))
+        return URGENCY_COUNT;
+    if (now_ns - schedule->input_ns >= PAUSE_NS)
+        return slow;
+    *wait_until_ns = schedule->input_ns + PAUSE_NS;
+    return URGENCY_COUNT;
+}
+
+void schedule_done(struct schedule *schedule, enum urgency urgency, int64_t now_ns)
+{
+    schedule->data_next = urgency == URGENCY_INPUT;
+    if (urgency == URGENCY_INPUT)
+        schedule->input_ns = now_ns;
+    else if (urgency != URGENCY_DATA)
+        schedule->long_ns = now_ns;
 }

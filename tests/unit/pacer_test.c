@@ -9,8 +9,6 @@
 
 #include <cmocka.h>
 
-#include "net/schedule.h"
-
 static uint32_t send_one(struct pacer *pacer, size_t bytes, int64_t now_ns)
 {
     assert_true(pacer_may_ask(pacer));
@@ -94,27 +92,12 @@ static void random_clients(void **state)
     assert_int_equal(pacer.flight_count, 0);
 }
 
-static void moving_goes_first_but_nobody_waits_for_ever(void **state)
-{
-    (void)state;
-    int64_t now_ns = 1000000000;
-    int64_t moving = schedule_due_ns(URGENCY_INPUT, now_ns), data = schedule_due_ns(URGENCY_DATA, now_ns);
-    int64_t refine = schedule_due_ns(URGENCY_REFINE, now_ns), snapshot = schedule_due_ns(URGENCY_SNAPSHOT, now_ns);
-    assert_true(moving < data && data < refine && data < snapshot);
-    assert_true(refine < schedule_due_ns(URGENCY_INPUT, now_ns + 500000000));
-    assert_true(snapshot < schedule_due_ns(URGENCY_INPUT, now_ns + 500000000));
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(window_closes_until_acknowledged),
-        cmocka_unit_test(what_is_asked_for_counts),
-        cmocka_unit_test(a_newer_ack_stands_for_older_frames),
-        cmocka_unit_test(an_ack_for_nothing_opens_nothing),
-        cmocka_unit_test(numbers_go_round_and_leave_out_zero),
-        cmocka_unit_test(random_clients),
-        cmocka_unit_test(moving_goes_first_but_nobody_waits_for_ever),
+        cmocka_unit_test(window_closes_until_acknowledged),    cmocka_unit_test(what_is_asked_for_counts),
+        cmocka_unit_test(a_newer_ack_stands_for_older_frames), cmocka_unit_test(an_ack_for_nothing_opens_nothing),
+        cmocka_unit_test(numbers_go_round_and_leave_out_zero), cmocka_unit_test(random_clients),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,0 +1,99 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Whose picture is drawn next: a renderer that takes its time is simulated, and who got what is counted. */
+#include "net/schedule.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "base/clock.h"
+
+static const int64_t MS = NS_PER_MS;
+#define NONE INT64_MAX
+
+static enum urgency choose(const struct schedule *schedule, int64_t input, int64_t data, int64_t refine, int64_t snapshot, int64_t now_ns)
+{
+    int64_t wait_until_ns;
+    return schedule_choose(schedule, (int64_t[]){ input, data, refine, snapshot }, now_ns, &wait_until_ns);
+}
+
+static void nothing_to_do_waits_for_ever(void **state)
+{
+    (void)state;
+    struct schedule schedule = { 0 };
+    int64_t wait_until_ns = 0;
+    assert_int_equal(schedule_choose(&schedule, (int64_t[]){ NONE, NONE, NONE, NONE }, NS_PER_S, &wait_until_ns), URGENCY_COUNT);
+    assert_true(wait_until_ns == INT64_MAX);
+}
+
+static void an_idle_renderer_refines_at_once(void **state)
+{
+    (void)state;
+    struct schedule schedule = { 0 };
+    assert_int_equal(choose(&schedule, NONE, NONE, 10 * NS_PER_S, NONE, 10 * NS_PER_S), URGENCY_REFINE);
+    assert_int_equal(choose(&schedule, NONE, NONE, 10 * NS_PER_S, 9 * NS_PER_S, 10 * NS_PER_S), URGENCY_SNAPSHOT);
+    assert_int_equal(choose(&schedule, NONE, 10 * NS_PER_S, 9 * NS_PER_S, NONE, 10 * NS_PER_S), URGENCY_DATA);
+}
+
+static void slow_pictures_wait_for_a_pause(void **state)
+{
+    (void)state;
+    struct schedule schedule = { 0 };
+    int64_t now_ns = 100 * NS_PER_S, wait_until_ns;
+    schedule_done(&schedule, URGENCY_INPUT, now_ns);
+    assert_int_equal(schedule_choose(&schedule, (int64_t[]){ NONE, NONE, now_ns, NONE }, now_ns + MS, &wait_until_ns), URGENCY_COUNT);
+    assert_true(wait_until_ns > now_ns + MS && wait_until_ns < now_ns + 500 * MS);
+    assert_int_equal(choose(&schedule, NONE, NONE, now_ns, NONE, wait_until_ns), URGENCY_REFINE);
+    assert_int_equal(choose(&schedule, wait_until_ns, NONE, now_ns, NONE, wait_until_ns), URGENCY_INPUT);
+}
+
+/* A picture of input takes 30 ms, of data 30 ms, a refinement 500 ms. All are always wanted again as soon as they were drawn. */
+static void everyone_gets_a_share(void **state)
+{
+    (void)state;
+    static const int64_t cost_ns[] = { 30 * NS_PER_MS, 30 * NS_PER_MS, 500 * NS_PER_MS, 500 * NS_PER_MS };
+    struct schedule schedule = { 0 };
+    int64_t now_ns = 100 * NS_PER_S, end_ns = now_ns + 60 * NS_PER_S;
+    int64_t asked_ns[URGENCY_COUNT] = { now_ns, now_ns, now_ns, now_ns }, longest_ns[URGENCY_COUNT] = { 0 }, wait_until_ns;
+    int drawn[URGENCY_COUNT] = { 0 };
+    while (now_ns < end_ns) {
+        enum urgency urgency = schedule_choose(&schedule, asked_ns, now_ns, &wait_until_ns);
+        assert_int_not_equal(urgency, URGENCY_COUNT);
+        now_ns += cost_ns[urgency];
+        longest_ns[urgency] = now_ns - asked_ns[urgency] > longest_ns[urgency] ? now_ns - asked_ns[urgency] : longest_ns[urgency];
+        asked_ns[urgency] = now_ns;
+        drawn[urgency]++;
+        schedule_done(&schedule, urgency, now_ns);
+    }
+    assert_true(drawn[URGENCY_INPUT] > 750 && drawn[URGENCY_DATA] > 750);
+    assert_true(drawn[URGENCY_REFINE] >= 5 && drawn[URGENCY_SNAPSHOT] >= 5);
+    assert_true(longest_ns[URGENCY_INPUT] <= 600 * MS && longest_ns[URGENCY_DATA] <= 600 * MS);
+    assert_true(longest_ns[URGENCY_REFINE] <= 10 * NS_PER_S && longest_ns[URGENCY_SNAPSHOT] <= 10 * NS_PER_S);
+}
+
+/* Fifty refinements are waiting when somebody begins to move. */
+static void a_queue_of_refinements_does_not_hold_up_a_move(void **state)
+{
+    (void)state;
+    struct schedule schedule = { .long_ns = 99 * NS_PER_S };
+    int64_t now_ns = 100 * NS_PER_S;
+    for (int i = 0; i < 60; i++, now_ns += 30 * MS) {
+        assert_int_equal(choose(&schedule, now_ns, NONE, 50 * NS_PER_S, NONE, now_ns), URGENCY_INPUT);
+        schedule_done(&schedule, URGENCY_INPUT, now_ns);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(nothing_to_do_waits_for_ever),
+        cmocka_unit_test(an_idle_renderer_refines_at_once),
+        cmocka_unit_test(slow_pictures_wait_for_a_pause),
+        cmocka_unit_test(everyone_gets_a_share),
+        cmocka_unit_test(a_queue_of_refinements_does_not_hold_up_a_move),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
