@@ -65,7 +65,8 @@ static struct frame nozzle_neck(struct item *item, struct vec surface, struct ve
 {
     struct frame base = frame_facing(surface, dir, vec(0, 0, 1)), face = frame_moved(base, 0, 0, length);
     double inside = 0.35 * r + 0.03;
-    shape_tube(item->necks, frame_moved(base, 0, 0, -inside), r, r, length + inside - fitting_flange_thickness(r) * 2.59, round_sides(r), 0);
+    double hub = length - fitting_flange_thickness(r) * 2.59;
+    shape_tube(item->necks, frame_moved(base, 0, 0, -inside), r, r, hub + inside, round_sides(r), 0);
     struct profile pad = { 0 }; /* reinforcing pad, half sunk into the shell */
     profile_edge(&pad, r * 1.5 + 0.02, -inside);
     profile_edge(&pad, r * 1.5 + 0.02, 0.004);

@@ -40,7 +40,7 @@ static const char head[] =
     "    limits: { H: 4.5, HH: 7.1 }\n"
     "    interpolation: shepard\n"
     "    distance: euclidean\n"
-    "    reach_m: 1.2\n"
+    "    reach_m: 2.5\n"
     "\n"
     "sources:\n"
     "  - id: plc1\n"
