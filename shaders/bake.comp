@@ -5,8 +5,8 @@
 layout(local_size_x = 64) in;
 layout(binding = 1) uniform sampler2DArrayShadow sky_maps;
 layout(std430, binding = 1) readonly buffer Directions {
-    mat4 map_from_plant[64];
-    vec4 direction[64]; // towards the light; w: its brightness
+    mat4 map_from_plant[32];
+    vec4 direction[32]; // towards the light; w: its brightness
 };
 layout(location = 0) uniform mat4 plant_from_here; // relative to the middle of the scene
 layout(location = 1) uniform mat4 sun_from_plant;
@@ -27,7 +27,7 @@ layout(std430, binding = 3) readonly buffer Normals { float normals[]; };
 layout(std430, binding = 4) buffer Light { uint baked[]; }; // light, ambient, openness, how far it faces the sun
 #endif
 
-// How much of the sky map's surroundings lies open: 64 directions are few, so each one stands for the cone around it.
+// How much of the sky map's surroundings lies open: 32 directions are few, so each one stands for the cone around it.
 float opening(vec3 p, int i)
 {
     float sum = 0.0;
@@ -41,7 +41,7 @@ vec2 ambient(vec3 place, vec3 normal)
 {
     float light = 0.0, open = 0.0, all = 0.0;
     vec3 off = place + normal * (1.6 * sky_texel_m);
-    for (int i = 0; i < 64; i++) {
+    for (int i = 0; i < 32; i++) {
         float facing = dot(normal, direction[i].xyz);
         if (facing <= 0.0)
             continue;

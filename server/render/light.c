@@ -9,7 +9,7 @@
 #include "gpu/program.h"
 #include "render/matrix.h"
 
-enum { SKY_DIRECTIONS = 64, SKY_MAP_PX = 1024, SUN_MAP_PX = 4096, GROUND_PX = 256 };
+enum { SKY_DIRECTIONS = 32, SKY_MAP_PX = 1024, SUN_MAP_PX = 4096, GROUND_PX = 256 };
 
 /* As in shaders/bake.comp. */
 struct directions_block {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Light that stands still: shadow maps, and what reaches each vertex and the ground, worked out once for each place of the sun.
-   Sky light and openness come from 64 depth maps, seen from all round. Thread: the one of the GL context. */
+   Sky light and openness come from 32 depth maps, seen from all round. Thread: the one of the GL context. */
 #ifndef RENDER_LIGHT_H
 #define RENDER_LIGHT_H
 #include "render/stage.h"
