@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <stdbool.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"
@@ -76,6 +77,47 @@ void palette_shade(const uint8_t rgb[3], double offset, uint8_t out[3])
     memcpy(out, rgb, 3);
 }
 
+static int nearest(const double labs[256][3], const double lab[3])
+{
+    double least = INFINITY;
+    int found = 0;
+    for (int i = 0; i < 256; i++) {
+        double square = 0;
+        for (int c = 0; c < 3; c++)
+            square += (lab[c] - labs[i][c]) * (lab[c] - labs[i][c]);
+        if (square < least) {
+            least = square;
+            found = i;
+        }
+    }
+    return found;
+}
+
+/* Of the map's colours, shaded by steps up to amplitude: the part that the nearest colour of the legend misreads by more than 3 %. */
+static double misread_part(const struct colormap *map, const double labs[256][3], double amplitude)
+{
+    int wrong = 0, all = 0;
+    for (int column = 0; column < 256; column += 3)
+        for (int step = -4; step <= 4; step++, all++) {
+            uint8_t rgb[3];
+            double lab[3];
+            palette_shade(map->rgb[column], amplitude * step / 4, rgb);
+            lab_from_rgb(rgb, lab);
+            wrong += abs(nearest(labs, lab) - column) > 0.03 * 256;
+        }
+    return (double)wrong / all;
+}
+
+double palette_amplitude(const struct colormap *map)
+{
+    double labs[256][3], amplitude = PALETTE_SHADING;
+    for (int i = 0; i < 256; i++)
+        lab_from_rgb(map->rgb[i], labs[i]);
+    while (amplitude > 1 && misread_part(map, labs, amplitude) > 0.05)
+        amplitude -= 0.5;
+    return amplitude;
+}
+
 static const uint8_t *column_color(const struct colormap *map, int column)
 {
     switch (column) {
@@ -92,9 +134,10 @@ GLuint palette_create(const struct colormap *map)
 {
     uint8_t(*texels)[PALETTE_COLUMNS][3] = mem_array(PALETTE_ROWS, sizeof(*texels));
     GLuint texture = 0;
+    double amplitude = palette_amplitude(map);
     for (int row = 0; row < PALETTE_ROWS; row++)
         for (int column = 0; column < PALETTE_COLUMNS; column++)
-            palette_shade(column_color(map, column), PALETTE_SHADING * (2.0 * row / (PALETTE_ROWS - 1) - 1), texels[row][column]);
+            palette_shade(column_color(map, column), amplitude * (2.0 * row / (PALETTE_ROWS - 1) - 1), texels[row][column]);
     glCreateTextures(GL_TEXTURE_2D, 1, &texture);
     glTextureStorage2D(texture, 1, GL_RGB8, PALETTE_COLUMNS, PALETTE_ROWS);
     glTextureSubImage2D(texture, 0, 0, 0, PALETTE_COLUMNS, PALETTE_ROWS, GL_RGB, GL_UNSIGNED_BYTE, texels);

@@ -16,6 +16,9 @@ enum palette_column { PALETTE_BELOW = 256, PALETTE_ABOVE, PALETTE_HATCH_LIGHT, P
 extern const uint8_t palette_no_data[2][3]; /* sRGB of the two stripes that mean no data */
 extern const uint8_t palette_uncertain[3];  /* sRGB of the dots that mean uncertain */
 
+/* How far shading may go on this map, in L*: at most PALETTE_SHADING, less on maps where lightness tells much of the value, so that
+   the nearest colour of the legend misreads at most 3 % of the range in 95 of 100 shaded colours. */
+double palette_amplitude(const struct colormap *map);
 /* The colour with `offset` added to its L*, as far as sRGB goes. */
 void palette_shade(const uint8_t rgb[3], double offset, uint8_t out[3]);
 GLuint palette_create(const struct colormap *map);

@@ -234,7 +234,7 @@ static void test_default_look_keeps_to_the_palette(void **state)
         const uint8_t *pixel = frame_pixel(frame, SIDE_PX / 2, SIDE_PX / 2);
         bool found = false;
         for (int row = 0; row < PALETTE_ROWS; row++) {
-            palette_shade(rgb, PALETTE_SHADING * (2.0 * row / (PALETTE_ROWS - 1) - 1), shaded);
+            palette_shade(rgb, palette_amplitude(colormap_at(0)) * (2.0 * row / (PALETTE_ROWS - 1) - 1), shaded);
             found = found || (shaded[0] == pixel[2] && shaded[1] == pixel[1] && shaded[2] == pixel[0]);
         }
         assert_true(found);

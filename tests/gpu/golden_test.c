@@ -1,0 +1,148 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Pictures against those in tests/golden, made on llvmpipe. GOLDEN_UPDATE=1 makes them anew; look at them before you commit them. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include <cmocka.h>
+#include <png.h>
+
+#include "base/mem.h"
+#include "render/overlay.h"
+#include "tests/support/rig.h"
+#include "value/quality.h"
+
+enum { WIDTH = 480, HEIGHT = 270, BYTES = WIDTH * HEIGHT * 4 };
+static struct rig rig;
+static struct stand stand;
+
+struct golden {
+    const char *name;
+    enum tier tier;
+    enum look look;
+    double ramp_interval;
+    int selected_asset;
+    bool overlay;
+    double far_part; /* of the pixels may differ by more than FAR, in any channel */
+};
+enum { FAR = 20 };
+
+static const struct golden goldens[] = {
+    { "moving", TIER_MOVING, LOOK_DEFAULT, 0, -1, false, 0.01 },
+    { "still", TIER_STILL, LOOK_DEFAULT, 0, -1, false, 0.01 },
+    { "ramp", TIER_STILL, LOOK_FLAT, 20, 1, false, 0.01 },
+    { "glossy", TIER_STILL, LOOK_GLOSSY, 0, -1, false, 0.015 },
+    { "overlay", TIER_STILL, LOOK_DEFAULT, 0, -1, true, 0.04 }, /* letters differ between versions of the font library */
+};
+
+static void save(const char *folder, const char *name, const char *what, const uint8_t *bgrx)
+{
+    png_image image = { .version = PNG_IMAGE_VERSION, .width = WIDTH, .height = HEIGHT, .format = PNG_FORMAT_BGR };
+    uint8_t *packed = mem_array(WIDTH * HEIGHT, 3);
+    char *path = mem_printf("%s/%s%s.png", folder, name, what);
+    for (int i = 0; i < WIDTH * HEIGHT; i++)
+        memcpy(packed + 3 * i, bgrx + 4 * i, 3);
+    if (!png_image_write_to_file(&image, path, 0, packed, 0, NULL))
+        fail_msg("%s: %s", path, image.message);
+    mem_free(path);
+    mem_free(packed);
+}
+
+static uint8_t *load(const char *name)
+{
+    png_image image = { .version = PNG_IMAGE_VERSION };
+    char *path = mem_printf("tests/golden/%s.png", name);
+    uint8_t *bgrx = mem_array(BYTES, 1);
+    if (!png_image_begin_read_from_file(&image, path) || image.width != WIDTH || image.height != HEIGHT)
+        fail_msg("%s: %s", path, image.message[0] ? image.message : "another size");
+    image.format = PNG_FORMAT_BGRA;
+    if (!png_image_finish_read(&image, NULL, bgrx, 0, NULL))
+        fail_msg("%s: %s", path, image.message);
+    mem_free(path);
+    return bgrx;
+}
+
+/* Part of the pixels that are far from the golden ones; `differences` gets ten times what differs. */
+static double compare(const uint8_t *got, const uint8_t *want, uint8_t *differences)
+{
+    int far = 0;
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        int most = 0;
+        for (int c = 0; c < 3; c++) {
+            int d = abs(got[4 * i + c] - want[4 * i + c]);
+            differences[4 * i + c] = (uint8_t)(d * 10 > 255 ? 255 : d * 10);
+            most = d > most ? d : most;
+        }
+        far += most > FAR;
+    }
+    return (double)far / (WIDTH * HEIGHT);
+}
+
+static void judge(const struct golden *golden, const uint8_t *got)
+{
+    const char *out = getenv("PLANTCAST_OUT");
+    char *folder = mem_printf("%s/golden-%s", out ? out : "build", gl_kind_name(rig.gl->kind));
+    uint8_t *want = load(golden->name), *differences = mem_array(BYTES, 1);
+    double far = compare(got, want, differences);
+    if (far > golden->far_part) {
+        mkdir(folder, 0777);
+        save(folder, golden->name, "-got", got);
+        save(folder, golden->name, "-want", want);
+        save(folder, golden->name, "-diff", differences);
+        print_message("%s: %.2f %% of the pixels differ by more than %d (%.2f %% may); see %s\n", golden->name, 100 * far, FAR,
+                      100 * golden->far_part, folder);
+    }
+    assert_true(far <= golden->far_part);
+    mem_free(folder);
+    mem_free(want);
+    mem_free(differences);
+}
+
+static void test_golden(void **state)
+{
+    const struct golden *golden = *state;
+    struct view view;
+    view_default(&stand.toy->scene, WIDTH, HEIGHT, &view);
+    view.tier = golden->tier;
+    view.look = golden->look;
+    view.ramp_interval = golden->ramp_interval;
+    view.selected_asset = golden->selected_asset;
+    struct frame *frame = stand_draw(&stand, &view);
+    if (golden->overlay)
+        overlay_draw(frame, &stand.toy->scene, stand.snapshot);
+    if (getenv("GOLDEN_UPDATE"))
+        save("tests/golden", golden->name, "", frame->bgrx);
+    judge(golden, frame->bgrx);
+    frame_unref(&frame);
+}
+
+/* Values, a sensor beyond the range, one that is uncertain and one that is bad. */
+static void fill(void)
+{
+    static const double values[8] = { 15, 30, 55, 80, 105, 20, 45, 90 };
+    for (int i = 0; i < 8; i++)
+        toy_set(stand.snapshot, i, values[i],
+                i == 6 ? QUALITY_BAD_SENSOR_FAILURE : i == 5 ? QUALITY_UNCERTAIN_LAST_USABLE : (uint32_t)QUALITY_GOOD);
+}
+
+int main(void)
+{
+    struct CMUnitTest tests[sizeof(goldens) / sizeof(goldens[0])];
+    for (size_t i = 0; i < sizeof(goldens) / sizeof(goldens[0]); i++)
+        tests[i] = (struct CMUnitTest){ .name = goldens[i].name, .test_func = test_golden, .initial_state = (void *)&goldens[i] };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    setenv("TZ", "UTC", 1);
+    if (!rig_init(&rig, "golden_test"))
+        return 0;
+    stand_init(&stand, &rig, toy_unit());
+    fill();
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    stand_finish(&stand);
+    rig_finish(&rig);
+    return failed;
+}

@@ -1,0 +1,95 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Shaded colours: only lightness changes, by no more than is allowed, and never out of sRGB. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "render/palette.h"
+
+/* CIE 15:2004 with the IEC 61966-2-1 primaries; written apart from the palette's own. */
+static void lab_of(const uint8_t rgb[3], double lab[3])
+{
+    double l[3], f[3];
+    for (int i = 0; i < 3; i++)
+        l[i] = rgb[i] / 255.0 > 0.04045 ? pow((rgb[i] / 255.0 + 0.055) / 1.055, 2.4) : rgb[i] / 255.0 / 12.92;
+    double xyz[3] = { (0.4124 * l[0] + 0.3576 * l[1] + 0.1805 * l[2]) / 0.9505, 0.2126 * l[0] + 0.7152 * l[1] + 0.0722 * l[2],
+                      (0.0193 * l[0] + 0.1192 * l[1] + 0.9505 * l[2]) / 1.089 };
+    for (int i = 0; i < 3; i++)
+        f[i] = xyz[i] > 0.008856 ? cbrt(xyz[i]) : 7.787 * xyz[i] + 16.0 / 116;
+    lab[0] = 116 * f[1] - 16;
+    lab[1] = 500 * (f[0] - f[1]);
+    lab[2] = 200 * (f[1] - f[2]);
+}
+
+static void test_only_lightness_changes(void **state)
+{
+    (void)state;
+    for (size_t m = 0; m < colormap_count(); m++)
+        for (int i = 0; i < 256; i += 5)
+            for (double offset = -PALETTE_SHADING; offset <= PALETTE_SHADING; offset += 1.75) {
+                uint8_t shaded[3];
+                double was[3], is[3];
+                palette_shade(colormap_at(m)->rgb[i], offset, shaded);
+                lab_of(colormap_at(m)->rgb[i], was);
+                lab_of(shaded, is);
+                double change = is[0] - was[0];
+                assert_true(fabs(change) <= fabs(offset) + 0.5 && change * offset >= -0.3 * fabs(offset));
+                assert_true(hypot(is[1] - was[1], is[2] - was[2]) < 1.6); /* 8 bits round */
+            }
+}
+
+static void test_the_default_map_has_room_for_shading(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 256; i++)
+        for (int sign = -1; sign <= 1; sign += 2) {
+            uint8_t shaded[3];
+            double was[3], is[3];
+            palette_shade(colormap_at(0)->rgb[i], sign * PALETTE_SHADING, shaded);
+            lab_of(colormap_at(0)->rgb[i], was);
+            lab_of(shaded, is);
+            assert_true(fabs(is[0] - was[0] - sign * PALETTE_SHADING) < 0.8);
+        }
+    assert_true(palette_amplitude(colormap_at(0)) == PALETTE_SHADING);
+}
+
+static void test_no_shading_leaves_the_color(void **state)
+{
+    static const uint8_t colors[][3] = { { 0, 0, 0 }, { 255, 255, 255 }, { 255, 0, 0 }, { 1, 2, 3 } };
+    (void)state;
+    for (int i = 0; i < 4; i++) {
+        uint8_t out[3];
+        palette_shade(colors[i], 0, out);
+        assert_memory_equal(out, colors[i], 3);
+        palette_shade(colors[i], 7, out); /* at the rim of sRGB: as far as it goes */
+        assert_true(i != 1 || memcmp(out, colors[i], 3) == 0);
+    }
+}
+
+static void test_amplitudes(void **state)
+{
+    (void)state;
+    for (size_t m = 0; m < colormap_count(); m++) {
+        double amplitude = palette_amplitude(colormap_at(m));
+        printf("# %s: L* +-%.1f\n", colormap_at(m)->name, amplitude);
+        assert_true(amplitude >= 2 && amplitude <= PALETTE_SHADING);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_only_lightness_changes),
+        cmocka_unit_test(test_the_default_map_has_room_for_shading),
+        cmocka_unit_test(test_no_shading_leaves_the_color),
+        cmocka_unit_test(test_amplitudes),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
