@@ -32,6 +32,10 @@ bench: test-deps
 	@$(MAKE) --no-print-directory all demo $(bench_programs)
 	@tests/bench/run $(out) $(bin)
 
+# Makes the golden pictures anew, on llvmpipe. Look at them before they are committed.
+golden-update: $(out)/tests/gpu/golden_test
+	@PLANTCAST_GL=egl-surfaceless GOLDEN_UPDATE=1 $<
+
 .PHONY: checked tests unit gpu
 
 # `make fuzz seconds=600`: each fuzzer in turn, from its seeds in tests/fuzz/NAME; what it finds is written to build/.

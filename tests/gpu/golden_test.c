@@ -33,10 +33,8 @@ struct golden {
 enum { FAR = 20 };
 
 static const struct golden goldens[] = {
-    { "moving", TIER_MOVING, LOOK_DEFAULT, 0, -1, false, 0.01 },
-    { "still", TIER_STILL, LOOK_DEFAULT, 0, -1, false, 0.01 },
-    { "ramp", TIER_STILL, LOOK_FLAT, 20, 1, false, 0.01 },
-    { "glossy", TIER_STILL, LOOK_GLOSSY, 0, -1, false, 0.015 },
+    { "moving", TIER_MOVING, LOOK_DEFAULT, 0, -1, false, 0.01 }, { "still", TIER_STILL, LOOK_DEFAULT, 0, -1, false, 0.01 },
+    { "ramp", TIER_STILL, LOOK_FLAT, 20, 1, false, 0.01 },       { "glossy", TIER_STILL, LOOK_GLOSSY, 0, -1, false, 0.015 },
     { "overlay", TIER_STILL, LOOK_DEFAULT, 0, -1, true, 0.04 }, /* letters differ between versions of the font library */
 };
 
@@ -127,7 +125,9 @@ static void fill(void)
     static const double values[8] = { 15, 30, 55, 80, 105, 20, 45, 90 };
     for (int i = 0; i < 8; i++)
         toy_set(stand.snapshot, i, values[i],
-                i == 6 ? QUALITY_BAD_SENSOR_FAILURE : i == 5 ? QUALITY_UNCERTAIN_LAST_USABLE : (uint32_t)QUALITY_GOOD);
+                i == 6   ? QUALITY_BAD_SENSOR_FAILURE
+                : i == 5 ? QUALITY_UNCERTAIN_LAST_USABLE
+                         : (uint32_t)QUALITY_GOOD);
 }
 
 int main(void)

@@ -1,0 +1,158 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* `plantcast snapshot` on the demo plant, as a person would call it: exit codes, messages, and what is in the picture. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+#include <png.h>
+
+#include "base/mem.h"
+#include "base/text.h"
+#include "tests/support/rig.h"
+
+static const char plant[] = "build/demo/plant.yaml";
+static char folder[] = "/tmp/plantcast-snapshot-XXXXXX";
+
+static const char *from_environment(const char *name, const char *otherwise)
+{
+    const char *value = getenv(name);
+    return value ? value : otherwise;
+}
+
+/* Exit code of `plantcast snapshot ARGS`; what it says goes to FOLDER/said. */
+static int snapshot(const char *args)
+{
+    char *command = mem_printf("'%s/plantcast' snapshot %s >'%s/said' 2>&1", from_environment("PLANTCAST_BIN", "build"), args, folder);
+    int status = system(command);
+    mem_free(command);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+static bool said(const char *text)
+{
+    size_t bytes;
+    char *path = mem_printf("%s/said", folder), *all = text_read_file(path, 1 << 20, &bytes);
+    bool found = all && strstr(all, text);
+    mem_free(path);
+    mem_free(all);
+    return found;
+}
+
+static int draw(const char *options)
+{
+    char *args = mem_printf("%s -o %s/out.png --size 320x180 --no-overlay --gl %s %s", plant, folder,
+                            from_environment("PLANTCAST_GL", "egl-surfaceless"), options);
+    int code = snapshot(args);
+    mem_free(args);
+    return code;
+}
+
+static void write_values(const char *text)
+{
+    char *path = mem_printf("%s/values.csv", folder);
+    assert_int_equal(text_write_file(path, text, strlen(text)), 0);
+    mem_free(path);
+}
+
+/* Pixels that are more than a little coloured. */
+static int count_colored(void)
+{
+    png_image image = { .version = PNG_IMAGE_VERSION };
+    char *path = mem_printf("%s/out.png", folder);
+    int count = 0;
+    assert_true(png_image_begin_read_from_file(&image, path));
+    assert_true(image.width == 320 && image.height == 180);
+    image.format = PNG_FORMAT_RGB;
+    uint8_t *rgb = mem_array(320 * 180, 3);
+    assert_true(png_image_finish_read(&image, NULL, rgb, 0, NULL));
+    for (int i = 0; i < 320 * 180; i++)
+        count += abs(rgb[3 * i] - rgb[3 * i + 1]) > 40 || abs(rgb[3 * i + 1] - rgb[3 * i + 2]) > 40;
+    mem_free(rgb);
+    mem_free(path);
+    return count;
+}
+
+static void test_without_values_nothing_has_a_color(void **state)
+{
+    (void)state;
+    assert_int_equal(draw(""), 0);
+    assert_in_range(count_colored(), 0, 20);
+}
+
+static void test_values_give_color(void **state)
+{
+    (void)state;
+    write_values("tag,value,quality\nTE-101,90,good\nTE-102,120,\nTE-103,,bad\nTE-104,30,uncertain\n");
+    char *options = mem_printf("--values %s/values.csv --tier moving", folder);
+    assert_int_equal(draw(options), 0);
+    assert_true(count_colored() > 50);
+    mem_free(options);
+}
+
+static void test_wrong_values_are_named(void **state)
+{
+    (void)state;
+    write_values("tag,value,quality\nTE-101,warm,good\nNO-SUCH,1,good\nTE-102,1,perhaps\n");
+    char *options = mem_printf("--values %s/values.csv", folder);
+    assert_int_equal(draw(options), 1);
+    assert_true(said("values.csv:2:8: error: value 'warm'") && said("values.csv:3:1: error: tag 'NO-SUCH'"));
+    assert_true(said("values.csv:4:10: error: quality 'perhaps'"));
+    mem_free(options);
+}
+
+static void test_usage(void **state)
+{
+    (void)state;
+    assert_int_equal(snapshot("--help"), 0);
+    assert_true(said("usage: plantcast snapshot"));
+    assert_int_equal(snapshot(""), 2);
+    assert_int_equal(snapshot("a.yaml b.yaml -o x.png"), 2);
+    assert_int_equal(snapshot("a.yaml"), 2);
+    assert_int_equal(snapshot("a.yaml -o x.png --size 12"), 2);
+    assert_int_equal(snapshot("a.yaml -o x.png --at noon"), 2);
+    assert_int_equal(snapshot("a.yaml -o x.png --frobnicate"), 2);
+    assert_int_equal(snapshot("http://127.0.0.1:1/ -o x.png --values v.csv"), 2);
+    assert_int_equal(draw("--look shiny"), 2);
+    assert_int_equal(draw("--group flow"), 2);
+}
+
+static void test_failures(void **state)
+{
+    (void)state;
+    assert_int_equal(snapshot("no-such-plant.yaml -o x.png"), 1);
+    assert_int_equal(draw("--prepared /no/such/folder"), 1);
+    assert_int_equal(snapshot("http://127.0.0.1:1/ -o x.png"), 1);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_without_values_nothing_has_a_color),
+        cmocka_unit_test(test_values_give_color),
+        cmocka_unit_test(test_wrong_values_are_named),
+        cmocka_unit_test(test_usage),
+        cmocka_unit_test(test_failures),
+    };
+    struct rig rig;
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    if (!rig_init(&rig, "snapshot_test"))
+        return 0;
+    rig_finish(&rig);
+    if (access(plant, R_OK) != 0 || !mkdtemp(folder)) {
+        printf("1..1\nok 1 - snapshot_test # SKIP no demo plant: make demo\n");
+        return 0;
+    }
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    char *command = mem_printf("rm -r '%s'", folder);
+    if (system(command) != 0)
+        failed++;
+    mem_free(command);
+    return failed;
+}
