@@ -223,7 +223,7 @@ static int run(struct probe *probe)
         summarise(probe, &sum);
         if (probe->as_json)
             print_json(probe, &sum);
-        else
+        else if (sum.frames > 0)
             print_table(probe, &sum);
         print_failures(probe);
         good = sum.failed == 0 && sum.frames > 0;

@@ -242,6 +242,7 @@ static void leave_out_same(struct drawing *drawing, struct batch *batch)
 static void draw(struct drawing *drawing, struct batch *batch)
 {
     struct painter *painter = drawing->painter;
+    int64_t field_begin_ns = clock_mono_ns();
     refresh(drawing);
     leave_out_same(drawing, batch);
     if (batch->count == 0)
@@ -254,6 +255,7 @@ static void draw(struct drawing *drawing, struct batch *batch)
         post(painter, batch, NULL, true);
         return;
     }
+    frame->field_ns += begin_ns - field_begin_ns; /* to know what changed, the field was brought up to date already */
     if (wish->overlay)
         overlay_draw(frame, painter->params.scene, drawing->snapshot);
     counter_inc(painter->renders, 1);
