@@ -23,7 +23,7 @@ bin := $(if $(filter release,$(config)),$(build),$(out)/bin)
 
 packages := yaml-0.1 jansson libmodbus cglm libwebsockets libturbojpeg libpng cairo libxxhash OpenImageIO
 pkg_cflags := $(shell pkg-config --cflags $(packages) 2>/dev/null)
-pkg_libs   := $(shell pkg-config --libs $(packages) 2>/dev/null) -lflann -lcholmod -lopenblas -lmeshoptimizer -ltinygltf -lm -ldl
+pkg_libs   := $(shell pkg-config --libs $(packages) 2>/dev/null) -lflann -lcholmod -lopenblas -lmeshoptimizer -ltinygltf -ldraco -lm -ldl
 
 warn   := -Wall -Wextra -Wshadow -Wpointer-arith -Wvla -Wundef
 include := -I. -Iserver -I$(gen) -isystem $(gen)/glad/include -isystem /usr/include/suitesparse $(pkg_cflags)

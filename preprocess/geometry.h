@@ -20,7 +20,8 @@ struct geometry {
     struct text names;
     uint32_t vertex_count, index_count, primitive_count, material_count, texture_count;
     size_t texel_bytes;
-    uint32_t node_count, degenerate_triangles, computed_normals; /* said in the report; computed_normals: primitives that had none */
+    /* For the report: nodes taken, triangles without area, primitives that had no normals, primitives that are no triangles. */
+    uint32_t node_count, degenerate_triangles, computed_normals, skipped_lines, skipped_points;
 };
 
 struct geometry_params {

@@ -22,6 +22,7 @@ struct gltf_primitive { /* triangles of one material; model units, the mesh's ow
 struct gltf_mesh {
     char *name;
     uint32_t first_primitive, primitive_count;
+    uint32_t skipped_lines, skipped_points; /* primitives that are no triangles */
 };
 
 struct gltf_node {    /* depth first: a node's sub-tree are the nodes [node, end) */
@@ -51,7 +52,8 @@ struct gltf_model {
     struct gltf_texture *textures; /* what the materials' numbers mean; one per use of an image */
     struct gltf_image *images;
     uint32_t primitive_count, mesh_count, node_count, material_count, texture_count, image_count;
-    uint32_t skipped_lines, skipped_points; /* primitives that are no triangles */
+    uint32_t skipped_lines, skipped_points; /* of all meshes */
+    uint32_t left_out_textures;             /* uses that lie on the surface otherwise than their material's first texture */
 };
 
 /* Parses and decodes. False: why says what is wrong, by name and number; nothing to free. */

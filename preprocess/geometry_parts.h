@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Shared by the files that cut an asset out of a model (geometry*.c). */
+#ifndef PREPROCESS_GEOMETRY_PARTS_H
+#define PREPROCESS_GEOMETRY_PARTS_H
+#include "preprocess/geometry.h"
+
+struct part { /* one primitive under one node */
+    const struct gltf_node *node;
+    const struct gltf_primitive *primitive;
+    uint32_t order;
+    bool blend;
+};
+
+struct vertex { /* every attribute, so that vertices are welded only where all agree */
+    float position[3], normal[3], texcoord[2];
+    uint8_t color[4];
+};
+
+struct part_mesh {
+    struct vertex *vertices; /* one per corner at first */
+    unsigned *indices;
+    size_t vertex_count, index_count;
+};
+
+/* The asset frame from a node's own: units, axes and the node's place. */
+void part_world(const struct geometry_params *params, const struct gltf_node *node, double out[16]);
+
+/* Its triangles in the asset frame, less the origin, welded and in an order that suits a vertex cache. False: out of memory. Finish in
+   both cases. */
+bool part_mesh(struct part_mesh *mesh, const struct part *part, const struct geometry_params *params, struct geometry *geometry);
+void part_mesh_finish(struct part_mesh *mesh);
+
+/* Decodes the textures that the geometry's materials use, and renumbers these; false: why says what is wrong. */
+bool geometry_join_textures(struct geometry *geometry, const struct gltf_model *model, char *why);
+
+#endif
