@@ -11,6 +11,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "preprocess/order.h"
 
 static void hash_text(XXH3_state_t *state, const char *text)
 {
@@ -115,8 +116,52 @@ static bool measure(struct log *log, struct workers *workers, const struct build
     return good;
 }
 
-static bool lay_out(const struct build_input *input, const struct geometry *g, const struct asset_sensor *sensors, const float *distances,
-                    struct build_output *output, char *why)
+/* Distances of one sensor after another follow the vertices to their new numbers. */
+static bool move_distances(float *distances, size_t sensor_count, uint32_t vertex_count, const uint32_t *new_of)
+{
+    float *column = mem_try_array(vertex_count, sizeof(*column));
+    for (size_t s = 0; column && s < sensor_count; s++) {
+        float *at = distances + s * vertex_count;
+        for (uint32_t v = 0; v < vertex_count; v++)
+            column[new_of[v]] = at[v];
+        memcpy(at, column, vertex_count * sizeof(*column));
+    }
+    mem_free(column);
+    return column != NULL;
+}
+
+static void report_levels(struct build_report *report, const struct levels *levels, const struct asset_level *file)
+{
+    report->level_count = levels->count;
+    for (size_t i = 0; i < levels->count; i++)
+        report->levels[i] = (struct build_level){ .triangles = levels->at[i].index_count / 3,
+                                                  .split_triangles = levels->at[i].index_count / 3,
+                                                  .vertices = file[i].vertex_count,
+                                                  .error_m = file[i].error_m };
+}
+
+static bool add_levels(struct workers *workers, const struct build_input *input, struct geometry *g, struct asset_sensor *sensors,
+                       float *distances, struct asset_level *file, struct build_report *report, char *why)
+{
+    struct levels levels = { 0 };
+    uint32_t *new_of = NULL;
+    int64_t since_ns = clock_mono_ns();
+    bool good = levels_make(&levels, g, workers) && order_vertices(g, &levels, g->vertex_count, file, &new_of) &&
+                move_distances(distances, input->sensor_count, g->vertex_count, new_of);
+    for (size_t s = 0; good && s < input->sensor_count; s++)
+        sensors[s].nearest_vertex = new_of[sensors[s].nearest_vertex];
+    if (good)
+        report_levels(report, &levels, file);
+    else
+        snprintf(why, MODEL_WHY_BYTES, "out of memory for the levels of %u vertices", g->vertex_count);
+    levels_finish(&levels);
+    mem_free(new_of);
+    report->levels_s = seconds_since(&since_ns);
+    return good;
+}
+
+static bool lay_out(const struct build_input *input, const struct geometry *g, const struct asset_level *levels, size_t level_count,
+                    const struct asset_sensor *sensors, const float *distances, struct build_output *output, char *why)
 {
     struct asset_parts parts = {
         .key = input->key,
@@ -126,6 +171,8 @@ static bool lay_out(const struct build_input *input, const struct geometry *g, c
         .colors = (const uint8_t(*)[4])g->colors,
         .indices = g->indices,
         .primitives = g->primitives,
+        .levels = levels,
+        .level_count = (uint32_t)level_count,
         .materials = g->materials,
         .textures = g->textures,
         .texels = g->texels,
@@ -162,6 +209,7 @@ bool build_asset(struct log *log, struct workers *workers, const struct build_in
     struct geometry geometry = { 0 };
     struct asset_sensor *sensors = NULL;
     float *distances = NULL;
+    struct asset_level levels[LEVELS_MAX] = { 0 };
     int64_t since_ns = clock_mono_ns();
     *output = (struct build_output){ .missing_node = -1 };
     if (!geometry_cut(&geometry, input->model, &input->geometry, why))
@@ -185,7 +233,8 @@ bool build_asset(struct log *log, struct workers *workers, const struct build_in
         else
             snprintf(why, MODEL_WHY_BYTES, "out of memory for %zu sensors on %u vertices", input->sensor_count, geometry.vertex_count);
     }
-    good = good && lay_out(input, &geometry, sensors, distances, output, why);
+    good = good && add_levels(workers, input, &geometry, sensors, distances, levels, &output->report, why) &&
+           lay_out(input, &geometry, levels, output->report.level_count, sensors, distances, output, why);
     mem_free(sensors);
     mem_free(distances);
     geometry_finish(&geometry);

@@ -5,7 +5,7 @@
 #include "base/log.h"
 #include "base/workers.h"
 #include "plant/sensors.h"
-#include "preprocess/geometry.h"
+#include "preprocess/levels.h"
 #include "surface/surface.h"
 
 #define BUILD_REVISION 4u /* grows when the same input shall give another file */
@@ -18,11 +18,20 @@ struct build_input {
     uint64_t key;
 };
 
+struct build_level {
+    uint32_t triangles; /* as simplified */
+    uint32_t split_triangles; /* after splitting */
+    uint32_t vertices; /* the prefix */
+    float error_m;
+};
+
 struct build_report {
     uint32_t nodes, triangles, vertices, primitives, materials, textures, degenerate_triangles, computed_normals;
     struct surface_report surface; /* zero where the asset has no sensor */
     size_t unreachable_vertices;   /* no sensor's distance is finite there */
-    double read_s, surface_s, solve_s;
+    struct build_level levels[LEVELS_MAX];
+    size_t level_count;
+    double read_s, surface_s, solve_s, levels_s;
 };
 
 struct build_output {

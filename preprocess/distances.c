@@ -23,6 +23,15 @@ static void to_plant(const struct asset_view *view, const double placement[16], 
     transform_point(placement, p, out);
 }
 
+/* Vertices of the model itself, not those that preparing added. */
+static bool is_own(const struct asset_view *view, uint32_t vertex)
+{
+    uint32_t level = 0;
+    while (level + 1 < view->header->level_count && vertex < view->levels[level + 1].vertex_count)
+        level++;
+    return vertex < view->levels[level].vertex_count - view->levels[level].added_count;
+}
+
 bool distances_print(const struct prepare *prepare, const char *folder, int asset_number, int tag, FILE *out, struct diag *diag)
 {
     const struct prepare_asset *asset = &prepare->assets[asset_number];
@@ -45,6 +54,8 @@ bool distances_print(const struct prepare *prepare, const char *folder, int asse
     fprintf(out, "x,y,z,geodesic_m,euclidean_m\n");
     for (uint32_t v = 0; v < vertices; v++) {
         double p[3];
+        if (!is_own(view, v))
+            continue;
         to_plant(view, asset->plant->placement, view->positions_m[v], p);
         double euclidean_m = sqrt(pow(p[0] - source[0], 2) + pow(p[1] - source[1], 2) + pow(p[2] - source[2], 2));
         fprintf(out, "%.9g,%.9g,%.9g,%.7g,%.7g\n", p[0], p[1], p[2], (double)view->geodesic_m[(size_t)column * vertices + v], euclidean_m);

@@ -10,6 +10,31 @@
 
 static const char *const state_names[] = { "failed", "unchanged", "shared", "built" };
 
+/* E-101: levels (error, triangles, after splitting): 0 m 62653 70112, 0.004 m 20100 24000, ... */
+static void levels_text(const struct prepare_asset *asset, FILE *out)
+{
+    if (asset->report.level_count)
+        fprintf(out, "%s: levels (error, triangles, after splitting):", asset->plant->id);
+    for (size_t i = 0; i < asset->report.level_count; i++) {
+        const struct build_level *level = &asset->report.levels[i];
+        fprintf(out, "%s %.3g m %u %u", i ? "," : "", (double)level->error_m, level->triangles, level->split_triangles);
+    }
+    if (asset->report.level_count)
+        fprintf(out, "\n");
+}
+
+static json_t *levels_json(const struct build_report *report)
+{
+    json_t *levels = json_array();
+    for (size_t i = 0; i < report->level_count; i++) {
+        const struct build_level *level = &report->levels[i];
+        json_array_append_new(levels, json_pack("{s:f,s:i,s:i,s:i}", "error_m", (double)level->error_m, "triangles_before",
+                                                (int)level->triangles, "triangles", (int)level->split_triangles, "vertices",
+                                                (int)level->vertices));
+    }
+    return levels;
+}
+
 void report_text(const struct prepare *prepare, FILE *out)
 {
     size_t counts[4] = { 0 }, sensors = 0;
@@ -20,6 +45,7 @@ void report_text(const struct prepare *prepare, FILE *out)
         triangles += asset->triangles;
         sensors += asset->sensor_count;
         const struct surface_report *s = &asset->report.surface;
+        levels_text(asset, out);
         if (asset->state != PREPARE_BUILT || asset->sensor_count == 0)
             continue;
         fprintf(out,
@@ -71,6 +97,8 @@ static json_t *asset_json(const struct prepare *prepare, const struct prepare_as
                                                (int)asset->report.primitives, "materials", (int)asset->report.materials, "textures",
                                                (int)asset->report.textures, "zero_area_triangles", (int)asset->report.degenerate_triangles,
                                                "computed_normals", (int)asset->report.computed_normals));
+    if (asset->state == PREPARE_BUILT)
+        json_object_set_new(root, "levels", levels_json(&asset->report));
     if (asset->state == PREPARE_BUILT && asset->sensor_count)
         json_object_set_new(root, "surface", surface_json(&asset->report));
     mem_free(file);

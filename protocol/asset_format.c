@@ -231,6 +231,9 @@ static bool levels_good(struct check *c)
                          next, h->primitive_count);
         if (l->vertex_count > vertices || (i == 0 && l->vertex_count != vertices))
             return wrong(c, "level %u: the first %u vertices, expected %s%u", i, l->vertex_count, i ? "at most " : "", vertices);
+        uint32_t coarser = i + 1 < h->level_count ? v->levels[i + 1].vertex_count : 0;
+        if (coarser <= l->vertex_count && l->added_count > l->vertex_count - coarser)
+            return wrong(c, "level %u: %u of its %u vertices are added", i, l->added_count, l->vertex_count - coarser);
         if (!isfinite(l->error_m) || l->error_m < error_m || (i == 0 && l->error_m != 0))
             return wrong(c, "level %u: error of %g m after %g m", i, (double)l->error_m, (double)error_m);
         for (uint32_t p = 0; p < l->primitive_count; p++)

@@ -8,7 +8,7 @@
 #include <stdint.h>
 
 #define ASSET_MAGIC "PLCASSET"
-#define ASSET_VERSION 1u
+#define ASSET_VERSION 2u
 #define ASSET_ALIGN 64u
 #define ASSET_NO_TEXTURE UINT32_MAX
 
@@ -53,7 +53,8 @@ struct asset_primitive {               /* a run of triangles with one material, 
 
 struct asset_level { /* a level of detail: its primitives, and the prefix of the vertices that it uses */
     uint32_t first_primitive, primitive_count, vertex_count;
-    float error_m; /* 0 for the finest */
+    uint32_t added_count; /* of its vertices beyond the next coarser level's, the last so many are not the model's own */
+    float error_m;        /* 0 for the finest */
 };
 
 enum asset_alpha { ASSET_ALPHA_OPAQUE, ASSET_ALPHA_MASK, ASSET_ALPHA_BLEND };

@@ -172,12 +172,13 @@ static void the_layout_is_pinned(void **state)
     assert_int_equal(offsetof(struct asset_header, sections), 120);
     assert_int_equal(sizeof(struct asset_material), 80);
     assert_int_equal(offsetof(struct asset_material, base_color_texture), 48);
+    assert_int_equal(sizeof(struct asset_level), 20);
     assert_int_equal(sizeof(struct asset_texture), 24);
     assert_int_equal(sizeof(struct asset_sensor), 40);
     assert_int_equal(ASSET_SECTION_COUNT, 13);
     struct file f = build(&good);
-    assert_memory_equal(f.bytes, "PLCASSET\1\0\0\0\x48\1\0\0", 16);
-    assert_int_equal(XXH3_64bits(f.bytes + 328, f.size - 328), 0xa9b61e8188a9c99full); /* changes only with the format's version */
+    assert_memory_equal(f.bytes, "PLCASSET\2\0\0\0\x48\1\0\0", 16);
+    assert_int_equal(XXH3_64bits(f.bytes + 328, f.size - 328), 0x998d622f1d1e9554ull); /* changes only with the format's version */
     free(f.bytes);
 }
 
@@ -202,8 +203,8 @@ static void truncated_or_foreign_files_are_refused(void **state)
     memcpy(f.bytes, "glTF", 4);
     refused_sealed(&f, "magic");
     f = build(&good);
-    f.header->version = 2;
-    refused_sealed(&f, "version 2, this program reads version 1");
+    f.header->version = 3;
+    refused_sealed(&f, "version 3, this program reads version 2");
     f = build(&good);
     f.header->header_bytes = 320;
     refused_sealed(&f, "header of 320 bytes");
@@ -329,6 +330,9 @@ static void wrong_primitives_and_levels_are_refused(void **state)
     f = build(&good);
     ((struct asset_level *)part(&f, ASSET_LEVELS))[1].error_m = -1;
     refused_sealed(&f, "level 1: error of -1 m after 0 m");
+    f = build(&good);
+    ((struct asset_level *)part(&f, ASSET_LEVELS))[0].added_count = 2;
+    refused_sealed(&f, "level 0: 2 of its 1 vertices are added");
     f = build(&good);
     f.header->level_count = 1;
     f.header->sections[ASSET_LEVELS].bytes = sizeof(struct asset_level);

@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Coarser versions of an asset's triangles, each made from the one before, so that their vertices are nested. */
+#ifndef PREPROCESS_LEVELS_H
+#define PREPROCESS_LEVELS_H
+#include "base/workers.h"
+#include "preprocess/geometry.h"
+
+#define LEVELS_MAX 6
+
+struct level {
+    uint32_t *indices;                  /* vertices of the geometry */
+    struct asset_primitive *primitives; /* first_index counts from this level's first; without those that have no triangle left */
+    uint32_t index_count, primitive_count;
+    float error_m; /* no point of the finest surface is farther from this one, nor the other way round; 0 for the finest */
+};
+
+struct levels {
+    struct level at[LEVELS_MAX]; /* finest first */
+    size_t count;
+};
+
+/* Borders between materials, texture seams and vertex colours stay where they are, within the error. A part no larger than the error that
+   lies on a larger one within the error is left out. False: out of memory; nothing to finish. */
+bool levels_make(struct levels *levels, const struct geometry *geometry, struct workers *workers);
+void levels_finish(struct levels *levels);
+
+#endif

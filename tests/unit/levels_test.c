@@ -1,0 +1,267 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Levels of detail: nested, without cracks, true to their error; vertices in the order that the asset file wants. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "preprocess/order.h"
+#include "preprocess/places.h"
+#include "surface/bvh.h"
+#include "surface/vec.h"
+
+#define AROUND 120u /* squares round the torus, and round its tube */
+#define TUBE 48u
+#define MAJOR_M 2.0
+#define MINOR_M 0.5
+
+struct set_of { /* what the tests look at */
+    struct geometry g;
+    struct levels levels;
+    struct places places;
+};
+
+static uint32_t add_vertex(struct geometry *g, double u, double v)
+{
+    uint32_t i = g->vertex_count++;
+    double a = 2 * acos(-1) * u, b = 2 * acos(-1) * v, ring = MAJOR_M + MINOR_M * cos(b);
+    g->positions_m[i][0] = (float)(ring * cos(a));
+    g->positions_m[i][1] = (float)(ring * sin(a));
+    g->positions_m[i][2] = (float)(MINOR_M * sin(b));
+    g->normals[i][0] = (float)(cos(b) * cos(a));
+    g->normals[i][1] = (float)(cos(b) * sin(a));
+    g->normals[i][2] = (float)sin(b);
+    return i;
+}
+
+/* A part of a torus as one primitive: its own vertices, also where it meets itself or another part. */
+static void add_part(struct geometry *g, uint32_t first, uint32_t end, uint32_t material)
+{
+    uint32_t corner = g->vertex_count;
+    g->primitives[g->primitive_count] = (struct asset_primitive){ .first_index = g->index_count, .material = material };
+    for (uint32_t x = first; x <= end; x++)
+        for (uint32_t y = 0; y <= TUBE; y++)
+            add_vertex(g, (double)(x % AROUND) / AROUND, (double)(y % TUBE) / TUBE);
+    for (uint32_t x = 0; x < end - first; x++)
+        for (uint32_t y = 0; y < TUBE; y++) {
+            uint32_t a = corner + x * (TUBE + 1) + y, b = a + TUBE + 1;
+            const uint32_t six[6] = { a, b, b + 1, a, b + 1, a + 1 };
+            memcpy(g->indices + g->index_count, six, sizeof(six));
+            g->index_count += 6;
+        }
+    g->primitives[g->primitive_count].index_count = g->index_count - g->primitives[g->primitive_count].first_index;
+    g->primitive_count++;
+}
+
+/* A closed torus of two materials. */
+static int set_up(void **state)
+{
+    struct set_of *s = mem_new(sizeof(*s));
+    struct geometry *g = &s->g;
+    size_t most = 2 * (AROUND + 2) * (TUBE + 1);
+    g->positions_m = mem_array(most, sizeof(*g->positions_m));
+    g->normals = mem_array(most, sizeof(*g->normals));
+    g->indices = mem_array((size_t)AROUND * TUBE * 6, sizeof(*g->indices));
+    g->primitives = mem_array(2, sizeof(*g->primitives));
+    g->materials = mem_array(2, sizeof(*g->materials));
+    g->material_count = 2;
+    for (int m = 0; m < 2; m++)
+        g->materials[m].base_color_texture = g->materials[m].metallic_roughness_texture = g->materials[m].normal_texture =
+            g->materials[m].occlusion_texture = g->materials[m].emissive_texture = ASSET_NO_TEXTURE;
+    add_part(g, 0, AROUND / 3, 0);
+    add_part(g, AROUND / 3, AROUND, 1);
+    assert_true(levels_make(&s->levels, g, NULL));
+    assert_true(places_init(&s->places, (const float(*)[3])g->positions_m, g->vertex_count));
+    *state = s;
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    struct set_of *s = *state;
+    levels_finish(&s->levels);
+    places_finish(&s->places);
+    geometry_finish(&s->g);
+    mem_free(s);
+    return 0;
+}
+
+static void levels_grow_coarser(void **state)
+{
+    const struct set_of *s = *state;
+    assert_true(s->levels.count >= 4);
+    assert_memory_equal(s->levels.at[0].indices, s->g.indices, s->g.index_count * sizeof(uint32_t));
+    assert_float_equal(s->levels.at[0].error_m, 0, 0);
+    for (size_t l = 1; l < s->levels.count; l++) {
+        const struct level *level = &s->levels.at[l];
+        print_message("# level %zu: %u triangles, error %.4f m\n", l, level->index_count / 3, (double)level->error_m);
+        assert_true(level->index_count * 10 <= (level - 1)->index_count * 7);
+        assert_true(level->error_m > 0 && level->error_m >= (level - 1)->error_m);
+    }
+    assert_true(s->levels.at[s->levels.count - 1].index_count < 600);
+}
+
+static void levels_are_nested(void **state)
+{
+    const struct set_of *s = *state;
+    char *used = mem_array(s->g.vertex_count, 1);
+    for (size_t l = 0; l + 1 < s->levels.count; l++) {
+        memset(used, 0, s->g.vertex_count);
+        for (uint32_t i = 0; i < s->levels.at[l].index_count; i++)
+            used[s->levels.at[l].indices[i]] = 1;
+        for (uint32_t i = 0; i < s->levels.at[l + 1].index_count; i++)
+            assert_true(used[s->levels.at[l + 1].indices[i]]);
+    }
+    mem_free(used);
+}
+
+/* Every edge has two faces, which run along it in opposite directions. */
+static void closed_stays_closed(void **state)
+{
+    const struct set_of *s = *state;
+    for (size_t l = 0; l < s->levels.count; l++) {
+        const struct level *level = &s->levels.at[l];
+        struct edge_table edges;
+        int *faces = mem_array(level->index_count, sizeof(*faces)), *balance = mem_array(level->index_count, sizeof(*balance));
+        edge_table_init(&edges, level->index_count);
+        for (uint32_t i = 0; i < level->index_count; i++) {
+            uint32_t a = s->places.of_vertex[level->indices[i]];
+            uint32_t b = s->places.of_vertex[level->indices[i % 3 == 2 ? i - 2 : i + 1]];
+            assert_int_not_equal(a, b);
+            uint32_t e = edge_table_add(&edges, a, b);
+            faces[e]++;
+            balance[e] += a < b ? 1 : -1;
+        }
+        for (size_t e = 0; e < edges.count; e++)
+            assert_true(faces[e] == 2 && balance[e] == 0);
+        edge_table_finish(&edges);
+        mem_free(faces);
+        mem_free(balance);
+    }
+}
+
+/* The border between the materials lies in two planes through the axis. */
+static void materials_keep_their_border(void **state)
+{
+    const struct set_of *s = *state;
+    for (size_t l = 0; l < s->levels.count; l++) {
+        const struct level *level = &s->levels.at[l];
+        assert_int_equal(level->primitive_count, 2);
+        for (uint32_t p = 0; p < 2; p++) {
+            const struct asset_primitive *primitive = &level->primitives[p];
+            assert_int_equal(primitive->material, p);
+            for (uint32_t i = primitive->first_index; i < primitive->first_index + primitive->index_count; i++) {
+                const float *at = s->g.positions_m[level->indices[i]];
+                double turn = atan2((double)at[1], (double)at[0]) / (2 * acos(-1));
+                turn += turn < -1e-6 ? 1 : 0;
+                bool in_first = turn < 1.0 / 3 + 1e-5 || turn > 1 - 1e-5, in_second = turn > 1.0 / 3 - 1e-5 || turn < 1e-5;
+                assert_true(p == 0 ? in_first : in_second);
+            }
+        }
+    }
+}
+
+static double random_unit(uint32_t *seed)
+{
+    *seed = *seed * 1664525u + 1013904223u;
+    return (*seed >> 8) / 16777216.0;
+}
+
+static double brute_distance(const struct set_of *s, const struct level *level, const double p[3])
+{
+    double best = INFINITY;
+    for (uint32_t i = 0; i < level->index_count; i += 3) {
+        double corners[3][3], w[3], at[3];
+        for (int c = 0; c < 3; c++)
+            for (int axis = 0; axis < 3; axis++)
+                corners[c][axis] = (double)s->g.positions_m[level->indices[i + (uint32_t)c]][axis];
+        triangle_nearest(p, corners[0], corners[1], corners[2], w);
+        for (int axis = 0; axis < 3; axis++)
+            at[axis] = w[0] * corners[0][axis] + w[1] * corners[1][axis] + w[2] * corners[2][axis];
+        best = fmin(best, vec_distance(p, at));
+    }
+    return best;
+}
+
+/* The largest distance of random points of one level from another. */
+static double stray(const struct set_of *s, const struct level *from, const struct level *to, uint32_t *seed)
+{
+    double most = 0;
+    for (int n = 0; n < 300; n++) {
+        uint32_t i = 3 * (uint32_t)(random_unit(seed) * (from->index_count / 3));
+        double a = random_unit(seed), b = random_unit(seed), p[3];
+        if (a + b > 1) {
+            a = 1 - a;
+            b = 1 - b;
+        }
+        for (int axis = 0; axis < 3; axis++)
+            p[axis] = (1 - a - b) * (double)s->g.positions_m[from->indices[i]][axis] +
+                      a * (double)s->g.positions_m[from->indices[i + 1]][axis] + b * (double)s->g.positions_m[from->indices[i + 2]][axis];
+        most = fmax(most, brute_distance(s, to, p));
+    }
+    return most;
+}
+
+static void error_is_a_bound(void **state)
+{
+    const struct set_of *s = *state;
+    uint32_t seed = 7;
+    for (size_t l = 1; l < s->levels.count; l++) {
+        double error_m = (double)s->levels.at[l].error_m;
+        double there_m = stray(s, &s->levels.at[0], &s->levels.at[l], &seed), back_m = stray(s, &s->levels.at[l], &s->levels.at[0], &seed);
+        print_message("# level %zu: error %.4f m, found %.4f m and %.4f m (seed 7)\n", l, error_m, there_m, back_m);
+        assert_true(fmax(there_m, back_m) <= 1.05 * error_m);
+        assert_true(fmax(there_m, back_m) >= 0.3 * error_m); /* and no wild guess */
+    }
+}
+
+static void a_level_is_a_prefix(void **state)
+{
+    struct set_of *s = *state;
+    struct asset_level file[LEVELS_MAX];
+    uint32_t *new_of, first_added = s->g.vertex_count - 5, count = s->g.vertex_count, primitives = 0;
+    float(*before)[3] = mem_array(count, sizeof(*before));
+    memcpy(before, s->g.positions_m, count * sizeof(*before));
+    assert_true(order_vertices(&s->g, &s->levels, first_added, file, &new_of));
+    for (uint32_t v = 0; v < count; v++)
+        assert_memory_equal(before[v], s->g.positions_m[new_of[v]], sizeof(*before));
+    for (size_t l = 0; l < s->levels.count; l++) {
+        uint32_t coarser = l + 1 < s->levels.count ? file[l + 1].vertex_count : 0, highest = 0;
+        assert_int_equal(file[l].first_primitive, primitives);
+        primitives += file[l].primitive_count;
+        for (uint32_t p = 0; p < file[l].primitive_count; p++) {
+            const struct asset_primitive *primitive = &s->g.primitives[file[l].first_primitive + p];
+            for (uint32_t i = 0; i < primitive->index_count; i++) {
+                uint32_t v = s->g.indices[primitive->first_index + i];
+                highest = v > highest ? v : highest;
+                assert_int_equal(v, new_of[s->levels.at[l].indices[s->levels.at[l].primitives[p].first_index + i]]);
+            }
+        }
+        assert_true(highest < file[l].vertex_count && coarser < file[l].vertex_count);
+        assert_true(file[l].vertex_count < count || l == 0);
+        assert_true(file[l].added_count <= file[l].vertex_count - coarser);
+        for (uint32_t v = first_added; v < count; v++)
+            if (new_of[v] >= coarser && new_of[v] < file[l].vertex_count)
+                assert_true(new_of[v] >= file[l].vertex_count - file[l].added_count);
+    }
+    mem_free(before);
+    mem_free(new_of);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(levels_grow_coarser, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(levels_are_nested, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(closed_stays_closed, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(materials_keep_their_border, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(error_is_a_bound, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_level_is_a_prefix, set_up, tear_down),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
