@@ -53,25 +53,15 @@ void attach_to_tri(struct attach *attach, uint32_t point, uint32_t tri, double d
 
 /* --- carrying it out ------------------------------------------------------------------------------------------------------ */
 
-static uint32_t root_of(uint32_t *target, uint32_t i)
-{
-    while (target[i] != i) {
-        target[i] = target[target[i]];
-        i = target[i];
-    }
-    return i;
-}
-
 static void find_targets(const struct attach *attach, size_t point_count, uint32_t *target)
 {
     for (uint32_t i = 0; i < point_count; i++)
         target[i] = i;
     for (size_t i = 0; i < attach->pair_count; i++) {
-        uint32_t a = root_of(target, attach->pairs[i].a), b = root_of(target, attach->pairs[i].b);
-        target[a < b ? b : a] = a < b ? a : b;
+        trimesh_join(target, attach->pairs[i].a, attach->pairs[i].b);
     }
     for (uint32_t i = 0; i < point_count; i++)
-        target[i] = root_of(target, i);
+        target[i] = trimesh_root(target, i);
 }
 
 struct lists { /* items by edge (lower points first, then by t) and by triangle */
@@ -151,6 +141,11 @@ static void piece_tri(struct piece *piece, uint32_t a, uint32_t b, uint32_t c)
     memcpy(piece->tris[piece->tri_count++], (const uint32_t[3]){ a, b, c }, sizeof(*piece->tris));
 }
 
+static bool is_corner(const uint32_t corners[3], uint32_t point)
+{
+    return point == corners[0] || point == corners[1] || point == corners[2];
+}
+
 /* Local points on the side from a to b (global c0 to c1), in that order, without the ends. */
 static size_t side(struct piece *piece, const struct lists *lists, const uint32_t corners[3], uint32_t a, uint32_t b, uint32_t *out)
 {
@@ -162,7 +157,7 @@ static size_t side(struct piece *piece, const struct lists *lists, const uint32_
     for (uint32_t i = 0; i < n; i++) {
         const struct attach_item *item = &lists->by_edge[corners[a] < corners[b] ? first + i : first + n - 1 - i];
         double t = corners[a] < corners[b] ? item->t : 1 - item->t;
-        if (item->point == corners[0] || item->point == corners[1] || item->point == corners[2])
+        if (is_corner(corners, item->point))
             continue;
         out[count++] = piece_point(piece, item->point, piece->at[a][0] + t * (piece->at[b][0] - piece->at[a][0]),
                                    piece->at[a][1] + t * (piece->at[b][1] - piece->at[a][1]));
@@ -176,15 +171,14 @@ static double distance2(const struct piece *piece, uint32_t a, uint32_t b)
     return x * x + y * y;
 }
 
-/* The chains a-b and a-c-b, with what was set into them, closed like a zip (as trimesh_sample does). */
+/* The chains a-b, which has most points, and a-c-b closed like a zip, as trimesh_sample does. */
 static void zip(struct piece *piece, const uint32_t *low, size_t low_count, const uint32_t *high, size_t high_count)
 {
-    size_t i = 1, j = 1;
+    size_t i = 1, j = 1, ab = low_count - 1, acb = high_count - 1;
     piece_tri(piece, low[0], low[1], high[1]);
-    while (i < low_count - 1 || j < high_count - 2) {
-        bool take_low =
-            i < low_count - 1 && (j == high_count - 2 || distance2(piece, low[i + 1], high[j]) < distance2(piece, low[i], high[j + 1]));
-        if (take_low) {
+    while (i < ab) {
+        bool high_done = j == acb - 1, low_waits = i == ab - 1;
+        if (high_done || (!low_waits && distance2(piece, low[i + 1], high[j]) < distance2(piece, low[i], high[j + 1]))) {
             piece_tri(piece, low[i], low[i + 1], high[j]);
             i++;
         } else {
@@ -289,6 +283,15 @@ static void lay_out(struct piece *piece, const struct trimesh *mesh, const uint3
     piece_point(piece, corners[2], vec_dot(pq, pr) / length, sqrt(vec_dot(n, n)) / length);
 }
 
+static size_t side_count(const struct lists *lists, const uint32_t corners[3], uint32_t i)
+{
+    uint32_t e = edge_table_find(&lists->edges, corners[i], corners[(i + 1) % 3]);
+    size_t count = 0;
+    for (uint32_t n = e == TRIMESH_NONE ? 0 : lists->edge_first[e]; e != TRIMESH_NONE && n < lists->edge_first[e + 1]; n++)
+        count += !is_corner(corners, lists->by_edge[n].point);
+    return count;
+}
+
 static bool touched(const struct lists *lists, const uint32_t v[3], size_t t)
 {
     return lists->tri_first[t + 1] > lists->tri_first[t] || edge_table_find(&lists->edges, v[0], v[1]) != TRIMESH_NONE ||
@@ -317,9 +320,9 @@ static void cut(struct cutter *cutter, const struct lists *lists, struct trimesh
     uint32_t corners[3], source = mesh->tri_source[t];
     memcpy(corners, mesh->tris[t], sizeof(corners));
     lay_out(piece, mesh, corners);
-    uint32_t a = 0; /* the longest side begins at a */
+    uint32_t a = 0; /* the side with most points begins at a */
     for (uint32_t i = 1; i < 3; i++)
-        if (distance2(piece, i, (i + 1) % 3) > distance2(piece, a, (a + 1) % 3))
+        if (side_count(lists, corners, i) > side_count(lists, corners, a))
             a = i;
     uint32_t b = (a + 1) % 3, c = (a + 2) % 3;
     size_t low = list_chain(piece, lists, corners, (const uint32_t[2]){ a, b }, 1, &cutter->low, &cutter->low_capacity);

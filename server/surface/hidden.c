@@ -12,7 +12,7 @@
 #define OPEN_OF_SIZE 0.05 /* open edges together, in roots of the part's area: a hair gap's leftovers, not a pipe's end */
 #define RAYS 5
 #define RAYS_INSIDE 4 /* so many must agree */
-#define VOTES 5       /* triangles asked of each region */
+#define VOTE_EVERY 16 /* of a region's triangles, one of so many is asked */
 #define HITS 512      /* parts met by one ray that are told apart */
 
 void hidden_closed_parts(const struct trimesh *mesh, const uint32_t *part, size_t parts, char *closed)
@@ -30,15 +30,19 @@ void hidden_closed_parts(const struct trimesh *mesh, const uint32_t *part, size_
         area_m2[part[t]] += sqrt(vec_dot(n, n)) / 2;
         for (int i = 0; i < 3; i++) {
             uint32_t e = edge_table_add(&edges, v[i], v[(i + 1) % 3]);
-            faces[e] = (unsigned char)(faces[e] < 2 ? faces[e] + 1 : 2);
+            faces[e] = (unsigned char)(faces[e] < 3 ? faces[e] + 1 : 3);
         }
     }
-    for (size_t t = 0; t < mesh->tri_count; t++)
+    for (size_t t = 0; t < mesh->tri_count; t++) {
+        double open = 0;
+        bool fin = false; /* it stands on an edge that is closed without it */
         for (int i = 0; i < 3; i++) {
-            const uint32_t a = mesh->tris[t][i], b = mesh->tris[t][(i + 1) % 3];
-            if (faces[edge_table_find(&edges, a, b)] == 1)
-                open_m[part[t]] += vec_distance(mesh->points[a], mesh->points[b]);
+            const uint32_t a = mesh->tris[t][i], b = mesh->tris[t][(i + 1) % 3], e = edge_table_find(&edges, a, b);
+            open += faces[e] == 1 ? vec_distance(mesh->points[a], mesh->points[b]) : 0;
+            fin = fin || faces[e] > 2;
         }
+        open_m[part[t]] += fin ? 0 : open;
+    }
     for (size_t p = 0; p < parts; p++)
         closed[p] = open_m[p] <= OPEN_OF_SIZE * sqrt(area_m2[p]);
     edge_table_finish(&edges);
@@ -160,15 +164,6 @@ static uint32_t *parts_of_points(const struct trimesh *mesh, const uint32_t *par
     return of_point;
 }
 
-static uint32_t root_of(uint32_t *parent, uint32_t i)
-{
-    while (parent[i] != i) {
-        parent[i] = parent[parent[i]];
-        i = parent[i];
-    }
-    return i;
-}
-
 /* region[point]: points that hang together without passing a point where parts meet. */
 static uint32_t *find_regions(const struct trimesh *mesh, const char *mixed)
 {
@@ -179,10 +174,10 @@ static uint32_t *find_regions(const struct trimesh *mesh, const char *mixed)
         for (int i = 0; i < 3; i++) {
             uint32_t a = mesh->tris[t][i], b = mesh->tris[t][(i + 1) % 3];
             if (!mixed[a] && !mixed[b])
-                region[root_of(region, a)] = root_of(region, b);
+                trimesh_join(region, a, b);
         }
     for (uint32_t i = 0; i < mesh->point_count; i++)
-        region[i] = root_of(region, i);
+        region[i] = trimesh_root(region, i);
     return region;
 }
 
@@ -200,6 +195,19 @@ static bool untouched(const struct trimesh *mesh, size_t t, const char *mixed)
     return !mixed[mesh->tris[t][0]] && !mixed[mesh->tris[t][1]] && !mixed[mesh->tris[t][2]];
 }
 
+static void ask(struct search *search, struct workers *workers, const size_t *asked, size_t count)
+{
+    search->asked = asked;
+    if (workers)
+        workers_for(workers, count, 256, search_some, search);
+    else
+        search_some(search, 0, count);
+}
+
+struct vote { /* of a region */
+    size_t seen, asked, hidden;
+};
+
 void hidden_find(const struct trimesh *mesh, const uint32_t *part, const struct trimesh *solid, const uint32_t *solid_part,
                  const char *closed, double tolerance_m, struct workers *workers, char *hidden)
 {
@@ -207,17 +215,7 @@ void hidden_find(const struct trimesh *mesh, const uint32_t *part, const struct 
     char *mixed = mem_array(mesh->point_count, 1);
     uint32_t *of_point = parts_of_points(mesh, part, mixed), *region = find_regions(mesh, mixed);
     size_t *asked = mem_array(mesh->tri_count, sizeof(*asked)), asked_count = 0;
-    struct vote {
-        unsigned asked, hidden;
-    } *votes = mem_array(mesh->point_count, sizeof(*votes));
-    for (size_t t = 0; t < mesh->tri_count; t++) {
-        uint32_t r = region_of(mesh, t, mixed, region);
-        if (untouched(mesh, t, mixed) && votes[r].asked >= VOTES)
-            continue;
-        if (r != TRIMESH_NONE && untouched(mesh, t, mixed))
-            votes[r].asked++;
-        asked[asked_count++] = t;
-    }
+    struct vote *votes = mem_array(mesh->point_count, sizeof(*votes));
     struct search search = { .mesh = mesh,
                              .solid = solid,
                              .part = part,
@@ -225,20 +223,28 @@ void hidden_find(const struct trimesh *mesh, const uint32_t *part, const struct 
                              .closed = closed,
                              .bvh = bvh,
                              .tolerance_m = tolerance_m,
-                             .asked = asked,
                              .hidden = hidden };
-    if (workers)
-        workers_for(workers, asked_count, 256, search_some, &search);
-    else
-        search_some(&search, 0, asked_count);
+    for (size_t t = 0; t < mesh->tri_count; t++) { /* those where parts meet, and of each region some */
+        uint32_t r = region_of(mesh, t, mixed, region);
+        if (!untouched(mesh, t, mixed) || votes[r].seen++ % VOTE_EVERY == 0)
+            asked[asked_count++] = t;
+    }
+    ask(&search, workers, asked, asked_count);
     for (size_t i = 0; i < asked_count; i++)
-        if (untouched(mesh, asked[i], mixed))
-            votes[region_of(mesh, asked[i], mixed, region)].hidden += (unsigned)hidden[asked[i]];
-    for (size_t t = 0; t < mesh->tri_count; t++)
-        if (untouched(mesh, t, mixed)) {
-            const struct vote *vote = &votes[region_of(mesh, t, mixed, region)];
-            hidden[t] = 2 * vote->hidden > vote->asked;
+        if (untouched(mesh, asked[i], mixed)) {
+            struct vote *vote = &votes[region_of(mesh, asked[i], mixed, region)];
+            vote->asked++;
+            vote->hidden += (size_t)hidden[asked[i]];
         }
+    asked_count = 0;
+    for (size_t t = 0; t < mesh->tri_count; t++) { /* regions that do not agree with themselves are asked in full */
+        const struct vote *vote = untouched(mesh, t, mixed) ? &votes[region_of(mesh, t, mixed, region)] : NULL;
+        if (vote && vote->hidden > 0 && vote->hidden < vote->asked)
+            asked[asked_count++] = t;
+        else if (vote)
+            hidden[t] = vote->hidden > 0;
+    }
+    ask(&search, workers, asked, asked_count);
     bvh_destroy(&bvh);
     mem_free(mixed);
     mem_free(of_point);

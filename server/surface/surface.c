@@ -140,21 +140,29 @@ static bool close_seams(struct surface *surface)
     return made.k >= 0;
 }
 
-/* Parts are what hangs together before parts are joined to each other; numbered from 0. part[tri]. */
+/* Parts are what hangs together by edges before parts are joined to each other (a point in common is not enough: a corner may touch
+   anything); numbered from 0. part[tri]. */
 static size_t number_parts(const struct trimesh *mesh, uint32_t *part)
 {
-    uint32_t *component = mem_array(mesh->point_count, sizeof(*component)), *number = mem_array(mesh->point_count, sizeof(*number));
-    uint32_t count = 0;
-    trimesh_components(mesh, component);
-    memset(number, 0xff, mesh->point_count * sizeof(*number));
-    for (size_t t = 0; t < mesh->tri_count; t++) {
-        uint32_t root = component[mesh->tris[t][0]];
-        if (number[root] == TRIMESH_NONE)
-            number[root] = count++;
-        part[t] = number[root];
-    }
-    mem_free(component);
-    mem_free(number);
+    struct edge_table edges;
+    uint32_t *first = mem_array(mesh->tri_count * 3, sizeof(*first)), count = 0;
+    edge_table_init(&edges, mesh->tri_count * 3 / 2);
+    for (uint32_t t = 0; t < mesh->tri_count; t++)
+        part[t] = t;
+    for (uint32_t t = 0; t < mesh->tri_count; t++)
+        for (int i = 0; i < 3; i++) {
+            size_t before = edges.count;
+            uint32_t e = edge_table_add(&edges, mesh->tris[t][i], mesh->tris[t][(i + 1) % 3]);
+            if (edges.count > before)
+                first[e] = t;
+            else
+                trimesh_join(part, t, first[e]);
+        }
+    for (uint32_t t = 0; t < mesh->tri_count; t++) /* the root is the lowest, so it is numbered before the others ask for it */
+        first[t] = trimesh_root(part, t) == t ? count++ : first[trimesh_root(part, t)];
+    memcpy(part, first, mesh->tri_count * sizeof(*part));
+    mem_free(first);
+    edge_table_finish(&edges);
     return count;
 }
 

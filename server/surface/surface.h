@@ -41,9 +41,9 @@ struct surface_report {
     size_t components, components_after;     /* pieces of surface that hang together, before and after bridging */
     size_t bridges;                          /* vertices joined to another place of the surface */
     double longest_bridge_m;
-    int k;                  /* neighbours asked for; 0: nothing to bridge */
-    size_t samples;         /* points added */
-    size_t hidden_vertices; /* of the model: inside another closed part */
+    int k;                    /* neighbours asked for; 0: nothing to bridge */
+    size_t samples;           /* points added */
+    size_t hidden_vertices;   /* of the model: inside another closed part */
     double heat_disagreement; /* root mean square difference to the heat method, as a share of the largest distance; worst source so far */
     double weld_s, bridge_s, sample_s, laplacian_s, factor_s;
 };

@@ -336,14 +336,19 @@ static size_t side_count(const struct cuts *cuts, uint32_t a, uint32_t b)
     return e == TRIMESH_NONE ? 1 : cuts->parts[e];
 }
 
-/* Closes a triangle whose edges were cut like a zip: one chain is its longest side a-b, the other goes a-c-b, and at each step the shorter
-   cross edge is taken. A thin triangle gets no points inside, however long it is. */
+/* Closes a triangle whose edges were cut like a zip: one chain is the side a-b that was cut most, the other goes a-c-b, and at each step the
+   shorter cross edge is taken. The chain a-b waits before b for the other one, so that no piece is flat. A thin triangle gets no points
+   inside, however long it is. */
 static void zip_tri(struct trimesh *mesh, const struct cuts *cuts, size_t t)
 {
     int side = longest_side(mesh, t);
+    for (int i = 0; i < 3; i++)
+        if (side_count(cuts, mesh->tris[t][i], mesh->tris[t][(i + 1) % 3]) >
+            side_count(cuts, mesh->tris[t][side], mesh->tris[t][(side + 1) % 3]))
+            side = i;
     uint32_t a = mesh->tris[t][side], b = mesh->tris[t][(side + 1) % 3], c = mesh->tris[t][(side + 2) % 3], source = mesh->tri_source[t];
     size_t ab = side_count(cuts, a, b), acb = side_count(cuts, a, c) + side_count(cuts, c, b);
-    if (ab == 1 && acb == 2)
+    if (ab == 1)
         return;
     uint32_t *low = mem_array(ab + acb + 2, sizeof(*low)), *high = low + ab + 1;
     low[side_points(cuts, a, b, low)] = b;
@@ -352,9 +357,9 @@ static void zip_tri(struct trimesh *mesh, const struct cuts *cuts, size_t t)
     high[n] = b;
     size_t i = 1, j = 1;
     memcpy(mesh->tris[t], (const uint32_t[3]){ a, low[1], high[1] }, sizeof(*mesh->tris));
-    while (i < ab || j < acb - 1) { /* the last piece ends at b on both chains */
-        bool take_low = i < ab && (j == acb - 1 || edge2(mesh, low[i + 1], high[j]) < edge2(mesh, low[i], high[j + 1]));
-        if (take_low) {
+    while (i < ab) {
+        bool high_done = j == acb - 1, low_waits = i == ab - 1;
+        if (high_done || (!low_waits && edge2(mesh, low[i + 1], high[j]) < edge2(mesh, low[i], high[j + 1]))) {
             trimesh_add_tri(mesh, low[i], low[i + 1], high[j], source);
             i++;
         } else {
@@ -414,7 +419,7 @@ void trimesh_sample(struct trimesh *mesh, double spacing_m, size_t point_limit)
 
 /* --- counting ------------------------------------------------------------------------------------------------------------ */
 
-static uint32_t root_of(uint32_t *parent, uint32_t i)
+uint32_t trimesh_root(uint32_t *parent, uint32_t i)
 {
     while (parent[i] != i) {
         parent[i] = parent[parent[i]];
@@ -423,10 +428,10 @@ static uint32_t root_of(uint32_t *parent, uint32_t i)
     return i;
 }
 
-static void join(uint32_t *parent, uint32_t a, uint32_t b)
+void trimesh_join(uint32_t *parent, uint32_t a, uint32_t b)
 {
-    a = root_of(parent, a);
-    b = root_of(parent, b);
+    a = trimesh_root(parent, a);
+    b = trimesh_root(parent, b);
     if (a < b)
         parent[b] = a;
     else
@@ -438,15 +443,15 @@ size_t trimesh_components(const struct trimesh *mesh, uint32_t *component)
     for (size_t i = 0; i < mesh->point_count; i++)
         component[i] = (uint32_t)i;
     for (size_t t = 0; t < mesh->tri_count; t++) {
-        join(component, mesh->tris[t][0], mesh->tris[t][1]);
-        join(component, mesh->tris[t][1], mesh->tris[t][2]);
+        trimesh_join(component, mesh->tris[t][0], mesh->tris[t][1]);
+        trimesh_join(component, mesh->tris[t][1], mesh->tris[t][2]);
     }
     char *used = mem_array(mesh->point_count, 1);
     for (size_t t = 0; t < mesh->tri_count; t++)
-        used[root_of(component, mesh->tris[t][0])] = 1;
+        used[trimesh_root(component, mesh->tris[t][0])] = 1;
     size_t count = 0;
     for (size_t i = 0; i < mesh->point_count; i++) {
-        component[i] = root_of(component, (uint32_t)i);
+        component[i] = trimesh_root(component, (uint32_t)i);
         count += (size_t)used[i];
     }
     mem_free(used);

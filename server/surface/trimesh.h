@@ -34,6 +34,10 @@ void trimesh_sample(struct trimesh *mesh, double spacing_m, size_t point_limit);
 /* component[point]: the lowest point that hangs together with it. Returns how many there are among points that have triangles. */
 size_t trimesh_components(const struct trimesh *mesh, uint32_t *component);
 
+/* Sets that grow together: parent[i] = i at first; the root is the lowest member. */
+uint32_t trimesh_root(uint32_t *parent, uint32_t i);
+void trimesh_join(uint32_t *parent, uint32_t a, uint32_t b);
+
 double trimesh_area(const struct trimesh *mesh);
 
 /* Edges in a hash table: (a, b) in any order -> a number from 0. */
