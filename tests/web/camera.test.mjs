@@ -3,8 +3,8 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import {
-    basis, depthAt, distance, elevation, enterBox, fit, home, MAX_ELEVATION_DEG, MIN_DISTANCE_M, orbit, pan, projector, ray, same, valid,
-    zoom,
+    basis, depthAt, distance, elevation, enterBox, face, fit, home, MAX_ELEVATION_DEG, MIN_DISTANCE_M, orbit, pan, projector, ray, same,
+    valid, zoom,
 } from '../../clients/web/core/camera.js';
 import { flight, FLIGHT_MS } from '../../clients/web/core/flight.js';
 import { along, dot, length, subtract } from '../../clients/web/core/vector.js';
@@ -145,6 +145,17 @@ test('fit: all eight corners inside, one side touching the margin, the direction
         close(most, 1, 1e-6);
         closeTo(basis(c).forward, basis(from).forward, 1e-6);
     }
+});
+
+test('a point is faced from its own side, level, a little from above', () => {
+    const box = { min: [-8, -1, 0], max: [12, 9, 10] };
+    const north = face(camera, [2, 9, 3], box, 4);
+    closeTo(north.eye, [2, 9 + 4 * Math.cos(Math.PI / 9), 3 + 4 * Math.sin(Math.PI / 9)]);
+    closeTo(north.target, [2, 9, 3]);
+    const side = face(camera, [8, 8, 5], box, 4); // near one end, but on the long side
+    assert.ok(side.eye[1] - 8 > 2 * (side.eye[0] - 8));
+    const above = face(camera, [2, 4, 9], box, 4);
+    assert.ok(valid(above) && dot(subtract(above.eye, above.target), subtract(camera.eye, camera.target)) > 0, 'on top: from where one is');
 });
 
 test('home is the plant\'s own view, and the whole plant in a narrow window', () => {

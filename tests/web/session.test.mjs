@@ -266,5 +266,10 @@ test('a value beyond a limit, by the tag\'s own limits only', () => {
     const tag = { limits: { LL: null, L: 10, H: 80, HH: 90 } };
     assert.deepEqual([5, 10, 50, 80, 95].map((v) => limitState(tag, v)), ['L', 'L', null, 'H', 'HH']);
     assert.equal(limitState(tag, null), null);
+    const { session, socket } = greeted();
+    const { model } = session;
+    assert.equal(model.worstLimit(model.assets[0]), null);
+    socket.say({ type: 'tags', time_us: 1, values: [[0, 165, 'good', 'Good', 0]] });
+    assert.equal(model.worstLimit(model.assets[0]), 'HH');
     assert.equal(limitState({}, 95), null);
 });

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The equipment list: search, quality at a glance, the selected one's sensors with their values, and the way there.
 import { decimalsFor, numberText, qualityText, unitText } from '../core/format.js';
+import { limitState } from '../core/model.js';
 import { byId, glyph, make, setText } from './dom.js';
 
 const NARROW = '(max-width: 1023px)';
@@ -52,10 +53,11 @@ export class Assets {
 
     row(asset) {
         const count = asset.tags.length;
+        const sensors = count === 0 ? '' : count === 1 ? '1 sensor' : `${count} sensors`;
         const button = make('button', { type: 'button', class: 'asset', 'aria-pressed': 'false', onclick: () => this.choose(asset) },
             glyph('none'),
             make('span', { class: 'text' }, make('b', {}, asset.tag || asset.id), make('span', {}, asset.description ?? '')),
-            make('span', { class: 'count' }, count === 0 ? '' : count === 1 ? '1 sensor' : `${count} sensors`));
+            make('span', { class: 'count' }, make('span', { class: 'flag' }), sensors));
         const item = make('li', {}, button);
         this.rows.set(asset.id, { asset, item, button, quality: null, readings: new Map() });
         return item;
@@ -99,7 +101,7 @@ export class Assets {
         for (const tag of row.asset.tags) {
             const value = make('span', { class: 'value' });
             const button = make('button', { type: 'button', class: 'reading', title: tag.description, onclick: () => this.onTag(tag) },
-                glyph('none'), make('span', {}, tag.name), value);
+                glyph('none'), make('span', {}, tag.name, make('span', { class: 'flag' })), value);
             row.readings.set(tag.index, { tag, button, value, quality: null });
             row.sensors.append(button);
         }
@@ -119,6 +121,7 @@ export class Assets {
             return;
         for (const row of this.rows.values()) {
             this.setQuality(row, row.button, model.worstQuality(row.asset) ?? 'none');
+            this.setLimit(row, row.button, model.worstLimit(row.asset));
             for (const reading of row.readings.values())
                 this.updateReading(reading);
         }
@@ -137,6 +140,14 @@ export class Assets {
         value.classList.toggle('other', tag.group !== params.group);
         button.setAttribute('aria-pressed', this.selection.tag === tag.name);
         this.setQuality(reading, button, quality);
+        this.setLimit(reading, button, limitState(tag, number));
+    }
+
+    setLimit(row, parent, limit) {
+        if (row.limit === limit)
+            return;
+        row.limit = limit;
+        parent.querySelector('.flag').replaceChildren(...(limit ? [make('span', { class: `limit-flag ${limit}` }, limit)] : []));
     }
 
     setQuality(row, parent, quality) {

@@ -53,7 +53,7 @@ export class Card {
     build(tag, asset) {
         const on = asset ? [asset.tag || asset.id, asset.description].filter(Boolean).join(', ') : '–';
         this.value = make('p', { class: 'value' });
-        this.limit = make('p', { hidden: true });
+        this.limit = make('p', { class: 'limit', hidden: true });
         this.quality = make('dd');
         this.age = make('dd');
         this.element.replaceChildren(

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Puts the page together: one session, the viewport, and the panels around it.
 import { readAddress, writeAddress } from '../core/address.js';
+import { face } from '../core/camera.js';
 import { Connection } from '../core/connection.js';
 import { Session } from '../core/session.js';
 import { Assets } from './assets.js';
@@ -15,7 +16,7 @@ import { Viewport } from './viewport.js';
 
 const ADDRESS_WAIT_MS = 400, TOAST_MS = 6000;
 const ARRIVAL_MARGIN = 1.7; // around one piece of equipment
-const TAG_BOX_M = 0.8;
+const TAG_DISTANCE_M = 5;
 
 const clock = { now: () => performance.now(), setTimeout: (f, ms) => setTimeout(f, ms), clearTimeout: (id) => clearTimeout(id) };
 const address = readAddress(location.hash);
@@ -58,10 +59,9 @@ function showTag(tag) {
 }
 
 function flyToTag(tag) {
-    if (!tag.position)
-        return;
-    const half = TAG_BOX_M / 2;
-    pilot.flyToBox({ min: tag.position.map((x) => x - half), max: tag.position.map((x) => x + half) }, 2.5);
+    const asset = session.model.asset(tag.asset);
+    if (tag.position && asset)
+        pilot.flyTo(face(session.camera, tag.position, asset.bounds, TAG_DISTANCE_M));
 }
 
 function selectAsset(asset) {

@@ -112,6 +112,18 @@ export function fit(camera, box, aspect, margin = 1.08) {
     return { ...camera, eye: along(centre, forward, -Math.min(far, MAX_DISTANCE_M)), target: centre };
 }
 
+// Looks at a point of something from its own side, a little from above: along the normal of the ellipsoid in its box.
+export function face(camera, point, box, distanceM, elevationDeg = 20) {
+    const vertical = unit(camera.up), centre = middle(box.min, box.max);
+    const outwards = point.map((x, i) => (x - centre[i]) / Math.max(1e-6, (box.max[i] - box.min[i]) ** 2));
+    const level = subtract(outwards, scale(vertical, dot(outwards, vertical)));
+    const back = subtract(camera.eye, camera.target);
+    const direction = unit(length(level) > 1e-4 ? level : subtract(back, scale(vertical, dot(back, vertical))));
+    const tilt = elevationDeg * RADIANS;
+    const towards = add(scale(direction, Math.cos(tilt)), scale(vertical, Math.sin(tilt)));
+    return { ...camera, target: point, eye: along(point, towards, distanceM) };
+}
+
 // Function from a point in the plant to [x, y, depth in metres] in the picture; null: behind the eye.
 export function projector(camera, widthPx, heightPx) {
     const { forward, right, up } = basis(camera);

@@ -65,10 +65,18 @@ export class Model {
         return oldest;
     }
 
+    // The gravest limit that one of its tags is beyond, or null.
+    worstLimit(asset) {
+        const states = new Set(asset.tags.map((tag) => limitState(tag, this.readings[tag.index].value)));
+        return LIMITS_BY_GRAVITY.find((name) => states.has(name)) ?? null;
+    }
+
     worstQuality(asset) {
         return worst(asset.tags.map((tag) => this.readings[tag.index].quality));
     }
 }
+
+const LIMITS_BY_GRAVITY = ['HH', 'LL', 'H', 'L'];
 
 // Beyond a limit, by the tag's own limits where the server sends them: "HH", "H", "L", "LL", or null.
 export function limitState(tag, value) {
@@ -76,5 +84,5 @@ export function limitState(tag, value) {
     if (!limits || value === null)
         return null;
     const beyond = { HH: value >= limits.HH, LL: value <= limits.LL, H: value >= limits.H, L: value <= limits.L };
-    return ['HH', 'LL', 'H', 'L'].find((name) => Number.isFinite(limits[name]) && beyond[name]) ?? null;
+    return LIMITS_BY_GRAVITY.find((name) => Number.isFinite(limits[name]) && beyond[name]) ?? null;
 }

@@ -13,7 +13,7 @@ const START_MS = 60000;
 
 // Why this test cannot run here, or null.
 export function missing() {
-    const needed = [join(BIN, 'plantcastd'), join(BIN, 'plantcast-sim'), join(DEMO, 'plant.yaml'), join(DEMO, 'prepared')];
+    const needed = [join(BIN, 'plantcastd'), join(BIN, 'plantcast-sim'), join(DEMO, 'plant.yaml'), join(DEMO, 'plant.prepared')];
     const absent = needed.filter((path) => !existsSync(path));
     return absent.length > 0 ? `not built: ${absent.join(', ')}` : null;
 }
