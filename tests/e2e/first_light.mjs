@@ -11,6 +11,7 @@ import { missing, startPlant } from './support/plant.mjs';
 const why = missing();
 const options = { skip: why ?? false, timeout: 200000 };
 const GROUP = 'temperature';
+const QUIET_MS = 1500; // longer than any picture takes that is still under way
 let plant, browser, page;
 
 before(async () => {
@@ -56,7 +57,7 @@ test('one reading changes: the picture changes at its sensor, and nowhere but on
     const tags = await page.evaluate(() => globalThis.plantcast.session.model.tags.map((tag) => tag.name));
     await plant.freeze(tags);
     await page.waitForTimeout(2000); // two polls: what was read before the freeze has passed
-    await settle(page);
+    await settle(page, QUIET_MS);
     const before = await grab(page), seen = await markers(page);
     const off = ({ x, y }) => Math.hypot(x - before.width / 2, y - before.height / 2);
     const inside = seen.filter((m) => !m.occluded && m.quality === 'good' && off(m) < before.height / 2 - 40);
@@ -68,7 +69,7 @@ test('one reading changes: the picture changes at its sensor, and nowhere but on
 
     await plant.ask(`set ${one.name} ${wanted}`);
     await waitForChange(page, one, before, 30);
-    await settle(page);
+    await settle(page, QUIET_MS);
     const change = difference(before, await grab(page));
 
     assert.ok(meanAround(change, one.x, one.y, 2) > 30, `at the sensor the colour changed by ${meanAround(change, one.x, one.y, 2)}`);
@@ -105,7 +106,7 @@ test('mouse, wheel and keys move the camera, and the picture follows', options, 
     assert.ok(distance(zoomed) < distance(turned));
     await page.keyboard.press('ArrowRight');
     assert.notDeepEqual((await view(page)).camera, zoomed.camera);
-    await settle(page);
+    await settle(page, QUIET_MS);
     const drawn = await page.evaluate(() => globalThis.plantcast.session.picture.camera.eye);
     (await view(page)).camera.eye.forEach((x, i) => assert.ok(Math.abs(x - drawn[i]) < 1e-3, 'the picture shows the newest camera'));
     assert.ok(Number.isFinite(parseInt(await page.locator('#latency').textContent(), 10)), 'latency is measured');
@@ -113,7 +114,7 @@ test('mouse, wheel and keys move the camera, and the picture follows', options, 
 
 test('the daemon dies: said in words, the picture stays; it returns: the same view, by itself', options, async () => {
     await page.evaluate(() => globalThis.plantcast.session.setParams({ distance: 'euclidean', ramp_interval: 20 }));
-    await settle(page);
+    await settle(page, QUIET_MS);
     const before = await grab(page), asked = await view(page);
     await plant.stopDaemon('SIGKILL');
     await waitForHealth(page, 'lost', 5000);
@@ -127,7 +128,7 @@ test('the daemon dies: said in words, the picture stays; it returns: the same vi
     await plant.startDaemon();
     await waitForHealth(page, 'live');
     assert.equal(await page.locator('#banner').isVisible(), false);
-    await settle(page);
+    await settle(page, QUIET_MS);
     const now = await view(page);
     assert.deepEqual(now.camera, asked.camera);
     for (const name of ['group', 'distance', 'interpolation', 'ramp_interval', 'colormap', 'look'])
@@ -142,7 +143,7 @@ test('the address carries the view over a reload', options, async () => {
     await page.waitForTimeout(600);
     await page.reload();
     await waitForPicture(page);
-    await settle(page);
+    await settle(page, QUIET_MS);
     const now = await view(page);
     now.camera.eye.forEach((x, i) => assert.ok(Math.abs(x - asked.camera.eye[i]) < 1e-3));
     assert.equal(now.params.distance, 'euclidean');
@@ -154,7 +155,7 @@ test('the PLC falls silent: no live data, in words; it answers again: live', opt
     await waitForHealth(page, 'nodata', 40000);
     assert.match(await page.locator('#banner').textContent(), /No live data/i);
     await page.waitForFunction(() => globalThis.plantcast.session.picture.oldestAgeMs === null, null, { timeout: 30000 });
-    await settle(page);
+    await settle(page, QUIET_MS);
     assert.ok((await markers(page)).every((m) => m.quality === 'bad' && m.value === null), 'no value stays on the screen');
     await shoot(page, 'no-live-data');
     await plant.ask('resume');

@@ -51,13 +51,24 @@ export const waitForHealth = (page, kind, timeout = 60000) =>
     page.waitForFunction((k) => document.getElementById('health').dataset.kind === k, kind, { timeout });
 export const waitForPicture = (page) => page.waitForFunction(() => globalThis.plantcast?.session.picture, null, { timeout: 60000 });
 
-// Until the refined picture of the newest camera and parameters is on the screen and nothing has come after it for a while.
-export const settle = (page, quietMs = 1500) => page.waitForFunction((quiet) => {
-    const { session } = globalThis.plantcast;
-    const { picture } = session;
-    return picture && picture.still && picture.cameraSeq === session.cameraSeq && picture.paramsSeq === session.paramsSeq &&
-        session.cameraInput === null && performance.now() - picture.at > quiet;
-}, quietMs, { timeout: 60000, polling: 100 });
+// Until the refined picture of the newest camera and parameters is on the screen; and, where readings are frozen, nothing has come
+// after it for quietMs.
+export async function settle(page, quietMs = 0) {
+    try {
+        await page.waitForFunction((quiet) => {
+            const { session } = globalThis.plantcast;
+            const { picture } = session;
+            return picture && picture.still && picture.cameraSeq === session.cameraSeq && picture.paramsSeq === session.paramsSeq &&
+                !session.cameraNews && performance.now() - picture.at >= quiet;
+        }, quietMs, { timeout: 60000, polling: 100 });
+    } catch (error) {
+        const { session } = await page.evaluate(() => {
+            const { picture, cameraSeq, paramsSeq, cameraNews } = globalThis.plantcast.session;
+            return { session: { picture: { ...picture, age: performance.now() - picture.at }, cameraSeq, paramsSeq, cameraNews } };
+        });
+        throw new Error(`no refined picture: ${JSON.stringify(session)}`, { cause: error });
+    }
+}
 
 // Until the picture at a place is another colour than it was.
 export const waitForChange = (page, { x, y }, { width, rgba }, least) => page.waitForFunction(([px, py, was, step]) => {
