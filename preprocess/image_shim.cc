@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* OpenImageIO behind plain C: PNG and JPEG from memory to RGBA8. */
+/* OpenImageIO behind plain C: PNG, JPEG and WebP from memory to RGBA8. */
 #include "preprocess/image_shim.h"
 
 #include <OpenImageIO/filesystem.h>
@@ -7,6 +7,7 @@
 #include <OpenImageIO/imagebufalgo.h>
 #include <OpenImageIO/imageio.h>
 #include <algorithm>
+#include <cstdarg>
 #include <cstdio>
 #include <cstring>
 #include <memory>
@@ -19,6 +20,8 @@ namespace
 {
 
 constexpr int MAX_SIDE_PX = 1 << 15;
+constexpr uint64_t MAX_PIXELS = 1 << 26;                          /* of 8192 x 8192: more than a texture is ever drawn with */
+constexpr uint64_t VALUES_PER_BYTE = 2000, FREE_VALUES = 1 << 20; /* zlib shrinks to a thousandth at best, JPEG to less */
 
 /* OpenImageIO chooses its reader by name: the bytes say what they are. */
 const char *format_of(const unsigned char *bytes, size_t size)
@@ -27,6 +30,8 @@ const char *format_of(const unsigned char *bytes, size_t size)
         return "png";
     if (size >= 3 && memcmp(bytes, "\xff\xd8\xff", 3) == 0)
         return "jpeg";
+    if (size >= 12 && memcmp(bytes, "RIFF", 4) == 0 && memcmp(bytes + 8, "WEBP", 4) == 0)
+        return "webp";
     return nullptr;
 }
 
@@ -58,39 +63,51 @@ void shrink(struct image *image, uint32_t max_px)
     image->height_px = static_cast<uint32_t>(height);
 }
 
+bool refuse(char *why, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
+bool refuse(char *why, const char *fmt, ...)
+{
+    va_list ap;
+    va_start(ap, fmt);
+    vsnprintf(why, IMAGE_WHY_BYTES, fmt, ap);
+    va_end(ap);
+    return false;
+}
+
+bool size_good(const OIIO::ImageSpec &spec, const char *format, size_t size, char *why)
+{
+    if (spec.width < 1 || spec.width > MAX_SIDE_PX || spec.height < 1 || spec.height > MAX_SIDE_PX || spec.nchannels < 1 ||
+        spec.nchannels > 4 || static_cast<uint64_t>(spec.width) * static_cast<uint64_t>(spec.height) > MAX_PIXELS)
+        return refuse(why, "%d x %d pixels of %d channels: at most %llu of 4", spec.width, spec.height, spec.nchannels,
+                      static_cast<unsigned long long>(MAX_PIXELS));
+    uint64_t values = static_cast<uint64_t>(spec.width) * static_cast<uint64_t>(spec.height) * static_cast<uint64_t>(spec.nchannels);
+    if (strcmp(format, "webp") != 0 && values > FREE_VALUES + VALUES_PER_BYTE * size) /* WebP knows plain colours */
+        return refuse(why, "%zu bytes claim %d x %d pixels", size, spec.width, spec.height);
+    return true;
+}
+
 bool decode(struct image *image, const void *bytes, size_t size, uint32_t max_px, char *why)
 {
     const char *format = format_of(static_cast<const unsigned char *>(bytes), size);
-    if (!format) {
-        snprintf(why, IMAGE_WHY_BYTES, "%zu bytes are neither PNG nor JPEG", size);
-        return false;
-    }
+    if (!format)
+        return refuse(why, "%zu bytes are neither PNG, JPEG nor WebP", size);
     OIIO::Filesystem::IOMemReader memory(const_cast<void *>(bytes), size);
-    OIIO::ImageSpec hints;
+    OIIO::ImageSpec hints, spec;
     hints.attribute("oiio:UnassociatedAlpha", 1);
     std::unique_ptr<OIIO::ImageInput> in = OIIO::ImageInput::create(format);
-    OIIO::ImageSpec spec;
-    if (!in || !in->set_ioproxy(&memory) || !in->open("image", spec, hints)) {
-        snprintf(why, IMAGE_WHY_BYTES, "%s", in ? in->geterror().c_str() : OIIO::geterror().c_str());
+    if (!in || !in->set_ioproxy(&memory) || !in->open("image", spec, hints))
+        return refuse(why, "%s: %s", format, in ? in->geterror().c_str() : OIIO::geterror().c_str());
+    if (!size_good(spec, format, size, why))
         return false;
-    }
-    if (spec.width < 1 || spec.width > MAX_SIDE_PX || spec.height < 1 || spec.height > MAX_SIDE_PX || spec.nchannels < 1 ||
-        spec.nchannels > 4) {
-        snprintf(why, IMAGE_WHY_BYTES, "%d x %d pixels of %d channels: at most %d x %d of 4", spec.width, spec.height, spec.nchannels,
-                 MAX_SIDE_PX, MAX_SIDE_PX);
-        return false;
-    }
     size_t pixels = static_cast<size_t>(spec.width) * static_cast<size_t>(spec.height);
-    int channels = spec.nchannels;
-    std::vector<uint8_t> raw(pixels * static_cast<size_t>(channels));
+    std::vector<uint8_t> raw(pixels * static_cast<size_t>(spec.nchannels));
     image->rgba = static_cast<uint8_t *>(mem_try_array(pixels, 4));
     if (!image->rgba)
         throw std::bad_alloc();
-    if (!in->read_image(0, 0, 0, channels, OIIO::TypeDesc::UINT8, raw.data())) {
-        snprintf(why, IMAGE_WHY_BYTES, "%s", in->geterror().c_str());
-        return false;
-    }
-    spread(raw.data(), channels, pixels, image->rgba);
+    bool read = in->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, raw.data());
+    std::string error = in->geterror();
+    if (!read || error.find("Premature end") != std::string::npos) /* the JPEG reader fills up with grey */
+        return refuse(why, "%s: %s", format, error.empty() ? "broken" : error.c_str());
+    spread(raw.data(), spec.nchannels, pixels, image->rgba);
     image->width_px = static_cast<uint32_t>(spec.width);
     image->height_px = static_cast<uint32_t>(spec.height);
     shrink(image, max_px);
