@@ -102,7 +102,7 @@ $(gen)/embedded.c: deploy/embed $(embedded_files)
 # --- tests: one program per file --------------------------------------------------------------------------------------------
 unit_tests := $(patsubst tests/%.c,$(out)/tests/%,$(wildcard tests/unit/*_test.c))
 gpu_tests  := $(patsubst tests/%.c,$(out)/tests/%,$(wildcard tests/gpu/*_test.c))
-support    := $(call objects,$(wildcard tests/support/*.c))
+support    := $(call objects,$(wildcard tests/support/*.c tests/support/*.cc))
 $(out)/tests/%: $(out)/obj/tests/%.o $(support) $(archives) $(out)/lib/prep.a $(sim_archive)
 	$(link) -lcmocka
 .SECONDARY:

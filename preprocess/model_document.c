@@ -149,6 +149,7 @@ static bool fill_with_zeros(struct document_work *work, const json_t *number, ui
     if (!own)
         return wrong(work->why, "out of memory for accessor %lld", (long long)json_integer_value(number));
     document_point_accessor(work, accessor, document_add_buffer(work, own, (size_t)(count * element)));
+    work->document->total_bytes -= (size_t)(count * element);
     return true;
 }
 

@@ -25,7 +25,7 @@ struct model_document {
     struct document_bytes *buffers;
     struct document_image *images;
     size_t buffer_count, image_count;
-    size_t total_bytes; /* of the buffers */
+    size_t total_bytes; /* of the buffers, but for those that are all zeros */
 };
 
 /* The source must outlive it. False: why says what is wrong; nothing to finish. */

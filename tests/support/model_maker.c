@@ -1,0 +1,127 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Making glTF models. */
+#include "tests/support/model_maker.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "tests/support/glb.h"
+
+void maker_init(struct maker *maker)
+{
+    *maker = (struct maker){ .root = json_pack("{s:{s:s}}", "asset", "version", "2.0") };
+}
+
+void maker_finish(struct maker *maker)
+{
+    json_decref(maker->root);
+    text_finish(&maker->bin);
+}
+
+int maker_add(struct maker *maker, const char *list, json_t *object)
+{
+    json_t *items = json_object_get(maker->root, list);
+    if (!items) {
+        items = json_array();
+        json_object_set_new(maker->root, list, items);
+    }
+    json_array_append_new(items, object);
+    return (int)json_array_size(items) - 1;
+}
+
+json_t *maker_get(struct maker *maker, const char *list, int number)
+{
+    return json_array_get(json_object_get(maker->root, list), (size_t)number);
+}
+
+int maker_view(struct maker *maker, const void *bytes, size_t count, int stride)
+{
+    while (maker->bin.length % 4 != 0)
+        text_add_bytes(&maker->bin, "", 1);
+    json_t *view = json_pack("{s:i,s:I,s:I}", "buffer", 0, "byteOffset", (json_int_t)maker->bin.length, "byteLength", (json_int_t)count);
+    if (stride)
+        json_object_set_new(view, "byteStride", json_integer(stride));
+    text_add_bytes(&maker->bin, bytes, count);
+    return maker_add(maker, "bufferViews", view);
+}
+
+int maker_accessor(struct maker *maker, int view, int component_type, size_t count, const char *type)
+{
+    json_t *accessor = json_pack("{s:i,s:I,s:s}", "componentType", component_type, "count", (json_int_t)count, "type", type);
+    if (view >= 0)
+        json_object_set_new(accessor, "bufferView", json_integer(view));
+    return maker_add(maker, "accessors", accessor);
+}
+
+int maker_numbers(struct maker *maker, const void *bytes, size_t size, int component_type, size_t count, const char *type)
+{
+    return maker_accessor(maker, maker_view(maker, bytes, size, 0), component_type, count, type);
+}
+
+int maker_mesh(struct maker *maker, json_t *primitive)
+{
+    return maker_add(maker, "meshes", json_pack("{s:s,s:[o]}", "name", "m", "primitives", primitive));
+}
+
+int maker_node(struct maker *maker, const char *name, int mesh, json_t *more)
+{
+    json_t *node = json_pack("{s:s}", "name", name);
+    if (mesh >= 0)
+        json_object_set_new(node, "mesh", json_integer(mesh));
+    json_object_update(node, more);
+    json_decref(more);
+    return maker_add(maker, "nodes", node);
+}
+
+void maker_require(struct maker *maker, const char *extension)
+{
+    maker_add(maker, "extensionsRequired", json_string(extension));
+    maker_add(maker, "extensionsUsed", json_string(extension));
+}
+
+/* Roots are the nodes that are nobody's children; the loader finds them where there is no scene. */
+static char *json_of(struct maker *maker, const char *uri)
+{
+    json_t *buffers = json_object_get(maker->root, "buffers"), *first = json_array_get(buffers, 0);
+    if (!first && maker->bin.length) {
+        first = json_object();
+        maker_add(maker, "buffers", first);
+    }
+    if (first && !json_object_get(first, "byteLength"))
+        json_object_set_new(first, "byteLength", json_integer((json_int_t)maker->bin.length));
+    if (uri)
+        json_object_set_new(first, "uri", json_string(uri));
+    return json_dumps(maker->root, JSON_COMPACT);
+}
+
+char *maker_glb(struct maker *maker, size_t *size)
+{
+    char *json = json_of(maker, NULL), *glb = glb_build(json, maker->bin.at, maker->bin.length, size);
+    free(json);
+    return glb;
+}
+
+char *maker_gltf(struct maker *maker, size_t *size)
+{
+    char *uri = maker_data_uri("application/octet-stream", maker->bin.at, maker->bin.length);
+    char *json = json_of(maker, uri), *out = mem_strdup(json);
+    *size = strlen(out);
+    free(json);
+    mem_free(uri);
+    return out;
+}
+
+char *maker_data_uri(const char *kind, const void *bytes, size_t count)
+{
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    const unsigned char *b = bytes;
+    struct text text = { 0 };
+    text_add(&text, "data:%s;base64,", kind);
+    for (size_t i = 0; i < count; i += 3) {
+        unsigned bits = (unsigned)b[i] << 16 | (i + 1 < count ? (unsigned)b[i + 1] << 8 : 0) | (i + 2 < count ? b[i + 2] : 0u);
+        text_add(&text, "%c%c%c%c", digits[bits >> 18], digits[bits >> 12 & 63], i + 1 < count ? digits[bits >> 6 & 63] : '=',
+                 i + 2 < count ? digits[bits & 63] : '=');
+    }
+    return text.at;
+}

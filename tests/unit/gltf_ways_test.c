@@ -1,0 +1,715 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One surface said in every way that glTF knows is always the same surface; compressed by the compressions' own encoders. */
+#include "preprocess/geometry.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+#include <unistd.h>
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "plant/transform.h"
+#include "tests/support/model_maker.h"
+#include "tests/support/model_seeds.h"
+#include "tests/support/temp.h"
+
+struct loaded {
+    char *folder;
+    struct gltf_model model;
+    char why[MODEL_WHY_BYTES];
+    bool good;
+};
+
+static int set_up(void **state)
+{
+    struct loaded *l = mem_new(sizeof(*l));
+    l->folder = temp_folder_create();
+    mem_free(temp_write_text(l->folder, "a picture.png", "no picture, and never looked at"));
+    *state = l;
+    return 0;
+}
+
+static void forget(struct loaded *l)
+{
+    if (l->good)
+        gltf_free(&l->model);
+    l->good = false;
+}
+
+static int tear_down(void **state)
+{
+    struct loaded *l = *state;
+    forget(l);
+    temp_folder_destroy(&l->folder);
+    mem_free(l);
+    return 0;
+}
+
+static void try_bytes(struct loaded *l, char *bytes, size_t size)
+{
+    struct model_source source;
+    char *path = temp_write(l->folder, "model.glb", bytes, size);
+    forget(l);
+    snprintf(l->why, sizeof(l->why), "not refused");
+    if (model_source_open(&source, path, l->why)) {
+        l->good = gltf_load(&l->model, &source, l->why);
+        model_source_finish(&source);
+    }
+    mem_free(path);
+    mem_free(bytes);
+}
+
+static void try_model(struct loaded *l, struct maker *maker)
+{
+    size_t size;
+    char *bytes = maker_glb(maker, &size);
+    maker_finish(maker);
+    try_bytes(l, bytes, size);
+}
+
+static void assert_refused(const struct loaded *l, const char *reason)
+{
+    if (l->good || !strstr(l->why, reason))
+        fail_msg("'%s', expected '%s'", l->good ? "accepted" : l->why, reason);
+}
+
+static void assert_good(const struct loaded *l)
+{
+    if (!l->good)
+        fail_msg("%s", l->why);
+}
+
+/* --- the same surface ---------------------------------------------------------------------------------------------------- */
+
+struct corner {
+    double at[3];
+    const float *normal;
+    const uint8_t *color;
+};
+
+/* Is it one of the sheet's triangles, from the same side? -1: no. */
+static int triangle_of(const struct sheet *sheet, struct corner corners[3], double tolerance_m)
+{
+    for (uint32_t t = 0; t < sheet->index_count / 3; t++)
+        for (int turn = 0; turn < 3; turn++) {
+            double worst = 0;
+            for (int c = 0; c < 3; c++)
+                for (int axis = 0; axis < 3; axis++)
+                    worst = fmax(worst, fabs((double)sheet->positions[sheet->indices[3 * t + (uint32_t)((c + turn) % 3)]][axis] -
+                                             corners[c].at[axis]));
+            if (worst <= tolerance_m)
+                return (int)t;
+        }
+    return -1;
+}
+
+static void assert_look(const struct corner *corner, double tolerance_m)
+{
+    double slope = -0.3 * sin(3 * corner->at[0]), length = sqrt(1 + slope * slope);
+    if (corner->normal) {
+        assert_true(fabs((double)corner->normal[0] + slope / length) < 0.02 + 10 * tolerance_m);
+        assert_true(fabs((double)corner->normal[2] - 1 / length) < 0.02 + 10 * tolerance_m);
+    }
+    if (corner->color) {
+        assert_true(fabs(corner->color[0] - 127 * corner->at[0]) < 1.5);
+        assert_true(fabs(corner->color[1] - 255 * corner->at[1]) < 1.5);
+    }
+}
+
+/* Every triangle of the sheet once, in the primitives of one node. */
+static void assert_sheet(const struct gltf_model *model, const struct gltf_node *node, const struct sheet *sheet, double tolerance_m)
+{
+    bool *seen = mem_array(sheet->index_count / 3, sizeof(*seen));
+    uint32_t count = 0;
+    const struct gltf_mesh *mesh = &model->meshes[node->mesh];
+    for (uint32_t i = 0; i < mesh->primitive_count; i++) {
+        const struct gltf_primitive *p = &model->primitives[mesh->first_primitive + i];
+        for (uint32_t index = 0; index < p->index_count; index += 3, count++) {
+            struct corner corners[3];
+            for (uint32_t c = 0; c < 3; c++) {
+                uint32_t v = p->indices[index + c];
+                const float *at = p->positions[v];
+                corners[c] = (struct corner){ .normal = p->normals ? p->normals[v] : NULL, .color = p->colors ? p->colors[v] : NULL };
+                transform_point(node->world, (double[3]){ (double)at[0], (double)at[1], (double)at[2] }, corners[c].at);
+                assert_look(&corners[c], tolerance_m);
+            }
+            int triangle = triangle_of(sheet, corners, tolerance_m + 1e-6);
+            if (triangle < 0 || seen[triangle])
+                fail_msg("triangle %u is %s", count, triangle < 0 ? "not of the sheet" : "there twice");
+            seen[triangle] = true;
+        }
+    }
+    assert_int_equal(count, sheet->index_count / 3);
+    mem_free(seen);
+}
+
+static uint32_t drawn_triangles(const struct gltf_model *model)
+{
+    uint32_t corners = 0;
+    for (uint32_t n = 0; n < model->node_count; n++)
+        for (uint32_t p = 0; model->nodes[n].mesh >= 0 && p < model->meshes[model->nodes[n].mesh].primitive_count; p++)
+            corners += model->primitives[model->meshes[model->nodes[n].mesh].first_primitive + p].index_count;
+    return corners / 3;
+}
+
+static const struct gltf_node *first_drawn(const struct gltf_model *model)
+{
+    uint32_t n = 0;
+    while (n < model->node_count && model->nodes[n].mesh < 0)
+        n++;
+    assert_true(n < model->node_count);
+    return &model->nodes[n];
+}
+
+static void every_way_gives_the_same_surface(void **state)
+{
+    struct loaded *l = *state;
+    struct sheet sheet;
+    sheet_init(&sheet, 24, 10);
+    for (int i = 0; i < SEED_COUNT; i++) {
+        struct seed seed;
+        seed_make(&seed, i, &sheet);
+        try_bytes(l, seed.bytes, seed.size);
+        print_message("# %-24s %7zu bytes: %s\n", seed.name, seed.size, l->good ? "read" : l->why);
+        assert_good(l);
+        assert_int_equal(drawn_triangles(&l->model), seed.triangles);
+        assert_sheet(&l->model, first_drawn(&l->model), &sheet, seed.tolerance_m);
+    }
+    sheet_finish(&sheet);
+}
+
+static void great_meshes_are_decompressed(void **state)
+{
+    struct loaded *l = *state;
+    static const char *const names[] = { "meshopt.glb", "meshopt_filters.glb", "draco_edgebreaker.glb", "draco_sequential.glb" };
+    struct sheet sheet;
+    sheet_init(&sheet, 300, 200); /* 120,000 triangles, 60,501 vertices */
+    for (int i = 0; i < SEED_COUNT; i++) {
+        struct seed seed;
+        bool wanted = false;
+        seed_make(&seed, i, &sheet);
+        for (size_t n = 0; n < sizeof(names) / sizeof(names[0]); n++)
+            wanted = wanted || strcmp(names[n], seed.name) == 0;
+        if (!wanted) {
+            mem_free(seed.bytes);
+            continue;
+        }
+        try_bytes(l, seed.bytes, seed.size);
+        print_message("# %-24s %7zu bytes\n", seed.name, seed.size);
+        assert_good(l);
+        assert_int_equal(drawn_triangles(&l->model), 120000);
+        assert_int_equal(l->model.primitives[0].vertex_count, 60501);
+    }
+    sheet_finish(&sheet);
+}
+
+/* --- what is broken in them ---------------------------------------------------------------------------------------------- */
+
+/* Every byte of the compressed data in turn is another: never a crash, and what is accepted holds together. */
+static void broken_compression_is_refused_or_harmless(void **state)
+{
+    struct loaded *l = *state;
+    struct sheet sheet;
+    sheet_init(&sheet, 6, 4);
+    for (int i = 9; i <= 12; i++) {
+        struct seed seed;
+        seed_make(&seed, i, &sheet);
+        size_t refused = 0, tried = 0;
+        for (size_t at = seed.size - 500; at < seed.size; at += 3, tried++) {
+            char *bytes = mem_array(seed.size, 1);
+            memcpy(bytes, seed.bytes, seed.size);
+            bytes[at] = (char)(bytes[at] ^ 0x55);
+            try_bytes(l, bytes, seed.size);
+            refused += !l->good;
+            for (uint32_t p = 0; l->good && p < l->model.primitive_count; p++)
+                for (uint32_t k = 0; k < l->model.primitives[p].index_count; k++)
+                    assert_true(l->model.primitives[p].indices[k] < l->model.primitives[p].vertex_count);
+        }
+        print_message("# %-24s %zu of %zu refused\n", seed.name, refused, tried);
+        mem_free(seed.bytes);
+    }
+    sheet_finish(&sheet);
+}
+
+/* The JSON and bytes of a seed again, to be changed. */
+static struct maker seed_open(int number, const char *name, const struct sheet *sheet)
+{
+    struct seed seed;
+    struct maker maker;
+    seed_make(&seed, number, sheet);
+    assert_string_equal(seed.name, name);
+    uint32_t json_bytes;
+    memcpy(&json_bytes, seed.bytes + 12, 4);
+    maker_init(&maker);
+    json_decref(maker.root);
+    maker.root = json_loadb(seed.bytes + 20, json_bytes, 0, NULL);
+    assert_non_null(maker.root);
+    size_t bin = 20 + json_bytes + 8;
+    text_add_bytes(&maker.bin, seed.bytes + bin, seed.size - bin);
+    mem_free(seed.bytes);
+    return maker;
+}
+
+static json_t *meshopt_of(struct maker *maker, int view)
+{
+    return json_object_get(json_object_get(maker_get(maker, "bufferViews", view), "extensions"), "EXT_meshopt_compression");
+}
+
+static void false_claims_of_compressed_views_are_refused(void **state)
+{
+    struct loaded *l = *state;
+    struct sheet sheet;
+    sheet_init(&sheet, 6, 4);
+    const struct {
+        const char *key;
+        json_t *value;
+        const char *reason;
+    } cases[] = {
+        { "count", json_integer(4000000000), "claim 4000000000 elements" },
+        { "count", json_integer(-1), "bufferView 0: extensions.EXT_meshopt_compression.count is not a whole number" },
+        { "count", json_integer(34), "bytes when decoded, byteLength says" },
+        { "byteStride", json_integer(6), "cannot be of mode ATTRIBUTES" },
+        { "byteLength", json_integer(9999999), "bufferView 0: bytes 0+9999999 of a buffer of" },
+        { "byteLength", json_integer(40), "are broken" },
+        { "mode", json_string("LINES"), "mode or filter is unknown" },
+        { "filter", json_string("QUATERNION"), "filter QUATERNION on elements of 12 bytes" },
+        { "buffer", json_integer(1), "buffer 1 has no bytes of its own" },
+        { "buffer", json_integer(7), "there is no buffer 7" },
+        { "mode", json_null(), "has no extensions.EXT_meshopt_compression.mode" },
+    };
+    for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
+        struct maker maker = seed_open(8, "meshopt.glb", &sheet);
+        json_object_set_new(meshopt_of(&maker, 0), cases[i].key, cases[i].value);
+        try_model(l, &maker);
+        assert_refused(l, cases[i].reason);
+    }
+    struct maker maker = seed_open(8, "meshopt.glb", &sheet);
+    json_object_del(maker_get(&maker, "bufferViews", 0), "extensions");
+    try_model(l, &maker);
+    assert_refused(l, "bufferView 0: buffer 1 has no bytes of its own");
+    sheet_finish(&sheet);
+}
+
+static json_t *primitive_of(struct maker *maker)
+{
+    return json_array_get(json_object_get(maker_get(maker, "meshes", 0), "primitives"), 0);
+}
+
+static void false_claims_of_draco_are_refused(void **state)
+{
+    struct loaded *l = *state;
+    struct sheet sheet;
+    sheet_init(&sheet, 6, 4);
+    struct maker maker = seed_open(11, "draco_edgebreaker.glb", &sheet);
+    memcpy(maker.bin.at + 13, "\xff\xff\xff\xff\x0f", 5); /* 4294967295 triangles */
+    try_model(l, &maker);
+    assert_refused(l, "mesh 0 'm', primitive 0: KHR_draco_mesh_compression: ");
+    assert_non_null(strstr(l->why, "claim"));
+    maker = seed_open(11, "draco_edgebreaker.glb", &sheet);
+    json_object_set_new(primitive_of(&maker), "mode", json_integer(5));
+    try_model(l, &maker);
+    assert_refused(l, "Draco with mode 5");
+    maker = seed_open(11, "draco_edgebreaker.glb", &sheet);
+    json_object_set_new(json_object_get(json_object_get(json_object_get(primitive_of(&maker), "extensions"), "KHR_draco_mesh_compression"),
+                                        "attributes"),
+                        "NORMAL", json_integer(9));
+    try_model(l, &maker);
+    assert_refused(l, "NORMAL is not in its Draco data as attribute 9");
+    maker = seed_open(12, "draco_sequential.glb", &sheet);
+    json_object_set_new(maker_get(&maker, "bufferViews", 0), "byteLength", json_integer(100));
+    try_model(l, &maker);
+    assert_refused(l, "KHR_draco_mesh_compression: ");
+    sheet_finish(&sheet);
+}
+
+/* --- what the seeds do not say ------------------------------------------------------------------------------------------- */
+
+static void vertices_that_are_not_used_are_left_out(void **state)
+{
+    struct loaded *l = *state;
+    struct maker maker;
+    float many[1000][3] = { { 0 } };
+    for (int i = 0; i < 1000; i++)
+        many[i][0] = many[i][1] = (float)(i * i);
+    many[7][0] = NAN; /* not drawn either */
+    maker_init(&maker);
+    int at = maker_numbers(&maker, many, sizeof(many), FLOAT, 1000, "VEC3");
+    int list = maker_numbers(&maker, (uint32_t[6]){ 3, 4, 900, 900, 4, 5 }, 24, UINT, 6, "SCALAR");
+    maker_node(&maker, "n", maker_mesh(&maker, json_pack("{s:{s:i},s:i}", "attributes", "POSITION", at, "indices", list)), NULL);
+    try_model(l, &maker);
+    assert_good(l);
+    const struct gltf_primitive *p = &l->model.primitives[0];
+    assert_int_equal(p->vertex_count, 4);
+    assert_memory_equal(p->indices, ((uint32_t[6]){ 0, 1, 3, 3, 1, 2 }), 24);
+    assert_float_equal(p->positions[3][0], 810000, 0);
+}
+
+static void what_a_small_file_claims_is_bounded(void **state)
+{
+    struct loaded *l = *state;
+    struct maker maker;
+    maker_init(&maker);
+    int at = maker_accessor(&maker, -1, FLOAT, 4000000000u, "VEC3");
+    maker_node(&maker, "n", maker_mesh(&maker, json_pack("{s:{s:i}}", "attributes", "POSITION", at)), NULL);
+    try_model(l, &maker);
+    assert_refused(l, "accessor 0: 4000000000 elements, but not a byte of them in the file");
+
+    maker_init(&maker); /* the same million indices, by a thousand primitives */
+    at = maker_accessor(&maker, -1, FLOAT, 3, "VEC3");
+    int list = maker_accessor(&maker, -1, UBYTE, 999999, "SCALAR"), mesh = maker_mesh(&maker, json_null());
+    json_array_clear(json_object_get(maker_get(&maker, "meshes", mesh), "primitives"));
+    for (int i = 0; i < 1000; i++)
+        json_array_append_new(json_object_get(maker_get(&maker, "meshes", mesh), "primitives"),
+                              json_pack("{s:{s:i},s:i}", "attributes", "POSITION", at, "indices", list));
+    maker_node(&maker, "n", mesh, NULL);
+    try_model(l, &maker);
+    assert_refused(l, "elements are more than a file of");
+
+    maker_init(&maker); /* a million instances of nothing much */
+    mesh = maker_mesh(&maker, json_pack("{s:{s:i}}", "attributes", "POSITION", maker_accessor(&maker, -1, FLOAT, 3, "VEC3")));
+    at = maker_accessor(&maker, -1, BYTE, 5000000, "VEC3");
+    maker_node(&maker, "n", mesh, json_pack("{s:{s:{s:{s:i}}}}", "extensions", "EXT_mesh_gpu_instancing", "attributes", "TRANSLATION", at));
+    try_model(l, &maker);
+    assert_refused(l, "node 0 'n': EXT_mesh_gpu_instancing: 80000000 elements are more than");
+}
+
+static void wrong_types_and_references_are_refused_by_name(void **state)
+{
+    struct loaded *l = *state;
+    struct sheet sheet;
+    sheet_init(&sheet, 2, 2);
+    static const struct {
+        const char *list, *key, *json, *reason;
+    } cases[] = {
+        { "nodes", "mesh", "7", "node 0 'sheet': mesh: there is no mesh 7" },
+        { "nodes", "mesh", "4294967296", "node 0 'sheet': mesh: there is no mesh 4294967296" },
+        { "nodes", "mesh", "0.5", "node 0 'sheet': mesh is not a whole number" },
+        { "nodes", "mesh", "\"0\"", "node 0 'sheet': mesh is not a whole number" },
+        { "nodes", "children", "[5]", "node 0 'sheet': children: there is no node 5" },
+        { "nodes", "children", "5", "node 0 'sheet': children is not a list" },
+        { "nodes", "children", "[0]", "a cycle" },
+        { "nodes", "matrix", "[1,0,0]", "node 0 'sheet': matrix is not 16 numbers" },
+        { "nodes", "matrix", "[1,0,0,0,0,1,0,0,0,0,1,1,0,0,0,1]", "the last row of its matrix is not 0 0 0 1" },
+        { "nodes", "translation", "[1e300,0,0]", "its place is not finite, or beyond" },
+        { "nodes", "skin", "0", "there is no skin 0" },
+        { "nodes", "name", "5", "name is not text" },
+        { "nodes", "weights", "[0.5]", "is morphed, which is not supported" },
+        { "meshes", "weights", "[0,1]", "mesh 0 'm': its shape is morphed" },
+        { "meshes", "primitives", "{}", "mesh 0 'm': primitives is not a list" },
+        { "meshes", "primitives", "[{}]", "mesh 0 'm', primitive 0: has no attributes" },
+        { "meshes", "primitives", "[3]", "mesh 0 'm', primitive 0: is not an object" },
+        { "accessors", "count", "-3", "accessor 0: count is not a whole number" },
+        { "accessors", "count", "100", "POSITION: 100 elements do not fit into bufferView 0 of 108 bytes" },
+        { "accessors", "componentType", "5124", "component type 5124 is not of glTF 2.0" },
+        { "accessors", "type", "\"VEC2\"", "POSITION: 2 components, expected 3" },
+        { "accessors", "byteOffset", "\"x\"", "accessor 0: byteOffset is not a whole number" },
+        { "accessors", "sparse", "{}", "accessor 0: has no sparse.count" },
+        { "accessors", "sparse",
+          "{\"count\":2,\"indices\":{\"bufferView\":1,\"componentType\":5121,\"byteOffset\":4},\"values\":{\"bufferView\":0}}",
+          "or out of order" },
+        { "bufferViews", "byteOffset", "-4", "bufferView 0: byteOffset is not a whole number" },
+        { "bufferViews", "byteLength", "99999", "bufferView 0: bytes 0+99999 of a buffer of" },
+        { "bufferViews", "byteStride", "4", "byteStride 4 of bufferView 0 is less than an element's 12 bytes" },
+        { "bufferViews", "buffer", "1", "bufferView 0: buffer: there is no buffer 1" },
+        { "buffers", "byteLength", "100000", "buffer 0: truncated:" },
+        { "buffers", "uri", "\"data:text/plain,hello\"", "buffer 0: data URI: 'data:text/plain,hello' is not base64" },
+        { "buffers", "uri", "\"data:;base64,AAAA$\"", "buffer 0: data URI:" },
+        { "buffers", "uri", "\"model%00.bin\"", "it holds a byte 0" },
+        { "buffers", "uri", "\"/etc/passwd\"", "it is an absolute path" },
+        { "buffers", "uri", "\"../x.bin\"", "is not a readable file inside the model's folder" },
+        { "buffers", "uri", "\"https://localhost/x.bin\"", "it is a URL" },
+    };
+    for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
+        struct maker maker;
+        maker_init(&maker);
+        int at = maker_numbers(&maker, sheet.positions, 12 * sheet.vertex_count, FLOAT, sheet.vertex_count, "VEC3");
+        int list = maker_numbers(&maker, sheet.indices, 4 * sheet.index_count, UINT, sheet.index_count, "SCALAR");
+        maker_node(&maker, "sheet", maker_mesh(&maker, json_pack("{s:{s:i},s:i}", "attributes", "POSITION", at, "indices", list)), NULL);
+        maker_add(&maker, "buffers", json_pack("{s:I}", "byteLength", (json_int_t)maker.bin.length));
+        json_t *value = json_loads(cases[i].json, JSON_DECODE_ANY, NULL);
+        assert_non_null(value);
+        json_object_set_new(maker_get(&maker, cases[i].list, 0), cases[i].key, value);
+        try_model(l, &maker);
+        assert_refused(l, cases[i].reason);
+    }
+    sheet_finish(&sheet);
+}
+
+static void whole_numbers_may_be_written_as_reals(void **state)
+{
+    struct loaded *l = *state;
+    struct sheet sheet;
+    struct maker maker;
+    sheet_init(&sheet, 2, 2);
+    maker = seed_open(2, "indices16.glb", &sheet);
+    json_object_set_new(maker_get(&maker, "nodes", 0), "mesh", json_real(0));
+    json_object_set_new(maker_get(&maker, "accessors", 0), "count", json_real(24));
+    try_model(l, &maker);
+    assert_good(l);
+    assert_int_equal(drawn_triangles(&l->model), 8);
+    sheet_finish(&sheet);
+}
+
+static void heads_are_checked(void **state)
+{
+    struct loaded *l = *state;
+    static const struct {
+        const char *json, *reason;
+    } cases[] = {
+        { "{}", "glTF version '', expected 2.0" },
+        { "{\"asset\":{\"version\":\"1.0\"}}", "glTF version '1.0'" },
+        { "{\"asset\":{\"version\":\"2.0\",\"minVersion\":\"2.1\"}}", "glTF version '2.1'" },
+        { "{\"asset\":{\"version\":\"2.0\"},\"extensionsRequired\":[\"KHR_texture_basisu\"]}",
+          "KHR_texture_basisu, which is not supported" },
+        { "{\"asset\":{\"version\":\"2.0\"},\"extensionsRequired\":[5]}", "requires the extension" },
+        { "{\"asset\":{\"version\":\"2.0\"},\"nodes\":{}}", "nodes is not a list" },
+        { "{\"asset\":{\"version\":\"2.0\"},\"nodes\":[5]}", "node 0: is not an object" },
+        { "{\"asset\":{\"version\":\"2.0\"},\"scene\":3}", "scene: there is no scene 3" },
+        { "{\"asset\":{\"version\":\"2.0\"},\"images\":[{\"uri\":\"none.png\"}]}", "image 0: 'none.png' is not a readable file" },
+        { "{\"asset\":{\"version\":\"2.0\"},\"images\":[{}]}", "image 0: has neither a uri nor a bufferView" },
+        { "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":3}]}", "buffer 0: has no uri" },
+        { "\xEF\xBB\xBF{\"asset\":{\"version\":\"2.0\"},\"scene\":3}", "scene: there is no scene 3" },
+        { "{\"asset\":{\"version\":\"2.0\"}", "JSON: line 1" },
+        { "", "JSON: line 1" },
+    };
+    for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
+        try_bytes(l, mem_strdup(cases[i].json), strlen(cases[i].json));
+        assert_refused(l, cases[i].reason);
+    }
+}
+
+/* --- materials ----------------------------------------------------------------------------------------------------------- */
+
+static void textures_lie_where_their_transform_puts_them(void **state)
+{
+    struct loaded *l = *state;
+    struct sheet sheet;
+    struct maker maker;
+    sheet_init(&sheet, 2, 2);
+    maker = seed_open(15, "textured.glb", &sheet);
+    try_model(l, &maker);
+    assert_good(l);
+    const struct gltf_primitive *p = &l->model.primitives[0];
+    for (uint32_t v = 0; v < p->vertex_count; v++) { /* scaled, then turned, then moved */
+        double u = 2 * (double)sheet.texcoords[v][0], w = 3 * (double)sheet.texcoords[v][1], c = cos(0.5), s = sin(0.5);
+        assert_true(fabs((double)p->texcoords[v][0] - (c * u + s * w + 0.25)) < 1e-6);
+        assert_true(fabs((double)p->texcoords[v][1] - (c * w - s * u + 0.5)) < 1e-6);
+    }
+    assert_int_equal(l->model.texture_count, 1);
+    assert_true(l->model.textures[0].srgb && !l->model.textures[0].wrap_repeat);
+    struct geometry g;
+    char why[MODEL_WHY_BYTES];
+    assert_true(geometry_cut(&g, &l->model, &(struct geometry_params){ .unit_m = 1, .up = AXIS_Y }, why));
+    assert_int_equal(g.textures[0].width_px, 2);
+    assert_memory_equal(g.texels, ((uint8_t[16]){ 255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 255, 255, 255, 255 }), 16);
+    geometry_finish(&g);
+
+    maker = seed_open(15, "textured.glb", &sheet); /* another texture of the same material, which lies otherwise */
+    json_object_set_new(maker_get(&maker, "materials", 0), "occlusionTexture", json_pack("{s:i,s:i}", "index", 0, "texCoord", 1));
+    try_model(l, &maker);
+    assert_good(l);
+    assert_int_equal(l->model.left_out_textures, 1);
+    assert_true(l->model.materials[0].occlusion_texture == ASSET_NO_TEXTURE && l->model.materials[0].base_color_texture == 0);
+
+    maker = seed_open(15, "textured.glb", &sheet); /* mirrored beyond 0..1, which this sheet is */
+    json_object_set_new(maker_get(&maker, "samplers", 0), "wrapS", json_integer(33648));
+    try_model(l, &maker);
+    assert_refused(l, "TEXCOORD_0: mirrored");
+
+    maker = seed_open(15, "textured.glb", &sheet);
+    json_object_del(maker_get(&maker, "textures", 0), "source");
+    try_model(l, &maker);
+    assert_refused(l, "material 0 'paint': texture 0: has no image in a format that can be read");
+
+    maker = seed_open(15, "textured.glb", &sheet);
+    json_object_set_new(maker_get(&maker, "materials", 0), "alphaMode", json_string("GLOW"));
+    try_model(l, &maker);
+    assert_refused(l, "alphaMode 'GLOW'");
+    sheet_finish(&sheet);
+}
+
+/* --- cutting ------------------------------------------------------------------------------------------------------------- */
+
+static struct geometry cut(const struct loaded *l, const char *nodes, double unit_m, enum axis up)
+{
+    struct geometry g;
+    char why[MODEL_WHY_BYTES];
+    if (!geometry_cut(&g, &l->model, &(struct geometry_params){ .nodes = nodes, .unit_m = unit_m, .up = up }, why))
+        fail_msg("%s", why);
+    return g;
+}
+
+static void face_normal(const struct geometry *g, uint32_t triangle, double out[3])
+{
+    const float *p[3];
+    double ab[3], ac[3];
+    for (int c = 0; c < 3; c++)
+        p[c] = g->positions_m[g->indices[3 * triangle + (uint32_t)c]];
+    for (int axis = 0; axis < 3; axis++) {
+        ab[axis] = (double)p[1][axis] - (double)p[0][axis];
+        ac[axis] = (double)p[2][axis] - (double)p[0][axis];
+    }
+    for (int axis = 0; axis < 3; axis++)
+        out[axis] = ab[(axis + 1) % 3] * ac[(axis + 2) % 3] - ab[(axis + 2) % 3] * ac[(axis + 1) % 3];
+}
+
+static void assets_are_cut_from_a_tree(void **state)
+{
+    struct loaded *l = *state;
+    struct sheet sheet;
+    struct maker maker;
+    char why[MODEL_WHY_BYTES];
+    sheet_init(&sheet, 24, 10);
+    maker = seed_open(13, "tree.glb", &sheet);
+    try_model(l, &maker);
+    assert_good(l);
+
+    struct geometry g = cut(l, "far", 1, AXIS_Z); /* 6000 km away: no digit of the sheet is lost */
+    assert_float_equal(g.origin_m[0], 500001, 1e-9);
+    assert_float_equal(g.origin_m[1], 6000000.5, 1e-9);
+    double step = 1;
+    for (uint32_t v = 0; v < g.vertex_count; v++) {
+        double x = (double)g.positions_m[v][0] + 1;
+        assert_true(fabs((double)g.positions_m[v][2] + g.origin_m[2] - 0.25 - 0.1 * cos(3 * x)) < 3e-7);
+        if (x > 1e-6)
+            step = fmin(step, x);
+    }
+    assert_true(fabs(step - 2.0 / 24) < 1e-6);
+    geometry_finish(&g);
+
+    for (int mirrored = 0; mirrored < 2; mirrored++) { /* computed normals look out of the same side as the faces, mirrored or not */
+        g = cut(l, mirrored ? "mirrored" : "sheet", 1, AXIS_Z);
+        assert_int_equal(g.index_count, sheet.index_count);
+        assert_true(g.computed_normals > 0);
+        for (uint32_t t = 0; t < g.index_count / 3; t++) {
+            double n[3];
+            face_normal(&g, t, n);
+            assert_true(n[2] > 0);
+            assert_true(g.normals[g.indices[3 * t]][2] > 0.9f);
+        }
+        geometry_finish(&g);
+    }
+
+    g = cut(l, "branch", 0.001, AXIS_Y); /* a sub-tree, of a model in millimetres, y up */
+    assert_int_equal(g.primitive_count, 1);
+    assert_string_equal(g.names.at + g.primitives[0].name, "twig");
+    assert_float_equal(g.origin_m[1], -0.0095, 1e-6); /* y of the sheet is z of the branch, which is -y */
+    geometry_finish(&g);
+
+    g = cut(l, "[fm]*", 1, AXIS_Z);
+    assert_int_equal(g.node_count, 2);
+    geometry_finish(&g);
+    assert_false(geometry_cut(&g, &l->model, &(struct geometry_params){ .nodes = "twigg", .unit_m = 1 }, why));
+    assert_non_null(strstr(why, "no node's name matches 'twigg': did you mean 'twig'?"));
+    sheet_finish(&sheet);
+}
+
+static void a_name_is_meant_as_it_stands(void **state)
+{
+    struct loaded *l = *state;
+    struct sheet sheet;
+    struct maker maker;
+    sheet_init(&sheet, 2, 2);
+    maker = seed_open(2, "indices16.glb", &sheet);
+    maker_node(&maker, "TANK[12]", 0, NULL);
+    maker_node(&maker, "TANK1", 0, NULL);
+    maker_node(&maker, "TANK2", 0, NULL);
+    try_model(l, &maker);
+    assert_good(l);
+    struct geometry g = cut(l, "TANK[12]", 1, AXIS_Z);
+    assert_int_equal(g.node_count, 1);
+    geometry_finish(&g);
+    g = cut(l, "TANK[1-2]", 1, AXIS_Z);
+    assert_int_equal(g.node_count, 2);
+    geometry_finish(&g);
+    sheet_finish(&sheet);
+}
+
+static void lines_are_counted_for_the_asset_that_has_them(void **state)
+{
+    struct loaded *l = *state;
+    struct sheet sheet;
+    struct maker maker;
+    char why[MODEL_WHY_BYTES];
+    sheet_init(&sheet, 2, 2);
+    maker = seed_open(4, "fans.glb", &sheet);
+    maker_node(&maker, "wire", maker_mesh(&maker, json_pack("{s:{s:i},s:i}", "attributes", "POSITION", 0, "mode", 3)), NULL);
+    try_model(l, &maker);
+    assert_good(l);
+    struct geometry g = cut(l, "sheet", 1, AXIS_Z);
+    assert_int_equal(g.skipped_lines, 1);
+    assert_int_equal(g.skipped_points, 1);
+    geometry_finish(&g);
+    assert_int_equal(l->model.skipped_lines, 2);
+    assert_false(geometry_cut(&g, &l->model, &(struct geometry_params){ .nodes = "wire", .unit_m = 1 }, why));
+    assert_string_equal(why, "'wire' has no triangles (1 primitives of lines and 0 of points)");
+    sheet_finish(&sheet);
+}
+
+/* --- real models --------------------------------------------------------------------------------------------------------- */
+
+static void real_models_have_the_triangles_that_they_are_known_to_have(void **state)
+{
+    static const struct {
+        const char *name;
+        uint32_t drawn, without_area, lines;
+    } models[] = {
+        { "plm_plant_equipment", 79103, 1473, 0 }, { "plm_plant_5parts", 63879, 1264, 4 },
+        { "plm_plant_hierarchy", 53579, 1128, 8 }, { "huldra_wd1_psup", 52830, 4, 0 },
+        { "duplex_mep", 335822, 172, 0 },          { "offshore_platform_overview", 13708, 0, 0 },
+        { "cookie_factory_mixer", 22083, 0, 0 },   { "cookie_factory_water_tank", 1275, 0, 0 },
+        { "industrial_tanker", 3720, 0, 0 },
+    };
+    struct loaded *l = *state;
+    if (access("../shared/data/models", R_OK) != 0) {
+        print_message("# ../shared/data/models is not there\n");
+        skip();
+    }
+    for (size_t i = 0; i < sizeof(models) / sizeof(models[0]); i++) {
+        struct model_source source;
+        char *path = mem_printf("../shared/data/models/%s.glb", models[i].name);
+        forget(l);
+        l->good = false;
+        if (!model_source_open(&source, path, l->why))
+            fail_msg("%s: %s", path, l->why);
+        l->good = gltf_load(&l->model, &source, l->why);
+        model_source_finish(&source);
+        mem_free(path);
+        assert_good(l);
+        struct geometry g = cut(l, NULL, 1, AXIS_Y);
+        print_message("# %-28s %6u triangles, %4u without area, %u primitives of lines, %u textures left out\n", models[i].name,
+                      drawn_triangles(&l->model), g.degenerate_triangles, l->model.skipped_lines, l->model.left_out_textures);
+        assert_int_equal(drawn_triangles(&l->model), models[i].drawn);
+        assert_int_equal(g.index_count / 3 + g.degenerate_triangles, models[i].drawn);
+        geometry_finish(&g);
+    }
+}
+
+#define WITH_MODEL(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        WITH_MODEL(every_way_gives_the_same_surface),
+        WITH_MODEL(great_meshes_are_decompressed),
+        WITH_MODEL(broken_compression_is_refused_or_harmless),
+        WITH_MODEL(false_claims_of_compressed_views_are_refused),
+        WITH_MODEL(false_claims_of_draco_are_refused),
+        WITH_MODEL(vertices_that_are_not_used_are_left_out),
+        WITH_MODEL(what_a_small_file_claims_is_bounded),
+        WITH_MODEL(wrong_types_and_references_are_refused_by_name),
+        WITH_MODEL(whole_numbers_may_be_written_as_reals),
+        WITH_MODEL(heads_are_checked),
+        WITH_MODEL(textures_lie_where_their_transform_puts_them),
+        WITH_MODEL(assets_are_cut_from_a_tree),
+        WITH_MODEL(a_name_is_meant_as_it_stands),
+        WITH_MODEL(lines_are_counted_for_the_asset_that_has_them),
+        WITH_MODEL(real_models_have_the_triangles_that_they_are_known_to_have),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
