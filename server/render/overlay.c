@@ -82,8 +82,7 @@ void pen_text(struct pen *pen, double x, double y, const char *text)
 
 int pen_decimals(double range)
 {
-    double decimals = 3 - floor(log10(range));
-    return (int)fmin(fmax(decimals, 0), 6);
+    return (int)fmin(fmax(ceil(-log10(range / 500)), 0), 6);
 }
 
 static void format_age(int64_t age_ns, char out[40])

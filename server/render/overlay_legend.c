@@ -27,7 +27,9 @@ static double nice_step(double range, double count)
 
 static void format_title(const struct pen *pen, char out[160])
 {
-    snprintf(out, 160, "%s [%s]", group_of(pen)->quantity, group_of(pen)->unit);
+    const struct plant_group *group = group_of(pen);
+    bool has_unit = group->unit && *group->unit;
+    snprintf(out, 160, has_unit ? "%s [%s]" : "%s", group->quantity, group->unit);
 }
 
 static void lay_out(struct pen *pen, struct layout *layout)

@@ -32,7 +32,7 @@ void pen_font(struct pen *pen, double size, bool bold); /* size: of text_px */
 double pen_text_width(struct pen *pen, const char *text);
 void pen_text(struct pen *pen, double x, double y, const char *text); /* from x, on a line through y; left where it starts */
 
-/* How many decimals tell values apart that differ by a thousandth of the range. */
+/* How many decimals tell values apart that differ by a 500th of the range. */
 int pen_decimals(double range);
 
 void overlay_legend(struct pen *pen);

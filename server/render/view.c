@@ -5,13 +5,16 @@
 #include <math.h>
 #include <string.h>
 
-/* A late-morning sun over the viewer's left shoulder: shapes read best, shadows stay short. */
-static void default_light(const struct scene *scene, const struct camera *camera, double towards[3])
+/* A late-morning sun over the viewer's shoulder: shapes read best, shadows stay short. One for the plant, whatever the picture's
+   shape: what is baked for it serves every session. */
+static void default_light(const struct scene *scene, double towards[3])
 {
     int up = scene->plant->up == AXIS_Y ? 1 : 2, a = 0, b = up == 1 ? 2 : 1;
+    struct camera home;
     double away[3];
+    scene_home(scene, 16.0 / 9, &home);
     for (int i = 0; i < 3; i++)
-        away[i] = camera->eye_m[i] - camera->target_m[i];
+        away[i] = home.eye_m[i] - home.target_m[i];
     double flat = hypot(away[a], away[b]), turn = (up == 1 ? 1 : -1) * 0.85, height = 0.87;
     double x = flat > 0 ? away[a] / flat : 1, y = flat > 0 ? away[b] / flat : 0, across = sqrt(1 - height * height);
     towards[a] = across * (x * cos(turn) - y * sin(turn));
@@ -28,10 +31,10 @@ void view_default(const struct scene *scene, int width_px, int height_px, struct
     scene_home(scene, (double)width_px / height_px, &view->camera);
     view->selected_asset = -1;
     view->tier = TIER_STILL;
-    field_params_default(plant, 0, &view->field);
     if (plant->group_count > 0) {
+        field_params_default(plant, 0, &view->field);
         view->range_min = plant->groups[0].min;
         view->range_max = plant->groups[0].max;
     }
-    default_light(scene, &view->camera, view->light_dir);
+    default_light(scene, view->light_dir);
 }

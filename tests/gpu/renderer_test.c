@@ -234,6 +234,16 @@ static void test_light_can_be_chosen(void **state)
         }
 }
 
+/* Else every size of window would have its own light baked. */
+static void test_default_light_is_one(void **state)
+{
+    struct view wide, tall;
+    (void)state;
+    view_default(&stand.toy->scene, 1600, 400, &wide);
+    view_default(&stand.toy->scene, 300, 900, &tall);
+    assert_memory_equal(wide.light_dir, tall.light_dir, sizeof(wide.light_dir));
+}
+
 static void test_selection_is_outlined(void **state)
 {
     (void)state;
