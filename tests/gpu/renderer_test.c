@@ -308,6 +308,7 @@ int main(void)
         each(test_marker_upward_is_upward),
         each(test_age_of_the_oldest),
         each(test_light_can_be_chosen),
+        each(test_default_light_is_one),
         each(test_selection_is_outlined),
         each(test_many_sizes),
         each(test_camera_within_the_plant),
