@@ -8,6 +8,7 @@ import { limitState } from '../core/model.js';
 const INK = '#1d252d', INK_2 = '#4d5964', ACCENT = '#2a5f8f';
 const LIMIT_COLOURS = { HH: ['#c62828', '#fff'], LL: ['#c62828', '#fff'], H: ['#f0a30a', '#1b1300'], L: ['#f0a30a', '#1b1300'] };
 const LABEL_HEIGHT = 20, PADDING = 6, NAMES_UP_TO = 24;
+const MOST_LOST_LABELS = 12; // beyond it, crossed markers say enough
 const REACH_PX = { mouse: 14, pen: 18, touch: 26 };
 
 const SHAPES = {
@@ -106,7 +107,9 @@ export class Overlay {
     }
 
     labels() {
-        const shown = this.markers.filter((marker) => !marker.occluded && !this.isChosen(marker.tag)); // the card speaks for the chosen
+        const inSight = this.markers.filter((marker) => !marker.occluded && !this.isChosen(marker.tag)); // the card speaks for the chosen
+        const lost = inSight.filter(({ reading }) => reading.quality === 'bad');
+        const shown = lost.length <= MOST_LOST_LABELS ? inSight : inSight.filter((marker) => !lost.includes(marker));
         const named = shown.length <= NAMES_UP_TO;
         const nearest = Math.min(...shown.map((marker) => marker.depth));
         return shown.map((marker) => {
