@@ -10,7 +10,7 @@ test-deps:
 
 # A second make, because this one looked for libraries before they were installed.
 run: deps
-	@$(MAKE) --no-print-directory all $(if $(filter $(build)/demo/%,$(PLANT)),demo)
+	@$(MAKE) --no-print-directory all $(filter $(build)/demo/%,$(PLANT))
 	@exec deploy/run $(bin) $(PLANT) $(PORT)
 
 # The demo plant is generated; preparing it again costs only a look at the files.

@@ -144,8 +144,6 @@ static bool start_painter(struct server *server)
         .notify_arg = server,
     };
     server->painter = painter_create(&params);
-    if (server->painter)
-        log_info(server->log, "GL: %s", painter_gl_text(server->painter));
     return server->painter != NULL;
 }
 

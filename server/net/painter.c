@@ -3,7 +3,6 @@
 #include "net/painter.h"
 
 #include <pthread.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "base/clock.h"
@@ -23,7 +22,6 @@ struct client {
 
 struct painter {
     struct painter_params params;
-    char gl_text[320];
     counter *renders, *render_us, *same, *failures;
     struct encoding *encoding;
     pthread_t thread;
@@ -272,8 +270,6 @@ static bool drawing_init(struct drawing *drawing, struct painter *painter)
     drawing->gl = gl_create(params->log, params->gl, -1);
     if (!drawing->gl)
         return false;
-    snprintf(painter->gl_text, sizeof(painter->gl_text), "%s: %s, %s", gl_kind_name(drawing->gl->kind), drawing->gl->renderer,
-             drawing->gl->version);
     drawing->field = field_create(params->workers, params->scene);
     drawing->renderer = renderer_create(params->log, drawing->gl, params->scene, drawing->field);
     drawing->snapshot = snapshot_create(params->scene->plant->tag_count);
@@ -458,9 +454,4 @@ void painter_destroy(struct painter **painter_ptr)
     pthread_mutex_destroy(&painter->lock);
     mem_free(painter);
     *painter_ptr = NULL;
-}
-
-const char *painter_gl_text(const struct painter *painter)
-{
-    return painter->gl_text;
 }

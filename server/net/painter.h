@@ -23,7 +23,6 @@ struct painter_params {
 /* Makes the thread, GL and the renderer, and waits for them. NULL on failure, logged. All in params must outlive it. */
 struct painter *painter_create(const struct painter_params *params);
 void painter_destroy(struct painter **painter); /* &NULL is fine; leaves NULL; ends the thread and what it gave to the workers */
-const char *painter_gl_text(const struct painter *painter); /* what draws, for the log */
 
 enum painter_answer { PAINTER_ADDED, PAINTER_REPLACED, PAINTER_REFUSED };
 /* Each wish that was added brings one picture, unless the client is forgotten. painter_go, after the last of those made at one time,
