@@ -10,6 +10,7 @@
 
 static const int64_t STILL_NS = 200 * NS_PER_MS;         /* nothing moved for so long: refine */
 static const int64_t LOADED_STILL_NS = 1000 * NS_PER_MS; /* likewise, when not all can be refined */
+static const int64_t LOADED_SHARE_NS = 3 * NS_PER_S;      /* but after so long without one, however often readings change */
 static const int64_t PATIENCE_NS = 10 * NS_PER_S;        /* others may move for so long before one is refined all the same */
 static const int64_t TAGS_NS = 500 * NS_PER_MS;          /* changed values, at most this often */
 static const int64_t REPEAT_NS = 2000 * NS_PER_MS;       /* all values and the links, at least this often */
@@ -212,7 +213,7 @@ static bool refine_due(const struct session *session, int64_t now_ns)
 {
     const struct session_world *world = session->world;
     bool others_move = now_ns < world->moving_until_ns && now_ns - session->input_ns < PATIENCE_NS;
-    bool data_moves = world->loaded && now_ns - session->moved_ns < LOADED_STILL_NS;
+    bool data_moves = world->loaded && now_ns - session->moved_ns < LOADED_STILL_NS && now_ns - session->refined_ns < LOADED_SHARE_NS;
     return !session->refined && session->pacer.asked == 0 && !others_move && !data_moves && now_ns - session->input_ns >= STILL_NS;
 }
 
@@ -256,6 +257,8 @@ void session_asked(struct session *session, const struct wish *wish, bool replac
         pacer_asked(&session->pacer);
     session->input_pending = session->always_pending = session->data_pending = false;
     session->refined = wish->view.tier == TIER_STILL;
+    if (session->refined)
+        session->refined_ns = wish->asked_ns;
 }
 
 /* --- output --------------------------------------------------------------------------------------------------------------- */

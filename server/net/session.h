@@ -34,6 +34,7 @@ struct session {
     bool input_pending, data_pending, always_pending; /* why a picture is wanted */
     int64_t input_ns, data_ns;                        /* the newest input; the oldest change of a reading that is not yet asked for */
     int64_t moved_ns;                                 /* when the newest picture of the moving tier was asked for */
+    int64_t refined_ns;                               /* when the newest of the still tier was */
     bool refined;                                     /* the view as it is has been asked for in the still tier */
     struct pacer pacer;
     uint64_t newest_number; /* of the pictures that came */

@@ -344,6 +344,23 @@ static void data_on_a_loaded_server_is_not_refined_at_once(void **state)
     assert_true(wish.view.tier == TIER_STILL);
 }
 
+static void data_on_a_loaded_server_does_not_put_refinement_off_for_ever(void **state)
+{
+    struct fixture *f = *state;
+    int refined = 0;
+    greet(f);
+    show(f);
+    f->now_ns += NS_PER_S;
+    assert_true(show(f).view.tier == TIER_STILL);
+    f->world.loaded = true;
+    for (int i = 0; i < 20; i++) { /* 10 s */
+        f->now_ns += 500 * MS;
+        session_on_data(f->session, f->now_ns);
+        refined += show(f).view.tier == TIER_STILL;
+    }
+    assert_in_range(refined, 2, 4);
+}
+
 static void hidden_pages_get_nothing(void **state)
 {
     struct fixture *f = *state;
@@ -472,6 +489,7 @@ int main(void)
         TEST(nobody_is_refined_while_another_moves),
         TEST(others_may_move_for_a_while_not_for_ever),
         TEST(data_on_a_loaded_server_is_not_refined_at_once),
+        TEST(data_on_a_loaded_server_does_not_put_refinement_off_for_ever),
         TEST(hidden_pages_get_nothing),
         TEST(tags_come_whole_then_by_change_then_whole_again),
         TEST(params_are_confirmed_and_bad_ones_change_nothing),
