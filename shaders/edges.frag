@@ -11,10 +11,13 @@ float at(ivec2 pixel)
 }
 
 // From here, one pixel to that side: how much nearer, as a part. Depth is 1/distance; over a flat surface it is a plane on the screen.
+// What is nearer must go on for some pixels, and to one hand at least: slanting rails are thin though long.
 float rise(ivec2 pixel, float here, ivec2 side)
 {
-    float next = at(pixel + side), wide = min(at(pixel + 3 * side), at(pixel + 4 * side)), back = at(pixel - side);
-    return (min(next, wide) - here - max(here - back, 0.0)) / max(next, 1e-9);
+    ivec2 other = pixel + side, hand = side.yx * 2;
+    float next = at(other), wide = min(at(pixel + 3 * side), at(pixel + 4 * side)), high = max(at(other + hand), at(other - hand));
+    float back = at(pixel - side);
+    return (min(next, min(wide, high)) - here - max(here - back, 0.0)) / max(next, 1e-9);
 }
 
 void main()
