@@ -33,7 +33,7 @@ static const char usage[] =
     "offline only:\n"
     "  --values FILE           CSV of tag,value[,quality]; may be repeated. Tags without a value have no data\n"
     "  --at TIME               of the values: 2026-01-31T12:00:00Z; now\n"
-    "  --prepared FOLDER       where plantcast-prep put its files; prepared/ beside the plant file\n"
+    "  --prepared FOLDER       where plantcast-prep put its files; PLANT.prepared beside the plant file\n"
     "  --tier TIER             still or moving\n"
     "  --no-overlay            no legend, markers and clock\n"
     "  --gl KIND               auto, egl-device, egl-surfaceless, osmesa;  --gl-device N\n";

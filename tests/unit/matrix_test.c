@@ -68,7 +68,8 @@ static void test_normals_stay_normal(void **state)
     for (int round = 0; round < 100; round++) {
         double m[16], u[3] = { any(), any(), any() }, v[3] = { any(), any(), any() }, turned_u[3], turned_v[3];
         any_matrix(m);
-        float normals[9], n[3] = { (float)(u[1] * v[2] - u[2] * v[1]), (float)(u[2] * v[0] - u[0] * v[2]), (float)(u[0] * v[1] - u[1] * v[0]) };
+        float normals[9],
+            n[3] = { (float)(u[1] * v[2] - u[2] * v[1]), (float)(u[2] * v[0] - u[0] * v[2]), (float)(u[0] * v[1] - u[1] * v[0]) };
         double dot_u = 0, dot_v = 0, outward = 0;
         matrix_normals(m, normals);
         for (int r = 0; r < 3; r++) {
