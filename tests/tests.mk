@@ -45,8 +45,10 @@ fuzz:
 	@$(MAKE) --no-print-directory config=fuzz CC=clang build=$(build)/clang fuzzed
 fuzzed: $(fuzzers)
 	@for f in $(fuzzers); do seeds=$$(basename $$f _fuzz); mkdir -p $(out)/corpus/$$seeds; \
-	    $$f -max_total_time=$(seconds) -timeout=10 -artifact_prefix=$(out)/ $(out)/corpus/$$seeds tests/fuzz/$$seeds || exit 1; done
-$(out)/tests/fuzz/%: $(out)/obj/tests/fuzz/%.o $(support) $(archives)
+	    dict=tests/fuzz/$$seeds.dict; \
+	    $$f -max_total_time=$(seconds) -timeout=10 $$([ -f $$dict ] && echo -dict=$$dict) -artifact_prefix=$(out)/ \
+	    $(out)/corpus/$$seeds tests/fuzz/$$seeds || exit 1; done
+$(out)/tests/fuzz/%: $(out)/obj/tests/fuzz/%.o $(support) $(archives) $(out)/lib/prep.a
 	@mkdir -p $(@D); echo "  LINK $@"
 	@$(CXX) $(ldflags) -fsanitize=fuzzer -o $@ $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group $(pkg_libs) -lcmocka
 .PHONY: fuzz fuzzed

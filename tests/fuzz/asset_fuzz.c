@@ -1,0 +1,88 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Feeds bytes to asset_view_init: as they are, and once more with size and checksum made right, or nothing would get past these. A view
+   that is good may be read from end to end. */
+#include <math.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <xxhash.h>
+
+#include "protocol/asset_format.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count);
+
+static void require(bool promise, const char *what)
+{
+    if (promise)
+        return;
+    fprintf(stderr, "broken promise: %s\n", what);
+    abort();
+}
+
+static void check_primitives(const struct asset_view *view)
+{
+    const struct asset_header *h = view->header;
+    for (uint32_t l = 0; l < h->level_count; l++)
+        for (uint32_t p = 0; p < view->levels[l].primitive_count; p++) {
+            const struct asset_primitive *primitive = &view->primitives[view->levels[l].first_primitive + p];
+            require(primitive->material < h->material_count && memchr(view->names + primitive->name, 0, 1 << 20),
+                    "primitives have a material and a name");
+            for (uint32_t i = 0; i < primitive->index_count; i++)
+                require(isfinite(view->positions_m[view->indices[primitive->first_index + i]][2]), "triangles have corners");
+        }
+}
+
+static void check_view(const struct asset_view *view)
+{
+    const struct asset_header *h = view->header;
+    unsigned sum = 0;
+    check_primitives(view);
+    for (uint32_t v = 0; v < h->vertex_count; v++) {
+        require(isfinite(view->positions_m[v][0]) && isfinite(view->normals[v][2]), "vertices are finite");
+        require(!view->texcoords || isfinite(view->texcoords[v][1]), "texture coordinates are finite");
+        sum += view->colors ? view->colors[v][3] : 0;
+    }
+    for (uint32_t t = 0; t < h->texture_count; t++)
+        for (uint64_t i = 0; i < 4ull * view->textures[t].width_px * view->textures[t].height_px; i++)
+            sum += view->texels[view->textures[t].offset + i];
+    for (uint32_t m = 0; m < h->material_count; m++)
+        require(view->materials[m].roughness >= 0 && memchr(view->names + view->materials[m].name, 0, 1 << 20), "materials");
+    for (uint32_t s = 0; s < h->sensor_count; s++) {
+        require(view->sensors[s].nearest_vertex < h->vertex_count && isfinite(view->sensors[s].surface_m[0]), "sensors");
+        for (uint32_t v = 0; v < h->vertex_count; v++)
+            require(view->geodesic_m[(size_t)s * h->vertex_count + v] >= 0, "distances");
+    }
+    volatile unsigned read = sum; /* so that reading is not left out */
+    (void)read;
+}
+
+static void try_bytes(const void *bytes, size_t count)
+{
+    struct asset_view view;
+    char why[200] = "";
+    if (asset_view_init(&view, bytes, count, why))
+        check_view(&view);
+    else
+        require(why[0], "a reason");
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
+{
+    void *copy;
+    if (posix_memalign(&copy, ASSET_ALIGN, count ? count : 1) != 0) /* ends where it ends, so that reading on is seen */
+        return 0;
+    char *at = memcpy(copy, bytes, count);
+    try_bytes(at, count);
+    if (count >= sizeof(struct asset_header)) {
+        struct asset_header *header = (struct asset_header *)copy;
+        header->version = ASSET_VERSION;
+        header->file_bytes = count;
+        header->checksum = 0;
+        header->checksum = XXH3_64bits(at, count);
+        try_bytes(at, count);
+    }
+    free(copy);
+    return 0;
+}

@@ -1,0 +1,75 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Replaying seeds. */
+#include "tests/support/replay.h"
+
+#include <dirent.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "base/text.h"
+#include "tests/support/temp.h"
+
+#define MAX_BYTES ((size_t)1 << 20)
+
+/* One byte, a run of them, a digit, or the end. Lengths stay as they are but for the last: what a header says of them then still fits. */
+static size_t change(uint8_t *bytes, size_t count)
+{
+    if (count == 0)
+        return 0;
+    size_t at = (size_t)rand() % count, run = (size_t)rand() % 8 + 1;
+    if (run > count - at)
+        run = count - at;
+    switch (rand() % 16) {
+    case 0: return at;
+    case 1:
+    case 2:
+    case 3: memmove(bytes + at, bytes + (size_t)rand() % (count - run + 1), run); return count;
+    case 4:
+    case 5: memset(bytes + at, rand() % 2 ? 0xff : 0x7f, run); return count;
+    case 6:
+    case 7:
+    case 8: bytes[at] = (uint8_t) "0123456789-.eE\",:[]{}"[rand() % 21]; return count;
+    default: bytes[at] ^= (uint8_t)(1 << rand() % 8); return count;
+    }
+}
+
+static void replay(const char *path, int rounds, int (*feed)(const uint8_t *bytes, size_t count))
+{
+    size_t count;
+    char *seed = text_read_file(path, MAX_BYTES, &count);
+    if (!seed)
+        abort();
+    feed((const uint8_t *)seed, count);
+    for (int round = 0; round < rounds; round++) {
+        uint8_t *bytes = mem_array(count + 1, 1);
+        size_t length = count;
+        memcpy(bytes, seed, count);
+        srand((unsigned)round); /* one round can be repeated alone */
+        for (int changes = rand() % 4; changes >= 0; changes--)
+            length = change(bytes, length);
+        feed(bytes, length);
+        mem_free(bytes);
+    }
+    mem_free(seed);
+}
+
+int replay_folder(const char *folder, int rounds, int (*feed)(const uint8_t *bytes, size_t count))
+{
+    int files = 0;
+    DIR *dir = opendir(folder);
+    if (!dir)
+        return -1;
+    for (struct dirent *entry; (entry = readdir(dir));) {
+        if (entry->d_name[0] == '.')
+            continue;
+        char *path = temp_path(folder, entry->d_name);
+        printf("# %s\n", path);
+        replay(path, rounds, feed);
+        mem_free(path);
+        files++;
+    }
+    closedir(dir);
+    return files;
+}

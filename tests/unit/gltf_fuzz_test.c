@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Replays the seeds of the model fuzzer, and what random changes make of them. `gltf_fuzz_test --write FOLDER` makes the seeds anew. */
+#include "tests/fuzz/gltf_fuzz.c"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "tests/support/model_seeds.h"
+#include "tests/support/replay.h"
+
+#define SEEDS "tests/fuzz/gltf"
+enum { BY_HAND = 3, FOUND = 1 };
+
+static void seeds_and_their_changes_keep_the_promises(void **state)
+{
+    (void)state;
+    assert_true(replay_folder(SEEDS, 150, LLVMFuzzerTestOneInput) >= SEED_COUNT + BY_HAND + FOUND);
+}
+
+static int write_seeds(const char *to)
+{
+    struct sheet sheet;
+    sheet_init(&sheet, 2, 2);
+    for (int i = 0; i < SEED_COUNT; i++) {
+        struct seed seed;
+        seed_make(&seed, i, &sheet);
+        mem_free(temp_write(to, seed.name, seed.bytes, seed.size));
+        mem_free(seed.bytes);
+    }
+    sheet_finish(&sheet);
+    return 0;
+}
+
+int main(int argc, char **argv)
+{
+    if (argc == 3 && strcmp(argv[1], "--write") == 0)
+        return write_seeds(argv[2]);
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = { cmocka_unit_test(seeds_and_their_changes_keep_the_promises) };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

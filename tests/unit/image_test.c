@@ -1,0 +1,180 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Images: what their writers wrote comes back, shrunk where it is too large; what is cut off or claims too much is refused. */
+#include "preprocess/image_shim.h"
+
+#include <png.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <turbojpeg.h>
+#include <cmocka.h>
+
+#include "base/mem.h"
+
+struct encoded {
+    unsigned char *bytes;
+    unsigned long size;
+};
+
+/* Left red, right green, with a soft slope of blue down. */
+static unsigned char *picture(uint32_t width, uint32_t height, int channels)
+{
+    unsigned char *pixels = mem_array((size_t)width * height, (size_t)channels);
+    for (uint32_t y = 0; y < height; y++)
+        for (uint32_t x = 0; x < width; x++) {
+            const unsigned char color[4] = { x < width / 2 ? 255 : 0, x < width / 2 ? 0 : 255, (unsigned char)(255 * y / height), 128 };
+            memcpy(pixels + ((size_t)y * width + x) * (size_t)channels, channels < 3 ? color + 2 : color, (size_t)channels);
+        }
+    return pixels;
+}
+
+static struct encoded png_of(uint32_t width, uint32_t height, int channels)
+{
+    static const uint32_t formats[] = { 0, PNG_FORMAT_GRAY, PNG_FORMAT_GA, PNG_FORMAT_RGB, PNG_FORMAT_RGBA };
+    png_image image = { .version = PNG_IMAGE_VERSION, .width = width, .height = height, .format = formats[channels] };
+    unsigned char *pixels = picture(width, height, channels);
+    png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
+    struct encoded out = { .bytes = malloc(size) };
+    assert_true(png_image_write_to_memory(&image, out.bytes, &size, 0, pixels, 0, NULL));
+    out.size = size;
+    mem_free(pixels);
+    return out;
+}
+
+static struct encoded jpeg_of(int width, int height)
+{
+    struct encoded out = { 0 };
+    unsigned char *pixels = picture((uint32_t)width, (uint32_t)height, 3);
+    tjhandle handle = tjInitCompress();
+    unsigned char *bytes = NULL;
+    assert_int_equal(tjCompress2(handle, pixels, width, 0, height, TJPF_RGB, &bytes, &out.size, TJSAMP_444, 95, 0), 0);
+    out.bytes = malloc(out.size);
+    memcpy(out.bytes, bytes, out.size);
+    tjFree(bytes);
+    tjDestroy(handle);
+    mem_free(pixels);
+    return out;
+}
+
+static void assert_refused(const void *bytes, size_t size, const char *reason)
+{
+    struct image image;
+    char why[IMAGE_WHY_BYTES] = "accepted";
+    bool good = image_decode(&image, bytes, size, 2048, why);
+    if (good || !strstr(why, reason))
+        fail_msg("%zu bytes: '%s', expected '%s'", size, why, reason);
+}
+
+static void png_of_every_kind_comes_back(void **state)
+{
+    (void)state;
+    for (int channels = 1; channels <= 4; channels++) {
+        struct encoded png = png_of(40, 30, channels);
+        unsigned char *pixels = picture(40, 30, channels);
+        struct image image;
+        char why[IMAGE_WHY_BYTES] = "";
+        if (!image_decode(&image, png.bytes, png.size, 2048, why))
+            fail_msg("%d channels: %s", channels, why);
+        assert_int_equal(image.width_px, 40);
+        assert_int_equal(image.height_px, 30);
+        for (int i = 0; i < 40 * 30; i++) {
+            const unsigned char *from = pixels + i * channels, *to = image.rgba + 4 * i;
+            assert_int_equal(to[0], from[0]);
+            assert_int_equal(to[1], from[channels < 3 ? 0 : 1]);
+            assert_int_equal(to[3], channels == 4 ? from[3] : channels == 2 ? from[1] : 255);
+        }
+        mem_free(image.rgba);
+        mem_free(pixels);
+        free(png.bytes);
+    }
+}
+
+static void jpeg_comes_back_and_great_ones_shrink(void **state)
+{
+    (void)state;
+    struct encoded jpeg = jpeg_of(400, 200);
+    for (uint32_t most = 100; most <= 400; most *= 4) {
+        struct image image;
+        char why[IMAGE_WHY_BYTES] = "";
+        if (!image_decode(&image, jpeg.bytes, jpeg.size, most, why))
+            fail_msg("%s", why);
+        assert_int_equal(image.width_px, most);
+        assert_int_equal(image.height_px, most / 2);
+        const uint8_t *left = image.rgba + 4 * (most / 4 * image.width_px + most / 8), *right = left + 4 * (most / 2);
+        assert_true(left[0] > 240 && left[1] < 15 && right[0] < 15 && right[1] > 240 && left[3] == 255);
+        mem_free(image.rgba);
+    }
+    free(jpeg.bytes);
+}
+
+static void webp_is_read(void **state)
+{
+    (void)state;
+    static const unsigned char webp[] = {
+        /* 8 x 8, as libwebp made it from a slope of greys */
+        82, 73, 70,  70,  70,  0,   0,   0,   87,  69,  66,  80,  86,  80,  56,  32,  58, 0,   0,   0,   176, 1,   0,  157, 1,  42,
+        8,  0,  8,   0,   0,   0,   0,   37,  164, 0,   2,   231, 112, 175, 101, 144, 0,  254, 255, 255, 126, 117, 51, 255, 72, 70,
+        57, 23, 217, 194, 201, 188, 230, 248, 223, 254, 144, 140, 113, 237, 235, 103, 99, 46,  31,  238, 147, 245, 63, 148, 0,  0,
+    };
+    struct image image;
+    char why[IMAGE_WHY_BYTES] = "";
+    if (!image_decode(&image, webp, sizeof(webp), 2048, why))
+        fail_msg("%s", why);
+    assert_int_equal(image.width_px, 8);
+    assert_int_equal(image.height_px, 8);
+    assert_true(image.rgba[0] < 40 && image.rgba[4 * 63] > 150); /* dark to light */
+    mem_free(image.rgba);
+    assert_refused(webp, 60, "webp: ");
+}
+
+static void cut_images_are_refused(void **state)
+{
+    (void)state;
+    struct encoded all[] = { png_of(64, 64, 3), jpeg_of(64, 64) };
+    for (int i = 0; i < 2; i++) {
+        for (size_t size = 0; size + 1 < all[i].size; size += 1 + size / 40) { /* JPEG's last byte is no loss */
+            struct image image;
+            char why[IMAGE_WHY_BYTES] = "";
+            if (image_decode(&image, all[i].bytes, size, 2048, why))
+                fail_msg("%s: the first %zu bytes of %lu are accepted", i ? "JPEG" : "PNG", size, all[i].size);
+            assert_true(why[0] != 0);
+        }
+        free(all[i].bytes);
+    }
+}
+
+static void false_claims_are_refused(void **state)
+{
+    (void)state;
+    struct encoded png = png_of(64, 64, 3);
+    memcpy(png.bytes + 16, "\0\0\x1f\xff\0\0\x1f\xff", 8); /* 8191 x 8191 */
+    png_const_bytep at = png.bytes;
+    assert_refused(at, png.size, "");
+    uint32_t crc = 0xffffffffu; /* and now with a sum that is right */
+    for (int i = 12; i < 29; i++) {
+        crc ^= at[i];
+        for (int bit = 0; bit < 8; bit++)
+            crc = crc >> 1 ^ (crc & 1 ? 0xedb88320u : 0);
+    }
+    crc = ~crc;
+    for (int i = 0; i < 4; i++)
+        png.bytes[29 + i] = (unsigned char)(crc >> (24 - 8 * i));
+    assert_refused(png.bytes, png.size, "bytes claim 8191 x 8191 pixels");
+    free(png.bytes);
+    assert_refused("GIF89a", 6, "6 bytes are neither PNG, JPEG nor WebP");
+    assert_refused("", 0, "0 bytes are neither");
+}
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(png_of_every_kind_comes_back),
+        cmocka_unit_test(jpeg_comes_back_and_great_ones_shrink),
+        cmocka_unit_test(webp_is_read),
+        cmocka_unit_test(cut_images_are_refused),
+        cmocka_unit_test(false_claims_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
