@@ -61,22 +61,29 @@ std::vector<uint32_t> triangle_list(std::vector<uint32_t> in, int mode, const st
 /* The vertices that are used, in order; indices then name these. Exporters share one great buffer among many primitives. */
 std::vector<uint32_t> compact(std::vector<uint32_t> *indices)
 {
-    std::vector<uint32_t> used = *indices;
-    std::sort(used.begin(), used.end());
-    used.erase(std::unique(used.begin(), used.end()), used.end());
-    if (used.empty())
+    std::vector<uint32_t> used;
+    if (indices->empty())
         return used;
-    uint32_t low = used.front(), range = used.back() - low + 1;
-    if (range / 8 <= indices->size()) {
-        std::vector<uint32_t> number(range);
-        for (size_t i = 0; i < used.size(); i++)
-            number[used[i] - low] = static_cast<uint32_t>(i);
-        for (uint32_t &index : *indices)
-            index = number[index - low];
-    } else {
+    auto ends = std::minmax_element(indices->begin(), indices->end());
+    uint32_t low = *ends.first, range = *ends.second - low + 1;
+    if (range / 8 > indices->size()) { /* few, and far apart */
+        used = *indices;
+        std::sort(used.begin(), used.end());
+        used.erase(std::unique(used.begin(), used.end()), used.end());
         for (uint32_t &index : *indices)
             index = static_cast<uint32_t>(std::lower_bound(used.begin(), used.end(), index) - used.begin());
+        return used;
     }
+    std::vector<uint32_t> number(range, 0);
+    for (uint32_t index : *indices)
+        number[index - low] = 1;
+    for (uint32_t i = 0; i < range; i++)
+        if (number[i]) {
+            number[i] = static_cast<uint32_t>(used.size());
+            used.push_back(low + i);
+        }
+    for (uint32_t &index : *indices)
+        index = number[index - low];
     return used;
 }
 

@@ -3,6 +3,7 @@
 #include "preprocess/model_rules.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
@@ -108,9 +109,11 @@ static const char *const known_extensions[] = {
     "KHR_xmp_json_ld",
 };
 
-struct check { /* one property in hand */
+struct check { /* one object in hand */
     json_t *root;
-    const char *what; /* the object that has it */
+    const char *list; /* NULL: the document itself */
+    size_t number;
+    int primitive; /* of the mesh `number`, or -1 */
     char *why;
 };
 
@@ -134,6 +137,19 @@ void model_rules_name(const json_t *root, const char *list, size_t number, int p
     int length = snprintf(out, bytes, name ? "%s %zu '%.80s'" : "%s %zu", one_of(list), number, name);
     if (primitive >= 0 && length >= 0 && (size_t)length < bytes)
         snprintf(out + length, bytes - (size_t)length, ", primitive %d", primitive);
+}
+
+static bool object_wrong(const struct check *c, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
+static bool object_wrong(const struct check *c, const char *fmt, ...)
+{
+    char what[160] = "file", text[MODEL_WHY_BYTES - 160];
+    va_list ap;
+    va_start(ap, fmt);
+    vsnprintf(text, sizeof(text), fmt, ap);
+    va_end(ap);
+    if (c->list)
+        model_rules_name(c->root, c->list, c->number, c->primitive, what, sizeof(what));
+    return wrong(c->why, "%s: %s", what, text);
 }
 
 /* A whole number, whichever way it is written. */
@@ -160,16 +176,16 @@ static bool index_good(const struct check *c, const char *path, const json_t *va
 {
     json_int_t index;
     if (!whole(value, &index))
-        return wrong(c->why, "%s: %s is not a whole number", c->what, path);
+        return object_wrong(c, "%s is not a whole number", path);
     if (index < 0 || (target && (size_t)index >= json_array_size(json_object_get(c->root, target))) || index > INT32_MAX)
-        return wrong(c->why, "%s: %s: there is no %s %lld", c->what, path, target ? one_of(target) : "such number:", (long long)index);
+        return object_wrong(c, "%s: there is no %s %lld", path, target ? one_of(target) : "such number:", (long long)index);
     return true;
 }
 
 static bool indices_good(const struct check *c, const char *path, json_t *value, const char *target)
 {
     if (!json_is_array(value))
-        return wrong(c->why, "%s: %s is not a list", c->what, path);
+        return object_wrong(c, "%s is not a list", path);
     for (size_t i = 0; i < json_array_size(value); i++) {
         json_int_t index;
         if (!index_good(c, path, json_array_get(value, i), target))
@@ -186,7 +202,7 @@ static bool attributes_good(const struct check *c, const char *path, json_t *val
     json_t *one;
     void *next;
     if (!json_is_object(value))
-        return wrong(c->why, "%s: %s is not an object", c->what, path);
+        return object_wrong(c, "%s is not an object", path);
     json_object_foreach_safe(value, next, key, one)
     {
         json_int_t index;
@@ -205,7 +221,7 @@ static bool whole_good(const struct check *c, const struct rule *rule, json_t *p
     if (rule->kind == INDEX && !index_good(c, rule->path, value, rule->target))
         return false;
     if (!whole(value, &number) || number < 0 || number > most)
-        return wrong(c->why, "%s: %s is not a whole number of 0 to %lld", c->what, rule->path, (long long)most);
+        return object_wrong(c, "%s is not a whole number of 0 to %lld", rule->path, (long long)most);
     if (json_is_real(value))
         json_object_set_new(parent, key, json_integer(number));
     return true;
@@ -222,7 +238,7 @@ static bool value_good(const struct check *c, const struct rule *rule, json_t *p
     case NUMBER: expected = json_is_number(value) ? NULL : "a number"; break;
     case NUMBERS:
         if (!numbers_good(value, rule->length))
-            return wrong(c->why, "%s: %s is not %zu numbers", c->what, rule->path, rule->length);
+            return object_wrong(c, "%s is not %zu numbers", rule->path, rule->length);
         break;
     case SIZE:
     case COUNT:
@@ -230,7 +246,7 @@ static bool value_good(const struct check *c, const struct rule *rule, json_t *p
     case INDICES: return indices_good(c, rule->path, value, rule->target);
     case ATTRIBUTES: return attributes_good(c, rule->path, value, rule->target);
     }
-    return !expected || wrong(c->why, "%s: %s is not %s", c->what, rule->path, expected);
+    return !expected || object_wrong(c, "%s is not %s", rule->path, expected);
 }
 
 static bool rule_good(const struct check *c, const struct rule *rule, json_t *item)
@@ -250,26 +266,26 @@ static bool rule_good(const struct check *c, const struct rule *rule, json_t *it
         value = NULL;
     }
     if (!value)
-        return rule->need == MAY || wrong(c->why, "%s: has no %s", c->what, rule->path);
+        return rule->need == MAY || object_wrong(c, "has no %s", rule->path);
     return value_good(c, rule, parent, at, value);
 }
 
 static bool item_good(const struct check *c, const char *list, json_t *item)
 {
     if (!json_is_object(item))
-        return wrong(c->why, "%s: is not an object", c->what);
+        return object_wrong(c, "is not an object");
     for (size_t i = 0; i < sizeof(rules) / sizeof(rules[0]); i++)
         if (strcmp(rules[i].list, list) == 0 && !rule_good(c, &rules[i], item))
             return false;
     return true;
 }
 
-static bool primitives_good(json_t *root, size_t mesh, const json_t *primitives, char *why)
+static bool primitives_good(const struct check *mesh, const json_t *primitives)
 {
-    char what[160];
+    struct check c = *mesh;
     for (size_t i = 0; i < json_array_size(primitives); i++) {
-        model_rules_name(root, "meshes", mesh, (int)i, what, sizeof(what));
-        if (!item_good(&(struct check){ root, what, why }, "primitives", json_array_get(primitives, i)))
+        c.primitive = (int)i;
+        if (!item_good(&c, "primitives", json_array_get(primitives, i)))
             return false;
     }
     return true;
@@ -277,18 +293,17 @@ static bool primitives_good(json_t *root, size_t mesh, const json_t *primitives,
 
 static bool list_good(json_t *root, const char *list, char *why)
 {
-    char what[160];
     json_t *items = json_object_get(root, list);
     if (json_is_null(items))
         json_object_del(root, list);
     else if (items && !json_is_array(items))
         return wrong(why, "%s is not a list", list);
     for (size_t i = 0; i < json_array_size(items); i++) {
+        struct check c = { root, list, i, -1, why };
         json_t *item = json_array_get(items, i);
-        model_rules_name(root, list, i, -1, what, sizeof(what));
-        if (!item_good(&(struct check){ root, what, why }, list, item))
+        if (!item_good(&c, list, item))
             return false;
-        if (strcmp(list, "meshes") == 0 && !primitives_good(root, i, json_object_get(item, "primitives"), why))
+        if (strcmp(list, "meshes") == 0 && !primitives_good(&c, json_object_get(item, "primitives")))
             return false;
     }
     return true;
@@ -310,7 +325,7 @@ static bool head_good(json_t *root, char *why)
             return wrong(why, "requires the extension %.100s, which is not supported", name ? name : "without a name");
     }
     static const struct rule scene = { "", "scene", INDEX, MAY, "scenes", 0 };
-    return rule_good(&(struct check){ root, "file", why }, &scene, root);
+    return rule_good(&(struct check){ root, NULL, 0, -1, why }, &scene, root);
 }
 
 bool model_rules_check(json_t *root, char why[MODEL_WHY_BYTES])
