@@ -222,6 +222,8 @@ bool build_asset(struct log *log, struct workers *workers, const struct build_in
                                             .textures = geometry.texture_count,
                                             .degenerate_triangles = geometry.degenerate_triangles,
                                             .computed_normals = geometry.computed_normals,
+                                            .skipped_lines = geometry.skipped_lines,
+                                            .skipped_points = geometry.skipped_points,
                                             .read_s = seconds_since(&since_ns) };
     bool good = true;
     if (input->sensor_count) {

@@ -250,6 +250,9 @@ static void build_from(struct run *run, size_t model)
     if (run->params->progress && (parsed.skipped_lines || parsed.skipped_points))
         fprintf(run->params->progress, "%s: %u primitives of lines and %u of points are skipped\n", run->models[model].path,
                 parsed.skipped_lines, parsed.skipped_points);
+    if (run->params->progress && parsed.left_out_textures)
+        fprintf(run->params->progress, "%s: %u textures are left out, which lie otherwise than their material's first\n",
+                run->models[model].path, parsed.left_out_textures);
     qsort_r(run->todo, run->todo_count, sizeof(*run->todo), larger_first, run);
     run->parsed = &parsed;
     workers_for(run->workers, run->todo_count, 1, build_some, run);

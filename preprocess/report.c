@@ -93,10 +93,11 @@ static json_t *asset_json(const struct prepare *prepare, const struct prepare_as
         json_array_append_new(sensors, json_pack("{s:s,s:f}", "tag", prepare->plant->tags[asset->sensors[s].tag].name, "surface_distance_m",
                                                  (double)asset->surface_distances_m[s]));
     if (asset->state == PREPARE_BUILT)
-        json_object_update_new(root, json_pack("{s:i,s:i,s:i,s:i,s:i,s:i}", "nodes", (int)asset->report.nodes, "primitives",
+        json_object_update_new(root, json_pack("{s:i,s:i,s:i,s:i,s:i,s:i,s:i,s:i}", "nodes", (int)asset->report.nodes, "primitives",
                                                (int)asset->report.primitives, "materials", (int)asset->report.materials, "textures",
                                                (int)asset->report.textures, "zero_area_triangles", (int)asset->report.degenerate_triangles,
-                                               "computed_normals", (int)asset->report.computed_normals));
+                                               "computed_normals", (int)asset->report.computed_normals, "skipped_lines",
+                                               (int)asset->report.skipped_lines, "skipped_points", (int)asset->report.skipped_points));
     if (asset->state == PREPARE_BUILT)
         json_object_set_new(root, "levels", levels_json(&asset->report));
     if (asset->state == PREPARE_BUILT && asset->sensor_count)
