@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Upsets as a table of who feels them; each tag a first-order lag behind its loop. */
+/* Upsets as a table of who feels them; each tag a first-order lag behind its loop. The shares and the limits of the demo
+   plant belong together: an upset brings few tags beyond their limits and moves many within them. */
 #include "sim_process.h"
 
 #include <math.h>
@@ -30,15 +31,15 @@ struct upset {
 
 static const struct upset upsets[UPSETS] = {
     { "cooling water lost", 60, 60, 40, 80, {
-        { "water", T, 0.10, 0 },      { "cooling", T, 0.10, 0 },   { "condenser", T, 0.16, 4 }, { "overhead", T, 0.15, 8 },
-        { "reflux", T, 0.13, 15 },    { "drum", T, 0.13, 18 },     { "offgas", T, 0.12, 20 },   { "distillate", T, 0.12, 25 },
-        { "column", T, 0.07, 30 },    { "reboiler", T, 0.02, 50 }, { "water", P, -0.12, 0 },    { "condenser", P, 0.08, 4 },
-        { "overhead", P, 0.08, 6 },   { "drum", P, 0.08, 8 },      { "column", P, 0.07, 8 },    { "offgas", P, 0.07, 10 },
-        { "reboiler", P, 0.06, 12 },
+        { "condenser", T, 0.16, 4 },  { "overhead", T, 0.15, 8 },  { "reflux", T, 0.05, 15 },     { "drum", T, 0.05, 18 },
+        { "offgas", T, 0.05, 20 },    { "distillate", T, 0.05, 25 }, { "cooling", T, 0.05, 0 },   { "column", T, 0.05, 30 },
+        { "water", T, 0.025, 0 },     { "reboiler", T, 0.02, 50 }, { "water", P, -0.12, 0 },      { "condenser", P, 0.08, 4 },
+        { "overhead", P, 0.08, 6 },   { "drum", P, 0.05, 8 },      { "column", P, 0.05, 8 },      { "offgas", P, 0.05, 10 },
+        { "reboiler", P, 0.03, 12 },
     } },
     { "exchanger fouled", 280, 110, 40, 40, {
         { "feed", T, -0.12, 0 },      { "preheat", T, -0.12, 0 },  { "exchanger", T, -0.12, 0 }, { "bottoms", T, 0.07, 10 },
-        { "product", T, 0.06, 20 },   { "column", T, -0.03, 30 },  { "feed", P, 0.06, 0 },       { "preheat", P, 0.06, 0 },
+        { "product", T, 0.04, 20 },   { "column", T, -0.03, 30 },  { "feed", P, 0.06, 0 },       { "preheat", P, 0.06, 0 },
         { "exchanger", P, 0.06, 0 },
     } },
     { "bearing worn", 510, 90, 45, 15, {
@@ -165,7 +166,7 @@ static double slowness(const char *loop)
 static double drift_of_loop(uint32_t loop, double time_s)
 {
     double slow_s = 170 + loop % 97, fast_s = 61 + loop % 41;
-    return 0.012 * sin(TAU * (time_s / slow_s + loop % 1000 / 1000.0)) + 0.005 * sin(TAU * (time_s / fast_s + loop % 777 / 777.0));
+    return 0.006 * sin(TAU * (time_s / slow_s + loop % 1000 / 1000.0)) + 0.003 * sin(TAU * (time_s / fast_s + loop % 777 / 777.0));
 }
 
 static bool spared(const struct state *state, int machine_count, double time_s)
@@ -236,7 +237,7 @@ static void step_tag(struct state *state, int machine_count, double time_s, doub
     static const double noises[] = {
         [PROCESS_TEMPERATURE] = 0.0012, [PROCESS_PRESSURE] = 0.003, [PROCESS_VIBRATION] = 0.008, [PROCESS_OTHER] = 0.003
     };
-    state->drift = wander(state->drift, 0.006, 150, dt_s, &state->random);
+    state->drift = wander(state->drift, 0.003, 150, dt_s, &state->random);
     state->noise = wander(state->noise, noises[state->kind], 0.8, dt_s, &state->random);
     state->lagged += (target(state, machine_count, time_s) - state->lagged) * (1 - exp(-dt_s / state->lag_s));
     show(state);

@@ -17,6 +17,7 @@
 
 #include "base/mem.h"
 #include "base/text.h"
+#include "deploy/demo/sim_values.h"
 #include "plant/plant.h"
 #include "tests/support/temp.h"
 
@@ -373,13 +374,70 @@ static void test_faults(void **state)
     mem_free(visit.corners);
 }
 
+/* --- the process against the limits ----------------------------------------------------------------------------------------- */
+
+enum { CALM, UPSET_KINDS = 3, CYCLE_S = 690, MACHINES = 5, RECOVERY_S = 60 };
+
+static bool beyond(const struct plant_tag *tag, double value, enum limit low, enum limit high)
+{
+    return value < tag->limits[low] || value > tag->limits[high]; /* NaN: no limit */
+}
+
+/* 1..3: the upset that runs, or whose traces are still there; CALM: none. */
+static int upset_now(const struct sim_values *values, int *last, int *since_s)
+{
+    static const char *const names[] = { "cooling water lost", "exchanger fouled", "bearing worn" };
+    const char *name;
+    sim_values_upset(values, &name);
+    for (int u = 0; u < UPSET_KINDS; u++)
+        if (!strcmp(name, names[u])) {
+            *last = u + 1;
+            *since_s = 0;
+            return *last;
+        }
+    return ++*since_s <= RECOVERY_S ? *last : CALM;
+}
+
+/* In calm every tag is within its limits; an upset brings at most 12 of them beyond H or L, and some beyond HH or LL. Over as many
+   cycles as there are machines, so that each has had its worn bearing. */
+static void test_limits_fit_the_process(void **state)
+{
+    (void)state;
+    struct diag diag = { 0 };
+    struct sim_map map = { 0 };
+    struct sim_values *values = sim_values_create(plant, &map, false, &diag);
+    int last = CALM, since_s = 0, most[UPSET_KINDS + 1] = { 0 }, most_far[UPSET_KINDS + 1] = { 0 };
+    assert_non_null(values);
+    for (int second = 0; second < MACHINES * CYCLE_S; second++) {
+        sim_values_step(values, 1);
+        int upset = upset_now(values, &last, &since_s), count = 0, far = 0;
+        for (size_t i = 0; i < plant->tag_count; i++) {
+            double value = sim_values_at(values, i);
+            bool out = beyond(&plant->tags[i], value, LIMIT_L, LIMIT_H);
+            if (out && upset == CALM)
+                print_error("%s: %g after %d s, in calm\n", plant->tags[i].name, value, second);
+            count += out;
+            far += beyond(&plant->tags[i], value, LIMIT_LL, LIMIT_HH);
+        }
+        most[upset] = count > most[upset] ? count : most[upset];
+        most_far[upset] = far > most_far[upset] ? far : most_far[upset];
+    }
+    assert_int_equal(most[CALM], 0);
+    for (int u = 1; u <= UPSET_KINDS; u++) {
+        assert_in_range(most[u], 3, 12);
+        assert_in_range(most_far[u], 1, most[u]);
+    }
+    sim_values_destroy(&values);
+    diag_finish(&diag);
+}
+
 int main(void)
 {
     cmocka_set_message_output(CM_OUTPUT_TAP);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_same_bytes),         cmocka_unit_test(test_assets_and_tags), cmocka_unit_test(test_registers_do_not_overlap),
         cmocka_unit_test(test_exchanger),          cmocka_unit_test(test_triangle_budget), cmocka_unit_test(test_sensors_on_surface),
-        cmocka_unit_test(test_faults),
+        cmocka_unit_test(test_faults),             cmocka_unit_test(test_limits_fit_the_process),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }
