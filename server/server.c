@@ -8,7 +8,9 @@
 #include <signal.h>
 #include <stdatomic.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "base/counters.h"
@@ -170,10 +172,20 @@ static bool start_net(struct server *server)
     return net != NULL;
 }
 
+/* Clocks in pictures show the plant's time. The environment may be changed only while there is one thread. */
+static void set_time_zone(const struct plant *plant)
+{
+    setenv("TZ", plant->time_zone, 1);
+    tzset();
+}
+
 static bool server_start(struct server *server)
 {
     server->plant = load_plant(server->params.plant_path);
-    if (!server->plant || !(server->scene = open_scene(server->log, &server->params, server->plant)))
+    if (!server->plant)
+        return false;
+    set_time_zone(server->plant);
+    if (!(server->scene = open_scene(server->log, &server->params, server->plant)))
         return false;
     warn_of_far_sensors(server->log, server->scene);
     if (!net_port_free(server->log, server->params.address, server->params.port))
