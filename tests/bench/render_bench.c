@@ -1,0 +1,140 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Cost of the demo plant's pictures at 1920x1080, in time and in work of all cores: one JSON line per row. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "render/renderer.h"
+#include "value/quality.h"
+
+#define DEMO "build/demo/plant.yaml"
+enum { MOVING_ROUNDS = 40, STILL_ROUNDS = 8, MOST_ROUNDS = 40 };
+
+struct bench {
+    struct log *log;
+    struct plant *plant;
+    struct scene *scene;
+    struct workers *workers;
+    struct field *field;
+    struct snapshot *snapshot;
+    struct gl *gl;
+    struct renderer *renderer;
+};
+
+static double now_ms(clockid_t clock)
+{
+    struct timespec now;
+    clock_gettime(clock, &now);
+    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec / 1e6;
+}
+
+static int by_size(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static void print_row(const char *name, double *values, int count)
+{
+    qsort(values, (size_t)count, sizeof(*values), by_size);
+    printf("{\"name\": \"%s\", \"value\": %.2f, \"p95\": %.2f, \"unit\": \"ms\"}\n", name, values[count / 2], values[count * 95 / 100]);
+    fflush(stdout);
+}
+
+static void print_why(const char *why)
+{
+    printf("{\"name\": \"render_moving_1080p_ms\", \"value\": null, \"p95\": null, \"unit\": \"ms\", \"why\": \"%s\"}\n", why);
+}
+
+/* Readings within each group's range, not all alike. */
+static void fill(struct snapshot *snapshot, const struct plant *plant)
+{
+    snapshot->taken_mono_ns = clock_mono_ns();
+    snapshot->taken_utc_ns = clock_utc_ns();
+    for (size_t i = 0; i < plant->tag_count; i++) {
+        const struct plant_tag *tag = &plant->tags[i];
+        double part = (double)(i * 37 % 100) / 100;
+        if (tag->group < 0)
+            continue;
+        const struct plant_group *group = &plant->groups[tag->group];
+        snapshot->readings[i] = (struct reading){ .value = group->min + part * (group->max - group->min), .quality = QUALITY_GOOD };
+    }
+}
+
+static bool bench_init(struct bench *bench)
+{
+    struct diag diag = { 0 };
+    bench->log = log_create(LOG_ERROR);
+    bench->plant = plant_load(DEMO, &diag);
+    diag_finish(&diag);
+    if (!bench->plant)
+        return false;
+    char *folder = plant_prepared_folder(bench->plant);
+    bench->scene = scene_create(bench->log, bench->plant, folder);
+    mem_free(folder);
+    if (!bench->scene)
+        return false;
+    bench->snapshot = snapshot_create(bench->plant->tag_count);
+    fill(bench->snapshot, bench->plant);
+    bench->workers = workers_create(0);
+    bench->field = field_create(bench->workers, bench->scene);
+    bench->gl = gl_create(bench->log, GL_AUTO, -1);
+    if (bench->gl)
+        bench->renderer = renderer_create(bench->log, bench->gl, bench->scene, bench->field);
+    return bench->renderer != NULL;
+}
+
+static void bench_finish(struct bench *bench)
+{
+    renderer_destroy(&bench->renderer);
+    gl_destroy(&bench->gl);
+    field_destroy(&bench->field);
+    workers_destroy(&bench->workers);
+    snapshot_destroy(&bench->snapshot);
+    scene_destroy(&bench->scene);
+    plant_destroy(&bench->plant);
+    log_destroy(&bench->log);
+}
+
+/* The plant's own view. */
+static void measure(struct bench *bench, enum tier tier, const char *time_name, const char *work_name, int rounds)
+{
+    struct view view;
+    double time_ms[MOST_ROUNDS], work_ms[MOST_ROUNDS];
+    view_default(bench->scene, 1920, 1080, &view);
+    view.tier = tier;
+    for (int i = -2; i < rounds; i++) {
+        double began_ms = now_ms(CLOCK_MONOTONIC), worked_ms = now_ms(CLOCK_PROCESS_CPUTIME_ID);
+        struct frame *frame = renderer_draw(bench->renderer, &view, bench->snapshot);
+        if (!frame)
+            abort();
+        frame_unref(&frame);
+        if (i < 0)
+            continue;
+        time_ms[i] = now_ms(CLOCK_MONOTONIC) - began_ms;
+        work_ms[i] = now_ms(CLOCK_PROCESS_CPUTIME_ID) - worked_ms;
+    }
+    print_row(time_name, time_ms, rounds);
+    print_row(work_name, work_ms, rounds);
+}
+
+int main(void)
+{
+    struct bench bench = { 0 };
+    if (access(DEMO, R_OK) != 0) {
+        fprintf(stderr, "render_bench: %s is not there: run `make demo` first\n", DEMO);
+        print_why(DEMO " is not prepared");
+        return 0;
+    }
+    if (bench_init(&bench)) {
+        measure(&bench, TIER_MOVING, "render_moving_1080p_ms", "render_moving_1080p_cpu_ms", MOVING_ROUNDS);
+        measure(&bench, TIER_STILL, "render_still_1080p_ms", "render_still_1080p_cpu_ms", STILL_ROUNDS);
+    } else {
+        print_why("the demo plant could not be opened or drawn; the log says why");
+    }
+    bench_finish(&bench);
+    return 0;
+}
