@@ -336,8 +336,8 @@ static size_t side_count(const struct cuts *cuts, uint32_t a, uint32_t b)
     return e == TRIMESH_NONE ? 1 : cuts->parts[e];
 }
 
-/* Closes a triangle whose edges were cut like a zip: one chain is the side a-b that was cut most, the other goes a-c-b, and at each step the
-   shorter cross edge is taken. The chain a-b waits before b for the other one, so that no piece is flat. A thin triangle gets no points
+/* Closes a triangle whose edges were cut like a zip: one chain is the side a-b that was cut most, the other goes a-c-b, and at each step
+   the shorter cross edge is taken. The chain a-b waits before b for the other one, so that no piece is flat. A thin triangle gets no points
    inside, however long it is. */
 static void zip_tri(struct trimesh *mesh, const struct cuts *cuts, size_t t)
 {

@@ -1,0 +1,481 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Distances along surfaces against formulas, on clean shapes and on the same shapes with every fault that exports have; what is joined,
+   what is not, what is hidden. */
+#include "surface/surface.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "tests/support/cad.h"
+
+#define MEAN_MAX 0.003 /* of the largest distance */
+#define WORST_MAX 0.01
+#define METHODS_MAX 0.02
+
+static struct log *the_log;
+static struct workers *workers;
+static struct cad_random chance;
+
+static int set_up(void **state)
+{
+    const char *seed = getenv("PLANTCAST_SEED");
+    (void)state;
+    chance.state = seed ? strtoull(seed, NULL, 10) : (uint64_t)time(NULL);
+    print_message("# PLANTCAST_SEED=%llu\n", (unsigned long long)chance.state);
+    the_log = log_create(LOG_ERROR);
+    workers = workers_create(0);
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    workers_destroy(&workers);
+    log_destroy(&the_log);
+    return 0;
+}
+
+static struct surface *surface_of(const struct cad *cad)
+{
+    struct surface *surface = surface_create(the_log, workers, (const float(*)[3])cad->positions, cad->vertex_count, cad->triangles,
+                                             cad->triangle_count, &(struct surface_params){ 0 });
+    assert_non_null(surface);
+    return surface;
+}
+
+/* --- accuracy: shapes with a formula --------------------------------------------------------------------------------------- */
+
+struct shape {
+    const char *name;
+    void (*make)(struct cad *cad, double size[3]);
+    double (*distance)(const double size[3], const double a[3], const double b[3]);
+};
+
+static double hypot3(const double a[3], const double b[3])
+{
+    return hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
+}
+
+static void make_plate(struct cad *cad, double size[3])
+{
+    size[0] = 1 + cad_random(&chance);
+    cad_plate(cad, &chance, 170, 130, size[0], 1, 0.5);
+}
+
+static double plate_distance(const double size[3], const double a[3], const double b[3])
+{
+    (void)size;
+    return hypot3(a, b);
+}
+
+static void make_sphere(struct cad *cad, double size[3])
+{
+    (void)size;
+    cad_sphere(cad, &chance, 60);
+}
+
+static double sphere_distance(const double size[3], const double a[3], const double b[3])
+{
+    (void)size;
+    return 2 * asin(fmin(hypot3(a, b) / 2, 1));
+}
+
+static void make_cylinder(struct cad *cad, double size[3])
+{
+    size[0] = 3 + cad_random(&chance);
+    cad_cylinder(cad, &chance, 150, 150, size[0], 0.5);
+}
+
+static double cylinder_distance(const double size[3], const double a[3], const double b[3])
+{
+    double turn = fabs(atan2(a[1], a[0]) - atan2(b[1], b[0]));
+    (void)size;
+    return hypot(turn > M_PI ? 2 * M_PI - turn : turn, a[2] - b[2]);
+}
+
+/* Slot: x from size[0] to size[1], y from 0 to size[2]. */
+static void make_slot(struct cad *cad, double size[3], int wide)
+{
+    int first = 60 + (int)(40 * cad_random(&chance)), high = 60 + (int)(40 * cad_random(&chance));
+    size[0] = 1.3 * first / 170;
+    size[1] = 1.3 * (first + wide) / 170;
+    size[2] = high / 130.0;
+    cad_slotted_plate(cad, &chance, 170, 130, 1.3, 1, first, wide, high);
+}
+
+static void make_wide_slot(struct cad *cad, double size[3])
+{
+    make_slot(cad, size, 8);
+}
+
+static void make_narrow_slot(struct cad *cad, double size[3])
+{
+    make_slot(cad, size, 2);
+}
+
+/* Does the straight line pass through the slot? */
+static bool is_blocked(const double slot[3], const double a[3], const double b[3])
+{
+    double low = 0, high = 1, dx = b[0] - a[0], dy = b[1] - a[1];
+    const double from[3] = { a[0] - slot[0], slot[1] - a[0], slot[2] - a[1] }, slope[3] = { dx, -dx, -dy };
+    for (int i = 0; i < 3; i++) { /* inside where from + t slope > 0 */
+        if (slope[i] == 0 && from[i] <= 1e-6)
+            return false;
+        if (slope[i] > 0)
+            low = fmax(low, (1e-6 - from[i]) / slope[i]);
+        else if (slope[i] < 0)
+            high = fmin(high, (1e-6 - from[i]) / slope[i]);
+    }
+    return high - low > 1e-6;
+}
+
+static double slot_distance(const double slot[3], const double a[3], const double b[3])
+{
+    const double corners[2][3] = { { slot[0], slot[2], 0 }, { slot[1], slot[2], 0 } };
+    if (!is_blocked(slot, a, b))
+        return hypot3(a, b);
+    double best = INFINITY;
+    for (int i = 0; i < 2; i++) {
+        if (is_blocked(slot, a, corners[i]))
+            continue;
+        if (!is_blocked(slot, corners[i], b))
+            best = fmin(best, hypot3(a, corners[i]) + hypot3(corners[i], b));
+        if (!is_blocked(slot, corners[1 - i], b))
+            best = fmin(best, hypot3(a, corners[i]) + hypot3(corners[i], corners[1 - i]) + hypot3(corners[1 - i], b));
+    }
+    return best;
+}
+
+static const struct shape shapes[] = {
+    { "plate", make_plate, plate_distance },
+    { "sphere", make_sphere, sphere_distance },
+    { "cylinder", make_cylinder, cylinder_distance },
+    { "plate, wide slot", make_wide_slot, slot_distance },
+    { "plate, narrow slot", make_narrow_slot, slot_distance },
+};
+
+/* A source at a vertex, or inside a triangle. */
+static void choose_source(const struct cad *cad, bool inside, double out[3])
+{
+    size_t t = (size_t)(cad_random(&chance) * (double)cad->triangle_count);
+    double w[3] = { 1, 0, 0 };
+    if (inside) {
+        w[0] = cad_random(&chance);
+        w[1] = (1 - w[0]) * cad_random(&chance);
+        w[2] = 1 - w[0] - w[1];
+    }
+    for (int axis = 0; axis < 3; axis++) {
+        out[axis] = 0;
+        for (size_t i = 0; i < 3; i++)
+            out[axis] += w[i] * (double)cad->positions[cad->triangles[3 * t + i]][axis];
+    }
+}
+
+static void put_point(const struct cad_place *place, const double p[3], double out[3])
+{
+    for (int axis = 0; axis < 3; axis++) {
+        const double *row = place->rotation + 3 * axis;
+        out[axis] = place->scale * (row[0] * p[0] + row[1] * p[1] + row[2] * p[2]) + place->move[axis];
+    }
+}
+
+struct score {
+    double mean, worst;
+};
+
+static struct score score_of(const struct shape *shape, const double size[3], const struct cad *clean, const double source[3], double scale,
+                             const float *distances, const uint32_t *vertex_of)
+{
+    struct score score = { 0 };
+    double largest = 0;
+    for (size_t v = 0; v < clean->vertex_count; v++) {
+        const double p[3] = { (double)clean->positions[v][0], (double)clean->positions[v][1], (double)clean->positions[v][2] };
+        double truth = shape->distance(size, source, p), error = fabs((double)distances[vertex_of[v]] / scale - truth);
+        score.mean += error / (double)clean->vertex_count;
+        score.worst = fmax(score.worst, error);
+        largest = fmax(largest, truth);
+    }
+    return (struct score){ score.mean / largest, score.worst / largest };
+}
+
+static void test_shape(const struct shape *shape)
+{
+    struct cad clean = { 0 };
+    struct cad_place place;
+    double size[3] = { 0 }, sources[2][3], put[2][3];
+    shape->make(&clean, size);
+    assert_true(clean.vertex_count >= 20000);
+    cad_random_place(&place, &chance);
+    uint32_t *vertex_of = mem_array(clean.vertex_count, sizeof(*vertex_of));
+    for (int s = 0; s < 2; s++) {
+        choose_source(&clean, s == 1, sources[s]);
+        put_point(&place, sources[s], put[s]);
+    }
+    for (int fault = 0; fault < CAD_FAULTS; fault++) {
+        struct cad broken;
+        cad_break(&broken, &clean, (enum cad_fault)fault, &chance, vertex_of);
+        cad_put(&broken, &place);
+        struct surface *surface = surface_of(&broken);
+        float *distances = mem_array(2 * broken.vertex_count, sizeof(*distances));
+        assert_true(surface_distances(surface, (const double(*)[3])put, 2, distances));
+        for (int s = 0; s < 2; s++) {
+            struct score score =
+                score_of(shape, size, &clean, sources[s], place.scale, distances + (size_t)s * broken.vertex_count, vertex_of);
+            print_message("# %-18s %-17s source %-9s mean %.3f %%  worst %.3f %%\n", shape->name, cad_fault_names[fault],
+                          s ? "in a face" : "at vertex", 100 * score.mean, 100 * score.worst);
+            assert_true(score.mean <= MEAN_MAX);
+            assert_true(score.worst <= WORST_MAX);
+        }
+        assert_int_equal(surface_report(surface)->components_after, 1);
+        assert_true(surface_report(surface)->heat_disagreement < METHODS_MAX);
+        surface_destroy(&surface);
+        cad_finish(&broken);
+        mem_free(distances);
+    }
+    cad_finish(&clean);
+    mem_free(vertex_of);
+}
+
+static void shapes_with_every_fault_are_exact_enough(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < sizeof(shapes) / sizeof(shapes[0]); i++)
+        test_shape(&shapes[i]);
+}
+
+/* --- what is joined, and what is not ------------------------------------------------------------------------------------------ */
+
+/* A second copy of a shape, moved. */
+static void append(struct cad *cad, const struct cad *other, double dx, double dy, double dz)
+{
+    uint32_t first = (uint32_t)cad->vertex_count;
+    mem_grow(&cad->positions, &cad->position_capacity, cad->vertex_count + other->vertex_count, sizeof(*cad->positions));
+    mem_grow(&cad->triangles, &cad->index_capacity, 3 * (cad->triangle_count + other->triangle_count), sizeof(*cad->triangles));
+    for (size_t v = 0; v < other->vertex_count; v++) {
+        const double move[3] = { dx, dy, dz };
+        for (int axis = 0; axis < 3; axis++)
+            cad->positions[cad->vertex_count + v][axis] = (float)((double)other->positions[v][axis] + move[axis]);
+    }
+    for (size_t i = 0; i < 3 * other->triangle_count; i++)
+        cad->triangles[3 * cad->triangle_count + i] = first + other->triangles[i];
+    cad->vertex_count += other->vertex_count;
+    cad->triangle_count += other->triangle_count;
+}
+
+static float *distances_from(struct surface *surface, const struct cad *cad, double x, double y, double z)
+{
+    const double source[1][3] = { { x, y, z } };
+    float *distances = mem_array(cad->vertex_count, sizeof(*distances));
+    assert_true(surface_distances(surface, source, 1, distances));
+    return distances;
+}
+
+/* Two plates of 1 m in one plane, or over each other; can the second be reached from the first? */
+static bool second_plate_reached(double dx, double dz)
+{
+    struct cad plate = { 0 }, both = { 0 };
+    cad_plate(&plate, &chance, 30, 30, 1, 1, 0);
+    append(&both, &plate, 0, 0, 0);
+    append(&both, &plate, dx, 0.01, dz);
+    struct surface *surface = surface_of(&both);
+    float *distances = distances_from(surface, &both, 0.1, 0.1, 0);
+    bool reached = isfinite(distances[plate.vertex_count]);
+    for (size_t v = 0; v < plate.vertex_count; v++) {
+        assert_true(isfinite(distances[v]));
+        assert_true(isfinite(distances[plate.vertex_count + v]) == reached);
+    }
+    surface_destroy(&surface);
+    cad_finish(&plate);
+    cad_finish(&both);
+    mem_free(distances);
+    return reached;
+}
+
+static void gaps_are_closed_and_walls_are_not_passed(void **state)
+{
+    (void)state;
+    assert_true(second_plate_reached(1.0003, 0));   /* a hair gap of 0.3 mm */
+    assert_false(second_plate_reached(1.02, 0));    /* a slot of 20 mm */
+    assert_false(second_plate_reached(0, 0.01));    /* two sheets 10 mm apart */
+    assert_true(second_plate_reached(0.5, 0.0002)); /* one lying on the other */
+}
+
+static void a_pipe_that_ends_inside_a_shell_is_joined_to_it(void **state)
+{
+    struct cad pipe = { 0 }, both = { 0 };
+    (void)state;
+    cad_sphere(&both, &chance, 40);
+    cad_cylinder(&pipe, &chance, 48, 60, 3, 0);
+    for (size_t v = 0; v < pipe.vertex_count; v++) { /* radius 0.2, from inside the sphere outwards */
+        pipe.positions[v][0] *= 0.2f;
+        pipe.positions[v][1] *= 0.2f;
+        pipe.positions[v][2] += 0.5f;
+    }
+    size_t sphere_count = both.vertex_count;
+    append(&both, &pipe, 0, 0, 0);
+    struct surface *surface = surface_of(&both);
+    float *distances = distances_from(surface, &both, 0, 0, -1);
+    const struct surface_report *report = surface_report(surface);
+    assert_int_equal(report->components, 2);
+    assert_int_equal(report->components_after, 1);
+    assert_true(report->hidden_vertices >= 48 * 8);                   /* the pipe's rings inside the sphere */
+    double seam = asin(0.2), truth = M_PI - seam + (3.5 - cos(seam)); /* over the sphere to the pipe, then along it */
+    assert_float_equal(distances[both.vertex_count - 1], truth, 0.01 * truth);
+    for (size_t v = sphere_count; v < both.vertex_count; v++)
+        assert_true(isfinite(distances[v])); /* hidden ends too, for the triangles that pass through */
+    surface_destroy(&surface);
+    cad_finish(&both);
+    cad_finish(&pipe);
+    mem_free(distances);
+}
+
+static void nothing_leads_through_a_closed_part(void **state)
+{
+    struct cad pipes = { 0 };
+    (void)state;
+    cad_closed_pipe(&pipes, &chance, 0.5, 2, 80, 60, 12, 0, (const double[3]){ 0, 0, 0 });
+    size_t first = pipes.vertex_count;
+    cad_closed_pipe(&pipes, &chance, 0.3, 4, 60, 120, 8, M_PI / 2, (const double[3]){ 0, 0, 0 }); /* right through the first one */
+    struct surface *surface = surface_of(&pipes);
+    const struct surface_report *report = surface_report(surface);
+    float *distances = distances_from(surface, &pipes, 2, 0, 0); /* one end of the second pipe */
+    assert_int_equal(report->components_after, 1);
+    assert_true(report->hidden_vertices > 60 * 20);
+    /* To the other end: along 1.5 m of pipe, round half of the first one, which is no shorter than over it along its side, and 1.5 m again. */
+    double least = 2 * 1.5 + 0.5 * (M_PI - 2 * asin(0.6));
+    double other_end = INFINITY;
+    for (size_t v = first; v < pipes.vertex_count; v++)
+        if (pipes.positions[v][0] < -1.999f)
+            other_end = fmin(other_end, (double)distances[v]);
+    assert_true(other_end > least);
+    assert_true(other_end < 5.5);
+    surface_destroy(&surface);
+    cad_finish(&pipes);
+    mem_free(distances);
+}
+
+/* --- places -------------------------------------------------------------------------------------------------------------------- */
+
+static void a_sensor_is_dropped_onto_the_surface(void **state)
+{
+    struct cad plate = { 0 };
+    struct surface_place place;
+    (void)state;
+    cad_plate(&plate, &chance, 10, 10, 1, 1, 0);
+    struct surface *surface = surface_of(&plate);
+    surface_nearest(surface, (const double[3]){ 0.42, 0.68, 0.3 }, &place);
+    assert_float_equal(place.distance_m, 0.3, 1e-6);
+    assert_float_equal(place.position_m[0], 0.42, 1e-6);
+    assert_float_equal(place.position_m[2], 0, 1e-6);
+    assert_float_equal(plate.positions[place.vertex][0], 0.4, 1e-6);
+    assert_float_equal(plate.positions[place.vertex][1], 0.7, 1e-6);
+    surface_nearest(surface, (const double[3]){ -3, -4, 0 }, &place);
+    assert_float_equal(place.distance_m, 5, 1e-6);
+    float *distances = distances_from(surface, &plate, 0.4, 0.7, 0.05);
+    for (size_t v = 0; v < plate.vertex_count; v++) {
+        double truth = hypot((double)plate.positions[v][0] - 0.4, (double)plate.positions[v][1] - 0.7);
+        assert_float_equal(distances[v], truth, 1e-4); /* 0 at its own place, growing from there */
+    }
+    surface_destroy(&surface);
+    cad_finish(&plate);
+    mem_free(distances);
+}
+
+static void nearest_is_the_nearest(void **state)
+{
+    struct cad torus = { 0 };
+    (void)state;
+    cad_torus(&torus, &chance, 60, 24, 0.3, 0.5);
+    struct surface *surface = surface_of(&torus);
+    for (int i = 0; i < 200; i++) {
+        const double p[3] = { 4 * cad_random(&chance) - 2, 4 * cad_random(&chance) - 2, 2 * cad_random(&chance) - 1 };
+        struct surface_place place;
+        surface_nearest(surface, p, &place);
+        double truth = fabs(hypot(hypot(p[0], p[1]) - 1, p[2]) - 0.3); /* of the smooth one; flat triangles lie a little inside */
+        assert_float_equal(place.distance_m, truth, 0.006);
+        assert_float_equal(hypot3(p, place.position_m), place.distance_m, 1e-9);
+    }
+    surface_destroy(&surface);
+    cad_finish(&torus);
+}
+
+static void many_sources_at_once_are_as_one_by_one(void **state)
+{
+    enum { SOURCES = 21 };
+    struct cad torus = { 0 };
+    double sources[SOURCES][3];
+    (void)state;
+    cad_torus(&torus, &chance, 60, 24, 0.3, 0.5);
+    for (int s = 0; s < SOURCES; s++)
+        choose_source(&torus, true, sources[s]);
+    struct surface *surface = surface_of(&torus);
+    float *together = mem_array(SOURCES * torus.vertex_count, sizeof(*together));
+    assert_true(surface_distances(surface, (const double(*)[3])sources, SOURCES, together));
+    for (size_t s = 0; s < SOURCES; s++) {
+        float *alone = distances_from(surface, &torus, sources[s][0], sources[s][1], sources[s][2]);
+        assert_memory_equal(alone, together + s * torus.vertex_count, torus.vertex_count * sizeof(*alone));
+        mem_free(alone);
+    }
+    surface_destroy(&surface);
+    cad_finish(&torus);
+    mem_free(together);
+}
+
+static void vertices_of_flat_triangles_take_their_neighbours_distance(void **state)
+{
+    struct cad plate = { 0 };
+    (void)state;
+    cad_plate(&plate, &chance, 10, 10, 1, 1, 0);
+    struct cad with = { 0 };
+    append(&with, &plate, 0, 0, 0);
+    const float lone[3] = { 0.55f, 0.5f, 0 };
+    mem_grow(&with.positions, &with.position_capacity, with.vertex_count + 1, sizeof(*with.positions));
+    memcpy(with.positions[with.vertex_count++], lone, sizeof(lone));
+    mem_grow(&with.triangles, &with.index_capacity, 3 * with.triangle_count + 3, sizeof(*with.triangles));
+    uint32_t last = (uint32_t)with.vertex_count - 1;
+    memcpy(with.triangles + 3 * with.triangle_count++, (const uint32_t[3]){ last, last, 0 }, 3 * sizeof(uint32_t));
+    struct surface *surface = surface_of(&with);
+    float *distances = distances_from(surface, &with, 0, 0.5, 0);
+    assert_float_equal(distances[last], 0.55, 1e-3);
+    assert_int_equal(surface_report(surface)->degenerate_triangles, 1);
+    surface_destroy(&surface);
+    cad_finish(&plate);
+    cad_finish(&with);
+    mem_free(distances);
+}
+
+static void a_surface_without_area_is_refused(void **state)
+{
+    static const float line[3][3] = { { 0, 0, 0 }, { 1, 1, 1 }, { 2, 2, 2 } };
+    static const uint32_t triangle[3] = { 0, 1, 2 };
+    struct log *quiet = log_create(LOG_ERROR);
+    (void)state;
+    assert_null(surface_create(quiet, NULL, line, 3, triangle, 1, &(struct surface_params){ 0 }));
+    assert_null(surface_create(quiet, NULL, line, 3, triangle, 0, &(struct surface_params){ 0 }));
+    log_destroy(&quiet);
+}
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(shapes_with_every_fault_are_exact_enough),
+        cmocka_unit_test(gaps_are_closed_and_walls_are_not_passed),
+        cmocka_unit_test(a_pipe_that_ends_inside_a_shell_is_joined_to_it),
+        cmocka_unit_test(nothing_leads_through_a_closed_part),
+        cmocka_unit_test(a_sensor_is_dropped_onto_the_surface),
+        cmocka_unit_test(nearest_is_the_nearest),
+        cmocka_unit_test(many_sources_at_once_are_as_one_by_one),
+        cmocka_unit_test(vertices_of_flat_triangles_take_their_neighbours_distance),
+        cmocka_unit_test(a_surface_without_area_is_refused),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}
