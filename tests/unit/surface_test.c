@@ -393,7 +393,7 @@ static void nearest_is_the_nearest(void **state)
 {
     struct cad torus = { 0 };
     (void)state;
-    cad_torus(&torus, &chance, 60, 24, 0.3, 0.5);
+    cad_torus(&torus, &chance, 160, 64, 0.3, 0.5);
     struct surface *surface = surface_of(&torus);
     for (int i = 0; i < 200; i++) {
         const double p[3] = { 4 * cad_random(&chance) - 2, 4 * cad_random(&chance) - 2, 2 * cad_random(&chance) - 1 };
