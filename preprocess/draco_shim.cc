@@ -4,8 +4,10 @@
 
 #include <draco/compression/decode.h>
 #include <draco/metadata/metadata_decoder.h>
+#include <cmath>
 #include <cstring>
 #include <exception>
+#include <limits>
 #include <memory>
 
 struct draco_mesh {
@@ -82,15 +84,49 @@ bool decode(draco_mesh *out, const char *bytes, size_t size, char *why)
     return true;
 }
 
+template <typename S, typename T> bool convert(const char *from, T *to)
+{
+    S value;
+    memcpy(&value, from, sizeof(value));
+    double number = static_cast<double>(value);
+    if (std::numeric_limits<T>::is_integer &&
+        !(number >= static_cast<double>(std::numeric_limits<T>::min()) && number <= static_cast<double>(std::numeric_limits<T>::max()) &&
+          number == std::floor(number)))
+        return false;
+    *to = static_cast<T>(value);
+    return true;
+}
+
+template <typename T> bool convert(draco::DataType type, const char *from, T *to)
+{
+    switch (type) {
+    case draco::DT_INT8: return convert<int8_t>(from, to);
+    case draco::DT_UINT8: return convert<uint8_t>(from, to);
+    case draco::DT_INT16: return convert<int16_t>(from, to);
+    case draco::DT_UINT16: return convert<uint16_t>(from, to);
+    case draco::DT_INT32: return convert<int32_t>(from, to);
+    case draco::DT_UINT32: return convert<uint32_t>(from, to);
+    case draco::DT_FLOAT32: return convert<float>(from, to);
+    default: return false;
+    }
+}
+
+/* Numbers as they are: the library's own conversion trusts a flag that comes from the file. */
 template <typename T> bool copy(const draco::Mesh &mesh, const draco::PointAttribute &attribute, int width, void *out)
 {
     T *to = static_cast<T *>(out);
+    uint64_t bytes = static_cast<uint64_t>(draco::DataTypeLength(attribute.data_type())), has = attribute.buffer()->data_size();
     if (!attribute.is_mapping_identity() && attribute.indices_map_size() < mesh.num_points())
         return false;
     for (uint32_t v = 0; v < mesh.num_points(); v++, to += width) {
-        draco::AttributeValueIndex at = attribute.mapped_index(draco::PointIndex(v));
-        if (at.value() >= attribute.size() || !attribute.ConvertValue<T>(at, static_cast<int8_t>(width), to))
+        uint64_t place = attribute.mapped_index(draco::PointIndex(v)).value();
+        uint64_t at = static_cast<uint64_t>(attribute.byte_offset()) + place * static_cast<uint64_t>(attribute.byte_stride());
+        if (at + static_cast<uint64_t>(width) * bytes > has)
             return false;
+        for (int c = 0; c < width; c++)
+            if (!convert<T>(attribute.data_type(),
+                            reinterpret_cast<const char *>(attribute.buffer()->data()) + at + static_cast<uint64_t>(c) * bytes, to + c))
+                return false;
     }
     return true;
 }
