@@ -13,7 +13,6 @@
 #define RAYS 5
 #define RAYS_INSIDE 4 /* so many must agree */
 #define VOTE_EVERY 16 /* of a region's triangles, one of so many is asked */
-#define HITS 512      /* parts met by one ray that are told apart */
 
 void hidden_closed_parts(const struct trimesh *mesh, const uint32_t *part, size_t parts, char *closed)
 {
@@ -51,40 +50,74 @@ void hidden_closed_parts(const struct trimesh *mesh, const uint32_t *part, size_
     mem_free(faces);
 }
 
+struct solid { /* a closed part, as it was before it was cut up */
+    uint32_t part;
+    double low[3], high[3];
+    struct trimesh mesh; /* its triangles; the arrays belong to others */
+    struct bvh *bvh;
+};
+
+struct solids {
+    struct solid *at;
+    size_t count;
+    uint32_t (*tris)[3]; /* of all solids, part by part */
+};
+
+static void solids_finish(struct solids *solids)
+{
+    for (size_t i = 0; i < solids->count; i++)
+        bvh_destroy(&solids->at[i].bvh);
+    mem_free(solids->at);
+    mem_free(solids->tris);
+}
+
+static void solid_init(struct solid *solid)
+{
+    for (int axis = 0; axis < 3; axis++) {
+        solid->low[axis] = INFINITY;
+        solid->high[axis] = -INFINITY;
+        for (size_t t = 0; t < solid->mesh.tri_count; t++)
+            for (int i = 0; i < 3; i++) {
+                double x = solid->mesh.points[solid->mesh.tris[t][i]][axis];
+                solid->low[axis] = min_of(solid->low[axis], x);
+                solid->high[axis] = max_of(solid->high[axis], x);
+            }
+    }
+    solid->bvh = bvh_create(&solid->mesh);
+}
+
+static void solids_init(struct solids *solids, const struct trimesh *mesh, const uint32_t *part, size_t parts, const char *closed)
+{
+    uint32_t *first = mem_array(parts + 1, sizeof(*first));
+    *solids = (struct solids){ .at = mem_array(parts, sizeof(*solids->at)), .tris = mem_array(mesh->tri_count, sizeof(*solids->tris)) };
+    for (size_t t = 0; t < mesh->tri_count; t++)
+        first[part[t] + 1]++;
+    for (size_t p = 0; p < parts; p++) {
+        if (closed[p])
+            solids->at[solids->count++] = (struct solid){
+                .part = (uint32_t)p,
+                .mesh = { .points = mesh->points,
+                          .point_count = mesh->point_count,
+                          .tris = solids->tris + first[p],
+                          .tri_count = first[p + 1] },
+            };
+        first[p + 1] += first[p];
+    }
+    for (size_t t = 0; t < mesh->tri_count; t++)
+        memcpy(solids->tris[first[part[t]]++], mesh->tris[t], sizeof(*mesh->tris));
+    for (size_t i = 0; i < solids->count; i++)
+        solid_init(&solids->at[i]);
+    mem_free(first);
+}
+
 struct search {
-    const struct trimesh *mesh, *solid;
-    const uint32_t *part, *solid_part;
-    const char *closed;
-    const struct bvh *bvh;
+    const struct trimesh *mesh;
+    const uint32_t *part;
+    const struct solids *solids;
     double tolerance_m;
     const size_t *asked; /* triangles to look at */
     char *hidden;
 };
-
-struct hits { /* parts that a ray met, each with how often modulo 2 */
-    const struct search *search;
-    uint32_t own, parts[HITS];
-    unsigned char odd[HITS];
-    size_t count;
-};
-
-static void count_hit(void *arg, uint32_t tri, double t)
-{
-    struct hits *hits = arg;
-    uint32_t part = hits->search->solid_part[tri];
-    (void)t;
-    if (part == hits->own || !hits->search->closed[part])
-        return;
-    for (size_t i = 0; i < hits->count; i++)
-        if (hits->parts[i] == part) {
-            hits->odd[i] ^= 1;
-            return;
-        }
-    if (hits->count < HITS) {
-        hits->parts[hits->count] = part;
-        hits->odd[hits->count++] = 1;
-    }
-}
 
 /* Directions that no model is aligned to. */
 static const double directions[RAYS][3] = {
@@ -92,43 +125,36 @@ static const double directions[RAYS][3] = {
     { -0.4419, -0.3251, -0.8361 }, { 0.8523, 0.2951, -0.4318 },
 };
 
-struct only_part {
-    const uint32_t *solid_part;
-    uint32_t part;
-};
-
-static bool of_part(const void *arg, uint32_t tri)
+static void count_hit(void *arg, uint32_t tri, double t)
 {
-    const struct only_part *only = arg;
-    return only->solid_part[tri] == only->part;
+    (void)tri, (void)t;
+    ++*(unsigned *)arg;
 }
 
-/* Is the place on the part's surface rather than inside? */
-static bool on_surface(const struct search *s, const double place[3], uint32_t part)
+/* Inside the solid, and not on its surface. */
+static bool is_inside(const struct solid *solid, const double place[3], double tolerance_m)
 {
     struct bvh_place at;
-    struct only_part only = { s->solid_part, part };
-    bvh_nearest(s->bvh, place, s->tolerance_m, of_part, &only, &at);
-    return at.tri != TRIMESH_NONE;
+    int outside = 0;
+    for (int axis = 0; axis < 3; axis++)
+        if (place[axis] < solid->low[axis] || place[axis] > solid->high[axis])
+            return false;
+    for (int r = 0; r < RAYS; r++) {
+        unsigned hits = 0;
+        bvh_ray(solid->bvh, place, directions[r], count_hit, &hits);
+        outside += hits % 2 == 0;
+        if (outside > RAYS - RAYS_INSIDE)
+            return false;
+    }
+    bvh_nearest(solid->bvh, place, tolerance_m, NULL, NULL, &at);
+    return at.tri == TRIMESH_NONE;
 }
 
 static bool is_hidden(const struct search *s, const double place[3], uint32_t own)
 {
-    struct hits hits = { .search = s, .own = own };
-    bvh_ray(s->bvh, place, directions[0], count_hit, &hits);
-    for (size_t i = 0; i < hits.count; i++) {
-        int inside = hits.odd[i];
-        if (!inside) /* one ray of five may err, the first too; but a part met an even number of times is rarely one we are inside */
-            continue;
-        for (int r = 1; r < RAYS; r++) {
-            struct hits more = { .search = s, .own = own };
-            bvh_ray(s->bvh, place, directions[r], count_hit, &more);
-            for (size_t j = 0; j < more.count; j++)
-                inside += more.parts[j] == hits.parts[i] && more.odd[j];
-        }
-        if (inside >= RAYS_INSIDE && !on_surface(s, place, hits.parts[i]))
+    for (size_t i = 0; i < s->solids->count; i++)
+        if (s->solids->at[i].part != own && is_inside(&s->solids->at[i], place, s->tolerance_m))
             return true;
-    }
     return false;
 }
 
@@ -208,22 +234,16 @@ struct vote { /* of a region */
     size_t seen, asked, hidden;
 };
 
-void hidden_find(const struct trimesh *mesh, const uint32_t *part, const struct trimesh *solid, const uint32_t *solid_part,
+void hidden_find(const struct trimesh *mesh, const uint32_t *part, const struct trimesh *solid, const uint32_t *solid_part, size_t parts,
                  const char *closed, double tolerance_m, struct workers *workers, char *hidden)
 {
-    struct bvh *bvh = bvh_create(solid);
+    struct solids solids;
+    solids_init(&solids, solid, solid_part, parts, closed);
     char *mixed = mem_array(mesh->point_count, 1);
     uint32_t *of_point = parts_of_points(mesh, part, mixed), *region = find_regions(mesh, mixed);
     size_t *asked = mem_array(mesh->tri_count, sizeof(*asked)), asked_count = 0;
     struct vote *votes = mem_array(mesh->point_count, sizeof(*votes));
-    struct search search = { .mesh = mesh,
-                             .solid = solid,
-                             .part = part,
-                             .solid_part = solid_part,
-                             .closed = closed,
-                             .bvh = bvh,
-                             .tolerance_m = tolerance_m,
-                             .hidden = hidden };
+    struct search search = { .mesh = mesh, .part = part, .solids = &solids, .tolerance_m = tolerance_m, .hidden = hidden };
     for (size_t t = 0; t < mesh->tri_count; t++) { /* those where parts meet, and of each region some */
         uint32_t r = region_of(mesh, t, mixed, region);
         if (!untouched(mesh, t, mixed) || votes[r].seen++ % VOTE_EVERY == 0)
@@ -245,7 +265,7 @@ void hidden_find(const struct trimesh *mesh, const uint32_t *part, const struct 
             hidden[t] = vote->hidden > 0;
     }
     ask(&search, workers, asked, asked_count);
-    bvh_destroy(&bvh);
+    solids_finish(&solids);
     mem_free(mixed);
     mem_free(of_point);
     mem_free(region);

@@ -244,7 +244,8 @@ static void join_parts(struct surface *surface, const struct parts *parts)
     mem_free(target);
     char *hidden = mem_array(surface->mesh.tri_count, 1);
     part = parts_now(parts, &surface->mesh);
-    hidden_find(&surface->mesh, part, &parts->solid, parts->of_tri, parts->closed, surface->report.tolerance_m, surface->workers, hidden);
+    hidden_find(&surface->mesh, part, &parts->solid, parts->of_tri, parts->count, parts->closed, surface->report.tolerance_m,
+                surface->workers, hidden);
     surface->visible = surface->mesh;
     surface->visible.tri_count = sort_hidden(&surface->mesh, hidden);
     mem_free(part);
