@@ -37,14 +37,14 @@ static void egl_destroy(struct gl *gl)
 {
     struct egl *egl = (struct egl *)gl;
     bool used = egl->context != EGL_NO_CONTEXT;
-    if (egl->display) {
+    if (used) {
         eglMakeCurrent(egl->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
-        if (used)
-            eglDestroyContext(egl->display, egl->context);
-        else
-            eglTerminate(egl->display);
-        eglReleaseThread();
+        eglDestroyContext(egl->display, egl->context);
+    } else if (egl->display) {
+        eglTerminate(egl->display);
     }
+    if (egl->display && eglReleaseThread) /* EGL 1.2: not loaded yet where the display could not be initialised */
+        eglReleaseThread();
     if (!used)
         gladLoaderUnloadEGL();
     mem_free(egl);

@@ -4,7 +4,10 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdlib.h>
 #include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <cmocka.h>
 #include <glad/gl.h>
@@ -131,6 +134,29 @@ static void test_target_too_large_is_refused(void **state)
     assert_false(target_init(&target, rig.log, rig.gl->max_texture_px * 2, 16, 1));
 }
 
+/* Mesa's EGL without its drivers (libgl1-mesa-dri is not installed): no context, and no crash. In a process of its own, which
+   has loaded none yet. */
+static pid_t try_without_drivers(void)
+{
+    pid_t child = fork();
+    if (child != 0)
+        return child;
+    struct log *log = log_create(LOG_INFO);
+    setenv("LIBGL_DRIVERS_PATH", "/nowhere", 1);
+    _exit(gl_create(log, GL_EGL_SURFACELESS, -1) ? 1 : 0);
+}
+
+static pid_t without_drivers;
+
+static void test_no_drivers(void **state)
+{
+    (void)state;
+    int status = -1;
+    assert_int_equal(waitpid(without_drivers, &status, 0), without_drivers);
+    assert_true(WIFEXITED(status));
+    assert_int_equal(WEXITSTATUS(status), 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -138,7 +164,9 @@ int main(void)
         cmocka_unit_test(test_pass_tells_its_errors),      cmocka_unit_test(test_program_that_does_not_compile),
         cmocka_unit_test(test_program_that_does_not_link), cmocka_unit_test(test_defines_and_includes_reach_the_compiler),
         cmocka_unit_test(test_readback_from_the_top),      cmocka_unit_test(test_target_too_large_is_refused),
+        cmocka_unit_test(test_no_drivers),
     };
+    without_drivers = try_without_drivers();
     cmocka_set_message_output(CM_OUTPUT_TAP);
     if (!rig_init(&rig, "gl_test"))
         return 0;
