@@ -52,6 +52,12 @@ static bool parse_level(const char *text, enum log_level *level)
     return false;
 }
 
+static bool is_address(const char *text)
+{
+    struct in6_addr any;
+    return inet_pton(AF_INET, text, &any) == 1 || inet_pton(AF_INET6, text, &any) == 1;
+}
+
 static bool is_loopback(const char *address)
 {
     struct in_addr four;
@@ -101,7 +107,9 @@ static const struct option options[] = {
 static int take_option(int option, struct server_params *params, bool *check)
 {
     switch (option) {
-    case OPTION_LISTEN: params->address = strcmp(optarg, "localhost") == 0 ? "127.0.0.1" : optarg; return -1;
+    case OPTION_LISTEN:
+        params->address = strcmp(optarg, "localhost") == 0 ? "127.0.0.1" : optarg;
+        return is_address(params->address) ? -1 : usage_error("--listen: not an IP address", optarg);
     case OPTION_PORT: return parse_int(optarg, 0, 65535, &params->port) ? -1 : usage_error("--port: not a port", optarg);
     case OPTION_GL: return gl_kind_parse(optarg, &params->gl) ? -1 : usage_error("--gl: unknown", optarg);
     case OPTION_PREPARED: params->prepared = optarg; return -1;

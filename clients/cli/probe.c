@@ -32,7 +32,8 @@ static void print_usage(FILE *out)
     fputs("usage: plantcast probe URL [--sessions N] [--seconds S] [--motion still|orbit] [--size WxH] [--json]\n"
           "\n"
           "Opens N sessions on a daemon (http://HOST:PORT/), decodes every frame before it acknowledges it, and prints rates and\n"
-          "latencies. Input to frame: from sending a camera to the first frame drawn with it (or a newer one) decoded.\n",
+          "latencies. Input to frame: from sending a camera to the first frame drawn with it, or with a newer one, decoded; each of\n"
+          "the 60 cameras that an orbit sends in a second counts.\n",
           out);
 }
 

@@ -92,6 +92,16 @@ static bool decode(struct viewer *viewer, const uint8_t *bytes, size_t count)
     return viewer->pixels && tjDecompress2(viewer->turbo, bytes, count, viewer->pixels, w, w * 4, h, TJPF_BGRX, 0) == 0;
 }
 
+/* Every camera that was sent counts, those too that were overtaken before they were drawn: their sender has waited until now. */
+static void record_input(struct viewer *viewer, uint32_t camera_seq, int64_t now_ns)
+{
+    if (camera_seq > viewer->camera_seq) /* never sent */
+        return;
+    for (; viewer->shown_camera_seq < camera_seq; viewer->shown_camera_seq++)
+        if (viewer->camera_seq - viewer->shown_camera_seq <= SENT_RING)
+            add(&viewer->result.input, (double)(now_ns - viewer->sent_ns[(viewer->shown_camera_seq + 1) % SENT_RING]) / 1e6);
+}
+
 static void record(struct viewer *viewer, const struct wire_frame *frame, int64_t begin_ns, int64_t now_ns)
 {
     struct viewer_result *result = &viewer->result;
@@ -107,10 +117,7 @@ static void record(struct viewer *viewer, const struct wire_frame *frame, int64_
     result->still_frames += (frame->flags & WIRE_FLAG_STILL) != 0;
     result->bytes += frame->payload_bytes + WIRE_FRAME_HEADER_BYTES;
     result->last_ns = now_ns;
-    if (frame->camera_seq > viewer->shown_camera_seq && viewer->camera_seq - frame->camera_seq < SENT_RING) {
-        viewer->shown_camera_seq = frame->camera_seq;
-        add(&result->input, (double)(now_ns - viewer->sent_ns[frame->camera_seq % SENT_RING]) / 1e6);
-    }
+    record_input(viewer, frame->camera_seq, now_ns);
 }
 
 static void on_frame(struct viewer *viewer)
