@@ -87,11 +87,12 @@ int folder_write(const char *folder, uint64_t key, const void *bytes, size_t siz
 
 static char *manifest_text(const struct folder_entry *entries, size_t count)
 {
-    json_t *assets = json_array(), *root = json_pack("{s:i, s:o}", "format", 1, "assets", assets);
+    json_t *assets = json_array(), *root = json_pack("{s:i, s:o}", "format", 2, "assets", assets);
     for (size_t i = 0; i < count; i++) {
-        char key[KEY_DIGITS + 1], *file = folder_file_name(entries[i].key);
+        char key[KEY_DIGITS + 1], recipe[KEY_DIGITS + 1], *file = folder_file_name(entries[i].key);
         snprintf(key, sizeof(key), "%016" PRIx64, entries[i].key);
-        json_array_append_new(assets, json_pack("{s:s, s:s, s:s}", "id", entries[i].id, "file", file, "key", key));
+        snprintf(recipe, sizeof(recipe), "%016" PRIx64, entries[i].recipe);
+        json_array_append_new(assets, json_pack("{s:s, s:s, s:s, s:s}", "id", entries[i].id, "file", file, "key", key, "recipe", recipe));
         mem_free(file);
     }
     char *text = json_dumps(root, JSON_INDENT(1));

@@ -28,7 +28,7 @@ int folder_write(const char *folder, uint64_t key, const void *bytes, size_t siz
 
 struct folder_entry {
     const char *id;
-    uint64_t key;
+    uint64_t key, recipe; /* recipe: plant/recipe.h */
 };
 /* Writes the manifest unless it says the same already, then removes asset files that it does not name. 0 or -errno; *removed counts. */
 int folder_finish(const char *folder, const struct folder_entry *entries, size_t count, size_t *removed);

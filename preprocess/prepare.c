@@ -11,6 +11,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "plant/recipe.h"
 #include "preprocess/folder.h"
 
 #define FAR_M 0.25       /* a sensor farther from its surface than this, */
@@ -20,6 +21,7 @@ struct model { /* one model file; parsed once, while its assets are built */
     const char *path;
     int line; /* in the plant file, of the first asset that names it */
     struct model_source source;
+    uint64_t file_hash; /* of the file itself, for the manifest */
     bool good;
 };
 
@@ -76,6 +78,8 @@ static size_t model_of(struct run *run, const struct plant_asset *asset)
     model->good = model_source_open(&model->source, asset->model, why);
     if (!model->good)
         fail(run, run->prepare->plant->path, asset->line, "asset %s: %s: %s", asset->id, asset->model, why);
+    else if (!plant_model_hash(asset->model, &model->file_hash))
+        fail(run, run->prepare->plant->path, asset->line, "asset %s: %s: %s", asset->id, asset->model, strerror(errno));
     return run->model_count++;
 }
 
@@ -277,7 +281,9 @@ static void write_manifest(struct run *run)
     struct prepare *prepare = run->prepare;
     struct folder_entry *entries = mem_array(prepare->asset_count, sizeof(*entries));
     for (size_t i = 0; i < prepare->asset_count; i++)
-        entries[i] = (struct folder_entry){ prepare->assets[i].plant->id, prepare->assets[i].key };
+        entries[i] = (struct folder_entry){ .id = prepare->assets[i].plant->id,
+                                            .key = prepare->assets[i].key,
+                                            .recipe = plant_recipe(prepare->assets[i].plant, run->models[run->asset_model[i]].file_hash) };
     int status = folder_finish(run->params->folder, entries, prepare->asset_count, &prepare->removed);
     if (status != 0)
         fail(run, prepare->plant->path, 0, "%s: the manifest cannot be written: %s", run->params->folder, strerror(-status));

@@ -4,12 +4,13 @@
 
 #include <errno.h>
 #include <jansson.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"
 #include "base/text.h"
 
-#define MANIFEST_FORMAT 1
+#define MANIFEST_FORMAT 2
 #define MANIFEST_MAX_BYTES (16u * 1024 * 1024)
 
 static json_t *load(struct log *log, const char *path)
@@ -37,11 +38,12 @@ static bool file_name_good(const char *file)
 static bool read_entry(struct log *log, struct manifest *manifest, size_t index, const json_t *item)
 {
     const char *id = json_string_value(json_object_get(item, "id")), *file = json_string_value(json_object_get(item, "file"));
-    if (!id || !file_name_good(file)) {
-        log_err(log, "%s: asset %zu: expected an id and the name of a file; run plantcast-prep", manifest->path, index);
+    const char *recipe = json_string_value(json_object_get(item, "recipe"));
+    if (!id || !file_name_good(file) || !recipe) {
+        log_err(log, "%s: asset %zu: expected an id, the name of a file and a recipe; run plantcast-prep", manifest->path, index);
         return false;
     }
-    manifest->entries[index] = (struct manifest_entry){ mem_strdup(id), mem_strdup(file) };
+    manifest->entries[index] = (struct manifest_entry){ mem_strdup(id), mem_strdup(file), strtoull(recipe, NULL, 16) };
     manifest->count = index + 1;
     return true;
 }
@@ -81,10 +83,10 @@ void manifest_finish(struct manifest *manifest)
     *manifest = (struct manifest){ 0 };
 }
 
-const char *manifest_find(const struct manifest *manifest, const char *id)
+const struct manifest_entry *manifest_find(const struct manifest *manifest, const char *id)
 {
     for (size_t i = 0; i < manifest->count; i++)
         if (!strcmp(manifest->entries[i].id, id))
-            return manifest->entries[i].file;
+            return &manifest->entries[i];
     return NULL;
 }

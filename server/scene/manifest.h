@@ -4,6 +4,7 @@
 #define SCENE_MANIFEST_H
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 #include "base/log.h"
 
@@ -11,6 +12,7 @@ struct manifest {
     char *path;
     struct manifest_entry {
         char *id, *file; /* file: a name in the same folder */
+        uint64_t recipe; /* plant/recipe.h */
     } *entries;
     size_t count;
 };
@@ -18,6 +20,6 @@ struct manifest {
 /* False: logged, with what to do about it. */
 bool manifest_read(struct log *log, const char *folder, struct manifest *manifest);
 void manifest_finish(struct manifest *manifest);
-const char *manifest_find(const struct manifest *manifest, const char *id); /* the file's name, or NULL */
+const struct manifest_entry *manifest_find(const struct manifest *manifest, const char *id); /* or NULL */
 
 #endif

@@ -2,10 +2,12 @@
 /* Puts the prepared assets into the plant, after checking that they are of this plant. */
 #include "scene/scene.h"
 
+#include <errno.h>
 #include <math.h>
 #include <string.h>
 
 #include "base/mem.h"
+#include "plant/recipe.h"
 #include "plant/sensors.h"
 #include "plant/transform.h"
 #include "scene/manifest.h"
@@ -44,6 +46,31 @@ static bool sensors_fit(struct log *log, const struct plant *plant, const struct
         return false;
     }
     return true;
+}
+
+/* Of the model of an asset before it, if that has the same; else read. Each model is read once. */
+static bool model_hash(const struct plant *plant, uint64_t *hashes, int index)
+{
+    for (int i = 0; i < index; i++)
+        if (!strcmp(plant->assets[i].model, plant->assets[index].model)) {
+            hashes[index] = hashes[i];
+            return true;
+        }
+    return plant_model_hash(plant->assets[index].model, &hashes[index]);
+}
+
+static bool recipe_fits(struct log *log, const struct plant *plant, uint64_t *hashes, int index, const struct manifest_entry *entry)
+{
+    const struct plant_asset *asset = &plant->assets[index];
+    if (!model_hash(plant, hashes, index)) {
+        log_err(log, "asset %s: %s: cannot be read: %s", asset->id, asset->model, strerror(errno));
+        return false;
+    }
+    if (plant_recipe(asset, hashes[index]) == entry->recipe)
+        return true;
+    log_err(log, "asset %s: %s, or its nodes, units, scale or up, are not what was prepared; run plantcast-prep %s", asset->id,
+            asset->model, plant->path);
+    return false;
 }
 
 /* --- one asset -------------------------------------------------------------------------------------------------------------- */
@@ -103,18 +130,21 @@ static struct asset *open_file(struct log *log, const struct scene *scene, int i
     return asset_open(log, path);
 }
 
-static bool create_asset(struct log *log, struct scene *scene, int index, const struct manifest *manifest, const char *folder)
+static bool create_asset(struct log *log, struct scene *scene, int index, const struct manifest *manifest, uint64_t *hashes,
+                         const char *folder)
 {
     struct scene_asset *asset = &scene->assets[index];
     struct plant_sensor *sensors = NULL;
     bool good = false;
     asset->plant = &scene->plant->assets[index];
-    const char *name = manifest_find(manifest, asset->plant->id);
-    if (!name) {
+    const struct manifest_entry *entry = manifest_find(manifest, asset->plant->id);
+    if (!entry) {
         log_err(log, "asset %s: is not in %s; run plantcast-prep %s", asset->plant->id, manifest->path, scene->plant->path);
         return false;
     }
-    char *path = mem_printf("%s/%s", folder, name);
+    if (!recipe_fits(log, scene->plant, hashes, index, entry))
+        return false;
+    char *path = mem_printf("%s/%s", folder, entry->file);
     asset->file = open_file(log, scene, index, path);
     if (!asset->file) {
         log_err(log, "asset %s: has no usable file; run plantcast-prep %s", asset->plant->id, scene->plant->path);
@@ -147,9 +177,10 @@ struct scene *scene_create(struct log *log, const struct plant *plant, const cha
     scene->asset_count = plant->asset_count;
     scene->assets = mem_array(plant->asset_count, sizeof(*scene->assets));
     empty_box(scene->bounds_min_m, scene->bounds_max_m);
+    uint64_t *hashes = mem_array(plant->asset_count, sizeof(*hashes));
     bool good = true;
     for (size_t i = 0; i < plant->asset_count; i++) {
-        if (!create_asset(log, scene, (int)i, &manifest, prepared_folder)) {
+        if (!create_asset(log, scene, (int)i, &manifest, hashes, prepared_folder)) {
             good = false;
             continue;
         }
@@ -157,6 +188,7 @@ struct scene *scene_create(struct log *log, const struct plant *plant, const cha
         grow_box(scene->bounds_min_m, scene->bounds_max_m, scene->assets[i].bounds_max_m);
     }
     manifest_finish(&manifest);
+    mem_free(hashes);
     if (!good)
         scene_destroy(&scene);
     return scene;

@@ -184,7 +184,7 @@ static char *file_of(struct setup *s, size_t asset)
     read_back(s, "plant.prepared/manifest.json", &text);
     json_t *manifest = json_of(&text);
     char *name = mem_printf("%s/plant.prepared/%s", s->folder, json_string_value(json_object_get(asset_of(manifest, asset), "file")));
-    assert_int_equal(json_integer_value(json_object_get(manifest, "format")), 1);
+    assert_int_equal(json_integer_value(json_object_get(manifest, "format")), 2);
     json_decref(manifest);
     text_finish(&text);
     return name;

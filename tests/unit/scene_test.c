@@ -2,6 +2,7 @@
 /* Scenes from real plant and asset files: everything in its place, and files of another plant refused with the reason. */
 #include "scene/scene.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -16,6 +17,7 @@
 
 #include "base/mem.h"
 #include "base/text.h"
+#include "plant/recipe.h"
 #include "plant/sensors.h"
 #include "tests/support/temp.h"
 
@@ -76,8 +78,19 @@ static void write_manifest(const struct fixture *f, const char *text)
     mem_free(temp_write_text(f->prepared, "manifest.json", text));
 }
 
-static const char good_manifest[] = "{\"format\": 1, \"assets\": [{\"id\": \"C\", \"file\": \"1.asset\", \"key\": \"1\"},"
-                                    "{\"id\": \"A\", \"file\": \"1.asset\"}, {\"id\": \"B\", \"file\": \"1.asset\"}]}";
+/* All assets, last first, from one file. */
+static void write_good_manifest(const struct fixture *f)
+{
+    struct text text = { 0 };
+    uint64_t model;
+    assert_true(plant_model_hash(f->plant->assets[0].model, &model));
+    text_add(&text, "{\"format\": 2, \"assets\": [");
+    for (size_t i = f->plant->asset_count; i-- > 0;)
+        text_add(&text, "{\"id\": \"%s\", \"file\": \"1.asset\", \"recipe\": \"%016" PRIx64 "\"}%s", f->plant->assets[i].id,
+                 plant_recipe(&f->plant->assets[i], model), i > 0 ? "," : "]}");
+    write_manifest(f, text.at);
+    text_finish(&text);
+}
 
 static struct plant *load(const struct fixture *f, const char *more)
 {
@@ -104,7 +117,7 @@ static int set_up(void **state)
     f->prepared = plant_prepared_folder(f->plant);
     f->log = log_create(LOG_ERROR);
     write_asset(f, "1.asset", 1, "TI-2", 2);
-    write_manifest(f, good_manifest);
+    write_good_manifest(f);
     *state = f;
     return 0;
 }
@@ -216,13 +229,13 @@ static void broken_manifests_are_refused(void **state)
 {
     struct fixture *f = *state;
     static const char *const cases[][2] = {
-        { "{\"format\": 1, \"assets\": [{\"id\": \"A\", \"file\": \"1.asset\"}]}", "asset B: is not in" },
-        { "{\"format\": 2, \"assets\": []}", "expected format 1" },
-        { "{\"format\": 1}", "expected a list of assets" },
-        { "{\"format\": 1, \"assets\": [{\"id\": \"A\", \"file\": \"../1.asset\"}]}", "expected an id and the name of a file" },
-        { "{\"format\": 1, \"assets\": [{\"file\": \"1.asset\"}]}", "expected an id and the name of a file" },
-        { "{\"format\": 1,\n \"assets\": [}", "manifest.json:2:" },
-        { "[]", "expected format 1" },
+        { "{\"format\": 2, \"assets\": [{\"id\": \"A\", \"file\": \"1.asset\", \"recipe\": \"1\"}]}", "asset B: is not in" },
+        { "{\"format\": 1, \"assets\": []}", "expected format 2" },
+        { "{\"format\": 2}", "expected a list of assets" },
+        { "{\"format\": 2, \"assets\": [{\"id\": \"A\", \"file\": \"../1.asset\"}]}", "expected an id, the name of a file" },
+        { "{\"format\": 2, \"assets\": [{\"file\": \"1.asset\"}]}", "expected an id, the name of a file" },
+        { "{\"format\": 2,\n \"assets\": [}", "manifest.json:2:" },
+        { "[]", "expected format 2" },
     };
     for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
         write_manifest(f, cases[i][0]);
@@ -232,6 +245,28 @@ static void broken_manifests_are_refused(void **state)
     unlink(path);
     assert_refused(f, "manifest.json: cannot be read");
     mem_free(path);
+}
+
+/* The plant file or the model was changed, and plantcast-prep forgotten. */
+static void what_was_not_prepared_is_refused(void **state)
+{
+    struct fixture *f = *state;
+    struct plant_asset *asset = &f->plant->assets[1];
+    asset->up = asset->up == AXIS_Y ? AXIS_Z : AXIS_Y;
+    assert_refused(f, "asset B: ");
+    asset->up = asset->up == AXIS_Y ? AXIS_Z : AXIS_Y;
+    asset->unit_m = 0.001;
+    assert_refused(f, "units, scale or up, are not what was prepared; run plantcast-prep");
+    asset->unit_m = 1;
+    asset->nodes = mem_strdup("E-*");
+    assert_refused(f, "asset B: ");
+    mem_free(asset->nodes);
+    asset->nodes = NULL;
+    struct scene *scene = scene_create(f->log, f->plant, f->prepared);
+    assert_non_null(scene);
+    scene_destroy(&scene);
+    mem_free(temp_write_text(f->folder, "m.glb", "glTG"));
+    assert_refused(f, "m.glb, or its nodes");
 }
 
 static void home_is_the_view_of_the_plant(void **state)
@@ -265,6 +300,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(other_sensors_are_refused, set_up, tear_down),
         cmocka_unit_test_setup_teardown(broken_files_are_refused, set_up, tear_down),
         cmocka_unit_test_setup_teardown(broken_manifests_are_refused, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(what_was_not_prepared_is_refused, set_up, tear_down),
         cmocka_unit_test_setup_teardown(home_is_the_view_of_the_plant, set_up, tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
