@@ -9,7 +9,7 @@ test-long: test
 	@$(MAKE) --no-print-directory CC=clang build=$(build)/clang all tests
 	@for c in asan tsan; do \
 	    $(MAKE) --no-print-directory config=$$c all tests && tests/run $(build)/$$c $(build)/$$c/bin unit && \
-	    tests/run $(build)/$$c $(build)/$$c/bin gpu || exit 1; \
+	    tests/run $(build)/$$c $(build)/$$c/bin gpu && tests/run $(build)/$$c $(build)/$$c/bin daemon || exit 1; \
 	done
 
 checked: all tests demo style layers headers
