@@ -12,13 +12,24 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "preprocess/order.h"
+#include "preprocess/split.h"
 
 static void hash_text(XXH3_state_t *state, const char *text)
 {
     XXH3_64bits_update(state, text ? text : "", text ? strlen(text) + 1 : 1);
 }
 
-uint64_t build_key(uint64_t model_hash, const struct geometry_params *geometry, const struct plant_sensor *sensors, size_t sensor_count)
+/* What the splitting takes from the plant file. */
+static void hash_field(XXH3_state_t *state, const struct plant *plant, const struct plant_sensor *sensor)
+{
+    const struct plant_tag *tag = &plant->tags[sensor->tag];
+    const struct plant_group *group = &plant->groups[tag->group];
+    const double numbers[5] = { tag->group, tag->strength, tag->decay, group->power, group->radius_m };
+    XXH3_64bits_update(state, numbers, sizeof(numbers));
+}
+
+uint64_t build_key(uint64_t model_hash, const struct geometry_params *geometry, const struct plant *plant,
+                   const struct plant_sensor *sensors, size_t sensor_count)
 {
     const uint32_t numbers[3] = { ASSET_VERSION, BUILD_REVISION, (uint32_t)geometry->up };
     XXH3_state_t state;
@@ -32,6 +43,7 @@ uint64_t build_key(uint64_t model_hash, const struct geometry_params *geometry, 
     for (size_t i = 0; i < sensor_count; i++) {
         hash_text(&state, sensors[i].node);
         XXH3_64bits_update(&state, sensors[i].position_m, sizeof(sensors[i].position_m));
+        hash_field(&state, plant, &sensors[i]);
     }
     return XXH3_64bits_digest(&state);
 }
@@ -89,29 +101,59 @@ static double seconds_since(int64_t *since_ns)
     return seconds;
 }
 
+/* The sensors on the surface, and how far they are from everywhere. */
+struct measured {
+    struct surface *surface;
+    struct surface_spot *spots;
+    struct asset_sensor *sensors;
+    float *distances, *sampled; /* [sensor][vertex]; [sensor][point of the surface] */
+};
+
+static void measured_finish(struct measured *measured)
+{
+    surface_destroy(&measured->surface);
+    mem_free(measured->spots);
+    mem_free(measured->sensors);
+    mem_free(measured->distances);
+    mem_free(measured->sampled);
+}
+
+static bool solve(const struct build_input *input, const struct geometry *g, const double (*places)[3], struct measured *measured)
+{
+    size_t count = input->sensor_count;
+    measured->distances = mem_try_array(count * (size_t)g->vertex_count, sizeof(*measured->distances));
+    measured->sampled = mem_try_array(count * surface_sampled_count(measured->surface), sizeof(*measured->sampled));
+    if (!measured->distances || !measured->sampled ||
+        !surface_distances_sampled(measured->surface, places, count, measured->distances, measured->sampled))
+        return false;
+    measured->spots = mem_array(count, sizeof(*measured->spots));
+    measured->sensors = mem_array(count, sizeof(*measured->sensors));
+    for (size_t i = 0; i < count; i++)
+        surface_find_spot(measured->surface, places[i], NULL, &measured->spots[i]);
+    drop_sensors(measured->surface, input, places, measured->sensors);
+    return true;
+}
+
 static bool measure(struct log *log, struct workers *workers, const struct build_input *input, const struct geometry *g,
-                    struct asset_sensor *sensors, float *distances, struct build_output *output, char *why)
+                    struct measured *measured, struct build_output *output, char *why)
 {
     struct build_report *report = &output->report;
     int64_t since_ns = clock_mono_ns();
     double(*places)[3] = mem_array(input->sensor_count, sizeof(*places));
-    struct surface *surface = NULL;
     bool good = place_sensors(input, g, places, &output->missing_node, why);
     if (good) {
-        surface = surface_create(log, workers, (const float(*)[3])g->positions_m, g->vertex_count, g->indices, g->index_count / 3,
-                                 &(struct surface_params){ 0 });
+        measured->surface = surface_create(log, workers, (const float(*)[3])g->positions_m, g->vertex_count, g->indices, g->index_count / 3,
+                                           &(struct surface_params){ 0 });
         report->surface_s = seconds_since(&since_ns);
-        good = surface && surface_distances(surface, (const double(*)[3])places, input->sensor_count, distances);
+        good = measured->surface && solve(input, g, (const double(*)[3])places, measured);
         if (!good)
-            snprintf(why, MODEL_WHY_BYTES, "its distances cannot be computed");
+            snprintf(why, MODEL_WHY_BYTES, "its distances to %zu sensors cannot be computed", input->sensor_count);
     }
     if (good) {
-        drop_sensors(surface, input, (const double(*)[3])places, sensors);
-        report->surface = *surface_report(surface);
-        report->unreachable_vertices = unreachable(distances, input->sensor_count, g->vertex_count);
+        report->surface = *surface_report(measured->surface);
+        report->unreachable_vertices = unreachable(measured->distances, input->sensor_count, g->vertex_count);
         report->solve_s = seconds_since(&since_ns);
     }
-    surface_destroy(&surface);
     mem_free(places);
     return good;
 }
@@ -130,33 +172,61 @@ static bool move_distances(float *distances, size_t sensor_count, uint32_t verte
     return column != NULL;
 }
 
-static void report_levels(struct build_report *report, const struct levels *levels, const struct asset_level *file)
+static bool split(struct workers *workers, const struct build_input *input, struct geometry *g, struct levels *levels,
+                  struct measured *measured)
 {
-    report->level_count = levels->count;
-    for (size_t i = 0; i < levels->count; i++)
-        report->levels[i] = (struct build_level){ .triangles = levels->at[i].index_count / 3,
-                                                  .split_triangles = levels->at[i].index_count / 3,
-                                                  .vertices = file[i].vertex_count,
-                                                  .error_m = file[i].error_m };
+    struct straight straight;
+    float(*places)[3] = mem_array(input->sensor_count, sizeof(*places)), *distances;
+    for (size_t i = 0; i < input->sensor_count; i++)
+        memcpy(places[i], measured->sensors[i].surface_m, sizeof(*places));
+    straight_init(&straight, input->plant, input->sensors, input->sensor_count, (const float(*)[3])places);
+    bool good = split_levels(levels, g,
+                             &(struct split_input){ .straight = &straight,
+                                                    .surface = measured->surface,
+                                                    .sources = measured->spots,
+                                                    .sampled = measured->sampled,
+                                                    .distances = measured->distances,
+                                                    .sensors = measured->sensors,
+                                                    .workers = workers },
+                             &distances);
+    if (good) {
+        mem_free(measured->distances);
+        measured->distances = distances;
+    }
+    straight_finish(&straight);
+    mem_free(places);
+    return good;
 }
 
-static bool add_levels(struct workers *workers, const struct build_input *input, struct geometry *g, struct asset_sensor *sensors,
-                       float *distances, struct asset_level *file, struct build_report *report, char *why)
+/* Levels first, then each is split; so a level has no more vertices than it needs. */
+static bool add_levels(struct workers *workers, const struct build_input *input, struct geometry *g, struct measured *measured,
+                       struct asset_level *file, struct build_report *report, char *why)
 {
     struct levels levels = { 0 };
-    uint32_t *new_of = NULL;
+    uint32_t *new_of = NULL, own = g->vertex_count;
     int64_t since_ns = clock_mono_ns();
-    bool good = levels_make(&levels, g, workers) && order_vertices(g, &levels, g->vertex_count, file, &new_of) &&
-                move_distances(distances, input->sensor_count, g->vertex_count, new_of);
+    bool good = levels_make(&levels, g, workers);
+    report->level_count = levels.count;
+    for (size_t i = 0; i < levels.count; i++)
+        report->levels[i].triangles = levels.at[i].index_count / 3;
+    report->levels_s = seconds_since(&since_ns);
+    if (good && input->sensor_count)
+        good = split(workers, input, g, &levels, measured);
+    report->split_s = seconds_since(&since_ns);
+    good = good && order_vertices(g, &levels, own, file, &new_of) &&
+           move_distances(measured->distances, input->sensor_count, g->vertex_count, new_of);
     for (size_t s = 0; good && s < input->sensor_count; s++)
-        sensors[s].nearest_vertex = new_of[sensors[s].nearest_vertex];
-    if (good)
-        report_levels(report, &levels, file);
-    else
+        measured->sensors[s].nearest_vertex = new_of[measured->sensors[s].nearest_vertex];
+    for (size_t i = 0; good && i < levels.count; i++) {
+        report->levels[i].split_triangles = levels.at[i].index_count / 3;
+        report->levels[i].vertices = file[i].vertex_count;
+        report->levels[i].error_m = file[i].error_m;
+        report->levels[i].field_error = levels.at[i].field_error;
+    }
+    if (!good)
         snprintf(why, MODEL_WHY_BYTES, "out of memory for the levels of %u vertices", g->vertex_count);
     levels_finish(&levels);
     mem_free(new_of);
-    report->levels_s = seconds_since(&since_ns);
     return good;
 }
 
@@ -207,8 +277,7 @@ bool build_asset(struct log *log, struct workers *workers, const struct build_in
                  char why[MODEL_WHY_BYTES])
 {
     struct geometry geometry = { 0 };
-    struct asset_sensor *sensors = NULL;
-    float *distances = NULL;
+    struct measured measured = { 0 };
     struct asset_level levels[LEVELS_MAX] = { 0 };
     int64_t since_ns = clock_mono_ns();
     *output = (struct build_output){ .missing_node = -1 };
@@ -225,20 +294,10 @@ bool build_asset(struct log *log, struct workers *workers, const struct build_in
                                             .skipped_lines = geometry.skipped_lines,
                                             .skipped_points = geometry.skipped_points,
                                             .read_s = seconds_since(&since_ns) };
-    bool good = true;
-    if (input->sensor_count) {
-        sensors = mem_array(input->sensor_count, sizeof(*sensors));
-        distances = mem_try_array(input->sensor_count * (size_t)geometry.vertex_count, sizeof(*distances));
-        good = distances != NULL;
-        if (good)
-            good = measure(log, workers, input, &geometry, sensors, distances, output, why);
-        else
-            snprintf(why, MODEL_WHY_BYTES, "out of memory for %zu sensors on %u vertices", input->sensor_count, geometry.vertex_count);
-    }
-    good = good && add_levels(workers, input, &geometry, sensors, distances, levels, &output->report, why) &&
-           lay_out(input, &geometry, levels, output->report.level_count, sensors, distances, output, why);
-    mem_free(sensors);
-    mem_free(distances);
+    bool good = (!input->sensor_count || measure(log, workers, input, &geometry, &measured, output, why)) &&
+                add_levels(workers, input, &geometry, &measured, levels, &output->report, why) &&
+                lay_out(input, &geometry, levels, output->report.level_count, measured.sensors, measured.distances, output, why);
+    measured_finish(&measured);
     geometry_finish(&geometry);
     if (!good) {
         free(output->bytes);

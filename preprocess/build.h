@@ -8,31 +8,32 @@
 #include "preprocess/levels.h"
 #include "surface/surface.h"
 
-#define BUILD_REVISION 4u /* grows when the same input shall give another file */
+#define BUILD_REVISION 5u /* grows when the same input shall give another file */
 
 struct build_input {
     const struct gltf_model *model;
     struct geometry_params geometry;
+    const struct plant *plant; /* its groups and tags say where the field bends */
     const struct plant_sensor *sensors;
     size_t sensor_count;
     uint64_t key;
 };
 
 struct build_level {
-    uint32_t triangles; /* as simplified */
-    uint32_t split_triangles; /* after splitting */
-    uint32_t vertices; /* the prefix */
-    float error_m;
+    uint32_t triangles;         /* as simplified */
+    uint32_t split_triangles;   /* after splitting */
+    uint32_t vertices;          /* the prefix */
+    float error_m, field_error; /* field_error: left along its edges, in parts of the range */
 };
 
 struct build_report {
     uint32_t nodes, triangles, vertices, primitives, materials, textures, degenerate_triangles, computed_normals;
     uint32_t skipped_lines, skipped_points; /* primitives that are no triangles */
-    struct surface_report surface; /* zero where the asset has no sensor */
-    size_t unreachable_vertices;   /* no sensor's distance is finite there */
+    struct surface_report surface;          /* zero where the asset has no sensor */
+    size_t unreachable_vertices;            /* no sensor's distance is finite there */
     struct build_level levels[LEVELS_MAX];
     size_t level_count;
-    double read_s, surface_s, solve_s, levels_s;
+    double read_s, surface_s, solve_s, levels_s, split_s;
 };
 
 struct build_output {
@@ -47,6 +48,7 @@ bool build_asset(struct log *log, struct workers *workers, const struct build_in
                  char why[MODEL_WHY_BYTES]);
 
 /* The key of a file that would be made of this. */
-uint64_t build_key(uint64_t model_hash, const struct geometry_params *geometry, const struct plant_sensor *sensors, size_t sensor_count);
+uint64_t build_key(uint64_t model_hash, const struct geometry_params *geometry, const struct plant *plant,
+                   const struct plant_sensor *sensors, size_t sensor_count);
 
 #endif

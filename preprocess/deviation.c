@@ -3,6 +3,7 @@
 #include "preprocess/deviation.h"
 
 #include <pthread.h>
+#include <stdatomic.h>
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
@@ -96,7 +97,8 @@ static bool shares_triangle(const struct deviation *surface, const uint32_t indi
 
 struct probing {
     const struct deviation *from, *to;
-    double expected_m;
+    double expected_m, limit_m;
+    atomic_bool beyond; /* the limit */
     pthread_mutex_t lock;
     /* --- below: under lock */
     double most_m;
@@ -117,13 +119,15 @@ static void note(struct probing *probing, double most_m)
     pthread_mutex_lock(&probing->lock);
     probing->most_m = max_of(probing->most_m, most_m);
     pthread_mutex_unlock(&probing->lock);
+    if (most_m > probing->limit_m)
+        probing->beyond = true;
 }
 
 static void probe_points(void *arg, size_t begin, size_t end)
 {
     struct probing *probing = arg;
     double most_m = 0;
-    for (size_t i = begin; i < end; i++)
+    for (size_t i = begin; i < end && most_m <= probing->limit_m && !probing->beyond; i++)
         if (!shares_point(probing->to, probing->from->index[i]))
             most_m = max_of(most_m, distance_to(probing->to->bvh, probing->from->mesh.points[i], probing->expected_m));
     note(probing, most_m);
@@ -157,7 +161,7 @@ static void probe_insides(void *arg, size_t begin, size_t end)
 {
     struct probing *probing = arg;
     double most_m = 0;
-    for (size_t t = begin; t < end; t++) {
+    for (size_t t = begin; t < end && most_m <= probing->limit_m && !probing->beyond; t++) {
         const uint32_t *v = probing->from->mesh.tris[t];
         const uint32_t *index = probing->from->index, indices[3] = { index[v[0]], index[v[1]], index[v[2]] };
         double longest_m = longest_edge(&probing->from->mesh, v);
@@ -170,14 +174,15 @@ static void probe_insides(void *arg, size_t begin, size_t end)
 static void for_all(struct workers *workers, size_t count, void (*body)(void *arg, size_t begin, size_t end), struct probing *probing)
 {
     if (workers)
-        workers_for(workers, count, 2048, body, probing);
+        workers_for(workers, count, 1024, body, probing);
     else
         body(probing, 0, count);
 }
 
-double deviation_measure(const struct deviation *from, const struct deviation *to, double expected_m, struct workers *workers)
+double deviation_measure(const struct deviation *from, const struct deviation *to, double expected_m, double limit_m,
+                         struct workers *workers)
 {
-    struct probing probing = { .from = from, .to = to, .expected_m = expected_m };
+    struct probing probing = { .from = from, .to = to, .expected_m = expected_m, .limit_m = limit_m };
     pthread_mutex_init(&probing.lock, NULL);
     for_all(workers, from->mesh.point_count, probe_points, &probing);
     for_all(workers, from->mesh.tri_count, probe_insides, &probing);

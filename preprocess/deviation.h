@@ -20,7 +20,8 @@ void deviation_init(struct deviation *surface, const float (*positions_m)[3], co
 void deviation_finish(struct deviation *surface);
 
 /* The largest distance from points of `from` to `to`: its corners, and inner points of triangles larger than the distances that matter, but
-   for what both have. expected_m: about what is hoped for. workers may be NULL. */
-double deviation_measure(const struct deviation *from, const struct deviation *to, double expected_m, struct workers *workers);
+   for what both have. expected_m: about what is hoped for; beyond limit_m it is not looked for exactly. workers may be NULL. */
+double deviation_measure(const struct deviation *from, const struct deviation *to, double expected_m, double limit_m,
+                         struct workers *workers);
 
 #endif

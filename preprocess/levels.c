@@ -13,7 +13,7 @@
 #define LEVEL_WORTH 0.7    /* of the triangles of the level before, at most */
 #define LEAST_TRIANGLES 60 /* fewer are not simplified */
 #define OVERSHOOT 1.3      /* of the error asked for, is put up with */
-#define TRIES 3
+#define TRIES 4
 
 /* A level is drawn where its error is about a pixel: where the asset is some 1700, 600, 200, 60, 20 pixels large. */
 static const double errors_of_size[] = { 0.0004, 0.0012, 0.004, 0.012, 0.04 };
@@ -276,12 +276,12 @@ static void write_level(struct simplifier *s, struct level *level, const uint32_
     mem_free(fill);
 }
 
-static double error_of(const struct simplifier *s, const uint32_t *knots, size_t count, double expected_m)
+static double error_of(const struct simplifier *s, const uint32_t *knots, size_t count, double expected_m, double limit_m)
 {
     struct deviation coarse;
     deviation_init(&coarse, (const float(*)[3])s->positions_m, knots, count / 3);
-    double there_m = deviation_measure(&s->finest, &coarse, expected_m, s->workers);
-    double back_m = deviation_measure(&coarse, &s->finest, expected_m, s->workers);
+    double back_m = deviation_measure(&coarse, &s->finest, expected_m, limit_m, s->workers);
+    double there_m = back_m > limit_m ? 0 : deviation_measure(&s->finest, &coarse, expected_m, limit_m, s->workers);
     deviation_finish(&coarse);
     return fmax(there_m, back_m);
 }
@@ -296,13 +296,16 @@ static size_t simplify(const struct simplifier *s, uint32_t *knots, size_t count
     count = drop_small_parts(s, knots, count, error_m);
     memcpy(from, knots, count * sizeof(*from));
     size_t left = count;
-    for (int i = 0; i < TRIES; i++) {
+    for (int i = 1; i <= TRIES; i++) {
+        double limit_m = (i < TRIES ? 1 : 2) * OVERSHOOT * error_m;
         left =
             meshopt_simplify(knots, from, count, positions, s->knot_count, sizeof(*s->positions_m), 0, (float)(asked_m / scale_m), 0, NULL);
-        *measured_m = left ? error_of(s, knots, left, error_m) : INFINITY;
+        if ((double)left > LEVEL_WORTH * (double)count) /* of no use, however exact */
+            break;
+        *measured_m = left ? error_of(s, knots, left, error_m, limit_m) : INFINITY;
         if (*measured_m <= OVERSHOOT * error_m)
             break;
-        asked_m *= fmin(error_m / *measured_m, 0.5);
+        asked_m /= 2; /* not by how much it erred: beyond the limit, that depends on which thread looked where */
     }
     mem_free(from);
     return left;

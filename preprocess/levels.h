@@ -11,7 +11,8 @@ struct level {
     uint32_t *indices;                  /* vertices of the geometry */
     struct asset_primitive *primitives; /* first_index counts from this level's first; without those that have no triangle left */
     uint32_t index_count, primitive_count;
-    float error_m; /* no point of the finest surface is farther from this one, nor the other way round; 0 for the finest */
+    float error_m;     /* no point of the finest surface is farther from this one, nor the other way round; 0 for the finest */
+    float field_error; /* after splitting: the most that the field errs along an edge, in parts of the range */
 };
 
 struct levels {

@@ -93,7 +93,7 @@ static void find_keys(struct run *run)
         struct geometry_params geometry = geometry_params_of(asset->plant);
         asset->sensor_count = plant_sensors(run->prepare->plant, (int)i, &asset->sensors);
         if (run->models[model].good)
-            asset->key = build_key(run->models[model].source.hash, &geometry, asset->sensors, asset->sensor_count);
+            asset->key = build_key(run->models[model].source.hash, &geometry, run->prepare->plant, asset->sensors, asset->sensor_count);
     }
 }
 
@@ -185,6 +185,7 @@ static void build_one(struct run *run, struct prepare_asset *asset)
 {
     struct build_input input = { .model = run->parsed,
                                  .geometry = geometry_params_of(asset->plant),
+                                 .plant = run->prepare->plant,
                                  .sensors = asset->sensors,
                                  .sensor_count = asset->sensor_count,
                                  .key = asset->key };

@@ -10,14 +10,15 @@
 
 static const char *const state_names[] = { "failed", "unchanged", "shared", "built" };
 
-/* E-101: levels (error, triangles, after splitting): 0 m 62653 70112, 0.004 m 20100 24000, ... */
+/* E-101: levels (error, triangles, after splitting, field error): 0 m 62653 70112 0.39 %, 0.004 m 20100 24000 0.39 %, ... */
 static void levels_text(const struct prepare_asset *asset, FILE *out)
 {
     if (asset->report.level_count)
-        fprintf(out, "%s: levels (error, triangles, after splitting):", asset->plant->id);
+        fprintf(out, "%s: levels (error, triangles, after splitting, field error):", asset->plant->id);
     for (size_t i = 0; i < asset->report.level_count; i++) {
         const struct build_level *level = &asset->report.levels[i];
-        fprintf(out, "%s %.3g m %u %u", i ? "," : "", (double)level->error_m, level->triangles, level->split_triangles);
+        fprintf(out, "%s %.3g m %u %u %.2f %%", i ? "," : "", (double)level->error_m, level->triangles, level->split_triangles,
+                100 * (double)level->field_error);
     }
     if (asset->report.level_count)
         fprintf(out, "\n");
@@ -28,9 +29,9 @@ static json_t *levels_json(const struct build_report *report)
     json_t *levels = json_array();
     for (size_t i = 0; i < report->level_count; i++) {
         const struct build_level *level = &report->levels[i];
-        json_array_append_new(levels, json_pack("{s:f,s:i,s:i,s:i}", "error_m", (double)level->error_m, "triangles_before",
-                                                (int)level->triangles, "triangles", (int)level->split_triangles, "vertices",
-                                                (int)level->vertices));
+        json_array_append_new(levels, json_pack("{s:f,s:f,s:i,s:i,s:i}", "error_m", (double)level->error_m, "field_error",
+                                                (double)level->field_error, "triangles_before", (int)level->triangles, "triangles",
+                                                (int)level->split_triangles, "vertices", (int)level->vertices));
     }
     return levels;
 }
@@ -74,8 +75,9 @@ static json_t *surface_json(const struct build_report *report)
                   "unreachable_vertices", (json_int_t)report->unreachable_vertices);
     json_t *lengths = json_pack("{s:f,s:f,s:f,s:f,s:f}", "tolerance_m", s->tolerance_m, "spacing_m", s->spacing_m, "longest_bridge_m",
                                 s->longest_bridge_m, "time_m2", s->time_m2, "heat_disagreement", s->heat_disagreement);
-    json_t *seconds = json_pack("{s:f,s:f,s:f,s:f,s:f,s:f,s:f}", "read", report->read_s, "weld", s->weld_s, "bridge", s->bridge_s, "sample",
-                                s->sample_s, "laplacian", s->laplacian_s, "factor", s->factor_s, "solve", report->solve_s);
+    json_t *seconds = json_pack("{s:f,s:f,s:f,s:f,s:f,s:f,s:f,s:f,s:f}", "levels", report->levels_s, "split", report->split_s, "read",
+                                report->read_s, "weld", s->weld_s, "bridge", s->bridge_s, "sample", s->sample_s, "laplacian",
+                                s->laplacian_s, "factor", s->factor_s, "solve", report->solve_s);
     json_object_update(counts, lengths);
     json_decref(lengths);
     json_object_set_new(counts, "seconds", seconds);

@@ -88,15 +88,14 @@ static void offer(struct local_walk *walk, uint32_t point, double distance_m)
     heap_push(walk, distance_m, point);
 }
 
-/* The distance of c when a and b, on one edge with it, have theirs: the source is laid out in the triangle's plane. */
-static double unfold(double da, double db, double ab, double ac, double bc)
+double local_unfold(double da, double db, double ab, double ac, double bc)
 {
     double along_edges = min_of(da + ac, db + bc);
     double sx = (da * da - db * db + ab * ab) / (2 * ab), sy2 = da * da - sx * sx;
     double cx = (ac * ac - bc * bc + ab * ab) / (2 * ab), cy2 = ac * ac - cx * cx;
-    if (sy2 < 0 || cy2 <= 0)
+    if (sy2 < 0)
         return along_edges;
-    double sy = -sqrt(sy2), cy = sqrt(cy2), cut = sx + (cx - sx) * -sy / (cy - sy);
+    double sy = -sqrt(sy2), cy = sqrt(max_of(cy2, 0)), cut = cy > sy ? sx + (cx - sx) * -sy / (cy - sy) : cx;
     if (cut < 0 || cut > ab)
         return along_edges;
     return hypot(cx - sx, cy - sy);
@@ -113,9 +112,9 @@ static void spread(const struct local *local, struct local_walk *walk, uint32_t 
         double ab = vec_distance(mesh->points[a], mesh->points[b]), d = walk->distance_m[point];
         bool inside = local->tris[i] >= local->visible_count;
         if (!inside || local->hidden[a])
-            offer(walk, a, walk->settled[b] ? unfold(d, walk->distance_m[b], pb, pa, ab) : d + pa);
+            offer(walk, a, walk->settled[b] ? local_unfold(d, walk->distance_m[b], pb, pa, ab) : d + pa);
         if (!inside || local->hidden[b])
-            offer(walk, b, walk->settled[a] ? unfold(d, walk->distance_m[a], pa, pb, ab) : d + pb);
+            offer(walk, b, walk->settled[a] ? local_unfold(d, walk->distance_m[a], pa, pb, ab) : d + pb);
     }
 }
 

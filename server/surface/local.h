@@ -30,4 +30,7 @@ void local_walk_finish(struct local_walk *walk);
 /* Distances up to limit_m from the place with these weights on triangle tri. Clears what the last walk left. */
 void local_from(const struct local *local, struct local_walk *walk, uint32_t tri, const double weights[3], double limit_m);
 
+/* The distance of c when a and b, on one edge, have theirs: the source is laid out in the plane of a, b and c, beyond the edge. */
+double local_unfold(double da, double db, double ab, double ac, double bc);
+
 #endif

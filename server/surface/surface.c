@@ -24,6 +24,8 @@
 #define TIME_OF_SPACING 3.0    /* t in mean edge lengths squared */
 #define LONGEST_DECAY 500.0    /* the farthest point is no more than this many roots of t away, so that its heat is a number */
 #define BLOCK_SOURCES 8
+#define SPOT_ON_SURFACE 1e-3 /* mean edges: nearer than that, a point lies on its triangle */
+#define SPOT_PATIENCE 4.0    /* how much farther than the nearest a triangle may be that faces the right way */
 
 struct stray { /* a vertex of the model whose triangles have no area: it takes the nearest place's distance */
     uint32_t vertex, points[3];
@@ -403,7 +405,7 @@ struct solve {
     struct surface *surface;
     const double (*points_m)[3];
     size_t point_count;
-    float *out;
+    float *out, *sampled; /* sampled: NULL, or at all points of the mesh */
     double *disagreement; /* of each point */
     atomic_bool failed;
 };
@@ -435,6 +437,8 @@ static void finish_source(const struct solve *solve, size_t source, const struct
     float *out = solve->out + source * surface->vertex_count;
     local_from(&surface->local, walk, at->tri, at->weights, INFINITY);
     solve->disagreement[source] = disagreement_of(&surface->local, walk, heat_m);
+    for (size_t p = 0; solve->sampled && p < surface->mesh.point_count; p++)
+        solve->sampled[source * surface->mesh.point_count + p] = (float)walk->distance_m[p];
     for (size_t v = 0; v < surface->vertex_count; v++)
         out[v] = (float)walk->distance_m[surface->vertex_point[v]];
     for (size_t i = 0; i < surface->stray_count; i++) {
@@ -475,7 +479,12 @@ done:
 
 bool surface_distances(struct surface *surface, const double (*points_m)[3], size_t point_count, float *out)
 {
-    struct solve solve = { .surface = surface, .points_m = points_m, .point_count = point_count, .out = out };
+    return surface_distances_sampled(surface, points_m, point_count, out, NULL);
+}
+
+bool surface_distances_sampled(struct surface *surface, const double (*points_m)[3], size_t point_count, float *out, float *sampled)
+{
+    struct solve solve = { .surface = surface, .points_m = points_m, .point_count = point_count, .out = out, .sampled = sampled };
     solve.disagreement = mem_array(point_count, sizeof(*solve.disagreement));
     size_t threads = surface->workers ? (size_t)workers_count(surface->workers) : 1;
     size_t block = (point_count + threads - 1) / threads;
@@ -491,4 +500,59 @@ bool surface_distances(struct surface *surface, const double (*points_m)[3], siz
     if (solve.failed)
         log_err(surface->log, "distances of %zu places to %zu vertices: out of memory", point_count, surface->vertex_count);
     return !solve.failed;
+}
+
+/* --- in between ---------------------------------------------------------------------------------------------------------- */
+
+size_t surface_sampled_count(const struct surface *surface)
+{
+    return surface->mesh.point_count;
+}
+
+struct facing {
+    const struct trimesh *mesh;
+    const double *normal;
+};
+
+static bool faces(const void *arg, uint32_t tri)
+{
+    const struct facing *facing = arg;
+    const uint32_t *v = facing->mesh->tris[tri];
+    double ab[3], ac[3], n[3];
+    vec_sub(facing->mesh->points[v[1]], facing->mesh->points[v[0]], ab);
+    vec_sub(facing->mesh->points[v[2]], facing->mesh->points[v[0]], ac);
+    vec_cross(ab, ac, n);
+    return vec_dot(n, facing->normal) > 0;
+}
+
+void surface_find_spot(const struct surface *surface, const double point_m[3], const double normal[3], struct surface_spot *spot)
+{
+    struct bvh_place any, facing = { .tri = TRIMESH_NONE };
+    bvh_nearest(surface->bvh, point_m, INFINITY, NULL, NULL, &any);
+    if (normal && any.distance_m > surface->edge_m * SPOT_ON_SURFACE)
+        bvh_nearest(surface->bvh, point_m, any.distance_m * SPOT_PATIENCE, faces, &(struct facing){ &surface->visible, normal }, &facing);
+    const struct bvh_place *at = facing.tri == TRIMESH_NONE ? &any : &facing;
+    spot->tri = at->tri;
+    spot->distance_m = at->distance_m;
+    memcpy(spot->point_m, at->point, sizeof(spot->point_m));
+}
+
+double surface_spot_distance(const struct surface *surface, const struct surface_spot *spot, const struct surface_spot *source,
+                             const float *sampled)
+{
+    const uint32_t *v = surface->visible.tris[spot->tri];
+    double to[3], best = INFINITY;
+    if (spot->tri == source->tri)
+        return vec_distance(spot->point_m, source->point_m);
+    for (int i = 0; i < 3; i++)
+        to[i] = vec_distance(spot->point_m, surface->visible.points[v[i]]);
+    for (int i = 0; i < 3; i++) {
+        int j = (i + 1) % 3;
+        double di = (double)sampled[v[i]], dj = (double)sampled[v[j]];
+        double edge_m = vec_distance(surface->visible.points[v[i]], surface->visible.points[v[j]]);
+        best = min_of(best, di + to[i]);
+        if (isfinite(di) && isfinite(dj))
+            best = min_of(best, local_unfold(di, dj, edge_m, to[i], to[j]));
+    }
+    return best;
 }

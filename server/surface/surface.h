@@ -68,4 +68,19 @@ void surface_nearest(const struct surface *surface, const double point_m[3], str
    False: out of memory, logged. */
 bool surface_distances(struct surface *surface, const double (*points_m)[3], size_t point_count, float *out);
 
+/* Between the vertices. The sampled surface has surface_sampled_count points; surface_distances_sampled also gives the distances there,
+   sampled[point * count + p], and from them follows the distance at any spot. */
+size_t surface_sampled_count(const struct surface *surface);
+bool surface_distances_sampled(struct surface *surface, const double (*points_m)[3], size_t point_count, float *out, float *sampled);
+struct surface_spot {
+    uint32_t tri; /* of the sampled surface */
+    double point_m[3], distance_m; /* distance_m: from the point asked for */
+};
+/* The spot nearest to a point; off the surface, one whose triangle faces along `normal` if there is one about as near (NULL: any), so that
+   a thin wall's other side is not taken. */
+void surface_find_spot(const struct surface *surface, const double point_m[3], const double normal[3], struct surface_spot *spot);
+/* sampled: of the source that was dropped onto `source`. INFINITY where no way leads. Thread: any. */
+double surface_spot_distance(const struct surface *surface, const struct surface_spot *spot, const struct surface_spot *source,
+                             const float *sampled);
+
 #endif

@@ -1,0 +1,242 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Cutting edges, and the triangles at them. */
+#include "preprocess/cutmesh.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/mem.h"
+
+bool cutmesh_init(struct cutmesh *mesh, struct geometry *geometry)
+{
+    *mesh = (struct cutmesh){ .geometry = geometry, .own_vertices = geometry->vertex_count };
+    mesh->position_capacity = mesh->normal_capacity = mesh->texcoord_capacity = mesh->color_capacity = geometry->vertex_count;
+    edge_table_init(&mesh->edges, geometry->index_count);
+    edge_table_init(&mesh->vertex_edges, geometry->vertex_count / 8 + 16);
+    if (!places_init(&mesh->places, (const float(*)[3])geometry->positions_m, geometry->vertex_count))
+        return false;
+    mesh->place_capacity = mesh->of_vertex_capacity = geometry->vertex_count;
+    return true;
+}
+
+void cutmesh_finish(struct cutmesh *mesh)
+{
+    places_finish(&mesh->places);
+    edge_table_finish(&mesh->edges);
+    edge_table_finish(&mesh->vertex_edges);
+    mem_free(mesh->cuts);
+    mem_free(mesh->vertex_middles);
+    mem_free(mesh->tris);
+    *mesh = (struct cutmesh){ 0 };
+}
+
+/* --- triangles ------------------------------------------------------------------------------------------------------------ */
+
+static uint32_t place_of(const struct cutmesh *mesh, uint32_t vertex)
+{
+    return mesh->places.of_vertex[vertex];
+}
+
+static uint32_t edge_of(struct cutmesh *mesh, uint32_t a, uint32_t b)
+{
+    size_t before = mesh->edges.count;
+    uint32_t e = edge_table_add(&mesh->edges, place_of(mesh, a), place_of(mesh, b));
+    if (mesh->edges.count > before) {
+        mem_grow(&mesh->cuts, &mesh->cut_capacity, mesh->edges.count, sizeof(*mesh->cuts));
+        mesh->cuts[e] = (struct cut_edge){ .a = a, .b = b, .middle = TRIMESH_NONE, .error = -1 };
+    }
+    return e;
+}
+
+static struct cut_tri make_tri(struct cutmesh *mesh, const struct cut_tri *like, uint32_t a, uint32_t b, uint32_t c)
+{
+    return (struct cut_tri){ .v = { a, b, c },
+                             .e = { edge_of(mesh, a, b), edge_of(mesh, b, c), edge_of(mesh, c, a) },
+                             .primitive = like->primitive,
+                             .origin = like->origin,
+                             .error = -1 };
+}
+
+static void add_tri(struct cutmesh *mesh, const struct cut_tri *like, uint32_t a, uint32_t b, uint32_t c)
+{
+    struct cut_tri tri = make_tri(mesh, like, a, b, c);
+    mem_grow(&mesh->tris, &mesh->tri_capacity, mesh->tri_count + 1, sizeof(*mesh->tris));
+    mesh->tris[mesh->tri_count++] = tri;
+}
+
+void cutmesh_load(struct cutmesh *mesh, const struct level *level)
+{
+    mesh->tri_count = 0;
+    mesh->loads++;
+    for (uint32_t p = 0; p < level->primitive_count; p++)
+        for (uint32_t i = 0; i < level->primitives[p].index_count; i += 3) {
+            const uint32_t *v = level->indices + level->primitives[p].first_index + i;
+            const struct cut_tri like = { .primitive = p };
+            add_tri(mesh, &like, v[0], v[1], v[2]);
+        }
+}
+
+void cutmesh_store(const struct cutmesh *mesh, struct level *level)
+{
+    uint32_t *fill = mem_array(level->primitive_count + 1u, sizeof(*fill));
+    mem_free(level->indices);
+    level->index_count = 3 * (uint32_t)mesh->tri_count;
+    level->indices = mem_array(level->index_count, sizeof(*level->indices));
+    for (size_t t = 0; t < mesh->tri_count; t++)
+        fill[mesh->tris[t].primitive + 1] += 3;
+    for (uint32_t p = 0; p < level->primitive_count; p++) {
+        level->primitives[p].first_index = fill[p];
+        level->primitives[p].index_count = fill[p + 1];
+        fill[p + 1] += fill[p];
+    }
+    for (size_t t = 0; t < mesh->tri_count; t++) {
+        uint32_t *at = &fill[mesh->tris[t].primitive];
+        memcpy(level->indices + *at, mesh->tris[t].v, sizeof(mesh->tris[t].v));
+        *at += 3;
+    }
+    mem_free(fill);
+}
+
+/* --- vertices ------------------------------------------------------------------------------------------------------------- */
+
+static uint32_t add_place(struct cutmesh *mesh, const float position_m[3])
+{
+    mem_grow(&mesh->places.positions_m, &mesh->place_capacity, mesh->places.count + 1, sizeof(*mesh->places.positions_m));
+    memcpy(mesh->places.positions_m[mesh->places.count], position_m, sizeof(*mesh->places.positions_m));
+    return (uint32_t)mesh->places.count++;
+}
+
+/* A vertex at a place whose attributes are those of others, mixed. */
+static uint32_t add_vertex(struct cutmesh *mesh, uint32_t place, const uint32_t *from, const double *weights, int count)
+{
+    struct geometry *g = mesh->geometry;
+    uint32_t vertex = g->vertex_count++;
+    float normal[3] = { 0 }, texcoord[2] = { 0 }, color[4] = { 0 };
+    mem_grow(&mesh->places.of_vertex, &mesh->of_vertex_capacity, g->vertex_count, sizeof(*mesh->places.of_vertex));
+    mem_grow(&g->positions_m, &mesh->position_capacity, g->vertex_count, sizeof(*g->positions_m));
+    mem_grow(&g->normals, &mesh->normal_capacity, g->vertex_count, sizeof(*g->normals));
+    if (g->texcoords)
+        mem_grow(&g->texcoords, &mesh->texcoord_capacity, g->vertex_count, sizeof(*g->texcoords));
+    if (g->colors)
+        mem_grow(&g->colors, &mesh->color_capacity, g->vertex_count, sizeof(*g->colors));
+    for (int i = 0; i < count; i++) {
+        float w = (float)weights[i];
+        for (int c = 0; c < 3; c++)
+            normal[c] += w * g->normals[from[i]][c];
+        for (int c = 0; c < 2 && g->texcoords; c++)
+            texcoord[c] += w * g->texcoords[from[i]][c];
+        for (int c = 0; c < 4 && g->colors; c++)
+            color[c] += w * (float)g->colors[from[i]][c];
+    }
+    float length = sqrtf(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
+    for (int c = 0; c < 3; c++)
+        g->normals[vertex][c] = length > 1e-3f ? normal[c] / length : g->normals[from[0]][c];
+    if (g->texcoords)
+        memcpy(g->texcoords[vertex], texcoord, sizeof(texcoord));
+    for (int c = 0; c < 4 && g->colors; c++)
+        g->colors[vertex][c] = (uint8_t)(color[c] + 0.5f);
+    memcpy(g->positions_m[vertex], mesh->places.positions_m[place], sizeof(*g->positions_m));
+    mesh->places.of_vertex[vertex] = place;
+    return vertex;
+}
+
+/* The vertex in the middle of a cut edge, for the face that has the vertices a and b at its ends. */
+static uint32_t middle_vertex(struct cutmesh *mesh, uint32_t edge, uint32_t a, uint32_t b)
+{
+    const struct cut_edge *cut = &mesh->cuts[edge];
+    size_t before = mesh->vertex_edges.count;
+    uint32_t number = edge_table_add(&mesh->vertex_edges, a, b);
+    if (mesh->vertex_edges.count > before) {
+        bool forward = place_of(mesh, a) == place_of(mesh, cut->a);
+        double t = forward ? (double)cut->share : 1 - (double)cut->share;
+        const double weights[2] = { 1 - t, t };
+        mem_grow(&mesh->vertex_middles, &mesh->middle_capacity, mesh->vertex_edges.count, sizeof(*mesh->vertex_middles));
+        mesh->vertex_middles[number] = add_vertex(mesh, cut->middle, (const uint32_t[2]){ a, b }, weights, 2);
+    }
+    return mesh->vertex_middles[number];
+}
+
+/* --- cutting -------------------------------------------------------------------------------------------------------------- */
+
+bool cutmesh_is_cut(const struct cutmesh *mesh, uint32_t edge)
+{
+    return mesh->cuts[edge].load == mesh->loads;
+}
+
+bool cutmesh_cut(struct cutmesh *mesh, uint32_t edge, double t, const float position_m[3])
+{
+    struct cut_edge *cut = &mesh->cuts[edge];
+    cut->load = mesh->loads;
+    if (cut->middle != TRIMESH_NONE)
+        return false;
+    cut->middle = add_place(mesh, position_m);
+    cut->share = (float)t;
+    return true;
+}
+
+static double distance2(const struct cutmesh *mesh, uint32_t a, uint32_t b)
+{
+    const float *p = mesh->geometry->positions_m[a], *q = mesh->geometry->positions_m[b];
+    double x = (double)p[0] - (double)q[0], y = (double)p[1] - (double)q[1], z = (double)p[2] - (double)q[2];
+    return x * x + y * y + z * z;
+}
+
+/* The first piece takes the triangle's place, the others go to the end. */
+static void split_tri(struct cutmesh *mesh, size_t t)
+{
+    struct cut_tri old = mesh->tris[t];
+    int cuts = cutmesh_is_cut(mesh, old.e[0]) + cutmesh_is_cut(mesh, old.e[1]) + cutmesh_is_cut(mesh, old.e[2]), first = 0;
+    uint32_t v[3], m[3] = { 0 };
+    if (cuts == 1)
+        while (!cutmesh_is_cut(mesh, old.e[first]))
+            first++;
+    else if (cuts == 2)
+        while (cutmesh_is_cut(mesh, old.e[(first + 2) % 3]))
+            first++;
+    for (int i = 0; i < 3; i++)
+        v[i] = old.v[(first + i) % 3];
+    for (int i = 0; i < 3; i++)
+        if (cutmesh_is_cut(mesh, old.e[(first + i) % 3]))
+            m[i] = middle_vertex(mesh, old.e[(first + i) % 3], v[i], v[(i + 1) % 3]);
+    struct cut_tri piece;
+    if (cuts == 1) {
+        piece = make_tri(mesh, &old, v[0], m[0], v[2]);
+        add_tri(mesh, &old, m[0], v[1], v[2]);
+    } else if (cuts == 2) {
+        piece = make_tri(mesh, &old, m[0], v[1], m[1]);
+        bool across = distance2(mesh, v[0], m[1]) < distance2(mesh, m[0], v[2]);
+        add_tri(mesh, &old, v[0], m[0], across ? m[1] : v[2]);
+        add_tri(mesh, &old, across ? v[0] : m[0], m[1], v[2]);
+    } else {
+        piece = make_tri(mesh, &old, m[0], m[1], m[2]);
+        for (int i = 0; i < 3; i++)
+            add_tri(mesh, &old, v[i], m[i], m[(i + 2) % 3]);
+    }
+    mesh->tris[t] = piece;
+}
+
+size_t cutmesh_apply(struct cutmesh *mesh)
+{
+    size_t before = mesh->tri_count;
+    for (size_t t = 0; t < mesh->tri_count; t++)
+        while (cutmesh_is_cut(mesh, mesh->tris[t].e[0]) || cutmesh_is_cut(mesh, mesh->tris[t].e[1]) ||
+               cutmesh_is_cut(mesh, mesh->tris[t].e[2]))
+            split_tri(mesh, t);
+    return mesh->tri_count - before;
+}
+
+uint32_t cutmesh_insert(struct cutmesh *mesh, size_t tri, const double weights[3], const float position_m[3])
+{
+    struct cut_tri old = mesh->tris[tri];
+    uint32_t vertex = add_vertex(mesh, add_place(mesh, position_m), old.v, weights, 3);
+    mesh->tris[tri] = make_tri(mesh, &old, old.v[0], old.v[1], vertex);
+    add_tri(mesh, &old, old.v[1], old.v[2], vertex);
+    add_tri(mesh, &old, old.v[2], old.v[0], vertex);
+    return vertex;
+}
+
+void cutmesh_normal(const struct cutmesh *mesh, const struct cut_edge *edge, double normal[3])
+{
+    for (int i = 0; i < 3; i++)
+        normal[i] = (double)mesh->geometry->normals[edge->a][i] + (double)mesh->geometry->normals[edge->b][i];
+}

@@ -1,0 +1,56 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A geometry whose edges are being cut: new places, new vertices at them, and the triangles of one level. */
+#ifndef PREPROCESS_CUTMESH_H
+#define PREPROCESS_CUTMESH_H
+#include "preprocess/levels.h"
+#include "preprocess/places.h"
+#include "surface/trimesh.h"
+
+struct cut_tri {
+    uint32_t v[3], e[3];        /* e[i]: the edge from v[i] to v[i + 1] */
+    uint32_t primitive, origin; /* of the level: its primitive; what this is a piece of */
+    float error;                /* of the field at its middle; less than 0: not known yet */
+};
+
+struct cut_edge {    /* between two places; all levels share them */
+    uint32_t a, b;   /* vertices at its ends, one pair of several where normals or textures part */
+    uint32_t middle; /* the place where it is cut, or TRIMESH_NONE */
+    uint32_t load;   /* the last level that it is cut in */
+    float share;     /* of the way from place a to place b */
+    float error;     /* of the field along it; less than 0: not known yet */
+};
+
+struct cutmesh {
+    struct geometry *geometry;
+    struct places places;
+    uint32_t own_vertices; /* of the geometry, before anything was added */
+    size_t place_capacity, of_vertex_capacity, position_capacity, normal_capacity, texcoord_capacity, color_capacity;
+    struct edge_table edges, vertex_edges; /* by places; by vertices */
+    struct cut_edge *cuts;
+    uint32_t *vertex_middles; /* by vertex edge */
+    size_t cut_capacity, middle_capacity;
+    uint32_t loads;       /* levels taken in hand so far */
+    struct cut_tri *tris; /* of the level in hand */
+    size_t tri_count, tri_capacity;
+};
+
+bool cutmesh_init(struct cutmesh *mesh, struct geometry *geometry); /* false: out of memory; finish copes */
+void cutmesh_finish(struct cutmesh *mesh);
+
+/* Takes a level's triangles in hand; gives them back, primitive by primitive. */
+void cutmesh_load(struct cutmesh *mesh, const struct level *level);
+void cutmesh_store(const struct cutmesh *mesh, struct level *level);
+
+bool cutmesh_is_cut(const struct cutmesh *mesh, uint32_t edge); /* in the level in hand */
+/* Cuts an edge at share t of the way from its a to its b; the triangles stay as they are until cutmesh_apply. True: at a new place
+   (cuts[edge].middle). False: where another level cut it. */
+bool cutmesh_cut(struct cutmesh *mesh, uint32_t edge, double t, const float position_m[3]);
+/* Splits triangles until none has an edge that is cut. Returns the number of pieces made. */
+size_t cutmesh_apply(struct cutmesh *mesh);
+/* Puts a new vertex into a triangle. Returns it. */
+uint32_t cutmesh_insert(struct cutmesh *mesh, size_t tri, const double weights[3], const float position_m[3]);
+
+/* Which way the surface looks at an edge; of no certain length. */
+void cutmesh_normal(const struct cutmesh *mesh, const struct cut_edge *edge, double normal[3]);
+
+#endif

@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Cuts triangles where the field is not straight enough along an edge, and puts a vertex where each sensor stands. */
+#ifndef PREPROCESS_SPLIT_H
+#define PREPROCESS_SPLIT_H
+#include "preprocess/levels.h"
+#include "preprocess/straight.h"
+#include "surface/surface.h"
+
+#define SPLIT_ERROR (1 / 255.0) /* of the range: a step of colour */
+
+struct split_input {
+    struct straight *straight; /* its radii are set here */
+    const struct surface *surface;
+    const struct surface_spot *sources; /* of each sensor */
+    const float *sampled;               /* distances, as surface_distances_sampled gives them */
+    const float *distances;             /* likewise: [sensor][vertex of the geometry] */
+    struct asset_sensor *sensors;       /* nearest_vertex becomes the sensor's own vertex of the finest level */
+    struct workers *workers;            /* or NULL */
+};
+
+/* New vertices come after the geometry's; both faces at an edge are cut at the same vertex, so a level without cracks stays without.
+   *distances: [sensor][vertex], of all vertices (free with mem_free). False: out of memory. */
+bool split_levels(struct levels *levels, struct geometry *geometry, const struct split_input *input, float **distances);
+
+#endif

@@ -1,0 +1,395 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Splitting: a few huge triangles show the field of a fine mesh, sensors stand on vertices, no cracks open. The truth here is the formula
+   of the field on the formula of the distance, in doubles. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "preprocess/places.h"
+#include "preprocess/split.h"
+#include "surface/trimesh.h"
+#include "surface/vec.h"
+
+#define PI 3.14159265358979323846
+#define SENSORS 6
+
+struct body { /* a surface with sensors of two groups, prepared by hand */
+    struct geometry g;
+    struct plant plant;
+    struct plant_sensor sensors[SENSORS];
+    struct asset_sensor places[SENSORS];
+    struct surface *surface;
+    struct levels levels;
+    float *distances; /* after splitting */
+    uint32_t own_vertices;
+    double (*distance)(const double a[3], const double b[3]); /* along the surface */
+    size_t own_triangles;
+};
+
+static double random_unit(uint32_t *seed)
+{
+    *seed = *seed * 1664525u + 1013904223u;
+    return (*seed >> 8) / 16777216.0;
+}
+
+static uint32_t add_vertex(struct geometry *g, double x, double y, double z, double nx, double ny, double nz)
+{
+    const float p[3] = { (float)x, (float)y, (float)z }, n[3] = { (float)nx, (float)ny, (float)nz };
+    memcpy(g->positions_m[g->vertex_count], p, sizeof(p));
+    memcpy(g->normals[g->vertex_count], n, sizeof(n));
+    return g->vertex_count++;
+}
+
+static void add_triangle(struct geometry *g, uint32_t a, uint32_t b, uint32_t c)
+{
+    const uint32_t v[3] = { a, b, c };
+    memcpy(g->indices + g->index_count, v, sizeof(v));
+    g->index_count += 3;
+    g->primitives[0].index_count = g->index_count;
+}
+
+static void begin(struct geometry *g, size_t vertices, size_t triangles)
+{
+    *g = (struct geometry){ .primitive_count = 1, .material_count = 1 };
+    g->positions_m = mem_array(vertices, sizeof(*g->positions_m));
+    g->normals = mem_array(vertices, sizeof(*g->normals));
+    g->indices = mem_array(3 * triangles, sizeof(*g->indices));
+    g->primitives = mem_array(1, sizeof(*g->primitives));
+    g->materials = mem_array(1, sizeof(*g->materials));
+    g->materials[0].base_color_texture = g->materials[0].metallic_roughness_texture = g->materials[0].normal_texture =
+        g->materials[0].occlusion_texture = g->materials[0].emissive_texture = ASSET_NO_TEXTURE;
+}
+
+static double along_plate(const double a[3], const double b[3])
+{
+    return vec_distance(a, b);
+}
+
+/* Of radius 1 round the z axis: unrolled, the shorter way round. */
+static double along_cylinder(const double a[3], const double b[3])
+{
+    double turn = fabs(atan2(a[1], a[0]) - atan2(b[1], b[0]));
+    return hypot(a[2] - b[2], fmin(turn, 2 * PI - turn));
+}
+
+/* 6 m x 4 m, 9 triangles: a fan of 7 round a point off the middle, one of whose edges has a vertex more. */
+static void make_plate(struct body *body)
+{
+    static const double rim[7][2] = { { 0, 0 }, { 6, 0 }, { 6, 2 }, { 6, 4 }, { 3.5, 4 }, { 0, 4 }, { 0, 2.5 } };
+    struct geometry *g = &body->g;
+    begin(g, 10000, 10000);
+    uint32_t middle = add_vertex(g, 2.7, 1.8, 0, 0, 0, 1), first = middle + 1;
+    for (int i = 0; i < 7; i++)
+        add_vertex(g, rim[i][0], rim[i][1], 0, 0, 0, 1);
+    uint32_t half = add_vertex(g, 1.35, 2.15, 0, 0, 0, 1);
+    for (uint32_t i = 0; i < 5; i++)
+        add_triangle(g, middle, first + i, first + i + 1);
+    add_triangle(g, middle, first + 5, half);
+    add_triangle(g, half, first + 5, first + 6);
+    add_triangle(g, middle, half, first);
+    add_triangle(g, half, first + 6, first);
+    body->distance = along_plate;
+}
+
+/* Of radius 1, 5 m long, open; vertices at the seam are there twice. */
+static void make_cylinder(struct body *body, uint32_t around, uint32_t rings)
+{
+    struct geometry *g = &body->g;
+    begin(g, (size_t)(around + 1) * (rings + 1), 2 * (size_t)around * rings);
+    for (uint32_t i = 0; i <= around; i++)
+        for (uint32_t j = 0; j <= rings; j++) {
+            double a = 2 * PI * (i % around) / around, x = cos(a), y = sin(a);
+            add_vertex(g, x, y, 5.0 * j / rings, x, y, 0);
+        }
+    for (uint32_t i = 0; i < around; i++)
+        for (uint32_t j = 0; j < rings; j++) {
+            uint32_t a = i * (rings + 1) + j, b = a + rings + 1;
+            add_triangle(g, a, b, b + 1);
+            add_triangle(g, a, b + 1, a + 1);
+        }
+    body->distance = along_cylinder;
+}
+
+static void make_plant(struct body *body)
+{
+    struct plant *plant = &body->plant;
+    plant->groups = mem_array(2, sizeof(*plant->groups));
+    plant->tags = mem_array(SENSORS, sizeof(*plant->tags));
+    plant->group_count = 2;
+    plant->tag_count = SENSORS;
+    plant->groups[0] = (struct plant_group){ .max = 1, .power = 2, .reach_m = INFINITY };
+    plant->groups[1] = (struct plant_group){ .max = 1, .power = 3, .radius_m = 4, .reach_m = INFINITY };
+    for (int i = 0; i < SENSORS; i++) {
+        plant->tags[i] = (struct plant_tag){ .group = i >= 4, .strength = i == 1 ? 2 : 1, .decay = i == 2 ? 2 : 1 };
+        body->sensors[i].tag = i;
+    }
+}
+
+static void prepare(struct body *body, const double (*points)[3])
+{
+    float(*places)[3] = mem_array(SENSORS, sizeof(*places));
+    struct surface_spot spots[SENSORS];
+    struct straight straight;
+    struct geometry *g = &body->g;
+    make_plant(body);
+    body->own_vertices = g->vertex_count;
+    body->own_triangles = g->index_count / 3;
+    body->surface = surface_create(NULL, NULL, (const float(*)[3])g->positions_m, g->vertex_count, g->indices, g->index_count / 3,
+                                   &(struct surface_params){ 0 });
+    assert_non_null(body->surface);
+    float *distances = mem_array(SENSORS * (size_t)g->vertex_count, sizeof(*distances));
+    float *sampled = mem_array(SENSORS * surface_sampled_count(body->surface), sizeof(*sampled));
+    assert_true(surface_distances_sampled(body->surface, points, SENSORS, distances, sampled));
+    for (int i = 0; i < SENSORS; i++) {
+        surface_find_spot(body->surface, points[i], NULL, &spots[i]);
+        for (int axis = 0; axis < 3; axis++)
+            places[i][axis] = body->places[i].surface_m[axis] = (float)spots[i].point_m[axis];
+    }
+    straight_init(&straight, &body->plant, body->sensors, SENSORS, (const float(*)[3])places);
+    assert_true(levels_make(&body->levels, g, NULL));
+    assert_true(split_levels(&body->levels, g,
+                             &(struct split_input){ .straight = &straight,
+                                                    .surface = body->surface,
+                                                    .sources = spots,
+                                                    .sampled = sampled,
+                                                    .distances = distances,
+                                                    .sensors = body->places },
+                             &body->distances));
+    straight_finish(&straight);
+    mem_free(places);
+    mem_free(distances);
+    mem_free(sampled);
+}
+
+static void finish(struct body *body)
+{
+    surface_destroy(&body->surface);
+    levels_finish(&body->levels);
+    geometry_finish(&body->g);
+    mem_free(body->distances);
+    mem_free(body->plant.groups);
+    mem_free(body->plant.tags);
+}
+
+/* Shepard or Algorithm 1, of sensors that read 0 or 1, from distances. */
+static double field(const struct body *body, int group, bool paper, const double *distance_m, double radius_m, unsigned readings)
+{
+    double value = 0, weight = 0;
+    for (int i = 0; i < SENSORS; i++) {
+        const struct plant_tag *tag = &body->plant.tags[i];
+        if (tag->group != group)
+            continue;
+        double v = readings >> i & 1, d = fmax(0, 1 - distance_m[i] / radius_m);
+        if (!paper && distance_m[i] < 1e-6)
+            return v;
+        double w = paper ? exp(d * tag->strength) : tag->strength / pow(distance_m[i], body->plant.groups[group].power);
+        weight += w;
+        value += w * v * (paper ? pow(d, tag->decay) : 1);
+    }
+    return value / weight;
+}
+
+static void true_distances(const struct body *body, const double p[3], bool geodesic, double *out)
+{
+    for (int i = 0; i < SENSORS; i++) {
+        const float *s = body->places[i].surface_m;
+        const double at[3] = { (double)s[0], (double)s[1], (double)s[2] };
+        out[i] = geodesic ? body->distance(p, at) : vec_distance(p, at);
+    }
+}
+
+static double largest(const struct body *body, int group, bool geodesic)
+{
+    double most = 0;
+    for (uint32_t v = 0; v < body->own_vertices; v++) {
+        const float *q = body->g.positions_m[v];
+        double distance_m[SENSORS];
+        true_distances(body, (const double[3]){ (double)q[0], (double)q[1], (double)q[2] }, geodesic, distance_m);
+        for (int i = 0; i < SENSORS; i++)
+            if (body->plant.tags[i].group == group)
+                most = fmax(most, distance_m[i]);
+    }
+    return most;
+}
+
+/* The field's error at a random point, which `snap` puts onto the true surface. */
+static double error_somewhere(const struct body *body, const struct level *level, uint32_t *seed, void (*snap)(double p[3]))
+{
+    const uint32_t *v = level->indices + 3 * (uint32_t)(random_unit(seed) * (level->index_count / 3));
+    double a = random_unit(seed), b = random_unit(seed), p[3], at[3][SENSORS], here[SENSORS];
+    int group = random_unit(seed) < 0.5;
+    bool paper = random_unit(seed) < 0.5, geodesic = random_unit(seed) < 0.5;
+    unsigned readings = (unsigned)(random_unit(seed) * (1 << SENSORS));
+    double radius_m = group ? 4 : largest(body, 0, geodesic);
+    if (a + b > 1) {
+        a = 1 - a;
+        b = 1 - b;
+    }
+    const double w[3] = { 1 - a - b, a, b };
+    double shown = 0;
+    memset(p, 0, sizeof(p));
+    for (int c = 0; c < 3; c++) {
+        const float *q = body->g.positions_m[v[c]];
+        const double corner[3] = { (double)q[0], (double)q[1], (double)q[2] };
+        for (int axis = 0; axis < 3; axis++)
+            p[axis] += w[c] * corner[axis];
+        true_distances(body, corner, false, at[c]);
+        for (int i = 0; geodesic && i < SENSORS; i++)
+            at[c][i] = (double)body->distances[(size_t)i * body->g.vertex_count + v[c]];
+        shown += w[c] * field(body, group, paper, at[c], radius_m, readings);
+    }
+    if (geodesic)
+        snap(p);
+    true_distances(body, p, geodesic, here);
+    return fabs(shown - field(body, group, paper, here, radius_m, readings));
+}
+
+static int by_size(const void *a, const void *b)
+{
+    double p = *(const double *)a, q = *(const double *)b;
+    return (p > q) - (p < q);
+}
+
+#define POINTS 20000
+static void assert_field(const struct body *body, const char *name, void (*snap)(double p[3]), double most)
+{
+    double *errors = mem_array(POINTS, sizeof(*errors));
+    uint32_t seed = 11;
+    const struct level *level = &body->levels.at[0];
+    for (int i = 0; i < POINTS; i++)
+        errors[i] = error_somewhere(body, level, &seed, snap);
+    qsort(errors, POINTS, sizeof(*errors), by_size);
+    print_message("# %s: %zu triangles, %u split; field errs by %.2f steps (99.5 %%), %.2f at most (seed 11)\n", name, body->own_triangles,
+                  level->index_count / 3, 255 * errors[POINTS / 1000 * 995], 255 * errors[POINTS - 1]);
+    assert_true(errors[POINTS / 1000 * 995] <= 1 / 255.0);
+    assert_true(errors[POINTS - 1] <= most / 255.0);
+    mem_free(errors);
+}
+
+static void stay(double p[3])
+{
+    (void)p;
+}
+
+static void onto_cylinder(double p[3])
+{
+    double r = hypot(p[0], p[1]);
+    p[0] /= r;
+    p[1] /= r;
+}
+
+/* Each edge has as many faces as before it was cut: two, or one at a border; and a border lies on the old border. */
+static void assert_no_cracks(const struct body *body, double border_m)
+{
+    struct places places;
+    assert_true(places_init(&places, (const float(*)[3])body->g.positions_m, body->g.vertex_count));
+    for (size_t l = 0; l < body->levels.count; l++) {
+        const struct level *level = &body->levels.at[l];
+        struct edge_table edges;
+        int *faces = mem_array(level->index_count, sizeof(*faces));
+        double *lengths = mem_array(level->index_count, sizeof(*lengths)), sum_m = 0;
+        edge_table_init(&edges, level->index_count);
+        for (uint32_t i = 0; i < level->index_count; i++) {
+            uint32_t a = level->indices[i], b = level->indices[i % 3 == 2 ? i - 2 : i + 1];
+            const float *p = body->g.positions_m[a], *q = body->g.positions_m[b];
+            assert_int_not_equal(places.of_vertex[a], places.of_vertex[b]);
+            uint32_t e = edge_table_add(&edges, places.of_vertex[a], places.of_vertex[b]);
+            faces[e]++;
+            lengths[e] = (double)hypotf(p[0] - q[0], hypotf(p[1] - q[1], p[2] - q[2]));
+        }
+        for (size_t e = 0; e < edges.count; e++) {
+            assert_true(faces[e] == 1 || faces[e] == 2);
+            sum_m += faces[e] == 1 ? lengths[e] : 0;
+        }
+        assert_float_equal(sum_m, border_m, 0.02 * border_m);
+        edge_table_finish(&edges);
+        mem_free(faces);
+        mem_free(lengths);
+    }
+    places_finish(&places);
+}
+
+/* At a sensor's vertex its distance is 0, on both ways. */
+static void assert_sensors(const struct body *body)
+{
+    for (size_t i = 0; i < SENSORS; i++) {
+        uint32_t v = body->places[i].nearest_vertex;
+        assert_memory_equal(body->g.positions_m[v], body->places[i].surface_m, sizeof(float[3]));
+        assert_float_equal(body->distances[i * body->g.vertex_count + v], 0, 0);
+    }
+}
+
+static const double plate_sensors[SENSORS][3] = { { 1, 1, 0 }, { 5, 1.5, 0 }, { 3, 3.5, 0 }, { 2.7, 1.8, 0 }, { 0.7, 3, 0 }, { 4, 0, 0 } };
+
+static void nine_triangles_show_the_field(void **state)
+{
+    struct body body = { 0 };
+    (void)state;
+    make_plate(&body);
+    prepare(&body, plate_sensors);
+    assert_sensors(&body);
+    assert_no_cracks(&body, 20);
+    assert_field(&body, "plate", stay, 1);
+    assert_true(body.levels.at[0].index_count / 3 < 7000);
+    finish(&body);
+}
+
+/* A fine plate is left alone but for the sensors' vertices. */
+static void straight_edges_are_not_cut(void **state)
+{
+    struct body body = { 0 };
+    struct geometry *g = &body.g;
+    const uint32_t n = 120;
+    (void)state;
+    begin(g, 2 * (size_t)(n + 1) * (n + 1), 2 * (size_t)n * n);
+    for (uint32_t y = 0; y <= n; y++)
+        for (uint32_t x = 0; x <= n; x++)
+            add_vertex(g, 6.0 * x / n, 4.0 * y / n, 0, 0, 0, 1);
+    for (uint32_t y = 0; y < n; y++)
+        for (uint32_t x = 0; x < n; x++) {
+            uint32_t a = y * (n + 1) + x, c = a + n + 1;
+            add_triangle(g, a, a + 1, c + 1);
+            add_triangle(g, a, c + 1, c);
+        }
+    body.distance = along_plate;
+    prepare(&body, plate_sensors);
+    assert_field(&body, "fine plate", stay, 1);
+    assert_true(body.levels.at[0].index_count / 3 <= 2 * n * n + 300);
+    finish(&body);
+}
+
+static void a_cylinder_shows_the_field(void **state)
+{
+    static const double at[SENSORS][2] = { { 0.3, 1 }, { 2.1, 4 }, { 4, 2.5 }, { 5.5, 4.5 }, { 1, 3 }, { 3, 0.5 } };
+    struct body body = { 0 };
+    double points[SENSORS][3];
+    (void)state;
+    for (int i = 0; i < SENSORS; i++) {
+        points[i][0] = cos(at[i][0]);
+        points[i][1] = sin(at[i][0]);
+        points[i][2] = at[i][1];
+    }
+    make_cylinder(&body, 96, 20);
+    prepare(&body, (const double(*)[3])points);
+    assert_sensors(&body);
+    assert_no_cracks(&body, 4 * PI);
+    assert_field(&body, "cylinder", onto_cylinder, 2);
+    finish(&body);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(nine_triangles_show_the_field),
+        cmocka_unit_test(straight_edges_are_not_cut),
+        cmocka_unit_test(a_cylinder_shows_the_field),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
