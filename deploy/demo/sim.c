@@ -154,7 +154,8 @@ static bool open_port(struct sim_port *port, const char *address, int number, si
 {
     int status = sim_port_open(port, address, number, take, arg);
     if (status)
-        fprintf(stderr, "plantcast-sim: cannot listen on %s:%d: %s\n", address, number, strerror(-status));
+        fprintf(stderr, "plantcast-sim: cannot listen on %s:%d: %s%s\n", address, number, strerror(-status),
+                status == -EADDRINUSE ? "; another plantcast-sim, perhaps: end it, or give the source another port" : "");
     return status == 0;
 }
 

@@ -143,7 +143,8 @@ bool net_port_free(struct log *log, const char *address, int port)
                 bind(fd, is_six ? (struct sockaddr *)&six : (struct sockaddr *)&four, is_six ? sizeof(six) : sizeof(four)) == 0 &&
                 listen(fd, 1) == 0;
     if (!good)
-        log_err(log, "listen %s port %d: %s", address, port, strerror(errno));
+        log_err(log, "listen %s port %d: %s%s", address, port, strerror(errno),
+                errno == EADDRINUSE ? "; end the program that has it, or take another with --port" : "");
     if (fd >= 0)
         close(fd);
     return good;
