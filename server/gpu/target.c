@@ -54,9 +54,10 @@ void target_finish(struct target *target)
     *target = (struct target){ 0 };
 }
 
-void target_resolve(const struct target *target)
+void target_resolve(const struct target *target, int x_px, int y_px, int width_px, int height_px)
 {
+    int right_px = x_px + width_px, bottom_px = y_px + height_px;
     if (target->samples > 1)
-        glBlitNamedFramebuffer(target->framebuffer, target->resolved_framebuffer, 0, 0, target->width_px, target->height_px, 0, 0,
-                               target->width_px, target->height_px, GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT, GL_NEAREST);
+        glBlitNamedFramebuffer(target->framebuffer, target->resolved_framebuffer, x_px, y_px, right_px, bottom_px, x_px, y_px, right_px,
+                               bottom_px, GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT, GL_NEAREST);
 }

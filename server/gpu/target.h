@@ -18,6 +18,7 @@ struct target {
 /* False: out of GPU memory, logged. */
 bool target_init(struct target *target, struct log *log, int width_px, int height_px, int samples);
 void target_finish(struct target *target);
-void target_resolve(const struct target *target); /* colour averaged, depth of one sample; nothing to do for one sample */
+/* A part: colour averaged, depth of one sample; nothing to do for one sample. */
+void target_resolve(const struct target *target, int x_px, int y_px, int width_px, int height_px);
 
 #endif

@@ -17,7 +17,6 @@ struct picture {
     const int *visible;                 /* assets, nearest first */
     size_t visible_count;
     GLuint palette;
-    int triangles; /* counted as they are drawn */
 };
 
 #endif

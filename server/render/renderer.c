@@ -17,8 +17,10 @@
 #include "render/palette.h"
 #include "render/sky.h"
 #include "render/solid.h"
+#include "render/stroke.h"
+#include "render/targets.h"
 
-enum { TARGETS = 6, STILL_SAMPLES = 4 };
+enum { STILL_SAMPLES = 4, TILE_PX = 128 };
 
 struct renderer {
     struct gl *gl;
@@ -33,7 +35,7 @@ struct renderer {
     struct readback readback;
     GLuint frame_buffer;                      /* struct frame_block */
     GLuint *palettes;                         /* by colour map; 0: not made yet */
-    struct target targets[TARGETS];           /* least recently used last; width 0: empty */
+    struct targets targets;
     const struct fields_entry **asset_fields; /* per asset, of the picture being drawn */
     int *visible;
     double *distance_m; /* per asset */
@@ -70,9 +72,7 @@ void renderer_destroy(struct renderer **renderer_ptr)
     struct renderer *renderer = *renderer_ptr;
     if (!renderer)
         return;
-    for (int i = 0; i < TARGETS; i++)
-        if (renderer->targets[i].width_px)
-            target_finish(&renderer->targets[i]);
+    targets_finish(&renderer->targets);
     glDeleteTextures((GLsizei)colormap_count(), renderer->palettes);
     glDeleteBuffers(1, &renderer->frame_buffer);
     readback_finish(&renderer->readback);
@@ -151,24 +151,10 @@ uint64_t renderer_content(struct renderer *renderer, const struct view *view, co
     return content_hash(&picture);
 }
 
-static const struct target *get_target(struct renderer *renderer, const struct view *view)
+static bool take_target(struct renderer *renderer, const struct view *view, struct target *target)
 {
-    int samples = view->tier == TIER_STILL && renderer->gl->max_samples >= STILL_SAMPLES ? STILL_SAMPLES : 1, found = TARGETS - 1;
-    for (int i = 0; i < TARGETS; i++) {
-        const struct target *target = &renderer->targets[i];
-        if (target->width_px == view->width_px && target->height_px == view->height_px && target->samples == samples)
-            found = i;
-    }
-    struct target target = renderer->targets[found];
-    bool known = target.width_px == view->width_px && target.height_px == view->height_px && target.samples == samples;
-    if (!known && target.width_px)
-        target_finish(&target);
-    memmove(&renderer->targets[1], &renderer->targets[0], (size_t)found * sizeof(target));
-    renderer->targets[0] = (struct target){ 0 };
-    if (!known && !target_init(&target, renderer->gl->log, view->width_px, view->height_px, samples))
-        return NULL;
-    renderer->targets[0] = target;
-    return &renderer->targets[0];
+    int samples = view->tier == TIER_STILL && renderer->gl->max_samples >= STILL_SAMPLES ? STILL_SAMPLES : 1;
+    return targets_take(&renderer->targets, renderer->gl->log, view->width_px, view->height_px, samples, target);
 }
 
 static GLuint get_palette(struct renderer *renderer, int colormap)
@@ -176,23 +162,6 @@ static GLuint get_palette(struct renderer *renderer, int colormap)
     if (!renderer->palettes[colormap])
         renderer->palettes[colormap] = palette_create(colormap_at((size_t)colormap));
     return renderer->palettes[colormap];
-}
-
-static void draw_passes(struct renderer *renderer, struct picture *picture)
-{
-    struct frame_block block;
-    frame_block_fill(&block, picture);
-    glNamedBufferSubData(renderer->frame_buffer, 0, sizeof(block), &block);
-    glBindBufferBase(GL_UNIFORM_BUFFER, 0, renderer->frame_buffer);
-    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, picture->target->framebuffer);
-    glViewport(0, 0, picture->target->width_px, picture->target->height_px);
-    glClear(GL_DEPTH_BUFFER_BIT);
-    solid_draw(&renderer->solid, picture);
-    sky_draw(&renderer->sky, picture, &renderer->light);
-    target_resolve(picture->target);
-    if (picture->view->tier == TIER_STILL)
-        lines_draw_edges(&renderer->lines, picture);
-    lines_draw_outline(&renderer->lines, picture);
 }
 
 static void describe(struct frame *frame, const struct picture *picture, const struct snapshot *snapshot)
@@ -208,12 +177,15 @@ static void describe(struct frame *frame, const struct picture *picture, const s
             frame->oldest_age_ns = field->oldest_age_ns;
     }
     frame->content = content_hash(picture);
-    frame->triangles = picture->triangles;
+    frame->triangles = solid_triangles(picture);
 }
 
-struct frame *renderer_draw(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
+/* --- bit by bit ------------------------------------------------------------------------------------------------------------ */
+
+static struct stroke *begin(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot, int tile_px)
 {
     struct picture picture;
+    struct target target;
     struct frame *frame = frame_create(view->width_px, view->height_px);
     if (!frame) {
         log_err(renderer->gl->log, "frame of %dx%d: out of memory", view->width_px, view->height_px);
@@ -221,27 +193,129 @@ struct frame *renderer_draw(struct renderer *renderer, const struct view *view, 
     }
     int64_t start_ns = clock_mono_ns();
     picture_init(renderer, &picture, view, snapshot);
-    int64_t field_done_ns = clock_mono_ns();
-    picture.light = light_get(&renderer->light, view->light_dir);
-    picture.target = get_target(renderer, view);
-    picture.palette = get_palette(renderer, view->colormap);
-    if (!picture.light || !picture.target)
-        goto error;
-    draw_passes(renderer, &picture);
-    if (!markers_start(&renderer->markers, &picture) || !readback_start(&renderer->readback, renderer->gl->log, picture.target))
-        goto error;
+    frame->field_ns = clock_mono_ns() - start_ns;
+    if (!take_target(renderer, view, &target)) {
+        frame_unref(&frame);
+        return NULL;
+    }
     describe(frame, &picture, snapshot);
-    if (!readback_wait(&renderer->readback, renderer->gl->log))
-        goto error;
+    struct stroke *stroke = mem_new(sizeof(*stroke));
+    stroke_init(stroke, &picture, &target, frame, tile_px);
+    return stroke;
+}
+
+/* Others drew meanwhile. */
+static bool take_up(struct renderer *renderer, struct stroke *stroke)
+{
+    struct frame_block block;
+    stroke->picture.light = light_get(&renderer->light, stroke->view.light_dir);
+    stroke->picture.palette = get_palette(renderer, stroke->view.colormap);
+    if (!stroke->picture.light)
+        return false;
+    frame_block_fill(&block, &stroke->picture);
+    glNamedBufferSubData(renderer->frame_buffer, 0, sizeof(block), &block);
+    glBindBufferBase(GL_UNIFORM_BUFFER, 0, renderer->frame_buffer);
+    glViewport(0, 0, stroke->target.width_px, stroke->target.height_px);
+    return true;
+}
+
+static void draw_surfaces(struct renderer *renderer, struct stroke *stroke, const struct tile *tile)
+{
+    struct picture picture = stroke_tile_picture(stroke, tile);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, stroke->target.framebuffer);
+    glDepthMask(GL_TRUE);
+    glClear(GL_DEPTH_BUFFER_BIT);
+    solid_draw(&renderer->solid, &picture);
+    sky_draw(&renderer->sky, &picture, &renderer->light);
+    target_resolve(&stroke->target, tile->x_px, tile->y_px, tile->width_px, tile->height_px);
+}
+
+/* First the surfaces of all tiles, then their edges: those look over the rim of a tile. */
+static int bits_of(const struct stroke *stroke)
+{
+    return stroke_tile_count(stroke) * (stroke->view.tier == TIER_STILL ? 2 : 1);
+}
+
+static void draw_bit(struct renderer *renderer, struct stroke *stroke)
+{
+    int tiles = stroke_tile_count(stroke);
+    struct tile tile = stroke_tile(stroke, stroke->next % tiles);
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(tile.x_px, tile.y_px, tile.width_px, tile.height_px);
+    if (stroke->next < tiles)
+        draw_surfaces(renderer, stroke, &tile);
+    else
+        lines_draw_edges(&renderer->lines, &stroke->picture);
+    glDisable(GL_SCISSOR_TEST);
+    stroke->next++;
+}
+
+struct stroke *renderer_begin(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
+{
+    /* A GPU draws the whole in the time that a processor takes for a tile. */
+    int tile_px = renderer->gl->software ? TILE_PX : VIEW_MAX_SIDE_PX;
+    struct stroke *stroke = begin(renderer, view, snapshot, tile_px);
+    if (stroke && !stroke_hold_fields(stroke))
+        renderer_abandon(renderer, &stroke);
+    return stroke;
+}
+
+bool renderer_step(struct renderer *renderer, struct stroke *stroke, int64_t budget_ns)
+{
+    int64_t start_ns = clock_mono_ns(), spent_ns = 0, last_ns = 0;
+    int bits = bits_of(stroke);
+    if (stroke->next < bits && !take_up(renderer, stroke))
+        stroke->next = bits; /* renderer_end fails likewise */
+    while (stroke->next < bits && spent_ns + last_ns <= budget_ns) {
+        draw_bit(renderer, stroke);
+        glFinish();
+        last_ns = clock_mono_ns() - start_ns - spent_ns;
+        spent_ns += last_ns;
+    }
+    stroke->frame->render_ns += spent_ns;
+    return stroke->next == bits;
+}
+
+struct frame *renderer_end(struct renderer *renderer, struct stroke **stroke_ptr)
+{
+    struct stroke *stroke = *stroke_ptr;
+    struct frame *frame = NULL;
+    struct log *log = renderer->gl->log;
+    int64_t start_ns = clock_mono_ns();
+    if (!take_up(renderer, stroke))
+        goto end;
+    while (stroke->next < bits_of(stroke))
+        draw_bit(renderer, stroke);
+    lines_draw_outline(&renderer->lines, &stroke->picture);
+    if (!markers_start(&renderer->markers, &stroke->picture) || !readback_start(&renderer->readback, log, &stroke->target) ||
+        !readback_wait(&renderer->readback, log))
+        goto end;
     int64_t drawn_ns = clock_mono_ns();
-    if (!readback_get(&renderer->readback, renderer->gl->log, frame->bgrx, (size_t)frame->stride_bytes))
-        goto error;
-    markers_get(&renderer->markers, &picture, frame);
-    frame->field_ns = field_done_ns - start_ns;
-    frame->render_ns = drawn_ns - field_done_ns;
-    frame->readback_ns = clock_mono_ns() - drawn_ns;
+    if (!readback_get(&renderer->readback, log, stroke->frame->bgrx, (size_t)stroke->frame->stride_bytes))
+        goto end;
+    markers_get(&renderer->markers, &stroke->picture, stroke->frame);
+    stroke->frame->render_ns += drawn_ns - start_ns;
+    stroke->frame->readback_ns = clock_mono_ns() - drawn_ns;
+    frame = stroke->frame;
+    stroke->frame = NULL;
+end:
+    renderer_abandon(renderer, stroke_ptr);
     return frame;
-error:
-    frame_unref(&frame);
-    return NULL;
+}
+
+void renderer_abandon(struct renderer *renderer, struct stroke **stroke_ptr)
+{
+    struct stroke *stroke = *stroke_ptr;
+    if (!stroke)
+        return;
+    targets_give(&renderer->targets, &stroke->target);
+    stroke_finish(stroke);
+    mem_free(stroke);
+    *stroke_ptr = NULL;
+}
+
+struct frame *renderer_draw(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
+{
+    struct stroke *stroke = begin(renderer, view, snapshot, VIEW_MAX_SIDE_PX);
+    return stroke ? renderer_end(renderer, &stroke) : NULL;
 }

@@ -20,4 +20,13 @@ uint64_t renderer_content(struct renderer *renderer, const struct view *view, co
 /* The caller owns the frame (frame_unref). NULL on failure, logged. view is already checked. */
 struct frame *renderer_draw(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot);
 
+/* The same picture drawn bit by bit, so that others can be drawn in between; it shows what there was to see when it was begun.
+   As many as fit in memory may be under way. NULL on failure, logged. */
+struct stroke *renderer_begin(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot);
+/* Draws on for about that long, and a bit at least. True: nothing is left to do but renderer_end. */
+bool renderer_step(struct renderer *renderer, struct stroke *stroke, int64_t budget_ns);
+/* Draws what is left. The caller owns the frame. NULL on failure, logged. The stroke is gone in either case. */
+struct frame *renderer_end(struct renderer *renderer, struct stroke **stroke);
+void renderer_abandon(struct renderer *renderer, struct stroke **stroke); /* &NULL is fine; leaves NULL */
+
 #endif

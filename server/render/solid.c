@@ -102,7 +102,7 @@ static void set_material(const struct picture *picture, const struct model_mater
 }
 
 /* One asset's surfaces, those that are blended or those that are not. A field is never blended: it would mix its colours. */
-static void draw_asset(const struct solid *solid, struct picture *picture, int index, bool blend)
+static void draw_asset(const struct solid *solid, const struct picture *picture, int index, bool blend)
 {
     const struct model *model = picture->stage->of_asset[index];
     const struct model_level *level = stage_level(picture->stage, &picture->shot, index);
@@ -127,11 +127,10 @@ static void draw_asset(const struct solid *solid, struct picture *picture, int i
         }
         set_material(picture, material, batch, field != NULL);
         model_draw_batch(batch);
-        picture->triangles += batch->triangles;
     }
 }
 
-void solid_draw(const struct solid *solid, struct picture *picture)
+void solid_draw(const struct solid *solid, const struct picture *picture)
 {
     gl_pass_enter("solid");
     glEnable(GL_DEPTH_TEST);
@@ -149,4 +148,15 @@ void solid_draw(const struct solid *solid, struct picture *picture)
     glDisable(GL_BLEND);
     glDisable(GL_CULL_FACE);
     gl_pass_leave(picture->stage->gl, "solid");
+}
+
+int solid_triangles(const struct picture *picture)
+{
+    int count = 0;
+    for (size_t i = 0; i < picture->visible_count; i++) {
+        const struct model_level *level = stage_level(picture->stage, &picture->shot, picture->visible[i]);
+        for (size_t b = 0; b < level->batch_count; b++)
+            count += level->batches[b].triangles;
+    }
+    return count;
 }

@@ -13,6 +13,7 @@ struct solid {
 
 bool solid_init(struct solid *solid, struct log *log); /* false: logged */
 void solid_finish(struct solid *solid);
-void solid_draw(const struct solid *solid, struct picture *picture);
+void solid_draw(const struct solid *solid, const struct picture *picture);
+int solid_triangles(const struct picture *picture); /* of what is drawn */
 
 #endif

@@ -77,6 +77,16 @@ void shot_init(struct shot *shot, const double eye_m[3], const double clip_from_
         }
 }
 
+void shot_narrow(struct shot *shot, const double low[2], const double high[2])
+{
+    const double *m = shot->clip_from_plant;
+    for (int p = 0; p < 4; p++)
+        for (int c = 0; c < 4; c++) {
+            double row = m[4 * c + p / 2], w = m[4 * c + 3];
+            shot->planes[p][c] = p % 2 ? high[p / 2] * w - row : row - low[p / 2] * w;
+        }
+}
+
 bool shot_sees(const struct shot *shot, const struct scene_asset *asset)
 {
     for (int p = 0; p < 6; p++) {

@@ -31,6 +31,8 @@ void stage_finish(struct stage *stage);
 
 /* clip_from_plant: depth 1 near, 0 far. */
 void shot_init(struct shot *shot, const double eye_m[3], const double clip_from_eye[16], double pixel_per_radian);
+/* Lets it see only that part of the picture, and draw as before. Corners: -1 to 1 over the picture. */
+void shot_narrow(struct shot *shot, const double low[2], const double high[2]);
 bool shot_sees(const struct shot *shot, const struct scene_asset *asset);
 /* The coarsest level of detail that stays within a pixel here. */
 const struct model_level *stage_level(const struct stage *stage, const struct shot *shot, int asset);

@@ -121,6 +121,36 @@ static void measure(struct bench *bench, enum tier tier, const char *time_name, 
     print_row(work_name, work_ms, rounds);
 }
 
+/* Bit by bit, with 10 ms for each step: how long it all takes, and for how long others wait. */
+static void measure_steps(struct bench *bench)
+{
+    struct view view;
+    double work_ms[STILL_ROUNDS], longest_ms[STILL_ROUNDS] = { 0 };
+    view_default(bench->scene, 1920, 1080, &view);
+    for (int i = -1; i < STILL_ROUNDS; i++) {
+        double worked_ms = now_ms(CLOCK_PROCESS_CPUTIME_ID), longest = 0;
+        struct stroke *stroke = renderer_begin(bench->renderer, &view, bench->snapshot);
+        if (!stroke)
+            abort();
+        for (bool done = false; !done;) {
+            double began_ms = now_ms(CLOCK_MONOTONIC);
+            done = renderer_step(bench->renderer, stroke, 10 * NS_PER_MS);
+            double step_ms = now_ms(CLOCK_MONOTONIC) - began_ms;
+            longest = step_ms > longest ? step_ms : longest;
+        }
+        struct frame *frame = renderer_end(bench->renderer, &stroke);
+        if (!frame)
+            abort();
+        frame_unref(&frame);
+        if (i < 0)
+            continue;
+        longest_ms[i] = longest;
+        work_ms[i] = now_ms(CLOCK_PROCESS_CPUTIME_ID) - worked_ms;
+    }
+    print_row("render_still_1080p_longest_step_ms", longest_ms, STILL_ROUNDS);
+    print_row("render_still_1080p_stepped_cpu_ms", work_ms, STILL_ROUNDS);
+}
+
 int main(void)
 {
     struct bench bench = { 0 };
@@ -132,6 +162,7 @@ int main(void)
     if (bench_init(&bench)) {
         measure(&bench, TIER_MOVING, "render_moving_1080p_ms", "render_moving_1080p_cpu_ms", MOVING_ROUNDS);
         measure(&bench, TIER_STILL, "render_still_1080p_ms", "render_still_1080p_cpu_ms", STILL_ROUNDS);
+        measure_steps(&bench);
     } else {
         print_why("the demo plant could not be opened or drawn; the log says why");
     }

@@ -139,6 +139,82 @@ static void test_what_is_out_of_sight_costs_nothing(void **state)
     frame_unref(&none);
 }
 
+static void assert_same_picture(const struct frame *a, const struct frame *b)
+{
+    assert_true(a->content == b->content && a->triangles == b->triangles && a->oldest_age_ns == b->oldest_age_ns);
+    assert_memory_equal(a->bgrx, b->bgrx, (size_t)a->stride_bytes * (size_t)a->height_px);
+    assert_int_equal(a->marker_count, b->marker_count);
+    for (size_t i = 0; i < a->marker_count; i++)
+        assert_true(a->markers[i].tag == b->markers[i].tag && a->markers[i].x_px == b->markers[i].x_px &&
+                    a->markers[i].y_px == b->markers[i].y_px && a->markers[i].occluded == b->markers[i].occluded);
+}
+
+/* The tier may be the moving one too: a snapshot is free to ask for it. */
+static const struct {
+    enum tier tier;
+    enum look look;
+    double ramp_interval;
+    int selected_asset;
+} bit_cases[] = {
+    { TIER_STILL, LOOK_DEFAULT, 0, -1 },
+    { TIER_STILL, LOOK_GLOSSY, 0, 1 },
+    { TIER_STILL, LOOK_FLAT, 20, -1 },
+    { TIER_MOVING, LOOK_DEFAULT, 0, -1 },
+};
+
+/* While it is under way, others draw other views, readings change, and its light goes from the cache. */
+static void test_bit_by_bit_is_the_same_picture(void **state)
+{
+    (void)state;
+    view.width_px = 801;
+    view.height_px = 601;
+    for (size_t i = 0; i < sizeof(bit_cases) / sizeof(bit_cases[0]); i++) {
+        view.tier = bit_cases[i].tier;
+        view.look = bit_cases[i].look;
+        view.ramp_interval = bit_cases[i].ramp_interval;
+        view.selected_asset = bit_cases[i].selected_asset;
+        toy_set(stand.snapshot, 2, 34, QUALITY_GOOD);
+        struct frame *whole = stand_draw(&stand, &view);
+        struct stroke *stroke = renderer_begin(stand.renderer, &view, stand.snapshot);
+        int steps = 1;
+        assert_non_null(stroke);
+        for (; !renderer_step(stand.renderer, stroke, 0); steps++) {
+            struct view other = view;
+            other.tier = steps % 2 ? TIER_MOVING : TIER_STILL;
+            other.camera.eye_m[steps % 3] *= 1.1;
+            other.light_dir[2] = 0.3 + 0.02 * (steps % 5);
+            toy_set(stand.snapshot, 2, 40 + steps, QUALITY_GOOD);
+            struct frame *frame = stand_draw(&stand, &other);
+            frame_unref(&frame);
+        }
+        assert_true(steps >= (rig.gl->software ? 12 : 1));
+        struct frame *bits = renderer_end(stand.renderer, &stroke);
+        assert_true(bits && !stroke);
+        assert_same_picture(whole, bits);
+        frame_unref(&whole);
+        frame_unref(&bits);
+    }
+}
+
+static void test_abandoned_picture_leaves_no_trace(void **state)
+{
+    (void)state;
+    view.tier = TIER_STILL;
+    struct frame *before = stand_draw(&stand, &view);
+    for (int i = 0; i < 20; i++) {
+        struct stroke *stroke = renderer_begin(stand.renderer, &view, stand.snapshot);
+        assert_non_null(stroke);
+        for (int step = 0; step < i % 3; step++)
+            renderer_step(stand.renderer, stroke, 0);
+        renderer_abandon(stand.renderer, &stroke);
+        assert_null(stroke);
+    }
+    struct frame *after = stand_draw(&stand, &view);
+    assert_same_picture(before, after);
+    frame_unref(&before);
+    frame_unref(&after);
+}
+
 /* The first sensor of the tank, at (3.5, 0.5, 0.6) and facing south-west, from three sides. */
 static const struct frame_marker *tank_marker(struct frame *frame)
 {
@@ -304,6 +380,8 @@ int main(void)
         each(test_slow_drift_is_not_lost),
         each(test_content_is_the_same_elsewhere),
         each(test_what_is_out_of_sight_costs_nothing),
+        each(test_bit_by_bit_is_the_same_picture),
+        each(test_abandoned_picture_leaves_no_trace),
         each(test_markers),
         each(test_marker_upward_is_upward),
         each(test_age_of_the_oldest),

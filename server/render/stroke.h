@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A picture under way: all that it shows is held fast when it is begun, and it is drawn tile by tile with the camera of the whole,
+   so that tiles fit without a seam. Thread: the one of the GL context. */
+#ifndef RENDER_STROKE_H
+#define RENDER_STROKE_H
+#include "render/frame.h"
+#include "render/picture.h"
+
+struct stroke {
+    struct picture picture; /* view, target, fields and visible point into this struct */
+    struct view view;
+    struct target target;
+    struct frame *frame;
+    const struct fields_entry **fields; /* per asset */
+    struct fields_entry *copies;        /* per asset, with buffers of their own; NULL: drawn at once, no copies needed */
+    int *visible, *in_tile;
+    int tile_px;                 /* side; a multiple of what the rasteriser works on */
+    int columns, rows, next;     /* next: tile, counted through all passes */
+};
+
+/* Takes the frame and the target over, copies the lists of the picture and its view. */
+void stroke_init(struct stroke *stroke, const struct picture *picture, const struct target *target, struct frame *frame, int tile_px);
+/* Others may draw before this is done: their fields must not show here. False: out of GPU memory, logged. */
+bool stroke_hold_fields(struct stroke *stroke);
+void stroke_finish(struct stroke *stroke); /* the target is the caller's again; the frame goes unless it was taken */
+
+struct tile {
+    int x_px, y_px, width_px, height_px; /* from the top left */
+};
+int stroke_tile_count(const struct stroke *stroke);
+struct tile stroke_tile(const struct stroke *stroke, int index);
+/* The picture with only those assets that the tile shows. Valid until the next call. */
+struct picture stroke_tile_picture(struct stroke *stroke, const struct tile *tile);
+
+#endif

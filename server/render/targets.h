@@ -1,0 +1,17 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Targets by size, kept for the next picture of that size. Thread: the one of the GL context. */
+#ifndef RENDER_TARGETS_H
+#define RENDER_TARGETS_H
+#include "gpu/target.h"
+
+enum { TARGETS = 6 };
+struct targets {               /* zero-initialise */
+    struct target at[TARGETS]; /* least recently used last; width 0: empty */
+};
+
+/* The caller has it until targets_give. False: out of GPU memory, logged. */
+bool targets_take(struct targets *targets, struct log *log, int width_px, int height_px, int samples, struct target *out);
+void targets_give(struct targets *targets, const struct target *target);
+void targets_finish(struct targets *targets);
+
+#endif
