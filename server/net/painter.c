@@ -11,18 +11,21 @@
 #include "render/overlay.h"
 #include "render/renderer.h"
 
+static const int64_t STEP_NS = 10 * NS_PER_MS;      /* of a slow picture, before anyone else gets a turn */
+static const int64_t OWN_DATA_NS = 1 * NS_PER_S;    /* changed readings wait so long for a refinement of the same client */
 static const int64_t SNAPSHOT_MAX_AGE_NS = 100 * NS_PER_MS; /* the clock in the picture, and ages, are no older than this */
 
 struct client {
     uint64_t id, number;
     bool pending, has_content;
+    bool left; /* the slow picture: it wants another by now */
     struct wish wish;
     uint64_t content; /* of the last picture drawn for it */
 };
 
 struct painter {
     struct painter_params params;
-    counter *renders, *render_us, *same, *failures;
+    counter *renders, *render_us, *same, *failures, *steps, *abandoned;
     struct encoding *encoding;
     pthread_t thread;
     bool has_thread;
@@ -43,6 +46,13 @@ struct drawing { /* what only the render thread touches */
     struct renderer *renderer;
     struct snapshot *snapshot;
     struct batch same;
+    struct { /* the picture that takes long and is drawn step by step; at most one */
+        struct stroke *stroke; /* NULL: none */
+        struct batch batch;
+        struct snapshot *snapshot; /* of what it shows */
+        enum urgency urgency;
+        int64_t asked_ns, field_ns;
+    } slow;
 };
 
 /* Under lock. NULL: none. */
@@ -122,23 +132,46 @@ static bool same_picture(const struct view *a, const struct view *b)
            a->selected_asset == b->selected_asset && same_vector(a->light_dir, b->light_dir);
 }
 
-/* Under lock. NULL: none before *wait_until_ns. */
-static struct client *first_due(struct painter *painter, const struct schedule *schedule, int64_t *wait_until_ns)
+/* Under lock. Its slow picture is under way and still good: what it wants besides can wait for it. */
+static bool waits_for_slow(const struct drawing *drawing, const struct client *client, int64_t now_ns)
 {
-    struct client *oldest[URGENCY_COUNT] = { NULL };
-    int64_t asked_ns[URGENCY_COUNT];
+    bool soon = client->wish.urgency == URGENCY_DATA && now_ns - client->wish.asked_ns >= OWN_DATA_NS;
+    if (client->left || client->wish.urgency == URGENCY_INPUT || soon)
+        return false;
+    for (size_t i = 0; drawing->slow.stroke && i < drawing->slow.batch.count; i++)
+        if (drawing->slow.batch.orders[i].client == client->id)
+            return true;
+    return false;
+}
+
+struct turn {
+    bool step;             /* of the slow picture; else */
+    struct client *client; /* NULL: nobody before wait_until_ns */
+    int64_t wait_until_ns;
+};
+
+/* Under lock. */
+static struct turn next_turn(const struct drawing *drawing, const struct schedule *schedule)
+{
+    struct client *oldest[URGENCY_COUNT + 1] = { NULL };
+    int64_t asked_ns[URGENCY_COUNT], now_ns = clock_mono_ns();
+    bool busy = drawing->slow.stroke != NULL;
+    struct turn turn = { 0 };
     for (int i = 0; i < URGENCY_COUNT; i++)
-        asked_ns[i] = INT64_MAX;
-    for (size_t i = 0; i < painter->client_count; i++) {
-        struct client *client = &painter->clients[i];
+        asked_ns[i] = busy && drawing->slow.urgency == (enum urgency)i ? drawing->slow.asked_ns : INT64_MAX;
+    for (size_t i = 0; i < drawing->painter->client_count; i++) {
+        struct client *client = &drawing->painter->clients[i];
         enum urgency urgency = client->wish.urgency;
-        if (client->pending && client->wish.asked_ns < asked_ns[urgency]) {
-            oldest[urgency] = client;
-            asked_ns[urgency] = client->wish.asked_ns;
-        }
+        if (!client->pending || client->wish.asked_ns >= asked_ns[urgency] || (busy && urgency >= URGENCY_REFINE) ||
+            waits_for_slow(drawing, client, now_ns))
+            continue;
+        oldest[urgency] = client;
+        asked_ns[urgency] = client->wish.asked_ns;
     }
-    enum urgency urgency = schedule_choose(schedule, asked_ns, clock_mono_ns(), wait_until_ns);
-    return urgency == URGENCY_COUNT ? NULL : oldest[urgency];
+    enum urgency urgency = schedule_choose(schedule, asked_ns, now_ns, &turn.wait_until_ns);
+    turn.step = busy && urgency == drawing->slow.urgency;
+    turn.client = oldest[urgency];
+    return turn;
 }
 
 /* Under lock. */
@@ -151,37 +184,45 @@ static void wait_until(struct painter *painter, int64_t mono_ns)
         pthread_cond_timedwait(&painter->wake, &painter->lock, &until);
 }
 
-/* Under lock. */
+/* Under lock. What it had under way is not wanted any more. */
 static void begin(struct client *client, struct batch *batch, int64_t now_ns)
 {
     client->pending = false;
+    client->left = client->wish.urgency < URGENCY_REFINE;
     batch_add(batch,
               &(struct order){
                   .client = client->id, .number = ++client->number, .wish = client->wish, .wait_ns = now_ns - client->wish.view.input_ns });
 }
 
-/* Waits for work. False: stop. */
-static bool next_batch(struct painter *painter, const struct schedule *schedule, struct batch *batch)
+/* Under lock. The client's wish, and all that the same picture answers. */
+static void begin_all(struct painter *painter, struct client *first, struct batch *batch)
 {
-    int64_t wait_until_ns;
-    pthread_mutex_lock(&painter->lock);
-    struct client *first = NULL;
-    while (painter->state == RUNNING && !(first = first_due(painter, schedule, &wait_until_ns)))
-        wait_until(painter, wait_until_ns);
-    bool running = painter->state == RUNNING;
-    batch->count = 0;
-    if (running) {
-        int64_t now_ns = clock_mono_ns();
-        begin(first, batch, now_ns);
-        const struct wish *wish = &batch->orders[0].wish;
-        for (size_t i = 0; i < painter->client_count && !wish->overlay; i++) {
-            struct client *other = &painter->clients[i];
-            if (other->pending && !other->wish.overlay && same_picture(&other->wish.view, &wish->view)) {
-                begin(other, batch, now_ns);
-                wish = &batch->orders[0].wish; /* the list may have moved */
-            }
-        }
+    int64_t now_ns = clock_mono_ns();
+    begin(first, batch, now_ns);
+    struct wish wish = batch->orders[0].wish;
+    for (size_t i = 0; i < painter->client_count && !wish.overlay; i++) {
+        struct client *other = &painter->clients[i];
+        if (other->pending && !other->wish.overlay && same_picture(&other->wish.view, &wish.view))
+            begin(other, batch, now_ns);
     }
+}
+
+/* Waits for work. False: stop. An empty batch: the slow picture may go on by a step. */
+static bool next_batch(const struct drawing *drawing, const struct schedule *schedule, struct batch *batch)
+{
+    struct painter *painter = drawing->painter;
+    struct turn turn = { 0 };
+    batch->count = 0;
+    pthread_mutex_lock(&painter->lock);
+    while (painter->state == RUNNING) {
+        turn = next_turn(drawing, schedule);
+        if (turn.step || turn.client)
+            break;
+        wait_until(painter, turn.wait_until_ns);
+    }
+    bool running = painter->state == RUNNING;
+    if (running && !turn.step)
+        begin_all(painter, turn.client, batch);
     pthread_mutex_unlock(&painter->lock);
     return running;
 }
@@ -237,31 +278,112 @@ static void leave_out_same(struct drawing *drawing, struct batch *batch)
     post(painter, &drawing->same, NULL, false);
 }
 
-static void draw(struct drawing *drawing, struct batch *batch)
+static void fail(struct drawing *drawing, const struct batch *batch)
+{
+    counter_inc(drawing->painter->failures, 1);
+    post(drawing->painter, batch, NULL, true);
+}
+
+/* Takes the frame. */
+static void deliver(struct drawing *drawing, struct frame *frame, const struct snapshot *snapshot, struct batch *batch)
 {
     struct painter *painter = drawing->painter;
+    if (batch->orders[0].wish.overlay)
+        overlay_draw(frame, painter->params.scene, snapshot);
+    counter_inc(painter->renders, 1);
+    counter_inc(painter->render_us, (frame->render_ns + frame->readback_ns) / 1000);
+    remember(painter, batch, frame->content);
+    encoding_submit(painter->encoding, frame, batch);
+    frame_unref(&frame);
+}
+
+/* --- pictures that take long -------------------------------------------------------------------------------------------------- */
+
+static void slow_begin(struct drawing *drawing, struct batch *batch, int64_t field_ns)
+{
+    const struct wish *wish = &batch->orders[0].wish;
+    drawing->slow.stroke = renderer_begin(drawing->renderer, &wish->view, drawing->snapshot);
+    if (!drawing->slow.stroke) {
+        fail(drawing, batch);
+        return;
+    }
+    drawing->slow.urgency = wish->urgency;
+    drawing->slow.asked_ns = wish->asked_ns;
+    drawing->slow.field_ns = field_ns;
+    struct batch empty = drawing->slow.batch;
+    drawing->slow.batch = *batch;
+    *batch = empty;
+    batch->count = 0;
+    struct snapshot *other = drawing->slow.snapshot;
+    drawing->slow.snapshot = drawing->snapshot;
+    drawing->snapshot = other;
+    store_snapshot(drawing->painter->params.store, clock_mono_ns(), clock_utc_ns(), drawing->snapshot);
+}
+
+/* True: it is done. */
+static bool slow_step(struct drawing *drawing)
+{
+    bool drawn = renderer_step(drawing->renderer, drawing->slow.stroke, STEP_NS);
+    counter_inc(drawing->painter->steps, 1);
+    if (!drawn)
+        return false;
+    struct frame *frame = renderer_end(drawing->renderer, &drawing->slow.stroke);
+    if (frame) {
+        frame->field_ns += drawing->slow.field_ns;
+        deliver(drawing, frame, drawing->slow.snapshot, &drawing->slow.batch);
+    } else {
+        fail(drawing, &drawing->slow.batch);
+    }
+    drawing->slow.batch.count = 0;
+    return true;
+}
+
+/* Under lock. */
+static bool has_left(const struct order *order, void *arg)
+{
+    const struct client *client = client_find(arg, order->client);
+    return !client || client->left || (client->pending && client->wish.urgency == URGENCY_INPUT);
+}
+
+/* Who moved on gets no more of it; when nobody is left it is given up. */
+static void slow_leave(struct drawing *drawing)
+{
+    struct painter *painter = drawing->painter;
+    if (!drawing->slow.stroke)
+        return;
+    pthread_mutex_lock(&painter->lock);
+    batch_split(&drawing->slow.batch, has_left, painter, &drawing->same);
+    pthread_mutex_unlock(&painter->lock);
+    post(painter, &drawing->same, NULL, false);
+    if (drawing->slow.batch.count > 0)
+        return;
+    counter_inc(painter->abandoned, 1);
+    renderer_abandon(drawing->renderer, &drawing->slow.stroke);
+}
+
+static void draw(struct drawing *drawing, struct batch *batch)
+{
     int64_t field_begin_ns = clock_mono_ns();
     refresh(drawing);
     leave_out_same(drawing, batch);
     if (batch->count == 0)
         return;
     const struct wish *wish = &batch->orders[0].wish;
-    int64_t begin_ns = clock_mono_ns();
-    struct frame *frame = renderer_draw(drawing->renderer, &wish->view, drawing->snapshot);
-    if (!frame) {
-        counter_inc(painter->failures, 1);
-        post(painter, batch, NULL, true);
+    int64_t field_ns = clock_mono_ns() - field_begin_ns; /* to know what changed, the field was brought up to date already */
+    if (wish->urgency >= URGENCY_REFINE) {
+        slow_begin(drawing, batch, field_ns);
         return;
     }
-    frame->field_ns += begin_ns - field_begin_ns; /* to know what changed, the field was brought up to date already */
-    if (wish->overlay)
-        overlay_draw(frame, painter->params.scene, drawing->snapshot);
-    counter_inc(painter->renders, 1);
-    counter_inc(painter->render_us, (clock_mono_ns() - begin_ns) / 1000);
-    remember(painter, batch, frame->content);
-    encoding_submit(painter->encoding, frame, batch);
-    frame_unref(&frame);
+    struct frame *frame = renderer_draw(drawing->renderer, &wish->view, drawing->snapshot);
+    if (!frame) {
+        fail(drawing, batch);
+        return;
+    }
+    frame->field_ns += field_ns;
+    deliver(drawing, frame, drawing->snapshot, batch);
 }
+
+/* --- life of the render thread -------------------------------------------------------------------------------------------------- */
 
 static bool drawing_init(struct drawing *drawing, struct painter *painter)
 {
@@ -273,16 +395,21 @@ static bool drawing_init(struct drawing *drawing, struct painter *painter)
     drawing->field = field_create(params->workers, params->scene);
     drawing->renderer = renderer_create(params->log, drawing->gl, params->scene, drawing->field);
     drawing->snapshot = snapshot_create(params->scene->plant->tag_count);
+    drawing->slow.snapshot = snapshot_create(params->scene->plant->tag_count);
     store_snapshot(params->store, clock_mono_ns(), clock_utc_ns(), drawing->snapshot);
     return drawing->renderer != NULL;
 }
 
 static void drawing_finish(struct drawing *drawing)
 {
+    if (drawing->renderer)
+        renderer_abandon(drawing->renderer, &drawing->slow.stroke);
+    batch_finish(&drawing->slow.batch);
     renderer_destroy(&drawing->renderer);
     field_destroy(&drawing->field);
     gl_destroy(&drawing->gl);
     snapshot_destroy(&drawing->snapshot);
+    snapshot_destroy(&drawing->slow.snapshot);
     batch_finish(&drawing->same);
 }
 
@@ -294,6 +421,21 @@ static void warm_up(struct drawing *drawing)
     struct frame *frame = renderer_draw(drawing->renderer, &view, drawing->snapshot);
     if (frame)
         frame_unref(&frame);
+}
+
+static void turn(struct drawing *drawing, struct schedule *schedule, struct batch *batch)
+{
+    enum urgency urgency = batch->count > 0 ? batch->orders[0].wish.urgency : drawing->slow.urgency;
+    bool done = true;
+    slow_leave(drawing);
+    if (batch->count > 0)
+        draw(drawing, batch);
+    else if (drawing->slow.stroke)
+        done = slow_step(drawing);
+    if (urgency >= URGENCY_REFINE)
+        schedule_stepped(schedule);
+    if (done && !(urgency >= URGENCY_REFINE && drawing->slow.stroke))
+        schedule_done(schedule, urgency, clock_mono_ns());
 }
 
 static void *painter_main(void *arg)
@@ -309,11 +451,8 @@ static void *painter_main(void *arg)
     pthread_mutex_unlock(&painter->lock);
     if (good)
         warm_up(&drawing);
-    while (next_batch(painter, &schedule, &batch)) {
-        enum urgency urgency = batch.orders[0].wish.urgency;
-        draw(&drawing, &batch);
-        schedule_done(&schedule, urgency, clock_mono_ns());
-    }
+    while (next_batch(&drawing, &schedule, &batch))
+        turn(&drawing, &schedule, &batch);
     batch_finish(&batch);
     drawing_finish(&drawing);
     return NULL;
@@ -342,6 +481,8 @@ enum painter_answer painter_ask(struct painter *painter, uint64_t id, const stru
         replace(&client->wish, wish);
         answer = PAINTER_REPLACED;
     } else if (wish->only_replace) {
+        if (client)
+            client->left |= wish->urgency == URGENCY_INPUT;
         answer = PAINTER_REFUSED;
     } else {
         if (!client) {
@@ -412,6 +553,8 @@ static void add_counters(struct painter *painter, struct counters *counters)
     painter->render_us = counters_add(counters, "plantcast_render_us_total", "counter", "Microseconds spent drawing.");
     painter->same = counters_add(counters, "plantcast_renders_saved_total", "counter", "Pictures not drawn: nothing had changed.");
     painter->failures = counters_add(counters, "plantcast_render_failures_total", "counter", "Pictures that could not be drawn.");
+    painter->steps = counters_add(counters, "plantcast_render_steps_total", "counter", "Parts of pictures that take long.");
+    painter->abandoned = counters_add(counters, "plantcast_renders_abandoned_total", "counter", "Pictures given up: nobody wanted them.");
 }
 
 static void init_wake(pthread_cond_t *wake)

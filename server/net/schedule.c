@@ -5,7 +5,7 @@
 #include "base/clock.h"
 
 static const int64_t PAUSE_NS = 150 * NS_PER_MS; /* after a moving picture the next of the same session may come */
-static const int64_t SHARE_NS = 3 * NS_PER_S;    /* what takes long gets one turn in this time, whoever moves */
+static const int64_t SHARE_NS = 3 * NS_PER_S;    /* what takes long gets its turn in this time, whoever moves */
 
 static bool is_pending(int64_t asked_ns)
 {
@@ -14,7 +14,7 @@ static bool is_pending(int64_t asked_ns)
 
 static bool share_due(const struct schedule *schedule, int64_t asked_ns, int64_t now_ns)
 {
-    return is_pending(asked_ns) && now_ns - asked_ns >= SHARE_NS && now_ns - schedule->long_ns >= SHARE_NS;
+    return schedule->step_next && is_pending(asked_ns) && now_ns - asked_ns >= SHARE_NS && now_ns - schedule->long_ns >= SHARE_NS;
 }
 
 enum urgency schedule_choose(const struct schedule *schedule, const int64_t asked_ns[URGENCY_COUNT], int64_t now_ns, int64_t *wait_until_ns)
@@ -38,9 +38,16 @@ enum urgency schedule_choose(const struct schedule *schedule, const int64_t aske
 
 void schedule_done(struct schedule *schedule, enum urgency urgency, int64_t now_ns)
 {
-    schedule->data_next = urgency == URGENCY_INPUT;
+    schedule->step_next = urgency == URGENCY_INPUT || urgency == URGENCY_DATA;
+    if (schedule->step_next)
+        schedule->data_next = urgency == URGENCY_INPUT;
     if (urgency == URGENCY_INPUT)
         schedule->input_ns = now_ns;
     else if (urgency != URGENCY_DATA)
         schedule->long_ns = now_ns;
+}
+
+void schedule_stepped(struct schedule *schedule)
+{
+    schedule->step_next = false;
 }
