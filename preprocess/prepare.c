@@ -143,7 +143,7 @@ static void finish_asset(struct run *run, struct prepare_asset *asset)
     }
     run->finished++;
     size_t total = run->params->only ? 1 : run->prepare->asset_count;
-    if (run->params->progress) {
+    if (run->params->progress && asset->state != PREPARE_UNCHANGED) {
         fprintf(run->params->progress, "%3zu %%  %zu/%zu  %-16s %-9s %8u triangles %7u vertices %4zu sensors %6.2f s%s%s%s\n",
                 100 * run->finished / total, run->finished, total, asset->plant->id, words[asset->state], asset->triangles, asset->vertices,
                 asset->sensor_count, asset->seconds, asset->rebuilt_because ? " (the file there was no good: " : "",

@@ -38,7 +38,7 @@ enum cad_fault { CAD_CLEAN, CAD_SOUP, CAD_GAPS, CAD_REPEATED, CAD_HANGING, CAD_F
 extern const char *const cad_fault_names[CAD_FAULTS];
 /* A copy of the clean shape with the fault. vertex_of[clean vertex]: a vertex of the copy at its place (or within the gap).
    SOUP: no two triangles share a vertex. GAPS: cut into 14 patches, drawn back from each other by up to 1e-4 of the size.
-   REPEATED: a third of the triangles turned, a third repeated, turned or not. HANGING: every seventh triangle or so has one side cut in two.
+   REPEATED: a third of the triangles turned, a third repeated, turned or not. HANGING: about every seventh triangle has a side cut in two.
    FINS: every twentieth triangle has one standing on a side of it. */
 void cad_break(struct cad *broken, const struct cad *clean, enum cad_fault fault, struct cad_random *random, uint32_t *vertex_of);
 

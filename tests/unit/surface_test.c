@@ -349,7 +349,7 @@ static void nothing_leads_through_a_closed_part(void **state)
     float *distances = distances_from(surface, &pipes, 2, 0, 0); /* one end of the second pipe */
     assert_int_equal(report->components_after, 1);
     assert_true(report->hidden_vertices > 60 * 20);
-    /* To the other end: along 1.5 m of pipe, round half of the first one, which is no shorter than over it along its side, and 1.5 m again. */
+    /* To the other end: along 1.5 m of pipe, round half of the first one, no shorter than over it along its side, and 1.5 m again. */
     double least = 2 * 1.5 + 0.5 * (M_PI - 2 * asin(0.6));
     double other_end = INFINITY;
     for (size_t v = first; v < pipes.vertex_count; v++)
