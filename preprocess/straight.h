@@ -8,8 +8,8 @@
 
    Some errors no cutting mends, and they do not count. A distance along a surface grows by no more than the way gone, which bounds
    the error on an edge of length h at distance D from the nearest sensor: power h / 2 D for shepard, (2 strength + decay) h / 2 R for
-   paper. What is more is a jump: the two ends do not hang together. Below a fiftieth of D (of R) only kinks and the inexactness of distances are left.
-   A sensor's limited reach is left aside: it makes a jump too. */
+   paper. What is more is a jump: the two ends do not hang together. Below a fiftieth of D (of R) only kinks and the
+   inexactness of distances are left. A sensor's limited reach is left aside: it makes a jump too. */
 #ifndef PREPROCESS_STRAIGHT_H
 #define PREPROCESS_STRAIGHT_H
 #include "plant/plant.h"
