@@ -115,7 +115,10 @@ static double edge_error(const struct split *split, const struct cut_edge *edge,
     if (length_m < 2 * SHORTEST_OF_SIZE * split->size_m)
         return 0;
     mix3(pa, pb, 0.5, point);
-    int tries = length_m > LONG * straight_nearest(straight, point) ? 3 : 1;
+    double nearest_m = straight_nearest(straight, point);
+    int tries = length_m > LONG * nearest_m ? 3 : 1;
+    if (length_m <= straight_finest(straight, nearest_m))
+        return 0;
     straight_shares(straight, pa, geodesic(split, edge->a), room->a);
     straight_shares(straight, pb, geodesic(split, edge->b), room->b);
     cutmesh_normal(&split->mesh, edge, normal);

@@ -182,3 +182,12 @@ double straight_nearest(const struct straight *straight, const float point_m[3])
         nearest_m = fmin(nearest_m, euclidean(point_m, straight->places_m[i]));
     return nearest_m;
 }
+
+double straight_finest(const struct straight *straight, double nearest_m)
+{
+    double least_m = nearest_m;
+    for (size_t g = 0; g < straight->group_count; g++)
+        for (int mode = 0; mode < 2; mode++)
+            least_m = fmin(least_m, straight->groups[g].radius_m[mode]);
+    return FINEST * least_m;
+}

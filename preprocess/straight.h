@@ -46,5 +46,7 @@ double straight_error(const struct straight *straight, const float *a, const flo
 double straight_error_inside(const struct straight *straight, const float *const corners[3], double length_m, float *inside);
 /* Metres from the point to the nearest sensor, as the crow flies. */
 double straight_nearest(const struct straight *straight, const float point_m[3]);
+/* Edges up to this length have no error that counts, at that distance from the nearest sensor. */
+double straight_finest(const struct straight *straight, double nearest_m);
 
 #endif

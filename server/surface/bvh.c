@@ -172,11 +172,25 @@ static double box_distance2(const struct node *node, const double p[3])
     return sum;
 }
 
+/* Its plane alone is farther than that: most triangles in a box that p is in. */
+static bool plane_is_farther(const double p[3], const double a[3], const double b[3], const double c[3], double distance2)
+{
+    double ab[3], ac[3], ap[3], n[3];
+    vec_sub(b, a, ab);
+    vec_sub(c, a, ac);
+    vec_sub(p, a, ap);
+    vec_cross(ab, ac, n);
+    double height = vec_dot(ap, n), length2 = vec_dot(n, n);
+    return height * height > distance2 * length2 * (1 + 1e-9);
+}
+
 static void try_tri(const struct bvh *bvh, uint32_t tri, const double p[3], double *best2, struct bvh_place *place)
 {
     const uint32_t *v = bvh->mesh->tris[tri];
     const double *a = bvh->mesh->points[v[0]], *b = bvh->mesh->points[v[1]], *c = bvh->mesh->points[v[2]];
     double w[3], q[3];
+    if (plane_is_farther(p, a, b, c, *best2))
+        return;
     triangle_nearest(p, a, b, c, w);
     for (int axis = 0; axis < 3; axis++)
         q[axis] = w[0] * a[axis] + w[1] * b[axis] + w[2] * c[axis];
