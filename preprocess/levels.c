@@ -14,6 +14,7 @@
 #define LEAST_TRIANGLES 60 /* fewer are not simplified */
 #define OVERSHOOT 1.3      /* of the error asked for, is put up with */
 #define TRIES 4
+#define NEAR 0.01 /* of the size: levels with smaller errors keep open borders as they are, or hair gaps between patches would open */
 
 /* A level is drawn where its error is about a pixel: where the asset is some 1700, 600, 200, 60, 20 pixels large. */
 static const double errors_of_size[] = { 0.0004, 0.0012, 0.004, 0.012, 0.04 };
@@ -292,14 +293,15 @@ static size_t simplify(const struct simplifier *s, uint32_t *knots, size_t count
 {
     const float *positions = &s->positions_m[0][0];
     double scale_m = (double)meshopt_simplifyScale(positions, s->knot_count, sizeof(*s->positions_m)), asked_m = error_m;
+    unsigned options = error_m < NEAR * s->size_m ? meshopt_SimplifyLockBorder : 0;
     uint32_t *from = mem_array(count, sizeof(*from));
     count = drop_small_parts(s, knots, count, error_m);
     memcpy(from, knots, count * sizeof(*from));
     size_t left = count;
     for (int i = 1; i <= TRIES; i++) {
         double limit_m = (i < TRIES ? 1 : 2) * OVERSHOOT * error_m;
-        left =
-            meshopt_simplify(knots, from, count, positions, s->knot_count, sizeof(*s->positions_m), 0, (float)(asked_m / scale_m), 0, NULL);
+        left = meshopt_simplify(knots, from, count, positions, s->knot_count, sizeof(*s->positions_m), 0, (float)(asked_m / scale_m),
+                                options, NULL);
         if ((double)left > LEVEL_WORTH * (double)count) /* of no use, however exact */
             break;
         *measured_m = left ? error_of(s, knots, left, error_m, limit_m) : INFINITY;
