@@ -12,7 +12,8 @@
 #include "surface/vec.h"
 
 #define GAP_OF_EDGE 0.45 /* two points become one only if they are nearer than this share of the shortest edge at either */
-#define AT_END 1e-3      /* this near to an end of an edge, as a share of its length, it is the end */
+#define EXACT_OF_TOLERANCE 0.01
+#define AT_END 1e-3 /* this near to an end of an edge, as a share of its length, it is the end */
 
 /* --- open edges ------------------------------------------------------------------------------------------------------------ */
 
@@ -119,8 +120,8 @@ struct seams {
     const struct trimesh *mesh;
     const struct borders *borders;
     struct attach *attach;
-    double tolerance_m;
-    struct nearest { /* of each border point: the best place found on an open edge that is not its own */
+    double tolerance_m, end_m; /* places nearer to the end of an edge than end_m are left to the joining of points */
+    struct nearest {           /* of each border point: the best place found on an open edge that is not its own */
         double distance_m, t;
         uint32_t edge;
     } * nearest;
@@ -151,7 +152,8 @@ static void try_edge(struct seams *s, size_t i, uint32_t e)
     vec_sub(q, a, aq);
     length2 = vec_dot(ac, ac);
     double t = length2 > 0 ? vec_dot(aq, ac) / length2 : 0;
-    if (t <= AT_END || t >= 1 - AT_END)
+    double end = max_of(AT_END, length2 > 0 ? s->end_m / sqrt(length2) : 1);
+    if (t <= end || t >= 1 - end)
         return;
     vec_mix(a, c, t, at);
     double distance_m = vec_distance(at, q);
@@ -215,28 +217,39 @@ static void carry_out(struct attach *attach, struct trimesh *mesh, uint32_t *tar
     mem_free(then);
 }
 
+/* Joins points on open edges, or sets them into open edges, where they are within tolerance_m. */
+static void seam_round(struct trimesh *mesh, double tolerance_m, double end_m, bool into_edges, uint32_t *target, size_t target_count,
+                       struct stitch_report *report)
+{
+    struct borders borders;
+    struct attach attach;
+    struct seams seams = { .mesh = mesh, .borders = &borders, .attach = &attach, .tolerance_m = tolerance_m, .end_m = end_m };
+    borders_init(&borders, mesh);
+    attach_init(&attach);
+    if (into_edges) {
+        set_into_edges(&seams);
+    } else {
+        double(*cloud)[3] = mem_array(borders.point_count, sizeof(*cloud));
+        for (size_t i = 0; i < borders.point_count; i++)
+            memcpy(cloud[i], mesh->points[borders.points[i]], sizeof(*cloud));
+        int k = cloud_near((const double(*)[3])cloud, borders.point_count, tolerance_m, join_near, &seams);
+        report->k = k < 0 || report->k < 0 ? -1 : k > report->k ? k : report->k;
+        mem_free(cloud);
+    }
+    borders_finish(&borders);
+    carry_out(&attach, mesh, target, target_count, 0, report);
+}
+
 void stitch_seams(struct trimesh *mesh, double tolerance_m, uint32_t *target, struct stitch_report *report)
 {
+    const double tolerances_m[2] = { EXACT_OF_TOLERANCE * tolerance_m, tolerance_m };
     size_t target_count = mesh->point_count;
     for (uint32_t i = 0; i < target_count; i++)
         target[i] = i;
-    for (int round = 0; round < 2; round++) {
-        struct borders borders;
-        struct attach attach;
-        struct seams seams = { .mesh = mesh, .borders = &borders, .attach = &attach, .tolerance_m = tolerance_m };
-        borders_init(&borders, mesh);
-        attach_init(&attach);
-        if (round == 0) {
-            double(*cloud)[3] = mem_array(borders.point_count, sizeof(*cloud));
-            for (size_t i = 0; i < borders.point_count; i++)
-                memcpy(cloud[i], mesh->points[borders.points[i]], sizeof(*cloud));
-            report->k = cloud_near((const double(*)[3])cloud, borders.point_count, tolerance_m, join_near, &seams);
-            mem_free(cloud);
-        } else {
-            set_into_edges(&seams);
-        }
-        borders_finish(&borders);
-        carry_out(&attach, mesh, target, target_count, 0, report);
+    /* What fits exactly first: it is no border any more when gaps are closed, and is not drawn to a neighbour. */
+    for (int i = 0; i < 2; i++) {
+        seam_round(mesh, tolerances_m[i], 0, false, target, target_count, report);
+        seam_round(mesh, tolerances_m[i], i == 0 ? tolerance_m : 0, true, target, target_count, report);
     }
 }
 

@@ -12,9 +12,10 @@
 #include "surface/heat.h"
 #include "surface/hidden.h"
 #include "surface/intrinsic.h"
-#include "surface/local.h"
+#include "surface/order.h"
 #include "surface/stitch.h"
 #include "surface/trimesh.h"
+#include "surface/unfold.h"
 #include "surface/vec.h"
 
 #define WELD_OF_SIZE 1e-6 /* vertices this near are one: float positions are no finer */
@@ -44,7 +45,7 @@ struct surface {
     size_t stray_count;
     struct intrinsic intrinsic;
     struct heat *heat;
-    struct local local;
+    struct unfold unfold;
     struct bvh *bvh;
     double edge_m; /* mean edge length */
     struct surface_report report;
@@ -248,8 +249,13 @@ static void join_parts(struct surface *surface, const struct parts *parts)
     part = parts_now(parts, &surface->mesh);
     hidden_find(&surface->mesh, part, &parts->solid, parts->of_tri, parts->count, parts->closed, surface->report.tolerance_m,
                 surface->workers, hidden);
+    size_t visible_count = sort_hidden(&surface->mesh, hidden);
+    target = mem_array(surface->mesh.point_count, sizeof(*target));
+    order_mesh(&surface->mesh, visible_count, target);
+    follow(surface, target);
     surface->visible = surface->mesh;
-    surface->visible.tri_count = sort_hidden(&surface->mesh, hidden);
+    surface->visible.tri_count = visible_count;
+    mem_free(target);
     mem_free(part);
     mem_free(hidden);
 }
@@ -273,12 +279,13 @@ static double reach_of(const struct surface *surface)
     for (uint32_t t = 0; t < mesh->tri_count; t++)
         if (++counts[surface->component[mesh->tris[t][0]]] > counts[surface->component[mesh->tris[best][0]]])
             best = t;
-    struct local_walk walk = { 0 };
-    local_from(&surface->local, &walk, best, (const double[3]){ 1, 0, 0 }, INFINITY);
+    struct unfold_walk walk = { 0 };
+    unfold_from(&surface->unfold, &walk, best, (const double[3]){ 1, 0, 0 });
     double reach_m = 0;
-    for (size_t i = 0; i < walk.reached_count; i++)
-        reach_m = max_of(reach_m, walk.distance_m[walk.reached[i]]);
-    local_walk_finish(&walk);
+    for (size_t i = 0; i < mesh->point_count; i++)
+        if (walk.distance_m[i] < INFINITY)
+            reach_m = max_of(reach_m, walk.distance_m[i]);
+    unfold_walk_finish(&walk);
     mem_free(counts);
     return reach_m;
 }
@@ -294,7 +301,7 @@ static void find_strays(struct surface *surface)
     for (uint32_t v = 0; v < surface->vertex_count; v++) {
         uint32_t p = surface->vertex_point[v];
         struct bvh_place place;
-        surface->report.hidden_vertices += used[p] && surface->local.hidden[p];
+        surface->report.hidden_vertices += used[p] && surface->unfold.hidden[p];
         if (used[p])
             continue;
         bvh_nearest(surface->bvh, surface->mesh.points[p], INFINITY, NULL, NULL, &place);
@@ -343,10 +350,10 @@ struct surface *surface_create(struct log *log, struct workers *workers, const f
     report->bridge_s += seconds_since(&since_ns);
     surface->component = mem_array(surface->mesh.point_count, sizeof(*surface->component));
     report->components_after = trimesh_components(&surface->visible, surface->component);
-    local_init(&surface->local, &surface->mesh, surface->visible.tri_count);
     surface->bvh = bvh_create(&surface->visible);
-    find_strays(surface);
     intrinsic_init(&surface->intrinsic, &surface->visible);
+    unfold_init(&surface->unfold, &surface->mesh, surface->visible.tri_count, &surface->intrinsic);
+    find_strays(surface);
     surface->edge_m = mean_edge(&surface->intrinsic);
     double decay_m = max_of(sqrt(TIME_OF_SPACING) * surface->edge_m, 2 * reach_of(surface) / LONGEST_DECAY);
     report->time_m2 = decay_m * decay_m;
@@ -368,7 +375,7 @@ void surface_destroy(struct surface **surface_ptr)
         return;
     heat_destroy(&surface->heat);
     intrinsic_finish(&surface->intrinsic);
-    local_finish(&surface->local);
+    unfold_finish(&surface->unfold);
     bvh_destroy(&surface->bvh);
     trimesh_finish(&surface->mesh);
     mem_free(surface->vertex_point);
@@ -413,12 +420,11 @@ struct solve {
 /* How far the two methods differ, as a share of the largest distance. Heat leaves a constant open: it is taken so that they agree on
    average. Heat smooths ridges and borders over about one root of t, so some percent at single points are its nature; more is a sign that
    the surface does not hang together as it looks. */
-static double disagreement_of(const struct local *local, const struct local_walk *walk, const double *heat_m)
+static double disagreement_of(const struct unfold *unfold, const struct unfold_walk *walk, const double *heat_m)
 {
     double sum = 0, squares = 0, largest_m = 0, count = 0;
-    for (size_t i = 0; i < walk->reached_count; i++) {
-        uint32_t p = walk->reached[i];
-        if (local->hidden[p])
+    for (size_t p = 0; p < unfold->mesh->point_count; p++) {
+        if (unfold->hidden[p] || walk->distance_m[p] == INFINITY)
             continue;
         count++;
         double difference_m = walk->distance_m[p] - heat_m[p];
@@ -430,13 +436,13 @@ static double disagreement_of(const struct local *local, const struct local_walk
     return largest_m > 0 ? sqrt(max_of(squares / count - mean * mean, 0)) / largest_m : 0;
 }
 
-static void finish_source(const struct solve *solve, size_t source, const struct bvh_place *at, struct local_walk *walk,
+static void finish_source(const struct solve *solve, size_t source, const struct bvh_place *at, struct unfold_walk *walk,
                           const double *heat_m)
 {
     const struct surface *surface = solve->surface;
     float *out = solve->out + source * surface->vertex_count;
-    local_from(&surface->local, walk, at->tri, at->weights, INFINITY);
-    solve->disagreement[source] = disagreement_of(&surface->local, walk, heat_m);
+    unfold_from(&surface->unfold, walk, at->tri, at->weights);
+    solve->disagreement[source] = disagreement_of(&surface->unfold, walk, heat_m);
     for (size_t p = 0; solve->sampled && p < surface->mesh.point_count; p++)
         solve->sampled[source * surface->mesh.point_count + p] = (float)walk->distance_m[p];
     for (size_t v = 0; v < surface->vertex_count; v++)
@@ -467,10 +473,10 @@ static void solve_block(void *arg, size_t begin, size_t end)
         solve->failed = true;
         goto done;
     }
-    struct local_walk walk = { 0 };
+    struct unfold_walk walk = { 0 };
     for (size_t s = 0; s < count; s++)
         finish_source(solve, begin + s, &places[s], &walk, heat_m + s * points);
-    local_walk_finish(&walk);
+    unfold_walk_finish(&walk);
 done:
     mem_free(sources);
     mem_free(places);
@@ -552,7 +558,7 @@ double surface_spot_distance(const struct surface *surface, const struct surface
         double edge_m = vec_distance(surface->visible.points[v[i]], surface->visible.points[v[j]]);
         best = min_of(best, di + to[i]);
         if (isfinite(di) && isfinite(dj))
-            best = min_of(best, local_unfold(di, dj, edge_m, to[i], to[j]));
+            best = min_of(best, unfold_across(di, dj, edge_m, to[i], to[j]));
     }
     return best;
 }
