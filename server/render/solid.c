@@ -8,6 +8,7 @@
 
 /* Uniform locations and texture units, as in the shaders. */
 enum { CLIP_FROM_FILE = 0, EYE_FROM_FILE = 1, SUN_FROM_FILE = 1, MATERIAL = 2, TEXTURES = 3, EYE_FROM_NORMAL = 4 };
+static const double LEVEL_ERROR_PX[] = { [TIER_MOVING] = 1.0, [TIER_STILL] = 0.7 }; /* of the silhouette */
 static const double SUN_SLACK_TEXELS = 3; /* against surfaces that shade themselves */
 enum { UNIT_PALETTE = 0, UNIT_RAMPS = 1, UNIT_SUN_MAP = 2, UNIT_MAPS = 3 };
 
@@ -101,11 +102,16 @@ static void set_material(const struct picture *picture, const struct model_mater
             glBindTextureUnit(UNIT_MAPS + i, material->maps[i]);
 }
 
+static const struct model_level *get_level(const struct picture *picture, int asset)
+{
+    return stage_level(picture->stage, &picture->shot, asset, LEVEL_ERROR_PX[picture->view->tier]);
+}
+
 /* One asset's surfaces, those that are blended or those that are not. A field is never blended: it would mix its colours. */
 static void draw_asset(const struct solid *solid, const struct picture *picture, int index, bool blend)
 {
     const struct model *model = picture->stage->of_asset[index];
-    const struct model_level *level = stage_level(picture->stage, &picture->shot, index);
+    const struct model_level *level = get_level(picture, index);
     const struct fields_entry *field = picture->fields[index];
     GLuint bound = 0;
     for (size_t b = 0; b < level->batch_count; b++) {
@@ -154,7 +160,7 @@ int solid_triangles(const struct picture *picture)
 {
     int count = 0;
     for (size_t i = 0; i < picture->visible_count; i++) {
-        const struct model_level *level = stage_level(picture->stage, &picture->shot, picture->visible[i]);
+        const struct model_level *level = get_level(picture, picture->visible[i]);
         for (size_t b = 0; b < level->batch_count; b++)
             count += level->batches[b].triangles;
     }

@@ -9,8 +9,6 @@
 #include "gpu/program.h"
 #include "render/matrix.h"
 
-static const double LEVEL_ERROR_PX = 0.7;
-
 static struct model *find_model(struct stage *stage, const struct asset *file)
 {
     for (size_t i = 0; i < stage->model_count; i++)
@@ -99,7 +97,7 @@ bool shot_sees(const struct shot *shot, const struct scene_asset *asset)
     return true;
 }
 
-const struct model_level *stage_level(const struct stage *stage, const struct shot *shot, int asset)
+const struct model_level *stage_level(const struct stage *stage, const struct shot *shot, int asset, double error_px)
 {
     const struct scene_asset *at = &stage->scene->assets[asset];
     double square = 0;
@@ -107,7 +105,7 @@ const struct model_level *stage_level(const struct stage *stage, const struct sh
         double outside = fmax(fmax(at->bounds_min_m[c] - shot->eye_m[c], shot->eye_m[c] - at->bounds_max_m[c]), 0);
         square += outside * outside;
     }
-    return model_level(stage->of_asset[asset], LEVEL_ERROR_PX * sqrt(square) / shot->pixel_per_radian);
+    return model_level(stage->of_asset[asset], error_px * sqrt(square) / shot->pixel_per_radian);
 }
 
 void stage_draw_depth(const struct stage *stage, const double clip_from_plant[16], int asset, double error_m)

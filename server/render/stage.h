@@ -34,8 +34,8 @@ void shot_init(struct shot *shot, const double eye_m[3], const double clip_from_
 /* Lets it see only that part of the picture, and draw as before. Corners: -1 to 1 over the picture. */
 void shot_narrow(struct shot *shot, const double low[2], const double high[2]);
 bool shot_sees(const struct shot *shot, const struct scene_asset *asset);
-/* The coarsest level of detail that stays within a pixel here. */
-const struct model_level *stage_level(const struct stage *stage, const struct shot *shot, int asset);
+/* The coarsest level of detail that errs by no more than that here. */
+const struct model_level *stage_level(const struct stage *stage, const struct shot *shot, int asset, double error_px);
 
 /* Only depth, of everything (asset -1) or of one asset, with errors up to error_m. Framebuffer and viewport are the caller's. */
 void stage_draw_depth(const struct stage *stage, const double clip_from_plant[16], int asset, double error_m);
