@@ -1,0 +1,245 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Distances along surfaces against an exact polyhedral solver, on shapes that no formula covers, clean and with every fault that exports
+   have. (Shapes with a formula: surface_test.c.) The clean shape is the truth; of interpenetrating pipes, their union. */
+#include "surface/surface.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "tests/oracle/geodesic.h"
+#include "tests/support/cad.h"
+
+#define MEAN_MAX 0.006 /* of the largest distance */
+#define WORST_MAX 0.03
+#define SOURCES 2
+#define SAME_PLACE 1e-5
+
+static struct log *the_log;
+static struct workers *workers;
+static struct cad_random chance;
+
+static int set_up(void **state)
+{
+    const char *seed = getenv("PLANTCAST_SEED");
+    (void)state;
+    chance.state = seed ? strtoull(seed, NULL, 10) : (uint64_t)time(NULL);
+    print_message("# PLANTCAST_SEED=%llu\n", (unsigned long long)chance.state);
+    the_log = log_create(LOG_ERROR);
+    workers = workers_create(0);
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    workers_destroy(&workers);
+    log_destroy(&the_log);
+    return 0;
+}
+
+/* --- the truth ---------------------------------------------------------------------------------------------------------------- */
+
+struct truth {
+    double sources[SOURCES][3];
+    double *distances[SOURCES]; /* of the clean shape's vertices; NaN: not on the outer surface */
+};
+
+static struct oracle_mesh mesh_of(const struct cad *cad, size_t first_vertex, size_t vertex_count, size_t first_triangle,
+                                  size_t triangle_count)
+{
+    return (struct oracle_mesh){ (const float(*)[3])cad->positions + first_vertex, cad->triangles + 3 * first_triangle, vertex_count,
+                                 triangle_count };
+}
+
+/* The vertex of the outer surface at a clean vertex's place, or -1. */
+static long same_place(const struct oracle_mesh *outer, const float p[3])
+{
+    for (size_t v = 0; v < outer->vertex_count; v++) {
+        const float *q = outer->positions[v];
+        if (fabsf(p[0] - q[0]) < (float)SAME_PLACE && fabsf(p[1] - q[1]) < (float)SAME_PLACE && fabsf(p[2] - q[2]) < (float)SAME_PLACE)
+            return (long)v;
+    }
+    return -1;
+}
+
+/* The first source is a vertex, the second lies inside a triangle. */
+static void find_truth(struct truth *truth, const struct cad *clean, const struct oracle_mesh *outer)
+{
+    double *all = mem_array(outer->vertex_count, sizeof(*all));
+    long *outer_of = mem_array(clean->vertex_count, sizeof(*outer_of));
+    bool is_itself = (const float(*)[3])clean->positions == outer->positions;
+    for (size_t v = 0; v < clean->vertex_count; v++)
+        outer_of[v] = is_itself ? (long)v : same_place(outer, clean->positions[v]);
+    for (int s = 0; s < SOURCES; s++) {
+        size_t t = (size_t)(cad_random(&chance) * (double)outer->triangle_count);
+        double w[3] = { 1, 0, 0 };
+        if (s > 0) {
+            w[0] = cad_random(&chance);
+            w[1] = (1 - w[0]) * cad_random(&chance);
+            w[2] = 1 - w[0] - w[1];
+        }
+        for (int axis = 0; axis < 3; axis++)
+            for (size_t i = 0; i < 3; i++)
+                truth->sources[s][axis] += w[i] * (double)outer->positions[outer->triangles[3 * t + i]][axis];
+        assert_true(oracle_distances(outer, t, w, all));
+        truth->distances[s] = mem_array(clean->vertex_count, sizeof(double));
+        for (size_t v = 0; v < clean->vertex_count; v++)
+            truth->distances[s][v] = outer_of[v] < 0 ? (double)NAN : all[outer_of[v]];
+    }
+    mem_free(all);
+    mem_free(outer_of);
+}
+
+/* --- scoring ------------------------------------------------------------------------------------------------------------------ */
+
+static void score(const char *name, int fault, int source, const struct truth *truth, const struct cad *clean, const float *distances,
+                  const uint32_t *vertex_of, double scale)
+{
+    double mean = 0, worst = 0, largest = 0, count = 0;
+    for (size_t v = 0; v < clean->vertex_count; v++) {
+        double right = truth->distances[source][v];
+        if (isnan(right))
+            continue;
+        double error = fabs((double)distances[vertex_of[v]] / scale - right);
+        mean += error;
+        count++;
+        worst = fmax(worst, error);
+        largest = fmax(largest, right);
+    }
+    mean /= count * largest;
+    worst /= largest;
+    print_message("# %-15s %-17s source %-9s mean %.3f %%  worst %.3f %%\n", name, cad_fault_names[fault],
+                  source ? "in a face" : "at vertex", 100 * mean, 100 * worst);
+    assert_true(mean <= MEAN_MAX);
+    assert_true(worst <= WORST_MAX);
+}
+
+static void put_point(const struct cad_place *place, const double p[3], double out[3])
+{
+    for (int axis = 0; axis < 3; axis++) {
+        const double *row = place->rotation + 3 * axis;
+        out[axis] = place->scale * (row[0] * p[0] + row[1] * p[1] + row[2] * p[2]) + place->move[axis];
+    }
+}
+
+static void test_faults(const char *name, const struct cad *clean, const struct oracle_mesh *outer)
+{
+    struct truth truth = { 0 };
+    struct cad_place place;
+    double sources[SOURCES][3];
+    uint32_t *vertex_of = mem_array(clean->vertex_count, sizeof(*vertex_of));
+    assert_true(clean->vertex_count >= 20000);
+    find_truth(&truth, clean, outer);
+    cad_random_place(&place, &chance);
+    for (int s = 0; s < SOURCES; s++)
+        put_point(&place, truth.sources[s], sources[s]);
+    for (int fault = 0; fault < CAD_FAULTS; fault++) {
+        struct cad broken;
+        cad_break(&broken, clean, (enum cad_fault)fault, &chance, vertex_of);
+        cad_put(&broken, &place);
+        struct surface *surface = surface_create(the_log, workers, (const float(*)[3])broken.positions, broken.vertex_count,
+                                                 broken.triangles, broken.triangle_count, &(struct surface_params){ 0 });
+        float *distances = mem_array(SOURCES * broken.vertex_count, sizeof(*distances));
+        assert_non_null(surface);
+        assert_true(surface_distances(surface, (const double(*)[3])sources, SOURCES, distances));
+        for (int s = 0; s < SOURCES; s++)
+            score(name, fault, s, &truth, clean, distances + (size_t)s * broken.vertex_count, vertex_of, place.scale);
+        surface_destroy(&surface);
+        cad_finish(&broken);
+        mem_free(distances);
+    }
+    for (int s = 0; s < SOURCES; s++)
+        mem_free(truth.distances[s]);
+    mem_free(vertex_of);
+}
+
+static void test_alone(const char *name, struct cad *clean)
+{
+    struct oracle_mesh mesh = mesh_of(clean, 0, clean->vertex_count, 0, clean->triangle_count);
+    test_faults(name, clean, &mesh);
+    cad_finish(clean);
+}
+
+/* The solver takes minutes under a sanitizer, and is not what they watch. */
+static void skip_if_watched(void)
+{
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    print_message("# too slow under a sanitizer\n");
+    skip();
+#endif
+}
+
+static void torus(void **state)
+{
+    struct cad clean = { 0 };
+    (void)state;
+    skip_if_watched();
+    cad_torus(&clean, &chance, 250, 84, 0.2 + 0.4 * cad_random(&chance), 0.5);
+    test_alone("torus", &clean);
+}
+
+static void bent_pipe(void **state)
+{
+    struct cad clean = { 0 };
+    (void)state;
+    skip_if_watched();
+    cad_bent_pipe(&clean, &chance, 270, 76, 0.15 + 0.1 * cad_random(&chance), 0.5);
+    test_alone("S-bent pipe", &clean);
+}
+
+static void thin_walled_box(void **state)
+{
+    struct cad clean = { 0 };
+    (void)state;
+    skip_if_watched();
+    cad_thin_box(&clean, &chance, 60 + (int)(20 * cad_random(&chance)), 44, 36, 0.01);
+    test_alone("thin-walled box", &clean);
+}
+
+static void interpenetrating_pipes(void **state)
+{
+    const double middle[3] = { 0, 0, 0 }, beside[3] = { 0.1 * cad_random(&chance), 0.1 * cad_random(&chance), 0.3 * cad_random(&chance) };
+    struct cad clean = { 0 };
+    struct oracle_mesh outer;
+    (void)state;
+    skip_if_watched();
+    cad_closed_pipe(&clean, &chance, 0.5, 4, 100, 110, 10, 0, middle);
+    size_t vertices = clean.vertex_count, triangles = clean.triangle_count;
+    struct cad second = { 0 };
+    cad_closed_pipe(&second, &chance, 0.35, 3.5, 80, 110, 8, 0.9 + 0.4 * cad_random(&chance), beside);
+    struct oracle_mesh a = mesh_of(&clean, 0, vertices, 0, triangles),
+                       b = mesh_of(&second, 0, second.vertex_count, 0, second.triangle_count);
+    assert_true(oracle_union(&a, &b, &outer));
+    mem_grow(&clean.positions, &clean.position_capacity, vertices + second.vertex_count, sizeof(*clean.positions));
+    mem_grow(&clean.triangles, &clean.index_capacity, 3 * (triangles + second.triangle_count), sizeof(*clean.triangles));
+    memcpy(clean.positions + vertices, second.positions, second.vertex_count * sizeof(*clean.positions));
+    for (size_t i = 0; i < 3 * second.triangle_count; i++)
+        clean.triangles[3 * triangles + i] = (uint32_t)vertices + second.triangles[i];
+    clean.vertex_count += second.vertex_count;
+    clean.triangle_count += second.triangle_count;
+    test_faults("two pipes", &clean, &outer);
+    cad_finish(&clean);
+    cad_finish(&second);
+    free((void *)outer.positions);
+    free((void *)outer.triangles);
+}
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(torus),
+        cmocka_unit_test(bent_pipe),
+        cmocka_unit_test(thin_walled_box),
+        cmocka_unit_test(interpenetrating_pipes),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}
