@@ -234,10 +234,13 @@ static int serve(struct hub *hub, struct request *request, const char *path)
         return answer(request, HTTP_STATUS_METHOD_NOT_ALLOWED, "text/plain; charset=utf-8", mem_strdup(text), strlen(text),
                       "allow:", "GET, HEAD");
     }
+    bool trusted = hub_is_trusted(request->wsi);
+    if (!hub->params.open_viewers && !trusted)
+        return answer_text(request, HTTP_STATUS_FORBIDDEN, "this server answers to localhost, 127.0.0.1 and [::1] only\n");
     for (size_t i = 0; i < sizeof(routes) / sizeof(routes[0]); i++) {
         if (strcmp(routes[i].path, path) != 0)
             continue;
-        if (hub->params.open_viewers && !routes[i].picture && !hub_peer_is_local(request->wsi))
+        if (!trusted && !routes[i].picture)
             return answer_text(request, HTTP_STATUS_FORBIDDEN, "viewers get pictures only\n");
         return routes[i].serve(hub, request);
     }

@@ -38,8 +38,9 @@ static inline struct hub *hub_of(struct lws *wsi)
 
 /* Writes up to SLICE_BYTES through hub->out. False: the connection is gone. */
 bool hub_write(struct hub *hub, struct lws *wsi, const void *bytes, size_t count, enum lws_write_protocol how);
-/* The client's address is of this machine. */
-bool hub_peer_is_local(struct lws *wsi);
+/* Who asks is on this machine and knows it: Host is localhost, 127.x or [::1], or there is none. A page of a foreign name that leads
+   here (DNS rebinding) does not. */
+bool hub_is_trusted(struct lws *wsi);
 void hub_go(struct hub *hub); /* after all wishes of one event are made */
 
 int stream_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t len);

@@ -6,6 +6,7 @@
 #include <errno.h>
 #include <stdatomic.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -49,11 +50,27 @@ bool hub_write(struct hub *hub, struct lws *wsi, const void *bytes, size_t count
     return lws_write(wsi, hub->out + LWS_PRE, count, how) >= (int)count;
 }
 
-bool hub_peer_is_local(struct lws *wsi)
+static bool peer_is_local(struct lws *wsi)
 {
     char peer[64] = "";
     lws_get_peer_simple(wsi, peer, sizeof(peer));
     return !strncmp(peer, "127.", 4) || !strcmp(peer, "::1") || !strncmp(peer, "::ffff:127.", 11);
+}
+
+bool hub_is_trusted(struct lws *wsi)
+{
+    char host[256];
+    if (!peer_is_local(wsi))
+        return false;
+    if (lws_hdr_total_length(wsi, WSI_TOKEN_HOST) == 0)
+        return true;
+    if (lws_hdr_copy(wsi, host, sizeof(host), WSI_TOKEN_HOST) < 0)
+        return false;
+    if (host[0] == '[')
+        return !strncmp(host, "[::1]", 5) && (host[5] == 0 || host[5] == ':');
+    host[strcspn(host, ":")] = 0;
+    struct in_addr address;
+    return !strcasecmp(host, "localhost") || (inet_pton(AF_INET, host, &address) == 1 && ntohl(address.s_addr) >> 24 == 127);
 }
 
 void hub_go(struct hub *hub)

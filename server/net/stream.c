@@ -73,7 +73,7 @@ int stream_check_upgrade(struct hub *hub, struct lws *wsi)
     char path[16], list[256];
     if (lws_hdr_copy(wsi, path, sizeof(path), WSI_TOKEN_GET_URI) < 0 || strcmp(path, "/stream") != 0)
         return refuse(hub, wsi, HTTP_STATUS_NOT_FOUND, "the stream is at /stream\n");
-    if (!origin_allowed(wsi))
+    if (!origin_allowed(wsi) || (!hub->params.open_viewers && !hub_is_trusted(wsi)))
         return refuse(hub, wsi, HTTP_STATUS_FORBIDDEN, "this origin is not allowed\n");
     if (!header(wsi, WSI_TOKEN_PROTOCOL, list, sizeof(list)) || (list[0] && !names_our_protocol(list)))
         return refuse(hub, wsi, HTTP_STATUS_BAD_REQUEST, "unknown subprotocol; this server speaks " WIRE_SUBPROTOCOL "\n");

@@ -221,6 +221,12 @@ test('who may connect', { skip }, async () => {
     await assert.rejects(open({ origin: 'http://evil.example' }), /403/);
     await assert.rejects(open({ origin: 'null' }), /403/);
     await assert.rejects(open({ path: '/elsewhere' }), /404/);
+    for (const host of ['evil.example', `evil.example:${port}`, '127.evil.example', '[::2]', 'localhost.evil.example']) {
+        await assert.rejects(open({ host, origin: `http://${host}` }), /403/);
+        assert.equal((await http(port, `GET /api/v1/tags HTTP/1.1\r\nHost: ${host}\r\n\r\n`)).status, 403);
+    }
+    for (const host of [`localhost:${port}`, '127.0.0.2', '[::1]:80'])
+        (await open({ host, origin: `http://${host}` })).close();
     (await open({ origin: `http://127.0.0.1:${port}` })).close();
     (await open({ protocol: 'chat, plantcast.v1' })).close();
     const none = await open({ protocol: null });

@@ -64,15 +64,15 @@ export function readFrame(bytes) {
 }
 
 export class PlainClient {
-    // Resolves once the server has agreed. options: protocol (null: none), origin, path, acknowledge (true).
+    // Resolves once the server has agreed. options: protocol (null: none), origin, host, path, acknowledge (true).
     static open(port, options = {}) {
-        const { protocol = 'plantcast.v1', origin = null, path = '/stream', acknowledge = true } = options;
+        const { protocol = 'plantcast.v1', origin = null, host = `127.0.0.1:${port}`, path = '/stream', acknowledge = true } = options;
         const key = randomBytes(16).toString('base64');
         const client = new PlainClient();
         client.acknowledge = acknowledge;
         return new Promise((done, fail) => {
             const socket = connect(port, '127.0.0.1', () => socket.write([
-                `GET ${path} HTTP/1.1`, `Host: 127.0.0.1:${port}`, 'Upgrade: websocket', 'Connection: Upgrade',
+                `GET ${path} HTTP/1.1`, `Host: ${host}`, 'Upgrade: websocket', 'Connection: Upgrade',
                 `Sec-WebSocket-Key: ${key}`, 'Sec-WebSocket-Version: 13', ...(protocol ? [`Sec-WebSocket-Protocol: ${protocol}`] : []),
                 ...(origin ? [`Origin: ${origin}`] : []), '', '',
             ].join('\r\n')));
