@@ -38,3 +38,22 @@ void view_default(const struct scene *scene, int width_px, int height_px, struct
     }
     default_light(scene, view->light_dir);
 }
+
+static bool same_vector(const double a[3], const double b[3])
+{
+    return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+}
+
+static bool same_camera(const struct camera *a, const struct camera *b)
+{
+    return same_vector(a->eye_m, b->eye_m) && same_vector(a->target_m, b->target_m) && same_vector(a->up, b->up) &&
+           a->fov_deg == b->fov_deg;
+}
+
+bool view_equal(const struct view *a, const struct view *b)
+{
+    return a->width_px == b->width_px && a->height_px == b->height_px && same_camera(&a->camera, &b->camera) &&
+           field_params_equal(&a->field, &b->field) && a->colormap == b->colormap && a->ramp_interval == b->ramp_interval &&
+           a->range_min == b->range_min && a->range_max == b->range_max && a->look == b->look && a->tier == b->tier &&
+           a->selected_asset == b->selected_asset && same_vector(a->light_dir, b->light_dir);
+}

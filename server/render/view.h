@@ -2,6 +2,7 @@
 /* What one session wants to see: a small struct, copied through its mailbox. */
 #ifndef RENDER_VIEW_H
 #define RENDER_VIEW_H
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "field/field.h"
@@ -33,5 +34,7 @@ struct view {
 };
 
 void view_default(const struct scene *scene, int width_px, int height_px, struct view *view);
+/* Both ask for the same picture: everything but who asked, and when. Every new field that changes the picture belongs here. */
+bool view_equal(const struct view *a, const struct view *b);
 
 #endif

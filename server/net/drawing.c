@@ -1,0 +1,354 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Draws what is wished for. */
+#include "base/clock.h"
+#include "net/painter_impl.h"
+#include "render/overlay.h"
+#include "render/renderer.h"
+
+static const int64_t STEP_NS = 10 * NS_PER_MS;              /* of a slow picture, before anyone else gets a turn */
+static const int64_t OWN_DATA_NS = 1 * NS_PER_S;            /* changed readings wait so long for a refinement of the same client */
+static const int64_t SNAPSHOT_MAX_AGE_NS = 100 * NS_PER_MS; /* the clock in the picture, and ages, are no older than this */
+
+struct drawing { /* what only the render thread touches */
+    struct painter *painter;
+    struct gl *gl;
+    struct field *field;
+    struct renderer *renderer;
+    struct snapshot *snapshot;
+    struct batch same;
+    struct { /* the picture that takes long and is drawn step by step; at most one */
+        struct stroke *stroke; /* NULL: none */
+        struct batch batch;
+        struct snapshot *snapshot; /* of what it shows */
+        enum urgency urgency;
+        int64_t asked_ns, field_ns;
+    } slow;
+};
+
+/* --- drawing, on the render thread ----------------------------------------------------------------------------------------- */
+
+/* Under lock. Its slow picture is under way and still good: what it wants besides can wait for it. */
+static bool waits_for_slow(const struct drawing *drawing, const struct client *client, int64_t now_ns)
+{
+    bool soon = client->wish.urgency == URGENCY_DATA && now_ns - client->wish.asked_ns >= OWN_DATA_NS;
+    if (client->left || client->wish.urgency == URGENCY_INPUT || soon)
+        return false;
+    for (size_t i = 0; drawing->slow.stroke && i < drawing->slow.batch.count; i++)
+        if (drawing->slow.batch.orders[i].client == client->id)
+            return true;
+    return false;
+}
+
+struct turn {
+    bool step;             /* of the slow picture; else */
+    struct client *client; /* NULL: nobody before wait_until_ns */
+    int64_t wait_until_ns;
+};
+
+/* Under lock. */
+static struct turn next_turn(const struct drawing *drawing, const struct schedule *schedule)
+{
+    struct client *oldest[URGENCY_COUNT + 1] = { NULL };
+    int64_t asked_ns[URGENCY_COUNT], now_ns = clock_mono_ns();
+    bool busy = drawing->slow.stroke != NULL;
+    struct turn turn = { 0 };
+    for (int i = 0; i < URGENCY_COUNT; i++)
+        asked_ns[i] = busy && drawing->slow.urgency == (enum urgency)i ? drawing->slow.asked_ns : INT64_MAX;
+    for (size_t i = 0; i < drawing->painter->client_count; i++) {
+        struct client *client = &drawing->painter->clients[i];
+        enum urgency urgency = client->wish.urgency;
+        if (!client->pending || client->wish.asked_ns >= asked_ns[urgency] || (busy && urgency >= URGENCY_REFINE) ||
+            waits_for_slow(drawing, client, now_ns))
+            continue;
+        oldest[urgency] = client;
+        asked_ns[urgency] = client->wish.asked_ns;
+    }
+    enum urgency urgency = schedule_choose(schedule, asked_ns, now_ns, &turn.wait_until_ns);
+    turn.step = busy && urgency == drawing->slow.urgency;
+    turn.client = oldest[urgency];
+    return turn;
+}
+
+/* Under lock. */
+static void wait_until(struct painter *painter, int64_t mono_ns)
+{
+    struct timespec until = { .tv_sec = mono_ns / NS_PER_S, .tv_nsec = mono_ns % NS_PER_S };
+    if (mono_ns == INT64_MAX)
+        pthread_cond_wait(&painter->wake, &painter->lock);
+    else
+        pthread_cond_timedwait(&painter->wake, &painter->lock, &until);
+}
+
+/* Under lock. What it had under way is not wanted any more. */
+static void begin(struct client *client, struct batch *batch, int64_t now_ns)
+{
+    client->pending = false;
+    client->left = client->wish.urgency < URGENCY_REFINE;
+    batch_add(batch,
+              &(struct order){
+                  .client = client->id, .number = ++client->number, .wish = client->wish, .wait_ns = now_ns - client->wish.view.input_ns });
+}
+
+/* Under lock. The client's wish, and all that the same picture answers. */
+static void begin_all(struct painter *painter, struct client *first, struct batch *batch)
+{
+    int64_t now_ns = clock_mono_ns();
+    begin(first, batch, now_ns);
+    struct wish wish = batch->orders[0].wish;
+    for (size_t i = 0; i < painter->client_count && !wish.overlay; i++) {
+        struct client *other = &painter->clients[i];
+        if (other->pending && !other->wish.overlay && view_equal(&other->wish.view, &wish.view))
+            begin(other, batch, now_ns);
+    }
+}
+
+/* Waits for work. False: stop. An empty batch: the slow picture may go on by a step. */
+static bool next_batch(const struct drawing *drawing, const struct schedule *schedule, struct batch *batch)
+{
+    struct painter *painter = drawing->painter;
+    struct turn turn = { 0 };
+    batch->count = 0;
+    pthread_mutex_lock(&painter->lock);
+    while (painter->state == RUNNING) {
+        turn = next_turn(drawing, schedule);
+        if (turn.step || turn.client)
+            break;
+        wait_until(painter, turn.wait_until_ns);
+    }
+    bool running = painter->state == RUNNING;
+    if (running && !turn.step)
+        begin_all(painter, turn.client, batch);
+    pthread_mutex_unlock(&painter->lock);
+    return running;
+}
+
+static void refresh(struct drawing *drawing)
+{
+    struct painter *painter = drawing->painter;
+    int64_t now_ns = clock_mono_ns();
+    pthread_mutex_lock(&painter->lock);
+    bool new_data = painter->new_data;
+    painter->new_data = false;
+    pthread_mutex_unlock(&painter->lock);
+    if (new_data || now_ns - drawing->snapshot->taken_mono_ns > SNAPSHOT_MAX_AGE_NS)
+        store_snapshot(painter->params.store, now_ns, clock_utc_ns(), drawing->snapshot);
+}
+
+struct content_of {
+    struct painter *painter;
+    uint64_t content;
+};
+
+/* Under lock: the client has this picture already. */
+static bool has_it(const struct order *order, void *arg)
+{
+    const struct content_of *now = arg;
+    const struct client *client = painter_find(now->painter, order->client);
+    return !order->wish.always && client && client->has_content && client->content == now->content;
+}
+
+static void remember(struct painter *painter, const struct batch *batch, uint64_t content)
+{
+    pthread_mutex_lock(&painter->lock);
+    for (size_t i = 0; i < batch->count; i++) {
+        struct client *client = painter_find(painter, batch->orders[i].client);
+        if (client) {
+            client->has_content = true;
+            client->content = content;
+        }
+    }
+    pthread_mutex_unlock(&painter->lock);
+}
+
+/* Answers those for whom nothing changed, and takes them out of the batch. */
+static void leave_out_same(struct drawing *drawing, struct batch *batch)
+{
+    struct painter *painter = drawing->painter;
+    struct content_of now = { .painter = painter };
+    now.content = renderer_content(drawing->renderer, &batch->orders[0].wish.view, drawing->snapshot);
+    pthread_mutex_lock(&painter->lock);
+    batch_split(batch, has_it, &now, &drawing->same);
+    pthread_mutex_unlock(&painter->lock);
+    counter_inc(painter->same, (int64_t)drawing->same.count);
+    painter_post(painter, &drawing->same, NULL, false);
+}
+
+static void fail(struct drawing *drawing, const struct batch *batch)
+{
+    counter_inc(drawing->painter->failures, 1);
+    painter_post(drawing->painter, batch, NULL, true);
+}
+
+/* Takes the frame. */
+static void deliver(struct drawing *drawing, struct frame *frame, const struct snapshot *snapshot, struct batch *batch)
+{
+    struct painter *painter = drawing->painter;
+    if (batch->orders[0].wish.overlay)
+        overlay_draw(frame, painter->params.scene, snapshot);
+    counter_inc(painter->renders, 1);
+    counter_inc(painter->render_us, (frame->render_ns + frame->readback_ns) / 1000);
+    remember(painter, batch, frame->content);
+    encoding_submit(painter->encoding, frame, batch);
+    frame_unref(&frame);
+}
+
+/* --- pictures that take long -------------------------------------------------------------------------------------------------- */
+
+static void slow_begin(struct drawing *drawing, struct batch *batch, int64_t field_ns)
+{
+    const struct wish *wish = &batch->orders[0].wish;
+    drawing->slow.stroke = renderer_begin(drawing->renderer, &wish->view, drawing->snapshot);
+    if (!drawing->slow.stroke) {
+        fail(drawing, batch);
+        return;
+    }
+    drawing->slow.urgency = wish->urgency;
+    drawing->slow.asked_ns = wish->asked_ns;
+    drawing->slow.field_ns = field_ns;
+    struct batch empty = drawing->slow.batch;
+    drawing->slow.batch = *batch;
+    *batch = empty;
+    batch->count = 0;
+    struct snapshot *other = drawing->slow.snapshot;
+    drawing->slow.snapshot = drawing->snapshot;
+    drawing->snapshot = other;
+    store_snapshot(drawing->painter->params.store, clock_mono_ns(), clock_utc_ns(), drawing->snapshot);
+}
+
+/* True: it is done. */
+static bool slow_step(struct drawing *drawing)
+{
+    bool drawn = renderer_step(drawing->renderer, drawing->slow.stroke, STEP_NS);
+    counter_inc(drawing->painter->steps, 1);
+    if (!drawn)
+        return false;
+    struct frame *frame = renderer_end(drawing->renderer, &drawing->slow.stroke);
+    if (frame) {
+        frame->field_ns += drawing->slow.field_ns;
+        deliver(drawing, frame, drawing->slow.snapshot, &drawing->slow.batch);
+    } else {
+        fail(drawing, &drawing->slow.batch);
+    }
+    drawing->slow.batch.count = 0;
+    return true;
+}
+
+/* Under lock. */
+static bool has_left(const struct order *order, void *arg)
+{
+    const struct client *client = painter_find(arg, order->client);
+    return !client || client->left || (client->pending && client->wish.urgency == URGENCY_INPUT);
+}
+
+/* Who moved on gets no more of it; when nobody is left it is given up. */
+static void slow_leave(struct drawing *drawing)
+{
+    struct painter *painter = drawing->painter;
+    if (!drawing->slow.stroke)
+        return;
+    pthread_mutex_lock(&painter->lock);
+    batch_split(&drawing->slow.batch, has_left, painter, &drawing->same);
+    pthread_mutex_unlock(&painter->lock);
+    painter_post(painter, &drawing->same, NULL, false);
+    if (drawing->slow.batch.count > 0)
+        return;
+    counter_inc(painter->abandoned, 1);
+    renderer_abandon(drawing->renderer, &drawing->slow.stroke);
+}
+
+static void draw(struct drawing *drawing, struct batch *batch)
+{
+    int64_t field_begin_ns = clock_mono_ns();
+    refresh(drawing);
+    leave_out_same(drawing, batch);
+    if (batch->count == 0)
+        return;
+    const struct wish *wish = &batch->orders[0].wish;
+    int64_t field_ns = clock_mono_ns() - field_begin_ns; /* to know what changed, the field was brought up to date already */
+    if (wish->urgency >= URGENCY_REFINE) {
+        slow_begin(drawing, batch, field_ns);
+        return;
+    }
+    struct frame *frame = renderer_draw(drawing->renderer, &wish->view, drawing->snapshot);
+    if (!frame) {
+        fail(drawing, batch);
+        return;
+    }
+    frame->field_ns += field_ns;
+    deliver(drawing, frame, drawing->snapshot, batch);
+}
+
+/* --- life of the render thread -------------------------------------------------------------------------------------------------- */
+
+static bool drawing_init(struct drawing *drawing, struct painter *painter)
+{
+    const struct painter_params *params = &painter->params;
+    *drawing = (struct drawing){ .painter = painter };
+    drawing->gl = gl_create(params->log, params->gl, -1);
+    if (!drawing->gl)
+        return false;
+    drawing->field = field_create(params->workers, params->scene);
+    drawing->renderer = renderer_create(params->log, drawing->gl, params->scene, drawing->field);
+    drawing->snapshot = snapshot_create(params->scene->plant->tag_count);
+    drawing->slow.snapshot = snapshot_create(params->scene->plant->tag_count);
+    store_snapshot(params->store, clock_mono_ns(), clock_utc_ns(), drawing->snapshot);
+    return drawing->renderer != NULL;
+}
+
+static void drawing_finish(struct drawing *drawing)
+{
+    if (drawing->renderer)
+        renderer_abandon(drawing->renderer, &drawing->slow.stroke);
+    batch_finish(&drawing->slow.batch);
+    renderer_destroy(&drawing->renderer);
+    field_destroy(&drawing->field);
+    gl_destroy(&drawing->gl);
+    snapshot_destroy(&drawing->snapshot);
+    snapshot_destroy(&drawing->slow.snapshot);
+    batch_finish(&drawing->same);
+}
+
+/* What only the first picture costs (shaders, baked light) is paid before anyone asks. */
+static void warm_up(struct drawing *drawing)
+{
+    struct view view;
+    view_default(drawing->painter->params.scene, 64, 36, &view);
+    struct frame *frame = renderer_draw(drawing->renderer, &view, drawing->snapshot);
+    if (frame)
+        frame_unref(&frame);
+}
+
+static void turn(struct drawing *drawing, struct schedule *schedule, struct batch *batch)
+{
+    enum urgency urgency = batch->count > 0 ? batch->orders[0].wish.urgency : drawing->slow.urgency;
+    bool done = true;
+    slow_leave(drawing);
+    if (batch->count > 0)
+        draw(drawing, batch);
+    else if (drawing->slow.stroke)
+        done = slow_step(drawing);
+    if (urgency >= URGENCY_REFINE)
+        schedule_stepped(schedule);
+    if (done && !(urgency >= URGENCY_REFINE && drawing->slow.stroke))
+        schedule_done(schedule, urgency, clock_mono_ns());
+}
+
+void *drawing_main(void *arg)
+{
+    struct painter *painter = arg;
+    struct drawing drawing;
+    struct batch batch = { 0 };
+    struct schedule schedule = { 0 };
+    bool good = drawing_init(&drawing, painter);
+    pthread_mutex_lock(&painter->lock);
+    painter->state = good ? RUNNING : FAILED;
+    pthread_cond_broadcast(&painter->wake);
+    pthread_mutex_unlock(&painter->lock);
+    if (good)
+        warm_up(&drawing);
+    while (next_batch(&drawing, &schedule, &batch))
+        turn(&drawing, &schedule, &batch);
+    batch_finish(&batch);
+    drawing_finish(&drawing);
+    return NULL;
+}

@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the two halves of the painter share: wishes (painter.c, any thread) and drawing (drawing.c, the render thread). Private to them. */
+#ifndef NET_PAINTER_IMPL_H
+#define NET_PAINTER_IMPL_H
+#include <pthread.h>
+
+#include "net/encoding.h"
+#include "net/painter.h"
+
+struct client {
+    uint64_t id, number;
+    bool pending, has_content;
+    bool left; /* the slow picture: it wants another by now */
+    struct wish wish;
+    uint64_t content; /* of the last picture drawn for it */
+};
+
+struct painter {
+    struct painter_params params;
+    counter *renders, *render_us, *same, *failures, *steps, *abandoned;
+    struct encoding *encoding;
+    pthread_t thread;
+    bool has_thread;
+    pthread_mutex_t lock;
+    pthread_cond_t wake;
+    /* --- below: under lock */
+    enum { STARTING, RUNNING, FAILED, STOPPING } state;
+    bool new_data;
+    struct client *clients;
+    size_t client_count, client_capacity;
+    struct picture *done, **done_last;
+};
+
+/* Under lock. NULL: none. */
+struct client *painter_find(struct painter *painter, uint64_t id);
+/* Answers every order of the batch. */
+void painter_post(struct painter *painter, const struct batch *batch, struct packet *packet, bool failed);
+/* The render thread, from making the GL context to its end. arg: struct painter. */
+void *drawing_main(void *arg);
+
+#endif
