@@ -2,9 +2,9 @@
 /* The textures of an asset. */
 #include <string.h>
 
+#include "base/image.h"
 #include "base/mem.h"
 #include "preprocess/geometry_parts.h"
-#include "preprocess/image_shim.h"
 
 #define TEXTURE_MAX_PX 2048u
 

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Images: what their writers wrote comes back, shrunk where it is too large; what is cut off or claims too much is refused. */
-#include "preprocess/image_shim.h"
+#include "base/image.h"
 
+#include <math.h>
 #include <png.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -11,6 +12,7 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
+#include "tests/support/temp.h"
 
 struct encoded {
     unsigned char *bytes;
@@ -166,6 +168,51 @@ static void false_claims_are_refused(void **state)
     assert_refused("", 0, "0 bytes are neither");
 }
 
+static void files_are_told_by_their_bytes(void **state)
+{
+    (void)state;
+    char *folder = temp_folder_create();
+    struct encoded png = png_of(300, 20, 3);
+    char *path = temp_write(folder, "a.jpg", png.bytes, png.size), why[IMAGE_WHY_BYTES] = "";
+    struct image image;
+    struct image_float linear;
+    if (!image_load(&image, path, 100, why))
+        fail_msg("%s", why);
+    assert_int_equal(image.width_px, 100);
+    assert_true(image.rgba[0] > 250 && image.rgba[1] < 5 && image.rgba[4 * 99 + 1] > 250 && image.rgba[3] == 255);
+    assert_true(image_load_float(&linear, path, 4096, why));
+    const float *last = linear.rgba + 4 * (300 * 19);
+    assert_true(last[0] == 1 && last[3] == 1 && fabsf(last[2] - powf((242 / 255.0f + 0.055f) / 1.055f, 2.4f)) < 1e-4f);
+    mem_free(image.rgba);
+    mem_free(linear.rgba);
+    mem_free(path);
+    free(png.bytes);
+    path = temp_write(folder, "no.png", "GIF98", 5);
+    assert_false(image_load(&image, path, 100, why));
+    assert_true(why[0] != 0);
+    mem_free(path);
+    path = temp_path(folder, "missing.png");
+    assert_false(image_load_float(&linear, path, 100, why));
+    mem_free(path);
+    temp_folder_destroy(&folder);
+}
+
+static void radiance_files_keep_their_light(void **state)
+{
+    (void)state;
+    static const char hdr[] = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n\x80\x40\x20\x84\x80\x80\x80\x80";
+    char *folder = temp_folder_create(), *path = temp_write(folder, "sky.hdr", hdr, sizeof(hdr) - 1), why[IMAGE_WHY_BYTES] = "";
+    struct image_float image;
+    if (!image_load_float(&image, path, 4096, why))
+        fail_msg("%s", why);
+    assert_int_equal(image.width_px, 2);
+    assert_true(fabsf(image.rgba[0] - 8) < 0.1f && fabsf(image.rgba[1] - 4) < 0.1f && fabsf(image.rgba[4] - 0.5f) < 0.01f);
+    assert_true(image.rgba[3] == 1);
+    mem_free(image.rgba);
+    mem_free(path);
+    temp_folder_destroy(&folder);
+}
+
 int main(void)
 {
     cmocka_set_message_output(CM_OUTPUT_TAP);
@@ -175,6 +222,8 @@ int main(void)
         cmocka_unit_test(webp_is_read),
         cmocka_unit_test(cut_images_are_refused),
         cmocka_unit_test(false_claims_are_refused),
+        cmocka_unit_test(files_are_told_by_their_bytes),
+        cmocka_unit_test(radiance_files_keep_their_light),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
