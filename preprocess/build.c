@@ -11,6 +11,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "preprocess/clusters.h"
 #include "preprocess/order.h"
 #include "preprocess/split.h"
 
@@ -231,7 +232,8 @@ static bool add_levels(struct workers *workers, const struct build_input *input,
 }
 
 static bool lay_out(const struct build_input *input, const struct geometry *g, const struct asset_level *levels, size_t level_count,
-                    const struct asset_sensor *sensors, const float *distances, struct build_output *output, char *why)
+                    const struct clusters *clusters, const struct asset_sensor *sensors, const float *distances,
+                    struct build_output *output, char *why)
 {
     struct asset_parts parts = {
         .key = input->key,
@@ -243,6 +245,8 @@ static bool lay_out(const struct build_input *input, const struct geometry *g, c
         .primitives = g->primitives,
         .levels = levels,
         .level_count = (uint32_t)level_count,
+        .clusters = clusters->at,
+        .cluster_count = clusters->count,
         .materials = g->materials,
         .textures = g->textures,
         .texels = g->texels,
@@ -279,6 +283,7 @@ bool build_asset(struct log *log, struct workers *workers, const struct build_in
     struct geometry geometry = { 0 };
     struct measured measured = { 0 };
     struct asset_level levels[LEVELS_MAX] = { 0 };
+    struct clusters clusters = { 0 };
     int64_t since_ns = clock_mono_ns();
     *output = (struct build_output){ .missing_node = -1 };
     if (!geometry_cut(&geometry, input->model, &input->geometry, why))
@@ -295,8 +300,12 @@ bool build_asset(struct log *log, struct workers *workers, const struct build_in
                                             .skipped_points = geometry.skipped_points,
                                             .read_s = seconds_since(&since_ns) };
     bool good = (!input->sensor_count || measure(log, workers, input, &geometry, &measured, output, why)) &&
-                add_levels(workers, input, &geometry, &measured, levels, &output->report, why) &&
-                lay_out(input, &geometry, levels, output->report.level_count, measured.sensors, measured.distances, output, why);
+                add_levels(workers, input, &geometry, &measured, levels, &output->report, why);
+    if (good) {
+        clusters_make(&clusters, &geometry, workers);
+        good = lay_out(input, &geometry, levels, output->report.level_count, &clusters, measured.sensors, measured.distances, output, why);
+    }
+    clusters_finish(&clusters);
     measured_finish(&measured);
     geometry_finish(&geometry);
     if (!good) {

@@ -1,43 +1,21 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Asset files: bytes checked into a view, and parts laid out into bytes. */
+/* Asset files: bytes checked into a view. */
 #include "protocol/asset_format.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#define XXH_STATIC_LINKING_ONLY /* the hash state on the stack */
-#include <xxhash.h>
+
+#include "protocol/asset_format_impl.h"
 
 #define WHY_BYTES 200
 #define TEXTURE_MAX_PX 16384u
 
 static const char *const section_names[ASSET_SECTION_COUNT] = {
-    "positions", "normals",  "texcoords", "colors",  "indices",  "primitives", "levels",
-    "materials", "textures", "texels",    "sensors", "geodesic", "names",
+    "positions", "normals",   "texcoords", "colors", "indices", "primitives", "levels",
+    "clusters",  "materials", "textures",  "texels", "sensors", "geodesic",   "names",
 };
-
-static uint64_t align_up(uint64_t n)
-{
-    return (n + ASSET_ALIGN - 1) / ASSET_ALIGN * ASSET_ALIGN;
-}
-
-static uint64_t checksum(const void *bytes, size_t size)
-{
-    struct asset_header header;
-    memcpy(&header, bytes, sizeof(header));
-    header.checksum = 0;
-    XXH3_state_t state;
-    XXH3_INITSTATE(&state);
-    XXH3_64bits_reset(&state);
-    XXH3_64bits_update(&state, &header, sizeof(header));
-    XXH3_64bits_update(&state, (const char *)bytes + sizeof(header), size - sizeof(header));
-    return XXH3_64bits_digest(&state);
-}
-
-/* --- checking ------------------------------------------------------------------------------------------------------------ */
 
 struct check {
     struct asset_view view;
@@ -80,7 +58,7 @@ static bool header_good(struct check *c)
     if (h->file_bytes != c->size)
         return wrong(c, "%s: %zu bytes, the header says %llu", h->file_bytes > c->size ? "truncated" : "too long", c->size,
                      (unsigned long long)h->file_bytes);
-    uint64_t sum = checksum(c->bytes, c->size);
+    uint64_t sum = asset_checksum(c->bytes, c->size);
     if (sum != h->checksum)
         return wrong(c, "checksum %016llx, the header says %016llx", (unsigned long long)sum, (unsigned long long)h->checksum);
     c->view.header = h;
@@ -101,26 +79,6 @@ static bool counts_good(struct check *c)
     return true;
 }
 
-/* Bytes that the section must have; UINT64_MAX: any number; optional ones may also be empty. */
-static uint64_t section_bytes(const struct asset_header *h, int section, bool *optional)
-{
-    *optional = section == ASSET_TEXCOORDS || section == ASSET_COLORS;
-    switch (section) {
-    case ASSET_POSITIONS: return 12ull * h->vertex_count;
-    case ASSET_NORMALS: return 12ull * h->vertex_count;
-    case ASSET_TEXCOORDS: return 8ull * h->vertex_count;
-    case ASSET_COLORS: return 4ull * h->vertex_count;
-    case ASSET_INDICES: return 4ull * h->index_count;
-    case ASSET_PRIMITIVES: return (uint64_t)sizeof(struct asset_primitive) * h->primitive_count;
-    case ASSET_LEVELS: return (uint64_t)sizeof(struct asset_level) * h->level_count;
-    case ASSET_MATERIALS: return (uint64_t)sizeof(struct asset_material) * h->material_count;
-    case ASSET_TEXTURES: return (uint64_t)sizeof(struct asset_texture) * h->texture_count;
-    case ASSET_SENSORS: return (uint64_t)sizeof(struct asset_sensor) * h->sensor_count;
-    case ASSET_GEODESIC: return 4ull * h->sensor_count * h->vertex_count;
-    default: return UINT64_MAX;
-    }
-}
-
 static bool sections_good(struct check *c)
 {
     const struct asset_header *h = c->view.header;
@@ -128,7 +86,7 @@ static bool sections_good(struct check *c)
     for (int i = 0; i < ASSET_SECTION_COUNT; i++) {
         const struct asset_section_entry *s = &h->sections[i];
         bool optional;
-        uint64_t need = section_bytes(h, i, &optional);
+        uint64_t need = asset_section_bytes(h, i, &optional);
         if (s->offset % ASSET_ALIGN != 0 || s->offset < end || s->offset > c->size || s->bytes > c->size - s->offset)
             return wrong(c, "section %s: bytes %llu..%llu+%llu lie outside the file or over another section", section_names[i],
                          (unsigned long long)s->offset, (unsigned long long)s->offset, (unsigned long long)s->bytes);
@@ -156,6 +114,7 @@ static void view_point(struct check *c)
     v->indices = section(c, ASSET_INDICES);
     v->primitives = section(c, ASSET_PRIMITIVES);
     v->levels = section(c, ASSET_LEVELS);
+    v->clusters = section(c, ASSET_CLUSTERS);
     v->materials = section(c, ASSET_MATERIALS);
     v->textures = section(c, ASSET_TEXTURES);
     v->texels = section(c, ASSET_TEXELS);
@@ -248,6 +207,53 @@ static bool levels_good(struct check *c)
     return true;
 }
 
+/* A box that is too small, or a cone too narrow, would make holes in the picture. */
+static bool cluster_good(struct check *c, uint32_t number)
+{
+    const struct asset_view *v = &c->view;
+    const struct asset_cluster *cluster = &v->clusters[number];
+    const float *axis = cluster->cone_axis, cutoff = cluster->cone_cutoff;
+    if (!finite_all(cluster->low_m, 6) || !finite_all(axis, 3) || !(cutoff >= 0 && cutoff <= 1))
+        return wrong(c, "cluster %u: box or cone is not finite, or cutoff %g lies outside 0..1", number, (double)cutoff);
+    for (uint32_t i = cluster->first_index; i < cluster->first_index + cluster->index_count; i++)
+        for (int a = 0; a < 3; a++) {
+            float x = v->positions_m[v->indices[i]][a];
+            if (x < cluster->low_m[a] || x > cluster->high_m[a])
+                return wrong(c, "cluster %u: index %u at %g m lies outside its box %g..%g m", number, i, (double)x,
+                             (double)cluster->low_m[a], (double)cluster->high_m[a]);
+        }
+    if (cutoff == 1)
+        return true;
+    if (fabs(asset_length(axis) - 1) > 1e-3)
+        return wrong(c, "cluster %u: cone axis of length %g", number, asset_length(axis));
+    double least = asset_cluster_least_dot(cluster, v->positions_m, v->indices, axis);
+    if (least < sqrt(1 - (double)cutoff * (double)cutoff) - 1e-3)
+        return wrong(c, "cluster %u: a normal lies outside its cone (%g)", number, least);
+    return true;
+}
+
+static bool clusters_good(struct check *c)
+{
+    const struct asset_view *v = &c->view;
+    uint32_t next = 0, count = v->header->cluster_count;
+    for (uint32_t p = 0; p < v->header->primitive_count; p++) {
+        uint32_t at = v->primitives[p].first_index, end = at + v->primitives[p].index_count;
+        for (; at < end; next++) {
+            const struct asset_cluster *cluster = next < count ? &v->clusters[next] : NULL;
+            if (!cluster || cluster->first_index != at || cluster->index_count == 0 || cluster->index_count % 3 != 0 ||
+                cluster->index_count > end - at)
+                return wrong(c, "cluster %u of %u: indices %u+%u, expected some of %u..%u (primitive %u)", next, count,
+                             cluster ? cluster->first_index : 0, cluster ? cluster->index_count : 0, at, end, p);
+            if (!cluster_good(c, next))
+                return false;
+            at += cluster->index_count;
+        }
+    }
+    if (next != count)
+        return wrong(c, "the primitives hold %u clusters of %u", next, count);
+    return true;
+}
+
 static bool texture_good(const struct check *c, uint32_t texture)
 {
     return texture == ASSET_NO_TEXTURE || (texture < c->view.header->texture_count && c->view.texcoords);
@@ -326,84 +332,8 @@ bool asset_view_init(struct asset_view *view, const void *bytes, size_t size, ch
     if (!header_good(&c) || !counts_good(&c) || !sections_good(&c))
         return false;
     view_point(&c);
-    if (!names_good(&c) || !vertices_good(&c) || !levels_good(&c) || !materials_good(&c) || !sensors_good(&c))
+    if (!names_good(&c) || !vertices_good(&c) || !levels_good(&c) || !clusters_good(&c) || !materials_good(&c) || !sensors_good(&c))
         return false;
     *view = c.view;
     return true;
-}
-
-/* --- building ------------------------------------------------------------------------------------------------------------ */
-
-static void bounds_of(const struct asset_parts *parts, struct asset_header *h)
-{
-    for (int axis = 0; axis < 3; axis++) {
-        h->bounds_min_m[axis] = parts->vertex_count ? FLT_MAX : 0;
-        h->bounds_max_m[axis] = parts->vertex_count ? -FLT_MAX : 0;
-    }
-    for (uint32_t i = 0; i < parts->vertex_count; i++)
-        for (int axis = 0; axis < 3; axis++) {
-            float x = parts->positions_m[i][axis];
-            h->bounds_min_m[axis] = x < h->bounds_min_m[axis] ? x : h->bounds_min_m[axis];
-            h->bounds_max_m[axis] = x > h->bounds_max_m[axis] ? x : h->bounds_max_m[axis];
-        }
-}
-
-void *asset_build(const struct asset_parts *parts, size_t *out_bytes)
-{
-    const struct asset_level all = { .primitive_count = parts->primitive_count, .vertex_count = parts->vertex_count };
-    struct asset_header h = {
-        .version = ASSET_VERSION,
-        .header_bytes = sizeof(h),
-        .key = parts->key,
-        .vertex_count = parts->vertex_count,
-        .index_count = parts->index_count,
-        .primitive_count = parts->primitive_count,
-        .level_count = parts->levels ? parts->level_count : 1,
-        .material_count = parts->material_count,
-        .texture_count = parts->texture_count,
-        .sensor_count = parts->sensor_count,
-    };
-    const void *from[ASSET_SECTION_COUNT] = {
-        parts->positions_m,
-        parts->normals,
-        parts->texcoords,
-        parts->colors,
-        parts->indices,
-        parts->primitives,
-        parts->levels ? parts->levels : &all,
-        parts->materials,
-        parts->textures,
-        parts->texels,
-        parts->sensors,
-        parts->geodesic_m,
-        parts->names ? parts->names : "",
-    };
-    memcpy(h.magic, ASSET_MAGIC, sizeof(h.magic));
-    memcpy(h.origin_m, parts->origin_m, sizeof(h.origin_m));
-    bounds_of(parts, &h);
-    uint64_t end = sizeof(h);
-    for (int i = 0; i < ASSET_SECTION_COUNT; i++) {
-        bool optional;
-        uint64_t need = section_bytes(&h, i, &optional);
-        if (i == ASSET_TEXELS)
-            need = parts->texel_bytes;
-        else if (i == ASSET_NAMES)
-            need = parts->names ? parts->name_bytes : 1;
-        h.sections[i].offset = align_up(end);
-        h.sections[i].bytes = from[i] ? need : 0;
-        end = h.sections[i].offset + h.sections[i].bytes;
-    }
-    h.file_bytes = align_up(end);
-    char *bytes = aligned_alloc(ASSET_ALIGN, h.file_bytes);
-    if (!bytes)
-        return NULL;
-    memset(bytes, 0, h.file_bytes);
-    for (int i = 0; i < ASSET_SECTION_COUNT; i++)
-        if (h.sections[i].bytes)
-            memcpy(bytes + h.sections[i].offset, from[i], h.sections[i].bytes);
-    memcpy(bytes, &h, sizeof(h));
-    h.checksum = checksum(bytes, h.file_bytes);
-    memcpy(bytes, &h, sizeof(h));
-    *out_bytes = h.file_bytes;
-    return bytes;
 }

@@ -8,7 +8,7 @@
 #include <stdint.h>
 
 #define ASSET_MAGIC "PLCASSET"
-#define ASSET_VERSION 2u
+#define ASSET_VERSION 3u
 #define ASSET_ALIGN 64u
 #define ASSET_NO_TEXTURE UINT32_MAX
 
@@ -20,6 +20,7 @@ enum asset_section {
     ASSET_INDICES,    /* uint32 per corner */
     ASSET_PRIMITIVES, /* struct asset_primitive */
     ASSET_LEVELS,     /* struct asset_level, finest first */
+    ASSET_CLUSTERS,   /* struct asset_cluster, primitive by primitive */
     ASSET_MATERIALS,  /* struct asset_material */
     ASSET_TEXTURES,   /* struct asset_texture */
     ASSET_TEXELS,     /* bytes: RGBA8, rows from the top, as asset_texture says */
@@ -41,7 +42,7 @@ struct asset_header {
     uint64_t key;       /* XXH3-64 of all that went in: model bytes, node pattern, units, sensor places, program's format version */
     double origin_m[3]; /* asset frame */
     float bounds_min_m[3], bounds_max_m[3]; /* of the positions, relative to origin_m */
-    uint32_t vertex_count, index_count, primitive_count, level_count, material_count, texture_count, sensor_count, reserved;
+    uint32_t vertex_count, index_count, primitive_count, level_count, material_count, texture_count, sensor_count, cluster_count;
     struct asset_section_entry sections[ASSET_SECTION_COUNT];
 };
 
@@ -55,6 +56,14 @@ struct asset_level { /* a level of detail: its primitives, and the prefix of the
     uint32_t first_primitive, primitive_count, vertex_count;
     uint32_t added_count; /* of its vertices beyond the next coarser level's, the last so many are not the model's own */
     float error_m;        /* 0 for the finest */
+};
+
+/* Triangles of one primitive that lie close together and look about the same way: what can be left out at once. A primitive's clusters
+   follow one another, and hold its indices from the first to the last; those of one primitive after those of the one before. */
+struct asset_cluster {
+    uint32_t first_index, index_count; /* into ASSET_INDICES; a multiple of 3, and not 0 */
+    float low_m[3], high_m[3];         /* box around its vertices */
+    float cone_axis[3], cone_cutoff;   /* see asset_cluster_turned_away; cutoff 1: looks every way */
 };
 
 enum asset_alpha { ASSET_ALPHA_OPAQUE, ASSET_ALPHA_MASK, ASSET_ALPHA_BLEND };
@@ -90,6 +99,7 @@ struct asset_view {
     const uint32_t *indices;
     const struct asset_primitive *primitives;
     const struct asset_level *levels;
+    const struct asset_cluster *clusters;
     const struct asset_material *materials;
     const struct asset_texture *textures;
     const uint8_t *texels;
@@ -102,6 +112,13 @@ struct asset_view {
    (with numbers), the view is not usable. bytes must be aligned to ASSET_ALIGN. */
 bool asset_view_init(struct asset_view *view, const void *bytes, size_t size, char why[200]);
 
+/* The cluster's box and cone, from its indices. */
+void asset_cluster_measure(struct asset_cluster *cluster, const float (*positions_m)[3], const uint32_t *indices);
+/* An eye there (less origin_m) sees only the backs of its triangles, by their winding. */
+bool asset_cluster_turned_away(const struct asset_cluster *cluster, const float eye_m[3]);
+/* The same for all eyes far away against that direction, of unit length: orthographic views. */
+bool asset_cluster_turned_along(const struct asset_cluster *cluster, const float looking[3]);
+
 /* What an asset file is made of. Pointers are only read. Zero-initialise. */
 struct asset_parts {
     uint64_t key;
@@ -112,14 +129,15 @@ struct asset_parts {
     const uint8_t (*colors)[4];  /* NULL: none */
     const uint32_t *indices;
     const struct asset_primitive *primitives;
-    const struct asset_level *levels; /* NULL: one level that holds everything */
+    const struct asset_level *levels;     /* NULL: one level that holds everything */
+    const struct asset_cluster *clusters; /* NULL: one for each primitive */
     const struct asset_material *materials;
     const struct asset_texture *textures;
     const uint8_t *texels;
     const struct asset_sensor *sensors;
     const float *geodesic_m;
     const char *names; /* NULL: one empty name */
-    uint32_t vertex_count, index_count, primitive_count, level_count, material_count, texture_count, sensor_count;
+    uint32_t vertex_count, index_count, primitive_count, level_count, material_count, texture_count, sensor_count, cluster_count;
     size_t texel_bytes, name_bytes;
 };
 

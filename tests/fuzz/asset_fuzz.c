@@ -34,11 +34,26 @@ static void check_primitives(const struct asset_view *view)
         }
 }
 
+static void check_clusters(const struct asset_view *view)
+{
+    uint32_t next = 0;
+    for (uint32_t p = 0; p < view->header->primitive_count; p++)
+        for (uint32_t at = 0; at < view->primitives[p].index_count; next++) {
+            require(next < view->header->cluster_count, "clusters hold the primitives");
+            const struct asset_cluster *cluster = &view->clusters[next];
+            require(cluster->first_index == view->primitives[p].first_index + at, "clusters leave no gap");
+            require(cluster->low_m[1] <= view->positions_m[view->indices[cluster->first_index]][1], "boxes hold their vertices");
+            at += cluster->index_count;
+        }
+    require(next == view->header->cluster_count, "clusters are the primitives'");
+}
+
 static void check_view(const struct asset_view *view)
 {
     const struct asset_header *h = view->header;
     unsigned sum = 0;
     check_primitives(view);
+    check_clusters(view);
     for (uint32_t v = 0; v < h->vertex_count; v++) {
         require(isfinite(view->positions_m[v][0]) && isfinite(view->normals[v][2]), "vertices are finite");
         require(!view->texcoords || isfinite(view->texcoords[v][1]), "texture coordinates are finite");

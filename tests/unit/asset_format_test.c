@@ -21,6 +21,11 @@ static const uint32_t indices[9] = { 0, 1, 2, 1, 3, 2, 0, 1, 2 };
 static const struct asset_primitive primitives[2] = { { .index_count = 6, .name = 1 }, { .first_index = 6, .index_count = 3, .name = 1 } };
 static const struct asset_level levels[2] = { { .primitive_count = 1, .vertex_count = 4 },
                                               { .first_primitive = 1, .primitive_count = 1, .vertex_count = 3, .error_m = 0.5f } };
+static const struct asset_cluster clusters[3] = {
+    { .index_count = 3, .high_m = { 1, 1, 0 }, .cone_axis = { 0, 0, 1 } },
+    { .first_index = 3, .index_count = 3, .high_m = { 1, 1, 0.5f }, .cone_cutoff = 1 },
+    { .first_index = 6, .index_count = 3, .high_m = { 1, 1, 0 }, .cone_axis = { 0, 0.6f, 0.8f }, .cone_cutoff = 0.6f },
+};
 static const struct asset_material materials[1] = { {
     .base_color = { 0.5f, 0.5f, 0.5f, 1 },
     .roughness = 0.5f,
@@ -47,6 +52,7 @@ static const struct asset_parts good = {
     .indices = indices,
     .primitives = primitives,
     .levels = levels,
+    .clusters = clusters,
     .materials = materials,
     .textures = textures,
     .texels = texels,
@@ -60,6 +66,7 @@ static const struct asset_parts good = {
     .material_count = 1,
     .texture_count = 1,
     .sensor_count = 2,
+    .cluster_count = 3,
     .texel_bytes = 8,
     .name_bytes = 6,
 };
@@ -126,6 +133,7 @@ static void what_is_built_is_read_back(void **state)
     assert_memory_equal(v.colors, colors, sizeof(colors));
     assert_memory_equal(v.indices, indices, sizeof(indices));
     assert_memory_equal(v.levels, levels, sizeof(levels));
+    assert_memory_equal(v.clusters, clusters, sizeof(clusters));
     assert_memory_equal(v.sensors, sensors, sizeof(sensors));
     assert_memory_equal(v.geodesic_m, geodesic, sizeof(geodesic));
     assert_memory_equal(v.texels, texels, sizeof(texels));
@@ -158,13 +166,15 @@ static void the_smallest_asset_is_good(void **state)
     assert_null(v.texcoords);
     assert_null(v.colors);
     assert_string_equal(v.names, "");
+    assert_int_equal(v.header->cluster_count, 1);
+    assert_int_equal(v.clusters[0].index_count, 6);
     free(f.bytes);
 }
 
 static void the_layout_is_pinned(void **state)
 {
     (void)state;
-    assert_int_equal(sizeof(struct asset_header), 328);
+    assert_int_equal(sizeof(struct asset_header), 344);
     assert_int_equal(offsetof(struct asset_header, checksum), 24);
     assert_int_equal(offsetof(struct asset_header, key), 32);
     assert_int_equal(offsetof(struct asset_header, bounds_min_m), 64);
@@ -173,12 +183,13 @@ static void the_layout_is_pinned(void **state)
     assert_int_equal(sizeof(struct asset_material), 80);
     assert_int_equal(offsetof(struct asset_material, base_color_texture), 48);
     assert_int_equal(sizeof(struct asset_level), 20);
+    assert_int_equal(sizeof(struct asset_cluster), 48);
     assert_int_equal(sizeof(struct asset_texture), 24);
     assert_int_equal(sizeof(struct asset_sensor), 40);
-    assert_int_equal(ASSET_SECTION_COUNT, 13);
+    assert_int_equal(ASSET_SECTION_COUNT, 14);
     struct file f = build(&good);
-    assert_memory_equal(f.bytes, "PLCASSET\2\0\0\0\x48\1\0\0", 16);
-    assert_int_equal(XXH3_64bits(f.bytes + 328, f.size - 328), 0x998d622f1d1e9554ull); /* changes only with the format's version */
+    assert_memory_equal(f.bytes, "PLCASSET\3\0\0\0\x58\1\0\0", 16);
+    assert_int_equal(XXH3_64bits(f.bytes + 344, f.size - 344), 0xe936d56d5444c6beull); /* changes only with the format's version */
     free(f.bytes);
 }
 
@@ -195,7 +206,7 @@ static void truncated_or_foreign_files_are_refused(void **state)
     struct file f = build(&good);
     refused(&f, f.size - 64, "truncated: ");
     f = build(&good);
-    refused(&f, 100, "truncated: 100 bytes, the header alone has 328");
+    refused(&f, 100, "truncated: 100 bytes, the header alone has 344");
     f = build(&good);
     f.header->file_bytes -= 64;
     refused(&f, f.size, "too long");
@@ -203,8 +214,8 @@ static void truncated_or_foreign_files_are_refused(void **state)
     memcpy(f.bytes, "glTF", 4);
     refused_sealed(&f, "magic");
     f = build(&good);
-    f.header->version = 3;
-    refused_sealed(&f, "version 3, this program reads version 2");
+    f.header->version = 4;
+    refused_sealed(&f, "version 4, this program reads version 3");
     f = build(&good);
     f.header->header_bytes = 320;
     refused_sealed(&f, "header of 320 bytes");
@@ -339,6 +350,113 @@ static void wrong_primitives_and_levels_are_refused(void **state)
     refused_sealed(&f, "the levels hold 1 primitives of 2");
 }
 
+static void wrong_clusters_are_refused(void **state)
+{
+    (void)state;
+    struct file f = build(&good);
+    ((struct asset_cluster *)part(&f, ASSET_CLUSTERS))[1].first_index = 0;
+    refused_sealed(&f, "cluster 1 of 3: indices 0+3, expected some of 3..6 (primitive 0)");
+    f = build(&good);
+    ((struct asset_cluster *)part(&f, ASSET_CLUSTERS))[1].index_count = 6;
+    refused_sealed(&f, "cluster 1 of 3: indices 3+6, expected some of 3..6");
+    f = build(&good);
+    ((struct asset_cluster *)part(&f, ASSET_CLUSTERS))[0].index_count = 0;
+    refused_sealed(&f, "cluster 0 of 3: indices 0+0");
+    f = build(&good);
+    ((struct asset_cluster *)part(&f, ASSET_CLUSTERS))[2].index_count = 2;
+    refused_sealed(&f, "cluster 2 of 3: indices 6+2");
+    f = build(&good);
+    ((struct asset_cluster *)part(&f, ASSET_CLUSTERS))[1].high_m[2] = 0.4f;
+    refused_sealed(&f, "cluster 1: index 4 at 0.5 m lies outside its box 0..0.4 m");
+    f = build(&good);
+    ((struct asset_cluster *)part(&f, ASSET_CLUSTERS))[2].low_m[0] = NAN;
+    refused_sealed(&f, "cluster 2: box or cone is not finite");
+    f = build(&good);
+    ((struct asset_cluster *)part(&f, ASSET_CLUSTERS))[2].cone_cutoff = 1.5f;
+    refused_sealed(&f, "cutoff 1.5 lies outside 0..1");
+    f = build(&good);
+    ((struct asset_cluster *)part(&f, ASSET_CLUSTERS))[2].cone_cutoff = 0.5f;
+    refused_sealed(&f, "cluster 2: a normal lies outside its cone (0.8)");
+    f = build(&good);
+    ((struct asset_cluster *)part(&f, ASSET_CLUSTERS))[0].cone_axis[2] = 2;
+    refused_sealed(&f, "cluster 0: cone axis of length 2");
+    struct asset_parts parts = good;
+    parts.cluster_count = 2;
+    f = build(&parts);
+    refused_sealed(&f, "cluster 2 of 2");
+    const struct asset_cluster more[4] = { clusters[0], clusters[1], clusters[2], clusters[2] };
+    parts.clusters = more;
+    parts.cluster_count = 4;
+    f = build(&parts);
+    refused_sealed(&f, "the primitives hold 3 clusters of 4");
+}
+
+static float unit(uint32_t *seed)
+{
+    *seed = *seed * 1664525u + 1013904223u;
+    return (float)(*seed >> 8) / 16777216.0f;
+}
+
+/* Whether all of a cluster's triangles show their backs: asked of each, in doubles. */
+static bool backs_only(const float (*p)[3], const uint32_t *v, uint32_t count, const float eye[3], bool along)
+{
+    for (uint32_t i = 0; i < count; i += 3) {
+        double u[3], w[3], to[3], dot = 0;
+        for (int a = 0; a < 3; a++) {
+            u[a] = (double)p[v[i + 1]][a] - (double)p[v[i]][a];
+            w[a] = (double)p[v[i + 2]][a] - (double)p[v[i]][a];
+            to[a] = along ? (double)eye[a] : (double)p[v[i]][a] - (double)eye[a];
+        }
+        for (int a = 0; a < 3; a++)
+            dot += to[a] * (u[(a + 1) % 3] * w[(a + 2) % 3] - u[(a + 2) % 3] * w[(a + 1) % 3]);
+        if (dot < -1e-9)
+            return false;
+    }
+    return true;
+}
+
+/* Random fans that look about upwards, from random eyes: what is left out has only backs, and much that has only backs is left out. */
+static void turned_away_means_only_backs(void **state)
+{
+    (void)state;
+    uint32_t seed = 5, backs = 0, left_out = 0;
+    for (int n = 0; n < 4000; n++) {
+        float p[8][3], eye[3], direction[3], length = 0;
+        uint32_t v[18];
+        for (int i = 0; i < 8; i++) {
+            double turn = i * acos(-1) / 3.5;
+            p[i][0] = i ? (float)cos(turn) + 0.2f * unit(&seed) : 0;
+            p[i][1] = i ? (float)sin(turn) + 0.2f * unit(&seed) : 0;
+            p[i][2] = (unit(&seed) - 0.5f) * (n % 4) * 0.4f;
+        }
+        for (uint32_t i = 0; i < 6; i++) {
+            v[3 * i] = 0;
+            v[3 * i + 1] = 1 + i;
+            v[3 * i + 2] = 2 + i;
+        }
+        for (int a = 0; a < 3; a++) {
+            eye[a] = 10 * (unit(&seed) - 0.5f);
+            direction[a] = unit(&seed) - 0.5f;
+            length += direction[a] * direction[a];
+        }
+        for (int a = 0; a < 3; a++)
+            direction[a] /= sqrtf(length);
+        struct asset_cluster cluster = { .index_count = 18 };
+        asset_cluster_measure(&cluster, (const float(*)[3])p, v);
+        for (int along = 0; along < 2; along++) {
+            const float *from = along ? direction : eye;
+            bool away = along ? asset_cluster_turned_along(&cluster, from) : asset_cluster_turned_away(&cluster, from);
+            bool back = backs_only((const float(*)[3])p, v, 18, from, along);
+            if (away && !back)
+                fail_msg("fan %d of seed 5: left out, but a front is seen", n);
+            backs += back;
+            left_out += away;
+        }
+    }
+    print_message("# %u of %u fans with only backs are left out (seed 5)\n", left_out, backs);
+    assert_true(left_out > backs / 3);
+}
+
 static void wrong_materials_and_textures_are_refused(void **state)
 {
     (void)state;
@@ -406,6 +524,8 @@ int main(void)
         cmocka_unit_test(sections_out_of_bounds_are_refused),
         cmocka_unit_test(wrong_vertices_are_refused),
         cmocka_unit_test(wrong_primitives_and_levels_are_refused),
+        cmocka_unit_test(wrong_clusters_are_refused),
+        cmocka_unit_test(turned_away_means_only_backs),
         cmocka_unit_test(wrong_materials_and_textures_are_refused),
         cmocka_unit_test(wrong_sensors_are_refused),
     };

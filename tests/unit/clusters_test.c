@@ -1,0 +1,126 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Clusters of a torus of two materials: no triangle is lost, they are small, and views from outside leave out about what they may. */
+#include "preprocess/clusters.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "base/mem.h"
+
+#define AROUND 120u
+#define ALONG 60u
+
+static void make_torus(struct geometry *g)
+{
+    const double turn = 2 * acos(-1);
+    *g = (struct geometry){ .vertex_count = AROUND * ALONG, .index_count = 6 * AROUND * ALONG, .primitive_count = 3 };
+    g->positions_m = mem_array(g->vertex_count, sizeof(*g->positions_m));
+    g->indices = mem_array(g->index_count, sizeof(*g->indices));
+    g->primitives = mem_array(3, sizeof(*g->primitives));
+    g->primitives[0] = (struct asset_primitive){ .index_count = 6 * ALONG * 40 };
+    g->primitives[1] = (struct asset_primitive){ .first_index = 6 * ALONG * 40, .index_count = 6 * ALONG * 79 };
+    g->primitives[2] = (struct asset_primitive){ .first_index = 6 * ALONG * 119, .index_count = 6 * ALONG };
+    for (uint32_t i = 0; i < AROUND; i++)
+        for (uint32_t j = 0; j < ALONG; j++) {
+            double a = turn * i / AROUND, b = turn * j / ALONG, r = 3 + cos(b);
+            uint32_t v = i * ALONG + j, right = (i + 1) % AROUND * ALONG + j, up = i * ALONG + (j + 1) % ALONG;
+            const uint32_t corners[6] = { v, right, right - j + (j + 1) % ALONG, v, right - j + (j + 1) % ALONG, up };
+            const float at[3] = { (float)(r * cos(a)), (float)(r * sin(a)), (float)sin(b) };
+            memcpy(g->positions_m[v], at, sizeof(at));
+            memcpy(g->indices + 6 * v, corners, sizeof(corners));
+        }
+}
+
+static int by_bytes(const void *a, const void *b)
+{
+    return memcmp(a, b, 3 * sizeof(uint32_t));
+}
+
+/* Triangles of a primitive in an order of their own: least corner first, sorted. */
+static uint32_t *in_order(const struct geometry *g, const struct asset_primitive *p)
+{
+    uint32_t *triangles = mem_array(p->index_count, sizeof(*triangles));
+    for (uint32_t i = 0; i < p->index_count; i += 3) {
+        const uint32_t *v = g->indices + p->first_index + i;
+        uint32_t least = v[0] < v[1] && v[0] < v[2] ? 0 : v[1] < v[2] ? 1 : 2;
+        for (uint32_t c = 0; c < 3; c++)
+            triangles[i + c] = v[(least + c) % 3];
+    }
+    qsort(triangles, p->index_count / 3, 3 * sizeof(*triangles), by_bytes);
+    return triangles;
+}
+
+static void no_triangle_is_lost(void **state)
+{
+    (void)state;
+    struct workers *workers = workers_create(2);
+    for (int threaded = 0; threaded < 2; threaded++) {
+        struct geometry g;
+        struct clusters clusters;
+        uint32_t *before[3], next = 0;
+        make_torus(&g);
+        for (int p = 0; p < 3; p++)
+            before[p] = in_order(&g, &g.primitives[p]);
+        clusters_make(&clusters, &g, threaded ? workers : NULL);
+        for (int p = 0; p < 3; p++) {
+            uint32_t *after = in_order(&g, &g.primitives[p]);
+            assert_memory_equal(before[p], after, g.primitives[p].index_count * sizeof(*after));
+            for (uint32_t at = 0; at < g.primitives[p].index_count; next++) {
+                assert_int_equal(clusters.at[next].first_index, g.primitives[p].first_index + at);
+                assert_in_range(clusters.at[next].index_count, 3, 3 * CLUSTERS_MAX_TRIANGLES);
+                at += clusters.at[next].index_count;
+            }
+            mem_free(after);
+            mem_free(before[p]);
+        }
+        assert_int_equal(next, clusters.count);
+        clusters_finish(&clusters);
+        geometry_finish(&g);
+    }
+    workers_destroy(&workers);
+}
+
+/* From 20 m away, of a torus 8 m wide. */
+static void views_leave_out_much(void **state)
+{
+    (void)state;
+    struct geometry g;
+    struct clusters clusters;
+    double half_m = 0;
+    make_torus(&g);
+    clusters_make(&clusters, &g, NULL);
+    for (uint32_t c = 0; c < clusters.count; c++)
+        for (int axis = 0; axis < 3; axis++)
+            half_m += (double)(clusters.at[c].high_m[axis] - clusters.at[c].low_m[axis]) / 6 / clusters.count;
+    uint32_t left_out = 0, backs = 0;
+    const float eye_m[3] = { 0, 12, 16 };
+    for (uint32_t c = 0; c < clusters.count; c++)
+        left_out += asset_cluster_turned_away(&clusters.at[c], eye_m) ? clusters.at[c].index_count / 3 : 0;
+    for (uint32_t i = 0; i < g.index_count; i += 3) {
+        struct asset_cluster one = { .first_index = i, .index_count = 3 };
+        asset_cluster_measure(&one, (const float(*)[3])g.positions_m, g.indices);
+        backs += asset_cluster_turned_away(&one, eye_m);
+    }
+    print_message("# %u clusters, half %.2f m wide; %u of %u backs left out\n", clusters.count, half_m, left_out, backs);
+    assert_in_range(clusters.count, g.index_count / 3 / CLUSTERS_MAX_TRIANGLES, g.index_count / 3 / CLUSTERS_MAX_TRIANGLES * 2);
+    assert_true(half_m < 0.9);
+    assert_true(left_out > backs / 3);
+    clusters_finish(&clusters);
+    geometry_finish(&g);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(no_triangle_is_lost),
+        cmocka_unit_test(views_leave_out_much),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
