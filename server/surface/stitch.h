@@ -4,8 +4,15 @@
 #define SURFACE_STITCH_H
 #include "surface/trimesh.h"
 
+/* What was joined: a place of the surface and the one that it became part of. Equal where edges cross a face. */
+struct stitch_bridge {
+    double from_m[3], to_m[3];
+};
+
 struct stitch_report {
     size_t bridges;
+    struct stitch_bridge *made; /* of all of them; mem_free. Grows from call to call */
+    size_t made_count, made_capacity;
     double longest_m;
     int k; /* neighbours asked of the point cloud; -1: out of memory */
 };

@@ -49,6 +49,8 @@ struct surface {
     struct bvh *bvh;
     double edge_m; /* mean edge length */
     struct surface_report report;
+    struct stitch_bridge *bridges;
+    size_t bridge_count, bridge_capacity;
 };
 
 static double size_of(const float (*positions)[3], const uint32_t *triangles, size_t triangle_count)
@@ -123,8 +125,14 @@ static void follow(struct surface *surface, const uint32_t *target)
         surface->vertex_point[v] = target[surface->vertex_point[v]];
 }
 
-static void note_bridges(struct surface_report *report, const struct stitch_report *made)
+static void note_bridges(struct surface *surface, struct stitch_report *made)
 {
+    struct surface_report *report = &surface->report;
+    mem_grow(&surface->bridges, &surface->bridge_capacity, surface->bridge_count + made->made_count, sizeof(*surface->bridges));
+    if (made->made_count)
+        memcpy(surface->bridges + surface->bridge_count, made->made, made->made_count * sizeof(*made->made));
+    surface->bridge_count += made->made_count;
+    mem_free(made->made);
     report->bridges += made->bridges;
     report->longest_bridge_m = max_of(report->longest_bridge_m, made->longest_m);
     report->k = report->k > made->k ? report->k : made->k;
@@ -136,7 +144,7 @@ static bool close_seams(struct surface *surface)
     uint32_t *target = mem_array(surface->mesh.point_count, sizeof(*target));
     stitch_seams(&surface->mesh, surface->report.tolerance_m, target, &made);
     follow(surface, target);
-    note_bridges(&surface->report, &made);
+    note_bridges(surface, &made);
     mem_free(target);
     if (made.k < 0)
         log_err(surface->log, "neighbours of %zu points: out of memory", surface->mesh.point_count);
@@ -242,7 +250,7 @@ static void join_parts(struct surface *surface, const struct parts *parts)
     uint32_t *part = parts_now(parts, &surface->mesh), *target = mem_array(surface->mesh.point_count, sizeof(*target));
     stitch_parts(&surface->mesh, part, surface->report.tolerance_m, target, &made);
     follow(surface, target);
-    note_bridges(&surface->report, &made);
+    note_bridges(surface, &made);
     mem_free(part);
     mem_free(target);
     char *hidden = mem_array(surface->mesh.tri_count, 1);
@@ -381,6 +389,7 @@ void surface_destroy(struct surface **surface_ptr)
     mem_free(surface->vertex_point);
     mem_free(surface->component);
     mem_free(surface->strays);
+    mem_free(surface->bridges);
     mem_free(surface);
     *surface_ptr = NULL;
 }
@@ -388,6 +397,20 @@ void surface_destroy(struct surface **surface_ptr)
 const struct surface_report *surface_report(const struct surface *surface)
 {
     return &surface->report;
+}
+
+void surface_look(const struct surface *surface, struct surface_look *look)
+{
+    *look = (struct surface_look){
+        .points_m = (const double(*)[3])surface->mesh.points,
+        .tris = (const uint32_t(*)[3])surface->mesh.tris,
+        .point_count = surface->mesh.point_count,
+        .tri_count = surface->mesh.tri_count,
+        .visible_count = surface->visible.tri_count,
+        .vertex_point = surface->vertex_point,
+        .bridges = surface->bridges,
+        .bridge_count = surface->bridge_count,
+    };
 }
 
 void surface_nearest(const struct surface *surface, const double point_m[3], struct surface_place *place)

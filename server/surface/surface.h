@@ -56,6 +56,18 @@ struct surface *surface_create(struct log *log, struct workers *workers, const f
 void surface_destroy(struct surface **surface); /* &NULL is fine; leaves NULL */
 const struct surface_report *surface_report(const struct surface *surface);
 
+/* The surface as distances are found on it, to be looked at. Belongs to the surface. */
+struct stitch_bridge;
+struct surface_look {
+    const double (*points_m)[3];
+    const uint32_t (*tris)[3]; /* the visible ones first */
+    size_t point_count, tri_count, visible_count;
+    const uint32_t *vertex_point; /* of the model's vertices; other points are samples */
+    const struct stitch_bridge *bridges; /* stitch.h */
+    size_t bridge_count;
+};
+void surface_look(const struct surface *surface, struct surface_look *look);
+
 struct surface_place {
     double position_m[3]; /* on the surface */
     double distance_m;    /* from the point asked for */

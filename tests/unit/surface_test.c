@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Distances along surfaces against formulas, on clean shapes and on the same shapes with every fault that exports have; what is joined,
    what is not, what is hidden. */
+#include "surface/stitch.h"
 #include "surface/surface.h"
 
 #include <math.h>
@@ -308,6 +309,41 @@ static void gaps_are_closed_and_walls_are_not_passed(void **state)
     assert_true(second_plate_reached(0.5, 0.0002)); /* one lying on the other */
 }
 
+/* Every bridge that is counted can be shown: across the gap, and where the pipe passes through the shell. */
+static void assert_bridges_are_shown(const struct surface *surface, double low_x, double high_x)
+{
+    const struct surface_report *report = surface_report(surface);
+    struct surface_look look;
+    double longest_m = 0;
+    surface_look(surface, &look);
+    assert_true(look.bridge_count > 0);
+    assert_int_equal(look.bridge_count, report->bridges);
+    for (size_t i = 0; i < look.bridge_count; i++) {
+        const struct stitch_bridge *bridge = &look.bridges[i];
+        assert_true(bridge->from_m[0] > low_x && bridge->from_m[0] < high_x);
+        longest_m = fmax(longest_m, hypot3(bridge->from_m, bridge->to_m));
+    }
+    assert_float_equal(longest_m, report->longest_bridge_m, 1e-12);
+}
+
+static void bridges_lie_in_the_gap(void **state)
+{
+    struct cad plate = { 0 }, both = { 0 };
+    (void)state;
+    cad_plate(&plate, &chance, 30, 30, 1, 1, 0);
+    append(&both, &plate, 0, 0, 0);
+    append(&both, &plate, 1.0003, 0, 0);
+    struct surface *surface = surface_of(&both);
+    assert_int_equal(surface_report(surface)->components, 2);
+    assert_int_equal(surface_report(surface)->components_after, 1);
+    assert_int_equal(surface_report(surface)->bridges, 30); /* each of the border's vertices with the one opposite */
+    assert_float_equal(surface_report(surface)->longest_bridge_m, 0.0003, 1e-6);
+    assert_bridges_are_shown(surface, 0.9999, 1.0004);
+    surface_destroy(&surface);
+    cad_finish(&plate);
+    cad_finish(&both);
+}
+
 static void a_pipe_that_ends_inside_a_shell_is_joined_to_it(void **state)
 {
     struct cad pipe = { 0 }, both = { 0 };
@@ -326,6 +362,7 @@ static void a_pipe_that_ends_inside_a_shell_is_joined_to_it(void **state)
     const struct surface_report *report = surface_report(surface);
     assert_int_equal(report->components, 2);
     assert_int_equal(report->components_after, 1);
+    assert_bridges_are_shown(surface, -0.25, 0.25);
     assert_true(report->hidden_vertices >= 48 * 8);                   /* the pipe's rings inside the sphere */
     double seam = asin(0.2), truth = M_PI - seam + (3.5 - cos(seam)); /* over the sphere to the pipe, then along it */
     assert_float_equal(distances[both.vertex_count - 1], truth, 0.01 * truth);
@@ -469,6 +506,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(shapes_with_every_fault_are_exact_enough),
         cmocka_unit_test(gaps_are_closed_and_walls_are_not_passed),
+        cmocka_unit_test(bridges_lie_in_the_gap),
         cmocka_unit_test(a_pipe_that_ends_inside_a_shell_is_joined_to_it),
         cmocka_unit_test(nothing_leads_through_a_closed_part),
         cmocka_unit_test(a_sensor_is_dropped_onto_the_surface),
