@@ -13,16 +13,18 @@ enum { GOOD = 0, FAILED = 1, USAGE = 2 };
 
 static void print_usage(FILE *out)
 {
-    fputs("usage: plantcastd PLANT.yaml [--listen ADDR] [--port N] [--gl auto|egl-device|egl-surfaceless|osmesa] [--prepared DIR]\n"
-          "                  [--web DIR] [--log-level error|warn|info|debug] [--threads N] [--open-viewers]\n"
+    fputs("usage: plantcastd PLANT.yaml [--listen ADDR] [--port N] [--gl auto|egl-device|egl-surfaceless|osmesa]\n"
+          "                  [--gl-device INDEX|PCI] [--prepared DIR] [--web DIR] [--log-level error|warn|info|debug]\n"
+          "                  [--threads N] [--open-viewers]\n"
           "       plantcastd --check PLANT.yaml [--prepared DIR]\n"
-          "       plantcastd --version | --help\n"
+          "       plantcastd --list-gl-devices | --version | --help\n"
           "\n"
           "Serves live pictures of a plant to browsers and other clients.\n"
           "\n"
           "  --listen ADDR    IP address to listen on (127.0.0.1)\n"
           "  --port N         TCP port (8080); 0 takes any that is free\n"
           "  --gl KIND        how to draw (auto: EGL device, EGL surfaceless, OSMesa, in this order)\n"
+          "  --gl-device D    which GPU: its index in --list-gl-devices, or its PCI address (0000:65:00.0)\n"
           "  --prepared DIR   the files that plantcast-prep made (beside the plant file)\n"
           "  --web DIR        the web client's files (found from where this program is)\n"
           "  --threads N      workers for the field and for encoding (one per core)\n"
@@ -78,6 +80,8 @@ enum {
     OPTION_LISTEN = 256,
     OPTION_PORT,
     OPTION_GL,
+    OPTION_GL_DEVICE,
+    OPTION_LIST_GL,
     OPTION_PREPARED,
     OPTION_WEB,
     OPTION_LEVEL,
@@ -92,6 +96,8 @@ static const struct option options[] = {
     { "listen", required_argument, NULL, OPTION_LISTEN },
     { "port", required_argument, NULL, OPTION_PORT },
     { "gl", required_argument, NULL, OPTION_GL },
+    { "gl-device", required_argument, NULL, OPTION_GL_DEVICE },
+    { "list-gl-devices", no_argument, NULL, OPTION_LIST_GL },
     { "prepared", required_argument, NULL, OPTION_PREPARED },
     { "web", required_argument, NULL, OPTION_WEB },
     { "log-level", required_argument, NULL, OPTION_LEVEL },
@@ -112,6 +118,10 @@ static int take_option(int option, struct server_params *params, bool *check)
         return is_address(params->address) ? -1 : usage_error("--listen: not an IP address", optarg);
     case OPTION_PORT: return parse_int(optarg, 0, 65535, &params->port) ? -1 : usage_error("--port: not a port", optarg);
     case OPTION_GL: return gl_kind_parse(optarg, &params->gl) ? -1 : usage_error("--gl: unknown", optarg);
+    case OPTION_GL_DEVICE:
+        params->has_gl_device = true;
+        return gl_device_parse(optarg, &params->gl_device) ? -1 : usage_error("--gl-device: neither an index nor a PCI address", optarg);
+    case OPTION_LIST_GL: return gl_list_devices(stdout) > 0 ? GOOD : FAILED;
     case OPTION_PREPARED: params->prepared = optarg; return -1;
     case OPTION_WEB: params->web = optarg; return -1;
     case OPTION_LEVEL: return parse_level(optarg, &params->log_level) ? -1 : usage_error("--log-level: unknown", optarg);

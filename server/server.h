@@ -10,6 +10,8 @@ struct server_params {
     const char *address; /* to listen on; numeric */
     int port;            /* 0: any that is free */
     enum gl_kind gl;
+    struct gl_device gl_device;
+    bool has_gl_device;
     const char *prepared; /* NULL: beside the plant file */
     const char *web;      /* NULL: found from where the program is */
     enum log_level log_level;

@@ -107,12 +107,6 @@ static bool parse_tier(struct snapshot_options *options, const char *text)
     return options->moving || !strcmp(text, "still");
 }
 
-static bool parse_device(const char *text, int *device)
-{
-    char rest;
-    return sscanf(text, "%d%c", device, &rest) == 1 && *device >= 0;
-}
-
 /* False: the option's argument is wrong. */
 static bool take_own(struct snapshot_options *options, int option, const char *text)
 {
@@ -125,7 +119,7 @@ static bool take_own(struct snapshot_options *options, int option, const char *t
     case OPTION_TIER: return parse_tier(options, text);
     case OPTION_NO_OVERLAY: return options->no_overlay = true;
     case OPTION_GL: return gl_kind_parse(text, &options->gl);
-    case OPTION_GL_DEVICE: return parse_device(text, &options->gl_device);
+    case OPTION_GL_DEVICE: options->has_gl_device = true; return gl_device_parse(text, &options->gl_device);
     case OPTION_VALUES:
         if (options->value_count == SNAPSHOT_MAX)
             return false;
@@ -190,7 +184,7 @@ static int from_daemon(const struct snapshot_options *options)
 
 int cmd_snapshot(int argc, char **argv)
 {
-    struct snapshot_options options = { .gl_device = -1 };
+    struct snapshot_options options = { 0 };
     int code = parse(argc, argv, &options);
     if (code < 0)
         code = strstr(options.from, "://") ? from_daemon(&options) : snapshot_offline(&options);

@@ -17,7 +17,8 @@ struct snapshot_options {
     size_t value_count;
     const char *prepared; /* NULL: beside the plant file */
     enum gl_kind gl;
-    int gl_device;
+    struct gl_device gl_device;
+    bool has_gl_device;
     int64_t at_utc_ns;                     /* 0: now */
     bool moving, no_overlay, offline_only; /* offline_only: something was asked for that a daemon does not offer */
 };

@@ -59,7 +59,7 @@ static bool set_up(struct studio *studio, const struct snapshot_options *options
 {
     studio->workers = workers_create(0);
     studio->field = field_create(studio->workers, studio->scene);
-    studio->gl = gl_create(studio->log, options->gl, options->gl_device);
+    studio->gl = gl_create(studio->log, options->gl, options->has_gl_device ? &options->gl_device : NULL);
     if (studio->gl)
         studio->renderer = renderer_create(studio->log, studio->gl, studio->scene, studio->field);
     return studio->renderer != NULL;

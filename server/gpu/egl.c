@@ -7,9 +7,8 @@
 #include <glad/gl.h>
 
 #include "base/mem.h"
+#include "gpu/egl_devices.h"
 #include "gpu/gl_impl.h"
-
-enum { MAX_DEVICES = 64 };
 
 struct egl {
     struct gl base;
@@ -32,17 +31,30 @@ static const char *egl_error_text(void)
     }
 }
 
-/* A driver that was in use stays loaded: its own leaks are known by its name (tests/leaks.txt), which an unloaded one has lost. */
+static bool egl_current(const struct gl *gl)
+{
+    const struct egl *egl = (const struct egl *)gl;
+    return egl->context != EGL_NO_CONTEXT && eglGetCurrentContext() == egl->context;
+}
+
+static void egl_lose(struct gl *gl)
+{
+    struct egl *egl = (struct egl *)gl;
+    eglMakeCurrent(egl->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    eglDestroyContext(egl->display, egl->context);
+    egl->context = EGL_NO_CONTEXT;
+}
+
+/* A driver that was in use stays loaded: its own leaks are known by its name (tests/leaks.txt), which an unloaded one has lost. One whose
+   context is lost is closed, so that the next start finds the device as it is then. */
 static void egl_destroy(struct gl *gl)
 {
     struct egl *egl = (struct egl *)gl;
-    bool used = egl->context != EGL_NO_CONTEXT;
-    if (used) {
-        eglMakeCurrent(egl->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
-        eglDestroyContext(egl->display, egl->context);
-    } else if (egl->display) {
+    bool used = egl->context != EGL_NO_CONTEXT, lost = used && gl_lost(gl);
+    if (used)
+        egl_lose(gl);
+    if (egl->display && (lost || !used))
         eglTerminate(egl->display);
-    }
     if (egl->display && eglReleaseThread) /* EGL 1.2: not loaded yet where the display could not be initialised */
         eglReleaseThread();
     if (!used)
@@ -50,123 +62,154 @@ static void egl_destroy(struct gl *gl)
     mem_free(egl);
 }
 
-static bool load_client(struct log *log, const char *name)
+static bool load_client(const char *name, struct text *why)
 {
     if (gladLoaderLoadEGL(EGL_NO_DISPLAY))
         return true;
-    log_info(log, "gl: %s: libEGL.so.1 cannot be loaded", name);
+    text_add(why, "; %s: libEGL.so.1 cannot be loaded", name);
     return false;
 }
 
+/* One that says when it is lost, where the driver can. */
+static EGLContext create_context(EGLDisplay display, EGLConfig config)
+{
+    static const EGLint telling[] = {
+        EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5, EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+        EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY, EGL_LOSE_CONTEXT_ON_RESET, EGL_NONE
+    };
+    static const EGLint silent[] = {
+        EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5, EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+        EGL_NONE
+    };
+    EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, telling);
+    return context ? context : eglCreateContext(display, config, EGL_NO_CONTEXT, silent);
+}
+
 /* From an initialised display to a current context. */
-static bool make_current(struct log *log, struct egl *egl, const char *name)
+static bool make_current(struct egl *egl, const char *name, struct text *why)
 {
     static const EGLint config_attributes[] = { EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE };
-    static const EGLint context_attributes[] = {
-        EGL_CONTEXT_MAJOR_VERSION,           4,       EGL_CONTEXT_MINOR_VERSION, 5, EGL_CONTEXT_OPENGL_PROFILE_MASK,
-        EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE
-    };
     EGLConfig config = EGL_NO_CONFIG_KHR;
     EGLint configs = 0;
     EGLint major = 0, minor = 0;
     if (!eglInitialize(egl->display, &major, &minor)) {
-        log_info(log, "gl: %s: cannot initialise: %s", name, egl_error_text());
+        text_add(why, "; %s: cannot initialise: %s", name, egl_error_text());
         return false;
     }
     gladLoaderLoadEGL(egl->display);
     if (!eglBindAPI(EGL_OPENGL_API)) {
-        log_info(log, "gl: %s: EGL %d.%d has no desktop OpenGL", name, major, minor);
+        text_add(why, "; %s: EGL %d.%d has no desktop OpenGL", name, major, minor);
         return false;
     }
     if (!GLAD_EGL_KHR_no_config_context && (!eglChooseConfig(egl->display, config_attributes, &config, 1, &configs) || configs < 1)) {
-        log_info(log, "gl: %s: no configuration renders OpenGL", name);
+        text_add(why, "; %s: no configuration renders OpenGL", name);
         return false;
     }
-    egl->context = eglCreateContext(egl->display, config, EGL_NO_CONTEXT, context_attributes);
+    egl->context = create_context(egl->display, config);
     if (!egl->context) {
-        log_info(log, "gl: %s: no context: %s", name, egl_error_text());
+        text_add(why, "; %s: no context: %s", name, egl_error_text());
         return false;
     }
     if (!eglMakeCurrent(egl->display, EGL_NO_SURFACE, EGL_NO_SURFACE, egl->context)) {
-        log_info(log, "gl: %s: context cannot be made current without a surface: %s", name, egl_error_text());
+        text_add(why, "; %s: context cannot be made current without a surface: %s", name, egl_error_text());
         return false;
     }
     if (gladLoadGL((GLADloadfunc)eglGetProcAddress) < GLAD_MAKE_VERSION(4, 5)) {
-        log_info(log, "gl: %s: OpenGL is older than 4.5", name);
+        text_add(why, "; %s: OpenGL is older than 4.5", name);
         return false;
     }
     return true;
 }
 
-static struct gl *egl_from_display(struct log *log, const struct gl_impl *impl, EGLDisplay display)
+static struct gl *egl_from_display(const struct gl_impl *impl, EGLDisplay display, struct text *why)
 {
     struct egl *egl = mem_new(sizeof(*egl));
     egl->base = (struct gl){ .kind = impl->kind, .impl = impl };
     egl->display = display;
     if (!display)
-        log_info(log, "gl: %s: no display: %s", impl->name, egl_error_text());
-    if (!display || !make_current(log, egl, impl->name)) {
+        text_add(why, "; %s: no display: %s", impl->name, egl_error_text());
+    if (!display || !make_current(egl, impl->name, why)) {
         egl_destroy(&egl->base);
         return NULL;
     }
     return &egl->base;
 }
 
-static bool device_is_software(EGLDeviceEXT device)
+static struct gl *egl_from_device(EGLDeviceEXT device, struct text *why)
 {
-    const char *extensions = eglQueryDeviceStringEXT(device, EGL_EXTENSIONS);
-    return extensions && strstr(extensions, "EGL_MESA_device_software");
+    return egl_from_display(&gl_egl_device_impl, eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, device, NULL), why);
 }
 
-static struct gl *egl_device_create(struct log *log, int device, bool software)
+static struct gl *egl_device_create(const struct gl_device *asked, bool software, struct text *why)
 {
     const struct gl_impl *impl = &gl_egl_device_impl;
-    EGLDeviceEXT devices[MAX_DEVICES];
-    EGLint count = 0;
-    if (!load_client(log, impl->name))
+    struct egl_devices devices;
+    if (!load_client(impl->name, why) || !egl_devices_read(&devices, impl->name, why))
         return NULL;
-    if (!GLAD_EGL_EXT_platform_device || !eglQueryDevicesEXT || !eglGetPlatformDisplayEXT) {
-        log_info(log, "gl: %s: this EGL cannot list devices", impl->name);
-        return NULL;
-    }
-    if (!eglQueryDevicesEXT(MAX_DEVICES, devices, &count) || count < 1) {
-        log_info(log, "gl: %s: no device", impl->name);
-        return NULL;
-    }
-    if (device >= count) {
-        log_info(log, "gl: %s: device %d asked for, there are %d", impl->name, device, count);
-        return NULL;
+    if (asked) {
+        int found = egl_devices_find(&devices, asked, impl->name, why);
+        return found >= 0 ? egl_from_device(devices.at[found], why) : NULL;
     }
     for (int hardware = 1; hardware >= (software ? 0 : 1); hardware--)
-        for (int i = 0; i < count; i++) {
-            if (device >= 0 ? i != device : device_is_software(devices[i]) == (bool)hardware)
+        for (int i = 0; i < devices.count; i++) {
+            if (egl_device_is_software(devices.at[i]) == (bool)hardware)
                 continue;
-            struct gl *gl = egl_from_display(log, impl, eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, devices[i], NULL));
-            if (gl || device >= 0)
+            struct gl *gl = egl_from_device(devices.at[i], why);
+            if (gl)
                 return gl;
-            if (!load_client(log, impl->name))
+            if (!load_client(impl->name, why))
                 return NULL;
         }
-    log_info(log, "gl: %s: none of %d devices is hardware that works", impl->name, count);
+    text_add(why, "; %s: none of %d devices is hardware that works", impl->name, devices.count);
     return NULL;
 }
 
-static struct gl *egl_surfaceless_create(struct log *log, int device, bool software)
+int gl_list_devices(FILE *out)
+{
+    struct egl_devices devices;
+    struct text why = { 0 };
+    int count = 0;
+    if (!load_client("egl-device", &why) || !egl_devices_read(&devices, "egl-device", &why))
+        goto end;
+    for (count = 0; count < devices.count; count++) {
+        struct gl_device address;
+        char where[32] = "no PCI address";
+        if (egl_device_address(devices.at[count], &address))
+            snprintf(where, sizeof(where), "%04x:%02x:%02x.%x", address.domain, address.bus, address.slot, address.function);
+        why.length = 0;
+        struct gl *gl = egl_from_device(devices.at[count], &why);
+        fprintf(out, "%d  %-14s  %s%s\n", count, where, gl ? (const char *)glGetString(GL_RENDERER) : "cannot be used",
+                gl ? "" : why.at + strlen(";"));
+        if (gl)
+            gl->impl->destroy(gl);
+        if (!load_client("egl-device", &why))
+            break;
+    }
+end:
+    if (count == 0)
+        fprintf(out, "no EGL device%s\n", why.at ? why.at : "");
+    text_finish(&why);
+    return count;
+}
+
+static struct gl *egl_surfaceless_create(const struct gl_device *device, bool software, struct text *why)
 {
     const struct gl_impl *impl = &gl_egl_surfaceless_impl;
     (void)device, (void)software;
-    if (!load_client(log, impl->name))
+    if (!load_client(impl->name, why))
         return NULL;
     if (!GLAD_EGL_MESA_platform_surfaceless || !eglGetPlatformDisplayEXT) {
-        log_info(log, "gl: %s: this EGL has no surfaceless platform", impl->name);
+        text_add(why, "; %s: this EGL has no surfaceless platform", impl->name);
         return NULL;
     }
-    return egl_from_display(log, impl, eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, NULL));
+    return egl_from_display(impl, eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, NULL), why);
 }
 
 const struct gl_impl gl_egl_device_impl = {
-    .kind = GL_EGL_DEVICE, .name = "egl-device", .create = egl_device_create, .destroy = egl_destroy
+    .kind = GL_EGL_DEVICE, .name = "egl-device", .current = egl_current, .lose = egl_lose,
+    .create = egl_device_create, .destroy = egl_destroy
 };
 const struct gl_impl gl_egl_surfaceless_impl = {
-    .kind = GL_EGL_SURFACELESS, .name = "egl-surfaceless", .create = egl_surfaceless_create, .destroy = egl_destroy
+    .kind = GL_EGL_SURFACELESS, .name = "egl-surfaceless", .current = egl_current, .lose = egl_lose,
+    .create = egl_surfaceless_create, .destroy = egl_destroy
 };

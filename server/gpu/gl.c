@@ -79,24 +79,44 @@ static void set_conventions(struct gl *gl)
     glDebugMessageCallback(on_debug_message, gl->log);
 }
 
-struct gl *gl_create(struct log *log, enum gl_kind kind, int device)
+/* why: the reasons of those that do not work, each after "; ". */
+static struct gl *attempt_all(enum gl_kind kind, const struct gl_device *device, struct text *why)
 {
     for (int i = 0; i < ATTEMPTS; i++) {
         const struct attempt *attempt = &attempts[i];
-        if (kind != GL_AUTO && attempt->impl->kind != kind)
-            continue;
-        struct gl *gl = attempt->impl->create(log, device, kind != GL_AUTO || attempt->software);
-        if (!gl)
-            continue;
+        bool wanted = kind == GL_AUTO ? !device || attempt->impl->kind == GL_EGL_DEVICE : attempt->impl->kind == kind;
+        struct gl *gl = wanted ? attempt->impl->create(device, kind != GL_AUTO || device || attempt->software, why) : NULL;
+        if (gl)
+            return gl;
+    }
+    return NULL;
+}
+
+struct gl *gl_create(struct log *log, enum gl_kind kind, const struct gl_device *device)
+{
+    struct text why = { 0 };
+    struct gl *gl = attempt_all(kind, device, &why);
+    const char *reasons = why.length ? why.at : "; nothing to try";
+    if (gl) {
         gl->log = log;
         read_capabilities(gl);
         set_conventions(gl);
-        log_info(log, "gl: %s: %s, %s", attempt->impl->name, gl->renderer, gl->version);
-        return gl;
+        log_info(log, "gl: %s: %s, %s%s", gl->impl->name, gl->renderer, gl->version, why.length ? reasons : "");
+    } else {
+        log_err(log, "no OpenGL 4.5 context (%s): install libegl1 and libgl1-mesa-dri, or libosmesa6%s", gl_kind_name(kind), reasons);
     }
-    log_err(log, "no OpenGL 4.5 context (%s): install libegl1 and libgl1-mesa-dri, or libosmesa6; the reasons are above",
-            gl_kind_name(kind));
-    return NULL;
+    text_finish(&why);
+    return gl;
+}
+
+bool gl_lost(const struct gl *gl)
+{
+    return !gl->impl->current(gl) || glGetGraphicsResetStatus() != GL_NO_ERROR;
+}
+
+void gl_lose(struct gl *gl)
+{
+    gl->impl->lose(gl);
 }
 
 void gl_destroy(struct gl **gl)

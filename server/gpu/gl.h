@@ -3,10 +3,16 @@
 #ifndef GPU_GL_H
 #define GPU_GL_H
 #include <stdbool.h>
+#include <stdio.h>
 
 #include "base/log.h"
 
 enum gl_kind { GL_AUTO, GL_EGL_DEVICE, GL_EGL_SURFACELESS, GL_OSMESA };
+
+struct gl_device { /* one EGL device, by its place in the list or by its PCI address */
+    int index;     /* -1: by address */
+    unsigned domain, bus, slot, function;
+};
 
 struct gl {
     enum gl_kind kind; /* what it became; never GL_AUTO */
@@ -20,10 +26,20 @@ struct gl {
 /* "auto", "egl-device", "egl-surfaceless", "osmesa". False: unknown. */
 bool gl_kind_parse(const char *name, enum gl_kind *kind);
 const char *gl_kind_name(enum gl_kind kind);
-/* Tries in the order EGL device (`device`: index, -1 = first with hardware), EGL surfaceless, OSMesa, or only the one asked for.
-   NULL: none works; every reason is logged. */
-struct gl *gl_create(struct log *log, enum gl_kind kind, int device);
+/* "2", "65:00.0", "0000:65:00.0". False: neither. */
+bool gl_device_parse(const char *text, struct gl_device *device);
+/* One line for each EGL device: index, PCI address, what draws. Their number. Leaves no context current. */
+int gl_list_devices(FILE *out);
+/* Tries in the order EGL device (device NULL: the first with hardware that works), EGL surfaceless, OSMesa, or only the kind asked for;
+   with a device only EGL devices. NULL: none works; every reason is logged. */
+struct gl *gl_create(struct log *log, enum gl_kind kind, const struct gl_device *device);
 void gl_destroy(struct gl **gl); /* &NULL is fine; leaves NULL */
+
+/* The context is gone (the GPU was reset, its driver restarted): whatever was drawn or read back since it was last asked is worth
+   nothing, and so is every object in it. Destroy all that hangs on it, then gl itself, and make a new one. */
+bool gl_lost(const struct gl *gl);
+/* Destroys the context underneath, as a reset of the device does. So that tests can see what comes after. */
+void gl_lose(struct gl *gl);
 
 /* Around everything a pass does: a debug group, and on leaving the GL errors of the pass, logged by its name. False: there was one. */
 void gl_pass_enter(const char *name);

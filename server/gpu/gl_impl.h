@@ -2,15 +2,18 @@
 /* What one way to a GL context provides; gl.c holds the table. */
 #ifndef GPU_GL_IMPL_H
 #define GPU_GL_IMPL_H
+#include "base/text.h"
 #include "gpu/gl.h"
 
 struct gl_impl {
     enum gl_kind kind;
     const char *name;
-    /* Makes a context current and loads GL's functions. device: index or -1; software: may be a software device.
-       NULL: the reason is logged. */
-    struct gl *(*create)(struct log *log, int device, bool software);
+    /* Makes a context current and loads GL's functions. software: may be a software device, where none is asked for.
+       NULL: the reasons are added to why. */
+    struct gl *(*create)(const struct gl_device *device, bool software, struct text *why);
     void (*destroy)(struct gl *gl);
+    bool (*current)(const struct gl *gl); /* the context is there and current */
+    void (*lose)(struct gl *gl);          /* destroys the context, keeps the rest */
 };
 
 extern const struct gl_impl gl_egl_device_impl, gl_egl_surfaceless_impl, gl_osmesa_impl;

@@ -7,7 +7,7 @@ enum { BIND_POSITION, BIND_NORMAL, BIND_TEXCOORD, BIND_COLOR, BIND_LIGHT, BIND_S
 GLuint mesh_buffer(struct log *log, const char *name, size_t bytes, const void *data, GLbitfield flags)
 {
     GLuint buffer = 0;
-    while (glGetError() != GL_NO_ERROR) {
+    for (int i = 0; i < 8 && glGetError() != GL_NO_ERROR; i++) { /* a lost context has no end of them */
     }
     glCreateBuffers(1, &buffer);
     glNamedBufferStorage(buffer, (GLsizeiptr)bytes, data, flags);

@@ -26,8 +26,23 @@ struct osmesa {
     void (*destroy)(void *context);
     unsigned char (*make_current)(void *context, void *buffer, unsigned type, int width, int height);
     GLADapiproc (*get_proc)(const char *name);
+    void *(*get_current)(void);
     unsigned char buffer[4 * 4 * 4]; /* OSMesa wants one to be current with; we draw to our own targets */
 };
+
+static bool osmesa_current(const struct gl *gl)
+{
+    const struct osmesa *osmesa = (const struct osmesa *)gl;
+    return osmesa->context && osmesa->get_current() == osmesa->context;
+}
+
+static void osmesa_lose(struct gl *gl)
+{
+    struct osmesa *osmesa = (struct osmesa *)gl;
+    osmesa->make_current(NULL, NULL, 0, 0, 0);
+    osmesa->destroy(osmesa->context);
+    osmesa->context = NULL;
+}
 
 static void osmesa_destroy(struct gl *gl)
 {
@@ -48,10 +63,11 @@ static bool osmesa_load(struct osmesa *osmesa)
     *(void **)&osmesa->destroy = dlsym(osmesa->library, "OSMesaDestroyContext");
     *(void **)&osmesa->make_current = dlsym(osmesa->library, "OSMesaMakeCurrent");
     *(void **)&osmesa->get_proc = dlsym(osmesa->library, "OSMesaGetProcAddress");
-    return osmesa->create && osmesa->destroy && osmesa->make_current && osmesa->get_proc;
+    *(void **)&osmesa->get_current = dlsym(osmesa->library, "OSMesaGetCurrentContext");
+    return osmesa->create && osmesa->destroy && osmesa->make_current && osmesa->get_proc && osmesa->get_current;
 }
 
-static struct gl *osmesa_create(struct log *log, int device, bool software)
+static struct gl *osmesa_create(const struct gl_device *device, bool software, struct text *why)
 {
     static const int attributes[] = { OSMESA_FORMAT,
                                       OSMESA_RGBA,
@@ -68,16 +84,16 @@ static struct gl *osmesa_create(struct log *log, int device, bool software)
     (void)device, (void)software;
     osmesa->base = (struct gl){ .kind = GL_OSMESA, .impl = &gl_osmesa_impl };
     if (!osmesa_load(osmesa)) {
-        log_info(log, "gl: osmesa: libOSMesa.so.8 or .6 cannot be loaded");
+        text_add(why, "; osmesa: libOSMesa.so.8 or .6 cannot be loaded");
         goto error;
     }
     osmesa->context = osmesa->create(attributes, NULL);
     if (!osmesa->context || !osmesa->make_current(osmesa->context, osmesa->buffer, OSMESA_UNSIGNED_BYTE, 4, 4)) {
-        log_info(log, "gl: osmesa: no OpenGL 4.5 core context");
+        text_add(why, "; osmesa: no OpenGL 4.5 core context");
         goto error;
     }
     if (gladLoadGL(osmesa->get_proc) < GLAD_MAKE_VERSION(4, 5)) {
-        log_info(log, "gl: osmesa: OpenGL is older than 4.5");
+        text_add(why, "; osmesa: OpenGL is older than 4.5");
         goto error;
     }
     return &osmesa->base;
@@ -86,4 +102,6 @@ error:
     return NULL;
 }
 
-const struct gl_impl gl_osmesa_impl = { .kind = GL_OSMESA, .name = "osmesa", .create = osmesa_create, .destroy = osmesa_destroy };
+const struct gl_impl gl_osmesa_impl = {
+    .kind = GL_OSMESA, .name = "osmesa", .create = osmesa_create, .destroy = osmesa_destroy, .current = osmesa_current, .lose = osmesa_lose
+};

@@ -8,6 +8,7 @@
 static const int64_t STEP_NS = 10 * NS_PER_MS;              /* of a slow picture, before anyone else gets a turn */
 static const int64_t OWN_DATA_NS = 1 * NS_PER_S;            /* changed readings wait so long for a refinement of the same client */
 static const int64_t SNAPSHOT_MAX_AGE_NS = 100 * NS_PER_MS; /* the clock in the picture, and ages, are no older than this */
+static const int64_t REBUILD_NS = 100 * NS_PER_MS, REBUILD_MAX_NS = 5 * NS_PER_S; /* between attempts at a new context */
 
 struct drawing { /* what only the render thread touches */
     struct painter *painter;
@@ -173,10 +174,52 @@ static void leave_out_same(struct drawing *drawing, struct batch *batch)
     painter_post(painter, &drawing->same, NULL, false);
 }
 
-static void fail(struct drawing *drawing, const struct batch *batch)
+/* Under lock. It is wanted as before; true: a newer wish of its client is there already, and stands for it. */
+static bool wish_again(const struct order *order, void *arg)
 {
-    counter_inc(drawing->painter->failures, 1);
-    painter_post(drawing->painter, batch, NULL, true);
+    struct client *client = painter_find(arg, order->client);
+    if (!client || client->pending)
+        return true;
+    client->wish = order->wish;
+    client->pending = true;
+    return false;
+}
+
+/* What the picture is not made for. If the context was lost it is drawn again in the next one. */
+static void fail(struct drawing *drawing, struct batch *batch)
+{
+    struct painter *painter = drawing->painter;
+    bool lost = gl_lost(drawing->gl);
+    if (lost) {
+        pthread_mutex_lock(&painter->lock);
+        batch_split(batch, wish_again, painter, &drawing->same);
+        pthread_mutex_unlock(&painter->lock);
+        painter_post(painter, &drawing->same, NULL, false);
+    } else {
+        counter_inc(painter->failures, 1);
+        painter_post(painter, batch, NULL, true);
+    }
+    batch->count = 0;
+}
+
+/* What was read back from a context that is gone is no picture. Takes the frame. */
+static bool is_good(struct drawing *drawing, struct frame *frame)
+{
+    bool good = frame && !gl_lost(drawing->gl);
+    if (frame && !good)
+        frame_unref(&frame);
+    return good;
+}
+
+static void lose_on_demand(struct drawing *drawing)
+{
+    struct painter *painter = drawing->painter;
+    pthread_mutex_lock(&painter->lock);
+    bool lose = painter->lose;
+    painter->lose = false;
+    pthread_mutex_unlock(&painter->lock);
+    if (lose)
+        gl_lose(drawing->gl);
 }
 
 /* Takes the frame. */
@@ -220,10 +263,11 @@ static bool slow_step(struct drawing *drawing)
 {
     bool drawn = renderer_step(drawing->renderer, drawing->slow.stroke, STEP_NS);
     counter_inc(drawing->painter->steps, 1);
-    if (!drawn)
+    lose_on_demand(drawing);
+    if (!drawn && !gl_lost(drawing->gl))
         return false;
     struct frame *frame = renderer_end(drawing->renderer, &drawing->slow.stroke);
-    if (frame) {
+    if (is_good(drawing, frame)) {
         frame->field_ns += drawing->slow.field_ns;
         deliver(drawing, frame, drawing->slow.snapshot, &drawing->slow.batch);
     } else {
@@ -269,8 +313,9 @@ static void draw(struct drawing *drawing, struct batch *batch)
         slow_begin(drawing, batch, field_ns);
         return;
     }
+    lose_on_demand(drawing);
     struct frame *frame = renderer_draw(drawing->renderer, &wish->view, drawing->snapshot);
-    if (!frame) {
+    if (!is_good(drawing, frame)) {
         fail(drawing, batch);
         return;
     }
@@ -280,29 +325,40 @@ static void draw(struct drawing *drawing, struct batch *batch)
 
 /* --- life of the render thread -------------------------------------------------------------------------------------------------- */
 
+/* GL and what hangs on it. */
+static bool gl_begin(struct drawing *drawing)
+{
+    const struct painter_params *params = &drawing->painter->params;
+    drawing->gl = gl_create(params->log, params->gl, params->gl_device);
+    if (drawing->gl)
+        drawing->renderer = renderer_create(params->log, drawing->gl, params->scene, drawing->field);
+    return drawing->renderer != NULL;
+}
+
+static void gl_end(struct drawing *drawing)
+{
+    if (drawing->renderer)
+        renderer_abandon(drawing->renderer, &drawing->slow.stroke);
+    renderer_destroy(&drawing->renderer);
+    gl_destroy(&drawing->gl);
+}
+
 static bool drawing_init(struct drawing *drawing, struct painter *painter)
 {
     const struct painter_params *params = &painter->params;
     *drawing = (struct drawing){ .painter = painter };
-    drawing->gl = gl_create(params->log, params->gl, -1);
-    if (!drawing->gl)
-        return false;
     drawing->field = field_create(params->workers, params->scene);
-    drawing->renderer = renderer_create(params->log, drawing->gl, params->scene, drawing->field);
     drawing->snapshot = snapshot_create(params->scene->plant->tag_count);
     drawing->slow.snapshot = snapshot_create(params->scene->plant->tag_count);
     store_snapshot(params->store, clock_mono_ns(), clock_utc_ns(), drawing->snapshot);
-    return drawing->renderer != NULL;
+    return gl_begin(drawing);
 }
 
 static void drawing_finish(struct drawing *drawing)
 {
-    if (drawing->renderer)
-        renderer_abandon(drawing->renderer, &drawing->slow.stroke);
+    gl_end(drawing);
     batch_finish(&drawing->slow.batch);
-    renderer_destroy(&drawing->renderer);
     field_destroy(&drawing->field);
-    gl_destroy(&drawing->gl);
     snapshot_destroy(&drawing->snapshot);
     snapshot_destroy(&drawing->slow.snapshot);
     batch_finish(&drawing->same);
@@ -316,6 +372,46 @@ static void warm_up(struct drawing *drawing)
     struct frame *frame = renderer_draw(drawing->renderer, &view, drawing->snapshot);
     if (frame)
         frame_unref(&frame);
+}
+
+static void set_lost(struct painter *painter, bool lost)
+{
+    pthread_mutex_lock(&painter->lock);
+    painter->lost = lost;
+    pthread_mutex_unlock(&painter->lock);
+}
+
+/* False: the painter is to stop. */
+static bool pause_for(struct painter *painter, int64_t pause_ns)
+{
+    int64_t until_ns = clock_mono_ns() + pause_ns;
+    pthread_mutex_lock(&painter->lock);
+    while (painter->state == RUNNING && clock_mono_ns() < until_ns)
+        wait_until(painter, until_ns);
+    bool running = painter->state == RUNNING;
+    pthread_mutex_unlock(&painter->lock);
+    return running;
+}
+
+/* A device that was reset needs a moment, a driver that restarts some seconds; until then nothing is drawn, and nothing else ends.
+   The slow picture that was under way is asked for again. */
+static void rebuild(struct drawing *drawing)
+{
+    struct painter *painter = drawing->painter;
+    int64_t pause_ns = REBUILD_NS, lost_ns = clock_mono_ns();
+    log_err(painter->params.log, "gl: the context is lost; making a new one");
+    counter_inc(painter->losses, 1);
+    set_lost(painter, true);
+    fail(drawing, &drawing->slow.batch);
+    gl_end(drawing);
+    while (!gl_begin(drawing)) {
+        gl_end(drawing);
+        if (!pause_for(painter, pause_ns))
+            return;
+        pause_ns = pause_ns * 2 > REBUILD_MAX_NS ? REBUILD_MAX_NS : pause_ns * 2;
+    }
+    set_lost(painter, false);
+    log_info(painter->params.log, "gl: a new context draws after %.1f s", (double)(clock_mono_ns() - lost_ns) / NS_PER_S);
 }
 
 static void turn(struct drawing *drawing, struct schedule *schedule, struct batch *batch)
@@ -346,8 +442,11 @@ void *drawing_main(void *arg)
     pthread_mutex_unlock(&painter->lock);
     if (good)
         warm_up(&drawing);
-    while (next_batch(&drawing, &schedule, &batch))
+    while (next_batch(&drawing, &schedule, &batch)) {
         turn(&drawing, &schedule, &batch);
+        if (gl_lost(drawing.gl))
+            rebuild(&drawing);
+    }
     batch_finish(&batch);
     drawing_finish(&drawing);
     return NULL;

@@ -188,6 +188,13 @@ static int alive(struct hub *hub, struct request *request)
     return answer_text(request, HTTP_STATUS_OK, "ok\n");
 }
 
+static int ready(struct hub *hub, struct request *request)
+{
+    if (painter_ready(hub->params.painter))
+        return answer_text(request, HTTP_STATUS_OK, "ok\n");
+    return answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "the GL context was lost; a new one is being made\n");
+}
+
 static int stream_without_upgrade(struct hub *hub, struct request *request)
 {
     (void)hub;
@@ -215,7 +222,7 @@ static const struct {
     bool picture; /* for viewers too */
 } routes[] = {
     { "/healthz", alive, true },
-    { "/readyz", alive, true }, /* the loop only runs once model, GL and store are there */
+    { "/readyz", ready, true }, /* the loop only runs once model, GL and store are there; GL may go again */
     { "/stream", stream_without_upgrade, true },
     { "/snapshot.png", ask_snapshot, true },
     { "/metrics", metrics, false },

@@ -123,6 +123,21 @@ void painter_new_data(struct painter *painter)
     pthread_mutex_unlock(&painter->lock);
 }
 
+bool painter_ready(struct painter *painter)
+{
+    pthread_mutex_lock(&painter->lock);
+    bool ready = painter->state == RUNNING && !painter->lost;
+    pthread_mutex_unlock(&painter->lock);
+    return ready;
+}
+
+void painter_lose_context(struct painter *painter)
+{
+    pthread_mutex_lock(&painter->lock);
+    painter->lose = true;
+    pthread_mutex_unlock(&painter->lock);
+}
+
 /* --- life ------------------------------------------------------------------------------------------------------------------ */
 
 static bool thread_start(struct painter *painter)
@@ -158,6 +173,7 @@ static void add_counters(struct painter *painter, struct counters *counters)
     painter->failures = counters_add(counters, "plantcast_render_failures_total", "counter", "Pictures that could not be drawn.");
     painter->steps = counters_add(counters, "plantcast_render_steps_total", "counter", "Parts of pictures that take long.");
     painter->abandoned = counters_add(counters, "plantcast_renders_abandoned_total", "counter", "Pictures given up: nobody wanted them.");
+    painter->losses = counters_add(counters, "plantcast_gl_losses_total", "counter", "GL contexts that were lost and made again.");
 }
 
 static void init_wake(pthread_cond_t *wake)

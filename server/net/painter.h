@@ -12,6 +12,7 @@ struct painter;
 struct painter_params {
     struct log *log;
     enum gl_kind gl;
+    const struct gl_device *gl_device; /* NULL: the first with hardware that works */
     const struct scene *scene;
     struct store *store;
     struct workers *workers;
@@ -31,6 +32,10 @@ enum painter_answer painter_ask(struct painter *painter, uint64_t client, const 
 void painter_go(struct painter *painter);
 void painter_forget(struct painter *painter, uint64_t client);
 void painter_new_data(struct painter *painter); /* readings changed: look again before the next picture */
+/* A GL context is there. False while a lost one is being made again: readings, texts and connections go on, pictures wait. */
+bool painter_ready(struct painter *painter);
+/* Has the GL context destroyed in the middle of the next picture, as a reset of the GPU does; for tests. */
+void painter_lose_context(struct painter *painter);
 /* All pictures made so far, oldest first; the caller owns them. NULL: none. */
 struct picture *painter_collect(struct painter *painter);
 

@@ -17,7 +17,7 @@ struct client {
 
 struct painter {
     struct painter_params params;
-    counter *renders, *render_us, *same, *failures, *steps, *abandoned;
+    counter *renders, *render_us, *same, *failures, *steps, *abandoned, *losses;
     struct encoding *encoding;
     pthread_t thread;
     bool has_thread;
@@ -26,6 +26,7 @@ struct painter {
     /* --- below: under lock */
     enum { STARTING, RUNNING, FAILED, STOPPING } state;
     bool new_data;
+    bool lost, lose; /* the GL context; at the next picture */
     struct client *clients;
     size_t client_count, client_capacity;
     struct picture *done, **done_last;

@@ -58,7 +58,7 @@ static void reply_error(struct session *session, const struct message_error *err
 static void on_input(struct session *session, int64_t now_ns)
 {
     session->input_pending = true;
-    session->refined = false;
+    session->refined = session->failure_said = false;
     session->input_ns = now_ns;
 }
 
@@ -187,8 +187,26 @@ void session_on_data(struct session *session, int64_t now_ns)
     session->data_pending = session->owes_tags = true;
 }
 
+/* The one who already has a picture keeps it; a new one would look at nothing. */
+static void on_failure(struct session *session, const struct view *view)
+{
+    struct message_error error = { 0 };
+    if (session->newest_number == 0) {
+        session->refused = true;
+        return;
+    }
+    if (session->failure_said)
+        return;
+    session->failure_said = true;
+    message_fail(&error, "no_picture", "%dx%d cannot be drawn: the server is out of memory; the last picture stays", view->width_px,
+                 view->height_px);
+    reply_error(session, &error);
+}
+
 void session_on_picture(struct session *session, struct picture *picture)
 {
+    if (picture->failed)
+        on_failure(session, &picture->wish.view);
     bool late = picture->number < session->newest_number;
     if (!picture->packet || late) {
         session->dropped += late;

@@ -40,6 +40,9 @@ struct session {
     uint64_t newest_number; /* of the pictures that came */
     struct picture *ready;  /* next to be sent */
 
+    bool failure_said;      /* of the view as it is */
+    bool refused;           /* not even its first picture could be drawn: close, 1013 */
+
     bool owes_welcome, owes_params, owes_tags_all, owes_tags, owes_status;
     uint32_t params_seq;                     /* to be answered */
     int64_t tags_ns, tags_all_ns, status_ns; /* last sent */

@@ -217,6 +217,10 @@ void stream_on_picture(struct hub *hub, struct picture *picture)
     if (frame && frame->view.tier == TIER_STILL)
         hub->still_ns = frame->render_ns + frame->readback_ns;
     session_on_picture(stream->session, picture);
+    if (stream->session->refused && !stream->close_code) {
+        counter_inc(hub->counters.refused, 1);
+        close_with(stream, 1013, "no memory for another picture: try later, or a smaller one");
+    }
     pump(hub, stream);
 }
 

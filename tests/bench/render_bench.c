@@ -81,7 +81,7 @@ static bool bench_init(struct bench *bench)
     fill(bench->snapshot, bench->plant);
     bench->workers = workers_create(0);
     bench->field = field_create(bench->workers, bench->scene);
-    bench->gl = gl_create(bench->log, GL_AUTO, -1);
+    bench->gl = gl_create(bench->log, GL_AUTO, NULL);
     if (bench->gl)
         bench->renderer = renderer_create(bench->log, bench->gl, bench->scene, bench->field);
     return bench->renderer != NULL;

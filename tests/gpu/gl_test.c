@@ -28,6 +28,20 @@ static void test_names_of_contexts(void **state)
     assert_false(gl_kind_parse("glx", &kind));
 }
 
+static void test_addresses_of_devices(void **state)
+{
+    (void)state;
+    struct gl_device device;
+    assert_true(gl_device_parse("0000:65:00.0", &device) && device.index < 0);
+    assert_true(device.domain == 0 && device.bus == 0x65 && device.slot == 0 && device.function == 0);
+    assert_true(gl_device_parse("10:af:1f.7", &device) && device.domain == 0x10 && device.bus == 0xaf);
+    assert_true(gl_device_parse("af:1f.7", &device) && device.bus == 0xaf && device.slot == 0x1f && device.function == 7);
+    assert_true(gl_device_parse("12", &device) && device.index == 12);
+    static const char *const wrong[] = { "", "-1", "1 ", "1x", "0x1", "65:00", "65:00.", "65:00.0x", "gpu0", "0000:65:00.0.1" };
+    for (size_t i = 0; i < sizeof(wrong) / sizeof(wrong[0]); i++)
+        assert_false(gl_device_parse(wrong[i], &device));
+}
+
 static void test_context_tells_what_it_is(void **state)
 {
     (void)state;
@@ -143,7 +157,7 @@ static pid_t try_without_drivers(void)
         return child;
     struct log *log = log_create(LOG_INFO);
     setenv("LIBGL_DRIVERS_PATH", "/nowhere", 1);
-    _exit(gl_create(log, GL_EGL_SURFACELESS, -1) ? 1 : 0);
+    _exit(gl_create(log, GL_EGL_SURFACELESS, NULL) ? 1 : 0);
 }
 
 static pid_t without_drivers;
@@ -160,7 +174,8 @@ static void test_no_drivers(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_names_of_contexts),          cmocka_unit_test(test_context_tells_what_it_is),
+        cmocka_unit_test(test_names_of_contexts),          cmocka_unit_test(test_addresses_of_devices),
+        cmocka_unit_test(test_context_tells_what_it_is),
         cmocka_unit_test(test_pass_tells_its_errors),      cmocka_unit_test(test_program_that_does_not_compile),
         cmocka_unit_test(test_program_that_does_not_link), cmocka_unit_test(test_defines_and_includes_reach_the_compiler),
         cmocka_unit_test(test_readback_from_the_top),      cmocka_unit_test(test_target_too_large_is_refused),

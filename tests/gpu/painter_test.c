@@ -7,7 +7,9 @@
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <sys/resource.h>
 #include <time.h>
+#include <unistd.h>
 
 #include <cmocka.h>
 
@@ -57,18 +59,23 @@ static struct picture *next(void)
     return picture;
 }
 
-/* turn: of the camera. */
-static void ask(uint64_t client, enum urgency urgency, double turn)
+static void ask_sized(uint64_t client, enum urgency urgency, double turn, int width_px, int height_px)
 {
     int64_t now_ns = clock_mono_ns();
-    struct wish wish = { .codec = WIRE_CODEC_JPEG, .quality = { .quality = 80 }, .urgency = urgency, .asked_ns = now_ns };
-    bool still = urgency == URGENCY_REFINE;
-    view_default(&toy->scene, still ? 2400 : 320, still ? 1600 : 180, &wish.view);
-    wish.view.tier = still ? TIER_STILL : TIER_MOVING;
+    struct wish wish = { .codec = WIRE_CODEC_JPEG, .quality = { .quality = 80 }, .urgency = urgency, .asked_ns = now_ns, .always = true };
+    view_default(&toy->scene, width_px, height_px, &wish.view);
+    wish.view.tier = urgency == URGENCY_REFINE ? TIER_STILL : TIER_MOVING;
     wish.view.camera.eye_m[0] += turn;
     wish.view.input_ns = now_ns;
     assert_int_equal(painter_ask(painter, client, &wish), PAINTER_ADDED);
     painter_go(painter);
+}
+
+/* turn: of the camera. */
+static void ask(uint64_t client, enum urgency urgency, double turn)
+{
+    bool still = urgency == URGENCY_REFINE;
+    ask_sized(client, urgency, turn, still ? 2400 : 320, still ? 1600 : 180);
 }
 
 /* The value of a counter now. */
@@ -148,6 +155,100 @@ static void test_refinement_ends_while_others_go_on_moving(void **state)
     picture_destroy(&last);
 }
 
+static void assert_same_bytes(const struct packet *a, const struct packet *b)
+{
+    assert_int_equal(a->count, b->count);
+    assert_memory_equal(a->bytes, b->bytes, a->count);
+}
+
+/* The picture that this client gets for this camera. */
+static struct picture *picture_of(uint64_t client, enum urgency urgency, double turn)
+{
+    ask(client, urgency, turn);
+    struct picture *picture = next();
+    assert_int_equal(picture->client, client);
+    assert_true(picture->packet != NULL);
+    return picture;
+}
+
+/* The real context goes, again and again, in the middle of pictures that take long and of short ones: nobody's is lost, and all are
+   what they were before. */
+static void test_lost_context_is_made_again_under_load(void **state)
+{
+    (void)state;
+    enum { LOSSES = 3, MOVES = 4 };
+    int64_t losses = count_of("plantcast_gl_losses_total"), failures = count_of("plantcast_render_failures_total");
+    struct picture *refined = picture_of(REFINER, URGENCY_REFINE, 5), *moved[MOVES];
+    for (int i = 0; i < MOVES; i++)
+        moved[i] = picture_of(MOVER, URGENCY_INPUT, 6 + i);
+    for (int loss = 0; loss < LOSSES; loss++) {
+        int64_t steps = count_of("plantcast_render_steps_total");
+        int refinements = 0;
+        ask(REFINER, URGENCY_REFINE, 5);
+        if (loss > 0)
+            await_step(steps + 1);
+        painter_lose_context(painter);
+        for (int i = 0; i < MOVES;) {
+            ask(MOVER, URGENCY_INPUT, 6 + i);
+            for (bool answered = false; !answered;) {
+                struct picture *picture = next();
+                assert_true(picture->packet && !picture->failed);
+                answered = picture->client == MOVER;
+                refinements += !answered;
+                assert_same_bytes(picture->packet, answered ? moved[i++]->packet : refined->packet);
+                picture_destroy(&picture);
+            }
+        }
+        if (refinements == 0) {
+            struct picture *picture = next();
+            assert_true(picture->client == REFINER && picture->packet);
+            assert_same_bytes(picture->packet, refined->packet);
+            picture_destroy(&picture);
+        }
+        assert_true(painter_ready(painter));
+    }
+    assert_true(count_of("plantcast_gl_losses_total") == losses + LOSSES);
+    assert_true(count_of("plantcast_render_failures_total") == failures);
+    picture_destroy(&refined);
+    for (int i = 0; i < MOVES; i++)
+        picture_destroy(&moved[i]);
+}
+
+static size_t address_space_bytes(void)
+{
+    unsigned long pages = 0;
+    FILE *file = fopen("/proc/self/statm", "r");
+    assert_true(file && fscanf(file, "%lu", &pages) == 1);
+    fclose(file);
+    return pages * (size_t)sysconf(_SC_PAGESIZE);
+}
+
+/* There is room for one more frame in memory, but not for the samples that it is drawn from. */
+static void test_no_memory_fails_that_picture_alone(void **state)
+{
+    (void)state;
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    skip(); /* they end the program where there is no memory */
+#endif
+    enum { BIG_PX = 4096, ROOM_BYTES = 160 << 20 };
+    struct rlimit all, tight;
+    struct picture *before = picture_of(MOVER, URGENCY_INPUT, 7);
+    int64_t failures = count_of("plantcast_render_failures_total");
+    getrlimit(RLIMIT_AS, &all);
+    tight = (struct rlimit){ .rlim_cur = address_space_bytes() + ROOM_BYTES, .rlim_max = all.rlim_max };
+    assert_int_equal(setrlimit(RLIMIT_AS, &tight), 0);
+    ask_sized(REFINER, URGENCY_REFINE, 0, BIG_PX, BIG_PX);
+    struct picture *failed = next();
+    setrlimit(RLIMIT_AS, &all);
+    assert_true(failed->client == REFINER && failed->failed && !failed->packet);
+    assert_true(count_of("plantcast_render_failures_total") == failures + 1);
+    struct picture *after = picture_of(MOVER, URGENCY_INPUT, 7);
+    assert_same_bytes(after->packet, before->packet);
+    picture_destroy(&before);
+    picture_destroy(&failed);
+    picture_destroy(&after);
+}
+
 /* The daemon goes down in the midst of it. */
 static void test_stop_waits_for_no_refinement(void **state)
 {
@@ -193,6 +294,8 @@ int main(void)
         cmocka_unit_test(test_mover_is_served_during_a_refinement),
         cmocka_unit_test(test_mover_gives_its_own_refinement_up),
         cmocka_unit_test(test_refinement_ends_while_others_go_on_moving),
+        cmocka_unit_test(test_lost_context_is_made_again_under_load),
+        cmocka_unit_test(test_no_memory_fails_that_picture_alone),
         cmocka_unit_test(test_stop_waits_for_no_refinement),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);

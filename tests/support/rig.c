@@ -16,7 +16,7 @@ bool rig_init(struct rig *rig, const char *test)
         fprintf(stderr, "PLANTCAST_GL=%s is unknown\n", name);
         exit(1);
     }
-    rig->gl = gl_create(rig->log, kind, -1);
+    rig->gl = gl_create(rig->log, kind, NULL);
     rig->workers = workers_create(0);
     if (rig->gl)
         return true;

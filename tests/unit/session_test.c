@@ -106,10 +106,23 @@ static bool ask(struct fixture *f, struct wish *wish)
     return true;
 }
 
-static void paint(struct fixture *f, const struct wish *wish, bool same)
+static struct picture *empty_picture(struct fixture *f, const struct wish *wish)
 {
     struct picture *picture = mem_new(sizeof(*picture));
     *picture = (struct picture){ .client = 7, .number = ++f->number, .wish = *wish };
+    return picture;
+}
+
+static void paint_nothing(struct fixture *f, const struct wish *wish)
+{
+    struct picture *picture = empty_picture(f, wish);
+    picture->failed = true;
+    session_on_picture(f->session, picture);
+}
+
+static void paint(struct fixture *f, const struct wish *wish, bool same)
+{
+    struct picture *picture = empty_picture(f, wish);
     if (!same) {
         struct frame *frame = frame_create(16, 16);
         frame->view = wish->view;
@@ -256,6 +269,39 @@ static void equal_pictures_free_their_place(void **state)
     }
     assert_int_equal(f->session->pacer.asked, 0);
     assert_int_equal(send_picture(f), 0);
+}
+
+static void without_a_first_picture_a_session_is_refused(void **state)
+{
+    struct fixture *f = *state;
+    struct wish wish;
+    greet(f);
+    assert_true(ask(f, &wish));
+    paint_nothing(f, &wish);
+    assert_true(f->session->refused);
+    assert_int_equal(f->session->pacer.asked, 0);
+}
+
+static void a_view_that_cannot_be_drawn_is_said_once(void **state)
+{
+    struct fixture *f = *state;
+    struct wish wish;
+    greet(f);
+    show(f);
+    for (int camera = 1; camera <= 2; camera++) {
+        char text[96];
+        snprintf(text, sizeof(text), "{\"type\":\"camera\",\"seq\":%d,\"eye\":[9,9,%d],\"target\":[0,0,1]}", camera, camera + 5);
+        say(f, text);
+        assert_true(ask(f, &wish));
+        paint_nothing(f, &wish);
+        expect_error(f, "no_picture");
+        session_on_data(f->session, f->now_ns);
+        assert_true(ask(f, &wish));
+        paint_nothing(f, &wish);
+        assert_false(f->session->refused);
+    }
+    f->now_ns += NS_PER_S;
+    show(f);
 }
 
 static void overtaken_pictures_are_not_sent(void **state)
@@ -484,6 +530,8 @@ int main(void)
         TEST(newest_camera_wins_and_the_last_state_arrives),
         TEST(a_full_window_only_replaces),
         TEST(equal_pictures_free_their_place),
+        TEST(without_a_first_picture_a_session_is_refused),
+        TEST(a_view_that_cannot_be_drawn_is_said_once),
         TEST(overtaken_pictures_are_not_sent),
         TEST(data_under_a_still_view_is_drawn_once_and_refined),
         TEST(nobody_is_refined_while_another_moves),
