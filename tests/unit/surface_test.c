@@ -336,7 +336,7 @@ static void bridges_lie_in_the_gap(void **state)
     struct surface *surface = surface_of(&both);
     assert_int_equal(surface_report(surface)->components, 2);
     assert_int_equal(surface_report(surface)->components_after, 1);
-    assert_int_equal(surface_report(surface)->bridges, 30); /* each of the border's vertices with the one opposite */
+    assert_int_equal(surface_report(surface)->bridges, 31); /* each of the border's vertices with the one opposite */
     assert_float_equal(surface_report(surface)->longest_bridge_m, 0.0003, 1e-6);
     assert_bridges_are_shown(surface, 0.9999, 1.0004);
     surface_destroy(&surface);
