@@ -1,30 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The colour of the field at a pixel. The palette holds sRGB colours: one column for each colour of the map, then those of
-// below, above and the two of the hatching; one row for each step of light (render/palette.c).
+// The colour of the field at a pixel: one look-up by place on the scale and by light. The palette (render/palette.h) holds sRGB colours
+// by the legend's rule (field/scale.h), with bands, what lies outside MIN and MAX, and the patterns.
 layout(binding = 0) uniform sampler2D palette;
-
-const int MAP_COLORS = 256, BELOW = 256, ABOVE = 257, HATCH_LIGHT = 258, HATCH_DARK = 259, STIPPLE = 260;
-
-// The legend's rule (field/colormap.h). value: (v - MIN)/(MAX - MIN). Interpolating equal values may round: the ends have some slack.
-int palette_column(float value)
-{
-    const float slack = 1e-5;
-    if (value < -slack)
-        return BELOW;
-    if (value > 1.0 + slack)
-        return ABOVE;
-#ifdef RAMP
-    float interval = frame.range.z, bands = max(ceil(1.0 / interval - 0.001), 1.0);
-    float begin = clamp(floor(value / interval + slack), 0.0, bands - 1.0) * interval;
-    value = 0.5 * (begin + min(begin + interval, 1.0));
+#ifdef RICH
+layout(binding = 15) uniform sampler2D lines; // by place: the nearest place that has a line
 #endif
-    return clamp(int(value * float(MAP_COLORS)), 0, MAP_COLORS - 1);
+
+const int PLACES = 1024, HATCH_LIGHT = PLACES + 2, HATCH_DARK = PLACES + 3, STIPPLE = PLACES + 4;
+
+// Interpolating equal values may round: the ends have some slack. Column 0 is below MIN, PLACES + 1 above MAX.
+int palette_column(float place)
+{
+    const float slack = 1e-5, columns = float(PLACES) / (1.0 + 2.0 * slack);
+    return int(clamp(place * columns + (1.0 + slack * columns), 0.0, float(PLACES + 1)));
 }
 
 int palette_row(float light)
 {
-    float rows = float(textureSize(palette, 0).y - 1);
-    return int((frame.look.x == LOOK_DEFAULT ? light_row(light) : 0.5) * rows + 0.5);
+    return int(clamp(light * frame.shade.x + frame.shade.y, 0.0, frame.shade.z));
 }
 
 vec3 palette_color(int column, int row)
@@ -35,34 +28,62 @@ vec3 palette_color(int column, int row)
 // Diagonal stripes: over 0.5 on the dark ones.
 float hatch(vec2 pixel)
 {
-    float phase = fract((pixel.x + pixel.y) / (frame.range.w * 1.4142));
-    return (abs(phase - 0.5) - 0.25) * frame.range.w + 0.5;
+    float phase = fract((pixel.x + pixel.y) / (frame.scale.w * 1.4142));
+    return (abs(phase - 0.5) - 0.25) * frame.scale.w + 0.5;
 }
 
 float stipple(vec2 pixel)
 {
-    vec2 cell = pixel / frame.range.w;
+    vec2 cell = pixel / frame.scale.w;
     cell.x += 0.5 * floor(mod(cell.y, 2.0));
-    return (0.26 - length(fract(cell) - 0.5)) * frame.range.w + 0.5;
+    return (0.26 - length(fract(cell) - 0.5)) * frame.scale.w + 0.5;
 }
 
-// sRGB. flags: no data, uncertain; 0..1 between vertices.
-vec3 field_color(float value, vec2 flags, float light)
+#ifdef RICH
+float place_of(float value)
 {
-    int row = palette_row(light), column = palette_column(value), second = column;
+    return ((frame.scale.z > 0.5 ? log2(max(value, 1e-30)) : value) - frame.scale.x) * frame.scale.y;
+}
+
+// How much of the pixel an isoline covers: its width is the same wherever the field is steep or not. No line where it is level.
+float line_part(float place, int column)
+{
+    float slope = length(vec2(dFdx(place), dFdy(place)));
+    float nearest = texelFetch(lines, ivec2(clamp(column - 1, 0, PLACES - 1), 0), 0).r;
+    return slope > 1e-7 ? clamp(0.5 * frame.lines.x + 0.5 - abs(place - nearest) / slope, 0.0, 1.0) : 0.0;
+}
+#endif
+
+// sRGB. field: the scalar's place on the scale (RICH: the scalar itself), then flags: no data, uncertain; 0..1 between vertices.
+vec3 field_color(vec3 field, float light)
+{
+#ifdef RICH
+    float place = place_of(field.x);
+#else
+    float place = field.x;
+#endif
+    int row = palette_row(light), column = palette_column(place), second = column;
     float part = 0.0;
-    if (flags.y > 0.5) {
+#ifdef RICH
+    float line = frame.lines.x > 0.0 ? line_part(place, column) : 0.0;
+#endif
+    if (field.z > 0.5) {
         second = STIPPLE;
         part = stipple(gl_FragCoord.xy);
     }
-    if (flags.x > 0.5) {
+    if (field.y > 0.5) {
         column = HATCH_LIGHT;
         second = HATCH_DARK;
         part = hatch(gl_FragCoord.xy);
     }
 #ifdef STILL
-    return mix(palette_color(column, row), palette_color(second, row), clamp(part, 0.0, 1.0));
+    vec3 color = mix(palette_color(column, row), palette_color(second, row), clamp(part, 0.0, 1.0));
 #else
-    return palette_color(part > 0.5 ? second : column, row); // one look-up
+    vec3 color = palette_color(part > 0.5 ? second : column, row); // one look-up
 #endif
+#ifdef RICH
+    vec3 ink = dot(color, vec3(0.30, 0.59, 0.11)) > 0.32 ? vec3(0.07, 0.09, 0.12) : vec3(0.93);
+    color = mix(color, ink, field.y > 0.5 ? 0.0 : 0.8 * line);
+#endif
+    return color;
 }

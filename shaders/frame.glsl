@@ -6,8 +6,8 @@ layout(std140, binding = 0) uniform Frame {
     mat4 sun_from_eye;   // to texture coordinates and depth of the shadow map
     vec4 sun;            // towards the sun; w: size of a texel of the shadow map, in metres
     vec4 up;             // of the plant
-    vec4 range;          // MIN, 1/(MAX - MIN), ramp interval/(MAX - MIN) or 0; w: size of a pattern cell, in pixels
-    ivec4 look;          // enum look
+    vec4 scale;          // linear: MIN, 1/(MAX - MIN); of the binary logarithms on a logarithmic scale, where z is 1; w: size of a
+                         // pattern cell, in pixels
+    vec4 shade;          // row of the palette = light * x + y, at most z
+    vec4 lines;          // width of isolines in pixels; 0: none
 } frame;
-
-const int LOOK_DEFAULT = 0, LOOK_GLOSSY = 1, LOOK_FLAT = 2;

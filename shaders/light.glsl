@@ -8,12 +8,6 @@ float light_scalar(float ambient, float sun)
     return clamp(0.52 * ambient + 0.48 * sun, 0.0, 1.0);
 }
 
-// Place on the palette's light axis, 0..1; 0.5 leaves the colour alone.
-float light_row(float light)
-{
-    return clamp((light - 0.14) / 0.72, 0.0, 1.0);
-}
-
 vec3 linear_from_srgb(vec3 c)
 {
     return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), step(0.04045, c));

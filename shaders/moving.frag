@@ -18,7 +18,7 @@ layout(location = 0) out vec4 color;
 void main()
 {
 #ifdef FIELD
-    color.rgb = field_color(field.x, field.yz, light);
+    color.rgb = field_color(field, light);
 #ifdef GLOSSY
     color.rgb = srgb_from_linear(tone_map(linear_from_srgb(color.rgb) * (0.10 + 1.15 * light)));
 #endif

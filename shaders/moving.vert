@@ -20,7 +20,11 @@ void main()
     gl_Position = clip_from_file * vec4(position_m, 1.0);
 #ifdef FIELD
     light = baked.x;
-    field = vec3((value - frame.range.x) * frame.range.y, flags);
+#ifdef RICH
+    field = vec3(value, flags);
+#else
+    field = vec3((value - frame.scale.x) * frame.scale.y, flags);
+#endif
 #else
     light = baked.yw;
     sun_place = (sun_from_file * vec4(position_m, 1.0)).xyz;

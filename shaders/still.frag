@@ -56,7 +56,7 @@ void main()
     float sun_visible = sun_visibility(frame.sun_from_eye, place, n, frame.sun.w, 2.0);
     float ambient = sky.x, open = sky.y;
 #ifdef FIELD
-    color = vec4(field_color(field.x, field.yz, light_scalar(ambient, max(dot(n, l), 0.0) * sun_visible)), 1.0);
+    color = vec4(field_color(field, light_scalar(ambient, max(dot(n, l), 0.0) * sun_visible)), 1.0);
 #endif
 #if !defined(FIELD) || defined(GLOSSY)
     float metallic = m.factors.x, roughness = m.factors.y;

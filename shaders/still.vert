@@ -26,5 +26,9 @@ void main()
     uv = texcoord;
     tint = vertex_color;
     sky = baked.yz;
-    field = vec3((value - frame.range.x) * frame.range.y, flags);
+#ifdef RICH
+    field = vec3(value, flags);
+#else
+    field = vec3((value - frame.scale.x) * frame.scale.y, flags);
+#endif
 }

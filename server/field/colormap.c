@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Colour maps out of the embedded tables, and the legend's rule. */
+/* Colour maps out of the embedded tables. */
 #include "field/colormap.h"
 
-#include <math.h>
 #include <pthread.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -65,25 +64,4 @@ int colormap_find(const char *name)
         if (strcmp(maps[i].name, name) == 0)
             return (int)i;
     return -1;
-}
-
-/* The centre of the band that holds value. */
-static float band_centre(float value, float min, float max, float interval)
-{
-    float bands = fmaxf(ceilf((max - min) / interval - 0.001f), 1);
-    float band = fminf(floorf((value - min) / interval), bands - 1);
-    float begin = min + band * interval;
-    return (begin + fminf(begin + interval, max)) / 2;
-}
-
-void colormap_look_up(const struct colormap *map, double value, double min, double max, double interval, uint8_t rgb[3])
-{
-    float v = (float)value, low = (float)min, high = (float)max;
-    const uint8_t *color = v < low ? map->below : map->above;
-    if (v >= low && v <= high) {
-        if (interval > 0)
-            v = band_centre(v, low, high, (float)interval);
-        color = map->rgb[(int)fminf((v - low) / (high - low) * 256, 255)];
-    }
-    memcpy(rgb, color, 3);
 }

@@ -18,6 +18,14 @@ static void add_field_params(XXH3_state_t *state, const struct field_params *par
     add(state, numbers, sizeof(numbers));
 }
 
+static void add_paint(XXH3_state_t *state, const struct paint *paint)
+{
+    int32_t choices[] = { paint->log, paint->break_count, paint->line_count };
+    add(state, choices, sizeof(choices));
+    add(state, paint->breaks, (size_t)paint->break_count * sizeof(*paint->breaks));
+    add(state, paint->lines, (size_t)paint->line_count * sizeof(*paint->lines));
+}
+
 static void add_view(XXH3_state_t *state, const struct view *view)
 {
     int32_t choices[] = { view->width_px, view->height_px, view->colormap, (int32_t)view->look, (int32_t)view->tier, view->selected_asset };
@@ -29,6 +37,7 @@ static void add_view(XXH3_state_t *state, const struct view *view)
     add(state, view->camera.up, sizeof(view->camera.up));
     add(state, view->light_dir, sizeof(view->light_dir));
     add_field_params(state, &view->field);
+    add_paint(state, &view->paint);
 }
 
 uint64_t content_hash(const struct picture *picture)

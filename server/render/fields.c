@@ -93,10 +93,9 @@ static void show(struct fields_entry *entry, const struct scalars *now)
     entry->travel = now->travel;
 }
 
-const struct fields_entry *fields_get(struct fields *fields, int asset, const struct field_params *params, double range,
+const struct fields_entry *fields_get(struct fields *fields, int asset, const struct field_params *params, double step,
                                       const struct snapshot *snapshot)
 {
-    double step = range / 256;
     const struct scalars *scalars = field_scalars(fields->field, asset, params, snapshot);
     if (!scalars)
         return NULL;

@@ -11,7 +11,7 @@
 struct fields_entry {
     int asset;
     struct field_params params;
-    double step;            /* a value step that can be seen: the range over 256 */
+    double step;            /* a value step that can be seen (scale_step) */
     uint64_t flags_version; /* of the scalars that are shown */
     double travel;          /* of the scalars, less how far what is shown is known to be off: scalars->travel - travel bounds the error */
     uint64_t content;       /* hash of what is shown */
@@ -33,7 +33,7 @@ struct fields {
 void fields_init(struct fields *fields, struct log *log, struct field *field);
 void fields_finish(struct fields *fields);
 /* NULL: the asset has no sensor of the group (or there is no room, logged). Valid until the next fields_trim. */
-const struct fields_entry *fields_get(struct fields *fields, int asset, const struct field_params *params, double range,
+const struct fields_entry *fields_get(struct fields *fields, int asset, const struct field_params *params, double step,
                                       const struct snapshot *snapshot);
 /* Between frames: drops what is beyond the bound. */
 void fields_trim(struct fields *fields);

@@ -11,6 +11,11 @@ double frame_block_pattern_px(const struct view *view)
     return fmax(6, view->height_px / 90.0);
 }
 
+double frame_block_line_px(const struct view *view)
+{
+    return fmax(1.2, view->height_px / 640.0);
+}
+
 static void from_eye(const double from_plant[16], const double eye_m[3], float out[16])
 {
     double plant_from_eye[16];
@@ -19,11 +24,36 @@ static void from_eye(const double from_plant[16], const double eye_m[3], float o
     matrix_to_float(plant_from_eye, out);
 }
 
+static void fill_scale(struct frame_block *block, const struct picture *picture)
+{
+    const struct view *view = picture->view;
+    double low = view->paint.log ? log2(view->range_min) : view->range_min;
+    double high = view->paint.log ? log2(view->range_max) : view->range_max;
+    block->scale[0] = (float)low;
+    block->scale[1] = (float)(1 / (high - low));
+    block->scale[2] = view->paint.log;
+    block->scale[3] = (float)frame_block_pattern_px(view);
+    block->lines[0] = picture->palette.lines ? (float)frame_block_line_px(view) : 0;
+    block->lines[1] = block->lines[2] = block->lines[3] = 0;
+}
+
+/* Light to a row of the palette: all of them, or the middle one where light must not touch the colours. */
+static void fill_shade(struct frame_block *block, const struct view *view)
+{
+    static const double dark = 0.14, bright = 0.86; /* what is darker or brighter looks the same */
+    double rows = PALETTE_ROWS - 1;
+    bool shaded = view->look == LOOK_DEFAULT;
+    block->shade[0] = shaded ? (float)(rows / (bright - dark)) : 0;
+    block->shade[1] = shaded ? (float)(0.5 - dark * rows / (bright - dark)) : (float)(0.5 + rows / 2);
+    block->shade[2] = (float)rows + 0.5f;
+    block->shade[3] = 0;
+}
+
 void frame_block_fill(struct frame_block *block, const struct picture *picture)
 {
     const struct view *view = picture->view;
     const struct shot *shot = &picture->shot;
-    double inverse[16], range = view->range_max - view->range_min;
+    double inverse[16];
     matrix_to_float(shot->clip_from_eye, block->clip_from_eye);
     matrix_invert(shot->clip_from_eye, inverse);
     matrix_to_float(inverse, block->eye_from_clip);
@@ -34,10 +64,6 @@ void frame_block_fill(struct frame_block *block, const struct picture *picture)
     }
     block->sun[3] = (float)picture->light->texel_m;
     block->up[3] = 0;
-    block->range[0] = (float)view->range_min;
-    block->range[1] = (float)(1 / range);
-    block->range[2] = (float)(view->ramp_interval > 0 ? view->ramp_interval / range : 0);
-    block->range[3] = (float)frame_block_pattern_px(view);
-    block->look[0] = (int32_t)view->look;
-    block->look[1] = block->look[2] = block->look[3] = 0;
+    fill_scale(block, picture);
+    fill_shade(block, view);
 }

@@ -6,12 +6,13 @@
 
 struct frame_block { /* std140 */
     float clip_from_eye[16], eye_from_clip[16], sun_from_eye[16];
-    float sun[4], up[4], range[4];
-    int32_t look[4];
+    float sun[4], up[4], scale[4], shade[4], lines[4];
 };
 
 void frame_block_fill(struct frame_block *block, const struct picture *picture);
 /* Side of a cell of the hatching and stippling. */
 double frame_block_pattern_px(const struct view *view);
+/* Width of an isoline. */
+double frame_block_line_px(const struct view *view);
 
 #endif

@@ -96,12 +96,12 @@ static void draw_uncertain(struct pen *pen, const struct layout *layout, double 
 static void draw_bar(struct pen *pen, const struct layout *layout)
 {
     const struct view *view = &pen->frame->view;
-    const struct colormap *map = colormap_at((size_t)view->colormap);
+    struct scale scale;
+    view_scale(view, &scale);
     int top = (int)lround(layout->bar.y), rows = (int)lround(layout->bar.height);
     for (int row = 0; row < rows; row++) {
         uint8_t rgb[3];
-        double value = view->range_max - (row + 0.5) / rows * (view->range_max - view->range_min);
-        colormap_look_up(map, value, view->range_min, view->range_max, view->ramp_interval, rgb);
+        scale_look_up(&scale, scale_value(&scale, 1 - (row + 0.5) / rows), rgb);
         cairo_rectangle(pen->cairo, layout->bar.x, top + row, layout->bar.width, 1);
         pen_rgb(pen, rgb);
         cairo_fill(pen->cairo);

@@ -1,17 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Colour maps as textures: a column for each colour, a row for each step of lightness. In the default look shading adds to CIELAB L*
-   and touches neither hue nor chroma, so that it cannot be read as a value. Thread: the one of the GL context. */
+/* Scales as textures: what a pixel looks up. In the default look shading adds to CIELAB L* and touches neither hue nor chroma, so that
+   it cannot be read as a value. Thread: the one of the GL context; palette_amplitude and palette_shade any. */
 #ifndef RENDER_PALETTE_H
 #define RENDER_PALETTE_H
 #include <stdint.h>
 
 #include <glad/gl.h>
 
-#include "field/colormap.h"
+#include "render/view.h"
 
 #define PALETTE_SHADING 7.0 /* L*, at most, up and down */
-enum { PALETTE_ROWS = 65 }; /* odd: the middle one leaves the colour alone */
-enum palette_column { PALETTE_BELOW = 256, PALETTE_ABOVE, PALETTE_HATCH_LIGHT, PALETTE_HATCH_DARK, PALETTE_STIPPLE, PALETTE_COLUMNS };
+enum { PALETTE_ROWS = 65 }; /* steps of light; odd: the middle one leaves the colour alone */
+/* Columns of the texture, as in shaders/field.glsl: PALETTE_PLACES along the scale, what is outside at their ends, patterns behind. */
+enum { PALETTE_PLACES = 1024, PALETTE_BELOW = 0, PALETTE_ABOVE = PALETTE_PLACES + 1, PALETTE_PATTERNS };
+enum palette_pattern { PATTERN_HATCH_LIGHT, PATTERN_HATCH_DARK, PATTERN_STIPPLE, PATTERN_COUNT };
+enum { PALETTE_COLUMNS = PALETTE_PATTERNS + PATTERN_COUNT };
 
 extern const uint8_t palette_no_data[2][3]; /* sRGB of the two stripes that mean no data */
 extern const uint8_t palette_uncertain[3];  /* sRGB of the dots that mean uncertain */
@@ -21,6 +24,16 @@ extern const uint8_t palette_uncertain[3];  /* sRGB of the dots that mean uncert
 double palette_amplitude(const struct colormap *map);
 /* The colour with `offset` added to its L*, as far as sRGB goes. */
 void palette_shade(const uint8_t rgb[3], double offset, uint8_t out[3]);
-GLuint palette_create(const struct colormap *map);
+
+/* A colour map's own colours, then below and above, then the patterns, each in every step of light. */
+enum { SHADED_BELOW = 256, SHADED_ABOVE, SHADED_PATTERNS, SHADED_COLORS = SHADED_PATTERNS + PATTERN_COUNT };
+struct shaded {
+    uint8_t rgb[PALETTE_ROWS][SHADED_COLORS][3];
+};
+void palette_shade_map(const struct colormap *map, struct shaded *out);
+/* Colours by place and light; 0: out of memory. */
+GLuint palette_create(const struct scale *scale, const struct shaded *shaded);
+/* For each place of the scale the nearest place that has a line (R32F). */
+GLuint palette_create_lines(const struct scale *scale, const double *lines, int count);
 
 #endif

@@ -5,6 +5,7 @@
 #include "gpu/target.h"
 #include "render/fields.h"
 #include "render/light.h"
+#include "render/palettes.h"
 #include "render/view.h"
 
 struct picture {
@@ -16,7 +17,7 @@ struct picture {
     const struct fields_entry **fields; /* per asset; NULL: context */
     const int *visible;                 /* assets, nearest first */
     size_t visible_count;
-    GLuint palette;
+    struct palette palette;
 };
 
 #endif

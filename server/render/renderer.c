@@ -14,7 +14,7 @@
 #include "render/lines.h"
 #include "render/markers.h"
 #include "render/matrix.h"
-#include "render/palette.h"
+#include "render/palettes.h"
 #include "render/sky.h"
 #include "render/solid.h"
 #include "render/stroke.h"
@@ -34,7 +34,7 @@ struct renderer {
     struct markers markers;
     struct readback readback;
     GLuint frame_buffer;                      /* struct frame_block */
-    GLuint *palettes;                         /* by colour map; 0: not made yet */
+    struct palettes palettes;
     struct targets targets;
     const struct fields_entry **asset_fields; /* per asset, of the picture being drawn */
     int *visible;
@@ -54,7 +54,6 @@ struct renderer *renderer_create(struct log *log, struct gl *gl, const struct sc
     struct renderer *renderer = mem_new(sizeof(*renderer));
     renderer->gl = gl;
     renderer->scene = scene;
-    renderer->palettes = mem_array(colormap_count(), sizeof(*renderer->palettes));
     renderer->asset_fields = mem_array(scene->asset_count, sizeof(*renderer->asset_fields));
     renderer->visible = mem_array(scene->asset_count, sizeof(*renderer->visible));
     renderer->distance_m = mem_array(scene->asset_count, sizeof(*renderer->distance_m));
@@ -73,7 +72,7 @@ void renderer_destroy(struct renderer **renderer_ptr)
     if (!renderer)
         return;
     targets_finish(&renderer->targets);
-    glDeleteTextures((GLsizei)colormap_count(), renderer->palettes);
+    palettes_finish(&renderer->palettes);
     glDeleteBuffers(1, &renderer->frame_buffer);
     readback_finish(&renderer->readback);
     markers_finish(&renderer->markers);
@@ -83,7 +82,6 @@ void renderer_destroy(struct renderer **renderer_ptr)
     fields_finish(&renderer->fields);
     light_finish(&renderer->light);
     stage_finish(&renderer->stage);
-    mem_free(renderer->palettes);
     mem_free(renderer->asset_fields);
     mem_free(renderer->visible);
     mem_free(renderer->distance_m);
@@ -138,9 +136,12 @@ static void picture_init(struct renderer *renderer, struct picture *picture, con
     find_visible(renderer, picture);
     fields_trim(&renderer->fields);
     memset(renderer->asset_fields, 0, renderer->scene->asset_count * sizeof(*renderer->asset_fields));
+    struct scale scale;
+    view_scale(view, &scale);
+    double step = scale_step(&scale);
     for (size_t i = 0; i < picture->visible_count; i++) {
         int asset = renderer->visible[i];
-        renderer->asset_fields[asset] = fields_get(&renderer->fields, asset, &view->field, view->range_max - view->range_min, snapshot);
+        renderer->asset_fields[asset] = fields_get(&renderer->fields, asset, &view->field, step, snapshot);
     }
 }
 
@@ -155,13 +156,6 @@ static bool take_target(struct renderer *renderer, const struct view *view, stru
 {
     int samples = view->tier == TIER_STILL && renderer->gl->max_samples >= STILL_SAMPLES ? STILL_SAMPLES : 1;
     return targets_take(&renderer->targets, renderer->gl->log, view->width_px, view->height_px, samples, target);
-}
-
-static GLuint get_palette(struct renderer *renderer, int colormap)
-{
-    if (!renderer->palettes[colormap])
-        renderer->palettes[colormap] = palette_create(colormap_at((size_t)colormap));
-    return renderer->palettes[colormap];
 }
 
 static void describe(struct frame *frame, const struct picture *picture, const struct snapshot *snapshot)
@@ -209,7 +203,7 @@ static bool take_up(struct renderer *renderer, struct stroke *stroke)
 {
     struct frame_block block;
     stroke->picture.light = light_get(&renderer->light, stroke->view.light_dir);
-    stroke->picture.palette = get_palette(renderer, stroke->view.colormap);
+    stroke->picture.palette = palettes_get(&renderer->palettes, &stroke->view);
     if (!stroke->picture.light)
         return false;
     frame_block_fill(&block, &stroke->picture);

@@ -10,9 +10,9 @@
 enum { CLIP_FROM_FILE = 0, EYE_FROM_FILE = 1, SUN_FROM_FILE = 1, MATERIAL = 2, TEXTURES = 3, EYE_FROM_NORMAL = 4 };
 static const double LEVEL_ERROR_PX[] = { [TIER_MOVING] = 1.0, [TIER_STILL] = 0.7 }; /* of the silhouette */
 static const double SUN_SLACK_TEXELS = 3; /* against surfaces that shade themselves */
-enum { UNIT_PALETTE = 0, UNIT_RAMPS = 1, UNIT_SUN_MAP = 2, UNIT_MAPS = 3 };
+enum { UNIT_PALETTE = 0, UNIT_RAMPS = 1, UNIT_SUN_MAP = 2, UNIT_MAPS = 3, UNIT_LINES = 15 };
 
-/* The moving tier has no textures; ramps and gloss go with a field, and gloss brings ramps along. */
+/* The moving tier has no textures; rich scales and gloss go with a field. */
 static bool is_used(int tier, int variant)
 {
     if (!(variant & SOLID_FIELD))
@@ -25,7 +25,7 @@ static GLuint make_program(struct log *log, int tier, int variant)
     static const char *const stages[2][2] = { { "moving.vert", "moving.frag" }, { "still.vert", "still.frag" } };
     struct text defines = { 0 };
     text_add(&defines, "%s%s%s%s%s", tier == TIER_STILL ? "#define STILL\n" : "", variant & SOLID_FIELD ? "#define FIELD\n" : "",
-             variant & SOLID_RAMP ? "#define RAMP\n" : "", variant & SOLID_GLOSSY ? "#define GLOSSY\n" : "",
+             variant & SOLID_RICH ? "#define RICH\n" : "", variant & SOLID_GLOSSY ? "#define GLOSSY\n" : "",
              variant & SOLID_TEXTURED ? "#define TEXTURED\n" : "");
     GLuint program = program_create(log, program_params(.vertex = stages[tier][0], .fragment = stages[tier][1], .defines = defines.at));
     text_finish(&defines);
@@ -50,11 +50,12 @@ void solid_finish(struct solid *solid)
         program_destroy(&solid->programs[i / SOLID_VARIANTS][i % SOLID_VARIANTS]);
 }
 
-static GLuint choose_program(const struct solid *solid, const struct view *view, const struct model_material *material, bool field)
+static GLuint choose_program(const struct solid *solid, const struct picture *picture, const struct model_material *material, bool field)
 {
+    const struct view *view = picture->view;
     int variant = field ? SOLID_FIELD : 0;
-    if (field && view->ramp_interval > 0)
-        variant |= SOLID_RAMP;
+    if (field && (picture->palette.lines || view->paint.log))
+        variant |= SOLID_RICH;
     if (field && view->look == LOOK_GLOSSY)
         variant |= SOLID_GLOSSY;
     if (view->tier == TIER_STILL && material->mask && (!field || view->look == LOOK_GLOSSY || material->masked))
@@ -117,7 +118,7 @@ static void draw_asset(const struct solid *solid, const struct picture *picture,
     for (size_t b = 0; b < level->batch_count; b++) {
         const struct model_batch *batch = &level->batches[b];
         const struct model_material *material = &model->materials[batch->material];
-        GLuint program = choose_program(solid, picture->view, material, field != NULL);
+        GLuint program = choose_program(solid, picture, material, field != NULL);
         if ((batch->blend && !field) != blend)
             continue;
         if (!bound) {
@@ -142,7 +143,8 @@ void solid_draw(const struct solid *solid, const struct picture *picture)
     glEnable(GL_DEPTH_TEST);
     glDepthMask(GL_TRUE);
     glDisable(GL_BLEND);
-    glBindTextureUnit(UNIT_PALETTE, picture->palette);
+    glBindTextureUnit(UNIT_PALETTE, picture->palette.colors);
+    glBindTextureUnit(UNIT_LINES, picture->palette.lines);
     glBindTextureUnit(UNIT_SUN_MAP, picture->light->sun_map);
     glVertexAttrib4f(MESH_COLOR, 1, 1, 1, 1);
     for (size_t i = 0; i < picture->visible_count; i++)

@@ -4,8 +4,9 @@
 #define RENDER_SOLID_H
 #include "render/picture.h"
 
-/* What a program can do; each does only what it must, since a software GL runs every branch. */
-enum solid_variant { SOLID_FIELD = 1, SOLID_RAMP = 2, SOLID_GLOSSY = 4, SOLID_TEXTURED = 8, SOLID_VARIANTS = 16 };
+/* What a program can do; each does only what it must, since a software GL runs every branch. Rich: lines, and
+   scales that are not linear. */
+enum solid_variant { SOLID_FIELD = 1, SOLID_RICH = 2, SOLID_GLOSSY = 4, SOLID_TEXTURED = 8, SOLID_VARIANTS = 16 };
 
 struct solid {
     GLuint programs[2][SOLID_VARIANTS]; /* by tier; 0: not used */

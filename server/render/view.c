@@ -3,6 +3,7 @@
 #include "render/view.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* A late-morning sun over the viewer's shoulder: shapes read best, shadows stay short. One for the plant, whatever the picture's
@@ -39,6 +40,39 @@ void view_default(const struct scene *scene, int width_px, int height_px, struct
     default_light(scene, view->light_dir);
 }
 
+void view_scale(const struct view *view, struct scale *scale)
+{
+    *scale = (struct scale){
+        .map = colormap_at((size_t)view->colormap),
+        .min = view->range_min,
+        .max = view->range_max,
+        .log = view->paint.log,
+        .interval = view->ramp_interval,
+        .break_count = view->paint.break_count,
+    };
+    memcpy(scale->breaks, view->paint.breaks, sizeof(scale->breaks));
+}
+
+static int by_size(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+int view_lines(const struct view *view, double lines[VIEW_ALL_LINES])
+{
+    struct scale scale;
+    view_scale(view, &scale);
+    int count = scale_edges(&scale, lines), distinct = 0;
+    memcpy(lines + count, view->paint.lines, (size_t)view->paint.line_count * sizeof(*lines));
+    count += view->paint.line_count;
+    qsort(lines, (size_t)count, sizeof(*lines), by_size);
+    for (int i = 0; i < count; i++)
+        if ((distinct == 0 || lines[i] != lines[distinct - 1]) && lines[i] >= scale.min && lines[i] <= scale.max)
+            lines[distinct++] = lines[i];
+    return distinct;
+}
+
 static bool same_vector(const double a[3], const double b[3])
 {
     return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
@@ -50,10 +84,22 @@ static bool same_camera(const struct camera *a, const struct camera *b)
            a->fov_deg == b->fov_deg;
 }
 
+static bool same_numbers(const double *a, int a_count, const double *b, int b_count)
+{
+    return a_count == b_count && memcmp(a, b, (size_t)a_count * sizeof(*a)) == 0;
+}
+
+static bool same_paint(const struct paint *a, const struct paint *b)
+{
+    return a->log == b->log && same_numbers(a->breaks, a->break_count, b->breaks, b->break_count) &&
+           same_numbers(a->lines, a->line_count, b->lines, b->line_count);
+}
+
 bool view_equal(const struct view *a, const struct view *b)
 {
     return a->width_px == b->width_px && a->height_px == b->height_px && same_camera(&a->camera, &b->camera) &&
            field_params_equal(&a->field, &b->field) && a->colormap == b->colormap && a->ramp_interval == b->ramp_interval &&
-           a->range_min == b->range_min && a->range_max == b->range_max && a->look == b->look && a->tier == b->tier &&
+           a->range_min == b->range_min && a->range_max == b->range_max && same_paint(&a->paint, &b->paint) &&
+           a->look == b->look && a->tier == b->tier &&
            a->selected_asset == b->selected_asset && same_vector(a->light_dir, b->light_dir);
 }

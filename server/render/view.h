@@ -6,6 +6,7 @@
 #include <stdint.h>
 
 #include "field/field.h"
+#include "field/scale.h"
 #include "scene/camera.h"
 
 enum look {
@@ -17,6 +18,15 @@ enum tier { TIER_MOVING, TIER_STILL };
 #define VIEW_MAX_SIDE_PX 8192
 #define VIEW_MAX_PIXELS (16 * 1024 * 1024)
 
+enum { VIEW_LINES = 32 };
+struct paint { /* beside colour map, range and ramp: which colour a value has, and where lines run. Zero: nothing of it */
+    bool log;
+    double breaks[SCALE_BREAKS]; /* ascending; instead of the ramp */
+    int break_count;
+    double lines[VIEW_LINES]; /* isolines, ascending; the edges of bands have lines in any case */
+    int line_count;
+};
+
 struct view {
     int width_px, height_px; /* 16..VIEW_MAX_SIDE_PX, at most VIEW_MAX_PIXELS */
     struct camera camera;
@@ -27,6 +37,7 @@ struct view {
     int colormap;                /* index */
     double ramp_interval;        /* engineering units; 0 = continuous */
     double range_min, range_max; /* of the colour map; the group's unless the client says otherwise */
+    struct paint paint;
     enum look look;
     enum tier tier;
     int selected_asset;  /* outlined; -1: none */
@@ -34,6 +45,10 @@ struct view {
 };
 
 void view_default(const struct scene *scene, int width_px, int height_px, struct view *view);
+void view_scale(const struct view *view, struct scale *scale);
+/* All values that have a line, ascending: isolines and the edges of bands. Returns how many. */
+enum { VIEW_ALL_LINES = VIEW_LINES + SCALE_EDGES };
+int view_lines(const struct view *view, double lines[VIEW_ALL_LINES]);
 /* Both ask for the same picture: everything but who asked, and when. Every new field that changes the picture belongs here. */
 bool view_equal(const struct view *a, const struct view *b);
 

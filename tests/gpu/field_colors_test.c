@@ -6,6 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include <cmocka.h>
 
@@ -63,15 +64,32 @@ static double value_at(const struct scalars *scalars, int x, int y)
 /* One colour of the map, as it is. Where the still tier averages over the samples of a pixel, colours next to each other may mix. */
 static bool is_color_of(const struct view *view, double value, const uint8_t *bgrx)
 {
-    const struct colormap *map = colormap_at((size_t)view->colormap);
+    struct scale scale;
+    view_scale(view, &scale);
     double slack = 1e-4 * (view->range_max - view->range_min);
     int mix = view->tier == TIER_STILL ? 4 : 0;
     for (int side = -1; side <= 1; side++) {
         uint8_t rgb[3];
-        colormap_look_up(map, value + side * slack, view->range_min, view->range_max, view->ramp_interval, rgb);
+        scale_look_up(&scale, value + side * slack, rgb);
         if (abs(rgb[0] - bgrx[2]) <= mix && abs(rgb[1] - bgrx[1]) <= mix && abs(rgb[2] - bgrx[0]) <= mix)
             return true;
     }
+    return false;
+}
+
+/* A line runs through the pixel or one beside it. */
+static bool near_line(const struct view *view, const struct scalars *scalars, int x, int y)
+{
+    double lines[VIEW_ALL_LINES], low = INFINITY, high = -INFINITY;
+    int count = view_lines(view, lines);
+    for (int i = 0; i < 25; i++) {
+        double value = value_at(scalars, x + i % 5 - 2, y + i / 5 - 2);
+        low = fmin(low, value);
+        high = fmax(high, value);
+    }
+    for (int i = 0; i < count; i++)
+        if (lines[i] >= low && lines[i] <= high)
+            return true;
     return false;
 }
 
@@ -83,7 +101,7 @@ static int count_wrong(const struct view *view)
     int wrong = 0;
     for (int y = 2; y < SIDE_PX - 2; y++)
         for (int x = 2; x < SIDE_PX - 2; x++)
-            wrong += !is_color_of(view, value_at(scalars, x, y), frame_pixel(frame, x, y));
+            wrong += !near_line(view, scalars, x, y) && !is_color_of(view, value_at(scalars, x, y), frame_pixel(frame, x, y));
     frame_unref(&frame);
     return wrong;
 }
@@ -103,18 +121,62 @@ static void test_every_pixel_has_the_legends_color(void **state)
             }
 }
 
-static void test_ramp_has_bands(void **state)
+static void test_bands(void **state)
 {
     struct view view;
     (void)state;
     look_down(&view);
-    for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++)
-        for (double interval = 10; interval < 80; interval += 13.3) {
-            view.tier = (enum tier)tier;
-            view.ramp_interval = interval;
-            int cut = tier == TIER_STILL ? SIDE_PX * SIDE_PX / 50 : 0; /* pixels on a band's edge are averaged over their samples */
-            assert_in_range(count_wrong(&view), 0, cut);
-        }
+    for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++) {
+        view.tier = (enum tier)tier;
+        view.paint.break_count = 0;
+        for (view.ramp_interval = 10; view.ramp_interval < 80; view.ramp_interval += 13.3)
+            assert_int_equal(count_wrong(&view), 0);
+        memcpy(view.paint.breaks, (double[]){ 20, 22, 60, 90 }, 4 * sizeof(double));
+        view.paint.break_count = 4;
+        assert_int_equal(count_wrong(&view), 0);
+    }
+}
+
+static void test_logarithmic_scale(void **state)
+{
+    struct view view;
+    (void)state;
+    look_down(&view);
+    view.range_min = 1;
+    view.paint.log = true;
+    for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++) {
+        view.tier = (enum tier)tier;
+        assert_int_equal(count_wrong(&view), 0);
+    }
+}
+
+/* Dark where the field has that value, and about as wide as it should be. */
+static void test_isolines_run_where_the_value_is(void **state)
+{
+    struct view view;
+    (void)state;
+    look_down(&view);
+    const struct scalars *scalars = field_scalars(stand.field, 0, &view.field, stand.snapshot);
+    memcpy(view.paint.lines, (double[]){ 30, 60 }, 2 * sizeof(double));
+    view.paint.line_count = 2;
+    for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++) {
+        int dark = 0, near = 0;
+        view.tier = (enum tier)tier;
+        struct frame *frame = stand_draw(&stand, &view);
+        for (int y = 4; y < SIDE_PX - 4; y++)
+            for (int x = 4; x < SIDE_PX - 4; x++) {
+                const uint8_t *pixel = frame_pixel(frame, x, y);
+                bool is_dark = pixel[1] < 90;
+                near += near_line(&view, scalars, x, y);
+                dark += is_dark;
+                assert_true(!is_dark || near_line(&view, scalars, x, y));
+            }
+        assert_true(dark > near / 12 && dark < near / 2); /* one or two of five pixels */
+        frame_unref(&frame);
+    }
+    view.paint.lines[0] = 300; /* beyond the range */
+    view.paint.line_count = 1;
+    assert_int_equal(count_wrong(&view), 0);
 }
 
 static void test_beyond_the_range_has_its_own_colors(void **state)
@@ -227,7 +289,7 @@ static void test_default_look_keeps_to_the_palette(void **state)
     view.look = LOOK_DEFAULT;
     view.ramp_interval = 200; /* one band: one colour, only lightness may differ */
     uint8_t rgb[3], shaded[3];
-    colormap_look_up(colormap_at(0), 50, 0, 100, 200, rgb);
+    memcpy(rgb, colormap_at(0)->rgb[128], 3);
     for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++) {
         view.tier = (enum tier)tier;
         struct frame *frame = stand_draw(&stand, &view);
@@ -248,7 +310,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         each(test_every_pixel_has_the_legends_color),
-        each(test_ramp_has_bands),
+        each(test_bands),
+        each(test_logarithmic_scale),
+        each(test_isolines_run_where_the_value_is),
         each(test_beyond_the_range_has_its_own_colors),
         each(test_readings_at_the_ends_stay_on_the_map),
         each(test_no_data_is_grey_stripes),

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The colour maps as tables, as colours, and the legend's rule. */
+/* The colour maps as tables and as colours. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -182,63 +182,6 @@ static void test_relief_is_read_back_through_shading(void **state)
     }
 }
 
-static void expect_row(const struct colormap *map, int row, double value, double min, double max, double interval)
-{
-    uint8_t rgb[3];
-    colormap_look_up(map, value, min, max, interval, rgb);
-    assert_memory_equal(rgb, map->rgb[row], 3);
-}
-
-static void test_continuous(void **state)
-{
-    (void)state;
-    const struct colormap *map = colormap_at(1);
-    expect_row(map, 0, 0, 0, 100, 0);
-    expect_row(map, 255, 100, 0, 100, 0);
-    expect_row(map, 128, 50, 0, 100, 0);
-    expect_row(map, 64, -50, -100, 100, 0);
-}
-
-static void test_outside(void **state)
-{
-    (void)state;
-    for (size_t i = 0; i < colormap_count(); i++) {
-        const struct colormap *map = colormap_at(i);
-        uint8_t rgb[3];
-        colormap_look_up(map, -0.001, 0, 100, 10, rgb);
-        assert_memory_equal(rgb, map->below, 3);
-        colormap_look_up(map, 100.001, 0, 100, 0, rgb);
-        assert_memory_equal(rgb, map->above, 3);
-        colormap_look_up(map, 1e30, 0, 100, 0, rgb);
-        assert_memory_equal(rgb, map->above, 3);
-    }
-}
-
-/* A reading of exactly MAX is stored as a float, which may be above MAX as a double. */
-static void test_limits_are_compared_as_floats(void **state)
-{
-    (void)state;
-    assert_true((double)0.3f > 0.3);
-    expect_row(colormap_at(0), 255, (double)0.3f, 0, 0.3, 0);
-    assert_true((double)0.7f < 0.7);
-    expect_row(colormap_at(0), 0, (double)0.7f, 0.7, 1, 0);
-}
-
-static void test_bands(void **state)
-{
-    (void)state;
-    const struct colormap *map = colormap_at(1);
-    expect_row(map, 12, 0, 0, 100, 10); /* centre 5 of 0..10 */
-    expect_row(map, 12, 9.99, 0, 100, 10);
-    expect_row(map, 38, 10, 0, 100, 10);
-    expect_row(map, 243, 99, 0, 100, 10);
-    expect_row(map, 243, 100, 0, 100, 10); /* MAX is in the last band */
-    expect_row(map, 243, (double)0.3f, 0, 0.3, 0.03);
-    expect_row(map, 249, 100, 0, 100, 19);   /* 0, 19, ... 95, cut at 100: centre 97.5 */
-    expect_row(map, 128, 3, 0, 100, 1e6);    /* one band only */
-    expect_row(map, 51, -95, -100, 100, 80); /* from MIN, not from 0: -100..-20 */
-}
-
 int main(void)
 {
     cmocka_set_message_output(CM_OUTPUT_TAP);
@@ -249,10 +192,6 @@ int main(void)
         cmocka_unit_test(test_relief_is_low_in_contrast_and_ordered),
         cmocka_unit_test(test_relief_leaves_room_for_shading),
         cmocka_unit_test(test_relief_is_read_back_through_shading),
-        cmocka_unit_test(test_continuous),
-        cmocka_unit_test(test_outside),
-        cmocka_unit_test(test_limits_are_compared_as_floats),
-        cmocka_unit_test(test_bands),
     };
     return cmocka_run_group_tests_name("colormap", tests, NULL, NULL);
 }

@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A scale: which colour of a map a value has. The legend's rule, which pictures and clients follow too:
+     place = (value - MIN)/(MAX - MIN), or log(value/MIN)/log(MAX/MIN) on a logarithmic scale.
+     value < MIN: below;  value > MAX: above;  else the colour number min(255, floor(256 place)), never a mixture of two.
+     Bands of an interval begin at MIN + k interval, k < max(1, ceil((MAX - MIN)/interval - 0.001)); MAX may cut the last one short.
+     A whole band has the colour in the middle of its places.
+     n breaks inside (MIN, MAX) make n + 1 bands, each from its break on; band i has the colour at the place (i + 0.5)/(n + 1).
+   MIN, MAX and value are compared as 32-bit floats, as they are stored. Pure. Thread: any. */
+#ifndef FIELD_SCALE_H
+#define FIELD_SCALE_H
+#include <stdbool.h>
+
+#include "field/colormap.h"
+
+enum { SCALE_BREAKS = 16, SCALE_EDGES = 64 };
+struct scale {
+    const struct colormap *map;
+    double min, max;             /* min < max; above 0 where log */
+    bool log;
+    double interval;             /* of bands; 0: none */
+    double breaks[SCALE_BREAKS]; /* ascending; bands of their own, in place of the interval */
+    int break_count;
+};
+enum { SCALE_BELOW = -1, SCALE_ABOVE = 256 };
+
+double scale_place(const struct scale *scale, double value); /* 0 at MIN, 1 at MAX; value > 0 where log */
+double scale_value(const struct scale *scale, double place);
+int scale_index(const struct scale *scale, double value); /* 0..255, SCALE_BELOW or SCALE_ABOVE; value is finite */
+void scale_look_up(const struct scale *scale, double value, uint8_t rgb[3]);
+/* Where bands meet, ascending. 0: there are none, or more than SCALE_EDGES. */
+int scale_edges(const struct scale *scale, double edges[SCALE_EDGES]);
+/* The least change of a value that another colour can show. */
+double scale_step(const struct scale *scale);
+
+#endif

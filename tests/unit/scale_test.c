@@ -1,0 +1,144 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The legend's rule: values to places to colours, in bands and on logarithmic scales. */
+#include "field/scale.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static struct scale linear(double min, double max, double interval)
+{
+    return (struct scale){ .map = colormap_at(1), .min = min, .max = max, .interval = interval };
+}
+
+static void expect_row(int row, double value, double min, double max, double interval)
+{
+    struct scale scale = linear(min, max, interval);
+    uint8_t rgb[3];
+    assert_int_equal(scale_index(&scale, value), row);
+    scale_look_up(&scale, value, rgb);
+    assert_memory_equal(rgb, scale.map->rgb[row], 3);
+}
+
+static void test_continuous(void **state)
+{
+    (void)state;
+    expect_row(0, 0, 0, 100, 0);
+    expect_row(255, 100, 0, 100, 0);
+    expect_row(128, 50, 0, 100, 0);
+    expect_row(64, -50, -100, 100, 0);
+}
+
+static void test_outside(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < colormap_count(); i++) {
+        struct scale scale = linear(0, 100, 10);
+        uint8_t rgb[3];
+        scale.map = colormap_at(i);
+        scale_look_up(&scale, -0.001, rgb);
+        assert_memory_equal(rgb, scale.map->below, 3);
+        scale_look_up(&scale, 100.001, rgb);
+        assert_memory_equal(rgb, scale.map->above, 3);
+        assert_int_equal(scale_index(&scale, 1e30), SCALE_ABOVE);
+        assert_int_equal(scale_index(&scale, -1e30), SCALE_BELOW);
+    }
+}
+
+/* A reading of exactly MAX is stored as a float, which may be above MAX as a double. */
+static void test_limits_are_compared_as_floats(void **state)
+{
+    (void)state;
+    assert_true((double)0.3f > 0.3);
+    expect_row(255, (double)0.3f, 0, 0.3, 0);
+    assert_true((double)0.7f < 0.7);
+    expect_row(0, (double)0.7f, 0.7, 1, 0);
+}
+
+static void test_bands_of_an_interval(void **state)
+{
+    (void)state;
+    expect_row(12, 0, 0, 100, 10); /* centre 5 of 0..10 */
+    expect_row(12, 9.99, 0, 100, 10);
+    expect_row(38, 10, 0, 100, 10);
+    expect_row(243, 99, 0, 100, 10);
+    expect_row(243, 100, 0, 100, 10); /* MAX is in the last band */
+    expect_row(243, (double)0.3f, 0, 0.3, 0.03);
+    expect_row(249, 100, 0, 100, 19);   /* 0, 19, ... 95, cut at 100: centre 97.5 */
+    expect_row(128, 3, 0, 100, 1e6);    /* one band only */
+    expect_row(51, -95, -100, 100, 80); /* from MIN, not from 0: -100..-20 */
+}
+
+static void test_bands_of_breaks(void **state)
+{
+    (void)state;
+    struct scale scale = linear(0, 100, 10); /* breaks come first */
+    memcpy(scale.breaks, (double[]){ -5, 60, 80, 95, 100 }, 5 * sizeof(double));
+    scale.break_count = 5; /* of which three are inside: four bands */
+    static const struct {
+        double value;
+        int index;
+    } cases[] = { { 0, 32 }, { 59.9, 32 }, { 60, 96 }, { 79.9, 96 }, { 80, 160 }, { 95, 224 }, { 100, 224 } };
+    for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++)
+        assert_int_equal(scale_index(&scale, cases[i].value), cases[i].index);
+    assert_int_equal(scale_index(&scale, 100.1), SCALE_ABOVE);
+    double edges[SCALE_EDGES];
+    assert_int_equal(scale_edges(&scale, edges), 3);
+    assert_true(edges[0] == 60 && edges[1] == 80 && edges[2] == 95);
+}
+
+static void test_edges_of_an_interval(void **state)
+{
+    (void)state;
+    double edges[SCALE_EDGES];
+    struct scale scale = linear(20, 70, 20);
+    assert_int_equal(scale_edges(&scale, edges), 2);
+    assert_true(edges[0] == 40 && edges[1] == 60);
+    scale.interval = 25; /* MAX is no edge */
+    assert_int_equal(scale_edges(&scale, edges), 1);
+    scale.interval = 0;
+    assert_int_equal(scale_edges(&scale, edges), 0);
+    scale.interval = 1e-9; /* more lines than anybody sees */
+    assert_int_equal(scale_edges(&scale, edges), 0);
+}
+
+static void test_logarithmic(void **state)
+{
+    (void)state;
+    struct scale scale = linear(0.1, 1000, 0);
+    scale.log = true;
+    assert_int_equal(scale_index(&scale, 0.1), 0);
+    assert_int_equal(scale_index(&scale, 1.0001), 64);
+    assert_int_equal(scale_index(&scale, 10.001), 128);
+    assert_int_equal(scale_index(&scale, 1000), 255);
+    assert_int_equal(scale_index(&scale, 0), SCALE_BELOW);
+    assert_int_equal(scale_index(&scale, -3), SCALE_BELOW);
+    for (double place = 0; place <= 1; place += 0.125)
+        assert_true(fabs(scale_place(&scale, scale_value(&scale, place)) - place) < 1e-12);
+    assert_true(fabs(scale_value(&scale, 0.5) - 10) < 1e-9);
+    assert_true(scale_step(&scale) < 0.1 * log(1e4) / 255); /* what can be seen at its low end */
+    memcpy(scale.breaks, (double[]){ 1, 10 }, 2 * sizeof(double));
+    scale.break_count = 2;
+    assert_int_equal(scale_index(&scale, 0.9), 42);
+    assert_int_equal(scale_index(&scale, 5), 128);
+    assert_int_equal(scale_index(&scale, 500), 213);
+}
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_continuous),
+        cmocka_unit_test(test_outside),
+        cmocka_unit_test(test_limits_are_compared_as_floats),
+        cmocka_unit_test(test_bands_of_an_interval),
+        cmocka_unit_test(test_bands_of_breaks),
+        cmocka_unit_test(test_edges_of_an_interval),
+        cmocka_unit_test(test_logarithmic),
+    };
+    return cmocka_run_group_tests_name("scale", tests, NULL, NULL);
+}
