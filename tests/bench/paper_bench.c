@@ -1,0 +1,319 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The two experiments of the paper at 1920x1080: many instances with 5 sensors each, and many sensors on one instance. All readings
+   change ten times a second while the camera swings round; one JSON line per row. */
+#include <glad/gl.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "render/renderer.h"
+#include "tests/support/crowd.h"
+
+#define DEMO_MODEL "build/demo/plant.glb"
+#define PLANT_MODEL "../shared/data/models/plm_plant_5parts.glb"
+#define FOLDER "build/bench"
+enum { WIDTH_PX = 1920, HEIGHT_PX = 1080, CAMERAS = 48, MOST_FRAMES = 96, LEAST_FRAMES = 4, HULL_POINTS = 96, PROBE_WIDTH_PX = 192, PROBE_HEIGHT_PX = 108 };
+static const int64_t CHANGE_NS = 100 * NS_PER_MS, LONGEST_NS = 4 * NS_PER_S; /* of a row */
+static const double SWING_RAD = 6 * M_PI / 180, FOV_DEG = 15, WANTED_COVERAGE = 0.6;
+
+struct model {
+    const char *path, *nodes, *up, *suffix; /* of the rows' names */
+};
+static const struct model models[] = {
+    { DEMO_MODEL, "E-101", "y", "" },
+    { PLANT_MODEL, NULL, "y", "_5parts" },
+};
+
+struct bench {
+    struct log *log;
+    struct workers *workers;
+    struct gl *gl;
+    struct crowd crowd;
+    struct field *field;
+    struct renderer *renderer;
+    double hull_m[HULL_POINTS][3];
+    struct camera cameras[CAMERAS];
+    double coverage; /* the least of them */
+};
+
+struct series { /* of one row */
+    double time_ms[MOST_FRAMES], work_ms[MOST_FRAMES];
+    int frames, triangles, changes;
+    double seconds;
+};
+
+static double now_ms(clockid_t clock)
+{
+    struct timespec now;
+    clock_gettime(clock, &now);
+    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec / 1e6;
+}
+
+static int by_size(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* --- cameras that have everything in view --------------------------------------------------------------------------------- */
+
+/* Points of the model, plant frame less the instance's own place, that lie farthest out in many directions. */
+static void find_hull(struct bench *bench)
+{
+    const struct scene_asset *asset = &bench->crowd.scene->assets[0];
+    const struct asset_view *file = &asset->file->view;
+    for (int i = 0; i < HULL_POINTS; i++) {
+        double height = 1 - (2 * i + 1.0) / HULL_POINTS, angle = i * 2.399963229728653, flat = sqrt(1 - height * height), most = -INFINITY;
+        double towards[3] = { flat * cos(angle), flat * sin(angle), height };
+        for (uint32_t v = 0; v < file->header->vertex_count; v++) {
+            const float *p = file->positions_m[v];
+            double far = p[0] * towards[0] + p[1] * towards[1] + p[2] * towards[2];
+            if (far <= most)
+                continue;
+            most = far;
+            for (int c = 0; c < 3; c++)
+                bench->hull_m[i][c] = (double)p[c];
+        }
+    }
+}
+
+/* Extremes of the picture's plane, in tangents. Instances are moved, not turned. */
+static void find_extremes(const struct bench *bench, const double eye_m[3], double axes[3][3], double low[2], double high[2])
+{
+    low[0] = low[1] = INFINITY;
+    high[0] = high[1] = -INFINITY;
+    for (size_t i = 0; i < bench->crowd.scene->asset_count; i++)
+        for (int h = 0; h < HULL_POINTS; h++) {
+            double at[3] = { 0, 0, 0 };
+            for (int c = 0; c < 3; c++)
+                for (int axis = 0; axis < 3; axis++)
+                    at[axis] += (bench->crowd.scene->assets[i].placement[12 + c] + bench->hull_m[h][c] - eye_m[c]) * axes[axis][c];
+            for (int axis = 0; axis < 2; axis++) {
+                low[axis] = fmin(low[axis], at[axis] / at[2]);
+                high[axis] = fmax(high[axis], at[axis] / at[2]);
+            }
+        }
+}
+
+/* From that side, as near as it gets with all of it in the picture. */
+static void fit(const struct bench *bench, double azimuth, double elevation, struct camera *camera)
+{
+    const struct scene *scene = bench->crowd.scene;
+    double axes[3][3] = { { -sin(azimuth), cos(azimuth), 0 }, /* right, up, ahead */
+                          { -cos(azimuth) * sin(elevation), -sin(azimuth) * sin(elevation), cos(elevation) },
+                          { -cos(azimuth) * cos(elevation), -sin(azimuth) * cos(elevation), -sin(elevation) } };
+    double half = tan(FOV_DEG * M_PI / 360), distance_m = 0;
+    *camera = (struct camera){ .up = { 0, 0, 1 }, .fov_deg = FOV_DEG };
+    for (int c = 0; c < 3; c++) {
+        camera->target_m[c] = 0.5 * (scene->bounds_min_m[c] + scene->bounds_max_m[c]);
+        distance_m = fmax(distance_m, 4 * (scene->bounds_max_m[c] - scene->bounds_min_m[c]));
+    }
+    for (int round = 0; round < 30; round++) {
+        double low[2], high[2];
+        for (int c = 0; c < 3; c++)
+            camera->eye_m[c] = camera->target_m[c] - distance_m * axes[2][c];
+        find_extremes(bench, camera->eye_m, axes, low, high);
+        for (int c = 0; c < 3; c++)
+            camera->target_m[c] += 0.5 * distance_m * ((low[0] + high[0]) * axes[0][c] + (low[1] + high[1]) * axes[1][c]);
+        distance_m *= 0.5 + 0.5 * fmax((high[0] - low[0]) * HEIGHT_PX / WIDTH_PX, high[1] - low[1]) / (2 * half);
+    }
+    for (int c = 0; c < 3; c++)
+        camera->eye_m[c] = camera->target_m[c] - 1.002 * distance_m * axes[2][c];
+}
+
+/* Of the picture drawn last: the renderer leaves it bound for reading. */
+static double read_coverage(int width_px, int height_px)
+{
+    size_t pixels = (size_t)width_px * (size_t)height_px, covered = 0;
+    float *depth = mem_array(pixels, sizeof(*depth));
+    glReadPixels(0, 0, width_px, height_px, GL_DEPTH_COMPONENT, GL_FLOAT, depth);
+    for (size_t i = 0; i < pixels; i++)
+        covered += depth[i] > 0;
+    mem_free(depth);
+    return (double)covered / (double)pixels;
+}
+
+static void make_view(const struct bench *bench, int width_px, int height_px, struct view *view)
+{
+    view_default(bench->crowd.scene, width_px, height_px, view);
+    view->tier = TIER_MOVING;
+}
+
+static double coverage_from(struct bench *bench, const struct camera *camera)
+{
+    struct view view;
+    make_view(bench, PROBE_WIDTH_PX, PROBE_HEIGHT_PX, &view);
+    view.camera = *camera;
+    struct frame *frame = renderer_draw(bench->renderer, &view, bench->crowd.snapshot);
+    if (!frame)
+        abort();
+    frame_unref(&frame);
+    return read_coverage(PROBE_WIDTH_PX, PROBE_HEIGHT_PX);
+}
+
+struct side {
+    double azimuth, elevation, coverage;
+};
+
+static void try_side(struct bench *bench, double azimuth, double elevation, struct side *best)
+{
+    struct camera camera;
+    fit(bench, azimuth, elevation, &camera);
+    double coverage = coverage_from(bench, &camera);
+    if (coverage > best->coverage)
+        *best = (struct side){ azimuth, elevation, coverage };
+}
+
+/* The side from which the picture is filled best, and a swing round it. */
+static void choose_cameras(struct bench *bench)
+{
+    struct side best = { 0 };
+    find_hull(bench);
+    for (int a = 0; a < 18; a++)
+        for (int e = 0; e < 4; e++)
+            try_side(bench, a * M_PI / 9, (10 + 15 * e) * M_PI / 180, &best);
+    double azimuth = best.azimuth, elevation = best.elevation;
+    for (int a = -4; a <= 4; a++)
+        for (int e = -2; e <= 2; e++)
+            try_side(bench, azimuth + a * M_PI / 72, elevation + e * M_PI / 36, &best);
+    bench->coverage = 1;
+    for (int i = 0; i < CAMERAS; i++) {
+        fit(bench, best.azimuth + SWING_RAD * sin(2 * M_PI * i / CAMERAS), best.elevation, &bench->cameras[i]);
+        if (i % 6 == 0)
+            bench->coverage = fmin(bench->coverage, coverage_from(bench, &bench->cameras[i]));
+    }
+}
+
+/* --- rows ------------------------------------------------------------------------------------------------------------------- */
+
+static bool bench_init(struct bench *bench, const struct model *model, int instances, int sensors)
+{
+    char *folder = mem_printf(FOLDER "/crowd%s-%dx%d", model->suffix, instances, sensors), *path = realpath(model->path, NULL);
+    struct crowd_params params = {
+        .folder = folder, .model = path, .nodes = model->nodes, .up = model->up, .instances = instances, .sensors = sensors
+    };
+    bool good = path && crowd_init(&bench->crowd, bench->log, bench->workers, &params);
+    if (good) {
+        bench->field = field_create(bench->workers, bench->crowd.scene);
+        bench->renderer = renderer_create(bench->log, bench->gl, bench->crowd.scene, bench->field);
+        good = bench->renderer != NULL;
+    }
+    if (good)
+        choose_cameras(bench);
+    mem_free(folder);
+    free(path);
+    return good;
+}
+
+static void bench_finish(struct bench *bench)
+{
+    renderer_destroy(&bench->renderer);
+    field_destroy(&bench->field);
+    crowd_finish(&bench->crowd);
+}
+
+static void run_series(struct bench *bench, struct series *series)
+{
+    struct view view;
+    int64_t began_ns = clock_mono_ns(), changed_ns = began_ns;
+    *series = (struct series){ 0 };
+    make_view(bench, WIDTH_PX, HEIGHT_PX, &view);
+    for (int i = -2; i < MOST_FRAMES; i++) {
+        double start_ms = now_ms(CLOCK_MONOTONIC), worked_ms = now_ms(CLOCK_PROCESS_CPUTIME_ID);
+        if (i == 0)
+            began_ns = clock_mono_ns();
+        if (i >= LEAST_FRAMES && clock_mono_ns() - began_ns > LONGEST_NS)
+            break;
+        if (clock_mono_ns() - changed_ns >= CHANGE_NS) {
+            changed_ns = clock_mono_ns();
+            crowd_change(&bench->crowd, changed_ns);
+            series->changes += i >= 0;
+        }
+        view.camera = bench->cameras[(i + CAMERAS) % CAMERAS];
+        struct frame *frame = renderer_draw(bench->renderer, &view, bench->crowd.snapshot);
+        if (!frame)
+            abort();
+        if (i >= 0) {
+            series->time_ms[i] = now_ms(CLOCK_MONOTONIC) - start_ms;
+            series->work_ms[i] = now_ms(CLOCK_PROCESS_CPUTIME_ID) - worked_ms;
+            series->triangles = frame->triangles;
+            series->frames++;
+        }
+        frame_unref(&frame);
+    }
+    series->seconds = (double)(clock_mono_ns() - began_ns) / 1e9;
+}
+
+static void print_row(const struct bench *bench, const char *name, struct series *series, double goal_ms)
+{
+    int middle = series->frames / 2, late = series->frames * 95 / 100;
+    double columns = series->changes * (double)bench->crowd.plant->tag_count / series->seconds;
+    qsort(series->time_ms, (size_t)series->frames, sizeof(double), by_size);
+    qsort(series->work_ms, (size_t)series->frames, sizeof(double), by_size);
+    printf("{\"name\": \"%s\", \"value\": %.2f, \"p95\": %.2f, \"unit\": \"ms\", ", name, series->time_ms[middle], series->time_ms[late]);
+    if (goal_ms > 0)
+        printf("\"goal\": [\"<=\", %g], ", goal_ms);
+    if (bench->coverage < WANTED_COVERAGE)
+        printf("\"note\": \"covers less than 60 %% somewhere\", ");
+    printf("\"cpu\": %.2f, \"tier\": \"moving\", \"coverage\": %.2f, \"triangles\": %d, \"columns_per_s\": %.0f, \"frames\": %d}\n",
+           series->work_ms[middle], bench->coverage, series->triangles, columns, series->frames);
+    fflush(stdout);
+}
+
+static void print_missing(const char *name, const char *why)
+{
+    printf("{\"name\": \"%s\", \"value\": null, \"p95\": null, \"unit\": \"ms\", \"why\": \"%s\"}\n", name, why);
+    fflush(stdout);
+}
+
+static void measure(struct bench *bench, const struct model *model, const char *kind, int count, int instances, int sensors, double goal_ms)
+{
+    struct series *series = mem_new(sizeof(*series));
+    char *name = mem_printf("render_%s_%d%s_ms", kind, count, model->suffix);
+    if (access(model->path, R_OK) != 0) {
+        print_missing(name, "its model is not there");
+    } else if (!bench_init(bench, model, instances, sensors)) {
+        print_missing(name, "its plant could not be prepared or drawn; the log says why");
+    } else {
+        run_series(bench, series);
+        print_row(bench, name, series, goal_ms);
+    }
+    bench_finish(bench);
+    mem_free(name);
+    mem_free(series);
+}
+
+/* Of the issue; 0: none. */
+static double goal_of(int instances)
+{
+    return instances == 1 ? 10 : instances == 100 ? 16 : instances == 400 ? 33 : 0;
+}
+
+int main(int argc, char **argv)
+{
+    static const int instances[] = { 1, 5, 25, 100, 400 }, sensors[] = { 5, 10, 20, 32, 64, 128, 256, 512, 1024, 4096 };
+    struct bench bench = { .log = log_create(LOG_ERROR), .workers = workers_create(0) };
+    int only = argc > 1 ? atoi(argv[1]) : 0; /* instances */
+    mkdir(FOLDER, 0777);
+    bench.gl = gl_create(bench.log, GL_AUTO, -1);
+    for (size_t m = 0; m < sizeof(models) / sizeof(models[0]) && bench.gl; m++) {
+        for (size_t i = 0; i < sizeof(instances) / sizeof(instances[0]); i++)
+            if (!only || only == instances[i])
+                measure(&bench, &models[m], "instances", instances[i], instances[i], 5, goal_of(instances[i]));
+        for (size_t i = 0; i < sizeof(sensors) / sizeof(sensors[0]); i++)
+            if (!only)
+                measure(&bench, &models[m], "sensors", sensors[i], 1, sensors[i], 0);
+    }
+    if (!bench.gl)
+        print_missing("render_instances_1_ms", "no OpenGL 4.5 context; the log says why");
+    gl_destroy(&bench.gl);
+    workers_destroy(&bench.workers);
+    log_destroy(&bench.log);
+    return 0;
+}

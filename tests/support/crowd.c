@@ -1,0 +1,172 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Writes the plant's two files, prepares and loads them. */
+#include "tests/support/crowd.h"
+
+#include <errno.h>
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "base/mem.h"
+#include "base/text.h"
+#include "preprocess/prepare.h"
+#include "tests/support/synthetic.h"
+#include "value/quality.h"
+
+static const double GAP = 1.01;      /* between the middles of neighbours, in their sizes */
+static const double ASPECT = 1.0;    /* of the ground that all stand on: fills a wide picture when seen from above and aside */
+
+struct places { /* of the sensors, in the asset frame */
+    double (*at_m)[3];
+    int count;
+    double size_m[3], middle_m[3]; /* of the model */
+};
+
+/* --- its files -------------------------------------------------------------------------------------------------------------- */
+
+static int columns_of(int instances, const struct places *places)
+{
+    int columns = (int)lround(sqrt(instances * ASPECT * places->size_m[1] / places->size_m[0]));
+    return columns < 1 ? 1 : columns > instances ? instances : columns;
+}
+
+static void add_instance(struct text *yaml, const struct crowd_params *params, const struct places *places, int index)
+{
+    int columns = columns_of(params->instances, places);
+    double x = index % columns * GAP * places->size_m[0] - places->middle_m[0];
+    double y = index / columns * GAP * places->size_m[1] - places->middle_m[1];
+    text_add(yaml, "  - { id: A%d, model: \"%s\", ", index, params->model);
+    if (params->nodes)
+        text_add(yaml, "nodes: \"%s\", ", params->nodes);
+    text_add(yaml, "up: %s, sensor_frame: asset, placement: { translate: [%.4f, %.4f, 0] } }\n", params->up, x, y);
+}
+
+static bool write_files(const struct crowd_params *params, const struct places *places)
+{
+    struct text yaml = { 0 }, tags = { 0 };
+    char *yaml_path = mem_printf("%s/plant.yaml", params->folder), *tags_path = mem_printf("%s/tags.csv", params->folder);
+    text_add(&yaml, "plant: { name: Crowd, time_zone: UTC }\n"
+                    "groups:\n  - { id: t, unit: K, min: 0, max: 100 }\n"
+                    "tags: tags.csv\nassets:\n");
+    text_add(&tags, "Tag Name,Group,Asset,X,Y,Z\n");
+    for (int i = 0; i < params->instances; i++) {
+        add_instance(&yaml, params, places, i);
+        for (int s = 0; s < places->count; s++)
+            text_add(&tags, "T%d-%d,t,A%d,%.4f,%.4f,%.4f\n", i, s, i, places->at_m[s][0], places->at_m[s][1], places->at_m[s][2]);
+    }
+    bool good = (mkdir(params->folder, 0777) == 0 || errno == EEXIST) && text_write_file(yaml_path, yaml.at, yaml.length) == 0 &&
+                text_write_file(tags_path, tags.at, tags.length) == 0;
+    text_finish(&yaml);
+    text_finish(&tags);
+    mem_free(yaml_path);
+    mem_free(tags_path);
+    return good;
+}
+
+static bool prepare(struct crowd *crowd, struct log *log, struct workers *workers, const char *folder)
+{
+    struct diag diag = { 0 };
+    struct prepare prepare;
+    char *path = mem_printf("%s/plant.yaml", folder);
+    crowd->plant = plant_load(path, &diag);
+    bool good = crowd->plant != NULL;
+    if (good) {
+        char *prepared = plant_prepared_folder(crowd->plant);
+        good = prepare_run(&prepare, log, workers, crowd->plant, &(struct prepare_params){ .folder = prepared }, &diag);
+        prepare_finish(&prepare);
+        if (good)
+            crowd->scene = scene_create(log, crowd->plant, prepared);
+        mem_free(prepared);
+    }
+    if (!good)
+        diag_print(&diag, stderr);
+    diag_finish(&diag);
+    mem_free(path);
+    return good && crowd->scene;
+}
+
+/* --- where its sensors stand ------------------------------------------------------------------------------------------------ */
+
+/* Each one at the vertex farthest from those before it. */
+static void spread(struct places *places, const struct asset_view *view)
+{
+    uint32_t vertices = view->header->vertex_count, next = 0;
+    float *nearest = mem_array(vertices, sizeof(*nearest));
+    for (uint32_t v = 0; v < vertices; v++)
+        nearest[v] = FLT_MAX;
+    for (int s = 0; s < places->count; s++) {
+        const float *here = view->positions_m[next];
+        for (int c = 0; c < 3; c++)
+            places->at_m[s][c] = view->header->origin_m[c] + (double)here[c];
+        float most = -1;
+        for (uint32_t v = 0; v < vertices; v++) {
+            const float *at = view->positions_m[v];
+            float x = at[0] - here[0], y = at[1] - here[1], z = at[2] - here[2], square = x * x + y * y + z * z;
+            nearest[v] = fminf(nearest[v], square);
+            if (nearest[v] > most) {
+                most = nearest[v];
+                next = v;
+            }
+        }
+    }
+    mem_free(nearest);
+}
+
+/* From the model prepared once without sensors. */
+static bool find_places(struct places *places, struct log *log, struct workers *workers, const struct crowd_params *params)
+{
+    struct crowd bare = { 0 };
+    char *folder = mem_printf("%s-bare", params->folder);
+    struct crowd_params one = { .folder = folder, .model = params->model, .nodes = params->nodes, .up = params->up, .instances = 1 };
+    struct places none = { .size_m = { 1, 1, 1 } };
+    *places = (struct places){ .count = params->sensors, .at_m = mem_array((size_t)params->sensors, sizeof(*places->at_m)) };
+    bool good = write_files(&one, &none) && prepare(&bare, log, workers, folder);
+    if (good) {
+        const struct asset_view *view = &bare.scene->assets[0].file->view;
+        for (int c = 0; c < 3; c++) {
+            double low = view->header->bounds_min_m[c], high = view->header->bounds_max_m[c];
+            places->size_m[c] = high - low;
+            places->middle_m[c] = view->header->origin_m[c] + 0.5 * (low + high);
+        }
+        spread(places, view);
+    }
+    crowd_finish(&bare);
+    mem_free(folder);
+    return good;
+}
+
+/* --- all of it -------------------------------------------------------------------------------------------------------------- */
+
+bool crowd_init(struct crowd *crowd, struct log *log, struct workers *workers, const struct crowd_params *params)
+{
+    struct places places;
+    *crowd = (struct crowd){ .random = 1 };
+    bool good = find_places(&places, log, workers, params) && write_files(params, &places) && prepare(crowd, log, workers, params->folder);
+    mem_free(places.at_m);
+    if (!good)
+        return false;
+    crowd->snapshot = snapshot_create(crowd->plant->tag_count);
+    crowd_change(crowd, 0);
+    return true;
+}
+
+void crowd_finish(struct crowd *crowd)
+{
+    snapshot_destroy(&crowd->snapshot);
+    scene_destroy(&crowd->scene);
+    plant_destroy(&crowd->plant);
+}
+
+void crowd_change(struct crowd *crowd, int64_t mono_ns)
+{
+    crowd->snapshot->taken_mono_ns = mono_ns;
+    for (size_t i = 0; i < crowd->plant->tag_count; i++) {
+        struct reading *reading = &crowd->snapshot->readings[i];
+        *reading = (struct reading){ .value = 100 * synthetic_random_unit(&crowd->random),
+                                     .quality = QUALITY_GOOD,
+                                     .changes = reading->changes + 1 };
+    }
+}

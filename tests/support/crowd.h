@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Many instances of one model, side by side, each with its own sensors: a plant for benches, made of files and really prepared. */
+#ifndef TESTS_SUPPORT_CROWD_H
+#define TESTS_SUPPORT_CROWD_H
+#include <stdint.h>
+
+#include "base/workers.h"
+#include "scene/scene.h"
+#include "value/snapshot.h"
+
+struct crowd_params {
+    const char *folder;       /* where the plant is written and prepared; what is prepared there already is used again */
+    const char *model;        /* glTF or GLB file */
+    const char *nodes, *up;   /* as in a plant file; nodes NULL: the whole model */
+    int instances, sensors;   /* sensors: on each instance, spread evenly over its surface */
+};
+
+struct crowd {
+    struct plant *plant;
+    struct scene *scene;
+    struct snapshot *snapshot;
+    uint64_t random;
+};
+
+/* False: logged. Finish in both cases. */
+bool crowd_init(struct crowd *crowd, struct log *log, struct workers *workers, const struct crowd_params *params);
+void crowd_finish(struct crowd *crowd);
+void crowd_change(struct crowd *crowd, int64_t mono_ns); /* every reading becomes another one within the range */
+
+#endif
