@@ -14,6 +14,7 @@ struct egl {
     struct gl base;
     EGLDisplay display;
     EGLContext context;
+    bool used; /* the context was current once */
 };
 
 static const char *egl_error_text(void)
@@ -45,15 +46,15 @@ static void egl_lose(struct gl *gl)
     egl->context = EGL_NO_CONTEXT;
 }
 
-/* A driver that was in use stays loaded: its own leaks are known by its name (tests/leaks.txt), which an unloaded one has lost. One whose
-   context is lost is closed, so that the next start finds the device as it is then. */
+/* A driver that was in use stays loaded: its own leaks are known by its name (tests/leaks.txt), which an unloaded one has lost. A
+   display outlives the loss of a context; if not, the next attempt fails on it and closes it for the one after. */
 static void egl_destroy(struct gl *gl)
 {
     struct egl *egl = (struct egl *)gl;
-    bool used = egl->context != EGL_NO_CONTEXT, lost = used && gl_lost(gl);
-    if (used)
+    bool used = egl->used;
+    if (egl->context)
         egl_lose(gl);
-    if (egl->display && (lost || !used))
+    if (egl->display && !used)
         eglTerminate(egl->display);
     if (egl->display && eglReleaseThread) /* EGL 1.2: not loaded yet where the display could not be initialised */
         eglReleaseThread();
@@ -114,6 +115,7 @@ static bool make_current(struct egl *egl, const char *name, struct text *why)
         text_add(why, "; %s: context cannot be made current without a surface: %s", name, egl_error_text());
         return false;
     }
+    egl->used = true;
     if (gladLoadGL((GLADloadfunc)eglGetProcAddress) < GLAD_MAKE_VERSION(4, 5)) {
         text_add(why, "; %s: OpenGL is older than 4.5", name);
         return false;
