@@ -28,6 +28,7 @@ struct server {
     struct plant *plant;
     struct scene *scene;
     struct store *store;
+    struct baselines *baselines;
     struct source **sources; /* by index in plant->sources */
     struct workers *workers;
     struct painter *painter;
@@ -141,6 +142,7 @@ static bool start_painter(struct server *server)
         .gl_device = server->params.has_gl_device ? &server->params.gl_device : NULL,
         .scene = server->scene,
         .store = server->store,
+        .baselines = server->baselines,
         .workers = server->workers,
         .counters = server->counters,
         .notify = on_pictures,
@@ -156,6 +158,7 @@ static bool start_net(struct server *server)
         .log = server->log,
         .scene = server->scene,
         .store = server->store,
+        .baselines = server->baselines,
         .painter = server->painter,
         .counters = server->counters,
         .address = server->params.address,
@@ -193,6 +196,7 @@ static bool server_start(struct server *server)
         return false;
     server->counters = counters_create();
     server->store = store_create(server->plant);
+    server->baselines = baselines_create();
     server->workers = workers_create(server->params.threads);
     server->web = find_web(server->params.web);
     return start_sources(server) && start_painter(server) && start_net(server);
@@ -212,6 +216,7 @@ static void server_finish(struct server *server)
     mem_free(server->sources);
     workers_destroy(&server->workers);
     store_destroy(&server->store);
+    baselines_destroy(&server->baselines);
     counters_destroy(&server->counters);
     scene_destroy(&server->scene);
     plant_destroy(&server->plant);

@@ -25,6 +25,9 @@ static const char usage[] =
     "  --interpolation NAME    shepard or paper\n"
     "  --fill MODE             none or neighbours\n"
     "  --strength F, --decay F factors; --power P of shepard\n"
+    "  --sensors TAG=STRENGTH[:DECAY],...   of single sensors, in place of the tag list's\n"
+    "  --show WHAT             value, distance (from --sensor TAG, in metres), difference (from --baseline)\n"
+    "  --baseline FILE         CSV like --values; of a daemon: the name of one that it keeps\n"
     "  --radius M              R of paper; 0: automatic          --reach M   how far a sensor reaches\n"
     "  --ramp UNITS            colours in steps; 0: continuous   --range MIN,MAX\n"
     "  --colormap NAME         relief, viridis, cividis, diverging, turbo\n"
@@ -46,11 +49,13 @@ static const struct {
     { "fill", "fill" },         { "strength", "strength" }, { "decay", "decay" },        { "power", "power" },
     { "radius", "radius_m" },   { "reach", "reach_m" },     { "ramp", "ramp_interval" }, { "range", "range" },
     { "colormap", "colormap" }, { "look", "look" },         { "light", "light" },        { "select", "selected" },
+    { "show", "show" },         { "sensor", "sensor" },     { "sensors", "sensors" },
 };
 enum { SHARED = sizeof(shared) / sizeof(shared[0]) };
 enum own_option {
     OPTION_SIZE = SHARED,
     OPTION_OUT,
+    OPTION_BASELINE,
     OPTION_VALUES,
     OPTION_AT,
     OPTION_PREPARED,
@@ -63,14 +68,20 @@ enum own_option {
 };
 
 static const struct option own[] = {
-    { "size", required_argument, NULL, OPTION_SIZE },           { "out", required_argument, NULL, OPTION_OUT },
-    { "values", required_argument, NULL, OPTION_VALUES },       { "at", required_argument, NULL, OPTION_AT },
-    { "prepared", required_argument, NULL, OPTION_PREPARED },   { "tier", required_argument, NULL, OPTION_TIER },
-    { "no-overlay", no_argument, NULL, OPTION_NO_OVERLAY },     { "gl", required_argument, NULL, OPTION_GL },
-    { "gl-device", required_argument, NULL, OPTION_GL_DEVICE }, { "help", no_argument, NULL, OPTION_HELP },
+    { "size", required_argument, NULL, OPTION_SIZE },
+    { "out", required_argument, NULL, OPTION_OUT },
+    { "baseline", required_argument, NULL, OPTION_BASELINE },
+    { "values", required_argument, NULL, OPTION_VALUES },
+    { "at", required_argument, NULL, OPTION_AT },
+    { "prepared", required_argument, NULL, OPTION_PREPARED },
+    { "tier", required_argument, NULL, OPTION_TIER },
+    { "no-overlay", no_argument, NULL, OPTION_NO_OVERLAY },
+    { "gl", required_argument, NULL, OPTION_GL },
+    { "gl-device", required_argument, NULL, OPTION_GL_DEVICE },
+    { "help", no_argument, NULL, OPTION_HELP },
 };
 
-static bool add_arg(struct snapshot_options *options, const char *name, const char *value)
+bool snapshot_add_arg(struct snapshot_options *options, const char *name, const char *value)
 {
     if (options->arg_count == SNAPSHOT_MAX)
         return false;
@@ -85,10 +96,10 @@ static bool add_size(struct snapshot_options *options, const char *text)
     if (sscanf(text, "%ux%u%c", &width, &height, &rest) != 2)
         return false;
     snprintf(number, sizeof(number), "%u", width);
-    if (!add_arg(options, "width", number))
+    if (!snapshot_add_arg(options, "width", number))
         return false;
     snprintf(number, sizeof(number), "%u", height);
-    return add_arg(options, "height", number);
+    return snapshot_add_arg(options, "height", number);
 }
 
 static bool parse_time(const char *text, int64_t *utc_ns)
@@ -110,10 +121,11 @@ static bool parse_tier(struct snapshot_options *options, const char *text)
 /* False: the option's argument is wrong. */
 static bool take_own(struct snapshot_options *options, int option, const char *text)
 {
-    options->offline_only = options->offline_only || option > OPTION_OUT;
+    options->offline_only = options->offline_only || option > OPTION_BASELINE;
     switch (option) {
     case OPTION_SIZE: return add_size(options, text);
     case OPTION_OUT: options->out = text; return true;
+    case OPTION_BASELINE: options->baseline = text; return true;
     case OPTION_AT: return parse_time(text, &options->at_utc_ns);
     case OPTION_PREPARED: options->prepared = text; return true;
     case OPTION_TIER: return parse_tier(options, text);
@@ -143,7 +155,7 @@ static int parse(int argc, char **argv, struct snapshot_options *options)
         }
         if (option == '?')
             return 2;
-        if (option < SHARED ? add_arg(options, shared[option].name, optarg)
+        if (option < SHARED ? snapshot_add_arg(options, shared[option].name, optarg)
                             : take_own(options, option == 'o' ? OPTION_OUT : option, optarg))
             continue;
         fprintf(stderr, "plantcast: --%s: '%s' is not what is expected; see plantcast snapshot --help\n",
@@ -165,13 +177,15 @@ static void add_encoded(struct text *path, const char *arg)
         text_add(path, isalnum((unsigned char)*arg) || strchr("-_.=,", *arg) ? "%c" : "%%%02X", (unsigned char)*arg);
 }
 
-static int from_daemon(const struct snapshot_options *options)
+static int from_daemon(struct snapshot_options *options)
 {
     struct text path = { 0 };
     if (options->offline_only) {
         fputs("plantcast: --values, --at, --prepared, --tier, --no-overlay and --gl only go with a plant file\n", stderr);
         return 2;
     }
+    if (options->baseline && !snapshot_add_arg(options, "baseline", options->baseline))
+        return 2;
     text_add(&path, "/snapshot.png");
     for (size_t i = 0; i < options->arg_count; i++) {
         text_add(&path, i ? "&" : "?");

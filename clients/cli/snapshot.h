@@ -15,6 +15,7 @@ struct snapshot_options {
     size_t arg_count;
     const char *values[SNAPSHOT_MAX]; /* CSV files */
     size_t value_count;
+    const char *baseline; /* CSV file; of a daemon: a name. NULL: none */
     const char *prepared; /* NULL: beside the plant file */
     enum gl_kind gl;
     struct gl_device gl_device;
@@ -23,6 +24,7 @@ struct snapshot_options {
     bool moving, no_overlay, offline_only; /* offline_only: something was asked for that a daemon does not offer */
 };
 
-int snapshot_offline(const struct snapshot_options *options); /* exit code */
+bool snapshot_add_arg(struct snapshot_options *options, const char *name, const char *value); /* false: too many */
+int snapshot_offline(struct snapshot_options *options);                                       /* exit code */
 
 #endif

@@ -22,13 +22,27 @@ struct studio {
     struct plant *plant;
     struct scene *scene;
     struct snapshot *snapshot;
+    struct baselines *baselines;
     struct workers *workers;
     struct field *field;
     struct gl *gl;
     struct renderer *renderer;
 };
 
-static bool load_plant(struct studio *studio, const struct snapshot_options *options)
+static bool load_baseline(struct studio *studio, struct snapshot_options *options, struct diag *diag)
+{
+    static const char *const name = "baseline";
+    studio->baselines = baselines_create();
+    if (!options->baseline)
+        return true;
+    struct snapshot *snapshot = snapshot_create(studio->plant->tag_count);
+    bool good = values_read(studio->plant, options->baseline, snapshot, diag) && snapshot_add_arg(options, "baseline", name);
+    baselines_set(studio->baselines, name, snapshot);
+    snapshot_destroy(&snapshot);
+    return good;
+}
+
+static bool load_plant(struct studio *studio, struct snapshot_options *options)
 {
     struct diag diag = { 0 };
     studio->plant = plant_load(options->from, &diag);
@@ -42,6 +56,7 @@ static bool load_plant(struct studio *studio, const struct snapshot_options *opt
     }
     for (size_t i = 0; i < options->value_count && studio->plant; i++)
         good = values_read(studio->plant, options->values[i], studio->snapshot, &diag) && good;
+    good = good && load_baseline(studio, options, &diag);
     diag_print(&diag, stderr);
     diag_finish(&diag);
     return good;
@@ -59,6 +74,7 @@ static bool set_up(struct studio *studio, const struct snapshot_options *options
 {
     studio->workers = workers_create(0);
     studio->field = field_create(studio->workers, studio->scene);
+    field_set_baselines(studio->field, studio->baselines);
     studio->gl = gl_create(studio->log, options->gl, options->has_gl_device ? &options->gl_device : NULL);
     if (studio->gl)
         studio->renderer = renderer_create(studio->log, studio->gl, studio->scene, studio->field);
@@ -72,6 +88,7 @@ static void tear_down(struct studio *studio)
     field_destroy(&studio->field);
     workers_destroy(&studio->workers);
     snapshot_destroy(&studio->snapshot);
+    baselines_destroy(&studio->baselines);
     scene_destroy(&studio->scene);
     plant_destroy(&studio->plant);
     log_destroy(&studio->log);
@@ -105,7 +122,7 @@ static bool draw(struct studio *studio, const struct snapshot_options *options, 
     return good;
 }
 
-int snapshot_offline(const struct snapshot_options *options)
+int snapshot_offline(struct snapshot_options *options)
 {
     struct studio studio = { .log = log_create(LOG_INFO) };
     struct message_error error;
@@ -113,7 +130,8 @@ int snapshot_offline(const struct snapshot_options *options)
     int code = 1;
     if (!load_plant(&studio, options) || !load_scene(&studio, options))
         goto end;
-    if (!query_parse(studio.scene, (const char *const *)options->args, options->arg_count, &view, &error)) {
+    const struct params_world world = { .scene = studio.scene, .baselines = studio.baselines };
+    if (!query_parse(&world, (const char *const *)options->args, options->arg_count, &view, &error)) {
         fprintf(stderr, "plantcast: %s\n", error.text);
         code = 2;
         goto end;

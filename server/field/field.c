@@ -75,6 +75,16 @@ void field_destroy(struct field **field_ptr)
     *field_ptr = NULL;
 }
 
+void field_set_baselines(struct field *field, struct baselines *baselines)
+{
+    field->baselines = baselines;
+}
+
+bool field_baseline(const struct field *field, const struct field_params *params, struct baseline *out)
+{
+    return params->show == SHOW_DIFFERENCE && field->baselines && baselines_describe(field->baselines, params->baseline, out);
+}
+
 void field_set_bound(struct field *field, size_t bytes)
 {
     field->bound = bytes;
@@ -214,14 +224,49 @@ struct state *field_state(struct field *field, int asset, const struct field_par
     return state;
 }
 
+/* -1: it does not stand on the asset. */
+static int find_sensor(const struct layout *layout, int tag)
+{
+    for (size_t i = 0; layout && i < layout->sensor_count; i++)
+        if (layout->sensors[i].tag == tag)
+            return (int)i;
+    return -1;
+}
+
+static const struct scalars *distance_scalars(struct field *field, int asset, const struct field_params *params,
+                                              const struct snapshot *snapshot)
+{
+    int sensor = find_sensor(field_layout(field, asset, params->group), params->sensor);
+    struct state *state = sensor < 0 ? NULL : field_state(field, asset, params);
+    if (!state)
+        return NULL;
+    state->used = field->tick;
+    state_read(state, snapshot, NULL);
+    state->scalars.oldest_age_ns = INT64_MAX;
+    if (state->scalars.version == 0)
+        state_measure(state, (size_t)sensor, &field->versions);
+    return &state->scalars;
+}
+
+static void read_inputs(const struct field *field, struct state *state, const struct snapshot *snapshot)
+{
+    bool difference = state->params.show == SHOW_DIFFERENCE && field->baselines;
+    const struct snapshot *baseline = difference ? baselines_take(field->baselines, state->params.baseline) : NULL;
+    state_read(state, snapshot, baseline);
+    if (baseline)
+        baselines_give(field->baselines, &baseline);
+}
+
 const struct scalars *field_scalars(struct field *field, int asset, const struct field_params *params, const struct snapshot *snapshot)
 {
     field->tick++;
+    if (params->show == SHOW_DISTANCE)
+        return distance_scalars(field, asset, params, snapshot);
     struct state *state = field_state(field, asset, params);
     if (!state)
         return NULL;
     state->used = field->tick;
-    state_read(state, snapshot);
+    read_inputs(field, state, snapshot);
     if (state_needs_weights(state) && !weights_take(field, state)) {
         struct state **link = &field->states[asset];
         while (*link != state)

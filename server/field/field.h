@@ -11,6 +11,9 @@
    There is no data where nobody takes part, and where a configured sensor that does not is nearer than all that do (`fill` may ask to
    have such places filled; they are flagged uncertain). The value there is carried on from the nearest that takes part; else MIN.
 
+   What is shown may also be the distance from one sensor, in metres, or the difference from a baseline: the field of now less the
+   field of then, both over the sensors that may be used in both (Algorithm 1 clamps readings, so there clamped ones are subtracted).
+
    Both are linear in the readings: value = G v / G 1. G is kept in a bounded cache or made anew for each sum, with the same bits;
    a changed reading adds one column times its change, a changed quality sums all anew.
    Thread: one at a time per field (it spreads its work over `workers`). */
@@ -20,11 +23,24 @@
 #include "field/scalars.h"
 #include "plant/plant.h"
 #include "scene/scene.h"
+#include "value/baselines.h"
 #include "value/snapshot.h"
+
+enum field_show { SHOW_VALUE, SHOW_DISTANCE, SHOW_DIFFERENCE };
+
+struct field_override { /* of one sensor, in place of what the tag list says */
+    int tag;
+    float strength, decay; /* FIELD_AS_CONFIGURED: not overridden */
+};
+#define FIELD_AS_CONFIGURED (-1.0f)
+enum { FIELD_OVERRIDES = 256 };
 
 /* What a session may choose. Compared byte for byte: zero-initialise, then field_params_default. */
 struct field_params {
     int group;
+    enum field_show show;
+    int sensor;        /* tag whose distance is shown; -1: none */
+    uint32_t baseline; /* id of what the difference is from; 0: none */
     enum interpolation interpolation;
     enum distance_mode distance;
     enum fill_mode fill;
@@ -32,29 +48,44 @@ struct field_params {
     double power;           /* shepard's p */
     double radius_m;        /* paper's R; 0 = the largest distance on the asset over all its configured sensors */
     double reach_m;         /* INFINITY: no limit */
+    size_t override_count;
+    struct field_override overrides[FIELD_OVERRIDES]; /* in order of tags; 0 beyond the count */
 };
 void field_params_default(const struct plant *plant, int group, struct field_params *params);
 bool field_params_equal(const struct field_params *a, const struct field_params *b);
 /* Ranges: 0 <= strength, decay <= 100; 0.5 <= power <= 16; radius 0 or 1e-3..1e6 m; reach > 0. NULL if good, else what is wrong. */
 const char *field_params_wrong(const struct plant *plant, const struct field_params *params);
+/* Sets (or, with both as configured, drops) the override of one sensor. False: there is no room. */
+bool field_params_override(struct field_params *params, struct field_override override);
+const struct field_override *field_params_override_of(const struct field_params *params, int tag); /* NULL: none */
+/* The values that the colour map spans when nobody says otherwise: the group's MIN and MAX; 0 to the largest distance; a quarter of the
+   range below and above 0. */
+void field_own_range(const struct scene *scene, const struct field_params *params, double *min, double *max);
 
 struct field;
 struct field *field_create(struct workers *workers, const struct scene *scene); /* both must outlive it */
-void field_destroy(struct field **field);                                       /* &NULL is fine; leaves NULL */
+void field_destroy(struct field **field); /* &NULL is fine; leaves NULL */
+/* Where differences look their baselines up; it must outlive the field. Without it, and for a baseline that was forgotten, a
+   difference has no data anywhere. */
+void field_set_baselines(struct field *field, struct baselines *baselines);
+/* What the difference is from. False: no difference is shown, or it was forgotten. */
+bool field_baseline(const struct field *field, const struct field_params *params, struct baseline *out);
 /* The bound on what is kept, FIELD_DEFAULT_BYTES at first. What the parameters asked for last need for themselves may pass it. */
 #define FIELD_DEFAULT_BYTES ((size_t)512 << 20)
 void field_set_bound(struct field *field, size_t bytes);
 size_t field_bytes(const struct field *field); /* kept now */
 
-/* The scalars of one asset, brought up to date with the snapshot. Belongs to `field`, valid until the next call with other
-   parameters; scalars->version grows only when a value or a flag really changed. NULL: the asset has no sensor of the group,
-   or out of memory. Shared by all who ask with equal parameters; the least recently used are dropped beyond the bound. */
+/* The scalars of one asset, brought up to date with the snapshot: values, metres, or differences. Distances have no data where the
+   surface does not lead (the value there is the largest). Belongs to `field`, valid until the next call with other parameters;
+   scalars->version grows only when a value or a flag really changed. NULL: the asset has no sensor of the group (a distance: is not
+   the sensor's own), or out of memory. Shared by all who ask with equal parameters; the least recently used are dropped beyond the
+   bound. */
 const struct scalars *field_scalars(struct field *field, int asset, const struct field_params *params, const struct snapshot *snapshot);
 
 enum probe_kind { PROBE_NO_DATA, PROBE_MEASURED, PROBE_BETWEEN };
 #define PROBE_NEAREST 4
 struct probe {
-    enum probe_kind kind; /* measured: at a sensor's own vertex, in an interpolation that keeps readings */
+    enum probe_kind kind; /* measured: a value or difference at a sensor's own vertex, in an interpolation that keeps readings */
     bool uncertain;       /* as scalar.uncertain */
     double value;
     int nearest_tag[PROBE_NEAREST]; /* sensors that take part there, nearest first; -1: none */
@@ -63,15 +94,5 @@ struct probe {
 /* The field at one vertex, from the same sums. An asset without a sensor of the group has no data. */
 void field_probe(struct field *field, int asset, const struct field_params *params, const struct snapshot *snapshot, unsigned vertex,
                  struct probe *out);
-
-/* The distance in metres from one sensor (a tag) to every vertex of its asset, for the paper's Figs. 7 and 11. Where it cannot be
-   reached: no_data, and the value is the largest distance. NULL: the tag stands on no asset, or out of memory. The caller owns it. */
-struct scalars *field_distance(struct field *field, int tag, enum distance_mode mode);
-void field_distance_destroy(struct scalars **distance); /* &NULL is fine; leaves NULL */
-
-/* The distance in metres from one sensor (a tag) to every vertex of its asset, for the paper's Figs. 7 and 11. Where it cannot be
-   reached: no_data, and the value is the largest distance. NULL: the tag stands on no asset, or out of memory. The caller owns it. */
-struct scalars *field_distance(struct field *field, int tag, enum distance_mode mode);
-void field_distance_destroy(struct scalars **distance); /* &NULL is fine; leaves NULL */
 
 #endif

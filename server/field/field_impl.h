@@ -13,6 +13,7 @@ struct field {
     struct layout **layouts;                /* [asset][group]; NULL: not looked for, or none */
     struct state **states;                  /* by asset: a list */
     struct weights *weights[FIELD_BUCKETS]; /* all of them, by hash of the key */
+    struct baselines *baselines;            /* NULL: none */
     size_t bytes, bound;
     uint64_t tick; /* counts calls: what was used last */
     uint64_t versions;

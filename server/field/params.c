@@ -1,34 +1,156 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a session may choose: defaults from the group, and the ranges. */
+/* What a session may choose: defaults from the group, overrides of single sensors, and the ranges. */
 #include <math.h>
+#include <stddef.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "field/field.h"
+#include "field/kernels.h"
+
+static const double DIFFERENCE_PART = 0.25; /* of the group's range, to either side of 0 */
 
 void field_params_default(const struct plant *plant, int group, struct field_params *params)
 {
     const struct plant_group *from = &plant->groups[group];
-    *params = (struct field_params){
-        .group = group,
-        .interpolation = from->interpolation,
-        .distance = from->distance,
-        .fill = from->fill,
-        .strength = 1,
-        .decay = 1,
-        .power = from->power,
-        .radius_m = from->radius_m,
-        .reach_m = from->reach_m,
-    };
+    memset(params, 0, sizeof(*params));
+    params->group = group;
+    params->sensor = -1;
+    params->interpolation = from->interpolation;
+    params->distance = from->distance;
+    params->fill = from->fill;
+    params->strength = params->decay = 1;
+    params->power = from->power;
+    params->radius_m = from->radius_m;
+    params->reach_m = from->reach_m;
 }
 
 bool field_params_equal(const struct field_params *a, const struct field_params *b)
 {
-    return memcmp(a, b, sizeof(*a)) == 0;
+    return memcmp(a, b, offsetof(struct field_params, overrides)) == 0 &&
+           memcmp(a->overrides, b->overrides, a->override_count * sizeof(*a->overrides)) == 0;
+}
+
+/* --- overrides ------------------------------------------------------------------------------------------------------------- */
+
+static int by_tag(const void *a, const void *b)
+{
+    const struct field_override *first = a, *second = b;
+    return (first->tag > second->tag) - (first->tag < second->tag);
+}
+
+const struct field_override *field_params_override_of(const struct field_params *params, int tag)
+{
+    struct field_override key = { .tag = tag };
+    return bsearch(&key, params->overrides, params->override_count, sizeof(key), by_tag);
+}
+
+static void drop_override(struct field_params *params, size_t at)
+{
+    size_t after = params->override_count - at - 1;
+    memmove(&params->overrides[at], &params->overrides[at + 1], after * sizeof(*params->overrides));
+    memset(&params->overrides[--params->override_count], 0, sizeof(*params->overrides));
+}
+
+bool field_params_override(struct field_params *params, struct field_override override)
+{
+    bool nothing = override.strength < 0 && override.decay < 0;
+    const struct field_override *old = field_params_override_of(params, override.tag);
+    if (old && nothing)
+        drop_override(params, (size_t)(old - params->overrides));
+    else if (old)
+        params->overrides[old - params->overrides] = override;
+    if (old || nothing)
+        return true;
+    if (params->override_count == FIELD_OVERRIDES)
+        return false;
+    params->overrides[params->override_count++] = override;
+    qsort(params->overrides, params->override_count, sizeof(override), by_tag);
+    return true;
+}
+
+/* --- ranges ---------------------------------------------------------------------------------------------------------------- */
+
+static float largest_distance(const struct asset_view *view, size_t column, enum distance_mode mode)
+{
+    size_t count = view->header->vertex_count;
+    if (mode == DISTANCE_GEODESIC)
+        return kernel_largest(view->geodesic_m + column * count, count, 0);
+    float most_m = 0, scratch[KERNEL_BLOCK];
+    for (size_t at = 0; at < count; at += KERNEL_BLOCK) {
+        size_t number = count - at < KERNEL_BLOCK ? count - at : KERNEL_BLOCK;
+        kernel_euclidean(view->positions_m + at, number, view->sensors[column].surface_m, scratch);
+        most_m = kernel_largest(scratch, number, most_m);
+    }
+    return most_m;
+}
+
+static double distance_range(const struct scene *scene, const struct field_params *params)
+{
+    for (size_t a = 0; a < scene->asset_count; a++)
+        for (size_t i = 0; i < scene->assets[a].sensor_count; i++) {
+            const struct scene_sensor *sensor = &scene->assets[a].sensors[i];
+            if (sensor->tag != params->sensor)
+                continue;
+            float most_m = largest_distance(&scene->assets[a].file->view, (size_t)sensor->column, params->distance);
+            return most_m > 1e-6f ? (double)most_m : 1;
+        }
+    return 1;
+}
+
+void field_own_range(const struct scene *scene, const struct field_params *params, double *min, double *max)
+{
+    const struct plant_group *group = &scene->plant->groups[params->group];
+    double part = DIFFERENCE_PART * (group->max - group->min);
+    switch (params->show) {
+    case SHOW_VALUE: *min = group->min, *max = group->max; break;
+    case SHOW_DISTANCE: *min = 0, *max = distance_range(scene, params); break;
+    case SHOW_DIFFERENCE: *min = -part, *max = part; break;
+    }
 }
 
 static bool within(double x, double low, double high)
 {
     return x >= low && x <= high;
+}
+
+static const char *numbers_wrong(const struct field_params *params)
+{
+    if (!within(params->strength, 0, 100))
+        return "strength: expected 0..100";
+    if (!within(params->decay, 0, 100))
+        return "decay: expected 0..100";
+    if (!within(params->power, 0.5, 16))
+        return "power: expected 0.5..16";
+    if (params->radius_m != 0 && !within(params->radius_m, 1e-3, 1e6))
+        return "radius_m: expected 0 (automatic) or 0.001..1000000";
+    if (!(params->reach_m > 0))
+        return "reach_m: expected more than 0";
+    return NULL;
+}
+
+static bool of_group(const struct plant *plant, const struct field_params *params, int tag)
+{
+    return tag >= 0 && (size_t)tag < plant->tag_count && plant->tags[tag].group == params->group && plant->tags[tag].asset >= 0;
+}
+
+static const char *sensors_wrong(const struct plant *plant, const struct field_params *params)
+{
+    if (params->show == SHOW_DISTANCE && params->sensor < 0)
+        return "sensor: needed to show a distance";
+    if (params->sensor >= 0 && !of_group(plant, params, params->sensor))
+        return "sensor: it has no place in the shown group";
+    if (params->show == SHOW_DIFFERENCE && params->baseline == 0)
+        return "baseline: needed to show a difference";
+    for (size_t i = 0; i < params->override_count; i++) {
+        const struct field_override *o = &params->overrides[i];
+        if (!of_group(plant, params, o->tag))
+            return "sensors: one has no place in the shown group";
+        if ((o->strength != FIELD_AS_CONFIGURED && !within((double)o->strength, 0, 100)) ||
+            (o->decay != FIELD_AS_CONFIGURED && !within((double)o->decay, 0, 100)))
+            return "sensors: strength and decay of 0..100 expected";
+    }
+    return NULL;
 }
 
 const char *field_params_wrong(const struct plant *plant, const struct field_params *params)
@@ -41,15 +163,8 @@ const char *field_params_wrong(const struct plant *plant, const struct field_par
         return "distance: expected geodesic or euclidean";
     if (params->fill != FILL_NONE && params->fill != FILL_NEIGHBOURS)
         return "fill: expected none or neighbours";
-    if (!within(params->strength, 0, 100))
-        return "strength: expected 0..100";
-    if (!within(params->decay, 0, 100))
-        return "decay: expected 0..100";
-    if (!within(params->power, 0.5, 16))
-        return "power: expected 0.5..16";
-    if (params->radius_m != 0 && !within(params->radius_m, 1e-3, 1e6))
-        return "radius_m: expected 0 (automatic) or 0.001..1000000";
-    if (!(params->reach_m > 0))
-        return "reach_m: expected more than 0";
-    return NULL;
+    if (params->show != SHOW_VALUE && params->show != SHOW_DISTANCE && params->show != SHOW_DIFFERENCE)
+        return "show: expected value, distance or difference";
+    const char *wrong = numbers_wrong(params);
+    return wrong ? wrong : sensors_wrong(plant, params);
 }

@@ -71,18 +71,38 @@ static double value_of(const struct state *state, double reading)
     return (float)limited(reading, -READING_LIMIT, READING_LIMIT);
 }
 
-void state_read(struct state *state, const struct snapshot *snapshot)
+static struct state_input input_of(const struct state *state, const struct reading *reading)
+{
+    bool usable = !quality_is_bad(reading->quality) && isfinite(reading->value);
+    return (struct state_input){
+        .value = usable ? value_of(state, reading->value) : 0,
+        .usable = usable,
+        .uncertain = usable && quality_is_uncertain(reading->quality),
+    };
+}
+
+/* Only sensors that may be used in both take part: else a sensor that came or went would show as a change of the plant. */
+static struct state_input less(struct state_input now, struct state_input then)
+{
+    bool usable = now.usable && then.usable;
+    return (struct state_input){
+        .value = usable ? now.value - then.value : 0,
+        .usable = usable,
+        .uncertain = usable && (now.uncertain || then.uncertain),
+    };
+}
+
+void state_read(struct state *state, const struct snapshot *snapshot, const struct snapshot *baseline)
 {
     int64_t oldest_ns = -1;
     for (size_t i = 0; i < state->layout->sensor_count; i++) {
-        const struct reading *reading = &snapshot->readings[state->layout->sensors[i].tag];
-        bool usable = !quality_is_bad(reading->quality) && isfinite(reading->value);
+        int tag = state->layout->sensors[i].tag;
+        const struct reading *reading = &snapshot->readings[tag];
+        state->now[i] = input_of(state, reading);
+        if (state->params.show == SHOW_DIFFERENCE)
+            state->now[i] = less(state->now[i], baseline ? input_of(state, &baseline->readings[tag]) : (struct state_input){ 0 });
+        bool usable = state->now[i].usable;
         state->usable[i] = usable;
-        state->now[i] = (struct state_input){
-            .value = usable ? value_of(state, reading->value) : 0,
-            .usable = usable,
-            .uncertain = usable && quality_is_uncertain(reading->quality),
-        };
         if (usable && reading->age_ns > oldest_ns)
             oldest_ns = reading->age_ns;
     }
@@ -165,9 +185,11 @@ static void choose_rule(struct update *update)
 {
     const struct state *state = update->state;
     const struct plant_group *group = state->layout->group;
+    bool difference = state->params.show == SHOW_DIFFERENCE;
     if (state->params.interpolation == INTERPOLATION_PAPER) {
+        float scale = (float)(group->max - group->min), offset = difference ? 0 : (float)group->min;
         update->rule = (struct kernel_value){
-            .scale = (float)(group->max - group->min), .offset = (float)group->min, .low = (float)group->min, .high = (float)group->max
+            .scale = scale, .offset = offset, .low = difference ? -scale : offset, .high = difference ? scale : (float)group->max
         };
     } else {
         update->rule = (struct kernel_value){ .scale = 1, .low = FLT_MAX, .high = -FLT_MAX };
@@ -177,7 +199,7 @@ static void choose_rule(struct update *update)
             update->rule.high = fmaxf(update->rule.high, value);
         }
     }
-    update->rule.empty = (float)group->min;
+    update->rule.empty = difference ? 0 : (float)group->min;
 }
 
 static bool set_flags(const struct update *update, size_t begin, size_t count, const double *total, const double *marked)
@@ -268,4 +290,21 @@ void state_update(struct state *state, struct workers *workers, bool fresh, uint
     if (first || update.flag_changed)
         scalars->flags_version = scalars->version;
     scalars->travel += update.most;
+}
+
+void state_measure(struct state *state, size_t sensor, uint64_t *versions)
+{
+    struct scalars *scalars = &state->scalars;
+    float scratch[KERNEL_BLOCK], most_m = 0;
+    for (size_t at = 0, count; at < scalars->count; at += count) {
+        count = scalars->count - at < KERNEL_BLOCK ? scalars->count - at : KERNEL_BLOCK;
+        const float *distance_m = layout_distances(state->layout, state->params.distance, sensor, at, count, scratch);
+        most_m = kernel_largest(distance_m, count, most_m);
+        for (size_t j = 0; j < count; j++)
+            state->at[at + j].value = distance_m[j];
+    }
+    for (size_t j = 0; j < scalars->count; j++)
+        if (!(state->at[j].value <= FLT_MAX))
+            state->at[j] = (struct scalar){ .value = most_m, .no_data = FLAG };
+    scalars->version = scalars->flags_version = ++*versions;
 }

@@ -31,13 +31,15 @@ struct state *state_create(int asset, struct layout *layout, const struct field_
 void state_destroy(struct state **state); /* &NULL is fine; leaves NULL */
 size_t state_bytes(const struct layout *layout);
 
-/* Reads the snapshot into state->now and state->usable, and its ages. */
-void state_read(struct state *state, const struct snapshot *snapshot);
+/* Reads the snapshot into state->now and state->usable, and its ages. baseline: what a difference is from; NULL: not known. */
+void state_read(struct state *state, const struct snapshot *snapshot, const struct snapshot *baseline);
 /* True: the weights that state holds are for other sensors than those usable now. */
 bool state_needs_weights(const struct state *state);
 /* True: state_update has something to do. */
 bool state_is_behind(const struct state *state);
 /* Brings sums and scalars up to state->now. fresh: the weights are new and prepared on the way. */
 void state_update(struct state *state, struct workers *workers, bool fresh, uint64_t *versions);
+/* For SHOW_DISTANCE, instead of all these: the distances from one sensor of the layout, once. */
+void state_measure(struct state *state, size_t sensor, uint64_t *versions);
 
 #endif

@@ -23,13 +23,16 @@ struct key_sensor {
 /* Shepard's sum does not change when all strengths do, and has no decay. */
 static float strength_of(const struct layout_sensor *sensor, const struct field_params *params)
 {
-    float strength = params->interpolation == INTERPOLATION_PAPER ? sensor->strength * (float)params->strength : sensor->strength;
-    return fminf(strength, KERNEL_FACTOR_LIMIT);
+    const struct field_override *override = field_params_override_of(params, sensor->tag);
+    float own = override && override->strength >= 0 ? override->strength : sensor->strength;
+    return fminf(params->interpolation == INTERPOLATION_PAPER ? own * (float)params->strength : own, KERNEL_FACTOR_LIMIT);
 }
 
 static float decay_of(const struct layout_sensor *sensor, const struct field_params *params)
 {
-    return params->interpolation == INTERPOLATION_PAPER ? fminf(sensor->decay * (float)params->decay, KERNEL_FACTOR_LIMIT) : 0.0f;
+    const struct field_override *override = field_params_override_of(params, sensor->tag);
+    float own = override && override->decay >= 0 ? override->decay : sensor->decay;
+    return params->interpolation == INTERPOLATION_PAPER ? fminf(own * (float)params->decay, KERNEL_FACTOR_LIMIT) : 0.0f;
 }
 
 void weights_key_init(struct weights_key *key, const struct layout *layout, const struct field_params *params, float radius_m,

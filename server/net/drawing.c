@@ -348,6 +348,7 @@ static bool drawing_init(struct drawing *drawing, struct painter *painter)
     const struct painter_params *params = &painter->params;
     *drawing = (struct drawing){ .painter = painter };
     drawing->field = field_create(params->workers, params->scene);
+    field_set_baselines(drawing->field, params->baselines);
     drawing->snapshot = snapshot_create(params->scene->plant->tag_count);
     drawing->slow.snapshot = snapshot_create(params->scene->plant->tag_count);
     store_snapshot(params->store, clock_mono_ns(), clock_utc_ns(), drawing->snapshot);

@@ -107,7 +107,7 @@ static void forget_snapshot(struct hub *hub, struct request *request)
 
 static bool read_query(struct hub *hub, struct lws *wsi, struct view *view, struct message_error *error)
 {
-    enum { MAX_ARGS = 32, MAX_BYTES = 256 };
+    enum { MAX_ARGS = 32, MAX_BYTES = 1024 };
     char args[MAX_ARGS][MAX_BYTES];
     const char *list[MAX_ARGS];
     int count = 0;
@@ -118,7 +118,8 @@ static bool read_query(struct hub *hub, struct lws *wsi, struct view *view, stru
         }
         list[count] = args[count];
     }
-    return query_parse(hub->params.scene, list, (size_t)count, view, error);
+    const struct params_world world = { .scene = hub->params.scene, .baselines = hub->params.baselines };
+    return query_parse(&world, list, (size_t)count, view, error);
 }
 
 static int ask_snapshot(struct hub *hub, struct request *request)

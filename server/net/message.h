@@ -31,7 +31,12 @@ enum params_given { /* which fields of a params message were there */
                     GIVEN_LOOK = 1 << 12,
                     GIVEN_LIGHT = 1 << 13,
                     GIVEN_SELECTED = 1 << 14,
+                    GIVEN_SHOW = 1 << 15,
+                    GIVEN_SENSOR = 1 << 16,
+                    GIVEN_SENSORS = 1 << 17,
 };
+
+enum baseline_wish { BASELINE_STAYS, BASELINE_NONE, BASELINE_NAMED, BASELINE_NOW, BASELINE_SET, BASELINE_REMOVE };
 
 struct params_change {
     uint32_t seq;
@@ -44,6 +49,11 @@ struct params_change {
     enum look look;
     double light_dir[3];
     int selected_asset;
+    /* field.overrides, if GIVEN_SENSORS: those named; a strength or decay left out is FIELD_AS_CONFIGURED, and so is either where
+       the sensor's is to go */
+    bool only_these_sensors; /* sensors: null; all others go */
+    enum baseline_wish baseline;
+    char baseline_name[BASELINE_NAME_BYTES];
 };
 
 struct message {
@@ -65,8 +75,19 @@ void message_fail(struct message_error *error, const char *code, const char *fmt
 
 /* Reads the fields of a params message from an object that may hold others. False: *error names the field. */
 bool params_parse(const struct plant *plant, const json_t *object, struct params_change *out, struct message_error *error);
+struct params_world {
+    const struct scene *scene;
+    struct baselines *baselines;     /* NULL: there are none */
+    const struct snapshot *snapshot; /* what may be kept as a baseline; NULL: nothing */
+};
 /* Applies a change to a view: all of it, or nothing and *error. A new group brings its own settings first. */
-bool params_apply(const struct plant *plant, const struct params_change *change, struct view *view, struct message_error *error);
+bool params_apply(const struct params_world *world, const struct params_change *change, struct view *view, struct message_error *error);
+/* Parts of the two above: what is shown, of which sensor, against what, and overrides of single sensors (params_show.c). */
+bool params_parse_show(const struct plant *plant, const json_t *o, struct params_change *out, struct message_error *error);
+bool params_apply_show(const struct params_world *world, const struct params_change *change, const struct view *before, struct view *view,
+                       struct message_error *error);
+/* The last step of a change that is good: keeps or forgets a baseline. */
+void params_apply_baseline(const struct params_world *world, const struct params_change *change, struct view *view);
 /* Reads the fields of a camera message, but for seq. */
 bool camera_parse(const json_t *object, struct camera *out, struct message_error *error);
 bool view_size_valid(double width_px, double height_px);

@@ -9,7 +9,8 @@ struct name {
     int value;
 };
 
-extern const struct name names_interpolation[], names_distance[], names_fill[], names_look[], names_codec[]; /* each ends with NULL */
+extern const struct name names_interpolation[], names_distance[], names_fill[], names_show[], names_look[], names_codec[];
+/* each ends with NULL */
 
 /* The value of a name, or -1. */
 int name_find(const struct name *names, const char *text);

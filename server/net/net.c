@@ -228,6 +228,7 @@ struct net *net_create(const struct net_params *params)
         .plant = plant,
         .scene = params->scene,
         .snapshot = hub->snapshot,
+        .baselines = params->baselines,
         .links_up = hub->links_up,
         .version = params->version,
     };

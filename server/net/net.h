@@ -14,6 +14,7 @@ struct net_params {
     const struct scene *scene;
     struct store *store;
     struct painter *painter;
+    struct baselines *baselines;
     struct counters *counters;
     const char *address;    /* numeric */
     int port;               /* 0: any that is free */

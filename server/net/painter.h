@@ -15,6 +15,7 @@ struct painter_params {
     const struct gl_device *gl_device; /* NULL: the first with hardware that works */
     const struct scene *scene;
     struct store *store;
+    struct baselines *baselines; /* NULL: no differences can be shown */
     struct workers *workers;
     struct counters *counters;
     void (*notify)(void *arg); /* pictures are there to be collected; called on any thread */

@@ -160,14 +160,13 @@ bool params_parse(const struct plant *plant, const json_t *o, struct params_chan
     *out = (struct params_change){ .selected_asset = -1 };
     return parse_group(plant, o, out, error) && parse_names(o, out, error) && parse_numbers(o, out, error) && parse_reach(o, out, error) &&
            parse_range(o, out, error) && parse_colormap(o, out, error) && parse_selected(plant, o, out, error) &&
-           parse_light(o, out, error);
+           parse_light(o, out, error) && params_parse_show(plant, o, out, error);
 }
 
-static void take_group(const struct plant *plant, int group, struct view *view)
+static void take_group(const struct scene *scene, int group, struct view *view)
 {
-    field_params_default(plant, group, &view->field);
-    view->range_min = plant->groups[group].min;
-    view->range_max = plant->groups[group].max;
+    field_params_default(scene->plant, group, &view->field);
+    field_own_range(scene, &view->field, &view->range_min, &view->range_max);
     view->ramp_interval = 0; /* it was in the units of the other group */
 }
 
@@ -191,16 +190,17 @@ static void apply_field(const struct params_change *change, struct field_params 
         field->reach_m = change->field.reach_m;
 }
 
-static void apply_look(const struct plant *plant, const struct params_change *change, struct view *view)
+static void apply_look(const struct scene *scene, const struct params_change *change, struct view *view)
 {
-    const struct plant_group *group = &plant->groups[view->field.group];
     if (change->given & GIVEN_COLORMAP)
         view->colormap = change->colormap;
     if (change->given & GIVEN_RAMP)
         view->ramp_interval = change->ramp_interval;
-    if (change->given & GIVEN_RANGE) {
-        view->range_min = change->range_of_group ? group->min : change->range_min;
-        view->range_max = change->range_of_group ? group->max : change->range_max;
+    if ((change->given & GIVEN_RANGE) && change->range_of_group) {
+        field_own_range(scene, &view->field, &view->range_min, &view->range_max);
+    } else if (change->given & GIVEN_RANGE) {
+        view->range_min = change->range_min;
+        view->range_max = change->range_max;
     }
     if (change->given & GIVEN_LOOK)
         view->look = change->look;
@@ -210,18 +210,16 @@ static void apply_look(const struct plant *plant, const struct params_change *ch
         view->selected_asset = change->selected_asset;
 }
 
-bool params_apply(const struct plant *plant, const struct params_change *change, struct view *view, struct message_error *error)
+bool params_apply(const struct params_world *world, const struct params_change *change, struct view *view, struct message_error *error)
 {
     struct view changed = *view;
     if ((change->given & GIVEN_GROUP) && change->field.group != changed.field.group)
-        take_group(plant, change->field.group, &changed);
+        take_group(world->scene, change->field.group, &changed);
     apply_field(change, &changed.field);
-    apply_look(plant, change, &changed);
-    const char *wrong = field_params_wrong(plant, &changed.field);
-    if (wrong) {
-        message_fail(error, "bad_field", "%s", wrong);
+    if (!params_apply_show(world, change, view, &changed, error))
         return false;
-    }
+    apply_look(world->scene, change, &changed);
+    params_apply_baseline(world, change, &changed);
     *view = changed;
     return true;
 }

@@ -5,18 +5,20 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/mem.h"
 #include "net/fields.h"
 
-enum kind { NUMBER, STRING, NUMBERS };
+enum kind { NUMBER, STRING, NUMBERS, SENSORS };
 
 static const struct {
     const char *name;
     enum kind kind;
 } known[] = {
-    { "width", NUMBER },    { "height", NUMBER },  { "camera", NUMBERS },  { "group", STRING },         { "interpolation", STRING },
-    { "distance", STRING }, { "fill", STRING },    { "strength", NUMBER }, { "decay", NUMBER },         { "power", NUMBER },
-    { "radius_m", NUMBER }, { "reach_m", NUMBER }, { "colormap", STRING }, { "ramp_interval", NUMBER }, { "range", NUMBERS },
-    { "look", STRING },     { "light", NUMBERS },  { "selected", STRING },
+    { "width", NUMBER },    { "height", NUMBER },   { "camera", NUMBERS },  { "group", STRING },         { "interpolation", STRING },
+    { "distance", STRING }, { "fill", STRING },     { "strength", NUMBER }, { "decay", NUMBER },         { "power", NUMBER },
+    { "radius_m", NUMBER }, { "reach_m", NUMBER },  { "colormap", STRING }, { "ramp_interval", NUMBER }, { "range", NUMBERS },
+    { "look", STRING },     { "light", NUMBERS },   { "selected", STRING }, { "show", STRING },          { "sensor", STRING },
+    { "sensors", SENSORS }, { "baseline", STRING },
 };
 
 /* NULL: not a finite number. */
@@ -44,6 +46,45 @@ static json_t *numbers(const char *text)
     return NULL;
 }
 
+/* `2`, `2:0.5` or `:0.5` */
+static json_t *sensor(const char *text)
+{
+    json_t *object = json_object();
+    const char *end = text;
+    json_t *strength = *text == ':' ? NULL : number(text, &end);
+    bool two = *end == ':';
+    json_t *decay = two ? number(end + 1, &end) : NULL;
+    bool good = (strength || *text == ':') && (decay || !two) && *end == 0;
+    if (strength)
+        json_object_set_new(object, "strength", strength);
+    if (decay)
+        json_object_set_new(object, "decay", decay);
+    if (good)
+        return object;
+    json_decref(object);
+    return NULL;
+}
+
+/* TAG=STRENGTH[:DECAY],... */
+static json_t *sensors(const char *text)
+{
+    json_t *all = json_object();
+    char *copy = mem_strdup(text), *rest = copy;
+    bool good = true;
+    for (char *item; good && (item = strsep(&rest, ","));) {
+        char *equals = strrchr(item, '=');
+        json_t *one = equals ? sensor(equals + 1) : NULL;
+        if (equals)
+            *equals = 0;
+        good = one && json_object_set_new(all, item, one) == 0;
+    }
+    mem_free(copy);
+    if (good)
+        return all;
+    json_decref(all);
+    return NULL;
+}
+
 static json_t *value_of(enum kind kind, const char *text)
 {
     const char *end = "";
@@ -51,6 +92,7 @@ static json_t *value_of(enum kind kind, const char *text)
     switch (kind) {
     case STRING: return json_string(text);
     case NUMBERS: return numbers(text);
+    case SENSORS: return sensors(text);
     case NUMBER:
         value = number(text, &end);
         if (value && *end == 0)
@@ -71,9 +113,10 @@ static bool add(json_t *o, const char *arg, struct message_error *error)
         if (value)
             return json_object_set_new(o, known[i].name, value) == 0;
         message_fail(error, "bad_field", "%s: %s expected", known[i].name,
-                     known[i].kind == STRING   ? "a text"
-                     : known[i].kind == NUMBER ? "a number"
-                                               : "numbers with commas");
+                     known[i].kind == STRING    ? "a text"
+                     : known[i].kind == NUMBER  ? "a number"
+                     : known[i].kind == NUMBERS ? "numbers with commas"
+                                                : "TAG=STRENGTH[:DECAY] with commas");
         return false;
     }
     message_fail(error, "bad_field", "'%s' is unknown", quoted(arg, name));
@@ -101,7 +144,7 @@ static bool apply_camera(const json_t *o, struct view *view, struct message_erro
     return good;
 }
 
-static bool apply(const struct scene *scene, const json_t *o, struct view *view, struct message_error *error)
+static bool apply(const struct params_world *world, const json_t *o, struct view *view, struct message_error *error)
 {
     double w = 1280, h = 720;
     struct params_change change;
@@ -111,19 +154,19 @@ static bool apply(const struct scene *scene, const json_t *o, struct view *view,
         message_fail(error, "bad_field", "width, height: whole numbers of pixels expected, at most %d together", VIEW_MAX_PIXELS);
         return false;
     }
-    view_default(scene, (int)w, (int)h, view);
+    view_default(world->scene, (int)w, (int)h, view);
     view->tier = TIER_STILL;
-    return apply_camera(o, view, error) && params_parse(scene->plant, o, &change, error) &&
-           params_apply(scene->plant, &change, view, error);
+    return apply_camera(o, view, error) && params_parse(world->scene->plant, o, &change, error) &&
+           params_apply(world, &change, view, error);
 }
 
-bool query_parse(const struct scene *scene, const char *const *args, size_t count, struct view *view, struct message_error *error)
+bool query_parse(const struct params_world *world, const char *const *args, size_t count, struct view *view, struct message_error *error)
 {
     json_t *o = json_object();
     bool good = true;
     for (size_t i = 0; i < count && good; i++)
         good = add(o, args[i], error);
-    good = good && apply(scene, o, view, error);
+    good = good && apply(world, o, view, error);
     json_decref(o);
     return good;
 }

@@ -5,6 +5,6 @@
 #include "net/message.h"
 
 /* args: `name=value`, decoded. False: *error says which is wrong. */
-bool query_parse(const struct scene *scene, const char *const *args, size_t count, struct view *view, struct message_error *error);
+bool query_parse(const struct params_world *world, const char *const *args, size_t count, struct view *view, struct message_error *error);
 
 #endif

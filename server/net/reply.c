@@ -55,10 +55,58 @@ static json_int_t us(int64_t ns)
     return ns / 1000;
 }
 
-static void set_params(json_t *object, const struct plant *plant, const struct view *view)
+static json_t *tag_name(const struct plant *plant, int tag)
 {
+    return tag < 0 ? json_null() : string(plant->tags[tag].name);
+}
+
+static json_t *overrides(const struct plant *plant, const struct field_params *field)
+{
+    json_t *all = json_object();
+    for (size_t i = 0; i < field->override_count; i++) {
+        const struct field_override *o = &field->overrides[i];
+        json_t *one = json_object();
+        if (o->strength >= 0)
+            json_object_set_new(one, "strength", number((double)o->strength));
+        if (o->decay >= 0)
+            json_object_set_new(one, "decay", number((double)o->decay));
+        json_object_set_new(all, plant->tags[o->tag].name, one);
+    }
+    return all;
+}
+
+static json_t *baseline(const struct baseline *b)
+{
+    return json_pack("{s:o,s:I}", "name", b->name[0] ? string(b->name) : json_null(), "time_us", us(b->taken_utc_ns));
+}
+
+static json_t *baseline_of(const struct session_world *world, uint32_t id)
+{
+    struct baseline found;
+    return world->baselines && id && baselines_describe(world->baselines, id, &found) ? baseline(&found) : json_null();
+}
+
+static json_t *baselines(const struct session_world *world)
+{
+    struct baseline list[BASELINES_NAMED];
+    json_t *all = json_array();
+    size_t count = world->baselines ? baselines_list(world->baselines, list) : 0;
+    for (size_t i = 0; i < count; i++)
+        json_array_append_new(all, baseline(&list[i]));
+    return all;
+}
+
+static void set_params(json_t *object, const struct session_world *world, const struct view *view)
+{
+    const struct plant *plant = world->plant;
     const struct field_params *field = &view->field;
     json_object_set_new(object, "group", string(plant->groups[field->group].id));
+    json_object_set_new(object, "show", string(name_of(names_show, (int)field->show)));
+    json_object_set_new(object, "sensor", tag_name(plant, field->sensor));
+    json_object_set_new(object, "baseline", baseline_of(world, field->baseline));
+    json_object_set_new(object, "baselines", baselines(world));
+    json_object_set_new(object, "sensors", overrides(plant, field));
+    json_object_set_new(object, "unit", string(view_unit(plant, view)));
     json_object_set_new(object, "interpolation", string(name_of(names_interpolation, field->interpolation)));
     json_object_set_new(object, "distance", string(name_of(names_distance, field->distance)));
     json_object_set_new(object, "fill", string(name_of(names_fill, field->fill)));
@@ -174,15 +222,15 @@ char *reply_welcome_text(const struct session_world *world, uint64_t session, en
                                string(name_of(names_codec, (int)codec)), "time_us", us(now_utc_ns));
     json_t *params = json_object();
     set_plant(object, world, view->width_px, view->height_px);
-    set_params(params, world->plant, view);
+    set_params(params, world, view);
     json_object_set_new(object, "view", params);
     return print(object, DIGITS);
 }
 
-char *reply_params_text(const struct plant *plant, const struct view *view, uint32_t seq)
+char *reply_params_text(const struct session_world *world, const struct view *view, uint32_t seq)
 {
     json_t *object = json_pack("{s:s,s:I}", "type", "params", "seq", (json_int_t)seq);
-    set_params(object, plant, view);
+    set_params(object, world, view);
     return print(object, DIGITS);
 }
 

@@ -68,11 +68,17 @@ static void set_camera(struct session *session, const struct message *message)
     session->view.camera_seq = message->seq;
 }
 
+static bool apply_params(const struct session *session, const struct params_change *change, struct view *view, struct message_error *error)
+{
+    const struct session_world *world = session->world;
+    return params_apply(&(struct params_world){ world->scene, world->baselines, world->snapshot }, change, view, error);
+}
+
 static bool on_hello(struct session *session, const struct message *message, struct message_error *error)
 {
     struct view view;
     view_default(session->world->scene, message->width_px, message->height_px, &view);
-    if (message->has_params && !params_apply(session->world->plant, &message->params, &view, error))
+    if (message->has_params && !apply_params(session, &message->params, &view, error))
         return false;
     session->view = view;
     if (message->has_params)
@@ -86,7 +92,7 @@ static bool on_hello(struct session *session, const struct message *message, str
 
 static bool on_params(struct session *session, const struct message *message, struct message_error *error)
 {
-    if (!params_apply(session->world->plant, &message->params, &session->view, error))
+    if (!apply_params(session, &message->params, &session->view, error))
         return false;
     session->view.params_seq = session->params_seq = message->params.seq;
     session->owes_params = true;
@@ -335,7 +341,7 @@ bool session_next_text(struct session *session, int64_t now_ns, int64_t now_utc_
     } else if (session->reply_count > 0) {
         add_reply(session, out);
     } else if (session->owes_params) {
-        add_owned(out, reply_params_text(world->plant, &session->view, session->params_seq));
+        add_owned(out, reply_params_text(world, &session->view, session->params_seq));
         session->owes_params = false;
     } else if (status_due(session, now_ns)) {
         add_owned(out, reply_status_text(world, now_utc_ns));

@@ -17,6 +17,7 @@ struct session_world {
     const struct plant *plant;
     const struct scene *scene;
     const struct snapshot *snapshot;
+    struct baselines *baselines;
     const bool *links_up;    /* by source index */
     bool live;               /* values are coming in */
     int64_t moving_until_ns; /* somebody moves; a refined picture of another would make it stutter */

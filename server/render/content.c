@@ -12,10 +12,12 @@ static void add(XXH3_state_t *state, const void *bytes, size_t count)
 
 static void add_field_params(XXH3_state_t *state, const struct field_params *params)
 {
-    int32_t choices[] = { params->group, params->interpolation, params->distance, params->fill };
+    int32_t choices[] = { params->group,    (int32_t)params->show, params->sensor,           params->interpolation,
+                          params->distance, params->fill,          (int32_t)params->baseline };
     double numbers[] = { params->strength, params->decay, params->power, params->radius_m, params->reach_m };
     add(state, choices, sizeof(choices));
     add(state, numbers, sizeof(numbers));
+    add(state, params->overrides, params->override_count * sizeof(*params->overrides));
 }
 
 static void add_paint(XXH3_state_t *state, const struct paint *paint)

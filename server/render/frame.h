@@ -23,6 +23,7 @@ struct frame {
     int64_t data_utc_ns;                      /* of the snapshot it shows */
     int64_t oldest_age_ns;                    /* INT64_MAX: no value takes part */
     int64_t field_ns, render_ns, readback_ns; /* stage times */
+    struct baseline baseline;                 /* of a difference; id 0: none */
     uint64_t content;                         /* equal for equal pictures: hash of view and field versions, without seq numbers and times */
     int triangles;
 };

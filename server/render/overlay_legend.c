@@ -27,9 +27,15 @@ static double nice_step(double range, double count)
 
 static void format_title(const struct pen *pen, char out[160])
 {
-    const struct plant_group *group = group_of(pen);
-    bool has_unit = group->unit && *group->unit;
-    snprintf(out, 160, has_unit ? "%s [%s]" : "%s", group->quantity, group->unit);
+    const struct plant *plant = pen->scene->plant;
+    const struct view *view = &pen->frame->view;
+    const char *unit = view_unit(plant, view);
+    char what[128];
+    if (view->field.show == SHOW_DISTANCE)
+        snprintf(what, sizeof(what), "From %s", plant->tags[view->field.sensor].name);
+    else
+        snprintf(what, sizeof(what), view->field.show == SHOW_DIFFERENCE ? "\u0394 %s" : "%s", group_of(pen)->quantity);
+    snprintf(out, 160, *unit ? "%s [%s]" : "%s", what, unit);
 }
 
 static void lay_out(struct pen *pen, struct layout *layout)

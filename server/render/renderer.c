@@ -158,7 +158,8 @@ static bool take_target(struct renderer *renderer, const struct view *view, stru
     return targets_take(&renderer->targets, renderer->gl->log, view->width_px, view->height_px, samples, target);
 }
 
-static void describe(struct frame *frame, const struct picture *picture, const struct snapshot *snapshot)
+static void describe(const struct renderer *renderer, struct frame *frame, const struct picture *picture,
+                     const struct snapshot *snapshot)
 {
     frame->view = *picture->view;
     frame->data_utc_ns = snapshot->taken_utc_ns;
@@ -170,6 +171,7 @@ static void describe(struct frame *frame, const struct picture *picture, const s
         if (frame->oldest_age_ns == INT64_MAX || field->oldest_age_ns > frame->oldest_age_ns)
             frame->oldest_age_ns = field->oldest_age_ns;
     }
+    field_baseline(renderer->fields.field, &picture->view->field, &frame->baseline);
     frame->content = content_hash(picture);
     frame->triangles = solid_triangles(picture);
 }
@@ -192,7 +194,7 @@ static struct stroke *begin(struct renderer *renderer, const struct view *view, 
         frame_unref(&frame);
         return NULL;
     }
-    describe(frame, &picture, snapshot);
+    describe(renderer, frame, &picture, snapshot);
     struct stroke *stroke = mem_new(sizeof(*stroke));
     stroke_init(stroke, &picture, &target, frame, tile_px);
     return stroke;

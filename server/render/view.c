@@ -23,6 +23,12 @@ static void default_light(const struct scene *scene, double towards[3])
     towards[up] = height;
 }
 
+const char *view_unit(const struct plant *plant, const struct view *view)
+{
+    const char *unit = plant->groups[view->field.group].unit;
+    return view->field.show == SHOW_DISTANCE ? "m" : unit ? unit : "";
+}
+
 void view_default(const struct scene *scene, int width_px, int height_px, struct view *view)
 {
     const struct plant *plant = scene->plant;

@@ -44,6 +44,8 @@ struct view {
     double light_dir[3]; /* towards the sun, plant frame, unit length */
 };
 
+/* The unit of what the view shows: its group's, or "m". */
+const char *view_unit(const struct plant *plant, const struct view *view);
 void view_default(const struct scene *scene, int width_px, int height_px, struct view *view);
 void view_scale(const struct view *view, struct scale *scale);
 /* All values that have a line, ascending: isolines and the edges of bands. Returns how many. */

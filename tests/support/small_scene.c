@@ -47,6 +47,7 @@ static struct plant_tag tags[] = {
     { .name = "PI-1", .description = NULL, .unit = "bar", .address = "400124", .group = 1, .asset = 0 },
     { .name = "XI-1", .description = "not shown", .unit = NULL, .address = "400125", .group = -1, .asset = -1 },
 };
+static int tags_by_name[] = { 1, 0, 2 };
 static struct plant plant = {
     .path = "plant.yaml",
     .folder = ".",
@@ -58,17 +59,29 @@ static struct plant plant = {
     .groups = groups,
     .sources = sources,
     .tags = tags,
+    .tags_by_name = tags_by_name,
     .asset_count = 2,
     .group_count = 2,
     .source_count = 1,
     .tag_count = 3,
 };
+/* As much of an asset file as distances need: three vertices and two sensors. */
+static struct asset_header header = { .vertex_count = 3, .sensor_count = 2 };
+static const float positions_m[3][3] = { { -2.5f, 0, 2.375f }, { 2.5f, 0, 2.375f }, { 0, 0, 0.5f } };
+static const struct asset_sensor file_sensors[2] = { { .surface_m = { -2.5f, 0, 2.375f } }, { .surface_m = { 2.5f, 0, 2.375f } } };
+static const float geodesic_m[6] = { 0, 7, INFINITY, 7, 0, 4 };
+static struct asset file = { .view = { .header = &header, .positions_m = positions_m, .sensors = file_sensors, .geodesic_m = geodesic_m } };
 static struct scene_sensor sensors[] = {
     { .tag = 0, .column = 0, .position_m = { -2.5, 0, 2.4 }, .surface_m = { -2.5, 0, 2.375 }, .surface_distance_m = 0.025 },
     { .tag = 1, .column = 1, .position_m = { 2.5, 0, 2.4 }, .surface_m = { 2.5, 0, 2.4 } },
 };
 static struct scene_asset assets[] = {
-    { .plant = &plant_assets[0], .bounds_min_m = { -3, -1, 0.5 }, .bounds_max_m = { 3, 1, 2.5 }, .sensors = sensors, .sensor_count = 2 },
+    { .plant = &plant_assets[0],
+      .file = &file,
+      .bounds_min_m = { -3, -1, 0.5 },
+      .bounds_max_m = { 3, 1, 2.5 },
+      .sensors = sensors,
+      .sensor_count = 2 },
     { .plant = &plant_assets[1], .bounds_min_m = { 5, -1, 0 }, .bounds_max_m = { 6.5, 1, 1.25 } },
 };
 static const struct scene scene = {

@@ -871,6 +871,13 @@ static void test_parameters_out_of_range(void **state)
     WRONG(radius_m, (double)NAN, "radius_m");
     WRONG(reach_m, 0, "reach_m");
     WRONG(reach_m, (double)NAN, "reach_m");
+    WRONG(show, SHOW_DISTANCE, "sensor");
+    WRONG(show, SHOW_DIFFERENCE, "baseline");
+    WRONG(show, (enum field_show)7, "show");
+    WRONG(sensor, 1, "sensor");
+    WRONG(override_count = 1; p.overrides[0].tag, 1, "sensors");
+    WRONG(override_count = 1; p.overrides[0].strength, 101, "sensors");
+    WRONG(override_count = 1; p.overrides[0].decay, NAN, "sensors");
 #undef WRONG
     rig.params.radius_m = 12;
     rig.params.reach_m = (double)INFINITY;
@@ -918,12 +925,20 @@ static void test_distance_from_one_sensor(void **state)
 {
     (void)state;
     struct rig rig = rig_create(synthetic_create(.vertices = 500, .sensors = 3, .assets = 2, .island = 20));
-    struct scalars *way = field_distance(rig.field, 4, DISTANCE_GEODESIC), *line = field_distance(rig.field, 4, DISTANCE_EUCLIDEAN);
-    assert_int_equal(way->asset, 1);
-    assert_int_equal(way->count, 500);
-    assert_true(line->version > way->version);
+    struct field_params straight = rig.params;
+    struct probe probe;
+    double low, high;
+    rig.params.show = straight.show = SHOW_DISTANCE;
+    rig.params.sensor = straight.sensor = 4;
+    straight.distance = DISTANCE_EUCLIDEAN;
+    assert_null(field_scalars(rig.field, 0, &rig.params, rig.plant->snapshot)); /* it stands on the other */
+    const struct scalars *way = field_scalars(rig.field, 1, &rig.params, rig.plant->snapshot);
+    const struct scalars *line = field_scalars(rig.field, 1, &straight, rig.plant->snapshot);
     const float *want = synthetic_geodesic(rig.plant, 1);
     float most = 0;
+    assert_int_equal(way->asset, 1);
+    assert_int_equal(way->count, 500);
+    assert_true(way->version && line->version > way->version && way->oldest_age_ns == INT64_MAX);
     for (size_t j = 0; j < 480; j++) {
         assert_true(way->at[j].value == want[j] && !way->at[j].no_data);
         assert_true(line->at[j].value <= way->at[j].value + 1e-5f);
@@ -932,10 +947,145 @@ static void test_distance_from_one_sensor(void **state)
     assert_true(way->at[1].value == 0 && line->at[1].value == 0);
     for (size_t j = 480; j < 500; j++)
         assert_true(way->at[j].no_data == 255 && way->at[j].value == most && line->at[j].no_data == 0);
-    field_distance_destroy(&way);
-    field_distance_destroy(&line);
-    assert_null(way);
-    assert_null(field_distance(rig.field, 6, DISTANCE_GEODESIC));
+    field_own_range(&rig.plant->scene, &rig.params, &low, &high);
+    assert_true(low == 0 && high == (double)most);
+    uint64_t version = way->version;
+    set(&rig, 4, 7, QUALITY_BAD_SENSOR_FAILURE); /* its place stays where it is */
+    assert_int_equal(field_scalars(rig.field, 1, &rig.params, rig.plant->snapshot)->version, version);
+    field_probe(rig.field, 1, &rig.params, rig.plant->snapshot, 100, &probe);
+    assert_true(probe.kind == PROBE_BETWEEN && probe.value == (double)want[100] && probe.nearest_tag[0] != 4);
+    rig_finish(&rig);
+}
+
+/* --- difference, overrides ------------------------------------------------------------------------------------------------ */
+
+/* What the field would show, by itself. */
+static struct scalar *shown_alone(const struct rig *rig, const struct field_params *params, const struct snapshot *snapshot)
+{
+    struct field *alone = field_create(workers, &rig->plant->scene);
+    const struct scalars *scalars = field_scalars(alone, 0, params, snapshot);
+    struct scalar *copy = mem_array(scalars->count, sizeof(*copy));
+    memcpy(copy, scalars->at, scalars->count * sizeof(*copy));
+    field_destroy(&alone);
+    return copy;
+}
+
+static void assert_difference(const struct rig *rig, const struct snapshot *then)
+{
+    struct field_params values = rig->params;
+    values.show = SHOW_VALUE;
+    struct scalar *before = shown_alone(rig, &values, then), *after = shown_alone(rig, &values, rig->plant->snapshot);
+    const struct scalars *scalars = show(rig);
+    for (size_t j = 0; j < scalars->count; j++) {
+        float want = after[j].value - before[j].value;
+        if (fabsf(scalars->at[j].value - want) > 1e-3f || scalars->at[j].no_data != (before[j].no_data | after[j].no_data))
+            fail_msg("vertex %zu: %g, not %g", j, (double)scalars->at[j].value, (double)want);
+    }
+    mem_free(before);
+    mem_free(after);
+}
+
+static void test_difference_is_that_of_two_fields(void **state)
+{
+    (void)state;
+    uint64_t random = fresh_seed();
+    struct rig rig = rig_create(synthetic_create(.vertices = 900, .sensors = 12, .island = 9, .seed = random));
+    struct baselines *baselines = baselines_create();
+    field_set_baselines(rig.field, baselines);
+    rig.params.show = SHOW_DIFFERENCE;
+    for (int paper = 0; paper < 2; paper++) {
+        rig.params.interpolation = paper ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
+        for (size_t i = 0; i < 12; i++)
+            set(&rig, i, between(&random, -30, 130), QUALITY_GOOD); /* paper clamps */
+        rig.params.baseline = baselines_set(baselines, "then", rig.plant->snapshot);
+        assert_int_equal(show(&rig)->at[500].value, 0);
+        const struct snapshot *then = baselines_take(baselines, rig.params.baseline);
+        for (int change = 0; change < 20; change++) {
+            set(&rig, synthetic_random(&random) % 12, between(&random, -30, 130), QUALITY_GOOD);
+            assert_difference(&rig, then);
+        }
+        baselines_give(baselines, &then);
+        assert_int_equal(show(&rig)->at[500].no_data, 0);
+    }
+    rig_finish(&rig);
+    baselines_destroy(&baselines);
+}
+
+static void test_difference_needs_both(void **state)
+{
+    (void)state;
+    struct rig rig = rig_create(synthetic_create(.vertices = 400, .sensors = 4));
+    struct baselines *baselines = baselines_create();
+    rig.params.show = SHOW_DIFFERENCE;
+    rig.params.baseline = 1;
+    assert_int_equal(show(&rig)->at[2].no_data, 255); /* nobody knows of baselines */
+    field_set_baselines(rig.field, baselines);
+    set(&rig, 1, 50, QUALITY_BAD_SENSOR_FAILURE);
+    set(&rig, 2, 50, QUALITY_UNCERTAIN_LAST_USABLE);
+    rig.params.baseline = baselines_set(baselines, "then", rig.plant->snapshot);
+    set(&rig, 1, 90, QUALITY_GOOD);
+    set(&rig, 2, 60, QUALITY_GOOD);
+    set(&rig, 3, 60, QUALITY_BAD_SENSOR_FAILURE);
+    const struct scalars *scalars = show(&rig);
+    assert_true(scalars->at[1].no_data && scalars->at[3].no_data);     /* Bad then; Bad now */
+    assert_true(!scalars->at[2].no_data && scalars->at[2].uncertain);  /* Uncertain then */
+    assert_true(!scalars->at[0].no_data && scalars->at[0].value == 0); /* the one that came back does not show as a change */
+    baselines_set(baselines, "then", rig.plant->snapshot);             /* set anew, for all who show it */
+    scalars = show(&rig);
+    assert_true(!scalars->at[1].no_data && scalars->at[1].value == 0 && scalars->at[3].no_data);
+    baselines_remove(baselines, "then");
+    scalars = show(&rig);
+    for (size_t j = 0; j < scalars->count; j++)
+        assert_int_equal(scalars->at[j].no_data, 255);
+    assert_as_fresh(&rig);
+    rig_finish(&rig);
+    baselines_destroy(&baselines);
+}
+
+static void test_overrides_are_as_if_configured(void **state)
+{
+    (void)state;
+    struct rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 6, .seed = fresh_seed()));
+    for (int paper = 0; paper < 2; paper++) {
+        rig.params.interpolation = paper ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
+        struct field_params overridden = rig.params;
+        assert_true(field_params_override(&overridden, (struct field_override){ 4, 2.5f, FIELD_AS_CONFIGURED }));
+        assert_true(field_params_override(&overridden, (struct field_override){ 1, 0.25f, 3 }));
+        assert_false(field_params_equal(&overridden, &rig.params));
+        struct scalar *plain = shown_alone(&rig, &rig.params, rig.plant->snapshot);
+        struct scalar *got = shown_alone(&rig, &overridden, rig.plant->snapshot);
+        rig.plant->plant.tags[4].strength = 2.5;
+        rig.plant->plant.tags[1].strength = 0.25;
+        rig.plant->plant.tags[1].decay = 3;
+        struct scalar *want = shown_alone(&rig, &rig.params, rig.plant->snapshot);
+        assert_memory_equal(got, want, 700 * sizeof(*want));
+        assert_memory_not_equal(got, plain, 700 * sizeof(*plain));
+        rig.plant->plant.tags[4].strength = rig.plant->plant.tags[1].strength = rig.plant->plant.tags[1].decay = 1;
+        mem_free(plain);
+        mem_free(got);
+        mem_free(want);
+    }
+    rig_finish(&rig);
+}
+
+static void test_overrides_are_bounded_and_ordered(void **state)
+{
+    (void)state;
+    struct rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 300));
+    struct field_params turned = rig.params, before = rig.params;
+    for (int i = 0; i < FIELD_OVERRIDES; i++) {
+        assert_true(field_params_override(&rig.params, (struct field_override){ i, (float)i / 10, FIELD_AS_CONFIGURED }));
+        assert_true(field_params_override(&turned, (struct field_override){ FIELD_OVERRIDES - 1 - i, (float)(FIELD_OVERRIDES - 1 - i) / 10,
+                                                                            FIELD_AS_CONFIGURED }));
+    }
+    assert_true(field_params_equal(&rig.params, &turned)); /* the order in which they came does not matter */
+    assert_null(field_params_wrong(&rig.plant->plant, &rig.params));
+    assert_false(field_params_override(&rig.params, (struct field_override){ FIELD_OVERRIDES, 1, 1 }));
+    assert_true(field_params_override(&rig.params, (struct field_override){ 7, 1, 1 }));
+    assert_true(field_params_override_of(&rig.params, 7)->decay == 1);
+    for (int i = 0; i < FIELD_OVERRIDES; i++)
+        assert_true(field_params_override(&rig.params, (struct field_override){ i, FIELD_AS_CONFIGURED, FIELD_AS_CONFIGURED }));
+    assert_true(field_params_equal(&rig.params, &before));
     rig_finish(&rig);
 }
 
@@ -993,6 +1143,10 @@ int main(void)
         cmocka_unit_test(test_parameters_out_of_range),
         cmocka_unit_test(test_probe),
         cmocka_unit_test(test_distance_from_one_sensor),
+        cmocka_unit_test(test_difference_is_that_of_two_fields),
+        cmocka_unit_test(test_difference_needs_both),
+        cmocka_unit_test(test_overrides_are_as_if_configured),
+        cmocka_unit_test(test_overrides_are_bounded_and_ordered),
     };
     return cmocka_run_group_tests_name("field", tests, set_up, tear_down);
 }

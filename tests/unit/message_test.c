@@ -25,6 +25,26 @@ static const struct plant *plant(void)
     return small_scene()->plant;
 }
 
+static struct params_world world;
+
+static int set_up(void **state)
+{
+    (void)state;
+    world = (struct params_world){ .scene = small_scene(),
+                                   .baselines = baselines_create(),
+                                   .snapshot = snapshot_create(small_scene()->plant->tag_count) };
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    struct snapshot *snapshot = (struct snapshot *)world.snapshot;
+    snapshot_destroy(&snapshot);
+    baselines_destroy(&world.baselines);
+    return 0;
+}
+
 /* As a session does: parse, and for parameters apply. */
 static bool take(const char *text, size_t count, struct message_error *error)
 {
@@ -34,7 +54,7 @@ static bool take(const char *text, size_t count, struct message_error *error)
     if (!message_parse(plant(), text, count, &message, error))
         return false;
     bool params = message.type == MESSAGE_PARAMS || message.has_params;
-    return !params || params_apply(plant(), &message.params, &view, error);
+    return !params || params_apply(&world, &message.params, &view, error);
 }
 
 static void check_vector(const char *file, int *accepted, int *refused)
@@ -104,7 +124,7 @@ static struct view changed(struct view view, const char *text)
 {
     struct message m = parse(text);
     struct message_error error;
-    if (!params_apply(plant(), &m.params, &view, &error))
+    if (!params_apply(&world, &m.params, &view, &error))
         fail_msg("%s: %s", text, error.text);
     return view;
 }
@@ -141,10 +161,91 @@ static void a_new_group_brings_its_settings(void **state)
     assert_int_equal(other.colormap, view.colormap);
 }
 
+static void refuse(const struct view *view, const char *text, const char *word)
+{
+    struct message m = parse(text);
+    struct message_error error;
+    struct view before = *view, after = *view;
+    assert_false(params_apply(&world, &m.params, &after, &error));
+    assert_memory_equal(&before, &after, sizeof(before));
+    assert_int_equal(strncmp(error.text, word, strlen(word)), 0);
+}
+
+static void what_is_shown_brings_its_own_range_and_colors(void **state)
+{
+    (void)state;
+    struct view view;
+    view_default(small_scene(), 640, 360, &view);
+    view = changed(view, "{\"type\":\"params\",\"seq\":1,\"range\":[0,50],\"ramp_interval\":5,\"colormap\":\"viridis\"}");
+    struct view distance = changed(view, "{\"type\":\"params\",\"seq\":2,\"show\":\"distance\",\"sensor\":\"TI-1\"}");
+    assert_true(distance.range_min == 0 && distance.range_max == 7 && distance.ramp_interval == 0);
+    assert_int_equal(distance.colormap, view.colormap);
+    assert_string_equal(view_unit(plant(), &distance), "m");
+    struct view straight = changed(distance, "{\"type\":\"params\",\"seq\":3,\"distance\":\"euclidean\"}");
+    assert_true(straight.range_max == 5);
+    straight = changed(straight, "{\"type\":\"params\",\"seq\":4,\"range\":[0,3]}");
+    assert_true(straight.range_max == 3);
+    straight = changed(straight, "{\"type\":\"params\",\"seq\":5,\"range\":null}");
+    assert_true(straight.range_max == 5);
+    struct view difference = changed(distance, "{\"type\":\"params\",\"seq\":6,\"show\":\"difference\",\"baseline\":\"now\"}");
+    assert_true(difference.range_min == -40 && difference.range_max == 40);
+    assert_int_equal(difference.colormap, colormap_find("diverging"));
+    struct view value = changed(difference, "{\"type\":\"params\",\"seq\":7,\"show\":\"value\"}");
+    assert_true(value.range_min == 20 && value.range_max == 180 && value.colormap == 0);
+    struct view group = changed(difference, "{\"type\":\"params\",\"seq\":8,\"group\":\"pressure\"}");
+    assert_true(group.field.show == SHOW_VALUE && group.field.baseline == 0 && group.range_max == 16);
+    refuse(&distance, "{\"type\":\"params\",\"seq\":9,\"sensor\":null}", "sensor");
+}
+
+static void overrides_of_sensors_are_merged(void **state)
+{
+    (void)state;
+    struct view view, first;
+    view_default(small_scene(), 640, 360, &first);
+    view = changed(first, "{\"type\":\"params\",\"seq\":1,\"sensors\":{\"TI-1\":{\"strength\":2}}}");
+    assert_true(view.field.override_count == 1 && view.field.overrides[0].strength == 2.0f);
+    assert_true(view.field.overrides[0].decay == FIELD_AS_CONFIGURED && !field_params_equal(&view.field, &first.field));
+    view = changed(view, "{\"type\":\"params\",\"seq\":2,\"sensors\":{\"TI-1\":{\"decay\":0}}}");
+    assert_true(view.field.override_count == 1 && view.field.overrides[0].strength == FIELD_AS_CONFIGURED);
+    struct view gone = changed(view, "{\"type\":\"params\",\"seq\":3,\"sensors\":{\"TI-1\":null}}");
+    assert_true(field_params_equal(&gone.field, &first.field));
+    gone = changed(view, "{\"type\":\"params\",\"seq\":4,\"sensors\":null}");
+    assert_true(field_params_equal(&gone.field, &first.field));
+    gone = changed(view, "{\"type\":\"params\",\"seq\":5,\"group\":\"pressure\"}");
+    assert_int_equal(gone.field.override_count, 0);
+    refuse(&view, "{\"type\":\"params\",\"seq\":6,\"sensors\":{\"PI-1\":{\"decay\":1}}}", "sensors");
+}
+
+static void baselines_are_set_shown_and_forgotten(void **state)
+{
+    (void)state;
+    struct view view;
+    struct baseline list[BASELINES_NAMED];
+    view_default(small_scene(), 640, 360, &view);
+    view = changed(view, "{\"type\":\"params\",\"seq\":1,\"baseline\":{\"set\":\"calm\"}}");
+    uint32_t id = view.field.baseline;
+    assert_true(id && id == baselines_find(world.baselines, "calm"));
+    view.field.baseline = 0;
+    view = changed(view, "{\"type\":\"params\",\"seq\":2,\"show\":\"difference\",\"baseline\":\"calm\"}");
+    assert_int_equal(view.field.baseline, id);
+    refuse(&view, "{\"type\":\"params\",\"seq\":3,\"baseline\":{\"set\":\"other\"},\"radius_m\":1e-4}", "radius_m");
+    assert_int_equal(baselines_find(world.baselines, "other"), 0);
+    changed(view, "{\"type\":\"params\",\"seq\":4,\"baseline\":{\"remove\":\"calm\"}}");
+    assert_int_equal(baselines_find(world.baselines, "calm"), 0);
+    for (int i = (int)baselines_list(world.baselines, list); i < BASELINES_NAMED; i++) {
+        char text[100];
+        snprintf(text, sizeof(text), "{\"type\":\"params\",\"seq\":5,\"baseline\":{\"set\":\"b%d\"}}", i);
+        changed(view, text);
+    }
+    refuse(&view, "{\"type\":\"params\",\"seq\":6,\"baseline\":{\"set\":\"one too many\"}}", "baseline");
+    changed(view, "{\"type\":\"params\",\"seq\":7,\"baseline\":{\"set\":\"b31\"}}");
+    assert_int_equal(baselines_list(world.baselines, list), BASELINES_NAMED);
+}
+
 static bool query(const char *const *args, size_t count, struct view *view, struct message_error *error)
 {
     *error = (struct message_error){ 0 };
-    return query_parse(small_scene(), args, count, view, error);
+    return query_parse(&(struct params_world){ .scene = small_scene(), .baselines = world.baselines }, args, count, view, error);
 }
 
 static void queries_make_views(void **state)
@@ -159,6 +260,11 @@ static void queries_make_views(void **state)
     assert_true(view.width_px == 320 && view.height_px == 200 && view.camera.eye_m[1] == 2 && view.camera.target_m[2] == 6);
     assert_true(view.camera.fov_deg == 50 && view.field.group == 1 && view.range_max == 2.5 && view.field.reach_m == 3);
     assert_true(view.selected_asset == 0 && view.look == LOOK_FLAT && view.light_dir[2] == 1 && view.tier == TIER_STILL);
+    static const char *const shown[] = { "show=distance", "sensor=TI-1", "sensors=TI-1=2:0.5" };
+    assert_true(query(shown, sizeof(shown) / sizeof(shown[0]), &view, &error));
+    assert_true(view.field.show == SHOW_DISTANCE && view.field.sensor == 0 && view.range_max == 7);
+    assert_true(view.field.overrides[0].strength == 2.0f && view.field.overrides[0].decay == 0.5f);
+    assert_true(query(&(const char *){ "sensors=TI-1=:3" }, 1, &view, &error) && view.field.overrides[0].decay == 3.0f);
     assert_true(query(NULL, 0, &view, &error));
     assert_true(view.width_px == 1280 && view.height_px == 720);
 }
@@ -186,7 +292,18 @@ static void bad_queries_are_named(void **state)
                                        "look=",
                                        "selected=x",
                                        "light=0,0,0",
-                                       "power=1e400" };
+                                       "power=1e400",
+                                       "show=speed",
+                                       "show=distance",
+                                       "sensors=TI-1",
+                                       "sensors=TI-1=",
+                                       "sensors=TI-1=2:",
+                                       "sensors=TI-1=2,",
+                                       "sensors=TI-1=2x",
+                                       "sensors=X=2",
+                                       "sensors=",
+                                       "baseline=unknown",
+                                       "baseline=now" };
     for (size_t i = 0; i < sizeof(bad) / sizeof(bad[0]); i++) {
         struct view view;
         struct message_error error;
@@ -230,10 +347,17 @@ static void damaged_messages_stay_harmless(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(vectors_are_taken_or_refused),    cmocka_unit_test(fields_arrive),      cmocka_unit_test(what_is_left_out_stays),
-        cmocka_unit_test(a_new_group_brings_its_settings), cmocka_unit_test(queries_make_views), cmocka_unit_test(bad_queries_are_named),
+        cmocka_unit_test(vectors_are_taken_or_refused),
+        cmocka_unit_test(fields_arrive),
+        cmocka_unit_test(what_is_left_out_stays),
+        cmocka_unit_test(a_new_group_brings_its_settings),
+        cmocka_unit_test(queries_make_views),
+        cmocka_unit_test(bad_queries_are_named),
         cmocka_unit_test(damaged_messages_stay_harmless),
+        cmocka_unit_test(what_is_shown_brings_its_own_range_and_colors),
+        cmocka_unit_test(overrides_of_sensors_are_merged),
+        cmocka_unit_test(baselines_are_set_shown_and_forgotten),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, set_up, tear_down);
 }

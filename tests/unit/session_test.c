@@ -36,6 +36,7 @@ static int set_up(void **state)
     f->world = (struct session_world){
         .plant = small_scene()->plant, .scene = small_scene(), .snapshot = f->snapshot, .links_up = f->up, .live = true, .version = "1.2.3"
     };
+    f->world.baselines = baselines_create();
     f->now_ns = 1000 * NS_PER_S;
     f->session = session_create(&f->world, 7, f->now_ns);
     *state = f;
@@ -47,6 +48,7 @@ static int tear_down(void **state)
     struct fixture *f = *state;
     session_destroy(&f->session);
     snapshot_destroy(&f->snapshot);
+    baselines_destroy(&f->world.baselines);
     mem_free(f);
     return 0;
 }
@@ -452,6 +454,31 @@ static void tags_come_whole_then_by_change_then_whole_again(void **state)
     json_decref(tags);
 }
 
+static void what_is_shown_is_confirmed(void **state)
+{
+    struct fixture *f = *state;
+    greet(f);
+    f->snapshot->taken_utc_ns = 5000;
+    say(f, "{\"type\":\"params\",\"seq\":1,\"show\":\"difference\",\"baseline\":{\"set\":\"calm\"},"
+           "\"sensors\":{\"TI-1\":{\"strength\":2}}}");
+    json_t *params = hear(f), *want = json_pack("{s:s,s:i}", "name", "calm", "time_us", 5),
+           *sensors = json_pack("{s:{s:f}}", "TI-1", "strength", 2.0);
+    assert_string_equal(json_string_value(json_object_get(params, "show")), "difference");
+    assert_true(json_equal(json_object_get(params, "baseline"), want));
+    assert_true(json_equal(json_array_get(json_object_get(params, "baselines"), 0), want));
+    assert_true(json_equal(json_object_get(params, "sensors"), sensors));
+    assert_string_equal(json_string_value(json_object_get(params, "colormap")), "diverging");
+    json_decref(params);
+    json_decref(want);
+    json_decref(sensors);
+    say(f, "{\"type\":\"params\",\"seq\":2,\"show\":\"distance\",\"sensor\":\"TI-1\",\"baseline\":null}");
+    params = hear(f);
+    assert_string_equal(json_string_value(json_object_get(params, "sensor")), "TI-1");
+    assert_string_equal(json_string_value(json_object_get(params, "unit")), "m");
+    assert_true(json_is_null(json_object_get(params, "baseline")));
+    json_decref(params);
+}
+
 static void params_are_confirmed_and_bad_ones_change_nothing(void **state)
 {
     struct fixture *f = *state;
@@ -541,6 +568,7 @@ int main(void)
         TEST(hidden_pages_get_nothing),
         TEST(tags_come_whole_then_by_change_then_whole_again),
         TEST(params_are_confirmed_and_bad_ones_change_nothing),
+        TEST(what_is_shown_is_confirmed),
         TEST(a_client_that_does_not_read_costs_a_bounded_list),
         TEST(too_many_messages_are_put_off),
         TEST(acks_for_nothing_are_errors),

@@ -1,0 +1,215 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A short list of copied snapshots, counted, so that one can be replaced while it is read. */
+#include "value/baselines.h"
+
+#include <pthread.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/mem.h"
+
+struct copy { /* the snapshot comes first: it is what others hold */
+    struct snapshot snapshot;
+    int users; /* under lock */
+};
+
+struct slot {
+    struct baseline what;
+    struct copy *copy;
+};
+
+struct baselines {
+    pthread_mutex_t lock;
+    /* --- below: under lock */
+    uint32_t last_id;
+    struct slot slots[BASELINES_NAMED + BASELINES_UNNAMED]; /* in order of id */
+    size_t count;
+};
+
+struct baselines *baselines_create(void)
+{
+    struct baselines *baselines = mem_new(sizeof(*baselines));
+    pthread_mutex_init(&baselines->lock, NULL);
+    return baselines;
+}
+
+static struct copy *copy_create(const struct snapshot *from)
+{
+    struct copy *copy = mem_new(sizeof(*copy));
+    *copy = (struct copy){ .snapshot = *from, .users = 1 };
+    copy->snapshot.readings = mem_array(from->count, sizeof(*from->readings));
+    if (from->count)
+        memcpy(copy->snapshot.readings, from->readings, from->count * sizeof(*from->readings));
+    return copy;
+}
+
+/* Under lock. */
+static void copy_unref(struct copy *copy)
+{
+    if (--copy->users > 0)
+        return;
+    mem_free(copy->snapshot.readings);
+    mem_free(copy);
+}
+
+void baselines_destroy(struct baselines **baselines_ptr)
+{
+    struct baselines *baselines = *baselines_ptr;
+    if (!baselines)
+        return;
+    for (size_t i = 0; i < baselines->count; i++)
+        copy_unref(baselines->slots[i].copy);
+    pthread_mutex_destroy(&baselines->lock);
+    mem_free(baselines);
+    *baselines_ptr = NULL;
+}
+
+/* Under lock. NULL: none. */
+static struct slot *find_name(struct baselines *baselines, const char *name)
+{
+    for (size_t i = 0; i < baselines->count; i++)
+        if (baselines->slots[i].what.name[0] && !strcmp(baselines->slots[i].what.name, name))
+            return &baselines->slots[i];
+    return NULL;
+}
+
+/* Under lock. NULL: none. */
+static struct slot *find_id(struct baselines *baselines, uint32_t id)
+{
+    for (size_t i = 0; i < baselines->count; i++)
+        if (baselines->slots[i].what.id == id)
+            return &baselines->slots[i];
+    return NULL;
+}
+
+/* Under lock. */
+static size_t count_of(const struct baselines *baselines, bool named)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < baselines->count; i++)
+        count += (baselines->slots[i].what.name[0] != 0) == named;
+    return count;
+}
+
+/* Under lock. */
+static void slot_remove(struct baselines *baselines, struct slot *slot)
+{
+    copy_unref(slot->copy);
+    size_t after = (size_t)(&baselines->slots[baselines->count] - slot) - 1;
+    memmove(slot, slot + 1, after * sizeof(*slot));
+    baselines->count--;
+}
+
+/* Under lock; there is room. */
+static uint32_t slot_add(struct baselines *baselines, const char *name, const struct snapshot *snapshot)
+{
+    struct slot *slot = &baselines->slots[baselines->count++];
+    *slot = (struct slot){ .what = { .id = ++baselines->last_id, .taken_utc_ns = snapshot->taken_utc_ns }, .copy = copy_create(snapshot) };
+    snprintf(slot->what.name, sizeof(slot->what.name), "%s", name);
+    return slot->what.id;
+}
+
+uint32_t baselines_set(struct baselines *baselines, const char *name, const struct snapshot *snapshot)
+{
+    uint32_t id = 0;
+    pthread_mutex_lock(&baselines->lock);
+    struct slot *slot = find_name(baselines, name);
+    if (slot) {
+        copy_unref(slot->copy);
+        slot->copy = copy_create(snapshot);
+        slot->what.taken_utc_ns = snapshot->taken_utc_ns;
+        id = slot->what.id;
+    } else if (count_of(baselines, true) < BASELINES_NAMED) {
+        id = slot_add(baselines, name, snapshot);
+    }
+    pthread_mutex_unlock(&baselines->lock);
+    return id;
+}
+
+/* Under lock. NULL: none. */
+static struct slot *find_unnamed(struct baselines *baselines, int64_t taken_utc_ns)
+{
+    for (size_t i = 0; i < baselines->count; i++)
+        if (!baselines->slots[i].what.name[0] && (taken_utc_ns < 0 || baselines->slots[i].what.taken_utc_ns == taken_utc_ns))
+            return &baselines->slots[i];
+    return NULL;
+}
+
+uint32_t baselines_keep(struct baselines *baselines, const struct snapshot *snapshot)
+{
+    pthread_mutex_lock(&baselines->lock);
+    struct slot *slot = find_unnamed(baselines, snapshot->taken_utc_ns);
+    if (!slot && count_of(baselines, false) == BASELINES_UNNAMED)
+        slot_remove(baselines, find_unnamed(baselines, -1));
+    uint32_t id = slot ? slot->what.id : slot_add(baselines, "", snapshot);
+    pthread_mutex_unlock(&baselines->lock);
+    return id;
+}
+
+void baselines_remove(struct baselines *baselines, const char *name)
+{
+    pthread_mutex_lock(&baselines->lock);
+    struct slot *slot = find_name(baselines, name);
+    if (slot)
+        slot_remove(baselines, slot);
+    pthread_mutex_unlock(&baselines->lock);
+}
+
+uint32_t baselines_find(struct baselines *baselines, const char *name)
+{
+    pthread_mutex_lock(&baselines->lock);
+    const struct slot *slot = find_name(baselines, name);
+    uint32_t id = slot ? slot->what.id : 0;
+    pthread_mutex_unlock(&baselines->lock);
+    return id;
+}
+
+bool baselines_may_set(struct baselines *baselines, const char *name)
+{
+    pthread_mutex_lock(&baselines->lock);
+    bool may = find_name(baselines, name) || count_of(baselines, true) < BASELINES_NAMED;
+    pthread_mutex_unlock(&baselines->lock);
+    return may;
+}
+
+bool baselines_describe(struct baselines *baselines, uint32_t id, struct baseline *out)
+{
+    pthread_mutex_lock(&baselines->lock);
+    const struct slot *slot = find_id(baselines, id);
+    if (slot)
+        *out = slot->what;
+    pthread_mutex_unlock(&baselines->lock);
+    return slot;
+}
+
+size_t baselines_list(struct baselines *baselines, struct baseline out[BASELINES_NAMED])
+{
+    size_t count = 0;
+    pthread_mutex_lock(&baselines->lock);
+    for (size_t i = 0; i < baselines->count; i++)
+        if (baselines->slots[i].what.name[0])
+            out[count++] = baselines->slots[i].what;
+    pthread_mutex_unlock(&baselines->lock);
+    return count;
+}
+
+const struct snapshot *baselines_take(struct baselines *baselines, uint32_t id)
+{
+    pthread_mutex_lock(&baselines->lock);
+    struct slot *slot = find_id(baselines, id);
+    if (slot)
+        slot->copy->users++;
+    const struct snapshot *snapshot = slot ? &slot->copy->snapshot : NULL;
+    pthread_mutex_unlock(&baselines->lock);
+    return snapshot;
+}
+
+void baselines_give(struct baselines *baselines, const struct snapshot **snapshot)
+{
+    if (!*snapshot)
+        return;
+    pthread_mutex_lock(&baselines->lock);
+    copy_unref((struct copy *)*snapshot);
+    pthread_mutex_unlock(&baselines->lock);
+    *snapshot = NULL;
+}
