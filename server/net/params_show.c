@@ -179,6 +179,7 @@ static void take_quantity(const struct params_world *world, const struct field_p
         return;
     field_own_range(world->scene, now, &view->range_min, &view->range_max);
     view->ramp_interval = 0;
+    memset(&view->paint, 0, sizeof(view->paint));
     if (now->show == SHOW_DIFFERENCE || before->show == SHOW_DIFFERENCE)
         view->colormap = now->show == SHOW_DIFFERENCE ? colormap_find("diverging") : 0;
 }
