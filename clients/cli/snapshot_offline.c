@@ -11,8 +11,8 @@
 #include "base/text.h"
 #include "encode/encoder.h"
 #include "net/query.h"
+#include "render/canvas.h"
 #include "render/overlay.h"
-#include "render/renderer.h"
 #include "snapshot.h"
 #include "values.h"
 
@@ -110,7 +110,7 @@ static bool save(struct studio *studio, struct frame *frame, const char *path)
 static bool draw(struct studio *studio, const struct snapshot_options *options, struct view *view)
 {
     view->tier = options->moving ? TIER_MOVING : TIER_STILL;
-    struct frame *frame = renderer_draw(studio->renderer, view, studio->snapshot);
+    struct frame *frame = canvas_draw(studio->renderer, view, studio->snapshot);
     if (!frame)
         return false;
     if (!options->no_overlay)

@@ -2,8 +2,8 @@
 /* Draws what is wished for. */
 #include "base/clock.h"
 #include "net/painter_impl.h"
+#include "render/canvas.h"
 #include "render/overlay.h"
-#include "render/renderer.h"
 
 static const int64_t STEP_NS = 10 * NS_PER_MS;              /* of a slow picture, before anyone else gets a turn */
 static const int64_t OWN_DATA_NS = 1 * NS_PER_S;            /* changed readings wait so long for a refinement of the same client */
@@ -18,7 +18,7 @@ struct drawing { /* what only the render thread touches */
     struct snapshot *snapshot;
     struct batch same;
     struct { /* the picture that takes long and is drawn step by step; at most one */
-        struct stroke *stroke; /* NULL: none */
+        struct canvas *canvas; /* NULL: none */
         struct batch batch;
         struct snapshot *snapshot; /* of what it shows */
         enum urgency urgency;
@@ -34,7 +34,7 @@ static bool waits_for_slow(const struct drawing *drawing, const struct client *c
     bool soon = client->wish.urgency == URGENCY_DATA && now_ns - client->wish.asked_ns >= OWN_DATA_NS;
     if (client->left || client->wish.urgency == URGENCY_INPUT || soon)
         return false;
-    for (size_t i = 0; drawing->slow.stroke && i < drawing->slow.batch.count; i++)
+    for (size_t i = 0; drawing->slow.canvas && i < drawing->slow.batch.count; i++)
         if (drawing->slow.batch.orders[i].client == client->id)
             return true;
     return false;
@@ -51,7 +51,7 @@ static struct turn next_turn(const struct drawing *drawing, const struct schedul
 {
     struct client *oldest[URGENCY_COUNT + 1] = { NULL };
     int64_t asked_ns[URGENCY_COUNT], now_ns = clock_mono_ns();
-    bool busy = drawing->slow.stroke != NULL;
+    bool busy = drawing->slow.canvas != NULL;
     struct turn turn = { 0 };
     for (int i = 0; i < URGENCY_COUNT; i++)
         asked_ns[i] = busy && drawing->slow.urgency == (enum urgency)i ? drawing->slow.asked_ns : INT64_MAX;
@@ -166,7 +166,7 @@ static void leave_out_same(struct drawing *drawing, struct batch *batch)
 {
     struct painter *painter = drawing->painter;
     struct content_of now = { .painter = painter };
-    now.content = renderer_content(drawing->renderer, &batch->orders[0].wish.view, drawing->snapshot);
+    now.content = canvas_content(drawing->renderer, &batch->orders[0].wish.view, drawing->snapshot);
     pthread_mutex_lock(&painter->lock);
     batch_split(batch, has_it, &now, &drawing->same);
     pthread_mutex_unlock(&painter->lock);
@@ -240,8 +240,8 @@ static void deliver(struct drawing *drawing, struct frame *frame, const struct s
 static void slow_begin(struct drawing *drawing, struct batch *batch, int64_t field_ns)
 {
     const struct wish *wish = &batch->orders[0].wish;
-    drawing->slow.stroke = renderer_begin(drawing->renderer, &wish->view, drawing->snapshot);
-    if (!drawing->slow.stroke) {
+    drawing->slow.canvas = canvas_begin(drawing->renderer, &wish->view, drawing->snapshot);
+    if (!drawing->slow.canvas) {
         fail(drawing, batch);
         return;
     }
@@ -261,12 +261,12 @@ static void slow_begin(struct drawing *drawing, struct batch *batch, int64_t fie
 /* True: it is done. */
 static bool slow_step(struct drawing *drawing)
 {
-    bool drawn = renderer_step(drawing->renderer, drawing->slow.stroke, STEP_NS);
+    bool drawn = canvas_step(drawing->renderer, drawing->slow.canvas, STEP_NS);
     counter_inc(drawing->painter->steps, 1);
     lose_on_demand(drawing);
     if (!drawn && !gl_lost(drawing->gl))
         return false;
-    struct frame *frame = renderer_end(drawing->renderer, &drawing->slow.stroke);
+    struct frame *frame = canvas_end(drawing->renderer, &drawing->slow.canvas);
     if (is_good(drawing, frame)) {
         frame->field_ns += drawing->slow.field_ns;
         deliver(drawing, frame, drawing->slow.snapshot, &drawing->slow.batch);
@@ -288,7 +288,7 @@ static bool has_left(const struct order *order, void *arg)
 static void slow_leave(struct drawing *drawing)
 {
     struct painter *painter = drawing->painter;
-    if (!drawing->slow.stroke)
+    if (!drawing->slow.canvas)
         return;
     pthread_mutex_lock(&painter->lock);
     batch_split(&drawing->slow.batch, has_left, painter, &drawing->same);
@@ -297,7 +297,7 @@ static void slow_leave(struct drawing *drawing)
     if (drawing->slow.batch.count > 0)
         return;
     counter_inc(painter->abandoned, 1);
-    renderer_abandon(drawing->renderer, &drawing->slow.stroke);
+    canvas_abandon(drawing->renderer, &drawing->slow.canvas);
 }
 
 static void draw(struct drawing *drawing, struct batch *batch)
@@ -314,7 +314,7 @@ static void draw(struct drawing *drawing, struct batch *batch)
         return;
     }
     lose_on_demand(drawing);
-    struct frame *frame = renderer_draw(drawing->renderer, &wish->view, drawing->snapshot);
+    struct frame *frame = canvas_draw(drawing->renderer, &wish->view, drawing->snapshot);
     if (!is_good(drawing, frame)) {
         fail(drawing, batch);
         return;
@@ -338,7 +338,7 @@ static bool gl_begin(struct drawing *drawing)
 static void gl_end(struct drawing *drawing)
 {
     if (drawing->renderer)
-        renderer_abandon(drawing->renderer, &drawing->slow.stroke);
+        canvas_abandon(drawing->renderer, &drawing->slow.canvas);
     renderer_destroy(&drawing->renderer);
     gl_destroy(&drawing->gl);
 }
@@ -370,7 +370,7 @@ static void warm_up(struct drawing *drawing)
 {
     struct view view;
     view_default(drawing->painter->params.scene, 64, 36, &view);
-    struct frame *frame = renderer_draw(drawing->renderer, &view, drawing->snapshot);
+    struct frame *frame = canvas_draw(drawing->renderer, &view, drawing->snapshot);
     if (frame)
         frame_unref(&frame);
 }
@@ -422,11 +422,11 @@ static void turn(struct drawing *drawing, struct schedule *schedule, struct batc
     slow_leave(drawing);
     if (batch->count > 0)
         draw(drawing, batch);
-    else if (drawing->slow.stroke)
+    else if (drawing->slow.canvas)
         done = slow_step(drawing);
     if (urgency >= URGENCY_REFINE)
         schedule_stepped(schedule);
-    if (done && !(urgency >= URGENCY_REFINE && drawing->slow.stroke))
+    if (done && !(urgency >= URGENCY_REFINE && drawing->slow.canvas))
         schedule_done(schedule, urgency, clock_mono_ns());
 }
 

@@ -11,6 +11,7 @@ struct frame_marker {
     int tag;
     float x_px, y_px; /* from the top left; may lie outside */
     uint8_t occluded; /* behind something, or outside the picture */
+    uint8_t half;     /* of a split view: 1 is the right one */
 };
 
 struct frame {

@@ -13,7 +13,9 @@
 
 bool pen_is_free(const struct pen *pen, const struct box *box)
 {
-    if (box->x < 0 || box->y < 0 || box->x + box->width > pen->frame->width_px || box->y + box->height > pen->frame->height_px)
+    const struct box *area = &pen->area;
+    double right = area->x + area->width, bottom = area->y + area->height;
+    if (box->x < area->x || box->y < area->y || box->x + box->width > right || box->y + box->height > bottom)
         return false;
     for (int i = 0; i < pen->taken_count; i++) {
         const struct box *other = &pen->taken[i];
@@ -80,6 +82,14 @@ void pen_text(struct pen *pen, double x, double y, const char *text)
     cairo_show_text(pen->cairo, text);
 }
 
+void pen_number(double value, double range, char out[40])
+{
+    int decimals = 0;
+    for (double unit = 1; decimals < 9 && fabs(value - round(value * unit) / unit) > range / 5000; unit *= 10)
+        decimals++;
+    snprintf(out, 40, "%.*f", decimals, fabs(value) < range / 5000 ? 0.0 : value);
+}
+
 int pen_decimals(double range)
 {
     return (int)fmin(fmax(ceil(-log10(range / 500)), 0), 6);
@@ -125,12 +135,17 @@ static void draw_header(struct pen *pen)
     pen_take(pen, &box);
 }
 
-/* Whether any sensor of the group tells a value. */
+static bool is_shown(const struct view *view, int group)
+{
+    return group == view->field.group || (view->split && group == view->right.field.group);
+}
+
+/* Whether any sensor that is shown tells a value. */
 static bool is_live(const struct pen *pen)
 {
     const struct plant *plant = pen->scene->plant;
     for (size_t i = 0; i < plant->tag_count && i < pen->snapshot->count; i++)
-        if (plant->tags[i].group == pen->frame->view.field.group && !quality_is_bad(pen->snapshot->readings[i].quality))
+        if (is_shown(&pen->frame->view, plant->tags[i].group) && !quality_is_bad(pen->snapshot->readings[i].quality))
             return true;
     return false;
 }
@@ -152,6 +167,15 @@ static void draw_banner(struct pen *pen)
     pen_take(pen, &box);
 }
 
+static void choose_half(struct pen *pen, int half)
+{
+    const struct view *view = &pen->frame->view;
+    int left_px = half ? view_left_px(view) : 0;
+    pen->half = half;
+    view_half(view, half, &pen->view);
+    pen->area = (struct box){ left_px, 0, pen->view.width_px, pen->view.height_px };
+}
+
 void overlay_draw(struct frame *frame, const struct scene *scene, const struct snapshot *snapshot)
 {
     cairo_surface_t *surface =
@@ -164,10 +188,13 @@ void overlay_draw(struct frame *frame, const struct scene *scene, const struct s
     pen->unit = fmin(fmax(fmin(frame->width_px / 1280.0, frame->height_px / 720.0), 0.5), 8);
     pen->text_px = fmax(13 * pen->unit, 9.5);
     draw_header(pen);
-    overlay_legend(pen);
     if (!is_live(pen))
         draw_banner(pen);
-    overlay_markers(pen);
+    for (int half = 0; half < (frame->view.split ? 2 : 1); half++) {
+        choose_half(pen, half);
+        overlay_legend(pen);
+        overlay_markers(pen);
+    }
     cairo_destroy(pen->cairo);
     cairo_surface_finish(surface);
     cairo_surface_destroy(surface);

@@ -2,172 +2,139 @@
 /* The legend: what each colour, stripe and dot means. */
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "render/overlay_pen.h"
 #include "render/palette.h"
 
-/* Where the legend's parts lie. */
-struct layout {
+enum { NOTES = 4 };
+/* What it says, and where its parts lie. */
+struct legend {
+    char title[160], above[60], below[60];
+    const char *notes[NOTES]; /* below the rest; the odd words of the picture */
+    int note_count;
     struct box card, bar;
     double pad, swatch_height;
 };
 
-static const struct plant_group *group_of(const struct pen *pen)
+static void add_note(struct legend *legend, const char *note)
 {
-    return &pen->scene->plant->groups[pen->frame->view.field.group];
+    if (legend->note_count < NOTES)
+        legend->notes[legend->note_count++] = note;
 }
 
-/* 1, 2 or 5 times a power of ten; about `count` of them in the range. */
-static double nice_step(double range, double count)
-{
-    double rough = range / fmax(count, 1), power = pow(10, floor(log10(rough)));
-    double lead = rough / power;
-    return power * (lead <= 1.0001 ? 1 : lead <= 2.0001 ? 2 : lead <= 5.0001 ? 5 : 10);
-}
-
-static void format_title(const struct pen *pen, char out[160])
+static void write_title(const struct pen *pen, struct legend *legend)
 {
     const struct plant *plant = pen->scene->plant;
-    const struct view *view = &pen->frame->view;
-    const char *unit = view_unit(plant, view);
+    const struct view *view = &pen->view;
+    const char *unit = view_unit(plant, view), *quantity = plant->groups[view->field.group].quantity;
     char what[128];
     if (view->field.show == SHOW_DISTANCE)
         snprintf(what, sizeof(what), "From %s", plant->tags[view->field.sensor].name);
     else
-        snprintf(what, sizeof(what), view->field.show == SHOW_DIFFERENCE ? "\u0394 %s" : "%s", group_of(pen)->quantity);
-    snprintf(out, 160, *unit ? "%s [%s]" : "%s", what, unit);
+        snprintf(what, sizeof(what), view->field.show == SHOW_DIFFERENCE ? "\u0394 %s" : "%s", quantity);
+    snprintf(legend->title, sizeof(legend->title), *unit ? "%s [%s]" : "%s", what, unit);
 }
 
-static void lay_out(struct pen *pen, struct layout *layout)
+static void write_words(const struct pen *pen, struct legend *legend)
 {
-    const struct frame *frame = pen->frame;
-    char title[160];
-    format_title(pen, title);
+    const struct view *view = &pen->view;
+    double range = view->range_max - view->range_min;
+    char number[40];
+    write_title(pen, legend);
+    pen_number(view->range_max, view->paint.log ? view->range_max : range, number);
+    snprintf(legend->above, sizeof(legend->above), "> %s", number);
+    pen_number(view->range_min, view->paint.log ? view->range_min : range, number);
+    snprintf(legend->below, sizeof(legend->below), "< %s", number);
+    if (view->paint.log)
+        add_note(legend, "logarithmic scale");
+    if (view->look == LOOK_GLOSSY)
+        add_note(legend, "glossy: light changes");
+    if (view->look == LOOK_GLOSSY)
+        add_note(legend, "the colours");
+}
+
+static void lay_out(struct pen *pen, struct legend *legend)
+{
+    const struct box *area = &pen->area;
+    double line = 1.5 * pen->text_px, width, top = 3.3 * pen->text_px, bottom = (5.0 + 1.3 * legend->note_count) * pen->text_px;
     pen_font(pen, 1, true);
-    double width = pen_text_width(pen, title), rows = frame->view.look == LOOK_GLOSSY ? 7.6 : 6.2;
+    width = pen_text_width(pen, legend->title);
     pen_font(pen, 0.9, false);
-    width = fmax(width, pen_text_width(pen, "uncertain") + 3.0 * pen->text_px);
-    if (frame->view.look == LOOK_GLOSSY)
-        width = fmax(width, pen_text_width(pen, "colours are shaded"));
-    layout->pad = 9 * pen->unit;
-    layout->swatch_height = 1.1 * pen->text_px;
-    double others = rows * 1.5 * pen->text_px + 2 * layout->pad;
-    double bar_height = fmax(fmin(0.46 * frame->height_px, frame->height_px - others - 4 * layout->pad), 2 * pen->text_px);
-    layout->card = (struct box){ 0, 0, width + 2 * layout->pad, bar_height + others };
-    layout->card.x = frame->width_px - layout->card.width - layout->pad;
-    layout->card.y = 0.5 * (frame->height_px - layout->card.height);
-    layout->bar =
-        (struct box){ layout->card.x + layout->pad, layout->card.y + layout->pad + 3.3 * pen->text_px, 1.6 * pen->text_px, bar_height };
+    width = fmax(width, overlay_bar_left(pen) + 2.2 * pen->text_px + pen_text_width(pen, "uncertain"));
+    width = fmax(width, overlay_bar_left(pen) + 2.2 * pen->text_px + pen_text_width(pen, legend->above));
+    width = fmax(width, overlay_bar_width(pen));
+    for (int i = 0; i < legend->note_count; i++)
+        width = fmax(width, pen_text_width(pen, legend->notes[i]));
+    legend->pad = 9 * pen->unit;
+    legend->swatch_height = 1.1 * pen->text_px;
+    double others = top + bottom + 2 * legend->pad;
+    double bar_height = fmax(fmin(0.46 * area->height, area->height - others - 4 * legend->pad), 2 * line);
+    legend->card = (struct box){ 0, 0, width + 2 * legend->pad, bar_height + others };
+    legend->card.x = area->x + area->width - legend->card.width - legend->pad;
+    legend->card.y = area->y + 0.5 * (area->height - legend->card.height);
+    legend->bar = (struct box){ legend->card.x + legend->pad + overlay_bar_left(pen), legend->card.y + legend->pad + top,
+                                1.6 * pen->text_px, bar_height };
 }
 
-static void draw_swatch(struct pen *pen, const struct layout *layout, double y, const uint8_t rgb[3], const char *text)
+static void draw_swatch(struct pen *pen, const struct legend *legend, double y, const uint8_t rgb[3], const char *text)
 {
-    struct box box = { layout->bar.x, y, layout->bar.width, layout->swatch_height };
+    struct box box = { legend->bar.x, y, legend->bar.width, legend->swatch_height };
     cairo_rectangle(pen->cairo, box.x, box.y, box.width, box.height);
     pen_rgb(pen, rgb);
     cairo_fill(pen->cairo);
-    pen_ink(pen, 0.9);
+    pen_ink(pen, 0.95);
     pen_text(pen, box.x + box.width + 0.55 * pen->text_px, y + 0.92 * pen->text_px, text);
 }
 
-static void draw_no_data(struct pen *pen, const struct layout *layout, double y)
+static void draw_no_data(struct pen *pen, const struct legend *legend, double y)
 {
-    draw_swatch(pen, layout, y, palette_no_data[0], "no data");
+    draw_swatch(pen, legend, y, palette_no_data[0], "no data");
     cairo_save(pen->cairo);
-    cairo_rectangle(pen->cairo, layout->bar.x, y, layout->bar.width, layout->swatch_height);
+    cairo_rectangle(pen->cairo, legend->bar.x, y, legend->bar.width, legend->swatch_height);
     cairo_clip(pen->cairo);
     pen_rgb(pen, palette_no_data[1]);
     cairo_set_line_width(pen->cairo, 0.25 * pen->text_px);
-    for (double x = -layout->swatch_height; x < layout->bar.width; x += 0.5 * pen->text_px) {
-        cairo_move_to(pen->cairo, layout->bar.x + x, y + layout->swatch_height);
-        cairo_rel_line_to(pen->cairo, layout->swatch_height, -layout->swatch_height);
+    for (double x = -legend->swatch_height; x < legend->bar.width; x += 0.5 * pen->text_px) {
+        cairo_move_to(pen->cairo, legend->bar.x + x, y + legend->swatch_height);
+        cairo_rel_line_to(pen->cairo, legend->swatch_height, -legend->swatch_height);
     }
     cairo_stroke(pen->cairo);
     cairo_restore(pen->cairo);
 }
 
-static void draw_uncertain(struct pen *pen, const struct layout *layout, double y)
+static void draw_uncertain(struct pen *pen, const struct legend *legend, double y)
 {
-    const struct colormap *map = colormap_at((size_t)pen->frame->view.colormap);
-    draw_swatch(pen, layout, y, map->rgb[128], "uncertain");
+    const struct colormap *map = colormap_at((size_t)pen->view.colormap);
+    draw_swatch(pen, legend, y, map->rgb[128], "uncertain");
     pen_rgb(pen, palette_uncertain);
     for (int i = 0; i < 6; i++) {
-        double x = layout->bar.x + layout->bar.width * (i + 0.5) / 6;
-        cairo_arc(pen->cairo, x, y + layout->swatch_height * (i % 2 ? 0.7 : 0.3), 0.13 * pen->text_px, 0, 2 * M_PI);
+        double x = legend->bar.x + legend->bar.width * (i + 0.5) / 6;
+        cairo_arc(pen->cairo, x, y + legend->swatch_height * (i % 2 ? 0.7 : 0.3), 0.13 * pen->text_px, 0, 2 * M_PI);
         cairo_fill(pen->cairo);
-    }
-}
-
-/* The map from MIN at the bottom to MAX at the top, each row of pixels by the legend's own rule. */
-static void draw_bar(struct pen *pen, const struct layout *layout)
-{
-    const struct view *view = &pen->frame->view;
-    struct scale scale;
-    view_scale(view, &scale);
-    int top = (int)lround(layout->bar.y), rows = (int)lround(layout->bar.height);
-    for (int row = 0; row < rows; row++) {
-        uint8_t rgb[3];
-        scale_look_up(&scale, scale_value(&scale, 1 - (row + 0.5) / rows), rgb);
-        cairo_rectangle(pen->cairo, layout->bar.x, top + row, layout->bar.width, 1);
-        pen_rgb(pen, rgb);
-        cairo_fill(pen->cairo);
-    }
-    cairo_rectangle(pen->cairo, layout->bar.x, top, layout->bar.width, rows);
-    pen_ink(pen, 0.5);
-    cairo_set_line_width(pen->cairo, fmax(1, pen->unit));
-    cairo_stroke(pen->cairo);
-}
-
-static void draw_ticks(struct pen *pen, const struct layout *layout)
-{
-    const struct view *view = &pen->frame->view;
-    double range = view->range_max - view->range_min, most = layout->bar.height / (2.2 * pen->text_px);
-    double step = view->ramp_interval > 0 && range / view->ramp_interval <= most ? view->ramp_interval : nice_step(range, most);
-    bool from_min = step == view->ramp_interval;
-    double first = from_min ? view->range_min : ceil(view->range_min / step - 1e-9) * step;
-    int decimals = (int)fmin(fmax(ceil(-log10(step) - 1e-9) + (from_min && fmod(step * 10, 1) > 1e-9 ? 1 : 0), 0), 6);
-    pen_font(pen, 0.9, false);
-    for (double value = first; value <= view->range_max + 1e-9 * range; value += step) {
-        char text[40];
-        double y = layout->bar.y + (view->range_max - value) / range * layout->bar.height;
-        snprintf(text, sizeof(text), "%.*f", decimals, fabs(value) < 1e-9 * range ? 0.0 : value);
-        pen_ink(pen, 0.7);
-        cairo_move_to(pen->cairo, layout->bar.x + layout->bar.width, y);
-        cairo_rel_line_to(pen->cairo, 0.3 * pen->text_px, 0);
-        cairo_stroke(pen->cairo);
-        pen_ink(pen, 0.95);
-        pen_text(pen, layout->bar.x + layout->bar.width + 0.55 * pen->text_px, y + 0.33 * pen->text_px, text);
     }
 }
 
 void overlay_legend(struct pen *pen)
 {
-    const struct view *view = &pen->frame->view;
-    const struct colormap *map = colormap_at((size_t)view->colormap);
-    struct layout layout;
-    char text[160];
-    lay_out(pen, &layout);
-    pen_card(pen, &layout.card);
-    pen_take(pen, &layout.card);
-    format_title(pen, text);
+    const struct colormap *map = colormap_at((size_t)pen->view.colormap);
+    struct legend legend = { .note_count = 0 };
+    write_words(pen, &legend);
+    lay_out(pen, &legend);
+    pen_card(pen, &legend.card);
+    pen_take(pen, &legend.card);
     pen_font(pen, 1, true);
     pen_ink(pen, 1);
-    pen_text(pen, layout.bar.x, layout.card.y + layout.pad + pen->text_px, text);
+    pen_text(pen, legend.card.x + legend.pad, legend.card.y + legend.pad + pen->text_px, legend.title);
     pen_font(pen, 0.9, false);
-    snprintf(text, sizeof(text), "> %g", view->range_max);
-    draw_swatch(pen, &layout, layout.bar.y - 1.75 * pen->text_px, map->above, text);
-    draw_bar(pen, &layout);
-    draw_ticks(pen, &layout);
-    double y = layout.bar.y + layout.bar.height + 0.65 * pen->text_px;
-    snprintf(text, sizeof(text), "< %g", view->range_min);
-    draw_swatch(pen, &layout, y, map->below, text);
-    draw_no_data(pen, &layout, y + 2.0 * pen->text_px);
-    draw_uncertain(pen, &layout, y + 3.5 * pen->text_px);
-    if (view->look != LOOK_GLOSSY)
-        return;
-    pen_font(pen, 0.9, true);
+    draw_swatch(pen, &legend, legend.bar.y - 1.75 * pen->text_px, map->above, legend.above);
+    overlay_bar(pen, &legend.bar);
+    double y = legend.bar.y + legend.bar.height + 0.65 * pen->text_px;
+    pen_font(pen, 0.9, false);
+    draw_swatch(pen, &legend, y, map->below, legend.below);
+    draw_no_data(pen, &legend, y + 1.6 * pen->text_px);
+    draw_uncertain(pen, &legend, y + 3.1 * pen->text_px);
     pen_ink(pen, 1);
-    pen_text(pen, layout.bar.x, y + 6.2 * pen->text_px, "glossy:");
-    pen_font(pen, 0.9, false);
-    pen_text(pen, layout.bar.x, y + 7.5 * pen->text_px, "colours are shaded");
+    for (int i = 0; i < legend.note_count; i++)
+        pen_text(pen, legend.card.x + legend.pad, y + (5.3 + 1.3 * i) * pen->text_px, legend.notes[i]);
 }

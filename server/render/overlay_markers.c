@@ -42,7 +42,7 @@ static void format_value(const struct pen *pen, const struct frame_marker *marke
 {
     const struct reading *reading = &pen->snapshot->readings[marker->tag];
     const struct plant_tag *tag = &pen->scene->plant->tags[marker->tag];
-    const struct view *view = &pen->frame->view;
+    const struct view *view = &pen->view;
     if (quality_is_bad(reading->quality))
         snprintf(out, 64, "BAD");
     else
@@ -94,7 +94,9 @@ static bool is_bad(const struct pen *pen, const struct frame_marker *marker)
 
 static bool is_inside(const struct pen *pen, const struct frame_marker *marker)
 {
-    return marker->x_px >= 0 && marker->y_px >= 0 && marker->x_px < pen->frame->width_px && marker->y_px < pen->frame->height_px;
+    const struct box *area = &pen->area;
+    return marker->half == pen->half && marker->x_px >= area->x && marker->y_px >= 0 && marker->x_px < area->x + area->width &&
+           marker->y_px < area->height;
 }
 
 /* Bad ones first, then those in sight: a hidden sensor must not take their place. */
@@ -114,16 +116,16 @@ static bool is_apart(const struct pen *pen, const struct labels *labels, const s
 /* Far apart at first, then in between, so that every part of the plant gets some. */
 static void place_labels(struct pen *pen)
 {
-    static const double spacings[] = { 0.16, 0.08, 0 }; /* of the picture's width */
+    static const double spacings[] = { 0.16, 0.08, 0 }; /* of the area's width */
     const struct frame *frame = pen->frame;
-    struct labels labels = { .room_px = LABELS_PART * frame->width_px * frame->height_px };
+    struct labels labels = { .room_px = LABELS_PART * pen->area.width * pen->area.height };
     labels.done = mem_array(frame->marker_count, sizeof(*labels.done));
     for (int rank = 0; rank < 3; rank++)
         for (int pass = 0; pass < 3; pass++)
             for (size_t i = 0; i < frame->marker_count && labels.room_px > 0; i++) {
                 const struct frame_marker *marker = &frame->markers[i];
                 if (!labels.done[i] && rank_of(pen, marker) == rank && is_inside(pen, marker) &&
-                    is_apart(pen, &labels, marker, spacings[pass] * frame->width_px))
+                    is_apart(pen, &labels, marker, spacings[pass] * pen->area.width))
                     labels.done[i] = place_label(pen, marker, &labels);
             }
     mem_free(labels.done);

@@ -16,6 +16,9 @@ enum { PEN_MAX_TAKEN = 512 };
 struct pen {
     cairo_t *cairo;
     const struct frame *frame;
+    struct view view;  /* of the half that is drawn over */
+    int half;          /* of a split view; else 0 */
+    struct box area;   /* that half */
     const struct scene *scene;
     const struct snapshot *snapshot;
     double unit, text_px;
@@ -23,7 +26,7 @@ struct pen {
     int taken_count;
 };
 
-bool pen_is_free(const struct pen *pen, const struct box *box); /* inside the picture, and over nothing that is taken */
+bool pen_is_free(const struct pen *pen, const struct box *box); /* inside the area, and over nothing that is taken */
 void pen_take(struct pen *pen, const struct box *box);
 void pen_card(struct pen *pen, const struct box *box); /* a light plate with a thin rim, for text to stand on */
 void pen_rgb(struct pen *pen, const uint8_t rgb[3]);
@@ -32,9 +35,15 @@ void pen_font(struct pen *pen, double size, bool bold); /* size: of text_px */
 double pen_text_width(struct pen *pen, const char *text);
 void pen_text(struct pen *pen, double x, double y, const char *text); /* from x, on a line through y; left where it starts */
 
+/* As few decimals as tell it apart from what differs by a 5000th of the range. */
+void pen_number(double value, double range, char out[40]);
 /* How many decimals tell values apart that differ by a 500th of the range. */
 int pen_decimals(double range);
 
+/* The scale of pen->view: colours from MIN at the bottom to MAX at the top, ticks to the right, the group's limits to the left. */
+void overlay_bar(struct pen *pen, const struct box *bar);
+double overlay_bar_width(struct pen *pen); /* with all that is written beside it */
+double overlay_bar_left(struct pen *pen);  /* of which before the bar itself */
 void overlay_legend(struct pen *pen);
 void overlay_markers(struct pen *pen);
 

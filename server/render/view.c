@@ -59,6 +59,53 @@ void view_scale(const struct view *view, struct scale *scale)
     memcpy(scale->breaks, view->paint.breaks, sizeof(scale->breaks));
 }
 
+static void get_shown(const struct view *view, struct shown *out)
+{
+    *out = (struct shown){
+        .field = view->field,
+        .colormap = view->colormap,
+        .ramp_interval = view->ramp_interval,
+        .range_min = view->range_min,
+        .range_max = view->range_max,
+        .paint = view->paint,
+        .look = view->look,
+    };
+}
+
+static void set_shown(struct view *view, const struct shown *shown)
+{
+    view->field = shown->field;
+    view->colormap = shown->colormap;
+    view->ramp_interval = shown->ramp_interval;
+    view->range_min = shown->range_min;
+    view->range_max = shown->range_max;
+    view->paint = shown->paint;
+    view->look = shown->look;
+}
+
+int view_left_px(const struct view *view)
+{
+    return view->width_px / 2;
+}
+
+void view_half(const struct view *view, int half, struct view *out)
+{
+    *out = *view;
+    out->split = false;
+    memset(&out->right, 0, sizeof(out->right));
+    if (!view->split)
+        return;
+    out->width_px = half ? view->width_px - view_left_px(view) : view_left_px(view);
+    if (half)
+        set_shown(out, &view->right);
+}
+
+void view_split(struct view *view, const struct view *right)
+{
+    view->split = true;
+    get_shown(right, &view->right);
+}
+
 static int by_size(const void *a, const void *b)
 {
     double x = *(const double *)a, y = *(const double *)b;
@@ -101,11 +148,18 @@ static bool same_paint(const struct paint *a, const struct paint *b)
            same_numbers(a->lines, a->line_count, b->lines, b->line_count);
 }
 
+static bool same_shown(const struct shown *a, const struct shown *b)
+{
+    return field_params_equal(&a->field, &b->field) && a->colormap == b->colormap && a->ramp_interval == b->ramp_interval &&
+           a->range_min == b->range_min && a->range_max == b->range_max && same_paint(&a->paint, &b->paint) && a->look == b->look;
+}
+
 bool view_equal(const struct view *a, const struct view *b)
 {
-    return a->width_px == b->width_px && a->height_px == b->height_px && same_camera(&a->camera, &b->camera) &&
-           field_params_equal(&a->field, &b->field) && a->colormap == b->colormap && a->ramp_interval == b->ramp_interval &&
-           a->range_min == b->range_min && a->range_max == b->range_max && same_paint(&a->paint, &b->paint) &&
-           a->look == b->look && a->tier == b->tier &&
-           a->selected_asset == b->selected_asset && same_vector(a->light_dir, b->light_dir);
+    struct shown a_shown, b_shown;
+    get_shown(a, &a_shown);
+    get_shown(b, &b_shown);
+    return a->width_px == b->width_px && a->height_px == b->height_px && same_camera(&a->camera, &b->camera) && a->tier == b->tier &&
+           a->selected_asset == b->selected_asset && same_vector(a->light_dir, b->light_dir) && same_shown(&a_shown, &b_shown) &&
+           a->split == b->split && (!a->split || same_shown(&a->right, &b->right));
 }

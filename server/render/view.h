@@ -27,6 +27,14 @@ struct paint { /* beside colour map, range and ramp: which colour a value has, a
     int line_count;
 };
 
+struct shown { /* what the right half of a split view shows; the names are those of the view itself */
+    struct field_params field;
+    int colormap;
+    double ramp_interval, range_min, range_max;
+    struct paint paint;
+    enum look look;
+};
+
 struct view {
     int width_px, height_px; /* 16..VIEW_MAX_SIDE_PX, at most VIEW_MAX_PIXELS */
     struct camera camera;
@@ -42,6 +50,8 @@ struct view {
     enum tier tier;
     int selected_asset;  /* outlined; -1: none */
     double light_dir[3]; /* towards the sun, plant frame, unit length */
+    bool split;          /* two halves beside each other under one camera: this view left, `right` right */
+    struct shown right;  /* zero where it is not split */
 };
 
 /* The unit of what the view shows: its group's, or "m". */
@@ -51,6 +61,11 @@ void view_scale(const struct view *view, struct scale *scale);
 /* All values that have a line, ascending: isolines and the edges of bands. Returns how many. */
 enum { VIEW_ALL_LINES = VIEW_LINES + SCALE_EDGES };
 int view_lines(const struct view *view, double lines[VIEW_ALL_LINES]);
+/* Half 0 (all of it, where it is not split) or 1 as a view of its own. */
+void view_half(const struct view *view, int half, struct view *out);
+int view_left_px(const struct view *view); /* width of the left half; x at which the right one begins */
+/* Splits, with a half that was taken by view_half (or a whole view) on the right. */
+void view_split(struct view *view, const struct view *right);
 /* Both ask for the same picture: everything but who asked, and when. Every new field that changes the picture belongs here. */
 bool view_equal(const struct view *a, const struct view *b);
 
