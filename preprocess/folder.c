@@ -19,16 +19,19 @@
 
 #define KEY_DIGITS 16
 #define MANIFEST "manifest.json"
+#define ASSET ".asset"
+#define REPORT ".report.json"
+#define REPORT_MAX_BYTES ((size_t)1 << 20)
 #define MANIFEST_MAX_BYTES ((size_t)64 << 20)
 
 char *folder_file_name(uint64_t key)
 {
-    return mem_printf("%016" PRIx64 ".asset", key);
+    return mem_printf("%016" PRIx64 ASSET, key);
 }
 
 static char *path_of(const char *folder, uint64_t key)
 {
-    return mem_printf("%s/%016" PRIx64 ".asset", folder, key);
+    return mem_printf("%s/%016" PRIx64 ASSET, folder, key);
 }
 
 int folder_open(struct folder_file *file, const char *folder, uint64_t key, char why[200])
@@ -77,12 +80,28 @@ void folder_close(struct folder_file *file)
     *file = (struct folder_file){ 0 };
 }
 
-int folder_write(const char *folder, uint64_t key, const void *bytes, size_t size)
+static char *report_path(const char *folder, uint64_t key)
 {
-    char *path = path_of(folder, key);
-    int status = text_write_file(path, bytes, size);
+    return mem_printf("%s/%016" PRIx64 REPORT, folder, key);
+}
+
+int folder_write(const char *folder, uint64_t key, const void *bytes, size_t size, const char *report)
+{
+    char *path = path_of(folder, key), *beside = report_path(folder, key);
+    int status = report ? text_write_file(beside, report, strlen(report)) : 0;
+    if (status == 0)
+        status = text_write_file(path, bytes, size);
     mem_free(path);
+    mem_free(beside);
     return status;
+}
+
+char *folder_report(const char *folder, uint64_t key)
+{
+    size_t size;
+    char *path = report_path(folder, key), *text = text_read_file(path, REPORT_MAX_BYTES, &size);
+    mem_free(path);
+    return text;
 }
 
 static char *manifest_text(const struct folder_entry *entries, size_t count)
@@ -109,13 +128,14 @@ static bool named(const char *name, const struct folder_entry *entries, size_t c
     return false;
 }
 
-/* 16 hexadecimal digits and `.asset`, with nothing behind or with what an interrupted write left. */
-static bool is_asset_name(const char *name)
+/* 16 hexadecimal digits and the ending; *whole: nothing behind, else what an interrupted write left. */
+static bool is_name(const char *name, const char *ending, bool *whole)
 {
-    if (strspn(name, "0123456789abcdef") != KEY_DIGITS || strncmp(name + KEY_DIGITS, ".asset", 6) != 0)
+    if (strspn(name, "0123456789abcdef") != KEY_DIGITS || strncmp(name + KEY_DIGITS, ending, strlen(ending)) != 0)
         return false;
-    const char *rest = name + KEY_DIGITS + 6;
-    return rest[0] == 0 || (strlen(rest) > 4 && strcmp(rest + strlen(rest) - 4, ".new") == 0);
+    const char *rest = name + KEY_DIGITS + strlen(ending);
+    *whole = rest[0] == 0;
+    return *whole || (strlen(rest) > 4 && strcmp(rest + strlen(rest) - 4, ".new") == 0);
 }
 
 static void remove_unnamed(const char *folder, const struct folder_entry *entries, size_t count, size_t *removed)
@@ -123,12 +143,11 @@ static void remove_unnamed(const char *folder, const struct folder_entry *entrie
     DIR *dir = opendir(folder);
     const struct dirent *entry;
     while (dir && (entry = readdir(dir)) != NULL) {
-        size_t length = strlen(entry->d_name);
-        bool whole = length == KEY_DIGITS + 6;
-        if (!is_asset_name(entry->d_name) || (whole && named(entry->d_name, entries, count)))
+        bool whole, asset = is_name(entry->d_name, ASSET, &whole);
+        if ((!asset && !is_name(entry->d_name, REPORT, &whole)) || (whole && named(entry->d_name, entries, count)))
             continue;
         if (unlinkat(dirfd(dir), entry->d_name, 0) == 0)
-            ++*removed;
+            *removed += asset;
     }
     if (dir)
         closedir(dir);

@@ -23,8 +23,10 @@ char *folder_file_name(uint64_t key);
 int folder_open(struct folder_file *file, const char *folder, uint64_t key, char why[200]);
 void folder_close(struct folder_file *file);
 
-/* Writes KEY.asset. 0 or -errno. */
-int folder_write(const char *folder, uint64_t key, const void *bytes, size_t size);
+/* Writes KEY.report.json, then KEY.asset; so where there is a file, there is its report. report may be NULL. 0 or -errno. */
+int folder_write(const char *folder, uint64_t key, const void *bytes, size_t size, const char *report);
+/* The text of KEY.report.json, NULL: there is none. Free with mem_free. */
+char *folder_report(const char *folder, uint64_t key);
 
 struct folder_entry {
     const char *id;

@@ -102,6 +102,24 @@ static bool find_parts(struct parts *parts, struct geometry *geometry, const str
     return true;
 }
 
+uint64_t geometry_triangles(const struct gltf_model *model, const struct geometry_params *params)
+{
+    uint64_t corners = 0;
+    bool literally = is_literal(model, params->nodes);
+    for (uint32_t i = 0; i < model->node_count;) {
+        if (!node_matches(params->nodes, literally, &model->nodes[i])) {
+            i++;
+            continue;
+        }
+        for (uint32_t end = model->nodes[i].end; i < end; i++) {
+            const struct gltf_mesh *mesh = model->nodes[i].mesh >= 0 ? &model->meshes[model->nodes[i].mesh] : NULL;
+            for (uint32_t p = 0; mesh && p < mesh->primitive_count; p++)
+                corners += model->primitives[mesh->first_primitive + p].index_count;
+        }
+    }
+    return corners / 3;
+}
+
 /* --- boxes --------------------------------------------------------------------------------------------------------------- */
 
 struct box {

@@ -35,6 +35,9 @@ bool geometry_cut(struct geometry *geometry, const struct gltf_model *model, con
                   char why[MODEL_WHY_BYTES]);
 void geometry_finish(struct geometry *geometry);
 
+/* How many triangles that would take, before those without area are left out. 0 where geometry_cut would find nothing. */
+uint64_t geometry_triangles(const struct gltf_model *model, const struct geometry_params *params);
+
 /* The place of a node, in the asset frame: the middle of the box around its sub-tree's meshes, else its origin. Nodes inside the asset are
    preferred to others of the same name. False: no node has this name. */
 bool geometry_node_place(const struct gltf_model *model, const struct geometry_params *params, const char *name, double place_m[3]);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* plantcast-prep: from CAD models to the files that plantcastd maps. */
 #include <getopt.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -17,17 +18,34 @@ static const char usage[] =
     "sensor to every vertex. What has not changed since the last time is left as it is.\n"
     "\n"
     "  --output DIR    where the prepared files go (default: NAME.prepared beside NAME.yaml)\n"
-    "  --report KIND   what is printed at the end (default: text); json goes to standard output, progress to standard error\n"
-    "  --asset ID      asset of the table\n"
+    "  --report KIND   what is printed at the end: text has every asset, json is for programs; without it, text of what was built,\n"
+    "                  cut to the first 40 rows. Progress goes to standard error. preprocess/REPORT.md says what each number means\n"
+    "  --asset ID      this asset alone\n"
     "  --sensor TAG    tag whose distances are printed, as CSV: x,y,z,geodesic_m,euclidean_m (plant frame, metres)\n"
     "  --help          this text\n"
     "\n"
     "Exit status: 0 good, 1 something is wrong with the input or the disk, 2 wrong use.\n";
 
 struct options {
-    bool distances, json, help;
+    bool distances, json, all, help;
     const char *plant, *output, *asset, *sensor;
 };
+
+static atomic_bool interrupted;
+
+/* What is begun is finished, and the next run goes on from there; a second signal ends the program at once. */
+static void on_signal(int signal)
+{
+    (void)signal;
+    atomic_store(&interrupted, true);
+}
+
+static void catch_signals(void)
+{
+    struct sigaction action = { .sa_handler = on_signal, .sa_flags = (int)SA_RESETHAND };
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+}
 
 static int wrong_use(const char *what, const char *about)
 {
@@ -52,6 +70,7 @@ static int read_options(int argc, char **argv, struct options *options)
             if (strcmp(optarg, "json") != 0 && strcmp(optarg, "text") != 0)
                 return wrong_use("--report is text or json, not ", optarg);
             options->json = strcmp(optarg, "json") == 0;
+            options->all = !options->json;
             break;
         default: return wrong_use("", "the option is not known");
         }
@@ -69,8 +88,8 @@ static int read_options(int argc, char **argv, struct options *options)
         return wrong_use("too many arguments: ", argv[optind]);
     if (options->distances && (!options->asset || !options->sensor))
         return wrong_use("", "distances needs --asset and --sensor");
-    if (!options->distances && (options->asset || options->sensor))
-        return wrong_use("", "--asset and --sensor belong to distances");
+    if (!options->distances && options->sensor)
+        return wrong_use("", "--sensor belongs to distances");
     return 0;
 }
 
@@ -95,12 +114,16 @@ static bool run_all(const struct options *options, struct log *log, struct worke
                     struct diag *diag)
 {
     struct prepare prepare;
-    struct prepare_params params = { .folder = folder, .progress = stderr };
+    struct prepare_params params = { .folder = folder, .only = options->asset, .progress = stderr, .stop = &interrupted };
+    if (options->asset && plant_find_asset(plant, options->asset) < 0) {
+        diag_error(diag, plant->path, 0, 0, "there is no asset %s", options->asset);
+        return false;
+    }
     bool good = prepare_run(&prepare, log, workers, plant, &params, diag);
     if (options->json)
         good = report_json(&prepare, stdout) && good;
     else
-        report_text(&prepare, stdout);
+        report_text(&prepare, options->all, stdout);
     prepare_finish(&prepare);
     return good;
 }
@@ -116,6 +139,7 @@ int main(int argc, char **argv)
         fputs(usage, stdout);
         return 0;
     }
+    catch_signals();
     struct log *log = log_create(LOG_INFO);
     struct plant *plant = plant_load(options.plant, &diag);
     bool good = plant != NULL;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* All assets of a plant: keys, what is there already, and building the rest model by model. */
+/* All assets of a plant: keys, what is there already, and building the rest, a batch of models at a time. */
 #include "preprocess/prepare.h"
 
 #include <errno.h>
@@ -13,39 +13,38 @@
 #include "base/mem.h"
 #include "plant/recipe.h"
 #include "preprocess/folder.h"
+#include "preprocess/progress.h"
+#include "preprocess/report_numbers.h"
 
 #define FAR_M 0.25       /* a sensor farther from its surface than this, */
 #define FAR_OF_SIZE 0.05 /* or than this share of the asset, is worth a warning */
 
-struct model { /* one model file; parsed once, while its assets are built */
-    const char *path;
-    int line; /* in the plant file, of the first asset that names it */
-    struct model_source source;
-    uint64_t file_hash; /* of the file itself, for the manifest */
-    bool good;
-};
+#define BATCH_TRIANGLES 4e6 /* models are parsed until so many triangles wait, then their assets are built */
+#define ALONE_TRIANGLES 1e6 /* an asset as large has all cores for itself: two at once would take twice the memory */
+#define SENSORS_WORK 6e4    /* what an asset's first sensor costs, in triangles, for the progress: measured */
 
 struct run {
     struct prepare *prepare;
     struct log *log;
     struct workers *workers;
     const struct prepare_params *params;
-    struct model *models;
-    size_t model_count;
-    size_t *asset_model;
-    struct gltf_model *parsed; /* of the model in hand */
-    size_t *todo;              /* assets to build from it */
-    size_t todo_count;
+    size_t *todo; /* assets to build, by model */
+    size_t todo_count, batch_begin, batch_end;
     pthread_mutex_t lock;
     /* --- below: under lock */
     struct diag *diag;
-    size_t finished;
+    struct progress progress;
     bool failed;
 };
 
-static struct geometry_params geometry_params_of(const struct plant_asset *asset)
+struct geometry_params prepare_geometry(const struct plant_asset *asset)
 {
     return (struct geometry_params){ .nodes = asset->nodes, .unit_m = asset->unit_m, .up = asset->up };
+}
+
+double prepare_far_m(double diagonal_m)
+{
+    return fmin(FAR_M, FAR_OF_SIZE * diagonal_m);
 }
 
 static void fail(struct run *run, const char *file, int line, const char *fmt, ...) __attribute__((format(printf, 4, 5)));
@@ -65,215 +64,294 @@ static void fail_asset(struct run *run, const struct prepare_asset *asset, const
     fail(run, run->prepare->plant->path, asset->plant->line, "asset %s: %s: %s", asset->plant->id, asset->plant->model, why);
 }
 
-/* --- models and keys ------------------------------------------------------------------------------------------------------ */
-
-static size_t model_of(struct run *run, const struct plant_asset *asset)
+static bool is_stopped(const struct run *run)
 {
-    for (size_t i = 0; i < run->model_count; i++)
-        if (strcmp(run->models[i].path, asset->model) == 0)
-            return i;
-    struct model *model = &run->models[run->model_count];
-    char why[MODEL_WHY_BYTES];
-    *model = (struct model){ .path = asset->model, .line = asset->line };
-    model->good = model_source_open(&model->source, asset->model, why);
-    if (!model->good)
-        fail(run, run->prepare->plant->path, asset->line, "asset %s: %s: %s", asset->id, asset->model, why);
-    else if (!plant_model_hash(asset->model, &model->file_hash))
-        fail(run, run->prepare->plant->path, asset->line, "asset %s: %s: %s", asset->id, asset->model, strerror(errno));
-    return run->model_count++;
+    return run->params->stop && atomic_load(run->params->stop);
+}
+
+/* --- keys ------------------------------------------------------------------------------------------------------------------- */
+
+static bool is_possible(const struct run *run, const struct prepare_asset *asset)
+{
+    return asset->wanted && asset->state != PREPARE_FAILED && asset->model < run->prepare->models.count;
+}
+
+static size_t first_with_key(const struct run *run, size_t i)
+{
+    const struct prepare_asset *assets = run->prepare->assets;
+    for (size_t j = 0; j < i; j++)
+        if (assets[j].key == assets[i].key && is_possible(run, &assets[j]))
+            return j;
+    return i;
 }
 
 static void find_keys(struct run *run)
 {
-    for (size_t i = 0; i < run->prepare->asset_count; i++) {
-        struct prepare_asset *asset = &run->prepare->assets[i];
-        if (run->params->only && strcmp(asset->plant->id, run->params->only) != 0)
+    struct prepare *prepare = run->prepare;
+    for (size_t i = 0; i < prepare->asset_count && !is_stopped(run); i++) {
+        struct prepare_asset *asset = &prepare->assets[i];
+        size_t known = prepare->models.count;
+        if (!asset->wanted)
             continue;
-        size_t model = run->asset_model[i] = model_of(run, asset->plant);
-        struct geometry_params geometry = geometry_params_of(asset->plant);
-        asset->sensor_count = plant_sensors(run->prepare->plant, (int)i, &asset->sensors);
-        if (run->models[model].good)
-            asset->key = build_key(run->models[model].source.hash, &geometry, run->prepare->plant, asset->sensors, asset->sensor_count);
+        asset->model = model_files_add(&prepare->models, asset->plant);
+        const struct model_file *model = &prepare->models.at[asset->model];
+        struct geometry_params geometry = prepare_geometry(asset->plant);
+        asset->sensor_count = plant_sensors(prepare->plant, (int)i, &asset->sensors);
+        if (model->good)
+            asset->key = build_key(model->hash, &geometry, prepare->plant, asset->sensors, asset->sensor_count);
+        else
+            asset->state = PREPARE_FAILED;
+        if (!model->good && prepare->models.count > known)
+            fail_asset(run, asset, model->why);
+        asset->same_as = first_with_key(run, i);
     }
 }
 
 /* --- what is in the folder -------------------------------------------------------------------------------------------------- */
 
-/* Takes from a checked file what the summary, the warnings and the report need. */
+/* Takes from a checked file what the report and the warnings need. */
 static void take_file(struct prepare_asset *asset, const struct asset_view *view)
 {
     const struct asset_level *finest = &view->levels[0];
+    double size2 = 0;
     asset->vertices = view->header->vertex_count;
     asset->triangles = 0;
     for (uint32_t p = 0; p < finest->primitive_count; p++)
         asset->triangles += view->primitives[finest->first_primitive + p].index_count / 3;
+    for (int axis = 0; axis < 3; axis++) {
+        double side = (double)view->header->bounds_max_m[axis] - (double)view->header->bounds_min_m[axis];
+        size2 += side * side;
+    }
+    asset->far_m = prepare_far_m(sqrt(size2));
     asset->surface_distances_m = mem_array(asset->sensor_count, sizeof(*asset->surface_distances_m));
     for (size_t s = 0; s < asset->sensor_count && s < view->header->sensor_count; s++)
         asset->surface_distances_m[s] = view->sensors[s].surface_distance_m;
 }
 
-static void warn_of_far_sensors(struct run *run, const struct prepare_asset *asset, const struct asset_view *view)
+static void take_report(struct prepare_asset *asset, const char *folder)
 {
-    const struct plant *plant = run->prepare->plant;
-    double size2 = 0;
-    for (int axis = 0; axis < 3; axis++) {
-        double side = (double)view->header->bounds_max_m[axis] - (double)view->header->bounds_min_m[axis];
-        size2 += side * side;
-    }
-    double limit_m = fmin(FAR_M, FAR_OF_SIZE * sqrt(size2));
-    for (size_t s = 0; s < asset->sensor_count; s++) {
-        const struct plant_tag *tag = &plant->tags[asset->sensors[s].tag];
-        double distance_m = (double)asset->surface_distances_m[s];
-        if (distance_m > limit_m)
-            diag_warning(run->diag, plant->tags_path, tag->line, 0, "tag %s: %.3f m from the surface of asset %s (more than %.3f m)",
-                         tag->name, distance_m, asset->plant->id, limit_m);
-    }
+    char *text = folder_report(folder, asset->key);
+    json_t *numbers = text ? json_loads(text, 0, NULL) : NULL;
+    asset->reported = numbers && report_numbers_read(numbers, &asset->report);
+    json_decref(numbers);
+    mem_free(text);
 }
 
-/* The asset's line on the terminal, and its warnings. Under lock. */
-static void finish_asset(struct run *run, struct prepare_asset *asset)
+static void look_at_some(void *arg, size_t begin, size_t end)
 {
-    static const char *const words[] = { "failed", "unchanged", "shared", "built" };
-    struct folder_file file;
-    char why[200];
-    if (asset->state != PREPARE_FAILED && folder_open(&file, run->params->folder, asset->key, why) == 1) {
+    struct run *run = arg;
+    for (size_t i = begin; i < end && !is_stopped(run); i++) {
+        struct prepare_asset *asset = &run->prepare->assets[i];
+        struct folder_file file;
+        char why[200];
+        if (!is_possible(run, asset) || asset->same_as != i)
+            continue;
+        int found = folder_open(&file, run->params->folder, asset->key, why);
+        if (found < 0)
+            asset->rebuilt_because = mem_strdup(why);
+        if (found != 1)
+            continue;
         take_file(asset, &file.view);
-        warn_of_far_sensors(run, asset, &file.view);
+        take_report(asset, run->params->folder);
+        asset->state = PREPARE_UNCHANGED;
         folder_close(&file);
     }
-    run->finished++;
-    size_t total = run->params->only ? 1 : run->prepare->asset_count;
-    if (run->params->progress && asset->state != PREPARE_UNCHANGED) {
-        fprintf(run->params->progress, "%3zu %%  %zu/%zu  %-16s %-9s %8u triangles %7u vertices %4zu sensors %6.2f s%s%s%s\n",
-                100 * run->finished / total, run->finished, total, asset->plant->id, words[asset->state], asset->triangles, asset->vertices,
-                asset->sensor_count, asset->seconds, asset->rebuilt_because ? " (the file there was no good: " : "",
-                asset->rebuilt_because ? asset->rebuilt_because : "", asset->rebuilt_because ? ")" : "");
-        fflush(run->params->progress);
-    }
 }
 
-static bool is_wanted(const struct run *run, size_t i)
+/* What is there already, and what is to be built: the assets of one model one after another. */
+static void sort_out(struct run *run)
 {
-    const struct prepare_asset *asset = &run->prepare->assets[i];
-    return !run->params->only || strcmp(asset->plant->id, run->params->only) == 0;
-}
-
-/* The first asset with the same key, which then builds for all. */
-static size_t first_with_key(const struct run *run, size_t i)
-{
-    for (size_t j = 0; j < i; j++)
-        if (is_wanted(run, j) && run->models[run->asset_model[j]].good && run->prepare->assets[j].key == run->prepare->assets[i].key)
-            return j;
-    return i;
-}
-
-static bool is_there(struct run *run, struct prepare_asset *asset)
-{
-    struct folder_file file;
-    char why[200];
-    int found = folder_open(&file, run->params->folder, asset->key, why);
-    if (found == 1)
-        folder_close(&file);
-    if (found < 0)
-        asset->rebuilt_because = mem_strdup(why);
-    return found == 1;
+    struct prepare *prepare = run->prepare;
+    size_t own = 0;
+    workers_for(run->workers, prepare->asset_count, 1, look_at_some, run);
+    for (size_t m = 0; m < prepare->models.count; m++)
+        for (size_t i = 0; i < prepare->asset_count; i++) {
+            const struct prepare_asset *asset = &prepare->assets[i];
+            if (!is_possible(run, asset) || asset->model != m || asset->same_as != i)
+                continue;
+            own++;
+            if (asset->state != PREPARE_UNCHANGED)
+                run->todo[run->todo_count++] = i;
+        }
+    progress_begin(&run->progress, run->params->progress, own, own - run->todo_count, clock_mono_ns());
 }
 
 /* --- building --------------------------------------------------------------------------------------------------------------- */
 
+static int write_file(const struct run *run, struct prepare_asset *asset, const struct build_output *output)
+{
+    json_t *numbers = report_numbers(&output->report);
+    char *report = numbers ? json_dumps(numbers, JSON_COMPACT | JSON_REAL_PRECISION(9)) : NULL;
+    int status = folder_write(run->params->folder, asset->key, output->bytes, output->size, report);
+    free(report);
+    json_decref(numbers);
+    return status;
+}
+
+static void say_failure(struct run *run, const struct prepare_asset *asset, const struct build_output *output, const char *why)
+{
+    const struct plant *plant = run->prepare->plant;
+    if (output->missing_node >= 0) {
+        const struct plant_tag *tag = &plant->tags[asset->sensors[output->missing_node].tag];
+        fail(run, plant->tags_path, tag->line, "tag %s: asset %s: %s", tag->name, asset->plant->id, why);
+    } else {
+        fail_asset(run, asset, why);
+    }
+}
+
+/* False: failed, and said so. Under lock. */
+static bool is_built(struct run *run, const struct prepare_asset *asset, const struct build_output *output, bool good, int status,
+                     const char *why)
+{
+    if (!good)
+        say_failure(run, asset, output, why);
+    else if (status != 0)
+        fail(run, run->prepare->plant->path, asset->plant->line, "asset %s: %s cannot be written: %s", asset->plant->id,
+             run->params->folder, strerror(-status));
+    return good && status == 0;
+}
+
 static void build_one(struct run *run, struct prepare_asset *asset)
 {
-    struct build_input input = { .model = run->parsed,
-                                 .geometry = geometry_params_of(asset->plant),
+    struct build_input input = { .model = &run->prepare->models.at[asset->model].parsed,
+                                 .geometry = prepare_geometry(asset->plant),
                                  .plant = run->prepare->plant,
                                  .sensors = asset->sensors,
                                  .sensor_count = asset->sensor_count,
                                  .key = asset->key };
     struct build_output output;
-    char why[MODEL_WHY_BYTES];
+    struct asset_view view;
+    char why[MODEL_WHY_BYTES], view_why[200];
     int64_t start_ns = clock_mono_ns();
     bool good = build_asset(run->log, run->workers, &input, &output, why);
-    int status = good ? folder_write(run->params->folder, asset->key, output.bytes, output.size) : 0;
-    asset->seconds = (double)(clock_mono_ns() - start_ns) / NS_PER_S;
+    int status = good ? write_file(run, asset, &output) : 0;
+    if (good && asset_view_init(&view, output.bytes, output.size, view_why))
+        take_file(asset, &view);
     free(output.bytes);
+    asset->reported = good;
+    asset->report = output.report;
+    asset->seconds = (double)(clock_mono_ns() - start_ns) / NS_PER_S;
     pthread_mutex_lock(&run->lock);
-    const struct plant *plant = run->prepare->plant;
-    if (!good && output.missing_node >= 0) {
-        const struct plant_tag *tag = &plant->tags[asset->sensors[output.missing_node].tag];
-        fail(run, plant->tags_path, tag->line, "tag %s: asset %s: %s", tag->name, asset->plant->id, why);
-    } else if (!good) {
-        fail_asset(run, asset, why);
-    } else if (status != 0) {
-        fail(run, plant->path, asset->plant->line, "asset %s: %s cannot be written: %s", asset->plant->id, run->params->folder,
-             strerror(-status));
-    } else {
-        asset->state = PREPARE_BUILT;
-        asset->report = output.report;
-    }
-    finish_asset(run, asset);
+    asset->state = is_built(run, asset, &output, good, status, why) ? PREPARE_BUILT : PREPARE_FAILED;
+    progress_step(&run->progress, asset->work, clock_mono_ns());
     pthread_mutex_unlock(&run->lock);
 }
 
 static void build_some(void *arg, size_t begin, size_t end)
 {
     struct run *run = arg;
-    for (size_t i = begin; i < end; i++)
-        build_one(run, &run->prepare->assets[run->todo[i]]);
+    for (size_t i = begin; i < end; i++) {
+        if (!is_stopped(run))
+            build_one(run, &run->prepare->assets[run->todo[run->batch_begin + i]]);
+    }
 }
 
-static int larger_first(const void *a, const void *b, void *arg)
+static int heavier_first(const void *a, const void *b, void *arg)
 {
     const struct run *run = arg;
-    size_t p = run->prepare->assets[*(const size_t *)a].sensor_count, q = run->prepare->assets[*(const size_t *)b].sensor_count;
-    return p == q ? (*(const size_t *)a < *(const size_t *)b ? -1 : 1) : p > q ? -1 : 1;
+    size_t i = *(const size_t *)a, j = *(const size_t *)b;
+    double p = run->prepare->assets[i].work, q = run->prepare->assets[j].work;
+    return p == q ? (i < j ? -1 : 1) : p > q ? -1 : 1;
 }
 
-static void build_from(struct run *run, size_t model)
+/* Parses the models of todo from batch_begin on, and weighs their assets, until there is enough to do. What cannot be parsed is passed over:
+   its assets fail. */
+static void parse_batch(struct run *run)
 {
-    struct gltf_model parsed;
-    char why[MODEL_WHY_BYTES];
-    run->todo_count = 0;
-    for (size_t i = 0; i < run->prepare->asset_count; i++) {
-        struct prepare_asset *asset = &run->prepare->assets[i];
-        if (!is_wanted(run, i) || run->asset_model[i] != model)
-            continue;
-        if (first_with_key(run, i) != i) {
-            asset->state = PREPARE_SHARED;
-        } else if (is_there(run, asset)) {
-            asset->state = PREPARE_UNCHANGED;
-            finish_asset(run, asset);
-        } else {
-            run->todo[run->todo_count++] = i;
+    struct prepare *prepare = run->prepare;
+    double triangles = 0;
+    run->batch_end = run->batch_begin;
+    while (run->batch_end < run->todo_count && !is_stopped(run)) {
+        struct prepare_asset *asset = &prepare->assets[run->todo[run->batch_end]];
+        struct model_file *model = &prepare->models.at[asset->model];
+        bool fresh = run->batch_end == 0 || prepare->assets[run->todo[run->batch_end - 1]].model != asset->model;
+        if (fresh && triangles > BATCH_TRIANGLES)
+            break;
+        if (fresh && !model_file_parse(model)) {
+            model->good = false;
+            fail(run, prepare->plant->path, model->line, "%s: %s", model->path, model->why);
         }
+        if (!model->good) {
+            asset->state = PREPARE_FAILED;
+        } else {
+            struct geometry_params geometry = prepare_geometry(asset->plant);
+            double own = (double)geometry_triangles(&model->parsed, &geometry);
+            asset->work = own + (asset->sensor_count ? SENSORS_WORK : 0);
+            triangles += own;
+        }
+        progress_expect(&run->progress, asset->work);
+        run->batch_end++;
     }
-    if (run->todo_count == 0)
-        return;
-    if (!gltf_load(&parsed, &run->models[model].source, why)) {
-        fail(run, run->prepare->plant->path, run->models[model].line, "%s: %s", run->models[model].path, why);
-        return;
-    }
-    if (run->params->progress && (parsed.skipped_lines || parsed.skipped_points))
-        fprintf(run->params->progress, "%s: %u primitives of lines and %u of points are skipped\n", run->models[model].path,
-                parsed.skipped_lines, parsed.skipped_points);
-    if (run->params->progress && parsed.left_out_textures)
-        fprintf(run->params->progress, "%s: %u textures are left out, which lie otherwise than their material's first\n",
-                run->models[model].path, parsed.left_out_textures);
-    qsort_r(run->todo, run->todo_count, sizeof(*run->todo), larger_first, run);
-    run->parsed = &parsed;
-    workers_for(run->workers, run->todo_count, 1, build_some, run);
-    run->parsed = NULL;
-    gltf_free(&parsed);
 }
 
-static void finish_shared(struct run *run)
+/* Leaves those out whose model is no good; those that are heavy are built one after the other, the rest side by side. */
+static void build_batch(struct run *run)
 {
-    for (size_t i = 0; i < run->prepare->asset_count; i++) {
-        struct prepare_asset *asset = &run->prepare->assets[i];
-        if (asset->state != PREPARE_SHARED)
+    struct prepare *prepare = run->prepare;
+    size_t *todo = run->todo + run->batch_begin, count = 0;
+    for (size_t i = run->batch_begin; i < run->batch_end; i++)
+        if (prepare->models.at[prepare->assets[run->todo[i]].model].good)
+            todo[count++] = run->todo[i];
+    qsort_r(todo, count, sizeof(*todo), heavier_first, run);
+    size_t alone = 0, begin = run->batch_begin;
+    while (alone < count && prepare->assets[todo[alone]].work > ALONE_TRIANGLES)
+        alone++;
+    for (size_t i = 0; i < alone; i++)
+        build_some(run, i, i + 1);
+    run->batch_begin += alone;
+    workers_for(run->workers, count - alone, 1, build_some, run);
+    run->batch_begin = begin;
+    for (size_t i = 0; i < count; i++)
+        model_file_release(&prepare->models.at[prepare->assets[todo[i]].model]);
+}
+
+static void build_all(struct run *run)
+{
+    for (run->batch_begin = 0; run->batch_begin < run->todo_count; run->batch_begin = run->batch_end) {
+        parse_batch(run);
+        if (run->batch_end == run->batch_begin)
+            break;
+        build_batch(run);
+    }
+    progress_end(&run->progress);
+}
+
+/* --- the end ---------------------------------------------------------------------------------------------------------------- */
+
+static void share(struct run *run)
+{
+    const struct prepare *prepare = run->prepare;
+    for (size_t i = 0; i < prepare->asset_count; i++) {
+        struct prepare_asset *asset = &prepare->assets[i];
+        const struct prepare_asset *first = &prepare->assets[asset->same_as];
+        if (!is_possible(run, asset) || first == asset)
             continue;
-        if (run->prepare->assets[first_with_key(run, i)].state == PREPARE_FAILED)
-            asset->state = PREPARE_FAILED;
-        finish_asset(run, asset);
+        asset->state = first->state == PREPARE_FAILED || first->state == PREPARE_LEFT ? first->state : PREPARE_SHARED;
+        if (!first->surface_distances_m)
+            continue;
+        asset->triangles = first->triangles;
+        asset->vertices = first->vertices;
+        asset->far_m = first->far_m;
+        asset->reported = first->reported;
+        asset->report = first->report;
+        asset->surface_distances_m = mem_array(asset->sensor_count, sizeof(*asset->surface_distances_m));
+        for (size_t s = 0; s < asset->sensor_count; s++) /* equal keys: equal sensors */
+            asset->surface_distances_m[s] = first->surface_distances_m[s];
+    }
+}
+
+static void warn(struct run *run, const struct prepare_asset *asset)
+{
+    const struct plant *plant = run->prepare->plant;
+    if (asset->rebuilt_because)
+        diag_warning(run->diag, plant->path, asset->plant->line, 0, "asset %s: the file that was there was no good (%s) and is made anew",
+                     asset->plant->id, asset->rebuilt_because);
+    for (size_t s = 0; asset->surface_distances_m && s < asset->sensor_count; s++) {
+        const struct plant_tag *tag = &plant->tags[asset->sensors[s].tag];
+        double distance_m = (double)asset->surface_distances_m[s];
+        if (distance_m > asset->far_m)
+            diag_warning(run->diag, plant->tags_path, tag->line, 0, "tag %s: %.3f m from the surface of asset %s (more than %.3f m)",
+                         tag->name, distance_m, asset->plant->id, asset->far_m);
     }
 }
 
@@ -281,10 +359,12 @@ static void write_manifest(struct run *run)
 {
     struct prepare *prepare = run->prepare;
     struct folder_entry *entries = mem_array(prepare->asset_count, sizeof(*entries));
-    for (size_t i = 0; i < prepare->asset_count; i++)
-        entries[i] = (struct folder_entry){ .id = prepare->assets[i].plant->id,
-                                            .key = prepare->assets[i].key,
-                                            .recipe = plant_recipe(prepare->assets[i].plant, run->models[run->asset_model[i]].file_hash) };
+    for (size_t i = 0; i < prepare->asset_count; i++) {
+        const struct prepare_asset *asset = &prepare->assets[i];
+        entries[i] = (struct folder_entry){ .id = asset->plant->id,
+                                            .key = asset->key,
+                                            .recipe = plant_recipe(asset->plant, prepare->models.at[asset->model].file_hash) };
+    }
     int status = folder_finish(run->params->folder, entries, prepare->asset_count, &prepare->removed);
     if (status != 0)
         fail(run, prepare->plant->path, 0, "%s: the manifest cannot be written: %s", run->params->folder, strerror(-status));
@@ -298,30 +378,28 @@ bool prepare_run(struct prepare *prepare, struct log *log, struct workers *worke
     int64_t start_ns = clock_mono_ns();
     *prepare = (struct prepare){ .plant = plant, .asset_count = plant->asset_count };
     prepare->assets = mem_array(plant->asset_count, sizeof(*prepare->assets));
-    run.models = mem_array(plant->asset_count, sizeof(*run.models));
-    run.asset_model = mem_array(plant->asset_count, sizeof(*run.asset_model));
     run.todo = mem_array(plant->asset_count, sizeof(*run.todo));
     pthread_mutex_init(&run.lock, NULL);
     for (size_t i = 0; i < plant->asset_count; i++)
-        prepare->assets[i].plant = &plant->assets[i];
+        prepare->assets[i] =
+            (struct prepare_asset){ .plant = &plant->assets[i], .wanted = !params->only || strcmp(plant->assets[i].id, params->only) == 0 };
     if (mkdir(params->folder, 0777) != 0 && errno != EEXIST)
         fail(&run, plant->path, 0, "%s: cannot be made: %s", params->folder, strerror(errno));
-    if (!run.failed)
+    if (!run.failed) {
         find_keys(&run);
-    for (size_t i = 0; i < run.model_count; i++) {
-        if (run.models[i].good)
-            build_from(&run, i);
-        model_source_finish(&run.models[i].source);
+        sort_out(&run);
+        build_all(&run);
+        share(&run);
+        for (size_t i = 0; i < prepare->asset_count; i++)
+            warn(&run, &prepare->assets[i]);
     }
-    finish_shared(&run);
-    if (!run.failed && !params->only)
+    prepare->interrupted = is_stopped(&run);
+    if (!run.failed && !params->only && !prepare->interrupted)
         write_manifest(&run);
     prepare->seconds = (double)(clock_mono_ns() - start_ns) / NS_PER_S;
     pthread_mutex_destroy(&run.lock);
-    mem_free(run.models);
-    mem_free(run.asset_model);
     mem_free(run.todo);
-    return !run.failed;
+    return !run.failed && !prepare->interrupted;
 }
 
 void prepare_finish(struct prepare *prepare)
@@ -332,5 +410,6 @@ void prepare_finish(struct prepare *prepare)
         mem_free(prepare->assets[i].rebuilt_because);
     }
     mem_free(prepare->assets);
+    model_files_finish(&prepare->models);
     *prepare = (struct prepare){ 0 };
 }

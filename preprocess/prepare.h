@@ -1,45 +1,61 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* All assets of a plant: what is there already stays, the rest is built. */
+/* All assets of a plant: what is there already stays, the rest is built. Each finished asset is on disk at once, so whatever interrupts the
+   work, the next run goes on from there. */
 #ifndef PREPROCESS_PREPARE_H
 #define PREPROCESS_PREPARE_H
+#include <stdatomic.h>
 #include <stdio.h>
 
 #include "base/diag.h"
 #include "preprocess/build.h"
+#include "preprocess/model_files.h"
 
-enum prepare_state { PREPARE_FAILED, PREPARE_UNCHANGED, PREPARE_SHARED, PREPARE_BUILT };
+enum prepare_state { PREPARE_LEFT /* not begun: interrupted */, PREPARE_FAILED, PREPARE_UNCHANGED, PREPARE_SHARED, PREPARE_BUILT };
 
 struct prepare_asset {
     const struct plant_asset *plant;
+    bool wanted;  /* else nothing below is set */
+    size_t model; /* in prepare->models */
     struct plant_sensor *sensors;
     size_t sensor_count;
     float *surface_distances_m; /* of each sensor; NULL: failed */
+    double far_m;               /* a sensor farther from its surface than this is worth a warning */
     uint64_t key;
+    size_t same_as; /* the first asset with this key, which has the file */
     enum prepare_state state;
     char *rebuilt_because; /* what was wrong with the file that was there, or NULL */
     uint32_t triangles, vertices;
-    struct build_report report; /* where it was built */
-    double seconds;
+    bool reported; /* report is set: always where it was built, else where the file's report was kept */
+    struct build_report report;
+    double seconds, work;
 };
 
 struct prepare {
     const struct plant *plant;
     struct prepare_asset *assets;
     size_t asset_count;
+    struct model_files models;
     size_t removed;
     double seconds;
+    bool interrupted;
 };
 
 struct prepare_params {
     const char *folder;
-    const char *only; /* this asset alone; the manifest is left as it is. NULL: all */
-    FILE *progress;   /* one line per asset; NULL: silent */
+    const char *only;        /* this asset alone; the manifest is left as it is. NULL: all */
+    FILE *progress;          /* NULL: silent */
+    const atomic_bool *stop; /* no asset is begun any more once it is true. NULL: never */
 };
 
-/* Findings go to diag (errors by the plant file's or tag list's line). False: something failed; what is good was written, but the manifest
-   is as it was. Finish in both cases. */
+/* Findings go to diag (errors by the plant file's or tag list's line). False: something failed or it was interrupted; what is good was
+   written, but the manifest is as it was. Finish in both cases. */
 bool prepare_run(struct prepare *prepare, struct log *log, struct workers *workers, const struct plant *plant,
                  const struct prepare_params *params, struct diag *diag);
 void prepare_finish(struct prepare *prepare);
+
+/* How its assets are cut out. */
+struct geometry_params prepare_geometry(const struct plant_asset *asset);
+/* The limit for sensors of an asset whose box has this diagonal. */
+double prepare_far_m(double diagonal_m);
 
 #endif

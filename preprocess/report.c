@@ -1,124 +1,289 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What was done, for people and for programs. */
+/* The report as text: what is worth a look first, then tables. */
 #include "preprocess/report.h"
 
-#include <jansson.h>
 #include <stdlib.h>
 
 #include "base/mem.h"
-#include "preprocess/folder.h"
+#include "preprocess/table.h"
 
-static const char *const state_names[] = { "failed", "unchanged", "shared", "built" };
+#define ROWS_MAX 40 /* of a table, unless all are asked for */
+#define CONCERNS_MAX 20
 
-/* E-101: levels (error, triangles, after splitting, field error): 0 m 62653 70112 0.39 %, 0.004 m 20100 24000 0.39 %, ... */
-static void levels_text(const struct prepare_asset *asset, FILE *out)
+struct order { /* assets as they are shown: those that concern first, then those that took longest */
+    const struct prepare_asset *asset;
+    double weight;
+};
+
+struct text_report {
+    const struct prepare *prepare;
+    struct order *order; /* of the assets to be shown */
+    size_t count, rows;
+    FILE *out;
+};
+
+static const char *number(size_t value, struct table_number *room)
 {
-    if (asset->report.level_count)
-        fprintf(out, "%s: levels (error, triangles, after splitting, field error):", asset->plant->id);
-    for (size_t i = 0; i < asset->report.level_count; i++) {
-        const struct build_level *level = &asset->report.levels[i];
-        fprintf(out, "%s %.3g m %u %u %.2f %%", i ? "," : "", (double)level->error_m, level->triangles, level->split_triangles,
-                100 * (double)level->field_error);
-    }
-    if (asset->report.level_count)
-        fprintf(out, "\n");
+    *room = table_number(value);
+    return room->text;
+}
+#define NUMBER(value) number(value, &(struct table_number){ 0 })
+
+static const char *mark(const struct order *order)
+{
+    return order->weight > 0 ? "!" : " ";
 }
 
-static json_t *levels_json(const struct build_report *report)
+static void print(const struct text_report *report, const char *title, struct table *table)
 {
-    json_t *levels = json_array();
-    for (size_t i = 0; i < report->level_count; i++) {
-        const struct build_level *level = &report->levels[i];
-        json_array_append_new(levels, json_pack("{s:f,s:f,s:i,s:i,s:i}", "error_m", (double)level->error_m, "field_error",
-                                                (double)level->field_error, "triangles_before", (int)level->triangles, "triangles",
-                                                (int)level->split_triangles, "vertices", (int)level->vertices));
+    if (table->cell_count) {
+        fprintf(report->out, "\n%s\n", title);
+        table_print(table, report->rows, report->out);
     }
-    return levels;
+    table_finish(table);
 }
 
-void report_text(const struct prepare *prepare, FILE *out)
+static void print_assets(const struct text_report *report)
 {
-    size_t counts[4] = { 0 }, sensors = 0;
+    static const struct table_column columns[] = {
+        { "", false },        { "asset", false }, { "state", false },  { "nodes", true },        { "triangles", true },
+        { "vertices", true }, { "added", true },  { "sensors", true }, { "without area", true }, { "normals made", true },
+        { "lines", true },    { "points", true }, { "seconds", true },
+    };
+    struct table table = { .columns = columns, .column_count = sizeof(columns) / sizeof(columns[0]) };
+    for (size_t i = 0; i < report->count; i++) {
+        const struct prepare_asset *asset = report->order[i].asset;
+        const struct build_report *r = &asset->report;
+        table_add(&table, "%s", mark(&report->order[i]));
+        table_add(&table, "%s", asset->plant->id);
+        table_add(&table, "%s", report_states[asset->state]);
+        table_add(&table, "%s", asset->reported ? NUMBER(r->nodes) : "");
+        table_add(&table, "%s", NUMBER(asset->triangles));
+        table_add(&table, "%s", NUMBER(asset->vertices));
+        table_add(&table, "%s", asset->reported ? NUMBER(report_added(asset)) : "");
+        table_add(&table, "%s", NUMBER(asset->sensor_count));
+        table_add(&table, "%s", r->degenerate_triangles ? NUMBER(r->degenerate_triangles) : "");
+        table_add(&table, "%s", r->computed_normals ? NUMBER(r->computed_normals) : "");
+        table_add(&table, "%s", r->skipped_lines ? NUMBER(r->skipped_lines) : "");
+        table_add(&table, "%s", r->skipped_points ? NUMBER(r->skipped_points) : "");
+        table_add(&table, "%.2f", asset->seconds);
+    }
+    print(report, "Assets (added: vertices that preparing added; lines, points: primitives passed over)", &table);
+}
+
+static void print_surfaces(const struct text_report *report)
+{
+    static const struct table_column columns[] = {
+        { "", false },          { "asset", false },    { "pieces", true },   { "open edges", true }, { "bridges", true },
+        { "longest mm", true }, { "within mm", true }, { "k", true },        { "samples", true },    { "every mm", true },
+        { "hidden", true },     { "unreached", true }, { "repeated", true }, { "differ %", true },
+    };
+    struct table table = { .columns = columns, .column_count = sizeof(columns) / sizeof(columns[0]) };
+    for (size_t i = 0; i < report->count; i++) {
+        const struct prepare_asset *asset = report->order[i].asset;
+        const struct surface_report *s = &asset->report.surface;
+        if (!asset->reported || s->triangles == 0)
+            continue;
+        table_add(&table, "%s", mark(&report->order[i]));
+        table_add(&table, "%s", asset->plant->id);
+        table_add(&table, "%s > %s", NUMBER(s->components), NUMBER(s->components_after));
+        table_add(&table, "%s > %s", NUMBER(s->border_edges), NUMBER(s->border_edges_after));
+        table_add(&table, "%s", NUMBER(s->bridges));
+        table_add(&table, "%.2f", 1e3 * s->longest_bridge_m);
+        table_add(&table, "%.2f", 1e3 * s->tolerance_m);
+        table_add(&table, "%d", s->k);
+        table_add(&table, "%s", NUMBER(s->samples));
+        table_add(&table, "%.1f", 1e3 * s->spacing_m);
+        table_add(&table, "%s", NUMBER(s->hidden_vertices));
+        table_add(&table, "%s", NUMBER(asset->report.unreachable_vertices));
+        table_add(&table, "%s", NUMBER(s->repeated_triangles));
+        table_add(&table, "%.2f", 100 * s->heat_disagreement);
+    }
+    print(report, "Surfaces of assets with sensors, before > after bridging (differ: the two ways to find distances)", &table);
+}
+
+static void print_levels(const struct text_report *report)
+{
+    static const struct table_column columns[] = {
+        { "", false },         { "asset", false },   { "level", true },         { "error mm", true },
+        { "triangles", true }, { "split to", true }, { "field error %", true },
+    };
+    struct table table = { .columns = columns, .column_count = sizeof(columns) / sizeof(columns[0]) };
+    for (size_t i = 0; i < report->count; i++) {
+        const struct prepare_asset *asset = report->order[i].asset;
+        for (size_t l = 0; asset->reported && l < asset->report.level_count; l++) {
+            const struct build_level *level = &asset->report.levels[l];
+            table_add(&table, "%s", l ? " " : mark(&report->order[i]));
+            table_add(&table, "%s", l ? "" : asset->plant->id);
+            table_add(&table, "%zu", l);
+            table_add(&table, "%.1f", 1e3 * (double)level->error_m);
+            table_add(&table, "%s", NUMBER(level->triangles));
+            table_add(&table, "%s", NUMBER(level->split_triangles));
+            if (asset->sensor_count)
+                table_add(&table, "%.2f", 100 * (double)level->field_error);
+            else
+                table_add(&table, "%s", "");
+        }
+    }
+    print(report, "Levels of detail, before and after splitting", &table);
+}
+
+static void print_times(const struct text_report *report)
+{
+    static const struct table_column columns[] = {
+        { "", false },         { "asset", false }, { "read", true },  { "weld", true },   { "bridge", true }, { "sample", true },
+        { "laplacian", true }, { "factor", true }, { "solve", true }, { "levels", true }, { "split", true },  { "all", true },
+    };
+    struct table table = { .columns = columns, .column_count = sizeof(columns) / sizeof(columns[0]) };
+    for (size_t i = 0; i < report->count; i++) {
+        const struct prepare_asset *asset = report->order[i].asset;
+        const struct build_report *r = &asset->report;
+        const double stages[] = { r->read_s,           r->surface.weld_s, r->surface.bridge_s, r->surface.sample_s, r->surface.laplacian_s,
+                                  r->surface.factor_s, r->solve_s,        r->levels_s,         r->split_s };
+        bool surface = r->surface.triangles > 0;
+        if (!asset->reported)
+            continue;
+        double sum = 0;
+        table_add(&table, "%s", mark(&report->order[i]));
+        table_add(&table, "%s", asset->plant->id);
+        for (size_t s = 0; s < sizeof(stages) / sizeof(stages[0]); s++) {
+            if (surface || stages[s] > 0)
+                table_add(&table, "%.2f", stages[s]);
+            else
+                table_add(&table, "%s", "");
+            sum += stages[s];
+        }
+        table_add(&table, "%.2f", sum);
+    }
+    print(report, "Seconds by stage, when it was built", &table);
+}
+
+struct shown_sensor {
+    const struct prepare_asset *asset;
+    size_t number;
+    double distance_m;
+};
+
+static int farthest_first(const void *a, const void *b)
+{
+    const struct shown_sensor *p = a, *q = b;
+    double x = p->distance_m / p->asset->far_m, y = q->distance_m / q->asset->far_m;
+    return x > y ? -1 : x < y;
+}
+
+static void print_sensors(const struct text_report *report)
+{
+    static const struct table_column columns[] = {
+        { "", false }, { "tag", false }, { "asset", false }, { "from the surface m", true }, { "limit m", true },
+    };
+    struct table table = { .columns = columns, .column_count = sizeof(columns) / sizeof(columns[0]) };
+    struct shown_sensor *sensors = NULL;
+    size_t count = 0, capacity = 0;
+    for (size_t i = 0; i < report->count; i++) {
+        const struct prepare_asset *asset = report->order[i].asset;
+        for (size_t s = 0; asset->surface_distances_m && s < asset->sensor_count; s++) {
+            mem_grow(&sensors, &capacity, count + 1, sizeof(*sensors));
+            sensors[count++] = (struct shown_sensor){ asset, s, (double)asset->surface_distances_m[s] };
+        }
+    }
+    if (count)
+        qsort(sensors, count, sizeof(*sensors), farthest_first);
+    for (size_t i = 0; i < count; i++) {
+        const struct prepare_asset *asset = sensors[i].asset;
+        table_add(&table, "%s", sensors[i].distance_m > asset->far_m ? "!" : " ");
+        table_add(&table, "%s", report->prepare->plant->tags[asset->sensors[sensors[i].number].tag].name);
+        table_add(&table, "%s", asset->plant->id);
+        table_add(&table, "%.4f", sensors[i].distance_m);
+        table_add(&table, "%.3f", asset->far_m);
+    }
+    mem_free(sensors);
+    print(report, "Sensors, the farthest from their surface first", &table);
+}
+
+static void print_models(const struct text_report *report)
+{
+    for (size_t i = 0; i < report->prepare->models.count; i++) {
+        const struct model_file *model = &report->prepare->models.at[i];
+        if (!model->was_parsed)
+            continue;
+        fprintf(report->out, "%s: read in %.2f s", model->path, model->parse_s);
+        if (model->skipped_lines || model->skipped_points)
+            fprintf(report->out, "; passed over: %u primitives of lines and %u of points", model->skipped_lines, model->skipped_points);
+        if (model->left_out_textures)
+            fprintf(report->out, "; left out: %u textures, which lie otherwise than their material's first", model->left_out_textures);
+        fprintf(report->out, "\n");
+    }
+}
+
+static int by_weight(const void *a, const void *b)
+{
+    const struct order *p = a, *q = b;
+    if (p->weight != q->weight)
+        return p->weight > q->weight ? -1 : 1;
+    return p->asset < q->asset ? -1 : p->asset > q->asset;
+}
+
+static void find_order(struct text_report *report, bool all, const struct report_concern *concerns, size_t concern_count)
+{
+    const struct prepare *prepare = report->prepare;
+    report->order = mem_array(prepare->asset_count, sizeof(*report->order));
+    for (size_t i = 0; i < prepare->asset_count; i++) {
+        const struct prepare_asset *asset = &prepare->assets[i];
+        if (asset->wanted && asset->state != PREPARE_LEFT && (all || asset->state == PREPARE_BUILT || asset->state == PREPARE_FAILED))
+            report->order[report->count++] = (struct order){ .asset = asset };
+    }
+    for (size_t c = concern_count; c-- > 0;)
+        for (size_t i = 0; i < report->count; i++)
+            if (report->order[i].asset == concerns[c].asset)
+                report->order[i].weight = concerns[c].weight;
+    qsort(report->order, report->count, sizeof(*report->order), by_weight);
+}
+
+static void print_summary(const struct text_report *report)
+{
+    const struct prepare *prepare = report->prepare;
+    size_t counts[PREPARE_BUILT + 1] = { 0 }, sensors = 0, wanted = 0;
     unsigned long long triangles = 0;
     for (size_t i = 0; i < prepare->asset_count; i++) {
         const struct prepare_asset *asset = &prepare->assets[i];
+        if (!asset->wanted)
+            continue;
+        wanted++;
         counts[asset->state]++;
         triangles += asset->triangles;
         sensors += asset->sensor_count;
-        const struct surface_report *s = &asset->report.surface;
-        levels_text(asset, out);
-        if (asset->state != PREPARE_BUILT || asset->sensor_count == 0)
-            continue;
-        fprintf(out,
-                "%s: %zu samples added (longest edge %.3f m), pieces %zu -> %zu with %zu bridges (longest %.2g m, tolerance %.2g m), open "
-                "edges %zu -> %zu, "
-                "hidden vertices %zu, unreachable %zu, repeated faces %zu; methods differ by %.2f %%\n",
-                asset->plant->id, s->samples, s->spacing_m, s->components, s->components_after, s->bridges, s->longest_bridge_m,
-                s->tolerance_m, s->border_edges, s->border_edges_after, s->hidden_vertices, asset->report.unreachable_vertices,
-                s->repeated_triangles, 100 * s->heat_disagreement);
     }
-    fprintf(out,
-            "%zu assets, %llu triangles, %zu sensors: %zu built, %zu unchanged, %zu shared, %zu failed; %zu old files removed; %.1f s\n",
-            prepare->asset_count, triangles, sensors, counts[PREPARE_BUILT], counts[PREPARE_UNCHANGED], counts[PREPARE_SHARED],
-            counts[PREPARE_FAILED], prepare->removed, prepare->seconds);
+    fprintf(report->out, "%s: %zu assets, %s triangles, %zu sensors: %zu built, %zu unchanged, %zu shared, %zu failed",
+            prepare->plant->name, wanted, NUMBER(triangles), sensors, counts[PREPARE_BUILT], counts[PREPARE_UNCHANGED],
+            counts[PREPARE_SHARED], counts[PREPARE_FAILED]);
+    if (prepare->interrupted)
+        fprintf(report->out, "; interrupted: %zu are left, the next run goes on from here", counts[PREPARE_LEFT]);
+    if (prepare->removed)
+        fprintf(report->out, "; %zu old files removed", prepare->removed);
+    fprintf(report->out, "; %.1f s\n", prepare->seconds);
 }
 
-static json_t *surface_json(const struct build_report *report)
+void report_text(const struct prepare *prepare, bool all, FILE *out)
 {
-    const struct surface_report *s = &report->surface;
-    json_t *counts =
-        json_pack("{s:I,s:I,s:I,s:I,s:I,s:I,s:I,s:I,s:i,s:I,s:I,s:I}", "welded_vertices", (json_int_t)s->welded_vertices,
-                  "degenerate_triangles", (json_int_t)s->degenerate_triangles, "repeated_triangles", (json_int_t)s->repeated_triangles,
-                  "open_edges_before", (json_int_t)s->border_edges, "open_edges_after", (json_int_t)s->border_edges_after,
-                  "components_before", (json_int_t)s->components, "components_after", (json_int_t)s->components_after, "bridges",
-                  (json_int_t)s->bridges, "k", s->k, "samples", (json_int_t)s->samples, "hidden_vertices", (json_int_t)s->hidden_vertices,
-                  "unreachable_vertices", (json_int_t)report->unreachable_vertices);
-    json_t *lengths = json_pack("{s:f,s:f,s:f,s:f,s:f}", "tolerance_m", s->tolerance_m, "spacing_m", s->spacing_m, "longest_bridge_m",
-                                s->longest_bridge_m, "time_m2", s->time_m2, "heat_disagreement", s->heat_disagreement);
-    json_t *seconds = json_pack("{s:f,s:f,s:f,s:f,s:f,s:f,s:f,s:f,s:f}", "levels", report->levels_s, "split", report->split_s, "read",
-                                report->read_s, "weld", s->weld_s, "bridge", s->bridge_s, "sample", s->sample_s, "laplacian",
-                                s->laplacian_s, "factor", s->factor_s, "solve", report->solve_s);
-    json_object_update(counts, lengths);
-    json_decref(lengths);
-    json_object_set_new(counts, "seconds", seconds);
-    return counts;
-}
-
-static json_t *asset_json(const struct prepare *prepare, const struct prepare_asset *asset)
-{
-    char *file = folder_file_name(asset->key);
-    json_t *sensors = json_array();
-    json_t *root = json_pack("{s:s,s:s,s:s,s:i,s:i,s:f,s:s?,s:o}", "id", asset->plant->id, "state", state_names[asset->state], "file", file,
-                             "triangles", (int)asset->triangles, "vertices", (int)asset->vertices, "seconds", asset->seconds,
-                             "rebuilt_because", asset->rebuilt_because, "sensors", sensors);
-    for (size_t s = 0; asset->surface_distances_m && s < asset->sensor_count; s++)
-        json_array_append_new(sensors, json_pack("{s:s,s:f}", "tag", prepare->plant->tags[asset->sensors[s].tag].name, "surface_distance_m",
-                                                 (double)asset->surface_distances_m[s]));
-    if (asset->state == PREPARE_BUILT)
-        json_object_update_new(root, json_pack("{s:i,s:i,s:i,s:i,s:i,s:i,s:i,s:i}", "nodes", (int)asset->report.nodes, "primitives",
-                                               (int)asset->report.primitives, "materials", (int)asset->report.materials, "textures",
-                                               (int)asset->report.textures, "zero_area_triangles", (int)asset->report.degenerate_triangles,
-                                               "computed_normals", (int)asset->report.computed_normals, "skipped_lines",
-                                               (int)asset->report.skipped_lines, "skipped_points", (int)asset->report.skipped_points));
-    if (asset->state == PREPARE_BUILT)
-        json_object_set_new(root, "levels", levels_json(&asset->report));
-    if (asset->state == PREPARE_BUILT && asset->sensor_count)
-        json_object_set_new(root, "surface", surface_json(&asset->report));
-    mem_free(file);
-    return root;
-}
-
-bool report_json(const struct prepare *prepare, FILE *out)
-{
-    json_t *assets = json_array();
-    json_t *root = json_pack("{s:s,s:f,s:I,s:o}", "plant", prepare->plant->name, "seconds", prepare->seconds, "removed",
-                             (json_int_t)prepare->removed, "assets", assets);
-    for (size_t i = 0; i < prepare->asset_count; i++)
-        json_array_append_new(assets, asset_json(prepare, &prepare->assets[i]));
-    char *text = root ? json_dumps(root, JSON_INDENT(1) | JSON_REAL_PRECISION(9)) : NULL;
-    if (text)
-        fprintf(out, "%s\n", text);
-    free(text);
-    json_decref(root);
-    return text != NULL;
+    struct text_report report = { .prepare = prepare, .rows = all ? SIZE_MAX : ROWS_MAX, .out = out };
+    size_t count;
+    struct report_concern *concerns = report_concerns(prepare, &count);
+    find_order(&report, all, concerns, count);
+    print_models(&report);
+    if (report.count) {
+        print_assets(&report);
+        print_surfaces(&report);
+        print_levels(&report);
+        print_times(&report);
+        print_sensors(&report);
+        fprintf(out, "\n");
+    }
+    size_t shown = all || count < CONCERNS_MAX ? count : CONCERNS_MAX;
+    for (size_t i = 0; i < shown; i++)
+        fprintf(out, "! %s: %s\n", concerns[i].asset->plant->id, concerns[i].text);
+    if (shown < count)
+        fprintf(out, "... and %zu more to look at: --report text has all\n", count - shown);
+    print_summary(&report);
+    report_concerns_free(concerns, count);
+    mem_free(report.order);
 }

@@ -9,7 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <sys/wait.h>
 #include <unistd.h>
 #include <cmocka.h>
 
@@ -17,16 +16,12 @@
 #include "base/text.h"
 #include "preprocess/folder.h"
 #include "tests/support/glb.h"
+#include "tests/support/prep_case.h"
 #include "tests/support/temp.h"
 
 /* A plate of 2 m x 1 m in 40 x 20 squares, and an instrument node beside it. */
 #define ACROSS 40u
 #define UP 20u
-
-struct setup {
-    char *folder, *plant;
-    struct text out, err; /* of the last run */
-};
 
 static const char plant_text[] = "plant: { name: Prep test }\n"
                                  "assets:\n"
@@ -38,14 +33,13 @@ static const char plant_text[] = "plant: { name: Prep test }\n"
                                  "sources:\n"
                                  "  - { id: plc, type: modbus, host: 127.0.0.1, byte_order: CDAB }\n"
                                  "tags: tags.csv\n";
-static const char tags_head[] = "Tag Name,Address,Data Type,Source,Group,Asset,Node,X,Y,Z\n";
 static const char tags_text[] = "T1,400001,Float,plc,temperature,A,,0,0,0\n"
                                 "T2,400003,Float,plc,temperature,A,TT-2,,,\n"
                                 "T3,400005,Float,plc,temperature,B,,10,0,0\n"
                                 "T4,400007,Float,plc,temperature,B,TT-2,,,\n"
                                 "T5,400009,Float,plc,temperature,C,,1,0.5,0.4\n";
 
-static void write_model(struct setup *s)
+static void write_model(struct prep_case *s)
 {
     const uint32_t vertices = (ACROSS + 1) * (UP + 1), indices = ACROSS * UP * 6;
     struct text bin = { 0 };
@@ -75,87 +69,14 @@ static void write_model(struct setup *s)
     text_finish(&bin);
 }
 
-static void write_tags(struct setup *s, const char *rows)
-{
-    char *text = mem_printf("%s%s", tags_head, rows);
-    mem_free(temp_write_text(s->folder, "tags.csv", text));
-    mem_free(text);
-}
-
 static int set_up(void **state)
 {
-    struct setup *s = mem_new(sizeof(*s));
-    s->folder = temp_folder_create();
-    write_model(s);
-    s->plant = temp_write_text(s->folder, "plant.yaml", plant_text);
-    write_tags(s, tags_text);
-    *state = s;
+    prep_case_set_up(state);
+    struct prep_case *c = *state;
+    write_model(c);
+    prep_case_plant(c, plant_text);
+    prep_case_tags(c, tags_text);
     return 0;
-}
-
-static int tear_down(void **state)
-{
-    struct setup *s = *state;
-    temp_folder_destroy(&s->folder);
-    mem_free(s->plant);
-    text_finish(&s->out);
-    text_finish(&s->err);
-    mem_free(s);
-    return 0;
-}
-
-static void read_back(struct setup *s, const char *name, struct text *to)
-{
-    char *path = temp_path(s->folder, name);
-    size_t size;
-    char *bytes = text_read_file(path, (size_t)1 << 30, &size);
-    assert_non_null(bytes);
-    text_finish(to);
-    text_add_bytes(to, bytes, size);
-    mem_free(bytes);
-    mem_free(path);
-}
-
-/* Runs plantcast-prep with these arguments (PLANT stands for the plant file) and returns its exit status. */
-static int run(struct setup *s, const char *arguments)
-{
-    const char *folder = getenv("PLANTCAST_BIN");
-    char *program = mem_printf("%s/plantcast-prep", folder ? folder : "build");
-    if (access(program, X_OK) != 0) {
-        print_message("# %s is not there\n", program);
-        mem_free(program);
-        skip();
-    }
-    char *command = mem_printf("PLANT='%s'; '%s' %s >'%s/out' 2>'%s/err'", s->plant, program, arguments, s->folder, s->folder);
-    int status = system(command);
-    mem_free(command);
-    mem_free(program);
-    read_back(s, "out", &s->out);
-    read_back(s, "err", &s->err);
-    assert_true(WIFEXITED(status));
-    return WEXITSTATUS(status);
-}
-
-static void expect(struct setup *s, const char *arguments, int status)
-{
-    int got = run(s, arguments);
-    if (got != status)
-        fail_msg("%s: exit status %d, expected %d\n%s%s", arguments, got, status, s->out.at ? s->out.at : "", s->err.at ? s->err.at : "");
-}
-
-static void says(const struct text *text, const char *words)
-{
-    if (!text->at || !strstr(text->at, words))
-        fail_msg("'%s' is not in: %s", words, text->at ? text->at : "(nothing)");
-}
-
-static json_t *json_of(const struct text *text)
-{
-    json_error_t error;
-    json_t *root = json_loads(text->at, 0, &error);
-    if (!root)
-        fail_msg("%s: %s", error.text, text->at);
-    return root;
 }
 
 static const json_t *asset_of(const json_t *report, size_t i)
@@ -168,21 +89,21 @@ static const char *state_of(const json_t *report, size_t i)
     return json_string_value(json_object_get(asset_of(report, i), "state"));
 }
 
-static void assert_states(struct setup *s, const char *a, const char *b, const char *c)
+static void assert_states(struct prep_case *s, const char *a, const char *b, const char *c)
 {
-    expect(s, "$PLANT --report json", 0);
-    json_t *report = json_of(&s->out);
+    prep_case_expect(s, "$PLANT --report json", 0);
+    json_t *report = prep_case_json(&s->out);
     assert_string_equal(state_of(report, 0), a);
     assert_string_equal(state_of(report, 1), b);
     assert_string_equal(state_of(report, 2), c);
     json_decref(report);
 }
 
-static char *file_of(struct setup *s, size_t asset)
+static char *file_of(struct prep_case *s, size_t asset)
 {
     struct text text = { 0 };
-    read_back(s, "plant.prepared/manifest.json", &text);
-    json_t *manifest = json_of(&text);
+    prep_case_read(s, "plant.prepared/manifest.json", &text);
+    json_t *manifest = prep_case_json(&text);
     char *name = mem_printf("%s/plant.prepared/%s", s->folder, json_string_value(json_object_get(asset_of(manifest, asset), "file")));
     assert_int_equal(json_integer_value(json_object_get(manifest, "format")), 2);
     json_decref(manifest);
@@ -192,10 +113,10 @@ static char *file_of(struct setup *s, size_t asset)
 
 static void a_plant_is_prepared(void **state)
 {
-    struct setup *s = *state;
-    expect(s, "$PLANT", 0);
-    says(&s->err, "tag T5: 0.400 m from the surface of asset C (more than 0.250 m)");
-    says(&s->err, "tags.csv:6: warning");
+    struct prep_case *s = *state;
+    prep_case_expect(s, "$PLANT", 0);
+    prep_case_says(&s->err, "tag T5: 0.400 m from the surface of asset C (more than 0.250 m)");
+    prep_case_says(&s->err, "tags.csv:6: warning");
     assert_null(strchr(s->err.at, '\r'));
     assert_null(strchr(s->err.at, 27));
     char *a = file_of(s, 0), *b = file_of(s, 1), *c = file_of(s, 2);
@@ -226,7 +147,7 @@ static void a_plant_is_prepared(void **state)
 
 static void a_second_run_does_nothing(void **state)
 {
-    struct setup *s = *state;
+    struct prep_case *s = *state;
     struct stat before, after;
     assert_states(s, "built", "shared", "built");
     char *a = file_of(s, 0);
@@ -239,8 +160,8 @@ static void a_second_run_does_nothing(void **state)
 
 static void damaged_files_are_made_anew_and_said(void **state)
 {
-    struct setup *s = *state;
-    expect(s, "$PLANT", 0);
+    struct prep_case *s = *state;
+    prep_case_expect(s, "$PLANT", 0);
     char *a = file_of(s, 0), *c = file_of(s, 2);
     assert_int_equal(truncate(a, 1000), 0);
     size_t size;
@@ -248,9 +169,9 @@ static void damaged_files_are_made_anew_and_said(void **state)
     bytes[size / 2] ^= 1;
     assert_int_equal(text_write_file(c, bytes, size), 0);
     mem_free(bytes);
-    expect(s, "$PLANT", 0);
-    says(&s->err, "truncated: 1000 bytes");
-    says(&s->err, "checksum");
+    prep_case_expect(s, "$PLANT", 0);
+    prep_case_says(&s->err, "truncated: 1000 bytes");
+    prep_case_says(&s->err, "checksum");
     assert_states(s, "unchanged", "shared", "unchanged");
     mem_free(a);
     mem_free(c);
@@ -258,10 +179,10 @@ static void damaged_files_are_made_anew_and_said(void **state)
 
 static void only_what_changed_is_made_anew(void **state)
 {
-    struct setup *s = *state;
-    expect(s, "$PLANT", 0);
+    struct prep_case *s = *state;
+    prep_case_expect(s, "$PLANT", 0);
     char *old = file_of(s, 0);
-    write_tags(s, "T1,400001,Float,plc,temperature,A,,0.5,0,0\nT5,400009,Float,plc,temperature,C,,1,0.5,0.4\n");
+    prep_case_tags(s, "T1,400001,Float,plc,temperature,A,,0.5,0,0\nT5,400009,Float,plc,temperature,C,,1,0.5,0.4\n");
     assert_states(s, "built", "built", "unchanged");
     assert_int_not_equal(access(old, F_OK), 0); /* nothing names it any more */
     mem_free(old);
@@ -269,9 +190,9 @@ static void only_what_changed_is_made_anew(void **state)
 
 static void distances_are_printed(void **state)
 {
-    struct setup *s = *state;
-    expect(s, "distances $PLANT --asset B --sensor T3", 0);
-    says(&s->out, "x,y,z,geodesic_m,euclidean_m\n");
+    struct prep_case *s = *state;
+    prep_case_expect(s, "distances $PLANT --asset B --sensor T3", 0);
+    prep_case_says(&s->out, "x,y,z,geodesic_m,euclidean_m\n");
     size_t lines = 0;
     for (char *line = strchr(s->out.at, '\n') + 1; *line; line = strchr(line, '\n') + 1) {
         double x, y, z, geodesic_m, euclidean_m;
@@ -281,49 +202,49 @@ static void distances_are_printed(void **state)
         lines++;
     }
     assert_int_equal(lines, (ACROSS + 1) * (UP + 1));
-    expect(s, "distances $PLANT --asset B --sensor T1", 1);
-    says(&s->err, "tag T1 is no sensor of asset B");
-    expect(s, "distances $PLANT --asset B --sensor T9", 1);
-    expect(s, "distances $PLANT --asset B", 2);
+    prep_case_expect(s, "distances $PLANT --asset B --sensor T1", 1);
+    prep_case_says(&s->err, "tag T1 is no sensor of asset B");
+    prep_case_expect(s, "distances $PLANT --asset B --sensor T9", 1);
+    prep_case_expect(s, "distances $PLANT --asset B", 2);
 }
 
 static void what_is_wrong_is_said_with_its_place(void **state)
 {
-    struct setup *s = *state;
-    write_tags(s, "T1,400001,Float,plc,temperature,A,,0,0,0\nT2,400003,Float,plc,temperature,A,TT-99,,,\n");
-    expect(s, "$PLANT", 1);
-    says(&s->err, "tags.csv:3: error: tag T2: asset A: the model has no node 'TT-99'");
-    write_tags(s, tags_text);
+    struct prep_case *s = *state;
+    prep_case_tags(s, "T1,400001,Float,plc,temperature,A,,0,0,0\nT2,400003,Float,plc,temperature,A,TT-99,,,\n");
+    prep_case_expect(s, "$PLANT", 1);
+    prep_case_says(&s->err, "tags.csv:3: error: tag T2: asset A: the model has no node 'TT-99'");
+    prep_case_tags(s, tags_text);
     char *text = mem_printf("%.*s  - { id: D, model: model.glb, nodes: 'tank*' }\n  - { id: E, model: bad.glb }\n%s",
                             (int)(strstr(plant_text, "groups:") - plant_text), plant_text, strstr(plant_text, "groups:"));
     mem_free(temp_write_text(s->folder, "plant.yaml", text));
     mem_free(text);
     mem_free(temp_write(s->folder, "bad.glb", "glTF", 4));
-    expect(s, "$PLANT", 1);
-    says(&s->err, "plant.yaml:6: error: asset D:");
-    says(&s->err, "no node's name matches 'tank*'");
-    says(&s->err, "plant.yaml:7: error: asset E:");
-    says(&s->err, "truncated GLB: 4 bytes");
+    prep_case_expect(s, "$PLANT", 1);
+    prep_case_says(&s->err, "plant.yaml:6: error: asset D:");
+    prep_case_says(&s->err, "no node's name matches 'tank*'");
+    prep_case_says(&s->err, "plant.yaml:7: error: asset E:");
+    prep_case_says(&s->err, "truncated GLB: 4 bytes");
     char *manifest = temp_path(s->folder, "plant.prepared/manifest.json");
     assert_int_not_equal(access(manifest, F_OK), 0); /* nothing half-made is offered */
     mem_free(manifest);
-    expect(s, "$PLANT --output /proc/no/such/place", 1);
-    says(&s->err, "cannot be made");
+    prep_case_expect(s, "$PLANT --output /proc/no/such/place", 1);
+    prep_case_says(&s->err, "cannot be made");
 }
 
 static void wrong_use_is_told_from_wrong_input(void **state)
 {
-    struct setup *s = *state;
-    expect(s, "--help", 0);
-    says(&s->out, "usage: plantcast-prep PLANT.yaml");
-    expect(s, "", 2);
-    expect(s, "--no-such-option", 2);
-    expect(s, "$PLANT more", 2);
-    expect(s, "$PLANT --report xml", 2);
-    expect(s, "/no/such/plant.yaml", 1);
+    struct prep_case *s = *state;
+    prep_case_expect(s, "--help", 0);
+    prep_case_says(&s->out, "usage: plantcast-prep PLANT.yaml");
+    prep_case_expect(s, "", 2);
+    prep_case_expect(s, "--no-such-option", 2);
+    prep_case_expect(s, "$PLANT more", 2);
+    prep_case_expect(s, "$PLANT --report xml", 2);
+    prep_case_expect(s, "/no/such/plant.yaml", 1);
 }
 
-#define WITH_PLANT(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
+#define WITH_PLANT(test) cmocka_unit_test_setup_teardown(test, set_up, prep_case_tear_down)
 
 int main(void)
 {

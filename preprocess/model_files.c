@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Model files, one at a time in memory. */
+#include "preprocess/model_files.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "plant/recipe.h"
+
+static bool read_hashes(struct model_file *file)
+{
+    struct model_source source;
+    if (!model_source_open(&source, file->path, file->why))
+        return false;
+    file->hash = source.hash;
+    model_source_finish(&source);
+    return plant_model_hash(file->path, &file->file_hash) || wrong(file->why, "%s", strerror(errno));
+}
+
+size_t model_files_add(struct model_files *files, const struct plant_asset *asset)
+{
+    for (size_t i = 0; i < files->count; i++)
+        if (strcmp(files->at[i].path, asset->model) == 0)
+            return i;
+    mem_grow(&files->at, &files->capacity, files->count + 1, sizeof(*files->at));
+    struct model_file *file = &files->at[files->count];
+    *file = (struct model_file){ .path = asset->model, .line = asset->line };
+    file->good = read_hashes(file);
+    return files->count++;
+}
+
+void model_files_finish(struct model_files *files)
+{
+    for (size_t i = 0; i < files->count; i++)
+        model_file_release(&files->at[i]);
+    mem_free(files->at);
+    *files = (struct model_files){ 0 };
+}
+
+bool model_file_parse(struct model_file *file)
+{
+    struct model_source source;
+    int64_t start_ns = clock_mono_ns();
+    if (!model_source_open(&source, file->path, file->why))
+        return false;
+    bool good = source.hash == file->hash || wrong(file->why, "has changed while it was being prepared");
+    good = good && gltf_load(&file->parsed, &source, file->why);
+    model_source_finish(&source);
+    if (!good)
+        return false;
+    file->was_parsed = true;
+    file->parse_s = (double)(clock_mono_ns() - start_ns) / NS_PER_S;
+    file->skipped_lines = file->parsed.skipped_lines;
+    file->skipped_points = file->parsed.skipped_points;
+    file->left_out_textures = file->parsed.left_out_textures;
+    return true;
+}
+
+void model_file_release(struct model_file *file)
+{
+    gltf_free(&file->parsed);
+}

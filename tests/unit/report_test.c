@@ -1,0 +1,240 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The report of plantcast-prep, on models whose numbers are known. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "preprocess/progress.h"
+#include "preprocess/table.h"
+#include "tests/support/boxes.h"
+#include "tests/support/prep_case.h"
+
+static const char plant_text[] = "plant: { name: Boxes }\n"
+                                 "assets:\n"
+                                 "  - { id: GAP, model: model.glb, nodes: 'gap-*', up: z }\n"
+                                 "  - { id: APART, model: model.glb, nodes: 'apart-*', up: z }\n"
+                                 "  - { id: INSIDE, model: model.glb, nodes: 'inside-*', up: z }\n"
+                                 "  - { id: BARE, model: model.glb, nodes: 'bare', up: z }\n"
+                                 "groups:\n"
+                                 "  - { id: temperature, unit: K, min: 0, max: 1 }\n"
+                                 "sources:\n"
+                                 "  - { id: plc, type: modbus, host: 127.0.0.1, byte_order: CDAB }\n"
+                                 "tags: tags.csv\n";
+static const char tags_rows[] = "T-GAP,400001,Float,plc,temperature,GAP,,0.5,0.5,1\n"
+                                "T-APART,400003,Float,plc,temperature,APART,,10.5,0.5,1.5\n"
+                                "T-INSIDE,400005,Float,plc,temperature,INSIDE,,22,2,4.02\n";
+
+/* Two boxes of 1 m with 0.2 mm between them; two with 0.5 m between them, one of them with a face twice, a face without area, lines and
+   points; a small box inside a large one; and one box without a sensor. */
+static int set_up(void **state)
+{
+    static const float twice[3][3] = { { 10, 0, 0 }, { 10, 1, 0 }, { 11, 0, 0 } },
+                       flat[3][3] = { { 10, 0, 0 }, { 11, 0, 0 }, { 10.5f, 0, 0 } };
+    prep_case_set_up(state);
+    struct prep_case *c = *state;
+    struct maker maker;
+    maker_init(&maker);
+    boxes_add(&maker, "gap-1", (const double[3]){ 0, 0, 0 }, (const double[3]){ 1, 1, 1 });
+    boxes_add(&maker, "gap-2", (const double[3]){ 1.0002, 0, 0 }, (const double[3]){ 2, 1, 1 });
+    int mesh = boxes_add(&maker, "apart-1", (const double[3]){ 10, 0, 0 }, (const double[3]){ 11, 1, 1 });
+    boxes_add_primitive(&maker, mesh, 4, twice, 3);
+    boxes_add_primitive(&maker, mesh, 4, flat, 3);
+    boxes_add_primitive(&maker, mesh, 1, flat, 2);
+    boxes_add_primitive(&maker, mesh, 0, flat, 3);
+    boxes_add_primitive(&maker, mesh, 1, flat, 2);
+    boxes_add(&maker, "apart-2", (const double[3]){ 11.5, 0, 0 }, (const double[3]){ 12, 1, 1 });
+    boxes_add(&maker, "inside-1", (const double[3]){ 20, 0, 0 }, (const double[3]){ 24, 4, 4 });
+    boxes_add(&maker, "inside-2", (const double[3]){ 21, 1, 1 }, (const double[3]){ 22, 2, 2 });
+    boxes_add(&maker, "bare", (const double[3]){ 30, 0, 0 }, (const double[3]){ 31, 1, 1 });
+    boxes_write(&maker, c->folder, "model.glb");
+    maker_finish(&maker);
+    prep_case_plant(c, plant_text);
+    prep_case_tags(c, tags_rows);
+    return 0;
+}
+
+static void numbers_are_those_of_the_model(void **state)
+{
+    struct prep_case *c = *state;
+    static const struct {
+        const char *path;
+        double least, most;
+    } expected[] = {
+        { "assets.0.model_triangles", 24, 24 },
+        { "assets.0.nodes", 2, 2 },
+        { "assets.0.surface.triangles", 24, 24 },
+        { "assets.0.surface.welded_vertices", 16, 16 },
+        { "assets.0.surface.components_before", 2, 2 },
+        { "assets.0.surface.components_after", 1, 1 },
+        { "assets.0.surface.bridges", 4, 10000 },
+        { "assets.0.surface.longest_bridge_m", 0.00019, 0.00021 },
+        { "assets.0.surface.tolerance_m", 0.0012, 0.0013 },
+        { "assets.0.surface.open_edges_before", 0, 0 },
+        { "assets.0.surface.samples", 20000, 100000 },
+        { "assets.0.surface.hidden_vertices", 0, 0 },
+        { "assets.0.surface.unreachable_vertices", 0, 0 },
+        { "assets.0.surface.k", 0, 0 }, /* nothing is open */
+        { "assets.0.skipped_lines", 0, 0 },
+        { "assets.0.sensors.0.surface_distance_m", 0, 1e-6 },
+        { "assets.1.model_triangles", 25, 25 },
+        { "assets.1.zero_area_triangles", 1, 1 },
+        { "assets.1.skipped_lines", 2, 2 },
+        { "assets.1.skipped_points", 1, 1 },
+        { "assets.1.surface.repeated_triangles", 1, 1 },
+        { "assets.1.surface.components_before", 2, 2 },
+        { "assets.1.surface.components_after", 2, 2 },
+        { "assets.1.surface.bridges", 0, 0 },
+        { "assets.1.surface.longest_bridge_m", 0, 0 },
+        { "assets.1.surface.unreachable_vertices", 24, 24 }, /* the other box, three to a corner */
+        { "assets.1.sensors.0.surface_distance_m", 0.5 - 1e-6, 0.5 + 1e-6 },
+        { "assets.1.sensors.0.limit_m", 0.122, 0.123 }, /* 5 % of a diagonal of hypot(2, 1, 1) m */
+        { "assets.2.surface.components_before", 2, 2 },
+        { "assets.2.surface.hidden_vertices", 24, 24 },
+        { "assets.2.sensors.0.surface_distance_m", 0.02 - 1e-6, 0.02 + 1e-6 },
+        { "assets.3.triangles", 12, 12 },
+        { "assets.3.vertices", 24, 24 },
+        { "assets.3.vertices_added", 0, 0 },
+        { "models.0.skipped_lines", 2, 2 },
+        { "models.0.skipped_points", 1, 1 },
+    };
+    prep_case_expect(c, "$PLANT --report json", 0);
+    json_t *report = prep_case_json(&c->out);
+    for (size_t i = 0; i < sizeof(expected) / sizeof(expected[0]); i++) {
+        double found = prep_case_number(report, expected[i].path);
+        if (!(found >= expected[i].least && found <= expected[i].most))
+            fail_msg("%s is %.9g, expected %g to %g", expected[i].path, found, expected[i].least, expected[i].most);
+    }
+    for (int asset = 0; asset < 4; asset++) { /* what is in the file, and what the levels say */
+        char path[60];
+        snprintf(path, sizeof(path), "assets.%d.levels.0.triangles", asset);
+        double split = prep_case_number(report, path);
+        snprintf(path, sizeof(path), "assets.%d.triangles", asset);
+        assert_int_equal((int)split, (int)prep_case_number(report, path));
+        snprintf(path, sizeof(path), "assets.%d.levels.0.triangles_before", asset);
+        assert_true(prep_case_number(report, path) <= split);
+        snprintf(path, sizeof(path), "assets.%d.vertices_added", asset);
+        double added = prep_case_number(report, path);
+        assert_true(asset == 3 ? added == 0 : added >= 1);
+    }
+    assert_true(json_is_null(json_object_get(json_array_get(json_object_get(report, "assets"), 3), "surface")));
+    json_decref(report);
+}
+
+static void what_is_wrong_comes_first(void **state)
+{
+    struct prep_case *c = *state;
+    prep_case_expect(c, "$PLANT --report json", 0);
+    json_t *report = prep_case_json(&c->out);
+    const json_t *look_at = json_object_get(report, "look_at");
+    assert_true(json_array_size(look_at) >= 2);
+    assert_string_equal(json_string_value(json_object_get(json_array_get(look_at, 0), "asset")), "APART");
+    assert_non_null(strstr(json_string_value(json_object_get(json_array_get(look_at, 0), "text")), "T-APART is 0.500 m from its surface"));
+    assert_non_null(strstr(json_string_value(json_object_get(json_array_get(look_at, 1), "text")), "no sensor reaches 24 of its"));
+    json_decref(report);
+    prep_case_expect(c, "$PLANT --report text", 0);
+    const char *apart = strstr(c->out.at, "!  APART"), *gap = strstr(c->out.at, "   GAP");
+    assert_true(apart && gap && apart < gap);
+    prep_case_says(&c->out, "2 > 1");
+    prep_case_says(&c->out, "! APART: T-APART is 0.500 m from its surface (more than 0.122 m)");
+    prep_case_says(&c->out, "Boxes: 4 assets, ");
+}
+
+/* What was built before is reported as if it had been built now, but for the time. */
+static void an_unchanged_asset_keeps_its_report(void **state)
+{
+    struct prep_case *c = *state;
+    prep_case_expect(c, "$PLANT --report json", 0);
+    json_t *first = prep_case_json(&c->out);
+    prep_case_expect(c, "$PLANT --report json", 0);
+    json_t *second = prep_case_json(&c->out);
+    for (size_t i = 0; i < 4; i++) {
+        static const char *const same[] = { "levels", "surface", "stage_seconds", "sensors", "vertices_added", "triangles" };
+        const json_t *a = json_array_get(json_object_get(first, "assets"), i), *b = json_array_get(json_object_get(second, "assets"), i);
+        assert_string_equal(json_string_value(json_object_get(b, "state")), "unchanged");
+        for (size_t k = 0; k < sizeof(same) / sizeof(same[0]); k++) {
+            char *p = json_dumps(json_object_get(a, same[k]), JSON_ENCODE_ANY),
+                 *q = json_dumps(json_object_get(b, same[k]), JSON_ENCODE_ANY);
+            if (p && q && strcmp(p, q) != 0)
+                fail_msg("asset %zu: %s: %s, then %s", i, same[k], p, q);
+            assert_true(!p == !q);
+            free(p);
+            free(q);
+        }
+    }
+    json_decref(first);
+    json_decref(second);
+    prep_case_expect(c, "$PLANT", 0);
+    assert_null(strstr(c->out.at, "Surfaces")); /* nothing was done */
+    prep_case_says(&c->out, "4 unchanged");
+    prep_case_tags(c, "T-GAP,400001,Float,plc,temperature,GAP,,0.5,0.5,1\n");
+    prep_case_expect(c, "$PLANT", 0); /* files that are not named any more go, and their reports */
+    char *command = mem_printf("test $(ls '%s/plant.prepared' | grep -c report.json) = $(ls '%s/plant.prepared' | grep -c 'asset$')",
+                               c->folder, c->folder);
+    assert_int_equal(system(command), 0);
+    mem_free(command);
+}
+
+static void tables_fit_what_is_in_them(void **state)
+{
+    static const struct table_column columns[] = { { "name", false }, { "empty", false }, { "number", true } };
+    struct table table = { .columns = columns, .column_count = 3 };
+    char text[400] = { 0 };
+    (void)state;
+    FILE *out = fmemopen(text, sizeof(text), "w");
+    for (int row = 0; row < 3; row++) {
+        table_add(&table, "%s", row == 0 ? "K\xc3\xbchler" : "P");
+        table_add(&table, "%s", "");
+        table_add(&table, "%s", table_number(row == 0 ? 1234567 : 12).text);
+    }
+    table_print(&table, 2, out);
+    fclose(out);
+    assert_string_equal(text, "name       number\nK\xc3\xbchler  1,234,567\nP              12\n... and 1 more: --report text has all\n");
+    table_finish(&table);
+    assert_string_equal(table_number(0).text, "0");
+    assert_string_equal(table_number(100).text, "100");
+    assert_string_equal(table_number(1000).text, "1,000");
+}
+
+static void the_time_left_follows_the_work(void **state)
+{
+    struct progress progress;
+    const int64_t s = 1000000000;
+    char text[1000] = { 0 };
+    (void)state;
+    FILE *out = fmemopen(text, sizeof(text), "w");
+    progress_begin(&progress, out, 10, 4, 0);
+    assert_true(progress_left_s(&progress, s) < 0);
+    for (int i = 0; i < 3; i++)
+        progress_expect(&progress, i == 0 ? 400 : 100); /* three of six are known: 1200 in all, if the others are like these */
+    progress_step(&progress, 400, 4 * s);
+    assert_float_equal(progress_left_s(&progress, 4 * s), 8, 1e-9);
+    progress_step(&progress, 100, 5 * s);
+    assert_float_equal(progress_left_s(&progress, 5 * s), 7, 1e-9);
+    progress_step(&progress, 100, 6 * s);
+    for (int i = 0; i < 3; i++)
+        progress_expect(&progress, 1); /* they are not */
+    assert_float_equal(progress_left_s(&progress, 6 * s), 0.03, 1e-9);
+    progress_end(&progress);
+    fclose(out);
+    assert_string_equal(text, "6 of 10 assets to prepare; the others are there already\n"
+                              "6 of 10 assets, 0.4 a second, about 7 s left\n");
+}
+
+#define WITH_PLANT(test) cmocka_unit_test_setup_teardown(test, set_up, prep_case_tear_down)
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        WITH_PLANT(numbers_are_those_of_the_model),       WITH_PLANT(what_is_wrong_comes_first),
+        WITH_PLANT(an_unchanged_asset_keeps_its_report),  cmocka_unit_test(tables_fit_what_is_in_them),
+        cmocka_unit_test(the_time_left_follows_the_work),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
