@@ -254,7 +254,7 @@ static int heavier_first(const void *a, const void *b, void *arg)
     return p == q ? (i < j ? -1 : 1) : p > q ? -1 : 1;
 }
 
-/* Parses the models of todo from batch_begin on, and weighs their assets, until there is enough to do. What cannot be parsed is passed over:
+/* Parses the models of todo from batch_begin on, and weighs their assets, until there is enough to do. What cannot be parsed is left:
    its assets fail. */
 static void parse_batch(struct run *run)
 {
