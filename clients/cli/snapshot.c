@@ -29,10 +29,15 @@ static const char usage[] =
     "  --show WHAT             value, distance (from --sensor TAG, in metres), difference (from --baseline)\n"
     "  --baseline FILE         CSV like --values; of a daemon: the name of one that it keeps\n"
     "  --radius M              R of paper; 0: automatic          --reach M   how far a sensor reaches\n"
-    "  --ramp UNITS            colours in steps; 0: continuous   --range MIN,MAX\n"
+    "  --range MIN,MAX         of the colours; the group's own    --scale NAME   linear or log\n"
+    "  --ramp UNITS            colours in steps; 0: continuous\n"
+    "  --breaks V,V,...        colours in bands that meet there; `group` or `limits`: at the group's own\n"
+    "  --isolines V,V,...      lines of equal value; every:STEP   (where bands meet there is a line in any case)\n"
     "  --colormap NAME         relief, viridis, cividis, diverging, turbo\n"
     "  --look NAME             default, glossy, flat             --light X,Y,Z   towards the sun\n"
     "  --select ASSET          outline this asset\n"
+    "  --split \"NAME=V;...\"    a second picture beside it, under the same camera; names as above without dashes, but\n"
+    "                          ramp_interval, radius_m, reach_m. What is not named is as in the first\n"
     "offline only:\n"
     "  --values FILE           CSV of tag,value[,quality]; may be repeated. Tags without a value have no data\n"
     "  --at TIME               of the values: 2026-01-31T12:00:00Z; now\n"
@@ -50,6 +55,7 @@ static const struct {
     { "radius", "radius_m" },   { "reach", "reach_m" },     { "ramp", "ramp_interval" }, { "range", "range" },
     { "colormap", "colormap" }, { "look", "look" },         { "light", "light" },        { "select", "selected" },
     { "show", "show" },         { "sensor", "sensor" },     { "sensors", "sensors" },
+    { "scale", "scale" },       { "breaks", "breaks" },     { "isolines", "isolines" },  { "split", "split" },
 };
 enum { SHARED = sizeof(shared) / sizeof(shared[0]) };
 enum own_option {

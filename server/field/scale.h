@@ -11,8 +11,9 @@
 #include <stdbool.h>
 
 #include "field/colormap.h"
+#include "plant/plant.h"
 
-enum { SCALE_BREAKS = 16, SCALE_EDGES = 64 };
+enum { SCALE_BREAKS = PLANT_BREAKS, SCALE_EDGES = 64 };
 struct scale {
     const struct colormap *map;
     double min, max;             /* min < max; above 0 where log */

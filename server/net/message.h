@@ -34,6 +34,9 @@ enum params_given { /* which fields of a params message were there */
                     GIVEN_SHOW = 1 << 15,
                     GIVEN_SENSOR = 1 << 16,
                     GIVEN_SENSORS = 1 << 17,
+                    GIVEN_SCALE = 1 << 18,
+                    GIVEN_BREAKS = 1 << 19,
+                    GIVEN_ISOLINES = 1 << 20,
 };
 
 enum baseline_wish { BASELINE_STAYS, BASELINE_NONE, BASELINE_NAMED, BASELINE_NOW, BASELINE_SET, BASELINE_REMOVE };
@@ -44,6 +47,9 @@ struct params_change {
     struct field_params field; /* only what was given is set; so below */
     int colormap;
     double ramp_interval;
+    struct paint paint;
+    double isoline_step; /* isolines: a number; 0: paint.lines */
+    bool breaks_of_group, breaks_of_limits;
     bool range_of_group; /* range: null */
     double range_min, range_max;
     enum look look;
@@ -56,6 +62,11 @@ struct params_change {
     char baseline_name[BASELINE_NAME_BYTES];
 };
 
+struct split_change {
+    enum { SPLIT_AS_IS, SPLIT_OFF, SPLIT_ON } wish;
+    struct params_change right;
+};
+
 struct message {
     enum message_type type;
     int width_px, height_px;     /* hello, resize */
@@ -64,6 +75,7 @@ struct message {
     struct camera camera;        /* camera, hello */
     uint32_t seq;                /* camera (hello: the camera's), ack */
     struct params_change params; /* params, hello */
+    struct split_change split;   /* likewise; applied after params */
     bool visible;
     double decode_ms; /* ack; negative: not said */
     double t;         /* ping */
@@ -88,6 +100,12 @@ bool params_apply_show(const struct params_world *world, const struct params_cha
                        struct message_error *error);
 /* The last step of a change that is good: keeps or forgets a baseline. */
 void params_apply_baseline(const struct params_world *world, const struct params_change *change, struct view *view);
+/* Likewise: scale, breaks and isolines (params_paint.c). */
+bool params_parse_paint(const json_t *o, struct params_change *out, struct message_error *error);
+bool params_apply_paint(const struct plant *plant, const struct params_change *change, struct view *view, struct message_error *error);
+/* The right half of a split view (params_split.c). */
+bool split_parse(const struct plant *plant, const json_t *o, struct split_change *out, struct message_error *error);
+bool split_apply(const struct params_world *world, const struct split_change *change, struct view *view, struct message_error *error);
 /* Reads the fields of a camera message, but for seq. */
 bool camera_parse(const json_t *object, struct camera *out, struct message_error *error);
 bool view_size_valid(double width_px, double height_px);

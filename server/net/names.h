@@ -9,7 +9,7 @@ struct name {
     int value;
 };
 
-extern const struct name names_interpolation[], names_distance[], names_fill[], names_show[], names_look[], names_codec[];
+extern const struct name names_interpolation[], names_distance[], names_fill[], names_show[], names_scale[], names_look[], names_codec[];
 /* each ends with NULL */
 
 /* The value of a name, or -1. */

@@ -160,14 +160,14 @@ bool params_parse(const struct plant *plant, const json_t *o, struct params_chan
     *out = (struct params_change){ .selected_asset = -1 };
     return parse_group(plant, o, out, error) && parse_names(o, out, error) && parse_numbers(o, out, error) && parse_reach(o, out, error) &&
            parse_range(o, out, error) && parse_colormap(o, out, error) && parse_selected(plant, o, out, error) &&
-           parse_light(o, out, error) && params_parse_show(plant, o, out, error);
+           parse_light(o, out, error) && params_parse_show(plant, o, out, error) &&
+           params_parse_paint(o, out, error);
 }
 
 static void take_group(const struct scene *scene, int group, struct view *view)
 {
     field_params_default(scene->plant, group, &view->field);
-    field_own_range(scene, &view->field, &view->range_min, &view->range_max);
-    view->ramp_interval = 0; /* it was in the units of the other group */
+    view_own_scale(scene, view);
 }
 
 static void apply_field(const struct params_change *change, struct field_params *field)
@@ -219,6 +219,8 @@ bool params_apply(const struct params_world *world, const struct params_change *
     if (!params_apply_show(world, change, view, &changed, error))
         return false;
     apply_look(world->scene, change, &changed);
+    if (!params_apply_paint(world->scene->plant, change, &changed, error))
+        return false;
     params_apply_baseline(world, change, &changed);
     *view = changed;
     return true;

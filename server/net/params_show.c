@@ -177,9 +177,7 @@ static void take_quantity(const struct params_world *world, const struct field_p
     bool other_distance = now->show == SHOW_DISTANCE && (now->sensor != before->sensor || now->distance != before->distance);
     if (!other && !other_distance)
         return;
-    field_own_range(world->scene, now, &view->range_min, &view->range_max);
-    view->ramp_interval = 0;
-    memset(&view->paint, 0, sizeof(view->paint));
+    view_own_scale(world->scene, view);
     if (now->show == SHOW_DIFFERENCE || before->show == SHOW_DIFFERENCE)
         view->colormap = now->show == SHOW_DIFFERENCE ? colormap_find("diverging") : 0;
 }

@@ -8,7 +8,7 @@
 #include "base/mem.h"
 #include "net/fields.h"
 
-enum kind { NUMBER, STRING, NUMBERS, SENSORS };
+enum kind { NUMBER, STRING, NUMBERS, SENSORS, BREAKS, LINES, SPLIT };
 
 static const struct {
     const char *name;
@@ -18,7 +18,8 @@ static const struct {
     { "distance", STRING }, { "fill", STRING },     { "strength", NUMBER }, { "decay", NUMBER },         { "power", NUMBER },
     { "radius_m", NUMBER }, { "reach_m", NUMBER },  { "colormap", STRING }, { "ramp_interval", NUMBER }, { "range", NUMBERS },
     { "look", STRING },     { "light", NUMBERS },   { "selected", STRING }, { "show", STRING },          { "sensor", STRING },
-    { "sensors", SENSORS }, { "baseline", STRING },
+    { "sensors", SENSORS }, { "baseline", STRING }, { "scale", STRING },    { "breaks", BREAKS },
+    { "isolines", LINES },  { "split", SPLIT },
 };
 
 /* NULL: not a finite number. */
@@ -85,7 +86,47 @@ static json_t *sensors(const char *text)
     return NULL;
 }
 
-static json_t *value_of(enum kind kind, const char *text)
+/* A name, or numbers. */
+static json_t *breaks(const char *text)
+{
+    if (!strcmp(text, "none"))
+        return json_null();
+    return !strcmp(text, "group") || !strcmp(text, "limits") ? json_string(text) : numbers(text);
+}
+
+/* Numbers, or `every:STEP`. */
+static json_t *lines(const char *text)
+{
+    const char *end = "";
+    if (!strcmp(text, "none"))
+        return json_null();
+    if (strncmp(text, "every:", 6) != 0)
+        return numbers(text);
+    json_t *step = number(text + 6, &end);
+    if (step && *end == 0)
+        return step;
+    json_decref(step);
+    return NULL;
+}
+
+static bool add(json_t *o, const char *arg, struct message_error *error);
+
+/* NAME=VALUE;... */
+static json_t *split(const char *text, struct message_error *error)
+{
+    json_t *all = json_object();
+    char *copy = mem_strdup(text), *rest = copy;
+    bool good = true;
+    for (char *item; good && (item = strsep(&rest, ";"));)
+        good = !*item || add(all, item, error);
+    mem_free(copy);
+    if (good)
+        return all;
+    json_decref(all);
+    return NULL;
+}
+
+static json_t *value_of(enum kind kind, const char *text, struct message_error *error)
 {
     const char *end = "";
     json_t *value;
@@ -93,6 +134,9 @@ static json_t *value_of(enum kind kind, const char *text)
     case STRING: return json_string(text);
     case NUMBERS: return numbers(text);
     case SENSORS: return sensors(text);
+    case BREAKS: return breaks(text);
+    case LINES: return lines(text);
+    case SPLIT: return split(text, error);
     case NUMBER:
         value = number(text, &end);
         if (value && *end == 0)
@@ -109,14 +153,20 @@ static bool add(json_t *o, const char *arg, struct message_error *error)
     for (size_t i = 0; i < sizeof(known) / sizeof(known[0]); i++) {
         if (strlen(known[i].name) != n || strncmp(known[i].name, arg, n) != 0)
             continue;
-        json_t *value = arg[n] == '=' ? value_of(known[i].kind, arg + n + 1) : NULL;
+        static const char *const expected[] = { "a number",
+                                                "a text",
+                                                "numbers with commas",
+                                                "TAG=STRENGTH[:DECAY] with commas",
+                                                "numbers with commas, group, limits or none",
+                                                "numbers with commas, every:STEP or none",
+                                                "NAME=VALUE with semicolons" };
+        struct message_error inner = { .code = NULL };
+        json_t *value = arg[n] == '=' ? value_of(known[i].kind, arg + n + 1, &inner) : NULL;
         if (value)
             return json_object_set_new(o, known[i].name, value) == 0;
-        message_fail(error, "bad_field", "%s: %s expected", known[i].name,
-                     known[i].kind == STRING    ? "a text"
-                     : known[i].kind == NUMBER  ? "a number"
-                     : known[i].kind == NUMBERS ? "numbers with commas"
-                                                : "TAG=STRENGTH[:DECAY] with commas");
+        message_fail(error, "bad_field", "%s: %s", known[i].name, inner.code ? inner.text : expected[known[i].kind]);
+        if (!inner.code)
+            strcat(error->text, " expected");
         return false;
     }
     message_fail(error, "bad_field", "'%s' is unknown", quoted(arg, name));
@@ -148,6 +198,7 @@ static bool apply(const struct params_world *world, const json_t *o, struct view
 {
     double w = 1280, h = 720;
     struct params_change change;
+    struct split_change right;
     if (!may_number(o, "width", 16, VIEW_MAX_SIDE_PX, &w, NULL, error) || !may_number(o, "height", 16, VIEW_MAX_SIDE_PX, &h, NULL, error))
         return false;
     if (!view_size_valid(w, h)) {
@@ -157,7 +208,8 @@ static bool apply(const struct params_world *world, const json_t *o, struct view
     view_default(world->scene, (int)w, (int)h, view);
     view->tier = TIER_STILL;
     return apply_camera(o, view, error) && params_parse(world->scene->plant, o, &change, error) &&
-           params_apply(world, &change, view, error);
+           split_parse(world->scene->plant, o, &right, error) && params_apply(world, &change, view, error) &&
+           split_apply(world, &right, view, error);
 }
 
 bool query_parse(const struct params_world *world, const char *const *args, size_t count, struct view *view, struct message_error *error)

@@ -55,6 +55,15 @@ static json_int_t us(int64_t ns)
     return ns / 1000;
 }
 
+/* null where it is empty. */
+static json_t *number_list(const double *values, int count)
+{
+    json_t *list = count > 0 ? json_array() : json_null();
+    for (int i = 0; i < count; i++)
+        json_array_append_new(list, number(values[i]));
+    return list;
+}
+
 static json_t *tag_name(const struct plant *plant, int tag)
 {
     return tag < 0 ? json_null() : string(plant->tags[tag].name);
@@ -96,7 +105,8 @@ static json_t *baselines(const struct session_world *world)
     return all;
 }
 
-static void set_params(json_t *object, const struct session_world *world, const struct view *view)
+/* What one half shows. */
+static void set_shown(json_t *object, const struct session_world *world, const struct view *view)
 {
     const struct plant *plant = world->plant;
     const struct field_params *field = &view->field;
@@ -104,7 +114,6 @@ static void set_params(json_t *object, const struct session_world *world, const 
     json_object_set_new(object, "show", string(name_of(names_show, (int)field->show)));
     json_object_set_new(object, "sensor", tag_name(plant, field->sensor));
     json_object_set_new(object, "baseline", baseline_of(world, field->baseline));
-    json_object_set_new(object, "baselines", baselines(world));
     json_object_set_new(object, "sensors", overrides(plant, field));
     json_object_set_new(object, "unit", string(view_unit(plant, view)));
     json_object_set_new(object, "interpolation", string(name_of(names_interpolation, field->interpolation)));
@@ -118,7 +127,22 @@ static void set_params(json_t *object, const struct session_world *world, const 
     json_object_set_new(object, "colormap", string(colormap_at((size_t)view->colormap)->name));
     json_object_set_new(object, "ramp_interval", number(view->ramp_interval));
     json_object_set_new(object, "range", json_pack("[o,o]", number(view->range_min), number(view->range_max)));
+    json_object_set_new(object, "scale", string(name_of(names_scale, view->paint.log)));
+    json_object_set_new(object, "breaks", number_list(view->paint.breaks, view->paint.break_count));
+    json_object_set_new(object, "isolines", number_list(view->paint.lines, view->paint.line_count));
     json_object_set_new(object, "look", string(name_of(names_look, view->look)));
+}
+
+static void set_params(json_t *object, const struct session_world *world, const struct view *view)
+{
+    const struct plant *plant = world->plant;
+    struct view right;
+    set_shown(object, world, view);
+    json_object_set_new(object, "baselines", baselines(world));
+    json_object_set_new(object, "split", view->split ? json_object() : json_null());
+    view_half(view, 1, &right);
+    if (view->split)
+        set_shown(json_object_get(object, "split"), world, &right);
     json_object_set_new(object, "light", vector(view->light_dir));
     json_object_set_new(object, "selected", view->selected_asset < 0 ? json_null() : string(plant->assets[view->selected_asset].id));
 }
@@ -140,6 +164,10 @@ static json_t *groups(const struct plant *plant)
                                               string(name_of(names_interpolation, g->interpolation)), "distance",
                                               string(name_of(names_distance, g->distance)), "fill", string(name_of(names_fill, g->fill)),
                                               "power", number(g->power), "radius_m", number(g->radius_m), "reach_m", number(g->reach_m)));
+        json_t *group = json_array_get(list, i);
+        json_object_set_new(group, "scale", string(name_of(names_scale, g->log)));
+        json_object_set_new(group, "breaks", number_list(g->breaks, g->break_count));
+        json_object_set_new(group, "isolines", number_list(g->isolines, g->isoline_count));
     }
     return list;
 }
@@ -264,7 +292,7 @@ char *reply_markers_text(const struct frame *frame, uint32_t seq)
     for (size_t i = 0; i < frame->marker_count; i++) {
         const struct frame_marker *m = &frame->markers[i];
         if (isfinite(m->x_px) && isfinite(m->y_px))
-            json_array_append_new(markers, json_pack("[i,f,f,i]", m->tag, (double)m->x_px, (double)m->y_px, m->occluded ? 1 : 0));
+            json_array_append_new(markers, json_pack("[i,f,f,i,i]", m->tag, (double)m->x_px, (double)m->y_px, m->occluded, m->half));
     }
     return print(json_pack("{s:s,s:I,s:o}", "type", "markers", "seq", (json_int_t)seq, "markers", markers), DIGITS);
 }

@@ -68,17 +68,22 @@ static void set_camera(struct session *session, const struct message *message)
     session->view.camera_seq = message->seq;
 }
 
-static bool apply_params(const struct session *session, const struct params_change *change, struct view *view, struct message_error *error)
+static bool apply_params(const struct session *session, const struct message *message, struct view *view, struct message_error *error)
 {
     const struct session_world *world = session->world;
-    return params_apply(&(struct params_world){ world->scene, world->baselines, world->snapshot }, change, view, error);
+    const struct params_world params = { world->scene, world->baselines, world->snapshot };
+    struct view changed = *view;
+    if (!params_apply(&params, &message->params, &changed, error) || !split_apply(&params, &message->split, &changed, error))
+        return false;
+    *view = changed;
+    return true;
 }
 
 static bool on_hello(struct session *session, const struct message *message, struct message_error *error)
 {
     struct view view;
     view_default(session->world->scene, message->width_px, message->height_px, &view);
-    if (message->has_params && !apply_params(session, &message->params, &view, error))
+    if (message->has_params && !apply_params(session, message, &view, error))
         return false;
     session->view = view;
     if (message->has_params)
@@ -92,7 +97,7 @@ static bool on_hello(struct session *session, const struct message *message, str
 
 static bool on_params(struct session *session, const struct message *message, struct message_error *error)
 {
-    if (!apply_params(session, &message->params, &session->view, error))
+    if (!apply_params(session, message, &session->view, error))
         return false;
     session->view.params_seq = session->params_seq = message->params.seq;
     session->owes_params = true;

@@ -37,6 +37,7 @@ struct plant_asset {
     int line;
 };
 
+enum { PLANT_BREAKS = 16, PLANT_ISOLINES = 32 };
 struct plant_group {
     char *id, *quantity, *unit;
     double min, max;
@@ -47,6 +48,10 @@ struct plant_group {
     double radius_m;              /* R of Algorithm 1; 0 = the largest distance on the asset */
     double reach_m;               /* INFINITY: no limit */
     enum fill_mode fill;
+    bool log;                     /* scale: log; min > 0 */
+    double breaks[PLANT_BREAKS];  /* ascending; of bands, where somebody asks for them */
+    double isolines[PLANT_ISOLINES];
+    int break_count, isoline_count;
     int line;
 };
 

@@ -27,6 +27,7 @@ static const struct choice frame_choices[] = { { "plant", 0 }, { "asset", 1 }, {
 static const struct choice interpolation_choices[] = { { "shepard", INTERPOLATION_SHEPARD }, { "paper", INTERPOLATION_PAPER }, { 0 } };
 static const struct choice distance_choices[] = { { "geodesic", DISTANCE_GEODESIC }, { "euclidean", DISTANCE_EUCLIDEAN }, { 0 } };
 static const struct choice fill_choices[] = { { "none", FILL_NONE }, { "neighbours", FILL_NEIGHBOURS }, { 0 } };
+static const struct choice scale_choices[] = { { "linear", 0 }, { "log", 1 }, { 0 } };
 static const struct choice order_choices[] = { { "ABCD", BYTE_ORDER_ABCD }, { "CDAB", BYTE_ORDER_CDAB }, { "BADC", BYTE_ORDER_BADC },
                                                { "DCBA", BYTE_ORDER_DCBA }, { 0 } };
 
@@ -256,6 +257,37 @@ static void read_radius(struct yaml_reader *reader, yaml_node_t *node, void *rec
         yaml_expected(reader, node, "radius_m", "auto or a number");
 }
 
+/* Numbers in ascending order. */
+static void read_numbers(struct yaml_reader *reader, yaml_node_t *node, const char *name, int most, double *numbers, int *count)
+{
+    int items = yaml_list_count(reader, node, name);
+    if (items > most)
+        yaml_error(reader, yaml_place(node), "%s: expected at most %d numbers, found %d", name, most, items);
+    for (int i = 0; i < items && i < most; i++) {
+        yaml_node_t *item = yaml_list_item(reader, node, i);
+        double number;
+        if (!yaml_number(reader, item, name, -PLANT_MAX_VALUE, PLANT_MAX_VALUE, &number))
+            continue;
+        if (*count > 0 && number <= numbers[*count - 1])
+            yaml_error(reader, yaml_place(item), "%s: expected more than %.9g, which is before it, found %.9g", name, numbers[*count - 1],
+                       number);
+        else
+            numbers[(*count)++] = number;
+    }
+}
+
+static void read_breaks(struct yaml_reader *reader, yaml_node_t *node, void *record)
+{
+    struct plant_group *group = record;
+    read_numbers(reader, node, "breaks", PLANT_BREAKS, group->breaks, &group->break_count);
+}
+
+static void read_isolines(struct yaml_reader *reader, yaml_node_t *node, void *record)
+{
+    struct plant_group *group = record;
+    read_numbers(reader, node, "isolines", PLANT_ISOLINES, group->isolines, &group->isoline_count);
+}
+
 static void read_group(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant, struct plant_group *group)
 {
     static const struct key keys[] = {
@@ -273,6 +305,9 @@ static void read_group(struct yaml_reader *reader, yaml_node_t *node, struct pla
         { "radius_m", KEY_CUSTOM, false, 0, 0, 0, NULL, read_radius },
         { "reach_m", KEY_NUMBER, false, offsetof(struct plant_group, reach_m), 1e-3, 1e6, NULL, NULL },
         { "fill", KEY_CHOICE, false, offsetof(struct plant_group, fill), 0, 0, fill_choices, NULL },
+        { "scale", KEY_FLAG, false, offsetof(struct plant_group, log), 0, 0, scale_choices, NULL },
+        { "breaks", KEY_CUSTOM, false, 0, 0, 0, NULL, read_breaks },
+        { "isolines", KEY_CUSTOM, false, 0, 0, 0, NULL, read_isolines },
         { 0 }
     };
     struct yaml_map map;
@@ -284,6 +319,8 @@ static void read_group(struct yaml_reader *reader, yaml_node_t *node, struct pla
         group->quantity = mem_strdup(group->id);
     if (yaml_map_good(&map, "min") && yaml_map_good(&map, "max") && group->min >= group->max)
         yaml_error(reader, yaml_map_place(&map, "min"), "min: expected less than max, which is %.9g, found %.9g", group->max, group->min);
+    if (group->log && yaml_map_good(&map, "min") && !(group->min > 0))
+        yaml_error(reader, yaml_map_place(&map, "scale"), "scale: a logarithmic one needs min above 0, found %.9g", group->min);
     check_id(reader, &map, "group", plant->groups, plant->group_count, sizeof(*group), offsetof(struct plant_group, line));
 }
 

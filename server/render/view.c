@@ -29,6 +29,19 @@ const char *view_unit(const struct plant *plant, const struct view *view)
     return view->field.show == SHOW_DISTANCE ? "m" : unit ? unit : "";
 }
 
+void view_own_scale(const struct scene *scene, struct view *view)
+{
+    const struct plant_group *group = &scene->plant->groups[view->field.group];
+    field_own_range(scene, &view->field, &view->range_min, &view->range_max);
+    view->ramp_interval = 0;
+    memset(&view->paint, 0, sizeof(view->paint));
+    if (view->field.show != SHOW_VALUE)
+        return;
+    view->paint.log = group->log;
+    view->paint.line_count = group->isoline_count;
+    memcpy(view->paint.lines, group->isolines, sizeof(group->isolines));
+}
+
 void view_default(const struct scene *scene, int width_px, int height_px, struct view *view)
 {
     const struct plant *plant = scene->plant;
@@ -40,8 +53,7 @@ void view_default(const struct scene *scene, int width_px, int height_px, struct
     view->tier = TIER_STILL;
     if (plant->group_count > 0) {
         field_params_default(plant, 0, &view->field);
-        view->range_min = plant->groups[0].min;
-        view->range_max = plant->groups[0].max;
+        view_own_scale(scene, view);
     }
     default_light(scene, view->light_dir);
 }

@@ -18,7 +18,7 @@ enum tier { TIER_MOVING, TIER_STILL };
 #define VIEW_MAX_SIDE_PX 8192
 #define VIEW_MAX_PIXELS (16 * 1024 * 1024)
 
-enum { VIEW_LINES = 32 };
+enum { VIEW_LINES = PLANT_ISOLINES };
 struct paint { /* beside colour map, range and ramp: which colour a value has, and where lines run. Zero: nothing of it */
     bool log;
     double breaks[SCALE_BREAKS]; /* ascending; instead of the ramp */
@@ -27,6 +27,7 @@ struct paint { /* beside colour map, range and ramp: which colour a value has, a
     int line_count;
 };
 
+enum { VIEW_SPLIT_LEAST_PX = 64 };
 struct shown { /* what the right half of a split view shows; the names are those of the view itself */
     struct field_params field;
     int colormap;
@@ -57,6 +58,8 @@ struct view {
 /* The unit of what the view shows: its group's, or "m". */
 const char *view_unit(const struct plant *plant, const struct view *view);
 void view_default(const struct scene *scene, int width_px, int height_px, struct view *view);
+/* The scale that what is shown has by itself: the group's range, isolines and logarithm, or those of a distance or a difference. */
+void view_own_scale(const struct scene *scene, struct view *view);
 void view_scale(const struct view *view, struct scale *scale);
 /* All values that have a line, ascending: isolines and the edges of bands. Returns how many. */
 enum { VIEW_ALL_LINES = VIEW_LINES + SCALE_EDGES };

@@ -54,7 +54,7 @@ static bool take(const char *text, size_t count, struct message_error *error)
     if (!message_parse(plant(), text, count, &message, error))
         return false;
     bool params = message.type == MESSAGE_PARAMS || message.has_params;
-    return !params || params_apply(&world, &message.params, &view, error);
+    return !params || (params_apply(&world, &message.params, &view, error) && split_apply(&world, &message.split, &view, error));
 }
 
 static void check_vector(const char *file, int *accepted, int *refused)
@@ -161,6 +161,56 @@ static void a_new_group_brings_its_settings(void **state)
     assert_int_equal(other.colormap, view.colormap);
 }
 
+static struct view both_changed(struct view view, const char *text)
+{
+    struct message m = parse(text);
+    struct message_error error;
+    if (!params_apply(&world, &m.params, &view, &error) || !split_apply(&world, &m.split, &view, &error))
+        fail_msg("%s: %s", text, error.text);
+    return view;
+}
+
+static void bands_and_lines(void **state)
+{
+    (void)state;
+    struct view view;
+    view_default(small_scene(), 640, 360, &view);
+    view = changed(view, "{\"type\":\"params\",\"seq\":1,\"ramp_interval\":5,\"isolines\":[30,70]}");
+    assert_true(view.ramp_interval == 5 && view.paint.line_count == 2 && view.paint.lines[1] == 70);
+    view = changed(view, "{\"type\":\"params\",\"seq\":2,\"breaks\":\"limits\"}");
+    assert_true(view.ramp_interval == 0 && view.paint.break_count == 2 && view.paint.breaks[0] == 30 && view.paint.breaks[1] == 150);
+    assert_int_equal(view.paint.line_count, 2);
+    view = changed(view, "{\"type\":\"params\",\"seq\":3,\"isolines\":50}");
+    assert_true(view.paint.line_count == 3 && view.paint.lines[0] == 50 && view.paint.lines[2] == 150);
+    view = changed(view, "{\"type\":\"params\",\"seq\":4,\"ramp_interval\":20}");
+    assert_true(view.ramp_interval == 20 && view.paint.break_count == 0);
+    view = changed(view, "{\"type\":\"params\",\"seq\":5,\"scale\":\"log\",\"isolines\":null}");
+    assert_true(view.paint.log && view.paint.line_count == 0);
+    view = changed(view, "{\"type\":\"params\",\"seq\":6,\"breaks\":[25,50],\"group\":\"pressure\"}");
+    assert_true(!view.paint.log && view.paint.break_count == 2 && view.range_max == 16);
+}
+
+static void a_view_splits(void **state)
+{
+    (void)state;
+    struct view view, half;
+    view_default(small_scene(), 641, 360, &view);
+    view = both_changed(view, "{\"type\":\"params\",\"seq\":1,\"colormap\":\"viridis\",\"split\":{\"distance\":\"euclidean\"}}");
+    assert_true(view.split && view.field.distance == DISTANCE_GEODESIC && view.right.field.distance == DISTANCE_EUCLIDEAN);
+    assert_int_equal(view.right.colormap, colormap_find("viridis")); /* as the left half was */
+    view = both_changed(view, "{\"type\":\"params\",\"seq\":2,\"colormap\":\"cividis\",\"split\":{\"group\":\"pressure\"}}");
+    assert_true(view.field.group == 0 && view.right.field.group == 1 && view.right.range_max == 16);
+    assert_int_equal(view.right.colormap, colormap_find("viridis"));
+    view_half(&view, 0, &half);
+    assert_true(half.width_px == 320 && !half.split && half.field.group == 0);
+    view_half(&view, 1, &half);
+    assert_true(half.width_px == 321 && !half.split && half.field.group == 1 && half.range_max == 16);
+    view = both_changed(view, "{\"type\":\"params\",\"seq\":3,\"split\":null}");
+    assert_false(view.split);
+    view_half(&view, 0, &half);
+    assert_true(view_equal(&half, &view));
+}
+
 static void refuse(const struct view *view, const char *text, const char *word)
 {
     struct message m = parse(text);
@@ -265,6 +315,12 @@ static void queries_make_views(void **state)
     assert_true(view.field.show == SHOW_DISTANCE && view.field.sensor == 0 && view.range_max == 7);
     assert_true(view.field.overrides[0].strength == 2.0f && view.field.overrides[0].decay == 0.5f);
     assert_true(query(&(const char *){ "sensors=TI-1=:3" }, 1, &view, &error) && view.field.overrides[0].decay == 3.0f);
+    static const char *const painted[] = { "breaks=limits", "isolines=every:20", "scale=log",
+                                           "split=group=pressure;breaks=1,2.5;isolines=3,4;look=flat" };
+    assert_true(query(painted, sizeof(painted) / sizeof(painted[0]), &view, &error));
+    assert_true(view.paint.break_count == 2 && view.paint.line_count == 9 && view.paint.lines[8] == 180 && view.paint.log);
+    assert_true(view.split && view.right.field.group == 1 && view.right.paint.breaks[1] == 2.5 && view.right.paint.lines[1] == 4);
+    assert_true(view.right.look == LOOK_FLAT && !view.right.paint.log);
     assert_true(query(NULL, 0, &view, &error));
     assert_true(view.width_px == 1280 && view.height_px == 720);
 }
@@ -303,6 +359,18 @@ static void bad_queries_are_named(void **state)
                                        "sensors=X=2",
                                        "sensors=",
                                        "baseline=unknown",
+                                       "breaks=group",
+                                       "breaks=3,2",
+                                       "breaks=high",
+                                       "isolines=every:",
+                                       "isolines=every:0",
+                                       "isolines=all",
+                                       "scale=log2",
+                                       "split=pressure",
+                                       "split=group=flow",
+                                       "split=group=pressure;scale=log",
+                                       "split=split=group=pressure",
+                                       "split=width=100;light=0,0,1",
                                        "baseline=now" };
     for (size_t i = 0; i < sizeof(bad) / sizeof(bad[0]); i++) {
         struct view view;
@@ -351,6 +419,8 @@ int main(void)
         cmocka_unit_test(fields_arrive),
         cmocka_unit_test(what_is_left_out_stays),
         cmocka_unit_test(a_new_group_brings_its_settings),
+        cmocka_unit_test(bands_and_lines),
+        cmocka_unit_test(a_view_splits),
         cmocka_unit_test(queries_make_views),
         cmocka_unit_test(bad_queries_are_named),
         cmocka_unit_test(damaged_messages_stay_harmless),

@@ -52,6 +52,7 @@ static void defaults_are_as_documented(void **state)
     assert_int_equal(g->distance, DISTANCE_GEODESIC);
     assert_true(g->strength == 1 && g->decay == 1 && g->power == 2 && g->radius_m == 0 && isinf(g->reach_m));
     assert_int_equal(g->fill, FILL_NONE);
+    assert_true(!g->log && g->break_count == 0 && g->isoline_count == 0);
     const struct plant_source *s = &p->sources[0];
     assert_true(s->port == 502 && s->unit == 1 && s->poll_ms == 1000 && s->timeout_ms == 1000 && s->address_base == 1);
     assert_int_equal(s->byte_order, BYTE_ORDER_NONE);
@@ -80,7 +81,9 @@ static void everything_is_read(void **state)
          "  - { id: 101, tag: T, description: d, model: m.glb, nodes: 'E*', units: ft, up: z, sensor_frame: asset }\n"
          "groups:\n"
          "  - { id: g, quantity: q, unit: '', min: -1, max: 1, limits: { L: -0.5, HH: 0.5 }, interpolation: paper, distance: euclidean,\n"
-         "      strength: 2, decay: 3, power: 4, radius_m: 5, reach_m: 6, fill: neighbours }\n"
+         "      strength: 2, decay: 3, power: 4, radius_m: 5, reach_m: 6, fill: neighbours,\n"
+         "      breaks: [-0.5, 0, 0.25], isolines: [0.1] }\n"
+         "  - { id: l, unit: Pa, min: 1e-3, max: 10, scale: log }\n"
          "sources:\n"
          "  - { id: s, type: modbus, host: h, port: 5020, unit: 9, poll_ms: 2000, timeout_ms: 99, byte_order: CDAB, address_base: 0 }\n"
          "tags: tags.csv\n",
@@ -100,6 +103,7 @@ static void everything_is_read(void **state)
     assert_true(g->limits[LIMIT_L] == -0.5 && g->limits[LIMIT_HH] == 0.5 && isnan(g->limits[LIMIT_H]));
     assert_true(g->interpolation == INTERPOLATION_PAPER && g->distance == DISTANCE_EUCLIDEAN && g->fill == FILL_NEIGHBOURS);
     assert_true(g->strength == 2 && g->decay == 3 && g->power == 4 && g->radius_m == 5 && g->reach_m == 6);
+    assert_true(g->break_count == 3 && g->breaks[2] == 0.25 && g->isoline_count == 1 && g->isolines[0] == 0.1 && p->groups[1].log);
     const struct plant_tag *t = &p->tags[0];
     assert_true(t->register_index == 1 && t->table == TABLE_HOLDING && t->type == DATA_FLOAT32 && t->byte_order == BYTE_ORDER_BADC);
     assert_true(t->scan_ms == 500 && t->scaling == SCALING_SQUARE_ROOT && t->raw_high == 27648 && t->scaled_low == -50 && t->negate);
@@ -285,6 +289,11 @@ static void wrong_types_are_named(void **state)
     load_with(f, 3, "groups: [{ id: g, unit: K, min: 0, max: 1, radius_m: [], limits: 5 }]");
     FOUND(f, { "plant.yaml", 3, 54, "radius_m: expected auto or a number, found a list" },
           { "plant.yaml", 3, 66, "limits: expected a mapping" });
+    load_with(f, 3, "groups: [{ id: g, unit: K, min: 0, max: 1, breaks: [0.1, x, 0.5, 0.3], isolines: 5, scale: log }]");
+    FOUND(f, { "plant.yaml", 3, 58, "breaks: expected a number, found 'x'" },
+          { "plant.yaml", 3, 66, "breaks: expected more than 0.5, which is before it, found 0.3" },
+          { "plant.yaml", 3, 82, "isolines: expected a list" },
+          { "plant.yaml", 3, 92, "scale: a logarithmic one needs min above 0, found 0" });
 }
 
 static void bad_choices_list_the_allowed(void **state)
