@@ -53,7 +53,7 @@ void wire_put_frame(const struct wire_frame *frame, uint8_t out[WIRE_FRAME_HEADE
     at = put_vector(at, frame->target_m);
     at = put_vector(at, frame->up);
     at = put_f32(at, frame->fov_deg);
-    put(at, 0, 4);
+    put_f32(at, frame->height_m);
 }
 
 static uint64_t get(const uint8_t **at, size_t bytes)
@@ -92,6 +92,17 @@ static bool rectangle_valid(const struct wire_frame *frame)
            frame->y_px + frame->height_px <= frame->full_height_px;
 }
 
+/* In perspective the last bytes are reserved: anything may be there. */
+static bool get_lens(const uint8_t **at, struct wire_frame *frame)
+{
+    frame->fov_deg = get_f32(at);
+    frame->height_m = get_f32(at);
+    if (frame->fov_deg == 0)
+        return isfinite(frame->height_m) && frame->height_m > 0;
+    frame->height_m = 0;
+    return frame->fov_deg >= 1 && frame->fov_deg <= 120;
+}
+
 bool wire_get_frame(const uint8_t *bytes, size_t count, struct wire_frame *frame)
 {
     if (count < WIRE_FRAME_HEADER_BYTES)
@@ -120,8 +131,8 @@ bool wire_get_frame(const uint8_t *bytes, size_t count, struct wire_frame *frame
     bool finite = get_vector(&at, frame->eye_m);
     finite &= get_vector(&at, frame->target_m);
     finite &= get_vector(&at, frame->up);
-    frame->fov_deg = get_f32(&at);
-    return finite && frame->fov_deg >= 1 && frame->fov_deg <= 120 && frame->type == WIRE_TYPE_FRAME &&
-           in_range(frame->codec, WIRE_CODEC_JPEG, WIRE_CODEC_H264) && frame->seq > 0 && rectangle_valid(frame) &&
-           in_range(frame->payload_bytes, 1, WIRE_MAX_PAYLOAD_BYTES) && count - WIRE_FRAME_HEADER_BYTES == frame->payload_bytes;
+    bool lens = get_lens(&at, frame);
+    return finite && lens && frame->type == WIRE_TYPE_FRAME && in_range(frame->codec, WIRE_CODEC_JPEG, WIRE_CODEC_H264) && frame->seq > 0 &&
+           rectangle_valid(frame) && in_range(frame->payload_bytes, 1, WIRE_MAX_PAYLOAD_BYTES) &&
+           count - WIRE_FRAME_HEADER_BYTES == frame->payload_bytes;
 }

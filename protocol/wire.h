@@ -28,7 +28,9 @@ struct wire_frame { /* in the order of the bytes */
     uint32_t wait_us, field_us, render_us, encode_us; /* input to start of render, then the stages */
     uint16_t x_px, y_px, width_px, height_px;  /* the part of the picture that the payload holds */
     uint16_t full_width_px, full_height_px;
-    float eye_m[3], target_m[3], up[3], fov_deg; /* the camera it was drawn with; plant frame; fov vertical */
+    float eye_m[3], target_m[3], up[3]; /* the camera it was drawn with; plant frame */
+    float fov_deg;                      /* vertical, 1..120; 0: orthographic, and the picture is height_m high */
+    float height_m;                     /* 0 in perspective */
 };
 
 void wire_put_frame(const struct wire_frame *frame, uint8_t out[WIRE_FRAME_HEADER_BYTES]);

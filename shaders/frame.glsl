@@ -10,4 +10,5 @@ layout(std140, binding = 0) uniform Frame {
                          // pattern cell, in pixels
     vec4 shade;          // row of the palette = light * x + y, at most z
     vec4 lines;          // width of isolines in pixels; 0: none
+    vec4 back;           // orthographic: towards the viewer; w: of depth, to what perspective would give. 0: perspective
 } frame;

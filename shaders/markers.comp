@@ -15,8 +15,8 @@ void main()
     if (i >= count)
         return;
     vec4 place = markers[i].place;
-    float distance = max(length(place.xyz), 1e-6);
-    vec4 clip = frame.clip_from_eye * vec4(place.xyz, 1.0), near = frame.clip_from_eye * vec4(place.xyz * (1.0 - min(place.w / distance, 0.5)), 1.0);
+    vec3 towards = frame.back.w > 0.0 ? frame.back.xyz * place.w : -place.xyz * min(place.w / max(length(place.xyz), 1e-6), 0.5);
+    vec4 clip = frame.clip_from_eye * vec4(place.xyz, 1.0), near = frame.clip_from_eye * vec4(place.xyz + towards, 1.0);
     vec2 size = vec2(textureSize(depth, 0)), at = vec2(0.5 + 0.5 * clip.x / clip.w, 0.5 - 0.5 * clip.y / clip.w) * size;
     bool hidden = clip.w <= 0.0 || any(lessThan(at, vec2(0.0))) || any(greaterThanEqual(at, size));
     if (!hidden) {

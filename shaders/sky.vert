@@ -7,6 +7,6 @@ void main()
 {
     vec2 clip = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
     vec4 near = frame.eye_from_clip * vec4(clip, 1.0, 1.0);
-    ray = near.xyz / near.w;
+    ray = frame.back.w > 0.0 ? -frame.back.xyz : near.xyz / near.w;
     gl_Position = vec4(clip, 0.0, 1.0);
 }

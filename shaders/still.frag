@@ -40,7 +40,7 @@ vec3 mapped_normal(vec3 n, float scale)
 
 void main()
 {
-    vec3 v = normalize(-place), n = normalize(surface_normal), l = frame.sun.xyz;
+    vec3 v = frame.back.w > 0.0 ? frame.back.xyz : normalize(-place), n = normalize(surface_normal), l = frame.sun.xyz;
     if (dot(n, v) < 0.0 && !gl_FrontFacing)
         n = -n;
 #if defined(TEXTURED) || !defined(FIELD) || defined(GLOSSY)

@@ -20,6 +20,8 @@ static const char usage[] =
     "  -o, --out FILE          PNG file to write\n"
     "  --size WxH              pixels; 1280x720\n"
     "  --camera EX,EY,EZ,TX,TY,TZ[,FOV]   eye, target (metres, plant frame), vertical degrees; the plant's own view\n"
+    "  --projection NAME       perspective, orthographic       --height M   of an orthographic picture\n"
+    "  --fit NAME              look at this asset or tag, --side top, bottom, front, back, left, right, iso or now; of the whole plant\n"
     "  --group ID              sensor group to show; the first one\n"
     "  --distance MODE         geodesic or euclidean; the group's own, and so below\n"
     "  --interpolation NAME    shepard or paper\n"
@@ -38,6 +40,8 @@ static const char usage[] =
     "  --select ASSET          outline this asset\n"
     "  --split \"NAME=V;...\"    a second picture beside it, under the same camera; names as above without dashes, but\n"
     "                          ramp_interval, radius_m, reach_m. What is not named is as in the first\n"
+    "  --hide A,B --isolate A,B --ghost A,B   assets: left out; alone left; see-through, without a field\n"
+    "  --clip NX,NY,NZ,D[;...] cut away where n p + d < 0, by up to 6 planes;  --clip-box X,Y,Z,X,Y,Z   all outside\n"
     "offline only:\n"
     "  --values FILE           CSV of tag,value[,quality]; may be repeated. Tags without a value have no data\n"
     "  --at TIME               of the values: 2026-01-31T12:00:00Z; now\n"
@@ -56,6 +60,9 @@ static const struct {
     { "colormap", "colormap" }, { "look", "look" },         { "light", "light" },        { "select", "selected" },
     { "show", "show" },         { "sensor", "sensor" },     { "sensors", "sensors" },
     { "scale", "scale" },       { "breaks", "breaks" },     { "isolines", "isolines" },  { "split", "split" },
+    { "projection", "projection" }, { "height", "height_m" }, { "fit", "fit" },          { "side", "side" },
+    { "hide", "hidden" },       { "isolate", "isolate" },   { "ghost", "ghost" },        { "clip", "clip" },
+    { "clip-box", "clip_box" },
 };
 enum { SHARED = sizeof(shared) / sizeof(shared[0]) };
 enum own_option {

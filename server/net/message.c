@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "net/fields.h"
+#include "net/framing.h"
 
 void message_fail(struct message_error *error, const char *code, const char *fmt, ...)
 {
@@ -40,9 +41,14 @@ static bool size_parse(const json_t *o, struct message *out, struct message_erro
 
 bool camera_parse(const json_t *o, struct camera *out, struct message_error *error)
 {
+    int projection = PROJECTION_PERSPECTIVE;
+    bool given;
     *out = (struct camera){ .up = { 0, 0, 1 }, .fov_deg = 45 };
     if (!need_vector(o, "eye", out->eye_m, error) || !need_vector(o, "target", out->target_m, error) ||
-        !may_vector(o, "up", out->up, NULL, error) || !may_number(o, "fov", 1, 120, &out->fov_deg, NULL, error))
+        !may_vector(o, "up", out->up, NULL, error) || !may_name(o, "projection", names_projection, &projection, &given, error) ||
+        !may_number(o, "fov", 1, 120, &out->fov_deg, NULL, error))
+        return false;
+    if (projection == PROJECTION_ORTHOGRAPHIC && !need_number(o, "height_m", 1e-3, 1e6, &out->height_m, error))
         return false;
     if (!camera_valid(out)) {
         message_fail(error, "bad_field", "eye, target, up: eye must be apart from target, and up not along the view");
@@ -125,6 +131,11 @@ static bool parse_ping(const struct plant *plant, const json_t *o, struct messag
     return need_number(o, "t", -1e300, 1e300, &out->t, error);
 }
 
+static bool parse_fit(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
+{
+    return need_seq(o, &out->seq, error) && fit_parse(plant, o, &out->fit, error);
+}
+
 static const struct {
     const char *name;
     enum message_type type;
@@ -132,7 +143,7 @@ static const struct {
 } types[] = {
     { "hello", MESSAGE_HELLO, parse_hello },       { "camera", MESSAGE_CAMERA, parse_camera }, { "params", MESSAGE_PARAMS, parse_params },
     { "resize", MESSAGE_RESIZE, parse_resize },    { "ack", MESSAGE_ACK, parse_ack },          { "ping", MESSAGE_PING, parse_ping },
-    { "visible", MESSAGE_VISIBLE, parse_visible },
+    { "visible", MESSAGE_VISIBLE, parse_visible }, { "fit", MESSAGE_FIT, parse_fit },
 };
 
 static bool parse_object(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)

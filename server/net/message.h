@@ -6,8 +6,18 @@
 
 #include "protocol/wire.h"
 #include "render/view.h"
+#include "scene/framing.h"
 
-enum message_type { MESSAGE_HELLO, MESSAGE_CAMERA, MESSAGE_PARAMS, MESSAGE_RESIZE, MESSAGE_ACK, MESSAGE_VISIBLE, MESSAGE_PING };
+enum message_type {
+    MESSAGE_HELLO,
+    MESSAGE_CAMERA,
+    MESSAGE_PARAMS,
+    MESSAGE_RESIZE,
+    MESSAGE_ACK,
+    MESSAGE_VISIBLE,
+    MESSAGE_PING,
+    MESSAGE_FIT
+};
 
 struct message_error {
     const char *code; /* of PROTOCOL.md */
@@ -37,6 +47,10 @@ enum params_given { /* which fields of a params message were there */
                     GIVEN_SCALE = 1 << 18,
                     GIVEN_BREAKS = 1 << 19,
                     GIVEN_ISOLINES = 1 << 20,
+                    GIVEN_HIDDEN = 1 << 21,
+                    GIVEN_ISOLATE = 1 << 22,
+                    GIVEN_GHOST = 1 << 23,
+                    GIVEN_CLIP = 1 << 24,
 };
 
 enum baseline_wish { BASELINE_STAYS, BASELINE_NONE, BASELINE_NAMED, BASELINE_NOW, BASELINE_SET, BASELINE_REMOVE };
@@ -60,6 +74,12 @@ struct params_change {
     bool only_these_sensors; /* sensors: null; all others go */
     enum baseline_wish baseline;
     char baseline_name[BASELINE_NAME_BYTES];
+    struct visibility visibility;
+};
+
+struct fit {
+    struct framing framing;
+    int projection; /* enum projection, or PROJECTION_AS_IT_IS */
 };
 
 struct split_change {
@@ -73,9 +93,10 @@ struct message {
     enum wire_codec codec;       /* hello: the first of the client's that we have */
     bool has_camera, has_params; /* hello */
     struct camera camera;        /* camera, hello */
-    uint32_t seq;                /* camera (hello: the camera's), ack */
+    uint32_t seq;                /* camera (hello: the camera's), ack, fit */
     struct params_change params; /* params, hello */
     struct split_change split;   /* likewise; applied after params */
+    struct fit fit;
     bool visible;
     double decode_ms; /* ack; negative: not said */
     double t;         /* ping */

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "render/view.h"
+#include "scene/framing.h"
 
 const struct name names_interpolation[] = { { "shepard", INTERPOLATION_SHEPARD }, { "paper", INTERPOLATION_PAPER }, { NULL, 0 } };
 const struct name names_distance[] = { { "geodesic", DISTANCE_GEODESIC }, { "euclidean", DISTANCE_EUCLIDEAN }, { NULL, 0 } };
@@ -15,6 +16,12 @@ const struct name names_show[] = { { "value", SHOW_VALUE }, { "distance", SHOW_D
 const struct name names_scale[] = { { "linear", false }, { "log", true }, { NULL, 0 } };
 const struct name names_look[] = { { "default", LOOK_DEFAULT }, { "glossy", LOOK_GLOSSY }, { "flat", LOOK_FLAT }, { NULL, 0 } };
 const struct name names_codec[] = { { "jpeg", WIRE_CODEC_JPEG }, { "png", WIRE_CODEC_PNG }, { NULL, 0 } };
+const struct name names_projection[] = { { "perspective", PROJECTION_PERSPECTIVE },
+                                         { "orthographic", PROJECTION_ORTHOGRAPHIC },
+                                         { NULL, 0 } };
+const struct name names_side[] = { { "now", SIDE_NOW },     { "top", SIDE_TOP },   { "bottom", SIDE_BOTTOM },
+                                   { "front", SIDE_FRONT }, { "back", SIDE_BACK }, { "left", SIDE_LEFT },
+                                   { "right", SIDE_RIGHT }, { "iso", SIDE_ISO },   { NULL, 0 } };
 
 int name_find(const struct name *names, const char *text)
 {

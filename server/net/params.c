@@ -5,6 +5,7 @@
 
 #include "field/colormap.h"
 #include "net/fields.h"
+#include "net/visibility.h"
 
 static const double NUMBER_MAX = 1e12;
 
@@ -161,7 +162,7 @@ bool params_parse(const struct plant *plant, const json_t *o, struct params_chan
     return parse_group(plant, o, out, error) && parse_names(o, out, error) && parse_numbers(o, out, error) && parse_reach(o, out, error) &&
            parse_range(o, out, error) && parse_colormap(o, out, error) && parse_selected(plant, o, out, error) &&
            parse_light(o, out, error) && params_parse_show(plant, o, out, error) &&
-           params_parse_paint(o, out, error);
+           params_parse_paint(o, out, error) && visibility_parse(plant, o, out, error);
 }
 
 static void take_group(const struct scene *scene, int group, struct view *view)
@@ -208,6 +209,7 @@ static void apply_look(const struct scene *scene, const struct params_change *ch
         memcpy(view->light_dir, change->light_dir, sizeof(view->light_dir));
     if (change->given & GIVEN_SELECTED)
         view->selected_asset = change->selected_asset;
+    visibility_apply(change, &view->visibility);
 }
 
 bool params_apply(const struct params_world *world, const struct params_change *change, struct view *view, struct message_error *error)

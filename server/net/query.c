@@ -7,8 +7,9 @@
 
 #include "base/mem.h"
 #include "net/fields.h"
+#include "net/framing.h"
 
-enum kind { NUMBER, STRING, NUMBERS, SENSORS, BREAKS, LINES, SPLIT };
+enum kind { NUMBER, STRING, NUMBERS, SENSORS, BREAKS, LINES, SPLIT, STRINGS, PLANES, BOX };
 
 static const struct {
     const char *name;
@@ -20,6 +21,8 @@ static const struct {
     { "look", STRING },     { "light", NUMBERS },   { "selected", STRING }, { "show", STRING },          { "sensor", STRING },
     { "sensors", SENSORS }, { "baseline", STRING }, { "scale", STRING },    { "breaks", BREAKS },
     { "isolines", LINES },  { "split", SPLIT },
+    { "projection", STRING }, { "height_m", NUMBER }, { "fit", STRING },    { "side", STRING },          { "hidden", STRINGS },
+    { "isolate", STRINGS }, { "ghost", STRINGS },   { "clip", PLANES },     { "clip_box", BOX },
 };
 
 /* NULL: not a finite number. */
@@ -126,6 +129,41 @@ static json_t *split(const char *text, struct message_error *error)
     return NULL;
 }
 
+/* Texts with commas between them. */
+static json_t *strings(const char *text)
+{
+    json_t *array = json_array();
+    for (size_t n; *text; text += n + (text[n] == ',')) {
+        n = strcspn(text, ",");
+        json_array_append_new(array, json_stringn(text, n));
+    }
+    return array;
+}
+
+/* Four numbers each, with semicolons between them. */
+static json_t *planes(const char *text)
+{
+    json_t *array = json_array();
+    for (size_t n; *text; text += n + (text[n] == ';')) {
+        char *one = strndup(text, n = strcspn(text, ";"));
+        json_t *plane = numbers(one);
+        free(one);
+        json_array_append_new(array, plane ? plane : json_null());
+    }
+    return json_pack("{s:o}", "planes", array);
+}
+
+static json_t *box(const char *text)
+{
+    json_t *array = numbers(text);
+    double n[6];
+    bool good = json_array_size(array) == 6;
+    for (size_t i = 0; i < 6 && good; i++)
+        n[i] = json_number_value(json_array_get(array, i));
+    json_decref(array);
+    return good ? json_pack("{s:{s:[f,f,f],s:[f,f,f]}}", "box", "min", n[0], n[1], n[2], "max", n[3], n[4], n[5]) : NULL;
+}
+
 static json_t *value_of(enum kind kind, const char *text, struct message_error *error)
 {
     const char *end = "";
@@ -137,6 +175,9 @@ static json_t *value_of(enum kind kind, const char *text, struct message_error *
     case BREAKS: return breaks(text);
     case LINES: return lines(text);
     case SPLIT: return split(text, error);
+    case STRINGS: return strings(text);
+    case PLANES: return planes(text);
+    case BOX: return box(text);
     case NUMBER:
         value = number(text, &end);
         if (value && *end == 0)
@@ -159,11 +200,14 @@ static bool add(json_t *o, const char *arg, struct message_error *error)
                                                 "TAG=STRENGTH[:DECAY] with commas",
                                                 "numbers with commas, group, limits or none",
                                                 "numbers with commas, every:STEP or none",
-                                                "NAME=VALUE with semicolons" };
+                                                "NAME=VALUE with semicolons",
+                                                "ids with commas",
+                                                "nx,ny,nz,d with semicolons",
+                                                "min and max: six numbers with commas" };
         struct message_error inner = { .code = NULL };
         json_t *value = arg[n] == '=' ? value_of(known[i].kind, arg + n + 1, &inner) : NULL;
         if (value)
-            return json_object_set_new(o, known[i].name, value) == 0;
+            return json_object_set_new(o, known[i].kind == BOX ? "clip" : known[i].name, value) == 0;
         message_fail(error, "bad_field", "%s: %s", known[i].name, inner.code ? inner.text : expected[known[i].kind]);
         if (!inner.code)
             strcat(error->text, " expected");
@@ -171,27 +215,6 @@ static bool add(json_t *o, const char *arg, struct message_error *error)
     }
     message_fail(error, "bad_field", "'%s' is unknown", quoted(arg, name));
     return false;
-}
-
-static bool apply_camera(const json_t *o, struct view *view, struct message_error *error)
-{
-    const json_t *list = json_object_get(o, "camera");
-    size_t count = json_array_size(list);
-    if (!list)
-        return true;
-    if (count != 6 && count != 7) {
-        message_fail(error, "bad_field", "camera: ex,ey,ez,tx,ty,tz or ex,ey,ez,tx,ty,tz,fov expected");
-        return false;
-    }
-    double n[7] = { 0 };
-    for (size_t i = 0; i < count; i++)
-        n[i] = json_number_value(json_array_get(list, i));
-    json_t *camera = json_pack("{s:[f,f,f],s:[f,f,f]}", "eye", n[0], n[1], n[2], "target", n[3], n[4], n[5]);
-    if (count == 7)
-        json_object_set_new(camera, "fov", json_real(n[6]));
-    bool good = camera_parse(camera, &view->camera, error);
-    json_decref(camera);
-    return good;
 }
 
 static bool apply(const struct params_world *world, const json_t *o, struct view *view, struct message_error *error)
@@ -207,7 +230,7 @@ static bool apply(const struct params_world *world, const json_t *o, struct view
     }
     view_default(world->scene, (int)w, (int)h, view);
     view->tier = TIER_STILL;
-    return apply_camera(o, view, error) && params_parse(world->scene->plant, o, &change, error) &&
+    return query_camera(world->scene, o, view, error) && params_parse(world->scene->plant, o, &change, error) &&
            split_parse(world->scene->plant, o, &right, error) && params_apply(world, &change, view, error) &&
            split_apply(world, &right, view, error);
 }

@@ -10,6 +10,7 @@
 #include "base/mem.h"
 #include "field/colormap.h"
 #include "net/names.h"
+#include "net/visibility.h"
 #include "value/quality.h"
 
 enum { DIGITS = 9, EXACT_DIGITS = 17 };
@@ -145,6 +146,7 @@ static void set_params(json_t *object, const struct session_world *world, const 
         set_shown(json_object_get(object, "split"), world, &right);
     json_object_set_new(object, "light", vector(view->light_dir));
     json_object_set_new(object, "selected", view->selected_asset < 0 ? json_null() : string(plant->assets[view->selected_asset].id));
+    visibility_print(plant, &view->visibility, object);
 }
 
 static json_t *limits(const double values[LIMIT_COUNT])
@@ -308,6 +310,19 @@ char *reply_status_text(const struct session_world *world, int64_t now_utc_ns)
 char *reply_pong_text(double t, int64_t now_utc_ns)
 {
     return print(json_pack("{s:s,s:f,s:I}", "type", "pong", "t", t, "time_us", us(now_utc_ns)), EXACT_DIGITS);
+}
+
+char *reply_camera_text(const struct camera *camera, uint32_t seq)
+{
+    json_t *object = json_pack("{s:s,s:I,s:o,s:o,s:o}", "type", "camera", "seq", (json_int_t)seq, "eye", vector(camera->eye_m), "target",
+                               vector(camera->target_m), "up", vector(camera->up));
+    if (camera->height_m > 0) {
+        json_object_set_new(object, "projection", string(name_of(names_projection, PROJECTION_ORTHOGRAPHIC)));
+        json_object_set_new(object, "height_m", number(camera->height_m));
+    } else {
+        json_object_set_new(object, "fov", number(camera->fov_deg));
+    }
+    return print(object, DIGITS);
 }
 
 char *reply_error_text(const struct message_error *error)

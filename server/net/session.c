@@ -6,6 +6,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "net/framing.h"
 #include "net/reply.h"
 
 static const int64_t STILL_NS = 200 * NS_PER_MS;         /* nothing moved for so long: refine */
@@ -118,6 +119,14 @@ static void on_visible(struct session *session, bool visible)
     session->hidden = !visible;
 }
 
+/* Answered only: the camera is the client's. */
+static void on_fit(struct session *session, const struct message *message)
+{
+    struct camera camera = session->view.camera;
+    fit_apply(session->world->scene, &message->fit, (double)session->view.width_px / session->view.height_px, &camera);
+    reply(session, reply_camera_text(&camera, message->seq));
+}
+
 static bool act(struct session *session, const struct message *message, int64_t now_ns, int64_t now_utc_ns, struct message_error *error)
 {
     switch (message->type) {
@@ -134,6 +143,7 @@ static bool act(struct session *session, const struct message *message, int64_t 
         return true;
     case MESSAGE_ACK: return on_ack(session, message, now_ns, error);
     case MESSAGE_VISIBLE: on_visible(session, message->visible); return true;
+    case MESSAGE_FIT: on_fit(session, message); return true;
     case MESSAGE_PING: reply(session, reply_pong_text(message->t, now_utc_ns)); return true;
     }
     return true;

@@ -295,7 +295,8 @@ static void camera_to_wire(const struct camera *camera, struct wire_frame *heade
         header_out->target_m[i] = (float)camera->target_m[i];
         header_out->up[i] = (float)camera->up[i];
     }
-    header_out->fov_deg = (float)camera->fov_deg;
+    header_out->fov_deg = camera->height_m > 0 ? 0 : (float)camera->fov_deg;
+    header_out->height_m = (float)camera->height_m;
 }
 
 static struct wire_frame frame_header(const struct picture *picture, uint32_t seq)

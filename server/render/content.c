@@ -28,10 +28,23 @@ static void add_paint(XXH3_state_t *state, const struct paint *paint)
     add(state, paint->lines, (size_t)paint->line_count * sizeof(*paint->lines));
 }
 
+/* What is hidden throws no shadow either, wherever it stands: all assets count. */
+static void add_visibility(XXH3_state_t *state, const struct picture *picture)
+{
+    const struct visibility *visibility = &picture->view->visibility;
+    size_t planes = (size_t)visibility->clip.plane_count;
+    if (visibility->hidden.count + visibility->isolated.count + visibility->ghosts.count > 0)
+        for (size_t i = 0; i < picture->stage->scene->asset_count; i++) {
+            uint8_t look = (uint8_t)visibility_of(visibility, (int)i);
+            add(state, &look, sizeof(look));
+        }
+    add(state, visibility->clip.planes, planes * sizeof(visibility->clip.planes[0]));
+}
+
 static void add_view(XXH3_state_t *state, const struct view *view)
 {
     int32_t choices[] = { view->width_px, view->height_px, view->colormap, (int32_t)view->look, (int32_t)view->tier, view->selected_asset };
-    double numbers[] = { view->camera.fov_deg, view->ramp_interval, view->range_min, view->range_max };
+    double numbers[] = { view->camera.fov_deg, view->camera.height_m, view->ramp_interval, view->range_min, view->range_max };
     add(state, choices, sizeof(choices));
     add(state, numbers, sizeof(numbers));
     add(state, view->camera.eye_m, sizeof(view->camera.eye_m));
@@ -48,6 +61,7 @@ uint64_t content_hash(const struct picture *picture)
     XXH3_INITSTATE(&state);
     XXH3_64bits_reset(&state);
     add_view(&state, picture->view);
+    add_visibility(&state, picture);
     for (size_t i = 0; i < picture->visible_count; i++) {
         int asset = picture->visible[i];
         uint64_t one[2] = { (uint64_t)asset, picture->fields[asset] ? picture->fields[asset]->content : 0 };

@@ -61,9 +61,11 @@ void frame_block_fill(struct frame_block *block, const struct picture *picture)
     for (int i = 0; i < 3; i++) {
         block->sun[i] = (float)view->light_dir[i];
         block->up[i] = (float)picture->stage->up[i];
+        block->back[i] = (float)shot->back[i];
     }
     block->sun[3] = (float)picture->light->texel_m;
     block->up[3] = 0;
+    block->back[3] = (float)shot->depth_scale;
     fill_scale(block, picture);
     fill_shade(block, view);
 }

@@ -20,6 +20,7 @@
 #include "render/stroke.h"
 #include "render/targets.h"
 
+static const double HEIGHT_TO_DISTANCE = 1.2; /* from so far off, an eye of the usual angle sees as much */
 enum { STILL_SAMPLES = 4, TILE_PX = 128 };
 
 struct renderer {
@@ -96,10 +97,16 @@ static void aim(struct renderer *renderer, const struct view *view, struct shot 
     double rotation[16], projection[16];
     double aspect = (double)view->width_px / view->height_px;
     camera_matrices(&view->camera, aspect, renderer->scene->bounds_min_m, renderer->scene->bounds_max_m, rotation, projection);
+    double back[3] = { rotation[2], rotation[6], rotation[10] }, depth_m = -2 / projection[10];
     rotation[12] = rotation[13] = rotation[14] = 0;
     matrix_multiply(projection, rotation, projection);
     matrix_multiply(reverse, projection, projection);
     shot_init(shot, view->camera.eye_m, projection, view->height_px / (2 * tan(view->camera.fov_deg * M_PI / 360)));
+    if (view->camera.height_m > 0) {
+        shot->pixel_per_metre = view->height_px / view->camera.height_m;
+        shot->depth_scale = depth_m / (HEIGHT_TO_DISTANCE * view->camera.height_m);
+        memcpy(shot->back, back, sizeof(back));
+    }
 }
 
 static int by_distance(const void *a, const void *b, void *distance_m)

@@ -65,11 +65,20 @@ static void draw_ground(const struct sky *sky, const struct picture *picture, co
     glDisable(GL_DEPTH_CLAMP);
 }
 
+/* Seen from above. */
+static bool sees_ground(const struct picture *picture, const struct light *light)
+{
+    const struct shot *shot = &picture->shot;
+    double eye_height_m = 0, back_height = 0;
+    for (int i = 0; i < 3; i++) {
+        eye_height_m += picture->stage->up[i] * shot->eye_m[i];
+        back_height += picture->stage->up[i] * shot->back[i];
+    }
+    return shot->pixel_per_metre > 0 ? back_height > 0 : eye_height_m > light->ground_height_m;
+}
+
 void sky_draw(const struct sky *sky, const struct picture *picture, const struct light *light)
 {
-    double eye_height_m = 0;
-    for (int i = 0; i < 3; i++)
-        eye_height_m += picture->stage->up[i] * picture->shot.eye_m[i];
     gl_pass_enter("sky");
     glEnable(GL_DEPTH_TEST);
     glDepthMask(GL_FALSE);
@@ -77,7 +86,7 @@ void sky_draw(const struct sky *sky, const struct picture *picture, const struct
     glBindTextureUnit(1, sky->backdrops);
     glBindVertexArray(sky->vao);
     glDrawArrays(GL_TRIANGLES, 0, 3);
-    if (eye_height_m > light->ground_height_m)
+    if (sees_ground(picture, light))
         draw_ground(sky, picture, light);
     glDepthMask(GL_TRUE);
     gl_pass_leave(picture->stage->gl, "sky");

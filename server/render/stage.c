@@ -101,6 +101,8 @@ const struct model_level *stage_level(const struct stage *stage, const struct sh
 {
     const struct scene_asset *at = &stage->scene->assets[asset];
     double square = 0;
+    if (shot->pixel_per_metre > 0)
+        return model_level(stage->of_asset[asset], error_px / shot->pixel_per_metre);
     for (int c = 0; c < 3; c++) {
         double outside = fmax(fmax(at->bounds_min_m[c] - shot->eye_m[c], shot->eye_m[c] - at->bounds_max_m[c]), 0);
         square += outside * outside;

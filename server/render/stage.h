@@ -23,7 +23,10 @@ struct shot {
     double clip_from_eye[16]; /* depth 1 near, 0 far */
     double clip_from_plant[16];
     double pixel_per_radian;
-    double planes[6][4]; /* of the frustum, inward, plant frame */
+    double pixel_per_metre; /* orthographic; 0: perspective, and so below */
+    double back[3];         /* towards the viewer */
+    double depth_scale;     /* of depth, in units of what would be the distance in perspective */
+    double planes[6][4];    /* of the frustum, inward, plant frame */
 };
 
 bool stage_init(struct stage *stage, struct gl *gl, const struct scene *scene); /* false: logged */

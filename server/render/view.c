@@ -146,7 +146,7 @@ static bool same_vector(const double a[3], const double b[3])
 static bool same_camera(const struct camera *a, const struct camera *b)
 {
     return same_vector(a->eye_m, b->eye_m) && same_vector(a->target_m, b->target_m) && same_vector(a->up, b->up) &&
-           a->fov_deg == b->fov_deg;
+           a->fov_deg == b->fov_deg && a->height_m == b->height_m;
 }
 
 static bool same_numbers(const double *a, int a_count, const double *b, int b_count)
@@ -173,5 +173,6 @@ bool view_equal(const struct view *a, const struct view *b)
     get_shown(b, &b_shown);
     return a->width_px == b->width_px && a->height_px == b->height_px && same_camera(&a->camera, &b->camera) && a->tier == b->tier &&
            a->selected_asset == b->selected_asset && same_vector(a->light_dir, b->light_dir) && same_shown(&a_shown, &b_shown) &&
+           visibility_equal(&a->visibility, &b->visibility) &&
            a->split == b->split && (!a->split || same_shown(&a->right, &b->right));
 }

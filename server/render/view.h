@@ -8,6 +8,7 @@
 #include "field/field.h"
 #include "field/scale.h"
 #include "scene/camera.h"
+#include "scene/visibility.h"
 
 enum look {
     LOOK_DEFAULT, /* field colours shaded only by an additive L* within +-7; PBR elsewhere */
@@ -51,6 +52,7 @@ struct view {
     enum tier tier;
     int selected_asset;  /* outlined; -1: none */
     double light_dir[3]; /* towards the sun, plant frame, unit length */
+    struct visibility visibility;
     bool split;          /* two halves beside each other under one camera: this view left, `right` right */
     struct shown right;  /* zero where it is not split */
 };

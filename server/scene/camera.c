@@ -10,6 +10,7 @@
 #define LEAST_BOX_M 0.1      /* a smaller box, or one that is empty, is looked at as if it had this size */
 #define NEAR_TO_FAR 1e-4     /* never less, so that 24 bits of depth resolve what is near */
 #define LEAST_NEAR_M 1e-3
+#define LEAST_HEIGHT_M 1e-3  /* of an orthographic picture */
 
 static double dot(const double a[3], const double b[3])
 {
@@ -52,6 +53,13 @@ static bool basis_of(const double forward[3], const double up[3], struct basis *
     return true;
 }
 
+static bool lens_valid(const struct camera *camera)
+{
+    if (camera->height_m == 0)
+        return camera->fov_deg >= 1 && camera->fov_deg <= 120;
+    return camera->height_m >= LEAST_HEIGHT_M && camera->height_m <= FAR_M;
+}
+
 bool camera_valid(const struct camera *camera)
 {
     struct basis basis;
@@ -62,7 +70,7 @@ bool camera_valid(const struct camera *camera)
         forward[i] = camera->target_m[i] - camera->eye_m[i];
         apart_m += fabs(forward[i]);
     }
-    return apart_m > 1e-6 && camera->fov_deg >= 1 && camera->fov_deg <= 120 && basis_of(forward, camera->up, &basis);
+    return apart_m > 1e-6 && lens_valid(camera) && basis_of(forward, camera->up, &basis);
 }
 
 /* --- fitting a box ---------------------------------------------------------------------------------------------------------- */
@@ -98,13 +106,29 @@ static void side_add(struct side *side, double x, double z, double t)
     side->low = fmax(side->low, -x - z * t);
 }
 
-static void place_eye(struct camera *camera, const struct basis *basis, const double min_m[3], const double max_m[3], double aspect)
+/* How far the box reaches from its middle, to the sides of an orthographic picture. */
+static void place_parallel(struct camera *camera, const struct basis *basis, const double half_m[3], const double center_m[3],
+                           double aspect)
+{
+    double right_m = 0, up_m = 0, deep_m = 0;
+    for (int i = 0; i < 3; i++) {
+        right_m += fabs(basis->right[i]) * half_m[i];
+        up_m += fabs(basis->up[i]) * half_m[i];
+        deep_m += fabs(basis->forward[i]) * half_m[i];
+    }
+    camera->height_m = fmax(2 * FIT_MARGIN * fmax(up_m, right_m / aspect), LEAST_HEIGHT_M);
+    for (int i = 0; i < 3; i++) {
+        camera->target_m[i] = center_m[i];
+        camera->eye_m[i] = center_m[i] - (2 * deep_m + camera->height_m) * basis->forward[i];
+    }
+}
+
+static void place_eye(struct camera *camera, const struct basis *basis, const double min_m[3], const double max_m[3],
+                      const double center_m[3], double aspect)
 {
     double t_up = tan(camera->fov_deg * M_PI / 360) / FIT_MARGIN, t_right = t_up * aspect;
     struct side right = { -INFINITY, -INFINITY }, up = { -INFINITY, -INFINITY };
-    double nearest_m = INFINITY, center_m[3];
-    for (int i = 0; i < 3; i++)
-        center_m[i] = (min_m[i] + max_m[i]) / 2;
+    double nearest_m = INFINITY;
     for (int corner = 0; corner < 8; corner++) {
         double p[3];
         corner_of(min_m, max_m, corner, p);
@@ -124,17 +148,27 @@ static void place_eye(struct camera *camera, const struct basis *basis, const do
     }
 }
 
+void camera_fit_along(struct camera *camera, const double forward[3], const double min_m[3], const double max_m[3], double aspect)
+{
+    double safe_min_m[3], safe_max_m[3], center_m[3], half_m[3];
+    struct basis basis;
+    basis_of(forward, camera->up, &basis);
+    safe_box(min_m, max_m, safe_min_m, safe_max_m);
+    for (int i = 0; i < 3; i++) {
+        center_m[i] = (safe_min_m[i] + safe_max_m[i]) / 2;
+        half_m[i] = (safe_max_m[i] - safe_min_m[i]) / 2;
+    }
+    if (camera->height_m > 0)
+        place_parallel(camera, &basis, half_m, center_m, aspect);
+    else
+        place_eye(camera, &basis, safe_min_m, safe_max_m, center_m, aspect);
+}
+
 void camera_fit_up(struct camera *camera, enum axis up, const double min_m[3], const double max_m[3], double aspect)
 {
     static const double forward[2][3] = { [AXIS_Z] = { 0.62, 0.68, -0.42 }, [AXIS_Y] = { 0.62, -0.42, -0.68 } };
-    static const double ups[2][3] = { [AXIS_Z] = { 0, 0, 1 }, [AXIS_Y] = { 0, 1, 0 } };
-    double safe_min_m[3], safe_max_m[3];
-    struct basis basis;
-    memcpy(camera->up, ups[up], sizeof(camera->up));
-    camera->fov_deg = 45;
-    basis_of(forward[up], ups[up], &basis);
-    safe_box(min_m, max_m, safe_min_m, safe_max_m);
-    place_eye(camera, &basis, safe_min_m, safe_max_m, aspect);
+    *camera = (struct camera){ .up = { 0, up == AXIS_Y, up == AXIS_Z }, .fov_deg = 45 };
+    camera_fit_along(camera, forward[up], min_m, max_m, aspect);
 }
 
 void camera_fit(struct camera *camera, const double min_m[3], const double max_m[3], double aspect)
@@ -156,6 +190,12 @@ static void depth_range(const struct camera *camera, const struct basis *basis, 
         double z = dot(p, basis->forward);
         nearest = fmin(nearest, z);
         farthest = fmax(farthest, z);
+    }
+    if (camera->height_m > 0) {
+        double margin_m = 0.001 * (farthest - nearest) + LEAST_NEAR_M;
+        *near_m = nearest - margin_m;
+        *far_m = farthest + margin_m;
+        return;
     }
     *far_m = fmax(farthest * 1.001, 2 * LEAST_NEAR_M); /* a box behind the camera: any range will do */
     *near_m = fmax(fmax(nearest * 0.999, *far_m * NEAR_TO_FAR), LEAST_NEAR_M);
@@ -183,8 +223,16 @@ void camera_matrices(const struct camera *camera, double aspect, const double mi
     view[13] = -dot(basis.up, camera->eye_m);
     view[14] = dot(basis.forward, camera->eye_m);
     view[15] = 1;
-    double f = 1 / tan(camera->fov_deg * M_PI / 360);
     memset(projection, 0, 16 * sizeof(*projection));
+    if (camera->height_m > 0) {
+        projection[0] = 2 / (camera->height_m * aspect);
+        projection[5] = 2 / camera->height_m;
+        projection[10] = -2 / (far_m - near_m);
+        projection[14] = -(far_m + near_m) / (far_m - near_m);
+        projection[15] = 1;
+        return;
+    }
+    double f = 1 / tan(camera->fov_deg * M_PI / 360);
     projection[0] = f / aspect;
     projection[5] = f;
     projection[10] = (far_m + near_m) / (near_m - far_m);

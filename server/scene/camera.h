@@ -8,16 +8,21 @@
 
 struct camera {
     double eye_m[3], target_m[3], up[3];
-    double fov_deg; /* vertical */
+    double fov_deg;  /* vertical */
+    double height_m; /* what an orthographic picture is high; 0: perspective */
 };
 
-/* Finite, eye apart from target, up not along the view, 1 <= fov <= 120, all |m| <= 1e6. */
+/* Finite, eye apart from target, up not along the view, all |m| <= 1e6; 1 <= fov <= 120, or 1e-3 <= height <= 1e6. */
 bool camera_valid(const struct camera *camera);
 /* Looks at the whole box, filling the picture, from a raised south-west corner of a plant that is Z up. Sets every field. */
 void camera_fit(struct camera *camera, const double min_m[3], const double max_m[3], double aspect);
 /* The same for either kind of plant frame: x is east; north is y in a Z-up frame and -z in a Y-up one. */
 void camera_fit_up(struct camera *camera, enum axis up, const double min_m[3], const double max_m[3], double aspect);
-/* near and far planes are chosen to hold the box. view_from_plant and clip_from_view, each 16 doubles. */
+/* The same in a direction that is not along camera->up, with the lens and the up of `camera`: of an orthographic one, height_m > 0, the
+   height is chosen. */
+void camera_fit_along(struct camera *camera, const double forward[3], const double min_m[3], const double max_m[3], double aspect);
+/* near and far planes are chosen to hold the box: in an orthographic picture also what of it lies behind the eye.
+   view_from_plant and clip_from_view, each 16 doubles. */
 void camera_matrices(const struct camera *camera, double aspect, const double min_m[3], const double max_m[3], double view[16],
                      double projection[16]);
 

@@ -44,6 +44,15 @@ static void nonsense_is_refused(void **state)
     assert_false(camera_valid(&c));
     c.fov_deg = 120;
     assert_true(camera_valid(&c));
+    c.fov_deg = 0;
+    c.height_m = 12;
+    assert_true(camera_valid(&c));
+    for (size_t k = 0; k < 4; k++) {
+        c.height_m = wrong[k];
+        assert_false(camera_valid(&c));
+    }
+    c.height_m = -1;
+    assert_false(camera_valid(&c));
 }
 
 static void project(const double view[16], const double projection[16], const double p[3], double ndc[3], double *w)
@@ -71,6 +80,25 @@ static void a_point_lands_where_geometry_says(void **state)
     assert_float_equal(ndc[0], 4 / 8.0 / 2, 1e-12);
     assert_float_equal(ndc[1], 2 / 8.0, 1e-12);
     assert_true(ndc[2] > -1 && ndc[2] < 1);
+}
+
+/* Nothing grows smaller with distance; what lies behind the eye is in the picture too. */
+static void an_orthographic_picture_keeps_sizes(void **state)
+{
+    (void)state;
+    const struct camera c = { .eye_m = { 0, -10, 0 }, .target_m = { 0, 0, 0 }, .up = { 0, 0, 1 }, .height_m = 8 };
+    const double min[3] = { -5, -50, -5 }, max[3] = { 5, 500, 5 };
+    double view[16], projection[16], last = 1;
+    camera_matrices(&c, 2, min, max, view, projection);
+    for (double y = -50; y <= 500; y += 25) {
+        double ndc[3], w;
+        project(view, projection, (double[3]){ 4, y, 2 }, ndc, &w);
+        assert_float_equal(w, 1, 1e-12);
+        assert_float_equal(ndc[0], 4 / 8.0, 1e-12);
+        assert_float_equal(ndc[1], 2 / 4.0, 1e-12);
+        assert_true(ndc[2] > -1 && ndc[2] < 1 && (y == -50 || ndc[2] > last));
+        last = ndc[2];
+    }
 }
 
 static void corner_of(const double min[3], const double max[3], int corner, double out[3])
@@ -192,7 +220,7 @@ int main(void)
     cmocka_set_message_output(CM_OUTPUT_TAP);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(nonsense_is_refused),
-        cmocka_unit_test(a_point_lands_where_geometry_says),
+        cmocka_unit_test(a_point_lands_where_geometry_says), cmocka_unit_test(an_orthographic_picture_keeps_sizes),
         cmocka_unit_test(near_and_far_hold_the_box),
         cmocka_unit_test(a_box_behind_or_without_depth_gives_numbers),
         cmocka_unit_test(a_fit_fills_the_picture),

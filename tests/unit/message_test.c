@@ -114,6 +114,8 @@ static void fields_arrive(void **state)
     assert_true(m.has_camera && !m.has_params);
     assert_int_equal(m.seq, 9);
     assert_true(m.camera.eye_m[2] == 3 && m.camera.target_m[0] == 4 && m.camera.up[2] == 1 && m.camera.fov_deg == 50);
+    m = parse("{\"type\":\"camera\",\"seq\":2,\"eye\":[1,2,3],\"target\":[4,5,6],\"projection\":\"orthographic\",\"height_m\":9}");
+    assert_true(m.camera.height_m == 9);
     m = parse("{\"type\":\"ack\",\"seq\":12,\"decode_ms\":3.5}");
     assert_true(m.seq == 12 && m.decode_ms == 3.5);
     m = parse("{\"type\":\"ack\",\"seq\":12}");
@@ -321,6 +323,17 @@ static void queries_make_views(void **state)
     assert_true(view.paint.break_count == 2 && view.paint.line_count == 9 && view.paint.lines[8] == 180 && view.paint.log);
     assert_true(view.split && view.right.field.group == 1 && view.right.paint.breaks[1] == 2.5 && view.right.paint.lines[1] == 4);
     assert_true(view.right.look == LOOK_FLAT && !view.right.paint.log);
+    assert_true(view.camera.height_m == 0 && view.visibility.hidden.count == 0);
+    static const char *const seen[] = { "fit=E-101",     "side=top",           "projection=orthographic",
+                                        "hidden=P-101A", "ghost=E-101,P-101A", "clip=1,0,0,2;0,3,0,1.5" };
+    assert_true(query(seen, sizeof(seen) / sizeof(seen[0]), &view, &error));
+    assert_true(view.camera.height_m > 2 && view.camera.target_m[0] == 0 && view.camera.eye_m[2] > 2.5);
+    assert_int_equal(visibility_of(&view.visibility, 0), ASSET_GHOST);
+    assert_int_equal(visibility_of(&view.visibility, 1), ASSET_HIDDEN);
+    assert_true(view.visibility.clip.plane_count == 2 && view.visibility.clip.planes[1][3] == 0.5 && !view.visibility.clip.is_box);
+    static const char *const parallel[] = { "projection=orthographic", "height_m=7", "clip_box=-1,-1,0,1,1,2" };
+    assert_true(query(parallel, 3, &view, &error));
+    assert_true(view.camera.height_m == 7 && view.visibility.clip.is_box);
     assert_true(query(NULL, 0, &view, &error));
     assert_true(view.width_px == 1280 && view.height_px == 720);
 }
@@ -371,7 +384,17 @@ static void bad_queries_are_named(void **state)
                                        "split=group=pressure;scale=log",
                                        "split=split=group=pressure",
                                        "split=width=100;light=0,0,1",
-                                       "baseline=now" };
+                                       "baseline=now",
+                                       "projection=orthographic",
+                                       "height_m=tall",
+                                       "fit=E-102",
+                                       "side=inside",
+                                       "hidden=E-101,,P-101A",
+                                       "ghost=x",
+                                       "clip=1,0,0",
+                                       "clip=",
+                                       "clip_box=0,0,0,1,1",
+                                       "clip_box=0,0,0,1,1,0" };
     for (size_t i = 0; i < sizeof(bad) / sizeof(bad[0]); i++) {
         struct view view;
         struct message_error error;

@@ -536,6 +536,27 @@ static void acks_for_nothing_are_errors(void **state)
     expect_error(f, "bad_field");
 }
 
+static void a_fit_is_answered_with_a_camera_and_moves_nothing(void **state)
+{
+    struct fixture *f = *state;
+    greet(f);
+    struct camera before = f->session->view.camera;
+    say(f, "{\"type\":\"fit\",\"seq\":9,\"id\":\"P-101A\",\"side\":\"top\",\"projection\":\"orthographic\"}");
+    json_t *answer = hear(f);
+    assert_string_equal(type_of(answer), "camera");
+    assert_int_equal(json_integer_value(json_object_get(answer, "seq")), 9);
+    assert_string_equal(json_string_value(json_object_get(answer, "projection")), "orthographic");
+    json_t *target = json_object_get(answer, "target");
+    assert_float_equal(json_number_value(json_array_get(target, 0)), 5.75, 1e-6);
+    assert_true(json_number_value(json_object_get(answer, "height_m")) >= 2);
+    json_decref(answer);
+    assert_memory_equal(&before, &f->session->view.camera, sizeof(before));
+    say(f, "{\"type\":\"fit\",\"seq\":10}");
+    answer = hear(f);
+    assert_true(json_number_value(json_object_get(answer, "fov")) == 45 && !json_object_get(answer, "height_m"));
+    json_decref(answer);
+}
+
 static void pings_come_back_exactly(void **state)
 {
     struct fixture *f = *state;
@@ -572,6 +593,7 @@ int main(void)
         TEST(a_client_that_does_not_read_costs_a_bounded_list),
         TEST(too_many_messages_are_put_off),
         TEST(acks_for_nothing_are_errors),
+        TEST(a_fit_is_answered_with_a_camera_and_moves_nothing),
         TEST(pings_come_back_exactly),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);

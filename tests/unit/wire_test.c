@@ -58,6 +58,7 @@ static struct wire_frame frame_of_json(const json_t *o)
         .full_width_px = (uint16_t)number(o, "full_width"),
         .full_height_px = (uint16_t)number(o, "full_height"),
         .fov_deg = (float)json_number_value(json_object_get(o, "fov")),
+        .height_m = (float)json_number_value(json_object_get(o, "height_m")),
     };
     vector(o, "eye", f.eye_m);
     vector(o, "target", f.target_m);
@@ -121,7 +122,7 @@ static void reads_and_writes_the_vectors(void **state)
         *(valid ? &good : &bad) += 1;
     }
     closedir(folder);
-    assert_true(good >= 8 && bad >= 15);
+    assert_true(good >= 9 && bad >= 17);
 }
 
 static void every_cut_of_a_frame_is_refused(void **state)
@@ -158,7 +159,8 @@ static void random_headers_are_refused_or_sane(void **state)
         wire_put_frame(&f, again);
         assert_memory_equal(again, changed, 108);
         assert_true(f.x_px + f.width_px <= f.full_width_px && f.full_width_px <= WIRE_MAX_FRAME_PX);
-        assert_true(f.payload_bytes == count - WIRE_FRAME_HEADER_BYTES && f.fov_deg >= 1 && f.fov_deg <= 120);
+        assert_true(f.payload_bytes == count - WIRE_FRAME_HEADER_BYTES);
+        assert_true(f.fov_deg == 0 ? f.height_m > 0 : f.fov_deg >= 1 && f.fov_deg <= 120 && f.height_m == 0);
     }
     mem_free(bytes);
     assert_true(accepted > 1000);

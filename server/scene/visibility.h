@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Which assets a picture shows, which it only hints at, and what of the plant is cut away. Plain data. Thread: any. */
+#ifndef SCENE_VISIBILITY_H
+#define SCENE_VISIBILITY_H
+#include <stdbool.h>
+#include <stdint.h>
+
+enum { ASSET_SET_MAX = 4096, CLIP_MAX_PLANES = 6 };
+
+struct asset_set { /* by index in scene->assets; zero: empty */
+    uint64_t words[ASSET_SET_MAX / 64];
+    int count;
+};
+void asset_set_add(struct asset_set *set, int asset); /* 0..ASSET_SET_MAX - 1 */
+bool asset_set_has(const struct asset_set *set, int asset);
+
+struct clip { /* what lies on the inner side of every plane stays */
+    int plane_count;
+    bool is_box;                       /* the planes are those of a box: min x, max x, min y, ... */
+    double planes[CLIP_MAX_PLANES][4]; /* n x, n y, n z, d: n p + d >= 0 inside; n of unit length, plant frame */
+};
+void clip_box(struct clip *clip, const double min_m[3], const double max_m[3]);
+void clip_get_box(const struct clip *clip, double min_m[3], double max_m[3]);
+bool clip_keeps(const struct clip *clip, const double point_m[3]);
+/* The part of origin + t direction, low <= t <= high, that stays. False: none. */
+bool clip_ray(const struct clip *clip, const double origin[3], const double direction[3], double *low, double *high);
+
+struct visibility {
+    struct asset_set hidden, isolated, ghosts;
+    struct clip clip;
+};
+enum asset_look {
+    ASSET_SHOWN,
+    ASSET_GHOST, /* see-through, without a field */
+    ASSET_HIDDEN /* asked to be hidden; or others are isolated, and it is no ghost */
+};
+enum asset_look visibility_of(const struct visibility *visibility, int asset);
+bool visibility_equal(const struct visibility *a, const struct visibility *b);
+
+#endif

@@ -1,0 +1,138 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Cameras that look at something: all of it is in the picture, and fills it; from the side that was asked for. */
+#include "scene/framing.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "tests/support/small_scene.h"
+
+/* How far towards the picture's edge the farthest corner of a box lies: 1 is on it. */
+static double reach(const struct camera *camera, double aspect, const double min[3], const double max[3])
+{
+    double view[16], projection[16], most = 0;
+    camera_matrices(camera, aspect, min, max, view, projection);
+    for (int corner = 0; corner < 8; corner++) {
+        double p[3], eye[4] = { 0 }, clip[4] = { 0 };
+        for (int i = 0; i < 3; i++)
+            p[i] = corner >> i & 1 ? max[i] : min[i];
+        for (int row = 0; row < 4; row++)
+            eye[row] = view[row] * p[0] + view[4 + row] * p[1] + view[8 + row] * p[2] + view[12 + row];
+        for (int row = 0; row < 4; row++)
+            for (int c = 0; c < 4; c++)
+                clip[row] += projection[4 * c + row] * eye[c];
+        assert_true(clip[3] > 0);
+        most = fmax(most, fmax(fabs(clip[0] / clip[3]), fabs(clip[1] / clip[3])));
+    }
+    return most;
+}
+
+static void forward_of(const struct camera *camera, double forward[3])
+{
+    double length = 0;
+    for (int i = 0; i < 3; i++) {
+        forward[i] = camera->target_m[i] - camera->eye_m[i];
+        length += forward[i] * forward[i];
+    }
+    for (int i = 0; i < 3; i++)
+        forward[i] /= sqrt(length);
+}
+
+static void every_side_shows_all_of_it(void **state)
+{
+    (void)state;
+    const struct scene *scene = small_scene();
+    for (int asset = -1; asset < 2; asset++)
+        for (int side = SIDE_NOW; side <= SIDE_ISO; side++)
+            for (int parallel = 0; parallel < 2; parallel++)
+                for (double aspect = 0.4; aspect < 3; aspect *= 1.7) {
+                    struct camera camera;
+                    struct framing framing = { .asset = asset, .tag = -1, .side = (enum side)side };
+                    scene_home(scene, aspect, &camera);
+                    camera.height_m = parallel;
+                    framing_look(scene, &framing, aspect, &camera);
+                    assert_true(camera_valid(&camera));
+                    assert_int_equal(camera.height_m > 0, parallel);
+                    const double *min = asset < 0 ? scene->bounds_min_m : scene->assets[asset].bounds_min_m;
+                    const double *max = asset < 0 ? scene->bounds_max_m : scene->assets[asset].bounds_max_m;
+                    double most = reach(&camera, aspect, min, max);
+                    assert_true(most < 0.96 && most > 0.9);
+                }
+}
+
+static void sides_are_where_they_should_be(void **state)
+{
+    (void)state;
+    static const double forward[][3] = { [SIDE_TOP] = { 0, 0, -1 },  [SIDE_BOTTOM] = { 0, 0, 1 }, [SIDE_FRONT] = { 0, 1, 0 },
+                                         [SIDE_BACK] = { 0, -1, 0 }, [SIDE_LEFT] = { 1, 0, 0 },   [SIDE_RIGHT] = { -1, 0, 0 } };
+    for (int side = SIDE_TOP; side <= SIDE_RIGHT; side++) {
+        struct camera camera = { .eye_m = { 9, 9, 9 }, .up = { 0, 0, 1 }, .fov_deg = 45, .height_m = 1 };
+        struct framing framing = { .asset = -1, .tag = -1, .side = (enum side)side };
+        double got[3];
+        framing_look(small_scene(), &framing, 1.5, &camera);
+        forward_of(&camera, got);
+        for (int i = 0; i < 3; i++)
+            assert_float_equal(got[i], forward[side][i], 2e-3);
+        assert_true(camera.up[2] == 1);
+    }
+}
+
+static void north_is_above_in_a_plan(void **state)
+{
+    (void)state;
+    struct camera camera = { .eye_m = { 9, 9, 9 }, .up = { 0, 0, 1 }, .fov_deg = 45 };
+    struct framing framing = { .asset = -1, .tag = -1, .side = SIDE_TOP };
+    double view[16], projection[16];
+    framing_look(small_scene(), &framing, 1.5, &camera);
+    camera_matrices(&camera, 1.5, small_scene()->bounds_min_m, small_scene()->bounds_max_m, view, projection);
+    assert_float_equal(view[0], 1, 1e-6); /* right is east */
+    assert_float_equal(view[5], 1, 1e-5); /* up is north */
+}
+
+static void names_are_found(void **state)
+{
+    (void)state;
+    const struct plant *plant = small_scene()->plant;
+    struct framing framing;
+    assert_true(framing_find(plant, "P-101A", &framing) && framing.asset == 1 && framing.tag == -1);
+    assert_true(framing_find(plant, "TI-1", &framing) && framing.asset == -1 && framing.tag == 0);
+    assert_true(framing_find(plant, NULL, &framing) && framing.asset == -1 && framing.tag == -1);
+    assert_false(framing_find(plant, "XI-1", &framing));
+    assert_false(framing_find(plant, "", &framing));
+}
+
+static void a_sensor_is_seen_from_outside(void **state)
+{
+    (void)state;
+    const struct scene *scene = small_scene();
+    struct camera camera;
+    struct framing framing;
+    double forward[3];
+    scene_home(scene, 1.5, &camera);
+    assert_true(framing_find(scene->plant, "TI-1", &framing));
+    framing_look(scene, &framing, 1.5, &camera);
+    const double *at = scene->assets[0].sensors[0].surface_m;
+    for (int i = 0; i < 3; i++)
+        assert_float_equal(camera.target_m[i], at[i], 0.3);
+    forward_of(&camera, forward);
+    assert_true(forward[0] > 0.9 && forward[2] < -0.2); /* it stands at the west end */
+    double away = hypot(hypot(camera.eye_m[0] - at[0], camera.eye_m[1] - at[1]), camera.eye_m[2] - at[2]);
+    assert_true(away > 1 && away < 8);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_side_shows_all_of_it),    cmocka_unit_test(sides_are_where_they_should_be),
+        cmocka_unit_test(north_is_above_in_a_plan),      cmocka_unit_test(names_are_found),
+        cmocka_unit_test(a_sensor_is_seen_from_outside),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
