@@ -27,6 +27,11 @@ layout(std430, binding = 3) readonly buffer Normals { float normals[]; };
 layout(std430, binding = 4) buffer Light { uint baked[]; }; // light, ambient, openness, how far it faces the sun
 #endif
 
+const vec2 disc[16] = vec2[](vec2(0.177, 0.000), vec2(-0.226, 0.207), vec2(0.035, -0.394), vec2(0.285, 0.371), vec2(-0.522, -0.092),
+                             vec2(0.494, -0.314), vec2(-0.166, 0.615), vec2(-0.316, -0.608), vec2(0.685, 0.249), vec2(-0.712, 0.294),
+                             vec2(0.343, -0.734), vec2(0.255, 0.808), vec2(-0.764, -0.443), vec2(0.897, -0.197), vec2(-0.548, 0.779),
+                             vec2(-0.126, -0.976));
+
 // How much of the sky map's surroundings lies open: 32 directions are few, so each one stands for the cone around it.
 float opening(vec3 p, int i)
 {
@@ -62,7 +67,7 @@ void main()
 #ifdef GROUND
     ivec2 size = imageSize(ground), at = ivec2(i % size.x, i / size.x);
     vec3 place = (plant_from_here * vec4((vec2(at) + 0.5) / vec2(size), 0.0, 1.0)).xyz;
-    float sun_visible = sun_visibility(sun_from_plant, place, ground_up, sun.w, 2.5);
+    float sun_visible = sun_visibility(sun_from_plant, place, ground_up, sun.w);
 #ifdef SKY
     float open = ambient(place, ground_up).y;
 #else
@@ -79,7 +84,7 @@ void main()
     vec2 seen = unpackUnorm4x8(baked[i]).yz;
 #endif
     float facing = max(dot(normal, sun.xyz), 0.0);
-    float sun_visible = facing > 0.0 ? sun_visibility(sun_from_plant, place, normal, sun.w, 2.0) : 0.0;
+    float sun_visible = sun_visibility(sun_from_plant, place, normal, sun.w);
     baked[i] = packUnorm4x8(vec4(light_scalar(seen.x, facing * sun_visible), seen, facing));
 #endif
 }

@@ -13,7 +13,7 @@ void main()
 {
     vec2 light = texture(ground_light, at).rg;
 #ifdef STILL
-    light.x = sun_visibility(frame.sun_from_eye, place, frame.up.xyz, frame.sun.w, 2.5);
+    light.x = sun_visibility(frame.sun_from_eye, place, frame.up.xyz, frame.sun.w);
 #endif
     vec2 margin = smoothstep(vec2(0.5), vec2(0.3), abs(at - 0.5));
     factor = vec4(vec3(1.0 - margin.x * margin.y * min(0.20 * (1.0 - light.x) + 0.42 * (1.0 - light.y), 0.5)), 1.0);

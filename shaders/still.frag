@@ -53,7 +53,7 @@ void main()
     if (base.a < m.emissive.a)
         discard;
 #endif
-    float sun_visible = sun_visibility(frame.sun_from_eye, place, n, frame.sun.w, 2.0);
+    float sun_visible = sun_visibility(frame.sun_from_eye, place, n, frame.sun.w);
     float ambient = sky.x, open = sky.y;
 #ifdef FIELD
     color = vec4(field_color(field, light_scalar(ambient, max(dot(n, l), 0.0) * sun_visible)), 1.0);
