@@ -49,13 +49,20 @@ uint64_t build_key(uint64_t model_hash, const struct geometry_params *geometry, 
     return XXH3_64bits_digest(&state);
 }
 
+bool build_sensor_place(const struct gltf_model *model, const struct geometry_params *geometry, const struct plant_sensor *sensor,
+                        double place_m[3])
+{
+    memcpy(place_m, sensor->position_m, sizeof(sensor->position_m));
+    return !sensor->node || geometry_node_place(model, geometry, sensor->node, place_m);
+}
+
 /* Where each sensor is, less the origin. */
 static bool place_sensors(const struct build_input *input, const struct geometry *geometry, double (*places)[3], int *missing, char *why)
 {
     for (size_t i = 0; i < input->sensor_count; i++) {
         const struct plant_sensor *sensor = &input->sensors[i];
-        double place[3] = { sensor->position_m[0], sensor->position_m[1], sensor->position_m[2] };
-        if (sensor->node && !geometry_node_place(input->model, &input->geometry, sensor->node, place)) {
+        double place[3];
+        if (!build_sensor_place(input->model, &input->geometry, sensor, place)) {
             *missing = (int)i;
             snprintf(why, MODEL_WHY_BYTES, "the model has no node '%.200s'", sensor->node);
             return false;

@@ -47,6 +47,10 @@ struct build_output {
 bool build_asset(struct log *log, struct workers *workers, const struct build_input *input, struct build_output *output,
                  char why[MODEL_WHY_BYTES]);
 
+/* In the asset frame. False: its node is not in the model. */
+bool build_sensor_place(const struct gltf_model *model, const struct geometry_params *geometry, const struct plant_sensor *sensor,
+                        double place_m[3]);
+
 /* The key of a file that would be made of this. */
 uint64_t build_key(uint64_t model_hash, const struct geometry_params *geometry, const struct plant *plant,
                    const struct plant_sensor *sensors, size_t sensor_count);

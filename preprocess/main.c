@@ -6,11 +6,13 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "preprocess/debug_views.h"
 #include "preprocess/distances.h"
 #include "preprocess/report.h"
 
 static const char usage[] =
     "usage: plantcast-prep PLANT.yaml [--output DIR] [--report text|json]\n"
+    "       plantcast-prep PLANT.yaml --debug-view[=DIR] [--asset ID] [--sensor TAG]\n"
     "       plantcast-prep distances PLANT.yaml --asset ID --sensor TAG [--output DIR]\n"
     "\n"
     "Prepares the models that a plant file names: triangles cut out, sensors dropped onto them, and the distance along the surface from "
@@ -20,15 +22,18 @@ static const char usage[] =
     "  --output DIR    where the prepared files go (default: NAME.prepared beside NAME.yaml)\n"
     "  --report KIND   what is printed at the end: text has every asset, json is for programs; without it, text of what was built,\n"
     "                  cut to the first 40 rows. Progress goes to standard error. preprocess/REPORT.md says what each number means\n"
+    "  --debug-view[=DIR]  also write ASSET.glb for each asset, to be opened in any glTF viewer: points, bridges, open edges, hidden\n"
+    "                  patches, and the distance from a sensor in colour (DIR: NAME.debug beside NAME.yaml)\n"
     "  --asset ID      this asset alone\n"
-    "  --sensor TAG    tag whose distances are printed, as CSV: x,y,z,geodesic_m,euclidean_m (plant frame, metres)\n"
+    "  --sensor TAG    tag whose distances are shown (else each asset's first) or printed, as CSV: x,y,z,geodesic_m,euclidean_m (plant\n"
+    "                  frame, metres)\n"
     "  --help          this text\n"
     "\n"
     "Exit status: 0 good, 1 something is wrong with the input or the disk, 2 wrong use.\n";
 
 struct options {
-    bool distances, json, all, help;
-    const char *plant, *output, *asset, *sensor;
+    bool distances, json, all, debug_view, help;
+    const char *plant, *output, *asset, *sensor, *views;
 };
 
 static atomic_bool interrupted;
@@ -56,13 +61,21 @@ static int wrong_use(const char *what, const char *about)
 /* 0, or the exit status. */
 static int read_options(int argc, char **argv, struct options *options)
 {
-    static const struct option known[] = { { "output", required_argument, NULL, 'o' }, { "report", required_argument, NULL, 'r' },
-                                           { "asset", required_argument, NULL, 'a' },  { "sensor", required_argument, NULL, 's' },
-                                           { "help", no_argument, NULL, 'h' },         { 0 } };
+    static const struct option known[] = { { "output", required_argument, NULL, 'o' },
+                                           { "report", required_argument, NULL, 'r' },
+                                           { "debug-view", optional_argument, NULL, 'd' },
+                                           { "asset", required_argument, NULL, 'a' },
+                                           { "sensor", required_argument, NULL, 's' },
+                                           { "help", no_argument, NULL, 'h' },
+                                           { 0 } };
     int c;
     while ((c = getopt_long(argc, argv, "ho:r:", known, NULL)) != -1) {
         switch (c) {
         case 'o': options->output = optarg; break;
+        case 'd':
+            options->debug_view = true;
+            options->views = optarg;
+            break;
         case 'a': options->asset = optarg; break;
         case 's': options->sensor = optarg; break;
         case 'h': options->help = true; break;
@@ -88,8 +101,8 @@ static int read_options(int argc, char **argv, struct options *options)
         return wrong_use("too many arguments: ", argv[optind]);
     if (options->distances && (!options->asset || !options->sensor))
         return wrong_use("", "distances needs --asset and --sensor");
-    if (!options->distances && options->sensor)
-        return wrong_use("", "--sensor belongs to distances");
+    if (!options->distances && !options->debug_view && options->sensor)
+        return wrong_use("", "--sensor belongs to distances and --debug-view");
     return 0;
 }
 
@@ -125,6 +138,12 @@ static bool run_all(const struct options *options, struct log *log, struct worke
     else
         report_text(&prepare, options->all, stdout);
     prepare_finish(&prepare);
+    if (good && options->debug_view) {
+        char *views = options->views ? mem_strdup(options->views) : debug_views_folder(plant);
+        struct debug_views_params wanted = { .folder = views, .asset = options->asset, .sensor = options->sensor, .say = stderr };
+        good = debug_views_write(log, workers, plant, &wanted, diag);
+        mem_free(views);
+    }
     return good;
 }
 

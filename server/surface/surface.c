@@ -408,6 +408,7 @@ void surface_look(const struct surface *surface, struct surface_look *look)
         .tri_count = surface->mesh.tri_count,
         .visible_count = surface->visible.tri_count,
         .vertex_point = surface->vertex_point,
+        .vertex_count = surface->vertex_count,
         .bridges = surface->bridges,
         .bridge_count = surface->bridge_count,
     };

@@ -63,6 +63,7 @@ struct surface_look {
     const uint32_t (*tris)[3]; /* the visible ones first */
     size_t point_count, tri_count, visible_count;
     const uint32_t *vertex_point; /* of the model's vertices; other points are samples */
+    size_t vertex_count;
     const struct stitch_bridge *bridges; /* stitch.h */
     size_t bridge_count;
 };

@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Debug views of a plant's assets, one GLB each. */
+#ifndef PREPROCESS_DEBUG_VIEWS_H
+#define PREPROCESS_DEBUG_VIEWS_H
+#include <stdio.h>
+
+#include "base/diag.h"
+#include "base/log.h"
+#include "base/workers.h"
+#include "plant/plant.h"
+
+struct debug_views_params {
+    const char *folder;
+    const char *asset;  /* NULL: all */
+    const char *sensor; /* its asset alone, and its distances; NULL: each asset's first sensor */
+    FILE *say;          /* what was written; NULL: silent */
+};
+
+/* Findings go to diag. False: some view could not be written. */
+bool debug_views_write(struct log *log, struct workers *workers, const struct plant *plant, const struct debug_views_params *params,
+                       struct diag *diag);
+
+/* NAME.debug beside NAME.yaml. Free with mem_free. */
+char *debug_views_folder(const struct plant *plant);
+
+#endif
