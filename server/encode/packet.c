@@ -6,17 +6,23 @@
 
 #include "base/mem.h"
 
+static void *copy_of(const void *list, size_t count, size_t bytes_each)
+{
+    void *copy = mem_array(count, bytes_each);
+    if (count)
+        memcpy(copy, list, count * bytes_each);
+    return copy;
+}
+
 /* A packet may wait for a slow peer: it keeps what the frame says, not its megabytes of pixels. */
 static struct frame *without_pixels(const struct frame *frame)
 {
     struct frame *copy = mem_new(sizeof(*copy));
-    size_t bytes = frame->marker_count * sizeof(*frame->markers);
     memcpy(copy, frame, sizeof(*copy));
     atomic_init(&copy->refs, 1);
     copy->bgrx = NULL;
-    copy->markers = mem_new(bytes);
-    if (bytes)
-        memcpy(copy->markers, frame->markers, bytes);
+    copy->markers = copy_of(frame->markers, frame->marker_count, sizeof(*frame->markers));
+    copy->labels = copy_of(frame->labels, frame->label_count, sizeof(*frame->labels));
     return copy;
 }
 

@@ -296,7 +296,12 @@ char *reply_markers_text(const struct frame *frame, uint32_t seq)
         if (isfinite(m->x_px) && isfinite(m->y_px))
             json_array_append_new(markers, json_pack("[i,f,f,i,i]", m->tag, (double)m->x_px, (double)m->y_px, m->occluded, m->half));
     }
-    return print(json_pack("{s:s,s:I,s:o}", "type", "markers", "seq", (json_int_t)seq, "markers", markers), DIGITS);
+    json_t *labels = json_array();
+    for (size_t i = 0; i < frame->label_count; i++) {
+        const struct frame_label *l = &frame->labels[i];
+        json_array_append_new(labels, json_pack("[f,f,f,i]", l->value, (double)l->x_px, (double)l->y_px, l->half));
+    }
+    return print(json_pack("{s:s,s:I,s:o,s:o}", "type", "markers", "seq", (json_int_t)seq, "markers", markers, "isolines", labels), DIGITS);
 }
 
 char *reply_status_text(const struct session_world *world, int64_t now_utc_ns)

@@ -60,6 +60,18 @@ static void copy_markers(struct frame *whole, const struct frame *part, int half
     }
 }
 
+static void copy_labels(struct frame *whole, const struct frame *part, int half, int x_px)
+{
+    size_t capacity = whole->label_count;
+    mem_grow(&whole->labels, &capacity, whole->label_count + part->label_count, sizeof(*whole->labels));
+    for (size_t i = 0; i < part->label_count; i++) {
+        struct frame_label label = part->labels[i];
+        label.half = (uint8_t)half;
+        label.x_px += (float)x_px;
+        whole->labels[whole->label_count++] = label;
+    }
+}
+
 static void add_meaning(struct frame *whole, const struct frame *part, int half)
 {
     whole->data_utc_ns = part->data_utc_ns;
@@ -84,6 +96,7 @@ static struct frame *join(const struct view *view, struct frame *parts[2])
         int x_px = half ? view_left_px(view) : 0;
         copy_pixels(whole, parts[half], x_px);
         copy_markers(whole, parts[half], half, x_px);
+        copy_labels(whole, parts[half], half, x_px);
         add_meaning(whole, parts[half], half);
     }
     if (whole) {

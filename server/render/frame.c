@@ -32,6 +32,7 @@ void frame_unref(struct frame **frame_ptr)
     if (!frame || atomic_fetch_sub_explicit(&frame->refs, 1, memory_order_acq_rel) != 1)
         return;
     mem_free(frame->markers);
+    mem_free(frame->labels);
     mem_free(frame->bgrx);
     mem_free(frame);
 }

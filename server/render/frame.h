@@ -14,6 +14,12 @@ struct frame_marker {
     uint8_t half;     /* of a split view: 1 is the right one */
 };
 
+struct frame_label { /* a place on an isoline, in sight */
+    double value;
+    float x_px, y_px;
+    uint8_t half;
+};
+
 struct frame {
     _Atomic int refs;
     struct view view; /* what it was drawn with */
@@ -21,6 +27,8 @@ struct frame {
     uint8_t *bgrx;                /* 4 bytes per pixel, rows from the top */
     struct frame_marker *markers; /* sensors of the shown group */
     size_t marker_count;
+    struct frame_label *labels; /* where isolines may be labelled: more than there is room for */
+    size_t label_count;
     int64_t data_utc_ns;                      /* of the snapshot it shows */
     int64_t oldest_age_ns;                    /* INT64_MAX: no value takes part */
     int64_t field_ns, render_ns, readback_ns; /* stage times */

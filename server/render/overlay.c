@@ -11,18 +11,20 @@
 #include "render/overlay_pen.h"
 #include "value/quality.h"
 
+bool box_meets(const struct box *a, const struct box *b)
+{
+    return a->x < b->x + b->width && b->x < a->x + a->width && a->y < b->y + b->height && b->y < a->y + a->height;
+}
+
 bool pen_is_free(const struct pen *pen, const struct box *box)
 {
     const struct box *area = &pen->area;
     double right = area->x + area->width, bottom = area->y + area->height;
     if (box->x < area->x || box->y < area->y || box->x + box->width > right || box->y + box->height > bottom)
         return false;
-    for (int i = 0; i < pen->taken_count; i++) {
-        const struct box *other = &pen->taken[i];
-        if (box->x < other->x + other->width && other->x < box->x + box->width && box->y < other->y + other->height &&
-            other->y < box->y + box->height)
+    for (int i = 0; i < pen->taken_count; i++)
+        if (box_meets(&pen->taken[i], box))
             return false;
-    }
     return true;
 }
 

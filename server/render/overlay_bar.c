@@ -47,19 +47,25 @@ static void log_ticks(struct ticks *ticks, const struct scale *scale, double mos
             add_tick(ticks, scale, power * leads[i]);
 }
 
-/* Where bands meet, with both ends, if all can be written; else round numbers. */
+static void line_ticks(struct ticks *ticks, const struct scale *scale, const double *lines, int count)
+{
+    add_tick(ticks, scale, scale->min);
+    for (int i = 0; i < count; i++)
+        if (lines[i] != scale->min && lines[i] != scale->max)
+            add_tick(ticks, scale, lines[i]);
+    add_tick(ticks, scale, scale->max);
+}
+
+/* What has a line, with both ends, if all can be written; else round numbers. */
 static void choose_ticks(struct ticks *ticks, const struct view *view, double most)
 {
     struct scale scale;
-    double edges[SCALE_EDGES];
+    double lines[VIEW_ALL_LINES];
     view_scale(view, &scale);
-    int count = scale_edges(&scale, edges);
+    int count = view_lines(view, lines);
     ticks->count = 0;
     if (count > 0 && count + 2 <= most) {
-        add_tick(ticks, &scale, scale.min);
-        for (int i = 0; i < count; i++)
-            add_tick(ticks, &scale, edges[i]);
-        add_tick(ticks, &scale, scale.max);
+        line_ticks(ticks, &scale, lines, count);
     } else if (scale.log) {
         log_ticks(ticks, &scale, most);
     } else {

@@ -57,7 +57,9 @@ static void write_words(const struct pen *pen, struct legend *legend)
 static void lay_out(struct pen *pen, struct legend *legend)
 {
     const struct box *area = &pen->area;
-    double line = 1.5 * pen->text_px, width, top = 3.3 * pen->text_px, bottom = (5.0 + 1.3 * legend->note_count) * pen->text_px;
+    double width, line = 1.5 * pen->text_px, top = 3.3 * pen->text_px, bottom = 4.9 * pen->text_px;
+    if (legend->note_count > 0)
+        bottom += (0.5 + 1.3 * legend->note_count) * pen->text_px;
     pen_font(pen, 1, true);
     width = pen_text_width(pen, legend->title);
     pen_font(pen, 0.9, false);
@@ -136,5 +138,5 @@ void overlay_legend(struct pen *pen)
     draw_uncertain(pen, &legend, y + 3.1 * pen->text_px);
     pen_ink(pen, 1);
     for (int i = 0; i < legend.note_count; i++)
-        pen_text(pen, legend.card.x + legend.pad, y + (5.3 + 1.3 * i) * pen->text_px, legend.notes[i]);
+        pen_text(pen, legend.card.x + legend.pad, y + (5.6 + 1.3 * i) * pen->text_px, legend.notes[i]);
 }

@@ -131,17 +131,57 @@ static void place_labels(struct pen *pen)
     mem_free(labels.done);
 }
 
+static bool is_under(const struct pen *pen, int cards, const struct box *mark)
+{
+    for (int i = 0; i < cards; i++)
+        if (box_meets(&pen->taken[i], mark))
+            return true;
+    return false;
+}
+
+/* The value on its line, wherever nothing else is; those of one value stand far apart. */
+static void label_isolines(struct pen *pen)
+{
+    const struct frame *frame = pen->frame;
+    double least_px = 0.16 * pen->area.width, range = pen->view.range_max - pen->view.range_min, pad = 2 * pen->unit;
+    bool *done = mem_array(frame->label_count, sizeof(*done));
+    for (size_t i = 0; i < frame->label_count; i++) {
+        const struct frame_label *label = &frame->labels[i];
+        bool crowded = label->half != pen->half;
+        for (size_t k = 0; k < i && !crowded; k++)
+            crowded = done[k] && frame->labels[k].value == label->value &&
+                      hypot(frame->labels[k].x_px - label->x_px, frame->labels[k].y_px - label->y_px) < least_px;
+        char text[40];
+        pen_number(label->value, pen->view.paint.log ? label->value : range, text);
+        pen_font(pen, 0.75, true);
+        double width = pen_text_width(pen, text) + 2 * pad, height = 0.75 * pen->text_px + 2 * pad;
+        struct box box = { label->x_px - 0.5 * width, label->y_px - 0.5 * height, width, height };
+        if (crowded || !pen_is_free(pen, &box))
+            continue;
+        done[i] = true;
+        pen_take(pen, &box);
+        cairo_rectangle(pen->cairo, box.x, box.y, box.width, box.height);
+        cairo_set_source_rgba(pen->cairo, 1, 1, 1, 0.75);
+        cairo_fill(pen->cairo);
+        pen_ink(pen, 1);
+        pen_text(pen, box.x + pad, box.y + pad + 0.66 * pen->text_px, text);
+    }
+    mem_free(done);
+}
+
 void overlay_markers(struct pen *pen)
 {
+    int cards = pen->taken_count; /* what lies over the picture already */
     double radius = 5 * pen->unit;
     for (size_t i = 0; i < pen->frame->marker_count; i++) {
         const struct frame_marker *marker = &pen->frame->markers[i];
         struct box mark = { marker->x_px - radius, marker->y_px - radius, 2 * radius, 2 * radius };
-        if (!is_inside(pen, marker))
+        if (!is_inside(pen, marker) || is_under(pen, cards, &mark))
             continue;
         if (!marker->occluded)
             pen_take(pen, &mark);
         draw_mark(pen, marker, is_bad(pen, marker));
     }
     place_labels(pen);
+    label_isolines(pen);
 }

@@ -12,6 +12,8 @@ struct box {
     double x, y, width, height;
 };
 
+bool box_meets(const struct box *a, const struct box *b);
+
 enum { PEN_MAX_TAKEN = 512 };
 struct pen {
     cairo_t *cairo;

@@ -11,6 +11,7 @@
 #include "gpu/readback.h"
 #include "render/content.h"
 #include "render/frame_block.h"
+#include "render/isolines.h"
 #include "render/lines.h"
 #include "render/markers.h"
 #include "render/matrix.h"
@@ -33,6 +34,7 @@ struct renderer {
     struct sky sky;
     struct lines lines;
     struct markers markers;
+    struct isolines isolines;
     struct readback readback;
     GLuint frame_buffer;                      /* struct frame_block */
     struct palettes palettes;
@@ -62,7 +64,8 @@ struct renderer *renderer_create(struct log *log, struct gl *gl, const struct sc
     renderer->frame_buffer = mesh_buffer(log, "frame block", sizeof(struct frame_block), NULL, GL_DYNAMIC_STORAGE_BIT);
     if (!renderer->frame_buffer || !stage_init(&renderer->stage, gl, scene) || !light_init(&renderer->light, &renderer->stage) ||
         !solid_init(&renderer->solid, log) || !sky_init(&renderer->sky, log) || !lines_init(&renderer->lines, log) ||
-        !markers_init(&renderer->markers, log) || !bake_default_light(renderer))
+        !markers_init(&renderer->markers, log) || !isolines_init(&renderer->isolines, log, scene->asset_count) ||
+        !bake_default_light(renderer))
         renderer_destroy(&renderer);
     return renderer;
 }
@@ -76,6 +79,7 @@ void renderer_destroy(struct renderer **renderer_ptr)
     palettes_finish(&renderer->palettes);
     glDeleteBuffers(1, &renderer->frame_buffer);
     readback_finish(&renderer->readback);
+    isolines_finish(&renderer->isolines);
     markers_finish(&renderer->markers);
     lines_finish(&renderer->lines);
     sky_finish(&renderer->sky);
@@ -204,6 +208,7 @@ static struct stroke *begin(struct renderer *renderer, const struct view *view, 
     describe(renderer, frame, &picture, snapshot);
     struct stroke *stroke = mem_new(sizeof(*stroke));
     stroke_init(stroke, &picture, &target, frame, tile_px);
+    isolines_collect(&renderer->isolines, &picture, &stroke->isolines);
     return stroke;
 }
 
@@ -290,13 +295,15 @@ struct frame *renderer_end(struct renderer *renderer, struct stroke **stroke_ptr
     while (stroke->next < bits_of(stroke))
         draw_bit(renderer, stroke);
     lines_draw_outline(&renderer->lines, &stroke->picture);
-    if (!markers_start(&renderer->markers, &stroke->picture) || !readback_start(&renderer->readback, log, &stroke->target) ||
-        !readback_wait(&renderer->readback, log))
+    if (!markers_start(&renderer->markers, &stroke->picture) ||
+        !isolines_start(&renderer->isolines, &stroke->picture, &stroke->isolines) ||
+        !readback_start(&renderer->readback, log, &stroke->target) || !readback_wait(&renderer->readback, log))
         goto end;
     int64_t drawn_ns = clock_mono_ns();
     if (!readback_get(&renderer->readback, log, stroke->frame->bgrx, (size_t)stroke->frame->stride_bytes))
         goto end;
     markers_get(&renderer->markers, &stroke->picture, stroke->frame);
+    isolines_get(&renderer->isolines, &stroke->isolines, stroke->frame);
     stroke->frame->render_ns += drawn_ns - start_ns;
     stroke->frame->readback_ns = clock_mono_ns() - drawn_ns;
     frame = stroke->frame;

@@ -52,6 +52,7 @@ void stroke_finish(struct stroke *stroke)
         glDeleteBuffers(1, &stroke->copies[i].buffer);
     if (stroke->frame)
         frame_unref(&stroke->frame);
+    mem_free(stroke->isolines.at);
     mem_free(stroke->copies);
     mem_free(stroke->fields);
     mem_free(stroke->visible);

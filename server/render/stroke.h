@@ -4,6 +4,7 @@
 #ifndef RENDER_STROKE_H
 #define RENDER_STROKE_H
 #include "render/frame.h"
+#include "render/isolines.h"
 #include "render/picture.h"
 
 struct stroke {
@@ -14,6 +15,7 @@ struct stroke {
     const struct fields_entry **fields; /* per asset */
     struct fields_entry *copies;        /* per asset, with buffers of their own; NULL: drawn at once, no copies needed */
     int *visible, *in_tile;
+    struct isoline_points isolines;
     int tile_px;                 /* side; a multiple of what the rasteriser works on */
     int columns, rows, next;     /* next: tile, counted through all passes */
 };

@@ -179,6 +179,36 @@ static void test_isolines_run_where_the_value_is(void **state)
     assert_int_equal(count_wrong(&view), 0);
 }
 
+/* The value that is written on a line is the field's at that place; drawn at once or bit by bit. */
+static void test_labels_stand_on_their_lines(void **state)
+{
+    struct view view;
+    (void)state;
+    look_down(&view);
+    const struct scalars *scalars = field_scalars(stand.field, 0, &view.field, stand.snapshot);
+    memcpy(view.paint.lines, (double[]){ 30, 60 }, 2 * sizeof(double));
+    view.paint.line_count = 2;
+    for (int bits = 0; bits < 2; bits++) {
+        struct stroke *stroke = bits ? renderer_begin(stand.renderer, &view, stand.snapshot) : NULL;
+        struct frame *frame = bits ? renderer_end(stand.renderer, &stroke) : stand_draw(&stand, &view);
+        int of_each[2] = { 0 };
+        for (size_t i = 0; i < frame->label_count; i++) {
+            const struct frame_label *label = &frame->labels[i];
+            assert_true(label->value == 30 || label->value == 60);
+            of_each[label->value == 60]++;
+            int x = (int)fmin(label->x_px, SIDE_PX - 1), y = (int)fmin(label->y_px, SIDE_PX - 1);
+            assert_true(fabs(value_at(scalars, x, y) - label->value) < 2);
+        }
+        assert_in_range(of_each[0], 2, 8);
+        assert_in_range(of_each[1], 2, 8);
+        frame_unref(&frame);
+    }
+    view.paint.line_count = 0;
+    struct frame *frame = stand_draw(&stand, &view);
+    assert_int_equal(frame->label_count, 0);
+    frame_unref(&frame);
+}
+
 static void test_beyond_the_range_has_its_own_colors(void **state)
 {
     const struct colormap *map = colormap_at(0);
@@ -313,6 +343,7 @@ int main(void)
         each(test_bands),
         each(test_logarithmic_scale),
         each(test_isolines_run_where_the_value_is),
+        each(test_labels_stand_on_their_lines),
         each(test_beyond_the_range_has_its_own_colors),
         each(test_readings_at_the_ends_stay_on_the_map),
         each(test_no_data_is_grey_stripes),

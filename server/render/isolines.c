@@ -1,0 +1,194 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Crossings of triangle edges with isolines, thinned out; then, as for markers, a compute shader that looks at the depth buffer. */
+#include "render/isolines.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "gpu/mesh.h"
+#include "gpu/program.h"
+
+enum { POINTS_PER_LINE = 8, POINTS_MOST = 2048 };
+static const double SPACING = 0.2, COARSE = 0.01; /* of an asset's size: between points; error of the level that is searched */
+
+bool isolines_init(struct isolines *isolines, struct log *log, size_t asset_count)
+{
+    isolines->program = program_create(log, program_params(.compute = "markers.comp"));
+    isolines->sets = mem_array(asset_count, sizeof(*isolines->sets));
+    isolines->asset_count = asset_count;
+    return isolines->program != 0;
+}
+
+void isolines_finish(struct isolines *isolines)
+{
+    for (size_t i = 0; i < isolines->asset_count; i++)
+        mem_free(isolines->sets[i].points);
+    mem_free(isolines->sets);
+    program_destroy(&isolines->program);
+    glDeleteBuffers(1, &isolines->buffer);
+}
+
+/* --- points on lines --------------------------------------------------------------------------------------------------------- */
+
+/* One asset being searched. */
+struct search {
+    const struct scene_asset *asset;
+    const struct fields_entry *field;
+    struct isoline_set *set;
+    double size_m;
+    float slack_m;
+    int counts[VIEW_ALL_LINES];
+};
+
+static bool is_apart(const struct search *search, double value, const double place_m[3])
+{
+    double least_m = SPACING * search->size_m;
+    for (size_t i = search->set->count; i-- > 0;) {
+        const struct isoline_point *point = &search->set->points[i];
+        double square = 0;
+        for (int c = 0; c < 3; c++)
+            square += (point->place_m[c] - place_m[c]) * (point->place_m[c] - place_m[c]);
+        if (point->value == value && square < least_m * least_m)
+            return false;
+    }
+    return true;
+}
+
+static void add_point(struct search *search, int line, uint32_t a, uint32_t b)
+{
+    const struct asset_view *view = &search->asset->file->view;
+    const struct scalar *values = search->field->shown;
+    double value = search->set->lines[line], span = (double)values[b].value - (double)values[a].value, file_m[3], place_m[3];
+    double part = (value - (double)values[a].value) / span;
+    const double *m = search->asset->placement;
+    for (int c = 0; c < 3; c++)
+        file_m[c] = (double)view->positions_m[a][c] + part * (double)(view->positions_m[b][c] - view->positions_m[a][c]);
+    for (int c = 0; c < 3; c++)
+        place_m[c] = m[c] * file_m[0] + m[4 + c] * file_m[1] + m[8 + c] * file_m[2] + m[12 + c];
+    if (!is_apart(search, value, place_m))
+        return;
+    struct isoline_set *set = search->set;
+    mem_grow(&set->points, &set->capacity, set->count + 1, sizeof(*set->points));
+    set->points[set->count++] =
+        (struct isoline_point){ .value = value, .place_m = { place_m[0], place_m[1], place_m[2] }, .slack_m = search->slack_m };
+    search->counts[line]++;
+}
+
+static void search_edge(struct search *search, uint32_t a, uint32_t b)
+{
+    const struct scalar *values = search->field->shown;
+    double low = fminf(values[a].value, values[b].value), high = fmaxf(values[a].value, values[b].value);
+    if (values[a].no_data || values[b].no_data || !(high > low))
+        return;
+    for (int i = 0; i < search->set->line_count; i++)
+        if (search->set->lines[i] > low && search->set->lines[i] <= high && search->counts[i] < POINTS_PER_LINE)
+            add_point(search, i, a, b);
+}
+
+static const struct asset_level *coarse_level(const struct asset_view *view, double error_m)
+{
+    uint32_t level = 0;
+    while (level + 1 < view->header->level_count && (double)view->levels[level + 1].error_m <= error_m)
+        level++;
+    return &view->levels[level];
+}
+
+static void search_asset(struct search *search)
+{
+    const struct asset_view *view = &search->asset->file->view;
+    for (int c = 0; c < 3; c++)
+        search->size_m = fmax(search->size_m, search->asset->bounds_max_m[c] - search->asset->bounds_min_m[c]);
+    const struct asset_level *level = coarse_level(view, COARSE * search->size_m);
+    search->slack_m = (float)fmax(1.5 * (double)level->error_m, 0.01 * search->size_m);
+    search->set->count = 0;
+    for (uint32_t p = 0; p < level->primitive_count; p++) {
+        const struct asset_primitive *primitive = &view->primitives[level->first_primitive + p];
+        const uint32_t *corner = view->indices + primitive->first_index;
+        for (uint32_t i = 0; i < primitive->index_count; i += 3) {
+            search_edge(search, corner[i], corner[i + 1]);
+            search_edge(search, corner[i + 1], corner[i + 2]);
+        }
+    }
+}
+
+static void update_set(struct isoline_set *set, const struct scene_asset *asset, const struct fields_entry *field, const double *lines,
+                       int line_count)
+{
+    size_t bytes = (size_t)line_count * sizeof(*lines);
+    if (set->content == field->content && set->line_count == line_count && memcmp(set->lines, lines, bytes) == 0)
+        return;
+    set->content = field->content;
+    set->line_count = line_count;
+    memcpy(set->lines, lines, bytes);
+    search_asset(&(struct search){ .asset = asset, .field = field, .set = set });
+}
+
+/* --- which of them are seen -------------------------------------------------------------------------------------------------- */
+
+void isolines_collect(struct isolines *isolines, const struct picture *picture, struct isoline_points *out)
+{
+    double lines[VIEW_ALL_LINES];
+    int line_count = view_lines(picture->view, lines);
+    for (size_t i = 0; line_count > 0 && i < picture->visible_count; i++) {
+        int asset = picture->visible[i];
+        struct isoline_set *set = &isolines->sets[asset];
+        if (!picture->fields[asset])
+            continue;
+        update_set(set, &picture->stage->scene->assets[asset], picture->fields[asset], lines, line_count);
+        if (set->count == 0)
+            continue;
+        if (out->count + set->count > POINTS_MOST)
+            break;
+        mem_grow(&out->at, &out->capacity, out->count + set->count, sizeof(*out->at));
+        memcpy(out->at + out->count, set->points, set->count * sizeof(*set->points));
+        out->count += set->count;
+    }
+}
+
+static bool fit(struct isolines *isolines, struct log *log)
+{
+    if (!isolines->buffer)
+        isolines->buffer = mesh_buffer(log, "isolines", POINTS_MOST * sizeof(float[4]), NULL, GL_DYNAMIC_STORAGE_BIT);
+    return isolines->buffer != 0;
+}
+
+bool isolines_start(struct isolines *isolines, const struct picture *picture, const struct isoline_points *points)
+{
+    size_t count = points->count;
+    if (count == 0)
+        return true;
+    if (!fit(isolines, picture->stage->gl->log))
+        return false;
+    float(*places)[4] = mem_array(count, sizeof(*places));
+    for (size_t i = 0; i < count; i++) {
+        for (int c = 0; c < 3; c++)
+            places[i][c] = (float)(points->at[i].place_m[c] - picture->shot.eye_m[c]);
+        places[i][3] = points->at[i].slack_m;
+    }
+    glNamedBufferSubData(isolines->buffer, 0, (GLsizeiptr)(count * sizeof(*places)), places);
+    mem_free(places);
+    gl_pass_enter("isolines");
+    glUseProgram(isolines->program);
+    glUniform1i(0, (GLint)count);
+    glBindTextureUnit(0, picture->target->resolved_depth);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, isolines->buffer);
+    glDispatchCompute(((GLuint)count + 63) / 64, 1, 1);
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    return gl_pass_leave(picture->stage->gl, "isolines");
+}
+
+void isolines_get(const struct isolines *isolines, const struct isoline_points *points, struct frame *frame)
+{
+    size_t count = points->count;
+    if (count == 0)
+        return;
+    float(*places)[4] = mem_array(count, sizeof(*places));
+    glGetNamedBufferSubData(isolines->buffer, 0, (GLsizeiptr)(count * sizeof(*places)), places);
+    frame->labels = mem_array(count, sizeof(*frame->labels));
+    for (size_t i = 0; i < count; i++)
+        if (places[i][2] < 0.5f)
+            frame->labels[frame->label_count++] =
+                (struct frame_label){ .value = points->at[i].value, .x_px = places[i][0], .y_px = places[i][1] };
+    mem_free(places);
+}
