@@ -15,7 +15,7 @@ static void print_usage(FILE *out)
 {
     fputs("usage: plantcastd PLANT.yaml [--listen ADDR] [--port N] [--gl auto|egl-device|egl-surfaceless|osmesa]\n"
           "                  [--gl-device INDEX|PCI] [--prepared DIR] [--web DIR] [--log-level error|warn|info|debug]\n"
-          "                  [--threads N] [--open-viewers]\n"
+          "                  [--threads N] [--field vertices|per-fragment] [--open-viewers]\n"
           "       plantcastd --check PLANT.yaml [--prepared DIR]\n"
           "       plantcastd --list-gl-devices | --version | --help\n"
           "\n"
@@ -28,6 +28,8 @@ static void print_usage(FILE *out)
           "  --prepared DIR   the files that plantcast-prep made (beside the plant file)\n"
           "  --web DIR        the web client's files (found from where this program is)\n"
           "  --threads N      workers for the field and for encoding (one per core)\n"
+          "  --field KIND     vertices: the field at vertices, when a reading changes (the default); per-fragment: anew at each\n"
+          "                   fragment, slow, for comparison\n"
           "  --open-viewers   let anyone who reaches ADDR look at the pictures\n"
           "  --check          read everything, report every error, start nothing\n",
           out);
@@ -52,6 +54,12 @@ static bool parse_level(const char *text, enum log_level *level)
             return true;
         }
     return false;
+}
+
+static bool parse_field(const char *text, bool *per_fragment)
+{
+    *per_fragment = !strcmp(text, "per-fragment");
+    return *per_fragment || !strcmp(text, "vertices");
 }
 
 static bool is_address(const char *text)
@@ -80,6 +88,7 @@ enum {
     OPTION_LISTEN = 256,
     OPTION_PORT,
     OPTION_GL,
+    OPTION_FIELD,
     OPTION_GL_DEVICE,
     OPTION_LIST_GL,
     OPTION_PREPARED,
@@ -95,6 +104,7 @@ enum {
 static const struct option options[] = {
     { "listen", required_argument, NULL, OPTION_LISTEN },
     { "port", required_argument, NULL, OPTION_PORT },
+    { "field", required_argument, NULL, OPTION_FIELD },
     { "gl", required_argument, NULL, OPTION_GL },
     { "gl-device", required_argument, NULL, OPTION_GL_DEVICE },
     { "list-gl-devices", no_argument, NULL, OPTION_LIST_GL },
@@ -117,6 +127,8 @@ static int take_option(int option, struct server_params *params, bool *check)
         params->address = strcmp(optarg, "localhost") == 0 ? "127.0.0.1" : optarg;
         return is_address(params->address) ? -1 : usage_error("--listen: not an IP address", optarg);
     case OPTION_PORT: return parse_int(optarg, 0, 65535, &params->port) ? -1 : usage_error("--port: not a port", optarg);
+    case OPTION_FIELD:
+        return parse_field(optarg, &params->per_fragment) ? -1 : usage_error("--field: vertices or per-fragment, not", optarg);
     case OPTION_GL: return gl_kind_parse(optarg, &params->gl) ? -1 : usage_error("--gl: unknown", optarg);
     case OPTION_GL_DEVICE:
         params->has_gl_device = true;

@@ -139,6 +139,7 @@ static bool start_painter(struct server *server)
     struct painter_params params = {
         .log = server->log,
         .gl = server->params.gl,
+        .per_fragment = server->params.per_fragment,
         .gl_device = server->params.has_gl_device ? &server->params.gl_device : NULL,
         .scene = server->scene,
         .store = server->store,

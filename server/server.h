@@ -17,6 +17,7 @@ struct server_params {
     enum log_level log_level;
     int threads; /* workers; 0: one per core */
     bool open_viewers;
+    bool per_fragment; /* the field anew at each fragment; for comparison */
 };
 
 /* Both return the exit code: 0 good, 1 anything wrong, said on stderr. */

@@ -6,6 +6,7 @@
 layout(location = 0) in float light;
 layout(location = 1) in vec3 field;
 #include "field.glsl"
+#include "field_source.glsl"
 #else
 layout(location = 0) in vec2 light;
 layout(location = 1) in vec3 sun_place;
@@ -18,7 +19,7 @@ layout(location = 0) out vec4 color;
 void main()
 {
 #ifdef FIELD
-    color.rgb = field_color(field, light);
+    color.rgb = field_color(field_here(field), light);
 #ifdef GLOSSY
     color.rgb = srgb_from_linear(tone_map(linear_from_srgb(color.rgb) * (0.10 + 1.15 * light)));
 #endif

@@ -14,9 +14,15 @@ layout(location = 1) out vec3 field;
 layout(location = 0) out vec2 light; // ambient, facing the sun
 layout(location = 1) out vec3 sun_place;
 #endif
+#ifdef PER_FRAGMENT
+layout(location = 7) out vec3 file_place;
+#endif
 
 void main()
 {
+#ifdef PER_FRAGMENT
+    file_place = position_m;
+#endif
     gl_Position = clip_from_file * vec4(position_m, 1.0);
 #ifdef FIELD
     light = baked.x;

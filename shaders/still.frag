@@ -7,6 +7,7 @@
 #include "pbr.glsl"
 #include "shadow.glsl"
 #include "field.glsl"
+#include "field_source.glsl"
 layout(location = 0) centroid in vec3 place;
 layout(location = 1) centroid in vec3 surface_normal;
 layout(location = 2) centroid in vec2 uv;
@@ -56,7 +57,7 @@ void main()
     float sun_visible = sun_visibility(frame.sun_from_eye, place, n, frame.sun.w);
     float ambient = sky.x, open = sky.y;
 #ifdef FIELD
-    color = vec4(field_color(field, light_scalar(ambient, max(dot(n, l), 0.0) * sun_visible)), 1.0);
+    color = vec4(field_color(field_here(field), light_scalar(ambient, max(dot(n, l), 0.0) * sun_visible)), 1.0);
 #endif
 #if !defined(FIELD) || defined(GLOSSY)
     float metallic = m.factors.x, roughness = m.factors.y;

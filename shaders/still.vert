@@ -17,9 +17,15 @@ layout(location = 2) centroid out vec2 uv;
 layout(location = 3) centroid out vec4 tint;
 layout(location = 4) centroid out vec2 sky;
 layout(location = 5) centroid out vec3 field;
+#ifdef PER_FRAGMENT
+layout(location = 7) out vec3 file_place;
+#endif
 
 void main()
 {
+#ifdef PER_FRAGMENT
+    file_place = position_m;
+#endif
     gl_Position = clip_from_file * vec4(position_m, 1.0);
     place = (eye_from_file * vec4(position_m, 1.0)).xyz;
     surface_normal = eye_from_normal * normal;

@@ -48,6 +48,7 @@ static const char usage[] =
     "  --prepared FOLDER       where plantcast-prep put its files; PLANT.prepared beside the plant file\n"
     "  --tier TIER             still or moving\n"
     "  --no-overlay            no legend, markers and clock\n"
+    "  --field KIND            vertices; or per-fragment: worked out anew at each fragment, for comparison\n"
     "  --gl KIND               auto, egl-device, egl-surfaceless, osmesa;  --gl-device N\n";
 
 /* Options that are parameters of /snapshot.png too, under that name. */
@@ -74,6 +75,7 @@ enum own_option {
     OPTION_PREPARED,
     OPTION_TIER,
     OPTION_NO_OVERLAY,
+    OPTION_FIELD,
     OPTION_GL,
     OPTION_GL_DEVICE,
     OPTION_HELP,
@@ -89,6 +91,7 @@ static const struct option own[] = {
     { "prepared", required_argument, NULL, OPTION_PREPARED },
     { "tier", required_argument, NULL, OPTION_TIER },
     { "no-overlay", no_argument, NULL, OPTION_NO_OVERLAY },
+    { "field", required_argument, NULL, OPTION_FIELD },
     { "gl", required_argument, NULL, OPTION_GL },
     { "gl-device", required_argument, NULL, OPTION_GL_DEVICE },
     { "help", no_argument, NULL, OPTION_HELP },
@@ -125,6 +128,12 @@ static bool parse_time(const char *text, int64_t *utc_ns)
     return true;
 }
 
+static bool parse_field(struct snapshot_options *options, const char *text)
+{
+    options->per_fragment = !strcmp(text, "per-fragment");
+    return options->per_fragment || !strcmp(text, "vertices");
+}
+
 static bool parse_tier(struct snapshot_options *options, const char *text)
 {
     options->moving = !strcmp(text, "moving");
@@ -143,6 +152,7 @@ static bool take_own(struct snapshot_options *options, int option, const char *t
     case OPTION_PREPARED: options->prepared = text; return true;
     case OPTION_TIER: return parse_tier(options, text);
     case OPTION_NO_OVERLAY: return options->no_overlay = true;
+    case OPTION_FIELD: return parse_field(options, text);
     case OPTION_GL: return gl_kind_parse(text, &options->gl);
     case OPTION_GL_DEVICE: options->has_gl_device = true; return gl_device_parse(text, &options->gl_device);
     case OPTION_VALUES:
@@ -194,7 +204,7 @@ static int from_daemon(struct snapshot_options *options)
 {
     struct text path = { 0 };
     if (options->offline_only) {
-        fputs("plantcast: --values, --at, --prepared, --tier, --no-overlay and --gl only go with a plant file\n", stderr);
+        fputs("plantcast: --values, --at, --prepared, --tier, --no-overlay, --field and --gl only go with a plant file\n", stderr);
         return 2;
     }
     if (options->baseline && !snapshot_add_arg(options, "baseline", options->baseline))

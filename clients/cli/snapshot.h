@@ -21,7 +21,7 @@ struct snapshot_options {
     struct gl_device gl_device;
     bool has_gl_device;
     int64_t at_utc_ns;                     /* 0: now */
-    bool moving, no_overlay, offline_only; /* offline_only: something was asked for that a daemon does not offer */
+    bool per_fragment, moving, no_overlay, offline_only; /* offline_only: something was asked for that a daemon does not offer */
 };
 
 bool snapshot_add_arg(struct snapshot_options *options, const char *name, const char *value); /* false: too many */

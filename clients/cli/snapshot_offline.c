@@ -78,6 +78,8 @@ static bool set_up(struct studio *studio, const struct snapshot_options *options
     studio->gl = gl_create(studio->log, options->gl, options->has_gl_device ? &options->gl_device : NULL);
     if (studio->gl)
         studio->renderer = renderer_create(studio->log, studio->gl, studio->scene, studio->field);
+    if (studio->renderer)
+        renderer_set_per_fragment(studio->renderer, options->per_fragment);
     return studio->renderer != NULL;
 }
 

@@ -82,6 +82,18 @@ size_t field_bytes(const struct field *field); /* kept now */
    bound. */
 const struct scalars *field_scalars(struct field *field, int asset, const struct field_params *params, const struct snapshot *snapshot);
 
+/* What the field at any point of an asset is made of, for whoever works it out by himself. */
+struct field_sensor {
+    float surface_m[3]; /* as the asset file's positions */
+    uint32_t column;    /* in the asset file's sensors */
+    float strength, decay;
+    float value; /* as it is summed: for `paper` 0..1, for a difference that of two */
+    bool configured, usable, uncertain; /* configured: would take part, were it good */
+};
+/* Those of the asset, as field_scalars with these parameters has just taken them; *radius_m: R of `paper`. Belongs to whoever asked
+   (mem_free). 0: there are none. */
+size_t field_sensors(struct field *field, int asset, const struct field_params *params, struct field_sensor **out, float *radius_m);
+
 enum probe_kind { PROBE_NO_DATA, PROBE_MEASURED, PROBE_BETWEEN };
 #define PROBE_NEAREST 4
 struct probe {

@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A question about the field: one vertex. */
+/* Questions about the field: one vertex, and what goes into the sums. */
+#include <string.h>
+
+#include "base/mem.h"
 #include "field/field_impl.h"
 #include "field/kernels.h"
 
@@ -43,4 +46,32 @@ void field_probe(struct field *field, int asset, const struct field_params *para
     if (!at->no_data)
         out->kind =
             at_sensor && params->interpolation == INTERPOLATION_SHEPARD && params->show != SHOW_DISTANCE ? PROBE_MEASURED : PROBE_BETWEEN;
+}
+
+size_t field_sensors(struct field *field, int asset, const struct field_params *params, struct field_sensor **out, float *radius_m)
+{
+    const struct state *state = field_layout(field, asset, params->group) ? field_state(field, asset, params) : NULL;
+    if (!state || (!state->weights && params->show != SHOW_DISTANCE))
+        return 0;
+    const struct layout *layout = state->layout;
+    const struct weights *weights = state->weights;
+    struct field_sensor *sensors = mem_array(layout->sensor_count, sizeof(*sensors));
+    for (size_t i = 0; i < layout->sensor_count; i++) {
+        const struct layout_sensor *from = &layout->sensors[i];
+        struct field_sensor *to = &sensors[i];
+        bool sum = weights != NULL;
+        *to = (struct field_sensor){
+            .column = from->column,
+            .strength = sum ? weights->strength[i] : 1,
+            .decay = sum ? weights->decay[i] : 1,
+            .value = (float)state->shown[i].value,
+            .configured = sum ? weights->configured[i] : from->tag == params->sensor,
+            .usable = sum ? weights->configured[i] && state->shown[i].usable : from->tag == params->sensor,
+            .uncertain = sum && state->shown[i].uncertain,
+        };
+        memcpy(to->surface_m, layout->file->view.sensors[from->column].surface_m, sizeof(to->surface_m));
+    }
+    *out = sensors;
+    *radius_m = weights ? weights->radius_m : 1;
+    return layout->sensor_count;
 }

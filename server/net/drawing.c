@@ -332,6 +332,8 @@ static bool gl_begin(struct drawing *drawing)
     drawing->gl = gl_create(params->log, params->gl, params->gl_device);
     if (drawing->gl)
         drawing->renderer = renderer_create(params->log, drawing->gl, params->scene, drawing->field);
+    if (drawing->renderer)
+        renderer_set_per_fragment(drawing->renderer, params->per_fragment);
     return drawing->renderer != NULL;
 }
 

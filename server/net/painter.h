@@ -12,6 +12,7 @@ struct painter;
 struct painter_params {
     struct log *log;
     enum gl_kind gl;
+    bool per_fragment; /* the field anew at each fragment */
     const struct gl_device *gl_device; /* NULL: the first with hardware that works */
     const struct scene *scene;
     struct store *store;

@@ -10,6 +10,7 @@
 
 #include "base/mem.h"
 #include "gpu/mesh.h"
+#include "render/reference.h"
 
 static const size_t BOUND_BYTES = (size_t)384 << 20; /* on the GPU, and as much again here: some 700 assets of 66,000 vertices */
 
@@ -22,6 +23,7 @@ static void entry_destroy(struct fields *fields, struct fields_entry *entry)
 {
     fields->bytes -= entry->count * sizeof(*entry->shown);
     glDeleteBuffers(1, &entry->buffer);
+    glDeleteBuffers(1, &entry->sensors);
     mem_free(entry->shown);
     mem_free(entry);
 }
@@ -91,6 +93,8 @@ static void show(struct fields_entry *entry, const struct scalars *now)
     entry->content = XXH3_64bits(entry->shown, bytes);
     entry->flags_version = now->flags_version;
     entry->travel = now->travel;
+    glDeleteBuffers(1, &entry->sensors);
+    entry->sensors = 0;
 }
 
 const struct fields_entry *fields_get(struct fields *fields, int asset, const struct field_params *params, double step,
@@ -107,6 +111,8 @@ const struct fields_entry *fields_get(struct fields *fields, int asset, const st
         return NULL;
     if (fresh || can_be_seen(entry, scalars))
         show(entry, scalars);
+    if (fields->reference && !entry->sensors)
+        entry->sensors = reference_sensors(fields->reference, asset, params);
     entry->oldest_age_ns = scalars->oldest_age_ns;
     entry->used = ++fields->uses;
     return entry;

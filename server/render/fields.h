@@ -18,12 +18,14 @@ struct fields_entry {
     struct scalar *shown;
     size_t count;
     GLuint buffer;
+    GLuint sensors; /* 0, or for fragments that work the field out themselves (render/reference.h) */
     int64_t oldest_age_ns;
     uint64_t used;
 };
 
 struct fields {
     struct log *log;
+    const struct reference *reference; /* NULL: not used */
     struct field *field;
     struct fields_entry **entries;
     size_t count, capacity, bytes;

@@ -6,6 +6,7 @@
 #include "render/fields.h"
 #include "render/light.h"
 #include "render/palettes.h"
+#include "render/reference.h"
 #include "render/view.h"
 
 struct picture {
@@ -18,6 +19,9 @@ struct picture {
     const int *visible;                 /* assets, nearest first */
     size_t visible_count;
     struct palette palette;
+    struct reference *reference; /* NULL: the field is interpolated between vertices; else worked out at each fragment */
+    bool finest;                 /* no coarser levels of detail */
+    bool measured;               /* the field's numbers instead of colours, into floats */
 };
 
 #endif

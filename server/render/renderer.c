@@ -15,6 +15,7 @@
 #include "render/lines.h"
 #include "render/markers.h"
 #include "render/matrix.h"
+#include "render/measure.h"
 #include "render/palettes.h"
 #include "render/sky.h"
 #include "render/solid.h"
@@ -30,6 +31,8 @@ struct renderer {
     struct stage stage;
     struct light light;
     struct fields fields;
+    struct reference reference;
+    bool per_fragment;
     struct solid solid;
     struct sky sky;
     struct lines lines;
@@ -84,6 +87,7 @@ void renderer_destroy(struct renderer **renderer_ptr)
     lines_finish(&renderer->lines);
     sky_finish(&renderer->sky);
     solid_finish(&renderer->solid);
+    reference_finish(&renderer->reference);
     fields_finish(&renderer->fields);
     light_finish(&renderer->light);
     stage_finish(&renderer->stage);
@@ -142,7 +146,10 @@ static void find_visible(struct renderer *renderer, struct picture *picture)
 /* What there is to draw, with the field brought up to date. */
 static void picture_init(struct renderer *renderer, struct picture *picture, const struct view *view, const struct snapshot *snapshot)
 {
-    *picture = (struct picture){ .stage = &renderer->stage, .view = view, .fields = renderer->asset_fields };
+    *picture = (struct picture){ .stage = &renderer->stage,
+                                 .view = view,
+                                 .fields = renderer->asset_fields,
+                                 .reference = renderer->per_fragment ? &renderer->reference : NULL };
     aim(renderer, view, &picture->shot);
     find_visible(renderer, picture);
     fields_trim(&renderer->fields);
@@ -213,17 +220,17 @@ static struct stroke *begin(struct renderer *renderer, const struct view *view, 
 }
 
 /* Others drew meanwhile. */
-static bool take_up(struct renderer *renderer, struct stroke *stroke)
+static bool take_up(struct renderer *renderer, struct picture *picture)
 {
     struct frame_block block;
-    stroke->picture.light = light_get(&renderer->light, stroke->view.light_dir);
-    stroke->picture.palette = palettes_get(&renderer->palettes, &stroke->view);
-    if (!stroke->picture.light)
+    picture->light = light_get(&renderer->light, picture->view->light_dir);
+    picture->palette = palettes_get(&renderer->palettes, picture->view);
+    if (!picture->light)
         return false;
-    frame_block_fill(&block, &stroke->picture);
+    frame_block_fill(&block, picture);
     glNamedBufferSubData(renderer->frame_buffer, 0, sizeof(block), &block);
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, renderer->frame_buffer);
-    glViewport(0, 0, stroke->target.width_px, stroke->target.height_px);
+    glViewport(0, 0, picture->view->width_px, picture->view->height_px);
     return true;
 }
 
@@ -272,7 +279,7 @@ bool renderer_step(struct renderer *renderer, struct stroke *stroke, int64_t bud
 {
     int64_t start_ns = clock_mono_ns(), spent_ns = 0, last_ns = 0;
     int bits = bits_of(stroke);
-    if (stroke->next < bits && !take_up(renderer, stroke))
+    if (stroke->next < bits && !take_up(renderer, &stroke->picture))
         stroke->next = bits; /* renderer_end fails likewise */
     while (stroke->next < bits && spent_ns + last_ns <= budget_ns) {
         draw_bit(renderer, stroke);
@@ -290,7 +297,7 @@ struct frame *renderer_end(struct renderer *renderer, struct stroke **stroke_ptr
     struct frame *frame = NULL;
     struct log *log = renderer->gl->log;
     int64_t start_ns = clock_mono_ns();
-    if (!take_up(renderer, stroke))
+    if (!take_up(renderer, &stroke->picture))
         goto end;
     while (stroke->next < bits_of(stroke))
         draw_bit(renderer, stroke);
@@ -328,4 +335,32 @@ struct frame *renderer_draw(struct renderer *renderer, const struct view *view, 
 {
     struct stroke *stroke = begin(renderer, view, snapshot, VIEW_MAX_SIDE_PX);
     return stroke ? renderer_end(renderer, &stroke) : NULL;
+}
+
+/* --- numbers --------------------------------------------------------------------------------------------------------------- */
+
+void renderer_set_per_fragment(struct renderer *renderer, bool per_fragment)
+{
+    if (per_fragment && !renderer->reference.models)
+        reference_init(&renderer->reference, &renderer->stage, renderer->fields.field);
+    renderer->per_fragment = per_fragment;
+    renderer->fields.reference = per_fragment ? &renderer->reference : NULL;
+}
+
+bool renderer_measure(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot, bool finest, float (*out)[4])
+{
+    struct view plain = *view;
+    struct picture picture;
+    struct measure measure = { 0 };
+    plain.paint.log = false;
+    picture_init(renderer, &picture, &plain, snapshot);
+    picture.measured = true;
+    picture.finest = finest;
+    bool good = take_up(renderer, &picture) && measure_begin(&measure, renderer->gl->log, view->width_px, view->height_px);
+    if (good) {
+        solid_draw(&renderer->solid, &picture);
+        measure_read(&measure, out);
+    }
+    measure_finish(&measure);
+    return good;
 }

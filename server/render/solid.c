@@ -9,7 +9,7 @@
 /* Uniform locations and texture units, as in the shaders. */
 enum { CLIP_FROM_FILE = 0, EYE_FROM_FILE = 1, SUN_FROM_FILE = 1, MATERIAL = 2, TEXTURES = 3, EYE_FROM_NORMAL = 4 };
 static const double LEVEL_ERROR_PX[] = { [TIER_MOVING] = 1.0, [TIER_STILL] = 0.7 }; /* of the silhouette */
-static const double SUN_SLACK_TEXELS = 3; /* against surfaces that shade themselves */
+static const double SUN_SLACK_TEXELS = 3;                                           /* against surfaces that shade themselves */
 enum { UNIT_PALETTE = 0, UNIT_RAMPS = 1, UNIT_SUN_MAP = 2, UNIT_MAPS = 3, UNIT_LINES = 15 };
 
 /* The moving tier has no textures; rich scales and gloss go with a field. */
@@ -20,14 +20,17 @@ static bool is_used(int tier, int variant)
     return !(tier == TIER_MOVING && variant & SOLID_TEXTURED);
 }
 
-static GLuint make_program(struct log *log, int tier, int variant)
+static GLuint make_program(struct log *log, enum solid_kind kind, int tier, int variant)
 {
     static const char *const stages[2][2] = { { "moving.vert", "moving.frag" }, { "still.vert", "still.frag" } };
+    bool reference = kind == SOLID_PER_FRAGMENT || kind == SOLID_MEASURE_PER_FRAGMENT;
+    bool measure = kind == SOLID_MEASURE || kind == SOLID_MEASURE_PER_FRAGMENT;
     struct text defines = { 0 };
-    text_add(&defines, "%s%s%s%s%s", tier == TIER_STILL ? "#define STILL\n" : "", variant & SOLID_FIELD ? "#define FIELD\n" : "",
+    text_add(&defines, "%s%s%s%s%s%s", tier == TIER_STILL ? "#define STILL\n" : "", variant & SOLID_FIELD ? "#define FIELD\n" : "",
              variant & SOLID_RICH ? "#define RICH\n" : "", variant & SOLID_GLOSSY ? "#define GLOSSY\n" : "",
-             variant & SOLID_TEXTURED ? "#define TEXTURED\n" : "");
-    GLuint program = program_create(log, program_params(.vertex = stages[tier][0], .fragment = stages[tier][1], .defines = defines.at));
+             variant & SOLID_TEXTURED ? "#define TEXTURED\n" : "", reference && variant & SOLID_FIELD ? "#define PER_FRAGMENT\n" : "");
+    GLuint program = program_create(log, program_params(.vertex = stages[tier][0], .fragment = measure ? "measure.frag" : stages[tier][1],
+                                                        .defines = defines.at));
     text_finish(&defines);
     return program;
 }
@@ -35,22 +38,30 @@ static GLuint make_program(struct log *log, int tier, int variant)
 bool solid_init(struct solid *solid, struct log *log)
 {
     bool good = true;
+    solid->log = log;
     for (int tier = 0; tier < 2; tier++)
         for (int variant = 0; variant < SOLID_VARIANTS; variant++)
             if (is_used(tier, variant)) {
-                solid->programs[tier][variant] = make_program(log, tier, variant);
-                good = good && solid->programs[tier][variant];
+                solid->programs[SOLID_PICTURE][tier][variant] = make_program(log, SOLID_PICTURE, tier, variant);
+                good = good && solid->programs[SOLID_PICTURE][tier][variant];
             }
     return good;
 }
 
 void solid_finish(struct solid *solid)
 {
-    for (int i = 0; i < 2 * SOLID_VARIANTS; i++)
-        program_destroy(&solid->programs[i / SOLID_VARIANTS][i % SOLID_VARIANTS]);
+    for (int i = 0; i < SOLID_KINDS * 2 * SOLID_VARIANTS; i++)
+        program_destroy(&solid->programs[i / (2 * SOLID_VARIANTS)][i / SOLID_VARIANTS % 2][i % SOLID_VARIANTS]);
 }
 
-static GLuint choose_program(const struct solid *solid, const struct picture *picture, const struct model_material *material, bool field)
+static enum solid_kind kind_of(const struct picture *picture)
+{
+    if (picture->measured)
+        return picture->reference ? SOLID_MEASURE_PER_FRAGMENT : SOLID_MEASURE;
+    return picture->reference ? SOLID_PER_FRAGMENT : SOLID_PICTURE;
+}
+
+static GLuint choose_program(struct solid *solid, const struct picture *picture, const struct model_material *material, bool field)
 {
     const struct view *view = picture->view;
     int variant = field ? SOLID_FIELD : 0;
@@ -60,7 +71,13 @@ static GLuint choose_program(const struct solid *solid, const struct picture *pi
         variant |= SOLID_GLOSSY;
     if (view->tier == TIER_STILL && material->mask && (!field || view->look == LOOK_GLOSSY || material->masked))
         variant |= SOLID_TEXTURED;
-    return solid->programs[view->tier][variant];
+    enum solid_kind kind = kind_of(picture);
+    if (picture->measured)
+        variant &= SOLID_FIELD;
+    GLuint *program = &solid->programs[kind][view->tier][variant];
+    if (!*program)
+        *program = make_program(solid->log, kind, view->tier, variant);
+    return *program;
 }
 
 static void set_placement(const struct picture *picture, const struct scene_asset *asset)
@@ -71,6 +88,8 @@ static void set_placement(const struct picture *picture, const struct scene_asse
     matrix_multiply(shot->clip_from_plant, asset->placement, clip_from_file);
     matrix_to_float(clip_from_file, matrix);
     glUniformMatrix4fv(CLIP_FROM_FILE, 1, GL_FALSE, matrix);
+    if (picture->measured)
+        return;
     if (picture->view->tier == TIER_MOVING) {
         matrix_multiply(picture->light->texture_from_plant, asset->placement, sun_from_file);
         sun_from_file[14] += SUN_SLACK_TEXELS * picture->light->texel_m / (2 * picture->stage->radius_m);
@@ -92,7 +111,7 @@ static void set_material(const struct picture *picture, const struct model_mater
         glDisable(GL_CULL_FACE);
     else
         glEnable(GL_CULL_FACE);
-    if (picture->view->tier == TIER_MOVING && field)
+    if (picture->measured || (picture->view->tier == TIER_MOVING && field))
         return;
     glUniform1i(MATERIAL, (GLint)batch->material);
     if (picture->view->tier == TIER_MOVING)
@@ -105,11 +124,13 @@ static void set_material(const struct picture *picture, const struct model_mater
 
 static const struct model_level *get_level(const struct picture *picture, int asset)
 {
+    if (picture->reference || picture->finest)
+        return &picture->stage->of_asset[asset]->levels[0];
     return stage_level(picture->stage, &picture->shot, asset, LEVEL_ERROR_PX[picture->view->tier]);
 }
 
 /* One asset's surfaces, those that are blended or those that are not. A field is never blended: it would mix its colours. */
-static void draw_asset(const struct solid *solid, const struct picture *picture, int index, bool blend)
+static void draw_asset(struct solid *solid, const struct picture *picture, int index, bool blend)
 {
     const struct model *model = picture->stage->of_asset[index];
     const struct model_level *level = get_level(picture, index);
@@ -126,6 +147,8 @@ static void draw_asset(const struct solid *solid, const struct picture *picture,
             mesh_bind(&model->mesh, picture->light->baked[index], field ? field->buffer : 0);
             glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, model->material_buffer);
             glBindTextureUnit(UNIT_RAMPS, model->ramps);
+            if (field && picture->reference && !reference_bind(picture->reference, index, field->sensors))
+                return;
         }
         if (bound != program) {
             glUseProgram(program);
@@ -133,11 +156,14 @@ static void draw_asset(const struct solid *solid, const struct picture *picture,
             bound = program;
         }
         set_material(picture, material, batch, field != NULL);
-        model_draw_batch(batch);
+        if (field && picture->reference)
+            reference_draw_batch(batch);
+        else
+            model_draw_batch(batch);
     }
 }
 
-void solid_draw(const struct solid *solid, const struct picture *picture)
+void solid_draw(struct solid *solid, const struct picture *picture)
 {
     gl_pass_enter("solid");
     glEnable(GL_DEPTH_TEST);
@@ -149,7 +175,8 @@ void solid_draw(const struct solid *solid, const struct picture *picture)
     glVertexAttrib4f(MESH_COLOR, 1, 1, 1, 1);
     for (size_t i = 0; i < picture->visible_count; i++)
         draw_asset(solid, picture, picture->visible[i], false);
-    glEnable(GL_BLEND);
+    if (!picture->measured)
+        glEnable(GL_BLEND);
     glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE);
     for (size_t i = picture->visible_count; i-- > 0;)
         draw_asset(solid, picture, picture->visible[i], true);

@@ -8,13 +8,17 @@
    scales that are not linear. */
 enum solid_variant { SOLID_FIELD = 1, SOLID_RICH = 2, SOLID_GLOSSY = 4, SOLID_TEXTURED = 8, SOLID_VARIANTS = 16 };
 
+/* What the programs are for; all but pictures are made when first needed. */
+enum solid_kind { SOLID_PICTURE, SOLID_PER_FRAGMENT, SOLID_MEASURE, SOLID_MEASURE_PER_FRAGMENT, SOLID_KINDS };
+
 struct solid {
-    GLuint programs[2][SOLID_VARIANTS]; /* by tier; 0: not used */
+    struct log *log;
+    GLuint programs[SOLID_KINDS][2][SOLID_VARIANTS]; /* by tier; 0: not used, or not made yet */
 };
 
 bool solid_init(struct solid *solid, struct log *log); /* false: logged */
 void solid_finish(struct solid *solid);
-void solid_draw(const struct solid *solid, const struct picture *picture);
+void solid_draw(struct solid *solid, const struct picture *picture);
 int solid_triangles(const struct picture *picture); /* of what is drawn */
 
 #endif

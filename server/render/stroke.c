@@ -24,6 +24,16 @@ void stroke_init(struct stroke *stroke, const struct picture *picture, const str
     stroke->picture.visible = stroke->visible;
 }
 
+static GLuint copy_buffer(struct log *log, GLuint from)
+{
+    GLint64 bytes = 0;
+    glGetNamedBufferParameteri64v(from, GL_BUFFER_SIZE, &bytes);
+    GLuint copy = mesh_buffer(log, "field of a picture", (size_t)bytes, NULL, 0);
+    if (copy)
+        glCopyNamedBufferSubData(from, copy, 0, 0, bytes);
+    return copy;
+}
+
 bool stroke_hold_fields(struct stroke *stroke)
 {
     const struct stage *stage = stroke->picture.stage;
@@ -33,14 +43,15 @@ bool stroke_hold_fields(struct stroke *stroke)
         const struct fields_entry *from = stroke->fields[asset];
         if (!from)
             continue;
-        size_t bytes = from->count * sizeof(struct scalar);
         struct fields_entry *copy = &stroke->copies[asset];
         *copy = *from;
         copy->shown = NULL;
-        copy->buffer = mesh_buffer(stage->gl->log, "field of a picture", bytes, NULL, 0);
+        copy->sensors = 0;
+        copy->buffer = copy_buffer(stage->gl->log, from->buffer);
         if (!copy->buffer)
             return false;
-        glCopyNamedBufferSubData(from->buffer, copy->buffer, 0, 0, (GLsizeiptr)bytes);
+        if (from->sensors && !(copy->sensors = copy_buffer(stage->gl->log, from->sensors)))
+            return false;
         stroke->fields[asset] = copy;
     }
     return true;
@@ -49,7 +60,7 @@ bool stroke_hold_fields(struct stroke *stroke)
 void stroke_finish(struct stroke *stroke)
 {
     for (size_t i = 0; stroke->copies && i < stroke->picture.stage->scene->asset_count; i++)
-        glDeleteBuffers(1, &stroke->copies[i].buffer);
+        glDeleteBuffers(2, (GLuint[2]){ stroke->copies[i].buffer, stroke->copies[i].sensors });
     if (stroke->frame)
         frame_unref(&stroke->frame);
     mem_free(stroke->isolines.at);

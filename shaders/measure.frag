@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Not a colour but the field itself: its place in the range, no data (-1: no field at all), uncertain, and the depth.
+#include "frame.glsl"
+#ifdef FIELD
+#ifdef STILL
+layout(location = 5) centroid in vec3 field;
+#else
+layout(location = 1) in vec3 field;
+#endif
+#include "field_source.glsl"
+#endif
+layout(location = 0) out vec4 measured;
+
+void main()
+{
+#ifdef FIELD
+    measured = vec4(field_here(field), gl_FragCoord.z);
+#else
+    measured = vec4(0.0, -1.0, 0.0, gl_FragCoord.z); // context
+#endif
+}

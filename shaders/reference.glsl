@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The field worked out anew for a fragment, over all sensors: Algorithm 1 of Kim & Suh, and Shepard, by the rules of field/field.h.
+// Distances along the surface are interpolated over the triangle, others are taken from the fragment's own place.
+struct Sensor {
+    vec4 place_m;  // file frame; w: strength
+    float decay, value;
+    uint column, state; // state: 1 configured, 2 usable, 4 uncertain
+};
+layout(std430, binding = 5) readonly buffer Sensors {
+    vec4 numbers; // power, radius, reach, the range's MIN
+    vec4 more;    // the range's MAX - MIN or 0 (paper: turns the sum into a value); vertices of the model
+    ivec4 choice; // paper, geodesic, fill, show
+    Sensor sensors[];
+};
+layout(std430, binding = 6) readonly buffer Corners { uint corners[]; };
+layout(std430, binding = 7) readonly buffer Positions { float positions_m[]; };
+layout(binding = 14) uniform samplerBuffer distances; // metres along the surface; four sensors to a texel, [sensor / 4][vertex]
+layout(location = 8) uniform int first_triangle;
+layout(location = 7) in vec3 file_place;
+
+const float FAR = 1e30;
+
+vec3 corner_place(uint vertex)
+{
+    return vec3(positions_m[3 * vertex], positions_m[3 * vertex + 1], positions_m[3 * vertex + 2]);
+}
+
+// Where in its triangle the fragment lies.
+vec3 parts_of(uvec3 corner)
+{
+    vec3 a = corner_place(corner.x), b = corner_place(corner.y) - a, c = corner_place(corner.z) - a, p = file_place - a;
+    float bb = dot(b, b), bc = dot(b, c), cc = dot(c, c), pb = dot(p, b), pc = dot(p, c), area = bb * cc - bc * bc;
+    if (!(area > 0.0))
+        return vec3(1.0, 0.0, 0.0);
+    float v = (cc * pb - bc * pc) / area, w = (bb * pc - bc * pb) / area;
+    return vec3(1.0 - v - w, v, w);
+}
+
+float along_surface(uint column, uvec3 corner, vec3 part)
+{
+    int first = int(column / 4u) * int(more.y), lane = int(column & 3u);
+    vec3 d = vec3(texelFetch(distances, first + int(corner.x))[lane], texelFetch(distances, first + int(corner.y))[lane],
+                  texelFetch(distances, first + int(corner.z))[lane]);
+    return max(d.x, max(d.y, d.z)) < FAR ? max(dot(d, part), 0.0) : FAR;
+}
+
+float distance_to(int i, uvec3 corner, vec3 part)
+{
+    return choice.y != 0 ? along_surface(sensors[i].column, corner, part) : distance(file_place, sensors[i].place_m.xyz);
+}
+
+float nearness(float distance_m)
+{
+    return max(0.0, 1.0 - distance_m / numbers.y);
+}
+
+// x: the scalar; y: no data; z: uncertain.
+vec3 reference_field()
+{
+    int triangle = first_triangle + gl_PrimitiveID;
+    uvec3 corner = uvec3(corners[3 * triangle], corners[3 * triangle + 1], corners[3 * triangle + 2]);
+    vec3 part = parts_of(corner);
+    float near_m = FAR, lost_m = FAR, top = 0.0;
+    for (int i = 0; i < sensors.length(); i++) {
+        if ((sensors[i].state & 1u) == 0u)
+            continue;
+        float d = distance_to(i, corner, part);
+        if ((sensors[i].state & 2u) != 0u)
+            near_m = min(near_m, d);
+        else
+            lost_m = min(lost_m, d);
+    }
+    if (choice.w == 1)
+        return vec3(near_m, near_m < FAR ? 0.0 : 1.0, 0.0);
+    bool reached = near_m < FAR && near_m <= numbers.z;
+    float limit_m = min(max(near_m, numbers.z), 0.5 * FAR);
+    for (int i = 0; i < sensors.length(); i++) { // the scale: the largest exponent
+        float d = distance_to(i, corner, part);
+        if ((sensors[i].state & 2u) != 0u && d <= limit_m)
+            top = max(top, nearness(d) * sensors[i].place_m.w);
+    }
+    float sum = 0.0, weights = 0.0, marked = 0.0;
+    for (int i = 0; i < sensors.length(); i++) {
+        float d = distance_to(i, corner, part), strength = sensors[i].place_m.w;
+        if ((sensors[i].state & 2u) == 0u || d > limit_m)
+            continue;
+        float near = nearness(d);
+        float weight = choice.x != 0 ? exp(near * strength - top) : d <= near_m ? strength : strength * pow(near_m / d, numbers.x);
+        sum += sensors[i].value * weight * (choice.x != 0 && sensors[i].decay > 0.0 ? pow(near, sensors[i].decay) : 1.0);
+        weights += weight;
+        marked += (sensors[i].state & 4u) != 0u ? weight : 0.0;
+    }
+    bool lost = lost_m < near_m, filled = reached && lost && choice.z != 0;
+    float value = weights > 0.0 ? sum / weights : 0.0;
+    if (choice.x != 0)
+        value = value * more.x + (weights > 0.0 ? numbers.w : 0.0);
+    return vec3(weights > 0.0 ? value : numbers.w, reached && (!lost || filled) ? 0.0 : 1.0,
+                filled || (marked > 0.0 && 2.0 * marked >= weights) ? 1.0 : 0.0);
+}

@@ -1,0 +1,266 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The field that pictures show against the one worked out anew at each fragment, over all sensors, on the finest level: numbers, not
+   colours, at random pixels of whole plants, seen from near and far. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "tests/support/rig.h"
+#include "tests/support/synthetic.h"
+#include "value/quality.h"
+
+enum { WIDTH_PX = 640, HEIGHT_PX = 360, PIXELS = WIDTH_PX * HEIGHT_PX, SAMPLES = 10000 };
+static const double TOLERANCE = 1.0 / 255;
+
+static struct rig rig;
+
+/* --- plants ---------------------------------------------------------------------------------------------------------------- */
+
+struct site { /* a whole plant */
+    struct plant *plant;
+    struct scene *scene;
+    struct field *field;
+    struct renderer *renderer;
+    struct snapshot *snapshot;
+    uint64_t random;
+};
+
+static bool exists(const char *path)
+{
+    return access(path, R_OK) == 0;
+}
+
+/* Prepares it once for all runs. False: failed. */
+static bool prepare(const char *plant, const char *folder)
+{
+    const char *programs = getenv("PLANTCAST_BIN");
+    char *command = mem_printf("'%s/plantcast-prep' %s --output '%s' >/dev/null 2>&1", programs ? programs : "build", plant, folder);
+    int status = system(command);
+    mem_free(command);
+    return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+static bool site_init(struct site *site, const char *path, const char *prepared)
+{
+    struct diag diag = { 0 };
+    *site = (struct site){ .plant = plant_load(path, &diag), .random = 1 };
+    diag_print(&diag, stderr);
+    diag_finish(&diag);
+    site->scene = site->plant ? scene_create(rig.log, site->plant, prepared) : NULL;
+    if (!site->scene)
+        return false;
+    site->field = field_create(rig.workers, site->scene);
+    site->renderer = renderer_create(rig.log, rig.gl, site->scene, site->field);
+    site->snapshot = snapshot_create(site->plant->tag_count);
+    for (size_t i = 0; i < site->plant->tag_count; i++) {
+        const struct plant_tag *tag = &site->plant->tags[i];
+        if (tag->group < 0)
+            continue;
+        const struct plant_group *group = &site->plant->groups[tag->group];
+        site->snapshot->readings[i] =
+            (struct reading){ .value = group->min + (group->max - group->min) * synthetic_random_unit(&site->random) };
+    }
+    return site->renderer != NULL;
+}
+
+static void site_finish(struct site *site)
+{
+    renderer_destroy(&site->renderer);
+    field_destroy(&site->field);
+    snapshot_destroy(&site->snapshot);
+    scene_destroy(&site->scene);
+    plant_destroy(&site->plant);
+}
+
+/* --- comparing ------------------------------------------------------------------------------------------------------------- */
+
+struct tally {
+    size_t compared, over, over_strictly, flags_differ;
+    double worst, worst_strictly;
+    int worst_camera;
+};
+
+static bool has_value(const float pixel[4])
+{
+    return pixel[1] >= 0 && pixel[1] < 0.5f;
+}
+
+/* How far a value is from what the reference says within a pixel of there: a level of detail may move a surface that far. */
+static double error_within_a_pixel(const float (*reference)[4], int x, int y, double value)
+{
+    double low = INFINITY, high = -INFINITY;
+    for (int v = y > 0 ? y - 1 : 0; v <= y + 1 && v < HEIGHT_PX; v++)
+        for (int u = x > 0 ? x - 1 : 0; u <= x + 1 && u < WIDTH_PX; u++) {
+            const float *there = reference[v * WIDTH_PX + u];
+            if (!has_value(there))
+                continue;
+            low = fmin(low, (double)there[0]);
+            high = fmax(high, (double)there[0]);
+        }
+    return value < low ? low - value : value > high ? value - high : 0;
+}
+
+static void compare(struct site *site, const float (*shown)[4], const float (*reference)[4], size_t samples, int camera,
+                    struct tally *tally)
+{
+    for (size_t i = 0, tries = 0; i < samples && tries < 100 * samples; tries++) {
+        size_t at = (size_t)(synthetic_random_unit(&site->random) * PIXELS);
+        bool here = has_value(shown[at]);
+        if (!here)
+            continue;
+        i++;
+        bool both = has_value(reference[at]);
+        double strict = both ? fabs((double)shown[at][0] - (double)reference[at][0]) : 0;
+        double error = error_within_a_pixel(reference, (int)(at % WIDTH_PX), (int)(at / WIDTH_PX), (double)shown[at][0]);
+        if (isinf(error)) {
+            tally->flags_differ++;
+            continue;
+        }
+        tally->compared++;
+        tally->over += error > TOLERANCE;
+        tally->over_strictly += strict > TOLERANCE;
+        tally->worst_strictly = fmax(tally->worst_strictly, strict);
+        if (error > tally->worst) {
+            tally->worst = error;
+            tally->worst_camera = camera;
+        }
+    }
+}
+
+/* From a random side of a random asset with a field; `away` times as far as it is large. */
+static void look_at_some_asset(struct site *site, double away, struct view *view)
+{
+    const struct scene_asset *asset;
+    do
+        asset = &site->scene->assets[synthetic_random(&site->random) % site->scene->asset_count];
+    while (!field_scalars(site->field, (int)(asset - site->scene->assets), &view->field, site->snapshot));
+    double size = 0, turn = 6.283 * synthetic_random_unit(&site->random), height = 0.2 + 0.8 * synthetic_random_unit(&site->random);
+    for (int c = 0; c < 3; c++) {
+        view->camera.target_m[c] = 0.5 * (asset->bounds_min_m[c] + asset->bounds_max_m[c]);
+        size = fmax(size, asset->bounds_max_m[c] - asset->bounds_min_m[c]);
+    }
+    view->camera.eye_m[0] = view->camera.target_m[0] + away * size * cos(turn);
+    view->camera.eye_m[1] = view->camera.target_m[1] + away * size * sin(turn);
+    view->camera.eye_m[2] = view->camera.target_m[2] + away * size * height;
+}
+
+struct way { /* of showing a plant */
+    enum interpolation interpolation;
+    enum distance_mode distance;
+    enum tier tier;
+    bool finest;
+};
+
+static void compare_views(struct site *site, const struct way *way, struct tally *tally)
+{
+    static const double away[] = { 0.8, 1.2, 2, 4, 8, 16, 32 };
+    enum { VIEWS = 2 * sizeof(away) / sizeof(away[0]) };
+    float(*shown)[4] = mem_array(PIXELS, sizeof(*shown)), (*reference)[4] = mem_array(PIXELS, sizeof(*reference));
+    for (int i = 0; i < (int)VIEWS; i++) {
+        struct view view;
+        view_default(site->scene, WIDTH_PX, HEIGHT_PX, &view);
+        view.tier = way->tier;
+        view.field.reach_m = (double)INFINITY; /* where a sensor's reach ends the field itself is broken off */
+        view.field.interpolation = way->interpolation;
+        view.field.distance = way->distance;
+        look_at_some_asset(site, away[i / 2], &view);
+        assert_true(renderer_measure(site->renderer, &view, site->snapshot, way->finest, shown));
+        renderer_set_per_fragment(site->renderer, true);
+        assert_true(renderer_measure(site->renderer, &view, site->snapshot, true, reference));
+        renderer_set_per_fragment(site->renderer, false);
+        compare(site, (const float(*)[4])shown, (const float(*)[4])reference, SAMPLES / VIEWS + 1, i, tally);
+    }
+    mem_free(shown);
+    mem_free(reference);
+}
+
+static void say(const struct way *way, const struct tally *tally)
+{
+    print_message(
+        "# %s, %s, %s, %s: %zu pixels; over 1/255: %zu (on the very pixel %zu), worst %.3f %% (%.3f %%, camera %d); other flags %zu\n",
+        way->interpolation == INTERPOLATION_PAPER ? "paper" : "shepard", way->distance == DISTANCE_EUCLIDEAN ? "euclidean" : "geodesic",
+        way->tier == TIER_STILL ? "still" : "moving", way->finest ? "finest level" : "levels as drawn", tally->compared, tally->over,
+        tally->over_strictly, 100 * tally->worst, 100 * tally->worst_strictly, tally->worst_camera, tally->flags_differ);
+}
+
+/* Of all pixels, so large a part may err by more than 1/255 of the range: on the finest level, and on the levels that are drawn. */
+static void compare_plant(struct site *site, double finest_part, double drawn_part)
+{
+    for (int i = 0; i < 16; i++) {
+        const struct way way = {
+            .interpolation = i & 1 ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD,
+            .distance = i & 2 ? DISTANCE_EUCLIDEAN : DISTANCE_GEODESIC,
+            .tier = i & 4 ? TIER_STILL : TIER_MOVING,
+            .finest = !(i & 8),
+        };
+        struct tally tally = { 0 };
+        compare_views(site, &way, &tally);
+        say(&way, &tally);
+        assert_true(tally.compared > SAMPLES / 2);
+        assert_in_range(tally.flags_differ, 0, tally.compared / 200);
+        assert_in_range(tally.over, 0, (size_t)((way.finest ? finest_part : drawn_part) * (double)tally.compared));
+    }
+}
+
+static void test_plant(const char *path, const char *name, double finest_part, double drawn_part)
+{
+    struct site site;
+    const char *out = getenv("PLANTCAST_OUT");
+    char *folder = mem_printf("%s/prepared/%s", out ? out : "build/release", name);
+    assert_true(prepare(path, folder));
+    assert_true(site_init(&site, path, folder));
+    compare_plant(&site, finest_part, drawn_part);
+    site_finish(&site);
+    mem_free(folder);
+}
+
+static void test_demo(void **state)
+{
+    struct site site;
+    (void)state;
+    assert_true(site_init(&site, "build/demo/plant.yaml", "build/demo/plant.prepared"));
+    compare_plant(&site, 0.002, 0.2);
+    site_finish(&site);
+}
+
+static void test_plant_room(void **state)
+{
+    (void)state;
+    if (!exists("../shared/data/models/plm_plant_equipment.glb"))
+        skip();
+    test_plant("tests/plants/plant_room.yaml", "plant_room", 0.01, 0.2);
+}
+
+static void test_cookie_line(void **state)
+{
+    (void)state;
+    if (!exists("../shared/data/models/cookie_factory_mixer.glb"))
+        skip();
+    test_plant("tests/plants/cookie_line.yaml", "cookie_line", 0.01, 0.1);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_demo),
+        cmocka_unit_test(test_plant_room),
+        cmocka_unit_test(test_cookie_line),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    if (!rig_init(&rig, "reference_test"))
+        return 0;
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    rig_finish(&rig);
+    return failed;
+}
