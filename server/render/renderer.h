@@ -20,11 +20,12 @@ uint64_t renderer_content(struct renderer *renderer, const struct view *view, co
 /* The caller owns the frame (frame_unref). NULL on failure, logged. view is already checked. */
 struct frame *renderer_draw(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot);
 
-/* From now on the field is worked out at each fragment, over all sensors, on the finest level (render/reference.h): slow, for comparison. */
+/* From now on the field is worked out at each fragment, over all sensors, on the finest level (render/reference.h): slow, for
+   comparison. */
 void renderer_set_per_fragment(struct renderer *renderer, bool per_fragment);
-/* What the pixels of the view's tier stand for, at one sample each, rows from the top: the field's place in the range (unclamped, never on
-   a logarithmic scale), no data (0..1; MEASURE_CONTEXT: an asset without a field; MEASURE_NOTHING), uncertain (0..1), depth (1 near, 0 far).
-   finest: without coarser levels of detail. False: logged. */
+/* What the pixels of the view's tier stand for, at one sample each, rows from the top: the field's place in the range (unclamped,
+   never on a logarithmic scale), no data (0..1; MEASURE_CONTEXT: an asset without a field; MEASURE_NOTHING), uncertain (0..1), depth
+   (1 near, 0 far). finest: without coarser levels of detail. False: logged. */
 enum { MEASURE_CONTEXT = -1, MEASURE_NOTHING = -2 };
 bool renderer_measure(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot, bool finest, float (*out)[4]);
 
