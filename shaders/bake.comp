@@ -13,7 +13,7 @@ layout(location = 1) uniform mat4 sun_from_plant;
 layout(location = 4) uniform mat3 plant_from_normal;
 layout(location = 8) uniform vec4 sun;             // direction; w: texel of its map, in metres
 layout(location = 9) uniform float sky_texel_m;
-layout(location = 10) uniform int count;
+layout(location = 10) uniform ivec2 range; // first, and one beyond the last
 #ifdef GROUND
 const int TAPS = 16;
 const float SPREAD = 0.05;  // of the map's side
@@ -61,8 +61,8 @@ vec2 ambient(vec3 place, vec3 normal)
 
 void main()
 {
-    int i = int(gl_GlobalInvocationID.x);
-    if (i >= count)
+    int i = range.x + int(gl_GlobalInvocationID.x);
+    if (i >= range.y)
         return;
 #ifdef GROUND
     ivec2 size = imageSize(ground), at = ivec2(i % size.x, i / size.x);

@@ -6,6 +6,7 @@
 #include "render/overlay.h"
 
 static const int64_t STEP_NS = 10 * NS_PER_MS;              /* of a slow picture, before anyone else gets a turn */
+static const int64_t LIGHT_NS = 4 * NS_PER_MS;     /* of each picture of a moving session, for a light that it chose */
 static const int64_t OWN_DATA_NS = 1 * NS_PER_S;            /* changed readings wait so long for a refinement of the same client */
 static const int64_t SNAPSHOT_MAX_AGE_NS = 100 * NS_PER_MS; /* the clock in the picture, and ages, are no older than this */
 static const int64_t REBUILD_NS = 100 * NS_PER_MS, REBUILD_MAX_NS = 5 * NS_PER_S; /* between attempts at a new context */
@@ -332,9 +333,11 @@ static bool gl_begin(struct drawing *drawing)
     drawing->gl = gl_create(params->log, params->gl, params->gl_device);
     if (drawing->gl)
         drawing->renderer = renderer_create(params->log, drawing->gl, params->scene, drawing->field);
-    if (drawing->renderer)
-        renderer_set_per_fragment(drawing->renderer, params->per_fragment);
-    return drawing->renderer != NULL;
+    if (!drawing->renderer)
+        return false;
+    renderer_set_per_fragment(drawing->renderer, params->per_fragment);
+    renderer_hurry(drawing->renderer, LIGHT_NS);
+    return true;
 }
 
 static void gl_end(struct drawing *drawing)

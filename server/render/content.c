@@ -61,6 +61,7 @@ uint64_t content_hash(const struct picture *picture)
     XXH3_INITSTATE(&state);
     XXH3_64bits_reset(&state);
     add_view(&state, picture->view);
+    add(&state, picture->towards, 3 * sizeof(*picture->towards));
     add_visibility(&state, picture);
     for (size_t i = 0; i < picture->visible_count; i++) {
         int asset = picture->visible[i];

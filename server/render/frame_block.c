@@ -59,7 +59,7 @@ void frame_block_fill(struct frame_block *block, const struct picture *picture)
     matrix_to_float(inverse, block->eye_from_clip);
     from_eye(picture->light->texture_from_plant, shot->eye_m, block->sun_from_eye);
     for (int i = 0; i < 3; i++) {
-        block->sun[i] = (float)view->light_dir[i];
+        block->sun[i] = (float)picture->towards[i];
         block->up[i] = (float)picture->stage->up[i];
         block->back[i] = (float)shot->back[i];
     }

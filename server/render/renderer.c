@@ -42,6 +42,7 @@ struct renderer {
     GLuint frame_buffer;                      /* struct frame_block */
     struct palettes palettes;
     struct targets targets;
+    int64_t hurry_ns; /* 0: none */
     const struct fields_entry **asset_fields; /* per asset, of the picture being drawn */
     int *visible;
     double *distance_m; /* per asset */
@@ -143,6 +144,13 @@ static void find_visible(struct renderer *renderer, struct picture *picture)
     picture->visible = renderer->visible;
 }
 
+/* The sun that the picture shows. */
+static const double *choose_light(struct renderer *renderer, const struct view *view)
+{
+    const struct light_set *near = view->tier == TIER_MOVING && renderer->hurry_ns ? light_near(&renderer->light, view->light_dir) : NULL;
+    return near ? near->towards : view->light_dir;
+}
+
 /* What there is to draw, with the field brought up to date. */
 static void picture_init(struct renderer *renderer, struct picture *picture, const struct view *view, const struct snapshot *snapshot)
 {
@@ -150,6 +158,7 @@ static void picture_init(struct renderer *renderer, struct picture *picture, con
                                  .view = view,
                                  .fields = renderer->asset_fields,
                                  .reference = renderer->per_fragment ? &renderer->reference : NULL };
+    picture->towards = choose_light(renderer, view);
     aim(renderer, view, &picture->shot);
     find_visible(renderer, picture);
     fields_trim(&renderer->fields);
@@ -223,7 +232,8 @@ static struct stroke *begin(struct renderer *renderer, const struct view *view, 
 static bool take_up(struct renderer *renderer, struct picture *picture)
 {
     struct frame_block block;
-    picture->light = light_get(&renderer->light, picture->view->light_dir);
+    if (!picture->light)
+        picture->light = light_get(&renderer->light, picture->towards);
     picture->palette = palettes_get(&renderer->palettes, picture->view);
     if (!picture->light)
         return false;
@@ -232,6 +242,19 @@ static bool take_up(struct renderer *renderer, struct picture *picture)
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, renderer->frame_buffer);
     glViewport(0, 0, picture->view->width_px, picture->view->height_px);
     return true;
+}
+
+/* From now on its light stays. */
+static bool take_up_stroke(struct renderer *renderer, struct stroke *stroke)
+{
+    if (!stroke->light) {
+        stroke->light = light_get(&renderer->light, stroke->towards);
+        if (!stroke->light)
+            return false;
+        light_hold(stroke->light);
+        stroke->picture.light = stroke->light;
+    }
+    return take_up(renderer, &stroke->picture);
 }
 
 static void draw_surfaces(struct renderer *renderer, struct stroke *stroke, const struct tile *tile)
@@ -279,7 +302,9 @@ bool renderer_step(struct renderer *renderer, struct stroke *stroke, int64_t bud
 {
     int64_t start_ns = clock_mono_ns(), spent_ns = 0, last_ns = 0;
     int bits = bits_of(stroke);
-    if (stroke->next < bits && !take_up(renderer, &stroke->picture))
+    if (!stroke->light && !light_step(&renderer->light, stroke->towards, budget_ns))
+        return false;
+    if (stroke->next < bits && !take_up_stroke(renderer, stroke))
         stroke->next = bits; /* renderer_end fails likewise */
     while (stroke->next < bits && spent_ns + last_ns <= budget_ns) {
         draw_bit(renderer, stroke);
@@ -297,7 +322,7 @@ struct frame *renderer_end(struct renderer *renderer, struct stroke **stroke_ptr
     struct frame *frame = NULL;
     struct log *log = renderer->gl->log;
     int64_t start_ns = clock_mono_ns();
-    if (!take_up(renderer, &stroke->picture))
+    if (!take_up_stroke(renderer, stroke))
         goto end;
     while (stroke->next < bits_of(stroke))
         draw_bit(renderer, stroke);
@@ -334,7 +359,15 @@ void renderer_abandon(struct renderer *renderer, struct stroke **stroke_ptr)
 struct frame *renderer_draw(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
 {
     struct stroke *stroke = begin(renderer, view, snapshot, VIEW_MAX_SIDE_PX);
-    return stroke ? renderer_end(renderer, &stroke) : NULL;
+    struct frame *frame = stroke ? renderer_end(renderer, &stroke) : NULL;
+    if (frame && renderer->hurry_ns)
+        light_step(&renderer->light, view->light_dir, renderer->hurry_ns);
+    return frame;
+}
+
+void renderer_hurry(struct renderer *renderer, int64_t bake_ns)
+{
+    renderer->hurry_ns = bake_ns;
 }
 
 /* --- numbers --------------------------------------------------------------------------------------------------------------- */

@@ -20,6 +20,10 @@ uint64_t renderer_content(struct renderer *renderer, const struct view *view, co
 /* The caller owns the frame (frame_unref). NULL on failure, logged. view is already checked. */
 struct frame *renderer_draw(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot);
 
+/* A light that is not baked yet: pictures of the moving tier show the one most like it for now, and bake on for about that long each.
+   Without this, and in the still tier, a picture takes the time that its light takes. */
+void renderer_hurry(struct renderer *renderer, int64_t bake_ns);
+
 /* From now on the field is worked out at each fragment, over all sensors, on the finest level (render/reference.h): slow, for
    comparison. */
 void renderer_set_per_fragment(struct renderer *renderer, bool per_fragment);

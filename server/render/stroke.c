@@ -18,7 +18,9 @@ void stroke_init(struct stroke *stroke, const struct picture *picture, const str
     stroke->in_tile = mem_array(assets, sizeof(*stroke->in_tile));
     memcpy(stroke->fields, picture->fields, assets * sizeof(*stroke->fields));
     memcpy(stroke->visible, picture->visible, picture->visible_count * sizeof(*stroke->visible));
+    memcpy(stroke->towards, picture->towards, sizeof(stroke->towards));
     stroke->picture.view = &stroke->view;
+    stroke->picture.towards = stroke->towards;
     stroke->picture.target = &stroke->target;
     stroke->picture.fields = stroke->fields;
     stroke->picture.visible = stroke->visible;
@@ -61,6 +63,7 @@ void stroke_finish(struct stroke *stroke)
 {
     for (size_t i = 0; stroke->copies && i < stroke->picture.stage->scene->asset_count; i++)
         glDeleteBuffers(2, (GLuint[2]){ stroke->copies[i].buffer, stroke->copies[i].sensors });
+    light_release(stroke->light);
     if (stroke->frame)
         frame_unref(&stroke->frame);
     mem_free(stroke->isolines.at);

@@ -1,0 +1,189 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Light that is chosen while others watch: baked in bits, kept within a bound, shown when it is ready. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "base/clock.h"
+#include "render/light.h"
+#include "tests/support/rig.h"
+#include "value/quality.h"
+
+static struct rig rig;
+static struct stand stand;
+
+static void sun(int i, double towards[3])
+{
+    double height = 0.4 + 0.05 * (i % 9), across = sqrt(1 - height * height);
+    towards[0] = across * cos(0.7 * i);
+    towards[1] = across * sin(0.7 * i);
+    towards[2] = height;
+}
+
+static void *bytes_of(const struct stage *stage, const struct light_set *set, size_t asset, size_t *count)
+{
+    *count = 4 * stage->of_asset[asset]->mesh.vertex_count;
+    uint8_t *bytes = malloc(*count);
+    glGetNamedBufferSubData(set->baked[asset], 0, (GLsizeiptr)*count, bytes);
+    return bytes;
+}
+
+static void assert_same_light(const struct stage *stage, const struct light_set *a, const struct light_set *b)
+{
+    for (size_t i = 0; i < stage->scene->asset_count; i++) {
+        size_t count;
+        void *first = bytes_of(stage, a, i, &count), *second = bytes_of(stage, b, i, &count);
+        assert_memory_equal(first, second, count);
+        free(first);
+        free(second);
+    }
+}
+
+/* With and without the light of the sky to be worked out. */
+static void test_bits_make_the_same_light(void **state)
+{
+    struct stage stage;
+    struct light at_once, in_bits;
+    double first[3], second[3];
+    (void)state;
+    sun(1, first);
+    sun(2, second);
+    assert_true(stage_init(&stage, rig.gl, &stand.toy->scene) && light_init(&at_once, &stage) && light_init(&in_bits, &stage));
+    const double *const suns[] = { first, second };
+    for (int i = 0; i < 2; i++) {
+        int steps = 1;
+        while (!light_step(&in_bits, suns[i], 0))
+            steps++;
+        assert_true(steps > (int)stage.scene->asset_count);
+        struct light_set *a = light_get(&at_once, suns[i]), *b = light_get(&in_bits, suns[i]);
+        assert_true(a && b && !in_bits.bake);
+        assert_same_light(&stage, a, b);
+    }
+    light_finish(&at_once);
+    light_finish(&in_bits);
+    stage_finish(&stage);
+}
+
+/* Forty sessions, each with a sun of its own; one of them is being drawn all the while. */
+static void test_many_lights_fit_in_a_bound(void **state)
+{
+    struct stage stage;
+    struct light light;
+    double towards[3];
+    (void)state;
+    assert_true(stage_init(&stage, rig.gl, &stand.toy->scene) && light_init(&light, &stage));
+    size_t one = bake_bytes(&stage);
+    light.bound_bytes = 3 * one;
+    sun(0, towards);
+    struct light_set *held = light_get(&light, towards);
+    uint64_t id = held->id;
+    light_hold(held);
+    for (int i = 1; i < 40; i++) {
+        sun(i, towards);
+        assert_non_null(light_get(&light, towards));
+        assert_true(light.bytes <= light.bound_bytes);
+        assert_true(held->id == id);
+    }
+    assert_true(light.bytes == 3 * one);
+    light_release(held);
+    for (int i = 1; i < 4; i++) {
+        sun(i, towards);
+        light_get(&light, towards);
+    }
+    assert_true(held->id != id);
+    light_finish(&light);
+    stage_finish(&stage);
+}
+
+static void test_the_nearest_sun_stands_in(void **state)
+{
+    struct stage stage;
+    struct light light;
+    (void)state;
+    assert_true(stage_init(&stage, rig.gl, &stand.toy->scene) && light_init(&light, &stage));
+    assert_null(light_near(&light, (double[3]){ 0, 0, 1 }));
+    light_get(&light, (double[3]){ 1, 0, 0 });
+    light_get(&light, (double[3]){ 0, 0, 1 });
+    assert_true(light_near(&light, (double[3]){ 0.6, 0, 0.8 })->towards[2] == 1);
+    assert_true(light_near(&light, (double[3]){ 0.8, 0, 0.6 })->towards[0] == 1);
+    light_finish(&light);
+    stage_finish(&stage);
+}
+
+static bool same_pixels(const struct frame *a, const struct frame *b)
+{
+    return !memcmp(a->bgrx, b->bgrx, (size_t)a->stride_bytes * (size_t)a->height_px);
+}
+
+/* A moving session turns the sun: nobody waits, and a few pictures later it has what it asked for. */
+static void test_a_moving_session_does_not_wait(void **state)
+{
+    struct view view;
+    (void)state;
+    view_default(&stand.toy->scene, 320, 180, &view);
+    view.tier = TIER_MOVING;
+    struct frame *before = stand_draw(&stand, &view);
+    renderer_hurry(stand.renderer, 1);
+    sun(3, view.light_dir);
+    struct frame *first = stand_draw(&stand, &view);
+    assert_true(same_pixels(before, first) && first->content != before->content);
+    uint64_t content = first->content;
+    int pictures = 1;
+    for (; content == first->content && pictures < 1000; pictures++) {
+        struct frame *frame = stand_draw(&stand, &view);
+        frame_unref(&frame);
+        content = renderer_content(stand.renderer, &view, stand.snapshot);
+    }
+    assert_true(pictures > 3 && pictures < 1000);
+    struct frame *after = stand_draw(&stand, &view);
+    renderer_hurry(stand.renderer, 0);
+    struct frame *exact = stand_draw(&stand, &view);
+    assert_true(same_pixels(after, exact) && !same_pixels(after, before));
+    frame_unref(&before);
+    frame_unref(&first);
+    frame_unref(&after);
+    frame_unref(&exact);
+}
+
+/* A still picture shows the sun that was asked for, however long that takes. */
+static void test_a_still_picture_waits_for_its_light(void **state)
+{
+    struct view view;
+    (void)state;
+    view_default(&stand.toy->scene, 320, 180, &view);
+    sun(4, view.light_dir);
+    struct stroke *stroke = renderer_begin(stand.renderer, &view, stand.snapshot);
+    int steps = 1;
+    for (; !renderer_step(stand.renderer, stroke, 1); steps++) {}
+    struct frame *bits = renderer_end(stand.renderer, &stroke), *whole = stand_draw(&stand, &view);
+    assert_true(steps > 8 && same_pixels(bits, whole) && bits->content == whole->content);
+    frame_unref(&bits);
+    frame_unref(&whole);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_bits_make_the_same_light),
+        cmocka_unit_test(test_many_lights_fit_in_a_bound),
+        cmocka_unit_test(test_the_nearest_sun_stands_in),
+        cmocka_unit_test(test_a_moving_session_does_not_wait),
+        cmocka_unit_test(test_a_still_picture_waits_for_its_light),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    if (!rig_init(&rig, "light_test"))
+        return 0;
+    stand_init(&stand, &rig, toy_unit());
+    for (int i = 0; i < 8; i++)
+        toy_set(stand.snapshot, i, 20 + 7 * i, QUALITY_GOOD);
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    stand_finish(&stand);
+    rig_finish(&rig);
+    return failed;
+}
