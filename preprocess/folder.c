@@ -111,10 +111,16 @@ static char *manifest_text(const struct folder_entry *entries, size_t count)
         char key[KEY_DIGITS + 1], recipe[KEY_DIGITS + 1], *file = folder_file_name(entries[i].key);
         snprintf(key, sizeof(key), "%016" PRIx64, entries[i].key);
         snprintf(recipe, sizeof(recipe), "%016" PRIx64, entries[i].recipe);
-        json_array_append_new(assets, json_pack("{s:s, s:s, s:s, s:s}", "id", entries[i].id, "file", file, "key", key, "recipe", recipe));
+        json_t *placement = json_array(), *tags = json_array();
+        for (size_t n = 0; n < 16; n++)
+            json_array_append_new(placement, json_real(entries[i].placement[n]));
+        for (size_t t = 0; t < entries[i].tag_count; t++)
+            json_array_append_new(tags, json_string(entries[i].tags[t]));
+        json_array_append_new(assets, json_pack("{s:s, s:s, s:s, s:s, s:o, s:o}", "id", entries[i].id, "file", file, "key", key, "recipe",
+                                                recipe, "placement", placement, "tags", tags));
         mem_free(file);
     }
-    char *text = json_dumps(root, JSON_INDENT(1));
+    char *text = json_dumps(root, JSON_COMPACT);
     json_decref(root);
     return text;
 }

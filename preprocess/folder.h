@@ -30,7 +30,10 @@ char *folder_report(const char *folder, uint64_t key);
 
 struct folder_entry {
     const char *id;
-    uint64_t key, recipe; /* recipe: plant/recipe.h */
+    uint64_t key, recipe;    /* recipe: plant/recipe.h */
+    const double *placement; /* 16: plant from asset frame */
+    const char *const *tags; /* of its sensors, as they stand in the file */
+    size_t tag_count;
 };
 /* Writes the manifest unless it says the same already, then removes asset files that it does not name. 0 or -errno; *removed counts. */
 int folder_finish(const char *folder, const struct folder_entry *entries, size_t count, size_t *removed);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* GLB files (glTF 2.0) of coloured triangles, lines and points, shown as they are coloured (KHR_materials_unlit). Thread: one per writer. */
+/* GLB files (glTF 2.0) of coloured triangles, lines and points, shown as they are coloured (KHR_materials_unlit). One thread per writer. */
 #ifndef PREPROCESS_GLB_WRITER_H
 #define PREPROCESS_GLB_WRITER_H
 #include <stdint.h>

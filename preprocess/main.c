@@ -7,12 +7,14 @@
 
 #include "base/mem.h"
 #include "preprocess/debug_views.h"
+#include "preprocess/diff.h"
 #include "preprocess/distances.h"
 #include "preprocess/report.h"
 
 static const char usage[] =
     "usage: plantcast-prep PLANT.yaml [--output DIR] [--report text|json]\n"
     "       plantcast-prep PLANT.yaml --debug-view[=DIR] [--asset ID] [--sensor TAG]\n"
+    "       plantcast-prep --diff OLD NEW [--tolerance METRES] [--report text|json]\n"
     "       plantcast-prep distances PLANT.yaml --asset ID --sensor TAG [--output DIR]\n"
     "\n"
     "Prepares the models that a plant file names: triangles cut out, sensors dropped onto them, and the distance along the surface from "
@@ -27,13 +29,17 @@ static const char usage[] =
     "  --asset ID      this asset alone\n"
     "  --sensor TAG    tag whose distances are shown (else each asset's first) or printed, as CSV: x,y,z,geodesic_m,euclidean_m (plant\n"
     "                  frame, metres)\n"
+    "  --diff OLD NEW  what a new revision changes: assets added, removed, moved or changed, sensors whose surface moved, and tags that\n"
+    "                  lose their place (exit status 1 if there are any). Each is a plant file, or a folder of prepared files\n"
+    "  --tolerance M   less is no change (default: 0.01 m, or 1 % of the asset's diagonal if that is less)\n"
     "  --help          this text\n"
     "\n"
     "Exit status: 0 good, 1 something is wrong with the input or the disk, 2 wrong use.\n";
 
 struct options {
-    bool distances, json, all, debug_view, help;
-    const char *plant, *output, *asset, *sensor, *views;
+    bool distances, json, all, debug_view, diff, help;
+    const char *plant, *output, *asset, *sensor, *views, *revision; /* revision: what plant is compared with */
+    double tolerance_m;
 };
 
 static atomic_bool interrupted;
@@ -63,15 +69,24 @@ static int read_options(int argc, char **argv, struct options *options)
 {
     static const struct option known[] = { { "output", required_argument, NULL, 'o' },
                                            { "report", required_argument, NULL, 'r' },
+                                           { "diff", no_argument, NULL, 'D' },
+                                           { "tolerance", required_argument, NULL, 't' },
                                            { "debug-view", optional_argument, NULL, 'd' },
                                            { "asset", required_argument, NULL, 'a' },
                                            { "sensor", required_argument, NULL, 's' },
                                            { "help", no_argument, NULL, 'h' },
                                            { 0 } };
     int c;
+    char *end;
     while ((c = getopt_long(argc, argv, "ho:r:", known, NULL)) != -1) {
         switch (c) {
         case 'o': options->output = optarg; break;
+        case 'D': options->diff = true; break;
+        case 't':
+            options->tolerance_m = strtod(optarg, &end);
+            if (end == optarg || *end || !(options->tolerance_m > 0 && options->tolerance_m < 1e6))
+                return wrong_use("--tolerance is a number of metres, not ", optarg);
+            break;
         case 'd':
             options->debug_view = true;
             options->views = optarg;
@@ -97,10 +112,16 @@ static int read_options(int argc, char **argv, struct options *options)
     if (optind >= argc)
         return wrong_use("", "no plant file is named");
     options->plant = argv[optind++];
+    if (options->diff && optind >= argc)
+        return wrong_use("", "--diff needs two plants: the old one and the new one");
+    if (options->diff)
+        options->revision = argv[optind++];
     if (optind < argc)
         return wrong_use("too many arguments: ", argv[optind]);
     if (options->distances && (!options->asset || !options->sensor))
         return wrong_use("", "distances needs --asset and --sensor");
+    if (options->tolerance_m > 0 && !options->diff)
+        return wrong_use("", "--tolerance belongs to --diff");
     if (!options->distances && !options->debug_view && options->sensor)
         return wrong_use("", "--sensor belongs to distances and --debug-view");
     return 0;
@@ -147,6 +168,35 @@ static bool run_all(const struct options *options, struct log *log, struct worke
     return good;
 }
 
+static bool run_diff(const struct options *options, struct diag *diag)
+{
+    struct diff diff;
+    bool good = diff_run(&diff, options->plant, options->revision, options->tolerance_m, diag);
+    if (good && options->json)
+        good = diff_json(&diff, stdout);
+    else if (good)
+        diff_text(&diff, stdout);
+    good = good && diff.orphan_count == 0;
+    diff_finish(&diff);
+    return good;
+}
+
+static bool run_plant(const struct options *options, struct diag *diag)
+{
+    struct plant *plant = plant_load(options->plant, diag);
+    if (!plant)
+        return false;
+    struct log *log = log_create(LOG_INFO);
+    struct workers *workers = workers_create(0);
+    char *folder = options->output ? mem_strdup(options->output) : plant_prepared_folder(plant);
+    bool good = (options->distances ? run_distances : run_all)(options, log, workers, plant, folder, diag);
+    mem_free(folder);
+    workers_destroy(&workers);
+    plant_destroy(&plant);
+    log_destroy(&log);
+    return good;
+}
+
 int main(int argc, char **argv)
 {
     struct options options = { 0 };
@@ -159,19 +209,8 @@ int main(int argc, char **argv)
         return 0;
     }
     catch_signals();
-    struct log *log = log_create(LOG_INFO);
-    struct plant *plant = plant_load(options.plant, &diag);
-    bool good = plant != NULL;
-    if (plant) {
-        struct workers *workers = workers_create(0);
-        char *folder = options.output ? mem_strdup(options.output) : plant_prepared_folder(plant);
-        good = (options.distances ? run_distances : run_all)(&options, log, workers, plant, folder, &diag);
-        mem_free(folder);
-        workers_destroy(&workers);
-    }
+    bool good = (options.diff ? run_diff : run_plant)(&options, &diag);
     diag_print(&diag, stderr);
     diag_finish(&diag);
-    plant_destroy(&plant);
-    log_destroy(&log);
     return good && fflush(stdout) == 0 ? 0 : 1;
 }

@@ -359,16 +359,24 @@ static void write_manifest(struct run *run)
 {
     struct prepare *prepare = run->prepare;
     struct folder_entry *entries = mem_array(prepare->asset_count, sizeof(*entries));
+    const char **tags = mem_array(prepare->plant->tag_count, sizeof(*tags)), **next = tags; /* a tag is a sensor of one asset at most */
     for (size_t i = 0; i < prepare->asset_count; i++) {
         const struct prepare_asset *asset = &prepare->assets[i];
+        for (size_t s = 0; s < asset->sensor_count; s++)
+            next[s] = prepare->plant->tags[asset->sensors[s].tag].name;
         entries[i] = (struct folder_entry){ .id = asset->plant->id,
                                             .key = asset->key,
-                                            .recipe = plant_recipe(asset->plant, prepare->models.at[asset->model].file_hash) };
+                                            .recipe = plant_recipe(asset->plant, prepare->models.at[asset->model].file_hash),
+                                            .placement = asset->plant->placement,
+                                            .tags = next,
+                                            .tag_count = asset->sensor_count };
+        next += asset->sensor_count;
     }
     int status = folder_finish(run->params->folder, entries, prepare->asset_count, &prepare->removed);
     if (status != 0)
         fail(run, prepare->plant->path, 0, "%s: the manifest cannot be written: %s", run->params->folder, strerror(-status));
     mem_free(entries);
+    mem_free(tags);
 }
 
 bool prepare_run(struct prepare *prepare, struct log *log, struct workers *workers, const struct plant *plant,

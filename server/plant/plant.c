@@ -15,10 +15,11 @@ static char *folder_of(const char *path)
     return slash == path ? mem_strdup("/.") : mem_printf("%.*s", (int)(slash - path), path);
 }
 
-struct plant *plant_load(const char *path, struct diag *diag)
+static struct plant *load(const char *path, bool keeps_orphans, struct diag *diag)
 {
     int errors = diag->errors;
     struct plant *plant = mem_new(sizeof(*plant));
+    plant->keeps_orphans = keeps_orphans;
     plant->path = mem_strdup(path);
     plant->folder = folder_of(path);
     plant_file_read(plant, diag);
@@ -27,6 +28,16 @@ struct plant *plant_load(const char *path, struct diag *diag)
     if (diag->errors != errors)
         plant_destroy(&plant);
     return plant;
+}
+
+struct plant *plant_load(const char *path, struct diag *diag)
+{
+    return load(path, false, diag);
+}
+
+struct plant *plant_load_with_orphans(const char *path, struct diag *diag)
+{
+    return load(path, true, diag);
 }
 
 static void free_assets(struct plant *plant)
@@ -64,7 +75,7 @@ static void free_tags(struct plant *plant)
 {
     for (size_t i = 0; i < plant->tag_count; i++) {
         struct plant_tag *tag = &plant->tags[i];
-        char *const texts[] = { tag->name, tag->description, tag->unit, tag->address, tag->node };
+        char *const texts[] = { tag->name, tag->description, tag->unit, tag->address, tag->node, tag->lost_asset };
         for (size_t k = 0; k < sizeof(texts) / sizeof(*texts); k++)
             mem_free(texts[k]);
     }

@@ -68,6 +68,7 @@ struct plant_source {
 struct plant_tag {
     char *name, *description, *unit;  /* unit: engineering units */
     int source, group, asset;         /* index, or -1 */
+    char *lost_asset;                 /* the id of an asset that is not there (plant_load_with_orphans), or NULL */
     char *address;                    /* as written */
     int modbus_unit;                  /* -1: the source's */
     enum register_table table;
@@ -91,6 +92,7 @@ struct plant_tag {
 struct plant {
     char *path, *folder;              /* of the plant file; folder without trailing slash */
     char *tags_path;
+    bool keeps_orphans;               /* while it is loaded: tags of assets that are not there are no error */
     char *name, *time_zone;           /* IANA name; default UTC */
     enum axis up;                     /* of the plant frame */
     struct plant_view view;
@@ -104,6 +106,8 @@ struct plant {
 
 /* Reads the plant file and its tag list. Every finding goes to diag. NULL if there was any error. */
 struct plant *plant_load(const char *path, struct diag *diag);
+/* The same, but a tag may name an asset that is not there: it has no asset then, and its lost_asset is set. */
+struct plant *plant_load_with_orphans(const char *path, struct diag *diag);
 void plant_destroy(struct plant **plant); /* &NULL is fine; leaves NULL */
 
 int plant_find_asset(const struct plant *plant, const char *id); /* index or -1; so below */

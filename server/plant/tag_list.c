@@ -34,6 +34,12 @@ static void read_source(struct tag_list *list)
         cell_error(&list->columns, COL_SOURCE, "Source: expected the id of one of the %zu sources", plant->source_count);
 }
 
+static bool is_lost(const struct tag_list *list)
+{
+    const char *id = cell_text(&list->columns, COL_ASSET);
+    return *id && plant_find_asset(list->plant, id) < 0;
+}
+
 /* A plant file without groups or assets is wrong already; its rows need not say so again. */
 static void read_group_and_asset(struct tag_list *list)
 {
@@ -42,7 +48,9 @@ static void read_group_and_asset(struct tag_list *list)
     tag->group = tag->asset = -1;
     if (plant->group_count > 0)
         tag->group = cell_reference(&list->columns, COL_GROUP, "group", plant->groups, plant->group_count, sizeof(*plant->groups));
-    if (plant->asset_count > 0)
+    if (plant->keeps_orphans && is_lost(list))
+        tag->lost_asset = mem_strdup(cell_text(&list->columns, COL_ASSET));
+    else if (plant->asset_count > 0)
         tag->asset = cell_reference(&list->columns, COL_ASSET, "asset", plant->assets, plant->asset_count, sizeof(*plant->assets));
     list->group = tag->group >= 0 ? &plant->groups[tag->group] : NULL;
 }

@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One of the two plants that are compared: a plant file with its models, or a folder of prepared files. Thread: one. */
+#ifndef PREPROCESS_DIFF_SIDE_H
+#define PREPROCESS_DIFF_SIDE_H
+#include "base/diag.h"
+#include "preprocess/folder.h"
+#include "preprocess/model_files.h"
+#include "preprocess/why.h"
+
+struct side_tag {
+    const char *name;
+    const char *asset; /* the id that its row names, whether there is such an asset; "" for none */
+    size_t column;     /* among the sensors of its asset */
+    bool is_sensor;
+};
+
+struct side_asset {
+    const char *id;
+    double placement[16]; /* plant from asset frame */
+    uint64_t work;        /* assets with equal numbers are of one model */
+    /* of a plant file: */
+    const struct plant_asset *plant;
+    size_t model;
+    /* of a folder: */
+    uint64_t key;
+};
+
+struct side {
+    const char *path;
+    struct side_asset *assets;
+    struct side_tag *tags; /* sorted by name */
+    size_t asset_count, tag_count;
+    struct plant *plant; /* NULL: a folder */
+    struct model_files models;
+    struct model_file *parsed; /* the one in memory */
+    char *manifest;            /* as it was read; names point into root */
+    void *root;
+};
+
+/* False: said to diag. Finish in both cases. */
+bool side_open(struct side *side, const char *path, struct diag *diag);
+void side_finish(struct side *side);
+const struct side_tag *side_find_tag(const struct side *side, const char *name); /* or NULL */
+
+struct side_shape { /* an asset's triangles, and where its sensors are; less origin_m, asset frame */
+    double origin_m[3];
+    const float (*positions_m)[3];
+    const uint32_t *indices;
+    size_t vertex_count, index_count;
+    double (*places_m)[3]; /* of its sensors; NaN where the node is not there */
+    const char **nodes;    /* where a place comes from a node, its name */
+    size_t sensor_count;
+    bool own; /* the arrays are a geometry's */
+    struct folder_file file;
+};
+/* False: why says why there is no such asset in this plant. */
+bool side_shape(struct side *side, const struct side_asset *asset, struct side_shape *shape, char why[MODEL_WHY_BYTES]);
+void side_shape_finish(struct side_shape *shape);
+
+#endif

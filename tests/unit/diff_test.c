@@ -1,0 +1,239 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* plantcast-prep --diff: what a new revision changes, and which tags lose their place. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "tests/support/boxes.h"
+#include "tests/support/prep_case.h"
+#include "tests/support/temp.h"
+
+static const char plant_format[] = "plant: { name: Boxes }\n"
+                                   "assets:\n"
+                                   "%s"
+                                   "groups:\n"
+                                   "  - { id: temperature, unit: K, min: 0, max: 1 }\n"
+                                   "sources:\n"
+                                   "  - { id: plc, type: modbus, host: 127.0.0.1, byte_order: CDAB }\n"
+                                   "tags: %s\n";
+static const char tags_head[] = "Tag Name,Address,Data Type,Source,Group,Asset,Node,X,Y,Z\n";
+
+static void write_plant(struct prep_case *c, const char *name, const char *assets, const char *tags)
+{
+    char *yaml = mem_printf("%s.yaml", name), *csv = mem_printf("%s.csv", name), *list = mem_printf("%s%s", tags_head, tags);
+    char *text = mem_printf(plant_format, assets, csv);
+    mem_free(temp_write_text(c->folder, yaml, text));
+    mem_free(temp_write_text(c->folder, csv, list));
+    mem_free(yaml);
+    mem_free(csv);
+    mem_free(list);
+    mem_free(text);
+}
+
+#define ASSET(id, model, more) "  - { id: " id ", model: " model ", nodes: " id ", up: z" more " }\n"
+#define OLD_ASSETS                                                                                                                         \
+    ASSET("SAME", "old.glb", "")                                                                                                           \
+    ASSET("MOVED", "old.glb", "")                                                                                                          \
+    ASSET("PLACED", "old.glb", "") ASSET("TURNED", "old.glb", "") ASSET("CHANGED", "old.glb", "") ASSET("GONE", "old.glb", "")             \
+        ASSET("DROPPED", "old.glb", "")
+#define NEW_ASSETS                                                                                                                         \
+    ASSET("SAME", "new.glb", "")                                                                                                           \
+    ASSET("MOVED", "new.glb", "")                                                                                                          \
+    ASSET("PLACED", "new.glb", ", placement: { translate: [0, 0, 0.5], rotate_deg: [0, 0, 0] }") ASSET("TURNED", "new.glb", "")            \
+        ASSET("CHANGED", "new.glb", "") ASSET("GONE", "new.glb", "") ASSET("ADDED", "new.glb", "")
+static const char tags_rows[] = "T-SAME,400001,Float,plc,temperature,SAME,,0.5,0.5,1\n"
+                                "T-MOVED,400003,Float,plc,temperature,MOVED,,10.5,0.5,1\n"
+                                "T-CARRIED,400005,Float,plc,temperature,MOVED,TT-1,,,\n"
+                                "T-CHANGED,400007,Float,plc,temperature,CHANGED,,40.5,0.5,1\n"
+                                "T-BELOW,400009,Float,plc,temperature,CHANGED,,40.5,0.5,0\n";
+static const char lost_rows[] = "T-GONE,400011,Float,plc,temperature,GONE,,50.5,0.5,1\n"
+                                "T-DROPPED,400013,Float,plc,temperature,DROPPED,,60.5,0.5,1\n"
+                                "T-NODE,400015,Float,plc,temperature,SAME,TT-2,,,\n";
+
+/* Boxes of 1 x 1 x 1 m at x = 0, 10, 20, ... In the new model MOVED is 2 m along y, TURNED (1 x 2 x 3 m) lies on its side, CHANGED is 50 mm
+   higher, GONE has another name, and TT-2 is not there. */
+static void write_model(struct prep_case *c, bool is_new)
+{
+    struct maker maker;
+    const double s = is_new ? 0.70710678118654752 : 0;
+    maker_init(&maker);
+    boxes_add(&maker, "SAME", (const double[3]){ 0, 0, 0 }, (const double[3]){ 1, 1, 1 });
+    boxes_add(&maker, "MOVED", (const double[3]){ 10, is_new ? 2 : 0, 0 }, (const double[3]){ 11, is_new ? 3 : 1, 1 });
+    boxes_add(&maker, "PLACED", (const double[3]){ 20, 0, 0 }, (const double[3]){ 21, 1, 1 });
+    boxes_add(&maker, "TURNED", (const double[3]){ 30, 0, 0 }, (const double[3]){ 31, 2, 3 });
+    json_object_set_new(maker_get(&maker, "nodes", 3), "rotation", json_pack("[ffff]", s, 0.0, 0.0, is_new ? s : 1));
+    boxes_add(&maker, "CHANGED", (const double[3]){ 40, 0, 0 }, (const double[3]){ 41, 1, is_new ? 1.05 : 1 });
+    boxes_add(&maker, is_new ? "GONE-2" : "GONE", (const double[3]){ 50, 0, 0 }, (const double[3]){ 51, 1, 1 });
+    boxes_add(&maker, is_new ? "ADDED" : "DROPPED", (const double[3]){ 60, 0, 0 }, (const double[3]){ 61, 1, 1 });
+    maker_node(&maker, "TT-1", -1, json_pack("{s:[fff]}", "translation", 11.0, is_new ? 2.5 : 0.5, 0.5));
+    if (!is_new)
+        maker_node(&maker, "TT-2", -1, json_pack("{s:[fff]}", "translation", 1.0, 0.5, 0.5));
+    boxes_write(&maker, c->folder, is_new ? "new.glb" : "old.glb");
+    maker_finish(&maker);
+}
+
+static int set_up(void **state)
+{
+    prep_case_set_up(state);
+    struct prep_case *c = *state;
+    char *rows = mem_printf("%s%s", tags_rows, lost_rows);
+    write_model(c, false);
+    write_model(c, true);
+    write_plant(c, "old", OLD_ASSETS, rows);
+    write_plant(c, "new", NEW_ASSETS, rows);
+    mem_free(rows);
+    return 0;
+}
+
+static const json_t *named(const json_t *root, const char *list, const char *key, const char *name)
+{
+    const json_t *items = json_object_get(root, list);
+    for (size_t i = 0; i < json_array_size(items); i++)
+        if (strcmp(json_string_value(json_object_get(json_array_get(items, i), key)), name) == 0)
+            return json_array_get(items, i);
+    return NULL;
+}
+
+static const json_t *asset_of(const json_t *root, const char *id, const char *change)
+{
+    const json_t *asset = named(root, "assets", "id", id);
+    if (!asset || strcmp(json_string_value(json_object_get(asset, "change")), change) != 0)
+        fail_msg("%s: %s, expected %s", id, asset ? json_string_value(json_object_get(asset, "change")) : "not there", change);
+    return asset;
+}
+
+static void assert_orphan(const json_t *root, const char *tag, const char *why)
+{
+    const json_t *orphan = named(root, "orphans", "tag", tag);
+    if (!orphan || !strstr(json_string_value(json_object_get(orphan, "why")), why))
+        fail_msg("%s: %s, expected: %s", tag, orphan ? json_string_value(json_object_get(orphan, "why")) : "not orphaned", why);
+}
+
+static json_t *compare(struct prep_case *c, const char *arguments, int status)
+{
+    char *all = mem_printf("--report json --diff %s", arguments);
+    prep_case_expect(c, all, status);
+    mem_free(all);
+    return prep_case_json(&c->out);
+}
+
+/* old: as a plant file, or as the folder that was prepared from it. exact: corners are the model's own. */
+static void check_assets(const json_t *root, bool exact)
+{
+    asset_of(root, "SAME", "same");
+    const json_t *moved = asset_of(root, "MOVED", "moved"), *changed = asset_of(root, "CHANGED", "changed");
+    assert_float_equal(prep_case_number(moved, "moved_m"), 2, 1e-5);
+    assert_float_equal(prep_case_number(moved, "move_m.1"), 2, 1e-5);
+    assert_float_equal(prep_case_number(moved, "turned_deg"), 0, 1e-4);
+    assert_float_equal(prep_case_number(asset_of(root, "PLACED", "moved"), "move_m.2"), 0.5, 1e-5);
+    if (exact)
+        assert_float_equal(prep_case_number(asset_of(root, "TURNED", "moved"), "turned_deg"), 90, 1e-2);
+    assert_float_equal(prep_case_number(changed, "apart_m"), 0.025, 1e-4); /* laid middle over middle */
+    assert_non_null(strstr(json_string_value(json_object_get(asset_of(root, "GONE", "removed"), "why")), "no node's name matches 'GONE'"));
+    asset_of(root, "DROPPED", "removed");
+    asset_of(root, "ADDED", "added");
+}
+
+static void check_tags(const json_t *root)
+{
+    const json_t *same = named(root, "sensors", "tag", "T-SAME"), *carried = named(root, "sensors", "tag", "T-CARRIED");
+    const json_t *changed = named(root, "sensors", "tag", "T-CHANGED"), *below = named(root, "sensors", "tag", "T-BELOW");
+    assert_float_equal(prep_case_number(same, "surface_moved_m"), 0, 1e-6);
+    assert_true(json_is_false(json_object_get(same, "moved")));
+    assert_float_equal(prep_case_number(carried, "surface_moved_m"), 2, 1e-5); /* its node moved with the asset, and it is still on it */
+    assert_float_equal(prep_case_number(carried, "surface_distance_new_m"), 0, 1e-5);
+    assert_true(json_is_true(json_object_get(carried, "moved")));
+    assert_float_equal(prep_case_number(changed, "surface_moved_m"), 0.05, 1e-5);
+    assert_float_equal(prep_case_number(changed, "place_moved_m"), 0, 1e-5);
+    assert_true(json_is_true(json_object_get(changed, "moved")));
+    assert_true(json_is_false(json_object_get(below, "moved")));
+    assert_orphan(root, "T-MOVED", "m from the surface");
+    assert_orphan(root, "T-GONE", "its asset GONE is not there: no node's name matches");
+    assert_orphan(root, "T-DROPPED", "its asset DROPPED is not in the plant file");
+    assert_orphan(root, "T-NODE", "the model has no node 'TT-2'");
+    assert_int_equal(json_array_size(json_object_get(root, "orphans")), 4);
+}
+
+static void a_revision_is_compared(void **state)
+{
+    struct prep_case *c = *state;
+    json_t *root = compare(c, "$FOLDER/old.yaml $FOLDER/new.yaml", 1);
+    check_assets(root, true);
+    check_tags(root);
+    json_decref(root);
+    prep_case_expect(c, "--diff $FOLDER/old.yaml $FOLDER/new.yaml", 1);
+    prep_case_says(&c->out, "! T-NODE: orphaned: the model has no node 'TT-2'");
+    prep_case_says(&c->out, "1 assets added, 2 removed, 3 moved, 1 changed, 1 the same; 3 sensors' surface moved; 4 tags orphaned");
+}
+
+/* What is usual: the model's file was overwritten, and only what was prepared from it is left of the old one. */
+static void a_prepared_folder_stands_for_the_old_plant(void **state)
+{
+    struct prep_case *c = *state;
+    prep_case_expect(c, "$FOLDER/old.yaml", 0);
+    char *model = temp_path(c->folder, "old.glb");
+    assert_int_equal(remove(model), 0);
+    mem_free(model);
+    json_t *root = compare(c, "$FOLDER/old.prepared $FOLDER/new.yaml", 1);
+    check_assets(root, false);
+    check_tags(root);
+    json_decref(root);
+}
+
+static void nothing_lost_is_no_error(void **state)
+{
+    struct prep_case *c = *state;
+    write_plant(c, "new", NEW_ASSETS,
+                "T-SAME,400001,Float,plc,temperature,SAME,,0.5,0.5,1\nT-X,400003,Float,plc,temperature,ADDED,,60,0,0\n");
+    json_t *root = compare(c, "$FOLDER/old.yaml $FOLDER/new.yaml", 0);
+    assert_int_equal(json_array_size(json_object_get(root, "orphans")), 0);
+    assert_int_equal(json_array_size(json_object_get(root, "tags_added")), 1);
+    assert_int_equal(json_array_size(json_object_get(root, "tags_removed")), 7);
+    json_decref(root);
+    root = compare(c, "$FOLDER/old.yaml $FOLDER/old.yaml", 0);
+    assert_int_equal((int)prep_case_number(root, "counts.same"), 7);
+    json_decref(root);
+    prep_case_expect(c, "$FOLDER/old.yaml", 0);
+    root = compare(c, "$FOLDER/old.prepared $FOLDER/old.yaml", 0); /* split triangles are the same surface */
+    assert_int_equal((int)prep_case_number(root, "counts.same"), 7);
+    json_decref(root);
+}
+
+static void the_tolerance_decides(void **state)
+{
+    struct prep_case *c = *state;
+    json_t *root = compare(c, "$FOLDER/old.yaml $FOLDER/new.yaml --tolerance 0.06", 1);
+    asset_of(root, "CHANGED", "same");
+    assert_true(json_is_false(json_object_get(named(root, "sensors", "tag", "T-CHANGED"), "moved")));
+    asset_of(root, "PLACED", "moved");
+    json_decref(root);
+}
+
+static void wrong_use_and_wrong_input_are_told_apart(void **state)
+{
+    struct prep_case *c = *state;
+    prep_case_expect(c, "--diff $FOLDER/old.yaml", 2);
+    prep_case_expect(c, "--diff $FOLDER/old.yaml $FOLDER/new.yaml more", 2);
+    prep_case_expect(c, "--diff $FOLDER/old.yaml $FOLDER/new.yaml --tolerance -1", 2);
+    prep_case_expect(c, "$FOLDER/old.yaml --tolerance 1", 2);
+    prep_case_expect(c, "--diff $FOLDER/none.yaml $FOLDER/new.yaml", 1);
+    prep_case_expect(c, "--diff $FOLDER $FOLDER/new.yaml", 1);
+    prep_case_says(&c->err, "manifest.json: error: cannot be read");
+}
+
+#define WITH_PLANTS(test) cmocka_unit_test_setup_teardown(test, set_up, prep_case_tear_down)
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        WITH_PLANTS(a_revision_is_compared), WITH_PLANTS(a_prepared_folder_stands_for_the_old_plant), WITH_PLANTS(nothing_lost_is_no_error),
+        WITH_PLANTS(the_tolerance_decides),  WITH_PLANTS(wrong_use_and_wrong_input_are_told_apart),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
