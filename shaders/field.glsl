@@ -6,7 +6,8 @@ layout(binding = 0) uniform sampler2D palette;
 layout(binding = 15) uniform sampler2D lines; // by place: the nearest place that has a line
 #endif
 
-const int PLACES = 1024, HATCH_LIGHT = PLACES + 2, HATCH_DARK = PLACES + 3, STIPPLE = PLACES + 4;
+const int PLACES = 1024, HATCH_LIGHT = PLACES + 2, HATCH_DARK = PLACES + 3, STIPPLE = PLACES + 4,
+          PLAIN_LIGHT = PLACES + 5, PLAIN_DARK = PLACES + 6;
 
 // Interpolating equal values may round: the ends have some slack. Column 0 is below MIN, PLACES + 1 above MAX.
 int palette_column(float place)
@@ -40,6 +41,12 @@ float stipple(vec2 pixel)
 }
 
 #ifdef RICH
+// Level lines, wide apart: over 0.5 on them.
+float rule(float y)
+{
+    return (abs(fract(y / frame.scale.w) - 0.5) - 0.36) * frame.scale.w + 0.5;
+}
+
 float place_of(float value)
 {
     return ((frame.scale.z > 0.5 ? log2(max(value, 1e-30)) : value) - frame.scale.x) * frame.scale.y;
@@ -54,8 +61,9 @@ float line_part(float place, int column)
 }
 #endif
 
-// sRGB. field: the scalar's place on the scale (RICH: the scalar itself), then flags: no data, uncertain; 0..1 between vertices.
-vec3 field_color(vec3 field, float light)
+// sRGB. field: the scalar's place on the scale (RICH: the scalar itself), then flags: no data, uncertain, RICH: no limits; 0..1 between
+// vertices.
+vec3 field_color(FIELD_TYPE field, float light)
 {
 #ifdef RICH
     float place = place_of(field.x);
@@ -71,6 +79,13 @@ vec3 field_color(vec3 field, float light)
         second = STIPPLE;
         part = stipple(gl_FragCoord.xy);
     }
+#ifdef RICH
+    if (field.w > 0.5) {
+        column = PLAIN_LIGHT;
+        second = PLAIN_DARK;
+        part = rule(gl_FragCoord.y);
+    }
+#endif
     if (field.y > 0.5) {
         column = HATCH_LIGHT;
         second = HATCH_DARK;
@@ -83,7 +98,7 @@ vec3 field_color(vec3 field, float light)
 #endif
 #ifdef RICH
     vec3 ink = dot(color, vec3(0.30, 0.59, 0.11)) > 0.32 ? vec3(0.07, 0.09, 0.12) : vec3(0.93);
-    color = mix(color, ink, field.y > 0.5 ? 0.0 : 0.8 * line);
+    color = mix(color, ink, max(field.y, field.w) > 0.5 ? 0.0 : 0.8 * line);
 #endif
     return color;
 }

@@ -12,3 +12,10 @@ layout(std140, binding = 0) uniform Frame {
     vec4 lines;          // width of isolines in pixels; 0: none
     vec4 back;           // orthographic: towards the viewer; w: of depth, to what perspective would give. 0: perspective
 } frame;
+
+// The field from vertices to pixels: shaders/field.glsl.
+#ifdef RICH
+#define FIELD_TYPE vec4
+#else
+#define FIELD_TYPE vec3
+#endif

@@ -4,7 +4,7 @@
 #include "light.glsl"
 #ifdef FIELD
 layout(location = 0) in float light;
-layout(location = 1) in vec3 field;
+layout(location = 1) in FIELD_TYPE field;
 #include "field.glsl"
 #include "field_source.glsl"
 #else

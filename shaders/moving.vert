@@ -4,12 +4,12 @@
 layout(location = 0) in vec3 position_m;
 layout(location = 4) in vec4 baked;
 layout(location = 5) in float value;
-layout(location = 6) in vec2 flags;
+layout(location = 6) in vec3 flags;
 layout(location = 0) uniform mat4 clip_from_file;
 layout(location = 1) uniform mat4 sun_from_file; // texture coordinates and depth of the shadow map
 #ifdef FIELD
 layout(location = 0) out float light;
-layout(location = 1) out vec3 field;
+layout(location = 1) out FIELD_TYPE field;
 #else
 layout(location = 0) out vec2 light; // ambient, facing the sun
 layout(location = 1) out vec3 sun_place;
@@ -27,9 +27,9 @@ void main()
 #ifdef FIELD
     light = baked.x;
 #ifdef RICH
-    field = vec3(value, flags);
+    field = vec4(value, flags);
 #else
-    field = vec3((value - frame.scale.x) * frame.scale.y, flags);
+    field = vec3((value - frame.scale.x) * frame.scale.y, flags.xy);
 #endif
 #else
     light = baked.yw;

@@ -7,7 +7,7 @@ layout(location = 2) in vec2 texcoord;
 layout(location = 3) in vec4 vertex_color;
 layout(location = 4) in vec4 baked;
 layout(location = 5) in float value;
-layout(location = 6) in vec2 flags;
+layout(location = 6) in vec3 flags;
 layout(location = 0) uniform mat4 clip_from_file;
 layout(location = 1) uniform mat4 eye_from_file;
 layout(location = 4) uniform mat3 eye_from_normal;
@@ -16,7 +16,7 @@ layout(location = 1) centroid out vec3 surface_normal;
 layout(location = 2) centroid out vec2 uv;
 layout(location = 3) centroid out vec4 tint;
 layout(location = 4) centroid out vec2 sky;
-layout(location = 5) centroid out vec3 field;
+layout(location = 5) centroid out FIELD_TYPE field;
 #ifdef PER_FRAGMENT
 layout(location = 7) out vec3 file_place;
 #endif
@@ -33,8 +33,8 @@ void main()
     tint = vertex_color;
     sky = baked.yz;
 #ifdef RICH
-    field = vec3(value, flags);
+    field = vec4(value, flags);
 #else
-    field = vec3((value - frame.scale.x) * frame.scale.y, flags);
+    field = vec3((value - frame.scale.x) * frame.scale.y, flags.xy);
 #endif
 }

@@ -13,6 +13,7 @@
 static struct colormap maps[] = {
     { .name = "relief" }, { .name = "viridis" }, { .name = "cividis" }, { .name = "diverging" }, { .name = "turbo" }
 };
+static struct colormap operator_map = { .name = "operator" };
 #define MAP_COUNT (sizeof(maps) / sizeof(*maps))
 
 static pthread_once_t once = PTHREAD_ONCE_INIT;
@@ -45,6 +46,13 @@ static void read_maps(void)
 {
     for (size_t i = 0; i < MAP_COUNT; i++)
         read_map(&maps[i]);
+    read_map(&operator_map);
+}
+
+const struct colormap *colormap_operator(void)
+{
+    pthread_once(&once, read_maps);
+    return &operator_map;
 }
 
 size_t colormap_count(void)

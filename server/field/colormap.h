@@ -13,6 +13,8 @@ struct colormap {
 
 size_t colormap_count(void);
 const struct colormap *colormap_at(size_t index); /* 0 is the default */
+/* Colours of places between limits, -3 to 3 (field/limits.h): not on the list, since it does not show values. */
+const struct colormap *colormap_operator(void);
 int colormap_find(const char *name);              /* index or -1 */
 
 #endif

@@ -14,6 +14,10 @@
    What is shown may also be the distance from one sensor, in metres, or the difference from a baseline: the field of now less the
    field of then, both over the sensors that may be used in both (Algorithm 1 clamps readings, so there clamped ones are subtracted).
 
+   Or, for operators, the places of the readings between their own tags' limits (field/limits.h), interpolated with the same weights; paper
+   falls to 0 there, which is the middle. A sensor whose tag has no limits has no place and takes no part; where it is the nearest, the
+   scalar is flagged so.
+
    Both are linear in the readings: value = G v / G 1. G is kept in a bounded cache or made anew for each sum, with the same bits;
    a changed reading adds one column times its change, a changed quality sums all anew.
    Thread: one at a time per field (it spreads its work over `workers`). */
@@ -26,7 +30,7 @@
 #include "value/baselines.h"
 #include "value/snapshot.h"
 
-enum field_show { SHOW_VALUE, SHOW_DISTANCE, SHOW_DIFFERENCE };
+enum field_show { SHOW_VALUE, SHOW_DISTANCE, SHOW_DIFFERENCE, SHOW_OPERATOR };
 
 struct field_override { /* of one sensor, in place of what the tag list says */
     int tag;

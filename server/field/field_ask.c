@@ -35,7 +35,7 @@ void field_probe(struct field *field, int asset, const struct field_params *para
     for (size_t i = 0; i < layout->sensor_count; i++) {
         const struct layout_sensor *sensor = &layout->sensors[i];
         float scratch[1], distance_m = *layout_distances(layout, params->distance, i, vertex, 1, scratch);
-        if (!state->usable[i] || !(distance_m <= params->reach_m) || distance_m > 1e30f)
+        if (state->usable[i] != SENSOR_USED || !(distance_m <= params->reach_m) || distance_m > 1e30f)
             continue;
         insert_nearest(out, sensor->tag, (double)distance_m);
         at_sensor |= distance_m == 0 || layout->file->view.sensors[sensor->column].nearest_vertex == vertex;
@@ -43,7 +43,7 @@ void field_probe(struct field *field, int asset, const struct field_params *para
     const struct scalar *at = &scalars->at[vertex];
     out->value = (double)at->value;
     out->uncertain = at->uncertain;
-    if (!at->no_data)
+    if (!at->no_data && !at->no_limits)
         out->kind =
             at_sensor && params->interpolation == INTERPOLATION_SHEPARD && params->show != SHOW_DISTANCE ? PROBE_MEASURED : PROBE_BETWEEN;
 }

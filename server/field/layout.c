@@ -29,6 +29,7 @@ struct layout *layout_create(const struct scene *scene, int asset, int group)
     struct layout *layout = mem_new(sizeof(*layout));
     layout->file = from->file;
     layout->group = &scene->plant->groups[group];
+    layout->tags = scene->plant->tags;
     layout->vertex_count = from->file->view.header->vertex_count;
     layout->sensors = mem_array(count, sizeof(*layout->sensors));
     for (size_t i = 0; i < from->sensor_count; i++) {

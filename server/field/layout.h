@@ -15,6 +15,7 @@ struct layout_sensor {
 struct layout {
     const struct asset *file;
     const struct plant_group *group;
+    const struct plant_tag *tags; /* of the plant */
     struct layout_sensor *sensors;
     size_t sensor_count, vertex_count;
     float largest_m[2]; /* by distance_mode; 0: not looked for yet */

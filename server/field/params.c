@@ -7,6 +7,7 @@
 
 #include "field/field.h"
 #include "field/kernels.h"
+#include "field/limits.h"
 
 static const double DIFFERENCE_PART = 0.25; /* of the group's range, to either side of 0 */
 
@@ -106,6 +107,7 @@ void field_own_range(const struct scene *scene, const struct field_params *param
     case SHOW_VALUE: *min = group->min, *max = group->max; break;
     case SHOW_DISTANCE: *min = 0, *max = distance_range(scene, params); break;
     case SHOW_DIFFERENCE: *min = -part, *max = part; break;
+    case SHOW_OPERATOR: *min = -LIMIT_PLACE_MOST, *max = LIMIT_PLACE_MOST; break;
     }
 }
 
@@ -163,8 +165,9 @@ const char *field_params_wrong(const struct plant *plant, const struct field_par
         return "distance: expected geodesic or euclidean";
     if (params->fill != FILL_NONE && params->fill != FILL_NEIGHBOURS)
         return "fill: expected none or neighbours";
-    if (params->show != SHOW_VALUE && params->show != SHOW_DISTANCE && params->show != SHOW_DIFFERENCE)
-        return "show: expected value, distance or difference";
+    if (params->show != SHOW_VALUE && params->show != SHOW_DISTANCE && params->show != SHOW_DIFFERENCE &&
+        params->show != SHOW_OPERATOR)
+        return "show: expected value, distance, difference or operator";
     const char *wrong = numbers_wrong(params);
     return wrong ? wrong : sensors_wrong(plant, params);
 }

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "field/limits.h"
 #include "field/scalars.h"
 #include "value/quality.h"
 
@@ -63,21 +64,24 @@ static double limited(double x, double low, double high)
     return x < low ? low : x > high ? high : x;
 }
 
-static double value_of(const struct state *state, double reading)
+static double value_of(const struct state *state, const struct plant_tag *tag, double reading)
 {
     const struct plant_group *group = state->layout->group;
+    if (state->params.show == SHOW_OPERATOR)
+        return (float)limit_place(group, tag, reading);
     if (state->params.interpolation == INTERPOLATION_PAPER)
         return (float)limited((reading - group->min) / (group->max - group->min), 0, 1);
     return (float)limited(reading, -READING_LIMIT, READING_LIMIT);
 }
 
-static struct state_input input_of(const struct state *state, const struct reading *reading)
+static struct state_input input_of(const struct state *state, const struct plant_tag *tag, const struct reading *reading)
 {
-    bool usable = !quality_is_bad(reading->quality) && isfinite(reading->value);
+    bool good = !quality_is_bad(reading->quality) && isfinite(reading->value);
+    double value = good ? value_of(state, tag, reading->value) : 0;
     return (struct state_input){
-        .value = usable ? value_of(state, reading->value) : 0,
-        .usable = usable,
-        .uncertain = usable && quality_is_uncertain(reading->quality),
+        .value = isfinite(value) ? value : 0,
+        .usable = !good ? SENSOR_LOST : isfinite(value) ? SENSOR_USED : SENSOR_NO_LIMITS,
+        .uncertain = good && quality_is_uncertain(reading->quality),
     };
 }
 
@@ -97,13 +101,14 @@ void state_read(struct state *state, const struct snapshot *snapshot, const stru
     int64_t oldest_ns = -1;
     for (size_t i = 0; i < state->layout->sensor_count; i++) {
         int tag = state->layout->sensors[i].tag;
+        const struct plant_tag *described = &state->layout->tags[tag];
         const struct reading *reading = &snapshot->readings[tag];
-        state->now[i] = input_of(state, reading);
+        state->now[i] = input_of(state, described, reading);
+        const struct state_input nothing = { 0 };
         if (state->params.show == SHOW_DIFFERENCE)
-            state->now[i] = less(state->now[i], baseline ? input_of(state, &baseline->readings[tag]) : (struct state_input){ 0 });
-        bool usable = state->now[i].usable;
-        state->usable[i] = usable;
-        if (usable && reading->age_ns > oldest_ns)
+            state->now[i] = less(state->now[i], baseline ? input_of(state, described, &baseline->readings[tag]) : nothing);
+        state->usable[i] = state->now[i].usable;
+        if (state->usable[i] && reading->age_ns > oldest_ns)
             oldest_ns = reading->age_ns;
     }
     state->scalars.oldest_age_ns = oldest_ns >= 0 ? oldest_ns : INT64_MAX;
@@ -185,8 +190,10 @@ static void choose_rule(struct update *update)
 {
     const struct state *state = update->state;
     const struct plant_group *group = state->layout->group;
-    bool difference = state->params.show == SHOW_DIFFERENCE;
-    if (state->params.interpolation == INTERPOLATION_PAPER) {
+    bool difference = state->params.show == SHOW_DIFFERENCE, places = state->params.show == SHOW_OPERATOR;
+    if (state->params.interpolation == INTERPOLATION_PAPER && places) {
+        update->rule = (struct kernel_value){ .scale = 1, .low = -(float)LIMIT_PLACE_MOST, .high = (float)LIMIT_PLACE_MOST };
+    } else if (state->params.interpolation == INTERPOLATION_PAPER) {
         float scale = (float)(group->max - group->min), offset = difference ? 0 : (float)group->min;
         update->rule = (struct kernel_value){
             .scale = scale, .offset = offset, .low = difference ? -scale : offset, .high = difference ? scale : (float)group->max
@@ -199,7 +206,7 @@ static void choose_rule(struct update *update)
             update->rule.high = fmaxf(update->rule.high, value);
         }
     }
-    update->rule.empty = difference ? 0 : (float)group->min;
+    update->rule.empty = difference || places ? 0 : (float)group->min;
 }
 
 static bool set_flags(const struct update *update, size_t begin, size_t count, const double *total, const double *marked)
@@ -209,9 +216,11 @@ static bool set_flags(const struct update *update, size_t begin, size_t count, c
     bool fill = update->state->params.fill == FILL_NEIGHBOURS, changed = false;
     for (size_t j = 0; j < count; j++) {
         bool filled = fill && place[j] == PLACE_LOST;
-        uint8_t no_data = place[j] == PLACE_GOOD || filled ? 0 : FLAG;
+        uint8_t no_limits = place[j] == PLACE_NO_LIMITS ? FLAG : 0;
+        uint8_t no_data = place[j] == PLACE_GOOD || filled || no_limits ? 0 : FLAG;
         uint8_t uncertain = filled || (update->marks && total[j] > 0 && 2 * marked[j] >= total[j]) ? FLAG : 0;
-        changed |= at[j].no_data != no_data || at[j].uncertain != uncertain;
+        changed |= at[j].no_data != no_data || at[j].uncertain != uncertain || at[j].no_limits != no_limits;
+        at[j].no_limits = no_limits;
         at[j].no_data = no_data;
         at[j].uncertain = uncertain;
     }

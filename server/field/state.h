@@ -7,7 +7,7 @@
 
 struct state_input { /* what one sensor says, as the sums take it */
     double value;    /* engineering units; for `paper` 0..1 */
-    uint8_t usable, uncertain;
+    uint8_t usable, uncertain; /* usable: enum sensor_use */
 };
 
 struct state {

@@ -85,7 +85,9 @@ static void choose_members(struct weights *weights, const struct field_params *p
         weights->strength[i] = strength_of(&layout->sensors[i], params);
         weights->decay[i] = decay_of(&layout->sensors[i], params);
         weights->configured[i] = weights->interpolation == INTERPOLATION_PAPER || weights->strength[i] > 0;
-        if (usable[i] && weights->configured[i])
+        if (usable[i] == SENSOR_NO_LIMITS && weights->configured[i])
+            weights->configured[i] = SENSOR_NO_LIMITS;
+        if (usable[i] == SENSOR_USED && weights->configured[i])
             weights->members[weights->member_count++] = (uint32_t)i;
     }
 }
@@ -170,23 +172,32 @@ static const float *distances(const struct weights *weights, size_t sensor, size
     return layout_distances(weights->layout, weights->distance, sensor, begin, count, scratch);
 }
 
+/* Distances to the nearest sensor that is used, lost and without limits. */
+static enum place place_of(float near_m, float lost_m, float no_limits_m, float reach_m)
+{
+    if (no_limits_m < near_m && no_limits_m <= lost_m && no_limits_m <= reach_m)
+        return PLACE_NO_LIMITS;
+    if (!(near_m <= reach_m) || near_m == INFINITY)
+        return PLACE_NOBODY;
+    return lost_m < near_m ? PLACE_LOST : PLACE_GOOD;
+}
+
 static void nearest(struct weights *weights, size_t begin, size_t count)
 {
-    float scratch[KERNEL_BLOCK], configured_m[KERNEL_BLOCK], *near_m = weights->near_m + begin;
+    float scratch[KERNEL_BLOCK], lost_m[KERNEL_BLOCK], no_limits_m[KERNEL_BLOCK], *near_m = weights->near_m + begin;
     for (size_t j = 0; j < count; j++)
-        configured_m[j] = near_m[j] = INFINITY;
+        lost_m[j] = no_limits_m[j] = near_m[j] = INFINITY;
     for (size_t m = 0; m < weights->member_count; m++)
         kernel_nearest(distances(weights, weights->members[m], begin, count, scratch), count, near_m);
     for (size_t i = 0, m = 0; i < weights->layout->sensor_count; i++) {
         if (m < weights->member_count && weights->members[m] == i)
             m++;
         else if (weights->configured[i])
-            kernel_nearest(distances(weights, i, begin, count, scratch), count, configured_m);
+            kernel_nearest(distances(weights, i, begin, count, scratch), count,
+                           weights->configured[i] == SENSOR_NO_LIMITS ? no_limits_m : lost_m);
     }
     for (size_t j = 0; j < count; j++)
-        weights->place[begin + j] = !(near_m[j] <= weights->reach_m) || near_m[j] == INFINITY ? PLACE_NOBODY
-                                    : configured_m[j] < near_m[j]                             ? PLACE_LOST
-                                                                                              : PLACE_GOOD;
+        weights->place[begin + j] = (uint8_t)place_of(near_m[j], lost_m[j], no_limits_m[j], weights->reach_m);
 }
 
 void weights_prepare(struct weights *weights, size_t begin, size_t count)

@@ -9,11 +9,18 @@
 #include "field/kernels.h"
 #include "field/layout.h"
 
+enum sensor_use {
+    SENSOR_LOST,     /* takes no part; its place has no data */
+    SENSOR_USED,
+    SENSOR_NO_LIMITS /* takes no part, but its place is known to be well measured */
+};
+
 /* How the nearest sensors stand to a vertex. */
 enum place {
-    PLACE_GOOD,  /* the nearest configured sensor is usable and within reach */
-    PLACE_LOST,  /* it is not usable; another one is within reach */
-    PLACE_NOBODY /* no usable sensor within reach */
+    PLACE_GOOD,     /* the nearest configured sensor is usable and within reach */
+    PLACE_LOST,     /* it is not usable; another one is within reach */
+    PLACE_NOBODY,   /* no usable sensor within reach */
+    PLACE_NO_LIMITS /* the nearest one within reach is SENSOR_NO_LIMITS */
 };
 
 struct weights_key { /* what G depends on, as bytes */
@@ -29,7 +36,7 @@ struct weights {
     enum distance_mode distance;
     float power, reach_m, radius_m;
     float *strength, *decay; /* by sensor of the layout */
-    uint8_t *configured;     /* by sensor of the layout: may take part, were it good */
+    uint8_t *configured;     /* by sensor of the layout: may take part, were it good; more than 1: SENSOR_NO_LIMITS */
     uint32_t *members;       /* usable sensors of the layout; a column's number is its place here */
     size_t member_count;
     float *near_m, *top; /* by vertex: distance of the nearest usable sensor; scale (kernels.h) */
@@ -42,7 +49,7 @@ struct weights {
     struct weights *next;
 };
 
-/* usable: by sensor of the layout. radius_m: R of `paper`, already resolved. */
+/* usable: enum sensor_use, by sensor of the layout. radius_m: R of `paper`, already resolved. */
 void weights_key_init(struct weights_key *key, const struct layout *layout, const struct field_params *params, float radius_m,
                       const uint8_t *usable);
 void weights_key_finish(struct weights_key *key);

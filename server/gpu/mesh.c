@@ -44,7 +44,7 @@ static void describe(const struct mesh *mesh)
     glVertexArrayAttribBinding(mesh->vao, MESH_LIGHT, BIND_LIGHT);
     glVertexArrayAttribFormat(mesh->vao, MESH_SCALAR, 1, GL_FLOAT, GL_FALSE, 0);
     glVertexArrayAttribBinding(mesh->vao, MESH_SCALAR, BIND_SCALAR);
-    glVertexArrayAttribFormat(mesh->vao, MESH_FLAGS, 2, GL_UNSIGNED_BYTE, GL_TRUE, 4);
+    glVertexArrayAttribFormat(mesh->vao, MESH_FLAGS, 3, GL_UNSIGNED_BYTE, GL_TRUE, 4);
     glVertexArrayAttribBinding(mesh->vao, MESH_FLAGS, BIND_SCALAR);
     glVertexArrayElementBuffer(mesh->vao, mesh->indices);
 }

@@ -12,7 +12,9 @@
 const struct name names_interpolation[] = { { "shepard", INTERPOLATION_SHEPARD }, { "paper", INTERPOLATION_PAPER }, { NULL, 0 } };
 const struct name names_distance[] = { { "geodesic", DISTANCE_GEODESIC }, { "euclidean", DISTANCE_EUCLIDEAN }, { NULL, 0 } };
 const struct name names_fill[] = { { "none", FILL_NONE }, { "neighbours", FILL_NEIGHBOURS }, { NULL, 0 } };
-const struct name names_show[] = { { "value", SHOW_VALUE }, { "distance", SHOW_DISTANCE }, { "difference", SHOW_DIFFERENCE }, { NULL, 0 } };
+const struct name names_show[] = {
+    { "value", SHOW_VALUE }, { "distance", SHOW_DISTANCE }, { "difference", SHOW_DIFFERENCE }, { "operator", SHOW_OPERATOR }, { NULL, 0 }
+};
 const struct name names_scale[] = { { "linear", false }, { "log", true }, { NULL, 0 } };
 const struct name names_look[] = { { "default", LOOK_DEFAULT }, { "glossy", LOOK_GLOSSY }, { "flat", LOOK_FLAT }, { NULL, 0 } };
 const struct name names_codec[] = { { "jpeg", WIRE_CODEC_JPEG }, { "png", WIRE_CODEC_PNG }, { NULL, 0 } };

@@ -165,9 +165,11 @@ bool params_parse(const struct plant *plant, const json_t *o, struct params_chan
            params_parse_paint(o, out, error) && visibility_parse(plant, o, out, error);
 }
 
-static void take_group(const struct scene *scene, int group, struct view *view)
+/* An operator looks on at limits. */
+static void take_group(const struct scene *scene, int group, bool is_operator, struct view *view)
 {
     field_params_default(scene->plant, group, &view->field);
+    view->field.show = is_operator ? SHOW_OPERATOR : SHOW_VALUE;
     view_own_scale(scene, view);
 }
 
@@ -216,7 +218,7 @@ bool params_apply(const struct params_world *world, const struct params_change *
 {
     struct view changed = *view;
     if ((change->given & GIVEN_GROUP) && change->field.group != changed.field.group)
-        take_group(world->scene, change->field.group, &changed);
+        take_group(world->scene, change->field.group, view_is_operator(view), &changed);
     apply_field(change, &changed.field);
     if (!params_apply_show(world, change, view, &changed, error))
         return false;

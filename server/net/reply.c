@@ -11,6 +11,7 @@
 #include "field/colormap.h"
 #include "net/names.h"
 #include "net/visibility.h"
+#include "value/alarms.h"
 #include "value/quality.h"
 
 enum { DIGITS = 9, EXACT_DIGITS = 17 };
@@ -274,16 +275,22 @@ static json_t *value_of(const struct reading *reading)
     return quality_is_bad(reading->quality) ? json_null() : number(reading->value);
 }
 
-char *reply_tags_text(const struct snapshot *snapshot, uint32_t *sent, bool all)
+static json_t *alarm_of(const struct plant *plant, size_t tag, const struct reading *reading)
 {
+    return string(alarm_name(alarm_active(&plant->tags[tag], reading)));
+}
+
+char *reply_tags_text(const struct session_world *world, uint32_t *sent, bool all)
+{
+    const struct snapshot *snapshot = world->snapshot;
     json_t *values = json_array();
     for (size_t i = 0; i < snapshot->count; i++) {
         const struct reading *r = &snapshot->readings[i];
         if (!all && sent[i] == r->changes)
             continue;
         sent[i] = r->changes;
-        json_array_append_new(values, json_pack("[I,o,o,o,o]", (json_int_t)i, value_of(r), string(quality_class(r->quality)),
-                                                string(quality_name(r->quality)), age_ms(r)));
+        json_array_append_new(values, json_pack("[I,o,o,o,o,o]", (json_int_t)i, value_of(r), string(quality_class(r->quality)),
+                                                string(quality_name(r->quality)), age_ms(r), alarm_of(world->plant, i, r)));
     }
     return print(json_pack("{s:s,s:I,s:o}", "type", "tags", "time_us", us(snapshot->taken_utc_ns), "values", values), DIGITS);
 }

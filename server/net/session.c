@@ -340,7 +340,7 @@ bool session_has_text(const struct session *session, int64_t now_ns)
 static void add_tags(struct session *session, int64_t now_ns, struct text *out)
 {
     bool all = tags_all_due(session, now_ns);
-    add_owned(out, reply_tags_text(session->world->snapshot, session->tag_changes, all));
+    add_owned(out, reply_tags_text(session->world, session->tag_changes, all));
     session->owes_tags = session->owes_tags_all = false;
     session->tags_ns = now_ns;
     if (all)

@@ -13,6 +13,5 @@ void plant_file_read(struct plant *plant, struct diag *diag);
 void tag_list_read(struct plant *plant, struct diag *diag);
 /* The first two limits that do not rise (LL < L < H < HH; NaN: none): true, with their indices. */
 bool plant_limits_wrong(const double limits[LIMIT_COUNT], int *lower, int *upper);
-extern const char *const plant_limit_names[LIMIT_COUNT];
 
 #endif

@@ -27,11 +27,12 @@ static void from_eye(const double from_plant[16], const double eye_m[3], float o
 static void fill_scale(struct frame_block *block, const struct picture *picture)
 {
     const struct view *view = picture->view;
-    double low = view->paint.log ? log2(view->range_min) : view->range_min;
-    double high = view->paint.log ? log2(view->range_max) : view->range_max;
+    struct scale scale;
+    view_scale(view, &scale);
+    double low = scale.log ? log2(scale.min) : scale.min, high = scale.log ? log2(scale.max) : scale.max;
     block->scale[0] = (float)low;
     block->scale[1] = (float)(1 / (high - low));
-    block->scale[2] = view->paint.log;
+    block->scale[2] = scale.log;
     block->scale[3] = (float)frame_block_pattern_px(view);
     block->lines[0] = picture->palette.lines ? (float)frame_block_line_px(view) : 0;
     block->lines[1] = block->lines[2] = block->lines[3] = 0;

@@ -64,7 +64,10 @@ static void choose_ticks(struct ticks *ticks, const struct view *view, double mo
     view_scale(view, &scale);
     int count = view_lines(view, lines);
     ticks->count = 0;
-    if (count > 0 && count + 2 <= most) {
+    if (view_is_operator(view)) {
+        for (int i = 0; i < count; i++)
+            add_tick(ticks, &scale, lines[i]);
+    } else if (count > 0 && count + 2 <= most) {
         line_ticks(ticks, &scale, lines, count);
     } else if (scale.log) {
         log_ticks(ticks, &scale, most);
@@ -87,12 +90,21 @@ static double most_ticks(const struct pen *pen, double height)
     return floor(height / (1.9 * pen->text_px)) + 1;
 }
 
+static void tick_text(const struct pen *pen, double value, char text[40])
+{
+    const struct view *view = &pen->view;
+    if (view_is_operator(view))
+        snprintf(text, 40, "%s", plant_limit_names[(int)(value > 0 ? value + 1 : value + 2)]);
+    else
+        pen_number(value, view->paint.log ? value : view->range_max - view->range_min, text);
+}
+
 static double text_width(struct pen *pen, const struct ticks *ticks)
 {
-    double width = 0, range = pen->view.range_max - pen->view.range_min;
+    double width = 0;
     for (int i = 0; i < ticks->count; i++) {
         char text[40];
-        pen_number(ticks->values[i], pen->view.paint.log ? ticks->values[i] : range, text);
+        tick_text(pen, ticks->values[i], text);
         width = fmax(width, pen_text_width(pen, text));
     }
     return width;
@@ -169,14 +181,14 @@ static void draw_lines(struct pen *pen, const struct box *bar, const struct scal
 static void draw_ticks(struct pen *pen, const struct box *bar, const struct scale *scale)
 {
     struct ticks ticks;
-    double range = scale->max - scale->min, right = bar->x + bar->width;
+    double right = bar->x + bar->width;
     choose_ticks(&ticks, &pen->view, most_ticks(pen, bar->height));
     spread(ticks.places, ticks.count, GAP * pen->text_px / bar->height);
     pen_font(pen, 0.9, false);
     for (int i = 0; i < ticks.count; i++) {
         char text[40];
         double y = height_of(bar, scale_place(scale, ticks.values[i])), text_y = height_of(bar, ticks.places[i]);
-        pen_number(ticks.values[i], scale->log ? ticks.values[i] : range, text);
+        tick_text(pen, ticks.values[i], text);
         draw_rule(pen, right, y, right + 0.4 * pen->text_px, text_y, 0.7);
         pen_ink(pen, 0.95);
         pen_text(pen, right + 0.55 * pen->text_px, text_y + 0.33 * pen->text_px, text);

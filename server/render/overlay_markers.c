@@ -5,6 +5,7 @@
 
 #include "base/mem.h"
 #include "render/overlay_pen.h"
+#include "value/alarms.h"
 #include "value/quality.h"
 
 static const double LABELS_PART = 0.05; /* of the picture may lie under labels: a hundred would hide the plant */
@@ -38,16 +39,40 @@ static void draw_mark(struct pen *pen, const struct frame_marker *marker, bool b
     }
 }
 
+void overlay_ring(struct pen *pen, double x, double y, double radius, int alarm)
+{
+    static const double red[3] = { 0.78, 0.06, 0.10 }, amber[3] = { 0.95, 0.66, 0.05 };
+    const double *color = alarm == LIMIT_HH || alarm == LIMIT_LL ? red : amber;
+    cairo_new_path(pen->cairo);
+    cairo_arc(pen->cairo, x, y, radius, 0, 2 * M_PI);
+    pen_ink(pen, 0.9);
+    cairo_set_line_width(pen->cairo, fmax(3.2, 0.55 * radius));
+    cairo_stroke_preserve(pen->cairo);
+    cairo_set_source_rgb(pen->cairo, color[0], color[1], color[2]);
+    cairo_set_line_width(pen->cairo, fmax(2.0, 0.38 * radius));
+    cairo_stroke(pen->cairo);
+}
+
+/* ALARM_NONE but in the operator's view: elsewhere alarm colours might be taken for values. */
+static int alarm_of(const struct pen *pen, const struct frame_marker *marker)
+{
+    if (!view_is_operator(&pen->view))
+        return ALARM_NONE;
+    return alarm_active(&pen->scene->plant->tags[marker->tag], &pen->snapshot->readings[marker->tag]);
+}
+
 static void format_value(const struct pen *pen, const struct frame_marker *marker, char out[64])
 {
     const struct reading *reading = &pen->snapshot->readings[marker->tag];
     const struct plant_tag *tag = &pen->scene->plant->tags[marker->tag];
-    const struct view *view = &pen->view;
+    const struct plant_group *group = &pen->scene->plant->groups[pen->view.field.group];
+    int alarm = alarm_of(pen, marker);
     if (quality_is_bad(reading->quality))
         snprintf(out, 64, "BAD");
     else
-        snprintf(out, 64, "%.*f %s%s", pen_decimals(view->range_max - view->range_min), reading->value, tag->unit ? tag->unit : "",
-                 quality_is_uncertain(reading->quality) ? " ?" : "");
+        snprintf(out, 64, "%.*f %s%s%s%s", pen_decimals(group->max - group->min), reading->value, tag->unit ? tag->unit : "",
+                 quality_is_uncertain(reading->quality) ? " ?" : "", alarm == ALARM_NONE ? "" : " ",
+                 alarm == ALARM_NONE ? "" : alarm_name(alarm));
 }
 
 static void draw_label(struct pen *pen, const struct box *box, const char *name, double name_width, const char *value, bool occluded)
@@ -99,10 +124,10 @@ static bool is_inside(const struct pen *pen, const struct frame_marker *marker)
            marker->y_px < area->height;
 }
 
-/* Bad ones first, then those in sight: a hidden sensor must not take their place. */
+/* Alarms and bad ones first, then those in sight: a hidden sensor must not take their place. */
 static int rank_of(const struct pen *pen, const struct frame_marker *marker)
 {
-    return is_bad(pen, marker) && !marker->occluded ? 0 : marker->occluded ? 2 : 1;
+    return (is_bad(pen, marker) || alarm_of(pen, marker) != ALARM_NONE) && !marker->occluded ? 0 : marker->occluded ? 2 : 1;
 }
 
 static bool is_apart(const struct pen *pen, const struct labels *labels, const struct frame_marker *marker, double least_px)
@@ -145,7 +170,7 @@ static void label_isolines(struct pen *pen)
     const struct frame *frame = pen->frame;
     double least_px = 0.16 * pen->area.width, range = pen->view.range_max - pen->view.range_min, pad = 2 * pen->unit;
     bool *done = mem_array(frame->label_count, sizeof(*done));
-    for (size_t i = 0; i < frame->label_count; i++) {
+    for (size_t i = 0; i < frame->label_count && !view_is_operator(&pen->view); i++) {
         const struct frame_label *label = &frame->labels[i];
         bool crowded = label->half != pen->half;
         for (size_t k = 0; k < i && !crowded; k++)
@@ -180,6 +205,8 @@ void overlay_markers(struct pen *pen)
             continue;
         if (!marker->occluded)
             pen_take(pen, &mark);
+        if (alarm_of(pen, marker) != ALARM_NONE)
+            overlay_ring(pen, marker->x_px, marker->y_px, 9.5 * pen->unit, alarm_of(pen, marker));
         draw_mark(pen, marker, is_bad(pen, marker));
     }
     place_labels(pen);

@@ -47,6 +47,8 @@ void overlay_bar(struct pen *pen, const struct box *bar);
 double overlay_bar_width(struct pen *pen); /* with all that is written beside it */
 double overlay_bar_left(struct pen *pen);  /* of which before the bar itself */
 void overlay_legend(struct pen *pen);
+/* Around a place whose alarm (an enum limit) is active. */
+void overlay_ring(struct pen *pen, double x, double y, double radius, int alarm);
 void overlay_markers(struct pen *pen);
 
 #endif

@@ -10,6 +10,7 @@
 #include "base/mem.h"
 
 const uint8_t palette_no_data[2][3] = { { 240, 240, 240 }, { 150, 150, 150 } };
+const uint8_t palette_no_limits[2][3] = { { 226, 226, 226 }, { 196, 196, 196 } };
 const uint8_t palette_uncertain[3] = { 64, 64, 64 };
 
 static const double white[3] = { 0.95047, 1.0, 1.08883 };
@@ -126,13 +127,16 @@ static const uint8_t *shaded_color(const struct colormap *map, int color)
     case SHADED_PATTERNS + PATTERN_HATCH_LIGHT: return palette_no_data[0];
     case SHADED_PATTERNS + PATTERN_HATCH_DARK: return palette_no_data[1];
     case SHADED_PATTERNS + PATTERN_STIPPLE: return palette_uncertain;
+    case SHADED_PATTERNS + PATTERN_PLAIN_LIGHT: return palette_no_limits[0];
+    case SHADED_PATTERNS + PATTERN_PLAIN_DARK: return palette_no_limits[1];
     default: return map->rgb[color];
     }
 }
 
 void palette_shade_map(const struct colormap *map, struct shaded *out)
 {
-    double amplitude = palette_amplitude(map);
+    /* Greys and tints of few steps are told apart by hue, not by lightness. */
+    double amplitude = map == colormap_operator() ? PALETTE_SHADING : palette_amplitude(map);
     for (int row = 0; row < PALETTE_ROWS; row++)
         for (int color = 0; color < SHADED_COLORS; color++)
             palette_shade(shaded_color(map, color), amplitude * (2.0 * row / (PALETTE_ROWS - 1) - 1), out->rgb[row][color]);

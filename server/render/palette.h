@@ -13,10 +13,11 @@
 enum { PALETTE_ROWS = 65 }; /* steps of light; odd: the middle one leaves the colour alone */
 /* Columns of the texture, as in shaders/field.glsl: PALETTE_PLACES along the scale, what is outside at their ends, patterns behind. */
 enum { PALETTE_PLACES = 1024, PALETTE_BELOW = 0, PALETTE_ABOVE = PALETTE_PLACES + 1, PALETTE_PATTERNS };
-enum palette_pattern { PATTERN_HATCH_LIGHT, PATTERN_HATCH_DARK, PATTERN_STIPPLE, PATTERN_COUNT };
+enum palette_pattern { PATTERN_HATCH_LIGHT, PATTERN_HATCH_DARK, PATTERN_STIPPLE, PATTERN_PLAIN_LIGHT, PATTERN_PLAIN_DARK, PATTERN_COUNT };
 enum { PALETTE_COLUMNS = PALETTE_PATTERNS + PATTERN_COUNT };
 
 extern const uint8_t palette_no_data[2][3]; /* sRGB of the two stripes that mean no data */
+extern const uint8_t palette_no_limits[2][3]; /* of field and lines that mean a tag without limits */
 extern const uint8_t palette_uncertain[3];  /* sRGB of the dots that mean uncertain */
 
 /* How far shading may go on this map, in L*: at most PALETTE_SHADING, less on maps where lightness tells much of the value, so that

@@ -17,15 +17,16 @@ static bool same_scale(const struct scale *a, const struct scale *b)
            same_numbers(a->breaks, a->break_count, b->breaks, b->break_count);
 }
 
-static const struct shaded *shaded_of(struct palettes *palettes, int colormap)
+static const struct shaded *shaded_of(struct palettes *palettes, const struct view *view, const struct colormap *map)
 {
+    size_t number = view_is_operator(view) ? colormap_count() : (size_t)view->colormap;
     if (!palettes->shaded)
-        palettes->shaded = mem_array(colormap_count(), sizeof(struct shaded *));
-    if (!palettes->shaded[colormap]) {
-        palettes->shaded[colormap] = mem_new(sizeof(struct shaded));
-        palette_shade_map(colormap_at((size_t)colormap), palettes->shaded[colormap]);
+        palettes->shaded = mem_array(colormap_count() + 1, sizeof(struct shaded *));
+    if (!palettes->shaded[number]) {
+        palettes->shaded[number] = mem_new(sizeof(struct shaded));
+        palette_shade_map(map, palettes->shaded[number]);
     }
-    return palettes->shaded[colormap];
+    return palettes->shaded[number];
 }
 
 static void entry_finish(struct palettes_entry *entry)
@@ -59,7 +60,7 @@ struct palette palettes_get(struct palettes *palettes, const struct view *view)
         entry->used = palettes->uses;
         return entry->palette;
     }
-    wanted.palette.colors = palette_create(&wanted.scale, shaded_of(palettes, view->colormap));
+    wanted.palette.colors = palette_create(&wanted.scale, shaded_of(palettes, view, wanted.scale.map));
     if (wanted.line_count > 0)
         wanted.palette.lines = palette_create_lines(&wanted.scale, wanted.lines, wanted.line_count);
     struct palettes_entry *entry = make_room(palettes);
@@ -71,7 +72,7 @@ void palettes_finish(struct palettes *palettes)
 {
     for (int i = 0; i < palettes->count; i++)
         entry_finish(&palettes->at[i]);
-    for (size_t i = 0; palettes->shaded && i < colormap_count(); i++)
+    for (size_t i = 0; palettes->shaded && i <= colormap_count(); i++)
         mem_free(palettes->shaded[i]);
     mem_free(palettes->shaded);
     *palettes = (struct palettes){ 0 };

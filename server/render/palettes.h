@@ -19,7 +19,7 @@ struct palettes_entry {
 
 enum { PALETTES = 16 };
 struct palettes {           /* zero-initialise */
-    struct shaded **shaded; /* by colour map; NULL: not made yet */
+    struct shaded **shaded; /* by colour map, then the operator's; NULL: not made yet */
     struct palettes_entry at[PALETTES];
     int count;
     uint64_t uses;

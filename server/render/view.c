@@ -26,7 +26,7 @@ static void default_light(const struct scene *scene, double towards[3])
 const char *view_unit(const struct plant *plant, const struct view *view)
 {
     const char *unit = plant->groups[view->field.group].unit;
-    return view->field.show == SHOW_DISTANCE ? "m" : unit ? unit : "";
+    return view->field.show == SHOW_DISTANCE ? "m" : view_is_operator(view) || !unit ? "" : unit;
 }
 
 void view_own_scale(const struct scene *scene, struct view *view)
@@ -58,8 +58,17 @@ void view_default(const struct scene *scene, int width_px, int height_px, struct
     default_light(scene, view->light_dir);
 }
 
+bool view_is_operator(const struct view *view)
+{
+    return view->field.show == SHOW_OPERATOR;
+}
+
 void view_scale(const struct view *view, struct scale *scale)
 {
+    if (view_is_operator(view)) {
+        *scale = (struct scale){ .map = colormap_operator(), .min = -LIMIT_PLACE_MOST, .max = LIMIT_PLACE_MOST };
+        return;
+    }
     *scale = (struct scale){
         .map = colormap_at((size_t)view->colormap),
         .min = view->range_min,
@@ -126,6 +135,11 @@ static int by_size(const void *a, const void *b)
 
 int view_lines(const struct view *view, double lines[VIEW_ALL_LINES])
 {
+    static const double limits[LIMIT_COUNT] = { -2, -1, 1, 2 };
+    if (view_is_operator(view)) {
+        memcpy(lines, limits, sizeof(limits));
+        return LIMIT_COUNT;
+    }
     struct scale scale;
     view_scale(view, &scale);
     int count = scale_edges(&scale, lines), distinct = 0;

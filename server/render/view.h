@@ -6,6 +6,7 @@
 #include <stdint.h>
 
 #include "field/field.h"
+#include "field/limits.h"
 #include "field/scale.h"
 #include "scene/camera.h"
 #include "scene/visibility.h"
@@ -62,6 +63,8 @@ const char *view_unit(const struct plant *plant, const struct view *view);
 void view_default(const struct scene *scene, int width_px, int height_px, struct view *view);
 /* The scale that what is shown has by itself: the group's range, isolines and logarithm, or those of a distance or a difference. */
 void view_own_scale(const struct scene *scene, struct view *view);
+/* Shows places between limits (SHOW_OPERATOR): colours, lines and legend are its own, whatever the rest of the view says. */
+bool view_is_operator(const struct view *view);
 void view_scale(const struct view *view, struct scale *scale);
 /* All values that have a line, ascending: isolines and the edges of bands. Returns how many. */
 enum { VIEW_ALL_LINES = VIEW_LINES + SCALE_EDGES };

@@ -10,6 +10,7 @@
 
 #include <cmocka.h>
 
+#include "render/overlay.h"
 #include "render/palette.h"
 #include "tests/support/rig.h"
 #include "value/quality.h"
@@ -311,6 +312,71 @@ static void test_uncertain_is_stippled(void **state)
     }
 }
 
+/* Alarm colours are saturated; the field's never are. */
+static bool is_alarm_color(const uint8_t *bgrx)
+{
+    return bgrx[2] > 150 && bgrx[2] - bgrx[0] > 120;
+}
+
+static int count_alarm_colors(const struct frame *frame)
+{
+    int count = 0;
+    for (int i = 0; i < frame->width_px * frame->height_px; i++)
+        count += is_alarm_color(frame_pixel(frame, i % frame->width_px, i / frame->width_px));
+    return count;
+}
+
+/* Beside the plate there is room for the legend, and all of the plate's rim is in sight. */
+static void check_alarms(const struct view *view)
+{
+    struct view wide = *view;
+    wide.width_px = 800;
+    wide.height_px = 400;
+    wide.camera.eye_m[2] = 14;
+    for (int alarm = 0; alarm < 2; alarm++) {
+        toy_set(stand.snapshot, 1, alarm ? 80 : 69, QUALITY_GOOD);
+        struct frame *frame = stand_draw(&stand, &wide);
+        assert_int_equal(count_alarm_colors(frame), 0);
+        overlay_draw(frame, &stand.toy->scene, stand.snapshot);
+        int x0 = 400 + (int)(200 * 10 / 14.0), y0 = 200 + (int)(100 * 10 / 14.0), around = 0, left = 0;
+        for (int y = 0; y < 400; y++)
+            for (int x = 0; x < 600; x++) { /* the legend is to the right of it */
+                bool near = hypot(x - x0, y - y0) < 14;
+                around += near && is_alarm_color(frame_pixel(frame, x, y));
+                left += !near && is_alarm_color(frame_pixel(frame, x, y));
+            }
+        assert_true(alarm ? around > 40 : around == 0);
+        assert_int_equal(left, 0);
+        frame_unref(&frame);
+    }
+}
+
+static void test_operator_sees_limits(void **state)
+{
+    struct view view;
+    (void)state;
+    look_down(&view);
+    for (int tag = 0; tag < PLATE_TAGS; tag++)
+        memcpy(stand.toy->plant.tags[tag].limits, (double[]){ 0, 20, 70, 90 }, 4 * sizeof(double));
+    for (int i = 0; i < LIMIT_COUNT; i++)
+        stand.toy->plant.tags[2].limits[i] = NAN;
+    toy_set(stand.snapshot, 0, 45, QUALITY_GOOD);
+    toy_set(stand.snapshot, 1, 80, QUALITY_GOOD); /* beyond H */
+    view.field.show = SHOW_OPERATOR;
+    view_own_scale(&stand.toy->scene, &view);
+    for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++) {
+        view.tier = (enum tier)tier;
+        struct frame *frame = stand_draw(&stand, &view);
+        const uint8_t *within = frame_pixel(frame, 6, SIDE_PX - 7), *beyond = frame_pixel(frame, SIDE_PX - 4, SIDE_PX * 3 / 4);
+        const uint8_t *without = frame_pixel(frame, SIDE_PX / 2, 6);
+        assert_true(is_grey(within) && within[0] > 180);
+        assert_true(beyond[2] - beyond[0] > 20 && beyond[2] - beyond[0] < 80); /* sand */
+        assert_true(is_grey(without) && without[0] <= palette_no_limits[0][0] && without[0] >= palette_no_limits[1][0]);
+        frame_unref(&frame);
+    }
+    check_alarms(&view);
+}
+
 static void test_default_look_keeps_to_the_palette(void **state)
 {
     struct view view;
@@ -349,6 +415,7 @@ int main(void)
         each(test_no_data_is_grey_stripes),
         each(test_lost_sensor_leaves_its_place_empty),
         each(test_uncertain_is_stippled),
+        each(test_operator_sees_limits),
         each(test_default_look_keeps_to_the_palette),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);

@@ -1,0 +1,49 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Readings to places between limits. */
+#include "field/limits.h"
+
+#include <math.h>
+
+#define ALONE_MOST 1.999 /* H without HH: beyond H, but no further limit is passed */
+
+/* One side, turned so that values rise towards trouble. */
+struct side {
+    double inner, outer; /* NaN: none */
+};
+
+static double middle_of(const struct plant_group *group, const struct side *low, const struct side *high)
+{
+    double l = isfinite(low->inner) ? low->inner : low->outer, h = isfinite(high->inner) ? high->inner : high->outer;
+    double range = group->max - group->min;
+    if (isfinite(l) && isfinite(h))
+        return (l + h) / 2;
+    if (isfinite(h))
+        return group->min < h ? group->min : h - range / 2;
+    return group->max > l ? group->max : l + range / 2;
+}
+
+/* 0 at the middle; all lengths are measured from there. */
+static double side_place(double value, double inner, double outer)
+{
+    if (!isfinite(inner) && !isfinite(outer))
+        return 0;
+    if (!isfinite(inner))
+        return value < outer ? value / outer * 0.999 : 2 + (value - outer) / (2 * outer);
+    if (value < inner)
+        return value / inner;
+    if (!isfinite(outer))
+        return fmin(value / inner, ALONE_MOST);
+    return 1 + (value - inner) / (outer - inner);
+}
+
+double limit_place(const struct plant_group *group, const struct plant_tag *tag, double value)
+{
+    const double *limits = tag->limits;
+    struct side low = { limits[LIMIT_L], limits[LIMIT_LL] }, high = { limits[LIMIT_H], limits[LIMIT_HH] };
+    if (!isfinite(low.inner) && !isfinite(low.outer) && !isfinite(high.inner) && !isfinite(high.outer))
+        return NAN;
+    double middle = middle_of(group, &low, &high);
+    double place = value >= middle ? side_place(value - middle, high.inner - middle, high.outer - middle)
+                                   : -side_place(middle - value, middle - low.inner, middle - low.outer);
+    return fmin(fmax(place, -LIMIT_PLACE_MOST), LIMIT_PLACE_MOST);
+}
