@@ -2,16 +2,18 @@
 // Where the field at a fragment comes from: interpolated between vertices, or worked out here.
 #ifdef PER_FRAGMENT
 #include "reference.glsl"
-vec3 field_here(vec3 interpolated)
+FIELD_TYPE field_here(FIELD_TYPE interpolated)
 {
     vec3 here = reference_field();
-#ifndef RICH
+#ifdef RICH
+    return vec4(here, interpolated.w);
+#else
     here.x = (here.x - frame.scale.x) * frame.scale.y;
-#endif
     return here;
+#endif
 }
 #else
-vec3 field_here(vec3 interpolated)
+FIELD_TYPE field_here(FIELD_TYPE interpolated)
 {
     return interpolated;
 }

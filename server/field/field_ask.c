@@ -65,8 +65,8 @@ size_t field_sensors(struct field *field, int asset, const struct field_params *
             .strength = sum ? weights->strength[i] : 1,
             .decay = sum ? weights->decay[i] : 1,
             .value = (float)state->shown[i].value,
-            .configured = sum ? weights->configured[i] : from->tag == params->sensor,
-            .usable = sum ? weights->configured[i] && state->shown[i].usable : from->tag == params->sensor,
+            .configured = sum ? weights->configured[i] == SENSOR_USED : from->tag == params->sensor,
+            .usable = sum ? weights->configured[i] == SENSOR_USED && state->shown[i].usable == SENSOR_USED : from->tag == params->sensor,
             .uncertain = sum && state->shown[i].uncertain,
         };
         memcpy(to->surface_m, layout->file->view.sensors[from->column].surface_m, sizeof(to->surface_m));

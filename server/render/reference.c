@@ -48,13 +48,13 @@ void reference_finish(struct reference *reference)
 static struct sensors_head head_of(const struct reference *reference, int asset, const struct field_params *params, float radius_m)
 {
     const struct plant_group *group = &reference->stage->scene->plant->groups[params->group];
-    bool difference = params->show == SHOW_DIFFERENCE;
+    bool places = params->show == SHOW_OPERATOR, around_0 = places || params->show == SHOW_DIFFERENCE;
     return (struct sensors_head){
         .power = (float)params->power,
         .radius_m = radius_m,
         .reach_m = (float)params->reach_m,
-        .empty = difference ? 0 : (float)group->min,
-        .range = (float)(group->max - group->min),
+        .empty = around_0 ? 0 : (float)group->min,
+        .range = places ? 1 : (float)(group->max - group->min),
         .vertices = (float)reference->stage->of_asset[asset]->file->view.header->vertex_count,
         .paper = params->interpolation == INTERPOLATION_PAPER,
         .geodesic = params->distance == DISTANCE_GEODESIC,

@@ -134,7 +134,8 @@ static void compare(enum interpolation interpolation, double least_place, double
     for (size_t i = 0; i < SENSORS; i++) {
         double place = least_place + (most_place - least_place) * synthetic_random_unit(&random);
         set_limits(plant, i, 10 * (double)i, 10 * (double)i + 4); /* each of its own; the middle is 2 above L */
-        plant->snapshot->readings[i].value = 10 * (double)i + 2 + (fabs(place) <= 1 ? 2 * place : copysign(2 + 4 * (fabs(place) - 1), place));
+        double from_middle = fabs(place) <= 1 ? 2 * place : copysign(2 + 4 * (fabs(place) - 1), place);
+        plant->snapshot->readings[i].value = 10 * (double)i + 2 + from_middle;
         places->snapshot->readings[i].value = place;
     }
     struct field_params params, plain;
