@@ -109,6 +109,8 @@ $(out)/tests/unit/accuracy_test: $(call objects,$(wildcard tests/oracle/*.cc))
 $(out)/tests/unit/accuracy_test: pkg_libs += -lgmp -lmpfr
 $(out)/tests/%: $(out)/obj/tests/%.o $(support) $(archives) $(out)/lib/prep.a $(sim_archive)
 	$(link) -lcmocka
+# Where memory runs out: the test decides.
+$(out)/tests/gpu/field_memory_test: ldflags += -Wl,--wrap=mem_try_array,--wrap=mesh_buffer
 .SECONDARY:
 
 include tests/tests.mk

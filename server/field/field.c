@@ -248,6 +248,12 @@ static const struct scalars *distance_scalars(struct field *field, int asset, co
     return &state->scalars;
 }
 
+bool field_covers(struct field *field, int asset, const struct field_params *params)
+{
+    const struct layout *layout = field_layout(field, asset, params->group);
+    return params->show == SHOW_DISTANCE ? find_sensor(layout, params->sensor) >= 0 : layout != NULL;
+}
+
 static void read_inputs(const struct field *field, struct state *state, const struct snapshot *snapshot)
 {
     bool difference = state->params.show == SHOW_DIFFERENCE && field->baselines;

@@ -86,6 +86,9 @@ size_t field_bytes(const struct field *field); /* kept now */
    bound. */
 const struct scalars *field_scalars(struct field *field, int asset, const struct field_params *params, const struct snapshot *snapshot);
 
+/* Whether there is something to show on that asset, were there enough memory. */
+bool field_covers(struct field *field, int asset, const struct field_params *params);
+
 /* What the field at any point of an asset is made of, for whoever works it out by himself. */
 struct field_sensor {
     float surface_m[3]; /* as the asset file's positions */

@@ -15,6 +15,7 @@
 #define FLAG 255
 #define READING_LIMIT 1e30  /* beyond it sums of floats would overflow */
 #define STEP_LIMIT 1e6      /* times the range: a larger step would leave its rounding in the sum for good */
+#define ADDED_MOST 4096     /* updates before all is summed anew: what rounding leaves behind stays below 1e-9 of the range */
 #define STEPS_PER_JOB 65536 /* columns times vertices: worth waking another thread for */
 
 struct state *state_create(int asset, struct layout *layout, const struct field_params *params)
@@ -283,7 +284,7 @@ void state_update(struct state *state, struct workers *workers, bool fresh, uint
 {
     struct scalars *scalars = &state->scalars;
     bool first = scalars->version == 0;
-    struct update update = { .state = state, .fresh = fresh, .anew = first || fresh || marks_differ(state) };
+    struct update update = { .state = state, .fresh = fresh, .anew = first || fresh || marks_differ(state) || state->added >= ADDED_MOST };
     for (size_t i = 0; !update.anew && i < state->layout->sensor_count; i++)
         update.anew = state->now[i].usable != state->shown[i].usable;
     choose_terms(&update);
@@ -291,6 +292,7 @@ void state_update(struct state *state, struct workers *workers, bool fresh, uint
         update.anew = true;
         choose_terms(&update);
     }
+    state->added = update.anew ? 0 : state->added + 1;
     choose_rule(&update);
     run_update(&update, workers);
     memcpy(state->shown, state->now, state->layout->sensor_count * sizeof(*state->now));

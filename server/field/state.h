@@ -17,6 +17,7 @@ struct state {
     struct scalars scalars;  /* scalars.version 0: nothing computed yet */
     struct scalar *at;
     double *sums;                    /* by vertex: numerator */
+    unsigned added;                  /* updates since they were made anew */
     struct state_input *now, *shown; /* by sensor of the layout: asked for, and in the scalars */
     uint8_t *usable;                 /* by sensor of the layout, of `now` */
     uint32_t *list;                  /* room for one update: members, factors, marks */

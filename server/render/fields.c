@@ -12,11 +12,12 @@
 #include "gpu/mesh.h"
 #include "render/reference.h"
 
+static const uint64_t LOST = 0x6c6f7374; /* content that no other has */
 static const size_t BOUND_BYTES = (size_t)384 << 20; /* on the GPU, and as much again here: some 700 assets of 66,000 vertices */
 
 void fields_init(struct fields *fields, struct log *log, struct field *field)
 {
-    *fields = (struct fields){ .log = log, .field = field };
+    *fields = (struct fields){ .log = log, .field = field, .lost = { .asset = -1, .content = LOST, .oldest_age_ns = INT64_MAX } };
 }
 
 static void entry_destroy(struct fields *fields, struct fields_entry *entry)
@@ -55,6 +56,7 @@ static struct fields_entry *entry_create(struct fields *fields, int asset, const
     entry->buffer = mesh_buffer(fields->log, "field", bytes, NULL, GL_DYNAMIC_STORAGE_BIT);
     fields->bytes += bytes;
     if (!entry->shown || !entry->buffer) {
+        log_err(fields->log, "field of asset %d: no room for %zu vertices; shown as no data", asset, count);
         entry_destroy(fields, entry);
         return NULL;
     }
@@ -101,14 +103,18 @@ const struct fields_entry *fields_get(struct fields *fields, int asset, const st
                                       const struct snapshot *snapshot)
 {
     const struct scalars *scalars = field_scalars(fields->field, asset, params, snapshot);
-    if (!scalars)
+    if (!scalars && !field_covers(fields->field, asset, params))
         return NULL;
+    if (!scalars) {
+        log_err(fields->log, "field of asset %d: out of memory; shown as no data", asset);
+        return &fields->lost;
+    }
     struct fields_entry *entry = entry_find(fields, asset, params, step);
     bool fresh = !entry;
     if (fresh)
         entry = entry_create(fields, asset, params, step, scalars->count);
     if (!entry)
-        return NULL;
+        return &fields->lost;
     if (fresh || can_be_seen(entry, scalars))
         show(entry, scalars);
     if (fields->reference && !entry->sensors)

@@ -8,7 +8,7 @@
 
 #include "gpu/gl.h"
 
-struct fields_entry {
+struct fields_entry { /* buffer 0: it could not be worked out or kept; drawn as no data */
     int asset;
     struct field_params params;
     double step;            /* a value step that can be seen (scale_step) */
@@ -28,13 +28,14 @@ struct fields {
     const struct reference *reference; /* NULL: not used */
     struct field *field;
     struct fields_entry **entries;
+    struct fields_entry lost; /* stands for all that there is no room for */
     size_t count, capacity, bytes;
     uint64_t uses;
 };
 
 void fields_init(struct fields *fields, struct log *log, struct field *field);
 void fields_finish(struct fields *fields);
-/* NULL: the asset has no sensor of the group (or there is no room, logged). Valid until the next fields_trim. */
+/* NULL: the asset has nothing to show. Where there is no room (logged) that is shown as no data. Valid until the next fields_trim. */
 const struct fields_entry *fields_get(struct fields *fields, int asset, const struct field_params *params, double step,
                                       const struct snapshot *snapshot);
 /* Between frames: drops what is beyond the bound. */

@@ -54,14 +54,21 @@ void solid_finish(struct solid *solid)
         program_destroy(&solid->programs[i / (2 * SOLID_VARIANTS)][i / SOLID_VARIANTS % 2][i % SOLID_VARIANTS]);
 }
 
-static enum solid_kind kind_of(const struct picture *picture)
+static bool is_per_fragment(const struct picture *picture, const struct fields_entry *field)
 {
-    if (picture->measured)
-        return picture->reference ? SOLID_MEASURE_PER_FRAGMENT : SOLID_MEASURE;
-    return picture->reference ? SOLID_PER_FRAGMENT : SOLID_PICTURE;
+    return picture->reference && field && field->sensors;
 }
 
-static GLuint choose_program(struct solid *solid, const struct picture *picture, const struct model_material *material, bool field)
+static enum solid_kind kind_of(const struct picture *picture, const struct fields_entry *field)
+{
+    bool reference = is_per_fragment(picture, field);
+    if (picture->measured)
+        return reference ? SOLID_MEASURE_PER_FRAGMENT : SOLID_MEASURE;
+    return reference ? SOLID_PER_FRAGMENT : SOLID_PICTURE;
+}
+
+static GLuint choose_program(struct solid *solid, const struct picture *picture, const struct model_material *material,
+                             const struct fields_entry *field)
 {
     const struct view *view = picture->view;
     int variant = field ? SOLID_FIELD : 0;
@@ -71,7 +78,7 @@ static GLuint choose_program(struct solid *solid, const struct picture *picture,
         variant |= SOLID_GLOSSY;
     if (view->tier == TIER_STILL && material->mask && (!field || view->look == LOOK_GLOSSY || material->masked))
         variant |= SOLID_TEXTURED;
-    enum solid_kind kind = kind_of(picture);
+    enum solid_kind kind = kind_of(picture, field);
     if (picture->measured)
         variant &= SOLID_FIELD;
     GLuint *program = &solid->programs[kind][view->tier][variant];
@@ -139,7 +146,7 @@ static void draw_asset(struct solid *solid, const struct picture *picture, int i
     for (size_t b = 0; b < level->batch_count; b++) {
         const struct model_batch *batch = &level->batches[b];
         const struct model_material *material = &model->materials[batch->material];
-        GLuint program = choose_program(solid, picture, material, field != NULL);
+        GLuint program = choose_program(solid, picture, material, field);
         if ((batch->blend && !field) != blend)
             continue;
         if (!bound) {
@@ -147,7 +154,7 @@ static void draw_asset(struct solid *solid, const struct picture *picture, int i
             mesh_bind(&model->mesh, picture->light->baked[index], field ? field->buffer : 0);
             glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, model->material_buffer);
             glBindTextureUnit(UNIT_RAMPS, model->ramps);
-            if (field && picture->reference && !reference_bind(picture->reference, index, field->sensors))
+            if (is_per_fragment(picture, field) && !reference_bind(picture->reference, index, field->sensors))
                 return;
         }
         if (bound != program) {
@@ -156,7 +163,7 @@ static void draw_asset(struct solid *solid, const struct picture *picture, int i
             bound = program;
         }
         set_material(picture, material, batch, field != NULL);
-        if (field && picture->reference)
+        if (is_per_fragment(picture, field))
             reference_draw_batch(batch);
         else
             model_draw_batch(batch);
@@ -173,6 +180,8 @@ void solid_draw(struct solid *solid, const struct picture *picture)
     glBindTextureUnit(UNIT_LINES, picture->palette.lines);
     glBindTextureUnit(UNIT_SUN_MAP, picture->light->sun_map);
     glVertexAttrib4f(MESH_COLOR, 1, 1, 1, 1);
+    glVertexAttrib1f(MESH_SCALAR, 0); /* of a field without a buffer: no data */
+    glVertexAttrib2f(MESH_FLAGS, 1, 0);
     for (size_t i = 0; i < picture->visible_count; i++)
         draw_asset(solid, picture, picture->visible[i], false);
     if (!picture->measured)

@@ -43,7 +43,7 @@ bool stroke_hold_fields(struct stroke *stroke)
     for (size_t i = 0; i < stroke->picture.visible_count; i++) {
         int asset = stroke->visible[i];
         const struct fields_entry *from = stroke->fields[asset];
-        if (!from)
+        if (!from || !from->buffer)
             continue;
         struct fields_entry *copy = &stroke->copies[asset];
         *copy = *from;

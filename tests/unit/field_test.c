@@ -635,14 +635,57 @@ static void test_an_hour_of_flicker_leaves_no_drift(void **state)
     struct rig rig = rig_create(synthetic_create(.vertices = 800, .sensors = 12, .seed = random));
     for (int paper = 0; paper < 2; paper++) {
         rig.params.interpolation = paper ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
-        for (int tick = 0; tick < 3600; tick++) {
+        for (int tick = 0; tick < 36000; tick++) {
             set(&rig, 4, 80.1, tick % 2 ? QUALITY_BAD_COMMUNICATION_ERROR : QUALITY_GOOD);
             set(&rig, synthetic_random(&random) % 4, between(&random, 0, 100), QUALITY_GOOD);
             show(&rig);
-            if (tick % 400 < 2)
+            if (tick % 4000 < 2)
                 assert_as_fresh(&rig);
         }
     }
+    rig_finish(&rig);
+}
+
+static float worst_difference(const struct rig *rig)
+{
+    struct field *fresh = field_create(workers, &rig->plant->scene);
+    const struct scalars *want = field_scalars(fresh, 0, &rig->params, rig->plant->snapshot), *got = show(rig);
+    float worst = 0;
+    for (size_t j = 0; j < want->count; j++)
+        worst = fmaxf(worst, fabsf(want->at[j].value - got->at[j].value));
+    field_destroy(&fresh);
+    return worst;
+}
+
+static void test_an_hour_of_changes_leaves_no_drift(void **state)
+{
+    (void)state;
+    uint64_t random = fresh_seed();
+    struct rig rig = rig_create(synthetic_create(.vertices = 600, .sensors = 40, .seed = random));
+    for (int paper = 0; paper < 2; paper++) {
+        rig.params.interpolation = paper ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
+        for (int tick = 0; tick < 36000; tick++) {
+            for (int change = 0; change < 5; change++)
+                set(&rig, synthetic_random(&random) % 40, between(&random, -100, 200), QUALITY_GOOD);
+            show(&rig);
+            if (tick % 1000 == 999)
+                assert_true(worst_difference(&rig) <= 1e-6f * 100);
+        }
+    }
+    rig_finish(&rig);
+}
+
+static void test_sums_are_made_anew_now_and_then(void **state)
+{
+    (void)state;
+    struct rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 12));
+    for (size_t i = 0; i < 12; i++) /* what adding and taking away again leaves behind */
+        set(&rig, i, 33.3 + (double)i, QUALITY_GOOD);
+    for (int tick = 0; tick <= 2 * 4096; tick++) {
+        set(&rig, 5, tick % 2 ? 1e7 : 0.1, QUALITY_GOOD);
+        show(&rig);
+    }
+    assert_as_fresh(&rig);
     rig_finish(&rig);
 }
 
@@ -1130,6 +1173,8 @@ int main(void)
         cmocka_unit_test(test_a_sensor_acts_on_its_own_asset_only),
         cmocka_unit_test(test_an_asset_without_sensors_of_the_group_has_no_field),
         cmocka_unit_test(test_an_hour_of_flicker_leaves_no_drift),
+        cmocka_unit_test(test_an_hour_of_changes_leaves_no_drift),
+        cmocka_unit_test(test_sums_are_made_anew_now_and_then),
         cmocka_unit_test(test_a_day_of_changes_leaves_no_drift),
         cmocka_unit_test(test_cut_of_the_work_does_not_matter),
         cmocka_unit_test(test_version_grows_with_real_changes_only),

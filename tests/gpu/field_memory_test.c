@@ -1,0 +1,141 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A field that there is no memory for is shown as no data: never as an asset that has no sensors, never as some value. The linker leads
+   mem_try_array and mesh_buffer here. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "gpu/mesh.h"
+#include "render/palette.h"
+#include "tests/support/rig.h"
+#include "value/quality.h"
+
+enum { CELLS = 12, VERTICES = (CELLS + 1) * (CELLS + 1), SIDE_PX = 128 };
+static struct rig rig;
+static struct stand stand;
+
+static enum { ALL_WELL, NO_SUMS, NO_WEIGHTS, NO_SHADOW, NO_BUFFER } fault;
+
+void *__real_mem_try_array(size_t count, size_t bytes_each);
+void *__wrap_mem_try_array(size_t count, size_t bytes_each);
+GLuint __real_mesh_buffer(struct log *log, const char *name, size_t bytes, const void *data, GLbitfield flags);
+GLuint __wrap_mesh_buffer(struct log *log, const char *name, size_t bytes, const void *data, GLbitfield flags);
+
+/* Arrays by vertex: of doubles the sums, of floats the weights, of scalars what is shown. */
+void *__wrap_mem_try_array(size_t count, size_t bytes_each)
+{
+    bool by_vertex = count == VERTICES;
+    if (by_vertex && ((fault == NO_SUMS && bytes_each == sizeof(double)) || (fault == NO_WEIGHTS && bytes_each == sizeof(float)) ||
+                      (fault == NO_SHADOW && bytes_each == sizeof(struct scalar))))
+        return NULL;
+    return __real_mem_try_array(count, bytes_each);
+}
+
+GLuint __wrap_mesh_buffer(struct log *log, const char *name, size_t bytes, const void *data, GLbitfield flags)
+{
+    if (fault == NO_BUFFER && bytes == VERTICES * sizeof(struct scalar))
+        return 0;
+    return __real_mesh_buffer(log, name, bytes, data, flags);
+}
+
+static int set_up(void **state)
+{
+    static const double sensors[2][3] = { { 0, 0, 0 }, { 4, 4, 0 } };
+    struct shape shape = { 0 };
+    struct toy *toy = toy_create();
+    (void)state;
+    fault = ALL_WELL;
+    shape_plate(&shape, TOY_BLUE, (double[3]){ 0, 0, 0 }, (double[3]){ 4, 0, 0 }, (double[3]){ 0, 4, 0 }, CELLS);
+    toy_add(toy, "PLATE", &shape, (double[3]){ 0, 0, 0 }, sensors, 2);
+    stand_init(&stand, &rig, toy);
+    toy_set(stand.snapshot, 0, 30, QUALITY_GOOD);
+    toy_set(stand.snapshot, 1, 70, QUALITY_GOOD);
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    fault = ALL_WELL;
+    stand_finish(&stand);
+    return 0;
+}
+
+static void look_down(struct view *view)
+{
+    view_default(&stand.toy->scene, SIDE_PX, SIDE_PX, view);
+    view->camera = (struct camera){ .eye_m = { 2, 2, 10 }, .target_m = { 2, 2, 0 }, .up = { 0, 1, 0 }, .fov_deg = 21 };
+    view->look = LOOK_FLAT;
+}
+
+/* Every pixel inside the plate is of one of the stripes, and both are there. */
+static void assert_hatched(const struct view *view)
+{
+    struct frame *frame = stand_draw(&stand, view);
+    int light = 0, dark = 0;
+    for (int y = 2; y < SIDE_PX - 2; y++)
+        for (int x = 2; x < SIDE_PX - 2; x++) {
+            const uint8_t *pixel = frame_pixel(frame, x, y);
+            assert_true(pixel[0] == pixel[1] && pixel[1] == pixel[2]);
+            light += pixel[0] == palette_no_data[0][0];
+            dark += pixel[0] == palette_no_data[1][0];
+        }
+    assert_true(light > SIDE_PX * SIDE_PX / 5 && dark > SIDE_PX * SIDE_PX / 5);
+    assert_true(frame->oldest_age_ns == INT64_MAX);
+    frame_unref(&frame);
+}
+
+static void test_without_memory_there_is_no_data(void **state)
+{
+    struct view view;
+    (void)state;
+    look_down(&view);
+    for (int kind = NO_SUMS; kind <= NO_BUFFER; kind++)
+        for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++) {
+            view.tier = (enum tier)tier;
+            view.field.power = 1 + kind + 0.25 * tier; /* none that is known */
+            fault = kind;
+            uint64_t content = renderer_content(stand.renderer, &view, stand.snapshot);
+            assert_hatched(&view);
+            fault = ALL_WELL;
+            assert_true(renderer_content(stand.renderer, &view, stand.snapshot) != content); /* so it is drawn again */
+            struct frame *frame = stand_draw(&stand, &view);
+            assert_true(map_index_exact(colormap_at(0), frame_pixel(frame, 8, SIDE_PX - 8)) >= 0);
+            frame_unref(&frame);
+        }
+}
+
+static void test_bit_by_bit_too(void **state)
+{
+    struct view view;
+    (void)state;
+    look_down(&view);
+    view.tier = TIER_STILL;
+    view.field.power = 9;
+    fault = NO_WEIGHTS;
+    struct stroke *stroke = renderer_begin(stand.renderer, &view, stand.snapshot);
+    assert_non_null(stroke);
+    while (!renderer_step(stand.renderer, stroke, 1000000)) {
+    }
+    struct frame *frame = renderer_end(stand.renderer, &stroke);
+    const uint8_t *pixel = frame_pixel(frame, SIDE_PX / 2, SIDE_PX / 2);
+    assert_true(pixel[0] == pixel[1] && pixel[1] == pixel[2]);
+    frame_unref(&frame);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(test_without_memory_there_is_no_data, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_bit_by_bit_too, set_up, tear_down),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    if (!rig_init(&rig, "field_memory_test"))
+        return 0;
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    rig_finish(&rig);
+    return failed;
+}

@@ -1,0 +1,265 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The truth rules where people see them: what pixels show when sensors are lost, out of range, out of reach or mad. Five sensors on a
+   plate and, apart from it but of the same asset, a second plate that no way leads to. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+#include "render/palette.h"
+#include "tests/support/rig.h"
+#include "value/quality.h"
+
+enum { CELLS = 16, GRID = CELLS + 1, WIDTH_PX = 384, HEIGHT_PX = 192, SENSORS = 5, HOTTEST = 4 };
+static const double side_m = 4;
+static const double places[SENSORS][3] = { { 0, 0, 0 }, { 4, 0, 0 }, { 0, 4, 0 }, { 4, 4, 0 }, { 2, 2, 0 } };
+static struct rig rig;
+static struct stand stand;
+
+static int set_up(void **state)
+{
+    struct shape shape = { 0 };
+    struct toy *toy = toy_create();
+    (void)state;
+    shape_plate(&shape, TOY_STEEL, (double[3]){ 0, 0, 0 }, (double[3]){ side_m, 0, 0 }, (double[3]){ 0, side_m, 0 }, CELLS);
+    shape_plate(&shape, TOY_STEEL, (double[3]){ side_m, 0, 0 }, (double[3]){ side_m, 0, 0 }, (double[3]){ 0, side_m, 0 }, CELLS);
+    toy_add(toy, "PLATES", &shape, (double[3]){ 0, 0, 0 }, places, SENSORS);
+    const struct asset_view *view = &toy->scene.assets[0].file->view;
+    for (size_t i = 0; i < SENSORS; i++)
+        for (size_t v = GRID * GRID; v < view->header->vertex_count; v++)
+            ((float *)view->geodesic_m)[i * view->header->vertex_count + v] = INFINITY;
+    stand_init(&stand, &rig, toy);
+    for (int i = 0; i < SENSORS; i++)
+        toy_set(stand.snapshot, i, i == HOTTEST ? 95 : 20 + i, QUALITY_GOOD);
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    stand_finish(&stand);
+    return 0;
+}
+
+/* Seen from above, both plates filling the picture. */
+static void look_down(struct view *view, enum tier tier)
+{
+    view_default(&stand.toy->scene, WIDTH_PX, HEIGHT_PX, view);
+    view->camera = (struct camera){ .eye_m = { side_m, side_m / 2, 10 }, .target_m = { side_m, side_m / 2, 0 }, .up = { 0, 1, 0 } };
+    view->camera.fov_deg = 2 * atan(side_m / 2 / 10) * 180 / M_PI;
+    view->look = LOOK_FLAT;
+    view->tier = tier;
+}
+
+/* The pixel over a place on the plates. */
+static const uint8_t *pixel_at(const struct frame *frame, double x_m, double y_m)
+{
+    int x = (int)(x_m / side_m * HEIGHT_PX), y = (int)((side_m - y_m) / side_m * HEIGHT_PX);
+    x = x < 2 ? 2 : x > WIDTH_PX - 3 ? WIDTH_PX - 3 : x;
+    y = y < 2 ? 2 : y > HEIGHT_PX - 3 ? HEIGHT_PX - 3 : y;
+    return frame_pixel(frame, x, y);
+}
+
+static bool is_grey(const uint8_t *bgrx)
+{
+    return bgrx[0] == bgrx[1] && bgrx[1] == bgrx[2];
+}
+
+static bool is_rgb(const uint8_t *bgrx, const uint8_t rgb[3])
+{
+    return bgrx[2] == rgb[0] && bgrx[1] == rgb[1] && bgrx[0] == rgb[2];
+}
+
+/* The colour number that the picture shows there; -1: none of the map. The still tier averages over the samples of a pixel. */
+static int shown_at(const struct view *view, double x_m, double y_m)
+{
+    struct frame *frame = stand_draw(&stand, view);
+    const uint8_t *pixel = pixel_at(frame, x_m, y_m);
+    int index = map_index_exact(colormap_at(0), pixel);
+    if (index < 0 && view->tier == TIER_STILL && !is_grey(pixel))
+        index = map_index_nearest(colormap_at(0), pixel);
+    frame_unref(&frame);
+    return index;
+}
+
+/* Over a square of the first plate: whether it is grey all over, hatching that is. */
+static bool is_hatched(const struct view *view, double x_m, double y_m, double half_m)
+{
+    struct frame *frame = stand_draw(&stand, view);
+    bool all = true;
+    for (double y = y_m - half_m; y <= y_m + half_m; y += 0.05)
+        for (double x = x_m - half_m; x <= x_m + half_m; x += 0.05)
+            all = all && is_grey(pixel_at(frame, x, y));
+    frame_unref(&frame);
+    return all;
+}
+
+static const enum tier tiers[] = { TIER_MOVING, TIER_STILL };
+#define for_each_tier(view) for (int tier_index = 0; tier_index < 2 && (look_down(view, tiers[tier_index]), true); tier_index++)
+
+static void test_the_hottest_goes_bad(void **state)
+{
+    struct view view;
+    (void)state;
+    for_each_tier(&view)
+    {
+        toy_set(stand.snapshot, HOTTEST, 95, QUALITY_GOOD);
+        assert_in_range(shown_at(&view, 2, 2), 235, 245);
+        toy_set(stand.snapshot, HOTTEST, 95, QUALITY_BAD_SENSOR_FAILURE);
+        assert_true(is_hatched(&view, 2, 2, 0.7));
+        assert_in_range(shown_at(&view, 0.3, 0.3), 45, 62); /* the others stay, and nothing of its 95 is in them */
+        view.field.fill = FILL_NEIGHBOURS;
+        assert_false(is_hatched(&view, 2, 2, 0.7)); /* asked for, and stippled */
+        struct frame *frame = stand_draw(&stand, &view);
+        int dots = 0;
+        for (double y = 1.5; y < 2.5; y += 0.021)
+            for (double x = 1.5; x < 2.5; x += 0.021)
+                dots += abs(pixel_at(frame, x, y)[1] - palette_uncertain[1]) < 12;
+        assert_in_range(dots, 100, 1200);
+        frame_unref(&frame);
+    }
+}
+
+static void test_a_reading_of_zero_is_a_reading(void **state)
+{
+    struct view view;
+    (void)state;
+    for_each_tier(&view)
+    {
+        for (int i = 0; i < SENSORS; i++)
+            toy_set(stand.snapshot, i, 0.0, QUALITY_GOOD);
+        assert_int_equal(shown_at(&view, 2, 2), 0);
+        assert_int_equal(shown_at(&view, 1, 3), 0);
+        toy_set(stand.snapshot, HOTTEST, -0.5, QUALITY_GOOD);
+        struct frame *frame = stand_draw(&stand, &view);
+        assert_true(is_rgb(pixel_at(frame, 2.02, 2.02), colormap_at(0)->below));
+        frame_unref(&frame);
+    }
+}
+
+static void test_all_bad(void **state)
+{
+    struct view view;
+    (void)state;
+    for (int i = 0; i < SENSORS; i++)
+        toy_set(stand.snapshot, i, 50, QUALITY_BAD_NO_COMMUNICATION);
+    for_each_tier(&view) assert_true(is_hatched(&view, 2, 2, 1.9));
+}
+
+static void test_one_sensor_is_everywhere_it_reaches(void **state)
+{
+    struct view view;
+    (void)state;
+    for_each_tier(&view)
+    {
+        for (int i = 0; i < HOTTEST; i++)
+            toy_set(stand.snapshot, i, 10, QUALITY_BAD_OUT_OF_SERVICE);
+        toy_set(stand.snapshot, HOTTEST, 60, QUALITY_GOOD);
+        assert_int_equal(shown_at(&view, 2, 2), 153);
+        assert_int_equal(shown_at(&view, 2.5, 2.4), 153);
+        assert_true(is_hatched(&view, 0.2, 0.2, 0.2)); /* the place of one that was lost */
+    }
+}
+
+static void test_a_part_that_nobody_reaches(void **state)
+{
+    struct view view;
+    (void)state;
+    for_each_tier(&view)
+    {
+        assert_true(is_hatched(&view, 1.5 * side_m, 2, 1.8)); /* the second plate */
+        assert_true(shown_at(&view, 3.5, 2) >= 0);
+        view.field.distance = DISTANCE_EUCLIDEAN; /* straight lines reach it */
+        assert_false(is_hatched(&view, 1.5 * side_m, 2, 1.8));
+        view.field.reach_m = 1;
+        assert_true(is_hatched(&view, 1.5 * side_m + 1, 2, 0.8));
+        assert_false(is_hatched(&view, 2, 2, 0.2));
+    }
+}
+
+static void test_what_is_not_a_number_has_no_color(void **state)
+{
+    static const double mad[] = { NAN, INFINITY, -INFINITY };
+    struct view view;
+    (void)state;
+    for_each_tier(&view) for (int i = 0; i < 3; i++)
+    {
+        toy_set(stand.snapshot, HOTTEST, mad[i], QUALITY_GOOD);
+        assert_true(is_hatched(&view, 2, 2, 0.7));
+        assert_in_range(shown_at(&view, 0.3, 0.3), 45, 62);
+    }
+}
+
+static void test_beyond_the_range(void **state)
+{
+    struct view view;
+    (void)state;
+    for_each_tier(&view)
+    {
+        toy_set(stand.snapshot, HOTTEST, 1e9, QUALITY_GOOD);
+        struct frame *frame = stand_draw(&stand, &view);
+        assert_true(is_rgb(pixel_at(frame, 2.02, 2.02), colormap_at(0)->above));
+        frame_unref(&frame);
+        view.field.interpolation = INTERPOLATION_PAPER; /* clamps */
+        assert_true(shown_at(&view, 2.02, 2.02) >= 0);
+    }
+}
+
+static void test_a_sensor_at_a_vertex_is_exact(void **state)
+{
+    struct view view;
+    (void)state;
+    for_each_tier(&view)
+    {
+        for (double power = 0.5; power <= 16; power *= 2) {
+            view.field.power = power;
+            assert_in_range(shown_at(&view, 2.002, 2.002), power < 1 ? 200 : 235, 245); /* 95: number 243 */
+        }
+        view.field.interpolation = INTERPOLATION_PAPER;
+        assert_true(shown_at(&view, 2, 2) >= 0); /* neither 0/0 nor infinity */
+    }
+}
+
+static void test_a_distance_is_no_reading(void **state)
+{
+    struct view view;
+    (void)state;
+    for_each_tier(&view)
+    {
+        view.field.show = SHOW_DISTANCE;
+        view.field.sensor = HOTTEST;
+        field_own_range(&stand.toy->scene, &view.field, &view.range_min, &view.range_max);
+        assert_true(fabs(view.range_max - sqrt(8)) < 1e-5);
+        toy_set(stand.snapshot, HOTTEST, 95, QUALITY_BAD_SENSOR_FAILURE);
+        assert_in_range(shown_at(&view, 2.02, 2.02), 0, 4);
+        assert_in_range(shown_at(&view, 3.98, 2), 175, 183); /* 2 m of 2.83 */
+        assert_true(is_hatched(&view, 1.5 * side_m, 2, 1.8));
+    }
+}
+
+#define each(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        each(test_the_hottest_goes_bad),
+        each(test_a_reading_of_zero_is_a_reading),
+        each(test_all_bad),
+        each(test_one_sensor_is_everywhere_it_reaches),
+        each(test_a_part_that_nobody_reaches),
+        each(test_what_is_not_a_number_has_no_color),
+        each(test_beyond_the_range),
+        each(test_a_sensor_at_a_vertex_is_exact),
+        each(test_a_distance_is_no_reading),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    if (!rig_init(&rig, "field_truth_test"))
+        return 0;
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    rig_finish(&rig);
+    return failed;
+}
