@@ -2,8 +2,16 @@
 // Depth only: shadow maps, and masks of one asset.
 layout(location = 0) in vec3 position_m;
 layout(location = 0) uniform mat4 clip_from_file;
+#ifdef CLIP
+layout(location = 1) uniform vec4 planes[6]; // in clip space
+out float gl_ClipDistance[6];
+#endif
 
 void main()
 {
     gl_Position = clip_from_file * vec4(position_m, 1.0);
+#ifdef CLIP
+    for (int i = 0; i < 6; i++)
+        gl_ClipDistance[i] = dot(planes[i], gl_Position);
+#endif
 }

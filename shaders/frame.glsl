@@ -11,6 +11,7 @@ layout(std140, binding = 0) uniform Frame {
     vec4 shade;          // row of the palette = light * x + y, at most z
     vec4 lines;          // width of isolines in pixels; 0: none
     vec4 back;           // orthographic: towards the viewer; w: of depth, to what perspective would give. 0: perspective
+    vec4 clip[6];        // planes that cut, in clip space
 } frame;
 
 // The field from vertices to pixels: shaders/field.glsl.

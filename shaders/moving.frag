@@ -15,9 +15,18 @@ layout(binding = 2) uniform sampler2DShadow sun_map;
 layout(location = 2) uniform int material;
 #endif
 layout(location = 0) out vec4 color;
+#ifdef CLIP
+#include "section.glsl"
+#endif
 
 void main()
 {
+#ifdef CLIP
+    if (!gl_FrontFacing) {
+        color = vec4(section_color(), 1.0);
+        return;
+    }
+#endif
 #ifdef FIELD
     color.rgb = field_color(field_here(field), light);
 #ifdef GLOSSY

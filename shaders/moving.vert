@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Moving tier: a place, a baked light and, on assets with a field, a scalar. llvmpipe runs this on one thread: keep it short.
 #include "frame.glsl"
+#include "clip.glsl"
 layout(location = 0) in vec3 position_m;
 layout(location = 4) in vec4 baked;
 layout(location = 5) in float value;
@@ -24,6 +25,9 @@ void main()
     file_place = position_m;
 #endif
     gl_Position = clip_from_file * vec4(position_m, 1.0);
+#ifdef CLIP
+    clip_away();
+#endif
 #ifdef FIELD
     light = baked.x;
 #ifdef RICH

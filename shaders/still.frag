@@ -22,6 +22,9 @@ layout(binding = 5) uniform sampler2D normal_map;
 layout(binding = 6) uniform sampler2D occlusion_map;
 layout(binding = 7) uniform sampler2D emissive_map;
 layout(location = 0) out vec4 color;
+#ifdef CLIP
+#include "section.glsl"
+#endif
 
 // The surface's normal with the normal map on it; the tangents come from the derivatives of place and uv.
 vec3 mapped_normal(vec3 n, float scale)
@@ -41,6 +44,12 @@ vec3 mapped_normal(vec3 n, float scale)
 
 void main()
 {
+#ifdef CLIP
+    if (!gl_FrontFacing) {
+        color = vec4(section_color(), 1.0);
+        return;
+    }
+#endif
     vec3 v = frame.back.w > 0.0 ? frame.back.xyz : normalize(-place), n = normalize(surface_normal), l = frame.sun.xyz;
     if (dot(n, v) < 0.0 && !gl_FrontFacing)
         n = -n;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Still tier: all that shading by pixel needs.
 #include "frame.glsl"
+#include "clip.glsl"
 layout(location = 0) in vec3 position_m;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec2 texcoord;
@@ -27,6 +28,9 @@ void main()
     file_place = position_m;
 #endif
     gl_Position = clip_from_file * vec4(position_m, 1.0);
+#ifdef CLIP
+    clip_away();
+#endif
     place = (eye_from_file * vec4(position_m, 1.0)).xyz;
     surface_normal = eye_from_normal * normal;
     uv = texcoord;

@@ -3,6 +3,7 @@
 #include "render/frame_block.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "render/matrix.h"
 
@@ -50,6 +51,21 @@ static void fill_shade(struct frame_block *block, const struct view *view)
     block->shade[3] = 0;
 }
 
+static void fill_clip(struct frame_block *block, const struct picture *picture)
+{
+    const struct clip *clip = &picture->view->visibility.clip;
+    double plant_from_clip[16];
+    memset(block->clip, 0, sizeof(block->clip));
+    if (clip->plane_count == 0)
+        return;
+    matrix_invert(picture->shot.clip_from_plant, plant_from_clip);
+    for (int i = 0; i < clip->plane_count; i++) {
+        double plane[4];
+        clip_plane(clip, i, plane);
+        matrix_plane(plant_from_clip, plane, block->clip[i]);
+    }
+}
+
 void frame_block_fill(struct frame_block *block, const struct picture *picture)
 {
     const struct view *view = picture->view;
@@ -66,6 +82,7 @@ void frame_block_fill(struct frame_block *block, const struct picture *picture)
     }
     block->sun[3] = (float)picture->light->texel_m;
     block->up[3] = 0;
+    fill_clip(block, picture);
     block->back[3] = (float)shot->depth_scale;
     fill_scale(block, picture);
     fill_shade(block, view);

@@ -141,8 +141,9 @@ void isolines_collect(struct isolines *isolines, const struct picture *picture, 
         if (out->count + set->count > POINTS_MOST)
             break;
         mem_grow(&out->at, &out->capacity, out->count + set->count, sizeof(*out->at));
-        memcpy(out->at + out->count, set->points, set->count * sizeof(*set->points));
-        out->count += set->count;
+        for (size_t p = 0; p < set->count; p++)
+            if (clip_keeps(&picture->view->visibility.clip, set->points[p].place_m))
+                out->at[out->count++] = set->points[p];
     }
 }
 

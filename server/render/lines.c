@@ -69,14 +69,15 @@ static void mask_fit(struct lines *lines, int width_px, int height_px)
 void lines_draw_outline(struct lines *lines, const struct picture *picture)
 {
     int asset = picture->view->selected_asset;
-    if (asset < 0 || !shot_sees(&picture->shot, &picture->stage->scene->assets[asset]))
+    if (asset < 0 || visibility_of(&picture->view->visibility, asset) == ASSET_HIDDEN ||
+        !shot_sees(&picture->shot, &picture->stage->scene->assets[asset]))
         return;
     gl_pass_enter("outline");
     mask_fit(lines, picture->target->width_px, picture->target->height_px);
     glClearNamedFramebufferfv(lines->mask_framebuffer, GL_COLOR, 0, (float[4]){ 0 });
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, lines->mask_framebuffer);
     glDisable(GL_DEPTH_TEST);
-    stage_draw_depth(picture->stage, picture->shot.clip_from_plant, asset, 0);
+    stage_draw_depth(picture->stage, picture->shot.clip_from_plant, &picture->view->visibility.clip, asset, 0);
     glBindTextureUnit(0, lines->mask);
     glProgramUniform1f(lines->outline_program, 0, (float)fmax(1.5, picture->view->height_px / 600.0));
     draw_over(lines, picture, lines->outline_program);

@@ -19,9 +19,13 @@ void markers_finish(struct markers *markers)
     glDeleteBuffers(1, &markers->buffer);
 }
 
+/* Of the shown group, on an asset that is not hidden, and not cut away. */
 static bool is_shown(const struct picture *picture, const struct scene_sensor *sensor)
 {
-    return picture->stage->scene->plant->tags[sensor->tag].group == picture->view->field.group;
+    const struct visibility *visibility = &picture->view->visibility;
+    const struct plant_tag *tag = &picture->stage->scene->plant->tags[sensor->tag];
+    return tag->group == picture->view->field.group && visibility_of(visibility, tag->asset) != ASSET_HIDDEN &&
+           clip_keeps(&visibility->clip, sensor->surface_m);
 }
 
 static size_t count_shown(const struct picture *picture)

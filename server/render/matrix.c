@@ -84,6 +84,12 @@ void matrix_normals(const double m[16], float out[9])
             out[3 * c + r] = (float)(columns[c][r] * (determinant < 0 ? -1 : 1));
 }
 
+void matrix_plane(const double m[16], const double plane[4], float out[4])
+{
+    for (int c = 0; c < 4; c++)
+        out[c] = (float)(plane[0] * m[4 * c] + plane[1] * m[4 * c + 1] + plane[2] * m[4 * c + 2] + plane[3] * m[4 * c + 3]);
+}
+
 void matrix_to_float(const double m[16], float out[16])
 {
     for (int i = 0; i < 16; i++)

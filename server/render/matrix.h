@@ -11,6 +11,8 @@ void matrix_point(const double m[16], const double p[3], double out[4]);
 void matrix_invert(const double m[16], double out[16]);
 /* How normals turn under m: inverse transpose of its 3x3 part, columns one after another. */
 void matrix_normals(const double m[16], float out[9]);
+/* A plane, n p + d, in the coordinates that m comes from. */
+void matrix_plane(const double m[16], const double plane[4], float out[4]);
 void matrix_to_float(const double m[16], float out[16]);
 /* A map of a ball, seen from far away in the direction `towards`. Clip space: depth 1 nearest to where it is seen from, 0 farthest. */
 void matrix_parallel(const double center[3], double radius, const double towards[3], double out[16]);

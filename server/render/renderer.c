@@ -11,6 +11,7 @@
 #include "gpu/readback.h"
 #include "render/content.h"
 #include "render/frame_block.h"
+#include "render/ghosts.h"
 #include "render/isolines.h"
 #include "render/lines.h"
 #include "render/markers.h"
@@ -36,6 +37,7 @@ struct renderer {
     struct solid solid;
     struct sky sky;
     struct lines lines;
+    struct ghosts ghosts;
     struct markers markers;
     struct isolines isolines;
     struct readback readback;
@@ -68,8 +70,8 @@ struct renderer *renderer_create(struct log *log, struct gl *gl, const struct sc
     renderer->frame_buffer = mesh_buffer(log, "frame block", sizeof(struct frame_block), NULL, GL_DYNAMIC_STORAGE_BIT);
     if (!renderer->frame_buffer || !stage_init(&renderer->stage, gl, scene) || !light_init(&renderer->light, &renderer->stage) ||
         !solid_init(&renderer->solid, log) || !sky_init(&renderer->sky, log) || !lines_init(&renderer->lines, log) ||
-        !markers_init(&renderer->markers, log) || !isolines_init(&renderer->isolines, log, scene->asset_count) ||
-        !bake_default_light(renderer))
+        !ghosts_init(&renderer->ghosts, log) || !markers_init(&renderer->markers, log) ||
+        !isolines_init(&renderer->isolines, log, scene->asset_count) || !bake_default_light(renderer))
         renderer_destroy(&renderer);
     return renderer;
 }
@@ -85,6 +87,7 @@ void renderer_destroy(struct renderer **renderer_ptr)
     readback_finish(&renderer->readback);
     isolines_finish(&renderer->isolines);
     markers_finish(&renderer->markers);
+    ghosts_finish(&renderer->ghosts);
     lines_finish(&renderer->lines);
     sky_finish(&renderer->sky);
     solid_finish(&renderer->solid);
@@ -125,13 +128,19 @@ static int by_distance(const void *a, const void *b, void *distance_m)
     return (first > second) - (first < second);
 }
 
+/* Drawn as it is, some of it at least. */
+static bool is_left(const struct visibility *visibility, int index, const struct scene_asset *asset)
+{
+    return visibility_of(visibility, index) == ASSET_SHOWN && !clip_drops(&visibility->clip, asset->bounds_min_m, asset->bounds_max_m);
+}
+
 /* Assets in the frustum, nearest first, so that what is hidden costs little. */
 static void find_visible(struct renderer *renderer, struct picture *picture)
 {
     for (size_t i = 0; i < renderer->scene->asset_count; i++) {
         const struct scene_asset *asset = &renderer->scene->assets[i];
         double square = 0;
-        if (!shot_sees(&picture->shot, asset))
+        if (!shot_sees(&picture->shot, asset) || !is_left(&picture->view->visibility, (int)i, asset))
             continue;
         for (int c = 0; c < 3; c++) {
             double by = 0.5 * (asset->bounds_min_m[c] + asset->bounds_max_m[c]) - picture->shot.eye_m[c];
@@ -326,6 +335,7 @@ struct frame *renderer_end(struct renderer *renderer, struct stroke **stroke_ptr
         goto end;
     while (stroke->next < bits_of(stroke))
         draw_bit(renderer, stroke);
+    ghosts_draw(&renderer->ghosts, &stroke->picture);
     lines_draw_outline(&renderer->lines, &stroke->picture);
     if (!markers_start(&renderer->markers, &stroke->picture) ||
         !isolines_start(&renderer->isolines, &stroke->picture, &stroke->isolines) ||

@@ -65,15 +65,18 @@ static void draw_ground(const struct sky *sky, const struct picture *picture, co
     glDisable(GL_DEPTH_CLAMP);
 }
 
-/* Seen from above. */
+/* Seen from above; and what throws a shadow on it is there. */
 static bool sees_ground(const struct picture *picture, const struct light *light)
 {
     const struct shot *shot = &picture->shot;
+    const struct visibility *visibility = &picture->view->visibility;
     double eye_height_m = 0, back_height = 0;
     for (int i = 0; i < 3; i++) {
         eye_height_m += picture->stage->up[i] * shot->eye_m[i];
         back_height += picture->stage->up[i] * shot->back[i];
     }
+    if (visibility->clip.plane_count + visibility->hidden.count + visibility->isolated.count + visibility->ghosts.count > 0)
+        return false;
     return shot->pixel_per_metre > 0 ? back_height > 0 : eye_height_m > light->ground_height_m;
 }
 

@@ -12,9 +12,11 @@ static const double LEVEL_ERROR_PX[] = { [TIER_MOVING] = 1.0, [TIER_STILL] = 0.7
 static const double SUN_SLACK_TEXELS = 3;                                           /* against surfaces that shade themselves */
 enum { UNIT_PALETTE = 0, UNIT_RAMPS = 1, UNIT_SUN_MAP = 2, UNIT_MAPS = 3, UNIT_LINES = 15 };
 
-/* The moving tier has no textures; rich scales and gloss go with a field. */
+/* From the beginning. The moving tier has no textures; rich scales and gloss go with a field. */
 static bool is_used(int tier, int variant)
 {
+    if (variant & SOLID_CLIP)
+        return false;
     if (!(variant & SOLID_FIELD))
         return variant == 0 || (variant == SOLID_TEXTURED && tier == TIER_STILL);
     return !(tier == TIER_MOVING && variant & SOLID_TEXTURED);
@@ -26,7 +28,8 @@ static GLuint make_program(struct log *log, enum solid_kind kind, int tier, int 
     bool reference = kind == SOLID_PER_FRAGMENT || kind == SOLID_MEASURE_PER_FRAGMENT;
     bool measure = kind == SOLID_MEASURE || kind == SOLID_MEASURE_PER_FRAGMENT;
     struct text defines = { 0 };
-    text_add(&defines, "%s%s%s%s%s%s", tier == TIER_STILL ? "#define STILL\n" : "", variant & SOLID_FIELD ? "#define FIELD\n" : "",
+    text_add(&defines, "%s%s%s%s%s%s%s", tier == TIER_STILL ? "#define STILL\n" : "", variant & SOLID_FIELD ? "#define FIELD\n" : "",
+             variant & SOLID_CLIP ? "#define CLIP\n" : "",
              variant & SOLID_RICH ? "#define RICH\n" : "", variant & SOLID_GLOSSY ? "#define GLOSSY\n" : "",
              variant & SOLID_TEXTURED ? "#define TEXTURED\n" : "", reference && variant & SOLID_FIELD ? "#define PER_FRAGMENT\n" : "");
     GLuint program = program_create(log, program_params(.vertex = stages[tier][0], .fragment = measure ? "measure.frag" : stages[tier][1],
@@ -67,8 +70,9 @@ static enum solid_kind kind_of(const struct picture *picture, const struct field
     return reference ? SOLID_PER_FRAGMENT : SOLID_PICTURE;
 }
 
+/* cut: some of the asset is cut away. 0: it could not be made; logged. */
 static GLuint choose_program(struct solid *solid, const struct picture *picture, const struct model_material *material,
-                             const struct fields_entry *field)
+                             const struct fields_entry *field, bool cut)
 {
     const struct view *view = picture->view;
     int variant = field ? SOLID_FIELD : 0;
@@ -81,6 +85,8 @@ static GLuint choose_program(struct solid *solid, const struct picture *picture,
     enum solid_kind kind = kind_of(picture, field);
     if (picture->measured)
         variant &= SOLID_FIELD;
+    if (cut)
+        variant |= SOLID_CLIP;
     GLuint *program = &solid->programs[kind][view->tier][variant];
     if (!*program)
         *program = make_program(solid->log, kind, view->tier, variant);
@@ -112,9 +118,11 @@ static void set_placement(const struct picture *picture, const struct scene_asse
     glUniformMatrix3fv(EYE_FROM_NORMAL, 1, GL_FALSE, normals);
 }
 
-static void set_material(const struct picture *picture, const struct model_material *material, const struct model_batch *batch, bool field)
+/* cut: its inner side shows. */
+static void set_material(const struct picture *picture, const struct model_material *material, const struct model_batch *batch,
+                         bool field, bool cut)
 {
-    if (batch->double_sided)
+    if (batch->double_sided || cut)
         glDisable(GL_CULL_FACE);
     else
         glEnable(GL_CULL_FACE);
@@ -142,15 +150,20 @@ static void draw_asset(struct solid *solid, const struct picture *picture, int i
     const struct model *model = picture->stage->of_asset[index];
     const struct model_level *level = get_level(picture, index);
     const struct fields_entry *field = picture->fields[index];
+    const struct clip *clip = &picture->view->visibility.clip;
+    const struct scene_asset *asset = &picture->stage->scene->assets[index];
+    bool cut = clip_touches(clip, asset->bounds_min_m, asset->bounds_max_m);
     GLuint bound = 0;
+    if (cut)
+        stage_clip_begin(clip);
     for (size_t b = 0; b < level->batch_count; b++) {
         const struct model_batch *batch = &level->batches[b];
         const struct model_material *material = &model->materials[batch->material];
-        GLuint program = choose_program(solid, picture, material, field);
-        if ((batch->blend && !field) != blend)
+        GLuint program = choose_program(solid, picture, material, field, cut);
+        if (!program || (batch->blend && !field) != blend)
             continue;
         if (!bound) {
-            stage_set_front_face(&picture->stage->scene->assets[index]);
+            stage_set_front_face(asset);
             mesh_bind(&model->mesh, picture->light->baked[index], field ? field->buffer : 0);
             glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, model->material_buffer);
             glBindTextureUnit(UNIT_RAMPS, model->ramps);
@@ -159,15 +172,17 @@ static void draw_asset(struct solid *solid, const struct picture *picture, int i
         }
         if (bound != program) {
             glUseProgram(program);
-            set_placement(picture, &picture->stage->scene->assets[index]);
+            set_placement(picture, asset);
             bound = program;
         }
-        set_material(picture, material, batch, field != NULL);
+        set_material(picture, material, batch, field != NULL, cut);
         if (is_per_fragment(picture, field))
             reference_draw_batch(batch);
         else
             model_draw_batch(batch);
     }
+    if (cut)
+        stage_clip_end(clip);
 }
 
 void solid_draw(struct solid *solid, const struct picture *picture)

@@ -35,7 +35,9 @@ bool stage_init(struct stage *stage, struct gl *gl, const struct scene *scene)
     stage->of_asset = mem_array(scene->asset_count, sizeof(*stage->of_asset));
     stage->depth_program = program_create(gl->log, program_params(.vertex = "depth.vert", .fragment = "depth.frag"));
     GLuint ramp_program = program_create(gl->log, program_params(.compute = "ramp.comp"));
-    bool good = stage->depth_program && ramp_program;
+    stage->clipped_depth_program =
+        program_create(gl->log, program_params(.vertex = "depth.vert", .fragment = "depth.frag", .defines = "#define CLIP\n"));
+    bool good = stage->depth_program && stage->clipped_depth_program && ramp_program;
     find_ball(stage);
     for (size_t i = 0; i < scene->asset_count && good; i++) {
         struct model *model = find_model(stage, scene->assets[i].file);
@@ -56,6 +58,7 @@ void stage_finish(struct stage *stage)
     mem_free(stage->models);
     mem_free(stage->of_asset);
     program_destroy(&stage->depth_program);
+    program_destroy(&stage->clipped_depth_program);
     *stage = (struct stage){ 0 };
 }
 
@@ -110,9 +113,40 @@ const struct model_level *stage_level(const struct stage *stage, const struct sh
     return model_level(stage->of_asset[asset], error_px * sqrt(square) / shot->pixel_per_radian);
 }
 
-void stage_draw_depth(const struct stage *stage, const double clip_from_plant[16], int asset, double error_m)
+void stage_clip_begin(const struct clip *clip)
 {
-    glUseProgram(stage->depth_program);
+    for (int i = 0; i < clip->plane_count; i++)
+        glEnable(GL_CLIP_DISTANCE0 + (GLenum)i);
+}
+
+void stage_clip_end(const struct clip *clip)
+{
+    for (int i = 0; i < clip->plane_count; i++)
+        glDisable(GL_CLIP_DISTANCE0 + (GLenum)i);
+}
+
+static void use_clipped(const struct stage *stage, const double clip_from_plant[16], const struct clip *clip)
+{
+    double plant_from_clip[16];
+    float planes[CLIP_MAX_PLANES][4] = { { 0 } };
+    matrix_invert(clip_from_plant, plant_from_clip);
+    for (int i = 0; i < clip->plane_count; i++) {
+        double plane[4];
+        clip_plane(clip, i, plane);
+        matrix_plane(plant_from_clip, plane, planes[i]);
+    }
+    glUseProgram(stage->clipped_depth_program);
+    glUniform4fv(1, CLIP_MAX_PLANES, planes[0]);
+    stage_clip_begin(clip);
+}
+
+void stage_draw_depth(const struct stage *stage, const double clip_from_plant[16], const struct clip *clip, int asset, double error_m)
+{
+    bool cut = clip && clip->plane_count > 0;
+    if (cut)
+        use_clipped(stage, clip_from_plant, clip);
+    else
+        glUseProgram(stage->depth_program);
     glDisable(GL_CULL_FACE);
     for (size_t i = 0; i < stage->scene->asset_count; i++) {
         if (asset >= 0 && i != (size_t)asset)
@@ -128,6 +162,8 @@ void stage_draw_depth(const struct stage *stage, const double clip_from_plant[16
             if (!level->batches[b].blend || asset >= 0)
                 model_draw_batch(&level->batches[b]);
     }
+    if (cut)
+        stage_clip_end(clip);
 }
 
 void stage_set_front_face(const struct scene_asset *asset)

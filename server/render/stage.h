@@ -5,6 +5,7 @@
 #include "gpu/gl.h"
 #include "render/model.h"
 #include "scene/scene.h"
+#include "scene/visibility.h"
 
 struct stage {
     struct gl *gl;
@@ -14,7 +15,7 @@ struct stage {
     const struct model **of_asset; /* by index in scene->assets */
     double middle_m[3], radius_m;  /* a ball that holds the scene */
     double up[3];
-    GLuint depth_program;
+    GLuint depth_program, clipped_depth_program;
 };
 
 /* A camera, ready to draw with. Eye space: axes of the plant frame, origin at the camera. */
@@ -40,8 +41,12 @@ bool shot_sees(const struct shot *shot, const struct scene_asset *asset);
 /* The coarsest level of detail that errs by no more than that here. */
 const struct model_level *stage_level(const struct stage *stage, const struct shot *shot, int asset, double error_px);
 
-/* Only depth, of everything (asset -1) or of one asset, with errors up to error_m. Framebuffer and viewport are the caller's. */
-void stage_draw_depth(const struct stage *stage, const double clip_from_plant[16], int asset, double error_m);
+/* Only depth, of everything (asset -1) or of one asset, with errors up to error_m; clip: NULL, or what is cut away. Framebuffer and
+   viewport are the caller's. */
+void stage_draw_depth(const struct stage *stage, const double clip_from_plant[16], const struct clip *clip, int asset, double error_m);
+/* Between the two: programs that cut are drawn with. */
+void stage_clip_begin(const struct clip *clip);
+void stage_clip_end(const struct clip *clip);
 /* For drawing one-sided surfaces of this asset: a mirrored placement turns them round. */
 void stage_set_front_face(const struct scene_asset *asset);
 

@@ -6,6 +6,8 @@
 #include <math.h>
 #include <string.h>
 
+static const double SLACK_M = 1e-3;
+
 void asset_set_add(struct asset_set *set, int asset)
 {
     assert(asset >= 0 && asset < ASSET_SET_MAX);
@@ -47,18 +49,49 @@ static double along(const double plane[4], const double v[3])
     return plane[0] * v[0] + plane[1] * v[1] + plane[2] * v[2];
 }
 
+void clip_plane(const struct clip *clip, int index, double out[4])
+{
+    memcpy(out, clip->planes[index], sizeof(clip->planes[index]));
+    out[3] += SLACK_M;
+}
+
 bool clip_keeps(const struct clip *clip, const double point_m[3])
 {
     for (int i = 0; i < clip->plane_count; i++)
-        if (along(clip->planes[i], point_m) + clip->planes[i][3] < 0)
+        if (along(clip->planes[i], point_m) + clip->planes[i][3] < -SLACK_M)
             return false;
     return true;
+}
+
+/* Where the corner of a box that lies farthest inward stands (inward 1), or outward (-1). */
+static double corner_height(const double plane[4], const double min_m[3], const double max_m[3], int inward)
+{
+    double height = plane[3] + SLACK_M;
+    for (int i = 0; i < 3; i++)
+        height += plane[i] * (plane[i] * inward > 0 ? max_m[i] : min_m[i]);
+    return height;
+}
+
+bool clip_drops(const struct clip *clip, const double min_m[3], const double max_m[3])
+{
+    for (int i = 0; i < clip->plane_count; i++)
+        if (corner_height(clip->planes[i], min_m, max_m, 1) < 0)
+            return true;
+    return false;
+}
+
+bool clip_touches(const struct clip *clip, const double min_m[3], const double max_m[3])
+{
+    for (int i = 0; i < clip->plane_count; i++)
+        if (corner_height(clip->planes[i], min_m, max_m, -1) < 0)
+            return true;
+    return false;
 }
 
 bool clip_ray(const struct clip *clip, const double origin[3], const double direction[3], double *low, double *high)
 {
     for (int i = 0; i < clip->plane_count; i++) {
-        double height = along(clip->planes[i], origin) + clip->planes[i][3], rise = along(clip->planes[i], direction);
+        double height = along(clip->planes[i], origin) + clip->planes[i][3] + SLACK_M, rise = along(clip->planes[i], direction);
         if (rise > 0)
             *low = fmax(*low, -height / rise);
         else if (rise < 0)

@@ -19,9 +19,14 @@ struct clip { /* what lies on the inner side of every plane stays */
     bool is_box;                       /* the planes are those of a box: min x, max x, min y, ... */
     double planes[CLIP_MAX_PLANES][4]; /* n x, n y, n z, d: n p + d >= 0 inside; n of unit length, plant frame */
 };
+/* As it cuts: a little farther out than it was asked for, so that a surface in the plane itself stays whole. */
+void clip_plane(const struct clip *clip, int index, double out[4]);
 void clip_box(struct clip *clip, const double min_m[3], const double max_m[3]);
 void clip_get_box(const struct clip *clip, double min_m[3], double max_m[3]);
 bool clip_keeps(const struct clip *clip, const double point_m[3]);
+/* Of a box: none of it stays; or something is cut off it. */
+bool clip_drops(const struct clip *clip, const double min_m[3], const double max_m[3]);
+bool clip_touches(const struct clip *clip, const double min_m[3], const double max_m[3]);
 /* The part of origin + t direction, low <= t <= high, that stays. False: none. */
 bool clip_ray(const struct clip *clip, const double origin[3], const double direction[3], double *low, double *high);
 

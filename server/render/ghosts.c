@@ -1,0 +1,88 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Ghosts have a depth buffer of their own; what is drawn is found in it. */
+#include "render/ghosts.h"
+
+#include "gpu/program.h"
+
+bool ghosts_init(struct ghosts *ghosts, struct log *log)
+{
+    ghosts->program = program_create(log, program_params(.vertex = "screen.vert", .fragment = "ghost.frag"));
+    glCreateVertexArrays(1, &ghosts->vao);
+    return ghosts->program != 0;
+}
+
+static void depth_finish(struct ghosts *ghosts)
+{
+    glDeleteFramebuffers(1, &ghosts->framebuffer);
+    glDeleteTextures(1, &ghosts->depth);
+    ghosts->framebuffer = ghosts->depth = 0;
+}
+
+void ghosts_finish(struct ghosts *ghosts)
+{
+    depth_finish(ghosts);
+    program_destroy(&ghosts->program);
+    glDeleteVertexArrays(1, &ghosts->vao);
+}
+
+static void depth_fit(struct ghosts *ghosts, int width_px, int height_px)
+{
+    if (ghosts->depth && ghosts->width_px == width_px && ghosts->height_px == height_px)
+        return;
+    depth_finish(ghosts);
+    ghosts->width_px = width_px;
+    ghosts->height_px = height_px;
+    glCreateTextures(GL_TEXTURE_2D, 1, &ghosts->depth);
+    glTextureStorage2D(ghosts->depth, 1, GL_DEPTH_COMPONENT32F, width_px, height_px);
+    glTextureParameteri(ghosts->depth, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glCreateFramebuffers(1, &ghosts->framebuffer);
+    glNamedFramebufferTexture(ghosts->framebuffer, GL_DEPTH_ATTACHMENT, ghosts->depth, 0);
+    glNamedFramebufferDrawBuffer(ghosts->framebuffer, GL_NONE);
+}
+
+static bool any_ghost(const struct picture *picture)
+{
+    const struct scene *scene = picture->stage->scene;
+    const struct visibility *visibility = &picture->view->visibility;
+    for (size_t i = 0; i < scene->asset_count && visibility->ghosts.count > 0; i++)
+        if (visibility_of(visibility, (int)i) == ASSET_GHOST && shot_sees(&picture->shot, &scene->assets[i]))
+            return true;
+    return false;
+}
+
+static void draw_depth(const struct ghosts *ghosts, const struct picture *picture)
+{
+    const struct scene *scene = picture->stage->scene;
+    const struct visibility *visibility = &picture->view->visibility;
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, ghosts->framebuffer);
+    glEnable(GL_DEPTH_TEST);
+    glDepthMask(GL_TRUE);
+    glClear(GL_DEPTH_BUFFER_BIT);
+    for (size_t i = 0; i < scene->asset_count; i++)
+        if (visibility_of(visibility, (int)i) == ASSET_GHOST && shot_sees(&picture->shot, &scene->assets[i])) {
+            float error_m = stage_level(picture->stage, &picture->shot, (int)i, 1)->error_m;
+            stage_draw_depth(picture->stage, picture->shot.clip_from_plant, &visibility->clip, (int)i, (double)error_m);
+        }
+}
+
+void ghosts_draw(struct ghosts *ghosts, const struct picture *picture)
+{
+    if (!any_ghost(picture))
+        return;
+    gl_pass_enter("ghosts");
+    depth_fit(ghosts, picture->target->width_px, picture->target->height_px);
+    draw_depth(ghosts, picture);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, picture->target->over_framebuffer);
+    glDisable(GL_DEPTH_TEST);
+    glDepthMask(GL_FALSE);
+    glEnable(GL_BLEND);
+    glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE);
+    glBindTextureUnit(0, ghosts->depth);
+    glBindTextureUnit(1, picture->target->resolved_depth);
+    glUseProgram(ghosts->program);
+    glBindVertexArray(ghosts->vao);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glDisable(GL_BLEND);
+    glDepthMask(GL_TRUE);
+    gl_pass_leave(picture->stage->gl, "ghosts");
+}

@@ -1,0 +1,17 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The pass that hints at ghosted assets: outline and a thin tint over the resolved picture, where nothing stands before them. Of ghosts
+   behind one another the nearest is drawn. Thread: the one of the GL context. */
+#ifndef RENDER_GHOSTS_H
+#define RENDER_GHOSTS_H
+#include "render/picture.h"
+
+struct ghosts {
+    GLuint program, vao, framebuffer, depth;
+    int width_px, height_px; /* of depth; 0: not made yet */
+};
+
+bool ghosts_init(struct ghosts *ghosts, struct log *log); /* false: logged */
+void ghosts_finish(struct ghosts *ghosts);
+void ghosts_draw(struct ghosts *ghosts, const struct picture *picture); /* nothing to do where there is none */
+
+#endif

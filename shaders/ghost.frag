@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Assets that are only hinted at: lines where their depth breaks or bends, and one dot in sixteen pixels in between, so that the
+// colours behind stay what they are.
+#include "frame.glsl"
+layout(binding = 0) uniform sampler2D ghosts; // their depth; 0: none
+layout(binding = 1) uniform sampler2D depth;  // of all else
+layout(location = 0) in vec2 clip;
+layout(location = 0) out vec4 color;
+
+float at(ivec2 pixel)
+{
+    return texelFetch(ghosts, clamp(pixel, ivec2(0), textureSize(ghosts, 0) - 1), 0).r;
+}
+
+// x: how far it falls to either side, y: how much it bends; as parts of the distance.
+vec2 shape(ivec2 pixel, float here, float scale, ivec2 side)
+{
+    float a = at(pixel - side), b = at(pixel + side);
+    return vec2(here - min(a, b), abs(a + b - 2.0 * here)) * scale;
+}
+
+void main()
+{
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    float here = at(pixel);
+    if (here <= 0.0 || here < texelFetch(depth, pixel, 0).r)
+        discard;
+    float scale = frame.back.w > 0.0 ? frame.back.w : 1.0 / here;
+    vec2 found = max(shape(pixel, here, scale, ivec2(1, 0)), shape(pixel, here, scale, ivec2(0, 1)));
+    float line = max(0.9 * smoothstep(0.004, 0.012, found.x), 0.55 * smoothstep(0.0003, 0.0009, found.y));
+    bool dot_here = (pixel.x & 3) == 0 && (pixel.y & 3) == ((pixel.x >> 1) & 2);
+    if (line < 0.05 && !dot_here)
+        discard;
+    color = vec4(0.20, 0.26, 0.33, max(line, dot_here ? 0.6 : 0.0));
+}

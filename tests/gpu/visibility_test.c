@@ -1,0 +1,285 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What is hidden, isolated, ghosted or cut away: colours, markers and content of the pictures; and orthographic ones. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "tests/support/rig.h"
+#include "value/quality.h"
+
+enum { EXCHANGER, TANK, PIPE, SLAB, PUMP };
+static struct rig rig;
+static struct stand stand;
+static struct view view;
+
+/* The exchanger is 30 degrees all over, the tank 80: each has one colour of its own. */
+static int reset(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 8; i++)
+        toy_set(stand.snapshot, i, i < 5 ? 30 : 80, QUALITY_GOOD);
+    view_default(&stand.toy->scene, 480, 270, &view);
+    view.tier = TIER_MOVING;
+    view.look = LOOK_FLAT;
+    return 0;
+}
+
+/* Pixels with exactly the colour of that value. */
+static int count_value(const struct frame *frame, double value)
+{
+    const struct colormap *map = colormap_at((size_t)view.colormap);
+    int count = 0, index = (int)(value / 100 * 256);
+    for (int y = 0; y < frame->height_px; y++)
+        for (int x = 0; x < frame->width_px; x++)
+            count += map_index_exact(map, frame_pixel(frame, x, y)) == index;
+    return count;
+}
+
+static int count_different(const struct frame *a, const struct frame *b)
+{
+    int count = 0;
+    for (int y = 0; y < a->height_px; y++)
+        for (int x = 0; x < a->width_px; x++)
+            count += memcmp(frame_pixel(a, x, y), frame_pixel(b, x, y), 3) != 0;
+    return count;
+}
+
+static void assert_looks(double exchanger_least, double tank_least, size_t markers)
+{
+    for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++) {
+        view.tier = (enum tier)tier;
+        struct frame *frame = stand_draw(&stand, &view);
+        int exchanger = count_value(frame, 30), tank = count_value(frame, 80);
+        assert_true(exchanger_least > 0 ? exchanger > exchanger_least : exchanger == 0);
+        assert_true(tank_least > 0 ? tank > tank_least : tank == 0);
+        assert_int_equal(frame->marker_count, markers);
+        frame_unref(&frame);
+    }
+    view.tier = TIER_MOVING;
+}
+
+static void test_hidden_and_isolated(void **state)
+{
+    (void)state;
+    assert_looks(2000, 2000, 8);
+    asset_set_add(&view.visibility.hidden, TANK);
+    assert_looks(2000, 0, 5);
+    memset(&view.visibility, 0, sizeof(view.visibility));
+    asset_set_add(&view.visibility.isolated, TANK);
+    assert_looks(0, 2000, 3);
+    asset_set_add(&view.visibility.hidden, TANK);
+    assert_looks(0, 0, 0);
+    struct frame *frame = stand_draw(&stand, &view);
+    assert_int_equal(frame->triangles, 0);
+    frame_unref(&frame);
+}
+
+static void test_what_is_hidden_has_no_age(void **state)
+{
+    (void)state;
+    for (int i = 5; i < 8; i++)
+        stand.snapshot->readings[i].age_ns = 9000000000;
+    asset_set_add(&view.visibility.hidden, TANK);
+    struct frame *frame = stand_draw(&stand, &view);
+    assert_true(frame->oldest_age_ns == 1000000000);
+    frame_unref(&frame);
+}
+
+static uint64_t content(void)
+{
+    return renderer_content(stand.renderer, &view, stand.snapshot);
+}
+
+static void test_content_sees_what_is_shown(void **state)
+{
+    (void)state;
+    uint64_t whole = content();
+    asset_set_add(&view.visibility.hidden, TANK);
+    uint64_t hidden = content();
+    view.visibility = (struct visibility){ 0 };
+    asset_set_add(&view.visibility.ghosts, TANK);
+    uint64_t ghost = content();
+    view.visibility = (struct visibility){ 0 };
+    clip_box(&view.visibility.clip, (double[3]){ -9, -9, -9 }, (double[3]){ 9, 9, 1 });
+    uint64_t cut = content();
+    assert_true(whole != hidden && whole != ghost && whole != cut && hidden != ghost && ghost != cut);
+    clip_box(&view.visibility.clip, (double[3]){ -9, -9, -9 }, (double[3]){ 9, 9, 1.1 });
+    assert_true(content() != cut);
+    view.visibility = (struct visibility){ 0 };
+    assert_true(content() == whole);
+    view.visibility.isolated = (struct asset_set){ 0 };
+    for (int i = 0; i < 5; i++) /* all of them: the same picture as none */
+        asset_set_add(&view.visibility.isolated, i);
+    struct frame *all = stand_draw(&stand, &view);
+    view.visibility = (struct visibility){ 0 };
+    struct frame *none = stand_draw(&stand, &view);
+    assert_int_equal(all->triangles, none->triangles);
+    frame_unref(&all);
+    frame_unref(&none);
+}
+
+/* The tank stands before the exchanger's end, or not at all: what is seen through it keeps its colours but for lines and dots. */
+static void test_ghosts_change_few_colours(void **state)
+{
+    (void)state;
+    view.camera = (struct camera){ .eye_m = { 11, 2.5, 2 }, .target_m = { 0, 0, 1.2 }, .up = { 0, 0, 1 }, .fov_deg = 30 };
+    for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++) {
+        view.tier = (enum tier)tier;
+        view.visibility = (struct visibility){ 0 };
+        struct frame *solid = stand_draw(&stand, &view);
+        asset_set_add(&view.visibility.ghosts, TANK);
+        struct frame *ghost = stand_draw(&stand, &view);
+        view.visibility = (struct visibility){ 0 };
+        asset_set_add(&view.visibility.hidden, TANK);
+        struct frame *hidden = stand_draw(&stand, &view);
+        int behind = count_value(hidden, 30), before = count_value(solid, 30), seen = count_value(ghost, 30);
+        assert_true(before < 0.7 * behind);
+        assert_true(seen > 0.78 * behind && seen < behind);
+        assert_int_equal(count_value(ghost, 80), 0);
+        int changed = count_different(ghost, hidden), covered = count_value(solid, 80);
+        assert_true(changed > 0.04 * covered && changed < 0.3 * covered);
+        assert_int_equal(ghost->marker_count, 8);
+        frame_unref(&solid);
+        frame_unref(&ghost);
+        frame_unref(&hidden);
+    }
+}
+
+static void test_a_ghost_behind_something_is_not_seen(void **state)
+{
+    (void)state;
+    view.camera = (struct camera){ .eye_m = { -12, 0, 1.2 }, .target_m = { 0, 0, 1.2 }, .up = { 0, 0, 1 }, .fov_deg = 4 };
+    struct frame *solid = stand_draw(&stand, &view);
+    asset_set_add(&view.visibility.ghosts, PUMP);
+    struct frame *ghost = stand_draw(&stand, &view);
+    assert_int_equal(count_different(solid, ghost), 0);
+    frame_unref(&solid);
+    frame_unref(&ghost);
+}
+
+static bool is_neutral(const uint8_t *bgrx)
+{
+    return abs(bgrx[0] - bgrx[1]) < 12 && abs(bgrx[1] - bgrx[2]) < 12 && bgrx[1] > 60 && bgrx[1] < 120;
+}
+
+/* The exchanger lies along x, its axis at y = 0, z = 1.2. Seen from the south with the southern half cut away: its inner side. */
+static void test_a_cut_opens_a_neutral_inside(void **state)
+{
+    (void)state;
+    view.camera = (struct camera){ .eye_m = { 0, -8, 1.2 }, .target_m = { 0, 0, 1.2 }, .up = { 0, 0, 1 }, .fov_deg = 40 };
+    for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++)
+        for (int look = LOOK_DEFAULT; look <= LOOK_FLAT; look++) {
+            view.tier = (enum tier)tier;
+            view.look = (enum look)look;
+            view.visibility = (struct visibility){ 0 };
+            struct frame *whole = stand_draw(&stand, &view);
+            assert_false(is_neutral(frame_pixel(whole, 240, 135)));
+            view.visibility.clip = (struct clip){ .plane_count = 1, .planes = { { 0, 1, 0, 0 } } };
+            struct frame *cut = stand_draw(&stand, &view);
+            for (int x = -60; x <= 60; x += 7)
+                for (int y = -12; y <= 12; y += 3)
+                    assert_true(is_neutral(frame_pixel(cut, 240 + x, 135 + y)));
+            assert_int_equal(whole->marker_count, 8);
+            assert_int_equal(cut->marker_count, 5); /* two on top of the exchanger, and those of the tank */
+            frame_unref(&whole);
+            frame_unref(&cut);
+        }
+}
+
+/* What is cut away is no obstacle; what is behind the cut is where it was. */
+static void test_a_cut_leaves_the_rest_alone(void **state)
+{
+    (void)state;
+    view.visibility.clip = (struct clip){ .plane_count = 1, .planes = { { -1, 0, 0, 50 } } };
+    struct frame *uncut = stand_draw(&stand, &view);
+    view.visibility.clip = (struct clip){ .plane_count = 1, .planes = { { -1, 0, 0, 2.6 } } }; /* the tank goes */
+    struct frame *cut = stand_draw(&stand, &view);
+    assert_true(count_value(uncut, 80) > 2000);
+    assert_int_equal(count_value(cut, 80), 0);
+    assert_true(count_value(cut, 30) >= count_value(uncut, 30));
+    assert_int_equal(cut->marker_count, 5);
+    assert_true(cut->triangles < uncut->triangles);
+    clip_box(&view.visibility.clip, (double[3]){ 2.9, -9, -9 }, (double[3]){ 9, 9, 9 }); /* only the tank stays */
+    struct frame *box = stand_draw(&stand, &view);
+    assert_int_equal(count_value(box, 30), 0);
+    assert_true(count_value(box, 80) >= count_value(uncut, 80));
+    frame_unref(&uncut);
+    frame_unref(&cut);
+    frame_unref(&box);
+}
+
+/* Bit by bit, a cut with ghosts is the same picture. */
+static void test_bit_by_bit_is_the_same(void **state)
+{
+    (void)state;
+    view.tier = TIER_STILL;
+    asset_set_add(&view.visibility.ghosts, TANK);
+    view.visibility.clip = (struct clip){ .plane_count = 1, .planes = { { 0, 1, 0, 0.1 } } };
+    struct frame *at_once = stand_draw(&stand, &view);
+    struct stroke *stroke = renderer_begin(stand.renderer, &view, stand.snapshot);
+    while (!renderer_step(stand.renderer, stroke, 1))
+        continue;
+    struct frame *bits = renderer_end(stand.renderer, &stroke);
+    assert_memory_equal(at_once->bgrx, bits->bgrx, (size_t)bits->stride_bytes * (size_t)bits->height_px);
+    frame_unref(&at_once);
+    frame_unref(&bits);
+}
+
+/* In an orthographic picture each metre has its pixels, wherever it lies; depth still hides. */
+static void test_orthographic_markers_stand_where_they_should(void **state)
+{
+    (void)state;
+    view.camera = (struct camera){ .eye_m = { 1.3, -8, 1.2 }, .target_m = { 1.3, 0, 1.2 }, .up = { 0, 0, 1 }, .height_m = 5 };
+    double scale = 270 / 5.0;
+    for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++) {
+        view.tier = (enum tier)tier;
+        struct frame *frame = stand_draw(&stand, &view);
+        for (size_t i = 0; i < frame->marker_count; i++) {
+            const struct frame_marker *marker = &frame->markers[i];
+            int tag = marker->tag;
+            const struct scene_sensor *sensor =
+                tag < 5 ? &stand.toy->scene.assets[EXCHANGER].sensors[tag] : &stand.toy->scene.assets[TANK].sensors[tag - 5];
+            assert_float_equal(marker->x_px, 240 + scale * (sensor->surface_m[0] - 1.3), 0.1);
+            assert_float_equal(marker->y_px, 135 - scale * (sensor->surface_m[2] - 1.2), 0.1);
+        }
+        assert_int_equal(frame->markers[0].occluded, 0); /* on the exchanger's southern side */
+        assert_true(count_value(frame, 30) > 3000);
+        frame_unref(&frame);
+        view.camera.eye_m[1] = -0.1; /* in the middle of the plant: nothing is cut off */
+        frame = stand_draw(&stand, &view);
+        assert_int_equal(frame->markers[0].occluded, 0);
+        frame_unref(&frame);
+        view.camera.eye_m[1] = -8;
+    }
+}
+
+#define each(test) cmocka_unit_test_setup(test, reset)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        each(test_hidden_and_isolated),
+        each(test_what_is_hidden_has_no_age),
+        each(test_content_sees_what_is_shown),
+        each(test_ghosts_change_few_colours),
+        each(test_a_ghost_behind_something_is_not_seen),
+        each(test_a_cut_opens_a_neutral_inside),
+        each(test_a_cut_leaves_the_rest_alone),
+        each(test_bit_by_bit_is_the_same),
+        each(test_orthographic_markers_stand_where_they_should),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    if (!rig_init(&rig, "visibility_test"))
+        return 0;
+    stand_init(&stand, &rig, toy_unit());
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    stand_finish(&stand);
+    rig_finish(&rig);
+    return failed;
+}
