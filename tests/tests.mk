@@ -13,7 +13,7 @@ test-long: test
 	done
 
 checked: all tests demo style layers headers
-tests: $(unit_tests) $(gpu_tests)
+tests: $(unit_tests) $(gpu_tests) $(out)/tests/scale/facility
 unit: tests
 	@tests/run $(out) $(bin) unit
 gpu: tests

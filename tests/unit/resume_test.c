@@ -1,0 +1,186 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A facility is prepared, interrupted in every way, and continued where it was. */
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <pty.h>
+#include <setjmp.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#include <cmocka.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "tests/support/prep_case.h"
+#include "tests/support/temp.h"
+
+#define ASSETS 40
+#define PATIENCE_NS (120 * NS_PER_S)
+
+static int set_up(void **state)
+{
+    const char *out = getenv("PLANTCAST_OUT");
+    prep_case_set_up(state);
+    struct prep_case *c = *state;
+    char *tool = mem_printf("%s/tests/scale/facility", out ? out : "build/release");
+    char *command = mem_printf("'%s' --output '%s' --assets %d --triangles 120000 --sensors 20 >/dev/null", tool, c->folder, ASSETS);
+    int status = access(tool, X_OK) == 0 ? system(command) : -1;
+    if (status != 0)
+        print_message("# %s: %d\n", tool, status);
+    mem_free(command);
+    mem_free(tool);
+    mem_free(c->plant);
+    c->plant = temp_path(c->folder, "facility.yaml");
+    return status;
+}
+
+/* Files in the prepared folder whose names end so. */
+static size_t count_files(const struct prep_case *c, const char *ending)
+{
+    char *folder = temp_path(c->folder, "facility.prepared");
+    size_t count = 0;
+    DIR *dir = opendir(folder);
+    for (const struct dirent *entry; dir && (entry = readdir(dir)) != NULL;) {
+        size_t length = strlen(entry->d_name), end = strlen(ending);
+        count += length >= end && strcmp(entry->d_name + length - end, ending) == 0;
+    }
+    if (dir)
+        closedir(dir);
+    mem_free(folder);
+    return count;
+}
+
+/* Its standard output goes to FOLDER/out. */
+static pid_t start(const struct prep_case *c, int terminal)
+{
+    char *program = prep_case_program(), *out = temp_path(c->folder, "out");
+    pid_t pid = fork();
+    if (pid == 0) {
+        int fd = open(out, O_WRONLY | O_CREAT | O_TRUNC, 0666), nothing = open("/dev/null", O_WRONLY);
+        dup2(fd, STDOUT_FILENO);
+        dup2(terminal >= 0 ? terminal : nothing, STDERR_FILENO);
+        execl(program, program, c->plant, "--report", "json", (char *)NULL);
+        _exit(127);
+    }
+    assert_true(pid > 0);
+    mem_free(program);
+    mem_free(out);
+    return pid;
+}
+
+static void wait_for_files(const struct prep_case *c, size_t count)
+{
+    int64_t end_ns = clock_mono_ns() + PATIENCE_NS;
+    while (count_files(c, ".asset") < count && clock_mono_ns() < end_ns)
+        clock_sleep_ns(2 * NS_PER_MS);
+    assert_true(count_files(c, ".asset") >= count);
+}
+
+static size_t count_states(const json_t *report, const char *state)
+{
+    const json_t *assets = json_object_get(report, "assets");
+    size_t count = 0;
+    for (size_t i = 0; i < json_array_size(assets); i++)
+        count += strcmp(json_string_value(json_object_get(json_array_get(assets, i), "state")), state) == 0;
+    return count;
+}
+
+static void assert_continued(struct prep_case *c, size_t there)
+{
+    prep_case_expect(c, "$PLANT --report json", 0);
+    json_t *report = prep_case_json(&c->out);
+    print_message("# %zu assets were there, %zu were built\n", count_states(report, "unchanged"), count_states(report, "built"));
+    assert_int_equal(count_states(report, "unchanged"), there);
+    assert_int_equal(count_states(report, "built"), ASSETS - there);
+    assert_int_equal(count_files(c, ".asset"), ASSETS);
+    assert_int_equal(count_files(c, ".new"), 0); /* what was half written is gone */
+    assert_int_equal(count_files(c, "manifest.json"), 1);
+    json_decref(report);
+}
+
+static void killed_at_once_it_goes_on(void **state)
+{
+    struct prep_case *c = *state;
+    int status;
+    for (size_t wanted = 5; wanted <= 15; wanted += 10) {
+        pid_t pid = start(c, -1);
+        wait_for_files(c, wanted);
+        assert_int_equal(kill(pid, SIGKILL), 0);
+        assert_int_equal(waitpid(pid, &status, 0), pid);
+        assert_true(WIFSIGNALED(status));
+        assert_int_equal(count_files(c, "manifest.json"), 0);
+    }
+    size_t there = count_files(c, ".asset");
+    assert_true(there >= 15 && there < ASSETS);
+    mem_free(temp_write_text(c->folder, "facility.prepared/0123456789abcdef.asset.1.new", "half"));
+    assert_continued(c, there);
+}
+
+static void interrupted_it_finishes_what_it_has_begun(void **state)
+{
+    struct prep_case *c = *state;
+    const int signals[2] = { SIGINT, SIGTERM };
+    size_t there = 0;
+    for (int i = 0; i < 2; i++) {
+        int status;
+        pid_t pid = start(c, -1);
+        wait_for_files(c, there + 3);
+        assert_int_equal(kill(pid, signals[i]), 0);
+        assert_int_equal(waitpid(pid, &status, 0), pid);
+        assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 1);
+        prep_case_read(c, "out", &c->out);
+        json_t *report = prep_case_json(&c->out);
+        assert_true(json_is_true(json_object_get(report, "interrupted")));
+        assert_true(count_states(report, "left") > 0);
+        assert_int_equal(count_states(report, "failed"), 0);
+        assert_int_equal(count_states(report, "unchanged"), there);
+        there += count_states(report, "built");
+        assert_int_equal(count_files(c, ".asset"), there);
+        assert_int_equal(count_files(c, ".new"), 0);
+        assert_int_equal(count_files(c, "manifest.json"), 0);
+        json_decref(report);
+    }
+    assert_continued(c, there);
+}
+
+/* On a terminal, one line that changes, and nothing of it is left. */
+static void a_terminal_shows_one_line(void **state)
+{
+    struct prep_case *c = *state;
+    struct text seen = { 0 };
+    char bytes[4096];
+    int master, terminal, status;
+    assert_int_equal(openpty(&master, &terminal, NULL, NULL, NULL), 0);
+    pid_t pid = start(c, terminal);
+    close(terminal);
+    for (ssize_t got; (got = read(master, bytes, sizeof(bytes))) > 0;)
+        text_add_bytes(&seen, bytes, (size_t)got);
+    close(master);
+    assert_int_equal(waitpid(pid, &status, 0), pid);
+    assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+    prep_case_says(&seen, "40 of 40 assets to prepare");
+    prep_case_says(&seen, "\r");
+    prep_case_says(&seen, " of 40 assets, ");
+    prep_case_says(&seen, " left\033[K");
+    assert_string_equal(seen.at + seen.length - 4, "\r\033[K");
+    text_finish(&seen);
+}
+
+#define WITH_FACILITY(test) cmocka_unit_test_setup_teardown(test, set_up, prep_case_tear_down)
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        WITH_FACILITY(killed_at_once_it_goes_on),
+        WITH_FACILITY(interrupted_it_finishes_what_it_has_begun),
+        WITH_FACILITY(a_terminal_shows_one_line),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
