@@ -11,6 +11,10 @@ test-long: test
 	    $(MAKE) --no-print-directory config=$$c all tests && tests/run $(build)/$$c $(build)/$$c/bin unit && \
 	    tests/run $(build)/$$c $(build)/$$c/bin gpu && tests/run $(build)/$$c $(build)/$$c/bin daemon || exit 1; \
 	done
+	@$(MAKE) --no-print-directory scale
+# 10 million triangles in 2,000 assets, prepared, killed and continued, within 8 GB: some minutes.
+scale: all $(out)/tests/scale/facility
+	@tests/scale/run $(out) $(bin) --kill
 
 checked: all tests demo style layers headers
 tests: $(unit_tests) $(gpu_tests) $(out)/tests/scale/facility
@@ -29,14 +33,14 @@ headers: | $(gen)/glad/include/glad/gl.h
 
 bench_programs := $(patsubst tests/%.c,$(out)/tests/%,$(wildcard tests/bench/*_bench.c))
 bench: test-deps
-	@$(MAKE) --no-print-directory all demo $(bench_programs)
+	@$(MAKE) --no-print-directory all demo $(bench_programs) $(out)/tests/scale/facility
 	@tests/bench/run $(out) $(bin)
 
 # Makes the golden pictures anew, on llvmpipe. Look at them before they are committed.
 golden-update: $(out)/tests/gpu/golden_test
 	@PLANTCAST_GL=egl-surfaceless GOLDEN_UPDATE=1 $<
 
-.PHONY: checked tests unit gpu
+.PHONY: checked tests unit gpu scale
 
 # `make fuzz seconds=600`: each fuzzer in turn, from its seeds in tests/fuzz/NAME; what it finds is written to build/.
 seconds ?= 60
