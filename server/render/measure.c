@@ -2,9 +2,6 @@
 /* Four floats a pixel. */
 #include "render/measure.h"
 
-#include <string.h>
-
-#include "base/mem.h"
 #include "render/renderer.h"
 
 bool measure_begin(struct measure *measure, struct log *log, int width_px, int height_px)
@@ -35,14 +32,8 @@ bool measure_begin(struct measure *measure, struct log *log, int width_px, int h
 
 void measure_read(const struct measure *measure, float (*out)[4])
 {
-    size_t row_bytes = (size_t)measure->width_px * sizeof(*out);
-    float(*bottom_up)[4] = mem_array((size_t)measure->height_px, row_bytes);
     glBindFramebuffer(GL_READ_FRAMEBUFFER, measure->framebuffer);
-    glReadPixels(0, 0, measure->width_px, measure->height_px, GL_RGBA, GL_FLOAT, bottom_up);
-    for (int y = 0; y < measure->height_px; y++)
-        memcpy(out + (size_t)y * (size_t)measure->width_px, bottom_up + (size_t)(measure->height_px - 1 - y) * (size_t)measure->width_px,
-               row_bytes);
-    mem_free(bottom_up);
+    glReadPixels(0, 0, measure->width_px, measure->height_px, GL_RGBA, GL_FLOAT, out);
 }
 
 void measure_finish(struct measure *measure)

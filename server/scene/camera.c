@@ -203,15 +203,30 @@ static void depth_range(const struct camera *camera, const struct basis *basis, 
         *near_m = *far_m / 2;
 }
 
+static void camera_look(const struct camera *camera, struct basis *basis)
+{
+    double forward[3];
+    for (int i = 0; i < 3; i++)
+        forward[i] = camera->target_m[i] - camera->eye_m[i];
+    if (!basis_of(forward, camera->up, basis)) /* camera_valid says no; looking north keeps the numbers finite */
+        basis_of((double[]){ 0, 1, 0 }, (double[]){ 0, 0, 1 }, basis);
+}
+
+void camera_basis(const struct camera *camera, double right[3], double up[3], double forward[3])
+{
+    struct basis basis;
+    camera_look(camera, &basis);
+    memcpy(right, basis.right, sizeof(basis.right));
+    memcpy(up, basis.up, sizeof(basis.up));
+    memcpy(forward, basis.forward, sizeof(basis.forward));
+}
+
 void camera_matrices(const struct camera *camera, double aspect, const double min_m[3], const double max_m[3], double view[16],
                      double projection[16])
 {
     struct basis basis;
-    double forward[3], near_m, far_m;
-    for (int i = 0; i < 3; i++)
-        forward[i] = camera->target_m[i] - camera->eye_m[i];
-    if (!basis_of(forward, camera->up, &basis)) /* camera_valid says no; looking north keeps the numbers finite */
-        basis_of((double[]){ 0, 1, 0 }, (double[]){ 0, 0, 1 }, &basis);
+    double near_m, far_m;
+    camera_look(camera, &basis);
     depth_range(camera, &basis, min_m, max_m, &near_m, &far_m);
     for (int i = 0; i < 3; i++) {
         view[i * 4] = basis.right[i];

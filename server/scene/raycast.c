@@ -1,0 +1,165 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Rays against boxes of assets, boxes of clusters, and triangles, in double precision in the file's own frame. */
+#include "scene/raycast.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "plant/transform.h"
+
+static const double RIM = 1e-9; /* corners weigh so little less than nothing: rays do not slip through between triangles */
+
+void ray_init(struct ray *ray, const struct camera *camera, double aspect, double x, double y)
+{
+    double right[3], up[3], forward[3];
+    camera_basis(camera, right, up, forward);
+    bool parallel = camera->height_m > 0;
+    double half = parallel ? camera->height_m / 2 : tan(camera->fov_deg * M_PI / 360);
+    for (int i = 0; i < 3; i++) {
+        double aside = half * (x * aspect * right[i] + y * up[i]);
+        ray->origin[i] = camera->eye_m[i] + (parallel ? aside : 0);
+        ray->direction[i] = forward[i] + (parallel ? 0 : aside);
+    }
+    ray->low = parallel ? -INFINITY : 0;
+    ray->high = INFINITY;
+}
+
+/* The part of low..high in the box. */
+static bool cross_box(const double origin[3], const double direction[3], const double min[3], const double max[3], double *low,
+                      double *high)
+{
+    for (int i = 0; i < 3; i++) {
+        if (direction[i] == 0) {
+            if (origin[i] < min[i] || origin[i] > max[i])
+                return false;
+            continue;
+        }
+        double a = (min[i] - origin[i]) / direction[i], b = (max[i] - origin[i]) / direction[i];
+        *low = fmax(*low, fmin(a, b));
+        *high = fmin(*high, fmax(a, b));
+    }
+    return *low <= *high;
+}
+
+struct search { /* of one asset */
+    const struct asset_view *view;
+    double origin[3], direction[3], low; /* file frame */
+    bool cut;
+    struct raycast_hit *hit; /* t: nothing farther counts */
+    int asset;
+};
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void cross(const double a[3], const double b[3], double out[3])
+{
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+/* Moeller and Trumbore, "Fast, minimum storage ray/triangle intersection", 1997. The determinant is negative where a back is seen. */
+static void try_triangle(struct search *search, const uint32_t corners[3], bool one_sided)
+{
+    const float *a = search->view->positions_m[corners[0]], *b = search->view->positions_m[corners[1]],
+                *c = search->view->positions_m[corners[2]];
+    double ab[3], ac[3], p[3], q[3], s[3];
+    for (int i = 0; i < 3; i++) {
+        ab[i] = (double)b[i] - (double)a[i];
+        ac[i] = (double)c[i] - (double)a[i];
+        s[i] = search->origin[i] - (double)a[i];
+    }
+    cross(search->direction, ac, p);
+    double determinant = dot(ab, p);
+    if (determinant == 0 || (one_sided && determinant < 0))
+        return;
+    double u = dot(s, p) / determinant;
+    if (u < -RIM || u > 1 + RIM)
+        return;
+    cross(s, ab, q);
+    double v = dot(search->direction, q) / determinant, t = dot(ac, q) / determinant;
+    if (v < -RIM || u + v > 1 + RIM || t < search->low || t >= search->hit->t)
+        return;
+    memcpy(search->hit->corners, corners, sizeof(search->hit->corners));
+    memcpy(search->hit->weights, (double[3]){ 1 - u - v, u, v }, sizeof(search->hit->weights));
+    search->hit->asset = search->asset;
+    search->hit->t = t;
+    search->hit->inside = search->cut && determinant < 0;
+}
+
+static bool cluster_crossed(const struct search *search, const struct asset_cluster *cluster)
+{
+    double min[3], max[3], low = search->low, high = search->hit->t;
+    for (int i = 0; i < 3; i++) {
+        min[i] = (double)cluster->low_m[i];
+        max[i] = (double)cluster->high_m[i];
+    }
+    return cross_box(search->origin, search->direction, min, max, &low, &high);
+}
+
+/* The finest level's primitives come first, and their clusters too. */
+static void search_asset(struct search *search)
+{
+    const struct asset_view *view = search->view;
+    const struct asset_primitive *primitive = &view->primitives[view->levels[0].first_primitive];
+    const struct asset_primitive *end = primitive + view->levels[0].primitive_count;
+    for (uint32_t i = 0; i < view->header->cluster_count && primitive < end; i++) {
+        const struct asset_cluster *cluster = &view->clusters[i];
+        while (primitive < end && cluster->first_index >= primitive->first_index + primitive->index_count)
+            primitive++;
+        if (primitive == end || cluster->first_index < primitive->first_index || !cluster_crossed(search, cluster))
+            continue;
+        bool one_sided = !search->cut && !view->materials[primitive->material].double_sided;
+        for (uint32_t k = 0; k < cluster->index_count; k += 3)
+            try_triangle(search, &view->indices[cluster->first_index + k], one_sided);
+    }
+}
+
+static void find_normal(const struct scene *scene, const struct ray *ray, struct raycast_hit *hit)
+{
+    const struct scene_asset *asset = &scene->assets[hit->asset];
+    double at[3][3], ab[3], ac[3];
+    for (int k = 0; k < 3; k++) {
+        const float *place = asset->file->view.positions_m[hit->corners[k]];
+        transform_point(asset->placement, (double[3]){ (double)place[0], (double)place[1], (double)place[2] }, at[k]);
+    }
+    for (int i = 0; i < 3; i++) {
+        ab[i] = at[1][i] - at[0][i];
+        ac[i] = at[2][i] - at[0][i];
+    }
+    cross(ab, ac, hit->normal);
+    double length = sqrt(dot(hit->normal, hit->normal)), turn = dot(hit->normal, ray->direction) > 0 ? -1 : 1;
+    for (int i = 0; i < 3; i++)
+        hit->normal[i] *= turn / length;
+}
+
+void raycast(const struct scene *scene, const struct visibility *visibility, const struct ray *ray, struct raycast_hit *hit)
+{
+    double low = ray->low, high = ray->high;
+    *hit = (struct raycast_hit){ .asset = -1 };
+    if (!clip_ray(&visibility->clip, ray->origin, ray->direction, &low, &high))
+        return;
+    hit->t = high;
+    for (size_t i = 0; i < scene->asset_count; i++) {
+        const struct scene_asset *asset = &scene->assets[i];
+        double file_from_plant[16], enter = low, leave = hit->t, ahead[3];
+        if (visibility_of(visibility, (int)i) != ASSET_SHOWN ||
+            !cross_box(ray->origin, ray->direction, asset->bounds_min_m, asset->bounds_max_m, &enter, &leave) ||
+            !transform_invert(asset->placement, file_from_plant))
+            continue;
+        struct search search = { .view = &asset->file->view, .low = low, .hit = hit, .asset = (int)i };
+        search.cut = clip_touches(&visibility->clip, asset->bounds_min_m, asset->bounds_max_m);
+        for (int c = 0; c < 3; c++)
+            ahead[c] = ray->origin[c] + ray->direction[c];
+        transform_point(file_from_plant, ray->origin, search.origin);
+        transform_point(file_from_plant, ahead, search.direction);
+        for (int c = 0; c < 3; c++)
+            search.direction[c] -= search.origin[c];
+        search_asset(&search);
+    }
+    if (hit->asset >= 0)
+        find_normal(scene, ray, hit);
+}
