@@ -36,7 +36,7 @@ static const char usage[] =
     "  --ramp UNITS            colours in steps; 0: continuous\n"
     "  --breaks V,V,...        colours in bands that meet there; `group` or `limits`: at the group's own\n"
     "  --isolines V,V,...      lines of equal value; every:STEP   (where bands meet there is a line in any case)\n"
-    "  --colormap NAME         relief, viridis, cividis, diverging, turbo\n"
+    "  --colormap NAME         relief, calm (both made for shaded 3D), viridis, cividis, diverging, turbo\n"
     "  --look NAME             default, glossy, flat             --light X,Y,Z   towards the sun\n"
     "  --select ASSET          outline this asset\n"
     "  --split \"NAME=V;...\"    a second picture beside it, under the same camera; names as above without dashes, but\n"

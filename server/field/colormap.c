@@ -11,7 +11,7 @@
 #include "base/mem.h"
 
 static struct colormap maps[] = {
-    { .name = "relief" }, { .name = "viridis" }, { .name = "cividis" }, { .name = "diverging" }, { .name = "turbo" }
+    { .name = "relief" }, { .name = "calm" }, { .name = "viridis" }, { .name = "cividis" }, { .name = "diverging" }, { .name = "turbo" }
 };
 static struct colormap operator_map = { .name = "operator" };
 #define MAP_COUNT (sizeof(maps) / sizeof(*maps))
@@ -33,10 +33,13 @@ static void read_map(struct colormap *map)
 {
     char *file = mem_printf("maps/%s.csv", map->name);
     const char *line = embedded_find(file);
+    char word[8] = "";
     mem_free(file);
     for (size_t row = 0; line && *line; line = strchr(line, '\n') + 1) {
         if (row < 256 && read_color(line, "%d,%d,%d", map->rgb[row]))
             row++;
+        else if (sscanf(line, "# shading %lf, %7s", &map->shading, word) >= 1)
+            map->safe = !strcmp(word, "safe");
         else if (!read_color(line, "# below %d,%d,%d", map->below))
             read_color(line, "# above %d,%d,%d", map->above);
     }

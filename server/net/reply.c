@@ -182,8 +182,8 @@ static json_t *colormaps(void)
         const struct colormap *map = colormap_at(i);
         char base64[sizeof(map->rgb) / 3 * 4 + 8]; /* lws wants some room to spare */
         lws_b64_encode_string((const char *)map->rgb, sizeof(map->rgb), base64, sizeof(base64));
-        json_array_append_new(list, json_pack("{s:o,s:o,s:o,s:o}", "name", string(map->name), "rgb", string(base64), "below",
-                                              colour(map->below), "above", colour(map->above)));
+        json_array_append_new(list, json_pack("{s:o,s:o,s:o,s:o,s:b}", "name", string(map->name), "rgb", string(base64), "below",
+                                              colour(map->below), "above", colour(map->above), "safe", map->safe));
     }
     return list;
 }

@@ -63,6 +63,8 @@ static void write_words(const struct pen *pen, struct legend *legend)
         if (view->paint.log)
             add_note(legend, "logarithmic scale");
     }
+    if (!view_is_operator(view) && !colormap_at((size_t)view->colormap)->safe)
+        add_note(legend, "may be misread");
     if (view->look == LOOK_GLOSSY) {
         add_note(legend, "glossy: light changes");
         add_note(legend, "the colours");

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Scales as textures: what a pixel looks up. In the default look shading adds to CIELAB L* and touches neither hue nor chroma, so that
-   it cannot be read as a value. Thread: the one of the GL context; palette_amplitude and palette_shade any. */
+   it cannot be read as a value. Thread: the one of the GL context. */
 #ifndef RENDER_PALETTE_H
 #define RENDER_PALETTE_H
 #include <stdint.h>
@@ -9,7 +9,6 @@
 
 #include "render/view.h"
 
-#define PALETTE_SHADING 7.0 /* L*, at most, up and down */
 enum { PALETTE_ROWS = 65 }; /* steps of light; odd: the middle one leaves the colour alone */
 /* Columns of the texture, as in shaders/field.glsl: PALETTE_PLACES along the scale, what is outside at their ends, patterns behind. */
 enum { PALETTE_PLACES = 1024, PALETTE_BELOW = 0, PALETTE_ABOVE = PALETTE_PLACES + 1, PALETTE_PATTERNS };
@@ -19,12 +18,6 @@ enum { PALETTE_COLUMNS = PALETTE_PATTERNS + PATTERN_COUNT };
 extern const uint8_t palette_no_data[2][3]; /* sRGB of the two stripes that mean no data */
 extern const uint8_t palette_no_limits[2][3]; /* of field and lines that mean a tag without limits */
 extern const uint8_t palette_uncertain[3];  /* sRGB of the dots that mean uncertain */
-
-/* How far shading may go on this map, in L*: at most PALETTE_SHADING, less on maps where lightness tells much of the value, so that
-   the nearest colour of the legend misreads at most 3 % of the range in 95 of 100 shaded colours. */
-double palette_amplitude(const struct colormap *map);
-/* The colour with `offset` added to its L*, as far as sRGB goes. */
-void palette_shade(const uint8_t rgb[3], double offset, uint8_t out[3]);
 
 /* A colour map's own colours, then below and above, then the patterns, each in every step of light. */
 enum { SHADED_BELOW = 256, SHADED_ABOVE, SHADED_PATTERNS, SHADED_COLORS = SHADED_PATTERNS + PATTERN_COUNT };

@@ -11,6 +11,7 @@
 #include <cmocka.h>
 
 #include "render/overlay.h"
+#include "field/lab.h"
 #include "render/palette.h"
 #include "tests/support/rig.h"
 #include "value/quality.h"
@@ -392,7 +393,7 @@ static void test_default_look_keeps_to_the_palette(void **state)
         const uint8_t *pixel = frame_pixel(frame, SIDE_PX / 2, SIDE_PX / 2);
         bool found = false;
         for (int row = 0; row < PALETTE_ROWS; row++) {
-            palette_shade(rgb, palette_amplitude(colormap_at(0)) * (2.0 * row / (PALETTE_ROWS - 1) - 1), shaded);
+            lab_shade(rgb, colormap_at(0)->shading * (2.0 * row / (PALETTE_ROWS - 1) - 1), shaded);
             found = found || (shaded[0] == pixel[2] && shaded[1] == pixel[1] && shaded[2] == pixel[0]);
         }
         assert_true(found);

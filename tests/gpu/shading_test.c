@@ -10,12 +10,14 @@
 #include <string.h>
 
 #include <cmocka.h>
+#include <turbojpeg.h>
 
 #include "base/mem.h"
+#include "encode/encoder.h"
 #include "tests/support/rig.h"
 #include "value/quality.h"
 
-enum { WIDTH = 960, HEIGHT = 540 };
+enum { WIDTH = 1280, HEIGHT = 720 };
 static struct rig rig;
 static struct stand stand;
 
@@ -36,58 +38,116 @@ static int tear_down(void **state)
     return 0;
 }
 
+/* How a picture reaches its reader. */
+struct way {
+    const char *name;
+    bool jpeg, deuteranope;
+};
+static const struct way ways[] = {
+    { "as drawn", false, false },
+    { "JPEG q80 4:2:0", true, false },
+    { "deuteranope", false, true },
+    { "JPEG, deuteranope", true, true },
+};
+enum { WAYS = sizeof(ways) / sizeof(*ways) };
+
+/* The pixels after a JPEG of quality 80 with halved chroma, as a stream sends it. */
+static void through_jpeg(struct frame *frame)
+{
+    struct encoder *encoder = encoder_create(rig.log, "jpeg");
+    struct packet *packet;
+    assert_int_equal(encoder_send(encoder, frame, &(struct encoder_params){ .quality = 80 }), 0);
+    assert_int_equal(encoder_receive(encoder, &packet), 0);
+    tjhandle turbo = tjInitDecompress();
+    assert_int_equal(tjDecompress2(turbo, packet->bytes, packet->count, frame->bgrx, frame->width_px, frame->stride_bytes,
+                                   frame->height_px, TJPF_BGRX, 0),
+                     0);
+    tjDestroy(turbo);
+    packet_unref(&packet);
+    encoder_destroy(&encoder);
+}
+
 static int by_size(const void *a, const void *b)
 {
     double d = *(const double *)a - *(const double *)b;
     return (d > 0) - (d < 0);
 }
 
-/* 95th percentile of the misreading, in percent of the range. The truth is the map's place in the flat look, without edges. */
-static double misread(const struct view *view)
+/* 95th percentile of the misreading, in percent of the range. truth: the map's place in the flat look, without edges. */
+static double misread(const struct colormap *map, const struct frame *truth, const struct frame *shaded, bool deuteranope)
 {
-    const struct colormap *map = colormap_at((size_t)view->colormap);
-    struct view flat = *view;
-    flat.look = LOOK_FLAT;
-    flat.tier = TIER_MOVING;
-    struct frame *truth = stand_draw(&stand, &flat), *shaded = stand_draw(&stand, view);
     double *errors = mem_array(WIDTH * HEIGHT, sizeof(*errors)), p95;
     int count = 0;
     for (int y = 0; y < HEIGHT; y++)
         for (int x = 0; x < WIDTH; x++) {
             int place = map_index_exact(map, frame_pixel(truth, x, y));
             if (place >= 0)
-                errors[count++] = abs(map_index_nearest(map, frame_pixel(shaded, x, y)) - place) / 2.56;
+                errors[count++] = abs(map_index_nearest(map, frame_pixel(shaded, x, y), deuteranope) - place) / 2.56;
         }
     assert_true(count > WIDTH * HEIGHT / 20);
     qsort(errors, (size_t)count, sizeof(*errors), by_size);
     p95 = errors[count * 95 / 100];
-    printf("# %s, tier %d: %d pixels, misread by %.2f %% of the range (p95)\n", map->name, view->tier, count, p95);
     mem_free(errors);
-    frame_unref(&truth);
-    frame_unref(&shaded);
     return p95;
 }
 
+/* By each way of getting to the reader. Returns the worst. */
+static double measure(const struct view *view, double p95[WAYS])
+{
+    const struct colormap *map = colormap_at((size_t)view->colormap);
+    struct view flat = *view;
+    double worst = 0;
+    flat.look = LOOK_FLAT;
+    flat.tier = TIER_MOVING;
+    struct frame *truth = stand_draw(&stand, &flat);
+    for (int i = 0; i < WAYS; i++) {
+        struct frame *shaded = stand_draw(&stand, view);
+        if (ways[i].jpeg)
+            through_jpeg(shaded);
+        p95[i] = misread(map, truth, shaded, ways[i].deuteranope);
+        worst = fmax(worst, p95[i]);
+        frame_unref(&shaded);
+    }
+    frame_unref(&truth);
+    printf("# %-9s %s:", map->name, view->tier == TIER_STILL ? "still " : "moving");
+    for (int i = 0; i < WAYS; i++)
+        printf(" %s %.2f %%%s", ways[i].name, p95[i], i + 1 < WAYS ? "," : " (p95)\n");
+    return worst;
+}
+
+/* Near enough to read values: the assets fill a good part of the picture. */
+static void look_close(struct view *view)
+{
+    view_default(&stand.toy->scene, WIDTH, HEIGHT, view);
+    for (int c = 0; c < 3; c++)
+        view->camera.eye_m[c] = view->camera.target_m[c] + 0.5 * (view->camera.eye_m[c] - view->camera.target_m[c]);
+}
+
+/* Maps that say they can be read are read right; the others do not say so. */
 static void test_shading_is_not_read_as_value(void **state)
 {
     struct view view;
+    double p95[WAYS];
     (void)state;
-    view_default(&stand.toy->scene, WIDTH, HEIGHT, &view);
+    look_close(&view);
     for (int map = 0; map < (int)colormap_count(); map++)
         for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++) {
             view.colormap = map;
             view.tier = (enum tier)tier;
-            assert_true(misread(&view) <= 3);
+            double worst = measure(&view, p95);
+            assert_true(worst <= 3 || !colormap_at((size_t)map)->safe);
         }
 }
 
 static void test_glossy_would_be_misread(void **state)
 {
     struct view view;
+    double p95[WAYS];
     (void)state;
-    view_default(&stand.toy->scene, WIDTH, HEIGHT, &view);
+    look_close(&view);
     view.look = LOOK_GLOSSY;
-    assert_true(misread(&view) > 3); /* or the test above could not fail */
+    measure(&view, p95);
+    assert_true(p95[0] > 3); /* or the test above could not fail */
 }
 
 /* Differences between the tiers, seen as lightness: the change from moving to still must not flash. */

@@ -71,12 +71,24 @@ int map_index_exact(const struct colormap *map, const uint8_t *bgrx)
     return -1;
 }
 
+/* Linear light as a deuteranope sees it (Machado, Oliveira, Fernandes 2009, severity 1). */
+static void see_without_green(double c[3])
+{
+    double r = 0.367322 * c[0] + 0.860646 * c[1] - 0.227968 * c[2], g = 0.280085 * c[0] + 0.672501 * c[1] + 0.047413 * c[2];
+    double b = -0.011820 * c[0] + 0.042940 * c[1] + 0.968881 * c[2];
+    c[0] = fmin(fmax(r, 0), 1);
+    c[1] = fmin(fmax(g, 0), 1);
+    c[2] = fmin(fmax(b, 0), 1);
+}
+
 /* sRGB to CIELAB, D65; written apart from the palette's. */
-static void lab_of(double r, double g, double b, double lab[3])
+static void lab_of(double r, double g, double b, bool deuteranope, double lab[3])
 {
     double rgb[3] = { r / 255, g / 255, b / 255 }, f[3];
     for (int i = 0; i < 3; i++)
         rgb[i] = rgb[i] > 0.04045 ? pow((rgb[i] + 0.055) / 1.055, 2.4) : rgb[i] / 12.92;
+    if (deuteranope)
+        see_without_green(rgb);
     double xyz[3] = { (0.4124 * rgb[0] + 0.3576 * rgb[1] + 0.1805 * rgb[2]) / 0.9505, 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2],
                       (0.0193 * rgb[0] + 0.1192 * rgb[1] + 0.9505 * rgb[2]) / 1.089 };
     for (int i = 0; i < 3; i++)
@@ -86,16 +98,18 @@ static void lab_of(double r, double g, double b, double lab[3])
     lab[2] = 200 * (f[1] - f[2]);
 }
 
-int map_index_nearest(const struct colormap *map, const uint8_t *bgrx)
+int map_index_nearest(const struct colormap *map, const uint8_t *bgrx, bool deuteranope)
 {
     static const struct colormap *known;
+    static bool known_deuteranope;
     static double labs[256][3];
     double lab[3], least = INFINITY;
     int nearest = -1;
-    for (int i = 0; i < 256 && known != map; i++)
-        lab_of(map->rgb[i][0], map->rgb[i][1], map->rgb[i][2], labs[i]);
+    for (int i = 0; i < 256 && (known != map || known_deuteranope != deuteranope); i++)
+        lab_of(map->rgb[i][0], map->rgb[i][1], map->rgb[i][2], deuteranope, labs[i]);
     known = map;
-    lab_of(bgrx[2], bgrx[1], bgrx[0], lab);
+    known_deuteranope = deuteranope;
+    lab_of(bgrx[2], bgrx[1], bgrx[0], deuteranope, lab);
     for (int i = 0; i < 256; i++) {
         double square = 0;
         for (int c = 0; c < 3; c++)

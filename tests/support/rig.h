@@ -32,7 +32,8 @@ struct frame *stand_draw(struct stand *stand, const struct view *view); /* never
 const uint8_t *frame_pixel(const struct frame *frame, int x, int y); /* b, g, r, x */
 /* Place on the map (0..255) of a colour that is exactly one of its own, or -1. */
 int map_index_exact(const struct colormap *map, const uint8_t *bgrx);
-/* Place on the map of the colour nearest in CIELAB: what a reader of the legend would say. */
-int map_index_nearest(const struct colormap *map, const uint8_t *bgrx);
+/* Place on the map of the colour nearest in CIELAB: what a reader of the legend would say; or one who sees no green, to whom both look
+   as Machado, Oliveira and Fernandes (2009) have it. */
+int map_index_nearest(const struct colormap *map, const uint8_t *bgrx, bool deuteranope);
 
 #endif

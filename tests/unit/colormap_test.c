@@ -77,9 +77,9 @@ static double lab_distance(const double a[3], const double b[3])
 static void test_names(void **state)
 {
     (void)state;
-    static const char *const names[] = { "relief", "viridis", "cividis", "diverging", "turbo" };
-    assert_int_equal(colormap_count(), 5);
-    for (int i = 0; i < 5; i++) {
+    static const char *const names[] = { "relief", "calm", "viridis", "cividis", "diverging", "turbo" };
+    assert_int_equal(colormap_count(), 6);
+    for (int i = 0; i < 6; i++) {
         assert_int_equal(colormap_find(names[i]), i);
         assert_string_equal(colormap_at((size_t)i)->name, names[i]);
     }
@@ -90,9 +90,9 @@ static void test_tables_are_whole(void **state)
 {
     (void)state;
     static const uint8_t viridis_first[3] = { 68, 1, 84 }, viridis_last[3] = { 253, 231, 37 }, turbo_last[3] = { 122, 4, 3 };
-    assert_memory_equal(colormap_at(1)->rgb[0], viridis_first, 3);
-    assert_memory_equal(colormap_at(1)->rgb[255], viridis_last, 3);
-    assert_memory_equal(colormap_at(4)->rgb[255], turbo_last, 3);
+    assert_memory_equal(colormap_at(2)->rgb[0], viridis_first, 3);
+    assert_memory_equal(colormap_at(2)->rgb[255], viridis_last, 3);
+    assert_memory_equal(colormap_at(5)->rgb[255], turbo_last, 3);
     for (size_t i = 0; i < colormap_count(); i++) /* no row missing, none out of order: neighbours are near */
         for (int row = 1; row < 256; row++)
             for (int k = 0; k < 3; k++)
@@ -116,11 +116,12 @@ static void test_ends_are_not_on_the_map(void **state)
     }
 }
 
-static void test_relief_is_low_in_contrast_and_ordered(void **state)
+static void test_maps_for_relief_are_low_in_contrast_and_ordered(void **state)
 {
     (void)state;
-    const struct colormap *map = colormap_at(0);
-    for (int as_deuteranope = 0; as_deuteranope < 2; as_deuteranope++) {
+    for (int i = 0; i < 4; i++) {
+        const struct colormap *map = colormap_at((size_t)(i / 2));
+        int as_deuteranope = i % 2;
         double before[3], at[3], first[3];
         lab_of(map->rgb[0], as_deuteranope, first);
         lab_of(map->rgb[0], as_deuteranope, before);
@@ -136,13 +137,13 @@ static void test_relief_is_low_in_contrast_and_ordered(void **state)
     }
 }
 
-static void test_relief_leaves_room_for_shading(void **state)
+static void test_maps_for_relief_leave_room_for_shading(void **state)
 {
     (void)state;
-    for (int row = 0; row < 256; row++)
+    for (int row = 0; row < 512; row++)
         for (int step = -1; step <= 1; step += 2) {
             double lab[3], c[3];
-            lab_of(colormap_at(0)->rgb[row], 0, lab);
+            lab_of(colormap_at((size_t)(row / 256))->rgb[row % 256], 0, lab);
             lab[0] += 7 * step;
             linear_from_lab(lab, c);
             for (int k = 0; k < 3; k++)
@@ -189,8 +190,8 @@ int main(void)
         cmocka_unit_test(test_names),
         cmocka_unit_test(test_tables_are_whole),
         cmocka_unit_test(test_ends_are_not_on_the_map),
-        cmocka_unit_test(test_relief_is_low_in_contrast_and_ordered),
-        cmocka_unit_test(test_relief_leaves_room_for_shading),
+        cmocka_unit_test(test_maps_for_relief_are_low_in_contrast_and_ordered),
+        cmocka_unit_test(test_maps_for_relief_leave_room_for_shading),
         cmocka_unit_test(test_relief_is_read_back_through_shading),
     };
     return cmocka_run_group_tests_name("colormap", tests, NULL, NULL);

@@ -12,7 +12,7 @@
 
 static struct scale linear(double min, double max, double interval)
 {
-    return (struct scale){ .map = colormap_at(1), .min = min, .max = max, .interval = interval };
+    return (struct scale){ .map = colormap_at(0), .min = min, .max = max, .interval = interval };
 }
 
 static void expect_row(int row, double value, double min, double max, double interval)

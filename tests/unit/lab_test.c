@@ -10,7 +10,8 @@
 
 #include <cmocka.h>
 
-#include "render/palette.h"
+#include "field/colormap.h"
+#include "field/lab.h"
 
 /* CIE 15:2004 with the IEC 61966-2-1 primaries; written apart from the palette's own. */
 static void lab_of(const uint8_t rgb[3], double lab[3])
@@ -32,10 +33,10 @@ static void test_only_lightness_changes(void **state)
     (void)state;
     for (size_t m = 0; m < colormap_count(); m++)
         for (int i = 0; i < 256; i += 5)
-            for (double offset = -PALETTE_SHADING; offset <= PALETTE_SHADING; offset += 1.75) {
+            for (double offset = -COLORMAP_SHADING; offset <= COLORMAP_SHADING; offset += 1.75) {
                 uint8_t shaded[3];
                 double was[3], is[3];
-                palette_shade(colormap_at(m)->rgb[i], offset, shaded);
+                lab_shade(colormap_at(m)->rgb[i], offset, shaded);
                 lab_of(colormap_at(m)->rgb[i], was);
                 lab_of(shaded, is);
                 double change = is[0] - was[0];
@@ -44,19 +45,19 @@ static void test_only_lightness_changes(void **state)
             }
 }
 
-static void test_the_default_map_has_room_for_shading(void **state)
+static void test_maps_for_relief_have_room_for_shading(void **state)
 {
     (void)state;
-    for (int i = 0; i < 256; i++)
+    for (int i = 0; i < 512; i++)
         for (int sign = -1; sign <= 1; sign += 2) {
+            const uint8_t *rgb = colormap_at((size_t)(i / 256))->rgb[i % 256];
             uint8_t shaded[3];
             double was[3], is[3];
-            palette_shade(colormap_at(0)->rgb[i], sign * PALETTE_SHADING, shaded);
-            lab_of(colormap_at(0)->rgb[i], was);
+            lab_shade(rgb, sign * COLORMAP_SHADING, shaded);
+            lab_of(rgb, was);
             lab_of(shaded, is);
-            assert_true(fabs(is[0] - was[0] - sign * PALETTE_SHADING) < 0.8);
+            assert_true(fabs(is[0] - was[0] - sign * COLORMAP_SHADING) < 0.8);
         }
-    assert_true(palette_amplitude(colormap_at(0)) == PALETTE_SHADING);
 }
 
 static void test_no_shading_leaves_the_color(void **state)
@@ -65,30 +66,49 @@ static void test_no_shading_leaves_the_color(void **state)
     (void)state;
     for (int i = 0; i < 4; i++) {
         uint8_t out[3];
-        palette_shade(colors[i], 0, out);
+        lab_shade(colors[i], 0, out);
         assert_memory_equal(out, colors[i], 3);
-        palette_shade(colors[i], 7, out); /* at the rim of sRGB: as far as it goes */
+        lab_shade(colors[i], 7, out); /* at the rim of sRGB: as far as it goes */
         assert_true(i != 1 || memcmp(out, colors[i], 3) == 0);
     }
 }
 
-static void test_amplitudes(void **state)
+/* What the files say is what the colours bear. */
+static void test_shading_and_safety(void **state)
 {
     (void)state;
     for (size_t m = 0; m < colormap_count(); m++) {
-        double amplitude = palette_amplitude(colormap_at(m));
-        printf("# %s: L* +-%.1f\n", colormap_at(m)->name, amplitude);
-        assert_true(amplitude >= 2 && amplitude <= PALETTE_SHADING);
+        struct colormap judged = *colormap_at(m);
+        colormap_judge(&judged);
+        printf("# %s: L* +-%.1f%s\n", judged.name, judged.shading, judged.safe ? ", safe" : "");
+        assert_true(judged.shading == colormap_at(m)->shading && judged.safe == colormap_at(m)->safe);
     }
+    assert_true(colormap_at(0)->safe && colormap_at(0)->shading == COLORMAP_SHADING);
+    assert_true(colormap_operator()->shading == COLORMAP_SHADING);
+}
+
+static void test_maps_that_cannot_be_read_are_not_safe(void **state)
+{
+    struct colormap there_and_back = { .name = "" }, green_to_red = { .name = "" };
+    (void)state;
+    for (int i = 0; i < 256; i++) {
+        memset(there_and_back.rgb[i], 2 * (i < 128 ? i : 255 - i), 3);
+        memcpy(green_to_red.rgb[i], (uint8_t[]){ (uint8_t)(60 + i / 2), (uint8_t)(140 - i / 3), 60 }, 3); /* about as light all along */
+    }
+    colormap_judge(&there_and_back);
+    assert_true(!there_and_back.safe && there_and_back.shading >= 2);
+    colormap_judge(&green_to_red);
+    assert_true(!green_to_red.safe && green_to_red.shading >= 2);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_only_lightness_changes),
-        cmocka_unit_test(test_the_default_map_has_room_for_shading),
+        cmocka_unit_test(test_maps_for_relief_have_room_for_shading),
         cmocka_unit_test(test_no_shading_leaves_the_color),
-        cmocka_unit_test(test_amplitudes),
+        cmocka_unit_test(test_shading_and_safety),
+        cmocka_unit_test(test_maps_that_cannot_be_read_are_not_safe),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests(tests, NULL, NULL);
