@@ -25,7 +25,7 @@ packages := yaml-0.1 jansson libmodbus cglm libwebsockets libturbojpeg libpng ca
 pkg_cflags := $(shell pkg-config --cflags $(packages) 2>/dev/null)
 pkg_libs   := $(shell pkg-config --libs $(packages) 2>/dev/null) -lflann -lcholmod -lopenblas -lmeshoptimizer -ltinygltf -ldraco -lm -ldl
 
-warn   := -Wall -Wextra -Wshadow -Wpointer-arith -Wvla -Wundef
+warn   := -Wall -Wextra -Wshadow -Wpointer-arith -Wvla -Wundef -Wno-psabi
 include := -I. -Iserver -I$(gen) -isystem $(gen)/glad/include -isystem /usr/include/suitesparse $(pkg_cflags)
 common := $(flags_$(config)) $(include) -MMD -MP -pthread -fno-math-errno
 cflags   = -std=c11 -D_GNU_SOURCE $(warn) -Wstrict-prototypes -Wmissing-prototypes $(common) $(CFLAGS)

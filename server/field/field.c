@@ -56,6 +56,11 @@ static void state_remove(struct field *field, struct state **link)
     state_destroy(&state);
 }
 
+struct workers *field_workers(const struct field *field)
+{
+    return field->workers;
+}
+
 void field_destroy(struct field **field_ptr)
 {
     struct field *field = *field_ptr;

@@ -69,6 +69,7 @@ void field_own_range(const struct scene *scene, const struct field_params *param
 struct field;
 struct field *field_create(struct workers *workers, const struct scene *scene); /* both must outlive it */
 void field_destroy(struct field **field); /* &NULL is fine; leaves NULL */
+struct workers *field_workers(const struct field *field);
 /* Where differences look their baselines up; it must outlive the field. Without it, and for a baseline that was forgotten, a
    difference has no data anywhere. */
 void field_set_baselines(struct field *field, struct baselines *baselines);

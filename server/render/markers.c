@@ -6,6 +6,7 @@
 
 #include "base/mem.h"
 #include "gpu/program.h"
+#include "render/matrix.h"
 
 bool markers_init(struct markers *markers, struct log *log)
 {
@@ -87,23 +88,75 @@ bool markers_start(struct markers *markers, const struct picture *picture)
     return gl_pass_leave(picture->stage->gl, "markers");
 }
 
-void markers_get(const struct markers *markers, const struct picture *picture, struct frame *frame)
+static void give(const struct picture *picture, float (*places)[4], size_t count, struct frame *frame)
 {
     const struct scene *scene = picture->stage->scene;
-    size_t count = count_shown(picture);
-    if (count == 0)
-        return;
-    float(*places)[4] = mem_array(count, sizeof(*places)), (*place)[4] = places;
-    glGetNamedBufferSubData(markers->buffer, 0, (GLsizeiptr)(count * sizeof(*places)), places);
     frame->markers = mem_array(count, sizeof(*frame->markers));
     for (size_t a = 0; a < scene->asset_count; a++)
         for (size_t s = 0; s < scene->assets[a].sensor_count; s++) {
             const struct scene_sensor *sensor = &scene->assets[a].sensors[s];
-            if (!is_shown(picture, sensor))
-                continue;
-            frame->markers[frame->marker_count++] =
-                (struct frame_marker){ .tag = sensor->tag, .x_px = (*place)[0], .y_px = (*place)[1], .occluded = (*place)[2] > 0.5f };
-            place++;
+            const float *place = places[frame->marker_count];
+            if (is_shown(picture, sensor))
+                frame->markers[frame->marker_count++] =
+                    (struct frame_marker){ .tag = sensor->tag, .x_px = place[0], .y_px = place[1], .occluded = place[2] > 0.5f };
         }
+}
+
+void markers_get(const struct markers *markers, const struct picture *picture, struct frame *frame)
+{
+    size_t count = count_shown(picture);
+    if (count == 0)
+        return;
+    float(*places)[4] = mem_array(count, sizeof(*places));
+    glGetNamedBufferSubData(markers->buffer, 0, (GLsizeiptr)(count * sizeof(*places)), places);
+    give(picture, places, count, frame);
+    mem_free(places);
+}
+
+/* --- without GL ------------------------------------------------------------------------------------------------------------- */
+
+/* The farthest depth around a pixel. */
+static float farthest_near(const float *depth, size_t pitch_px, int width_px, int height_px, int x, int y)
+{
+    float farthest = 1;
+    for (int v = y - 1; v <= y + 1; v++)
+        for (int u = x - 1; u <= x + 1; u++) {
+            int column = u < 0 ? 0 : u < width_px ? u : width_px - 1, row = v < 0 ? 0 : v < height_px ? v : height_px - 1;
+            farthest = fminf(farthest, depth[(size_t)row * pitch_px + (size_t)column]);
+        }
+    return farthest;
+}
+
+/* As shaders/markers.comp. place: eye space, and slack; becomes x, y in pixels, hidden. */
+static void find_one(const struct picture *picture, const float *depth, size_t pitch_px, const struct frame *frame, float place[4])
+{
+    double eye[3], near[3], clip[4], near_clip[4];
+    double length = fmax(sqrt((double)(place[0] * place[0] + place[1] * place[1] + place[2] * place[2])), 1e-6);
+    for (int c = 0; c < 3; c++) {
+        eye[c] = place[c];
+        near[c] = place[c] * (1 - fmin(place[3] / length, 0.5));
+    }
+    matrix_point(picture->shot.clip_from_eye, eye, clip);
+    matrix_point(picture->shot.clip_from_eye, near, near_clip);
+    bool hidden = clip[3] <= 0;
+    double x = hidden ? -1e4 : (0.5 + 0.5 * clip[0] / clip[3]) * frame->width_px;
+    double y = hidden ? -1e4 : (0.5 - 0.5 * clip[1] / clip[3]) * frame->height_px;
+    hidden = hidden || x < 0 || y < 0 || x >= frame->width_px || y >= frame->height_px ||
+             near_clip[2] / near_clip[3] < farthest_near(depth, pitch_px, frame->width_px, frame->height_px, (int)x, (int)y);
+    place[0] = (float)x;
+    place[1] = (float)y;
+    place[2] = hidden;
+}
+
+void markers_find(const struct picture *picture, const float *depth, size_t pitch_px, struct frame *frame)
+{
+    size_t count = count_shown(picture);
+    if (count == 0)
+        return;
+    float(*places)[4] = mem_array(count, sizeof(*places));
+    fill_places(picture, places);
+    for (size_t i = 0; i < count; i++)
+        find_one(picture, depth, pitch_px, frame, places[i]);
+    give(picture, places, count, frame);
     mem_free(places);
 }

@@ -15,5 +15,7 @@ void markers_finish(struct markers *markers);
 /* Started once the picture is resolved; read into the frame when the GPU is done with it. False: out of GPU memory, logged. */
 bool markers_start(struct markers *markers, const struct picture *picture);
 void markers_get(const struct markers *markers, const struct picture *picture, struct frame *frame);
+/* The same by the processor, from a picture's depth: rows from the top, pitch_px apart. */
+void markers_find(const struct picture *picture, const float *depth, size_t pitch_px, struct frame *frame);
 
 #endif

@@ -45,6 +45,8 @@ static void make_level(struct model_level *level, const struct asset_view *view,
     uint32_t materials = view->header->material_count;
     level->error_m = from->error_m;
     level->vertex_count = from->vertex_count;
+    level->first_primitive = from->first_primitive;
+    level->primitive_count = from->primitive_count;
     level->batches = mem_array(materials, sizeof(*level->batches));
     for (int blend = 0; blend < 2; blend++)
         for (uint32_t m = 0; m < materials; m++) {
@@ -62,6 +64,14 @@ static void make_level(struct model_level *level, const struct asset_view *view,
         }
 }
 
+/* Those of a level follow one another, from its first primitive's first index on. */
+static void find_clusters(struct model_level *level, const struct asset_view *view)
+{
+    uint32_t first_index = level->primitive_count ? view->primitives[level->first_primitive].first_index : 0;
+    while (level->first_cluster < view->header->cluster_count && view->clusters[level->first_cluster].first_index < first_index)
+        level->first_cluster++;
+}
+
 bool model_init(struct model *model, struct gl *gl, const struct asset *file, GLuint ramp_program)
 {
     const struct asset_header *header = file->view.header;
@@ -73,8 +83,10 @@ bool model_init(struct model *model, struct gl *gl, const struct asset *file, GL
     }
     model->levels = mem_array(header->level_count, sizeof(*model->levels));
     model->level_count = header->level_count;
-    for (uint32_t i = 0; i < header->level_count; i++)
+    for (uint32_t i = 0; i < header->level_count; i++) {
         make_level(&model->levels[i], &file->view, &file->view.levels[i]);
+        find_clusters(&model->levels[i], &file->view);
+    }
     return true;
 }
 

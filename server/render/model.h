@@ -24,6 +24,7 @@ struct model_level {
     size_t batch_count;
     float error_m;
     uint32_t vertex_count;
+    uint32_t first_primitive, primitive_count, first_cluster; /* in the file */
 };
 
 struct model_material {

@@ -61,6 +61,7 @@ struct palette palettes_get(struct palettes *palettes, const struct view *view)
         return entry->palette;
     }
     wanted.palette.colors = palette_create(&wanted.scale, shaded_of(palettes, view, wanted.scale.map));
+    wanted.palette.version = palettes->uses;
     if (wanted.line_count > 0)
         wanted.palette.lines = palette_create_lines(&wanted.scale, wanted.lines, wanted.line_count);
     struct palettes_entry *entry = make_room(palettes);

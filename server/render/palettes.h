@@ -7,6 +7,7 @@
 struct palette {
     GLuint colors; /* palette_create */
     GLuint lines;  /* palette_create_lines; 0: the picture has no lines */
+    uint64_t version; /* another one for each that was made, from 1 */
 };
 
 struct palettes_entry {

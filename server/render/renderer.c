@@ -10,6 +10,7 @@
 #include "base/mem.h"
 #include "gpu/readback.h"
 #include "render/content.h"
+#include "render/draft.h"
 #include "render/frame_block.h"
 #include "render/ghosts.h"
 #include "render/isolines.h"
@@ -44,7 +45,9 @@ struct renderer {
     GLuint frame_buffer;                      /* struct frame_block */
     struct palettes palettes;
     struct targets targets;
-    int64_t hurry_ns; /* 0: none */
+    int64_t hurry_ns;    /* 0: none */
+    struct draft *draft; /* NULL: a GPU draws moving pictures too */
+    bool always_gl;
     const struct fields_entry **asset_fields; /* per asset, of the picture being drawn */
     int *visible;
     double *distance_m; /* per asset */
@@ -71,8 +74,12 @@ struct renderer *renderer_create(struct log *log, struct gl *gl, const struct sc
     if (!renderer->frame_buffer || !stage_init(&renderer->stage, gl, scene) || !light_init(&renderer->light, &renderer->stage) ||
         !solid_init(&renderer->solid, log) || !sky_init(&renderer->sky, log) || !lines_init(&renderer->lines, log) ||
         !ghosts_init(&renderer->ghosts, log) || !markers_init(&renderer->markers, log) ||
-        !isolines_init(&renderer->isolines, log, scene->asset_count) || !bake_default_light(renderer))
+        !isolines_init(&renderer->isolines, log, scene->asset_count) || !bake_default_light(renderer)) {
         renderer_destroy(&renderer);
+        return NULL;
+    }
+    if (gl->software)
+        renderer->draft = draft_create(field_workers(field), &renderer->stage, &renderer->sky);
     return renderer;
 }
 
@@ -81,6 +88,7 @@ void renderer_destroy(struct renderer **renderer_ptr)
     struct renderer *renderer = *renderer_ptr;
     if (!renderer)
         return;
+    draft_destroy(&renderer->draft);
     targets_finish(&renderer->targets);
     palettes_finish(&renderer->palettes);
     glDeleteBuffers(1, &renderer->frame_buffer);
@@ -214,23 +222,32 @@ static void describe(const struct renderer *renderer, struct frame *frame, const
 
 /* --- bit by bit ------------------------------------------------------------------------------------------------------------ */
 
-static struct stroke *begin(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot, int tile_px)
+/* An empty frame, and what there is to draw. NULL: out of memory, logged. */
+static struct frame *start(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot, struct picture *picture)
 {
-    struct picture picture;
-    struct target target;
     struct frame *frame = frame_create(view->width_px, view->height_px);
     if (!frame) {
         log_err(renderer->gl->log, "frame of %dx%d: out of memory", view->width_px, view->height_px);
         return NULL;
     }
     int64_t start_ns = clock_mono_ns();
-    picture_init(renderer, &picture, view, snapshot);
+    picture_init(renderer, picture, view, snapshot);
     frame->field_ns = clock_mono_ns() - start_ns;
+    describe(renderer, frame, picture, snapshot);
+    return frame;
+}
+
+static struct stroke *begin(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot, int tile_px)
+{
+    struct picture picture;
+    struct target target;
+    struct frame *frame = start(renderer, view, snapshot, &picture);
+    if (!frame)
+        return NULL;
     if (!take_target(renderer, view, &target)) {
         frame_unref(&frame);
         return NULL;
     }
-    describe(renderer, frame, &picture, snapshot);
     struct stroke *stroke = mem_new(sizeof(*stroke));
     stroke_init(stroke, &picture, &target, frame, tile_px);
     isolines_collect(&renderer->isolines, &picture, &stroke->isolines);
@@ -366,10 +383,34 @@ void renderer_abandon(struct renderer *renderer, struct stroke **stroke_ptr)
     *stroke_ptr = NULL;
 }
 
-struct frame *renderer_draw(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
+/* --- at once ---------------------------------------------------------------------------------------------------------------- */
+
+static struct frame *draw_draft(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
+{
+    struct picture picture;
+    struct frame *frame = start(renderer, view, snapshot, &picture);
+    if (!frame)
+        return NULL;
+    int64_t start_ns = clock_mono_ns();
+    picture.light = light_get(&renderer->light, picture.towards);
+    picture.palette = palettes_get(&renderer->palettes, view);
+    if (!picture.light || !draft_draw(renderer->draft, &picture, &renderer->light, frame))
+        frame_unref(&frame);
+    else
+        frame->render_ns = clock_mono_ns() - start_ns;
+    return frame;
+}
+
+static struct frame *draw_by_gl(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
 {
     struct stroke *stroke = begin(renderer, view, snapshot, VIEW_MAX_SIDE_PX);
-    struct frame *frame = stroke ? renderer_end(renderer, &stroke) : NULL;
+    return stroke ? renderer_end(renderer, &stroke) : NULL;
+}
+
+struct frame *renderer_draw(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
+{
+    bool draft = renderer->draft && !renderer->always_gl && !renderer->per_fragment && draft_can(renderer->draft, view);
+    struct frame *frame = draft ? draw_draft(renderer, view, snapshot) : draw_by_gl(renderer, view, snapshot);
     if (frame && renderer->hurry_ns)
         light_step(&renderer->light, view->light_dir, renderer->hurry_ns);
     return frame;
@@ -406,4 +447,9 @@ bool renderer_measure(struct renderer *renderer, const struct view *view, const 
     }
     measure_finish(&measure);
     return good;
+}
+
+void renderer_use_gl(struct renderer *renderer, bool always)
+{
+    renderer->always_gl = always;
 }

@@ -5,7 +5,7 @@
 #include "gpu/program.h"
 #include "render/matrix.h"
 
-enum { BACKDROPS = 2048, ROUNDINGS = 16 };
+enum { BACKDROPS = SKY_BACKDROPS, ROUNDINGS = SKY_ROUNDINGS };
 
 static bool make_backdrops(struct sky *sky, struct log *log)
 {

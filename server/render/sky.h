@@ -4,6 +4,7 @@
 #define RENDER_SKY_H
 #include "render/picture.h"
 
+enum { SKY_BACKDROPS = 2048, SKY_ROUNDINGS = 16 }; /* columns by height over the horizon, rows by place in a 4x4 tile */
 struct sky {
     GLuint sky_program, ground_programs[2]; /* by tier */
     GLuint backdrops;                       /* by height over the horizon */

@@ -93,6 +93,11 @@ static GLuint choose_program(struct solid *solid, const struct picture *picture,
     return *program;
 }
 
+double solid_sun_slack(const struct picture *picture)
+{
+    return SUN_SLACK_TEXELS * picture->light->texel_m / (2 * picture->stage->radius_m);
+}
+
 static void set_placement(const struct picture *picture, const struct scene_asset *asset)
 {
     const struct shot *shot = &picture->shot;
@@ -105,7 +110,7 @@ static void set_placement(const struct picture *picture, const struct scene_asse
         return;
     if (picture->view->tier == TIER_MOVING) {
         matrix_multiply(picture->light->texture_from_plant, asset->placement, sun_from_file);
-        sun_from_file[14] += SUN_SLACK_TEXELS * picture->light->texel_m / (2 * picture->stage->radius_m);
+        sun_from_file[14] += solid_sun_slack(picture);
         matrix_to_float(sun_from_file, matrix);
         glUniformMatrix4fv(SUN_FROM_FILE, 1, GL_FALSE, matrix);
         return;
@@ -137,7 +142,7 @@ static void set_material(const struct picture *picture, const struct model_mater
             glBindTextureUnit(UNIT_MAPS + i, material->maps[i]);
 }
 
-static const struct model_level *get_level(const struct picture *picture, int asset)
+const struct model_level *solid_level(const struct picture *picture, int asset)
 {
     if (picture->reference || picture->finest)
         return &picture->stage->of_asset[asset]->levels[0];
@@ -148,7 +153,7 @@ static const struct model_level *get_level(const struct picture *picture, int as
 static void draw_asset(struct solid *solid, const struct picture *picture, int index, bool blend)
 {
     const struct model *model = picture->stage->of_asset[index];
-    const struct model_level *level = get_level(picture, index);
+    const struct model_level *level = solid_level(picture, index);
     const struct fields_entry *field = picture->fields[index];
     const struct clip *clip = &picture->view->visibility.clip;
     const struct scene_asset *asset = &picture->stage->scene->assets[index];
@@ -213,7 +218,7 @@ int solid_triangles(const struct picture *picture)
 {
     int count = 0;
     for (size_t i = 0; i < picture->visible_count; i++) {
-        const struct model_level *level = get_level(picture, picture->visible[i]);
+        const struct model_level *level = solid_level(picture, picture->visible[i]);
         for (size_t b = 0; b < level->batch_count; b++)
             count += level->batches[b].triangles;
     }

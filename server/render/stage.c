@@ -166,9 +166,13 @@ void stage_draw_depth(const struct stage *stage, const double clip_from_plant[16
         stage_clip_end(clip);
 }
 
-void stage_set_front_face(const struct scene_asset *asset)
+bool stage_mirrored(const struct scene_asset *asset)
 {
     const double *m = asset->placement;
-    double determinant = m[0] * (m[5] * m[10] - m[6] * m[9]) - m[4] * (m[1] * m[10] - m[2] * m[9]) + m[8] * (m[1] * m[6] - m[2] * m[5]);
-    glFrontFace(determinant < 0 ? GL_CW : GL_CCW);
+    return m[0] * (m[5] * m[10] - m[6] * m[9]) - m[4] * (m[1] * m[10] - m[2] * m[9]) + m[8] * (m[1] * m[6] - m[2] * m[5]) < 0;
+}
+
+void stage_set_front_face(const struct scene_asset *asset)
+{
+    glFrontFace(stage_mirrored(asset) ? GL_CW : GL_CCW);
 }

@@ -47,6 +47,7 @@ void stage_draw_depth(const struct stage *stage, const double clip_from_plant[16
 /* Between the two: programs that cut are drawn with. */
 void stage_clip_begin(const struct clip *clip);
 void stage_clip_end(const struct clip *clip);
+bool stage_mirrored(const struct scene_asset *asset); /* its placement turns the winding of triangles round */
 /* For drawing one-sided surfaces of this asset: a mirrored placement turns them round. */
 void stage_set_front_face(const struct scene_asset *asset);
 

@@ -18,7 +18,8 @@
 #define DEMO_MODEL "build/demo/plant.glb"
 #define PLANT_MODEL "../shared/data/models/plm_plant_5parts.glb"
 #define FOLDER "build/bench"
-enum { WIDTH_PX = 1920, HEIGHT_PX = 1080, CAMERAS = 48, MOST_FRAMES = 96, LEAST_FRAMES = 4, HULL_POINTS = 96, PROBE_WIDTH_PX = 192, PROBE_HEIGHT_PX = 108 };
+enum { WIDTH_PX = 1920, HEIGHT_PX = 1080, PROBE_WIDTH_PX = 192, PROBE_HEIGHT_PX = 108 };
+enum { CAMERAS = 48, MOST_FRAMES = 96, LEAST_FRAMES = 4, HULL_POINTS = 96 };
 static const int64_t CHANGE_NS = 100 * NS_PER_MS, LONGEST_NS = 4 * NS_PER_S; /* of a row */
 static const double SWING_RAD = 6 * M_PI / 180, FOV_DEG = 15, WANTED_COVERAGE = 0.6;
 
@@ -127,7 +128,7 @@ static void fit(const struct bench *bench, double azimuth, double elevation, str
         camera->eye_m[c] = camera->target_m[c] - 1.002 * distance_m * axes[2][c];
 }
 
-/* Of the picture drawn last: the renderer leaves it bound for reading. */
+/* Of the picture that GL drew last: the renderer leaves it bound for reading. */
 static double read_coverage(int width_px, int height_px)
 {
     size_t pixels = (size_t)width_px * (size_t)height_px, covered = 0;
@@ -150,10 +151,12 @@ static double coverage_from(struct bench *bench, const struct camera *camera)
     struct view view;
     make_view(bench, PROBE_WIDTH_PX, PROBE_HEIGHT_PX, &view);
     view.camera = *camera;
+    renderer_use_gl(bench->renderer, true);
     struct frame *frame = renderer_draw(bench->renderer, &view, bench->crowd.snapshot);
     if (!frame)
         abort();
     frame_unref(&frame);
+    renderer_use_gl(bench->renderer, false);
     return read_coverage(PROBE_WIDTH_PX, PROBE_HEIGHT_PX);
 }
 
@@ -301,7 +304,7 @@ int main(int argc, char **argv)
     struct bench bench = { .log = log_create(LOG_ERROR), .workers = workers_create(0) };
     int only = argc > 1 ? atoi(argv[1]) : 0; /* instances */
     mkdir(FOLDER, 0777);
-    bench.gl = gl_create(bench.log, GL_AUTO, -1);
+    bench.gl = gl_create(bench.log, GL_AUTO, NULL);
     for (size_t m = 0; m < sizeof(models) / sizeof(models[0]) && bench.gl; m++) {
         for (size_t i = 0; i < sizeof(instances) / sizeof(instances[0]); i++)
             if (!only || only == instances[i])

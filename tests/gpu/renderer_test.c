@@ -174,7 +174,9 @@ static void test_bit_by_bit_is_the_same_picture(void **state)
         view.ramp_interval = bit_cases[i].ramp_interval;
         view.selected_asset = bit_cases[i].selected_asset;
         toy_set(stand.snapshot, 2, 34, QUALITY_GOOD);
+        renderer_use_gl(stand.renderer, true); /* as bit by bit */
         struct frame *whole = stand_draw(&stand, &view);
+        renderer_use_gl(stand.renderer, false);
         struct stroke *stroke = renderer_begin(stand.renderer, &view, stand.snapshot);
         int steps = 1;
         assert_non_null(stroke);
@@ -326,9 +328,11 @@ static void test_selection_is_outlined(void **state)
     for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++) {
         view.tier = (enum tier)tier;
         view.selected_asset = -1;
+        renderer_use_gl(stand.renderer, true); /* both of them: outlines are GL's */
         struct frame *plain = stand_draw(&stand, &view);
         view.selected_asset = 1;
         struct frame *outlined = stand_draw(&stand, &view);
+        renderer_use_gl(stand.renderer, false);
         int changed = 0;
         for (int y = 0; y < 180; y++)
             for (int x = 0; x < 320; x++)

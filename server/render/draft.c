@@ -1,0 +1,108 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The steps of a draft, and what it keeps between pictures. */
+#include "render/draft.h"
+
+#include "base/mem.h"
+#include "render/draft_impl.h"
+#include "render/draft_simd.h"
+#include "render/markers.h"
+
+struct draft *draft_create(struct workers *workers, const struct stage *stage, const struct sky *sky)
+{
+    struct draft *draft = mem_new(sizeof(*draft));
+    draft->workers = workers;
+    draft->stage = stage;
+    if (!draft_read_textures(draft, sky))
+        draft_destroy(&draft);
+    return draft;
+}
+
+void draft_destroy(struct draft **draft_ptr)
+{
+    struct draft *draft = *draft_ptr;
+    if (!draft)
+        return;
+    for (int i = 0; i < DRAFT_LIGHTS; i++)
+        draft_free_light(draft, &draft->lights[i]);
+    for (size_t i = 0; i < draft->chunk_capacity; i++) {
+        mem_free(draft->chunks[i].triangles);
+        mem_free(draft->chunks[i].extra);
+        mem_free(draft->chunks[i].bands);
+        mem_free(draft->chunks[i].sorted);
+        mem_free(draft->chunks[i].starts);
+    }
+    mem_free(draft->chunks);
+    mem_free(draft->meshes);
+    mem_free(draft->draws);
+    mem_free(draft->vertices);
+    mem_free(draft->depth);
+    mem_free(draft->marks);
+    mem_free(draft->ramps);
+    mem_free(draft->ramp_of_model);
+    mem_free(draft->backdrops);
+    mem_free(draft->palette);
+    mem_free(draft);
+    *draft_ptr = NULL;
+}
+
+/* Isolines and logarithms need the value itself at every pixel; what is see-through, what cuts and outlines are other passes' work. */
+bool draft_can(const struct draft *draft, const struct view *view)
+{
+    double lines[VIEW_ALL_LINES];
+    return view->tier == TIER_MOVING && view->look != LOOK_GLOSSY && !view->paint.log && view_lines(view, lines) == 0 &&
+           view->selected_asset < 0 && view->visibility.ghosts.count == 0 && view->visibility.clip.plane_count == 0 &&
+           view->camera.height_m <= 0 && draft->ramp_count <= MOST_RAMPS;
+}
+
+/* Rows end in whole lanes. */
+static bool make_room(struct draft *draft, const struct frame *frame)
+{
+    draft->width_px = frame->width_px;
+    draft->height_px = frame->height_px;
+    draft->pitch_px = (frame->width_px + LANES - 1) / LANES * LANES;
+    draft->band_count = (frame->height_px + BAND_ROWS - 1) / BAND_ROWS;
+    size_t pixels = (size_t)draft->pitch_px * (size_t)frame->height_px;
+    if (pixels <= draft->pixel_capacity)
+        return true;
+    mem_free(draft->depth);
+    mem_free(draft->marks);
+    draft->depth = mem_try_array(pixels, sizeof(*draft->depth));
+    draft->marks = mem_try_array(pixels, sizeof(*draft->marks));
+    draft->pixel_capacity = draft->depth && draft->marks ? pixels : 0;
+    return draft->pixel_capacity > 0;
+}
+
+static void draw_bands(void *arg, size_t begin, size_t end)
+{
+    const struct draft *draft = arg;
+    for (size_t band = begin; band < end; band++) {
+        draft_raster_band(draft, (int)band);
+        draft_color_band(draft, (int)band);
+    }
+}
+
+bool draft_draw(struct draft *draft, const struct picture *picture, const struct light *light, struct frame *frame)
+{
+    draft->picture = picture;
+    draft->light = draft_get_light(draft, picture->light);
+    if (!draft->light)
+        return false;
+    draft_read_palette(draft, &picture->palette);
+    if (!make_room(draft, frame)) {
+        log_err(draft->stage->gl->log, "moving picture of %dx%d: out of memory", frame->width_px, frame->height_px);
+        return false;
+    }
+    frame_block_fill(&draft->block, picture);
+    draft->out = frame->bgrx;
+    draft->out_stride_bytes = (size_t)frame->stride_bytes;
+    draft_aim(draft, light);
+    if (!draft_collect(draft)) {
+        log_err(draft->stage->gl->log, "moving picture of %zu vertices: out of memory", draft->vertex_count);
+        return false;
+    }
+    draft_place(draft);
+    draft_sort(draft);
+    workers_for(draft->workers, (size_t)draft->band_count, 1, draw_bands, draft);
+    markers_find(picture, draft->depth, (size_t)draft->pitch_px, frame);
+    return true;
+}

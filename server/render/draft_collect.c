@@ -1,0 +1,162 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Which clusters of triangles a picture may show. */
+#include <math.h>
+
+#include "base/mem.h"
+#include "render/draft_impl.h"
+#include "render/matrix.h"
+#include "render/solid.h"
+
+struct culling { /* one asset, in the frame of its file */
+    float planes[6][4];
+    float eye_m[3];
+    bool cones; /* winding tells what is turned away */
+};
+
+static void start_culling(struct culling *culling, const struct shot *shot, const struct scene_asset *asset, bool mirrored)
+{
+    double file_from_plant[16], eye[4];
+    for (int p = 0; p < 6; p++)
+        for (int c = 0; c < 4; c++) {
+            double sum = c == 3 ? shot->planes[p][3] : 0;
+            for (int r = 0; r < 3; r++)
+                sum += shot->planes[p][r] * asset->placement[4 * c + r];
+            culling->planes[p][c] = (float)sum;
+        }
+    matrix_invert(asset->placement, file_from_plant);
+    matrix_point(file_from_plant, shot->eye_m, eye);
+    for (int c = 0; c < 3; c++)
+        culling->eye_m[c] = (float)eye[c];
+    culling->cones = !mirrored;
+}
+
+static bool in_frustum(const struct culling *culling, const struct asset_cluster *cluster)
+{
+    for (int p = 0; p < 6; p++) {
+        const float *plane = culling->planes[p];
+        float far = plane[3]; /* of the corner that lies farthest inward */
+        for (int c = 0; c < 3; c++)
+            far += plane[c] * (plane[c] > 0 ? cluster->high_m[c] : cluster->low_m[c]);
+        if (far < 0)
+            return false;
+    }
+    return true;
+}
+
+static void fill_mesh(struct draft *draft, struct draft_mesh *mesh, int index, const struct model_level *level)
+{
+    const struct picture *picture = draft->picture;
+    const struct scene_asset *asset = &picture->stage->scene->assets[index];
+    double clip[16], half[2] = { 0.5 * draft->width_px, 0.5 * draft->height_px };
+    *mesh = (struct draft_mesh){
+        .file = &asset->file->view,
+        .scalars = picture->fields[index] ? picture->fields[index]->shown : NULL,
+        .baked = (const uint8_t(*)[4])draft->light->baked[index],
+        .first_vertex = (uint32_t)draft->vertex_count,
+        .vertex_count = level->vertex_count,
+        .mirrored = stage_mirrored(asset),
+    };
+    matrix_multiply(picture->shot.clip_from_plant, asset->placement, clip);
+    for (int c = 0; c < 4; c++) {
+        mesh->place[c][0] = (float)(half[0] * (clip[4 * c + 3] + clip[4 * c]));
+        mesh->place[c][1] = (float)(half[1] * (clip[4 * c + 3] - clip[4 * c + 1]));
+        mesh->place[c][2] = (float)clip[4 * c + 2];
+        mesh->place[c][3] = (float)clip[4 * c + 3];
+    }
+    draft->vertex_count += level->vertex_count;
+}
+
+static void add_draw(struct draft *draft, const struct draft_draw *draw)
+{
+    struct draft_draw *last = draft->draw_count ? &draft->draws[draft->draw_count - 1] : NULL;
+    if (last && last->mesh == draw->mesh && last->mark == draw->mark && last->double_sided == draw->double_sided &&
+        last->first_index + last->index_count == draw->first_index && last->index_count + draw->index_count <= 3 * CHUNK_TRIANGLES) {
+        last->index_count += draw->index_count;
+        return;
+    }
+    mem_grow(&draft->draws, &draft->draw_capacity, draft->draw_count + 1, sizeof(*draft->draws));
+    draft->draws[draft->draw_count++] = *draw;
+}
+
+/* A cluster of any size, in draws that fit into chunks. */
+static void add_cluster(struct draft *draft, const struct draft_draw *whole)
+{
+    for (uint32_t done = 0; done < whole->index_count; done += 3 * CHUNK_TRIANGLES) {
+        struct draft_draw part = *whole;
+        uint32_t left = whole->index_count - done;
+        part.first_index += done;
+        part.index_count = left < 3 * CHUNK_TRIANGLES ? left : 3 * CHUNK_TRIANGLES;
+        add_draw(draft, &part);
+    }
+}
+
+static void collect_asset(struct draft *draft, int index)
+{
+    const struct picture *picture = draft->picture;
+    const struct scene_asset *asset = &picture->stage->scene->assets[index];
+    const struct model *model = picture->stage->of_asset[index];
+    const struct model_level *level = solid_level(picture, index);
+    const struct asset_view *file = &asset->file->view;
+    uint32_t ramp = draft->ramp_of_model[model - picture->stage->models];
+    size_t draws = draft->draw_count, vertices = draft->vertex_count;
+    struct culling culling;
+    mem_grow(&draft->meshes, &draft->mesh_capacity, draft->mesh_count + 1, sizeof(*draft->meshes));
+    struct draft_mesh *mesh = &draft->meshes[draft->mesh_count];
+    fill_mesh(draft, mesh, index, level);
+    start_culling(&culling, &picture->shot, asset, mesh->mirrored);
+    const struct asset_cluster *cluster = &file->clusters[level->first_cluster];
+    for (uint32_t p = 0; p < level->primitive_count; p++) {
+        const struct asset_primitive *primitive = &file->primitives[level->first_primitive + p];
+        const struct asset_material *material = &file->materials[primitive->material];
+        uint32_t end = primitive->first_index + primitive->index_count;
+        struct draft_draw draw = { .mesh = (uint32_t)draft->mesh_count, .double_sided = material->double_sided != 0 };
+        draw.mark = mesh->scalars ? MARK_FIELD : MARK_CONTEXT | (ramp + primitive->material) << 16;
+        for (; cluster < file->clusters + file->header->cluster_count && cluster->first_index < end &&
+               cluster->first_index >= primitive->first_index;
+             cluster++) {
+            if (!in_frustum(&culling, cluster) ||
+                (culling.cones && !draw.double_sided && asset_cluster_turned_away(cluster, culling.eye_m)))
+                continue;
+            draw.first_index = cluster->first_index;
+            draw.index_count = cluster->index_count;
+            add_cluster(draft, &draw);
+        }
+    }
+    if (draft->draw_count > draws)
+        draft->mesh_count++;
+    else
+        draft->vertex_count = vertices;
+}
+
+static void cut_into_chunks(struct draft *draft)
+{
+    size_t triangles = 0;
+    draft->chunk_count = 0;
+    for (size_t d = 0; d < draft->draw_count; d++) {
+        size_t count = draft->draws[d].index_count / 3;
+        if (draft->chunk_count == 0 || triangles + count > CHUNK_TRIANGLES) {
+            mem_grow(&draft->chunks, &draft->chunk_capacity, draft->chunk_count + 1, sizeof(*draft->chunks));
+            struct draft_chunk *chunk = &draft->chunks[draft->chunk_count++];
+            chunk->first_draw = d;
+            chunk->draw_count = 0;
+            triangles = 0;
+        }
+        draft->chunks[draft->chunk_count - 1].draw_count++;
+        triangles += count;
+    }
+}
+
+bool draft_collect(struct draft *draft)
+{
+    const struct picture *picture = draft->picture;
+    draft->mesh_count = draft->draw_count = draft->vertex_count = 0;
+    for (size_t i = 0; i < picture->visible_count; i++)
+        collect_asset(draft, picture->visible[i]);
+    cut_into_chunks(draft);
+    if (draft->vertex_count <= draft->vertex_capacity)
+        return true;
+    mem_free(draft->vertices);
+    draft->vertices = mem_try_array(draft->vertex_count + draft->vertex_count / 4, sizeof(*draft->vertices));
+    draft->vertex_capacity = draft->vertices ? draft->vertex_count + draft->vertex_count / 4 : 0;
+    return draft->vertices != NULL;
+}

@@ -1,0 +1,236 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One band of the picture: from marks to colours. Only what is seen comes here: the sun's shadow and the backdrop are looked up per
+   pixel. */
+#include <math.h>
+#include <string.h>
+
+#include "render/draft_impl.h"
+#include "render/draft_simd.h"
+#include "render/matrix.h"
+#include "render/sky.h"
+#include "render/solid.h"
+
+/* --- matrices --------------------------------------------------------------------------------------------------------------- */
+
+static void copy_columns(const double from[16], float to[4][4])
+{
+    for (int c = 0; c < 4; c++)
+        for (int r = 0; r < 4; r++)
+            to[c][r] = (float)from[4 * c + r];
+}
+
+/* Clip space from pixels and depth, for w = 1. */
+static void clip_from_pixel(const struct draft *draft, double out[16])
+{
+    matrix_identity(out);
+    out[0] = 2.0 / draft->width_px;
+    out[5] = -2.0 / draft->height_px;
+    out[12] = -1;
+    out[13] = 1;
+}
+
+static void aim_sun(struct draft *draft, const double clip[16])
+{
+    const struct picture *picture = draft->picture;
+    double plant_from_clip[16], out[16];
+    matrix_invert(picture->shot.clip_from_plant, plant_from_clip);
+    matrix_multiply(picture->light->texture_from_plant, plant_from_clip, out);
+    matrix_multiply(out, clip, out);
+    for (int c = 0; c < 4; c++)
+        out[4 * c + 2] += solid_sun_slack(picture) * out[4 * c + 3];
+    copy_columns(out, draft->sun_from_pixel);
+}
+
+/* Where a pixel looks: near.xyz / near.w of shaders/sky.vert, whose w is the same everywhere. */
+static void aim_rays(struct draft *draft, const double clip[16])
+{
+    double eye_from_clip[16], out[16];
+    matrix_invert(draft->picture->shot.clip_from_eye, eye_from_clip);
+    matrix_multiply(eye_from_clip, clip, out);
+    double w = out[11] + out[15]; /* at depth 1 */
+    for (int r = 0; r < 3; r++) {
+        draft->ray_from_pixel[0][r] = (float)(out[r] / w);
+        draft->ray_from_pixel[1][r] = (float)(out[4 + r] / w);
+        draft->ray_from_pixel[2][r] = (float)((out[8 + r] + out[12 + r]) / w);
+    }
+}
+
+/* The ground is flat: its coordinates and the picture's map to each other by 3x3 matrices. */
+static void aim_ground(struct draft *draft, const struct light *light)
+{
+    double clip[16], up_m = 0;
+    float(*to)[3] = draft->ground_from_pixel;
+    for (int i = 0; i < 3; i++)
+        up_m += draft->stage->up[i] * draft->picture->shot.eye_m[i];
+    draft->has_ground = up_m > light->ground_height_m;
+    matrix_multiply(draft->picture->shot.clip_from_plant, light->plant_from_ground, clip);
+    double h[3][3]; /* rows: x w, y w in pixels, w; columns: u, v, 1 */
+    for (int c = 0; c < 3; c++) {
+        const double *column = &clip[c == 2 ? 12 : 4 * c];
+        h[0][c] = 0.5 * draft->width_px * (column[3] + column[0]);
+        h[1][c] = 0.5 * draft->height_px * (column[3] - column[1]);
+        h[2][c] = column[3];
+    }
+    double determinant = 0;
+    for (int c = 0; c < 3; c++) {
+        int a = (c + 1) % 3, b = (c + 2) % 3;
+        determinant += h[0][c] * (h[1][a] * h[2][b] - h[1][b] * h[2][a]);
+        for (int r = 0; r < 3; r++) { /* adjugate */
+            int p = (r + 1) % 3, q = (r + 2) % 3;
+            to[c][r] = (float)(h[p][a] * h[q][b] - h[p][b] * h[q][a]);
+        }
+    }
+    double sign = determinant < 0 ? -1 : 1, size = 0;
+    for (int i = 0; i < 9; i++)
+        size = fmax(size, fabs((double)to[i / 3][i % 3]));
+    for (int i = 0; i < 9; i++)
+        to[i / 3][i % 3] = (float)((double)to[i / 3][i % 3] * sign / size);
+}
+
+void draft_aim(struct draft *draft, const struct light *light)
+{
+    double clip[16];
+    clip_from_pixel(draft, clip);
+    aim_sun(draft, clip);
+    aim_rays(draft, clip);
+    aim_ground(draft, light);
+}
+
+/* --- pixels ----------------------------------------------------------------------------------------------------------------- */
+
+DRAFT_INLINE lanes whole_part(lanes x) /* x >= 0 */
+{
+    return __builtin_convertvector(lanes_whole(x), lanes);
+}
+
+DRAFT_INLINE lanes_int gather(const uint32_t *table, lanes_int at)
+{
+    lanes_int out;
+    for (int i = 0; i < LANES; i++)
+        out[i] = (int32_t)table[at[i]];
+    return out;
+}
+
+DRAFT_INLINE lanes byte_of(lanes_int packed, int number)
+{
+    return __builtin_convertvector(packed >> (8 * number) & 0xff, lanes);
+}
+
+/* How much of the sun is seen, 0..1: four comparisons, weighted as a GL sampler with linear filter does. */
+DRAFT_INLINE lanes sun_at(const struct draft *draft, lanes x, float y, lanes depth)
+{
+    const float(*m)[4] = draft->sun_from_pixel;
+    const struct draft_light *light = draft->light;
+    lanes s[4];
+    for (int r = 0; r < 4; r++)
+        s[r] = x * m[0][r] + (y * m[1][r] + m[3][r]) + depth * m[2][r];
+    lanes over = 1.0f / s[3];
+    float size = (float)light->sun_map_px;
+    lanes u = lanes_clamp(s[0] * over * size - 0.5f, 0, size - 1), v = lanes_clamp(s[1] * over * size - 0.5f, 0, size - 1);
+    lanes place = s[2] * over * 65535.0f;
+    lanes u0 = whole_part(u), v0 = whole_part(v), u_part = u - u0, v_part = v - v0;
+    lanes_int at = lanes_whole(v0) * (light->sun_map_px + 1) + lanes_whole(u0);
+    lanes_int above, below; /* pairs of neighbours */
+    for (int i = 0; i < LANES; i++) {
+        const uint16_t *texel = light->sun_map + at[i], *under = texel + light->sun_map_px + 1;
+        above[i] = (int32_t)(texel[0] | (uint32_t)texel[1] << 16);
+        below[i] = (int32_t)(under[0] | (uint32_t)under[1] << 16);
+    }
+    lanes one = (lanes){ 0 } + 1.0f, none = { 0 };
+#define LIT(pair) lanes_choose(place >= __builtin_convertvector((pair) & 0xffff, lanes), one, none)
+    lanes upper = LIT(above) + u_part * (LIT(above >> 16) - LIT(above)), lower = LIT(below) + u_part * (LIT(below >> 16) - LIT(below));
+#undef LIT
+    return upper + v_part * (lower - upper);
+}
+
+DRAFT_INLINE lanes_int context_color(const struct draft *draft, lanes_int marks, lanes x, float y, lanes depth)
+{
+    lanes ambient = byte_of(marks, 1) * (1 / 255.0f), facing = byte_of(marks, 0) * (1 / 255.0f);
+    lanes sum = lanes_clamp(0.52f * ambient + 0.48f * facing * sun_at(draft, x, y, depth), 0, 1); /* light_scalar in light.glsl */
+    lanes_int step = lanes_whole(sum * (RAMP_STEPS - 1) + 0.5f);
+    return gather(draft->ramps, (marks >> 16 & (MOST_RAMPS - 1)) * RAMP_STEPS + step);
+}
+
+/* What shadow leaves of the ground's brightness, 0..256. */
+DRAFT_INLINE lanes_int ground_at(const struct draft *draft, lanes x, float y)
+{
+    const float(*m)[3] = draft->ground_from_pixel;
+    const struct draft_light *light = draft->light;
+    float size = (float)light->ground_px;
+    lanes u = x * m[0][0] + (y * m[0][1] + m[0][2]), v = x * m[1][0] + (y * m[1][1] + m[1][2]), w = x * m[2][0] + (y * m[2][1] + m[2][2]);
+    lanes one = (lanes){ 0 } + 1.0f;
+    lanes over = 1.0f / lanes_choose(w > 0.0f, w, one);
+    u *= over;
+    v *= over;
+    lanes_int inside = (w > 0.0f) & (u > 0.0f) & (u < 1.0f) & (v > 0.0f) & (v < 1.0f);
+    if (!lanes_any(inside))
+        return (lanes_int){ 0 } + 256;
+    u = lanes_clamp(u * size - 0.5f, 0, size - 1);
+    v = lanes_clamp(v * size - 0.5f, 0, size - 1);
+    lanes u0 = whole_part(u), v0 = whole_part(v), u_part = u - u0, v_part = v - v0;
+    lanes_int four =
+        gather(light->ground, lanes_whole(v0) * light->ground_px + lanes_whole(u0));
+    lanes upper = byte_of(four, 0) + u_part * (byte_of(four, 1) - byte_of(four, 0));
+    lanes lower = byte_of(four, 2) + u_part * (byte_of(four, 3) - byte_of(four, 2));
+    lanes_int factor = lanes_whole((upper + v_part * (lower - upper)) * (256 / 255.0f) + 0.5f);
+    return lanes_choose_int(inside, factor, (lanes_int){ 0 } + 256);
+}
+
+/* 1/sqrt, within 5e-6 of itself: a guess from the bits and two steps of Newton's. */
+DRAFT_INLINE lanes inverse_root(lanes x)
+{
+    lanes guess = (lanes)(0x5f375a86 - ((lanes_int)x >> 1));
+    for (int i = 0; i < 2; i++)
+        guess *= 1.5f - 0.5f * x * guess * guess;
+    return guess;
+}
+
+DRAFT_INLINE lanes_int sky_color(const struct draft *draft, lanes x, int row)
+{
+    const float(*m)[3] = draft->ray_from_pixel;
+    const double *up = draft->stage->up;
+    float y = (float)row + 0.5f;
+    lanes ray[3];
+    for (int r = 0; r < 3; r++)
+        ray[r] = x * m[0][r] + (y * m[1][r] + m[2][r]);
+    lanes height = (ray[0] * (float)up[0] + ray[1] * (float)up[1] + ray[2] * (float)up[2]) *
+                   inverse_root(ray[0] * ray[0] + ray[1] * ray[1] + ray[2] * ray[2]);
+    lanes_int column = lanes_whole(lanes_clamp(height * 1023.5f + 1024.0f, 0, SKY_BACKDROPS - 1));
+    lanes_int tile = (row & 3) * 4 + (lanes_whole(x) & 3);
+    lanes_int color = gather(draft->backdrops, tile * SKY_BACKDROPS + column);
+    if (!draft->has_ground)
+        return color;
+    lanes_uint factor = (lanes_uint)ground_at(draft, x, y), bgrx = (lanes_uint)color;
+    lanes_uint blue_red = ((bgrx & 0xff00ff) * factor + 0x800080) >> 8 & 0xff00ff; /* both at once */
+    lanes_uint green = ((bgrx & 0xff00) * factor + 0x8000) >> 8 & 0xff00;
+    return (lanes_int)(blue_red | green | 0xff000000);
+}
+
+DRAFT_INLINE lanes_int color_at(const struct draft *draft, lanes_int marks, lanes x, int row, lanes depth)
+{
+    lanes_int is_field = (marks & (int32_t)MARK_FIELD) != 0, is_context = marks < 0, is_sky = marks == 0;
+    lanes_int color = { 0 };
+    if (lanes_any(is_field))
+        color = lanes_choose_int(is_field, gather(draft->palette, marks & is_field & (int32_t)~MARK_FIELD), color);
+    if (lanes_any(is_context))
+        color = lanes_choose_int(is_context, context_color(draft, marks & is_context, x, (float)row + 0.5f, depth), color);
+    if (lanes_any(is_sky))
+        color = lanes_choose_int(is_sky, sky_color(draft, x, row), color);
+    return color;
+}
+
+DRAFT_KERNEL void draft_color_band(const struct draft *draft, int number)
+{
+    int end = (number + 1) * BAND_ROWS < draft->height_px ? (number + 1) * BAND_ROWS : draft->height_px;
+    for (int row = number * BAND_ROWS; row < end; row++) {
+        size_t start = (size_t)row * (size_t)draft->pitch_px;
+        uint8_t *out = draft->out + (size_t)row * draft->out_stride_bytes;
+        for (int column = 0; column < draft->width_px; column += LANES) {
+            lanes_int marks = *(const lanes_int *)(draft->marks + start + column);
+            lanes depth = *(const lanes *)(draft->depth + start + column);
+            lanes_int color = color_at(draft, marks, LANES_IOTA + ((float)column + 0.5f), row, depth);
+            int count = draft->width_px - column;
+            memcpy(out + 4 * column, &color, count < LANES ? 4 * (size_t)count : sizeof(color));
+        }
+    }
+}

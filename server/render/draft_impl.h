@@ -1,0 +1,111 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the steps of a draft hand to each other. Private to draft*.c. */
+#ifndef RENDER_DRAFT_IMPL_H
+#define RENDER_DRAFT_IMPL_H
+#include "render/draft.h"
+#include "render/frame_block.h"
+#include "render/palette.h"
+
+enum { BAND_ROWS = 32, CHUNK_TRIANGLES = 2048, RAMP_STEPS = MODEL_LIGHT_STEPS };
+
+/* Marks of pixels. 0: nothing. Else a colour of the palette, or a material and the light on it, to be looked up. */
+#define MARK_FIELD 0x40000000u   /* | palette row * PALETTE_COLUMNS + column */
+#define MARK_CONTEXT 0x80000000u /* | ambient << 8 (8 bits) | sun (8 bits) | row of the ramps << 16 (14 bits) */
+enum { MOST_RAMPS = 1 << 14 };
+
+struct draft_vertex {
+    float x, y, depth;     /* pixels from the top left; 1 near, 0 far */
+    float inverse_w;       /* 0: nearer than the near plane */
+    float a, b;            /* field: column and row of the palette; context: ambient, and how far it faces the sun */
+    uint32_t flags;        /* DRAFT_* */
+    uint32_t reserved;
+};
+enum { DRAFT_NO_DATA = 1, DRAFT_UNCERTAIN = 2 };
+
+struct draft_mesh { /* one asset in this picture */
+    const struct asset_view *file;
+    const struct scalar *scalars;  /* NULL: context */
+    const uint8_t (*baked)[4];
+    float place[4][4]; /* columns; x w, y w in pixels, z and w of clip space */
+    uint32_t first_vertex, vertex_count;
+    bool mirrored;
+};
+
+struct draft_draw { /* neighbouring triangles of one material */
+    uint32_t mesh, first_index, index_count;
+    uint32_t mark; /* MARK_FIELD, or MARK_CONTEXT with its ramp */
+    bool double_sided;
+};
+
+struct draft_triangle {
+    uint32_t vertices[3]; /* of the picture, or EXTRA_VERTEX | number in the chunk */
+    uint32_t mark;
+};
+#define EXTRA_VERTEX 0x80000000u
+
+struct draft_chunk { /* what one job sorts into bands; kept from picture to picture */
+    size_t first_draw, draw_count;
+    struct draft_triangle *triangles;
+    struct draft_vertex *extra; /* where the near plane cuts */
+    uint32_t *bands;            /* of each triangle: first | last << 16 */
+    uint16_t *sorted;           /* triangles, band by band */
+    uint32_t *starts;           /* in sorted, by band; one more at the end */
+    size_t triangle_count, extra_count;
+    size_t triangle_capacity, extra_capacity, band_capacity, sorted_capacity, start_capacity;
+};
+
+struct draft_light { /* a light_set, read back */
+    uint64_t id;          /* of the set; 0: empty */
+    uint8_t (**baked)[4]; /* by asset */
+    uint16_t *sun_map;    /* rows from the top; one more row and column than it has */
+    int sun_map_px;
+    uint32_t *ground;     /* a byte each: this texel, its right, lower, lower right neighbour; 255: no shadow */
+    int ground_px;
+    uint64_t used;
+};
+enum { DRAFT_LIGHTS = 2 };
+
+struct draft {
+    struct workers *workers;
+    const struct stage *stage;
+    uint32_t *ramps, *ramp_of_model; /* colours, RAMP_STEPS to a row; first row, by number of the model */
+    size_t ramp_count;
+    uint32_t *backdrops;             /* as render/sky.c makes them */
+    uint32_t *palette;
+    uint64_t palette_version;
+    struct draft_light lights[DRAFT_LIGHTS];
+    uint64_t uses;
+    /* --- of the picture being drawn */
+    const struct picture *picture;
+    const struct draft_light *light;
+    struct frame_block block;
+    struct draft_mesh *meshes;
+    struct draft_draw *draws;
+    struct draft_vertex *vertices;
+    struct draft_chunk *chunks;
+    size_t mesh_count, draw_count, chunk_count, vertex_count;
+    size_t mesh_capacity, draw_capacity, chunk_capacity, vertex_capacity;
+    int width_px, height_px, pitch_px, band_count; /* pitch: a multiple of LANES */
+    float *depth;
+    uint32_t *marks;
+    size_t pixel_capacity;
+    uint8_t *out;
+    size_t out_stride_bytes;
+    bool has_ground;
+    float sun_from_pixel[4][4], ground_from_pixel[3][3], ray_from_pixel[3][3]; /* columns */
+};
+
+/* From the GPU: what is the same in all pictures (false: the context is lost); light (NULL: out of memory, logged); a palette. */
+bool draft_read_textures(struct draft *draft, const struct sky *sky);
+const struct draft_light *draft_get_light(struct draft *draft, const struct light_set *set);
+void draft_free_light(const struct draft *draft, struct draft_light *light);
+void draft_read_palette(struct draft *draft, const struct palette *palette);
+/* The steps. */
+void draft_aim(struct draft *draft, const struct light *light); /* the matrices from pixels */
+bool draft_collect(struct draft *draft);                        /* meshes, draws and chunks: what may be seen. False: out of memory */
+void draft_place(struct draft *draft);                          /* vertices */
+void draft_sort(struct draft *draft);                           /* triangles into bands */
+void draft_raster_band(const struct draft *draft, int band);    /* depth and marks */
+void draft_color_band(const struct draft *draft, int band);     /* colours */
+
+#endif

@@ -1,0 +1,309 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One band of the picture: which triangle is nearest at each pixel, and its mark there.
+
+   A pixel on an edge that two triangles share belongs to exactly one of them: both compute the edge from the same end in the same way,
+   and one takes what is not negative, the other what is. */
+#include <string.h>
+
+#include "render/draft_impl.h"
+#include "render/draft_simd.h"
+
+enum { AHEAD = 8 }; /* triangles */
+
+struct edge {
+    float x, y, dx, dy; /* from its upper end */
+    int32_t negative;   /* -1: what is negative lies inside; 0: what is not */
+};
+
+struct plane { /* a value over the picture, kept between its corners' */
+    float at, dx, dy, low, high;
+};
+
+struct setup {
+    float x, y; /* of the first corner: what planes start from */
+    struct edge edges[3];
+    struct plane depth, a, b, inverse_w;
+    int left, right, top, bottom;
+    uint32_t mark, flags;
+    bool flat; /* no perspective to speak of */
+    bool thin; /* so much so that rounding may lead out of what lies between its corners */
+};
+
+struct band {
+    float *depth;
+    uint32_t *marks;
+    int pitch_px, top_px, bottom_px; /* last row included */
+    float last_row;                  /* of the palette */
+    float pattern_px;
+};
+
+DRAFT_INLINE float smallest(float a, float b, float c)
+{
+    float least = a < b ? a : b;
+    return least < c ? least : c;
+}
+
+DRAFT_INLINE float largest(float a, float b, float c)
+{
+    float most = a > b ? a : b;
+    return most > c ? most : c;
+}
+
+DRAFT_INLINE void edge_init(struct edge *edge, const struct draft_vertex *p, const struct draft_vertex *q)
+{
+    bool swap = q->y < p->y || (q->y == p->y && q->x < p->x);
+    const struct draft_vertex *upper = swap ? q : p, *lower = swap ? p : q;
+    *edge = (struct edge){ upper->x, upper->y, lower->x - upper->x, lower->y - upper->y, swap ? -1 : 0 };
+}
+
+/* Its part that is the same all along the row. */
+DRAFT_INLINE float edge_row(const struct edge *edge, float y)
+{
+    return edge->dx * (y - edge->y) + edge->dy * edge->x;
+}
+
+/* Below 0 where outside; by the sign alone, so that even -0 is on one side of the edge only. x: the pixels' middles. */
+DRAFT_INLINE lanes_int edge_side(const struct edge *edge, float row, lanes x)
+{
+    return (lanes_int)(row - edge->dy * x) ^ edge->negative;
+}
+
+struct slopes { /* of the triangle, over twice its area */
+    float x1, y1, x2, y2;
+};
+
+DRAFT_INLINE struct plane plane_of(const struct slopes *slopes, float v0, float v1, float v2)
+{
+    float d1 = v1 - v0, d2 = v2 - v0;
+    return (struct plane){ v0, d1 * slopes->y2 - d2 * slopes->y1, d2 * slopes->x1 - d1 * slopes->x2, smallest(v0, v1, v2),
+                           largest(v0, v1, v2) };
+}
+
+DRAFT_INLINE lanes plane_at(const struct plane *plane, lanes x, float y, bool thin)
+{
+    lanes value = plane->at + plane->dy * y + plane->dx * x;
+    return thin ? lanes_clamp(value, plane->low, plane->high) : value;
+}
+
+DRAFT_INLINE int clip_low(float x, int low)
+{
+    int first = x > 0 ? (int)(x + 0.4999f) : 0;
+    return first > low ? first : low;
+}
+
+DRAFT_INLINE int clip_high(float x, int high)
+{
+    return x < (float)high + 0.5f ? (int)(x + 0.5f) - 1 : high;
+}
+
+/* False: none of its pixels lies in the band. */
+DRAFT_INLINE bool setup_init(struct setup *setup, const struct band *band, int width_px, const struct draft_vertex *p,
+                             const struct draft_vertex *q, const struct draft_vertex *r, uint32_t mark)
+{
+    const float little = 1.02f;
+    float low = smallest(p->inverse_w, q->inverse_w, r->inverse_w), high = largest(p->inverse_w, q->inverse_w, r->inverse_w);
+    setup->left = clip_low(smallest(p->x, q->x, r->x), 0);
+    setup->right = clip_high(largest(p->x, q->x, r->x), width_px - 1);
+    setup->top = clip_low(smallest(p->y, q->y, r->y), band->top_px);
+    setup->bottom = clip_high(largest(p->y, q->y, r->y), band->bottom_px);
+    if (setup->left > setup->right || setup->top > setup->bottom)
+        return false;
+    struct slopes slopes = { q->x - p->x, q->y - p->y, r->x - p->x, r->y - p->y };
+    float area = slopes.x1 * slopes.y2 - slopes.x2 * slopes.y1, over = 1 / area;
+    float longest = largest(slopes.x1 * slopes.x1 + slopes.y1 * slopes.y1, slopes.x2 * slopes.x2 + slopes.y2 * slopes.y2, 0);
+    setup->thin = area * area < 1e-3f * longest;
+    slopes = (struct slopes){ slopes.x1 * over, slopes.y1 * over, slopes.x2 * over, slopes.y2 * over };
+    setup->x = p->x;
+    setup->y = p->y;
+    edge_init(&setup->edges[0], p, q);
+    edge_init(&setup->edges[1], q, r);
+    edge_init(&setup->edges[2], r, p);
+    setup->depth = plane_of(&slopes, p->depth, q->depth, r->depth);
+    setup->flat = high <= little * low;
+    setup->mark = mark;
+    setup->flags = p->flags | q->flags | r->flags;
+    if (setup->flat) {
+        setup->a = plane_of(&slopes, p->a, q->a, r->a);
+        setup->b = plane_of(&slopes, p->b, q->b, r->b);
+    } else {
+        setup->a = plane_of(&slopes, p->a * p->inverse_w, q->a * q->inverse_w, r->a * r->inverse_w);
+        setup->b = plane_of(&slopes, p->b * p->inverse_w, q->b * q->inverse_w, r->b * r->inverse_w);
+        setup->inverse_w = plane_of(&slopes, p->inverse_w, q->inverse_w, r->inverse_w);
+    }
+    return true;
+}
+
+/* --- marks ------------------------------------------------------------------------------------------------------------------ */
+
+DRAFT_INLINE lanes_int field_mark(lanes column, lanes row, float last_row)
+{
+    lanes_int c = lanes_whole(lanes_clamp(column, 0, PALETTE_PLACES + 1)), r = lanes_whole(lanes_clamp(row, 0, last_row));
+    return (r * PALETTE_COLUMNS + c) | (int32_t)MARK_FIELD;
+}
+
+DRAFT_INLINE lanes_int context_mark(lanes ambient, lanes sun, uint32_t mark)
+{
+    lanes_int a = lanes_whole(ambient + 0.5f), s = lanes_whole(sun + 0.5f);
+    return a << 8 | s | (int32_t)mark;
+}
+
+/* Diagonal stripes, as hatch in shaders/field.glsl: -1 on the dark ones. */
+DRAFT_INLINE lanes_int hatch(lanes x, float y, float pattern_px)
+{
+    lanes at = (x + y) * (1 / (pattern_px * 1.4142f));
+    lanes phase = at - __builtin_convertvector(lanes_whole(at), lanes) - 0.5f;
+    return (phase < -0.25f) | (phase > 0.25f);
+}
+
+/* Dots in rows, every second one moved by half, as stipple there. */
+DRAFT_INLINE lanes_int stipple(lanes x, float y, float pattern_px)
+{
+    float row = y * (1 / pattern_px);
+    float down = row - (float)(int)row - 0.5f, moved = (int)row % 2 ? 0.5f : 0;
+    lanes cell = x * (1 / pattern_px) + moved;
+    lanes across = cell - __builtin_convertvector(lanes_whole(cell), lanes) - 0.5f;
+    return across * across + down * down < 0.26f * 0.26f;
+}
+
+/* Corners differ in their flags, or say that there is no data or that it is uncertain. */
+DRAFT_INLINE lanes_int pattern_marks(lanes_int marks, lanes_int no_data, lanes_int uncertain, lanes row, lanes x, float y,
+                                      const struct band *band)
+{
+    lanes_int r = lanes_whole(lanes_clamp(row, 0, band->last_row)) * PALETTE_COLUMNS + (int32_t)MARK_FIELD + PALETTE_PATTERNS;
+    lanes_int dark = hatch(x, y, band->pattern_px), dots = stipple(x, y, band->pattern_px);
+    marks = lanes_choose_int(uncertain & dots, r + PATTERN_STIPPLE, marks);
+    return lanes_choose_int(no_data, lanes_choose_int(dark, r + PATTERN_HATCH_DARK, r + PATTERN_HATCH_LIGHT), marks);
+}
+
+/* --- pixels ----------------------------------------------------------------------------------------------------------------- */
+
+struct flag_planes { /* of triangles with flags; 1 where set */
+    struct plane no_data, uncertain;
+};
+
+DRAFT_INLINE lanes_int marks_at(const struct setup *setup, const struct flag_planes *flags, const struct band *band, lanes x, float y)
+{
+    lanes from_x = x - setup->x;
+    float from_y = y - setup->y;
+    lanes a = plane_at(&setup->a, from_x, from_y, setup->thin), b = plane_at(&setup->b, from_x, from_y, setup->thin), w = { 0 };
+    if (!setup->flat) {
+        w = 1.0f / plane_at(&setup->inverse_w, from_x, from_y, setup->thin);
+        a *= w;
+        b *= w;
+    }
+    if (setup->mark != MARK_FIELD)
+        return context_mark(a, b, setup->mark);
+    lanes_int marks = field_mark(a, b, band->last_row);
+    if (!setup->flags)
+        return marks;
+    lanes none = plane_at(&flags->no_data, from_x, from_y, setup->thin), little = plane_at(&flags->uncertain, from_x, from_y, setup->thin);
+    if (!setup->flat) {
+        none *= w;
+        little *= w;
+    }
+    return pattern_marks(marks, none > 0.5f, little > 0.5f, b, x, y, band);
+}
+
+/* Narrows the row to where edges let pixels be; one too many at each end. */
+DRAFT_INLINE void narrow(const struct setup *setup, float y, int *left, int *right)
+{
+    for (int e = 0; e < 3; e++) {
+        const struct edge *edge = &setup->edges[e];
+        if (edge->dy < 1e-3f)
+            continue;
+        float x = edge->x + edge->dx * ((y - edge->y) / edge->dy);
+        x = x < -2 ? -2 : x > 1e5f ? 1e5f : x;
+        if (edge->negative && (int)x - 1 > *left)
+            *left = (int)x - 1;
+        if (!edge->negative && (int)x + 1 < *right)
+            *right = (int)x + 1;
+    }
+}
+
+DRAFT_INLINE void draw_triangle(const struct setup *setup, const struct flag_planes *flags, const struct band *band)
+{
+    bool wide = setup->right - setup->left >= 2 * LANES;
+    for (int row = setup->top; row <= setup->bottom; row++) {
+        size_t start = (size_t)(row - band->top_px) * (size_t)band->pitch_px;
+        float y = (float)row + 0.5f, sides[3];
+        int left = setup->left, right = setup->right, last = band->pitch_px - LANES;
+        if (wide)
+            narrow(setup, y, &left, &right);
+        for (int e = 0; e < 3; e++)
+            sides[e] = edge_row(&setup->edges[e], y);
+        for (int column = left; column <= right; column += LANES) {
+            column = column < last ? column : last; /* nothing is written beyond the row */
+            lanes x = LANES_IOTA + ((float)column + 0.5f);
+            lanes_int side = edge_side(&setup->edges[0], sides[0], x) | edge_side(&setup->edges[1], sides[1], x) |
+                             edge_side(&setup->edges[2], sides[2], x);
+            lanes *depth = (lanes *)(band->depth + start + column);
+            lanes here = plane_at(&setup->depth, x - setup->x, y - setup->y, setup->thin);
+            lanes_int seen = (side >= 0) & (here >= *depth);
+            if (!lanes_any(seen))
+                continue;
+            lanes_int *marks = (lanes_int *)(band->marks + start + column);
+            *depth = lanes_choose(seen, here, *depth);
+            *marks = lanes_choose_int(seen, marks_at(setup, flags, band, x, y), *marks);
+        }
+    }
+}
+
+DRAFT_INLINE void flag_planes_init(struct flag_planes *flags, const struct setup *setup, const struct draft_vertex *p,
+                                   const struct draft_vertex *q, const struct draft_vertex *r)
+{
+    float area = (q->x - p->x) * (r->y - p->y) - (r->x - p->x) * (q->y - p->y);
+    struct slopes slopes = { (q->x - p->x) / area, (q->y - p->y) / area, (r->x - p->x) / area, (r->y - p->y) / area };
+    float w[3] = { setup->flat ? 1 : p->inverse_w, setup->flat ? 1 : q->inverse_w, setup->flat ? 1 : r->inverse_w };
+#define FLAG(vertex, flag, i) ((vertex)->flags & (flag) ? w[i] : 0)
+    flags->no_data = plane_of(&slopes, FLAG(p, DRAFT_NO_DATA, 0), FLAG(q, DRAFT_NO_DATA, 1), FLAG(r, DRAFT_NO_DATA, 2));
+    flags->uncertain = plane_of(&slopes, FLAG(p, DRAFT_UNCERTAIN, 0), FLAG(q, DRAFT_UNCERTAIN, 1), FLAG(r, DRAFT_UNCERTAIN, 2));
+#undef FLAG
+}
+
+DRAFT_INLINE const struct draft_vertex *vertex_of(const struct draft *draft, const struct draft_chunk *chunk, uint32_t v)
+{
+    return v & EXTRA_VERTEX ? &chunk->extra[v & ~EXTRA_VERTEX] : &draft->vertices[v];
+}
+
+/* Vertices lie all over memory. */
+DRAFT_INLINE void fetch_ahead(const struct draft *draft, const struct draft_chunk *chunk, size_t triangle)
+{
+    for (int i = 0; i < 3; i++)
+        __builtin_prefetch(vertex_of(draft, chunk, chunk->triangles[triangle].vertices[i]));
+}
+
+DRAFT_KERNEL void draft_raster_band(const struct draft *draft, int number)
+{
+    size_t start = (size_t)number * BAND_ROWS * (size_t)draft->pitch_px;
+    int bottom = (number + 1) * BAND_ROWS - 1;
+    struct band band = {
+        .depth = draft->depth + start,
+        .marks = draft->marks + start,
+        .pitch_px = draft->pitch_px,
+        .top_px = number * BAND_ROWS,
+        .bottom_px = bottom < draft->height_px - 1 ? bottom : draft->height_px - 1,
+        .last_row = draft->block.shade[2],
+        .pattern_px = draft->block.scale[3],
+    };
+    struct flag_planes flags = { 0 };
+    size_t pixels = (size_t)(band.bottom_px - band.top_px + 1) * (size_t)draft->pitch_px;
+    memset(band.depth, 0, pixels * sizeof(*band.depth));
+    memset(band.marks, 0, pixels * sizeof(*band.marks));
+    for (size_t c = 0; c < draft->chunk_count; c++) {
+        const struct draft_chunk *chunk = &draft->chunks[c];
+        for (uint32_t i = chunk->starts[number]; i < chunk->starts[number + 1]; i++) {
+            const struct draft_triangle *triangle = &chunk->triangles[chunk->sorted[i]];
+            const struct draft_vertex *p = vertex_of(draft, chunk, triangle->vertices[0]);
+            const struct draft_vertex *q = vertex_of(draft, chunk, triangle->vertices[1]);
+            const struct draft_vertex *r = vertex_of(draft, chunk, triangle->vertices[2]);
+            struct setup setup;
+            if (i + AHEAD < chunk->starts[number + 1])
+                fetch_ahead(draft, chunk, chunk->sorted[i + AHEAD]);
+            if (!setup_init(&setup, &band, draft->width_px, p, q, r, triangle->mark))
+                continue;
+            if (setup.flags)
+                flag_planes_init(&flags, &setup, p, q, r);
+            draw_triangle(&setup, &flags, &band);
+        }
+    }
+}

@@ -1,0 +1,174 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Moving pictures without a GPU against the same ones drawn by GL: every pixel and every marker. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "tests/support/rig.h"
+#include "value/quality.h"
+
+static struct rig rig;
+static struct stand stand;
+
+static struct frame *draw(const struct view *view, bool by_gl)
+{
+    renderer_use_gl(stand.renderer, by_gl);
+    struct frame *frame = stand_draw(&stand, view);
+    renderer_use_gl(stand.renderer, false);
+    return frame;
+}
+
+static int difference(const uint8_t *a, const uint8_t *b)
+{
+    int most = 0;
+    for (int c = 0; c < 3; c++)
+        most = abs(a[c] - b[c]) > most ? abs(a[c] - b[c]) : most;
+    return most;
+}
+
+/* Pixels may differ where an edge, a band of colours or a shadow's rim runs through them. */
+static void assert_same(const struct view *view, double may_differ)
+{
+    struct frame *draft = draw(view, false), *gl = draw(view, true);
+    int far = 0, pixels = view->width_px * view->height_px;
+    for (int i = 0; i < pixels; i++)
+        far += difference(draft->bgrx + 4 * i, gl->bgrx + 4 * i) > 3;
+    if (far > may_differ * pixels)
+        print_message("%d of %d pixels differ by more than 3\n", far, pixels);
+    assert_true(far <= may_differ * pixels);
+    assert_int_equal(draft->marker_count, gl->marker_count);
+    assert_true(draft->marker_count > 0);
+    for (size_t i = 0; i < gl->marker_count; i++) {
+        assert_int_equal(draft->markers[i].tag, gl->markers[i].tag);
+        assert_int_equal(draft->markers[i].occluded, gl->markers[i].occluded);
+        assert_true(fabsf(draft->markers[i].x_px - gl->markers[i].x_px) < 0.01f);
+        assert_true(fabsf(draft->markers[i].y_px - gl->markers[i].y_px) < 0.01f);
+    }
+    assert_int_equal(draft->content, gl->content);
+    assert_int_equal(draft->triangles, gl->triangles);
+    frame_unref(&draft);
+    frame_unref(&gl);
+}
+
+static void start_view(struct view *view, int width_px, int height_px)
+{
+    view_default(&stand.toy->scene, width_px, height_px, view);
+    view->tier = TIER_MOVING;
+}
+
+static void test_home(void **state)
+{
+    struct view view;
+    (void)state;
+    start_view(&view, 640, 360);
+    assert_same(&view, 0.002);
+}
+
+static void test_sizes(void **state)
+{
+    static const int sizes[][2] = { { 16, 16 }, { 17, 33 }, { 333, 217 }, { 64, 500 }, { 1001, 31 } };
+    (void)state;
+    for (size_t i = 0; i < sizeof(sizes) / sizeof(sizes[0]); i++) {
+        struct view view;
+        start_view(&view, sizes[i][0], sizes[i][1]);
+        assert_same(&view, 0.01);
+    }
+}
+
+static void test_flat(void **state)
+{
+    struct view view;
+    (void)state;
+    start_view(&view, 400, 300);
+    view.look = LOOK_FLAT;
+    view.colormap = (int)colormap_count() - 1;
+    view.range_min = 30; /* some values lie below, some above */
+    view.range_max = 70;
+    assert_same(&view, 0.002);
+}
+
+/* All round, from far away, from below and from among the pipes, where triangles pass the eye. */
+static void test_cameras(void **state)
+{
+    struct view view;
+    (void)state;
+    start_view(&view, 320, 240);
+    const struct scene *scene = &stand.toy->scene;
+    for (int i = 0; i < 12; i++) {
+        double away = i % 4 == 3 ? 0.15 : 0.5 + i % 3;
+        for (int c = 0; c < 3; c++) {
+            double size = scene->bounds_max_m[c] - scene->bounds_min_m[c];
+            view.camera.target_m[c] = scene->bounds_min_m[c] + 0.5 * size;
+            view.camera.eye_m[c] = view.camera.target_m[c] + away * size * (c == 0 ? cos(i) : c == 1 ? sin(i) : 0.7 - 0.2 * i);
+        }
+        assert_same(&view, 0.01);
+    }
+}
+
+static void test_sun(void **state)
+{
+    struct view view;
+    (void)state;
+    start_view(&view, 400, 300);
+    for (int i = 0; i < 4; i++) { /* more than are kept */
+        double towards[3] = { 0.6 * cos(i), 0.6 * sin(i), 0.8 };
+        memcpy(view.light_dir, towards, sizeof(towards));
+        assert_same(&view, 0.003);
+    }
+}
+
+/* What it leaves to GL is what GL draws. */
+static void test_left_to_gl(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 4; i++) {
+        struct view view;
+        start_view(&view, 200, 150);
+        view.selected_asset = i == 0 ? 0 : -1;
+        view.look = i == 1 ? LOOK_GLOSSY : LOOK_DEFAULT;
+        view.ramp_interval = i == 2 ? 20 : 0;
+        view.tier = i == 3 ? TIER_STILL : TIER_MOVING;
+        assert_same(&view, 0);
+    }
+}
+
+/* Values, one beyond the range, one that is uncertain and one that is bad. */
+static void fill(void)
+{
+    static const double values[8] = { 15, 30, 55, 80, 105, 20, 45, 90 };
+    for (int i = 0; i < 8; i++)
+        toy_set(stand.snapshot, i, values[i],
+                i == 6   ? QUALITY_BAD_SENSOR_FAILURE
+                : i == 5 ? QUALITY_UNCERTAIN_LAST_USABLE
+                         : (uint32_t)QUALITY_GOOD);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_home),    cmocka_unit_test(test_sizes), cmocka_unit_test(test_flat),
+        cmocka_unit_test(test_cameras), cmocka_unit_test(test_sun),   cmocka_unit_test(test_left_to_gl),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    if (!rig_init(&rig, "draft_test"))
+        return 0;
+    if (!rig.gl->software) {
+        printf("TAP version 13\n1..1\nok 1 - draft_test # SKIP a GPU draws moving pictures itself\n");
+        rig_finish(&rig);
+        return 0;
+    }
+    stand_init(&stand, &rig, toy_unit());
+    fill();
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    stand_finish(&stand);
+    rig_finish(&rig);
+    return failed;
+}
