@@ -17,6 +17,7 @@
 #include "base/mem.h"
 #include "base/workers.h"
 #include "far.h"
+#include "field/colormap.h"
 #include "net/net.h"
 #include "value/source.h"
 #include "version.h"
@@ -79,6 +80,7 @@ static char *prepared_folder(const struct server_params *params, const struct pl
 static struct scene *open_scene(struct log *log, const struct server_params *params, const struct plant *plant)
 {
     char *folder = prepared_folder(params, plant);
+    colormaps_of_plant(plant);
     struct scene *scene = scene_create(log, plant, folder);
     if (!scene)
         log_err(log, "%s: the prepared files in %s cannot be used; run plantcast-prep %s", params->plant_path, folder, params->plant_path);

@@ -11,6 +11,7 @@
 #include "base/text.h"
 #include "encode/encoder.h"
 #include "net/query.h"
+#include "plant/image_ramp.h"
 #include "render/canvas.h"
 #include "render/overlay.h"
 #include "snapshot.h"
@@ -124,6 +125,26 @@ static bool draw(struct studio *studio, const struct snapshot_options *options, 
     return good;
 }
 
+/* Those of the plant, and images that stand where a name could. */
+static bool add_colormaps(const struct studio *studio, const struct snapshot_options *options)
+{
+    static const char name[] = "colormap=";
+    colormaps_of_plant(studio->plant);
+    for (size_t i = 0; i < options->arg_count; i++) {
+        const char *path = options->args[i] + sizeof(name) - 1;
+        uint8_t rgb[256][3];
+        char why[IMAGE_WHY_BYTES];
+        if (strncmp(options->args[i], name, sizeof(name) - 1) != 0 || colormap_find(path) >= 0 || !strpbrk(path, "./"))
+            continue;
+        if (!image_ramp(path, rgb, why)) {
+            fprintf(stderr, "plantcast: --colormap: %s: %s\n", path, why);
+            return false;
+        }
+        colormap_add(path, (const uint8_t(*)[3])rgb);
+    }
+    return true;
+}
+
 int snapshot_offline(struct snapshot_options *options)
 {
     struct studio studio = { .log = log_create(LOG_INFO) };
@@ -132,6 +153,10 @@ int snapshot_offline(struct snapshot_options *options)
     int code = 1;
     if (!load_plant(&studio, options) || !load_scene(&studio, options))
         goto end;
+    if (!add_colormaps(&studio, options)) {
+        code = 2;
+        goto end;
+    }
     const struct params_world world = { .scene = studio.scene, .baselines = studio.baselines };
     if (!query_parse(&world, (const char *const *)options->args, options->arg_count, &view, &error)) {
         fprintf(stderr, "plantcast: %s\n", error.text);

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Colour maps out of the embedded tables. */
+/* Colour maps out of the embedded tables, and those of a plant. */
 #include "field/colormap.h"
 
+#include <math.h>
 #include <pthread.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -9,12 +10,15 @@
 
 #include "base/embedded.h"
 #include "base/mem.h"
+#include "field/lab.h"
 
-static struct colormap maps[] = {
+enum { BUILT_IN = 6, MOST = BUILT_IN + PLANT_COLORMAPS + 8 };
+static struct colormap maps[MOST] = {
     { .name = "relief" }, { .name = "calm" }, { .name = "viridis" }, { .name = "cividis" }, { .name = "diverging" }, { .name = "turbo" }
 };
+static size_t map_count = BUILT_IN;
+static char names[MOST - BUILT_IN][128]; /* of those that were added */
 static struct colormap operator_map = { .name = "operator" };
-#define MAP_COUNT (sizeof(maps) / sizeof(*maps))
 
 static pthread_once_t once = PTHREAD_ONCE_INIT;
 
@@ -47,7 +51,7 @@ static void read_map(struct colormap *map)
 
 static void read_maps(void)
 {
-    for (size_t i = 0; i < MAP_COUNT; i++)
+    for (size_t i = 0; i < BUILT_IN; i++)
         read_map(&maps[i]);
     read_map(&operator_map);
 }
@@ -60,7 +64,7 @@ const struct colormap *colormap_operator(void)
 
 size_t colormap_count(void)
 {
-    return MAP_COUNT;
+    return map_count;
 }
 
 const struct colormap *colormap_at(size_t index)
@@ -69,9 +73,55 @@ const struct colormap *colormap_at(size_t index)
     return &maps[index];
 }
 
+/* Dark or light: what is farthest from all colours of the map. */
+static void choose_outside(const struct colormap *map, const uint8_t candidates[][3], int count, uint8_t out[3])
+{
+    double farthest = -1;
+    for (int k = 0; k < count; k++) {
+        double lab[3], nearest = INFINITY;
+        lab_from_rgb(candidates[k], lab);
+        for (int i = 0; i < 256; i += 3) {
+            double at[3];
+            lab_from_rgb(map->rgb[i], at);
+            nearest = fmin(nearest, hypot(hypot(at[0] - lab[0], at[1] - lab[1]), at[2] - lab[2]));
+        }
+        if (nearest > farthest)
+            memcpy(out, candidates[k], 3);
+        farthest = fmax(farthest, nearest);
+    }
+}
+
+int colormap_add(const char *name, const uint8_t rgb[256][3])
+{
+    static const uint8_t below[][3] = { { 16, 26, 94 }, { 169, 205, 255 }, { 0, 0, 0 }, { 0, 128, 128 } };
+    static const uint8_t above[][3] = { { 125, 10, 30 }, { 255, 79, 216 }, { 255, 255, 255 }, { 90, 60, 0 } };
+    int found = colormap_find(name);
+    pthread_once(&once, read_maps);
+    if (found >= 0 && found < BUILT_IN)
+        return -1;
+    if (found < 0 && map_count == MOST)
+        return -1;
+    struct colormap *map = &maps[found < 0 ? map_count : (size_t)found];
+    if (found < 0)
+        snprintf(names[map_count - BUILT_IN], sizeof(names[0]), "%s", name);
+    if (found < 0)
+        map->name = names[map_count++ - BUILT_IN];
+    memcpy(map->rgb, rgb, sizeof(map->rgb));
+    choose_outside(map, below, 4, map->below);
+    choose_outside(map, above, 4, map->above);
+    colormap_judge(map);
+    return (int)(map - maps);
+}
+
+void colormaps_of_plant(const struct plant *plant)
+{
+    for (size_t i = 0; i < plant->colormap_count; i++)
+        colormap_add(plant->colormaps[i].name, (const uint8_t(*)[3])plant->colormaps[i].rgb);
+}
+
 int colormap_find(const char *name)
 {
-    for (size_t i = 0; i < MAP_COUNT; i++)
+    for (size_t i = 0; i < map_count; i++)
         if (strcmp(maps[i].name, name) == 0)
             return (int)i;
     return -1;

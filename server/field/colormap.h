@@ -1,10 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Colour maps: 256 sRGB colours each, from shaders/maps/NAME.csv (r,g,b per line, 0..255), embedded at build. Immutable. Thread: any. */
+/* Colour maps: 256 sRGB colours each, from shaders/maps/NAME.csv (r,g,b per line, 0..255), embedded at build; and those that are added
+   before other threads begin. Then immutable. Thread: any. */
 #ifndef FIELD_COLORMAP_H
 #define FIELD_COLORMAP_H
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+
+#include "plant/plant.h"
 
 #define COLORMAP_SHADING 7.0
 struct colormap {
@@ -15,6 +18,10 @@ struct colormap {
     uint8_t below[3], above[3]; /* colours for < MIN and > MAX; not on the map */
 };
 
+/* Adds a map, or changes one that was added; it is judged, and gets colours for what is outside. Index, or -1: the name is that of a
+   built-in one, or there are too many. */
+int colormap_add(const char *name, const uint8_t rgb[256][3]);
+void colormaps_of_plant(const struct plant *plant);
 /* Works out shading and safe from the colours; some milliseconds. Those of the embedded maps stand in their files. */
 void colormap_judge(struct colormap *map);
 

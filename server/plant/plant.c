@@ -92,6 +92,8 @@ void plant_destroy(struct plant **plant_ptr)
     free_groups(plant);
     free_sources(plant);
     free_tags(plant);
+    for (size_t i = 0; i < plant->colormap_count; i++)
+        mem_free(plant->colormaps[i].name);
     mem_free(plant->path);
     mem_free(plant->folder);
     mem_free(plant->tags_path);

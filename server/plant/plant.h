@@ -5,6 +5,7 @@
 #define PLANT_PLANT_H
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 #include "base/diag.h"
 
@@ -56,6 +57,12 @@ struct plant_group {
     int line;
 };
 
+enum { PLANT_COLORMAPS = 16 };
+struct plant_colormap { /* out of an image */
+    char *name;
+    uint8_t rgb[256][3]; /* sRGB, from MIN to MAX */
+};
+
 struct plant_source {
     char *id, *kind;              /* "modbus" */
     char *host;
@@ -102,6 +109,8 @@ struct plant {
     struct plant_source *sources;
     struct plant_tag *tags;
     size_t asset_count, group_count, source_count, tag_count;
+    struct plant_colormap colormaps[PLANT_COLORMAPS];
+    size_t colormap_count;
     int *tags_by_name;                /* indices of tags, sorted by name */
 };
 

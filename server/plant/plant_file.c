@@ -374,6 +374,11 @@ static void read_sources(struct yaml_reader *reader, yaml_node_t *node, void *re
         read_source(reader, yaml_list_item(reader, node, i), plant, &plant->sources[plant->source_count++]);
 }
 
+static void read_colormaps(struct yaml_reader *reader, yaml_node_t *node, void *record)
+{
+    plant_colormaps_read(reader, node, ((struct plant_file *)record)->plant);
+}
+
 /* --- the whole file --------------------------------------------------------------------------------------------------------- */
 
 void plant_file_read(struct plant *plant, struct diag *diag)
@@ -383,6 +388,7 @@ void plant_file_read(struct plant *plant, struct diag *diag)
         { "assets", KEY_CUSTOM, true, 0, 0, 0, NULL, read_assets },
         { "groups", KEY_CUSTOM, true, 0, 0, 0, NULL, read_groups },
         { "sources", KEY_CUSTOM, false, 0, 0, 0, NULL, read_sources },
+        { "colormaps", KEY_CUSTOM, false, 0, 0, 0, NULL, read_colormaps },
         { "tags", KEY_NAME, true, offsetof(struct plant_file, tags), 0, 0, NULL, NULL },
         { 0 }
     };

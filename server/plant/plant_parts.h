@@ -3,6 +3,7 @@
 #ifndef PLANT_PLANT_PARTS_H
 #define PLANT_PLANT_PARTS_H
 #include "plant/plant.h"
+#include "plant/yaml_reader.h"
 
 #define PLANT_MAX_M 1e6      /* nothing is further from the origin */
 #define PLANT_MAX_VALUE 1e30 /* of a reading or a limit: the field is computed in floats */
@@ -13,5 +14,8 @@ void plant_file_read(struct plant *plant, struct diag *diag);
 void tag_list_read(struct plant *plant, struct diag *diag);
 /* The first two limits that do not rise (LL < L < H < HH; NaN: none): true, with their indices. */
 bool plant_limits_wrong(const double limits[LIMIT_COUNT], int *lower, int *upper);
+
+/* The list `colormaps` of a plant file. */
+void plant_colormaps_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
 
 #endif

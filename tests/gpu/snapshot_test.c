@@ -106,6 +106,35 @@ static void test_wrong_values_are_named(void **state)
     mem_free(options);
 }
 
+static void test_images_are_colour_maps(void **state)
+{
+    (void)state;
+    static const char ppm[] = "P6\n2 1\n255\n\xff\x00\x00\x00\x00\xff";
+    char *image = temp_write(folder, "map.ppm", ppm, sizeof(ppm) - 1);
+    write_values("tag,value,quality\nTE-101,90,good\nTE-102,120,\n");
+    char *options = mem_printf("--values %s/values.csv --tier moving --colormap %s", folder, image);
+    assert_int_equal(draw(options), 0);
+    assert_true(count_colored() > 50);
+    mem_free(options);
+    mem_free(image);
+    assert_int_equal(draw("--colormap no-such.png"), 2);
+    assert_true(said("no-such.png: No such file or directory"));
+    assert_int_equal(draw("--colormap plaid"), 2);
+}
+
+static void test_split_and_bands(void **state)
+{
+    (void)state;
+    write_values("tag,value,quality\nTE-101,90,good\nTE-102,120,\nPT-101,9,good\n");
+    char *options = mem_printf("--values %s/values.csv --breaks limits --isolines every:20 --split 'group=pressure;scale=linear'", folder);
+    assert_int_equal(draw(options), 0);
+    assert_true(count_colored() > 50);
+    mem_free(options);
+    assert_int_equal(draw("--split group=flow"), 2);
+    assert_int_equal(draw("--group pressure --scale log"), 2);
+    assert_true(said("scale: 'log' needs a range above 0; that of 'pressure' begins at 0"));
+}
+
 static void test_usage(void **state)
 {
     (void)state;
@@ -136,6 +165,8 @@ int main(void)
         cmocka_unit_test(test_without_values_nothing_has_a_color),
         cmocka_unit_test(test_values_give_color),
         cmocka_unit_test(test_wrong_values_are_named),
+        cmocka_unit_test(test_images_are_colour_maps),
+        cmocka_unit_test(test_split_and_bands),
         cmocka_unit_test(test_usage),
         cmocka_unit_test(test_failures),
     };

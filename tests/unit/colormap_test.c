@@ -183,6 +183,27 @@ static void test_relief_is_read_back_through_shading(void **state)
     }
 }
 
+static void test_maps_can_be_added(void **state)
+{
+    (void)state;
+    uint8_t rgb[256][3];
+    size_t before = colormap_count();
+    for (int i = 0; i < 256; i++)
+        memcpy(rgb[i], (uint8_t[]){ 20, (uint8_t)i, 20 }, 3); /* darkness is value: not to be shaded much */
+    int added = colormap_add("mine", (const uint8_t(*)[3])rgb);
+    assert_int_equal(added, before);
+    assert_int_equal(colormap_find("mine"), added);
+    const struct colormap *map = colormap_at((size_t)added);
+    assert_memory_equal(map->rgb, rgb, sizeof(rgb));
+    assert_true(map->shading >= 2 && map->shading < COLORMAP_SHADING);
+    for (int i = 0; i < 256; i++)
+        assert_true(memcmp(map->below, rgb[i], 3) && memcmp(map->above, rgb[i], 3));
+    rgb[0][0] = 99;
+    assert_int_equal(colormap_add("mine", (const uint8_t(*)[3])rgb), added); /* changed, not added again */
+    assert_true(colormap_at((size_t)added)->rgb[0][0] == 99 && colormap_count() == before + 1);
+    assert_int_equal(colormap_add("relief", (const uint8_t(*)[3])rgb), -1);
+}
+
 int main(void)
 {
     cmocka_set_message_output(CM_OUTPUT_TAP);
@@ -193,6 +214,7 @@ int main(void)
         cmocka_unit_test(test_maps_for_relief_are_low_in_contrast_and_ordered),
         cmocka_unit_test(test_maps_for_relief_leave_room_for_shading),
         cmocka_unit_test(test_relief_is_read_back_through_shading),
+        cmocka_unit_test(test_maps_can_be_added),
     };
     return cmocka_run_group_tests_name("colormap", tests, NULL, NULL);
 }

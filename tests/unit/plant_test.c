@@ -480,6 +480,52 @@ static void files_that_cannot_be_read_are_named(void **state)
     mem_free(path);
 }
 
+static char *write_image(struct plant_case *f, const char *name, int width, int height, const uint8_t *rgb)
+{
+    char header[32];
+    int n = snprintf(header, sizeof(header), "P6\n%d %d\n255\n", width, height);
+    size_t bytes = (size_t)(3 * width * height);
+    uint8_t *all = mem_array(1, (size_t)n + bytes);
+    memcpy(all, header, (size_t)n);
+    memcpy(all + n, rgb, bytes);
+    char *path = temp_write(f->folder, name, all, (size_t)n + bytes);
+    mem_free(all);
+    return path;
+}
+
+static void colour_maps_come_from_images(void **state)
+{
+    struct plant_case *f = *state;
+    static const uint8_t lying[3 * 3] = { 0, 0, 0, 200, 100, 0, 200, 200, 200 }, standing[2 * 3] = { 255, 0, 0, 0, 0, 255 };
+    mem_free(write_image(f, "lying.ppm", 3, 1, lying));
+    mem_free(write_image(f, "standing.ppm", 1, 2, standing));
+    struct text yaml = { 0 };
+    text_add(&yaml, "%scolormaps:\n  - { name: a, image: lying.ppm }\n  - { name: b, image: standing.ppm }\n", small_yaml);
+    plant_case_load(f, yaml.at, small_csv);
+    plant_case_assert_loaded(f, 0);
+    assert_int_equal(f->plant->colormap_count, 2);
+    const struct plant_colormap *a = &f->plant->colormaps[0], *b = &f->plant->colormaps[1];
+    assert_string_equal(a->name, "a");
+    assert_true(a->rgb[0][0] == 0 && a->rgb[255][2] == 200 && abs(a->rgb[127][0] - 200) < 3 && abs(a->rgb[127][1] - 100) < 3);
+    assert_true(abs(a->rgb[85][0] - 100) < 3); /* half-way between the first two */
+    assert_true(b->rgb[0][2] == 255 && b->rgb[255][0] == 255); /* from the bottom up */
+    text_finish(&yaml);
+}
+
+static void bad_colour_maps_are_named(void **state)
+{
+    struct plant_case *f = *state;
+    static const uint8_t dot[3] = { 1, 2, 3 };
+    mem_free(write_image(f, "dot.ppm", 1, 1, dot));
+    mem_free(temp_write_text(f->folder, "text.png", "no image"));
+    load_with(f, 5, "tags: tags.csv\ncolormaps: [{ name: viridis, image: none.png }, { name: b, image: dot.ppm },\n  { name: b, image: text.png }, "
+                    "{ name: c }, { name: d, image: . }]");
+    FOUND(f, { "plant.yaml", 6, 21, "name: there is a colour map 'viridis' already" },
+          { "plant.yaml", 6, 37, "none.png': No such file or directory" }, { "plant.yaml", 6, 67, "dot.ppm': one pixel only" },
+          { "plant.yaml", 7, 11, "name: there is a colour map 'b' already" }, { "plant.yaml", 7, 21, "text.png': " },
+          { "plant.yaml", 7, 33, "image" }, { "plant.yaml", 7, 64, "': not a file" });
+}
+
 #define TEST(function) cmocka_unit_test_setup_teardown(function, plant_case_set_up, plant_case_tear_down)
 
 int main(void)
@@ -505,6 +551,8 @@ int main(void)
         TEST(what_is_not_utf8_text_has_a_place),
         TEST(files_without_content_are_refused),
         TEST(files_that_cannot_be_read_are_named),
+        TEST(colour_maps_come_from_images),
+        TEST(bad_colour_maps_are_named),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
