@@ -518,8 +518,9 @@ static void bad_colour_maps_are_named(void **state)
     static const uint8_t dot[3] = { 1, 2, 3 };
     mem_free(write_image(f, "dot.ppm", 1, 1, dot));
     mem_free(temp_write_text(f->folder, "text.png", "no image"));
-    load_with(f, 5, "tags: tags.csv\ncolormaps: [{ name: viridis, image: none.png }, { name: b, image: dot.ppm },\n  { name: b, image: text.png }, "
-                    "{ name: c }, { name: d, image: . }]");
+    load_with(f, 5, "tags: tags.csv\n"
+                    "colormaps: [{ name: viridis, image: none.png }, { name: b, image: dot.ppm },\n"
+                    "  { name: b, image: text.png }, { name: c }, { name: d, image: . }]");
     FOUND(f, { "plant.yaml", 6, 21, "name: there is a colour map 'viridis' already" },
           { "plant.yaml", 6, 37, "none.png': No such file or directory" }, { "plant.yaml", 6, 67, "dot.ppm': one pixel only" },
           { "plant.yaml", 7, 11, "name: there is a colour map 'b' already" }, { "plant.yaml", 7, 21, "text.png': " },
