@@ -10,6 +10,6 @@ int cmd_tags(int argc, char **argv);     /* the tags of a daemon with their valu
 
 /* Fetches PATH (with its query, e.g. "/snapshot.png?width=640&group=temperature") from the daemon at url (http://HOST:PORT/) into
    the file `out`. 0, or 1: the reason is printed. */
-int daemon_download(const char *url, const char *path, const char *out);
+int daemon_download(const char *url, const char *path, const char *out); /* out NULL: printed */
 
 #endif

@@ -100,7 +100,9 @@ int daemon_download(const char *url_text, const char *path, const char *out)
         return 1;
     int status = daemon_get(&url, path, &body), result = 1;
     if (status == 200) {
-        int error = text_write_file(out, body.at ? body.at : "", body.length);
+        if (!out)
+            printf("%s\n", body.at ? body.at : "");
+        int error = !out ? 0 : text_write_file(out, body.at ? body.at : "", body.length);
         if (error)
             fprintf(stderr, "plantcast: %s: %s\n", out, strerror(-error));
         result = error ? 1 : 0;

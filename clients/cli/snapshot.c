@@ -18,6 +18,7 @@ static const char usage[] =
     "usage: plantcast snapshot (PLANT.yaml | http://HOST:PORT/) -o OUT.png [options]\n"
     "\n"
     "  -o, --out FILE          PNG file to write\n"
+    "  --pick X,Y              print as JSON what is at this pixel: asset, place, value, nearest sensors; no picture without -o\n"
     "  --size WxH              pixels; 1280x720\n"
     "  --camera EX,EY,EZ,TX,TY,TZ[,FOV]   eye, target (metres, plant frame), vertical degrees; the plant's own view\n"
     "  --projection NAME       perspective, orthographic       --height M   of an orthographic picture\n"
@@ -71,6 +72,7 @@ enum { SHARED = sizeof(shared) / sizeof(shared[0]) };
 enum own_option {
     OPTION_SIZE = SHARED,
     OPTION_OUT,
+    OPTION_PICK,
     OPTION_BASELINE,
     OPTION_VALUES,
     OPTION_AT,
@@ -87,6 +89,7 @@ enum own_option {
 static const struct option own[] = {
     { "size", required_argument, NULL, OPTION_SIZE },
     { "out", required_argument, NULL, OPTION_OUT },
+    { "pick", required_argument, NULL, OPTION_PICK },
     { "baseline", required_argument, NULL, OPTION_BASELINE },
     { "values", required_argument, NULL, OPTION_VALUES },
     { "at", required_argument, NULL, OPTION_AT },
@@ -142,6 +145,13 @@ static bool parse_tier(struct snapshot_options *options, const char *text)
     return options->moving || !strcmp(text, "still");
 }
 
+static bool parse_pick(struct snapshot_options *options, const char *text)
+{
+    char rest;
+    options->pick = sscanf(text, "%lf,%lf%c", &options->place_px[0], &options->place_px[1], &rest) == 2;
+    return options->pick;
+}
+
 /* False: the option's argument is wrong. */
 static bool take_own(struct snapshot_options *options, int option, const char *text)
 {
@@ -149,6 +159,7 @@ static bool take_own(struct snapshot_options *options, int option, const char *t
     switch (option) {
     case OPTION_SIZE: return add_size(options, text);
     case OPTION_OUT: options->out = text; return true;
+    case OPTION_PICK: return parse_pick(options, text);
     case OPTION_BASELINE: options->baseline = text; return true;
     case OPTION_AT: return parse_time(text, &options->at_utc_ns);
     case OPTION_PREPARED: options->prepared = text; return true;
@@ -187,7 +198,7 @@ static int parse(int argc, char **argv, struct snapshot_options *options)
                 option == 'o' ? "out" : list[option].name, optarg);
         return 2;
     }
-    if (optind + 1 != argc || !options->out) {
+    if (optind + 1 != argc || (!options->out && !options->pick)) {
         fputs(optind + 1 != argc ? "plantcast: one plant file or URL expected\n" : "plantcast: -o FILE.png is missing\n", stderr);
         fputs(usage, stderr);
         return 2;
@@ -204,20 +215,29 @@ static void add_encoded(struct text *path, const char *arg)
 
 static int from_daemon(struct snapshot_options *options)
 {
-    struct text path = { 0 };
+    struct text path = { 0 }, query = { 0 };
     if (options->offline_only) {
         fputs("plantcast: --values, --at, --prepared, --tier, --no-overlay, --field and --gl only go with a plant file\n", stderr);
         return 2;
     }
     if (options->baseline && !snapshot_add_arg(options, "baseline", options->baseline))
         return 2;
-    text_add(&path, "/snapshot.png");
     for (size_t i = 0; i < options->arg_count; i++) {
-        text_add(&path, i ? "&" : "?");
-        add_encoded(&path, options->args[i]);
+        text_add(&query, "&");
+        add_encoded(&query, options->args[i]);
     }
-    int code = daemon_download(options->from, path.at, options->out);
+    const char *rest = query.at ? query.at : "";
+    int code = 0;
+    if (options->pick) {
+        text_add(&path, "/api/v1/pick?x=%.17g&y=%.17g%s", options->place_px[0], options->place_px[1], rest);
+        code = daemon_download(options->from, path.at, NULL);
+        path.length = 0;
+    }
+    text_add(&path, "/snapshot.png%s%s", *rest ? "?" : "", *rest ? rest + 1 : "");
+    if (options->out && code == 0)
+        code = daemon_download(options->from, path.at, options->out);
     text_finish(&path);
+    text_finish(&query);
     return code;
 }
 

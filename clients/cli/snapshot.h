@@ -10,11 +10,13 @@
 
 enum { SNAPSHOT_MAX = 64 };
 struct snapshot_options {
-    const char *from, *out;   /* plant file or URL; file to write */
+    const char *from, *out;   /* plant file or URL; file to write, or NULL if only a pick is asked for */
     char *args[SNAPSHOT_MAX]; /* name=value, as in the query of /snapshot.png; owned */
     size_t arg_count;
     const char *values[SNAPSHOT_MAX]; /* CSV files */
     size_t value_count;
+    bool pick;            /* what is at place_px is printed */
+    double place_px[2];
     const char *baseline; /* CSV file; of a daemon: a name. NULL: none */
     const char *prepared; /* NULL: beside the plant file */
     enum gl_kind gl;

@@ -11,6 +11,7 @@
 #include "base/text.h"
 #include "encode/encoder.h"
 #include "net/query.h"
+#include "net/reply.h"
 #include "plant/image_ramp.h"
 #include "render/canvas.h"
 #include "render/overlay.h"
@@ -71,11 +72,15 @@ static bool load_scene(struct studio *studio, const struct snapshot_options *opt
     return studio->scene != NULL;
 }
 
-static bool set_up(struct studio *studio, const struct snapshot_options *options)
+static void set_up_field(struct studio *studio)
 {
     studio->workers = workers_create(0);
     studio->field = field_create(studio->workers, studio->scene);
     field_set_baselines(studio->field, studio->baselines);
+}
+
+static bool set_up_gl(struct studio *studio, const struct snapshot_options *options)
+{
     studio->gl = gl_create(studio->log, options->gl, options->has_gl_device ? &options->gl_device : NULL);
     if (studio->gl)
         studio->renderer = renderer_create(studio->log, studio->gl, studio->scene, studio->field);
@@ -145,6 +150,17 @@ static bool add_colormaps(const struct studio *studio, const struct snapshot_opt
     return true;
 }
 
+static void print_pick(struct studio *studio, const struct snapshot_options *options, const struct view *view)
+{
+    struct pick_answer *answer = mem_new(sizeof(*answer));
+    answer->order = (struct pick_order){ .view = *view, .x_px = options->place_px[0], .y_px = options->place_px[1] };
+    pick_at(studio->scene, studio->field, view, studio->snapshot, answer->order.x_px, answer->order.y_px, &answer->pick);
+    char *text = reply_picked_text(studio->plant, answer);
+    puts(text);
+    mem_free(text);
+    mem_free(answer);
+}
+
 int snapshot_offline(struct snapshot_options *options)
 {
     struct studio studio = { .log = log_create(LOG_INFO) };
@@ -158,12 +174,15 @@ int snapshot_offline(struct snapshot_options *options)
         goto end;
     }
     const struct params_world world = { .scene = studio.scene, .baselines = studio.baselines };
-    if (!query_parse(&world, (const char *const *)options->args, options->arg_count, &view, &error)) {
+    if (!query_parse(&world, (const char *const *)options->args, options->arg_count, &view, NULL, &error)) {
         fprintf(stderr, "plantcast: %s\n", error.text);
         code = 2;
         goto end;
     }
-    if (set_up(&studio, options) && draw(&studio, options, &view))
+    set_up_field(&studio);
+    if (options->pick)
+        print_pick(&studio, options, &view);
+    if (!options->out || (set_up_gl(&studio, options) && draw(&studio, options, &view)))
         code = 0;
 end:
     tear_down(&studio);

@@ -104,26 +104,6 @@ static void begin_all(struct painter *painter, struct client *first, struct batc
     }
 }
 
-/* Waits for work. False: stop. An empty batch: the slow picture may go on by a step. */
-static bool next_batch(const struct drawing *drawing, const struct schedule *schedule, struct batch *batch)
-{
-    struct painter *painter = drawing->painter;
-    struct turn turn = { 0 };
-    batch->count = 0;
-    pthread_mutex_lock(&painter->lock);
-    while (painter->state == RUNNING) {
-        turn = next_turn(drawing, schedule);
-        if (turn.step || turn.client)
-            break;
-        wait_until(painter, turn.wait_until_ns);
-    }
-    bool running = painter->state == RUNNING;
-    if (running && !turn.step)
-        begin_all(painter, turn.client, batch);
-    pthread_mutex_unlock(&painter->lock);
-    return running;
-}
-
 static void refresh(struct drawing *drawing)
 {
     struct painter *painter = drawing->painter;
@@ -134,6 +114,50 @@ static void refresh(struct drawing *drawing)
     pthread_mutex_unlock(&painter->lock);
     if (new_data || now_ns - drawing->snapshot->taken_mono_ns > SNAPSHOT_MAX_AGE_NS)
         store_snapshot(painter->params.store, now_ns, clock_utc_ns(), drawing->snapshot);
+}
+
+/* One question about a pixel. */
+static void answer_pick(struct drawing *drawing)
+{
+    struct painter *painter = drawing->painter;
+    struct pick_order order;
+    struct pick pick;
+    int64_t start_ns = clock_mono_ns();
+    if (!picks_take(painter->picks, &order))
+        return;
+    refresh(drawing);
+    pick_at(painter->params.scene, drawing->field, &order.view, drawing->snapshot, order.x_px, order.y_px, &pick);
+    counter_inc(painter->picked, 1);
+    counter_inc(painter->pick_us, (clock_mono_ns() - start_ns) / 1000);
+    if (picks_give(painter->picks, &order, &pick))
+        painter->params.notify(painter->params.notify_arg);
+}
+
+/* Waits for work. False: stop. An empty batch: the slow picture may go on by a step. */
+static bool next_batch(struct drawing *drawing, const struct schedule *schedule, struct batch *batch)
+{
+    struct painter *painter = drawing->painter;
+    struct turn turn = { 0 };
+    batch->count = 0;
+    pthread_mutex_lock(&painter->lock);
+    while (painter->state == RUNNING) {
+        if (picks_wait(painter->picks)) {
+            pthread_mutex_unlock(&painter->lock);
+            answer_pick(drawing);
+            pthread_mutex_lock(&painter->lock);
+        }
+        turn = next_turn(drawing, schedule);
+        if (turn.step || turn.client)
+            break;
+        if (picks_wait(painter->picks))
+            continue;
+        wait_until(painter, turn.wait_until_ns);
+    }
+    bool running = painter->state == RUNNING;
+    if (running && !turn.step)
+        begin_all(painter, turn.client, batch);
+    pthread_mutex_unlock(&painter->lock);
+    return running;
 }
 
 struct content_of {

@@ -105,7 +105,8 @@ static void forget_snapshot(struct hub *hub, struct request *request)
     painter_forget(hub->params.painter, request->client);
 }
 
-static bool read_query(struct hub *hub, struct lws *wsi, struct view *view, struct message_error *error)
+/* place: x and y of a pick; NULL: none is asked. */
+static bool read_query(struct hub *hub, struct lws *wsi, struct view *view, double place[2], struct message_error *error)
 {
     enum { MAX_ARGS = 32, MAX_BYTES = 1024 };
     char args[MAX_ARGS][MAX_BYTES];
@@ -119,25 +120,30 @@ static bool read_query(struct hub *hub, struct lws *wsi, struct view *view, stru
         list[count] = args[count];
     }
     const struct params_world world = { .scene = hub->params.scene, .baselines = hub->params.baselines };
-    return query_parse(&world, list, (size_t)count, view, error);
+    return query_parse(&world, list, (size_t)count, view, place, error);
+}
+
+static void await(struct hub *hub, struct request *request)
+{
+    request->client = hub->next_client++;
+    request->next = hub->snapshots;
+    hub->snapshots = request;
+    hub->snapshot_count++;
+    lws_set_timeout(request->wsi, PENDING_TIMEOUT_HTTP_CONTENT, 60);
 }
 
 static int ask_snapshot(struct hub *hub, struct request *request)
 {
     struct wish wish = { .codec = WIRE_CODEC_PNG, .quality = LOSSLESS, .urgency = URGENCY_SNAPSHOT, .always = true, .overlay = true };
     struct message_error error = { 0 };
-    if (!read_query(hub, request->wsi, &wish.view, &error)) {
+    if (!read_query(hub, request->wsi, &wish.view, NULL, &error)) {
         char *text = mem_printf("%s\n", error.text);
         return answer(request, HTTP_STATUS_BAD_REQUEST, "text/plain; charset=utf-8", text, strlen(text), NULL, NULL);
     }
     if (hub->snapshot_count >= MAX_SNAPSHOTS)
         return answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "too many pictures are being made; try again\n");
     wish.asked_ns = wish.view.input_ns = clock_mono_ns();
-    request->client = hub->next_client++;
-    request->next = hub->snapshots;
-    hub->snapshots = request;
-    hub->snapshot_count++;
-    lws_set_timeout(request->wsi, PENDING_TIMEOUT_HTTP_CONTENT, 60);
+    await(hub, request);
     painter_ask(hub->params.painter, request->client, &wish);
     painter_go(hub->params.painter);
     return 0;
@@ -162,6 +168,39 @@ void http_on_picture(struct hub *hub, struct picture *picture)
             lws_set_timeout(request->wsi, PENDING_TIMEOUT_CLOSE_SEND, LWS_TO_KILL_ASYNC);
     }
     picture_destroy(&picture);
+}
+
+/* --- pixels ---------------------------------------------------------------------------------------------------------------- */
+
+static int ask_pick(struct hub *hub, struct request *request)
+{
+    struct pick_order order = { 0 };
+    struct message_error error = { 0 };
+    double place[2];
+    if (!read_query(hub, request->wsi, &order.view, place, &error)) {
+        char *text = mem_printf("%s\n", error.text);
+        return answer(request, HTTP_STATUS_BAD_REQUEST, "text/plain; charset=utf-8", text, strlen(text), NULL, NULL);
+    }
+    if (hub->snapshot_count >= MAX_SNAPSHOTS)
+        return answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "too much is being asked; try again\n");
+    await(hub, request);
+    order.client = request->client;
+    order.x_px = place[0];
+    order.y_px = place[1];
+    painter_pick(hub->params.painter, &order);
+    return 0;
+}
+
+void http_on_pick(struct hub *hub, const struct pick_answer *pick)
+{
+    struct request *request = hub->snapshots;
+    while (request && request->client != pick->order.client)
+        request = request->next;
+    if (!request)
+        return;
+    forget_snapshot(hub, request);
+    if (answer_json(request, reply_picked_text(hub->params.scene->plant, pick)) < 0)
+        lws_set_timeout(request->wsi, PENDING_TIMEOUT_CLOSE_SEND, LWS_TO_KILL_ASYNC);
 }
 
 /* --- routes ----------------------------------------------------------------------------------------------------------------- */
@@ -229,6 +268,7 @@ static const struct {
     { "/metrics", metrics, false },
     { "/api/v1/plant", api_plant, false },
     { "/api/v1/tags", api_tags, false },
+    { "/api/v1/pick", ask_pick, false },
 };
 
 static int serve(struct hub *hub, struct request *request, const char *path)

@@ -45,6 +45,7 @@ void hub_go(struct hub *hub); /* after all wishes of one event are made */
 
 int stream_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t len);
 void stream_on_picture(struct hub *hub, struct picture *picture); /* takes it over; false owner: destroys it */
+void stream_on_pick(struct hub *hub, const struct pick_answer *answer);
 bool stream_owns(const struct hub *hub, uint64_t client);
 void streams_on_tick(struct hub *hub, bool data_changed, bool links_changed);
 void streams_close(struct hub *hub); /* server goes down */
@@ -53,6 +54,7 @@ int stream_check_upgrade(struct hub *hub, struct lws *wsi);
 
 int http_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t len);
 void http_on_picture(struct hub *hub, struct picture *picture); /* takes it over */
+void http_on_pick(struct hub *hub, const struct pick_answer *answer);
 /* A complete short answer in plain text. Returns what the callback is to return. */
 int http_answer(struct lws *wsi, int status, const char *text);
 

@@ -136,6 +136,19 @@ static bool parse_fit(const struct plant *plant, const json_t *o, struct message
     return need_seq(o, &out->seq, error) && fit_parse(plant, o, &out->fit, error);
 }
 
+static bool parse_pick(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
+{
+    const json_t *camera = json_object_get(o, "camera");
+    (void)plant;
+    out->pick.has_camera = camera != NULL;
+    if (camera && !json_is_object(camera)) {
+        message_fail(error, "bad_field", "camera: an object expected");
+        return false;
+    }
+    return need_seq(o, &out->seq, error) && need_number(o, "x", 0, VIEW_MAX_SIDE_PX, &out->pick.x_px, error) &&
+           need_number(o, "y", 0, VIEW_MAX_SIDE_PX, &out->pick.y_px, error) && (!camera || camera_parse(camera, &out->pick.camera, error));
+}
+
 static const struct {
     const char *name;
     enum message_type type;
@@ -143,7 +156,7 @@ static const struct {
 } types[] = {
     { "hello", MESSAGE_HELLO, parse_hello },       { "camera", MESSAGE_CAMERA, parse_camera }, { "params", MESSAGE_PARAMS, parse_params },
     { "resize", MESSAGE_RESIZE, parse_resize },    { "ack", MESSAGE_ACK, parse_ack },          { "ping", MESSAGE_PING, parse_ping },
-    { "visible", MESSAGE_VISIBLE, parse_visible }, { "fit", MESSAGE_FIT, parse_fit },
+    { "visible", MESSAGE_VISIBLE, parse_visible }, { "fit", MESSAGE_FIT, parse_fit },          { "pick", MESSAGE_PICK, parse_pick },
 };
 
 static bool parse_object(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)

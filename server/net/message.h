@@ -16,7 +16,8 @@ enum message_type {
     MESSAGE_ACK,
     MESSAGE_VISIBLE,
     MESSAGE_PING,
-    MESSAGE_FIT
+    MESSAGE_FIT,
+    MESSAGE_PICK
 };
 
 struct message_error {
@@ -87,16 +88,23 @@ struct split_change {
     struct params_change right;
 };
 
+struct pick_request {
+    double x_px, y_px;
+    bool has_camera; /* else: the newest */
+    struct camera camera;
+};
+
 struct message {
     enum message_type type;
     int width_px, height_px;     /* hello, resize */
     enum wire_codec codec;       /* hello: the first of the client's that we have */
     bool has_camera, has_params; /* hello */
     struct camera camera;        /* camera, hello */
-    uint32_t seq;                /* camera (hello: the camera's), ack, fit */
+    uint32_t seq;                /* camera (hello: the camera's), ack, fit, pick */
     struct params_change params; /* params, hello */
     struct split_change split;   /* likewise; applied after params */
     struct fit fit;
+    struct pick_request pick;
     bool visible;
     double decode_ms; /* ack; negative: not said */
     double t;         /* ping */

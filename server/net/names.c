@@ -6,6 +6,7 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "render/pick.h"
 #include "render/view.h"
 #include "scene/framing.h"
 
@@ -21,6 +22,9 @@ const struct name names_codec[] = { { "jpeg", WIRE_CODEC_JPEG }, { "png", WIRE_C
 const struct name names_projection[] = { { "perspective", PROJECTION_PERSPECTIVE },
                                          { "orthographic", PROJECTION_ORTHOGRAPHIC },
                                          { NULL, 0 } };
+const struct name names_pick[] = {
+    { "context", PICK_CONTEXT }, { "no data", PICK_NO_DATA }, { "between", PICK_BETWEEN }, { "measured", PICK_MEASURED }, { NULL, 0 }
+};
 const struct name names_side[] = { { "now", SIDE_NOW },     { "top", SIDE_TOP },   { "bottom", SIDE_BOTTOM },
                                    { "front", SIDE_FRONT }, { "back", SIDE_BACK }, { "left", SIDE_LEFT },
                                    { "right", SIDE_RIGHT }, { "iso", SIDE_ISO },   { NULL, 0 } };

@@ -117,8 +117,21 @@ static void on_tick(lws_sorted_usec_list_t *sul)
     lws_sul_schedule(net->hub.context, 0, sul, on_tick, TICK_NS / 1000);
 }
 
+static void collect_picks(struct hub *hub)
+{
+    for (struct pick_answer *answer = painter_collect_picks(hub->params.painter), *next; answer; answer = next) {
+        next = answer->next;
+        if (stream_owns(hub, answer->order.client))
+            stream_on_pick(hub, answer);
+        else
+            http_on_pick(hub, answer);
+        mem_free(answer);
+    }
+}
+
 static void collect(struct hub *hub)
 {
+    collect_picks(hub);
     for (struct picture *picture = painter_collect(hub->params.painter), *next; picture; picture = next) {
         next = picture->next;
         picture->next = NULL;

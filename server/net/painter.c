@@ -107,8 +107,20 @@ void painter_go(struct painter *painter)
     pthread_mutex_unlock(&painter->lock);
 }
 
+void painter_pick(struct painter *painter, const struct pick_order *order)
+{
+    picks_ask(painter->picks, order);
+    painter_go(painter);
+}
+
+struct pick_answer *painter_collect_picks(struct painter *painter)
+{
+    return picks_collect(painter->picks);
+}
+
 void painter_forget(struct painter *painter, uint64_t id)
 {
+    picks_forget(painter->picks, id);
     pthread_mutex_lock(&painter->lock);
     struct client *client = painter_find(painter, id);
     if (client)
@@ -173,6 +185,8 @@ static void add_counters(struct painter *painter, struct counters *counters)
     painter->failures = counters_add(counters, "plantcast_render_failures_total", "counter", "Pictures that could not be drawn.");
     painter->steps = counters_add(counters, "plantcast_render_steps_total", "counter", "Parts of pictures that take long.");
     painter->abandoned = counters_add(counters, "plantcast_renders_abandoned_total", "counter", "Pictures given up: nobody wanted them.");
+    painter->picked = counters_add(counters, "plantcast_picks_total", "counter", "Questions about a pixel that were answered.");
+    painter->pick_us = counters_add(counters, "plantcast_pick_us_total", "counter", "Microseconds spent answering them.");
     painter->losses = counters_add(counters, "plantcast_gl_losses_total", "counter", "GL contexts that were lost and made again.");
 }
 
@@ -190,6 +204,7 @@ struct painter *painter_create(const struct painter_params *params)
     struct painter *painter = mem_new(sizeof(*painter));
     painter->params = *params;
     painter->done_last = &painter->done;
+    painter->picks = picks_create();
     pthread_mutex_init(&painter->lock, NULL);
     init_wake(&painter->wake);
     add_counters(painter, params->counters);
@@ -207,6 +222,7 @@ void painter_destroy(struct painter **painter_ptr)
         return;
     thread_stop(painter);
     encoding_destroy(&painter->encoding);
+    picks_destroy(&painter->picks);
     for (struct picture *picture = painter_collect(painter), *next; picture; picture = next) {
         next = picture->next;
         picture_destroy(&picture);

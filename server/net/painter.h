@@ -5,6 +5,7 @@
 #define NET_PAINTER_H
 #include "base/counters.h"
 #include "gpu/gl.h"
+#include "net/picks.h"
 #include "net/picture.h"
 #include "value/store.h"
 
@@ -38,6 +39,9 @@ void painter_new_data(struct painter *painter); /* readings changed: look again 
 bool painter_ready(struct painter *painter);
 /* Has the GL context destroyed in the middle of the next picture, as a reset of the GPU does; for tests. */
 void painter_lose_context(struct painter *painter);
+/* Each question brings one answer, unless the client asks another or is forgotten. Answered between pictures. */
+void painter_pick(struct painter *painter, const struct pick_order *order);
+struct pick_answer *painter_collect_picks(struct painter *painter); /* as picks_collect */
 /* All pictures made so far, oldest first; the caller owns them. NULL: none. */
 struct picture *painter_collect(struct painter *painter);
 

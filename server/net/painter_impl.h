@@ -17,7 +17,8 @@ struct client {
 
 struct painter {
     struct painter_params params;
-    counter *renders, *render_us, *same, *failures, *steps, *abandoned, *losses;
+    counter *renders, *render_us, *same, *failures, *steps, *abandoned, *losses, *picked, *pick_us;
+    struct picks *picks;
     struct encoding *encoding;
     pthread_t thread;
     bool has_thread;

@@ -22,7 +22,7 @@ static const struct {
     { "sensors", SENSORS }, { "baseline", STRING }, { "scale", STRING },    { "breaks", BREAKS },
     { "isolines", LINES },  { "split", SPLIT },
     { "projection", STRING }, { "height_m", NUMBER }, { "fit", STRING },    { "side", STRING },          { "hidden", STRINGS },
-    { "isolate", STRINGS }, { "ghost", STRINGS },   { "clip", PLANES },     { "clip_box", BOX },
+    { "isolate", STRINGS }, { "ghost", STRINGS },   { "clip", PLANES },     { "clip_box", BOX },   { "x", NUMBER },          { "y", NUMBER },
 };
 
 /* NULL: not a finite number. */
@@ -235,12 +235,19 @@ static bool apply(const struct params_world *world, const json_t *o, struct view
            split_apply(world, &right, view, error);
 }
 
-bool query_parse(const struct params_world *world, const char *const *args, size_t count, struct view *view, struct message_error *error)
+bool query_parse(const struct params_world *world, const char *const *args, size_t count, struct view *view, double place[2],
+                 struct message_error *error)
 {
     json_t *o = json_object();
     bool good = true;
     for (size_t i = 0; i < count && good; i++)
         good = add(o, args[i], error);
+    if (good && !place && (json_object_get(o, "x") || json_object_get(o, "y"))) {
+        message_fail(error, "bad_field", "x, y: only for a pick");
+        good = false;
+    }
+    good = good && (!place || (need_number(o, "x", 0, VIEW_MAX_SIDE_PX, &place[0], error) &&
+                               need_number(o, "y", 0, VIEW_MAX_SIDE_PX, &place[1], error)));
     good = good && apply(world, o, view, error);
     json_decref(o);
     return good;

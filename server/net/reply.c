@@ -337,6 +337,40 @@ char *reply_camera_text(const struct camera *camera, uint32_t seq)
     return print(object, DIGITS);
 }
 
+static json_t *nearest(const struct plant *plant, const struct pick *pick)
+{
+    json_t *list = json_array();
+    for (int i = 0; i < pick->nearest_count; i++) {
+        const struct pick_sensor *at = &pick->nearest[i];
+        json_array_append_new(list,
+                              json_pack("{s:o,s:o,s:o,s:o}", "tag", string(plant->tags[at->tag].name), "distance_m", number(at->distance_m),
+                                        "value", number(at->value), "quality", string(quality_class(at->quality))));
+    }
+    return list;
+}
+
+char *reply_picked_text(const struct plant *plant, const struct pick_answer *answer)
+{
+    const struct pick *pick = &answer->pick;
+    bool found = pick->asset >= 0, told = pick->state == PICK_BETWEEN || pick->state == PICK_MEASURED;
+    struct view half;
+    view_half(&answer->order.view, answer->order.view.split && answer->order.x_px >= view_left_px(&answer->order.view), &half);
+    json_t *object =
+        json_pack("{s:s,s:I,s:o,s:o,s:o,s:s}", "type", "picked", "time_us", us(pick->data_utc_ns), "asset",
+                  found ? string(plant->assets[pick->asset].id) : json_null(), "position", found ? vector(pick->position_m) : json_null(),
+                  "normal", found ? vector(pick->normal) : json_null(), "state", name_of(names_pick, (int)pick->state));
+    if (answer->order.seq)
+        json_object_set_new(object, "seq", json_integer(answer->order.seq));
+    json_object_set_new(object, "value", told ? number(pick->value) : json_null());
+    json_object_set_new(object, "unit", string(view_unit(plant, &half)));
+    json_object_set_new(object, "uncertain", json_boolean(told && pick->uncertain));
+    json_object_set_new(object, "inside", json_boolean(found && pick->inside));
+    json_object_set_new(object, "nearest", nearest(plant, pick));
+    json_object_set_new(object, "sensor", pick->sensor < 0 ? json_null() : string(plant->tags[pick->sensor].name));
+    json_object_set_new(object, "occluded", json_boolean(pick->sensor >= 0 && pick->sensor_occluded));
+    return print(object, DIGITS);
+}
+
 char *reply_error_text(const struct message_error *error)
 {
     return print(json_pack("{s:s,s:s,s:o,s:o}", "type", "error", "code", error->code, "text", string(error->text), "about",

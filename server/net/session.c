@@ -127,6 +127,30 @@ static void on_fit(struct session *session, const struct message *message)
     reply(session, reply_camera_text(&camera, message->seq));
 }
 
+static void on_pick(struct session *session, const struct message *message)
+{
+    session->pick = (struct pick_order){ .client = session->id, .seq = message->seq, .view = session->view };
+    session->pick.x_px = message->pick.x_px;
+    session->pick.y_px = message->pick.y_px;
+    if (message->pick.has_camera)
+        session->pick.view.camera = message->pick.camera;
+    session->pick_pending = true;
+}
+
+bool session_pick(struct session *session, struct pick_order *order)
+{
+    bool pending = session->pick_pending;
+    if (pending)
+        *order = session->pick;
+    session->pick_pending = false;
+    return pending;
+}
+
+void session_on_pick(struct session *session, const struct pick_answer *answer)
+{
+    reply(session, reply_picked_text(session->world->plant, answer));
+}
+
 static bool act(struct session *session, const struct message *message, int64_t now_ns, int64_t now_utc_ns, struct message_error *error)
 {
     switch (message->type) {
@@ -144,6 +168,7 @@ static bool act(struct session *session, const struct message *message, int64_t 
     case MESSAGE_ACK: return on_ack(session, message, now_ns, error);
     case MESSAGE_VISIBLE: on_visible(session, message->visible); return true;
     case MESSAGE_FIT: on_fit(session, message); return true;
+    case MESSAGE_PICK: on_pick(session, message); return true;
     case MESSAGE_PING: reply(session, reply_pong_text(message->t, now_utc_ns)); return true;
     }
     return true;

@@ -5,6 +5,7 @@
 #include "base/text.h"
 #include "net/message.h"
 #include "net/pacer.h"
+#include "net/picks.h"
 #include "net/picture.h"
 #include "scene/scene.h"
 #include "value/snapshot.h"
@@ -48,6 +49,8 @@ struct session {
     uint32_t params_seq;                     /* to be answered */
     int64_t tags_ns, tags_all_ns, status_ns; /* last sent */
     uint32_t *tag_changes;                   /* reading.changes as last sent, by tag */
+    bool pick_pending;
+    struct pick_order pick; /* to be asked */
     char *replies[SESSION_MAX_REPLIES];      /* pongs and errors, oldest first */
     int reply_count;
 
@@ -72,6 +75,10 @@ void session_on_picture(struct session *session, struct picture *picture);
    of one that was not begun. */
 bool session_wish(const struct session *session, int64_t now_ns, struct wish *wish);
 void session_asked(struct session *session, const struct wish *wish, bool replaced);
+
+/* True: *order is what to ask about a pixel, now. */
+bool session_pick(struct session *session, struct pick_order *order);
+void session_on_pick(struct session *session, const struct pick_answer *answer);
 
 /* The next text message to send, if any is due: into `out`. Markers of a picture are session_markers. */
 bool session_next_text(struct session *session, int64_t now_ns, int64_t now_utc_ns, struct text *out);

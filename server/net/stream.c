@@ -160,6 +160,9 @@ static void pump(struct hub *hub, struct stream *stream)
             session_asked(session, &wish, answer == PAINTER_REPLACED);
         hub->asked = true;
     }
+    struct pick_order order;
+    if (session_pick(session, &order))
+        painter_pick(hub->params.painter, &order);
     if (session->too_fast != stream->throttled) {
         stream->throttled = session->too_fast;
         lws_rx_flow_control(stream->wsi, !stream->throttled);
@@ -221,6 +224,13 @@ void stream_on_picture(struct hub *hub, struct picture *picture)
         counter_inc(hub->counters.refused, 1);
         close_with(stream, 1013, "no memory for another picture: try later, or a smaller one");
     }
+    pump(hub, stream);
+}
+
+void stream_on_pick(struct hub *hub, const struct pick_answer *answer)
+{
+    struct stream *stream = find(hub, answer->order.client);
+    session_on_pick(stream->session, answer);
     pump(hub, stream);
 }
 

@@ -39,8 +39,7 @@ static size_t count_shown(const struct picture *picture)
     return count;
 }
 
-/* A marker sits on the surface; curved triangles may put it a little behind. */
-static double slack_m(const struct scene_asset *asset)
+double markers_slack_m(const struct scene_asset *asset)
 {
     double size = 0;
     for (int c = 0; c < 3; c++)
@@ -58,7 +57,7 @@ static void fill_places(const struct picture *picture, float (*places)[4])
                 continue;
             for (int c = 0; c < 3; c++)
                 (*places)[c] = (float)(sensor->surface_m[c] - picture->shot.eye_m[c]);
-            (*places++)[3] = (float)slack_m(&scene->assets[a]);
+            (*places++)[3] = (float)markers_slack_m(&scene->assets[a]);
         }
 }
 

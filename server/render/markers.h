@@ -10,6 +10,8 @@ struct markers {
     size_t capacity;
 };
 
+/* A marker sits on the surface; curved triangles may put it so far behind. */
+double markers_slack_m(const struct scene_asset *asset);
 bool markers_init(struct markers *markers, struct log *log); /* false: logged */
 void markers_finish(struct markers *markers);
 /* Started once the picture is resolved; read into the frame when the GPU is done with it. False: out of GPU memory, logged. */

@@ -6,12 +6,12 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "render/markers.h"
 #include "scene/raycast.h"
 #include "value/quality.h"
 
 static const double MARKER_PX = 9;                       /* so near, the marker is meant */
 static const double MEASURED_PX = 3, MEASURED_M = 0.005; /* so near a sensor, its reading is what is seen */
-static const double SIGHT_M = 0.02;                      /* a marker so far behind the surface is still on it */
 
 struct spot { /* one pick */
     const struct scene *scene;
@@ -57,7 +57,7 @@ static void ray_through(const struct view *view, double x_px, double y_px, struc
 }
 
 /* A ray towards it meets nothing before. */
-static bool in_sight(const struct spot *spot, const struct scene_sensor *sensor, double x_px, double y_px)
+static bool in_sight(const struct spot *spot, int asset, const struct scene_sensor *sensor, double x_px, double y_px)
 {
     struct ray ray;
     struct raycast_hit hit;
@@ -68,7 +68,7 @@ static bool in_sight(const struct spot *spot, const struct scene_sensor *sensor,
         ahead += (sensor->surface_m[i] - ray.origin[i]) * ray.direction[i];
         square += ray.direction[i] * ray.direction[i];
     }
-    return hit.asset < 0 || hit.t * sqrt(square) > ahead / sqrt(square) - SIGHT_M;
+    return hit.asset < 0 || hit.t * sqrt(square) > ahead / sqrt(square) - markers_slack_m(&spot->scene->assets[asset]);
 }
 
 static void find_sensor(const struct spot *spot, double x_px, double y_px, struct pick *out)
@@ -88,7 +88,7 @@ static void find_sensor(const struct spot *spot, double x_px, double y_px, struc
             double away = hypot(x - x_px, y - y_px);
             if (away >= least[0])
                 continue;
-            bool occluded = !in_sight(spot, sensor, x, y);
+            bool occluded = !in_sight(spot, (int)a, sensor, x, y);
             if (away >= least[occluded] || (occluded && least[0] < MARKER_PX))
                 continue;
             least[occluded] = away;

@@ -14,10 +14,11 @@
 #include <cmocka.h>
 
 #include "base/clock.h"
+#include "base/mem.h"
 #include "net/painter.h"
 #include "tests/support/toy.h"
 
-enum { REFINER = 1, MOVER = 2 };
+enum { REFINER = 1, MOVER = 2, PICKER = 3 };
 static const int64_t PATIENCE_NS = 100 * NS_PER_S; /* far beyond any picture, under sanitizers too */
 
 static struct toy *toy;
@@ -250,6 +251,64 @@ static void test_no_memory_fails_that_picture_alone(void **state)
 }
 
 /* The daemon goes down in the midst of it. */
+static struct pick_answer *next_pick(void)
+{
+    int64_t until_ns = clock_utc_ns() + PATIENCE_NS;
+    struct timespec until = { .tv_sec = until_ns / NS_PER_S };
+    struct pick_answer *answer;
+    pthread_mutex_lock(&lock);
+    while (!(answer = painter_collect_picks(painter)))
+        if (pthread_cond_timedwait(&came, &lock, &until) != 0)
+            fail_msg("no answer came");
+    pthread_mutex_unlock(&lock);
+    return answer;
+}
+
+/* A question about a pixel does not wait for a picture that takes long, nor hold it up for more than a step. */
+static void test_picks_are_answered_between_steps(void **state)
+{
+    (void)state;
+    struct pick_order order = { .client = PICKER, .x_px = 320, .y_px = 180 };
+    view_default(&toy->scene, 640, 360, &order.view);
+    int64_t steps = count_of("plantcast_render_steps_total");
+    ask(REFINER, URGENCY_REFINE, 0);
+    await_step(steps + 1);
+    for (uint32_t i = 1; i <= 20; i++) {
+        order.seq = i;
+        painter_pick(painter, &order);
+        struct pick_answer *answer = next_pick();
+        assert_int_equal(answer->order.seq, i);
+        assert_true(answer->pick.asset >= 0 && !answer->next);
+        mem_free(answer);
+    }
+    painter_forget(painter, PICKER);
+    struct picture *refined = next();
+    assert_true(refined->client == REFINER && refined->packet);
+    picture_destroy(&refined);
+}
+
+/* Of those that wait only the newest is answered. */
+static void test_newest_pick_wins(void **state)
+{
+    (void)state;
+    struct pick_order order = { .client = PICKER, .x_px = 320, .y_px = 180 };
+    view_default(&toy->scene, 640, 360, &order.view);
+    uint32_t last = 0;
+    int answers = 0;
+    for (order.seq = 1; order.seq <= 500; order.seq++)
+        painter_pick(painter, &order);
+    while (last < 500) {
+        for (struct pick_answer *answer = next_pick(), *after; answer; answer = after) {
+            after = answer->next;
+            assert_true(answer->order.seq > last);
+            last = answer->order.seq;
+            answers++;
+            mem_free(answer);
+        }
+    }
+    print_message("# %d of 500 answered\n", answers);
+}
+
 static void test_stop_waits_for_no_refinement(void **state)
 {
     (void)state;
@@ -296,6 +355,8 @@ int main(void)
         cmocka_unit_test(test_refinement_ends_while_others_go_on_moving),
         cmocka_unit_test(test_lost_context_is_made_again_under_load),
         cmocka_unit_test(test_no_memory_fails_that_picture_alone),
+        cmocka_unit_test(test_picks_are_answered_between_steps),
+        cmocka_unit_test(test_newest_pick_wins),
         cmocka_unit_test(test_stop_waits_for_no_refinement),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);

@@ -557,6 +557,41 @@ static void a_fit_is_answered_with_a_camera_and_moves_nothing(void **state)
     json_decref(answer);
 }
 
+static void a_pick_is_asked_once_and_answered(void **state)
+{
+    struct fixture *f = *state;
+    struct pick_order order;
+    greet(f);
+    assert_false(session_pick(f->session, &order));
+    say(f, "{\"type\":\"pick\",\"seq\":5,\"x\":10.5,\"y\":20}");
+    say(f, "{\"type\":\"pick\",\"seq\":6,\"x\":11,\"y\":20,\"camera\":{\"eye\":[1,2,3],\"target\":[4,5,6]}}");
+    assert_true(session_pick(f->session, &order));
+    assert_true(order.client == f->session->id && order.seq == 6 && order.x_px == 11 && order.view.camera.eye_m[2] == 3);
+    assert_true(f->session->view.camera.eye_m[2] != 3);
+    assert_false(session_pick(f->session, &order));
+    struct pick_answer answer = { .order = order, .pick = { .asset = 0, .state = PICK_MEASURED, .value = 30.5, .sensor = 0 } };
+    answer.pick.nearest_count = 1;
+    answer.pick.nearest[0] = (struct pick_sensor){ .tag = 0, .distance_m = 0.25, .value = 30.5 };
+    session_on_pick(f->session, &answer);
+    json_t *said = hear(f);
+    assert_string_equal(type_of(said), "picked");
+    assert_int_equal(json_integer_value(json_object_get(said, "seq")), 6);
+    assert_string_equal(json_string_value(json_object_get(said, "asset")), "E-101");
+    assert_string_equal(json_string_value(json_object_get(said, "state")), "measured");
+    assert_string_equal(json_string_value(json_object_get(said, "sensor")), "TI-1");
+    assert_string_equal(json_string_value(json_object_get(said, "unit")), "\302\260C");
+    assert_true(json_number_value(json_object_get(said, "value")) == 30.5);
+    json_t *nearest = json_array_get(json_object_get(said, "nearest"), 0);
+    assert_string_equal(json_string_value(json_object_get(nearest, "tag")), "TI-1");
+    assert_string_equal(json_string_value(json_object_get(nearest, "quality")), "good");
+    json_decref(said);
+    answer.pick = (struct pick){ .asset = -1, .sensor = -1, .value = 0 };
+    session_on_pick(f->session, &answer);
+    said = hear(f);
+    assert_true(json_is_null(json_object_get(said, "asset")) && json_is_null(json_object_get(said, "value")));
+    json_decref(said);
+}
+
 static void pings_come_back_exactly(void **state)
 {
     struct fixture *f = *state;
@@ -594,6 +629,7 @@ int main(void)
         TEST(too_many_messages_are_put_off),
         TEST(acks_for_nothing_are_errors),
         TEST(a_fit_is_answered_with_a_camera_and_moves_nothing),
+        TEST(a_pick_is_asked_once_and_answered),
         TEST(pings_come_back_exactly),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
