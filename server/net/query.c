@@ -22,7 +22,8 @@ static const struct {
     { "sensors", SENSORS }, { "baseline", STRING }, { "scale", STRING },    { "breaks", BREAKS },
     { "isolines", LINES },  { "split", SPLIT },
     { "projection", STRING }, { "height_m", NUMBER }, { "fit", STRING },    { "side", STRING },          { "hidden", STRINGS },
-    { "isolate", STRINGS }, { "ghost", STRINGS },   { "clip", PLANES },     { "clip_box", BOX },   { "x", NUMBER },          { "y", NUMBER },
+    { "isolate", STRINGS }, { "ghost", STRINGS },   { "clip", PLANES },     { "clip_box", BOX },         { "x", NUMBER },
+    { "y", NUMBER },
 };
 
 /* NULL: not a finite number. */

@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import {
-    basis, depthAt, distance, elevation, enterBox, face, fit, home, MAX_ELEVATION_DEG, MIN_DISTANCE_M, orbit, pan, projector, ray, same,
+    basis, depthAt, distance, elevation, enterBox, face, fit, home, MAX_ELEVATION_DEG, MIN_DISTANCE_M, orbit, pan, projector, same, sight, toParallel, toPerspective,
     valid, zoom,
 } from '../../clients/web/core/camera.js';
 import { flight, FLIGHT_MS } from '../../clients/web/core/flight.js';
@@ -42,7 +42,7 @@ test('a ray through a place of the picture comes back to that place at every dep
     const project = projector(camera, 1608, 996);
     for (let n = 0; n < 200; n++) {
         const x = random(0, 1608), y = random(0, 996), depth = random(0.1, 500);
-        closeTo(project(along(camera.eye, ray(camera, x, y, 1608, 996), depth)), [x, y, depth], 1e-6);
+        closeTo(project(along(camera.eye, sight(camera, x, y, 1608, 996).direction, depth)), [x, y, depth], 1e-6);
     }
 });
 
@@ -94,7 +94,7 @@ test('pan: what is at the target follows the pointer by the pixel', () => {
 test('zoom keeps what is under the cursor there, at any depth, and goes back exactly', () => {
     for (let n = 0; n < 200; n++) {
         const x = random(0, 1608), y = random(0, 996), depth = random(5, 80);
-        const point = along(camera.eye, ray(camera, x, y, 1608, 996), depth);
+        const point = along(camera.eye, sight(camera, x, y, 1608, 996).direction, depth);
         const nearer = zoom(camera, 0.5, x, y, 1608, 996, depth);
         closeTo(projector(nearer, 1608, 996)(point), [x, y, depth / 2], 1e-6);
         close(distance(nearer), depth / 2, 1e-6);
@@ -192,4 +192,48 @@ test('a flight starts and ends where it should, level all the way, and turns by 
         eastMost = Math.max(eastMost, c.eye[0]);
     }
     assert.ok(eastMost > 40, 'by the east, not around by the west');
+});
+
+test('orthographic: every metre has its pixels, wherever it lies', () => {
+    const c = { eye: [0, -10, 0], target: [0, 0, 0], up: [0, 0, 1], fov: 45, height_m: 8 };
+    const project = projector(c, 1600, 800);
+    for (const y of [-50, 0, 300])
+        closeTo(project([4, y, 2]).slice(0, 2), [1200, 200]);
+    const { origin, direction } = sight(c, 1200, 200, 1600, 800);
+    closeTo(origin, [4, -10, 2]);
+    closeTo(direction, [0, 1, 0]);
+    assert.ok(valid(c) && !valid({ ...c, height_m: 0 }) && !valid({ ...c, height_m: Infinity }));
+});
+
+test('orthographic: zooming keeps what is under the pointer, panning follows it', () => {
+    let c = toParallel(camera);
+    for (let n = 0; n < 200; n++) {
+        const x = random(0, 1600), y = random(0, 900), at = sight(c, x, y, 1600, 900).origin;
+        const zoomed = zoom(c, random(0.5, 2), x, y, 1600, 900);
+        closeTo(projector(zoomed, 1600, 900)(at).slice(0, 2), [x, y], 1e-6);
+        const panned = pan(zoomed, 30, -20, 900);
+        closeTo(projector(panned, 1600, 900)(at).slice(0, 2), [x + 30, y - 20], 1e-6);
+        c = fit(orbit(panned, random(-50, 50), random(-20, 20)), { min: [-3, -1, 0], max: [3, 1, 2] }, 16 / 9);
+        assert.ok(valid(c));
+    }
+});
+
+test('the other projection shows as much at the target', () => {
+    const parallel = toParallel(camera), back = toPerspective(parallel);
+    const above = [camera.target[0], camera.target[1], camera.target[2] + 1];
+    closeTo(projector(parallel, 1600, 900)(camera.target).slice(0, 2), [800, 450]);
+    closeTo(back.eye, camera.eye, 1e-9);
+    assert.equal(back.height_m, undefined);
+    assert.ok(Math.abs(projector(parallel, 1600, 900)(above)[1] - projector(camera, 1600, 900)(above)[1]) < 2);
+});
+
+test('a flight to the other projection ends there, and all on the way can be asked for', () => {
+    const to = fit(toParallel(camera), { min: [-3, -1, 0], max: [3, 1, 2] }, 1.6);
+    for (const [a, b] of [[camera, to], [to, camera], [to, toParallel(camera)]]) {
+        const path = flight(a, b);
+        for (let ms = 0; ms <= FLIGHT_MS; ms += 50)
+            assert.ok(valid(path(ms)));
+        assert.ok(same(path(FLIGHT_MS), b));
+        closeTo(path(0).target, a.target, 1e-9);
+    }
 });

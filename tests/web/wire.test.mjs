@@ -33,7 +33,11 @@ for (const name of names('frame/')) {
             dataTimeUs: want.data_time_us, sentTimeUs: want.sent_time_us,
             stages: [want.wait_us, want.field_us, want.render_us, want.encode_us],
             part: [want.x, want.y, want.width, want.height, want.full_width, want.full_height],
-            camera: { eye: want.eye, target: want.target, up: want.up, fov: want.fov }, payload: want.payload_bytes,
+            camera: {
+                eye: want.eye, target: want.target, up: want.up, fov: want.fov,
+                ...(want.height_m === undefined ? {} : { height_m: want.height_m }),
+            },
+            payload: want.payload_bytes,
         });
         assert.equal(isWhole(frame), want.width === want.full_width && want.height === want.full_height);
     });

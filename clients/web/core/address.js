@@ -6,6 +6,7 @@ const CHOICES = { // null: any name; the server knows which there are
     group: null, interpolation: ['shepard', 'paper'], distance: ['geodesic', 'euclidean'], colormap: null,
     look: ['default', 'glossy', 'flat'],
 };
+const SETS = { hide: 'hidden', only: 'isolate', ghost: 'ghost' }; // lists of assets
 const round = (x) => Number(x.toFixed(4)) + 0;
 
 export function writeAddress({ camera, params = {}, tag = null }) {
@@ -19,17 +20,39 @@ export function writeAddress({ camera, params = {}, tag = null }) {
         put('ramp', params.ramp_interval);
     if (params.selected)
         put('asset', params.selected);
+    for (const [name, param] of Object.entries(SETS)) {
+        if (params[param]?.length > 0)
+            put(name, params[param].join(','));
+    }
+    if (params.clip)
+        put('clip', writeClip(params.clip));
     if (tag)
         put('tag', tag);
     if (camera)
-        put('camera', [...camera.eye, ...camera.target, ...camera.up, camera.fov].map(round).join(','));
+        put('camera', [...camera.eye, ...camera.target, ...camera.up, camera.fov, camera.height_m ?? []].flat().map(round).join(','));
     return parts.length > 0 ? `#${parts.join('&')}` : '';
+}
+
+// Planes as nx,ny,nz,d with semicolons; a box as its six numbers.
+function writeClip({ planes, box }) {
+    return planes ? planes.map((plane) => plane.map(round).join(',')).join(';') : [...box.min, ...box.max].map(round).join(',');
+}
+
+function readClip(text) {
+    const lists = text.split(';').map((part) => part.split(',').map(Number));
+    if (!lists.flat().every(Number.isFinite))
+        return null;
+    if (lists.length === 1 && lists[0].length === 6)
+        return { box: { min: lists[0].slice(0, 3), max: lists[0].slice(3) } };
+    return lists.length <= 6 && lists.every((plane) => plane.length === 4) ? { planes: lists } : null;
 }
 
 function readCamera(text) {
     const n = (text ?? '').split(',').map(Number);
     const camera = { eye: n.slice(0, 3), target: n.slice(3, 6), up: n.slice(6, 9), fov: n[9] };
-    return n.length === 10 && valid(camera) ? camera : null;
+    if (n.length === 11)
+        camera.height_m = n[10];
+    return (n.length === 10 || n.length === 11) && valid(camera) ? camera : null;
 }
 
 // { camera or null, params (only what the address names), tag or null }. What makes no sense is left out.
@@ -44,6 +67,13 @@ export function readAddress(hash) {
     const ramp = Number(fields.get('ramp'));
     if (fields.has('ramp') && Number.isFinite(ramp) && ramp >= 0)
         params.ramp_interval = ramp;
+    for (const [name, param] of Object.entries(SETS)) {
+        if (fields.get(name))
+            params[param] = fields.get(name).split(',');
+    }
+    const clip = readClip(fields.get('clip') ?? '');
+    if (clip)
+        params.clip = clip;
     if (fields.get('asset'))
         params.selected = fields.get('asset');
     return { camera: readCamera(fields.get('camera')), params, tag: fields.get('tag') || null };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The camera of one viewer and how it moves. A camera is { eye, target, up, fov }: metres in the plant frame, fov vertical in
-// degrees; target is what it turns about. Every function returns a new camera. Picture places are pixels from the top left.
+// degrees; target is what it turns about. One that has height_m, what its picture is high, is orthographic; fov is then kept for
+// later. Every function returns a new camera. Picture places are pixels from the top left.
 import { add, along, cross, dot, finite, length, middle, scale, subtract, turn, unit } from './vector.js';
 
 const RADIANS = Math.PI / 180;
@@ -8,18 +9,22 @@ export const MAX_ELEVATION_DEG = 89; // straight up or down the horizon has no d
 export const MIN_DISTANCE_M = 0.05;
 export const MAX_DISTANCE_M = 1e5;
 const MAX_COORDINATE_M = 1e6; // what the server accepts
+const MIN_HEIGHT_M = 1e-3;
+const USUAL_FOV = 45;
 
 export function valid(camera) {
     if (!camera || !finite(camera.eye) || !finite(camera.target) || !finite(camera.up) || !Number.isFinite(camera.fov))
         return false;
-    if (camera.fov < 1 || camera.fov > 120 || [...camera.eye, ...camera.target].some((m) => Math.abs(m) > MAX_COORDINATE_M))
+    const lens = camera.height_m === undefined ? camera.fov >= 1 && camera.fov <= 120
+        : camera.height_m >= MIN_HEIGHT_M && camera.height_m <= MAX_COORDINATE_M;
+    if (!lens || [...camera.eye, ...camera.target].some((m) => Math.abs(m) > MAX_COORDINATE_M))
         return false;
     const view = subtract(camera.target, camera.eye);
     return length(view) > 1e-9 && length(camera.up) > 1e-9 && length(cross(unit(view), unit(camera.up))) > 1e-6;
 }
 
 export function same(a, b) {
-    return a === b || (!!a && !!b && a.fov === b.fov && ['eye', 'target', 'up'].every((k) => a[k].every((x, i) => x === b[k][i])));
+    return a === b || (!!a && !!b && a.fov === b.fov && a.height_m === b.height_m && ['eye', 'target', 'up'].every((k) => a[k].every((x, i) => x === b[k][i])));
 }
 
 export const distance = (camera) => length(subtract(camera.target, camera.eye));
@@ -50,7 +55,22 @@ export function orbit(camera, azimuthDeg, elevationDeg, pivot = camera.target) {
     return { ...camera, eye: move(camera.eye), target: move(camera.target) };
 }
 
-const metresPerPixel = (camera, heightPx, depth) => (2 * depth * Math.tan((camera.fov * RADIANS) / 2)) / heightPx;
+export const isParallel = (camera) => camera.height_m !== undefined;
+
+const heightAt = (camera, depth) => camera.height_m ?? 2 * depth * Math.tan((camera.fov * RADIANS) / 2);
+const metresPerPixel = (camera, heightPx, depth) => heightAt(camera, depth) / heightPx;
+
+// The same at the target's depth, by the other projection.
+export function toParallel(camera) {
+    return { ...camera, height_m: heightAt(camera, distance(camera)) };
+}
+
+export function toPerspective(camera) {
+    const { height_m, ...rest } = camera;
+    const fov = rest.fov >= 1 ? rest.fov : USUAL_FOV;
+    const back = Math.max(MIN_DISTANCE_M, height_m / (2 * Math.tan((fov * RADIANS) / 2)));
+    return { ...rest, fov, eye: along(rest.target, basis(camera).forward, -back) };
+}
 
 // What lies at the target's depth follows the pointer exactly.
 export function pan(camera, dxPx, dyPx, heightPx) {
@@ -60,18 +80,28 @@ export function pan(camera, dxPx, dyPx, heightPx) {
     return { ...camera, eye: add(camera.eye, move), target: add(camera.target, move) };
 }
 
-// The line of sight through a place of the picture, one metre deep along `forward` per unit.
-export function ray(camera, xPx, yPx, widthPx, heightPx) {
+// The line of sight through a place of the picture: where it begins, and its direction, one metre deep along `forward` per unit.
+export function sight(camera, xPx, yPx, widthPx, heightPx) {
     const { forward, right, up } = basis(camera);
     const step = metresPerPixel(camera, heightPx, 1);
-    return along(along(forward, right, (xPx - widthPx / 2) * step), up, (heightPx / 2 - yPx) * step);
+    const aside = along(scale(right, (xPx - widthPx / 2) * step), up, (heightPx / 2 - yPx) * step);
+    return isParallel(camera) ? { origin: add(camera.eye, aside), direction: forward } : { origin: camera.eye, direction: add(forward, aside) };
+}
+
+function zoomParallel(camera, factor, xPx, yPx, widthPx, heightPx) {
+    const height_m = Math.max(MIN_DISTANCE_M, Math.min(MAX_DISTANCE_M, camera.height_m * factor));
+    const zoomed = { ...camera, height_m };
+    const move = subtract(sight(camera, xPx, yPx, widthPx, heightPx).origin, sight(zoomed, xPx, yPx, widthPx, heightPx).origin);
+    return { ...zoomed, eye: add(camera.eye, move), target: add(camera.target, move) };
 }
 
 // Factor < 1 goes nearer. What is under (xPx, yPx) stays there at any depth; `depth` says how far off it is, and the target
 // is brought to that depth, so that the next turn is about what was looked at.
 export function zoom(camera, factor, xPx, yPx, widthPx, heightPx, depth = distance(camera)) {
+    if (isParallel(camera))
+        return zoomParallel(camera, factor, xPx, yPx, widthPx, heightPx);
     const wanted = Math.max(MIN_DISTANCE_M, Math.min(MAX_DISTANCE_M, depth * factor));
-    const eye = along(camera.eye, ray(camera, xPx, yPx, widthPx, heightPx), depth - wanted);
+    const eye = along(camera.eye, sight(camera, xPx, yPx, widthPx, heightPx).direction, depth - wanted);
     return { ...camera, eye, target: along(eye, basis(camera).forward, wanted) };
 }
 
@@ -90,19 +120,29 @@ export function enterBox(origin, direction, box) {
 
 // The depth of the nearest box under a place of the picture, else the target's.
 export function depthAt(camera, xPx, yPx, widthPx, heightPx, boxes) {
-    const direction = ray(camera, xPx, yPx, widthPx, heightPx);
+    const { origin, direction } = sight(camera, xPx, yPx, widthPx, heightPx);
     let depth = Infinity;
     for (const box of boxes)
-        depth = Math.min(depth, enterBox(camera.eye, direction, box) ?? Infinity);
+        depth = Math.min(depth, enterBox(origin, direction, box) ?? Infinity);
     return Number.isFinite(depth) && depth > MIN_DISTANCE_M ? depth : distance(camera);
 }
 
 const corners = (box) => [0, 1, 2, 3, 4, 5, 6, 7].map((n) => [0, 1, 2].map((i) => (n & (1 << i) ? box.max[i] : box.min[i])));
 
+function fitParallel(camera, box, aspect, margin) {
+    const { forward, right, up } = basis(camera);
+    const half = scale(subtract(box.max, box.min), 0.5), centre = middle(box.min, box.max);
+    const reach = (axis) => half.reduce((sum, m, i) => sum + Math.abs(m * axis[i]), 0);
+    const height_m = Math.max(MIN_DISTANCE_M, 2 * margin * Math.max(reach(up), reach(right) / aspect));
+    return { ...camera, height_m, eye: along(centre, forward, -(2 * reach(forward) + height_m)), target: centre };
+}
+
 // Looks the same way at the middle of a box, from just so far that all of it is inside the picture with a margin around.
 export function fit(camera, box, aspect, margin = 1.08) {
     const { forward, right, up } = basis(camera);
     const centre = middle(box.min, box.max);
+    if (isParallel(camera))
+        return fitParallel(camera, box, aspect, margin);
     const tall = Math.tan((camera.fov * RADIANS) / 2) / margin, wide = tall * aspect;
     let far = MIN_DISTANCE_M;
     for (const corner of corners(box)) {
@@ -121,18 +161,29 @@ export function face(camera, point, box, distanceM, elevationDeg = 20) {
     const direction = unit(length(level) > 1e-4 ? level : subtract(back, scale(vertical, dot(back, vertical))));
     const tilt = elevationDeg * RADIANS;
     const towards = add(scale(direction, Math.cos(tilt)), scale(vertical, Math.sin(tilt)));
-    return { ...camera, target: point, eye: along(point, towards, distanceM) };
+    const lens = isParallel(camera) ? { height_m: 0.8 * distanceM } : {};
+    return { ...camera, ...lens, target: point, eye: along(point, towards, distanceM) };
+}
+
+// As plantcast.v1 says it.
+export function cameraMessage({ eye, target, up, fov, height_m }) {
+    return { eye, target, up, ...(height_m === undefined ? { fov } : { projection: 'orthographic', height_m }) };
+}
+
+// The other way round.
+export function cameraOfMessage({ eye, target, up, fov, height_m }) {
+    return { eye, target, up, fov: fov ?? USUAL_FOV, ...(height_m === undefined ? {} : { height_m }) };
 }
 
 // Function from a point in the plant to [x, y, depth in metres] in the picture; null: behind the eye.
 export function projector(camera, widthPx, heightPx) {
     const { forward, right, up } = basis(camera);
-    const perMetre = 1 / metresPerPixel(camera, heightPx, 1);
+    const perMetre = 1 / metresPerPixel(camera, heightPx, 1), parallel = isParallel(camera);
     return (point) => {
         const v = subtract(point, camera.eye);
         const depth = dot(v, forward);
-        const step = perMetre / depth;
-        return depth > 1e-6 ? [widthPx / 2 + dot(v, right) * step, heightPx / 2 - dot(v, up) * step, depth] : null;
+        const step = parallel ? perMetre : perMetre / depth;
+        return parallel || depth > 1e-6 ? [widthPx / 2 + dot(v, right) * step, heightPx / 2 - dot(v, up) * step, depth] : null;
     };
 }
 

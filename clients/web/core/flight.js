@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A camera's flight from one view to another: the horizon level all the way, the turn by the shorter side.
-import { distance, valid } from './camera.js';
+import { distance, isParallel, toParallel, toPerspective, valid } from './camera.js';
 import { add, cross, dot, mix, scale, subtract, unit } from './vector.js';
 
 export const FLIGHT_MS = 700;
@@ -18,7 +18,8 @@ function angles(camera, axes) {
 }
 
 // Function from milliseconds since the start to the camera there; at and after `durationMs` exactly `to`.
-export function flight(from, to, durationMs = FLIGHT_MS) {
+export function flight(start, to, durationMs = FLIGHT_MS) {
+    const from = isParallel(start) === isParallel(to) ? start : isParallel(to) ? toParallel(start) : toPerspective(start);
     const axes = frame(to.up);
     const a = angles(from, axes), b = angles(to, axes);
     const turn = Math.atan2(Math.sin(b.azimuth - a.azimuth), Math.cos(b.azimuth - a.azimuth));
@@ -32,7 +33,8 @@ export function flight(from, to, durationMs = FLIGHT_MS) {
         const towards = add(scale(flat, Math.cos(tilt)), scale(axes.z, Math.sin(tilt)));
         const target = mix(from.target, to.target, t);
         const eye = add(target, scale(towards, near * (far / near) ** t));
-        const camera = { eye, target, up: to.up, fov: from.fov + (to.fov - from.fov) * t };
+        const lens = isParallel(to) ? { height_m: from.height_m * (to.height_m / from.height_m) ** t } : {};
+        const camera = { eye, target, up: to.up, fov: from.fov + (to.fov - from.fov) * t, ...lens };
         return valid(camera) ? camera : to;
     };
 }

@@ -1,19 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One viewer's conversation with the server: it owns the camera and the parameters, and says both again after a reconnect.
-import { home, same, valid } from './camera.js';
+import { cameraMessage, cameraOfMessage, home, same, valid } from './camera.js';
 import { LatencyMeter, RateMeter } from './meters.js';
 import { Model } from './model.js';
 import { decodeFrame, decodeMessage, WireError } from './wire.js';
 
 export const PARAMS = [
     'group', 'interpolation', 'distance', 'fill', 'strength', 'decay', 'power', 'radius_m', 'reach_m', 'colormap', 'ramp_interval', 'range',
-    'look', 'light', 'selected',
+    'look', 'light', 'selected', 'hidden', 'isolate', 'ghost', 'clip',
 ];
 const GROUPS_OWN = ['interpolation', 'distance', 'fill', 'power', 'radius_m', 'reach_m'];
 const CODECS = ['jpeg', 'png'];
 const MOST_BACKLOG_BYTES = 64 * 1024;
 
 const pick = (from, names) => Object.fromEntries(names.filter((name) => from[name] !== undefined).map((name) => [name, from[name]]));
+
+// A frame's camera has a field of view of 0 where it has none.
+const asAsked = (camera) => (camera.height_m === undefined ? camera : cameraOfMessage({ ...camera, fov: undefined }));
 
 export class Session {
     // wanted: { camera or null, params } from the page's address. Events: welcome, params, tags (indices), status, frame (frame),
@@ -28,7 +31,7 @@ export class Session {
         this.size = { width: 640, height: 360 };
         this.visible = true;
         this.unsent = {};        // parameters that were changed while nobody listened
-        this.cameraSeq = this.paramsSeq = 0;
+        this.cameraSeq = this.paramsSeq = this.fitSeq = this.pickSeq = 0;
         this.cameraNews = false; // the server does not know the camera yet
         this.cameraInput = null; // when a hand made it; latency counts from there
         this.markers = new Map();
@@ -77,7 +80,7 @@ export class Session {
         this.greetedCamera = parts.includes('camera') ? this.camera : null;
         const message = { type: 'hello', ...this.size, codecs: CODECS };
         if (this.greetedCamera)
-            message.camera = { seq: ++this.cameraSeq, ...this.greetedCamera };
+            message.camera = { seq: ++this.cameraSeq, ...cameraMessage(this.greetedCamera) };
         const params = this.carried();
         if (parts.includes('params') && Object.keys(params).length > 0)
             message.params = { seq: ++this.paramsSeq, ...params };
@@ -131,10 +134,22 @@ export class Session {
     flush() {
         if (!this.cameraNews || !this.welcomed || this.connection.backlogBytes > MOST_BACKLOG_BYTES)
             return;
-        if (this.connection.send({ type: 'camera', seq: ++this.cameraSeq, ...this.camera }) && this.cameraInput !== null)
+        if (this.connection.send({ type: 'camera', seq: ++this.cameraSeq, ...cameraMessage(this.camera) }) && this.cameraInput !== null)
             this.latency.sent(this.cameraSeq, this.cameraInput);
         this.cameraNews = false;
         this.cameraInput = null;
+    }
+
+    // Asks for a camera that looks at something (id: asset, tag or null; side: as in plantcast.v1); answered by the event `fitted`.
+    fit({ id = null, side = 'now', projection } = {}) {
+        if (this.welcomed)
+            this.connection.send({ type: 'fit', seq: ++this.fitSeq, id, side, ...(projection ? { projection } : {}) });
+    }
+
+    // Asks what is at a pixel of the picture on the screen; answered by the event `picked`.
+    pick(x, y) {
+        if (this.welcomed && this.picture)
+            this.connection.send({ type: 'pick', seq: ++this.pickSeq, x, y, camera: cameraMessage(asAsked(this.picture.camera)) });
     }
 
     // This frame is on the screen.
@@ -201,6 +216,16 @@ export class Session {
         this.markers.set(message.seq, new Map(message.markers.map(([tag, , , occluded]) => [tag, occluded !== 0])));
     }
 
+    hearCamera(message) {
+        if (message.seq === this.fitSeq)
+            this.emit('fitted', cameraOfMessage(message));
+    }
+
+    hearPicked(message) {
+        if (message.seq === this.pickSeq)
+            this.emit('picked', message);
+    }
+
     hearStatus(message) {
         this.model.links = message.links;
         this.model.live = message.live;
@@ -255,6 +280,8 @@ const HANDLERS = {
     params: Session.prototype.hearParams,
     tags: Session.prototype.hearTags,
     markers: Session.prototype.hearMarkers,
+    camera: Session.prototype.hearCamera,
+    picked: Session.prototype.hearPicked,
     status: Session.prototype.hearStatus,
     error: Session.prototype.hearError,
     pong() {},

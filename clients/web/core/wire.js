@@ -28,6 +28,17 @@ function time(view, offset) {
 
 const triple = (view, offset) => [0, 4, 8].map((o) => view.getFloat32(offset + o, true));
 
+// A field of view of 0 says orthographic.
+function lens(view) {
+    const fov = view.getFloat32(104, true), height_m = view.getFloat32(108, true);
+    if (fov === 0) {
+        need(Number.isFinite(height_m) && height_m > 0, `orthographic picture of ${height_m} m`);
+        return { fov: 0, height_m };
+    }
+    need(fov >= 1 && fov <= 120, `field of view of ${fov} degrees`);
+    return { fov };
+}
+
 // Throws WireError. The payload is a view into the same bytes.
 export function decodeFrame(bytes) {
     const data = bytes instanceof Uint8Array ? bytes : new Uint8Array(bytes);
@@ -44,7 +55,7 @@ export function decodeFrame(bytes) {
         dataTimeUs: time(view, 24), sentTimeUs: time(view, 32),
         waitUs: u32(40), fieldUs: u32(44), renderUs: u32(48), encodeUs: u32(52),
         x: u16(56), y: u16(58), width: u16(60), height: u16(62), fullWidth: u16(64), fullHeight: u16(66),
-        camera: { eye: triple(view, 68), target: triple(view, 80), up: triple(view, 92), fov: view.getFloat32(104, true) },
+        camera: { eye: triple(view, 68), target: triple(view, 80), up: triple(view, 92), ...lens(view) },
         payload: data.subarray(FRAME_HEADER_BYTES),
     };
     need(frame.codec, `codec ${view.getUint8(1)} is unknown`);
@@ -55,9 +66,8 @@ export function decodeFrame(bytes) {
         `picture of ${frame.fullWidth}x${frame.fullHeight}`);
     need(frame.width >= 1 && frame.height >= 1 && frame.x + frame.width <= frame.fullWidth && frame.y + frame.height <= frame.fullHeight,
         `part ${frame.width}x${frame.height}+${frame.x}+${frame.y} of ${frame.fullWidth}x${frame.fullHeight}`);
-    const { eye, target, up, fov } = frame.camera;
+    const { eye, target, up } = frame.camera;
     need([...eye, ...target, ...up].every(Number.isFinite), 'camera is not finite');
-    need(fov >= 1 && fov <= 120, `field of view of ${fov} degrees`);
     return frame;
 }
 
