@@ -3,8 +3,8 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import {
-    basis, depthAt, distance, elevation, enterBox, face, fit, home, MAX_ELEVATION_DEG, MIN_DISTANCE_M, orbit, pan, projector, same, sight, toParallel, toPerspective,
-    valid, zoom,
+    basis, depthAt, distance, elevation, enterBox, face, fit, home, MAX_ELEVATION_DEG, MIN_DISTANCE_M, orbit, pan, projector, same, sight,
+    toParallel, toPerspective, valid, zoom,
 } from '../../clients/web/core/camera.js';
 import { flight, FLIGHT_MS } from '../../clients/web/core/flight.js';
 import { along, dot, length, subtract } from '../../clients/web/core/vector.js';

@@ -24,7 +24,8 @@ export function valid(camera) {
 }
 
 export function same(a, b) {
-    return a === b || (!!a && !!b && a.fov === b.fov && a.height_m === b.height_m && ['eye', 'target', 'up'].every((k) => a[k].every((x, i) => x === b[k][i])));
+    const sameLens = !!a && !!b && a.fov === b.fov && a.height_m === b.height_m;
+    return a === b || (sameLens && ['eye', 'target', 'up'].every((k) => a[k].every((x, i) => x === b[k][i])));
 }
 
 export const distance = (camera) => length(subtract(camera.target, camera.eye));
@@ -85,7 +86,9 @@ export function sight(camera, xPx, yPx, widthPx, heightPx) {
     const { forward, right, up } = basis(camera);
     const step = metresPerPixel(camera, heightPx, 1);
     const aside = along(scale(right, (xPx - widthPx / 2) * step), up, (heightPx / 2 - yPx) * step);
-    return isParallel(camera) ? { origin: add(camera.eye, aside), direction: forward } : { origin: camera.eye, direction: add(forward, aside) };
+    if (isParallel(camera))
+        return { origin: add(camera.eye, aside), direction: forward };
+    return { origin: camera.eye, direction: add(forward, aside) };
 }
 
 function zoomParallel(camera, factor, xPx, yPx, widthPx, heightPx) {
