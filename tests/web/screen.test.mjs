@@ -5,7 +5,10 @@ import { test } from 'node:test';
 import { readAddress, writeAddress } from '../../clients/web/core/address.js';
 import { ageText, decimalsFor, numberText, qualityText, unitText, worst, zoneClock } from '../../clients/web/core/format.js';
 import { nearestMarker, placeLabels } from '../../clients/web/core/labels.js';
-import { colourOf, niceStep, rampChoices, spread, ticks } from '../../clients/web/core/legend.js';
+import { halves } from '../../clients/web/core/halves.js';
+import {
+    colourOf, edges, niceStep, placeOf, rampChoices, scaleTicks, spread, ticks, valueAt,
+} from '../../clients/web/core/legend.js';
 import { hatchAt, patternPeriodPx, stippleAt } from '../../clients/web/core/patterns.js';
 import { LatencyMeter, RateMeter } from '../../clients/web/core/meters.js';
 
@@ -75,17 +78,51 @@ test('nice steps, and ramps to choose from', () => {
 
 const grey = { rgb: Uint8Array.from({ length: 768 }, (_, i) => Math.floor(i / 3)), below: [0, 0, 255], above: [255, 0, 255] };
 
+const scale = (more = {}) => ({ map: grey, min: 0, max: 100, ...more });
+
 test('colours: the map inside, its own colours outside, one per ramp step', () => {
-    assert.deepEqual(colourOf(grey, 0, 0, 100), [0, 0, 0]);
-    assert.deepEqual(colourOf(grey, 100, 0, 100), [255, 255, 255]);
-    assert.deepEqual(colourOf(grey, -0.1, 0, 100), [0, 0, 255]);
-    assert.deepEqual(colourOf(grey, 100.1, 0, 100), [255, 0, 255]);
-    assert.deepEqual(colourOf(grey, 51, 0, 100, 25), colourOf(grey, 74, 0, 100, 25));
-    assert.notDeepEqual(colourOf(grey, 49, 0, 100, 25), colourOf(grey, 51, 0, 100, 25));
-    assert.deepEqual(colourOf(grey, 62, 0, 100, 25), [160, 160, 160], 'the colour of the middle of the step');
-    assert.deepEqual(colourOf(grey, 26, 15, 50, 10), colourOf(grey, 34, 15, 50, 10), 'steps count from MIN');
-    assert.deepEqual(colourOf(grey, 100, 0, 100, 25), colourOf(grey, 76, 0, 100, 25), 'MAX is in the last step');
-    assert.deepEqual(colourOf(grey, 95, 0, 100, 30), [243, 243, 243], 'a last step that is cut short');
+    assert.deepEqual(colourOf(scale(), 0), [0, 0, 0]);
+    assert.deepEqual(colourOf(scale(), 100), [255, 255, 255]);
+    assert.deepEqual(colourOf(scale(), -0.1), [0, 0, 255]);
+    assert.deepEqual(colourOf(scale(), 100.1), [255, 0, 255]);
+    const steps = scale({ interval: 25 });
+    assert.deepEqual(colourOf(steps, 51), colourOf(steps, 74));
+    assert.notDeepEqual(colourOf(steps, 49), colourOf(steps, 51));
+    assert.deepEqual(colourOf(steps, 62), [160, 160, 160], 'the colour of the middle of the step');
+    const other = scale({ min: 15, max: 50, interval: 10 });
+    assert.deepEqual(colourOf(other, 26), colourOf(other, 34), 'steps count from MIN');
+    assert.deepEqual(colourOf(steps, 100), colourOf(steps, 76), 'MAX is in the last step');
+    assert.deepEqual(colourOf(scale({ interval: 30 }), 95), [243, 243, 243], 'a last step that is cut short');
+});
+
+test('colours: bands at breaks are spread evenly over the map', () => {
+    const bands = scale({ breaks: [-5, 60, 80, 95, 100], interval: 10 });
+    assert.deepEqual([0, 59.9, 60, 80, 100].map((value) => colourOf(bands, value)[0]), [32, 32, 96, 160, 224]);
+    assert.deepEqual(edges(bands), [60, 80, 95]);
+    assert.deepEqual(edges(scale({ interval: 40 })), [40, 80]);
+    assert.deepEqual(edges(scale({ interval: 1e-6 })), [], 'more than anybody sees');
+});
+
+test('logarithmic scales', () => {
+    const log = scale({ min: 0.1, max: 1000, log: true });
+    assert.equal(placeOf(log, 10), 0.5);
+    assert.ok(Math.abs(valueAt(log, placeOf(log, 42)) - 42) < 1e-9);
+    assert.deepEqual([0.1001, 1.0001, 10.001, 1000].map((value) => colourOf(log, value)[0]), [0, 64, 128, 255]);
+    assert.deepEqual(colourOf(log, -3), [0, 0, 255]);
+    assert.deepEqual(scaleTicks(log, []), [0.1, 1, 10, 100, 1000]);
+    assert.deepEqual(scaleTicks(scale({ min: 20, max: 180, log: true }), []), [20, 50, 100, 180]);
+});
+
+test('ticks: what has a line, if it can be read', () => {
+    assert.deepEqual(scaleTicks(scale({ breaks: [30, 70] }), [50]), [0, 30, 50, 70, 100]);
+    assert.deepEqual(scaleTicks(scale(), Array.from({ length: 30 }, (_, i) => 3 * i + 1)), ticks(0, 100));
+});
+
+test('halves of a split view', () => {
+    assert.deepEqual(halves({ group: 'a', split: null }, 641), [{ params: { group: 'a', split: null }, left: 0, width: 641 }]);
+    const [left, right] = halves({ group: 'a', look: 'flat', split: { group: 'b' } }, 641);
+    assert.deepEqual([left.left, left.width, right.left, right.width], [0, 320, 320, 321]);
+    assert.deepEqual([left.params.group, right.params.group, right.params.look], ['a', 'b', 'flat']);
 });
 
 test('patterns: half of the hatching is dark, a fifth of the stipple is dots, both as large as the picture asks', () => {
@@ -100,7 +137,7 @@ test('patterns: half of the hatching is dark, a fifth of the stipple is dots, bo
     const period = patternPeriodPx(1080);
     assert.equal(period, 12);
     assert.equal(patternPeriodPx(360), 6);
-    assert.ok(Math.abs(darkness((x, y) => hatchAt(x, y, 300, period), 244, 128) - 0.5) < 0.02);
+    assert.ok(Math.abs(darkness((x, y) => hatchAt(x, y, 300, period), 240, 150) - 0.5) < 0.02);
     assert.ok(Math.abs(darkness((x, y) => stippleAt(x, y, 300, period, [200, 200, 200]), 200, 64) - Math.PI * 0.26 ** 2) < 0.02);
     assert.deepEqual(hatchAt(3, 50, 300, 10 / 1.4142), hatchAt(13, 50, 300, 10 / 1.4142), 'stripes repeat after the diagonal of a period');
     assert.deepEqual(hatchAt(40, 50, 300, 12), hatchAt(41, 51, 300, 12), 'and fall from left to right');

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The legend: the colours as the server uses them, with units, limits, and the patterns for what is not known.
 import { decimalsFor, numberText, unitText } from '../core/format.js';
-import { colourOf, spread, ticks } from '../core/legend.js';
-import { hatchAt, patternPeriodPx, stippleAt } from '../core/patterns.js';
-import { byId, make, setVariable } from './dom.js';
+import { colourOf, edges, LIMIT_BANDS, placeOf, scaleTicks, spread, valueAt } from '../core/legend.js';
+import { hatchAt, patternPeriodPx, ruleAt, stippleAt } from '../core/patterns.js';
+import { make, setVariable } from './dom.js';
 
 const BAR_TEXELS = 1024;
 const css = ([r, g, b]) => `rgb(${r} ${g} ${b})`;
@@ -31,89 +31,124 @@ const pixels = (colourAt) => (c, width, height) => {
     c.putImageData(image, 0, 0);
 };
 
-function at(element, value, min, max) {
-    setVariable(element, '--at', `${(100 * (value - min)) / (max - min)}%`);
+function at(element, place) {
+    setVariable(element, '--at', `${100 * place}%`);
     return element;
 }
 
+const LIMIT_PLACES = { LL: -2, L: -1, H: 1, HH: 2 };
+
 export class Legend {
-    constructor({ session }) {
-        this.session = session;
+    // paramsOf: from the session's parameters to those of the half that this legend is for; null: there is none.
+    constructor({ session, element, paramsOf = (params) => params }) {
+        Object.assign(this, { session, element, paramsOf });
         this.lying = window.matchMedia('(max-width: 719px)');
         this.lying.addEventListener('change', () => this.show(true));
-        this.element = byId('legend');
         this.shown = '';
         session.on('params', () => this.show());
         window.matchMedia(`(resolution: ${window.devicePixelRatio}dppx)`).addEventListener('change', () => this.show(true));
     }
 
     show(again = false) {
-        const { model, params, range, group } = this.session;
-        if (!model || !group)
+        const { model } = this.session, params = this.paramsOf(this.session.params);
+        const group = params && model?.group(params.group);
+        this.element.hidden = !group;
+        if (!group)
             return;
-        const wanted = JSON.stringify([params.group, params.colormap, params.ramp_interval, range, params.look]);
+        const range = this.session.rangeOf(params);
+        const { show, colormap, ramp_interval, scale, breaks, isolines, look } = params;
+        const wanted = JSON.stringify([params.group, show, colormap, ramp_interval, range, scale, breaks, isolines, look, params.unit]);
         if (wanted === this.shown && !again)
             return;
         this.shown = wanted;
-        this.element.hidden = false;
-        const map = model.colormap(params.colormap);
-        this.element.replaceChildren(this.heading(group), this.scale(map, range, group), this.keys(map));
-        if (params.look === 'glossy')
-            this.element.append(make('p', { class: 'note' }, 'Glossy look: light changes the colours. Do not read values.'));
+        const map = model.colormap(colormap);
+        const rule = { map, min: range[0], max: range[1], log: scale === 'log', interval: ramp_interval ?? 0, breaks };
+        const isOperator = show === 'operator';
+        this.element.replaceChildren(this.heading(group, params),
+            isOperator ? this.limitScale() : this.scale(rule, isolines ?? [], show === 'value' ? group.limits : {}),
+            this.keys(isOperator ? LIMIT_BANDS[2].colour : colourOf(rule, valueAt(rule, 0.5)), isOperator));
+        for (const note of this.notes(params, map, isOperator))
+            this.element.append(make('p', { class: 'note' }, note));
     }
 
-    heading(group) {
+    notes({ look, scale }, map, isOperator) {
+        return [
+            isOperator && 'By each tag’s own limits.',
+            !isOperator && scale === 'log' && 'Logarithmic scale.',
+            !isOperator && map.safe === false && 'These colours may be misread.',
+            look === 'glossy' && 'Glossy look: light changes the colours. Do not read values.',
+        ].filter(Boolean);
+    }
+
+    heading(group, { show, unit }) {
         const name = group.quantity || group.id;
-        return make('h2', {}, name.charAt(0).toUpperCase() + name.slice(1), ' ', make('span', {}, unitText(group.unit)));
+        const text = { difference: `Δ ${name}`, distance: 'Distance' }[show] ?? name.charAt(0).toUpperCase() + name.slice(1);
+        return make('h2', {}, text, ' ', make('span', {}, show === 'operator' ? '' : unitText(unit ?? group.unit)));
     }
 
-    scale(map, [min, max], group) {
-        const decimals = decimalsFor(max - min);
-        const text = (value) => numberText(value, decimals).replace(/\.0+$/, '');
+    scale(rule, lines, limits) {
+        const { map, min, max } = rule;
+        const text = (value) => numberText(value, decimalsFor(rule.log ? value : max - min)).replace(/(\.\d*?)0+$/, '$1').replace(/\.$/, '');
         const end = (name, colour, words) => [
             make('div', { class: `end ${name}` }, swatch(18, 14, solid(colour))), make('div', { class: 'end-text' }, words),
         ];
         return make('div', { class: 'scale' },
             ...end('above', map.above, `> ${text(max)}`),
-            this.limits(min, max, group, text), this.bar(map, min, max), this.ticks(min, max, text),
+            this.limits(rule, limits ?? {}, text), this.bar(rule, lines, (place) => colourOf(rule, valueAt(rule, place))),
+            this.ticks(rule, lines, text),
             ...end('below', map.below, `< ${text(min)}`));
     }
 
-    // A texture along the bar, finer than any screen shows it.
-    bar(map, min, max) {
-        const canvas = make('canvas', { class: 'bar', role: 'img', 'aria-label': `Colours from ${min} to ${max}` });
+    // Between limits there are no values: places from -3 to 3.
+    limitScale() {
+        const place = (value) => (value + 3) / 6, band = (p) => LIMIT_BANDS.find(({ to }) => p * 6 - 3 < to) ?? LIMIT_BANDS[4];
+        const ticks = Object.entries(LIMIT_PLACES).map(([name, value]) => at(make('span', {}, name), place(value)));
+        return make('div', { class: 'scale' }, make('div', { class: 'limits' }),
+            this.bar({ min: -3, max: 3 }, Object.values(LIMIT_PLACES), (p) => band(p).colour), make('div', { class: 'ticks' }, ...ticks));
+    }
+
+    // A texture along the bar, finer than any screen shows it, with a line at each value that has one.
+    bar(rule, lines, colourAt) {
+        const canvas = make('canvas', { class: 'bar', role: 'img', 'aria-label': `Colours from ${rule.min} to ${rule.max}` });
         const lying = this.lying.matches;
         canvas.width = lying ? BAR_TEXELS : 1;
         canvas.height = lying ? 1 : BAR_TEXELS;
         const c = canvas.getContext('2d');
+        const fill = (i, texels) => c.fillRect(lying ? i : 0, lying ? 0 : BAR_TEXELS - i - texels, lying ? texels : 1, lying ? 1 : texels);
         for (let i = 0; i < BAR_TEXELS; i++) {
-            c.fillStyle = css(colourOf(map, min + ((i + 0.5) / BAR_TEXELS) * (max - min), min, max, this.session.params.ramp_interval));
-            c.fillRect(lying ? i : 0, lying ? 0 : BAR_TEXELS - 1 - i, 1, 1);
+            c.fillStyle = css(colourAt((i + 0.5) / BAR_TEXELS));
+            fill(i, 1);
         }
+        c.fillStyle = '#1d252d';
+        for (const value of [...edges(rule), ...lines])
+            fill(Math.round(placeOf(rule, value) * BAR_TEXELS) - 2, 4);
         return canvas;
     }
 
-    ticks(min, max, text) {
-        return make('div', { class: 'ticks' }, ...ticks(min, max).map((value) => at(make('span', {}, text(value)), value, min, max)));
+    ticks(rule, lines, text) {
+        const values = scaleTicks(rule, lines), places = spread(values.map((value) => placeOf(rule, value)), this.lying.matches ? 0.1 : 0.05);
+        return make('div', { class: 'ticks' }, ...values.map((value, i) => at(make('span', {}, text(value)), places[i])));
     }
 
     // A line at the limit itself, its name beside it.
-    limits(min, max, group, text) {
-        const inside = Object.entries(group.limits ?? {}).filter(([, value]) => value !== null && value >= min && value <= max);
+    limits(rule, limits, text) {
+        const { min, max } = rule;
+        const inside = Object.entries(limits).filter(([, value]) => value !== null && value >= min && value <= max);
         inside.sort((a, b) => a[1] - b[1]);
-        const places = spread(inside.map(([, value]) => (value - min) / (max - min)), this.lying.matches ? 0.085 : 0.06);
+        const places = spread(inside.map(([, value]) => placeOf(rule, value)), this.lying.matches ? 0.085 : 0.06);
         return make('div', { class: 'limits' }, ...inside.flatMap(([name, value], i) => [
-            at(make('i', {}), value, min, max), at(make('span', { title: `${name} ${text(value)}` }, name), places[i], 0, 1),
+            at(make('i', {}), placeOf(rule, value)), at(make('span', { title: `${name} ${text(value)}` }, name), places[i]),
         ]));
     }
 
     // In small, the pattern is drawn no coarser than can be recognised.
-    keys(map) {
-        const colour = colourOf(map, 0.5, 0, 1);
+    keys(colour, isOperator) {
         const period = (height) => Math.min(height / 2, patternPeriodPx(this.session.size.height));
         const noData = pixels((x, y, height) => hatchAt(x, y, height, period(height)));
         const uncertain = pixels((x, y, height) => stippleAt(x, y, height, period(height), colour));
+        const noLimits = pixels((x, y, height) => ruleAt(y, height, period(height)));
         return make('div', { class: 'keys' },
+            ...(isOperator ? [swatch(18, 14, noLimits), make('span', {}, 'No limits')] : []),
             swatch(18, 14, noData), make('span', {}, 'No data'), swatch(18, 14, uncertain), make('span', {}, 'Uncertain'));
     }
 }

@@ -28,7 +28,8 @@ const session = new Session({ connection, now: clock.now, wanted: address });
 
 const assets = new Assets({ session, selection });
 const toolbar = new Toolbar({ session });
-const legend = new Legend({ session });
+const legend = new Legend({ session, element: byId('legend') });
+new Legend({ session, element: byId('legend-right'), paramsOf: (params) => params.split && { ...params, ...params.split } });
 const viewport = new Viewport({ element: byId('viewport'), canvas: byId('picture'), session });
 const overlay = new Overlay({ canvas: byId('overlay'), viewport, session, selection });
 const pilot = new Pilot({ viewport, session });
@@ -132,6 +133,7 @@ setInterval(() => card.tag && refresh(), 500); // its age goes on
 
 session.on('tags', refresh);
 session.on('params', () => {
+    byId('viewport').classList.toggle('split', Boolean(session.params.split));
     saveAddress();
     refresh();
 });

@@ -2,6 +2,7 @@
 // Markers and labels, drawn crisply over the picture with the camera that the picture was drawn with.
 import { projector } from '../core/camera.js';
 import { decimalsFor, numberText, unitText } from '../core/format.js';
+import { halves } from '../core/halves.js';
 import { nearestMarker, placeLabels } from '../core/labels.js';
 import { limitState } from '../core/model.js';
 
@@ -9,6 +10,7 @@ const INK = '#1d252d', INK_2 = '#4d5964', ACCENT = '#2a5f8f';
 const LIMIT_COLOURS = { HH: ['#c62828', '#fff'], LL: ['#c62828', '#fff'], H: ['#f0a30a', '#1b1300'], L: ['#f0a30a', '#1b1300'] };
 const LABEL_HEIGHT = 20, PADDING = 6, NAMES_UP_TO = 24;
 const MOST_LOST_LABELS = 12; // beyond it, crossed markers say enough
+const ISOLINE_SPACING_PX = 160;
 const REACH_PX = { mouse: 14, pen: 18, touch: 26 };
 
 const SHAPES = {
@@ -46,21 +48,54 @@ export class Overlay {
         const { model, picture, params } = this.session;
         if (!model || !picture)
             return [];
-        const { width, height } = this.viewport;
-        const scale = [width / picture.fullWidth, height / picture.fullHeight];
-        const project = projector(picture.camera, picture.fullWidth, picture.fullHeight);
-        const occluded = this.session.markersOf(picture.seq);
+        const known = this.session.markersOf(picture.seq);
+        return halves(params, picture.fullWidth).flatMap((half, number) => this.projectHalf(half, number, known));
+    }
+
+    projectHalf({ params, left, width }, number, occluded) {
+        const { model, picture } = this.session;
+        const scale = [this.viewport.width / picture.fullWidth, this.viewport.height / picture.fullHeight];
+        const rim = params.split ? 0 : 20; // what lies beyond would be seen in the other half
+        const project = projector(picture.camera, width, picture.fullHeight);
         const markers = [];
         for (const tag of model.tags) {
             const place = tag.group === params.group && tag.position ? project(tag.position) : null;
-            if (!place)
+            if (!place || place[0] < -rim || place[1] < -rim || place[0] > width + rim || place[1] > picture.fullHeight + rim)
                 continue;
-            const x = place[0] * scale[0], y = place[1] * scale[1];
-            const reading = model.readings[tag.index];
-            if (x > -20 && y > -20 && x < width + 20 && y < height + 20)
-                markers.push({ tag, x, y, depth: place[2], occluded: occluded.get(tag.index) ?? false, reading });
+            markers.push({
+                tag, x: (left + place[0]) * scale[0], y: place[1] * scale[1], depth: place[2], half: number,
+                occluded: occluded.get(`${tag.index}/${number}`) ?? false, reading: model.readings[tag.index],
+                operator: params.show === 'operator',
+            });
         }
         return markers;
+    }
+
+    // Values on isolines, where nothing else is.
+    drawIsolines(blocked) {
+        const { picture, params } = this.session, c = this.context;
+        if (!picture || params.show === 'operator')
+            return;
+        const scale = [this.viewport.width / picture.fullWidth, this.viewport.height / picture.fullHeight];
+        const [min, max] = this.session.range, taken = [...blocked];
+        this.setFont(600);
+        c.textBaseline = 'middle';
+        c.textAlign = 'center';
+        for (const { text, x, y } of this.session.markersOf(picture.seq).isolines.map(([value, px, py]) => ({
+            text: numberText(value, decimalsFor(max - min)).replace(/\.0+$/, ''), x: px * scale[0], y: py * scale[1],
+        }))) {
+            const wide = c.measureText(text).width + 6, box = { left: x - wide / 2, right: x + wide / 2, top: y - 8, bottom: y + 8, text };
+            const meets = (o) => box.left < o.right && o.left < box.right && box.top < o.bottom && o.top < box.bottom;
+            const near = (o) => o.text === text && Math.hypot(o.left - box.left, o.top - box.top) < ISOLINE_SPACING_PX;
+            if (taken.some((other) => meets(other) || near(other)))
+                continue;
+            taken.push(box);
+            c.fillStyle = 'rgb(255 255 255 / 0.75)';
+            c.fillRect(box.left, box.top, wide, 16);
+            c.fillStyle = INK;
+            c.fillText(text, x, y + 0.5);
+        }
+        c.textAlign = 'start';
     }
 
     at(x, y, kind) {
@@ -91,6 +126,12 @@ export class Overlay {
             if (place)
                 this.drawLabel(label, place);
         }
+        const boxes = labels.filter(({ id }) => this.places.has(id)).map(({ id, width: w, height: h }) => {
+            const { left, top } = this.places.get(id);
+            return { left, top, right: left + w, bottom: top + h };
+        });
+        const marks = this.markers.map(({ x, y }) => ({ left: x - 5, right: x + 5, top: y - 5, bottom: y + 5 }));
+        this.drawIsolines([...this.blocked(), ...boxes, ...marks]);
     }
 
     // What lies over the picture already.
@@ -120,7 +161,7 @@ export class Overlay {
             const width = Math.ceil(parts.reduce((sum, part) => sum + this.width(part), 0) + 2 * PADDING + (parts.length - 1) * 5);
             const doubtful = reading.quality !== 'good';
             const priority = (limit ? 20 : 0) + 10 * onSelected + 5 * doubtful + nearest / marker.depth;
-            return { id: tag.index, x: marker.x, y: marker.y, width, height: LABEL_HEIGHT, priority, parts, limit };
+            return { id: `${tag.index}/${marker.half}`, x: marker.x, y: marker.y, width, height: LABEL_HEIGHT, priority, parts, limit };
         });
     }
 
@@ -152,10 +193,24 @@ export class Overlay {
         this.context.font = `${weight} 12.5px ${this.font}`;
     }
 
-    drawMarker({ tag, x, y, occluded, reading }) {
+    // Alarm colours around a tag whose alarm is active, in the operator's view only.
+    drawAlarm(alarm) {
+        const c = this.context;
+        for (const [colour, width] of [[INK, 6], [LIMIT_COLOURS[alarm][0], 4]]) {
+            c.beginPath();
+            c.arc(0, 0, 10, 0, 2 * Math.PI);
+            c.lineWidth = width;
+            c.strokeStyle = colour;
+            c.stroke();
+        }
+    }
+
+    drawMarker({ tag, x, y, occluded, reading, operator }) {
         const c = this.context, chosen = this.isChosen(tag);
         c.save();
         c.translate(x, y);
+        if (operator && reading.alarm)
+            this.drawAlarm(reading.alarm);
         c.beginPath();
         (SHAPES[reading.quality] ?? SHAPES.bad)(c, occluded ? 2.5 : this.radius);
         c.lineWidth = occluded ? 1.25 : 1.5;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The toolbar: what is shown and how. It shows the parameters in force and asks for others.
 import { numberText, unitText } from '../core/format.js';
-import { rampChoices } from '../core/legend.js';
+import { multiples, rampChoices } from '../core/legend.js';
 import { byId, make, setText } from './dom.js';
 
 const DISTANCES = [
@@ -12,6 +12,7 @@ const INTERPOLATIONS = [
     ['shepard', 'Shepard', 'Inverse distance: exactly the reading at each sensor'],
     ['paper', 'Paper', 'Algorithm 1 of Kim & Suh 2025: smoother, does not reach the readings'],
 ];
+const SHOWS = [['value', 'Values'], ['operator', 'Limits']];
 const LOOKS = [['default', 'Measured'], ['glossy', 'Glossy'], ['flat', 'Flat']];
 
 // A row of buttons of which one is pressed; radio buttons underneath, so the keyboard works as everywhere.
@@ -38,6 +39,12 @@ function fillSelect(select, choices, value) {
     select.value = String(value);
 }
 
+// The bands chosen, as parameters.
+function rampParams(value) {
+    return ['group', 'limits'].includes(value) ? { breaks: value } : { ramp_interval: Number(value), breaks: null };
+}
+
+const decimalsOf = (step) => Math.max(0, Math.ceil(-Math.log10(step) - 1e-9));
 const title = (text) => text.charAt(0).toUpperCase() + text.slice(1);
 
 export class Toolbar {
@@ -47,7 +54,10 @@ export class Toolbar {
         fillSegments(byId('interpolation'), 'interpolation', INTERPOLATIONS, (interpolation) => session.setParams({ interpolation }));
         byId('colormap').addEventListener('change', (event) => session.setParams({ colormap: event.target.value }));
         byId('look').addEventListener('change', (event) => session.setParams({ look: event.target.value }));
-        byId('ramp').addEventListener('change', (event) => session.setParams({ ramp_interval: Number(event.target.value) }));
+        byId('ramp').addEventListener('change', (event) => session.setParams(rampParams(event.target.value)));
+        byId('isolines').addEventListener('change', ({ target }) => session.setParams({ isolines: JSON.parse(target.value) }));
+        byId('show').addEventListener('change', (event) => session.setParams({ show: event.target.value }));
+        byId('split').addEventListener('change', ({ target }) => session.setParams({ split: target.value ? { group: target.value } : null }));
         session.on('welcome', () => this.welcome());
         session.on('params', () => this.show());
         this.foldDisplay();
@@ -93,7 +103,26 @@ export class Toolbar {
         mark(byId('interpolation'), params.interpolation);
         fillSelect(byId('colormap'), model.colormaps.map((map) => [map.name, title(map.name)]), params.colormap);
         fillSelect(byId('look'), LOOKS, params.look);
-        fillSelect(byId('ramp'), this.ramps(), params.ramp_interval ?? 0);
+        fillSelect(byId('ramp'), this.ramps(), params.breaks?.length > 0 ? this.breaksName() : params.ramp_interval ?? 0);
+        fillSelect(byId('isolines'), this.isolines(), JSON.stringify(params.isolines ?? null));
+        fillSelect(byId('show'), SHOWS, params.show ?? 'value');
+        fillSelect(byId('split'), [['', 'One'], ...model.groups.map(({ id, quantity }) => [id, title(quantity || id)])],
+            params.split?.group ?? '');
+    }
+
+    // Which of the group's own bands are shown.
+    breaksName() {
+        const { params, group } = this.session;
+        const own = JSON.stringify(params.breaks) === JSON.stringify(group?.breaks);
+        return own ? 'group' : 'limits';
+    }
+
+    isolines() {
+        const { group, range, params } = this.session;
+        const every = (step) => multiples(...range, step), text = (step) => `Every ${numberText(step, decimalsOf(step))} ${unitText(group?.unit)}`;
+        const choices = [['null', 'None'], ...rampChoices(...range).map((step) => [JSON.stringify(every(step)), text(step)])];
+        const now = JSON.stringify(params.isolines ?? null);
+        return choices.some(([value]) => value === now) ? choices : [...choices, [now, 'Chosen']];
     }
 
     ramps() {
@@ -101,7 +130,12 @@ export class Toolbar {
         const steps = new Set(rampChoices(...range));
         if (params.ramp_interval > 0)
             steps.add(params.ramp_interval);
-        const text = (step) => `${numberText(step, Math.max(0, Math.ceil(-Math.log10(step) - 1e-9)))} ${unitText(group?.unit)}`;
-        return [[0, 'Smooth'], ...[...steps].sort((a, b) => a - b).map((step) => [step, text(step)])];
+        const text = (step) => `${numberText(step, decimalsOf(step))} ${unitText(group?.unit)}`;
+        const bands = [];
+        if (group?.breaks?.length > 0)
+            bands.push(['group', 'Own bands']);
+        if (Object.values(group?.limits ?? {}).some((limit) => limit !== null))
+            bands.push(['limits', 'Limits']);
+        return [[0, 'Smooth'], ...bands, ...[...steps].sort((a, b) => a - b).map((step) => [step, text(step)])];
     }
 }

@@ -7,7 +7,7 @@ export function niceStep(range, most) {
     return power * [1, 2, 5, 10].find((m) => range / (m * power) <= most * (1 + 1e-9));
 }
 
-function multiples(min, max, step) {
+export function multiples(min, max, step) {
     const slack = (max - min) * 1e-9, list = [];
     for (let n = Math.ceil((min - slack) / step); n * step <= max + slack; n++)
         list.push(Number((n * step).toPrecision(12)));
@@ -41,20 +41,69 @@ export function rampChoices(min, max) {
     return [...new Set([25, 16, 10, 8, 5, 4].map((n) => Number(niceStep(max - min, n).toPrecision(12))))].sort((a, b) => a - b);
 }
 
-// The last step ends at MAX, and MAX belongs to it.
-function stepMiddle(value, min, max, interval) {
-    const steps = Math.max(1, Math.ceil((max - min) / interval - 0.001));
-    const begin = min + Math.min(steps - 1, Math.floor((value - min) / interval)) * interval;
-    return (begin + Math.min(begin + interval, max)) / 2;
+// --- the server's rule (server/field/scale.h). scale: { map, min, max, log, interval, breaks }; map: { rgb: Uint8Array(768), below, above }
+
+export function placeOf({ min, max, log }, value) {
+    return log ? Math.log(value / min) / Math.log(max / min) : (value - min) / (max - min);
 }
 
-// map: { rgb: Uint8Array(768), below, above }. Returns [r, g, b]. Ramp steps count from `min` and have the colour of their middle.
-export function colourOf(map, value, min, max, interval = 0) {
+export function valueAt({ min, max, log }, place) {
+    return log ? min * (max / min) ** place : min + place * (max - min);
+}
+
+const inside = ({ min, max, breaks }) => (breaks ?? []).filter((value) => value > min && value < max);
+
+// Where bands meet.
+export function edges(scale) {
+    const { min, max, interval } = scale;
+    if (scale.breaks?.length > 0)
+        return inside(scale);
+    const count = interval > 0 ? Math.max(1, Math.ceil((max - min) / interval - 0.001)) : 1;
+    return count > 64 ? [] : Array.from({ length: count - 1 }, (_, i) => min + (i + 1) * interval);
+}
+
+// The place whose colour the band of a value has. The last one ends at MAX, and MAX belongs to it.
+function bandPlace(scale, value) {
+    const { min, max, interval } = scale;
+    if (scale.breaks?.length > 0) {
+        const all = inside(scale);
+        return (all.filter((edge) => value >= edge).length + 0.5) / (all.length + 1);
+    }
+    const steps = Math.max(1, Math.ceil((max - min) / interval - 0.001));
+    const begin = min + Math.min(steps - 1, Math.floor((value - min) / interval)) * interval;
+    return (placeOf(scale, begin) + placeOf(scale, Math.min(begin + interval, max))) / 2;
+}
+
+// [r, g, b].
+export function colourOf(scale, value) {
+    const { map, min, max } = scale;
     if (value < min)
         return map.below;
     if (value > max)
         return map.above;
-    const stepped = interval > 0 ? stepMiddle(value, min, max, interval) : value;
-    const i = 3 * Math.min(255, Math.floor(((stepped - min) / (max - min)) * 256));
+    const banded = scale.breaks?.length > 0 || scale.interval > 0;
+    const i = 3 * Math.max(0, Math.min(255, Math.floor((banded ? bandPlace(scale, value) : placeOf(scale, value)) * 256)));
     return [map.rgb[i], map.rgb[i + 1], map.rgb[i + 2]];
 }
+
+// What to write beside a scale: what has a line, with both ends, if that can be read; else round values.
+export function scaleTicks(scale, lines, most = 9) {
+    const { min, max } = scale;
+    const within = [...new Set([...edges(scale), ...lines])].filter((value) => value > min && value < max).sort((a, b) => a - b);
+    if (within.length > 0 && within.length + 2 <= most)
+        return [min, ...within, max];
+    if (!scale.log)
+        return ticks(min, max);
+    const decades = [];
+    for (let power = 10 ** Math.floor(Math.log10(min)); power <= max; power *= 10)
+        decades.push(...[1, 2, 5].map((lead) => Number((lead * power).toPrecision(3))));
+    const near = (value) => decades.length <= 12 || Number.isInteger(Math.log10(value));
+    return [min, ...decades.filter((v) => near(v) && placeOf(scale, v) > 0.05 && placeOf(scale, v) < 0.95), max];
+}
+
+// The operator's colours by place between limits, as the server has them (shaders/maps/operator.csv): bands from the lowest.
+export const LIMIT_BANDS = [
+    { from: -3, to: -2, colour: [90, 141, 192] }, { from: -2, to: -1, colour: [146, 174, 203] },
+    { from: -1, to: 1, colour: [201, 201, 201] },
+    { from: 1, to: 2, colour: [194, 167, 135] }, { from: 2, to: 3, colour: [175, 128, 74] },
+];

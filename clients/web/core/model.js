@@ -9,7 +9,7 @@ export class Model {
         this.groups = welcome.groups;
         this.tags = welcome.tags.map((tag, index) => ({ ...tag, index }));
         this.colormaps = welcome.colormaps.map((map) => ({ ...map, rgb: decodeBase64(map.rgb) }));
-        this.readings = this.tags.map(() => ({ value: null, quality: 'bad', qualityName: '', ageMs: null, at: 0 }));
+        this.readings = this.tags.map(() => ({ value: null, quality: 'bad', qualityName: '', ageMs: null, alarm: null, at: 0 }));
         this.assets = welcome.assets.map((asset) => ({ ...asset, tags: this.tags.filter((tag) => tag.asset === asset.id) }));
         this.links = [];
         this.live = null; // nothing was said yet
@@ -38,13 +38,13 @@ export class Model {
     // Returns the indices of the tags whose value or quality changed.
     update(values, now) {
         const changed = [];
-        for (const [index, value, quality, qualityName, ageMs] of values) {
+        for (const [index, value, quality, qualityName, ageMs, alarm = null] of values) {
             const before = this.readings[index];
             if (!before)
                 continue;
             if (before.value !== value || before.quality !== quality || before.qualityName !== qualityName)
                 changed.push(index);
-            this.readings[index] = { value, quality, qualityName, ageMs, at: now };
+            this.readings[index] = { value, quality, qualityName, ageMs, alarm, at: now };
         }
         return changed;
     }

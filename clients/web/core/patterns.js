@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The patterns that say "no data" and "uncertain", as the server draws them (shaders/field.glsl, server/render/palette.c).
 
-const HATCH = [[244, 244, 244], [128, 128, 128]], STIPPLE = [64, 64, 64];
+const HATCH = [[240, 240, 240], [150, 150, 150]], STIPPLE = [64, 64, 64], RULE = [[226, 226, 226], [196, 196, 196]];
 const fract = (x) => x - Math.floor(x);
 const clamp = (x) => Math.max(0, Math.min(1, x));
 const mix = (a, b, t) => a.map((x, i) => Math.round(x + (b[i] - x) * t));
@@ -20,6 +20,11 @@ function stipple(x, y, period) {
 // [r, g, b] of a pixel; row 0 is the top one.
 export function hatchAt(x, row, heightPx, period) {
     return mix(HATCH[0], HATCH[1], hatch(x + 0.5, heightPx - row - 0.5, period));
+}
+
+// A tag without limits, in the operator's view.
+export function ruleAt(row, heightPx, period) {
+    return mix(RULE[0], RULE[1], clamp((Math.abs(fract((heightPx - row - 0.5) / period) - 0.5) - 0.36) * period + 0.5));
 }
 
 export function stippleAt(x, row, heightPx, period, colour) {

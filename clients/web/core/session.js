@@ -7,9 +7,10 @@ import { decodeFrame, decodeMessage, WireError } from './wire.js';
 
 export const PARAMS = [
     'group', 'interpolation', 'distance', 'fill', 'strength', 'decay', 'power', 'radius_m', 'reach_m', 'colormap', 'ramp_interval', 'range',
-    'look', 'light', 'selected', 'hidden', 'isolate', 'ghost', 'clip',
+    'scale', 'breaks', 'isolines', 'look', 'light', 'selected', 'hidden', 'isolate', 'ghost', 'clip', 'show', 'split',
 ];
-const GROUPS_OWN = ['interpolation', 'distance', 'fill', 'power', 'radius_m', 'reach_m'];
+const SHARED = ['light', 'selected', 'hidden', 'isolate', 'ghost', 'clip', 'split']; // by both halves
+const GROUPS_OWN = ['interpolation', 'distance', 'fill', 'power', 'radius_m', 'reach_m', 'scale', 'isolines'];
 const CODECS = ['jpeg', 'png'];
 const MOST_BACKLOG_BYTES = 64 * 1024;
 
@@ -93,7 +94,12 @@ export class Session {
         if (!group)
             return params;
         const own = { ...pick(group, GROUPS_OWN), range: [group.min, group.max] };
-        return pick(params, PARAMS.filter((name) => JSON.stringify(params[name]) !== JSON.stringify(own[name])));
+        const wanted = pick(params, PARAMS.filter((name) => JSON.stringify(params[name]) !== JSON.stringify(own[name])));
+        if (wanted.split)
+            wanted.split = pick(wanted.split, PARAMS.filter((name) => !SHARED.includes(name)));
+        if (!['value', 'operator'].includes(wanted.show)) // others need what is not carried
+            delete wanted.show;
+        return wanted;
     }
 
     // inputTime: when the hand moved; latency counts from there.
@@ -213,7 +219,9 @@ export class Session {
     }
 
     hearMarkers(message) {
-        this.markers.set(message.seq, new Map(message.markers.map(([tag, , , occluded]) => [tag, occluded !== 0])));
+        const known = new Map(message.markers.map(([tag, , , occluded, half = 0]) => [`${tag}/${half}`, occluded !== 0]));
+        known.isolines = message.isolines ?? [];
+        this.markers.set(message.seq, known);
     }
 
     hearCamera(message) {
@@ -245,7 +253,7 @@ export class Session {
         this.emit('error', message);
     }
 
-    // Map from tag to occluded for a picture; those of earlier ones are forgotten.
+    // Map from "tag/half" to occluded for a picture, and its `isolines`; those of earlier ones are forgotten.
     markersOf(seq) {
         let newest = null;
         for (const known of [...this.markers.keys()].sort((a, b) => a - b)) {
@@ -255,7 +263,7 @@ export class Session {
                 this.markers.delete(newest);
             newest = known;
         }
-        return this.markers.get(newest) ?? new Map();
+        return this.markers.get(newest) ?? Object.assign(new Map(), { isolines: [] });
     }
 
     // --- what the screen asks
@@ -264,9 +272,14 @@ export class Session {
         return this.model?.group(this.params.group) ?? null;
     }
 
-    // [min, max] of the colours.
+    // [min, max] of the colours, of one half.
+    rangeOf(params) {
+        const group = this.model?.group(params.group);
+        return params.range ?? (group ? [group.min, group.max] : [0, 1]);
+    }
+
     get range() {
-        return this.params.range ?? (this.group ? [this.group.min, this.group.max] : [0, 1]);
+        return this.rangeOf(this.params);
     }
 
     // The server's clock, carried on by ours; null before it spoke.
