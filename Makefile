@@ -27,7 +27,7 @@ pkg_libs   := $(shell pkg-config --libs $(packages) 2>/dev/null) -lflann -lcholm
 
 warn   := -Wall -Wextra -Wshadow -Wpointer-arith -Wvla -Wundef -Wno-psabi
 include := -I. -Iserver -I$(gen) -isystem $(gen)/glad/include -isystem /usr/include/suitesparse $(pkg_cflags)
-common := $(flags_$(config)) $(include) -MMD -MP -pthread -fno-math-errno
+common := $(flags_$(config)) $(include) -MMD -MP -pthread -fno-math-errno -fno-trapping-math
 cflags   = -std=c11 -D_GNU_SOURCE $(warn) -Wstrict-prototypes -Wmissing-prototypes $(common) $(CFLAGS)
 cxxflags = -std=c++17 -D_GNU_SOURCE $(warn) $(common) $(CXXFLAGS)
 ldflags  = $(flags_$(config)) -pthread -Wl,--as-needed $(LDFLAGS)

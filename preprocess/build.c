@@ -2,7 +2,6 @@
 /* One asset from a parsed model to the bytes of its file. */
 #include "preprocess/build.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,6 +11,7 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "preprocess/clusters.h"
+#include "preprocess/measure.h"
 #include "preprocess/order.h"
 #include "preprocess/split.h"
 
@@ -49,58 +49,6 @@ uint64_t build_key(uint64_t model_hash, const struct geometry_params *geometry, 
     return XXH3_64bits_digest(&state);
 }
 
-bool build_sensor_place(const struct gltf_model *model, const struct geometry_params *geometry, const struct plant_sensor *sensor,
-                        double place_m[3])
-{
-    memcpy(place_m, sensor->position_m, sizeof(sensor->position_m));
-    return !sensor->node || geometry_node_place(model, geometry, sensor->node, place_m);
-}
-
-/* Where each sensor is, less the origin. */
-static bool place_sensors(const struct build_input *input, const struct geometry *geometry, double (*places)[3], int *missing, char *why)
-{
-    for (size_t i = 0; i < input->sensor_count; i++) {
-        const struct plant_sensor *sensor = &input->sensors[i];
-        double place[3];
-        if (!build_sensor_place(input->model, &input->geometry, sensor, place)) {
-            *missing = (int)i;
-            snprintf(why, MODEL_WHY_BYTES, "the model has no node '%.200s'", sensor->node);
-            return false;
-        }
-        for (int axis = 0; axis < 3; axis++)
-            places[i][axis] = place[axis] - geometry->origin_m[axis];
-    }
-    return true;
-}
-
-static void drop_sensors(const struct surface *surface, const struct build_input *input, const double (*places)[3],
-                         struct asset_sensor *out)
-{
-    for (size_t i = 0; i < input->sensor_count; i++) {
-        struct surface_place at;
-        surface_nearest(surface, places[i], &at);
-        for (int axis = 0; axis < 3; axis++) {
-            out[i].position_m[axis] = (float)places[i][axis];
-            out[i].surface_m[axis] = (float)at.position_m[axis];
-        }
-        out[i].surface_distance_m = (float)at.distance_m;
-        out[i].nearest_vertex = at.vertex;
-        out[i].node_hash = input->sensors[i].node_hash;
-    }
-}
-
-static size_t unreachable(const float *distances, size_t sensor_count, size_t vertex_count)
-{
-    size_t count = 0;
-    for (size_t v = 0; v < vertex_count; v++) {
-        bool reached = false;
-        for (size_t s = 0; s < sensor_count && !reached; s++)
-            reached = isfinite(distances[s * vertex_count + v]);
-        count += !reached;
-    }
-    return count;
-}
-
 static double seconds_since(int64_t *since_ns)
 {
     int64_t now_ns = clock_mono_ns();
@@ -109,61 +57,94 @@ static double seconds_since(int64_t *since_ns)
     return seconds;
 }
 
-/* The sensors on the surface, and how far they are from everywhere. */
-struct measured {
-    struct surface *surface;
-    struct surface_spot *spots;
-    struct asset_sensor *sensors;
-    float *distances, *sampled; /* [sensor][vertex]; [sensor][point of the surface] */
+/* One asset in the making. */
+struct build {
+    struct log *log;
+    struct workers *workers;
+    const struct build_input *input;
+    struct build_output *output;
+    struct geometry geometry;
+    struct levels levels;
+    struct measured measured;
+    struct asset_level file[LEVELS_MAX]; /* the levels as the file has them */
+    float *distances;                    /* [sensor][vertex] */
+    void (*tasks[2])(struct build *build); /* side by side */
+    bool failed[2];
+    char *why;
 };
 
-static void measured_finish(struct measured *measured)
+static void run_task(void *arg, size_t begin, size_t end)
 {
-    surface_destroy(&measured->surface);
-    mem_free(measured->spots);
-    mem_free(measured->sensors);
-    mem_free(measured->distances);
-    mem_free(measured->sampled);
+    struct build *build = arg;
+    for (size_t i = begin; i < end; i++)
+        if (build->tasks[i])
+            build->tasks[i](build);
 }
 
-static bool solve(const struct build_input *input, const struct geometry *g, const double (*places)[3], struct measured *measured)
+static bool run_both(struct build *build, void (*first)(struct build *build), void (*second)(struct build *build))
 {
-    size_t count = input->sensor_count;
-    measured->distances = mem_try_array(count * (size_t)g->vertex_count, sizeof(*measured->distances));
-    measured->sampled = mem_try_array(count * surface_sampled_count(measured->surface), sizeof(*measured->sampled));
-    if (!measured->distances || !measured->sampled ||
-        !surface_distances_sampled(measured->surface, places, count, measured->distances, measured->sampled))
-        return false;
-    measured->spots = mem_array(count, sizeof(*measured->spots));
-    measured->sensors = mem_array(count, sizeof(*measured->sensors));
-    for (size_t i = 0; i < count; i++)
-        surface_find_spot(measured->surface, places[i], NULL, &measured->spots[i]);
-    drop_sensors(measured->surface, input, places, measured->sensors);
-    return true;
+    build->tasks[0] = first;
+    build->tasks[1] = second;
+    workers_for(build->workers, 2, 1, run_task, build);
+    return !build->failed[0] && !build->failed[1];
 }
 
-static bool measure(struct log *log, struct workers *workers, const struct build_input *input, const struct geometry *g,
-                    struct measured *measured, struct build_output *output, char *why)
+/* --- levels and distances need nothing of each other ------------------------------------------------------------------------- */
+
+static void make_levels(struct build *build)
 {
-    struct build_report *report = &output->report;
+    struct build_report *report = &build->output->report;
     int64_t since_ns = clock_mono_ns();
-    double(*places)[3] = mem_array(input->sensor_count, sizeof(*places));
-    bool good = place_sensors(input, g, places, &output->missing_node, why);
-    if (good) {
-        measured->surface = surface_create(log, workers, (const float(*)[3])g->positions_m, g->vertex_count, g->indices, g->index_count / 3,
-                                           &(struct surface_params){ 0 });
-        report->surface_s = seconds_since(&since_ns);
-        good = measured->surface && solve(input, g, (const double(*)[3])places, measured);
-        if (!good)
-            snprintf(why, MODEL_WHY_BYTES, "its distances to %zu sensors cannot be computed", input->sensor_count);
-    }
-    if (good) {
-        report->surface = *surface_report(measured->surface);
-        report->unreachable_vertices = unreachable(measured->distances, input->sensor_count, g->vertex_count);
-        report->solve_s = seconds_since(&since_ns);
-    }
+    build->failed[0] = !levels_make(&build->levels, &build->geometry, build->workers);
+    if (build->failed[0])
+        wrong(build->why, "out of memory for the levels of %u vertices", build->geometry.vertex_count);
+    report->level_count = build->levels.count;
+    for (size_t i = 0; i < build->levels.count; i++)
+        report->levels[i].triangles = build->levels.at[i].index_count / 3;
+    report->levels_s = seconds_since(&since_ns);
+}
+
+static void find_distances(struct build *build)
+{
+    char why[MODEL_WHY_BYTES];
+    build->failed[1] = !measure_sensors(&build->measured, build->log, build->workers, build->input, &build->geometry, build->output, why);
+    if (build->failed[1])
+        memcpy(build->why, why, sizeof(why));
+}
+
+/* --- and so do splitting and the check ----------------------------------------------------------------------------------------- */
+
+static void split(struct build *build)
+{
+    const struct build_input *input = build->input;
+    struct measured *measured = &build->measured;
+    struct straight straight;
+    int64_t since_ns = clock_mono_ns();
+    float(*places)[3] = mem_array(input->sensor_count, sizeof(*places));
+    for (size_t i = 0; i < input->sensor_count; i++)
+        memcpy(places[i], measured->sensors[i].surface_m, sizeof(*places));
+    straight_init(&straight, input->plant, input->sensors, input->sensor_count, (const float(*)[3])places);
+    build->failed[0] = !split_levels(&build->levels, &build->geometry,
+                                     &(struct split_input){ .straight = &straight,
+                                                            .surface = measured->surface,
+                                                            .field = &measured->field,
+                                                            .sensors = measured->sensors,
+                                                            .workers = build->workers },
+                                     &build->distances);
+    if (build->failed[0])
+        wrong(build->why, "out of memory for the levels of %u vertices", build->geometry.vertex_count);
+    straight_finish(&straight);
     mem_free(places);
-    return good;
+    build->output->report.split_s = seconds_since(&since_ns);
+}
+
+static void check(struct build *build)
+{
+    struct measured *measured = &build->measured;
+    build->failed[1] = !surface_check(measured->surface, (const double(*)[3])measured->places_m, build->input->sensor_count);
+    if (build->failed[1])
+        wrong(build->why, "out of memory for the check of its distances");
+    build->output->report.surface = *surface_report(measured->surface);
 }
 
 /* Distances of one sensor after another follow the vertices to their new numbers. */
@@ -180,62 +161,25 @@ static bool move_distances(float *distances, size_t sensor_count, uint32_t verte
     return column != NULL;
 }
 
-static bool split(struct workers *workers, const struct build_input *input, struct geometry *g, struct levels *levels,
-                  struct measured *measured)
-{
-    struct straight straight;
-    float(*places)[3] = mem_array(input->sensor_count, sizeof(*places)), *distances;
-    for (size_t i = 0; i < input->sensor_count; i++)
-        memcpy(places[i], measured->sensors[i].surface_m, sizeof(*places));
-    straight_init(&straight, input->plant, input->sensors, input->sensor_count, (const float(*)[3])places);
-    bool good = split_levels(levels, g,
-                             &(struct split_input){ .straight = &straight,
-                                                    .surface = measured->surface,
-                                                    .sources = measured->spots,
-                                                    .sampled = measured->sampled,
-                                                    .distances = measured->distances,
-                                                    .sensors = measured->sensors,
-                                                    .workers = workers },
-                             &distances);
-    if (good) {
-        mem_free(measured->distances);
-        measured->distances = distances;
-    }
-    straight_finish(&straight);
-    mem_free(places);
-    return good;
-}
-
 /* Levels first, then each is split; so a level has no more vertices than it needs. */
-static bool add_levels(struct workers *workers, const struct build_input *input, struct geometry *g, struct measured *measured,
-                       struct asset_level *file, struct build_report *report, char *why)
+static bool put_in_order(struct build *build, uint32_t own)
 {
-    struct levels levels = { 0 };
-    uint32_t *new_of = NULL, own = g->vertex_count;
-    int64_t since_ns = clock_mono_ns();
-    bool good = levels_make(&levels, g, workers);
-    report->level_count = levels.count;
-    for (size_t i = 0; i < levels.count; i++)
-        report->levels[i].triangles = levels.at[i].index_count / 3;
-    report->levels_s = seconds_since(&since_ns);
-    if (good && input->sensor_count)
-        good = split(workers, input, g, &levels, measured);
-    report->split_s = seconds_since(&since_ns);
-    good = good && order_vertices(g, &levels, own, file, &new_of) &&
-           move_distances(measured->distances, input->sensor_count, g->vertex_count, new_of);
-    for (size_t s = 0; good && s < input->sensor_count; s++)
-        measured->sensors[s].nearest_vertex = new_of[measured->sensors[s].nearest_vertex];
-    for (size_t i = 0; good && i < levels.count; i++) {
-        report->levels[i].split_triangles = levels.at[i].index_count / 3;
-        report->levels[i].vertices = file[i].vertex_count;
-        report->levels[i].error_m = file[i].error_m;
-        report->levels[i].field_error = levels.at[i].field_error;
+    struct build_report *report = &build->output->report;
+    struct geometry *g = &build->geometry;
+    size_t sensors = build->input->sensor_count;
+    uint32_t *new_of = NULL;
+    bool good =
+        order_vertices(g, &build->levels, own, build->file, &new_of) && move_distances(build->distances, sensors, g->vertex_count, new_of);
+    for (size_t s = 0; good && s < sensors; s++)
+        build->measured.sensors[s].nearest_vertex = new_of[build->measured.sensors[s].nearest_vertex];
+    for (size_t i = 0; good && i < build->levels.count; i++) {
+        report->levels[i].split_triangles = build->levels.at[i].index_count / 3;
+        report->levels[i].vertices = build->file[i].vertex_count;
+        report->levels[i].error_m = build->file[i].error_m;
+        report->levels[i].field_error = build->levels.at[i].field_error;
     }
-    if (!good)
-        snprintf(why, MODEL_WHY_BYTES, "out of memory for the levels of %u vertices", g->vertex_count);
-    levels_finish(&levels);
     mem_free(new_of);
-    return good;
+    return good || wrong(build->why, "out of memory for the levels of %u vertices", g->vertex_count);
 }
 
 static bool lay_out(const struct build_input *input, const struct geometry *g, const struct asset_level *levels, size_t level_count,
@@ -284,37 +228,47 @@ static bool lay_out(const struct build_input *input, const struct geometry *g, c
     return true;
 }
 
+static bool build_file(struct build *build)
+{
+    const struct build_input *input = build->input;
+    struct geometry *g = &build->geometry;
+    struct clusters clusters = { 0 };
+    bool any = input->sensor_count > 0;
+    uint32_t own = g->vertex_count;
+    if (!run_both(build, make_levels, any ? find_distances : NULL) || (any && !run_both(build, split, check)) || !put_in_order(build, own))
+        return false;
+    clusters_make(&clusters, g, build->workers);
+    bool good = lay_out(input, g, build->file, build->output->report.level_count, &clusters, build->measured.sensors, build->distances,
+                        build->output, build->why);
+    clusters_finish(&clusters);
+    return good;
+}
+
 bool build_asset(struct log *log, struct workers *workers, const struct build_input *input, struct build_output *output,
                  char why[MODEL_WHY_BYTES])
 {
-    struct geometry geometry = { 0 };
-    struct measured measured = { 0 };
-    struct asset_level levels[LEVELS_MAX] = { 0 };
-    struct clusters clusters = { 0 };
+    struct build build = { .log = log, .workers = workers, .input = input, .output = output, .why = why };
+    const struct geometry *g = &build.geometry;
     int64_t since_ns = clock_mono_ns();
     *output = (struct build_output){ .missing_node = -1 };
-    if (!geometry_cut(&geometry, input->model, &input->geometry, why))
+    if (!geometry_cut(&build.geometry, input->model, &input->geometry, why))
         return false;
-    output->report = (struct build_report){ .nodes = geometry.node_count,
-                                            .triangles = geometry.index_count / 3,
-                                            .vertices = geometry.vertex_count,
-                                            .primitives = geometry.primitive_count,
-                                            .materials = geometry.material_count,
-                                            .textures = geometry.texture_count,
-                                            .degenerate_triangles = geometry.degenerate_triangles,
-                                            .computed_normals = geometry.computed_normals,
-                                            .skipped_lines = geometry.skipped_lines,
-                                            .skipped_points = geometry.skipped_points,
+    output->report = (struct build_report){ .nodes = g->node_count,
+                                            .triangles = g->index_count / 3,
+                                            .vertices = g->vertex_count,
+                                            .primitives = g->primitive_count,
+                                            .materials = g->material_count,
+                                            .textures = g->texture_count,
+                                            .degenerate_triangles = g->degenerate_triangles,
+                                            .computed_normals = g->computed_normals,
+                                            .skipped_lines = g->skipped_lines,
+                                            .skipped_points = g->skipped_points,
                                             .read_s = seconds_since(&since_ns) };
-    bool good = (!input->sensor_count || measure(log, workers, input, &geometry, &measured, output, why)) &&
-                add_levels(workers, input, &geometry, &measured, levels, &output->report, why);
-    if (good) {
-        clusters_make(&clusters, &geometry, workers);
-        good = lay_out(input, &geometry, levels, output->report.level_count, &clusters, measured.sensors, measured.distances, output, why);
-    }
-    clusters_finish(&clusters);
-    measured_finish(&measured);
-    geometry_finish(&geometry);
+    bool good = build_file(&build);
+    measured_finish(&build.measured);
+    levels_finish(&build.levels);
+    geometry_finish(&build.geometry);
+    mem_free(build.distances);
     if (!good) {
         free(output->bytes);
         output->bytes = NULL;

@@ -29,7 +29,7 @@ struct subject { /* one asset in hand */
     double (*places_m)[3];
     size_t sensor_count, chosen;
     struct surface *surface;
-    float *at_vertices, *at_points;
+    struct surface_field field; /* of the chosen sensor */
 };
 
 char *debug_views_folder(const struct plant *plant)
@@ -73,10 +73,7 @@ static bool place_sensors(struct subject *subject, const struct plant *plant, co
 static bool find_distances(struct subject *subject, char *why)
 {
     const double(*chosen)[3] = (const double(*)[3])subject->places_m + subject->chosen;
-    subject->at_vertices = mem_try_array(subject->geometry.vertex_count, sizeof(*subject->at_vertices));
-    subject->at_points = mem_try_array(surface_sampled_count(subject->surface), sizeof(*subject->at_points));
-    if (!subject->at_vertices || !subject->at_points ||
-        !surface_distances_sampled(subject->surface, chosen, 1, subject->at_vertices, subject->at_points))
+    if (!surface_field_init(&subject->field, subject->surface, chosen, 1))
         return wrong(why, "its distances cannot be computed");
     return true;
 }
@@ -99,8 +96,7 @@ static void subject_finish(struct subject *subject)
     geometry_finish(&subject->geometry);
     mem_free(subject->sensors);
     mem_free(subject->places_m);
-    mem_free(subject->at_vertices);
-    mem_free(subject->at_points);
+    surface_field_finish(&subject->field);
 }
 
 static void write_one(struct views *views, const struct plant_asset *asset, const struct gltf_model *model)
@@ -112,7 +108,7 @@ static void write_one(struct views *views, const struct plant_asset *asset, cons
         bool any = subject.sensor_count > 0;
         struct debug_view view = { .name = asset->id,
                                    .surface = subject.surface,
-                                   .distances_m = subject.at_points,
+                                   .distances_m = subject.field.distances_m,
                                    .sensor = any ? views->plant->tags[subject.sensors[subject.chosen].tag].name : "",
                                    .sensors_m = (const double(*)[3])subject.places_m,
                                    .sensor_count = subject.sensor_count,

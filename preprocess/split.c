@@ -76,11 +76,9 @@ static const float *geodesic(const struct split *split, uint32_t vertex)
 static bool measure(const struct split *split, const float point[3], const double normal[3], float *out)
 {
     const struct split_input *in = split->in;
-    size_t sampled = surface_sampled_count(in->surface);
     struct surface_spot spot;
     surface_find_spot(in->surface, (const double[3]){ (double)point[0], (double)point[1], (double)point[2] }, normal, &spot);
-    for (size_t s = 0; s < split->sensors; s++)
-        out[s] = (float)surface_spot_distance(in->surface, &spot, &in->sources[s], in->sampled + s * sampled);
+    surface_field_at_spot(in->field, in->surface, &spot, out);
     return spot.distance_m <= split->on_surface_m;
 }
 
@@ -486,8 +484,8 @@ static bool start(struct split *split, struct geometry *geometry)
     split->geodesic_capacity = split->mesh.places.count * split->sensors;
     split->geodesic_m = mem_try_array(split->geodesic_capacity, sizeof(*split->geodesic_m));
     for (uint32_t v = 0; split->geodesic_m && v < geometry->vertex_count; v++)
-        for (size_t s = 0; s < split->sensors; s++)
-            split->geodesic_m[split->mesh.places.of_vertex[v] * split->sensors + s] = split->in->distances[s * geometry->vertex_count + v];
+        surface_field_at_vertex(split->in->field, split->in->surface, v,
+                                split->geodesic_m + split->mesh.places.of_vertex[v] * split->sensors);
     for (uint32_t v = 0; v < geometry->vertex_count; v++)
         for (int axis = 0; axis < 3; axis++) {
             low[axis] = fminf(low[axis], geometry->positions_m[v][axis]);

@@ -11,9 +11,7 @@
 struct split_input {
     struct straight *straight; /* its radii are set here */
     const struct surface *surface;
-    const struct surface_spot *sources; /* of each sensor */
-    const float *sampled;               /* distances, as surface_distances_sampled gives them */
-    const float *distances;             /* likewise: [sensor][vertex of the geometry] */
+    const struct surface_field *field; /* of the sensors */
     struct asset_sensor *sensors;       /* nearest_vertex becomes the sensor's own vertex of the finest level */
     struct workers *workers;            /* or NULL */
 };

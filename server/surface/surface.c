@@ -1,57 +1,22 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* From a model's triangles to geodesic distances: weld, bridge, sample, factor, solve. */
+/* From a model's triangles to a surface that distances can be walked over: weld, bridge, sample. */
 #include "surface/surface.h"
 
 #include <math.h>
-#include <stdatomic.h>
 #include <string.h>
 
 #include "base/clock.h"
 #include "base/mem.h"
-#include "surface/bvh.h"
-#include "surface/heat.h"
 #include "surface/hidden.h"
-#include "surface/intrinsic.h"
 #include "surface/order.h"
 #include "surface/stitch.h"
-#include "surface/trimesh.h"
-#include "surface/unfold.h"
+#include "surface/surface_state.h"
 #include "surface/vec.h"
 
 #define WELD_OF_SIZE 1e-6 /* vertices this near are one: float positions are no finer */
 #define TOLERANCE_OF_SIZE 5e-4
-#define SAMPLES 30000.0        /* at least about so many points carry the heat */
+#define SAMPLES 15000.0        /* of an even surface; what the model has beyond that comes on top */
 #define POINTS_PER_SPACING 2.7 /* points on one square spacing of a surface sampled by halving edges: measured */
-#define TIME_OF_SPACING 3.0    /* t in mean edge lengths squared */
-#define LONGEST_DECAY 500.0    /* the farthest point is no more than this many roots of t away, so that its heat is a number */
-#define BLOCK_SOURCES 8
-#define SPOT_ON_SURFACE 1e-3 /* mean edges: nearer than that, a point lies on its triangle */
-#define SPOT_PATIENCE 4.0    /* how much farther than the nearest a triangle may be that faces the right way */
-
-struct stray { /* a vertex of the model whose triangles have no area: it takes the nearest place's distance */
-    uint32_t vertex, points[3];
-    double weights[3];
-};
-
-struct surface {
-    struct log *log;
-    struct workers *workers;
-    size_t vertex_count;
-    uint32_t *vertex_point; /* of the model's vertices */
-    struct trimesh mesh;    /* welded, bridged, sampled; visible triangles first */
-    struct trimesh visible; /* the same without the hidden ones; its arrays are the mesh's */
-    uint32_t *component;    /* of its points, over visible triangles */
-    struct stray *strays;
-    size_t stray_count;
-    struct intrinsic intrinsic;
-    struct heat *heat;
-    struct unfold unfold;
-    struct bvh *bvh;
-    double edge_m; /* mean edge length */
-    struct surface_report report;
-    struct stitch_bridge *bridges;
-    size_t bridge_count, bridge_capacity;
-};
 
 static double size_of(const float (*positions)[3], const uint32_t *triangles, size_t triangle_count)
 {
@@ -271,31 +236,12 @@ static void join_parts(struct surface *surface, const struct parts *parts)
 static void sample(struct surface *surface)
 {
     struct surface_report *report = &surface->report;
-    double wanted = max_of(SAMPLES, (double)surface->mesh.point_count);
+    double wanted = SAMPLES;
     if (report->spacing_m <= 0)
         report->spacing_m = sqrt(POINTS_PER_SPACING * trimesh_area(&surface->mesh) / wanted);
     size_t before = surface->mesh.point_count;
     trimesh_sample(&surface->mesh, report->spacing_m, before + (size_t)(2 * wanted));
     report->samples = surface->mesh.point_count - before;
-}
-
-/* The way from some point to the farthest one from it, on the piece of surface with most triangles. */
-static double reach_of(const struct surface *surface)
-{
-    const struct trimesh *mesh = &surface->visible;
-    uint32_t *counts = mem_array(mesh->point_count, sizeof(*counts)), best = 0;
-    for (uint32_t t = 0; t < mesh->tri_count; t++)
-        if (++counts[surface->component[mesh->tris[t][0]]] > counts[surface->component[mesh->tris[best][0]]])
-            best = t;
-    struct unfold_walk walk = { 0 };
-    unfold_from(&surface->unfold, &walk, best, (const double[3]){ 1, 0, 0 });
-    double reach_m = 0;
-    for (size_t i = 0; i < mesh->point_count; i++)
-        if (walk.distance_m[i] < INFINITY)
-            reach_m = max_of(reach_m, walk.distance_m[i]);
-    unfold_walk_finish(&walk);
-    mem_free(counts);
-    return reach_m;
 }
 
 /* Model vertices that no triangle is left at, and how many are hidden. */
@@ -363,13 +309,7 @@ struct surface *surface_create(struct log *log, struct workers *workers, const f
     unfold_init(&surface->unfold, &surface->mesh, surface->visible.tri_count, &surface->intrinsic);
     find_strays(surface);
     surface->edge_m = mean_edge(&surface->intrinsic);
-    double decay_m = max_of(sqrt(TIME_OF_SPACING) * surface->edge_m, 2 * reach_of(surface) / LONGEST_DECAY);
-    report->time_m2 = decay_m * decay_m;
     report->laplacian_s = seconds_since(&since_ns);
-    surface->heat = heat_create(log, &surface->intrinsic, surface->component, report->time_m2);
-    if (!surface->heat)
-        goto error;
-    report->factor_s = seconds_since(&since_ns);
     return surface;
 error:
     surface_destroy(&surface);
@@ -381,7 +321,6 @@ void surface_destroy(struct surface **surface_ptr)
     struct surface *surface = *surface_ptr;
     if (!surface)
         return;
-    heat_destroy(&surface->heat);
     intrinsic_finish(&surface->intrinsic);
     unfold_finish(&surface->unfold);
     bvh_destroy(&surface->bvh);
@@ -412,177 +351,4 @@ void surface_look(const struct surface *surface, struct surface_look *look)
         .bridges = surface->bridges,
         .bridge_count = surface->bridge_count,
     };
-}
-
-void surface_nearest(const struct surface *surface, const double point_m[3], struct surface_place *place)
-{
-    struct bvh_place at;
-    bvh_nearest(surface->bvh, point_m, INFINITY, NULL, NULL, &at);
-    memcpy(place->position_m, at.point, sizeof(at.point));
-    place->distance_m = at.distance_m;
-    double best2 = INFINITY;
-    for (size_t v = 0; v < surface->vertex_count; v++) {
-        double d2 = vec_distance2(surface->mesh.points[surface->vertex_point[v]], at.point);
-        if (d2 < best2) {
-            best2 = d2;
-            place->vertex = (uint32_t)v;
-        }
-    }
-}
-
-/* --- solving ------------------------------------------------------------------------------------------------------------- */
-
-struct solve {
-    struct surface *surface;
-    const double (*points_m)[3];
-    size_t point_count;
-    float *out, *sampled; /* sampled: NULL, or at all points of the mesh */
-    double *disagreement; /* of each point */
-    atomic_bool failed;
-};
-
-/* How far the two methods differ, as a share of the largest distance. Heat leaves a constant open: it is taken so that they agree on
-   average. Heat smooths ridges and borders over about one root of t, so some percent at single points are its nature; more is a sign that
-   the surface does not hang together as it looks. */
-static double disagreement_of(const struct unfold *unfold, const struct unfold_walk *walk, const double *heat_m)
-{
-    double sum = 0, squares = 0, largest_m = 0, count = 0;
-    for (size_t p = 0; p < unfold->mesh->point_count; p++) {
-        if (unfold->hidden[p] || walk->distance_m[p] == INFINITY)
-            continue;
-        count++;
-        double difference_m = walk->distance_m[p] - heat_m[p];
-        sum += difference_m;
-        squares += difference_m * difference_m;
-        largest_m = max_of(largest_m, walk->distance_m[p]);
-    }
-    double mean = sum / count;
-    return largest_m > 0 ? sqrt(max_of(squares / count - mean * mean, 0)) / largest_m : 0;
-}
-
-static void finish_source(const struct solve *solve, size_t source, const struct bvh_place *at, struct unfold_walk *walk,
-                          const double *heat_m)
-{
-    const struct surface *surface = solve->surface;
-    float *out = solve->out + source * surface->vertex_count;
-    unfold_from(&surface->unfold, walk, at->tri, at->weights);
-    solve->disagreement[source] = disagreement_of(&surface->unfold, walk, heat_m);
-    for (size_t p = 0; solve->sampled && p < surface->mesh.point_count; p++)
-        solve->sampled[source * surface->mesh.point_count + p] = (float)walk->distance_m[p];
-    for (size_t v = 0; v < surface->vertex_count; v++)
-        out[v] = (float)walk->distance_m[surface->vertex_point[v]];
-    for (size_t i = 0; i < surface->stray_count; i++) {
-        const struct stray *stray = &surface->strays[i];
-        double sum = 0;
-        for (int c = 0; c < 3; c++)
-            sum += stray->weights[c] > 0 ? stray->weights[c] * walk->distance_m[stray->points[c]] : 0;
-        out[stray->vertex] = (float)sum;
-    }
-}
-
-static void solve_block(void *arg, size_t begin, size_t end)
-{
-    struct solve *solve = arg;
-    struct surface *surface = solve->surface;
-    size_t count = end - begin, points = surface->mesh.point_count;
-    struct heat_source *sources = mem_array(count, sizeof(*sources));
-    struct bvh_place *places = mem_array(count, sizeof(*places));
-    double *heat_m = mem_try_array(count * points, sizeof(*heat_m));
-    for (size_t s = 0; s < count; s++) {
-        bvh_nearest(surface->bvh, solve->points_m[begin + s], INFINITY, NULL, NULL, &places[s]);
-        memcpy(sources[s].points, surface->visible.tris[places[s].tri], sizeof(sources[s].points));
-        memcpy(sources[s].weights, places[s].weights, sizeof(sources[s].weights));
-    }
-    if (!heat_m || !heat_solve(surface->heat, sources, count, heat_m)) {
-        solve->failed = true;
-        goto done;
-    }
-    struct unfold_walk walk = { 0 };
-    for (size_t s = 0; s < count; s++)
-        finish_source(solve, begin + s, &places[s], &walk, heat_m + s * points);
-    unfold_walk_finish(&walk);
-done:
-    mem_free(sources);
-    mem_free(places);
-    mem_free(heat_m);
-}
-
-bool surface_distances(struct surface *surface, const double (*points_m)[3], size_t point_count, float *out)
-{
-    return surface_distances_sampled(surface, points_m, point_count, out, NULL);
-}
-
-bool surface_distances_sampled(struct surface *surface, const double (*points_m)[3], size_t point_count, float *out, float *sampled)
-{
-    struct solve solve = { .surface = surface, .points_m = points_m, .point_count = point_count, .out = out, .sampled = sampled };
-    solve.disagreement = mem_array(point_count, sizeof(*solve.disagreement));
-    size_t threads = surface->workers ? (size_t)workers_count(surface->workers) : 1;
-    size_t block = (point_count + threads - 1) / threads;
-    block = block < BLOCK_SOURCES ? block : BLOCK_SOURCES;
-    if (surface->workers)
-        workers_for(surface->workers, point_count, block, solve_block, &solve);
-    else
-        for (size_t i = 0; i < point_count; i += BLOCK_SOURCES)
-            solve_block(&solve, i, i + BLOCK_SOURCES < point_count ? i + BLOCK_SOURCES : point_count);
-    for (size_t i = 0; i < point_count; i++)
-        surface->report.heat_disagreement = max_of(surface->report.heat_disagreement, solve.disagreement[i]);
-    mem_free(solve.disagreement);
-    if (solve.failed)
-        log_err(surface->log, "distances of %zu places to %zu vertices: out of memory", point_count, surface->vertex_count);
-    return !solve.failed;
-}
-
-/* --- in between ---------------------------------------------------------------------------------------------------------- */
-
-size_t surface_sampled_count(const struct surface *surface)
-{
-    return surface->mesh.point_count;
-}
-
-struct facing {
-    const struct trimesh *mesh;
-    const double *normal;
-};
-
-static bool faces(const void *arg, uint32_t tri)
-{
-    const struct facing *facing = arg;
-    const uint32_t *v = facing->mesh->tris[tri];
-    double ab[3], ac[3], n[3];
-    vec_sub(facing->mesh->points[v[1]], facing->mesh->points[v[0]], ab);
-    vec_sub(facing->mesh->points[v[2]], facing->mesh->points[v[0]], ac);
-    vec_cross(ab, ac, n);
-    return vec_dot(n, facing->normal) > 0;
-}
-
-void surface_find_spot(const struct surface *surface, const double point_m[3], const double normal[3], struct surface_spot *spot)
-{
-    struct bvh_place any, facing = { .tri = TRIMESH_NONE };
-    bvh_nearest(surface->bvh, point_m, INFINITY, NULL, NULL, &any);
-    if (normal && any.distance_m > surface->edge_m * SPOT_ON_SURFACE)
-        bvh_nearest(surface->bvh, point_m, any.distance_m * SPOT_PATIENCE, faces, &(struct facing){ &surface->visible, normal }, &facing);
-    const struct bvh_place *at = facing.tri == TRIMESH_NONE ? &any : &facing;
-    spot->tri = at->tri;
-    spot->distance_m = at->distance_m;
-    memcpy(spot->point_m, at->point, sizeof(spot->point_m));
-}
-
-double surface_spot_distance(const struct surface *surface, const struct surface_spot *spot, const struct surface_spot *source,
-                             const float *sampled)
-{
-    const uint32_t *v = surface->visible.tris[spot->tri];
-    double to[3], best = INFINITY;
-    if (spot->tri == source->tri)
-        return vec_distance(spot->point_m, source->point_m);
-    for (int i = 0; i < 3; i++)
-        to[i] = vec_distance(spot->point_m, surface->visible.points[v[i]]);
-    for (int i = 0; i < 3; i++) {
-        int j = (i + 1) % 3;
-        double di = (double)sampled[v[i]], dj = (double)sampled[v[j]];
-        double edge_m = vec_distance(surface->visible.points[v[i]], surface->visible.points[v[j]]);
-        best = min_of(best, di + to[i]);
-        if (isfinite(di) && isfinite(dj))
-            best = min_of(best, unfold_across(di, dj, edge_m, to[i], to[j]));
-    }
-    return best;
 }

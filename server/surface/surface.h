@@ -15,8 +15,9 @@
         is nearly linear in a triangle, heat itself is not;
      5. the heat method still errs by 0.05 to 0.4 % on average and up to 4 % at borders and ridges (measured on planes, spheres and
         cylinders of 30,000 points; with t = h^2 it is 0.7 % and 3 %). So the distances handed out are unfolded over the same
-        triangulation, from the source outwards (unfold.h): 0.00 to 0.15 % on average. The heat method is what they are held against: two
-        methods that share nothing but the mesh. Where they differ by more than some percent the report says so.
+        triangulation, from the source outwards (unfold.h): 0.01 to 0.12 % on average. The heat method is what some of them are held
+        against (surface_check): two methods that share nothing but the mesh. Where they differ by more than some percent the report
+        says so.
    Distances are kept at the model's own vertices. */
 #ifndef SURFACE_SURFACE_H
 #define SURFACE_SURFACE_H
@@ -44,8 +45,8 @@ struct surface_report {
     int k;                    /* neighbours asked for; 0: nothing to bridge */
     size_t samples;           /* points added */
     size_t hidden_vertices;   /* of the model: inside another closed part */
-    double heat_disagreement; /* root mean square difference to the heat method, as a share of the largest distance; worst source so far */
-    double weld_s, bridge_s, sample_s, laplacian_s, factor_s;
+    double heat_disagreement; /* root mean square difference to the heat method, as a share of the largest distance; worst source checked */
+    double weld_s, bridge_s, sample_s, laplacian_s, factor_s, check_s;
 };
 
 /* positions: count vertices in metres; triangles: indices, 3 each. Everything is copied. workers may be NULL, else it must
@@ -76,24 +77,34 @@ struct surface_place {
 };
 void surface_nearest(const struct surface *surface, const double point_m[3], struct surface_place *place);
 
-/* Metres along the surface from each point (dropped onto the surface first) to every vertex of the model:
-   out[point * vertex_count + vertex]. INFINITY where no way leads. Points are solved in blocks over all workers.
-   False: out of memory, logged. */
-bool surface_distances(struct surface *surface, const double (*points_m)[3], size_t point_count, float *out);
-
-/* Between the vertices. The sampled surface has surface_sampled_count points; surface_distances_sampled also gives the distances there,
-   sampled[point * count + p], and from them follows the distance at any spot. */
-size_t surface_sampled_count(const struct surface *surface);
-bool surface_distances_sampled(struct surface *surface, const double (*points_m)[3], size_t point_count, float *out, float *sampled);
-struct surface_spot {
-    uint32_t tri; /* of the sampled surface */
-    double point_m[3], distance_m; /* distance_m: from the point asked for */
-};
 /* The spot nearest to a point; off the surface, one whose triangle faces along `normal` if there is one about as near (NULL: any), so that
    a thin wall's other side is not taken. */
+struct surface_spot {
+    uint32_t tri; /* of the sampled surface */
+    double weights[3], point_m[3], distance_m; /* weights: of tri's corners; distance_m: from the point asked for */
+};
 void surface_find_spot(const struct surface *surface, const double point_m[3], const double normal[3], struct surface_spot *spot);
-/* sampled: of the source that was dropped onto `source`. INFINITY where no way leads. Thread: any. */
-double surface_spot_distance(const struct surface *surface, const struct surface_spot *spot, const struct surface_spot *source,
-                             const float *sampled);
+
+/* Metres along the surface from each point (dropped onto the surface first) to every vertex of the model:
+   out[point * vertex_count + vertex]. INFINITY where no way leads. Points are spread over all workers.
+   False: out of memory, logged. Thread: any number of calls at a time; likewise for all that follows. */
+bool surface_distances(const struct surface *surface, const double (*points_m)[3], size_t point_count, float *out);
+
+/* The same at all points of the sampled surface; from them follows the distance at any place. */
+struct surface_field {
+    size_t source_count;
+    struct surface_spot *sources;
+    float *distances_m; /* [point of the sampled surface][source] */
+};
+/* False: out of memory, logged; nothing to finish. */
+bool surface_field_init(struct surface_field *field, const struct surface *surface, const double (*points_m)[3], size_t point_count);
+void surface_field_finish(struct surface_field *field);
+/* out[source] */
+void surface_field_at_vertex(const struct surface_field *field, const struct surface *surface, uint32_t vertex, float *out);
+void surface_field_at_spot(const struct surface_field *field, const struct surface *surface, const struct surface_spot *spot, float *out);
+
+/* Holds distances against the heat method's, for some of these points: the report's heat_disagreement, time_m2, factor_s. False: out of
+   memory, logged. Thread: one at a time, beside calls that do not ask for the report. */
+bool surface_check(struct surface *surface, const double (*points_m)[3], size_t point_count);
 
 #endif

@@ -4,30 +4,31 @@
 #define SURFACE_UNFOLD_H
 #include "surface/intrinsic.h"
 
+#define UNFOLD_FANS 4 /* triangles at a point that are looked at side by side, a lane of a vector register each */
+
 struct unfold { /* what meets at each point; shared by all walks */
     const struct trimesh *mesh;
-    const struct intrinsic *in;
     uint32_t *first;                        /* of each point in fans; one more at the end */
-    struct unfold_fan {                     /* a triangle seen from one of its corners */
-        uint32_t a, b;                      /* the others; the highest bit: the point itself may not be reached through this triangle */
-        float to_a_m, to_b_m, cosine, sine; /* of the angle at the corner */
+    struct unfold_fans {                    /* triangles seen from one of their corners */
+        uint32_t a[UNFOLD_FANS], b[UNFOLD_FANS];       /* the others; the corner itself where there is no more triangle */
+        float to_a_m[UNFOLD_FANS], to_b_m[UNFOLD_FANS]; /* < 0: that one may not be reached through this triangle; INFINITY: none */
+        float cosine[UNFOLD_FANS], sine[UNFOLD_FANS];  /* of the angle at the corner */
     } * fans;
-    char *hidden;       /* of each point: it has no visible triangle */
-    double steps_per_m; /* buckets of a walk */
+    char *hidden;      /* of each point: it has no visible triangle */
+    float steps_per_m; /* buckets of a walk */
     uint32_t bucket_count;
 };
 /* Visible triangles are walked over as the intrinsic triangulation has them, which leaves few obtuse ones; from there on the walk goes into
    the mesh's triangles from visible_count on, which are hidden inside another part, so that a triangle that passes through a surface has a
-   distance at its hidden end too; but never back. mesh and in must outlive it. */
+   distance at its hidden end too; but never back. mesh must outlive it. */
 void unfold_init(struct unfold *unfold, const struct trimesh *mesh, size_t visible_count, const struct intrinsic *in);
 void unfold_finish(struct unfold *unfold);
 
-struct unfold_walk {    /* one thread's; zero-initialise, used again and again */
-    double *distance_m; /* of all points; INFINITY where no way leads */
+struct unfold_walk {   /* one thread's; zero-initialise, used again and again */
+    float *distance_m; /* of all points; INFINITY where no way leads */
     char *settled;
     uint32_t *buckets;
     struct unfold_item {
-        double distance_m;
         uint32_t point, next;
     } * items;
     uint64_t at; /* the bucket in hand */
@@ -35,10 +36,7 @@ struct unfold_walk {    /* one thread's; zero-initialise, used again and again *
 };
 void unfold_walk_finish(struct unfold_walk *walk);
 
-/* Distances of all points from the place with these weights on triangle tri. */
-void unfold_from(const struct unfold *unfold, struct unfold_walk *walk, uint32_t tri, const double weights[3]);
-
-/* The distance of c when a and b, on one edge, have theirs: the source is laid out in the plane of a, b and c, beyond the edge. */
-double unfold_across(double da, double db, double ab, double ac, double bc);
+/* Distances of all points from the place with these weights on triangle tri. False: out of memory. */
+bool unfold_from(const struct unfold *unfold, struct unfold_walk *walk, uint32_t tri, const double weights[3]);
 
 #endif

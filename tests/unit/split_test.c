@@ -134,7 +134,7 @@ static void make_plant(struct body *body)
 static void prepare(struct body *body, const double (*points)[3])
 {
     float(*places)[3] = mem_array(SENSORS, sizeof(*places));
-    struct surface_spot spots[SENSORS];
+    struct surface_field field;
     struct straight straight;
     struct geometry *g = &body->g;
     make_plant(body);
@@ -143,28 +143,21 @@ static void prepare(struct body *body, const double (*points)[3])
     body->surface = surface_create(NULL, NULL, (const float(*)[3])g->positions_m, g->vertex_count, g->indices, g->index_count / 3,
                                    &(struct surface_params){ 0 });
     assert_non_null(body->surface);
-    float *distances = mem_array(SENSORS * (size_t)g->vertex_count, sizeof(*distances));
-    float *sampled = mem_array(SENSORS * surface_sampled_count(body->surface), sizeof(*sampled));
-    assert_true(surface_distances_sampled(body->surface, points, SENSORS, distances, sampled));
-    for (int i = 0; i < SENSORS; i++) {
-        surface_find_spot(body->surface, points[i], NULL, &spots[i]);
+    assert_true(surface_field_init(&field, body->surface, points, SENSORS));
+    for (int i = 0; i < SENSORS; i++)
         for (int axis = 0; axis < 3; axis++)
-            places[i][axis] = body->places[i].surface_m[axis] = (float)spots[i].point_m[axis];
-    }
+            places[i][axis] = body->places[i].surface_m[axis] = (float)field.sources[i].point_m[axis];
     straight_init(&straight, &body->plant, body->sensors, SENSORS, (const float(*)[3])places);
     assert_true(levels_make(&body->levels, g, NULL));
     assert_true(split_levels(&body->levels, g,
                              &(struct split_input){ .straight = &straight,
                                                     .surface = body->surface,
-                                                    .sources = spots,
-                                                    .sampled = sampled,
-                                                    .distances = distances,
+                                                    .field = &field,
                                                     .sensors = body->places },
                              &body->distances));
     straight_finish(&straight);
     mem_free(places);
-    mem_free(distances);
-    mem_free(sampled);
+    surface_field_finish(&field);
 }
 
 static void finish(struct body *body)

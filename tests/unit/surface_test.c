@@ -236,6 +236,8 @@ static void test_shape(const struct shape *shape)
             assert_true(score.worst <= WORST_MAX);
         }
         assert_int_equal(surface_report(surface)->components_after, 1);
+        assert_true(surface_check(surface, (const double(*)[3])put, 2));
+        assert_true(surface_report(surface)->heat_disagreement > 0);
         assert_true(surface_report(surface)->heat_disagreement < METHODS_MAX);
         surface_destroy(&surface);
         cad_finish(&broken);

@@ -1,0 +1,96 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Dropping sensors onto an asset's surface, and finding their distances there. */
+#include "preprocess/measure.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+
+bool build_sensor_place(const struct gltf_model *model, const struct geometry_params *geometry, const struct plant_sensor *sensor,
+                        double place_m[3])
+{
+    memcpy(place_m, sensor->position_m, sizeof(sensor->position_m));
+    return !sensor->node || geometry_node_place(model, geometry, sensor->node, place_m);
+}
+
+/* Where each sensor is, less the origin. */
+static bool place_sensors(const struct build_input *input, const struct geometry *geometry, double (*places)[3], int *missing, char *why)
+{
+    for (size_t i = 0; i < input->sensor_count; i++) {
+        const struct plant_sensor *sensor = &input->sensors[i];
+        double place[3];
+        if (!build_sensor_place(input->model, &input->geometry, sensor, place)) {
+            *missing = (int)i;
+            snprintf(why, MODEL_WHY_BYTES, "the model has no node '%.200s'", sensor->node);
+            return false;
+        }
+        for (int axis = 0; axis < 3; axis++)
+            places[i][axis] = place[axis] - geometry->origin_m[axis];
+    }
+    return true;
+}
+
+static void drop_sensors(const struct surface *surface, const struct build_input *input, const double (*places)[3],
+                         struct asset_sensor *out)
+{
+    for (size_t i = 0; i < input->sensor_count; i++) {
+        struct surface_place at;
+        surface_nearest(surface, places[i], &at);
+        for (int axis = 0; axis < 3; axis++) {
+            out[i].position_m[axis] = (float)places[i][axis];
+            out[i].surface_m[axis] = (float)at.position_m[axis];
+        }
+        out[i].surface_distance_m = (float)at.distance_m;
+        out[i].nearest_vertex = at.vertex;
+        out[i].node_hash = input->sensors[i].node_hash;
+    }
+}
+
+/* Vertices without a finite distance. */
+static size_t unreachable(const struct measured *measured, size_t vertex_count)
+{
+    size_t count = 0, sensors = measured->field.source_count;
+    float *row = mem_array(sensors, sizeof(*row));
+    for (uint32_t v = 0; v < vertex_count; v++) {
+        bool reached = false;
+        surface_field_at_vertex(&measured->field, measured->surface, v, row);
+        for (size_t s = 0; s < sensors && !reached; s++)
+            reached = isfinite(row[s]);
+        count += !reached;
+    }
+    mem_free(row);
+    return count;
+}
+
+bool measure_sensors(struct measured *measured, struct log *log, struct workers *workers, const struct build_input *input,
+                     const struct geometry *g, struct build_output *output, char why[MODEL_WHY_BYTES])
+{
+    struct build_report *report = &output->report;
+    int64_t start_ns = clock_mono_ns();
+    measured->places_m = mem_array(input->sensor_count, sizeof(*measured->places_m));
+    measured->sensors = mem_array(input->sensor_count, sizeof(*measured->sensors));
+    if (!place_sensors(input, g, measured->places_m, &output->missing_node, why))
+        return false;
+    measured->surface = surface_create(log, workers, (const float(*)[3])g->positions_m, g->vertex_count, g->indices, g->index_count / 3,
+                                       &(struct surface_params){ 0 });
+    int64_t made_ns = clock_mono_ns();
+    if (!measured->surface ||
+        !surface_field_init(&measured->field, measured->surface, (const double(*)[3])measured->places_m, input->sensor_count))
+        return wrong(why, "its distances to %zu sensors cannot be computed", input->sensor_count);
+    drop_sensors(measured->surface, input, (const double(*)[3])measured->places_m, measured->sensors);
+    report->unreachable_vertices = unreachable(measured, g->vertex_count);
+    report->surface_s = (double)(made_ns - start_ns) / NS_PER_S;
+    report->solve_s = (double)(clock_mono_ns() - made_ns) / NS_PER_S;
+    return true;
+}
+
+void measured_finish(struct measured *measured)
+{
+    surface_field_finish(&measured->field);
+    surface_destroy(&measured->surface);
+    mem_free(measured->sensors);
+    mem_free(measured->places_m);
+}

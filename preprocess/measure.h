@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The sensors of an asset on its surface, and how far they are from everywhere. */
+#ifndef PREPROCESS_MEASURE_H
+#define PREPROCESS_MEASURE_H
+#include "preprocess/build.h"
+
+struct measured {
+    struct surface *surface;
+    struct surface_field field;
+    struct asset_sensor *sensors;
+    double (*places_m)[3]; /* less the origin */
+};
+
+/* Fills in what the report says about it. False: why says what is wrong; finish all the same. */
+bool measure_sensors(struct measured *measured, struct log *log, struct workers *workers, const struct build_input *input,
+                     const struct geometry *geometry, struct build_output *output, char why[MODEL_WHY_BYTES]);
+void measured_finish(struct measured *measured);
+
+#endif

@@ -1,0 +1,126 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Distances held against those of the heat method. */
+#include <stdatomic.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "surface/heat.h"
+#include "surface/surface_state.h"
+#include "surface/vec.h"
+
+#define TIME_OF_SPACING 3.0 /* t in mean edge lengths squared */
+#define LONGEST_DECAY 500.0 /* the farthest point is no more than this many roots of t away, so that its heat is a number */
+#define MOST_SOURCES 32     /* are checked; they are taken evenly from all */
+#define BLOCK 8             /* right-hand sides solved together */
+
+/* The way from some point to the farthest one from it, on the piece of surface with most triangles. */
+static double reach_of(const struct surface *surface)
+{
+    const struct trimesh *mesh = &surface->visible;
+    uint32_t *counts = mem_array(mesh->point_count, sizeof(*counts));
+    uint32_t best = 0;
+    for (uint32_t t = 0; t < mesh->tri_count; t++)
+        if (++counts[surface->component[mesh->tris[t][0]]] > counts[surface->component[mesh->tris[best][0]]])
+            best = t;
+    struct unfold_walk walk = { 0 };
+    double reach_m = 0;
+    if (unfold_from(&surface->unfold, &walk, best, (const double[3]){ 1, 0, 0 }))
+        for (size_t i = 0; i < mesh->point_count; i++)
+            if (walk.distance_m[i] < INFINITY)
+                reach_m = max_of(reach_m, (double)walk.distance_m[i]);
+    unfold_walk_finish(&walk);
+    mem_free(counts);
+    return reach_m;
+}
+
+/* How far the two methods differ, as a share of the largest distance. Heat leaves a constant open: it is taken so that they agree on
+   average. Heat smooths ridges and borders over about one root of t, so some percent at single points are its nature; more is a sign that
+   the surface does not hang together as it looks. */
+static double disagreement_of(const struct unfold *unfold, const float *walked, const double *heat_m)
+{
+    double sum = 0, squares = 0, largest_m = 0, count = 0;
+    for (size_t p = 0; p < unfold->mesh->point_count; p++) {
+        double walked_m = (double)walked[p], difference_m = walked_m - heat_m[p];
+        if (unfold->hidden[p] || walked_m == INFINITY)
+            continue;
+        count++;
+        sum += difference_m;
+        squares += difference_m * difference_m;
+        largest_m = max_of(largest_m, walked_m);
+    }
+    double mean = sum / count;
+    return largest_m > 0 ? sqrt(max_of(squares / count - mean * mean, 0)) / largest_m : 0;
+}
+
+struct check {
+    const struct surface *surface;
+    const struct heat *heat;
+    struct surface_spot *spots;
+    size_t count;
+    double *disagreement; /* of each spot */
+    atomic_bool failed;
+};
+
+static void check_block(void *arg, size_t begin, size_t end)
+{
+    struct check *check = arg;
+    const struct surface *surface = check->surface;
+    size_t points = surface->mesh.point_count, count = end - begin;
+    struct unfold_walk walk = { 0 };
+    struct heat_source *sources = mem_array(count, sizeof(*sources));
+    double *heat_m = mem_try_array(count * points, sizeof(*heat_m));
+    for (size_t s = 0; s < count; s++) {
+        memcpy(sources[s].points, surface->visible.tris[check->spots[begin + s].tri], sizeof(sources[s].points));
+        memcpy(sources[s].weights, check->spots[begin + s].weights, sizeof(sources[s].weights));
+    }
+    bool good = heat_m && heat_solve(check->heat, sources, count, heat_m);
+    for (size_t s = 0; s < count && good; s++) {
+        good = unfold_from(&surface->unfold, &walk, check->spots[begin + s].tri, check->spots[begin + s].weights);
+        if (good)
+            check->disagreement[begin + s] = disagreement_of(&surface->unfold, walk.distance_m, heat_m + s * points);
+    }
+    if (!good)
+        check->failed = true;
+    unfold_walk_finish(&walk);
+    mem_free(sources);
+    mem_free(heat_m);
+}
+
+static void choose_spots(struct check *check, const double (*points_m)[3], size_t point_count)
+{
+    check->count = point_count < MOST_SOURCES ? point_count : MOST_SOURCES;
+    check->spots = mem_array(check->count, sizeof(*check->spots));
+    check->disagreement = mem_array(check->count, sizeof(*check->disagreement));
+    for (size_t i = 0; i < check->count; i++)
+        surface_find_spot(check->surface, points_m[i * point_count / check->count], NULL, &check->spots[i]);
+}
+
+bool surface_check(struct surface *surface, const double (*points_m)[3], size_t point_count)
+{
+    struct surface_report *report = &surface->report;
+    struct check check = { .surface = surface };
+    int64_t start_ns = clock_mono_ns(), factored_ns;
+    double decay_m = max_of(sqrt(TIME_OF_SPACING) * surface->edge_m, 2 * reach_of(surface) / LONGEST_DECAY);
+    struct heat *heat = heat_create(surface->log, &surface->intrinsic, surface->component, decay_m * decay_m);
+    factored_ns = clock_mono_ns();
+    if (!heat)
+        return false;
+    check.heat = heat;
+    choose_spots(&check, points_m, point_count);
+    if (surface->workers)
+        workers_for(surface->workers, check.count, BLOCK, check_block, &check);
+    else
+        check_block(&check, 0, check.count);
+    heat_destroy(&heat);
+    for (size_t i = 0; i < check.count; i++)
+        report->heat_disagreement = max_of(report->heat_disagreement, check.disagreement[i]);
+    report->time_m2 = decay_m * decay_m;
+    report->factor_s = (double)(factored_ns - start_ns) / NS_PER_S;
+    report->check_s = (double)(clock_mono_ns() - factored_ns) / NS_PER_S;
+    if (check.failed)
+        log_err(surface->log, "heat method beside %zu places: out of memory", check.count);
+    mem_free(check.spots);
+    mem_free(check.disagreement);
+    return !check.failed;
+}

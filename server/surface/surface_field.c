@@ -1,0 +1,201 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Distances from many places, block by block over all cores, and what follows from them in between. */
+#include <stdatomic.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "base/wide.h"
+#include "surface/surface_state.h"
+#include "surface/vec.h"
+
+#define BLOCK 16 /* sources walked one after another by one thread, then written side by side */
+
+struct solve {
+    const struct surface *surface;
+    const struct surface_spot *spots;
+    size_t count;
+    float *out;                  /* NULL, or [spot][vertex] */
+    struct surface_field *field; /* or NULL */
+    atomic_bool failed;
+};
+
+static const struct stray *stray_of(const struct surface *surface, uint32_t vertex)
+{
+    size_t low = 0, high = surface->stray_count;
+    while (low < high) {
+        size_t middle = (low + high) / 2;
+        if (surface->strays[middle].vertex < vertex)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < surface->stray_count && surface->strays[low].vertex == vertex ? &surface->strays[low] : NULL;
+}
+
+/* distances_m: of the points, so many numbers apart. */
+static float at_stray(const struct stray *stray, const float *distances_m, size_t apart)
+{
+    double sum = 0;
+    for (int c = 0; c < 3; c++)
+        sum += stray->weights[c] > 0 ? stray->weights[c] * (double)distances_m[stray->points[c] * apart] : 0;
+    return (float)sum;
+}
+
+static void take_vertices(const struct surface *surface, const float *distances_m, float *out)
+{
+    for (size_t v = 0; v < surface->vertex_count; v++)
+        out[v] = distances_m[surface->vertex_point[v]];
+    for (size_t i = 0; i < surface->stray_count; i++)
+        out[surface->strays[i].vertex] = at_stray(&surface->strays[i], distances_m, 1);
+}
+
+/* Columns of a block into the rows of the field: a line of memory at a time. */
+static void take_rows(const struct solve *solve, const float *block, size_t first, size_t count)
+{
+    size_t points = solve->surface->mesh.point_count;
+    for (size_t p = 0; p < points; p++)
+        for (size_t s = 0; s < count; s++)
+            solve->field->distances_m[p * solve->field->source_count + first + s] = block[s * points + p];
+}
+
+static void solve_block(void *arg, size_t begin, size_t end)
+{
+    struct solve *solve = arg;
+    const struct surface *surface = solve->surface;
+    size_t points = surface->mesh.point_count;
+    struct unfold_walk walk = { 0 };
+    float *block = solve->field ? mem_try_array((end - begin) * points, sizeof(*block)) : NULL;
+    for (size_t s = begin; s < end && !solve->failed; s++) {
+        if ((solve->field && !block) || !unfold_from(&surface->unfold, &walk, solve->spots[s].tri, solve->spots[s].weights))
+            solve->failed = true;
+        else if (solve->field)
+            memcpy(block + (s - begin) * points, walk.distance_m, points * sizeof(*block));
+        else
+            take_vertices(surface, walk.distance_m, solve->out + s * surface->vertex_count);
+    }
+    if (block && !solve->failed)
+        take_rows(solve, block, begin, end - begin);
+    unfold_walk_finish(&walk);
+    mem_free(block);
+}
+
+static bool solve_all(struct solve *solve)
+{
+    struct workers *workers = solve->surface->workers;
+    size_t share = workers ? 1 + solve->count / (size_t)workers_count(workers) : solve->count;
+    if (workers)
+        workers_for(workers, solve->count, share < BLOCK ? share : BLOCK, solve_block, solve);
+    for (size_t s = 0; s < solve->count && !workers; s += BLOCK)
+        solve_block(solve, s, s + BLOCK < solve->count ? s + BLOCK : solve->count);
+    if (solve->failed)
+        log_err(solve->surface->log, "distances of %zu places on %zu points: out of memory", solve->count,
+                solve->surface->mesh.point_count);
+    return !solve->failed;
+}
+
+static struct surface_spot *find_spots(const struct surface *surface, const double (*points_m)[3], size_t count)
+{
+    struct surface_spot *spots = mem_array(count, sizeof(*spots));
+    for (size_t i = 0; i < count; i++)
+        surface_find_spot(surface, points_m[i], NULL, &spots[i]);
+    return spots;
+}
+
+bool surface_distances(const struct surface *surface, const double (*points_m)[3], size_t point_count, float *out)
+{
+    struct surface_spot *spots = find_spots(surface, points_m, point_count);
+    struct solve solve = { .surface = surface, .spots = spots, .count = point_count, .out = out };
+    bool good = solve_all(&solve);
+    mem_free(spots);
+    return good;
+}
+
+bool surface_field_init(struct surface_field *field, const struct surface *surface, const double (*points_m)[3], size_t point_count)
+{
+    struct solve solve = { .surface = surface, .count = point_count, .field = field };
+    *field = (struct surface_field){ .source_count = point_count };
+    field->distances_m = mem_try_array(surface->mesh.point_count, field->source_count * sizeof(*field->distances_m));
+    field->sources = find_spots(surface, points_m, point_count);
+    solve.spots = field->sources;
+    if (!field->distances_m)
+        log_err(surface->log, "distances of %zu places on %zu points: out of memory", point_count, surface->mesh.point_count);
+    if (field->distances_m && solve_all(&solve))
+        return true;
+    surface_field_finish(field);
+    return false;
+}
+
+void surface_field_finish(struct surface_field *field)
+{
+    mem_free(field->sources);
+    mem_free(field->distances_m);
+    *field = (struct surface_field){ 0 };
+}
+
+void surface_field_at_vertex(const struct surface_field *field, const struct surface *surface, uint32_t vertex, float *out)
+{
+    const struct stray *stray = surface->stray_count ? stray_of(surface, vertex) : NULL;
+    if (!stray)
+        memcpy(out, field->distances_m + surface->vertex_point[vertex] * field->source_count, field->source_count * sizeof(*out));
+    for (size_t s = 0; s < field->source_count && stray; s++)
+        out[s] = at_stray(stray, field->distances_m + s, field->source_count);
+}
+
+/* Seen from a spot c, an edge a-b of its triangle: lengths, and c's place with a at (0, 0) and b at (side, 0). */
+struct sight {
+    float side, x, y, to_a, to_b;
+};
+
+static struct sight sight_of(double ab, double ac, double bc)
+{
+    double x, y;
+    ab = max_of(ab, 1e-30);
+    intrinsic_layout((const double[3]){ ab, bc, ac }, &x, &y);
+    return (struct sight){ (float)ab, (float)x, (float)y, (float)ac, (float)bc };
+}
+
+/* out[s] becomes what a's and b's distances offer to the spot, if that is less: the source is laid out beyond the edge. */
+WIDE_BODY void step_row(const struct sight *sight, const float *restrict a, const float *restrict b, size_t count, float *restrict out)
+{
+    const float side = sight->side, half = side / 2, per = 1 / (2 * side), x = sight->x, y = sight->y;
+    for (size_t s = 0; s < count; s++) {
+        float da = a[s], db = b[s], along_a = da + sight->to_a, along_b = db + sight->to_b;
+        float sx = (da - db) * (da + db) * per + half, sy2 = (da - sx) * (da + sx), sy = sqrtf(sy2 > 0 ? sy2 : 0);
+        float dx = x - sx, dy = y + sy, cut = sx * y + x * sy; /* where the source's ray cuts the edge, times dy */
+        float straight = sqrtf(dx * dx + dy * dy), edges = along_a < along_b ? along_a : along_b;
+        float least = sy2 >= 0 ? straight : edges; /* not where da or db is INFINITY */
+        least = cut >= 0 ? least : edges;
+        least = cut <= side * dy ? least : edges;
+        out[s] = least < out[s] ? least : out[s];
+    }
+}
+
+static void step_row_plain(const struct sight *sight, const float *a, const float *b, size_t count, float *out)
+{
+    step_row(sight, a, b, count, out);
+}
+
+WIDE_TARGET static void step_row_wide(const struct sight *sight, const float *a, const float *b, size_t count, float *out)
+{
+    step_row(sight, a, b, count, out);
+}
+
+void surface_field_at_spot(const struct surface_field *field, const struct surface *surface, const struct surface_spot *spot, float *out)
+{
+    const struct trimesh *mesh = &surface->visible;
+    const uint32_t *v = mesh->tris[spot->tri];
+    double to_m[3];
+    for (int i = 0; i < 3; i++)
+        to_m[i] = vec_distance(spot->point_m, mesh->points[v[i]]);
+    for (size_t s = 0; s < field->source_count; s++)
+        out[s] = INFINITY;
+    for (int i = 0; i < 3; i++) {
+        int j = (i + 1) % 3;
+        struct sight sight = sight_of(vec_distance(mesh->points[v[i]], mesh->points[v[j]]), to_m[i], to_m[j]);
+        (wide_is_there() ? step_row_wide : step_row_plain)(&sight, field->distances_m + v[i] * field->source_count,
+                                                           field->distances_m + v[j] * field->source_count, field->source_count, out);
+    }
+    for (size_t s = 0; s < field->source_count; s++)
+        if (field->sources[s].tri == spot->tri)
+            out[s] = (float)vec_distance(spot->point_m, field->sources[s].point_m);
+}

@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Shared by the files that make a surface and measure on it. */
+#ifndef SURFACE_SURFACE_STATE_H
+#define SURFACE_SURFACE_STATE_H
+#include "surface/bvh.h"
+#include "surface/stitch.h"
+#include "surface/surface.h"
+#include "surface/unfold.h"
+
+struct stray { /* a vertex of the model whose triangles have no area: it takes the nearest place's distance */
+    uint32_t vertex, points[3];
+    double weights[3];
+};
+
+struct surface {
+    struct log *log;
+    struct workers *workers;
+    size_t vertex_count;
+    uint32_t *vertex_point; /* of the model's vertices */
+    struct trimesh mesh;    /* welded, bridged, sampled; visible triangles first */
+    struct trimesh visible; /* the same without the hidden ones; its arrays are the mesh's */
+    uint32_t *component;    /* of its points, over visible triangles */
+    struct stray *strays;   /* by vertex */
+    size_t stray_count;
+    struct intrinsic intrinsic;
+    struct unfold unfold;
+    struct bvh *bvh;
+    double edge_m; /* mean edge length */
+    struct surface_report report;
+    struct stitch_bridge *bridges;
+    size_t bridge_count, bridge_capacity;
+};
+
+#endif
