@@ -5,7 +5,7 @@ import { test } from 'node:test';
 import { readAddress, writeAddress } from '../../clients/web/core/address.js';
 import { ageText, decimalsFor, numberText, qualityText, unitText, worst, zoneClock } from '../../clients/web/core/format.js';
 import { nearestMarker, placeLabels } from '../../clients/web/core/labels.js';
-import { halves } from '../../clients/web/core/halves.js';
+import { halfAt, halves } from '../../clients/web/core/halves.js';
 import {
     colourOf, edges, niceStep, placeOf, rampChoices, scaleTicks, spread, ticks, valueAt,
 } from '../../clients/web/core/legend.js';
@@ -123,6 +123,7 @@ test('halves of a split view', () => {
     const [left, right] = halves({ group: 'a', look: 'flat', split: { group: 'b' } }, 641);
     assert.deepEqual([left.left, left.width, right.left, right.width], [0, 320, 320, 321]);
     assert.deepEqual([left.params.group, right.params.group, right.params.look], ['a', 'b', 'flat']);
+    assert.deepEqual([0, 319, 320, 640, 900].map((x) => halfAt({ split: {} }, 641, x).left), [0, 0, 320, 320, 320]);
 });
 
 test('patterns: half of the hatching is dark, a fifth of the stipple is dots, both as large as the picture asks', () => {

@@ -88,7 +88,8 @@ export class Legend {
 
     scale(rule, lines, limits) {
         const { map, min, max } = rule;
-        const text = (value) => numberText(value, decimalsFor(rule.log ? value : max - min)).replace(/(\.\d*?)0+$/, '$1').replace(/\.$/, '');
+        const decimals = (value) => decimalsFor(rule.log ? value : max - min);
+        const text = (value) => numberText(value, decimals(value)).replace(/(\.\d*?)0+$/, '$1').replace(/\.$/, '');
         const end = (name, colour, words) => [
             make('div', { class: `end ${name}` }, swatch(18, 14, solid(colour))), make('div', { class: 'end-text' }, words),
         ];
@@ -126,7 +127,8 @@ export class Legend {
     }
 
     ticks(rule, lines, text) {
-        const values = scaleTicks(rule, lines), places = spread(values.map((value) => placeOf(rule, value)), this.lying.matches ? 0.1 : 0.05);
+        const values = scaleTicks(rule, lines);
+        const places = spread(values.map((value) => placeOf(rule, value)), this.lying.matches ? 0.1 : 0.05);
         return make('div', { class: 'ticks' }, ...values.map((value, i) => at(make('span', {}, text(value)), places[i])));
     }
 

@@ -138,9 +138,11 @@ export class Overlay {
     blocked() {
         const origin = this.viewport.element.getBoundingClientRect();
         const boxes = [...this.viewport.element.querySelectorAll('.legend, .banner, .card')].map((e) => e.getBoundingClientRect());
-        return boxes.filter((box) => box.width > 0).map((box) => ({
+        const own = boxes.filter((box) => box.width > 0).map((box) => ({
             left: box.left - origin.left, right: box.right - origin.left, top: box.top - origin.top, bottom: box.bottom - origin.top,
         }));
+        const middle = this.viewport.width / 2; // no label in both halves
+        return this.session.params.split ? [...own, { left: middle - 1, right: middle + 1, top: 0, bottom: this.viewport.height }] : own;
     }
 
     isChosen(tag) {

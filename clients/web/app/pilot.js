@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Hands to camera: pointers, wheel and keys over the viewport, and flights between views.
 import { depthAt, elevation, fit, home, orbit, pan, zoom } from '../core/camera.js';
+import { halfAt } from '../core/halves.js';
 import { flight, FLIGHT_MS } from '../core/flight.js';
 import { Gestures, wheelZoom } from '../core/gestures.js';
 import { HeldKeys, keyMeaning } from '../core/keys.js';
@@ -135,8 +136,9 @@ export class Pilot {
         this.session.setCamera(camera, time);
     }
 
-    zoomed(camera, factor, [x, y]) {
-        const { width, height } = this.viewport;
+    zoomed(camera, factor, [atX, y]) {
+        const { height } = this.viewport;
+        const { left, width } = halfAt(this.session.params, this.viewport.width, atX), x = atX - left;
         const boxes = this.session.model ? this.session.model.assets.map((asset) => asset.bounds) : [];
         return zoom(camera, factor, x, y, width, height, depthAt(camera, x, y, width, height, boxes));
     }
@@ -144,7 +146,7 @@ export class Pilot {
     // --- flights
 
     get aspect() {
-        return this.viewport.width / this.viewport.height;
+        return halfAt(this.session.params, this.viewport.width, 0).width / this.viewport.height;
     }
 
     flyTo(camera) {

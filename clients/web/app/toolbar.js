@@ -39,11 +39,6 @@ function fillSelect(select, choices, value) {
     select.value = String(value);
 }
 
-// The bands chosen, as parameters.
-function rampParams(value) {
-    return ['group', 'limits'].includes(value) ? { breaks: value } : { ramp_interval: Number(value), breaks: null };
-}
-
 const decimalsOf = (step) => Math.max(0, Math.ceil(-Math.log10(step) - 1e-9));
 const title = (text) => text.charAt(0).toUpperCase() + text.slice(1);
 
@@ -54,10 +49,10 @@ export class Toolbar {
         fillSegments(byId('interpolation'), 'interpolation', INTERPOLATIONS, (interpolation) => session.setParams({ interpolation }));
         byId('colormap').addEventListener('change', (event) => session.setParams({ colormap: event.target.value }));
         byId('look').addEventListener('change', (event) => session.setParams({ look: event.target.value }));
-        byId('ramp').addEventListener('change', (event) => session.setParams(rampParams(event.target.value)));
+        byId('ramp').addEventListener('change', (event) => session.setParams(this.rampParams(event.target.value)));
         byId('isolines').addEventListener('change', ({ target }) => session.setParams({ isolines: JSON.parse(target.value) }));
         byId('show').addEventListener('change', (event) => session.setParams({ show: event.target.value }));
-        byId('split').addEventListener('change', ({ target }) => session.setParams({ split: target.value ? { group: target.value } : null }));
+        byId('split').addEventListener('change', ({ target: { value } }) => session.setParams({ split: value ? { group: value } : null }));
         session.on('welcome', () => this.welcome());
         session.on('params', () => this.show());
         this.foldDisplay();
@@ -110,16 +105,29 @@ export class Toolbar {
             params.split?.group ?? '');
     }
 
+    // The group's own bands by name: where they meet.
+    bands() {
+        const { group } = this.session;
+        const limits = Object.values(group?.limits ?? {}).filter((limit) => limit !== null).sort((a, b) => a - b);
+        return { group: group?.breaks ?? [], limits };
+    }
+
+    rampParams(value) {
+        const breaks = value === 'chosen' ? this.session.params.breaks : this.bands()[value];
+        return breaks ? { breaks, ramp_interval: 0 } : { ramp_interval: Number(value), breaks: null };
+    }
+
     // Which of the group's own bands are shown.
     breaksName() {
-        const { params, group } = this.session;
-        const own = JSON.stringify(params.breaks) === JSON.stringify(group?.breaks);
-        return own ? 'group' : 'limits';
+        const { params } = this.session;
+        const same = ([, breaks]) => JSON.stringify(params.breaks) === JSON.stringify(breaks);
+        return Object.entries(this.bands()).find(same)?.[0] ?? 'chosen';
     }
 
     isolines() {
         const { group, range, params } = this.session;
-        const every = (step) => multiples(...range, step), text = (step) => `Every ${numberText(step, decimalsOf(step))} ${unitText(group?.unit)}`;
+        const every = (step) => multiples(...range, step);
+        const text = (step) => `Every ${numberText(step, decimalsOf(step))} ${unitText(group?.unit)}`;
         const choices = [['null', 'None'], ...rampChoices(...range).map((step) => [JSON.stringify(every(step)), text(step)])];
         const now = JSON.stringify(params.isolines ?? null);
         return choices.some(([value]) => value === now) ? choices : [...choices, [now, 'Chosen']];
@@ -131,11 +139,10 @@ export class Toolbar {
         if (params.ramp_interval > 0)
             steps.add(params.ramp_interval);
         const text = (step) => `${numberText(step, decimalsOf(step))} ${unitText(group?.unit)}`;
-        const bands = [];
-        if (group?.breaks?.length > 0)
-            bands.push(['group', 'Own bands']);
-        if (Object.values(group?.limits ?? {}).some((limit) => limit !== null))
-            bands.push(['limits', 'Limits']);
+        const own = this.bands();
+        const bands = [['group', 'Own bands'], ['limits', 'Limits']].filter(([name]) => own[name].length > 0);
+        if (params.breaks?.length > 0 && this.breaksName() === 'chosen')
+            bands.push(['chosen', 'Chosen bands']);
         return [[0, 'Smooth'], ...bands, ...[...steps].sort((a, b) => a - b).map((step) => [step, text(step)])];
     }
 }

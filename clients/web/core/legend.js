@@ -41,7 +41,8 @@ export function rampChoices(min, max) {
     return [...new Set([25, 16, 10, 8, 5, 4].map((n) => Number(niceStep(max - min, n).toPrecision(12))))].sort((a, b) => a - b);
 }
 
-// --- the server's rule (server/field/scale.h). scale: { map, min, max, log, interval, breaks }; map: { rgb: Uint8Array(768), below, above }
+// --- the server's rule (server/field/scale.h). scale: { map, min, max, log, interval, breaks };
+// map: { rgb: Uint8Array(768), below, above }
 
 export function placeOf({ min, max, log }, value) {
     return log ? Math.log(value / min) / Math.log(max / min) : (value - min) / (max - min);
