@@ -300,8 +300,10 @@ char *reply_markers_text(const struct frame *frame, uint32_t seq)
     json_t *markers = json_array();
     for (size_t i = 0; i < frame->marker_count; i++) {
         const struct frame_marker *m = &frame->markers[i];
+        bool bad = quality_is_bad(m->quality);
         if (isfinite(m->x_px) && isfinite(m->y_px))
-            json_array_append_new(markers, json_pack("[i,f,f,i,i]", m->tag, (double)m->x_px, (double)m->y_px, m->occluded, m->half));
+            json_array_append_new(markers, json_pack("[i,f,f,i,i,o,i]", m->tag, (double)m->x_px, (double)m->y_px, m->occluded, m->half,
+                                                     bad ? json_null() : number(m->value), bad ? 2 : quality_is_uncertain(m->quality)));
     }
     json_t *labels = json_array();
     for (size_t i = 0; i < frame->label_count; i++) {

@@ -5,6 +5,7 @@
 #include <stdatomic.h>
 
 #include "base/mem.h"
+#include "value/quality.h"
 
 struct frame *frame_create(int width_px, int height_px)
 {
@@ -35,4 +36,19 @@ void frame_unref(struct frame **frame_ptr)
     mem_free(frame->labels);
     mem_free(frame->bgrx);
     mem_free(frame);
+}
+
+void frame_read_markers(struct frame *frame, const struct snapshot *snapshot)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < frame->marker_count; i++) {
+        if (frame->markers[i].x_px <= FRAME_BEHIND_PX)
+            continue;
+        frame->markers[kept] = frame->markers[i];
+        struct frame_marker *marker = &frame->markers[kept++];
+        const struct reading *reading = &snapshot->readings[marker->tag];
+        marker->quality = reading->quality;
+        marker->value = quality_is_bad(reading->quality) ? 0 : reading->value;
+    }
+    frame->marker_count = kept;
 }

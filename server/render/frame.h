@@ -7,10 +7,14 @@
 
 #include "render/view.h"
 
+#define FRAME_BEHIND_PX (-1e4f) /* x of a marker behind the eye */
+
 struct frame_marker {
     int tag;
     float x_px, y_px; /* from the top left; may lie outside */
     uint8_t occluded; /* behind something, or outside the picture */
+    uint32_t quality; /* of the reading that the picture shows; and below */
+    double value;     /* 0 where quality is Bad */
     uint8_t half;     /* of a split view: 1 is the right one */
 };
 
@@ -37,6 +41,8 @@ struct frame {
     int triangles;
 };
 
+/* What the snapshot that the picture was drawn from says of its markers; those behind the eye go. Before the frame is shared. */
+void frame_read_markers(struct frame *frame, const struct snapshot *snapshot);
 struct frame *frame_create(int width_px, int height_px); /* NULL: out of memory */
 struct frame *frame_ref(struct frame *frame);
 void frame_unref(struct frame **frame);

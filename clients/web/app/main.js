@@ -10,8 +10,10 @@ import { byId, setText } from './dom.js';
 import { Legend } from './legend.js';
 import { Overlay } from './overlay.js';
 import { Pilot } from './pilot.js';
+import { Place } from './place.js';
 import { Status } from './status.js';
 import { Toolbar } from './toolbar.js';
+import { Views } from './views.js';
 import { Viewport } from './viewport.js';
 
 const ADDRESS_WAIT_MS = 400, TOAST_MS = 6000;
@@ -35,6 +37,9 @@ const overlay = new Overlay({ canvas: byId('overlay'), viewport, session, select
 const pilot = new Pilot({ viewport, session });
 const status = new Status({ session, onFreshness: (fresh) => { overlay.fresh = fresh; refresh(); } });
 const card = new Card({ session, selection, overlay, viewport, onClose: () => selectTag(null) });
+
+const views = new Views({ session, pilot });
+const place = new Place({ session, viewport });
 
 // --- selection
 
@@ -93,14 +98,38 @@ const commands = {
     help: () => byId('help').showModal(),
     assets: () => assets.setOpen(!assets.open),
     search: () => assets.openSearch(),
+    top: () => views.lookFrom('top'),
+    corner: () => views.lookFrom('iso'),
+    projection: () => views.toggleProjection(),
+    views: () => views.toggle(),
+    hide: () => views.show('hide'),
+    ghost: () => views.show('ghost'),
+    only: () => views.show('only'),
+    showAll: () => views.showAll(),
     escape() {
         toolbar.closeDisplay();
-        clearSelection();
+        views.close();
+        if (place.picked)
+            place.close();
+        else
+            clearSelection();
     },
 };
 pilot.onCommand = (name) => commands[name]();
 pilot.onGroup = (index) => toolbar.chooseGroup(index);
-pilot.onClick = (x, y, kind) => selectTag(overlay.at(x, y, kind));
+pilot.onClick = (x, y, kind) => {
+    const tag = overlay.at(x, y, kind);
+    selectTag(tag);
+    if (tag)
+        place.close();
+    else
+        place.open(x, y);
+};
+place.onSelect = (asset) => session.setParams({ selected: asset.id });
+place.onShow = (how, asset) => {
+    views.show(how, asset.id);
+    place.close();
+};
 pilot.onPoint = (place) => {
     const tag = place ? overlay.at(place.x, place.y, 'mouse') : null;
     byId('viewport').classList.toggle('pointing', tag !== null);
@@ -125,6 +154,7 @@ viewport.onDrawn = (newPicture) => {
         byId('waiting').hidden = true;
     if (newPicture || overlay.dirty) {
         card.show();
+        place.show();
         overlay.draw();
     }
 };

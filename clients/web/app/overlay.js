@@ -52,19 +52,22 @@ export class Overlay {
         return halves(params, picture.fullWidth).flatMap((half, number) => this.projectHalf(half, number, known));
     }
 
-    projectHalf({ params, left, width }, number, occluded) {
+    projectHalf({ params, left, width }, number, known) {
         const { model, picture } = this.session;
         const scale = [this.viewport.width / picture.fullWidth, this.viewport.height / picture.fullHeight];
         const rim = params.split ? 0 : 20; // what lies beyond would be seen in the other half
         const project = projector(picture.camera, width, picture.fullHeight);
         const markers = [];
         for (const tag of model.tags) {
-            const place = tag.group === params.group && tag.position ? project(tag.position) : null;
+            const said = known ? known.get(`${tag.index}/${number}`) : { occluded: false, quality: null };
+            const place = said && tag.group === params.group && tag.position ? project(tag.position) : null;
             if (!place || place[0] < -rim || place[1] < -rim || place[0] > width + rim || place[1] > picture.fullHeight + rim)
                 continue;
+            const newest = model.readings[tag.index];
+            const reading = said.quality ? { ...newest, value: said.value, quality: said.quality } : newest; // as the picture has it
             markers.push({
                 tag, x: (left + place[0]) * scale[0], y: place[1] * scale[1], depth: place[2], half: number,
-                occluded: occluded.get(`${tag.index}/${number}`) ?? false, reading: model.readings[tag.index],
+                occluded: said.occluded, reading,
                 operator: params.show === 'operator',
             });
         }
@@ -81,7 +84,7 @@ export class Overlay {
         this.setFont(600);
         c.textBaseline = 'middle';
         c.textAlign = 'center';
-        for (const { text, x, y } of this.session.markersOf(picture.seq).isolines.map(([value, px, py]) => ({
+        for (const { text, x, y } of (this.session.markersOf(picture.seq)?.isolines ?? []).map(([value, px, py]) => ({
             text: numberText(value, decimalsFor(max - min)).replace(/\.0+$/, ''), x: px * scale[0], y: py * scale[1],
         }))) {
             const wide = c.measureText(text).width + 6, box = { left: x - wide / 2, right: x + wide / 2, top: y - 8, bottom: y + 8, text };
@@ -96,6 +99,14 @@ export class Overlay {
             c.fillText(text, x, y + 0.5);
         }
         c.textAlign = 'start';
+    }
+
+    // Where a place of the plant is in the page; null: behind the eye.
+    pageOf(point) {
+        const { picture, params } = this.session, box = this.viewport.element.getBoundingClientRect();
+        const half = picture && halves(params, picture.fullWidth)[0];
+        const at = picture && projector(picture.camera, half.width, picture.fullHeight)(point);
+        return at && { x: box.left + (at[0] * box.width) / picture.fullWidth, y: box.top + (at[1] * box.height) / picture.fullHeight };
     }
 
     at(x, y, kind) {

@@ -12,6 +12,7 @@ export const PARAMS = [
 const SHARED = ['light', 'selected', 'hidden', 'isolate', 'ghost', 'clip', 'split']; // by both halves
 const GROUPS_OWN = ['interpolation', 'distance', 'fill', 'power', 'radius_m', 'reach_m', 'scale', 'isolines'];
 const CODECS = ['jpeg', 'png'];
+const QUALITIES = ['good', 'uncertain', 'bad'];
 const MOST_BACKLOG_BYTES = 64 * 1024;
 
 const pick = (from, names) => Object.fromEntries(names.filter((name) => from[name] !== undefined).map((name) => [name, from[name]]));
@@ -219,7 +220,8 @@ export class Session {
     }
 
     hearMarkers(message) {
-        const known = new Map(message.markers.map(([tag, , , occluded, half = 0]) => [`${tag}/${half}`, occluded !== 0]));
+        const known = new Map(message.markers.map(([tag, , , occluded, half = 0, value = null, quality = null]) =>
+            [`${tag}/${half}`, { occluded: occluded !== 0, value, quality: QUALITIES[quality] ?? null }]));
         known.isolines = message.isolines ?? [];
         this.markers.set(message.seq, known);
     }
@@ -253,7 +255,8 @@ export class Session {
         this.emit('error', message);
     }
 
-    // Map from "tag/half" to occluded for a picture, and its `isolines`; those of earlier ones are forgotten.
+    // Map from "tag/half" to { occluded, value, quality } for a picture, and its `isolines`; those of earlier ones are forgotten. What is
+    // not in it has no marker there: hidden, cut away or behind the eye. null: nothing was said.
     markersOf(seq) {
         let newest = null;
         for (const known of [...this.markers.keys()].sort((a, b) => a - b)) {
@@ -263,7 +266,7 @@ export class Session {
                 this.markers.delete(newest);
             newest = known;
         }
-        return this.markers.get(newest) ?? Object.assign(new Map(), { isolines: [] });
+        return this.markers.get(newest) ?? null;
     }
 
     // --- what the screen asks

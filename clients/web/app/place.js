@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The card of a place on the plant: whose surface it is, what the field says there, by which sensors, and how sure that is.
+import { projector } from '../core/camera.js';
+import { decimalsFor, numberText, unitText } from '../core/format.js';
+import { halves } from '../core/halves.js';
+import { byId, glyph, icon, make } from './dom.js';
+
+const STATES = {
+    measured: 'Measured here',
+    between: 'Between sensors',
+    'no data': 'No data: its nearest sensor is bad, or none reaches',
+    context: 'No sensor of this quantity on it',
+};
+const AWAY_PX = 14, WIDTH_PX = 248, SAME_M = 0.05;
+
+export class Place {
+    // Handlers: onSelect(asset), onShow(how, asset).
+    constructor({ session, viewport }) {
+        Object.assign(this, { session, viewport });
+        this.element = byId('place');
+        this.picked = null;
+        this.asked = null; // 'new' or 'again'
+        this.onSelect = this.onShow = () => {};
+        session.on('picked', (picked) => this.hear(picked));
+        session.on('tags', () => this.ask());
+        session.on('params', () => this.ask());
+        session.on('welcome', () => this.close());
+    }
+
+    // CSS pixels of the viewport.
+    open(x, y) {
+        this.asked = 'new';
+        this.half = this.session.params.split && x >= this.viewport.width / 2 ? 1 : 0;
+        this.pick(x, y);
+    }
+
+    close() {
+        this.picked = this.asked = null;
+        this.element.hidden = true;
+    }
+
+    pick(x, y) {
+        const { picture } = this.session;
+        if (picture)
+            this.session.pick((x * picture.fullWidth) / this.viewport.width, (y * picture.fullHeight) / this.viewport.height);
+    }
+
+    // Values go on: what is said of the place is said anew.
+    ask() {
+        const at = this.picked && this.project();
+        if (at && this.asked === null) {
+            this.asked = 'again';
+            this.pick(at[0], at[1]);
+        }
+    }
+
+    hear(picked) {
+        const again = this.asked === 'again';
+        this.asked = null;
+        if (again && !this.isSamePlace(picked))
+            return; // something stands before it now
+        this.picked = picked.asset === null ? null : picked;
+        this.element.hidden = !this.picked;
+        if (this.picked)
+            this.build();
+        this.show();
+    }
+
+    isSamePlace({ asset, position }) {
+        return this.picked && asset === this.picked.asset && position.every((x, i) => Math.abs(x - this.picked.position[i]) < SAME_M);
+    }
+
+    project() {
+        const { picture, params } = this.session;
+        const half = picture && halves(params, picture.fullWidth)[this.half];
+        if (!half)
+            return null;
+        const at = projector(picture.camera, half.width, picture.fullHeight)(this.picked.position);
+        return at && [((half.left + at[0]) * this.viewport.width) / picture.fullWidth, (at[1] * this.viewport.height) / picture.fullHeight];
+    }
+
+    number(value) {
+        const [min, max] = this.session.range;
+        return numberText(value, decimalsFor(max - min));
+    }
+
+    build() {
+        const { state, value, unit, uncertain, inside, nearest } = this.picked;
+        const asset = this.session.model.asset(this.picked.asset);
+        const words = inside ? 'Inside of what is cut open' : STATES[state] + (uncertain ? ', uncertain' : '');
+        const rows = nearest.map(({ tag, distance_m, value: reading, quality }) => make('li', {}, glyph(quality), make('span', {}, tag),
+            make('span', {}, `${distance_m.toFixed(distance_m < 10 ? 2 : 1)} m`), make('b', {}, this.number(reading))));
+        const button = (how, text) => make('button', { type: 'button', onclick: () => this.onShow(how, asset) }, text);
+        this.element.replaceChildren(
+            make('button', { type: 'button', class: 'icon small', 'aria-label': 'Close', onclick: () => this.close() }, icon('i-close')),
+            make('h3', {}, asset.tag || asset.id), make('p', { class: 'about' }, asset.description ?? ''),
+            value === null ? null : make('p', { class: 'value' }, this.number(value), make('i', {}, ` ${unitText(unit)}`)),
+            make('p', { class: 'state' }, words),
+            rows.length > 0 ? make('ul', { class: 'nearest' }, ...rows) : null,
+            make('div', { class: 'buttons' }, make('button', { type: 'button', onclick: () => this.onSelect(asset) }, 'Select'),
+                button('hide', 'Hide'), button('ghost', 'Ghost'), button('only', 'Only')));
+    }
+
+    // Beside its place, in step with the picture.
+    show() {
+        if (!this.picked)
+            return;
+        const { width, height } = this.viewport;
+        const tall = this.element.offsetHeight, at = this.project() ?? [12, height];
+        const x = at[0] < width / 2 ? at[0] + AWAY_PX : at[0] - AWAY_PX - WIDTH_PX;
+        const within = (low, n, high) => Math.round(Math.max(low, Math.min(high, n)));
+        const left = within(8, x, width - WIDTH_PX - 8), top = within(8, at[1] - tall / 2, height - tall - 8);
+        this.element.style.transform = `translate(${left}px, ${top}px)`;
+    }
+}

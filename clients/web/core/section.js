@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What of the plant is shown: one plane across an axis that cuts it, and assets that are hidden, ghosts, or shown alone.
+
+export const AXES = ['x', 'y', 'z'];
+
+// at: metres along the axis. What lies beyond stays; turned, what lies before.
+export function cut(axis, at, turned) {
+    const plane = [0, 0, 0, turned ? at : -at];
+    plane[AXES.indexOf(axis)] = turned ? -1 : 1;
+    return { planes: [plane] };
+}
+
+// The other way round. null: nothing is cut, or not like that.
+export function readCut(clip) {
+    const plane = clip?.planes?.length === 1 ? clip.planes[0] : null;
+    const index = plane ? plane.slice(0, 3).findIndex((n) => Math.abs(n) === 1) : -1;
+    if (index < 0)
+        return null;
+    const turned = plane[index] < 0;
+    return { axis: AXES[index], at: turned ? plane[3] : -plane[3], turned };
+}
+
+const without = (list, id) => (list ?? []).filter((other) => other !== id);
+
+// Parameters after `how` (hide, ghost, only) was pressed for an asset: pressed again it is as before.
+export function showAsset(params, how, id) {
+    const name = { hide: 'hidden', ghost: 'ghost', only: 'isolate' }[how];
+    const was = (params[name] ?? []).includes(id);
+    const change = { hidden: without(params.hidden, id), ghost: without(params.ghost, id), isolate: without(params.isolate, id) };
+    if (!was)
+        change[name] = how === 'only' ? [id] : [...change[name], id];
+    return Object.fromEntries(Object.entries(change).filter(([key, list]) => list.join('\n') !== (params[key] ?? []).join('\n')));
+}
+
+export function showAll(params) {
+    const sets = ['hidden', 'ghost', 'isolate'].filter((name) => params[name]?.length > 0);
+    return Object.fromEntries(sets.map((name) => [name, []]));
+}
+
+// shown, ghost or hidden, by the server's rule.
+export function assetLook({ hidden = [], ghost = [], isolate = [] }, id) {
+    if (hidden.includes(id))
+        return 'hidden';
+    if (ghost.includes(id))
+        return 'ghost';
+    return isolate.length > 0 && !isolate.includes(id) ? 'hidden' : 'shown';
+}

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What is cut away, hidden and shown alone: to the parameters and back.
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { assetLook, AXES, cut, readCut, showAll, showAsset } from '../../clients/web/core/section.js';
+
+test('a cut comes back as it was made', () => {
+    for (const axis of AXES) {
+        for (const turned of [false, true])
+            assert.deepEqual(readCut(cut(axis, 3.5, turned)), { axis, at: 3.5, turned });
+    }
+    assert.deepEqual(cut('y', 2, false), { planes: [[0, 1, 0, -2]] });
+    assert.deepEqual(cut('z', 2, true), { planes: [[0, 0, -1, 2]] });
+});
+
+test('other clips are left alone', () => {
+    for (const clip of [null, undefined, { box: { min: [0, 0, 0], max: [1, 1, 1] } }, { planes: [[0.6, 0.8, 0, 1]] },
+        { planes: [[1, 0, 0, 0], [0, 1, 0, 0]] }])
+        assert.equal(readCut(clip), null);
+});
+
+test('what is pressed once is so, pressed again it is as before', () => {
+    let params = { hidden: [], ghost: ['B'], isolate: [] };
+    params = { ...params, ...showAsset(params, 'hide', 'A') };
+    assert.equal(assetLook(params, 'A'), 'hidden');
+    assert.deepEqual(showAsset(params, 'hide', 'A'), { hidden: [] });
+    params = { ...params, ...showAsset(params, 'ghost', 'A') };
+    assert.deepEqual(params, { hidden: [], ghost: ['B', 'A'], isolate: [] });
+    params = { ...params, ...showAsset(params, 'only', 'C') };
+    assert.deepEqual([assetLook(params, 'A'), assetLook(params, 'C'), assetLook(params, 'D')], ['ghost', 'shown', 'hidden']);
+    assert.deepEqual(showAll(params), { ghost: [], isolate: [] });
+    assert.deepEqual(showAll({}), {});
+    assert.equal(assetLook({}, 'A'), 'shown');
+});
