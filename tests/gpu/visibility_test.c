@@ -278,6 +278,7 @@ int main(void)
     if (!rig_init(&rig, "visibility_test"))
         return 0;
     stand_init(&stand, &rig, toy_unit());
+    renderer_use_gl(stand.renderer, true); /* pictures are compared with one another */
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
     stand_finish(&stand);
     rig_finish(&rig);

@@ -197,11 +197,12 @@ test('tags: values, qualities, and ages that go on by our own clock', () => {
 test('markers go with their frame, not with the next', () => {
     const { session, socket } = greeted();
     socket.say({ type: 'markers', seq: 4, markers: [[0, 1, 2, 1, 0], [0, 5, 2, 0, 1]], isolines: [[20, 3, 4, 0]] });
-    socket.say({ type: 'markers', seq: 5, markers: [[0, 1, 2, 0]] });
-    assert.equal(session.markersOf(4).get('0/0'), true);
-    assert.equal(session.markersOf(4).get('0/1'), false);
+    socket.say({ type: 'markers', seq: 5, markers: [[0, 1, 2, 0, 0, 87.5, 1]] });
+    assert.equal(session.markersOf(4).get('0/0').occluded, true);
+    assert.deepEqual(session.markersOf(4).get('0/1'), { occluded: false, value: null, quality: null });
     assert.deepEqual(session.markersOf(4).isolines, [[20, 3, 4, 0]]);
-    assert.equal(session.markersOf(6).get('0/0'), false);
+    assert.deepEqual(session.markersOf(6).get('0/0'), { occluded: false, value: 87.5, quality: 'uncertain' });
+    assert.equal(session.markersOf(6).get('7/0'), undefined);
     assert.deepEqual(session.markersOf(6).isolines, []);
     assert.equal(session.markers.has(4), false);
 });
