@@ -34,7 +34,16 @@ headers: | $(gen)/glad/include/glad/gl.h
 bench_programs := $(patsubst tests/%.c,$(out)/tests/%,$(wildcard tests/bench/*_bench.c))
 bench: test-deps
 	@$(MAKE) --no-print-directory all demo $(bench_programs) $(out)/tests/scale/facility
-	@tests/bench/run $(out) $(bin)
+	@[ "$(PEERS)" != 1 ] || deploy/deps long
+	@PEERS=$(PEERS) tests/bench/run $(out) $(bin)
+# The paper's experiments on a GPU.
+gpu-bench: test-deps
+	@$(MAKE) --no-print-directory all demo $(out)/tests/bench/paper_bench
+	@tests/bench/run $(out) $(bin) gpu
+# tests/bench/RESULTS.md and its plots, from the last `make bench PEERS=1`.
+results:
+	@tests/bench/results build/bench.json tests/bench
+.PHONY: results
 
 # Makes the golden pictures anew, on llvmpipe. Look at them before they are committed.
 golden-update: $(out)/tests/gpu/golden_test

@@ -125,6 +125,7 @@ DRAFT_INLINE bool setup_init(struct setup *setup, const struct band *band, int w
     if (setup->flat) {
         setup->a = plane_of(&slopes, p->a, q->a, r->a);
         setup->b = plane_of(&slopes, p->b, q->b, r->b);
+        setup->inverse_w = setup->depth; /* not looked at */
     } else {
         setup->a = plane_of(&slopes, p->a * p->inverse_w, q->a * q->inverse_w, r->a * r->inverse_w);
         setup->b = plane_of(&slopes, p->b * p->inverse_w, q->b * q->inverse_w, r->b * r->inverse_w);

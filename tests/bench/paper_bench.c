@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The two experiments of the paper at 1920x1080: many instances with 5 sensors each, and many sensors on one instance. All readings
-   change ten times a second while the camera swings round; one JSON line per row. */
+   change ten times a second while the camera swings round; one JSON line per row. Beside each the same by brute force: every triangle
+   of the finest level, and the paper's sum over all sensors at each fragment.
+   usage: paper_bench [cpu|gpu [INSTANCES]]   gpu: only on an EGL device that is hardware */
 #include <glad/gl.h>
 #include <math.h>
 #include <stdio.h>
@@ -19,8 +21,8 @@
 #define PLANT_MODEL "../shared/data/models/plm_plant_5parts.glb"
 #define FOLDER "build/bench"
 enum { WIDTH_PX = 1920, HEIGHT_PX = 1080, PROBE_WIDTH_PX = 192, PROBE_HEIGHT_PX = 108 };
-enum { CAMERAS = 48, MOST_FRAMES = 96, LEAST_FRAMES = 4, HULL_POINTS = 96 };
-static const int64_t CHANGE_NS = 100 * NS_PER_MS, LONGEST_NS = 4 * NS_PER_S; /* of a row */
+enum { CAMERAS = 48, MOST_FRAMES = 96, LEAST_FRAMES = 3, HULL_POINTS = 96 };
+static const int64_t CHANGE_NS = 100 * NS_PER_MS, LONGEST_NS = 3 * NS_PER_S; /* of a row */
 static const double SWING_RAD = 6 * M_PI / 180, FOV_DEG = 15, WANTED_COVERAGE = 0.6;
 
 struct model {
@@ -195,6 +197,31 @@ static void choose_cameras(struct bench *bench)
 
 /* --- rows ------------------------------------------------------------------------------------------------------------------- */
 
+/* What a peer needs to draw the same (tests/bench/vtk_peer.py); its path is that of the plant. */
+static void write_scene(const struct bench *bench, const char *folder)
+{
+    char *path = mem_printf("%s/scene.json", folder);
+    FILE *out = fopen(path, "w");
+    const struct scene *scene = bench->crowd.scene;
+    mem_free(path);
+    if (!out)
+        return;
+    fprintf(out, "{\"asset\": \"%s\", \"width\": %d, \"height\": %d, \"fov\": %g,\n\"places\": [", scene->assets[0].file->path, WIDTH_PX,
+            HEIGHT_PX, FOV_DEG);
+    for (size_t i = 0; i < scene->asset_count; i++) {
+        const double *at = &scene->assets[i].placement[12];
+        fprintf(out, "%s[%.6f, %.6f, %.6f]", i ? ", " : "", at[0], at[1], at[2]);
+    }
+    fprintf(out, "],\n\"cameras\": [");
+    for (int i = 0; i < CAMERAS; i++) {
+        const struct camera *camera = &bench->cameras[i];
+        fprintf(out, "%s[%.6f, %.6f, %.6f, %.6f, %.6f, %.6f]", i ? ", " : "", camera->eye_m[0], camera->eye_m[1], camera->eye_m[2],
+                camera->target_m[0], camera->target_m[1], camera->target_m[2]);
+    }
+    fprintf(out, "]}\n");
+    fclose(out);
+}
+
 static bool bench_init(struct bench *bench, const struct model *model, int instances, int sensors)
 {
     char *folder = mem_printf(FOLDER "/crowd%s-%dx%d", model->suffix, instances, sensors), *path = realpath(model->path, NULL);
@@ -207,8 +234,10 @@ static bool bench_init(struct bench *bench, const struct model *model, int insta
         bench->renderer = renderer_create(bench->log, bench->gl, bench->crowd.scene, bench->field);
         good = bench->renderer != NULL;
     }
-    if (good)
+    if (good) {
         choose_cameras(bench);
+        write_scene(bench, folder);
+    }
     mem_free(folder);
     free(path);
     return good;
@@ -221,34 +250,40 @@ static void bench_finish(struct bench *bench)
     crowd_finish(&bench->crowd);
 }
 
+static void draw_one(struct bench *bench, struct series *series, struct view *view, int number)
+{
+    double start_ms = now_ms(CLOCK_MONOTONIC), worked_ms = now_ms(CLOCK_PROCESS_CPUTIME_ID);
+    view->camera = bench->cameras[(number + CAMERAS) % CAMERAS];
+    struct frame *frame = renderer_draw(bench->renderer, view, bench->crowd.snapshot);
+    if (!frame)
+        abort();
+    if (number >= 0) {
+        series->time_ms[number] = now_ms(CLOCK_MONOTONIC) - start_ms;
+        series->work_ms[number] = now_ms(CLOCK_PROCESS_CPUTIME_ID) - worked_ms;
+        series->triangles = frame->triangles;
+        series->frames++;
+    }
+    frame_unref(&frame);
+}
+
 static void run_series(struct bench *bench, struct series *series)
 {
     struct view view;
-    int64_t began_ns = clock_mono_ns(), changed_ns = began_ns;
+    int64_t began_ns = 0, changed_ns = clock_mono_ns();
     *series = (struct series){ 0 };
     make_view(bench, WIDTH_PX, HEIGHT_PX, &view);
-    for (int i = -2; i < MOST_FRAMES; i++) {
-        double start_ms = now_ms(CLOCK_MONOTONIC), worked_ms = now_ms(CLOCK_PROCESS_CPUTIME_ID);
+    for (int i = -1; i < MOST_FRAMES; i++) {
+        int64_t now_ns = clock_mono_ns();
         if (i == 0)
-            began_ns = clock_mono_ns();
-        if (i >= LEAST_FRAMES && clock_mono_ns() - began_ns > LONGEST_NS)
+            began_ns = now_ns;
+        if (i >= LEAST_FRAMES && now_ns - began_ns > LONGEST_NS)
             break;
-        if (clock_mono_ns() - changed_ns >= CHANGE_NS) {
-            changed_ns = clock_mono_ns();
-            crowd_change(&bench->crowd, changed_ns);
+        if (now_ns - changed_ns >= CHANGE_NS) {
+            changed_ns = now_ns;
+            crowd_change(&bench->crowd, now_ns);
             series->changes += i >= 0;
         }
-        view.camera = bench->cameras[(i + CAMERAS) % CAMERAS];
-        struct frame *frame = renderer_draw(bench->renderer, &view, bench->crowd.snapshot);
-        if (!frame)
-            abort();
-        if (i >= 0) {
-            series->time_ms[i] = now_ms(CLOCK_MONOTONIC) - start_ms;
-            series->work_ms[i] = now_ms(CLOCK_PROCESS_CPUTIME_ID) - worked_ms;
-            series->triangles = frame->triangles;
-            series->frames++;
-        }
-        frame_unref(&frame);
+        draw_one(bench, series, &view, i);
     }
     series->seconds = (double)(clock_mono_ns() - began_ns) / 1e9;
 }
@@ -275,10 +310,12 @@ static void print_missing(const char *name, const char *why)
     fflush(stdout);
 }
 
-static void measure(struct bench *bench, const struct model *model, const char *kind, int count, int instances, int sensors, double goal_ms)
+static void measure(struct bench *bench, const struct model *model, const char *kind, int instances, int sensors, double goal_ms)
 {
     struct series *series = mem_new(sizeof(*series));
+    int count = sensors == 5 && !strcmp(kind, "instances") ? instances : sensors;
     char *name = mem_printf("render_%s_%d%s_ms", kind, count, model->suffix);
+    char *brute_name = mem_printf("brute_%s_%d%s_ms", kind, count, model->suffix);
     if (access(model->path, R_OK) != 0) {
         print_missing(name, "its model is not there");
     } else if (!bench_init(bench, model, instances, sensors)) {
@@ -286,35 +323,50 @@ static void measure(struct bench *bench, const struct model *model, const char *
     } else {
         run_series(bench, series);
         print_row(bench, name, series, goal_ms);
+        renderer_set_per_fragment(bench->renderer, true);
+        run_series(bench, series);
+        print_row(bench, brute_name, series, 0);
     }
     bench_finish(bench);
     mem_free(name);
+    mem_free(brute_name);
     mem_free(series);
 }
 
-/* Of the issue; 0: none. */
-static double goal_of(int instances)
+struct goal { /* 0: none */
+    int count;
+    double cpu_ms, gpu_ms; /* on two cores; ten times as fast as the paper's */
+};
+static const struct goal instance_goals[] = { { 1, 10, 100.0 / 420 }, { 5, 0, 0 }, { 25, 0, 0 }, { 100, 16, 100.0 / 140 }, { 400, 33, 0 } };
+static const struct goal sensor_goals[] = { { 5, 0, 0 },   { 10, 0, 0 },  { 20, 0, 0 },           { 32, 0, 0 },   { 64, 0, 0 },
+                                            { 128, 0, 0 }, { 256, 0, 0 }, { 512, 0, 100.0 / 200 }, { 1024, 0, 0 }, { 4096, 0, 0 } };
+enum { INSTANCE_GOALS = sizeof(instance_goals) / sizeof(instance_goals[0]), SENSOR_GOALS = sizeof(sensor_goals) / sizeof(sensor_goals[0]) };
+
+static void measure_model(struct bench *bench, const struct model *model, bool gpu, int only)
 {
-    return instances == 1 ? 10 : instances == 100 ? 16 : instances == 400 ? 33 : 0;
+    for (int i = 0; i < INSTANCE_GOALS; i++) {
+        const struct goal *goal = &instance_goals[i];
+        if (!only || only == goal->count)
+            measure(bench, model, "instances", goal->count, 5, gpu ? goal->gpu_ms : goal->cpu_ms);
+    }
+    for (int i = 0; i < SENSOR_GOALS && !only; i++)
+        measure(bench, model, "sensors", 1, sensor_goals[i].count, gpu ? sensor_goals[i].gpu_ms : 0);
 }
 
 int main(int argc, char **argv)
 {
-    static const int instances[] = { 1, 5, 25, 100, 400 }, sensors[] = { 5, 10, 20, 32, 64, 128, 256, 512, 1024, 4096 };
     struct bench bench = { .log = log_create(LOG_ERROR), .workers = workers_create(0) };
-    int only = argc > 1 ? atoi(argv[1]) : 0; /* instances */
+    bool gpu = argc > 1 && !strcmp(argv[1], "gpu");
+    int only = argc > 2 ? atoi(argv[2]) : 0;
     mkdir(FOLDER, 0777);
-    bench.gl = gl_create(bench.log, GL_AUTO, NULL);
-    for (size_t m = 0; m < sizeof(models) / sizeof(models[0]) && bench.gl; m++) {
-        for (size_t i = 0; i < sizeof(instances) / sizeof(instances[0]); i++)
-            if (!only || only == instances[i])
-                measure(&bench, &models[m], "instances", instances[i], instances[i], 5, goal_of(instances[i]));
-        for (size_t i = 0; i < sizeof(sensors) / sizeof(sensors[0]); i++)
-            if (!only)
-                measure(&bench, &models[m], "sensors", sensors[i], 1, sensors[i], 0);
-    }
+    bench.gl = gl_create(bench.log, gpu ? GL_EGL_DEVICE : GL_AUTO, NULL);
     if (!bench.gl)
         print_missing("render_instances_1_ms", "no OpenGL 4.5 context; the log says why");
+    else if (gpu && bench.gl->software)
+        print_missing("render_instances_1_ms", "no EGL device is hardware");
+    else
+        for (size_t m = 0; m < sizeof(models) / sizeof(models[0]); m++)
+            measure_model(&bench, &models[m], gpu, only);
     gl_destroy(&bench.gl);
     workers_destroy(&bench.workers);
     log_destroy(&bench.log);
