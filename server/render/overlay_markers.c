@@ -8,13 +8,6 @@
 #include "value/alarms.h"
 #include "value/quality.h"
 
-static const double LABELS_PART = 0.05; /* of the picture may lie under labels: a hundred would hide the plant */
-
-struct labels {
-    double room_px;
-    bool *done; /* by marker */
-};
-
 /* Filled: in sight. Hollow: something stands before it. Crossed: bad. */
 static void draw_mark(struct pen *pen, const struct frame_marker *marker, bool bad)
 {
@@ -75,41 +68,45 @@ static void format_value(const struct pen *pen, const struct frame_marker *marke
                  alarm == ALARM_NONE ? "" : alarm_name(alarm));
 }
 
-static void draw_label(struct pen *pen, const struct box *box, const char *name, double name_width, const char *value, bool occluded)
+struct label_text {
+    char name[140], value[64];
+    double name_width;
+};
+
+/* From the mark's rim to the nearest point of the label. */
+static void draw_leader(struct pen *pen, const struct label_item *item, const struct box *box)
+{
+    double x = fmax(box->x, fmin(box->x + box->width, item->x)), y = fmax(box->y, fmin(box->y + box->height, item->y));
+    double away = fmax(hypot(x - item->x, y - item->y), 1e-6), rim = 5 * pen->unit / away;
+    cairo_move_to(pen->cairo, item->x + (x - item->x) * rim, item->y + (y - item->y) * rim);
+    cairo_line_to(pen->cairo, x, y);
+    cairo_set_line_width(pen->cairo, fmax(1, pen->unit));
+    pen_ink(pen, 0.7);
+    cairo_stroke(pen->cairo);
+}
+
+static void draw_label(struct pen *pen, const struct box *box, const struct label_text *text)
 {
     double pad = 4 * pen->unit;
     pen_card(pen, box);
     pen_font(pen, 0.85, false);
-    pen_ink(pen, occluded ? 0.6 : 0.85);
-    pen_text(pen, box->x + pad, box->y + pad + 0.72 * pen->text_px, name);
+    pen_ink(pen, 0.85);
+    pen_text(pen, box->x + pad, box->y + pad + 0.72 * pen->text_px, text->name);
     pen_font(pen, 0.85, true);
-    pen_text(pen, box->x + pad + name_width, box->y + pad + 0.72 * pen->text_px, value);
+    pen_text(pen, box->x + pad + text->name_width, box->y + pad + 0.72 * pen->text_px, text->value);
 }
 
-/* Tries the places around the mark, nearest first. False: none is free. */
-static bool place_label(struct pen *pen, const struct frame_marker *marker, struct labels *labels)
+/* Along the view. */
+static double depth_of(const struct pen *pen, int tag)
 {
-    static const double places[8][2] = { { 1, -0.5 },  { -1, -0.5 }, { 1, -1.3 }, { 1, 0.3 },
-                                         { -1, -1.3 }, { -1, 0.3 },  { 0, -1.9 }, { 0, 0.9 } };
-    char name[140], value[64];
-    double pad = 4 * pen->unit, gap = 8 * pen->unit;
-    format_value(pen, marker, value);
-    snprintf(name, sizeof(name), "%s  ", pen->scene->plant->tags[marker->tag].name);
-    pen_font(pen, 0.85, false);
-    double name_width = pen_text_width(pen, name);
-    pen_font(pen, 0.85, true);
-    struct box box = { .width = name_width + pen_text_width(pen, value) + 2 * pad, .height = 0.95 * pen->text_px + 2 * pad };
-    for (int i = 0; i < 8; i++) {
-        box.x = marker->x_px + places[i][0] * gap - (places[i][0] < 0 ? box.width : places[i][0] == 0 ? 0.5 * box.width : 0);
-        box.y = marker->y_px + places[i][1] * box.height;
-        if (!pen_is_free(pen, &box))
-            continue;
-        pen_take(pen, &box);
-        labels->room_px -= box.width * box.height;
-        draw_label(pen, &box, name, name_width, value, marker->occluded);
-        return true;
-    }
-    return false;
+    const struct scene_asset *asset = &pen->scene->assets[pen->scene->plant->tags[tag].asset];
+    const struct camera *camera = &pen->view.camera;
+    double right[3], up[3], forward[3], depth_m = 0;
+    camera_basis(camera, right, up, forward);
+    for (size_t i = 0; i < asset->sensor_count; i++)
+        for (int c = 0; c < 3 && asset->sensors[i].tag == tag; c++)
+            depth_m += (asset->sensors[i].surface_m[c] - camera->eye_m[c]) * forward[c];
+    return depth_m;
 }
 
 static bool is_bad(const struct pen *pen, const struct frame_marker *marker)
@@ -124,36 +121,54 @@ static bool is_inside(const struct pen *pen, const struct frame_marker *marker)
            marker->y_px < area->height;
 }
 
-/* Alarms and bad ones first, then those in sight: a hidden sensor must not take their place. */
-static int rank_of(const struct pen *pen, const struct frame_marker *marker)
+/* What there is to place: every mark in sight that no card covers. The caller owns both lists. */
+struct wanted {
+    struct label_item *items;
+    struct label_text *texts;
+    size_t count, bad;
+};
+
+static void add_wanted(struct pen *pen, const struct frame_marker *marker, struct wanted *wanted)
 {
-    return (is_bad(pen, marker) || alarm_of(pen, marker) != ALARM_NONE) && !marker->occluded ? 0 : marker->occluded ? 2 : 1;
+    const struct plant_tag *tag = &pen->scene->plant->tags[marker->tag];
+    const struct reading *reading = &pen->snapshot->readings[marker->tag];
+    struct label_item *item = &wanted->items[wanted->count];
+    struct label_text *text = &wanted->texts[wanted->count++];
+    double pad = 4 * pen->unit;
+    format_value(pen, marker, text->value);
+    snprintf(text->name, sizeof(text->name), "%s  ", tag->name);
+    pen_font(pen, 0.85, false);
+    text->name_width = pen_text_width(pen, text->name);
+    pen_font(pen, 0.85, true);
+    *item = (struct label_item){ .x = (double)marker->x_px, .y = (double)marker->y_px, .held = LABEL_NONE };
+    item->width = text->name_width + pen_text_width(pen, text->value) + 2 * pad;
+    item->height = 0.95 * pen->text_px + 2 * pad;
+    item->depth_m = depth_of(pen, marker->tag);
+    item->rank = alarm_active(tag, reading) != ALARM_NONE                                           ? LABEL_BEYOND
+                 : quality_is_bad(reading->quality)                                                 ? LABEL_BAD
+                 : quality_is_uncertain(reading->quality) || tag->asset == pen->view.selected_asset ? LABEL_DOUBTFUL
+                                                                                                    : LABEL_PLAIN;
+    wanted->bad += item->rank == LABEL_BAD;
 }
 
-static bool is_apart(const struct pen *pen, const struct labels *labels, const struct frame_marker *marker, double least_px)
+static void place_labels(struct pen *pen, struct wanted *wanted, int cards)
 {
-    for (size_t i = 0; i < pen->frame->marker_count; i++)
-        if (labels->done[i] && hypot(pen->frame->markers[i].x_px - marker->x_px, pen->frame->markers[i].y_px - marker->y_px) < least_px)
-            return false;
-    return true;
-}
-
-/* Far apart at first, then in between, so that every part of the plant gets some. */
-static void place_labels(struct pen *pen)
-{
-    static const double spacings[] = { 0.16, 0.08, 0 }; /* of the area's width */
-    const struct frame *frame = pen->frame;
-    struct labels labels = { .room_px = LABELS_PART * pen->area.width * pen->area.height };
-    labels.done = mem_array(frame->marker_count, sizeof(*labels.done));
-    for (int rank = 0; rank < 3; rank++)
-        for (int pass = 0; pass < 3; pass++)
-            for (size_t i = 0; i < frame->marker_count && labels.room_px > 0; i++) {
-                const struct frame_marker *marker = &frame->markers[i];
-                if (!labels.done[i] && rank_of(pen, marker) == rank && is_inside(pen, marker) &&
-                    is_apart(pen, &labels, marker, spacings[pass] * pen->area.width))
-                    labels.done[i] = place_label(pen, marker, &labels);
-            }
-    mem_free(labels.done);
+    struct label_area area = { .box = pen->area, .unit = pen->unit, .blocked = pen->taken, .blocked_count = (size_t)cards };
+    int *slots = mem_array(wanted->count, sizeof(*slots));
+    for (size_t i = 0; i < wanted->count; i++)
+        if (wanted->bad > LABEL_MOST_BAD && wanted->items[i].rank == LABEL_BAD)
+            wanted->items[i].rank = LABEL_NOT_WANTED;
+    labels_place(wanted->items, wanted->count, &area, slots);
+    for (size_t i = 0; i < wanted->count; i++) {
+        if (slots[i] == LABEL_NONE)
+            continue;
+        struct box box = label_box(&wanted->items[i], slots[i], pen->unit);
+        if (slots[i] >= LABEL_FIRST_FAR)
+            draw_leader(pen, &wanted->items[i], &box);
+        draw_label(pen, &box, &wanted->texts[i]);
+        pen_take(pen, &box);
+    }
+    mem_free(slots);
 }
 
 static bool is_under(const struct pen *pen, int cards, const struct box *mark)
@@ -198,17 +213,24 @@ void overlay_markers(struct pen *pen)
 {
     int cards = pen->taken_count; /* what lies over the picture already */
     double radius = 5 * pen->unit;
+    struct wanted wanted = { 0 };
+    wanted.items = mem_array(pen->frame->marker_count, sizeof(*wanted.items));
+    wanted.texts = mem_array(pen->frame->marker_count, sizeof(*wanted.texts));
     for (size_t i = 0; i < pen->frame->marker_count; i++) {
         const struct frame_marker *marker = &pen->frame->markers[i];
-        struct box mark = { marker->x_px - radius, marker->y_px - radius, 2 * radius, 2 * radius };
+        struct box mark = { (double)marker->x_px - radius, (double)marker->y_px - radius, 2 * radius, 2 * radius };
         if (!is_inside(pen, marker) || is_under(pen, cards, &mark))
             continue;
-        if (!marker->occluded)
+        if (!marker->occluded) {
             pen_take(pen, &mark);
+            add_wanted(pen, marker, &wanted);
+        }
         if (alarm_of(pen, marker) != ALARM_NONE)
             overlay_ring(pen, marker->x_px, marker->y_px, 9.5 * pen->unit, alarm_of(pen, marker));
         draw_mark(pen, marker, is_bad(pen, marker));
     }
-    place_labels(pen);
+    place_labels(pen, &wanted, cards);
     label_isolines(pen);
+    mem_free(wanted.items);
+    mem_free(wanted.texts);
 }

@@ -7,10 +7,8 @@
 #include <cairo.h>
 
 #include "render/frame.h"
+#include "render/labels.h"
 
-struct box {
-    double x, y, width, height;
-};
 
 bool box_meets(const struct box *a, const struct box *b);
 

@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { readAddress, writeAddress } from '../../clients/web/core/address.js';
 import { ageText, decimalsFor, numberText, qualityText, unitText, worst, zoneClock } from '../../clients/web/core/format.js';
-import { nearestMarker, placeLabels } from '../../clients/web/core/labels.js';
+import { nearestMarker } from '../../clients/web/core/labels.js';
 import { halfAt, halves } from '../../clients/web/core/halves.js';
 import {
     colourOf, edges, niceStep, placeOf, rampChoices, scaleTicks, spread, ticks, valueAt,
@@ -142,37 +142,6 @@ test('patterns: half of the hatching is dark, a fifth of the stipple is dots, bo
     assert.ok(Math.abs(darkness((x, y) => stippleAt(x, y, 300, period, [200, 200, 200]), 200, 64) - Math.PI * 0.26 ** 2) < 0.02);
     assert.deepEqual(hatchAt(3, 50, 300, 10 / 1.4142), hatchAt(13, 50, 300, 10 / 1.4142), 'stripes repeat after the diagonal of a period');
     assert.deepEqual(hatchAt(40, 50, 300, 12), hatchAt(41, 51, 300, 12), 'and fall from left to right');
-});
-
-const label = (id, x, y, priority = 0) => ({ id, x, y, width: 80, height: 20, priority });
-const area = { width: 1000, height: 800 };
-
-test('labels never overlap each other or a marker, and stay in the picture', () => {
-    const items = Array.from({ length: 300 }, (_, i) => label(i, (i * 137) % 1000, (i * 71) % 800));
-    const placed = placeLabels(items, area);
-    const boxes = [...placed].map(([id, p]) => ({ id, left: p.left, top: p.top, right: p.left + 80, bottom: p.top + 20 }));
-    assert.ok(boxes.length > 30 && boxes.length < 300);
-    for (const a of boxes) {
-        assert.ok(a.left >= 0 && a.top >= 0 && a.right <= 1000 && a.bottom <= 800);
-        for (const b of boxes)
-            assert.ok(a === b || a.left >= b.right || b.left >= a.right || a.top >= b.bottom || b.top >= a.bottom);
-        for (const { id, x, y } of items)
-            assert.ok(id === a.id || x + 5 <= a.left || x - 5 >= a.right || y + 5 <= a.top || y - 5 >= a.bottom);
-    }
-});
-
-test('labels keep off what lies over the picture', () => {
-    const blocked = [{ left: 490, right: 1000, top: 0, bottom: 800 }];
-    assert.equal(placeLabels([label(1, 480, 400)], { ...area, blocked }).get(1).side, 'left');
-    assert.equal(placeLabels([label(1, 700, 400)], { ...area, blocked }).size, 0);
-});
-
-test('the important label wins; one that stood there does not give way to an equal', () => {
-    const two = [label(1, 500, 400), label(2, 503, 400), label(3, 500, 404), label(4, 503, 404), label(5, 501, 402)];
-    const important = placeLabels(two.map((l) => ({ ...l, priority: l.id === 5 ? 9 : 0 })), area);
-    assert.ok(important.has(5));
-    const before = new Map([[4, { left: 510, top: 394, side: 'right' }]]);
-    assert.ok(placeLabels(two, { ...area, before }).has(4));
 });
 
 test('the nearest marker, in sight before hidden ones, within reach only', () => {

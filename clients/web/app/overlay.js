@@ -3,13 +3,12 @@
 import { projector } from '../core/camera.js';
 import { decimalsFor, numberText, unitText } from '../core/format.js';
 import { halves } from '../core/halves.js';
-import { nearestMarker, placeLabels } from '../core/labels.js';
+import { FIRST_FAR, leaderLine, MOST_BAD, nearestMarker, placeLabels } from '../core/labels.js';
 import { limitState } from '../core/model.js';
 
 const INK = '#1d252d', INK_2 = '#4d5964', ACCENT = '#2a5f8f';
 const LIMIT_COLOURS = { HH: ['#c62828', '#fff'], LL: ['#c62828', '#fff'], H: ['#f0a30a', '#1b1300'], L: ['#f0a30a', '#1b1300'] };
 const LABEL_HEIGHT = 20, PADDING = 6, NAMES_UP_TO = 24;
-const MOST_LOST_LABELS = 12; // beyond it, crossed markers say enough
 const ISOLINE_SPACING_PX = 160;
 const REACH_PX = { mouse: 14, pen: 18, touch: 26 };
 
@@ -129,7 +128,7 @@ export class Overlay {
         this.markers = this.project().sort((a, b) => b.depth - a.depth);
         this.radius = markerRadius(this.markers.filter((marker) => !marker.occluded));
         const labels = this.labels();
-        this.places = placeLabels(labels, { width, height, before: this.places, blocked: this.blocked() });
+        this.places = this.place(labels);
         for (const marker of this.markers)
             this.drawMarker(marker);
         for (const label of labels) {
@@ -160,21 +159,30 @@ export class Overlay {
         return tag.name === this.selection.tag || tag === this.selection.hover;
     }
 
+    // Each half for itself.
+    place(labels) {
+        const { params } = this.session, { width, height } = this.viewport, blocked = this.blocked();
+        const placed = halves(params, width).map((half, number) => placeLabels(labels.filter((label) => label.half === number), {
+            area: { left: half.left, top: 0, right: half.left + half.width, bottom: height }, blocked,
+        }));
+        return new Map(placed.flatMap((one) => [...one]));
+    }
+
+    // All marks in sight, in order of tags; the card speaks for the chosen.
     labels() {
-        const inSight = this.markers.filter((marker) => !marker.occluded && !this.isChosen(marker.tag)); // the card speaks for the chosen
-        const lost = inSight.filter(({ reading }) => reading.quality === 'bad');
-        const shown = lost.length <= MOST_LOST_LABELS ? inSight : inSight.filter((marker) => !lost.includes(marker));
-        const named = shown.length <= NAMES_UP_TO;
-        const nearest = Math.min(...shown.map((marker) => marker.depth));
-        return shown.map((marker) => {
-            const { tag, reading } = marker;
+        const inSight = this.markers.filter((marker) => !marker.occluded).sort((a, b) => a.tag.index - b.tag.index || a.half - b.half);
+        const tooMany = inSight.filter(({ reading }) => reading.quality === 'bad').length > MOST_BAD;
+        const named = inSight.length <= NAMES_UP_TO;
+        return inSight.map((marker) => {
+            const { tag, reading } = marker, id = `${tag.index}/${marker.half}`;
             const limit = limitState(tag, reading.value);
             const onSelected = tag.asset === this.session.params.selected;
             const parts = this.parts(marker, limit, named || onSelected);
             const width = Math.ceil(parts.reduce((sum, part) => sum + this.width(part), 0) + 2 * PADDING + (parts.length - 1) * 5);
-            const doubtful = reading.quality !== 'good';
-            const priority = (limit ? 20 : 0) + 10 * onSelected + 5 * doubtful + nearest / marker.depth;
-            return { id: `${tag.index}/${marker.half}`, x: marker.x, y: marker.y, width, height: LABEL_HEIGHT, priority, parts, limit };
+            const bad = reading.quality === 'bad', silent = this.isChosen(tag) || (bad && tooMany);
+            const rank = silent ? -1 : limit ? 3 : bad ? 2 : reading.quality !== 'good' || onSelected ? 1 : 0;
+            const { x, y, depth, half } = marker;
+            return { id, half, x, y, width, height: LABEL_HEIGHT, rank, depth, held: this.places.get(id)?.slot, parts, limit };
         });
     }
 
@@ -254,8 +262,18 @@ export class Overlay {
         c.restore();
     }
 
-    drawLabel({ width, height, parts, limit }, { left, top }) {
+    drawLabel(label, place) {
+        const { width, height, parts, limit } = label, { left, top } = place;
         const c = this.context;
+        if (place.slot >= FIRST_FAR) {
+            const [x1, y1, x2, y2] = leaderLine(label, place, this.radius);
+            c.beginPath();
+            c.moveTo(x1, y1);
+            c.lineTo(x2, y2);
+            c.lineWidth = 1;
+            c.strokeStyle = 'rgb(29 37 45 / 0.7)';
+            c.stroke();
+        }
         const x = Math.round(left), y = Math.round(top);
         c.beginPath();
         c.roundRect(x + 0.5, y + 0.5, width - 1, height - 1, 4);

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which labels are shown beside their markers, and on which side: the important first, none over another.
+// Which labels are shown beside their markers, and where: the rule of protocol/LABELS.md.
 
-const GAP_PX = 7;
+const SPACINGS = [0.16, 0.08, 0], HELD = 0.8; // of the area's width; what is held counts so much
+const MARK = 5, CLEARANCE = 3, NEAR_GAP = 8, FAR_GAP = 22; // units
+const ROOM = 0.06;                            // of the area
+export const FIRST_FAR = 8;                   // from this slot on with a leader line
+export const MOST_BAD = 12;
 
-const sides = {
-    right: ({ x, y, width, height }) => ({ left: x + GAP_PX, top: y - height / 2 }),
-    left: ({ x, y, width, height }) => ({ left: x - GAP_PX - width, top: y - height / 2 }),
-    above: ({ x, y, width, height }) => ({ left: x - width / 2, top: y - GAP_PX - height }),
-    below: ({ x, y, width, height }) => ({ left: x - width / 2, top: y + GAP_PX }),
-};
-const order = Object.keys(sides);
+const SLOTS = [ // side, upper edge in heights
+    [1, -0.5], [-1, -0.5], [1, -1.3], [1, 0.3], [-1, -1.3], [-1, 0.3], [0, -1.9], [0, 0.9],
+    [1, -2], [-1, -2], [1, 1], [-1, 1], [1, -3.2], [-1, -3.2], [1, 2.2], [-1, 2.2],
+];
 
-const overlap = (a, b) => a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
+const meets = (a, b) => a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
 
 // A grid, so that thousands of labels do not each look at all others.
 class Taken {
@@ -20,50 +21,86 @@ class Taken {
         this.cells = new Map();
     }
 
-    each(box, f) {
+    keys(box) {
+        const keys = [];
         for (let i = Math.floor(box.left / this.cell); i <= Math.floor(box.right / this.cell); i++) {
             for (let j = Math.floor(box.top / this.cell); j <= Math.floor(box.bottom / this.cell); j++)
-                f(`${i},${j}`);
+                keys.push(i * 65536 + j);
         }
+        return keys;
     }
 
     add(box) {
-        this.each(box, (key) => this.cells.set(key, [...(this.cells.get(key) ?? []), box]));
+        for (const key of this.keys(box))
+            this.cells.set(key, [...(this.cells.get(key) ?? []), box]);
     }
 
-    hits(box, but) {
-        let hit = false;
-        this.each(box, (key) => {
-            hit = hit || (this.cells.get(key) ?? []).some((other) => other.owner !== but && overlap(box, other));
-        });
-        return hit;
+    meets(box, owner) {
+        return this.keys(box).some((key) => (this.cells.get(key) ?? []).some((other) => other.owner !== owner && meets(box, other)));
     }
 }
 
-// items: { id, x, y (the marker), width, height, priority (larger first) }. Returns Map id -> { left, top, side }. The markers
-// themselves stay free too, and the boxes in `blocked`. `before`, the last answer, keeps labels from jumping from side to side,
-// and from giving way to equals.
-export function placeLabels(items, { width, height, markerPx = 5, before = new Map(), blocked = [] }) {
-    const taken = new Taken(96);
+function boxAt({ x, y, width, height }, slot, unit) {
+    const [side, edge] = SLOTS[slot];
+    const gap = (slot < FIRST_FAR ? NEAR_GAP : FAR_GAP) * unit;
+    const left = side > 0 ? x + gap : side < 0 ? x - gap - width : x - width / 2, top = y + edge * height;
+    return { left, top, right: left + width, bottom: top + height };
+}
+
+// items: { id, x, y (the marker), width, height, rank, depth, held (slot or undefined) }; area: { left, top, right, bottom }.
+// Returns Map id -> { left, top, slot }.
+export function placeLabels(items, { area, unit = 1, blocked = [] }) {
+    const wide = area.right - area.left, room = ROOM * wide * (area.bottom - area.top);
+    const taken = new Taken(96 * unit), placed = new Map(), centres = [];
+    const radius = MARK * unit, clearance = CLEARANCE * unit;
+    let used = 0;
     for (const box of blocked)
         taken.add(box);
     for (const { id, x, y } of items)
-        taken.add({ left: x - markerPx, right: x + markerPx, top: y - markerPx, bottom: y + markerPx, owner: id });
-    const rank = (item) => item.priority + (before.has(item.id) ? 0.5 : 0);
-    const placed = new Map();
-    for (const item of [...items].sort((a, b) => rank(b) - rank(a) || (a.id < b.id ? -1 : 1))) {
-        const last = before.get(item.id)?.side;
-        for (const side of last ? [last, ...order.filter((s) => s !== last)] : order) {
-            const { left, top } = sides[side](item);
-            const box = { left, top, right: left + item.width, bottom: top + item.height, owner: item.id };
-            if (left < 0 || top < 0 || box.right > width || box.bottom > height || taken.hits(box, item.id))
+        taken.add({ left: x - radius, right: x + radius, top: y - radius, bottom: y + radius, owner: id });
+    const isHeld = (item) => item.held !== undefined && item.held !== null && item.held >= 0;
+    const far = (item) => item.depth * (isHeld(item) ? HELD : 1);
+    const order = items.map((item, index) => ({ item, index })).filter(({ item }) => item.rank >= 0)
+        .sort((a, b) => b.item.rank - a.item.rank || far(a.item) - far(b.item) || a.index - b.index).map(({ item }) => item);
+
+    const fits = (item, slot) => {
+        const box = boxAt(item, slot, unit), more = isHeld(item) && slot === item.held ? 0 : clearance;
+        const grown = { left: box.left - more, right: box.right + more, top: box.top - more, bottom: box.bottom + more };
+        const inside = box.left >= area.left && box.top >= area.top && box.right <= area.right && box.bottom <= area.bottom;
+        return inside && !taken.meets(grown, item.id) ? box : null;
+    };
+    const place = (item) => {
+        for (let n = isHeld(item) ? -1 : 0; n < SLOTS.length; n++) {
+            const slot = n < 0 ? item.held : n, box = fits(item, slot);
+            if (!box)
                 continue;
-            taken.add(box);
-            placed.set(item.id, { left, top, side });
-            break;
+            taken.add({ ...box, owner: item.id });
+            placed.set(item.id, { left: box.left, top: box.top, slot });
+            centres.push(item);
+            used += item.width * item.height;
+            return;
+        }
+    };
+    for (let rank = 3; rank >= 0; rank--) {
+        const mine = order.filter((item) => item.rank === rank);
+        for (const spacing of SPACINGS) {
+            for (const item of mine) {
+                const apart = spacing * wide * (isHeld(item) ? HELD : 1);
+                if (placed.has(item.id) || (rank < 2 && used >= room) ||
+                    centres.some((other) => Math.hypot(other.x - item.x, other.y - item.y) < apart))
+                    continue;
+                place(item);
+            }
         }
     }
     return placed;
+}
+
+// From the rim of a marker to the nearest point of its label: [x1, y1, x2, y2].
+export function leaderLine({ x, y, width, height }, { left, top }, radius) {
+    const to = [Math.max(left, Math.min(left + width, x)), Math.max(top, Math.min(top + height, y))];
+    const away = Math.hypot(to[0] - x, to[1] - y) || 1;
+    return [x + ((to[0] - x) * radius) / away, y + ((to[1] - y) * radius) / away, ...to];
 }
 
 // The marker nearest to a place, within reach; null: none. Those in sight come before those behind something.

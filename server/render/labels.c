@@ -1,0 +1,193 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Labels by rank, distance and room. */
+#include "render/labels.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+
+#include "base/mem.h"
+
+enum { PASSES = 3 };
+static const double SPACINGS[PASSES] = { 0.16, 0.08, 0 }, HELD = 0.8;
+static const double MARK = 5, CLEARANCE = 3, NEAR_GAP = 8, FAR_GAP = 22, ROOM = 0.06, CELL = 96;
+
+struct cell_entry {
+    struct box box;
+    int owner, next;
+};
+
+struct layout { /* of one picture */
+    const struct label_item *items;
+    const struct label_area *area;
+    int *slots;
+    int columns, rows, *heads; /* a grid of what is taken */
+    struct cell_entry *entries;
+    size_t entry_count, entry_capacity;
+    int *labelled; /* items whose labels stand */
+    int labelled_count;
+    double used;
+};
+
+static bool is_held(const struct label_item *item)
+{
+    return item->held != LABEL_NONE;
+}
+
+static double order_depth(const struct label_item *item)
+{
+    return item->depth_m * (is_held(item) ? HELD : 1);
+}
+
+static int by_importance(const void *a, const void *b, void *arg)
+{
+    const struct label_item *items = arg;
+    int i = *(const int *)a, k = *(const int *)b;
+    double depth_i = order_depth(&items[i]), depth_k = order_depth(&items[k]);
+    if (items[i].rank != items[k].rank)
+        return items[i].rank > items[k].rank ? -1 : 1;
+    if (depth_i != depth_k)
+        return depth_i < depth_k ? -1 : 1;
+    return i < k ? -1 : 1;
+}
+
+/* --- what is taken ---------------------------------------------------------------------------------------------------------- */
+
+static int clamp(double value, int count)
+{
+    return value < 0 ? 0 : value >= count ? count - 1 : (int)value;
+}
+
+/* The cells of a box: first and last column and row. */
+static void cells_of(const struct layout *layout, const struct box *box, int range[4])
+{
+    double cell = CELL * layout->area->unit, x = box->x - layout->area->box.x, y = box->y - layout->area->box.y;
+    range[0] = clamp(x / cell, layout->columns);
+    range[1] = clamp((x + box->width) / cell, layout->columns);
+    range[2] = clamp(y / cell, layout->rows);
+    range[3] = clamp((y + box->height) / cell, layout->rows);
+}
+
+static void take(struct layout *layout, const struct box *box, int owner)
+{
+    int range[4];
+    cells_of(layout, box, range);
+    for (int column = range[0]; column <= range[1]; column++)
+        for (int row = range[2]; row <= range[3]; row++) {
+            int *head = &layout->heads[row * layout->columns + column];
+            mem_grow(&layout->entries, &layout->entry_capacity, layout->entry_count + 1, sizeof(*layout->entries));
+            layout->entries[layout->entry_count] = (struct cell_entry){ .box = *box, .owner = owner, .next = *head };
+            *head = (int)layout->entry_count++;
+        }
+}
+
+static bool is_free(const struct layout *layout, const struct box *box, int owner)
+{
+    int range[4];
+    cells_of(layout, box, range);
+    for (int column = range[0]; column <= range[1]; column++)
+        for (int row = range[2]; row <= range[3]; row++)
+            for (int i = layout->heads[row * layout->columns + column]; i >= 0; i = layout->entries[i].next) {
+                const struct box *other = &layout->entries[i].box;
+                if (layout->entries[i].owner != owner && box->x < other->x + other->width && other->x < box->x + box->width &&
+                    box->y < other->y + other->height && other->y < box->y + box->height)
+                    return false;
+            }
+    return true;
+}
+
+/* --- one label -------------------------------------------------------------------------------------------------------------- */
+
+struct box label_box(const struct label_item *item, int slot, double unit)
+{
+    static const double places[LABEL_SLOTS][2] = { { 1, -0.5 }, { -1, -0.5 }, { 1, -1.3 }, { 1, 0.3 }, { -1, -1.3 }, { -1, 0.3 },
+                                                   { 0, -1.9 }, { 0, 0.9 },   { 1, -2 },   { -1, -2 }, { 1, 1 },     { -1, 1 },
+                                                   { 1, -3.2 }, { -1, -3.2 }, { 1, 2.2 },  { -1, 2.2 } };
+    double side = places[slot][0], gap = (slot < LABEL_FIRST_FAR ? NEAR_GAP : FAR_GAP) * unit;
+    double x = side > 0 ? item->x + gap : side < 0 ? item->x - gap - item->width : item->x - item->width / 2;
+    return (struct box){ x, item->y + places[slot][1] * item->height, item->width, item->height };
+}
+
+static bool fits(const struct layout *layout, int index, int slot)
+{
+    const struct label_item *item = &layout->items[index];
+    const struct box *area = &layout->area->box;
+    struct box box = label_box(item, slot, layout->area->unit);
+    double more = slot == item->held ? 0 : CLEARANCE * layout->area->unit;
+    if (box.x < area->x || box.y < area->y || box.x + box.width > area->x + area->width || box.y + box.height > area->y + area->height)
+        return false;
+    struct box grown = { box.x - more, box.y - more, box.width + 2 * more, box.height + 2 * more };
+    return is_free(layout, &grown, index);
+}
+
+static void place(struct layout *layout, int index)
+{
+    const struct label_item *item = &layout->items[index];
+    for (int n = is_held(item) ? -1 : 0; n < LABEL_SLOTS; n++) {
+        int slot = n < 0 ? item->held : n;
+        if (!fits(layout, index, slot))
+            continue;
+        struct box box = label_box(item, slot, layout->area->unit);
+        take(layout, &box, index);
+        layout->slots[index] = slot;
+        layout->labelled[layout->labelled_count++] = index;
+        layout->used += item->width * item->height;
+        return;
+    }
+}
+
+static bool is_apart(const struct layout *layout, const struct label_item *item, double least)
+{
+    for (int i = 0; i < layout->labelled_count; i++) {
+        const struct label_item *other = &layout->items[layout->labelled[i]];
+        if (hypot(other->x - item->x, other->y - item->y) < least)
+            return false;
+    }
+    return true;
+}
+
+static void place_rank(struct layout *layout, const int *order, size_t count)
+{
+    const struct box *area = &layout->area->box;
+    for (int pass = 0; pass < PASSES; pass++)
+        for (size_t i = 0; i < count; i++) {
+            const struct label_item *item = &layout->items[order[i]];
+            bool room = item->rank >= LABEL_BAD || layout->used < ROOM * area->width * area->height;
+            double least = SPACINGS[pass] * area->width * (is_held(item) ? HELD : 1);
+            if (room && layout->slots[order[i]] == LABEL_NONE && is_apart(layout, item, least))
+                place(layout, order[i]);
+        }
+}
+
+void labels_place(const struct label_item *items, size_t count, const struct label_area *area, int *slots)
+{
+    double radius = MARK * area->unit, cell = CELL * area->unit;
+    struct layout layout = { .items = items, .area = area, .slots = slots };
+    layout.columns = (int)(area->box.width / cell) + 1;
+    layout.rows = (int)(area->box.height / cell) + 1;
+    layout.heads = mem_array((size_t)layout.columns * (size_t)layout.rows, sizeof(*layout.heads));
+    layout.labelled = mem_array(count, sizeof(*layout.labelled));
+    int *order = mem_array(count, sizeof(*order));
+    size_t wanted = 0;
+    for (int i = 0; i < layout.columns * layout.rows; i++)
+        layout.heads[i] = -1;
+    for (size_t i = 0; i < area->blocked_count; i++)
+        take(&layout, &area->blocked[i], -1);
+    for (size_t i = 0; i < count; i++) {
+        struct box mark = { items[i].x - radius, items[i].y - radius, 2 * radius, 2 * radius };
+        take(&layout, &mark, (int)i);
+        slots[i] = LABEL_NONE;
+        if (items[i].rank != LABEL_NOT_WANTED)
+            order[wanted++] = (int)i;
+    }
+    qsort_r(order, wanted, sizeof(*order), by_importance, (void *)items);
+    for (size_t begin = 0, end; begin < wanted; begin = end) {
+        for (end = begin; end < wanted && items[order[end]].rank == items[order[begin]].rank;)
+            end++;
+        place_rank(&layout, order + begin, end - begin);
+    }
+    mem_free(layout.heads);
+    mem_free(layout.entries);
+    mem_free(layout.labelled);
+    mem_free(order);
+}

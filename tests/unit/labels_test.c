@@ -1,0 +1,117 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Labels by the rule of protocol/LABELS.md, against the vectors that the browser's are tested with too. */
+#include "render/labels.h"
+
+#include <dirent.h>
+#include <jansson.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "tests/support/synthetic.h"
+
+#define FOLDER "protocol/vectors/labels"
+
+static double at(const json_t *array, size_t i)
+{
+    return json_number_value(json_array_get(array, i));
+}
+
+static struct box box_of(const json_t *array)
+{
+    return (struct box){ at(array, 0), at(array, 1), at(array, 2) - at(array, 0), at(array, 3) - at(array, 1) };
+}
+
+static void check_vector(const char *name)
+{
+    char *path = mem_printf("%s/%s", FOLDER, name);
+    json_t *vector = json_load_file(path, 0, NULL);
+    assert_non_null(vector);
+    const json_t *list = json_object_get(vector, "items"), *blocked = json_object_get(vector, "blocked");
+    size_t count = json_array_size(list), blocked_count = json_array_size(blocked);
+    struct label_item *items = mem_array(count, sizeof(*items));
+    struct box *boxes = mem_array(blocked_count, sizeof(*boxes));
+    int *slots = mem_array(count, sizeof(*slots));
+    for (size_t i = 0; i < count; i++) {
+        const json_t *item = json_array_get(list, i);
+        items[i] =
+            (struct label_item){ at(item, 0), at(item, 1), at(item, 2), at(item, 3), at(item, 5), (int)at(item, 4), (int)at(item, 6) };
+    }
+    for (size_t i = 0; i < blocked_count; i++)
+        boxes[i] = box_of(json_array_get(blocked, i));
+    struct label_area area = { .box = box_of(json_object_get(vector, "area")),
+                               .unit = json_number_value(json_object_get(vector, "unit")),
+                               .blocked = boxes,
+                               .blocked_count = blocked_count };
+    labels_place(items, count, &area, slots);
+    for (size_t i = 0; i < count; i++)
+        if (slots[i] != (int)at(json_object_get(vector, "slots"), i))
+            fail_msg("%s: item %zu has slot %d, not %g", name, i, slots[i], at(json_object_get(vector, "slots"), i));
+    mem_free(items);
+    mem_free(boxes);
+    mem_free(slots);
+    mem_free(path);
+    json_decref(vector);
+}
+
+static void places_labels_as_the_vectors_say(void **state)
+{
+    (void)state;
+    int count = 0;
+    DIR *folder = opendir(FOLDER);
+    assert_non_null(folder);
+    for (struct dirent *entry; (entry = readdir(folder));)
+        if (strstr(entry->d_name, ".json")) {
+            check_vector(entry->d_name);
+            count++;
+        }
+    closedir(folder);
+    assert_true(count >= 7);
+}
+
+/* Thousands are placed in no time, and never over one another. */
+static void many_labels_do_not_overlap(void **state)
+{
+    (void)state;
+    enum { COUNT = 4096 };
+    static struct label_item items[COUNT];
+    static int slots[COUNT];
+    uint64_t seed = 11;
+    for (int i = 0; i < COUNT; i++)
+        items[i] = (struct label_item){ .x = 1920 * synthetic_random_unit(&seed),
+                                        .y = 1080 * synthetic_random_unit(&seed),
+                                        .width = 60,
+                                        .height = 18,
+                                        .depth_m = 1 + synthetic_random_unit(&seed),
+                                        .rank = i % 5 - 1,
+                                        .held = LABEL_NONE };
+    labels_place(items, COUNT, &(struct label_area){ .box = { 0, 0, 1920, 1080 }, .unit = 1 }, slots);
+    int shown = 0;
+    for (int i = 0; i < COUNT; i++) {
+        if (slots[i] == LABEL_NONE)
+            continue;
+        struct box a = label_box(&items[i], slots[i], 1);
+        assert_true(items[i].rank != LABEL_NOT_WANTED && a.x >= 0 && a.y >= 0 && a.x + a.width <= 1920 && a.y + a.height <= 1080);
+        for (int k = 0; k < i; k++) {
+            struct box b = slots[k] == LABEL_NONE ? (struct box){ 0 } : label_box(&items[k], slots[k], 1);
+            assert_true(a.x >= b.x + b.width || b.x >= a.x + a.width || a.y >= b.y + b.height || b.y >= a.y + a.height);
+        }
+        shown++;
+    }
+    assert_true(shown > 3);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(places_labels_as_the_vectors_say),
+        cmocka_unit_test(many_labels_do_not_overlap),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

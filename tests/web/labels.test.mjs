@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Labels by the rule of protocol/LABELS.md: the vectors that the server's are tested with too, and what no picture may break.
+import assert from 'node:assert/strict';
+import { readdirSync, readFileSync } from 'node:fs';
+import { test } from 'node:test';
+import { projector } from '../../clients/web/core/camera.js';
+import { FIRST_FAR, leaderLine, placeLabels } from '../../clients/web/core/labels.js';
+
+const folder = new URL('../../protocol/vectors/labels/', import.meta.url);
+const box = ([left, top, right, bottom]) => ({ left, top, right, bottom });
+
+for (const name of readdirSync(folder)) {
+    const vector = JSON.parse(readFileSync(new URL(name, folder), 'utf8'));
+    test(`labels ${name}: ${vector.what}`, () => {
+        const items = vector.items.map(([x, y, width, height, rank, depth, held], id) => ({ id, x, y, width, height, rank, depth, held }));
+        const placed = placeLabels(items, { area: box(vector.area), unit: vector.unit, blocked: vector.blocked.map(box) });
+        assert.deepEqual(items.map(({ id }) => placed.get(id)?.slot ?? -1), vector.slots);
+    });
+}
+
+const seed = Number(process.env.SEED ?? Math.floor(Math.random() * 2 ** 31));
+console.log(`# seed ${seed}`);
+let state = seed;
+function random(low, high) {
+    state = (Math.imul(state, 1664525) + 1013904223) >>> 0;
+    return low + (high - low) * (state / 2 ** 32);
+}
+
+const area = { left: 0, top: 0, right: 1280, bottom: 720 };
+
+test('none over another, none over a mark, all inside; important ones are not crowded out', () => {
+    for (let round = 0; round < 30; round++) {
+        const items = Array.from({ length: 300 }, (_, id) => ({
+            id, x: random(0, 1280), y: random(0, 720), width: random(50, 130), height: 20, rank: Math.floor(random(0, 4)), depth: random(1, 90),
+        }));
+        const placed = placeLabels(items, { area });
+        const boxes = [...placed].map(([id, { left, top }]) => ({ id, left, top, right: left + items[id].width, bottom: top + 20 }));
+        assert.ok(boxes.length > 30);
+        for (const a of boxes) {
+            assert.ok(a.left >= 0 && a.top >= 0 && a.right <= 1280 && a.bottom <= 720);
+            for (const b of boxes)
+                assert.ok(a === b || a.left >= b.right || b.left >= a.right || a.top >= b.bottom || b.top >= a.bottom);
+            for (const { id, x, y } of items)
+                assert.ok(id === a.id || x + 5 <= a.left || x - 5 >= a.right || y + 5 <= a.top || y - 5 >= a.bottom);
+        }
+        const share = (rank) => items.filter((i) => i.rank === rank && placed.has(i.id)).length / items.filter((i) => i.rank === rank).length;
+        assert.ok(share(3) > share(0));
+    }
+});
+
+// A camera that turns about a plant of sensors, a quarter of a degree each picture; and one that trembles by a fraction of a pixel.
+const sensors = Array.from({ length: 60 }, (_, i) => [12 * Math.cos(i * 2.4) * Math.sqrt(i / 60), 12 * Math.sin(i * 2.4) * Math.sqrt(i / 60), (i % 7) * 1.5]);
+function labelsFrom(angle, places) {
+    const camera = { eye: [40 * Math.cos(angle), 40 * Math.sin(angle), 20], target: [0, 0, 4], up: [0, 0, 1], fov: 45 };
+    const project = projector(camera, 1280, 720);
+    const items = sensors.map((sensor, id) => {
+        const [x, y, depth] = project(sensor);
+        return { id, x, y, width: 64, height: 20, rank: id % 9 === 0 ? 3 : 0, depth, held: places.get(id)?.slot };
+    });
+    return placeLabels(items, { area });
+}
+
+test('while the camera turns labels stay, and do not come and go', () => {
+    let places = labelsFrom(0, new Map()), changes = 0, flickers = 0, shown = 0;
+    const since = new Map();
+    for (let n = 1; n <= 720; n++) {
+        const next = labelsFrom((n * Math.PI) / 720, places);
+        for (const { length } of [[...sensors]])
+            shown += next.size / length;
+        for (let id = 0; id < sensors.length; id++) {
+            if (places.has(id) === next.has(id) && places.get(id)?.slot === next.get(id)?.slot)
+                continue;
+            changes++;
+            flickers += n - (since.get(id) ?? -100) < 4 ? 1 : 0; // changed again within four pictures
+            since.set(id, n);
+        }
+        places = next;
+    }
+    const perLabelAndPicture = changes / (shown * sensors.length);
+    console.log(`# ${changes} changes in 720 pictures, ${(100 * perLabelAndPicture).toFixed(2)} % of labels a picture, ${flickers} flickers`);
+    assert.ok(perLabelAndPicture < 0.02 && flickers < changes / 10);
+});
+
+test('while the camera trembles nothing changes', () => {
+    const steady = labelsFrom(1, labelsFrom(1, new Map()));
+    let places = steady;
+    for (let n = 0; n < 200; n++)
+        places = labelsFrom(1 + random(-2e-5, 2e-5), places);
+    assert.deepEqual([...places].map(([id, { slot }]) => [id, slot]).sort(), [...steady].map(([id, { slot }]) => [id, slot]).sort());
+});
+
+test('a leader line runs from the rim of its marker to the nearest point of its label', () => {
+    const item = { x: 100, y: 100, width: 60, height: 20 };
+    assert.deepEqual(leaderLine(item, { left: 122, top: 90 }, 5), [105, 100, 122, 100]);
+    const [x1, y1, x2, y2] = leaderLine(item, { left: 122, top: 130 }, 5);
+    assert.deepEqual([x2, y2], [122, 130]);
+    assert.ok(Math.abs(Math.hypot(x1 - 100, y1 - 100) - 5) < 1e-9);
+    assert.equal(FIRST_FAR, 8);
+});
