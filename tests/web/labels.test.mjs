@@ -12,7 +12,8 @@ const box = ([left, top, right, bottom]) => ({ left, top, right, bottom });
 for (const name of readdirSync(folder)) {
     const vector = JSON.parse(readFileSync(new URL(name, folder), 'utf8'));
     test(`labels ${name}: ${vector.what}`, () => {
-        const items = vector.items.map(([x, y, width, height, rank, depth, held], id) => ({ id, x, y, width, height, rank, depth, held }));
+        const names = ['x', 'y', 'width', 'height', 'rank', 'depth', 'held'];
+        const items = vector.items.map((row, id) => ({ id, ...Object.fromEntries(names.map((n, i) => [n, row[i]])) }));
         const placed = placeLabels(items, { area: box(vector.area), unit: vector.unit, blocked: vector.blocked.map(box) });
         assert.deepEqual(items.map(({ id }) => placed.get(id)?.slot ?? -1), vector.slots);
     });
@@ -31,7 +32,8 @@ const area = { left: 0, top: 0, right: 1280, bottom: 720 };
 test('none over another, none over a mark, all inside; important ones are not crowded out', () => {
     for (let round = 0; round < 30; round++) {
         const items = Array.from({ length: 300 }, (_, id) => ({
-            id, x: random(0, 1280), y: random(0, 720), width: random(50, 130), height: 20, rank: Math.floor(random(0, 4)), depth: random(1, 90),
+            id, x: random(0, 1280), y: random(0, 720), width: random(50, 130), height: 20,
+            rank: Math.floor(random(0, 4)), depth: random(1, 90),
         }));
         const placed = placeLabels(items, { area });
         const boxes = [...placed].map(([id, { left, top }]) => ({ id, left, top, right: left + items[id].width, bottom: top + 20 }));
@@ -43,13 +45,19 @@ test('none over another, none over a mark, all inside; important ones are not cr
             for (const { id, x, y } of items)
                 assert.ok(id === a.id || x + 5 <= a.left || x - 5 >= a.right || y + 5 <= a.top || y - 5 >= a.bottom);
         }
-        const share = (rank) => items.filter((i) => i.rank === rank && placed.has(i.id)).length / items.filter((i) => i.rank === rank).length;
+        const share = (rank) => {
+            const mine = items.filter((item) => item.rank === rank);
+            return mine.filter(({ id }) => placed.has(id)).length / mine.length;
+        };
         assert.ok(share(3) > share(0));
     }
 });
 
 // A camera that turns about a plant of sensors, a quarter of a degree each picture; and one that trembles by a fraction of a pixel.
-const sensors = Array.from({ length: 60 }, (_, i) => [12 * Math.cos(i * 2.4) * Math.sqrt(i / 60), 12 * Math.sin(i * 2.4) * Math.sqrt(i / 60), (i % 7) * 1.5]);
+const sensors = Array.from({ length: 60 }, (_, i) => {
+    const away = 12 * Math.sqrt(i / 60);
+    return [away * Math.cos(i * 2.4), away * Math.sin(i * 2.4), (i % 7) * 1.5];
+});
 function labelsFrom(angle, places) {
     const camera = { eye: [40 * Math.cos(angle), 40 * Math.sin(angle), 20], target: [0, 0, 4], up: [0, 0, 1], fov: 45 };
     const project = projector(camera, 1280, 720);
@@ -65,8 +73,7 @@ test('while the camera turns labels stay, and do not come and go', () => {
     const since = new Map();
     for (let n = 1; n <= 720; n++) {
         const next = labelsFrom((n * Math.PI) / 720, places);
-        for (const { length } of [[...sensors]])
-            shown += next.size / length;
+        shown += next.size;
         for (let id = 0; id < sensors.length; id++) {
             if (places.has(id) === next.has(id) && places.get(id)?.slot === next.get(id)?.slot)
                 continue;
@@ -76,7 +83,7 @@ test('while the camera turns labels stay, and do not come and go', () => {
         }
         places = next;
     }
-    const perLabelAndPicture = changes / (shown * sensors.length);
+    const perLabelAndPicture = changes / shown;
     console.log(`# ${changes} changes in 720 pictures, ${(100 * perLabelAndPicture).toFixed(2)} % of labels a picture, ${flickers} flickers`);
     assert.ok(perLabelAndPicture < 0.02 && flickers < changes / 10);
 });
@@ -86,7 +93,8 @@ test('while the camera trembles nothing changes', () => {
     let places = steady;
     for (let n = 0; n < 200; n++)
         places = labelsFrom(1 + random(-2e-5, 2e-5), places);
-    assert.deepEqual([...places].map(([id, { slot }]) => [id, slot]).sort(), [...steady].map(([id, { slot }]) => [id, slot]).sort());
+    const slots = (map) => [...map].map(([id, { slot }]) => [id, slot]).sort();
+    assert.deepEqual(slots(places), slots(steady));
 });
 
 test('a leader line runs from the rim of its marker to the nearest point of its label', () => {
