@@ -155,6 +155,34 @@ test('cameras and parameters are echoed, markers go before their frame', { skip 
     client.close();
 });
 
+test('orthographic cameras, fits, picks, and what is hidden', { skip }, async () => {
+    const client = await PlainClient.open(plant.port);
+    await client.hello();
+    client.say({ type: 'fit', seq: 1, id: 'E-101', side: 'right', projection: 'orthographic' });
+    const { seq, eye, target, up, projection, height_m } = await client.text('camera');
+    assert.deepEqual([seq, projection], [1, 'orthographic']);
+    assert.ok(eye[0] > 2 && Math.abs(eye[1]) < 0.01 && height_m > 1 && height_m < 1.2);
+    client.say({ type: 'camera', seq: 2, eye, target, up, projection, height_m });
+    client.say({ type: 'params', seq: 1, hidden: ['P-101A'] });
+    const frame = await client.frameWhere('camera 2 and parameters 1', (f) => f.camera_seq === 2 && f.params_seq === 1);
+    assert.ok(frame.fov === 0 && Math.abs(frame.height_m - height_m) < 1e-5);
+    client.say({ type: 'pick', seq: 5, x: 160.5, y: 90.5, camera: { eye, target, up, projection, height_m } });
+    const picked = await client.text('picked');
+    assert.deepEqual([picked.seq, picked.asset, picked.unit], [5, 'E-101', '°C']);
+    assert.ok(Math.abs(picked.position[0] - 0.5) < 1e-6 && picked.normal[0] > 0.99, 'its right side; the other box is hidden');
+    assert.ok(['measured', 'between'].includes(picked.state) && picked.nearest.length >= 1);
+    client.say({ type: 'params', seq: 2, hidden: ['P-1'] });
+    assert.equal((await client.text('error')).code, 'bad_field');
+    client.close();
+    const query = 'width=320&height=180&fit=E-101&side=right&hidden=P-101A&x=160.5&y=90.5';
+    const answer = await get(plant.port, `/api/v1/pick?${query}`);
+    assert.deepEqual([answer.status, answer.headers['content-type']], [200, 'application/json']);
+    assert.equal(JSON.parse(answer.body).asset, 'E-101');
+    for (const wrong of ['x=1', 'x=1&y=-1', 'x=a&y=2', 'x=1&y=1&hidden=P-1'])
+        assert.equal((await get(plant.port, `/api/v1/pick?${wrong}`)).status, 400, wrong);
+    assert.equal((await get(plant.port, '/snapshot.png?x=1&y=1')).status, 400);
+});
+
 test('a second page hears the same, another codec too', { skip }, async () => {
     const client = await PlainClient.open(plant.port);
     const welcome = await client.hello({ codecs: ['av1', 'png'], params: { seq: 1, group: 'pressure' } });

@@ -84,7 +84,7 @@ test('while the camera turns labels stay, and do not come and go', () => {
         places = next;
     }
     const perLabelAndPicture = changes / shown;
-    console.log(`# ${changes} changes in 720 pictures, ${(100 * perLabelAndPicture).toFixed(2)} % of labels a picture, ${flickers} flickers`);
+    console.log(`# ${changes} changes in 720 pictures, ${(100 * perLabelAndPicture).toFixed(2)} % a picture, ${flickers} flickers`);
     assert.ok(perLabelAndPicture < 0.02 && flickers < changes / 10);
 });
 

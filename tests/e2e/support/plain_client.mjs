@@ -58,7 +58,7 @@ export function readFrame(bytes) {
         oldest_age_ms: u32(20), data_time_us: Number(bytes.readBigUInt64LE(24)), sent_time_us: Number(bytes.readBigUInt64LE(32)),
         wait_us: u32(40), field_us: u32(44), render_us: u32(48), encode_us: u32(52), x: u16(56), y: u16(58), width: u16(60),
         height: u16(62), full_width: u16(64), full_height: u16(66), eye: f32(68, 3), target: f32(80, 3), up: f32(92, 3),
-        fov: f32(104, 1)[0],
+        fov: f32(104, 1)[0], height_m: f32(108, 1)[0],
         payload: bytes.subarray(112),
     };
 }
