@@ -37,24 +37,27 @@ static uint32_t place_of(const struct cutmesh *mesh, uint32_t vertex)
     return mesh->places.of_vertex[vertex];
 }
 
-static uint32_t edge_of(struct cutmesh *mesh, uint32_t a, uint32_t b)
+static uint32_t edge_of(struct cutmesh *mesh, uint32_t a, uint32_t b, uint32_t origin)
 {
     size_t before = mesh->edges.count;
     uint32_t e = edge_table_add(&mesh->edges, place_of(mesh, a), place_of(mesh, b));
     if (mesh->edges.count > before) {
         mem_grow(&mesh->cuts, &mesh->cut_capacity, mesh->edges.count, sizeof(*mesh->cuts));
-        mesh->cuts[e] = (struct cut_edge){ .a = a, .b = b, .middle = TRIMESH_NONE, .error = -1 };
+        mesh->cuts[e] =
+            (struct cut_edge){ .a = a, .b = b, .origin = { origin, TRIMESH_NONE }, .middle = TRIMESH_NONE, .share = 0.5f, .error = -1 };
+    } else if (mesh->loads == 1 && mesh->cuts[e].origin[0] != origin) {
+        mesh->cuts[e].origin[1] = origin;
     }
     return e;
 }
 
 static struct cut_tri make_tri(struct cutmesh *mesh, const struct cut_tri *like, uint32_t a, uint32_t b, uint32_t c)
 {
-    return (struct cut_tri){ .v = { a, b, c },
-                             .e = { edge_of(mesh, a, b), edge_of(mesh, b, c), edge_of(mesh, c, a) },
-                             .primitive = like->primitive,
-                             .origin = like->origin,
-                             .error = -1 };
+    return (
+        struct cut_tri){ .v = { a, b, c },
+                         .e = { edge_of(mesh, a, b, like->origin), edge_of(mesh, b, c, like->origin), edge_of(mesh, c, a, like->origin) },
+                         .primitive = like->primitive,
+                         .origin = like->origin };
 }
 
 static void add_tri(struct cutmesh *mesh, const struct cut_tri *like, uint32_t a, uint32_t b, uint32_t c)
@@ -70,8 +73,9 @@ void cutmesh_load(struct cutmesh *mesh, const struct level *level)
     mesh->loads++;
     for (uint32_t p = 0; p < level->primitive_count; p++)
         for (uint32_t i = 0; i < level->primitives[p].index_count; i += 3) {
-            const uint32_t *v = level->indices + level->primitives[p].first_index + i;
-            const struct cut_tri like = { .primitive = p };
+            uint32_t at = level->primitives[p].first_index + i;
+            const uint32_t *v = level->indices + at;
+            const struct cut_tri like = { .primitive = p, .origin = at / 3 };
             add_tri(mesh, &like, v[0], v[1], v[2]);
         }
 }
@@ -163,14 +167,13 @@ bool cutmesh_is_cut(const struct cutmesh *mesh, uint32_t edge)
     return mesh->cuts[edge].load == mesh->loads;
 }
 
-bool cutmesh_cut(struct cutmesh *mesh, uint32_t edge, double t, const float position_m[3])
+bool cutmesh_cut(struct cutmesh *mesh, uint32_t edge, const float position_m[3])
 {
     struct cut_edge *cut = &mesh->cuts[edge];
     cut->load = mesh->loads;
     if (cut->middle != TRIMESH_NONE)
         return false;
     cut->middle = add_place(mesh, position_m);
-    cut->share = (float)t;
     return true;
 }
 

@@ -8,16 +8,17 @@
 
 struct cut_tri {
     uint32_t v[3], e[3];        /* e[i]: the edge from v[i] to v[i + 1] */
-    uint32_t primitive, origin; /* of the level: its primitive; what this is a piece of */
-    float error;                /* of the field at its middle; less than 0: not known yet */
+    uint32_t primitive, origin; /* of the level: its primitive; the triangle that this is a piece of, by its first index / 3 */
+    bool good;                  /* it has been looked at */
 };
 
-struct cut_edge {    /* between two places; all levels share them */
-    uint32_t a, b;   /* vertices at its ends, one pair of several where normals or textures part */
-    uint32_t middle; /* the place where it is cut, or TRIMESH_NONE */
-    uint32_t load;   /* the last level that it is cut in */
-    float share;     /* of the way from place a to place b */
-    float error;     /* of the field along it; less than 0: not known yet */
+struct cut_edge {       /* between two places; all levels share them */
+    uint32_t a, b;      /* vertices at its ends, one pair of several where normals or textures part */
+    uint32_t origin[2]; /* of the level that it was first seen in: two triangles that it is part of; or TRIMESH_NONE */
+    uint32_t middle;    /* the place where it is cut, or TRIMESH_NONE */
+    uint32_t load;      /* the last level that it is cut in */
+    float share;        /* of the way from place a to place b: where it is cut, or should be */
+    float error;        /* of the field along it; less than 0: not known yet */
 };
 
 struct cutmesh {
@@ -42,9 +43,9 @@ void cutmesh_load(struct cutmesh *mesh, const struct level *level);
 void cutmesh_store(const struct cutmesh *mesh, struct level *level);
 
 bool cutmesh_is_cut(const struct cutmesh *mesh, uint32_t edge); /* in the level in hand */
-/* Cuts an edge at share t of the way from its a to its b; the triangles stay as they are until cutmesh_apply. True: at a new place
+/* Cuts an edge at its share of the way; the triangles stay as they are until cutmesh_apply. True: at a new place
    (cuts[edge].middle). False: where another level cut it. */
-bool cutmesh_cut(struct cutmesh *mesh, uint32_t edge, double t, const float position_m[3]);
+bool cutmesh_cut(struct cutmesh *mesh, uint32_t edge, const float position_m[3]);
 /* Splits triangles until none has an edge that is cut. Returns the number of pieces made. */
 size_t cutmesh_apply(struct cutmesh *mesh);
 /* Puts a new vertex into a triangle. Returns it. */

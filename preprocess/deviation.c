@@ -10,8 +10,8 @@
 #include "base/mem.h"
 #include "surface/vec.h"
 
-#define CUTS 2     /* of a triangle's edges, when its inside is probed; twice that where it is large */
-#define LARGE 16.0 /* expected distances */
+#define SMALL 4.0  /* expected distances: in smaller triangles the middle is probed */
+#define LARGE 16.0 /* likewise: in larger ones, twelve points inside; else the middles of the edges */
 
 /* The same for every order of the corners. Never 0. */
 static uint64_t triangle_hash(const uint32_t v[3])
@@ -139,19 +139,23 @@ static double longest_edge(const struct trimesh *mesh, const uint32_t v[3])
                   max_of(vec_distance(mesh->points[v[1]], mesh->points[v[2]]), vec_distance(mesh->points[v[2]], mesh->points[v[0]])));
 }
 
-static double probe_inside(const struct probing *probing, const uint32_t v[3], int cuts)
+static double probe(const struct probing *probing, const uint32_t v[3], const double w[3])
 {
     const double(*points)[3] = (const double(*)[3])probing->from->mesh.points;
+    double point[3];
+    for (int axis = 0; axis < 3; axis++)
+        point[axis] = w[0] * points[v[0]][axis] + w[1] * points[v[1]][axis] + w[2] * points[v[2]][axis];
+    return distance_to(probing->to->bvh, point, probing->expected_m);
+}
+
+static double probe_inside(const struct probing *probing, const uint32_t v[3], int cuts)
+{
     double most_m = 0;
     for (int i = 0; i <= cuts; i++)
         for (int j = 0; i + j <= cuts; j++) {
             const double w[3] = { (double)i / cuts, (double)j / cuts, (double)(cuts - i - j) / cuts };
-            double point[3];
-            if (i == cuts || j == cuts || i + j == 0)
-                continue;
-            for (int axis = 0; axis < 3; axis++)
-                point[axis] = w[0] * points[v[0]][axis] + w[1] * points[v[1]][axis] + w[2] * points[v[2]][axis];
-            most_m = max_of(most_m, distance_to(probing->to->bvh, point, probing->expected_m));
+            if (i != cuts && j != cuts && i + j != 0)
+                most_m = max_of(most_m, probe(probing, v, w));
         }
     return most_m;
 }
@@ -165,8 +169,12 @@ static void probe_insides(void *arg, size_t begin, size_t end)
         const uint32_t *v = probing->from->mesh.tris[t];
         const uint32_t *index = probing->from->index, indices[3] = { index[v[0]], index[v[1]], index[v[2]] };
         double longest_m = longest_edge(&probing->from->mesh, v);
-        if (longest_m > probing->expected_m && !shares_triangle(probing->to, indices))
-            most_m = max_of(most_m, probe_inside(probing, v, longest_m > LARGE * probing->expected_m ? 2 * CUTS : CUTS));
+        if (longest_m <= probing->expected_m || shares_triangle(probing->to, indices))
+            continue;
+        if (longest_m < SMALL * probing->expected_m)
+            most_m = max_of(most_m, probe(probing, v, (const double[3]){ 1 / 3.0, 1 / 3.0, 1 / 3.0 }));
+        else
+            most_m = max_of(most_m, probe_inside(probing, v, longest_m > LARGE * probing->expected_m ? 4 : 2));
     }
     note(probing, most_m);
 }

@@ -7,8 +7,6 @@
 #include "base/mem.h"
 
 #define LEAST_M 1e-5 /* a sensor nearer than that has all the weight */
-#define FINEST 0.02  /* of the distance to the nearest sensor, or of R: shorter edges are left as they are */
-#define JUMP 1.3     /* times the steepest change that there can be, for what distances err */
 
 static double factor_of(double x)
 {
@@ -75,16 +73,19 @@ static double raised(double base, double power)
     return power == 1 ? base : power == 2 ? base * base : pow(base, power);
 }
 
-static void shepard(const struct straight *straight, const struct straight_group *group, const double *distance_m, float *shares)
+/* Returns the most that a value changes over a metre. */
+static double shepard(const struct straight *straight, const struct straight_group *group, const double *distance_m, float *shares)
 {
-    double sum = 0;
+    double sum = 0, slope = 0;
     for (size_t i = 0; i < group->count; i++)
         if (isfinite(distance_m[i]))
             sum += straight->strength[group->columns[i]] / raised(fmax(distance_m[i], LEAST_M), group->power);
     for (size_t i = 0; i < group->count; i++) {
         double weight = straight->strength[group->columns[i]] / raised(fmax(distance_m[i], LEAST_M), group->power);
         shares[i] = sum > 0 && isfinite(distance_m[i]) ? (float)(weight / sum) : 0;
+        slope += isfinite(distance_m[i]) ? (double)(shares[i] * (1 - shares[i])) / fmax(distance_m[i], LEAST_M) : 0;
     }
+    return group->power * slope;
 }
 
 static void paper(const struct straight *straight, const struct straight_group *group, double radius_m, const double *distance_m,
@@ -110,14 +111,9 @@ static double euclidean(const float a[3], const float b[3])
     return sqrt(x * x + y * y + z * z);
 }
 
-size_t straight_sample_count(const struct straight *straight)
-{
-    return straight->share_count + 2 * straight->group_count;
-}
-
 void straight_shares(const struct straight *straight, const float point_m[3], const float *geodesic_m, float *shares)
 {
-    float *near_m = shares + straight->share_count;
+    float *slope = shares + straight->share_count;
     double few[64], *distance_m = straight->sensor_count <= 64 ? few : mem_array(straight->sensor_count, sizeof(*distance_m));
     for (int mode = 0; mode < 2; mode++)
         for (size_t g = 0; g < straight->group_count; g++) {
@@ -126,53 +122,49 @@ void straight_shares(const struct straight *straight, const float point_m[3], co
                 uint32_t column = group->columns[i];
                 distance_m[i] = mode == DISTANCE_GEODESIC ? (double)geodesic_m[column] : euclidean(point_m, straight->places_m[column]);
             }
-            *near_m = INFINITY;
-            for (size_t i = 0; i < group->count; i++)
-                *near_m = fminf(*near_m, (float)distance_m[i]);
-            near_m++;
-            shepard(straight, group, distance_m, shares);
+            *slope++ = (float)shepard(straight, group, distance_m, shares);
             paper(straight, group, group->radius_m[mode], distance_m, shares + group->count);
+            *slope++ = (float)(group->steepness / group->radius_m[mode]);
             shares += 2 * group->count;
         }
     if (distance_m != few)
         mem_free(distance_m);
 }
 
-/* The largest of the errors that count, group by group. Differences of shares, then what is near. */
-static double worst_of(const struct straight *straight, const float *differences, double length_m)
+/* The largest of the errors, group by group. Where a group has no value at a corner, because no way leads there, there is no error. */
+static double worst_of(const struct straight *straight, const float *const corners[3], const float weights[3], const float *sample,
+                       double slack_m)
 {
-    const float *near_m = differences + straight->share_count;
+    const float *a = corners[0], *b = corners[1], *c = corners[2];
     double most = 0;
-    for (int mode = 0; mode < 2; mode++)
-        for (size_t g = 0; g < straight->group_count; g++, near_m++)
-            for (int kind = 0; kind < 2; kind++) {
-                const struct straight_group *group = &straight->groups[g];
-                double above = 0, below = 0, scale_m = kind == INTERPOLATION_PAPER ? group->radius_m[mode] : (double)*near_m;
-                double bound = (kind == INTERPOLATION_PAPER ? group->steepness : group->power) * length_m / (2 * scale_m);
-                for (size_t i = 0; i < group->count; i++, differences++) {
-                    above += *differences > 0 ? (double)*differences : 0;
-                    below -= *differences < 0 ? (double)*differences : 0;
-                }
-                double error = fmax(above, below);
-                if (error > most && error <= JUMP * bound && length_m > FINEST * scale_m)
-                    most = error;
-            }
+    bool reached = true;
+    for (size_t g = 0, i = 0; g < 4 * straight->group_count; g++) {
+        float above = 0, below = 0, sums[4] = { 0 };
+        for (size_t end = i + straight->groups[g / 2 % straight->group_count].count; i < end; i++) {
+            float difference = sample[i] - (weights[0] * a[i] + weights[1] * b[i] + weights[2] * c[i]);
+            above += difference > 0 ? difference : 0;
+            below -= difference < 0 ? difference : 0;
+            sums[0] += sample[i];
+            sums[1] += a[i];
+            sums[2] += b[i];
+            sums[3] += c[i];
+        }
+        if (g % 2 == INTERPOLATION_SHEPARD)
+            reached = sums[0] > 0 && sums[1] > 0 && sums[2] > 0 && sums[3] > 0;
+        if (reached)
+            most = fmax(most, (double)fmaxf(above, below) - slack_m * (double)sample[straight->share_count + g]);
+    }
     return most;
 }
 
-double straight_error(const struct straight *straight, const float *a, const float *b, double t, double length_m, float *between)
+double straight_error(const struct straight *straight, const float *a, const float *b, double t, const float *between, double slack_m)
 {
-    float u = (float)t;
-    for (size_t i = 0; i < straight->share_count; i++)
-        between[i] -= a[i] + u * (b[i] - a[i]);
-    return worst_of(straight, between, length_m);
+    return worst_of(straight, (const float *const[3]){ a, b, b }, (const float[3]){ 1 - (float)t, (float)t, 0 }, between, slack_m);
 }
 
-double straight_error_inside(const struct straight *straight, const float *const corners[3], double length_m, float *inside)
+double straight_error_inside(const struct straight *straight, const float *const corners[3], const float *inside, double slack_m)
 {
-    for (size_t i = 0; i < straight->share_count; i++)
-        inside[i] -= (corners[0][i] + corners[1][i] + corners[2][i]) / 3;
-    return worst_of(straight, inside, length_m);
+    return worst_of(straight, corners, (const float[3]){ 1 / 3.0f, 1 / 3.0f, 1 / 3.0f }, inside, slack_m);
 }
 
 double straight_nearest(const struct straight *straight, const float point_m[3])
@@ -183,11 +175,7 @@ double straight_nearest(const struct straight *straight, const float point_m[3])
     return nearest_m;
 }
 
-double straight_finest(const struct straight *straight, double nearest_m)
+size_t straight_sample_count(const struct straight *straight)
 {
-    double least_m = nearest_m;
-    for (size_t g = 0; g < straight->group_count; g++)
-        for (int mode = 0; mode < 2; mode++)
-            least_m = fmin(least_m, straight->groups[g].radius_m[mode]);
-    return FINEST * least_m;
+    return straight->share_count + 4 * straight->group_count;
 }

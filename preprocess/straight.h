@@ -6,20 +6,17 @@
    is looked for over every group with sensors on the asset, in both interpolations and on both distances, with the parameters that the
    plant file gives.
 
-   Some errors no cutting mends, and they do not count. A distance along a surface grows by no more than the way gone, which bounds
-   the error on an edge of length h at distance D from the nearest sensor: power h / 2 D for shepard, (2 strength + decay) h / 2 R for
-   paper. What is more is a jump: the two ends do not hang together. Below a fiftieth of D (of R) only kinks and the
-   inexactness of distances are left. A sensor's limited reach is left aside: it makes a jump too. */
+   A sensor's limited reach is left aside: it makes a jump, which no cutting mends. */
 #ifndef PREPROCESS_STRAIGHT_H
 #define PREPROCESS_STRAIGHT_H
 #include "plant/plant.h"
 #include "plant/sensors.h"
 
 struct straight_group {
+    double steepness;  /* paper: the most that a value changes over R */
     uint32_t *columns; /* of the asset's sensors */
     size_t count;
     double power, radius_m[2]; /* paper's R, by distance_mode */
-    double steepness;          /* paper: most change of a value over R */
 };
 
 struct straight {
@@ -36,17 +33,15 @@ void straight_finish(struct straight *straight);
 /* largest_m[mode][column]: of each sensor over all vertices. */
 void straight_set_radius(struct straight *straight, const float *const largest_m[2]);
 
-/* The sensors' shares at a point: share_count numbers, then near_count: metres to the nearest sensor, by mode and group. geodesic_m: by
-   column; INFINITY: not reached. */
-void straight_shares(const struct straight *straight, const float point_m[3], const float *geodesic_m, float *shares);
+/* The sensors' shares at a point: share_count numbers, for geodesic distances and then for straight ones: group by group, shepard's and
+   then paper's. Then, in that order, the most that a value may change there over a metre. geodesic_m: by column; INFINITY: not reached. */
 size_t straight_sample_count(const struct straight *straight); /* numbers that straight_shares makes */
-/* In parts of the range, at share t of the way from a to b, which are length_m apart. `between` is used up. */
-double straight_error(const struct straight *straight, const float *a, const float *b, double t, double length_m, float *between);
-/* The same at the middle of a triangle whose longest edge is length_m. */
-double straight_error_inside(const struct straight *straight, const float *const corners[3], double length_m, float *inside);
+void straight_shares(const struct straight *straight, const float point_m[3], const float *geodesic_m, float *shares);
+/* In parts of the range: samples at a point against a line between two others, at share t of the way; against the mean of three corners.
+   Less what a value may change over slack_m. */
+double straight_error(const struct straight *straight, const float *a, const float *b, double t, const float *between, double slack_m);
+double straight_error_inside(const struct straight *straight, const float *const corners[3], const float *inside, double slack_m);
 /* Metres from the point to the nearest sensor, as the crow flies. */
 double straight_nearest(const struct straight *straight, const float point_m[3]);
-/* Edges up to this length have no error that counts, at that distance from the nearest sensor. */
-double straight_finest(const struct straight *straight, double nearest_m);
 
 #endif

@@ -209,6 +209,18 @@ static size_t sort_hidden(struct trimesh *mesh, char *hidden)
     return front;
 }
 
+/* Where edges cross just at an edge, each of its faces got a point of its own: a crack that distances would have to go round. */
+static void merge_twins(struct surface *surface)
+{
+    uint32_t *target = mem_array(surface->mesh.point_count, sizeof(*target));
+    size_t degenerate = 0, repeated = 0;
+    if (trimesh_find_twins(&surface->mesh, surface->size_m * WELD_OF_SIZE, target)) {
+        trimesh_rename(&surface->mesh, target, &degenerate, &repeated);
+        follow(surface, target);
+    }
+    mem_free(target);
+}
+
 static void join_parts(struct surface *surface, const struct parts *parts)
 {
     struct stitch_report made = { 0 };
@@ -218,6 +230,7 @@ static void join_parts(struct surface *surface, const struct parts *parts)
     note_bridges(surface, &made);
     mem_free(part);
     mem_free(target);
+    merge_twins(surface);
     char *hidden = mem_array(surface->mesh.tri_count, 1);
     part = parts_now(parts, &surface->mesh);
     hidden_find(&surface->mesh, part, &parts->solid, parts->of_tri, parts->count, parts->closed, surface->report.tolerance_m,
@@ -268,6 +281,20 @@ static void find_strays(struct surface *surface)
     mem_free(used);
 }
 
+/* The pieces of each of the model's triangles that are seen. */
+static void list_pieces(struct surface *surface)
+{
+    const struct trimesh *mesh = &surface->visible;
+    surface->piece_first = mem_array(surface->report.triangles + 2, sizeof(*surface->piece_first));
+    surface->pieces = mem_array(mesh->tri_count, sizeof(*surface->pieces));
+    for (size_t t = 0; t < mesh->tri_count; t++)
+        surface->piece_first[mesh->tri_source[t] + 2]++;
+    for (size_t s = 2; s < surface->report.triangles + 2; s++)
+        surface->piece_first[s] += surface->piece_first[s - 1];
+    for (uint32_t t = 0; t < mesh->tri_count; t++)
+        surface->pieces[surface->piece_first[mesh->tri_source[t] + 1]++] = t;
+}
+
 static double mean_edge(const struct intrinsic *in)
 {
     double sum = 0;
@@ -287,6 +314,7 @@ struct surface *surface_create(struct log *log, struct workers *workers, const f
     surface->log = log;
     surface->workers = workers;
     surface->vertex_count = vertex_count;
+    surface->size_m = size_m;
     report->tolerance_m = params->tolerance_m > 0 ? params->tolerance_m : size_m * TOLERANCE_OF_SIZE;
     report->spacing_m = params->spacing_m;
     if (!weld(surface, positions_m, triangles, triangle_count, size_m))
@@ -307,6 +335,7 @@ struct surface *surface_create(struct log *log, struct workers *workers, const f
     surface->bvh = bvh_create(&surface->visible);
     intrinsic_init(&surface->intrinsic, &surface->visible);
     unfold_init(&surface->unfold, &surface->mesh, surface->visible.tri_count, &surface->intrinsic);
+    list_pieces(surface);
     find_strays(surface);
     surface->edge_m = mean_edge(&surface->intrinsic);
     report->laplacian_s = seconds_since(&since_ns);
@@ -328,6 +357,8 @@ void surface_destroy(struct surface **surface_ptr)
     mem_free(surface->vertex_point);
     mem_free(surface->component);
     mem_free(surface->strays);
+    mem_free(surface->piece_first);
+    mem_free(surface->pieces);
     mem_free(surface->bridges);
     mem_free(surface);
     *surface_ptr = NULL;

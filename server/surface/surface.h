@@ -80,10 +80,16 @@ void surface_nearest(const struct surface *surface, const double point_m[3], str
 /* The spot nearest to a point; off the surface, one whose triangle faces along `normal` if there is one about as near (NULL: any), so that
    a thin wall's other side is not taken. */
 struct surface_spot {
-    uint32_t tri; /* of the sampled surface */
+    uint32_t tri;                              /* of the sampled surface */
     double weights[3], point_m[3], distance_m; /* weights: of tri's corners; distance_m: from the point asked for */
 };
 void surface_find_spot(const struct surface *surface, const double point_m[3], const double normal[3], struct surface_spot *spot);
+/* The same within limit_m, on pieces of two triangles of the model (which may be one); on pieces of those for which allowed(arg, triangle)
+   holds. False: none is near and seen. */
+bool surface_find_spot_on(const struct surface *surface, const double point_m[3], double limit_m, const uint32_t triangles[2],
+                          struct surface_spot *spot);
+bool surface_find_spot_among(const struct surface *surface, const double point_m[3], double limit_m,
+                             bool (*allowed)(const void *arg, uint32_t triangle), const void *arg, struct surface_spot *spot);
 
 /* Metres along the surface from each point (dropped onto the surface first) to every vertex of the model:
    out[point * vertex_count + vertex]. INFINITY where no way leads. Points are spread over all workers.

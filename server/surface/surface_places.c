@@ -6,6 +6,7 @@
 #include "surface/vec.h"
 
 #define SPOT_ON_SURFACE 1e-3 /* mean edges: nearer than that, a point lies on its triangle */
+#define FEW_PIECES 24        /* of a triangle of the model are tried one by one */
 #define SPOT_PATIENCE 4.0    /* how much farther than the nearest a triangle may be that faces the right way */
 
 void surface_nearest(const struct surface *surface, const double point_m[3], struct surface_place *place)
@@ -51,4 +52,68 @@ void surface_find_spot(const struct surface *surface, const double point_m[3], c
     spot->distance_m = at->distance_m;
     memcpy(spot->point_m, at->point, sizeof(spot->point_m));
     memcpy(spot->weights, at->weights, sizeof(spot->weights));
+}
+
+struct among {
+    const uint32_t *source;
+    bool (*allowed)(const void *arg, uint32_t triangle);
+    const void *arg;
+};
+
+static bool is_among(const void *arg, uint32_t tri)
+{
+    const struct among *among = arg;
+    return among->allowed(among->arg, among->source[tri]);
+}
+
+bool surface_find_spot_among(const struct surface *surface, const double point_m[3], double limit_m,
+                             bool (*allowed)(const void *arg, uint32_t triangle), const void *arg, struct surface_spot *spot)
+{
+    const struct among among = { surface->visible.tri_source, allowed, arg };
+    struct bvh_place at;
+    bvh_nearest(surface->bvh, point_m, limit_m, is_among, &among, &at);
+    if (at.tri == TRIMESH_NONE)
+        return false;
+    *spot = (struct surface_spot){ .tri = at.tri, .distance_m = at.distance_m };
+    memcpy(spot->point_m, at.point, sizeof(spot->point_m));
+    memcpy(spot->weights, at.weights, sizeof(spot->weights));
+    return true;
+}
+
+static bool is_one_of(const void *arg, uint32_t triangle)
+{
+    const uint32_t *triangles = arg;
+    return triangle == triangles[0] || triangle == triangles[1];
+}
+
+static void try_piece(const struct surface *surface, const double point_m[3], uint32_t tri, struct surface_spot *spot)
+{
+    const uint32_t *v = surface->visible.tris[tri];
+    const double(*points)[3] = (const double(*)[3])surface->visible.points;
+    double w[3], at[3];
+    triangle_nearest(point_m, points[v[0]], points[v[1]], points[v[2]], w);
+    for (int axis = 0; axis < 3; axis++)
+        at[axis] = w[0] * points[v[0]][axis] + w[1] * points[v[1]][axis] + w[2] * points[v[2]][axis];
+    double distance_m = vec_distance(at, point_m);
+    if (distance_m > spot->distance_m)
+        return;
+    *spot = (struct surface_spot){ .tri = tri, .distance_m = distance_m };
+    memcpy(spot->point_m, at, sizeof(at));
+    memcpy(spot->weights, w, sizeof(w));
+}
+
+bool surface_find_spot_on(const struct surface *surface, const double point_m[3], double limit_m, const uint32_t triangles[2],
+                          struct surface_spot *spot)
+{
+    const uint32_t *first = surface->piece_first;
+    size_t count = triangles[0] == triangles[1] ? 1 : 2, pieces = 0;
+    *spot = (struct surface_spot){ .tri = TRIMESH_NONE, .distance_m = limit_m };
+    for (size_t i = 0; i < count; i++)
+        pieces += first[triangles[i] + 1] - first[triangles[i]];
+    if (pieces > FEW_PIECES)
+        return surface_find_spot_among(surface, point_m, limit_m, is_one_of, triangles, spot);
+    for (size_t i = 0; i < count; i++)
+        for (uint32_t p = first[triangles[i]]; p < first[triangles[i] + 1]; p++)
+            try_piece(surface, point_m, surface->pieces[p], spot);
+    return spot->tri != TRIMESH_NONE;
 }

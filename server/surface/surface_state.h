@@ -25,7 +25,8 @@ struct surface {
     struct intrinsic intrinsic;
     struct unfold unfold;
     struct bvh *bvh;
-    double edge_m; /* mean edge length */
+    uint32_t *piece_first, *pieces; /* visible triangles by the model's triangle that they are a piece of */
+    double size_m, edge_m;          /* edge_m: mean edge length */
     struct surface_report report;
     struct stitch_bridge *bridges;
     size_t bridge_count, bridge_capacity;

@@ -149,16 +149,28 @@ static void grid_add(struct grid *grid, const double p[3], uint32_t point)
     grid->heads[slot] = point;
 }
 
+static bool grid_init(struct grid *grid, size_t count, double within_m)
+{
+    *grid = (struct grid){ .cell_m = within_m > 0 ? 2 * within_m : 1e-30, .mask = 15 };
+    while (grid->mask < count)
+        grid->mask = grid->mask * 2 + 1;
+    grid->heads = mem_try_array(grid->mask + 1, sizeof(*grid->heads));
+    grid->next = mem_try_array(count, sizeof(*grid->next));
+    if (grid->heads && grid->next)
+        memset(grid->heads, 0xff, (grid->mask + 1) * sizeof(*grid->heads));
+    return grid->heads && grid->next;
+}
+
+static void grid_finish(struct grid *grid)
+{
+    mem_free(grid->heads);
+    mem_free(grid->next);
+}
+
 static bool weld_points(struct trimesh *mesh, const float (*positions)[3], size_t vertex_count, double weld_m, uint32_t *vertex_point)
 {
-    struct grid grid = { .cell_m = weld_m > 0 ? 2 * weld_m : 1e-30, .mask = 15 };
-    while (grid.mask < vertex_count)
-        grid.mask = grid.mask * 2 + 1;
-    grid.heads = mem_try_array(grid.mask + 1, sizeof(*grid.heads));
-    grid.next = mem_try_array(vertex_count, sizeof(*grid.next));
-    bool good = grid.heads && grid.next;
-    if (good)
-        memset(grid.heads, 0xff, (grid.mask + 1) * sizeof(*grid.heads));
+    struct grid grid;
+    bool good = grid_init(&grid, vertex_count, weld_m);
     for (size_t v = 0; good && v < vertex_count; v++) {
         const double p[3] = { (double)positions[v][0], (double)positions[v][1], (double)positions[v][2] };
         uint32_t point = grid_find(&grid, mesh, p, weld_m);
@@ -168,8 +180,22 @@ static bool weld_points(struct trimesh *mesh, const float (*positions)[3], size_
         }
         vertex_point[v] = point;
     }
-    mem_free(grid.heads);
-    mem_free(grid.next);
+    grid_finish(&grid);
+    return good;
+}
+
+bool trimesh_find_twins(const struct trimesh *mesh, double within_m, uint32_t *target)
+{
+    struct grid grid;
+    bool good = grid_init(&grid, mesh->point_count, within_m);
+    for (uint32_t i = 0; good && i < mesh->point_count; i++) {
+        target[i] = grid_find(&grid, mesh, mesh->points[i], within_m);
+        if (target[i] == TRIMESH_NONE) {
+            target[i] = i;
+            grid_add(&grid, mesh->points[i], i);
+        }
+    }
+    grid_finish(&grid);
     return good;
 }
 

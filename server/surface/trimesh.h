@@ -24,6 +24,8 @@ void trimesh_finish(struct trimesh *mesh);
 uint32_t trimesh_add_point(struct trimesh *mesh, const double point[3]);
 void trimesh_add_tri(struct trimesh *mesh, uint32_t a, uint32_t b, uint32_t c, uint32_t source);
 
+/* target[point]: the first point that lies within that distance of it, or itself. False: out of memory. */
+bool trimesh_find_twins(const struct trimesh *mesh, double within_m, uint32_t *target);
 /* Renames points (point[i] becomes target[i]) and drops triangles that lost their area or became repeated. */
 void trimesh_rename(struct trimesh *mesh, const uint32_t *target, size_t *degenerate, size_t *repeated);
 

@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the files of the splitting share. */
+#ifndef PREPROCESS_SPLIT_IMPL_H
+#define PREPROCESS_SPLIT_IMPL_H
+#include "preprocess/cutmesh.h"
+#include "preprocess/split.h"
+
+struct split {
+    const struct split_input *in;
+    struct cutmesh mesh;
+    const uint32_t *model;      /* the finest level's triangles before any is cut: the model's */
+    size_t sensors, samples;    /* samples: of each place */
+    float *geodesic_m, *shares; /* [place][sensor], [place][share] */
+    size_t geodesic_capacity, share_capacity;
+    uint32_t *part; /* of each place: what hangs together by edges */
+    size_t part_capacity;
+    double size_m;
+    /* of the level in hand: */
+    bool finest;
+    double on_surface_m; /* what is farther from the surface is hidden inside another part */
+    double shortest_m, slack_m;
+    size_t most_tris, first_count; /* first_count: before sensors were placed */
+};
+
+void split_mix(const float a[3], const float b[3], double t, float out[3]);
+double split_length(const float a[3], const float b[3]);
+const float *split_position(const struct split *split, uint32_t vertex);
+
+/* --- measuring (split_measure.c) --- */
+
+struct split_finding { /* about one edge or one triangle */
+    uint32_t number;
+    float error, share; /* share: where the edge is best cut */
+};
+
+bool split_find_parts(struct split *split); /* false: out of memory */
+void split_add_place(struct split *split, uint32_t place, uint32_t part);
+/* Shares at places from `first` on; before that, with `edges`, the distances there too: at which edge each lies. */
+void split_measure_places(struct split *split, uint32_t first, const uint32_t *edges, size_t count);
+/* Of edges. Errors below `enough` need not be exact, and tell no share. */
+void split_measure_edges(struct split *split, struct split_finding *findings, size_t count, double enough);
+/* Of triangles, at their middles. */
+void split_measure_insides(struct split *split, struct split_finding *findings, size_t count);
+
+/* --- sensors (split_sensors.c) --- */
+
+/* A vertex where each sensor stands. */
+void split_place_sensors(struct split *split, double error_m);
+
+#endif

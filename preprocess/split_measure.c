@@ -1,0 +1,358 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the field is between the vertices, how far that is from straight, and where an edge is best cut. */
+#include <math.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "preprocess/split_impl.h"
+#include "surface/vec.h"
+
+#define PROBABLE 0.4 /* of an error that would matter: if an edge errs by less at its middle, it does so everywhere */
+#define CLOSE 0.5    /* of the way to the nearest sensor: only of shorter edges that is true */
+#define WIDE 0.3     /* likewise: longer edges are cut in the middle, so that cuts of neighbours lie side by side */
+#define POINTS 16    /* of an edge that are looked at, at most */
+#define STEPS 2      /* in which the best place for a cut is narrowed down */
+#define JUMP 1.5     /* times the way gone: a distance cannot grow by more, unless the surface does not hang together there */
+#define JUMP_WIDTH 8 /* shortest pieces: an edge where a distance jumps is not cut any shorter */
+
+void split_mix(const float a[3], const float b[3], double t, float out[3])
+{
+    for (int i = 0; i < 3; i++)
+        out[i] = (float)((double)a[i] + t * ((double)b[i] - (double)a[i]));
+}
+
+double split_length(const float a[3], const float b[3])
+{
+    double x = (double)b[0] - (double)a[0], y = (double)b[1] - (double)a[1], z = (double)b[2] - (double)a[2];
+    return sqrt(x * x + y * y + z * z);
+}
+
+const float *split_position(const struct split *split, uint32_t vertex)
+{
+    return split->mesh.geometry->positions_m[vertex];
+}
+
+static uint32_t place_of(const struct split *split, uint32_t vertex)
+{
+    return split->mesh.places.of_vertex[vertex];
+}
+
+/* --- which piece of the surface a point belongs to -------------------------------------------------------------------------- */
+
+bool split_find_parts(struct split *split)
+{
+    const struct geometry *g = split->mesh.geometry;
+    size_t count = split->mesh.places.count;
+    split->part = mem_try_array(count, sizeof(*split->part));
+    split->part_capacity = count;
+    if (!split->part)
+        return false;
+    for (uint32_t p = 0; p < count; p++)
+        split->part[p] = p;
+    for (uint32_t i = 0; i < g->index_count; i += 3)
+        for (uint32_t c = 1; c < 3; c++)
+            trimesh_join(split->part, place_of(split, split->model[i]), place_of(split, split->model[i + c]));
+    for (uint32_t p = 0; p < count; p++)
+        split->part[p] = trimesh_root(split->part, p);
+    return true;
+}
+
+struct sight { /* which triangles of the model a point may lie on */
+    const struct split *split;
+    uint32_t origin[2]; /* in the finest level, these */
+    uint32_t part;      /* in a coarser one, those of that part which look the same way */
+    double normal[3];
+};
+
+static bool is_in_sight(const void *arg, uint32_t triangle)
+{
+    const struct sight *sight = arg;
+    const struct split *split = sight->split;
+    const uint32_t *v = split->model + 3 * (size_t)triangle;
+    if (split->part[place_of(split, v[0])] != sight->part)
+        return false;
+    const float *a = split_position(split, v[0]), *b = split_position(split, v[1]), *c = split_position(split, v[2]);
+    double ab[3], ac[3], n[3];
+    for (int i = 0; i < 3; i++) {
+        ab[i] = (double)b[i] - (double)a[i];
+        ac[i] = (double)c[i] - (double)a[i];
+    }
+    vec_cross(ab, ac, n);
+    return vec_dot(n, sight->normal) > 0;
+}
+
+static struct sight sight_of_edge(const struct split *split, const struct cut_edge *edge)
+{
+    struct sight sight = {
+        split, { edge->origin[0], edge->origin[edge->origin[1] != TRIMESH_NONE] }, split->part[place_of(split, edge->a)], { 0 }
+    };
+    cutmesh_normal(&split->mesh, edge, sight.normal);
+    return sight;
+}
+
+static struct sight sight_of_tri(const struct split *split, const struct cut_tri *tri)
+{
+    struct sight sight = { split, { tri->origin, tri->origin }, split->part[place_of(split, tri->v[0])], { 0 } };
+    for (int c = 0; c < 3; c++)
+        for (int i = 0; i < 3; i++)
+            sight.normal[i] += (double)split->mesh.geometry->normals[tri->v[c]][i];
+    return sight;
+}
+
+/* Distances along the surface. False: the point is hidden inside another part, and nobody sees an error. */
+static bool measure(const struct sight *sight, const double at[3], float *geodesic_m)
+{
+    const struct split *split = sight->split;
+    struct surface_spot spot;
+    bool seen = split->finest ? surface_find_spot_on(split->in->surface, at, split->on_surface_m, sight->origin, &spot)
+                              : surface_find_spot_among(split->in->surface, at, split->on_surface_m, is_in_sight, sight, &spot);
+    if (seen)
+        surface_field_at_spot(split->in->field, split->in->surface, &spot, geodesic_m);
+    return seen;
+}
+
+/* The same; at a hidden point, those of the nearest one that is seen. */
+static void measure_always(const struct sight *sight, const double at[3], float *geodesic_m)
+{
+    struct surface_spot spot;
+    if (measure(sight, at, geodesic_m))
+        return;
+    surface_find_spot(sight->split->in->surface, at, sight->normal, &spot);
+    surface_field_at_spot(sight->split->in->field, sight->split->in->surface, &spot, geodesic_m);
+}
+
+static void to_doubles(const float point[3], double at[3])
+{
+    for (int i = 0; i < 3; i++)
+        at[i] = (double)point[i];
+}
+
+/* --- edges ------------------------------------------------------------------------------------------------------------------ */
+
+struct line { /* points along an edge, from one end to the other */
+    const struct split *split;
+    const float *a, *b; /* positions of the ends */
+    struct sight sight;
+    double t[POINTS];
+    const float *shares[POINTS], *geodesic_m[POINTS];
+    int count;
+    float *room; /* for as many points more */
+};
+
+/* A point more, if it is seen; its error against a line between the ends. */
+static double add_point(struct line *line, double t)
+{
+    const struct straight *straight = line->split->in->straight;
+    float *geodesic_m = line->room, *shares = geodesic_m + line->split->sensors, point[3];
+    int i = line->count;
+    double at[3];
+    split_mix(line->a, line->b, t, point);
+    to_doubles(point, at);
+    if (line->count == POINTS || !measure(&line->sight, at, geodesic_m))
+        return 0;
+    straight_shares(straight, point, geodesic_m, shares);
+    for (; line->t[i - 1] > t; i--) {
+        line->t[i] = line->t[i - 1];
+        line->shares[i] = line->shares[i - 1];
+        line->geodesic_m[i] = line->geodesic_m[i - 1];
+    }
+    line->t[i] = t;
+    line->shares[i] = shares;
+    line->geodesic_m[i] = geodesic_m;
+    line->count++;
+    line->room = shares + line->split->samples;
+    return straight_error(straight, line->shares[0], line->shares[line->count - 1], t, shares, line->split->slack_m);
+}
+
+static bool jumps(const struct line *line, double length_m)
+{
+    for (int i = 1; i < line->count; i++)
+        for (size_t s = 0; s < line->split->sensors; s++) {
+            double step_m = fabs((double)line->geodesic_m[i][s] - (double)line->geodesic_m[i - 1][s]);
+            if (step_m > JUMP * (line->t[i] - line->t[i - 1]) * length_m)
+                return true;
+        }
+    return false;
+}
+
+/* What is left if the edge is cut at one of its points. */
+static double left_after(const struct line *line, int cut)
+{
+    double most = 0;
+    for (int i = 1; i < line->count - 1; i++) {
+        int from = i < cut ? 0 : cut, to = i < cut ? cut : line->count - 1;
+        double t = (line->t[i] - line->t[from]) / (line->t[to] - line->t[from]);
+        if (i != cut)
+            most = fmax(most, straight_error(line->split->in->straight, line->shares[from], line->shares[to], t, line->shares[i],
+                                             line->split->slack_m));
+    }
+    return most;
+}
+
+/* Of the points looked at; the middle one where that is about as good. */
+static int best_cut(const struct line *line, double *left)
+{
+    int best = 0;
+    *left = INFINITY;
+    for (int i = 1; i < line->count - 1; i++) {
+        double error = left_after(line, i) * (1 + 0.2 * fabs(line->t[i] - 0.5));
+        if (error < *left) {
+            *left = error;
+            best = i;
+        }
+    }
+    return best;
+}
+
+/* A field bends evenly, then the middle is best; or it has a kink, where two ways round are equally long, and straight pieces beside it. */
+static void find_cut(struct line *line, double enough, struct split_finding *finding)
+{
+    double left;
+    for (int i = 1; i < 8; i += 2)
+        finding->error = fmaxf(finding->error, (float)add_point(line, i / 8.0));
+    int best = best_cut(line, &left);
+    for (double step = 1 / 16.0; step > 1 / 16.0 / (1 << STEPS) && left > enough; step /= 2) {
+        double t = line->t[best];
+        add_point(line, t - step);
+        add_point(line, t + step);
+        best = best_cut(line, &left);
+    }
+    finding->share = (float)line->t[best];
+}
+
+/* --- jobs ------------------------------------------------------------------------------------------------------------------- */
+
+struct job {
+    struct split *split;
+    struct split_finding *findings;
+    const uint32_t *edges;
+    uint32_t first;
+    double enough;
+};
+
+static float *room_for(const struct split *split, size_t points)
+{
+    return mem_array(points * (split->samples + split->sensors), sizeof(float));
+}
+
+static void try_edge(const struct job *job, struct split_finding *finding, float *room)
+{
+    const struct split *split = job->split;
+    const struct cut_edge *edge = &split->mesh.cuts[finding->number];
+    size_t shares = split->samples;
+    uint32_t a = place_of(split, edge->a), b = place_of(split, edge->b);
+    struct line line = { .split = split,
+                         .a = split_position(split, edge->a),
+                         .b = split_position(split, edge->b),
+                         .sight = sight_of_edge(split, edge),
+                         .t = { 0, 1 },
+                         .shares = { split->shares + a * shares, split->shares + b * shares },
+                         .geodesic_m = { split->geodesic_m + a * split->sensors, split->geodesic_m + b * split->sensors },
+                         .count = 2,
+                         .room = room };
+    float middle[3];
+    double length_m = split_length(line.a, line.b);
+    finding->error = 0;
+    finding->share = 0.5f;
+    if (length_m < 2 * split->shortest_m)
+        return;
+    split_mix(line.a, line.b, 0.5, middle);
+    finding->error = (float)add_point(&line, 0.5);
+    if ((double)finding->error < PROBABLE * job->enough && length_m < CLOSE * straight_nearest(split->in->straight, middle) &&
+        line.count == 3)
+        return;
+    finding->error = fmaxf(finding->error, (float)fmax(add_point(&line, 0.25), add_point(&line, 0.75)));
+    if ((double)finding->error > job->enough && length_m < WIDE * straight_nearest(split->in->straight, middle))
+        find_cut(&line, job->enough, finding);
+    if (length_m < JUMP_WIDTH * split->shortest_m && jumps(&line, length_m))
+        finding->error = 0;
+    double margin = fmin(0.5, split->shortest_m / length_m);
+    finding->share = (float)fmin(1 - margin, fmax(margin, (double)finding->share));
+}
+
+static void try_edges(void *arg, size_t begin, size_t end)
+{
+    const struct job *job = arg;
+    float *room = room_for(job->split, POINTS);
+    for (size_t i = begin; i < end; i++)
+        try_edge(job, &job->findings[i], room);
+    mem_free(room);
+}
+
+static void try_inside(const struct split *split, struct split_finding *finding, float *room)
+{
+    const struct straight *straight = split->in->straight;
+    const struct cut_tri *tri = &split->mesh.tris[finding->number];
+    struct sight sight = sight_of_tri(split, tri);
+    const float *corners[3];
+    float middle[3], *geodesic_m = room, *shares = room + split->sensors;
+    for (int c = 0; c < 3; c++) {
+        corners[c] = split->shares + place_of(split, tri->v[c]) * split->samples;
+        middle[c] = (split_position(split, tri->v[0])[c] + split_position(split, tri->v[1])[c] + split_position(split, tri->v[2])[c]) / 3;
+    }
+    double at[3];
+    to_doubles(middle, at);
+    finding->error = 0;
+    if (!measure(&sight, at, geodesic_m))
+        return;
+    straight_shares(straight, middle, geodesic_m, shares);
+    finding->error = (float)straight_error_inside(straight, corners, shares, split->slack_m);
+}
+
+static void try_insides(void *arg, size_t begin, size_t end)
+{
+    const struct job *job = arg;
+    float *room = room_for(job->split, 1);
+    for (size_t i = begin; i < end; i++)
+        try_inside(job->split, &job->findings[i], room);
+    mem_free(room);
+}
+
+static void measure_places(void *arg, size_t begin, size_t end)
+{
+    const struct job *job = arg;
+    const struct split *split = job->split;
+    for (size_t i = begin; i < end; i++) {
+        uint32_t place = job->first + (uint32_t)i;
+        const float *point = split->mesh.places.positions_m[place];
+        float *geodesic_m = split->geodesic_m + place * split->sensors;
+        if (job->edges) {
+            struct sight sight = sight_of_edge(split, &split->mesh.cuts[job->edges[i]]);
+            double at[3];
+            to_doubles(point, at);
+            measure_always(&sight, at, geodesic_m);
+        }
+        straight_shares(split->in->straight, point, geodesic_m, split->shares + place * split->samples);
+    }
+}
+
+static void for_all(struct split *split, size_t count, void (*body)(void *arg, size_t begin, size_t end), struct job *job)
+{
+    if (split->in->workers)
+        workers_for(split->in->workers, count, 256, body, job);
+    else
+        body(job, 0, count);
+}
+
+void split_measure_edges(struct split *split, struct split_finding *findings, size_t count, double enough)
+{
+    for_all(split, count, try_edges, &(struct job){ .split = split, .findings = findings, .enough = enough });
+}
+
+void split_measure_insides(struct split *split, struct split_finding *findings, size_t count)
+{
+    for_all(split, count, try_insides, &(struct job){ .split = split, .findings = findings });
+}
+
+void split_measure_places(struct split *split, uint32_t first, const uint32_t *edges, size_t count)
+{
+    for_all(split, count, measure_places, &(struct job){ .split = split, .edges = edges, .first = first });
+}
+
+void split_add_place(struct split *split, uint32_t place, uint32_t part)
+{
+    mem_grow(&split->geodesic_m, &split->geodesic_capacity, (place + 1) * split->sensors, sizeof(*split->geodesic_m));
+    mem_grow(&split->shares, &split->share_capacity, (place + 1) * split->samples, sizeof(*split->shares));
+    mem_grow(&split->part, &split->part_capacity, place + 1, sizeof(*split->part));
+    split->part[place] = part;
+}
