@@ -41,6 +41,8 @@ uint64_t build_key(uint64_t model_hash, const struct geometry_params *geometry, 
     XXH3_64bits_update(&state, geometry->nodes ? "n" : "a", 1);
     hash_text(&state, geometry->nodes);
     XXH3_64bits_update(&state, &geometry->unit_m, sizeof(geometry->unit_m));
+    if (geometry->tolerance_m > 0)
+        XXH3_64bits_update(&state, &geometry->tolerance_m, sizeof(geometry->tolerance_m));
     for (size_t i = 0; i < sensor_count; i++) {
         hash_text(&state, sensors[i].node);
         XXH3_64bits_update(&state, sensors[i].position_m, sizeof(sensors[i].position_m));

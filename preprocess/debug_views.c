@@ -84,7 +84,7 @@ static bool look_at(struct views *views, struct subject *subject, char *why)
     if (!geometry_cut(g, subject->model, &subject->params, why) || !place_sensors(subject, views->plant, views->params->sensor, why))
         return false;
     subject->surface = surface_create(views->log, views->workers, (const float(*)[3])g->positions_m, g->vertex_count, g->indices,
-                                      g->index_count / 3, &(struct surface_params){ 0 });
+                                      g->index_count / 3, &(struct surface_params){ .tolerance_m = subject->params.tolerance_m });
     if (!subject->surface)
         return wrong(why, "its surface cannot be made");
     return subject->sensor_count == 0 || find_distances(subject, why);

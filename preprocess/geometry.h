@@ -28,6 +28,7 @@ struct geometry_params {
     const char *nodes; /* pattern (fnmatch); NULL: all */
     double unit_m;
     enum axis up;
+    double tolerance_m; /* not for cutting: gaps up to this are closed when distances are found; 0: chosen from the model */
 };
 
 /* False: why says what is wrong; nothing to finish. */

@@ -75,7 +75,7 @@ bool measure_sensors(struct measured *measured, struct log *log, struct workers 
     if (!place_sensors(input, g, measured->places_m, &output->missing_node, why))
         return false;
     measured->surface = surface_create(log, workers, (const float(*)[3])g->positions_m, g->vertex_count, g->indices, g->index_count / 3,
-                                       &(struct surface_params){ 0 });
+                                       &(struct surface_params){ .tolerance_m = input->geometry.tolerance_m });
     int64_t made_ns = clock_mono_ns();
     if (!measured->surface ||
         !surface_field_init(&measured->field, measured->surface, (const double(*)[3])measured->places_m, input->sensor_count))

@@ -39,7 +39,7 @@ struct run {
 
 struct geometry_params prepare_geometry(const struct plant_asset *asset)
 {
-    return (struct geometry_params){ .nodes = asset->nodes, .unit_m = asset->unit_m, .up = asset->up };
+    return (struct geometry_params){ .nodes = asset->nodes, .unit_m = asset->unit_m, .up = asset->up, .tolerance_m = asset->tolerance_m };
 }
 
 double prepare_far_m(double diagonal_m)

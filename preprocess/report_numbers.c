@@ -58,6 +58,7 @@ static const struct number second_numbers[] = {
     OF_BUILD("sample", surface.sample_s, METRES),
     OF_BUILD("laplacian", surface.laplacian_s, METRES),
     OF_BUILD("factor", surface.factor_s, METRES),
+    OF_BUILD("check", surface.check_s, METRES),
     OF_BUILD("solve", solve_s, METRES),
     OF_BUILD("levels", levels_s, METRES),
     OF_BUILD("split", split_s, METRES),

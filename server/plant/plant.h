@@ -34,6 +34,7 @@ struct plant_asset {
     char *nodes;                  /* glob (fnmatch) on node names; a node that matches brings its whole sub-tree. NULL: the whole model */
     double unit_m;                /* metres per model unit, placement's scale taken in */
     enum axis up;                 /* of the model */
+    double tolerance_m;           /* gaps up to this are closed when distances are found; 0: chosen from the model */
     double placement[16];         /* plant from asset frame (Z up), column-major; turns and moves only: both are in the same metres */
     bool sensors_in_asset_frame;  /* X, Y, Z of its tags; else plant frame */
     int line;

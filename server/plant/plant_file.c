@@ -169,6 +169,7 @@ static void read_asset(struct yaml_reader *reader, yaml_node_t *node, struct pla
         { "units", KEY_FACTOR, false, offsetof(struct asset_record, asset.unit_m), 0, 0, unit_choices, NULL },
         { "up", KEY_CHOICE, false, offsetof(struct asset_record, asset.up), 0, 0, up_choices, NULL },
         { "placement", KEY_CUSTOM, false, 0, 0, 0, NULL, read_placement },
+        { "tolerance_m", KEY_NUMBER, false, offsetof(struct asset_record, asset.tolerance_m), 1e-6, 1000, NULL, NULL },
         { "sensor_frame", KEY_FLAG, false, offsetof(struct asset_record, asset.sensors_in_asset_frame), 0, 0, frame_choices, NULL },
         { 0 }
     };

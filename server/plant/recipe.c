@@ -34,13 +34,14 @@ uint64_t plant_recipe(const struct plant_asset *asset, uint64_t model_hash)
 {
     struct { /* without holes */
         uint64_t model, nodes, whole_model, up;
-        double unit_m;
+        double unit_m, tolerance_m;
     } recipe = {
         .model = model_hash,
         .nodes = asset->nodes ? XXH3_64bits(asset->nodes, strlen(asset->nodes)) : 0,
         .whole_model = !asset->nodes,
         .up = (uint64_t)asset->up,
         .unit_m = asset->unit_m,
+        .tolerance_m = asset->tolerance_m,
     };
     return XXH3_64bits(&recipe, sizeof(recipe));
 }

@@ -10,7 +10,7 @@
 
 /* Of the model's own file; what a .gltf names besides is not looked at. False: it cannot be read, errno says why. */
 bool plant_model_hash(const char *path, uint64_t *out);
-/* Of the model, the nodes, the units and the up axis. */
+/* Of the model, the nodes, the units, the up axis and the tolerance. */
 uint64_t plant_recipe(const struct plant_asset *asset, uint64_t model_hash);
 
 #endif

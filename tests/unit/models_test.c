@@ -1,0 +1,163 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The report on real models (shared/data/models), held against what is known of them and against itself. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "tests/support/prep_case.h"
+
+/* Triangles that the model's own description counts, and those without area among them; -1: not stated for this part. */
+static const struct known {
+    const char *plant, *asset;
+    int triangles, without_area;
+} known[] = {
+    { "industrial_tanker", "TANKER", 3720, 0 }, { "offshore_platform_overview", "PLATFORM", 13708, 0 },
+    { "plm_plant_5parts", "ART", 50177, -1 },   { "plm_plant_5parts", "DUCT", 1502, -1 },
+    { "plm_plant_5parts", "TRAYS", 9160, -1 },  { "plm_plant_5parts", "STEEL", 632, -1 },
+    { "plm_plant_5parts", "WALLS", 2408, -1 },  { "plm_plant_hierarchy", "V-1105", 7495, -1 },
+    { "huldra_wd1_psup", "DECK", 52830, 4 },    { "duplex_mep", "BACKFLOW", 18400, -1 },
+    { "duplex_mep", "SERVICES", 335822, 172 },
+};
+
+static double of(const json_t *asset, const char *path)
+{
+    return prep_case_number(asset, path);
+}
+
+static void check_levels(const json_t *asset)
+{
+    const json_t *levels = json_object_get(asset, "levels");
+    assert_true(json_array_size(levels) >= 1);
+    assert_true(of(asset, "levels.0.error_m") == 0);
+    assert_true(of(asset, "levels.0.triangles") == of(asset, "triangles"));
+    for (size_t l = 1; l < json_array_size(levels); l++) {
+        const json_t *level = json_array_get(levels, l), *finer = json_array_get(levels, l - 1);
+        assert_true(of(level, "triangles_before") < of(finer, "triangles_before"));
+        assert_true(of(level, "error_m") >= of(finer, "error_m"));
+        assert_true(of(level, "vertices") <= of(finer, "vertices"));
+    }
+}
+
+static void check_surface(const json_t *asset)
+{
+    const json_t *surface = json_object_get(asset, "surface");
+    assert_true(of(surface, "triangles") == of(asset, "model_triangles"));
+    assert_true(of(surface, "open_edges_after") <= of(surface, "open_edges_before"));
+    assert_true(of(surface, "longest_bridge_m") <= of(surface, "tolerance_m") * (1 + 1e-9));
+    assert_true(of(surface, "k") >= 0 && of(surface, "k") <= 256);
+    assert_true(of(surface, "samples") > 0);
+    assert_true(of(surface, "hidden_vertices") < of(asset, "model_vertices"));
+    assert_true(of(surface, "unreachable_vertices") < of(asset, "model_vertices"));
+    assert_true(of(surface, "heat_disagreement") >= 0 && of(surface, "heat_disagreement") < 0.2);
+    assert_true((of(surface, "bridges") == 0) == (of(surface, "longest_bridge_m") == 0) || of(surface, "bridges") > 0);
+}
+
+static void check_asset(const json_t *asset, const char *plant)
+{
+    const json_t *sensors = json_object_get(asset, "sensors");
+    bool surface = !json_is_null(json_object_get(asset, "surface"));
+    assert_string_equal(json_string_value(json_object_get(asset, "state")), "built");
+    assert_true(surface == (json_array_size(sensors) > 0));
+    assert_true(of(asset, "vertices") == of(asset, "model_vertices") + of(asset, "vertices_added"));
+    check_levels(asset);
+    if (surface)
+        check_surface(asset);
+    for (size_t s = 0; s < json_array_size(sensors); s++) /* they were put on its vertices, of which some are hidden */
+        assert_true(of(json_array_get(sensors, s), "surface_distance_m") < 0.01);
+    print_message("# %-26s %-9s %6.0f triangles, split %6.0f; ", plant, json_string_value(json_object_get(asset, "id")),
+                  of(asset, "model_triangles"), of(asset, "triangles"));
+    if (surface)
+        print_message("pieces %4.0f > %3.0f, %6.0f bridges up to %6.2f of %6.2f mm, %5.0f hidden, %5.0f unreached, methods differ %.2f %%",
+                      of(asset, "surface.components_before"), of(asset, "surface.components_after"), of(asset, "surface.bridges"),
+                      1e3 * of(asset, "surface.longest_bridge_m"), 1e3 * of(asset, "surface.tolerance_m"),
+                      of(asset, "surface.hidden_vertices"), of(asset, "surface.unreachable_vertices"),
+                      100 * of(asset, "surface.heat_disagreement"));
+    print_message("\n");
+}
+
+static void check_known(const json_t *report, const char *plant)
+{
+    for (size_t k = 0; k < sizeof(known) / sizeof(known[0]); k++)
+        for (size_t i = 0; i < json_array_size(json_object_get(report, "assets")); i++) {
+            const json_t *asset = json_array_get(json_object_get(report, "assets"), i);
+            if (strcmp(known[k].plant, plant) || strcmp(known[k].asset, json_string_value(json_object_get(asset, "id"))))
+                continue;
+            assert_int_equal((int)(of(asset, "model_triangles") + of(asset, "zero_area_triangles")), known[k].triangles);
+            if (known[k].without_area >= 0)
+                assert_int_equal((int)of(asset, "zero_area_triangles"), known[k].without_area);
+        }
+}
+
+static json_t *prepare(struct prep_case *c, const char *plant)
+{
+    if (access("../shared/data/models", R_OK) != 0) {
+        print_message("# ../shared/data/models is not there\n");
+        skip();
+    }
+    char *arguments = mem_printf("tests/plants/models/%s.yaml --output $FOLDER/prepared --report json", plant);
+    prep_case_expect(c, arguments, 0);
+    mem_free(arguments);
+    json_t *report = prep_case_json(&c->out);
+    for (size_t i = 0; i < json_array_size(json_object_get(report, "assets")); i++)
+        check_asset(json_array_get(json_object_get(report, "assets"), i), plant);
+    check_known(report, plant);
+    return report;
+}
+
+static void tanker(void **state)
+{
+    json_t *report = prepare(*state, "industrial_tanker");
+    assert_int_equal((int)prep_case_number(report, "assets.0.surface.components_after"), 1); /* shell, saddles, manways, bolts */
+    json_decref(report);
+}
+
+static void platform(void **state)
+{
+    json_decref(prepare(*state, "offshore_platform_overview"));
+}
+
+static void plant_in_five_parts(void **state)
+{
+    json_t *report = prepare(*state, "plm_plant_5parts");
+    assert_int_equal((int)prep_case_number(report, "models.0.skipped_lines"), 1);
+    json_decref(report);
+}
+
+static void plant_with_its_tree(void **state)
+{
+    json_decref(prepare(*state, "plm_plant_hierarchy"));
+}
+
+static void weather_deck(void **state)
+{
+    json_t *report = prepare(*state, "huldra_wd1_psup");
+    assert_true(prep_case_number(report, "assets.3.surface.components_after") > 50); /* supports stand apart */
+    json_decref(report);
+}
+
+/* Every elbow and tee has each face twice. */
+static void building_services(void **state)
+{
+    json_t *report = prepare(*state, "duplex_mep");
+    double repeated = prep_case_number(report, "assets.4.surface.repeated_triangles");
+    assert_true(repeated > 113000 && repeated <= 113821);
+    json_decref(report);
+}
+
+#define WITH_FOLDER(test) cmocka_unit_test_setup_teardown(test, prep_case_set_up, prep_case_tear_down)
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        WITH_FOLDER(tanker),       WITH_FOLDER(platform),          WITH_FOLDER(plant_in_five_parts), WITH_FOLDER(plant_with_its_tree),
+        WITH_FOLDER(weather_deck), WITH_FOLDER(building_services),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
