@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The backdrop by height over the horizon, -1 to 1 from left to right; 16 rows that round at different places, one for each pixel of
 // a 4x4 tile, so that its slow gradients show no steps.
-#include "environment.glsl"
 layout(local_size_x = 64) in;
 layout(rgba8, binding = 0) writeonly uniform image2D backdrops;
 
 const float bayer[16] = float[](0.0, 8.0, 2.0, 10.0, 12.0, 4.0, 14.0, 6.0, 3.0, 11.0, 1.0, 9.0, 15.0, 7.0, 13.0, 5.0);
+
+// What the picture shows where there is nothing, even and bright: for an operator, not a game. sRGB.
+vec3 backdrop(float height)
+{
+    const vec3 zenith = vec3(0.757, 0.816, 0.870), horizon = vec3(0.957, 0.963, 0.967), nadir = vec3(0.866, 0.874, 0.880);
+    return height > 0.0 ? mix(horizon, zenith, pow(min(height, 1.0), 0.65)) : mix(horizon, nadir, pow(min(-height * 1.6, 1.0), 0.65));
+}
 
 void main()
 {

@@ -2,6 +2,7 @@
 // Light that reaches each vertex (or each texel of the ground) while nothing moves: seen through depth maps taken from many directions.
 #include "light.glsl"
 #include "shadow.glsl"
+#include "environment.glsl"
 layout(local_size_x = 64) in;
 layout(binding = 1) uniform sampler2DArrayShadow sky_maps;
 layout(std430, binding = 1) readonly buffer Directions {
@@ -33,30 +34,33 @@ const vec2 disc[16] = vec2[](vec2(0.177, 0.000), vec2(-0.226, 0.207), vec2(0.035
                              vec2(-0.126, -0.976));
 
 // How much of the sky map's surroundings lies open: 32 directions are few, so each one stands for the cone around it.
-float opening(vec3 p, int i)
+// slope: of the surface on the map, which must not hide itself.
+float opening(vec3 p, vec2 slope, int i)
 {
     float sum = 0.0;
-    for (int k = 0; k < TAPS; k++)
-        sum += texture(sky_maps, vec4(p.xy + disc[k] * SPREAD, float(i), p.z));
+    for (int k = 0; k < TAPS; k++) {
+        vec2 to = disc[k] * SPREAD;
+        sum += texture(sky_maps, vec4(p.xy + to, float(i), p.z + dot(slope, to)));
+    }
     return sum / float(TAPS);
 }
 
-// x: ambient light, 0..1; y: openness, 0..1.
-vec2 ambient(vec3 place, vec3 normal)
+// How much of the sky and the ground that such a surface faces is not hidden, weighted by a usual sky's brightness; 0..1.
+float openness(vec3 place, vec3 normal)
 {
-    float light = 0.0, open = 0.0, all = 0.0;
+    float open = 0.0, all = 0.0;
     vec3 off = place + normal * (1.6 * sky_texel_m);
     for (int i = 0; i < 32; i++) {
         float facing = dot(normal, direction[i].xyz);
         if (facing <= 0.0)
             continue;
-        vec3 p = (map_from_plant[i] * vec4(off, 1.0)).xyz;
-        float seen = facing * opening(p, i);
-        light += seen * direction[i].w;
-        open += seen;
+        vec3 p = (map_from_plant[i] * vec4(off, 1.0)).xyz, n = mat3(map_from_plant[i]) * normal;
+        vec2 slope = clamp(-n.xy / n.z, -12.0, 12.0);
+        facing *= direction[i].w;
+        open += facing * opening(p, slope, i);
         all += facing;
     }
-    return vec2(light, open) / max(all, 1e-3);
+    return open / max(all, 1e-3);
 }
 
 void main()
@@ -69,7 +73,7 @@ void main()
     vec3 place = (plant_from_here * vec4((vec2(at) + 0.5) / vec2(size), 0.0, 1.0)).xyz;
     float sun_visible = sun_visibility(sun_from_plant, place, ground_up, sun.w);
 #ifdef SKY
-    float open = ambient(place, ground_up).y;
+    float open = openness(place, ground_up);
 #else
     float open = imageLoad(ground, at).g;
 #endif
@@ -78,13 +82,13 @@ void main()
     vec3 place = (plant_from_here * vec4(positions_m[3 * i], positions_m[3 * i + 1], positions_m[3 * i + 2], 1.0)).xyz;
     vec3 normal = normalize(plant_from_normal * vec3(normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]));
 #ifdef SKY
-    vec2 seen = ambient(place, normal);
-    seen = round(seen * 255.0) / 255.0; // as it will be read back when the sun moves
+    float open = round(openness(place, normal) * 255.0) / 255.0; // as it will be read back when the sun moves
 #else
-    vec2 seen = unpackUnorm4x8(baked[i]).yz;
+    float open = unpackUnorm4x8(baked[i]).z;
 #endif
+    float ambient = open * sky_brightness(normal);
     float facing = max(dot(normal, sun.xyz), 0.0);
     float sun_visible = sun_visibility(sun_from_plant, place, normal, sun.w);
-    baked[i] = packUnorm4x8(vec4(light_scalar(seen.x, facing * sun_visible), seen, facing));
+    baked[i] = packUnorm4x8(vec4(light_scalar(ambient, facing * sun_visible), ambient, open, facing));
 #endif
 }

@@ -1,20 +1,37 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The surroundings: an even, bright sky over light ground. As a backdrop for an operator, not a game.
+// The light of the surroundings (render/environments.c): 1 is what makes a level white surface under the open sky reflect 1.
+// Directions: axes of the plant.
+layout(std140, binding = 1) uniform Environment {
+    vec4 irradiance_terms[9];
+};
+layout(binding = 8) uniform sampler3D mirrored_map; // octahedral; by roughness
+layout(binding = 9) uniform sampler2D brdf_map;     // scale and bias of F0, by cosine to the viewer and roughness
 
-// What the picture shows where there is nothing; sRGB.
-vec3 backdrop(float height)
+const float SKY_LIGHT = 0.55, SUN_LIGHT = 0.78; // of what makes white white
+
+// Over pi.
+vec3 sky_irradiance(vec3 n)
 {
-    const vec3 zenith = vec3(0.757, 0.816, 0.870), horizon = vec3(0.957, 0.963, 0.967), nadir = vec3(0.866, 0.874, 0.880);
-    return height > 0.0 ? mix(horizon, zenith, pow(min(height, 1.0), 0.65)) : mix(horizon, nadir, pow(min(-height * 1.6, 1.0), 0.65));
+    vec3 e = irradiance_terms[0].rgb + irradiance_terms[1].rgb * n.y + irradiance_terms[2].rgb * n.z + irradiance_terms[3].rgb * n.x;
+    e += irradiance_terms[4].rgb * (n.x * n.y) + irradiance_terms[5].rgb * (n.y * n.z) + irradiance_terms[6].rgb * (3.0 * n.z * n.z - 1.0);
+    e += irradiance_terms[7].rgb * (n.x * n.z) + irradiance_terms[8].rgb * (n.x * n.x - n.y * n.y);
+    return max(e, vec3(0.0));
 }
 
-// What a surface of that roughness mirrors; linear radiance, 1 = white. height: of the mirrored ray.
-vec3 mirrored(float height, float roughness)
+// Of the sky that faces such a surface, 0 to about 1.
+float sky_brightness(vec3 n)
 {
-    const vec3 sky = vec3(0.86, 0.93, 1.00), ground = vec3(0.40, 0.39, 0.38);
-    float soft = 0.06 + 0.9 * roughness;
-    float above = smoothstep(-soft, soft, height);
-    vec3 c = mix(ground, sky, above);
-    float band = exp(-pow((height - 0.18) / (0.10 + 0.6 * roughness), 2.0)); // a bright band over the horizon gives metal its shape
-    return c * (0.72 + (0.75 - 0.45 * roughness) * band);
+    return clamp(dot(sky_irradiance(n), vec3(0.2126, 0.7152, 0.0722)), 0.0, 1.0);
+}
+
+// What a surface of that roughness mirrors.
+vec3 mirrored(vec3 r, float roughness)
+{
+    const float side = 128.0, layers = 8.0;
+    vec3 a = abs(r);
+    vec2 p = r.xy / (a.x + a.y + a.z);
+    if (r.z < 0.0)
+        p = (1.0 - abs(p.yx)) * vec2(p.x >= 0.0 ? 1.0 : -1.0, p.y >= 0.0 ? 1.0 : -1.0);
+    p = (p * 0.5 + 0.5) * ((side - 1.0) / side) + 0.5 / side;
+    return textureLod(mirrored_map, vec3(p, (roughness * (layers - 1.0) + 0.5) / layers), 0.0).rgb;
 }

@@ -34,12 +34,6 @@ vec3 tone_map(vec3 c)
     return mix(c, vec3(new_peak), 1.0 - 1.0 / (desaturation * (peak - new_peak) + 1.0));
 }
 
-// Irradiance of white light, relative to what makes a white surface white.
-float irradiance(float ambient, float sun)
-{
-    return 0.50 * ambient + 0.78 * sun;
-}
-
 // Assets without a field are context: paler and greyer than they are, so that no material is taken for a value. sRGB in and out.
 vec3 mute(vec3 c)
 {

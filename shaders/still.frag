@@ -64,39 +64,35 @@ void main()
         discard;
 #endif
     float sun_visible = sun_visibility(frame.sun_from_eye, place, n, frame.sun.w);
-    float ambient = sky.x, open = sky.y;
+    float ambient = sky.x;
 #ifdef FIELD
     color = vec4(field_color(field_here(field), light_scalar(ambient, max(dot(n, l), 0.0) * sun_visible)), 1.0);
 #endif
 #if !defined(FIELD) || defined(GLOSSY)
-    float metallic = m.factors.x, roughness = m.factors.y;
+    Surface s = Surface(base.rgb, m.factors.x, m.factors.y, n, sky.y, sun_visible);
     vec3 glow = m.emissive.rgb;
 #ifdef GLOSSY
-    base.rgb = linear_from_srgb(color.rgb);
-    metallic *= 0.3; // a mirror would show the sky instead of the field
+    s.base = linear_from_srgb(color.rgb);
+    s.metallic *= 0.3; // a mirror would show the sky instead of the field
 #endif
 #ifdef TEXTURED
     if ((textures & 2) != 0) {
         vec4 t = texture(metallic_roughness_map, uv);
-        roughness *= t.g;
-        metallic *= t.b;
+        s.roughness *= t.g;
+        s.metallic *= t.b;
     }
     if ((textures & 4) != 0)
-        n = mapped_normal(n, m.factors.z);
-    if ((textures & 8) != 0) {
-        float occlusion = mix(1.0, texture(occlusion_map, uv).r, m.factors.w);
-        ambient *= occlusion;
-        open *= occlusion;
-    }
+        s.normal = mapped_normal(n, m.factors.z);
+    if ((textures & 8) != 0)
+        s.open *= mix(1.0, texture(occlusion_map, uv).r, m.factors.w);
     if ((textures & 16) != 0)
         glow *= texture(emissive_map, uv).rgb;
 #endif
-    vec3 c = shade(base.rgb, metallic, roughness, n, v, frame.up.xyz, l, ambient, sun_visible, open);
-    c = srgb_from_linear(tone_map(c + glow));
+    vec3 c = srgb_from_linear(tone_map(sky_shade(s, v) + sun_shade(s, v, l) + glow));
 #ifdef GLOSSY
     color.rgb = c;
 #else
-    color = vec4(mute(c), base.a);
+    color = vec4(frame.up.w > 0.5 ? mute(c) : c, base.a);
 #endif
 #endif
 }

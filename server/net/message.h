@@ -52,6 +52,7 @@ enum params_given { /* which fields of a params message were there */
                     GIVEN_ISOLATE = 1 << 22,
                     GIVEN_GHOST = 1 << 23,
                     GIVEN_CLIP = 1 << 24,
+                    GIVEN_ENVIRONMENT = 1 << 25,
 };
 
 enum baseline_wish { BASELINE_STAYS, BASELINE_NONE, BASELINE_NAMED, BASELINE_NOW, BASELINE_SET, BASELINE_REMOVE };
@@ -69,6 +70,7 @@ struct params_change {
     double range_min, range_max;
     enum look look;
     double light_dir[3];
+    int environment;
     int selected_asset;
     /* field.overrides, if GIVEN_SENSORS: those named; a strength or decay left out is FIELD_AS_CONFIGURED, and so is either where
        the sensor's is to go */

@@ -17,7 +17,8 @@ const struct name names_show[] = {
     { "value", SHOW_VALUE }, { "distance", SHOW_DISTANCE }, { "difference", SHOW_DIFFERENCE }, { "operator", SHOW_OPERATOR }, { NULL, 0 }
 };
 const struct name names_scale[] = { { "linear", false }, { "log", true }, { NULL, 0 } };
-const struct name names_look[] = { { "default", LOOK_DEFAULT }, { "glossy", LOOK_GLOSSY }, { "flat", LOOK_FLAT }, { NULL, 0 } };
+const struct name names_look[] = { { "default", LOOK_DEFAULT }, { "glossy", LOOK_GLOSSY }, { "flat", LOOK_FLAT },
+                                    { "materials", LOOK_MATERIALS }, { NULL, 0 } };
 const struct name names_codec[] = { { "jpeg", WIRE_CODEC_JPEG }, { "png", WIRE_CODEC_PNG }, { NULL, 0 } };
 const struct name names_projection[] = { { "perspective", PROJECTION_PERSPECTIVE },
                                          { "orthographic", PROJECTION_ORTHOGRAPHIC },

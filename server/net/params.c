@@ -156,12 +156,27 @@ static bool parse_light(const json_t *o, struct params_change *out, struct messa
     return true;
 }
 
+static bool parse_environment(const struct plant *plant, const json_t *o, struct params_change *out, struct message_error *error)
+{
+    const json_t *value = json_object_get(o, "environment");
+    char name[48];
+    if (!value)
+        return true;
+    if (!json_is_string(value) || (out->environment = plant_find_environment(plant, json_string_value(value))) < 0) {
+        message_fail(error, "bad_field", "environment: '%s' is neither 'sky' nor one of this plant's",
+                     json_is_string(value) ? quoted(json_string_value(value), name) : "(not a text)");
+        return false;
+    }
+    out->given |= GIVEN_ENVIRONMENT;
+    return true;
+}
+
 bool params_parse(const struct plant *plant, const json_t *o, struct params_change *out, struct message_error *error)
 {
     *out = (struct params_change){ .selected_asset = -1 };
     return parse_group(plant, o, out, error) && parse_names(o, out, error) && parse_numbers(o, out, error) && parse_reach(o, out, error) &&
            parse_range(o, out, error) && parse_colormap(o, out, error) && parse_selected(plant, o, out, error) &&
-           parse_light(o, out, error) && params_parse_show(plant, o, out, error) &&
+           parse_light(o, out, error) && parse_environment(plant, o, out, error) && params_parse_show(plant, o, out, error) &&
            params_parse_paint(o, out, error) && visibility_parse(plant, o, out, error);
 }
 
@@ -209,6 +224,8 @@ static void apply_look(const struct scene *scene, const struct params_change *ch
         view->look = change->look;
     if (change->given & GIVEN_LIGHT)
         memcpy(view->light_dir, change->light_dir, sizeof(view->light_dir));
+    if (change->given & GIVEN_ENVIRONMENT)
+        view->environment = change->environment;
     if (change->given & GIVEN_SELECTED)
         view->selected_asset = change->selected_asset;
     visibility_apply(change, &view->visibility);

@@ -18,7 +18,7 @@ static const struct {
     { "width", NUMBER },    { "height", NUMBER },   { "camera", NUMBERS },  { "group", STRING },         { "interpolation", STRING },
     { "distance", STRING }, { "fill", STRING },     { "strength", NUMBER }, { "decay", NUMBER },         { "power", NUMBER },
     { "radius_m", NUMBER }, { "reach_m", NUMBER },  { "colormap", STRING }, { "ramp_interval", NUMBER }, { "range", NUMBERS },
-    { "look", STRING },     { "light", NUMBERS },   { "selected", STRING }, { "show", STRING },          { "sensor", STRING },
+    { "look", STRING },     { "light", NUMBERS },   { "environment", STRING },   { "selected", STRING }, { "show", STRING },          { "sensor", STRING },
     { "sensors", SENSORS }, { "baseline", STRING }, { "scale", STRING },    { "breaks", BREAKS },
     { "isolines", LINES },  { "split", SPLIT },
     { "projection", STRING }, { "height_m", NUMBER }, { "fit", STRING },    { "side", STRING },          { "hidden", STRINGS },

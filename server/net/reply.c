@@ -135,6 +135,19 @@ static void set_shown(json_t *object, const struct session_world *world, const s
     json_object_set_new(object, "look", string(name_of(names_look, view->look)));
 }
 
+static const char *environment_name(const struct plant *plant, int environment)
+{
+    return environment == 0 ? "sky" : plant->environments[environment - 1].name;
+}
+
+static json_t *environments(const struct plant *plant)
+{
+    json_t *array = json_array();
+    for (int i = 0; i <= (int)plant->environment_count; i++)
+        json_array_append_new(array, string(environment_name(plant, i)));
+    return array;
+}
+
 static void set_params(json_t *object, const struct session_world *world, const struct view *view)
 {
     const struct plant *plant = world->plant;
@@ -146,6 +159,7 @@ static void set_params(json_t *object, const struct session_world *world, const 
     if (view->split)
         set_shown(json_object_get(object, "split"), world, &right);
     json_object_set_new(object, "light", vector(view->light_dir));
+    json_object_set_new(object, "environment", string(environment_name(plant, view->environment)));
     json_object_set_new(object, "selected", view->selected_asset < 0 ? json_null() : string(plant->assets[view->selected_asset].id));
     visibility_print(plant, &view->visibility, object);
 }
@@ -242,6 +256,7 @@ static void set_plant(json_t *object, const struct session_world *world, int wid
     json_object_set_new(object, "plant", plant_object(world, &home.camera));
     json_object_set_new(object, "groups", groups(world->plant));
     json_object_set_new(object, "colormaps", colormaps());
+    json_object_set_new(object, "environments", environments(world->plant));
     json_object_set_new(object, "assets", assets(world->scene));
     json_object_set_new(object, "tags", tags(world));
 }

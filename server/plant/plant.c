@@ -94,6 +94,10 @@ void plant_destroy(struct plant **plant_ptr)
     free_tags(plant);
     for (size_t i = 0; i < plant->colormap_count; i++)
         mem_free(plant->colormaps[i].name);
+    for (size_t i = 0; i < plant->environment_count; i++) {
+        mem_free(plant->environments[i].name);
+        mem_free(plant->environments[i].path);
+    }
     mem_free(plant->path);
     mem_free(plant->folder);
     mem_free(plant->tags_path);

@@ -98,6 +98,12 @@ struct plant_tag {
     int line, column;                 /* of its name in the tag list */
 };
 
+enum { PLANT_ENVIRONMENTS = 8 };
+struct plant_environment { /* pictures of surroundings, to light the plant with */
+    char *name;            /* of the file, without its ending; never "sky" */
+    char *path;
+};
+
 struct plant {
     char *path, *folder;              /* of the plant file; folder without trailing slash */
     char *tags_path;
@@ -105,6 +111,8 @@ struct plant {
     char *name, *time_zone;           /* IANA name; default UTC */
     enum axis up;                     /* of the plant frame */
     struct plant_view view;
+    struct plant_environment environments[PLANT_ENVIRONMENTS]; /* the first is shown where nobody asks for another */
+    size_t environment_count;
     struct plant_asset *assets;
     struct plant_group *groups;
     struct plant_source *sources;
@@ -123,6 +131,7 @@ void plant_destroy(struct plant **plant); /* &NULL is fine; leaves NULL */
 
 int plant_find_asset(const struct plant *plant, const char *id); /* index or -1; so below */
 int plant_find_group(const struct plant *plant, const char *id);
+int plant_find_environment(const struct plant *plant, const char *name); /* 0: "sky", 1: the first of the plant's own, ... */
 int plant_find_tag(const struct plant *plant, const char *name);
 /* Where prepared asset files of this plant are kept: FOLDER/NAME.prepared beside NAME.yaml. Free with mem_free. */
 char *plant_prepared_folder(const struct plant *plant);

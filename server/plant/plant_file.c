@@ -380,6 +380,11 @@ static void read_colormaps(struct yaml_reader *reader, yaml_node_t *node, void *
     plant_colormaps_read(reader, node, ((struct plant_file *)record)->plant);
 }
 
+static void read_environment(struct yaml_reader *reader, yaml_node_t *node, void *record)
+{
+    plant_environments_read(reader, node, ((struct plant_file *)record)->plant);
+}
+
 /* --- the whole file --------------------------------------------------------------------------------------------------------- */
 
 void plant_file_read(struct plant *plant, struct diag *diag)
@@ -390,6 +395,7 @@ void plant_file_read(struct plant *plant, struct diag *diag)
         { "groups", KEY_CUSTOM, true, 0, 0, 0, NULL, read_groups },
         { "sources", KEY_CUSTOM, false, 0, 0, 0, NULL, read_sources },
         { "colormaps", KEY_CUSTOM, false, 0, 0, 0, NULL, read_colormaps },
+        { "environment", KEY_CUSTOM, false, 0, 0, 0, NULL, read_environment },
         { "tags", KEY_NAME, true, offsetof(struct plant_file, tags), 0, 0, NULL, NULL },
         { 0 }
     };

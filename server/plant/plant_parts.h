@@ -10,6 +10,8 @@
 
 /* Reads plant.yaml into a plant whose path and folder are set. Findings go to diag. tags_path stays NULL if it cannot be read. */
 void plant_file_read(struct plant *plant, struct diag *diag);
+/* Likewise the value of its key `environment`; the folder is set. */
+void plant_environments_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
 /* Reads plant->tags_path; assets, groups and sources are known. */
 void tag_list_read(struct plant *plant, struct diag *diag);
 /* The first two limits that do not rise (LL < L < H < HH; NaN: none): true, with their indices. */

@@ -3,7 +3,6 @@
 #include "render/bake.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "base/mem.h"
 #include "gpu/program.h"
@@ -171,7 +170,7 @@ static void sky_map_bit(struct bake *bake)
 
 static void sun_map_bit(struct bake *bake)
 {
-    draw_on_map(bake, bake->set.sun_map, -1, sun_map_px(bake->stage), bake->set.towards);
+    draw_on_map(bake, bake->set.sun_map, -1, sun_map_px(bake->stage), bake->set.key.towards);
     if (++bake->asset < bake->stage->scene->asset_count)
         return;
     bake->asset = 0;
@@ -195,7 +194,7 @@ static void set_uniforms(const struct bake *bake, const double plant_from_here[1
     matrix_multiply(bake->set.texture_from_plant, around_middle, around_middle);
     matrix_to_float(around_middle, matrix);
     glUniformMatrix4fv(1, 1, GL_FALSE, matrix);
-    glUniform4f(8, (float)bake->set.towards[0], (float)bake->set.towards[1], (float)bake->set.towards[2], (float)bake->set.texel_m);
+    glUniform4f(8, (float)bake->set.key.towards[0], (float)bake->set.key.towards[1], (float)bake->set.key.towards[2], (float)bake->set.texel_m);
     glUniform1f(9, (float)bake->sky_texel_m);
     glUniform2i(10, (GLint)first, (GLint)end);
     glBindTextureUnit(1, bake->sky_maps);
@@ -287,7 +286,7 @@ static bool make_sky(struct bake *bake)
 }
 
 struct bake *bake_begin(const struct stage *stage, const struct bake_programs *programs, const double plant_from_ground[16],
-                        const double towards[3], const struct light_set *from)
+                        const struct light_key *key, const struct light_set *from)
 {
     struct bake *bake = mem_new(sizeof(*bake));
     *bake = (struct bake){ .stage = stage, .programs = programs, .plant_from_ground = plant_from_ground, .with_sky = !from };
@@ -296,8 +295,8 @@ struct bake *bake_begin(const struct stage *stage, const struct bake_programs *p
     bake->part = from ? BAKE_SUN_MAP : BAKE_SKY_MAPS;
     bake->set.bytes = bake_bytes(stage);
     bake->set.texel_m = 2 * stage->radius_m / size_px;
-    memcpy(bake->set.towards, towards, sizeof(bake->set.towards));
-    matrix_parallel(stage->middle_m, stage->radius_m, towards, matrix);
+    bake->set.key = *key;
+    matrix_parallel(stage->middle_m, stage->radius_m, key->towards, matrix);
     matrix_texture_from_clip(matrix, bake->set.texture_from_plant);
     gl_pass_enter("light");
     glCreateFramebuffers(1, &bake->framebuffer);
@@ -309,9 +308,9 @@ struct bake *bake_begin(const struct stage *stage, const struct bake_programs *p
     return bake;
 }
 
-const double *bake_towards(const struct bake *bake)
+const struct light_key *bake_key(const struct bake *bake)
 {
-    return bake->set.towards;
+    return &bake->set.key;
 }
 
 bool bake_step(struct bake *bake)

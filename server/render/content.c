@@ -43,7 +43,8 @@ static void add_visibility(XXH3_state_t *state, const struct picture *picture)
 
 static void add_view(XXH3_state_t *state, const struct view *view)
 {
-    int32_t choices[] = { view->width_px, view->height_px, view->colormap, (int32_t)view->look, (int32_t)view->tier, view->selected_asset };
+    int32_t choices[] = { view->width_px, view->height_px, view->colormap, (int32_t)view->look, (int32_t)view->tier, view->selected_asset,
+                          view->environment };
     double numbers[] = { view->camera.fov_deg, view->camera.height_m, view->ramp_interval, view->range_min, view->range_max };
     add(state, choices, sizeof(choices));
     add(state, numbers, sizeof(numbers));
@@ -61,7 +62,8 @@ uint64_t content_hash(const struct picture *picture)
     XXH3_INITSTATE(&state);
     XXH3_64bits_reset(&state);
     add_view(&state, picture->view);
-    add(&state, picture->towards, 3 * sizeof(*picture->towards));
+    add(&state, picture->lit_by.towards, sizeof(picture->lit_by.towards));
+    add(&state, &picture->lit_by.environment, sizeof(picture->lit_by.environment));
     add_visibility(&state, picture);
     for (size_t i = 0; i < picture->visible_count; i++) {
         int asset = picture->visible[i];

@@ -49,8 +49,8 @@ void draft_destroy(struct draft **draft_ptr)
 bool draft_can(const struct draft *draft, const struct view *view)
 {
     double lines[VIEW_ALL_LINES];
-    return view->tier == TIER_MOVING && view->look != LOOK_GLOSSY && !view->paint.log && view_lines(view, lines) == 0 &&
-           view->selected_asset < 0 && view->visibility.ghosts.count == 0 && view->visibility.clip.plane_count == 0 &&
+    return view->tier == TIER_MOVING && view->look != LOOK_GLOSSY && view->look != LOOK_MATERIALS && !view->paint.log &&
+           view_lines(view, lines) == 0 && view->selected_asset < 0 && view->visibility.ghosts.count == 0 && view->visibility.clip.plane_count == 0 &&
            view->camera.height_m <= 0 && draft->ramp_count <= MOST_RAMPS;
 }
 

@@ -76,12 +76,12 @@ void frame_block_fill(struct frame_block *block, const struct picture *picture)
     matrix_to_float(inverse, block->eye_from_clip);
     from_eye(picture->light->texture_from_plant, shot->eye_m, block->sun_from_eye);
     for (int i = 0; i < 3; i++) {
-        block->sun[i] = (float)picture->towards[i];
+        block->sun[i] = (float)picture->lit_by.towards[i];
         block->up[i] = (float)picture->stage->up[i];
         block->back[i] = (float)shot->back[i];
     }
     block->sun[3] = (float)picture->light->texel_m;
-    block->up[3] = 0;
+    block->up[3] = view->look != LOOK_MATERIALS;
     fill_clip(block, picture);
     block->back[3] = (float)shot->depth_scale;
     fill_scale(block, picture);

@@ -9,6 +9,7 @@
 #include "base/mem.h"
 
 static const size_t LIGHT_BYTES = 256 << 20;
+static const int64_t READ_NS = 60 * NS_PER_S; /* a picture of surroundings is read by then */
 
 static void find_ground(struct light *light)
 {
@@ -30,10 +31,10 @@ static void find_ground(struct light *light)
     light->plant_from_ground[15] = 1;
 }
 
-bool light_init(struct light *light, const struct stage *stage)
+bool light_init(struct light *light, const struct stage *stage, struct environments *environments)
 {
     size_t two = 2 * bake_bytes(stage); /* one to show while the next is baked */
-    *light = (struct light){ .stage = stage, .bound_bytes = two > LIGHT_BYTES ? two : LIGHT_BYTES };
+    *light = (struct light){ .stage = stage, .environments = environments, .bound_bytes = two > LIGHT_BYTES ? two : LIGHT_BYTES };
     find_ground(light);
     return bake_programs_init(&light->programs, stage->gl->log);
 }
@@ -53,28 +54,30 @@ void light_finish(struct light *light)
     bake_programs_finish(&light->programs);
 }
 
-static bool same(const double a[3], const double b[3])
+static bool same(const struct light_key *a, const struct light_key *b)
 {
-    return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+    return a->environment == b->environment && a->towards[0] == b->towards[0] && a->towards[1] == b->towards[1] &&
+           a->towards[2] == b->towards[2];
 }
 
-static struct light_set *find(struct light *light, const double towards[3])
+static struct light_set *find(struct light *light, const struct light_key *key)
 {
     for (int i = 0; i < LIGHT_SETS; i++)
-        if (light->sets[i].id && same(light->sets[i].towards, towards)) {
+        if (light->sets[i].id && same(&light->sets[i].key, key)) {
             light->sets[i].used = ++light->uses;
             return &light->sets[i];
         }
     return NULL;
 }
 
-struct light_set *light_near(struct light *light, const double towards[3])
+struct light_set *light_near(struct light *light, const struct light_key *key)
 {
     struct light_set *nearest = NULL;
     double most = -INFINITY;
     for (int i = 0; i < LIGHT_SETS; i++) {
         struct light_set *set = &light->sets[i];
-        double alike = set->towards[0] * towards[0] + set->towards[1] * towards[1] + set->towards[2] * towards[2];
+        const double *a = set->key.towards, *b = key->towards;
+        double alike = a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + (set->key.environment == key->environment ? 4 : 0);
         if (set->id && alike > most) {
             nearest = set;
             most = alike;
@@ -103,9 +106,9 @@ static struct light_set *make_room(struct light *light, size_t bytes)
     }
 }
 
-static bool begin(struct light *light, const double towards[3])
+static bool begin(struct light *light, const struct light_key *key)
 {
-    light->bake = bake_begin(light->stage, &light->programs, light->plant_from_ground, towards, light_near(light, towards));
+    light->bake = bake_begin(light->stage, &light->programs, light->plant_from_ground, key, light_near(light, key));
     return light->bake != NULL;
 }
 
@@ -128,34 +131,39 @@ static struct light_set *end(struct light *light)
     return set;
 }
 
-struct light_set *light_get(struct light *light, const double towards[3])
+struct light_set *light_get(struct light *light, const struct light_key *key)
 {
-    struct light_set *set = find(light, towards);
+    struct light_set *set = find(light, key);
     if (set)
         return set;
-    if (light->bake && !same(bake_towards(light->bake), towards))
+    environments_wait(light->environments, key->environment, READ_NS);
+    if (light->bake && !same(bake_key(light->bake), key))
         bake_abandon(&light->bake);
-    if (!light->bake && !begin(light, towards))
+    if (!light->bake && !begin(light, key))
         return NULL;
+    environments_bind(light->environments, key->environment);
     while (!bake_step(light->bake)) {}
     return end(light);
 }
 
-bool light_step(struct light *light, const double towards[3], int64_t budget_ns)
+bool light_step(struct light *light, const struct light_key *key, int64_t budget_ns)
 {
     int64_t start_ns = clock_mono_ns(), spent_ns = 0, last_ns = 0;
     bool issued = false;
-    if (find(light, towards))
+    if (find(light, key))
         return true;
-    if (!light->bake && !begin(light, towards))
+    if (!environments_wait(light->environments, key->environment, budget_ns / 2))
+        return false;
+    if (!light->bake && !begin(light, key))
         return true; /* light_get fails likewise */
+    environments_bind(light->environments, bake_key(light->bake)->environment);
     while (!issued && spent_ns + last_ns <= budget_ns) {
         issued = bake_step(light->bake);
         glFinish();
         last_ns = clock_mono_ns() - start_ns - spent_ns;
         spent_ns += last_ns;
     }
-    return issued && end(light) && find(light, towards);
+    return issued && end(light) && find(light, key);
 }
 
 void light_hold(struct light_set *set)

@@ -4,10 +4,12 @@
 #ifndef RENDER_LIGHT_H
 #define RENDER_LIGHT_H
 #include "render/bake.h"
+#include "render/environments.h"
 
 enum { LIGHT_SETS = 8 };
 struct light {
     const struct stage *stage;
+    struct environments *environments;
     struct bake_programs programs;
     double plant_from_ground[16]; /* from texture coordinates on the ground, and height over it */
     double ground_height_m;       /* along `up` */
@@ -17,14 +19,14 @@ struct light {
     uint64_t uses, last_id;
 };
 
-bool light_init(struct light *light, const struct stage *stage);
+bool light_init(struct light *light, const struct stage *stage, struct environments *environments); /* false: logged */
 void light_finish(struct light *light);
-/* The light with the sun in that direction; baked now if it is not known. NULL: out of GPU memory, logged. */
-struct light_set *light_get(struct light *light, const double towards[3]);
-/* The ready one with the sun nearest to there. NULL: none is ready. */
-struct light_set *light_near(struct light *light, const double towards[3]);
-/* Bakes on for about that long, and a bit at least, if nothing else is under way. True: light_get does not wait now. */
-bool light_step(struct light *light, const double towards[3], int64_t budget_ns);
+/* The light of that sun and those surroundings; baked now if it is not known. NULL: out of GPU memory, logged. */
+struct light_set *light_get(struct light *light, const struct light_key *key);
+/* The ready one most like it: of the same surroundings if there is one, then with the sun nearest. NULL: none is ready. */
+struct light_set *light_near(struct light *light, const struct light_key *key);
+/* Likewise; bakes on for about that long, and a bit at least, if nothing else is under way. True: light_get does not wait now. */
+bool light_step(struct light *light, const struct light_key *key, int64_t budget_ns);
 /* While it is held, a set stays. */
 void light_hold(struct light_set *set);
 void light_release(struct light_set *set); /* NULL is fine */

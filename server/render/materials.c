@@ -96,16 +96,19 @@ static void find_maps(struct model_material *out, const struct model *model, con
         }
 }
 
-static void make_ramps(struct model *model, GLuint ramp_program)
+static GLuint make_ramps(const struct model *model, GLuint ramp_program, bool muted)
 {
-    glCreateTextures(GL_TEXTURE_2D, 1, &model->ramps);
-    glTextureStorage2D(model->ramps, 1, GL_RGBA8, MODEL_LIGHT_STEPS, (GLsizei)model->material_count);
-    glTextureParameteri(model->ramps, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    GLuint ramps = 0;
+    glCreateTextures(GL_TEXTURE_2D, 1, &ramps);
+    glTextureStorage2D(ramps, 1, GL_RGBA8, MODEL_LIGHT_STEPS, (GLsizei)model->material_count);
+    glTextureParameteri(ramps, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     glUseProgram(ramp_program);
+    glUniform1i(1, muted);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, model->material_buffer);
-    glBindImageTexture(0, model->ramps, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA8);
+    glBindImageTexture(0, ramps, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA8);
     glDispatchCompute(MODEL_LIGHT_STEPS / 64, (GLuint)model->material_count, 1);
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+    return ramps;
 }
 
 bool materials_upload(struct model *model, struct gl *gl, GLuint ramp_program)
@@ -127,7 +130,8 @@ bool materials_upload(struct model *model, struct gl *gl, GLuint ramp_program)
     mem_free(blocks);
     if (!model->material_buffer)
         return false;
-    make_ramps(model, ramp_program);
+    model->ramps = make_ramps(model, ramp_program, true);
+    model->own_ramps = make_ramps(model, ramp_program, false);
     return true;
 }
 
@@ -136,6 +140,7 @@ void materials_finish(struct model *model)
     if (model->textures)
         glDeleteTextures((GLsizei)model->texture_count, model->textures);
     glDeleteTextures(1, &model->ramps);
+    glDeleteTextures(1, &model->own_ramps);
     glDeleteBuffers(1, &model->material_buffer);
     mem_free(model->textures);
     mem_free(model->materials);

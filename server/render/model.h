@@ -40,7 +40,7 @@ struct model {
     struct model_material *materials;
     GLuint *textures;
     size_t level_count, material_count, texture_count;
-    GLuint material_buffer, ramps; /* ramps: a row per material, muted sRGB by light */
+    GLuint material_buffer, ramps, own_ramps; /* ramps: a row per material, sRGB by light; muted and not */
 };
 
 /* ramp_program: compiled ramp.comp. False: logged; finish copes with what is half-made. */

@@ -13,7 +13,7 @@ struct picture {
     const struct stage *stage;
     const struct view *view;
     struct shot shot;
-    const double *towards;         /* the sun it is drawn with: the view's, or one that is near */
+    struct light_key lit_by;            /* what it is drawn with: what the view asks for, or the most alike */
     const struct light_set *light;
     const struct target *target;
     const struct fields_entry **fields; /* per asset; NULL: context */

@@ -31,6 +31,7 @@ struct renderer {
     struct gl *gl;
     const struct scene *scene;
     struct stage stage;
+    struct environments environments;
     struct light light;
     struct fields fields;
     struct reference reference;
@@ -53,12 +54,20 @@ struct renderer {
     double *distance_m; /* per asset */
 };
 
+static struct light_key wanted_light(const struct view *view)
+{
+    struct light_key key = { .environment = view->environment };
+    memcpy(key.towards, view->light_dir, sizeof(key.towards));
+    return key;
+}
+
 /* Bakes the light that most views have, so that the first picture does not wait for it. */
 static bool bake_default_light(struct renderer *renderer)
 {
     struct view view;
     view_default(renderer->scene, 16, 16, &view);
-    return light_get(&renderer->light, view.light_dir) != NULL;
+    struct light_key key = wanted_light(&view);
+    return light_get(&renderer->light, &key) != NULL;
 }
 
 struct renderer *renderer_create(struct log *log, struct gl *gl, const struct scene *scene, struct field *field)
@@ -71,7 +80,12 @@ struct renderer *renderer_create(struct log *log, struct gl *gl, const struct sc
     renderer->distance_m = mem_array(scene->asset_count, sizeof(*renderer->distance_m));
     fields_init(&renderer->fields, log, field);
     renderer->frame_buffer = mesh_buffer(log, "frame block", sizeof(struct frame_block), NULL, GL_DYNAMIC_STORAGE_BIT);
-    if (!renderer->frame_buffer || !stage_init(&renderer->stage, gl, scene) || !light_init(&renderer->light, &renderer->stage) ||
+    if (!renderer->frame_buffer || !environments_init(&renderer->environments, gl, scene->plant, field_workers(field))) {
+        renderer_destroy(&renderer);
+        return NULL;
+    }
+    environments_bind(&renderer->environments, 0);
+    if (!stage_init(&renderer->stage, gl, scene) || !light_init(&renderer->light, &renderer->stage, &renderer->environments) ||
         !solid_init(&renderer->solid, log) || !sky_init(&renderer->sky, log) || !lines_init(&renderer->lines, log) ||
         !ghosts_init(&renderer->ghosts, log) || !markers_init(&renderer->markers, log) ||
         !isolines_init(&renderer->isolines, log, scene->asset_count) || !bake_default_light(renderer)) {
@@ -102,6 +116,7 @@ void renderer_destroy(struct renderer **renderer_ptr)
     reference_finish(&renderer->reference);
     fields_finish(&renderer->fields);
     light_finish(&renderer->light);
+    environments_finish(&renderer->environments);
     stage_finish(&renderer->stage);
     mem_free(renderer->asset_fields);
     mem_free(renderer->visible);
@@ -151,7 +166,7 @@ static void find_visible(struct renderer *renderer, struct picture *picture)
         if (!shot_sees(&picture->shot, asset) || !is_left(&picture->view->visibility, (int)i, asset))
             continue;
         for (int c = 0; c < 3; c++) {
-            double by = 0.5 * (asset->bounds_min_m[c] + asset->bounds_max_m[c]) - picture->shot.eye_m[c];
+            double by = fmax(fabs(asset->bounds_min_m[c] - picture->shot.eye_m[c]), fabs(asset->bounds_max_m[c] - picture->shot.eye_m[c]));
             square += by * by;
         }
         renderer->distance_m[i] = sqrt(square);
@@ -161,11 +176,12 @@ static void find_visible(struct renderer *renderer, struct picture *picture)
     picture->visible = renderer->visible;
 }
 
-/* The sun that the picture shows. */
-static const double *choose_light(struct renderer *renderer, const struct view *view)
+/* What the picture shows. */
+static struct light_key choose_light(struct renderer *renderer, const struct view *view)
 {
-    const struct light_set *near = view->tier == TIER_MOVING && renderer->hurry_ns ? light_near(&renderer->light, view->light_dir) : NULL;
-    return near ? near->towards : view->light_dir;
+    struct light_key key = wanted_light(view);
+    const struct light_set *near = view->tier == TIER_MOVING && renderer->hurry_ns ? light_near(&renderer->light, &key) : NULL;
+    return near ? near->key : key;
 }
 
 /* What there is to draw, with the field brought up to date. */
@@ -175,7 +191,7 @@ static void picture_init(struct renderer *renderer, struct picture *picture, con
                                  .view = view,
                                  .fields = renderer->asset_fields,
                                  .reference = renderer->per_fragment ? &renderer->reference : NULL };
-    picture->towards = choose_light(renderer, view);
+    picture->lit_by = choose_light(renderer, view);
     aim(renderer, view, &picture->shot);
     find_visible(renderer, picture);
     fields_trim(&renderer->fields);
@@ -185,7 +201,7 @@ static void picture_init(struct renderer *renderer, struct picture *picture, con
     double step = scale_step(&scale);
     for (size_t i = 0; i < picture->visible_count; i++) {
         int asset = renderer->visible[i];
-        renderer->asset_fields[asset] = fields_get(&renderer->fields, asset, &view->field, step, snapshot);
+        renderer->asset_fields[asset] = view->look == LOOK_MATERIALS ? NULL : fields_get(&renderer->fields, asset, &view->field, step, snapshot);
     }
 }
 
@@ -259,10 +275,11 @@ static bool take_up(struct renderer *renderer, struct picture *picture)
 {
     struct frame_block block;
     if (!picture->light)
-        picture->light = light_get(&renderer->light, picture->towards);
+        picture->light = light_get(&renderer->light, &picture->lit_by);
     picture->palette = palettes_get(&renderer->palettes, picture->view);
     if (!picture->light)
         return false;
+    environments_bind(&renderer->environments, picture->lit_by.environment);
     frame_block_fill(&block, picture);
     glNamedBufferSubData(renderer->frame_buffer, 0, sizeof(block), &block);
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, renderer->frame_buffer);
@@ -274,7 +291,7 @@ static bool take_up(struct renderer *renderer, struct picture *picture)
 static bool take_up_stroke(struct renderer *renderer, struct stroke *stroke)
 {
     if (!stroke->light) {
-        stroke->light = light_get(&renderer->light, stroke->towards);
+        stroke->light = light_get(&renderer->light, &stroke->picture.lit_by);
         if (!stroke->light)
             return false;
         light_hold(stroke->light);
@@ -328,7 +345,7 @@ bool renderer_step(struct renderer *renderer, struct stroke *stroke, int64_t bud
 {
     int64_t start_ns = clock_mono_ns(), spent_ns = 0, last_ns = 0;
     int bits = bits_of(stroke);
-    if (!stroke->light && !light_step(&renderer->light, stroke->towards, budget_ns))
+    if (!stroke->light && !light_step(&renderer->light, &stroke->picture.lit_by, budget_ns))
         return false;
     if (stroke->next < bits && !take_up_stroke(renderer, stroke))
         stroke->next = bits; /* renderer_end fails likewise */
@@ -392,7 +409,7 @@ static struct frame *draw_draft(struct renderer *renderer, const struct view *vi
     if (!frame)
         return NULL;
     int64_t start_ns = clock_mono_ns();
-    picture.light = light_get(&renderer->light, picture.towards);
+    picture.light = light_get(&renderer->light, &picture.lit_by);
     picture.palette = palettes_get(&renderer->palettes, view);
     if (!picture.light || !draft_draw(renderer->draft, &picture, &renderer->light, frame))
         frame_unref(&frame);
@@ -409,10 +426,11 @@ static struct frame *draw_by_gl(struct renderer *renderer, const struct view *vi
 
 struct frame *renderer_draw(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
 {
+    struct light_key wanted = wanted_light(view);
     bool draft = renderer->draft && !renderer->always_gl && !renderer->per_fragment && draft_can(renderer->draft, view);
     struct frame *frame = draft ? draw_draft(renderer, view, snapshot) : draw_by_gl(renderer, view, snapshot);
     if (frame && renderer->hurry_ns)
-        light_step(&renderer->light, view->light_dir, renderer->hurry_ns);
+        light_step(&renderer->light, &wanted, renderer->hurry_ns);
     return frame;
 }
 

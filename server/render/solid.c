@@ -171,7 +171,7 @@ static void draw_asset(struct solid *solid, const struct picture *picture, int i
             stage_set_front_face(asset);
             mesh_bind(&model->mesh, picture->light->baked[index], field ? field->buffer : 0);
             glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, model->material_buffer);
-            glBindTextureUnit(UNIT_RAMPS, model->ramps);
+            glBindTextureUnit(UNIT_RAMPS, picture->view->look == LOOK_MATERIALS ? model->own_ramps : model->ramps);
             if (is_per_fragment(picture, field) && !reference_bind(picture->reference, index, field->sensors))
                 return;
         }

@@ -38,6 +38,8 @@ bool stage_init(struct stage *stage, struct gl *gl, const struct scene *scene)
     stage->clipped_depth_program =
         program_create(gl->log, program_params(.vertex = "depth.vert", .fragment = "depth.frag", .defines = "#define CLIP\n"));
     bool good = stage->depth_program && stage->clipped_depth_program && ramp_program;
+    if (good)
+        glProgramUniform3f(ramp_program, 0, (float)stage->up[0], (float)stage->up[1], (float)stage->up[2]);
     find_ball(stage);
     for (size_t i = 0; i < scene->asset_count && good; i++) {
         struct model *model = find_model(stage, scene->assets[i].file);

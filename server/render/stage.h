@@ -30,7 +30,8 @@ struct shot {
     double planes[6][4];    /* of the frustum, inward, plant frame */
 };
 
-bool stage_init(struct stage *stage, struct gl *gl, const struct scene *scene); /* false: logged */
+/* With the sky bound (render/environments.h). False: logged. */
+bool stage_init(struct stage *stage, struct gl *gl, const struct scene *scene);
 void stage_finish(struct stage *stage);
 
 /* clip_from_plant: depth 1 near, 0 far. */

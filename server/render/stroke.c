@@ -18,9 +18,7 @@ void stroke_init(struct stroke *stroke, const struct picture *picture, const str
     stroke->in_tile = mem_array(assets, sizeof(*stroke->in_tile));
     memcpy(stroke->fields, picture->fields, assets * sizeof(*stroke->fields));
     memcpy(stroke->visible, picture->visible, picture->visible_count * sizeof(*stroke->visible));
-    memcpy(stroke->towards, picture->towards, sizeof(stroke->towards));
     stroke->picture.view = &stroke->view;
-    stroke->picture.towards = stroke->towards;
     stroke->picture.target = &stroke->target;
     stroke->picture.fields = stroke->fields;
     stroke->picture.visible = stroke->visible;

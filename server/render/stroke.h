@@ -8,11 +8,10 @@
 #include "render/picture.h"
 
 struct stroke {
-    struct picture picture; /* view, target, towards, fields and visible point into this struct */
+    struct picture picture; /* view, target, fields and visible point into this struct */
     struct view view;
     struct target target;
     struct frame *frame;
-    double towards[3];       /* the sun */
     struct light_set *light; /* held from when it is ready; NULL: not yet */
     const struct fields_entry **fields; /* per asset */
     struct fields_entry *copies;        /* per asset, with buffers of their own; NULL: drawn at once, no copies needed */

@@ -56,6 +56,7 @@ void view_default(const struct scene *scene, int width_px, int height_px, struct
         view_own_scale(scene, view);
     }
     default_light(scene, view->light_dir);
+    view->environment = plant->environment_count > 0 ? 1 : 0;
 }
 
 bool view_is_operator(const struct view *view)
@@ -186,7 +187,8 @@ bool view_equal(const struct view *a, const struct view *b)
     get_shown(a, &a_shown);
     get_shown(b, &b_shown);
     return a->width_px == b->width_px && a->height_px == b->height_px && same_camera(&a->camera, &b->camera) && a->tier == b->tier &&
-           a->selected_asset == b->selected_asset && same_vector(a->light_dir, b->light_dir) && same_shown(&a_shown, &b_shown) &&
+           a->selected_asset == b->selected_asset && same_vector(a->light_dir, b->light_dir) &&
+           a->environment == b->environment && same_shown(&a_shown, &b_shown) &&
            visibility_equal(&a->visibility, &b->visibility) &&
            a->split == b->split && (!a->split || same_shown(&a->right, &b->right));
 }

@@ -14,7 +14,8 @@
 enum look {
     LOOK_DEFAULT, /* field colours shaded only by an additive L* within +-7; PBR elsewhere */
     LOOK_GLOSSY,  /* PBR with the field as albedo (the paper's Fig. 13); labelled, since shading changes the colours */
-    LOOK_FLAT     /* no shading */
+    LOOK_FLAT,    /* no shading */
+    LOOK_MATERIALS /* no field: all assets as their models say, in full colour */
 };
 enum tier { TIER_MOVING, TIER_STILL };
 #define VIEW_MAX_SIDE_PX 8192
@@ -53,6 +54,7 @@ struct view {
     enum tier tier;
     int selected_asset;  /* outlined; -1: none */
     double light_dir[3]; /* towards the sun, plant frame, unit length */
+    int environment;     /* surroundings: 0 the built-in sky, then the plant's own */
     struct visibility visibility;
     bool split;          /* two halves beside each other under one camera: this view left, `right` right */
     struct shown right;  /* zero where it is not split */

@@ -17,13 +17,12 @@
 
 static struct rig rig;
 static struct stand stand;
+static struct environments environments;
 
-static void sun(int i, double towards[3])
+static struct light_key sun(int i)
 {
     double height = 0.4 + 0.05 * (i % 9), across = sqrt(1 - height * height);
-    towards[0] = across * cos(0.7 * i);
-    towards[1] = across * sin(0.7 * i);
-    towards[2] = height;
+    return (struct light_key){ .towards = { across * cos(0.7 * i), across * sin(0.7 * i), height } };
 }
 
 static void *bytes_of(const struct stage *stage, const struct light_set *set, size_t asset, size_t *count)
@@ -50,18 +49,16 @@ static void test_bits_make_the_same_light(void **state)
 {
     struct stage stage;
     struct light at_once, in_bits;
-    double first[3], second[3];
+    const struct light_key suns[2] = { sun(1), sun(2) };
     (void)state;
-    sun(1, first);
-    sun(2, second);
-    assert_true(stage_init(&stage, rig.gl, &stand.toy->scene) && light_init(&at_once, &stage) && light_init(&in_bits, &stage));
-    const double *const suns[] = { first, second };
+    assert_true(stage_init(&stage, rig.gl, &stand.toy->scene) && light_init(&at_once, &stage, &environments) &&
+                light_init(&in_bits, &stage, &environments));
     for (int i = 0; i < 2; i++) {
         int steps = 1;
-        while (!light_step(&in_bits, suns[i], 0))
+        while (!light_step(&in_bits, &suns[i], 0))
             steps++;
         assert_true(steps > (int)stage.scene->asset_count);
-        struct light_set *a = light_get(&at_once, suns[i]), *b = light_get(&in_bits, suns[i]);
+        struct light_set *a = light_get(&at_once, &suns[i]), *b = light_get(&in_bits, &suns[i]);
         assert_true(a && b && !in_bits.bake);
         assert_same_light(&stage, a, b);
     }
@@ -75,26 +72,25 @@ static void test_many_lights_fit_in_a_bound(void **state)
 {
     struct stage stage;
     struct light light;
-    double towards[3];
+    struct light_key key = sun(0);
     (void)state;
-    assert_true(stage_init(&stage, rig.gl, &stand.toy->scene) && light_init(&light, &stage));
+    assert_true(stage_init(&stage, rig.gl, &stand.toy->scene) && light_init(&light, &stage, &environments));
     size_t one = bake_bytes(&stage);
     light.bound_bytes = 3 * one;
-    sun(0, towards);
-    struct light_set *held = light_get(&light, towards);
+    struct light_set *held = light_get(&light, &key);
     uint64_t id = held->id;
     light_hold(held);
     for (int i = 1; i < 40; i++) {
-        sun(i, towards);
-        assert_non_null(light_get(&light, towards));
+        key = sun(i);
+        assert_non_null(light_get(&light, &key));
         assert_true(light.bytes <= light.bound_bytes);
         assert_true(held->id == id);
     }
     assert_true(light.bytes == 3 * one);
     light_release(held);
     for (int i = 1; i < 4; i++) {
-        sun(i, towards);
-        light_get(&light, towards);
+        key = sun(i);
+        light_get(&light, &key);
     }
     assert_true(held->id != id);
     light_finish(&light);
@@ -106,12 +102,12 @@ static void test_the_nearest_sun_stands_in(void **state)
     struct stage stage;
     struct light light;
     (void)state;
-    assert_true(stage_init(&stage, rig.gl, &stand.toy->scene) && light_init(&light, &stage));
-    assert_null(light_near(&light, (double[3]){ 0, 0, 1 }));
-    light_get(&light, (double[3]){ 1, 0, 0 });
-    light_get(&light, (double[3]){ 0, 0, 1 });
-    assert_true(light_near(&light, (double[3]){ 0.6, 0, 0.8 })->towards[2] == 1);
-    assert_true(light_near(&light, (double[3]){ 0.8, 0, 0.6 })->towards[0] == 1);
+    assert_true(stage_init(&stage, rig.gl, &stand.toy->scene) && light_init(&light, &stage, &environments));
+    assert_null(light_near(&light, &(struct light_key){ .towards = { 0, 0, 1 } }));
+    light_get(&light, &(struct light_key){ .towards = { 1, 0, 0 } });
+    light_get(&light, &(struct light_key){ .towards = { 0, 0, 1 } });
+    assert_true(light_near(&light, &(struct light_key){ .towards = { 0.6, 0, 0.8 } })->key.towards[2] == 1);
+    assert_true(light_near(&light, &(struct light_key){ .towards = { 0.8, 0, 0.6 } })->key.towards[0] == 1);
     light_finish(&light);
     stage_finish(&stage);
 }
@@ -130,7 +126,7 @@ static void test_a_moving_session_does_not_wait(void **state)
     view.tier = TIER_MOVING;
     struct frame *before = stand_draw(&stand, &view);
     renderer_hurry(stand.renderer, 1);
-    sun(3, view.light_dir);
+    memcpy(view.light_dir, sun(3).towards, sizeof(view.light_dir));
     struct frame *first = stand_draw(&stand, &view);
     assert_true(same_pixels(before, first) && first->content != before->content);
     uint64_t content = first->content;
@@ -157,7 +153,7 @@ static void test_a_still_picture_waits_for_its_light(void **state)
     struct view view;
     (void)state;
     view_default(&stand.toy->scene, 320, 180, &view);
-    sun(4, view.light_dir);
+    memcpy(view.light_dir, sun(4).towards, sizeof(view.light_dir));
     struct stroke *stroke = renderer_begin(stand.renderer, &view, stand.snapshot);
     int steps = 1;
     for (; !renderer_step(stand.renderer, stroke, 1); steps++) {}
@@ -182,7 +178,10 @@ int main(void)
     stand_init(&stand, &rig, toy_unit());
     for (int i = 0; i < 8; i++)
         toy_set(stand.snapshot, i, 20 + 7 * i, QUALITY_GOOD);
+    if (!environments_init(&environments, rig.gl, &stand.toy->plant, rig.workers))
+        return 1;
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    environments_finish(&environments);
     stand_finish(&stand);
     rig_finish(&rig);
     return failed;

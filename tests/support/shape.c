@@ -147,6 +147,22 @@ void shape_cylinder(struct shape *shape, uint32_t material, const double a[3], c
     end(shape);
 }
 
+void shape_sphere(struct shape *shape, uint32_t material, const double middle[3], double radius, int n)
+{
+    uint32_t first = (uint32_t)shape->vertex_count;
+    begin(shape, material);
+    for (int y = 0; y <= n; y++)
+        for (int x = 0; x <= 2 * n; x++) {
+            double up = M_PI * (y - 0.5 * n) / n, turn = M_PI * x / n;
+            double normal[3] = { cos(up) * cos(turn), cos(up) * sin(turn), sin(up) }, p[3];
+            for (int c = 0; c < 3; c++)
+                p[c] = middle[c] + radius * normal[c];
+            add_vertex(shape, p, normal);
+        }
+    add_grid(shape, first, 2 * n, n);
+    end(shape);
+}
+
 void shape_finish(struct shape *shape)
 {
     mem_free(shape->positions);

@@ -11,6 +11,12 @@ struct shape { /* zero-initialise */
     float (*positions)[3], (*normals)[3];
     uint32_t *indices;
     struct asset_primitive *primitives;
+    /* What it wears, the caller's; NULL: those of toy.h, and no textures. */
+    const struct asset_material *materials;
+    const struct asset_texture *textures;
+    const uint8_t *texels;
+    const float (*texcoords)[2];
+    size_t material_count, texture_count, texel_bytes;
     size_t vertex_count, index_count, primitive_count;
     size_t position_capacity, normal_capacity, index_capacity, primitive_capacity;
 };
@@ -20,6 +26,8 @@ void shape_plate(struct shape *shape, uint32_t material, const double corner[3],
 void shape_box(struct shape *shape, uint32_t material, const double low[3], const double high[3]);
 /* From a to b; the radius goes from ra to rb. Round caps where round is set, else flat. */
 void shape_cylinder(struct shape *shape, uint32_t material, const double a[3], const double b[3], double ra, double rb, int round);
+/* A ball of 2 n x n squares. */
+void shape_sphere(struct shape *shape, uint32_t material, const double middle[3], double radius, int n);
 void shape_finish(struct shape *shape);
 
 #endif

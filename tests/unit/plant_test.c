@@ -248,6 +248,32 @@ static void unknown_keys_are_named(void **state)
     FOUND(f, { "plant.yaml", 1, 19, "expected the name of a key, found a list" });
 }
 
+/* Radiance HDR of one white pixel, and a black one that is no picture of anything. */
+static void surroundings_are_read(void **state)
+{
+    struct plant_case *f = *state;
+    static const char hdr[] = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n\x80\x80\x80\x81\x80\x80\x80\x81";
+    char *one = temp_write(f->folder, "hall.hdr", hdr, sizeof(hdr) - 1), *two = temp_write(f->folder, "sky.hdr", hdr, sizeof(hdr) - 1);
+    char *text = temp_write_text(f->folder, "yard.exr", "no picture");
+    plant_case_load(f,
+                    "plant: { name: P }\nassets: [{ id: E-1, model: m.glb }]\ngroups: [{ id: g, unit: K, min: 0, max: 1 }]\n"
+                    "sources: [{ id: plc, type: modbus, host: h }]\ntags: tags.csv\nenvironment: hall.hdr\n",
+                    small_csv);
+    plant_case_assert_loaded(f, 0);
+    assert_int_equal(f->plant->environment_count, 1);
+    assert_string_equal(f->plant->environments[0].name, "hall");
+    assert_int_equal(plant_find_environment(f->plant, "hall"), 1);
+    assert_int_equal(plant_find_environment(f->plant, "sky"), 0);
+    assert_int_equal(plant_find_environment(f->plant, "yard"), -1);
+    load_with(f, 1, "plant: { name: P }\nenvironment: [hall.hdr, none.hdr, ./hall.hdr, sky.hdr, yard.exr, 3.5, {}]");
+    FOUND(f, { "plant.yaml", 2, 25, "none.hdr" }, { "plant.yaml", 2, 35, "the name 'hall' is taken" },
+          { "plant.yaml", 2, 47, "the name 'sky' is taken" }, { "plant.yaml", 2, 56, "yard.exr" }, { "plant.yaml", 2, 66, "3.5" },
+          { "plant.yaml", 2, 71, "environment: expected the path of a picture, found" });
+    mem_free(one);
+    mem_free(two);
+    mem_free(text);
+}
+
 static void missing_keys_are_named(void **state)
 {
     struct plant_case *f = *state;
@@ -540,6 +566,7 @@ int main(void)
         TEST(an_asset_stands_upright_in_a_plant_that_is_y_up),
         TEST(the_locale_changes_nothing),
         TEST(unknown_keys_are_named),
+        TEST(surroundings_are_read),
         TEST(missing_keys_are_named),
         TEST(wrong_types_are_named),
         TEST(bad_choices_list_the_allowed),

@@ -13,7 +13,7 @@ const INTERPOLATIONS = [
     ['paper', 'Paper', 'Algorithm 1 of Kim & Suh 2025: smoother, does not reach the readings'],
 ];
 const SHOWS = [['value', 'Values'], ['operator', 'Limits']];
-const LOOKS = [['default', 'Measured'], ['glossy', 'Glossy'], ['flat', 'Flat']];
+const LOOKS = [['default', 'Measured'], ['glossy', 'Glossy'], ['flat', 'Flat'], ['materials', 'Materials']];
 
 // A row of buttons of which one is pressed; radio buttons underneath, so the keyboard works as everywhere.
 function fillSegments(fieldset, name, choices, onChoose) {

@@ -4,7 +4,7 @@ import { valid } from './camera.js';
 
 const CHOICES = { // null: any name; the server knows which there are
     group: null, interpolation: ['shepard', 'paper'], distance: ['geodesic', 'euclidean'], colormap: null,
-    look: ['default', 'glossy', 'flat'],
+    look: ['default', 'glossy', 'flat', 'materials'],
 };
 const SETS = { hide: 'hidden', only: 'isolate', ghost: 'ghost' }; // lists of assets
 const round = (x) => Number(x.toFixed(4)) + 0;

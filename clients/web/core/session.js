@@ -7,9 +7,9 @@ import { decodeFrame, decodeMessage, WireError } from './wire.js';
 
 export const PARAMS = [
     'group', 'interpolation', 'distance', 'fill', 'strength', 'decay', 'power', 'radius_m', 'reach_m', 'colormap', 'ramp_interval', 'range',
-    'scale', 'breaks', 'isolines', 'look', 'light', 'selected', 'hidden', 'isolate', 'ghost', 'clip', 'show', 'split',
+    'scale', 'breaks', 'isolines', 'look', 'light', 'environment', 'selected', 'hidden', 'isolate', 'ghost', 'clip', 'show', 'split',
 ];
-const SHARED = ['light', 'selected', 'hidden', 'isolate', 'ghost', 'clip', 'split']; // by both halves
+const SHARED = ['light', 'environment', 'selected', 'hidden', 'isolate', 'ghost', 'clip', 'split']; // by both halves
 const GROUPS_OWN = ['interpolation', 'distance', 'fill', 'power', 'radius_m', 'reach_m', 'scale', 'isolines'];
 const CODECS = ['jpeg', 'png'];
 const QUALITIES = ['good', 'uncertain', 'bad'];

@@ -1,0 +1,366 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Materials against glTF's own reflectance, integrated here in double precision: a grid of spheres from rough to smooth, dielectric
+   to metal, under surroundings read from a file and under the sun; and white ones in a white furnace, which must not be seen. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "tests/support/rig.h"
+#include "tests/support/temp.h"
+
+enum { STEPS = 5, SPHERES = STEPS * STEPS, SIDE_PX = 64, WIDTH = 256, HEIGHT = 128, SAMPLES = 400 };
+static const double SKY_LIGHT = 0.55, SUN_LIGHT = 0.78, SPACE_M = 8; /* as in shaders/environment.glsl; between the spheres */
+static struct rig rig;
+
+struct scene_of {
+    struct stand stand;
+    struct asset_material materials[SPHERES];
+    char *folder, *path;
+    double (*radiance)(const double towards[3], int channel);
+    double level[3]; /* what a level white surface gets of it, over pi */
+};
+
+/* --- surroundings ---------------------------------------------------------------------------------------------------------------- */
+
+static double white(const double towards[3], int channel)
+{
+    (void)towards;
+    (void)channel;
+    return 3;
+}
+
+/* Blue above, brown below, a wide warm lamp to one side. */
+static double room(const double towards[3], int channel)
+{
+    static const double above[3] = { 0.7, 0.9, 1.2 }, below[3] = { 0.35, 0.30, 0.25 }, lamp[3] = { 3.0, 2.6, 1.8 };
+    double up = 0.5 + 0.5 * towards[2], at = 0.8 * towards[0] - 0.48 * towards[1] + 0.36 * towards[2];
+    return below[channel] + (above[channel] - below[channel]) * up + lamp[channel] * exp(12 * (at - 1));
+}
+
+/* Radiance HDR: mantissas and a common exponent. The middle column looks along +x. */
+static void write_hdr(const char *path, double (*radiance)(const double[3], int))
+{
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    fprintf(file, "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y %d +X %d\n", HEIGHT, WIDTH);
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        double down = M_PI * (i / WIDTH + 0.5) / HEIGHT, turn = 2 * M_PI * (i % WIDTH + 0.5) / WIDTH - M_PI;
+        double towards[3] = { sin(down) * cos(turn), -sin(down) * sin(turn), cos(down) }, most = 0, c[3];
+        for (int k = 0; k < 3; k++)
+            most = fmax(most, c[k] = radiance(towards, k));
+        int exponent = (int)ceil(log2(most + 1e-9));
+        for (int k = 0; k < 3; k++)
+            fputc((int)fmin(c[k] / ldexp(1, exponent) * 256, 255), file);
+        fputc(exponent + 128, file);
+    }
+    fclose(file);
+}
+
+/* Not in rows: none may stand in the sight of another, seen from any of the few directions that light comes from. */
+static const double *place_of(int i)
+{
+    static double place[3];
+    place[0] = SPACE_M * (i % STEPS);
+    place[1] = 2 * (i * 7 % STEPS);
+    place[2] = SPACE_M * (i / STEPS) + 0.9 * (i % STEPS);
+    return place;
+}
+
+static void scene_init(struct scene_of *scene, double (*radiance)(const double[3], int), const double base[3])
+{
+    struct toy *toy = toy_create();
+    struct shape shape = { .materials = scene->materials, .material_count = SPHERES };
+    *scene = (struct scene_of){ .radiance = radiance };
+    for (int i = 0; i < SPHERES; i++) {
+        scene->materials[i] = (struct asset_material){ .base_color = { (float)base[0], (float)base[1], (float)base[2], 1 },
+                                                       .metallic = (float)(i / STEPS) / (STEPS - 1),
+                                                       .roughness = 0.1f + 0.9f * (float)(i % STEPS) / (STEPS - 1),
+                                                       .normal_scale = 1,
+                                                       .occlusion_strength = 1,
+                                                       .base_color_texture = ASSET_NO_TEXTURE,
+                                                       .metallic_roughness_texture = ASSET_NO_TEXTURE,
+                                                       .normal_texture = ASSET_NO_TEXTURE,
+                                                       .occlusion_texture = ASSET_NO_TEXTURE,
+                                                       .emissive_texture = ASSET_NO_TEXTURE };
+        shape_sphere(&shape, (uint32_t)i, place_of(i), 0.5, 96);
+    }
+    toy_add(toy, "spheres", &shape, (double[3]){ 0, 0, 0 }, NULL, 0);
+    scene->folder = temp_folder_create();
+    scene->path = mem_printf("%s/room.hdr", scene->folder);
+    write_hdr(scene->path, radiance);
+    toy->plant.environments[0] = (struct plant_environment){ .name = (char *)"room", .path = scene->path };
+    toy->plant.environment_count = 1;
+    for (int c = 0; c < 3; c++)
+        for (int i = 0; i < WIDTH * HEIGHT; i++) {
+            double down = M_PI * (i / WIDTH + 0.5) / HEIGHT, turn = 2 * M_PI * (i % WIDTH + 0.5) / WIDTH;
+            double towards[3] = { sin(down) * cos(turn), sin(down) * sin(turn), cos(down) };
+            scene->level[c] += fmax(towards[2], 0) * radiance(towards, c) * sin(down) * 2 * M_PI / WIDTH / HEIGHT;
+        }
+    stand_init(&scene->stand, &rig, toy);
+}
+
+static void scene_finish(struct scene_of *scene)
+{
+    stand_finish(&scene->stand);
+    mem_free(scene->path);
+    temp_folder_destroy(&scene->folder);
+}
+
+/* From -y, so that a pixel's place is x and z. */
+static struct frame *draw_sphere(struct scene_of *scene, int i, const double sun[3])
+{
+    struct view view;
+    const double *at = place_of(i);
+    view_default(&scene->stand.toy->scene, SIDE_PX, SIDE_PX, &view);
+    assert_int_equal(view.environment, 1);
+    view.look = LOOK_MATERIALS;
+    view.camera = (struct camera){ .eye_m = { at[0], -5, at[2] }, .target_m = { at[0], 0, at[2] }, .up = { 0, 0, 1 }, .fov_deg = 45, .height_m = 1.1 };
+    memcpy(view.light_dir, sun, sizeof(view.light_dir));
+    return stand_draw(&scene->stand, &view);
+}
+
+/* --- what it should look like ---------------------------------------------------------------------------------------------------- */
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static double radical_inverse(int i)
+{
+    double part = 0.5, sum = 0;
+    for (; i; i >>= 1, part *= 0.5)
+        sum += (i & 1) * part;
+    return sum;
+}
+
+static void around(const double n[3], double cosine, double turn, double out[3])
+{
+    double t[3] = { -n[1], n[0], 0 }, size = hypot(n[0], n[1]), flat = sqrt(fmax(1 - cosine * cosine, 0));
+    if (size < 1e-6)
+        t[0] = size = 1;
+    t[0] /= size, t[1] /= size;
+    const double b[3] = { n[1] * t[2] - n[2] * t[1], n[2] * t[0] - n[0] * t[2], n[0] * t[1] - n[1] * t[0] };
+    for (int c = 0; c < 3; c++)
+        out[c] = n[c] * cosine + flat * (cos(turn) * t[c] + sin(turn) * b[c]);
+}
+
+static double smith(double n_l, double n_v, double a2)
+{
+    return 0.5 / (n_l * sqrt(n_v * n_v * (1 - a2) + a2) + n_v * sqrt(n_l * n_l * (1 - a2) + a2));
+}
+
+/* The glTF 2.0 specification, appendix B: light once reflected, and what enters a dielectric and comes out again. What rough facets
+   throw at one another is given back by scaling (Turquin, "Practical multiple scattering compensation for microfacet models"). */
+static void reflected_sky(const struct scene_of *scene, const struct asset_material *m, const double n[3], const double v[3], double out[3])
+{
+    double alpha = m->roughness * m->roughness, a2 = alpha * alpha, n_v = dot(n, v), all = 0, once = 0;
+    double clear[3] = { 0 }, metal[3] = { 0 }, soft[3] = { 0 };
+    for (int i = 0; i < SAMPLES; i++) {
+        double part = (i + 0.5) / SAMPLES, h[3], l[3], turn = 2 * M_PI * radical_inverse(i);
+        around(n, sqrt((1 - part) / (1 + (a2 - 1) * part)), turn, h);
+        double v_h = dot(v, h), n_h = dot(n, h);
+        for (int c = 0; c < 3; c++)
+            l[c] = 2 * v_h * h[c] - v[c];
+        double n_l = dot(n, l);
+        if (n_l > 0 && v_h > 0) {
+            double weight = 4 * smith(n_l, n_v, a2) * n_l * v_h / n_h / SAMPLES, x = pow(1 - v_h, 5);
+            all += weight;
+            once += weight * (0.04 + 0.96 * x);
+            for (int c = 0; c < 3; c++) {
+                double light = weight * scene->radiance(l, c) / scene->level[c];
+                clear[c] += light * (0.04 + 0.96 * x);
+                metal[c] += light * (m->base_color[c] + (1 - m->base_color[c]) * x);
+            }
+        }
+        around(n, sqrt(1 - part), turn, l);
+        for (int c = 0; c < 3; c++)
+            soft[c] += scene->radiance(l, c) / scene->level[c] / SAMPLES;
+    }
+    double more = (1 - all) / all, let_in = 1 - once * (1 + 0.04 * more);
+    for (int c = 0; c < 3; c++) {
+        double base = m->base_color[c];
+        out[c] = SKY_LIGHT * ((1 - m->metallic) * (clear[c] * (1 + 0.04 * more) + base * let_in * soft[c]) +
+                              m->metallic * metal[c] * (1 + base * more));
+    }
+}
+
+static void reflected_sun(const struct asset_material *m, const double n[3], const double v[3], const double l[3], double out[3])
+{
+    double alpha = m->roughness * m->roughness, a2 = alpha * alpha, n_l = dot(n, l), n_v = dot(n, v), h[3], size;
+    for (int c = 0; c < 3; c++)
+        h[c] = v[c] + l[c];
+    size = sqrt(dot(h, h));
+    double n_h = dot(n, h) / size, v_h = dot(v, h) / size, d = n_h * n_h * (a2 - 1) + 1;
+    for (int c = 0; c < 3 && n_l > 0; c++) {
+        double f0 = 0.04 + (m->base_color[c] - 0.04) * m->metallic, fresnel = f0 + (1 - f0) * pow(1 - v_h, 5);
+        out[c] += SUN_LIGHT * n_l * (m->base_color[c] * (1 - m->metallic) * (1 - fresnel) + a2 / (d * d) * smith(n_l, n_v, a2) * fresnel);
+    }
+}
+
+/* Khronos PBR Neutral, then sRGB, 0..255. */
+static void shown(double c[3])
+{
+    double least = fmin(c[0], fmin(c[1], c[2])), offset = least < 0.08 ? least - 6.25 * least * least : 0.04, peak;
+    for (int i = 0; i < 3; i++)
+        c[i] -= offset;
+    peak = fmax(c[0], fmax(c[1], c[2]));
+    if (peak >= 0.76) {
+        double now = 1 - 0.24 * 0.24 / (peak - 0.52), grey = 1 - 1 / (0.15 * (peak - now) + 1);
+        for (int i = 0; i < 3; i++)
+            c[i] = c[i] * now / peak * (1 - grey) + now * grey;
+    }
+    for (int i = 0; i < 3; i++)
+        c[i] = 255 * (c[i] <= 0.0031308 ? 12.92 * c[i] : 1.055 * pow(c[i], 1 / 2.4) - 0.055);
+}
+
+static void lab_of(const double rgb[3], double lab[3])
+{
+    double l[3], f[3];
+    for (int i = 0; i < 3; i++)
+        l[i] = rgb[i] / 255 > 0.04045 ? pow((rgb[i] / 255 + 0.055) / 1.055, 2.4) : rgb[i] / 255 / 12.92;
+    const double xyz[3] = { (0.4124 * l[0] + 0.3576 * l[1] + 0.1805 * l[2]) / 0.9505, 0.2126 * l[0] + 0.7152 * l[1] + 0.0722 * l[2],
+                            (0.0193 * l[0] + 0.1192 * l[1] + 0.9505 * l[2]) / 1.089 };
+    for (int i = 0; i < 3; i++)
+        f[i] = xyz[i] > 0.008856 ? cbrt(xyz[i]) : 7.787 * xyz[i] + 16.0 / 116;
+    lab[0] = 116 * f[1] - 16;
+    lab[1] = 500 * (f[0] - f[1]);
+    lab[2] = 200 * (f[1] - f[2]);
+}
+
+static double difference(const uint8_t *bgrx, const double want[3])
+{
+    const double got[3] = { bgrx[2], bgrx[1], bgrx[0] };
+    double a[3], b[3], square = 0;
+    lab_of(got, a);
+    lab_of(want, b);
+    for (int i = 0; i < 3; i++)
+        square += (a[i] - b[i]) * (a[i] - b[i]);
+    return sqrt(square);
+}
+
+/* False: not on the sphere, or at its rim. */
+static bool normal_at(int x, int y, double n[3])
+{
+    n[0] = ((x + 0.5) / SIDE_PX - 0.5) * 1.1 / 0.5;
+    n[2] = (0.5 - (y + 0.5) / SIDE_PX) * 1.1 / 0.5;
+    double square = n[0] * n[0] + n[2] * n[2];
+    n[1] = -sqrt(fmax(1 - square, 0));
+    return square < 0.92 * 0.92;
+}
+
+/* Mean CIELAB difference of one sphere; `step`: of the pixels that are looked at. */
+static double compare(struct scene_of *scene, int i, const double sun[3])
+{
+    const double v[3] = { 0, -1, 0 };
+    double sum = 0;
+    int count = 0;
+    struct frame *frame = draw_sphere(scene, i, sun);
+    for (int y = 2; y < SIDE_PX; y += 4)
+        for (int x = 2; x < SIDE_PX; x += 4) {
+            double n[3], want[3];
+            if (!normal_at(x, y, n) || fabs(dot(n, sun)) < 0.12) /* where the sun grazes, shadows are soft */
+                continue;
+            reflected_sky(scene, &scene->materials[i], n, v, want);
+            reflected_sun(&scene->materials[i], n, v, sun, want);
+            shown(want);
+            sum += difference(frame_pixel(frame, x, y), want);
+            count++;
+        }
+    frame_unref(&frame);
+    return sum / count;
+}
+
+/* --- tests ------------------------------------------------------------------------------------------------------------------------- */
+
+static const double from_behind[3] = { 0, 1, 0 }, from_the_left[3] = { -0.6, -0.64, 0.48 };
+
+static void test_grid(void **state)
+{
+    struct scene_of scene;
+    double all[2] = { 0 }, worst[2] = { 0 };
+    (void)state;
+    scene_init(&scene, room, (double[3]){ 0.8, 0.45, 0.2 });
+    for (int i = 0; i < SPHERES; i++)
+        for (int lit = 0; lit < 2; lit++) {
+            double mean = compare(&scene, i, lit ? from_the_left : from_behind);
+            if (mean > 2)
+                print_message("# metallic %.2f, roughness %.2f, %s: CIELAB difference %.2f\n", (double)scene.materials[i].metallic,
+                              (double)scene.materials[i].roughness, lit ? "in the sun" : "in the shade", mean);
+            all[lit] += mean / SPHERES;
+            worst[lit] = fmax(worst[lit], mean);
+        }
+    print_message("# mean CIELAB difference %.2f in the shade, %.2f in the sun; of the worst sphere %.2f, %.2f\n", all[0], all[1], worst[0],
+                  worst[1]);
+    scene_finish(&scene);
+    assert_true(all[0] <= 2 && all[1] <= 2 && worst[0] <= 4 && worst[1] <= 4);
+}
+
+/* Under even light, whatever is white comes out as bright as the light, from face to rim. */
+static void test_white_furnace(void **state)
+{
+    struct scene_of scene;
+    double want[3] = { SKY_LIGHT, SKY_LIGHT, SKY_LIGHT }, worst = 0;
+    int off = 0, all = 0;
+    (void)state;
+    scene_init(&scene, white, (double[3]){ 1, 1, 1 });
+    shown(want);
+    for (int i = 0; i < SPHERES; i++) {
+        struct frame *frame = draw_sphere(&scene, i, from_behind);
+        for (int y = 0; y < SIDE_PX; y++)
+            for (int x = 0; x < SIDE_PX; x++) {
+                double n[3];
+                for (int c = 0; c < 3 && normal_at(x, y, n); c++, all++) {
+                    double by = fabs(frame_pixel(frame, x, y)[c] - want[c]) / want[c];
+                    worst = fmax(worst, by);
+                    off += by > 0.03;
+                }
+            }
+        frame_unref(&frame);
+    }
+    print_message("# white in white: %.1f %% of the pixels off by more than 3 %%, the worst by %.1f %%\n", 100.0 * off / all, 100 * worst);
+    scene_finish(&scene);
+    assert_true(off <= 0.04 * all && worst <= 0.07); /* where one of the few directions of the sky is hidden by a neighbour */
+}
+
+/* A dark, smooth dielectric mirrors some percent in its middle and much more at its rim. */
+static void test_rim_mirrors(void **state)
+{
+    struct scene_of scene;
+    (void)state;
+    scene_init(&scene, white, (double[3]){ 0, 0, 0 });
+    struct frame *frame = draw_sphere(&scene, 0, from_behind);
+    const uint8_t *middle = frame_pixel(frame, SIDE_PX / 2, SIDE_PX / 2), *rim = frame_pixel(frame, (int)(SIDE_PX * (0.5 + 0.44)), SIDE_PX / 2);
+    double want[3], n[3];
+    const double v[3] = { 0, -1, 0 };
+    assert_true(normal_at(SIDE_PX / 2, SIDE_PX / 2, n));
+    reflected_sky(&scene, &scene.materials[0], n, v, want);
+    shown(want);
+    print_message("# middle %d (wanted %.1f), rim %d\n", middle[1], want[1], rim[1]);
+    assert_true(fabs(middle[1] - want[1]) <= 3 && rim[1] > 2 * middle[1]);
+    frame_unref(&frame);
+    scene_finish(&scene);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_grid),
+        cmocka_unit_test(test_white_furnace),
+        cmocka_unit_test(test_rim_mirrors),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    if (!rig_init(&rig, "materials_test"))
+        return 0;
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    rig_finish(&rig);
+    return failed;
+}
