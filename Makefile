@@ -27,7 +27,7 @@ pkg_libs   := $(shell pkg-config --libs $(packages) 2>/dev/null) -lflann -lcholm
 
 warn   := -Wall -Wextra -Wshadow -Wpointer-arith -Wvla -Wundef -Wno-psabi
 include := -I. -Iserver -I$(gen) -isystem $(gen)/glad/include -isystem /usr/include/suitesparse $(pkg_cflags)
-common := $(flags_$(config)) $(include) -MMD -MP -pthread -fno-math-errno -fno-trapping-math
+common := $(flags_$(config)) $(include) -MMD -MP -pthread -fno-math-errno
 cflags   = -std=c11 -D_GNU_SOURCE $(warn) -Wstrict-prototypes -Wmissing-prototypes $(common) $(CFLAGS)
 cxxflags = -std=c++17 -D_GNU_SOURCE $(warn) $(common) $(CXXFLAGS)
 ldflags  = $(flags_$(config)) -pthread -Wl,--as-needed $(LDFLAGS)
@@ -77,6 +77,8 @@ $(out)/lib/sim.a: $(call objects,$(filter-out %/sim.c,$(sim_sources)))
 $(out)/lib/%.a:
 	@mkdir -p $(@D); rm -f $@; $(AR) rcs $@ $^
 
+# Loops that choose between two numbers become wide only if no comparison can trap.
+$(call objects,server/surface/surface_field.c preprocess/shares.c): CFLAGS += -fno-trapping-math
 $(out)/obj/%.o: %.c Makefile | $(gen)/glad/include/glad/gl.h
 	@mkdir -p $(@D); echo "  CC   $<"
 	@$(CC) $(cflags) -c -o $@ $<

@@ -172,7 +172,7 @@ static double box_distance2(const struct node *node, const double p[3])
     return sum;
 }
 
-/* Its plane alone is farther than that: most triangles in a box that p is in. */
+/* Most triangles in a box that p is in are. */
 static bool plane_is_farther(const double p[3], const double a[3], const double b[3], const double c[3], double distance2)
 {
     double ab[3], ac[3], ap[3], n[3];
@@ -182,6 +182,14 @@ static bool plane_is_farther(const double p[3], const double a[3], const double 
     vec_cross(ab, ac, n);
     double height = vec_dot(ap, n), length2 = vec_dot(n, n);
     return height * height > distance2 * length2 * (1 + 1e-9);
+}
+
+bool triangle_is_farther(const double p[3], const double a[3], const double b[3], const double c[3], double distance_m)
+{
+    for (int i = 0; i < 3; i++)
+        if (p[i] < min_of(a[i], min_of(b[i], c[i])) - distance_m || p[i] > max_of(a[i], max_of(b[i], c[i])) + distance_m)
+            return true;
+    return plane_is_farther(p, a, b, c, distance_m * distance_m);
 }
 
 static void try_tri(const struct bvh *bvh, uint32_t tri, const double p[3], double *best2, struct bvh_place *place)

@@ -34,5 +34,7 @@ bool triangle_crossed(const double p[3], const double q[3], const double a[3], c
 
 /* The place of the triangle nearest to a point, as weights of its corners. */
 void triangle_nearest(const double p[3], const double a[3], const double b[3], const double c[3], double weights[3]);
+/* Its box or its plane alone is farther than that: a quick look. */
+bool triangle_is_farther(const double p[3], const double a[3], const double b[3], const double c[3], double distance_m);
 
 #endif

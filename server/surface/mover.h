@@ -1,0 +1,61 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Distances of a sensor that is added to a loaded asset, or moved on it, while the plant is shown. Straight ones come at once; those along
+   the surface when they are ready. */
+#ifndef SURFACE_MOVER_H
+#define SURFACE_MOVER_H
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/log.h"
+#include "base/workers.h"
+
+struct mover;
+
+struct mover_shape { /* an asset's finest level; what it points to must outlive the mover */
+    const float (*positions_m)[3];
+    size_t vertex_count;
+    const uint32_t *triangles; /* 3 each */
+    size_t triangle_count;
+};
+/* Never NULL. The surface is made in the background, on a worker: seconds for a large asset, and some hundred bytes a triangle. Until
+   then what is asked for waits. Thread: create and destroy from one thread; all else from any. */
+struct mover *mover_create(struct log *log, struct workers *workers, const struct mover_shape *shape);
+/* Cancels what waits, and returns when all of it is done with. &NULL is fine; leaves NULL. Not from a `done`. */
+void mover_destroy(struct mover **mover);
+
+enum mover_state { MOVER_WARMING, MOVER_WARM, MOVER_BROKEN }; /* broken: no triangle has an area, or out of memory; logged */
+enum mover_state mover_state(struct mover *mover);
+
+struct mover_place {
+    double surface_m[3]; /* on the asset, nearest to the point asked for: once warm, on what is not hidden inside another part */
+    double distance_m;   /* from that point */
+    uint32_t vertex;     /* near it: the nearest one, once warm */
+};
+
+enum mover_status {
+    MOVER_DONE,
+    MOVER_CANCELLED,
+    MOVER_NO_SURFACE, /* the state is broken */
+    MOVER_NO_MEMORY,
+};
+struct mover_result {
+    enum mover_status status;
+    uint64_t ticket;
+    struct mover_place place;
+    float *geodesic_m; /* MOVER_DONE: of each vertex, INFINITY where no way leads; the receiver's, mem_free. Else NULL */
+};
+
+/* Where the sensor would be, and the straight-line distance of each vertex from there (euclidean_m may be NULL): at once. False: the point
+   is not finite, or farther from the asset than the asset is large, or there is no triangle. */
+bool mover_place(struct mover *mover, const double point_m[3], struct mover_place *place, float *euclidean_m);
+
+/* Distances along the surface. done(arg, result) is called exactly once, on a worker (or in mover_destroy and mover_cancel, by their
+   caller, with MOVER_CANCELLED), never under a lock of the mover. The ticket, or 0: the point is refused by mover_place, and done is not
+   called. */
+uint64_t mover_ask(struct mover *mover, const double point_m[3], void (*done)(void *arg, struct mover_result *result), void *arg);
+/* What waits is cancelled at once, what is under way when it is through. Of a ticket that is done with: nothing. A sensor that is dragged
+   cancels its last ticket before it asks again. */
+void mover_cancel(struct mover *mover, uint64_t ticket);
+
+#endif

@@ -1,0 +1,343 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Sensors moved on a loaded asset: the distances that plantcast-prep would store, each ask answered once, and what is refused. */
+#include "surface/mover.h"
+
+#include <math.h>
+#include <pthread.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include <cmocka.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "scene/asset.h"
+#include "tests/support/cad.h"
+#include "tests/support/prep_case.h"
+#include "tests/support/temp.h"
+
+#define CLOSE_ENOUGH 1e-3 /* of the largest distance */
+#define ON 1e-3           /* m: bridges move the surface by less */
+#define MOST 0.05         /* at single points inside another part, or where a thin piece hangs by another bridge */
+
+struct box { /* where a result comes to */
+    pthread_mutex_t lock;
+    pthread_cond_t came;
+    struct mover_result result;
+    int count, done_count;
+};
+
+static void box_init(struct box *box)
+{
+    *box = (struct box){ .lock = PTHREAD_MUTEX_INITIALIZER, .came = PTHREAD_COND_INITIALIZER };
+}
+
+static void put_into_box(void *arg, struct mover_result *result)
+{
+    struct box *box = arg;
+    pthread_mutex_lock(&box->lock);
+    mem_free(box->result.geodesic_m);
+    box->result = *result;
+    box->done_count += result->status == MOVER_DONE;
+    box->count++;
+    pthread_cond_broadcast(&box->came);
+    pthread_mutex_unlock(&box->lock);
+}
+
+static void wait_for(struct box *box, int count)
+{
+    pthread_mutex_lock(&box->lock);
+    while (box->count < count)
+        pthread_cond_wait(&box->came, &box->lock);
+    pthread_mutex_unlock(&box->lock);
+}
+
+static struct log *the_log;
+static struct workers *workers;
+
+static int set_up(void **state)
+{
+    the_log = log_create(LOG_ERROR);
+    workers = workers_create(2);
+    return prep_case_set_up(state);
+}
+
+static int tear_down(void **state)
+{
+    workers_destroy(&workers);
+    log_destroy(&the_log);
+    return prep_case_tear_down(state);
+}
+
+/* --- against plantcast-prep --------------------------------------------------------------------------------------------------- */
+
+static struct mover_shape finest_of(const struct asset *asset)
+{
+    const struct asset_view *view = &asset->view;
+    const struct asset_level *finest = &view->levels[0];
+    const struct asset_primitive *first = &view->primitives[finest->first_primitive], *last = first + finest->primitive_count - 1;
+    return (struct mover_shape){ .positions_m = view->positions_m,
+                                 .vertex_count = finest->vertex_count,
+                                 .triangles = view->indices + first->first_index,
+                                 .triangle_count = (last->first_index + last->index_count - first->first_index) / 3 };
+}
+
+static struct asset *prepared(struct prep_case *c)
+{
+    char *model = realpath("build/demo/plant.glb", NULL);
+    if (!model) {
+        print_message("# skipped: there is no build/demo/plant.glb\n");
+        skip();
+    }
+    char *yaml = mem_printf("plant: { name: Moved }\n"
+                            "assets: [{ id: E-101, model: %s, nodes: E-101, up: y }]\n"
+                            "groups: [{ id: t, unit: K, min: 0, max: 1 }]\n"
+                            "tags: tags.csv\n",
+                            model);
+    prep_case_plant(c, yaml);
+    prep_case_tags(c, "a,,,,t,E-101,,-15.83,-8.68,2.09\n"
+                      "b,,,,t,E-101,,-16.0,-7.53,2.18\n"
+                      "c,,,,t,E-101,,-16.26,-3.7057,1.1497\n");
+    prep_case_expect(c, "$PLANT --report json", 0);
+    json_t *report = prep_case_json(&c->out);
+    const char *file = json_string_value(json_object_get(json_array_get(json_object_get(report, "assets"), 0), "file"));
+    assert_non_null(file);
+    char *path = mem_printf("%s/plant.prepared/%s", c->folder, file);
+    struct asset *asset = asset_open(the_log, path);
+    assert_non_null(asset);
+    json_decref(report);
+    mem_free(path);
+    mem_free(yaml);
+    free(model);
+    return asset;
+}
+
+static void compare(const struct asset *asset, size_t sensor, const struct mover_result *result)
+{
+    const struct asset_view *view = &asset->view;
+    const float *stored = view->geodesic_m + sensor * view->header->vertex_count;
+    double largest = 0, worst = 0, sum = 0;
+    size_t count = view->levels[0].vertex_count, far = 0;
+    for (size_t v = 0; v < count; v++) {
+        assert_true(isfinite(stored[v]) == isfinite(result->geodesic_m[v]));
+        if (!isfinite(stored[v]))
+            continue;
+        largest = fmax(largest, (double)stored[v]);
+        worst = fmax(worst, fabs((double)stored[v] - (double)result->geodesic_m[v]));
+        sum += fabs((double)stored[v] - (double)result->geodesic_m[v]);
+    }
+    for (size_t v = 0; v < count; v++)
+        far += isfinite(stored[v]) && fabs((double)stored[v] - (double)result->geodesic_m[v]) > 3 * CLOSE_ENOUGH * largest;
+    print_message("# sensor %zu: differs from the stored distances by %.4f %% on average, %.4f %% at most; by more than %g %% at %.2f %%\n",
+                  sensor, 100 * sum / (double)count / largest, 100 * worst / largest, 300 * CLOSE_ENOUGH, 100 * (double)far / (double)count);
+    assert_true(sum / (double)count < CLOSE_ENOUGH * largest);
+    assert_true(worst < MOST * largest);
+    assert_true(far < count / 20);
+}
+
+static double distance(const float p[3], const double q[3])
+{
+    return hypot(hypot((double)p[0] - q[0], (double)p[1] - q[1]), (double)p[2] - q[2]);
+}
+
+static void a_moved_sensor_has_the_distances_that_would_be_stored(void **state)
+{
+    struct asset *asset = prepared(*state);
+    struct mover_shape shape = finest_of(asset);
+    struct mover *mover = mover_create(the_log, workers, &shape);
+    float *euclidean_m = mem_array(shape.vertex_count, sizeof(*euclidean_m));
+    struct mover_place cold;
+    assert_true(mover_place(mover, (const double[3]){ 0, 0, 0 }, &cold, euclidean_m));
+    for (size_t v = 0; v < shape.vertex_count; v++)
+        assert_float_equal(euclidean_m[v], distance(shape.positions_m[v], cold.surface_m), 1e-5);
+    while (mover_state(mover) == MOVER_WARMING)
+        clock_sleep_ns(NS_PER_MS);
+    for (size_t s = 0; s < asset->view.header->sensor_count; s++) {
+        const struct asset_sensor *sensor = &asset->view.sensors[s];
+        const double point[3] = { (double)sensor->position_m[0], (double)sensor->position_m[1], (double)sensor->position_m[2] };
+        struct mover_place place;
+        struct box box;
+        box_init(&box);
+        assert_true(mover_place(mover, point, &place, euclidean_m));
+        for (int axis = 0; axis < 3; axis++)
+            assert_float_equal(place.surface_m[axis], sensor->surface_m[axis], ON);
+        assert_float_equal(place.distance_m, sensor->surface_distance_m, ON);
+        assert_float_equal(euclidean_m[sensor->nearest_vertex], 0, ON);
+        uint64_t ticket = mover_ask(mover, point, put_into_box, &box);
+        assert_true(ticket > 0);
+        wait_for(&box, 1);
+        assert_int_equal(box.result.status, MOVER_DONE);
+        assert_int_equal(box.result.ticket, ticket);
+        assert_int_equal(mover_state(mover), MOVER_WARM);
+        compare(asset, s, &box.result);
+        mem_free(box.result.geodesic_m);
+    }
+    mem_free(euclidean_m);
+    mover_destroy(&mover);
+    assert_null(mover);
+    asset_unref(&asset);
+}
+
+/* --- refused, cancelled, broken ----------------------------------------------------------------------------------------------- */
+
+static struct mover_shape shape_of(const struct cad *cad)
+{
+    return (struct mover_shape){ (const float(*)[3])cad->positions, cad->vertex_count, cad->triangles, cad->triangle_count };
+}
+
+static void a_point_that_is_far_away_is_refused(void **state)
+{
+    struct cad plate = { 0 };
+    struct cad_random chance = { 5 };
+    struct mover_place place;
+    struct box box;
+    (void)state;
+    box_init(&box);
+    cad_plate(&plate, &chance, 20, 20, 1, 1, 0);
+    struct mover_shape shape = shape_of(&plate);
+    struct mover *mover = mover_create(the_log, workers, &shape);
+    assert_true(mover_place(mover, (const double[3]){ 0.3, 0.6, 1.2 }, &place, NULL));
+    assert_float_equal(place.distance_m, 1.2, 1e-6);
+    assert_false(mover_place(mover, (const double[3]){ 0.3, 0.6, 1.5 }, &place, NULL)); /* the plate's diagonal is 1.41 m */
+    assert_int_equal(mover_ask(mover, (const double[3]){ 0.3, 0.6, 1.5 }, put_into_box, &box), 0);
+    assert_int_equal(mover_ask(mover, (const double[3]){ 0.3, NAN, 0 }, put_into_box, &box), 0);
+    assert_int_equal(mover_ask(mover, (const double[3]){ 0.3, INFINITY, 0 }, put_into_box, &box), 0);
+    mover_destroy(&mover);
+    assert_int_equal(box.count, 0);
+    cad_finish(&plate);
+}
+
+static void an_asset_without_surface_is_said_to_be_broken(void **state)
+{
+    const float line[3][3] = { { 0, 0, 0 }, { 1, 0, 0 }, { 2, 0, 0 } };
+    const uint32_t flat[3] = { 0, 1, 2 };
+    struct mover_shape shapes[2] = { { line, 3, flat, 1 }, { line, 3, flat, 0 } };
+    struct mover_place place;
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        struct box box;
+        box_init(&box);
+        struct mover *mover = mover_create(the_log, workers, &shapes[i]);
+        uint64_t ticket = mover_ask(mover, (const double[3]){ 0.5, 0.1, 0 }, put_into_box, &box);
+        assert_true((ticket > 0) == (i == 0)); /* a triangle without area is a place all the same */
+        assert_true(mover_place(mover, (const double[3]){ 0.5, 0.1, 0 }, &place, NULL) == (i == 0));
+        if (ticket) {
+            wait_for(&box, 1);
+            assert_int_equal(box.result.status, MOVER_NO_SURFACE);
+            assert_null(box.result.geodesic_m);
+            assert_int_equal(mover_state(mover), MOVER_BROKEN);
+        }
+        mover_destroy(&mover);
+    }
+}
+
+static void hold(void *arg)
+{
+    pthread_mutex_lock(arg);
+    pthread_mutex_unlock(arg);
+}
+
+static void what_waits_is_cancelled(void **state)
+{
+    struct cad plate = { 0 };
+    struct cad_random chance = { 6 };
+    struct box kept, cancelled, dropped;
+    pthread_mutex_t gate = PTHREAD_MUTEX_INITIALIZER;
+    (void)state;
+    box_init(&kept);
+    box_init(&cancelled);
+    box_init(&dropped);
+    cad_plate(&plate, &chance, 40, 40, 1, 1, 0);
+    struct mover_shape shape = shape_of(&plate);
+    struct workers *one = workers_create(1);
+    pthread_mutex_lock(&gate);
+    workers_submit(one, hold, &gate); /* nothing gets warm as long as the gate is shut */
+    struct mover *mover = mover_create(the_log, one, &shape);
+    uint64_t first = mover_ask(mover, (const double[3]){ 0.5, 0.5, 0 }, put_into_box, &cancelled);
+    mover_ask(mover, (const double[3]){ 0.25, 0.5, 0 }, put_into_box, &kept);
+    assert_int_equal(mover_state(mover), MOVER_WARMING);
+    mover_cancel(mover, first);
+    assert_int_equal(cancelled.count, 1);
+    assert_int_equal(cancelled.result.status, MOVER_CANCELLED);
+    mover_cancel(mover, first); /* once more: nothing */
+    mover_cancel(mover, 77);
+    pthread_mutex_unlock(&gate);
+    wait_for(&kept, 1);
+    assert_int_equal(kept.result.status, MOVER_DONE);
+    for (size_t v = 0; v < plate.vertex_count; v++)
+        assert_float_equal(kept.result.geodesic_m[v], hypot((double)plate.positions[v][0] - 0.25, (double)plate.positions[v][1] - 0.5),
+                           1e-4);
+    pthread_mutex_lock(&gate);
+    workers_submit(one, hold, &gate);
+    mover_ask(mover, (const double[3]){ 0.5, 0.5, 0 }, put_into_box, &dropped);
+    pthread_mutex_unlock(&gate);
+    mover_destroy(&mover); /* answers before it returns, one way or the other */
+    assert_int_equal(dropped.count, 1);
+    assert_int_equal(cancelled.count, 1);
+    workers_destroy(&one);
+    mem_free(kept.result.geodesic_m);
+    mem_free(dropped.result.geodesic_m);
+    cad_finish(&plate);
+}
+
+struct crowd {
+    struct mover *mover;
+    struct box *box;
+    uint64_t seed;
+};
+
+static void *drag(void *arg)
+{
+    struct crowd *crowd = arg;
+    struct cad_random chance = { crowd->seed };
+    for (int i = 0; i < 50; i++) {
+        const double point[3] = { cad_random(&chance), cad_random(&chance), 0 };
+        uint64_t ticket = mover_ask(crowd->mover, point, put_into_box, crowd->box);
+        assert_true(ticket > 0);
+        if (i % 3 == 0)
+            mover_cancel(crowd->mover, ticket);
+    }
+    return NULL;
+}
+
+static void every_ask_is_answered_once(void **state)
+{
+    struct cad plate = { 0 };
+    struct cad_random chance = { 7 };
+    struct box box;
+    pthread_t threads[3];
+    struct crowd crowds[3];
+    (void)state;
+    box_init(&box);
+    cad_plate(&plate, &chance, 30, 30, 1, 1, 0);
+    struct mover_shape shape = shape_of(&plate);
+    struct mover *mover = mover_create(the_log, workers, &shape);
+    for (int i = 0; i < 3; i++) {
+        crowds[i] = (struct crowd){ mover, &box, 11 + (uint64_t)i };
+        assert_int_equal(pthread_create(&threads[i], NULL, drag, &crowds[i]), 0);
+    }
+    for (int i = 0; i < 3; i++)
+        pthread_join(threads[i], NULL);
+    wait_for(&box, 150);
+    mover_destroy(&mover);
+    assert_int_equal(box.count, 150);
+    assert_true(box.done_count >= 150 - 3 * 17);
+    mem_free(box.result.geodesic_m);
+    cad_finish(&plate);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_moved_sensor_has_the_distances_that_would_be_stored),
+        cmocka_unit_test(a_point_that_is_far_away_is_refused),
+        cmocka_unit_test(an_asset_without_surface_is_said_to_be_broken),
+        cmocka_unit_test(what_waits_is_cancelled),
+        cmocka_unit_test(every_ask_is_answered_once),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}
