@@ -86,6 +86,13 @@ static float largest_distance(const struct asset_view *view, size_t column, enum
     return most_m;
 }
 
+/* Up to two digits and a half: 16.375 becomes 16.5. */
+static double rounded_up(double most_m)
+{
+    double step = 0.5 * pow(10, floor(log10(most_m)) - 1);
+    return ceil(most_m / step - 1e-6) * step;
+}
+
 static double distance_range(const struct scene *scene, const struct field_params *params)
 {
     for (size_t a = 0; a < scene->asset_count; a++)
@@ -94,7 +101,7 @@ static double distance_range(const struct scene *scene, const struct field_param
             if (sensor->tag != params->sensor)
                 continue;
             float most_m = largest_distance(&scene->assets[a].file->view, (size_t)sensor->column, params->distance);
-            return most_m > 1e-6f ? (double)most_m : 1;
+            return most_m > 1e-6f ? rounded_up((double)most_m) : 1;
         }
     return 1;
 }

@@ -120,7 +120,8 @@ static void draw_header(struct pen *pen)
         strftime(clock, sizeof(clock), "%Y-%m-%d %H:%M:%S %Z", &local);
     if (pen->frame->oldest_age_ns != INT64_MAX)
         format_age(pen->frame->oldest_age_ns, age);
-    snprintf(line, sizeof(line), "%s  ·  %s", clock, age);
+    bool has_age = pen->frame->view.split || pen->frame->view.field.show != SHOW_DISTANCE; /* distances have none */
+    snprintf(line, sizeof(line), has_age ? "%s  ·  %s" : "%s", clock, age);
     double pad = 8 * pen->unit;
     pen_font(pen, 1.15, true);
     double name_width = pen_text_width(pen, pen->scene->plant->name);

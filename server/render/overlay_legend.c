@@ -3,7 +3,9 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <time.h>
 
+#include "base/clock.h"
 #include "render/overlay_pen.h"
 #include "render/palette.h"
 
@@ -12,7 +14,7 @@ static const double ROW = 1.5, NOTE = 1.3; /* heights, in text_px */
 enum row { ROW_BELOW, ROW_NO_LIMITS, ROW_NO_DATA, ROW_UNCERTAIN, ROW_ALARM, ROW_WARNING };
 /* What it says, and where its parts lie. */
 struct legend {
-    char title[160], above[60], below[60];
+    char title[160], above[60], below[60], since[120];
     enum row rows[ROWS]; /* under the bar */
     const char *notes[NOTES];
     int row_count, note_count;
@@ -46,6 +48,20 @@ static void choose_rows(struct legend *legend, bool is_operator)
     memcpy(legend->rows, is_operator ? limits : values, (size_t)legend->row_count * sizeof(*values));
 }
 
+/* What the difference is from: a name, or the plant's clock then. */
+static void write_baseline(const struct pen *pen, struct legend *legend)
+{
+    const struct baseline *baseline = &pen->frame->baseline;
+    time_t seconds = (time_t)(baseline->taken_utc_ns / NS_PER_S);
+    struct tm local;
+    if (baseline->name[0])
+        snprintf(legend->since, sizeof(legend->since), "since %.80s", baseline->name);
+    else if (localtime_r(&seconds, &local))
+        strftime(legend->since, sizeof(legend->since), "since %m-%d %H:%M:%S", &local);
+    if (baseline->id && baseline->id == pen->view.field.baseline)
+        add_note(legend, legend->since);
+}
+
 static void write_words(const struct pen *pen, struct legend *legend)
 {
     const struct view *view = &pen->view;
@@ -63,6 +79,8 @@ static void write_words(const struct pen *pen, struct legend *legend)
         if (view->paint.log)
             add_note(legend, "logarithmic scale");
     }
+    if (view->field.show == SHOW_DIFFERENCE)
+        write_baseline(pen, legend);
     if (!view_is_operator(view) && !colormap_at((size_t)view->colormap)->safe)
         add_note(legend, "may be misread");
     if (view->look == LOOK_GLOSSY) {

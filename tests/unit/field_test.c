@@ -991,7 +991,7 @@ static void test_distance_from_one_sensor(void **state)
     for (size_t j = 480; j < 500; j++)
         assert_true(way->at[j].no_data == 255 && way->at[j].value == most && line->at[j].no_data == 0);
     field_own_range(&rig.plant->scene, &rig.params, &low, &high);
-    assert_true(low == 0 && high == (double)most);
+    assert_true(low == 0 && high >= (double)most * (1 - 1e-6) && high < 1.06 * (double)most);
     uint64_t version = way->version;
     set(&rig, 4, 7, QUALITY_BAD_SENSOR_FAILURE); /* its place stays where it is */
     assert_int_equal(field_scalars(rig.field, 1, &rig.params, rig.plant->snapshot)->version, version);

@@ -38,6 +38,7 @@ static const char head[] =
     "    min: 0\n"
     "    max: 12\n"
     "    limits: { H: 4.5, HH: 7.1 }\n"
+"    breaks: [2.8, 4.5, 7.1]\n"
     "    interpolation: shepard\n"
     "    distance: euclidean\n"
     "    reach_m: 2.5\n"
