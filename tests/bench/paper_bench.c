@@ -3,7 +3,6 @@
    change ten times a second while the camera swings round; one JSON line per row. Beside each the same by brute force: every triangle
    of the finest level, and the paper's sum over all sensors at each fragment.
    usage: paper_bench [cpu|gpu [INSTANCES]]   gpu: only on an EGL device that is hardware */
-#include <glad/gl.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -130,36 +129,36 @@ static void fit(const struct bench *bench, double azimuth, double elevation, str
         camera->eye_m[c] = camera->target_m[c] - 1.002 * distance_m * axes[2][c];
 }
 
-/* Of the picture that GL drew last: the renderer leaves it bound for reading. */
-static double read_coverage(int width_px, int height_px)
-{
-    size_t pixels = (size_t)width_px * (size_t)height_px, covered = 0;
-    float *depth = mem_array(pixels, sizeof(*depth));
-    glReadPixels(0, 0, width_px, height_px, GL_DEPTH_COMPONENT, GL_FLOAT, depth);
-    for (size_t i = 0; i < pixels; i++)
-        covered += depth[i] > 0;
-    mem_free(depth);
-    return (double)covered / (double)pixels;
-}
-
 static void make_view(const struct bench *bench, int width_px, int height_px, struct view *view)
 {
     view_default(bench->crowd.scene, width_px, height_px, view);
     view->tier = TIER_MOVING;
 }
 
+static struct frame *draw(struct bench *bench, const struct view *view)
+{
+    struct frame *frame = renderer_draw(bench->renderer, view, bench->crowd.snapshot);
+    if (!frame)
+        abort();
+    return frame;
+}
+
+/* The part of the pixels that are others where everything is hidden. */
 static double coverage_from(struct bench *bench, const struct camera *camera)
 {
     struct view view;
     make_view(bench, PROBE_WIDTH_PX, PROBE_HEIGHT_PX, &view);
     view.camera = *camera;
-    renderer_use_gl(bench->renderer, true);
-    struct frame *frame = renderer_draw(bench->renderer, &view, bench->crowd.snapshot);
-    if (!frame)
-        abort();
-    frame_unref(&frame);
-    renderer_use_gl(bench->renderer, false);
-    return read_coverage(PROBE_WIDTH_PX, PROBE_HEIGHT_PX);
+    struct frame *full = draw(bench, &view);
+    for (size_t i = 0; i < bench->crowd.scene->asset_count; i++)
+        asset_set_add(&view.visibility.hidden, (int)i);
+    struct frame *empty = draw(bench, &view);
+    int covered = 0;
+    for (int i = 0; i < PROBE_WIDTH_PX * PROBE_HEIGHT_PX; i++)
+        covered += memcmp(full->bgrx + 4 * i, empty->bgrx + 4 * i, 3) != 0;
+    frame_unref(&full);
+    frame_unref(&empty);
+    return (double)covered / (PROBE_WIDTH_PX * PROBE_HEIGHT_PX);
 }
 
 struct side {
@@ -254,9 +253,7 @@ static void draw_one(struct bench *bench, struct series *series, struct view *vi
 {
     double start_ms = now_ms(CLOCK_MONOTONIC), worked_ms = now_ms(CLOCK_PROCESS_CPUTIME_ID);
     view->camera = bench->cameras[(number + CAMERAS) % CAMERAS];
-    struct frame *frame = renderer_draw(bench->renderer, view, bench->crowd.snapshot);
-    if (!frame)
-        abort();
+    struct frame *frame = draw(bench, view);
     if (number >= 0) {
         series->time_ms[number] = now_ms(CLOCK_MONOTONIC) - start_ms;
         series->work_ms[number] = now_ms(CLOCK_PROCESS_CPUTIME_ID) - worked_ms;
