@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Which clusters of triangles a picture may show. */
 #include <math.h>
+#include <stdlib.h>
 
 #include "base/mem.h"
 #include "render/draft_impl.h"
@@ -66,18 +67,6 @@ static void fill_mesh(struct draft *draft, struct draft_mesh *mesh, int index, c
     draft->vertex_count += level->vertex_count;
 }
 
-static void add_draw(struct draft *draft, const struct draft_draw *draw)
-{
-    struct draft_draw *last = draft->draw_count ? &draft->draws[draft->draw_count - 1] : NULL;
-    if (last && last->mesh == draw->mesh && last->mark == draw->mark && last->double_sided == draw->double_sided &&
-        last->first_index + last->index_count == draw->first_index && last->index_count + draw->index_count <= 3 * CHUNK_TRIANGLES) {
-        last->index_count += draw->index_count;
-        return;
-    }
-    mem_grow(&draft->draws, &draft->draw_capacity, draft->draw_count + 1, sizeof(*draft->draws));
-    draft->draws[draft->draw_count++] = *draw;
-}
-
 /* A cluster of any size, in draws that fit into chunks. */
 static void add_cluster(struct draft *draft, const struct draft_draw *whole)
 {
@@ -86,8 +75,21 @@ static void add_cluster(struct draft *draft, const struct draft_draw *whole)
         uint32_t left = whole->index_count - done;
         part.first_index += done;
         part.index_count = left < 3 * CHUNK_TRIANGLES ? left : 3 * CHUNK_TRIANGLES;
-        add_draw(draft, &part);
+        mem_grow(&draft->draws, &draft->draw_capacity, draft->draw_count + 1, sizeof(*draft->draws));
+        draft->draws[draft->draw_count++] = part;
     }
+}
+
+/* In metres of the plant: a placement turns and moves only. */
+static float nearest(const struct culling *culling, const struct asset_cluster *cluster)
+{
+    float away = 0, size = 0;
+    for (int c = 0; c < 3; c++) {
+        float half = 0.5f * (cluster->high_m[c] - cluster->low_m[c]), by = cluster->low_m[c] + half - culling->eye_m[c];
+        away += by * by;
+        size += half * half;
+    }
+    return sqrtf(away) - sqrtf(size);
 }
 
 static void collect_asset(struct draft *draft, int index)
@@ -117,6 +119,7 @@ static void collect_asset(struct draft *draft, int index)
             if (!in_frustum(&culling, cluster) ||
                 (culling.cones && !draw.double_sided && asset_cluster_turned_away(cluster, culling.eye_m)))
                 continue;
+            draw.near_m = nearest(&culling, cluster);
             draw.first_index = cluster->first_index;
             draw.index_count = cluster->index_count;
             add_cluster(draft, &draw);
@@ -126,6 +129,17 @@ static void collect_asset(struct draft *draft, int index)
         draft->mesh_count++;
     else
         draft->vertex_count = vertices;
+}
+
+/* Nearest first, so that what is hidden costs little; always in the same order. */
+static int by_distance(const void *a, const void *b)
+{
+    const struct draft_draw *x = a, *y = b;
+    if (x->near_m != y->near_m)
+        return x->near_m < y->near_m ? -1 : 1;
+    if (x->mesh != y->mesh)
+        return x->mesh < y->mesh ? -1 : 1;
+    return (x->first_index > y->first_index) - (x->first_index < y->first_index);
 }
 
 static void cut_into_chunks(struct draft *draft)
@@ -152,6 +166,7 @@ bool draft_collect(struct draft *draft)
     draft->mesh_count = draft->draw_count = draft->vertex_count = 0;
     for (size_t i = 0; i < picture->visible_count; i++)
         collect_asset(draft, picture->visible[i]);
+    qsort(draft->draws, draft->draw_count, sizeof(*draft->draws), by_distance);
     cut_into_chunks(draft);
     if (draft->vertex_count <= draft->vertex_capacity)
         return true;

@@ -176,46 +176,62 @@ DRAFT_INLINE lanes_int ground_at(const struct draft *draft, lanes x, float y)
     return lanes_choose_int(inside, factor, (lanes_int){ 0 } + 256);
 }
 
-/* 1/sqrt, within 5e-6 of itself: a guess from the bits and two steps of Newton's. */
-DRAFT_INLINE lanes inverse_root(lanes x)
-{
-    lanes guess = (lanes)(0x5f375a86 - ((lanes_int)x >> 1));
-    for (int i = 0; i < 2; i++)
-        guess *= 1.5f - 0.5f * x * guess * guess;
-    return guess;
-}
+/* Heights over the horizon, as columns of the backdrop. They bend so little that they are worked out at the ends of stretches only. */
+enum { STRETCH = 64 };
+struct heights {
+    float first, step; /* at the middle of the first pixel; from pixel to pixel */
+};
 
-DRAFT_INLINE lanes_int sky_color(const struct draft *draft, lanes x, int row)
+static float height_at(const struct draft *draft, float x, float y)
 {
     const float(*m)[3] = draft->ray_from_pixel;
-    const double *up = draft->stage->up;
-    float y = (float)row + 0.5f;
-    lanes ray[3];
-    for (int r = 0; r < 3; r++)
-        ray[r] = x * m[0][r] + (y * m[1][r] + m[2][r]);
-    lanes height = (ray[0] * (float)up[0] + ray[1] * (float)up[1] + ray[2] * (float)up[2]) *
-                   inverse_root(ray[0] * ray[0] + ray[1] * ray[1] + ray[2] * ray[2]);
-    lanes_int column = lanes_whole(lanes_clamp(height * 1023.5f + 1024.0f, 0, SKY_BACKDROPS - 1));
+    float up = 0, square = 0;
+    for (int r = 0; r < 3; r++) {
+        float ray = x * m[0][r] + (y * m[1][r] + m[2][r]);
+        up += ray * (float)draft->stage->up[r];
+        square += ray * ray;
+    }
+    return up / sqrtf(square) * 1023.5f + 1024.0f;
+}
+
+DRAFT_INLINE lanes_int sky_color(const struct draft *draft, const struct heights *heights, int column, int row)
+{
+    lanes x = LANES_IOTA + ((float)column + 0.5f);
+    lanes height = (LANES_IOTA + (float)(column % STRETCH)) * heights->step + heights->first;
+    lanes_int at = lanes_whole(lanes_clamp(height, 0, SKY_BACKDROPS - 1));
     lanes_int tile = (row & 3) * 4 + (lanes_whole(x) & 3);
-    lanes_int color = gather(draft->backdrops, tile * SKY_BACKDROPS + column);
+    lanes_int color = gather(draft->backdrops, tile * SKY_BACKDROPS + at);
     if (!draft->has_ground)
         return color;
-    lanes_uint factor = (lanes_uint)ground_at(draft, x, y), bgrx = (lanes_uint)color;
+    lanes_uint factor = (lanes_uint)ground_at(draft, x, (float)row + 0.5f), bgrx = (lanes_uint)color;
     lanes_uint blue_red = ((bgrx & 0xff00ff) * factor + 0x800080) >> 8 & 0xff00ff; /* both at once */
     lanes_uint green = ((bgrx & 0xff00) * factor + 0x8000) >> 8 & 0xff00;
     return (lanes_int)(blue_red | green | 0xff000000);
 }
 
-DRAFT_INLINE lanes_int color_at(const struct draft *draft, lanes_int marks, lanes x, int row, lanes depth)
+/* All eight of a field, or all empty: as most are. */
+DRAFT_INLINE lanes_int color_at(const struct draft *draft, const struct heights *heights, int column, int row)
 {
+    size_t place = (size_t)row * (size_t)draft->pitch_px + (size_t)column;
+    const uint32_t *mark = draft->marks + place;
+    lanes_int marks = *(const lanes_int *)mark, color;
+    if (!lanes_any(~marks & (int32_t)MARK_FIELD)) {
+        uint32_t colors[LANES];
+        for (int i = 0; i < LANES; i++)
+            colors[i] = draft->palette[mark[i] & ~MARK_FIELD];
+        memcpy(&color, colors, sizeof(color));
+        return color;
+    }
+    if (!lanes_any(marks))
+        return sky_color(draft, heights, column, row);
     lanes_int is_field = (marks & (int32_t)MARK_FIELD) != 0, is_context = marks < 0, is_sky = marks == 0;
-    lanes_int color = { 0 };
-    if (lanes_any(is_field))
-        color = lanes_choose_int(is_field, gather(draft->palette, marks & is_field & (int32_t)~MARK_FIELD), color);
-    if (lanes_any(is_context))
+    color = gather(draft->palette, marks & is_field & (int32_t)~MARK_FIELD);
+    if (lanes_any(is_context)) {
+        lanes depth = *(const lanes *)(draft->depth + place), x = LANES_IOTA + ((float)column + 0.5f);
         color = lanes_choose_int(is_context, context_color(draft, marks & is_context, x, (float)row + 0.5f, depth), color);
+    }
     if (lanes_any(is_sky))
-        color = lanes_choose_int(is_sky, sky_color(draft, x, row), color);
+        color = lanes_choose_int(is_sky, sky_color(draft, heights, column, row), color);
     return color;
 }
 
@@ -223,12 +239,15 @@ DRAFT_KERNEL void draft_color_band(const struct draft *draft, int number)
 {
     int end = (number + 1) * BAND_ROWS < draft->height_px ? (number + 1) * BAND_ROWS : draft->height_px;
     for (int row = number * BAND_ROWS; row < end; row++) {
-        size_t start = (size_t)row * (size_t)draft->pitch_px;
         uint8_t *out = draft->out + (size_t)row * draft->out_stride_bytes;
+        struct heights heights = { 0 };
         for (int column = 0; column < draft->width_px; column += LANES) {
-            lanes_int marks = *(const lanes_int *)(draft->marks + start + column);
-            lanes depth = *(const lanes *)(draft->depth + start + column);
-            lanes_int color = color_at(draft, marks, LANES_IOTA + ((float)column + 0.5f), row, depth);
+            if (column % STRETCH == 0) {
+                float y = (float)row + 0.5f, x = (float)column + 0.5f;
+                heights.first = height_at(draft, x, y);
+                heights.step = (height_at(draft, x + STRETCH, y) - heights.first) / STRETCH;
+            }
+            lanes_int color = color_at(draft, &heights, column, row);
             int count = draft->width_px - column;
             memcpy(out + 4 * column, &color, count < LANES ? 4 * (size_t)count : sizeof(color));
         }

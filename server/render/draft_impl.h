@@ -32,6 +32,7 @@ struct draft_mesh { /* one asset in this picture */
 };
 
 struct draft_draw { /* neighbouring triangles of one material */
+    float near_m;   /* from the eye to the ball around them; less than 0: within */
     uint32_t mesh, first_index, index_count;
     uint32_t mark; /* MARK_FIELD, or MARK_CONTEXT with its ramp */
     bool double_sided;

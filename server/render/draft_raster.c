@@ -8,7 +8,8 @@
 #include "render/draft_impl.h"
 #include "render/draft_simd.h"
 
-enum { AHEAD = 8 }; /* triangles */
+enum { AHEAD = 8, LOOK_AFTER = 384 }; /* triangles */
+enum { TILE_PX = 32, MOST_TILES = VIEW_MAX_SIDE_PX / TILE_PX + 1 };
 
 struct edge {
     float x, y, dx, dy; /* from its upper end */
@@ -33,8 +34,11 @@ struct band {
     float *depth;
     uint32_t *marks;
     int pitch_px, top_px, bottom_px; /* last row included */
-    float last_row;                  /* of the palette */
+    int32_t last_row;                /* of the palette */
     float pattern_px;
+    int tile_count, drawn;           /* triangles since the tiles were looked at */
+    float farthest[MOST_TILES];      /* depth in each tile; what lies behind all of it is hidden */
+    bool touched[MOST_TILES];
 };
 
 DRAFT_INLINE float smallest(float a, float b, float c)
@@ -96,8 +100,48 @@ DRAFT_INLINE int clip_high(float x, int high)
     return x < (float)high + 0.5f ? (int)(x + 0.5f) - 1 : high;
 }
 
-/* False: none of its pixels lies in the band. */
-DRAFT_INLINE bool setup_init(struct setup *setup, const struct band *band, int width_px, const struct draft_vertex *p,
+DRAFT_INLINE lanes least_of(lanes a, lanes b)
+{
+    return lanes_choose(a < b, a, b);
+}
+
+DRAFT_INLINE float farthest_in(const struct band *band, int tile)
+{
+    int rows = band->bottom_px - band->top_px + 1, left = tile * TILE_PX;
+    int right = left + TILE_PX < band->pitch_px ? left + TILE_PX : band->pitch_px;
+    lanes least = (lanes){ 0 } + 1.0f;
+    float farthest = 1;
+    for (int row = 0; row < rows; row++)
+        for (int column = left; column < right; column += LANES)
+            least = least_of(least, *(const lanes *)(band->depth + (size_t)row * (size_t)band->pitch_px + column));
+    for (int i = 0; i < LANES; i++)
+        farthest = least[i] < farthest ? least[i] : farthest;
+    return farthest;
+}
+
+/* From time to time, where something was drawn. */
+DRAFT_INLINE void look_at_tiles(struct band *band)
+{
+    if (++band->drawn < LOOK_AFTER)
+        return;
+    band->drawn = 0;
+    for (int tile = 0; tile < band->tile_count; tile++)
+        if (band->touched[tile]) {
+            band->farthest[tile] = farthest_in(band, tile);
+            band->touched[tile] = false;
+        }
+}
+
+DRAFT_INLINE bool is_hidden(const struct band *band, int left, int right, float nearest)
+{
+    for (int tile = left / TILE_PX; tile <= right / TILE_PX; tile++)
+        if (nearest >= band->farthest[tile])
+            return false;
+    return true;
+}
+
+/* False: none of its pixels lies in the band, or all are hidden. */
+DRAFT_INLINE bool setup_init(struct setup *setup, struct band *band, int width_px, const struct draft_vertex *p,
                              const struct draft_vertex *q, const struct draft_vertex *r, uint32_t mark)
 {
     const float little = 1.02f;
@@ -106,7 +150,8 @@ DRAFT_INLINE bool setup_init(struct setup *setup, const struct band *band, int w
     setup->right = clip_high(largest(p->x, q->x, r->x), width_px - 1);
     setup->top = clip_low(smallest(p->y, q->y, r->y), band->top_px);
     setup->bottom = clip_high(largest(p->y, q->y, r->y), band->bottom_px);
-    if (setup->left > setup->right || setup->top > setup->bottom)
+    if (setup->left > setup->right || setup->top > setup->bottom ||
+        is_hidden(band, setup->left, setup->right, largest(p->depth, q->depth, r->depth)))
         return false;
     struct slopes slopes = { q->x - p->x, q->y - p->y, r->x - p->x, r->y - p->y };
     float area = slopes.x1 * slopes.y2 - slopes.x2 * slopes.y1, over = 1 / area;
@@ -136,10 +181,16 @@ DRAFT_INLINE bool setup_init(struct setup *setup, const struct band *band, int w
 
 /* --- marks ------------------------------------------------------------------------------------------------------------------ */
 
-DRAFT_INLINE lanes_int field_mark(lanes column, lanes row, float last_row)
+DRAFT_INLINE lanes_int whole_within(lanes x, int32_t high)
 {
-    lanes_int c = lanes_whole(lanes_clamp(column, 0, PALETTE_PLACES + 1)), r = lanes_whole(lanes_clamp(row, 0, last_row));
-    return (r * PALETTE_COLUMNS + c) | (int32_t)MARK_FIELD;
+    lanes_int whole = lanes_whole(x), highs = (lanes_int){ 0 } + high;
+    whole = lanes_choose_int(whole > 0, whole, (lanes_int){ 0 });
+    return lanes_choose_int(whole < highs, whole, highs);
+}
+
+DRAFT_INLINE lanes_int field_mark(lanes column, lanes row, int32_t last_row)
+{
+    return (whole_within(row, last_row) * PALETTE_COLUMNS + whole_within(column, PALETTE_PLACES + 1)) | (int32_t)MARK_FIELD;
 }
 
 DRAFT_INLINE lanes_int context_mark(lanes ambient, lanes sun, uint32_t mark)
@@ -170,7 +221,7 @@ DRAFT_INLINE lanes_int stipple(lanes x, float y, float pattern_px)
 DRAFT_INLINE lanes_int pattern_marks(lanes_int marks, lanes_int no_data, lanes_int uncertain, lanes row, lanes x, float y,
                                       const struct band *band)
 {
-    lanes_int r = lanes_whole(lanes_clamp(row, 0, band->last_row)) * PALETTE_COLUMNS + (int32_t)MARK_FIELD + PALETTE_PATTERNS;
+    lanes_int r = whole_within(row, band->last_row) * PALETTE_COLUMNS + (int32_t)MARK_FIELD + PALETTE_PATTERNS;
     lanes_int dark = hatch(x, y, band->pattern_px), dots = stipple(x, y, band->pattern_px);
     marks = lanes_choose_int(uncertain & dots, r + PATTERN_STIPPLE, marks);
     return lanes_choose_int(no_data, lanes_choose_int(dark, r + PATTERN_HATCH_DARK, r + PATTERN_HATCH_LIGHT), marks);
@@ -181,6 +232,17 @@ DRAFT_INLINE lanes_int pattern_marks(lanes_int marks, lanes_int no_data, lanes_i
 struct flag_planes { /* of triangles with flags; 1 where set */
     struct plane no_data, uncertain;
 };
+
+/* Most triangles: of a field, with all flags alike, small and not thin. */
+DRAFT_INLINE bool is_plain(const struct setup *setup)
+{
+    return setup->mark == MARK_FIELD && setup->flat && !setup->thin && !setup->flags;
+}
+
+DRAFT_INLINE lanes_int plain_marks_at(const struct setup *setup, const struct band *band, lanes from_x, float from_y)
+{
+    return field_mark(plane_at(&setup->a, from_x, from_y, false), plane_at(&setup->b, from_x, from_y, false), band->last_row);
+}
 
 DRAFT_INLINE lanes_int marks_at(const struct setup *setup, const struct flag_planes *flags, const struct band *band, lanes x, float y)
 {
@@ -221,30 +283,33 @@ DRAFT_INLINE void narrow(const struct setup *setup, float y, int *left, int *rig
     }
 }
 
-DRAFT_INLINE void draw_triangle(const struct setup *setup, const struct flag_planes *flags, const struct band *band)
+/* plain: as is_plain says; a constant. */
+DRAFT_INLINE void draw_triangle(const struct setup *setup, const struct flag_planes *flags, const struct band *band, bool plain)
 {
-    bool wide = setup->right - setup->left >= 2 * LANES;
+    bool wide = setup->right - setup->left >= 2 * LANES, thin = !plain && setup->thin;
+    int last = band->pitch_px - LANES;
     for (int row = setup->top; row <= setup->bottom; row++) {
         size_t start = (size_t)(row - band->top_px) * (size_t)band->pitch_px;
-        float y = (float)row + 0.5f, sides[3];
-        int left = setup->left, right = setup->right, last = band->pitch_px - LANES;
+        float y = (float)row + 0.5f, from_y = y - setup->y, sides[3];
+        int left = setup->left, right = setup->right;
         if (wide)
             narrow(setup, y, &left, &right);
         for (int e = 0; e < 3; e++)
             sides[e] = edge_row(&setup->edges[e], y);
         for (int column = left; column <= right; column += LANES) {
             column = column < last ? column : last; /* nothing is written beyond the row */
-            lanes x = LANES_IOTA + ((float)column + 0.5f);
+            lanes x = LANES_IOTA + ((float)column + 0.5f), from_x = x - setup->x;
             lanes_int side = edge_side(&setup->edges[0], sides[0], x) | edge_side(&setup->edges[1], sides[1], x) |
                              edge_side(&setup->edges[2], sides[2], x);
             lanes *depth = (lanes *)(band->depth + start + column);
-            lanes here = plane_at(&setup->depth, x - setup->x, y - setup->y, setup->thin);
+            lanes here = plane_at(&setup->depth, from_x, from_y, thin);
             lanes_int seen = (side >= 0) & (here >= *depth);
             if (!lanes_any(seen))
                 continue;
             lanes_int *marks = (lanes_int *)(band->marks + start + column);
+            lanes_int mark = plain ? plain_marks_at(setup, band, from_x, from_y) : marks_at(setup, flags, band, x, y);
             *depth = lanes_choose(seen, here, *depth);
-            *marks = lanes_choose_int(seen, marks_at(setup, flags, band, x, y), *marks);
+            *marks = lanes_choose_int(seen, mark, *marks);
         }
     }
 }
@@ -283,8 +348,9 @@ DRAFT_KERNEL void draft_raster_band(const struct draft *draft, int number)
         .pitch_px = draft->pitch_px,
         .top_px = number * BAND_ROWS,
         .bottom_px = bottom < draft->height_px - 1 ? bottom : draft->height_px - 1,
-        .last_row = draft->block.shade[2],
+        .last_row = (int32_t)draft->block.shade[2],
         .pattern_px = draft->block.scale[3],
+        .tile_count = (draft->pitch_px + TILE_PX - 1) / TILE_PX,
     };
     struct flag_planes flags = { 0 };
     size_t pixels = (size_t)(band.bottom_px - band.top_px + 1) * (size_t)draft->pitch_px;
@@ -304,7 +370,13 @@ DRAFT_KERNEL void draft_raster_band(const struct draft *draft, int number)
                 continue;
             if (setup.flags)
                 flag_planes_init(&flags, &setup, p, q, r);
-            draw_triangle(&setup, &flags, &band);
+            if (is_plain(&setup))
+                draw_triangle(&setup, &flags, &band, true);
+            else
+                draw_triangle(&setup, &flags, &band, false);
+            for (int tile = setup.left / TILE_PX; tile <= setup.right / TILE_PX; tile++)
+                band.touched[tile] = true;
+            look_at_tiles(&band);
         }
     }
 }

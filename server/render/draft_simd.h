@@ -16,7 +16,7 @@ enum { LANES = 8 };
 typedef float lanes __attribute__((vector_size(32), aligned(4)));
 typedef int32_t lanes_int __attribute__((vector_size(32), aligned(4)));
 typedef uint32_t lanes_uint __attribute__((vector_size(32), aligned(4)));
-typedef int64_t lanes_long __attribute__((vector_size(32)));
+typedef int64_t lanes_pair __attribute__((vector_size(16)));
 
 DRAFT_INLINE lanes lanes_choose(lanes_int mask, lanes a, lanes b)
 {
@@ -37,8 +37,12 @@ DRAFT_INLINE lanes lanes_clamp(lanes x, float low, float high)
 
 DRAFT_INLINE int lanes_any(lanes_int mask)
 {
-    lanes_long wide = (lanes_long)mask;
-    return (wide[0] | wide[1] | wide[2] | wide[3]) != 0;
+    union {
+        lanes_int all;
+        lanes_pair halves[2];
+    } u = { mask };
+    lanes_pair both = u.halves[0] | u.halves[1];
+    return (both[0] | both[1]) != 0;
 }
 
 DRAFT_INLINE lanes_int lanes_whole(lanes x)
