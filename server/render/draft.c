@@ -45,12 +45,12 @@ void draft_destroy(struct draft **draft_ptr)
     *draft_ptr = NULL;
 }
 
-/* Isolines and logarithms need the value itself at every pixel; what is see-through, what cuts and outlines are other passes' work. */
+/* Isolines and logarithms need the value itself at every pixel; what is see-through and what cuts are other passes' work. */
 bool draft_can(const struct draft *draft, const struct view *view)
 {
     double lines[VIEW_ALL_LINES];
     return view->tier == TIER_MOVING && view->look != LOOK_GLOSSY && view->look != LOOK_MATERIALS && !view->paint.log &&
-           view_lines(view, lines) == 0 && view->selected_asset < 0 && view->visibility.ghosts.count == 0 && view->visibility.clip.plane_count == 0 &&
+           view_lines(view, lines) == 0 && view->visibility.ghosts.count == 0 && view->visibility.clip.plane_count == 0 &&
            view->camera.height_m <= 0 && draft->ramp_count <= MOST_RAMPS;
 }
 
@@ -81,6 +81,36 @@ static void draw_bands(void *arg, size_t begin, size_t end)
     }
 }
 
+static void mark_bands(void *arg, size_t begin, size_t end)
+{
+    for (size_t band = begin; band < end; band++)
+        draft_raster_band(arg, (int)band);
+}
+
+/* Marks of all that was collected; coloured, or not. */
+static void draw(struct draft *draft, void (*bands)(void *arg, size_t begin, size_t end))
+{
+    draft_place(draft);
+    draft_sort(draft);
+    workers_for(draft->workers, (size_t)draft->band_count, 1, bands, draft);
+}
+
+static bool is_selected_shown(const struct picture *picture)
+{
+    int selected = picture->view->selected_asset;
+    for (size_t i = 0; i < picture->visible_count && selected >= 0; i++)
+        if (picture->visible[i] == selected)
+            return true;
+    return false;
+}
+
+static bool complain(const struct draft *draft)
+{
+    log_err(draft->stage->gl->log, "moving picture of %dx%d, %zu vertices: out of memory", draft->width_px, draft->height_px,
+            draft->vertex_count);
+    return false;
+}
+
 bool draft_draw(struct draft *draft, const struct picture *picture, const struct light *light, struct frame *frame)
 {
     draft->picture = picture;
@@ -88,21 +118,21 @@ bool draft_draw(struct draft *draft, const struct picture *picture, const struct
     if (!draft->light)
         return false;
     draft_read_palette(draft, &picture->palette);
-    if (!make_room(draft, frame)) {
-        log_err(draft->stage->gl->log, "moving picture of %dx%d: out of memory", frame->width_px, frame->height_px);
-        return false;
-    }
+    if (!make_room(draft, frame))
+        return complain(draft);
     frame_block_fill(&draft->block, picture);
     draft->out = frame->bgrx;
     draft->out_stride_bytes = (size_t)frame->stride_bytes;
     draft_aim(draft, light);
-    if (!draft_collect(draft)) {
-        log_err(draft->stage->gl->log, "moving picture of %zu vertices: out of memory", draft->vertex_count);
-        return false;
-    }
-    draft_place(draft);
-    draft_sort(draft);
-    workers_for(draft->workers, (size_t)draft->band_count, 1, draw_bands, draft);
+    if (!draft_collect(draft))
+        return complain(draft);
+    draw(draft, draw_bands);
     markers_find(picture, draft->depth, (size_t)draft->pitch_px, frame);
+    if (!is_selected_shown(picture))
+        return true;
+    if (!draft_collect_only(draft, picture->view->selected_asset))
+        return complain(draft);
+    draw(draft, mark_bands);
+    draft_outline(draft);
     return true;
 }

@@ -92,7 +92,8 @@ static float nearest(const struct culling *culling, const struct asset_cluster *
     return sqrtf(away) - sqrtf(size);
 }
 
-static void collect_asset(struct draft *draft, int index)
+/* both_sides: as if it had no backs. */
+static void collect_asset(struct draft *draft, int index, bool both_sides)
 {
     const struct picture *picture = draft->picture;
     const struct scene_asset *asset = &picture->stage->scene->assets[index];
@@ -111,7 +112,7 @@ static void collect_asset(struct draft *draft, int index)
         const struct asset_primitive *primitive = &file->primitives[level->first_primitive + p];
         const struct asset_material *material = &file->materials[primitive->material];
         uint32_t end = primitive->first_index + primitive->index_count;
-        struct draft_draw draw = { .mesh = (uint32_t)draft->mesh_count, .double_sided = material->double_sided != 0 };
+        struct draft_draw draw = { .mesh = (uint32_t)draft->mesh_count, .double_sided = both_sides || material->double_sided };
         draw.mark = mesh->scalars ? MARK_FIELD : MARK_CONTEXT | (ramp + primitive->material) << 16;
         for (; cluster < file->clusters + file->header->cluster_count && cluster->first_index < end &&
                cluster->first_index >= primitive->first_index;
@@ -160,12 +161,9 @@ static void cut_into_chunks(struct draft *draft)
     }
 }
 
-bool draft_collect(struct draft *draft)
+/* False: out of memory. */
+static bool finish(struct draft *draft)
 {
-    const struct picture *picture = draft->picture;
-    draft->mesh_count = draft->draw_count = draft->vertex_count = 0;
-    for (size_t i = 0; i < picture->visible_count; i++)
-        collect_asset(draft, picture->visible[i]);
     qsort(draft->draws, draft->draw_count, sizeof(*draft->draws), by_distance);
     cut_into_chunks(draft);
     if (draft->vertex_count <= draft->vertex_capacity)
@@ -174,4 +172,20 @@ bool draft_collect(struct draft *draft)
     draft->vertices = mem_try_array(draft->vertex_count + draft->vertex_count / 4, sizeof(*draft->vertices));
     draft->vertex_capacity = draft->vertices ? draft->vertex_count + draft->vertex_count / 4 : 0;
     return draft->vertices != NULL;
+}
+
+bool draft_collect(struct draft *draft)
+{
+    const struct picture *picture = draft->picture;
+    draft->mesh_count = draft->draw_count = draft->vertex_count = 0;
+    for (size_t i = 0; i < picture->visible_count; i++)
+        collect_asset(draft, picture->visible[i], false);
+    return finish(draft);
+}
+
+bool draft_collect_only(struct draft *draft, int asset)
+{
+    draft->mesh_count = draft->draw_count = draft->vertex_count = 0;
+    collect_asset(draft, asset, true);
+    return finish(draft);
 }

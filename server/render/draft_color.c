@@ -130,14 +130,14 @@ DRAFT_INLINE lanes sun_at(const struct draft *draft, lanes x, float y, lanes dep
     lanes place = s[2] * over * 65535.0f;
     lanes u0 = whole_part(u), v0 = whole_part(v), u_part = u - u0, v_part = v - v0;
     lanes_int at = lanes_whole(v0) * (light->sun_map_px + 1) + lanes_whole(u0);
-    lanes_int above, below; /* pairs of neighbours */
+    uint32_t pairs[2][LANES]; /* of neighbours; above, below */
     for (int i = 0; i < LANES; i++) {
-        const uint16_t *texel = light->sun_map + at[i], *under = texel + light->sun_map_px + 1;
-        above[i] = (int32_t)(texel[0] | (uint32_t)texel[1] << 16);
-        below[i] = (int32_t)(under[0] | (uint32_t)under[1] << 16);
+        memcpy(&pairs[0][i], light->sun_map + at[i], 4);
+        memcpy(&pairs[1][i], light->sun_map + at[i] + light->sun_map_px + 1, 4);
     }
+    lanes_uint above = *(const lanes_uint *)pairs[0], below = *(const lanes_uint *)pairs[1];
     lanes one = (lanes){ 0 } + 1.0f, none = { 0 };
-#define LIT(pair) lanes_choose(place >= __builtin_convertvector((pair) & 0xffff, lanes), one, none)
+#define LIT(pair) lanes_choose(place >= __builtin_convertvector((lanes_int)((pair) & 0xffff), lanes), one, none)
     lanes upper = LIT(above) + u_part * (LIT(above >> 16) - LIT(above)), lower = LIT(below) + u_part * (LIT(below >> 16) - LIT(below));
 #undef LIT
     return upper + v_part * (lower - upper);

@@ -104,9 +104,11 @@ void draft_read_palette(struct draft *draft, const struct palette *palette);
 /* The steps. */
 void draft_aim(struct draft *draft, const struct light *light); /* the matrices from pixels */
 bool draft_collect(struct draft *draft);                        /* meshes, draws and chunks: what may be seen. False: out of memory */
+bool draft_collect_only(struct draft *draft, int asset);        /* the same of one, from both sides */
 void draft_place(struct draft *draft);                          /* vertices */
 void draft_sort(struct draft *draft);                           /* triangles into bands */
 void draft_raster_band(const struct draft *draft, int band);    /* depth and marks */
 void draft_color_band(const struct draft *draft, int band);     /* colours */
+void draft_outline(const struct draft *draft);                  /* of all that has a mark; depth is lost */
 
 #endif

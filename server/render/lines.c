@@ -66,6 +66,11 @@ static void mask_fit(struct lines *lines, int width_px, int height_px)
     glNamedFramebufferTexture(lines->mask_framebuffer, GL_COLOR_ATTACHMENT0, lines->mask, 0);
 }
 
+double lines_outline_px(const struct view *view)
+{
+    return fmax(1.5, view->height_px / 600.0);
+}
+
 void lines_draw_outline(struct lines *lines, const struct picture *picture)
 {
     int asset = picture->view->selected_asset;
@@ -79,7 +84,7 @@ void lines_draw_outline(struct lines *lines, const struct picture *picture)
     glDisable(GL_DEPTH_TEST);
     stage_draw_depth(picture->stage, picture->shot.clip_from_plant, &picture->view->visibility.clip, asset, 0);
     glBindTextureUnit(0, lines->mask);
-    glProgramUniform1f(lines->outline_program, 0, (float)fmax(1.5, picture->view->height_px / 600.0));
+    glProgramUniform1f(lines->outline_program, 0, (float)lines_outline_px(picture->view));
     draw_over(lines, picture, lines->outline_program);
     gl_pass_leave(picture->stage->gl, "outline");
 }

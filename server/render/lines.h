@@ -14,6 +14,7 @@ struct lines {
 bool lines_init(struct lines *lines, struct log *log); /* false: logged */
 void lines_finish(struct lines *lines);
 void lines_draw_edges(const struct lines *lines, const struct picture *picture);
+double lines_outline_px(const struct view *view); /* width of its dark line; the light one is as wide */
 /* Of view->selected_asset, also where something stands before it. */
 void lines_draw_outline(struct lines *lines, const struct picture *picture);
 

@@ -125,6 +125,25 @@ static void test_sun(void **state)
     }
 }
 
+/* Lines of a pixel and a half: their rims differ. */
+static void test_outlines(void **state)
+{
+    struct view view;
+    (void)state;
+    start_view(&view, 640, 360);
+    for (int asset = 0; asset < (int)stand.toy->scene.asset_count; asset++) {
+        view.selected_asset = asset;
+        assert_same(&view, 0.012);
+    }
+    asset_set_add(&view.visibility.hidden, view.selected_asset);
+    struct frame *hidden = draw(&view, false);
+    view.selected_asset = -1;
+    struct frame *plain = draw(&view, false);
+    assert_memory_equal(hidden->bgrx, plain->bgrx, (size_t)hidden->height_px * (size_t)hidden->stride_bytes);
+    frame_unref(&hidden);
+    frame_unref(&plain);
+}
+
 /* What it leaves to GL is what GL draws. */
 static void test_left_to_gl(void **state)
 {
@@ -132,7 +151,8 @@ static void test_left_to_gl(void **state)
     for (int i = 0; i < 4; i++) {
         struct view view;
         start_view(&view, 200, 150);
-        view.selected_asset = i == 0 ? 0 : -1;
+        if (i == 0)
+            asset_set_add(&view.visibility.ghosts, 1);
         view.look = i == 1 ? LOOK_GLOSSY : LOOK_DEFAULT;
         view.ramp_interval = i == 2 ? 20 : 0;
         view.tier = i == 3 ? TIER_STILL : TIER_MOVING;
@@ -155,7 +175,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_home),    cmocka_unit_test(test_sizes), cmocka_unit_test(test_flat),
-        cmocka_unit_test(test_cameras), cmocka_unit_test(test_sun),   cmocka_unit_test(test_left_to_gl),
+        cmocka_unit_test(test_cameras), cmocka_unit_test(test_sun),   cmocka_unit_test(test_outlines),
+        cmocka_unit_test(test_left_to_gl),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
     if (!rig_init(&rig, "draft_test"))

@@ -328,11 +328,9 @@ static void test_selection_is_outlined(void **state)
     for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++) {
         view.tier = (enum tier)tier;
         view.selected_asset = -1;
-        renderer_use_gl(stand.renderer, true); /* both of them: outlines are GL's */
         struct frame *plain = stand_draw(&stand, &view);
         view.selected_asset = 1;
         struct frame *outlined = stand_draw(&stand, &view);
-        renderer_use_gl(stand.renderer, false);
         int changed = 0;
         for (int y = 0; y < 180; y++)
             for (int x = 0; x < 320; x++)
