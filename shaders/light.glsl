@@ -34,9 +34,13 @@ vec3 tone_map(vec3 c)
     return mix(c, vec3(new_peak), 1.0 - 1.0 / (desaturation * (peak - new_peak) + 1.0));
 }
 
+float grey_of(vec3 c)
+{
+    return dot(c, vec3(0.30, 0.59, 0.11));
+}
+
 // Assets without a field are context: paler and greyer than they are, so that no material is taken for a value. sRGB in and out.
 vec3 mute(vec3 c)
 {
-    float grey = dot(c, vec3(0.30, 0.59, 0.11));
-    return mix(mix(vec3(grey), c, 0.30), vec3(0.88), 0.48);
+    return mix(mix(vec3(grey_of(c)), c, 0.30), vec3(0.88), 0.48);
 }

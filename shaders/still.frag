@@ -93,6 +93,9 @@ void main()
     color.rgb = c;
 #else
     color = vec4(frame.up.w > 0.5 ? mute(c) : c, base.a);
+#ifdef RICH
+    color.rgb = vec3(grey_of(color.rgb));
+#endif
 #endif
 #endif
 }

@@ -78,6 +78,8 @@ static GLuint choose_program(struct solid *solid, const struct picture *picture,
     int variant = field ? SOLID_FIELD : 0;
     if (field && (picture->palette.lines || view->paint.log))
         variant |= SOLID_RICH;
+    if (!field && view_is_operator(view)) /* grey: no material near the tints that mean limits */
+        variant |= SOLID_RICH;
     if (field && view->look == LOOK_GLOSSY)
         variant |= SOLID_GLOSSY;
     if (view->tier == TIER_STILL && material->mask && (!field || view->look == LOOK_GLOSSY || material->masked))

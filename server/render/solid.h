@@ -5,7 +5,7 @@
 #include "render/picture.h"
 
 /* What a program can do; each does only what it must, since a software GL runs every branch. Rich: lines, and
-   scales that are not linear. */
+   scales that are not linear; without a field, only greys. */
 enum solid_variant { SOLID_FIELD = 1, SOLID_RICH = 2, SOLID_GLOSSY = 4, SOLID_TEXTURED = 8, SOLID_CLIP = 16, SOLID_VARIANTS = 32 };
 
 /* What the programs are for; all but pictures are made when first needed. */

@@ -175,6 +175,36 @@ static void test_tiers_agree(void **state)
     frame_unref(&moving);
 }
 
+/* Whatever looks other than in the view of values, field or context, is grey while all readings are within their limits. */
+static void test_operator_sees_greys(void **state)
+{
+    struct view values, limits;
+    (void)state;
+    view_default(&stand.toy->scene, WIDTH, HEIGHT, &values);
+    for (size_t i = 0; i < stand.toy->plant.tag_count; i++)
+        memcpy(stand.toy->plant.tags[i].limits, (double[]){ -20, -10, 110, 120 }, 4 * sizeof(double));
+    for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++) {
+        int other = 0, coloured = 0;
+        values.tier = (enum tier)tier;
+        limits = values;
+        limits.field.show = SHOW_OPERATOR;
+        view_own_scale(&stand.toy->scene, &limits);
+        struct frame *first = stand_draw(&stand, &values), *second = stand_draw(&stand, &limits);
+        for (int i = 0; i < WIDTH * HEIGHT; i++) {
+            const uint8_t *a = frame_pixel(first, i % WIDTH, i / WIDTH), *b = frame_pixel(second, i % WIDTH, i / WIDTH);
+            if (abs(a[0] - b[0]) + abs(a[1] - b[1]) + abs(a[2] - b[2]) < 12)
+                continue;
+            other++;
+            coloured += abs(b[0] - b[1]) > 3 || abs(b[1] - b[2]) > 3;
+        }
+        printf("# tier %d: %d pixels look other than as values, %d of them are not grey\n", tier, other, coloured);
+        assert_true(other > WIDTH * HEIGHT / 20);
+        assert_true(coloured <= other / 50); /* rims are mixed with the sky */
+        frame_unref(&first);
+        frame_unref(&second);
+    }
+}
+
 #define each(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
 
 int main(void)
@@ -183,6 +213,7 @@ int main(void)
         each(test_shading_is_not_read_as_value),
         each(test_glossy_would_be_misread),
         each(test_tiers_agree),
+        each(test_operator_sees_greys),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
     if (!rig_init(&rig, "shading_test"))
