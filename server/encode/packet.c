@@ -18,7 +18,8 @@ static void *copy_of(const void *list, size_t count, size_t bytes_each)
 static struct frame *without_pixels(const struct frame *frame)
 {
     struct frame *copy = mem_new(sizeof(*copy));
-    memcpy(copy, frame, sizeof(*copy));
+    size_t plain = offsetof(struct frame, view); /* others count its references meanwhile */
+    memcpy((char *)copy + plain, (const char *)frame + plain, sizeof(*copy) - plain);
     atomic_init(&copy->refs, 1);
     copy->bgrx = NULL;
     copy->markers = copy_of(frame->markers, frame->marker_count, sizeof(*frame->markers));

@@ -87,14 +87,13 @@ static int sun_map_px(const struct stage *stage)
 }
 
 /* What throws a shadow: what is blended does not. */
-static void draw_depth(const struct stage *stage, const double clip_from_plant[16], size_t asset, double error_m)
+static void draw_depth(const struct stage *stage, const double clip_from_plant[16], const struct clip *clip, size_t asset, double error_m)
 {
     const struct model *model = stage->of_asset[asset];
     const struct model_level *level = model_level(model, error_m);
     double clip_from_file[16];
     float matrix[16];
-    glUseProgram(stage->depth_program);
-    glDisable(GL_CULL_FACE);
+    stage_depth_begin(stage, clip_from_plant, clip);
     matrix_multiply(clip_from_plant, stage->scene->assets[asset].placement, clip_from_file);
     matrix_to_float(clip_from_file, matrix);
     glUniformMatrix4fv(0, 1, GL_FALSE, matrix);
@@ -102,10 +101,11 @@ static void draw_depth(const struct stage *stage, const double clip_from_plant[1
     for (size_t i = 0; i < level->batch_count; i++)
         if (!level->batches[i].blend)
             model_draw_batch(&level->batches[i]);
+    stage_depth_end(clip);
 }
 
-/* One asset as seen from far away in that direction. layer -1: the texture is not an array. */
-static void draw_on_map(struct bake *bake, GLuint map, int layer, int size_px, const double towards[3])
+/* One asset, if it is shown, as seen from far away in that direction. layer -1: the texture is not an array. */
+static void draw_on_map(struct bake *bake, GLuint map, int layer, int size_px, const double towards[3], const struct visibility *shown)
 {
     const struct stage *stage = bake->stage;
     double clip_from_plant[16];
@@ -121,7 +121,8 @@ static void draw_on_map(struct bake *bake, GLuint map, int layer, int size_px, c
     glDepthMask(GL_TRUE);
     if (bake->asset == 0)
         glClear(GL_DEPTH_BUFFER_BIT);
-    draw_depth(stage, clip_from_plant, bake->asset, stage->radius_m / size_px);
+    if (visibility_of(shown, (int)bake->asset) == ASSET_SHOWN)
+        draw_depth(stage, clip_from_plant, &shown->clip, bake->asset, stage->radius_m / size_px);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
 }
 
@@ -157,10 +158,11 @@ static void find_directions(struct bake *bake)
 
 static void sky_map_bit(struct bake *bake)
 {
+    static const struct visibility everything;
     double towards[3];
     float brightness;
     sky_direction(bake->stage, bake->direction, towards, &brightness);
-    draw_on_map(bake, bake->sky_maps, bake->direction, SKY_MAP_PX, towards);
+    draw_on_map(bake, bake->sky_maps, bake->direction, SKY_MAP_PX, towards, &everything);
     if (++bake->asset < bake->stage->scene->asset_count)
         return;
     bake->asset = 0;
@@ -170,7 +172,7 @@ static void sky_map_bit(struct bake *bake)
 
 static void sun_map_bit(struct bake *bake)
 {
-    draw_on_map(bake, bake->set.sun_map, -1, sun_map_px(bake->stage), bake->set.key.towards);
+    draw_on_map(bake, bake->set.sun_map, -1, sun_map_px(bake->stage), bake->set.key.towards, &bake->set.key.shown);
     if (++bake->asset < bake->stage->scene->asset_count)
         return;
     bake->asset = 0;

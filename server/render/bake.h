@@ -7,8 +7,9 @@
 #include "render/stage.h"
 
 struct light_key {
-    double towards[3]; /* the sun; plant frame, unit length */
-    int environment;   /* number of the surroundings */
+    double towards[3];       /* the sun; plant frame, unit length */
+    int environment;         /* number of the surroundings */
+    struct visibility shown; /* what throws shadows; how open a place is, is that of the whole plant */
 };
 
 struct light_set {

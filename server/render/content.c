@@ -64,6 +64,8 @@ uint64_t content_hash(const struct picture *picture)
     add_view(&state, picture->view);
     add(&state, picture->lit_by.towards, sizeof(picture->lit_by.towards));
     add(&state, &picture->lit_by.environment, sizeof(picture->lit_by.environment));
+    bool own_shadows = visibility_equal(&picture->lit_by.shown, &picture->view->visibility);
+    add(&state, &own_shadows, sizeof(own_shadows));
     add_visibility(&state, picture);
     for (size_t i = 0; i < picture->visible_count; i++) {
         int asset = picture->visible[i];

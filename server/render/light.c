@@ -57,7 +57,7 @@ void light_finish(struct light *light)
 static bool same(const struct light_key *a, const struct light_key *b)
 {
     return a->environment == b->environment && a->towards[0] == b->towards[0] && a->towards[1] == b->towards[1] &&
-           a->towards[2] == b->towards[2];
+           a->towards[2] == b->towards[2] && visibility_equal(&a->shown, &b->shown);
 }
 
 static struct light_set *find(struct light *light, const struct light_key *key)
@@ -77,7 +77,8 @@ struct light_set *light_near(struct light *light, const struct light_key *key)
     for (int i = 0; i < LIGHT_SETS; i++) {
         struct light_set *set = &light->sets[i];
         const double *a = set->key.towards, *b = key->towards;
-        double alike = a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + (set->key.environment == key->environment ? 4 : 0);
+        double alike = a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + (set->key.environment == key->environment ? 8 : 0) +
+                       (visibility_equal(&set->key.shown, &key->shown) ? 3 : 0);
         if (set->id && alike > most) {
             nearest = set;
             most = alike;

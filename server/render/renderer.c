@@ -52,11 +52,12 @@ struct renderer {
     const struct fields_entry **asset_fields; /* per asset, of the picture being drawn */
     int *visible;
     double *distance_m; /* per asset */
+    struct visibility shown; /* by the last picture that was drawn at once */
 };
 
 static struct light_key wanted_light(const struct view *view)
 {
-    struct light_key key = { .environment = view->environment };
+    struct light_key key = { .environment = view->environment, .shown = view->visibility };
     memcpy(key.towards, view->light_dir, sizeof(key.towards));
     return key;
 }
@@ -429,8 +430,10 @@ struct frame *renderer_draw(struct renderer *renderer, const struct view *view, 
     struct light_key wanted = wanted_light(view);
     bool draft = renderer->draft && !renderer->always_gl && !renderer->per_fragment && draft_can(renderer->draft, view);
     struct frame *frame = draft ? draw_draft(renderer, view, snapshot) : draw_by_gl(renderer, view, snapshot);
-    if (frame && renderer->hurry_ns)
+    bool steady = visibility_equal(&wanted.shown, &renderer->shown); /* not at each place of a cut that somebody drags */
+    if (frame && renderer->hurry_ns && steady)
         light_step(&renderer->light, &wanted, renderer->hurry_ns);
+    renderer->shown = view->visibility;
     return frame;
 }
 

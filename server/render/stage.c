@@ -127,29 +127,38 @@ void stage_clip_end(const struct clip *clip)
         glDisable(GL_CLIP_DISTANCE0 + (GLenum)i);
 }
 
-static void use_clipped(const struct stage *stage, const double clip_from_plant[16], const struct clip *clip)
+static bool is_cut(const struct clip *clip)
+{
+    return clip && clip->plane_count > 0;
+}
+
+void stage_depth_begin(const struct stage *stage, const double clip_from_plant[16], const struct clip *clip)
 {
     double plant_from_clip[16];
     float planes[CLIP_MAX_PLANES][4] = { { 0 } };
+    glUseProgram(is_cut(clip) ? stage->clipped_depth_program : stage->depth_program);
+    glDisable(GL_CULL_FACE);
+    if (!is_cut(clip))
+        return;
     matrix_invert(clip_from_plant, plant_from_clip);
     for (int i = 0; i < clip->plane_count; i++) {
         double plane[4];
         clip_plane(clip, i, plane);
         matrix_plane(plant_from_clip, plane, planes[i]);
     }
-    glUseProgram(stage->clipped_depth_program);
     glUniform4fv(1, CLIP_MAX_PLANES, planes[0]);
     stage_clip_begin(clip);
 }
 
+void stage_depth_end(const struct clip *clip)
+{
+    if (is_cut(clip))
+        stage_clip_end(clip);
+}
+
 void stage_draw_depth(const struct stage *stage, const double clip_from_plant[16], const struct clip *clip, int asset, double error_m)
 {
-    bool cut = clip && clip->plane_count > 0;
-    if (cut)
-        use_clipped(stage, clip_from_plant, clip);
-    else
-        glUseProgram(stage->depth_program);
-    glDisable(GL_CULL_FACE);
+    stage_depth_begin(stage, clip_from_plant, clip);
     for (size_t i = 0; i < stage->scene->asset_count; i++) {
         if (asset >= 0 && i != (size_t)asset)
             continue;
@@ -164,8 +173,7 @@ void stage_draw_depth(const struct stage *stage, const double clip_from_plant[16
             if (!level->batches[b].blend || asset >= 0)
                 model_draw_batch(&level->batches[b]);
     }
-    if (cut)
-        stage_clip_end(clip);
+    stage_depth_end(clip);
 }
 
 bool stage_mirrored(const struct scene_asset *asset)

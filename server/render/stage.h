@@ -45,6 +45,9 @@ const struct model_level *stage_level(const struct stage *stage, const struct sh
 /* Only depth, of everything (asset -1) or of one asset, with errors up to error_m; clip: NULL, or what is cut away. Framebuffer and
    viewport are the caller's. */
 void stage_draw_depth(const struct stage *stage, const double clip_from_plant[16], const struct clip *clip, int asset, double error_m);
+/* The program for that, with its planes; between the two, placements are uniform 0. */
+void stage_depth_begin(const struct stage *stage, const double clip_from_plant[16], const struct clip *clip);
+void stage_depth_end(const struct clip *clip);
 /* Between the two: programs that cut are drawn with. */
 void stage_clip_begin(const struct clip *clip);
 void stage_clip_end(const struct clip *clip);

@@ -259,6 +259,29 @@ static void test_orthographic_markers_stand_where_they_should(void **state)
     }
 }
 
+/* What is hidden or cut away throws no shadow: the slab under the exchanger is lit where it was dark. */
+static void test_what_is_not_shown_throws_no_shadow(void **state)
+{
+    (void)state;
+    view.look = LOOK_DEFAULT;
+    view.tier = TIER_STILL;
+    memcpy(view.light_dir, (double[3]){ 0, -0.6, 0.8 }, sizeof(view.light_dir));
+    view.camera = (struct camera){ .eye_m = { 0, -1, 9 }, .target_m = { 0, 0.9, 0 }, .up = { 0, 0, 1 }, .height_m = 3 };
+    int shaded[3];
+    for (int way = 0; way < 3; way++) {
+        view.visibility = (struct visibility){ 0 };
+        if (way == 1)
+            asset_set_add(&view.visibility.hidden, EXCHANGER);
+        if (way == 2)
+            view.visibility.clip = (struct clip){ .plane_count = 1, .planes = { { 0, 0, -1, 0.5 } } };
+        struct frame *frame = stand_draw(&stand, &view);
+        shaded[way] = frame_pixel(frame, 132, 100)[1];
+        frame_unref(&frame);
+    }
+    assert_true(shaded[1] > shaded[0] + 8 && shaded[2] > shaded[0] + 8);
+    assert_true(abs(shaded[1] - shaded[2]) < 12);
+}
+
 #define each(test) cmocka_unit_test_setup(test, reset)
 
 int main(void)
@@ -272,6 +295,7 @@ int main(void)
         each(test_a_cut_opens_a_neutral_inside),
         each(test_a_cut_leaves_the_rest_alone),
         each(test_bit_by_bit_is_the_same),
+        each(test_what_is_not_shown_throws_no_shadow),
         each(test_orthographic_markers_stand_where_they_should),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
