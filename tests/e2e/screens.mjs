@@ -2,7 +2,7 @@
 // The page on a tablet and on a phone, by touch.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
-import { markers, openPage, PHONE, settle, shoot, TABLET, view, waitForHealth, waitForPicture } from './support/browser.mjs';
+import { DESKTOP, markers, openPage, PHONE, settle, shoot, TABLET, view, waitForHealth, waitForPicture } from './support/browser.mjs';
 import { missing, startPlant } from './support/plant.mjs';
 
 const why = missing();
@@ -87,6 +87,36 @@ test('tablet: one finger turns, two pan and zoom; device pixels', options, () =>
     await page.locator('#display-toggle').tap();
     assert.deepEqual(await tooSmall(page), []);
     await shoot(page, 'tablet-display');
+}));
+
+test('desktop: two sets of parameters side by side, each with its legend and its markers', options, () => withPage(DESKTOP, async (page) => {
+    const choose = (id, value) => page.locator(`#${id}`).selectOption(value);
+    const tags = await page.evaluate(() => globalThis.plantcast.session.model.tags.map((tag) => tag.name));
+    await plant.freeze(tags);
+    await page.waitForTimeout(2000); // two polls
+    await choose('split', 'pressure');
+    await choose('isolines', { index: 2 });
+    await settle(page);
+    const legends = await page.locator('.legend:visible h2').allTextContents();
+    assert.deepEqual(legends.map((text) => text.trim()), ['Temperature °C', 'Pressure bar']);
+    const [left, right] = await Promise.all(['#legend', '#legend-right'].map((id) => page.locator(id).boundingBox()));
+    const box = await page.locator('#viewport').boundingBox(), middle = box.x + box.width / 2;
+    assert.ok(left.x + left.width <= middle && right.x > middle, 'each legend in its half');
+    const places = await page.evaluate(() => globalThis.plantcast.overlay.markers.map(({ tag, x, half }) => ({ group: tag.group, x, half })));
+    for (const { group, x, half } of places) {
+        assert.equal(group, half ? 'pressure' : 'temperature');
+        assert.equal(half, box.x + x >= middle - 1 ? 1 : 0);
+    }
+    assert.ok(places.some(({ half }) => half === 0) && places.some(({ half }) => half === 1));
+    await shoot(page, 'split');
+    await choose('split', '');
+    await choose('show', 'operator');
+    await settle(page);
+    assert.deepEqual(await page.locator('#legend .ticks span').allTextContents(), ['LL', 'L', 'H', 'HH']);
+    assert.equal(await page.locator('#legend-right').isVisible(), false);
+    await shoot(page, 'operator');
+    for (const tag of tags)
+        await plant.ask(`release ${tag}`);
 }));
 
 test('tablet upright', options, () => withPage({ ...TABLET, viewport: { width: 768, height: 1024 } }, async (page) => {
