@@ -6,8 +6,6 @@
 
 #include "base/mem.h"
 
-#define LEAST_M 1e-5 /* a sensor nearer than that has all the weight */
-
 static double factor_of(double x)
 {
     return x > 0 && x < 1e4 ? x : x > 0 ? 1e4 : 0;
@@ -17,29 +15,40 @@ static void add_group(struct straight *straight, const struct plant *plant, int 
 {
     const struct plant_group *from = &plant->groups[group];
     struct straight_group *to = &straight->groups[straight->group_count];
-    *to = (struct straight_group){ .power = from->power, .radius_m = { from->radius_m, from->radius_m } };
+    *to = (struct straight_group){ .radius_m = { from->radius_m, from->radius_m } };
     to->columns = mem_array(straight->sensor_count, sizeof(*to->columns));
     for (uint32_t i = 0; i < straight->sensor_count; i++)
         if (plant->tags[sensors[i].tag].group == group)
             to->columns[to->count++] = i;
-    for (size_t i = 0; i < to->count; i++)
-        to->steepness = fmax(to->steepness, 2 * straight->strength[to->columns[i]] + fmax(1, straight->decay[to->columns[i]]));
-    straight->group_count += to->count > 0;
-    straight->share_count += 4 * to->count;
-    if (to->count == 0)
+    if (to->count == 0) {
         mem_free(to->columns);
+        return;
+    }
+    size_t padded = shares_padded(to->count);
+    float *strength = mem_array(padded, sizeof(*strength)), *decay = mem_array(padded, sizeof(*decay));
+    to->of = (struct shares_group){ .strength = strength, .decay = decay, .power = (float)from->power, .count = padded };
+    for (size_t i = 0; i < padded; i++) {
+        const struct plant_tag *tag = i < to->count ? &plant->tags[sensors[to->columns[i]].tag] : NULL;
+        strength[i] = tag ? (float)factor_of(tag->strength) : 0;
+        decay[i] = tag ? (float)factor_of(tag->decay) : 1;
+        to->of.decays |= decay[i] != 1;
+        if (tag)
+            to->steepness = fmax(to->steepness, 2 * (double)strength[i] + fmax(1, (double)decay[i]));
+    }
+    straight->group_count++;
+    straight->share_count += 4 * padded;
+    straight->most_count = padded > straight->most_count ? padded : straight->most_count;
 }
 
 void straight_init(struct straight *straight, const struct plant *plant, const struct plant_sensor *sensors, size_t sensor_count,
                    const float (*places_m)[3])
 {
-    *straight = (struct straight){ .sensor_count = sensor_count, .places_m = places_m };
+    *straight = (struct straight){ .sensor_count = sensor_count };
     straight->groups = mem_array(plant->group_count, sizeof(*straight->groups));
-    straight->strength = mem_array(sensor_count, sizeof(*straight->strength));
-    straight->decay = mem_array(sensor_count, sizeof(*straight->decay));
-    for (size_t i = 0; i < sensor_count; i++) {
-        straight->strength[i] = factor_of(plant->tags[sensors[i].tag].strength);
-        straight->decay[i] = factor_of(plant->tags[sensors[i].tag].decay);
+    for (int axis = 0; axis < 3; axis++) {
+        straight->axes_m[axis] = mem_array(shares_padded(sensor_count), sizeof(float));
+        for (size_t i = 0; i < shares_padded(sensor_count); i++)
+            straight->axes_m[axis][i] = i < sensor_count ? places_m[i][axis] : INFINITY;
     }
     for (size_t g = 0; g < plant->group_count; g++)
         add_group(straight, plant, (int)g, sensors);
@@ -47,11 +56,14 @@ void straight_init(struct straight *straight, const struct plant *plant, const s
 
 void straight_finish(struct straight *straight)
 {
-    for (size_t g = 0; g < straight->group_count; g++)
+    for (size_t g = 0; g < straight->group_count; g++) {
         mem_free(straight->groups[g].columns);
+        mem_free((float *)straight->groups[g].of.strength);
+        mem_free((float *)straight->groups[g].of.decay);
+    }
+    for (int axis = 0; axis < 3; axis++)
+        mem_free(straight->axes_m[axis]);
     mem_free(straight->groups);
-    mem_free(straight->strength);
-    mem_free(straight->decay);
     *straight = (struct straight){ 0 };
 }
 
@@ -68,111 +80,96 @@ void straight_set_radius(struct straight *straight, const float *const largest_m
         }
 }
 
-static double raised(double base, double power)
+/* Room for distances, on the caller's stack if there are few sensors. */
+#define FEW 1024
+struct room {
+    float few[FEW], *at;
+};
+
+static float *room_for(struct room *room, size_t count)
 {
-    return power == 1 ? base : power == 2 ? base * base : pow(base, power);
+    room->at = count <= FEW ? room->few : mem_array(count, sizeof(*room->at));
+    return room->at;
 }
 
-/* Returns the most that a value changes over a metre. */
-static double shepard(const struct straight *straight, const struct straight_group *group, const double *distance_m, float *shares)
+static void room_finish(struct room *room)
 {
-    double sum = 0, slope = 0;
-    for (size_t i = 0; i < group->count; i++)
-        if (isfinite(distance_m[i]))
-            sum += straight->strength[group->columns[i]] / raised(fmax(distance_m[i], LEAST_M), group->power);
-    for (size_t i = 0; i < group->count; i++) {
-        double weight = straight->strength[group->columns[i]] / raised(fmax(distance_m[i], LEAST_M), group->power);
-        shares[i] = sum > 0 && isfinite(distance_m[i]) ? (float)(weight / sum) : 0;
-        slope += isfinite(distance_m[i]) ? (double)(shares[i] * (1 - shares[i])) / fmax(distance_m[i], LEAST_M) : 0;
-    }
-    return group->power * slope;
-}
-
-static void paper(const struct straight *straight, const struct straight_group *group, double radius_m, const double *distance_m,
-                  float *shares)
-{
-    double sum = 0, largest = 0;
-    for (size_t i = 0; i < group->count; i++)
-        if (isfinite(distance_m[i]))
-            largest = fmax(largest, fmax(0, 1 - distance_m[i] / radius_m) * straight->strength[group->columns[i]]);
-    for (size_t i = 0; i < group->count; i++) {
-        double d = isfinite(distance_m[i]) ? fmax(0, 1 - distance_m[i] / radius_m) : 0;
-        double weight = isfinite(distance_m[i]) ? exp(d * straight->strength[group->columns[i]] - largest) : 0;
-        sum += weight;
-        shares[i] = (float)(weight * raised(d, straight->decay[group->columns[i]]));
-    }
-    for (size_t i = 0; i < group->count; i++)
-        shares[i] = sum > 0 ? (float)((double)shares[i] / sum) : 0;
-}
-
-static double euclidean(const float a[3], const float b[3])
-{
-    double x = (double)a[0] - (double)b[0], y = (double)a[1] - (double)b[1], z = (double)a[2] - (double)b[2];
-    return sqrt(x * x + y * y + z * z);
+    if (room->at != room->few)
+        mem_free(room->at);
 }
 
 void straight_shares(const struct straight *straight, const float point_m[3], const float *geodesic_m, float *shares)
 {
     float *slope = shares + straight->share_count;
-    double few[64], *distance_m = straight->sensor_count <= 64 ? few : mem_array(straight->sensor_count, sizeof(*distance_m));
+    struct room rooms[2];
+    size_t all = shares_padded(straight->sensor_count);
+    float *straight_m = room_for(&rooms[0], all), *distance_m = room_for(&rooms[1], straight->most_count);
+    shares_euclidean(point_m, (const float *const *)straight->axes_m, all, straight_m);
     for (int mode = 0; mode < 2; mode++)
         for (size_t g = 0; g < straight->group_count; g++) {
             const struct straight_group *group = &straight->groups[g];
-            for (size_t i = 0; i < group->count; i++) {
-                uint32_t column = group->columns[i];
-                distance_m[i] = mode == DISTANCE_GEODESIC ? (double)geodesic_m[column] : euclidean(point_m, straight->places_m[column]);
-            }
-            *slope++ = (float)shepard(straight, group, distance_m, shares);
-            paper(straight, group, group->radius_m[mode], distance_m, shares + group->count);
+            const float *from = mode == DISTANCE_GEODESIC ? geodesic_m : straight_m;
+            for (size_t i = 0; i < group->of.count; i++)
+                distance_m[i] = i < group->count ? from[group->columns[i]] : INFINITY;
+            *slope++ = shares_shepard(&group->of, distance_m, shares);
+            shares_paper(&group->of, (float)group->radius_m[mode], distance_m, shares + group->of.count);
             *slope++ = (float)(group->steepness / group->radius_m[mode]);
-            shares += 2 * group->count;
+            shares += 2 * group->of.count;
         }
-    if (distance_m != few)
-        mem_free(distance_m);
+    room_finish(&rooms[0]);
+    room_finish(&rooms[1]);
+}
+
+static bool has_value(const float *shares, size_t count)
+{
+    size_t i = 0;
+    while (i < count && !(shares[i] > 0))
+        i++;
+    return i < count;
 }
 
 /* The largest of the errors, group by group. Where a group has no value at a corner, because no way leads there, there is no error. */
-static double worst_of(const struct straight *straight, const float *const corners[3], const float weights[3], const float *sample,
-                       double slack_m)
+static double worst_of(const struct straight *straight, const float *const *corners, const float *weights, size_t corner_count,
+                       const float *sample, double slack_m)
 {
-    const float *a = corners[0], *b = corners[1], *c = corners[2];
     double most = 0;
     bool reached = true;
-    for (size_t g = 0, i = 0; g < 4 * straight->group_count; g++) {
-        float above = 0, below = 0, sums[4] = { 0 };
-        for (size_t end = i + straight->groups[g / 2 % straight->group_count].count; i < end; i++) {
-            float difference = sample[i] - (weights[0] * a[i] + weights[1] * b[i] + weights[2] * c[i]);
-            above += difference > 0 ? difference : 0;
-            below -= difference < 0 ? difference : 0;
-            sums[0] += sample[i];
-            sums[1] += a[i];
-            sums[2] += b[i];
-            sums[3] += c[i];
-        }
+    for (size_t g = 0, first = 0; g < 4 * straight->group_count; g++) {
+        size_t count = straight->groups[g / 2 % straight->group_count].of.count;
+        const float *at[3];
         if (g % 2 == INTERPOLATION_SHEPARD)
-            reached = sums[0] > 0 && sums[1] > 0 && sums[2] > 0 && sums[3] > 0;
+            reached = has_value(sample + first, count);
+        for (size_t c = 0; c < corner_count; c++) {
+            at[c] = corners[c] + first;
+            reached = reached && (g % 2 != INTERPOLATION_SHEPARD || has_value(at[c], count));
+        }
         if (reached)
-            most = fmax(most, (double)fmaxf(above, below) - slack_m * (double)sample[straight->share_count + g]);
+            most = fmax(most, (double)shares_error(at, weights, corner_count, sample + first, count) -
+                                  slack_m * (double)sample[straight->share_count + g]);
+        first += count;
     }
     return most;
 }
 
 double straight_error(const struct straight *straight, const float *a, const float *b, double t, const float *between, double slack_m)
 {
-    return worst_of(straight, (const float *const[3]){ a, b, b }, (const float[3]){ 1 - (float)t, (float)t, 0 }, between, slack_m);
+    return worst_of(straight, (const float *const[2]){ a, b }, (const float[2]){ 1 - (float)t, (float)t }, 2, between, slack_m);
 }
 
 double straight_error_inside(const struct straight *straight, const float *const corners[3], const float *inside, double slack_m)
 {
-    return worst_of(straight, corners, (const float[3]){ 1 / 3.0f, 1 / 3.0f, 1 / 3.0f }, inside, slack_m);
+    return worst_of(straight, corners, (const float[3]){ 1 / 3.0f, 1 / 3.0f, 1 / 3.0f }, 3, inside, slack_m);
 }
 
 double straight_nearest(const struct straight *straight, const float point_m[3])
 {
-    double nearest_m = INFINITY;
-    for (size_t i = 0; i < straight->sensor_count; i++)
-        nearest_m = fmin(nearest_m, euclidean(point_m, straight->places_m[i]));
-    return nearest_m;
+    struct room room;
+    size_t all = shares_padded(straight->sensor_count);
+    float *straight_m = room_for(&room, all), nearest_m;
+    shares_euclidean(point_m, (const float *const *)straight->axes_m, all, straight_m);
+    nearest_m = shares_least(straight_m, all);
+    room_finish(&room);
+    return (double)nearest_m;
 }
 
 size_t straight_sample_count(const struct straight *straight)

@@ -11,22 +11,24 @@
 #define PREPROCESS_STRAIGHT_H
 #include "plant/plant.h"
 #include "plant/sensors.h"
+#include "preprocess/shares.h"
 
 struct straight_group {
     double steepness;  /* paper: the most that a value changes over R */
     uint32_t *columns; /* of the asset's sensors */
     size_t count;
-    double power, radius_m[2]; /* paper's R, by distance_mode */
+    double radius_m[2]; /* paper's R, by distance_mode */
+    struct shares_group of; /* its sensors', padded */
 };
 
 struct straight {
     struct straight_group *groups;
     size_t group_count, sensor_count, share_count;
-    double *strength, *decay;   /* by column */
-    const float (*places_m)[3]; /* of the sensors, on the surface */
+    size_t most_count;    /* sensors of the largest group, padded */
+    float *axes_m[3];     /* of the sensors' places on the surface, by column, padded */
 };
 
-/* places_m must outlive it. Radii that the plant file leaves open are to be set by straight_set_radius. */
+/* places_m: of the sensors, on the surface. Radii that the plant file leaves open are to be set by straight_set_radius. */
 void straight_init(struct straight *straight, const struct plant *plant, const struct plant_sensor *sensors, size_t sensor_count,
                    const float (*places_m)[3]);
 void straight_finish(struct straight *straight);

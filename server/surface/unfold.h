@@ -8,11 +8,11 @@
 
 struct unfold { /* what meets at each point; shared by all walks */
     const struct trimesh *mesh;
-    uint32_t *first;                        /* of each point in fans; one more at the end */
-    struct unfold_fans {                    /* triangles seen from one of their corners */
-        uint32_t a[UNFOLD_FANS], b[UNFOLD_FANS];       /* the others; the corner itself where there is no more triangle */
+    uint32_t *first;                                    /* of each point in fans; one more at the end */
+    struct unfold_fans {                                /* triangles seen from one of their corners */
+        uint32_t a[UNFOLD_FANS], b[UNFOLD_FANS];        /* the others; the corner itself where there is no more triangle */
         float to_a_m[UNFOLD_FANS], to_b_m[UNFOLD_FANS]; /* < 0: that one may not be reached through this triangle; INFINITY: none */
-        float cosine[UNFOLD_FANS], sine[UNFOLD_FANS];  /* of the angle at the corner */
+        float cosine[UNFOLD_FANS], sine[UNFOLD_FANS];   /* of the angle at the corner */
     } * fans;
     char *hidden;      /* of each point: it has no visible triangle */
     float steps_per_m; /* buckets of a walk */

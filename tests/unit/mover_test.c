@@ -132,8 +132,9 @@ static void compare(const struct asset *asset, size_t sensor, const struct mover
     }
     for (size_t v = 0; v < count; v++)
         far += isfinite(stored[v]) && fabs((double)stored[v] - (double)result->geodesic_m[v]) > 3 * CLOSE_ENOUGH * largest;
-    print_message("# sensor %zu: differs from the stored distances by %.4f %% on average, %.4f %% at most; by more than %g %% at %.2f %%\n",
-                  sensor, 100 * sum / (double)count / largest, 100 * worst / largest, 300 * CLOSE_ENOUGH, 100 * (double)far / (double)count);
+    print_message("# sensor %zu: differs from the stored distances by %.4f %% on average, %.4f %% at most; by over %g %% at %.2f %%\n",
+                  sensor, 100 * sum / (double)count / largest, 100 * worst / largest, 300 * CLOSE_ENOUGH,
+                  100 * (double)far / (double)count);
     assert_true(sum / (double)count < CLOSE_ENOUGH * largest);
     assert_true(worst < MOST * largest);
     assert_true(far < count / 20);

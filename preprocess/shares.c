@@ -1,0 +1,273 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Sums over sensors, eight side by side. */
+#include "preprocess/shares.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+#include "base/wide.h"
+
+#define L SHARES_LANES
+#define LEAST_M 1e-5f    /* a sensor nearer than that has all the weight */
+#define LEAST_EXP -87.0f /* below it, exp is no normal number */
+
+typedef float lanes __attribute__((vector_size(4 * L)));
+typedef int32_t mask __attribute__((vector_size(4 * L))); /* of each lane all bits, or none */
+
+WIDE_BODY void load(const float *from, lanes *to)
+{
+    memcpy(to, from, sizeof(*to));
+}
+
+WIDE_BODY void store(const lanes *from, float *to)
+{
+    memcpy(to, from, sizeof(*from));
+}
+
+WIDE_BODY void keep(const mask *which, lanes *x) /* 0 elsewhere */
+{
+    *x = (lanes)(*which & (mask)*x);
+}
+
+WIDE_BODY void take_less(const lanes *x, lanes *least)
+{
+    mask less = *x < *least;
+    *least = (lanes)((less & (mask)*x) | (~less & (mask)*least));
+}
+
+WIDE_BODY void take_more(const lanes *x, lanes *most)
+{
+    mask more = *x > *most;
+    *most = (lanes)((more & (mask)*x) | (~more & (mask)*most));
+}
+
+WIDE_BODY float sum_of(const lanes *x)
+{
+    float sum = 0;
+    for (int i = 0; i < L; i++)
+        sum += (*x)[i];
+    return sum;
+}
+
+/* --- distances ---------------------------------------------------------------------------------------------------------------- */
+
+WIDE_BODY void euclidean(const float point_m[3], const float *const places_m[3], size_t count, float *distance_m)
+{
+    for (size_t i = 0; i < count; i += L) {
+        lanes sum = { 0 }, place;
+        for (int axis = 0; axis < 3; axis++) {
+            load(places_m[axis] + i, &place);
+            place -= point_m[axis];
+            sum += place * place;
+        }
+        for (int l = 0; l < L; l++)
+            sum[l] = sqrtf(sum[l]);
+        store(&sum, distance_m + i);
+    }
+}
+
+WIDE_BODY float least(const float *values, size_t count)
+{
+    lanes low = (lanes){ 0 } + INFINITY, x;
+    for (size_t i = 0; i < count; i += L) {
+        load(values + i, &x);
+        take_less(&x, &low);
+    }
+    for (int l = 1; l < L; l++)
+        low[0] = low[l] < low[0] ? low[l] : low[0];
+    return low[0];
+}
+
+/* --- shepard ------------------------------------------------------------------------------------------------------------------ */
+
+WIDE_BODY void raise_lanes(lanes *x, float power)
+{
+    lanes base = *x;
+    if (power == 2)
+        *x = base * base;
+    else if (power == 3)
+        *x = base * base * base;
+    else if (power != 1)
+        for (int l = 0; l < L; l++)
+            (*x)[l] = powf(base[l], power);
+}
+
+/* Weights as shares of the nearest one's, so that no power is too large for a float. */
+WIDE_BODY float shepard(const struct shares_group *group, const float *distance_m, float *shares)
+{
+    const lanes floor_m = (lanes){ 0 } + LEAST_M;
+    lanes sum = { 0 }, slope = { 0 }, far, weight, strength;
+    float near_m = least(distance_m, group->count);
+    if (near_m == INFINITY) {
+        memset(shares, 0, group->count * sizeof(*shares));
+        return 0;
+    }
+    near_m = near_m < LEAST_M ? LEAST_M : near_m;
+    for (size_t i = 0; i < group->count; i += L) {
+        load(distance_m + i, &far);
+        load(group->strength + i, &strength);
+        take_more(&floor_m, &far);
+        weight = near_m / far;
+        raise_lanes(&weight, group->power);
+        weight *= strength;
+        sum += weight;
+        store(&weight, shares + i);
+    }
+    float total = sum_of(&sum), per = total > 0 ? 1 / total : 0;
+    for (size_t i = 0; i < group->count; i += L) {
+        load(distance_m + i, &far);
+        load(shares + i, &weight);
+        take_more(&floor_m, &far);
+        weight *= per;
+        slope += weight * (1 - weight) / far;
+        store(&weight, shares + i);
+    }
+    return group->power * sum_of(&slope);
+}
+
+/* --- paper -------------------------------------------------------------------------------------------------------------------- */
+
+/* Of numbers up to 0: 2^n times a polynomial, right to about 2e-7. */
+WIDE_BODY void exponential(lanes *x)
+{
+    const lanes lowest = (lanes){ 0 } + LEAST_EXP;
+    take_more(&lowest, x);
+    lanes halves = *x * 1.44269504f - 0.5f;
+    mask n = __builtin_convertvector(halves, mask); /* towards 0, and so to the nearest */
+    lanes whole = __builtin_convertvector(n, lanes), r = *x - whole * 0.693359375f + whole * 2.12194440e-4f, p;
+    p = 1.3888889e-3f * r + 8.3333333e-3f;
+    p = p * r + 4.1666667e-2f;
+    p = p * r + 1.6666667e-1f;
+    p = p * r + 0.5f;
+    p = p * r + 1;
+    p = p * r + 1;
+    *x = p * (lanes)((n + 127) << 23);
+}
+
+/* 1 at the sensor, 0 at the radius and beyond. */
+WIDE_BODY void nearness(const float *distance_m, float per_m, lanes *out)
+{
+    const lanes zero = { 0 };
+    load(distance_m, out);
+    *out = 1 - *out * per_m;
+    take_more(&zero, out);
+}
+
+WIDE_BODY void paper(const struct shares_group *group, float radius_m, const float *distance_m, float *shares)
+{
+    const lanes infinite = (lanes){ 0 } + INFINITY;
+    lanes high = { 0 }, sum = { 0 }, d, weight, strength, far;
+    float per_m = 1 / radius_m, largest;
+    for (size_t i = 0; i < group->count; i += L) {
+        nearness(distance_m + i, per_m, &d);
+        load(group->strength + i, &strength);
+        weight = d * strength;
+        take_more(&weight, &high);
+    }
+    largest = high[0];
+    for (int l = 1; l < L; l++)
+        largest = high[l] > largest ? high[l] : largest;
+    for (size_t i = 0; i < group->count; i += L) {
+        load(distance_m + i, &far);
+        mask reached = far < infinite;
+        nearness(distance_m + i, per_m, &d);
+        load(group->strength + i, &strength);
+        weight = d * strength - largest;
+        exponential(&weight);
+        keep(&reached, &weight);
+        sum += weight;
+        for (int l = 0; l < L && group->decays; l++)
+            d[l] = powf(d[l], group->decay[i + (size_t)l]);
+        weight *= d;
+        store(&weight, shares + i);
+    }
+    float total = sum_of(&sum), per = total > 0 ? 1 / total : 0;
+    for (size_t i = 0; i < group->count; i += L) {
+        load(shares + i, &weight);
+        weight *= per;
+        store(&weight, shares + i);
+    }
+}
+
+/* --- errors ------------------------------------------------------------------------------------------------------------------- */
+
+WIDE_BODY float error_of(const float *const *corners, const float *weights, size_t corner_count, const float *sample, size_t count)
+{
+    const lanes zero = { 0 };
+    lanes above = { 0 }, below = { 0 }, at, x;
+    for (size_t i = 0; i < count; i += L) {
+        load(sample + i, &x);
+        for (size_t c = 0; c < corner_count; c++) {
+            load(corners[c] + i, &at);
+            x -= weights[c] * at;
+        }
+        mask more = x > zero;
+        at = x;
+        keep(&more, &at);
+        above += at;
+        below += at - x;
+    }
+    float most = sum_of(&above), least = sum_of(&below);
+    return most > least ? most : least;
+}
+
+/* --- as wide as the processor is ------------------------------------------------------------------------------------------------ */
+
+WIDE_TARGET static void euclidean_wide(const float point_m[3], const float *const places_m[3], size_t count, float *distance_m)
+{
+    euclidean(point_m, places_m, count, distance_m);
+}
+
+WIDE_TARGET static float least_wide(const float *values, size_t count)
+{
+    return least(values, count);
+}
+
+WIDE_TARGET static float shepard_wide(const struct shares_group *group, const float *distance_m, float *shares)
+{
+    return shepard(group, distance_m, shares);
+}
+
+WIDE_TARGET static void paper_wide(const struct shares_group *group, float radius_m, const float *distance_m, float *shares)
+{
+    paper(group, radius_m, distance_m, shares);
+}
+
+WIDE_TARGET static float error_wide(const float *const *corners, const float *weights, size_t corner_count, const float *sample,
+                                    size_t count)
+{
+    return corner_count == 2 ? error_of(corners, weights, 2, sample, count) : error_of(corners, weights, corner_count, sample, count);
+}
+
+void shares_euclidean(const float point_m[3], const float *const places_m[3], size_t count, float *distance_m)
+{
+    if (wide_is_there())
+        euclidean_wide(point_m, places_m, count, distance_m);
+    else
+        euclidean(point_m, places_m, count, distance_m);
+}
+
+float shares_least(const float *values, size_t count)
+{
+    return wide_is_there() ? least_wide(values, count) : least(values, count);
+}
+
+float shares_shepard(const struct shares_group *group, const float *distance_m, float *shares)
+{
+    return wide_is_there() ? shepard_wide(group, distance_m, shares) : shepard(group, distance_m, shares);
+}
+
+void shares_paper(const struct shares_group *group, float radius_m, const float *distance_m, float *shares)
+{
+    if (wide_is_there())
+        paper_wide(group, radius_m, distance_m, shares);
+    else
+        paper(group, radius_m, distance_m, shares);
+}
+
+float shares_error(const float *const *corners, const float *weights, size_t corner_count, const float *sample, size_t count)
+{
+    return wide_is_there() ? error_wide(corners, weights, corner_count, sample, count)
+                           : error_of(corners, weights, corner_count, sample, count);
+}

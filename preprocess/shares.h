@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The sums behind the sensors' shares, for eight sensors at a time. Thread: any. */
+#ifndef PREPROCESS_SHARES_H
+#define PREPROCESS_SHARES_H
+#include <stdbool.h>
+#include <stddef.h>
+
+/* Counts are multiples of this; where there is no sensor, the distance is INFINITY, strength 0 and decay 1. Then the share is 0. */
+#define SHARES_LANES 8
+static inline size_t shares_padded(size_t count)
+{
+    return (count + SHARES_LANES - 1) / SHARES_LANES * SHARES_LANES;
+}
+
+/* Metres from the point to places, whose x, y and z lie apart. */
+void shares_euclidean(const float point_m[3], const float *const places_m[3], size_t count, float *distance_m);
+float shares_least(const float *values, size_t count);
+
+struct shares_group {
+    const float *strength, *decay;
+    bool decays; /* some decay is not 1 */
+    float power;
+    size_t count;
+};
+/* Returns the most that a value changes over a metre. */
+float shares_shepard(const struct shares_group *group, const float *distance_m, float *shares);
+void shares_paper(const struct shares_group *group, float radius_m, const float *distance_m, float *shares);
+
+/* Shares at a point against those at corners, weighted: the sum of what is more, or of what is less, whichever is larger. */
+float shares_error(const float *const *corners, const float *weights, size_t corner_count, const float *sample, size_t count);
+
+#endif

@@ -1,0 +1,140 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Sums over sensors against plain loops in double precision. */
+#include "preprocess/shares.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <time.h>
+#include <cmocka.h>
+
+#include "tests/support/cad.h"
+
+#define MOST 40
+#define SAME 2e-6 /* shares are up to 1 */
+
+static struct cad_random chance;
+
+static int set_up(void **state)
+{
+    const char *seed = getenv("PLANTCAST_SEED");
+    (void)state;
+    chance.state = seed ? strtoull(seed, NULL, 10) : (uint64_t)time(NULL);
+    print_message("# PLANTCAST_SEED=%llu\n", (unsigned long long)chance.state);
+    return 0;
+}
+
+struct trial {
+    size_t count, padded;
+    float distance_m[MOST], strength[MOST], decay[MOST];
+    struct shares_group group;
+};
+
+/* Some sensors are not reached, some stand at the point itself. */
+static void make(struct trial *trial, bool decays)
+{
+    trial->count = 1 + (size_t)(cad_random(&chance) * (MOST - 8));
+    trial->padded = shares_padded(trial->count);
+    for (size_t i = 0; i < trial->padded; i++) {
+        bool there = i < trial->count;
+        double kind = cad_random(&chance);
+        trial->distance_m[i] = !there || kind < 0.15 ? INFINITY : kind < 0.2 ? 0 : (float)exp(12 * cad_random(&chance) - 8);
+        trial->strength[i] = there ? (float)exp(4 * cad_random(&chance) - 2) : 0;
+        trial->decay[i] = there && decays ? (float)(3 * cad_random(&chance)) : 1;
+    }
+    trial->group = (struct shares_group){ .strength = trial->strength, .decay = trial->decay, .decays = decays, .count = trial->padded };
+}
+
+static void shepards_shares_are_those_of_a_plain_loop(void **state)
+{
+    const float powers[5] = { 1, 2, 3, 2.5f, 12 };
+    (void)state;
+    for (int n = 0; n < 2000; n++) {
+        struct trial trial;
+        float shares[MOST];
+        double weights[MOST], sum = 0, slope = 0, near_m = INFINITY;
+        make(&trial, false);
+        trial.group.power = powers[n % 5];
+        for (size_t i = 0; i < trial.count; i++)
+            near_m = fmin(near_m, fmax(1e-5, (double)trial.distance_m[i]));
+        for (size_t i = 0; i < trial.count; i++) {
+            double d = fmax(1e-5, (double)trial.distance_m[i]);
+            weights[i] = isfinite(d) ? (double)trial.strength[i] * pow(near_m / d, (double)trial.group.power) : 0;
+            sum += weights[i];
+        }
+        float found = shares_shepard(&trial.group, trial.distance_m, shares);
+        for (size_t i = 0; i < trial.padded; i++) {
+            double share = i < trial.count && sum > 0 ? weights[i] / sum : 0;
+            assert_float_equal(shares[i], share, SAME);
+            if (i < trial.count && isfinite(trial.distance_m[i]))
+                slope += share * (1 - share) / fmax(1e-5, (double)trial.distance_m[i]);
+        }
+        slope *= (double)trial.group.power;
+        assert_true(fabs((double)found - slope) <= 1e-4 * slope + 2e-6 * (double)trial.group.power * MOST / fmin(near_m, 1));
+    }
+}
+
+static void papers_shares_are_those_of_a_plain_loop(void **state)
+{
+    (void)state;
+    for (int n = 0; n < 2000; n++) {
+        struct trial trial;
+        float shares[MOST], radius_m = (float)exp(4 * cad_random(&chance) - 1);
+        double weights[MOST], near[MOST], sum = 0;
+        make(&trial, n % 2);
+        for (size_t i = 0; i < trial.count; i++) {
+            near[i] = fmax(0, 1 - (double)trial.distance_m[i] / (double)radius_m);
+            weights[i] = isfinite(trial.distance_m[i]) ? exp(near[i] * (double)trial.strength[i]) : 0;
+            sum += weights[i];
+        }
+        shares_paper(&trial.group, radius_m, trial.distance_m, shares);
+        for (size_t i = 0; i < trial.padded; i++)
+            assert_float_equal(shares[i], i < trial.count && sum > 0 ? weights[i] / sum * pow(near[i], (double)trial.decay[i]) : 0, SAME);
+    }
+}
+
+static void distances_and_errors_are_those_of_a_plain_loop(void **state)
+{
+    (void)state;
+    for (int n = 0; n < 500; n++) {
+        float values[7][MOST], distance_m[MOST], point[3], weights[3];
+        const size_t count = 8 * (1 + (size_t)(cad_random(&chance) * 5));
+        double above = 0, below = 0, least = INFINITY;
+        size_t corners = 2 + (size_t)(n % 2);
+        for (int a = 0; a < 7; a++)
+            for (size_t i = 0; i < count; i++)
+                values[a][i] = (float)cad_random(&chance);
+        for (int i = 0; i < 3; i++) {
+            point[i] = (float)cad_random(&chance);
+            weights[i] = (float)cad_random(&chance);
+        }
+        shares_euclidean(point, (const float *const[3]){ values[0], values[1], values[2] }, count, distance_m);
+        float error = shares_error((const float *const[3]){ values[3], values[4], values[5] }, weights, corners, values[6], count);
+        for (size_t i = 0; i < count; i++) {
+            double d[3], more = (double)values[6][i];
+            for (int a = 0; a < 3; a++) {
+                d[a] = (double)values[a][i] - (double)point[a];
+                more -= (size_t)a < corners ? (double)weights[a] * (double)values[3 + a][i] : 0;
+            }
+            assert_float_equal(distance_m[i], sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]), 1e-6);
+            least = fmin(least, (double)distance_m[i]);
+            above += fmax(more, 0);
+            below += fmax(-more, 0);
+        }
+        assert_float_equal(shares_least(distance_m, count), least, 0);
+        assert_float_equal(error, fmax(above, below), 1e-5);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(shepards_shares_are_those_of_a_plain_loop),
+        cmocka_unit_test(papers_shares_are_those_of_a_plain_loop),
+        cmocka_unit_test(distances_and_errors_are_those_of_a_plain_loop),
+    };
+    return cmocka_run_group_tests(tests, set_up, NULL);
+}
