@@ -23,7 +23,8 @@ bool light_init(struct light *light, const struct stage *stage, struct environme
 void light_finish(struct light *light);
 /* The light of that sun and those surroundings; baked now if it is not known. NULL: out of GPU memory, logged. */
 struct light_set *light_get(struct light *light, const struct light_key *key);
-/* The ready one most like it: of the same surroundings if there is one, then of what is shown, then with the sun nearest. NULL: none is ready. */
+/* The ready one most like it: of the same surroundings if there is one, then of what is shown, then with the sun nearest. NULL: none
+   is ready. */
 struct light_set *light_near(struct light *light, const struct light_key *key);
 /* Likewise; bakes on for about that long, and a bit at least, if nothing else is under way. True: light_get does not wait now. */
 bool light_step(struct light *light, const struct light_key *key, int64_t budget_ns);

@@ -14,6 +14,7 @@
 
 #include "base/mem.h"
 #include "render/overlay.h"
+#include "scene/framing.h"
 #include "tests/support/rig.h"
 #include "value/quality.h"
 
@@ -27,15 +28,18 @@ struct golden {
     enum look look;
     double ramp_interval;
     int selected_asset;
-    bool overlay;
-    double far_part; /* of the pixels may differ by more than FAR, in any channel */
+    bool overlay, opened; /* opened: an orthographic picture with a cut and a ghost */
+    double far_part;      /* of the pixels may differ by more than FAR, in any channel */
 };
 enum { FAR = 20 };
 
 static const struct golden goldens[] = {
-    { "moving", TIER_MOVING, LOOK_DEFAULT, 0, -1, false, 0.01 }, { "still", TIER_STILL, LOOK_DEFAULT, 0, -1, false, 0.01 },
-    { "ramp", TIER_STILL, LOOK_FLAT, 20, 1, false, 0.01 },       { "glossy", TIER_STILL, LOOK_GLOSSY, 0, -1, false, 0.015 },
-    { "overlay", TIER_STILL, LOOK_DEFAULT, 0, -1, true, 0.04 }, /* letters differ between versions of the font library */
+    { "moving", TIER_MOVING, LOOK_DEFAULT, 0, -1, false, false, 0.01 },
+    { "still", TIER_STILL, LOOK_DEFAULT, 0, -1, false, false, 0.01 },
+    { "ramp", TIER_STILL, LOOK_FLAT, 20, 1, false, false, 0.01 },
+    { "glossy", TIER_STILL, LOOK_GLOSSY, 0, -1, false, false, 0.015 },
+    { "opened", TIER_STILL, LOOK_DEFAULT, 0, -1, false, true, 0.015 },
+    { "overlay", TIER_STILL, LOOK_DEFAULT, 0, -1, true, false, 0.04 }, /* letters differ between versions of the font library */
 };
 
 static void save(const char *folder, const char *name, const char *what, const uint8_t *bgrx)
@@ -101,6 +105,15 @@ static void judge(const struct golden *golden, const uint8_t *got)
     mem_free(differences);
 }
 
+static void open_up(struct view *view)
+{
+    struct framing framing = { .asset = -1, .tag = -1, .side = SIDE_ISO };
+    view->camera.height_m = 1;
+    framing_look(&stand.toy->scene, &framing, (double)WIDTH / HEIGHT, &view->camera);
+    asset_set_add(&view->visibility.ghosts, 1);
+    view->visibility.clip = (struct clip){ .plane_count = 1, .planes = { { 0, 1, 0, 0.1 } } };
+}
+
 static void test_golden(void **state)
 {
     const struct golden *golden = *state;
@@ -110,6 +123,8 @@ static void test_golden(void **state)
     view.look = golden->look;
     view.ramp_interval = golden->ramp_interval;
     view.selected_asset = golden->selected_asset;
+    if (golden->opened)
+        open_up(&view);
     struct frame *frame = stand_draw(&stand, &view);
     if (golden->overlay)
         overlay_draw(frame, &stand.toy->scene, stand.snapshot);
