@@ -168,7 +168,7 @@ static void warm(void *arg)
     struct mover *mover = arg;
     const struct mover_shape *shape = &mover->shape;
     struct surface *surface = surface_create(mover->log, mover->workers, shape->positions_m, shape->vertex_count, shape->triangles,
-                                             shape->triangle_count, &(struct surface_params){ 0 });
+                                             shape->triangle_count, &(struct surface_params){ .tolerance_m = shape->tolerance_m });
     size_t waiting = 0;
     pthread_mutex_lock(&mover->lock);
     mover->surface = surface;

@@ -17,6 +17,7 @@ struct mover_shape { /* an asset's finest level; what it points to must outlive 
     size_t vertex_count;
     const uint32_t *triangles; /* 3 each */
     size_t triangle_count;
+    double tolerance_m; /* as the plant file has it, so that the same hangs together; 0: chosen from the model */
 };
 /* Never NULL. The surface is made in the background, on a worker: seconds for a large asset, and some hundred bytes a triangle. Until
    then what is asked for waits. Thread: create and destroy from one thread; all else from any. */

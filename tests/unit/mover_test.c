@@ -187,7 +187,7 @@ static void a_moved_sensor_has_the_distances_that_would_be_stored(void **state)
 
 static struct mover_shape shape_of(const struct cad *cad)
 {
-    return (struct mover_shape){ (const float(*)[3])cad->positions, cad->vertex_count, cad->triangles, cad->triangle_count };
+    return (struct mover_shape){ (const float(*)[3])cad->positions, cad->vertex_count, cad->triangles, cad->triangle_count, 0 };
 }
 
 static void a_point_that_is_far_away_is_refused(void **state)
@@ -216,7 +216,7 @@ static void an_asset_without_surface_is_said_to_be_broken(void **state)
 {
     const float line[3][3] = { { 0, 0, 0 }, { 1, 0, 0 }, { 2, 0, 0 } };
     const uint32_t flat[3] = { 0, 1, 2 };
-    struct mover_shape shapes[2] = { { line, 3, flat, 1 }, { line, 3, flat, 0 } };
+    struct mover_shape shapes[2] = { { line, 3, flat, 1, 0 }, { line, 3, flat, 0, 0 } };
     struct mover_place place;
     (void)state;
     for (int i = 0; i < 2; i++) {
