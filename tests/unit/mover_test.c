@@ -333,6 +333,7 @@ static void every_ask_is_answered_once(void **state)
 
 int main(void)
 {
+    cmocka_set_message_output(CM_OUTPUT_TAP);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_moved_sensor_has_the_distances_that_would_be_stored),
         cmocka_unit_test(a_point_that_is_far_away_is_refused),
