@@ -196,6 +196,10 @@ static bool weights_take(struct field *field, struct state *state)
     if (!weights) {
         make_room(field, weights_bytes(state->layout), &state->params, field->tick);
         weights = weights_create(state->layout, &state->params, radius_m, state->usable, &key);
+        for (size_t i = 0; weights && i < FIELD_BUCKETS; i++)
+            for (const struct weights *other = field->weights[i]; other; other = other->next)
+                if (other->sums > 0)
+                    weights_learn(weights, other);
         if (weights) {
             weights->next = *bucket;
             *bucket = weights;

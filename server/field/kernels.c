@@ -109,10 +109,10 @@ KERNEL void kernel_top_shepard(const float *restrict distance_m, const float *re
     }
 }
 
-/* log2(e) d strength */
-static inline float exponent_of(float distance_m, float radius_m, float strength, float *d)
+/* log2(e) d strength; d = max(0, 1 - D/R) */
+static inline float exponent_of(float distance_m, float per_radius, float strength, float *d)
 {
-    float near_one = 1.0f - distance_m / radius_m;
+    float near_one = 1.0f - distance_m * per_radius;
     *d = near_one > 0.0f ? near_one : 0.0f;
     return *d * (strength * 1.44269504f);
 }
@@ -120,61 +120,81 @@ static inline float exponent_of(float distance_m, float radius_m, float strength
 KERNEL void kernel_top_paper(const float *restrict distance_m, const float *restrict near_m, size_t count, float reach_m, float radius_m,
                              float strength, float *restrict top)
 {
+    const float per_radius = 1.0f / radius_m;
     for (size_t j = 0; j < count; j++) {
-        float d, mine = exponent_of(distance_m[j], radius_m, strength, &d);
+        float d, mine = exponent_of(distance_m[j], per_radius, strength, &d);
         mine = takes_part(distance_m[j], near_m[j], reach_m) ? mine : 0.0f;
         top[j] = mine > top[j] ? mine : top[j];
     }
 }
 
-/* raised = base^power, 0 < power; exactly 1 at 1. What it makes of a base below TINY is not used. */
-static inline void raise(const float *restrict base, size_t count, float power, float *restrict raised)
+KERNEL void kernel_log2(const float *restrict x, size_t count, float *restrict out)
 {
     for (size_t j = 0; j < count; j++)
-        raised[j] = exp2_down(power * log2_from_tiny(base[j]));
+        out[j] = log2_from_tiny(x[j]);
+}
+
+/* (near / distance)^power; divisions cost more than all else here, so it is 2^(power (log2 near - log2 distance)). */
+static inline void part_of_nearest(const struct kernel_column *column, float *restrict weight)
+{
+    const float *distance_m = column->distance_m, *near_m = column->near_m, *near_log2 = column->near_log2;
+    const float power = column->power;
+    for (size_t j = 0; j < column->count; j++) {
+        float part = exp2_down(power * (near_log2[j] - log2_from_tiny(distance_m[j])));
+        part = near_m[j] > TINY ? part : 0.0f;
+        weight[j] = distance_m[j] <= near_m[j] ? 1.0f : part;
+    }
+}
+
+static inline void part_of_nearest_squared(const struct kernel_column *column, float *restrict weight)
+{
+    const float *distance_m = column->distance_m, *near_m = column->near_m;
+    for (size_t j = 0; j < column->count; j++) {
+        float below_one = near_m[j] / distance_m[j];
+        float ratio = distance_m[j] <= near_m[j] ? 1.0f : below_one;
+        weight[j] = ratio * ratio;
+    }
 }
 
 KERNEL void kernel_shepard(const struct kernel_column *column, float *restrict weight)
 {
     const float *distance_m = column->distance_m, *near_m = column->near_m, *top = column->top;
     const float reach_m = column->reach_m, strength = column->strength;
-    float ratio[KERNEL_BLOCK];
-    for (size_t j = 0; j < column->count; j++) {
-        float below_one = near_m[j] / distance_m[j];
-        ratio[j] = distance_m[j] <= near_m[j] ? 1.0f : below_one;
-    }
     if (column->power == 2.0f)
-        for (size_t j = 0; j < column->count; j++)
-            weight[j] = ratio[j] * ratio[j];
+        part_of_nearest_squared(column, weight);
     else
-        raise(ratio, column->count, column->power, weight);
-    for (size_t j = 0; j < column->count; j++) {
-        float scaled = weight[j] * strength / top[j];
-        scaled = ratio[j] > TINY ? scaled : 0.0f;
-        weight[j] = takes_part(distance_m[j], near_m[j], reach_m) ? scaled : 0.0f;
-    }
+        part_of_nearest(column, weight);
+    for (size_t j = 0; !column->alike && j < column->count; j++)
+        weight[j] = weight[j] * strength / top[j];
+    for (size_t j = 0; j < column->count; j++)
+        weight[j] = takes_part(distance_m[j], near_m[j], reach_m) ? weight[j] : 0.0f;
 }
 
 KERNEL void kernel_paper(const struct kernel_column *column, float *restrict weight, float *restrict term)
 {
     const float *distance_m = column->distance_m, *near_m = column->near_m, *top = column->top;
-    const float reach_m = column->reach_m, strength = column->strength, decay = column->decay, radius_m = column->radius_m;
-    float d[KERNEL_BLOCK];
+    const float reach_m = column->reach_m, strength = column->strength, decay = column->decay, per_radius = 1.0f / column->radius_m;
+    float d[KERNEL_BLOCK], exponent[KERNEL_BLOCK];
     for (size_t j = 0; j < column->count; j++) {
-        float exponent = exponent_of(distance_m[j], radius_m, strength, &d[j]);
-        float w = exp2_down(exponent - top[j]);
-        weight[j] = takes_part(distance_m[j], near_m[j], reach_m) ? w : 0.0f;
+        float above = exponent_of(distance_m[j], per_radius, strength, &d[j]) - top[j];
+        exponent[j] = takes_part(distance_m[j], near_m[j], reach_m) ? above : -1e6f;
     }
+    if (weight || decay == 1.0f || decay == 0.0f) {
+        float *at = weight ? weight : term;
+        for (size_t j = 0; j < column->count; j++)
+            at[j] = exp2_down(exponent[j]);
+    }
+    const float *from = weight ? weight : term;
     if (decay == 1.0f)
         for (size_t j = 0; j < column->count; j++)
-            term[j] = weight[j] * d[j];
-    else if (decay == 0.0f) /* 0^0 is 1 */
+            term[j] = from[j] * d[j];
+    else if (decay == 0.0f && weight) /* 0^0 is 1 */
         memcpy(term, weight, column->count * sizeof(*term));
-    else {
-        raise(d, column->count, decay, term);
-        for (size_t j = 0; j < column->count; j++)
-            term[j] = d[j] > TINY ? weight[j] * term[j] : 0.0f;
-    }
+    else if (decay != 0.0f)
+        for (size_t j = 0; j < column->count; j++) {
+            float raised = exp2_down(exponent[j] + decay * log2_from_tiny(d[j]));
+            term[j] = d[j] > TINY ? raised : 0.0f;
+        }
 }
 
 KERNEL static void add_one(double *restrict sum, const float *restrict a, double factor, size_t count)
@@ -198,6 +218,21 @@ KERNEL void kernel_add(double *restrict sum, const float *const *columns, const 
         double first = ((double)a[j] * fa + (double)b[j] * fb) + ((double)c[j] * fc + (double)d[j] * fd);
         double second = ((double)e[j] * fe + (double)f[j] * ff) + ((double)g[j] * fg + (double)h[j] * fh);
         sum[j] += first + second;
+    }
+}
+
+KERNEL void kernel_add_both(double *restrict sum, double *restrict total, const float *const columns[KERNEL_COLUMNS],
+                            const double factors[KERNEL_COLUMNS], size_t count)
+{
+    const float *restrict a = columns[0], *restrict b = columns[1], *restrict c = columns[2], *restrict d = columns[3];
+    const float *restrict e = columns[4], *restrict f = columns[5], *restrict g = columns[6], *restrict h = columns[7];
+    const double fa = factors[0], fb = factors[1], fc = factors[2], fd = factors[3], fe = factors[4], ff = factors[5], fg = factors[6],
+                 fh = factors[7];
+    for (size_t j = 0; j < count; j++) {
+        double va = (double)a[j], vb = (double)b[j], vc = (double)c[j], vd = (double)d[j];
+        double ve = (double)e[j], vf = (double)f[j], vg = (double)g[j], vh = (double)h[j];
+        sum[j] += ((va * fa + vb * fb) + (vc * fc + vd * fd)) + ((ve * fe + vf * ff) + (vg * fg + vh * fh));
+        total[j] += ((va + vb) + (vc + vd)) + ((ve + vf) + (vg + vh));
     }
 }
 

@@ -26,20 +26,29 @@ void kernel_top_shepard(const float *restrict distance_m, const float *restrict 
 void kernel_top_paper(const float *restrict distance_m, const float *restrict near_m, size_t count, float reach_m, float radius_m,
                       float strength, float *restrict top);
 
+/* log2 of x, or of 1e-37 where x is less. */
+void kernel_log2(const float *restrict x, size_t count, float *restrict out);
+
 struct kernel_column {
     const float *distance_m, *near_m, *top;
     size_t count;
     float reach_m, strength, decay;
-    float power;    /* shepard */
-    float radius_m; /* paper */
+    float power;            /* shepard */
+    const float *near_log2; /* shepard with a power other than 2: of near_m */
+    bool alike;             /* shepard: all strengths are equal */
+    float radius_m;         /* paper */
 };
 /* (strength / top) (near / distance)^power; exactly 1 for the strongest of the nearest, exactly 0 for all others where near is 0. */
 void kernel_shepard(const struct kernel_column *column, float *restrict weight);
-/* weight = exp(d strength - top), term = weight d^decay, d = max(0, 1 - distance / radius). */
+/* weight = exp(d strength - top) (NULL: not wanted), term = weight d^decay, d = max(0, 1 - distance / radius). */
 void kernel_paper(const struct kernel_column *column, float *restrict weight, float *restrict term);
 
 /* sum += columns[0] factor[0] + ... , column_count <= KERNEL_COLUMNS */
 void kernel_add(double *restrict sum, const float *const *columns, const double *factors, size_t column_count, size_t count);
+
+/* All KERNEL_COLUMNS of them: as kernel_add, and total += columns[0] + ... */
+void kernel_add_both(double *restrict sum, double *restrict total, const float *const columns[KERNEL_COLUMNS],
+                     const double factors[KERNEL_COLUMNS], size_t count);
 
 struct kernel_value { /* value = clamp(sum / weight * scale + offset, low, high); `empty` where weight is 0 */
     float scale, offset, low, high, empty;

@@ -240,13 +240,14 @@ static bool sum_block(const struct update *update, size_t begin, size_t count)
     }
     if (update->fresh)
         weights_prepare(weights, begin, count);
-    if (update->fresh || update->marks)
+    bool total_wanted = update->fresh && !weights->known_total;
+    if (total_wanted || update->marks)
         sums.total = memset(total, 0, sizeof(total));
     if (update->marks)
         sums.marked = memset(marked, 0, sizeof(marked));
     memset(sums.values, 0, count * sizeof(*sums.values));
     weights_add(weights, begin, count, &update->terms, &sums);
-    for (size_t j = 0; update->fresh && j < count; j++)
+    for (size_t j = 0; total_wanted && j < count; j++)
         weights->total[begin + j] = (float)total[j];
     return set_flags(update, begin, count, total, marked);
 }

@@ -90,6 +90,9 @@ static void choose_members(struct weights *weights, const struct field_params *p
         if (usable[i] == SENSOR_USED && weights->configured[i])
             weights->members[weights->member_count++] = (uint32_t)i;
     }
+    weights->alike = true;
+    for (size_t m = 1; m < weights->member_count; m++)
+        weights->alike &= weights->strength[weights->members[m]] == weights->strength[weights->members[0]];
 }
 
 struct weights *weights_create(const struct layout *layout, const struct field_params *params, float radius_m, const uint8_t *usable,
@@ -120,6 +123,37 @@ struct weights *weights_create(const struct layout *layout, const struct field_p
 error:
     weights_destroy(&weights);
     return NULL;
+}
+
+static bool same_sensors(const struct weights *a, const struct weights *b)
+{
+    return a->layout == b->layout && a->distance == b->distance && a->reach_m == b->reach_m && a->member_count == b->member_count &&
+           memcmp(a->members, b->members, a->member_count * sizeof(*a->members)) == 0 &&
+           memcmp(a->configured, b->configured, a->layout->sensor_count) == 0;
+}
+
+static bool same_strengths(const struct weights *a, const struct weights *b)
+{
+    return a->interpolation == b->interpolation && a->radius_m == b->radius_m &&
+           memcmp(a->strength, b->strength, a->layout->sensor_count * sizeof(*a->strength)) == 0;
+}
+
+void weights_learn(struct weights *weights, const struct weights *from)
+{
+    size_t count = weights->layout->vertex_count;
+    if (!same_sensors(weights, from) || weights->known_top)
+        return;
+    memcpy(weights->near_m, from->near_m, count * sizeof(*from->near_m));
+    memcpy(weights->place, from->place, count);
+    weights->known_near = true;
+    if (!same_strengths(weights, from))
+        return;
+    memcpy(weights->top, from->top, count * sizeof(*from->top));
+    weights->known_top = true;
+    if (weights->interpolation != INTERPOLATION_PAPER) /* decay is not in the weights of `paper`, and all that is left to differ */
+        return;
+    memcpy(weights->total, from->total, count * sizeof(*from->total));
+    weights->known_total = true;
 }
 
 void weights_destroy(struct weights **weights_ptr)
@@ -204,7 +238,10 @@ void weights_prepare(struct weights *weights, size_t begin, size_t count)
 {
     float scratch[KERNEL_BLOCK], *top = weights->top + begin;
     const float *near_m = weights->near_m + begin;
-    nearest(weights, begin, count);
+    if (!weights->known_near)
+        nearest(weights, begin, count);
+    if (weights->known_top)
+        return;
     memset(top, 0, count * sizeof(*top));
     for (size_t m = 0; m < weights->member_count; m++) {
         uint32_t sensor = weights->members[m];
@@ -218,15 +255,16 @@ void weights_prepare(struct weights *weights, size_t begin, size_t count)
 
 /* Room for the columns that are made for one step of a sum. */
 struct workroom {
-    float distance_m[KERNEL_BLOCK], weights[KERNEL_COLUMNS][KERNEL_BLOCK], terms[KERNEL_COLUMNS][KERNEL_BLOCK];
+    float near_log2[KERNEL_BLOCK], distance_m[KERNEL_BLOCK], weights[KERNEL_COLUMNS][KERNEL_BLOCK], terms[KERNEL_COLUMNS][KERNEL_BLOCK];
 };
 
-static void make_column(const struct weights *weights, uint32_t member, size_t begin, size_t count, float *distance_m, float *weight,
+/* weight: NULL where only the term is wanted. */
+static void make_column(const struct weights *weights, uint32_t member, size_t begin, size_t count, struct workroom *room, float *weight,
                         float *term)
 {
     uint32_t sensor = weights->members[member];
     const struct kernel_column column = {
-        .distance_m = distances(weights, sensor, begin, count, distance_m),
+        .distance_m = distances(weights, sensor, begin, count, room->distance_m),
         .near_m = weights->near_m + begin,
         .top = weights->top + begin,
         .count = count,
@@ -234,6 +272,8 @@ static void make_column(const struct weights *weights, uint32_t member, size_t b
         .strength = weights->strength[sensor],
         .decay = weights->decay[sensor],
         .power = weights->power,
+        .near_log2 = room->near_log2,
+        .alike = weights->alike,
         .radius_m = weights->radius_m,
     };
     if (weights->interpolation == INTERPOLATION_PAPER)
@@ -252,6 +292,8 @@ void weights_add(struct weights *weights, size_t begin, size_t count, const stru
     static const double ones[KERNEL_COLUMNS] = { 1, 1, 1, 1, 1, 1, 1, 1 };
     bool paper = weights->interpolation == INTERPOLATION_PAPER;
     struct workroom room;
+    if (!paper && weights->power != 2.0f)
+        kernel_log2(weights->near_m + begin, count, room.near_log2);
     for (size_t first = 0; first < terms->count; first += KERNEL_COLUMNS) {
         size_t left = terms->count - first, number = left < KERNEL_COLUMNS ? left : KERNEL_COLUMNS;
         const float *columns[KERNEL_COLUMNS], *heavy[KERNEL_COLUMNS];
@@ -259,13 +301,17 @@ void weights_add(struct weights *weights, size_t begin, size_t count, const stru
             uint32_t member = terms->members[first + k];
             float *column = weights->columns ? column_place(weights, member, begin) : room.terms[k];
             if (!weights->kept[member] || (paper && sums->total))
-                make_column(weights, member, begin, count, room.distance_m, room.weights[k], column);
+                make_column(weights, member, begin, count, &room, sums->total ? room.weights[k] : NULL, column);
             columns[k] = column;
             heavy[k] = paper ? room.weights[k] : column;
         }
-        kernel_add(sums->values, columns, terms->factors + first, number, count);
-        if (sums->total)
-            kernel_add(sums->total, heavy, ones, number, count);
+        if (sums->total && !paper && number == KERNEL_COLUMNS) {
+            kernel_add_both(sums->values, sums->total, columns, terms->factors + first, count);
+        } else {
+            kernel_add(sums->values, columns, terms->factors + first, number, count);
+            if (sums->total)
+                kernel_add(sums->total, heavy, ones, number, count);
+        }
         for (size_t k = 0; sums->marked && k < number; k++)
             if (terms->marked[first + k])
                 kernel_add(sums->marked, &heavy[k], ones, 1, count);

@@ -35,6 +35,8 @@ struct weights {
     enum interpolation interpolation;
     enum distance_mode distance;
     float power, reach_m, radius_m;
+    bool alike;              /* all members have one strength */
+    bool known_near, known_top, known_total; /* taken over from others: not to be computed */
     float *strength, *decay; /* by sensor of the layout */
     uint8_t *configured;     /* by sensor of the layout: may take part, were it good; more than 1: SENSOR_NO_LIMITS */
     uint32_t *members;       /* usable sensors of the layout; a column's number is its place here */
@@ -55,9 +57,11 @@ void weights_key_init(struct weights_key *key, const struct layout *layout, cons
 void weights_key_finish(struct weights_key *key);
 bool weights_key_equal(const struct weights_key *a, const struct weights_key *b);
 
-/* Takes over the key. NULL: out of memory. Nothing is computed yet. */
+/* Takes over the key. NULL: out of memory. Nothing is computed yet, but what can be taken over from others is by weights_learn. */
 struct weights *weights_create(const struct layout *layout, const struct field_params *params, float radius_m, const uint8_t *usable,
                                struct weights_key *key);
+/* Copies what is the same in `from`, which has been summed: while a parameter is dragged most of it is. */
+void weights_learn(struct weights *weights, const struct weights *from);
 void weights_destroy(struct weights **weights); /* &NULL is fine; leaves NULL */
 size_t weights_bytes(const struct layout *layout);
 size_t weights_column_bytes(const struct weights *weights); /* of all columns, kept or not */
