@@ -2,8 +2,11 @@
 /* The fields that someone looks at, each kept once, and the bound on what they take. */
 #include "field/field.h"
 
+#include <math.h>
+
 #include "base/mem.h"
 #include "field/field_impl.h"
+#include "field/update.h"
 
 struct field *field_create(struct workers *workers, const struct scene *scene)
 {
@@ -198,8 +201,7 @@ static bool weights_take(struct field *field, struct state *state)
         weights = weights_create(state->layout, &state->params, radius_m, state->usable, &key);
         for (size_t i = 0; weights && i < FIELD_BUCKETS; i++)
             for (const struct weights *other = field->weights[i]; other; other = other->next)
-                if (other->sums > 0)
-                    weights_learn(weights, other);
+                weights_learn(weights, other);
         if (weights) {
             weights->next = *bucket;
             *bucket = weights;
@@ -272,30 +274,76 @@ static void read_inputs(const struct field *field, struct state *state, const st
         baselines_give(field->baselines, &baseline);
 }
 
-const struct scalars *field_scalars(struct field *field, int asset, const struct field_params *params, const struct snapshot *snapshot)
+static void forget_state(struct field *field, struct state *state)
+{
+    struct state **link = &field->states[state->scalars.asset];
+    while (*link != state)
+        link = &(*link)->next;
+    state_remove(field, link);
+}
+
+/* Looks at the readings; begins what there is to do. False: out of memory, the state is gone. */
+static bool begin_update(struct field *field, struct state *state, const struct snapshot *snapshot, size_t count)
+{
+    read_inputs(field, state, snapshot);
+    if (state_needs_weights(state) && !weights_take(field, state)) {
+        forget_state(field, state);
+        return false;
+    }
+    struct weights *weights = state->weights;
+    uint64_t previous = weights->used;
+    weights->used = field->tick;
+    if (!state_is_behind(state) && state->scalars.ready >= count)
+        return true;
+    keep_columns(field, weights, &state->params, previous);
+    weights->sums++;
+    update_begin(state, count);
+    return true;
+}
+
+/* NULL: nothing to show, or out of memory. *done: up to date; else some of the work was done. */
+static const struct scalars *advance(struct field *field, int asset, const struct field_params *params, const struct snapshot *snapshot,
+                                     size_t count, double work, bool *done)
 {
     field->tick++;
+    *done = true;
     if (params->show == SHOW_DISTANCE)
         return distance_scalars(field, asset, params, snapshot);
     struct state *state = field_state(field, asset, params);
     if (!state)
         return NULL;
     state->used = field->tick;
-    read_inputs(field, state, snapshot);
-    if (state_needs_weights(state) && !weights_take(field, state)) {
-        struct state **link = &field->states[asset];
-        while (*link != state)
-            link = &(*link)->next;
-        state_remove(field, link);
+    if (state->update && !update_go_on(state, field->workers, work, &field->versions)) {
+        *done = false;
+        return &state->scalars;
+    }
+    state->wanted = state->wanted > count ? state->wanted : count;
+    if (!begin_update(field, state, snapshot, count))
         return NULL;
-    }
-    struct weights *weights = state->weights;
-    uint64_t previous = weights->used;
-    weights->used = field->tick;
-    if (state_is_behind(state)) {
-        keep_columns(field, weights, params, previous);
-        state_update(state, field->workers, weights->sums == 0, &field->versions);
-        weights->sums++;
-    }
+    *done = !state->update || update_go_on(state, field->workers, work, &field->versions);
     return &state->scalars;
+}
+
+const struct scalars *field_scalars_of(struct field *field, int asset, const struct field_params *params, const struct snapshot *snapshot,
+                                       size_t count)
+{
+    bool done;
+    const struct scalars *scalars;
+    do
+        scalars = advance(field, asset, params, snapshot, count, (double)INFINITY, &done);
+    while (!done);
+    return scalars;
+}
+
+const struct scalars *field_scalars(struct field *field, int asset, const struct field_params *params, const struct snapshot *snapshot)
+{
+    return field_scalars_of(field, asset, params, snapshot, field->scene->assets[asset].file->view.header->vertex_count);
+}
+
+bool field_advance(struct field *field, int asset, const struct field_params *params, const struct snapshot *snapshot, size_t count,
+                   double work)
+{
+    bool done;
+    advance(field, asset, params, snapshot, count, work, &done);
+    return done;
 }

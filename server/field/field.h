@@ -87,6 +87,14 @@ size_t field_bytes(const struct field *field); /* kept now */
    bound. */
 const struct scalars *field_scalars(struct field *field, int asset, const struct field_params *params, const struct snapshot *snapshot);
 
+/* The same, but only the first `count` vertices must be up to date (scalars->ready of them are): those of a level of detail. */
+const struct scalars *field_scalars_of(struct field *field, int asset, const struct field_params *params, const struct snapshot *snapshot,
+                                       size_t count);
+/* Works towards that for about so many nanoseconds of one core, so that much to do at once holds nobody up. True: it would be had at
+   once now. While false comes, the readings are those of the first call, and these scalars must not be read. */
+bool field_advance(struct field *field, int asset, const struct field_params *params, const struct snapshot *snapshot, size_t count,
+                   double work);
+
 /* Whether there is something to show on that asset, were there enough memory. */
 bool field_covers(struct field *field, int asset, const struct field_params *params);
 

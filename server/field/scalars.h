@@ -19,6 +19,8 @@ struct scalars {
     uint64_t flags_version; /* version of the last change of a flag */
     double travel;          /* grows by the largest change of a value at each version: what was uploaded at t errs by at most travel - t */
     size_t count;           /* = vertex_count of the asset file */
+    size_t ready;           /* so many of the first vertices are up to date: what the levels asked for need */
+    uint64_t grown;         /* counts how often more became ready than was before */
     const struct scalar *at;
     int64_t oldest_age_ns; /* of the readings that take part; INT64_MAX: none does */
 };

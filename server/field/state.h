@@ -5,6 +5,8 @@
 #include "base/workers.h"
 #include "field/weights.h"
 
+struct update; /* update.h */
+
 struct state_input { /* what one sensor says, as the sums take it */
     double value;    /* engineering units; for `paper` 0..1 */
     uint8_t usable, uncertain; /* usable: enum sensor_use */
@@ -20,9 +22,13 @@ struct state {
     unsigned added;                  /* updates since they were made anew */
     struct state_input *now, *shown; /* by sensor of the layout: asked for, and in the scalars */
     uint8_t *usable;                 /* by sensor of the layout, of `now` */
-    uint32_t *list;                  /* room for one update: members, factors, marks */
-    double *factors;
-    uint8_t *marked;
+    struct state_list {              /* room for weights_terms: of all members, and of those that changed */
+        uint32_t *members;
+        double *factors;
+        uint8_t *marked;
+    } lists[2];
+    struct update *update;           /* under way; NULL: none */
+    size_t wanted;                   /* the most vertices asked for since the last update */
     uint64_t used;
     struct state *next;
 };
@@ -36,10 +42,8 @@ size_t state_bytes(const struct layout *layout);
 void state_read(struct state *state, const struct snapshot *snapshot, const struct snapshot *baseline);
 /* True: the weights that state holds are for other sensors than those usable now. */
 bool state_needs_weights(const struct state *state);
-/* True: state_update has something to do. */
+/* True: what is shown is not what state->now says. */
 bool state_is_behind(const struct state *state);
-/* Brings sums and scalars up to state->now. fresh: the weights are new and prepared on the way. */
-void state_update(struct state *state, struct workers *workers, bool fresh, uint64_t *versions);
 /* For SHOW_DISTANCE, instead of all these: the distances from one sensor of the layout, once. */
 void state_measure(struct state *state, size_t sensor, uint64_t *versions);
 

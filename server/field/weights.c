@@ -109,12 +109,12 @@ struct weights *weights_create(const struct layout *layout, const struct field_p
     weights->decay = mem_array(layout->sensor_count, sizeof(float));
     weights->configured = mem_array(layout->sensor_count, 1);
     weights->members = mem_array(layout->sensor_count, sizeof(*weights->members));
-    weights->kept = mem_array(layout->sensor_count, 1);
     weights->near_m = mem_try_array(layout->vertex_count, sizeof(float));
     weights->top = mem_try_array(layout->vertex_count, sizeof(float));
     weights->total = mem_try_array(layout->vertex_count, sizeof(float));
     weights->place = mem_try_array(layout->vertex_count, 1);
-    if (!weights->near_m || !weights->top || !weights->total || !weights->place)
+    weights->known = mem_try_array(block_count(layout->vertex_count), 1);
+    if (!weights->near_m || !weights->top || !weights->total || !weights->place || !weights->known)
         goto error;
     choose_members(weights, params, usable);
     weights->key = *key;
@@ -140,20 +140,24 @@ static bool same_strengths(const struct weights *a, const struct weights *b)
 
 void weights_learn(struct weights *weights, const struct weights *from)
 {
-    size_t count = weights->layout->vertex_count;
-    if (!same_sensors(weights, from) || weights->known_top)
+    if (!same_sensors(weights, from))
         return;
-    memcpy(weights->near_m, from->near_m, count * sizeof(*from->near_m));
-    memcpy(weights->place, from->place, count);
-    weights->known_near = true;
-    if (!same_strengths(weights, from))
-        return;
-    memcpy(weights->top, from->top, count * sizeof(*from->top));
-    weights->known_top = true;
-    if (weights->interpolation != INTERPOLATION_PAPER) /* decay is not in the weights of `paper`, and all that is left to differ */
-        return;
-    memcpy(weights->total, from->total, count * sizeof(*from->total));
-    weights->known_total = true;
+    unsigned shared = KNOWN_NEAR;
+    if (same_strengths(weights, from)) /* decay is not in the weights of `paper`, and all that is left to differ */
+        shared |= KNOWN_TOP | (weights->interpolation == INTERPOLATION_PAPER ? KNOWN_TOTAL : 0);
+    for (size_t block = 0, at = 0; at < weights->layout->vertex_count; block++, at += KERNEL_BLOCK) {
+        size_t left = weights->layout->vertex_count - at, count = left < KERNEL_BLOCK ? left : KERNEL_BLOCK;
+        unsigned new = from->known[block] & shared & ~weights->known[block];
+        if (new & KNOWN_NEAR) {
+            memcpy(weights->near_m + at, from->near_m + at, count * sizeof(*from->near_m));
+            memcpy(weights->place + at, from->place + at, count);
+        }
+        if (new & KNOWN_TOP)
+            memcpy(weights->top + at, from->top + at, count * sizeof(*from->top));
+        if (new & KNOWN_TOTAL)
+            memcpy(weights->total + at, from->total + at, count * sizeof(*from->total));
+        weights->known[block] |= (uint8_t)new;
+    }
 }
 
 void weights_destroy(struct weights **weights_ptr)
@@ -166,12 +170,13 @@ void weights_destroy(struct weights **weights_ptr)
     mem_free(weights->decay);
     mem_free(weights->configured);
     mem_free(weights->members);
-    mem_free(weights->kept);
     mem_free(weights->near_m);
     mem_free(weights->top);
     mem_free(weights->total);
     mem_free(weights->place);
+    mem_free(weights->known);
     mem_free(weights->columns);
+    mem_free(weights->kept);
     mem_free(weights);
     *weights_ptr = NULL;
 }
@@ -179,26 +184,38 @@ void weights_destroy(struct weights **weights_ptr)
 size_t weights_bytes(const struct layout *layout)
 {
     size_t each_vertex = 3 * sizeof(float) + 1;
-    size_t each_sensor = 2 * sizeof(float) + 2 + sizeof(uint32_t) + sizeof(struct key_sensor);
-    return sizeof(struct weights) + sizeof(struct key_head) + layout->vertex_count * each_vertex + layout->sensor_count * each_sensor;
+    size_t each_sensor = 2 * sizeof(float) + 1 + sizeof(uint32_t) + sizeof(struct key_sensor);
+    return sizeof(struct weights) + sizeof(struct key_head) + layout->vertex_count * each_vertex + block_count(layout->vertex_count) +
+           layout->sensor_count * each_sensor;
 }
 
 size_t weights_column_bytes(const struct weights *weights)
 {
-    return block_count(weights->layout->vertex_count) * weights->member_count * KERNEL_BLOCK * sizeof(float);
+    return block_count(weights->layout->vertex_count) * weights->member_count * (KERNEL_BLOCK * sizeof(float) + 1);
 }
 
 bool weights_keep(struct weights *weights)
 {
-    weights->columns = mem_try_array(block_count(weights->layout->vertex_count) * weights->member_count, KERNEL_BLOCK * sizeof(float));
+    size_t count = block_count(weights->layout->vertex_count) * weights->member_count;
+    weights->columns = mem_try_array(count, KERNEL_BLOCK * sizeof(float));
+    weights->kept = mem_try_array(count, 1);
+    if (!weights->columns || !weights->kept)
+        weights_drop_columns(weights);
     return weights->columns;
 }
 
 void weights_drop_columns(struct weights *weights)
 {
     mem_free(weights->columns);
+    mem_free(weights->kept);
     weights->columns = NULL;
-    memset(weights->kept, 0, weights->member_count);
+    weights->kept = NULL;
+}
+
+bool weights_has_columns(const struct weights *weights, size_t begin)
+{
+    const uint8_t *kept = weights->columns ? weights->kept + begin / KERNEL_BLOCK * weights->member_count : NULL;
+    return kept && !memchr(kept, 0, weights->member_count);
 }
 
 static const float *distances(const struct weights *weights, size_t sensor, size_t begin, size_t count, float *scratch)
@@ -238,9 +255,12 @@ void weights_prepare(struct weights *weights, size_t begin, size_t count)
 {
     float scratch[KERNEL_BLOCK], *top = weights->top + begin;
     const float *near_m = weights->near_m + begin;
-    if (!weights->known_near)
+    uint8_t *known = &weights->known[begin / KERNEL_BLOCK];
+    if (!(*known & KNOWN_NEAR))
         nearest(weights, begin, count);
-    if (weights->known_top)
+    bool had_top = *known & KNOWN_TOP;
+    *known |= KNOWN_NEAR | KNOWN_TOP;
+    if (had_top)
         return;
     memset(top, 0, count * sizeof(*top));
     for (size_t m = 0; m < weights->member_count; m++) {
@@ -282,15 +302,12 @@ static void make_column(const struct weights *weights, uint32_t member, size_t b
         kernel_shepard(&column, term);
 }
 
-static float *column_place(const struct weights *weights, uint32_t member, size_t begin)
-{
-    return weights->columns + (begin / KERNEL_BLOCK * weights->member_count + member) * KERNEL_BLOCK;
-}
 
 void weights_add(struct weights *weights, size_t begin, size_t count, const struct weights_terms *terms, const struct weights_sums *sums)
 {
     static const double ones[KERNEL_COLUMNS] = { 1, 1, 1, 1, 1, 1, 1, 1 };
     bool paper = weights->interpolation == INTERPOLATION_PAPER;
+    size_t before = begin / KERNEL_BLOCK * weights->member_count; /* columns of the blocks before */
     struct workroom room;
     if (!paper && weights->power != 2.0f)
         kernel_log2(weights->near_m + begin, count, room.near_log2);
@@ -299,9 +316,11 @@ void weights_add(struct weights *weights, size_t begin, size_t count, const stru
         const float *columns[KERNEL_COLUMNS], *heavy[KERNEL_COLUMNS];
         for (size_t k = 0; k < number; k++) {
             uint32_t member = terms->members[first + k];
-            float *column = weights->columns ? column_place(weights, member, begin) : room.terms[k];
-            if (!weights->kept[member] || (paper && sums->total))
+            float *column = weights->columns ? weights->columns + (before + member) * KERNEL_BLOCK : room.terms[k];
+            if (!weights->columns || !weights->kept[before + member] || (paper && sums->total))
                 make_column(weights, member, begin, count, &room, sums->total ? room.weights[k] : NULL, column);
+            if (weights->columns)
+                weights->kept[before + member] = 1;
             columns[k] = column;
             heavy[k] = paper ? room.weights[k] : column;
         }
@@ -316,10 +335,4 @@ void weights_add(struct weights *weights, size_t begin, size_t count, const stru
             if (terms->marked[first + k])
                 kernel_add(sums->marked, &heavy[k], ones, 1, count);
     }
-}
-
-void weights_added(struct weights *weights, const struct weights_terms *terms)
-{
-    for (size_t i = 0; weights->columns && i < terms->count; i++)
-        weights->kept[terms->members[i]] = 1;
 }

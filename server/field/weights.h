@@ -23,6 +23,8 @@ enum place {
     PLACE_NO_LIMITS /* the nearest one within reach is SENSOR_NO_LIMITS */
 };
 
+enum weights_known { KNOWN_NEAR = 1, KNOWN_TOP = 2, KNOWN_TOTAL = 4 }; /* near_m and place; top; total */
+
 struct weights_key { /* what G depends on, as bytes */
     void *bytes;
     size_t count;
@@ -36,7 +38,6 @@ struct weights {
     enum distance_mode distance;
     float power, reach_m, radius_m;
     bool alike;              /* all members have one strength */
-    bool known_near, known_top, known_total; /* taken over from others: not to be computed */
     float *strength, *decay; /* by sensor of the layout */
     uint8_t *configured;     /* by sensor of the layout: may take part, were it good; more than 1: SENSOR_NO_LIMITS */
     uint32_t *members;       /* usable sensors of the layout; a column's number is its place here */
@@ -44,8 +45,9 @@ struct weights {
     float *near_m, *top; /* by vertex: distance of the nearest usable sensor; scale (kernels.h) */
     float *total;        /* by vertex: the weights' sum */
     uint8_t *place;      /* by vertex: enum place */
+    uint8_t *known;      /* by block: bits of enum weights_known, what is filled of the four above */
     float *columns;      /* [block][member][KERNEL_BLOCK], or NULL: made anew each time */
-    uint8_t *kept;       /* by member: its column is filled */
+    uint8_t *kept;       /* [block][member]: its column is filled; beside columns */
     int users;           /* states that hold it */
     uint64_t used, sums; /* tick of the last use; how often it was summed */
     struct weights *next;
@@ -69,7 +71,7 @@ size_t weights_column_bytes(const struct weights *weights); /* of all columns, k
 bool weights_keep(struct weights *weights);
 void weights_drop_columns(struct weights *weights);
 
-/* Fills near_m, top and place of a block (begin: a multiple of KERNEL_BLOCK; count <= KERNEL_BLOCK). */
+/* Fills what is not known of near_m, top and place of a block (begin: a multiple of KERNEL_BLOCK; count <= KERNEL_BLOCK). */
 void weights_prepare(struct weights *weights, size_t begin, size_t count);
 
 struct weights_terms { /* which members, by what factor */
@@ -82,9 +84,9 @@ struct weights_sums {       /* of one block; added to */
     double *values;         /* sum of factor times column */
     double *total, *marked; /* sum of weights: all of the list, those marked; NULL: not asked for (marked only beside total) */
 };
-/* Adds the terms at a block. Fills the columns of those members, where columns are kept. */
+/* Adds the terms at a block that is prepared. Fills the columns of those members, where columns are kept. */
 void weights_add(struct weights *weights, size_t begin, size_t count, const struct weights_terms *terms, const struct weights_sums *sums);
-/* After weights_add has been through all blocks: these columns need not be made again. */
-void weights_added(struct weights *weights, const struct weights_terms *terms);
+/* Whether all columns of a block are there, so that they need only be added. */
+bool weights_has_columns(const struct weights *weights, size_t begin);
 
 #endif

@@ -1,0 +1,234 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* From changed readings to changed scalars, block by block: all columns anew, or only the columns of what changed. */
+#include "field/update.h"
+
+#include <float.h>
+#include <math.h>
+#include <pthread.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "field/limits.h"
+#include "field/scalars.h"
+
+#define FLAG 255
+#define STEP_LIMIT 1e6 /* times the range: a larger step would leave its rounding in the sum for good */
+#define ADDED_MOST 4096 /* updates before all is summed anew: what rounding leaves behind stays below 1e-9 of the range */
+#define JOB_WORK 30000.0 /* worth waking another thread for */
+#define MAKE_WORK 1.0 /* of one column at one vertex: made and added */
+#define ADD_WORK 0.15 /* only added */
+
+struct update {
+    struct state *state;
+    struct weights_terms all, changed;
+    struct kernel_value rule;
+    size_t next, old, end; /* blocks: to do next, shown before, to be shown */
+    bool anew;             /* sum all columns; else below `old` only those that changed */
+    bool marks;            /* some sensor is Uncertain */
+    pthread_mutex_t lock;
+    /* --- below: under lock */
+    bool value_changed, flag_changed;
+    float most;
+};
+
+static size_t blocks_of(size_t vertex_count)
+{
+    return (vertex_count + KERNEL_BLOCK - 1) / KERNEL_BLOCK;
+}
+
+/* --- what there is to do ---------------------------------------------------------------------------------------------------- */
+
+/* Members to add: all, or those that changed. */
+static struct weights_terms choose_terms(struct state *state, bool all)
+{
+    const struct weights *weights = state->weights;
+    struct state_list *list = &state->lists[all];
+    size_t count = 0;
+    for (uint32_t m = 0; m < weights->member_count; m++) {
+        const struct state_input *now = &state->now[weights->members[m]], *shown = &state->shown[weights->members[m]];
+        double factor = all ? now->value : now->value - shown->value;
+        if (!all && factor == 0)
+            continue;
+        list->members[count] = m;
+        list->factors[count] = factor;
+        list->marked[count++] = now->uncertain;
+    }
+    return (struct weights_terms){ .members = list->members, .factors = list->factors, .marked = list->marked, .count = count };
+}
+
+/* Adding is cheaper for few changes; a step far beyond the range would leave its rounding behind. */
+static bool steps_are_small(const struct update *update)
+{
+    const struct state *state = update->state;
+    double limit =
+        state->params.interpolation == INTERPOLATION_PAPER ? 2 : STEP_LIMIT * (state->layout->group->max - state->layout->group->min);
+    for (size_t i = 0; i < update->changed.count; i++)
+        if (!(fabs(update->changed.factors[i]) < limit))
+            return false;
+    return update->changed.count * 2 <= state->weights->member_count;
+}
+
+static void choose_rule(struct update *update)
+{
+    const struct state *state = update->state;
+    const struct plant_group *group = state->layout->group;
+    bool difference = state->params.show == SHOW_DIFFERENCE, places = state->params.show == SHOW_OPERATOR;
+    if (state->params.interpolation == INTERPOLATION_PAPER && places) {
+        update->rule = (struct kernel_value){ .scale = 1, .low = -(float)LIMIT_PLACE_MOST, .high = (float)LIMIT_PLACE_MOST };
+    } else if (state->params.interpolation == INTERPOLATION_PAPER) {
+        float scale = (float)(group->max - group->min), offset = difference ? 0 : (float)group->min;
+        update->rule = (struct kernel_value){
+            .scale = scale, .offset = offset, .low = difference ? -scale : offset, .high = difference ? scale : (float)group->max
+        };
+    } else {
+        update->rule = (struct kernel_value){ .scale = 1, .low = FLT_MAX, .high = -FLT_MAX };
+        for (size_t m = 0; m < state->weights->member_count; m++) {
+            float value = (float)state->now[state->weights->members[m]].value;
+            update->rule.low = fminf(update->rule.low, value);
+            update->rule.high = fmaxf(update->rule.high, value);
+        }
+    }
+    update->rule.empty = difference || places ? 0 : (float)group->min;
+}
+
+static bool must_sum_anew(const struct state *state)
+{
+    if (state->scalars.version == 0 || state->added >= ADDED_MOST)
+        return true;
+    for (size_t i = 0; i < state->layout->sensor_count; i++)
+        if (state->now[i].usable != state->shown[i].usable || state->now[i].uncertain != state->shown[i].uncertain)
+            return true;
+    return false;
+}
+
+void update_begin(struct state *state, size_t count)
+{
+    size_t wanted = state->wanted > count ? state->wanted : count;
+    struct update *update = mem_new(sizeof(*update));
+    *update = (struct update){ .state = state, .old = blocks_of(state->scalars.ready), .end = blocks_of(wanted) };
+    update->all = choose_terms(state, true);
+    update->changed = choose_terms(state, false);
+    update->anew = must_sum_anew(state) || !steps_are_small(update);
+    for (size_t i = 0; i < update->all.count; i++)
+        update->marks |= update->all.marked[i];
+    if (!update->anew && update->changed.count == 0) /* only more vertices than before */
+        update->next = update->old;
+    choose_rule(update);
+    pthread_mutex_init(&update->lock, NULL);
+    state->added = update->anew ? 0 : state->added + 1;
+    state->wanted = count;
+    state->update = update;
+}
+
+/* --- block by block --------------------------------------------------------------------------------------------------------- */
+
+static bool set_flags(const struct update *update, size_t begin, size_t count, const double *total, const double *marked)
+{
+    const uint8_t *place = update->state->weights->place + begin;
+    struct scalar *at = update->state->at + begin;
+    bool fill = update->state->params.fill == FILL_NEIGHBOURS, changed = false;
+    for (size_t j = 0; j < count; j++) {
+        bool filled = fill && place[j] == PLACE_LOST;
+        uint8_t no_limits = place[j] == PLACE_NO_LIMITS ? FLAG : 0;
+        uint8_t no_data = place[j] == PLACE_GOOD || filled || no_limits ? 0 : FLAG;
+        uint8_t uncertain = filled || (update->marks && total[j] > 0 && 2 * marked[j] >= total[j]) ? FLAG : 0;
+        changed |= at[j].no_data != no_data || at[j].uncertain != uncertain || at[j].no_limits != no_limits;
+        at[j].no_limits = no_limits;
+        at[j].no_data = no_data;
+        at[j].uncertain = uncertain;
+    }
+    return changed;
+}
+
+/* Returns whether a flag changed. */
+static bool sum_block(const struct update *update, size_t block, size_t begin, size_t count)
+{
+    struct weights *weights = update->state->weights;
+    double total[KERNEL_BLOCK], marked[KERNEL_BLOCK];
+    struct weights_sums sums = { .values = update->state->sums + begin };
+    if (!update->anew && block < update->old) {
+        weights_add(weights, begin, count, &update->changed, &sums);
+        return false;
+    }
+    bool total_wanted = !(weights->known[block] & KNOWN_TOTAL);
+    weights_prepare(weights, begin, count);
+    if (total_wanted || update->marks)
+        sums.total = memset(total, 0, sizeof(total));
+    if (update->marks)
+        sums.marked = memset(marked, 0, sizeof(marked));
+    memset(sums.values, 0, count * sizeof(*sums.values));
+    weights_add(weights, begin, count, &update->all, &sums);
+    for (size_t j = 0; total_wanted && j < count; j++)
+        weights->total[begin + j] = (float)total[j];
+    weights->known[block] |= KNOWN_TOTAL;
+    return set_flags(update, begin, count, total, marked);
+}
+
+static void update_blocks(void *arg, size_t begin, size_t end)
+{
+    struct update *update = arg;
+    struct state *state = update->state;
+    float values[KERNEL_BLOCK], most = 0;
+    bool value_changed = false, flag_changed = false;
+    for (size_t block = update->next + begin; block < update->next + end; block++) {
+        size_t at = block * KERNEL_BLOCK, left = state->scalars.count - at, count = left < KERNEL_BLOCK ? left : KERNEL_BLOCK;
+        flag_changed |= sum_block(update, block, at, count);
+        kernel_value(&update->rule, state->sums + at, state->weights->total + at, count, values);
+        most = fmaxf(most, kernel_store(values, count, state->at + at, &value_changed));
+    }
+    pthread_mutex_lock(&update->lock);
+    update->value_changed |= value_changed;
+    update->flag_changed |= flag_changed;
+    update->most = fmaxf(update->most, most);
+    pthread_mutex_unlock(&update->lock);
+}
+
+static double block_work(const struct update *update, size_t block)
+{
+    const struct weights *weights = update->state->weights;
+    bool step = !update->anew && block < update->old, kept = weights_has_columns(weights, block * KERNEL_BLOCK);
+    bool whole = !step && (!(weights->known[block] & KNOWN_TOTAL) || update->marks);
+    double each = kept && !(whole && weights->interpolation == INTERPOLATION_PAPER) ? ADD_WORK : MAKE_WORK;
+    return KERNEL_BLOCK * ((double)(step ? update->changed.count : update->all.count) * each + 4);
+}
+
+static void finish(struct state *state, uint64_t *versions)
+{
+    struct update *update = state->update;
+    struct scalars *scalars = &state->scalars;
+    bool first = scalars->version == 0, grown = update->end > update->old;
+    memcpy(state->shown, state->now, state->layout->sensor_count * sizeof(*state->now));
+    scalars->ready = update->end * KERNEL_BLOCK < scalars->count ? update->end * KERNEL_BLOCK : scalars->count;
+    scalars->grown += grown;
+    if (first || grown || update->value_changed || update->flag_changed)
+        scalars->version = ++*versions;
+    if (first || grown || update->flag_changed)
+        scalars->flags_version = scalars->version;
+    scalars->travel += (double)update->most;
+    update_forget(state);
+}
+
+bool update_go_on(struct state *state, struct workers *workers, double work, uint64_t *versions)
+{
+    struct update *update = state->update;
+    double done = 0;
+    size_t count = 0;
+    while (update->next + count < update->end && (count == 0 || done < work))
+        done += block_work(update, update->next + count++);
+    size_t grain = (size_t)(JOB_WORK * (double)count / (done + 1)) + 1;
+    workers_for(workers, count, grain, update_blocks, update);
+    update->next += count;
+    if (update->next < update->end)
+        return false;
+    finish(state, versions);
+    return true;
+}
+
+void update_forget(struct state *state)
+{
+    if (!state->update)
+        return;
+    pthread_mutex_destroy(&state->update->lock);
+    mem_free(state->update);
+    state->update = NULL;
+}

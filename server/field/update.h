@@ -1,0 +1,14 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Brings sums and scalars of a state from what is shown to what sensors say now, in as many pieces as are asked for; the readings are
+   those of its beginning. Thread: one at a time (it spreads its work over `workers`). */
+#ifndef FIELD_UPDATE_H
+#define FIELD_UPDATE_H
+#include "field/state.h"
+
+/* The first `count` vertices at least. state->now must not change, and the scalars must not be read, until it is done. */
+void update_begin(struct state *state, size_t count);
+/* Does so much of it (about nanoseconds of one core), and a little at least. True: done, and state->update is NULL. */
+bool update_go_on(struct state *state, struct workers *workers, double work, uint64_t *versions);
+void update_forget(struct state *state); /* none under way is fine */
+
+#endif
