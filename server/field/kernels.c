@@ -109,10 +109,10 @@ KERNEL void kernel_top_shepard(const float *restrict distance_m, const float *re
     }
 }
 
-/* log2(e) d strength; d = max(0, 1 - D/R) */
-static inline float exponent_of(float distance_m, float per_radius, float strength, float *d)
+/* log2(e) d strength; d = max(0, (R - D)/R), exactly 0 at R: a small decay makes much of little. */
+static inline float exponent_of(float distance_m, float radius_m, float per_radius, float strength, float *d)
 {
-    float near_one = 1.0f - distance_m * per_radius;
+    float near_one = (radius_m - distance_m) * per_radius;
     *d = near_one > 0.0f ? near_one : 0.0f;
     return *d * (strength * 1.44269504f);
 }
@@ -122,7 +122,7 @@ KERNEL void kernel_top_paper(const float *restrict distance_m, const float *rest
 {
     const float per_radius = 1.0f / radius_m;
     for (size_t j = 0; j < count; j++) {
-        float d, mine = exponent_of(distance_m[j], per_radius, strength, &d);
+        float d, mine = exponent_of(distance_m[j], radius_m, per_radius, strength, &d);
         mine = takes_part(distance_m[j], near_m[j], reach_m) ? mine : 0.0f;
         top[j] = mine > top[j] ? mine : top[j];
     }
@@ -173,10 +173,11 @@ KERNEL void kernel_shepard(const struct kernel_column *column, float *restrict w
 KERNEL void kernel_paper(const struct kernel_column *column, float *restrict weight, float *restrict term)
 {
     const float *distance_m = column->distance_m, *near_m = column->near_m, *top = column->top;
-    const float reach_m = column->reach_m, strength = column->strength, decay = column->decay, per_radius = 1.0f / column->radius_m;
+    const float reach_m = column->reach_m, strength = column->strength, decay = column->decay;
+    const float radius_m = column->radius_m, per_radius = 1.0f / radius_m;
     float d[KERNEL_BLOCK], exponent[KERNEL_BLOCK];
     for (size_t j = 0; j < column->count; j++) {
-        float above = exponent_of(distance_m[j], per_radius, strength, &d[j]) - top[j];
+        float above = exponent_of(distance_m[j], radius_m, per_radius, strength, &d[j]) - top[j];
         exponent[j] = takes_part(distance_m[j], near_m[j], reach_m) ? above : -1e6f;
     }
     if (weight || decay == 1.0f || decay == 0.0f) {

@@ -83,7 +83,9 @@ static struct state_input input_of(const struct state *state, const struct plant
     double value = good ? value_of(state, tag, reading->value) : 0;
     return (struct state_input){
         .value = isfinite(value) ? value : 0,
-        .usable = !good ? SENSOR_LOST : isfinite(value) ? SENSOR_USED : SENSOR_NO_LIMITS,
+        .usable = !good             ? SENSOR_LOST
+                  : isfinite(value) ? SENSOR_USED
+                                    : SENSOR_NO_LIMITS,
         .uncertain = good && quality_is_uncertain(reading->quality),
     };
 }

@@ -7,8 +7,8 @@
 
 struct update; /* update.h */
 
-struct state_input { /* what one sensor says, as the sums take it */
-    double value;    /* engineering units; for `paper` 0..1 */
+struct state_input {           /* what one sensor says, as the sums take it */
+    double value;              /* engineering units; for `paper` 0..1 */
     uint8_t usable, uncertain; /* usable: enum sensor_use */
 };
 
@@ -27,8 +27,8 @@ struct state {
         double *factors;
         uint8_t *marked;
     } lists[2];
-    struct update *update;           /* under way; NULL: none */
-    size_t wanted;                   /* the most vertices asked for since the last update */
+    struct update *update; /* under way; NULL: none */
+    size_t wanted;         /* the most vertices asked for since the last update */
     uint64_t used;
     struct state *next;
 };

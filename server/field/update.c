@@ -12,11 +12,11 @@
 #include "field/scalars.h"
 
 #define FLAG 255
-#define STEP_LIMIT 1e6 /* times the range: a larger step would leave its rounding in the sum for good */
-#define ADDED_MOST 4096 /* updates before all is summed anew: what rounding leaves behind stays below 1e-9 of the range */
+#define STEP_LIMIT 1e6   /* times the range: a larger step would leave its rounding in the sum for good */
+#define ADDED_MOST 4096  /* updates before all is summed anew: what rounding leaves behind stays below 1e-9 of the range */
 #define JOB_WORK 30000.0 /* worth waking another thread for */
-#define MAKE_WORK 1.0 /* of one column at one vertex: made and added */
-#define ADD_WORK 0.15 /* only added */
+#define MAKE_WORK 1.0    /* of one column at one vertex: made and added */
+#define ADD_WORK 0.15    /* only added */
 
 struct update {
     struct state *state;

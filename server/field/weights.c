@@ -148,15 +148,15 @@ void weights_learn(struct weights *weights, const struct weights *from)
     for (size_t block = 0, at = 0; at < weights->layout->vertex_count; block++, at += KERNEL_BLOCK) {
         size_t left = weights->layout->vertex_count - at, count = left < KERNEL_BLOCK ? left : KERNEL_BLOCK;
         unsigned new = from->known[block] & shared & ~weights->known[block];
-        if (new & KNOWN_NEAR) {
+        if (new &KNOWN_NEAR) {
             memcpy(weights->near_m + at, from->near_m + at, count * sizeof(*from->near_m));
             memcpy(weights->place + at, from->place + at, count);
         }
-        if (new & KNOWN_TOP)
+        if (new &KNOWN_TOP)
             memcpy(weights->top + at, from->top + at, count * sizeof(*from->top));
-        if (new & KNOWN_TOTAL)
+        if (new &KNOWN_TOTAL)
             memcpy(weights->total + at, from->total + at, count * sizeof(*from->total));
-        weights->known[block] |= (uint8_t)new;
+        weights->known[block] |= (uint8_t) new;
     }
 }
 
@@ -301,7 +301,6 @@ static void make_column(const struct weights *weights, uint32_t member, size_t b
     else
         kernel_shepard(&column, term);
 }
-
 
 void weights_add(struct weights *weights, size_t begin, size_t count, const struct weights_terms *terms, const struct weights_sums *sums)
 {

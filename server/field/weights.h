@@ -10,7 +10,7 @@
 #include "field/layout.h"
 
 enum sensor_use {
-    SENSOR_LOST,     /* takes no part; its place has no data */
+    SENSOR_LOST, /* takes no part; its place has no data */
     SENSOR_USED,
     SENSOR_NO_LIMITS /* takes no part, but its place is known to be well measured */
 };

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Draws what is wished for. */
+#include <string.h>
+
 #include "base/clock.h"
 #include "net/painter_impl.h"
 #include "render/canvas.h"
@@ -7,10 +9,12 @@
 
 static const int64_t STEP_NS = 10 * NS_PER_MS;              /* of a slow picture, before anyone else gets a turn */
 static const int64_t LIGHT_NS = 4 * NS_PER_MS;     /* of each picture of a moving session, for a light that it chose */
+static const int64_t FIELD_NS = 6 * NS_PER_MS;              /* of a field that takes long, likewise */
 static const int64_t OWN_DATA_NS = 1 * NS_PER_S;            /* changed readings wait so long for a refinement of the same client */
 static const int64_t SNAPSHOT_MAX_AGE_NS = 100 * NS_PER_MS; /* the clock in the picture, and ages, are no older than this */
 static const int64_t REBUILD_NS = 100 * NS_PER_MS, REBUILD_MAX_NS = 5 * NS_PER_S; /* between attempts at a new context */
 
+enum { HELD = 16 };
 struct drawing { /* what only the render thread touches */
     struct painter *painter;
     struct gl *gl;
@@ -25,6 +29,11 @@ struct drawing { /* what only the render thread touches */
         enum urgency urgency;
         int64_t asked_ns, field_ns;
     } slow;
+    struct {                      /* pictures whose field takes long: worked on step by step, each in its turn */
+        struct batch batches[HELD]; /* the oldest first */
+        size_t count;
+        bool due; /* before the next of the others */
+    } held;
 };
 
 /* --- drawing, on the render thread ----------------------------------------------------------------------------------------- */
@@ -104,6 +113,26 @@ static void begin_all(struct painter *painter, struct client *first, struct batc
     }
 }
 
+static void held_pop(struct drawing *drawing, struct batch *batch)
+{
+    struct batch empty = *batch;
+    *batch = drawing->held.batches[0];
+    memmove(drawing->held.batches, drawing->held.batches + 1, --drawing->held.count * sizeof(*batch));
+    drawing->held.batches[drawing->held.count] = empty;
+}
+
+/* False: no room. */
+static bool held_push(struct drawing *drawing, struct batch *batch)
+{
+    if (drawing->held.count == HELD)
+        return false;
+    struct batch empty = drawing->held.batches[drawing->held.count];
+    drawing->held.batches[drawing->held.count++] = *batch;
+    *batch = empty;
+    batch->count = 0;
+    return true;
+}
+
 static void refresh(struct drawing *drawing)
 {
     struct painter *painter = drawing->painter;
@@ -147,14 +176,18 @@ static bool next_batch(struct drawing *drawing, const struct schedule *schedule,
             pthread_mutex_lock(&painter->lock);
         }
         turn = next_turn(drawing, schedule);
-        if (turn.step || turn.client)
+        if (turn.step || turn.client || drawing->held.count > 0)
             break;
         if (picks_wait(painter->picks))
             continue;
         wait_until(painter, turn.wait_until_ns);
     }
     bool running = painter->state == RUNNING;
-    if (running && !turn.step)
+    bool others = turn.step || turn.client, held = drawing->held.count > 0 && (drawing->held.due || !others);
+    drawing->held.due = !held;
+    if (running && held)
+        held_pop(drawing, batch);
+    else if (running && !turn.step)
         begin_all(painter, turn.client, batch);
     pthread_mutex_unlock(&painter->lock);
     return running;
@@ -326,27 +359,42 @@ static void slow_leave(struct drawing *drawing)
     canvas_abandon(drawing->renderer, &drawing->slow.canvas);
 }
 
-static void draw(struct drawing *drawing, struct batch *batch)
+/* The field is not there yet, or the place for slow pictures is taken: again later. */
+static bool must_wait(struct drawing *drawing, const struct wish *wish)
+{
+    if (drawing->held.count == HELD)
+        return false;
+    return !canvas_prepare(drawing->renderer, &wish->view, drawing->snapshot, FIELD_NS) ||
+           (wish->urgency >= URGENCY_REFINE && drawing->slow.canvas);
+}
+
+/* False: held. */
+static bool draw(struct drawing *drawing, struct batch *batch)
 {
     int64_t field_begin_ns = clock_mono_ns();
     refresh(drawing);
+    if (must_wait(drawing, &batch->orders[0].wish) && held_push(drawing, batch)) {
+        counter_inc(drawing->painter->steps, 1);
+        return false;
+    }
     leave_out_same(drawing, batch);
     if (batch->count == 0)
-        return;
+        return true;
     const struct wish *wish = &batch->orders[0].wish;
     int64_t field_ns = clock_mono_ns() - field_begin_ns; /* to know what changed, the field was brought up to date already */
     if (wish->urgency >= URGENCY_REFINE) {
         slow_begin(drawing, batch, field_ns);
-        return;
+        return true;
     }
     lose_on_demand(drawing);
     struct frame *frame = canvas_draw(drawing->renderer, &wish->view, drawing->snapshot);
     if (!is_good(drawing, frame)) {
         fail(drawing, batch);
-        return;
+        return true;
     }
     frame->field_ns += field_ns;
     deliver(drawing, frame, drawing->snapshot, batch);
+    return true;
 }
 
 /* --- life of the render thread -------------------------------------------------------------------------------------------------- */
@@ -393,6 +441,8 @@ static void drawing_finish(struct drawing *drawing)
     snapshot_destroy(&drawing->snapshot);
     snapshot_destroy(&drawing->slow.snapshot);
     batch_finish(&drawing->same);
+    for (size_t i = 0; i < HELD; i++)
+        batch_finish(&drawing->held.batches[i]);
 }
 
 /* What only the first picture costs (shaders, baked light) is paid before anyone asks. */
@@ -451,7 +501,7 @@ static void turn(struct drawing *drawing, struct schedule *schedule, struct batc
     bool done = true;
     slow_leave(drawing);
     if (batch->count > 0)
-        draw(drawing, batch);
+        done = draw(drawing, batch);
     else if (drawing->slow.canvas)
         done = slow_step(drawing);
     if (urgency >= URGENCY_REFINE)

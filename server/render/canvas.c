@@ -20,6 +20,17 @@ static int count_halves(const struct view *view)
     return view->split ? 2 : 1;
 }
 
+bool canvas_prepare(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot, int64_t budget_ns)
+{
+    bool ready = true;
+    for (int half = 0; half < count_halves(view) && ready; half++) {
+        struct view one;
+        view_half(view, half, &one);
+        ready = renderer_prepare(renderer, &one, snapshot, budget_ns);
+    }
+    return ready;
+}
+
 uint64_t canvas_content(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
 {
     uint64_t content = 0;

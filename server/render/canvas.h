@@ -8,6 +8,7 @@
 struct canvas;
 
 /* As the functions of renderer.h that are called likewise. */
+bool canvas_prepare(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot, int64_t budget_ns);
 uint64_t canvas_content(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot);
 struct frame *canvas_draw(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot);
 struct canvas *canvas_begin(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot);

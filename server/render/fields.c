@@ -66,11 +66,12 @@ static struct fields_entry *entry_create(struct fields *fields, int asset, const
 }
 
 /* How far the values have moved from what is shown. */
-static double error_of(const struct fields_entry *entry, const struct scalar *now)
+static double error_of(const struct fields_entry *entry, const struct scalars *now)
 {
     float most = 0;
-    for (size_t i = 0; i < entry->count; i++)
-        most = fmaxf(most, fabsf(now[i].value - entry->shown[i].value));
+    size_t ready = entry->ready < now->ready ? entry->ready : now->ready;
+    for (size_t i = 0; i < ready; i++)
+        most = fmaxf(most, fabsf(now->at[i].value - entry->shown[i].value));
     return most;
 }
 
@@ -82,17 +83,18 @@ static bool can_be_seen(struct fields_entry *entry, const struct scalars *now)
         return true;
     if (now->travel - entry->travel < half)
         return false;
-    double error = error_of(entry, now->at);
+    double error = error_of(entry, now);
     entry->travel = now->travel - error;
     return error >= half;
 }
 
 static void show(struct fields_entry *entry, const struct scalars *now)
 {
-    size_t bytes = entry->count * sizeof(*entry->shown);
+    size_t bytes = now->ready * sizeof(*entry->shown);
+    entry->ready = now->ready;
     memcpy(entry->shown, now->at, bytes);
     glNamedBufferSubData(entry->buffer, 0, (GLsizeiptr)bytes, entry->shown);
-    entry->content = XXH3_64bits(entry->shown, bytes);
+    entry->hashed = 0;
     entry->flags_version = now->flags_version;
     entry->travel = now->travel;
     glDeleteBuffers(1, &entry->sensors);
@@ -100,9 +102,9 @@ static void show(struct fields_entry *entry, const struct scalars *now)
 }
 
 const struct fields_entry *fields_get(struct fields *fields, int asset, const struct field_params *params, double step,
-                                      const struct snapshot *snapshot)
+                                      const struct snapshot *snapshot, size_t count)
 {
-    const struct scalars *scalars = field_scalars(fields->field, asset, params, snapshot);
+    const struct scalars *scalars = field_scalars_of(fields->field, asset, params, snapshot, count);
     if (!scalars && !field_covers(fields->field, asset, params))
         return NULL;
     if (!scalars) {
@@ -115,10 +117,14 @@ const struct fields_entry *fields_get(struct fields *fields, int asset, const st
         entry = entry_create(fields, asset, params, step, scalars->count);
     if (!entry)
         return &fields->lost;
-    if (fresh || can_be_seen(entry, scalars))
+    if (fresh || entry->ready < count || can_be_seen(entry, scalars))
         show(entry, scalars);
     if (fields->reference && !entry->sensors)
         entry->sensors = reference_sensors(fields->reference, asset, params);
+    if (entry->hashed != count) {
+        entry->content = XXH3_64bits(entry->shown, count * sizeof(*entry->shown));
+        entry->hashed = count;
+    }
     entry->oldest_age_ns = scalars->oldest_age_ns;
     entry->used = ++fields->uses;
     return entry;

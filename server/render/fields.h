@@ -14,9 +14,10 @@ struct fields_entry { /* buffer 0: it could not be worked out or kept; drawn as 
     double step;            /* a value step that can be seen (scale_step) */
     uint64_t flags_version; /* of the scalars that are shown */
     double travel;          /* of the scalars, less how far what is shown is known to be off: scalars->travel - travel bounds the error */
-    uint64_t content;       /* hash of what is shown */
+    uint64_t content;       /* hash of the first `hashed` that are shown, as the last one who asked needs them */
+    size_t hashed;
     struct scalar *shown;
-    size_t count;
+    size_t count, ready; /* vertices: of the file; of which so many of the first are shown */
     GLuint buffer;
     GLuint sensors; /* 0, or for fragments that work the field out themselves (render/reference.h) */
     int64_t oldest_age_ns;
@@ -35,9 +36,10 @@ struct fields {
 
 void fields_init(struct fields *fields, struct log *log, struct field *field);
 void fields_finish(struct fields *fields);
-/* NULL: the asset has nothing to show. Where there is no room (logged) that is shown as no data. Valid until the next fields_trim. */
+/* Its first `count` vertices at least. NULL: the asset has nothing to show. Where there is no room (logged) that is shown as no data.
+   Valid until the next fields_trim. */
 const struct fields_entry *fields_get(struct fields *fields, int asset, const struct field_params *params, double step,
-                                      const struct snapshot *snapshot);
+                                      const struct snapshot *snapshot, size_t count);
 /* Between frames: drops what is beyond the bound. */
 void fields_trim(struct fields *fields);
 

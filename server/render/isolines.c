@@ -94,11 +94,23 @@ static const struct asset_level *coarse_level(const struct asset_view *view, dou
     return &view->levels[level];
 }
 
+static double size_of(const struct scene_asset *asset)
+{
+    double size_m = 0;
+    for (int c = 0; c < 3; c++)
+        size_m = fmax(size_m, asset->bounds_max_m[c] - asset->bounds_min_m[c]);
+    return size_m;
+}
+
+size_t isolines_vertex_count(const struct scene_asset *asset)
+{
+    return coarse_level(&asset->file->view, COARSE * size_of(asset))->vertex_count;
+}
+
 static void search_asset(struct search *search)
 {
     const struct asset_view *view = &search->asset->file->view;
-    for (int c = 0; c < 3; c++)
-        search->size_m = fmax(search->size_m, search->asset->bounds_max_m[c] - search->asset->bounds_min_m[c]);
+    search->size_m = size_of(search->asset);
     const struct asset_level *level = coarse_level(view, COARSE * search->size_m);
     search->slack_m = (float)fmax(1.5 * (double)level->error_m, 0.01 * search->size_m);
     search->set->count = 0;

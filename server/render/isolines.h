@@ -31,6 +31,8 @@ struct isoline_points { /* those of a picture; zero-initialise, free `at` with m
 bool isolines_init(struct isolines *isolines, struct log *log, size_t asset_count); /* false: logged */
 void isolines_finish(struct isolines *isolines);
 /* While picture->fields are what is shown: which points there are. */
+/* So many of the first vertices of an asset must be up to date for its labels. */
+size_t isolines_vertex_count(const struct scene_asset *asset);
 void isolines_collect(struct isolines *isolines, const struct picture *picture, struct isoline_points *out);
 /* Started once the picture is resolved; read into the frame when the GPU is done with it. False: out of GPU memory, logged. */
 bool isolines_start(struct isolines *isolines, const struct picture *picture, const struct isoline_points *points);

@@ -185,8 +185,8 @@ static struct light_key choose_light(struct renderer *renderer, const struct vie
     return near ? near->key : key;
 }
 
-/* What there is to draw, with the field brought up to date. */
-static void picture_init(struct renderer *renderer, struct picture *picture, const struct view *view, const struct snapshot *snapshot)
+/* What there is to draw, but for the field. */
+static void look(struct renderer *renderer, struct picture *picture, const struct view *view)
 {
     *picture = (struct picture){ .stage = &renderer->stage,
                                  .view = view,
@@ -195,6 +195,23 @@ static void picture_init(struct renderer *renderer, struct picture *picture, con
     picture->lit_by = choose_light(renderer, view);
     aim(renderer, view, &picture->shot);
     find_visible(renderer, picture);
+}
+
+/* So many of the first vertices are drawn, or looked at for labels. */
+static size_t count_vertices(const struct picture *picture, int asset)
+{
+    double lines[VIEW_ALL_LINES];
+    size_t count = solid_level(picture, asset)->vertex_count;
+    size_t labels = view_lines(picture->view, lines) > 0 ? isolines_vertex_count(&picture->stage->scene->assets[asset]) : 0;
+    return count > labels ? count : labels;
+}
+
+/* With the field brought up to date. */
+static void picture_init(struct renderer *renderer, struct picture *picture, const struct view *view, const struct snapshot *snapshot,
+                         bool finest)
+{
+    look(renderer, picture, view);
+    picture->finest = finest;
     fields_trim(&renderer->fields);
     memset(renderer->asset_fields, 0, renderer->scene->asset_count * sizeof(*renderer->asset_fields));
     struct scale scale;
@@ -202,14 +219,32 @@ static void picture_init(struct renderer *renderer, struct picture *picture, con
     double step = scale_step(&scale);
     for (size_t i = 0; i < picture->visible_count; i++) {
         int asset = renderer->visible[i];
-        renderer->asset_fields[asset] = view->look == LOOK_MATERIALS ? NULL : fields_get(&renderer->fields, asset, &view->field, step, snapshot);
+        if (view->look != LOOK_MATERIALS)
+            renderer->asset_fields[asset] =
+                fields_get(&renderer->fields, asset, &view->field, step, snapshot, count_vertices(picture, asset));
     }
+}
+
+bool renderer_prepare(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot, int64_t budget_ns)
+{
+    static const double slice = 1e6;
+    struct picture picture;
+    int64_t end_ns = clock_mono_ns() + budget_ns;
+    look(renderer, &picture, view);
+    for (size_t i = 0; i < picture.visible_count && view->look != LOOK_MATERIALS; i++) {
+        int asset = renderer->visible[i];
+        size_t count = count_vertices(&picture, asset);
+        while (!field_advance(renderer->fields.field, asset, &view->field, snapshot, count, slice))
+            if (clock_mono_ns() >= end_ns)
+                return false;
+    }
+    return true;
 }
 
 uint64_t renderer_content(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
 {
     struct picture picture;
-    picture_init(renderer, &picture, view, snapshot);
+    picture_init(renderer, &picture, view, snapshot, false);
     return content_hash(&picture);
 }
 
@@ -248,7 +283,7 @@ static struct frame *start(struct renderer *renderer, const struct view *view, c
         return NULL;
     }
     int64_t start_ns = clock_mono_ns();
-    picture_init(renderer, picture, view, snapshot);
+    picture_init(renderer, picture, view, snapshot, false);
     frame->field_ns = clock_mono_ns() - start_ns;
     describe(renderer, frame, picture, snapshot);
     return frame;
@@ -403,10 +438,29 @@ void renderer_abandon(struct renderer *renderer, struct stroke **stroke_ptr)
 
 /* --- at once ---------------------------------------------------------------------------------------------------------------- */
 
+static struct frame *draw_by_gl(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
+{
+    struct stroke *stroke = begin(renderer, view, snapshot, VIEW_MAX_SIDE_PX);
+    return stroke ? renderer_end(renderer, &stroke) : NULL;
+}
+
+/* Fields that there was no memory for. */
+static bool has_lost(const struct picture *picture)
+{
+    for (size_t i = 0; i < picture->visible_count; i++)
+        if (picture->fields[picture->visible[i]] && !picture->fields[picture->visible[i]]->buffer)
+            return true;
+    return false;
+}
+
 static struct frame *draw_draft(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
 {
     struct picture picture;
     struct frame *frame = start(renderer, view, snapshot, &picture);
+    if (frame && has_lost(&picture)) { /* only GL hatches without scalars */
+        frame_unref(&frame);
+        return draw_by_gl(renderer, view, snapshot);
+    }
     if (!frame)
         return NULL;
     int64_t start_ns = clock_mono_ns();
@@ -417,12 +471,6 @@ static struct frame *draw_draft(struct renderer *renderer, const struct view *vi
     else
         frame->render_ns = clock_mono_ns() - start_ns;
     return frame;
-}
-
-static struct frame *draw_by_gl(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
-{
-    struct stroke *stroke = begin(renderer, view, snapshot, VIEW_MAX_SIDE_PX);
-    return stroke ? renderer_end(renderer, &stroke) : NULL;
 }
 
 struct frame *renderer_draw(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
@@ -458,9 +506,8 @@ bool renderer_measure(struct renderer *renderer, const struct view *view, const 
     struct picture picture;
     struct measure measure = { 0 };
     plain.paint.log = false;
-    picture_init(renderer, &picture, &plain, snapshot);
+    picture_init(renderer, &picture, &plain, snapshot, finest);
     picture.measured = true;
-    picture.finest = finest;
     bool good = take_up(renderer, &picture) && measure_begin(&measure, renderer->gl->log, view->width_px, view->height_px);
     if (good) {
         solid_draw(&renderer->solid, &picture);

@@ -14,6 +14,8 @@ struct renderer;
 struct renderer *renderer_create(struct log *log, struct gl *gl, const struct scene *scene, struct field *field);
 void renderer_destroy(struct renderer **renderer);
 
+/* Works towards the field of this view for about that long. True: it is there, and what is below does not wait for it. */
+bool renderer_prepare(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot, int64_t budget_ns);
 /* What the picture of this view would show now; equal to frame->content of an earlier frame if drawing it again would give the
    same picture (camera, parameters, size and every field value in view, to a colour step). Brings the field up to date; cheap. */
 uint64_t renderer_content(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot);

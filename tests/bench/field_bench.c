@@ -90,6 +90,30 @@ static void measure(struct bench *bench, const char *name, void (*change)(struct
     fflush(stdout);
 }
 
+/* How long the thread that asks is held up, where it asks for pieces as the painter does. */
+static void measure_pieces(struct bench *bench, const char *kind, void (*change)(struct bench *))
+{
+    enum { MOST = 4096 };
+    static double ms[MOST];
+    size_t count = 0;
+    for (int i = 0; i < ROUNDS; i++) {
+        bool done = false;
+        change(bench);
+        while (!done && count < MOST) {
+            int64_t began_ns = clock_mono_ns(), end_ns = began_ns + 6 * NS_PER_MS;
+            do
+                done = field_advance(bench->field, 0, &bench->params, bench->plant->snapshot, VERTICES, 1e6);
+            while (!done && clock_mono_ns() < end_ns);
+            ms[count++] = (double)(clock_mono_ns() - began_ns) / 1e6;
+        }
+    }
+    qsort(ms, count, sizeof(*ms), by_size);
+    mend_all(bench);
+    printf("{\"name\": \"field_%zu_%s_hold_ms\", \"value\": %.4f, \"p95\": %.4f, \"unit\": \"ms\", \"goal\": [\"<=\", 10]}\n",
+           bench->sensors, kind, ms[count / 2], ms[count * 95 / 100]);
+    fflush(stdout);
+}
+
 static void measure_named(struct bench *bench, const char *kind, void (*change)(struct bench *), double goal_ms)
 {
     char *name = mem_printf("field_%zu_%s_ms", bench->sensors, kind);
@@ -114,6 +138,12 @@ static void measure_plant(struct workers *workers, size_t sensors)
     measure_named(&bench, "paper_one_reading", change_one, 0.1);
     measure_named(&bench, "paper_one_quality", change_quality, 0);
     measure_named(&bench, "paper_drag_decay", drag_decay, 0);
+    measure_pieces(&bench, "paper_one_quality", change_quality);
+    measure_pieces(&bench, "paper_drag_decay", drag_decay);
+    bench.params.interpolation = INTERPOLATION_SHEPARD;
+    measure_pieces(&bench, "one_quality", change_quality);
+    measure_pieces(&bench, "drag_power", drag_power);
+    bench.params.interpolation = INTERPOLATION_PAPER;
     field_set_bound(bench.field, 0);
     bench.params.decay = 1;
     measure_named(&bench, "paper_all_readings_uncached", change_all, 0);

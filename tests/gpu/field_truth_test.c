@@ -81,7 +81,7 @@ static int shown_at(const struct view *view, double x_m, double y_m)
     const uint8_t *pixel = pixel_at(frame, x_m, y_m);
     int index = map_index_exact(colormap_at(0), pixel);
     if (index < 0 && view->tier == TIER_STILL && !is_grey(pixel))
-        index = map_index_nearest(colormap_at(0), pixel);
+        index = map_index_nearest(colormap_at(0), pixel, false);
     frame_unref(&frame);
     return index;
 }

@@ -884,6 +884,96 @@ static void test_scalars_of_the_same_parameters_stay(void **state)
     rig_finish(&rig);
 }
 
+/* --- levels, pieces ------------------------------------------------------------------------------------------------------- */
+
+/* The first vertices are as those of a field that has never seen anything else. */
+static void assert_first_as_fresh(const struct rig *rig, size_t count)
+{
+    struct field *fresh = field_create(workers, &rig->plant->scene);
+    const struct scalars *want = field_scalars(fresh, 0, &rig->params, rig->plant->snapshot);
+    const struct scalars *got = field_scalars_of(rig->field, 0, &rig->params, rig->plant->snapshot, count);
+    assert_true(got->ready >= count);
+    assert_memory_equal(got->at, want->at, got->ready * sizeof(*want->at));
+    field_destroy(&fresh);
+}
+
+static void test_a_level_is_a_prefix(void **state)
+{
+    (void)state;
+    uint64_t random = fresh_seed();
+    struct rig rig = rig_create(synthetic_create(.vertices = 3000, .sensors = 20, .seed = random));
+    const size_t counts[] = { 300, 3000, 300, 300, 1, 2000, 700, 2999 };
+    for (int paper = 0; paper < 2; paper++) {
+        rig.params.interpolation = paper ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
+        for (int round = 0; round < 200; round++) {
+            for (size_t i = 0; round % 3 == 0 && i < 20; i++) /* all: summed anew */
+                set(&rig, i, between(&random, 0, 100), synthetic_random(&random) % 9 ? QUALITY_GOOD : QUALITY_BAD_SENSOR_FAILURE);
+            assert_first_as_fresh(&rig, counts[(size_t)round % 8]);
+        }
+    }
+    rig_finish(&rig);
+}
+
+static void test_a_prefix_costs_less(void **state)
+{
+    (void)state;
+    struct rig rig = rig_create(synthetic_create(.vertices = 20000, .sensors = 4));
+    const struct scalars *scalars = field_scalars_of(rig.field, 0, &rig.params, rig.plant->snapshot, 500);
+    assert_int_equal(scalars->ready, 512);
+    uint64_t version = scalars->version, grown = scalars->grown;
+    field_scalars_of(rig.field, 0, &rig.params, rig.plant->snapshot, 512);
+    assert_int_equal(scalars->version, version);
+    show(&rig); /* somebody looks from near */
+    assert_true(scalars->ready == 20000 && scalars->version > version && scalars->grown > grown && scalars->flags_version > version);
+    for (int tick = 0; tick < 3; tick++) { /* and goes: after a while only the prefix is kept up */
+        set(&rig, 2, 10 + tick, QUALITY_GOOD);
+        field_scalars_of(rig.field, 0, &rig.params, rig.plant->snapshot, 500);
+    }
+    assert_int_equal(scalars->ready, 512);
+    assert_true(show(&rig)->at[2].value == 12 && scalars->ready == 20000);
+    rig_finish(&rig);
+}
+
+static void test_in_pieces_it_is_the_same(void **state)
+{
+    (void)state;
+    uint64_t random = fresh_seed();
+    struct rig rig = rig_create(synthetic_create(.vertices = 5000, .sensors = 30, .seed = random));
+    for (int round = 0; round < 6; round++) {
+        double first = between(&random, 0, 100);
+        int pieces = 1;
+        rig.params.power = 1 + 0.5 * round;
+        set(&rig, 3, first, QUALITY_GOOD);
+        set(&rig, 8, 5, round % 2 ? QUALITY_GOOD : QUALITY_BAD_SENSOR_FAILURE);
+        while (!field_advance(rig.field, 0, &rig.params, rig.plant->snapshot, 5000, 10000)) {
+            if (pieces++ == 2)
+                set(&rig, 3, first + 1, QUALITY_GOOD); /* comes too late for this one */
+        }
+        assert_in_range(pieces, 3, 100);
+        assert_true(show(&rig)->at[3].value == (float)(first + 1));
+        set(&rig, 8, 5, round % 2 ? QUALITY_BAD_SENSOR_FAILURE : QUALITY_GOOD);
+        assert_as_fresh(&rig);
+    }
+    rig_finish(&rig);
+}
+
+static void test_what_is_under_way_may_be_dropped(void **state)
+{
+    (void)state;
+    struct rig rig = rig_create(synthetic_create(.vertices = 5000, .sensors = 30));
+    struct field_params other = rig.params;
+    field_set_bound(rig.field, 0);
+    for (int round = 0; round < 20; round++) {
+        rig.params.power = 1 + 0.1 * round;
+        other.power = 4 + 0.1 * round;
+        field_advance(rig.field, 0, &rig.params, rig.plant->snapshot, 5000, 10000);
+        field_advance(rig.field, 0, &other, rig.plant->snapshot, 5000, 10000);
+    }
+    assert_as_fresh(&rig);
+    field_advance(rig.field, 0, &other, rig.plant->snapshot, 5000, 10000); /* left under way */
+    rig_finish(&rig);
+}
+
 /* --- parameters, probe, distance ------------------------------------------------------------------------------------------ */
 
 static void test_parameters_out_of_range(void **state)
@@ -1185,6 +1275,10 @@ int main(void)
         cmocka_unit_test(test_dragging_stays_under_the_bound),
         cmocka_unit_test(test_without_room_for_columns_the_bits_are_the_same),
         cmocka_unit_test(test_scalars_of_the_same_parameters_stay),
+        cmocka_unit_test(test_a_level_is_a_prefix),
+        cmocka_unit_test(test_a_prefix_costs_less),
+        cmocka_unit_test(test_in_pieces_it_is_the_same),
+        cmocka_unit_test(test_what_is_under_way_may_be_dropped),
         cmocka_unit_test(test_parameters_out_of_range),
         cmocka_unit_test(test_probe),
         cmocka_unit_test(test_distance_from_one_sensor),
