@@ -9,7 +9,7 @@
 #include "gpu/mesh.h"
 #include "gpu/program.h"
 
-enum { POINTS_PER_LINE = 8, POINTS_MOST = 2048 };
+enum { POINTS_PER_LINE = 8, POINTS_MOST = 1024, LABELS_MOST = 128 };
 static const double SPACING = 0.2, COARSE = 0.01; /* of an asset's size: between points; error of the level that is searched */
 
 bool isolines_init(struct isolines *isolines, struct log *log, size_t asset_count)
@@ -191,6 +191,16 @@ bool isolines_start(struct isolines *isolines, const struct picture *picture, co
     return gl_pass_leave(picture->stage->gl, "isolines");
 }
 
+/* A message goes with each frame: no more places than a picture has room for. */
+static bool has_room(const struct frame *frame, const float place[4])
+{
+    double least_px = fmax(40, frame->width_px / 32.0);
+    for (size_t i = 0; i < frame->label_count; i++)
+        if (hypot((double)(frame->labels[i].x_px - place[0]), (double)(frame->labels[i].y_px - place[1])) < least_px)
+            return false;
+    return frame->label_count < LABELS_MOST;
+}
+
 void isolines_get(const struct isolines *isolines, const struct isoline_points *points, struct frame *frame)
 {
     size_t count = points->count;
@@ -200,8 +210,9 @@ void isolines_get(const struct isolines *isolines, const struct isoline_points *
     glGetNamedBufferSubData(isolines->buffer, 0, (GLsizeiptr)(count * sizeof(*places)), places);
     frame->labels = mem_array(count, sizeof(*frame->labels));
     for (size_t i = 0; i < count; i++)
-        if (places[i][2] < 0.5f)
-            frame->labels[frame->label_count++] =
-                (struct frame_label){ .value = points->at[i].value, .x_px = places[i][0], .y_px = places[i][1] };
+        if (places[i][2] < 0.5f && has_room(frame, places[i]))
+            frame->labels[frame->label_count++] = (struct frame_label){
+                .value = points->at[i].value, .x_px = roundf(10 * places[i][0]) / 10, .y_px = roundf(10 * places[i][1]) / 10
+            };
     mem_free(places);
 }

@@ -111,6 +111,20 @@ static void test_bit_by_bit(void **state)
     assert_null(canvas);
 }
 
+/* A view that was split may become narrow. */
+static void test_narrow(void **state)
+{
+    struct view view;
+    (void)state;
+    make_view(&view);
+    for (view.width_px = 16; view.width_px < 20; view.width_px++) {
+        struct frame *frame = canvas_draw(stand.renderer, &view, stand.snapshot);
+        assert_int_equal(frame->width_px, view.width_px);
+        overlay_draw(frame, &stand.toy->scene, stand.snapshot);
+        frame_unref(&frame);
+    }
+}
+
 static void test_what_is_not_split_stays_as_it_is(void **state)
 {
     struct view view;
@@ -133,6 +147,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         each(test_halves_are_pictures),
         each(test_bit_by_bit),
+        each(test_narrow),
         each(test_what_is_not_split_stays_as_it_is),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
