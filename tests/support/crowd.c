@@ -27,10 +27,20 @@ struct places { /* of the sensors, in the asset frame */
 
 /* --- its files -------------------------------------------------------------------------------------------------------------- */
 
+/* Nearly as wide as ASPECT says, with few places left empty. */
 static int columns_of(int instances, const struct places *places)
 {
-    int columns = (int)lround(sqrt(instances * ASPECT * places->size_m[1] / places->size_m[0]));
-    return columns < 1 ? 1 : columns > instances ? instances : columns;
+    double wanted = sqrt(instances * ASPECT * places->size_m[1] / places->size_m[0]), least = INFINITY;
+    int best = 1;
+    for (int columns = 1; columns <= instances; columns++) {
+        int rows = (instances + columns - 1) / columns;
+        double cost = (double)(rows * columns - instances) / instances + 0.3 * fabs(log(columns / wanted));
+        if (cost < least) {
+            least = cost;
+            best = columns;
+        }
+    }
+    return best;
 }
 
 static void add_instance(struct text *yaml, const struct crowd_params *params, const struct places *places, int index)
