@@ -48,8 +48,11 @@ test('a click tells what is there, and goes on telling it', options, async () =>
     assert.match(await page.locator('#place .value').textContent(), /^[\d.,]+ °C$/);
     assert.match(await page.locator('#place .state').textContent(), /Between sensors|Measured here/);
     assert.ok(await page.locator('#place .nearest li').count() >= 2);
+    await page.waitForTimeout(1500);
+    assert.equal(await page.locator('#place').isVisible(), true, 'it stays while values come in');
     await page.keyboard.press('Escape');
-    assert.equal(await page.locator('#place').isVisible(), false);
+    await page.waitForTimeout(1500);
+    assert.equal(await page.locator('#place').isVisible(), false, 'and does not come back');
 });
 
 test('standard views and the parallel projection', options, async () => {

@@ -55,10 +55,14 @@ export class Place {
     }
 
     hear(picked) {
+        if (this.asked === null)
+            return; // closed meanwhile
         const again = this.asked === 'again';
         this.asked = null;
-        if (again && !this.isSamePlace(picked))
-            return; // something stands before it now
+        if (again && !this.isSamePlace(picked)) {
+            this.close(); // something stands before it now, or it is not shown any more
+            return;
+        }
         this.picked = picked.asset === null ? null : picked;
         this.element.hidden = !this.picked;
         if (this.picked)
@@ -67,7 +71,7 @@ export class Place {
     }
 
     isSamePlace({ asset, position }) {
-        return this.picked && asset === this.picked.asset && position.every((x, i) => Math.abs(x - this.picked.position[i]) < SAME_M);
+        return asset !== null && asset === this.picked.asset && position.every((x, i) => Math.abs(x - this.picked.position[i]) < SAME_M);
     }
 
     project() {
