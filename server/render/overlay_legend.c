@@ -95,6 +95,16 @@ static const char *row_text(const struct legend *legend, enum row row)
     return row == ROW_BELOW ? legend->below : texts[row];
 }
 
+/* Below what lies over the picture already, where the card would lie on it. */
+static double free_from(const struct pen *pen, const struct box *card)
+{
+    double from = pen->area.y;
+    for (int i = 0; i < pen->taken_count; i++)
+        if (card->x < pen->taken[i].x + pen->taken[i].width && pen->taken[i].x < card->x + card->width && pen->taken[i].y < card->y)
+            from = fmax(from, pen->taken[i].y + pen->taken[i].height);
+    return from;
+}
+
 static void lay_out(struct pen *pen, struct legend *legend)
 {
     const struct box *area = &pen->area;
@@ -117,6 +127,12 @@ static void lay_out(struct pen *pen, struct legend *legend)
     legend->card = (struct box){ 0, 0, width + 2 * legend->pad, bar_height + others };
     legend->card.x = area->x + area->width - legend->card.width - legend->pad;
     legend->card.y = area->y + 0.5 * (area->height - legend->card.height);
+    double from = free_from(pen, &legend->card) + legend->pad, room = area->y + area->height - legend->pad - from;
+    if (legend->card.y < from) {
+        bar_height = fmax(bar_height - fmax(legend->card.height - room, 0), 3 * pen->text_px);
+        legend->card.height = bar_height + others;
+        legend->card.y = from;
+    }
     legend->bar = (struct box){ legend->card.x + legend->pad + left, legend->card.y + legend->pad + top, 1.6 * pen->text_px, bar_height };
 }
 

@@ -13,6 +13,7 @@
 #include <png.h>
 
 #include "base/mem.h"
+#include "render/canvas.h"
 #include "render/overlay.h"
 #include "scene/framing.h"
 #include "tests/support/rig.h"
@@ -30,16 +31,18 @@ struct golden {
     int selected_asset;
     bool overlay, opened; /* opened: an orthographic picture with a cut and a ghost */
     double far_part;      /* of the pixels may differ by more than FAR, in any channel */
+    bool split;           /* limits to the left; isolines and breaks on a logarithmic scale to the right */
 };
 enum { FAR = 20 };
 
 static const struct golden goldens[] = {
-    { "moving", TIER_MOVING, LOOK_DEFAULT, 0, -1, false, false, 0.01 },
-    { "still", TIER_STILL, LOOK_DEFAULT, 0, -1, false, false, 0.01 },
-    { "ramp", TIER_STILL, LOOK_FLAT, 20, 1, false, false, 0.01 },
-    { "glossy", TIER_STILL, LOOK_GLOSSY, 0, -1, false, false, 0.015 },
-    { "opened", TIER_STILL, LOOK_DEFAULT, 0, -1, false, true, 0.015 },
-    { "overlay", TIER_STILL, LOOK_DEFAULT, 0, -1, true, false, 0.04 }, /* letters differ between versions of the font library */
+    { "moving", TIER_MOVING, LOOK_DEFAULT, 0, -1, false, false, 0.01, false },
+    { "still", TIER_STILL, LOOK_DEFAULT, 0, -1, false, false, 0.01, false },
+    { "ramp", TIER_STILL, LOOK_FLAT, 20, 1, false, false, 0.01, false },
+    { "glossy", TIER_STILL, LOOK_GLOSSY, 0, -1, false, false, 0.015, false },
+    { "opened", TIER_STILL, LOOK_DEFAULT, 0, -1, false, true, 0.015, false },
+    { "split", TIER_STILL, LOOK_DEFAULT, 0, -1, true, false, 0.04, true },
+    { "overlay", TIER_STILL, LOOK_DEFAULT, 0, -1, true, false, 0.04, false }, /* letters differ between versions of the font library */
 };
 
 static void save(const char *folder, const char *name, const char *what, const uint8_t *bgrx)
@@ -114,6 +117,20 @@ static void open_up(struct view *view)
     view->visibility.clip = (struct clip){ .plane_count = 1, .planes = { { 0, 1, 0, 0.1 } } };
 }
 
+static void split_up(struct view *view)
+{
+    struct view right = *view;
+    view->field.show = SHOW_OPERATOR;
+    view_own_scale(&stand.toy->scene, view);
+    right.range_min = 10;
+    right.paint.log = true;
+    memcpy(right.paint.breaks, (double[]){ 30, 60 }, 2 * sizeof(double));
+    right.paint.break_count = 2;
+    right.paint.lines[right.paint.line_count++] = 45;
+    right.colormap = colormap_find("calm");
+    view_split(view, &right);
+}
+
 static void test_golden(void **state)
 {
     const struct golden *golden = *state;
@@ -125,7 +142,9 @@ static void test_golden(void **state)
     view.selected_asset = golden->selected_asset;
     if (golden->opened)
         open_up(&view);
-    struct frame *frame = stand_draw(&stand, &view);
+    if (golden->split)
+        split_up(&view);
+    struct frame *frame = canvas_draw(stand.renderer, &view, stand.snapshot);
     if (golden->overlay)
         overlay_draw(frame, &stand.toy->scene, stand.snapshot);
     if (getenv("GOLDEN_UPDATE"))
@@ -143,6 +162,8 @@ static void fill(void)
                 i == 6   ? QUALITY_BAD_SENSOR_FAILURE
                 : i == 5 ? QUALITY_UNCERTAIN_LAST_USABLE
                          : (uint32_t)QUALITY_GOOD);
+    for (int i = 0; i < 7; i++) /* the last one has none */
+        memcpy(stand.toy->plant.tags[i].limits, (double[]){ 10, 20, 70, 100 }, LIMIT_COUNT * sizeof(double));
 }
 
 int main(void)
