@@ -185,7 +185,7 @@ static void set_uniforms(const struct bake *bake, const double plant_from_here[1
 {
     double around_middle[16];
     float matrix[16], normals[9];
-    const double *middle = bake->stage->middle_m;
+    const double *middle = bake->stage->middle_m, *towards = bake->set.key.towards;
     matrix_translation((double[3]){ -middle[0], -middle[1], -middle[2] }, around_middle);
     matrix_multiply(around_middle, plant_from_here, around_middle);
     matrix_to_float(around_middle, matrix);
@@ -196,7 +196,7 @@ static void set_uniforms(const struct bake *bake, const double plant_from_here[1
     matrix_multiply(bake->set.texture_from_plant, around_middle, around_middle);
     matrix_to_float(around_middle, matrix);
     glUniformMatrix4fv(1, 1, GL_FALSE, matrix);
-    glUniform4f(8, (float)bake->set.key.towards[0], (float)bake->set.key.towards[1], (float)bake->set.key.towards[2], (float)bake->set.texel_m);
+    glUniform4f(8, (float)towards[0], (float)towards[1], (float)towards[2], (float)bake->set.texel_m);
     glUniform1f(9, (float)bake->sky_texel_m);
     glUniform2i(10, (GLint)first, (GLint)end);
     glBindTextureUnit(1, bake->sky_maps);

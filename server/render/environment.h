@@ -19,7 +19,8 @@ struct environment {
     float (*mirrored)[4];
 };
 
-/* image: equirectangular, its middle row the horizon, its middle column towards +x of the plant; NULL: the built-in sky. False: it is all black. */
+/* image: equirectangular, its middle row the horizon, its middle column towards +x of the plant;
+   NULL: the built-in sky. False: it is all black. */
 bool environment_init(struct environment *environment, const struct image_float *image, bool y_up, struct workers *workers);
 void environment_finish(struct environment *environment);
 void environment_irradiance(const struct environment *environment, const double normal[3], double out[3]);

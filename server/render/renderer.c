@@ -2,6 +2,7 @@
 /* From a view and the field to a frame: the order of the passes. */
 #include "render/renderer.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,7 +26,11 @@
 #include "render/targets.h"
 
 static const double HEIGHT_TO_DISTANCE = 1.2; /* from so far off, an eye of the usual angle sees as much */
-enum { STILL_SAMPLES = 4, TILE_PX = 128 };
+enum { STILL_SAMPLES = 4, SURFACES = 0, EDGES = 1, PASSES = 2 };
+/* Of what is drawn bit by bit, on a processor: how long a bit may take, and what is expected of it before anything was measured. */
+static const int64_t BIT_NS = 4 * NS_PER_MS;
+static const double FIRST_PIXEL_NS[PASSES] = { 200, 20 }, TRIANGLE_NS = 36;
+enum { BIT_TRIANGLES = 80000 };
 
 struct renderer {
     struct gl *gl;
@@ -46,6 +51,7 @@ struct renderer {
     GLuint frame_buffer;                      /* struct frame_block */
     struct palettes palettes;
     struct targets targets;
+    double pixel_ns[PASSES]; /* as measured lately */
     int64_t hurry_ns;    /* 0: none */
     struct draft *draft; /* NULL: a GPU draws moving pictures too */
     bool always_gl;
@@ -76,6 +82,7 @@ struct renderer *renderer_create(struct log *log, struct gl *gl, const struct sc
     struct renderer *renderer = mem_new(sizeof(*renderer));
     renderer->gl = gl;
     renderer->scene = scene;
+    memcpy(renderer->pixel_ns, FIRST_PIXEL_NS, sizeof(renderer->pixel_ns));
     renderer->asset_fields = mem_array(scene->asset_count, sizeof(*renderer->asset_fields));
     renderer->visible = mem_array(scene->asset_count, sizeof(*renderer->visible));
     renderer->distance_m = mem_array(scene->asset_count, sizeof(*renderer->distance_m));
@@ -289,7 +296,7 @@ static struct frame *start(struct renderer *renderer, const struct view *view, c
     return frame;
 }
 
-static struct stroke *begin(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot, int tile_px)
+static struct stroke *begin(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot, bool whole)
 {
     struct picture picture;
     struct target target;
@@ -301,7 +308,7 @@ static struct stroke *begin(struct renderer *renderer, const struct view *view, 
         return NULL;
     }
     struct stroke *stroke = mem_new(sizeof(*stroke));
-    stroke_init(stroke, &picture, &target, frame, tile_px);
+    stroke_init(stroke, &picture, &target, frame, whole);
     isolines_collect(&renderer->isolines, &picture, &stroke->isolines);
     return stroke;
 }
@@ -336,42 +343,73 @@ static bool take_up_stroke(struct renderer *renderer, struct stroke *stroke)
     return take_up(renderer, &stroke->picture);
 }
 
-static void draw_surfaces(struct renderer *renderer, struct stroke *stroke, const struct tile *tile)
+/* Some of the tile. Returns about how long its triangles took, and that is not for their pixels; done: all is drawn. */
+static double draw_surfaces(struct renderer *renderer, struct stroke *stroke, const struct tile *tile, bool *done)
 {
     struct picture picture = stroke_tile_picture(stroke, tile);
+    size_t first = stroke->drawn;
+    int triangles = stroke->copies && renderer->gl->software ? BIT_TRIANGLES : INT_MAX;
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, stroke->target.framebuffer);
     glDepthMask(GL_TRUE);
-    glClear(GL_DEPTH_BUFFER_BIT);
-    solid_draw(&renderer->solid, &picture);
-    sky_draw(&renderer->sky, &picture, &renderer->light);
-    target_resolve(&stroke->target, tile->x_px, tile->y_px, tile->width_px, tile->height_px);
+    if (first == 0)
+        glClear(GL_DEPTH_BUFFER_BIT);
+    stroke->drawn = solid_draw_some(&renderer->solid, &picture, first, triangles);
+    *done = stroke->drawn == picture.visible_count;
+    if (*done) {
+        solid_draw_blended(&renderer->solid, &picture);
+        sky_draw(&renderer->sky, &picture, &renderer->light);
+        target_resolve(&stroke->target, tile->x_px, tile->y_px, tile->width_px, tile->height_px);
+    }
+    picture.visible += first;
+    picture.visible_count = stroke->drawn - first;
+    return TRIANGLE_NS * solid_triangles(&picture);
 }
 
 /* First the surfaces of all tiles, then their edges: those look over the rim of a tile. */
-static int bits_of(const struct stroke *stroke)
+static int cells_of(const struct stroke *stroke)
 {
-    return stroke_tile_count(stroke) * (stroke->view.tier == TIER_STILL ? 2 : 1);
+    return stroke_cells(stroke) * (stroke->view.tier == TIER_STILL ? PASSES : 1);
 }
 
-static void draw_bit(struct renderer *renderer, struct stroke *stroke)
+struct bit {
+    int pass;
+    double pixels, triangles_ns;
+};
+
+static struct bit draw_bit(struct renderer *renderer, struct stroke *stroke)
 {
-    int tiles = stroke_tile_count(stroke);
-    struct tile tile = stroke_tile(stroke, stroke->next % tiles);
-    glEnable(GL_SCISSOR_TEST);
-    glScissor(tile.x_px, tile.y_px, tile.width_px, tile.height_px);
-    if (stroke->next < tiles)
-        draw_surfaces(renderer, stroke, &tile);
-    else
-        lines_draw_edges(&renderer->lines, &stroke->picture);
-    glDisable(GL_SCISSOR_TEST);
-    stroke->next++;
+    bool done = true;
+    struct bit bit = { .pass = stroke->next < stroke_cells(stroke) ? SURFACES : EDGES };
+    struct tile tile = stroke_choose_tile(stroke, (double)BIT_NS / renderer->pixel_ns[bit.pass]);
+    bit.pixels = (double)tile.width_px * tile.height_px;
+    if (bit.pixels > 0) {
+        glEnable(GL_SCISSOR_TEST);
+        glScissor(tile.x_px, tile.y_px, tile.width_px, tile.height_px);
+        if (bit.pass == SURFACES)
+            bit.triangles_ns = draw_surfaces(renderer, stroke, &tile, &done);
+        else
+            lines_draw_edges(&renderer->lines, &stroke->picture);
+        glDisable(GL_SCISSOR_TEST);
+    }
+    if (done) {
+        stroke->next += stroke->span;
+        stroke->span = 0;
+        stroke->drawn = 0;
+    }
+    return bit;
+}
+
+static void learn(struct renderer *renderer, const struct bit *bit, int64_t took_ns)
+{
+    double *pixel_ns = &renderer->pixel_ns[bit->pass], now_ns = ((double)took_ns - bit->triangles_ns) / fmax(bit->pixels, 1);
+    if (bit->pixels > 0)
+        *pixel_ns = fmax(*pixel_ns + 0.3 * (now_ns - *pixel_ns), 1);
 }
 
 struct stroke *renderer_begin(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
 {
     /* A GPU draws the whole in the time that a processor takes for a tile. */
-    int tile_px = renderer->gl->software ? TILE_PX : VIEW_MAX_SIDE_PX;
-    struct stroke *stroke = begin(renderer, view, snapshot, tile_px);
+    struct stroke *stroke = begin(renderer, view, snapshot, !renderer->gl->software);
     if (stroke && !stroke_hold_fields(stroke))
         renderer_abandon(renderer, &stroke);
     return stroke;
@@ -380,19 +418,20 @@ struct stroke *renderer_begin(struct renderer *renderer, const struct view *view
 bool renderer_step(struct renderer *renderer, struct stroke *stroke, int64_t budget_ns)
 {
     int64_t start_ns = clock_mono_ns(), spent_ns = 0, last_ns = 0;
-    int bits = bits_of(stroke);
+    int cells = cells_of(stroke);
     if (!stroke->light && !light_step(&renderer->light, &stroke->picture.lit_by, budget_ns))
         return false;
-    if (stroke->next < bits && !take_up_stroke(renderer, stroke))
-        stroke->next = bits; /* renderer_end fails likewise */
-    while (stroke->next < bits && spent_ns + last_ns <= budget_ns) {
-        draw_bit(renderer, stroke);
+    if (stroke->next < cells && !take_up_stroke(renderer, stroke))
+        stroke->next = cells; /* renderer_end fails likewise */
+    while (stroke->next < cells && (spent_ns == 0 || spent_ns + (last_ns > BIT_NS ? last_ns : BIT_NS) <= budget_ns)) {
+        struct bit bit = draw_bit(renderer, stroke);
         glFinish();
         last_ns = clock_mono_ns() - start_ns - spent_ns;
         spent_ns += last_ns;
+        learn(renderer, &bit, last_ns);
     }
     stroke->frame->render_ns += spent_ns;
-    return stroke->next == bits;
+    return stroke->next == cells;
 }
 
 struct frame *renderer_end(struct renderer *renderer, struct stroke **stroke_ptr)
@@ -403,7 +442,7 @@ struct frame *renderer_end(struct renderer *renderer, struct stroke **stroke_ptr
     int64_t start_ns = clock_mono_ns();
     if (!take_up_stroke(renderer, stroke))
         goto end;
-    while (stroke->next < bits_of(stroke))
+    while (stroke->next < cells_of(stroke))
         draw_bit(renderer, stroke);
     ghosts_draw(&renderer->ghosts, &stroke->picture);
     lines_draw_outline(&renderer->lines, &stroke->picture);
@@ -440,7 +479,7 @@ void renderer_abandon(struct renderer *renderer, struct stroke **stroke_ptr)
 
 static struct frame *draw_by_gl(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
 {
-    struct stroke *stroke = begin(renderer, view, snapshot, VIEW_MAX_SIDE_PX);
+    struct stroke *stroke = begin(renderer, view, snapshot, true);
     return stroke ? renderer_end(renderer, &stroke) : NULL;
 }
 

@@ -2,6 +2,8 @@
 /* Draws assets: with their field, or as muted context. */
 #include "render/solid.h"
 
+#include <limits.h>
+
 #include "base/text.h"
 #include "gpu/program.h"
 #include "render/matrix.h"
@@ -192,7 +194,15 @@ static void draw_asset(struct solid *solid, const struct picture *picture, int i
         stage_clip_end(clip);
 }
 
-void solid_draw(struct solid *solid, const struct picture *picture)
+static int level_triangles(const struct model_level *level)
+{
+    int count = 0;
+    for (size_t b = 0; b < level->batch_count; b++)
+        count += level->batches[b].triangles;
+    return count;
+}
+
+static void begin_pass(const struct picture *picture)
 {
     gl_pass_enter("solid");
     glEnable(GL_DEPTH_TEST);
@@ -204,25 +214,48 @@ void solid_draw(struct solid *solid, const struct picture *picture)
     glVertexAttrib4f(MESH_COLOR, 1, 1, 1, 1);
     glVertexAttrib1f(MESH_SCALAR, 0); /* of a field without a buffer: no data */
     glVertexAttrib2f(MESH_FLAGS, 1, 0);
-    for (size_t i = 0; i < picture->visible_count; i++)
-        draw_asset(solid, picture, picture->visible[i], false);
-    if (!picture->measured)
-        glEnable(GL_BLEND);
-    glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE);
-    for (size_t i = picture->visible_count; i-- > 0;)
-        draw_asset(solid, picture, picture->visible[i], true);
+}
+
+static void end_pass(const struct picture *picture)
+{
     glDisable(GL_BLEND);
     glDisable(GL_CULL_FACE);
     gl_pass_leave(picture->stage->gl, "solid");
 }
 
+size_t solid_draw_some(struct solid *solid, const struct picture *picture, size_t first, int triangles)
+{
+    begin_pass(picture);
+    while (first < picture->visible_count && triangles > 0) {
+        int index = picture->visible[first++];
+        draw_asset(solid, picture, index, false);
+        triangles -= level_triangles(solid_level(picture, index));
+    }
+    end_pass(picture);
+    return first;
+}
+
+void solid_draw_blended(struct solid *solid, const struct picture *picture)
+{
+    begin_pass(picture);
+    if (!picture->measured)
+        glEnable(GL_BLEND);
+    glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE);
+    for (size_t i = picture->visible_count; i-- > 0;)
+        draw_asset(solid, picture, picture->visible[i], true);
+    end_pass(picture);
+}
+
+void solid_draw(struct solid *solid, const struct picture *picture)
+{
+    solid_draw_some(solid, picture, 0, INT_MAX);
+    solid_draw_blended(solid, picture);
+}
+
 int solid_triangles(const struct picture *picture)
 {
     int count = 0;
-    for (size_t i = 0; i < picture->visible_count; i++) {
-        const struct model_level *level = solid_level(picture, picture->visible[i]);
-        for (size_t b = 0; b < level->batch_count; b++)
-            count += level->batches[b].triangles;
-    }
+    for (size_t i = 0; i < picture->visible_count; i++)
+        count += level_triangles(solid_level(picture, picture->visible[i]));
     return count;
 }

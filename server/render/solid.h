@@ -19,6 +19,10 @@ struct solid {
 bool solid_init(struct solid *solid, struct log *log); /* false: logged */
 void solid_finish(struct solid *solid);
 void solid_draw(struct solid *solid, const struct picture *picture);
+/* The same in parts: what is not blended, of the visible assets from `first` on, until about so many triangles are drawn; returns the
+   first that is left. Then all that is blended. */
+size_t solid_draw_some(struct solid *solid, const struct picture *picture, size_t first, int triangles);
+void solid_draw_blended(struct solid *solid, const struct picture *picture);
 const struct model_level *solid_level(const struct picture *picture, int asset); /* what of it is drawn */
 double solid_sun_slack(const struct picture *picture); /* in depth of the sun's map: by how much surfaces are moved towards the sun */
 int solid_triangles(const struct picture *picture); /* of what is drawn */

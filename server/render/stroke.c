@@ -7,12 +7,16 @@
 #include "base/mem.h"
 #include "gpu/mesh.h"
 
-void stroke_init(struct stroke *stroke, const struct picture *picture, const struct target *target, struct frame *frame, int tile_px)
+/* Tiles are squares of 1, 4 or 16 cells; the rasteriser works on 64 x 64 pixels at a time. */
+enum { BLOCK_PX = 256, SIDE_CELLS = 4, BLOCK_CELLS = SIDE_CELLS * SIDE_CELLS };
+
+void stroke_init(struct stroke *stroke, const struct picture *picture, const struct target *target, struct frame *frame, bool whole)
 {
     size_t assets = picture->stage->scene->asset_count;
-    *stroke = (struct stroke){ .picture = *picture, .view = *picture->view, .target = *target, .frame = frame, .tile_px = tile_px };
-    stroke->columns = (target->width_px + tile_px - 1) / tile_px;
-    stroke->rows = (target->height_px + tile_px - 1) / tile_px;
+    *stroke = (struct stroke){ .picture = *picture, .view = *picture->view, .target = *target, .frame = frame };
+    stroke->block_px = whole ? VIEW_MAX_SIDE_PX : BLOCK_PX;
+    stroke->columns = (target->width_px + stroke->block_px - 1) / stroke->block_px;
+    stroke->rows = (target->height_px + stroke->block_px - 1) / stroke->block_px;
     stroke->fields = mem_array(assets, sizeof(*stroke->fields));
     stroke->visible = mem_array(assets, sizeof(*stroke->visible));
     stroke->in_tile = mem_array(assets, sizeof(*stroke->in_tile));
@@ -72,18 +76,45 @@ void stroke_finish(struct stroke *stroke)
     *stroke = (struct stroke){ 0 };
 }
 
-int stroke_tile_count(const struct stroke *stroke)
+static bool is_whole(const struct stroke *stroke)
 {
-    return stroke->columns * stroke->rows;
+    return stroke->block_px == VIEW_MAX_SIDE_PX;
 }
 
-struct tile stroke_tile(const struct stroke *stroke, int index)
+int stroke_cells(const struct stroke *stroke)
 {
-    struct tile tile = { .x_px = index % stroke->columns * stroke->tile_px, .y_px = index / stroke->columns * stroke->tile_px };
-    int right_px = tile.x_px + stroke->tile_px, bottom_px = tile.y_px + stroke->tile_px;
-    tile.width_px = (right_px < stroke->target.width_px ? right_px : stroke->target.width_px) - tile.x_px;
-    tile.height_px = (bottom_px < stroke->target.height_px ? bottom_px : stroke->target.height_px) - tile.y_px;
-    return tile;
+    return stroke->columns * stroke->rows * (is_whole(stroke) ? 1 : BLOCK_CELLS);
+}
+
+/* Every second bit of a cell's place in the Z. */
+static int cell_at(int place)
+{
+    return (place & 1) | (place >> 1 & 2) | (place >> 2 & 4);
+}
+
+static struct tile clip_tile(const struct stroke *stroke, int x_px, int y_px, int side_px)
+{
+    struct tile tile = { .x_px = x_px, .y_px = y_px };
+    int right_px = stroke->target.width_px - x_px, bottom_px = stroke->target.height_px - y_px;
+    tile.width_px = right_px < side_px ? right_px : side_px;
+    tile.height_px = bottom_px < side_px ? bottom_px : side_px;
+    return tile.width_px > 0 && tile.height_px > 0 ? tile : (struct tile){ 0 };
+}
+
+struct tile stroke_choose_tile(struct stroke *stroke, double most_px)
+{
+    int index = stroke->next % stroke_cells(stroke), cells = is_whole(stroke) ? 1 : BLOCK_CELLS;
+    int block = index / cells, place = index % cells, cell_px = is_whole(stroke) ? VIEW_MAX_SIDE_PX : BLOCK_PX / SIDE_CELLS;
+    int side = 1;
+    while (!stroke->span && !is_whole(stroke) && 2 * side <= SIDE_CELLS && place % (4 * side * side) == 0 &&
+           4.0 * side * side * cell_px * cell_px <= most_px)
+        side *= 2;
+    if (!stroke->span)
+        stroke->span = side * side;
+    for (side = 1; side * side < stroke->span;)
+        side *= 2;
+    return clip_tile(stroke, block % stroke->columns * stroke->block_px + cell_at(place) * cell_px,
+                     block / stroke->columns * stroke->block_px + cell_at(place >> 1) * cell_px, side * cell_px);
 }
 
 struct picture stroke_tile_picture(struct stroke *stroke, const struct tile *tile)

@@ -17,12 +17,13 @@ struct stroke {
     struct fields_entry *copies;        /* per asset, with buffers of their own; NULL: drawn at once, no copies needed */
     int *visible, *in_tile;
     struct isoline_points isolines;
-    int tile_px;                 /* side; a multiple of what the rasteriser works on */
-    int columns, rows, next;     /* next: tile, counted through all passes */
+    int block_px, columns, rows; /* blocks of cells; in a block the cells follow a Z, so that tiles of any size follow one another */
+    int next, span;              /* the next cell, counted through all passes, and how many cells its tile has; 0: not chosen yet */
+    size_t drawn;                /* of the tile's assets, nearest first */
 };
 
-/* Takes the frame and the target over, copies the lists of the picture and its view. */
-void stroke_init(struct stroke *stroke, const struct picture *picture, const struct target *target, struct frame *frame, int tile_px);
+/* Takes the frame and the target over, copies the lists of the picture and its view. whole: one tile holds all. */
+void stroke_init(struct stroke *stroke, const struct picture *picture, const struct target *target, struct frame *frame, bool whole);
 /* Others may draw before this is done: their fields must not show here. False: out of GPU memory, logged. */
 bool stroke_hold_fields(struct stroke *stroke);
 void stroke_finish(struct stroke *stroke); /* the target is the caller's again; the frame goes unless it was taken */
@@ -30,8 +31,9 @@ void stroke_finish(struct stroke *stroke); /* the target is the caller's again; 
 struct tile {
     int x_px, y_px, width_px, height_px; /* from the top left */
 };
-int stroke_tile_count(const struct stroke *stroke);
-struct tile stroke_tile(const struct stroke *stroke, int index);
+int stroke_cells(const struct stroke *stroke); /* of one pass */
+/* The largest tile that begins with the next cell and has at most so many pixels, or the smallest. Of no size: outside the picture. */
+struct tile stroke_choose_tile(struct stroke *stroke, double most_px);
 /* The picture with only those assets that the tile shows. Valid until the next call. */
 struct picture stroke_tile_picture(struct stroke *stroke, const struct tile *tile);
 
