@@ -11,6 +11,7 @@
 
 #define AIM (0.9 * SPLIT_ERROR) /* errs the field less at the points looked at, it does by less than that in between */
 #define MOST_ROUNDS 12
+#define MOST_KEPT 512    /* shares of a place */
 #define LARGE 0.25       /* of the way to the nearest sensor */
 #define INSIDE_LEAST 8.0 /* shortest pieces: smaller triangles are not looked at inside */
 #define FLAT 1e-3        /* a triangle's longest edge is no more than that shorter than the way round over the corner across */
@@ -245,10 +246,12 @@ static bool start(struct split *split, struct geometry *geometry)
         return false;
     size_t places = split->mesh.places.count;
     split->geodesic_capacity = places * split->sensors;
-    split->share_capacity = places * split->samples;
     split->geodesic_m = mem_try_array(split->geodesic_capacity, sizeof(*split->geodesic_m));
-    split->shares = mem_try_array(split->share_capacity, sizeof(*split->shares));
-    if (!split->geodesic_m || !split->shares)
+    if (split->samples <= MOST_KEPT) {
+        split->share_capacity = places * split->samples;
+        split->shares = mem_try_array(split->share_capacity, sizeof(*split->shares));
+    }
+    if (!split->geodesic_m || (split->samples <= MOST_KEPT && !split->shares))
         return false;
     for (uint32_t v = 0; v < geometry->vertex_count; v++)
         surface_field_at_vertex(split->in->field, split->in->surface, v,

@@ -19,8 +19,8 @@ struct split_input {
     struct straight *straight; /* its radii are set here */
     const struct surface *surface;
     const struct surface_field *field; /* of the sensors */
-    struct asset_sensor *sensors;       /* nearest_vertex becomes the sensor's own vertex of the finest level */
-    struct workers *workers;            /* or NULL */
+    struct asset_sensor *sensors;      /* nearest_vertex becomes the sensor's own vertex of the finest level */
+    struct workers *workers;           /* or NULL */
 };
 
 /* New vertices come after the geometry's; both faces at an edge are cut at the same vertex, so a level without cracks stays without.

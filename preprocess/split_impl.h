@@ -10,7 +10,7 @@ struct split {
     struct cutmesh mesh;
     const uint32_t *model;      /* the finest level's triangles before any is cut: the model's */
     size_t sensors, samples;    /* samples: of each place */
-    float *geodesic_m, *shares; /* [place][sensor], [place][share] */
+    float *geodesic_m, *shares; /* [place][sensor]; [place][sample], or NULL: too many */
     size_t geodesic_capacity, share_capacity;
     uint32_t *part; /* of each place: what hangs together by edges */
     size_t part_capacity;

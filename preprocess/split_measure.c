@@ -230,6 +230,16 @@ struct job {
     double enough;
 };
 
+/* Kept by place while they are few; else made again, which takes no longer than fetching so many. */
+static const float *shares_at(const struct split *split, uint32_t vertex, float *room)
+{
+    uint32_t place = place_of(split, vertex);
+    if (split->shares)
+        return split->shares + place * split->samples;
+    straight_shares(split->in->straight, split_position(split, vertex), split->geodesic_m + place * split->sensors, room);
+    return room;
+}
+
 static float *room_for(const struct split *split, size_t points)
 {
     return mem_array(points * (split->samples + split->sensors), sizeof(float));
@@ -239,24 +249,24 @@ static void try_edge(const struct job *job, struct split_finding *finding, float
 {
     const struct split *split = job->split;
     const struct cut_edge *edge = &split->mesh.cuts[finding->number];
-    size_t shares = split->samples;
-    uint32_t a = place_of(split, edge->a), b = place_of(split, edge->b);
-    struct line line = { .split = split,
-                         .a = split_position(split, edge->a),
-                         .b = split_position(split, edge->b),
-                         .sight = sight_of_edge(split, edge),
-                         .t = { 0, 1 },
-                         .shares = { split->shares + a * shares, split->shares + b * shares },
-                         .geodesic_m = { split->geodesic_m + a * split->sensors, split->geodesic_m + b * split->sensors },
-                         .count = 2,
-                         .room = room };
-    float middle[3];
-    double length_m = split_length(line.a, line.b);
+    const float *pa = split_position(split, edge->a), *pb = split_position(split, edge->b);
+    double length_m = split_length(pa, pb);
     finding->error = 0;
     finding->share = 0.5f;
     if (length_m < 2 * split->shortest_m)
         return;
-    split_mix(line.a, line.b, 0.5, middle);
+    struct line line = { .split = split,
+                         .a = pa,
+                         .b = pb,
+                         .sight = sight_of_edge(split, edge),
+                         .t = { 0, 1 },
+                         .shares = { shares_at(split, edge->a, room), shares_at(split, edge->b, room + split->samples) },
+                         .geodesic_m = { split->geodesic_m + place_of(split, edge->a) * split->sensors,
+                                         split->geodesic_m + place_of(split, edge->b) * split->sensors },
+                         .count = 2,
+                         .room = room + 2 * split->samples };
+    float middle[3];
+    split_mix(pa, pb, 0.5, middle);
     finding->error = (float)add_point(&line, 0.5);
     if ((double)finding->error < PROBABLE * job->enough && length_m < CLOSE * straight_nearest(split->in->straight, middle) &&
         line.count == 3)
@@ -273,7 +283,7 @@ static void try_edge(const struct job *job, struct split_finding *finding, float
 static void try_edges(void *arg, size_t begin, size_t end)
 {
     const struct job *job = arg;
-    float *room = room_for(job->split, POINTS);
+    float *room = room_for(job->split, POINTS + 2);
     for (size_t i = begin; i < end; i++)
         try_edge(job, &job->findings[i], room);
     mem_free(room);
@@ -287,7 +297,7 @@ static void try_inside(const struct split *split, struct split_finding *finding,
     const float *corners[3];
     float middle[3], *geodesic_m = room, *shares = room + split->sensors;
     for (int c = 0; c < 3; c++) {
-        corners[c] = split->shares + place_of(split, tri->v[c]) * split->samples;
+        corners[c] = shares_at(split, tri->v[c], shares + (1 + (size_t)c) * split->samples);
         middle[c] = (split_position(split, tri->v[0])[c] + split_position(split, tri->v[1])[c] + split_position(split, tri->v[2])[c]) / 3;
     }
     double at[3];
@@ -302,7 +312,7 @@ static void try_inside(const struct split *split, struct split_finding *finding,
 static void try_insides(void *arg, size_t begin, size_t end)
 {
     const struct job *job = arg;
-    float *room = room_for(job->split, 1);
+    float *room = room_for(job->split, 4);
     for (size_t i = begin; i < end; i++)
         try_inside(job->split, &job->findings[i], room);
     mem_free(room);
@@ -322,7 +332,8 @@ static void measure_places(void *arg, size_t begin, size_t end)
             to_doubles(point, at);
             measure_always(&sight, at, geodesic_m);
         }
-        straight_shares(split->in->straight, point, geodesic_m, split->shares + place * split->samples);
+        if (split->shares)
+            straight_shares(split->in->straight, point, geodesic_m, split->shares + place * split->samples);
     }
 }
 
@@ -352,7 +363,8 @@ void split_measure_places(struct split *split, uint32_t first, const uint32_t *e
 void split_add_place(struct split *split, uint32_t place, uint32_t part)
 {
     mem_grow(&split->geodesic_m, &split->geodesic_capacity, (place + 1) * split->sensors, sizeof(*split->geodesic_m));
-    mem_grow(&split->shares, &split->share_capacity, (place + 1) * split->samples, sizeof(*split->shares));
+    if (split->shares)
+        mem_grow(&split->shares, &split->share_capacity, (place + 1) * split->samples, sizeof(*split->shares));
     mem_grow(&split->part, &split->part_capacity, place + 1, sizeof(*split->part));
     split->part[place] = part;
 }

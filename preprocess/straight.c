@@ -6,6 +6,8 @@
 
 #include "base/mem.h"
 
+#define MANY 64 /* sensors: with more, each has so small a share in paper that its bends are far below shepard's, and are not looked at */
+
 static double factor_of(double x)
 {
     return x > 0 && x < 1e4 ? x : x > 0 ? 1e4 : 0;
@@ -112,7 +114,8 @@ void straight_shares(const struct straight *straight, const float point_m[3], co
             for (size_t i = 0; i < group->of.count; i++)
                 distance_m[i] = i < group->count ? from[group->columns[i]] : INFINITY;
             *slope++ = shares_shepard(&group->of, distance_m, shares);
-            shares_paper(&group->of, (float)group->radius_m[mode], distance_m, shares + group->of.count);
+            if (group->count <= MANY)
+                shares_paper(&group->of, (float)group->radius_m[mode], distance_m, shares + group->of.count);
             *slope++ = (float)(group->steepness / group->radius_m[mode]);
             shares += 2 * group->of.count;
         }
@@ -143,7 +146,7 @@ static double worst_of(const struct straight *straight, const float *const *corn
             at[c] = corners[c] + first;
             reached = reached && (g % 2 != INTERPOLATION_SHEPARD || has_value(at[c], count));
         }
-        if (reached)
+        if (reached && (g % 2 == INTERPOLATION_SHEPARD || straight->groups[g / 2 % straight->group_count].count <= MANY))
             most = fmax(most, (double)shares_error(at, weights, corner_count, sample + first, count) -
                                   slack_m * (double)sample[straight->share_count + g]);
         first += count;
