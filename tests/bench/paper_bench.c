@@ -359,9 +359,11 @@ static void measure_model(struct bench *bench, const struct model *model, bool g
 {
     for (int i = 0; i < INSTANCE_GOALS; i++) {
         const struct goal *goal = &instance_goals[i];
+        bench->brute_sensors = 0;
         if (instances < 0 || instances == goal->count)
             measure(bench, model, "instances", goal->count, 5, gpu ? goal->gpu_ms : goal->cpu_ms);
     }
+    bench->brute_sensors = 0;
     for (int i = 0; i < SENSOR_GOALS; i++)
         if (sensors < 0 || sensors == sensor_goals[i].count)
             measure(bench, model, "sensors", 1, sensor_goals[i].count, gpu ? sensor_goals[i].gpu_ms : 0);
