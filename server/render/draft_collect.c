@@ -51,6 +51,7 @@ static void fill_mesh(struct draft *draft, struct draft_mesh *mesh, int index, c
     double clip[16], half[2] = { 0.5 * draft->width_px, 0.5 * draft->height_px };
     *mesh = (struct draft_mesh){
         .file = &asset->file->view,
+        .has_field = picture->fields[index] != NULL,
         .scalars = picture->fields[index] ? picture->fields[index]->shown : NULL,
         .baked = (const uint8_t(*)[4])draft->light->baked[index],
         .first_vertex = (uint32_t)draft->vertex_count,
@@ -113,7 +114,7 @@ static void collect_asset(struct draft *draft, int index, bool both_sides)
         const struct asset_material *material = &file->materials[primitive->material];
         uint32_t end = primitive->first_index + primitive->index_count;
         struct draft_draw draw = { .mesh = (uint32_t)draft->mesh_count, .double_sided = both_sides || material->double_sided };
-        draw.mark = mesh->scalars ? MARK_FIELD : MARK_CONTEXT | (ramp + primitive->material) << 16;
+        draw.mark = mesh->has_field ? MARK_FIELD : MARK_CONTEXT | (ramp + primitive->material) << 16;
         for (; cluster < file->clusters + file->header->cluster_count && cluster->first_index < end &&
                cluster->first_index >= primitive->first_index;
              cluster++) {

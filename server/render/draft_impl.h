@@ -24,7 +24,8 @@ enum { DRAFT_NO_DATA = 1, DRAFT_UNCERTAIN = 2 };
 
 struct draft_mesh { /* one asset in this picture */
     const struct asset_view *file;
-    const struct scalar *scalars;  /* NULL: context */
+    bool has_field;
+    const struct scalar *scalars; /* NULL: context, or a field that could not be worked out: no data */
     const uint8_t (*baked)[4];
     float place[4][4]; /* columns; x w, y w in pixels, z and w of clip space */
     uint32_t first_vertex, vertex_count;

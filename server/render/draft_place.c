@@ -32,6 +32,13 @@ static void carry_field(const struct draft *draft, const struct draft_mesh *mesh
     out->flags = (scalar->no_data ? DRAFT_NO_DATA : 0) | (scalar->uncertain ? DRAFT_UNCERTAIN : 0);
 }
 
+static void carry_nothing(const struct draft *draft, const struct draft_mesh *mesh, uint32_t v, struct draft_vertex *out)
+{
+    out->a = 0;
+    out->b = (float)mesh->baked[v][0] * (1 / 255.0f) * draft->block.shade[0] + draft->block.shade[1];
+    out->flags = DRAFT_NO_DATA;
+}
+
 static void carry_context(const struct draft_mesh *mesh, uint32_t v, struct draft_vertex *out)
 {
     out->a = mesh->baked[v][1];
@@ -44,10 +51,14 @@ static void place_range(const struct draft *draft, const struct draft_mesh *mesh
     struct draft_vertex *out = draft->vertices + mesh->first_vertex;
     for (uint32_t v = begin; v < end; v++)
         place_one(mesh, mesh->file->positions_m[v], &out[v]);
-    for (uint32_t v = begin; v < end && mesh->scalars; v++)
-        carry_field(draft, mesh, v, &out[v]);
-    for (uint32_t v = begin; v < end && !mesh->scalars; v++)
-        carry_context(mesh, v, &out[v]);
+    for (uint32_t v = begin; v < end; v++) {
+        if (mesh->scalars)
+            carry_field(draft, mesh, v, &out[v]);
+        else if (mesh->has_field)
+            carry_nothing(draft, mesh, v, &out[v]);
+        else
+            carry_context(mesh, v, &out[v]);
+    }
 }
 
 /* Vertices of all meshes, counted through. */
