@@ -8,6 +8,7 @@
 #include "surface/vec.h"
 
 #define STEPS_PER_EDGE 32.0 /* buckets to a mean edge: points in one bucket are taken in any order */
+#define NEAR_EDGES 5.0
 #define MAX_BUCKETS (1u << 16)
 
 /* The corners of the t-th triangle walked over, and its sides from corner i to corner i + 1. */
@@ -70,7 +71,7 @@ static void fill_fans(struct unfold *unfold, const struct intrinsic *in, uint32_
     }
 }
 
-/* The ring of buckets must span the longest edge: an offer is never farther ahead than that. */
+/* The ring of buckets must span the longest edge, and what is near: an offer is never farther ahead than that. */
 static void choose_buckets(struct unfold *unfold, const struct intrinsic *in)
 {
     double sum = 0, longest = 0, sides[3];
@@ -82,13 +83,14 @@ static void choose_buckets(struct unfold *unfold, const struct intrinsic *in)
     double step_m = max_of(sum / (3 * (double)unfold->mesh->tri_count * STEPS_PER_EDGE), longest / (MAX_BUCKETS - 4));
     unfold->steps_per_m = (float)(1 / step_m);
     unfold->bucket_count = 8;
-    while (unfold->bucket_count < longest / step_m + 4)
+    unfold->near_m = NEAR_EDGES * sum / (3 * (double)unfold->mesh->tri_count);
+    while (unfold->bucket_count < max_of(longest, unfold->near_m) / step_m + 4)
         unfold->bucket_count *= 2;
 }
 
 void unfold_init(struct unfold *unfold, const struct trimesh *mesh, size_t visible_count, const struct intrinsic *in)
 {
-    *unfold = (struct unfold){ .mesh = mesh };
+    *unfold = (struct unfold){ .mesh = mesh, .in = in };
     unfold->hidden = mem_array(mesh->point_count, 1);
     unfold->first = mem_array(mesh->point_count + 1, sizeof(*unfold->first));
     memset(unfold->hidden, 1, mesh->point_count);

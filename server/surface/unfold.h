@@ -8,6 +8,7 @@
 
 struct unfold { /* what meets at each point; shared by all walks */
     const struct trimesh *mesh;
+    const struct intrinsic *in;
     uint32_t *first;                                    /* of each point in fans; one more at the end */
     struct unfold_fans {                                /* triangles seen from one of their corners */
         uint32_t a[UNFOLD_FANS], b[UNFOLD_FANS];        /* the others; the corner itself where there is no more triangle */
@@ -16,11 +17,12 @@ struct unfold { /* what meets at each point; shared by all walks */
     } * fans;
     char *hidden;      /* of each point: it has no visible triangle */
     float steps_per_m; /* buckets of a walk */
+    double near_m;     /* so far points are looked for straight from the source */
     uint32_t bucket_count;
 };
 /* Visible triangles are walked over as the intrinsic triangulation has them, which leaves few obtuse ones; from there on the walk goes into
    the mesh's triangles from visible_count on, which are hidden inside another part, so that a triangle that passes through a surface has a
-   distance at its hidden end too; but never back. mesh must outlive it. */
+   distance at its hidden end too; but never back. mesh and in must outlive it. */
 void unfold_init(struct unfold *unfold, const struct trimesh *mesh, size_t visible_count, const struct intrinsic *in);
 void unfold_finish(struct unfold *unfold);
 

@@ -7,6 +7,9 @@
 #include "surface/unfold.h"
 #include "surface/vec.h"
 
+#define INSIDE 1e-6 /* least weight of a corner: the source is a little inside its triangle */
+#define DEEPEST 32  /* triangles that a straight line near the source passes through */
+
 typedef float lanes __attribute__((vector_size(4 * UNFOLD_FANS)));
 typedef int32_t mask __attribute__((vector_size(4 * UNFOLD_FANS))); /* of each lane all bits, or none */
 
@@ -122,6 +125,83 @@ static void spread(const struct unfold *unfold, struct unfold_walk *walk, uint32
     }
 }
 
+/* --- near the source ------------------------------------------------------------------------------------------------------------ */
+
+/* What the source, at (0, 0), sees through an edge in its plane: the edge from l to r, turning left, and the directions low to high. */
+struct window {
+    double l[2], r[2], low[2], high[2];
+    uint32_t entered; /* 3 * triangle + side: the triangle beyond, in which that side runs from r to l */
+};
+
+static double cross(const double a[2], const double b[2])
+{
+    return a[0] * b[1] - a[1] * b[0];
+}
+
+/* The third corner of the triangle beyond. */
+static void lay_out_apex(const struct window *window, double to_l_m, double to_r_m, double apex[2])
+{
+    double e[2] = { window->r[0] - window->l[0], window->r[1] - window->l[1] }, length = max_of(hypot(e[0], e[1]), 1e-30);
+    double along = (to_l_m * to_l_m - to_r_m * to_r_m + length * length) / (2 * length);
+    double off = sqrt(max_of(to_l_m * to_l_m - along * along, 0));
+    apex[0] = window->l[0] + (along * e[0] + off * e[1]) / length;
+    apex[1] = window->l[1] + (along * e[1] - off * e[0]) / length;
+}
+
+static void look_through(const struct unfold *unfold, struct unfold_walk *walk, const struct window *window, int depth)
+{
+    const struct intrinsic *in = unfold->in;
+    uint32_t t = window->entered / 3, side = window->entered % 3;
+    double apex[2];
+    if (min_of(hypot(window->l[0], window->l[1]), hypot(window->r[0], window->r[1])) >= unfold->near_m)
+        return;
+    lay_out_apex(window, in->lengths[t][(side + 1) % 3], in->lengths[t][(side + 2) % 3], apex);
+    double distance_m = hypot(apex[0], apex[1]);
+    bool after_low = cross(window->low, apex) >= 0, before_high = cross(apex, window->high) >= 0;
+    if (after_low && before_high && distance_m < unfold->near_m)
+        offer(unfold, walk, in->points[t][(side + 2) % 3], (float)distance_m);
+    for (uint32_t i = 0; i < 2; i++) {
+        struct window next = *window;
+        next.entered = in->glue[t][(side + 1 + i) % 3];
+        memcpy(i ? next.l : next.r, apex, sizeof(apex));
+        if (i ? after_low : before_high)
+            memcpy(i ? next.low : next.high, apex, sizeof(apex));
+        if (next.entered != TRIMESH_NONE && cross(next.low, next.high) > 0 && depth < DEEPEST)
+            look_through(unfold, walk, &next, depth + 1);
+    }
+}
+
+/* Points that the source sees in a straight line have that distance, though its ray may pass between points that are farther away than
+   they are: the order from near to far, which is right elsewhere, is wrong so near to it. */
+static void look_around(const struct unfold *unfold, struct unfold_walk *walk, uint32_t tri, const double weights[3])
+{
+    const struct intrinsic *in = unfold->in;
+    const uint32_t *given = unfold->mesh->tris[tri], *v = in->points[tri];
+    double corners[3][2] = { { 0, 0 }, { in->lengths[tri][0], 0 } }, source[2] = { 0 }, sum = 0;
+    intrinsic_layout(in->lengths[tri], &corners[2][0], &corners[2][1]);
+    for (int i = 0; i < 3; i++) {
+        int same = v[i] == given[0] ? 0 : v[i] == given[1] ? 1 : v[i] == given[2] ? 2 : -1;
+        if (same < 0)
+            return; /* an edge of it was flipped */
+        double weight = max_of(weights[same], INSIDE);
+        source[0] += weight * corners[i][0];
+        source[1] += weight * corners[i][1];
+        sum += weight;
+    }
+    for (int i = 0; i < 3; i++)
+        for (int axis = 0; axis < 2; axis++)
+            corners[i][axis] -= source[axis] / sum;
+    for (int i = 0; i < 3; i++) {
+        struct window window = { .entered = in->glue[tri][i] };
+        memcpy(window.l, corners[i], sizeof(window.l));
+        memcpy(window.r, corners[(i + 1) % 3], sizeof(window.r));
+        memcpy(window.low, window.l, sizeof(window.low));
+        memcpy(window.high, window.r, sizeof(window.high));
+        if (window.entered != TRIMESH_NONE)
+            look_through(unfold, walk, &window, 0);
+    }
+}
+
 bool unfold_from(const struct unfold *unfold, struct unfold_walk *walk, uint32_t tri, const double weights[3])
 {
     const struct trimesh *mesh = unfold->mesh;
@@ -134,6 +214,7 @@ bool unfold_from(const struct unfold *unfold, struct unfold_walk *walk, uint32_t
             weights[0] * mesh->points[v[0]][axis] + weights[1] * mesh->points[v[1]][axis] + weights[2] * mesh->points[v[2]][axis];
     for (int i = 0; i < 3; i++)
         offer(unfold, walk, v[i], (float)vec_distance(source, mesh->points[v[i]]));
+    look_around(unfold, walk, tri, weights);
     for (uint32_t empty = 0; empty < unfold->bucket_count; walk->at++) {
         uint32_t *bucket = &walk->buckets[walk->at & (unfold->bucket_count - 1)];
         empty = *bucket == TRIMESH_NONE ? empty + 1 : 0;

@@ -446,6 +446,47 @@ static void nearest_is_the_nearest(void **state)
     cad_finish(&torus);
 }
 
+/* Sources and places in the middle of strips, far from any vertex of the model: a pipe as CAD writes it. */
+static void long_thin_strips_are_exact_near_a_source_too(void **state)
+{
+    enum { SOURCES = 8, PLACES = 400 };
+    struct cad pipe = { 0 };
+    double size[3] = { 12 }, sources[SOURCES][3], worst = 0, sum = 0;
+    (void)state;
+    cad_cylinder(&pipe, &chance, 96, 2, size[0], 0);
+    for (int s = 0; s < SOURCES; s++)
+        choose_source(&pipe, true, sources[s]);
+    struct surface *surface = surface_of(&pipe);
+    struct surface_field field;
+    assert_true(surface_field_init(&field, surface, (const double(*)[3])sources, SOURCES));
+    for (int i = 0; i < PLACES; i++) {
+        double place[3];
+        float found[SOURCES];
+        struct surface_spot spot;
+        choose_source(&pipe, true, place);
+        if (i % 2) { /* near a source */
+            const double *near = sources[i / 2 % SOURCES];
+            double turn = atan2(near[1], near[0]) + 0.4 * (cad_random(&chance) - 0.5);
+            place[0] = cos(turn);
+            place[1] = sin(turn);
+            place[2] = fmin(fmax(near[2] + 0.4 * (cad_random(&chance) - 0.5), 0), size[0]);
+        }
+        surface_find_spot(surface, place, NULL, &spot);
+        surface_field_at_spot(&field, surface, &spot, found);
+        for (int s = 0; s < SOURCES; s++) {
+            double truth = cylinder_distance(size, spot.point_m, sources[s]), error = fabs((double)found[s] - truth);
+            sum += error / (truth + 0.05) / (PLACES * SOURCES);
+            worst = fmax(worst, error / (truth + 0.05));
+        }
+    }
+    print_message("# pipe of 96 strips: places are %.3f %% off on average, %.3f %% at most, of the way itself\n", 100 * sum, 100 * worst);
+    assert_true(sum < 0.005);
+    assert_true(worst < 0.03);
+    surface_field_finish(&field);
+    surface_destroy(&surface);
+    cad_finish(&pipe);
+}
+
 static void many_sources_at_once_are_as_one_by_one(void **state)
 {
     enum { SOURCES = 21 };
@@ -513,6 +554,7 @@ int main(void)
         cmocka_unit_test(nothing_leads_through_a_closed_part),
         cmocka_unit_test(a_sensor_is_dropped_onto_the_surface),
         cmocka_unit_test(nearest_is_the_nearest),
+        cmocka_unit_test(long_thin_strips_are_exact_near_a_source_too),
         cmocka_unit_test(many_sources_at_once_are_as_one_by_one),
         cmocka_unit_test(vertices_of_flat_triangles_take_their_neighbours_distance),
         cmocka_unit_test(a_surface_without_area_is_refused),
