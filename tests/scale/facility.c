@@ -288,6 +288,14 @@ static void write_glb(struct facility *f)
     mem_free(path);
 }
 
+static void facility_finish(struct facility *f)
+{
+    struct text *const texts[] = { &f->view_json, &f->accessor_json, &f->mesh_json, &f->node_json, &f->roots, &f->yaml, &f->csv };
+    for (size_t i = 0; i < sizeof(texts) / sizeof(texts[0]); i++)
+        text_finish(texts[i]);
+    fclose(f->bytes);
+}
+
 static bool read_options(int argc, char **argv, struct options *options)
 {
     static const struct option known[] = { { "output", required_argument, NULL, 'o' },    { "assets", required_argument, NULL, 'a' },
@@ -334,5 +342,6 @@ int main(int argc, char **argv)
     must_write(f.options.folder, "facility.yaml", &f.yaml);
     must_write(f.options.folder, "facility.csv", &f.csv);
     printf("facility: %ld assets, %zu triangles, %ld nodes, %zu bytes\n", f.options.assets, f.triangles, f.nodes, f.byte_count);
+    facility_finish(&f);
     return 0;
 }
