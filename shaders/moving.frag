@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Moving tier: one light scalar and one look-up a pixel.
+// Moving tier: one light scalar and one look-up a pixel; of textures only the holes that they cut.
 #include "frame.glsl"
 #include "light.glsl"
 #ifdef FIELD
@@ -12,7 +12,12 @@ layout(location = 0) in vec2 light;
 layout(location = 1) in vec3 sun_place;
 layout(binding = 1) uniform sampler2D ramps; // one row a material, light from left to right; sRGB
 layout(binding = 2) uniform sampler2DShadow sun_map;
+#endif
 layout(location = 2) uniform int material;
+#ifdef TEXTURED
+#include "material.glsl"
+layout(binding = 3) uniform sampler2D base_color_map;
+layout(location = 2) in vec3 hole;
 #endif
 layout(location = 0) out vec4 color;
 #ifdef CLIP
@@ -21,6 +26,10 @@ layout(location = 0) out vec4 color;
 
 void main()
 {
+#ifdef TEXTURED
+    if (materials[material].base_color.a * hole.z * texture(base_color_map, hole.xy).a < materials[material].emissive.a)
+        discard;
+#endif
 #ifdef CLIP
     if (!gl_FrontFacing) {
         color = vec4(section_color(), 1.0);

@@ -18,6 +18,11 @@ layout(location = 1) out vec3 sun_place;
 #ifdef PER_FRAGMENT
 layout(location = 7) out vec3 file_place;
 #endif
+#ifdef TEXTURED
+layout(location = 2) in vec2 texcoord;
+layout(location = 3) in vec4 vertex_color;
+layout(location = 2) out vec3 hole; // place on the texture, alpha
+#endif
 
 void main()
 {
@@ -25,6 +30,9 @@ void main()
     file_place = position_m;
 #endif
     gl_Position = clip_from_file * vec4(position_m, 1.0);
+#ifdef TEXTURED
+    hole = vec3(texcoord, vertex_color.a);
+#endif
 #ifdef CLIP
     clip_away();
 #endif

@@ -33,12 +33,12 @@ vec3 mapped_normal(vec3 n, float scale)
     vec2 du = dFdx(uv), dv = dFdy(uv);
     vec3 cross_y = cross(dy, n), cross_x = cross(n, dx);
     vec3 t = cross_y * du.x + cross_x * dv.x, b = cross_y * du.y + cross_x * dv.y;
-    float size = max(dot(t, t), dot(b, b));
+    float size = max(dot(t, t), dot(b, b)), turn = sign(dot(dx, cross_y)); // rows may run downward
     if (size < 1e-20)
         return n;
     vec3 m = texture(normal_map, uv).xyz * 2.0 - 1.0;
     m.xy *= scale;
-    t *= inversesqrt(size), b *= inversesqrt(size);
+    t *= turn * inversesqrt(size), b *= turn * inversesqrt(size);
     return normalize(t * m.x - b * m.y + n * m.z);
 }
 

@@ -45,13 +45,13 @@ void draft_destroy(struct draft **draft_ptr)
     *draft_ptr = NULL;
 }
 
-/* Isolines and logarithms need the value itself at every pixel; what is see-through and what cuts are other passes' work. */
+/* Holes need textures; isolines and logarithms need the value itself at every pixel; what is see-through and what cuts are other passes' work. */
 bool draft_can(const struct draft *draft, const struct view *view)
 {
     double lines[VIEW_ALL_LINES];
     return view->tier == TIER_MOVING && view->look != LOOK_GLOSSY && view->look != LOOK_MATERIALS && !view->paint.log &&
            view_lines(view, lines) == 0 && view->visibility.ghosts.count == 0 && view->visibility.clip.plane_count == 0 &&
-           view->camera.height_m <= 0 && draft->ramp_count <= MOST_RAMPS;
+           view->camera.height_m <= 0 && draft->ramp_count <= MOST_RAMPS && !draft->has_holes;
 }
 
 /* Rows end in whole lanes. */

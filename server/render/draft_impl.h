@@ -72,6 +72,7 @@ struct draft {
     const struct stage *stage;
     uint32_t *ramps, *ramp_of_model; /* colours, RAMP_STEPS to a row; first row, by number of the model */
     size_t ramp_count;
+    bool has_holes;                  /* some material cuts them by a texture */
     uint32_t *backdrops;             /* as render/sky.c makes them */
     uint32_t *palette;
     uint64_t palette_version;

@@ -27,6 +27,8 @@ bool draft_read_textures(struct draft *draft, const struct sky *sky)
     for (size_t m = 0; m < stage->model_count; m++) {
         draft->ramp_of_model[m] = (uint32_t)rows;
         rows += stage->models[m].material_count;
+        for (size_t i = 0; i < stage->models[m].material_count; i++)
+            draft->has_holes |= stage->models[m].materials[i].masked;
     }
     draft->ramp_count = rows;
     draft->ramps = mem_array(rows * RAMP_STEPS, sizeof(*draft->ramps));

@@ -14,7 +14,7 @@ static const double LEVEL_ERROR_PX[] = { [TIER_MOVING] = 1.0, [TIER_STILL] = 0.7
 static const double SUN_SLACK_TEXELS = 3;                                           /* against surfaces that shade themselves */
 enum { UNIT_PALETTE = 0, UNIT_RAMPS = 1, UNIT_SUN_MAP = 2, UNIT_MAPS = 3, UNIT_LINES = 15 };
 
-/* From the beginning. The moving tier has no textures; rich scales and gloss go with a field. */
+/* From the beginning. Of textures the moving tier has only the holes that they cut; rich scales and gloss go with a field. */
 static bool is_used(int tier, int variant)
 {
     if (variant & SOLID_CLIP)
@@ -84,6 +84,8 @@ static GLuint choose_program(struct solid *solid, const struct picture *picture,
         variant |= SOLID_RICH;
     if (field && view->look == LOOK_GLOSSY)
         variant |= SOLID_GLOSSY;
+    if (view->tier == TIER_MOVING && material->masked && material->maps[MODEL_BASE_COLOR])
+        variant |= SOLID_TEXTURED;
     if (view->tier == TIER_STILL && material->mask && (!field || view->look == LOOK_GLOSSY || material->masked))
         variant |= SOLID_TEXTURED;
     enum solid_kind kind = kind_of(picture, field);
@@ -135,9 +137,12 @@ static void set_material(const struct picture *picture, const struct model_mater
         glDisable(GL_CULL_FACE);
     else
         glEnable(GL_CULL_FACE);
-    if (picture->measured || (picture->view->tier == TIER_MOVING && field))
+    bool holes = picture->view->tier == TIER_MOVING && material->masked;
+    if (picture->measured || (picture->view->tier == TIER_MOVING && field && !holes))
         return;
     glUniform1i(MATERIAL, (GLint)batch->material);
+    if (holes && material->maps[MODEL_BASE_COLOR])
+        glBindTextureUnit(UNIT_MAPS + MODEL_BASE_COLOR, material->maps[MODEL_BASE_COLOR]);
     if (picture->view->tier == TIER_MOVING)
         return;
     glUniform1i(TEXTURES, material->mask);
