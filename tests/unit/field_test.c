@@ -6,6 +6,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 #include <float.h>
+#include <malloc.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -823,19 +824,28 @@ static void test_instances_share_their_weights(void **state)
     rig_finish(&rig);
 }
 
+static size_t bytes_allocated(void)
+{
+    struct mallinfo2 info = mallinfo2();
+    return info.uordblks + info.hblkhd;
+}
+
 static void test_dragging_stays_under_the_bound(void **state)
 {
     (void)state;
+    const size_t slack = 256 << 10; /* layouts, and what only lives during a call */
     struct rig rig = rig_create(synthetic_create(.vertices = 5000, .sensors = 20, .assets = 2));
     size_t bound = 3 << 20;
     field_set_bound(rig.field, bound);
     rig.params.interpolation = INTERPOLATION_PAPER;
+    size_t before = bytes_allocated();
     for (int step = 0; step < 60; step++)
         for (int session = 0; session < 50; session++) {
             rig.params.decay = 0.5 + 0.001 * step + 0.02 * session;
             for (int asset = 0; asset < 2; asset++)
                 assert_non_null(field_scalars(rig.field, asset, &rig.params, rig.plant->snapshot));
             assert_true(field_bytes(rig.field) <= bound);
+            assert_true(bytes_allocated() <= before + bound + slack);
             if (step % 20 == 19 && session % 10 == 0)
                 assert_as_fresh(&rig);
         }
