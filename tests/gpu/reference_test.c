@@ -232,7 +232,7 @@ static void test_demo(void **state)
     struct site site;
     (void)state;
     assert_true(site_init(&site, "build/demo/plant.yaml", "build/demo/plant.prepared"));
-    compare_plant(&site, 0.002, 0.2);
+    compare_plant(&site, 0.002, 0.12);
     site_finish(&site);
 }
 
