@@ -2,7 +2,10 @@
 /* Ghosts have a depth buffer of their own; what is drawn is found in it. */
 #include "render/ghosts.h"
 
+#include <math.h>
+
 #include "gpu/program.h"
+#include "render/matrix.h"
 
 bool ghosts_init(struct ghosts *ghosts, struct log *log)
 {
@@ -65,12 +68,47 @@ static void draw_depth(const struct ghosts *ghosts, const struct picture *pictur
         }
 }
 
+/* Where ghosts may be: low and high corner, -1 to 1 over the picture. */
+static void find_part(const struct picture *picture, double low[2], double high[2])
+{
+    const struct scene *scene = picture->stage->scene;
+    for (size_t i = 0; i < scene->asset_count; i++) {
+        const struct scene_asset *asset = &scene->assets[i];
+        if (visibility_of(&picture->view->visibility, (int)i) != ASSET_GHOST || !shot_sees(&picture->shot, asset))
+            continue;
+        for (int corner = 0; corner < 8; corner++) {
+            double place[3], clip[4];
+            for (int c = 0; c < 3; c++)
+                place[c] = corner >> c & 1 ? asset->bounds_max_m[c] : asset->bounds_min_m[c];
+            matrix_point(picture->shot.clip_from_plant, place, clip);
+            for (int c = 0; c < 2; c++) {
+                low[c] = clip[3] > 0 ? fmin(low[c], clip[c] / clip[3]) : -1; /* behind the eye: anywhere */
+                high[c] = clip[3] > 0 ? fmax(high[c], clip[c] / clip[3]) : 1;
+            }
+            if (clip[3] <= 0)
+                return;
+        }
+    }
+}
+
+/* Rows from the top. */
+static void scissor(const struct picture *picture)
+{
+    double low[2] = { 1, 1 }, high[2] = { -1, -1 }, width = picture->target->width_px, height = picture->target->height_px;
+    find_part(picture, low, high);
+    double left = floor(fmax(0, (0.5 + 0.5 * low[0]) * width - 2)), right = ceil(fmin(width, (0.5 + 0.5 * high[0]) * width + 2));
+    double top = floor(fmax(0, (0.5 - 0.5 * high[1]) * height - 2)), bottom = ceil(fmin(height, (0.5 - 0.5 * low[1]) * height + 2));
+    glScissor((GLint)left, (GLint)top, (GLsizei)fmax(right - left, 0), (GLsizei)fmax(bottom - top, 0));
+    glEnable(GL_SCISSOR_TEST);
+}
+
 void ghosts_draw(struct ghosts *ghosts, const struct picture *picture)
 {
     if (!any_ghost(picture))
         return;
     gl_pass_enter("ghosts");
     depth_fit(ghosts, picture->target->width_px, picture->target->height_px);
+    scissor(picture);
     draw_depth(ghosts, picture);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, picture->target->over_framebuffer);
     glDisable(GL_DEPTH_TEST);
@@ -82,6 +120,7 @@ void ghosts_draw(struct ghosts *ghosts, const struct picture *picture)
     glUseProgram(ghosts->program);
     glBindVertexArray(ghosts->vao);
     glDrawArrays(GL_TRIANGLES, 0, 3);
+    glDisable(GL_SCISSOR_TEST);
     glDisable(GL_BLEND);
     glDepthMask(GL_TRUE);
     gl_pass_leave(picture->stage->gl, "ghosts");
