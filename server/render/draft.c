@@ -45,7 +45,8 @@ void draft_destroy(struct draft **draft_ptr)
     *draft_ptr = NULL;
 }
 
-/* Holes need textures; isolines and logarithms need the value itself at every pixel; what is see-through and what cuts are other passes' work. */
+/* Holes need textures; isolines and logarithms need the value itself at every pixel; what is see-through and what cuts are other
+   passes' work. */
 bool draft_can(const struct draft *draft, const struct view *view)
 {
     double lines[VIEW_ALL_LINES];
