@@ -28,3 +28,10 @@ void clock_sleep_ns(int64_t ns)
     while (ns > 0 && nanosleep(&t, &t) != 0 && errno == EINTR)
         ;
 }
+
+int64_t clock_work_ns(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return now.tv_sec * NS_PER_S + now.tv_nsec;
+}

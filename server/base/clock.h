@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The two clocks. Only server.c, main files, net/ and the source threads read them; everything else is handed the time. */
+/* The clocks. Only server.c, main files, net/ and the source threads read them; everything else is handed the time. */
 #ifndef BASE_CLOCK_H
 #define BASE_CLOCK_H
 #include <stdint.h>
@@ -10,5 +10,6 @@
 int64_t clock_mono_ns(void); /* monotonic: ages, deadlines */
 int64_t clock_utc_ns(void);  /* since 1970: what is shown and stored */
 void clock_sleep_ns(int64_t ns);
+int64_t clock_work_ns(void); /* of all threads of this process, on all cores */
 
 #endif

@@ -399,6 +399,7 @@ static struct bit draw_bit(struct renderer *renderer, struct stroke *stroke)
     return bit;
 }
 
+/* took_ns: of a machine that has nothing else to do; smaller tiles would not help one that has. */
 static void learn(struct renderer *renderer, const struct bit *bit, int64_t took_ns)
 {
     double *pixel_ns = &renderer->pixel_ns[bit->pass], now_ns = ((double)took_ns - bit->triangles_ns) / fmax(bit->pixels, 1);
@@ -424,11 +425,12 @@ bool renderer_step(struct renderer *renderer, struct stroke *stroke, int64_t bud
     if (stroke->next < cells && !take_up_stroke(renderer, stroke))
         stroke->next = cells; /* renderer_end fails likewise */
     while (stroke->next < cells && (spent_ns == 0 || spent_ns + (last_ns > BIT_NS ? last_ns : BIT_NS) <= budget_ns)) {
+        int64_t work_ns = clock_work_ns();
         struct bit bit = draw_bit(renderer, stroke);
         glFinish();
+        learn(renderer, &bit, (clock_work_ns() - work_ns) / workers_count(field_workers(renderer->fields.field)));
         last_ns = clock_mono_ns() - start_ns - spent_ns;
         spent_ns += last_ns;
-        learn(renderer, &bit, last_ns);
     }
     stroke->frame->render_ns += spent_ns;
     return stroke->next == cells;
