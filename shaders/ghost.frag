@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Assets that are only hinted at: lines where their depth breaks or bends, and one dot in sixteen pixels in between, so that the
-// colours behind stay what they are.
+// Assets that are only hinted at: lines where their depth breaks or bends, and a thin level one each ten pixels in between, so that
+// the colours behind stay what they are. No dots and no slanting lines: those say uncertain and no data.
 #include "frame.glsl"
 layout(binding = 0) uniform sampler2D ghosts; // their depth; 0: none
 layout(binding = 1) uniform sampler2D depth;  // of all else
@@ -28,8 +28,8 @@ void main()
     float scale = frame.back.w > 0.0 ? frame.back.w : 1.0 / here;
     vec2 found = max(shape(pixel, here, scale, ivec2(1, 0)), shape(pixel, here, scale, ivec2(0, 1)));
     float line = max(0.9 * smoothstep(0.004, 0.012, found.x), 0.55 * smoothstep(0.0003, 0.0009, found.y));
-    bool dot_here = (pixel.x & 3) == 0 && (pixel.y & 3) == ((pixel.x >> 1) & 2);
-    if (line < 0.05 && !dot_here)
+    bool level = pixel.y % 10 == 0;
+    if (line < 0.05 && !level)
         discard;
-    color = vec4(0.20, 0.26, 0.33, max(line, dot_here ? 0.6 : 0.0));
+    color = vec4(0.20, 0.26, 0.33, max(line, level ? 0.4 : 0.0));
 }
