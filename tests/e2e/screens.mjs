@@ -89,7 +89,7 @@ test('tablet: one finger turns, two pan and zoom; device pixels', options, () =>
     await shoot(page, 'tablet-display');
 }));
 
-test('desktop: two sets of parameters side by side, each with its legend and its markers', options, () => withPage(DESKTOP, async (page) => {
+test('desktop: two sets of parameters side by side, each with legend and markers', options, () => withPage(DESKTOP, async (page) => {
     const choose = (id, value) => page.locator(`#${id}`).selectOption(value);
     const tags = await page.evaluate(() => globalThis.plantcast.session.model.tags.map((tag) => tag.name));
     await plant.freeze(tags);
@@ -102,7 +102,8 @@ test('desktop: two sets of parameters side by side, each with its legend and its
     const [left, right] = await Promise.all(['#legend', '#legend-right'].map((id) => page.locator(id).boundingBox()));
     const box = await page.locator('#viewport').boundingBox(), middle = box.x + box.width / 2;
     assert.ok(left.x + left.width <= middle && right.x > middle, 'each legend in its half');
-    const places = await page.evaluate(() => globalThis.plantcast.overlay.markers.map(({ tag, x, half }) => ({ group: tag.group, x, half })));
+    const places = await page.evaluate(() =>
+        globalThis.plantcast.overlay.markers.map(({ tag, x, half }) => ({ group: tag.group, x, half })));
     for (const { group, x, half } of places) {
         assert.equal(group, half ? 'pressure' : 'temperature');
         assert.equal(half, box.x + x >= middle - 1 ? 1 : 0);
