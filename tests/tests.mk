@@ -45,6 +45,12 @@ results:
 	@tests/bench/results build/bench.json tests/bench
 .PHONY: results
 
+# Every way of looking at a plant, to be looked at: build/gallery/sheet.png.
+gallery: test-deps
+	@$(MAKE) --no-print-directory all demo
+	@tests/gallery/run $(bin)
+.PHONY: gallery
+
 # Makes the golden pictures anew, on llvmpipe. Look at them before they are committed.
 golden-update: $(out)/tests/gpu/golden_test
 	@PLANTCAST_GL=egl-surfaceless GOLDEN_UPDATE=1 $<

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The gallery's page as one picture. usage: node tests/gallery/sheet.mjs FOLDER
+import { createRequire } from 'node:module';
+import { resolve } from 'node:path';
+
+const { chromium } = createRequire(new URL('../e2e/package.json', import.meta.url))('playwright-core');
+const folder = resolve(process.argv[2]);
+const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium', args: ['--no-sandbox', '--disable-gpu'] });
+const page = await browser.newPage({ viewport: { width: 1920, height: 1080 } });
+await page.goto(`file://${folder}/index.html`, { waitUntil: 'load' });
+await page.screenshot({ path: `${folder}/sheet.png`, fullPage: true });
+await browser.close();
