@@ -5,7 +5,8 @@ import { resolve } from 'node:path';
 
 const { chromium } = createRequire(new URL('../e2e/package.json', import.meta.url))('playwright-core');
 const folder = resolve(process.argv[2]);
-const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium', args: ['--no-sandbox', '--disable-gpu'] });
+const executablePath = process.env.CHROMIUM ?? '/usr/bin/chromium';
+const browser = await chromium.launch({ executablePath, args: ['--no-sandbox', '--disable-gpu'] });
 const page = await browser.newPage({ viewport: { width: 1920, height: 1080 } });
 await page.goto(`file://${folder}/index.html`, { waitUntil: 'load' });
 await page.screenshot({ path: `${folder}/sheet.png`, fullPage: true });
