@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/signalfd.h>
+#include <sys/eventfd.h>
 #include <unistd.h>
 
 #include "base/clock.h"
@@ -159,20 +159,29 @@ static bool open_port(struct sim_port *port, const char *address, int number, si
     return status == 0;
 }
 
-static int signal_file(void)
+static int stop_fd = -1; /* readable once the program is told to end */
+
+static void on_signal(int number)
 {
-    sigset_t set;
-    sigemptyset(&set);
-    sigaddset(&set, SIGINT);
-    sigaddset(&set, SIGTERM);
-    sigprocmask(SIG_BLOCK, &set, NULL);
-    return signalfd(-1, &set, SFD_CLOEXEC | SFD_NONBLOCK);
+    int cause = errno;
+    (void)number;
+    (void)!write(stop_fd, &(uint64_t){ 1 }, sizeof(uint64_t));
+    errno = cause;
 }
 
-static void serve(struct sim *sim, struct sim_port *ports, size_t count, double speed, int signal_fd)
+/* Not a mask and a signalfd: libraries start threads before main, and those do not have our mask. */
+static bool await_signals(void)
+{
+    struct sigaction action = { .sa_handler = on_signal, .sa_flags = SA_RESTART };
+    stop_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+    sigemptyset(&action.sa_mask);
+    return stop_fd >= 0 && sigaction(SIGINT, &action, NULL) == 0 && sigaction(SIGTERM, &action, NULL) == 0;
+}
+
+static void serve(struct sim *sim, struct sim_port *ports, size_t count, double speed)
 {
     int64_t last_ns = clock_mono_ns();
-    while (!sim->quit && !sim_ports_serve(ports, count, signal_fd, TICK_MS)) {
+    while (!sim->quit && !sim_ports_serve(ports, count, stop_fd, TICK_MS)) {
         int64_t now_ns = clock_mono_ns();
         sim_values_step(sim->values, (double)(now_ns - last_ns) / 1e9 * speed);
         sim_update(sim);
@@ -184,9 +193,8 @@ static bool listen_and_serve(struct sim *sim, const struct options *options)
 {
     size_t count = sim->device_count + (options->control > 0), open = 0;
     struct sim_port *ports = mem_array(count, sizeof(*ports));
-    int signal_fd = signal_file();
     double speed = options->speed > 0 ? options->speed : options->map.speed > 0 ? fmin(options->map.speed, MAX_SPEED) : 1;
-    bool good = signal_fd >= 0;
+    bool good = await_signals();
     for (; good && open < sim->device_count; open += good)
         good = open_port(&ports[open], options->bind, sim->devices[open].listen_port, sim_modbus_take, &sim->devices[open].modbus);
     if (good && options->control > 0) {
@@ -197,11 +205,9 @@ static bool listen_and_serve(struct sim *sim, const struct options *options)
         printf("plantcast-sim: listening on %s:%d, %zu tags\n", options->bind, sim->devices[i].listen_port, sim->devices[i].tag_count);
     fflush(stdout);
     if (good)
-        serve(sim, ports, count, speed, signal_fd);
+        serve(sim, ports, count, speed);
     while (open)
         sim_port_close(&ports[--open]);
-    if (signal_fd >= 0)
-        close(signal_fd);
     mem_free(ports);
     return good;
 }
