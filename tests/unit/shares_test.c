@@ -136,5 +136,6 @@ int main(void)
         cmocka_unit_test(papers_shares_are_those_of_a_plain_loop),
         cmocka_unit_test(distances_and_errors_are_those_of_a_plain_loop),
     };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests(tests, set_up, NULL);
 }
