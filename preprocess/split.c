@@ -18,9 +18,9 @@
 #define ASIDE 0.1        /* of the edge, at least, that corner is from its ends */
 
 /* How many triangles a level may get more: so much of its own, or so many, whichever is more. The finest is only drawn from near by. */
-#define FINEST_GROWTH 0.4
-#define FINEST_GROWTH_TRIS 8000.0
-#define GROWTH 0.3 /* or to so much of the next finer level */
+#define FINEST_GROWTH 2.0
+#define FINEST_GROWTH_TRIS 30000.0
+#define GROWTH 0.4 /* or to so much of the next finer level */
 #define OF_FINER 0.5
 
 /* --- cutting -------------------------------------------------------------------------------------------------------------- */

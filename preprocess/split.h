@@ -5,8 +5,8 @@
    off, shows it to SPLIT_ERROR at a place no farther away than that: it is only drawn where error_m is less than a pixel. Pieces no longer
    than the model's tolerance are not cut; nor, eight times as long, ones where the distance along the surface jumps because the surface
    does not hang together there. What is hidden inside another part does not count.
-   A level may not grow for ever, so errors are cut in the order of their size: the finest level by 40 % or 8,000 triangles, whichever is
-   more; a coarser one by 30 % or to half of the next finer level. level.field_error is the largest that is left. */
+   A level may not grow for ever, so errors are cut in the order of their size: the finest level to three times its triangles or by 30,000,
+   whichever is more; a coarser one by 40 % or to half of the next finer level. level.field_error is the largest that is left. */
 #ifndef PREPROCESS_SPLIT_H
 #define PREPROCESS_SPLIT_H
 #include "preprocess/levels.h"

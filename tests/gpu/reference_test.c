@@ -45,7 +45,8 @@ static bool exists(const char *path)
 static bool prepare(const char *plant, const char *folder)
 {
     const char *programs = getenv("PLANTCAST_BIN");
-    char *command = mem_printf("'%s/plantcast-prep' %s --output '%s' >/dev/null 2>&1", programs ? programs : "build", plant, folder);
+    char *command = mem_printf("mkdir -p '%s' && '%s/plantcast-prep' %s --output '%s' >/dev/null 2>&1", folder,
+                               programs ? programs : "build", plant, folder);
     int status = system(command);
     mem_free(command);
     return WIFEXITED(status) && WEXITSTATUS(status) == 0;
@@ -232,7 +233,7 @@ static void test_demo(void **state)
     struct site site;
     (void)state;
     assert_true(site_init(&site, "build/demo/plant.yaml", "build/demo/plant.prepared"));
-    compare_plant(&site, 0.002, 0.12);
+    compare_plant(&site, 0.002, 0.09);
     site_finish(&site);
 }
 
@@ -241,7 +242,7 @@ static void test_plant_room(void **state)
     (void)state;
     if (!exists("../shared/data/models/plm_plant_equipment.glb"))
         skip();
-    test_plant("tests/plants/plant_room.yaml", "plant_room", 0.06, 0.08);
+    test_plant("tests/plants/plant_room.yaml", "plant_room", 0.05, 0.02);
 }
 
 static void test_cookie_line(void **state)
@@ -249,7 +250,7 @@ static void test_cookie_line(void **state)
     (void)state;
     if (!exists("../shared/data/models/cookie_factory_mixer.glb"))
         skip();
-    test_plant("tests/plants/cookie_line.yaml", "cookie_line", 0.01, 0.01);
+    test_plant("tests/plants/cookie_line.yaml", "cookie_line", 0.003, 0.01);
 }
 
 int main(void)

@@ -402,9 +402,9 @@ static void random_plates_show_the_field(void **state)
         body.as_solved = true;
         prepare(&body, (const double(*)[3])points);
         assert_sensors(&body);
-        if (body.levels.at[0].index_count / 3 < body.own_triangles + 8000)
+        if (body.levels.at[0].index_count / 3 < body.own_triangles + 30000)
             assert_field(&body, "random plate", stay, 4);
-        else /* sensors of one group side by side on a large plate ask for more than split.h's limit, which is reported */
+        else /* sensors of one group side by side on a large plate ask for more than the limit of split.h, which is reported */
             assert_true((double)body.levels.at[0].field_error > 0.9 * SPLIT_ERROR);
         finish(&body);
     }
@@ -425,7 +425,7 @@ static void a_cylinder_shows_the_field(void **state)
     prepare(&body, (const double(*)[3])points);
     assert_sensors(&body);
     assert_no_cracks(&body, 4 * PI);
-    assert_field(&body, "cylinder", onto_cylinder, 2);
+    assert_field(&body, "cylinder", onto_cylinder, 1);
     finish(&body);
 }
 
