@@ -195,7 +195,8 @@ void overlay_draw(struct frame *frame, const struct scene *scene, const struct s
         draw_banner(pen);
     for (int half = 0; half < (frame->view.split ? 2 : 1); half++) {
         choose_half(pen, half);
-        overlay_legend(pen);
+        if (pen->view.look != LOOK_MATERIALS) /* no field, nothing to explain */
+            overlay_legend(pen);
         overlay_markers(pen);
     }
     cairo_destroy(pen->cairo);

@@ -52,7 +52,7 @@ export class Legend {
     show(again = false) {
         const { model } = this.session, params = this.paramsOf(this.session.params);
         const group = params && model?.group(params.group);
-        this.element.hidden = !group;
+        this.element.hidden = !group || params.look === 'materials'; // no field, nothing to explain
         if (!group)
             return;
         const range = this.session.rangeOf(params);
