@@ -1,0 +1,133 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What goes to one client: texts and pictures, one write per writeable callback, so that lws never has to keep what a socket does
+   not take. */
+#include "base/clock.h"
+#include "base/mem.h"
+#include "net/reply.h"
+#include "net/stream.h"
+
+static bool write_text(struct stream *stream, char *at, size_t length)
+{
+    return lws_write(stream->wsi, (unsigned char *)at, length, LWS_WRITE_TEXT) >= (int)length;
+}
+
+static const struct text *padded(struct text *text)
+{
+    static const char pre[LWS_PRE];
+    text_add_bytes(text, pre, sizeof(pre));
+    return text;
+}
+
+static bool write_markers(struct stream *stream)
+{
+    struct text text = { 0 };
+    char *markers = reply_markers_text(stream->sending->packet->frame, stream->seq);
+    padded(&text);
+    text_add(&text, "%s", markers);
+    bool good = write_text(stream, text.at + LWS_PRE, text.length - LWS_PRE);
+    text_finish(&text);
+    mem_free(markers);
+    return good;
+}
+
+static uint32_t us_of(int64_t ns)
+{
+    return ns <= 0 ? 0 : ns / 1000 > UINT32_MAX ? UINT32_MAX : (uint32_t)(ns / 1000);
+}
+
+static void camera_to_wire(const struct camera *camera, struct wire_frame *header_out)
+{
+    for (int i = 0; i < 3; i++) {
+        header_out->eye_m[i] = (float)camera->eye_m[i];
+        header_out->target_m[i] = (float)camera->target_m[i];
+        header_out->up[i] = (float)camera->up[i];
+    }
+    header_out->fov_deg = camera->height_m > 0 ? 0 : (float)camera->fov_deg;
+    header_out->height_m = (float)camera->height_m;
+}
+
+static struct wire_frame frame_header(const struct picture *picture, uint32_t seq)
+{
+    const struct packet *packet = picture->packet;
+    const struct frame *frame = packet->frame;
+    bool live = frame->oldest_age_ns != INT64_MAX;
+    struct wire_frame out = {
+        .type = WIRE_TYPE_FRAME,
+        .codec = (uint8_t)packet->codec,
+        .payload_bytes = (uint32_t)packet->count,
+        .seq = seq,
+        .flags = (uint16_t)((packet->key ? WIRE_FLAG_KEY : 0) | (frame->view.tier == TIER_STILL ? WIRE_FLAG_STILL : 0) |
+                            (live ? 0 : WIRE_FLAG_NO_LIVE_DATA)),
+        .camera_seq = picture->wish.view.camera_seq,
+        .params_seq = picture->wish.view.params_seq,
+        .oldest_age_ms = live ? us_of(frame->oldest_age_ns / 1000) : WIRE_NO_AGE,
+        .data_time_us = (uint64_t)(frame->data_utc_ns / 1000),
+        .sent_time_us = (uint64_t)(clock_utc_ns() / 1000),
+        .wait_us = us_of(picture->wait_ns),
+        .field_us = us_of(frame->field_ns),
+        .render_us = us_of(frame->render_ns + frame->readback_ns),
+        .encode_us = us_of(packet->encode_ns),
+        .width_px = (uint16_t)frame->width_px,
+        .height_px = (uint16_t)frame->height_px,
+        .full_width_px = (uint16_t)frame->width_px,
+        .full_height_px = (uint16_t)frame->height_px,
+    };
+    camera_to_wire(&frame->view.camera, &out);
+    return out;
+}
+
+static bool write_header(struct hub *hub, struct stream *stream)
+{
+    uint8_t bytes[WIRE_FRAME_HEADER_BYTES];
+    struct wire_frame head = frame_header(stream->sending, stream->seq);
+    wire_put_frame(&head, bytes);
+    return hub_write(hub, stream->wsi, bytes, sizeof(bytes), LWS_WRITE_BINARY | LWS_WRITE_NO_FIN);
+}
+
+static bool write_slice(struct hub *hub, struct stream *stream)
+{
+    const struct packet *packet = stream->sending->packet;
+    size_t left = packet->count - stream->sent, slice = left < SLICE_BYTES ? left : SLICE_BYTES;
+    enum lws_write_protocol how = LWS_WRITE_CONTINUATION;
+    if (slice < left)
+        how |= LWS_WRITE_NO_FIN;
+    bool good = hub_write(hub, stream->wsi, packet->bytes + stream->sent, slice, how);
+    stream->sent += slice;
+    if (stream->sent == packet->count) {
+        counter_inc(hub->counters.frames, 1);
+        counter_inc(hub->counters.frame_bytes, (int64_t)packet->count + WIRE_FRAME_HEADER_BYTES);
+        picture_destroy(&stream->sending);
+    }
+    return good;
+}
+
+static bool write_picture(struct hub *hub, struct stream *stream)
+{
+    switch (stream->step) {
+    case SEND_MARKERS: stream->step = SEND_HEADER; return write_markers(stream);
+    case SEND_HEADER: stream->step = SEND_PAYLOAD; return write_header(hub, stream);
+    case SEND_PAYLOAD: break;
+    }
+    return write_slice(hub, stream);
+}
+
+/* Texts go between pictures, never into one. */
+bool stream_send(struct hub *hub, struct stream *stream)
+{
+    struct session *session = stream->session;
+    struct text text = { 0 };
+    bool good = true;
+    int64_t now_ns = clock_mono_ns();
+    if (stream->sending)
+        return write_picture(hub, stream);
+    padded(&text);
+    if (session_next_text(session, now_ns, clock_utc_ns(), &text)) {
+        good = write_text(stream, text.at + LWS_PRE, text.length - LWS_PRE);
+    } else if ((stream->sending = session_next_picture(session, now_ns, &stream->seq))) {
+        stream->step = SEND_MARKERS;
+        stream->sent = 0;
+        good = write_picture(hub, stream);
+    }
+    text_finish(&text);
+    return good;
+}

@@ -1,0 +1,10 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the parts of a session share: input (session.c), pictures (session_wishes.c), words (session_texts.c). Private to them. */
+#ifndef NET_SESSION_IMPL_H
+#define NET_SESSION_IMPL_H
+#include "net/session.h"
+
+void session_reply(struct session *session, char *text); /* takes it */
+void session_reply_error(struct session *session, const struct message_error *error);
+
+#endif
