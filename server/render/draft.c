@@ -56,12 +56,13 @@ bool draft_can(const struct draft *draft, const struct view *view)
 }
 
 /* Rows end in whole lanes. */
-static bool make_room(struct draft *draft, const struct frame *frame)
+bool draft_make_room(struct draft *draft, const struct frame *frame, int band_rows)
 {
     draft->width_px = frame->width_px;
     draft->height_px = frame->height_px;
     draft->pitch_px = (frame->width_px + LANES - 1) / LANES * LANES;
-    draft->band_count = (frame->height_px + BAND_ROWS - 1) / BAND_ROWS;
+    draft->band_rows = band_rows;
+    draft->band_count = (frame->height_px + band_rows - 1) / band_rows;
     size_t pixels = (size_t)draft->pitch_px * (size_t)frame->height_px;
     if (pixels <= draft->pixel_capacity)
         return true;
@@ -91,8 +92,8 @@ static void mark_bands(void *arg, size_t begin, size_t end)
 /* Marks of all that was collected; coloured, or not. */
 static void draw(struct draft *draft, void (*bands)(void *arg, size_t begin, size_t end))
 {
-    draft_place(draft);
-    draft_sort(draft);
+    draft_place(draft, 0, draft->vertex_count);
+    draft_sort(draft, 0, draft->chunk_count);
     workers_for(draft->workers, (size_t)draft->band_count, 1, bands, draft);
 }
 
@@ -119,7 +120,7 @@ bool draft_draw(struct draft *draft, const struct picture *picture, const struct
     if (!draft->light)
         return false;
     draft_read_palette(draft, &picture->palette);
-    if (!make_room(draft, frame))
+    if (!draft_make_room(draft, frame, BAND_ROWS))
         return complain(draft);
     frame_block_fill(&draft->block, picture);
     draft->out = frame->bgrx;

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "render/draft_impl.h"
-#include "render/draft_simd.h"
+#include "render/draft_look.h"
 #include "render/matrix.h"
 #include "render/sky.h"
 #include "render/solid.h"
@@ -98,49 +98,15 @@ void draft_aim(struct draft *draft, const struct light *light)
 
 /* --- pixels ----------------------------------------------------------------------------------------------------------------- */
 
-DRAFT_INLINE lanes whole_part(lanes x) /* x >= 0 */
-{
-    return __builtin_convertvector(lanes_whole(x), lanes);
-}
-
-DRAFT_INLINE lanes_int gather(const uint32_t *table, lanes_int at)
-{
-    lanes_int out;
-    for (int i = 0; i < LANES; i++)
-        out[i] = (int32_t)table[at[i]];
-    return out;
-}
-
-DRAFT_INLINE lanes byte_of(lanes_int packed, int number)
-{
-    return __builtin_convertvector(packed >> (8 * number) & 0xff, lanes);
-}
-
-/* How much of the sun is seen, 0..1: four comparisons, weighted as a GL sampler with linear filter does. */
+/* How much of the sun is seen, 0..1. */
 DRAFT_INLINE lanes sun_at(const struct draft *draft, lanes x, float y, lanes depth)
 {
     const float(*m)[4] = draft->sun_from_pixel;
-    const struct draft_light *light = draft->light;
     lanes s[4];
     for (int r = 0; r < 4; r++)
         s[r] = x * m[0][r] + (y * m[1][r] + m[3][r]) + depth * m[2][r];
     lanes over = 1.0f / s[3];
-    float size = (float)light->sun_map_px;
-    lanes u = lanes_clamp(s[0] * over * size - 0.5f, 0, size - 1), v = lanes_clamp(s[1] * over * size - 0.5f, 0, size - 1);
-    lanes place = s[2] * over * 65535.0f;
-    lanes u0 = whole_part(u), v0 = whole_part(v), u_part = u - u0, v_part = v - v0;
-    lanes_int at = lanes_whole(v0) * (light->sun_map_px + 1) + lanes_whole(u0);
-    uint32_t pairs[2][LANES]; /* of neighbours; above, below */
-    for (int i = 0; i < LANES; i++) {
-        memcpy(&pairs[0][i], light->sun_map + at[i], 4);
-        memcpy(&pairs[1][i], light->sun_map + at[i] + light->sun_map_px + 1, 4);
-    }
-    lanes_uint above = *(const lanes_uint *)pairs[0], below = *(const lanes_uint *)pairs[1];
-    lanes one = (lanes){ 0 } + 1.0f, none = { 0 };
-#define LIT(pair) lanes_choose(place >= __builtin_convertvector((lanes_int)((pair) & 0xffff), lanes), one, none)
-    lanes upper = LIT(above) + u_part * (LIT(above >> 16) - LIT(above)), lower = LIT(below) + u_part * (LIT(below >> 16) - LIT(below));
-#undef LIT
-    return upper + v_part * (lower - upper);
+    return sun_tap(draft->light, s[0] * over, s[1] * over, s[2] * over);
 }
 
 DRAFT_INLINE lanes_int context_color(const struct draft *draft, lanes_int marks, lanes x, float y, lanes depth)
@@ -176,37 +142,12 @@ DRAFT_INLINE lanes_int ground_at(const struct draft *draft, lanes x, float y)
     return lanes_choose_int(inside, factor, (lanes_int){ 0 } + 256);
 }
 
-/* Heights over the horizon, as columns of the backdrop. They bend so little that they are worked out at the ends of stretches only. */
-enum { STRETCH = 64 };
-struct heights {
-    float first, step; /* at the middle of the first pixel; from pixel to pixel */
-};
-
-static float height_at(const struct draft *draft, float x, float y)
-{
-    const float(*m)[3] = draft->ray_from_pixel;
-    float up = 0, square = 0;
-    for (int r = 0; r < 3; r++) {
-        float ray = x * m[0][r] + (y * m[1][r] + m[2][r]);
-        up += ray * (float)draft->stage->up[r];
-        square += ray * ray;
-    }
-    return up / sqrtf(square) * 1023.5f + 1024.0f;
-}
-
 DRAFT_INLINE lanes_int sky_color(const struct draft *draft, const struct heights *heights, int column, int row)
 {
-    lanes x = LANES_IOTA + ((float)column + 0.5f);
-    lanes height = (LANES_IOTA + (float)(column % STRETCH)) * heights->step + heights->first;
-    lanes_int at = lanes_whole(lanes_clamp(height, 0, SKY_BACKDROPS - 1));
-    lanes_int tile = (row & 3) * 4 + (lanes_whole(x) & 3);
-    lanes_int color = gather(draft->backdrops, tile * SKY_BACKDROPS + at);
+    lanes_int color = backdrop_at(draft, heights, column, row);
     if (!draft->has_ground)
         return color;
-    lanes_uint factor = (lanes_uint)ground_at(draft, x, (float)row + 0.5f), bgrx = (lanes_uint)color;
-    lanes_uint blue_red = ((bgrx & 0xff00ff) * factor + 0x800080) >> 8 & 0xff00ff; /* both at once */
-    lanes_uint green = ((bgrx & 0xff00) * factor + 0x8000) >> 8 & 0xff00;
-    return (lanes_int)(blue_red | green | 0xff000000);
+    return darkened(color, ground_at(draft, LANES_IOTA + ((float)column + 0.5f), (float)row + 0.5f));
 }
 
 /* All eight of a field, or all empty: as most are. */
@@ -242,11 +183,8 @@ DRAFT_KERNEL void draft_color_band(const struct draft *draft, int number)
         uint8_t *out = draft->out + (size_t)row * draft->out_stride_bytes;
         struct heights heights = { 0 };
         for (int column = 0; column < draft->width_px; column += LANES) {
-            if (column % STRETCH == 0) {
-                float y = (float)row + 0.5f, x = (float)column + 0.5f;
-                heights.first = height_at(draft, x, y);
-                heights.step = (height_at(draft, x + STRETCH, y) - heights.first) / STRETCH;
-            }
+            if (column % STRETCH == 0)
+                heights = heights_from(draft, column, row);
             lanes_int color = color_at(draft, &heights, column, row);
             int count = draft->width_px - column;
             memcpy(out + 4 * column, &color, count < LANES ? 4 * (size_t)count : sizeof(color));

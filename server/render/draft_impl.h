@@ -18,7 +18,7 @@ struct draft_vertex {
     float inverse_w;       /* 0: nearer than the near plane */
     float a, b;            /* field: column and row of the palette; context: ambient, and how far it faces the sun */
     uint32_t flags;        /* DRAFT_* */
-    uint32_t reserved;
+    uint32_t source;       /* of one that the near plane made: first index of the triangle that was cut */
 };
 enum { DRAFT_NO_DATA = 1, DRAFT_UNCERTAIN = 2 };
 
@@ -36,6 +36,7 @@ struct draft_draw { /* neighbouring triangles of one material */
     float near_m;   /* from the eye to the ball around them; less than 0: within */
     uint32_t mesh, first_index, index_count;
     uint32_t mark; /* MARK_FIELD, or MARK_CONTEXT with its ramp */
+    uint32_t back; /* added to it on triangles that look away; drafts: 0 */
     bool double_sided;
 };
 
@@ -89,6 +90,8 @@ struct draft {
     size_t mesh_count, draw_count, chunk_count, vertex_count;
     size_t mesh_capacity, draw_capacity, chunk_capacity, vertex_capacity;
     int width_px, height_px, pitch_px, band_count; /* pitch: a multiple of LANES */
+    int band_rows;
+    float reach_px; /* so far from a pixel's middle it is looked at; drafts: 0 */
     float *depth;
     uint32_t *marks;
     size_t pixel_capacity;
@@ -107,8 +110,9 @@ void draft_read_palette(struct draft *draft, const struct palette *palette);
 void draft_aim(struct draft *draft, const struct light *light); /* the matrices from pixels */
 bool draft_collect(struct draft *draft);                        /* meshes, draws and chunks: what may be seen. False: out of memory */
 bool draft_collect_only(struct draft *draft, int asset);        /* the same of one, from both sides */
-void draft_place(struct draft *draft);                          /* vertices */
-void draft_sort(struct draft *draft);                           /* triangles into bands */
+bool draft_make_room(struct draft *draft, const struct frame *frame, int band_rows); /* false: out of memory */
+void draft_place(struct draft *draft, size_t begin, size_t end); /* vertices */
+void draft_sort(struct draft *draft, size_t begin, size_t end);  /* triangles of chunks into bands */
 void draft_raster_band(const struct draft *draft, int band);    /* depth and marks */
 void draft_color_band(const struct draft *draft, int band);     /* colours */
 void draft_outline(const struct draft *draft);                  /* of all that has a mark; depth is lost */

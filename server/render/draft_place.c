@@ -61,10 +61,18 @@ static void place_range(const struct draft *draft, const struct draft_mesh *mesh
     }
 }
 
+struct placing {
+    const struct draft *draft;
+    size_t first;
+};
+
 /* Vertices of all meshes, counted through. */
 static void place_block(void *arg, size_t begin, size_t end)
 {
-    const struct draft *draft = arg;
+    const struct placing *placing = arg;
+    const struct draft *draft = placing->draft;
+    begin += placing->first;
+    end += placing->first;
     for (size_t m = 0; m < draft->mesh_count; m++) {
         const struct draft_mesh *mesh = &draft->meshes[m];
         size_t first = mesh->first_vertex, last = first + mesh->vertex_count;
@@ -73,7 +81,8 @@ static void place_block(void *arg, size_t begin, size_t end)
     }
 }
 
-void draft_place(struct draft *draft)
+void draft_place(struct draft *draft, size_t begin, size_t end)
 {
-    workers_for(draft->workers, draft->vertex_count, BLOCK, place_block, draft);
+    struct placing placing = { draft, begin };
+    workers_for(draft->workers, end - begin, BLOCK, place_block, &placing);
 }

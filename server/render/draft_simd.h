@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Eight numbers at a time, by the compiler's vector extensions: the same bits on every machine. Private to draft*.c. */
+/* Eight numbers at a time, by the compiler's vector extensions: the same bits on every machine. Private to draft*.c and plate*.c. */
 #ifndef RENDER_DRAFT_SIMD_H
 #define RENDER_DRAFT_SIMD_H
 #include <stdint.h>

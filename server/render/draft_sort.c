@@ -30,7 +30,7 @@ static struct corner between(const struct corner *from, const struct corner *to,
     return corner;
 }
 
-static uint32_t add_extra(struct draft_chunk *chunk, const struct corner *corner, uint32_t flags)
+static uint32_t add_extra(struct draft_chunk *chunk, const struct corner *corner, uint32_t flags, uint32_t source)
 {
     float inverse = 1 / fmaxf(corner->at[3], 1e-30f);
     mem_grow(&chunk->extra, &chunk->extra_capacity, chunk->extra_count + 1, sizeof(*chunk->extra));
@@ -42,6 +42,7 @@ static uint32_t add_extra(struct draft_chunk *chunk, const struct corner *corner
         .a = corner->a,
         .b = corner->b,
         .flags = flags,
+        .source = source,
     };
     return EXTRA_VERTEX | (uint32_t)chunk->extra_count++;
 }
@@ -51,7 +52,7 @@ static int cut(const struct draft *draft, struct draft_chunk *chunk, const struc
                uint32_t corners[4])
 {
     struct corner at[3];
-    uint32_t flags = 0;
+    uint32_t flags = 0, source = (uint32_t)(indices - mesh->file->indices);
     int count = 0;
     for (int i = 0; i < 3; i++) {
         at[i] = corner_of(draft, mesh, indices[i]);
@@ -61,10 +62,10 @@ static int cut(const struct draft *draft, struct draft_chunk *chunk, const struc
         const struct corner *here = &at[i], *next = &at[(i + 1) % 3];
         float inside = here->at[3] - here->at[2], after = next->at[3] - next->at[2];
         if (inside >= 0)
-            corners[count++] = add_extra(chunk, here, flags);
+            corners[count++] = add_extra(chunk, here, flags, source);
         if ((inside >= 0) != (after >= 0)) {
             struct corner crossing = between(here, next, inside / (inside - after));
-            corners[count++] = add_extra(chunk, &crossing, flags);
+            corners[count++] = add_extra(chunk, &crossing, flags, source);
         }
     }
     return count >= 3 ? count : 0;
@@ -104,15 +105,17 @@ static void add_triangle(const struct draft *draft, struct draft_chunk *chunk, c
     const struct draft_vertex *p = vertex_of(draft, chunk, v0), *q = vertex_of(draft, chunk, v1), *r = vertex_of(draft, chunk, v2);
     float area = (q->x - p->x) * (r->y - p->y) - (r->x - p->x) * (q->y - p->y); /* rows go down: what faces us is negative */
     bool turned = area > 0;
-    if (area == 0 || (!draw->double_sided && turned != draft->meshes[draw->mesh].mirrored))
+    bool back = turned != draft->meshes[draw->mesh].mirrored;
+    if (area == 0 || (!draw->double_sided && back))
         return;
-    int left = first_pixel(least(least(p->x, q->x), r->x)), right = last_pixel(most(most(p->x, q->x), r->x), draft->width_px);
-    int top = first_pixel(least(least(p->y, q->y), r->y)), bottom = last_pixel(most(most(p->y, q->y), r->y), draft->height_px);
+    float reach = draft->reach_px;
+    int left = first_pixel(least(least(p->x, q->x), r->x) - reach), right = last_pixel(most(most(p->x, q->x), r->x) + reach, draft->width_px);
+    int top = first_pixel(least(least(p->y, q->y), r->y) - reach), bottom = last_pixel(most(most(p->y, q->y), r->y) + reach, draft->height_px);
     if (left > right || top > bottom)
         return;
-    uint32_t first = (uint32_t)(top / BAND_ROWS), last = (uint32_t)(bottom / BAND_ROWS);
+    uint32_t first = (uint32_t)(top / draft->band_rows), last = (uint32_t)(bottom / draft->band_rows);
     size_t i = chunk->triangle_count++;
-    chunk->triangles[i] = (struct draft_triangle){ { v0, turned ? v1 : v2, turned ? v2 : v1 }, draw->mark }; /* area > 0 from here on */
+    chunk->triangles[i] = (struct draft_triangle){ { v0, turned ? v1 : v2, turned ? v2 : v1 }, draw->mark | (back ? draw->back : 0) }; /* area > 0 from here on */
     chunk->bands[i] = first | last << 16;
     for (uint32_t b = first; b <= last; b++)
         chunk->starts[b + 1]++;
@@ -150,10 +153,16 @@ static void sort(const struct draft *draft, struct draft_chunk *chunk)
     chunk->starts[0] = 0;
 }
 
+struct sorting {
+    struct draft *draft;
+    size_t first;
+};
+
 static void sort_chunks(void *arg, size_t begin, size_t end)
 {
-    struct draft *draft = arg;
-    for (size_t c = begin; c < end; c++) {
+    const struct sorting *sorting = arg;
+    struct draft *draft = sorting->draft;
+    for (size_t c = sorting->first + begin; c < sorting->first + end; c++) {
         struct draft_chunk *chunk = &draft->chunks[c];
         size_t starts = (size_t)draft->band_count + 1, most_triangles = 2 * CHUNK_TRIANGLES; /* the near plane may make two of one */
         chunk->triangle_count = chunk->extra_count = 0;
@@ -167,7 +176,8 @@ static void sort_chunks(void *arg, size_t begin, size_t end)
     }
 }
 
-void draft_sort(struct draft *draft)
+void draft_sort(struct draft *draft, size_t begin, size_t end)
 {
-    workers_for(draft->workers, draft->chunk_count, 1, sort_chunks, draft);
+    struct sorting sorting = { draft, begin };
+    workers_for(draft->workers, end - begin, 1, sort_chunks, &sorting);
 }
