@@ -41,17 +41,29 @@ static void add_visibility(XXH3_state_t *state, const struct picture *picture)
     add(state, visibility->clip.planes, planes * sizeof(visibility->clip.planes[0]));
 }
 
-static void add_view(XXH3_state_t *state, const struct view *view)
+/* All but the field and its colours. */
+static void add_shape(XXH3_state_t *state, const struct picture *picture)
 {
-    int32_t choices[] = { view->width_px, view->height_px, view->colormap, (int32_t)view->look, (int32_t)view->tier, view->selected_asset,
-                          view->environment };
-    double numbers[] = { view->camera.fov_deg, view->camera.height_m, view->ramp_interval, view->range_min, view->range_max };
+    const struct view *view = picture->view;
+    int32_t choices[] = { view->width_px, view->height_px, (int32_t)view->look, (int32_t)view->tier, view->selected_asset, view->environment };
+    double numbers[] = { view->camera.fov_deg, view->camera.height_m };
     add(state, choices, sizeof(choices));
     add(state, numbers, sizeof(numbers));
     add(state, view->camera.eye_m, sizeof(view->camera.eye_m));
     add(state, view->camera.target_m, sizeof(view->camera.target_m));
     add(state, view->camera.up, sizeof(view->camera.up));
     add(state, view->light_dir, sizeof(view->light_dir));
+    add(state, picture->lit_by.towards, sizeof(picture->lit_by.towards));
+    add(state, &picture->lit_by.environment, sizeof(picture->lit_by.environment));
+    bool own_shadows = visibility_equal(&picture->lit_by.shown, &view->visibility);
+    add(state, &own_shadows, sizeof(own_shadows));
+    add_visibility(state, picture);
+}
+
+static void add_colors(XXH3_state_t *state, const struct view *view)
+{
+    double numbers[] = { view->colormap, view->ramp_interval, view->range_min, view->range_max };
+    add(state, numbers, sizeof(numbers));
     add_field_params(state, &view->field);
     add_paint(state, &view->paint);
 }
@@ -61,15 +73,24 @@ uint64_t content_hash(const struct picture *picture)
     XXH3_state_t state;
     XXH3_INITSTATE(&state);
     XXH3_64bits_reset(&state);
-    add_view(&state, picture->view);
-    add(&state, picture->lit_by.towards, sizeof(picture->lit_by.towards));
-    add(&state, &picture->lit_by.environment, sizeof(picture->lit_by.environment));
-    bool own_shadows = visibility_equal(&picture->lit_by.shown, &picture->view->visibility);
-    add(&state, &own_shadows, sizeof(own_shadows));
-    add_visibility(&state, picture);
+    add_shape(&state, picture);
+    add_colors(&state, picture->view);
     for (size_t i = 0; i < picture->visible_count; i++) {
         int asset = picture->visible[i];
         uint64_t one[2] = { (uint64_t)asset, picture->fields[asset] ? picture->fields[asset]->content : 0 };
+        add(&state, one, sizeof(one));
+    }
+    return XXH3_64bits_digest(&state);
+}
+
+uint64_t content_shape_hash(const struct picture *picture)
+{
+    XXH3_state_t state;
+    XXH3_INITSTATE(&state);
+    XXH3_64bits_reset(&state);
+    add_shape(&state, picture);
+    for (size_t i = 0; i < picture->visible_count; i++) {
+        int one[2] = { picture->visible[i], picture->fields[picture->visible[i]] != NULL };
         add(&state, one, sizeof(one));
     }
     return XXH3_64bits_digest(&state);

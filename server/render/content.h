@@ -6,5 +6,7 @@
 
 /* Of the view without its sequence numbers and times, and of every field in sight. */
 uint64_t content_hash(const struct picture *picture);
+/* Of all that decides which triangle is at which pixel and in what light: equal for pictures that differ in values and colours only. */
+uint64_t content_shape_hash(const struct picture *picture);
 
 #endif
