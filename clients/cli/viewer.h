@@ -27,6 +27,7 @@ enum viewer_stage { STAGE_WAIT, STAGE_FIELD, STAGE_RENDER, STAGE_ENCODE, STAGE_D
 
 struct viewer_result {
     int frames, still_frames, errors;
+    int given_up; /* frames that the server did not send to their end */
     int64_t bytes, first_ns, last_ns; /* of frames; monotonic */
     struct samples input;             /* from sending a camera to its frame decoded */
     struct samples first;             /* from connecting to the first frame decoded: one */

@@ -27,7 +27,7 @@ struct hub {
     int64_t still_ns;                   /* what the last refined picture cost */
     uint8_t out[LWS_PRE + SLICE_BYTES]; /* lws writes its framing in front of what is sent */
     struct {
-        counter *sessions, *sessions_all, *frames, *frame_bytes, *messages, *errors, *dropped, *requests, *refused;
+        counter *sessions, *sessions_all, *frames, *frame_bytes, *messages, *errors, *dropped, *given_up, *stalled, *requests, *refused;
     } counters;
 };
 

@@ -190,6 +190,8 @@ static void add_counters(struct hub *hub)
     hub->counters.frame_bytes = counters_add(c, "plantcast_frame_bytes_total", "counter", "Bytes of frames sent.");
     hub->counters.dropped =
         counters_add(c, "plantcast_frames_dropped_total", "counter", "Frames made and overtaken before they were sent.");
+    hub->counters.given_up = counters_add(c, "plantcast_frames_given_up_total", "counter", "Frames that were not sent to their end.");
+    hub->counters.stalled = counters_add(c, "plantcast_sessions_stalled_total", "counter", "Clients closed because they took nothing.");
     hub->counters.messages = counters_add(c, "plantcast_messages_total", "counter", "Messages of clients.");
     hub->counters.errors = counters_add(c, "plantcast_message_errors_total", "counter", "Messages of clients answered with an error.");
     hub->counters.requests = counters_add(c, "plantcast_http_requests_total", "counter", "HTTP requests.");

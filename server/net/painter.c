@@ -2,6 +2,7 @@
 /* Wishes come in, pictures go out; the render thread in between is drawing.c. */
 #include "net/painter.h"
 
+#include "base/clock.h"
 #include "base/mem.h"
 #include "net/painter_impl.h"
 
@@ -26,6 +27,7 @@ static struct picture *picture_create(const struct order *order, struct packet *
         .failed = failed,
         .wish = order->wish,
         .wait_ns = order->wait_ns,
+        .made_ns = clock_mono_ns(),
     };
     return picture;
 }

@@ -12,6 +12,9 @@ struct wish {
     struct encoder_params quality;
     enum urgency urgency;
     int64_t asked_ns;  /* monotonic */
+    int step;          /* of the ladder, where it moves */
+    bool draft;        /* refined, but of less quality than the client shall have in the end */
+    bool of_data;      /* for a reading that changed: view.input_ns is when */
     bool only_replace; /* the client may have no more pictures: good only in place of a wish that is not begun */
     bool always;       /* draw even if the picture would be the same as the last one of this client */
     bool overlay;      /* legend, markers and clock drawn in */
@@ -24,6 +27,7 @@ struct picture { /* belongs to whoever collected it: picture_destroy */
     bool failed;
     struct wish wish;
     int64_t wait_ns; /* from input to the start of drawing */
+    int64_t made_ns; /* monotonic: it was encoded */
     struct picture *next;
 };
 

@@ -1,10 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What goes to one client: texts and pictures, one write per writeable callback, so that lws never has to keep what a socket does
    not take. */
+#include <string.h>
+
 #include "base/clock.h"
 #include "base/mem.h"
 #include "net/reply.h"
 #include "net/stream.h"
+
+static const int64_t PING_NS = 2 * NS_PER_S;
 
 static bool write_text(struct stream *stream, char *at, size_t length)
 {
@@ -93,6 +97,7 @@ static bool write_slice(struct hub *hub, struct stream *stream)
         how |= LWS_WRITE_NO_FIN;
     bool good = hub_write(hub, stream->wsi, packet->bytes + stream->sent, slice, how);
     stream->sent += slice;
+    session_wrote(stream->session, stream->sent == packet->count, clock_mono_ns());
     if (stream->sent == packet->count) {
         counter_inc(hub->counters.frames, 1);
         counter_inc(hub->counters.frame_bytes, (int64_t)packet->count + WIRE_FRAME_HEADER_BYTES);
@@ -111,6 +116,65 @@ static bool write_picture(struct hub *hub, struct stream *stream)
     return write_slice(hub, stream);
 }
 
+/* --- pictures that are not sent to their end ------------------------------------------------------------------------------- */
+
+void stream_give_up(struct hub *hub, struct stream *stream, int64_t now_ns)
+{
+    if (!stream->sending || stream->step != SEND_PAYLOAD ||
+        !session_gives_up(stream->session, stream->sending, stream->sending->packet->count - stream->sent, now_ns))
+        return;
+    session_gave_up(stream->session);
+    counter_inc(hub->counters.given_up, 1);
+    stream->cut = true;
+    picture_destroy(&stream->sending);
+}
+
+/* The message ends before its header says. */
+static bool write_end(struct hub *hub, struct stream *stream)
+{
+    stream->cut = false;
+    session_wrote(stream->session, true, clock_mono_ns());
+    return hub_write(hub, stream->wsi, "", 0, LWS_WRITE_CONTINUATION);
+}
+
+/* --- round trips ------------------------------------------------------------------------------------------------------------- */
+
+/* While pictures go, and none is under way: a pong behind one would tell its transfer, not the round trip. */
+static bool ping_due(const struct stream *stream, int64_t now_ns)
+{
+    const struct pacer *pacer = &stream->session->pacer;
+    if (stream->sending || stream->ping != stream->pong || pacer->flight_count > 0)
+        return false;
+    return stream->ping == 0 || (pacer->acked.sent_ns > stream->ping_ns && now_ns - stream->ping_ns >= PING_NS);
+}
+
+static bool write_ping(struct hub *hub, struct stream *stream, int64_t now_ns)
+{
+    stream->ping++;
+    stream->ping_ns = now_ns;
+    return hub_write(hub, stream->wsi, &stream->ping, sizeof(stream->ping), LWS_WRITE_PING);
+}
+
+void stream_on_pong(struct stream *stream, const void *bytes, size_t count)
+{
+    uint64_t number;
+    int64_t now_ns = clock_mono_ns();
+    if (count != sizeof(number))
+        return;
+    memcpy(&number, bytes, sizeof(number));
+    if (number != stream->ping || stream->pong == stream->ping)
+        return;
+    stream->pong = stream->ping;
+    session_on_pong(stream->session, now_ns - stream->ping_ns, now_ns);
+}
+
+/* --- all of it ----------------------------------------------------------------------------------------------------------------- */
+
+bool stream_has_output(const struct stream *stream, int64_t now_ns)
+{
+    return stream->sending || stream->cut || stream->session->ready || session_has_text(stream->session, now_ns) || ping_due(stream, now_ns);
+}
+
 /* Texts go between pictures, never into one. */
 bool stream_send(struct hub *hub, struct stream *stream)
 {
@@ -118,8 +182,13 @@ bool stream_send(struct hub *hub, struct stream *stream)
     struct text text = { 0 };
     bool good = true;
     int64_t now_ns = clock_mono_ns();
+    stream_give_up(hub, stream, now_ns);
+    if (stream->cut)
+        return write_end(hub, stream);
     if (stream->sending)
         return write_picture(hub, stream);
+    if (ping_due(stream, now_ns))
+        return write_ping(hub, stream, now_ns);
     padded(&text);
     if (session_next_text(session, now_ns, clock_utc_ns(), &text)) {
         good = write_text(stream, text.at + LWS_PRE, text.length - LWS_PRE);

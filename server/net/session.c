@@ -14,6 +14,7 @@ struct session *session_create(const struct session_world *world, uint64_t id, i
 {
     struct session *session = mem_new(sizeof(*session));
     *session = (struct session){ .id = id, .world = world, .rate_begin_ns = now_ns };
+    pacer_init(&session->pacer);
     session->tag_changes = mem_array(world->plant->tag_count, sizeof(*session->tag_changes));
     return session;
 }
@@ -52,7 +53,8 @@ void session_reply_error(struct session *session, const struct message_error *er
 static void on_input(struct session *session, int64_t now_ns)
 {
     session->input_pending = true;
-    session->refined = session->failure_said = false;
+    session->refined = REFINED_NOT;
+    session->failure_said = false;
     session->input_ns = now_ns;
 }
 
@@ -100,7 +102,11 @@ static bool on_params(struct session *session, const struct message *message, st
 
 static bool on_ack(struct session *session, const struct message *message, int64_t now_ns, struct message_error *error)
 {
-    if (pacer_acked(&session->pacer, message->seq, now_ns) != PACER_ACK_NEVER_SENT)
+    int64_t decode_ns = message->decode_ms < 0 ? -1 : (int64_t)(message->decode_ms * NS_PER_MS);
+    enum pacer_ack ack = pacer_acked(&session->pacer, message->seq, decode_ns, now_ns);
+    if (ack == PACER_ACK_NEW)
+        session_on_shown(session);
+    if (ack != PACER_ACK_NEVER_SENT)
         return true;
     message_fail(error, "bad_field", "seq: frame %u was never sent", message->seq);
     return false;
@@ -217,6 +223,8 @@ void session_on_tick(struct session *session, int64_t now_ns)
 {
     if (session->too_fast && now_ns - session->rate_begin_ns >= NS_PER_S)
         session->too_fast = false;
+    if (pacer_state(&session->pacer, now_ns) != PACER_FLOWS)
+        session_pause(session);
 }
 
 void session_on_data(struct session *session, int64_t now_ns)

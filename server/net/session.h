@@ -37,10 +37,12 @@ struct session {
     int64_t input_ns, data_ns;                        /* the newest input; the oldest change of a reading that is not yet asked for */
     int64_t moved_ns;                                 /* when the newest picture of the moving tier was asked for */
     int64_t refined_ns;                               /* when the newest of the still tier was */
-    bool refined;                                     /* the view as it is has been asked for in the still tier */
+    enum { REFINED_NOT, REFINED_DRAFT, REFINED_FULL } refined; /* how the view as it is has been asked for in the still tier */
+    double still_bytes;                               /* of the last picture of full quality; 0: none was acknowledged */
     struct pacer pacer;
     uint64_t newest_number; /* of the pictures that came */
     struct picture *ready;  /* next to be sent */
+    bool measured;          /* pacer.acked is new */
 
     bool failure_said;      /* of the view as it is */
     bool refused;           /* not even its first picture could be drawn: close, 1013 */
@@ -83,7 +85,13 @@ void session_on_pick(struct session *session, const struct pick_answer *answer);
 /* The next text message to send, if any is due: into `out`. Markers of a picture are session_markers. */
 bool session_next_text(struct session *session, int64_t now_ns, int64_t now_utc_ns, struct text *out);
 bool session_has_text(const struct session *session, int64_t now_ns);
-/* The next picture, if one waits: the caller owns it, *seq is its number. */
+/* The next picture, if one waits: the caller owns it, *seq is its number. Then session_wrote for each part of it. */
 struct picture *session_next_picture(struct session *session, int64_t now_ns, uint32_t *seq);
+void session_wrote(struct session *session, bool all, int64_t now_ns);
+/* The picture under way is not worth sending on: it is refined, and what it shows has changed since, or nothing moves at all. */
+bool session_gives_up(const struct session *session, const struct picture *sending, size_t bytes_left, int64_t now_ns);
+void session_gave_up(struct session *session); /* it was cut short */
+void session_on_pong(struct session *session, int64_t rtt_ns, int64_t now_ns);
+enum pacer_state session_state(const struct session *session, int64_t now_ns);
 
 #endif

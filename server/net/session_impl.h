@@ -7,4 +7,7 @@
 void session_reply(struct session *session, char *text); /* takes it */
 void session_reply_error(struct session *session, const struct message_error *error);
 
+void session_pause(struct session *session);    /* nothing moves: keep no picture for it */
+void session_on_shown(struct session *session); /* session->pacer.acked is on the client's screen */
+
 #endif

@@ -8,7 +8,12 @@ static const int64_t STILL_NS = 200 * NS_PER_MS;         /* nothing moved for so
 static const int64_t LOADED_STILL_NS = 1000 * NS_PER_MS; /* likewise, when not all can be refined */
 static const int64_t LOADED_SHARE_NS = 3 * NS_PER_S;      /* but after so long without one, however often readings change */
 static const int64_t PATIENCE_NS = 10 * NS_PER_S;        /* others may move for so long before one is refined all the same */
-static const struct encoder_params MOVING = { .quality = 78, .full_chroma = false }, STILL = { .quality = 92, .full_chroma = true };
+static const int64_t SLOW_STILL_NS = 500 * NS_PER_MS;    /* refined pictures that take the network longer come in two stages */
+static const int64_t CALM_NS = 1000 * NS_PER_MS;         /* the second one after so long */
+static const int64_t GIVE_UP_NS = 100 * NS_PER_MS;       /* what is left of a refined picture, when its view has changed */
+static const double STILL_OVER_MOVING = 3;               /* in bytes, before one was seen */
+static const struct encoder_params STILL = { .quality = 92, .full_chroma = true }, DRAFT = { .quality = 42 };
+enum { SMALL_PX = 128 }; /* sides that are not made smaller */
 
 /* The one who already has a picture keeps it; a new one would look at nothing. */
 static void on_failure(struct session *session, const struct view *view)
@@ -50,42 +55,89 @@ void session_on_picture(struct session *session, struct picture *picture)
 
 /* --- wishes --------------------------------------------------------------------------------------------------------------- */
 
+/* A refined picture would hold up for long what comes after it. */
+static bool is_slow(const struct session *session)
+{
+    double bytes = session->still_bytes > 0 ? session->still_bytes : STILL_OVER_MOVING * session->pacer.ladder.unit_bytes;
+    return pacer_is_slower(&session->pacer, bytes, SLOW_STILL_NS);
+}
+
+static bool is_calm(const struct session *session, int64_t now_ns)
+{
+    int64_t last_ns = session->moved_ns > session->refined_ns ? session->moved_ns : session->refined_ns;
+    return session->pacer.flight_count == 0 && !session->data_pending && now_ns - last_ns >= CALM_NS;
+}
+
 static bool refine_due(const struct session *session, int64_t now_ns)
 {
     const struct session_world *world = session->world;
     bool others_move = now_ns < world->moving_until_ns && now_ns - session->input_ns < PATIENCE_NS;
-    bool data_moves = world->loaded && now_ns - session->moved_ns < LOADED_STILL_NS && now_ns - session->refined_ns < LOADED_SHARE_NS;
-    return !session->refined && session->pacer.asked == 0 && !others_move && !data_moves && now_ns - session->input_ns >= STILL_NS;
+    bool short_of = world->loaded || is_slow(session);
+    bool data_moves = short_of && now_ns - session->moved_ns < LOADED_STILL_NS && now_ns - session->refined_ns < LOADED_SHARE_NS;
+    if (session->refined == REFINED_FULL || session->pacer.asked > 0 || others_move || data_moves)
+        return false;
+    return session->refined == REFINED_DRAFT ? is_calm(session, now_ns) : now_ns - session->input_ns >= STILL_NS;
+}
+
+/* The data's picture is refined at once where all can be. */
+static bool data_is_refined(const struct session *session, int64_t now_ns)
+{
+    const struct session_world *world = session->world;
+    return session->refined == REFINED_FULL && !world->loaded && now_ns >= world->moving_until_ns && !is_slow(session);
+}
+
+static int scaled(int px, double scale)
+{
+    int less = (int)(px * scale) & ~1;
+    return scale < 1 && px > SMALL_PX && less < px ? less : px;
+}
+
+static void make_moving(const struct session *session, struct wish *wish)
+{
+    struct rung rung = ladder_rung(&session->pacer.ladder);
+    wish->view.tier = TIER_MOVING;
+    wish->view.width_px = scaled(session->view.width_px, rung.scale);
+    wish->view.height_px = scaled(session->view.height_px, rung.scale);
+    wish->quality = (struct encoder_params){ .quality = rung.quality };
+    wish->step = session->pacer.ladder.step;
+}
+
+static void make_still(const struct session *session, struct wish *wish)
+{
+    wish->view.tier = TIER_STILL;
+    wish->urgency = URGENCY_REFINE;
+    wish->draft = session->refined == REFINED_NOT && is_slow(session);
+    wish->quality = wish->draft ? DRAFT : STILL;
 }
 
 static bool wants(const struct session *session, int64_t now_ns, struct wish *wish)
 {
-    enum tier tier = TIER_MOVING;
-    int64_t since_ns = session->input_ns;
     if (session->input_pending || session->always_pending) {
         wish->urgency = URGENCY_INPUT;
         wish->always = session->always_pending;
+        wish->view.input_ns = session->input_ns;
+        make_moving(session, wish);
     } else if (refine_due(session, now_ns)) {
-        wish->urgency = URGENCY_REFINE;
-        tier = TIER_STILL;
-        since_ns = now_ns;
+        wish->view.input_ns = now_ns;
+        wish->always = session->refined == REFINED_DRAFT; /* the same, but better */
+        make_still(session, wish);
     } else if (session->data_pending) {
-        bool still = session->refined && !session->world->loaded && now_ns >= session->world->moving_until_ns;
-        wish->urgency = still ? URGENCY_REFINE : URGENCY_DATA;
-        tier = still ? TIER_STILL : TIER_MOVING;
-        since_ns = session->data_ns;
+        wish->view.input_ns = session->data_ns;
+        wish->of_data = true;
+        wish->urgency = URGENCY_DATA;
+        if (data_is_refined(session, now_ns))
+            make_still(session, wish);
+        else
+            make_moving(session, wish);
     } else {
         return false;
     }
-    wish->view.tier = tier;
-    wish->view.input_ns = since_ns;
-    wish->quality = tier == TIER_STILL ? STILL : MOVING;
     return true;
 }
 
 bool session_wish(const struct session *session, int64_t now_ns, struct wish *wish)
 {
-    bool may_add = pacer_may_ask(&session->pacer);
+    bool may_add = !session->ready && pacer_may_ask(&session->pacer, now_ns);
     if (!session->hello || session->hidden || (!may_add && session->pacer.asked == 0))
         return false;
     *wish = (struct wish){ .view = session->view, .codec = session->codec, .asked_ns = now_ns, .only_replace = !may_add };
@@ -97,17 +149,74 @@ void session_asked(struct session *session, const struct wish *wish, bool replac
     if (!replaced)
         pacer_asked(&session->pacer);
     session->input_pending = session->always_pending = session->data_pending = false;
-    session->refined = wish->view.tier == TIER_STILL;
+    session->refined = wish->view.tier != TIER_STILL ? REFINED_NOT : wish->draft ? REFINED_DRAFT : REFINED_FULL;
     if (session->refined)
         session->refined_ns = wish->asked_ns;
 }
+
+/* --- on its way ----------------------------------------------------------------------------------------------------------- */
 
 struct picture *session_next_picture(struct session *session, int64_t now_ns, uint32_t *seq)
 {
     struct picture *picture = session->ready;
     if (!picture)
         return NULL;
+    const struct wish *wish = &picture->wish;
+    struct pacer_note note = { .moving = wish->view.tier == TIER_MOVING,
+                               .full = wish->view.tier == TIER_STILL && !wish->draft,
+                               .of_data = wish->of_data,
+                               .step = wish->step,
+                               .input_ns = wish->view.input_ns,
+                               .made_ns = picture->made_ns };
     session->ready = NULL;
-    *seq = pacer_sent(&session->pacer, picture->packet->count, now_ns);
+    *seq = pacer_sent(&session->pacer, picture->packet->count, &note, now_ns);
     return picture;
+}
+
+void session_wrote(struct session *session, bool all, int64_t now_ns)
+{
+    pacer_wrote(&session->pacer, all, now_ns);
+}
+
+bool session_gives_up(const struct session *session, const struct picture *sending, size_t bytes_left, int64_t now_ns)
+{
+    if (sending->packet->codec == WIRE_CODEC_H264) /* later ones build on it */
+        return false;
+    if (pacer_state(&session->pacer, now_ns) != PACER_FLOWS || session->hidden)
+        return true;
+    return session->input_pending && sending->wish.view.tier == TIER_STILL && pacer_is_slower(&session->pacer, (double)bytes_left, GIVE_UP_NS);
+}
+
+/* The render thread takes it for shown: the next is drawn whatever it shows. */
+void session_gave_up(struct session *session)
+{
+    pacer_gave_up(&session->pacer);
+    session->always_pending = true;
+}
+
+void session_pause(struct session *session)
+{
+    if (!session->ready)
+        return;
+    pacer_dropped(&session->pacer);
+    picture_destroy(&session->ready);
+    session->always_pending = true;
+}
+
+void session_on_shown(struct session *session)
+{
+    const struct pacer_flight *acked = &session->pacer.acked;
+    if (acked->note.full)
+        session->still_bytes = (double)acked->bytes;
+    session->measured = true;
+}
+
+void session_on_pong(struct session *session, int64_t rtt_ns, int64_t now_ns)
+{
+    channel_on_pong(&session->pacer.channel, rtt_ns, now_ns);
+}
+
+enum pacer_state session_state(const struct session *session, int64_t now_ns)
+{
+    return pacer_state(&session->pacer, now_ns);
 }

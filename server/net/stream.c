@@ -8,6 +8,7 @@
 #include "base/mem.h"
 #include "net/stream.h"
 
+enum { STREAM_CLOSE_STALLED = 4000, LAST_WORDS_S = 2 };
 static const int64_t MOVING_NS = 200 * NS_PER_MS; /* after an input somebody is taken to be moving */
 
 /* --- coming and going ------------------------------------------------------------------------------------------------------- */
@@ -99,7 +100,7 @@ static void pump(struct hub *hub, struct stream *stream)
         stream->throttled = session->too_fast;
         lws_rx_flow_control(stream->wsi, !stream->throttled);
     }
-    if (stream->sending || session->ready || session_has_text(session, now_ns))
+    if (stream_has_output(stream, now_ns))
         lws_callback_on_writable(stream->wsi);
 }
 
@@ -112,6 +113,20 @@ static bool is_loaded(const struct hub *hub)
     return count * hub->still_ns > NS_PER_S;
 }
 
+/* Who takes nothing gets nothing, and keeps nothing of the server's but its view; then it is closed. */
+static void watch_stall(struct hub *hub, struct stream *stream, int64_t now_ns)
+{
+    enum pacer_state state = session_state(stream->session, now_ns);
+    if (state == PACER_FLOWS || stream->close_code)
+        return;
+    stream_give_up(hub, stream, now_ns);
+    if (state != PACER_DEAD)
+        return;
+    counter_inc(hub->counters.stalled, 1);
+    close_with(stream, STREAM_CLOSE_STALLED, "nothing was acknowledged for 15 s");
+    lws_set_timeout(stream->wsi, PENDING_TIMEOUT_CLOSE_SEND, LAST_WORDS_S); /* its socket may take not even that */
+}
+
 void streams_on_tick(struct hub *hub, bool data_changed, bool links_changed)
 {
     int64_t now_ns = clock_mono_ns();
@@ -122,6 +137,7 @@ void streams_on_tick(struct hub *hub, bool data_changed, bool links_changed)
             session_on_data(stream->session, now_ns);
         stream->session->owes_status |= links_changed;
         count(hub, stream);
+        watch_stall(hub, stream, now_ns);
         pump(hub, stream);
     }
 }
@@ -223,6 +239,11 @@ int stream_callback(struct lws *wsi, enum lws_callback_reasons reason, void *use
     case LWS_CALLBACK_CLOSED: on_close(hub_of(wsi), slot); break;
     case LWS_CALLBACK_RECEIVE:
         on_receive(hub_of(wsi), *slot, in, len);
+        hub_go(hub_of(wsi));
+        break;
+    case LWS_CALLBACK_RECEIVE_PONG:
+        stream_on_pong(*slot, in, len);
+        pump(hub_of(wsi), *slot);
         hub_go(hub_of(wsi));
         break;
     case LWS_CALLBACK_SERVER_WRITEABLE: return on_writeable(hub_of(wsi), *slot);

@@ -15,6 +15,9 @@ struct stream {
     uint32_t seq;
     enum { SEND_MARKERS, SEND_HEADER, SEND_PAYLOAD } step;
     size_t sent; /* of the payload */
+    bool cut;    /* the picture that was being sent is given up: end its message */
+    uint64_t ping, pong; /* numbers of the last ones */
+    int64_t ping_ns;     /* when the last ping was sent */
     bool throttled;
     int close_code; /* 0: stays open */
     const char *close_text;
@@ -23,5 +26,9 @@ struct stream {
 
 /* One write: a text, or a part of a picture. False: the connection is gone. */
 bool stream_send(struct hub *hub, struct stream *stream);
+bool stream_has_output(const struct stream *stream, int64_t now_ns);
+/* Frees a picture that is half sent, if it is not worth sending on. */
+void stream_give_up(struct hub *hub, struct stream *stream, int64_t now_ns);
+void stream_on_pong(struct stream *stream, const void *bytes, size_t count);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Pictures under way: the window, acknowledgements in and out of order, and acknowledgements of what was never sent. */
+/* Pictures under way: the window, acknowledgements in and out of order and of what was never sent; and a network that is simulated. */
 #include "net/pacer.h"
 
 #include <setjmp.h>
@@ -9,69 +9,283 @@
 
 #include <cmocka.h>
 
+#include "base/clock.h"
+
+static const int64_t MS = NS_PER_MS;
+
+static struct pacer fresh(void)
+{
+    struct pacer pacer;
+    pacer_init(&pacer);
+    return pacer;
+}
+
 static uint32_t send_one(struct pacer *pacer, size_t bytes, int64_t now_ns)
 {
-    assert_true(pacer_may_ask(pacer));
+    struct pacer_note note = { .moving = true, .step = pacer->ladder.step };
     pacer_asked(pacer);
-    return pacer_sent(pacer, bytes, now_ns);
+    uint32_t seq = pacer_sent(pacer, bytes, &note, now_ns);
+    pacer_wrote(pacer, true, now_ns);
+    return seq;
 }
 
 static void window_closes_until_acknowledged(void **state)
 {
     (void)state;
-    struct pacer pacer = { 0 };
-    assert_int_equal(send_one(&pacer, 100, 1000), 1);
-    assert_int_equal(send_one(&pacer, 50, 2000), 2);
-    assert_false(pacer_may_ask(&pacer));
-    assert_int_equal(pacer_bytes_in_flight(&pacer), 150);
-    assert_int_equal(pacer_acked(&pacer, 1, 5000), PACER_ACK_NEW);
-    assert_int_equal(pacer.ack_ns, 4000);
-    assert_int_equal(pacer_bytes_in_flight(&pacer), 50);
-    assert_true(pacer_may_ask(&pacer));
+    struct pacer pacer = fresh();
+    assert_true(pacer_may_ask(&pacer, 0));
+    assert_int_equal(send_one(&pacer, 100, 1 * MS), 1);
+    assert_true(pacer_may_ask(&pacer, 2 * MS));
+    assert_int_equal(send_one(&pacer, 50, 2 * MS), 2);
+    assert_false(pacer_may_ask(&pacer, 3 * MS));
+    assert_int_equal(pacer_acked(&pacer, 1, -1, 5 * MS), PACER_ACK_NEW);
+    assert_true(pacer.acked.seq == 1 && pacer.acked.bytes == 100);
+    assert_true(pacer_may_ask(&pacer, 6 * MS));
 }
 
 static void what_is_asked_for_counts(void **state)
 {
     (void)state;
-    struct pacer pacer = { 0 };
-    for (int i = 0; i < PACER_WINDOW; i++)
+    struct pacer pacer = fresh();
+    for (int i = 0; i < PACER_LEAST; i++)
         pacer_asked(&pacer);
-    assert_false(pacer_may_ask(&pacer));
+    assert_false(pacer_may_ask(&pacer, 0));
     pacer_dropped(&pacer);
-    assert_true(pacer_may_ask(&pacer));
+    assert_true(pacer_may_ask(&pacer, 0));
+}
+
+static void nothing_is_asked_for_while_the_socket_is_full(void **state)
+{
+    (void)state;
+    struct pacer pacer = fresh();
+    struct pacer_note note = { 0 };
+    pacer_asked(&pacer);
+    pacer_sent(&pacer, 1000, &note, MS);
+    assert_false(pacer_may_ask(&pacer, 2 * MS));
+    pacer_wrote(&pacer, false, 3 * MS);
+    assert_int_equal(pacer_acked(&pacer, 1, -1, 3 * MS), PACER_ACK_NEVER_SENT);
+    assert_false(pacer_may_ask(&pacer, 4 * MS));
+    pacer_wrote(&pacer, true, 5 * MS);
+    assert_true(pacer_may_ask(&pacer, 6 * MS));
+}
+
+static void a_picture_cut_short_is_not_waited_for(void **state)
+{
+    (void)state;
+    struct pacer pacer = fresh();
+    struct pacer_note note = { 0 };
+    pacer_asked(&pacer);
+    pacer_sent(&pacer, 1000, &note, MS);
+    pacer_gave_up(&pacer);
+    assert_false(pacer_may_ask(&pacer, 2 * MS)); /* its end has yet to go */
+    assert_int_equal(pacer_state(&pacer, 2100 * MS), PACER_STALLS);
+    pacer_wrote(&pacer, true, 2200 * MS);
+    assert_true(pacer_may_ask(&pacer, 2201 * MS));
+    assert_int_equal(pacer_state(&pacer, 60 * NS_PER_S), PACER_FLOWS);
+    assert_int_equal(send_one(&pacer, 1, 60 * NS_PER_S), 2);
 }
 
 static void a_newer_ack_stands_for_older_frames(void **state)
 {
     (void)state;
-    struct pacer pacer = { 0 };
+    struct pacer pacer = fresh();
     send_one(&pacer, 1, 0);
     send_one(&pacer, 1, 0);
-    assert_int_equal(pacer_acked(&pacer, 2, 0), PACER_ACK_NEW);
+    assert_int_equal(pacer_acked(&pacer, 2, -1, 0), PACER_ACK_NEW);
     assert_int_equal(pacer.flight_count, 0);
-    assert_int_equal(pacer_acked(&pacer, 1, 0), PACER_ACK_OLD);
-    assert_int_equal(pacer_acked(&pacer, 2, 0), PACER_ACK_OLD);
+    assert_int_equal(pacer_acked(&pacer, 1, -1, 0), PACER_ACK_OLD);
+    assert_int_equal(pacer_acked(&pacer, 2, -1, 0), PACER_ACK_OLD);
 }
 
 static void an_ack_for_nothing_opens_nothing(void **state)
 {
     (void)state;
-    struct pacer pacer = { 0 };
-    assert_int_equal(pacer_acked(&pacer, 1, 0), PACER_ACK_NEVER_SENT);
-    send_one(&pacer, 1, 0);
-    send_one(&pacer, 1, 0);
+    struct pacer pacer = fresh();
+    assert_int_equal(pacer_acked(&pacer, 1, -1, 0), PACER_ACK_NEVER_SENT);
+    send_one(&pacer, 1, 1);
+    send_one(&pacer, 1, 1);
     static const uint32_t never[] = { 0, 3, 4, 1000, UINT32_MAX, 0x80000002 };
     for (size_t i = 0; i < sizeof(never) / sizeof(never[0]); i++)
-        assert_int_equal(pacer_acked(&pacer, never[i], 0), PACER_ACK_NEVER_SENT);
-    assert_false(pacer_may_ask(&pacer));
+        assert_int_equal(pacer_acked(&pacer, never[i], -1, 1), PACER_ACK_NEVER_SENT);
+    assert_false(pacer_may_ask(&pacer, 1));
 }
 
 static void numbers_go_round_and_leave_out_zero(void **state)
 {
     (void)state;
-    struct pacer pacer = { .last_seq = UINT32_MAX };
+    struct pacer pacer = fresh();
+    pacer.last_seq = UINT32_MAX;
     assert_int_equal(send_one(&pacer, 1, 0), 1);
-    assert_int_equal(pacer_acked(&pacer, 1, 0), PACER_ACK_NEW);
+    assert_int_equal(pacer_acked(&pacer, 1, -1, 0), PACER_ACK_NEW);
+}
+
+static void silence_is_a_stall_and_then_the_end(void **state)
+{
+    (void)state;
+    struct pacer pacer = fresh();
+    assert_int_equal(pacer_state(&pacer, 3600 * NS_PER_S), PACER_FLOWS); /* nothing is under way */
+    send_one(&pacer, 100, 3600 * NS_PER_S);
+    assert_int_equal(pacer_state(&pacer, 3601900 * MS), PACER_FLOWS);
+    assert_int_equal(pacer_state(&pacer, 3602000 * MS), PACER_STALLS);
+    assert_false(pacer_may_ask(&pacer, 3602000 * MS));
+    assert_int_equal(pacer_state(&pacer, 3615000 * MS), PACER_DEAD);
+    pacer_acked(&pacer, 1, -1, 3615000 * MS);
+    assert_int_equal(pacer_state(&pacer, 3615000 * MS), PACER_FLOWS);
+}
+
+/* A network of one queue, and a client that decodes one picture after the other. */
+struct world {
+    double bytes_per_s;
+    int64_t rtt_ns, decode_ns;
+    double pixels; /* decoding and bytes go by them */
+    int64_t now_ns, link_free_ns, decoder_free_ns;
+    struct {
+        uint32_t seq;
+        int64_t at_ns, decode_ns;
+    } acks[PACER_MOST];
+    int ack_count;
+    /* what was seen since measure() */
+    int frames;
+    int64_t begin_ns, oldest_ns;
+    size_t most_bytes;
+};
+
+static void deliver(struct world *world, struct pacer *pacer)
+{
+    struct rung rung = ladder_rung(&pacer->ladder);
+    double area = rung.scale * rung.scale;
+    size_t bytes = (size_t)(world->pixels * 0.12 * area * rung.quality / 78);
+    int64_t made_ns = world->now_ns;
+    uint32_t seq = send_one(pacer, bytes, world->now_ns);
+    int64_t gone_ns = (world->link_free_ns > made_ns ? world->link_free_ns : made_ns) + (int64_t)((double)bytes / world->bytes_per_s * 1e9);
+    int64_t there_ns = gone_ns + world->rtt_ns / 2, decode_ns = (int64_t)((double)world->decode_ns * area);
+    int64_t drawn_ns = (world->decoder_free_ns > there_ns ? world->decoder_free_ns : there_ns) + decode_ns;
+    world->link_free_ns = gone_ns;
+    world->decoder_free_ns = drawn_ns;
+    world->acks[world->ack_count].seq = seq;
+    world->acks[world->ack_count].decode_ns = decode_ns;
+    world->acks[world->ack_count++].at_ns = drawn_ns + world->rtt_ns / 2;
+    world->oldest_ns = drawn_ns - made_ns > world->oldest_ns ? drawn_ns - made_ns : world->oldest_ns;
+    world->most_bytes = bytes > world->most_bytes ? bytes : world->most_bytes;
+    world->frames++;
+}
+
+static void run_world(struct world *world, struct pacer *pacer, double seconds)
+{
+    for (int64_t end_ns = world->now_ns + (int64_t)(seconds * 1e9); world->now_ns < end_ns; world->now_ns += MS) {
+        while (world->ack_count > 0 && world->acks[0].at_ns <= world->now_ns) {
+            assert_int_equal(pacer_acked(pacer, world->acks[0].seq, world->acks[0].decode_ns, world->now_ns), PACER_ACK_NEW);
+            for (int i = 1; i < world->ack_count; i++)
+                world->acks[i - 1] = world->acks[i];
+            world->ack_count--;
+        }
+        if (pacer->flight_count == 0)
+            channel_on_pong(&pacer->channel, world->rtt_ns, world->now_ns);
+        if (world->now_ns / MS % 20 == 0 && pacer_may_ask(pacer, world->now_ns)) /* drawing takes 20 ms */
+            deliver(world, pacer);
+    }
+}
+
+static void measure(struct world *world)
+{
+    world->frames = 0;
+    world->oldest_ns = 0;
+    world->most_bytes = 0;
+    world->begin_ns = world->now_ns;
+}
+
+static double rate(const struct world *world)
+{
+    return world->frames * 1e9 / (double)(world->now_ns - world->begin_ns);
+}
+
+static void a_fast_network_gets_the_best(void **state)
+{
+    (void)state;
+    struct pacer pacer = fresh();
+    struct world world = { .bytes_per_s = 100e6, .rtt_ns = MS, .decode_ns = 8 * MS, .pixels = 1920 * 1080, .now_ns = NS_PER_S };
+    run_world(&world, &pacer, 1);
+    measure(&world);
+    run_world(&world, &pacer, 5);
+    assert_int_equal(pacer.ladder.step, 0);
+    assert_true(rate(&world) > 45 && world.oldest_ns < 30 * MS);
+}
+
+static void a_long_way_does_not_cost_rate(void **state)
+{
+    (void)state;
+    struct pacer pacer = fresh();
+    struct world world = { .bytes_per_s = 50e6, .rtt_ns = 200 * MS, .decode_ns = 5 * MS, .pixels = 1280 * 720, .now_ns = NS_PER_S };
+    run_world(&world, &pacer, 3);
+    measure(&world);
+    run_world(&world, &pacer, 5);
+    assert_int_equal(pacer.ladder.step, 0);
+    assert_true(rate(&world) > 25 && world.oldest_ns < 150 * MS);
+}
+
+/* 1 Mbit/s and 200 ms. */
+static void a_slow_network_gets_small_pictures_in_time(void **state)
+{
+    (void)state;
+    struct pacer pacer = fresh();
+    struct world world = { .bytes_per_s = 125e3, .rtt_ns = 200 * MS, .decode_ns = 8 * MS, .pixels = 1280 * 720, .now_ns = NS_PER_S };
+    run_world(&world, &pacer, 5);
+    measure(&world);
+    run_world(&world, &pacer, 60);
+    assert_true(world.oldest_ns < 500 * MS);
+    assert_true(rate(&world) > 4);
+    assert_true(pacer.ladder.size == 0); /* the decoder is not to blame */
+}
+
+/* Decoding takes 150 ms: fewer pixels, not less quality, and no more than one waits there. */
+static void a_slow_decoder_gets_fewer_pixels(void **state)
+{
+    (void)state;
+    struct pacer pacer = fresh();
+    struct world world = { .bytes_per_s = 100e6, .rtt_ns = 2 * MS, .decode_ns = 150 * MS, .pixels = 1920 * 1080, .now_ns = NS_PER_S };
+    run_world(&world, &pacer, 10);
+    measure(&world);
+    run_world(&world, &pacer, 20);
+    assert_true(pacer.ladder.size >= 2 && pacer.ladder.step == 0);
+    assert_true(rate(&world) > 12 && world.oldest_ns < 200 * MS);
+}
+
+static void what_recovers_gets_its_quality_back(void **state)
+{
+    (void)state;
+    struct pacer pacer = fresh();
+    struct world world = { .bytes_per_s = 20e6, .rtt_ns = 20 * MS, .decode_ns = 8 * MS, .pixels = 1280 * 720, .now_ns = NS_PER_S };
+    run_world(&world, &pacer, 5);
+    assert_int_equal(pacer.ladder.step, 0);
+    world.bytes_per_s = 200e3;
+    run_world(&world, &pacer, 3);
+    assert_true(pacer.ladder.step >= 4);
+    measure(&world);
+    run_world(&world, &pacer, 10);
+    assert_true(world.oldest_ns < 500 * MS);
+    world.bytes_per_s = 20e6;
+    run_world(&world, &pacer, 40);
+    assert_int_equal(pacer.ladder.step, 0);
+}
+
+/* At the edge between two steps it must not swing. */
+static void steps_do_not_swing(void **state)
+{
+    (void)state;
+    for (int kbit_per_s = 500; kbit_per_s <= 64000; kbit_per_s = kbit_per_s * 5 / 4) {
+        struct pacer pacer = fresh();
+        struct world world = { .bytes_per_s = kbit_per_s * 125.0, .rtt_ns = 40 * MS, .decode_ns = 5 * MS, .pixels = 1280 * 720 };
+        int changes = 0, before;
+        world.now_ns = NS_PER_S;
+        run_world(&world, &pacer, 20);
+        before = pacer.ladder.step;
+        for (int i = 0; i < 600; i++) {
+            run_world(&world, &pacer, 0.1);
+            changes += pacer.ladder.step != before;
+            before = pacer.ladder.step;
+        }
+        assert_in_range(changes, 0, 6);
+    }
 }
 
 /* Whatever a client acknowledges, the window is never exceeded, and a good acknowledgement always opens it. */
@@ -80,24 +294,39 @@ static void random_clients(void **state)
     (void)state;
     unsigned seed = (unsigned)time(NULL);
     print_message("# seed %u\n", seed);
-    struct pacer pacer = { .last_seq = 100 };
+    struct pacer pacer = fresh();
+    pacer.last_seq = 100;
     for (int i = 0; i < 100000; i++) {
-        if (pacer_may_ask(&pacer) && rand_r(&seed) % 2)
-            send_one(&pacer, 1, i);
+        if (pacer_may_ask(&pacer, i * MS) && rand_r(&seed) % 2)
+            send_one(&pacer, 1, i * MS);
         else
-            pacer_acked(&pacer, pacer.last_seq + (uint32_t)(rand_r(&seed) % 9) - 4, i);
-        assert_true(pacer.flight_count >= 0 && pacer.flight_count <= PACER_WINDOW && pacer.asked == 0);
+            pacer_acked(&pacer, pacer.last_seq + (uint32_t)(rand_r(&seed) % 9) - 4, rand_r(&seed) - RAND_MAX / 2, i * MS);
+        assert_true(pacer.flight_count >= 0 && pacer.flight_count <= PACER_MOST && pacer.asked == 0);
+        assert_in_range(pacer.ladder.step, 0, LADDER_STEPS - 1);
     }
-    pacer_acked(&pacer, pacer.last_seq, 0);
+    pacer_acked(&pacer, pacer.last_seq, -1, 100000 * MS);
     assert_int_equal(pacer.flight_count, 0);
+    assert_true(pacer_may_ask(&pacer, 100000 * MS));
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(window_closes_until_acknowledged),    cmocka_unit_test(what_is_asked_for_counts),
-        cmocka_unit_test(a_newer_ack_stands_for_older_frames), cmocka_unit_test(an_ack_for_nothing_opens_nothing),
-        cmocka_unit_test(numbers_go_round_and_leave_out_zero), cmocka_unit_test(random_clients),
+        cmocka_unit_test(window_closes_until_acknowledged),
+        cmocka_unit_test(what_is_asked_for_counts),
+        cmocka_unit_test(nothing_is_asked_for_while_the_socket_is_full),
+        cmocka_unit_test(a_picture_cut_short_is_not_waited_for),
+        cmocka_unit_test(a_newer_ack_stands_for_older_frames),
+        cmocka_unit_test(an_ack_for_nothing_opens_nothing),
+        cmocka_unit_test(numbers_go_round_and_leave_out_zero),
+        cmocka_unit_test(silence_is_a_stall_and_then_the_end),
+        cmocka_unit_test(a_fast_network_gets_the_best),
+        cmocka_unit_test(a_long_way_does_not_cost_rate),
+        cmocka_unit_test(a_slow_network_gets_small_pictures_in_time),
+        cmocka_unit_test(a_slow_decoder_gets_fewer_pixels),
+        cmocka_unit_test(what_recovers_gets_its_quality_back),
+        cmocka_unit_test(steps_do_not_swing),
+        cmocka_unit_test(random_clients),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests(tests, NULL, NULL);

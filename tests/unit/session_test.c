@@ -138,6 +138,8 @@ static uint32_t send_picture(struct fixture *f)
 {
     uint32_t seq = 0;
     struct picture *picture = session_next_picture(f->session, f->now_ns, &seq);
+    if (picture)
+        session_wrote(f->session, true, f->now_ns);
     picture_destroy(&picture);
     return seq;
 }
@@ -147,6 +149,22 @@ static void ack(struct fixture *f, uint32_t seq)
     char text[64];
     snprintf(text, sizeof(text), "{\"type\":\"ack\",\"seq\":%u}", seq);
     say(f, text);
+}
+
+/* It is drawn, sent, and acknowledged after so long. */
+static void carry(struct fixture *f, const struct wish *wish, size_t bytes, int64_t way_ns)
+{
+    struct picture *picture = empty_picture(f, wish);
+    struct frame *frame = frame_create(16, 16);
+    uint8_t *payload = mem_array(bytes, 1);
+    frame->view = wish->view;
+    picture->packet = packet_create(frame, WIRE_CODEC_JPEG, true, payload, bytes);
+    frame_unref(&frame);
+    mem_free(payload);
+    session_on_picture(f->session, picture);
+    uint32_t seq = send_picture(f);
+    f->now_ns += way_ns;
+    ack(f, seq);
 }
 
 /* One picture all the way. */
@@ -235,7 +253,7 @@ static void newest_camera_wins_and_the_last_state_arrives(void **state)
             send_picture(f);
         }
     }
-    assert_int_equal(f->session->pacer.flight_count, PACER_WINDOW);
+    assert_int_equal(f->session->pacer.flight_count, PACER_LEAST);
     assert_int_equal(wish.only_replace ? 2 : wish.view.camera_seq, 2);
     ack(f, f->session->pacer.last_seq);
     assert_true(ask(f, &wish));
@@ -407,6 +425,86 @@ static void data_on_a_loaded_server_does_not_put_refinement_off_for_ever(void **
         refined += show(f).view.tier == TIER_STILL;
     }
     assert_in_range(refined, 2, 4);
+}
+
+/* 125 kB/s: what moves becomes smaller, what stands still is refined in two stages. */
+static void a_slow_client_gets_less_and_everything_in_the_end(void **state)
+{
+    struct fixture *f = *state;
+    struct wish wish;
+    greet(f);
+    for (int i = 1; i <= 40; i++) {
+        char text[96];
+        snprintf(text, sizeof(text), "{\"type\":\"camera\",\"seq\":%d,\"eye\":[9,9,%d],\"target\":[0,0,1]}", i, i + 5);
+        say(f, text);
+        assert_true(ask(f, &wish));
+        size_t bytes = (size_t)(200e3 * wish.quality.quality / 78 * wish.view.width_px / 640 * wish.view.width_px / 640);
+        carry(f, &wish, bytes, (int64_t)bytes * 8000);
+    }
+    assert_true(wish.quality.quality < 50 && wish.view.width_px < 400 && wish.view.height_px < 250);
+    assert_int_equal(f->session->view.width_px, 640);
+    f->now_ns += 300 * MS;
+    assert_true(ask(f, &wish));
+    assert_true(wish.view.tier == TIER_STILL && wish.view.width_px == 640 && !wish.quality.full_chroma);
+    carry(f, &wish, 100000, 800 * MS);
+    f->now_ns += 1100 * MS;
+    assert_true(ask(f, &wish));
+    assert_true(wish.always && wish.view.width_px == 640 && wish.quality.full_chroma && wish.quality.quality >= 90);
+    carry(f, &wish, 500000, 4000 * MS);
+    f->now_ns += 60 * NS_PER_S;
+    assert_false(ask(f, &wish));
+}
+
+static void a_refined_picture_that_is_out_of_date_is_not_sent_on(void **state)
+{
+    struct fixture *f = *state;
+    struct wish wish;
+    uint32_t seq;
+    greet(f);
+    assert_true(ask(f, &wish));
+    carry(f, &wish, 50000, 400 * MS);
+    f->now_ns += 300 * MS;
+    assert_true(ask(f, &wish));
+    assert_true(wish.view.tier == TIER_STILL);
+    paint(f, &wish, false);
+    struct picture *sending = session_next_picture(f->session, f->now_ns, &seq);
+    assert_false(session_gives_up(f->session, sending, 400000, f->now_ns));
+    say(f, "{\"type\":\"camera\",\"seq\":1,\"eye\":[9,9,9],\"target\":[0,0,1]}");
+    assert_false(session_gives_up(f->session, sending, 1000, f->now_ns));
+    assert_true(session_gives_up(f->session, sending, 400000, f->now_ns));
+    session_gave_up(f->session);
+    assert_false(ask(f, &wish));
+    session_wrote(f->session, true, f->now_ns);
+    assert_true(ask(f, &wish));
+    assert_true(wish.always && wish.view.camera_seq == 1);
+    picture_destroy(&sending);
+}
+
+static void who_takes_nothing_is_paused_and_costs_nothing(void **state)
+{
+    struct fixture *f = *state;
+    struct wish wish;
+    greet(f);
+    assert_true(ask(f, &wish));
+    paint(f, &wish, false);
+    assert_int_equal(send_picture(f), 1);
+    say(f, "{\"type\":\"camera\",\"seq\":1,\"eye\":[9,9,9],\"target\":[0,0,1]}");
+    assert_true(ask(f, &wish));
+    paint(f, &wish, false);
+    assert_non_null(f->session->ready);
+    f->now_ns += 2100 * MS;
+    session_on_tick(f->session, f->now_ns);
+    assert_null(f->session->ready);
+    assert_int_equal(session_state(f->session, f->now_ns), PACER_STALLS);
+    assert_false(ask(f, &wish));
+    ack(f, 1);
+    assert_int_equal(session_state(f->session, f->now_ns), PACER_FLOWS);
+    assert_true(ask(f, &wish));
+    assert_true(wish.always && wish.view.camera_seq == 1);
+    paint(f, &wish, false);
+    send_picture(f);
+    f->now_ns += 15100 * MS;
+    assert_int_equal(session_state(f->session, f->now_ns), PACER_DEAD);
 }
 
 static void hidden_pages_get_nothing(void **state)
@@ -621,6 +719,9 @@ int main(void)
         TEST(others_may_move_for_a_while_not_for_ever),
         TEST(data_on_a_loaded_server_is_not_refined_at_once),
         TEST(data_on_a_loaded_server_does_not_put_refinement_off_for_ever),
+        TEST(a_slow_client_gets_less_and_everything_in_the_end),
+        TEST(a_refined_picture_that_is_out_of_date_is_not_sent_on),
+        TEST(who_takes_nothing_is_paused_and_costs_nothing),
         TEST(hidden_pages_get_nothing),
         TEST(tags_come_whole_then_by_change_then_whole_again),
         TEST(params_are_confirmed_and_bad_ones_change_nothing),

@@ -266,6 +266,16 @@ test('health: each state has its own kind and words', () => {
     assert.equal(now().detail, 'The server went down. This picture is 6.3 s old. Trying again in 1 s.');
 });
 
+test('a frame that the server gave up is passed over in silence', () => {
+    const { socket, events } = greeted();
+    socket.sayBytes(vectorBytes('frame/bad-payload-missing.bin'));
+    assert.deepEqual(events, []);
+    socket.sayBytes(vectorBytes('frame/bad-payload-extra.bin'));
+    assert.deepEqual(events.map(([name]) => name), ['ignored']);
+    socket.sayBytes(vectorBytes('frame/jpeg-key.bin'));
+    assert.equal(events.at(-1)[0], 'frame');
+});
+
 test('a value beyond a limit, by the tag\'s own limits only', () => {
     const tag = { limits: { LL: null, L: 10, H: 80, HH: 90 } };
     assert.deepEqual([5, 10, 50, 80, 95].map((v) => limitState(tag, v)), ['L', 'L', null, 'H', 'HH']);

@@ -40,9 +40,9 @@ export class Place {
     }
 
     pick(x, y) {
-        const { picture } = this.session;
+        const { picture, size } = this.session;
         if (picture)
-            this.session.pick((x * picture.fullWidth) / this.viewport.width, (y * picture.fullHeight) / this.viewport.height);
+            this.session.pick((x * size.width) / this.viewport.width, (y * size.height) / this.viewport.height);
     }
 
     // Values go on: what is said of the place is said anew.

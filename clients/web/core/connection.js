@@ -8,7 +8,7 @@ export const DEAD_MS = 12000;
 const OPENING_MS = 10000;
 const CLOSE_REASONS = {
     1001: 'the server went down', 1002: 'this page and the server speak different versions', 1008: 'not allowed',
-    1009: 'a message was too long', 1013: 'the server is full',
+    1009: 'a message was too long', 1013: 'the server is full', 4000: 'this page was too slow',
 };
 
 export class Connection {

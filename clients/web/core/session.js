@@ -3,7 +3,7 @@
 import { cameraMessage, cameraOfMessage, home, same, valid } from './camera.js';
 import { LatencyMeter, RateMeter } from './meters.js';
 import { Model } from './model.js';
-import { decodeFrame, decodeMessage, WireError } from './wire.js';
+import { decodeFrame, decodeMessage, isGivenUp, WireError } from './wire.js';
 
 export const PARAMS = [
     'group', 'interpolation', 'distance', 'fill', 'strength', 'decay', 'power', 'radius_m', 'reach_m', 'colormap', 'ramp_interval', 'range',
@@ -45,7 +45,8 @@ export class Session {
         connection.onText = (text) => this.guard(() => this.heard(decodeMessage(text)));
         connection.onBytes = (bytes) => this.guard(() => {
             this.freshAt = this.now();
-            this.emit('frame', decodeFrame(bytes));
+            if (!isGivenUp(bytes))
+                this.emit('frame', decodeFrame(bytes));
         });
     }
 

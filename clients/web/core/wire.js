@@ -71,6 +71,13 @@ export function decodeFrame(bytes) {
     return frame;
 }
 
+// A message shorter than its header says: the server gave the frame up.
+export function isGivenUp(bytes) {
+    const data = bytes instanceof Uint8Array ? bytes : new Uint8Array(bytes);
+    const there = data.length - FRAME_HEADER_BYTES;
+    return there >= 0 && new DataView(data.buffer, data.byteOffset, data.length).getUint32(4, true) > there;
+}
+
 // Does it hold the whole picture, so that it stands without the one before?
 export const isWhole = (frame) => frame.width === frame.fullWidth && frame.height === frame.fullHeight;
 

@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What is known of the way to one client, from its acknowledgements and pongs: round trip, bandwidth, and how long it decodes.
+   A frame's way is taken apart by what the client says of its decoding, so that a slow decoder is not taken for a slow network.
+   Pure; time is handed in. */
+#ifndef NET_CHANNEL_H
+#define NET_CHANNEL_H
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+struct channel { /* zero-initialise; 0: not known yet */
+    int64_t rtt_ns[2], rtt_begin_ns; /* least of the last moments, and of those before */
+    double ns_per_byte; /* smoothed; so a network that slows down is noticed sooner than one that recovers */
+    double lag_ns;    /* from sent to acknowledged, without round trip and decoding: what the network adds; smoothed */
+    double decode_ns; /* smoothed */
+    int64_t arrived_ns, acked_ns;
+    bool decoding; /* the client decodes without a pause: what it acknowledges had waited there */
+};
+
+struct channel_ack {
+    size_t bytes;      /* of this frame and of those that it stands for */
+    int64_t sent_ns;   /* of the first of them */
+    int64_t now_ns;
+    int64_t decode_ns; /* as the client says; negative: it does not */
+};
+
+void channel_on_ack(struct channel *channel, const struct channel_ack *ack);
+void channel_on_pong(struct channel *channel, int64_t rtt_ns, int64_t now_ns);
+int64_t channel_rtt_ns(const struct channel *channel);
+/* The round trip was measured so long ago that nothing may be under way when it is measured next. */
+bool channel_rtt_is_old(const struct channel *channel, int64_t now_ns);
+/* How long the network takes for so many bytes; 0: not known. */
+int64_t channel_transfer_ns(const struct channel *channel, double bytes);
+
+#endif

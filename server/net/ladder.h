@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* How good the moving pictures of one session are: less quality first, then fewer pixels; what is still too much makes them rarer, which
+   is the pacer's. Down at once, up step by step and ever more slowly where it did not last. Pure; time is handed in. */
+#ifndef NET_LADDER_H
+#define NET_LADDER_H
+#include "net/channel.h"
+
+enum { LADDER_STEPS = 9, LADDER_FIRST = 3 /* where a client starts of whom nothing is known */, LADDER_SIZES = 4 };
+
+struct rung {
+    int quality;
+    double scale; /* of width and height */
+};
+
+struct ladder { /* ladder_init */
+    int step;        /* 0: best; by what the network takes */
+    int size;        /* 0: full; by how long the client decodes */
+    double unit_bytes; /* of a frame of step 0, as far as is known; smoothed */
+    bool known;      /* something was acknowledged */
+    int64_t good_since_ns, easy_since_ns, bad_since_ns; /* a better step would do; likewise size; decoding takes too long. 0: not now */
+    int64_t up_ns, down_ns; /* when it last went so */
+    int64_t patience_ns;
+};
+
+void ladder_init(struct ladder *ladder);
+struct rung ladder_rung(const struct ladder *ladder);
+/* A moving picture of that step was acknowledged. */
+void ladder_on_ack(struct ladder *ladder, const struct channel *channel, int step, size_t bytes, int64_t now_ns);
+/* What a moving picture is expected to have; 0: not known. */
+double ladder_bytes(const struct ladder *ladder);
+
+#endif
