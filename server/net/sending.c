@@ -172,7 +172,8 @@ void stream_on_pong(struct stream *stream, const void *bytes, size_t count)
 
 bool stream_has_output(const struct stream *stream, int64_t now_ns)
 {
-    return stream->sending || stream->cut || stream->session->ready || session_has_text(stream->session, now_ns) || ping_due(stream, now_ns);
+    return stream->sending || stream->cut || stream->session->ready || session_has_text(stream->session, now_ns) ||
+           ping_due(stream, now_ns);
 }
 
 /* Texts go between pictures, never into one. */

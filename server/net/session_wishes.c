@@ -184,7 +184,8 @@ bool session_gives_up(const struct session *session, const struct picture *sendi
         return false;
     if (pacer_state(&session->pacer, now_ns) != PACER_FLOWS || session->hidden)
         return true;
-    return session->input_pending && sending->wish.view.tier == TIER_STILL && pacer_is_slower(&session->pacer, (double)bytes_left, GIVE_UP_NS);
+    bool moved = session->input_pending && sending->wish.view.tier == TIER_STILL;
+    return moved && pacer_is_slower(&session->pacer, (double)bytes_left, GIVE_UP_NS);
 }
 
 /* The render thread takes it for shown: the next is drawn whatever it shows. */
