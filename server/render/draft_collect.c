@@ -59,6 +59,7 @@ static void fill_mesh(struct draft *draft, struct draft_mesh *mesh, int index, c
         .mirrored = stage_mirrored(asset),
     };
     matrix_multiply(picture->shot.clip_from_plant, asset->placement, clip);
+    shot_bring_forward(&picture->shot, asset, clip);
     for (int c = 0; c < 4; c++) {
         mesh->place[c][0] = (float)(half[0] * (clip[4 * c + 3] + clip[4 * c]));
         mesh->place[c][1] = (float)(half[1] * (clip[4 * c + 3] - clip[4 * c + 1]));

@@ -25,7 +25,6 @@
 #include "render/stroke.h"
 #include "render/targets.h"
 
-static const double HEIGHT_TO_DISTANCE = 1.2; /* from so far off, an eye of the usual angle sees as much */
 enum { STILL_SAMPLES = 4, SURFACES = 0, EDGES = 1, PASSES = 2 };
 /* Of what is drawn bit by bit, on a processor: how long a bit may take, and what is expected of it before anything was measured. */
 static const int64_t BIT_NS = 4 * NS_PER_MS;
@@ -147,7 +146,7 @@ static void aim(struct renderer *renderer, const struct view *view, struct shot 
     shot_init(shot, view->camera.eye_m, projection, view->height_px / (2 * tan(view->camera.fov_deg * M_PI / 360)));
     if (view->camera.height_m > 0) {
         shot->pixel_per_metre = view->height_px / view->camera.height_m;
-        shot->depth_scale = depth_m / (HEIGHT_TO_DISTANCE * view->camera.height_m);
+        shot->depth_scale = depth_m / camera_parallel_m(&view->camera);
         memcpy(shot->back, back, sizeof(back));
     }
 }

@@ -110,6 +110,7 @@ static void set_placement(const struct picture *picture, const struct scene_asse
     double clip_from_file[16], eye_from_file[16], sun_from_file[16];
     float matrix[16], normals[9];
     matrix_multiply(shot->clip_from_plant, asset->placement, clip_from_file);
+    shot_bring_forward(shot, asset, clip_from_file);
     matrix_to_float(clip_from_file, matrix);
     glUniformMatrix4fv(CLIP_FROM_FILE, 1, GL_FALSE, matrix);
     if (picture->measured)

@@ -8,6 +8,7 @@
 #include "base/mem.h"
 #include "gpu/program.h"
 #include "render/matrix.h"
+#include "scene/coincident.h"
 
 static struct model *find_model(struct stage *stage, const struct asset *file)
 {
@@ -100,6 +101,16 @@ bool shot_sees(const struct shot *shot, const struct scene_asset *asset)
             return false;
     }
     return true;
+}
+
+void shot_bring_forward(const struct shot *shot, const struct scene_asset *asset, double clip_from_file[16])
+{
+    double forward = coincident_forward(asset);
+    if (shot->pixel_per_metre > 0)
+        clip_from_file[14] += forward / shot->depth_scale;
+    else
+        for (int c = 0; c < 4; c++)
+            clip_from_file[4 * c + 2] *= 1 + forward;
 }
 
 const struct model_level *stage_level(const struct stage *stage, const struct shot *shot, int asset, double error_px)

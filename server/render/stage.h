@@ -51,6 +51,8 @@ void stage_depth_end(const struct clip *clip);
 /* Between the two: programs that cut are drawn with. */
 void stage_clip_begin(const struct clip *clip);
 void stage_clip_end(const struct clip *clip);
+/* Brings an asset forward where its faces coincide with others' (scene/coincident.h). */
+void shot_bring_forward(const struct shot *shot, const struct scene_asset *asset, double clip_from_file[16]);
 bool stage_mirrored(const struct scene_asset *asset); /* its placement turns the winding of triangles round */
 /* For drawing one-sided surfaces of this asset: a mirrored placement turns them round. */
 void stage_set_front_face(const struct scene_asset *asset);

@@ -221,6 +221,11 @@ void camera_basis(const struct camera *camera, double right[3], double up[3], do
     memcpy(forward, basis.forward, sizeof(basis.forward));
 }
 
+double camera_parallel_m(const struct camera *camera)
+{
+    return 1.2 * camera->height_m;
+}
+
 void camera_matrices(const struct camera *camera, double aspect, const double min_m[3], const double max_m[3], double view[16],
                      double projection[16])
 {

@@ -23,6 +23,8 @@ void camera_fit_up(struct camera *camera, enum axis up, const double min_m[3], c
 void camera_fit_along(struct camera *camera, const double forward[3], const double min_m[3], const double max_m[3], double aspect);
 /* Unit vectors of the picture. */
 void camera_basis(const struct camera *camera, double right[3], double up[3], double forward[3]);
+/* From so far off, an eye of the usual angle sees as much as an orthographic picture shows. 0: perspective. */
+double camera_parallel_m(const struct camera *camera);
 /* near and far planes are chosen to hold the box: in an orthographic picture also what of it lies behind the eye.
    view_from_plant and clip_from_view, each 16 doubles. */
 void camera_matrices(const struct camera *camera, double aspect, const double min_m[3], const double max_m[3], double view[16],

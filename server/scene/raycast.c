@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "plant/transform.h"
+#include "scene/coincident.h"
 
 static const double RIM = 1e-9; /* corners weigh so little less than nothing: rays do not slip through between triangles */
 
@@ -22,6 +23,7 @@ void ray_init(struct ray *ray, const struct camera *camera, double aspect, doubl
     }
     ray->low = parallel ? -INFINITY : 0;
     ray->high = INFINITY;
+    ray->parallel_m = camera_parallel_m(camera);
 }
 
 /* The part of low..high in the box. */
@@ -45,7 +47,8 @@ struct search { /* of one asset */
     const struct asset_view *view;
     double origin[3], direction[3], low; /* file frame */
     bool cut;
-    struct raycast_hit *hit; /* t: nothing farther counts */
+    double limit; /* of t: nothing farther counts */
+    struct raycast_hit *hit;
     int asset;
 };
 
@@ -81,18 +84,18 @@ static void try_triangle(struct search *search, const uint32_t corners[3], bool 
         return;
     cross(s, ab, q);
     double v = dot(search->direction, q) / determinant, t = dot(ac, q) / determinant;
-    if (v < -RIM || u + v > 1 + RIM || t < search->low || t >= search->hit->t)
+    if (v < -RIM || u + v > 1 + RIM || t < search->low || t >= search->limit)
         return;
     memcpy(search->hit->corners, corners, sizeof(search->hit->corners));
     memcpy(search->hit->weights, (double[3]){ 1 - u - v, u, v }, sizeof(search->hit->weights));
     search->hit->asset = search->asset;
-    search->hit->t = t;
+    search->hit->t = search->limit = t;
     search->hit->inside = search->cut && determinant < 0;
 }
 
 static bool cluster_crossed(const struct search *search, const struct asset_cluster *cluster)
 {
-    double min[3], max[3], low = search->low, high = search->hit->t;
+    double min[3], max[3], low = search->low, high = search->limit;
     for (int i = 0; i < 3; i++) {
         min[i] = (double)cluster->low_m[i];
         max[i] = (double)cluster->high_m[i];
@@ -136,21 +139,34 @@ static void find_normal(const struct scene *scene, const struct ray *ray, struct
         hit->normal[i] *= turn / length;
 }
 
+/* Where a hit of that asset counts as, which is brought forward as in pictures; and back. */
+static double brought_forward(const struct ray *ray, const struct scene_asset *asset, double t)
+{
+    double forward = coincident_forward(asset);
+    return ray->parallel_m > 0 ? t - forward * ray->parallel_m : t / (1 + forward);
+}
+
+static double brought_back(const struct ray *ray, const struct scene_asset *asset, double t)
+{
+    double forward = coincident_forward(asset);
+    return ray->parallel_m > 0 ? t + forward * ray->parallel_m : t * (1 + forward);
+}
+
 void raycast(const struct scene *scene, const struct visibility *visibility, const struct ray *ray, struct raycast_hit *hit)
 {
     double low = ray->low, high = ray->high;
     *hit = (struct raycast_hit){ .asset = -1 };
     if (!clip_ray(&visibility->clip, ray->origin, ray->direction, &low, &high))
         return;
-    hit->t = high;
+    double nearest = INFINITY;
     for (size_t i = 0; i < scene->asset_count; i++) {
         const struct scene_asset *asset = &scene->assets[i];
-        double file_from_plant[16], enter = low, leave = hit->t, ahead[3];
+        double file_from_plant[16], enter = low, limit = fmin(high, brought_back(ray, asset, nearest)), leave = limit, ahead[3];
         if (visibility_of(visibility, (int)i) != ASSET_SHOWN ||
             !cross_box(ray->origin, ray->direction, asset->bounds_min_m, asset->bounds_max_m, &enter, &leave) ||
             !transform_invert(asset->placement, file_from_plant))
             continue;
-        struct search search = { .view = &asset->file->view, .low = low, .hit = hit, .asset = (int)i };
+        struct search search = { .view = &asset->file->view, .low = low, .limit = limit, .hit = hit, .asset = (int)i };
         search.cut = clip_touches(&visibility->clip, asset->bounds_min_m, asset->bounds_max_m);
         for (int c = 0; c < 3; c++)
             ahead[c] = ray->origin[c] + ray->direction[c];
@@ -159,6 +175,8 @@ void raycast(const struct scene *scene, const struct visibility *visibility, con
         for (int c = 0; c < 3; c++)
             search.direction[c] -= search.origin[c];
         search_asset(&search);
+        if (hit->asset == (int)i)
+            nearest = brought_forward(ray, asset, hit->t);
     }
     if (hit->asset >= 0)
         find_normal(scene, ray, hit);

@@ -9,6 +9,7 @@
 struct ray {
     double origin[3], direction[3]; /* plant frame; a place is origin + t direction */
     double low, high;               /* of t */
+    double parallel_m;              /* as camera_parallel_m */
 };
 
 struct raycast_hit {

@@ -10,6 +10,7 @@
 #include "plant/recipe.h"
 #include "plant/sensors.h"
 #include "plant/transform.h"
+#include "scene/coincident.h"
 #include "scene/manifest.h"
 
 #define SAME_PLACE_M 1e-4
@@ -189,7 +190,9 @@ struct scene *scene_create(struct log *log, const struct plant *plant, const cha
     }
     manifest_finish(&manifest);
     mem_free(hashes);
-    if (!good)
+    if (good)
+        coincident_find(scene);
+    else
         scene_destroy(&scene);
     return scene;
 }

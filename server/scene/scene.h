@@ -24,6 +24,7 @@ struct scene_asset {
     double bounds_min_m[3], bounds_max_m[3]; /* plant frame, axis-aligned */
     struct scene_sensor *sensors; /* of every group, in the order of the tag list */
     size_t sensor_count;
+    int front;                   /* where faces of two assets coincide, the greater one is seen: scene/coincident.h */
 };
 
 struct scene {

@@ -1,0 +1,186 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Large triangles of two assets on one plane and over each other. */
+#include "scene/coincident.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "plant/transform.h"
+
+static const double SAME_PLANE_M = 2e-4, SAME_NORMAL = 1e-3; /* CAD's own places, kept as floats */
+static const double LEAST_AREA_M2 = 1e-4, LEAST_OVERLAP_M = 1e-3;
+/* More than pictures err in depth where a surface is seen at 6 degrees: a place in the picture is right to 1/256 pixel. */
+static const double FORWARD = 4e-5;
+enum { MOST_STEPS = 7 };
+
+struct face {
+    double normal[3]; /* turned so that its largest part is above 0: both sides are alike */
+    double offset_m;  /* of its plane, from the middle of where two assets meet */
+    double corner[3][3], low[3], high[3];
+};
+struct faces {
+    struct face *at;
+    size_t count, capacity;
+};
+struct region {
+    double low[3], high[3];
+};
+
+static bool boxes_meet(const double low_a[3], const double high_a[3], const double low_b[3], const double high_b[3])
+{
+    for (int c = 0; c < 3; c++)
+        if (low_a[c] > high_b[c] + SAME_PLANE_M || low_b[c] > high_a[c] + SAME_PLANE_M)
+            return false;
+    return true;
+}
+
+static void turn(double normal[3])
+{
+    int most = fabs(normal[1]) > fabs(normal[0]) ? 1 : 0;
+    most = fabs(normal[2]) > fabs(normal[most]) ? 2 : most;
+    for (int c = 0; c < 3 && normal[most] < 0; c++)
+        normal[c] = -normal[c];
+}
+
+/* False: too small to be looked at. */
+static bool measure(struct face *face)
+{
+    double ab[3], ac[3];
+    for (int c = 0; c < 3; c++) {
+        ab[c] = face->corner[1][c] - face->corner[0][c];
+        ac[c] = face->corner[2][c] - face->corner[0][c];
+        face->low[c] = fmin(face->corner[0][c], fmin(face->corner[1][c], face->corner[2][c]));
+        face->high[c] = fmax(face->corner[0][c], fmax(face->corner[1][c], face->corner[2][c]));
+    }
+    for (int c = 0; c < 3; c++)
+        face->normal[c] = ab[(c + 1) % 3] * ac[(c + 2) % 3] - ab[(c + 2) % 3] * ac[(c + 1) % 3];
+    double twice = sqrt(face->normal[0] * face->normal[0] + face->normal[1] * face->normal[1] + face->normal[2] * face->normal[2]);
+    if (!(twice > 2 * LEAST_AREA_M2))
+        return false;
+    for (int c = 0; c < 3; c++)
+        face->normal[c] /= twice;
+    turn(face->normal);
+    return true;
+}
+
+/* Of the coarsest level: it keeps what is flat, in few triangles. */
+static void collect(const struct scene_asset *asset, const struct region *region, struct faces *out)
+{
+    const struct asset_view *view = &asset->file->view;
+    const struct asset_level *level = &view->levels[view->header->level_count - 1];
+    out->count = 0;
+    for (uint32_t p = 0; p < level->primitive_count; p++) {
+        const struct asset_primitive *primitive = &view->primitives[level->first_primitive + p];
+        for (uint32_t i = 0; i < primitive->index_count; i += 3) {
+            struct face face = { .offset_m = 0 };
+            for (int k = 0; k < 3; k++) {
+                const float *place = view->positions_m[view->indices[primitive->first_index + i + (uint32_t)k]];
+                transform_point(asset->placement, (double[3]){ (double)place[0], (double)place[1], (double)place[2] }, face.corner[k]);
+            }
+            if (!measure(&face) || !boxes_meet(face.low, face.high, region->low, region->high))
+                continue;
+            for (int c = 0; c < 3; c++)
+                face.offset_m += face.normal[c] * (face.corner[0][c] - 0.5 * (region->low[c] + region->high[c]));
+            mem_grow(&out->at, &out->capacity, out->count + 1, sizeof(*out->at));
+            out->at[out->count++] = face;
+        }
+    }
+}
+
+static int by_offset(const void *a, const void *b)
+{
+    const struct face *x = a, *y = b;
+    return (x->offset_m > y->offset_m) - (x->offset_m < y->offset_m);
+}
+
+static bool over_each_other(const struct face *a, const struct face *b)
+{
+    int wide = 0;
+    for (int c = 0; c < 3; c++) {
+        double overlap_m = fmin(a->high[c], b->high[c]) - fmax(a->low[c], b->low[c]);
+        if (overlap_m < -SAME_PLANE_M)
+            return false;
+        wide += overlap_m > LEAST_OVERLAP_M;
+    }
+    return wide >= 2;
+}
+
+static bool on_one_plane(const struct face *a, const struct face *b)
+{
+    for (int c = 0; c < 3; c++)
+        if (fabs(a->normal[c] - b->normal[c]) > SAME_NORMAL)
+            return false;
+    for (int k = 0; k < 3; k++) {
+        double away_m = 0;
+        for (int c = 0; c < 3; c++)
+            away_m += a->normal[c] * (b->corner[k][c] - a->corner[0][c]);
+        if (fabs(away_m) > SAME_PLANE_M)
+            return false;
+    }
+    return true;
+}
+
+/* Planes of nearly the same direction differ in their offsets by what that makes over the region. */
+static bool coincide(const struct faces *a, const struct faces *b, const struct region *region)
+{
+    double slack_m = SAME_PLANE_M;
+    for (int c = 0; c < 3; c++)
+        slack_m += SAME_NORMAL * (region->high[c] - region->low[c]);
+    for (size_t i = 0, first = 0; i < a->count; i++) {
+        while (first < b->count && b->at[first].offset_m < a->at[i].offset_m - slack_m)
+            first++;
+        for (size_t j = first; j < b->count && b->at[j].offset_m <= a->at[i].offset_m + slack_m; j++)
+            if (over_each_other(&a->at[i], &b->at[j]) && on_one_plane(&a->at[i], &b->at[j]))
+                return true;
+    }
+    return false;
+}
+
+static bool meet(const struct scene_asset *a, const struct scene_asset *b, struct faces faces[2])
+{
+    struct region region;
+    if (!boxes_meet(a->bounds_min_m, a->bounds_max_m, b->bounds_min_m, b->bounds_max_m))
+        return false;
+    for (int c = 0; c < 3; c++) {
+        region.low[c] = fmax(a->bounds_min_m[c], b->bounds_min_m[c]);
+        region.high[c] = fmin(a->bounds_max_m[c], b->bounds_max_m[c]);
+    }
+    collect(a, &region, &faces[0]);
+    if (faces[0].count == 0)
+        return false;
+    collect(b, &region, &faces[1]);
+    for (int i = 0; i < 2; i++)
+        qsort(faces[i].at, faces[i].count, sizeof(*faces[i].at), by_offset);
+    return coincide(&faces[0], &faces[1], &region);
+}
+
+/* From what is farthest behind: each asset in front of all that came before and that it meets. */
+void coincident_find(struct scene *scene)
+{
+    struct faces faces[2] = { 0 };
+    int *order = mem_array(scene->asset_count, sizeof(*order));
+    size_t count = 0;
+    for (int with_sensors = 0; with_sensors < 2; with_sensors++)
+        for (size_t i = scene->asset_count; i-- > 0;)
+            if ((scene->assets[i].sensor_count > 0) == with_sensors)
+                order[count++] = (int)i;
+    for (size_t i = 0; i < count; i++) {
+        struct scene_asset *asset = &scene->assets[order[i]];
+        asset->front = 0;
+        for (size_t k = 0; k < i; k++) {
+            const struct scene_asset *behind = &scene->assets[order[k]];
+            if (behind->front >= asset->front && asset->front < MOST_STEPS && meet(asset, behind, faces))
+                asset->front = behind->front < MOST_STEPS ? behind->front + 1 : MOST_STEPS;
+        }
+    }
+    mem_free(order);
+    mem_free(faces[0].at);
+    mem_free(faces[1].at);
+}
+
+double coincident_forward(const struct scene_asset *asset)
+{
+    return FORWARD * asset->front;
+}
