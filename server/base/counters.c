@@ -4,13 +4,16 @@
 
 #include <inttypes.h>
 #include <pthread.h>
+#include <stdbool.h>
 #include <string.h>
 
+#include "base/histogram.h"
 #include "base/mem.h"
 
 struct entry {
     char *name, *type, *help;
     counter value;
+    struct histogram *histogram; /* NULL: a single value */
     struct entry *next;
 };
 
@@ -37,6 +40,7 @@ void counters_destroy(struct counters **counters)
         mem_free(e->name);
         mem_free(e->type);
         mem_free(e->help);
+        mem_free(e->histogram);
         mem_free(e);
     }
     pthread_mutex_destroy(&(*counters)->lock);
@@ -44,8 +48,9 @@ void counters_destroy(struct counters **counters)
     *counters = NULL;
 }
 
-counter *counters_add(struct counters *counters, const char *name, const char *type, const char *help)
+static struct entry *find_or_add(struct counters *counters, const char *name, const char *type, const char *help)
 {
+    bool distribution = !strcmp(type, "histogram");
     pthread_mutex_lock(&counters->lock);
     struct entry *e = counters->first;
     while (e && strcmp(e->name, name) != 0)
@@ -55,11 +60,22 @@ counter *counters_add(struct counters *counters, const char *name, const char *t
         e->name = mem_strdup(name);
         e->type = mem_strdup(type);
         e->help = mem_strdup(help);
+        e->histogram = distribution ? mem_new(sizeof(*e->histogram)) : NULL;
         *counters->last = e;
         counters->last = &e->next;
     }
     pthread_mutex_unlock(&counters->lock);
-    return &e->value;
+    return e;
+}
+
+counter *counters_add(struct counters *counters, const char *name, const char *type, const char *help)
+{
+    return &find_or_add(counters, name, type, help)->value;
+}
+
+struct histogram *counters_add_histogram(struct counters *counters, const char *name, const char *help)
+{
+    return find_or_add(counters, name, "histogram", help)->histogram;
 }
 
 static size_t family_length(const char *name)
@@ -81,6 +97,14 @@ static bool family_printed(const struct entry *first, const struct entry *e)
     return false;
 }
 
+static void print_entry(struct entry *e, struct text *out)
+{
+    if (e->histogram)
+        histogram_print(e->histogram, e->name, out);
+    else
+        text_add(out, "%s %" PRId64 "\n", e->name, atomic_load_explicit(&e->value, memory_order_relaxed));
+}
+
 void counters_print(struct counters *counters, struct text *out)
 {
     pthread_mutex_lock(&counters->lock);
@@ -91,7 +115,7 @@ void counters_print(struct counters *counters, struct text *out)
         text_add(out, "# HELP %.*s %s\n# TYPE %.*s %s\n", n, e->name, e->help, n, e->name, e->type);
         for (struct entry *f = e; f; f = f->next)
             if (same_family(e, f))
-                text_add(out, "%s %" PRId64 "\n", f->name, atomic_load_explicit(&f->value, memory_order_relaxed));
+                print_entry(f, out);
     }
     pthread_mutex_unlock(&counters->lock);
 }

@@ -15,6 +15,8 @@ void counters_destroy(struct counters **counters);
 /* Registers a name (`plantcast_frames_total`, labels allowed: `plantcast_reads_total{source="plc1"}`), or finds it again.
    type is "counter" or "gauge". The address stays valid as long as `counters`. help and type need only live for the call. */
 counter *counters_add(struct counters *counters, const char *name, const char *type, const char *help);
+/* Likewise, of durations (base/histogram.h); in seconds. */
+struct histogram *counters_add_histogram(struct counters *counters, const char *name, const char *help);
 void counters_print(struct counters *counters, struct text *out);
 
 static inline void counter_inc(counter *c, int64_t by)

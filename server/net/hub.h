@@ -6,6 +6,7 @@
 
 #include "net/net.h"
 #include "net/session.h"
+#include "net/stages.h"
 
 enum { SLICE_BYTES = 32 * 1024, MAX_STREAMS = 1024, MAX_SNAPSHOTS = 8 };
 
@@ -17,6 +18,7 @@ struct hub {
     struct session_world world;
     struct snapshot *snapshot;
     uint32_t *changes; /* reading.changes at the last tick, by tag */
+    int64_t data_ns;   /* when the oldest of those that changed came in; monotonic */
     bool *links_up;
     struct lws_context *context;
     struct stream *streams;
@@ -26,6 +28,7 @@ struct hub {
     bool asked;                         /* wishes were made: painter_go is due */
     int64_t still_ns;                   /* what the last refined picture cost */
     uint8_t out[LWS_PRE + SLICE_BYTES]; /* lws writes its framing in front of what is sent */
+    struct stages stages;
     struct {
         counter *sessions, *sessions_all, *frames, *frame_bytes, *messages, *errors, *dropped, *given_up, *stalled, *requests, *refused;
     } counters;

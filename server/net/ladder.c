@@ -83,7 +83,7 @@ static void follow_network(struct ladder *ladder, const struct channel *channel,
     } else if (!ladder->good_since_ns) {
         ladder->good_since_ns = now_ns;
     } else if (now_ns - ladder->good_since_ns >= ladder->patience_ns) {
-        go_up(ladder, ladder->step - 1, now_ns);
+        go_up(ladder, up, now_ns);
     }
 }
 

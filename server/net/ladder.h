@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* How good the moving pictures of one session are: less quality first, then fewer pixels; what is still too much makes them rarer, which
-   is the pacer's. Down at once, up step by step and ever more slowly where it did not last. Pure; time is handed in. */
+   is the pacer's. Down at once, up after a while, and a longer while where it did not last. Pure; time is handed in. */
 #ifndef NET_LADDER_H
 #define NET_LADDER_H
 #include "net/channel.h"

@@ -14,6 +14,7 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "net/hub.h"
+#include "value/quality.h"
 
 static const int64_t TICK_NS = 100 * NS_PER_MS;
 static const int64_t GOODBYE_NS = 500 * NS_PER_MS; /* for the close frames to leave */
@@ -82,13 +83,26 @@ void hub_go(struct hub *hub)
 
 /* --- what happens by itself ---------------------------------------------------------------------------------------------- */
 
+/* A reading that went stale changed just now, whenever it came in. */
+static int64_t changed_ns(const struct snapshot *snapshot, const struct reading *reading)
+{
+    bool usable = !quality_is_bad(reading->quality) && reading->age_ns < NS_PER_S;
+    return snapshot->taken_mono_ns - (usable ? reading->age_ns : 0);
+}
+
 static bool take_snapshot(struct hub *hub)
 {
     bool changed = false;
     store_snapshot(hub->params.store, clock_mono_ns(), clock_utc_ns(), hub->snapshot);
+    hub->data_ns = hub->snapshot->taken_mono_ns;
     for (size_t i = 0; i < hub->snapshot->count; i++) {
-        changed |= hub->changes[i] != hub->snapshot->readings[i].changes;
-        hub->changes[i] = hub->snapshot->readings[i].changes;
+        const struct reading *reading = &hub->snapshot->readings[i];
+        if (hub->changes[i] == reading->changes)
+            continue;
+        int64_t at_ns = changed_ns(hub->snapshot, reading);
+        hub->data_ns = at_ns < hub->data_ns ? at_ns : hub->data_ns;
+        hub->changes[i] = reading->changes;
+        changed = true;
     }
     return changed;
 }
@@ -183,6 +197,7 @@ bool net_port_free(struct log *log, const char *address, int port)
 static void add_counters(struct hub *hub)
 {
     struct counters *c = hub->params.counters;
+    stages_init(&hub->stages, c);
     hub->counters.sessions = counters_add(c, "plantcast_sessions", "gauge", "Clients that are connected.");
     hub->counters.sessions_all = counters_add(c, "plantcast_sessions_total", "counter", "Clients that ever were.");
     hub->counters.refused = counters_add(c, "plantcast_sessions_refused_total", "counter", "Clients that were not let in.");

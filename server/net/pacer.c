@@ -74,7 +74,8 @@ uint32_t pacer_sent(struct pacer *pacer, size_t bytes, const struct pacer_note *
     pacer->asked--;
     pacer->last_seq = pacer->last_seq == UINT32_MAX ? 1 : pacer->last_seq + 1;
     pacer->moved_on_ns = now_ns;
-    pacer->flight[pacer->flight_count++] = (struct pacer_flight){ .seq = pacer->last_seq, .bytes = bytes, .sent_ns = now_ns, .note = *note };
+    pacer->flight[pacer->flight_count++] =
+        (struct pacer_flight){ .seq = pacer->last_seq, .bytes = bytes, .sent_ns = now_ns, .note = *note };
     return pacer->last_seq;
 }
 

@@ -194,6 +194,7 @@ bool stream_send(struct hub *hub, struct stream *stream)
     if (session_next_text(session, now_ns, clock_utc_ns(), &text)) {
         good = write_text(stream, text.at + LWS_PRE, text.length - LWS_PRE);
     } else if ((stream->sending = session_next_picture(session, now_ns, &stream->seq))) {
+        stages_sent(&hub->stages, stream->sending, now_ns);
         stream->step = SEND_MARKERS;
         stream->sent = 0;
         good = write_picture(hub, stream);

@@ -227,9 +227,9 @@ void session_on_tick(struct session *session, int64_t now_ns)
         session_pause(session);
 }
 
-void session_on_data(struct session *session, int64_t now_ns)
+void session_on_data(struct session *session, int64_t data_ns)
 {
     if (!session->data_pending)
-        session->data_ns = now_ns;
+        session->data_ns = data_ns;
     session->data_pending = session->owes_tags = true;
 }

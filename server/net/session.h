@@ -69,7 +69,7 @@ void session_destroy(struct session **session); /* &NULL is fine; leaves NULL */
 void session_on_message(struct session *session, const char *text, size_t count, int64_t now_ns, int64_t now_utc_ns);
 void session_on_oversize(struct session *session, size_t count, int64_t now_ns); /* a message too long to be kept */
 void session_on_tick(struct session *session, int64_t now_ns);                   /* every 100 ms or so */
-void session_on_data(struct session *session, int64_t now_ns);                   /* a reading changed */
+void session_on_data(struct session *session, int64_t data_ns);                  /* a reading changed: then */
 /* Takes the picture over. */
 void session_on_picture(struct session *session, struct picture *picture);
 

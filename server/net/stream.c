@@ -134,7 +134,7 @@ void streams_on_tick(struct hub *hub, bool data_changed, bool links_changed)
     for (struct stream *stream = hub->streams; stream; stream = stream->next) {
         session_on_tick(stream->session, now_ns);
         if (data_changed)
-            session_on_data(stream->session, now_ns);
+            session_on_data(stream->session, hub->data_ns);
         stream->session->owes_status |= links_changed;
         count(hub, stream);
         watch_stall(hub, stream, now_ns);
@@ -192,6 +192,9 @@ static void on_message(struct hub *hub, struct stream *stream)
         session_on_oversize(session, stream->in_count, now_ns);
     else
         session_on_message(session, stream->in.at ? stream->in.at : "", stream->in.length, now_ns, clock_utc_ns());
+    if (session->measured)
+        stages_shown(&hub->stages, &session->pacer);
+    session->measured = false;
     if (session->input_pending)
         hub->world.moving_until_ns = now_ns + MOVING_NS;
     stream->in.length = 0;

@@ -11,7 +11,9 @@
 #include <unistd.h>
 #include <cmocka.h>
 
+#include "base/clock.h"
 #include "base/counters.h"
+#include "base/histogram.h"
 #include "base/diag.h"
 #include "base/log.h"
 #include "base/mem.h"
@@ -167,6 +169,36 @@ static void repeats_in_the_log_are_counted(void **state)
     temp_folder_destroy(&folder);
 }
 
+static void durations_are_counted_by_bucket(void **state)
+{
+    (void)state;
+    struct counters *counters = counters_create();
+    struct text text = { 0 };
+    struct histogram *plain = counters_add_histogram(counters, "plain_seconds", "Plain.");
+    struct histogram *labelled = counters_add_histogram(counters, "stage_seconds{stage=\"a\"}", "Stages.");
+    assert_ptr_equal(counters_add_histogram(counters, "plain_seconds", "Plain."), plain);
+    static const int64_t ms[] = { -5, 0, 1, 2, 2, 3, 5000 };
+    for (size_t i = 0; i < sizeof(ms) / sizeof(ms[0]); i++)
+        histogram_add(plain, ms[i] * NS_PER_MS);
+    histogram_add(labelled, 25 * NS_PER_MS);
+    counters_print(counters, &text);
+    static const char *const wanted[] = { "# TYPE plain_seconds histogram\n",
+                                          "plain_seconds_bucket{le=\"0.0005\"} 2\n",
+                                          "plain_seconds_bucket{le=\"0.002\"} 5\n",
+                                          "plain_seconds_bucket{le=\"2.5\"} 6\n",
+                                          "plain_seconds_bucket{le=\"+Inf\"} 7\n",
+                                          "plain_seconds_sum 5.008000\n",
+                                          "plain_seconds_count 7\n",
+                                          "stage_seconds_bucket{stage=\"a\",le=\"0.016\"} 0\n",
+                                          "stage_seconds_bucket{stage=\"a\",le=\"0.025\"} 1\n",
+                                          "stage_seconds_sum{stage=\"a\"} 0.025000\n",
+                                          "stage_seconds_count{stage=\"a\"} 1\n" };
+    for (size_t i = 0; i < sizeof(wanted) / sizeof(wanted[0]); i++)
+        assert_non_null(strstr(text.at, wanted[i]));
+    text_finish(&text);
+    counters_destroy(&counters);
+}
+
 int main(void)
 {
     cmocka_set_message_output(CM_OUTPUT_TAP);
@@ -176,6 +208,7 @@ int main(void)
         cmocka_unit_test(memory_is_zeroed_and_checked),
         cmocka_unit_test(findings_come_in_the_order_of_the_text),
         cmocka_unit_test(counters_are_printed_by_family),
+        cmocka_unit_test(durations_are_counted_by_bucket),
         cmocka_unit_test(repeats_in_the_log_are_counted),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,0 +1,17 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Durations counted by how long they were, in Prometheus' form. Thread: any; a bucket is one atomic. */
+#ifndef BASE_HISTOGRAM_H
+#define BASE_HISTOGRAM_H
+#include "base/counters.h"
+
+enum { HISTOGRAM_BUCKETS = 16 };
+struct histogram {
+    counter buckets[HISTOGRAM_BUCKETS + 1]; /* the last one: longer than all bounds */
+    counter sum_us;
+};
+
+void histogram_add(struct histogram *histogram, int64_t duration_ns); /* negative counts as 0 */
+/* name: with or without labels, as in counters_add. */
+void histogram_print(struct histogram *histogram, const char *name, struct text *out);
+
+#endif
