@@ -2,6 +2,7 @@
 /* One asset from a parsed model to the bytes of its file. */
 #include "preprocess/build.h"
 
+#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,6 +15,7 @@
 #include "preprocess/measure.h"
 #include "preprocess/order.h"
 #include "preprocess/split.h"
+#include "preprocess/stock.h"
 
 static void hash_text(XXH3_state_t *state, const char *text)
 {
@@ -29,8 +31,7 @@ static void hash_field(XXH3_state_t *state, const struct plant *plant, const str
     XXH3_64bits_update(state, numbers, sizeof(numbers));
 }
 
-uint64_t build_key(uint64_t model_hash, const struct geometry_params *geometry, const struct plant *plant,
-                   const struct plant_sensor *sensors, size_t sensor_count)
+uint64_t build_stock_key(uint64_t model_hash, const struct geometry_params *geometry)
 {
     const uint32_t numbers[3] = { ASSET_VERSION, BUILD_REVISION, (uint32_t)geometry->up };
     XXH3_state_t state;
@@ -43,6 +44,15 @@ uint64_t build_key(uint64_t model_hash, const struct geometry_params *geometry, 
     XXH3_64bits_update(&state, &geometry->unit_m, sizeof(geometry->unit_m));
     if (geometry->tolerance_m > 0)
         XXH3_64bits_update(&state, &geometry->tolerance_m, sizeof(geometry->tolerance_m));
+    return XXH3_64bits_digest(&state);
+}
+
+uint64_t build_key(uint64_t stock_key, const struct plant *plant, const struct plant_sensor *sensors, size_t sensor_count)
+{
+    XXH3_state_t state;
+    XXH3_INITSTATE(&state);
+    XXH3_64bits_reset(&state);
+    XXH3_64bits_update(&state, &stock_key, sizeof(stock_key));
     for (size_t i = 0; i < sensor_count; i++) {
         hash_text(&state, sensors[i].node);
         XXH3_64bits_update(&state, sensors[i].position_m, sizeof(sensors[i].position_m));
@@ -69,6 +79,7 @@ struct build {
     struct levels levels;
     struct measured measured;
     struct asset_level file[LEVELS_MAX]; /* the levels as the file has them */
+    struct text parts;                   /* of a stock, unless there is one */
     float *distances;                    /* [sensor][vertex] */
     void (*tasks[2])(struct build *build); /* side by side */
     bool failed[2];
@@ -93,6 +104,14 @@ static bool run_both(struct build *build, void (*first)(struct build *build), vo
 
 /* --- levels and distances need nothing of each other ------------------------------------------------------------------------- */
 
+static void note_levels(struct build *build)
+{
+    struct build_report *report = &build->output->report;
+    report->level_count = build->levels.count;
+    for (size_t i = 0; i < build->levels.count; i++)
+        report->levels[i].triangles = build->levels.at[i].index_count / 3;
+}
+
 static void make_levels(struct build *build)
 {
     struct build_report *report = &build->output->report;
@@ -100,9 +119,7 @@ static void make_levels(struct build *build)
     build->failed[0] = !levels_make(&build->levels, &build->geometry, build->workers);
     if (build->failed[0])
         wrong(build->why, "out of memory for the levels of %u vertices", build->geometry.vertex_count);
-    report->level_count = build->levels.count;
-    for (size_t i = 0; i < build->levels.count; i++)
-        report->levels[i].triangles = build->levels.at[i].index_count / 3;
+    note_levels(build);
     report->levels_s = seconds_since(&since_ns);
 }
 
@@ -147,6 +164,47 @@ static void check(struct build *build)
     if (build->failed[1])
         wrong(build->why, "out of memory for the check of its distances");
     build->output->report.surface = *surface_report(measured->surface);
+}
+
+/* --- what is kept for the next time ------------------------------------------------------------------------------------------ */
+
+/* Splitting is going to change them. */
+static void pack_parts(struct build *build)
+{
+    const struct build_input *input = build->input;
+    if (input->folder && !input->stock && build->geometry.index_count / 3 >= STOCK_TRIANGLES)
+        stock_pack(&build->parts, &build->geometry, &build->levels, build->measured.surface);
+}
+
+static size_t list_nodes(const struct build *build, struct stock_node *nodes, bool *any_new)
+{
+    const struct build_input *input = build->input;
+    double known_m[3];
+    size_t count = 0;
+    for (size_t s = 0; s < input->sensor_count; s++) {
+        if (!input->sensors[s].node)
+            continue;
+        *any_new |= !input->stock || !stock_node_place(input->stock, input->sensors[s].node, known_m);
+        nodes[count].name = (char *)input->sensors[s].node;
+        for (int axis = 0; axis < 3; axis++)
+            nodes[count].place_m[axis] = build->measured.places_m[s][axis] + build->geometry.origin_m[axis];
+        count++;
+    }
+    return count;
+}
+
+/* If it cannot be written, the next time takes longer; that is all. */
+static void write_stock(struct build *build)
+{
+    const struct build_input *input = build->input;
+    bool any_new = !input->stock;
+    size_t size = build->parts.length;
+    const void *parts = input->stock ? stock_parts(input->stock, &size) : build->parts.at;
+    struct stock_node *nodes = mem_array(input->sensor_count, sizeof(*nodes));
+    size_t count = list_nodes(build, nodes, &any_new);
+    if (any_new && size)
+        stock_write(input->folder, input->stock_key, parts, size, &build->output->report, nodes, count);
+    mem_free(nodes);
 }
 
 /* Distances of one sensor after another follow the vertices to their new numbers. */
@@ -237,7 +295,15 @@ static bool build_file(struct build *build)
     struct clusters clusters = { 0 };
     bool any = input->sensor_count > 0;
     uint32_t own = g->vertex_count;
-    if (!run_both(build, make_levels, any ? find_distances : NULL) || (any && !run_both(build, split, check)) || !put_in_order(build, own))
+    if (!run_both(build, input->stock ? NULL : make_levels, any ? find_distances : NULL))
+        return false;
+    if (any) {
+        pack_parts(build);
+        if (!run_both(build, split, input->stock ? NULL : check))
+            return false;
+        write_stock(build);
+    }
+    if (!put_in_order(build, own))
         return false;
     clusters_make(&clusters, g, build->workers);
     bool good = lay_out(input, g, build->file, build->output->report.level_count, &clusters, build->measured.sensors, build->distances,
@@ -246,30 +312,49 @@ static bool build_file(struct build *build)
     return good;
 }
 
+/* Out of the model, or out of the stock, which has levels and surface too. */
+static bool begin(struct build *build)
+{
+    const struct build_input *input = build->input;
+    const struct geometry *g = &build->geometry;
+    struct build_report *report = &build->output->report;
+    int64_t since_ns = clock_mono_ns();
+    if (!input->stock && !geometry_cut(&build->geometry, input->model, &input->geometry, build->why))
+        return false;
+    if (input->stock &&
+        !stock_unpack(input->stock, build->log, build->workers, &build->geometry, &build->levels, &build->measured.surface))
+        return wrong(build->why, "%016" PRIx64 ".stock is no good, or out of memory: delete it", input->stock_key);
+    *report = (struct build_report){ .nodes = g->node_count,
+                                     .triangles = g->index_count / 3,
+                                     .vertices = g->vertex_count,
+                                     .primitives = g->primitive_count,
+                                     .materials = g->material_count,
+                                     .textures = g->texture_count,
+                                     .degenerate_triangles = g->degenerate_triangles,
+                                     .computed_normals = g->computed_normals,
+                                     .skipped_lines = g->skipped_lines,
+                                     .skipped_points = g->skipped_points,
+                                     .stocked = input->stock != NULL,
+                                     .read_s = seconds_since(&since_ns) };
+    if (input->stock) {
+        struct surface_report *surface = &report->surface;
+        *surface = input->stock->report.surface;
+        surface->weld_s = surface->bridge_s = surface->sample_s = surface->laplacian_s = surface->factor_s = surface->check_s = 0;
+        note_levels(build);
+    }
+    return true;
+}
+
 bool build_asset(struct log *log, struct workers *workers, const struct build_input *input, struct build_output *output,
                  char why[MODEL_WHY_BYTES])
 {
     struct build build = { .log = log, .workers = workers, .input = input, .output = output, .why = why };
-    const struct geometry *g = &build.geometry;
-    int64_t since_ns = clock_mono_ns();
     *output = (struct build_output){ .missing_node = -1 };
-    if (!geometry_cut(&build.geometry, input->model, &input->geometry, why))
-        return false;
-    output->report = (struct build_report){ .nodes = g->node_count,
-                                            .triangles = g->index_count / 3,
-                                            .vertices = g->vertex_count,
-                                            .primitives = g->primitive_count,
-                                            .materials = g->material_count,
-                                            .textures = g->texture_count,
-                                            .degenerate_triangles = g->degenerate_triangles,
-                                            .computed_normals = g->computed_normals,
-                                            .skipped_lines = g->skipped_lines,
-                                            .skipped_points = g->skipped_points,
-                                            .read_s = seconds_since(&since_ns) };
-    bool good = build_file(&build);
+    bool good = begin(&build) && build_file(&build);
     measured_finish(&build.measured);
     levels_finish(&build.levels);
     geometry_finish(&build.geometry);
+    text_finish(&build.parts);
     mem_free(build.distances);
     if (!good) {
         free(output->bytes);

@@ -10,13 +10,17 @@
 
 #define BUILD_REVISION 13u /* grows when the same input shall give another file */
 
+struct stock;
 struct build_input {
-    const struct gltf_model *model;
+    const struct gltf_model *model; /* not looked at where there is a stock, but for sensors' nodes that it does not know */
     struct geometry_params geometry;
     const struct plant *plant; /* its groups and tags say where the field bends */
     const struct plant_sensor *sensors;
     size_t sensor_count;
     uint64_t key;
+    const struct stock *stock; /* of this stock_key; NULL: there is none */
+    const char *folder;        /* where stock and columns are kept; NULL: nowhere */
+    uint64_t stock_key, columns_key;
 };
 
 struct build_level {
@@ -31,6 +35,7 @@ struct build_report {
     uint32_t skipped_lines, skipped_points; /* primitives that are no triangles */
     struct surface_report surface;          /* zero where the asset has no sensor */
     size_t unreachable_vertices;            /* no sensor's distance is finite there */
+    uint32_t stocked, kept_sensors;         /* stocked: 1 if the model need not be read; sensors whose distances were there */
     struct build_level levels[LEVELS_MAX];
     size_t level_count;
     double read_s, surface_s, solve_s, levels_s, split_s;
@@ -51,8 +56,9 @@ bool build_asset(struct log *log, struct workers *workers, const struct build_in
 bool build_sensor_place(const struct gltf_model *model, const struct geometry_params *geometry, const struct plant_sensor *sensor,
                         double place_m[3]);
 
+/* The key of all that no sensor has a part in. */
+uint64_t build_stock_key(uint64_t model_hash, const struct geometry_params *geometry);
 /* The key of a file that would be made of this. */
-uint64_t build_key(uint64_t model_hash, const struct geometry_params *geometry, const struct plant *plant,
-                   const struct plant_sensor *sensors, size_t sensor_count);
+uint64_t build_key(uint64_t stock_key, const struct plant *plant, const struct plant_sensor *sensors, size_t sensor_count);
 
 #endif

@@ -73,7 +73,7 @@ static bool place_sensors(struct subject *subject, const struct plant *plant, co
 static bool find_distances(struct subject *subject, char *why)
 {
     const double(*chosen)[3] = (const double(*)[3])subject->places_m + subject->chosen;
-    if (!surface_field_init(&subject->field, subject->surface, chosen, 1))
+    if (!surface_field_init(&subject->field, subject->surface, chosen, 1, NULL))
         return wrong(why, "its distances cannot be computed");
     return true;
 }

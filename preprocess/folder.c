@@ -29,15 +29,15 @@ char *folder_file_name(uint64_t key)
     return mem_printf("%016" PRIx64 ASSET, key);
 }
 
-static char *path_of(const char *folder, uint64_t key)
+char *folder_path(const char *folder, uint64_t key, const char *ending)
 {
-    return mem_printf("%s/%016" PRIx64 ASSET, folder, key);
+    return mem_printf("%s/%016" PRIx64 "%s", folder, key, ending);
 }
 
 int folder_open(struct folder_file *file, const char *folder, uint64_t key, char why[200])
 {
     struct stat st;
-    char *path = path_of(folder, key);
+    char *path = folder_path(folder, key, ASSET);
     int fd = open(path, O_RDONLY | O_CLOEXEC), result = -1;
     *file = (struct folder_file){ 0 };
     mem_free(path);
@@ -80,14 +80,9 @@ void folder_close(struct folder_file *file)
     *file = (struct folder_file){ 0 };
 }
 
-static char *report_path(const char *folder, uint64_t key)
-{
-    return mem_printf("%s/%016" PRIx64 REPORT, folder, key);
-}
-
 int folder_write(const char *folder, uint64_t key, const void *bytes, size_t size, const char *report)
 {
-    char *path = path_of(folder, key), *beside = report_path(folder, key);
+    char *path = folder_path(folder, key, ASSET), *beside = folder_path(folder, key, REPORT);
     int status = report ? text_write_file(beside, report, strlen(report)) : 0;
     if (status == 0)
         status = text_write_file(path, bytes, size);
@@ -99,7 +94,7 @@ int folder_write(const char *folder, uint64_t key, const void *bytes, size_t siz
 char *folder_report(const char *folder, uint64_t key)
 {
     size_t size;
-    char *path = report_path(folder, key), *text = text_read_file(path, REPORT_MAX_BYTES, &size);
+    char *path = folder_path(folder, key, REPORT), *text = text_read_file(path, REPORT_MAX_BYTES, &size);
     mem_free(path);
     return text;
 }
@@ -125,11 +120,21 @@ static char *manifest_text(const struct folder_entry *entries, size_t count)
     return text;
 }
 
-static bool named(const char *name, const struct folder_entry *entries, size_t count)
+static const struct kind { /* of files, beside the manifest */
+    const char *ending;
+    size_t key; /* which one in an entry */
+} kinds[] = {
+    { ASSET, offsetof(struct folder_entry, key) },
+    { REPORT, offsetof(struct folder_entry, key) },
+    { FOLDER_STOCK, offsetof(struct folder_entry, stock_key) },
+    { FOLDER_COLUMNS, offsetof(struct folder_entry, columns_key) },
+};
+
+static bool named(const char *name, const struct kind *kind, const struct folder_entry *entries, size_t count)
 {
     uint64_t key = strtoull(name, NULL, 16);
     for (size_t i = 0; i < count; i++)
-        if (entries[i].key == key)
+        if (*(const uint64_t *)((const char *)&entries[i] + kind->key) == key)
             return true;
     return false;
 }
@@ -149,11 +154,14 @@ static void remove_unnamed(const char *folder, const struct folder_entry *entrie
     DIR *dir = opendir(folder);
     const struct dirent *entry;
     while (dir && (entry = readdir(dir)) != NULL) {
-        bool whole, asset = is_name(entry->d_name, ASSET, &whole);
-        if ((!asset && !is_name(entry->d_name, REPORT, &whole)) || (whole && named(entry->d_name, entries, count)))
+        size_t kind = 0;
+        bool whole;
+        while (kind < sizeof(kinds) / sizeof(*kinds) && !is_name(entry->d_name, kinds[kind].ending, &whole))
+            kind++;
+        if (kind == sizeof(kinds) / sizeof(*kinds) || (whole && named(entry->d_name, &kinds[kind], entries, count)))
             continue;
         if (unlinkat(dirfd(dir), entry->d_name, 0) == 0)
-            *removed += asset;
+            *removed += kind == 0;
     }
     if (dir)
         closedir(dir);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The folder of prepared files: KEY.asset files and manifest.json (protocol/ASSET.md). */
+/* The folder of prepared files: KEY.asset files and manifest.json (protocol/ASSET.md), and what is kept for the next time. */
 #ifndef PREPROCESS_FOLDER_H
 #define PREPROCESS_FOLDER_H
 #include <stdbool.h>
@@ -18,6 +18,11 @@ struct folder_file {
 /* KEY.asset. Free with mem_free. */
 char *folder_file_name(uint64_t key);
 
+#define FOLDER_STOCK ".stock"     /* stock.h */
+#define FOLDER_COLUMNS ".columns" /* columns.h */
+/* FOLDER/KEY.ending. Free with mem_free. */
+char *folder_path(const char *folder, uint64_t key, const char *ending);
+
 /* 1: there is a whole file with this key (file holds it until folder_close). 0: there is none. -1: there is one, and why says why it is no
    good. */
 int folder_open(struct folder_file *file, const char *folder, uint64_t key, char why[200]);
@@ -31,11 +36,12 @@ char *folder_report(const char *folder, uint64_t key);
 struct folder_entry {
     const char *id;
     uint64_t key, recipe;    /* recipe: plant/recipe.h */
+    uint64_t stock_key, columns_key;
     const double *placement; /* 16: plant from asset frame */
     const char *const *tags; /* of its sensors, as they stand in the file */
     size_t tag_count;
 };
-/* Writes the manifest unless it says the same already, then removes asset files that it does not name. 0 or -errno; *removed counts. */
+/* Writes the manifest unless it says the same already, then removes files of other keys. 0 or -errno; *removed counts. */
 int folder_finish(const char *folder, const struct folder_entry *entries, size_t count, size_t *removed);
 
 #endif

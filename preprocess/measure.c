@@ -8,6 +8,8 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "preprocess/columns.h"
+#include "preprocess/stock.h"
 
 bool build_sensor_place(const struct gltf_model *model, const struct geometry_params *geometry, const struct plant_sensor *sensor,
                         double place_m[3])
@@ -16,13 +18,19 @@ bool build_sensor_place(const struct gltf_model *model, const struct geometry_pa
     return !sensor->node || geometry_node_place(model, geometry, sensor->node, place_m);
 }
 
+static bool find_place(const struct build_input *input, const struct plant_sensor *sensor, double place_m[3])
+{
+    return (sensor->node && input->stock && stock_node_place(input->stock, sensor->node, place_m)) ||
+           build_sensor_place(input->model, &input->geometry, sensor, place_m);
+}
+
 /* Where each sensor is, less the origin. */
 static bool place_sensors(const struct build_input *input, const struct geometry *geometry, double (*places)[3], int *missing, char *why)
 {
     for (size_t i = 0; i < input->sensor_count; i++) {
         const struct plant_sensor *sensor = &input->sensors[i];
         double place[3];
-        if (!build_sensor_place(input->model, &input->geometry, sensor, place)) {
+        if (!find_place(input, sensor, place)) {
             *missing = (int)i;
             snprintf(why, MODEL_WHY_BYTES, "the model has no node '%.200s'", sensor->node);
             return false;
@@ -65,6 +73,21 @@ static size_t unreachable(const struct measured *measured, size_t vertex_count)
     return count;
 }
 
+/* Distances of sensors that stand where some stood before are fetched. */
+static bool solve(struct measured *measured, const struct build_input *input, uint32_t triangles, uint32_t *kept)
+{
+    const double(*places_m)[3] = (const double(*)[3])measured->places_m;
+    struct columns columns = { 0 };
+    bool keep = input->folder && triangles >= STOCK_TRIANGLES;
+    if (keep)
+        columns_open(&columns, input->folder, input->columns_key, surface_column_length(measured->surface), places_m, input->sensor_count);
+    const struct surface_columns known = columns_of_surface(&columns);
+    bool good = surface_field_init(&measured->field, measured->surface, places_m, input->sensor_count, keep ? &known : NULL);
+    *kept = (uint32_t)columns.kept;
+    columns_close(&columns);
+    return good;
+}
+
 bool measure_sensors(struct measured *measured, struct log *log, struct workers *workers, const struct build_input *input,
                      const struct geometry *g, struct build_output *output, char why[MODEL_WHY_BYTES])
 {
@@ -74,11 +97,12 @@ bool measure_sensors(struct measured *measured, struct log *log, struct workers 
     measured->sensors = mem_array(input->sensor_count, sizeof(*measured->sensors));
     if (!place_sensors(input, g, measured->places_m, &output->missing_node, why))
         return false;
-    measured->surface = surface_create(log, workers, (const float(*)[3])g->positions_m, g->vertex_count, g->indices, g->index_count / 3,
-                                       &(struct surface_params){ .tolerance_m = input->geometry.tolerance_m });
+    if (!measured->surface)
+        measured->surface =
+            surface_create(log, workers, (const float(*)[3])g->positions_m, g->vertex_count, g->indices, g->index_count / 3,
+                           &(struct surface_params){ .tolerance_m = input->geometry.tolerance_m });
     int64_t made_ns = clock_mono_ns();
-    if (!measured->surface ||
-        !surface_field_init(&measured->field, measured->surface, (const double(*)[3])measured->places_m, input->sensor_count))
+    if (!measured->surface || !solve(measured, input, g->index_count / 3, &report->kept_sensors))
         return wrong(why, "its distances to %zu sensors cannot be computed", input->sensor_count);
     drop_sensors(measured->surface, input, (const double(*)[3])measured->places_m, measured->sensors);
     report->unreachable_vertices = unreachable(measured, g->vertex_count);

@@ -11,7 +11,8 @@ struct measured {
     double (*places_m)[3]; /* less the origin */
 };
 
-/* Fills in what the report says about it. False: why says what is wrong; finish all the same. */
+/* measured is zero-initialised, or has its surface already. Fills in what the report says about it. False: why says what is wrong; finish
+   all the same. */
 bool measure_sensors(struct measured *measured, struct log *log, struct workers *workers, const struct build_input *input,
                      const struct geometry *geometry, struct build_output *output, char why[MODEL_WHY_BYTES]);
 void measured_finish(struct measured *measured);

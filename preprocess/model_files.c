@@ -51,7 +51,7 @@ bool model_file_parse(struct model_file *file)
     model_source_finish(&source);
     if (!good)
         return false;
-    file->was_parsed = true;
+    file->is_parsed = file->was_parsed = true;
     file->parse_s = (double)(clock_mono_ns() - start_ns) / NS_PER_S;
     file->skipped_lines = file->parsed.skipped_lines;
     file->skipped_points = file->parsed.skipped_points;
@@ -62,4 +62,5 @@ bool model_file_parse(struct model_file *file)
 void model_file_release(struct model_file *file)
 {
     gltf_free(&file->parsed);
+    file->is_parsed = false;
 }

@@ -13,7 +13,7 @@ struct model_file {
     uint64_t hash;            /* with what its URIs name */
     uint64_t file_hash;       /* of the file itself */
     struct gltf_model parsed; /* between model_file_parse and model_file_release */
-    bool was_parsed;
+    bool is_parsed, was_parsed;
     double parse_s;
     uint32_t skipped_lines, skipped_points, left_out_textures; /* where was_parsed */
 };

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <xxhash.h>
 
 #include "base/clock.h"
 #include "base/mem.h"
@@ -97,10 +98,13 @@ static void find_keys(struct run *run)
         const struct model_file *model = &prepare->models.at[asset->model];
         struct geometry_params geometry = prepare_geometry(asset->plant);
         asset->sensor_count = plant_sensors(prepare->plant, (int)i, &asset->sensors);
-        if (model->good)
-            asset->key = build_key(model->hash, &geometry, prepare->plant, asset->sensors, asset->sensor_count);
-        else
+        if (model->good) {
+            asset->stock_key = build_stock_key(model->hash, &geometry);
+            asset->key = build_key(asset->stock_key, prepare->plant, asset->sensors, asset->sensor_count);
+            asset->columns_key = XXH3_64bits_withSeed(asset->plant->id, strlen(asset->plant->id), asset->stock_key);
+        } else {
             asset->state = PREPARE_FAILED;
+        }
         if (!model->good && prepare->models.count > known)
             fail_asset(run, asset, model->why);
         asset->same_as = first_with_key(run, i);
@@ -218,7 +222,11 @@ static void build_one(struct run *run, struct prepare_asset *asset)
                                  .plant = run->prepare->plant,
                                  .sensors = asset->sensors,
                                  .sensor_count = asset->sensor_count,
-                                 .key = asset->key };
+                                 .key = asset->key,
+                                 .stock = asset->stock.bytes ? &asset->stock : NULL,
+                                 .folder = run->params->folder,
+                                 .stock_key = asset->stock_key,
+                                 .columns_key = asset->columns_key };
     struct build_output output;
     struct asset_view view;
     char why[MODEL_WHY_BYTES], view_why[200];
@@ -228,6 +236,7 @@ static void build_one(struct run *run, struct prepare_asset *asset)
     if (good && asset_view_init(&view, output.bytes, output.size, view_why))
         take_file(asset, &view);
     free(output.bytes);
+    stock_close(&asset->stock);
     asset->reported = good;
     asset->report = output.report;
     asset->seconds = (double)(clock_mono_ns() - start_ns) / NS_PER_S;
@@ -254,6 +263,22 @@ static int heavier_first(const void *a, const void *b, void *arg)
     return p == q ? (i < j ? -1 : 1) : p > q ? -1 : 1;
 }
 
+/* False: its model has to be read. */
+static bool find_stock(const struct run *run, struct prepare_asset *asset)
+{
+    double place_m[3];
+    bool all = asset->sensor_count > 0 && stock_open(&asset->stock, run->params->folder, asset->stock_key);
+    for (size_t s = 0; s < asset->sensor_count && all; s++)
+        all = !asset->sensors[s].node || stock_node_place(&asset->stock, asset->sensors[s].node, place_m);
+    return all;
+}
+
+static double own_triangles(const struct prepare_asset *asset, const struct model_file *model)
+{
+    struct geometry_params geometry = prepare_geometry(asset->plant);
+    return asset->stock.bytes ? asset->stock.report.triangles : (double)geometry_triangles(&model->parsed, &geometry);
+}
+
 /* Parses the models of todo from batch_begin on, and weighs their assets, until there is enough to do. What cannot be parsed is left:
    its assets fail. */
 static void parse_batch(struct run *run)
@@ -267,15 +292,14 @@ static void parse_batch(struct run *run)
         bool fresh = run->batch_end == 0 || prepare->assets[run->todo[run->batch_end - 1]].model != asset->model;
         if (fresh && triangles > BATCH_TRIANGLES)
             break;
-        if (fresh && !model_file_parse(model)) {
+        if (!find_stock(run, asset) && model->good && !model->is_parsed && !model_file_parse(model)) {
             model->good = false;
             fail(run, prepare->plant->path, model->line, "%s: %s", model->path, model->why);
         }
         if (!model->good) {
             asset->state = PREPARE_FAILED;
         } else {
-            struct geometry_params geometry = prepare_geometry(asset->plant);
-            double own = (double)geometry_triangles(&model->parsed, &geometry);
+            double own = own_triangles(asset, model);
             asset->work = own + (asset->sensor_count ? SENSORS_WORK : 0);
             triangles += own;
         }
@@ -366,6 +390,8 @@ static void write_manifest(struct run *run)
             next[s] = prepare->plant->tags[asset->sensors[s].tag].name;
         entries[i] = (struct folder_entry){ .id = asset->plant->id,
                                             .key = asset->key,
+                                            .stock_key = asset->stock_key,
+                                            .columns_key = asset->columns_key,
                                             .recipe = plant_recipe(asset->plant, prepare->models.at[asset->model].file_hash),
                                             .placement = asset->plant->placement,
                                             .tags = next,
@@ -413,6 +439,7 @@ bool prepare_run(struct prepare *prepare, struct log *log, struct workers *worke
 void prepare_finish(struct prepare *prepare)
 {
     for (size_t i = 0; i < prepare->asset_count; i++) {
+        stock_close(&prepare->assets[i].stock);
         mem_free(prepare->assets[i].sensors);
         mem_free(prepare->assets[i].surface_distances_m);
         mem_free(prepare->assets[i].rebuilt_because);

@@ -9,6 +9,7 @@
 #include "base/diag.h"
 #include "preprocess/build.h"
 #include "preprocess/model_files.h"
+#include "preprocess/stock.h"
 
 enum prepare_state { PREPARE_LEFT /* not begun: interrupted */, PREPARE_FAILED, PREPARE_UNCHANGED, PREPARE_SHARED, PREPARE_BUILT };
 
@@ -20,7 +21,8 @@ struct prepare_asset {
     size_t sensor_count;
     float *surface_distances_m; /* of each sensor; NULL: failed */
     double far_m;               /* a sensor farther from its surface than this is worth a warning */
-    uint64_t key;
+    uint64_t key, stock_key, columns_key;
+    struct stock stock; /* while it is built; bytes NULL: none */
     size_t same_as; /* the first asset with this key, which has the file */
     enum prepare_state state;
     char *rebuilt_because; /* what was wrong with the file that was there, or NULL */

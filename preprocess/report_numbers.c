@@ -27,6 +27,8 @@ static const struct number build_numbers[] = {
     OF_BUILD("computed_normals", computed_normals, COUNT32),
     OF_BUILD("skipped_lines", skipped_lines, COUNT32),
     OF_BUILD("skipped_points", skipped_points, COUNT32),
+    OF_BUILD("stocked", stocked, COUNT32),
+    OF_BUILD("kept_sensors", kept_sensors, COUNT32),
     { 0 },
 };
 static const struct number surface_numbers[] = {

@@ -295,6 +295,13 @@ static void list_pieces(struct surface *surface)
         surface->pieces[surface->piece_first[mesh->tri_source[t] + 1]++] = t;
 }
 
+void surface_index(struct surface *surface)
+{
+    surface->bvh = bvh_create(&surface->visible);
+    unfold_init(&surface->unfold, &surface->mesh, surface->visible.tri_count, &surface->intrinsic);
+    list_pieces(surface);
+}
+
 static double mean_edge(const struct intrinsic *in)
 {
     double sum = 0;
@@ -332,10 +339,8 @@ struct surface *surface_create(struct log *log, struct workers *workers, const f
     report->bridge_s += seconds_since(&since_ns);
     surface->component = mem_array(surface->mesh.point_count, sizeof(*surface->component));
     report->components_after = trimesh_components(&surface->visible, surface->component);
-    surface->bvh = bvh_create(&surface->visible);
     intrinsic_init(&surface->intrinsic, &surface->visible);
-    unfold_init(&surface->unfold, &surface->mesh, surface->visible.tri_count, &surface->intrinsic);
-    list_pieces(surface);
+    surface_index(surface);
     find_strays(surface);
     surface->edge_m = mean_edge(&surface->intrinsic);
     report->laplacian_s = seconds_since(&since_ns);

@@ -102,8 +102,16 @@ struct surface_field {
     struct surface_spot *sources;
     float *distances_m; /* [point of the sampled surface][source] */
 };
-/* False: out of memory, logged; nothing to finish. */
-bool surface_field_init(struct surface_field *field, const struct surface *surface, const double (*points_m)[3], size_t point_count);
+/* Distances from sources that were found before: at each point of the sampled surface. Both are called on any thread. */
+struct surface_columns {
+    bool (*fetch)(void *arg, size_t source, float *distances_m);      /* false: not known */
+    void (*keep)(void *arg, size_t source, const float *distances_m); /* one that was not known */
+    void *arg;
+};
+size_t surface_column_length(const struct surface *surface);
+/* columns may be NULL. False: out of memory, logged; nothing to finish. */
+bool surface_field_init(struct surface_field *field, const struct surface *surface, const double (*points_m)[3], size_t point_count,
+                        const struct surface_columns *columns);
 void surface_field_finish(struct surface_field *field);
 /* out[source] */
 void surface_field_at_vertex(const struct surface_field *field, const struct surface *surface, uint32_t vertex, float *out);

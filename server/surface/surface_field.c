@@ -16,6 +16,7 @@ struct solve {
     size_t count;
     float *out;                  /* NULL, or [spot][vertex] */
     struct surface_field *field; /* or NULL */
+    const struct surface_columns *columns; /* or NULL */
     atomic_bool failed;
 };
 
@@ -65,13 +66,19 @@ static void solve_block(void *arg, size_t begin, size_t end)
     size_t points = surface->mesh.point_count;
     struct unfold_walk walk = { 0 };
     float *block = solve->field ? mem_try_array((end - begin) * points, sizeof(*block)) : NULL;
+    solve->failed = solve->failed || (solve->field && !block);
     for (size_t s = begin; s < end && !solve->failed; s++) {
-        if ((solve->field && !block) || !unfold_from(&surface->unfold, &walk, solve->spots[s].tri, solve->spots[s].weights))
+        float *column = block ? block + (s - begin) * points : NULL;
+        if (solve->columns && solve->columns->fetch(solve->columns->arg, s, column))
+            continue;
+        if (!unfold_from(&surface->unfold, &walk, solve->spots[s].tri, solve->spots[s].weights))
             solve->failed = true;
         else if (solve->field)
-            memcpy(block + (s - begin) * points, walk.distance_m, points * sizeof(*block));
+            memcpy(column, walk.distance_m, points * sizeof(*block));
         else
             take_vertices(surface, walk.distance_m, solve->out + s * surface->vertex_count);
+        if (solve->columns && !solve->failed)
+            solve->columns->keep(solve->columns->arg, s, column);
     }
     if (block && !solve->failed)
         take_rows(solve, block, begin, end - begin);
@@ -110,9 +117,15 @@ bool surface_distances(const struct surface *surface, const double (*points_m)[3
     return good;
 }
 
-bool surface_field_init(struct surface_field *field, const struct surface *surface, const double (*points_m)[3], size_t point_count)
+size_t surface_column_length(const struct surface *surface)
 {
-    struct solve solve = { .surface = surface, .count = point_count, .field = field };
+    return surface->mesh.point_count;
+}
+
+bool surface_field_init(struct surface_field *field, const struct surface *surface, const double (*points_m)[3], size_t point_count,
+                        const struct surface_columns *columns)
+{
+    struct solve solve = { .surface = surface, .count = point_count, .field = field, .columns = columns };
     *field = (struct surface_field){ .source_count = point_count };
     field->distances_m = mem_try_array(surface->mesh.point_count, field->source_count * sizeof(*field->distances_m));
     field->sources = find_spots(surface, points_m, point_count);

@@ -32,4 +32,7 @@ struct surface {
     size_t bridge_count, bridge_capacity;
 };
 
+/* Makes bvh, unfold and the lists of pieces, of mesh and intrinsic. */
+void surface_index(struct surface *surface);
+
 #endif

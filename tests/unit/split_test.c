@@ -145,7 +145,7 @@ static void prepare(struct body *body, const double (*points)[3])
     body->surface = surface_create(NULL, NULL, (const float(*)[3])g->positions_m, g->vertex_count, g->indices, g->index_count / 3,
                                    &(struct surface_params){ 0 });
     assert_non_null(body->surface);
-    assert_true(surface_field_init(&body->field, body->surface, points, SENSORS));
+    assert_true(surface_field_init(&body->field, body->surface, points, SENSORS, NULL));
     for (int i = 0; i < SENSORS; i++)
         for (int axis = 0; axis < 3; axis++)
             places[i][axis] = body->places[i].surface_m[axis] = (float)body->field.sources[i].point_m[axis];

@@ -458,7 +458,7 @@ static void long_thin_strips_are_exact_near_a_source_too(void **state)
         choose_source(&pipe, true, sources[s]);
     struct surface *surface = surface_of(&pipe);
     struct surface_field field;
-    assert_true(surface_field_init(&field, surface, (const double(*)[3])sources, SOURCES));
+    assert_true(surface_field_init(&field, surface, (const double(*)[3])sources, SOURCES, NULL));
     for (int i = 0; i < PLACES; i++) {
         double place[3];
         float found[SOURCES];

@@ -1,0 +1,252 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Keeping what does not depend on sensors. */
+#include "preprocess/stock.h"
+
+#include <fcntl.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <xxhash.h>
+
+#include "base/mem.h"
+#include "preprocess/folder.h"
+#include "surface/surface_store.h"
+
+static const char magic[8] = "PLCSTOCK";
+
+struct head {
+    char magic[8];
+    uint64_t key, parts_bytes, rest_bytes; /* they follow, one after the other */
+    uint64_t checksum;                     /* XXH3-64 of the key and all that follows */
+};
+
+static uint64_t checksum_of(const struct head *head, const void *follows)
+{
+    return XXH3_64bits_withSeed(follows, head->parts_bytes + head->rest_bytes, head->key);
+}
+
+/* --- reading ------------------------------------------------------------------------------------------------------------------ */
+
+static bool read_rest(struct stock *stock)
+{
+    const struct head *head = stock->bytes;
+    struct unpack rest = { (const char *)stock->bytes + sizeof(*head) + head->parts_bytes, head->rest_bytes, false };
+    size_t places, name_bytes;
+    unpack_into(&rest, &stock->report, 1, sizeof(stock->report));
+    double(*at)[3] = unpack_array(&rest, &places, sizeof(*at));
+    char *names = unpack_array(&rest, &name_bytes, 1), *name = names;
+    stock->nodes = mem_array(places, sizeof(*stock->nodes));
+    for (; stock->node_count < places && name && name < names + name_bytes; name += strlen(name) + 1) {
+        struct stock_node *node = &stock->nodes[stock->node_count];
+        node->name = mem_strdup(name);
+        memcpy(node->place_m, at[stock->node_count++], sizeof(node->place_m));
+    }
+    mem_free(at);
+    mem_free(names);
+    return !rest.bad && stock->node_count == places;
+}
+
+static bool is_good(const struct stock *stock, uint64_t key)
+{
+    const struct head *head = stock->bytes;
+    return stock->size >= sizeof(*head) && memcmp(head->magic, magic, sizeof(magic)) == 0 && head->key == key &&
+           head->parts_bytes <= stock->size && head->rest_bytes == stock->size - sizeof(*head) - head->parts_bytes &&
+           head->checksum == checksum_of(head, head + 1);
+}
+
+bool stock_open(struct stock *stock, const char *folder, uint64_t key)
+{
+    struct stat st;
+    char *path = folder_path(folder, key, FOLDER_STOCK);
+    int fd = open(path, O_RDONLY | O_CLOEXEC);
+    *stock = (struct stock){ 0 };
+    mem_free(path);
+    if (fd >= 0 && fstat(fd, &st) == 0 && S_ISREG(st.st_mode) && st.st_size > 0) {
+        stock->size = (size_t)st.st_size;
+        stock->bytes = mmap(NULL, stock->size, PROT_READ, MAP_PRIVATE, fd, 0);
+        stock->bytes = stock->bytes == MAP_FAILED ? NULL : stock->bytes;
+    }
+    if (fd >= 0)
+        close(fd);
+    if (stock->bytes && is_good(stock, key) && read_rest(stock))
+        return true;
+    stock_close(stock);
+    return false;
+}
+
+void stock_close(struct stock *stock)
+{
+    if (stock->bytes)
+        munmap(stock->bytes, stock->size);
+    for (size_t i = 0; i < stock->node_count; i++)
+        mem_free(stock->nodes[i].name);
+    mem_free(stock->nodes);
+    *stock = (struct stock){ 0 };
+}
+
+bool stock_node_place(const struct stock *stock, const char *name, double place_m[3])
+{
+    for (size_t i = 0; i < stock->node_count; i++)
+        if (strcmp(stock->nodes[i].name, name) == 0) {
+            memcpy(place_m, stock->nodes[i].place_m, sizeof(stock->nodes[i].place_m));
+            return true;
+        }
+    return false;
+}
+
+const void *stock_parts(const struct stock *stock, size_t *size)
+{
+    const struct head *head = stock->bytes;
+    *size = head->parts_bytes;
+    return head + 1;
+}
+
+/* --- the parts ---------------------------------------------------------------------------------------------------------------- */
+
+struct geometry_numbers {
+    double origin_m[3];
+    uint32_t node_count, degenerate_triangles, computed_normals, skipped_lines, skipped_points;
+};
+
+static void pack_geometry(struct text *to, const struct geometry *g)
+{
+    const struct geometry_numbers numbers = { { g->origin_m[0], g->origin_m[1], g->origin_m[2] },
+                                              g->node_count,
+                                              g->degenerate_triangles,
+                                              g->computed_normals,
+                                              g->skipped_lines,
+                                              g->skipped_points };
+    pack_array(to, &numbers, 1, sizeof(numbers));
+    pack_array(to, g->positions_m, g->vertex_count, sizeof(*g->positions_m));
+    pack_array(to, g->normals, g->vertex_count, sizeof(*g->normals));
+    pack_array(to, g->texcoords, g->texcoords ? g->vertex_count : 0, sizeof(*g->texcoords));
+    pack_array(to, g->colors, g->colors ? g->vertex_count : 0, sizeof(*g->colors));
+    pack_array(to, g->indices, g->index_count, sizeof(*g->indices));
+    pack_array(to, g->primitives, g->primitive_count, sizeof(*g->primitives));
+    pack_array(to, g->materials, g->material_count, sizeof(*g->materials));
+    pack_array(to, g->textures, g->texture_count, sizeof(*g->textures));
+    pack_array(to, g->texels, g->texel_bytes, 1);
+    pack_array(to, g->names.at, g->names.length, 1);
+}
+
+/* Its numbers of elements are 32 bits wide: anything else is no good. */
+static uint32_t narrow(struct unpack *from, size_t count)
+{
+    from->bad |= count > UINT32_MAX;
+    return (uint32_t)count;
+}
+
+static void unpack_geometry(struct unpack *from, struct geometry *g)
+{
+    struct geometry_numbers numbers = { 0 };
+    size_t positions, normals, texcoords, colors, indices, primitives, materials, textures, name_bytes;
+    unpack_into(from, &numbers, 1, sizeof(numbers));
+    *g = (struct geometry){ .node_count = numbers.node_count,
+                            .degenerate_triangles = numbers.degenerate_triangles,
+                            .computed_normals = numbers.computed_normals,
+                            .skipped_lines = numbers.skipped_lines,
+                            .skipped_points = numbers.skipped_points };
+    memcpy(g->origin_m, numbers.origin_m, sizeof(g->origin_m));
+    g->positions_m = unpack_array(from, &positions, sizeof(*g->positions_m));
+    g->normals = unpack_array(from, &normals, sizeof(*g->normals));
+    g->texcoords = unpack_array(from, &texcoords, sizeof(*g->texcoords));
+    g->colors = unpack_array(from, &colors, sizeof(*g->colors));
+    g->indices = unpack_array(from, &indices, sizeof(*g->indices));
+    g->primitives = unpack_array(from, &primitives, sizeof(*g->primitives));
+    g->materials = unpack_array(from, &materials, sizeof(*g->materials));
+    g->textures = unpack_array(from, &textures, sizeof(*g->textures));
+    g->texels = unpack_array(from, &g->texel_bytes, 1);
+    char *names = unpack_array(from, &name_bytes, 1);
+    if (name_bytes)
+        text_add_bytes(&g->names, names, name_bytes);
+    mem_free(names);
+    g->vertex_count = narrow(from, positions);
+    g->index_count = narrow(from, indices);
+    g->primitive_count = narrow(from, primitives);
+    g->material_count = narrow(from, materials);
+    g->texture_count = narrow(from, textures);
+    from->bad |= normals != positions || (texcoords && texcoords != positions) || (colors && colors != positions);
+}
+
+static void pack_levels(struct text *to, const struct levels *levels)
+{
+    float errors_m[LEVELS_MAX] = { 0 };
+    for (size_t i = 0; i < levels->count; i++)
+        errors_m[i] = levels->at[i].error_m;
+    pack_array(to, errors_m, levels->count, sizeof(*errors_m));
+    for (size_t i = 0; i < levels->count; i++) {
+        pack_array(to, levels->at[i].indices, levels->at[i].index_count, sizeof(*levels->at[i].indices));
+        pack_array(to, levels->at[i].primitives, levels->at[i].primitive_count, sizeof(*levels->at[i].primitives));
+    }
+}
+
+static void unpack_levels(struct unpack *from, struct levels *levels)
+{
+    size_t indices, primitives;
+    *levels = (struct levels){ 0 };
+    float *errors_m = unpack_array(from, &levels->count, sizeof(*errors_m));
+    from->bad |= levels->count > LEVELS_MAX;
+    levels->count = from->bad ? 0 : levels->count;
+    for (size_t i = 0; i < levels->count; i++) {
+        struct level *level = &levels->at[i];
+        level->error_m = errors_m[i];
+        level->indices = unpack_array(from, &indices, sizeof(*level->indices));
+        level->primitives = unpack_array(from, &primitives, sizeof(*level->primitives));
+        level->index_count = narrow(from, indices);
+        level->primitive_count = narrow(from, primitives);
+    }
+    mem_free(errors_m);
+}
+
+void stock_pack(struct text *parts, const struct geometry *geometry, const struct levels *levels, const struct surface *surface)
+{
+    pack_geometry(parts, geometry);
+    pack_levels(parts, levels);
+    surface_pack(surface, parts);
+}
+
+bool stock_unpack(const struct stock *stock, struct log *log, struct workers *workers, struct geometry *geometry, struct levels *levels,
+                  struct surface **surface)
+{
+    struct unpack from = { 0 };
+    from.at = stock_parts(stock, &from.left);
+    unpack_geometry(&from, geometry);
+    unpack_levels(&from, levels);
+    *surface = surface_unpack(&from, log, workers);
+    if (*surface)
+        return true;
+    levels_finish(levels);
+    geometry_finish(geometry);
+    return false;
+}
+
+/* --- writing ------------------------------------------------------------------------------------------------------------------ */
+
+int stock_write(const char *folder, uint64_t key, const void *parts, size_t size, const struct build_report *report,
+                const struct stock_node *nodes, size_t node_count)
+{
+    struct head head = { .key = key, .parts_bytes = size };
+    struct text file = { 0 }, names = { 0 };
+    double(*places)[3] = mem_array(node_count, sizeof(*places));
+    char *path = folder_path(folder, key, FOLDER_STOCK);
+    for (size_t i = 0; i < node_count; i++) {
+        memcpy(places[i], nodes[i].place_m, sizeof(*places));
+        text_add_bytes(&names, nodes[i].name, strlen(nodes[i].name) + 1);
+    }
+    text_add_bytes(&file, &head, sizeof(head));
+    text_add_bytes(&file, parts, size);
+    pack_array(&file, report, 1, sizeof(*report));
+    pack_array(&file, places, node_count, sizeof(*places));
+    pack_array(&file, names.at, names.length, 1);
+    memcpy(head.magic, magic, sizeof(magic));
+    head.rest_bytes = file.length - sizeof(head) - size;
+    head.checksum = checksum_of(&head, file.at + sizeof(head));
+    memcpy(file.at, &head, sizeof(head));
+    int status = text_write_file(path, file.at, file.length);
+    text_finish(&file);
+    text_finish(&names);
+    mem_free(places);
+    mem_free(path);
+    return status;
+}

@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What preparing an asset needs again when only its sensors change: KEY.stock beside the asset files holds what does not depend on them
+   (geometry, levels before they are split, the surface that distances are found on), so that the model need not be read. Safe to delete;
+   one that is no good counts as none. Layout: this program's own (base/pack.h). */
+#ifndef PREPROCESS_STOCK_H
+#define PREPROCESS_STOCK_H
+#include "preprocess/build.h"
+
+#define STOCK_TRIANGLES 10000u /* of assets with fewer, making it all again is about as quick */
+
+struct stock_node { /* where the model has a node that some sensor stands on */
+    char *name;
+    double place_m[3]; /* asset frame */
+};
+
+struct stock { /* a checked file, mapped; what it points to is its own */
+    void *bytes;
+    size_t size;
+    struct stock_node *nodes;
+    size_t node_count;
+    struct build_report report;
+};
+
+/* False: there is none that is any good. */
+bool stock_open(struct stock *stock, const char *folder, uint64_t key);
+void stock_close(struct stock *stock); /* a zeroed one is fine */
+bool stock_node_place(const struct stock *stock, const char *name, double place_m[3]);
+
+/* Copies of all three are made. False: it is no good after all; nothing to finish. */
+bool stock_unpack(const struct stock *stock, struct log *log, struct workers *workers, struct geometry *geometry, struct levels *levels,
+                  struct surface **surface);
+
+/* Before levels are split. */
+void stock_pack(struct text *parts, const struct geometry *geometry, const struct levels *levels, const struct surface *surface);
+/* The parts just packed, or those of a stock that is open. Its surface_report is the last one. 0 or -errno. */
+int stock_write(const char *folder, uint64_t key, const void *parts, size_t size, const struct build_report *report,
+                const struct stock_node *nodes, size_t node_count);
+const void *stock_parts(const struct stock *stock, size_t *size);
+
+#endif

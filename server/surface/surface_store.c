@@ -1,0 +1,75 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Packing a surface: what took long to find; what follows from that quickly is made again. */
+#include "surface/surface_store.h"
+
+#include "base/mem.h"
+#include "surface/surface_state.h"
+
+struct numbers {
+    size_t vertex_count, visible_count, flips;
+    double size_m, edge_m;
+    struct surface_report report;
+};
+
+void surface_pack(const struct surface *surface, struct text *to)
+{
+    const struct trimesh *mesh = &surface->mesh;
+    const struct intrinsic *in = &surface->intrinsic;
+    const struct numbers numbers = { .vertex_count = surface->vertex_count,
+                                     .visible_count = surface->visible.tri_count,
+                                     .flips = in->flips,
+                                     .size_m = surface->size_m,
+                                     .edge_m = surface->edge_m,
+                                     .report = surface->report };
+    pack_array(to, &numbers, 1, sizeof(numbers));
+    pack_array(to, surface->vertex_point, surface->vertex_count, sizeof(*surface->vertex_point));
+    pack_array(to, mesh->points, mesh->point_count, sizeof(*mesh->points));
+    pack_array(to, mesh->tris, mesh->tri_count, sizeof(*mesh->tris));
+    pack_array(to, mesh->tri_source, mesh->tri_count, sizeof(*mesh->tri_source));
+    pack_array(to, surface->component, mesh->point_count, sizeof(*surface->component));
+    pack_array(to, surface->strays, surface->stray_count, sizeof(*surface->strays));
+    pack_array(to, in->points, in->tri_count, sizeof(*in->points));
+    pack_array(to, in->lengths, in->tri_count, sizeof(*in->lengths));
+    pack_array(to, in->glue, in->tri_count, sizeof(*in->glue));
+    pack_array(to, surface->bridges, surface->bridge_count, sizeof(*surface->bridges));
+}
+
+struct surface *surface_unpack(struct unpack *from, struct log *log, struct workers *workers)
+{
+    struct surface *surface = mem_new(sizeof(*surface));
+    struct trimesh *mesh = &surface->mesh;
+    struct intrinsic *in = &surface->intrinsic;
+    struct numbers numbers = { 0 };
+    size_t vertices, sources, components, lengths, glues;
+    unpack_into(from, &numbers, 1, sizeof(numbers));
+    *surface = (struct surface){ .log = log,
+                                 .workers = workers,
+                                 .vertex_count = numbers.vertex_count,
+                                 .size_m = numbers.size_m,
+                                 .edge_m = numbers.edge_m,
+                                 .report = numbers.report };
+    surface->vertex_point = unpack_array(from, &vertices, sizeof(*surface->vertex_point));
+    mesh->points = unpack_array(from, &mesh->point_count, sizeof(*mesh->points));
+    mesh->tris = unpack_array(from, &mesh->tri_count, sizeof(*mesh->tris));
+    mesh->tri_source = unpack_array(from, &sources, sizeof(*mesh->tri_source));
+    surface->component = unpack_array(from, &components, sizeof(*surface->component));
+    surface->strays = unpack_array(from, &surface->stray_count, sizeof(*surface->strays));
+    in->points = unpack_array(from, &in->tri_count, sizeof(*in->points));
+    in->lengths = unpack_array(from, &lengths, sizeof(*in->lengths));
+    in->glue = unpack_array(from, &glues, sizeof(*in->glue));
+    surface->bridges = unpack_array(from, &surface->bridge_count, sizeof(*surface->bridges));
+    in->point_count = mesh->point_count;
+    in->flips = numbers.flips;
+    mesh->point_capacity = mesh->point_count;
+    mesh->tri_capacity = mesh->source_capacity = mesh->tri_count;
+    surface->bridge_capacity = surface->bridge_count;
+    if (from->bad || vertices != surface->vertex_count || sources != mesh->tri_count || components != mesh->point_count ||
+        numbers.visible_count != in->tri_count || in->tri_count > mesh->tri_count || lengths != in->tri_count || glues != in->tri_count) {
+        surface_destroy(&surface);
+        return NULL;
+    }
+    surface->visible = surface->mesh;
+    surface->visible.tri_count = numbers.visible_count;
+    surface_index(surface);
+    return surface;
+}

@@ -1,0 +1,250 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What plantcast-prep keeps for the next time: a changed sensor gives the file that preparing all anew gives, to the last bit, without the
+   model being read; what is damaged is not used. */
+#include <jansson.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "preprocess/stock.h"
+#include "surface/surface_store.h"
+#include "tests/support/cad.h"
+#include "tests/support/model_maker.h"
+#include "tests/support/prep_case.h"
+#include "tests/support/temp.h"
+
+#define AROUND 104 /* enough triangles to be kept */
+#define TUBE 50
+
+static const char plant_text[] = "plant: { name: Stock test }\n"
+                                 "assets: [{ id: A, model: model.glb, nodes: torus, up: z }]\n"
+                                 "groups: [{ id: t, unit: K, min: 0, max: 1 }, { id: p, unit: bar, min: 0, max: 1, power: 3 }]\n"
+                                 "tags: tags.csv\n";
+static const char first_tags[] = "a,,,,t,A,,1.3,0,0\nb,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,TT-1,,,\n";
+
+static int set_up(void **state)
+{
+    struct cad torus = { 0 };
+    struct cad_random chance = { 3 };
+    struct maker maker;
+    size_t size;
+    prep_case_set_up(state);
+    struct prep_case *c = *state;
+    cad_torus(&torus, &chance, AROUND, TUBE, 0.3, 0.4);
+    assert_true(torus.triangle_count >= STOCK_TRIANGLES);
+    maker_init(&maker);
+    int positions =
+        maker_numbers(&maker, torus.positions, torus.vertex_count * sizeof(*torus.positions), FLOAT, torus.vertex_count, "VEC3");
+    int indices = maker_numbers(&maker, torus.triangles, torus.triangle_count * 3 * sizeof(*torus.triangles), UINT,
+                                torus.triangle_count * 3, "SCALAR");
+    int mesh = maker_mesh(&maker, json_pack("{s:{s:i},s:i}", "attributes", "POSITION", positions, "indices", indices));
+    maker_node(&maker, "torus", mesh, NULL);
+    maker_node(&maker, "TT-1", -1, json_pack("{s:[f,f,f]}", "translation", 0.0, -1.3, 0.0));
+    maker_node(&maker, "TT-2", -1, json_pack("{s:[f,f,f]}", "translation", 0.9, -0.9, 0.1));
+    char *glb = maker_glb(&maker, &size);
+    mem_free(temp_write(c->folder, "model.glb", glb, size));
+    mem_free(glb);
+    maker_finish(&maker);
+    cad_finish(&torus);
+    prep_case_plant(c, plant_text);
+    return 0;
+}
+
+/* Prepares with these tags into FOLDER/`into`. The asset's report. */
+static json_t *prepare(struct prep_case *c, const char *tags, const char *into, bool *model_read)
+{
+    char *arguments = mem_printf("$PLANT --report json --output $FOLDER/%s", into);
+    prep_case_tags(c, tags);
+    prep_case_expect(c, arguments, 0);
+    mem_free(arguments);
+    json_t *report = prep_case_json(&c->out), *asset = json_incref(json_array_get(json_object_get(report, "assets"), 0));
+    *model_read = json_is_true(json_object_get(json_array_get(json_object_get(report, "models"), 0), "read"));
+    assert_string_equal(json_string_value(json_object_get(asset, "state")), "built");
+    json_decref(report);
+    return asset;
+}
+
+static char *path_of(const struct prep_case *c, const char *folder, const json_t *asset)
+{
+    return mem_printf("%s/%s/%s", c->folder, folder, json_string_value(json_object_get(asset, "file")));
+}
+
+/* Into a folder where nothing is, the same bytes come; nothing of what the levels and the surface are in the report differs either. */
+static void assert_as_fresh(struct prep_case *c, const char *tags, const json_t *found)
+{
+    bool model_read;
+    size_t sizes[2];
+    json_t *fresh = prepare(c, tags, "fresh", &model_read);
+    assert_true(model_read);
+    char *paths[2] = { path_of(c, "fresh", fresh), path_of(c, "kept", found) }, *bytes[2];
+    for (int i = 0; i < 2; i++) {
+        bytes[i] = text_read_file(paths[i], (size_t)1 << 30, &sizes[i]);
+        assert_non_null(bytes[i]);
+    }
+    assert_int_equal(sizes[0], sizes[1]);
+    assert_memory_equal(bytes[0], bytes[1], sizes[0]);
+    assert_true(json_equal(json_object_get(fresh, "levels"), json_object_get(found, "levels")));
+    for (int i = 0; i < 2; i++) {
+        mem_free(bytes[i]);
+        mem_free(paths[i]);
+    }
+    json_decref(fresh);
+    char *folder = temp_path(c->folder, "fresh"), *remove = mem_printf("rm -r '%s'", folder);
+    assert_int_equal(system(remove), 0);
+    mem_free(remove);
+    mem_free(folder);
+}
+
+static int number(const json_t *asset, const char *name)
+{
+    return (int)json_integer_value(json_object_get(asset, name));
+}
+
+static void a_changed_sensor_costs_its_own_distances(void **state)
+{
+    static const struct {
+        const char *tags;
+        int kept;
+        bool model_read;
+    } changes[] = {
+        { first_tags, 0, true },
+        { "a,,,,t,A,,1.3,0,0.02\nb,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,TT-1,,,\n", 3, false },    /* moved */
+        { "b,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,TT-1,,,\n", 3, false },                          /* removed */
+        { "e,,,,t,A,,0.8,0.8,0\nb,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,TT-1,,,\n", 3, false },     /* added */
+        { "e,,,,t,A,,0.8,0.8,0\nb,,,,t,A,,-1.3,0,0\nc,,,,t,A,,0,1,0.3\nd,,,,t,A,TT-1,,,\n", 4, false },     /* of another group */
+        { "e,,,,t,A,,0.8,0.8,0\nb,,,,t,A,,-1.3,0,0\nc,,,,t,A,TT-2,,,\nd,,,,t,A,TT-1,,,\n", 3, true },       /* on a node nobody asked for */
+        { "d,,,,t,A,TT-1,,,\nc,,,,t,A,TT-2,,,\ne,,,,t,A,,0.8,0.8,0\nb,,,,t,A,,-1.3,0,0.01\n", 3, false },   /* in another order */
+    };
+    struct prep_case *c = *state;
+    for (size_t i = 0; i < sizeof(changes) / sizeof(*changes); i++) {
+        bool model_read;
+        json_t *asset = prepare(c, changes[i].tags, "kept", &model_read);
+        print_message("# change %zu: %d of the distances were there\n", i, number(asset, "kept_sensors"));
+        assert_int_equal(number(asset, "kept_sensors"), changes[i].kept);
+        assert_int_equal(number(asset, "stocked"), i > 0);
+        assert_true(model_read == changes[i].model_read);
+        if (i % 2 || i == 6)
+            assert_as_fresh(c, changes[i].tags, asset);
+        json_decref(asset);
+    }
+}
+
+/* The one file of the folder with this ending. */
+static char *kept_file(const struct prep_case *c, const char *ending)
+{
+    char path[400] = "", *command = mem_printf("ls '%s'/kept/*%s", c->folder, ending);
+    FILE *names = popen(command, "r");
+    assert_non_null(names);
+    assert_non_null(fgets(path, sizeof(path), names));
+    assert_true(feof(names) || fgetc(names) == EOF);
+    pclose(names);
+    mem_free(command);
+    path[strcspn(path, "\n")] = 0;
+    return mem_strdup(path);
+}
+
+static void damage(const char *path, bool cut)
+{
+    size_t size;
+    char *bytes = text_read_file(path, (size_t)1 << 30, &size);
+    assert_non_null(bytes);
+    for (size_t i = size / 8; i < size; i += size / 8) /* all columns, and every part of the stock */
+        bytes[i] ^= 4;
+    assert_int_equal(text_write_file(path, bytes, cut ? size / 3 : size), 0);
+    mem_free(bytes);
+}
+
+static void what_is_damaged_is_made_anew(void **state)
+{
+    struct prep_case *c = *state;
+    for (int cut = 0; cut < 2; cut++) {
+        char *tags = mem_printf("a,,,,t,A,,1.3,0,0.0%d\nb,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,TT-1,,,\n", 2 + cut);
+        bool model_read;
+        json_decref(prepare(c, first_tags, "kept", &model_read));
+        char *stock = kept_file(c, ".stock"), *columns = kept_file(c, ".columns");
+        damage(stock, cut);
+        damage(columns, cut);
+        json_t *asset = prepare(c, tags, "kept", &model_read);
+        assert_true(model_read);
+        assert_int_equal(number(asset, "stocked"), 0);
+        assert_in_range(number(asset, "kept_sensors"), 0, cut ? 1 : 0);
+        assert_as_fresh(c, tags, asset);
+        json_decref(asset);
+        mem_free(stock);
+        mem_free(columns);
+        mem_free(tags);
+    }
+}
+
+static void what_nothing_needs_any_more_is_removed(void **state)
+{
+    struct prep_case *c = *state;
+    bool model_read;
+    json_decref(prepare(c, first_tags, "kept", &model_read));
+    char *stock = kept_file(c, ".stock"), *columns = kept_file(c, ".columns");
+    char *other = mem_strdup(plant_text);
+    memcpy(strstr(other, "up: z"), "up: y", 5);
+    prep_case_plant(c, other);
+    json_decref(prepare(c, "a,,,,t,A,,1.3,0,0\n", "kept", &model_read));
+    assert_true(model_read);
+    assert_int_not_equal(access(stock, F_OK), 0);
+    assert_int_not_equal(access(columns, F_OK), 0);
+    mem_free(stock);
+    mem_free(columns);
+    mem_free(other);
+}
+
+/* --- the surface alone --------------------------------------------------------------------------------------------------------- */
+
+static void a_surface_comes_back_whole(void **state)
+{
+    struct cad torus = { 0 };
+    struct cad_random chance = { 9 };
+    struct text packed = { 0 };
+    const double source[1][3] = { { 1.2, 0.3, 0.1 } };
+    (void)state;
+    cad_torus(&torus, &chance, 40, 20, 0.3, 0.5);
+    torus.triangles[3] = torus.triangles[4]; /* a triangle without area */
+    struct surface *surface = surface_create(NULL, NULL, (const float(*)[3])torus.positions, torus.vertex_count, torus.triangles,
+                                             torus.triangle_count, &(struct surface_params){ 0 });
+    float *before_m = mem_array(torus.vertex_count, sizeof(*before_m)), *after_m = mem_array(torus.vertex_count, sizeof(*after_m));
+    assert_true(surface_distances(surface, source, 1, before_m));
+    surface_pack(surface, &packed);
+    struct unpack from = { packed.at, packed.length, false };
+    struct surface *back = surface_unpack(&from, NULL, NULL);
+    assert_non_null(back);
+    assert_int_equal(from.left, 0);
+    assert_true(surface_distances(back, source, 1, after_m));
+    assert_memory_equal(before_m, after_m, torus.vertex_count * sizeof(*before_m));
+    assert_memory_equal(surface_report(surface), surface_report(back), sizeof(struct surface_report));
+    surface_destroy(&back);
+    for (size_t cut = 1; cut < packed.length; cut += packed.length / 37) {
+        from = (struct unpack){ packed.at, packed.length - cut, false };
+        assert_null(surface_unpack(&from, NULL, NULL));
+    }
+    surface_destroy(&surface);
+    text_finish(&packed);
+    mem_free(before_m);
+    mem_free(after_m);
+    cad_finish(&torus);
+}
+
+#define WITH_PLANT(test) cmocka_unit_test_setup_teardown(test, set_up, prep_case_tear_down)
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        WITH_PLANT(a_changed_sensor_costs_its_own_distances),
+        WITH_PLANT(what_is_damaged_is_made_anew),
+        WITH_PLANT(what_nothing_needs_any_more_is_removed),
+        cmocka_unit_test(a_surface_comes_back_whole),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
