@@ -106,8 +106,9 @@ static void run_job(void *arg)
     struct job *job = arg;
     struct encoding *encoding = job->encoding;
     struct packet *packet = encode(encoding, job->frame, &job->batch.orders[0].wish);
+    uint64_t content = job->frame->content;
     frame_unref(&job->frame);
-    encoding->params.done(encoding->params.done_arg, &job->batch, packet);
+    encoding->params.done(encoding->params.done_arg, content, &job->batch, packet);
     packet_unref(&packet);
     batch_finish(&job->batch);
     mem_free(job);

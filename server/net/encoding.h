@@ -12,7 +12,7 @@ struct encoding_params {
     struct workers *workers;
     struct counters *counters;
     /* On a worker: the packet answers the whole batch; NULL: it could not be made. Both belong to `encoding`. */
-    void (*done)(void *arg, const struct batch *batch, struct packet *packet);
+    void (*done)(void *arg, uint64_t content, const struct batch *batch, struct packet *packet);
     void *done_arg;
 };
 

@@ -2,17 +2,42 @@
 /* Wishes come in, pictures go out; the render thread in between is drawing.c. */
 #include "net/painter.h"
 
+#include <string.h>
+
 #include "base/clock.h"
 #include "base/mem.h"
 #include "net/painter_impl.h"
 
-/* Under lock. NULL: none. */
+/* Under lock. Where it is, or would be. */
+static size_t place_of(const struct painter *painter, uint64_t id)
+{
+    size_t low = 0, high = painter->client_count;
+    while (low < high) {
+        size_t middle = (low + high) / 2;
+        if (painter->clients[middle]->id < id)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
 struct client *painter_find(struct painter *painter, uint64_t id)
 {
-    for (size_t i = 0; i < painter->client_count; i++)
-        if (painter->clients[i].id == id)
-            return &painter->clients[i];
-    return NULL;
+    size_t place = place_of(painter, id);
+    return place < painter->client_count && painter->clients[place]->id == id ? painter->clients[place] : NULL;
+}
+
+/* Under lock. */
+static struct client *add_client(struct painter *painter, uint64_t id)
+{
+    size_t place = place_of(painter, id);
+    mem_grow(&painter->clients, &painter->client_capacity, painter->client_count + 1, sizeof(struct client *));
+    memmove(painter->clients + place + 1, painter->clients + place, (painter->client_count - place) * sizeof(struct client *));
+    painter->client_count++;
+    painter->clients[place] = mem_new(sizeof(struct client));
+    painter->clients[place]->id = id;
+    return painter->clients[place];
 }
 
 /* --- pictures on their way back ------------------------------------------------------------------------------------------ */
@@ -48,9 +73,14 @@ void painter_post(struct painter *painter, const struct batch *batch, struct pac
         painter->params.notify(painter->params.notify_arg);
 }
 
-static void on_encoded(void *arg, const struct batch *batch, struct packet *packet)
+static void on_encoded(void *arg, uint64_t content, const struct batch *batch, struct packet *packet)
 {
-    painter_post(arg, batch, packet, !packet);
+    struct painter *painter = arg;
+    struct batch waiting = { 0 };
+    recent_end(painter->recent, content, &batch->orders[0].wish, packet, &waiting);
+    painter_post(painter, batch, packet, !packet);
+    painter_post(painter, &waiting, packet, !packet);
+    batch_finish(&waiting);
 }
 
 struct picture *painter_collect(struct painter *painter)
@@ -90,13 +120,11 @@ enum painter_answer painter_ask(struct painter *painter, uint64_t id, const stru
             client->left |= wish->urgency == URGENCY_INPUT;
         answer = PAINTER_REFUSED;
     } else {
-        if (!client) {
-            mem_grow(&painter->clients, &painter->client_capacity, painter->client_count + 1, sizeof(*painter->clients));
-            client = &painter->clients[painter->client_count++];
-            *client = (struct client){ .id = id };
-        }
+        int share = schedule_share(wish->urgency);
+        client = client ? client : add_client(painter, id);
         client->wish = *wish;
         client->pending = true;
+        client->spent_ns[share] = schedule_asked(client->spent_ns[share], painter->spent_ns[share]);
     }
     pthread_mutex_unlock(&painter->lock);
     return answer;
@@ -124,9 +152,12 @@ void painter_forget(struct painter *painter, uint64_t id)
 {
     picks_forget(painter->picks, id);
     pthread_mutex_lock(&painter->lock);
-    struct client *client = painter_find(painter, id);
-    if (client)
-        *client = painter->clients[--painter->client_count];
+    size_t place = place_of(painter, id);
+    if (place < painter->client_count && painter->clients[place]->id == id) {
+        mem_free(painter->clients[place]);
+        painter->client_count--;
+        memmove(painter->clients + place, painter->clients + place + 1, (painter->client_count - place) * sizeof(struct client *));
+    }
     pthread_mutex_unlock(&painter->lock);
 }
 
@@ -210,6 +241,7 @@ struct painter *painter_create(const struct painter_params *params)
     pthread_mutex_init(&painter->lock, NULL);
     init_wake(&painter->wake);
     add_counters(painter, params->counters);
+    painter->recent = recent_create(params->counters);
     painter->encoding = encoding_create(&(struct encoding_params){
         .log = params->log, .workers = params->workers, .counters = params->counters, .done = on_encoded, .done_arg = painter });
     if (!thread_start(painter))
@@ -224,11 +256,14 @@ void painter_destroy(struct painter **painter_ptr)
         return;
     thread_stop(painter);
     encoding_destroy(&painter->encoding);
+    recent_destroy(&painter->recent);
     picks_destroy(&painter->picks);
     for (struct picture *picture = painter_collect(painter), *next; picture; picture = next) {
         next = picture->next;
         picture_destroy(&picture);
     }
+    for (size_t i = 0; i < painter->client_count; i++)
+        mem_free(painter->clients[i]);
     mem_free(painter->clients);
     pthread_cond_destroy(&painter->wake);
     pthread_mutex_destroy(&painter->lock);

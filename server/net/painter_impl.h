@@ -5,6 +5,7 @@
 #include <pthread.h>
 
 #include "net/encoding.h"
+#include "net/recent.h"
 #include "net/painter.h"
 
 struct client {
@@ -13,6 +14,7 @@ struct client {
     bool left; /* the slow picture: it wants another by now */
     struct wish wish;
     uint64_t content; /* of the last picture drawn for it */
+    int64_t spent_ns[SCHEDULE_SHARES]; /* of drawing time, its share; see schedule.h */
 };
 
 struct painter {
@@ -20,6 +22,7 @@ struct painter {
     counter *renders, *render_us, *same, *failures, *steps, *abandoned, *losses, *picked, *pick_us;
     struct picks *picks;
     struct encoding *encoding;
+    struct recent *recent;
     pthread_t thread;
     bool has_thread;
     pthread_mutex_t lock;
@@ -28,8 +31,9 @@ struct painter {
     enum { STARTING, RUNNING, FAILED, STOPPING } state;
     bool new_data;
     bool lost, lose; /* the GL context; at the next picture */
-    struct client *clients;
+    struct client **clients; /* by id, ascending */
     size_t client_count, client_capacity;
+    int64_t spent_ns[SCHEDULE_SHARES]; /* what the client that was served last had spent before */
     struct picture *done, **done_last;
 };
 
