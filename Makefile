@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Plantcast: `make run` and `make test` do everything; the README says the rest.
-# config = release | debug | asan | tsan | fuzz;  CC = gcc | clang;  build = folder for all that is made.
+# config = release | debug | asan | tsan | fuzz;  CC = gcc | clang;  build = folder for all that is made;
+# CODECS = jpeg: without H.264, and so without libavcodec.
 config ?= release
 build  ?= build
+CODECS ?= jpeg h264
 ifeq ($(origin CC),default)
 CC := gcc
 endif
@@ -22,12 +24,21 @@ gen := $(build)/gen
 bin := $(if $(filter release,$(config)),$(build),$(out)/bin)
 
 packages := yaml-0.1 jansson libmodbus cglm libwebsockets libturbojpeg libpng cairo libxxhash OpenImageIO
+ifneq ($(filter-out jpeg h264,$(CODECS))$(if $(filter jpeg,$(CODECS)),,none),)
+$(error CODECS=$(CODECS) is unknown: jpeg, or jpeg h264)
+endif
+ifneq ($(filter h264,$(CODECS)),)
+packages += libavcodec libavutil
+defines  := -DPLANTCAST_H264
+libyuv   := -lyuv
+endif
 pkg_cflags := $(shell pkg-config --cflags $(packages) 2>/dev/null)
-pkg_libs   := $(shell pkg-config --libs $(packages) 2>/dev/null) -lflann -lcholmod -lopenblas -lmeshoptimizer -ltinygltf -ldraco -lm -ldl
+pkg_libs   := $(shell pkg-config --libs $(packages) 2>/dev/null) -lflann -lcholmod -lopenblas -lmeshoptimizer -ltinygltf -ldraco \
+              $(libyuv) -lm -ldl
 
 warn   := -Wall -Wextra -Wshadow -Wpointer-arith -Wvla -Wundef -Wno-psabi
 include := -I. -Iserver -I$(gen) -isystem $(gen)/glad/include -isystem /usr/include/suitesparse $(pkg_cflags)
-common := $(flags_$(config)) $(include) -MMD -MP -pthread -fno-math-errno
+common := $(flags_$(config)) $(defines) $(include) -MMD -MP -pthread -fno-math-errno
 cflags   = -std=c11 -D_GNU_SOURCE $(warn) -Wstrict-prototypes -Wmissing-prototypes $(common) $(CFLAGS)
 cxxflags = -std=c++17 -D_GNU_SOURCE $(warn) $(common) $(CXXFLAGS)
 ldflags  = $(flags_$(config)) -pthread -Wl,--as-needed $(LDFLAGS)
@@ -35,6 +46,7 @@ ldflags  = $(flags_$(config)) -pthread -Wl,--as-needed $(LDFLAGS)
 # --- what is built: one archive per layer, left to right ------------------------------------------------------------------
 layers   := base plant surface value history scene field gpu render encode net
 layers   := $(foreach l,$(layers),$(if $(wildcard server/$(l)/*.c),$(l)))
+without  := $(if $(filter h264,$(CODECS)),,$(wildcard server/encode/h264*))
 archives := $(foreach l,$(layers),$(out)/lib/$(l).a) $(out)/lib/protocol.a
 objects   = $(patsubst %,$(out)/obj/%.o,$(basename $(1)))
 link      = @mkdir -p $(@D); echo "  LINK $@"; \
@@ -67,8 +79,8 @@ $(bin)/plantcast-demo: $(call objects,$(generate_sources)) $(archives)
 embedded := $(out)/obj/gen/embedded.o
 glad     := $(out)/obj/gen/glad/src/gl.o $(out)/obj/gen/glad/src/egl.o
 define archive_rule
-$(out)/lib/$(1).a: $(call objects,$(wildcard $(addprefix server/$(1)/*,.c .cc))) $(if $(filter base,$(1)),$(embedded)) \
-    $(if $(filter gpu,$(1)),$(glad))
+$(out)/lib/$(1).a: $(call objects,$(filter-out $(without),$(wildcard $(addprefix server/$(1)/*,.c .cc)))) \
+    $(if $(filter base,$(1)),$(embedded)) $(if $(filter gpu,$(1)),$(glad))
 endef
 $(foreach l,$(layers),$(eval $(call archive_rule,$(l))))
 $(out)/lib/protocol.a: $(call objects,$(wildcard protocol/*.c))
@@ -79,7 +91,7 @@ $(out)/lib/%.a:
 
 # Loops that choose between two numbers become wide only if no comparison can trap.
 $(call objects,server/surface/surface_field.c preprocess/shares.c): CFLAGS += -fno-trapping-math
-$(out)/obj/%.o: %.c Makefile | $(gen)/glad/include/glad/gl.h
+$(out)/obj/%.o: %.c Makefile $(out)/codecs | $(gen)/glad/include/glad/gl.h
 	@mkdir -p $(@D); echo "  CC   $<"
 	@$(CC) $(cflags) -c -o $@ $<
 $(out)/obj/%.o: %.cc Makefile
@@ -120,5 +132,8 @@ include deploy/deploy.mk
 
 clean:
 	rm -rf $(build)
+
+# What was built with other codecs is built anew.
+$(shell mkdir -p $(out); echo '$(CODECS)' | cmp -s - $(out)/codecs || echo '$(CODECS)' >$(out)/codecs)
 
 -include $(shell find $(out)/obj -name '*.d' 2>/dev/null)

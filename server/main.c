@@ -15,7 +15,7 @@ static void print_usage(FILE *out)
 {
     fputs("usage: plantcastd PLANT.yaml [--listen ADDR] [--port N] [--gl auto|egl-device|egl-surfaceless|osmesa]\n"
           "                  [--gl-device INDEX|PCI] [--prepared DIR] [--web DIR] [--log-level error|warn|info|debug]\n"
-          "                  [--threads N] [--field vertices|per-fragment] [--open-viewers]\n"
+          "                  [--threads N] [--field vertices|per-fragment] [--h264 ENCODER|off] [--open-viewers]\n"
           "       plantcastd --check PLANT.yaml [--prepared DIR]\n"
           "       plantcastd --list-gl-devices | --version | --help\n"
           "\n"
@@ -30,6 +30,8 @@ static void print_usage(FILE *out)
           "  --threads N      workers for the field and for encoding (one per core)\n"
           "  --field KIND     vertices: the field at vertices, when a reading changes (the default); per-fragment: anew at each\n"
           "                   fragment, slow, for comparison\n"
+          "  --h264 ENCODER   who makes H.264, by its name in libavcodec (libx264): h264_nvenc, h264_vaapi, libopenh264, ...; off:\n"
+          "                   nobody. Where it does not work on this machine, clients get JPEG\n"
           "  --open-viewers   let anyone who reaches ADDR look at the pictures\n"
           "  --check          read everything, report every error, start nothing\n",
           out);
@@ -90,6 +92,7 @@ enum {
     OPTION_GL,
     OPTION_FIELD,
     OPTION_GL_DEVICE,
+    OPTION_H264,
     OPTION_LIST_GL,
     OPTION_PREPARED,
     OPTION_WEB,
@@ -106,6 +109,7 @@ static const struct option options[] = {
     { "port", required_argument, NULL, OPTION_PORT },
     { "field", required_argument, NULL, OPTION_FIELD },
     { "gl", required_argument, NULL, OPTION_GL },
+    { "h264", required_argument, NULL, OPTION_H264 },
     { "gl-device", required_argument, NULL, OPTION_GL_DEVICE },
     { "list-gl-devices", no_argument, NULL, OPTION_LIST_GL },
     { "prepared", required_argument, NULL, OPTION_PREPARED },
@@ -134,6 +138,7 @@ static int take_option(int option, struct server_params *params, bool *check)
         params->has_gl_device = true;
         return gl_device_parse(optarg, &params->gl_device) ? -1 : usage_error("--gl-device: neither an index nor a PCI address", optarg);
     case OPTION_LIST_GL: return gl_list_devices(stdout) > 0 ? GOOD : FAILED;
+    case OPTION_H264: params->h264 = optarg; return -1;
     case OPTION_PREPARED: params->prepared = optarg; return -1;
     case OPTION_WEB: params->web = optarg; return -1;
     case OPTION_LEVEL: return parse_level(optarg, &params->log_level) ? -1 : usage_error("--log-level: unknown", optarg);

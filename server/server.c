@@ -16,6 +16,7 @@
 #include "base/counters.h"
 #include "base/mem.h"
 #include "base/workers.h"
+#include "encode/encoder.h"
 #include "far.h"
 #include "field/colormap.h"
 #include "net/net.h"
@@ -136,6 +137,23 @@ static bool start_sources(struct server *server)
     return true;
 }
 
+static const char *h264_library(const struct server *server)
+{
+    return server->params.h264 ? server->params.h264 : ENCODER_H264_LIBRARY;
+}
+
+/* H.264 is offered where it works; JPEG always is. */
+static unsigned find_codecs(const struct server *server)
+{
+    const char *library = h264_library(server);
+    unsigned codecs = 1u << WIRE_CODEC_JPEG | 1u << WIRE_CODEC_PNG;
+    if (strcmp(library, "off") != 0 && encoder_works(server->log, "h264", library))
+        codecs |= 1u << WIRE_CODEC_H264;
+    else if (server->params.h264 && strcmp(library, "off") != 0)
+        log_warn(server->log, "h264 by %s does not work here: clients get JPEG", library);
+    return codecs;
+}
+
 static bool start_painter(struct server *server)
 {
     struct painter_params params = {
@@ -147,6 +165,7 @@ static bool start_painter(struct server *server)
         .store = server->store,
         .baselines = server->baselines,
         .workers = server->workers,
+        .h264_library = h264_library(server),
         .counters = server->counters,
         .notify = on_pictures,
         .notify_arg = server,
@@ -167,6 +186,7 @@ static bool start_net(struct server *server)
         .address = server->params.address,
         .port = server->params.port,
         .open_viewers = server->params.open_viewers,
+        .codecs = find_codecs(server),
         .web_folder = server->web,
         .version = PLANTCAST_VERSION,
     };

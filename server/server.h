@@ -15,6 +15,7 @@ struct server_params {
     const char *prepared; /* NULL: beside the plant file */
     const char *web;      /* NULL: found from where the program is */
     enum log_level log_level;
+    const char *h264;     /* an encoder of libavcodec, or "off"; NULL: the usual one */
     int threads; /* workers; 0: one per core */
     bool open_viewers;
     bool per_fragment; /* the field anew at each fragment; for comparison */

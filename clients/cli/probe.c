@@ -10,6 +10,7 @@
 
 #include "base/mem.h"
 #include "commands.h"
+#include "decoder.h"
 #include "viewer.h"
 
 enum { MAX_SESSIONS = 1000 };
@@ -21,6 +22,7 @@ struct probe {
     double seconds;
     enum motion motion;
     bool as_json;
+    const char *codec;
     struct viewer **viewers;
 };
 
@@ -29,11 +31,12 @@ static const char *const motion_names[] = { "still", "orbit" };
 
 static void print_usage(FILE *out)
 {
-    fputs("usage: plantcast probe URL [--sessions N] [--seconds S] [--motion still|orbit] [--size WxH] [--json]\n"
+    fputs("usage: plantcast probe URL [--sessions N] [--seconds S] [--motion still|orbit] [--size WxH]\n"
+          "                           [--codec jpeg|h264] [--json]\n"
           "\n"
           "Opens N sessions on a daemon (http://HOST:PORT/), decodes every frame before it acknowledges it, and prints rates and\n"
           "latencies. Input to frame: from sending a camera to the first frame drawn with it, or with a newer one, decoded; each of\n"
-          "the 60 cameras that an orbit sends in a second counts.\n",
+          "the 60 cameras that an orbit sends in a second counts. `steady` is what comes, texts and all, once 3 s have gone by.\n",
           out);
 }
 
@@ -70,7 +73,7 @@ static void sort(struct samples *samples)
 struct summary {
     int frames, still_frames, errors, failed;
     double fps, fps_lowest; /* mean and least over the sessions */
-    double kb_per_frame, mbit_per_s;
+    double kb_per_frame, mbit_per_s, steady_kbit_per_s;
     struct samples input, first, stages[STAGE_COUNT];
 };
 
@@ -82,7 +85,7 @@ static double fps_of(const struct viewer_result *result)
 
 static void summarise(const struct probe *probe, struct summary *sum)
 {
-    double bytes = 0;
+    double bytes = 0, text_bytes = 0, steady_bytes = 0;
     *sum = (struct summary){ .fps_lowest = INFINITY };
     for (int i = 0; i < probe->sessions; i++) {
         const struct viewer_result *result = viewer_result(probe->viewers[i]);
@@ -94,13 +97,16 @@ static void summarise(const struct probe *probe, struct summary *sum)
         sum->fps += fps / probe->sessions;
         sum->fps_lowest = fmin(sum->fps_lowest, fps);
         bytes += (double)result->bytes;
+        text_bytes += (double)result->text_bytes;
+        steady_bytes += (double)result->steady_bytes;
         append(&sum->input, &result->input);
         append(&sum->first, &result->first);
         for (int s = 0; s < STAGE_COUNT; s++)
             append(&sum->stages[s], &result->stages[s]);
     }
     sum->kb_per_frame = sum->frames ? bytes / sum->frames / 1000 : 0;
-    sum->mbit_per_s = bytes * 8 / 1e6 / probe->seconds;
+    sum->steady_kbit_per_s = probe->seconds > VIEWER_SETTLES_S ? steady_bytes * 8 / 1000 / (probe->seconds - VIEWER_SETTLES_S) : 0;
+    sum->mbit_per_s = (bytes + text_bytes) * 8 / 1e6 / probe->seconds;
     sort(&sum->input);
     sort(&sum->first);
     for (int s = 0; s < STAGE_COUNT; s++)
@@ -135,12 +141,14 @@ static void print_failures(const struct probe *probe)
 
 static void print_table(const struct probe *probe, const struct summary *sum)
 {
-    printf("%s  %d session%s, %s, %dx%d, %.1f s\n", probe->url_text, probe->sessions, probe->sessions == 1 ? "" : "s",
-           motion_names[probe->motion], probe->width_px, probe->height_px, probe->seconds);
+    printf("%s  %d session%s, %s, %s, %dx%d, %.1f s\n", probe->url_text, probe->sessions, probe->sessions == 1 ? "" : "s",
+           motion_names[probe->motion], probe->codec, probe->width_px, probe->height_px, probe->seconds);
     printf("  frames           %8d (%d refined)\n", sum->frames, sum->still_frames);
     printf("  frames/s         %8.1f per session, lowest %.1f\n", sum->fps, sum->fps_lowest);
     printf("  kB/frame         %8.1f\n", sum->kb_per_frame);
     printf("  Mbit/s           %8.2f together\n", sum->mbit_per_s);
+    if (probe->seconds > VIEWER_SETTLES_S)
+        printf("  steady           %8.1f kbit/s together\n", sum->steady_kbit_per_s);
     if (sum->errors)
         printf("  error messages   %8d\n", sum->errors);
     printf("  %-16s %8s %8s %8s %8s\n", "", "p50", "p95", "p99", "max");
@@ -168,9 +176,10 @@ static void print_json(const struct probe *probe, const struct summary *sum)
             json_array_append_new(failures, json_string(viewer_result(probe->viewers[i])->failure));
     json_t *o = json_pack("{s:s,s:i,s:f,s:s,s:i,s:i}", "url", probe->url_text, "sessions", probe->sessions, "seconds", probe->seconds,
                           "motion", motion_names[probe->motion], "width", probe->width_px, "height", probe->height_px);
-    json_object_update_new(o, json_pack("{s:i,s:i,s:i,s:f,s:f,s:f,s:f}", "frames", sum->frames, "still_frames", sum->still_frames, "errors",
-                                        sum->errors, "fps", sum->fps, "fps_lowest", sum->fps_lowest, "kb_per_frame", sum->kb_per_frame,
-                                        "mbit_per_s", sum->mbit_per_s));
+    json_object_update_new(o, json_pack("{s:s,s:i,s:i,s:i,s:f,s:f,s:f,s:f,s:f}", "codec", probe->codec, "frames", sum->frames,
+                                        "still_frames", sum->still_frames, "errors", sum->errors, "fps", sum->fps, "fps_lowest",
+                                        sum->fps_lowest, "kb_per_frame", sum->kb_per_frame, "mbit_per_s", sum->mbit_per_s,
+                                        "steady_kbit_per_s", sum->steady_kbit_per_s));
     json_object_set_new(o, "input_to_frame_ms", samples_json(&sum->input));
     json_object_set_new(o, "first_frame_ms", samples_json(&sum->first));
     json_object_set_new(o, "stages_ms", stages);
@@ -199,6 +208,7 @@ static bool run_viewers(struct probe *probe)
                                         .width_px = probe->width_px,
                                         .height_px = probe->height_px,
                                         .motion = probe->motion,
+                                        .codec = probe->codec,
                                         .seconds = probe->seconds,
                                         .start_deg = 360.0 * i / probe->sessions };
         if (!(probe->viewers[i] = viewer_create(&params)))
@@ -252,6 +262,7 @@ static bool take_option(int option, struct probe *probe)
         probe->motion = strcmp(optarg, "orbit") == 0 ? MOTION_ORBIT : MOTION_STILL;
         return !strcmp(optarg, motion_names[probe->motion]);
     case 'z': return parse_size(optarg, &probe->width_px, &probe->height_px);
+    case 'c': probe->codec = optarg; return !strcmp(optarg, "jpeg") || (!strcmp(optarg, "h264") && decoder_has(WIRE_CODEC_H264));
     case 'j': probe->as_json = true; return true;
     default: return false;
     }
@@ -264,11 +275,12 @@ int cmd_probe(int argc, char **argv)
         { "seconds", required_argument, NULL, 's' },
         { "motion", required_argument, NULL, 'm' },
         { "size", required_argument, NULL, 'z' },
+        { "codec", required_argument, NULL, 'c' },
         { "json", no_argument, NULL, 'j' },
         { "help", no_argument, NULL, 'h' },
         { NULL, 0, NULL, 0 },
     };
-    struct probe probe = { .sessions = 1, .seconds = 5, .motion = MOTION_ORBIT, .width_px = 1280, .height_px = 720 };
+    struct probe probe = { .sessions = 1, .codec = "jpeg", .seconds = 5, .motion = MOTION_ORBIT, .width_px = 1280, .height_px = 720 };
     for (int option; (option = getopt_long(argc, argv, "", options, NULL)) != -1;) {
         if (option == 'h') {
             print_usage(stdout);

@@ -104,7 +104,7 @@ static void tear_down(struct studio *studio)
 
 static bool save(struct studio *studio, struct frame *frame, const char *path)
 {
-    struct encoder *encoder = encoder_create(studio->log, "png");
+    struct encoder *encoder = encoder_create(studio->log, "png", NULL);
     struct packet *packet = NULL;
     bool good = encoder && encoder_send(encoder, frame, &(struct encoder_params){ 0 }) == 0 && encoder_receive(encoder, &packet) == 0;
     int status = good ? text_write_file(path, packet->bytes, packet->count) : 0;

@@ -7,10 +7,10 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <turbojpeg.h>
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "decoder.h"
 #include "protocol/wire.h"
 
 enum { CAMERA_HZ = 60, MAX_MESSAGE_BYTES = WIRE_MAX_PAYLOAD_BYTES + WIRE_FRAME_HEADER_BYTES, SENT_RING = 4096, MAX_ACKS = 8 };
@@ -23,9 +23,8 @@ struct viewer {
     struct lws_context *context;
     struct lws *wsi;
     lws_sorted_usec_list_t timer;
-    tjhandle turbo;
-    uint8_t *pixels;
-    size_t pixel_bytes;
+    struct decoder *decoder;
+    int64_t decode_ns; /* of the parts of a picture so far */
     struct text in;
     bool greeted, welcomed, camera_due, done;
     double eye[3], target[3], fov_deg;
@@ -78,20 +77,6 @@ static void on_text(struct viewer *viewer)
     json_decref(o);
 }
 
-static bool decode(struct viewer *viewer, const uint8_t *bytes, size_t count)
-{
-    int w, h, sampling, space;
-    if (tjDecompressHeader3(viewer->turbo, bytes, count, &w, &h, &sampling, &space) != 0)
-        return false;
-    size_t need = (size_t)w * (size_t)h * 4;
-    if (need > viewer->pixel_bytes) {
-        mem_free(viewer->pixels);
-        viewer->pixels = mem_try_array(need, 1);
-        viewer->pixel_bytes = viewer->pixels ? need : 0;
-    }
-    return viewer->pixels && tjDecompress2(viewer->turbo, bytes, count, viewer->pixels, w, w * 4, h, TJPF_BGRX, 0) == 0;
-}
-
 /* Every camera that was sent counts, those too that were overtaken before they were drawn: their sender has waited until now. */
 static void record_input(struct viewer *viewer, uint32_t camera_seq, int64_t now_ns)
 {
@@ -102,20 +87,19 @@ static void record_input(struct viewer *viewer, uint32_t camera_seq, int64_t now
             add(&viewer->result.input, (double)(now_ns - viewer->sent_ns[(viewer->shown_camera_seq + 1) % SENT_RING]) / 1e6);
 }
 
-static void record(struct viewer *viewer, const struct wire_frame *frame, int64_t begin_ns, int64_t now_ns)
+static void record(struct viewer *viewer, const struct wire_frame *frame, int64_t now_ns)
 {
     struct viewer_result *result = &viewer->result;
     const uint32_t stages_us[] = { frame->wait_us, frame->field_us, frame->render_us, frame->encode_us };
     for (int i = 0; i < STAGE_DECODE; i++)
         add(&result->stages[i], stages_us[i] / 1000.0);
-    add(&result->stages[STAGE_DECODE], (double)(now_ns - begin_ns) / 1e6);
+    add(&result->stages[STAGE_DECODE], (double)viewer->decode_ns / 1e6);
     if (!result->frames) {
         result->first_ns = now_ns;
         add(&result->first, (double)(now_ns - viewer->begin_ns) / 1e6);
     }
     result->frames++;
     result->still_frames += (frame->flags & WIRE_FLAG_STILL) != 0;
-    result->bytes += frame->payload_bytes + WIRE_FRAME_HEADER_BYTES;
     result->last_ns = now_ns;
     record_input(viewer, frame->camera_seq, now_ns);
 }
@@ -136,23 +120,39 @@ static void on_frame(struct viewer *viewer)
     int64_t begin_ns = clock_mono_ns();
     if (is_given_up(bytes, viewer->in.length)) {
         viewer->result.given_up++;
+        viewer->decode_ns = 0;
         return;
     }
     if (!wire_get_frame(bytes, viewer->in.length, &frame)) {
         fail(viewer, "a binary message is no frame of " WIRE_SUBPROTOCOL);
         return;
     }
-    if (frame.codec != WIRE_CODEC_JPEG || !decode(viewer, bytes + WIRE_FRAME_HEADER_BYTES, frame.payload_bytes)) {
+    if (!decoder_decode(viewer->decoder, &frame, bytes + WIRE_FRAME_HEADER_BYTES)) {
         fail(viewer, "a frame cannot be decoded");
         return;
     }
     int64_t now_ns = clock_mono_ns();
-    record(viewer, &frame, begin_ns, now_ns);
+    viewer->result.bytes += frame.payload_bytes + WIRE_FRAME_HEADER_BYTES;
+    viewer->decode_ns += now_ns - begin_ns;
+    if (frame.flags & WIRE_FLAG_MORE)
+        return;
+    record(viewer, &frame, now_ns);
     if (viewer->ack_count < MAX_ACKS) {
         viewer->acks[viewer->ack_count].seq = frame.seq;
-        viewer->acks[viewer->ack_count++].decode_ms = (double)(now_ns - begin_ns) / 1e6;
+        viewer->acks[viewer->ack_count++].decode_ms = (double)viewer->decode_ns / 1e6;
     }
+    viewer->decode_ns = 0;
     lws_callback_on_writable(viewer->wsi);
+}
+
+static void count_bytes(struct viewer *viewer, bool binary)
+{
+    struct viewer_result *result = &viewer->result;
+    int64_t count = (int64_t)viewer->in.length;
+    if (!binary)
+        result->text_bytes += count;
+    if (result->frames && clock_mono_ns() - result->first_ns >= VIEWER_SETTLES_S * NS_PER_S)
+        result->steady_bytes += count;
 }
 
 static int on_receive(struct viewer *viewer, struct lws *wsi, const void *bytes, size_t count)
@@ -168,6 +168,7 @@ static int on_receive(struct viewer *viewer, struct lws *wsi, const void *bytes,
         on_frame(viewer);
     else
         on_text(viewer);
+    count_bytes(viewer, lws_frame_is_binary(wsi));
     viewer->in.length = 0;
     return viewer->done ? -1 : 0;
 }
@@ -203,8 +204,8 @@ static int on_writable(struct viewer *viewer)
     int status = 0;
     if (!viewer->greeted) {
         viewer->greeted = true;
-        status = say(viewer->wsi, "{\"type\":\"hello\",\"width\":%d,\"height\":%d,\"codecs\":[\"jpeg\"]}", viewer->params.width_px,
-                     viewer->params.height_px);
+        status = say(viewer->wsi, "{\"type\":\"hello\",\"width\":%d,\"height\":%d,\"codecs\":[\"%s\"]}", viewer->params.width_px,
+                     viewer->params.height_px, viewer->params.codec);
     } else if (viewer->ack_count > 0) {
         status = say(viewer->wsi, "{\"type\":\"ack\",\"seq\":%u,\"decode_ms\":%.3f}", viewer->acks[0].seq, viewer->acks[0].decode_ms);
         viewer->ack_count--;
@@ -270,10 +271,10 @@ struct viewer *viewer_create(const struct viewer_params *params)
     };
     struct viewer *viewer = mem_new(sizeof(*viewer));
     viewer->params = *params;
-    viewer->turbo = tjInitDecompress();
+    viewer->decoder = decoder_create();
     lws_set_log_level(0, NULL);
     viewer->context = lws_create_context(&info);
-    if (!viewer->context || !viewer->turbo)
+    if (!viewer->context || !viewer->decoder)
         viewer_destroy(&viewer);
     return viewer;
 }
@@ -312,13 +313,11 @@ void viewer_destroy(struct viewer **viewer_ptr)
     lws_sul_cancel(&viewer->timer);
     if (viewer->context)
         lws_context_destroy(viewer->context);
-    if (viewer->turbo)
-        tjDestroy(viewer->turbo);
+    decoder_destroy(&viewer->decoder);
     mem_free(viewer->result.input.at);
     mem_free(viewer->result.first.at);
     for (int i = 0; i < STAGE_COUNT; i++)
         mem_free(viewer->result.stages[i].at);
-    mem_free(viewer->pixels);
     text_finish(&viewer->in);
     mem_free(viewer);
     *viewer_ptr = NULL;

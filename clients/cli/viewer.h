@@ -10,9 +10,12 @@
 
 enum motion { MOTION_STILL, MOTION_ORBIT };
 
+enum { VIEWER_SETTLES_S = 3 };
+
 struct viewer_params {
     const struct daemon_url *url;
     int width_px, height_px;
+    const char *codec; /* "jpeg", "h264" */
     enum motion motion;
     double seconds;
     double start_deg; /* of the orbit */
@@ -28,6 +31,7 @@ enum viewer_stage { STAGE_WAIT, STAGE_FIELD, STAGE_RENDER, STAGE_ENCODE, STAGE_D
 struct viewer_result {
     int frames, still_frames, errors;
     int given_up; /* frames that the server did not send to their end */
+    int64_t text_bytes, steady_bytes; /* steady: of all messages, once VIEWER_SETTLES_S have gone by since the first frame */
     int64_t bytes, first_ns, last_ns; /* of frames; monotonic */
     struct samples input;             /* from sending a camera to its frame decoded */
     struct samples first;             /* from connecting to the first frame decoded: one */

@@ -8,15 +8,31 @@
 #include "base/clock.h"
 #include "encode/encoder_impl.h"
 
-static const struct encoder_impl *const table[] = { &jpeg_impl, &png_impl };
+static const double WHOLE_SHARE = 0.6; /* from this share on one whole picture costs less than its parts */
+static const struct encoder_impl *const table[] = {
+    &jpeg_impl,
+    &png_impl,
+#ifdef PLANTCAST_H264
+    &h264_impl,
+#endif
+};
 
-struct encoder *encoder_create(struct log *log, const char *name)
+static const struct encoder_impl *find(const char *name)
 {
     for (size_t i = 0; i < sizeof(table) / sizeof(table[0]); i++)
         if (!strcmp(table[i]->name, name))
-            return table[i]->create(log);
-    log_err(log, "encoder '%s' is unknown", name);
+            return table[i];
     return NULL;
+}
+
+struct encoder *encoder_create(struct log *log, const char *name, const char *library)
+{
+    const struct encoder_impl *impl = find(name);
+    if (!impl) {
+        log_err(log, "encoder '%s' is unknown", name);
+        return NULL;
+    }
+    return impl->create(log, library);
 }
 
 void encoder_destroy(struct encoder **encoder)
@@ -28,12 +44,38 @@ void encoder_destroy(struct encoder **encoder)
     *encoder = NULL;
 }
 
+bool encoder_is_stream(const char *name)
+{
+    const struct encoder_impl *impl = find(name);
+    return impl && impl->is_stream;
+}
+
+/* Of a frame that follows `before` under the same view. False: nothing differs. */
+static bool find_changes(const struct encoder *encoder, const struct frame *frame, const struct frame *before, struct change *changes,
+                         int *count)
+{
+    if (encoder->impl->is_stream) /* it finds them itself */
+        return !changes_none(before, frame);
+    *count = changes_find(before, frame, changes);
+    if (*count == 0)
+        return false;
+    if (changes_share(frame, changes, *count) > WHOLE_SHARE)
+        *count = 0;
+    return true;
+}
+
 int encoder_send(struct encoder *encoder, struct frame *frame, const struct encoder_params *params)
 {
+    struct change changes[CHANGES_MAX];
+    const struct frame *before = params->key ? NULL : params->before;
+    int count = 0;
     if (encoder->ready)
         return -EAGAIN;
     int64_t begin_ns = clock_mono_ns();
-    int status = encoder->impl->send(encoder, frame, params);
+    if (before && before->width_px == frame->width_px && before->height_px == frame->height_px && view_equal(&before->view, &frame->view) &&
+        !find_changes(encoder, frame, before, changes, &count))
+        return 0;
+    int status = encoder->impl->send(encoder, frame, params, changes, count);
     if (status == 0)
         encoder->ready->encode_ns = clock_mono_ns() - begin_ns;
     return status;
@@ -44,4 +86,14 @@ int encoder_receive(struct encoder *encoder, struct packet **out)
     *out = encoder->ready;
     encoder->ready = NULL;
     return *out ? 0 : -EAGAIN;
+}
+
+bool encoder_works(struct log *log, const char *name, const char *library)
+{
+    struct encoder *encoder = find(name) ? encoder_create(log, name, library) : NULL;
+    struct frame *frame = encoder ? frame_create(320, 192) : NULL;
+    bool works = frame && encoder_send(encoder, frame, &(struct encoder_params){ .quality = 80, .key = true }) == 0;
+    frame_unref(&frame);
+    encoder_destroy(&encoder);
+    return works;
 }

@@ -2,12 +2,16 @@
 /* What one codec supplies: a line in the table of encoder.c. Private to encode/. */
 #ifndef ENCODE_ENCODER_IMPL_H
 #define ENCODE_ENCODER_IMPL_H
+#include "encode/changes.h"
 #include "encode/encoder.h"
 
 struct encoder_impl {
     const char *name;
-    struct encoder *(*create)(struct log *log);
-    int (*send)(struct encoder *encoder, struct frame *frame, const struct encoder_params *params);
+    bool is_stream;
+    struct encoder *(*create)(struct log *log, const char *library);
+    /* Leaves encoder->ready. changes: none for the whole picture, else the only rectangles that differ from params->before; a codec
+       may send more than those. */
+    int (*send)(struct encoder *encoder, struct frame *frame, const struct encoder_params *params, const struct change *changes, int count);
     void (*destroy)(struct encoder *encoder);
 };
 
@@ -18,5 +22,8 @@ struct encoder { /* first member of each codec's own struct */
 };
 
 extern const struct encoder_impl jpeg_impl, png_impl;
+#ifdef PLANTCAST_H264
+extern const struct encoder_impl h264_impl;
+#endif
 
 #endif

@@ -27,21 +27,36 @@ static struct frame *without_pixels(const struct frame *frame)
     return copy;
 }
 
-struct packet *packet_create(const struct frame *frame, enum wire_codec codec, bool key, const void *bytes, size_t count)
+static struct packet *make(const struct frame *frame, enum wire_codec codec, bool key, const void *bytes, const struct packet_part *parts,
+                           int part_count)
 {
     struct packet *packet = mem_new(sizeof(*packet));
     atomic_init(&packet->refs, 1);
-    packet->bytes = mem_try_array(count, 1);
+    packet->count = parts[part_count - 1].begin + parts[part_count - 1].count;
+    packet->bytes = mem_try_array(packet->count, 1);
     if (!packet->bytes) {
         mem_free(packet);
         return NULL;
     }
-    memcpy(packet->bytes, bytes, count);
-    packet->count = count;
+    memcpy(packet->bytes, bytes, packet->count);
+    memcpy(packet->parts, parts, (size_t)part_count * sizeof(*parts));
+    packet->part_count = part_count;
     packet->codec = codec;
     packet->key = key;
     packet->frame = without_pixels(frame);
     return packet;
+}
+
+struct packet *packet_create(const struct frame *frame, enum wire_codec codec, bool key, const void *bytes, size_t count)
+{
+    struct packet_part whole = { .width_px = frame->width_px, .height_px = frame->height_px, .count = count };
+    return make(frame, codec, key, bytes, &whole, 1);
+}
+
+struct packet *packet_create_parts(const struct frame *frame, enum wire_codec codec, const void *bytes, const struct packet_part *parts,
+                                   int part_count)
+{
+    return make(frame, codec, false, bytes, parts, part_count);
 }
 
 struct packet *packet_ref(struct packet *packet)

@@ -3,22 +3,34 @@
 #ifndef ENCODE_PACKET_H
 #define ENCODE_PACKET_H
 #include <stdatomic.h>
+#include <stdbool.h>
 
 #include "protocol/wire.h"
 #include "render/frame.h"
+
+enum { PACKET_PARTS = 8 };
+struct packet_part { /* a rectangle of the picture, and its bytes */
+    int x_px, y_px, width_px, height_px;
+    size_t begin, count;
+};
 
 struct packet {
     _Atomic int refs;
     struct frame *frame; /* what it shows, without pixels (frame->bgrx is NULL) */
     enum wire_codec codec;
-    bool key;
+    bool key; /* stands alone; else it changes the picture that the packet before it left */
     uint8_t *bytes;
     size_t count;
+    struct packet_part parts[PACKET_PARTS];
+    int part_count;
     int64_t encode_ns;
 };
 
-/* Copies bytes and what the frame says. NULL: out of memory. */
+/* The whole picture. Copies bytes and what the frame says. NULL: out of memory. */
 struct packet *packet_create(const struct frame *frame, enum wire_codec codec, bool key, const void *bytes, size_t count);
+/* 1..PACKET_PARTS rectangles whose bytes lie one after the other. */
+struct packet *packet_create_parts(const struct frame *frame, enum wire_codec codec, const void *bytes, const struct packet_part *parts,
+                                   int part_count);
 struct packet *packet_ref(struct packet *packet);
 void packet_unref(struct packet **packet); /* &NULL is fine; leaves NULL */
 

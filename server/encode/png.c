@@ -12,8 +12,9 @@ static void png_destroy(struct encoder *encoder)
     mem_free(encoder);
 }
 
-static struct encoder *png_create(struct log *log)
+static struct encoder *png_create(struct log *log, const char *library)
 {
+    (void)library;
     struct encoder *encoder = mem_new(sizeof(*encoder));
     *encoder = (struct encoder){ .impl = &png_impl, .log = log };
     return encoder;
@@ -33,9 +34,12 @@ static uint8_t *pack_bgr(const struct frame *frame)
     return packed;
 }
 
-static int png_send(struct encoder *encoder, struct frame *frame, const struct encoder_params *params)
+static int png_send(struct encoder *encoder, struct frame *frame, const struct encoder_params *params, const struct change *changes,
+                    int count)
 {
-    (void)params; /* nothing to choose: it is lossless */
+    (void)params; /* nothing to choose: it is lossless, and always whole */
+    (void)changes;
+    (void)count;
     png_image image = {
         .version = PNG_IMAGE_VERSION,
         .format = PNG_FORMAT_BGR,
@@ -43,11 +47,11 @@ static int png_send(struct encoder *encoder, struct frame *frame, const struct e
         .width = (png_uint_32)frame->width_px,
         .height = (png_uint_32)frame->height_px,
     };
-    png_alloc_size_t count = PNG_IMAGE_PNG_SIZE_MAX(image);
-    uint8_t *packed = pack_bgr(frame), *out = mem_try_array(count, 1);
+    png_alloc_size_t bytes = PNG_IMAGE_PNG_SIZE_MAX(image);
+    uint8_t *packed = pack_bgr(frame), *out = mem_try_array(bytes, 1);
     int status = -ENOMEM;
-    if (packed && out && png_image_write_to_memory(&image, out, &count, 0, packed, 0, NULL)) {
-        encoder->ready = packet_create(frame, WIRE_CODEC_PNG, true, out, count);
+    if (packed && out && png_image_write_to_memory(&image, out, &bytes, 0, packed, 0, NULL)) {
+        encoder->ready = packet_create(frame, WIRE_CODEC_PNG, true, out, bytes);
         status = encoder->ready ? 0 : -ENOMEM;
     }
     if (status)

@@ -56,36 +56,27 @@ struct turn {
     int64_t wait_until_ns;
 };
 
-/* Under lock. It can be drawn now, and before the other (NULL: nobody). */
-static bool goes_before(const struct drawing *drawing, const struct client *client, const struct client *other, int64_t now_ns)
-{
-    enum urgency urgency = client->wish.urgency;
-    int share = schedule_share(urgency);
-    if (!client->pending || (drawing->slow.canvas && urgency >= URGENCY_REFINE) || waits_for_slow(drawing, client, now_ns))
-        return false;
-    return !other || schedule_before(client->spent_ns[share], client->wish.asked_ns, other->spent_ns[share], other->wish.asked_ns);
-}
-
 /* Under lock. */
 static struct turn next_turn(const struct drawing *drawing, const struct schedule *schedule)
 {
-    const struct painter *painter = drawing->painter;
-    struct client *first[URGENCY_COUNT + 1] = { NULL };
+    struct client *oldest[URGENCY_COUNT + 1] = { NULL };
     int64_t asked_ns[URGENCY_COUNT], now_ns = clock_mono_ns();
     bool busy = drawing->slow.canvas != NULL;
     struct turn turn = { 0 };
-    for (size_t i = 0; i < painter->client_count; i++) {
-        struct client *client = painter->clients[i];
-        if (goes_before(drawing, client, first[client->wish.urgency], now_ns))
-            first[client->wish.urgency] = client;
-    }
     for (int i = 0; i < URGENCY_COUNT; i++)
-        asked_ns[i] = busy && drawing->slow.urgency == (enum urgency)i ? drawing->slow.asked_ns
-                      : first[i]                                      ? first[i]->wish.asked_ns
-                                                                      : INT64_MAX;
+        asked_ns[i] = busy && drawing->slow.urgency == (enum urgency)i ? drawing->slow.asked_ns : INT64_MAX;
+    for (size_t i = 0; i < drawing->painter->client_count; i++) {
+        struct client *client = &drawing->painter->clients[i];
+        enum urgency urgency = client->wish.urgency;
+        if (!client->pending || client->wish.asked_ns >= asked_ns[urgency] || (busy && urgency >= URGENCY_REFINE) ||
+            waits_for_slow(drawing, client, now_ns))
+            continue;
+        oldest[urgency] = client;
+        asked_ns[urgency] = client->wish.asked_ns;
+    }
     enum urgency urgency = schedule_choose(schedule, asked_ns, now_ns, &turn.wait_until_ns);
     turn.step = busy && urgency == drawing->slow.urgency;
-    turn.client = first[urgency];
+    turn.client = oldest[urgency];
     return turn;
 }
 
@@ -113,12 +104,10 @@ static void begin(struct client *client, struct batch *batch, int64_t now_ns)
 static void begin_all(struct painter *painter, struct client *first, struct batch *batch)
 {
     int64_t now_ns = clock_mono_ns();
-    int share = schedule_share(first->wish.urgency);
-    painter->spent_ns[share] = schedule_asked(first->spent_ns[share], painter->spent_ns[share]);
     begin(first, batch, now_ns);
     struct wish wish = batch->orders[0].wish;
     for (size_t i = 0; i < painter->client_count && !wish.overlay; i++) {
-        struct client *other = painter->clients[i];
+        struct client *other = &painter->clients[i];
         if (other->pending && !other->wish.overlay && view_equal(&other->wish.view, &wish.view))
             begin(other, batch, now_ns);
     }
@@ -217,35 +206,32 @@ static bool has_it(const struct order *order, void *arg)
     return !order->wish.always && client && client->has_content && client->content == now->content;
 }
 
-/* Who shares a picture shares its cost. */
-static void remember(struct painter *painter, const struct batch *batch, uint64_t content, int64_t cost_ns)
+/* Under lock: who is there remembers what it gets. */
+static bool remember(const struct order *order, void *arg)
 {
+    const struct content_of *now = arg;
+    struct client *client = painter_find(now->painter, order->client);
+    if (!client)
+        return false;
+    client->has_content = true;
+    client->content = now->content;
+    return true;
+}
+
+/* Who left has no more part in any stream of packets: decided under the lock that painter_forget takes. */
+static void submit(struct painter *painter, struct frame *frame, struct batch *batch)
+{
+    struct content_of now = { .painter = painter, .content = frame->content };
+    struct batch here = { 0 };
     pthread_mutex_lock(&painter->lock);
-    for (size_t i = 0; i < batch->count; i++) {
-        struct client *client = painter_find(painter, batch->orders[i].client);
-        if (client) {
-            client->has_content = true;
-            client->content = content;
-            client->spent_ns[schedule_share(batch->orders[i].wish.urgency)] += cost_ns / (int64_t)batch->count;
-        }
-    }
+    batch_split(batch, remember, &now, &here);
+    encoding_submit(painter->encoding, frame, &here);
     pthread_mutex_unlock(&painter->lock);
+    batch_finish(&here);
+    batch->count = 0;
 }
 
-/* Gives those their picture for whom it was made already, or will be in a moment. */
-static void leave_out_recent(struct drawing *drawing, struct batch *batch, uint64_t content)
-{
-    struct painter *painter = drawing->painter;
-    struct packet *packet;
-    while (recent_join(painter->recent, content, batch, &drawing->same, &packet)) {
-        remember(painter, &drawing->same, content, 0);
-        if (packet)
-            painter_post(painter, &drawing->same, packet, false);
-        packet_unref(&packet);
-    }
-}
-
-/* Answers those for whom nothing changed, or whose picture is there, and takes them out of the batch. */
+/* Answers those for whom nothing changed, and takes them out of the batch. */
 static void leave_out_same(struct drawing *drawing, struct batch *batch)
 {
     struct painter *painter = drawing->painter;
@@ -255,8 +241,7 @@ static void leave_out_same(struct drawing *drawing, struct batch *batch)
     batch_split(batch, has_it, &now, &drawing->same);
     pthread_mutex_unlock(&painter->lock);
     counter_inc(painter->same, (int64_t)drawing->same.count);
-    painter_post(painter, &drawing->same, NULL, false);
-    leave_out_recent(drawing, batch, now.content);
+    painter_post_none(painter, &drawing->same, false);
 }
 
 /* Under lock. It is wanted as before; true: a newer wish of its client is there already, and stands for it. */
@@ -279,10 +264,10 @@ static void fail(struct drawing *drawing, struct batch *batch)
         pthread_mutex_lock(&painter->lock);
         batch_split(batch, wish_again, painter, &drawing->same);
         pthread_mutex_unlock(&painter->lock);
-        painter_post(painter, &drawing->same, NULL, false);
+        painter_post_none(painter, &drawing->same, false);
     } else {
         counter_inc(painter->failures, 1);
-        painter_post(painter, batch, NULL, true);
+        painter_post_none(painter, batch, true);
     }
     batch->count = 0;
 }
@@ -316,9 +301,7 @@ static void deliver(struct drawing *drawing, struct frame *frame, const struct s
         overlay_draw(frame, painter->params.scene, snapshot);
     counter_inc(painter->renders, 1);
     counter_inc(painter->render_us, (frame->render_ns + frame->readback_ns) / 1000);
-    remember(painter, batch, frame->content, frame->field_ns + frame->render_ns + frame->readback_ns);
-    recent_begin(painter->recent, frame->content, batch);
-    encoding_submit(painter->encoding, frame, batch);
+    submit(painter, frame, batch);
     frame_unref(&frame);
 }
 
@@ -380,7 +363,7 @@ static void slow_leave(struct drawing *drawing)
     pthread_mutex_lock(&painter->lock);
     batch_split(&drawing->slow.batch, has_left, painter, &drawing->same);
     pthread_mutex_unlock(&painter->lock);
-    painter_post(painter, &drawing->same, NULL, false);
+    painter_post_none(painter, &drawing->same, false);
     if (drawing->slow.batch.count > 0)
         return;
     counter_inc(painter->abandoned, 1);

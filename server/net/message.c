@@ -72,25 +72,47 @@ static bool parse_params(const struct plant *plant, const json_t *o, struct mess
     return true;
 }
 
-static bool parse_codecs(const json_t *o, struct message *out, struct message_error *error)
+static void add_codec(struct codec_list *list, int codec)
 {
+    for (int i = 0; i < list->count; i++)
+        if ((int)list->at[i] == codec)
+            return;
+    if (list->count < CODEC_LIST_MOST)
+        list->at[list->count++] = (enum wire_codec)codec;
+}
+
+/* Names that we do not know may be of a later version. */
+static bool parse_codecs(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
+{
+    (void)plant;
     const json_t *codecs = json_object_get(o, "codecs");
+    out->codecs = (struct codec_list){ 0 };
     for (size_t i = 0; i < json_array_size(codecs); i++) {
         const char *name = json_string_value(json_array_get(codecs, i));
         int codec = name ? name_find(names_codec, name) : -1;
-        if (codec > 0) {
-            out->codec = (enum wire_codec)codec;
-            return true;
-        }
+        out->codecs.choose |= name && !strcmp(name, "auto");
+        if (codec > 0)
+            add_codec(&out->codecs, codec);
     }
-    message_fail(error, "bad_field", "codecs: a list with 'jpeg' or 'png' in it expected");
+    if (out->codecs.count > 0)
+        return true;
+    message_fail(error, "bad_field", "codecs: a list with 'h264', 'jpeg' or 'png' in it expected");
     return false;
+}
+
+static bool parse_key_frame(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
+{
+    (void)plant;
+    (void)o;
+    (void)out;
+    (void)error;
+    return true;
 }
 
 static bool parse_hello(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
 {
     const json_t *camera = json_object_get(o, "camera"), *params = json_object_get(o, "params");
-    if (!size_parse(o, out, error) || !parse_codecs(o, out, error))
+    if (!size_parse(o, out, error) || !parse_codecs(plant, o, out, error))
         return false;
     out->has_camera = json_is_object(camera);
     out->has_params = json_is_object(params);
@@ -157,6 +179,7 @@ static const struct {
     { "hello", MESSAGE_HELLO, parse_hello },       { "camera", MESSAGE_CAMERA, parse_camera }, { "params", MESSAGE_PARAMS, parse_params },
     { "resize", MESSAGE_RESIZE, parse_resize },    { "ack", MESSAGE_ACK, parse_ack },          { "ping", MESSAGE_PING, parse_ping },
     { "visible", MESSAGE_VISIBLE, parse_visible }, { "fit", MESSAGE_FIT, parse_fit },          { "pick", MESSAGE_PICK, parse_pick },
+    { "key_frame", MESSAGE_KEY_FRAME, parse_key_frame }, { "codecs", MESSAGE_CODECS, parse_codecs },
 };
 
 static bool parse_object(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)

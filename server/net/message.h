@@ -17,7 +17,9 @@ enum message_type {
     MESSAGE_VISIBLE,
     MESSAGE_PING,
     MESSAGE_FIT,
-    MESSAGE_PICK
+    MESSAGE_PICK,
+    MESSAGE_KEY_FRAME,
+    MESSAGE_CODECS
 };
 
 struct message_error {
@@ -96,10 +98,17 @@ struct pick_request {
     struct camera camera;
 };
 
+enum { CODEC_LIST_MOST = 4 };
+struct codec_list { /* what a client decodes, what it likes best first */
+    enum wire_codec at[CODEC_LIST_MOST];
+    int count;
+    bool choose; /* the server may choose among them, and choose again */
+};
+
 struct message {
     enum message_type type;
     int width_px, height_px;     /* hello, resize */
-    enum wire_codec codec;       /* hello: the first of the client's that we have */
+    struct codec_list codecs;    /* hello, codecs */
     bool has_camera, has_params; /* hello */
     struct camera camera;        /* camera, hello */
     uint32_t seq;                /* camera (hello: the camera's), ack, fit, pick */

@@ -260,6 +260,7 @@ struct net *net_create(const struct net_params *params)
         .snapshot = hub->snapshot,
         .baselines = params->baselines,
         .links_up = hub->links_up,
+        .codecs = params->codecs,
         .version = params->version,
     };
     add_counters(hub);

@@ -19,6 +19,7 @@ struct net_params {
     const char *address;    /* numeric */
     int port;               /* 0: any that is free */
     bool open_viewers;      /* peers beyond loopback get pictures, and nothing else */
+    unsigned codecs;        /* a bit, 1 << enum wire_codec, for each that works here */
     const char *web_folder; /* NULL: no client is served */
     const char *version;
 };

@@ -2,53 +2,27 @@
 /* Wishes come in, pictures go out; the render thread in between is drawing.c. */
 #include "net/painter.h"
 
-#include <string.h>
-
 #include "base/clock.h"
 #include "base/mem.h"
 #include "net/painter_impl.h"
 
-/* Under lock. Where it is, or would be. */
-static size_t place_of(const struct painter *painter, uint64_t id)
-{
-    size_t low = 0, high = painter->client_count;
-    while (low < high) {
-        size_t middle = (low + high) / 2;
-        if (painter->clients[middle]->id < id)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low;
-}
-
+/* Under lock. NULL: none. */
 struct client *painter_find(struct painter *painter, uint64_t id)
 {
-    size_t place = place_of(painter, id);
-    return place < painter->client_count && painter->clients[place]->id == id ? painter->clients[place] : NULL;
-}
-
-/* Under lock. */
-static struct client *add_client(struct painter *painter, uint64_t id)
-{
-    size_t place = place_of(painter, id);
-    mem_grow(&painter->clients, &painter->client_capacity, painter->client_count + 1, sizeof(struct client *));
-    memmove(painter->clients + place + 1, painter->clients + place, (painter->client_count - place) * sizeof(struct client *));
-    painter->client_count++;
-    painter->clients[place] = mem_new(sizeof(struct client));
-    painter->clients[place]->id = id;
-    return painter->clients[place];
+    for (size_t i = 0; i < painter->client_count; i++)
+        if (painter->clients[i].id == id)
+            return &painter->clients[i];
+    return NULL;
 }
 
 /* --- pictures on their way back ------------------------------------------------------------------------------------------ */
 
-static struct picture *picture_create(const struct order *order, struct packet *packet, bool failed)
+static struct picture *picture_create(const struct order *order, bool failed)
 {
     struct picture *picture = mem_new(sizeof(*picture));
     *picture = (struct picture){
         .client = order->client,
         .number = order->number,
-        .packet = packet ? packet_ref(packet) : NULL,
         .failed = failed,
         .wish = order->wish,
         .wait_ns = order->wait_ns,
@@ -57,30 +31,34 @@ static struct picture *picture_create(const struct order *order, struct packet *
     return picture;
 }
 
-/* Answers every order of the batch. */
-void painter_post(struct painter *painter, const struct batch *batch, struct packet *packet, bool failed)
+/* Takes it. */
+static void give_back(struct painter *painter, struct picture *picture)
 {
-    bool was_empty = false;
-    for (size_t i = 0; i < batch->count; i++) {
-        struct picture *picture = picture_create(&batch->orders[i], packet, failed);
-        pthread_mutex_lock(&painter->lock);
-        was_empty |= painter->done == NULL;
-        *painter->done_last = picture;
-        painter->done_last = &picture->next;
-        pthread_mutex_unlock(&painter->lock);
-    }
+    pthread_mutex_lock(&painter->lock);
+    bool was_empty = painter->done == NULL;
+    *painter->done_last = picture;
+    painter->done_last = &picture->next;
+    pthread_mutex_unlock(&painter->lock);
     if (was_empty)
         painter->params.notify(painter->params.notify_arg);
 }
 
-static void on_encoded(void *arg, uint64_t content, const struct batch *batch, struct packet *packet)
+void painter_post_none(struct painter *painter, const struct batch *batch, bool failed)
 {
-    struct painter *painter = arg;
-    struct batch waiting = { 0 };
-    recent_end(painter->recent, content, &batch->orders[0].wish, packet, &waiting);
-    painter_post(painter, batch, packet, !packet);
-    painter_post(painter, &waiting, packet, !packet);
-    batch_finish(&waiting);
+    for (size_t i = 0; i < batch->count; i++)
+        give_back(painter, picture_create(&batch->orders[i], failed));
+}
+
+static void on_encoded(void *arg, const struct order *order, struct packet *const *packets, int count, bool failed)
+{
+    struct picture *picture = picture_create(order, failed);
+    if (count > 0)
+        picture->packet = packet_ref(packets[count - 1]);
+    if (count > 1)
+        picture->earlier = mem_array((size_t)count - 1, sizeof(struct packet *));
+    for (; picture->earlier_count < count - 1; picture->earlier_count++)
+        picture->earlier[picture->earlier_count] = packet_ref(packets[picture->earlier_count]);
+    give_back(arg, picture);
 }
 
 struct picture *painter_collect(struct painter *painter)
@@ -100,6 +78,7 @@ static void replace(struct wish *old, const struct wish *wish)
 {
     struct wish merged = *wish;
     merged.always |= old->always;
+    merged.alone |= old->alone;
     if (old->urgency < merged.urgency)
         merged.urgency = old->urgency;
     if (old->asked_ns < merged.asked_ns)
@@ -120,11 +99,13 @@ enum painter_answer painter_ask(struct painter *painter, uint64_t id, const stru
             client->left |= wish->urgency == URGENCY_INPUT;
         answer = PAINTER_REFUSED;
     } else {
-        int share = schedule_share(wish->urgency);
-        client = client ? client : add_client(painter, id);
+        if (!client) {
+            mem_grow(&painter->clients, &painter->client_capacity, painter->client_count + 1, sizeof(*painter->clients));
+            client = &painter->clients[painter->client_count++];
+            *client = (struct client){ .id = id };
+        }
         client->wish = *wish;
         client->pending = true;
-        client->spent_ns[share] = schedule_asked(client->spent_ns[share], painter->spent_ns[share]);
     }
     pthread_mutex_unlock(&painter->lock);
     return answer;
@@ -152,13 +133,12 @@ void painter_forget(struct painter *painter, uint64_t id)
 {
     picks_forget(painter->picks, id);
     pthread_mutex_lock(&painter->lock);
-    size_t place = place_of(painter, id);
-    if (place < painter->client_count && painter->clients[place]->id == id) {
-        mem_free(painter->clients[place]);
-        painter->client_count--;
-        memmove(painter->clients + place, painter->clients + place + 1, (painter->client_count - place) * sizeof(struct client *));
-    }
+    struct client *client = painter_find(painter, id);
+    if (client)
+        *client = painter->clients[--painter->client_count];
+    encoding_forget(painter->encoding, id);
     pthread_mutex_unlock(&painter->lock);
+    encoding_sweep(painter->encoding);
 }
 
 void painter_new_data(struct painter *painter)
@@ -241,9 +221,14 @@ struct painter *painter_create(const struct painter_params *params)
     pthread_mutex_init(&painter->lock, NULL);
     init_wake(&painter->wake);
     add_counters(painter, params->counters);
-    painter->recent = recent_create(params->counters);
     painter->encoding = encoding_create(&(struct encoding_params){
-        .log = params->log, .workers = params->workers, .counters = params->counters, .done = on_encoded, .done_arg = painter });
+        .log = params->log,
+        .workers = params->workers,
+        .counters = params->counters,
+        .h264_library = params->h264_library ? params->h264_library : ENCODER_H264_LIBRARY,
+        .done = on_encoded,
+        .done_arg = painter,
+    });
     if (!thread_start(painter))
         painter_destroy(&painter);
     return painter;
@@ -256,14 +241,11 @@ void painter_destroy(struct painter **painter_ptr)
         return;
     thread_stop(painter);
     encoding_destroy(&painter->encoding);
-    recent_destroy(&painter->recent);
     picks_destroy(&painter->picks);
     for (struct picture *picture = painter_collect(painter), *next; picture; picture = next) {
         next = picture->next;
         picture_destroy(&picture);
     }
-    for (size_t i = 0; i < painter->client_count; i++)
-        mem_free(painter->clients[i]);
     mem_free(painter->clients);
     pthread_cond_destroy(&painter->wake);
     pthread_mutex_destroy(&painter->lock);

@@ -19,6 +19,7 @@ struct painter_params {
     struct store *store;
     struct baselines *baselines; /* NULL: no differences can be shown */
     struct workers *workers;
+    const char *h264_library; /* an encoder of libavcodec; NULL: the usual one */
     struct counters *counters;
     void (*notify)(void *arg); /* pictures are there to be collected; called on any thread */
     void *notify_arg;

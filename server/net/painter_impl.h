@@ -5,7 +5,6 @@
 #include <pthread.h>
 
 #include "net/encoding.h"
-#include "net/recent.h"
 #include "net/painter.h"
 
 struct client {
@@ -14,7 +13,6 @@ struct client {
     bool left; /* the slow picture: it wants another by now */
     struct wish wish;
     uint64_t content; /* of the last picture drawn for it */
-    int64_t spent_ns[SCHEDULE_SHARES]; /* of drawing time, its share; see schedule.h */
 };
 
 struct painter {
@@ -22,7 +20,6 @@ struct painter {
     counter *renders, *render_us, *same, *failures, *steps, *abandoned, *losses, *picked, *pick_us;
     struct picks *picks;
     struct encoding *encoding;
-    struct recent *recent;
     pthread_t thread;
     bool has_thread;
     pthread_mutex_t lock;
@@ -31,16 +28,15 @@ struct painter {
     enum { STARTING, RUNNING, FAILED, STOPPING } state;
     bool new_data;
     bool lost, lose; /* the GL context; at the next picture */
-    struct client **clients; /* by id, ascending */
+    struct client *clients;
     size_t client_count, client_capacity;
-    int64_t spent_ns[SCHEDULE_SHARES]; /* what the client that was served last had spent before */
     struct picture *done, **done_last;
 };
 
 /* Under lock. NULL: none. */
 struct client *painter_find(struct painter *painter, uint64_t id);
-/* Answers every order of the batch. */
-void painter_post(struct painter *painter, const struct batch *batch, struct packet *packet, bool failed);
+/* Answers every order of the batch: there is nothing new to be seen, or there is no picture. */
+void painter_post_none(struct painter *painter, const struct batch *batch, bool failed);
 /* The render thread, from making the GL context to its end. arg: struct painter. */
 void *drawing_main(void *arg);
 

@@ -336,9 +336,23 @@ char *reply_status_text(const struct session_world *world, int64_t now_utc_ns)
     return print(json_pack("{s:s,s:o,s:I,s:b}", "type", "status", "links", links, "time_us", us(now_utc_ns), "live", world->live), DIGITS);
 }
 
-char *reply_pong_text(double t, int64_t now_utc_ns)
+/* Of the readings that are not bad; null: all are. */
+static json_t *oldest_age_ms(const struct snapshot *snapshot)
 {
-    return print(json_pack("{s:s,s:f,s:I}", "type", "pong", "t", t, "time_us", us(now_utc_ns)), EXACT_DIGITS);
+    const struct reading *oldest = NULL;
+    for (size_t i = 0; i < snapshot->count; i++) {
+        const struct reading *reading = &snapshot->readings[i];
+        if (!quality_is_bad(reading->quality) && (!oldest || reading->age_ns > oldest->age_ns))
+            oldest = reading;
+    }
+    return oldest ? age_ms(oldest) : json_null();
+}
+
+char *reply_pong_text(const struct session_world *world, double t, int64_t now_utc_ns)
+{
+    return print(json_pack("{s:s,s:f,s:I,s:o}", "type", "pong", "t", t, "time_us", us(now_utc_ns), "oldest_age_ms",
+                           oldest_age_ms(world->snapshot)),
+                 EXACT_DIGITS);
 }
 
 char *reply_camera_text(const struct camera *camera, uint32_t seq)

@@ -12,7 +12,7 @@ char *reply_params_text(const struct session_world *world, const struct view *vi
 char *reply_tags_text(const struct session_world *world, uint32_t *sent, bool all);
 char *reply_markers_text(const struct frame *frame, uint32_t seq);
 char *reply_status_text(const struct session_world *world, int64_t now_utc_ns);
-char *reply_pong_text(double t, int64_t now_utc_ns);
+char *reply_pong_text(const struct session_world *world, double t, int64_t now_utc_ns);
 char *reply_camera_text(const struct camera *camera, uint32_t seq);                   /* of a fit */
 char *reply_picked_text(const struct plant *plant, const struct pick_answer *answer); /* order.seq 0: of nobody's */
 char *reply_error_text(const struct message_error *error);

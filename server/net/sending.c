@@ -50,29 +50,62 @@ static void camera_to_wire(const struct camera *camera, struct wire_frame *heade
     header_out->height_m = (float)camera->height_m;
 }
 
-static struct wire_frame frame_header(const struct picture *picture, uint32_t seq)
+/* --- the packets of a picture, and the parts of each ------------------------------------------------------------------------- */
+
+static const struct packet *packet_now(const struct stream *stream)
 {
-    const struct packet *packet = picture->packet;
+    const struct picture *picture = stream->sending;
+    return stream->packet < picture->earlier_count ? picture->earlier[stream->packet] : picture->packet;
+}
+
+static bool is_last_part(const struct stream *stream)
+{
+    return stream->packet == stream->sending->earlier_count && stream->part == stream->sending->packet->part_count - 1;
+}
+
+static void next_part(struct stream *stream)
+{
+    stream->sent = 0;
+    stream->step = SEND_HEADER;
+    if (++stream->part < packet_now(stream)->part_count)
+        return;
+    stream->packet++;
+    stream->part = 0;
+}
+
+static uint16_t flags_of(const struct stream *stream)
+{
+    const struct packet *packet = packet_now(stream);
+    bool last = is_last_part(stream), live = packet->frame->oldest_age_ns != INT64_MAX;
+    return (uint16_t)((packet->key ? WIRE_FLAG_KEY : 0) | (last && packet->frame->view.tier == TIER_STILL ? WIRE_FLAG_STILL : 0) |
+                      (live ? 0 : WIRE_FLAG_NO_LIVE_DATA) | (last ? 0 : WIRE_FLAG_MORE));
+}
+
+static struct wire_frame frame_header(const struct stream *stream)
+{
+    const struct picture *picture = stream->sending;
+    const struct packet *packet = packet_now(stream);
+    const struct packet_part *part = &packet->parts[stream->part];
     const struct frame *frame = packet->frame;
-    bool live = frame->oldest_age_ns != INT64_MAX;
     struct wire_frame out = {
         .type = WIRE_TYPE_FRAME,
         .codec = (uint8_t)packet->codec,
-        .payload_bytes = (uint32_t)packet->count,
-        .seq = seq,
-        .flags = (uint16_t)((packet->key ? WIRE_FLAG_KEY : 0) | (frame->view.tier == TIER_STILL ? WIRE_FLAG_STILL : 0) |
-                            (live ? 0 : WIRE_FLAG_NO_LIVE_DATA)),
+        .payload_bytes = (uint32_t)part->count,
+        .seq = stream->seq,
+        .flags = flags_of(stream),
         .camera_seq = picture->wish.view.camera_seq,
         .params_seq = picture->wish.view.params_seq,
-        .oldest_age_ms = live ? us_of(frame->oldest_age_ns / 1000) : WIRE_NO_AGE,
+        .oldest_age_ms = frame->oldest_age_ns == INT64_MAX ? WIRE_NO_AGE : us_of(frame->oldest_age_ns / 1000),
         .data_time_us = (uint64_t)(frame->data_utc_ns / 1000),
         .sent_time_us = (uint64_t)(clock_utc_ns() / 1000),
         .wait_us = us_of(picture->wait_ns),
         .field_us = us_of(frame->field_ns),
         .render_us = us_of(frame->render_ns + frame->readback_ns),
         .encode_us = us_of(packet->encode_ns),
-        .width_px = (uint16_t)frame->width_px,
-        .height_px = (uint16_t)frame->height_px,
+        .x_px = (uint16_t)part->x_px,
+        .y_px = (uint16_t)part->y_px,
+        .width_px = (uint16_t)part->width_px,
+        .height_px = (uint16_t)part->height_px,
         .full_width_px = (uint16_t)frame->width_px,
         .full_height_px = (uint16_t)frame->height_px,
     };
@@ -83,26 +116,37 @@ static struct wire_frame frame_header(const struct picture *picture, uint32_t se
 static bool write_header(struct hub *hub, struct stream *stream)
 {
     uint8_t bytes[WIRE_FRAME_HEADER_BYTES];
-    struct wire_frame head = frame_header(stream->sending, stream->seq);
+    struct wire_frame head = frame_header(stream);
     wire_put_frame(&head, bytes);
+    counter_inc(hub->counters.frame_bytes, WIRE_FRAME_HEADER_BYTES);
     return hub_write(hub, stream->wsi, bytes, sizeof(bytes), LWS_WRITE_BINARY | LWS_WRITE_NO_FIN);
+}
+
+static void part_sent(struct hub *hub, struct stream *stream)
+{
+    if (!is_last_part(stream)) {
+        next_part(stream);
+        return;
+    }
+    counter_inc(hub->counters.frames, 1);
+    picture_destroy(&stream->sending);
 }
 
 static bool write_slice(struct hub *hub, struct stream *stream)
 {
-    const struct packet *packet = stream->sending->packet;
-    size_t left = packet->count - stream->sent, slice = left < SLICE_BYTES ? left : SLICE_BYTES;
+    const struct packet *packet = packet_now(stream);
+    const struct packet_part *part = &packet->parts[stream->part];
+    size_t left = part->count - stream->sent, slice = left < SLICE_BYTES ? left : SLICE_BYTES;
     enum lws_write_protocol how = LWS_WRITE_CONTINUATION;
     if (slice < left)
         how |= LWS_WRITE_NO_FIN;
-    bool good = hub_write(hub, stream->wsi, packet->bytes + stream->sent, slice, how);
+    bool good = hub_write(hub, stream->wsi, packet->bytes + part->begin + stream->sent, slice, how);
     stream->sent += slice;
-    session_wrote(stream->session, stream->sent == packet->count, clock_mono_ns());
-    if (stream->sent == packet->count) {
-        counter_inc(hub->counters.frames, 1);
-        counter_inc(hub->counters.frame_bytes, (int64_t)packet->count + WIRE_FRAME_HEADER_BYTES);
-        picture_destroy(&stream->sending);
-    }
+    stream->sent_all += slice;
+    session_wrote(stream->session, slice == left && is_last_part(stream), clock_mono_ns());
+    counter_inc(hub->counters.frame_bytes, (int64_t)slice);
+    if (slice == left)
+        part_sent(hub, stream);
     return good;
 }
 
@@ -121,7 +165,7 @@ static bool write_picture(struct hub *hub, struct stream *stream)
 void stream_give_up(struct hub *hub, struct stream *stream, int64_t now_ns)
 {
     if (!stream->sending || stream->step != SEND_PAYLOAD ||
-        !session_gives_up(stream->session, stream->sending, stream->sending->packet->count - stream->sent, now_ns))
+        !session_gives_up(stream->session, stream->sending, picture_bytes(stream->sending) - stream->sent_all, now_ns))
         return;
     session_gave_up(stream->session);
     counter_inc(hub->counters.given_up, 1);
@@ -196,7 +240,8 @@ bool stream_send(struct hub *hub, struct stream *stream)
     } else if ((stream->sending = session_next_picture(session, now_ns, &stream->seq))) {
         stages_sent(&hub->stages, stream->sending, now_ns);
         stream->step = SEND_MARKERS;
-        stream->sent = 0;
+        stream->sent = stream->sent_all = 0;
+        stream->packet = stream->part = 0;
         good = write_picture(hub, stream);
     }
     text_finish(&text);

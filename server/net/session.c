@@ -24,7 +24,7 @@ void session_destroy(struct session **session_ptr)
     struct session *session = *session_ptr;
     if (!session)
         return;
-    picture_destroy(&session->ready);
+    session_drop_ready(session);
     for (int i = 0; i < session->reply_count; i++)
         mem_free(session->replies[i]);
     mem_free(session->tag_changes);
@@ -86,7 +86,8 @@ static bool on_hello(struct session *session, const struct message *message, str
         session->view.params_seq = message->params.seq;
     if (message->has_camera)
         set_camera(session, message);
-    session->codec = message->codec;
+    if (!session_choose_codec(session, &message->codecs, error))
+        return false;
     session->hello = session->owes_welcome = session->owes_tags_all = session->owes_status = session->always_pending = true;
     return true;
 }
@@ -168,7 +169,9 @@ static bool act(struct session *session, const struct message *message, int64_t 
     case MESSAGE_VISIBLE: on_visible(session, message->visible); return true;
     case MESSAGE_FIT: on_fit(session, message); return true;
     case MESSAGE_PICK: on_pick(session, message); return true;
-    case MESSAGE_PING: session_reply(session, reply_pong_text(message->t, now_utc_ns)); return true;
+    case MESSAGE_KEY_FRAME: session->always_pending = true; return true;
+    case MESSAGE_CODECS: return session_choose_codec(session, &message->codecs, error);
+    case MESSAGE_PING: session_reply(session, reply_pong_text(session->world, message->t, now_utc_ns)); return true;
     }
     return true;
 }

@@ -23,6 +23,7 @@ struct session_world {
     bool live;               /* values are coming in */
     int64_t moving_until_ns; /* somebody moves; a refined picture of another would make it stutter */
     bool loaded;             /* refined pictures for all, whenever a reading changes, are more than can be drawn */
+    unsigned codecs; /* a bit, 1 << enum wire_codec, for each that we have; 0: JPEG and PNG */
     const char *version;
 };
 
@@ -30,7 +31,8 @@ struct session {
     uint64_t id;
     const struct session_world *world;
     bool hello, hidden;
-    enum wire_codec codec;
+    struct codec_list codecs; /* what it decodes */
+    enum wire_codec codec;    /* in use */
     struct view view;
 
     bool input_pending, data_pending, always_pending; /* why a picture is wanted */
@@ -41,7 +43,7 @@ struct session {
     double still_bytes;                               /* of the last picture of full quality; 0: none was acknowledged */
     struct pacer pacer;
     uint64_t newest_number; /* of the pictures that came */
-    struct picture *ready;  /* next to be sent */
+    struct picture *ready;  /* next to be sent, oldest first: newest wins, but for what only changes the one before */
     bool measured;          /* pacer.acked is new */
 
     bool failure_said;      /* of the view as it is */

@@ -8,7 +8,6 @@
 #include "net/session_impl.h"
 
 static const int64_t TAGS_NS = 500 * NS_PER_MS;          /* changed values, at most this often */
-static const int64_t REPEAT_NS = 2000 * NS_PER_MS;       /* all values and the links, at least this often */
 
 static void add_owned(struct text *out, char *text)
 {
@@ -23,36 +22,27 @@ static void add_reply(struct session *session, struct text *out)
     memmove(session->replies, session->replies + 1, (size_t)session->reply_count * sizeof(session->replies[0]));
 }
 
-static bool tags_all_due(const struct session *session, int64_t now_ns)
-{
-    return session->owes_tags_all || now_ns - session->tags_all_ns >= REPEAT_NS;
-}
-
 static bool tags_due(const struct session *session, int64_t now_ns)
 {
-    return session->hello && !session->hidden &&
-           (tags_all_due(session, now_ns) || (session->owes_tags && now_ns - session->tags_ns >= TAGS_NS));
+    return session->hello && !session->hidden && (session->owes_tags_all || (session->owes_tags && now_ns - session->tags_ns >= TAGS_NS));
 }
 
-static bool status_due(const struct session *session, int64_t now_ns)
+static bool status_due(const struct session *session)
 {
-    return session->hello && !session->hidden && (session->owes_status || now_ns - session->status_ns >= REPEAT_NS);
+    return session->hello && !session->hidden && session->owes_status;
 }
 
 bool session_has_text(const struct session *session, int64_t now_ns)
 {
-    return session->owes_welcome || session->reply_count > 0 || session->owes_params || status_due(session, now_ns) ||
+    return session->owes_welcome || session->reply_count > 0 || session->owes_params || status_due(session) ||
            tags_due(session, now_ns);
 }
 
 static void add_tags(struct session *session, int64_t now_ns, struct text *out)
 {
-    bool all = tags_all_due(session, now_ns);
-    add_owned(out, reply_tags_text(session->world, session->tag_changes, all));
+    add_owned(out, reply_tags_text(session->world, session->tag_changes, session->owes_tags_all));
     session->owes_tags = session->owes_tags_all = false;
     session->tags_ns = now_ns;
-    if (all)
-        session->tags_all_ns = now_ns;
 }
 
 bool session_next_text(struct session *session, int64_t now_ns, int64_t now_utc_ns, struct text *out)
@@ -66,10 +56,9 @@ bool session_next_text(struct session *session, int64_t now_ns, int64_t now_utc_
     } else if (session->owes_params) {
         add_owned(out, reply_params_text(world, &session->view, session->params_seq));
         session->owes_params = false;
-    } else if (status_due(session, now_ns)) {
+    } else if (status_due(session)) {
         add_owned(out, reply_status_text(world, now_utc_ns));
         session->owes_status = false;
-        session->status_ns = now_ns;
     } else if (tags_due(session, now_ns)) {
         add_tags(session, now_ns, out);
     } else {

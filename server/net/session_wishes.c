@@ -45,12 +45,23 @@ void session_on_picture(struct session *session, struct picture *picture)
     session->newest_number = picture->number;
     if (picture->wish.view.tier == TIER_MOVING)
         session->moved_ns = picture->wish.asked_ns;
-    if (session->ready) { /* newer than what the socket has not yet taken */
+    if (picture_stands_alone(picture)) /* newer than what the socket has not yet taken */
+        session_drop_ready(session);
+    struct picture **last = &session->ready;
+    while (*last)
+        last = &(*last)->next;
+    *last = picture;
+}
+
+void session_drop_ready(struct session *session)
+{
+    for (struct picture *picture = session->ready, *next; picture; picture = next) {
+        next = picture->next;
         session->dropped++;
         pacer_dropped(&session->pacer);
-        picture_destroy(&session->ready);
+        picture_destroy(&picture);
     }
-    session->ready = picture;
+    session->ready = NULL;
 }
 
 /* --- wishes --------------------------------------------------------------------------------------------------------------- */
@@ -114,7 +125,7 @@ static bool wants(const struct session *session, int64_t now_ns, struct wish *wi
 {
     if (session->input_pending || session->always_pending) {
         wish->urgency = URGENCY_INPUT;
-        wish->always = session->always_pending;
+        wish->always = wish->alone = session->always_pending;
         wish->view.input_ns = session->input_ns;
         make_moving(session, wish);
     } else if (refine_due(session, now_ns)) {
@@ -133,6 +144,26 @@ static bool wants(const struct session *session, int64_t now_ns, struct wish *wi
         return false;
     }
     return true;
+}
+
+static bool has_codec(const struct session *session, enum wire_codec codec)
+{
+    unsigned all = session->world->codecs ? session->world->codecs : 1u << WIRE_CODEC_JPEG | 1u << WIRE_CODEC_PNG;
+    return (all & 1u << codec) != 0;
+}
+
+bool session_choose_codec(struct session *session, const struct codec_list *codecs, struct message_error *error)
+{
+    for (int i = 0; i < codecs->count; i++) {
+        if (!has_codec(session, codecs->at[i]))
+            continue;
+        session->codecs = *codecs;
+        session->codec = codecs->at[i];
+        session->always_pending = true;
+        return true;
+    }
+    message_fail(error, "bad_field", "codecs: this server has jpeg and png%s", has_codec(session, WIRE_CODEC_H264) ? " and h264" : " only");
+    return false;
 }
 
 bool session_wish(const struct session *session, int64_t now_ns, struct wish *wish)
@@ -168,8 +199,9 @@ struct picture *session_next_picture(struct session *session, int64_t now_ns, ui
                                .step = wish->step,
                                .input_ns = wish->view.input_ns,
                                .made_ns = picture->made_ns };
-    session->ready = NULL;
-    *seq = pacer_sent(&session->pacer, picture->packet->count, &note, now_ns);
+    session->ready = picture->next;
+    picture->next = NULL;
+    *seq = pacer_sent(&session->pacer, picture_bytes(picture), &note, now_ns);
     return picture;
 }
 
@@ -180,7 +212,7 @@ void session_wrote(struct session *session, bool all, int64_t now_ns)
 
 bool session_gives_up(const struct session *session, const struct picture *sending, size_t bytes_left, int64_t now_ns)
 {
-    if (sending->packet->codec == WIRE_CODEC_H264) /* later ones build on it */
+    if (sending->packet->codec == WIRE_CODEC_H264) /* the next would have to stand alone, and be larger */
         return false;
     if (pacer_state(&session->pacer, now_ns) != PACER_FLOWS || session->hidden)
         return true;
@@ -199,8 +231,7 @@ void session_pause(struct session *session)
 {
     if (!session->ready)
         return;
-    pacer_dropped(&session->pacer);
-    picture_destroy(&session->ready);
+    session_drop_ready(session);
     session->always_pending = true;
 }
 

@@ -14,7 +14,8 @@ struct stream {
     struct picture *sending;
     uint32_t seq;
     enum { SEND_MARKERS, SEND_HEADER, SEND_PAYLOAD } step;
-    size_t sent; /* of the payload */
+    int packet, part; /* of what is being sent: which of its packets, and which part of that */
+    size_t sent, sent_all; /* of the part; of all of it */
     bool cut;    /* the picture that was being sent is given up: end its message */
     uint64_t ping, pong; /* numbers of the last ones */
     int64_t ping_ns;     /* when the last ping was sent */

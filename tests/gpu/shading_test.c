@@ -54,7 +54,7 @@ enum { WAYS = sizeof(ways) / sizeof(*ways) };
 /* The pixels after a JPEG of quality 80 with halved chroma, as a stream sends it. */
 static void through_jpeg(struct frame *frame)
 {
-    struct encoder *encoder = encoder_create(rig.log, "jpeg");
+    struct encoder *encoder = encoder_create(rig.log, "jpeg", NULL);
     struct packet *packet;
     assert_int_equal(encoder_send(encoder, frame, &(struct encoder_params){ .quality = 80 }), 0);
     assert_int_equal(encoder_receive(encoder, &packet), 0);

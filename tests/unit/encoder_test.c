@@ -34,7 +34,7 @@ static struct frame *gradient(int w, int h)
 static struct packet *encode(const char *name, struct frame *frame, int quality, bool full_chroma)
 {
     struct log *log = log_create(LOG_ERROR);
-    struct encoder *encoder = encoder_create(log, name);
+    struct encoder *encoder = encoder_create(log, name, ENCODER_H264_LIBRARY);
     struct packet *packet = NULL, *none = NULL;
     assert_non_null(encoder);
     assert_int_equal(encoder_receive(encoder, &none), -EAGAIN);
@@ -128,7 +128,7 @@ static void unknown_codecs_are_refused(void **state)
 {
     (void)state;
     struct log *log = log_create(LOG_ERROR);
-    assert_null(encoder_create(log, "gif"));
+    assert_null(encoder_create(log, "gif", NULL));
     log_destroy(&log);
 }
 

@@ -105,17 +105,19 @@ static struct message parse(const char *text)
 static void fields_arrive(void **state)
 {
     (void)state;
-    struct message m = parse("{\"type\":\"hello\",\"width\":640,\"height\":360,\"codecs\":[\"av1\",\"png\",\"jpeg\"],"
+    struct message m = parse("{\"type\":\"hello\",\"width\":640,\"height\":360,\"codecs\":[\"av1\",\"png\",\"jpeg\",\"png\"],"
                              "\"camera\":{\"seq\":9,\"eye\":[1,2,3],\"target\":[4,5,6],\"fov\":50}}");
     assert_int_equal(m.type, MESSAGE_HELLO);
     assert_int_equal(m.width_px, 640);
     assert_int_equal(m.height_px, 360);
-    assert_int_equal(m.codec, WIRE_CODEC_PNG);
+    assert_true(m.codecs.count == 2 && m.codecs.at[0] == WIRE_CODEC_PNG && m.codecs.at[1] == WIRE_CODEC_JPEG && !m.codecs.choose);
     assert_true(m.has_camera && !m.has_params);
     assert_int_equal(m.seq, 9);
     assert_true(m.camera.eye_m[2] == 3 && m.camera.target_m[0] == 4 && m.camera.up[2] == 1 && m.camera.fov_deg == 50);
     m = parse("{\"type\":\"camera\",\"seq\":2,\"eye\":[1,2,3],\"target\":[4,5,6],\"projection\":\"orthographic\",\"height_m\":9}");
     assert_true(m.camera.height_m == 9);
+    m = parse("{\"type\":\"codecs\",\"codecs\":[\"auto\",\"h264\"]}");
+    assert_true(m.codecs.count == 1 && m.codecs.at[0] == WIRE_CODEC_H264 && m.codecs.choose);
     m = parse("{\"type\":\"ack\",\"seq\":12,\"decode_ms\":3.5}");
     assert_true(m.seq == 12 && m.decode_ms == 3.5);
     m = parse("{\"type\":\"ack\",\"seq\":12}");

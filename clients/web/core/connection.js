@@ -3,9 +3,10 @@
 import { SUBPROTOCOL } from './wire.js';
 
 export const FIRST_WAIT_MS = 500, LONGEST_WAIT_MS = 8000, JITTER = 0.25;
-export const QUIET_MS = 5000;  // the server speaks at least every 2 s
+export const PING_MS = 2000;   // a server with nothing to say answers at least these
+export const QUIET_MS = 5000;
 export const DEAD_MS = 12000;
-const OPENING_MS = 10000;
+const OPENING_MS = 10000, ANSWER_MS = 1000;
 const CLOSE_REASONS = {
     1001: 'the server went down', 1002: 'this page and the server speak different versions', 1008: 'not allowed',
     1009: 'a message was too long', 1013: 'the server is full', 4000: 'this page was too slow',
@@ -85,6 +86,8 @@ export class Connection {
 
     opened() {
         this.lastHeard = this.clock.now();
+        this.pingAt = null; // of the first one that nothing came after
+        this.nextPing = this.lastHeard + PING_MS;
         this.watch();
         this.become('open');
         this.onOpen();
@@ -92,6 +95,7 @@ export class Connection {
 
     heard(data) {
         this.lastHeard = this.clock.now();
+        this.pingAt = null;
         if (this.quiet)
             this.become('open', false);
         if (typeof data === 'string')
@@ -103,7 +107,7 @@ export class Connection {
     watch() {
         this.clock.clearTimeout(this.timer);
         this.timer = this.clock.setTimeout(() => {
-            const silent = this.clock.now() - this.lastHeard;
+            const silent = this.ask();
             if (silent >= DEAD_MS) {
                 this.lose('the server fell silent');
                 return;
@@ -112,6 +116,18 @@ export class Connection {
                 this.become('open', true);
             this.watch();
         }, 500);
+    }
+
+    // Sends a ping when one is due. Returns for how long the server has been silent though it was asked: the timers of a page that
+    // nobody looks at may rest for a minute.
+    ask() {
+        const now = this.clock.now();
+        if (now >= this.nextPing) {
+            this.pingAt = this.pingAt ?? now;
+            this.nextPing = now + PING_MS;
+            this.send({ type: 'ping', t: now });
+        }
+        return this.pingAt !== null && now - this.pingAt >= ANSWER_MS ? now - this.lastHeard : 0;
     }
 
     // Lets go of the socket at once: a close over a dead line can take minutes.

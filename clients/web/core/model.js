@@ -13,6 +13,7 @@ export class Model {
         this.assets = welcome.assets.map((asset) => ({ ...asset, tags: this.tags.filter((tag) => tag.asset === asset.id) }));
         this.links = [];
         this.live = null; // nothing was said yet
+        this.oldest = null; // { ms, at }: no reading that is not bad was older than that
     }
 
     get identity() {
@@ -49,10 +50,18 @@ export class Model {
         return changed;
     }
 
+    // The server tells a reading when it changes; that an unchanged one was read again, only for all of them at once.
+    notOlder(ms, now) {
+        this.oldest = ms === null ? null : { ms, at: now };
+    }
+
     // Aged by the client's own clock since the server spoke of it; null: there never was a value.
     ageMs(index, now) {
-        const { ageMs, at } = this.readings[index];
-        return ageMs === null ? null : ageMs + (now - at);
+        const { ageMs, at, quality } = this.readings[index];
+        if (ageMs === null)
+            return null;
+        const age = ageMs + (now - at);
+        return this.oldest && quality !== 'bad' ? Math.min(age, this.oldest.ms + (now - this.oldest.at)) : age;
     }
 
     // Age of the oldest reading of a group that takes part in its picture; null: none does.

@@ -220,6 +220,10 @@ export class Session {
         this.emit('tags', this.model.update(message.values, this.now()));
     }
 
+    hearPong(message) {
+        this.model.notOlder(message.oldest_age_ms ?? null, this.now());
+    }
+
     hearMarkers(message) {
         const known = new Map(message.markers.map(([tag, , , occluded, half = 0, value = null, quality = null]) =>
             [`${tag}/${half}`, { occluded: occluded !== 0, value, quality: QUALITIES[quality] ?? null }]));
@@ -301,5 +305,5 @@ const HANDLERS = {
     picked: Session.prototype.hearPicked,
     status: Session.prototype.hearStatus,
     error: Session.prototype.hearError,
-    pong() {},
+    pong: Session.prototype.hearPong,
 };

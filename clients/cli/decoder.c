@@ -1,0 +1,122 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* JPEG by TurboJPEG, H.264 by libavcodec. */
+#include "decoder.h"
+
+#include <string.h>
+#include <turbojpeg.h>
+#ifdef PLANTCAST_H264
+#include <libavcodec/avcodec.h>
+#include <libyuv.h>
+#endif
+
+#include "base/mem.h"
+
+struct decoder {
+    tjhandle turbo;
+    uint8_t *pixels;
+    size_t pixel_bytes;
+#ifdef PLANTCAST_H264
+    AVCodecContext *context;
+    AVPacket *packet;
+    AVFrame *picture;
+#endif
+};
+
+bool decoder_has(enum wire_codec codec)
+{
+#ifdef PLANTCAST_H264
+    if (codec == WIRE_CODEC_H264)
+        return avcodec_find_decoder(AV_CODEC_ID_H264) != NULL;
+#endif
+    return codec == WIRE_CODEC_JPEG;
+}
+
+static bool reserve(struct decoder *decoder, int width_px, int height_px)
+{
+    size_t need = (size_t)width_px * (size_t)height_px * 4;
+    if (need > decoder->pixel_bytes) {
+        mem_free(decoder->pixels);
+        decoder->pixels = mem_try_array(need, 1);
+        decoder->pixel_bytes = decoder->pixels ? need : 0;
+    }
+    return decoder->pixels != NULL;
+}
+
+static bool decode_jpeg(struct decoder *decoder, const struct wire_frame *frame, const uint8_t *payload)
+{
+    int w, h, sampling, space;
+    return tjDecompressHeader3(decoder->turbo, payload, frame->payload_bytes, &w, &h, &sampling, &space) == 0 && w == frame->width_px &&
+           h == frame->height_px && reserve(decoder, w, h) &&
+           tjDecompress2(decoder->turbo, payload, frame->payload_bytes, decoder->pixels, w, w * 4, h, TJPF_BGRX, 0) == 0;
+}
+
+#ifdef PLANTCAST_H264
+static bool open_h264(struct decoder *decoder)
+{
+    if (decoder->context)
+        return true;
+    decoder->packet = av_packet_alloc();
+    decoder->picture = av_frame_alloc();
+    decoder->context = avcodec_alloc_context3(avcodec_find_decoder(AV_CODEC_ID_H264));
+    if (!decoder->packet || !decoder->picture || !decoder->context)
+        return false;
+    decoder->context->flags |= AV_CODEC_FLAG_LOW_DELAY;
+    decoder->context->thread_count = 1;
+    return avcodec_open2(decoder->context, NULL, NULL) == 0;
+}
+
+/* The coded picture may be wider and higher by the pixel that makes its sides even. */
+static bool show_h264(struct decoder *decoder, const struct wire_frame *frame)
+{
+    const AVFrame *p = decoder->picture;
+    if (p->width < frame->width_px || p->height < frame->height_px || !reserve(decoder, frame->width_px, frame->height_px))
+        return false;
+    return J420ToARGB(p->data[0], p->linesize[0], p->data[1], p->linesize[1], p->data[2], p->linesize[2], decoder->pixels,
+                      frame->width_px * 4, frame->width_px, frame->height_px) == 0;
+}
+
+static bool decode_h264(struct decoder *decoder, const struct wire_frame *frame, const uint8_t *payload)
+{
+    if (!open_h264(decoder) || av_new_packet(decoder->packet, (int)frame->payload_bytes) != 0)
+        return false;
+    memcpy(decoder->packet->data, payload, frame->payload_bytes);
+    int status = avcodec_send_packet(decoder->context, decoder->packet);
+    av_packet_unref(decoder->packet);
+    return status == 0 && avcodec_receive_frame(decoder->context, decoder->picture) == 0 && show_h264(decoder, frame);
+}
+#endif
+
+bool decoder_decode(struct decoder *decoder, const struct wire_frame *frame, const uint8_t *payload)
+{
+#ifdef PLANTCAST_H264
+    if (frame->codec == WIRE_CODEC_H264)
+        return decode_h264(decoder, frame, payload);
+#endif
+    return frame->codec == WIRE_CODEC_JPEG && decode_jpeg(decoder, frame, payload);
+}
+
+struct decoder *decoder_create(void)
+{
+    struct decoder *decoder = mem_new(sizeof(*decoder));
+    decoder->turbo = tjInitDecompress();
+    if (!decoder->turbo)
+        decoder_destroy(&decoder);
+    return decoder;
+}
+
+void decoder_destroy(struct decoder **decoder_ptr)
+{
+    struct decoder *decoder = *decoder_ptr;
+    if (!decoder)
+        return;
+    if (decoder->turbo)
+        tjDestroy(decoder->turbo);
+#ifdef PLANTCAST_H264
+    avcodec_free_context(&decoder->context);
+    av_packet_free(&decoder->packet);
+    av_frame_free(&decoder->picture);
+#endif
+    mem_free(decoder->pixels);
+    mem_free(decoder);
+    *decoder_ptr = NULL;
+}
