@@ -26,6 +26,10 @@ const float SPREAD = 0.004;
 layout(std430, binding = 2) readonly buffer Positions { float positions_m[]; };
 layout(std430, binding = 3) readonly buffer Normals { float normals[]; };
 layout(std430, binding = 4) buffer Light { uint baked[]; }; // light, ambient, openness, how far it faces the sun
+layout(std430, binding = 5) readonly buffer Corners { uint corners[]; }; // of large triangles: render/bake_faces.h
+layout(std430, binding = 6) buffer Sums { uint sums[]; }; // of each vertex, from these: weight, openness, sun
+layout(location = 12) uniform float large_m;
+layout(location = 13) uniform bool has_faces;
 #endif
 
 const vec2 disc[16] = vec2[](vec2(0.177, 0.000), vec2(-0.226, 0.207), vec2(0.035, -0.394), vec2(0.285, 0.371), vec2(-0.522, -0.092),
@@ -63,6 +67,45 @@ float openness(vec3 place, vec3 normal)
     return open / max(all, 1e-3);
 }
 
+#ifndef GROUND
+vec3 vertex_place(uint i)
+{
+    return (plant_from_here * vec4(positions_m[3 * i], positions_m[3 * i + 1], positions_m[3 * i + 2], 1.0)).xyz;
+}
+
+vec3 vertex_normal(uint i)
+{
+    return normalize(plant_from_normal * vec3(normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]));
+}
+#endif
+
+#ifdef FACES
+// Six places in each triangle: three towards the corners, three before the edges' middles.
+void look_within(int i)
+{
+    int k = i % 6, first = i / 6 * 3;
+    vec3 part = k < 3 ? vec3(0.15) : vec3(0.45);
+    part[k % 3] = k < 3 ? 0.7 : 0.1;
+    uvec3 corner = uvec3(corners[first], corners[first + 1], corners[first + 2]);
+    mat3 places = mat3(vertex_place(corner.x), vertex_place(corner.y), vertex_place(corner.z));
+    vec3 place = places * part, normal = mat3(vertex_normal(corner.x), vertex_normal(corner.y), vertex_normal(corner.z)) * part;
+    float size = sqrt(length(cross(places[1] - places[0], places[2] - places[0]))) / large_m;
+    normal *= inversesqrt(max(dot(normal, normal), 1e-6));
+    float sun_visible = sun_visibility(sun_from_plant, place, normal, sun.w);
+#ifdef SKY
+    float open = openness(place, normal);
+#else
+    float open = 0.0;
+#endif
+    uvec3 weight = uvec3(256.0 * clamp(size, 0.05, 16.0) * part + 0.5);
+    for (int c = 0; c < 3; c++) {
+        atomicAdd(sums[3u * corner[c]], weight[c]);
+        atomicAdd(sums[3u * corner[c] + 1u], uint(float(weight[c]) * open + 0.5));
+        atomicAdd(sums[3u * corner[c] + 2u], uint(float(weight[c]) * sun_visible + 0.5));
+    }
+}
+#endif
+
 void main()
 {
     int i = range.x + int(gl_GlobalInvocationID.x);
@@ -78,17 +121,20 @@ void main()
     float open = imageLoad(ground, at).g;
 #endif
     imageStore(ground, at, vec4(sun_visible, open, 0.0, 0.0));
+#elif defined(FACES)
+    look_within(i);
 #else
-    vec3 place = (plant_from_here * vec4(positions_m[3 * i], positions_m[3 * i + 1], positions_m[3 * i + 2], 1.0)).xyz;
-    vec3 normal = normalize(plant_from_normal * vec3(normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]));
+    vec3 place = vertex_place(uint(i)), normal = vertex_normal(uint(i));
+    float weight = has_faces ? float(sums[3 * i]) : 0.0;
 #ifdef SKY
-    float open = round(openness(place, normal) * 255.0) / 255.0; // as it will be read back when the sun moves
+    float open = weight > 0.0 ? float(sums[3 * i + 1]) / weight : openness(place, normal);
+    open = round(open * 255.0) / 255.0; // as it will be read back when the sun moves
 #else
     float open = unpackUnorm4x8(baked[i]).z;
 #endif
     float ambient = open * sky_brightness(normal);
     float facing = max(dot(normal, sun.xyz), 0.0);
-    float sun_visible = sun_visibility(sun_from_plant, place, normal, sun.w);
+    float sun_visible = weight > 0.0 ? float(sums[3 * i + 2]) / weight : sun_visibility(sun_from_plant, place, normal, sun.w);
     baked[i] = packUnorm4x8(vec4(light_scalar(ambient, facing * sun_visible), ambient, open, facing));
 #endif
 }

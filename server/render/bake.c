@@ -1,15 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Depth maps and compute shaders, cut into bits: one asset on one map, some thousand vertices, some rows of the ground. */
+/* Depth maps and compute shaders, cut into bits: one asset on one map, some thousand places, some rows of the ground. */
 #include "render/bake.h"
 
 #include <math.h>
 
 #include "base/mem.h"
 #include "gpu/program.h"
+#include "render/bake_faces.h"
 #include "render/matrix.h"
 
 enum { SKY_DIRECTIONS = 32, SKY_MAP_PX = 1024, SUN_MAP_PX = 4096, GROUND_PX = 256 };
-/* Of a bit, on a processor: vertices with and without sky, rows of the ground likewise. A GPU takes all at once. */
+static const double LARGE_FACE_TEXELS = 8; /* of the sky's maps */
+/* Of a bit, on a processor: vertices, or places in faces, with and without sky, rows of the ground likewise. A GPU takes all at once. */
 enum { SKY_VERTICES = 4096, SUN_VERTICES = 65536, SKY_ROWS = 8, SUN_ROWS = 128 };
 
 /* As in shaders/bake.comp. */
@@ -27,24 +29,29 @@ struct bake {
     struct directions_block *directions;
     GLuint sky_maps, directions_buffer, framebuffer;
     double sky_texel_m;
-    enum { BAKE_SKY_MAPS, BAKE_SUN_MAP, BAKE_GROUND, BAKE_VERTICES, BAKE_DONE } part;
+    enum { BAKE_SKY_MAPS, BAKE_SUN_MAP, BAKE_GROUND, BAKE_FACES, BAKE_VERTICES, BAKE_DONE } part;
     int direction, row;
-    size_t asset, vertex;
+    size_t asset, place, vertex;
+    struct bake_faces faces; /* of the asset whose vertices are next */
 };
 
 bool bake_programs_init(struct bake_programs *programs, struct log *log)
 {
     programs->sky = program_create(log, program_params(.compute = "bake.comp", .defines = "#define SKY\n"));
     programs->sun = program_create(log, program_params(.compute = "bake.comp"));
+    programs->faces_sky = program_create(log, program_params(.compute = "bake.comp", .defines = "#define FACES\n#define SKY\n"));
+    programs->faces_sun = program_create(log, program_params(.compute = "bake.comp", .defines = "#define FACES\n"));
     programs->ground_sky = program_create(log, program_params(.compute = "bake.comp", .defines = "#define GROUND\n#define SKY\n"));
     programs->ground_sun = program_create(log, program_params(.compute = "bake.comp", .defines = "#define GROUND\n"));
-    return programs->sky && programs->sun && programs->ground_sky && programs->ground_sun;
+    return programs->sky && programs->sun && programs->faces_sky && programs->faces_sun && programs->ground_sky && programs->ground_sun;
 }
 
 void bake_programs_finish(struct bake_programs *programs)
 {
     program_destroy(&programs->sky);
     program_destroy(&programs->sun);
+    program_destroy(&programs->faces_sky);
+    program_destroy(&programs->faces_sun);
     program_destroy(&programs->ground_sky);
     program_destroy(&programs->ground_sun);
 }
@@ -221,27 +228,63 @@ static void ground_bit(struct bake *bake)
     glDispatchCompute((GLuint)(end - first + 63) / 64, 1, 1);
     bake->row += rows;
     if (bake->row >= GROUND_PX)
-        bake->part = BAKE_VERTICES;
+        bake->part = BAKE_FACES;
+}
+
+static size_t places_in_a_bit(const struct bake *bake)
+{
+    return !bake->stage->gl->software ? SIZE_MAX / 2 : bake->with_sky ? SKY_VERTICES : SUN_VERTICES;
+}
+
+static void bind_vertices(const struct bake *bake)
+{
+    const struct mesh *mesh = &bake->stage->of_asset[bake->asset]->mesh;
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, mesh->positions);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, mesh->normals);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, bake->set.baked[bake->asset]);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 5, bake->faces.corners);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 6, bake->faces.sums);
+}
+
+/* Without memory for it, vertices are looked at alone. */
+static void faces_bit(struct bake *bake)
+{
+    const struct scene_asset *asset = &bake->stage->scene->assets[bake->asset];
+    double least_m = LARGE_FACE_TEXELS * bake->sky_texel_m;
+    if (bake->place == 0)
+        bake_faces_init(&bake->faces, bake->stage, bake->asset, least_m);
+    size_t all = bake->faces.count * BAKE_FACE_SAMPLES, end = smaller(bake->place + places_in_a_bit(bake), all);
+    if (all > 0) {
+        glUseProgram(bake->with_sky ? bake->programs->faces_sky : bake->programs->faces_sun);
+        set_uniforms(bake, asset->placement, bake->place, end);
+        glUniform1f(12, (float)least_m);
+        bind_vertices(bake);
+        glDispatchCompute((GLuint)(end - bake->place + 63) / 64, 1, 1);
+    }
+    bake->place = end;
+    if (end < all)
+        return;
+    bake->place = 0;
+    bake->part = BAKE_VERTICES;
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
 static void vertices_bit(struct bake *bake)
 {
     const struct scene_asset *asset = &bake->stage->scene->assets[bake->asset];
     const struct mesh *mesh = &bake->stage->of_asset[bake->asset]->mesh;
-    size_t most = !bake->stage->gl->software ? mesh->vertex_count : bake->with_sky ? SKY_VERTICES : SUN_VERTICES;
-    size_t end = smaller(bake->vertex + most, mesh->vertex_count);
+    size_t end = smaller(bake->vertex + places_in_a_bit(bake), mesh->vertex_count);
     glUseProgram(bake->with_sky ? bake->programs->sky : bake->programs->sun);
     set_uniforms(bake, asset->placement, bake->vertex, end);
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, mesh->positions);
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, mesh->normals);
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, bake->set.baked[bake->asset]);
+    glUniform1i(13, bake->faces.count > 0);
+    bind_vertices(bake);
     glDispatchCompute((GLuint)(end - bake->vertex + 63) / 64, 1, 1);
     bake->vertex = end;
     if (end < mesh->vertex_count)
         return;
     bake->vertex = 0;
-    if (++bake->asset == bake->stage->scene->asset_count)
-        bake->part = BAKE_DONE;
+    bake_faces_finish(&bake->faces);
+    bake->part = ++bake->asset == bake->stage->scene->asset_count ? BAKE_DONE : BAKE_FACES;
 }
 
 /* --- life ------------------------------------------------------------------------------------------------------------------------ */
@@ -281,7 +324,6 @@ static bool make_buffers(struct bake *bake, const struct light_set *from)
 static bool make_sky(struct bake *bake)
 {
     find_directions(bake);
-    bake->sky_texel_m = 2 * bake->stage->radius_m / SKY_MAP_PX;
     bake->sky_maps = make_map(GL_TEXTURE_2D_ARRAY, SKY_MAP_PX, SKY_DIRECTIONS);
     bake->directions_buffer = mesh_buffer(bake->stage->gl->log, "sky directions", sizeof(*bake->directions), bake->directions, 0);
     return bake->directions_buffer != 0;
@@ -297,6 +339,7 @@ struct bake *bake_begin(const struct stage *stage, const struct bake_programs *p
     bake->part = from ? BAKE_SUN_MAP : BAKE_SKY_MAPS;
     bake->set.bytes = bake_bytes(stage);
     bake->set.texel_m = 2 * stage->radius_m / size_px;
+    bake->sky_texel_m = 2 * stage->radius_m / SKY_MAP_PX;
     bake->set.key = *key;
     matrix_parallel(stage->middle_m, stage->radius_m, key->towards, matrix);
     matrix_texture_from_clip(matrix, bake->set.texture_from_plant);
@@ -327,6 +370,9 @@ bool bake_step(struct bake *bake)
     case BAKE_GROUND:
         ground_bit(bake);
         break;
+    case BAKE_FACES:
+        faces_bit(bake);
+        break;
     case BAKE_VERTICES:
         vertices_bit(bake);
         break;
@@ -356,6 +402,7 @@ void bake_abandon(struct bake **bake_ptr)
     if (!bake)
         return;
     light_set_finish(&bake->set, bake->stage);
+    bake_faces_finish(&bake->faces);
     glDeleteTextures(1, &bake->sky_maps);
     glDeleteBuffers(1, &bake->directions_buffer);
     glDeleteFramebuffers(1, &bake->framebuffer);

@@ -26,7 +26,7 @@ struct light_set {
 };
 
 struct bake_programs {
-    GLuint sky, sun, ground_sky, ground_sun;
+    GLuint sky, sun, faces_sky, faces_sun, ground_sky, ground_sun;
 };
 bool bake_programs_init(struct bake_programs *programs, struct log *log); /* false: logged */
 void bake_programs_finish(struct bake_programs *programs);

@@ -67,6 +67,36 @@ static void test_bits_make_the_same_light(void **state)
     stage_finish(&stage);
 }
 
+/* A wall whose corners stick in others: as bright in between as it is, not as dark as its corners. */
+static void test_large_faces_are_lit_within(void **state)
+{
+    static const double here[3] = { 0, 0, 0 };
+    struct toy *toy = toy_create();
+    struct shape shape = { 0 };
+    struct stage stage;
+    struct light light;
+    struct light_key key = sun(1);
+    size_t count;
+    (void)state;
+    shape_plate(&shape, TOY_STEEL, (double[]){ 0, 0, 0 }, (double[]){ 10, 0, 0 }, (double[]){ 0, 0, 4 }, 1);
+    int wall = toy_add(toy, "WALL", &shape, here, NULL, 0);
+    for (int i = 0; i < 4; i++)
+        shape_box(&shape, TOY_STEEL, (double[]){ i % 2 * 10 - 0.3, -0.3, i / 2 * 4 - 0.3 }, (double[]){ i % 2 * 10 + 0.3, 0.3, i / 2 * 4 + 0.3 });
+    toy_add(toy, "CORNERS", &shape, here, NULL, 0);
+    assert_true(stage_init(&stage, rig.gl, &toy->scene) && light_init(&light, &stage, &environments));
+    const struct light_set *set = light_get(&light, &key);
+    assert_non_null(set);
+    uint8_t(*baked)[4] = bytes_of(&stage, set, (size_t)wall, &count);
+    for (size_t i = 0; i < count / 4; i++) {
+        print_message("# corner %zu: openness %d of 255\n", i, baked[i][2]);
+        assert_true(baked[i][2] > 200);
+    }
+    free(baked);
+    light_finish(&light);
+    stage_finish(&stage);
+    toy_destroy(&toy);
+}
+
 /* Forty sessions, each with a sun of its own; one of them is being drawn all the while. */
 static void test_many_lights_fit_in_a_bound(void **state)
 {
@@ -167,6 +197,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_bits_make_the_same_light),
+        cmocka_unit_test(test_large_faces_are_lit_within),
         cmocka_unit_test(test_many_lights_fit_in_a_bound),
         cmocka_unit_test(test_the_nearest_sun_stands_in),
         cmocka_unit_test(test_a_moving_session_does_not_wait),
