@@ -97,12 +97,21 @@ static size_t take_triangles(const struct gltf_primitive *primitive, const float
     return count;
 }
 
+/* The winding says which side is out; some exporters' normals do not follow it. Those that lean over an edge are let be. */
+static void turn_outward(const float outward[3], float normal[3])
+{
+    if (normal[0] * outward[0] + normal[1] * outward[1] + normal[2] * outward[2] < -0.2f)
+        for (int i = 0; i < 3; i++)
+            normal[i] = -normal[i];
+}
+
 static void fill_vertex(const struct gltf_primitive *primitive, uint32_t v, const float (*positions)[3], const double normals[9],
                         const float *computed, struct vertex *out)
 {
     memcpy(out->position, positions[v], sizeof(out->position));
     if (!primitive->normals || !turn_normal(normals, primitive->normals[v], out->normal))
         memcpy(out->normal, computed, sizeof(out->normal));
+    turn_outward(computed, out->normal);
     for (int i = 0; i < 3; i++) {
         out->position[i] += 0.0f; /* -0 is 0, or equal places would not weld */
         out->normal[i] += 0.0f;

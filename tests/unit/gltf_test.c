@@ -420,6 +420,20 @@ static void a_nodes_place_is_the_middle_of_its_meshes(void **state)
     assert_false(geometry_node_place(&l->model, &params, "TT-1", place));
 }
 
+/* By their normals, as by their winding. Smoothed ones may lean over an edge. */
+static bool faces_outward(const struct geometry *g, uint32_t tri)
+{
+    float out[3];
+    face_normal(g, tri, out);
+    float length = sqrtf(out[0] * out[0] + out[1] * out[1] + out[2] * out[2]);
+    for (int k = 0; k < 3; k++) {
+        const float *n = g->normals[g->indices[3 * tri + (uint32_t)k]];
+        if (n[0] * out[0] + n[1] * out[1] + n[2] * out[2] < -0.6f * length)
+            return false;
+    }
+    return true;
+}
+
 static void real_models_go_through(void **state)
 {
     static const char *const names[] = {
@@ -446,6 +460,8 @@ static void real_models_go_through(void **state)
             const float *n = g.normals[v];
             assert_float_equal(n[0] * n[0] + n[1] * n[1] + n[2] * n[2], 1, 1e-3);
         }
+        for (uint32_t t = 0; t < g.index_count / 3; t++)
+            assert_true(faces_outward(&g, t));
         geometry_finish(&g);
         model_source_finish(&source);
         mem_free(path);
