@@ -42,7 +42,8 @@ vec3 sun_shade(Surface s, vec3 v, vec3 l)
     vec3 h = normalize(v + l);
     vec3 f0 = mix(vec3(0.04), s.base, s.metallic), diffuse = s.base * (1.0 - s.metallic);
     float x = 1.0 - max(dot(v, h), 0.0), x2 = x * x;
-    vec3 fresnel = f0 + (1.0 - f0) * (x2 * x2 * x);
-    vec3 c = diffuse * (1.0 - fresnel) + fresnel * min(ggx_visible(n_l, n_v, max(dot(s.normal, h), 0.0), roughness * roughness), 50.0);
+    float grazing = x2 * x2 * x;
+    vec3 fresnel = f0 + (1.0 - f0) * grazing; // what is diffuse lies under the clear part's own
+    vec3 c = diffuse * (0.96 - 0.96 * grazing) + fresnel * min(ggx_visible(n_l, n_v, max(dot(s.normal, h), 0.0), roughness * roughness), 50.0);
     return c * (n_l * s.sun_visible * SUN_LIGHT);
 }
