@@ -47,6 +47,7 @@ results:
 
 # Every way of looking at a plant, to be looked at: build/gallery/sheet.png.
 gallery: test-deps
+	@deploy/deps gallery
 	@$(MAKE) --no-print-directory all demo
 	@tests/gallery/run $(bin)
 .PHONY: gallery
