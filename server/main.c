@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "server.h"
 #include "version.h"
@@ -15,7 +16,9 @@ static void print_usage(FILE *out)
 {
     fputs("usage: plantcastd PLANT.yaml [--listen ADDR] [--port N] [--gl auto|egl-device|egl-surfaceless|osmesa]\n"
           "                  [--gl-device INDEX|PCI] [--prepared DIR] [--web DIR] [--log-level error|warn|info|debug]\n"
-          "                  [--threads N] [--field vertices|per-fragment] [--h264 ENCODER|off] [--open-viewers]\n"
+          "                  [--threads N] [--field vertices|per-fragment] [--h264 ENCODER|off]\n"
+          "                  [--tls-cert FILE --tls-key FILE] [--tokens FILE] [--open-viewers]\n"
+          "                  [--behind-proxy] [--host NAME] [--origin URL] [--limit NAME=N]\n"
           "       plantcastd --check PLANT.yaml [--prepared DIR]\n"
           "       plantcastd --list-gl-devices | --version | --help\n"
           "\n"
@@ -32,9 +35,19 @@ static void print_usage(FILE *out)
           "                   fragment, slow, for comparison\n"
           "  --h264 ENCODER   who makes H.264, by its name in libavcodec (libx264): h264_nvenc, h264_vaapi, libopenh264, ...; off:\n"
           "                   nobody. Where it does not work on this machine, clients get JPEG\n"
-          "  --open-viewers   let anyone who reaches ADDR look at the pictures\n"
-          "  --check          read everything, report every error, start nothing\n",
+          "  --check          read everything, report every error, start nothing\n"
+          "\n"
+          "Who may look: from this machine, anyone. On any other address, TLS and tokens, or --open-viewers.\n"
+          "\n"
+          "  --tls-cert FILE, --tls-key FILE   certificate (with its chain) and private key, PEM; taken anew when they change\n"
+          "  --tokens FILE    who is let in as what: `plantcast token` makes it; taken anew when it changes\n"
+          "  --open-viewers   let anyone who reaches ADDR look at the pictures, and at nothing else\n"
+          "  --behind-proxy   a proxy on this machine speaks for others, and says for whom in X-Forwarded-For; takes --host\n"
+          "  --host NAME      a name by which browsers ask for this server, beside its own; up to 16 times\n"
+          "  --origin URL     a page of another host that may connect, such as https://portal.example; up to 16 times\n"
+          "  --limit NAME=N   how much clients may have, again and again:\n",
           out);
+    quotas_print(out);
 }
 
 static bool parse_int(const char *text, long low, long high, int *out)
@@ -99,6 +112,13 @@ enum {
     OPTION_LEVEL,
     OPTION_THREADS,
     OPTION_OPEN,
+    OPTION_TLS_CERT,
+    OPTION_TLS_KEY,
+    OPTION_TOKENS,
+    OPTION_PROXY,
+    OPTION_HOST,
+    OPTION_ORIGIN,
+    OPTION_LIMIT,
     OPTION_CHECK,
     OPTION_VERSION,
     OPTION_HELP
@@ -117,11 +137,53 @@ static const struct option options[] = {
     { "log-level", required_argument, NULL, OPTION_LEVEL },
     { "threads", required_argument, NULL, OPTION_THREADS },
     { "open-viewers", no_argument, NULL, OPTION_OPEN },
+    { "tls-cert", required_argument, NULL, OPTION_TLS_CERT },
+    { "tls-key", required_argument, NULL, OPTION_TLS_KEY },
+    { "tokens", required_argument, NULL, OPTION_TOKENS },
+    { "behind-proxy", no_argument, NULL, OPTION_PROXY },
+    { "host", required_argument, NULL, OPTION_HOST },
+    { "origin", required_argument, NULL, OPTION_ORIGIN },
+    { "limit", required_argument, NULL, OPTION_LIMIT },
     { "check", no_argument, NULL, OPTION_CHECK },
     { "version", no_argument, NULL, OPTION_VERSION },
     { "help", no_argument, NULL, OPTION_HELP },
     { NULL, 0, NULL, 0 },
 };
+
+static bool add_host(struct access_params *access, const char *name)
+{
+    char lower[256];
+    if (access->host_count == ACCESS_MAX_NAMES || !access_host_name(name, lower, sizeof(lower)) || strcasecmp(name, lower) != 0)
+        return false;
+    access->hosts[access->host_count++] = name;
+    return true;
+}
+
+static bool add_origin(struct access_params *access, const char *url)
+{
+    const char *name = strstr(url, "://");
+    char lower[256];
+    if (access->origin_count == ACCESS_MAX_NAMES || !name || !access_host_name(name + 3, lower, sizeof(lower)))
+        return false;
+    access->origins[access->origin_count++] = url;
+    return true;
+}
+
+/* -1: go on; else the exit code. */
+static int take_access_option(int option, struct access_params *access)
+{
+    switch (option) {
+    case OPTION_OPEN: access->open_viewers = true; return -1;
+    case OPTION_TLS_CERT: access->tls_cert_path = optarg; return -1;
+    case OPTION_TLS_KEY: access->tls_key_path = optarg; return -1;
+    case OPTION_TOKENS: access->tokens_path = optarg; return -1;
+    case OPTION_PROXY: access->behind_proxy = true; return -1;
+    case OPTION_HOST: return add_host(access, optarg) ? -1 : usage_error("--host: not a name without port, or one too many:", optarg);
+    case OPTION_ORIGIN: return add_origin(access, optarg) ? -1 : usage_error("--origin: not SCHEME://HOST[:PORT], or too many:", optarg);
+    case OPTION_LIMIT: return quotas_parse(&access->quotas, optarg) ? -1 : usage_error("--limit: no such limit, or out of range:", optarg);
+    default: /* getopt has said what is wrong */ print_usage(stderr); return USAGE;
+    }
+}
 
 /* -1: go on; else the exit code. */
 static int take_option(int option, struct server_params *params, bool *check)
@@ -144,17 +206,16 @@ static int take_option(int option, struct server_params *params, bool *check)
     case OPTION_LEVEL: return parse_level(optarg, &params->log_level) ? -1 : usage_error("--log-level: unknown", optarg);
     case OPTION_THREADS:
         return parse_int(optarg, 0, 1024, &params->threads) ? -1 : usage_error("--threads: not a number of threads", optarg);
-    case OPTION_OPEN: params->open_viewers = true; return -1;
     case OPTION_CHECK: *check = true; return -1;
     case OPTION_VERSION: puts("plantcastd " PLANTCAST_VERSION); return GOOD;
     case OPTION_HELP: print_usage(stdout); return GOOD;
-    default: /* getopt has said what is wrong */ print_usage(stderr); return USAGE;
+    default: return take_access_option(option, &params->access);
     }
 }
 
 int main(int argc, char **argv)
 {
-    struct server_params params = { .address = "127.0.0.1", .port = 8080, .log_level = LOG_INFO };
+    struct server_params params = { .address = "127.0.0.1", .port = 8080, .log_level = LOG_INFO, .access.quotas = quotas_default() };
     bool check = false;
     for (int option; (option = getopt_long(argc, argv, "", options, NULL)) != -1;) {
         int code = take_option(option, &params, &check);
@@ -166,11 +227,9 @@ int main(int argc, char **argv)
     params.plant_path = argv[optind];
     if (check)
         return server_check(&params);
-    if (!is_loopback(params.address) && !params.open_viewers) {
-        fprintf(stderr,
-                "plantcastd: --listen %s: everyone who reaches that address could look in. Only loopback addresses are served without\n"
-                "TLS and tokens, which this version does not have yet; --open-viewers serves pictures, and nothing else, to anyone.\n",
-                params.address);
+    const char *why;
+    if (!access_allowed_at(&params.access, is_loopback(params.address), &why)) {
+        fprintf(stderr, "plantcastd: --listen %s: %s.\n", params.address, why);
         return FAILED;
     }
     return server_run(&params);

@@ -51,6 +51,17 @@ static void on_signal(int number)
     errno = cause;
 }
 
+/* The files of tokens and certificate are looked at once a second in any case. */
+static void on_hangup(int number)
+{
+    (void)number;
+    int cause = errno;
+    struct net *net = atomic_load(&to_stop);
+    if (net)
+        net_look(net);
+    errno = cause;
+}
+
 static void on_pictures(void *arg)
 {
     struct server *server = arg;
@@ -185,7 +196,7 @@ static bool start_net(struct server *server)
         .counters = server->counters,
         .address = server->params.address,
         .port = server->params.port,
-        .open_viewers = server->params.open_viewers,
+        .access = server->params.access,
         .codecs = find_codecs(server),
         .web_folder = server->web,
         .version = PLANTCAST_VERSION,
@@ -255,12 +266,15 @@ static void handle_signals(struct net *net)
     atomic_store(&to_stop, net);
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
+    action.sa_handler = on_hangup;
+    sigaction(SIGHUP, &action, NULL);
 }
 
 static void say_ready(const struct server *server)
 {
     bool six = strchr(server->params.address, ':') != NULL;
-    printf("plantcastd: ready http://%s%s%s:%d/\n", six ? "[" : "", server->params.address, six ? "]" : "", net_port(server->net));
+    printf("plantcastd: ready http%s://%s%s%s:%d/\n", server->params.access.tls_cert_path ? "s" : "", six ? "[" : "",
+           server->params.address, six ? "]" : "", net_port(server->net));
     fflush(stdout);
 }
 

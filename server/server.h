@@ -4,6 +4,7 @@
 #define SERVER_SERVER_H
 #include "base/log.h"
 #include "gpu/gl.h"
+#include "net/access.h"
 
 struct server_params {
     const char *plant_path;
@@ -17,7 +18,7 @@ struct server_params {
     enum log_level log_level;
     const char *h264;     /* an encoder of libavcodec, or "off"; NULL: the usual one */
     int threads; /* workers; 0: one per core */
-    bool open_viewers;
+    struct access_params access;
     bool per_fragment; /* the field anew at each fragment; for comparison */
 };
 

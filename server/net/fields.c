@@ -83,6 +83,29 @@ bool need_vector(const json_t *o, const char *name, double out[3], struct messag
     return given;
 }
 
+static bool is_printable(const char *text)
+{
+    while (*text > 32 && *text < 127)
+        text++;
+    return *text == 0;
+}
+
+bool may_text(const json_t *o, const char *name, char *out, size_t size, bool *given, struct message_error *error)
+{
+    const json_t *value = json_object_get(o, name);
+    const char *text = json_string_value(value);
+    if (given)
+        *given = value != NULL;
+    if (!value)
+        return true;
+    if (!text || !text[0] || json_string_length(value) >= size || strlen(text) != json_string_length(value) || !is_printable(text)) {
+        message_fail(error, "bad_field", "%s: a text of 1 to %zu characters without spaces expected", name, size - 1);
+        return false;
+    }
+    strcpy(out, text);
+    return true;
+}
+
 bool may_name(const json_t *o, const char *name, const struct name *names, int *out, bool *given, struct message_error *error)
 {
     const json_t *value = json_object_get(o, name);

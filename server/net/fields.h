@@ -12,6 +12,8 @@ bool need_seq(const json_t *o, uint32_t *out, struct message_error *error); /* "
 bool need_vector(const json_t *o, const char *name, double out[3], struct message_error *error);
 bool may_vector(const json_t *o, const char *name, double out[3], bool *given, struct message_error *error);
 bool may_name(const json_t *o, const char *name, const struct name *names, int *out, bool *given, struct message_error *error);
+/* A text of 1 to size - 1 printable ASCII characters. */
+bool may_text(const json_t *o, const char *name, char *out, size_t size, bool *given, struct message_error *error);
 /* What a client wrote, cut and with control characters replaced: fit for a log line or an answer. */
 const char *quoted(const char *text, char out[48]);
 

@@ -8,6 +8,8 @@
 #include "net/query.h"
 #include "net/reply.h"
 #include "net/site.h"
+#include "net/tls.h"
+#include "net/visitor.h"
 
 static const struct encoder_params LOSSLESS = { .quality = 100, .full_chroma = true };
 
@@ -140,7 +142,7 @@ static int ask_snapshot(struct hub *hub, struct request *request)
         char *text = mem_printf("%s\n", error.text);
         return answer(request, HTTP_STATUS_BAD_REQUEST, "text/plain; charset=utf-8", text, strlen(text), NULL, NULL);
     }
-    if (hub->snapshot_count >= MAX_SNAPSHOTS)
+    if (hub->snapshot_count >= hub->quotas->at[QUOTA_SNAPSHOTS])
         return answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "too many pictures are being made; try again\n");
     wish.asked_ns = wish.view.input_ns = clock_mono_ns();
     await(hub, request);
@@ -181,7 +183,7 @@ static int ask_pick(struct hub *hub, struct request *request)
         char *text = mem_printf("%s\n", error.text);
         return answer(request, HTTP_STATUS_BAD_REQUEST, "text/plain; charset=utf-8", text, strlen(text), NULL, NULL);
     }
-    if (hub->snapshot_count >= MAX_SNAPSHOTS)
+    if (hub->snapshot_count >= hub->quotas->at[QUOTA_SNAPSHOTS])
         return answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "too much is being asked; try again\n");
     await(hub, request);
     order.client = request->client;
@@ -259,21 +261,50 @@ static int file(struct hub *hub, struct request *request, const char *path)
 static const struct {
     const char *path;
     int (*serve)(struct hub *hub, struct request *request);
-    bool picture; /* for viewers too */
+    enum role least;
 } routes[] = {
-    { "/healthz", alive, true },
-    { "/readyz", ready, true }, /* the loop only runs once model, GL and store are there; GL may go again */
-    { "/stream", stream_without_upgrade, true },
-    { "/snapshot.png", ask_snapshot, true },
-    { "/metrics", metrics, false },
-    { "/api/v1/plant", api_plant, false },
-    { "/api/v1/tags", api_tags, false },
-    { "/api/v1/pick", ask_pick, false },
+    { "/healthz", alive, ROLE_NOBODY },
+    { "/readyz", ready, ROLE_NOBODY }, /* the loop only runs once model, GL and store are there; GL may go again */
+    { "/stream", stream_without_upgrade, ROLE_NOBODY },
+    { "/snapshot.png", ask_snapshot, ROLE_OPEN },
+    { "/metrics", metrics, ROLE_VIEWER },
+    { "/api/v1/plant", api_plant, ROLE_VIEWER },
+    { "/api/v1/tags", api_tags, ROLE_VIEWER },
+    { "/api/v1/pick", ask_pick, ROLE_VIEWER },
 };
+
+static int refuse(struct request *request, const struct refusal *refusal)
+{
+    bool whose = refusal->status == HTTP_STATUS_UNAUTHORIZED;
+    return answer(request, refusal->status, "text/plain; charset=utf-8", mem_strdup(refusal->text), strlen(refusal->text),
+                  whose ? "www-authenticate:" : NULL, "Bearer realm=\"plantcast\"");
+}
+
+/* Pages of other sites may link to us, but not have us draw. */
+static bool is_foreign_page(struct lws *wsi)
+{
+    char site[32];
+    return lws_hdr_custom_copy(wsi, site, sizeof(site), "sec-fetch-site:", 15) > 0 && !strcmp(site, "cross-site");
+}
+
+static const struct refusal NEED_TOKEN = { HTTP_STATUS_UNAUTHORIZED, "a token is needed: Authorization: Bearer TOKEN\n" };
+static const struct refusal NOT_FOR_YOU = { HTTP_STATUS_FORBIDDEN, "viewers get pictures only\n" };
+static const struct refusal FOREIGN = { HTTP_STATUS_FORBIDDEN, "pages of other sites do not get this\n" };
+
+static int serve_route(struct hub *hub, struct request *request, size_t i)
+{
+    enum role role = visitor_of(request->wsi)->role;
+    if (role < routes[i].least)
+        return refuse(request, role == ROLE_NOBODY ? &NEED_TOKEN : &NOT_FOR_YOU);
+    if (routes[i].least > ROLE_NOBODY && is_foreign_page(request->wsi))
+        return refuse(request, &FOREIGN);
+    return routes[i].serve(hub, request);
+}
 
 static int serve(struct hub *hub, struct request *request, const char *path)
 {
     bool get = lws_hdr_total_length(request->wsi, WSI_TOKEN_GET_URI) > 0;
+    struct refusal refusal;
     request->head = lws_hdr_total_length(request->wsi, WSI_TOKEN_HEAD_URI) > 0;
     counter_inc(hub->counters.requests, 1);
     if (!get && !request->head) {
@@ -282,16 +313,11 @@ static int serve(struct hub *hub, struct request *request, const char *path)
         return answer(request, HTTP_STATUS_METHOD_NOT_ALLOWED, "text/plain; charset=utf-8", mem_strdup(text), strlen(text),
                       "allow:", "GET, HEAD");
     }
-    bool trusted = hub_is_trusted(request->wsi);
-    if (!hub->params.open_viewers && !trusted)
-        return answer_text(request, HTTP_STATUS_FORBIDDEN, "this server answers to localhost, 127.0.0.1 and [::1] only\n");
-    for (size_t i = 0; i < sizeof(routes) / sizeof(routes[0]); i++) {
-        if (strcmp(routes[i].path, path) != 0)
-            continue;
-        if (!trusted && !routes[i].picture)
-            return answer_text(request, HTTP_STATUS_FORBIDDEN, "viewers get pictures only\n");
-        return routes[i].serve(hub, request);
-    }
+    if (!visitor_enter(hub, request->wsi, &refusal))
+        return refuse(request, &refusal);
+    for (size_t i = 0; i < sizeof(routes) / sizeof(routes[0]); i++)
+        if (!strcmp(routes[i].path, path))
+            return serve_route(hub, request, i);
     return file(hub, request, path);
 }
 
@@ -329,10 +355,26 @@ static void request_end(struct hub *hub, struct request **slot)
     *slot = NULL;
 }
 
+/* False: not about a connection as such. */
+static bool on_connection(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, int *result)
+{
+    *result = 0;
+    switch (reason) {
+    case LWS_CALLBACK_FILTER_NETWORK_CONNECTION: *result = visitor_may_come(hub_of(wsi), (int)(intptr_t)in) ? 0 : -1; return true;
+    case LWS_CALLBACK_SERVER_NEW_CLIENT_INSTANTIATED: visitor_come(hub_of(wsi), wsi); return true;
+    case LWS_CALLBACK_WSI_DESTROY: visitor_go(hub_of(wsi), wsi); return true;
+    case LWS_CALLBACK_OPENSSL_LOAD_EXTRA_SERVER_VERIFY_CERTS: tls_serve(hub_of(wsi)->tls, user); return true;
+    default: return false;
+    }
+}
+
 int http_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t len)
 {
     struct request **slot = user;
+    int result;
     (void)len;
+    if (on_connection(wsi, reason, user, in, &result))
+        return result;
     switch (reason) {
     case LWS_CALLBACK_HTTP: return serve(hub_of(wsi), request_of(wsi, slot), in);
     case LWS_CALLBACK_HTTP_WRITEABLE: return *slot ? on_writeable(hub_of(wsi), *slot) : 0;

@@ -5,10 +5,11 @@
 #include <libwebsockets.h>
 
 #include "net/net.h"
+#include "net/peers.h"
 #include "net/session.h"
 #include "net/stages.h"
 
-enum { SLICE_BYTES = 32 * 1024, MAX_STREAMS = 1024, MAX_SNAPSHOTS = 8 };
+enum { SLICE_BYTES = 32 * 1024 };
 
 struct stream;  /* stream.c */
 struct request; /* http.c */
@@ -24,13 +25,23 @@ struct hub {
     struct stream *streams;
     struct request *snapshots; /* HTTP requests that wait for their picture */
     int stream_count, snapshot_count;
+    const struct quotas *quotas;
+    struct peers *peers;
+    int connection_count;
+    struct tokens *tokens;   /* NULL: there are none */
+    struct tls *tls;         /* NULL: there is none */
+    struct admission admission;
+    bool local_only;         /* bound to a loopback address, and no proxy is in front */
+    char machine[256];       /* its own name; "": none */
+    int64_t looked_ns;       /* when the files of tokens and certificate were looked at */
     uint64_t next_client;
     bool asked;                         /* wishes were made: painter_go is due */
     int64_t still_ns;                   /* what the last refined picture cost */
     uint8_t out[LWS_PRE + SLICE_BYTES]; /* lws writes its framing in front of what is sent */
     struct stages stages;
     struct {
-        counter *sessions, *sessions_all, *frames, *frame_bytes, *messages, *errors, *dropped, *given_up, *stalled, *requests, *refused;
+        counter *sessions, *sessions_all, *frames, *frame_bytes, *messages, *errors, *dropped, *given_up, *stalled, *requests, *refused,
+            *connections, *busy;
     } counters;
 };
 
@@ -41,9 +52,6 @@ static inline struct hub *hub_of(struct lws *wsi)
 
 /* Writes up to SLICE_BYTES through hub->out. False: the connection is gone. */
 bool hub_write(struct hub *hub, struct lws *wsi, const void *bytes, size_t count, enum lws_write_protocol how);
-/* Who asks is on this machine and knows it: Host is localhost, 127.x or [::1], or there is none. A page of a foreign name that leads
-   here (DNS rebinding) does not. */
-bool hub_is_trusted(struct lws *wsi);
 void hub_go(struct hub *hub); /* after all wishes of one event are made */
 
 int stream_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t len);
@@ -51,6 +59,7 @@ void stream_on_picture(struct hub *hub, struct picture *picture); /* takes it ov
 void stream_on_pick(struct hub *hub, const struct pick_answer *answer);
 bool stream_owns(const struct hub *hub, uint64_t client);
 void streams_on_tick(struct hub *hub, bool data_changed, bool links_changed);
+void streams_check_tokens(struct hub *hub, int64_t now_utc_ns);
 void streams_close(struct hub *hub); /* server goes down */
 /* 0: upgrade; 1: answered with an HTTP error. */
 int stream_check_upgrade(struct hub *hub, struct lws *wsi);

@@ -36,7 +36,7 @@ static bool size_parse(const json_t *o, struct message *out, struct message_erro
     }
     out->width_px = (int)w;
     out->height_px = (int)h;
-    return true;
+    return may_number(o, "pixel_ratio", 0.25, 8, &out->pixel_ratio, NULL, error);
 }
 
 bool camera_parse(const json_t *o, struct camera *out, struct message_error *error)
@@ -112,7 +112,12 @@ static bool parse_key_frame(const struct plant *plant, const json_t *o, struct m
 static bool parse_hello(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
 {
     const json_t *camera = json_object_get(o, "camera"), *params = json_object_get(o, "params");
-    if (!size_parse(o, out, error) || !parse_codecs(plant, o, out, error))
+    bool resumes;
+    if (!may_text(o, "token", out->token, sizeof(out->token), NULL, error) ||
+        !may_text(o, "resume", out->resume, sizeof(out->resume), &resumes, error))
+        return false;
+    if (((!resumes || json_object_get(o, "width") || json_object_get(o, "height")) && !size_parse(o, out, error)) ||
+        ((!resumes || json_object_get(o, "codecs")) && !parse_codecs(plant, o, out, error)))
         return false;
     out->has_camera = json_is_object(camera);
     out->has_params = json_is_object(params);

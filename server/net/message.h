@@ -22,10 +22,13 @@ enum message_type {
     MESSAGE_CODECS
 };
 
+enum { TOKEN_MAX_CHARS = 128, RESUME_CHARS = 32 };
+
 struct message_error {
     const char *code; /* of PROTOCOL.md */
     char text[240];
     char about[24]; /* type of the message; "": unknown */
+    int retry_after_s; /* 0: there is nothing to wait for */
 };
 
 enum params_given { /* which fields of a params message were there */
@@ -107,8 +110,10 @@ struct codec_list { /* what a client decodes, what it likes best first */
 
 struct message {
     enum message_type type;
-    int width_px, height_px;     /* hello, resize */
-    struct codec_list codecs;    /* hello, codecs */
+    int width_px, height_px;     /* hello, resize; 0: as what is resumed */
+    struct codec_list codecs;    /* hello, codecs; none: as what is resumed */
+    double pixel_ratio;          /* hello, resize: device pixels to one of the page's; 0: not said */
+    char token[TOKEN_MAX_CHARS + 1], resume[RESUME_CHARS + 1]; /* hello; "": none */
     bool has_camera, has_params; /* hello */
     struct camera camera;        /* camera, hello */
     uint32_t seq;                /* camera (hello: the camera's), ack, fit, pick */

@@ -6,6 +6,7 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "net/access.h"
 #include "render/pick.h"
 #include "render/view.h"
 #include "scene/framing.h"
@@ -25,6 +26,10 @@ const struct name names_projection[] = { { "perspective", PROJECTION_PERSPECTIVE
                                          { NULL, 0 } };
 const struct name names_pick[] = {
     { "context", PICK_CONTEXT }, { "no data", PICK_NO_DATA }, { "between", PICK_BETWEEN }, { "measured", PICK_MEASURED }, { NULL, 0 }
+};
+const struct name names_role[] = {
+    { "nobody", ROLE_NOBODY },     { "open", ROLE_OPEN },         { "viewer", ROLE_VIEWER },
+    { "operator", ROLE_OPERATOR }, { "engineer", ROLE_ENGINEER }, { NULL, 0 },
 };
 const struct name names_side[] = { { "now", SIDE_NOW },     { "top", SIDE_TOP },   { "bottom", SIDE_BOTTOM },
                                    { "front", SIDE_FRONT }, { "back", SIDE_BACK }, { "left", SIDE_LEFT },

@@ -13,18 +13,20 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
-#include "net/hub.h"
+#include "net/tls.h"
+#include "net/visitor.h"
 #include "value/quality.h"
 
 static const int64_t TICK_NS = 100 * NS_PER_MS;
 static const int64_t GOODBYE_NS = 500 * NS_PER_MS; /* for the close frames to leave */
-enum { MAX_FILES = 8192 };
+static const int64_t LOOK_NS = NS_PER_S;           /* at the files of tokens and certificate, so often */
+enum { SPARE_FILES = 256 };                        /* beside connections: models, sources, the database */
 
 struct net {
     struct hub hub;
     struct lws_vhost *vhost;
     lws_sorted_usec_list_t tick;
-    _Atomic bool stopping;
+    _Atomic bool stopping, look;
 };
 
 static const struct lws_protocols protocols[] = {
@@ -49,29 +51,6 @@ bool hub_write(struct hub *hub, struct lws *wsi, const void *bytes, size_t count
 {
     memcpy(hub->out + LWS_PRE, bytes, count);
     return lws_write(wsi, hub->out + LWS_PRE, count, how) >= (int)count;
-}
-
-static bool peer_is_local(struct lws *wsi)
-{
-    char peer[64] = "";
-    lws_get_peer_simple(wsi, peer, sizeof(peer));
-    return !strncmp(peer, "127.", 4) || !strcmp(peer, "::1") || !strncmp(peer, "::ffff:127.", 11);
-}
-
-bool hub_is_trusted(struct lws *wsi)
-{
-    char host[256];
-    if (!peer_is_local(wsi))
-        return false;
-    if (lws_hdr_total_length(wsi, WSI_TOKEN_HOST) == 0)
-        return true;
-    if (lws_hdr_copy(wsi, host, sizeof(host), WSI_TOKEN_HOST) < 0)
-        return false;
-    if (host[0] == '[')
-        return !strncmp(host, "[::1]", 5) && (host[5] == 0 || host[5] == ':');
-    host[strcspn(host, ":")] = 0;
-    struct in_addr address;
-    return !strcasecmp(host, "localhost") || (inet_pton(AF_INET, host, &address) == 1 && ntohl(address.s_addr) >> 24 == 127);
 }
 
 void hub_go(struct hub *hub)
@@ -120,9 +99,30 @@ static bool look_at_links(struct hub *hub)
     return changed;
 }
 
+/* Twice, if need be: a file counts as changed once it has stopped changing. */
+static void look_at_files(struct net *net, int64_t now_ns)
+{
+    struct hub *hub = &net->hub;
+    bool asked = atomic_exchange(&net->look, false);
+    if (!asked && now_ns - hub->looked_ns < LOOK_NS)
+        return;
+    hub->looked_ns = now_ns;
+    if (hub->tls)
+        tls_look(hub->tls);
+    if (hub->tokens) {
+        tokens_look(hub->tokens);
+        streams_check_tokens(hub, clock_utc_ns());
+    }
+}
+
 static void on_tick(lws_sorted_usec_list_t *sul)
 {
     struct net *net = lws_container_of(sul, struct net, tick);
+    int64_t now_ns = clock_mono_ns();
+    look_at_files(net, now_ns);
+    admission_on_tick(&net->hub.admission, now_ns);
+    counter_set(net->hub.counters.busy, admission_busy_percent(&net->hub.admission));
+    counter_set(net->hub.counters.connections, net->hub.connection_count);
     bool data_changed = take_snapshot(&net->hub), links_changed = look_at_links(&net->hub);
     if (data_changed)
         painter_new_data(net->hub.params.painter);
@@ -159,14 +159,17 @@ static void collect(struct hub *hub)
 
 /* --- life ------------------------------------------------------------------------------------------------------------------ */
 
-static void raise_file_limit(struct log *log)
+static void raise_file_limit(struct log *log, const struct quotas *quotas)
 {
     struct rlimit limit;
+    rlim_t wanted = (rlim_t)quotas->at[QUOTA_CONNECTIONS] + SPARE_FILES;
     if (getrlimit(RLIMIT_NOFILE, &limit) != 0)
         return;
-    rlim_t wanted = limit.rlim_max == RLIM_INFINITY || limit.rlim_max > MAX_FILES ? MAX_FILES : limit.rlim_max;
-    if (limit.rlim_cur == wanted)
-        return;
+    if (limit.rlim_max != RLIM_INFINITY && limit.rlim_max < wanted) {
+        log_warn(log, "files: this process may open %llu, and %llu are wanted for --limit connections=%lld; ulimit -n, or LimitNOFILE=",
+                 (unsigned long long)limit.rlim_max, (unsigned long long)wanted, (long long)quotas->at[QUOTA_CONNECTIONS]);
+        wanted = limit.rlim_max;
+    }
     limit.rlim_cur = wanted;
     if (setrlimit(RLIMIT_NOFILE, &limit) != 0)
         log_warn(log, "files: the limit stays as it is: %s", strerror(errno));
@@ -201,6 +204,8 @@ static void add_counters(struct hub *hub)
     hub->counters.sessions = counters_add(c, "plantcast_sessions", "gauge", "Clients that are connected.");
     hub->counters.sessions_all = counters_add(c, "plantcast_sessions_total", "counter", "Clients that ever were.");
     hub->counters.refused = counters_add(c, "plantcast_sessions_refused_total", "counter", "Clients that were not let in.");
+    hub->counters.connections = counters_add(c, "plantcast_connections", "gauge", "TCP connections.");
+    hub->counters.busy = counters_add(c, "plantcast_drawing_busy_percent", "gauge", "Of the render thread's time, for moving pictures.");
     hub->counters.frames = counters_add(c, "plantcast_frames_sent_total", "counter", "Frames sent.");
     hub->counters.frame_bytes = counters_add(c, "plantcast_frame_bytes_total", "counter", "Bytes of frames sent.");
     hub->counters.dropped =
@@ -231,6 +236,12 @@ static bool open_context(struct net *net)
         .retry_and_idle_policy = &idle_policy,
         .vhost_name = "plantcast",
     };
+    if (hub->tls) {
+        info.options |= LWS_SERVER_OPTION_DO_SSL_GLOBAL_INIT;
+        info.ssl_cert_filepath = hub->params.access.tls_cert_path;
+        info.ssl_private_key_filepath = hub->params.access.tls_key_path;
+        info.alpn = "http/1.1"; /* in HTTP/2 a request would be no connection, and could have a stream in it */
+    }
     lws_set_log_level(LLL_ERR | LLL_WARN, lws_log_line);
     atomic_store(&lws_log_to, hub->params.log);
     if (!net_port_free(hub->params.log, hub->params.address, hub->params.port))
@@ -244,6 +255,17 @@ static bool open_context(struct net *net)
     return true;
 }
 
+static bool open_access(struct net *net)
+{
+    struct hub *hub = &net->hub;
+    const struct access_params *access = &hub->params.access;
+    visitor_learn_name(hub);
+    hub->local_only = access_name_is_local(hub->params.address) && !access->behind_proxy;
+    if (access->tokens_path && !(hub->world.tokens = hub->tokens = tokens_create(hub->params.log, access->tokens_path)))
+        return false;
+    return !access->tls_cert_path || (hub->tls = tls_create(hub->params.log, access->tls_cert_path, access->tls_key_path));
+}
+
 struct net *net_create(const struct net_params *params)
 {
     struct net *net = mem_new(sizeof(*net));
@@ -254,6 +276,9 @@ struct net *net_create(const struct net_params *params)
     hub->changes = mem_array(plant->tag_count, sizeof(*hub->changes));
     hub->links_up = mem_array(plant->source_count, sizeof(*hub->links_up));
     hub->next_client = 1;
+    hub->quotas = &hub->params.access.quotas;
+    hub->admission.quotas = hub->quotas;
+    hub->peers = peers_create(hub->quotas);
     hub->world = (struct session_world){
         .plant = plant,
         .scene = params->scene,
@@ -262,12 +287,15 @@ struct net *net_create(const struct net_params *params)
         .links_up = hub->links_up,
         .codecs = params->codecs,
         .version = params->version,
+        .quotas = hub->quotas,
+        .resumes = resumes_create(),
+        .admission = &hub->admission,
     };
     add_counters(hub);
     take_snapshot(hub);
     look_at_links(hub);
-    raise_file_limit(params->log);
-    if (!open_context(net))
+    raise_file_limit(params->log, hub->quotas);
+    if (!open_access(net) || !open_context(net))
         net_destroy(&net);
     return net;
 }
@@ -281,6 +309,10 @@ void net_destroy(struct net **net_ptr)
     if (net->hub.context)
         lws_context_destroy(net->hub.context);
     atomic_store(&lws_log_to, NULL);
+    tls_destroy(&net->hub.tls);
+    tokens_destroy(&net->hub.tokens);
+    peers_destroy(&net->hub.peers);
+    resumes_destroy(&net->hub.world.resumes);
     snapshot_destroy(&net->hub.snapshot);
     mem_free(net->hub.changes);
     mem_free(net->hub.links_up);
@@ -312,5 +344,11 @@ void net_wake(struct net *net)
 void net_stop(struct net *net)
 {
     atomic_store(&net->stopping, true);
+    lws_cancel_service(net->hub.context);
+}
+
+void net_look(struct net *net)
+{
+    atomic_store(&net->look, true);
     lws_cancel_service(net->hub.context);
 }

@@ -6,6 +6,7 @@
 
 #include "base/counters.h"
 #include "base/log.h"
+#include "net/access.h"
 #include "net/painter.h"
 
 struct net;
@@ -18,7 +19,7 @@ struct net_params {
     struct counters *counters;
     const char *address;    /* numeric */
     int port;               /* 0: any that is free */
-    bool open_viewers;      /* peers beyond loopback get pictures, and nothing else */
+    struct access_params access;
     unsigned codecs;        /* a bit, 1 << enum wire_codec, for each that works here */
     const char *web_folder; /* NULL: no client is served */
     const char *version;
@@ -34,5 +35,6 @@ int net_port(const struct net *net);
 void net_run(struct net *net);
 void net_wake(struct net *net); /* pictures are there */
 void net_stop(struct net *net); /* safe in a signal handler */
+void net_look(struct net *net); /* at the files of tokens and certificate, now; likewise safe */
 
 #endif

@@ -261,14 +261,23 @@ static void set_plant(json_t *object, const struct session_world *world, int wid
     json_object_set_new(object, "tags", tags(world));
 }
 
-char *reply_welcome_text(const struct session_world *world, uint64_t session, enum wire_codec codec, const struct view *view,
-                         int64_t now_utc_ns)
+static json_t *quotas_json(const struct quotas *quotas)
 {
-    json_t *object = json_pack("{s:s,s:I,s:o,s:I}", "type", "welcome", "session", (json_int_t)session, "codec",
-                               string(name_of(names_codec, (int)codec)), "time_us", us(now_utc_ns));
+    return json_pack("{s:I,s:I,s:I}", "message_bytes", (json_int_t)quotas->at[QUOTA_MESSAGE_BYTES], "messages_per_s",
+                     (json_int_t)quotas->at[QUOTA_MESSAGES], "pixels", (json_int_t)quotas->at[QUOTA_SESSION_PIXELS]);
+}
+
+char *reply_welcome_text(const struct session *session, int64_t now_utc_ns)
+{
+    const struct view *view = &session->view;
+    json_t *object = json_pack("{s:s,s:s,s:I,s:o,s:I}", "type", "welcome", "protocol", WIRE_SUBPROTOCOL, "session", (json_int_t)session->id,
+                               "codec", string(name_of(names_codec, (int)session->codec)), "time_us", us(now_utc_ns));
     json_t *params = json_object();
-    set_plant(object, world, view->width_px, view->height_px);
-    set_params(params, world, view);
+    json_object_update_new(object, json_pack("{s:s,s:s,s:I,s:b,s:o}", "role", name_of(names_role, (int)session->role), "resume",
+                                             session->resume, "resume_s", (json_int_t)(RESUME_KEPT_NS / 1000000000), "resumed",
+                                             session->resumed, "limits", quotas_json(session->world->quotas)));
+    set_plant(object, session->world, view->width_px, view->height_px);
+    set_params(params, session->world, view);
     json_object_set_new(object, "view", params);
     return print(object, DIGITS);
 }
@@ -404,9 +413,11 @@ char *reply_picked_text(const struct plant *plant, const struct pick_answer *ans
 
 char *reply_error_text(const struct message_error *error)
 {
-    return print(json_pack("{s:s,s:s,s:o,s:o}", "type", "error", "code", error->code, "text", string(error->text), "about",
-                           error->about[0] ? string(error->about) : json_null()),
-                 DIGITS);
+    json_t *object = json_pack("{s:s,s:s,s:o,s:o}", "type", "error", "code", error->code, "text", string(error->text), "about",
+                               error->about[0] ? string(error->about) : json_null());
+    if (error->retry_after_s > 0)
+        json_object_set_new(object, "retry_after_s", json_integer(error->retry_after_s));
+    return print(object, DIGITS);
 }
 
 char *reply_api_plant_text(const struct session_world *world)

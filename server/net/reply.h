@@ -5,8 +5,7 @@
 #include "net/message.h"
 #include "net/session.h"
 
-char *reply_welcome_text(const struct session_world *world, uint64_t session, enum wire_codec codec, const struct view *view,
-                         int64_t now_utc_ns);
+char *reply_welcome_text(const struct session *session, int64_t now_utc_ns);
 char *reply_params_text(const struct session_world *world, const struct view *view, uint32_t seq);
 /* All values, or those that differ from `sent` (reading.changes by tag index), which is brought up to date. */
 char *reply_tags_text(const struct session_world *world, uint32_t *sent, bool all);

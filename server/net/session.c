@@ -9,11 +9,12 @@
 #include "net/framing.h"
 #include "net/reply.h"
 
+static const int64_t HELLO_NS = 10 * NS_PER_S; /* who has not said hello by then will not */
 
 struct session *session_create(const struct session_world *world, uint64_t id, int64_t now_ns)
 {
     struct session *session = mem_new(sizeof(*session));
-    *session = (struct session){ .id = id, .world = world, .rate_begin_ns = now_ns };
+    *session = (struct session){ .id = id, .world = world, .role = ROLE_ENGINEER, .opened_ns = now_ns, .rate_begin_ns = now_ns };
     pacer_init(&session->pacer);
     session->tag_changes = mem_array(world->plant->tag_count, sizeof(*session->tag_changes));
     return session;
@@ -30,6 +31,32 @@ void session_destroy(struct session **session_ptr)
     mem_free(session->tag_changes);
     mem_free(session);
     *session_ptr = NULL;
+}
+
+void session_leave(struct session *session, bool keep, int64_t now_ns)
+{
+    session->world->admission->pixels -= session->pixels;
+    session->pixels = 0;
+    resumes_close(session->world->resumes, session, keep, now_ns);
+}
+
+void session_close(struct session *session, int code, const char *text)
+{
+    if (session->close_code)
+        return;
+    session->close_code = code;
+    session->close_text = text;
+}
+
+void session_check_token(struct session *session, int64_t now_utc_ns)
+{
+    if (session->holder.role == ROLE_NOBODY)
+        return;
+    enum role role = session->world->tokens ? tokens_role(session->world->tokens, &session->holder, now_utc_ns) : ROLE_NOBODY;
+    if (role == ROLE_NOBODY)
+        session_close(session, 1008, "this token is no longer let in");
+    else
+        session->role = session->holder.role = role;
 }
 
 /* --- input ---------------------------------------------------------------------------------------------------------------- */
@@ -64,40 +91,23 @@ static void set_camera(struct session *session, const struct message *message)
     session->view.camera_seq = message->seq;
 }
 
-static bool apply_params(const struct session *session, const struct message *message, struct view *view, struct message_error *error)
-{
-    const struct session_world *world = session->world;
-    const struct params_world params = { world->scene, world->baselines, world->snapshot };
-    struct view changed = *view;
-    if (!params_apply(&params, &message->params, &changed, error) || !split_apply(&params, &message->split, &changed, error))
-        return false;
-    *view = changed;
-    return true;
-}
-
-static bool on_hello(struct session *session, const struct message *message, struct message_error *error)
-{
-    struct view view;
-    view_default(session->world->scene, message->width_px, message->height_px, &view);
-    if (message->has_params && !apply_params(session, message, &view, error))
-        return false;
-    session->view = view;
-    if (message->has_params)
-        session->view.params_seq = message->params.seq;
-    if (message->has_camera)
-        set_camera(session, message);
-    if (!session_choose_codec(session, &message->codecs, error))
-        return false;
-    session->hello = session->owes_welcome = session->owes_tags_all = session->owes_status = session->always_pending = true;
-    return true;
-}
-
 static bool on_params(struct session *session, const struct message *message, struct message_error *error)
 {
-    if (!apply_params(session, message, &session->view, error))
+    if (!session_apply_params(session, message, &session->view, error))
         return false;
     session->view.params_seq = session->params_seq = message->params.seq;
     session->owes_params = true;
+    return true;
+}
+
+static bool on_resize(struct session *session, const struct message *message, struct message_error *error)
+{
+    if (!session_may_draw(session, message->width_px, message->height_px, error))
+        return false;
+    session->view.width_px = message->width_px;
+    session->view.height_px = message->height_px;
+    if (message->pixel_ratio > 0)
+        session->pixel_ratio = message->pixel_ratio;
     return true;
 }
 
@@ -154,17 +164,13 @@ void session_on_pick(struct session *session, const struct pick_answer *answer)
 static bool act(struct session *session, const struct message *message, int64_t now_ns, int64_t now_utc_ns, struct message_error *error)
 {
     switch (message->type) {
-    case MESSAGE_HELLO: on_input(session, now_ns); return on_hello(session, message, error);
+    case MESSAGE_HELLO: on_input(session, now_ns); return session_hello(session, message, now_ns, now_utc_ns, error);
     case MESSAGE_CAMERA:
         set_camera(session, message);
         on_input(session, now_ns);
         return true;
     case MESSAGE_PARAMS: on_input(session, now_ns); return on_params(session, message, error);
-    case MESSAGE_RESIZE:
-        session->view.width_px = message->width_px;
-        session->view.height_px = message->height_px;
-        on_input(session, now_ns);
-        return true;
+    case MESSAGE_RESIZE: on_input(session, now_ns); return on_resize(session, message, error);
     case MESSAGE_ACK: return on_ack(session, message, now_ns, error);
     case MESSAGE_VISIBLE: on_visible(session, message->visible); return true;
     case MESSAGE_FIT: on_fit(session, message); return true;
@@ -186,22 +192,30 @@ static bool in_order(const struct session *session, const struct message *messag
         message_fail(error, "hello_first", "the first message is hello");
         return false;
     }
-    return true;
+    /* What hello may say, its token decides. */
+    return message->type == MESSAGE_HELLO || access_message(session->role, message, error);
+}
+
+void session_too_fast(struct session *session, int64_t count, const char *whose)
+{
+    struct message_error error = { 0 };
+    if (session->too_fast)
+        return;
+    message_fail(&error, "too_fast", "%lld messages %swithin a second: the next are read after it", (long long)count, whose);
+    session->too_fast = true;
+    session_reply_error(session, &error);
 }
 
 static void count_message(struct session *session, int64_t now_ns)
 {
+    int64_t most = session->world->quotas->at[QUOTA_MESSAGES];
     session->messages++;
     if (now_ns - session->rate_begin_ns >= NS_PER_S) {
         session->rate_begin_ns = now_ns;
         session->rate_count = 0;
     }
-    if (++session->rate_count < SESSION_MAX_MESSAGES_PER_S || session->too_fast)
-        return;
-    struct message_error error = { 0 };
-    message_fail(&error, "too_fast", "%d messages within a second: the next are read after it", SESSION_MAX_MESSAGES_PER_S);
-    session->too_fast = true;
-    session_reply_error(session, &error);
+    if (++session->rate_count >= most)
+        session_too_fast(session, most, "");
 }
 
 void session_on_message(struct session *session, const char *text, size_t count, int64_t now_ns, int64_t now_utc_ns)
@@ -218,12 +232,15 @@ void session_on_oversize(struct session *session, size_t count, int64_t now_ns)
 {
     struct message_error error = { 0 };
     count_message(session, now_ns);
-    message_fail(&error, "too_long", "%zu bytes; a message holds at most %u", count, WIRE_MAX_MESSAGE_BYTES);
+    message_fail(&error, "too_long", "%zu bytes; a message holds at most %lld", count,
+                 (long long)session->world->quotas->at[QUOTA_MESSAGE_BYTES]);
     session_reply_error(session, &error);
 }
 
 void session_on_tick(struct session *session, int64_t now_ns)
 {
+    if (!session->hello && now_ns - session->opened_ns >= HELLO_NS)
+        session_close(session, 1008, "no hello within 10 s");
     if (session->too_fast && now_ns - session->rate_begin_ns >= NS_PER_S)
         session->too_fast = false;
     if (pacer_state(&session->pacer, now_ns) != PACER_FLOWS)

@@ -3,17 +3,20 @@
 #ifndef NET_SESSION_H
 #define NET_SESSION_H
 #include "base/text.h"
+#include "net/admission.h"
 #include "net/message.h"
 #include "net/pacer.h"
 #include "net/picks.h"
 #include "net/picture.h"
+#include "net/resume.h"
+#include "net/tokens.h"
 #include "scene/scene.h"
 #include "value/snapshot.h"
 
-enum { SESSION_MAX_REPLIES = 64, SESSION_MAX_MESSAGES_PER_S = 1000 };
+enum { SESSION_MAX_REPLIES = 64 };
 #define SESSION_MAX_INPUT_BYTES (1024 * 1024) /* beyond that the connection is closed */
 
-/* What all sessions look at. Filled by the loop, never changed by a session. */
+/* What all sessions look at. Filled by the loop; a session changes only what is said so. */
 struct session_world {
     const struct plant *plant;
     const struct scene *scene;
@@ -23,14 +26,28 @@ struct session_world {
     bool live;               /* values are coming in */
     int64_t moving_until_ns; /* somebody moves; a refined picture of another would make it stutter */
     bool loaded;             /* refined pictures for all, whenever a reading changes, are more than can be drawn */
+    int moving;              /* sessions whose camera moved within the last second */
     unsigned codecs; /* a bit, 1 << enum wire_codec, for each that we have; 0: JPEG and PNG */
     const char *version;
+    const struct quotas *quotas;
+    const struct tokens *tokens;  /* NULL: there are none */
+    struct resumes *resumes;      /* changed by hello */
+    struct admission *admission;  /* its pixels are changed by hello and resize */
 };
 
 struct session {
     uint64_t id;
     const struct session_world *world;
+    enum role role;
+    struct token_holder holder; /* of whose token it is; nobody's: it needed none, or has yet to say it */
+    int64_t opened_ns;
     bool hello, hidden;
+    bool resumed;                   /* welcome says so */
+    char resume[RESUME_CHARS + 1];  /* for its return */
+    double pixel_ratio;
+    int64_t pixels;                 /* as counted in world->admission */
+    int close_code;                 /* 0: stays; else the connection is to be closed once what is owed in words has gone */
+    const char *close_text;         /* static */
     struct codec_list codecs; /* what it decodes */
     enum wire_codec codec;    /* in use */
     struct view view;
@@ -47,7 +64,6 @@ struct session {
     bool measured;          /* pacer.acked is new */
 
     bool failure_said;      /* of the view as it is */
-    bool refused;           /* not even its first picture could be drawn: close, 1013 */
 
     bool owes_welcome, owes_params, owes_tags_all, owes_tags, owes_status;
     uint32_t params_seq;                     /* to be answered */
@@ -66,12 +82,17 @@ struct session {
 
 struct session *session_create(const struct session_world *world, uint64_t id, int64_t now_ns);
 void session_destroy(struct session **session); /* &NULL is fine; leaves NULL */
+/* Its connection is gone. keep: its view, for its return. */
+void session_leave(struct session *session, bool keep, int64_t now_ns);
+void session_close(struct session *session, int code, const char *text); /* the first reason stands; text is static */
+void session_check_token(struct session *session, int64_t now_utc_ns);   /* the file of tokens was read again, or time went by */
 
 /* One text message. Bad ones are answered with an error and change nothing. */
 void session_on_message(struct session *session, const char *text, size_t count, int64_t now_ns, int64_t now_utc_ns);
 void session_on_oversize(struct session *session, size_t count, int64_t now_ns); /* a message too long to be kept */
 void session_on_tick(struct session *session, int64_t now_ns);                   /* every 100 ms or so */
 void session_on_data(struct session *session, int64_t data_ns);                  /* a reading changed: then */
+void session_too_fast(struct session *session, int64_t count, const char *whose); /* reads nothing until this second is over */
 /* Takes the picture over. */
 void session_on_picture(struct session *session, struct picture *picture);
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the parts of a session share: input (session.c), pictures (session_wishes.c), words (session_texts.c). Private to them. */
+/* What the parts of a session share: input (session.c), its first message (session_hello.c),
+   pictures (session_wishes.c), words (session_texts.c). Private to them. */
 #ifndef NET_SESSION_IMPL_H
 #define NET_SESSION_IMPL_H
 #include "net/session.h"
@@ -9,6 +10,11 @@ void session_drop_ready(struct session *session); /* what was not sent yet */
 /* Takes the list, and the first of it that there is. False: there is none. */
 bool session_choose_codec(struct session *session, const struct codec_list *codecs, struct message_error *error);
 void session_reply_error(struct session *session, const struct message_error *error);
+/* session_hello.c: who it is, whether there is room, what it looks at. False: *error, and session->close_code if it is not let in. */
+bool session_hello(struct session *session, const struct message *message, int64_t now_ns, int64_t now_utc_ns, struct message_error *error);
+/* Whether its view may have this size; if so it is counted. */
+bool session_may_draw(struct session *session, int width_px, int height_px, struct message_error *error);
+bool session_apply_params(const struct session *session, const struct message *message, struct view *view, struct message_error *error);
 
 void session_pause(struct session *session);    /* nothing moves: keep no picture for it */
 void session_on_shown(struct session *session); /* session->pacer.acked is on the client's screen */

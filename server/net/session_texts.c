@@ -49,7 +49,7 @@ bool session_next_text(struct session *session, int64_t now_ns, int64_t now_utc_
 {
     const struct session_world *world = session->world;
     if (session->owes_welcome) {
-        add_owned(out, reply_welcome_text(world, session->id, session->codec, &session->view, now_utc_ns));
+        add_owned(out, reply_welcome_text(session, now_utc_ns));
         session->owes_welcome = false;
     } else if (session->reply_count > 0) {
         add_reply(session, out);

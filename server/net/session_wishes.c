@@ -20,7 +20,7 @@ static void on_failure(struct session *session, const struct view *view)
 {
     struct message_error error = { 0 };
     if (session->newest_number == 0) {
-        session->refused = true;
+        session_close(session, 1013, "no memory for another picture: try later, or a smaller one");
         return;
     }
     if (session->failure_said)

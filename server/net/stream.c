@@ -7,8 +7,10 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "net/stream.h"
+#include "net/visitor.h"
 
 enum { STREAM_CLOSE_STALLED = 4000, LAST_WORDS_S = 2 };
+static const int64_t HALF_MESSAGE_NS = 10 * NS_PER_S;
 static const int64_t MOVING_NS = 200 * NS_PER_MS; /* after an input somebody is taken to be moving */
 
 /* --- coming and going ------------------------------------------------------------------------------------------------------- */
@@ -29,20 +31,28 @@ static void close_with(struct stream *stream, int code, const char *text)
     lws_callback_on_writable(stream->wsi);
 }
 
+static void pump(struct hub *hub, struct stream *stream);
+
 static void on_open(struct hub *hub, struct lws *wsi, struct stream **slot)
 {
     struct stream *stream = mem_new(sizeof(*stream));
     *stream = (struct stream){ .wsi = wsi, .next = hub->streams };
     stream->session = session_create(&hub->world, hub->next_client++, clock_mono_ns());
+    stream->peer = visitor_of(wsi)->client;
+    stream->session->role = visitor_of(wsi)->role;
+    stream->session->holder = visitor_of(wsi)->holder;
     *slot = hub->streams = stream;
     hub->stream_count++;
     counter_set(hub->counters.sessions, hub->stream_count);
     counter_inc(hub->counters.sessions_all, 1);
     tune_socket(wsi);
-    if (hub->stream_count > MAX_STREAMS) {
-        counter_inc(hub->counters.refused, 1);
-        close_with(stream, 1013, "full: try again later");
-    }
+    bool address_full = !peers_may_stream(hub->peers, stream->peer);
+    stream->peer->sessions++;
+    if (address_full)
+        session_close(stream->session, 1013, "full: this address has as many sessions as one may have; try again later");
+    else if (hub->stream_count > hub->quotas->at[QUOTA_SESSIONS])
+        session_close(stream->session, 1013, "full: as many sessions as there may be; try again later");
+    pump(hub, stream);
     log_debug(hub->params.log, "session %llu: opened", (unsigned long long)stream->session->id);
 }
 
@@ -55,6 +65,12 @@ static void count(struct hub *hub, struct stream *stream)
     stream->messages = session->messages;
     stream->errors = session->errors;
     stream->dropped = session->dropped;
+}
+
+/* Who was sent away is not kept, but who could not be served any longer is. */
+static bool may_return(const struct stream *stream)
+{
+    return stream->session->hello && stream->session->close_code != 1008;
 }
 
 static void on_close(struct hub *hub, struct stream **slot)
@@ -71,6 +87,8 @@ static void on_close(struct hub *hub, struct stream **slot)
     log_debug(hub->params.log, "session %llu: closed (%lld messages, %lld errors)", (unsigned long long)stream->session->id,
               (long long)stream->messages, (long long)stream->errors);
     painter_forget(hub->params.painter, stream->session->id);
+    stream->peer->sessions--;
+    session_leave(stream->session, may_return(stream), clock_mono_ns());
     session_destroy(&stream->session);
     picture_destroy(&stream->sending);
     text_finish(&stream->in);
@@ -85,6 +103,11 @@ static void pump(struct hub *hub, struct stream *stream)
     struct session *session = stream->session;
     struct wish wish;
     int64_t now_ns = clock_mono_ns();
+    if (session->close_code && session->reply_count == 0 && !stream->close_code) {
+        if (session->close_code == 1013)
+            counter_inc(hub->counters.refused, 1);
+        close_with(stream, session->close_code, session->close_text);
+    }
     if (stream->close_code)
         return;
     if (session_wish(session, now_ns, &wish)) {
@@ -113,6 +136,20 @@ static bool is_loaded(const struct hub *hub)
     return count * hub->still_ns > NS_PER_S;
 }
 
+static int count_moving(const struct hub *hub, int64_t now_ns)
+{
+    int count = 0;
+    for (const struct stream *stream = hub->streams; stream; stream = stream->next)
+        count += stream->session->hello && now_ns - stream->session->input_ns < NS_PER_S;
+    return count;
+}
+
+void streams_check_tokens(struct hub *hub, int64_t now_utc_ns)
+{
+    for (struct stream *stream = hub->streams; stream; stream = stream->next)
+        session_check_token(stream->session, now_utc_ns);
+}
+
 /* Who takes nothing gets nothing, and keeps nothing of the server's but its view; then it is closed. */
 static void watch_stall(struct hub *hub, struct stream *stream, int64_t now_ns)
 {
@@ -131,8 +168,11 @@ void streams_on_tick(struct hub *hub, bool data_changed, bool links_changed)
 {
     int64_t now_ns = clock_mono_ns();
     hub->world.loaded = is_loaded(hub);
+    hub->world.moving = count_moving(hub, now_ns);
     for (struct stream *stream = hub->streams; stream; stream = stream->next) {
         session_on_tick(stream->session, now_ns);
+        if (stream->in_count > 0 && now_ns - stream->in_begin_ns > HALF_MESSAGE_NS)
+            session_close(stream->session, 1008, "half a message, and no more of it for 10 s");
         if (data_changed)
             session_on_data(stream->session, hub->data_ns);
         stream->session->owes_status |= links_changed;
@@ -167,11 +207,8 @@ void stream_on_picture(struct hub *hub, struct picture *picture)
     const struct frame *frame = picture->packet ? picture->packet->frame : NULL;
     if (frame && frame->view.tier == TIER_STILL)
         hub->still_ns = frame->render_ns + frame->readback_ns;
+    admission_on_picture(&hub->admission, picture);
     session_on_picture(stream->session, picture);
-    if (stream->session->refused && !stream->close_code) {
-        counter_inc(hub->counters.refused, 1);
-        close_with(stream, 1013, "no memory for another picture: try later, or a smaller one");
-    }
     pump(hub, stream);
 }
 
@@ -188,7 +225,9 @@ static void on_message(struct hub *hub, struct stream *stream)
 {
     struct session *session = stream->session;
     int64_t now_ns = clock_mono_ns();
-    if (stream->in_count > WIRE_MAX_MESSAGE_BYTES)
+    if (!peers_count_message(hub->peers, stream->peer, now_ns))
+        session_too_fast(session, hub->quotas->at[QUOTA_ADDRESS_MESSAGES], "of this address ");
+    if (stream->in_count > (size_t)hub->quotas->at[QUOTA_MESSAGE_BYTES])
         session_on_oversize(session, stream->in_count, now_ns);
     else
         session_on_message(session, stream->in.at ? stream->in.at : "", stream->in.length, now_ns, clock_utc_ns());
@@ -205,13 +244,15 @@ static void on_message(struct hub *hub, struct stream *stream)
 
 static void on_receive(struct hub *hub, struct stream *stream, const void *bytes, size_t len)
 {
+    if (stream->in_count == 0)
+        stream->in_begin_ns = clock_mono_ns();
     stream->in_count += len;
     if (stream->in_count > SESSION_MAX_INPUT_BYTES) {
         close_with(stream, LWS_CLOSE_STATUS_MESSAGE_TOO_LARGE, "a message is larger than 1 MiB");
         lws_rx_flow_control(stream->wsi, 0);
         return;
     }
-    if (stream->in_count <= WIRE_MAX_MESSAGE_BYTES)
+    if (stream->in_count <= (size_t)hub->quotas->at[QUOTA_MESSAGE_BYTES])
         text_add_bytes(&stream->in, bytes, len);
     if (lws_remaining_packet_payload(stream->wsi) == 0 && lws_is_final_fragment(stream->wsi))
         on_message(hub, stream);

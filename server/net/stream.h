@@ -9,6 +9,8 @@ struct stream {
     struct lws *wsi;
     struct session *session;
     struct stream *next;
+    struct peer *peer; /* whose it is; the connection's visitor keeps it */
+    int64_t in_begin_ns; /* when the message that is coming in began */
     struct text in;  /* the message so far */
     size_t in_count; /* its bytes, kept or not */
     struct picture *sending;

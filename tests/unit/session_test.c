@@ -21,6 +21,8 @@ static const int64_t MS = NS_PER_MS;
 
 struct fixture {
     struct session_world world;
+    struct quotas quotas;
+    struct admission admission;
     struct snapshot *snapshot;
     bool up[1];
     struct session *session;
@@ -37,6 +39,10 @@ static int set_up(void **state)
         .plant = small_scene()->plant, .scene = small_scene(), .snapshot = f->snapshot, .links_up = f->up, .live = true, .version = "1.2.3"
     };
     f->world.baselines = baselines_create();
+    f->quotas = quotas_default();
+    f->admission.quotas = f->world.quotas = &f->quotas;
+    f->world.admission = &f->admission;
+    f->world.resumes = resumes_create();
     f->now_ns = 1000 * NS_PER_S;
     f->session = session_create(&f->world, 7, f->now_ns);
     *state = f;
@@ -49,6 +55,7 @@ static int tear_down(void **state)
     session_destroy(&f->session);
     snapshot_destroy(&f->snapshot);
     baselines_destroy(&f->world.baselines);
+    resumes_destroy(&f->world.resumes);
     mem_free(f);
     return 0;
 }
@@ -298,7 +305,7 @@ static void without_a_first_picture_a_session_is_refused(void **state)
     greet(f);
     assert_true(ask(f, &wish));
     paint_nothing(f, &wish);
-    assert_true(f->session->refused);
+    assert_int_equal(f->session->close_code, 1013);
     assert_int_equal(f->session->pacer.asked, 0);
 }
 
@@ -318,7 +325,7 @@ static void a_view_that_cannot_be_drawn_is_said_once(void **state)
         session_on_data(f->session, f->now_ns);
         assert_true(ask(f, &wish));
         paint_nothing(f, &wish);
-        assert_false(f->session->refused);
+        assert_int_equal(f->session->close_code, 0);
     }
     f->now_ns += NS_PER_S;
     show(f);
@@ -609,7 +616,7 @@ static void too_many_messages_are_put_off(void **state)
 {
     struct fixture *f = *state;
     greet(f);
-    for (int i = 0; i < SESSION_MAX_MESSAGES_PER_S; i++)
+    for (int i = 0; i < f->quotas.at[QUOTA_MESSAGES]; i++)
         say(f, "{\"type\":\"camera\",\"seq\":1,\"eye\":[9,9,9],\"target\":[0,0,1]}");
     assert_true(f->session->too_fast);
     expect_error(f, "too_fast");

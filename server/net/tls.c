@@ -1,0 +1,128 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The certificate. */
+#include "net/tls.h"
+
+#include <errno.h>
+#include <openssl/err.h>
+#include <openssl/x509v3.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+
+#include "base/mem.h"
+#include "net/file_watch.h"
+
+struct tls {
+    struct log *log;
+    char *cert_path, *key_path;
+    struct file_watch cert_watch, key_watch;
+    SSL_CTX *checked; /* ours: the newest that can be served */
+    SSL_CTX *served;  /* of lws */
+};
+
+static const char *why(char out[200])
+{
+    unsigned long code = ERR_peek_last_error();
+    if (code)
+        ERR_error_string_n(code, out, 200);
+    else
+        snprintf(out, 200, "%s", errno ? strerror(errno) : "no reason is given");
+    ERR_clear_error();
+    return out;
+}
+
+static bool load(SSL_CTX *context, const struct tls *tls, const char **at)
+{
+    errno = 0;
+    ERR_clear_error();
+    *at = tls->cert_path;
+    if (SSL_CTX_use_certificate_chain_file(context, tls->cert_path) != 1)
+        return false;
+    *at = tls->key_path;
+    return SSL_CTX_use_PrivateKey_file(context, tls->key_path, SSL_FILETYPE_PEM) == 1 && SSL_CTX_check_private_key(context) == 1;
+}
+
+static void mark_read(struct file_watch *watch, const char *path)
+{
+    struct stat st;
+    file_watch_read(watch, stat(path, &st) == 0 ? &st : NULL);
+}
+
+static void warn(const struct tls *tls)
+{
+    struct stat st;
+    const X509 *cert = SSL_CTX_get0_certificate(tls->checked);
+    time_t soon = time(NULL) + 14 * 24 * 3600;
+    if (stat(tls->key_path, &st) == 0 && (st.st_mode & S_IROTH))
+        log_warn(tls->log, "%s: everyone on this machine may read the private key: chmod 640 or less", tls->key_path);
+    if (X509_cmp_current_time(X509_get0_notAfter(cert)) < 0)
+        log_warn(tls->log, "%s: this certificate's time is over", tls->cert_path);
+    else if (X509_cmp_time(X509_get0_notAfter(cert), &soon) < 0)
+        log_warn(tls->log, "%s: this certificate's time is over within 14 days", tls->cert_path);
+}
+
+/* False: logged. */
+static bool check(struct tls *tls)
+{
+    char text[200];
+    const char *at;
+    SSL_CTX *context = SSL_CTX_new(TLS_server_method());
+    mark_read(&tls->cert_watch, tls->cert_path);
+    mark_read(&tls->key_watch, tls->key_path);
+    if (!context || !load(context, tls, &at)) {
+        log_err(tls->log, "TLS: %s: %s", context ? at : "a context", why(text));
+        SSL_CTX_free(context);
+        return false;
+    }
+    SSL_CTX_free(tls->checked);
+    tls->checked = context;
+    warn(tls);
+    return true;
+}
+
+struct tls *tls_create(struct log *log, const char *cert_path, const char *key_path)
+{
+    struct tls *tls = mem_new(sizeof(*tls));
+    *tls = (struct tls){ .log = log, .cert_path = mem_strdup(cert_path), .key_path = mem_strdup(key_path) };
+    if (!check(tls))
+        tls_destroy(&tls);
+    return tls;
+}
+
+void tls_destroy(struct tls **tls_ptr)
+{
+    struct tls *tls = *tls_ptr;
+    if (!tls)
+        return;
+    SSL_CTX_free(tls->checked);
+    mem_free(tls->cert_path);
+    mem_free(tls->key_path);
+    mem_free(tls);
+    *tls_ptr = NULL;
+}
+
+void tls_serve(struct tls *tls, SSL_CTX *context)
+{
+    SSL_CTX_set_min_proto_version(context, TLS1_2_VERSION);
+    tls->served = context;
+}
+
+void tls_look(struct tls *tls)
+{
+    char text[200];
+    const char *at;
+    bool cert = file_watch_changed(&tls->cert_watch, tls->cert_path), key = file_watch_changed(&tls->key_watch, tls->key_path);
+    if ((!cert && !key) || !check(tls) || !tls->served)
+        return;
+    if (load(tls->served, tls, &at))
+        log_info(tls->log, "TLS: %s: a new certificate is served", tls->cert_path);
+    else
+        log_err(tls->log, "TLS: %s: %s", at, why(text));
+}
+
+bool tls_is_called(const struct tls *tls, const char *name)
+{
+    X509 *cert = SSL_CTX_get0_certificate(tls->checked);
+    return cert && X509_check_host(cert, name, 0, 0, NULL) == 1;
+}

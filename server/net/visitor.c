@@ -1,0 +1,180 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Who is at the other end of a connection. */
+#include "net/visitor.h"
+
+#include <string.h>
+#include <strings.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "net/tls.h"
+
+static const struct refusal WRONG_HOST = { 403, "this server is not asked for by that name (Host); --host NAME lets it\n" };
+static const struct refusal LOCAL_ONLY = { 403, "this server answers to localhost, 127.0.0.1 and [::1] only\n" };
+static const struct refusal PROXY = { 403, "a proxy speaks for somebody here; the server needs --behind-proxy for that\n" };
+static const struct refusal IN_QUERY = { 400, "a token does not belong in a URL, where logs and histories keep it: send it as "
+                                              "Authorization: Bearer, in the subprotocol list, or in hello\n" };
+static const struct refusal BAD_TOKEN = { 401, "this token is not, or no longer, let in\n" };
+static const struct refusal TOO_LONG = { 431, "a header is too long\n" };
+
+/* --- connections ---------------------------------------------------------------------------------------------------------------- */
+
+static bool count_refusal(struct hub *hub, bool good)
+{
+    if (!good)
+        counter_inc(hub->counters.refused, 1);
+    return good;
+}
+
+bool visitor_may_come(struct hub *hub, int fd)
+{
+    char address[64] = "";
+    if (hub->connection_count >= hub->quotas->at[QUOTA_CONNECTIONS])
+        return count_refusal(hub, false);
+    if (hub->params.access.behind_proxy) /* all come from one address there; sessions are counted by what it says */
+        return true;
+    lws_get_peer_simple_fd(fd, address, sizeof(address));
+    struct peer *peer = peers_ref(hub->peers, address);
+    bool good = peers_may_connect(hub->peers, peer);
+    peers_unref(hub->peers, &peer);
+    return count_refusal(hub, good);
+}
+
+void visitor_come(struct hub *hub, struct lws *wsi)
+{
+    char address[64] = "";
+    struct visitor *visitor = mem_new(sizeof(*visitor));
+    lws_get_peer_simple(wsi, address, sizeof(address));
+    visitor->peer = peers_ref(hub->peers, address);
+    visitor->peer->connections++;
+    hub->connection_count++;
+    lws_set_opaque_user_data(wsi, visitor);
+}
+
+void visitor_go(struct hub *hub, struct lws *wsi)
+{
+    struct visitor *visitor = visitor_of(wsi);
+    if (!visitor)
+        return;
+    visitor->peer->connections--;
+    hub->connection_count--;
+    peers_unref(hub->peers, &visitor->client);
+    peers_unref(hub->peers, &visitor->peer);
+    mem_free(visitor);
+    lws_set_opaque_user_data(wsi, NULL);
+}
+
+struct visitor *visitor_of(struct lws *wsi)
+{
+    return lws_get_opaque_user_data(wsi);
+}
+
+/* --- requests ----------------------------------------------------------------------------------------------------------------------- */
+
+bool visitor_header(struct lws *wsi, enum lws_token_indexes token, char *out, int size)
+{
+    out[0] = 0;
+    return lws_hdr_total_length(wsi, token) == 0 || lws_hdr_copy(wsi, out, size, token) >= 0;
+}
+
+void visitor_learn_name(struct hub *hub)
+{
+    char name[sizeof(hub->machine)] = "";
+    if (gethostname(name, sizeof(name) - 1) != 0 || !access_host_name(name, hub->machine, sizeof(hub->machine)))
+        hub->machine[0] = 0;
+}
+
+static bool is_named(const struct access_params *params, const char *name)
+{
+    for (int i = 0; i < params->host_count; i++)
+        if (!strcasecmp(params->hosts[i], name))
+            return true;
+    return false;
+}
+
+/* A page of a foreign name that leads here (DNS rebinding) may not ask; addresses cannot be led elsewhere. */
+static bool is_ours(const struct hub *hub, const char *name)
+{
+    const struct access_params *params = &hub->params.access;
+    if (access_name_is_local(name) || is_named(params, name))
+        return true;
+    if (hub->local_only || params->behind_proxy)
+        return false;
+    return access_name_is_address(name) || (hub->machine[0] && !strcmp(name, hub->machine)) || (hub->tls && tls_is_called(hub->tls, name));
+}
+
+static bool has_forwarding(struct lws *wsi)
+{
+    return lws_hdr_total_length(wsi, WSI_TOKEN_X_FORWARDED_FOR) > 0 || lws_hdr_custom_length(wsi, "forwarded:", 10) > 0 ||
+           lws_hdr_custom_length(wsi, "x-real-ip:", 10) > 0;
+}
+
+static void find_client(struct hub *hub, struct lws *wsi, struct visitor *visitor)
+{
+    char list[512], address[64];
+    peers_unref(hub->peers, &visitor->client);
+    bool named = hub->params.access.behind_proxy && visitor->peer->local &&
+                 visitor_header(wsi, WSI_TOKEN_X_FORWARDED_FOR, list, sizeof(list)) && access_forwarded(list, address, sizeof(address));
+    if (!named)
+        lws_get_peer_simple(wsi, address, sizeof(address));
+    visitor->client = peers_ref(hub->peers, address);
+}
+
+static bool has_token_in_query(struct lws *wsi)
+{
+    char argument[4096]; /* more than lws keeps of all headers together */
+    for (int i = 0; lws_hdr_fragment_length(wsi, WSI_TOKEN_HTTP_URI_ARGS, i) > 0; i++)
+        if (lws_hdr_copy_fragment(wsi, argument, sizeof(argument), WSI_TOKEN_HTTP_URI_ARGS, i) > 0 && access_argument_is_token(argument))
+            return true;
+    return false;
+}
+
+/* False: a header is too long. "": there is no token. */
+static bool find_token(struct lws *wsi, char token[TOKEN_MAX_CHARS + 1])
+{
+    char text[512];
+    token[0] = 0;
+    if (!visitor_header(wsi, WSI_TOKEN_HTTP_AUTHORIZATION, text, sizeof(text)))
+        return false;
+    if (!strncasecmp(text, "Bearer ", 7) && strlen(text) - 7 <= TOKEN_MAX_CHARS) {
+        strcpy(token, text + 7);
+        return true;
+    }
+    if (!visitor_header(wsi, WSI_TOKEN_PROTOCOL, text, sizeof(text)))
+        return false;
+    access_list_rest(text, "Authorization-Bearer.", token, TOKEN_MAX_CHARS + 1);
+    return true;
+}
+
+bool visitor_enter(struct hub *hub, struct lws *wsi, struct refusal *refusal)
+{
+    const struct access_params *params = &hub->params.access;
+    struct visitor *visitor = visitor_of(wsi);
+    char host[256], name[256] = "", token[TOKEN_MAX_CHARS + 1];
+    bool has_host = lws_hdr_total_length(wsi, WSI_TOKEN_HOST) > 0, direct = visitor->peer->local && !params->behind_proxy;
+    *refusal = (struct refusal){ 0 };
+    visitor->holder = (struct token_holder){ 0 };
+    visitor->role = ROLE_NOBODY;
+    find_client(hub, wsi, visitor);
+    if (has_host && (!visitor_header(wsi, WSI_TOKEN_HOST, host, sizeof(host)) || !access_host_name(host, name, sizeof(name)) ||
+                     !is_ours(hub, name)))
+        *refusal = hub->local_only ? LOCAL_ONLY : WRONG_HOST;
+    else if (hub->local_only && has_forwarding(wsi))
+        *refusal = PROXY;
+    else if (has_token_in_query(wsi))
+        *refusal = IN_QUERY;
+    else if (!find_token(wsi, token))
+        *refusal = TOO_LONG;
+    else if (token[0] && hub->tokens && !tokens_find(hub->tokens, token, clock_utc_ns(), &visitor->holder))
+        *refusal = BAD_TOKEN;
+    if (refusal->status)
+        return false;
+    if (visitor->holder.role != ROLE_NOBODY)
+        visitor->role = visitor->holder.role;
+    else if (direct && (!has_host || access_name_is_local(name) || is_named(params, name)))
+        visitor->role = ROLE_ENGINEER;
+    else if (params->open_viewers)
+        visitor->role = ROLE_OPEN;
+    return true;
+}
