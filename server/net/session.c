@@ -142,6 +142,7 @@ static void on_pick(struct session *session, const struct message *message)
     session->pick = (struct pick_order){ .client = session->id, .seq = message->seq, .view = session->view };
     session->pick.x_px = message->pick.x_px;
     session->pick.y_px = message->pick.y_px;
+    session->pick.view.pixel_ratio = session->pixel_ratio;
     if (message->pick.has_camera)
         session->pick.view.camera = message->pick.camera;
     session->pick_pending = true;

@@ -75,7 +75,8 @@ static void find_sensor(const struct spot *spot, double x_px, double y_px, struc
 {
     const struct visibility *visibility = &spot->view->visibility;
     struct lens lens;
-    double least[2] = { MARKER_PX, MARKER_PX }; /* in sight, and not */
+    double near_px = MARKER_PX * (spot->view->pixel_ratio > 0 ? spot->view->pixel_ratio : 1);
+    double least[2] = { near_px, near_px }; /* in sight, and not */
     lens_init(&lens, spot->view);
     for (size_t a = 0; a < spot->scene->asset_count; a++)
         for (size_t s = 0; s < spot->scene->assets[a].sensor_count; s++) {
@@ -89,7 +90,7 @@ static void find_sensor(const struct spot *spot, double x_px, double y_px, struc
             if (away >= least[0])
                 continue;
             bool occluded = !in_sight(spot, (int)a, sensor, x, y);
-            if (away >= least[occluded] || (occluded && least[0] < MARKER_PX))
+            if (away >= least[occluded] || (occluded && least[0] < near_px))
                 continue;
             least[occluded] = away;
             out->sensor = sensor->tag;

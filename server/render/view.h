@@ -45,6 +45,7 @@ struct view {
     uint32_t camera_seq; /* the client's number of this camera, echoed */
     uint32_t params_seq; /* likewise of the parameters */
     int64_t input_ns;    /* monotonic: when the newest input came in */
+    double pixel_ratio;  /* device pixels to one that a hand aims at; 0: 1. Of picks only */
     struct field_params field;
     int colormap;                /* index */
     double ramp_interval;        /* engineering units; 0 = continuous */
