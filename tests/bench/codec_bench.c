@@ -1,0 +1,236 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Encoding the demo plant at 1920x1080: time and size of a moving picture, and size of what changes under a still camera when the 60
+   tags that do most in the picture change together once a second. One JSON line per row. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "deploy/demo/sim_values.h"
+#include "encode/encoder.h"
+#include "render/renderer.h"
+#include "value/quality.h"
+
+#define DEMO "build/demo/plant.yaml"
+enum { ORBIT = 30, UPDATES = 8, TAGS = 60 };
+
+struct bench {
+    struct log *log;
+    struct plant *plant;
+    struct scene *scene;
+    struct workers *workers;
+    struct field *field;
+    struct snapshot *snapshot;
+    struct gl *gl;
+    struct renderer *renderer;
+    struct sim_values *values;
+};
+
+static bool values_init(struct bench *bench)
+{
+    struct diag diag = { 0 };
+    struct sim_map map = { 0 };
+    bench->values = sim_values_create(bench->plant, &map, true, &diag);
+    diag_print(&diag, stderr);
+    diag_finish(&diag);
+    return bench->values != NULL;
+}
+
+/* The first TAGS tags of the group that is shown follow the plant; the others stay as they are. */
+static void read_tags(struct bench *bench, int group, bool all)
+{
+    int left = TAGS;
+    bench->snapshot->taken_mono_ns = clock_mono_ns();
+    bench->snapshot->taken_utc_ns = clock_utc_ns();
+    for (size_t i = 0; i < bench->plant->tag_count; i++) {
+        struct reading *reading = &bench->snapshot->readings[i];
+        if (!all && (bench->plant->tags[i].group != group || left-- <= 0))
+            continue;
+        reading->value = sim_values_at(bench->values, i);
+        reading->quality = QUALITY_GOOD;
+        reading->changes++;
+    }
+}
+
+static bool bench_init(struct bench *bench)
+{
+    struct diag diag = { 0 };
+    bench->log = log_create(LOG_ERROR);
+    bench->plant = plant_load(DEMO, &diag);
+    diag_finish(&diag);
+    if (!bench->plant || !values_init(bench))
+        return false;
+    char *folder = plant_prepared_folder(bench->plant);
+    bench->scene = scene_create(bench->log, bench->plant, folder);
+    mem_free(folder);
+    if (!bench->scene)
+        return false;
+    bench->snapshot = snapshot_create(bench->plant->tag_count);
+    bench->workers = workers_create(0);
+    bench->field = field_create(bench->workers, bench->scene);
+    bench->gl = gl_create(bench->log, GL_AUTO, NULL);
+    if (bench->gl)
+        bench->renderer = renderer_create(bench->log, bench->gl, bench->scene, bench->field);
+    return bench->renderer != NULL;
+}
+
+static void bench_finish(struct bench *bench)
+{
+    renderer_destroy(&bench->renderer);
+    gl_destroy(&bench->gl);
+    field_destroy(&bench->field);
+    workers_destroy(&bench->workers);
+    snapshot_destroy(&bench->snapshot);
+    sim_values_destroy(&bench->values);
+    scene_destroy(&bench->scene);
+    plant_destroy(&bench->plant);
+    log_destroy(&bench->log);
+}
+
+static void print_row(const char *name, double value, const char *unit)
+{
+    printf("{\"name\": \"%s\", \"value\": %.2f, \"p95\": null, \"unit\": \"%s\"}\n", name, value, unit);
+    fflush(stdout);
+}
+
+/* --- measuring ------------------------------------------------------------------------------------------------------------------- */
+
+static const char *const codecs[] = { "jpeg", "h264" };
+enum { CODECS = sizeof(codecs) / sizeof(codecs[0]) };
+
+struct measured {
+    struct encoder *encoder; /* NULL: not in this build */
+    struct frame *before;
+    double bytes, ms, cpu_ms;
+    int packets;
+};
+
+static double cpu_ms(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec / 1e6;
+}
+
+static void encode(struct measured *m, struct frame *frame, int quality, bool full_chroma)
+{
+    struct encoder_params params = { .quality = quality, .full_chroma = full_chroma, .before = m->before };
+    struct packet *packet = NULL;
+    double began_ms = cpu_ms();
+    if (encoder_send(m->encoder, frame, &params) != 0)
+        abort();
+    m->cpu_ms += cpu_ms() - began_ms;
+    if (encoder_receive(m->encoder, &packet) == 0) {
+        m->bytes += (double)packet->count;
+        m->ms += (double)packet->encode_ns / 1e6;
+        m->packets++;
+    }
+    packet_unref(&packet);
+    frame_unref(&m->before);
+    m->before = frame_ref(frame);
+}
+
+static void forget(struct measured measured[CODECS])
+{
+    for (int c = 0; c < CODECS; c++) {
+        measured[c].bytes = measured[c].ms = measured[c].cpu_ms = 0;
+        measured[c].packets = 0;
+    }
+}
+
+static struct frame *draw(struct bench *bench, const struct view *view)
+{
+    struct frame *frame = renderer_draw(bench->renderer, view, bench->snapshot);
+    if (!frame)
+        abort();
+    return frame;
+}
+
+static void measure_orbit(struct bench *bench, struct measured measured[CODECS])
+{
+    struct view view;
+    view_default(bench->scene, 1920, 1080, &view);
+    double dx = view.camera.eye_m[0] - view.camera.target_m[0], dy = view.camera.eye_m[1] - view.camera.target_m[1];
+    for (int i = 0; i < ORBIT; i++) {
+        double angle = i * M_PI / 180;
+        view.camera.eye_m[0] = view.camera.target_m[0] + dx * cos(angle) - dy * sin(angle);
+        view.camera.eye_m[1] = view.camera.target_m[1] + dx * sin(angle) + dy * cos(angle);
+        struct frame *frame = draw(bench, &view);
+        if (i == 2)
+            forget(measured);
+        for (int c = 0; c < CODECS; c++)
+            if (measured[c].encoder)
+                encode(&measured[c], frame, 78, false);
+        frame_unref(&frame);
+    }
+}
+
+static void measure_updates(struct bench *bench, struct measured measured[CODECS])
+{
+    struct view view;
+    view_default(bench->scene, 1920, 1080, &view);
+    view.tier = TIER_STILL;
+    for (int i = 0; i < UPDATES + 1; i++) {
+        struct frame *frame = draw(bench, &view);
+        if (i == 1)
+            forget(measured);
+        for (int c = 0; c < CODECS; c++)
+            if (measured[c].encoder)
+                encode(&measured[c], frame, 92, true);
+        frame_unref(&frame);
+        sim_values_step(bench->values, 1);
+        read_tags(bench, view.field.group, false);
+    }
+}
+
+static void print_rows(const struct measured measured[CODECS], const char *what, double packets)
+{
+    for (int c = 0; c < CODECS; c++) {
+        char name[64];
+        if (!measured[c].encoder || !measured[c].packets)
+            continue;
+        snprintf(name, sizeof(name), "encode_%s_1080p_%s_kb", codecs[c], what);
+        print_row(name, measured[c].bytes / packets / 1000, "kB");
+        snprintf(name, sizeof(name), "encode_%s_1080p_%s_ms", codecs[c], what);
+        print_row(name, measured[c].ms / packets, "ms");
+        snprintf(name, sizeof(name), "encode_%s_1080p_%s_cpu_ms", codecs[c], what);
+        print_row(name, measured[c].cpu_ms / packets, "ms");
+    }
+}
+
+static void measure(struct bench *bench)
+{
+    struct measured measured[CODECS] = { { 0 } };
+    for (int c = 0; c < CODECS; c++)
+        if (encoder_works(bench->log, codecs[c], ENCODER_H264_LIBRARY))
+            measured[c].encoder = encoder_create(bench->log, codecs[c], ENCODER_H264_LIBRARY);
+    for (int i = 0; i < 60; i++)
+        sim_values_step(bench->values, 1);
+    read_tags(bench, -1, true);
+    measure_orbit(bench, measured);
+    print_rows(measured, "orbit", ORBIT - 2);
+    measure_updates(bench, measured);
+    print_rows(measured, "update", UPDATES);
+    for (int c = 0; c < CODECS; c++) {
+        frame_unref(&measured[c].before);
+        encoder_destroy(&measured[c].encoder);
+    }
+}
+
+int main(void)
+{
+    struct bench bench = { 0 };
+    if (access(DEMO, R_OK) != 0) {
+        printf("{\"name\": \"encode_jpeg_1080p_orbit_ms\", \"value\": null, \"p95\": null, \"unit\": \"ms\", \"why\": \"%s is not prepared\"}\n",
+               DEMO);
+        return 0;
+    }
+    bool good = bench_init(&bench);
+    if (good)
+        measure(&bench);
+    bench_finish(&bench);
+    return good ? 0 : 1;
+}
