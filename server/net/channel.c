@@ -8,6 +8,7 @@ static const int64_t RTT_NS = 15 * NS_PER_S;        /* a measured round trip is 
 static const int64_t RTT_MOST_NS = 1 * NS_PER_S;    /* more is a queue */
 static const int64_t SHORTEST_NS = NS_PER_MS / 4; /* transfers that took less say only that there is enough */
 static const int64_t WAITED_NS = 1 * NS_PER_MS;     /* decoding that began so soon after the frame before had waited for it */
+static const size_t SMALL_BYTES = 4096;             /* pictures in which little changed say at most that there is more bandwidth */
 static const double SHARE = 0.25;                   /* of a new sample in what is smoothed */
 
 static void smooth(double *value, double sample)
@@ -62,7 +63,9 @@ void channel_on_ack(struct channel *channel, const struct channel_ack *ack)
     if (channel->decoding)
         return;
     smooth(&channel->lag_ns, (double)more(arrived_ns - ack->sent_ns - rtt_ns, 1));
-    smooth(&channel->ns_per_byte, (double)more(transfer_ns, SHORTEST_NS) / (double)(ack->bytes + 1));
+    double ns_per_byte = (double)more(transfer_ns, SHORTEST_NS) / (double)(ack->bytes + 1);
+    if (ack->bytes >= SMALL_BYTES || ns_per_byte < channel->ns_per_byte)
+        smooth(&channel->ns_per_byte, ns_per_byte);
 }
 
 int64_t channel_transfer_ns(const struct channel *channel, double bytes)

@@ -14,7 +14,7 @@
 #include "value/alarms.h"
 #include "value/quality.h"
 
-enum { DIGITS = 9, EXACT_DIGITS = 17 };
+enum { VALUE_DIGITS = 7, DIGITS = 9, EXACT_DIGITS = 17 };
 
 /* Takes the object. */
 static char *print(json_t *object, int digits)
@@ -304,37 +304,33 @@ static json_t *alarm_of(const struct plant *plant, size_t tag, const struct read
     return string(alarm_name(alarm_active(&plant->tags[tag], reading)));
 }
 
+/* Nothing to be said but its value. */
+static bool is_plain(const struct plant *plant, size_t tag, const struct reading *reading)
+{
+    return reading->quality == QUALITY_GOOD && !alarm_name(alarm_active(&plant->tags[tag], reading));
+}
+
 char *reply_tags_text(const struct session_world *world, uint32_t *sent, bool all)
 {
     const struct snapshot *snapshot = world->snapshot;
     json_t *values = json_array();
+    int64_t oldest_ns = 0; /* of those whose row is short */
     for (size_t i = 0; i < snapshot->count; i++) {
         const struct reading *r = &snapshot->readings[i];
         if (!all && sent[i] == r->changes)
             continue;
         sent[i] = r->changes;
-        json_array_append_new(values, json_pack("[I,o,o,o,o,o]", (json_int_t)i, value_of(r), string(quality_class(r->quality)),
-                                                string(quality_name(r->quality)), age_ms(r), alarm_of(world->plant, i, r)));
+        if (is_plain(world->plant, i, r)) {
+            oldest_ns = r->age_ns > oldest_ns ? r->age_ns : oldest_ns;
+            json_array_append_new(values, json_pack("[I,o]", (json_int_t)i, value_of(r)));
+        } else {
+            json_array_append_new(values, json_pack("[I,o,o,o,o,o]", (json_int_t)i, value_of(r), string(quality_class(r->quality)),
+                                                    string(quality_name(r->quality)), age_ms(r), alarm_of(world->plant, i, r)));
+        }
     }
-    return print(json_pack("{s:s,s:I,s:o}", "type", "tags", "time_us", us(snapshot->taken_utc_ns), "values", values), DIGITS);
-}
-
-char *reply_markers_text(const struct frame *frame, uint32_t seq)
-{
-    json_t *markers = json_array();
-    for (size_t i = 0; i < frame->marker_count; i++) {
-        const struct frame_marker *m = &frame->markers[i];
-        bool bad = quality_is_bad(m->quality);
-        if (isfinite(m->x_px) && isfinite(m->y_px))
-            json_array_append_new(markers, json_pack("[i,f,f,i,i,o,i]", m->tag, (double)m->x_px, (double)m->y_px, m->occluded, m->half,
-                                                     bad ? json_null() : number(m->value), bad ? 2 : quality_is_uncertain(m->quality)));
-    }
-    json_t *labels = json_array();
-    for (size_t i = 0; i < frame->label_count; i++) {
-        const struct frame_label *l = &frame->labels[i];
-        json_array_append_new(labels, json_pack("[f,f,f,i]", l->value, (double)l->x_px, (double)l->y_px, l->half));
-    }
-    return print(json_pack("{s:s,s:I,s:o,s:o}", "type", "markers", "seq", (json_int_t)seq, "markers", markers, "isolines", labels), DIGITS);
+    json_t *object = json_pack("{s:s,s:I,s:I,s:o}", "type", "tags", "time_us", us(snapshot->taken_utc_ns), "age_ms",
+                               (json_int_t)(oldest_ns / 1000000), "values", values);
+    return print(object, VALUE_DIGITS);
 }
 
 char *reply_status_text(const struct session_world *world, int64_t now_utc_ns)

@@ -22,10 +22,14 @@ static const struct text *padded(struct text *text)
     return text;
 }
 
-static bool write_markers(struct stream *stream)
+/* False: the connection is gone. *wrote: there was something to say. */
+static bool write_markers(struct stream *stream, bool *wrote)
 {
     struct text text = { 0 };
-    char *markers = reply_markers_text(stream->sending->packet->frame, stream->seq);
+    char *markers = marker_text(stream->sending->packet->frame, stream->seq, &stream->said);
+    *wrote = markers != NULL;
+    if (!markers)
+        return true;
     padded(&text);
     text_add(&text, "%s", markers);
     bool good = write_text(stream, text.at + LWS_PRE, text.length - LWS_PRE);
@@ -152,10 +156,15 @@ static bool write_slice(struct hub *hub, struct stream *stream)
 
 static bool write_picture(struct hub *hub, struct stream *stream)
 {
-    switch (stream->step) {
-    case SEND_MARKERS: stream->step = SEND_HEADER; return write_markers(stream);
-    case SEND_HEADER: stream->step = SEND_PAYLOAD; return write_header(hub, stream);
-    case SEND_PAYLOAD: break;
+    if (stream->step == SEND_MARKERS) {
+        bool wrote, good = write_markers(stream, &wrote);
+        stream->step = SEND_HEADER;
+        if (wrote)
+            return good;
+    }
+    if (stream->step == SEND_HEADER) {
+        stream->step = SEND_PAYLOAD;
+        return write_header(hub, stream);
     }
     return write_slice(hub, stream);
 }

@@ -92,6 +92,7 @@ static void on_close(struct hub *hub, struct stream **slot)
     session_destroy(&stream->session);
     picture_destroy(&stream->sending);
     text_finish(&stream->in);
+    marker_said_finish(&stream->said);
     mem_free(stream);
     *slot = NULL;
 }

@@ -4,6 +4,7 @@
 #ifndef NET_STREAM_H
 #define NET_STREAM_H
 #include "net/hub.h"
+#include "net/marker_text.h"
 
 struct stream {
     struct lws *wsi;
@@ -21,6 +22,7 @@ struct stream {
     bool cut;    /* the picture that was being sent is given up: end its message */
     uint64_t ping, pong; /* numbers of the last ones */
     int64_t ping_ns;     /* when the last ping was sent */
+    struct marker_said said;
     bool throttled;
     int close_code; /* 0: stays open */
     const char *close_text;

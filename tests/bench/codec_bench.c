@@ -224,7 +224,8 @@ int main(void)
 {
     struct bench bench = { 0 };
     if (access(DEMO, R_OK) != 0) {
-        printf("{\"name\": \"encode_jpeg_1080p_orbit_ms\", \"value\": null, \"p95\": null, \"unit\": \"ms\", \"why\": \"%s is not prepared\"}\n",
+        printf("{\"name\": \"encode_jpeg_1080p_orbit_ms\", \"value\": null, \"p95\": null, \"unit\": \"ms\", \"why\": \"%s is not "
+               "prepared\"}\n",
                DEMO);
         return 0;
     }

@@ -352,7 +352,7 @@ test('a reading that changes is told and drawn; a PLC that dies is seen, and com
     const client = await PlainClient.open(plant.port);
     await client.hello();
     assert.match(await plant.tell('set TI-1 20'), /^ok/);
-    await tagUntil(client, 0, 'is 20', (row) => row[1] === 20 && row[2] === 'good');
+    await tagUntil(client, 0, 'is 20', (row) => row[1] === 20 && (row[2] ?? 'good') === 'good');
     await client.frameWhere('a refined frame', (f) => (f.flags & 2) !== 0);
     await sleep(600);
     const before = client.frames.at(-1);
@@ -373,7 +373,7 @@ test('a reading that changes is told and drawn; a PLC that dies is seen, and com
 
     await plant.startSim();
     assert.match(await plant.tell('set TI-1 55'), /^ok/);
-    await tagUntil(client, 0, 'is 55', (row) => row[1] === 55 && row[2] === 'good', 30000);
+    await tagUntil(client, 0, 'is 55', (row) => row[1] === 55 && (row[2] ?? 'good') === 'good', 30000);
     await client.until('a frame with live data', (c) => (c.frames.at(-1).flags & 4) === 0);
     await client.until('a status with the link', (c) => c.texts.findLast((m) => m.type === 'status').live);
     client.close();

@@ -192,6 +192,14 @@ test('tags: values, qualities, and ages that go on by our own clock', () => {
     assert.equal(session.model.oldestAgeMs(session.model.tags[0].group, clock.now()), 1140);
     assert.equal(session.model.worstQuality({ tags: [session.model.tags[0], session.model.tags[1]] }), 'bad');
     assert.equal(session.model.worstQuality({ tags: [] }), null);
+    socket.say({ type: 'tags', time_us: 2, age_ms: 60, values: [[0, 88]] });
+    assert.deepEqual(session.model.readings[0], { value: 88, quality: 'good', qualityName: 'Good', ageMs: 60, alarm: null, at: clock.now() });
+    clock.advance(5000);
+    assert.equal(session.model.ageMs(0, clock.now()), 5060);
+    socket.say({ type: 'pong', t: 1, time_us: 3, oldest_age_ms: 300 });
+    assert.equal(session.model.ageMs(0, clock.now()), 300, 'it was read again, and is as it was');
+    clock.advance(100);
+    assert.equal(session.model.ageMs(0, clock.now()), 400);
 });
 
 test('markers go with their frame, not with the next', () => {
@@ -203,8 +211,11 @@ test('markers go with their frame, not with the next', () => {
     assert.deepEqual(session.markersOf(4).isolines, [[20, 3, 4, 0]]);
     assert.deepEqual(session.markersOf(6).get('0/0'), { occluded: false, value: 87.5, quality: 'uncertain' });
     assert.equal(session.markersOf(6).get('7/0'), undefined);
-    assert.deepEqual(session.markersOf(6).isolines, []);
+    assert.deepEqual(session.markersOf(6).isolines, [[20, 3, 4, 0]]);
     assert.equal(session.markers.has(4), false);
+    socket.say({ type: 'markers', seq: 8, values: [[0, 0, 88.5], [7, 0, null, 2]], isolines: [] });
+    assert.deepEqual(session.markersOf(8).get('0/0'), { occluded: false, value: 88.5, quality: 'good' });
+    assert.deepEqual([session.markersOf(8).get('7/0').quality, session.markersOf(8).isolines], ['bad', []]);
 });
 
 test('messages of unknown types and without sense are ignored, the session lives', () => {
@@ -229,7 +240,7 @@ test('what comes before the welcome does no harm', () => {
 });
 
 test('every vector of a server\'s message is understood', () => {
-    for (const name of ['welcome', 'params', 'tags', 'markers', 'markers-none', 'status', 'pong', 'error', 'error-no-about']) {
+    for (const name of ['welcome', 'params', 'tags', 'tags-changed', 'markers', 'markers-none', 'markers-values', 'status', 'pong', 'error', 'error-no-about']) {
         const { socket, events } = greeted();
         socket.say(vector(`server/${name}.json`));
         assert.ok(!events.some(([event]) => event === 'ignored'), name);

@@ -37,9 +37,9 @@ export class Model {
     }
 
     // Returns the indices of the tags whose value or quality changed.
-    update(values, now) {
+    update(values, now, plainAgeMs = null) {
         const changed = [];
-        for (const [index, value, quality, qualityName, ageMs, alarm = null] of values) {
+        for (const [index, value, quality = 'good', qualityName = 'Good', ageMs = plainAgeMs, alarm = null] of values) {
             const before = this.readings[index];
             if (!before)
                 continue;

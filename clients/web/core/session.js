@@ -217,17 +217,23 @@ export class Session {
     }
 
     hearTags(message) {
-        this.emit('tags', this.model.update(message.values, this.now()));
+        this.emit('tags', this.model.update(message.values, this.now(), message.age_ms));
     }
 
     hearPong(message) {
         this.model.notOlder(message.oldest_age_ms ?? null, this.now());
     }
 
+    // After the first message only what changed since the one before.
     hearMarkers(message) {
-        const known = new Map(message.markers.map(([tag, , , occluded, half = 0, value = null, quality = null]) =>
-            [`${tag}/${half}`, { occluded: occluded !== 0, value, quality: QUALITIES[quality] ?? null }]));
-        known.isolines = message.isolines ?? [];
+        const newest = this.markers.get(Math.max(...this.markers.keys())) ?? new Map();
+        const known = message.markers ? new Map(message.markers.map(([tag, , , occluded, half = 0, value = null, quality = null]) =>
+            [`${tag}/${half}`, { occluded: occluded !== 0, value, quality: QUALITIES[quality] ?? null }])) : new Map(newest);
+        for (const [tag, half, value, quality = 0] of message.values ?? []) {
+            const id = `${tag}/${half}`;
+            known.set(id, { ...known.get(id), value, quality: QUALITIES[quality] ?? null });
+        }
+        known.isolines = message.isolines ?? newest.isolines ?? [];
         this.markers.set(message.seq, known);
     }
 

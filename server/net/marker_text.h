@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The message that goes before a frame: where its sensors are and what the picture shows of them; after the first one only what changed
+   since the one before. Pure. */
+#ifndef NET_MARKER_TEXT_H
+#define NET_MARKER_TEXT_H
+#include "render/frame.h"
+
+struct marker_said { /* what a client knows; zero-initialise */
+    bool any;
+    struct frame_marker *markers;
+    size_t marker_count, marker_capacity;
+    struct frame_label *labels;
+    size_t label_count, label_capacity;
+};
+
+/* NULL: all of it was said. Brings *said up to date. mem_free. */
+char *marker_text(const struct frame *frame, uint32_t seq, struct marker_said *said);
+void marker_said_finish(struct marker_said *said);
+
+#endif
