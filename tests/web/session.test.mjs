@@ -193,7 +193,8 @@ test('tags: values, qualities, and ages that go on by our own clock', () => {
     assert.equal(session.model.worstQuality({ tags: [session.model.tags[0], session.model.tags[1]] }), 'bad');
     assert.equal(session.model.worstQuality({ tags: [] }), null);
     socket.say({ type: 'tags', time_us: 2, age_ms: 60, values: [[0, 88]] });
-    assert.deepEqual(session.model.readings[0], { value: 88, quality: 'good', qualityName: 'Good', ageMs: 60, alarm: null, at: clock.now() });
+    assert.deepEqual(session.model.readings[0], { value: 88, quality: 'good', qualityName: 'Good', ageMs: 60, alarm: null,
+        at: clock.now() });
     clock.advance(5000);
     assert.equal(session.model.ageMs(0, clock.now()), 5060);
     socket.say({ type: 'pong', t: 1, time_us: 3, oldest_age_ms: 300 });
@@ -240,7 +241,8 @@ test('what comes before the welcome does no harm', () => {
 });
 
 test('every vector of a server\'s message is understood', () => {
-    for (const name of ['welcome', 'params', 'tags', 'tags-changed', 'markers', 'markers-none', 'markers-values', 'status', 'pong', 'error', 'error-no-about']) {
+    for (const name of ['welcome', 'params', 'tags', 'tags-changed', 'markers', 'markers-none', 'markers-values', 'status', 'pong', 'error',
+        'error-no-about']) {
         const { socket, events } = greeted();
         socket.say(vector(`server/${name}.json`));
         assert.ok(!events.some(([event]) => event === 'ignored'), name);
