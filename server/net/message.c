@@ -176,6 +176,17 @@ static bool parse_pick(const struct plant *plant, const json_t *o, struct messag
            need_number(o, "y", 0, VIEW_MAX_SIDE_PX, &out->pick.y_px, error) && (!camera || camera_parse(camera, &out->pick.camera, error));
 }
 
+static bool parse_follow(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
+{
+    const json_t *session = json_object_get(o, "session");
+    (void)plant;
+    out->follow = json_is_integer(session) && json_integer_value(session) > 0 ? (uint64_t)json_integer_value(session) : 0;
+    if (out->follow || json_is_null(session))
+        return true;
+    message_fail(error, "bad_field", "session: the number of a session expected, or null");
+    return false;
+}
+
 static const struct {
     const char *name;
     enum message_type type;
@@ -185,6 +196,7 @@ static const struct {
     { "resize", MESSAGE_RESIZE, parse_resize },    { "ack", MESSAGE_ACK, parse_ack },          { "ping", MESSAGE_PING, parse_ping },
     { "visible", MESSAGE_VISIBLE, parse_visible }, { "fit", MESSAGE_FIT, parse_fit },          { "pick", MESSAGE_PICK, parse_pick },
     { "key_frame", MESSAGE_KEY_FRAME, parse_key_frame }, { "codecs", MESSAGE_CODECS, parse_codecs },
+    { "follow", MESSAGE_FOLLOW, parse_follow },
 };
 
 static bool parse_object(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)

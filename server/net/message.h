@@ -19,7 +19,8 @@ enum message_type {
     MESSAGE_FIT,
     MESSAGE_PICK,
     MESSAGE_KEY_FRAME,
-    MESSAGE_CODECS
+    MESSAGE_CODECS,
+    MESSAGE_FOLLOW
 };
 
 enum { TOKEN_MAX_CHARS = 128, RESUME_CHARS = 32 };
@@ -124,6 +125,7 @@ struct message {
     bool visible;
     double decode_ms; /* ack; negative: not said */
     double t;         /* ping */
+    uint64_t follow;  /* a session; 0: none */
 };
 
 /* False: *error is what to answer. text need not end in 0. */

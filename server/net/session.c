@@ -77,7 +77,7 @@ void session_reply_error(struct session *session, const struct message_error *er
     session_reply(session, reply_error_text(error));
 }
 
-static void on_input(struct session *session, int64_t now_ns)
+void session_on_input(struct session *session, int64_t now_ns)
 {
     session->input_pending = true;
     session->refined = REFINED_NOT;
@@ -139,7 +139,7 @@ static void on_fit(struct session *session, const struct message *message)
 
 static void on_pick(struct session *session, const struct message *message)
 {
-    session->pick = (struct pick_order){ .client = session->id, .seq = message->seq, .view = session->view };
+    session->pick = (struct pick_order){ .client = session->id, .seq = message->seq, .view = *session_view(session) };
     session->pick.x_px = message->pick.x_px;
     session->pick.y_px = message->pick.y_px;
     session->pick.view.pixel_ratio = session->pixel_ratio;
@@ -165,15 +165,16 @@ void session_on_pick(struct session *session, const struct pick_answer *answer)
 static bool act(struct session *session, const struct message *message, int64_t now_ns, int64_t now_utc_ns, struct message_error *error)
 {
     switch (message->type) {
-    case MESSAGE_HELLO: on_input(session, now_ns); return session_hello(session, message, now_ns, now_utc_ns, error);
+    case MESSAGE_HELLO: session_on_input(session, now_ns); return session_hello(session, message, now_ns, now_utc_ns, error);
     case MESSAGE_CAMERA:
         set_camera(session, message);
-        on_input(session, now_ns);
+        session_on_input(session, now_ns);
         return true;
-    case MESSAGE_PARAMS: on_input(session, now_ns); return on_params(session, message, error);
-    case MESSAGE_RESIZE: on_input(session, now_ns); return on_resize(session, message, error);
+    case MESSAGE_PARAMS: session_on_input(session, now_ns); return on_params(session, message, error);
+    case MESSAGE_RESIZE: session_on_input(session, now_ns); return on_resize(session, message, error);
     case MESSAGE_ACK: return on_ack(session, message, now_ns, error);
     case MESSAGE_VISIBLE: on_visible(session, message->visible); return true;
+    case MESSAGE_FOLLOW: session_ask_follow(session, message); return true;
     case MESSAGE_FIT: on_fit(session, message); return true;
     case MESSAGE_PICK: on_pick(session, message); return true;
     case MESSAGE_KEY_FRAME: session->always_pending = true; return true;

@@ -65,7 +65,13 @@ struct session {
 
     bool failure_said;      /* of the view as it is */
 
-    bool owes_welcome, owes_params, owes_tags_all, owes_tags, owes_status;
+    const struct session *leader; /* whose view it is shown; NULL: its own. The hub keeps it right */
+    bool follow_asked;
+    uint64_t follow;            /* whom; 0: nobody */
+    uint32_t leader_params_seq; /* as last told; so is its size */
+    int leader_size_px[2];
+
+    bool owes_welcome, owes_params, owes_following, owes_tags_all, owes_tags, owes_status;
     uint32_t params_seq;                     /* to be answered */
     int64_t tags_ns, tags_all_ns, status_ns; /* last sent */
     uint32_t *tag_changes;                   /* reading.changes as last sent, by tag */
@@ -104,6 +110,12 @@ void session_asked(struct session *session, const struct wish *wish, bool replac
 /* True: *order is what to ask about a pixel, now. */
 bool session_pick(struct session *session, struct pick_order *order);
 void session_on_pick(struct session *session, const struct pick_answer *answer);
+
+const struct view *session_view(const struct session *session); /* what it is shown: its own, or its leader's */
+/* Answers session->follow_asked: leader NULL: from now on nobody's; session_follow_nobody: there is none such. */
+void session_follow(struct session *session, const struct session *leader, int64_t now_ns);
+void session_follow_nobody(struct session *session);
+void session_on_leader(struct session *session, int64_t now_ns); /* the leader's view changed */
 
 /* The next text message to send, if any is due: into `out`. Markers of a picture are session_markers. */
 bool session_next_text(struct session *session, int64_t now_ns, int64_t now_utc_ns, struct text *out);

@@ -16,6 +16,8 @@ bool session_hello(struct session *session, const struct message *message, int64
 bool session_may_draw(struct session *session, int width_px, int height_px, struct message_error *error);
 bool session_apply_params(const struct session *session, const struct message *message, struct view *view, struct message_error *error);
 
+void session_on_input(struct session *session, int64_t now_ns); /* what it is shown changes */
+void session_ask_follow(struct session *session, const struct message *message);
 void session_pause(struct session *session);    /* nothing moves: keep no picture for it */
 void session_on_shown(struct session *session); /* session->pacer.acked is on the client's screen */
 

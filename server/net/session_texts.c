@@ -34,7 +34,7 @@ static bool status_due(const struct session *session)
 
 bool session_has_text(const struct session *session, int64_t now_ns)
 {
-    return session->owes_welcome || session->reply_count > 0 || session->owes_params || status_due(session) ||
+    return session->owes_welcome || session->reply_count > 0 || session->owes_params || session->owes_following || status_due(session) ||
            tags_due(session, now_ns);
 }
 
@@ -56,6 +56,9 @@ bool session_next_text(struct session *session, int64_t now_ns, int64_t now_utc_
     } else if (session->owes_params) {
         add_owned(out, reply_params_text(world, &session->view, session->params_seq));
         session->owes_params = false;
+    } else if (session->owes_following) {
+        add_owned(out, reply_following_text(world, session->leader ? session->leader->id : 0, session_view(session)));
+        session->owes_following = false;
     } else if (status_due(session)) {
         add_owned(out, reply_status_text(world, now_utc_ns));
         session->owes_status = false;

@@ -107,8 +107,8 @@ static void make_moving(const struct session *session, struct wish *wish)
 {
     struct rung rung = ladder_rung(&session->pacer.ladder);
     wish->view.tier = TIER_MOVING;
-    wish->view.width_px = scaled(session->view.width_px, rung.scale);
-    wish->view.height_px = scaled(session->view.height_px, rung.scale);
+    wish->view.width_px = scaled(wish->view.width_px, rung.scale);
+    wish->view.height_px = scaled(wish->view.height_px, rung.scale);
     wish->quality = (struct encoder_params){ .quality = rung.quality };
     wish->step = session->pacer.ladder.step;
 }
@@ -171,7 +171,9 @@ bool session_wish(const struct session *session, int64_t now_ns, struct wish *wi
     bool may_add = !session->ready && pacer_may_ask(&session->pacer, now_ns);
     if (!session->hello || session->hidden || (!may_add && session->pacer.asked == 0))
         return false;
-    *wish = (struct wish){ .view = session->view, .codec = session->codec, .asked_ns = now_ns, .only_replace = !may_add };
+    *wish = (struct wish){ .view = *session_view(session), .codec = session->codec, .asked_ns = now_ns, .only_replace = !may_add };
+    wish->view.camera_seq = session->view.camera_seq;
+    wish->view.params_seq = session->view.params_seq;
     return wants(session, now_ns, wish);
 }
 

@@ -84,6 +84,7 @@ static void on_close(struct hub *hub, struct stream **slot)
     hub->stream_count--;
     counter_set(hub->counters.sessions, hub->stream_count);
     count(hub, stream);
+    follow_forget(hub, stream);
     log_debug(hub->params.log, "session %llu: closed (%lld messages, %lld errors)", (unsigned long long)stream->session->id,
               (long long)stream->messages, (long long)stream->errors);
     painter_forget(hub->params.painter, stream->session->id);
@@ -189,7 +190,7 @@ void streams_close(struct hub *hub)
         close_with(stream, LWS_CLOSE_STATUS_GOINGAWAY, "the server goes down");
 }
 
-static struct stream *find(const struct hub *hub, uint64_t client)
+struct stream *stream_find(const struct hub *hub, uint64_t client)
 {
     struct stream *stream = hub->streams;
     while (stream && stream->session->id != client)
@@ -199,12 +200,12 @@ static struct stream *find(const struct hub *hub, uint64_t client)
 
 bool stream_owns(const struct hub *hub, uint64_t client)
 {
-    return find(hub, client) != NULL;
+    return stream_find(hub, client) != NULL;
 }
 
 void stream_on_picture(struct hub *hub, struct picture *picture)
 {
-    struct stream *stream = find(hub, picture->client);
+    struct stream *stream = stream_find(hub, picture->client);
     const struct frame *frame = picture->packet ? picture->packet->frame : NULL;
     if (frame && frame->view.tier == TIER_STILL)
         hub->still_ns = frame->render_ns + frame->readback_ns;
@@ -215,12 +216,19 @@ void stream_on_picture(struct hub *hub, struct picture *picture)
 
 void stream_on_pick(struct hub *hub, const struct pick_answer *answer)
 {
-    struct stream *stream = find(hub, answer->order.client);
+    struct stream *stream = stream_find(hub, answer->order.client);
     session_on_pick(stream->session, answer);
     pump(hub, stream);
 }
 
 /* --- input ------------------------------------------------------------------------------------------------------------------ */
+
+static void pump_followers(struct hub *hub, const struct stream *leader)
+{
+    for (struct stream *stream = hub->streams; stream; stream = stream->next)
+        if (stream->session->leader == leader->session)
+            pump(hub, stream);
+}
 
 static void on_message(struct hub *hub, struct stream *stream)
 {
@@ -232,11 +240,15 @@ static void on_message(struct hub *hub, struct stream *stream)
         session_on_oversize(session, stream->in_count, now_ns);
     else
         session_on_message(session, stream->in.at ? stream->in.at : "", stream->in.length, now_ns, clock_utc_ns());
+    follow_resolve(hub, stream);
     if (session->measured)
         stages_shown(&hub->stages, &session->pacer);
     session->measured = false;
-    if (session->input_pending)
+    if (session->input_ns == now_ns) {
         hub->world.moving_until_ns = now_ns + MOVING_NS;
+        if (follow_spread(hub, stream))
+            pump_followers(hub, stream);
+    }
     stream->in.length = 0;
     stream->in_count = 0;
     if (stream->in.capacity > 4096)

@@ -243,6 +243,34 @@ test('equal views share a render', { skip }, async () => {
         client.close();
 });
 
+test('any number follow one: its view, its size, its picture', { skip }, async () => {
+    const leader = await PlainClient.open(plant.port), { session } = await leader.hello({ width: 400, height: 240 });
+    const followers = await Promise.all(Array.from({ length: 5 }, () => PlainClient.open(plant.port)));
+    const welcomes = await Promise.all(followers.map((client) => client.hello()));
+    for (const client of followers)
+        client.say({ type: 'follow', session });
+    const said = await followers[0].text('following');
+    assert.deepEqual([said.session, said.width, said.height, said.group], [session, 400, 240, 'temperature']);
+    leader.say({ type: 'camera', seq: 3, eye: [5, -7, 4.5], target: [1, 0, 0] });
+    leader.say({ type: 'params', seq: 4, group: 'pressure' });
+    const seen = await Promise.all(followers.map((client) => client.frameWhere('a refined frame of the leader\'s camera', (f) => f.eye[1] === -7
+        && (f.flags & 2) !== 0 && client.texts.some((m) => m.type === 'following' && m.group === 'pressure') && f.full_width === 400)));
+    const own = await leader.frameWhere('the same', (f) => f.eye[1] === -7 && (f.flags & 2) !== 0);
+    assert.ok(seen.every((f) => f.payload.equals(own.payload)), 'the same bytes for all');
+    assert.deepEqual([own.camera_seq, seen[0].camera_seq], [3, 0]);
+    const chained = await PlainClient.open(plant.port);
+    await chained.hello();
+    chained.say({ type: 'follow', session: welcomes[0].session });
+    assert.equal((await chained.text('following')).session, session);
+    leader.say({ type: 'follow', session: 999999 });
+    assert.equal((await leader.text('error')).code, 'bad_field');
+    leader.close();
+    await followers[1].until('its own view again', (c) => c.texts.some((m) => m.type === 'following' && m.session === null));
+    await followers[1].frameWhere('its own size', (f) => f.full_width === 320);
+    for (const client of [...followers, chained])
+        client.close();
+});
+
 test('who may connect', { skip }, async () => {
     const { port } = plant, open = (options) => PlainClient.open(port, options);
     await assert.rejects(open({ protocol: 'plantcast.v9' }), /400/);

@@ -701,6 +701,52 @@ static void a_pick_is_asked_once_and_answered(void **state)
     json_decref(said);
 }
 
+static void a_follower_is_shown_its_leaders_view(void **state)
+{
+    struct fixture *f = *state;
+    struct wish wish;
+    struct session *leader = session_create(&f->world, 8, f->now_ns);
+    static const char hello[] = "{\"type\":\"hello\",\"width\":800,\"height\":600,\"codecs\":[\"jpeg\"]}";
+    static const char camera[] = "{\"type\":\"camera\",\"seq\":77,\"eye\":[3,4,5],\"target\":[0,0,1]}";
+    static const char params[] = "{\"type\":\"params\",\"seq\":5,\"group\":\"pressure\"}";
+    session_on_message(leader, hello, sizeof(hello) - 1, f->now_ns, f->now_ns);
+    greet(f);
+    show(f);
+    say(f, "{\"type\":\"camera\",\"seq\":1,\"eye\":[9,9,9],\"target\":[0,0,1]}");
+    show(f);
+    say(f, "{\"type\":\"follow\",\"session\":8}");
+    assert_true(f->session->follow_asked && f->session->follow == 8);
+    session_follow(f->session, leader, f->now_ns);
+    json_t *following = hear(f);
+    assert_string_equal(type_of(following), "following");
+    assert_int_equal(json_integer_value(json_object_get(following, "session")), 8);
+    assert_int_equal(json_integer_value(json_object_get(following, "height")), 600);
+    assert_string_equal(json_string_value(json_object_get(following, "group")), "temperature");
+    json_decref(following);
+    assert_int_equal(show(f).view.width_px, 800);
+    session_on_message(leader, camera, sizeof(camera) - 1, f->now_ns, f->now_ns);
+    session_on_message(leader, params, sizeof(params) - 1, f->now_ns, f->now_ns);
+    session_on_leader(f->session, f->now_ns);
+    wish = show(f);
+    assert_true(wish.view.camera.eye_m[0] == 3 && wish.view.field.group == leader->view.field.group);
+    assert_int_equal(wish.view.camera_seq, 1); /* no other was asked for by this client */
+    following = hear(f);
+    assert_string_equal(json_string_value(json_object_get(following, "group")), "pressure");
+    json_decref(following);
+    say(f, "{\"type\":\"resize\",\"width\":320,\"height\":200}");
+    assert_int_equal(show(f).view.width_px, 800);
+    say(f, "{\"type\":\"follow\",\"session\":null}");
+    assert_true(f->session->follow_asked && f->session->follow == 0);
+    session_follow(f->session, NULL, f->now_ns);
+    following = hear(f);
+    assert_true(json_is_null(json_object_get(following, "session")));
+    assert_int_equal(json_integer_value(json_object_get(following, "width")), 320);
+    json_decref(following);
+    wish = show(f);
+    assert_true(wish.view.width_px == 320 && wish.view.camera.eye_m[0] == 9);
+    session_destroy(&leader);
+}
+
 static void pings_come_back_exactly(void **state)
 {
     struct fixture *f = *state;
@@ -750,6 +796,7 @@ int main(void)
         TEST(acks_for_nothing_are_errors),
         TEST(a_fit_is_answered_with_a_camera_and_moves_nothing),
         TEST(a_pick_is_asked_once_and_answered),
+        TEST(a_follower_is_shown_its_leaders_view),
         TEST(pings_come_back_exactly),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
