@@ -4,6 +4,7 @@
 
 #include "base/clock.h"
 #include "net/painter_impl.h"
+#include "net/recent.h"
 #include "render/canvas.h"
 #include "render/overlay.h"
 
@@ -22,6 +23,7 @@ struct drawing { /* what only the render thread touches */
     struct renderer *renderer;
     struct snapshot *snapshot;
     struct batch same;
+    struct recent recent;
     struct { /* the picture that takes long and is drawn step by step; at most one */
         struct canvas *canvas; /* NULL: none */
         struct batch batch;
@@ -56,27 +58,36 @@ struct turn {
     int64_t wait_until_ns;
 };
 
+/* Under lock. It can be drawn now, and before the other (NULL: nobody). */
+static bool goes_before(const struct drawing *drawing, const struct client *client, const struct client *other, int64_t now_ns)
+{
+    enum urgency urgency = client->wish.urgency;
+    int share = schedule_share(urgency);
+    if (!client->pending || (drawing->slow.canvas && urgency >= URGENCY_REFINE) || waits_for_slow(drawing, client, now_ns))
+        return false;
+    return !other || schedule_before(client->spent_ns[share], client->wish.asked_ns, other->spent_ns[share], other->wish.asked_ns);
+}
+
 /* Under lock. */
 static struct turn next_turn(const struct drawing *drawing, const struct schedule *schedule)
 {
-    struct client *oldest[URGENCY_COUNT + 1] = { NULL };
+    const struct painter *painter = drawing->painter;
+    struct client *first[URGENCY_COUNT + 1] = { NULL };
     int64_t asked_ns[URGENCY_COUNT], now_ns = clock_mono_ns();
     bool busy = drawing->slow.canvas != NULL;
     struct turn turn = { 0 };
-    for (int i = 0; i < URGENCY_COUNT; i++)
-        asked_ns[i] = busy && drawing->slow.urgency == (enum urgency)i ? drawing->slow.asked_ns : INT64_MAX;
-    for (size_t i = 0; i < drawing->painter->client_count; i++) {
-        struct client *client = &drawing->painter->clients[i];
-        enum urgency urgency = client->wish.urgency;
-        if (!client->pending || client->wish.asked_ns >= asked_ns[urgency] || (busy && urgency >= URGENCY_REFINE) ||
-            waits_for_slow(drawing, client, now_ns))
-            continue;
-        oldest[urgency] = client;
-        asked_ns[urgency] = client->wish.asked_ns;
+    for (size_t i = 0; i < painter->client_count; i++) {
+        struct client *client = painter->clients[i];
+        if (goes_before(drawing, client, first[client->wish.urgency], now_ns))
+            first[client->wish.urgency] = client;
     }
+    for (int i = 0; i < URGENCY_COUNT; i++)
+        asked_ns[i] = busy && drawing->slow.urgency == (enum urgency)i ? drawing->slow.asked_ns
+                      : first[i]                                      ? first[i]->wish.asked_ns
+                                                                      : INT64_MAX;
     enum urgency urgency = schedule_choose(schedule, asked_ns, now_ns, &turn.wait_until_ns);
     turn.step = busy && urgency == drawing->slow.urgency;
-    turn.client = oldest[urgency];
+    turn.client = first[urgency];
     return turn;
 }
 
@@ -104,10 +115,12 @@ static void begin(struct client *client, struct batch *batch, int64_t now_ns)
 static void begin_all(struct painter *painter, struct client *first, struct batch *batch)
 {
     int64_t now_ns = clock_mono_ns();
+    int share = schedule_share(first->wish.urgency);
+    painter->spent_ns[share] = schedule_asked(first->spent_ns[share], painter->spent_ns[share]);
     begin(first, batch, now_ns);
     struct wish wish = batch->orders[0].wish;
     for (size_t i = 0; i < painter->client_count && !wish.overlay; i++) {
-        struct client *other = &painter->clients[i];
+        struct client *other = painter->clients[i];
         if (other->pending && !other->wish.overlay && view_equal(&other->wish.view, &wish.view))
             begin(other, batch, now_ns);
     }
@@ -196,6 +209,7 @@ static bool next_batch(struct drawing *drawing, const struct schedule *schedule,
 struct content_of {
     struct painter *painter;
     uint64_t content;
+    int64_t cost_ns; /* each one's part */
 };
 
 /* Under lock: the client has this picture already. */
@@ -215,13 +229,15 @@ static bool remember(const struct order *order, void *arg)
         return false;
     client->has_content = true;
     client->content = now->content;
+    client->spent_ns[schedule_share(order->wish.urgency)] += now->cost_ns;
     return true;
 }
 
-/* Who left has no more part in any stream of packets: decided under the lock that painter_forget takes. */
-static void submit(struct painter *painter, struct frame *frame, struct batch *batch)
+/* Who left has no more part in any stream of packets: decided under the lock that painter_forget takes. Who shares a picture shares its
+   cost. */
+static void submit(struct painter *painter, struct frame *frame, struct batch *batch, int64_t cost_ns)
 {
-    struct content_of now = { .painter = painter, .content = frame->content };
+    struct content_of now = { .painter = painter, .content = frame->content, .cost_ns = cost_ns / (int64_t)batch->count };
     struct batch here = { 0 };
     pthread_mutex_lock(&painter->lock);
     batch_split(batch, remember, &now, &here);
@@ -231,7 +247,7 @@ static void submit(struct painter *painter, struct frame *frame, struct batch *b
     batch->count = 0;
 }
 
-/* Answers those for whom nothing changed, and takes them out of the batch. */
+/* Answers those for whom nothing changed, and those for whom another's frame does; takes them out of the batch. */
 static void leave_out_same(struct drawing *drawing, struct batch *batch)
 {
     struct painter *painter = drawing->painter;
@@ -242,6 +258,11 @@ static void leave_out_same(struct drawing *drawing, struct batch *batch)
     pthread_mutex_unlock(&painter->lock);
     counter_inc(painter->same, (int64_t)drawing->same.count);
     painter_post_none(painter, &drawing->same, false);
+    struct frame *frame = batch->count > 0 ? recent_find(&drawing->recent, now.content, clock_mono_ns()) : NULL;
+    if (!frame || batch->orders[0].wish.overlay)
+        return;
+    counter_inc(painter->shared, (int64_t)batch->count);
+    submit(painter, frame, batch, 0);
 }
 
 /* Under lock. It is wanted as before; true: a newer wish of its client is there already, and stands for it. */
@@ -301,7 +322,9 @@ static void deliver(struct drawing *drawing, struct frame *frame, const struct s
         overlay_draw(frame, painter->params.scene, snapshot);
     counter_inc(painter->renders, 1);
     counter_inc(painter->render_us, (frame->render_ns + frame->readback_ns) / 1000);
-    submit(painter, frame, batch);
+    if (!batch->orders[0].wish.overlay)
+        recent_add(&drawing->recent, frame, clock_mono_ns());
+    submit(painter, frame, batch, frame->field_ns + frame->render_ns + frame->readback_ns);
     frame_unref(&frame);
 }
 
@@ -452,6 +475,7 @@ static void drawing_finish(struct drawing *drawing)
     snapshot_destroy(&drawing->snapshot);
     snapshot_destroy(&drawing->slow.snapshot);
     batch_finish(&drawing->same);
+    recent_finish(&drawing->recent);
     for (size_t i = 0; i < HELD; i++)
         batch_finish(&drawing->held.batches[i]);
 }

@@ -2,17 +2,42 @@
 /* Wishes come in, pictures go out; the render thread in between is drawing.c. */
 #include "net/painter.h"
 
+#include <string.h>
+
 #include "base/clock.h"
 #include "base/mem.h"
 #include "net/painter_impl.h"
 
-/* Under lock. NULL: none. */
+/* Under lock. Where it is, or would be. */
+static size_t place_of(const struct painter *painter, uint64_t id)
+{
+    size_t low = 0, high = painter->client_count;
+    while (low < high) {
+        size_t middle = (low + high) / 2;
+        if (painter->clients[middle]->id < id)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
 struct client *painter_find(struct painter *painter, uint64_t id)
 {
-    for (size_t i = 0; i < painter->client_count; i++)
-        if (painter->clients[i].id == id)
-            return &painter->clients[i];
-    return NULL;
+    size_t place = place_of(painter, id);
+    return place < painter->client_count && painter->clients[place]->id == id ? painter->clients[place] : NULL;
+}
+
+/* Under lock. */
+static struct client *add_client(struct painter *painter, uint64_t id)
+{
+    size_t place = place_of(painter, id);
+    mem_grow(&painter->clients, &painter->client_capacity, painter->client_count + 1, sizeof(struct client *));
+    memmove(painter->clients + place + 1, painter->clients + place, (painter->client_count - place) * sizeof(struct client *));
+    painter->client_count++;
+    painter->clients[place] = mem_new(sizeof(struct client));
+    painter->clients[place]->id = id;
+    return painter->clients[place];
 }
 
 /* --- pictures on their way back ------------------------------------------------------------------------------------------ */
@@ -99,13 +124,11 @@ enum painter_answer painter_ask(struct painter *painter, uint64_t id, const stru
             client->left |= wish->urgency == URGENCY_INPUT;
         answer = PAINTER_REFUSED;
     } else {
-        if (!client) {
-            mem_grow(&painter->clients, &painter->client_capacity, painter->client_count + 1, sizeof(*painter->clients));
-            client = &painter->clients[painter->client_count++];
-            *client = (struct client){ .id = id };
-        }
+        int share = schedule_share(wish->urgency);
+        client = client ? client : add_client(painter, id);
         client->wish = *wish;
         client->pending = true;
+        client->spent_ns[share] = schedule_asked(client->spent_ns[share], painter->spent_ns[share]);
     }
     pthread_mutex_unlock(&painter->lock);
     return answer;
@@ -133,9 +156,12 @@ void painter_forget(struct painter *painter, uint64_t id)
 {
     picks_forget(painter->picks, id);
     pthread_mutex_lock(&painter->lock);
-    struct client *client = painter_find(painter, id);
-    if (client)
-        *client = painter->clients[--painter->client_count];
+    size_t place = place_of(painter, id);
+    if (place < painter->client_count && painter->clients[place]->id == id) {
+        mem_free(painter->clients[place]);
+        painter->client_count--;
+        memmove(painter->clients + place, painter->clients + place + 1, (painter->client_count - place) * sizeof(struct client *));
+    }
     encoding_forget(painter->encoding, id);
     pthread_mutex_unlock(&painter->lock);
     encoding_sweep(painter->encoding);
@@ -195,6 +221,7 @@ static void add_counters(struct painter *painter, struct counters *counters)
     painter->renders = counters_add(counters, "plantcast_renders_total", "counter", "Pictures drawn.");
     painter->render_us = counters_add(counters, "plantcast_render_us_total", "counter", "Microseconds spent drawing.");
     painter->same = counters_add(counters, "plantcast_renders_saved_total", "counter", "Pictures not drawn: nothing had changed.");
+    painter->shared = counters_add(counters, "plantcast_renders_shared_total", "counter", "Pictures that had just been drawn for another.");
     painter->failures = counters_add(counters, "plantcast_render_failures_total", "counter", "Pictures that could not be drawn.");
     painter->steps = counters_add(counters, "plantcast_render_steps_total", "counter", "Parts of pictures that take long.");
     painter->abandoned = counters_add(counters, "plantcast_renders_abandoned_total", "counter", "Pictures given up: nobody wanted them.");
@@ -246,6 +273,8 @@ void painter_destroy(struct painter **painter_ptr)
         next = picture->next;
         picture_destroy(&picture);
     }
+    for (size_t i = 0; i < painter->client_count; i++)
+        mem_free(painter->clients[i]);
     mem_free(painter->clients);
     pthread_cond_destroy(&painter->wake);
     pthread_mutex_destroy(&painter->lock);

@@ -13,11 +13,12 @@ struct client {
     bool left; /* the slow picture: it wants another by now */
     struct wish wish;
     uint64_t content; /* of the last picture drawn for it */
+    int64_t spent_ns[SCHEDULE_SHARES]; /* of drawing time, its share; see schedule.h */
 };
 
 struct painter {
     struct painter_params params;
-    counter *renders, *render_us, *same, *failures, *steps, *abandoned, *losses, *picked, *pick_us;
+    counter *renders, *render_us, *same, *shared, *failures, *steps, *abandoned, *losses, *picked, *pick_us;
     struct picks *picks;
     struct encoding *encoding;
     pthread_t thread;
@@ -28,8 +29,9 @@ struct painter {
     enum { STARTING, RUNNING, FAILED, STOPPING } state;
     bool new_data;
     bool lost, lose; /* the GL context; at the next picture */
-    struct client *clients;
+    struct client **clients; /* by id, ascending */
     size_t client_count, client_capacity;
+    int64_t spent_ns[SCHEDULE_SHARES]; /* what the client that was served last had spent before */
     struct picture *done, **done_last;
 };
 

@@ -7,6 +7,21 @@
 static const int64_t PAUSE_NS = 150 * NS_PER_MS; /* after a moving picture the next of the same session may come */
 static const int64_t SHARE_NS = 3 * NS_PER_S;    /* what takes long gets its turn in this time, whoever moves */
 
+int schedule_share(enum urgency urgency)
+{
+    return urgency >= URGENCY_REFINE ? SCHEDULE_LONG : SCHEDULE_MOVING;
+}
+
+int64_t schedule_asked(int64_t spent_ns, int64_t served_ns)
+{
+    return spent_ns > served_ns ? spent_ns : served_ns;
+}
+
+bool schedule_before(int64_t a_spent_ns, int64_t a_asked_ns, int64_t b_spent_ns, int64_t b_asked_ns)
+{
+    return a_spent_ns < b_spent_ns || (a_spent_ns == b_spent_ns && a_asked_ns < b_asked_ns);
+}
+
 static bool is_pending(int64_t asked_ns)
 {
     return asked_ns != INT64_MAX;

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Whose picture is drawn next. Who moves goes first; changed readings get every second picture beside them; what takes long
    (refinements, snapshots) waits for a pause, but not for ever: then it gets a step after each of the others' pictures. Within a
-   class the oldest wish goes first. Pure. */
+   class, time is shared fairly: the client goes first that has had the least of it, by what its pictures cost; who asks
+   seldom saves nothing up. Pure. */
 #ifndef NET_SCHEDULE_H
 #define NET_SCHEDULE_H
 #include <stdbool.h>
@@ -14,7 +15,14 @@ struct schedule {              /* zero-initialise: what was drawn last */
     bool data_next, step_next;
 };
 
-/* asked_ns: of the oldest wish of each class; INT64_MAX: none. Returns the class to draw now, or URGENCY_COUNT: none before
+enum { SCHEDULE_MOVING, SCHEDULE_LONG, SCHEDULE_SHARES }; /* what is shared apart from each other: input and data, and what takes long */
+int schedule_share(enum urgency urgency);
+/* What a client has had, when it asks again: no less than the one served last had when it was its turn. */
+int64_t schedule_asked(int64_t spent_ns, int64_t served_ns);
+/* a goes before b: less was spent on it, or as much, and it has waited longer. */
+bool schedule_before(int64_t a_spent_ns, int64_t a_asked_ns, int64_t b_spent_ns, int64_t b_asked_ns);
+
+/* asked_ns: of the wish of each class that goes first; INT64_MAX: none. Returns the class to draw now, or URGENCY_COUNT: none before
    *wait_until_ns (INT64_MAX: none at all). */
 enum urgency schedule_choose(const struct schedule *schedule, const int64_t asked_ns[URGENCY_COUNT], int64_t now_ns,
                              int64_t *wait_until_ns);

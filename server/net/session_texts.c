@@ -34,8 +34,8 @@ static bool status_due(const struct session *session)
 
 bool session_has_text(const struct session *session, int64_t now_ns)
 {
-    return session->owes_welcome || session->reply_count > 0 || session->owes_params || session->owes_following || status_due(session) ||
-           tags_due(session, now_ns);
+    return session->owes_welcome || session->reply_count > 0 || session->owes_params || session->owes_following ||
+           status_due(session) || tags_due(session, now_ns);
 }
 
 static void add_tags(struct session *session, int64_t now_ns, struct text *out)

@@ -253,8 +253,9 @@ test('any number follow one: its view, its size, its picture', { skip }, async (
     assert.deepEqual([said.session, said.width, said.height, said.group], [session, 400, 240, 'temperature']);
     leader.say({ type: 'camera', seq: 3, eye: [5, -7, 4.5], target: [1, 0, 0] });
     leader.say({ type: 'params', seq: 4, group: 'pressure' });
-    const seen = await Promise.all(followers.map((client) => client.frameWhere('a refined frame of the leader\'s camera', (f) => f.eye[1] === -7
-        && (f.flags & 2) !== 0 && client.texts.some((m) => m.type === 'following' && m.group === 'pressure') && f.full_width === 400)));
+    const told = (client) => client.texts.some((m) => m.type === 'following' && m.group === 'pressure');
+    const seen = await Promise.all(followers.map((client) => client.frameWhere('a refined frame of the leader\'s camera',
+        (f) => f.eye[1] === -7 && (f.flags & 2) !== 0 && told(client) && f.full_width === 400)));
     const own = await leader.frameWhere('the same', (f) => f.eye[1] === -7 && (f.flags & 2) !== 0);
     assert.ok(seen.every((f) => f.payload.equals(own.payload)), 'the same bytes for all');
     assert.deepEqual([own.camera_seq, seen[0].camera_seq], [3, 0]);

@@ -18,7 +18,9 @@
 #include "net/painter.h"
 #include "tests/support/toy.h"
 
-enum { REFINER = 1, MOVER = 2, PICKER = 3 };
+#define ENCODES "plantcast_encodes_total{codec=\"jpeg\"}"
+enum { REFINER = 1, MOVER = 2, PICKER = 3, VIEWERS = 100 };
+static const int64_t RECENT_NS = 600 * NS_PER_MS;  /* pictures that are older are not handed to others */
 static const int64_t PATIENCE_NS = 100 * NS_PER_S; /* far beyond any picture, under sanitizers too */
 
 static struct toy *toy;
@@ -156,6 +158,107 @@ static void test_refinement_ends_while_others_go_on_moving(void **state)
     picture_destroy(&last);
 }
 
+/* While one is refined, another gets its pictures as when it is alone, but for a step in between now and then. */
+static void test_refining_one_costs_a_mover_little(void **state)
+{
+    (void)state;
+    enum { PICTURES = 40 };
+    int64_t took_ns[2], steps = 0;
+    bool refined = false;
+    for (int with = 0; with < 2; with++) {
+        if (with) {
+            steps = count_of("plantcast_render_steps_total");
+            ask(REFINER, URGENCY_REFINE, 11);
+            await_step(++steps);
+        }
+        int64_t begin_ns = clock_mono_ns();
+        for (int i = 0; i < PICTURES;) {
+            ask(MOVER, URGENCY_INPUT, 20 + with + 0.01 * i);
+            for (bool moved = false; !moved;) {
+                struct picture *picture = next();
+                moved = picture->client == MOVER;
+                refined |= !moved;
+                i += moved;
+                picture_destroy(&picture);
+            }
+        }
+        took_ns[with] = clock_mono_ns() - begin_ns;
+    }
+    print_message("# %d pictures: %.1f ms alone, %.1f ms beside a refinement\n", PICTURES, (double)took_ns[0] / NS_PER_MS,
+                  (double)took_ns[1] / NS_PER_MS);
+    /* A step is drawn where there was no moving picture for 150 ms, and at most one between two of them. */
+    assert_true(count_of("plantcast_render_steps_total") - steps <= 2 + took_ns[1] / (150 * NS_PER_MS));
+    while (!refined) {
+        struct picture *picture = next();
+        refined = picture->client == REFINER && picture->packet;
+        picture_destroy(&picture);
+    }
+}
+
+/* All at one moment, then each after the one before has its picture, in two qualities. */
+static void test_a_hundred_viewers_cost_one_picture(void **state)
+{
+    (void)state;
+    int64_t renders = count_of("plantcast_renders_total"), encodes = count_of(ENCODES);
+    const struct packet *shared = NULL;
+    struct wish wish = { .codec = WIRE_CODEC_JPEG, .quality = { .quality = 80 }, .urgency = URGENCY_INPUT, .asked_ns = clock_mono_ns() };
+    view_default(&toy->scene, 640, 360, &wish.view);
+    wish.view.camera.eye_m[0] += 30;
+    for (int i = 0; i < VIEWERS / 2; i++)
+        painter_ask(painter, 1000 + (uint64_t)i, &wish);
+    painter_go(painter);
+    for (int i = 0; i < VIEWERS; i++) {
+        if (i >= VIEWERS / 2) {
+            painter_ask(painter, 1000 + (uint64_t)i, &wish);
+            painter_go(painter);
+        }
+        struct picture *picture = next();
+        assert_non_null(picture->packet);
+        assert_true(!shared || picture->packet == shared);
+        shared = picture->packet;
+        picture_destroy(&picture);
+    }
+    assert_int_equal(count_of("plantcast_renders_total") - renders, 1);
+    assert_int_equal(count_of(ENCODES) - encodes, 1);
+    wish.quality.quality = 42; /* of other quality: shares the render */
+    wish.always = true;
+    painter_ask(painter, 1000, &wish);
+    painter_go(painter);
+    struct picture *poorer = next();
+    assert_true(poorer->packet && poorer->packet != shared);
+    assert_int_equal(count_of("plantcast_renders_total") - renders, 1);
+    assert_int_equal(count_of(ENCODES) - encodes, 2);
+    picture_destroy(&poorer);
+    for (uint64_t i = 0; i < VIEWERS; i++)
+        painter_forget(painter, 1000 + i);
+}
+
+/* One draws pictures that cost many times what another's do: both get the same time, not the same number. */
+static void test_time_is_shared_not_pictures(void **state)
+{
+    (void)state;
+    enum { LARGE = 2000, SMALL = 2001, PICTURES = 60 };
+    int counts[2] = { 0, 0 };
+    double spent_ns[2] = { 0, 0 };
+    ask_sized(LARGE, URGENCY_INPUT, 40, 2560, 1440);
+    ask_sized(SMALL, URGENCY_INPUT, 50, 320, 180);
+    for (int i = 0; i < PICTURES; i++) {
+        struct picture *picture = next();
+        int which = picture->client == SMALL;
+        const struct frame *frame = picture->packet->frame;
+        counts[which]++;
+        spent_ns[which] += (double)(frame->field_ns + frame->render_ns + frame->readback_ns);
+        ask_sized(picture->client, URGENCY_INPUT, (which ? 50 : 40) + 0.01 * i, which ? 320 : 2560, which ? 180 : 1440);
+        picture_destroy(&picture);
+    }
+    print_message("# large %d pictures, %.1f ms; small %d, %.1f ms\n", counts[0], spent_ns[0] / 1e6, counts[1], spent_ns[1] / 1e6);
+    assert_true(counts[1] > 2 * counts[0] && counts[0] >= 2);
+    for (int i = 0; i < 2; i++) {
+        struct picture *picture = next();
+        picture_destroy(&picture);
+    }
+}
+
 static void assert_same_bytes(const struct packet *a, const struct packet *b)
 {
     assert_int_equal(a->count, b->count);
@@ -183,6 +286,7 @@ static void test_lost_context_is_made_again_under_load(void **state)
     for (int i = 0; i < MOVES; i++)
         moved[i] = picture_of(MOVER, URGENCY_INPUT, 6 + i);
     for (int loss = 0; loss < LOSSES; loss++) {
+        clock_sleep_ns(RECENT_NS);
         int64_t steps = count_of("plantcast_render_steps_total");
         int refinements = 0;
         ask(REFINER, URGENCY_REFINE, 5);
@@ -250,7 +354,6 @@ static void test_no_memory_fails_that_picture_alone(void **state)
     picture_destroy(&after);
 }
 
-/* The daemon goes down in the midst of it. */
 static struct pick_answer *next_pick(void)
 {
     int64_t until_ns = clock_utc_ns() + PATIENCE_NS;
@@ -309,6 +412,7 @@ static void test_newest_pick_wins(void **state)
     print_message("# %d of 500 answered\n", answers);
 }
 
+/* The daemon goes down in the midst of it. */
 static void test_stop_waits_for_no_refinement(void **state)
 {
     (void)state;
@@ -353,6 +457,9 @@ int main(void)
         cmocka_unit_test(test_mover_is_served_during_a_refinement),
         cmocka_unit_test(test_mover_gives_its_own_refinement_up),
         cmocka_unit_test(test_refinement_ends_while_others_go_on_moving),
+        cmocka_unit_test(test_refining_one_costs_a_mover_little),
+        cmocka_unit_test(test_a_hundred_viewers_cost_one_picture),
+        cmocka_unit_test(test_time_is_shared_not_pictures),
         cmocka_unit_test(test_lost_context_is_made_again_under_load),
         cmocka_unit_test(test_no_memory_fails_that_picture_alone),
         cmocka_unit_test(test_picks_are_answered_between_steps),

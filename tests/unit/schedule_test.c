@@ -99,6 +99,30 @@ static void a_queue_of_refinements_does_not_hold_up_a_move(void **state)
     }
 }
 
+/* Three who always want the next picture, which costs 5, 10 and 40 ms, and one who comes now and then. */
+static void time_is_shared_by_what_pictures_cost(void **state)
+{
+    (void)state;
+    static const int64_t cost_ns[] = { 5 * NS_PER_MS, 10 * NS_PER_MS, 40 * NS_PER_MS, 10 * NS_PER_MS };
+    int64_t spent_ns[4] = { 0 }, had_ns[4] = { 0 }, asked_ns[4] = { 0 }, served_ns = 0, now_ns = 0, longest_ns = 0;
+    while (now_ns < 60 * NS_PER_S) {
+        int first = 0;
+        for (int i = 1; i < 4; i++)
+            if (asked_ns[i] <= now_ns && schedule_before(spent_ns[i], asked_ns[i], spent_ns[first], asked_ns[first]))
+                first = i;
+        served_ns = schedule_asked(spent_ns[first], served_ns);
+        longest_ns = first == 3 && now_ns - asked_ns[3] > longest_ns ? now_ns - asked_ns[3] : longest_ns;
+        now_ns += cost_ns[first];
+        had_ns[first] += cost_ns[first];
+        spent_ns[first] += cost_ns[first];
+        asked_ns[first] = now_ns + (first == 3 ? 2 * NS_PER_S : 0);
+        spent_ns[first] = schedule_asked(spent_ns[first], served_ns);
+    }
+    for (int i = 0; i < 3; i++)
+        assert_in_range(had_ns[i] / NS_PER_MS, 19000, 21000);
+    assert_true(had_ns[3] > 200 * NS_PER_MS && longest_ns < 150 * MS);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -106,6 +130,7 @@ int main(void)
         cmocka_unit_test(an_idle_renderer_refines_at_once),
         cmocka_unit_test(slow_pictures_wait_for_a_pause),
         cmocka_unit_test(everyone_gets_a_share),
+        cmocka_unit_test(time_is_shared_by_what_pictures_cost),
         cmocka_unit_test(a_queue_of_refinements_does_not_hold_up_a_move),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);

@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The last frames that were drawn: who asks a moment later for what one of them shows needs no other. So any number of clients of one view
+   cost one render, though they never ask at the same time. Thread: the render thread. */
+#ifndef NET_RECENT_H
+#define NET_RECENT_H
+#include "render/frame.h"
+
+enum { RECENT_FRAMES = 4 };
+struct recent { /* zero-initialise */
+    struct {
+        struct frame *frame; /* NULL: none */
+        int64_t drawn_ns;
+    } kept[RECENT_FRAMES];
+};
+
+void recent_add(struct recent *recent, struct frame *frame, int64_t now_ns); /* takes its own reference */
+struct frame *recent_find(struct recent *recent, uint64_t content, int64_t now_ns); /* borrowed; NULL: none of that content */
+void recent_finish(struct recent *recent);
+
+#endif
