@@ -44,6 +44,7 @@ vec3 sun_shade(Surface s, vec3 v, vec3 l)
     float x = 1.0 - max(dot(v, h), 0.0), x2 = x * x;
     float grazing = x2 * x2 * x;
     vec3 fresnel = f0 + (1.0 - f0) * grazing; // what is diffuse lies under the clear part's own
-    vec3 c = diffuse * (0.96 - 0.96 * grazing) + fresnel * min(ggx_visible(n_l, n_v, max(dot(s.normal, h), 0.0), roughness * roughness), 50.0);
+    float mirror = min(ggx_visible(n_l, n_v, max(dot(s.normal, h), 0.0), roughness * roughness), 50.0);
+    vec3 c = diffuse * (0.96 - 0.96 * grazing) + fresnel * mirror;
     return c * (n_l * s.sun_visible * SUN_LIGHT);
 }

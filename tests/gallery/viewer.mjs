@@ -64,8 +64,8 @@ function plantcast(name, camera) {
     writeFileSync(plant, `plant: { name: ${name} }\nassets: [{ id: A, model: ${join(MODELS, `${name}.glb`)} }]\n` +
         'groups: [{ id: none, unit: K, min: 0, max: 1 }]\nenvironment: surroundings.hdr\ntags: none.csv\n');
     execFileSync(join(bin, 'plantcast-prep'), [plant], { stdio: 'ignore' });
-    execFileSync(join(bin, 'plantcast'), ['snapshot', plant, '-o', out, '--size', `${WIDTH}x${HEIGHT}`, '--look', 'materials', '--no-overlay',
-        `--camera=${[...camera.eye, ...camera.target, camera.fov].join(',')}`, `--light=${SUN.join(',')}`,
+    execFileSync(join(bin, 'plantcast'), ['snapshot', plant, '-o', out, '--size', `${WIDTH}x${HEIGHT}`, '--look', 'materials',
+        '--no-overlay', `--camera=${[...camera.eye, ...camera.target, camera.fov].join(',')}`, `--light=${SUN.join(',')}`,
         '--environment', 'surroundings'], { stdio: 'ignore' });
     return out;
 }
@@ -103,8 +103,9 @@ for (const name of NAMES.filter((one) => existsSync(join(MODELS, `${one}.glb`)))
     writeFileSync(join(folder, `viewer_${name}.png`), Buffer.from(png.split(',')[1], 'base64'));
     results[name] = numbers;
     bad += numbers.open.mean > MOST_MEAN;
-    console.log(`viewer: ${name}: delta E, mean ${numbers.open.mean} (median ${numbers.open.median}, 95 % below ${numbers.open.p95}) where ` +
-        `nothing stands in the way (${numbers.open.part} % of the model); mean ${numbers.all.mean} over all of it`);
+    const { open, all } = numbers;
+    console.log(`viewer: ${name}: delta E, mean ${open.mean} (median ${open.median}, 95 % below ${open.p95}) where nothing stands in ` +
+        `the way (${open.part} % of the model); mean ${all.mean} over all of it`);
 }
 writeFileSync(join(folder, 'viewer.json'), `${JSON.stringify(results, null, 1)}\n`);
 await browser.close();

@@ -56,7 +56,7 @@ function openness(scene, model, ball, camera, width, height) {
     const target = new THREE.WebGLRenderTarget(width, height, { type: THREE.FloatType }), sum = new Float32Array(width * height);
     const light = new THREE.DirectionalLight(0xffffff, Math.PI);
     const plain = new THREE.MeshLambertMaterial({ color: 0xffffff, side: THREE.FrontSide });
-    const room = new THREE.Scene(), read = new Float32Array(4 * width * height), all = new Float32Array(width * height);
+    const room = new THREE.Scene(), all = new Float32Array(width * height), read = new Float32Array(4 * all.length);
     const draw = (shadows, into) => {
         light.castShadow = shadows;
         renderer.setRenderTarget(target);
@@ -75,7 +75,8 @@ function openness(scene, model, ball, camera, width, height) {
     room.add(model, light, light.target);
     for (let i = 0; i < OPEN_RAYS; i++) { // evenly over the whole sphere
         const y = 1 - (2 * i + 1) / OPEN_RAYS, turn = i * 2.39996, flat = Math.sqrt(1 - y * y);
-        light.position.copy(ball.center).addScaledVector(new THREE.Vector3(flat * Math.cos(turn), y, flat * Math.sin(turn)), 2 * ball.radius);
+        const towards = new THREE.Vector3(flat * Math.cos(turn), y, flat * Math.sin(turn));
+        light.position.copy(ball.center).addScaledVector(towards, 2 * ball.radius);
         draw(true, sum);
         draw(false, all);
     }
@@ -90,7 +91,8 @@ async function draw(name, width, height, sun) {
     scene.add(model);
     model.updateMatrixWorld(true);
     const ball = new THREE.Box3().setFromObject(model).getBoundingSphere(new THREE.Sphere());
-    const towards = toThree([-0.55, -0.75, 0.4]).normalize(), camera = new THREE.PerspectiveCamera(FOV, width / height, ball.radius / 20, ball.radius * 20);
+    const towards = toThree([-0.55, -0.75, 0.4]).normalize();
+    const camera = new THREE.PerspectiveCamera(FOV, width / height, ball.radius / 20, ball.radius * 20);
     camera.position.copy(ball.center).addScaledVector(towards, (0.9 * ball.radius) / Math.sin((FOV * Math.PI) / 360));
     camera.lookAt(ball.center);
     renderer.setSize(width, height, false);
@@ -141,8 +143,8 @@ function summary(list, of) {
 async function compare(path) {
     const { rgba, shadowless, open, width, height } = drawn;
     const ours = pixels(await createImageBitmap(await (await fetch(path)).blob()), width, height);
-    const all = [], free = [], sheet = new OffscreenCanvas(3 * width, height), c = sheet.getContext('2d'), difference = c.createImageData(width, height);
-    const theirs = c.createImageData(width, height);
+    const all = [], free = [], sheet = new OffscreenCanvas(3 * width, height), c = sheet.getContext('2d');
+    const theirs = c.createImageData(width, height), difference = c.createImageData(width, height);
     for (let i = 0; i < width * height; i++) {
         const x = i % width, y = Math.floor(i / width), a = lab(at(ours, i)), b = lab(at(rgba, i));
         const delta = Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]), alpha = rgba[4 * i + 3] / 255;

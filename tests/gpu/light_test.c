@@ -80,8 +80,10 @@ static void test_large_faces_are_lit_within(void **state)
     (void)state;
     shape_plate(&shape, TOY_STEEL, (double[]){ 0, 0, 0 }, (double[]){ 10, 0, 0 }, (double[]){ 0, 0, 4 }, 1);
     int wall = toy_add(toy, "WALL", &shape, here, NULL, 0);
-    for (int i = 0; i < 4; i++)
-        shape_box(&shape, TOY_STEEL, (double[]){ i % 2 * 10 - 0.3, -0.3, i / 2 * 4 - 0.3 }, (double[]){ i % 2 * 10 + 0.3, 0.3, i / 2 * 4 + 0.3 });
+    for (int i = 0; i < 4; i++) {
+        double x = i % 2 * 10, z = i / 2 * 4;
+        shape_box(&shape, TOY_STEEL, (double[]){ x - 0.3, -0.3, z - 0.3 }, (double[]){ x + 0.3, 0.3, z + 0.3 });
+    }
     toy_add(toy, "CORNERS", &shape, here, NULL, 0);
     assert_true(stage_init(&stage, rig.gl, &toy->scene) && light_init(&light, &stage, &environments));
     const struct light_set *set = light_get(&light, &key);

@@ -202,8 +202,9 @@ static void reflected_sun(const struct asset_material *m, const double n[3], con
     size = sqrt(dot(h, h));
     double n_h = dot(n, h) / size, v_h = dot(v, h) / size, d = n_h * n_h * (a2 - 1) + 1;
     for (int c = 0; c < 3 && n_l > 0; c++) {
-        double f0 = 0.04 + (m->base_color[c] - 0.04) * m->metallic, fresnel = f0 + (1 - f0) * pow(1 - v_h, 5);
-        out[c] += SUN_LIGHT * n_l * (m->base_color[c] * (1 - m->metallic) * (1 - fresnel) + a2 / (d * d) * smith(n_l, n_v, a2) * fresnel);
+        double f0 = 0.04 + (m->base_color[c] - 0.04) * m->metallic, grazing = pow(1 - v_h, 5), fresnel = f0 + (1 - f0) * grazing;
+        double diffuse = m->base_color[c] * (1 - m->metallic) * (1 - (0.04 + 0.96 * grazing));
+        out[c] += SUN_LIGHT * n_l * (diffuse + a2 / (d * d) * smith(n_l, n_v, a2) * fresnel);
     }
 }
 
