@@ -15,9 +15,9 @@ enum { GOOD = 0, FAILED = 1, USAGE = 2 };
 static void print_usage(FILE *out)
 {
     fputs("usage: plantcastd PLANT.yaml [--listen ADDR] [--port N] [--gl auto|egl-device|egl-surfaceless|osmesa]\n"
-          "                  [--gl-device INDEX|PCI] [--prepared DIR] [--web DIR] [--log-level error|warn|info|debug]\n"
-          "                  [--threads N] [--field vertices|per-fragment] [--h264 ENCODER|off]\n"
-          "                  [--tls-cert FILE --tls-key FILE] [--tokens FILE] [--open-viewers]\n"
+          "                  [--gl-device INDEX|PCI] [--prepared DIR] [--history DIR] [--web DIR]\n"
+          "                  [--log-level error|warn|info|debug] [--threads N] [--field vertices|per-fragment]\n"
+          "                  [--h264 ENCODER|off] [--tls-cert FILE --tls-key FILE] [--tokens FILE] [--open-viewers]\n"
           "                  [--behind-proxy] [--host NAME] [--origin URL] [--limit NAME=N]\n"
           "       plantcastd --check PLANT.yaml [--prepared DIR]\n"
           "       plantcastd --list-gl-devices | --version | --help\n"
@@ -29,6 +29,7 @@ static void print_usage(FILE *out)
           "  --gl KIND        how to draw (auto: EGL device, EGL surfaceless, OSMesa, in this order)\n"
           "  --gl-device D    which GPU: its index in --list-gl-devices, or its PCI address (0000:65:00.0)\n"
           "  --prepared DIR   the files that plantcast-prep made (beside the plant file)\n"
+          "  --history DIR    where readings are recorded (as the plant file says; else beside it)\n"
           "  --web DIR        the web client's files (found from where this program is)\n"
           "  --threads N      workers for the field and for encoding (one per core)\n"
           "  --field KIND     vertices: the field at vertices, when a reading changes (the default); per-fragment: anew at each\n"
@@ -108,6 +109,7 @@ enum {
     OPTION_H264,
     OPTION_LIST_GL,
     OPTION_PREPARED,
+    OPTION_HISTORY,
     OPTION_WEB,
     OPTION_LEVEL,
     OPTION_THREADS,
@@ -132,6 +134,7 @@ static const struct option options[] = {
     { "h264", required_argument, NULL, OPTION_H264 },
     { "gl-device", required_argument, NULL, OPTION_GL_DEVICE },
     { "list-gl-devices", no_argument, NULL, OPTION_LIST_GL },
+    { "history", required_argument, NULL, OPTION_HISTORY },
     { "prepared", required_argument, NULL, OPTION_PREPARED },
     { "web", required_argument, NULL, OPTION_WEB },
     { "log-level", required_argument, NULL, OPTION_LEVEL },
@@ -201,6 +204,7 @@ static int take_option(int option, struct server_params *params, bool *check)
         return gl_device_parse(optarg, &params->gl_device) ? -1 : usage_error("--gl-device: neither an index nor a PCI address", optarg);
     case OPTION_LIST_GL: return gl_list_devices(stdout) > 0 ? GOOD : FAILED;
     case OPTION_H264: params->h264 = optarg; return -1;
+    case OPTION_HISTORY: params->history = optarg; return -1;
     case OPTION_PREPARED: params->prepared = optarg; return -1;
     case OPTION_WEB: params->web = optarg; return -1;
     case OPTION_LEVEL: return parse_level(optarg, &params->log_level) ? -1 : usage_error("--log-level: unknown", optarg);

@@ -19,6 +19,7 @@
 #include "encode/encoder.h"
 #include "far.h"
 #include "field/colormap.h"
+#include "history/historian.h"
 #include "net/net.h"
 #include "value/source.h"
 #include "version.h"
@@ -31,6 +32,7 @@ struct server {
     struct scene *scene;
     struct store *store;
     struct baselines *baselines;
+    struct historian *historian; /* NULL: nothing is recorded */
     struct source **sources; /* by index in plant->sources */
     struct workers *workers;
     struct painter *painter;
@@ -165,6 +167,19 @@ static unsigned find_codecs(const struct server *server)
     return codecs;
 }
 
+static bool start_historian(struct server *server)
+{
+    if (server->plant->history.off)
+        return true;
+    char *folder = server->params.history ? mem_strdup(server->params.history) : plant_history_folder(server->plant);
+    const struct historian_params params = {
+        .log = server->log, .counters = server->counters, .plant = server->plant, .store = server->store, .folder = folder
+    };
+    server->historian = historian_start(&params);
+    mem_free(folder);
+    return server->historian != NULL;
+}
+
 static bool start_painter(struct server *server)
 {
     struct painter_params params = {
@@ -233,7 +248,7 @@ static bool server_start(struct server *server)
     server->baselines = baselines_create();
     server->workers = workers_create(server->params.threads);
     server->web = find_web(server->params.web);
-    return start_sources(server) && start_painter(server) && start_net(server);
+    return start_historian(server) && start_sources(server) && start_painter(server) && start_net(server);
 }
 
 /* Against the flow of data: first who takes, last who gives. */
@@ -248,6 +263,7 @@ static void server_finish(struct server *server)
     for (size_t i = 0; server->sources && i < server->plant->source_count; i++)
         source_stop(&server->sources[i]);
     mem_free(server->sources);
+    historian_stop(&server->historian);
     workers_destroy(&server->workers);
     store_destroy(&server->store);
     baselines_destroy(&server->baselines);

@@ -14,6 +14,7 @@ struct server_params {
     struct gl_device gl_device;
     bool has_gl_device;
     const char *prepared; /* NULL: beside the plant file */
+    const char *history;  /* NULL: as the plant file says */
     const char *web;      /* NULL: found from where the program is */
     enum log_level log_level;
     const char *h264;     /* an encoder of libavcodec, or "off"; NULL: the usual one */

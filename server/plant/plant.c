@@ -98,6 +98,7 @@ void plant_destroy(struct plant **plant_ptr)
         mem_free(plant->environments[i].name);
         mem_free(plant->environments[i].path);
     }
+    mem_free(plant->history.folder);
     mem_free(plant->path);
     mem_free(plant->folder);
     mem_free(plant->tags_path);
@@ -139,10 +140,20 @@ int plant_find_tag(const struct plant *plant, const char *name)
     return -1;
 }
 
-char *plant_prepared_folder(const struct plant *plant)
+static char *beside(const struct plant *plant, const char *ending)
 {
     const char *name = strrchr(plant->path, '/');
     name = name ? name + 1 : plant->path;
     const char *end = strrchr(name, '.');
-    return mem_printf("%s/%.*s.prepared", plant->folder, end && end > name ? (int)(end - name) : (int)strlen(name), name);
+    return mem_printf("%s/%.*s.%s", plant->folder, end && end > name ? (int)(end - name) : (int)strlen(name), name, ending);
+}
+
+char *plant_prepared_folder(const struct plant *plant)
+{
+    return beside(plant, "prepared");
+}
+
+char *plant_history_folder(const struct plant *plant)
+{
+    return plant->history.folder ? mem_strdup(plant->history.folder) : beside(plant, "history");
 }

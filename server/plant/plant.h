@@ -74,6 +74,14 @@ struct plant_source {
     int line;
 };
 
+struct plant_history {
+    bool off;
+    char *folder;            /* NULL: plant_history_folder says */
+    double keep_days, keep_gb;
+    double deadband_percent; /* of a tag's span, where it has no deadband of its own */
+    double override_s;       /* a point is kept at least this often */
+};
+
 struct plant_tag {
     char *name, *description, *unit;  /* unit: engineering units */
     int source, group, asset;         /* index, or -1 */
@@ -95,6 +103,7 @@ struct plant_tag {
     double strength, decay;           /* resolved: own, else the group's */
     double stale_s;                   /* resolved; default 3 polls, at least 5 s */
     double limits[LIMIT_COUNT];       /* resolved: own, else the group's; NaN: none */
+    double deadband;                  /* engineering units: history is within this of what was read; NaN: the plant's history says */
     int line, column;                 /* of its name in the tag list */
 };
 
@@ -113,6 +122,7 @@ struct plant {
     struct plant_view view;
     struct plant_environment environments[PLANT_ENVIRONMENTS]; /* the first is shown where nobody asks for another */
     size_t environment_count;
+    struct plant_history history;
     struct plant_asset *assets;
     struct plant_group *groups;
     struct plant_source *sources;
@@ -135,5 +145,6 @@ int plant_find_environment(const struct plant *plant, const char *name); /* 0: "
 int plant_find_tag(const struct plant *plant, const char *name);
 /* Where prepared asset files of this plant are kept: FOLDER/NAME.prepared beside NAME.yaml. Free with mem_free. */
 char *plant_prepared_folder(const struct plant *plant);
+char *plant_history_folder(const struct plant *plant); /* likewise what was recorded, unless the plant file names another */
 
 #endif

@@ -385,6 +385,24 @@ static void read_environment(struct yaml_reader *reader, yaml_node_t *node, void
     plant_environments_read(reader, node, ((struct plant_file *)record)->plant);
 }
 
+static void read_history(struct yaml_reader *reader, yaml_node_t *node, void *record)
+{
+    static const struct choice record_choices[] = { { "yes", 0 }, { "no", 1 }, { 0 } };
+    static const struct key keys[] = {
+        { "record", KEY_FLAG, false, offsetof(struct plant_history, off), 0, 0, record_choices, NULL },
+        { "folder", KEY_NAME, false, offsetof(struct plant_history, folder), 0, 0, NULL, NULL },
+        { "keep_days", KEY_NUMBER, false, offsetof(struct plant_history, keep_days), 1, 36500, NULL, NULL },
+        { "keep_gb", KEY_NUMBER, false, offsetof(struct plant_history, keep_gb), 0.01, 1e6, NULL, NULL },
+        { "deadband_percent", KEY_NUMBER, false, offsetof(struct plant_history, deadband_percent), 0, 10, NULL, NULL },
+        { "override_s", KEY_NUMBER, false, offsetof(struct plant_history, override_s), 1, 86400, NULL, NULL },
+        { 0 }
+    };
+    struct plant *plant = ((struct plant_file *)record)->plant;
+    struct yaml_map map;
+    yaml_map_read(reader, node, "history", keys, &plant->history, &map);
+    resolve_path(plant, &plant->history.folder);
+}
+
 /* --- the whole file --------------------------------------------------------------------------------------------------------- */
 
 void plant_file_read(struct plant *plant, struct diag *diag)
@@ -396,6 +414,7 @@ void plant_file_read(struct plant *plant, struct diag *diag)
         { "sources", KEY_CUSTOM, false, 0, 0, 0, NULL, read_sources },
         { "colormaps", KEY_CUSTOM, false, 0, 0, 0, NULL, read_colormaps },
         { "environment", KEY_CUSTOM, false, 0, 0, 0, NULL, read_environment },
+        { "history", KEY_CUSTOM, false, 0, 0, 0, NULL, read_history },
         { "tags", KEY_NAME, true, offsetof(struct plant_file, tags), 0, 0, NULL, NULL },
         { 0 }
     };
@@ -404,6 +423,7 @@ void plant_file_read(struct plant *plant, struct diag *diag)
     struct yaml_map map;
     plant->up = AXIS_Z;
     plant->view.fov_deg = 45;
+    plant->history = (struct plant_history){ .keep_days = 400, .keep_gb = 20, .deadband_percent = 0.2, .override_s = 600 };
     if (!yaml_reader_open(&reader, plant->path, diag))
         return;
     yaml_map_read(&reader, yaml_document_get_root_node(&reader.doc), "the plant file", keys, &file, &map);

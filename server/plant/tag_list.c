@@ -285,6 +285,12 @@ static void read_timing(struct tag_list *list)
     cell_number(&list->columns, COL_STALE, 1e-3, 1e6, &tag->stale_s);
 }
 
+static void read_deadband(struct tag_list *list)
+{
+    list->tag->deadband = NAN;
+    cell_number(&list->columns, COL_DEADBAND, 0, PLANT_MAX_VALUE, &list->tag->deadband);
+}
+
 static void read_weights(struct tag_list *list)
 {
     list->tag->strength = list->group ? list->group->strength : 1;
@@ -298,7 +304,7 @@ static void check_without_effect(struct tag_list *list)
 {
     double ignored;
     for (enum tag_column column = COL_FLATLINE; column <= COL_QUALITY_TAG; column++) {
-        if (!cell_given(&list->columns, column))
+        if (!cell_given(&list->columns, column) || column == COL_DEADBAND)
             continue;
         if (column != COL_QUALITY_TAG)
             cell_number(&list->columns, column, 0, PLANT_MAX_VALUE, &ignored);
@@ -333,6 +339,7 @@ static void read_row(struct tag_list *list)
     read_unit(list);
     read_timing(list);
     read_weights(list);
+    read_deadband(list);
     check_without_effect(list);
 }
 

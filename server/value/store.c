@@ -30,6 +30,9 @@ struct store {
     /* --- below: under lock */
     struct held *tags;
     struct link *links;
+    store_listener *listener;
+    void *listener_arg;
+    int64_t utc_ahead_ns; /* of the monotonic clock, when a sample came last */
 };
 
 static int64_t stale_ns_of(const struct plant_tag *tag)
@@ -68,6 +71,21 @@ void store_destroy(struct store **store)
     *store = NULL;
 }
 
+void store_listen(struct store *store, store_listener *listener, void *arg)
+{
+    pthread_mutex_lock(&store->lock);
+    store->listener = listener;
+    store->listener_arg = arg;
+    pthread_mutex_unlock(&store->lock);
+}
+
+static void tell(struct store *store, size_t tag, uint32_t quality, int64_t utc_ns)
+{
+    double value = quality_is_bad(quality) ? NAN : store->tags[tag].value;
+    if (store->listener)
+        store->listener(store->listener_arg, (int)tag, value, quality, utc_ns);
+}
+
 static uint32_t quality_now(const struct held *held, int64_t now_mono_ns)
 {
     bool stale = held->has_value && now_mono_ns - held->received_mono_ns >= held->stale_ns;
@@ -90,11 +108,11 @@ static void count_change(struct held *held, bool value_changed, int64_t now_mono
     held->shown_quality = quality;
 }
 
-static void hold(struct held *held, const struct sample *sample, int64_t now_mono_ns, int64_t now_utc_ns)
+static bool hold(struct held *held, const struct sample *sample, int64_t now_mono_ns, int64_t now_utc_ns)
 {
     bool bad = quality_is_bad(sample->quality), finite = isfinite(sample->value), value_changed = false;
     if (now_mono_ns < held->sampled_mono_ns)
-        return;
+        return false;
     held->quality = bad || finite ? sample->quality : QUALITY_BAD_SENSOR_FAILURE;
     held->sampled_mono_ns = now_mono_ns;
     held->lost = false;
@@ -106,29 +124,36 @@ static void hold(struct held *held, const struct sample *sample, int64_t now_mon
         held->received_utc_ns = now_utc_ns;
     }
     count_change(held, value_changed, now_mono_ns);
+    return true;
 }
 
 void store_write(struct store *store, const struct sample *samples, size_t count, int64_t now_mono_ns, int64_t now_utc_ns)
 {
     pthread_mutex_lock(&store->lock);
+    store->utc_ahead_ns = now_utc_ns - now_mono_ns;
     for (size_t i = 0; i < count; i++)
-        hold(&store->tags[samples[i].tag], &samples[i], now_mono_ns, now_utc_ns);
+        if (hold(&store->tags[samples[i].tag], &samples[i], now_mono_ns, now_utc_ns))
+            tell(store, (size_t)samples[i].tag, store->tags[samples[i].tag].quality, now_utc_ns);
     pthread_mutex_unlock(&store->lock);
 }
 
-static void lose(struct held *held, int64_t now_mono_ns)
+static void lose(struct store *store, size_t tag, int64_t now_mono_ns)
 {
+    struct held *held = &store->tags[tag];
+    uint32_t shown = held->shown_quality;
     if (now_mono_ns < held->sampled_mono_ns)
         return;
     held->lost = true;
     count_change(held, false, now_mono_ns);
+    if (held->shown_quality != shown)
+        tell(store, tag, held->shown_quality, now_mono_ns + store->utc_ahead_ns);
 }
 
 void store_tags_lost(struct store *store, const int *tags, size_t count, int64_t now_mono_ns)
 {
     pthread_mutex_lock(&store->lock);
     for (size_t i = 0; i < count; i++)
-        lose(&store->tags[tags[i]], now_mono_ns);
+        lose(store, (size_t)tags[i], now_mono_ns);
     pthread_mutex_unlock(&store->lock);
 }
 
@@ -146,7 +171,7 @@ void store_link_lost(struct store *store, int source, int64_t now_mono_ns)
     set_link(&store->links[source], false, now_mono_ns);
     for (size_t i = 0; i < store->plant->tag_count; i++)
         if (store->plant->tags[i].source == source)
-            lose(&store->tags[i], now_mono_ns);
+            lose(store, i, now_mono_ns);
     pthread_mutex_unlock(&store->lock);
 }
 

@@ -67,6 +67,7 @@ struct plant_tag *plant_by_hand_tag(struct plant *plant, const char *name, enum 
         .byte_order = one_register ? BYTE_ORDER_NONE : BYTE_ORDER_ABCD,
         .stale_s = 5,
         .limits = { NAN, NAN, NAN, NAN },
+        .deadband = NAN,
     };
     return tag;
 }

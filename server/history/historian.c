@@ -1,0 +1,410 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The historian's thread: takes what the store told, keeps what must be kept, writes it once a second. */
+#include "history/historian.h"
+
+#include <errno.h>
+#include <pthread.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "history/history.h"
+#include "history/keep.h"
+#include "history/month.h"
+#include "history/recorder.h"
+#include "value/quality.h"
+
+enum {
+    TOLD_MAX = 4000000,     /* samples that one second may bring */
+    WAITING_MAX = 4000000,  /* rows that wait for a disk that takes them again */
+    TIDY_ROWS = 200000,
+    RETRY_MAX_S = 30,
+};
+static const int64_t TICK_NS = NS_PER_S, TIDY_NS = 60 * NS_PER_S, KEEP_NS = 600 * NS_PER_S, STEP_NS = 2 * NS_PER_S;
+
+struct told {
+    struct recorder_rows rows; /* samples as they came */
+    size_t lost;
+};
+
+struct historian {
+    struct log *log;
+    const struct plant *plant;
+    struct store *store;
+    char *folder;
+    struct {
+        counter *samples, *points, *lost, *waiting, *good, *bytes;
+    } counters;
+    pthread_t thread;
+    bool started;
+    /* --- below: of the thread */
+    struct history_tag *tags;
+    struct recorder *recorder;
+    struct snapshot *snapshot;
+    struct recorder_rows waiting, held;
+    struct month_file *file;
+    struct told taken;
+    bool recovered, failing;
+    int64_t retry_ns, retry_after_ns, tidied_ns, kept_ns, utc_ahead_ns;
+    pthread_mutex_t lock;
+    pthread_cond_t wake;
+    /* --- below: under lock */
+    struct told told;
+    bool stopping;
+};
+
+/* --- from the store ----------------------------------------------------------------------------------------------------------- */
+
+static void on_sample(void *arg, int tag, double value, uint32_t quality, int64_t utc_ns)
+{
+    struct historian *historian = arg;
+    pthread_mutex_lock(&historian->lock);
+    struct told *told = &historian->told;
+    if (told->rows.count < TOLD_MAX) {
+        mem_grow(&told->rows.at, &told->rows.capacity, told->rows.count + 1, sizeof(*told->rows.at));
+        told->rows.at[told->rows.count++] = (struct history_row){ tag, { utc_ns / 1000, value, quality } };
+    } else {
+        told->lost++;
+    }
+    pthread_mutex_unlock(&historian->lock);
+}
+
+static void put(struct historian *historian, int tag, const struct history_point *point)
+{
+    size_t before = historian->waiting.count;
+    if (before >= WAITING_MAX) {
+        counter_inc(historian->counters.lost, 1);
+        return;
+    }
+    recorder_put(historian->recorder, tag, point, &historian->waiting);
+    counter_inc(historian->counters.points, (int64_t)(historian->waiting.count - before));
+}
+
+/* Whether stale or cut off: the store knows without being told by anyone. */
+static void take_qualities(struct historian *historian, int64_t mono_ns, int64_t utc_ns)
+{
+    store_snapshot(historian->store, mono_ns, utc_ns, historian->snapshot);
+    for (size_t i = 0; i < historian->snapshot->count; i++) {
+        const struct reading *reading = &historian->snapshot->readings[i];
+        if (reading->quality == recorder_quality(historian->recorder, (int)i))
+            continue;
+        put(historian, (int)i,
+            &(struct history_point){ utc_ns / 1000, quality_is_bad(reading->quality) ? NAN : reading->value, reading->quality });
+    }
+}
+
+static void take_told(struct historian *historian)
+{
+    pthread_mutex_lock(&historian->lock);
+    struct told taken = historian->told;
+    historian->told = historian->taken;
+    pthread_mutex_unlock(&historian->lock);
+    for (size_t i = 0; i < taken.rows.count; i++)
+        put(historian, taken.rows.at[i].tag, &taken.rows.at[i].point);
+    counter_inc(historian->counters.samples, (int64_t)taken.rows.count);
+    counter_inc(historian->counters.lost, (int64_t)taken.lost);
+    if (taken.lost)
+        log_err(historian->log, "history: %zu samples in one second were too many and are lost", taken.lost);
+    taken.rows.count = taken.lost = 0;
+    historian->taken = taken;
+}
+
+/* --- to the disk -------------------------------------------------------------------------------------------------------------- */
+
+static void make_folder(struct historian *historian)
+{
+    if (mkdir(historian->folder, 0777) != 0 && errno != EEXIST)
+        log_err(historian->log, "%s: cannot be made: %s", historian->folder, strerror(errno));
+}
+
+static struct month_file *open_month(struct historian *historian, int month, int *error)
+{
+    return month_file_open(historian->log, historian->folder, month, historian->tags, historian->plant->tag_count, error);
+}
+
+static void say_gap(struct historian *historian, struct month_file *file, int64_t ended_us)
+{
+    char *text = mem_printf("not recorded for %.0f s", (double)(clock_utc_ns() / 1000 - ended_us) / 1e6);
+    log_info(historian->log, "history: %s", text);
+    month_file_note(file, ended_us, "gap", text);
+    mem_free(text);
+}
+
+/* The lines of whoever recorded before end where it ended. */
+static int recover(struct historian *historian)
+{
+    size_t count;
+    int error = 0, *months = month_list(historian->folder, &count);
+    for (size_t i = count > 2 ? count - 2 : 0; i < count && !error; i++) {
+        struct month_file *file = open_month(historian, months[i], &error);
+        int64_t ended_us = INT64_MIN;
+        if (!file)
+            break;
+        error = month_file_recover(file, QUALITY_BAD_NO_COMMUNICATION, &ended_us);
+        if (!error)
+            error = month_file_tidy(file);
+        if (!error && ended_us != INT64_MIN)
+            say_gap(historian, file, ended_us);
+        if (error == -EBADMSG) {
+            month_file_set_aside(&file);
+            error = 0;
+        }
+        month_file_close(&file);
+    }
+    mem_free(months);
+    historian->recovered = !error;
+    return error;
+}
+
+/* Before a month's file is left nothing is held in it. */
+static int leave_month(struct historian *historian)
+{
+    int error = month_file_tidy(historian->file);
+    if (!error)
+        error = month_file_clear_held(historian->file);
+    if (!error)
+        month_file_close(&historian->file);
+    return error;
+}
+
+static int enter_month(struct historian *historian, int month)
+{
+    int error = 0;
+    if (historian->file && month_file_month(historian->file) == month)
+        return 0;
+    if (historian->file)
+        error = leave_month(historian);
+    if (!error)
+        historian->file = open_month(historian, month, &error);
+    return error;
+}
+
+/* Rows of one month that follow each other, from `begin` on. */
+static size_t same_month(const struct recorder_rows *rows, size_t begin)
+{
+    int month = month_of(rows->at[begin].point.t_us);
+    int64_t from_us = month_begin_us(month), to_us = month_begin_us(month + 1);
+    size_t end = begin + 1;
+    while (end < rows->count && rows->at[end].point.t_us >= from_us && rows->at[end].point.t_us < to_us)
+        end++;
+    return end;
+}
+
+/* Writes rows month by month; what is written leaves `rows`. */
+static int write_rows(struct historian *historian, struct recorder_rows *rows, bool held)
+{
+    size_t done = 0;
+    int error = 0;
+    while (done < rows->count && !error) {
+        size_t end = same_month(rows, done);
+        const struct history_row *at = rows->at + done;
+        if ((error = enter_month(historian, month_of(at->point.t_us))))
+            break;
+        error = held ? month_file_write(historian->file, NULL, 0, at, end - done) : month_file_write(historian->file, at, end - done, NULL, 0);
+        if (!error)
+            done = end;
+    }
+    memmove(rows->at, rows->at + done, (rows->count - done) * sizeof(*rows->at));
+    rows->count -= done;
+    return error;
+}
+
+/* The usual second: everything in one month, in one transaction. */
+static int write_second(struct historian *historian)
+{
+    struct recorder_rows *rows = &historian->waiting, *held = &historian->held;
+    recorder_held(historian->recorder, held);
+    if (!rows->count && !held->count)
+        return 0;
+    const struct history_row *first = rows->count ? rows->at : held->at;
+    if ((!rows->count || same_month(rows, 0) == rows->count) && (!held->count || same_month(held, 0) == held->count) &&
+        (!held->count || month_of(held->at->point.t_us) == month_of(first->point.t_us))) {
+        int error = enter_month(historian, month_of(first->point.t_us));
+        if (!error)
+            error = month_file_write(historian->file, rows->at, rows->count, held->at, held->count);
+        if (!error)
+            rows->count = held->count = 0;
+        return error;
+    }
+    int error = write_rows(historian, rows, false);
+    return error ? error : write_rows(historian, held, true);
+}
+
+static int keep_house(struct historian *historian, int64_t mono_ns, int64_t utc_ns)
+{
+    int error = 0;
+    if (historian->file && (mono_ns - historian->tidied_ns >= TIDY_NS || month_file_waiting(historian->file) >= TIDY_ROWS)) {
+        historian->tidied_ns = mono_ns;
+        error = month_file_tidy(historian->file);
+    }
+    if (mono_ns - historian->kept_ns >= KEEP_NS || !historian->kept_ns) {
+        const struct keep_limits limits = { historian->plant->history.keep_days, historian->plant->history.keep_gb * 1e9 };
+        historian->kept_ns = mono_ns;
+        counter_set(historian->counters.bytes, history_keep(historian->log, historian->folder, &limits, utc_ns / 1000));
+    }
+    return error;
+}
+
+static int write_all(struct historian *historian, int64_t mono_ns, int64_t utc_ns)
+{
+    int error = 0;
+    if (!historian->file) {
+        if (!historian->waiting.count)
+            return 0; /* an empty folder is no history */
+        make_folder(historian);
+    }
+    if (!historian->recovered)
+        error = recover(historian);
+    if (!error)
+        error = write_second(historian);
+    if (!error)
+        error = keep_house(historian, mono_ns, utc_ns);
+    if (error == -EBADMSG && historian->file)
+        month_file_set_aside(&historian->file);
+    return error;
+}
+
+static void try_to_write(struct historian *historian, int64_t mono_ns, int64_t utc_ns, bool now)
+{
+    if (historian->failing && !now && mono_ns < historian->retry_ns)
+        return;
+    int error = write_all(historian, mono_ns, utc_ns);
+    if (error) {
+        historian->held.count = 0;
+        recorder_hold_again(historian->recorder);
+        int64_t wait_ns = historian->retry_after_ns * 2;
+        historian->retry_after_ns = wait_ns < NS_PER_S ? NS_PER_S : wait_ns > RETRY_MAX_S * NS_PER_S ? RETRY_MAX_S * NS_PER_S : wait_ns;
+        historian->retry_ns = mono_ns + historian->retry_after_ns;
+        if (!historian->failing)
+            log_err(historian->log, "history: cannot be written (%s); what comes is kept in memory", strerror(-error));
+    } else if (historian->failing) {
+        log_info(historian->log, "history: is written again");
+        historian->retry_after_ns = 0;
+    }
+    historian->failing = error != 0;
+    counter_set(historian->counters.good, !error);
+}
+
+/* --- life --------------------------------------------------------------------------------------------------------------------- */
+
+/* The wall clock was set: what follows is not told apart from what was by its time alone, so it is noted. */
+static void watch_clock(struct historian *historian, int64_t mono_ns, int64_t utc_ns)
+{
+    int64_t ahead_ns = utc_ns - mono_ns, step_ns = ahead_ns - historian->utc_ahead_ns;
+    if (historian->utc_ahead_ns && (step_ns > STEP_NS || step_ns < -STEP_NS)) {
+        char *text = mem_printf("the clock was set %s by %.1f s", step_ns > 0 ? "forward" : "back", fabs((double)step_ns) / 1e9);
+        log_warn(historian->log, "history: %s", text);
+        if (historian->file)
+            month_file_note(historian->file, utc_ns / 1000, "clock", text);
+        mem_free(text);
+    }
+    historian->utc_ahead_ns = ahead_ns;
+}
+
+static void tick(struct historian *historian, bool last)
+{
+    int64_t mono_ns = clock_mono_ns(), utc_ns = clock_utc_ns();
+    take_told(historian);
+    take_qualities(historian, mono_ns, utc_ns);
+    watch_clock(historian, mono_ns, utc_ns);
+    if (historian->file && month_file_month(historian->file) != month_of(utc_ns / 1000))
+        recorder_end(historian->recorder, &historian->waiting); /* no line is held over the border */
+    try_to_write(historian, mono_ns, utc_ns, last);
+    counter_set(historian->counters.waiting, (int64_t)historian->waiting.count);
+}
+
+static bool wait_for_tick(struct historian *historian, int64_t *next_ns)
+{
+    *next_ns += TICK_NS;
+    int64_t now_ns = clock_mono_ns();
+    if (*next_ns < now_ns)
+        *next_ns = now_ns;
+    struct timespec until = { *next_ns / NS_PER_S, *next_ns % NS_PER_S };
+    pthread_mutex_lock(&historian->lock);
+    while (!historian->stopping && pthread_cond_timedwait(&historian->wake, &historian->lock, &until) != ETIMEDOUT)
+        continue;
+    bool stopping = historian->stopping;
+    pthread_mutex_unlock(&historian->lock);
+    return !stopping;
+}
+
+static void *run(void *arg)
+{
+    struct historian *historian = arg;
+    int64_t next_ns = clock_mono_ns();
+    do
+        tick(historian, false);
+    while (wait_for_tick(historian, &next_ns));
+    tick(historian, true);
+    if (historian->file)
+        month_file_tidy(historian->file);
+    if (historian->waiting.count)
+        log_err(historian->log, "history: %zu points could not be written and are lost", historian->waiting.count);
+    return NULL;
+}
+
+static void add_counters(struct historian *historian, struct counters *counters)
+{
+    historian->counters.samples = counters_add(counters, "plantcast_history_samples_total", "counter", "Samples the historian was told.");
+    historian->counters.points = counters_add(counters, "plantcast_history_points_total", "counter", "Points it kept of them.");
+    historian->counters.lost = counters_add(counters, "plantcast_history_lost_total", "counter", "Samples it could not keep.");
+    historian->counters.waiting = counters_add(counters, "plantcast_history_waiting_points", "gauge", "Points that wait to be written.");
+    historian->counters.good = counters_add(counters, "plantcast_history_good", "gauge", "1 while history can be written.");
+    historian->counters.bytes = counters_add(counters, "plantcast_history_bytes", "gauge", "What all months take on disk.");
+}
+
+struct historian *historian_start(const struct historian_params *params)
+{
+    struct historian *historian = mem_new(sizeof(*historian));
+    pthread_condattr_t attributes;
+    pthread_condattr_init(&attributes);
+    pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
+    pthread_cond_init(&historian->wake, &attributes);
+    pthread_condattr_destroy(&attributes);
+    pthread_mutex_init(&historian->lock, NULL);
+    historian->log = params->log;
+    historian->plant = params->plant;
+    historian->store = params->store;
+    historian->folder = mem_strdup(params->folder);
+    historian->tags = history_tags(params->plant);
+    historian->recorder = recorder_create(params->plant);
+    historian->snapshot = snapshot_create(params->plant->tag_count);
+    add_counters(historian, params->counters);
+    store_listen(params->store, on_sample, historian);
+    int error = pthread_create(&historian->thread, NULL, run, historian);
+    historian->started = !error;
+    if (error) {
+        log_err(params->log, "history: no thread: %s", strerror(error));
+        historian_stop(&historian);
+    }
+    return historian;
+}
+
+void historian_stop(struct historian **pointer)
+{
+    struct historian *historian = *pointer;
+    if (!historian)
+        return;
+    store_listen(historian->store, NULL, NULL);
+    pthread_mutex_lock(&historian->lock);
+    historian->stopping = true;
+    pthread_cond_signal(&historian->wake);
+    pthread_mutex_unlock(&historian->lock);
+    if (historian->started)
+        pthread_join(historian->thread, NULL);
+    month_file_close(&historian->file);
+    recorder_destroy(&historian->recorder);
+    snapshot_destroy(&historian->snapshot);
+    mem_free(historian->tags);
+    mem_free(historian->waiting.at);
+    mem_free(historian->held.at);
+    mem_free(historian->told.rows.at);
+    mem_free(historian->taken.rows.at);
+    mem_free(historian->folder);
+    pthread_cond_destroy(&historian->wake);
+    pthread_mutex_destroy(&historian->lock);
+    mem_free(historian);
+    *pointer = NULL;
+}

@@ -1,0 +1,260 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Reads over the borders of months, and makes long times short. */
+#include "history/history.h"
+
+#include <errno.h>
+
+#include "base/mem.h"
+#include "history/month.h"
+#include "value/quality.h"
+
+enum { OPEN_MONTHS = 4 };
+
+struct history_reader {
+    struct log *log;
+    char *folder;
+    struct month_file *files[OPEN_MONTHS];
+    int next; /* to be closed for another */
+};
+
+struct history_reader *history_reader_create(struct log *log, const char *folder)
+{
+    struct history_reader *reader = mem_new(sizeof(*reader));
+    reader->log = log;
+    reader->folder = mem_strdup(folder);
+    return reader;
+}
+
+void history_reader_destroy(struct history_reader **reader)
+{
+    if (!*reader)
+        return;
+    for (int i = 0; i < OPEN_MONTHS; i++)
+        month_file_close(&(*reader)->files[i]);
+    mem_free((*reader)->folder);
+    mem_free(*reader);
+    *reader = NULL;
+}
+
+/* What the reader sees of a month until it is asked for another. NULL: nothing (*error 0), or it cannot be read. */
+static struct month_file *open_month(struct history_reader *reader, int month, int *error)
+{
+    struct month_file **place = &reader->files[reader->next];
+    *error = 0;
+    for (int i = 0; i < OPEN_MONTHS; i++)
+        if (reader->files[i] && month_file_month(reader->files[i]) == month) {
+            if (month_file_is_there(reader->files[i]))
+                return reader->files[i];
+            place = &reader->files[i]; /* deleted or set aside */
+        }
+    if (place == &reader->files[reader->next])
+        reader->next = (reader->next + 1) % OPEN_MONTHS;
+    month_file_close(place);
+    *place = month_file_read(reader->log, reader->folder, month, error);
+    if (*error == -ENOENT)
+        *error = 0;
+    return *place;
+}
+
+/* --- lines -------------------------------------------------------------------------------------------------------------------- */
+
+/* The longest rollup that is not longer than two of the stretches that are wanted. -1: the points themselves. */
+static int level_for(int64_t stretch_us)
+{
+    int level = -1;
+    for (int i = 0; i < LEVEL_COUNT; i++)
+        if (history_level_us[i] <= 2 * stretch_us)
+            level = i;
+    return level;
+}
+
+static int64_t bucket_length(int64_t stretch_us, int level)
+{
+    int64_t unit_us = level < 0 ? 1 : history_level_us[level];
+    int64_t count = (stretch_us + unit_us - 1) / unit_us;
+    return count > 1 ? count * unit_us : unit_us;
+}
+
+/* Where buckets of one length become those of `out`. */
+struct gather {
+    struct history_series *out;
+    int64_t length_us;           /* of what is put in */
+    bool has_last;
+    struct history_bucket last;
+};
+
+static struct history_bucket *bucket_of(struct history_series *out, int64_t t_us)
+{
+    struct history_buckets *buckets = &out->buckets;
+    if (buckets->count && buckets->at[buckets->count - 1].t_us == t_us)
+        return &buckets->at[buckets->count - 1];
+    mem_grow(&buckets->at, &buckets->capacity, buckets->count + 1, sizeof(*buckets->at));
+    struct history_bucket *bucket = &buckets->at[buckets->count++];
+    *bucket = (struct history_bucket){ .t_us = t_us, .low = NAN, .high = NAN, .mean = NAN, .first = NAN, .last = NAN };
+    return bucket;
+}
+
+/* The line between two buckets goes on in the longer ones that they belong to. */
+static void put_bucket(struct gather *gather, const struct history_bucket *bucket)
+{
+    struct history_series *out = gather->out;
+    int64_t begin_us = bucket->t_us - bucket->t_us % out->bucket_us, end_us = gather->last.t_us + gather->length_us;
+    struct history_bucket *before = gather->has_last ? &out->buckets.at[out->buckets.count - 1] : NULL;
+    int64_t border_us = before ? before->t_us + out->bucket_us : 0;
+    if (before)
+        rollup_bridge(before, &gather->last, end_us, bucket, end_us, bucket->t_us < border_us ? bucket->t_us : border_us);
+    bool same = before && before->t_us == begin_us;
+    struct history_bucket *into = bucket_of(out, begin_us);
+    if (before && !same)
+        rollup_bridge(into, &gather->last, end_us, bucket, end_us > begin_us ? end_us : begin_us, bucket->t_us);
+    rollup_merge(into, bucket);
+    gather->last = *bucket;
+    gather->has_last = true;
+}
+
+/* Points that no rollup has yet. Those up to done_us lead to them only. */
+static void put_points(struct gather *gather, const struct history_points *points, int64_t done_us)
+{
+    struct rollup rollup = { .length_us = gather->length_us, .step = points->step };
+    struct history_bucket closed;
+    for (size_t i = 0; i < points->count; i++)
+        if (rollup_put(&rollup, &points->at[i], &closed) && closed.t_us >= done_us)
+            put_bucket(gather, &closed);
+    if (rollup_rest(&rollup, &closed) && closed.t_us >= done_us)
+        put_bucket(gather, &closed);
+}
+
+static int add_month(struct month_file *file, const char *tag, int level, int64_t from_us, int64_t to_us, struct gather *gather)
+{
+    struct history_buckets buckets = { 0 };
+    struct history_points points = { 0 };
+    int64_t until_us = from_us;
+    int error = month_file_buckets(file, tag, (enum history_level)level, from_us, to_us, &buckets, &until_us);
+    if (!error && until_us <= to_us)
+        error = month_file_points(file, tag, until_us, to_us, &points);
+    for (size_t i = 0; i < buckets.count && !error; i++)
+        put_bucket(gather, &buckets.at[i]);
+    if (!error)
+        put_points(gather, &points, buckets.count ? until_us : INT64_MIN);
+    gather->out->step |= points.step;
+    mem_free(buckets.at);
+    mem_free(points.at);
+    return error;
+}
+
+/* Points of months that follow each other: one before and one after are enough. */
+static void drop_edges(struct history_points *points, int64_t from_us, int64_t to_us)
+{
+    size_t first = 0, last = points->count;
+    while (first + 1 < last && points->at[first + 1].t_us <= from_us)
+        first++;
+    while (last > first + 1 && points->at[last - 2].t_us > to_us)
+        last--;
+    for (size_t i = first; i < last; i++)
+        points->at[i - first] = points->at[i];
+    points->count = last - first;
+}
+
+static void shorten(struct history_series *out, int64_t stretch_us)
+{
+    struct gather gather = { .out = out, .length_us = stretch_us };
+    out->bucket_us = stretch_us;
+    put_points(&gather, &out->points, INT64_MIN);
+    mem_free(out->points.at);
+    out->points = (struct history_points){ .step = out->step };
+}
+
+static int read_month(struct history_reader *reader, int month, const char *tag, int level, int64_t from_us, int64_t to_us,
+                      struct gather *gather)
+{
+    struct history_series *out = gather->out;
+    int error;
+    struct month_file *file = open_month(reader, month, &error);
+    if (!file || (error = month_file_begin_read(file)))
+        return error;
+    if (level >= 0) {
+        error = add_month(file, tag, level, from_us, to_us, gather);
+    } else {
+        error = month_file_points(file, tag, from_us, to_us, &out->points);
+        out->step |= out->points.step;
+    }
+    month_file_end_read(file);
+    return error;
+}
+
+int history_series(struct history_reader *reader, const char *tag, int64_t from_us, int64_t to_us, int max_points,
+                   struct history_series *out)
+{
+    size_t count;
+    int *months = month_list(reader->folder, &count), error = 0;
+    int64_t stretch_us = (to_us - from_us) / (max_points > 1 ? max_points : 1) + 1;
+    int level = level_for(stretch_us), first = month_of(from_us), last = month_of(to_us);
+    *out = (struct history_series){ .bucket_us = level < 0 ? 0 : bucket_length(stretch_us, level) };
+    struct gather gather = { .out = out, .length_us = level < 0 ? 0 : history_level_us[level] };
+    for (size_t i = 0; i < count && !error; i++) {
+        bool leads = i + 1 < count && months[i] < first && months[i + 1] >= first; /* the line may begin before */
+        bool follows = i > 0 && months[i] > last && months[i - 1] <= last;
+        if ((months[i] >= first && months[i] <= last) || (level < 0 && (leads || follows)))
+            error = read_month(reader, months[i], tag, level, from_us, to_us, &gather);
+    }
+    if (!error && level < 0)
+        drop_edges(&out->points, from_us, to_us);
+    if (!error && level < 0 && out->points.count > (size_t)max_points + 2)
+        shorten(out, stretch_us);
+    mem_free(months);
+    return error;
+}
+
+void history_series_finish(struct history_series *series)
+{
+    mem_free(series->points.at);
+    mem_free(series->buckets.at);
+    *series = (struct history_series){ 0 };
+}
+
+/* --- one instant -------------------------------------------------------------------------------------------------------------- */
+
+static void read_pair(const struct history_pair *pair, int64_t t_us, struct reading *out)
+{
+    const struct history_point *before = &pair->before;
+    *out = (struct reading){ .quality = QUALITY_BAD_WAITING, .age_ns = INT64_MAX };
+    if (before->t_us == INT64_MIN)
+        return;
+    out->quality = before->quality;
+    out->value = isnan(before->value) ? 0 : before->value;
+    out->received_utc_ns = t_us * 1000;
+    out->age_ns = 0;
+    if (!quality_is_good(before->quality)) { /* since then nothing came that counts */
+        out->received_utc_ns = before->t_us * 1000;
+        out->age_ns = (t_us - before->t_us) * 1000;
+    } else if (pair->after.t_us != INT64_MIN && history_point_joined(before, &pair->after, pair->step)) {
+        out->value = history_point_between(before, &pair->after, t_us);
+    }
+}
+
+static int at_month(struct history_reader *reader, int month, const struct history_tag *tags, int64_t t_us, size_t count,
+                    struct history_pair *pairs)
+{
+    int error;
+    struct month_file *file = open_month(reader, month, &error);
+    if (!file || (error = month_file_begin_read(file)))
+        return error;
+    error = month_file_at(file, t_us, tags, count, pairs);
+    month_file_end_read(file);
+    return error;
+}
+
+int history_at(struct history_reader *reader, const struct history_tag *tags, int64_t t_us, struct snapshot *into)
+{
+    struct history_pair *pairs = mem_array(into->count ? into->count : 1, sizeof(*pairs));
+    int month = month_of(t_us), error = 0;
+    for (size_t i = 0; i < into->count; i++)
+        pairs[i].before.t_us = pairs[i].after.t_us = INT64_MIN;
+    for (int i = 0; i < 3 && !error; i++) /* lines cross the borders */
+        error = at_month(reader, month + (int[]){ 0, -1, 1 }[i], tags, t_us, into->count, pairs);
+    for (size_t i = 0; i < into->count; i++)
+        read_pair(&pairs[i], t_us, &into->readings[i]);
+    into->taken_utc_ns = t_us * 1000;
+    mem_free(pairs);
+    return error;
+}

@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the files about a month's file share. Only for them. */
+#ifndef HISTORY_MONTH_FILE_IMPL_H
+#define HISTORY_MONTH_FILE_IMPL_H
+#include <sqlite3.h>
+#include <sys/types.h>
+
+#include "history/month_file.h"
+
+enum month_statement {
+    SQL_BEGIN, SQL_BEGIN_READ, SQL_COMMIT, SQL_ROLLBACK, SQL_FIND_TAG, SQL_ADD_TAG, SQL_ADD_RECENT, SQL_HOLD, SQL_ADD_SAMPLE, SQL_ADD_ROLLUP,
+    SQL_RECENT, SQL_CLEAR_RECENT, SQL_LAST_SAMPLE, SQL_SAMPLES_FROM, SQL_ALL_HELD, SQL_CLEAR_HELD, SQL_CLEAR_ROLLUPS, SQL_NOTE,
+    SQL_BEFORE, SQL_AFTER, SQL_RANGE, SQL_RECENT_OF, SQL_HELD_OF, SQL_ROLLUPS, SQL_RECENT_ALL, SQL_WAITING, SQL_COUNT
+};
+
+struct month_rollups {
+    bool loaded;
+    struct rollup level[LEVEL_COUNT];
+};
+
+struct month_file {
+    struct log *log;
+    char *path;
+    int month;
+    ino_t inode;
+    sqlite3 *db;
+    sqlite3_stmt *statements[SQL_COUNT];
+    const struct history_tag *tags;
+    size_t tag_count, waiting;
+    int64_t *ids;                  /* of tags; 0: not known yet */
+    struct month_rollups *rollups; /* of tags */
+};
+
+/* Ready to bind and step. NULL: the database is damaged or out of memory. */
+sqlite3_stmt *month_sql(struct month_file *file, enum month_statement which);
+/* Steps to the end. An SQLite result code. */
+int month_run(sqlite3_stmt *statement);
+/* Logs it and turns it into -errno; SQLITE_OK, _ROW and _DONE are 0. */
+int month_fail(struct month_file *file, int code, const char *doing);
+
+void month_bind_value(sqlite3_stmt *statement, int index, double value);       /* NaN is NULL */
+double month_value(sqlite3_stmt *statement, int column);                       /* NULL is NaN */
+struct history_point month_point(sqlite3_stmt *statement, int first_column);   /* t, v, q */
+/* The row of SQL_BEFORE or SQL_AFTER; t_us INT64_MIN: there is none. 0 or -errno. */
+int month_one_point(struct month_file *file, enum month_statement which, int64_t id, int64_t t_us, struct history_point *out);
+void history_points_add(struct history_points *points, const struct history_point *point);
+
+#endif

@@ -1,0 +1,248 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Reading a month's file. */
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "history/month.h"
+#include "history/month_file_impl.h"
+
+int month_file_begin_read(struct month_file *file)
+{
+    return month_fail(file, month_run(month_sql(file, SQL_BEGIN_READ)), "cannot be read");
+}
+
+void month_file_end_read(struct month_file *file)
+{
+    month_run(month_sql(file, SQL_COMMIT));
+}
+
+/* 0: the file does not know the tag. */
+static int64_t find_tag(struct month_file *file, const char *name, bool *step)
+{
+    sqlite3_stmt *find = month_sql(file, SQL_FIND_TAG);
+    int64_t id = 0;
+    if (!find)
+        return 0;
+    sqlite3_bind_text(find, 1, name, -1, SQLITE_STATIC);
+    if (sqlite3_step(find) == SQLITE_ROW) {
+        id = sqlite3_column_int64(find, 0);
+        *step = sqlite3_column_int(find, 1) != 0;
+    }
+    sqlite3_reset(find);
+    return id;
+}
+
+int month_one_point(struct month_file *file, enum month_statement which, int64_t id, int64_t t_us, struct history_point *out)
+{
+    sqlite3_stmt *statement = month_sql(file, which);
+    out->t_us = INT64_MIN;
+    if (!statement)
+        return month_fail(file, sqlite3_errcode(file->db), "cannot be read");
+    sqlite3_bind_int64(statement, 1, id);
+    sqlite3_bind_int64(statement, 2, t_us);
+    int code = sqlite3_step(statement);
+    if (code == SQLITE_ROW)
+        *out = month_point(statement, 0);
+    sqlite3_reset(statement);
+    return month_fail(file, code, "cannot be read");
+}
+
+static int add_points(struct month_file *file, sqlite3_stmt *statement, struct history_points *out)
+{
+    int code;
+    if (!statement)
+        return month_fail(file, sqlite3_errcode(file->db), "cannot be read");
+    while ((code = sqlite3_step(statement)) == SQLITE_ROW) {
+        struct history_point point = month_point(statement, 0);
+        history_points_add(out, &point);
+    }
+    sqlite3_reset(statement);
+    return month_fail(file, code, "cannot be read");
+}
+
+static int by_time(const void *a, const void *b)
+{
+    const struct history_point *x = a, *y = b;
+    return (x->t_us > y->t_us) - (x->t_us < y->t_us);
+}
+
+/* Rows that are not in the order of tags yet: those inside, the last before, the first after. */
+static int add_recent(struct month_file *file, int64_t id, int64_t from_us, int64_t to_us, struct history_points *out)
+{
+    struct history_points recent = { 0 };
+    sqlite3_stmt *of = month_sql(file, SQL_RECENT_OF), *held = month_sql(file, SQL_HELD_OF);
+    if (of)
+        sqlite3_bind_int64(of, 1, id);
+    if (held)
+        sqlite3_bind_int64(held, 1, id);
+    int error = add_points(file, of, &recent);
+    if (!error)
+        error = add_points(file, held, &recent);
+    if (recent.count)
+        qsort(recent.at, recent.count, sizeof(*recent.at), by_time);
+    for (size_t i = 0; i < recent.count; i++) {
+        bool before = recent.at[i].t_us < from_us && i + 1 < recent.count && recent.at[i + 1].t_us <= from_us;
+        bool after = recent.at[i].t_us > to_us && i > 0 && recent.at[i - 1].t_us > to_us;
+        if (!before && !after)
+            history_points_add(out, &recent.at[i]);
+    }
+    mem_free(recent.at);
+    return error;
+}
+
+static int add_samples(struct month_file *file, int64_t id, int64_t from_us, int64_t to_us, struct history_points *out)
+{
+    struct history_point edge;
+    int error = month_one_point(file, SQL_BEFORE, id, from_us - 1, &edge);
+    if (error)
+        return error;
+    if (edge.t_us != INT64_MIN)
+        history_points_add(out, &edge);
+    sqlite3_stmt *range = month_sql(file, SQL_RANGE);
+    if (range) {
+        sqlite3_bind_int64(range, 1, id);
+        sqlite3_bind_int64(range, 2, from_us);
+        sqlite3_bind_int64(range, 3, to_us);
+    }
+    error = add_points(file, range, out);
+    if (!error)
+        error = month_one_point(file, SQL_AFTER, id, to_us, &edge);
+    if (!error && edge.t_us != INT64_MIN)
+        history_points_add(out, &edge);
+    return error;
+}
+
+/* Of several points before from_us the last stays, of several after to_us the first; of equal times the newer row. */
+static void trim(struct history_points *points, size_t begin, int64_t from_us, int64_t to_us)
+{
+    size_t kept = begin;
+    for (size_t i = begin; i < points->count; i++) {
+        const struct history_point point = points->at[i];
+        if (kept > begin && (points->at[kept - 1].t_us == point.t_us || (point.t_us <= from_us && points->at[kept - 1].t_us < from_us)))
+            kept--;
+        else if (kept > begin && points->at[kept - 1].t_us > to_us)
+            break;
+        points->at[kept++] = point;
+    }
+    points->count = kept;
+}
+
+int month_file_points(struct month_file *file, const char *tag, int64_t from_us, int64_t to_us, struct history_points *out)
+{
+    size_t begin = out->count;
+    int64_t id = find_tag(file, tag, &out->step);
+    if (!id)
+        return 0;
+    int error = add_samples(file, id, from_us, to_us, out);
+    if (!error)
+        error = add_recent(file, id, from_us, to_us, out);
+    if (out->count > begin)
+        qsort(out->at + begin, out->count - begin, sizeof(*out->at), by_time);
+    trim(out, begin, from_us, to_us);
+    return error;
+}
+
+int month_file_buckets(struct month_file *file, const char *tag, enum history_level level, int64_t from_us, int64_t to_us,
+                       struct history_buckets *out, int64_t *until_us)
+{
+    bool step;
+    int64_t id = find_tag(file, tag, &step), length_us = history_level_us[level];
+    *until_us = from_us;
+    if (!id)
+        return 0;
+    sqlite3_stmt *rollups = month_sql(file, SQL_ROLLUPS);
+    if (!rollups)
+        return month_fail(file, sqlite3_errcode(file->db), "cannot be read");
+    sqlite3_bind_int64(rollups, 1, length_us / US_PER_S);
+    sqlite3_bind_int64(rollups, 2, id);
+    sqlite3_bind_int64(rollups, 3, from_us - length_us);
+    sqlite3_bind_int64(rollups, 4, to_us);
+    int code;
+    while ((code = sqlite3_step(rollups)) == SQLITE_ROW) {
+        struct history_bucket bucket = {
+            .t_us = sqlite3_column_int64(rollups, 0),
+            .low = month_value(rollups, 1),
+            .high = month_value(rollups, 2),
+            .mean = month_value(rollups, 3),
+            .first = month_value(rollups, 4),
+            .last = month_value(rollups, 5),
+            .good_us = sqlite3_column_int64(rollups, 6),
+            .bad_us = sqlite3_column_int64(rollups, 7),
+            .quality = (uint32_t)sqlite3_column_int64(rollups, 8),
+        };
+        mem_grow(&out->at, &out->capacity, out->count + 1, sizeof(*out->at));
+        out->at[out->count++] = bucket;
+        *until_us = bucket.t_us + length_us;
+    }
+    sqlite3_reset(rollups);
+    return month_fail(file, code, "cannot be read");
+}
+
+/* --- one instant -------------------------------------------------------------------------------------------------------------- */
+
+static void take(struct history_pair *pair, const struct history_point *point, int64_t t_us)
+{
+    if (point->t_us == INT64_MIN)
+        return;
+    if (point->t_us <= t_us && point->t_us >= pair->before.t_us)
+        pair->before = *point;
+    if (point->t_us > t_us && (pair->after.t_us == INT64_MIN || point->t_us < pair->after.t_us))
+        pair->after = *point;
+}
+
+/* By id of the file, as -1 or an index of tags. NULL: the file has none of them. */
+static int *index_by_id(struct month_file *file, const struct history_tag *tags, size_t count, struct history_pair *pairs, int64_t *most)
+{
+    int64_t *ids = mem_array(count ? count : 1, sizeof(*ids));
+    *most = 0;
+    for (size_t i = 0; i < count; i++) {
+        ids[i] = find_tag(file, tags[i].name, &pairs[i].step);
+        if (ids[i] > *most)
+            *most = ids[i];
+    }
+    int *index = *most ? mem_array((size_t)*most + 1, sizeof(*index)) : NULL;
+    if (index)
+        memset(index, 0xff, ((size_t)*most + 1) * sizeof(*index));
+    for (size_t i = 0; i < count; i++)
+        if (ids[i])
+            index[ids[i]] = (int)i;
+    mem_free(ids);
+    return index;
+}
+
+static int take_recent(struct month_file *file, int64_t t_us, const int *index, int64_t most, struct history_pair *pairs)
+{
+    sqlite3_stmt *all = month_sql(file, SQL_RECENT_ALL);
+    int code;
+    if (!all)
+        return month_fail(file, sqlite3_errcode(file->db), "cannot be read");
+    while ((code = sqlite3_step(all)) == SQLITE_ROW) {
+        int64_t id = sqlite3_column_int64(all, 0);
+        struct history_point point = month_point(all, 1);
+        if (id <= most && index[id] >= 0)
+            take(&pairs[index[id]], &point, t_us);
+    }
+    sqlite3_reset(all);
+    return month_fail(file, code, "cannot be read");
+}
+
+int month_file_at(struct month_file *file, int64_t t_us, const struct history_tag *tags, size_t count, struct history_pair *pairs)
+{
+    int64_t most;
+    int error = 0, *index = index_by_id(file, tags, count, pairs, &most);
+    for (int64_t id = 1; index && id <= most && !error; id++) {
+        struct history_pair *pair = index[id] >= 0 ? &pairs[index[id]] : NULL;
+        struct history_point point;
+        bool leads = pair && pair->before.t_us == INT64_MIN, follows = pair && pair->after.t_us == INT64_MIN;
+        if (leads && !(error = month_one_point(file, SQL_BEFORE, id, t_us, &point)))
+            take(pair, &point, t_us);
+        if (follows && !error && !(error = month_one_point(file, SQL_AFTER, id, t_us, &point)))
+            take(pair, &point, t_us);
+    }
+    if (index && !error)
+        error = take_recent(file, t_us, index, most, pairs);
+    mem_free(index);
+    return error;
+}

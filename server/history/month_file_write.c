@@ -1,0 +1,328 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Writing to a month's file: first in the order of time, then tidied into the order of tags and rolled up. */
+#include <errno.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "history/month.h"
+#include "history/month_file_impl.h"
+
+/* --- transactions ------------------------------------------------------------------------------------------------------------- */
+
+static int begin(struct month_file *file)
+{
+    return month_fail(file, month_run(month_sql(file, SQL_BEGIN)), "cannot begin to write");
+}
+
+/* Commits if `error` is 0, else undoes. What was rolled up in memory is then not what lies on disk any more. */
+static int end(struct month_file *file, int error)
+{
+    if (!error)
+        error = month_fail(file, month_run(month_sql(file, SQL_COMMIT)), "cannot commit");
+    if (!error)
+        return 0;
+    if (!sqlite3_get_autocommit(file->db))
+        month_run(month_sql(file, SQL_ROLLBACK));
+    memset(file->rollups, 0, file->tag_count * sizeof(*file->rollups));
+    memset(file->ids, 0, file->tag_count * sizeof(*file->ids));
+    return error;
+}
+
+static int tag_id(struct month_file *file, int tag, int64_t *id)
+{
+    const struct history_tag *of = &file->tags[tag];
+    *id = file->ids[tag];
+    if (*id)
+        return 0;
+    sqlite3_stmt *add = month_sql(file, SQL_ADD_TAG);
+    if (!add)
+        return month_fail(file, sqlite3_errcode(file->db), "cannot add a tag");
+    sqlite3_bind_text(add, 1, of->name, -1, SQLITE_STATIC);
+    sqlite3_bind_text(add, 2, of->unit, -1, SQLITE_STATIC);
+    sqlite3_bind_int(add, 3, of->step);
+    sqlite3_bind_double(add, 4, of->within);
+    int code = sqlite3_step(add);
+    if (code == SQLITE_ROW)
+        file->ids[tag] = *id = sqlite3_column_int64(add, 0);
+    int error = month_fail(file, code, "cannot add a tag");
+    sqlite3_reset(add);
+    return error;
+}
+
+static int put(struct month_file *file, enum month_statement which, int64_t id, const struct history_point *point)
+{
+    sqlite3_stmt *statement = month_sql(file, which);
+    if (!statement)
+        return month_fail(file, sqlite3_errcode(file->db), "cannot write");
+    sqlite3_bind_int64(statement, 1, id);
+    sqlite3_bind_int64(statement, 2, point->t_us);
+    month_bind_value(statement, 3, point->value);
+    sqlite3_bind_int64(statement, 4, point->quality);
+    return month_fail(file, month_run(statement), "cannot write");
+}
+
+static int put_rows(struct month_file *file, enum month_statement which, const struct history_row *rows, size_t count)
+{
+    int error = 0;
+    for (size_t i = 0; i < count && !error; i++) {
+        int64_t id;
+        error = tag_id(file, rows[i].tag, &id);
+        if (!error)
+            error = put(file, which, id, &rows[i].point);
+    }
+    return error;
+}
+
+int month_file_write(struct month_file *file, const struct history_row *rows, size_t count, const struct history_row *held,
+                     size_t held_count)
+{
+    int error = begin(file);
+    if (error)
+        return error;
+    error = put_rows(file, SQL_ADD_RECENT, rows, count);
+    if (!error)
+        error = put_rows(file, SQL_HOLD, held, held_count);
+    error = end(file, error);
+    if (!error)
+        file->waiting += count;
+    return error;
+}
+
+int month_file_note(struct month_file *file, int64_t t_us, const char *kind, const char *text)
+{
+    sqlite3_stmt *note = month_sql(file, SQL_NOTE);
+    if (!note)
+        return month_fail(file, sqlite3_errcode(file->db), "cannot note an event");
+    sqlite3_bind_int64(note, 1, t_us);
+    sqlite3_bind_text(note, 2, kind, -1, SQLITE_STATIC);
+    sqlite3_bind_text(note, 3, text, -1, SQLITE_STATIC);
+    return month_fail(file, month_run(note), "cannot note an event");
+}
+
+/* --- rolling up --------------------------------------------------------------------------------------------------------------- */
+
+static int put_bucket(struct month_file *file, int64_t id, int64_t length_us, const struct history_bucket *bucket)
+{
+    sqlite3_stmt *add = month_sql(file, SQL_ADD_ROLLUP);
+    if (!add)
+        return month_fail(file, sqlite3_errcode(file->db), "cannot roll up");
+    sqlite3_bind_int64(add, 1, length_us / US_PER_S);
+    sqlite3_bind_int64(add, 2, id);
+    sqlite3_bind_int64(add, 3, bucket->t_us);
+    month_bind_value(add, 4, bucket->low);
+    month_bind_value(add, 5, bucket->high);
+    month_bind_value(add, 6, bucket->mean);
+    month_bind_value(add, 7, bucket->first);
+    month_bind_value(add, 8, bucket->last);
+    sqlite3_bind_int64(add, 9, bucket->good_us);
+    sqlite3_bind_int64(add, 10, bucket->bad_us);
+    sqlite3_bind_int64(add, 11, bucket->quality);
+    return month_fail(file, month_run(add), "cannot roll up");
+}
+
+static void reset_rollups(struct month_rollups *rollups, bool step)
+{
+    *rollups = (struct month_rollups){ .loaded = true };
+    for (int level = 0; level < LEVEL_COUNT; level++)
+        rollups->level[level] = (struct rollup){ .length_us = history_level_us[level], .step = step };
+}
+
+/* Rolls up what is in the table of samples from the hour of from_us on, and the point before. Buckets go to disk if `store`. */
+static int roll_from(struct month_file *file, int64_t id, int64_t from_us, struct month_rollups *rollups, bool store)
+{
+    sqlite3_stmt *samples = month_sql(file, SQL_SAMPLES_FROM);
+    int64_t hour_us = from_us - from_us % history_level_us[LEVEL_1_H];
+    int code, error = 0;
+    if (!samples)
+        return month_fail(file, sqlite3_errcode(file->db), "cannot read samples");
+    sqlite3_bind_int64(samples, 1, id);
+    sqlite3_bind_int64(samples, 2, hour_us);
+    while (!error && (code = sqlite3_step(samples)) == SQLITE_ROW) {
+        struct history_point point = month_point(samples, 0);
+        struct history_bucket closed;
+        for (int level = 0; level < LEVEL_COUNT && !error; level++)
+            if (rollup_put(&rollups->level[level], &point, &closed) && store && closed.t_us >= hour_us)
+                error = put_bucket(file, id, history_level_us[level], &closed);
+    }
+    sqlite3_reset(samples);
+    return error ? error : month_fail(file, code, "cannot read samples");
+}
+
+/* As they were left by whoever wrote the file before. */
+static int load_rollups(struct month_file *file, int tag, int64_t id)
+{
+    struct month_rollups *rollups = &file->rollups[tag];
+    reset_rollups(rollups, file->tags[tag].step);
+    sqlite3_stmt *last = month_sql(file, SQL_LAST_SAMPLE);
+    if (!last)
+        return month_fail(file, sqlite3_errcode(file->db), "cannot read samples");
+    sqlite3_bind_int64(last, 1, id);
+    int code = sqlite3_step(last);
+    int64_t t_us = code == SQLITE_ROW ? sqlite3_column_int64(last, 0) : INT64_MIN;
+    sqlite3_reset(last);
+    int error = month_fail(file, code, "cannot read samples");
+    return error || t_us == INT64_MIN ? error : roll_from(file, id, t_us, rollups, false);
+}
+
+static int roll_point(struct month_file *file, int tag, int64_t id, const struct history_point *point)
+{
+    struct month_rollups *rollups = &file->rollups[tag];
+    struct history_bucket closed;
+    int error = 0;
+    for (int level = 0; level < LEVEL_COUNT && !error; level++)
+        if (rollup_put(&rollups->level[level], point, &closed))
+            error = put_bucket(file, id, history_level_us[level], &closed);
+    return error;
+}
+
+/* --- tidying ------------------------------------------------------------------------------------------------------------------ */
+
+static int *tags_by_id(const struct month_file *file, int64_t *most)
+{
+    *most = 0;
+    for (size_t i = 0; i < file->tag_count; i++)
+        if (file->ids[i] > *most)
+            *most = file->ids[i];
+    int *tags = mem_array((size_t)*most + 1, sizeof(*tags));
+    memset(tags, 0xff, ((size_t)*most + 1) * sizeof(*tags));
+    for (size_t i = 0; i < file->tag_count; i++)
+        if (file->ids[i])
+            tags[file->ids[i]] = (int)i;
+    return tags;
+}
+
+static int move_row(struct month_file *file, int tag, int64_t id, const struct history_point *point)
+{
+    int error = 0;
+    if (tag >= 0 && !file->rollups[tag].loaded)
+        error = load_rollups(file, tag, id); /* before the table has more */
+    if (!error)
+        error = put(file, SQL_ADD_SAMPLE, id, point);
+    return error || tag < 0 ? error : roll_point(file, tag, id, point);
+}
+
+static int move_rows(struct month_file *file)
+{
+    int64_t most;
+    int code, error = 0, *tags = tags_by_id(file, &most);
+    sqlite3_stmt *recent = month_sql(file, SQL_RECENT);
+    while (recent && !error && (code = sqlite3_step(recent)) == SQLITE_ROW) {
+        int64_t id = sqlite3_column_int64(recent, 0);
+        struct history_point point = month_point(recent, 1);
+        error = move_row(file, id <= most ? tags[id] : -1, id, &point);
+    }
+    if (recent)
+        sqlite3_reset(recent);
+    mem_free(tags);
+    if (!recent)
+        return month_fail(file, sqlite3_errcode(file->db), "cannot read what is recent");
+    return error ? error : month_fail(file, code, "cannot read what is recent");
+}
+
+int month_file_tidy(struct month_file *file)
+{
+    if (!file->waiting)
+        return 0;
+    int error = begin(file);
+    if (error)
+        return error;
+    for (size_t i = 0; i < file->tag_count && !error; i++) {
+        int64_t id;
+        error = tag_id(file, (int)i, &id);
+    }
+    if (!error)
+        error = move_rows(file);
+    if (!error)
+        error = month_fail(file, month_run(month_sql(file, SQL_CLEAR_RECENT)), "cannot clear what was recent");
+    error = end(file, error);
+    if (!error)
+        file->waiting = 0;
+    return error;
+}
+
+/* --- what was written in other ways ------------------------------------------------------------------------------------------- */
+
+static int roll_again(struct month_file *file, int tag, int64_t id, int64_t from_us)
+{
+    struct month_rollups rollups;
+    struct history_point before;
+    int error = month_one_point(file, SQL_BEFORE, id, from_us - 1, &before);
+    if (before.t_us != INT64_MIN) /* the line from there leads elsewhere now */
+        from_us = before.t_us;
+    from_us -= from_us % history_level_us[LEVEL_1_H];
+    for (int level = 0; level < LEVEL_COUNT && !error; level++) {
+        sqlite3_stmt *clear = month_sql(file, SQL_CLEAR_ROLLUPS);
+        if (!clear)
+            return month_fail(file, sqlite3_errcode(file->db), "cannot roll up again");
+        sqlite3_bind_int64(clear, 1, history_level_us[level] / US_PER_S);
+        sqlite3_bind_int64(clear, 2, id);
+        sqlite3_bind_int64(clear, 3, from_us);
+        sqlite3_bind_int64(clear, 4, INT64_MAX);
+        error = month_fail(file, month_run(clear), "cannot roll up again");
+    }
+    reset_rollups(&rollups, file->tags[tag].step);
+    if (!error)
+        error = roll_from(file, id, from_us, &rollups, true);
+    file->rollups[tag] = rollups;
+    return error;
+}
+
+int month_file_import(struct month_file *file, int tag, const struct history_point *points, size_t count)
+{
+    int64_t id;
+    if (!count)
+        return 0;
+    int error = month_file_tidy(file);
+    if (error || (error = begin(file)))
+        return error;
+    error = tag_id(file, tag, &id);
+    for (size_t i = 0; i < count && !error; i++)
+        error = put(file, SQL_ADD_SAMPLE, id, &points[i]);
+    if (!error)
+        error = roll_again(file, tag, id, points[0].t_us);
+    return end(file, error);
+}
+
+/* The held points become rows, each with one behind it that says that nobody recorded. */
+static int end_lines(struct month_file *file, uint32_t gap_quality, int64_t *ended_us)
+{
+    sqlite3_stmt *held = month_sql(file, SQL_ALL_HELD);
+    int code = SQLITE_ERROR, error = 0;
+    while (held && !error && (code = sqlite3_step(held)) == SQLITE_ROW) {
+        int64_t id = sqlite3_column_int64(held, 0);
+        struct history_point point = month_point(held, 1);
+        struct history_point gap = { .t_us = point.t_us + 1, .value = NAN, .quality = gap_quality };
+        error = put(file, SQL_ADD_RECENT, id, &point);
+        if (!error && point.quality != gap_quality) {
+            error = put(file, SQL_ADD_RECENT, id, &gap);
+            file->waiting++;
+        }
+        file->waiting++;
+        if (point.t_us > *ended_us)
+            *ended_us = point.t_us;
+    }
+    if (held)
+        sqlite3_reset(held);
+    return error ? error : month_fail(file, held ? code : sqlite3_errcode(file->db), "cannot read what was held");
+}
+
+int month_file_clear_held(struct month_file *file)
+{
+    return month_fail(file, month_run(month_sql(file, SQL_CLEAR_HELD)), "cannot clear what was held");
+}
+
+int month_file_recover(struct month_file *file, uint32_t gap_quality, int64_t *ended_us)
+{
+    size_t waiting = file->waiting;
+    int error = begin(file);
+    if (error)
+        return error;
+    *ended_us = INT64_MIN;
+    error = end_lines(file, gap_quality, ended_us);
+    if (!error)
+        error = month_file_clear_held(file);
+    error = end(file, error);
+    if (error)
+        file->waiting = waiting;
+    return error;
+}

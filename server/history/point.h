@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the historian keeps of one tag: points in time, joined by straight lines (by steps where the tag is a switch). */
+#ifndef HISTORY_POINT_H
+#define HISTORY_POINT_H
+#include <math.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+struct history_point {
+    int64_t t_us;     /* UTC, since 1970 */
+    double value;     /* engineering units; NaN: none */
+    uint32_t quality; /* OPC UA; from here until the next point */
+};
+
+/* Has a value that may be drawn. */
+static inline bool history_point_usable(const struct history_point *p)
+{
+    return (p->quality >> 30) < 2 && !isnan(p->value);
+}
+/* Of what lies between two points that follow each other, where it is not a step. Both are usable. */
+static inline double history_point_between(const struct history_point *a, const struct history_point *b, int64_t t_us)
+{
+    return a->value + (b->value - a->value) * ((double)(t_us - a->t_us) / (double)(b->t_us - a->t_us));
+}
+/* The line from a to b shows values between them; else a's value holds until b. */
+static inline bool history_point_joined(const struct history_point *a, const struct history_point *b, bool step)
+{
+    return !step && history_point_usable(a) && history_point_usable(b) && a->quality == b->quality;
+}
+
+#endif

@@ -1,0 +1,131 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One door for each tag. */
+#include "history/recorder.h"
+
+#include "base/mem.h"
+#include "history/door.h"
+#include "history/history.h"
+#include "history/month.h"
+#include "value/quality.h"
+
+struct lane {
+    struct door door;
+    struct door_params params;
+    uint32_t quality;
+    bool touched; /* is in recorder->touched */
+};
+
+struct recorder {
+    struct history_tag *tags;
+    struct lane *lanes;
+    size_t count, touched_count;
+    int *touched;
+};
+
+/* What the values move within: the instrument's own range, else what the group shows. */
+static double span_of(const struct plant *plant, const struct plant_tag *tag)
+{
+    if (tag->scaling != SCALING_NONE)
+        return fabs(tag->scaled_high - tag->scaled_low);
+    return tag->group >= 0 ? plant->groups[tag->group].max - plant->groups[tag->group].min : 0;
+}
+
+struct history_tag *history_tags(const struct plant *plant)
+{
+    struct history_tag *tags = mem_array(plant->tag_count ? plant->tag_count : 1, sizeof(*tags));
+    for (size_t i = 0; i < plant->tag_count; i++) {
+        const struct plant_tag *tag = &plant->tags[i];
+        tags[i] = (struct history_tag){
+            .name = tag->name,
+            .unit = tag->unit ? tag->unit : "",
+            .step = tag->type == DATA_BIT,
+            .within = isnan(tag->deadband) ? plant->history.deadband_percent / 100 * span_of(plant, tag) : tag->deadband,
+        };
+    }
+    return tags;
+}
+
+struct recorder *recorder_create(const struct plant *plant)
+{
+    struct recorder *recorder = mem_new(sizeof(*recorder));
+    recorder->count = plant->tag_count;
+    recorder->tags = history_tags(plant);
+    recorder->lanes = mem_array(recorder->count ? recorder->count : 1, sizeof(*recorder->lanes));
+    recorder->touched = mem_array(recorder->count ? recorder->count : 1, sizeof(*recorder->touched));
+    for (size_t i = 0; i < recorder->count; i++) {
+        const struct history_tag *tag = &recorder->tags[i];
+        recorder->lanes[i].quality = QUALITY_BAD_WAITING;
+        recorder->lanes[i].params = (struct door_params){
+            .deadband = tag->step ? 0 : tag->within / 4, /* 2 * 1/4 + 1/2: door.h */
+            .deviation = tag->step ? 0 : tag->within / 2,
+            .override_us = (int64_t)(plant->history.override_s * US_PER_S),
+            .step = tag->step,
+        };
+    }
+    return recorder;
+}
+
+void recorder_destroy(struct recorder **recorder)
+{
+    if (!*recorder)
+        return;
+    mem_free((*recorder)->tags);
+    mem_free((*recorder)->lanes);
+    mem_free((*recorder)->touched);
+    mem_free(*recorder);
+    *recorder = NULL;
+}
+
+static void add(struct recorder_rows *rows, int tag, const struct history_point *points, int count)
+{
+    mem_grow(&rows->at, &rows->capacity, rows->count + (size_t)count, sizeof(*rows->at));
+    for (int i = 0; i < count; i++)
+        rows->at[rows->count++] = (struct history_row){ tag, points[i] };
+}
+
+void recorder_put(struct recorder *recorder, int tag, const struct history_point *sample, struct recorder_rows *kept)
+{
+    struct lane *lane = &recorder->lanes[tag];
+    struct history_point points[DOOR_MAX_KEPT];
+    add(kept, tag, points, door_put(&lane->door, &lane->params, sample, points));
+    lane->quality = sample->quality;
+    if (!lane->touched)
+        recorder->touched[recorder->touched_count++] = tag;
+    lane->touched = true;
+}
+
+uint32_t recorder_quality(const struct recorder *recorder, int tag)
+{
+    return recorder->lanes[tag].quality;
+}
+
+void recorder_hold_again(struct recorder *recorder)
+{
+    recorder->touched_count = 0;
+    for (size_t i = 0; i < recorder->count; i++) {
+        recorder->lanes[i].touched = recorder->lanes[i].door.open;
+        if (recorder->lanes[i].touched)
+            recorder->touched[recorder->touched_count++] = (int)i;
+    }
+}
+
+void recorder_held(struct recorder *recorder, struct recorder_rows *held)
+{
+    struct history_point point;
+    for (size_t i = 0; i < recorder->touched_count; i++) {
+        struct lane *lane = &recorder->lanes[recorder->touched[i]];
+        lane->touched = false;
+        /* What was kept just now is held too: where the last writer ended must be known. */
+        if (!door_held(&lane->door, &point))
+            point = lane->door.anchor;
+        add(held, recorder->touched[i], &point, 1);
+    }
+    recorder->touched_count = 0;
+}
+
+void recorder_end(struct recorder *recorder, struct recorder_rows *kept)
+{
+    struct history_point points[DOOR_MAX_KEPT];
+    for (size_t i = 0; i < recorder->count; i++)
+        add(kept, (int)i, points, door_end(&recorder->lanes[i].door, &recorder->lanes[i].params, points));
+}

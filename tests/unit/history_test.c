@@ -1,0 +1,385 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Month files and their reader: what was recorded comes back, over the borders of months, rolled up, at one instant, and when
+   the file was damaged or the disk is full. */
+#include <errno.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "base/text.h"
+#include "history/history.h"
+#include "history/keep.h"
+#include "history/month.h"
+#include "history/recorder.h"
+#include "tests/support/plant_by_hand.h"
+#include "tests/support/temp.h"
+#include "value/quality.h"
+
+#define S US_PER_S
+enum { TAGS = 3 };
+static const int64_t NOVEMBER = INT64_C(1793491200) * US_PER_S; /* 2026-11-01T00:00:00Z */
+
+struct setup {
+    char *folder;
+    struct log *log;
+    struct plant *plant; /* two analog tags within 0.4, 1, and a switch */
+    struct history_tag *tags;
+    struct history_reader *reader;
+};
+
+static int set_up(void **state)
+{
+    static struct setup s;
+    s.folder = temp_folder_create();
+    s.log = log_create(LOG_ERROR);
+    s.plant = plant_by_hand_create(TAGS);
+    s.plant->history = (struct plant_history){ .override_s = 600 };
+    plant_by_hand_source(s.plant, "plc", 502);
+    plant_by_hand_tag(s.plant, "TT-1", TABLE_HOLDING, 0, DATA_FLOAT32)->deadband = 0.4;
+    plant_by_hand_tag(s.plant, "TT-2", TABLE_HOLDING, 2, DATA_FLOAT32)->deadband = 1;
+    plant_by_hand_tag(s.plant, "XS-1", TABLE_COIL, 0, DATA_BIT);
+    s.tags = history_tags(s.plant);
+    s.reader = history_reader_create(s.log, s.folder);
+    *state = &s;
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    struct setup *s = *state;
+    history_reader_destroy(&s->reader);
+    mem_free(s->tags);
+    plant_by_hand_destroy(&s->plant);
+    log_destroy(&s->log);
+    temp_folder_destroy(&s->folder);
+    return 0;
+}
+
+static struct month_file *open_file(struct setup *s, int64_t t_us)
+{
+    int error;
+    struct month_file *file = month_file_open(s->log, s->folder, month_of(t_us), s->tags, TAGS, &error);
+    assert_non_null(file);
+    return file;
+}
+
+static double wave(int tag, int64_t second)
+{
+    double t = (double)second;
+    if (tag == 2)
+        return second / 700 % 2;
+    return 50 + 30 * sin(t / (500 + 300 * tag)) + (second % 5000 == 4321 ? 40 : 0);
+}
+
+static uint32_t quality_at(int tag, int64_t second)
+{
+    return tag == 1 && second % 9000 > 8000 ? QUALITY_BAD_SENSOR_FAILURE : QUALITY_GOOD;
+}
+
+/* One sample a second, as the historian would have it: doors, one transaction each minute, tidied every ten. */
+static void record(struct setup *s, int64_t begin_us, int seconds)
+{
+    struct recorder *recorder = recorder_create(s->plant);
+    struct recorder_rows rows = { 0 }, held = { 0 };
+    struct month_file *file = open_file(s, begin_us);
+    for (int i = 0; i < seconds; i++) {
+        for (int tag = 0; tag < TAGS; tag++) {
+            uint32_t quality = quality_at(tag, i);
+            struct history_point point = { begin_us + i * S, quality_is_bad(quality) ? NAN : wave(tag, i), quality };
+            recorder_put(recorder, tag, &point, &rows);
+        }
+        if (i % 60 != 59 && i + 1 < seconds)
+            continue;
+        recorder_held(recorder, &held);
+        assert_int_equal(month_file_write(file, rows.at, rows.count, held.at, held.count), 0);
+        rows.count = held.count = 0;
+        if (i % 600 == 599)
+            assert_int_equal(month_file_tidy(file), 0);
+    }
+    mem_free(rows.at);
+    mem_free(held.at);
+    month_file_close(&file);
+    recorder_destroy(&recorder);
+}
+
+/* --- tests -------------------------------------------------------------------------------------------------------------------- */
+
+static void what_was_recorded_comes_back(void **state)
+{
+    struct setup *s = *state;
+    const int seconds = 20000;
+    struct history_series series;
+    record(s, NOVEMBER, seconds);
+    for (int tag = 0; tag < TAGS; tag++) {
+        assert_int_equal(history_series(s->reader, s->tags[tag].name, NOVEMBER, NOVEMBER + seconds * S, 1000000, &series), 0);
+        assert_int_equal(series.bucket_us, 0);
+        assert_true(series.points.count > 2 && series.points.count < (size_t)seconds / 4);
+        size_t k = 0;
+        for (int i = 0; i < seconds; i++) {
+            int64_t t_us = NOVEMBER + i * S;
+            while (k + 1 < series.points.count && series.points.at[k + 1].t_us <= t_us)
+                k++;
+            const struct history_point *a = &series.points.at[k], *b = k + 1 < series.points.count ? a + 1 : NULL;
+            assert_int_equal(a->quality, quality_at(tag, i));
+            if (!history_point_usable(a))
+                continue;
+            double value = b && history_point_joined(a, b, series.step) ? history_point_between(a, b, t_us) : a->value;
+            assert_true(fabs(value - wave(tag, i)) <= s->tags[tag].within + 1e-9);
+        }
+        history_series_finish(&series);
+    }
+}
+
+static void one_instant_is_as_it_was(void **state)
+{
+    struct setup *s = *state;
+    struct snapshot *snapshot = snapshot_create(TAGS);
+    record(s, NOVEMBER, 20000);
+    for (int i = 7; i < 20000; i += 997) {
+        assert_int_equal(history_at(s->reader, s->tags, NOVEMBER + i * S, snapshot), 0);
+        for (int tag = 0; tag < TAGS; tag++) {
+            assert_int_equal(snapshot->readings[tag].quality, quality_at(tag, i));
+            if (!quality_is_bad(quality_at(tag, i)))
+                assert_true(fabs(snapshot->readings[tag].value - wave(tag, i)) <= s->tags[tag].within + 1e-9);
+        }
+    }
+    assert_int_equal(history_at(s->reader, s->tags, NOVEMBER - S, snapshot), 0);
+    assert_int_equal(snapshot->readings[0].quality, QUALITY_BAD_WAITING);
+    snapshot_destroy(&snapshot);
+}
+
+/* A spike of one second and the time without a value are seen at every length. */
+static void long_times_keep_spikes_and_gaps(void **state)
+{
+    struct setup *s = *state;
+    struct history_series series;
+    record(s, NOVEMBER, 40000);
+    for (int max = 10; max <= 20000; max *= 2) {
+        double high = 0, low = 1000, bad_us = 0;
+        for (int tag = 0; tag < 2; tag++) {
+            assert_int_equal(history_series(s->reader, s->tags[tag].name, NOVEMBER, NOVEMBER + 39999 * S, max, &series), 0);
+            for (size_t i = 0; i < series.buckets.count; i++) {
+                const struct history_bucket *bucket = &series.buckets.at[i];
+                high = fmax(high, bucket->high);
+                low = fmin(low, bucket->low);
+                bad_us += tag == 1 ? (double)bucket->bad_us : 0;
+                if (tag == 1 && quality_is_bad(bucket->quality) && i + 1 < series.buckets.count) /* goes on where none is */
+                    bad_us += (double)(bucket[1].t_us - bucket->t_us - series.bucket_us);
+                assert_true(i == 0 || bucket->t_us > series.buckets.at[i - 1].t_us);
+            }
+            for (size_t i = 0; i < series.points.count; i++) {
+                high = fmax(high, series.points.at[i].value);
+                low = fmin(low, series.points.at[i].value);
+                if (tag == 1 && i + 1 < series.points.count && !history_point_usable(&series.points.at[i]))
+                    bad_us += (double)(series.points.at[i + 1].t_us - series.points.at[i].t_us);
+            }
+            assert_true(series.points.count + series.buckets.count <= 2 * (size_t)max + 3);
+            history_series_finish(&series);
+        }
+        double truth_high = 0, truth_low = 1000;
+        for (int i = 0; i < 40000; i++)
+            for (int tag = 0; tag < 2; tag++)
+                if (!quality_is_bad(quality_at(tag, i))) {
+                    truth_high = fmax(truth_high, wave(tag, i));
+                    truth_low = fmin(truth_low, wave(tag, i));
+                }
+        assert_true(fabs(high - truth_high) < 0.5);
+        assert_true(fabs(low - truth_low) <= 1);
+        assert_true(fabs(bad_us / 1e6 - 4 * 999) < 5 * 2);
+    }
+}
+
+static void lines_cross_the_border_of_a_month(void **state)
+{
+    struct setup *s = *state;
+    struct history_series series;
+    struct snapshot *snapshot = snapshot_create(TAGS);
+    struct history_point before = { NOVEMBER - 10 * S, 10, 0 }, after = { NOVEMBER + 10 * S, 30, 0 };
+    struct month_file *file = open_file(s, before.t_us);
+    assert_int_equal(month_file_import(file, 0, &before, 1), 0);
+    month_file_close(&file);
+    file = open_file(s, after.t_us);
+    assert_int_equal(month_file_import(file, 0, &after, 1), 0);
+    month_file_close(&file);
+    for (int i = -9; i < 10; i++) {
+        assert_int_equal(history_at(s->reader, s->tags, NOVEMBER + i * S, snapshot), 0);
+        assert_true(fabs(snapshot->readings[0].value - 20 - i) < 1e-9);
+    }
+    assert_int_equal(history_series(s->reader, "TT-1", NOVEMBER - 5 * S, NOVEMBER - 1 * S, 100, &series), 0);
+    assert_int_equal(series.points.count, 2);
+    history_series_finish(&series);
+    snapshot_destroy(&snapshot);
+}
+
+/* Older points than those that are there: the rollups are what they would have been. */
+static void an_import_is_rolled_up_again(void **state)
+{
+    struct setup *s = *state;
+    enum { COUNT = 20000 };
+    struct history_point *points = mem_array(COUNT, sizeof(*points));
+    struct history_series once, twice;
+    for (int i = 0; i < COUNT; i++)
+        points[i] = (struct history_point){ NOVEMBER + i * S, rand() % 1000, 0 };
+    struct month_file *file = open_file(s, NOVEMBER);
+    assert_int_equal(month_file_import(file, 0, points, COUNT), 0);
+    assert_int_equal(month_file_import(file, 1, points + COUNT / 3, COUNT - COUNT / 3), 0);
+    assert_int_equal(month_file_import(file, 1, points, COUNT / 3), 0);
+    month_file_close(&file);
+    assert_int_equal(history_series(s->reader, "TT-1", NOVEMBER, NOVEMBER + COUNT * S, 500, &once), 0);
+    assert_int_equal(history_series(s->reader, "TT-2", NOVEMBER, NOVEMBER + COUNT * S, 500, &twice), 0);
+    assert_true(once.buckets.count > 300);
+    assert_int_equal(once.buckets.count, twice.buckets.count);
+    for (size_t i = 0; i < once.buckets.count; i++) {
+        assert_true(once.buckets.at[i].low == twice.buckets.at[i].low && once.buckets.at[i].high == twice.buckets.at[i].high);
+        assert_true(fabs(once.buckets.at[i].mean - twice.buckets.at[i].mean) < 1e-9);
+    }
+    history_series_finish(&once);
+    history_series_finish(&twice);
+    mem_free(points);
+}
+
+/* Nobody draws a line over the time when nobody recorded. */
+static void a_restart_leaves_a_gap(void **state)
+{
+    struct setup *s = *state;
+    struct snapshot *snapshot = snapshot_create(TAGS);
+    int64_t ended_us;
+    record(s, NOVEMBER, 100);
+    struct month_file *file = open_file(s, NOVEMBER);
+    assert_int_equal(month_file_recover(file, QUALITY_BAD_NO_COMMUNICATION, &ended_us), 0);
+    assert_int_equal(ended_us, NOVEMBER + 99 * S);
+    assert_int_equal(month_file_tidy(file), 0);
+    assert_int_equal(month_file_import(file, 0, &(struct history_point){ NOVEMBER + 500 * S, 60, 0 }, 1), 0);
+    month_file_close(&file);
+    assert_int_equal(history_at(s->reader, s->tags, NOVEMBER + 99 * S, snapshot), 0);
+    assert_true(fabs(snapshot->readings[0].value - wave(0, 99)) < 0.4);
+    assert_int_equal(history_at(s->reader, s->tags, NOVEMBER + 300 * S, snapshot), 0);
+    assert_int_equal(snapshot->readings[0].quality, QUALITY_BAD_NO_COMMUNICATION);
+    assert_int_equal(history_at(s->reader, s->tags, NOVEMBER + 500 * S, snapshot), 0);
+    assert_int_equal(snapshot->readings[0].quality, QUALITY_GOOD);
+    snapshot_destroy(&snapshot);
+}
+
+static size_t count_damaged(const char *folder)
+{
+    char *command = mem_printf("ls '%s' | grep -c 'damaged-.*sqlite$'", folder);
+    FILE *pipe = popen(command, "r");
+    int count = -1;
+    assert_int_equal(fscanf(pipe, "%d", &count), 1);
+    pclose(pipe);
+    mem_free(command);
+    return (size_t)count;
+}
+
+static void a_damaged_file_is_set_aside(void **state)
+{
+    struct setup *s = *state;
+    char *path = temp_path(s->folder, "history-2026-11.sqlite");
+    static const char rubbish[20000] = "this was never a database";
+    assert_int_equal(text_write_file(path, rubbish, sizeof(rubbish)), 0);
+    record(s, NOVEMBER, 100);
+    assert_int_equal(count_damaged(s->folder), 1);
+    struct snapshot *snapshot = snapshot_create(TAGS);
+    assert_int_equal(history_at(s->reader, s->tags, NOVEMBER + 50 * S, snapshot), 0);
+    assert_int_equal(snapshot->readings[0].quality, QUALITY_GOOD);
+    snapshot_destroy(&snapshot);
+    mem_free(path);
+}
+
+/* A page in its middle: found when it is used. */
+static void damage_inside_is_noticed(void **state)
+{
+    struct setup *s = *state;
+    char *path = temp_path(s->folder, "history-2026-11.sqlite");
+    record(s, NOVEMBER, 40000);
+    FILE *file = fopen(path, "r+b");
+    static const char rubbish[4096] = { 1, 2, 3 };
+    fseek(file, 0, SEEK_END);
+    long pages = ftell(file) / 4096;
+    assert_true(pages > 20);
+    for (long page = 12; page < pages; page++) { /* the first hold the roots of tables */
+        fseek(file, page * 4096, SEEK_SET);
+        assert_int_equal(fwrite(rubbish, sizeof(rubbish), 1, file), 1);
+    }
+    fclose(file);
+    int error = 0, row_error = 0;
+    struct month_file *again = month_file_open(s->log, s->folder, month_of(NOVEMBER), s->tags, TAGS, &error);
+    for (int i = 0; again && !row_error && i < 40; i++)
+        row_error = month_file_import(again, i % 2, &(struct history_point){ NOVEMBER + i * 1000 * S, 1, 0 }, 1);
+    if (again) {
+        assert_int_equal(row_error, -EBADMSG);
+        month_file_set_aside(&again);
+    }
+    assert_int_equal(count_damaged(s->folder), 1);
+    record(s, NOVEMBER + 50000 * S, 100);
+    mem_free(path);
+}
+
+static void a_newer_version_is_left_alone(void **state)
+{
+    struct setup *s = *state;
+    char *path = temp_path(s->folder, "history-2026-11.sqlite"), *command;
+    record(s, NOVEMBER, 10);
+    command = mem_printf("/usr/bin/python3 -c \"import sqlite3; sqlite3.connect('%s').execute('PRAGMA user_version = 99')\"", path);
+    assert_int_equal(system(command), 0);
+    int error;
+    assert_null(month_file_open(s->log, s->folder, month_of(NOVEMBER), s->tags, TAGS, &error));
+    assert_int_equal(error, -EACCES);
+    assert_int_equal(count_damaged(s->folder), 0);
+    mem_free(command);
+    mem_free(path);
+}
+
+static void make_month(const struct setup *s, const char *name, size_t bytes)
+{
+    char *content = mem_array(bytes, 1), *path = temp_write(s->folder, name, content, bytes);
+    mem_free(path);
+    mem_free(content);
+}
+
+static void old_and_large_months_go(void **state)
+{
+    struct setup *s = *state;
+    size_t count;
+    for (int m = 1; m <= 9; m++) {
+        char *name = mem_printf("history-2026-%02d.sqlite", m);
+        make_month(s, name, 1000);
+        mem_free(name);
+    }
+    /* 100 days before November: 24 July */
+    assert_int_equal(history_keep(s->log, s->folder, &(struct keep_limits){ .days = 100 }, NOVEMBER), 3000);
+    int *months = month_list(s->folder, &count);
+    assert_int_equal(count, 3);
+    assert_int_equal(months[0], month_of(NOVEMBER) - 4);
+    mem_free(months);
+    assert_int_equal(history_keep(s->log, s->folder, &(struct keep_limits){ .bytes = 2500 }, NOVEMBER), 2000);
+    assert_int_equal(history_keep(s->log, s->folder, &(struct keep_limits){ .bytes = 1 }, NOVEMBER), 1000); /* the newest stays */
+    months = month_list(s->folder, &count);
+    assert_int_equal(count, 1);
+    assert_int_equal(months[0], month_of(NOVEMBER) - 2);
+    mem_free(months);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(what_was_recorded_comes_back, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(one_instant_is_as_it_was, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(long_times_keep_spikes_and_gaps, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(lines_cross_the_border_of_a_month, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(an_import_is_rolled_up_again, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_restart_leaves_a_gap, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_damaged_file_is_set_aside, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(damage_inside_is_noticed, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_newer_version_is_left_alone, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(old_and_large_months_go, set_up, tear_down),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
