@@ -94,7 +94,10 @@ test('desktop: two sets of parameters side by side, each with legend and markers
     const tags = await page.evaluate(() => globalThis.plantcast.session.model.tags.map((tag) => tag.name));
     await plant.freeze(tags);
     await page.waitForTimeout(2000); // two polls
-    await choose('split', 'pressure');
+    await page.locator('#picture-toggle').click();
+    await page.locator('#split-on label').nth(1).click();
+    await choose('right-group', 'pressure');
+    await page.keyboard.press('Escape');
     await choose('isolines', { index: 2 });
     await settle(page);
     const legends = await page.locator('.legend:visible h2').allTextContents();
@@ -110,7 +113,24 @@ test('desktop: two sets of parameters side by side, each with legend and markers
     }
     assert.ok(places.some(({ half }) => half === 0) && places.some(({ half }) => half === 1));
     await shoot(page, 'split');
-    await choose('split', '');
+    await page.locator('#picture-toggle').click();
+    await page.locator('#split-on label').nth(0).click();
+    await choose('environment', 'sky');
+    await page.locator('#sun-turn').fill('90');
+    await choose('show', 'distance');
+    await settle(page);
+    assert.match(await page.locator('#legend h2').textContent(), /Distance m/);
+    const { light, sensor } = (await view(page)).params;
+    assert.ok(light[0] > 0.3 && Math.abs(light[1]) < 0.02, `the sun stands in the east: ${light}`);
+    assert.equal(await page.locator('#sensor').inputValue(), sensor);
+    await shoot(page, 'distance');
+    await choose('show', 'difference');
+    await page.locator('#baseline-name').fill('before');
+    await page.locator('#baseline-keep').click();
+    await settle(page);
+    assert.equal(await page.locator('#baseline').inputValue(), 'before');
+    assert.match(await page.locator('#legend h2').textContent(), /Δ Temperature/);
+    await page.keyboard.press('Escape');
     await choose('show', 'operator');
     await settle(page);
     assert.deepEqual(await page.locator('#legend .ticks span').allTextContents(), ['LL', 'L', 'H', 'HH']);

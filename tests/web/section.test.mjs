@@ -2,7 +2,7 @@
 // What is cut away, hidden and shown alone: to the parameters and back.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { assetLook, AXES, cut, readCut, showAll, showAsset } from '../../clients/web/core/section.js';
+import { assetLook, AXES, boxAround, cut, readBox, readCut, showAll, showAsset } from '../../clients/web/core/section.js';
 
 test('a cut comes back as it was made', () => {
     for (const axis of AXES) {
@@ -11,6 +11,13 @@ test('a cut comes back as it was made', () => {
     }
     assert.deepEqual(cut('y', 2, false), { planes: [[0, 1, 0, -2]] });
     assert.deepEqual(cut('z', 2, true), { planes: [[0, 0, -1, 2]] });
+});
+
+test('a box comes back as large as it was made', () => {
+    const bounds = { min: [0, -1, 2], max: [10, 1, 3] };
+    assert.deepEqual(boxAround(bounds, 0.5), { box: { min: [2.5, -0.5, 2.25], max: [7.5, 0.5, 2.75] } });
+    assert.equal(readBox(boxAround(bounds, 1.5), bounds), 1.5);
+    assert.equal(readBox(cut('x', 1, false), bounds), null);
 });
 
 test('other clips are left alone', () => {

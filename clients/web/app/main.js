@@ -9,6 +9,7 @@ import { Card } from './card.js';
 import { byId, setText } from './dom.js';
 import { Legend } from './legend.js';
 import { Overlay } from './overlay.js';
+import { Picture } from './picture.js';
 import { Pilot } from './pilot.js';
 import { Place } from './place.js';
 import { Status } from './status.js';
@@ -29,7 +30,8 @@ const connection = new Connection({ url: streamUrl, open: (url, protocol) => new
 const session = new Session({ connection, now: clock.now, wanted: address });
 
 const assets = new Assets({ session, selection });
-const toolbar = new Toolbar({ session });
+const picture = new Picture({ session, selection });
+const toolbar = new Toolbar({ session, showParams: (show) => picture.showParams(show) });
 const legend = new Legend({ session, element: byId('legend') });
 new Legend({ session, element: byId('legend-right'), paramsOf: (params) => params.split && { ...params, ...params.split } });
 const viewport = new Viewport({ element: byId('viewport'), canvas: byId('picture'), session });
@@ -102,6 +104,7 @@ const commands = {
     corner: () => views.lookFrom('iso'),
     projection: () => views.toggleProjection(),
     views: () => views.toggle(),
+    picture: () => byId('picture-toggle').click(),
     hide: () => views.show('hide'),
     ghost: () => views.show('ghost'),
     only: () => views.show('only'),
@@ -109,6 +112,7 @@ const commands = {
     escape() {
         toolbar.closeDisplay();
         views.close();
+        picture.close();
         if (place.picked)
             place.close();
         else

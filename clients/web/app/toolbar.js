@@ -2,57 +2,34 @@
 // The toolbar: what is shown and how. It shows the parameters in force and asks for others.
 import { numberText, unitText } from '../core/format.js';
 import { multiples, rampChoices } from '../core/legend.js';
-import { byId, make, setText } from './dom.js';
+import { byId, setText } from './dom.js';
+import { fillSegments, fillSelect, markSegment } from './fields.js';
 
-const DISTANCES = [
+export const DISTANCES = [
     ['geodesic', 'Geodesic', 'Distance along the surface: heat does not jump across a gap'],
     ['euclidean', 'Euclidean', 'Straight distance through space'],
 ];
-const INTERPOLATIONS = [
+export const INTERPOLATIONS = [
     ['shepard', 'Shepard', 'Inverse distance: exactly the reading at each sensor'],
     ['paper', 'Paper', 'Algorithm 1 of Kim & Suh 2025: smoother, does not reach the readings'],
 ];
-const SHOWS = [['value', 'Values'], ['operator', 'Limits']];
-const LOOKS = [['default', 'Measured'], ['glossy', 'Glossy'], ['flat', 'Flat'], ['materials', 'Materials']];
-
-// A row of buttons of which one is pressed; radio buttons underneath, so the keyboard works as everywhere.
-function fillSegments(fieldset, name, choices, onChoose) {
-    const row = make('div', { class: 'row' });
-    for (const [value, text, title] of choices) {
-        const input = make('input', { type: 'radio', name, value, onchange: () => onChoose(value) });
-        row.append(make('label', { title }, input, make('span', {}, text)));
-    }
-    fieldset.replaceChildren(fieldset.querySelector('legend'), row);
-}
-
-function mark(fieldset, value) {
-    for (const input of fieldset.querySelectorAll('input'))
-        input.checked = input.value === value;
-}
-
-function fillSelect(select, choices, value) {
-    const wanted = JSON.stringify(choices);
-    if (select.dataset.choices !== wanted) {
-        select.dataset.choices = wanted;
-        select.replaceChildren(...choices.map(([v, text]) => make('option', { value: v }, text)));
-    }
-    select.value = String(value);
-}
+export const SHOWS = [['value', 'Values'], ['operator', 'Limits'], ['distance', 'Distance'], ['difference', 'Difference']];
+export const LOOKS = [['default', 'Measured'], ['glossy', 'Glossy'], ['flat', 'Flat'], ['materials', 'Materials']];
 
 const decimalsOf = (step) => Math.max(0, Math.ceil(-Math.log10(step) - 1e-9));
-const title = (text) => text.charAt(0).toUpperCase() + text.slice(1);
+export const title = (text) => text.charAt(0).toUpperCase() + text.slice(1);
 
 export class Toolbar {
-    constructor({ session }) {
-        this.session = session;
+    // showParams: what else to ask for with a `show`.
+    constructor({ session, showParams }) {
+        Object.assign(this, { session, showParams });
         fillSegments(byId('distance'), 'distance', DISTANCES, (distance) => session.setParams({ distance }));
         fillSegments(byId('interpolation'), 'interpolation', INTERPOLATIONS, (interpolation) => session.setParams({ interpolation }));
         byId('colormap').addEventListener('change', (event) => session.setParams({ colormap: event.target.value }));
         byId('look').addEventListener('change', (event) => session.setParams({ look: event.target.value }));
         byId('ramp').addEventListener('change', (event) => session.setParams(this.rampParams(event.target.value)));
         byId('isolines').addEventListener('change', ({ target }) => session.setParams({ isolines: JSON.parse(target.value) }));
-        byId('show').addEventListener('change', (event) => session.setParams({ show: event.target.value }));
-        byId('split').addEventListener('change', ({ target: { value } }) => session.setParams({ split: value ? { group: value } : null }));
+        byId('show').addEventListener('change', ({ target }) => session.setParams(this.showParams(target.value)));
         session.on('welcome', () => this.welcome());
         session.on('params', () => this.show());
         this.foldDisplay();
@@ -93,16 +70,14 @@ export class Toolbar {
         const { model, params } = this.session;
         if (!model)
             return;
-        mark(byId('groups'), params.group);
-        mark(byId('distance'), params.distance);
-        mark(byId('interpolation'), params.interpolation);
+        markSegment(byId('groups'), params.group);
+        markSegment(byId('distance'), params.distance);
+        markSegment(byId('interpolation'), params.interpolation);
         fillSelect(byId('colormap'), model.colormaps.map((map) => [map.name, title(map.name)]), params.colormap);
         fillSelect(byId('look'), LOOKS, params.look);
         fillSelect(byId('ramp'), this.ramps(), params.breaks?.length > 0 ? this.breaksName() : params.ramp_interval ?? 0);
         fillSelect(byId('isolines'), this.isolines(), JSON.stringify(params.isolines ?? null));
         fillSelect(byId('show'), SHOWS, params.show ?? 'value');
-        fillSelect(byId('split'), [['', 'One'], ...model.groups.map(({ id, quantity }) => [id, title(quantity || id)])],
-            params.split?.group ?? '');
     }
 
     // The group's own bands by name: where they meet.

@@ -1,28 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The panel of views: from where to look, in which projection, what is cut away and which equipment is shown.
 import { isParallel, toParallel, toPerspective } from '../core/camera.js';
-import { AXES, cut, readCut, showAll, showAsset } from '../core/section.js';
+import { AXES, boxAround, cut, readBox, readCut, showAll, showAsset } from '../core/section.js';
 import { byId, make, setText } from './dom.js';
+import { fillSegments, foldPanel, markSegment } from './fields.js';
 
 const SIDES = [['top', 'Top'], ['front', 'Front'], ['right', 'Right'], ['back', 'Back'], ['left', 'Left'], ['iso', 'Corner']];
 const PROJECTIONS = [['perspective', 'Perspective'], ['parallel', 'Parallel']];
-const CUTS = [['off', 'Off'], ...AXES.map((axis) => [axis, axis.toUpperCase()])];
+const CUTS = [['off', 'Off'], ...AXES.map((axis) => [axis, axis.toUpperCase()]), ['box', 'Box']];
 const SHOWS = [['hide', 'Hide'], ['ghost', 'Ghost'], ['only', 'Only this']];
-const STEPS = 500;
-
-function segments(fieldset, name, choices, onChoose) {
-    const row = make('div', { class: 'row' });
-    for (const [value, text] of choices) {
-        const input = make('input', { type: 'radio', name, value, onchange: () => onChoose(value) });
-        row.append(make('label', {}, input, make('span', {}, text)));
-    }
-    fieldset.append(row);
-}
-
-function mark(fieldset, value) {
-    for (const input of fieldset.querySelectorAll('input[type="radio"]'))
-        input.checked = input.value === value;
-}
+const STEPS = 500, LARGEST_BOX = 2;
 
 export class Views {
     constructor({ session, pilot }) {
@@ -31,32 +18,18 @@ export class Views {
         this.at = byId('cut-at');
         byId('sides').append(make('div', { class: 'buttons' }, ...SIDES.map(([side, text]) =>
             make('button', { type: 'button', onclick: () => this.lookFrom(side) }, text))));
-        segments(byId('projection'), 'projection', PROJECTIONS, (projection) => this.project(projection === 'parallel'));
-        segments(byId('cut'), 'cut', CUTS, (axis) => this.cutBy(axis));
+        fillSegments(byId('projection'), 'projection', PROJECTIONS, (projection) => this.project(projection === 'parallel'));
+        fillSegments(byId('cut'), 'cut', CUTS, (axis) => this.cutBy(axis));
         byId('cut-turn').addEventListener('click', () => this.turn());
         this.at.addEventListener('input', () => this.move());
         byId('shows').append(make('div', { class: 'buttons' },
             ...SHOWS.map(([how, text]) => make('button', { type: 'button', 'data-how': how, onclick: () => this.show(how) }, text)),
             make('button', { type: 'button', id: 'show-all', onclick: () => this.showAll() }, 'Show all')));
-        this.foldPanel();
+        this.set = foldPanel(this.panel, byId('views-toggle'), () => this.update());
         session.on('fitted', (camera) => this.pilot.flyTo(camera));
         session.on('params', () => this.update());
         session.on('camera', () => this.update());
         session.on('welcome', () => this.update());
-    }
-
-    foldPanel() {
-        const button = byId('views-toggle');
-        this.set = (open) => {
-            this.panel.classList.toggle('open', open);
-            button.setAttribute('aria-expanded', open);
-            this.update();
-        };
-        button.addEventListener('click', () => this.toggle());
-        document.addEventListener('pointerdown', (event) => {
-            if (!event.target.closest('#views, #views-toggle, #viewport'))
-                this.set(false);
-        });
     }
 
     toggle() {
@@ -94,9 +67,15 @@ export class Views {
         return [min[index], max[index]];
     }
 
+    // What a box is put around: the chosen equipment, else the plant.
+    get boxed() {
+        const { model, params } = this.session;
+        return (model.asset(params.selected) ?? model.plant).bounds;
+    }
+
     cutBy(axis) {
-        if (axis === 'off') {
-            this.session.setParams({ clip: null });
+        if (axis === 'off' || axis === 'box') {
+            this.session.setParams({ clip: axis === 'box' ? boxAround(this.boxed, 1) : null });
             return;
         }
         const [min, max] = this.range(axis);
@@ -116,7 +95,9 @@ export class Views {
         this.moving = true;
         requestAnimationFrame(() => {
             this.moving = false;
-            const now = readCut(this.session.params.clip);
+            const { clip } = this.session.params, now = readCut(clip);
+            if (clip?.box)
+                this.session.setParams({ clip: boxAround(this.boxed, Math.max(1, this.at.value) * (LARGEST_BOX / STEPS)) });
             if (!now)
                 return;
             const [min, max] = this.range(now.axis);
@@ -139,10 +120,16 @@ export class Views {
         const { model, params } = this.session;
         if (!model || !this.panel.classList.contains('open'))
             return;
-        mark(byId('projection'), this.projection === 'orthographic' ? 'parallel' : 'perspective');
+        markSegment(byId('projection'), this.projection === 'orthographic' ? 'parallel' : 'perspective');
         const now = readCut(params.clip);
-        mark(byId('cut'), now?.axis ?? (params.clip ? '' : 'off'));
-        byId('cut-place').hidden = !now;
+        const part = readBox(params.clip, this.boxed);
+        markSegment(byId('cut'), now?.axis ?? (part !== null ? 'box' : params.clip ? '' : 'off'));
+        byId('cut-place').hidden = !now && part === null;
+        byId('cut-turn').hidden = !now;
+        if (part !== null) {
+            this.at.value = Math.round((part * STEPS) / LARGEST_BOX);
+            setText(byId('cut-text'), `${Math.round(100 * part)} % of ${model.asset(params.selected)?.tag || 'the plant'}`);
+        }
         if (now) {
             const [min, max] = this.range(now.axis);
             this.at.max = STEPS;

@@ -4,7 +4,8 @@ import { valid } from './camera.js';
 
 const CHOICES = { // null: any name; the server knows which there are
     group: null, interpolation: ['shepard', 'paper'], distance: ['geodesic', 'euclidean'], colormap: null,
-    look: ['default', 'glossy', 'flat', 'materials'],
+    look: ['default', 'glossy', 'flat', 'materials'], fill: ['none', 'neighbours'], scale: ['linear', 'log'],
+    show: ['value', 'operator', 'distance'], sensor: null, environment: null,
 };
 const SETS = { hide: 'hidden', only: 'isolate', ghost: 'ghost' }; // lists of assets
 const round = (x) => Number(x.toFixed(4)) + 0;
@@ -13,11 +14,13 @@ export function writeAddress({ camera, params = {}, tag = null }) {
     const parts = [];
     const put = (name, value) => parts.push(`${name}=${encodeURIComponent(value).replace(/%2C/g, ',')}`);
     for (const name of Object.keys(CHOICES)) {
-        if (params[name])
+        if (params[name] && (!CHOICES[name] || CHOICES[name].includes(params[name])))
             put(name, params[name]);
     }
     if (params.ramp_interval > 0)
         put('ramp', params.ramp_interval);
+    if (params.light)
+        put('light', params.light.map(round).join(','));
     if (params.selected)
         put('asset', params.selected);
     for (const [name, param] of Object.entries(SETS)) {
@@ -67,6 +70,9 @@ export function readAddress(hash) {
     const ramp = Number(fields.get('ramp'));
     if (fields.has('ramp') && Number.isFinite(ramp) && ramp >= 0)
         params.ramp_interval = ramp;
+    const light = (fields.get('light') ?? '').split(',').map(Number);
+    if (light.length === 3 && light.every(Number.isFinite) && light.some((n) => n !== 0))
+        params.light = light;
     for (const [name, param] of Object.entries(SETS)) {
         if (fields.get(name))
             params[param] = fields.get(name).split(',');

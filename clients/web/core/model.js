@@ -10,6 +10,7 @@ export class Model {
         this.tags = welcome.tags.map((tag, index) => ({ ...tag, index }));
         this.colormaps = welcome.colormaps.map((map) => ({ ...map, rgb: decodeBase64(map.rgb) }));
         this.readings = this.tags.map(() => ({ value: null, quality: 'bad', qualityName: '', ageMs: null, alarm: null, at: 0 }));
+        this.environments = welcome.environments ?? ['sky'];
         this.assets = welcome.assets.map((asset) => ({ ...asset, tags: this.tags.filter((tag) => tag.asset === asset.id) }));
         this.links = [];
         this.live = null; // nothing was said yet

@@ -20,6 +20,18 @@ export function readCut(clip) {
     return { axis: AXES[index], at: turned ? plane[3] : -plane[3], turned };
 }
 
+// A box around the middle of some bounds; part 1: as large as they are.
+export function boxAround({ min, max }, part) {
+    const side = (i, turn) => (min[i] + max[i]) / 2 + (turn * part * (max[i] - min[i])) / 2;
+    return { box: { min: [0, 1, 2].map((i) => side(i, -1)), max: [0, 1, 2].map((i) => side(i, 1)) } };
+}
+
+// The part, the other way round; by the longest side.
+export function readBox(clip, { min, max }) {
+    const lengths = max.map((high, i) => high - min[i]), longest = lengths.indexOf(Math.max(...lengths));
+    return clip?.box ? (clip.box.max[longest] - clip.box.min[longest]) / lengths[longest] : null;
+}
+
 const without = (list, id) => (list ?? []).filter((other) => other !== id);
 
 // Parameters after `how` (hide, ghost, only) was pressed for an asset: pressed again it is as before.

@@ -9,6 +9,7 @@ export const PARAMS = [
     'group', 'interpolation', 'distance', 'fill', 'strength', 'decay', 'power', 'radius_m', 'reach_m', 'colormap', 'ramp_interval', 'range',
     'scale', 'breaks', 'isolines', 'look', 'light', 'environment', 'selected', 'hidden', 'isolate', 'ghost', 'clip', 'show', 'split',
 ];
+const SAID = [...PARAMS, 'sensor', 'baseline', 'baselines', 'unit']; // by the server
 const SHARED = ['light', 'environment', 'selected', 'hidden', 'isolate', 'ghost', 'clip', 'split']; // by both halves
 const GROUPS_OWN = ['interpolation', 'distance', 'fill', 'power', 'radius_m', 'reach_m', 'scale', 'isolines'];
 const CODECS = ['jpeg', 'png'];
@@ -99,7 +100,9 @@ export class Session {
         const wanted = pick(params, PARAMS.filter((name) => JSON.stringify(params[name]) !== JSON.stringify(own[name])));
         if (wanted.split)
             wanted.split = pick(wanted.split, PARAMS.filter((name) => !SHARED.includes(name)));
-        if (!['value', 'operator'].includes(wanted.show)) // others need what is not carried
+        if (wanted.show === 'distance')
+            wanted.sensor = this.params.sensor;
+        if (wanted.show === 'difference') // the server may have forgotten from what
             delete wanted.show;
         return wanted;
     }
@@ -116,7 +119,8 @@ export class Session {
 
     setParams(change) {
         const own = change.group && change.group !== this.params.group ? pick(this.model?.group(change.group) ?? {}, GROUPS_OWN) : {};
-        this.params = { ...this.params, ...own, ...change };
+        const split = change.split && { split: { ...this.params.split, ...change.split } };
+        this.params = { ...this.params, ...own, ...change, ...split };
         if (this.welcomed)
             this.connection.send({ type: 'params', seq: ++this.paramsSeq, ...change });
         else
@@ -189,7 +193,7 @@ export class Session {
         this.welcomed = true;
         this.codec = message.codec;
         this.connection.settle();
-        this.confirmed = this.params = pick(message.view, PARAMS);
+        this.confirmed = this.params = pick(message.view, SAID);
         if (!this.helloParts.includes('camera') || (before && before.identity !== this.model.identity))
             this.camera = null;
         this.camera = this.camera ?? home(this.model.plant, this.size.width / this.size.height);
@@ -212,7 +216,7 @@ export class Session {
     hearParams(message) {
         if (message.seq < this.paramsSeq)
             return; // an answer to what was changed again since
-        this.confirmed = this.params = pick(message, PARAMS);
+        this.confirmed = this.params = pick(message, SAID);
         this.emit('params');
     }
 

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The panel of the picture: what is compared with what, the scale, the light, and the right half of a split view.
+import { sunOf, sunText, towardsSun } from '../core/sun.js';
+import { byId, make, setText } from './dom.js';
+import { fillSegments, fillSelect, foldPanel, markSegment } from './fields.js';
+import { DISTANCES, INTERPOLATIONS, LOOKS, SHOWS, title } from './toolbar.js';
+
+const SCALES = [['linear', 'Linear'], ['log', 'Logarithmic']];
+const FILLS = [['none', 'Hatched', 'Where no good sensor reaches nothing is shown'], ['neighbours', 'By neighbours', 'Filled and dotted']];
+const HALF = ['group', 'show', 'distance', 'interpolation', 'colormap', 'look'];
+const HALF_NAMES = { group: 'Quantity', show: 'Show', distance: 'Distance', interpolation: 'Interpolation', colormap: 'Colours', look: 'Look' };
+
+export class Picture {
+    constructor({ session, selection }) {
+        Object.assign(this, { session, selection });
+        this.panel = byId('picture-panel');
+        this.set = foldPanel(this.panel, byId('picture-toggle'), () => this.update());
+        fillSegments(byId('scale'), 'scale', SCALES, (scale) => session.setParams({ scale }));
+        fillSegments(byId('fill'), 'fill', FILLS, (fill) => session.setParams({ fill }));
+        byId('environment').addEventListener('change', ({ target }) => session.setParams({ environment: target.value }));
+        byId('sensor').addEventListener('change', ({ target }) => session.setParams({ show: 'distance', sensor: target.value }));
+        byId('baseline').addEventListener('change', ({ target }) => session.setParams({ show: 'difference', baseline: target.value }));
+        byId('baseline-now').addEventListener('click', () => session.setParams({ show: 'difference', baseline: 'now' }));
+        byId('baseline-keep').addEventListener('click', () => this.keep());
+        byId('baseline-name').addEventListener('keydown', (event) => event.key === 'Enter' && this.keep());
+        for (const id of ['sun-turn', 'sun-height'])
+            byId(id).addEventListener('input', () => this.moveSun());
+        this.addHalf();
+        session.on('params', () => this.update());
+        session.on('welcome', () => this.update());
+    }
+
+    close() {
+        this.set(false);
+    }
+
+    // What `show` needs besides: a sensor that is chosen, else the first of the group; the instant of now.
+    showParams(show) {
+        const { model, params } = this.session;
+        const chosen = [this.selection.tag, params.sensor].map((name) => model.tag(name)).find((tag) => tag?.group === params.group);
+        const sensor = chosen ?? this.sensors()[0];
+        if (show === 'distance')
+            return sensor ? { show, sensor: sensor.name } : {};
+        return show === 'difference' && !params.baseline ? { show, baseline: 'now' } : { show };
+    }
+
+    sensors() {
+        const { model, params } = this.session;
+        return model.tags.filter(({ group, asset, position }) => group === params.group && asset && position);
+    }
+
+    keep() {
+        const name = byId('baseline-name').value.trim();
+        if (name)
+            this.session.setParams({ show: 'difference', baseline: { set: name } });
+        byId('baseline-name').value = '';
+    }
+
+    // --- light
+
+    get isYUp() {
+        const { up } = this.session.model.plant.home;
+        return up[1] > up[2];
+    }
+
+    // Once per animation frame: a slider speaks oftener.
+    moveSun() {
+        const sun = { turn: Number(byId('sun-turn').value), height: Number(byId('sun-height').value) };
+        setText(byId('sun-text'), sunText(sun));
+        if (!this.sun)
+            requestAnimationFrame(() => {
+                this.session.setParams({ light: towardsSun(this.sun, this.isYUp) });
+                this.sun = null;
+            });
+        this.sun = sun;
+    }
+
+    updateLight({ model, params }) {
+        fillSelect(byId('environment'), model.environments.map((name) => [name, title(name)]), params.environment);
+        if (this.sun || !params.light)
+            return;
+        const sun = sunOf(params.light, this.isYUp);
+        byId('sun-turn').value = sun.turn;
+        byId('sun-height').value = sun.height;
+        setText(byId('sun-text'), sunText(sun));
+    }
+
+    // --- the right half
+
+    addHalf() {
+        this.half = Object.fromEntries(HALF.map((name) => [name, make('select', { id: `right-${name}`, onchange: ({ target }) =>
+            this.session.setParams({ split: { [name]: target.value } }) })]));
+        const labels = HALF.map((name) => make('label', { class: 'choice' }, make('span', {}, HALF_NAMES[name]), this.half[name]));
+        byId('right-half').append(make('div', { class: 'pairs' }, ...labels));
+        fillSegments(byId('split-on'), 'split-on', [['', 'One picture'], ['on', 'Two halves']], (value) =>
+            this.session.setParams({ split: value ? {} : null }));
+    }
+
+    updateHalf({ model, params }) {
+        markSegment(byId('split-on'), params.split ? 'on' : '');
+        byId('right-half').hidden = !params.split;
+        if (!params.split)
+            return;
+        const right = { ...params, ...params.split };
+        const plain = (choices) => choices.map(([value, text]) => [value, text]);
+        const needs = SHOWS.filter(([value]) => ['value', 'operator', right.show].includes(value) ||
+            (value === 'distance' && params.sensor) || (value === 'difference' && params.baseline));
+        const choices = {
+            group: model.groups.map(({ id, quantity }) => [id, title(quantity || id)]), show: plain(needs), distance: plain(DISTANCES),
+            interpolation: plain(INTERPOLATIONS), colormap: model.colormaps.map(({ name }) => [name, title(name)]), look: plain(LOOKS),
+        };
+        for (const name of HALF)
+            fillSelect(this.half[name], choices[name], right[name]);
+    }
+
+    update() {
+        const { model, params } = this.session;
+        if (!model || !this.panel.classList.contains('open'))
+            return;
+        byId('from-sensor').hidden = params.show !== 'distance';
+        fillSelect(byId('sensor'), this.sensors().map(({ name, asset }) => [name, `${name}, ${asset}`]), params.sensor ?? '');
+        byId('from-baseline').hidden = params.show !== 'difference';
+        const kept = (params.baselines ?? []).map(({ name }) => [name, name]), now = params.baseline?.name ?? '';
+        fillSelect(byId('baseline'), now ? kept : [['', this.instantText(params.baseline)], ...kept], now);
+        byId('scale').disabled = !(this.session.range[0] > 0) || params.show === 'operator';
+        markSegment(byId('scale'), params.scale ?? 'linear');
+        markSegment(byId('fill'), params.fill ?? 'none');
+        this.updateLight(this.session);
+        this.updateHalf(this.session);
+    }
+
+    instantText(baseline) {
+        return baseline?.time_us ? new Date(baseline.time_us / 1000).toLocaleTimeString([], { timeZone: this.session.model.plant.time_zone }) : '–';
+    }
+}

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where the sun stands, as people say it: from which side (degrees from north through east) and how high, and as the server has it.
+// North is y in a plant frame that is Z up, -z in one that is Y up.
+
+const WINDS = ['N', 'NE', 'E', 'SE', 'S', 'SW', 'W', 'NW'];
+const radians = (degrees) => (degrees * Math.PI) / 180, degrees = (angle) => (angle * 180) / Math.PI;
+
+export function towardsSun({ turn, height }, isYUp) {
+    const flat = Math.cos(radians(height)), east = flat * Math.sin(radians(turn)), north = flat * Math.cos(radians(turn));
+    const up = Math.sin(radians(height));
+    return isYUp ? [east, up, -north] : [east, north, up];
+}
+
+export function sunOf([x, y, z], isYUp) {
+    const north = isYUp ? -z : y, up = isYUp ? y : z;
+    return { turn: (Math.round(degrees(Math.atan2(x, north))) + 360) % 360, height: Math.round(degrees(Math.atan2(up, Math.hypot(x, north)))) };
+}
+
+export const sunText = ({ turn, height }) => `from ${WINDS[Math.round(turn / 45) % 8]}, ${height}° high`;

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The sun's place: to the parameters and back.
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { sunOf, sunText, towardsSun } from '../../clients/web/core/sun.js';
+
+test('a sun comes back as it was put, in either kind of plant frame', () => {
+    for (const isYUp of [false, true]) {
+        for (const sun of [{ turn: 0, height: 5 }, { turn: 225, height: 45 }, { turn: 359, height: 89 }])
+            assert.deepEqual(sunOf(towardsSun(sun, isYUp), isYUp), sun);
+    }
+});
+
+test('north is y, or -z where y is up; east is x', () => {
+    const near = (a, b) => a.forEach((n, i) => assert.ok(Math.abs(n - b[i]) < 1e-9, `${a} for ${b}`));
+    near(towardsSun({ turn: 0, height: 0 }, false), [0, 1, 0]);
+    near(towardsSun({ turn: 90, height: 0 }, false), [1, 0, 0]);
+    near(towardsSun({ turn: 0, height: 0 }, true), [0, 0, -1]);
+    near(towardsSun({ turn: 180, height: 90 }, true), [0, 1, 0]);
+});
+
+test('in words', () => {
+    assert.equal(sunText({ turn: 225, height: 45 }), 'from SW, 45° high');
+    assert.equal(sunText({ turn: 350, height: 5 }), 'from N, 5° high');
+});
