@@ -10,6 +10,7 @@ struct cut_tri {
     uint32_t v[3], e[3];        /* e[i]: the edge from v[i] to v[i + 1] */
     uint32_t primitive, origin; /* of the level: its primitive; the triangle that this is a piece of, by its first index / 3 */
     bool good;                  /* it has been looked at */
+    bool aimed;                 /* it has been looked at whether it is flat */
 };
 
 struct cut_edge {       /* between two places; all levels share them */

@@ -16,6 +16,9 @@
 #define INSIDE_LEAST 8.0 /* shortest pieces: smaller triangles are not looked at inside */
 #define FLAT 1e-3        /* a triangle's longest edge is no more than that shorter than the way round over the corner across */
 #define ASIDE 0.1        /* of the edge, at least, that corner is from its ends */
+#define LINE 16          /* floats */
+#define MORE_PLACES 4.0  /* room for places, in those that the model has */
+#define FULL 2e-4        /* a level that may grow by less than that is done: each round takes half of what is left */
 
 /* How many triangles a level may get more: so much of its own, or so many, whichever is more. The finest is only drawn from near by. */
 #define FINEST_GROWTH 2.0
@@ -25,10 +28,33 @@
 
 /* --- cutting -------------------------------------------------------------------------------------------------------------- */
 
-static int worst_first(const void *a, const void *b)
+#define BINS (1u << 16)
+static uint32_t bin_of(float error) /* errors are not negative: their bits have their order */
 {
-    const struct split_finding *p = a, *q = b;
-    return p->error > q->error ? -1 : p->error < q->error ? 1 : p->number < q->number ? -1 : p->number > q->number;
+    uint32_t bits;
+    memcpy(&bits, &error, sizeof(bits));
+    return bits >> 16;
+}
+
+/* Keeps the `most` worst ones, in the order that they have; of about the last error, the first ones. Returns how many that are. */
+static size_t keep_worst(struct split_finding *findings, size_t count, size_t most)
+{
+    if (count <= most)
+        return count;
+    size_t *bins = mem_array(BINS, sizeof(*bins)), above = 0, kept = 0;
+    uint32_t last = BINS - 1;
+    for (size_t i = 0; i < count; i++)
+        bins[bin_of(findings[i].error)]++;
+    for (; last > 0 && above + bins[last] <= most; last--)
+        above += bins[last];
+    for (size_t i = 0; i < count; i++) {
+        uint32_t bin = bin_of(findings[i].error);
+        above += bin == last;
+        if (bin > last || (bin == last && above <= most))
+            findings[kept++] = findings[i];
+    }
+    mem_free(bins);
+    return kept;
 }
 
 /* Measures edges that are new. */
@@ -175,14 +201,17 @@ static bool cut_worst(struct split *split, double limit)
             if ((double)edge->error > limit)
                 findings[count++] = (struct split_finding){ .number = mesh->tris[t].e[i], .error = edge->error };
         }
-    for (size_t t = 0; t < mesh->tri_count; t++)
-        aim_at_corner(split, &mesh->tris[t], &(uint32_t){ 0 });
-    qsort(findings, count, sizeof(*findings), worst_first);
-    count = count < room ? count : room;
+    for (size_t t = 0; t < mesh->tri_count; t++) {
+        if (!mesh->tris[t].aimed)
+            aim_at_corner(split, &mesh->tris[t], &(uint32_t){ 0 });
+        mesh->tris[t].aimed = true;
+    }
+    split->full = (double)room < FULL * (double)mesh->tri_count;
+    count = keep_worst(findings, count, room);
     cut_edges(split, findings, count);
     cut_beside_corners(split);
     mem_free(findings);
-    return count > 0 && cutmesh_apply(mesh) > 0;
+    return count > 0 && cutmesh_apply(mesh) > 0 && !split->full;
 }
 
 /* --- all ------------------------------------------------------------------------------------------------------------------ */
@@ -209,7 +238,8 @@ static void split_level(struct split *split, struct level *level, bool finest)
     split->most_tris = (size_t)(finest ? tris + fmax(FINEST_GROWTH * tris, FINEST_GROWTH_TRIS)
                                        : fmax((1 + GROWTH) * tris, OF_FINER * (double)(level[-1].index_count / 3)));
     split_place_sensors(split, (double)level->error_m);
-    for (size_t l = 0; l < sizeof(limits) / sizeof(*limits); l++)
+    split->full = false;
+    for (size_t l = 0; l < sizeof(limits) / sizeof(*limits) && !split->full; l++)
         for (int round = 0; round < MOST_ROUNDS; round++) {
             measure_edges(split);
             measure_insides(split, limits[l]);
@@ -223,17 +253,22 @@ static void split_level(struct split *split, struct level *level, bool finest)
 
 static void set_radii(struct split *split)
 {
-    const struct geometry *g = split->mesh.geometry;
-    float *largest_m[2] = { mem_array(split->sensors, sizeof(float)), mem_array(split->sensors, sizeof(float)) };
-    for (size_t s = 0; s < split->sensors; s++)
-        for (uint32_t v = 0; v < g->vertex_count; v++) {
-            float geodesic_m = split->geodesic_m[split->mesh.places.of_vertex[v] * split->sensors + s];
-            if (isfinite(geodesic_m))
-                largest_m[DISTANCE_GEODESIC][s] = fmaxf(largest_m[DISTANCE_GEODESIC][s], geodesic_m);
+    const struct places *places = &split->mesh.places;
+    size_t padded = shares_padded(split->sensors);
+    float *largest_m[2] = { mem_array(padded, sizeof(float)), mem_array(padded, sizeof(float)) };
+    float *straight_m = mem_array(padded, sizeof(*straight_m));
+    for (size_t p = 0; p < places->count; p++) {
+        const float *geodesic_m = split->geodesic_m + p * split->sensors;
+        shares_euclidean(places->positions_m[p], (const float *const *)split->in->straight->axes_m, padded, straight_m);
+        for (size_t s = 0; s < split->sensors; s++) {
+            float geodesic = geodesic_m[s] < INFINITY ? geodesic_m[s] : 0;
+            largest_m[DISTANCE_GEODESIC][s] = geodesic > largest_m[DISTANCE_GEODESIC][s] ? geodesic : largest_m[DISTANCE_GEODESIC][s];
             largest_m[DISTANCE_EUCLIDEAN][s] =
-                fmaxf(largest_m[DISTANCE_EUCLIDEAN][s], (float)split_length(g->positions_m[v], split->in->sensors[s].surface_m));
+                straight_m[s] > largest_m[DISTANCE_EUCLIDEAN][s] ? straight_m[s] : largest_m[DISTANCE_EUCLIDEAN][s];
         }
+    }
     straight_set_radius(split->in->straight, (const float *const *)largest_m);
+    mem_free(straight_m);
     mem_free(largest_m[0]);
     mem_free(largest_m[1]);
 }
@@ -245,7 +280,7 @@ static bool start(struct split *split, struct geometry *geometry)
     if (!cutmesh_init(&split->mesh, geometry) || !split_find_parts(split))
         return false;
     size_t places = split->mesh.places.count;
-    split->geodesic_capacity = places * split->sensors;
+    split->geodesic_capacity = (size_t)(MORE_PLACES * (double)places) * split->sensors; /* memory is taken as it is used */
     split->geodesic_m = mem_try_array(split->geodesic_capacity, sizeof(*split->geodesic_m));
     if (split->samples <= MOST_KEPT) {
         split->share_capacity = places * split->samples;
@@ -267,14 +302,36 @@ static bool start(struct split *split, struct geometry *geometry)
     return true;
 }
 
+struct turn {
+    const struct split *split;
+    float *columns;
+};
+
+/* A few columns at a time: as many as one line of memory has of a row. */
+static void turn_rows(void *arg, size_t begin, size_t end)
+{
+    const struct turn *turn = arg;
+    const struct split *split = turn->split;
+    size_t count = split->mesh.geometry->vertex_count;
+    for (size_t first = begin * LINE; first < end * LINE && first < split->sensors; first += LINE) {
+        size_t width = first + LINE < split->sensors ? LINE : split->sensors - first;
+        for (size_t v = 0; v < count; v++) {
+            const float *row = split->geodesic_m + split->mesh.places.of_vertex[v] * split->sensors + first;
+            for (size_t s = 0; s < width; s++)
+                turn->columns[(first + s) * count + v] = row[s];
+        }
+    }
+}
+
 static float *columns_of(const struct split *split)
 {
-    uint32_t count = split->mesh.geometry->vertex_count;
-    float *columns = mem_try_array(split->sensors * (size_t)count, sizeof(*columns));
-    for (size_t s = 0; columns && s < split->sensors; s++)
-        for (uint32_t v = 0; v < count; v++)
-            columns[s * count + v] = split->geodesic_m[split->mesh.places.of_vertex[v] * split->sensors + s];
-    return columns;
+    size_t lines = (split->sensors + LINE - 1) / LINE;
+    struct turn turn = { split, mem_try_array(split->sensors * (size_t)split->mesh.geometry->vertex_count, sizeof(float)) };
+    if (turn.columns && split->in->workers)
+        workers_for(split->in->workers, lines, 1, turn_rows, &turn);
+    else if (turn.columns)
+        turn_rows(&turn, 0, lines);
+    return turn.columns;
 }
 
 bool split_levels(struct levels *levels, struct geometry *geometry, const struct split_input *input, float **distances)
@@ -290,5 +347,6 @@ bool split_levels(struct levels *levels, struct geometry *geometry, const struct
     mem_free(split.geodesic_m);
     mem_free(split.shares);
     mem_free(split.part);
+    mem_free(split.faces);
     return *distances != NULL;
 }

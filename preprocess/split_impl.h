@@ -13,12 +13,17 @@ struct split {
     float *geodesic_m, *shares; /* [place][sensor]; [place][sample], or NULL: too many */
     size_t geodesic_capacity, share_capacity;
     uint32_t *part; /* of each place: what hangs together by edges */
+    struct split_face {
+        double normal[3]; /* of no certain length */
+        uint32_t part;
+    } * faces; /* of the model's triangles */
     size_t part_capacity;
     double size_m;
     /* of the level in hand: */
     bool finest;
     double on_surface_m; /* what is farther from the surface is hidden inside another part */
     double shortest_m, slack_m;
+    bool full; /* it may hardly grow any more */
     size_t most_tris, first_count; /* first_count: before sensors were placed */
 };
 

@@ -11,6 +11,7 @@
 #define CLOSE 0.5    /* of the way to the nearest sensor: only of shorter edges that is true */
 #define WIDE 0.3     /* likewise: longer edges are cut in the middle, so that cuts of neighbours lie side by side */
 #define POINTS 16    /* of an edge that are looked at, at most */
+#define CORNERS 61   /* whose shares are at hand */
 #define STEPS 2      /* in which the best place for a cut is narrowed down */
 #define JUMP 1.5     /* times the way gone: a distance cannot grow by more, unless the surface does not hang together there */
 #define JUMP_WIDTH 8 /* shortest pieces: an edge where a distance jumps is not cut any shorter */
@@ -39,6 +40,24 @@ static uint32_t place_of(const struct split *split, uint32_t vertex)
 
 /* --- which piece of the surface a point belongs to -------------------------------------------------------------------------- */
 
+static bool list_faces(struct split *split)
+{
+    const struct geometry *g = split->mesh.geometry;
+    split->faces = mem_try_array(g->index_count / 3, sizeof(*split->faces));
+    for (uint32_t t = 0; split->faces && t < g->index_count / 3; t++) {
+        const uint32_t *v = split->model + 3 * (size_t)t;
+        const float *a = split_position(split, v[0]), *b = split_position(split, v[1]), *c = split_position(split, v[2]);
+        double ab[3], ac[3];
+        for (int i = 0; i < 3; i++) {
+            ab[i] = (double)b[i] - (double)a[i];
+            ac[i] = (double)c[i] - (double)a[i];
+        }
+        vec_cross(ab, ac, split->faces[t].normal);
+        split->faces[t].part = split->part[place_of(split, v[0])];
+    }
+    return split->faces != NULL;
+}
+
 bool split_find_parts(struct split *split)
 {
     const struct geometry *g = split->mesh.geometry;
@@ -54,7 +73,7 @@ bool split_find_parts(struct split *split)
             trimesh_join(split->part, place_of(split, split->model[i]), place_of(split, split->model[i + c]));
     for (uint32_t p = 0; p < count; p++)
         split->part[p] = trimesh_root(split->part, p);
-    return true;
+    return list_faces(split);
 }
 
 struct sight { /* which triangles of the model a point may lie on */
@@ -67,18 +86,8 @@ struct sight { /* which triangles of the model a point may lie on */
 static bool is_in_sight(const void *arg, uint32_t triangle)
 {
     const struct sight *sight = arg;
-    const struct split *split = sight->split;
-    const uint32_t *v = split->model + 3 * (size_t)triangle;
-    if (split->part[place_of(split, v[0])] != sight->part)
-        return false;
-    const float *a = split_position(split, v[0]), *b = split_position(split, v[1]), *c = split_position(split, v[2]);
-    double ab[3], ac[3], n[3];
-    for (int i = 0; i < 3; i++) {
-        ab[i] = (double)b[i] - (double)a[i];
-        ac[i] = (double)c[i] - (double)a[i];
-    }
-    vec_cross(ab, ac, n);
-    return vec_dot(n, sight->normal) > 0;
+    const struct split_face *face = &sight->split->faces[triangle];
+    return face->part == sight->part && vec_dot(face->normal, sight->normal) > 0;
 }
 
 static struct sight sight_of_edge(const struct split *split, const struct cut_edge *edge)
@@ -230,22 +239,44 @@ struct job {
     double enough;
 };
 
-/* Kept by place while they are few; else made again, which takes no longer than fetching so many. */
-static const float *shares_at(const struct split *split, uint32_t vertex, float *room)
+/* A thread's room: for points, and for the shares at corners last looked at, since the next edge likely has some of them too. */
+struct room {
+    float *points, *corners;
+    uint32_t of[CORNERS + 3]; /* which place's, by the place's number; then those for which that is taken */
+    uint32_t taken[3];        /* by the corners in hand */
+};
+
+static void room_init(struct room *room, const struct split *split, size_t points)
 {
-    uint32_t place = place_of(split, vertex);
+    room->points = mem_array(points * (split->samples + split->sensors), sizeof(float));
+    room->corners = split->shares ? NULL : mem_array((CORNERS + 3) * split->samples, sizeof(float));
+    memset(room->of, 0xff, sizeof(room->of));
+}
+
+static void room_finish(struct room *room)
+{
+    mem_free(room->points);
+    mem_free(room->corners);
+}
+
+/* Of a corner of the edge or triangle in hand. Kept by place while they are few. */
+static const float *shares_at(const struct split *split, uint32_t vertex, uint32_t corner, struct room *room)
+{
+    uint32_t place = place_of(split, vertex), number = place % CORNERS;
     if (split->shares)
         return split->shares + place * split->samples;
-    straight_shares(split->in->straight, split_position(split, vertex), split->geodesic_m + place * split->sensors, room);
-    return room;
+    for (uint32_t c = 0; c < corner; c++)
+        if (room->taken[c] == number && room->of[number] != place)
+            number = CORNERS + corner;
+    room->taken[corner] = number;
+    float *shares = room->corners + number * split->samples;
+    if (room->of[number] != place)
+        straight_shares(split->in->straight, split_position(split, vertex), split->geodesic_m + place * split->sensors, shares);
+    room->of[number] = place;
+    return shares;
 }
 
-static float *room_for(const struct split *split, size_t points)
-{
-    return mem_array(points * (split->samples + split->sensors), sizeof(float));
-}
-
-static void try_edge(const struct job *job, struct split_finding *finding, float *room)
+static void try_edge(const struct job *job, struct split_finding *finding, struct room *room)
 {
     const struct split *split = job->split;
     const struct cut_edge *edge = &split->mesh.cuts[finding->number];
@@ -260,19 +291,21 @@ static void try_edge(const struct job *job, struct split_finding *finding, float
                          .b = pb,
                          .sight = sight_of_edge(split, edge),
                          .t = { 0, 1 },
-                         .shares = { shares_at(split, edge->a, room), shares_at(split, edge->b, room + split->samples) },
+                         .count = 2,
+                         .shares = { shares_at(split, edge->a, 0, room) },
                          .geodesic_m = { split->geodesic_m + place_of(split, edge->a) * split->sensors,
                                          split->geodesic_m + place_of(split, edge->b) * split->sensors },
-                         .count = 2,
-                         .room = room + 2 * split->samples };
+                         .room = room->points };
+    line.shares[1] = shares_at(split, edge->b, 1, room);
     float middle[3];
     split_mix(pa, pb, 0.5, middle);
+    double nearest_m = straight_nearest(split->in->straight, middle);
     finding->error = (float)add_point(&line, 0.5);
-    if ((double)finding->error < PROBABLE * job->enough && length_m < CLOSE * straight_nearest(split->in->straight, middle) &&
-        line.count == 3)
+    if ((double)finding->error < PROBABLE * job->enough && length_m < CLOSE * nearest_m && line.count == 3)
         return;
-    finding->error = fmaxf(finding->error, (float)fmax(add_point(&line, 0.25), add_point(&line, 0.75)));
-    if ((double)finding->error > job->enough && length_m < WIDE * straight_nearest(split->in->straight, middle))
+    if ((double)finding->error <= job->enough || length_m < WIDE * nearest_m)
+        finding->error = fmaxf(finding->error, (float)fmax(add_point(&line, 0.25), add_point(&line, 0.75)));
+    if ((double)finding->error > job->enough && length_m < WIDE * nearest_m)
         find_cut(&line, job->enough, finding);
     if (length_m < JUMP_WIDTH * split->shortest_m && jumps(&line, length_m))
         finding->error = 0;
@@ -283,21 +316,22 @@ static void try_edge(const struct job *job, struct split_finding *finding, float
 static void try_edges(void *arg, size_t begin, size_t end)
 {
     const struct job *job = arg;
-    float *room = room_for(job->split, POINTS + 2);
+    struct room room;
+    room_init(&room, job->split, POINTS);
     for (size_t i = begin; i < end; i++)
-        try_edge(job, &job->findings[i], room);
-    mem_free(room);
+        try_edge(job, &job->findings[i], &room);
+    room_finish(&room);
 }
 
-static void try_inside(const struct split *split, struct split_finding *finding, float *room)
+static void try_inside(const struct split *split, struct split_finding *finding, struct room *room)
 {
     const struct straight *straight = split->in->straight;
     const struct cut_tri *tri = &split->mesh.tris[finding->number];
     struct sight sight = sight_of_tri(split, tri);
     const float *corners[3];
-    float middle[3], *geodesic_m = room, *shares = room + split->sensors;
-    for (int c = 0; c < 3; c++) {
-        corners[c] = shares_at(split, tri->v[c], shares + (1 + (size_t)c) * split->samples);
+    float middle[3], *geodesic_m = room->points, *shares = geodesic_m + split->sensors;
+    for (uint32_t c = 0; c < 3; c++) {
+        corners[c] = shares_at(split, tri->v[c], c, room);
         middle[c] = (split_position(split, tri->v[0])[c] + split_position(split, tri->v[1])[c] + split_position(split, tri->v[2])[c]) / 3;
     }
     double at[3];
@@ -312,10 +346,11 @@ static void try_inside(const struct split *split, struct split_finding *finding,
 static void try_insides(void *arg, size_t begin, size_t end)
 {
     const struct job *job = arg;
-    float *room = room_for(job->split, 4);
+    struct room room;
+    room_init(&room, job->split, 1);
     for (size_t i = begin; i < end; i++)
-        try_inside(job->split, &job->findings[i], room);
-    mem_free(room);
+        try_inside(job->split, &job->findings[i], &room);
+    room_finish(&room);
 }
 
 static void measure_places(void *arg, size_t begin, size_t end)

@@ -3,6 +3,7 @@
 #include "preprocess/straight.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "base/mem.h"
 
@@ -37,8 +38,10 @@ static void add_group(struct straight *straight, const struct plant *plant, int 
         if (tag)
             to->steepness = fmax(to->steepness, 2 * (double)strength[i] + fmax(1, (double)decay[i]));
     }
+    to->in_a_row = to->columns[to->count - 1] - to->columns[0] == to->count - 1;
+    to->papers = to->count <= MANY;
     straight->group_count++;
-    straight->share_count += 4 * padded;
+    straight->share_count += (to->papers ? 4 : 2) * padded;
     straight->most_count = padded > straight->most_count ? padded : straight->most_count;
 }
 
@@ -100,6 +103,16 @@ static void room_finish(struct room *room)
         mem_free(room->at);
 }
 
+static void pick(const struct straight_group *group, const float *from, float *distance_m)
+{
+    if (group->in_a_row)
+        memcpy(distance_m, from + group->columns[0], group->count * sizeof(*distance_m));
+    for (size_t i = 0; i < group->count && !group->in_a_row; i++)
+        distance_m[i] = from[group->columns[i]];
+    for (size_t i = group->count; i < group->of.count; i++)
+        distance_m[i] = INFINITY;
+}
+
 void straight_shares(const struct straight *straight, const float point_m[3], const float *geodesic_m, float *shares)
 {
     float *slope = shares + straight->share_count;
@@ -111,13 +124,14 @@ void straight_shares(const struct straight *straight, const float point_m[3], co
         for (size_t g = 0; g < straight->group_count; g++) {
             const struct straight_group *group = &straight->groups[g];
             const float *from = mode == DISTANCE_GEODESIC ? geodesic_m : straight_m;
-            for (size_t i = 0; i < group->of.count; i++)
-                distance_m[i] = i < group->count ? from[group->columns[i]] : INFINITY;
+            pick(group, from, distance_m);
             *slope++ = shares_shepard(&group->of, distance_m, shares);
-            if (group->count <= MANY)
-                shares_paper(&group->of, (float)group->radius_m[mode], distance_m, shares + group->of.count);
+            shares += group->of.count;
+            if (group->papers) {
+                shares_paper(&group->of, (float)group->radius_m[mode], distance_m, shares);
+                shares += group->of.count;
+            }
             *slope++ = (float)(group->steepness / group->radius_m[mode]);
-            shares += 2 * group->of.count;
         }
     room_finish(&rooms[0]);
     room_finish(&rooms[1]);
@@ -138,15 +152,18 @@ static double worst_of(const struct straight *straight, const float *const *corn
     double most = 0;
     bool reached = true;
     for (size_t g = 0, first = 0; g < 4 * straight->group_count; g++) {
-        size_t count = straight->groups[g / 2 % straight->group_count].of.count;
+        const struct straight_group *group = &straight->groups[g / 2 % straight->group_count];
+        size_t count = group->of.count;
         const float *at[3];
+        if (g % 2 == INTERPOLATION_PAPER && !group->papers)
+            continue;
         if (g % 2 == INTERPOLATION_SHEPARD)
             reached = has_value(sample + first, count);
         for (size_t c = 0; c < corner_count; c++) {
             at[c] = corners[c] + first;
             reached = reached && (g % 2 != INTERPOLATION_SHEPARD || has_value(at[c], count));
         }
-        if (reached && (g % 2 == INTERPOLATION_SHEPARD || straight->groups[g / 2 % straight->group_count].count <= MANY))
+        if (reached)
             most = fmax(most, (double)shares_error(at, weights, corner_count, sample + first, count) -
                                   slack_m * (double)sample[straight->share_count + g]);
         first += count;

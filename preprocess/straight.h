@@ -16,6 +16,8 @@
 struct straight_group {
     double steepness;  /* paper: the most that a value changes over R */
     uint32_t *columns; /* of the asset's sensors */
+    bool in_a_row;     /* columns follow one another */
+    bool papers;       /* paper is looked at */
     size_t count;
     double radius_m[2]; /* paper's R, by distance_mode */
     struct shares_group of; /* its sensors', padded */
@@ -36,7 +38,7 @@ void straight_finish(struct straight *straight);
 void straight_set_radius(struct straight *straight, const float *const largest_m[2]);
 
 /* The sensors' shares at a point: share_count numbers, for geodesic distances and then for straight ones: group by group, shepard's and
-   then paper's. Then, in that order, the most that a value may change there over a metre. geodesic_m: by column; INFINITY: not reached. */
+   then paper's (of groups with few sensors). Then, in that order, the most that a value may change there over a metre. geodesic_m: by column; INFINITY: not reached. */
 size_t straight_sample_count(const struct straight *straight); /* numbers that straight_shares makes */
 void straight_shares(const struct straight *straight, const float point_m[3], const float *geodesic_m, float *shares);
 /* In parts of the range: samples at a point against a line between two others, at share t of the way; against the mean of three corners.

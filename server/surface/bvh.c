@@ -214,27 +214,45 @@ static void try_tri(const struct bvh *bvh, uint32_t tri, const double p[3], doub
 void bvh_nearest(const struct bvh *bvh, const double point[3], double limit_m, bool (*allowed)(const void *arg, uint32_t tri),
                  const void *arg, struct bvh_place *place)
 {
-    uint32_t stack[STACK_NODES];
+    struct {
+        uint32_t node;
+        double distance2;
+    } stack[STACK_NODES];
     int depth = 0;
     double best2 = limit_m * limit_m;
     *place = (struct bvh_place){ .tri = TRIMESH_NONE, .distance_m = INFINITY };
-    if (bvh->node_count)
-        stack[depth++] = 0;
+    if (bvh->node_count) {
+        stack[depth].distance2 = 0;
+        stack[depth++].node = 0;
+    }
     while (depth) {
-        uint32_t at = stack[--depth];
-        const struct node *node = &bvh->nodes[at];
-        if (box_distance2(node, point) > best2)
+        uint32_t at = stack[--depth].node;
+        if (stack[depth].distance2 > best2)
             continue;
-        if (node->count) {
-            for (uint32_t i = node->first; i < node->first + node->count; i++)
-                if (!allowed || allowed(arg, bvh->order[i]))
-                    try_tri(bvh, bvh->order[i], point, &best2, place);
-        } else {
-            uint32_t left = at + 1, right = node->first;
-            bool left_first = box_distance2(&bvh->nodes[left], point) <= box_distance2(&bvh->nodes[right], point);
-            stack[depth++] = left_first ? right : left;
-            stack[depth++] = left_first ? left : right;
+        const struct node *node = &bvh->nodes[at];
+        while (!node->count) { /* down into the nearer one; the other waits */
+            uint32_t near = at + 1, far = node->first;
+            double near2 = box_distance2(&bvh->nodes[near], point), far2 = box_distance2(&bvh->nodes[far], point);
+            if (near2 > far2) {
+                uint32_t swap = near;
+                double swap2 = near2;
+                near = far;
+                near2 = far2;
+                far = swap;
+                far2 = swap2;
+            }
+            if (near2 > best2)
+                break;
+            if (far2 <= best2) {
+                stack[depth].distance2 = far2;
+                stack[depth++].node = far;
+            }
+            at = near;
+            node = &bvh->nodes[at];
         }
+        for (uint32_t i = node->first; i < node->first + node->count; i++)
+            if (!allowed || allowed(arg, bvh->order[i]))
+                try_tri(bvh, bvh->order[i], point, &best2, place);
     }
     if (place->tri != TRIMESH_NONE)
         place->distance_m = sqrt(best2);

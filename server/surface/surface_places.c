@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Dropping points onto a surface. */
+#include <math.h>
 #include <string.h>
 
 #include "surface/surface_state.h"
 #include "surface/vec.h"
 
 #define SPOT_ON_SURFACE 1e-3 /* mean edges: nearer than that, a point lies on its triangle */
+#define ON_PIECE 1e-5        /* likewise: no nearer piece is looked for */
 #define FEW_PIECES 24        /* of a triangle of the model are tried one by one */
 #define SPOT_PATIENCE 4.0    /* how much farther than the nearest a triangle may be that faces the right way */
 
@@ -112,8 +114,9 @@ bool surface_find_spot_on(const struct surface *surface, const double point_m[3]
         pieces += first[triangles[i] + 1] - first[triangles[i]];
     if (pieces > FEW_PIECES)
         return surface_find_spot_among(surface, point_m, limit_m, is_one_of, triangles, spot);
+    double enough_m = fmin(surface->edge_m * ON_PIECE, limit_m / 2);
     for (size_t i = 0; i < count; i++)
-        for (uint32_t p = first[triangles[i]]; p < first[triangles[i] + 1]; p++)
+        for (uint32_t p = first[triangles[i]]; p < first[triangles[i] + 1] && spot->distance_m > enough_m; p++)
             try_piece(surface, point_m, surface->pieces[p], spot);
     return spot->tri != TRIMESH_NONE;
 }
