@@ -50,6 +50,7 @@ static void fill_mesh(struct draft *draft, struct draft_mesh *mesh, int index, c
     const struct scene_asset *asset = &picture->stage->scene->assets[index];
     double clip[16], half[2] = { 0.5 * draft->width_px, 0.5 * draft->height_px };
     *mesh = (struct draft_mesh){
+        .asset = index,
         .file = &asset->file->view,
         .has_field = picture->fields[index] != NULL,
         .scalars = picture->fields[index] ? picture->fields[index]->shown : NULL,

@@ -58,11 +58,9 @@ static void aim_rays(struct draft *draft, const double clip[16])
 /* The ground is flat: its coordinates and the picture's map to each other by 3x3 matrices. */
 static void aim_ground(struct draft *draft, const struct light *light)
 {
-    double clip[16], up_m = 0;
+    double clip[16];
     float(*to)[3] = draft->ground_from_pixel;
-    for (int i = 0; i < 3; i++)
-        up_m += draft->stage->up[i] * draft->picture->shot.eye_m[i];
-    draft->has_ground = up_m > light->ground_height_m;
+    draft->has_ground = sky_sees_ground(draft->picture, light);
     matrix_multiply(draft->picture->shot.clip_from_plant, light->plant_from_ground, clip);
     double h[3][3]; /* rows: x w, y w in pixels, w; columns: u, v, 1 */
     for (int c = 0; c < 3; c++) {

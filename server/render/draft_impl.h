@@ -23,6 +23,7 @@ struct draft_vertex {
 enum { DRAFT_NO_DATA = 1, DRAFT_UNCERTAIN = 2 };
 
 struct draft_mesh { /* one asset in this picture */
+    int asset;
     const struct asset_view *file;
     bool has_field;
     const struct scalar *scalars; /* NULL: context, or a field that could not be worked out: no data */
@@ -115,6 +116,8 @@ void draft_place(struct draft *draft, size_t begin, size_t end); /* vertices */
 void draft_sort(struct draft *draft, size_t begin, size_t end);  /* triangles of chunks into bands */
 void draft_raster_band(const struct draft *draft, int band);    /* depth and marks */
 void draft_color_band(const struct draft *draft, int band);     /* colours */
+enum draft_rim { RIM_NONE, RIM_LIGHT, RIM_DARK };
+const uint8_t *draft_rim(const struct draft *draft); /* per pixel, rows of pitch_px; in place of depth */
 void draft_outline(const struct draft *draft);                  /* of all that has a mark; depth is lost */
 
 #endif

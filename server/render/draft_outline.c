@@ -6,7 +6,7 @@
 #include "render/draft_impl.h"
 #include "render/lines.h"
 
-enum { RIM_LIGHT = 1, RIM_DARK = 2, MOST_REACH_PX = 32 };
+enum { MOST_REACH_PX = 32 };
 static const uint8_t dark_bgr[3] = { 41, 23, 13 };
 
 struct brush { /* half a side is reach_px; what a pixel of the rim does to those around it */
@@ -58,7 +58,7 @@ static void paint(const struct draft *draft, const uint8_t *rim)
     }
 }
 
-void draft_outline(const struct draft *draft)
+const uint8_t *draft_rim(const struct draft *draft)
 {
     struct brush brush;
     uint8_t *rim = (uint8_t *)draft->depth; /* which is done with */
@@ -68,5 +68,10 @@ void draft_outline(const struct draft *draft)
         for (int x = 0; x < draft->width_px; x++)
             if (is_rim(draft, x, y))
                 stamp(draft, rim, &brush, x, y);
-    paint(draft, rim);
+    return rim;
+}
+
+void draft_outline(const struct draft *draft)
+{
+    paint(draft, draft_rim(draft));
 }

@@ -109,13 +109,15 @@ static void add_triangle(const struct draft *draft, struct draft_chunk *chunk, c
     if (area == 0 || (!draw->double_sided && back))
         return;
     float reach = draft->reach_px;
-    int left = first_pixel(least(least(p->x, q->x), r->x) - reach), right = last_pixel(most(most(p->x, q->x), r->x) + reach, draft->width_px);
-    int top = first_pixel(least(least(p->y, q->y), r->y) - reach), bottom = last_pixel(most(most(p->y, q->y), r->y) + reach, draft->height_px);
+    int left = first_pixel(least(least(p->x, q->x), r->x) - reach), top = first_pixel(least(least(p->y, q->y), r->y) - reach);
+    int right = last_pixel(most(most(p->x, q->x), r->x) + reach, draft->width_px);
+    int bottom = last_pixel(most(most(p->y, q->y), r->y) + reach, draft->height_px);
     if (left > right || top > bottom)
         return;
     uint32_t first = (uint32_t)(top / draft->band_rows), last = (uint32_t)(bottom / draft->band_rows);
     size_t i = chunk->triangle_count++;
-    chunk->triangles[i] = (struct draft_triangle){ { v0, turned ? v1 : v2, turned ? v2 : v1 }, draw->mark | (back ? draw->back : 0) }; /* area > 0 from here on */
+    chunk->triangles[i] = (struct draft_triangle){ { v0, turned ? v1 : v2, turned ? v2 : v1 }, /* area > 0 from here on */
+                                                   draw->mark | (back ? draw->back : 0) };
     chunk->bands[i] = first | last << 16;
     for (uint32_t b = first; b <= last; b++)
         chunk->starts[b + 1]++;

@@ -2,63 +2,21 @@
 /* From a view and the field to a frame: the order of the passes. */
 #include "render/renderer.h"
 
-#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/clock.h"
 #include "base/mem.h"
-#include "gpu/readback.h"
+#include "gpu/mesh.h"
 #include "render/content.h"
-#include "render/draft.h"
 #include "render/frame_block.h"
-#include "render/ghosts.h"
-#include "render/isolines.h"
-#include "render/lines.h"
-#include "render/markers.h"
 #include "render/matrix.h"
 #include "render/measure.h"
-#include "render/palettes.h"
-#include "render/sky.h"
-#include "render/solid.h"
-#include "render/stroke.h"
-#include "render/targets.h"
+#include "render/renderer_impl.h"
 
-enum { STILL_SAMPLES = 4, SURFACES = 0, EDGES = 1, PASSES = 2 };
-/* Of what is drawn bit by bit, on a processor: how long a bit may take, and what is expected of it before anything was measured. */
-static const int64_t BIT_NS = 4 * NS_PER_MS;
-static const double FIRST_PIXEL_NS[PASSES] = { 200, 20 }, TRIANGLE_NS = 36;
-enum { BIT_TRIANGLES = 80000 };
-
-struct renderer {
-    struct gl *gl;
-    const struct scene *scene;
-    struct stage stage;
-    struct environments environments;
-    struct light light;
-    struct fields fields;
-    struct reference reference;
-    bool per_fragment;
-    struct solid solid;
-    struct sky sky;
-    struct lines lines;
-    struct ghosts ghosts;
-    struct markers markers;
-    struct isolines isolines;
-    struct readback readback;
-    GLuint frame_buffer;                      /* struct frame_block */
-    struct palettes palettes;
-    struct targets targets;
-    double pixel_ns[PASSES]; /* as measured lately */
-    int64_t hurry_ns;    /* 0: none */
-    struct draft *draft; /* NULL: a GPU draws moving pictures too */
-    bool always_gl;
-    const struct fields_entry **asset_fields; /* per asset, of the picture being drawn */
-    int *visible;
-    double *distance_m; /* per asset */
-    struct visibility shown; /* by the last picture that was drawn at once */
-};
+/* Expected of GL on a processor before anything was measured. */
+static const double FIRST_PIXEL_NS[PASSES] = { 200, 20 };
 
 static struct light_key wanted_light(const struct view *view)
 {
@@ -101,6 +59,9 @@ struct renderer *renderer_create(struct log *log, struct gl *gl, const struct sc
     }
     if (gl->software)
         renderer->draft = draft_create(field_workers(field), &renderer->stage, &renderer->sky);
+    if (renderer->draft)
+        renderer->plates =
+            plates_create(field_workers(field), &renderer->stage, &renderer->sky, renderer->draft, &renderer->environments);
     return renderer;
 }
 
@@ -109,6 +70,7 @@ void renderer_destroy(struct renderer **renderer_ptr)
     struct renderer *renderer = *renderer_ptr;
     if (!renderer)
         return;
+    plates_destroy(&renderer->plates);
     draft_destroy(&renderer->draft);
     targets_finish(&renderer->targets);
     palettes_finish(&renderer->palettes);
@@ -254,12 +216,6 @@ uint64_t renderer_content(struct renderer *renderer, const struct view *view, co
     return content_hash(&picture);
 }
 
-static bool take_target(struct renderer *renderer, const struct view *view, struct target *target)
-{
-    int samples = view->tier == TIER_STILL && renderer->gl->max_samples >= STILL_SAMPLES ? STILL_SAMPLES : 1;
-    return targets_take(&renderer->targets, renderer->gl->log, view->width_px, view->height_px, samples, target);
-}
-
 static void describe(const struct renderer *renderer, struct frame *frame, const struct picture *picture,
                      const struct snapshot *snapshot)
 {
@@ -278,10 +234,7 @@ static void describe(const struct renderer *renderer, struct frame *frame, const
     frame->triangles = solid_triangles(picture);
 }
 
-/* --- bit by bit ------------------------------------------------------------------------------------------------------------ */
-
-/* An empty frame, and what there is to draw. NULL: out of memory, logged. */
-static struct frame *start(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot, struct picture *picture)
+struct frame *renderer_start(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot, struct picture *picture)
 {
     struct frame *frame = frame_create(view->width_px, view->height_px);
     if (!frame) {
@@ -295,25 +248,7 @@ static struct frame *start(struct renderer *renderer, const struct view *view, c
     return frame;
 }
 
-static struct stroke *begin(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot, bool whole)
-{
-    struct picture picture;
-    struct target target;
-    struct frame *frame = start(renderer, view, snapshot, &picture);
-    if (!frame)
-        return NULL;
-    if (!take_target(renderer, view, &target)) {
-        frame_unref(&frame);
-        return NULL;
-    }
-    struct stroke *stroke = mem_new(sizeof(*stroke));
-    stroke_init(stroke, &picture, &target, frame, whole);
-    isolines_collect(&renderer->isolines, &picture, &stroke->isolines);
-    return stroke;
-}
-
-/* Others drew meanwhile. */
-static bool take_up(struct renderer *renderer, struct picture *picture)
+bool renderer_take_up(struct renderer *renderer, struct picture *picture)
 {
     struct frame_block block;
     if (!picture->light)
@@ -329,160 +264,7 @@ static bool take_up(struct renderer *renderer, struct picture *picture)
     return true;
 }
 
-/* From now on its light stays. */
-static bool take_up_stroke(struct renderer *renderer, struct stroke *stroke)
-{
-    if (!stroke->light) {
-        stroke->light = light_get(&renderer->light, &stroke->picture.lit_by);
-        if (!stroke->light)
-            return false;
-        light_hold(stroke->light);
-        stroke->picture.light = stroke->light;
-    }
-    return take_up(renderer, &stroke->picture);
-}
-
-/* Some of the tile. Returns about how long its triangles took, and that is not for their pixels; done: all is drawn. */
-static double draw_surfaces(struct renderer *renderer, struct stroke *stroke, const struct tile *tile, bool *done)
-{
-    struct picture picture = stroke_tile_picture(stroke, tile);
-    size_t first = stroke->drawn;
-    int triangles = stroke->copies && renderer->gl->software ? BIT_TRIANGLES : INT_MAX;
-    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, stroke->target.framebuffer);
-    glDepthMask(GL_TRUE);
-    if (first == 0)
-        glClear(GL_DEPTH_BUFFER_BIT);
-    stroke->drawn = solid_draw_some(&renderer->solid, &picture, first, triangles);
-    *done = stroke->drawn == picture.visible_count;
-    if (*done) {
-        solid_draw_blended(&renderer->solid, &picture);
-        sky_draw(&renderer->sky, &picture, &renderer->light);
-        target_resolve(&stroke->target, tile->x_px, tile->y_px, tile->width_px, tile->height_px);
-    }
-    picture.visible += first;
-    picture.visible_count = stroke->drawn - first;
-    return TRIANGLE_NS * solid_triangles(&picture);
-}
-
-/* First the surfaces of all tiles, then their edges: those look over the rim of a tile. */
-static int cells_of(const struct stroke *stroke)
-{
-    return stroke_cells(stroke) * (stroke->view.tier == TIER_STILL ? PASSES : 1);
-}
-
-struct bit {
-    int pass;
-    double pixels, triangles_ns;
-};
-
-static struct bit draw_bit(struct renderer *renderer, struct stroke *stroke)
-{
-    bool done = true;
-    struct bit bit = { .pass = stroke->next < stroke_cells(stroke) ? SURFACES : EDGES };
-    struct tile tile = stroke_choose_tile(stroke, (double)BIT_NS / renderer->pixel_ns[bit.pass]);
-    bit.pixels = (double)tile.width_px * tile.height_px;
-    if (bit.pixels > 0) {
-        glEnable(GL_SCISSOR_TEST);
-        glScissor(tile.x_px, tile.y_px, tile.width_px, tile.height_px);
-        if (bit.pass == SURFACES)
-            bit.triangles_ns = draw_surfaces(renderer, stroke, &tile, &done);
-        else
-            lines_draw_edges(&renderer->lines, &stroke->picture);
-        glDisable(GL_SCISSOR_TEST);
-    }
-    if (done) {
-        stroke->next += stroke->span;
-        stroke->span = 0;
-        stroke->drawn = 0;
-    }
-    return bit;
-}
-
-/* took_ns: of a machine that has nothing else to do; smaller tiles would not help one that has. */
-static void learn(struct renderer *renderer, const struct bit *bit, int64_t took_ns)
-{
-    double *pixel_ns = &renderer->pixel_ns[bit->pass], now_ns = ((double)took_ns - bit->triangles_ns) / fmax(bit->pixels, 1);
-    if (bit->pixels > 0)
-        *pixel_ns = fmax(*pixel_ns + 0.3 * (now_ns - *pixel_ns), 1);
-}
-
-struct stroke *renderer_begin(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
-{
-    /* A GPU draws the whole in the time that a processor takes for a tile. */
-    struct stroke *stroke = begin(renderer, view, snapshot, !renderer->gl->software);
-    if (stroke && !stroke_hold_fields(stroke))
-        renderer_abandon(renderer, &stroke);
-    return stroke;
-}
-
-bool renderer_step(struct renderer *renderer, struct stroke *stroke, int64_t budget_ns)
-{
-    int64_t start_ns = clock_mono_ns(), spent_ns = 0, last_ns = 0;
-    int cells = cells_of(stroke);
-    if (!stroke->light && !light_step(&renderer->light, &stroke->picture.lit_by, budget_ns))
-        return false;
-    if (stroke->next < cells && !take_up_stroke(renderer, stroke))
-        stroke->next = cells; /* renderer_end fails likewise */
-    while (stroke->next < cells && (spent_ns == 0 || spent_ns + (last_ns > BIT_NS ? last_ns : BIT_NS) <= budget_ns)) {
-        int64_t work_ns = clock_work_ns();
-        struct bit bit = draw_bit(renderer, stroke);
-        glFinish();
-        learn(renderer, &bit, (clock_work_ns() - work_ns) / workers_count(field_workers(renderer->fields.field)));
-        last_ns = clock_mono_ns() - start_ns - spent_ns;
-        spent_ns += last_ns;
-    }
-    stroke->frame->render_ns += spent_ns;
-    return stroke->next == cells;
-}
-
-struct frame *renderer_end(struct renderer *renderer, struct stroke **stroke_ptr)
-{
-    struct stroke *stroke = *stroke_ptr;
-    struct frame *frame = NULL;
-    struct log *log = renderer->gl->log;
-    int64_t start_ns = clock_mono_ns();
-    if (!take_up_stroke(renderer, stroke))
-        goto end;
-    while (stroke->next < cells_of(stroke))
-        draw_bit(renderer, stroke);
-    ghosts_draw(&renderer->ghosts, &stroke->picture);
-    lines_draw_outline(&renderer->lines, &stroke->picture);
-    if (!markers_start(&renderer->markers, &stroke->picture) ||
-        !isolines_start(&renderer->isolines, &stroke->picture, &stroke->isolines) ||
-        !readback_start(&renderer->readback, log, &stroke->target) || !readback_wait(&renderer->readback, log))
-        goto end;
-    int64_t drawn_ns = clock_mono_ns();
-    if (!readback_get(&renderer->readback, log, stroke->frame->bgrx, (size_t)stroke->frame->stride_bytes))
-        goto end;
-    markers_get(&renderer->markers, &stroke->picture, stroke->frame);
-    isolines_get(&renderer->isolines, &stroke->isolines, stroke->frame);
-    stroke->frame->render_ns += drawn_ns - start_ns;
-    stroke->frame->readback_ns = clock_mono_ns() - drawn_ns;
-    frame = stroke->frame;
-    stroke->frame = NULL;
-end:
-    renderer_abandon(renderer, stroke_ptr);
-    return frame;
-}
-
-void renderer_abandon(struct renderer *renderer, struct stroke **stroke_ptr)
-{
-    struct stroke *stroke = *stroke_ptr;
-    if (!stroke)
-        return;
-    targets_give(&renderer->targets, &stroke->target);
-    stroke_finish(stroke);
-    mem_free(stroke);
-    *stroke_ptr = NULL;
-}
-
 /* --- at once ---------------------------------------------------------------------------------------------------------------- */
-
-static struct frame *draw_by_gl(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
-{
-    struct stroke *stroke = begin(renderer, view, snapshot, true);
-    return stroke ? renderer_end(renderer, &stroke) : NULL;
-}
 
 /* Fields that there was no memory for. */
 static bool has_lost(const struct picture *picture)
@@ -496,10 +278,10 @@ static bool has_lost(const struct picture *picture)
 static struct frame *draw_draft(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
 {
     struct picture picture;
-    struct frame *frame = start(renderer, view, snapshot, &picture);
+    struct frame *frame = renderer_start(renderer, view, snapshot, &picture);
     if (frame && has_lost(&picture)) { /* only GL hatches without scalars */
         frame_unref(&frame);
-        return draw_by_gl(renderer, view, snapshot);
+        return renderer_draw_stroke(renderer, view, snapshot);
     }
     if (!frame)
         return NULL;
@@ -513,11 +295,41 @@ static struct frame *draw_draft(struct renderer *renderer, const struct view *vi
     return frame;
 }
 
+bool renderer_is_quick(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
+{
+    struct picture picture;
+    if (view->tier == TIER_MOVING || !renderer->plates || renderer->always_gl)
+        return view->tier == TIER_MOVING;
+    picture_init(renderer, &picture, view, snapshot, false);
+    return plates_know(renderer->plates, &picture);
+}
+
+/* A still picture that was drawn before and differs in values and colours only. NULL: there is none. */
+static struct frame *draw_again(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
+{
+    struct picture picture;
+    if (!renderer_is_quick(renderer, view, snapshot))
+        return NULL;
+    struct frame *frame = renderer_start(renderer, view, snapshot, &picture);
+    if (!frame)
+        return NULL;
+    int64_t start_ns = clock_mono_ns();
+    picture.light = light_get(&renderer->light, &picture.lit_by);
+    picture.palette = palettes_get(&renderer->palettes, view);
+    if (!picture.light || !plates_recolor(renderer->plates, &picture, frame))
+        frame_unref(&frame);
+    else
+        frame->render_ns = clock_mono_ns() - start_ns;
+    return frame;
+}
+
 struct frame *renderer_draw(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
 {
     struct light_key wanted = wanted_light(view);
     bool draft = renderer->draft && !renderer->always_gl && !renderer->per_fragment && draft_can(renderer->draft, view);
-    struct frame *frame = draft ? draw_draft(renderer, view, snapshot) : draw_by_gl(renderer, view, snapshot);
+    struct frame *frame = view->tier == TIER_STILL ? draw_again(renderer, view, snapshot) : NULL;
+    if (!frame)
+        frame = draft ? draw_draft(renderer, view, snapshot) : renderer_draw_stroke(renderer, view, snapshot);
     bool steady = visibility_equal(&wanted.shown, &renderer->shown); /* not at each place of a cut that somebody drags */
     if (frame && renderer->hurry_ns && steady)
         light_step(&renderer->light, &wanted, renderer->hurry_ns);
@@ -548,7 +360,7 @@ bool renderer_measure(struct renderer *renderer, const struct view *view, const 
     plain.paint.log = false;
     picture_init(renderer, &picture, &plain, snapshot, finest);
     picture.measured = true;
-    bool good = take_up(renderer, &picture) && measure_begin(&measure, renderer->gl->log, view->width_px, view->height_px);
+    bool good = renderer_take_up(renderer, &picture) && measure_begin(&measure, renderer->gl->log, view->width_px, view->height_px);
     if (good) {
         solid_draw(&renderer->solid, &picture);
         measure_read(&measure, out);

@@ -19,6 +19,9 @@ bool renderer_prepare(struct renderer *renderer, const struct view *view, const 
 /* What the picture of this view would show now; equal to frame->content of an earlier frame if drawing it again would give the
    same picture (camera, parameters, size and every field value in view, to a colour step). Brings the field up to date; cheap. */
 uint64_t renderer_content(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot);
+/* renderer_draw draws it in the time of a moving picture: it is one, or it differs in values and colours only from a still one that
+   was drawn lately. Its field is prepared. */
+bool renderer_is_quick(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot);
 /* The caller owns the frame (frame_unref). NULL on failure, logged. view is already checked. */
 struct frame *renderer_draw(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot);
 /* Without a GPU most moving pictures are drawn by other means (render/draft.h), unless GL shall draw them always: to compare. */

@@ -65,8 +65,7 @@ static void draw_ground(const struct sky *sky, const struct picture *picture, co
     glDisable(GL_DEPTH_CLAMP);
 }
 
-/* Seen from above; and what throws a shadow on it is there. */
-static bool sees_ground(const struct picture *picture, const struct light *light)
+bool sky_sees_ground(const struct picture *picture, const struct light *light)
 {
     const struct shot *shot = &picture->shot;
     const struct visibility *visibility = &picture->view->visibility;
@@ -89,7 +88,7 @@ void sky_draw(const struct sky *sky, const struct picture *picture, const struct
     glBindTextureUnit(1, sky->backdrops);
     glBindVertexArray(sky->vao);
     glDrawArrays(GL_TRIANGLES, 0, 3);
-    if (sees_ground(picture, light))
+    if (sky_sees_ground(picture, light))
         draw_ground(sky, picture, light);
     glDepthMask(GL_TRUE);
     gl_pass_leave(picture->stage->gl, "sky");

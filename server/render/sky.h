@@ -13,6 +13,8 @@ struct sky {
 
 bool sky_init(struct sky *sky, struct log *log); /* false: logged */
 void sky_finish(struct sky *sky);
+/* Seen from above; and what throws a shadow on it is there. */
+bool sky_sees_ground(const struct picture *picture, const struct light *light);
 void sky_draw(const struct sky *sky, const struct picture *picture, const struct light *light);
 
 #endif

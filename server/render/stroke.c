@@ -38,6 +38,24 @@ static GLuint copy_buffer(struct log *log, GLuint from)
     return copy;
 }
 
+/* False: out of memory of some kind, logged. */
+static bool copy_field(const struct stroke *stroke, const struct fields_entry *from, struct fields_entry *copy)
+{
+    struct log *log = stroke->picture.stage->gl->log;
+    *copy = *from;
+    copy->shown = NULL;
+    copy->buffer = copy->sensors = 0;
+    if (!stroke->plate)
+        return (copy->buffer = copy_buffer(log, from->buffer)) && (!from->sensors || (copy->sensors = copy_buffer(log, from->sensors)));
+    copy->shown = mem_try_array(from->ready, sizeof(*copy->shown));
+    if (!copy->shown) {
+        log_err(log, "field of a picture: out of memory: %zu vertices", from->ready);
+        return false;
+    }
+    memcpy(copy->shown, from->shown, from->ready * sizeof(*copy->shown));
+    return true;
+}
+
 bool stroke_hold_fields(struct stroke *stroke)
 {
     const struct stage *stage = stroke->picture.stage;
@@ -47,24 +65,19 @@ bool stroke_hold_fields(struct stroke *stroke)
         const struct fields_entry *from = stroke->fields[asset];
         if (!from || !from->buffer)
             continue;
-        struct fields_entry *copy = &stroke->copies[asset];
-        *copy = *from;
-        copy->shown = NULL;
-        copy->sensors = 0;
-        copy->buffer = copy_buffer(stage->gl->log, from->buffer);
-        if (!copy->buffer)
+        if (!copy_field(stroke, from, &stroke->copies[asset]))
             return false;
-        if (from->sensors && !(copy->sensors = copy_buffer(stage->gl->log, from->sensors)))
-            return false;
-        stroke->fields[asset] = copy;
+        stroke->fields[asset] = &stroke->copies[asset];
     }
     return true;
 }
 
 void stroke_finish(struct stroke *stroke)
 {
-    for (size_t i = 0; stroke->copies && i < stroke->picture.stage->scene->asset_count; i++)
+    for (size_t i = 0; stroke->copies && i < stroke->picture.stage->scene->asset_count; i++) {
         glDeleteBuffers(2, (GLuint[2]){ stroke->copies[i].buffer, stroke->copies[i].sensors });
+        mem_free(stroke->copies[i].shown);
+    }
     light_release(stroke->light);
     if (stroke->frame)
         frame_unref(&stroke->frame);

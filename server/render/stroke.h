@@ -6,11 +6,13 @@
 #include "render/frame.h"
 #include "render/isolines.h"
 #include "render/picture.h"
+#include "render/plate.h"
 
 struct stroke {
     struct picture picture; /* view, target, fields and visible point into this struct */
     struct view view;
     struct target target;
+    struct plate *plate; /* it is drawn without GL, and there is no target; NULL: by GL */
     struct frame *frame;
     struct light_set *light; /* held from when it is ready; NULL: not yet */
     const struct fields_entry **fields; /* per asset */

@@ -8,7 +8,8 @@
 
 static void empty(struct visibility_buffers *store, struct visibility_buffer *buffer)
 {
-    mem_free(buffer->at);
+    if (buffer->at)
+        buffer->destroy(buffer->at);
     store->bytes -= buffer->bytes;
     *buffer = (struct visibility_buffer){ 0 };
 }
@@ -42,22 +43,29 @@ void *visibility_buffers_find(struct visibility_buffers *store, uint64_t shape)
     return buffer->at;
 }
 
-void *visibility_buffers_make(struct visibility_buffers *store, uint64_t shape, size_t bytes)
+void visibility_buffers_give(struct visibility_buffers *store, uint64_t shape, void *at, size_t bytes, void (*destroy)(void *at))
 {
     visibility_buffers_drop(store, shape);
-    if (bytes > store->bound_bytes)
-        return NULL;
+    if (bytes > store->bound_bytes) {
+        destroy(at);
+        return;
+    }
     while (store->bytes + bytes > store->bound_bytes)
         empty(store, oldest(store, false));
     struct visibility_buffer *buffer = oldest(store, true);
     empty(store, buffer);
-    *buffer = (struct visibility_buffer){ .shape = shape, .at = mem_try_array(bytes, 1), .bytes = bytes, .used = ++store->uses };
-    if (!buffer->at) {
-        *buffer = (struct visibility_buffer){ 0 };
-        return NULL;
-    }
+    *buffer = (struct visibility_buffer){ .shape = shape, .at = at, .destroy = destroy, .bytes = bytes, .used = ++store->uses };
     store->bytes += bytes;
-    return buffer->at;
+}
+
+void *visibility_buffers_make(struct visibility_buffers *store, uint64_t shape, size_t bytes)
+{
+    void *at = bytes <= store->bound_bytes ? mem_try_array(bytes, 1) : NULL;
+    if (at)
+        visibility_buffers_give(store, shape, at, bytes, mem_free);
+    else
+        visibility_buffers_drop(store, shape);
+    return at;
 }
 
 void visibility_buffers_drop(struct visibility_buffers *store, uint64_t shape)

@@ -11,6 +11,7 @@ enum { VISIBILITY_BUFFERS = 16 };
 struct visibility_buffer {
     uint64_t shape;
     void *at; /* NULL: empty */
+    void (*destroy)(void *at);
     size_t bytes;
     uint64_t used;
 };
@@ -25,6 +26,8 @@ void *visibility_buffers_find(struct visibility_buffers *store, uint64_t shape);
 /* New ones, not set to anything; those that were there before go. The caller fills them at once, or drops them. NULL: more than the
    bound, or out of memory. */
 void *visibility_buffers_make(struct visibility_buffers *store, uint64_t shape, size_t bytes);
+/* Likewise, for what is not one piece: takes it over, and destroys it at once if it is more than the bound. */
+void visibility_buffers_give(struct visibility_buffers *store, uint64_t shape, void *at, size_t bytes, void (*destroy)(void *at));
 void visibility_buffers_drop(struct visibility_buffers *store, uint64_t shape);
 void visibility_buffers_finish(struct visibility_buffers *store);
 

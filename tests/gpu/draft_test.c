@@ -144,18 +144,26 @@ static void test_outlines(void **state)
     frame_unref(&plain);
 }
 
+static void test_hidden_assets(void **state)
+{
+    struct view view;
+    (void)state;
+    start_view(&view, 320, 240);
+    asset_set_add(&view.visibility.hidden, 1);
+    assert_same(&view, 0.003);
+}
+
 /* What it leaves to GL is what GL draws. */
 static void test_left_to_gl(void **state)
 {
     (void)state;
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < 3; i++) {
         struct view view;
         start_view(&view, 200, 150);
         if (i == 0)
             asset_set_add(&view.visibility.ghosts, 1);
         view.look = i == 1 ? LOOK_GLOSSY : LOOK_DEFAULT;
         view.ramp_interval = i == 2 ? 20 : 0;
-        view.tier = i == 3 ? TIER_STILL : TIER_MOVING;
         assert_same(&view, 0);
     }
 }
@@ -176,7 +184,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_home),    cmocka_unit_test(test_sizes), cmocka_unit_test(test_flat),
         cmocka_unit_test(test_cameras), cmocka_unit_test(test_sun),   cmocka_unit_test(test_outlines),
-        cmocka_unit_test(test_left_to_gl),
+        cmocka_unit_test(test_hidden_assets), cmocka_unit_test(test_left_to_gl),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
     if (!rig_init(&rig, "draft_test"))

@@ -174,7 +174,7 @@ static void test_bit_by_bit_is_the_same_picture(void **state)
         view.ramp_interval = bit_cases[i].ramp_interval;
         view.selected_asset = bit_cases[i].selected_asset;
         toy_set(stand.snapshot, 2, 34, QUALITY_GOOD);
-        renderer_use_gl(stand.renderer, true); /* as bit by bit */
+        renderer_use_gl(stand.renderer, view.tier == TIER_MOVING); /* as bit by bit */
         struct frame *whole = stand_draw(&stand, &view);
         renderer_use_gl(stand.renderer, false);
         struct stroke *stroke = renderer_begin(stand.renderer, &view, stand.snapshot);

@@ -1,0 +1,272 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* From triangles and light to colours. */
+#include "render/recolor.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "render/draft_impl.h"
+#include "render/draft_simd.h"
+
+enum { VERTICES_AT_ONCE = 8192 };
+static const float RIM_DARK_BGR[3] = { 41, 23, 13 }, INK_BGR[3] = { 0.14f * 255, 0.10f * 255, 0.08f * 255 };
+static const float MOST_INK = 0.5f; /* as shaders/edges.frag */
+
+struct recolor *recolor_create(int width_px, int height_px, int band_rows)
+{
+    struct recolor *recolor = mem_new(sizeof(*recolor));
+    size_t pixels = (size_t)width_px * (size_t)height_px;
+    *recolor = (struct recolor){ .width_px = width_px, .height_px = height_px, .band_rows = band_rows };
+    recolor->band_count = (height_px + band_rows - 1) / band_rows;
+    recolor->surfaces = mem_try_array(pixels, sizeof(*recolor->surfaces));
+    recolor->weights = mem_try_array(pixels, sizeof(*recolor->weights));
+    recolor->rows = mem_try_array(pixels, sizeof(*recolor->rows));
+    recolor->ink = mem_try_array(pixels, sizeof(*recolor->ink));
+    recolor->bands = mem_array((size_t)recolor->band_count, sizeof(*recolor->bands));
+    if (!recolor->surfaces || !recolor->weights || !recolor->rows || !recolor->ink)
+        recolor_destroy(&recolor);
+    return recolor;
+}
+
+void recolor_destroy(struct recolor **recolor_ptr)
+{
+    struct recolor *recolor = *recolor_ptr;
+    if (!recolor)
+        return;
+    for (int i = 0; i < recolor->band_count; i++) {
+        mem_free(recolor->bands[i].triangles);
+        mem_free(recolor->bands[i].parts);
+        mem_free(recolor->bands[i].mixed);
+    }
+    mem_free(recolor->bands);
+    mem_free(recolor->meshes);
+    mem_free(recolor->surfaces);
+    mem_free(recolor->weights);
+    mem_free(recolor->rows);
+    mem_free(recolor->ink);
+    mem_free(recolor->columns);
+    mem_free(recolor->plain);
+    mem_free(recolor->flags);
+    mem_free(recolor->markers);
+    mem_free(recolor);
+    *recolor_ptr = NULL;
+}
+
+size_t recolor_bytes(const struct recolor *recolor)
+{
+    size_t pixels = (size_t)recolor->width_px * (size_t)recolor->height_px;
+    size_t bytes = pixels * (sizeof(*recolor->surfaces) + sizeof(*recolor->weights) + 2) + recolor->vertex_count * 9;
+    for (int i = 0; i < recolor->band_count; i++) {
+        const struct recolor_band *band = &recolor->bands[i];
+        bytes += band->triangle_capacity * sizeof(*band->triangles) + band->part_capacity * sizeof(*band->parts) +
+                 band->mixed_capacity * sizeof(*band->mixed);
+    }
+    return bytes;
+}
+
+uint32_t recolor_triangle(struct recolor_band *band, const uint32_t vertices[3])
+{
+    if (band->triangle_count > 0 && !memcmp(band->triangles[band->triangle_count - 1], vertices, sizeof(*band->triangles)))
+        return (uint32_t)band->triangle_count - 1;
+    mem_grow(&band->triangles, &band->triangle_capacity, band->triangle_count + 1, sizeof(*band->triangles));
+    memcpy(band->triangles[band->triangle_count], vertices, sizeof(*band->triangles));
+    return (uint32_t)band->triangle_count++;
+}
+
+void recolor_add_mesh(struct recolor *recolor, const struct recolor_mesh *mesh)
+{
+    mem_grow(&recolor->meshes, &recolor->mesh_capacity, recolor->mesh_count + 1, sizeof(*recolor->meshes));
+    recolor->meshes[recolor->mesh_count++] = *mesh;
+}
+
+bool recolor_make_vertices(struct recolor *recolor, size_t count)
+{
+    recolor->vertex_count = count;
+    recolor->columns = mem_try_array(count, sizeof(*recolor->columns));
+    recolor->plain = mem_try_array(count, sizeof(*recolor->plain));
+    recolor->flags = mem_try_array(count, sizeof(*recolor->flags));
+    return recolor->columns && recolor->plain && recolor->flags;
+}
+
+/* --- vertices ---------------------------------------------------------------------------------------------------------------- */
+
+/* As carry_field in draft_place.c. */
+static float column_of(const struct scalar *scalar, const float *scale)
+{
+    const float slack = 1e-5f, columns = PALETTE_PLACES / (1 + 2 * slack), farthest = 1e6f;
+    float place = (scalar->value - scale[0]) * scale[1];
+    return fminf(fmaxf(place * columns + (1 + slack * columns), -farthest), farthest);
+}
+
+static uint8_t flags_of(const struct scalar *scalar)
+{
+    return (uint8_t)((scalar->no_data ? DRAFT_NO_DATA : 0) | (scalar->uncertain ? DRAFT_UNCERTAIN : 0));
+}
+
+struct reading_job {
+    struct recolor *recolor;
+    const struct scalar *scalars; /* NULL: no data anywhere */
+    const float *scale;
+    uint32_t first_vertex;
+};
+
+static void read_vertices(void *arg, size_t begin, size_t end)
+{
+    const struct reading_job *job = arg;
+    struct recolor *recolor = job->recolor;
+    for (size_t v = begin; v < end; v++) {
+        size_t at = job->first_vertex + v;
+        recolor->flags[at] = job->scalars ? flags_of(&job->scalars[v]) : DRAFT_NO_DATA;
+        recolor->plain[at] = job->scalars ? column_of(&job->scalars[v], job->scale) : 0;
+        recolor->columns[at] = recolor->flags[at] ? NAN : recolor->plain[at];
+    }
+}
+
+void recolor_read(struct recolor *recolor, const struct picture *picture, struct workers *workers)
+{
+    struct frame_block block;
+    frame_block_fill(&block, picture);
+    for (size_t m = 0; m < recolor->mesh_count; m++) {
+        const struct recolor_mesh *mesh = &recolor->meshes[m];
+        const struct fields_entry *field = picture->fields[mesh->asset];
+        struct reading_job job = { recolor, field ? field->shown : NULL, block.scale, mesh->first_vertex };
+        workers_for(workers, mesh->vertex_count, VERTICES_AT_ONCE, read_vertices, &job);
+    }
+}
+
+/* --- pixels ------------------------------------------------------------------------------------------------------------------ */
+
+struct coloring {
+    const struct recolor *recolor;
+    const uint32_t *palette;
+    float pattern_px;
+    struct frame *frame;
+    size_t first_band;
+};
+
+static const float WEIGHT = 1 / 65535.0f;
+
+static uint32_t mix(uint32_t a, uint32_t b, float part)
+{
+    uint32_t out = 0;
+    for (int c = 0; c < 24; c += 8) {
+        float from = (float)(a >> c & 0xff), to = (float)(b >> c & 0xff);
+        out |= (uint32_t)(from + part * (to - from) + 0.5f) << c;
+    }
+    return out;
+}
+
+/* As hatch and stipple in shaders/field.glsl; over 0.5 on the dark parts. */
+static float hatch(float x, float y, float pattern_px)
+{
+    float phase = (x + y) / (pattern_px * 1.4142f);
+    return (fabsf(phase - floorf(phase) - 0.5f) - 0.25f) * pattern_px + 0.5f;
+}
+
+static float stipple(float x, float y, float pattern_px)
+{
+    float row = y / pattern_px, column = x / pattern_px + ((int)row % 2 ? 0.5f : 0);
+    return (0.26f - hypotf(column - floorf(column) - 0.5f, row - floorf(row) - 0.5f)) * pattern_px + 0.5f;
+}
+
+static float clamped(float x, float low, float high)
+{
+    return x < low ? low : x > high ? high : x;
+}
+
+/* Where a corner has flags. */
+static uint32_t flagged_color(const struct coloring *coloring, const uint32_t vertices[3], uint32_t weights, uint8_t row, float x, float y)
+{
+    const struct recolor *recolor = coloring->recolor;
+    const uint32_t *colors = coloring->palette + row * PALETTE_COLUMNS;
+    float w1 = (float)(weights & 0xffff) * WEIGHT, w2 = (float)(weights >> 16) * WEIGHT, w[3] = { 1 - w1 - w2, w1, w2 };
+    float column = 0, none = 0, little = 0;
+    for (int i = 0; i < 3; i++) {
+        column += w[i] * recolor->plain[vertices[i]];
+        none += recolor->flags[vertices[i]] & DRAFT_NO_DATA ? w[i] : 0;
+        little += recolor->flags[vertices[i]] & DRAFT_UNCERTAIN ? w[i] : 0;
+    }
+    if (none > 0.5f)
+        return mix(colors[PALETTE_PATTERNS + PATTERN_HATCH_LIGHT], colors[PALETTE_PATTERNS + PATTERN_HATCH_DARK],
+                   clamped(hatch(x, y, coloring->pattern_px), 0, 1));
+    uint32_t color = colors[(int)clamped(column, 0, PALETTE_PLACES + 1)];
+    if (little <= 0.5f)
+        return color;
+    return mix(color, colors[PALETTE_PATTERNS + PATTERN_STIPPLE], clamped(stipple(x, y, coloring->pattern_px), 0, 1));
+}
+
+static inline uint32_t field_color(const struct coloring *coloring, const uint32_t vertices[3], uint32_t weights, uint8_t row, int x, int y)
+{
+    const float *columns = coloring->recolor->columns, first = columns[vertices[0]];
+    float w1 = (float)(weights & 0xffff) * WEIGHT, w2 = (float)(weights >> 16) * WEIGHT;
+    float column = first + w1 * (columns[vertices[1]] - first) + w2 * (columns[vertices[2]] - first);
+    if (column != column)
+        return flagged_color(coloring, vertices, weights, row, (float)x + 0.5f, (float)y + 0.5f);
+    return coloring->palette[row * PALETTE_COLUMNS + (int)clamped(column, 0, PALETTE_PLACES + 1)];
+}
+
+static uint32_t mixed_color(const struct coloring *coloring, const struct recolor_band *band, uint32_t number, int x, int y)
+{
+    const struct recolor_mixed *mixed = &band->mixed[number];
+    uint32_t sums[3] = { mixed->rest[0], mixed->rest[1], mixed->rest[2] }, out = 0;
+    for (uint32_t i = 0; i < mixed->part_count; i++) {
+        const struct recolor_part *part = &band->parts[mixed->first_part + i];
+        uint32_t color = field_color(coloring, band->triangles[part->triangle], part->weights, part->row, x, y);
+        for (int c = 0; c < 3; c++)
+            sums[c] += part->share * (color >> (8 * c) & 0xff);
+    }
+    for (int c = 0; c < 3; c++)
+        out |= (sums[c] + RECOLOR_SHARES / 2) / RECOLOR_SHARES << (8 * c);
+    return out;
+}
+
+static uint32_t inked(uint32_t color, uint8_t ink)
+{
+    uint32_t out = 0;
+    for (int c = 0; c < 3; c++) {
+        float was = (float)(color >> (8 * c) & 0xff), now = was + (INK_BGR[c] - was) * (MOST_INK / RECOLOR_INK) * ink;
+        if (ink == RECOLOR_RIM_DARK)
+            now = RIM_DARK_BGR[c];
+        if (ink == RECOLOR_RIM_LIGHT)
+            now = 0.1f * was + 229.5f;
+        out |= (uint32_t)(now + 0.5f) << (8 * c);
+    }
+    return out;
+}
+
+DRAFT_KERNEL static void color_band(const struct coloring *coloring, int number)
+{
+    const struct recolor *recolor = coloring->recolor;
+    const struct recolor_band *band = &recolor->bands[number];
+    int end = (number + 1) * recolor->band_rows < recolor->height_px ? (number + 1) * recolor->band_rows : recolor->height_px;
+    for (int y = number * recolor->band_rows; y < end; y++) {
+        size_t start = (size_t)y * (size_t)recolor->width_px;
+        uint32_t *out = (uint32_t *)(void *)(coloring->frame->bgrx + (size_t)y * (size_t)coloring->frame->stride_bytes);
+        for (int x = 0; x < recolor->width_px; x++) {
+            size_t at = start + (size_t)x;
+            uint32_t surface = recolor->surfaces[at], color = surface;
+            if (!(surface & (RECOLOR_FIXED | RECOLOR_MIXED)))
+                color = field_color(coloring, band->triangles[surface], recolor->weights[at], recolor->rows[at], x, y);
+            else if (surface & RECOLOR_MIXED)
+                color = mixed_color(coloring, band, surface & ~RECOLOR_MIXED, x, y);
+            if (recolor->ink[at])
+                color = inked(color, recolor->ink[at]);
+            out[x] = color | 0xff000000;
+        }
+    }
+}
+
+static void color_bands(void *arg, size_t begin, size_t end)
+{
+    const struct coloring *coloring = arg;
+    for (size_t band = begin; band < end; band++)
+        color_band(coloring, (int)(coloring->first_band + band));
+}
+
+void recolor_draw(const struct recolor *recolor, const uint32_t *palette, float pattern_px, struct workers *workers, int first, int count,
+                  struct frame *frame)
+{
+    struct coloring coloring = { recolor, palette, pattern_px, frame, (size_t)first };
+    workers_for(workers, (size_t)count, 2, color_bands, &coloring);
+}

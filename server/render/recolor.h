@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A picture before its field is coloured: for each pixel the triangle it shows, where on it, and how light it is there. While the
+   camera stands still, changed readings need no more than looking colours up once more.
+   Thread: the one of the GL context, but for what is said to be a worker's. */
+#ifndef RENDER_RECOLOR_H
+#define RENDER_RECOLOR_H
+#include "base/workers.h"
+#include "render/frame.h"
+#include "render/picture.h"
+
+/* What a pixel shows: a colour that no reading changes (blue | green << 8 | red << 16), several surfaces (their number in the band),
+   or one triangle of the field (its number in the band). */
+#define RECOLOR_FIXED 0x80000000u
+#define RECOLOR_MIXED 0x40000000u
+
+/* What is drawn over the colours. Up to RECOLOR_INK: so much of a dark line; then the rim of what is selected. */
+enum { RECOLOR_INK = 253, RECOLOR_RIM_DARK, RECOLOR_RIM_LIGHT };
+
+struct recolor_part { /* of a pixel that shows several surfaces: one of the field */
+    uint32_t triangle, weights;
+    uint8_t row, share; /* of RECOLOR_SHARES */
+};
+enum { RECOLOR_SHARES = 4 };
+
+struct recolor_mixed {
+    uint16_t rest[3]; /* of what is fixed: colour times share */
+    uint8_t part_count;
+    uint32_t first_part;
+};
+
+struct recolor_band { /* of rows; written by one worker */
+    uint32_t (*triangles)[3]; /* vertices of the picture */
+    struct recolor_part *parts;
+    struct recolor_mixed *mixed;
+    size_t triangle_count, part_count, mixed_count;
+    size_t triangle_capacity, part_capacity, mixed_capacity;
+};
+
+struct recolor_mesh { /* an asset with a field */
+    int asset;
+    uint32_t first_vertex, vertex_count;
+};
+
+struct recolor {
+    int width_px, height_px, band_rows, band_count;
+    uint32_t *surfaces; /* per pixel, as above */
+    uint32_t *weights;  /* of the triangle's second and third corner, 16 bits each */
+    uint8_t *rows;      /* of the palette */
+    uint8_t *ink;
+    struct recolor_band *bands;
+    struct recolor_mesh *meshes;
+    size_t mesh_count, mesh_capacity, vertex_count;
+    float *columns; /* per vertex, of the palette; NAN: look at flags */
+    float *plain;   /* the same without NAN */
+    uint8_t *flags; /* DRAFT_* */
+    struct frame_marker *markers; /* places, and whether they are hidden */
+    size_t marker_count;
+};
+
+struct recolor *recolor_create(int width_px, int height_px, int band_rows); /* NULL: out of memory */
+void recolor_destroy(struct recolor **recolor);                             /* &NULL is fine; leaves NULL */
+size_t recolor_bytes(const struct recolor *recolor);
+/* On a worker: number of that triangle in the band. */
+uint32_t recolor_triangle(struct recolor_band *band, const uint32_t vertices[3]);
+void recolor_add_mesh(struct recolor *recolor, const struct recolor_mesh *mesh);
+bool recolor_make_vertices(struct recolor *recolor, size_t count); /* after the last mesh. False: out of memory */
+
+/* The fields of the picture, into columns and flags. */
+void recolor_read(struct recolor *recolor, const struct picture *picture, struct workers *workers);
+/* Colours of those bands. palette: PALETTE_ROWS x PALETTE_COLUMNS, as it comes from the GPU. pattern_px: size of its cells. */
+void recolor_draw(const struct recolor *recolor, const uint32_t *palette, float pattern_px, struct workers *workers, int first, int count,
+                  struct frame *frame);
+
+#endif

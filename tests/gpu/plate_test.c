@@ -1,0 +1,288 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Still pictures without a GPU against the same ones drawn by GL; and pictures that are coloured once more against new ones. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "tests/support/rig.h"
+#include "value/quality.h"
+
+static struct rig rig;
+static struct stand stand;
+
+static struct frame *draw_by_gl(const struct view *view)
+{
+    renderer_use_gl(stand.renderer, true);
+    struct frame *frame = stand_draw(&stand, view);
+    renderer_use_gl(stand.renderer, false);
+    return frame;
+}
+
+/* Whatever was drawn before. */
+static struct frame *draw_anew(const struct view *view)
+{
+    struct stroke *stroke = renderer_begin(stand.renderer, view, stand.snapshot);
+    assert_non_null(stroke);
+    struct frame *frame = renderer_end(stand.renderer, &stroke);
+    assert_non_null(frame);
+    return frame;
+}
+
+static int difference(const struct frame *a, const struct frame *b, int pixel)
+{
+    int most = 0;
+    for (int c = 0; c < 3; c++)
+        most = abs(a->bgrx[4 * pixel + c] - b->bgrx[4 * pixel + c]) > most ? abs(a->bgrx[4 * pixel + c] - b->bgrx[4 * pixel + c]) : most;
+    return most;
+}
+
+/* Rims of shadows and lines of a pixel's width may differ. */
+static void assert_like_gl(const struct view *view, double may_differ)
+{
+    struct frame *plate = draw_anew(view), *gl = draw_by_gl(view);
+    int far = 0, pixels = view->width_px * view->height_px;
+    double sum = 0;
+    for (int i = 0; i < pixels; i++) {
+        int by = difference(plate, gl, i);
+        far += by > 8;
+        sum += by;
+    }
+    if (far > may_differ * pixels || sum > (1 + 20 * may_differ) * pixels)
+        print_message("# %d of %d pixels differ by more than 8, all by %.2f on average\n", far, pixels, sum / pixels);
+    assert_true(far <= may_differ * pixels && sum <= (1 + 20 * may_differ) * pixels);
+    assert_int_equal(plate->marker_count, gl->marker_count);
+    assert_true(plate->marker_count > 0);
+    for (size_t i = 0; i < gl->marker_count; i++) {
+        assert_int_equal(plate->markers[i].tag, gl->markers[i].tag);
+        assert_int_equal(plate->markers[i].occluded, gl->markers[i].occluded);
+        assert_true(fabsf(plate->markers[i].x_px - gl->markers[i].x_px) < 0.01f);
+    }
+    assert_int_equal(plate->content, gl->content);
+    frame_unref(&plate);
+    frame_unref(&gl);
+}
+
+static void start_view(struct view *view, int width_px, int height_px)
+{
+    view_default(&stand.toy->scene, width_px, height_px, view);
+    view->tier = TIER_STILL;
+}
+
+static void test_home(void **state)
+{
+    struct view view;
+    (void)state;
+    start_view(&view, 640, 360);
+    assert_like_gl(&view, 0.005);
+    view.look = LOOK_FLAT;
+    assert_like_gl(&view, 0.005);
+    view.look = LOOK_MATERIALS;
+    assert_like_gl(&view, 0.01);
+}
+
+static void test_sizes(void **state)
+{
+    static const int sizes[][2] = { { 16, 16 }, { 17, 33 }, { 333, 217 }, { 64, 500 }, { 1001, 31 } };
+    (void)state;
+    for (size_t i = 0; i < sizeof(sizes) / sizeof(sizes[0]); i++) {
+        struct view view;
+        start_view(&view, sizes[i][0], sizes[i][1]);
+        assert_like_gl(&view, 0.08);
+    }
+}
+
+/* All round, from far away, from below and from among the pipes, where triangles pass the eye. */
+static void test_cameras(void **state)
+{
+    struct view view;
+    (void)state;
+    start_view(&view, 320, 240);
+    const struct scene *scene = &stand.toy->scene;
+    for (int i = 0; i < 12; i++) {
+        double away = i % 4 == 3 ? 0.15 : 0.5 + i % 3;
+        for (int c = 0; c < 3; c++) {
+            double size = scene->bounds_max_m[c] - scene->bounds_min_m[c];
+            view.camera.target_m[c] = scene->bounds_min_m[c] + 0.5 * size;
+            view.camera.eye_m[c] = view.camera.target_m[c] + away * size * (c == 0 ? cos(i) : c == 1 ? sin(i) : 0.7 - 0.2 * i);
+        }
+        assert_like_gl(&view, 0.02);
+    }
+}
+
+static void test_suns(void **state)
+{
+    struct view view;
+    (void)state;
+    start_view(&view, 400, 300);
+    for (int i = 0; i < 4; i++) {
+        double towards[3] = { 0.6 * cos(i), 0.6 * sin(i), 0.8 };
+        memcpy(view.light_dir, towards, sizeof(towards));
+        assert_like_gl(&view, 0.01);
+    }
+}
+
+static void test_outlines(void **state)
+{
+    struct view view;
+    (void)state;
+    start_view(&view, 640, 360);
+    for (int asset = 0; asset < (int)stand.toy->scene.asset_count; asset++) {
+        view.selected_asset = asset;
+        assert_like_gl(&view, 0.02);
+    }
+}
+
+static void test_hidden_assets(void **state)
+{
+    struct view view;
+    (void)state;
+    start_view(&view, 320, 240);
+    asset_set_add(&view.visibility.hidden, 1);
+    assert_like_gl(&view, 0.01);
+}
+
+/* --- once more ------------------------------------------------------------------------------------------------------------------- */
+
+static bool is_quick(const struct view *view)
+{
+    return renderer_is_quick(stand.renderer, view, stand.snapshot);
+}
+
+static void assert_same_anew(const struct view *view)
+{
+    assert_true(is_quick(view));
+    struct frame *again = stand_draw(&stand, view), *anew = draw_anew(view);
+    assert_memory_equal(again->bgrx, anew->bgrx, (size_t)again->height_px * (size_t)again->stride_bytes);
+    assert_int_equal(again->content, anew->content);
+    assert_int_equal(again->marker_count, anew->marker_count);
+    for (size_t i = 0; i < anew->marker_count; i++) {
+        assert_int_equal(again->markers[i].tag, anew->markers[i].tag);
+        assert_int_equal(again->markers[i].occluded, anew->markers[i].occluded);
+    }
+    frame_unref(&again);
+    frame_unref(&anew);
+}
+
+/* Values, one beyond the range, one that is uncertain and one that is bad. */
+static void fill(void)
+{
+    static const double values[8] = { 15, 30, 55, 80, 105, 20, 45, 90 };
+    for (int i = 0; i < 8; i++)
+        toy_set(stand.snapshot, i, values[i],
+                i == 6   ? QUALITY_BAD_SENSOR_FAILURE
+                : i == 5 ? QUALITY_UNCERTAIN_LAST_USABLE
+                         : (uint32_t)QUALITY_GOOD);
+}
+
+static void test_new_readings_are_a_new_picture(void **state)
+{
+    struct view view;
+    (void)state;
+    start_view(&view, 501, 300);
+    view.selected_asset = 0;
+    struct frame *first = draw_anew(&view);
+    toy_set(stand.snapshot, 0, 75, QUALITY_GOOD);
+    toy_set(stand.snapshot, 3, 20, QUALITY_GOOD);
+    assert_same_anew(&view);
+    toy_set(stand.snapshot, 3, 20, QUALITY_UNCERTAIN_LAST_USABLE);
+    toy_set(stand.snapshot, 6, 45, QUALITY_GOOD);
+    assert_same_anew(&view);
+    for (int i = 0; i < 8; i++)
+        toy_set(stand.snapshot, i, 50, QUALITY_BAD_SENSOR_FAILURE);
+    assert_same_anew(&view);
+    fill();
+    struct frame *last = stand_draw(&stand, &view);
+    assert_memory_equal(first->bgrx, last->bgrx, (size_t)first->height_px * (size_t)first->stride_bytes);
+    frame_unref(&first);
+    frame_unref(&last);
+}
+
+static void test_new_colors_too(void **state)
+{
+    struct view view;
+    (void)state;
+    start_view(&view, 300, 200);
+    struct frame *frame = draw_anew(&view);
+    frame_unref(&frame);
+    view.colormap = (int)colormap_count() - 1;
+    view.range_min = 30;
+    view.range_max = 70;
+    assert_same_anew(&view);
+}
+
+static void test_what_else_changes_is_drawn(void **state)
+{
+    struct view view, other;
+    (void)state;
+    start_view(&view, 300, 200);
+    struct frame *frame = draw_anew(&view);
+    frame_unref(&frame);
+    assert_true(is_quick(&view));
+    other = view;
+    other.camera.eye_m[0] += 0.01;
+    assert_false(is_quick(&other));
+    other = view;
+    other.width_px++;
+    assert_false(is_quick(&other));
+    other = view;
+    other.light_dir[2] = 0.3;
+    assert_false(is_quick(&other));
+    other = view;
+    other.selected_asset = 1;
+    assert_false(is_quick(&other));
+    other = view;
+    asset_set_add(&other.visibility.hidden, 1);
+    assert_false(is_quick(&other));
+}
+
+/* What is kept of them has a bound, and the oldest goes. */
+static void test_few_large_ones_are_kept(void **state)
+{
+    struct view views[4];
+    (void)state;
+    for (int i = 0; i < 4; i++) {
+        start_view(&views[i], 3000, 2600);
+        views[i].camera.eye_m[0] += i;
+        struct frame *frame = draw_anew(&views[i]);
+        frame_unref(&frame);
+    }
+    assert_false(is_quick(&views[0]));
+    assert_true(is_quick(&views[2]) && is_quick(&views[3]));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_home),
+        cmocka_unit_test(test_sizes),
+        cmocka_unit_test(test_cameras),
+        cmocka_unit_test(test_suns),
+        cmocka_unit_test(test_outlines),
+        cmocka_unit_test(test_hidden_assets),
+        cmocka_unit_test(test_new_readings_are_a_new_picture),
+        cmocka_unit_test(test_new_colors_too),
+        cmocka_unit_test(test_what_else_changes_is_drawn),
+        cmocka_unit_test(test_few_large_ones_are_kept),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    if (!rig_init(&rig, "plate_test"))
+        return 0;
+    if (!rig.gl->software) {
+        printf("TAP version 13\n1..1\nok 1 - plate_test # SKIP a GPU draws still pictures itself\n");
+        rig_finish(&rig);
+        return 0;
+    }
+    stand_init(&stand, &rig, toy_unit());
+    fill();
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    stand_finish(&stand);
+    rig_finish(&rig);
+    return failed;
+}
