@@ -38,7 +38,7 @@ struct server {
     struct painter *painter;
     pthread_mutex_t wake_lock; /* holds net alive while the render thread wakes it */
     struct net *net;
-    char *web;
+    char *web, *history; /* folders; NULL: none */
 };
 
 static struct net *_Atomic to_stop;
@@ -171,12 +171,11 @@ static bool start_historian(struct server *server)
 {
     if (server->plant->history.off)
         return true;
-    char *folder = server->params.history ? mem_strdup(server->params.history) : plant_history_folder(server->plant);
+    server->history = server->params.history ? mem_strdup(server->params.history) : plant_history_folder(server->plant);
     const struct historian_params params = {
-        .log = server->log, .counters = server->counters, .plant = server->plant, .store = server->store, .folder = folder
+        .log = server->log, .counters = server->counters, .plant = server->plant, .store = server->store, .folder = server->history
     };
     server->historian = historian_start(&params);
-    mem_free(folder);
     return server->historian != NULL;
 }
 
@@ -213,6 +212,7 @@ static bool start_net(struct server *server)
         .port = server->params.port,
         .access = server->params.access,
         .codecs = find_codecs(server),
+        .history_folder = server->history,
         .web_folder = server->web,
         .version = PLANTCAST_VERSION,
     };
@@ -271,6 +271,7 @@ static void server_finish(struct server *server)
     scene_destroy(&server->scene);
     plant_destroy(&server->plant);
     mem_free(server->web);
+    mem_free(server->history);
     pthread_mutex_destroy(&server->wake_lock);
     log_destroy(&server->log);
 }

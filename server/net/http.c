@@ -105,24 +105,43 @@ static void forget_snapshot(struct hub *hub, struct request *request)
     *at = request->next;
     hub->snapshot_count--;
     painter_forget(hub->params.painter, request->client);
+    if (hub->recall)
+        recall_forget(hub->recall, request->client);
+}
+
+enum { MAX_ARGS = 32, MAX_ARG_BYTES = 2048 };
+struct args { /* of the query, decoded */
+    char bytes[MAX_ARGS][MAX_ARG_BYTES];
+    const char *list[MAX_ARGS];
+    size_t count;
+};
+
+static bool read_args(struct lws *wsi, struct args *args, struct message_error *error)
+{
+    int count = 0;
+    for (; count < MAX_ARGS && lws_hdr_fragment_length(wsi, WSI_TOKEN_HTTP_URI_ARGS, count) > 0; count++) {
+        if (lws_hdr_copy_fragment(wsi, args->bytes[count], MAX_ARG_BYTES, WSI_TOKEN_HTTP_URI_ARGS, count) < 0) {
+            message_fail(error, "bad_field", "argument %d is longer than %d bytes", count + 1, MAX_ARG_BYTES - 1);
+            return false;
+        }
+        args->list[count] = args->bytes[count];
+    }
+    args->count = (size_t)count;
+    return true;
+}
+
+static int answer_error(struct request *request, const struct message_error *error)
+{
+    char *text = mem_printf("%s\n", error->text);
+    return answer(request, HTTP_STATUS_BAD_REQUEST, "text/plain; charset=utf-8", text, strlen(text), NULL, NULL);
 }
 
 /* place: x and y of a pick; NULL: none is asked. */
 static bool read_query(struct hub *hub, struct lws *wsi, struct view *view, double place[2], struct message_error *error)
 {
-    enum { MAX_ARGS = 32, MAX_BYTES = 1024 };
-    char args[MAX_ARGS][MAX_BYTES];
-    const char *list[MAX_ARGS];
-    int count = 0;
-    for (; count < MAX_ARGS && lws_hdr_fragment_length(wsi, WSI_TOKEN_HTTP_URI_ARGS, count) > 0; count++) {
-        if (lws_hdr_copy_fragment(wsi, args[count], MAX_BYTES, WSI_TOKEN_HTTP_URI_ARGS, count) < 0) {
-            message_fail(error, "bad_field", "argument %d is longer than %d bytes", count + 1, MAX_BYTES - 1);
-            return false;
-        }
-        list[count] = args[count];
-    }
     const struct params_world world = { .scene = hub->params.scene, .baselines = hub->params.baselines };
-    return query_parse(&world, list, (size_t)count, view, place, error);
+    struct args args;
+    return read_args(wsi, &args, error) && query_parse(&world, args.list, args.count, view, place, error);
 }
 
 static void await(struct hub *hub, struct request *request)
@@ -138,10 +157,8 @@ static int ask_snapshot(struct hub *hub, struct request *request)
 {
     struct wish wish = { .codec = WIRE_CODEC_PNG, .quality = LOSSLESS, .urgency = URGENCY_SNAPSHOT, .always = true, .overlay = true };
     struct message_error error = { 0 };
-    if (!read_query(hub, request->wsi, &wish.view, NULL, &error)) {
-        char *text = mem_printf("%s\n", error.text);
-        return answer(request, HTTP_STATUS_BAD_REQUEST, "text/plain; charset=utf-8", text, strlen(text), NULL, NULL);
-    }
+    if (!read_query(hub, request->wsi, &wish.view, NULL, &error))
+        return answer_error(request, &error);
     if (hub->snapshot_count >= hub->quotas->at[QUOTA_SNAPSHOTS])
         return answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "too many pictures are being made; try again\n");
     wish.asked_ns = wish.view.input_ns = clock_mono_ns();
@@ -151,11 +168,17 @@ static int ask_snapshot(struct hub *hub, struct request *request)
     return 0;
 }
 
-void http_on_picture(struct hub *hub, struct picture *picture)
+static struct request *find_awaiting(const struct hub *hub, uint64_t client)
 {
     struct request *request = hub->snapshots;
-    while (request && request->client != picture->client)
+    while (request && request->client != client)
         request = request->next;
+    return request;
+}
+
+void http_on_picture(struct hub *hub, struct picture *picture)
+{
+    struct request *request = find_awaiting(hub, picture->client);
     if (request) {
         int status;
         forget_snapshot(hub, request);
@@ -179,10 +202,8 @@ static int ask_pick(struct hub *hub, struct request *request)
     struct pick_order order = { 0 };
     struct message_error error = { 0 };
     double place[2];
-    if (!read_query(hub, request->wsi, &order.view, place, &error)) {
-        char *text = mem_printf("%s\n", error.text);
-        return answer(request, HTTP_STATUS_BAD_REQUEST, "text/plain; charset=utf-8", text, strlen(text), NULL, NULL);
-    }
+    if (!read_query(hub, request->wsi, &order.view, place, &error))
+        return answer_error(request, &error);
     if (hub->snapshot_count >= hub->quotas->at[QUOTA_SNAPSHOTS])
         return answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "too much is being asked; try again\n");
     await(hub, request);
@@ -195,13 +216,45 @@ static int ask_pick(struct hub *hub, struct request *request)
 
 void http_on_pick(struct hub *hub, const struct pick_answer *pick)
 {
-    struct request *request = hub->snapshots;
-    while (request && request->client != pick->order.client)
-        request = request->next;
+    struct request *request = find_awaiting(hub, pick->order.client);
     if (!request)
         return;
     forget_snapshot(hub, request);
     if (answer_json(request, reply_picked_text(hub->params.scene->plant, pick)) < 0)
+        lws_set_timeout(request->wsi, PENDING_TIMEOUT_CLOSE_SEND, LWS_TO_KILL_ASYNC);
+}
+
+/* --- the past --------------------------------------------------------------------------------------------------------------- */
+
+static int ask_history(struct hub *hub, struct request *request)
+{
+    struct recall_order order;
+    struct message_error error = { 0 };
+    struct args args;
+    if (!hub->recall)
+        return answer_text(request, HTTP_STATUS_NOT_FOUND, "this daemon records nothing (history: record: no)\n");
+    if (!read_args(request->wsi, &args, &error) ||
+        !recall_parse(hub->params.scene->plant, args.list, args.count, clock_utc_ns() / 1000, &order, &error))
+        return answer_error(request, &error);
+    order.client = hub->next_client;
+    if (!recall_ask(hub->recall, &order))
+        return answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "too much is being asked; try again\n");
+    await(hub, request);
+    return 0;
+}
+
+void http_on_recall(struct hub *hub, struct recall_answer *recalled)
+{
+    struct request *request = find_awaiting(hub, recalled->client);
+    if (!request) {
+        mem_free(recalled->text);
+        return;
+    }
+    forget_snapshot(hub, request);
+    int status = recalled->text ? answer(request, HTTP_STATUS_OK, recalled->csv ? "text/csv; charset=utf-8" : "application/json",
+                                         recalled->text, recalled->length, NULL, NULL)
+                                : answer_text(request, HTTP_STATUS_INTERNAL_SERVER_ERROR, "history cannot be read; the log says why\n");
+    if (status < 0)
         lws_set_timeout(request->wsi, PENDING_TIMEOUT_CLOSE_SEND, LWS_TO_KILL_ASYNC);
 }
 
@@ -271,6 +324,7 @@ static const struct {
     { "/api/v1/plant", api_plant, ROLE_VIEWER },
     { "/api/v1/tags", api_tags, ROLE_VIEWER },
     { "/api/v1/pick", ask_pick, ROLE_VIEWER },
+    { "/api/v1/history", ask_history, ROLE_VIEWER },
 };
 
 static int refuse(struct request *request, const struct refusal *refusal)

@@ -5,6 +5,7 @@
 #include <libwebsockets.h>
 
 #include "net/net.h"
+#include "net/recall.h"
 #include "net/peers.h"
 #include "net/session.h"
 #include "net/stages.h"
@@ -22,6 +23,7 @@ struct hub {
     int64_t data_ns;   /* when the oldest of those that changed came in; monotonic */
     bool *links_up;
     struct lws_context *context;
+    struct recall *recall; /* NULL: nothing is recorded */
     struct stream *streams;
     struct request *snapshots; /* HTTP requests that wait for their picture */
     int stream_count, snapshot_count;
@@ -67,6 +69,7 @@ int stream_check_upgrade(struct hub *hub, struct lws *wsi);
 int http_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t len);
 void http_on_picture(struct hub *hub, struct picture *picture); /* takes it over */
 void http_on_pick(struct hub *hub, const struct pick_answer *answer);
+void http_on_recall(struct hub *hub, struct recall_answer *recalled); /* takes its text */
 /* A complete short answer in plain text. Returns what the callback is to return. */
 int http_answer(struct lws *wsi, int status, const char *text);
 

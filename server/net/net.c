@@ -143,9 +143,20 @@ static void collect_picks(struct hub *hub)
     }
 }
 
+static void collect_recalled(struct hub *hub)
+{
+    struct recall_answer *recalled = hub->recall ? recall_collect(hub->recall) : NULL;
+    for (struct recall_answer *next; recalled; recalled = next) {
+        next = recalled->next;
+        http_on_recall(hub, recalled);
+        mem_free(recalled);
+    }
+}
+
 static void collect(struct hub *hub)
 {
     collect_picks(hub);
+    collect_recalled(hub);
     for (struct picture *picture = painter_collect(hub->params.painter), *next; picture; picture = next) {
         next = picture->next;
         picture->next = NULL;
@@ -266,6 +277,18 @@ static bool open_access(struct net *net)
     return !access->tls_cert_path || (hub->tls = tls_create(hub->params.log, access->tls_cert_path, access->tls_key_path));
 }
 
+static void wake(void *arg)
+{
+    net_wake(arg);
+}
+
+static bool open_history(struct net *net)
+{
+    const struct net_params *params = &net->hub.params;
+    return !params->history_folder ||
+           (net->hub.recall = recall_create(params->log, params->scene->plant, params->history_folder, wake, net));
+}
+
 struct net *net_create(const struct net_params *params)
 {
     struct net *net = mem_new(sizeof(*net));
@@ -295,7 +318,7 @@ struct net *net_create(const struct net_params *params)
     take_snapshot(hub);
     look_at_links(hub);
     raise_file_limit(params->log, hub->quotas);
-    if (!open_access(net) || !open_context(net))
+    if (!open_access(net) || !open_context(net) || !open_history(net))
         net_destroy(&net);
     return net;
 }
@@ -306,6 +329,7 @@ void net_destroy(struct net **net_ptr)
     if (!net)
         return;
     lws_sul_cancel(&net->tick);
+    recall_destroy(&net->hub.recall); /* before what it wakes */
     if (net->hub.context)
         lws_context_destroy(net->hub.context);
     atomic_store(&lws_log_to, NULL);

@@ -21,6 +21,7 @@ struct net_params {
     int port;               /* 0: any that is free */
     struct access_params access;
     unsigned codecs;        /* a bit, 1 << enum wire_codec, for each that works here */
+    const char *history_folder; /* NULL: nothing is recorded */
     const char *web_folder; /* NULL: no client is served */
     const char *version;
 };

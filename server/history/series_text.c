@@ -1,0 +1,110 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Writes lines and buckets as text: large ones, so without a tree in between. */
+#include "history/series_text.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "history/month.h"
+#include "history/when.h"
+
+/* ten digits: more than any transmitter has */
+static void add_number(struct text *out, double value, const char *none)
+{
+    if (isnan(value))
+        text_add(out, "%s", none);
+    else
+        text_add(out, "%.10g", value);
+}
+
+void series_text_string(struct text *out, const char *string)
+{
+    text_add(out, "\"");
+    for (; *string; string++) {
+        if (*string == '"' || *string == '\\')
+            text_add(out, "\\%c", *string);
+        else if ((unsigned char)*string < 0x20)
+            text_add(out, "\\u%04x", *string);
+        else
+            text_add_bytes(out, string, 1);
+    }
+    text_add(out, "\"");
+}
+
+static void add_point(struct text *out, const struct history_point *point)
+{
+    text_add(out, "[%lld,", (long long)point->t_us);
+    add_number(out, history_point_usable(point) ? point->value : NAN, "null");
+    text_add(out, ",%u]", point->quality);
+}
+
+static void add_bucket(struct text *out, const struct history_bucket *bucket)
+{
+    const double values[] = { bucket->low, bucket->high, bucket->mean, bucket->first, bucket->last };
+    text_add(out, "[%lld", (long long)bucket->t_us);
+    for (size_t i = 0; i < sizeof(values) / sizeof(values[0]); i++) {
+        text_add(out, ",");
+        add_number(out, values[i], "null");
+    }
+    text_add(out, ",%lld,%u]", (long long)bucket->bad_us, bucket->quality);
+}
+
+void series_text_json(struct text *out, const char *tag, const char *unit, const struct history_series *series)
+{
+    text_add(out, "{\"tag\":");
+    series_text_string(out, tag);
+    text_add(out, ",\"unit\":");
+    series_text_string(out, unit);
+    text_add(out, ",\"step\":%s,\"bucket_us\":%lld,\"points\":[", series->step ? "true" : "false", (long long)series->bucket_us);
+    for (size_t i = 0; i < series->points.count; i++) {
+        text_add(out, i ? "," : "");
+        add_point(out, &series->points.at[i]);
+    }
+    for (size_t i = 0; i < series->buckets.count; i++) {
+        text_add(out, i ? "," : "");
+        add_bucket(out, &series->buckets.at[i]);
+    }
+    text_add(out, "]}");
+}
+
+static void add_cell(struct text *out, const char *text)
+{
+    bool plain = !strpbrk(text, ",;\t\"\r\n ");
+    text_add(out, plain ? "" : "\"");
+    for (; *text; text++)
+        text_add(out, *text == '"' ? "\"\"" : "%c", *text);
+    text_add(out, plain ? "" : "\"");
+}
+
+static void begin_row(struct text *out, const char *tag, int64_t t_us)
+{
+    char when[WHEN_BYTES];
+    when_print(t_us, when);
+    add_cell(out, tag);
+    text_add(out, ",%s,", when);
+}
+
+void series_text_csv_head(struct text *out, bool buckets)
+{
+    text_add(out, buckets ? "Tag,Time,Low,High,Mean,First,Last,Bad s,Quality\r\n" : "Tag,Time,Value,Quality\r\n");
+}
+
+void series_text_csv(struct text *out, const char *tag, const struct history_series *series)
+{
+    for (size_t i = 0; i < series->points.count; i++) {
+        const struct history_point *point = &series->points.at[i];
+        begin_row(out, tag, point->t_us);
+        add_number(out, history_point_usable(point) ? point->value : NAN, "");
+        text_add(out, ",0x%08X\r\n", point->quality);
+    }
+    for (size_t i = 0; i < series->buckets.count; i++) {
+        const struct history_bucket *bucket = &series->buckets.at[i];
+        const double values[] = { bucket->low, bucket->high, bucket->mean, bucket->first, bucket->last };
+        begin_row(out, tag, bucket->t_us);
+        for (size_t k = 0; k < sizeof(values) / sizeof(values[0]); k++) {
+            add_number(out, values[k], "");
+            text_add(out, ",");
+        }
+        text_add(out, "%.6g,0x%08X\r\n", (double)bucket->bad_us / US_PER_S, bucket->quality);
+    }
+}

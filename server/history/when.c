@@ -1,0 +1,133 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Reads and writes instants, whatever the locale and the time zone of this computer. */
+#include "history/when.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+
+#include "history/month.h"
+
+/* Digits only: 1 to `most` of them. */
+static bool digits(const char **text, int least, int most, int *out)
+{
+    int count = 0;
+    *out = 0;
+    for (; count < most && **text >= '0' && **text <= '9'; count++, (*text)++)
+        *out = *out * 10 + (**text - '0');
+    return count >= least;
+}
+
+static bool sign(const char **text, char wanted)
+{
+    return *(*text)++ == wanted;
+}
+
+/* `.5` in microseconds; finer digits are passed over. */
+static int64_t fraction(const char **text)
+{
+    int64_t us = 0, unit = US_PER_S / 10;
+    if (**text != '.' && **text != ',')
+        return 0;
+    for ((*text)++; **text >= '0' && **text <= '9'; (*text)++, unit /= 10)
+        us += (**text - '0') * unit;
+    return us;
+}
+
+static bool zone(const char **text, int *offset_s)
+{
+    int hours, minutes = 0;
+    char c = *(*text)++;
+    *offset_s = 0;
+    if (c == 'Z' || c == 'z')
+        return true;
+    if ((c != '+' && c != '-') || !digits(text, 2, 2, &hours))
+        return false;
+    if (**text == ':')
+        (*text)++;
+    if (**text && !digits(text, 2, 2, &minutes))
+        return false;
+    *offset_s = (hours * 60 + minutes) * (c == '-' ? -60 : 60);
+    return hours <= 14 && minutes < 60;
+}
+
+static int days_of(int year, int month)
+{
+    static const int days[] = { 31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31 };
+    bool leap = (year % 4 == 0 && year % 100 != 0) || year % 400 == 0;
+    return days[month - 1] + (month == 2 && leap);
+}
+
+static bool parse_date(const char *text, int64_t *t_us)
+{
+    struct tm tm = { 0 };
+    int offset_s;
+    if (!digits(&text, 4, 4, &tm.tm_year) || !sign(&text, '-') || !digits(&text, 2, 2, &tm.tm_mon) || !sign(&text, '-') ||
+        !digits(&text, 2, 2, &tm.tm_mday) || (*text != 'T' && *text != 't' && *text != ' '))
+        return false;
+    text++;
+    if (!digits(&text, 2, 2, &tm.tm_hour) || !sign(&text, ':') || !digits(&text, 2, 2, &tm.tm_min))
+        return false;
+    if (*text == ':' && (text++, !digits(&text, 2, 2, &tm.tm_sec)))
+        return false;
+    int64_t us = fraction(&text);
+    if (!zone(&text, &offset_s) || *text)
+        return false;
+    if (tm.tm_year < 1970 || tm.tm_year > 2200 || tm.tm_mon < 1 || tm.tm_mon > 12 || tm.tm_mday < 1 ||
+        tm.tm_mday > days_of(tm.tm_year, tm.tm_mon) || tm.tm_hour > 23 || tm.tm_min > 59 || tm.tm_sec > 60)
+        return false;
+    tm.tm_year -= 1900;
+    tm.tm_mon--;
+    *t_us = ((int64_t)timegm(&tm) - offset_s) * US_PER_S + us;
+    return true;
+}
+
+static bool parse_back(const char *text, int64_t now_us, int64_t *t_us)
+{
+    int count, unit_s;
+    text++;
+    if (!digits(&text, 1, 9, &count))
+        return false;
+    switch (*text++) {
+    case 's': unit_s = 1; break;
+    case 'm': unit_s = 60; break;
+    case 'h': unit_s = 3600; break;
+    case 'd': unit_s = 86400; break;
+    default: return false;
+    }
+    *t_us = now_us - (int64_t)count * unit_s * US_PER_S;
+    return !*text && *t_us > 0;
+}
+
+static bool parse_seconds(const char *text, int64_t *t_us)
+{
+    int64_t seconds = 0;
+    int count = 0;
+    for (; *text >= '0' && *text <= '9' && count < 11; count++, text++)
+        seconds = seconds * 10 + (*text - '0');
+    *t_us = seconds * US_PER_S + fraction(&text);
+    return count > 0 && !*text && seconds < INT64_C(7258118400); /* 2200 */
+}
+
+bool when_parse(const char *text, int64_t now_us, int64_t *t_us)
+{
+    if (!strcmp(text, "now")) {
+        *t_us = now_us;
+        return true;
+    }
+    if (*text == '-')
+        return parse_back(text, now_us, t_us);
+    return strlen(text) > 4 && text[4] == '-' ? parse_date(text, t_us) : parse_seconds(text, t_us);
+}
+
+void when_print(int64_t t_us, char text[WHEN_BYTES])
+{
+    int64_t rest_us = t_us % US_PER_S, us = rest_us < 0 ? rest_us + US_PER_S : rest_us;
+    time_t seconds = (time_t)((t_us - us) / US_PER_S);
+    struct tm tm;
+    size_t n = strftime(text, WHEN_BYTES, "%Y-%m-%dT%H:%M:%S", gmtime_r(&seconds, &tm));
+    if (us % 1000)
+        snprintf(text + n, WHEN_BYTES - n, ".%06dZ", (int)us);
+    else
+        snprintf(text + n, WHEN_BYTES - n, ".%03dZ", (int)(us / 1000));
+}

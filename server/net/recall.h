@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Questions about the past, answered on a thread of their own: the loop never waits for the disk. Thread: any. */
+#ifndef NET_RECALL_H
+#define NET_RECALL_H
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/log.h"
+#include "net/message.h"
+#include "plant/plant.h"
+
+enum { RECALL_TAGS = 64, RECALL_POINTS = 20000, RECALL_WAITING = 16 };
+
+struct recall_order {
+    uint64_t client;
+    int tags[RECALL_TAGS]; /* indices */
+    int tag_count, max_points;
+    int64_t from_us, to_us;
+    bool csv;
+};
+
+/* `tags=A,B&from=-8h&to=now&points=1000&format=csv`, decoded. False: *error says which is wrong. Pure. */
+bool recall_parse(const struct plant *plant, const char *const *args, size_t count, int64_t now_us, struct recall_order *order,
+                  struct message_error *error);
+
+struct recall_answer { /* mem_free text and itself */
+    uint64_t client;
+    bool csv;
+    char *text; /* NULL: history could not be read */
+    size_t length;
+    struct recall_answer *next;
+};
+
+struct recall;
+/* notify is called on the thread when there is an answer. NULL: no thread, logged. plant must outlive it. */
+struct recall *recall_create(struct log *log, const struct plant *plant, const char *folder, void (*notify)(void *arg), void *arg);
+void recall_destroy(struct recall **recall); /* &NULL is fine; leaves NULL */
+bool recall_ask(struct recall *recall, const struct recall_order *order); /* false: too many wait */
+void recall_forget(struct recall *recall, uint64_t client);
+struct recall_answer *recall_collect(struct recall *recall); /* oldest first; NULL: none */
+
+#endif
