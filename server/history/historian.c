@@ -202,7 +202,8 @@ static int write_rows(struct historian *historian, struct recorder_rows *rows, b
         const struct history_row *at = rows->at + done;
         if ((error = enter_month(historian, month_of(at->point.t_us))))
             break;
-        error = held ? month_file_write(historian->file, NULL, 0, at, end - done) : month_file_write(historian->file, at, end - done, NULL, 0);
+        size_t count = end - done;
+        error = held ? month_file_write(historian->file, NULL, 0, at, count) : month_file_write(historian->file, at, count, NULL, 0);
         if (!error)
             done = end;
     }

@@ -58,7 +58,8 @@ int64_t history_keep(struct log *log, const char *folder, const struct keep_limi
     for (size_t i = 0; i < count; i++)
         bytes += bytes_of(folder, months[i]);
     for (size_t i = 0; i + 1 < count; i++) {
-        bool old = limits->days > 0 && month_begin_us(months[i] + 1) <= oldest_us, large = limits->bytes > 0 && (double)bytes > limits->bytes;
+        bool old = limits->days > 0 && month_begin_us(months[i] + 1) <= oldest_us;
+        bool large = limits->bytes > 0 && (double)bytes > limits->bytes;
         if (!old && !large)
             break;
         int64_t of_month = bytes_of(folder, months[i]);

@@ -46,8 +46,8 @@ static const char *const sql[SQL_COUNT] = {
     [SQL_RECENT] = "SELECT tag, t, v, q FROM recent ORDER BY tag, t",
     [SQL_CLEAR_RECENT] = "DELETE FROM recent",
     [SQL_LAST_SAMPLE] = "SELECT t FROM sample WHERE tag = ? ORDER BY t DESC LIMIT 1",
-    [SQL_SAMPLES_FROM] = "SELECT t, v, q FROM sample WHERE tag = ?1 AND t >= coalesce((SELECT max(t) FROM sample WHERE tag = ?1 AND t < ?2),"
-                         " ?2) ORDER BY t",
+    [SQL_SAMPLES_FROM] = "SELECT t, v, q FROM sample WHERE tag = ?1"
+                         " AND t >= coalesce((SELECT max(t) FROM sample WHERE tag = ?1 AND t < ?2), ?2) ORDER BY t",
     [SQL_ALL_HELD] = "SELECT tag, t, v, q FROM held",
     [SQL_CLEAR_HELD] = "DELETE FROM held",
     [SQL_CLEAR_ROLLUPS] = "DELETE FROM rollup WHERE level_s = ? AND tag = ? AND t >= ? AND t < ?",
@@ -57,8 +57,8 @@ static const char *const sql[SQL_COUNT] = {
     [SQL_RANGE] = "SELECT t, v, q FROM sample WHERE tag = ?1 AND t BETWEEN ?2 AND ?3 ORDER BY t",
     [SQL_RECENT_OF] = "SELECT t, v, q FROM recent WHERE tag = ?",
     [SQL_HELD_OF] = "SELECT t, v, q FROM held WHERE tag = ?",
-    [SQL_ROLLUPS] = "SELECT t, low, high, mean, first, last, good_us, bad_us, q FROM rollup WHERE level_s = ? AND tag = ? AND t > ? AND t <= ?"
-                    " ORDER BY t",
+    [SQL_ROLLUPS] = "SELECT t, low, high, mean, first, last, good_us, bad_us, q FROM rollup"
+                    " WHERE level_s = ? AND tag = ? AND t > ? AND t <= ? ORDER BY t",
     [SQL_RECENT_ALL] = "SELECT tag, t, v, q FROM recent UNION ALL SELECT tag, t, v, q FROM held",
     [SQL_WAITING] = "SELECT count(*) FROM recent",
 };
@@ -106,7 +106,8 @@ int month_fail(struct month_file *file, int code, const char *doing)
 {
     if (code == SQLITE_OK || code == SQLITE_ROW || code == SQLITE_DONE)
         return 0;
-    log_err(file->log, "%s: %s: %s", file->path, doing, file->db && sqlite3_errcode(file->db) != SQLITE_OK ? sqlite3_errmsg(file->db) : sqlite3_errstr(code));
+    bool told = file->db && sqlite3_errcode(file->db) != SQLITE_OK;
+    log_err(file->log, "%s: %s: %s", file->path, doing, told ? sqlite3_errmsg(file->db) : sqlite3_errstr(code));
     return -errno_of(code);
 }
 
