@@ -4,8 +4,8 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { DecodeSlot } from '../../clients/web/core/slot.js';
 
-const whole = (seq) => ({ seq, x: 0, y: 0, width: 64, height: 36, fullWidth: 64, fullHeight: 36 });
-const part = (seq) => ({ ...whole(seq), y: 18, height: 18 });
+const whole = (seq) => ({ seq, key: true, x: 0, y: 0, width: 64, height: 36, fullWidth: 64, fullHeight: 36 });
+const part = (seq) => ({ ...whole(seq), key: false, y: 18, height: 18 });
 const settle = () => new Promise((resolve) => setImmediate(resolve));
 
 // A decoder that finishes when told to.
@@ -50,7 +50,7 @@ test('the last one is always decoded in the end', async () => {
     assert.deepEqual(shown.map(([seq]) => seq), [1, 2]);
 });
 
-test('parts are never skipped, unless a whole picture comes after them', async () => {
+test('parts are never skipped, unless one that stands alone comes after them', async () => {
     const { slot, started, shown, finish } = bench();
     slot.push(whole(1));
     slot.push(part(2));

@@ -3,6 +3,7 @@
 import { readAddress, writeAddress } from '../core/address.js';
 import { face } from '../core/camera.js';
 import { Connection } from '../core/connection.js';
+import { browserDecoding } from '../core/decoding.js';
 import { Session } from '../core/session.js';
 import { Assets } from './assets.js';
 import { Card } from './card.js';
@@ -27,14 +28,17 @@ const selection = { tag: address.tag, hover: null };
 
 const streamUrl = new URL('stream', location.href.replace(/^http/, 'ws').replace(/#.*$/, '')).href;
 const connection = new Connection({ url: streamUrl, open: (url, protocol) => new WebSocket(url, protocol), clock });
-const session = new Session({ connection, now: clock.now, wanted: address });
+const decoding = browserDecoding();
+if (new URLSearchParams(location.search).get('codec') !== 'jpeg')
+    await decoding.prove();
+const session = new Session({ connection, now: clock.now, wanted: address, codecs: decoding.codecs });
 
 const assets = new Assets({ session, selection });
 const picture = new Picture({ session, selection });
 const toolbar = new Toolbar({ session, showParams: (show) => picture.showParams(show) });
 const legend = new Legend({ session, element: byId('legend') });
 new Legend({ session, element: byId('legend-right'), paramsOf: (params) => params.split && { ...params, ...params.split } });
-const viewport = new Viewport({ element: byId('viewport'), canvas: byId('picture'), session });
+const viewport = new Viewport({ element: byId('viewport'), canvas: byId('picture'), session, decoding });
 const overlay = new Overlay({ canvas: byId('overlay'), viewport, session, selection });
 const pilot = new Pilot({ viewport, session });
 const status = new Status({ session, onFreshness: (fresh) => { overlay.fresh = fresh; refresh(); } });
@@ -236,4 +240,4 @@ document.addEventListener('visibilitychange', () => {
 connection.start();
 
 // For the console and for tests of the whole.
-globalThis.plantcast = { session, selection, overlay, legend };
+globalThis.plantcast = { session, selection, overlay, legend, decoding };

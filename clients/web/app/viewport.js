@@ -4,15 +4,6 @@ import { DecodeSlot } from '../core/slot.js';
 import { isWhole, pictureSize } from '../core/wire.js';
 
 const RESIZE_WAIT_MS = 100;
-const MIME = { jpeg: 'image/jpeg', png: 'image/png' };
-
-function decode(frame) {
-    const type = MIME[frame.codec];
-    if (!type)
-        return Promise.reject(new Error(`codec ${frame.codec} was not asked for`));
-    return createImageBitmap(new Blob([frame.payload], { type }));
-}
-
 // What the browser states exactly, unless it leaves out the page's zoom, as emulated screens do.
 function devicePixels(cssPx, exact) {
     const px = Math.round(cssPx * window.devicePixelRatio);
@@ -21,18 +12,23 @@ function devicePixels(cssPx, exact) {
 
 export class Viewport {
     // onTick(now): once per animation frame, before drawing. onDrawn(frame): after.
-    constructor({ element, canvas, session }) {
+    constructor({ element, canvas, session, decoding }) {
         Object.assign(this, { element, canvas, session });
         this.context = canvas.getContext('2d', { alpha: false });
-        this.decoded = [];
+        this.decoded = []; // pictures, and parts of one that is not complete yet
         this.scheduled = false;
         this.onTick = this.onDrawn = () => {};
         this.slot = new DecodeSlot({
-            decode,
+            decode: (frame) => decoding.decode(frame),
             ready: (frame, picture, decodeMs) => this.ready(frame, picture, decodeMs),
-            failed: (frame, error) => console.warn(`frame ${frame.seq}: ${error.message}`),
+            failed: (frame, error) => {
+                console.warn(`frame ${frame.seq}: ${error.message}`);
+                session.passedOver(frame);
+            },
             now: () => performance.now(),
         });
+        decoding.onLost = () => session.askKeyFrame();
+        decoding.onCodecs = (codecs) => session.setCodecs(codecs);
         session.on('frame', (frame) => this.slot.push(frame));
         this.watchSize();
     }
@@ -72,7 +68,8 @@ export class Viewport {
             this.decoded = [];
         }
         this.decoded.push({ frame, picture, decodeMs });
-        this.invalidate();
+        if (!frame.more)
+            this.invalidate();
     }
 
     // The connection is gone: what still waits belongs to its numbering.
@@ -95,19 +92,26 @@ export class Viewport {
         });
     }
 
+    // Parts of a picture wait for the rest of it.
     draw() {
-        const drawn = this.decoded;
-        this.decoded = [];
+        const complete = this.decoded.findLastIndex(({ frame }) => !frame.more) + 1, drawn = this.decoded.splice(0, complete);
         for (const { frame, picture } of drawn) {
             if (this.canvas.width !== frame.fullWidth || this.canvas.height !== frame.fullHeight) {
                 this.canvas.width = frame.fullWidth;
                 this.canvas.height = frame.fullHeight;
             }
-            this.context.drawImage(picture, frame.x, frame.y, frame.width, frame.height);
+            const { x, y, width, height } = frame; // a coded picture may be wider and higher by one
+            this.context.drawImage(picture, 0, 0, width, height, x, y, width, height);
             picture.close();
         }
-        for (const { frame, decodeMs } of drawn)
+        let decodeMs = 0;
+        for (const { frame, decodeMs: ms } of drawn) {
+            decodeMs += ms;
+            if (frame.more)
+                continue;
             this.session.drawn(frame, decodeMs);
+            decodeMs = 0;
+        }
         this.onDrawn(drawn.length > 0);
     }
 }

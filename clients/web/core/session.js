@@ -12,7 +12,6 @@ export const PARAMS = [
 const SAID = [...PARAMS, 'sensor', 'baseline', 'baselines', 'unit']; // by the server
 const SHARED = ['light', 'environment', 'selected', 'hidden', 'isolate', 'ghost', 'clip', 'split']; // by both halves
 const GROUPS_OWN = ['interpolation', 'distance', 'fill', 'power', 'radius_m', 'reach_m', 'scale', 'isolines'];
-const CODECS = ['jpeg', 'png'];
 const QUALITIES = ['good', 'uncertain', 'bad'];
 const MOST_BACKLOG_BYTES = 64 * 1024;
 
@@ -24,8 +23,8 @@ const asAsked = (camera) => (camera.height_m === undefined ? camera : cameraOfMe
 export class Session {
     // wanted: { camera or null, params } from the page's address. Events: welcome, params, tags (indices), status, frame (frame),
     // camera, error (message), ignored (what).
-    constructor({ connection, now, wanted = { camera: null, params: {} } }) {
-        Object.assign(this, { connection, now });
+    constructor({ connection, now, wanted = { camera: null, params: {} }, codecs = ['jpeg', 'png'] }) {
+        Object.assign(this, { connection, now, codecs });
         this.listeners = new Map();
         this.model = null;
         this.camera = wanted.camera;
@@ -82,7 +81,7 @@ export class Session {
         this.latency.clear();
         this.cameraSeq = this.paramsSeq = 0;
         this.greetedCamera = parts.includes('camera') ? this.camera : null;
-        const message = { type: 'hello', ...this.size, codecs: CODECS };
+        const message = { type: 'hello', ...this.size, codecs: this.codecs };
         if (this.greetedCamera)
             message.camera = { seq: ++this.cameraSeq, ...cameraMessage(this.greetedCamera) };
         const params = this.carried();
@@ -171,6 +170,24 @@ export class Session {
         this.latency.drawn(frame.cameraSeq, now);
         this.picture = { ...frame, payload: null, at: now };
         this.connection.send({ type: 'ack', seq: frame.seq, decode_ms: Math.round(decodeMs * 100) / 100 });
+    }
+
+    // What cannot be decoded is acknowledged too: more of it would change nothing.
+    passedOver(frame) {
+        if (!frame.more)
+            this.connection.send({ type: 'ack', seq: frame.seq });
+    }
+
+    // The decoder lost its place: the next frame shall stand alone.
+    askKeyFrame() {
+        if (this.welcomed)
+            this.connection.send({ type: 'key_frame' });
+    }
+
+    setCodecs(codecs) {
+        this.codecs = codecs;
+        if (this.welcomed)
+            this.connection.send({ type: 'codecs', codecs });
     }
 
     // --- from the server

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Frames that wait to be decoded: one is being decoded, and of the others only the newest whole picture and the parts that came
-// after it are kept. Slow decoding makes pictures rarer, never later.
-import { isWhole } from './wire.js';
+// Frames that wait to be decoded: one is being decoded, and of the others only the newest that stands alone and what came after it
+// are kept. Slow decoding makes pictures rarer, never later.
 
 export class DecodeSlot {
     // decode(frame): promise of a picture. ready(frame, picture, decodeMs) in order. failed(frame, error). now(): milliseconds.
@@ -14,7 +13,7 @@ export class DecodeSlot {
     }
 
     push(frame) {
-        if (isWhole(frame)) {
+        if (frame.key) {
             this.dropped += this.waiting.length;
             this.waiting = [];
         }

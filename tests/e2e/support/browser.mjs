@@ -15,8 +15,9 @@ export const DESKTOP = { viewport: { width: 1920, height: 1080 } };
 export const TABLET = { viewport: { width: 1024, height: 768 }, deviceScaleFactor: 2, hasTouch: true };
 export const PHONE = { viewport: { width: 390, height: 844 }, deviceScaleFactor: 2, hasTouch: true, isMobile: true };
 
-// { page, errors, close }. errors: what went wrong in the page and what it tried to fetch from elsewhere.
-export async function openPage(url, screen = DESKTOP) {
+// { page, errors, close }. errors: what went wrong in the page and what it tried to fetch from elsewhere. before: a function that runs in
+// the page before its own scripts.
+export async function openPage(url, screen = DESKTOP, before = null) {
     const { chromium } = await import('playwright-core');
     const folder = mkdtempSync(join(tmpdir(), 'plantcast-chromium-'));
     const context = await chromium.launchPersistentContext(folder, { executablePath: CHROMIUM, args: QUIET, ...screen });
@@ -31,6 +32,8 @@ export async function openPage(url, screen = DESKTOP) {
         if (new URL(request.url()).host !== new URL(url).host && !request.url().startsWith('blob:'))
             errors.push(`asked ${request.url()}`);
     });
+    if (before)
+        await page.addInitScript(before);
     await page.goto(url);
     return {
         page, errors,
@@ -103,5 +106,20 @@ export async function grab(page) {
             binary += String.fromCharCode(...data.subarray(i, i + 32768));
         return { width: canvas.width, height: canvas.height, text: btoa(binary) };
     });
+    return { width, height, rgba: Buffer.from(text, 'base64') };
+}
+
+// Of a PNG file, likewise.
+export async function readPng(page, bytes) {
+    const { width, height, text } = await page.evaluate(async (base64) => {
+        const picture = await createImageBitmap(new Blob([Uint8Array.from(atob(base64), (c) => c.charCodeAt(0))], { type: 'image/png' }));
+        const context = new OffscreenCanvas(picture.width, picture.height).getContext('2d');
+        context.drawImage(picture, 0, 0);
+        const { data, width: w, height: h } = context.getImageData(0, 0, picture.width, picture.height);
+        let binary = '';
+        for (let i = 0; i < data.length; i += 32768)
+            binary += String.fromCharCode(...data.subarray(i, i + 32768));
+        return { width: w, height: h, text: btoa(binary) };
+    }, bytes.toString('base64'));
     return { width, height, rgba: Buffer.from(text, 'base64') };
 }

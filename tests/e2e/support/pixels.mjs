@@ -49,3 +49,24 @@ export function contrast({ rgba }) {
     }
     return Math.sqrt(squares / count - (sum / count) ** 2);
 }
+
+function lab(r, g, b) {
+    const linear = [r, g, b].map((v) => (v <= 10.31475 ? v / 255 / 12.92 : ((v / 255 + 0.055) / 1.055) ** 2.4));
+    const xyz = [[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]].map((row, i) =>
+        row.reduce((sum, k, c) => sum + k * linear[c], 0) / [0.9505, 1, 1.089][i]);
+    const [x, y, z] = xyz.map((t) => (t > 216 / 24389 ? Math.cbrt(t) : (24389 / 27 * t + 16) / 116));
+    return [116 * y - 16, 500 * (x - y), 200 * (y - z)];
+}
+
+// Distances in CIELAB (1976) between two pictures: { mean, p99 }.
+export function deltaE(a, b) {
+    if (a.width !== b.width || a.height !== b.height)
+        throw new Error(`${a.width}x${a.height} is not ${b.width}x${b.height}`);
+    const all = new Float64Array(a.width * a.height);
+    for (let i = 0; i < all.length; i++) {
+        const p = lab(...a.rgba.subarray(4 * i, 4 * i + 3)), q = lab(...b.rgba.subarray(4 * i, 4 * i + 3));
+        all[i] = Math.hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]);
+    }
+    const mean = all.reduce((sum, value) => sum + value, 0) / all.length;
+    return { mean, p99: all.sort()[Math.floor(all.length * 0.99)] };
+}

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a real browser shows of each codec is what `plantcast snapshot` draws; and what it cannot decode it does without.
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { grab, openPage, readPng, settle, shoot, view, waitForPicture } from './support/browser.mjs';
+import { contrast, deltaE } from './support/pixels.mjs';
+import { BIN, BUILD, missing, startPlant } from './support/plant.mjs';
+
+const why = missing();
+const options = { skip: why ?? false, timeout: 200000 };
+const SCREEN = { viewport: { width: 1280, height: 720 } };
+const QUIET_MS = 1500;
+let plant, folder;
+
+before(async () => {
+    if (why)
+        return;
+    folder = mkdtempSync(join(tmpdir(), 'plantcast-codecs-'));
+    plant = await startPlant();
+    const { tags } = await (await fetch(`${plant.url}api/v1/tags`)).json();
+    await plant.freeze(tags.map(({ name }) => name));
+});
+after(async () => {
+    await plant?.stop();
+    if (folder)
+        rmSync(folder, { recursive: true, force: true });
+});
+
+async function withPage(init, f) {
+    const browser = await openPage(plant.url, SCREEN, init);
+    try {
+        await f(browser.page);
+        assert.deepEqual(browser.errors, []);
+    } finally {
+        await browser.close();
+    }
+}
+
+// The same view and readings, drawn by the command.
+async function snapshot(page) {
+    const { camera } = await view(page), { width, height } = await grab(page);
+    const values = join(folder, 'values.csv'), out = join(folder, 'snapshot.png');
+    const { tags } = await (await fetch(`${plant.url}api/v1/tags`)).json();
+    writeFileSync(values, ['tag,value', ...tags.filter((tag) => tag.value !== null).map(({ name, value }) => `${name},${value}`), ''].join('\n'));
+    const { status, stderr } = spawnSync(join(BIN, 'plantcast'), [
+        'snapshot', join(BUILD, 'demo', 'plant.yaml'), '-o', out, '--size', `${width}x${height}`, '--values', values, '--no-overlay',
+        '--camera', [...camera.eye, ...camera.target, camera.fov].join(','),
+    ], { encoding: 'utf8' });
+    assert.equal(status, 0, stderr);
+    return readPng(page, readFileSync(out));
+}
+
+async function compare(t, page, codec) {
+    await waitForPicture(page);
+    await settle(page, QUIET_MS);
+    assert.equal(await page.evaluate(() => globalThis.plantcast.session.picture.codec), codec);
+    const shown = await grab(page), drawn = await snapshot(page), { mean, p99 } = deltaE(shown, drawn);
+    t.diagnostic(`${codec}: mean dE ${mean.toFixed(2)}, 99 % below ${p99.toFixed(1)}`);
+    assert.ok(contrast(shown) > 10);
+    await shoot(page, `codec-${codec}`);
+    assert.ok(mean <= 2, `mean dE ${mean}`);
+}
+
+test('H.264 through WebCodecs shows what the snapshot shows', options, (t) => withPage(null, async (page) => {
+    await compare(t, page, 'h264');
+    const { codecs } = await page.evaluate(() => ({ codecs: globalThis.plantcast.session.codecs }));
+    assert.deepEqual(codecs, ['auto', 'h264', 'jpeg', 'png']);
+}));
+
+test('without WebCodecs it is JPEG, and shows the same', options, (t) => withPage(() => {
+    delete globalThis.VideoDecoder;
+}, (page) => compare(t, page, 'jpeg')));
+
+test('a decoder that passes the trial and then breaks is left for JPEG, for good', options, () => withPage(() => {
+    const { decode } = VideoDecoder.prototype;
+    let count = 0;
+    VideoDecoder.prototype.decode = function decodeSome(chunk) {
+        if (++count > 3) // two are the trial
+            throw new DOMException('it broke', 'EncodingError');
+        return decode.call(this, chunk);
+    };
+}, async (page) => {
+    await page.waitForFunction(() => globalThis.plantcast?.session.picture?.codec === 'jpeg', null, { timeout: 60000 });
+    await settle(page, QUIET_MS);
+    assert.match(await page.evaluate(() => localStorage.getItem('plantcast.h264')), /"none"/);
+    await page.reload();
+    await waitForPicture(page);
+    assert.equal(await page.evaluate(() => globalThis.plantcast.session.codec), 'jpeg');
+}));

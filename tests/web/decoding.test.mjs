@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which decoder is used, what is tried before it is believed, and what is remembered.
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { Decoding, PLAIN } from '../../clients/web/core/decoding.js';
+import { codecName, findSps, H264Decoder, whatIsWrong } from '../../clients/web/core/h264.js';
+
+const KEY = { codec: 'h264', key: true, payload: Uint8Array.of(0, 0, 0, 1, 0x67, 0x42, 0xc0, 0x1f, 9, 0, 0, 0, 1, 0x68, 1, 0, 0, 1, 0x65, 2, 2) };
+const LARGER = { ...KEY, payload: Uint8Array.of(0, 0, 0, 1, 0x67, 0x42, 0xc0, 0x28, 9, 0, 0, 0, 1, 0x68, 1, 0, 0, 1, 0x65, 2, 2) };
+const DELTA = { codec: 'h264', key: false, payload: Uint8Array.of(0, 0, 0, 1, 0x41, 7, 7) };
+const JPEG = { codec: 'jpeg', key: true, payload: Uint8Array.of(0xff, 0xd8) };
+
+// A VideoDecoder that answers at once, unless told otherwise.
+function fakeApi({ breaks = () => false, keepsBack = () => false } = {}) {
+    const made = [];
+    class VideoDecoder {
+        constructor({ output, error }) {
+            Object.assign(this, { output, error, state: 'unconfigured', chunks: [] });
+            made.push(this);
+        }
+
+        configure(config) {
+            this.config = config;
+            this.state = 'configured';
+        }
+
+        decode(chunk) {
+            this.chunks.push(chunk.type);
+            queueMicrotask(() => {
+                if (breaks(this, chunk)) {
+                    this.state = 'closed';
+                    this.error(new Error('broken'));
+                } else if (!keepsBack(this, chunk)) {
+                    this.output({ of: chunk, close() {} });
+                }
+            });
+        }
+
+        close() {
+            this.state = 'closed';
+        }
+    }
+    class EncodedVideoChunk {
+        constructor(init) {
+            Object.assign(this, init);
+        }
+    }
+    return { VideoDecoder, EncodedVideoChunk, made };
+}
+
+function fakeStore() {
+    const kept = new Map();
+    return { kept, getItem: (name) => kept.get(name) ?? null, setItem: (name, value) => kept.set(name, value) };
+}
+
+// tryOut: what is wrong with a decoder, by its way.
+function bench({ api = fakeApi(), store = fakeStore(), agent = 'browser 1', wrong = {} } = {}) {
+    const told = [], tried = [];
+    let now = 0;
+    const decoding = new Decoding({
+        api, store, agent, now: () => now, makeBitmap: async (blob) => ({ type: blob.type, close() {} }),
+        tryOut: async (decoder) => {
+            tried.push(decoder.acceleration);
+            return wrong[decoder.acceleration] ?? null;
+        },
+    });
+    decoding.onCodecs = (codecs) => told.push(codecs);
+    decoding.onLost = () => told.push('lost');
+    return { decoding, api, store, told, tried, wait: (ms) => { now += ms; } };
+}
+
+test('the codec is called by what its parameter set says', () => {
+    assert.equal(codecName(findSps(KEY.payload)), 'avc1.42c01f');
+    assert.deepEqual([...findSps(KEY.payload)], [0x67, 0x42, 0xc0, 0x1f, 9]);
+    assert.equal(findSps(DELTA.payload), null);
+    assert.equal(findSps(new Uint8Array(3)), null);
+});
+
+test('a page without WebCodecs asks for JPEG, and tries nothing', async () => {
+    const { decoding, tried, store } = bench({ api: {} });
+    await decoding.prove();
+    assert.deepEqual([decoding.codecs, tried, store.kept.size], [PLAIN, [], 0]);
+    assert.equal((await decoding.decode(JPEG)).type, 'image/jpeg');
+    await assert.rejects(decoding.decode(KEY), /not asked for/);
+});
+
+test('what works is used and remembered for this browser; what does not, for it alone', async () => {
+    const store = fakeStore(), wrong = { 'no-preference': 'green', 'prefer-software': 'late' };
+    const first = bench({ store, wrong: { 'no-preference': 'green' } });
+    await first.decoding.prove();
+    assert.deepEqual(first.tried, ['no-preference', 'prefer-software']);
+    assert.deepEqual(first.decoding.codecs, ['auto', 'h264', 'jpeg', 'png']);
+    const again = bench({ store });
+    await again.decoding.prove();
+    assert.deepEqual(again.tried, ['prefer-software'], 'hardware that failed is not tried again');
+    const other = bench({ store, agent: 'browser 2', wrong });
+    await other.decoding.prove();
+    assert.deepEqual([other.tried.length, other.decoding.codecs], [2, PLAIN]);
+    const never = bench({ store, agent: 'browser 2' });
+    await never.decoding.prove();
+    assert.deepEqual([never.tried, never.decoding.codecs], [[], PLAIN]);
+});
+
+test('a store that may not be used does no harm', async () => {
+    const refuse = () => { throw new Error('denied'); };
+    const { decoding } = bench({ store: { getItem: refuse, setItem: refuse } });
+    await decoding.prove();
+    assert.ok(decoding.codecs.includes('h264'));
+});
+
+test('one in, one out; a new parameter set makes a new decoder', async () => {
+    const api = fakeApi(), decoder = new H264Decoder({ api });
+    assert.equal((await decoder.decode(KEY)).of.type, 'key');
+    assert.equal((await decoder.decode(DELTA)).of.type, 'delta');
+    await decoder.decode(KEY);
+    assert.equal(api.made.length, 1);
+    assert.equal(api.made[0].config.optimizeForLatency, true);
+    await decoder.decode(LARGER);
+    assert.equal(api.made.length, 2);
+    assert.deepEqual([api.made[0].state, api.made[1].config.codec], ['closed', 'avc1.42c028']);
+});
+
+test('a decoder that keeps pictures back is no decoder', async () => {
+    const timers = [];
+    const clock = { setTimeout: (f) => timers.push(f), clearTimeout: (id) => { timers[id - 1] = () => {}; } };
+    const decoder = new H264Decoder({ api: fakeApi({ keepsBack: (_, chunk) => chunk.type === 'delta' }), clock });
+    await decoder.decode(KEY);
+    const late = assert.rejects(decoder.decode(DELTA), /keeps a picture back/);
+    timers.at(-1)();
+    await late;
+    await assert.rejects(decoder.decode(DELTA), /without a key frame/);
+});
+
+test('the proof sees colours that are wrong', async () => {
+    const canvas = (colours) => () => ({
+        getContext: () => ({
+            drawImage() {},
+            getImageData: () => ({
+                data: Uint8ClampedArray.from({ length: 64 * 64 * 4 }, (_, i) => {
+                    const x = (i >> 2) & 63, y = i >> 8;
+                    return [...colours[(y >> 5) * 2 + (x >> 5)], 255][i & 3];
+                }),
+            }),
+        }),
+    });
+    const right = [[200, 40, 40], [40, 160, 60], [240, 200, 40], [220, 220, 220]];
+    assert.equal(await whatIsWrong(new H264Decoder({ api: fakeApi() }), canvas(right)), null);
+    const unchanged = [...right.slice(0, 2), [50, 70, 200], right[3]];
+    assert.match(await whatIsWrong(new H264Decoder({ api: fakeApi() }), canvas(unchanged)), /colours are off by 190/);
+    const broken = fakeApi({ breaks: () => true });
+    assert.equal(await whatIsWrong(new H264Decoder({ api: broken }), canvas(right)), 'broken');
+});
+
+test('a lost place asks for a key frame once, and nothing is shown before it', async () => {
+    let breaks = false;
+    const { decoding, told } = bench({ api: fakeApi({ breaks: () => breaks }) });
+    await decoding.prove();
+    await decoding.decode(KEY);
+    breaks = true;
+    await assert.rejects(decoding.decode(DELTA), /broken/);
+    await assert.rejects(decoding.decode(DELTA), /missing/);
+    assert.deepEqual(told, ['lost']);
+    breaks = false;
+    await decoding.decode(KEY);
+    await decoding.decode(DELTA);
+});
+
+test('what fails again and again gives way: hardware to software, that to JPEG, and so it stays', async () => {
+    const { decoding, told, store } = bench({ api: fakeApi({ breaks: () => true }) });
+    await decoding.prove();
+    await assert.rejects(decoding.decode(KEY));
+    assert.deepEqual([decoding.acceleration, told], ['prefer-software', ['lost']]);
+    await assert.rejects(decoding.decode(KEY));
+    assert.deepEqual(told, ['lost', PLAIN]);
+    assert.equal((await decoding.decode(JPEG)).type, 'image/jpeg');
+    const later = bench({ store });
+    await later.decoding.prove();
+    assert.deepEqual([later.tried, later.decoding.codecs], [[], PLAIN]);
+});
