@@ -8,6 +8,7 @@
 #include "base/mem.h"
 
 static const int64_t JOIN_NS = 2 * NS_PER_S, JOIN_MAX_NS = 64 * NS_PER_S; /* between pictures that stand alone only to let some in */
+enum { CATCH_UP = CHAIN_KEPT / 2 };                                       /* packets; as many may be planned for while they are needed */
 static const size_t KEPT_BYTES = 64 * 1024;                               /* at least; else as much as the last picture that stood alone */
 
 /* --- who is where ------------------------------------------------------------------------------------------------------------ */
@@ -72,7 +73,8 @@ static uint64_t lacks(const struct chain *chain, const struct chain_link *link, 
 
 static bool reaches(const struct chain *chain, const struct chain_link *link, const struct order *order)
 {
-    return chain->key > 0 && lacks(chain, link, order) >= chain->oldest;
+    uint64_t first = lacks(chain, link, order);
+    return chain->key > 0 && first >= chain->oldest && chain->planned < first + CATCH_UP;
 }
 
 /* --- planning ------------------------------------------------------------------------------------------------------------------ */
@@ -98,7 +100,8 @@ static struct chain *most_common(struct chains *chains, const struct batch *orde
 static struct chain *showing(const struct chains *chains, const struct frame *frame, const struct wish *wish)
 {
     struct chain *chain = wish->overlay ? NULL : chains->first; /* with the time of day in it */
-    while (chain && !(chain->key > 0 && chain->key >= chain->oldest && chain->content == frame->content && same_coding(chain, frame, wish)))
+    while (chain && !(chain->key > 0 && chain->key >= chain->oldest && chain->planned < chain->key + CATCH_UP &&
+                      chain->content == frame->content && same_coding(chain, frame, wish)))
         chain = chain->next;
     return chain;
 }

@@ -91,6 +91,66 @@ static void jpeg_keeps_the_picture(void **state)
     check_jpeg(16, 16, 90, true, 40, 8);
 }
 
+/* Puts the parts of a packet into bgr, which is of the whole picture. */
+static void decode_parts(const struct packet *packet, uint8_t *bgr)
+{
+    tjhandle turbo = tjInitDecompress();
+    int w = packet->frame->width_px;
+    for (int i = 0; i < packet->part_count; i++) {
+        const struct packet_part *part = &packet->parts[i];
+        uint8_t *to = bgr + ((size_t)part->y_px * (size_t)w + (size_t)part->x_px) * 3;
+        int got_w, got_h, sampling, space;
+        assert_int_equal(tjDecompressHeader3(turbo, packet->bytes + part->begin, part->count, &got_w, &got_h, &sampling, &space), 0);
+        assert_true(got_w == part->width_px && got_h == part->height_px);
+        assert_int_equal(tjDecompress2(turbo, packet->bytes + part->begin, part->count, to, got_w, w * 3, got_h, TJPF_BGR, 0), 0);
+    }
+    tjDestroy(turbo);
+}
+
+static void jpeg_sends_only_what_changed(void **state)
+{
+    (void)state;
+    struct log *log = log_create(LOG_ERROR);
+    struct encoder *encoder = encoder_create(log, "jpeg", NULL);
+    struct frame *before = gradient(640, 360), *now = gradient(640, 360);
+    struct encoder_params params = { .quality = 95, .full_chroma = true };
+    struct packet *whole, *change;
+    uint8_t *bgr = mem_array(640 * 360, 3);
+    for (size_t y = 40; y < 60; y++) {
+        memset(now->bgrx + y * (size_t)now->stride_bytes + 100 * 4, 180, 30 * 4);
+        memset(now->bgrx + (y + 250) * (size_t)now->stride_bytes + 600 * 4, 90, 30 * 4);
+    }
+    assert_int_equal(encoder_send(encoder, before, &params), 0);
+    assert_int_equal(encoder_receive(encoder, &whole), 0);
+    params.before = before;
+    assert_int_equal(encoder_send(encoder, now, &params), 0);
+    assert_int_equal(encoder_receive(encoder, &change), 0);
+    assert_true(whole->key && !change->key && change->part_count == 2 && change->count * 8 < whole->count);
+    decode_parts(whole, bgr);
+    decode_parts(change, bgr);
+    assert_true(worst_difference(now, bgr, 0) <= 16);
+    assert_int_equal(encoder_send(encoder, before, &params), 0); /* it is shown already */
+    assert_int_equal(encoder_receive(encoder, &change), -EAGAIN);
+    params.key = true;
+    packet_unref(&change);
+    assert_int_equal(encoder_send(encoder, before, &params), 0);
+    assert_int_equal(encoder_receive(encoder, &change), 0);
+    assert_true(change->key);
+    packet_unref(&change);
+    now->view.camera.fov_deg = 33; /* of another view nothing is compared */
+    params.key = false;
+    assert_int_equal(encoder_send(encoder, now, &params), 0);
+    assert_int_equal(encoder_receive(encoder, &change), 0);
+    assert_true(change->key);
+    packet_unref(&change);
+    packet_unref(&whole);
+    frame_unref(&before);
+    frame_unref(&now);
+    encoder_destroy(&encoder);
+    log_destroy(&log);
+    mem_free(bgr);
+}
+
 static void png_keeps_every_pixel(void **state)
 {
     (void)state;
@@ -136,6 +196,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(jpeg_keeps_the_picture),
+        cmocka_unit_test(jpeg_sends_only_what_changed),
         cmocka_unit_test(png_keeps_every_pixel),
         cmocka_unit_test(packets_outlive_frames_without_their_pixels),
         cmocka_unit_test(unknown_codecs_are_refused),

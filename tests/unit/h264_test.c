@@ -1,0 +1,236 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* H.264: what libavcodec decodes is what went in, one for one; key frames come when they are asked for, and colours are described. */
+#include <errno.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "encode/encoder.h"
+
+#ifdef PLANTCAST_H264
+#include <libavcodec/avcodec.h>
+#include <libyuv.h>
+
+#include "base/mem.h"
+
+struct fixture {
+    struct log *log;
+    struct encoder *encoder;
+    AVCodecContext *decoder;
+    AVFrame *picture;
+    uint8_t *bgrx; /* as decoded */
+    size_t bytes;  /* of the last packet */
+    bool key;
+};
+
+static int set_up(void **state)
+{
+    struct fixture *f = mem_new(sizeof(*f));
+    f->log = log_create(LOG_ERROR);
+    f->encoder = encoder_create(f->log, "h264", ENCODER_H264_LIBRARY);
+    f->decoder = avcodec_alloc_context3(avcodec_find_decoder(AV_CODEC_ID_H264));
+    f->decoder->flags |= AV_CODEC_FLAG_LOW_DELAY;
+    f->decoder->thread_count = 1;
+    f->picture = av_frame_alloc();
+    *state = f;
+    return f->encoder && avcodec_open2(f->decoder, NULL, NULL) == 0 ? 0 : -1;
+}
+
+static int tear_down(void **state)
+{
+    struct fixture *f = *state;
+    encoder_destroy(&f->encoder);
+    avcodec_free_context(&f->decoder);
+    av_frame_free(&f->picture);
+    mem_free(f->bgrx);
+    log_destroy(&f->log);
+    mem_free(f);
+    return 0;
+}
+
+/* level: of the field's patches; they lie on a grey ground with thin lines. */
+static struct frame *picture(int w, int h, int level)
+{
+    static const uint8_t patches[4][3] = { { 40, 40, 200 }, { 60, 160, 40 }, { 200, 70, 50 }, { 40, 200, 240 } };
+    struct frame *frame = frame_create(w, h);
+    frame->view.width_px = w;
+    frame->view.height_px = h;
+    for (int y = 0; y < h; y++)
+        for (int x = 0; x < w; x++) {
+            uint8_t *p = frame->bgrx + (size_t)y * (size_t)frame->stride_bytes + (size_t)x * 4;
+            int column = x * 8 / w, line = x % 40 == 0 ? 60 : 225;
+            for (int c = 0; c < 3; c++)
+                p[c] = (uint8_t)(column % 2 ? patches[column / 2][c] + level : line);
+        }
+    return frame;
+}
+
+/* Encodes and decodes. False: nothing had changed. */
+static bool pass(struct fixture *f, struct frame *frame, int quality, bool key, struct frame *before)
+{
+    struct encoder_params params = { .quality = quality, .key = key, .before = before };
+    struct packet *packet;
+    assert_int_equal(encoder_send(f->encoder, frame, &params), 0);
+    if (encoder_receive(f->encoder, &packet) != 0)
+        return false;
+    assert_int_equal(packet->codec, WIRE_CODEC_H264);
+    AVPacket *in = av_packet_alloc();
+    assert_int_equal(av_new_packet(in, (int)packet->count), 0);
+    memcpy(in->data, packet->bytes, packet->count);
+    assert_int_equal(avcodec_send_packet(f->decoder, in), 0);
+    assert_int_equal(avcodec_receive_frame(f->decoder, f->picture), 0); /* at once: nothing is kept back */
+    av_packet_free(&in);
+    f->key = packet->key;
+    f->bytes = packet->count;
+    packet_unref(&packet);
+    const AVFrame *p = f->picture;
+    assert_true(p->width == ((frame->width_px + 1) & ~1) && p->height == ((frame->height_px + 1) & ~1));
+    mem_free(f->bgrx);
+    f->bgrx = mem_array((size_t)frame->height_px, (size_t)frame->width_px * 4);
+    J420ToARGB(p->data[0], p->linesize[0], p->data[1], p->linesize[1], p->data[2], p->linesize[2], f->bgrx, frame->width_px * 4,
+               frame->width_px, frame->height_px);
+    return true;
+}
+
+/* In the middle of the patches, of all channels. */
+static int worst(const struct fixture *f, const struct frame *frame)
+{
+    int most = 0, w = frame->width_px, h = frame->height_px;
+    for (int column = 1; column < 8; column += 2) {
+        size_t at = (size_t)(h / 2) * (size_t)w + (size_t)(w * (2 * column + 1) / 16);
+        for (size_t c = 0; c < 3; c++)
+            most = abs(frame->bgrx[at * 4 + c] - f->bgrx[at * 4 + c]) > most ? abs(frame->bgrx[at * 4 + c] - f->bgrx[at * 4 + c]) : most;
+    }
+    return most;
+}
+
+static void check_size(struct fixture *f, int w, int h)
+{
+    struct frame *frame = picture(w, h, 0);
+    assert_true(pass(f, frame, 92, false, NULL)); /* another size: it starts anew */
+    assert_true(f->key);
+    assert_in_range(worst(f, frame), 0, 6);
+    frame_unref(&frame);
+}
+
+static void colours_are_kept_at_any_size(void **state)
+{
+    check_size(*state, 640, 360);
+    check_size(*state, 333, 77);
+    check_size(*state, 160, 91);
+    check_size(*state, 16, 16);
+}
+
+static void colours_are_described(void **state)
+{
+    struct fixture *f = *state;
+    struct frame *frame = picture(320, 180, 0);
+    pass(f, frame, 92, true, NULL);
+    assert_int_equal(f->picture->color_range, AVCOL_RANGE_JPEG);
+    assert_int_equal(f->picture->colorspace, AVCOL_SPC_SMPTE170M);
+    assert_int_equal(f->picture->color_primaries, AVCOL_PRI_BT709);
+    assert_int_equal(f->picture->color_trc, AVCOL_TRC_IEC61966_2_1);
+    assert_int_equal(f->decoder->has_b_frames, 0);
+    frame_unref(&frame);
+}
+
+static void key_frames_come_on_demand_only(void **state)
+{
+    struct fixture *f = *state;
+    for (int i = 0; i < 400; i++) {
+        struct frame *frame = picture(160, 90, i % 3 * 30);
+        pass(f, frame, 78, i == 200, NULL);
+        assert_int_equal(f->key, i == 0 || i == 200);
+        frame_unref(&frame);
+    }
+}
+
+static void equal_pictures_are_not_sent_and_little_costs_little(void **state)
+{
+    struct fixture *f = *state;
+    struct frame *frame = picture(1280, 720, 0), *same = picture(1280, 720, 0), *near = picture(1280, 720, 0);
+    memset(near->bgrx + 300 * (size_t)near->stride_bytes, 250, 64 * 4);
+    pass(f, frame, 92, true, NULL);
+    size_t whole = f->bytes;
+    assert_false(pass(f, same, 92, false, frame));
+    assert_true(pass(f, near, 92, false, frame));
+    assert_true(!f->key && f->bytes < 600 && f->bytes * 10 < whole);
+    frame_unref(&frame);
+    frame_unref(&same);
+    frame_unref(&near);
+}
+
+/* A reading that creeps changes no picture by more than a step of quantisation: still the field stays right. */
+static void what_changes_slowly_arrives(void **state)
+{
+    struct fixture *f = *state;
+    struct frame *before = NULL;
+    for (int i = 0; i < 50; i++) {
+        struct frame *frame = picture(640, 360, i / 2);
+        pass(f, frame, 92, i == 0, before);
+        assert_in_range(worst(f, frame), 0, 7);
+        if (before)
+            frame_unref(&before);
+        before = frame;
+    }
+    frame_unref(&before);
+}
+
+static void quality_can_change_between_pictures(void **state)
+{
+    struct fixture *f = *state;
+    size_t bytes[3];
+    for (int i = 0; i < 3; i++) {
+        struct frame *frame = picture(640, 360, 0);
+        for (size_t p = 0; p < (size_t)frame->height_px * (size_t)frame->stride_bytes; p += 4)
+            memset(frame->bgrx + p, rand() % 64 + 64, 3);
+        pass(f, frame, (const int[]){ 40, 92, 40 }[i], true, NULL);
+        bytes[i] = f->bytes;
+        frame_unref(&frame);
+    }
+    assert_true(bytes[1] > 2 * bytes[0] && bytes[1] > 2 * bytes[2]);
+}
+
+static void encoders_that_do_not_work_here_are_known(void **state)
+{
+    struct fixture *f = *state;
+    assert_true(encoder_works(f->log, "h264", ENCODER_H264_LIBRARY));
+    assert_false(encoder_works(f->log, "h264", "mjpeg")); /* of libavcodec, but of something else */
+    assert_false(encoder_works(f->log, "h264", "h264_nothing"));
+    assert_true(encoder_is_stream("h264") && !encoder_is_stream("jpeg"));
+}
+
+int main(void)
+{
+#define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
+    const struct CMUnitTest tests[] = {
+        TEST(colours_are_kept_at_any_size),
+        TEST(colours_are_described),
+        TEST(key_frames_come_on_demand_only),
+        TEST(equal_pictures_are_not_sent_and_little_costs_little),
+        TEST(what_changes_slowly_arrives),
+        TEST(quality_can_change_between_pictures),
+        TEST(encoders_that_do_not_work_here_are_known),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
+#else
+static void there_is_none(void **state)
+{
+    struct log *log = log_create(LOG_ERROR);
+    (void)state;
+    assert_false(encoder_works(log, "h264", ENCODER_H264_LIBRARY));
+    log_destroy(&log);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = { cmocka_unit_test(there_is_none) };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
+#endif
