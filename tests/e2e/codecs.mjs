@@ -45,7 +45,8 @@ async function snapshot(page) {
     const { camera } = await view(page), { width, height } = await grab(page);
     const values = join(folder, 'values.csv'), out = join(folder, 'snapshot.png');
     const { tags } = await (await fetch(`${plant.url}api/v1/tags`)).json();
-    writeFileSync(values, ['tag,value', ...tags.filter((tag) => tag.value !== null).map(({ name, value }) => `${name},${value}`), ''].join('\n'));
+    const rows = tags.filter((tag) => tag.value !== null).map(({ name, value }) => `${name},${value}`);
+    writeFileSync(values, ['tag,value', ...rows, ''].join('\n'));
     const { status, stderr } = spawnSync(join(BIN, 'plantcast'), [
         'snapshot', join(BUILD, 'demo', 'plant.yaml'), '-o', out, '--size', `${width}x${height}`, '--values', values, '--no-overlay',
         '--camera', [...camera.eye, ...camera.target, camera.fov].join(','),

@@ -5,8 +5,11 @@ import { test } from 'node:test';
 import { Decoding, PLAIN } from '../../clients/web/core/decoding.js';
 import { codecName, findSps, H264Decoder, whatIsWrong } from '../../clients/web/core/h264.js';
 
-const KEY = { codec: 'h264', key: true, payload: Uint8Array.of(0, 0, 0, 1, 0x67, 0x42, 0xc0, 0x1f, 9, 0, 0, 0, 1, 0x68, 1, 0, 0, 1, 0x65, 2, 2) };
-const LARGER = { ...KEY, payload: Uint8Array.of(0, 0, 0, 1, 0x67, 0x42, 0xc0, 0x28, 9, 0, 0, 0, 1, 0x68, 1, 0, 0, 1, 0x65, 2, 2) };
+const keyFrame = (level) => ({
+    codec: 'h264', key: true,
+    payload: Uint8Array.of(0, 0, 0, 1, 0x67, 0x42, 0xc0, level, 9, 0, 0, 0, 1, 0x68, 1, 0, 0, 1, 0x65, 2, 2),
+});
+const KEY = keyFrame(0x1f), LARGER = keyFrame(0x28);
 const DELTA = { codec: 'h264', key: false, payload: Uint8Array.of(0, 0, 0, 1, 0x41, 7, 7) };
 const JPEG = { codec: 'jpeg', key: true, payload: Uint8Array.of(0xff, 0xd8) };
 

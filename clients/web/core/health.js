@@ -12,7 +12,7 @@ export function health(session, now) {
         const detail = `The server has been silent for ${ageText(now - connection.lastHeard)}. ${old}`;
         return { kind: 'silent', words: 'No answer', detail, banner: true };
     }
-    if (connection.state !== 'open' || !session.welcomed)
+    if (connection.state !== 'open' || !session.welcomed || model.live === null)
         return lost(connection, picture, old, now);
     if (model.live === false)
         return { kind: 'nodata', words: 'No live data', detail: downText(model), banner: true };
