@@ -12,6 +12,7 @@ struct draft *draft_create(struct workers *workers, const struct stage *stage, c
     struct draft *draft = mem_new(sizeof(*draft));
     draft->workers = workers;
     draft->stage = stage;
+    draft->parts = mem_array(stage->model_count, sizeof(*draft->parts));
     if (!draft_read_textures(draft, sky))
         draft_destroy(&draft);
     return draft;
@@ -31,6 +32,15 @@ void draft_destroy(struct draft **draft_ptr)
         mem_free(draft->chunks[i].sorted);
         mem_free(draft->chunks[i].starts);
     }
+    for (size_t m = 0; draft->parts && m < draft->stage->model_count; m++) {
+        for (size_t l = 0; draft->parts[m] && l < draft->stage->models[m].level_count; l++)
+            draft_parts_finish(&draft->parts[m][l]);
+        mem_free(draft->parts[m]);
+    }
+    for (size_t i = 0; i < draft->found_capacity; i++)
+        mem_free(draft->found[i].items);
+    mem_free(draft->parts);
+    mem_free(draft->found);
     mem_free(draft->chunks);
     mem_free(draft->meshes);
     mem_free(draft->draws);
@@ -74,29 +84,6 @@ bool draft_make_room(struct draft *draft, const struct frame *frame, int band_ro
     return draft->pixel_capacity > 0;
 }
 
-static void draw_bands(void *arg, size_t begin, size_t end)
-{
-    const struct draft *draft = arg;
-    for (size_t band = begin; band < end; band++) {
-        draft_raster_band(draft, (int)band);
-        draft_color_band(draft, (int)band);
-    }
-}
-
-static void mark_bands(void *arg, size_t begin, size_t end)
-{
-    for (size_t band = begin; band < end; band++)
-        draft_raster_band(arg, (int)band);
-}
-
-/* Marks of all that was collected; coloured, or not. */
-static void draw(struct draft *draft, void (*bands)(void *arg, size_t begin, size_t end))
-{
-    draft_place(draft, 0, draft->vertex_count);
-    draft_sort(draft, 0, draft->chunk_count);
-    workers_for(draft->workers, (size_t)draft->band_count, 1, bands, draft);
-}
-
 static bool is_selected_shown(const struct picture *picture)
 {
     int selected = picture->view->selected_asset;
@@ -126,15 +113,15 @@ bool draft_draw(struct draft *draft, const struct picture *picture, const struct
     draft->out = frame->bgrx;
     draft->out_stride_bytes = (size_t)frame->stride_bytes;
     draft_aim(draft, light);
-    if (!draft_collect(draft))
+    if (!draft_find(draft))
         return complain(draft);
-    draw(draft, draw_bands);
+    draft_tiles(draft, true);
     markers_find(picture, draft->depth, (size_t)draft->pitch_px, frame);
     if (!is_selected_shown(picture))
         return true;
-    if (!draft_collect_only(draft, picture->view->selected_asset))
+    if (!draft_find_only(draft, picture->view->selected_asset))
         return complain(draft);
-    draw(draft, mark_bands);
+    draft_tiles(draft, false);
     draft_outline(draft);
     return true;
 }

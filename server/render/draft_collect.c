@@ -44,7 +44,7 @@ static bool in_frustum(const struct culling *culling, const struct asset_cluster
     return true;
 }
 
-static void fill_mesh(struct draft *draft, struct draft_mesh *mesh, int index, const struct model_level *level)
+void draft_fill_mesh(struct draft *draft, struct draft_mesh *mesh, int index, const struct model_level *level)
 {
     const struct picture *picture = draft->picture;
     const struct scene_asset *asset = &picture->stage->scene->assets[index];
@@ -95,8 +95,7 @@ static float nearest(const struct culling *culling, const struct asset_cluster *
     return sqrtf(away) - sqrtf(size);
 }
 
-/* both_sides: as if it had no backs. */
-static void collect_asset(struct draft *draft, int index, bool both_sides)
+static void collect_asset(struct draft *draft, int index)
 {
     const struct picture *picture = draft->picture;
     const struct scene_asset *asset = &picture->stage->scene->assets[index];
@@ -108,14 +107,14 @@ static void collect_asset(struct draft *draft, int index, bool both_sides)
     struct culling culling;
     mem_grow(&draft->meshes, &draft->mesh_capacity, draft->mesh_count + 1, sizeof(*draft->meshes));
     struct draft_mesh *mesh = &draft->meshes[draft->mesh_count];
-    fill_mesh(draft, mesh, index, level);
+    draft_fill_mesh(draft, mesh, index, level);
     start_culling(&culling, &picture->shot, asset, mesh->mirrored);
     const struct asset_cluster *cluster = &file->clusters[level->first_cluster];
     for (uint32_t p = 0; p < level->primitive_count; p++) {
         const struct asset_primitive *primitive = &file->primitives[level->first_primitive + p];
         const struct asset_material *material = &file->materials[primitive->material];
         uint32_t end = primitive->first_index + primitive->index_count;
-        struct draft_draw draw = { .mesh = (uint32_t)draft->mesh_count, .double_sided = both_sides || material->double_sided };
+        struct draft_draw draw = { .mesh = (uint32_t)draft->mesh_count, .double_sided = material->double_sided };
         draw.mark = mesh->has_field ? MARK_FIELD : MARK_CONTEXT | (ramp + primitive->material) << 16;
         for (; cluster < file->clusters + file->header->cluster_count && cluster->first_index < end &&
                cluster->first_index >= primitive->first_index;
@@ -182,13 +181,6 @@ bool draft_collect(struct draft *draft)
     const struct picture *picture = draft->picture;
     draft->mesh_count = draft->draw_count = draft->vertex_count = 0;
     for (size_t i = 0; i < picture->visible_count; i++)
-        collect_asset(draft, picture->visible[i], false);
-    return finish(draft);
-}
-
-bool draft_collect_only(struct draft *draft, int asset)
-{
-    draft->mesh_count = draft->draw_count = draft->vertex_count = 0;
-    collect_asset(draft, asset, true);
+        collect_asset(draft, picture->visible[i]);
     return finish(draft);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One band of the picture: from marks to colours. Only what is seen comes here: the sun's shadow and the backdrop are looked up per
+/* A rectangle of the picture: from marks to colours. Only what is seen comes here: the sun's shadow and the backdrop are looked up per
    pixel. */
 #include <math.h>
 #include <string.h>
@@ -174,13 +174,12 @@ DRAFT_INLINE lanes_int color_at(const struct draft *draft, const struct heights 
     return color;
 }
 
-DRAFT_KERNEL void draft_color_band(const struct draft *draft, int number)
+DRAFT_KERNEL void draft_color(const struct draft *draft, const struct draft_rect *rect)
 {
-    int end = (number + 1) * BAND_ROWS < draft->height_px ? (number + 1) * BAND_ROWS : draft->height_px;
-    for (int row = number * BAND_ROWS; row < end; row++) {
+    for (int row = rect->top; row <= rect->bottom; row++) {
         uint8_t *out = draft->out + (size_t)row * draft->out_stride_bytes;
         struct heights heights = { 0 };
-        for (int column = 0; column < draft->width_px; column += LANES) {
+        for (int column = rect->left; column <= rect->right; column += LANES) {
             if (column % STRETCH == 0)
                 heights = heights_from(draft, column, row);
             lanes_int color = color_at(draft, &heights, column, row);

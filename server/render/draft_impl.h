@@ -3,6 +3,7 @@
 #ifndef RENDER_DRAFT_IMPL_H
 #define RENDER_DRAFT_IMPL_H
 #include "render/draft.h"
+#include "render/draft_parts.h"
 #include "render/frame_block.h"
 #include "render/palette.h"
 
@@ -58,6 +59,26 @@ struct draft_chunk { /* what one job sorts into bands; kept from picture to pict
     size_t triangle_capacity, extra_capacity, band_capacity, sorted_capacity, start_capacity;
 };
 
+struct draft_rect { /* pixels, the last ones included */
+    int left, top, right, bottom;
+};
+
+struct draft_item { /* a part that may be seen */
+    float near; /* depth; over 1: some of it is nearer than the near plane */
+    struct draft_rect rect;
+    uint32_t part;
+};
+
+struct draft_found { /* what of one mesh may be seen; kept from picture to picture */
+    const struct draft_parts *parts;
+    uint32_t ramp; /* of its first material */
+    bool both_sides;
+    float eye_m[3]; /* in the frame of its file */
+    struct draft_rect rect;
+    struct draft_item *items;
+    size_t count, capacity;
+};
+
 struct draft_light { /* a light_set, read back */
     uint64_t id;          /* of the set; 0: empty */
     uint8_t (**baked)[4]; /* by asset */
@@ -80,11 +101,14 @@ struct draft {
     uint64_t palette_version;
     struct draft_light lights[DRAFT_LIGHTS];
     uint64_t uses;
+    struct draft_parts **parts; /* by number of the model, level; made when they are first needed */
     /* --- of the picture being drawn */
     const struct picture *picture;
     const struct draft_light *light;
     struct frame_block block;
     struct draft_mesh *meshes;
+    struct draft_found *found; /* by mesh */
+    size_t found_capacity;
     struct draft_draw *draws;
     struct draft_vertex *vertices;
     struct draft_chunk *chunks;
@@ -110,12 +134,15 @@ void draft_read_palette(struct draft *draft, const struct palette *palette);
 /* The steps. */
 void draft_aim(struct draft *draft, const struct light *light); /* the matrices from pixels */
 bool draft_collect(struct draft *draft);                        /* meshes, draws and chunks: what may be seen. False: out of memory */
-bool draft_collect_only(struct draft *draft, int asset);        /* the same of one, from both sides */
+/* An asset, its vertices counted on from draft->vertex_count. */
+void draft_fill_mesh(struct draft *draft, struct draft_mesh *mesh, int asset, const struct model_level *level);
+bool draft_find(struct draft *draft);                           /* meshes, and which of their parts may be seen. False: out of memory */
+bool draft_find_only(struct draft *draft, int asset);           /* the same of one, from both sides */
+void draft_tiles(struct draft *draft, bool color);              /* depth and marks of what was found; and colours, or not */
 bool draft_make_room(struct draft *draft, const struct frame *frame, int band_rows); /* false: out of memory */
 void draft_place(struct draft *draft, size_t begin, size_t end); /* vertices */
 void draft_sort(struct draft *draft, size_t begin, size_t end);  /* triangles of chunks into bands */
-void draft_raster_band(const struct draft *draft, int band);    /* depth and marks */
-void draft_color_band(const struct draft *draft, int band);     /* colours */
+void draft_color(const struct draft *draft, const struct draft_rect *rect); /* from marks; begins at a whole STRETCH */
 enum draft_rim { RIM_NONE, RIM_LIGHT, RIM_DARK };
 const uint8_t *draft_rim(const struct draft *draft); /* per pixel, rows of pitch_px; in place of depth */
 void draft_outline(const struct draft *draft);                  /* of all that has a mark; depth is lost */

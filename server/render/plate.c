@@ -304,22 +304,13 @@ static bool is_selected_shown(const struct picture *picture)
     return false;
 }
 
-static void mark_bands(void *arg, size_t begin, size_t end)
-{
-    for (size_t band = begin; band < end; band++)
-        draft_raster_band(arg, (int)band);
-}
-
 /* Of the selected asset. */
 static bool mark(struct plate *plate, const struct frame *frame)
 {
     struct draft *draft = plate->draft;
-    draft->reach_px = 0;
-    if (!draft_make_room(draft, frame, BAND_ROWS) || !draft_collect_only(draft, plate->picture->view->selected_asset))
+    if (!draft_make_room(draft, frame, BAND_ROWS) || !draft_find_only(draft, plate->picture->view->selected_asset))
         return false;
-    draft_place(draft, 0, draft->vertex_count);
-    draft_sort(draft, 0, draft->chunk_count);
-    workers_for(draft->workers, (size_t)draft->band_count, 1, mark_bands, draft);
+    draft_tiles(draft, false);
     return true;
 }
 

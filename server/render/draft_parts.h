@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A level of detail cut into parts: at most 256 neighbouring triangles with vertices of their own numbers, so that a part is placed,
+   tested and drawn without leaving the nearest cache. Private to draft*.c. */
+#ifndef RENDER_DRAFT_PARTS_H
+#define RENDER_DRAFT_PARTS_H
+#include "render/model.h"
+
+enum { PART_TRIANGLES = 256, PART_VERTICES = 256 };
+
+struct draft_part {
+    struct asset_cluster cluster; /* its box and cone */
+    uint32_t first_vertex;        /* in draft_parts.vertices */
+    uint32_t first_corner;        /* in draft_parts.corners: its first corners, then its second, then its third ones */
+    uint16_t vertex_count, triangle_count;
+    uint16_t rounded; /* triangles, up to whole lanes; what is beyond has no area */
+    uint16_t material;
+    bool double_sided;
+};
+
+struct draft_parts {
+    struct draft_part *parts;
+    uint32_t *vertices; /* of the file; each part's up to whole lanes, beyond by the last one again */
+    uint8_t *corners;   /* vertices of the part */
+    size_t part_count, vertex_count, corner_count;
+    size_t part_capacity, vertex_capacity, corner_capacity;
+};
+
+/* False: out of memory. Finish in both cases. */
+bool draft_parts_init(struct draft_parts *parts, const struct asset_view *file, const struct model_level *level);
+void draft_parts_finish(struct draft_parts *parts);
+
+#endif
