@@ -1,41 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A client without a screen. */
-#include "viewer.h"
-
 #include <jansson.h>
-#include <libwebsockets.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "base/clock.h"
 #include "base/mem.h"
-#include "decoder.h"
 #include "protocol/wire.h"
+#include "viewer_impl.h"
 
-enum { CAMERA_HZ = 60, MAX_MESSAGE_BYTES = WIRE_MAX_PAYLOAD_BYTES + WIRE_FRAME_HEADER_BYTES, SENT_RING = 4096, MAX_ACKS = 8 };
-static const double TURN_DEG_PER_S = 30;
+enum { MAX_MESSAGE_BYTES = WIRE_MAX_PAYLOAD_BYTES + WIRE_FRAME_HEADER_BYTES };
 static const int64_t PATIENCE_NS = 20 * NS_PER_S; /* for the first frame, and between frames of an orbit */
-
-struct viewer {
-    struct viewer_params params;
-    struct viewer_result result;
-    struct lws_context *context;
-    struct lws *wsi;
-    lws_sorted_usec_list_t timer;
-    struct decoder *decoder;
-    int64_t decode_ns; /* of the parts of a picture so far */
-    struct text in;
-    bool greeted, welcomed, camera_due, done;
-    double eye[3], target[3], fov_deg;
-    uint32_t camera_seq, shown_camera_seq;
-    int64_t sent_ns[SENT_RING], begin_ns;
-    struct {
-        uint32_t seq;
-        double decode_ms;
-    } acks[MAX_ACKS];
-    int ack_count;
-};
 
 static void add(struct samples *samples, double ms)
 {
@@ -58,6 +34,25 @@ static void read_vector(const json_t *o, const char *name, double v[3])
         v[i] = json_number_value(json_array_get(json_object_get(o, name), i));
 }
 
+static void lead_begin(struct viewer *viewer)
+{
+    struct lead *lead = viewer->params.lead;
+    if (!lead || viewer->params.follows)
+        return;
+    pthread_mutex_lock(&lead->lock);
+    lead->session = viewer->session;
+    pthread_mutex_unlock(&lead->lock);
+}
+
+static void on_pong(struct viewer *viewer, int64_t server_us)
+{
+    int64_t rtt_ns = clock_mono_ns() - viewer->ping_ns;
+    if (rtt_ns > viewer->rtt_ns)
+        return;
+    viewer->rtt_ns = rtt_ns;
+    viewer->offset_us = server_us - (clock_utc_ns() - rtt_ns / 2) / 1000;
+}
+
 static void on_text(struct viewer *viewer)
 {
     json_t *o = json_loadb(viewer->in.at, viewer->in.length, 0, NULL);
@@ -67,7 +62,11 @@ static void on_text(struct viewer *viewer)
         read_vector(home, "eye", viewer->eye);
         read_vector(home, "target", viewer->target);
         viewer->fov_deg = json_number_value(json_object_get(home, "fov"));
+        viewer->session = (uint64_t)json_integer_value(json_object_get(o, "session"));
         viewer->welcomed = true;
+        lead_begin(viewer);
+    } else if (type && !strcmp(type, "pong")) {
+        on_pong(viewer, json_integer_value(json_object_get(o, "time_us")));
     } else if (type && !strcmp(type, "error")) {
         viewer->result.errors++;
         const char *text = json_string_value(json_object_get(o, "text"));
@@ -87,11 +86,41 @@ static void record_input(struct viewer *viewer, uint32_t camera_seq, int64_t now
             add(&viewer->result.input, (double)(now_ns - viewer->sent_ns[(viewer->shown_camera_seq + 1) % SENT_RING]) / 1e6);
 }
 
+/* By the camera that it was drawn with. */
+static void record_behind(struct viewer *viewer, const struct wire_frame *frame, int64_t now_ns)
+{
+    struct lead *lead = viewer->params.lead;
+    if (!viewer->followed)
+        return;
+    pthread_mutex_lock(&lead->lock);
+    for (uint32_t number = lead->newest; number > 0 && lead->newest - number < LEAD_CAMERAS; number--) {
+        const double *eye = lead->cameras[number % LEAD_CAMERAS].eye;
+        if (fabs(eye[0] - frame->eye_m[0]) > 1e-4 || fabs(eye[1] - frame->eye_m[1]) > 1e-4)
+            continue;
+        add(&viewer->result.behind, (double)(now_ns - lead->cameras[number % LEAD_CAMERAS].sent_ns) / 1e6);
+        break;
+    }
+    pthread_mutex_unlock(&lead->lock);
+}
+
+/* From leaving the server to being here, by its own clock. */
+static void record_network(struct viewer *viewer, const struct wire_frame *frame)
+{
+    struct viewer_result *result = &viewer->result;
+    if (viewer->rtt_ns == INT64_MAX)
+        return;
+    double here_us = (double)(clock_utc_ns() / 1000 + viewer->offset_us) - (double)frame->sent_time_us;
+    double made_us = (double)frame->wait_us + frame->field_us + frame->render_us + frame->encode_us;
+    add(&result->stages[STAGE_NETWORK], fmax(here_us / 1e3 - (double)viewer->decode_ns / 1e6, 0));
+    if (frame->flags & WIRE_FLAG_DATA)
+        add(&result->sensor, (made_us + fmax(here_us, 0)) / 1e3);
+}
+
 static void record(struct viewer *viewer, const struct wire_frame *frame, int64_t now_ns)
 {
     struct viewer_result *result = &viewer->result;
     const uint32_t stages_us[] = { frame->wait_us, frame->field_us, frame->render_us, frame->encode_us };
-    for (int i = 0; i < STAGE_DECODE; i++)
+    for (int i = 0; i < STAGE_NETWORK; i++)
         add(&result->stages[i], stages_us[i] / 1000.0);
     add(&result->stages[STAGE_DECODE], (double)viewer->decode_ns / 1e6);
     if (!result->frames) {
@@ -102,6 +131,8 @@ static void record(struct viewer *viewer, const struct wire_frame *frame, int64_
     result->still_frames += (frame->flags & WIRE_FLAG_STILL) != 0;
     result->last_ns = now_ns;
     record_input(viewer, frame->camera_seq, now_ns);
+    record_network(viewer, frame);
+    record_behind(viewer, frame, now_ns);
 }
 
 /* Shorter than its header says. */
@@ -127,7 +158,7 @@ static void on_frame(struct viewer *viewer)
         fail(viewer, "a binary message is no frame of " WIRE_SUBPROTOCOL);
         return;
     }
-    if (!decoder_decode(viewer->decoder, &frame, bytes + WIRE_FRAME_HEADER_BYTES)) {
+    if (!viewer->params.blind && !decoder_decode(viewer->decoder, &frame, bytes + WIRE_FRAME_HEADER_BYTES)) {
         fail(viewer, "a frame cannot be decoded");
         return;
     }
@@ -142,7 +173,10 @@ static void on_frame(struct viewer *viewer)
         viewer->acks[viewer->ack_count++].decode_ms = (double)viewer->decode_ns / 1e6;
     }
     viewer->decode_ns = 0;
-    lws_callback_on_writable(viewer->wsi);
+    if (viewer->params.stalls)
+        lws_rx_flow_control(viewer->wsi, 0);
+    else
+        lws_callback_on_writable(viewer->wsi);
 }
 
 static void count_bytes(struct viewer *viewer, bool binary)
@@ -173,49 +207,11 @@ static int on_receive(struct viewer *viewer, struct lws *wsi, const void *bytes,
     return viewer->done ? -1 : 0;
 }
 
-/* --- what goes ---------------------------------------------------------------------------------------------------------------- */
+/* --- its time ------------------------------------------------------------------------------------------------------------------- */
 
-static int say(struct lws *wsi, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
-static int say(struct lws *wsi, const char *fmt, ...)
+static bool expects_frames(const struct viewer *viewer)
 {
-    unsigned char buffer[LWS_PRE + 512];
-    va_list ap;
-    va_start(ap, fmt);
-    int count = vsnprintf((char *)buffer + LWS_PRE, sizeof(buffer) - LWS_PRE, fmt, ap);
-    va_end(ap);
-    return lws_write(wsi, buffer + LWS_PRE, (size_t)count, LWS_WRITE_TEXT) < count ? -1 : 0;
-}
-
-static int say_camera(struct viewer *viewer)
-{
-    int64_t now_ns = clock_mono_ns();
-    double angle = (viewer->params.start_deg + TURN_DEG_PER_S * (double)(now_ns - viewer->begin_ns) / 1e9) * M_PI / 180;
-    double dx = viewer->eye[0] - viewer->target[0], dy = viewer->eye[1] - viewer->target[1];
-    viewer->camera_due = false;
-    viewer->sent_ns[++viewer->camera_seq % SENT_RING] = now_ns;
-    return say(viewer->wsi, "{\"type\":\"camera\",\"seq\":%u,\"eye\":[%.6f,%.6f,%.6f],\"target\":[%.6f,%.6f,%.6f],\"fov\":%.3f}",
-               viewer->camera_seq, viewer->target[0] + dx * cos(angle) - dy * sin(angle),
-               viewer->target[1] + dx * sin(angle) + dy * cos(angle), viewer->eye[2], viewer->target[0], viewer->target[1],
-               viewer->target[2], viewer->fov_deg);
-}
-
-static int on_writable(struct viewer *viewer)
-{
-    int status = 0;
-    if (!viewer->greeted) {
-        viewer->greeted = true;
-        status = say(viewer->wsi, "{\"type\":\"hello\",\"width\":%d,\"height\":%d,\"codecs\":[\"%s\"]}", viewer->params.width_px,
-                     viewer->params.height_px, viewer->params.codec);
-    } else if (viewer->ack_count > 0) {
-        status = say(viewer->wsi, "{\"type\":\"ack\",\"seq\":%u,\"decode_ms\":%.3f}", viewer->acks[0].seq, viewer->acks[0].decode_ms);
-        viewer->ack_count--;
-        memmove(viewer->acks, viewer->acks + 1, (size_t)viewer->ack_count * sizeof(viewer->acks[0]));
-    } else if (viewer->camera_due) {
-        status = say_camera(viewer);
-    }
-    if (viewer->ack_count > 0 || viewer->camera_due)
-        lws_callback_on_writable(viewer->wsi);
-    return status;
+    return !viewer->result.frames || (viewer->params.motion == MOTION_ORBIT && !viewer->params.stalls);
 }
 
 static void on_timer(lws_sorted_usec_list_t *sul)
@@ -224,13 +220,15 @@ static void on_timer(lws_sorted_usec_list_t *sul)
     int64_t now_ns = clock_mono_ns(), since_ns = viewer->result.frames ? viewer->result.last_ns : viewer->begin_ns;
     if (viewer->result.frames && (double)(now_ns - viewer->result.first_ns) >= viewer->params.seconds * 1e9)
         viewer->done = true;
-    else if (now_ns - since_ns > PATIENCE_NS && (!viewer->result.frames || viewer->params.motion == MOTION_ORBIT))
+    else if (now_ns - since_ns > PATIENCE_NS && expects_frames(viewer))
         fail(viewer, "no frame for 20 s");
-    if (viewer->wsi && viewer->welcomed && viewer->params.motion == MOTION_ORBIT) {
-        viewer->camera_due = true;
-        lws_callback_on_writable(viewer->wsi);
+    if (viewer->done) {
+        if (viewer->wsi)
+            lws_callback_on_writable(viewer->wsi); /* which closes it */
+        return;
     }
-    lws_sul_schedule(viewer->context, 0, sul, on_timer, LWS_US_PER_SEC / CAMERA_HZ);
+    viewer_think(viewer, now_ns);
+    lws_sul_schedule(viewer->context, 0, sul, on_timer, (lws_usec_t)(LWS_US_PER_SEC / viewer->params.hz));
 }
 
 static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t len)
@@ -243,10 +241,10 @@ static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *use
         lws_callback_on_writable(wsi);
         break;
     case LWS_CALLBACK_CLIENT_RECEIVE: return on_receive(viewer, wsi, in, len);
-    case LWS_CALLBACK_CLIENT_WRITEABLE: return viewer->done ? -1 : on_writable(viewer);
+    case LWS_CALLBACK_CLIENT_WRITEABLE: return viewer->done ? -1 : viewer_say(viewer);
     case LWS_CALLBACK_CLIENT_CLOSED:
         viewer->wsi = NULL;
-        if (!viewer->done)
+        if (!viewer->done && !viewer->params.stalls)
             fail(viewer, "the daemon closed the connection");
         break;
     default: break;
@@ -256,34 +254,26 @@ static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *use
 
 /* --- life --------------------------------------------------------------------------------------------------------------------- */
 
+const struct lws_protocols viewer_protocols[] = {
+    { .name = WIRE_SUBPROTOCOL, .callback = on_event, .rx_buffer_size = 64 * 1024 },
+    { 0 },
+};
+
 struct viewer *viewer_create(const struct viewer_params *params)
 {
-    static const struct lws_protocols protocols[] = {
-        { .name = WIRE_SUBPROTOCOL, .callback = on_event, .rx_buffer_size = 64 * 1024 },
-        { 0 },
-    };
-    struct lws_context_creation_info info = {
-        .port = CONTEXT_PORT_NO_LISTEN,
-        .protocols = protocols,
-        .gid = -1,
-        .uid = -1,
-        .pt_serv_buf_size = 64 * 1024,
-    };
     struct viewer *viewer = mem_new(sizeof(*viewer));
     viewer->params = *params;
-    viewer->decoder = decoder_create();
-    lws_set_log_level(0, NULL);
-    viewer->context = lws_create_context(&info);
-    if (!viewer->context || !viewer->decoder)
+    viewer->rtt_ns = INT64_MAX;
+    if (!params->blind && !(viewer->decoder = decoder_create()))
         viewer_destroy(&viewer);
     return viewer;
 }
 
-void viewer_run(struct viewer *viewer)
+void viewer_connect(struct viewer *viewer, struct lws_context *context)
 {
     const struct daemon_url *url = viewer->params.url;
     struct lws_client_connect_info connect = {
-        .context = viewer->context,
+        .context = context,
         .address = url->host,
         .host = url->host,
         .port = url->port,
@@ -291,12 +281,16 @@ void viewer_run(struct viewer *viewer)
         .protocol = WIRE_SUBPROTOCOL,
         .userdata = viewer,
     };
+    viewer->context = context;
     viewer->begin_ns = clock_mono_ns();
     if (!lws_client_connect_via_info(&connect))
         fail(viewer, "no connection");
     on_timer(&viewer->timer);
-    while (!viewer->done)
-        lws_service(viewer->context, 0);
+}
+
+bool viewer_done(const struct viewer *viewer)
+{
+    return viewer->done;
 }
 
 const struct viewer_result *viewer_result(const struct viewer *viewer)
@@ -309,12 +303,10 @@ void viewer_destroy(struct viewer **viewer_ptr)
     struct viewer *viewer = *viewer_ptr;
     if (!viewer)
         return;
-    viewer->done = true;
-    lws_sul_cancel(&viewer->timer);
-    if (viewer->context)
-        lws_context_destroy(viewer->context);
     decoder_destroy(&viewer->decoder);
     mem_free(viewer->result.input.at);
+    mem_free(viewer->result.sensor.at);
+    mem_free(viewer->result.behind.at);
     mem_free(viewer->result.first.at);
     for (int i = 0; i < STAGE_COUNT; i++)
         mem_free(viewer->result.stages[i].at);

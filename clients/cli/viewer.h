@@ -1,24 +1,43 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A client without a screen: connects, moves its camera, decodes every frame before it acknowledges it, and keeps the times.
-   Thread: one per viewer, after viewer_create. */
+   Thread: the one that services its context (crew.h). */
 #ifndef CLI_VIEWER_H
 #define CLI_VIEWER_H
+#include <libwebsockets.h>
+#include <pthread.h>
 #include <stddef.h>
 #include <stdint.h>
 
 #include "daemon.h"
 
-enum motion { MOTION_STILL, MOTION_ORBIT };
+enum motion { MOTION_STILL, MOTION_ORBIT, MOTION_RANDOM, MOTION_COUNT };
 
-enum { VIEWER_SETTLES_S = 3 };
+enum { VIEWER_SETTLES_S = 3, LEAD_CAMERAS = 256 };
+
+/* What followers know of the one they follow. */
+struct lead {
+    pthread_mutex_t lock;
+    /* --- below: under lock */
+    uint64_t session; /* 0: not connected yet */
+    struct {
+        double eye[3];
+        int64_t sent_ns;
+    } cameras[LEAD_CAMERAS]; /* the newest, by number */
+    uint32_t newest;
+};
 
 struct viewer_params {
     const struct daemon_url *url;
     int width_px, height_px;
     const char *codec; /* "jpeg", "h264" */
     enum motion motion;
-    double seconds;
-    double start_deg; /* of the orbit */
+    double seconds, hz; /* hz: cameras in a second */
+    double start_deg;   /* of the orbit; of the view, where it stands still and that is not 0 */
+    unsigned seed;      /* of random motion */
+    bool blind;         /* acknowledges without decoding */
+    bool stalls;        /* reads nothing after the first frame */
+    struct lead *lead;  /* NULL: follows nobody and leads nobody */
+    bool follows;       /* else it leads */
 };
 
 struct samples { /* milliseconds */
@@ -26,7 +45,7 @@ struct samples { /* milliseconds */
     size_t count, capacity;
 };
 
-enum viewer_stage { STAGE_WAIT, STAGE_FIELD, STAGE_RENDER, STAGE_ENCODE, STAGE_DECODE, STAGE_COUNT };
+enum viewer_stage { STAGE_WAIT, STAGE_FIELD, STAGE_RENDER, STAGE_ENCODE, STAGE_NETWORK, STAGE_DECODE, STAGE_COUNT };
 
 struct viewer_result {
     int frames, still_frames, errors;
@@ -34,6 +53,8 @@ struct viewer_result {
     int64_t text_bytes, steady_bytes; /* steady: of all messages, once VIEWER_SETTLES_S have gone by since the first frame */
     int64_t bytes, first_ns, last_ns; /* of frames; monotonic */
     struct samples input;             /* from sending a camera to its frame decoded */
+    struct samples sensor;            /* from a reading that changed, in the server, to its frame decoded */
+    struct samples behind;            /* of a follower: from its leader's sending a camera to its frame decoded */
     struct samples first;             /* from connecting to the first frame decoded: one */
     struct samples stages[STAGE_COUNT];
     char failure[200]; /* "": went well */
@@ -41,8 +62,12 @@ struct viewer_result {
 
 struct viewer;
 struct viewer *viewer_create(const struct viewer_params *params); /* NULL: out of memory */
-void viewer_run(struct viewer *viewer);                           /* until params.seconds after the first frame, or failure */
+/* From then on it is driven by the context's thread, until params.seconds after the first frame, or failure. */
+void viewer_connect(struct viewer *viewer, struct lws_context *context);
+bool viewer_done(const struct viewer *viewer);
 const struct viewer_result *viewer_result(const struct viewer *viewer);
-void viewer_destroy(struct viewer **viewer);
+void viewer_destroy(struct viewer **viewer); /* after its context; &NULL is fine; leaves NULL */
+
+extern const struct lws_protocols viewer_protocols[];
 
 #endif

@@ -4,11 +4,13 @@
 #define NET_HUB_H
 #include <libwebsockets.h>
 
+#include "net/marker_text.h"
 #include "net/net.h"
 #include "net/recall.h"
 #include "net/peers.h"
 #include "net/session.h"
 #include "net/stages.h"
+#include "net/tags_said.h"
 
 enum { SLICE_BYTES = 32 * 1024 };
 
@@ -40,6 +42,8 @@ struct hub {
     bool asked;                         /* wishes were made: painter_go is due */
     int64_t still_ns;                   /* what the last refined picture cost */
     uint8_t out[LWS_PRE + SLICE_BYTES]; /* lws writes its framing in front of what is sent */
+    struct tags_said tags_said;
+    struct marker_lists marker_lists; /* of the frame that was sent last */
     struct stages stages;
     struct {
         counter *sessions, *sessions_all, *frames, *frame_bytes, *messages, *errors, *dropped, *given_up, *stalled, *requests, *refused,

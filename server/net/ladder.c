@@ -42,11 +42,18 @@ double ladder_bytes(const struct ladder *ladder)
     return ladder->unit_bytes * steps[ladder->step].bytes;
 }
 
+/* Fewer pixels are the last resort: those who share a view then share no picture any more. */
+static int patience_with(int step)
+{
+    return step < LADDER_STEPS - 1 && steps[step + 1].rung.scale < 1 ? 2 : 1;
+}
+
 /* The best step whose frames the network is expected to take in that time. */
 static int best_within(const struct ladder *ladder, const struct channel *channel, int64_t limit_ns)
 {
     int step = 0;
-    while (step < LADDER_STEPS - 1 && channel_transfer_ns(channel, ladder->unit_bytes * steps[step].bytes) > limit_ns)
+    while (step < LADDER_STEPS - 1 &&
+           channel_transfer_ns(channel, ladder->unit_bytes * steps[step].bytes) > limit_ns * patience_with(step))
         step++;
     return step;
 }
@@ -73,7 +80,8 @@ static void go_down(struct ladder *ladder, int step, int64_t now_ns)
 static void follow_network(struct ladder *ladder, const struct channel *channel, int64_t now_ns)
 {
     int down = best_within(ladder, channel, SLOW_NS), up = best_within(ladder, channel, FAST_NS);
-    bool lags = channel->lag_ns > 2.0 * SLOW_NS && ladder->step < LADDER_STEPS - 1 && now_ns - ladder->down_ns >= SETTLE_NS;
+    bool lags = channel->lag_ns > 2.0 * SLOW_NS * patience_with(ladder->step) && ladder->step < LADDER_STEPS - 1 &&
+                now_ns - ladder->down_ns >= SETTLE_NS;
     if (down > ladder->step || lags) {
         go_down(ladder, down > ladder->step ? down : ladder->step + 1, now_ns);
     } else if (up >= ladder->step || channel->lag_ns > SLOW_NS) {

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "base/text.h"
 #include "value/quality.h"
 
 enum { DIGITS = 7 };
@@ -112,29 +113,67 @@ static void remember(struct marker_said *said, const struct frame *frame)
     said->any = true;
 }
 
-char *marker_text(const struct frame *frame, uint32_t seq, struct marker_said *said)
+static char *dumped(json_t *list)
 {
-    json_t *object = json_pack("{s:s,s:I}", "type", "markers", "seq", (json_int_t)seq), *values;
-    bool known = true;
+    char *text = json_dumps(list, JSON_COMPACT | JSON_REAL_PRECISION(DIGITS)), *copy = mem_strdup(text ? text : "[]");
+    free(text);
+    json_decref(list);
+    return copy;
+}
+
+void marker_lists_finish(struct marker_lists *lists)
+{
+    frame_unref(&lists->frame);
+    mem_free(lists->markers);
+    mem_free(lists->labels);
+    *lists = (struct marker_lists){ 0 };
+}
+
+static void list_frame(struct marker_lists *lists, struct frame *frame)
+{
+    if (lists->frame == frame)
+        return;
+    marker_lists_finish(lists);
+    lists->frame = frame_ref(frame);
+}
+
+static void add_list(struct text *text, const char *name, const char *list)
+{
+    text_add(text, ",\"%s\":", name);
+    text_add_bytes(text, list, strlen(list));
+}
+
+/* What is new of the markers: all, or values only. */
+static void add_markers(struct text *text, struct frame *frame, const struct marker_said *said, struct marker_lists *lists)
+{
     if (!same_places(frame, said)) {
-        json_object_set_new(object, "markers", all_markers(frame));
-        known = false;
-    } else if (json_array_size(values = changed_values(frame, said)) > 0) {
-        json_object_set_new(object, "values", values);
-        known = false;
-    } else {
-        json_decref(values);
+        lists->markers = lists->markers ? lists->markers : dumped(all_markers(frame));
+        add_list(text, "markers", lists->markers);
+        return;
     }
+    char *values = dumped(changed_values(frame, said));
+    if (strcmp(values, "[]") != 0)
+        add_list(text, "values", values);
+    mem_free(values);
+}
+
+char *marker_text(struct frame *frame, uint32_t seq, struct marker_said *said, struct marker_lists *lists)
+{
+    struct text text = { 0 };
+    list_frame(lists, frame);
+    text_add(&text, "{\"type\":\"markers\",\"seq\":%u", seq);
+    size_t head = text.length;
+    add_markers(&text, frame, said, lists);
     if (!same_labels(frame, said)) {
-        json_object_set_new(object, "isolines", all_labels(frame));
-        known = false;
+        lists->labels = lists->labels ? lists->labels : dumped(all_labels(frame));
+        add_list(&text, "isolines", lists->labels);
     }
     remember(said, frame);
-    char *dumped = known ? NULL : json_dumps(object, JSON_COMPACT | JSON_REAL_PRECISION(DIGITS));
-    char *text = dumped ? mem_strdup(dumped) : NULL;
-    free(dumped);
-    json_decref(object);
-    return text;
+    if (text.length == head)
+        text_finish(&text);
+    else
+        text_add(&text, "}");
+    return text.at;
 }
 
 void marker_said_finish(struct marker_said *said)

@@ -13,8 +13,14 @@ struct marker_said { /* what a client knows; zero-initialise */
     size_t label_count, label_capacity;
 };
 
+struct marker_lists { /* of the last frame, as JSON, for all who get it; zero-initialise */
+    struct frame *frame;
+    char *markers, *labels;
+};
+
 /* NULL: all of it was said. Brings *said up to date. mem_free. */
-char *marker_text(const struct frame *frame, uint32_t seq, struct marker_said *said);
+char *marker_text(struct frame *frame, uint32_t seq, struct marker_said *said, struct marker_lists *lists);
+void marker_lists_finish(struct marker_lists *lists);
 void marker_said_finish(struct marker_said *said);
 
 #endif

@@ -308,6 +308,7 @@ struct net *net_create(const struct net_params *params)
         .snapshot = hub->snapshot,
         .baselines = params->baselines,
         .links_up = hub->links_up,
+        .tags_said = &hub->tags_said,
         .codecs = params->codecs,
         .version = params->version,
         .quotas = hub->quotas,
@@ -337,6 +338,8 @@ void net_destroy(struct net **net_ptr)
     tokens_destroy(&net->hub.tokens);
     peers_destroy(&net->hub.peers);
     resumes_destroy(&net->hub.world.resumes);
+    tags_said_finish(&net->hub.tags_said);
+    marker_lists_finish(&net->hub.marker_lists);
     snapshot_destroy(&net->hub.snapshot);
     mem_free(net->hub.changes);
     mem_free(net->hub.links_up);

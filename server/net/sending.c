@@ -23,15 +23,15 @@ static const struct text *padded(struct text *text)
 }
 
 /* False: the connection is gone. *wrote: there was something to say. */
-static bool write_markers(struct stream *stream, bool *wrote)
+static bool write_markers(struct hub *hub, struct stream *stream, bool *wrote)
 {
     struct text text = { 0 };
-    char *markers = marker_text(stream->sending->packet->frame, stream->seq, &stream->said);
+    char *markers = marker_text(stream->sending->packet->frame, stream->seq, &stream->said, &hub->marker_lists);
     *wrote = markers != NULL;
     if (!markers)
         return true;
     padded(&text);
-    text_add(&text, "%s", markers);
+    text_add_bytes(&text, markers, strlen(markers));
     bool good = write_text(stream, text.at + LWS_PRE, text.length - LWS_PRE);
     text_finish(&text);
     mem_free(markers);
@@ -81,8 +81,9 @@ static uint16_t flags_of(const struct stream *stream)
 {
     const struct packet *packet = packet_now(stream);
     bool last = is_last_part(stream), live = packet->frame->oldest_age_ns != INT64_MAX;
-    return (uint16_t)((packet->key ? WIRE_FLAG_KEY : 0) | (last && packet->frame->view.tier == TIER_STILL ? WIRE_FLAG_STILL : 0) |
-                      (live ? 0 : WIRE_FLAG_NO_LIVE_DATA) | (last ? 0 : WIRE_FLAG_MORE));
+    bool still = last && packet->frame->view.tier == TIER_STILL;
+    return (uint16_t)((packet->key ? WIRE_FLAG_KEY : 0) | (still ? WIRE_FLAG_STILL : 0) | (live ? 0 : WIRE_FLAG_NO_LIVE_DATA) |
+                      (last ? 0 : WIRE_FLAG_MORE) | (stream->sending->wish.of_data ? WIRE_FLAG_DATA : 0));
 }
 
 static struct wire_frame frame_header(const struct stream *stream)
@@ -157,7 +158,7 @@ static bool write_slice(struct hub *hub, struct stream *stream)
 static bool write_picture(struct hub *hub, struct stream *stream)
 {
     if (stream->step == SEND_MARKERS) {
-        bool wrote, good = write_markers(stream, &wrote);
+        bool wrote, good = write_markers(hub, stream, &wrote);
         stream->step = SEND_HEADER;
         if (wrote)
             return good;

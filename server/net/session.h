@@ -33,6 +33,7 @@ struct session_world {
     const struct tokens *tokens;  /* NULL: there are none */
     struct resumes *resumes;      /* changed by hello */
     struct admission *admission;  /* its pixels are changed by hello and resize */
+    struct tags_said *tags_said; /* NULL: every text is made anew */
 };
 
 struct session {

@@ -6,12 +6,13 @@
 #include "base/mem.h"
 #include "net/reply.h"
 #include "net/session_impl.h"
+#include "net/tags_said.h"
 
 static const int64_t TAGS_NS = 500 * NS_PER_MS;          /* changed values, at most this often */
 
 static void add_owned(struct text *out, char *text)
 {
-    text_add(out, "%s", text);
+    text_add_bytes(out, text, strlen(text));
     mem_free(text);
 }
 
@@ -40,7 +41,7 @@ bool session_has_text(const struct session *session, int64_t now_ns)
 
 static void add_tags(struct session *session, int64_t now_ns, struct text *out)
 {
-    add_owned(out, reply_tags_text(session->world, session->tag_changes, session->owes_tags_all));
+    add_owned(out, tags_said_text(session->world->tags_said, session->world, session->tag_changes, session->owes_tags_all));
     session->owes_tags = session->owes_tags_all = false;
     session->tags_ns = now_ns;
 }

@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a probe is to do, and its report. */
+#ifndef CLI_PROBE_H
+#define CLI_PROBE_H
+#include "viewer.h"
+
+struct probe {
+    struct daemon_url url;
+    const char *url_text, *codec;
+    int sessions, stalled, width_px, height_px;
+    int watching; /* the first of the sessions: those that do not stall */
+    double seconds, hz;
+    enum motion motion;
+    bool as_json, blind, follow, spread;
+    struct viewer **viewers;
+    struct lead lead;
+};
+
+extern const char *const probe_motions[MOTION_COUNT];
+
+/* Of viewers that are done. False: something failed, or nothing came; said. */
+bool probe_report(const struct probe *probe);
+
+#endif

@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the halves of a viewer share: what comes and how long it lives (viewer.c), what it says (viewer_say.c). Private to them. */
+#ifndef CLI_VIEWER_IMPL_H
+#define CLI_VIEWER_IMPL_H
+#include "base/text.h"
+#include "decoder.h"
+#include "viewer.h"
+
+enum { SENT_RING = 4096, MAX_ACKS = 16 };
+
+struct viewer {
+    struct viewer_params params;
+    struct viewer_result result;
+    struct lws_context *context;
+    struct lws *wsi;
+    lws_sorted_usec_list_t timer;
+    struct decoder *decoder;
+    int64_t decode_ns; /* of the parts of a picture so far */
+    struct text in;
+    bool greeted, welcomed, camera_due, ping_due, follow_due, followed, done;
+    double eye[3], target[3], fov_deg;
+    uint64_t session;
+    uint32_t camera_seq, shown_camera_seq;
+    int64_t sent_ns[SENT_RING], begin_ns;
+    int64_t ping_ns, rtt_ns, offset_us; /* the server's clock less ours, by the shortest round trip */
+    double angle_deg, speed_deg;        /* of random motion, from `leg_ns` on */
+    int64_t leg_ns, leg_end_ns;
+    struct {
+        uint32_t seq;
+        double decode_ms;
+    } acks[MAX_ACKS];
+    int ack_count;
+};
+
+/* Sends the next of what is due. Negative: the connection is gone. */
+int viewer_say(struct viewer *viewer);
+/* Notes what is due by now. */
+void viewer_think(struct viewer *viewer, int64_t now_ns);
+
+#endif
