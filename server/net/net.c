@@ -5,6 +5,7 @@
 #include <arpa/inet.h>
 #include <errno.h>
 #include <stdatomic.h>
+#include <stdio.h>
 #include <string.h>
 #include <strings.h>
 #include <sys/resource.h>
@@ -26,6 +27,8 @@ struct net {
     struct hub hub;
     struct lws_vhost *vhost;
     lws_sorted_usec_list_t tick;
+    struct cpu_meter cpu;
+    int64_t cpu_ns; /* when it was last read */
     _Atomic bool stopping, look;
 };
 
@@ -115,11 +118,27 @@ static void look_at_files(struct net *net, int64_t now_ns)
     }
 }
 
+/* Once a second: what the machine has left. */
+static void look_at_processors(struct net *net, int64_t now_ns)
+{
+    char stat[512] = "";
+    if (now_ns - net->cpu_ns < NS_PER_S)
+        return;
+    FILE *file = fopen("/proc/stat", "r");
+    size_t count = file ? fread(stat, 1, sizeof(stat) - 1, file) : 0;
+    stat[count] = 0;
+    if (file)
+        fclose(file);
+    net->cpu_ns = now_ns;
+    net->hub.world.cpu_used = 1 - cpu_meter_free(&net->cpu, stat);
+}
+
 static void on_tick(lws_sorted_usec_list_t *sul)
 {
     struct net *net = lws_container_of(sul, struct net, tick);
     int64_t now_ns = clock_mono_ns();
     look_at_files(net, now_ns);
+    look_at_processors(net, now_ns);
     admission_on_tick(&net->hub.admission, now_ns);
     counter_set(net->hub.counters.busy, admission_busy_percent(&net->hub.admission));
     counter_set(net->hub.counters.connections, net->hub.connection_count);

@@ -247,6 +247,7 @@ void session_on_tick(struct session *session, int64_t now_ns)
         session->too_fast = false;
     if (pacer_state(&session->pacer, now_ns) != PACER_FLOWS)
         session_pause(session);
+    session_choose_again(session, now_ns);
 }
 
 void session_on_data(struct session *session, int64_t data_ns)

@@ -4,6 +4,7 @@
 #define NET_SESSION_H
 #include "base/text.h"
 #include "net/admission.h"
+#include "net/codec_choice.h"
 #include "net/message.h"
 #include "net/pacer.h"
 #include "net/picks.h"
@@ -27,7 +28,8 @@ struct session_world {
     int64_t moving_until_ns; /* somebody moves; a refined picture of another would make it stutter */
     bool loaded;             /* refined pictures for all, whenever a reading changes, are more than can be drawn */
     int moving;              /* sessions whose camera moved within the last second */
-    unsigned codecs; /* a bit, 1 << enum wire_codec, for each that we have; 0: JPEG and PNG */
+    unsigned codecs;         /* a bit, 1 << enum wire_codec, for each that we have; 0: JPEG and PNG */
+    double cpu_used;         /* share of all processors of the machine, 0..1 */
     const char *version;
     const struct quotas *quotas;
     const struct tokens *tokens;  /* NULL: there are none */
@@ -51,6 +53,7 @@ struct session {
     const char *close_text;         /* static */
     struct codec_list codecs; /* what it decodes */
     enum wire_codec codec;    /* in use */
+    struct codec_choice choice; /* where the server may choose */
     struct view view;
 
     bool input_pending, data_pending, always_pending; /* why a picture is wanted */

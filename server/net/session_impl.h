@@ -9,6 +9,7 @@ void session_reply(struct session *session, char *text); /* takes it */
 void session_drop_ready(struct session *session); /* what was not sent yet */
 /* Takes the list, and the first of it that there is. False: there is none. */
 bool session_choose_codec(struct session *session, const struct codec_list *codecs, struct message_error *error);
+void session_choose_again(struct session *session, int64_t now_ns); /* as bandwidth and processors are by now */
 void session_reply_error(struct session *session, const struct message_error *error);
 /* session_hello.c: who it is, whether there is room, what it looks at. False: *error, and session->close_code if it is not let in. */
 bool session_hello(struct session *session, const struct message *message, int64_t now_ns, int64_t now_utc_ns, struct message_error *error);

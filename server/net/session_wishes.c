@@ -166,6 +166,26 @@ bool session_choose_codec(struct session *session, const struct codec_list *code
     return false;
 }
 
+static bool decodes(const struct session *session, enum wire_codec codec)
+{
+    for (int i = 0; i < session->codecs.count; i++)
+        if (session->codecs.at[i] == codec)
+            return has_codec(session, codec);
+    return false;
+}
+
+void session_choose_again(struct session *session, int64_t now_ns)
+{
+    double ns_per_byte = session->pacer.channel.ns_per_byte;
+    struct codec_facts facts = { .bytes_per_s = ns_per_byte > 0 ? NS_PER_S / ns_per_byte : 0,
+                                 .cpu_free = 1 - session->world->cpu_used,
+                                 .pixels = (long)session->view.width_px * session->view.height_px };
+    if (!session->codecs.choose || !decodes(session, WIRE_CODEC_H264) || !decodes(session, WIRE_CODEC_JPEG))
+        return;
+    codec_choice_update(&session->choice, &facts, now_ns);
+    session->codec = session->choice.jpeg ? WIRE_CODEC_JPEG : WIRE_CODEC_H264;
+}
+
 bool session_wish(const struct session *session, int64_t now_ns, struct wish *wish)
 {
     bool may_add = !session->ready && pacer_may_ask(&session->pacer, now_ns);

@@ -30,8 +30,8 @@ after(async () => {
         rmSync(folder, { recursive: true, force: true });
 });
 
-async function withPage(init, f) {
-    const browser = await openPage(plant.url, SCREEN, init);
+async function withPage(codec, init, f) {
+    const browser = await openPage(`${plant.url}?codec=${codec}`, SCREEN, init);
     try {
         await f(browser.page);
         assert.deepEqual(browser.errors, []);
@@ -66,17 +66,16 @@ async function compare(t, page, codec) {
     assert.ok(mean <= 2, `mean dE ${mean}`);
 }
 
-test('H.264 through WebCodecs shows what the snapshot shows', options, (t) => withPage(null, async (page) => {
+test('H.264 through WebCodecs shows what the snapshot shows', options, (t) => withPage('h264', null, async (page) => {
     await compare(t, page, 'h264');
-    const { codecs } = await page.evaluate(() => ({ codecs: globalThis.plantcast.session.codecs }));
-    assert.deepEqual(codecs, ['auto', 'h264', 'jpeg', 'png']);
+    assert.deepEqual(await page.evaluate(() => globalThis.plantcast.decoding.codecs), ['auto', 'h264', 'jpeg', 'png']);
 }));
 
-test('without WebCodecs it is JPEG, and shows the same', options, (t) => withPage(() => {
+test('without WebCodecs it is JPEG, and shows the same', options, (t) => withPage('auto', () => {
     delete globalThis.VideoDecoder;
 }, (page) => compare(t, page, 'jpeg')));
 
-test('a decoder that passes the trial and then breaks is left for JPEG, for good', options, () => withPage(() => {
+test('a decoder that passes the trial and then breaks is left for JPEG, for good', options, () => withPage('h264', () => {
     const { decode } = VideoDecoder.prototype;
     let count = 0;
     VideoDecoder.prototype.decode = function decodeSome(chunk) {

@@ -766,6 +766,34 @@ static void pings_come_back_exactly(void **state)
     json_decref(pong);
 }
 
+static void codecs_are_chosen_and_chosen_again(void **state)
+{
+    struct fixture *f = *state;
+    struct wish wish;
+    f->world.codecs = 1u << WIRE_CODEC_JPEG | 1u << WIRE_CODEC_H264;
+    say(f, "{\"type\":\"hello\",\"width\":640,\"height\":360,\"codecs\":[\"auto\",\"h264\",\"jpeg\"]}");
+    expect(f, "welcome status tags ");
+    assert_true(ask(f, &wish) && wish.codec == WIRE_CODEC_H264 && wish.alone);
+    paint_nothing(f, &wish);
+    f->session->pacer.channel.ns_per_byte = 1;
+    f->world.cpu_used = 1;
+    for (int i = 0; i < 60; i++, f->now_ns += 100 * MS)
+        session_on_tick(f->session, f->now_ns);
+    assert_int_equal(f->session->codec, WIRE_CODEC_JPEG);
+    say(f, "{\"type\":\"codecs\",\"codecs\":[\"h264\"]}");
+    session_on_tick(f->session, f->now_ns);
+    assert_int_equal(f->session->codec, WIRE_CODEC_H264);
+    assert_true(ask(f, &wish) && wish.codec == WIRE_CODEC_H264 && wish.alone && wish.always);
+    paint_nothing(f, &wish);
+    say(f, "{\"type\":\"key_frame\"}");
+    assert_true(ask(f, &wish) && wish.alone && wish.always);
+    paint_nothing(f, &wish);
+    f->world.codecs = 0;
+    say(f, "{\"type\":\"codecs\",\"codecs\":[\"h264\"]}"); /* of a server without it */
+    expect_error(f, "bad_field");
+    assert_int_equal(f->session->codec, WIRE_CODEC_H264);
+}
+
 int main(void)
 {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
@@ -798,6 +826,7 @@ int main(void)
         TEST(a_pick_is_asked_once_and_answered),
         TEST(a_follower_is_shown_its_leaders_view),
         TEST(pings_come_back_exactly),
+        TEST(codecs_are_chosen_and_chosen_again),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests(tests, NULL, NULL);

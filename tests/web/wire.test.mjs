@@ -28,6 +28,7 @@ for (const name of names('frame/')) {
             camera: frame.camera, payload: frame.payload.length,
         }, {
             codec: CODECS[want.codec], key: (want.flags & 1) !== 0, still: (want.flags & 2) !== 0, noLiveData: (want.flags & 4) !== 0,
+            more: (want.flags & 8) !== 0,
             seq: want.seq, cameraSeq: want.camera_seq, paramsSeq: want.params_seq,
             oldestAgeMs: want.oldest_age_ms === 0xffffffff ? null : want.oldest_age_ms,
             dataTimeUs: want.data_time_us, sentTimeUs: want.sent_time_us,

@@ -29,9 +29,11 @@ const selection = { tag: address.tag, hover: null };
 const streamUrl = new URL('stream', location.href.replace(/^http/, 'ws').replace(/#.*$/, '')).href;
 const connection = new Connection({ url: streamUrl, open: (url, protocol) => new WebSocket(url, protocol), clock });
 const decoding = browserDecoding();
-if (new URLSearchParams(location.search).get('codec') !== 'jpeg')
+const wantedCodec = new URLSearchParams(location.search).get('codec') ?? 'auto'; // jpeg, h264, or as the server chooses
+if (wantedCodec !== 'jpeg')
     await decoding.prove();
-const session = new Session({ connection, now: clock.now, wanted: address, codecs: decoding.codecs });
+const codecs = decoding.codecs.filter((name) => name !== 'auto' || wantedCodec === 'auto');
+const session = new Session({ connection, now: clock.now, wanted: address, codecs });
 
 const assets = new Assets({ session, selection });
 const picture = new Picture({ session, selection });

@@ -1,0 +1,87 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* H.264 or JPEG: by what the network takes and what the processors have left, and not to and fro. */
+#include "net/codec_choice.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+
+#include <cmocka.h>
+
+#include "base/clock.h"
+
+enum { FULL_HD = 1920 * 1080 };
+
+/* For so many seconds, asked ten times a second. Returns how often it changed. */
+static int run(struct codec_choice *choice, double mbyte_per_s, double cpu_free, int seconds, int64_t *now_ns)
+{
+    int changes = 0;
+    for (int i = 0; i < seconds * 10; i++, *now_ns += NS_PER_S / 10) {
+        bool before = choice->jpeg;
+        codec_choice_update(choice, &(struct codec_facts){ mbyte_per_s * 1e6, cpu_free, FULL_HD }, *now_ns);
+        changes += before != choice->jpeg;
+    }
+    return changes;
+}
+
+static void h264_unless_there_is_plenty_and_no_processor(void **state)
+{
+    (void)state;
+    struct codec_choice choice = { 0 };
+    int64_t now_ns = NS_PER_S;
+    assert_int_equal(run(&choice, 0, 0, 60, &now_ns), 0);     /* nothing is known of the network */
+    assert_int_equal(run(&choice, 10, 0.02, 60, &now_ns), 0); /* 80 Mbit/s */
+    assert_int_equal(run(&choice, 500, 0.5, 60, &now_ns), 0);
+    assert_false(choice.jpeg);
+    assert_int_equal(run(&choice, 500, 0.02, 60, &now_ns), 1);
+    assert_true(choice.jpeg);
+}
+
+static void a_short_time_decides_nothing(void **state)
+{
+    (void)state;
+    struct codec_choice choice = { 0 };
+    int64_t now_ns = NS_PER_S;
+    for (int i = 0; i < 20; i++) {
+        assert_int_equal(run(&choice, 500, 0.02, 4, &now_ns), 0);
+        assert_int_equal(run(&choice, 500, 0.6, 1, &now_ns), 0);
+    }
+    run(&choice, 500, 0.02, 6, &now_ns);
+    assert_true(choice.jpeg);
+    for (int i = 0; i < 20; i++) { /* still, and moving again */
+        assert_int_equal(run(&choice, 500, 0.9, 20, &now_ns), 0);
+        assert_int_equal(run(&choice, 500, 0.3, 1, &now_ns), 0);
+    }
+    assert_int_equal(run(&choice, 500, 0.9, 31, &now_ns), 1);
+}
+
+static void a_network_that_gets_narrow_decides_at_once(void **state)
+{
+    (void)state;
+    struct codec_choice choice = { .jpeg = true };
+    int64_t now_ns = NS_PER_S;
+    assert_int_equal(run(&choice, 3, 0.02, 1, &now_ns), 1);
+    assert_false(choice.jpeg);
+}
+
+static void processor_time_is_what_proc_says(void **state)
+{
+    (void)state;
+    struct cpu_meter meter = { 0 };
+    assert_true(cpu_meter_free(&meter, "cpu  100 0 100 700 100 0 0 0 0 0\ncpu0 1 1 1 1\n") == 1);
+    assert_true(cpu_meter_free(&meter, "cpu  150 10 115 715 110 0 0 0 0 0\n") == 0.25);
+    assert_true(cpu_meter_free(&meter, "cpu  150 10 115 715 110 0 0 0 0 0\n") == 1);
+    assert_true(cpu_meter_free(&meter, "nothing") == 1);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(h264_unless_there_is_plenty_and_no_processor),
+        cmocka_unit_test(a_short_time_decides_nothing),
+        cmocka_unit_test(a_network_that_gets_narrow_decides_at_once),
+        cmocka_unit_test(processor_time_is_what_proc_says),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
