@@ -20,7 +20,7 @@ for (const name of names('frame/')) {
         }
         const frame = decodeFrame(data);
         assert.deepEqual({
-            codec: frame.codec, key: frame.key, still: frame.still, noLiveData: frame.noLiveData, seq: frame.seq,
+            codec: frame.codec, key: frame.key, still: frame.still, noLiveData: frame.noLiveData, more: frame.more, seq: frame.seq,
             cameraSeq: frame.cameraSeq, paramsSeq: frame.paramsSeq, oldestAgeMs: frame.oldestAgeMs,
             dataTimeUs: frame.dataTimeUs, sentTimeUs: frame.sentTimeUs,
             stages: [frame.waitUs, frame.fieldUs, frame.renderUs, frame.encodeUs],
