@@ -1,0 +1,182 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Who may do what: each message by each role, where a daemon may listen, names, pages, and what headers say. */
+#include "net/access.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "net/names.h"
+#include "tests/support/small_scene.h"
+
+/* A role that is not let may not, the one above may. */
+static void expect_least(const char *text, enum role least)
+{
+    struct message message;
+    struct message_error error;
+    if (!message_parse(small_scene()->plant, text, strlen(text), &message, &error))
+        fail_msg("%s: %s", text, error.text);
+    for (enum role role = ROLE_NOBODY; role <= ROLE_ENGINEER; role++) {
+        bool may = access_message(role, &message, &error);
+        if (may != (role >= least))
+            fail_msg("%s as %s: %s", text, name_of(names_role, (int)role), may ? "let" : error.text);
+        if (!may)
+            assert_string_equal(error.code, role == ROLE_NOBODY ? "token_needed" : "not_allowed");
+    }
+}
+
+static void each_message_asks_for_its_role(void **state)
+{
+    (void)state;
+    expect_least("{\"type\":\"ping\",\"t\":1}", ROLE_NOBODY);
+    static const char *const looking[] = {
+        "{\"type\":\"hello\",\"width\":640,\"height\":360,\"codecs\":[\"jpeg\"]}",
+        "{\"type\":\"camera\",\"seq\":1,\"eye\":[1,2,3],\"target\":[0,0,0]}",
+        "{\"type\":\"resize\",\"width\":640,\"height\":360}",
+        "{\"type\":\"ack\",\"seq\":1}",
+        "{\"type\":\"visible\",\"visible\":false}",
+        "{\"type\":\"fit\",\"seq\":1}",
+        "{\"type\":\"pick\",\"seq\":1,\"x\":1,\"y\":1}",
+        "{\"type\":\"key_frame\"}",
+        "{\"type\":\"codecs\",\"codecs\":[\"jpeg\"]}",
+        "{\"type\":\"params\",\"seq\":1}",
+        "{\"type\":\"params\",\"seq\":1,\"group\":\"pressure\",\"interpolation\":\"paper\",\"distance\":\"euclidean\",\"range\":[1,2]}",
+        "{\"type\":\"params\",\"seq\":1,\"show\":\"difference\",\"baseline\":\"then\"}",
+        "{\"type\":\"params\",\"seq\":1,\"split\":{\"interpolation\":\"paper\"}}",
+    };
+    for (size_t i = 0; i < sizeof(looking) / sizeof(looking[0]); i++)
+        expect_least(looking[i], ROLE_OPEN);
+}
+
+static void what_others_see_takes_an_operator(void **state)
+{
+    (void)state;
+    expect_least("{\"type\":\"params\",\"seq\":1,\"baseline\":\"now\"}", ROLE_OPERATOR);
+    expect_least("{\"type\":\"params\",\"seq\":1,\"baseline\":{\"set\":\"a\"}}", ROLE_OPERATOR);
+    expect_least("{\"type\":\"params\",\"seq\":1,\"baseline\":{\"remove\":\"a\"}}", ROLE_OPERATOR);
+    expect_least("{\"type\":\"hello\",\"width\":64,\"height\":64,\"codecs\":[\"png\"],\"params\":{\"seq\":1,\"baseline\":\"now\"}}", ROLE_OPERATOR);
+}
+
+static void how_the_field_is_computed_takes_an_engineer(void **state)
+{
+    (void)state;
+    static const char *const fields[] = { "\"fill\":\"neighbours\"", "\"strength\":2", "\"decay\":2", "\"power\":3", "\"radius_m\":4",
+                                          "\"reach_m\":5", "\"sensors\":{\"TI-1\":{\"strength\":2}}" };
+    for (size_t i = 0; i < sizeof(fields) / sizeof(fields[0]); i++) {
+        char text[256];
+        snprintf(text, sizeof(text), "{\"type\":\"params\",\"seq\":1,%s}", fields[i]);
+        expect_least(text, ROLE_ENGINEER);
+        snprintf(text, sizeof(text), "{\"type\":\"params\",\"seq\":1,\"split\":{%s}}", fields[i]);
+        expect_least(text, ROLE_ENGINEER);
+        snprintf(text, sizeof(text), "{\"type\":\"hello\",\"width\":64,\"height\":64,\"codecs\":[\"png\"],\"params\":{\"seq\":1,%s}}", fields[i]);
+        expect_least(text, ROLE_ENGINEER);
+    }
+}
+
+static void where_a_daemon_may_listen(void **state)
+{
+    (void)state;
+    const char *why = NULL;
+    struct access_params params = { 0 };
+    assert_true(access_allowed_at(&params, true, &why));
+    assert_false(access_allowed_at(&params, false, &why));
+    assert_non_null(strstr(why, "--open-viewers"));
+    params.tokens_path = "tokens";
+    assert_false(access_allowed_at(&params, false, &why));
+    params.tls_cert_path = "cert";
+    assert_false(access_allowed_at(&params, true, &why)); /* half of TLS */
+    params.tls_key_path = "key";
+    assert_true(access_allowed_at(&params, false, &why));
+    params.tokens_path = NULL;
+    assert_false(access_allowed_at(&params, false, &why));
+    params.open_viewers = true;
+    assert_true(access_allowed_at(&params, false, &why));
+    params = (struct access_params){ .behind_proxy = true };
+    assert_false(access_allowed_at(&params, true, &why));
+    params.tokens_path = "tokens";
+    assert_false(access_allowed_at(&params, true, &why)); /* by which name? */
+    params.host_count = 1;
+    assert_true(access_allowed_at(&params, true, &why));
+    assert_false(access_allowed_at(&params, false, &why)); /* what comes from the proxy would go in the clear */
+}
+
+static void hosts_are_names_without_ports(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *host, *name;
+    } good[] = { { "plant.example", "plant.example" }, { "Plant.Example:8443", "plant.example" }, { "plant.example.", "plant.example" },
+                 { "127.0.0.1:80", "127.0.0.1" },      { "[::1]", "::1" },                        { "[FD00::2]:443", "fd00::2" } };
+    static const char *const bad[] = { "",    ":80",      "[::1",  "[::1]x", "a b",     "plant.example:80x", "user@plant.example",
+                                       "a/b", "a:80:90", "[]:80", "\xc3\xa9", "a,b.example" };
+    char name[64];
+    for (size_t i = 0; i < sizeof(good) / sizeof(good[0]); i++) {
+        assert_true(access_host_name(good[i].host, name, sizeof(name)));
+        assert_string_equal(name, good[i].name);
+    }
+    for (size_t i = 0; i < sizeof(bad) / sizeof(bad[0]); i++)
+        if (access_host_name(bad[i], name, sizeof(name)))
+            fail_msg("'%s' is taken for the name '%s'", bad[i], name);
+    assert_false(access_host_name("plant.example", name, 13));
+    assert_true(access_name_is_local("localhost") && access_name_is_local("127.3.2.1") && access_name_is_local("::1"));
+    assert_false(access_name_is_local("127.evil.example") || access_name_is_local("localhost.evil.example") || access_name_is_local("::2"));
+}
+
+static void pages_of_other_hosts_may_not(void **state)
+{
+    (void)state;
+    struct access_params params = { .origins = { "https://portal.example" }, .origin_count = 1 };
+    assert_true(access_origin(&params, "", "plant.example", true)); /* no browser */
+    assert_true(access_origin(&params, "http://plant.example:8080", "plant.example:8080", false));
+    assert_true(access_origin(&params, "https://plant.example", "plant.example", true));
+    assert_true(access_origin(&params, "https://portal.example", "plant.example", true));
+    assert_false(access_origin(&params, "http://plant.example", "plant.example", true)); /* a page that anyone on the line may change */
+    assert_false(access_origin(&params, "http://plant.example:81", "plant.example", false));
+    assert_false(access_origin(&params, "https://portal.example.evil.example", "plant.example", false));
+    assert_false(access_origin(&params, "null", "plant.example", false));
+    assert_false(access_origin(&params, "plant.example", "plant.example", false));
+}
+
+static void lists_in_headers(void **state)
+{
+    (void)state;
+    char out[64] = "before";
+    assert_true(access_list_has("chat, plantcast.v1", "plantcast.v1") && access_list_has("plantcast.v1,x", "plantcast.v1"));
+    assert_false(access_list_has("plantcast.v10", "plantcast.v1") || access_list_has("xplantcast.v1", "plantcast.v1") || access_list_has("", "x"));
+    assert_true(access_list_rest("plantcast.v1, Authorization-Bearer.pc_1", "Authorization-Bearer.", out, sizeof(out)));
+    assert_string_equal(out, "pc_1");
+    assert_false(access_list_rest("plantcast.v1, Authorization-Bearer.", "Authorization-Bearer.", out, sizeof(out)));
+    assert_false(access_list_rest("Authorization-Bearer.12345", "Authorization-Bearer.", out, 5));
+    assert_true(access_forwarded("10.0.0.1, 203.0.113.7", out, sizeof(out)));
+    assert_string_equal(out, "203.0.113.7");
+    assert_true(access_forwarded("203.0.113.7:1234", out, sizeof(out)) && !strcmp(out, "203.0.113.7"));
+    assert_true(access_forwarded("unknown, [2001:db8::1]:99", out, sizeof(out)) && !strcmp(out, "2001:db8::1"));
+    assert_true(access_forwarded("2001:db8::1", out, sizeof(out)) && !strcmp(out, "2001:db8::1"));
+    assert_false(access_forwarded("203.0.113.7, unknown", out, sizeof(out))); /* the last word is the proxy's own */
+    assert_false(access_forwarded("", out, sizeof(out)));
+}
+
+static void tokens_in_queries_are_known_by_name(void **state)
+{
+    (void)state;
+    assert_true(access_argument_is_token("token=abc") && access_argument_is_token("Access_Token=abc") && access_argument_is_token("token"));
+    assert_false(access_argument_is_token("tokens=abc") || access_argument_is_token("width=5") || access_argument_is_token("=token"));
+}
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(each_message_asks_for_its_role),
+        cmocka_unit_test(what_others_see_takes_an_operator),
+        cmocka_unit_test(how_the_field_is_computed_takes_an_engineer),
+        cmocka_unit_test(where_a_daemon_may_listen),
+        cmocka_unit_test(hosts_are_names_without_ports),
+        cmocka_unit_test(pages_of_other_hosts_may_not),
+        cmocka_unit_test(lists_in_headers),
+        cmocka_unit_test(tokens_in_queries_are_known_by_name),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,181 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* How much clients may have: limits by name, what addresses have, and whether drawing has room for one more. */
+#include "net/admission.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "net/peers.h"
+
+static struct quotas quotas;
+
+static int set_up(void **state)
+{
+    (void)state;
+    quotas = quotas_default();
+    return 0;
+}
+
+static void limits_are_set_by_name_and_within_range(void **state)
+{
+    (void)state;
+    assert_true(quotas_parse(&quotas, "sessions=7"));
+    assert_int_equal(quotas.at[QUOTA_SESSIONS], 7);
+    assert_true(quotas.given[QUOTA_SESSIONS] && !quotas.given[QUOTA_PIXELS]);
+    static const char *const bad[] = { "sessions", "sessions=", "sessions=x", "sessions=7x", "sessions=0", "sessions=-1", "session=7", "=7",
+                                       "sessions=99999999999999999999", "message-bytes=65537" };
+    for (size_t i = 0; i < sizeof(bad) / sizeof(bad[0]); i++)
+        if (quotas_parse(&quotas, bad[i]))
+            fail_msg("%s is taken", bad[i]);
+    assert_int_equal(quotas.at[QUOTA_SESSIONS], 7);
+}
+
+/* --- addresses ------------------------------------------------------------------------------------------------------------------- */
+
+static void an_address_is_one_however_it_is_written(void **state)
+{
+    (void)state;
+    struct peers *peers = peers_create(&quotas);
+    struct peer *four = peers_ref(peers, "203.0.113.7"), *mapped = peers_ref(peers, "::ffff:203.0.113.7");
+    struct peer *six = peers_ref(peers, "2001:db8:1:2::1"), *near_it = peers_ref(peers, "2001:db8:1:2:ffff::9"), *far_from_it = peers_ref(peers, "2001:db8:1:3::1");
+    assert_true(four == mapped && six == near_it && six != far_from_it && six != four);
+    assert_int_equal(peers_count(peers), 3);
+    struct peer *local = peers_ref(peers, "127.0.0.1"), *local6 = peers_ref(peers, "::1"), *none = peers_ref(peers, "nonsense");
+    assert_true(local->local && local6->local && !four->local && !none->local);
+    struct peer *all[] = { four, mapped, six, near_it, far_from_it, local, local6, none };
+    for (size_t i = 0; i < sizeof(all) / sizeof(all[0]); i++)
+        peers_unref(peers, &all[i]);
+    assert_int_equal(peers_count(peers), 0);
+    peers_destroy(&peers);
+}
+
+static void an_address_has_its_limits_and_this_machine_only_those_set(void **state)
+{
+    (void)state;
+    struct peers *peers = peers_create(&quotas);
+    struct peer *peer = peers_ref(peers, "203.0.113.7"), *local = peers_ref(peers, "127.0.0.1");
+    peer->connections = local->connections = (int)quotas.at[QUOTA_ADDRESS_CONNECTIONS];
+    peer->sessions = local->sessions = (int)quotas.at[QUOTA_ADDRESS_SESSIONS];
+    assert_false(peers_may_connect(peers, peer) || peers_may_stream(peers, peer));
+    assert_true(peers_may_connect(peers, local) && peers_may_stream(peers, local));
+    peer->connections--;
+    assert_true(peers_may_connect(peers, peer));
+    assert_true(quotas_parse(&quotas, "address-sessions=2"));
+    assert_false(peers_may_stream(peers, local));
+    peers_unref(peers, &peer);
+    peers_unref(peers, &local);
+    peers_destroy(&peers);
+}
+
+static void messages_of_an_address_are_counted_together(void **state)
+{
+    (void)state;
+    int64_t now_ns = 1000 * NS_PER_S;
+    quotas_parse(&quotas, "address-messages=10");
+    struct peers *peers = peers_create(&quotas);
+    struct peer *peer = peers_ref(peers, "203.0.113.7");
+    for (int i = 0; i < 10; i++)
+        assert_true(peers_count_message(peers, peer, now_ns));
+    assert_false(peers_count_message(peers, peer, now_ns + NS_PER_S / 2));
+    assert_true(peers_count_message(peers, peer, now_ns + NS_PER_S));
+    peers_unref(peers, &peer);
+    peers_destroy(&peers);
+}
+
+/* --- room ------------------------------------------------------------------------------------------------------------------------ */
+
+/* A second in which `moving` sessions get `fps` pictures each that take cost_ms to draw, and readings wait data_wait_ms. */
+static void a_second(struct admission *admission, int moving, int fps, int cost_ms, int data_wait_ms)
+{
+    static uint64_t content;
+    for (int i = 0; i < moving * fps + (data_wait_ms > 0); i++) {
+        struct frame *frame = frame_create(16, 16);
+        frame->view.tier = TIER_MOVING;
+        frame->render_ns = cost_ms * NS_PER_MS;
+        frame->content = ++content;
+        struct picture picture = { .packet = packet_create(frame, WIRE_CODEC_JPEG, true, "jpeg", 4), .wish.urgency = URGENCY_INPUT };
+        if (i == moving * fps) {
+            picture.wish.urgency = URGENCY_DATA;
+            picture.wait_ns = data_wait_ms * NS_PER_MS;
+        }
+        admission_on_picture(admission, &picture);
+        admission_on_picture(admission, &picture); /* of another who shares it */
+        packet_unref(&picture.packet);
+        frame_unref(&frame);
+    }
+    admission->now.moving /= 2;
+    admission_on_tick(admission, admission->begin_ns + NS_PER_S);
+}
+
+static void seconds(struct admission *admission, int moving, int fps, int cost_ms, int data_wait_ms)
+{
+    for (int i = 0; i < ADMISSION_WINDOWS; i++)
+        a_second(admission, moving, fps, cost_ms, data_wait_ms);
+}
+
+static void who_would_slow_the_others_down_too_far_is_refused(void **state)
+{
+    (void)state;
+    struct admission admission = { .quotas = &quotas };
+    assert_null(admission_refuses(&admission, 1000, 0));
+    seconds(&admission, 4, 6, 40, 0); /* 4 at 6 frames/s: a fifth would leave 4.8 */
+    assert_int_equal(admission_busy_percent(&admission), 96);
+    assert_non_null(admission_refuses(&admission, 1000, 4));
+    seconds(&admission, 4, 7, 34, 0); /* 5.6 */
+    assert_null(admission_refuses(&admission, 1000, 4));
+    a_second(&admission, 4, 1, 40, 0); /* a quiet second */
+    assert_null(admission_refuses(&admission, 1000, 4));
+}
+
+static void a_busy_second_is_no_reason(void **state)
+{
+    (void)state;
+    struct admission admission = { .quotas = &quotas };
+    for (int i = 0; i < ADMISSION_WINDOWS - 1; i++)
+        a_second(&admission, 2, 1, 490, 2000);
+    assert_null(admission_refuses(&admission, 1000, 2));
+    a_second(&admission, 2, 1, 490, 2000);
+    assert_non_null(admission_refuses(&admission, 1000, 2));
+}
+
+static void readings_that_are_drawn_too_late_are_a_reason(void **state)
+{
+    (void)state;
+    struct admission admission = { .quotas = &quotas };
+    seconds(&admission, 1, 30, 30, 900);
+    assert_null(admission_refuses(&admission, 1000, 1));
+    seconds(&admission, 1, 30, 30, 1100);
+    assert_non_null(admission_refuses(&admission, 1000, 1));
+}
+
+static void pixels_of_all_views_have_a_limit(void **state)
+{
+    (void)state;
+    struct admission admission = { .quotas = &quotas };
+    quotas_parse(&quotas, "pixels=1000000");
+    admission.pixels = 900000;
+    assert_null(admission_refuses(&admission, 100000, 0));
+    assert_non_null(admission_refuses(&admission, 100001, 0));
+}
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+#define TEST(name) cmocka_unit_test_setup(name, set_up)
+    const struct CMUnitTest tests[] = {
+        TEST(limits_are_set_by_name_and_within_range),
+        TEST(an_address_is_one_however_it_is_written),
+        TEST(an_address_has_its_limits_and_this_machine_only_those_set),
+        TEST(messages_of_an_address_are_counted_together),
+        TEST(who_would_slow_the_others_down_too_far_is_refused),
+        TEST(a_busy_second_is_no_reason),
+        TEST(readings_that_are_drawn_too_late_are_a_reason),
+        TEST(pixels_of_all_views_have_a_limit),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,361 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The first message of a session: whom its token stands for, the view it comes back to, and whether there is room. */
+#include "net/session.h"
+
+#include <jansson.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include <cmocka.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "tests/support/small_scene.h"
+#include "tests/support/temp.h"
+
+#define SIZE "\"width\":640,\"height\":360,\"codecs\":[\"jpeg\"]"
+#define HELLO "{\"type\":\"hello\"," SIZE "}"
+
+struct fixture {
+    struct session_world world;
+    struct quotas quotas;
+    struct admission admission;
+    struct log *log;
+    struct tokens *tokens;
+    char *folder, *path;
+    int64_t now_ns;
+    uint64_t next_id;
+};
+
+static void write_tokens(struct fixture *f, bool with_bob)
+{
+    struct text text = { 0 };
+    struct token_holder alice = { .role = ROLE_ENGINEER, .name = "alice", .until_utc_ns = INT64_MAX };
+    struct token_holder bob = { .role = ROLE_VIEWER, .name = "bob", .until_utc_ns = INT64_MAX };
+    tokens_hash("pc_alice", alice.hash);
+    tokens_hash("pc_bob", bob.hash);
+    tokens_print_line(&text, &alice);
+    if (with_bob)
+        tokens_print_line(&text, &bob);
+    assert_int_equal(text_write_file(f->path, text.at, text.length), 0);
+    assert_int_equal(chmod(f->path, 0600), 0);
+    text_finish(&text);
+}
+
+static int set_up(void **state)
+{
+    struct fixture *f = mem_new(sizeof(*f));
+    f->folder = temp_folder_create();
+    f->path = temp_path(f->folder, "tokens");
+    f->log = log_create(LOG_ERROR);
+    write_tokens(f, true);
+    f->tokens = tokens_create(f->log, f->path);
+    assert_non_null(f->tokens);
+    f->quotas = quotas_default();
+    f->admission.quotas = &f->quotas;
+    f->now_ns = 1000 * NS_PER_S;
+    f->world = (struct session_world){ .plant = small_scene()->plant,
+                                       .scene = small_scene(),
+                                       .snapshot = snapshot_create(small_scene()->plant->tag_count),
+                                       .baselines = baselines_create(),
+                                       .links_up = (const bool[]){ true },
+                                       .version = "1.2.3",
+                                       .quotas = &f->quotas,
+                                       .tokens = f->tokens,
+                                       .resumes = resumes_create(),
+                                       .admission = &f->admission };
+    *state = f;
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    struct fixture *f = *state;
+    struct snapshot *snapshot = (struct snapshot *)f->world.snapshot;
+    assert_int_equal(f->admission.pixels, 0);
+    snapshot_destroy(&snapshot);
+    baselines_destroy(&f->world.baselines);
+    resumes_destroy(&f->world.resumes);
+    tokens_destroy(&f->tokens);
+    log_destroy(&f->log);
+    temp_folder_destroy(&f->folder);
+    mem_free(f->path);
+    mem_free(f);
+    return 0;
+}
+
+static void say(struct fixture *f, struct session *session, const char *text)
+{
+    session_on_message(session, text, strlen(text), f->now_ns, f->now_ns);
+}
+
+static struct session *open_session(struct fixture *f, enum role role, const char *text)
+{
+    struct session *session = session_create(&f->world, ++f->next_id, f->now_ns);
+    session->role = role;
+    say(f, session, text);
+    return session;
+}
+
+static void leave(struct fixture *f, struct session **session)
+{
+    session_leave(*session, true, f->now_ns);
+    session_destroy(session);
+}
+
+/* The first text that is due. */
+static json_t *hear(struct fixture *f, struct session *session)
+{
+    struct text text = { 0 };
+    assert_true(session_next_text(session, f->now_ns, f->now_ns, &text));
+    json_t *message = json_loads(text.at, 0, NULL);
+    text_finish(&text);
+    return message;
+}
+
+static void expect_error(struct fixture *f, struct session *session, const char *code, int close_code)
+{
+    json_t *message = hear(f, session);
+    assert_string_equal(json_string_value(json_object_get(message, "type")), "error");
+    assert_string_equal(json_string_value(json_object_get(message, "code")), code);
+    assert_int_equal(json_integer_value(json_object_get(message, "retry_after_s")) > 0, close_code == 1013);
+    assert_int_equal(session->close_code, close_code);
+    json_decref(message);
+}
+
+static void expect_welcome(struct fixture *f, struct session *session, const char *role, bool resumed)
+{
+    json_t *message = hear(f, session);
+    assert_string_equal(json_string_value(json_object_get(message, "type")), "welcome");
+    assert_string_equal(json_string_value(json_object_get(message, "role")), role);
+    assert_int_equal(strlen(json_string_value(json_object_get(message, "resume"))), RESUME_CHARS);
+    assert_int_equal(json_is_true(json_object_get(message, "resumed")), resumed);
+    json_decref(message);
+}
+
+static void who_needs_a_token_is_told_and_sent_away(void **state)
+{
+    struct fixture *f = *state;
+    struct session *none = open_session(f, ROLE_NOBODY, HELLO);
+    expect_error(f, none, "token_needed", 1008);
+    leave(f, &none);
+    struct session *wrong = open_session(f, ROLE_NOBODY, "{\"type\":\"hello\",\"token\":\"pc_mallory\"," SIZE "}");
+    expect_error(f, wrong, "bad_token", 1008);
+    leave(f, &wrong);
+    struct session *local = open_session(f, ROLE_ENGINEER, "{\"type\":\"hello\",\"token\":\"pc_mallory\"," SIZE "}");
+    expect_error(f, local, "bad_token", 1008);
+    leave(f, &local);
+    struct session *early = open_session(f, ROLE_NOBODY, "{\"type\":\"pick\",\"seq\":1,\"x\":1,\"y\":1}");
+    expect_error(f, early, "hello_first", 0);
+    leave(f, &early);
+}
+
+static void a_token_stands_for_its_role(void **state)
+{
+    struct fixture *f = *state;
+    struct session *bob = open_session(f, ROLE_NOBODY, "{\"type\":\"hello\",\"token\":\"pc_bob\"," SIZE "}");
+    expect_welcome(f, bob, "viewer", false);
+    say(f, bob, "{\"type\":\"params\",\"seq\":1,\"power\":3}");
+    expect_error(f, bob, "not_allowed", 0);
+    leave(f, &bob);
+    struct session *local = open_session(f, ROLE_ENGINEER, "{\"type\":\"hello\",\"token\":\"pc_bob\"," SIZE "}");
+    expect_welcome(f, local, "viewer", false); /* also where none is needed */
+    leave(f, &local);
+    struct session *open = open_session(f, ROLE_OPEN, HELLO);
+    expect_welcome(f, open, "open", false);
+    leave(f, &open);
+    struct session *pushy = open_session(f, ROLE_NOBODY, "{\"type\":\"hello\",\"token\":\"pc_bob\"," SIZE ",\"params\":{\"seq\":1,\"power\":3}}");
+    expect_error(f, pushy, "not_allowed", 0);
+    leave(f, &pushy);
+}
+
+static void a_revoked_token_ends_its_sessions_and_no_others(void **state)
+{
+    struct fixture *f = *state;
+    struct session *bob = open_session(f, ROLE_NOBODY, "{\"type\":\"hello\",\"token\":\"pc_bob\"," SIZE "}");
+    struct session *alice = open_session(f, ROLE_NOBODY, "{\"type\":\"hello\",\"token\":\"pc_alice\"," SIZE "}");
+    struct session *local = open_session(f, ROLE_ENGINEER, HELLO);
+    write_tokens(f, false);
+    tokens_look(f->tokens);
+    assert_true(tokens_look(f->tokens));
+    session_check_token(bob, f->now_ns);
+    session_check_token(alice, f->now_ns);
+    session_check_token(local, f->now_ns);
+    assert_int_equal(bob->close_code, 1008);
+    assert_int_equal(alice->close_code | local->close_code, 0);
+    leave(f, &bob);
+    leave(f, &alice);
+    leave(f, &local);
+}
+
+#define VIEW \
+    "{\"type\":\"hello\"," SIZE ",\"pixel_ratio\":2,\"camera\":{\"seq\":4,\"eye\":[7,8,9],\"target\":[0,0,1]}," \
+    "\"params\":{\"seq\":5,\"group\":\"pressure\",\"ramp_interval\":2}}"
+
+/* "" where there is no more after `extra`. */
+static void come_back(struct fixture *f, enum role role, const char *secret, const char *extra, struct session **out)
+{
+    char text[400];
+    snprintf(text, sizeof(text), "{\"type\":\"hello\",\"resume\":\"%s\"%s}", secret, extra);
+    *out = open_session(f, role, text);
+}
+
+static void expect_view_of_before(const struct session *session)
+{
+    assert_int_equal(session->view.width_px, 640);
+    assert_int_equal(session->view.field.group, 1);
+    assert_true(session->view.camera.eye_m[1] == 8 && session->view.ramp_interval == 2 && session->pixel_ratio == 2);
+    assert_int_equal(session->view.camera_seq | session->view.params_seq, 0);
+    assert_int_equal(session->codec, WIRE_CODEC_JPEG);
+}
+
+static void who_comes_back_in_time_has_its_view(void **state)
+{
+    struct fixture *f = *state;
+    char secret[RESUME_CHARS + 1];
+    struct session *first = open_session(f, ROLE_ENGINEER, VIEW), *again, *late;
+    strcpy(secret, first->resume);
+    leave(f, &first);
+    f->now_ns += RESUME_KEPT_NS - 1;
+    come_back(f, ROLE_ENGINEER, secret, "", &again);
+    expect_welcome(f, again, "engineer", true);
+    expect_view_of_before(again);
+    assert_string_not_equal(again->resume, secret); /* each is good for one return */
+    come_back(f, ROLE_ENGINEER, secret, "," SIZE, &late);
+    expect_welcome(f, late, "engineer", false);
+    assert_int_equal(late->view.field.group, 0);
+    leave(f, &late);
+    strcpy(secret, again->resume);
+    leave(f, &again);
+    f->now_ns += RESUME_KEPT_NS;
+    come_back(f, ROLE_ENGINEER, secret, "", &late);
+    expect_error(f, late, "bad_field", 0);
+    say(f, late, HELLO); /* it may say so */
+    expect_welcome(f, late, "engineer", false);
+    leave(f, &late);
+}
+
+static void what_is_said_comes_on_top_of_the_view_of_before(void **state)
+{
+    struct fixture *f = *state;
+    struct session *first = open_session(f, ROLE_ENGINEER, VIEW), *again;
+    char secret[RESUME_CHARS + 1];
+    strcpy(secret, first->resume);
+    leave(f, &first);
+    come_back(f, ROLE_ENGINEER, secret, ",\"width\":200,\"height\":100,\"codecs\":[\"png\"],\"params\":{\"seq\":1,\"ramp_interval\":4}", &again);
+    expect_welcome(f, again, "engineer", true);
+    assert_true(again->view.width_px == 200 && again->view.height_px == 100 && again->view.ramp_interval == 4);
+    assert_true(again->view.field.group == 1 && again->view.camera.eye_m[0] == 7 && again->codec == WIRE_CODEC_PNG);
+    leave(f, &again);
+}
+
+static void a_connection_that_only_seems_alive_gives_way(void **state)
+{
+    struct fixture *f = *state;
+    struct session *first = open_session(f, ROLE_ENGINEER, VIEW), *again;
+    come_back(f, ROLE_ENGINEER, first->resume, "", &again);
+    expect_welcome(f, again, "engineer", true);
+    expect_view_of_before(again);
+    assert_int_equal(first->close_code, 1000);
+    leave(f, &first);
+    leave(f, &again);
+}
+
+static void a_view_belongs_to_a_token(void **state)
+{
+    struct fixture *f = *state;
+    struct session *alice = open_session(f, ROLE_NOBODY, "{\"type\":\"hello\",\"token\":\"pc_alice\"," SIZE "}"), *bob, *again;
+    char secret[RESUME_CHARS + 1];
+    strcpy(secret, alice->resume);
+    leave(f, &alice);
+    come_back(f, ROLE_NOBODY, secret, ",\"token\":\"pc_bob\"," SIZE, &bob);
+    expect_welcome(f, bob, "viewer", false);
+    come_back(f, ROLE_NOBODY, secret, ",\"token\":\"pc_alice\"", &again);
+    expect_welcome(f, again, "engineer", true);
+    leave(f, &bob);
+    leave(f, &again);
+}
+
+static void of_many_who_left_the_newest_are_kept(void **state)
+{
+    struct fixture *f = *state;
+    char first[RESUME_CHARS + 1], last[RESUME_CHARS + 1];
+    for (int i = 0; i <= RESUME_MAX_KEPT; i++) {
+        struct session *session = open_session(f, ROLE_ENGINEER, HELLO);
+        strcpy(i == 0 ? first : last, session->resume);
+        leave(f, &session);
+    }
+    struct session *forgotten, *kept;
+    come_back(f, ROLE_ENGINEER, first, "", &forgotten);
+    come_back(f, ROLE_ENGINEER, last, "", &kept);
+    expect_error(f, forgotten, "bad_field", 0);
+    expect_welcome(f, kept, "engineer", true);
+    leave(f, &forgotten);
+    leave(f, &kept);
+}
+
+static void without_room_a_session_is_told_when_to_come_again(void **state)
+{
+    struct fixture *f = *state;
+    quotas_parse(&f->quotas, "pixels=300000");
+    struct session *first = open_session(f, ROLE_ENGINEER, HELLO), *second = open_session(f, ROLE_ENGINEER, HELLO);
+    expect_welcome(f, first, "engineer", false);
+    expect_error(f, second, "full", 1013);
+    assert_false(second->hello);
+    say(f, first, "{\"type\":\"resize\",\"width\":1000,\"height\":1000}");
+    expect_error(f, first, "limit", 0);
+    assert_int_equal(first->view.width_px, 640);
+    say(f, first, "{\"type\":\"resize\",\"width\":500,\"height\":500}");
+    assert_int_equal(f->admission.pixels, 250000);
+    leave(f, &first);
+    leave(f, &second);
+}
+
+static void a_view_has_its_own_limit(void **state)
+{
+    struct fixture *f = *state;
+    quotas_parse(&f->quotas, "session-pixels=100000");
+    struct session *session = open_session(f, ROLE_ENGINEER, HELLO);
+    expect_error(f, session, "limit", 0);
+    say(f, session, "{\"type\":\"hello\",\"width\":320,\"height\":200,\"codecs\":[\"jpeg\"]}");
+    expect_welcome(f, session, "engineer", false);
+    leave(f, &session);
+}
+
+static void who_does_not_say_hello_is_sent_away(void **state)
+{
+    struct fixture *f = *state;
+    struct session *session = open_session(f, ROLE_ENGINEER, "{\"type\":\"ping\",\"t\":1}"), *other = open_session(f, ROLE_ENGINEER, HELLO);
+    f->now_ns += 10 * NS_PER_S - 1;
+    session_on_tick(session, f->now_ns);
+    assert_int_equal(session->close_code, 0);
+    f->now_ns++;
+    session_on_tick(session, f->now_ns);
+    session_on_tick(other, f->now_ns);
+    assert_int_equal(session->close_code, 1008);
+    assert_int_equal(other->close_code, 0);
+    leave(f, &session);
+    leave(f, &other);
+}
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+#define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
+    const struct CMUnitTest tests[] = {
+        TEST(who_needs_a_token_is_told_and_sent_away),
+        TEST(a_token_stands_for_its_role),
+        TEST(a_revoked_token_ends_its_sessions_and_no_others),
+        TEST(who_comes_back_in_time_has_its_view),
+        TEST(what_is_said_comes_on_top_of_the_view_of_before),
+        TEST(a_connection_that_only_seems_alive_gives_way),
+        TEST(a_view_belongs_to_a_token),
+        TEST(of_many_who_left_the_newest_are_kept),
+        TEST(without_room_a_session_is_told_when_to_come_again),
+        TEST(a_view_has_its_own_limit),
+        TEST(who_does_not_say_hello_is_sent_away),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

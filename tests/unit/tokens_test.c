@@ -1,0 +1,207 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The file of tokens: who is let in, who no longer, and which files let in nobody. */
+#include "net/tokens.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "tests/support/temp.h"
+
+static const int64_t NOW_NS = 1767225600LL * 1000000000; /* 2026-01-01 */
+
+struct fixture {
+    struct log *log;
+    char *folder, *path;
+};
+
+static int set_up(void **state)
+{
+    struct fixture *f = mem_new(sizeof(*f));
+    f->log = log_create(LOG_ERROR);
+    f->folder = temp_folder_create();
+    f->path = temp_path(f->folder, "tokens");
+    *state = f;
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    struct fixture *f = *state;
+    mem_free(f->path);
+    temp_folder_destroy(&f->folder);
+    log_destroy(&f->log);
+    mem_free(f);
+    return 0;
+}
+
+static void add_line(struct text *text, enum role role, const char *name, const char *token, int64_t until_ns)
+{
+    struct token_holder holder = { .role = role, .until_utc_ns = until_ns };
+    snprintf(holder.name, sizeof(holder.name), "%s", name);
+    tokens_hash(token, holder.hash);
+    tokens_print_line(text, &holder);
+}
+
+static void write_file(struct fixture *f, const char *text, mode_t mode)
+{
+    assert_int_equal(text_write_file(f->path, text, strlen(text)), 0);
+    assert_int_equal(chmod(f->path, mode), 0);
+}
+
+static void write_two(struct fixture *f, mode_t mode)
+{
+    struct text text = { 0 };
+    text_add(&text, "# who may look\n\n");
+    add_line(&text, ROLE_VIEWER, "wall-1", "pc_wall", INT64_MAX);
+    add_line(&text, ROLE_ENGINEER, "eve@plant.example", "pc_eve", NOW_NS + NS_PER_S);
+    write_file(f, text.at, mode);
+    text_finish(&text);
+}
+
+static void holders_are_found_by_their_tokens(void **state)
+{
+    struct fixture *f = *state;
+    struct token_holder holder;
+    write_two(f, 0600);
+    struct tokens *tokens = tokens_create(f->log, f->path);
+    assert_non_null(tokens);
+    assert_int_equal(tokens_count(tokens), 2);
+    assert_true(tokens_find(tokens, "pc_wall", NOW_NS, &holder));
+    assert_int_equal(holder.role, ROLE_VIEWER);
+    assert_string_equal(holder.name, "wall-1");
+    assert_false(tokens_find(tokens, "pc_Wall", NOW_NS, &holder));
+    assert_false(tokens_find(tokens, "", NOW_NS, &holder));
+    tokens_destroy(&tokens);
+}
+
+static void time_runs_out(void **state)
+{
+    struct fixture *f = *state;
+    struct token_holder holder;
+    int64_t until_ns;
+    assert_true(tokens_parse_day("2026-01-01", &until_ns));
+    assert_int_equal(until_ns, NOW_NS + 24 * 3600 * NS_PER_S);
+    assert_false(tokens_parse_day("2026-02-30", &until_ns) || tokens_parse_day("tomorrow", &until_ns) || tokens_parse_day("2026-01-01x", &until_ns));
+    struct text text = { 0 };
+    add_line(&text, ROLE_OPERATOR, "guest", "pc_guest", NOW_NS + 24 * 3600 * NS_PER_S);
+    assert_non_null(strstr(text.at, " until 2026-01-01\n"));
+    write_file(f, text.at, 0640);
+    text_finish(&text);
+    struct tokens *tokens = tokens_create(f->log, f->path);
+    assert_true(tokens_find(tokens, "pc_guest", NOW_NS, &holder));
+    assert_int_equal(tokens_role(tokens, &holder, NOW_NS), ROLE_OPERATOR);
+    assert_int_equal(tokens_role(tokens, &holder, NOW_NS + 24 * 3600 * NS_PER_S), ROLE_NOBODY);
+    assert_false(tokens_find(tokens, "pc_guest", NOW_NS + 24 * 3600 * NS_PER_S, &holder));
+    tokens_destroy(&tokens);
+}
+
+static void files_that_others_may_touch_let_in_nobody(void **state)
+{
+    struct fixture *f = *state;
+    static const mode_t bad[] = { 0644, 0660, 0602, 0604 };
+    for (size_t i = 0; i < sizeof(bad) / sizeof(bad[0]); i++) {
+        write_two(f, bad[i]);
+        assert_null(tokens_create(f->log, f->path));
+    }
+    unlink(f->path);
+    assert_null(tokens_create(f->log, f->path));
+    assert_null(tokens_create(f->log, f->folder));
+}
+
+static void wrong_lines_let_in_nobody_and_leave_the_others(void **state)
+{
+    struct fixture *f = *state;
+    static const char *const bad[] = { "king bob",
+                                       "viewer bob",
+                                       "viewer bob 1234",
+                                       "open bob 0000000000000000000000000000000000000000000000000000000000000000",
+                                       "viewer b/b 0000000000000000000000000000000000000000000000000000000000000000",
+                                       "viewer bob 000000000000000000000000000000000000000000000000000000000000000g",
+                                       "viewer bob 0000000000000000000000000000000000000000000000000000000000000000 until",
+                                       "viewer bob 0000000000000000000000000000000000000000000000000000000000000000 until never",
+                                       "viewer bob 0000000000000000000000000000000000000000000000000000000000000000 until 2026-01-01 x" };
+    struct text text = { 0 };
+    struct token_holder holder;
+    const char *why;
+    for (size_t i = 0; i < sizeof(bad) / sizeof(bad[0]); i++) {
+        assert_int_equal(tokens_parse_line(bad[i], &holder, &why), -1);
+        text_add(&text, "%s\n", bad[i]);
+    }
+    assert_int_equal(tokens_parse_line("  # nothing", &holder, &why), 0);
+    add_line(&text, ROLE_OPERATOR, "good", "pc_good", INT64_MAX);
+    write_file(f, text.at, 0600);
+    text_finish(&text);
+    struct tokens *tokens = tokens_create(f->log, f->path);
+    assert_int_equal(tokens_count(tokens), 1);
+    assert_true(tokens_find(tokens, "pc_good", NOW_NS, &holder));
+    tokens_destroy(&tokens);
+}
+
+/* Twice the same, and not what was read. */
+static bool look_until_read(struct tokens *tokens)
+{
+    bool first = tokens_look(tokens);
+    return tokens_look(tokens) && !first;
+}
+
+static void a_changed_file_is_read_and_revokes(void **state)
+{
+    struct fixture *f = *state;
+    struct token_holder wall, eve;
+    struct text text = { 0 };
+    write_two(f, 0600);
+    struct tokens *tokens = tokens_create(f->log, f->path);
+    assert_true(tokens_find(tokens, "pc_wall", NOW_NS, &wall) && tokens_find(tokens, "pc_eve", NOW_NS, &eve));
+    assert_false(tokens_look(tokens) || tokens_look(tokens));
+    add_line(&text, ROLE_OPERATOR, "eve", "pc_eve", INT64_MAX);
+    write_file(f, text.at, 0600);
+    text_finish(&text);
+    assert_true(look_until_read(tokens));
+    assert_int_equal(tokens_role(tokens, &wall, NOW_NS), ROLE_NOBODY);
+    assert_int_equal(tokens_role(tokens, &eve, NOW_NS), ROLE_OPERATOR);
+    chmod(f->path, 0666);
+    assert_true(look_until_read(tokens));
+    assert_int_equal(tokens_role(tokens, &eve, NOW_NS), ROLE_NOBODY);
+    chmod(f->path, 0600);
+    assert_true(look_until_read(tokens));
+    assert_int_equal(tokens_role(tokens, &eve, NOW_NS), ROLE_OPERATOR);
+    unlink(f->path);
+    assert_true(look_until_read(tokens));
+    assert_int_equal(tokens_role(tokens, &eve, NOW_NS), ROLE_NOBODY);
+    tokens_destroy(&tokens);
+}
+
+static void made_tokens_differ_and_hash_as_others_do(void **state)
+{
+    (void)state;
+    char a[TOKEN_MAX_CHARS + 1], b[TOKEN_MAX_CHARS + 1];
+    static const uint8_t abc[] = { 0xba, 0x78, 0x16, 0xbf, 0x8f, 0x01, 0xcf, 0xea }; /* FIPS 180-2, appendix B.1 */
+    uint8_t hash[TOKEN_HASH_BYTES];
+    assert_true(tokens_make(a) && tokens_make(b));
+    assert_int_equal(strlen(a), 3 + 64);
+    assert_string_not_equal(a, b);
+    tokens_hash("abc", hash);
+    assert_memory_equal(hash, abc, sizeof(abc));
+}
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+#define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
+    const struct CMUnitTest tests[] = {
+        TEST(holders_are_found_by_their_tokens),
+        TEST(time_runs_out),
+        TEST(files_that_others_may_touch_let_in_nobody),
+        TEST(wrong_lines_let_in_nobody_and_leave_the_others),
+        TEST(a_changed_file_is_read_and_revokes),
+        TEST(made_tokens_differ_and_hash_as_others_do),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
