@@ -42,6 +42,7 @@ static bool worker_start(struct worker *worker)
         .uid = -1,
         .pt_serv_buf_size = 64 * 1024,
     };
+    viewer_prepare_context(worker->viewers[0], &info);
     worker->context = lws_create_context(&info);
     if (worker->context && pthread_create(&worker->thread, NULL, worker_main, worker) == 0)
         return true;

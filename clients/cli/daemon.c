@@ -3,27 +3,98 @@
 #include "daemon.h"
 
 #include <errno.h>
-#include <libwebsockets.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "base/mem.h"
 #include "commands.h"
+#include "net/message.h"
 
 enum { MAX_BODY_BYTES = 256 * 1024 * 1024, RECEIVE_BYTES = 16 * 1024 };
+
+static char authorization[TOKEN_MAX_CHARS + 16]; /* "": none */
+static const char *ca_path;
+
+static bool read_token(const char *path)
+{
+    size_t count;
+    char *text = text_read_file(path, 4096, &count);
+    size_t n = text ? strcspn(text, " \t\r\n") : 0;
+    bool good = n > 0 && n <= TOKEN_MAX_CHARS;
+    if (good)
+        snprintf(authorization, sizeof(authorization), "Bearer %.*s", (int)n, text);
+    else
+        fprintf(stderr, "plantcast: %s: %s\n", path, text ? "its first line is no token" : strerror(errno));
+    mem_free(text);
+    return good;
+}
+
+/* The value of --NAME VALUE or --NAME=VALUE at *i; NULL: it is another option, or has none. */
+static const char *value_of(const char *name, int argc, char **argv, int *i)
+{
+    size_t n = strlen(name);
+    if (strncmp(argv[*i], name, n) != 0)
+        return NULL;
+    if (argv[*i][n] == '=')
+        return argv[*i] + n + 1;
+    return argv[*i][n] == 0 && *i + 1 < argc ? argv[++*i] : NULL;
+}
+
+bool daemon_take_options(int *argc, char **argv)
+{
+    int kept = 0;
+    for (int i = 0; i < *argc; i++) {
+        const char *token_path = value_of("--token-file", *argc, argv, &i), *ca = token_path ? NULL : value_of("--ca", *argc, argv, &i);
+        if (token_path && !read_token(token_path))
+            return false;
+        if (ca)
+            ca_path = ca;
+        if (!token_path && !ca)
+            argv[kept++] = argv[i];
+    }
+    argv[kept] = NULL;
+    *argc = kept;
+    return true;
+}
 
 bool daemon_url_parse(const char *text, struct daemon_url *url)
 {
     const char *scheme, *host, *path;
     char *copy = mem_strdup(text);
-    bool good = lws_parse_uri(copy, &scheme, &host, &url->port, &path) == 0 && (!strcmp(scheme, "http") || !strcmp(scheme, "ws")) &&
-                host[0] && strlen(host) < sizeof(url->host);
+    bool good = lws_parse_uri(copy, &scheme, &host, &url->port, &path) == 0 && host[0] && strlen(host) < sizeof(url->host);
+    url->tls = good && (!strcmp(scheme, "https") || !strcmp(scheme, "wss"));
+    good = good && (url->tls || !strcmp(scheme, "http") || !strcmp(scheme, "ws"));
     if (good)
         strcpy(url->host, host);
     else
-        fprintf(stderr, "plantcast: '%s' is not http://HOST:PORT/\n", text);
+        fprintf(stderr, "plantcast: '%s' is not http://HOST:PORT/ or https://HOST:PORT/\n", text);
     mem_free(copy);
     return good;
+}
+
+void daemon_prepare_context(const struct daemon_url *url, struct lws_context_creation_info *info)
+{
+    if (!url->tls)
+        return;
+    info->options |= LWS_SERVER_OPTION_DO_SSL_GLOBAL_INIT;
+    info->client_ssl_ca_filepath = ca_path;
+}
+
+void daemon_prepare_connection(const struct daemon_url *url, struct lws_client_connect_info *info)
+{
+    info->address = info->host = url->host;
+    info->port = url->port;
+    info->ssl_connection = url->tls ? LCCSCF_USE_SSL : 0;
+    info->alpn = "http/1.1";
+}
+
+int daemon_add_token(struct lws *wsi, void *in, size_t len)
+{
+    unsigned char **at = in, *end = *at + len;
+    if (!authorization[0])
+        return 0;
+    return lws_add_http_header_by_token(wsi, WSI_TOKEN_HTTP_AUTHORIZATION, (unsigned char *)authorization, (int)strlen(authorization), at,
+                                        end) ? -1 : 0;
 }
 
 struct exchange {
@@ -39,6 +110,7 @@ static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *use
     char buffer[LWS_PRE + RECEIVE_BYTES], *at = buffer + LWS_PRE;
     int room = RECEIVE_BYTES;
     switch (reason) {
+    case LWS_CALLBACK_CLIENT_APPEND_HANDSHAKE_HEADER: return daemon_add_token(wsi, in, len);
     case LWS_CALLBACK_CLIENT_CONNECTION_ERROR:
         snprintf(exchange->why, sizeof(exchange->why), "%s", in ? (const char *)in : "no connection");
         exchange->done = true;
@@ -70,23 +142,22 @@ int daemon_get(const struct daemon_url *url, const char *path, struct text *body
         .timeout_secs = 70,
     };
     lws_set_log_level(0, NULL);
+    daemon_prepare_context(url, &info);
     struct lws_context *context = lws_create_context(&info);
     struct lws_client_connect_info connect = {
         .context = context,
-        .address = url->host,
-        .host = url->host,
-        .port = url->port,
         .path = path,
         .method = "GET",
         .userdata = &exchange,
         .protocol = "http",
     };
+    daemon_prepare_connection(url, &connect);
     if (!context || !lws_client_connect_via_info(&connect))
         exchange.done = true;
     while (!exchange.done)
         lws_service(context, 0);
     if (!exchange.status)
-        fprintf(stderr, "plantcast: http://%s:%d%s: %s\n", url->host, url->port, path, exchange.why[0] ? exchange.why : "no answer");
+        fprintf(stderr, "plantcast: http%s://%s:%d%s: %s\n", url->tls ? "s" : "", url->host, url->port, path, exchange.why[0] ? exchange.why : "no answer");
     if (context)
         lws_context_destroy(context);
     return exchange.status;

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "commands.h"
+#include "daemon.h"
 
 static const struct command {
     const char *name, *help;
@@ -12,6 +13,7 @@ static const struct command {
     { "snapshot", "one picture, from a plant file or from a daemon, as PNG", cmd_snapshot },
     { "probe", "put load on a daemon and print a table of latencies", cmd_probe },
     { "tags", "print the tags of a daemon and their values", cmd_tags },
+    { "token", "make, list and revoke what lets people and programs in", cmd_token },
 };
 enum { COMMANDS = sizeof(commands) / sizeof(commands[0]) };
 
@@ -20,6 +22,10 @@ static void print_usage(FILE *out)
     fputs("usage: plantcast COMMAND ...      (plantcast COMMAND --help tells more)\n\n", out);
     for (int i = 0; i < COMMANDS; i++)
         fprintf(out, "  %-10s %s\n", commands[i].name, commands[i].help);
+    fputs("\nWherever a daemon's URL is given (http:// or https://):\n"
+          "  --token-file FILE   its first line is the token that lets us in (see plantcast token)\n"
+          "  --ca FILE           certificates (PEM) that are trusted beside this machine's own\n",
+          out);
 }
 
 int main(int argc, char **argv)
@@ -32,6 +38,8 @@ int main(int argc, char **argv)
         print_usage(stdout);
         return 0;
     }
+    if (!daemon_take_options(&argc, argv))
+        return 2;
     for (int i = 0; i < COMMANDS; i++)
         if (!strcmp(argv[1], commands[i].name))
             return commands[i].run(argc - 1, argv + 1);

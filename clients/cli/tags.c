@@ -12,7 +12,7 @@ static void print_usage(FILE *out)
 {
     fputs("usage: plantcast tags URL [--json]\n"
           "\n"
-          "Prints the tags of a daemon (http://HOST:PORT/) with value, quality and age.\n",
+          "Prints the tags of a daemon (http://HOST:PORT/, or https:// with --token-file FILE) with value, quality and age.\n",
           out);
 }
 

@@ -235,6 +235,7 @@ static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *use
 {
     struct viewer *viewer = user;
     switch (reason) {
+    case LWS_CALLBACK_CLIENT_APPEND_HANDSHAKE_HEADER: return daemon_add_token(wsi, in, len);
     case LWS_CALLBACK_CLIENT_CONNECTION_ERROR: fail(viewer, in ? (const char *)in : "no connection"); break;
     case LWS_CALLBACK_CLIENT_ESTABLISHED:
         viewer->wsi = wsi;
@@ -269,20 +270,22 @@ struct viewer *viewer_create(const struct viewer_params *params)
     return viewer;
 }
 
+void viewer_prepare_context(const struct viewer *viewer, struct lws_context_creation_info *info)
+{
+    daemon_prepare_context(viewer->params.url, info);
+}
+
 void viewer_connect(struct viewer *viewer, struct lws_context *context)
 {
-    const struct daemon_url *url = viewer->params.url;
     struct lws_client_connect_info connect = {
         .context = context,
-        .address = url->host,
-        .host = url->host,
-        .port = url->port,
         .path = "/stream",
         .protocol = WIRE_SUBPROTOCOL,
         .userdata = viewer,
     };
     viewer->context = context;
     viewer->begin_ns = clock_mono_ns();
+    daemon_prepare_connection(viewer->params.url, &connect);
     if (!lws_client_connect_via_info(&connect))
         fail(viewer, "no connection");
     on_timer(&viewer->timer);

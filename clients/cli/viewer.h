@@ -69,5 +69,6 @@ const struct viewer_result *viewer_result(const struct viewer *viewer);
 void viewer_destroy(struct viewer **viewer); /* after its context; &NULL is fine; leaves NULL */
 
 extern const struct lws_protocols viewer_protocols[];
+void viewer_prepare_context(const struct viewer *viewer, struct lws_context_creation_info *info);
 
 #endif

@@ -1,0 +1,194 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* `plantcast token`: makes, lists and takes back what lets somebody in. The daemon reads the file by itself. */
+#include <errno.h>
+#include <fcntl.h>
+#include <getopt.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "base/text.h"
+#include "commands.h"
+#include "net/names.h"
+#include "net/tokens.h"
+
+enum { MAX_FILE_BYTES = 1024 * 1024 };
+
+static void print_usage(FILE *out)
+{
+    fputs("usage: plantcast token add FILE --role viewer|operator|engineer --name NAME [--until YYYY-MM-DD]\n"
+          "       plantcast token list FILE\n"
+          "       plantcast token revoke FILE NAME\n"
+          "\n"
+          "add makes a token and prints it, once: the file, which it makes if need be, holds only its SHA-256. plantcastd --tokens FILE\n"
+          "sees within 3 seconds what was added or revoked, and closes the sessions of what was revoked.\n"
+          "Under another user than root's or the daemon's, the file must be given to it: chown root:plantcast FILE; chmod 640 FILE\n",
+          out);
+}
+
+static int fail_at(const char *path, const char *why)
+{
+    fprintf(stderr, "plantcast: %s: %s\n", path, why);
+    return 1;
+}
+
+/* NULL: printed. A file that is not there is empty if it may be. */
+static char *read_file(const char *path, bool may_be_new)
+{
+    size_t count;
+    char *text = text_read_file(path, MAX_FILE_BYTES, &count);
+    if (!text && errno == ENOENT && may_be_new)
+        return mem_strdup("");
+    if (!text)
+        fail_at(path, strerror(errno));
+    return text;
+}
+
+/* In one step, with the owner and rights that it had; a new one is its maker's alone. */
+static int write_file(const char *path, const struct text *text)
+{
+    struct stat st;
+    bool old = stat(path, &st) == 0;
+    char *beside = mem_printf("%s.new", path);
+    int fd = open(beside, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0600);
+    bool good = fd >= 0 && (!old || (fchown(fd, st.st_uid, st.st_gid) == 0 && fchmod(fd, st.st_mode & 07777) == 0)) &&
+                write(fd, text->at, text->length) == (ssize_t)text->length && fsync(fd) == 0;
+    if (fd >= 0)
+        good = close(fd) == 0 && good;
+    good = good && rename(beside, path) == 0;
+    int result = good ? 0 : fail_at(path, strerror(errno));
+    mem_free(beside);
+    return result;
+}
+
+static bool has_name(const char *lines, const char *name)
+{
+    struct token_holder holder;
+    const char *why;
+    for (; *lines; lines += strcspn(lines, "\n"), lines += *lines == '\n')
+        if (tokens_parse_line(lines, &holder, &why) == 1 && !strcmp(holder.name, name))
+            return true;
+    return false;
+}
+
+static int add(const char *path, struct token_holder *holder)
+{
+    char token[TOKEN_MAX_CHARS + 1], *old = read_file(path, true);
+    struct text text = { 0 };
+    int result = 1;
+    if (!old)
+        return 1;
+    if (has_name(old, holder->name)) {
+        fail_at(path, "somebody has that name already; revoke it, or take another");
+    } else if (!tokens_make(token)) {
+        fail_at(path, "this machine gives no random numbers");
+    } else {
+        tokens_hash(token, holder->hash);
+        text_add(&text, "%s%s", old, *old && old[strlen(old) - 1] != '\n' ? "\n" : "");
+        tokens_print_line(&text, holder);
+        result = write_file(path, &text);
+    }
+    if (result == 0)
+        puts(token);
+    text_finish(&text);
+    mem_free(old);
+    return result;
+}
+
+static int list(const char *path)
+{
+    char *old = read_file(path, false);
+    int result = old ? 0 : 1, number = 1;
+    for (const char *line = old; line && *line; number++) {
+        struct token_holder holder;
+        const char *why;
+        int found = tokens_parse_line(line, &holder, &why);
+        if (found == 1)
+            printf("%-10s %s%s\n", name_of(names_role, (int)holder.role), holder.name,
+                   holder.until_utc_ns <= clock_utc_ns() ? "  (its time is over)" : "");
+        if (found < 0) {
+            fprintf(stderr, "plantcast: %s:%d: %s\n", path, number, why);
+            result = 1;
+        }
+        line += strcspn(line, "\n");
+        line += *line == '\n';
+    }
+    mem_free(old);
+    return result;
+}
+
+static int take_back(const char *path, const char *name)
+{
+    char *old = read_file(path, false);
+    struct text text = { 0 };
+    int found = 0, result = 1;
+    for (const char *line = old; line && *line;) {
+        struct token_holder holder;
+        const char *why;
+        size_t n = strcspn(line, "\n") + (line[strcspn(line, "\n")] == '\n');
+        bool this_one = tokens_parse_line(line, &holder, &why) == 1 && !strcmp(holder.name, name);
+        found += this_one;
+        if (!this_one)
+            text_add_bytes(&text, line, n);
+        line += n;
+    }
+    if (old && !found)
+        fail_at(path, "nobody has that name");
+    else if (old)
+        result = write_file(path, &text);
+    text_finish(&text);
+    mem_free(old);
+    return result;
+}
+
+static bool take_option(int option, struct token_holder *holder)
+{
+    int role;
+    switch (option) {
+    case 'r':
+        role = name_find(names_role, optarg);
+        holder->role = (enum role)role;
+        return role >= ROLE_VIEWER;
+    case 'n':
+        snprintf(holder->name, sizeof(holder->name), "%s", optarg);
+        return tokens_name_valid(optarg);
+    case 'u': return tokens_parse_day(optarg, &holder->until_utc_ns);
+    default: return false;
+    }
+}
+
+int cmd_token(int argc, char **argv)
+{
+    static const struct option options[] = { { "role", required_argument, NULL, 'r' },
+                                             { "name", required_argument, NULL, 'n' },
+                                             { "until", required_argument, NULL, 'u' },
+                                             { "help", no_argument, NULL, 'h' },
+                                             { NULL, 0, NULL, 0 } };
+    struct token_holder holder = { .role = ROLE_NOBODY, .until_utc_ns = INT64_MAX };
+    for (int option; (option = getopt_long(argc, argv, "", options, NULL)) != -1;) {
+        if (option == 'h') {
+            print_usage(stdout);
+            return 0;
+        }
+        if (!take_option(option, &holder)) {
+            if (option != '?')
+                fprintf(stderr, "plantcast: token: '%s' is not good there\n", optarg);
+            print_usage(stderr);
+            return 2;
+        }
+    }
+    const char *what = argv[optind], *path = what ? argv[optind + 1] : NULL;
+    int count = argc - optind;
+    if (count == 2 && !strcmp(what, "add") && holder.role != ROLE_NOBODY && holder.name[0])
+        return add(path, &holder);
+    if (count == 2 && !strcmp(what, "list"))
+        return list(path);
+    if (count == 3 && !strcmp(what, "revoke"))
+        return take_back(path, argv[optind + 2]);
+    print_usage(stderr);
+    return 2;
+}
