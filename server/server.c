@@ -241,7 +241,8 @@ static bool server_start(struct server *server)
     if (!(server->scene = open_scene(server->log, &server->params, server->plant)))
         return false;
     warn_of_far_sensors(server->log, server->scene);
-    if (!net_port_free(server->log, server->params.address, server->params.port))
+    if (!net_port_free(server->log, server->params.address, server->params.port) ||
+        !net_access_good(server->log, &server->params.access))
         return false;
     server->counters = counters_create();
     server->store = store_create(server->plant);

@@ -174,7 +174,7 @@ int snapshot_offline(struct snapshot_options *options)
         goto end;
     }
     const struct params_world world = { .scene = studio.scene, .baselines = studio.baselines };
-    if (!query_parse(&world, (const char *const *)options->args, options->arg_count, &view, NULL, &error)) {
+    if (!query_parse(&world, ROLE_ENGINEER, (const char *const *)options->args, options->arg_count, &view, NULL, &error)) {
         fprintf(stderr, "plantcast: %s\n", error.text);
         code = 2;
         goto end;

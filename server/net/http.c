@@ -133,7 +133,8 @@ static bool read_args(struct lws *wsi, struct args *args, struct message_error *
 static int answer_error(struct request *request, const struct message_error *error)
 {
     char *text = mem_printf("%s\n", error->text);
-    return answer(request, HTTP_STATUS_BAD_REQUEST, "text/plain; charset=utf-8", text, strlen(text), NULL, NULL);
+    int status = strcmp(error->code, "not_allowed") == 0 ? HTTP_STATUS_FORBIDDEN : HTTP_STATUS_BAD_REQUEST;
+    return answer(request, status, "text/plain; charset=utf-8", text, strlen(text), NULL, NULL);
 }
 
 /* place: x and y of a pick; NULL: none is asked. */
@@ -141,7 +142,7 @@ static bool read_query(struct hub *hub, struct lws *wsi, struct view *view, doub
 {
     const struct params_world world = { .scene = hub->params.scene, .baselines = hub->params.baselines };
     struct args args;
-    return read_args(wsi, &args, error) && query_parse(&world, args.list, args.count, view, place, error);
+    return read_args(wsi, &args, error) && query_parse(&world, visitor_of(wsi)->role, args.list, args.count, view, place, error);
 }
 
 static void await(struct hub *hub, struct request *request)

@@ -308,6 +308,16 @@ static bool open_history(struct net *net)
            (net->hub.recall = recall_create(params->log, params->scene->plant, params->history_folder, wake, net));
 }
 
+bool net_access_good(struct log *log, const struct access_params *access)
+{
+    struct tokens *tokens = access->tokens_path ? tokens_create(log, access->tokens_path) : NULL;
+    struct tls *tls = access->tls_cert_path ? tls_create(log, access->tls_cert_path, access->tls_key_path) : NULL;
+    bool good = (tokens || !access->tokens_path) && (tls || !access->tls_cert_path);
+    tokens_destroy(&tokens);
+    tls_destroy(&tls);
+    return good;
+}
+
 struct net *net_create(const struct net_params *params)
 {
     struct net *net = mem_new(sizeof(*net));

@@ -28,6 +28,8 @@ struct net_params {
 
 /* Whether the port could be bound now; if not, the reason is logged. For before the slow part of starting. */
 bool net_port_free(struct log *log, const char *address, int port);
+/* Whether its tokens and certificate can be used; likewise. */
+bool net_access_good(struct log *log, const struct access_params *access);
 /* Binds the port. NULL on failure, logged. All in params must outlive it. */
 struct net *net_create(const struct net_params *params);
 void net_destroy(struct net **net); /* &NULL is fine; leaves NULL */

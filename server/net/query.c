@@ -219,11 +219,10 @@ static bool add(json_t *o, const char *arg, struct message_error *error)
     return false;
 }
 
-static bool apply(const struct params_world *world, const json_t *o, struct view *view, struct message_error *error)
+static bool apply(const struct params_world *world, enum role role, const json_t *o, struct view *view, struct message_error *error)
 {
     double w = 1280, h = 720;
-    struct params_change change;
-    struct split_change right;
+    struct message asked = { .type = MESSAGE_PARAMS };
     if (!may_number(o, "width", 16, VIEW_MAX_SIDE_PX, &w, NULL, error) || !may_number(o, "height", 16, VIEW_MAX_SIDE_PX, &h, NULL, error))
         return false;
     if (!view_size_valid(w, h)) {
@@ -232,12 +231,12 @@ static bool apply(const struct params_world *world, const json_t *o, struct view
     }
     view_default(world->scene, (int)w, (int)h, view);
     view->tier = TIER_STILL;
-    return query_camera(world->scene, o, view, error) && params_parse(world->scene->plant, o, &change, error) &&
-           split_parse(world->scene->plant, o, &right, error) && params_apply(world, &change, view, error) &&
-           split_apply(world, &right, view, error);
+    return query_camera(world->scene, o, view, error) && params_parse(world->scene->plant, o, &asked.params, error) &&
+           split_parse(world->scene->plant, o, &asked.split, error) && access_message(role, &asked, error) &&
+           params_apply(world, &asked.params, view, error) && split_apply(world, &asked.split, view, error);
 }
 
-bool query_parse(const struct params_world *world, const char *const *args, size_t count, struct view *view, double place[2],
+bool query_parse(const struct params_world *world, enum role role, const char *const *args, size_t count, struct view *view, double place[2],
                  struct message_error *error)
 {
     json_t *o = json_object();
@@ -250,7 +249,7 @@ bool query_parse(const struct params_world *world, const char *const *args, size
     }
     good = good && (!place || (need_number(o, "x", 0, VIEW_MAX_SIDE_PX, &place[0], error) &&
                                need_number(o, "y", 0, VIEW_MAX_SIDE_PX, &place[1], error)));
-    good = good && apply(world, o, view, error);
+    good = good && apply(world, role, o, view, error);
     json_decref(o);
     return good;
 }

@@ -2,10 +2,10 @@
 /* The query of /snapshot.png and /api/v1/pick to a view: the names of the camera and params messages, lists with commas. Pure. */
 #ifndef NET_QUERY_H
 #define NET_QUERY_H
-#include "net/message.h"
+#include "net/access.h"
 
 /* args: `name=value`, decoded. place: NULL, or the `x` and `y` of a pick, which must be there then. False: *error says which is wrong. */
-bool query_parse(const struct params_world *world, const char *const *args, size_t count, struct view *view, double place[2],
+bool query_parse(const struct params_world *world, enum role role, const char *const *args, size_t count, struct view *view, double place[2],
                  struct message_error *error);
 
 #endif

@@ -53,10 +53,14 @@ void session_check_token(struct session *session, int64_t now_utc_ns)
     if (session->holder.role == ROLE_NOBODY)
         return;
     enum role role = session->world->tokens ? tokens_role(session->world->tokens, &session->holder, now_utc_ns) : ROLE_NOBODY;
-    if (role == ROLE_NOBODY)
-        session_close(session, 1008, "this token is no longer let in");
-    else
+    if (role != ROLE_NOBODY) {
         session->role = session->holder.role = role;
+    } else if (!session->close_code) {
+        struct message_error error = { 0 };
+        message_fail(&error, "bad_token", "this token is no longer let in");
+        session_reply_error(session, &error);
+        session_close(session, 1008, "this token is no longer let in");
+    }
 }
 
 /* --- input ---------------------------------------------------------------------------------------------------------------- */

@@ -64,7 +64,7 @@ bool tokens_parse_day(const char *text, int64_t *until_utc_ns)
     struct tm day = { 0 };
     const char *end = strptime(text, "%Y-%m-%d", &day);
     int said = day.tm_mday;
-    if (!end || *end)
+    if (!end || *end || day.tm_year < 1970 - 1900 || day.tm_year > 2200 - 1900)
         return false;
     int64_t begin_s = timegm(&day);
     *until_utc_ns = (begin_s + 24 * 3600) * NS_PER_S;

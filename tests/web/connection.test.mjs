@@ -57,9 +57,9 @@ test('an open socket alone does not shorten the waits; a greeting does', () => {
     sockets[0].fail();
     clock.advance(500);
     sockets[1].accept();
-    sockets[1].fail(1013, 'full: 8 sessions');
+    sockets[1].fail(1001, 'the server goes down');
     assert.equal(waitOf(bench), 1000);
-    assert.equal(connection.reason, 'full: 8 sessions');
+    assert.equal(connection.reason, 'the server goes down');
     clock.advance(1000);
     sockets[2].accept();
     connection.settle();
@@ -114,6 +114,36 @@ test('a server that never opens is given up', () => {
     clock.advance(10001);
     assert.equal(connection.reason, 'the server does not answer');
     assert.ok(sockets[0].closed);
+});
+
+test('a full server is left alone for as long as it asks, or ten seconds', () => {
+    const { clock, sockets, connection } = makeConnection();
+    connection.start();
+    sockets[0].accept();
+    connection.hold(30000);
+    sockets[0].fail(1013, 'full');
+    clock.advance(29999);
+    assert.equal(sockets.length, 1);
+    clock.advance(1);
+    assert.equal(sockets.length, 2);
+    sockets[1].fail(1013);
+    clock.advance(9999);
+    assert.equal(sockets.length, 2);
+    clock.advance(1);
+    assert.equal(sockets.length, 3);
+});
+
+test('who is not let in tries no more, until there is something new to say', () => {
+    const { clock, sockets, connection } = makeConnection();
+    connection.start();
+    sockets[0].accept();
+    connection.bar('a token is needed');
+    assert.ok(sockets[0].closed);
+    assert.deepEqual([connection.state, connection.reason], ['barred', 'a token is needed']);
+    clock.advance(600000);
+    assert.equal(sockets.length, 1);
+    connection.retryNow();
+    assert.equal(sockets.length, 2);
 });
 
 test('nothing is sent while it is not open, and stop is final', () => {

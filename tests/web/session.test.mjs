@@ -119,6 +119,38 @@ test('after a reconnect the same camera and the same parameters are asked for', 
     assert.equal(session.params.ramp_interval, 10);
 });
 
+test('a token is asked for once, said in hello, and the view is asked for again', () => {
+    const { session, sockets, events, connection } = makeSession();
+    connection.start();
+    sockets[0].accept();
+    assert.equal(sockets[0].sent[0].token, undefined);
+    sockets[0].say({ type: 'error', code: 'token_needed', text: 'a token is needed', about: 'hello' });
+    assert.deepEqual([last(events)[0], connection.state], ['denied', 'barred']);
+    session.token = 'pc_1';
+    connection.retryNow();
+    sockets[1].accept();
+    assert.equal(sockets[1].sent[0].token, 'pc_1');
+    sockets[1].say(welcome);
+    assert.deepEqual([session.role, session.welcomed], [welcome.role, true]);
+    sockets[1].fail();
+    connection.retryNow();
+    sockets[2].accept();
+    assert.deepEqual([sockets[2].sent[0].token, sockets[2].sent[0].resume], ['pc_1', welcome.resume]);
+});
+
+test('a full server is asked again when it said, not at once with less', () => {
+    const { sockets, clock, connection } = makeSession();
+    connection.start();
+    sockets[0].accept();
+    sockets[0].say(vector('server/error-full.json'));
+    sockets[0].fail(1013, 'full');
+    assert.equal(sockets[0].sent.length, 1);
+    clock.advance(9999);
+    assert.equal(sockets.length, 1);
+    clock.advance(1);
+    assert.equal(sockets.length, 2);
+});
+
 test('after a reconnect to another plant it looks from that plant\'s home', () => {
     const { session, socket, sockets, clock } = greeted(WANTED);
     socket.fail();

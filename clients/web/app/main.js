@@ -14,6 +14,7 @@ import { Picture } from './picture.js';
 import { Pilot } from './pilot.js';
 import { Place } from './place.js';
 import { Status } from './status.js';
+import { TokenDialog } from './token.js';
 import { Toolbar } from './toolbar.js';
 import { Views } from './views.js';
 import { Viewport } from './viewport.js';
@@ -35,6 +36,7 @@ if (wantedCodec !== 'jpeg')
 const codecs = decoding.codecs.filter((name) => name !== 'auto' || wantedCodec === 'auto');
 const session = new Session({ connection, now: clock.now, wanted: address, codecs });
 
+new TokenDialog({ session });
 const assets = new Assets({ session, selection });
 const picture = new Picture({ session, selection });
 const toolbar = new Toolbar({ session, showParams: (show) => picture.showParams(show) });

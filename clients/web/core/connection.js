@@ -6,7 +6,7 @@ export const FIRST_WAIT_MS = 500, LONGEST_WAIT_MS = 8000, JITTER = 0.25;
 export const PING_MS = 2000;   // a server with nothing to say answers at least these
 export const QUIET_MS = 5000;
 export const DEAD_MS = 12000;
-const OPENING_MS = 10000, ANSWER_MS = 1000;
+const FULL = 1013, FULL_MS = 10000, OPENING_MS = 10000, ANSWER_MS = 1000;
 const CLOSE_REASONS = {
     1001: 'the server went down', 1002: 'this page and the server speak different versions', 1008: 'not allowed',
     1009: 'a message was too long', 1013: 'the server is full', 4000: 'this page was too slow',
@@ -17,11 +17,12 @@ export class Connection {
     // onOpen(), onText(string), onBytes(ArrayBuffer).
     constructor({ url, open, clock, random = Math.random }) {
         Object.assign(this, { url, openSocket: open, clock, random });
-        this.state = 'stopped'; // connecting | open | waiting
+        this.state = 'stopped'; // connecting | open | waiting | barred (until retryNow)
         this.quiet = false;     // open, but nothing was heard for QUIET_MS
         this.reason = '';       // why the last connection ended
         this.tries = 0;         // failed ones since the last good connection
         this.retryAt = null;
+        this.leastWait = 0;     // before the next try, as the server asked
         this.lostAt = null;     // when the last good connection ended
         this.onState = this.onOpen = this.onText = this.onBytes = () => {};
     }
@@ -38,8 +39,20 @@ export class Connection {
 
     // Tries now instead of when the wait is over: the network came back, or somebody asks.
     retryNow() {
-        if (this.state === 'waiting')
+        if (this.state === 'waiting' || this.state === 'barred')
             this.connect();
+    }
+
+    // The server has no room: not before so long.
+    hold(ms) {
+        this.leastWait = ms;
+    }
+
+    // The server does not let us in as we are: no more tries until somebody has something new to say.
+    bar(reason) {
+        this.drop();
+        this.reason = reason;
+        this.become('barred');
     }
 
     // The peer has proved that it speaks with us: the next loss starts with the shortest wait again.
@@ -79,7 +92,11 @@ export class Connection {
         socket.binaryType = 'arraybuffer';
         socket.onopen = () => this.opened();
         socket.onmessage = (event) => this.heard(event.data);
-        socket.onclose = (event) => this.lose(event.reason || CLOSE_REASONS[event.code] || 'the server cannot be reached');
+        socket.onclose = (event) => {
+            if (event.code === FULL)
+                this.leastWait = this.leastWait || FULL_MS;
+            this.lose(event.reason || CLOSE_REASONS[event.code] || 'the server cannot be reached');
+        };
         this.timer = this.clock.setTimeout(() => this.lose('the server does not answer'), OPENING_MS);
         this.become('connecting');
     }
@@ -147,7 +164,9 @@ export class Connection {
         this.reason = reason;
         if (was === 'open')
             this.lostAt = this.lostAt ?? this.clock.now();
-        const wait = Math.min(LONGEST_WAIT_MS, FIRST_WAIT_MS * 2 ** this.tries) * (1 + JITTER * (2 * this.random() - 1));
+        const usual = Math.min(LONGEST_WAIT_MS, FIRST_WAIT_MS * 2 ** this.tries);
+        const wait = Math.max(usual, this.leastWait) * (1 + JITTER * (2 * this.random() - 1));
+        this.leastWait = 0;
         this.tries++;
         this.retryAt = this.clock.now() + wait;
         this.timer = this.clock.setTimeout(() => this.connect(), wait);

@@ -22,13 +22,15 @@ const asAsked = (camera) => (camera.height_m === undefined ? camera : cameraOfMe
 
 export class Session {
     // wanted: { camera or null, params } from the page's address. Events: welcome, params, tags (indices), status, frame (frame),
-    // camera, error (message), ignored (what).
+    // camera, error (message), denied (message: we need a token, or another one), ignored (what).
     constructor({ connection, now, wanted = { camera: null, params: {} }, codecs = ['jpeg', 'png'] }) {
         Object.assign(this, { connection, now, codecs });
         this.listeners = new Map();
         this.model = null;
         this.camera = wanted.camera;
         this.params = { ...wanted.params };
+        this.token = null;       // lets us in, where one is needed
+        this.resume = null;      // secret of our view on the server
         this.confirmed = null;   // what the server last said is in force
         this.size = { width: 640, height: 360 };
         this.visible = true;
@@ -81,13 +83,18 @@ export class Session {
         this.latency.clear();
         this.cameraSeq = this.paramsSeq = 0;
         this.greetedCamera = parts.includes('camera') ? this.camera : null;
-        const message = { type: 'hello', ...this.size, codecs: this.codecs };
+        const message = { type: 'hello', ...this.size, ...this.proofs(), codecs: this.codecs };
         if (this.greetedCamera)
             message.camera = { seq: ++this.cameraSeq, ...cameraMessage(this.greetedCamera) };
         const params = this.carried();
         if (parts.includes('params') && Object.keys(params).length > 0)
             message.params = { seq: ++this.paramsSeq, ...params };
         this.connection.send(message);
+    }
+
+    // Who we are, and whose view was ours: with it comes back what we do not say ourselves.
+    proofs() {
+        return { ...(this.token ? { token: this.token } : {}), ...(this.resume ? { resume: this.resume } : {}) };
     }
 
     // The parameters to ask for again: not those that only are the group's own, which may have been changed there since.
@@ -208,6 +215,8 @@ export class Session {
         const before = this.model;
         this.model = new Model(message);
         this.welcomed = true;
+        this.resume = message.resume ?? null;
+        this.role = message.role ?? null;
         this.codec = message.codec;
         this.connection.settle();
         this.confirmed = this.params = pick(message.view, SAID);
@@ -275,6 +284,15 @@ export class Session {
     }
 
     hearError(message) {
+        if (['token_needed', 'bad_token'].includes(message.code)) {
+            this.connection.bar(message.text);
+            this.emit('denied', message);
+            return;
+        }
+        if (message.code === 'full') {
+            this.connection.hold((message.retry_after_s ?? 10) * 1000);
+            return;
+        }
         if (message.about === 'hello' && !this.welcomed && this.helloParts.length > 0) {
             this.emit('ignored', `our view of before: ${message.text}`); // it is of another plant, or of another version
             this.hello(this.helloParts.slice(0, -1));

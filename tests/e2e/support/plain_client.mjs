@@ -64,9 +64,9 @@ export function readFrame(bytes) {
 }
 
 export class PlainClient {
-    // Resolves once the server has agreed. options: protocol (null: none), origin, host, path, acknowledge (true).
+    // Resolves once the server has agreed. options: protocol (null: none), origin, host, path, headers, acknowledge (true).
     static open(port, options = {}) {
-        const { protocol = 'plantcast.v1', origin = null, host = `127.0.0.1:${port}`, path = '/stream', acknowledge = true } = options;
+        const { protocol = 'plantcast.v1', origin = null, host = `127.0.0.1:${port}`, path = '/stream', acknowledge = true, headers = [] } = options;
         const key = randomBytes(16).toString('base64');
         const client = new PlainClient();
         client.acknowledge = acknowledge;
@@ -74,7 +74,7 @@ export class PlainClient {
             const socket = connect(port, '127.0.0.1', () => socket.write([
                 `GET ${path} HTTP/1.1`, `Host: ${host}`, 'Upgrade: websocket', 'Connection: Upgrade',
                 `Sec-WebSocket-Key: ${key}`, 'Sec-WebSocket-Version: 13', ...(protocol ? [`Sec-WebSocket-Protocol: ${protocol}`] : []),
-                ...(origin ? [`Origin: ${origin}`] : []), '', '',
+                ...(origin ? [`Origin: ${origin}`] : []), ...headers, '', '',
             ].join('\r\n')));
             const accept = createHash('sha1').update(`${key}258EAFA5-E914-47DA-95CA-C5AB0DC85B11`).digest('base64');
             client.socket = socket;

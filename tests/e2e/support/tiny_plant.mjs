@@ -136,7 +136,7 @@ export class TinyPlant {
 
     async startDaemon(...args) {
         this.daemon = new Program('plantcastd', [this.file, '--port', '0', ...args]);
-        const [, port] = await this.daemon.line(/^plantcastd: ready http:\/\/127\.0\.0\.1:(\d+)\/$/m);
+        const [, port] = await this.daemon.line(/^plantcastd: ready https?:\/\/127\.0\.0\.1:(\d+)\/$/m);
         this.port = Number(port);
     }
 

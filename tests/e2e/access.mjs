@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Who is let in: TLS, tokens and their roles by every way, revocation, proxies, names, pages of others; and a person who is asked for a token.
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { chmodSync, copyFileSync, existsSync, readFileSync, unlinkSync } from 'node:fs';
+import { request } from 'node:https';
+import { connect as connectTls } from 'node:tls';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { http, PlainClient } from './support/plain_client.mjs';
+import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+
+const absent = missing();
+const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
+const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
+let plant, tokensFile, tokens;
+
+const token = (...args) => runProgram('plantcast', ['token', ...args]);
+const path = (name) => join(plant.folder, name);
+
+function makeCertificate(name, subject) {
+    const { status, stderr } = spawnSync('openssl', ['req', '-x509', '-newkey', 'ec', '-pkeyopt', 'ec_paramgen_curve:prime256v1', '-nodes',
+        '-keyout', path(`${name}.key`), '-out', path(`${name}.pem`), '-days', '30', '-subj', `/CN=${subject}`,
+        '-addext', `subjectAltName=DNS:${subject},DNS:localhost,IP:127.0.0.1`]);
+    assert.equal(status, 0, String(stderr));
+}
+
+function makeTokens() {
+    const made = {};
+    for (const role of ['viewer', 'operator', 'engineer'])
+        made[role] = token('add', tokensFile, '--role', role, '--name', `${role}-1`).out.trim();
+    return made;
+}
+
+before(async () => {
+    if (skip)
+        return;
+    plant = await TinyPlant.create();
+    assert.equal(plant.prepare().code, 0);
+    tokensFile = path('tokens');
+    tokens = makeTokens();
+    makeCertificate('first', 'plant.example');
+    makeCertificate('second', 'other.example');
+});
+after(() => plant?.destroy());
+
+// One that trusts nobody for being near: what a daemon for others does, on an address that any machine has.
+async function behindProxy(...args) {
+    await plant.daemon?.stop();
+    await plant.startDaemon('--behind-proxy', '--host', 'plant.example', ...args);
+}
+const ask = (url, { bearer = null, host = 'plant.example', from = '203.0.113.7', more = '' } = {}) => http(plant.port, [`GET ${url} HTTP/1.1`,
+    `Host: ${host}`, ...(from ? [`X-Forwarded-For: 198.51.100.1, ${from}`] : []), ...(bearer ? [`Authorization: Bearer ${bearer}`] : []), more, '']
+    .join('\r\n').replace(/\r\n\r\n$/, '\r\n') + '\r\n');
+const open = (options = {}) => PlainClient.open(plant.port, { host: 'plant.example', ...options });
+
+test('plantcast token: makes, lists and revokes, and keeps only hashes', { skip }, () => {
+    const file = path('more');
+    const first = token('add', file, '--role', 'viewer', '--name', 'wall');
+    assert.match(first.out, /^pc_[0-9a-f]{64}\n$/);
+    assert.ok(!readFileSync(file, 'utf8').includes(first.out.trim().slice(3)));
+    assert.equal(token('add', file, '--role', 'viewer', '--name', 'wall').code, 1);
+    assert.equal(token('add', file, '--role', 'operator', '--name', 'guest', '--until', '2001-01-01').code, 0);
+    assert.match(token('list', file).out, /^viewer +wall\noperator +guest {2}\(its time is over\)\n$/);
+    assert.equal(token('revoke', file, 'wall').code, 0);
+    assert.equal(token('revoke', file, 'wall').code, 1);
+    assert.match(token('list', file).out, /^operator +guest/);
+    for (const wrong of [[], ['add', file], ['add', file, '--role', 'king', '--name', 'x'], ['add', file, '--role', 'viewer', '--name', 'a b'],
+        ['add', file, '--role', 'viewer', '--name', 'x', '--until', '2026-02-30'], ['revoke', file]])
+        assert.equal(token(...wrong).code, 2, wrong.join(' '));
+});
+
+test('a daemon does not start for others without TLS and tokens, nor with what is not safe', { skip }, () => {
+    const start = (...args) => runProgram('plantcastd', [plant.file, '--port', '0', ...args]);
+    const bad = path('readable');
+    copyFileSync(tokensFile, bad);
+    chmodSync(bad, 0o644);
+    const cases = [
+        [['--listen', '0.0.0.0'], /--open-viewers/], [['--listen', '0.0.0.0', '--tokens', tokensFile], /TLS and tokens/],
+        [['--tokens', bad], /others may read it/], [['--tokens', path('none')], /No such file/],
+        [['--tls-cert', path('first.pem')], /belong together/], [['--tls-cert', path('first.pem'), '--tls-key', path('second.key')], /TLS: .*key/],
+        [['--tls-cert', plant.file, '--tls-key', path('first.key')], /TLS: .*plant\.yaml/], [['--behind-proxy'], /needs a token/],
+        [['--behind-proxy', '--tokens', tokensFile], /--host/],
+    ];
+    for (const [args, why] of cases) {
+        const result = start(...args);
+        assert.equal(result.code, 1, args.join(' '));
+        assert.match(result.err, why);
+    }
+    for (const args of [['--limit', 'sessions=none'], ['--limit', 'sesions=4'], ['--host', 'http://x'], ['--origin', 'x']])
+        assert.equal(start(...args).code, 2, args.join(' '));
+    unlinkSync(bad);
+});
+
+test('each URL asks for its role', { skip }, async () => {
+    await behindProxy('--tokens', tokensFile);
+    const statuses = async (url, more = '') => {
+        const all = [];
+        for (const bearer of [null, 'pc_wrong', tokens.viewer, tokens.operator, tokens.engineer])
+            all.push((await ask(url, { bearer, more })).status);
+        return all;
+    };
+    for (const url of ['/', '/app/main.js', '/healthz', '/readyz'])
+        assert.deepEqual(await statuses(url), [200, 401, 200, 200, 200], url);
+    const small = 'width=64&height=64';
+    for (const url of ['/api/v1/plant', '/api/v1/tags', '/metrics', `/snapshot.png?${small}`, `/api/v1/pick?${small}&x=1&y=1`])
+        assert.deepEqual(await statuses(url), [401, 401, 200, 200, 200], url);
+    for (const field of ['power=3', 'strength=2', 'decay=2', 'radius_m=1', 'reach_m=1', 'fill=neighbours', 'sensors=TI-1=2', 'split=power=3'])
+        assert.deepEqual(await statuses(`/snapshot.png?${small}&${field}`), [401, 401, 403, 403, 200], field);
+    const refused = await ask('/api/v1/tags');
+    assert.match(refused.headers['www-authenticate'], /^Bearer/);
+    for (const name of ['token', 'access_token', 'Authorization']) {
+        const answer = await ask(`/api/v1/tags?${name}=${tokens.viewer}`);
+        assert.equal(answer.status, 400);
+        assert.match(answer.body.toString(), /does not belong in a URL/);
+    }
+});
+
+test('names, pages and proxies', { skip }, async () => {
+    for (const [host, status] of [['plant.example', 200], ['plant.example:8443', 200], ['PLANT.example', 200], ['localhost', 200],
+        ['evil.example', 403], ['plant.example.evil.example', 403], ['203.0.113.1', 403], ['a b', 403]])
+        assert.equal((await ask('/healthz', { host })).status, status, host);
+    assert.equal((await ask('/api/v1/tags', { host: '127.0.0.1', from: null })).status, 401, 'near is not trusted behind a proxy');
+    assert.equal((await ask('/snapshot.png', { bearer: tokens.viewer, more: 'Sec-Fetch-Site: cross-site' })).status, 403);
+    await assert.rejects(open({ origin: 'https://evil.example' }), /403/);
+    (await open({ origin: 'https://plant.example' })).close();
+    await behindProxy('--tokens', tokensFile, '--origin', 'https://portal.example');
+    (await open({ origin: 'https://portal.example' })).close();
+});
+
+test('a token by each of its three ways, and what roles may say', { skip }, async () => {
+    const ways = [
+        async (text) => [await open({ protocol: `plantcast.v1, Authorization-Bearer.${text}` }), {}],
+        async (text) => [await open({ headers: [`Authorization: Bearer ${text}`] }), {}],
+        async (text) => [await open(), { token: text }],
+    ];
+    for (const way of ways) {
+        for (const role of ['viewer', 'operator', 'engineer']) {
+            const [client, more] = await way(tokens[role]);
+            assert.equal((await client.hello(more)).role, role);
+            client.say({ type: 'params', seq: 1, baseline: { set: 'then' } });
+            assert.equal(role === 'viewer' ? (await client.text('error')).code : (await client.text('params')).type,
+                role === 'viewer' ? 'not_allowed' : 'params');
+            client.say({ type: 'params', seq: 2, power: 3 });
+            assert.equal(role === 'engineer' ? (await client.text('params')).power : (await client.text('error')).code,
+                role === 'engineer' ? 3 : 'not_allowed');
+            client.say({ type: 'params', seq: 3, interpolation: 'paper' });
+            assert.equal((await client.text('params')).interpolation, 'paper');
+            client.close();
+        }
+    }
+    for (const [more, code] of [[{}, 'token_needed'], [{ token: 'pc_wrong' }, 'bad_token']]) {
+        const client = await open();
+        client.say({ type: 'hello', width: 320, height: 180, codecs: ['jpeg'], ...more });
+        assert.equal((await client.text('error')).code, code);
+        assert.equal((await client.until('a close', (c) => c.closed)).code, 1008);
+        assert.equal(client.frames.length, 0);
+    }
+    for (const options of [{ protocol: 'plantcast.v1, Authorization-Bearer.pc_wrong' }, { headers: ['Authorization: Bearer pc_wrong'] }])
+        await assert.rejects(open(options), /401/);
+    await assert.rejects(open({ path: `/stream?token=${tokens.viewer}` }), /400/);
+});
+
+test('what is revoked ends, and only that', { skip }, async () => {
+    const spare = token('add', tokensFile, '--role', 'viewer', '--name', 'spare').out.trim();
+    await sleep(2500);
+    const leaving = await open(), staying = await open();
+    assert.equal((await leaving.hello({ token: spare })).role, 'viewer');
+    await staying.hello({ token: tokens.operator });
+    const { resume } = leaving.texts.find((m) => m.resume) ?? { resume: null };
+    assert.equal(token('revoke', tokensFile, 'spare').code, 0);
+    assert.equal((await leaving.until('a close', (c) => c.closed)).code, 1008);
+    assert.equal((await leaving.text('error')).code, 'bad_token');
+    assert.equal((await ask('/api/v1/tags', { bearer: spare })).status, 401);
+    const again = await open();
+    again.say({ type: 'hello', width: 320, height: 180, codecs: ['jpeg'], token: spare, ...(resume ? { resume } : {}) });
+    assert.equal((await again.text('error')).code, 'bad_token');
+    assert.equal(staying.closed, null);
+    staying.close();
+});
+
+test('anyone may look, where the server says so, and at nothing else', { skip }, async () => {
+    await behindProxy('--open-viewers', '--tokens', tokensFile);
+    assert.equal((await ask('/snapshot.png?width=64&height=64')).status, 200);
+    for (const url of ['/api/v1/tags', '/api/v1/plant', '/metrics', '/api/v1/pick?x=1&y=1', '/snapshot.png?power=3'])
+        assert.equal((await ask(url)).status, 403, url);
+    assert.equal((await ask('/api/v1/tags', { bearer: tokens.viewer })).status, 200);
+    const client = await open();
+    assert.equal((await client.hello()).role, 'open');
+    await client.frameWhere('a frame', () => true);
+    client.say({ type: 'params', seq: 1, baseline: 'now' });
+    assert.equal((await client.text('error')).code, 'not_allowed');
+    client.close();
+});
+
+test('each address has as many sessions as one may, by what the proxy says', { skip }, async () => {
+    await behindProxy('--open-viewers', '--limit', 'address-sessions=2', '--limit', 'sessions=3');
+    const of = (address) => open({ headers: [`X-Forwarded-For: ${address}`] });
+    const clients = [await of('203.0.113.7'), await of('203.0.113.7')];
+    for (const client of clients)
+        await client.hello();
+    const third = await of('203.0.113.7');
+    const closed = await third.until('a close', (c) => c.closed);
+    assert.deepEqual([closed.code, /this address/.test(closed.text)], [1013, true]);
+    const other = await of('203.0.113.8');
+    await other.hello();
+    assert.equal((await (await of('203.0.113.9')).until('a close', (c) => c.closed)).code, 1013);
+    clients[0].close();
+    await sleep(300);
+    const again = await of('203.0.113.7');
+    await again.hello();
+    for (const client of [...clients, other, again])
+        client.close();
+});
+
+test('TLS: pictures over wss, no old versions, and a new certificate while it runs', { skip }, async () => {
+    await plant.daemon.stop();
+    for (const end of ['pem', 'key'])
+        copyFileSync(path(`first.${end}`), path(`served.${end}`));
+    await plant.startDaemon('--tls-cert', path('served.pem'), '--tls-key', path('served.key'), '--tokens', tokensFile);
+    const subject = () => new Promise((done, fail) => {
+        const socket = connectTls({ port: plant.port, host: '127.0.0.1', rejectUnauthorized: false }, () => {
+            done([socket.getPeerCertificate().subject.CN, socket.getProtocol()]);
+            socket.destroy();
+        });
+        socket.on('error', fail);
+    });
+    assert.deepEqual(await subject(), ['plant.example', 'TLSv1.3']);
+    await assert.rejects(new Promise((done, fail) => connectTls({ port: plant.port, host: '127.0.0.1', rejectUnauthorized: false,
+        minVersion: 'TLSv1', maxVersion: 'TLSv1.1' }, done).on('error', fail)));
+    await assert.rejects(http(plant.port, 'GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n').then((answer) => assert.ok(answer.status)));
+    const ca = readFileSync(path('first.pem'));
+    const answer = await new Promise((done, fail) => request({ port: plant.port, host: 'localhost', path: '/snapshot.png?width=64&height=64', ca },
+        (response) => { response.resume(); done(response.statusCode); }).on('error', fail).end());
+    assert.equal(answer, 200);
+    const url = `https://localhost:${plant.port}/`;
+    const probe = runProgram('plantcast', ['probe', url, '--ca', path('first.pem'), '--seconds', '1', '--json']);
+    assert.equal(probe.code, 0, probe.err);
+    assert.ok(JSON.parse(probe.out).frames > 4);
+    assert.equal(runProgram('plantcast', ['tags', url]).code, 1, 'a certificate that nobody vouches for');
+    for (const end of ['pem', 'key'])
+        copyFileSync(path(`second.${end}`), path(`served.${end}`));
+    await plant.daemon.line(/a new certificate is served/);
+    assert.equal((await subject())[0], 'other.example');
+    copyFileSync(plant.file, path('served.pem'));
+    await plant.daemon.line(/error TLS: /);
+    assert.equal((await subject())[0], 'other.example');
+});
+
+test('a person is asked for a token, and sees the plant', {
+    skip: skip || (existsSync(process.env.CHROMIUM ?? '/usr/bin/chromium') ? false : 'chromium is not installed'),
+}, async () => {
+    const { openPage, shoot, waitForPicture } = await import('./support/browser.mjs');
+    await behindProxy('--tokens', tokensFile);
+    const { page, errors, close } = await openPage(`http://localhost:${plant.port}/`, { viewport: { width: 1000, height: 700 } });
+    try {
+        await page.waitForSelector('#token[open]');
+        await page.fill('#token-text', 'pc_wrong');
+        await page.click('#token-form button');
+        await page.waitForFunction(() => /no longer/.test(document.getElementById('token-why').textContent));
+        await shoot(page, 'token');
+        await page.fill('#token-text', tokens.viewer);
+        await page.click('#token-form button');
+        await waitForPicture(page);
+        assert.equal(await page.evaluate(() => document.getElementById('token').open), false);
+        await page.reload();
+        await waitForPicture(page);
+        assert.ok(!(await page.evaluate(() => location.href)).includes('pc_'));
+        assert.deepEqual(errors, []);
+    } finally {
+        await close();
+    }
+});

@@ -1,0 +1,109 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What of an HTTP request is ours to read. The first byte says which: a query, a host, an origin, a list, a path, a line of tokens; the rest
+   is it. */
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "net/query.h"
+#include "net/site.h"
+#include "net/tokens.h"
+#include "tests/support/small_scene.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count);
+
+static void require(bool promise, const char *what)
+{
+    if (promise)
+        return;
+    fprintf(stderr, "broken promise: %s\n", what);
+    abort();
+}
+
+static void read_query(char *text)
+{
+    enum { MOST = 32 };
+    const char *args[MOST];
+    size_t count = 0;
+    struct view view;
+    double place[2];
+    struct message_error error = { 0 };
+    const struct params_world world = { .scene = small_scene() };
+    for (char *arg; count < MOST && (arg = strsep(&text, "&"));)
+        args[count++] = arg;
+    for (int with_place = 0; with_place < 2; with_place++) {
+        if (query_parse(&world, ROLE_ENGINEER, args, count, &view, with_place ? place : NULL, &error))
+            require(view_size_valid(view.width_px, view.height_px) && camera_valid(&view.camera), "a query makes a view");
+        else
+            require(error.code && error.text[0], "a refusal has a reason");
+    }
+}
+
+static void read_host(const char *text)
+{
+    char name[64], again[64];
+    if (!access_host_name(text, name, sizeof(name)))
+        return;
+    require(name[0] && strlen(name) < sizeof(name), "a name");
+    if (!strchr(name, ':'))
+        require(access_host_name(name, again, sizeof(again)) && !strcmp(name, again), "a name is its own name");
+}
+
+static void read_list(const char *text)
+{
+    char out[24];
+    access_list_has(text, "plantcast.v1");
+    if (access_list_rest(text, "Authorization-Bearer.", out, sizeof(out)))
+        require(out[0] && strlen(out) < sizeof(out) && !strpbrk(out, " ,\t"), "a word");
+    if (access_forwarded(text, out, sizeof(out)))
+        require(access_name_is_address(out), "an address");
+}
+
+static void read_path(const char *text)
+{
+    struct site_file file;
+    if (!site_read("clients/web", text, false, &file))
+        return;
+    require(file.bytes && file.type && !strstr(text, ".."), "a file of the client");
+    mem_free(file.bytes);
+}
+
+static void read_token_line(const char *text)
+{
+    struct token_holder holder, again;
+    struct text line = { 0 };
+    const char *why = NULL;
+    int found = tokens_parse_line(text, &holder, &why);
+    require(found >= 0 || why, "a refusal has a reason");
+    if (found != 1)
+        return;
+    require(holder.role >= ROLE_VIEWER && tokens_name_valid(holder.name), "a holder");
+    tokens_print_line(&line, &holder);
+    require(tokens_parse_line(line.at, &again, &why) == 1 && again.role == holder.role && !strcmp(again.name, holder.name) &&
+                !memcmp(again.hash, holder.hash, sizeof(holder.hash)) && again.until_utc_ns == holder.until_utc_ns,
+            "a line is read as it was written");
+    text_finish(&line);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
+{
+    const struct access_params params = { .origins = { "https://portal.example" }, .origin_count = 1 };
+    if (count < 1)
+        return 0;
+    char *text = mem_array(count, 1);
+    memcpy(text, bytes + 1, count - 1);
+    switch (bytes[0]) {
+    case 'q': read_query(text); break;
+    case 'h': read_host(text); break;
+    case 'o': access_origin(&params, text, "plant.example", true); break;
+    case 'l': read_list(text); break;
+    case 'p': read_path(text); break;
+    case 't': read_token_line(text); break;
+    default: access_argument_is_token(text);
+    }
+    mem_free(text);
+    return 0;
+}

@@ -1,0 +1,69 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The frame header's reader against its writer: what is read is sound, and written again it is the same bytes; what is written of any struct
+   is read as it was, or not at all. */
+#include <math.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "protocol/wire.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count);
+
+static void require(bool promise, const char *what)
+{
+    if (promise)
+        return;
+    fprintf(stderr, "broken promise: %s\n", what);
+    abort();
+}
+
+static void check_sound(const struct wire_frame *frame, size_t count)
+{
+    require(frame->payload_bytes == count - WIRE_FRAME_HEADER_BYTES && frame->payload_bytes > 0, "length");
+    require(frame->x_px + frame->width_px <= frame->full_width_px && frame->y_px + frame->height_px <= frame->full_height_px, "part");
+    require(frame->full_width_px <= WIRE_MAX_FRAME_PX && frame->full_height_px <= WIRE_MAX_FRAME_PX, "size");
+    for (int i = 0; i < 3; i++)
+        require(isfinite(frame->eye_m[i]) && isfinite(frame->target_m[i]) && isfinite(frame->up[i]), "camera");
+    require(frame->fov_deg == 0 ? frame->height_m > 0 && isfinite(frame->height_m) : frame->fov_deg >= 1 && frame->fov_deg <= 120, "lens");
+}
+
+static void read_then_write(const uint8_t *bytes, size_t count)
+{
+    struct wire_frame frame;
+    uint8_t again[WIRE_FRAME_HEADER_BYTES];
+    enum { RESERVED = 108 }; /* height_m in perspective: anything may be read, 0 is written */
+    if (!wire_get_frame(bytes, count, &frame))
+        return;
+    check_sound(&frame, count);
+    wire_put_frame(&frame, again);
+    require(!memcmp(bytes, again, frame.fov_deg == 0 ? sizeof(again) : RESERVED), "read and written it is the same");
+}
+
+/* The bytes are taken as the struct itself, however senseless. */
+static void write_then_read(const uint8_t *bytes, size_t count)
+{
+    struct wire_frame frame = { 0 }, again;
+    uint8_t header[WIRE_FRAME_HEADER_BYTES];
+    memcpy(&frame, bytes, count < sizeof(frame) ? count : sizeof(frame));
+    frame.payload_bytes = (uint32_t)(count % 1000 + 1);
+    wire_put_frame(&frame, header);
+    uint8_t *message = calloc(1, sizeof(header) + frame.payload_bytes);
+    memcpy(message, header, sizeof(header));
+    if (wire_get_frame(message, sizeof(header) + frame.payload_bytes, &again)) {
+        require(again.seq == frame.seq && again.camera_seq == frame.camera_seq && again.data_time_us == frame.data_time_us &&
+                    again.width_px == frame.width_px && again.eye_m[2] == frame.eye_m[2] && again.flags == frame.flags,
+                "written and read it is the same");
+        check_sound(&again, sizeof(header) + frame.payload_bytes);
+    }
+    free(message);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
+{
+    read_then_write(bytes, count);
+    write_then_read(bytes, count);
+    return 0;
+}
