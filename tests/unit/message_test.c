@@ -299,7 +299,8 @@ static void baselines_are_set_shown_and_forgotten(void **state)
 static bool query(const char *const *args, size_t count, struct view *view, struct message_error *error)
 {
     *error = (struct message_error){ 0 };
-    return query_parse(&(struct params_world){ .scene = small_scene(), .baselines = world.baselines }, ROLE_ENGINEER, args, count, view, NULL, error);
+    const struct params_world of_query = { .scene = small_scene(), .baselines = world.baselines };
+    return query_parse(&of_query, ROLE_ENGINEER, args, count, view, NULL, error);
 }
 
 static void queries_make_views(void **state)

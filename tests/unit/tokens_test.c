@@ -89,7 +89,8 @@ static void time_runs_out(void **state)
     assert_true(tokens_parse_day("2026-01-01", &until_ns));
     assert_int_equal(until_ns, NOW_NS + 24 * 3600 * NS_PER_S);
     assert_false(tokens_parse_day("9999999-01-01", &until_ns) || tokens_parse_day("30-12-31", &until_ns));
-    assert_false(tokens_parse_day("2026-02-30", &until_ns) || tokens_parse_day("tomorrow", &until_ns) || tokens_parse_day("2026-01-01x", &until_ns));
+    assert_false(tokens_parse_day("2026-02-30", &until_ns) || tokens_parse_day("tomorrow", &until_ns));
+    assert_false(tokens_parse_day("2026-01-01x", &until_ns));
     struct text text = { 0 };
     add_line(&text, ROLE_OPERATOR, "guest", "pc_guest", NOW_NS + 24 * 3600 * NS_PER_S);
     assert_non_null(strstr(text.at, " until 2026-01-01\n"));

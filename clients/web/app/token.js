@@ -26,7 +26,7 @@ export class TokenDialog {
         const dialog = byId('token'), field = byId('token-text');
         session.token = stored();
         session.on('denied', ({ code }) => {
-            setText(byId('token-why'), code === 'bad_token' ? 'This token is not, or no longer, let in.' : 'This server asks who you are.');
+            setText(byId('token-why'), code === 'bad_token' ? 'This token is not valid, or no longer.' : 'This server asks who you are.');
             field.value = '';
             if (!dialog.open)
                 dialog.showModal();

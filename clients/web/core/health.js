@@ -30,11 +30,11 @@ function downText(model) {
 }
 
 function lost(connection, picture, old, now) {
-    if (!picture && connection.tries === 0)
-        return { kind: 'connecting', words: 'Connecting', detail: '', banner: false };
     const reason = connection.reason ? `${connection.reason[0].toUpperCase()}${connection.reason.slice(1)}.` : '';
     if (connection.state === 'barred')
         return { kind: 'lost', words: 'Not let in', detail: [reason, old].filter(Boolean).join(' '), banner: true };
+    if (!picture && connection.tries === 0)
+        return { kind: 'connecting', words: 'Connecting', detail: '', banner: false };
     const next = connection.state === 'waiting' ? `Trying again in ${seconds(connection.retryAt - now)}.` : 'Trying again now.';
     return { kind: 'lost', words: 'Disconnected', detail: [reason, old, next].filter(Boolean).join(' '), banner: true };
 }
