@@ -44,7 +44,8 @@ bool daemon_take_options(int *argc, char **argv)
 {
     int kept = 0;
     for (int i = 0; i < *argc; i++) {
-        const char *token_path = value_of("--token-file", *argc, argv, &i), *ca = token_path ? NULL : value_of("--ca", *argc, argv, &i);
+        const char *token_path = value_of("--token-file", *argc, argv, &i);
+        const char *ca = token_path ? NULL : value_of("--ca", *argc, argv, &i);
         if (token_path && !read_token(token_path))
             return false;
         if (ca)
@@ -157,7 +158,9 @@ int daemon_get(const struct daemon_url *url, const char *path, struct text *body
     while (!exchange.done)
         lws_service(context, 0);
     if (!exchange.status)
-        fprintf(stderr, "plantcast: http%s://%s:%d%s: %s\n", url->tls ? "s" : "", url->host, url->port, path, exchange.why[0] ? exchange.why : "no answer");
+        fprintf(stderr, "plantcast: http%s://%s:%d%s: %s%s\n", url->tls ? "s" : "", url->host, url->port, path,
+                exchange.why[0] ? exchange.why : "no answer",
+                strstr(exchange.why, "SSL") ? "; is its certificate trusted here? --ca FILE names one that is" : "");
     if (context)
         lws_context_destroy(context);
     return exchange.status;

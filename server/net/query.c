@@ -236,8 +236,8 @@ static bool apply(const struct params_world *world, enum role role, const json_t
            params_apply(world, &asked.params, view, error) && split_apply(world, &asked.split, view, error);
 }
 
-bool query_parse(const struct params_world *world, enum role role, const char *const *args, size_t count, struct view *view, double place[2],
-                 struct message_error *error)
+bool query_parse(const struct params_world *world, enum role role, const char *const *args, size_t count, struct view *view,
+                 double place[2], struct message_error *error)
 {
     json_t *o = json_object();
     bool good = true;

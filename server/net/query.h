@@ -5,7 +5,7 @@
 #include "net/access.h"
 
 /* args: `name=value`, decoded. place: NULL, or the `x` and `y` of a pick, which must be there then. False: *error says which is wrong. */
-bool query_parse(const struct params_world *world, enum role role, const char *const *args, size_t count, struct view *view, double place[2],
-                 struct message_error *error);
+bool query_parse(const struct params_world *world, enum role role, const char *const *args, size_t count, struct view *view,
+                 double place[2], struct message_error *error);
 
 #endif

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Who is let in: TLS, tokens and their roles by every way, revocation, proxies, names, pages of others; and a person who is asked for a token.
+// Who is let in: TLS, tokens and their roles by every way, revocation, proxies, names, pages of others; and a person who is asked
+// for a token.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { chmodSync, copyFileSync, existsSync, readFileSync, unlinkSync } from 'node:fs';
@@ -49,9 +50,11 @@ async function behindProxy(...args) {
     await plant.daemon?.stop();
     await plant.startDaemon('--behind-proxy', '--host', 'plant.example', ...args);
 }
-const ask = (url, { bearer = null, host = 'plant.example', from = '203.0.113.7', more = '' } = {}) => http(plant.port, [`GET ${url} HTTP/1.1`,
-    `Host: ${host}`, ...(from ? [`X-Forwarded-For: 198.51.100.1, ${from}`] : []), ...(bearer ? [`Authorization: Bearer ${bearer}`] : []), more, '']
-    .join('\r\n').replace(/\r\n\r\n$/, '\r\n') + '\r\n');
+function ask(url, { bearer = null, host = 'plant.example', from = '203.0.113.7', more = [] } = {}) {
+    const head = [`GET ${url} HTTP/1.1`, `Host: ${host}`, ...(from ? [`X-Forwarded-For: 198.51.100.1, ${from}`] : []),
+        ...(bearer ? [`Authorization: Bearer ${bearer}`] : []), ...more];
+    return http(plant.port, `${head.join('\r\n')}\r\n\r\n`);
+}
 const open = (options = {}) => PlainClient.open(plant.port, { host: 'plant.example', ...options });
 
 test('plantcast token: makes, lists and revokes, and keeps only hashes', { skip }, () => {
@@ -65,7 +68,8 @@ test('plantcast token: makes, lists and revokes, and keeps only hashes', { skip 
     assert.equal(token('revoke', file, 'wall').code, 0);
     assert.equal(token('revoke', file, 'wall').code, 1);
     assert.match(token('list', file).out, /^operator +guest/);
-    for (const wrong of [[], ['add', file], ['add', file, '--role', 'king', '--name', 'x'], ['add', file, '--role', 'viewer', '--name', 'a b'],
+    for (const wrong of [[], ['add', file], ['add', file, '--role', 'king', '--name', 'x'],
+        ['add', file, '--role', 'viewer', '--name', 'a b'],
         ['add', file, '--role', 'viewer', '--name', 'x', '--until', '2026-02-30'], ['revoke', file]])
         assert.equal(token(...wrong).code, 2, wrong.join(' '));
 });
@@ -78,7 +82,8 @@ test('a daemon does not start for others without TLS and tokens, nor with what i
     const cases = [
         [['--listen', '0.0.0.0'], /--open-viewers/], [['--listen', '0.0.0.0', '--tokens', tokensFile], /TLS and tokens/],
         [['--tokens', bad], /others may read it/], [['--tokens', path('none')], /No such file/],
-        [['--tls-cert', path('first.pem')], /belong together/], [['--tls-cert', path('first.pem'), '--tls-key', path('second.key')], /TLS: .*key/],
+        [['--tls-cert', path('first.pem')], /belong together/],
+        [['--tls-cert', path('first.pem'), '--tls-key', path('second.key')], /TLS: .*key/],
         [['--tls-cert', plant.file, '--tls-key', path('first.key')], /TLS: .*plant\.yaml/], [['--behind-proxy'], /needs a token/],
         [['--behind-proxy', '--tokens', tokensFile], /--host/],
     ];
@@ -94,10 +99,10 @@ test('a daemon does not start for others without TLS and tokens, nor with what i
 
 test('each URL asks for its role', { skip }, async () => {
     await behindProxy('--tokens', tokensFile);
-    const statuses = async (url, more = '') => {
+    const statuses = async (url) => {
         const all = [];
         for (const bearer of [null, 'pc_wrong', tokens.viewer, tokens.operator, tokens.engineer])
-            all.push((await ask(url, { bearer, more })).status);
+            all.push((await ask(url, { bearer })).status);
         return all;
     };
     for (const url of ['/', '/app/main.js', '/healthz', '/readyz'])
@@ -105,7 +110,8 @@ test('each URL asks for its role', { skip }, async () => {
     const small = 'width=64&height=64';
     for (const url of ['/api/v1/plant', '/api/v1/tags', '/metrics', `/snapshot.png?${small}`, `/api/v1/pick?${small}&x=1&y=1`])
         assert.deepEqual(await statuses(url), [401, 401, 200, 200, 200], url);
-    for (const field of ['power=3', 'strength=2', 'decay=2', 'radius_m=1', 'reach_m=1', 'fill=neighbours', 'sensors=TI-1=2', 'split=power=3'])
+    for (const field of ['power=3', 'strength=2', 'decay=2', 'radius_m=1', 'reach_m=1', 'fill=neighbours', 'sensors=TI-1=2',
+        'split=power=3'])
         assert.deepEqual(await statuses(`/snapshot.png?${small}&${field}`), [401, 401, 403, 403, 200], field);
     const refused = await ask('/api/v1/tags');
     assert.match(refused.headers['www-authenticate'], /^Bearer/);
@@ -121,7 +127,7 @@ test('names, pages and proxies', { skip }, async () => {
         ['evil.example', 403], ['plant.example.evil.example', 403], ['203.0.113.1', 403], ['a b', 403]])
         assert.equal((await ask('/healthz', { host })).status, status, host);
     assert.equal((await ask('/api/v1/tags', { host: '127.0.0.1', from: null })).status, 401, 'near is not trusted behind a proxy');
-    assert.equal((await ask('/snapshot.png', { bearer: tokens.viewer, more: 'Sec-Fetch-Site: cross-site' })).status, 403);
+    assert.equal((await ask('/snapshot.png', { bearer: tokens.viewer, more: ['Sec-Fetch-Site: cross-site'] })).status, 403);
     await assert.rejects(open({ origin: 'https://evil.example' }), /403/);
     (await open({ origin: 'https://plant.example' })).close();
     await behindProxy('--tokens', tokensFile, '--origin', 'https://portal.example');
@@ -230,8 +236,11 @@ test('TLS: pictures over wss, no old versions, and a new certificate while it ru
         minVersion: 'TLSv1', maxVersion: 'TLSv1.1' }, done).on('error', fail)));
     await assert.rejects(http(plant.port, 'GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n').then((answer) => assert.ok(answer.status)));
     const ca = readFileSync(path('first.pem'));
-    const answer = await new Promise((done, fail) => request({ port: plant.port, host: 'localhost', path: '/snapshot.png?width=64&height=64', ca },
-        (response) => { response.resume(); done(response.statusCode); }).on('error', fail).end());
+    const picture = { port: plant.port, host: 'localhost', path: '/snapshot.png?width=64&height=64', ca };
+    const answer = await new Promise((done, fail) => request(picture, (response) => {
+        response.resume();
+        done(response.statusCode);
+    }).on('error', fail).end());
     assert.equal(answer, 200);
     const url = `https://localhost:${plant.port}/`;
     const probe = runProgram('plantcast', ['probe', url, '--ca', path('first.pem'), '--seconds', '1', '--json']);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The frame header's reader against its writer: what is read is sound, and written again it is the same bytes; what is written of any struct
-   is read as it was, or not at all. */
+/* The frame header's reader against its writer: what is read is sound, and written again it is the same bytes; what is written of any
+   struct is read as it was, or not at all. */
 #include <math.h>
 #include <stddef.h>
 #include <stdint.h>

@@ -11,6 +11,8 @@
 #include "net/names.h"
 #include "tests/support/small_scene.h"
 
+#define HELLO_WITH(params) "{\"type\":\"hello\",\"width\":64,\"height\":64,\"codecs\":[\"png\"],\"params\":{\"seq\":1," params "}}"
+
 /* A role that is not let may not, the one above may. */
 static void expect_least(const char *text, enum role least)
 {
@@ -56,7 +58,7 @@ static void what_others_see_takes_an_operator(void **state)
     expect_least("{\"type\":\"params\",\"seq\":1,\"baseline\":\"now\"}", ROLE_OPERATOR);
     expect_least("{\"type\":\"params\",\"seq\":1,\"baseline\":{\"set\":\"a\"}}", ROLE_OPERATOR);
     expect_least("{\"type\":\"params\",\"seq\":1,\"baseline\":{\"remove\":\"a\"}}", ROLE_OPERATOR);
-    expect_least("{\"type\":\"hello\",\"width\":64,\"height\":64,\"codecs\":[\"png\"],\"params\":{\"seq\":1,\"baseline\":\"now\"}}", ROLE_OPERATOR);
+    expect_least(HELLO_WITH("\"baseline\":\"now\""), ROLE_OPERATOR);
 }
 
 static void how_the_field_is_computed_takes_an_engineer(void **state)
@@ -70,7 +72,7 @@ static void how_the_field_is_computed_takes_an_engineer(void **state)
         expect_least(text, ROLE_ENGINEER);
         snprintf(text, sizeof(text), "{\"type\":\"params\",\"seq\":1,\"split\":{%s}}", fields[i]);
         expect_least(text, ROLE_ENGINEER);
-        snprintf(text, sizeof(text), "{\"type\":\"hello\",\"width\":64,\"height\":64,\"codecs\":[\"png\"],\"params\":{\"seq\":1,%s}}", fields[i]);
+        snprintf(text, sizeof(text), HELLO_WITH("%s"), fields[i]);
         expect_least(text, ROLE_ENGINEER);
     }
 }
@@ -144,7 +146,8 @@ static void lists_in_headers(void **state)
     (void)state;
     char out[64] = "before";
     assert_true(access_list_has("chat, plantcast.v1", "plantcast.v1") && access_list_has("plantcast.v1,x", "plantcast.v1"));
-    assert_false(access_list_has("plantcast.v10", "plantcast.v1") || access_list_has("xplantcast.v1", "plantcast.v1") || access_list_has("", "x"));
+    assert_false(access_list_has("plantcast.v10", "plantcast.v1") || access_list_has("xplantcast.v1", "plantcast.v1"));
+    assert_false(access_list_has("", "plantcast.v1"));
     assert_true(access_list_rest("plantcast.v1, Authorization-Bearer.pc_1", "Authorization-Bearer.", out, sizeof(out)));
     assert_string_equal(out, "pc_1");
     assert_false(access_list_rest("plantcast.v1, Authorization-Bearer.", "Authorization-Bearer.", out, sizeof(out)));

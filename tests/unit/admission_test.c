@@ -42,7 +42,8 @@ static void an_address_is_one_however_it_is_written(void **state)
     (void)state;
     struct peers *peers = peers_create(&quotas);
     struct peer *four = peers_ref(peers, "203.0.113.7"), *mapped = peers_ref(peers, "::ffff:203.0.113.7");
-    struct peer *six = peers_ref(peers, "2001:db8:1:2::1"), *near_it = peers_ref(peers, "2001:db8:1:2:ffff::9"), *far_from_it = peers_ref(peers, "2001:db8:1:3::1");
+    struct peer *six = peers_ref(peers, "2001:db8:1:2::1"), *near_it = peers_ref(peers, "2001:db8:1:2:ffff::9");
+    struct peer *far_from_it = peers_ref(peers, "2001:db8:1:3::1");
     assert_true(four == mapped && six == near_it && six != far_from_it && six != four);
     assert_int_equal(peers_count(peers), 3);
     struct peer *local = peers_ref(peers, "127.0.0.1"), *local6 = peers_ref(peers, "::1"), *none = peers_ref(peers, "nonsense");

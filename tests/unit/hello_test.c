@@ -166,7 +166,8 @@ static void a_token_stands_for_its_role(void **state)
     struct session *open = open_session(f, ROLE_OPEN, HELLO);
     expect_welcome(f, open, "open", false);
     leave(f, &open);
-    struct session *pushy = open_session(f, ROLE_NOBODY, "{\"type\":\"hello\",\"token\":\"pc_bob\"," SIZE ",\"params\":{\"seq\":1,\"power\":3}}");
+    struct session *pushy =
+        open_session(f, ROLE_NOBODY, "{\"type\":\"hello\",\"token\":\"pc_bob\"," SIZE ",\"params\":{\"seq\":1,\"power\":3}}");
     expect_error(f, pushy, "not_allowed", 0);
     leave(f, &pushy);
 }
@@ -244,7 +245,8 @@ static void what_is_said_comes_on_top_of_the_view_of_before(void **state)
     char secret[RESUME_CHARS + 1];
     strcpy(secret, first->resume);
     leave(f, &first);
-    come_back(f, ROLE_ENGINEER, secret, ",\"width\":200,\"height\":100,\"codecs\":[\"png\"],\"params\":{\"seq\":1,\"ramp_interval\":4}", &again);
+    come_back(f, ROLE_ENGINEER, secret,
+              ",\"width\":200,\"height\":100,\"codecs\":[\"png\"],\"params\":{\"seq\":1,\"ramp_interval\":4}", &again);
     expect_welcome(f, again, "engineer", true);
     assert_true(again->view.width_px == 200 && again->view.height_px == 100 && again->view.ramp_interval == 4);
     assert_true(again->view.field.group == 1 && again->view.camera.eye_m[0] == 7 && again->codec == WIRE_CODEC_PNG);

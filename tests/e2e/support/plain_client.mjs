@@ -66,7 +66,8 @@ export function readFrame(bytes) {
 export class PlainClient {
     // Resolves once the server has agreed. options: protocol (null: none), origin, host, path, headers, acknowledge (true).
     static open(port, options = {}) {
-        const { protocol = 'plantcast.v1', origin = null, host = `127.0.0.1:${port}`, path = '/stream', acknowledge = true, headers = [] } = options;
+        const { protocol = 'plantcast.v1', origin = null, host = `127.0.0.1:${port}`, path = '/stream', headers = [] } = options;
+        const { acknowledge = true } = options;
         const key = randomBytes(16).toString('base64');
         const client = new PlainClient();
         client.acknowledge = acknowledge;
