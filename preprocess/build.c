@@ -104,14 +104,6 @@ static bool run_both(struct build *build, void (*first)(struct build *build), vo
 
 /* --- levels and distances need nothing of each other ------------------------------------------------------------------------- */
 
-static void note_levels(struct build *build)
-{
-    struct build_report *report = &build->output->report;
-    report->level_count = build->levels.count;
-    for (size_t i = 0; i < build->levels.count; i++)
-        report->levels[i].triangles = build->levels.at[i].index_count / 3;
-}
-
 static void make_levels(struct build *build)
 {
     struct build_report *report = &build->output->report;
@@ -119,7 +111,6 @@ static void make_levels(struct build *build)
     build->failed[0] = !levels_make(&build->levels, &build->geometry, build->workers);
     if (build->failed[0])
         wrong(build->why, "out of memory for the levels of %u vertices", build->geometry.vertex_count);
-    note_levels(build);
     report->levels_s = seconds_since(&since_ns);
 }
 
@@ -232,7 +223,9 @@ static bool put_in_order(struct build *build, uint32_t own)
         order_vertices(g, &build->levels, own, build->file, &new_of) && move_distances(build->distances, sensors, g->vertex_count, new_of);
     for (size_t s = 0; good && s < sensors; s++)
         build->measured.sensors[s].nearest_vertex = new_of[build->measured.sensors[s].nearest_vertex];
+    report->level_count = build->levels.count;
     for (size_t i = 0; good && i < build->levels.count; i++) {
+        report->levels[i].triangles = build->levels.at[i].whole_count / 3;
         report->levels[i].split_triangles = build->levels.at[i].index_count / 3;
         report->levels[i].vertices = build->file[i].vertex_count;
         report->levels[i].error_m = build->file[i].error_m;
@@ -340,7 +333,6 @@ static bool begin(struct build *build)
         struct surface_report *surface = &report->surface;
         *surface = input->stock->report.surface;
         surface->weld_s = surface->bridge_s = surface->sample_s = surface->laplacian_s = surface->factor_s = surface->check_s = 0;
-        note_levels(build);
     }
     return true;
 }

@@ -2,8 +2,8 @@
 /* Largest distance between two surfaces, by probing one against the other. */
 #include "preprocess/deviation.h"
 
-#include <pthread.h>
-#include <stdatomic.h>
+#include <math.h>
+#include <string.h>
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
@@ -47,9 +47,10 @@ static void know_triangles(struct deviation *surface, const uint32_t *triangles,
     }
 }
 
-void deviation_init(struct deviation *surface, const float (*positions_m)[3], const uint32_t *triangles, size_t triangle_count)
+void deviation_init(struct deviation *surface, const float (*positions_m)[3], const uint32_t *part, size_t part_count,
+                    const uint32_t *triangles, size_t triangle_count)
 {
-    *surface = (struct deviation){ 0 };
+    *surface = (struct deviation){ .part = part, .has_part = mem_array(part_count, 1) };
     for (size_t i = 0; i < 3 * triangle_count; i++)
         surface->highest = triangles[i] > surface->highest ? triangles[i] : surface->highest;
     surface->has = mem_array(surface->highest + 1, 1);
@@ -61,7 +62,7 @@ void deviation_init(struct deviation *surface, const float (*positions_m)[3], co
             uint32_t v = triangles[3 * t + (size_t)c];
             const double p[3] = { (double)positions_m[v][0], (double)positions_m[v][1], (double)positions_m[v][2] };
             if (!surface->has[v]) {
-                surface->has[v] = 1;
+                surface->has[v] = surface->has_part[part[v]] = 1;
                 point_of[v] = trimesh_add_point(&surface->mesh, p);
                 mem_grow(&surface->index, &capacity, surface->mesh.point_count, sizeof(*surface->index));
                 surface->index[point_of[v]] = v;
@@ -81,6 +82,7 @@ void deviation_finish(struct deviation *surface)
     trimesh_finish(&surface->mesh);
     mem_free(surface->index);
     mem_free(surface->has);
+    mem_free(surface->has_part);
     mem_free(surface->known);
     *surface = (struct deviation){ 0 };
 }
@@ -97,40 +99,47 @@ static bool shares_triangle(const struct deviation *surface, const uint32_t indi
 
 struct probing {
     const struct deviation *from, *to;
-    double expected_m, limit_m;
-    atomic_bool beyond; /* the limit */
-    pthread_mutex_t lock;
-    /* --- below: under lock */
-    double most_m;
+    double expected_m;
+    float *found_m; /* of each point, then of each triangle */
 };
 
+struct probe { /* a point, and the part that it is of */
+    const struct deviation *to;
+    uint32_t part;
+    double point[3];
+};
+
+static uint32_t part_of(const struct deviation *surface, uint32_t tri)
+{
+    return surface->part[surface->index[surface->mesh.tris[tri][0]]];
+}
+
+static bool is_of_part(const void *arg, uint32_t tri)
+{
+    const struct probe *probe = arg;
+    return part_of(probe->to, tri) == probe->part;
+}
+
 /* Looks near by first: most points are where they should be. */
-static double distance_to(const struct bvh *to, const double point[3], double expected_m)
+static double distance_of(const struct probe *probe, double expected_m)
 {
     struct bvh_place place;
-    bvh_nearest(to, point, 2 * expected_m, NULL, NULL, &place);
+    if (!probe->to->has_part[probe->part])
+        return INFINITY;
+    bvh_nearest(probe->to->bvh, probe->point, 2 * expected_m, is_of_part, probe, &place);
     if (place.tri == TRIMESH_NONE)
-        bvh_nearest(to, point, INFINITY, NULL, NULL, &place);
+        bvh_nearest(probe->to->bvh, probe->point, INFINITY, is_of_part, probe, &place);
     return place.distance_m;
 }
 
-static void note(struct probing *probing, double most_m)
+static void probe_point(const struct probing *probing, size_t i)
 {
-    pthread_mutex_lock(&probing->lock);
-    probing->most_m = max_of(probing->most_m, most_m);
-    pthread_mutex_unlock(&probing->lock);
-    if (most_m > probing->limit_m)
-        probing->beyond = true;
-}
-
-static void probe_points(void *arg, size_t begin, size_t end)
-{
-    struct probing *probing = arg;
-    double most_m = 0;
-    for (size_t i = begin; i < end && most_m <= probing->limit_m && !probing->beyond; i++)
-        if (!shares_point(probing->to, probing->from->index[i]))
-            most_m = max_of(most_m, distance_to(probing->to->bvh, probing->from->mesh.points[i], probing->expected_m));
-    note(probing, most_m);
+    const struct deviation *from = probing->from;
+    struct probe probe = { .to = probing->to, .part = from->part[from->index[i]] };
+    if (shares_point(probing->to, from->index[i]))
+        return;
+    memcpy(probe.point, from->mesh.points[i], sizeof(probe.point));
+    probing->found_m[i] = (float)distance_of(&probe, probing->expected_m);
 }
 
 static double longest_edge(const struct trimesh *mesh, const uint32_t v[3])
@@ -139,61 +148,64 @@ static double longest_edge(const struct trimesh *mesh, const uint32_t v[3])
                   max_of(vec_distance(mesh->points[v[1]], mesh->points[v[2]]), vec_distance(mesh->points[v[2]], mesh->points[v[0]])));
 }
 
-static double probe(const struct probing *probing, const uint32_t v[3], const double w[3])
+static double probe_at(const struct probing *probing, size_t t, const double w[3])
 {
-    const double(*points)[3] = (const double(*)[3])probing->from->mesh.points;
-    double point[3];
+    const struct trimesh *mesh = &probing->from->mesh;
+    const uint32_t *v = mesh->tris[t];
+    struct probe probe = { .to = probing->to, .part = part_of(probing->from, (uint32_t)t) };
     for (int axis = 0; axis < 3; axis++)
-        point[axis] = w[0] * points[v[0]][axis] + w[1] * points[v[1]][axis] + w[2] * points[v[2]][axis];
-    return distance_to(probing->to->bvh, point, probing->expected_m);
+        probe.point[axis] = w[0] * mesh->points[v[0]][axis] + w[1] * mesh->points[v[1]][axis] + w[2] * mesh->points[v[2]][axis];
+    return distance_of(&probe, probing->expected_m);
 }
 
-static double probe_inside(const struct probing *probing, const uint32_t v[3], int cuts)
+static double probe_inside(const struct probing *probing, size_t t, int cuts)
 {
     double most_m = 0;
     for (int i = 0; i <= cuts; i++)
         for (int j = 0; i + j <= cuts; j++) {
             const double w[3] = { (double)i / cuts, (double)j / cuts, (double)(cuts - i - j) / cuts };
             if (i != cuts && j != cuts && i + j != 0)
-                most_m = max_of(most_m, probe(probing, v, w));
+                most_m = max_of(most_m, probe_at(probing, t, w));
         }
     return most_m;
 }
 
-/* Corners were probed; a triangle no larger than what is expected cannot stray much farther. */
-static void probe_insides(void *arg, size_t begin, size_t end)
+/* Corners are probed; a triangle no larger than what is expected cannot stray much farther. */
+static void probe_triangle(const struct probing *probing, size_t t)
 {
-    struct probing *probing = arg;
-    double most_m = 0;
-    for (size_t t = begin; t < end && most_m <= probing->limit_m && !probing->beyond; t++) {
-        const uint32_t *v = probing->from->mesh.tris[t];
-        const uint32_t *index = probing->from->index, indices[3] = { index[v[0]], index[v[1]], index[v[2]] };
-        double longest_m = longest_edge(&probing->from->mesh, v);
-        if (longest_m <= probing->expected_m || shares_triangle(probing->to, indices))
-            continue;
-        if (longest_m < SMALL * probing->expected_m)
-            most_m = max_of(most_m, probe(probing, v, (const double[3]){ 1 / 3.0, 1 / 3.0, 1 / 3.0 }));
-        else
-            most_m = max_of(most_m, probe_inside(probing, v, longest_m > LARGE * probing->expected_m ? 4 : 2));
-    }
-    note(probing, most_m);
-}
-
-static void for_all(struct workers *workers, size_t count, void (*body)(void *arg, size_t begin, size_t end), struct probing *probing)
-{
-    if (workers)
-        workers_for(workers, count, 1024, body, probing);
+    const struct deviation *from = probing->from;
+    const uint32_t *v = from->mesh.tris[t], indices[3] = { from->index[v[0]], from->index[v[1]], from->index[v[2]] };
+    double longest_m = longest_edge(&from->mesh, v), most_m;
+    if (longest_m <= probing->expected_m || shares_triangle(probing->to, indices))
+        return;
+    if (longest_m < SMALL * probing->expected_m)
+        most_m = probe_at(probing, t, (const double[3]){ 1 / 3.0, 1 / 3.0, 1 / 3.0 });
     else
-        body(probing, 0, count);
+        most_m = probe_inside(probing, t, longest_m > LARGE * probing->expected_m ? 4 : 2);
+    probing->found_m[from->mesh.point_count + t] = (float)most_m;
 }
 
-double deviation_measure(const struct deviation *from, const struct deviation *to, double expected_m, double limit_m,
-                         struct workers *workers)
+static void probe_some(void *arg, size_t begin, size_t end)
 {
-    struct probing probing = { .from = from, .to = to, .expected_m = expected_m, .limit_m = limit_m };
-    pthread_mutex_init(&probing.lock, NULL);
-    for_all(workers, from->mesh.point_count, probe_points, &probing);
-    for_all(workers, from->mesh.tri_count, probe_insides, &probing);
-    pthread_mutex_destroy(&probing.lock);
-    return probing.most_m;
+    const struct probing *probing = arg;
+    for (size_t i = begin; i < end; i++)
+        if (i < probing->from->mesh.point_count)
+            probe_point(probing, i);
+        else
+            probe_triangle(probing, i - probing->from->mesh.point_count);
+}
+
+void deviation_measure(const struct deviation *from, const struct deviation *to, double expected_m, float *apart_m, struct workers *workers)
+{
+    size_t points = from->mesh.point_count, count = points + from->mesh.tri_count;
+    struct probing probing = { .from = from, .to = to, .expected_m = expected_m, .found_m = mem_array(count, sizeof(float)) };
+    if (workers)
+        workers_for(workers, count, 1024, probe_some, &probing);
+    else
+        probe_some(&probing, 0, count);
+    for (size_t i = 0; i < count; i++) {
+        float *at = &apart_m[i < points ? from->part[from->index[i]] : part_of(from, (uint32_t)(i - points))];
+        *at = *at < probing.found_m[i] ? probing.found_m[i] : *at;
+    }
+    mem_free(probing.found_m);
 }

@@ -5,14 +5,15 @@
 #include "base/workers.h"
 #include "preprocess/geometry.h"
 
-#define LEVELS_MAX 6
+#define LEVELS_MAX 12
 
 struct level {
     uint32_t *indices;                  /* vertices of the geometry */
     struct asset_primitive *primitives; /* first_index counts from this level's first; without those that have no triangle left */
     uint32_t index_count, primitive_count;
-    float error_m;     /* no point of the finest surface is farther from this one, nor the other way round; 0 for the finest */
-    float field_error; /* after splitting: the most that the field errs along an edge, in parts of the range */
+    uint32_t whole_count; /* of indices, before splitting */
+    float error_m;        /* no point of the finest surface is farther from this one, nor the other way round; 0 for the finest */
+    float field_error;    /* after splitting: the most that the field errs along an edge, in parts of the range */
 };
 
 struct levels {
@@ -20,9 +21,12 @@ struct levels {
     size_t count;
 };
 
-/* Borders between materials, texture seams and vertex colours stay where they are, within the error. A part no larger than the error that
-   lies on a larger one within the error is left out. False: out of memory; nothing to finish. */
+/* Each level has about half of the triangles of the one before. Borders between materials, texture seams and vertex colours stay where they
+   are, within the error. Parts that lie on much larger ones are left out of levels that err by as much as they stand out (bolts in a
+   flange); so are small parts that no others are near, from where they are no larger than the error: a pixel. For those alone, no point of
+   the level is near their points. False: out of memory; nothing to finish. */
 bool levels_make(struct levels *levels, const struct geometry *geometry, struct workers *workers);
+void level_finish(struct level *level);
 void levels_finish(struct levels *levels);
 
 #endif

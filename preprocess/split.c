@@ -20,11 +20,12 @@
 #define MORE_PLACES 4.0  /* room for places, in those that the model has */
 #define FULL 2e-4        /* a level that may grow by less than that is done: each round takes half of what is left */
 
-/* How many triangles a level may get more: so much of its own, or so many, whichever is more. The finest is only drawn from near by. */
+/* How many triangles the finest level may get more: so much of its own, or so many, whichever is more. */
 #define FINEST_GROWTH 2.0
 #define FINEST_GROWTH_TRIS 30000.0
-#define GROWTH 0.4 /* or to so much of the next finer level */
-#define OF_FINER 0.5
+#define WORTH 0.75   /* a coarser level that would get more than so much of the next finer one is of no use */
+#define SHORTEST 2.0 /* pieces of coarser levels, of their error: some pixels */
+#define SLACK 0.5    /* how far away a coarser level may show what the field is, likewise */
 
 /* --- cutting -------------------------------------------------------------------------------------------------------------- */
 
@@ -226,19 +227,19 @@ static float largest_error(const struct cutmesh *mesh)
 }
 
 /* Large errors go first: should the level come to its bound, the smaller ones are what is left. */
-static void split_level(struct split *split, struct level *level, bool finest)
+static void split_level(struct split *split, struct level *level, size_t finer_tris)
 {
     static const double limits[] = { 16 * AIM, 4 * AIM, 2 * AIM, AIM };
-    split->finest = finest;
-    split->on_surface_m = finest ? 0.25 * surface_report(split->in->surface)->tolerance_m : 1.5 * (double)level->error_m;
-    split->slack_m = (double)level->error_m;
-    split->shortest_m = surface_report(split->in->surface)->tolerance_m;
+    double error_m = (double)level->error_m, tolerance_m = surface_report(split->in->surface)->tolerance_m;
+    split->finest = finer_tris == 0;
+    split->on_surface_m = split->finest ? 0.25 * tolerance_m : 1.5 * error_m;
+    split->slack_m = SLACK * error_m;
+    split->shortest_m = fmax(tolerance_m, SHORTEST * error_m);
     cutmesh_load(&split->mesh, level);
     double tris = (double)split->mesh.tri_count;
-    split->most_tris = (size_t)(finest ? tris + fmax(FINEST_GROWTH * tris, FINEST_GROWTH_TRIS)
-                                       : fmax((1 + GROWTH) * tris, OF_FINER * (double)(level[-1].index_count / 3)));
-    split_place_sensors(split, (double)level->error_m);
-    split->full = false;
+    split->most_tris = (size_t)(split->finest ? tris + fmax(FINEST_GROWTH * tris, FINEST_GROWTH_TRIS) : WORTH * (double)finer_tris);
+    split_place_sensors(split, error_m);
+    split->full = split->mesh.tri_count >= split->most_tris;
     for (size_t l = 0; l < sizeof(limits) / sizeof(*limits) && !split->full; l++)
         for (int round = 0; round < MOST_ROUNDS; round++) {
             measure_edges(split);
@@ -249,6 +250,23 @@ static void split_level(struct split *split, struct level *level, bool finest)
     measure_edges(split);
     level->field_error = largest_error(&split->mesh);
     cutmesh_store(&split->mesh, level);
+}
+
+/* A coarser level that came to its bound is given up: the next finer one is no dearer. */
+static void split_all(struct split *split, struct levels *levels)
+{
+    size_t kept = 0, finer_tris = 0;
+    for (size_t l = 0; l < levels->count; l++) {
+        struct level *level = &levels->at[l];
+        split_level(split, level, finer_tris);
+        if (finer_tris > 0 && split->full) {
+            level_finish(level);
+            continue;
+        }
+        finer_tris = split->mesh.tri_count;
+        levels->at[kept++] = *level;
+    }
+    levels->count = kept;
 }
 
 static void set_radii(struct split *split)
@@ -339,8 +357,7 @@ bool split_levels(struct levels *levels, struct geometry *geometry, const struct
     struct split split = { .in = input, .sensors = input->straight->sensor_count, .samples = straight_sample_count(input->straight) };
     *distances = NULL;
     if (start(&split, geometry)) {
-        for (size_t l = 0; l < levels->count; l++)
-            split_level(&split, &levels->at[l], l == 0);
+        split_all(&split, levels);
         *distances = columns_of(&split);
     }
     cutmesh_finish(&split.mesh);

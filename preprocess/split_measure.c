@@ -108,32 +108,46 @@ static struct sight sight_of_tri(const struct split *split, const struct cut_tri
     return sight;
 }
 
-/* Distances along the surface. False: the point is hidden inside another part, and nobody sees an error. */
-static bool measure(const struct sight *sight, const double at[3], float *geodesic_m)
-{
-    const struct split *split = sight->split;
-    struct surface_spot spot;
-    bool seen = split->finest ? surface_find_spot_on(split->in->surface, at, split->on_surface_m, sight->origin, &spot)
-                              : surface_find_spot_among(split->in->surface, at, split->on_surface_m, is_in_sight, sight, &spot);
-    if (seen)
-        surface_field_at_spot(split->in->field, split->in->surface, &spot, geodesic_m);
-    return seen;
-}
-
-/* The same; at a hidden point, those of the nearest one that is seen. */
-static void measure_always(const struct sight *sight, const double at[3], float *geodesic_m)
-{
-    struct surface_spot spot;
-    if (measure(sight, at, geodesic_m))
-        return;
-    surface_find_spot(sight->split->in->surface, at, sight->normal, &spot);
-    surface_field_at_spot(sight->split->in->field, sight->split->in->surface, &spot, geodesic_m);
-}
-
 static void to_doubles(const float point[3], double at[3])
 {
     for (int i = 0; i < 3; i++)
         at[i] = (double)point[i];
+}
+
+static void to_floats(const double point[3], float at[3])
+{
+    for (int i = 0; i < 3; i++)
+        at[i] = (float)point[i];
+}
+
+/* Distances along the surface, onto which a coarser level's point is moved. False: the point is hidden inside another part, and nobody
+   sees an error. */
+static bool measure(const struct sight *sight, float point[3], float *geodesic_m)
+{
+    const struct split *split = sight->split;
+    struct surface_spot spot;
+    double at[3];
+    to_doubles(point, at);
+    bool seen = split->finest ? surface_find_spot_on(split->in->surface, at, split->on_surface_m, sight->origin, &spot)
+                              : surface_find_spot_among(split->in->surface, at, split->on_surface_m, is_in_sight, sight, &spot);
+    if (!seen)
+        return false;
+    surface_field_at_spot(split->in->field, split->in->surface, &spot, geodesic_m);
+    if (!split->finest)
+        to_floats(spot.point_m, point);
+    return true;
+}
+
+/* The same; at a hidden point, those of the nearest one that is seen. */
+static void measure_always(const struct sight *sight, float point[3], float *geodesic_m)
+{
+    struct surface_spot spot;
+    double at[3];
+    if (measure(sight, point, geodesic_m))
+        return;
+    to_doubles(point, at);
+    surface_find_spot(sight->split->in->surface, at, sight->normal, &spot);
+    surface_field_at_spot(sight->split->in->field, sight->split->in->surface, &spot, geodesic_m);
 }
 
 /* --- edges ------------------------------------------------------------------------------------------------------------------ */
@@ -154,10 +168,8 @@ static double add_point(struct line *line, double t)
     const struct straight *straight = line->split->in->straight;
     float *geodesic_m = line->room, *shares = geodesic_m + line->split->sensors, point[3];
     int i = line->count;
-    double at[3];
     split_mix(line->a, line->b, t, point);
-    to_doubles(point, at);
-    if (line->count == POINTS || !measure(&line->sight, at, geodesic_m))
+    if (line->count == POINTS || !measure(&line->sight, point, geodesic_m))
         return 0;
     straight_shares(straight, point, geodesic_m, shares);
     for (; line->t[i - 1] > t; i--) {
@@ -334,10 +346,8 @@ static void try_inside(const struct split *split, struct split_finding *finding,
         corners[c] = shares_at(split, tri->v[c], c, room);
         middle[c] = (split_position(split, tri->v[0])[c] + split_position(split, tri->v[1])[c] + split_position(split, tri->v[2])[c]) / 3;
     }
-    double at[3];
-    to_doubles(middle, at);
     finding->error = 0;
-    if (!measure(&sight, at, geodesic_m))
+    if (!measure(&sight, middle, geodesic_m))
         return;
     straight_shares(straight, middle, geodesic_m, shares);
     finding->error = (float)straight_error_inside(straight, corners, shares, split->slack_m);
@@ -359,13 +369,11 @@ static void measure_places(void *arg, size_t begin, size_t end)
     const struct split *split = job->split;
     for (size_t i = begin; i < end; i++) {
         uint32_t place = job->first + (uint32_t)i;
-        const float *point = split->mesh.places.positions_m[place];
+        float *point = split->mesh.places.positions_m[place];
         float *geodesic_m = split->geodesic_m + place * split->sensors;
         if (job->edges) {
             struct sight sight = sight_of_edge(split, &split->mesh.cuts[job->edges[i]]);
-            double at[3];
-            to_doubles(point, at);
-            measure_always(&sight, at, geodesic_m);
+            measure_always(&sight, point, geodesic_m);
         }
         if (split->shares)
             straight_shares(split->in->straight, point, geodesic_m, split->shares + place * split->samples);

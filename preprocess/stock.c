@@ -193,7 +193,7 @@ static void unpack_levels(struct unpack *from, struct levels *levels)
         level->error_m = errors_m[i];
         level->indices = unpack_array(from, &indices, sizeof(*level->indices));
         level->primitives = unpack_array(from, &primitives, sizeof(*level->primitives));
-        level->index_count = narrow(from, indices);
+        level->index_count = level->whole_count = narrow(from, indices);
         level->primitive_count = narrow(from, primitives);
     }
     mem_free(errors_m);

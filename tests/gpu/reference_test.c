@@ -233,7 +233,7 @@ static void test_demo(void **state)
     struct site site;
     (void)state;
     assert_true(site_init(&site, "build/demo/plant.yaml", "build/demo/plant.prepared"));
-    compare_plant(&site, 0.002, 0.09);
+    compare_plant(&site, 0.002, 0.02);
     site_finish(&site);
 }
 
@@ -242,7 +242,7 @@ static void test_plant_room(void **state)
     (void)state;
     if (!exists("../shared/data/models/plm_plant_equipment.glb"))
         skip();
-    test_plant("tests/plants/plant_room.yaml", "plant_room", 0.05, 0.02);
+    test_plant("tests/plants/plant_room.yaml", "plant_room", 0.05, 0.05);
 }
 
 static void test_cookie_line(void **state)

@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the files of the simplifying share. */
+#ifndef PREPROCESS_LEVELS_IMPL_H
+#define PREPROCESS_LEVELS_IMPL_H
+#include "preprocess/levels.h"
+
+/* --- knots and parts (levels_knots.c) --- */
+
+/* Vertices that the simplifier takes for one: equal in all that it has to keep. Knots hang together in parts, by place. */
+struct knots {
+    const struct geometry *geometry;
+    size_t count, part_count;
+    uint32_t *of_vertex;
+    float (*positions_m)[3];
+    uint32_t *primitive;                      /* of each knot */
+    uint32_t *first, *vertices;               /* of each knot: its vertices */
+    uint32_t *part;                           /* of each knot */
+    float (*low_m)[3], (*high_m)[3], *size_m; /* of each part: its box, and that box's diagonal */
+    double whole_m;                           /* of them all */
+};
+
+bool knots_init(struct knots *knots, const struct geometry *geometry); /* false: out of memory; finish copes */
+void knots_finish(struct knots *knots);
+
+/* --- versions (levels_versions.c) --- */
+
+/* The triangles after so much simplifying, each version from the one before. */
+struct version {
+    uint32_t *knots; /* three to a triangle */
+    size_t count;    /* of them */
+    float *error_m;  /* of each part: no point of it is farther from its first version, nor the other way round; INFINITY: it is gone */
+    uint32_t *tris;  /* of each part */
+};
+
+#define VERSIONS_MAX 24
+struct versions {
+    struct version at[VERSIONS_MAX]; /* the first as the model is */
+    size_t count;
+};
+
+void versions_make(struct versions *versions, const struct knots *knots, struct workers *workers);
+void versions_finish(struct versions *versions);
+
+/* --- parts that far levels leave out (levels_parts.c) --- */
+
+#define OVER_MAX 4
+struct omission {
+    float from_m;                        /* left out of levels that err by so much or more; INFINITY: of none */
+    float apart_m;                       /* no point of it is farther from others, */
+    uint32_t over[OVER_MAX], over_count; /* these; more than OVER_MAX: any */
+    bool alone;                          /* there are none near; it is no larger than from_m */
+};
+
+/* Of each part. A part may be left out where it lies on others that are much larger, and where it is no more than a pixel large, and so are
+   all others of its kind around it together. */
+void omissions_find(struct omission *omissions, const struct knots *knots, struct workers *workers);
+
+#endif

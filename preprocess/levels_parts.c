@@ -1,0 +1,208 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Which parts far levels may leave out: bolts in a flange, and what is smaller than a pixel. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "preprocess/levels_impl.h"
+#include "surface/bvh.h"
+#include "surface/vec.h"
+
+#define MUCH_LARGER 4.0f /* times: a part that another may lie on */
+#define MOST_PX 8.0f     /* a part that lies on another is left out once it is no larger than so many pixels */
+#define SMALL 0.1        /* of the whole: larger parts are never left out */
+#define AROUND 4.0f      /* sizes: parts so near to each other are looked at together */
+#define PROBES 4         /* on each edge of a part's triangles */
+
+struct search {
+    const struct knots *knots;
+    struct trimesh mesh;
+    struct bvh *bvh;
+    uint32_t *part;         /* of each triangle */
+    uint32_t *first, *tris; /* of each part: its triangles */
+    struct omission *omissions;
+};
+
+static void list_tris(struct search *search)
+{
+    const struct geometry *g = search->knots->geometry;
+    size_t tris = g->index_count / 3, parts = search->knots->part_count;
+    search->part = mem_array(tris, sizeof(*search->part));
+    search->tris = mem_array(tris, sizeof(*search->tris));
+    search->first = mem_array(parts + 2, sizeof(*search->first));
+    for (size_t k = 0; k < search->knots->count; k++) {
+        const float *p = search->knots->positions_m[k];
+        trimesh_add_point(&search->mesh, (const double[3]){ (double)p[0], (double)p[1], (double)p[2] });
+    }
+    for (uint32_t t = 0; t < tris; t++) {
+        const uint32_t *v = g->indices + 3 * (size_t)t, *of = search->knots->of_vertex;
+        trimesh_add_tri(&search->mesh, of[v[0]], of[v[1]], of[v[2]], t);
+        search->part[t] = search->knots->part[of[v[0]]];
+        search->first[search->part[t] + 2]++;
+    }
+    for (size_t p = 2; p < parts + 2; p++)
+        search->first[p] += search->first[p - 1];
+    for (uint32_t t = 0; t < tris; t++)
+        search->tris[search->first[search->part[t] + 1]++] = t;
+}
+
+/* --- on others ------------------------------------------------------------------------------------------------------------ */
+
+struct larger {
+    const struct search *search;
+    float than_m;
+};
+
+static bool is_larger(const void *arg, uint32_t tri)
+{
+    const struct larger *larger = arg;
+    return larger->search->knots->size_m[larger->search->part[tri]] > larger->than_m;
+}
+
+static void note_over(struct omission *omission, uint32_t part)
+{
+    for (uint32_t i = 0; i < omission->over_count && i < OVER_MAX; i++)
+        if (omission->over[i] == part)
+            return;
+    if (omission->over_count < OVER_MAX)
+        omission->over[omission->over_count] = part;
+    omission->over_count++;
+}
+
+/* How far a triangle's edges are from larger parts. INFINITY: beyond the limit. */
+static void look_from(const struct larger *larger, uint32_t tri, double limit_m, struct omission *omission)
+{
+    const struct search *search = larger->search;
+    const struct trimesh *mesh = &search->mesh;
+    for (int i = 0; i < 3 * PROBES && !isinf(omission->apart_m); i++) {
+        const double *a = mesh->points[mesh->tris[tri][i / PROBES]], *b = mesh->points[mesh->tris[tri][(i / PROBES + 1) % 3]];
+        double t = (double)(i % PROBES) / PROBES, point[3];
+        struct bvh_place place;
+        for (int axis = 0; axis < 3; axis++)
+            point[axis] = a[axis] + t * (b[axis] - a[axis]);
+        bvh_nearest(search->bvh, point, limit_m, is_larger, larger, &place);
+        omission->apart_m = place.tri == TRIMESH_NONE ? INFINITY : fmaxf(omission->apart_m, (float)place.distance_m);
+        if (place.tri != TRIMESH_NONE)
+            note_over(omission, search->part[place.tri]);
+    }
+}
+
+static void look_for_larger(void *arg, size_t begin, size_t end)
+{
+    const struct search *search = arg;
+    for (size_t p = begin; p < end; p++) {
+        float size_m = search->knots->size_m[p];
+        struct larger larger = { search, MUCH_LARGER * size_m };
+        struct omission *omission = &search->omissions[p];
+        if ((double)size_m > SMALL * search->knots->whole_m)
+            continue;
+        for (uint32_t i = search->first[p]; i < search->first[p + 1] && !isinf(omission->apart_m); i++)
+            look_from(&larger, search->tris[i], (double)size_m / 2, omission);
+        if (!isinf(omission->apart_m))
+            omission->from_m = fmaxf(omission->apart_m, size_m / MOST_PX);
+    }
+}
+
+/* --- alone ---------------------------------------------------------------------------------------------------------------- */
+
+struct box {
+    float low_m[3], high_m[3];
+    uint32_t part;
+};
+
+static int by_low_x(const void *a, const void *b)
+{
+    const struct box *p = a, *q = b;
+    return p->low_m[0] < q->low_m[0] ? -1 : p->low_m[0] > q->low_m[0] ? 1 : p->part < q->part ? -1 : p->part > q->part;
+}
+
+static bool meet(const struct box *a, const struct box *b)
+{
+    for (int axis = 0; axis < 3; axis++)
+        if (a->high_m[axis] < b->low_m[axis] || b->high_m[axis] < a->low_m[axis])
+            return false;
+    return true;
+}
+
+/* The small parts that no larger one hides, each with room around it. */
+static size_t list_boxes(const struct search *search, struct box *boxes)
+{
+    const struct knots *knots = search->knots;
+    size_t count = 0;
+    for (uint32_t p = 0; p < knots->part_count; p++) {
+        struct box *box = &boxes[count];
+        if (!isinf(search->omissions[p].from_m) || (double)knots->size_m[p] > SMALL * knots->whole_m)
+            continue;
+        box->part = p;
+        for (int axis = 0; axis < 3; axis++) {
+            box->low_m[axis] = knots->low_m[p][axis] - AROUND / 2 * knots->size_m[p];
+            box->high_m[axis] = knots->high_m[p][axis] + AROUND / 2 * knots->size_m[p];
+        }
+        count++;
+    }
+    qsort(boxes, count, sizeof(*boxes), by_low_x);
+    return count;
+}
+
+static void join_boxes(const struct box *boxes, size_t count, uint32_t *parent)
+{
+    for (size_t i = 0; i < count; i++)
+        for (size_t j = i + 1; j < count && boxes[j].low_m[0] <= boxes[i].high_m[0]; j++)
+            if (meet(&boxes[i], &boxes[j]))
+                trimesh_join(parent, boxes[i].part, boxes[j].part);
+}
+
+/* Crowds of small parts: their size together says when they are no more than a pixel. */
+static void look_for_lonely(const struct search *search)
+{
+    const struct knots *knots = search->knots;
+    struct box *boxes = mem_array(knots->part_count, sizeof(*boxes)), *crowds = mem_array(knots->part_count, sizeof(*crowds));
+    uint32_t *parent = mem_array(knots->part_count, sizeof(*parent));
+    size_t count = list_boxes(search, boxes);
+    for (uint32_t p = 0; p < knots->part_count; p++) {
+        parent[p] = p;
+        for (int axis = 0; axis < 3; axis++) {
+            crowds[p].low_m[axis] = knots->low_m[p][axis];
+            crowds[p].high_m[axis] = knots->high_m[p][axis];
+        }
+    }
+    join_boxes(boxes, count, parent);
+    for (size_t i = 0; i < count; i++) {
+        struct box *crowd = &crowds[trimesh_root(parent, boxes[i].part)];
+        for (int axis = 0; axis < 3; axis++) {
+            crowd->low_m[axis] = fminf(crowd->low_m[axis], knots->low_m[boxes[i].part][axis]);
+            crowd->high_m[axis] = fmaxf(crowd->high_m[axis], knots->high_m[boxes[i].part][axis]);
+        }
+    }
+    for (size_t i = 0; i < count; i++) {
+        const struct box *crowd = &crowds[trimesh_root(parent, boxes[i].part)];
+        float size_m =
+            hypotf(crowd->high_m[0] - crowd->low_m[0], hypotf(crowd->high_m[1] - crowd->low_m[1], crowd->high_m[2] - crowd->low_m[2]));
+        search->omissions[boxes[i].part] = (struct omission){ .from_m = size_m, .alone = true };
+    }
+    mem_free(boxes);
+    mem_free(crowds);
+    mem_free(parent);
+}
+
+void omissions_find(struct omission *omissions, const struct knots *knots, struct workers *workers)
+{
+    struct search search = { .knots = knots, .omissions = omissions };
+    for (size_t p = 0; p < knots->part_count; p++)
+        omissions[p] = (struct omission){ .from_m = INFINITY };
+    if (knots->part_count < 2)
+        return;
+    list_tris(&search);
+    search.bvh = bvh_create(&search.mesh);
+    if (workers)
+        workers_for(workers, knots->part_count, 16, look_for_larger, &search);
+    else
+        look_for_larger(&search, 0, knots->part_count);
+    look_for_lonely(&search);
+    bvh_destroy(&search.bvh);
+    trimesh_finish(&search.mesh);
+    mem_free(search.part);
+    mem_free(search.first);
+    mem_free(search.tris);
+}

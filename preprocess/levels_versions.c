@@ -1,0 +1,104 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Halves an asset's triangles again and again, and measures what that did to each part. */
+#include <math.h>
+#include <meshoptimizer.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "preprocess/deviation.h"
+#include "preprocess/levels_impl.h"
+
+#define SHRINK 0.55        /* of the triangles of the version before, are asked for */
+#define STUCK 0.9          /* likewise; a version with more is the last */
+#define LEAST_TRIANGLES 60 /* fewer are not simplified */
+#define NEAR 0.01          /* of the size: versions that err less keep open borders as they are, or hair gaps between patches would open */
+#define BEYOND 3.0         /* times the simplifier's own error, which is a mean over planes and no bound, is about what comes out */
+
+static size_t triangles_of(const struct versions *versions)
+{
+    return versions->at[versions->count - 1].count / 3;
+}
+
+static struct version *add_version(struct versions *versions, const struct knots *knots, size_t capacity)
+{
+    struct version *version = &versions->at[versions->count++];
+    version->knots = mem_array(capacity, sizeof(*version->knots));
+    version->error_m = mem_array(knots->part_count, sizeof(*version->error_m));
+    version->tris = mem_array(knots->part_count, sizeof(*version->tris));
+    return version;
+}
+
+static void count_tris(struct version *version, const struct knots *knots)
+{
+    for (size_t i = 0; i < version->count; i += 3)
+        version->tris[knots->part[version->knots[i]]]++;
+}
+
+static size_t simplify(const struct knots *knots, const struct version *from, uint32_t *to, unsigned options, float *error)
+{
+    size_t target = (size_t)(SHRINK * (double)(from->count / 3)) * 3;
+    return meshopt_simplify(to, from->knots, from->count, &knots->positions_m[0][0], knots->count, sizeof(*knots->positions_m), target, 1,
+                            options, error);
+}
+
+/* Halves the last version. Returns the simplifier's own error, in metres. */
+static double halve(struct version *to, const struct version *from, const struct knots *knots)
+{
+    float error = 0;
+    double scale_m = (double)meshopt_simplifyScale(&knots->positions_m[0][0], knots->count, sizeof(*knots->positions_m));
+    to->count = simplify(knots, from, to->knots, meshopt_SimplifyLockBorder, &error);
+    if ((double)to->count > 1.1 * SHRINK * (double)from->count || (double)error * scale_m > NEAR * knots->whole_m)
+        to->count = simplify(knots, from, to->knots, 0, &error);
+    return (double)error * scale_m;
+}
+
+static void measure(struct version *version, const struct version *before, const struct knots *knots, const struct deviation *first,
+                    double expected_m, struct workers *workers)
+{
+    struct deviation surface;
+    deviation_init(&surface, (const float(*)[3])knots->positions_m, knots->part, knots->part_count, version->knots, version->count / 3);
+    memcpy(version->error_m, before->error_m, knots->part_count * sizeof(*version->error_m));
+    deviation_measure(&surface, first, expected_m, version->error_m, workers);
+    deviation_measure(first, &surface, expected_m, version->error_m, workers);
+    deviation_finish(&surface);
+}
+
+static void drop_last(struct versions *versions)
+{
+    struct version *version = &versions->at[--versions->count];
+    mem_free(version->knots);
+    mem_free(version->error_m);
+    mem_free(version->tris);
+    *version = (struct version){ 0 };
+}
+
+void versions_make(struct versions *versions, const struct knots *knots, struct workers *workers)
+{
+    const struct geometry *g = knots->geometry;
+    struct deviation first;
+    versions->count = 0;
+    struct version *model = add_version(versions, knots, g->index_count);
+    model->count = g->index_count;
+    for (size_t i = 0; i < model->count; i++)
+        model->knots[i] = knots->of_vertex[g->indices[i]];
+    count_tris(model, knots);
+    deviation_init(&first, (const float(*)[3])knots->positions_m, knots->part, knots->part_count, model->knots, model->count / 3);
+    while (versions->count < VERSIONS_MAX && triangles_of(versions) > LEAST_TRIANGLES) {
+        const struct version *before = &versions->at[versions->count - 1];
+        struct version *version = add_version(versions, knots, before->count);
+        double error_m = halve(version, before, knots);
+        if (version->count == 0 || (double)version->count > STUCK * (double)before->count) {
+            drop_last(versions);
+            break;
+        }
+        measure(version, before, knots, &first, fmax(BEYOND * error_m, 1e-5 * knots->whole_m), workers);
+        count_tris(version, knots);
+    }
+    deviation_finish(&first);
+}
+
+void versions_finish(struct versions *versions)
+{
+    while (versions->count)
+        drop_last(versions);
+}
