@@ -11,6 +11,7 @@ test-long: test
 	    $(MAKE) --no-print-directory config=$$c all tests && tests/run $(build)/$$c $(build)/$$c/bin unit && \
 	    tests/run $(build)/$$c $(build)/$$c/bin gpu && tests/run $(build)/$$c $(build)/$$c/bin daemon || exit 1; \
 	done
+	@KILLS=100 $(out)/tests/unit/historian_test
 	@$(MAKE) --no-print-directory scale
 # 10 million triangles in 2,000 assets, prepared, killed and continued, within 8 GB: some minutes.
 scale: all $(out)/tests/scale/facility

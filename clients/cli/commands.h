@@ -7,6 +7,7 @@
 int cmd_snapshot(int argc, char **argv); /* one picture: offline from a plant file, or from a daemon */
 int cmd_probe(int argc, char **argv);    /* load generator and latency table */
 int cmd_tags(int argc, char **argv);     /* the tags of a daemon with their values */
+int cmd_history(int argc, char **argv);  /* recorded series in and out */
 int cmd_token(int argc, char **argv);    /* who is let in by a daemon */
 
 /* Fetches PATH (with its query, e.g. "/snapshot.png?width=640&group=temperature") from the daemon at url (http://HOST:PORT/) into

@@ -13,6 +13,7 @@ static const struct command {
     { "snapshot", "one picture, from a plant file or from a daemon, as PNG", cmd_snapshot },
     { "probe", "put load on a daemon and print a table of latencies", cmd_probe },
     { "tags", "print the tags of a daemon and their values", cmd_tags },
+    { "history", "take series into a plant's history, or print what was recorded", cmd_history },
     { "token", "make, list and revoke what lets people and programs in", cmd_token },
 };
 enum { COMMANDS = sizeof(commands) / sizeof(commands[0]) };

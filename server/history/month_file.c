@@ -13,7 +13,7 @@
 
 enum { APPLICATION_ID = 0x50434849 /* "PCHI" */, BUSY_MS = 5000 };
 
-const int64_t history_level_us[LEVEL_COUNT] = { 10 * US_PER_S, 60 * US_PER_S, 3600 * US_PER_S };
+const int64_t history_level_us[LEVEL_COUNT] = { 10 * US_PER_S, 60 * US_PER_S, 600 * US_PER_S, 3600 * US_PER_S };
 
 /* Version 1. Each later version adds one list of statements that leads to it. */
 static const char schema_1[] =

@@ -10,7 +10,7 @@
 #include "history/rollup.h"
 
 enum { HISTORY_VERSION = 1 };
-enum history_level { LEVEL_10_S, LEVEL_1_MIN, LEVEL_1_H, LEVEL_COUNT };
+enum history_level { LEVEL_10_S, LEVEL_1_MIN, LEVEL_10_MIN, LEVEL_1_H, LEVEL_COUNT };
 extern const int64_t history_level_us[LEVEL_COUNT];
 
 struct history_tag {
