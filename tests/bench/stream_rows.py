@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What streaming the demo plant takes: rates and latencies while cameras move, and what a still view costs."""
+
+import random
+import time
+
+from demo_plant import DemoPlant, probe_result
+from rows import row
+
+SECONDS = 10
+SETTLED_S = 3  # as the probe has it
+STILL_TAGS = 60
+
+
+def orbit_rows(plant):
+    for sessions, size, codec in ((1, "1280x720", "jpeg"), (1, "1280x720", "h264"), (1, "1920x1080", "jpeg"), (1, "1920x1080", "h264"),
+                                  (4, "1280x720", "jpeg")):
+        label = "stream_%sp" % size.split("x")[1] + ("_x%d" % sessions if sessions > 1 else "") + ("_h264" if codec == "h264" else "")
+        found, why = plant.probe("--sessions", sessions, "--seconds", SECONDS, "--motion", "orbit", "--size", size, "--codec", codec)
+        if why or not found["input_to_frame_ms"]:
+            yield row(label, None, "", why=why or "no frame showed a camera that was sent")
+            continue
+        full, one = size == "1920x1080", sessions == 1
+        yield row(label + "_fps", round(found["fps"], 1), "1/s", (">=", 30 if full else 60) if one else None)
+        yield row(label + "_input_p50_ms", round(found["input_to_frame_ms"]["p50"], 1), "ms", ("<=", 50 if full else 25) if one else None,
+                  p95=round(found["input_to_frame_ms"]["p95"], 1))
+        yield row(label + "_kb_per_frame", round(found["kb_per_frame"], 1), "kB")
+
+
+def hold_all(plant):
+    plant.hold({tag["name"]: tag["value"] for tag in plant.tags() if tag["value"] is not None})
+
+
+def change_together(plant, seconds):
+    """STILL_TAGS tags of the group that is shown first drift together, once a second."""
+    tags = [tag for tag in plant.tags() if tag["value"] is not None]
+    shown = [tag for tag in tags if tag["group"] == tags[0]["group"]][:STILL_TAGS]
+    values = {tag["name"]: tag["value"] for tag in shown}
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        begun = time.monotonic()
+        for name in values:
+            values[name] += random.gauss(0, 0.3)
+        plant.hold(values)
+        time.sleep(max(0, begun + 1 - time.monotonic()))
+    return len(values)
+
+
+def still_rows(plant, label, codec, goals, work):
+    """Bytes and processor time of one still view at 1920x1080, once it has settled; work(seconds): what the plant does meanwhile."""
+    probe = plant.start_probe("--seconds", SECONDS + SETTLED_S, "--motion", "still", "--size", "1920x1080", "--codec", codec)
+    work(SETTLED_S + 1.5)
+    began, used = time.monotonic(), plant.daemon_cpu_s()
+    work(SECONDS - 3)
+    share = (plant.daemon_cpu_s() - used) / (time.monotonic() - began)
+    found, why = probe_result(probe)
+    kbps, cpu = goals
+    yield row(label + "_kbps", None if why else round(found["steady_kbit_per_s"], 1), "kbit/s", kbps, why=why)
+    yield row(label + "_cpu_percent", None if why else round(100 * share, 1), "%", cpu, why=why)
+
+
+def stream_rows(bin_folder):
+    random.seed(60)
+    with DemoPlant(bin_folder) as plant:
+        if plant.failed:
+            yield row("stream", None, "", why=plant.failed)
+            return
+        yield from orbit_rows(plant)
+        hold_all(plant)
+        time.sleep(2)
+        yield from still_rows(plant, "still", "h264", (("<=", 100), ("<=", 5)), lambda seconds: change_together(plant, seconds))
+        yield from still_rows(plant, "still_jpeg", "jpeg", (None, None), lambda seconds: change_together(plant, seconds))
+        time.sleep(2)
+        yield from still_rows(plant, "nothing", "h264", (("<=", 0), ("<=", 1)), time.sleep)
