@@ -124,6 +124,7 @@ $(out)/tests/unit/accuracy_test: pkg_libs += -lgmp -lmpfr
 $(out)/tests/%: $(out)/obj/tests/%.o $(support) $(archives) $(out)/lib/prep.a $(sim_archive)
 	$(link) -lcmocka
 # Where memory runs out: the test decides.
+$(out)/tests/unit/mover_test: ldflags += -Wl,--wrap=mem_try_array
 $(out)/tests/gpu/field_memory_test: ldflags += -Wl,--wrap=mem_try_array,--wrap=mesh_buffer
 .SECONDARY:
 

@@ -12,10 +12,12 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "preprocess/clusters.h"
+#include "preprocess/folder.h"
 #include "preprocess/measure.h"
 #include "preprocess/order.h"
 #include "preprocess/split.h"
 #include "preprocess/stock.h"
+#include "surface/surface_store.h"
 
 static void hash_text(XXH3_state_t *state, const char *text)
 {
@@ -164,7 +166,7 @@ static void pack_parts(struct build *build)
 {
     const struct build_input *input = build->input;
     if (input->folder && !input->stock && build->geometry.index_count / 3 >= STOCK_TRIANGLES)
-        stock_pack(&build->parts, &build->geometry, &build->levels, build->measured.surface);
+        stock_pack(&build->parts, &build->geometry, &build->levels);
 }
 
 static size_t list_nodes(const struct build *build, struct stock_node *nodes, bool *any_new)
@@ -184,6 +186,18 @@ static size_t list_nodes(const struct build *build, struct stock_node *nodes, bo
     return count;
 }
 
+static bool write_surface(const struct build *build)
+{
+    const struct build_input *input = build->input;
+    struct text packed = { 0 };
+    char *path = folder_path(input->folder, input->stock_key, FOLDER_SURFACE);
+    surface_pack(build->measured.surface, &packed);
+    bool good = kept_write(path, SURFACE_MAGIC, input->stock_key, packed.at, packed.length) == 0;
+    text_finish(&packed);
+    mem_free(path);
+    return good;
+}
+
 /* If it cannot be written, the next time takes longer; that is all. */
 static void write_stock(struct build *build)
 {
@@ -193,6 +207,8 @@ static void write_stock(struct build *build)
     const void *parts = input->stock ? stock_parts(input->stock, &size) : build->parts.at;
     struct stock_node *nodes = mem_array(input->sensor_count, sizeof(*nodes));
     size_t count = list_nodes(build, nodes, &any_new);
+    if (size && !input->stock && !write_surface(build))
+        size = 0;
     if (any_new && size)
         stock_write(input->folder, input->stock_key, parts, size, &build->output->report, nodes, count);
     mem_free(nodes);
@@ -316,7 +332,7 @@ static bool begin(struct build *build)
         return false;
     if (input->stock &&
         !stock_unpack(input->stock, build->log, build->workers, &build->geometry, &build->levels, &build->measured.surface))
-        return wrong(build->why, "%016" PRIx64 ".stock is no good, or out of memory: delete it", input->stock_key);
+        return wrong(build->why, "%016" PRIx64 ".surface is no good, or out of memory: delete it", input->stock_key);
     *report = (struct build_report){ .nodes = g->node_count,
                                      .triangles = g->index_count / 3,
                                      .vertices = g->vertex_count,

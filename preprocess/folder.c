@@ -99,7 +99,15 @@ char *folder_report(const char *folder, uint64_t key)
     return text;
 }
 
-static char *manifest_text(const struct folder_entry *entries, size_t count)
+static void add_surface(json_t *asset, const char *folder, uint64_t key)
+{
+    char *path = folder_path(folder, key, FOLDER_SURFACE);
+    if (access(path, R_OK) == 0)
+        json_object_set_new(asset, "surface", json_string(strrchr(path, '/') + 1));
+    mem_free(path);
+}
+
+static char *manifest_text(const char *folder, const struct folder_entry *entries, size_t count)
 {
     json_t *assets = json_array(), *root = json_pack("{s:i, s:o}", "format", 2, "assets", assets);
     for (size_t i = 0; i < count; i++) {
@@ -111,8 +119,10 @@ static char *manifest_text(const struct folder_entry *entries, size_t count)
             json_array_append_new(placement, json_real(entries[i].placement[n]));
         for (size_t t = 0; t < entries[i].tag_count; t++)
             json_array_append_new(tags, json_string(entries[i].tags[t]));
-        json_array_append_new(assets, json_pack("{s:s, s:s, s:s, s:s, s:o, s:o}", "id", entries[i].id, "file", file, "key", key, "recipe",
-                                                recipe, "placement", placement, "tags", tags));
+        json_t *asset = json_pack("{s:s, s:s, s:s, s:s, s:o, s:o}", "id", entries[i].id, "file", file, "key", key, "recipe", recipe,
+                                  "placement", placement, "tags", tags);
+        add_surface(asset, folder, entries[i].stock_key);
+        json_array_append_new(assets, asset);
         mem_free(file);
     }
     char *text = json_dumps(root, JSON_COMPACT);
@@ -127,6 +137,7 @@ static const struct kind { /* of files, beside the manifest */
     { ASSET, offsetof(struct folder_entry, key) },
     { REPORT, offsetof(struct folder_entry, key) },
     { FOLDER_STOCK, offsetof(struct folder_entry, stock_key) },
+    { FOLDER_SURFACE, offsetof(struct folder_entry, stock_key) },
     { FOLDER_COLUMNS, offsetof(struct folder_entry, columns_key) },
 };
 
@@ -169,7 +180,7 @@ static void remove_unnamed(const char *folder, const struct folder_entry *entrie
 
 int folder_finish(const char *folder, const struct folder_entry *entries, size_t count, size_t *removed)
 {
-    char *path = mem_printf("%s/" MANIFEST, folder), *text = manifest_text(entries, count);
+    char *path = mem_printf("%s/" MANIFEST, folder), *text = manifest_text(folder, entries, count);
     size_t size = 0;
     char *old = text_read_file(path, MANIFEST_MAX_BYTES, &size);
     int status = text ? 0 : -ENOMEM;

@@ -19,6 +19,7 @@ struct folder_file {
 char *folder_file_name(uint64_t key);
 
 #define FOLDER_STOCK ".stock"     /* stock.h */
+#define FOLDER_SURFACE ".surface" /* surface_store.h; its key is the stock's */
 #define FOLDER_COLUMNS ".columns" /* columns.h */
 /* FOLDER/KEY.ending. Free with mem_free. */
 char *folder_path(const char *folder, uint64_t key, const char *ending);

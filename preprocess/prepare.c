@@ -223,7 +223,7 @@ static void build_one(struct run *run, struct prepare_asset *asset)
                                  .sensors = asset->sensors,
                                  .sensor_count = asset->sensor_count,
                                  .key = asset->key,
-                                 .stock = asset->stock.bytes ? &asset->stock : NULL,
+                                 .stock = asset->stock.parts.bytes ? &asset->stock : NULL,
                                  .folder = run->params->folder,
                                  .stock_key = asset->stock_key,
                                  .columns_key = asset->columns_key };
@@ -276,7 +276,7 @@ static bool find_stock(const struct run *run, struct prepare_asset *asset)
 static double own_triangles(const struct prepare_asset *asset, const struct model_file *model)
 {
     struct geometry_params geometry = prepare_geometry(asset->plant);
-    return asset->stock.bytes ? asset->stock.report.triangles : (double)geometry_triangles(&model->parsed, &geometry);
+    return asset->stock.parts.bytes ? asset->stock.report.triangles : (double)geometry_triangles(&model->parsed, &geometry);
 }
 
 /* Parses the models of todo from batch_begin on, and weighs their assets, until there is enough to do. What cannot be parsed is left:

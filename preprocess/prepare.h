@@ -22,7 +22,7 @@ struct prepare_asset {
     float *surface_distances_m; /* of each sensor; NULL: failed */
     double far_m;               /* a sensor farther from its surface than this is worth a warning */
     uint64_t key, stock_key, columns_key;
-    struct stock stock; /* while it is built; bytes NULL: none */
+    struct stock stock; /* while it is built; parts.bytes NULL: none */
     size_t same_as; /* the first asset with this key, which has the file */
     enum prepare_state state;
     char *rebuilt_because; /* what was wrong with the file that was there, or NULL */

@@ -2,37 +2,32 @@
 /* Keeping what does not depend on sensors. */
 #include "preprocess/stock.h"
 
-#include <fcntl.h>
 #include <string.h>
-#include <sys/mman.h>
-#include <sys/stat.h>
-#include <unistd.h>
-#include <xxhash.h>
 
 #include "base/mem.h"
 #include "preprocess/folder.h"
 #include "surface/surface_store.h"
 
-static const char magic[8] = "PLCSTOCK";
-
-struct head {
-    char magic[8];
-    uint64_t key, parts_bytes, rest_bytes; /* they follow, one after the other */
-    uint64_t checksum;                     /* XXH3-64 of the key and all that follows */
-};
-
-static uint64_t checksum_of(const struct head *head, const void *follows)
-{
-    return XXH3_64bits_withSeed(follows, head->parts_bytes + head->rest_bytes, head->key);
-}
+#define MAGIC "PLCSTOCK"
 
 /* --- reading ------------------------------------------------------------------------------------------------------------------ */
 
+/* The parts come first, and how long they are before them. */
+const void *stock_parts(const struct stock *stock, size_t *size)
+{
+    uint64_t bytes;
+    memcpy(&bytes, stock->parts.bytes, sizeof(bytes));
+    *size = bytes;
+    return stock->parts.bytes + sizeof(bytes);
+}
+
 static bool read_rest(struct stock *stock)
 {
-    const struct head *head = stock->bytes;
-    struct unpack rest = { (const char *)stock->bytes + sizeof(*head) + head->parts_bytes, head->rest_bytes, false };
-    size_t places, name_bytes;
+    size_t size, places, name_bytes, most = stock->parts.count - sizeof(uint64_t);
+    const char *parts = stock->parts.count < sizeof(uint64_t) ? NULL : stock_parts(stock, &size);
+    if (!parts || size > most)
+        return false;
+    struct unpack rest = { parts + size, most - size, false };
     unpack_into(&rest, &stock->report, 1, sizeof(stock->report));
     double(*at)[3] = unpack_array(&rest, &places, sizeof(*at));
     char *names = unpack_array(&rest, &name_bytes, 1), *name = names;
@@ -47,38 +42,22 @@ static bool read_rest(struct stock *stock)
     return !rest.bad && stock->node_count == places;
 }
 
-static bool is_good(const struct stock *stock, uint64_t key)
-{
-    const struct head *head = stock->bytes;
-    return stock->size >= sizeof(*head) && memcmp(head->magic, magic, sizeof(magic)) == 0 && head->key == key &&
-           head->parts_bytes <= stock->size && head->rest_bytes == stock->size - sizeof(*head) - head->parts_bytes &&
-           head->checksum == checksum_of(head, head + 1);
-}
-
 bool stock_open(struct stock *stock, const char *folder, uint64_t key)
 {
-    struct stat st;
-    char *path = folder_path(folder, key, FOLDER_STOCK);
-    int fd = open(path, O_RDONLY | O_CLOEXEC);
+    char *path = folder_path(folder, key, FOLDER_STOCK), *surface = folder_path(folder, key, FOLDER_SURFACE);
     *stock = (struct stock){ 0 };
+    bool good = kept_open(&stock->parts, path, MAGIC, key) && kept_open(&stock->surface, surface, SURFACE_MAGIC, key) && read_rest(stock);
     mem_free(path);
-    if (fd >= 0 && fstat(fd, &st) == 0 && S_ISREG(st.st_mode) && st.st_size > 0) {
-        stock->size = (size_t)st.st_size;
-        stock->bytes = mmap(NULL, stock->size, PROT_READ, MAP_PRIVATE, fd, 0);
-        stock->bytes = stock->bytes == MAP_FAILED ? NULL : stock->bytes;
-    }
-    if (fd >= 0)
-        close(fd);
-    if (stock->bytes && is_good(stock, key) && read_rest(stock))
-        return true;
-    stock_close(stock);
-    return false;
+    mem_free(surface);
+    if (!good)
+        stock_close(stock);
+    return good;
 }
 
 void stock_close(struct stock *stock)
 {
-    if (stock->bytes)
-        munmap(stock->bytes, stock->size);
+    kept_close(&stock->parts);
+    kept_close(&stock->surface);
     for (size_t i = 0; i < stock->node_count; i++)
         mem_free(stock->nodes[i].name);
     mem_free(stock->nodes);
@@ -93,13 +72,6 @@ bool stock_node_place(const struct stock *stock, const char *name, double place_
             return true;
         }
     return false;
-}
-
-const void *stock_parts(const struct stock *stock, size_t *size)
-{
-    const struct head *head = stock->bytes;
-    *size = head->parts_bytes;
-    return head + 1;
 }
 
 /* --- the parts ---------------------------------------------------------------------------------------------------------------- */
@@ -199,21 +171,20 @@ static void unpack_levels(struct unpack *from, struct levels *levels)
     mem_free(errors_m);
 }
 
-void stock_pack(struct text *parts, const struct geometry *geometry, const struct levels *levels, const struct surface *surface)
+void stock_pack(struct text *parts, const struct geometry *geometry, const struct levels *levels)
 {
     pack_geometry(parts, geometry);
     pack_levels(parts, levels);
-    surface_pack(surface, parts);
 }
 
 bool stock_unpack(const struct stock *stock, struct log *log, struct workers *workers, struct geometry *geometry, struct levels *levels,
                   struct surface **surface)
 {
-    struct unpack from = { 0 };
+    struct unpack from = { 0 }, surface_from = { stock->surface.bytes, stock->surface.count, false };
     from.at = stock_parts(stock, &from.left);
     unpack_geometry(&from, geometry);
     unpack_levels(&from, levels);
-    *surface = surface_unpack(&from, log, workers);
+    *surface = from.bad ? NULL : surface_unpack(&surface_from, log, workers);
     if (*surface)
         return true;
     levels_finish(levels);
@@ -226,7 +197,6 @@ bool stock_unpack(const struct stock *stock, struct log *log, struct workers *wo
 int stock_write(const char *folder, uint64_t key, const void *parts, size_t size, const struct build_report *report,
                 const struct stock_node *nodes, size_t node_count)
 {
-    struct head head = { .key = key, .parts_bytes = size };
     struct text file = { 0 }, names = { 0 };
     double(*places)[3] = mem_array(node_count, sizeof(*places));
     char *path = folder_path(folder, key, FOLDER_STOCK);
@@ -234,16 +204,12 @@ int stock_write(const char *folder, uint64_t key, const void *parts, size_t size
         memcpy(places[i], nodes[i].place_m, sizeof(*places));
         text_add_bytes(&names, nodes[i].name, strlen(nodes[i].name) + 1);
     }
-    text_add_bytes(&file, &head, sizeof(head));
+    text_add_bytes(&file, &(uint64_t){ size }, sizeof(uint64_t));
     text_add_bytes(&file, parts, size);
     pack_array(&file, report, 1, sizeof(*report));
     pack_array(&file, places, node_count, sizeof(*places));
     pack_array(&file, names.at, names.length, 1);
-    memcpy(head.magic, magic, sizeof(magic));
-    head.rest_bytes = file.length - sizeof(head) - size;
-    head.checksum = checksum_of(&head, file.at + sizeof(head));
-    memcpy(file.at, &head, sizeof(head));
-    int status = text_write_file(path, file.at, file.length);
+    int status = kept_write(path, MAGIC, key, file.at, file.length);
     text_finish(&file);
     text_finish(&names);
     mem_free(places);

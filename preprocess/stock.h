@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What preparing an asset needs again when only its sensors change: KEY.stock beside the asset files holds what does not depend on them
-   (geometry, levels before they are split, the surface that distances are found on), so that the model need not be read. Safe to delete;
-   one that is no good counts as none. Layout: this program's own (base/pack.h). */
+/* What preparing an asset needs again when only its sensors change, so that the model need not be read: KEY.stock beside the asset files
+   holds geometry and levels before they are split, KEY.surface the surface that distances are found on (surface_store.h). Both are safe to
+   delete; one that is no good counts as none. */
 #ifndef PREPROCESS_STOCK_H
 #define PREPROCESS_STOCK_H
+#include "base/kept.h"
 #include "preprocess/build.h"
 
 #define STOCK_TRIANGLES 10000u /* of assets with fewer, making it all again is about as quick */
@@ -13,15 +14,14 @@ struct stock_node { /* where the model has a node that some sensor stands on */
     double place_m[3]; /* asset frame */
 };
 
-struct stock { /* a checked file, mapped; what it points to is its own */
-    void *bytes;
-    size_t size;
+struct stock { /* checked files; what it points to is its own */
+    struct kept parts, surface;
     struct stock_node *nodes;
     size_t node_count;
     struct build_report report;
 };
 
-/* False: there is none that is any good. */
+/* False: there is none that is any good; nothing to close. */
 bool stock_open(struct stock *stock, const char *folder, uint64_t key);
 void stock_close(struct stock *stock); /* a zeroed one is fine */
 bool stock_node_place(const struct stock *stock, const char *name, double place_m[3]);
@@ -31,8 +31,8 @@ bool stock_unpack(const struct stock *stock, struct log *log, struct workers *wo
                   struct surface **surface);
 
 /* Before levels are split. */
-void stock_pack(struct text *parts, const struct geometry *geometry, const struct levels *levels, const struct surface *surface);
-/* The parts just packed, or those of a stock that is open. Its surface_report is the last one. 0 or -errno. */
+void stock_pack(struct text *parts, const struct geometry *geometry, const struct levels *levels);
+/* The parts just packed, or those of a stock that is open. 0 or -errno. */
 int stock_write(const char *folder, uint64_t key, const void *parts, size_t size, const struct build_report *report,
                 const struct stock_node *nodes, size_t node_count);
 const void *stock_parts(const struct stock *stock, size_t *size);

@@ -6,9 +6,11 @@
 #include <pthread.h>
 #include <string.h>
 
+#include "base/kept.h"
 #include "base/mem.h"
+#include "surface/anchors.h"
 #include "surface/bvh.h"
-#include "surface/surface.h"
+#include "surface/surface_store.h"
 #include "surface/vec.h"
 
 struct ask {
@@ -26,12 +28,14 @@ struct mover {
     struct log *log;
     struct workers *workers;
     struct mover_shape shape;
+    char *surface_path;
     double size_m;
     pthread_mutex_t lock;
     pthread_cond_t idle;
     /* --- below: under lock */
     enum mover_state state;
     struct surface *surface; /* once warm: read by walks, without the lock */
+    struct anchors *anchors; /* likewise; NULL: the surface's vertices are the shape's */
     struct ask *asks;        /* waiting or running, oldest first */
     uint64_t last_ticket;
     size_t jobs; /* submitted, and not through */
@@ -86,16 +90,31 @@ static bool drop(const struct mover *mover, const double point_m[3], struct move
     return found;
 }
 
+static uint32_t nearest_vertex(const struct mover_shape *shape, const double point_m[3])
+{
+    double best2 = INFINITY;
+    uint32_t best = 0;
+    for (size_t v = 0; v < shape->vertex_count; v++) {
+        const float *p = shape->positions_m[v];
+        double d2 = vec_distance2((const double[3]){ (double)p[0], (double)p[1], (double)p[2] }, point_m);
+        if (d2 < best2) {
+            best2 = d2;
+            best = (uint32_t)v;
+        }
+    }
+    return best;
+}
+
 static bool find_place(const struct mover *mover, const struct surface *surface, const double point_m[3], struct mover_place *place)
 {
-    struct surface_place at;
+    struct surface_spot at;
     if (!isfinite(point_m[0]) || !isfinite(point_m[1]) || !isfinite(point_m[2]))
         return false;
     if (!surface)
         return drop(mover, point_m, place);
-    surface_nearest(surface, point_m, &at);
-    *place = (struct mover_place){ .distance_m = at.distance_m, .vertex = at.vertex };
-    memcpy(place->surface_m, at.position_m, sizeof(at.position_m));
+    surface_find_spot(surface, point_m, NULL, &at);
+    *place = (struct mover_place){ .distance_m = at.distance_m, .vertex = nearest_vertex(&mover->shape, at.point_m) };
+    memcpy(place->surface_m, at.point_m, sizeof(at.point_m));
     return at.distance_m < mover->size_m;
 }
 
@@ -140,6 +159,12 @@ static struct ask *begin_ask(struct mover *mover)
     return ask;
 }
 
+static bool find_distances(const struct mover *mover, const double surface_m[3], float *geodesic_m)
+{
+    return mover->anchors ? anchors_distances(mover->anchors, surface_m, geodesic_m)
+                          : surface_distances(mover->surface, (const double(*)[3])surface_m, 1, geodesic_m);
+}
+
 static void walk(void *arg)
 {
     struct mover *mover = arg;
@@ -148,7 +173,7 @@ static void walk(void *arg)
         enum mover_status status = mover->surface ? MOVER_NO_MEMORY : MOVER_NO_SURFACE;
         float *geodesic_m = mover->surface ? mem_try_array(mover->shape.vertex_count, sizeof(*geodesic_m)) : NULL;
         if (geodesic_m && find_place(mover, mover->surface, ask->point_m, &ask->place) &&
-            surface_distances(mover->surface, (const double(*)[3]) & ask->place.surface_m, 1, geodesic_m))
+            find_distances(mover, ask->place.surface_m, geodesic_m))
             status = MOVER_DONE;
         pthread_mutex_lock(&mover->lock);
         take(mover, ask->ticket);
@@ -163,15 +188,36 @@ static void walk(void *arg)
     end_job(mover);
 }
 
+/* NULL: there is none that is any good. */
+static struct surface *read_surface(const struct mover *mover, struct anchors **anchors)
+{
+    struct kept kept = { 0 };
+    struct surface *surface = NULL;
+    *anchors = NULL;
+    if (mover->surface_path && kept_open(&kept, mover->surface_path, SURFACE_MAGIC, mover->shape.surface_key))
+        surface = surface_unpack(&(struct unpack){ kept.bytes, kept.count, false }, mover->log, mover->workers);
+    kept_close(&kept);
+    if (surface)
+        *anchors = anchors_create(surface, mover->shape.positions_m, mover->shape.vertex_count, mover->shape.triangles,
+                                  mover->shape.triangle_count);
+    if (surface && !*anchors)
+        surface_destroy(&surface);
+    return surface;
+}
+
 static void warm(void *arg)
 {
     struct mover *mover = arg;
     const struct mover_shape *shape = &mover->shape;
-    struct surface *surface = surface_create(mover->log, mover->workers, shape->positions_m, shape->vertex_count, shape->triangles,
-                                             shape->triangle_count, &(struct surface_params){ .tolerance_m = shape->tolerance_m });
+    struct anchors *anchors;
+    struct surface *surface = read_surface(mover, &anchors);
     size_t waiting = 0;
+    if (!surface)
+        surface = surface_create(mover->log, mover->workers, shape->positions_m, shape->vertex_count, shape->triangles,
+                                 shape->triangle_count, &(struct surface_params){ .tolerance_m = shape->tolerance_m });
     pthread_mutex_lock(&mover->lock);
     mover->surface = surface;
+    mover->anchors = anchors;
     mover->state = surface ? MOVER_WARM : MOVER_BROKEN;
     for (const struct ask *ask = mover->asks; ask; ask = ask->next)
         waiting++;
@@ -186,6 +232,7 @@ struct mover *mover_create(struct log *log, struct workers *workers, const struc
 {
     struct mover *mover = mem_new(sizeof(*mover));
     *mover = (struct mover){ .log = log, .workers = workers, .shape = *shape, .size_m = size_of(shape), .jobs = 1 };
+    mover->surface_path = shape->surface_path ? mem_strdup(shape->surface_path) : NULL;
     pthread_mutex_init(&mover->lock, NULL);
     pthread_cond_init(&mover->idle, NULL);
     workers_submit(workers, warm, mover);
@@ -219,7 +266,9 @@ void mover_destroy(struct mover **mover_ptr)
         waiting = ask->next;
         answer(ask, MOVER_CANCELLED, NULL);
     }
+    anchors_destroy(&mover->anchors);
     surface_destroy(&mover->surface);
+    mem_free(mover->surface_path);
     pthread_mutex_destroy(&mover->lock);
     pthread_cond_destroy(&mover->idle);
     mem_free(mover);

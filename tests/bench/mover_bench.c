@@ -81,8 +81,10 @@ int main(void)
     if (view) {
         const struct asset_level *finest = &view->levels[0];
         const struct asset_primitive *first = &view->primitives[finest->first_primitive], *last = first + finest->primitive_count - 1;
-        struct mover_shape shape = { view->positions_m, finest->vertex_count, view->indices + first->first_index,
-                                     (last->first_index + last->index_count - first->first_index) / 3, 0 };
+        struct mover_shape shape = { .positions_m = view->positions_m,
+                                     .vertex_count = finest->vertex_count,
+                                     .triangles = view->indices + first->first_index,
+                                     .triangle_count = (last->first_index + last->index_count - first->first_index) / 3 };
         struct workers *workers = workers_create(0);
         struct mover *mover = mover_create(log, workers, &shape);
         while (mover_state(mover) == MOVER_WARMING)

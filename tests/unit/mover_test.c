@@ -2,10 +2,12 @@
 /* Sensors moved on a loaded asset: the distances that plantcast-prep would store, each ask answered once, and what is refused. */
 #include "surface/mover.h"
 
+#include <dirent.h>
 #include <math.h>
 #include <pthread.h>
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdatomic.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -14,15 +16,17 @@
 #include <cmocka.h>
 
 #include "base/clock.h"
+#include "base/kept.h"
 #include "base/mem.h"
 #include "scene/asset.h"
+#include "surface/surface_store.h"
 #include "tests/support/cad.h"
 #include "tests/support/prep_case.h"
 #include "tests/support/temp.h"
 
-#define CLOSE_ENOUGH 1e-3 /* of the largest distance */
-#define ON 1e-3           /* m: bridges move the surface by less */
-#define MOST 0.05         /* at single points inside another part, or where a thin piece hangs by another bridge */
+#define FAR 3e-3 /* of the largest distance */
+#define ON 1e-3  /* m: bridges move the surface by less */
+#define SEEN 1e-5 /* m: from the surface that is seen */
 
 struct box { /* where a result comes to */
     pthread_mutex_t lock;
@@ -75,6 +79,24 @@ static int tear_down(void **state)
 
 /* --- against plantcast-prep --------------------------------------------------------------------------------------------------- */
 
+/* Of the one asset that is prepared in the folder. Free with mem_free. */
+static char *surface_path(const struct prep_case *c, uint64_t *key)
+{
+    char *folder = temp_path(c->folder, "plant.prepared"), *path = NULL;
+    DIR *dir = opendir(folder);
+    assert_non_null(dir);
+    for (const struct dirent *entry; (entry = readdir(dir)) != NULL;)
+        if (strstr(entry->d_name, ".surface")) {
+            assert_null(path);
+            path = mem_printf("%s/%s", folder, entry->d_name);
+            *key = strtoull(entry->d_name, NULL, 16);
+        }
+    closedir(dir);
+    mem_free(folder);
+    assert_non_null(path);
+    return path;
+}
+
 static struct mover_shape finest_of(const struct asset *asset)
 {
     const struct asset_view *view = &asset->view;
@@ -116,7 +138,35 @@ static struct asset *prepared(struct prep_case *c)
     return asset;
 }
 
-static void compare(const struct asset *asset, size_t sensor, const struct mover_result *result)
+struct most { /* that distances may differ, of the largest one */
+    double mean, worst, far_share; /* far: by more than 0.3 % */
+};
+
+/* Vertices on what nobody sees, inside another part, are left out: plantcast-prep gives them what is near, and that is not one thing. */
+static bool *seen_of(const struct mover_shape *shape)
+{
+    struct kept kept;
+    assert_true(kept_open(&kept, shape->surface_path, SURFACE_MAGIC, shape->surface_key));
+    struct surface *surface = surface_unpack(&(struct unpack){ kept.bytes, kept.count, false }, the_log, workers);
+    assert_non_null(surface);
+    bool *seen = mem_array(shape->vertex_count, sizeof(*seen));
+    size_t hidden = 0;
+    for (size_t v = 0; v < shape->vertex_count; v++) {
+        const float *p = shape->positions_m[v];
+        struct surface_spot spot;
+        surface_find_spot(surface, (const double[3]){ (double)p[0], (double)p[1], (double)p[2] }, NULL, &spot);
+        seen[v] = spot.distance_m < SEEN;
+        hidden += !seen[v];
+    }
+    print_message("# of %zu vertices, %zu are inside another part\n", shape->vertex_count, hidden);
+    assert_true(hidden < shape->vertex_count / 20);
+    surface_destroy(&surface);
+    kept_close(&kept);
+    return seen;
+}
+
+static void compare(const struct asset *asset, size_t sensor, const struct mover_result *result, const bool *seen,
+                    const struct most *most)
 {
     const struct asset_view *view = &asset->view;
     const float *stored = view->geodesic_m + sensor * view->header->vertex_count;
@@ -124,20 +174,19 @@ static void compare(const struct asset *asset, size_t sensor, const struct mover
     size_t count = view->levels[0].vertex_count, far = 0;
     for (size_t v = 0; v < count; v++) {
         assert_true(isfinite(stored[v]) == isfinite(result->geodesic_m[v]));
-        if (!isfinite(stored[v]))
+        if (!isfinite(stored[v]) || !seen[v])
             continue;
         largest = fmax(largest, (double)stored[v]);
         worst = fmax(worst, fabs((double)stored[v] - (double)result->geodesic_m[v]));
         sum += fabs((double)stored[v] - (double)result->geodesic_m[v]);
     }
     for (size_t v = 0; v < count; v++)
-        far += isfinite(stored[v]) && fabs((double)stored[v] - (double)result->geodesic_m[v]) > 3 * CLOSE_ENOUGH * largest;
+        far += isfinite(stored[v]) && seen[v] && fabs((double)stored[v] - (double)result->geodesic_m[v]) > FAR * largest;
     print_message("# sensor %zu: differs from the stored distances by %.4f %% on average, %.4f %% at most; by over %g %% at %.2f %%\n",
-                  sensor, 100 * sum / (double)count / largest, 100 * worst / largest, 300 * CLOSE_ENOUGH,
-                  100 * (double)far / (double)count);
-    assert_true(sum / (double)count < CLOSE_ENOUGH * largest);
-    assert_true(worst < MOST * largest);
-    assert_true(far < count / 20);
+                  sensor, 100 * sum / (double)count / largest, 100 * worst / largest, 100 * FAR, 100 * (double)far / (double)count);
+    assert_true(sum / (double)count < most->mean * largest);
+    assert_true(worst < most->worst * largest);
+    assert_true((double)far <= most->far_share * (double)count);
 }
 
 static double distance(const float p[3], const double q[3])
@@ -145,10 +194,9 @@ static double distance(const float p[3], const double q[3])
     return hypot(hypot((double)p[0] - q[0], (double)p[1] - q[1]), (double)p[2] - q[2]);
 }
 
-static void a_moved_sensor_has_the_distances_that_would_be_stored(void **state)
+static void try_sensors(const struct asset *asset, const struct mover_shape *from, const bool *seen, const struct most *most)
 {
-    struct asset *asset = prepared(*state);
-    struct mover_shape shape = finest_of(asset);
+    struct mover_shape shape = *from;
     struct mover *mover = mover_create(the_log, workers, &shape);
     float *euclidean_m = mem_array(shape.vertex_count, sizeof(*euclidean_m));
     struct mover_place cold;
@@ -174,12 +222,28 @@ static void a_moved_sensor_has_the_distances_that_would_be_stored(void **state)
         assert_int_equal(box.result.status, MOVER_DONE);
         assert_int_equal(box.result.ticket, ticket);
         assert_int_equal(mover_state(mover), MOVER_WARM);
-        compare(asset, s, &box.result);
+        compare(asset, s, &box.result, seen, most);
         mem_free(box.result.geodesic_m);
     }
     mem_free(euclidean_m);
     mover_destroy(&mover);
     assert_null(mover);
+}
+
+static void a_moved_sensor_has_the_distances_that_would_be_stored(void **state)
+{
+    static const struct most as_stored = { 2e-5, 0.03, 1e-3 }; /* at single points where faces of two parts lie in each other */
+    static const struct most as_made_anew = { 1e-3, 0.07, 0.02 };
+    struct asset *asset = prepared(*state);
+    struct mover_shape shape = finest_of(asset);
+    char *path = surface_path(*state, &shape.surface_key);
+    shape.surface_path = path;
+    bool *seen = seen_of(&shape);
+    try_sensors(asset, &shape, seen, &as_stored);
+    shape.surface_key++; /* another asset's, so it is not used */
+    try_sensors(asset, &shape, seen, &as_made_anew);
+    mem_free(seen);
+    mem_free(path);
     asset_unref(&asset);
 }
 
@@ -187,7 +251,10 @@ static void a_moved_sensor_has_the_distances_that_would_be_stored(void **state)
 
 static struct mover_shape shape_of(const struct cad *cad)
 {
-    return (struct mover_shape){ (const float(*)[3])cad->positions, cad->vertex_count, cad->triangles, cad->triangle_count, 0 };
+    return (struct mover_shape){ .positions_m = (const float(*)[3])cad->positions,
+                                 .vertex_count = cad->vertex_count,
+                                 .triangles = cad->triangles,
+                                 .triangle_count = cad->triangle_count };
 }
 
 static void a_point_that_is_far_away_is_refused(void **state)
@@ -216,7 +283,8 @@ static void an_asset_without_surface_is_said_to_be_broken(void **state)
 {
     const float line[3][3] = { { 0, 0, 0 }, { 1, 0, 0 }, { 2, 0, 0 } };
     const uint32_t flat[3] = { 0, 1, 2 };
-    struct mover_shape shapes[2] = { { line, 3, flat, 1, 0 }, { line, 3, flat, 0, 0 } };
+    struct mover_shape shapes[2] = { { .positions_m = line, .vertex_count = 3, .triangles = flat, .triangle_count = 1 },
+                                     { .positions_m = line, .vertex_count = 3, .triangles = flat } };
     struct mover_place place;
     (void)state;
     for (int i = 0; i < 2; i++) {
@@ -234,6 +302,100 @@ static void an_asset_without_surface_is_said_to_be_broken(void **state)
         }
         mover_destroy(&mover);
     }
+}
+
+/* --- where memory runs out ----------------------------------------------------------------------------------------------------- */
+
+static atomic_int until_fault; /* the so-manyth array that may fail does; 0: none */
+void *__real_mem_try_array(size_t count, size_t bytes_each);
+void *__wrap_mem_try_array(size_t count, size_t bytes_each);
+void *__wrap_mem_try_array(size_t count, size_t bytes_each)
+{
+    int before = atomic_load(&until_fault);
+    while (before > 0 && !atomic_compare_exchange_weak(&until_fault, &before, before - 1))
+        ;
+    return before == 1 ? NULL : __real_mem_try_array(count, bytes_each);
+}
+
+static void wait_until_warm(struct mover *mover)
+{
+    while (mover_state(mover) == MOVER_WARMING)
+        clock_sleep_ns(NS_PER_MS);
+}
+
+static void ask_and_wait(struct mover *mover, struct box *box)
+{
+    box_init(box);
+    assert_true(mover_ask(mover, (const double[3]){ 0.25, 0.5, 0 }, put_into_box, box) > 0);
+    wait_for(box, 1);
+}
+
+/* Each array of a walk fails once; then the next ask is answered as ever. */
+static void try_walks_without_memory(struct mover *mover, const struct cad *plate)
+{
+    int failed = 0;
+    for (int n = 1;; n++) {
+        struct box box;
+        atomic_store(&until_fault, n);
+        ask_and_wait(mover, &box);
+        bool reached = atomic_exchange(&until_fault, 0) == 0;
+        assert_int_equal(mover_state(mover), MOVER_WARM);
+        assert_int_equal(box.result.status, reached ? MOVER_NO_MEMORY : MOVER_DONE);
+        assert_true((box.result.geodesic_m != NULL) == !reached);
+        for (size_t v = 0; !reached && v < plate->vertex_count; v++)
+            assert_float_equal(box.result.geodesic_m[v],
+                               hypot((double)plate->positions[v][0] - 0.25, (double)plate->positions[v][1] - 0.5), 1e-4);
+        mem_free(box.result.geodesic_m);
+        if (!reached)
+            break;
+        failed++;
+    }
+    print_message("# a walk asks for memory %d times, and survives each that fails\n", failed);
+    assert_true(failed >= 3);
+}
+
+static void without_memory_it_says_so_and_goes_on(void **state)
+{
+    struct prep_case *c = *state;
+    struct cad plate = { 0 };
+    struct cad_random chance = { 8 };
+    struct text packed = { 0 };
+    struct log *quiet = log_create(LOG_ERROR + 1);
+    cad_plate(&plate, &chance, 20, 20, 1, 1, 0);
+    struct mover_shape shape = shape_of(&plate);
+    struct surface *surface = surface_create(quiet, NULL, shape.positions_m, shape.vertex_count, shape.triangles, shape.triangle_count,
+                                             &(struct surface_params){ 0 });
+    char *path = temp_path(c->folder, "plate.surface");
+    surface_pack(surface, &packed);
+    assert_int_equal(kept_write(path, SURFACE_MAGIC, 7, packed.at, packed.length), 0);
+    for (int kept = 0; kept < 2; kept++) {
+        int broken = 0, warm = 0;
+        shape.surface_path = kept ? path : NULL;
+        shape.surface_key = 7;
+        for (bool reached = true; reached;) {
+            struct box box;
+            atomic_store(&until_fault, broken + warm + 1);
+            struct mover *mover = mover_create(quiet, workers, &shape);
+            wait_until_warm(mover);
+            reached = atomic_exchange(&until_fault, 0) == 0;
+            ask_and_wait(mover, &box);
+            assert_int_equal(box.result.status, mover_state(mover) == MOVER_WARM ? MOVER_DONE : MOVER_NO_SURFACE);
+            assert_true(reached || mover_state(mover) == MOVER_WARM);
+            broken += reached && mover_state(mover) == MOVER_BROKEN;
+            warm += reached && mover_state(mover) == MOVER_WARM; /* the kept surface was too large: it is made anew */
+            mem_free(box.result.geodesic_m);
+            if (!reached)
+                try_walks_without_memory(mover, &plate);
+            mover_destroy(&mover);
+        }
+        print_message("# getting warm asks for memory %d times: broken %d times without\n", broken + warm, broken);
+        assert_true(kept ? warm >= 10 : broken >= 1);
+    }
+    surface_destroy(&surface);
+    text_finish(&packed);
+    mem_free(path);
+    cad_finish(&plate);
+    log_destroy(&quiet);
 }
 
 static void hold(void *arg)
@@ -338,6 +500,7 @@ int main(void)
         cmocka_unit_test(a_moved_sensor_has_the_distances_that_would_be_stored),
         cmocka_unit_test(a_point_that_is_far_away_is_refused),
         cmocka_unit_test(an_asset_without_surface_is_said_to_be_broken),
+        cmocka_unit_test(without_memory_it_says_so_and_goes_on),
         cmocka_unit_test(what_waits_is_cancelled),
         cmocka_unit_test(every_ask_is_answered_once),
     };

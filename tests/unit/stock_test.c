@@ -167,7 +167,7 @@ static void what_is_damaged_is_made_anew(void **state)
         char *tags = mem_printf("a,,,,t,A,,1.3,0,0.0%d\nb,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,TT-1,,,\n", 2 + cut);
         bool model_read;
         json_decref(prepare(c, first_tags, "kept", &model_read));
-        char *stock = kept_file(c, ".stock"), *columns = kept_file(c, ".columns");
+        char *stock = kept_file(c, cut ? ".surface" : ".stock"), *columns = kept_file(c, ".columns");
         damage(stock, cut);
         damage(columns, cut);
         json_t *asset = prepare(c, tags, "kept", &model_read);
@@ -187,14 +187,16 @@ static void what_nothing_needs_any_more_is_removed(void **state)
     struct prep_case *c = *state;
     bool model_read;
     json_decref(prepare(c, first_tags, "kept", &model_read));
-    char *stock = kept_file(c, ".stock"), *columns = kept_file(c, ".columns");
+    char *stock = kept_file(c, ".stock"), *surface = kept_file(c, ".surface"), *columns = kept_file(c, ".columns");
     char *other = mem_strdup(plant_text);
     memcpy(strstr(other, "up: z"), "up: y", 5);
     prep_case_plant(c, other);
     json_decref(prepare(c, "a,,,,t,A,,1.3,0,0\n", "kept", &model_read));
     assert_true(model_read);
     assert_int_not_equal(access(stock, F_OK), 0);
+    assert_int_not_equal(access(surface, F_OK), 0);
     assert_int_not_equal(access(columns, F_OK), 0);
+    mem_free(surface);
     mem_free(stock);
     mem_free(columns);
     mem_free(other);

@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A head before the bytes: what it is, of what, how many, and their checksum. */
+#include "base/kept.h"
+
+#include <fcntl.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <xxhash.h>
+
+#include "base/text.h"
+
+struct head {
+    char magic[8];
+    uint64_t key, count;
+    uint64_t checksum; /* XXH3-64 of the bytes, seeded with the key */
+};
+
+static bool is_good(const struct kept *kept, const char *magic, uint64_t key)
+{
+    const struct head *head = kept->map;
+    return kept->map_bytes >= sizeof(*head) && memcmp(head->magic, magic, sizeof(head->magic)) == 0 && head->key == key &&
+           head->count == kept->map_bytes - sizeof(*head) && head->checksum == XXH3_64bits_withSeed(head + 1, head->count, key);
+}
+
+bool kept_open(struct kept *kept, const char *path, const char *magic, uint64_t key)
+{
+    struct stat st;
+    int fd = open(path, O_RDONLY | O_CLOEXEC);
+    *kept = (struct kept){ 0 };
+    if (fd >= 0 && fstat(fd, &st) == 0 && S_ISREG(st.st_mode) && st.st_size > 0) {
+        kept->map_bytes = (size_t)st.st_size;
+        kept->map = mmap(NULL, kept->map_bytes, PROT_READ, MAP_PRIVATE, fd, 0);
+        kept->map = kept->map == MAP_FAILED ? NULL : kept->map;
+    }
+    if (fd >= 0)
+        close(fd);
+    if (!kept->map || !is_good(kept, magic, key)) {
+        kept_close(kept);
+        return false;
+    }
+    kept->bytes = (const char *)kept->map + sizeof(struct head);
+    kept->count = kept->map_bytes - sizeof(struct head);
+    return true;
+}
+
+void kept_close(struct kept *kept)
+{
+    if (kept->map)
+        munmap(kept->map, kept->map_bytes);
+    *kept = (struct kept){ 0 };
+}
+
+int kept_write(const char *path, const char *magic, uint64_t key, const void *bytes, size_t count)
+{
+    struct head head = { .key = key, .count = count, .checksum = XXH3_64bits_withSeed(bytes, count, key) };
+    struct text file = { 0 };
+    memcpy(head.magic, magic, sizeof(head.magic));
+    text_add_bytes(&file, &head, sizeof(head));
+    text_add_bytes(&file, bytes, count);
+    int status = text_write_file(path, file.at, file.length);
+    text_finish(&file);
+    return status;
+}

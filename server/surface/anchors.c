@@ -1,0 +1,173 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Finding vertices on a surface by their place. */
+#include "surface/anchors.h"
+
+#include <string.h>
+#include <xxhash.h>
+
+#include "base/mem.h"
+#include "surface/surface_state.h"
+#include "surface/vec.h"
+
+#define GRAIN 512
+#define ON_SURFACE 1e-3 /* mean edges: as near, a vertex lies on a face */
+
+struct anchor {
+    uint32_t point; /* of the surface, or TRIMESH_NONE: spot */
+    struct surface_spot spot;
+};
+
+struct anchors {
+    const struct surface *surface;
+    size_t count;
+    struct anchor *at;
+};
+
+struct table { /* points that have triangles, by place */
+    const struct trimesh *mesh;
+    uint32_t *points;
+    size_t mask;
+};
+
+static size_t hash_of(const struct table *table, const double place_m[3])
+{
+    return XXH3_64bits(place_m, 3 * sizeof(*place_m)) & table->mask;
+}
+
+/* The slot that has the place, or the free one where it would be. */
+static size_t slot_of(const struct table *table, const double place_m[3])
+{
+    size_t slot = hash_of(table, place_m);
+    while (table->points[slot] != TRIMESH_NONE &&
+           memcmp(table->mesh->points[table->points[slot]], place_m, sizeof(*table->mesh->points)) != 0)
+        slot = (slot + 1) & table->mask;
+    return slot;
+}
+
+static bool table_init(struct table *table, const struct trimesh *mesh)
+{
+    size_t size = 16;
+    while (size < 2 * mesh->point_count)
+        size *= 2;
+    *table = (struct table){ mesh, mem_try_array(size, sizeof(*table->points)), size - 1 };
+    if (!table->points)
+        return false;
+    memset(table->points, 0xff, size * sizeof(*table->points));
+    for (size_t t = 0; t < mesh->tri_count; t++)
+        for (int i = 0; i < 3; i++)
+            table->points[slot_of(table, mesh->points[mesh->tris[t][i]])] = mesh->tris[t][i];
+    return true;
+}
+
+struct job {
+    struct anchors *anchors;
+    struct table table;
+    const float (*positions_m)[3];
+    double (*normals)[3]; /* of no certain length */
+};
+
+static bool find_normals(struct job *job, const uint32_t *triangles, size_t triangle_count)
+{
+    job->normals = mem_try_array(job->anchors->count, sizeof(*job->normals));
+    for (size_t t = 0; job->normals && t < triangle_count; t++) {
+        const uint32_t *v = triangles + 3 * t;
+        double p[3][3], ab[3], ac[3], n[3];
+        for (int i = 0; i < 3; i++)
+            for (int axis = 0; axis < 3; axis++)
+                p[i][axis] = (double)job->positions_m[v[i]][axis];
+        vec_sub(p[1], p[0], ab);
+        vec_sub(p[2], p[0], ac);
+        vec_cross(ab, ac, n);
+        for (int i = 0; i < 3; i++)
+            for (int axis = 0; axis < 3; axis++)
+                job->normals[v[i]][axis] += n[axis];
+    }
+    return job->normals != NULL;
+}
+
+struct facing {
+    const struct trimesh *mesh;
+    const double *normal;
+};
+
+static bool faces(const void *arg, uint32_t tri)
+{
+    const struct facing *facing = arg;
+    const uint32_t *v = facing->mesh->tris[tri];
+    double ab[3], ac[3], n[3];
+    vec_sub(facing->mesh->points[v[1]], facing->mesh->points[v[0]], ab);
+    vec_sub(facing->mesh->points[v[2]], facing->mesh->points[v[0]], ac);
+    vec_cross(ab, ac, n);
+    return vec_dot(n, facing->normal) > 0;
+}
+
+static void find_spot(const struct surface *surface, const double place_m[3], const double normal[3], struct surface_spot *spot)
+{
+    struct bvh_place at;
+    bvh_nearest(surface->bvh, place_m, ON_SURFACE * surface->edge_m, faces, &(struct facing){ &surface->visible, normal }, &at);
+    if (at.tri == TRIMESH_NONE) {
+        surface_find_spot(surface, place_m, normal, spot);
+        return;
+    }
+    *spot = (struct surface_spot){ .tri = at.tri, .distance_m = at.distance_m };
+    memcpy(spot->point_m, at.point, sizeof(spot->point_m));
+    memcpy(spot->weights, at.weights, sizeof(spot->weights));
+}
+
+static void find_some(void *arg, size_t begin, size_t end)
+{
+    struct job *job = arg;
+    for (size_t v = begin; v < end; v++) {
+        const float *p = job->positions_m[v];
+        const double place_m[3] = { (double)p[0], (double)p[1], (double)p[2] };
+        struct anchor *anchor = &job->anchors->at[v];
+        anchor->point = job->table.points[slot_of(&job->table, place_m)];
+        if (anchor->point == TRIMESH_NONE)
+            find_spot(job->anchors->surface, place_m, job->normals[v], &anchor->spot);
+    }
+}
+
+struct anchors *anchors_create(const struct surface *surface, const float (*positions_m)[3], size_t count, const uint32_t *triangles,
+                               size_t triangle_count)
+{
+    struct anchors *anchors = mem_new(sizeof(*anchors));
+    struct job job = { .anchors = anchors, .positions_m = positions_m };
+    *anchors = (struct anchors){ surface, count, mem_try_array(count, sizeof(*anchors->at)) };
+    if (!anchors->at || !table_init(&job.table, &surface->mesh) || !find_normals(&job, triangles, triangle_count)) {
+        log_err(surface->log, "surface of %zu points: out of memory for %zu vertices on it", surface->mesh.point_count, count);
+        anchors_destroy(&anchors);
+    } else if (surface->workers) {
+        workers_for(surface->workers, count, GRAIN, find_some, &job);
+    } else {
+        find_some(&job, 0, count);
+    }
+    mem_free(job.table.points);
+    mem_free(job.normals);
+    return anchors;
+}
+
+void anchors_destroy(struct anchors **anchors)
+{
+    if (!*anchors)
+        return;
+    mem_free((*anchors)->at);
+    mem_free(*anchors);
+    *anchors = NULL;
+}
+
+bool anchors_distances(const struct anchors *anchors, const double point_m[3], float *out)
+{
+    const struct surface *surface = anchors->surface;
+    struct surface_field field;
+    if (!surface_field_init(&field, surface, (const double(*)[3])point_m, 1, NULL))
+        return false;
+    for (size_t v = 0; v < anchors->count; v++) {
+        const struct anchor *anchor = &anchors->at[v];
+        if (anchor->point != TRIMESH_NONE)
+            out[v] = field.distances_m[anchor->point];
+        else
+            surface_field_at_spot(&field, surface, &anchor->spot, &out[v]);
+    }
+    surface_field_finish(&field);
+    return true;
+}

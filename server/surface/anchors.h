@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Vertices that a surface was not made from, held fast on it: those of an asset file, which has some more than its model and another order.
+   Thread: create and destroy from one thread; distances from any. */
+#ifndef SURFACE_ANCHORS_H
+#define SURFACE_ANCHORS_H
+#include "surface/surface.h"
+
+struct anchors;
+
+/* Each at the surface's point of the same place; else at the nearest spot that is seen, and where faces lie on each other, on that which
+   looks the same way as its own triangles. surface must outlive it, the others need not. NULL: out of memory, logged. Spread over the
+   surface's workers. */
+struct anchors *anchors_create(const struct surface *surface, const float (*positions_m)[3], size_t count, const uint32_t *triangles,
+                               size_t triangle_count);
+void anchors_destroy(struct anchors **anchors); /* &NULL is fine; leaves NULL */
+
+/* out[vertex]: metres along the surface from the place nearest to point_m. False: out of memory, logged. */
+bool anchors_distances(const struct anchors *anchors, const double point_m[3], float *out);
+
+#endif
