@@ -12,13 +12,18 @@ test-long: test
 	    tests/run $(build)/$$c $(build)/$$c/bin gpu && tests/run $(build)/$$c $(build)/$$c/bin daemon || exit 1; \
 	done
 	@KILLS=100 $(out)/tests/unit/historian_test
-	@$(MAKE) --no-print-directory scale
+	@$(MAKE) --no-print-directory scale soak
 # 10 million triangles in 2,000 assets, prepared, killed and continued, within 8 GB: some minutes.
 scale: all $(out)/tests/scale/facility
 	@tests/scale/run $(out) $(bin) --kill
 
+# Half an hour of clients that come, drag, stall and are cut off.
+soak: all tests
+	@PLANTCAST_BIN=$(bin) PLANTCAST_OUT=$(out) SOAK_S=$(or $(SOAK_S),1800) node --test tests/e2e/flow.mjs
+.PHONY: soak
+
 checked: all tests demo style layers headers
-tests: $(unit_tests) $(gpu_tests) $(out)/tests/scale/facility
+tests: $(unit_tests) $(gpu_tests) $(out)/tests/scale/facility $(out)/tests/relay/relay
 unit: tests
 	@tests/run $(out) $(bin) unit
 gpu: tests
@@ -34,7 +39,7 @@ headers: | $(gen)/glad/include/glad/gl.h
 
 bench_programs := $(patsubst tests/%.c,$(out)/tests/%,$(wildcard tests/bench/*_bench.c))
 bench: test-deps
-	@$(MAKE) --no-print-directory all demo $(bench_programs) $(out)/tests/scale/facility
+	@$(MAKE) --no-print-directory all demo $(bench_programs) $(out)/tests/scale/facility $(out)/tests/relay/relay
 	@[ "$(PEERS)" != 1 ] || deploy/deps long
 	@PEERS=$(PEERS) tests/bench/run $(out) $(bin)
 # The paper's experiments on a GPU.

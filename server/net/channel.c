@@ -68,6 +68,12 @@ void channel_on_ack(struct channel *channel, const struct channel_ack *ack)
         smooth(&channel->ns_per_byte, ns_per_byte);
 }
 
+void channel_on_bytes(struct channel *channel, size_t bytes, int64_t took_ns)
+{
+    int64_t transfer_ns = more(took_ns - channel_rtt_ns(channel), SHORTEST_NS);
+    smooth(&channel->ns_per_byte, (double)transfer_ns / (double)(bytes + 1));
+}
+
 int64_t channel_transfer_ns(const struct channel *channel, double bytes)
 {
     return (int64_t)(bytes * channel->ns_per_byte);

@@ -25,6 +25,8 @@ struct channel_ack {
 };
 
 void channel_on_ack(struct channel *channel, const struct channel_ack *ack);
+/* So many bytes of other messages were there after so long. */
+void channel_on_bytes(struct channel *channel, size_t bytes, int64_t took_ns);
 void channel_on_pong(struct channel *channel, int64_t rtt_ns, int64_t now_ns);
 int64_t channel_rtt_ns(const struct channel *channel);
 /* The round trip was measured so long ago that nothing may be under way when it is measured next. */

@@ -13,6 +13,7 @@ static const int64_t HARD_NS = 40 * NS_PER_MS;  /* decoding that takes longer ca
 static const int64_t EASY_NS = 20 * NS_PER_MS;
 static const int64_t HARD_FOR_NS = 500 * NS_PER_MS, EASY_FOR_NS = 3 * NS_PER_S;
 static const double SHARE = 0.25;
+static const double BYTES_PER_PIXEL = 0.08; /* of the first step, before any was seen */
 
 /* Bytes beside those of the first step: measured on the demo plant at 1920x1080. */
 static const struct {
@@ -56,6 +57,12 @@ static int best_within(const struct ladder *ladder, const struct channel *channe
            channel_transfer_ns(channel, ladder->unit_bytes * steps[step].bytes) > limit_ns * patience_with(step))
         step++;
     return step;
+}
+
+void ladder_begin(struct ladder *ladder, const struct channel *channel, double pixels)
+{
+    ladder->unit_bytes = BYTES_PER_PIXEL * pixels;
+    ladder->step = best_within(ladder, channel, SLOW_NS);
 }
 
 static void go_up(struct ladder *ladder, int step, int64_t now_ns)

@@ -23,6 +23,8 @@ struct ladder { /* ladder_init */
 };
 
 void ladder_init(struct ladder *ladder);
+/* Before the first picture, of so many pixels: by what is known of the network already. */
+void ladder_begin(struct ladder *ladder, const struct channel *channel, double pixels);
 struct rung ladder_rung(const struct ladder *ladder);
 /* A moving picture of that step was acknowledged. */
 void ladder_on_ack(struct ladder *ladder, const struct channel *channel, int step, size_t bytes, int64_t now_ns);

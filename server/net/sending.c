@@ -197,14 +197,17 @@ static bool write_end(struct hub *hub, struct stream *stream)
 static bool ping_due(const struct stream *stream, int64_t now_ns)
 {
     const struct pacer *pacer = &stream->session->pacer;
+    bool first = stream->first == FIRST_TEXTS && stream->first_bytes > 0 && !session_has_text(stream->session, now_ns);
     if (stream->sending || stream->ping != stream->pong || pacer->flight_count > 0)
         return false;
-    return stream->ping == 0 || (pacer->acked.sent_ns > stream->ping_ns && now_ns - stream->ping_ns >= PING_NS);
+    return stream->ping == 0 || first || (pacer->acked.sent_ns > stream->ping_ns && now_ns - stream->ping_ns >= PING_NS);
 }
 
 static bool write_ping(struct hub *hub, struct stream *stream, int64_t now_ns)
 {
     stream->ping++;
+    if (stream->first == FIRST_TEXTS && stream->first_bytes > 0)
+        stream->first = FIRST_PING;
     stream->ping_ns = now_ns;
     return hub_write(hub, stream->wsi, &stream->ping, sizeof(stream->ping), LWS_WRITE_PING);
 }
@@ -219,7 +222,12 @@ void stream_on_pong(struct stream *stream, const void *bytes, size_t count)
     if (number != stream->ping || stream->pong == stream->ping)
         return;
     stream->pong = stream->ping;
-    session_on_pong(stream->session, now_ns - stream->ping_ns, now_ns);
+    if (stream->first == FIRST_PING) {
+        session_begin(stream->session, stream->first_bytes, now_ns - stream->first_ns);
+        stream->first = FIRST_DONE;
+    } else {
+        session_on_pong(stream->session, now_ns - stream->ping_ns, now_ns);
+    }
 }
 
 /* --- all of it ----------------------------------------------------------------------------------------------------------------- */
@@ -228,6 +236,14 @@ bool stream_has_output(const struct stream *stream, int64_t now_ns)
 {
     return stream->sending || stream->cut || stream->session->ready || session_has_text(stream->session, now_ns) ||
            ping_due(stream, now_ns);
+}
+
+static void note_first(struct stream *stream, size_t bytes, int64_t now_ns)
+{
+    if (!stream->first_bytes)
+        stream->first_ns = now_ns;
+    if (stream->first == FIRST_TEXTS)
+        stream->first_bytes += bytes;
 }
 
 /* Texts go between pictures, never into one. */
@@ -246,6 +262,7 @@ bool stream_send(struct hub *hub, struct stream *stream)
         return write_ping(hub, stream, now_ns);
     padded(&text);
     if (session_next_text(session, now_ns, clock_utc_ns(), &text)) {
+        note_first(stream, text.length, now_ns);
         good = write_text(stream, text.at + LWS_PRE, text.length - LWS_PRE);
     } else if ((stream->sending = session_next_picture(session, now_ns, &stream->seq))) {
         stages_sent(&hub->stages, stream->sending, now_ns);

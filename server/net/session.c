@@ -87,6 +87,8 @@ void session_on_input(struct session *session, int64_t now_ns)
     session->refined = REFINED_NOT;
     session->failure_said = false;
     session->input_ns = now_ns;
+    if (!session->starting_ns)
+        session->starting_ns = now_ns;
 }
 
 static void set_camera(struct session *session, const struct message *message)

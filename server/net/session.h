@@ -63,6 +63,8 @@ struct session {
     enum { REFINED_NOT, REFINED_DRAFT, REFINED_FULL } refined; /* how the view as it is has been asked for in the still tier */
     double still_bytes;                               /* of the last picture of full quality; 0: none was acknowledged */
     struct pacer pacer;
+    bool starting;        /* the first picture waits for session_begin, a moment at most */
+    int64_t starting_ns;
     uint64_t newest_number; /* of the pictures that came */
     struct picture *ready;  /* next to be sent, oldest first: newest wins, but for what only changes the one before */
     bool measured;          /* pacer.acked is new */
@@ -130,6 +132,8 @@ void session_wrote(struct session *session, bool all, int64_t now_ns);
 /* The picture under way is not worth sending on: it is refined, and what it shows has changed since, or nothing moves at all. */
 bool session_gives_up(const struct session *session, const struct picture *sending, size_t bytes_left, int64_t now_ns);
 void session_gave_up(struct session *session); /* it was cut short */
+/* What was said at first, so many bytes, was there after so long: the first picture can be made as large as the network takes. */
+void session_begin(struct session *session, size_t bytes, int64_t took_ns);
 void session_on_pong(struct session *session, int64_t rtt_ns, int64_t now_ns);
 enum pacer_state session_state(const struct session *session, int64_t now_ns);
 

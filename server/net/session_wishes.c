@@ -10,6 +10,7 @@ static const int64_t LOADED_SHARE_NS = 3 * NS_PER_S;      /* but after so long w
 static const int64_t PATIENCE_NS = 10 * NS_PER_S;        /* others may move for so long before one is refined all the same */
 static const int64_t SLOW_STILL_NS = 500 * NS_PER_MS;    /* refined pictures that take the network longer come in two stages */
 static const int64_t CALM_NS = 1000 * NS_PER_MS;         /* the second one after so long */
+static const int64_t START_NS = 1000 * NS_PER_MS;        /* the network is not waited for any longer */
 static const int64_t GIVE_UP_NS = 100 * NS_PER_MS;       /* what is left of a refined picture, when its view has changed */
 static const double STILL_OVER_MOVING = 3;               /* in bytes, before one was seen */
 static const struct encoder_params STILL = { .quality = 92, .full_chroma = true }, DRAFT = { .quality = 42 };
@@ -188,6 +189,8 @@ void session_choose_again(struct session *session, int64_t now_ns)
 
 bool session_wish(const struct session *session, int64_t now_ns, struct wish *wish)
 {
+    if (session->starting && now_ns - session->starting_ns < START_NS)
+        return false;
     bool may_add = !session->ready && pacer_may_ask(&session->pacer, now_ns);
     if (!session->hello || session->hidden || (!may_add && session->pacer.asked == 0))
         return false;
@@ -263,6 +266,14 @@ void session_on_shown(struct session *session)
     if (acked->note.full)
         session->still_bytes = (double)acked->bytes;
     session->measured = true;
+}
+
+void session_begin(struct session *session, size_t bytes, int64_t took_ns)
+{
+    const struct view *view = session_view(session);
+    channel_on_bytes(&session->pacer.channel, bytes, took_ns);
+    ladder_begin(&session->pacer.ladder, &session->pacer.channel, (double)view->width_px * view->height_px);
+    session->starting = false;
 }
 
 void session_on_pong(struct session *session, int64_t rtt_ns, int64_t now_ns)

@@ -38,6 +38,7 @@ static void on_open(struct hub *hub, struct lws *wsi, struct stream **slot)
     struct stream *stream = mem_new(sizeof(*stream));
     *stream = (struct stream){ .wsi = wsi, .next = hub->streams };
     stream->session = session_create(&hub->world, hub->next_client++, clock_mono_ns());
+    stream->session->starting = true;
     stream->peer = visitor_of(wsi)->client;
     stream->session->role = visitor_of(wsi)->role;
     stream->session->holder = visitor_of(wsi)->holder;

@@ -22,6 +22,9 @@ struct stream {
     bool cut;    /* the picture that was being sent is given up: end its message */
     uint64_t ping, pong; /* numbers of the last ones */
     int64_t ping_ns;     /* when the last ping was sent */
+    enum { FIRST_TEXTS, FIRST_PING, FIRST_DONE } first; /* the texts before the first picture, and a ping behind them, tell the bandwidth */
+    size_t first_bytes;
+    int64_t first_ns; /* when the first of them was sent */
     struct marker_said said;
     bool throttled;
     int close_code; /* 0: stays open */

@@ -138,6 +138,8 @@ export class PlainClient {
             this.texts.push(JSON.parse(message.toString()));
         } else {
             const frame = readFrame(message);
+            if (frame.payload.length < frame.payload_bytes)
+                return; // given up by the server
             this.frames.push({ ...frame, at: performance.now() });
             if (this.acknowledge)
                 this.say({ type: 'ack', seq: frame.seq });

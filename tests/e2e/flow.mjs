@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Many clients at once, good and bad ones: what each costs the server, and the others. SOAK_S=1800 for the long form.
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { camera, median, metrics, Mover, openFiles, openMany, residentKb, sanitized, sleep } from './support/crowd.mjs';
+import { PlainClient } from './support/plain_client.mjs';
+import { Relay, relayMissing } from './support/relay.mjs';
+import { missing, TinyPlant } from './support/tiny_plant.mjs';
+
+const STALLED = 50, VIEWERS = 100, SOAK_S = Number(process.env.SOAK_S ?? 20);
+const LIMITS = ['address-sessions=300', 'address-connections=400', 'address-messages=100000', 'least-fps=1'];
+const absent = [...missing(), relayMissing()].filter(Boolean);
+const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
+let plant, pid, stalled, stalledAt;
+
+before(async () => {
+    if (skip)
+        return;
+    plant = await TinyPlant.create();
+    assert.equal(plant.prepare().code, 0);
+    await plant.startSim();
+    await plant.startDaemon(...LIMITS.flatMap((limit) => ['--limit', limit]));
+    pid = plant.daemon.child.pid;
+});
+after(() => plant?.destroy());
+
+test('a hundred viewers of one view: one render, one encode, a hundred sends', { skip }, async () => {
+    const names = ['plantcast_renders_total', 'plantcast_encodes_total', 'plantcast_frames_sent_total'];
+    const leader = await PlainClient.open(plant.port), { session } = await leader.hello({ width: 640, height: 360 });
+    const viewers = await openMany(plant.port, VIEWERS - 1, {}, { width: 640, height: 360 });
+    const all = [leader, ...viewers], steps = 6;
+    for (const client of viewers)
+        client.say({ type: 'follow', session });
+    await Promise.all(all.map((c) => c.frameWhere('a refined frame', (f) => (f.flags & 2) !== 0)));
+    await sleep(1500); // all are as good as they can be
+    const start = await metrics(plant.port, ...names);
+    for (let seq = 1; seq <= steps; seq++) {
+        leader.say(camera(seq, seq));
+        await Promise.all(all.map((c) => c.frameWhere(`view ${seq}`, (f) => Math.abs(f.eye[1] - camera(seq, seq).eye[1]) < 1e-3)));
+    }
+    const end = await metrics(plant.port, ...names);
+    const [renders, encodes, frames] = end.map((value, i) => value - start[i]);
+    assert.ok(frames >= steps * VIEWERS, `${frames} frames`);
+    assert.ok(renders <= 2 * steps && encodes <= 2 * steps, `${renders} renders and ${encodes} encodes for ${frames} frames of ${steps} views`);
+    for (const client of all)
+        client.close();
+});
+
+test('fifty clients that take nothing cost next to nothing', { skip }, async () => {
+    stalled = await openMany(plant.port, STALLED, { acknowledge: false }, (i) => ({
+        width: 1280, height: 720, camera: camera(1, i),
+    }));
+    await Promise.all(stalled.map((c) => c.frameWhere('a frame', () => true)));
+    await sleep(500);
+    const beforeKb = residentKb(pid);
+    for (const client of stalled)
+        client.socket.pause();
+    stalledAt = performance.now();
+    for (let seq = 2; seq < 40; seq++) {
+        stalled.forEach((client, i) => client.say(camera(seq, i + seq / 10)));
+        await sleep(50);
+    }
+    const moreKb = residentKb(pid) - beforeKb;
+    console.log(`# ${STALLED} stalled clients: ${moreKb} kB more`);
+    assert.ok(sanitized || moreKb <= 5 * 1024, `${moreKb} kB more`);
+});
+
+test('1 Mbit/s and 200 ms: never more than a second old, and not felt by another', { skip }, async () => {
+    const relay = await Relay.open(plant.port, { bytesPerS: 125000, delayMs: 100 });
+    const fast = await PlainClient.open(plant.port);
+    await fast.hello({ width: 1280, height: 720 });
+    const mover = new Mover(fast);
+    await sleep(500);
+    const alone = await mover.rate(3000);
+    const slow = await PlainClient.open(relay.port);
+    await slow.hello({ width: 1280, height: 720, camera: camera(1, 0) });
+    await slow.frameWhere('a frame', () => true);
+    const slowMover = new Mover(slow, 30), begin = performance.now();
+    await sleep(1000);
+    const beside = await mover.rate(5000);
+    const late = slowMover.waits.filter(({ at }) => at > begin + 1000).map(({ ms }) => ms);
+    console.log(`# fast: ${alone.toFixed(1)}/s alone, ${beside.toFixed(1)}/s beside; slow: ${slowMover.frames} frames, at most `
+        + `${Math.max(...late).toFixed(0)} ms old`);
+    assert.ok(slowMover.frames > 10, `${slowMover.frames} frames`);
+    assert.ok(sanitized || Math.max(...late) < 1000, `a picture ${Math.max(...late).toFixed(0)} ms old`);
+    assert.ok(beside > 0.7 * alone, `${alone.toFixed(1)} frames/s alone, ${beside.toFixed(1)} beside a slow client`);
+    mover.stop();
+    slowMover.stop();
+    fast.close();
+    slow.close();
+    relay.close();
+});
+
+test('who took nothing for 15 s is gone, and his connection with him', { skip }, async () => {
+    await sleep(Math.max(0, 19000 - (performance.now() - stalledAt)));
+    const [open] = await metrics(plant.port, 'plantcast_sessions');
+    assert.equal(open, 0);
+    const [counted] = await metrics(plant.port, 'plantcast_sessions_stalled_total');
+    assert.equal(counted, STALLED);
+    for (const client of stalled)
+        client.close();
+});
+
+// One of those that come and go: drags, hides, stops reading, is cut off.
+async function wander(port, random, end) {
+    while (performance.now() < end) {
+        const client = await PlainClient.open(port).catch(() => null);
+        if (!client) {
+            await sleep(100);
+            continue;
+        }
+        client.hello({ width: 160 + 16 * Math.floor(random() * 40), height: 90 + 16 * Math.floor(random() * 20) }).catch(() => {});
+        const begin = random() * 6;
+        for (let seq = 1, left = 20 + random() * 60; left > 0 && !client.closed && performance.now() < end; left--) {
+            if (random() < 0.7)
+                client.say(camera(seq++, begin + seq / 40));
+            if (random() < 0.02)
+                client.say({ type: 'visible', visible: random() < 0.7 });
+            if (random() < 0.02)
+                client.socket.isPaused() ? client.socket.resume() : client.socket.pause();
+            client.frames.length = client.texts.length = 0;
+            await sleep(30);
+        }
+        client.close(); // in the middle of whatever is under way
+    }
+}
+
+test(`random connects, drags, stalls and cuts for ${SOAK_S} s: nothing grows`, { skip, timeout: (SOAK_S + 60) * 1000 }, async () => {
+    const seed = Number(process.env.SEED ?? Date.now() % 1e9);
+    console.log(`# SEED=${seed}`);
+    let state = seed;
+    const random = () => ((state = (state * 1103515245 + 12345) % 2147483648) / 2147483648);
+    const filesBefore = openFiles(pid), begin = performance.now(), end = begin + SOAK_S * 1000;
+    const steady = await PlainClient.open(plant.port);
+    await steady.hello();
+    const mover = new Mover(steady, 30);
+    const wanderers = Array.from({ length: 6 }, () => wander(plant.port, random, end));
+    const memory = [];
+    for (let next = begin; next < end; next = performance.now()) {
+        await sleep(Math.max(250, SOAK_S * 10));
+        memory.push(residentKb(pid));
+        steady.texts.length = 0;
+    }
+    await Promise.all(wanderers);
+    mover.stop();
+    steady.close();
+    await sleep(1000);
+    const third = Math.floor(mover.waits.length / 3), waits = mover.waits.map(({ ms }) => ms);
+    const early = median(waits.slice(third, 2 * third)), late = median(waits.slice(2 * third));
+    const half = memory.length >> 1, grownKb = median(memory.slice(-4)) - median(memory.slice(half, half + 4));
+    console.log(`# latency ${early.toFixed(1)}, then ${late.toFixed(1)} ms; memory ${grownKb} kB more in the second half`);
+    assert.ok(late < 1.5 * early + 20, `latency grew from ${early.toFixed(1)} to ${late.toFixed(1)} ms`);
+    assert.ok(sanitized || grownKb < 8 * 1024, `memory grew by ${grownKb} kB`);
+    assert.ok(openFiles(pid) <= filesBefore, `${openFiles(pid)} open files, ${filesBefore} before`);
+    assert.equal(steady.closed.code, 1000);
+});

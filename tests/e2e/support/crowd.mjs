@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Clients by the dozen, and what they cost the daemon.
+import { readdirSync, readFileSync } from 'node:fs';
+import { get, PlainClient } from './plain_client.mjs';
+
+export const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
+export const sanitized = /asan|tsan/.test(process.env.PLANTCAST_OUT ?? '');
+
+export const residentKb = (pid) => Number(readFileSync(`/proc/${pid}/status`, 'utf8').match(/^VmRSS:\s+(\d+)/m)[1]);
+export const openFiles = (pid) => readdirSync(`/proc/${pid}/fd`).length;
+export const median = (list) => [...list].sort((a, b) => a - b)[list.length >> 1];
+
+// The counters and gauges of /metrics whose names are asked for; labels are added up.
+export async function metrics(port, ...names) {
+    const text = (await get(port, '/metrics')).body.toString();
+    return names.map((name) => [...text.matchAll(new RegExp(`^${name}(?:\\{[^}]*\\})? (\\d+)`, 'gm'))].reduce((sum, m) => sum + Number(m[1]), 0));
+}
+
+export const camera = (seq, angle) => ({
+    type: 'camera', seq, eye: [1.5 + 7 * Math.cos(angle), 7 * Math.sin(angle), 4], target: [1.5, 0, 0],
+});
+
+// Moves its camera at that rate until stop(); how long each was waited for is in `waits`, by the time of its showing.
+export class Mover {
+    constructor(client, hz = 60) {
+        Object.assign(this, { client, seq: 0, shown: 0, frames: 0, sent: new Map(), waits: [] });
+        this.timer = setInterval(() => this.tick(), 1000 / hz);
+    }
+
+    tick() {
+        this.sent.set(++this.seq, performance.now());
+        this.client.say(camera(this.seq, this.seq / 60));
+        for (const frame of this.client.frames.splice(0))
+            this.show(frame);
+    }
+
+    show(frame) {
+        this.frames++;
+        for (; this.shown < frame.camera_seq; this.shown++) {
+            this.waits.push({ at: frame.at, ms: frame.at - this.sent.get(this.shown + 1) });
+            this.sent.delete(this.shown + 1);
+        }
+    }
+
+    // Pictures in a second, over that time.
+    async rate(ms) {
+        const before = this.frames, start = performance.now();
+        await sleep(ms);
+        return ((this.frames - before) * 1000) / (performance.now() - start);
+    }
+
+    stop() {
+        clearInterval(this.timer);
+    }
+}
+
+export async function openMany(port, count, options, hello) {
+    const clients = await Promise.all(Array.from({ length: count }, () => PlainClient.open(port, options)));
+    await Promise.all(clients.map((client, i) => client.hello(typeof hello === 'function' ? hello(i) : hello)));
+    return clients;
+}

@@ -1,0 +1,173 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A slow link: hands TCP connections on to a port of this machine, at so many bytes a second from there, and later by so much each way.
+   Its socket buffers are small, so that what it does not take waits where it would on a real link: at the sender. Until its standard
+   input ends.
+
+   usage: relay PORT BYTES_PER_S DELAY_MS   (prints "relay: listening PORT") */
+#include <arpa/inet.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+
+enum { MAX_LINKS = 64, CHUNK_BYTES = 1024, CHUNKS = 4096, SOCKET_BYTES = 8192 };
+
+struct chunk {
+    int64_t due_ns;
+    int count, sent;
+    char bytes[CHUNK_BYTES];
+};
+
+struct way { /* one direction; chunks in a ring */
+    int from, to;
+    double bytes_per_s; /* 0: no limit */
+    int64_t free_ns;    /* when the next byte may be taken */
+    unsigned first, count;
+    struct chunk *chunks;
+};
+
+struct link {
+    bool open;
+    struct way down, up;
+};
+
+static int64_t delay_ns;
+
+static void make_small(int fd)
+{
+    int bytes = SOCKET_BYTES;
+    setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &bytes, sizeof(bytes));
+    setsockopt(fd, SOL_SOCKET, SO_SNDBUF, &bytes, sizeof(bytes));
+}
+
+static struct sockaddr_in local(int port)
+{
+    return (struct sockaddr_in){ .sin_family = AF_INET, .sin_port = htons((uint16_t)port), .sin_addr.s_addr = htonl(INADDR_LOOPBACK) };
+}
+
+static int listen_on_any(int *port)
+{
+    struct sockaddr_in address = local(0);
+    socklen_t size = sizeof(address);
+    int fd = socket(AF_INET, SOCK_STREAM, 0);
+    make_small(fd);
+    if (bind(fd, (struct sockaddr *)&address, size) != 0 || listen(fd, MAX_LINKS) != 0 ||
+        getsockname(fd, (struct sockaddr *)&address, &size) != 0)
+        return -1;
+    *port = ntohs(address.sin_port);
+    return fd;
+}
+
+static bool way_open(struct way *way, int from, int to, double bytes_per_s)
+{
+    *way = (struct way){ .from = from, .to = to, .bytes_per_s = bytes_per_s, .chunks = mem_array(CHUNKS, sizeof(*way->chunks)) };
+    return fcntl(from, F_SETFL, O_NONBLOCK) == 0;
+}
+
+static void link_close(struct link *link)
+{
+    close(link->down.from);
+    close(link->up.from);
+    mem_free(link->down.chunks);
+    mem_free(link->up.chunks);
+    link->open = false;
+}
+
+static void link_open(struct link *link, int client, int port, double bytes_per_s)
+{
+    struct sockaddr_in address = local(port);
+    int server = socket(AF_INET, SOCK_STREAM, 0);
+    make_small(server);
+    make_small(client);
+    link->open = connect(server, (struct sockaddr *)&address, sizeof(address)) == 0;
+    link->open = way_open(&link->down, server, client, bytes_per_s) && way_open(&link->up, client, server, 0) && link->open;
+    if (!link->open)
+        link_close(link);
+}
+
+/* False: the sender is gone. */
+static bool take(struct way *way, int64_t now_ns)
+{
+    while (way->count < CHUNKS && now_ns >= way->free_ns) {
+        struct chunk *chunk = &way->chunks[(way->first + way->count) % CHUNKS];
+        ssize_t n = recv(way->from, chunk->bytes, CHUNK_BYTES, 0);
+        if (n <= 0)
+            return n < 0 && (errno == EAGAIN || errno == EINTR);
+        way->free_ns = (way->free_ns > now_ns - NS_PER_MS ? way->free_ns : now_ns) + (int64_t)(way->bytes_per_s ? n / way->bytes_per_s * 1e9 : 0);
+        chunk->count = (int)n;
+        chunk->sent = 0;
+        chunk->due_ns = way->free_ns + delay_ns;
+        way->count++;
+    }
+    return true;
+}
+
+/* False: the receiver is gone. */
+static bool give(struct way *way, int64_t now_ns)
+{
+    while (way->count > 0) {
+        struct chunk *chunk = &way->chunks[way->first];
+        if (chunk->due_ns > now_ns)
+            return true;
+        ssize_t n = send(way->to, chunk->bytes + chunk->sent, (size_t)(chunk->count - chunk->sent), MSG_NOSIGNAL | MSG_DONTWAIT);
+        if (n < 0)
+            return errno == EAGAIN || errno == EINTR;
+        chunk->sent += (int)n;
+        if (chunk->sent < chunk->count)
+            return true;
+        way->first = (way->first + 1) % CHUNKS;
+        way->count--;
+    }
+    return true;
+}
+
+static bool serve(struct link *link)
+{
+    int64_t now_ns = clock_mono_ns();
+    return take(&link->down, now_ns) && take(&link->up, now_ns) && give(&link->down, now_ns) && give(&link->up, now_ns);
+}
+
+static void accept_one(int listener, struct link *links, int port, double bytes_per_s)
+{
+    int client = accept(listener, NULL, NULL);
+    for (int i = 0; client >= 0 && i < MAX_LINKS; i++) {
+        if (links[i].open)
+            continue;
+        link_open(&links[i], client, port, bytes_per_s);
+        return;
+    }
+    if (client >= 0)
+        close(client);
+}
+
+int main(int argc, char **argv)
+{
+    static struct link links[MAX_LINKS];
+    int port = 0, listener = argc == 4 ? listen_on_any(&port) : -1;
+    if (listener < 0) {
+        fprintf(stderr, "usage: relay PORT BYTES_PER_S DELAY_MS\n");
+        return 2;
+    }
+    delay_ns = atoll(argv[3]) * NS_PER_MS;
+    printf("relay: listening %d\n", port);
+    fflush(stdout);
+    for (char byte = 1; byte;) {
+        struct pollfd waits[2] = { { .fd = listener, .events = POLLIN }, { .fd = STDIN_FILENO, .events = POLLIN } };
+        poll(waits, 2, 1); /* a millisecond is fine enough, for all links */
+        if (waits[0].revents)
+            accept_one(listener, links, atoi(argv[1]), atof(argv[2]));
+        if (waits[1].revents && read(STDIN_FILENO, &byte, 1) <= 0)
+            byte = 0;
+        for (int i = 0; i < MAX_LINKS; i++)
+            if (links[i].open && !serve(&links[i]))
+                link_close(&links[i]);
+    }
+    return 0;
+}
