@@ -291,8 +291,9 @@ char *reply_params_text(const struct session_world *world, const struct view *vi
 
 char *reply_following_text(const struct session_world *world, uint64_t session, const struct view *view)
 {
-    json_t *object = json_pack("{s:s,s:o,s:i,s:i}", "type", "following", "session", session ? json_integer((json_int_t)session) : json_null(),
-                               "width", view->width_px, "height", view->height_px);
+    json_t *leader = session ? json_integer((json_int_t)session) : json_null();
+    json_t *object = json_pack("{s:s,s:o,s:i,s:i}", "type", "following", "session", leader, "width", view->width_px, "height",
+                               view->height_px);
     set_params(object, world, view);
     return print(object, DIGITS);
 }
