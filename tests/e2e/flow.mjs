@@ -41,7 +41,8 @@ test('a hundred viewers of one view: one render, one encode, a hundred sends', {
     const end = await metrics(plant.port, ...names);
     const [renders, encodes, frames] = end.map((value, i) => value - start[i]);
     assert.ok(frames >= steps * VIEWERS, `${frames} frames`);
-    assert.ok(renders <= 2 * steps && encodes <= 2 * steps, `${renders} renders and ${encodes} encodes for ${frames} frames of ${steps} views`);
+    const counts = `${renders} renders and ${encodes} encodes for ${frames} frames of ${steps} views`;
+    assert.ok(renders <= 2 * steps && encodes <= 2 * steps, counts);
     for (const client of all)
         client.close();
 });

@@ -100,7 +100,8 @@ static bool take(struct way *way, int64_t now_ns)
         ssize_t n = recv(way->from, chunk->bytes, CHUNK_BYTES, 0);
         if (n <= 0)
             return n < 0 && (errno == EAGAIN || errno == EINTR);
-        way->free_ns = (way->free_ns > now_ns - NS_PER_MS ? way->free_ns : now_ns) + (int64_t)(way->bytes_per_s ? n / way->bytes_per_s * 1e9 : 0);
+        int64_t begin_ns = way->free_ns > now_ns - NS_PER_MS ? way->free_ns : now_ns;
+        way->free_ns = begin_ns + (way->bytes_per_s > 0 ? (int64_t)((double)n / way->bytes_per_s * 1e9) : 0);
         chunk->count = (int)n;
         chunk->sent = 0;
         chunk->due_ns = way->free_ns + delay_ns;

@@ -13,7 +13,8 @@ export const median = (list) => [...list].sort((a, b) => a - b)[list.length >> 1
 // The counters and gauges of /metrics whose names are asked for; labels are added up.
 export async function metrics(port, ...names) {
     const text = (await get(port, '/metrics')).body.toString();
-    return names.map((name) => [...text.matchAll(new RegExp(`^${name}(?:\\{[^}]*\\})? (\\d+)`, 'gm'))].reduce((sum, m) => sum + Number(m[1]), 0));
+    const values = (name) => [...text.matchAll(new RegExp(`^${name}(?:\\{[^}]*\\})? (\\d+)`, 'gm'))].map((m) => Number(m[1]));
+    return names.map((name) => values(name).reduce((sum, value) => sum + value, 0));
 }
 
 export const camera = (seq, angle) => ({
