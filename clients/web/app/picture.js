@@ -8,7 +8,9 @@ import { DISTANCES, INTERPOLATIONS, LOOKS, SHOWS, title } from './toolbar.js';
 const SCALES = [['linear', 'Linear'], ['log', 'Logarithmic']];
 const FILLS = [['none', 'Hatched', 'Where no good sensor reaches nothing is shown'], ['neighbours', 'By neighbours', 'Filled and dotted']];
 const HALF = ['group', 'show', 'distance', 'interpolation', 'colormap', 'look'];
-const HALF_NAMES = { group: 'Quantity', show: 'Show', distance: 'Distance', interpolation: 'Interpolation', colormap: 'Colours', look: 'Look' };
+const HALF_NAMES = {
+    group: 'Quantity', show: 'Show', distance: 'Distance', interpolation: 'Interpolation', colormap: 'Colours', look: 'Look',
+};
 
 export class Picture {
     constructor({ session, selection }) {
@@ -130,6 +132,7 @@ export class Picture {
     }
 
     instantText(baseline) {
-        return baseline?.time_us ? new Date(baseline.time_us / 1000).toLocaleTimeString([], { timeZone: this.session.model.plant.time_zone }) : '–';
+        const timeZone = this.session.model.plant.time_zone;
+        return baseline?.time_us ? new Date(baseline.time_us / 1000).toLocaleTimeString([], { timeZone }) : '–';
     }
 }

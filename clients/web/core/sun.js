@@ -13,7 +13,8 @@ export function towardsSun({ turn, height }, isYUp) {
 
 export function sunOf([x, y, z], isYUp) {
     const north = isYUp ? -z : y, up = isYUp ? y : z;
-    return { turn: (Math.round(degrees(Math.atan2(x, north))) + 360) % 360, height: Math.round(degrees(Math.atan2(up, Math.hypot(x, north)))) };
+    const turn = (Math.round(degrees(Math.atan2(x, north))) + 360) % 360;
+    return { turn, height: Math.round(degrees(Math.atan2(up, Math.hypot(x, north)))) };
 }
 
 export const sunText = ({ turn, height }) => `from ${WINDS[Math.round(turn / 45) % 8]}, ${height}° high`;
