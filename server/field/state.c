@@ -152,7 +152,7 @@ void state_measure(struct state *state, size_t sensor, uint64_t *versions)
     }
     for (size_t j = 0; j < scalars->count; j++)
         if (!(state->at[j].value <= FLT_MAX))
-            state->at[j] = (struct scalar){ .value = most_m, .no_data = FLAG };
+            state->at[j] = (struct scalar){ .value = most_m, .lacking = FLAG, .no_data = FLAG };
     scalars->version = scalars->flags_version = ++*versions;
     scalars->ready = scalars->count;
 }

@@ -122,6 +122,18 @@ void update_begin(struct state *state, size_t count)
 
 /* --- block by block --------------------------------------------------------------------------------------------------------- */
 
+/* At the rim of what is reached, or of what a lost sensor leaves without data. */
+static uint8_t lacking_of(const struct weights *weights, size_t vertex, bool filled, bool no_limits)
+{
+    float near_m = weights->near_m[vertex];
+    if (no_limits)
+        return 0;
+    if (near_m == INFINITY)
+        return FLAG;
+    uint8_t reach = weights->reach_m < INFINITY ? weights_lacking(weights, near_m - weights->reach_m) : 0;
+    return filled || weights->lost[vertex] < reach ? reach : weights->lost[vertex];
+}
+
 static bool set_flags(const struct update *update, size_t begin, size_t count, const double *total, const double *marked)
 {
     const uint8_t *place = update->state->weights->place + begin;
@@ -132,9 +144,11 @@ static bool set_flags(const struct update *update, size_t begin, size_t count, c
         uint8_t no_limits = place[j] == PLACE_NO_LIMITS ? FLAG : 0;
         uint8_t no_data = place[j] == PLACE_GOOD || filled || no_limits ? 0 : FLAG;
         uint8_t uncertain = filled || (update->marks && total[j] > 0 && 2 * marked[j] >= total[j]) ? FLAG : 0;
-        changed |= at[j].no_data != no_data || at[j].uncertain != uncertain || at[j].no_limits != no_limits;
+        uint8_t lacking = lacking_of(update->state->weights, begin + j, filled, no_limits);
+        changed |= at[j].lacking != lacking || at[j].no_data != no_data || at[j].uncertain != uncertain || at[j].no_limits != no_limits;
         at[j].no_limits = no_limits;
         at[j].no_data = no_data;
+        at[j].lacking = lacking;
         at[j].uncertain = uncertain;
     }
     return changed;

@@ -95,6 +95,16 @@ static void choose_members(struct weights *weights, const struct field_params *p
         weights->alike &= weights->strength[weights->members[m]] == weights->strength[weights->members[0]];
 }
 
+/* A byte holds a fifth of the asset's size to either side of the rim: more than triangles span there, in steps of centimetres at most. */
+static float steps_per_m(const struct layout *layout)
+{
+    const struct asset_header *header = layout->file->view.header;
+    float square = 0;
+    for (int c = 0; c < 3; c++)
+        square += (header->bounds_max_m[c] - header->bounds_min_m[c]) * (header->bounds_max_m[c] - header->bounds_min_m[c]);
+    return square > 0 ? 127 / (0.2f * sqrtf(square)) : 127;
+}
+
 struct weights *weights_create(const struct layout *layout, const struct field_params *params, float radius_m, const uint8_t *usable,
                                struct weights_key *key)
 {
@@ -113,8 +123,10 @@ struct weights *weights_create(const struct layout *layout, const struct field_p
     weights->top = mem_try_array(layout->vertex_count, sizeof(float));
     weights->total = mem_try_array(layout->vertex_count, sizeof(float));
     weights->place = mem_try_array(layout->vertex_count, 1);
+    weights->lost = mem_try_array(layout->vertex_count, 1);
+    weights->steps_per_m = steps_per_m(layout);
     weights->known = mem_try_array(block_count(layout->vertex_count), 1);
-    if (!weights->near_m || !weights->top || !weights->total || !weights->place || !weights->known)
+    if (!weights->near_m || !weights->top || !weights->total || !weights->place || !weights->lost || !weights->known)
         goto error;
     choose_members(weights, params, usable);
     weights->key = *key;
@@ -151,6 +163,7 @@ void weights_learn(struct weights *weights, const struct weights *from)
         if (new &KNOWN_NEAR) {
             memcpy(weights->near_m + at, from->near_m + at, count * sizeof(*from->near_m));
             memcpy(weights->place + at, from->place + at, count);
+            memcpy(weights->lost + at, from->lost + at, count);
         }
         if (new &KNOWN_TOP)
             memcpy(weights->top + at, from->top + at, count * sizeof(*from->top));
@@ -174,6 +187,7 @@ void weights_destroy(struct weights **weights_ptr)
     mem_free(weights->top);
     mem_free(weights->total);
     mem_free(weights->place);
+    mem_free(weights->lost);
     mem_free(weights->known);
     mem_free(weights->columns);
     mem_free(weights->kept);
@@ -183,7 +197,7 @@ void weights_destroy(struct weights **weights_ptr)
 
 size_t weights_bytes(const struct layout *layout)
 {
-    size_t each_vertex = 3 * sizeof(float) + 1;
+    size_t each_vertex = 3 * sizeof(float) + 2;
     size_t each_sensor = 2 * sizeof(float) + 1 + sizeof(uint32_t) + sizeof(struct key_sensor);
     return sizeof(struct weights) + sizeof(struct key_head) + layout->vertex_count * each_vertex + block_count(layout->vertex_count) +
            layout->sensor_count * each_sensor;
@@ -223,6 +237,14 @@ static const float *distances(const struct weights *weights, size_t sensor, size
     return layout_distances(weights->layout, weights->distance, sensor, begin, count, scratch);
 }
 
+uint8_t weights_lacking(const struct weights *weights, float beyond_m)
+{
+    float steps = beyond_m * weights->steps_per_m;
+    if (beyond_m > 0)
+        return (uint8_t)(steps < 127 ? 128 + (int)steps : 255);
+    return (uint8_t)(steps > -127 ? 127 + (int)steps : 0);
+}
+
 /* Distances to the nearest sensor that is used, lost and without limits. */
 static enum place place_of(float near_m, float lost_m, float no_limits_m, float reach_m)
 {
@@ -249,6 +271,8 @@ static void nearest(struct weights *weights, size_t begin, size_t count)
     }
     for (size_t j = 0; j < count; j++)
         weights->place[begin + j] = (uint8_t)place_of(near_m[j], lost_m[j], no_limits_m[j], weights->reach_m);
+    for (size_t j = 0; j < count; j++)
+        weights->lost[begin + j] = lost_m[j] < INFINITY ? weights_lacking(weights, near_m[j] - lost_m[j]) : 0;
 }
 
 void weights_prepare(struct weights *weights, size_t begin, size_t count)

@@ -36,7 +36,7 @@ struct weights {
     const struct layout *layout;
     enum interpolation interpolation;
     enum distance_mode distance;
-    float power, reach_m, radius_m;
+    float power, reach_m, radius_m, steps_per_m; /* steps: of `lacking` */
     bool alike;              /* all members have one strength */
     float *strength, *decay; /* by sensor of the layout */
     uint8_t *configured;     /* by sensor of the layout: may take part, were it good; more than 1: SENSOR_NO_LIMITS */
@@ -45,6 +45,7 @@ struct weights {
     float *near_m, *top; /* by vertex: distance of the nearest usable sensor; scale (kernels.h) */
     float *total;        /* by vertex: the weights' sum */
     uint8_t *place;      /* by vertex: enum place */
+    uint8_t *lost;       /* by vertex: how far nearer the nearest lost sensor is than near_m, as weights_lacking */
     uint8_t *known;      /* by block: bits of enum weights_known, what is filled of the four above */
     float *columns;      /* [block][member][KERNEL_BLOCK], or NULL: made anew each time */
     uint8_t *kept;       /* [block][member]: its column is filled; beside columns */
@@ -71,6 +72,8 @@ size_t weights_column_bytes(const struct weights *weights); /* of all columns, k
 bool weights_keep(struct weights *weights);
 void weights_drop_columns(struct weights *weights);
 
+/* Metres beyond the rim of the data, negative within it, as struct scalar's `lacking`. */
+uint8_t weights_lacking(const struct weights *weights, float beyond_m);
 /* Fills what is not known of near_m, top and place of a block (begin: a multiple of KERNEL_BLOCK; count <= KERNEL_BLOCK). */
 void weights_prepare(struct weights *weights, size_t begin, size_t count);
 

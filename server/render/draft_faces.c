@@ -55,7 +55,7 @@ DRAFT_INLINE void carry_field(const struct draft *draft, const struct draft_mesh
             const struct scalar *scalar = &mesh->scalars[vertices[i + l]];
             value[l] = scalar->value;
             light[l] = mesh->baked[vertices[i + l]][0];
-            flags[l] = (scalar->no_data ? DRAFT_NO_DATA : 0) | (scalar->uncertain ? DRAFT_UNCERTAIN : 0);
+            flags[l] = draft_flags(scalar);
         }
         lanes place = (value - draft->block.scale[0]) * draft->block.scale[1];
         *(lanes *)(corners->a + i) = lanes_clamp(place * columns + (1 + slack * columns), -FARTHEST, FARTHEST);
@@ -66,7 +66,7 @@ DRAFT_INLINE void carry_field(const struct draft *draft, const struct draft_mesh
     }
     corners->all_flags = 0;
     for (int l = 0; l < LANES; l++)
-        corners->all_flags |= all[l];
+        corners->all_flags |= all[l] & DRAFT_PATTERNS;
 }
 
 DRAFT_INLINE void carry_nothing(const struct draft *draft, const struct draft_mesh *mesh, const uint32_t *vertices, int count,
@@ -75,7 +75,7 @@ DRAFT_INLINE void carry_nothing(const struct draft *draft, const struct draft_me
     for (int i = 0; i < count; i++) {
         corners->a[i] = 0;
         corners->b[i] = (float)mesh->baked[vertices[i]][0] * (1 / 255.0f) * draft->block.shade[0] + draft->block.shade[1];
-        corners->flags[i] = DRAFT_NO_DATA;
+        corners->flags[i] = DRAFT_NO_DATA | 255u << DRAFT_LACKING;
     }
     corners->all_flags = DRAFT_NO_DATA;
 }

@@ -18,10 +18,19 @@ struct draft_vertex {
     float x, y, depth;     /* pixels from the top left; 1 near, 0 far */
     float inverse_w;       /* 0: nearer than the near plane */
     float a, b;            /* field: column and row of the palette; context: ambient, and how far it faces the sun */
-    uint32_t flags;        /* DRAFT_* */
+    uint32_t flags;        /* DRAFT_*; from bit DRAFT_LACKING on a byte: scalar.lacking */
     uint32_t source;       /* of one that the near plane made: first index of the triangle that was cut */
 };
-enum { DRAFT_NO_DATA = 1, DRAFT_UNCERTAIN = 2 };
+enum { DRAFT_NO_DATA = 1, DRAFT_UNCERTAIN = 2, DRAFT_PATTERNS = 3, DRAFT_LACKING = 8 };
+static inline uint32_t draft_flags(const struct scalar *scalar)
+{
+    return (scalar->no_data ? DRAFT_NO_DATA : 0) | (scalar->uncertain ? DRAFT_UNCERTAIN : 0) | (uint32_t)scalar->lacking << DRAFT_LACKING;
+}
+/* 0..1; above 0.5 there is no data. Where flags of corners were joined, what lacks most. */
+static inline float draft_lacking(uint32_t flags)
+{
+    return (float)(flags >> DRAFT_LACKING & 0xff) * (1 / 255.0f);
+}
 
 struct draft_mesh { /* one asset in this picture */
     int asset;

@@ -29,14 +29,14 @@ static void carry_field(const struct draft *draft, const struct draft_mesh *mesh
     float place = (scalar->value - draft->block.scale[0]) * draft->block.scale[1];
     out->a = fminf(fmaxf(place * columns + (1 + slack * columns), -FARTHEST), FARTHEST);
     out->b = (float)mesh->baked[v][0] * (1 / 255.0f) * draft->block.shade[0] + draft->block.shade[1];
-    out->flags = (scalar->no_data ? DRAFT_NO_DATA : 0) | (scalar->uncertain ? DRAFT_UNCERTAIN : 0);
+    out->flags = draft_flags(scalar);
 }
 
 static void carry_nothing(const struct draft *draft, const struct draft_mesh *mesh, uint32_t v, struct draft_vertex *out)
 {
     out->a = 0;
     out->b = (float)mesh->baked[v][0] * (1 / 255.0f) * draft->block.shade[0] + draft->block.shade[1];
-    out->flags = DRAFT_NO_DATA;
+    out->flags = DRAFT_NO_DATA | 255u << DRAFT_LACKING;
 }
 
 static void carry_context(const struct draft_mesh *mesh, uint32_t v, struct draft_vertex *out)

@@ -15,7 +15,7 @@ struct setup {
     float x, y; /* of the first corner: what planes start from */
     struct edge edges[3];
     struct plane depth, a, b, inverse_w;
-    struct plane no_data, uncertain; /* where flags are set: 1 there */
+    struct plane no_data, uncertain; /* where flags are set: as draft_lacking; 1 there */
     uint32_t mark, flags;
     bool flat; /* no perspective to speak of */
     bool thin; /* so much so that rounding may lead out of what lies between its corners */
@@ -27,11 +27,12 @@ DRAFT_INLINE struct draft_vertex vertex_of(const struct draft_corners *corners, 
                                   corners->a[i], corners->b[i], corners->flags[i], 0 };
 }
 
-DRAFT_INLINE struct plane flag_plane(const struct slopes *slopes, const struct draft_vertex v[3], uint32_t flag, bool flat)
+/* part: of each corner, 0..1. */
+DRAFT_INLINE struct plane part_plane(const struct slopes *slopes, const struct draft_vertex v[3], const float part[3], bool flat)
 {
     float at[3];
     for (int i = 0; i < 3; i++)
-        at[i] = !(v[i].flags & flag) ? 0 : flat ? 1 : v[i].inverse_w;
+        at[i] = flat ? part[i] : part[i] * v[i].inverse_w;
     return plane_of(slopes, at[0], at[1], at[2]);
 }
 
@@ -51,7 +52,7 @@ DRAFT_INLINE void setup_init(struct setup *setup, const struct draft_vertex v[3]
     setup->depth = plane_of(&slopes, v[0].depth, v[1].depth, v[2].depth);
     setup->flat = high <= little * low;
     setup->mark = mark;
-    setup->flags = v[0].flags | v[1].flags | v[2].flags;
+    setup->flags = (v[0].flags | v[1].flags | v[2].flags) & DRAFT_PATTERNS;
     if (setup->flat) {
         setup->a = plane_of(&slopes, v[0].a, v[1].a, v[2].a);
         setup->b = plane_of(&slopes, v[0].b, v[1].b, v[2].b);
@@ -63,8 +64,13 @@ DRAFT_INLINE void setup_init(struct setup *setup, const struct draft_vertex v[3]
     }
     setup->no_data = setup->uncertain = setup->depth; /* not looked at */
     if (setup->flags) {
-        setup->no_data = flag_plane(&slopes, v, DRAFT_NO_DATA, setup->flat);
-        setup->uncertain = flag_plane(&slopes, v, DRAFT_UNCERTAIN, setup->flat);
+        float lacking[3], uncertain[3];
+        for (int i = 0; i < 3; i++) {
+            lacking[i] = draft_lacking(v[i].flags);
+            uncertain[i] = v[i].flags & DRAFT_UNCERTAIN ? 1 : 0;
+        }
+        setup->no_data = part_plane(&slopes, v, lacking, setup->flat);
+        setup->uncertain = part_plane(&slopes, v, uncertain, setup->flat);
     }
 }
 

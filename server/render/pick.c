@@ -108,7 +108,7 @@ static void read_field(const struct spot *spot, const struct scalars *scalars, s
         const struct scalar *at = &scalars->at[spot->hit.corners[k]];
         double weight = spot->hit.weights[k];
         value += weight * (double)at->value;
-        no_data += weight * at->no_data / 255;
+        no_data += weight * at->lacking / 255;
         uncertain += weight * at->uncertain / 255;
     }
     out->state = no_data > 0.5 ? PICK_NO_DATA : PICK_BETWEEN;

@@ -99,11 +99,6 @@ static float column_of(const struct scalar *scalar, const float *scale)
     return fminf(fmaxf(place * columns + (1 + slack * columns), -farthest), farthest);
 }
 
-static uint8_t flags_of(const struct scalar *scalar)
-{
-    return (uint8_t)((scalar->no_data ? DRAFT_NO_DATA : 0) | (scalar->uncertain ? DRAFT_UNCERTAIN : 0));
-}
-
 struct reading_job {
     struct recolor *recolor;
     const struct scalar *scalars; /* NULL: no data anywhere */
@@ -117,9 +112,9 @@ static void read_vertices(void *arg, size_t begin, size_t end)
     struct recolor *recolor = job->recolor;
     for (size_t v = begin; v < end; v++) {
         size_t at = job->first_vertex + v;
-        recolor->flags[at] = job->scalars ? flags_of(&job->scalars[v]) : DRAFT_NO_DATA;
+        recolor->flags[at] = (uint16_t)(job->scalars ? draft_flags(&job->scalars[v]) : DRAFT_NO_DATA | 255u << DRAFT_LACKING);
         recolor->plain[at] = job->scalars ? column_of(&job->scalars[v], job->scale) : 0;
-        recolor->columns[at] = recolor->flags[at] ? NAN : recolor->plain[at];
+        recolor->columns[at] = recolor->flags[at] & DRAFT_PATTERNS ? NAN : recolor->plain[at];
     }
 }
 
@@ -184,7 +179,7 @@ static uint32_t flagged_color(const struct coloring *coloring, const uint32_t ve
     float column = 0, none = 0, little = 0;
     for (int i = 0; i < 3; i++) {
         column += w[i] * recolor->plain[vertices[i]];
-        none += recolor->flags[vertices[i]] & DRAFT_NO_DATA ? w[i] : 0;
+        none += w[i] * draft_lacking(recolor->flags[vertices[i]]);
         little += recolor->flags[vertices[i]] & DRAFT_UNCERTAIN ? w[i] : 0;
     }
     if (none > 0.5f)

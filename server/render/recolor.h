@@ -52,7 +52,7 @@ struct recolor {
     size_t mesh_count, mesh_capacity, vertex_count;
     float *columns; /* per vertex, of the palette; NAN: look at flags */
     float *plain;   /* the same without NAN */
-    uint8_t *flags; /* DRAFT_* */
+    uint16_t *flags; /* as draft_flags */
     struct frame_marker *markers; /* places, and whether they are hidden */
     size_t marker_count;
 };

@@ -188,6 +188,7 @@ static void assert_true_field(const struct rig *rig, double tolerance)
         struct truth truth = truth_at(rig->plant, &rig->params, radius_m, j);
         if (truth.near_tie)
             continue;
+        assert_int_equal(scalars->at[j].lacking > 127, scalars->at[j].no_data > 0);
         if (fabs((double)scalars->at[j].value - truth.value) > tolerance * range || !scalars->at[j].no_data != !truth.no_data ||
             !scalars->at[j].uncertain != !truth.uncertain)
             fail_msg("vertex %zu: %g no_data %d uncertain %d, truth %g %d %d", j, (double)scalars->at[j].value, scalars->at[j].no_data,
@@ -576,6 +577,9 @@ static void test_reach_ends_the_field(void **state)
         assert_int_equal(scalars->at[20 + k].no_data, k < 2 ? 0 : 255);
         assert_true(scalars->at[20 + k].value == 30); /* carried on beyond the edge, for interpolation */
     }
+    assert_int_equal(scalars->at[21].lacking, 127); /* so that the rim lies 2 m away, wherever the vertices do */
+    assert_int_equal(scalars->at[22].lacking, 128);
+    assert_true(scalars->at[20].lacking < 127 && scalars->at[23].lacking > 128);
     rig_finish(&rig);
 }
 
