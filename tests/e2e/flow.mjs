@@ -32,7 +32,10 @@ test('a hundred viewers of one view: one render, one encode, a hundred sends', {
     for (const client of viewers)
         client.say({ type: 'follow', session });
     await Promise.all(all.map((c) => c.frameWhere('a refined frame', (f) => (f.flags & 2) !== 0)));
-    await sleep(1500); // all are as good as they can be
+    const mover = new Mover(leader, 20);
+    await sleep(4000); // until all get the best there is
+    mover.stop();
+    await sleep(500);
     const start = await metrics(plant.port, ...names);
     for (let seq = 1; seq <= steps; seq++) {
         leader.say(camera(seq, seq));
