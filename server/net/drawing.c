@@ -1,210 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Draws what is wished for. */
-#include <string.h>
-
 #include "base/clock.h"
-#include "net/painter_impl.h"
-#include "net/recent.h"
-#include "render/canvas.h"
+#include "net/drawing_impl.h"
 #include "render/overlay.h"
 
 static const int64_t STEP_NS = 10 * NS_PER_MS;              /* of a slow picture, before anyone else gets a turn */
 static const int64_t LIGHT_NS = 4 * NS_PER_MS;     /* of each picture of a moving session, for a light that it chose */
 static const int64_t FIELD_NS = 6 * NS_PER_MS;              /* of a field that takes long, likewise */
-static const int64_t OWN_DATA_NS = 1 * NS_PER_S;            /* changed readings wait so long for a refinement of the same client */
-static const int64_t SNAPSHOT_MAX_AGE_NS = 100 * NS_PER_MS; /* the clock in the picture, and ages, are no older than this */
 static const int64_t REBUILD_NS = 100 * NS_PER_MS, REBUILD_MAX_NS = 5 * NS_PER_S; /* between attempts at a new context */
-
-enum { HELD = 16 };
-struct drawing { /* what only the render thread touches */
-    struct painter *painter;
-    struct gl *gl;
-    struct field *field;
-    struct renderer *renderer;
-    struct snapshot *snapshot;
-    struct batch same;
-    struct recent recent;
-    struct { /* the picture that takes long and is drawn step by step; at most one */
-        struct canvas *canvas; /* NULL: none */
-        struct batch batch;
-        struct snapshot *snapshot; /* of what it shows */
-        enum urgency urgency;
-        int64_t asked_ns, field_ns;
-    } slow;
-    struct {                      /* pictures whose field takes long: worked on step by step, each in its turn */
-        struct batch batches[HELD]; /* the oldest first */
-        size_t count;
-        bool due; /* before the next of the others */
-    } held;
-};
-
-/* --- drawing, on the render thread ----------------------------------------------------------------------------------------- */
-
-/* Under lock. Its slow picture is under way and still good: what it wants besides can wait for it. */
-static bool waits_for_slow(const struct drawing *drawing, const struct client *client, int64_t now_ns)
-{
-    bool soon = client->wish.urgency == URGENCY_DATA && now_ns - client->wish.asked_ns >= OWN_DATA_NS;
-    if (client->left || client->wish.urgency == URGENCY_INPUT || soon)
-        return false;
-    for (size_t i = 0; drawing->slow.canvas && i < drawing->slow.batch.count; i++)
-        if (drawing->slow.batch.orders[i].client == client->id)
-            return true;
-    return false;
-}
-
-struct turn {
-    bool step;             /* of the slow picture; else */
-    struct client *client; /* NULL: nobody before wait_until_ns */
-    int64_t wait_until_ns;
-};
-
-/* Under lock. It can be drawn now, and before the other (NULL: nobody). */
-static bool goes_before(const struct drawing *drawing, const struct client *client, const struct client *other, int64_t now_ns)
-{
-    enum urgency urgency = client->wish.urgency;
-    int share = schedule_share(urgency);
-    if (!client->pending || (drawing->slow.canvas && urgency >= URGENCY_REFINE) || waits_for_slow(drawing, client, now_ns))
-        return false;
-    return !other || schedule_before(client->spent_ns[share], client->wish.asked_ns, other->spent_ns[share], other->wish.asked_ns);
-}
-
-/* Under lock. */
-static struct turn next_turn(const struct drawing *drawing, const struct schedule *schedule)
-{
-    const struct painter *painter = drawing->painter;
-    struct client *first[URGENCY_COUNT + 1] = { NULL };
-    int64_t asked_ns[URGENCY_COUNT], now_ns = clock_mono_ns();
-    bool busy = drawing->slow.canvas != NULL;
-    struct turn turn = { 0 };
-    for (size_t i = 0; i < painter->client_count; i++) {
-        struct client *client = painter->clients[i];
-        if (goes_before(drawing, client, first[client->wish.urgency], now_ns))
-            first[client->wish.urgency] = client;
-    }
-    for (int i = 0; i < URGENCY_COUNT; i++)
-        asked_ns[i] = busy && drawing->slow.urgency == (enum urgency)i ? drawing->slow.asked_ns
-                      : first[i]                                      ? first[i]->wish.asked_ns
-                                                                      : INT64_MAX;
-    enum urgency urgency = schedule_choose(schedule, asked_ns, now_ns, &turn.wait_until_ns);
-    turn.step = busy && urgency == drawing->slow.urgency;
-    turn.client = first[urgency];
-    return turn;
-}
-
-/* Under lock. */
-static void wait_until(struct painter *painter, int64_t mono_ns)
-{
-    struct timespec until = { .tv_sec = mono_ns / NS_PER_S, .tv_nsec = mono_ns % NS_PER_S };
-    if (mono_ns == INT64_MAX)
-        pthread_cond_wait(&painter->wake, &painter->lock);
-    else
-        pthread_cond_timedwait(&painter->wake, &painter->lock, &until);
-}
-
-/* Under lock. What it had under way is not wanted any more. */
-static void begin(struct client *client, struct batch *batch, int64_t now_ns)
-{
-    client->pending = false;
-    client->left = client->wish.urgency < URGENCY_REFINE;
-    batch_add(batch,
-              &(struct order){
-                  .client = client->id, .number = ++client->number, .wish = client->wish, .wait_ns = now_ns - client->wish.view.input_ns });
-}
-
-/* Under lock. The client's wish, and all that the same picture answers. */
-static void begin_all(struct painter *painter, struct client *first, struct batch *batch)
-{
-    int64_t now_ns = clock_mono_ns();
-    int share = schedule_share(first->wish.urgency);
-    painter->spent_ns[share] = schedule_asked(first->spent_ns[share], painter->spent_ns[share]);
-    begin(first, batch, now_ns);
-    struct wish wish = batch->orders[0].wish;
-    for (size_t i = 0; i < painter->client_count && !wish.overlay; i++) {
-        struct client *other = painter->clients[i];
-        if (other->pending && !other->wish.overlay && view_equal(&other->wish.view, &wish.view))
-            begin(other, batch, now_ns);
-    }
-}
-
-static void held_pop(struct drawing *drawing, struct batch *batch)
-{
-    struct batch empty = *batch;
-    *batch = drawing->held.batches[0];
-    memmove(drawing->held.batches, drawing->held.batches + 1, --drawing->held.count * sizeof(*batch));
-    drawing->held.batches[drawing->held.count] = empty;
-}
-
-/* False: no room. */
-static bool held_push(struct drawing *drawing, struct batch *batch)
-{
-    if (drawing->held.count == HELD)
-        return false;
-    struct batch empty = drawing->held.batches[drawing->held.count];
-    drawing->held.batches[drawing->held.count++] = *batch;
-    *batch = empty;
-    batch->count = 0;
-    return true;
-}
-
-static void refresh(struct drawing *drawing)
-{
-    struct painter *painter = drawing->painter;
-    int64_t now_ns = clock_mono_ns();
-    pthread_mutex_lock(&painter->lock);
-    bool new_data = painter->new_data;
-    painter->new_data = false;
-    pthread_mutex_unlock(&painter->lock);
-    if (new_data || now_ns - drawing->snapshot->taken_mono_ns > SNAPSHOT_MAX_AGE_NS)
-        store_snapshot(painter->params.store, now_ns, clock_utc_ns(), drawing->snapshot);
-}
-
-/* One question about a pixel. */
-static void answer_pick(struct drawing *drawing)
-{
-    struct painter *painter = drawing->painter;
-    struct pick_order order;
-    struct pick pick;
-    int64_t start_ns = clock_mono_ns();
-    if (!picks_take(painter->picks, &order))
-        return;
-    refresh(drawing);
-    pick_at(painter->params.scene, drawing->field, &order.view, drawing->snapshot, order.x_px, order.y_px, &pick);
-    counter_inc(painter->picked, 1);
-    counter_inc(painter->pick_us, (clock_mono_ns() - start_ns) / 1000);
-    if (picks_give(painter->picks, &order, &pick))
-        painter->params.notify(painter->params.notify_arg);
-}
-
-/* Waits for work. False: stop. An empty batch: the slow picture may go on by a step. */
-static bool next_batch(struct drawing *drawing, const struct schedule *schedule, struct batch *batch)
-{
-    struct painter *painter = drawing->painter;
-    struct turn turn = { 0 };
-    batch->count = 0;
-    pthread_mutex_lock(&painter->lock);
-    while (painter->state == RUNNING) {
-        if (picks_wait(painter->picks)) {
-            pthread_mutex_unlock(&painter->lock);
-            answer_pick(drawing);
-            pthread_mutex_lock(&painter->lock);
-        }
-        turn = next_turn(drawing, schedule);
-        if (turn.step || turn.client || drawing->held.count > 0)
-            break;
-        if (picks_wait(painter->picks))
-            continue;
-        wait_until(painter, turn.wait_until_ns);
-    }
-    bool running = painter->state == RUNNING;
-    bool others = turn.step || turn.client, held = drawing->held.count > 0 && (drawing->held.due || !others);
-    drawing->held.due = !held;
-    if (running && held)
-        held_pop(drawing, batch);
-    else if (running && !turn.step)
-        begin_all(painter, turn.client, batch);
-    pthread_mutex_unlock(&painter->lock);
-    return running;
-}
 
 struct content_of {
     struct painter *painter;
@@ -338,6 +141,7 @@ static void slow_begin(struct drawing *drawing, struct batch *batch, int64_t fie
         fail(drawing, batch);
         return;
     }
+    drawing->slow.keeps = canvas_keeps(drawing->slow.canvas);
     drawing->slow.urgency = wish->urgency;
     drawing->slow.asked_ns = wish->asked_ns;
     drawing->slow.field_ns = field_ns;
@@ -351,6 +155,27 @@ static void slow_begin(struct drawing *drawing, struct batch *batch, int64_t fie
     store_snapshot(drawing->painter->params.store, clock_mono_ns(), clock_utc_ns(), drawing->snapshot);
 }
 
+/* Its clients may have got newer readings meanwhile: the refined picture shows them too, and is the newest. NULL: it cannot. */
+static struct frame *slow_again(struct drawing *drawing)
+{
+    struct painter *painter = drawing->painter;
+    struct batch *batch = &drawing->slow.batch;
+    const struct view *view = &batch->orders[0].wish.view;
+    if (!drawing->slow.keeps || batch->orders[0].wish.overlay)
+        return NULL;
+    drawing_refresh(drawing);
+    if (!canvas_is_quick(drawing->renderer, view, drawing->snapshot))
+        return NULL;
+    pthread_mutex_lock(&painter->lock);
+    for (size_t i = 0; i < batch->count; i++) {
+        struct client *client = painter_find(painter, batch->orders[i].client);
+        if (client)
+            batch->orders[i].number = ++client->number;
+    }
+    pthread_mutex_unlock(&painter->lock);
+    return canvas_draw(drawing->renderer, view, drawing->snapshot);
+}
+
 /* True: it is done. */
 static bool slow_step(struct drawing *drawing)
 {
@@ -361,8 +186,14 @@ static bool slow_step(struct drawing *drawing)
         return false;
     struct frame *frame = canvas_end(drawing->renderer, &drawing->slow.canvas);
     if (is_good(drawing, frame)) {
+        struct frame *newer = slow_again(drawing);
         frame->field_ns += drawing->slow.field_ns;
-        deliver(drawing, frame, drawing->slow.snapshot, &drawing->slow.batch);
+        if (newer) {
+            newer->field_ns += frame->field_ns;
+            newer->render_ns += frame->render_ns;
+            frame_unref(&frame);
+        }
+        deliver(drawing, newer ? newer : frame, newer ? drawing->snapshot : drawing->slow.snapshot, &drawing->slow.batch);
     } else {
         fail(drawing, &drawing->slow.batch);
     }
@@ -393,30 +224,40 @@ static void slow_leave(struct drawing *drawing)
     canvas_abandon(drawing->renderer, &drawing->slow.canvas);
 }
 
-/* The field is not there yet, or the place for slow pictures is taken: again later. */
-static bool must_wait(struct drawing *drawing, const struct wish *wish)
+/* A refined picture was wished for if it were quick, and it is not: the other one that was wished for then. */
+static void choose_other(struct batch *batch)
 {
-    if (drawing->held.count == HELD)
-        return false;
-    return !canvas_prepare(drawing->renderer, &wish->view, drawing->snapshot, FIELD_NS) ||
-           (wish->urgency >= URGENCY_REFINE && drawing->slow.canvas);
+    for (size_t i = 0; i < batch->count; i++) {
+        struct wish *wish = &batch->orders[i].wish;
+        if (!wish->or_moving) {
+            wish->urgency = URGENCY_REFINE;
+            continue;
+        }
+        wish->view.tier = TIER_MOVING;
+        wish->quality = wish->moving_quality;
+    }
 }
 
-/* False: held. */
+/* False: held: the field is not there yet, or the place for slow pictures is taken; again later. */
 static bool draw(struct drawing *drawing, struct batch *batch)
 {
     int64_t field_begin_ns = clock_mono_ns();
-    refresh(drawing);
-    if (must_wait(drawing, &batch->orders[0].wish) && held_push(drawing, batch)) {
+    const struct wish *wish = &batch->orders[0].wish;
+    drawing_refresh(drawing);
+    bool ready = canvas_prepare(drawing->renderer, &wish->view, drawing->snapshot, FIELD_NS);
+    bool quick = ready && canvas_is_quick(drawing->renderer, &wish->view, drawing->snapshot);
+    if (ready && !quick && wish->urgency == URGENCY_DATA)
+        choose_other(batch);
+    quick = quick || wish->urgency < URGENCY_REFINE;
+    if ((!ready || (!quick && drawing->slow.canvas)) && held_push(&drawing->held, batch)) {
         counter_inc(drawing->painter->steps, 1);
         return false;
     }
     leave_out_same(drawing, batch);
     if (batch->count == 0)
         return true;
-    const struct wish *wish = &batch->orders[0].wish;
     int64_t field_ns = clock_mono_ns() - field_begin_ns; /* to know what changed, the field was brought up to date already */
-    if (wish->urgency >= URGENCY_REFINE) {
+    if (!quick && !drawing->slow.canvas) {
         slow_begin(drawing, batch, field_ns);
         return true;
     }
@@ -476,8 +317,7 @@ static void drawing_finish(struct drawing *drawing)
     snapshot_destroy(&drawing->slow.snapshot);
     batch_finish(&drawing->same);
     recent_finish(&drawing->recent);
-    for (size_t i = 0; i < HELD; i++)
-        batch_finish(&drawing->held.batches[i]);
+    held_finish(&drawing->held);
 }
 
 /* What only the first picture costs (shaders, baked light) is paid before anyone asks. */
@@ -503,7 +343,7 @@ static bool pause_for(struct painter *painter, int64_t pause_ns)
     int64_t until_ns = clock_mono_ns() + pause_ns;
     pthread_mutex_lock(&painter->lock);
     while (painter->state == RUNNING && clock_mono_ns() < until_ns)
-        wait_until(painter, until_ns);
+        drawing_wait(painter, until_ns);
     bool running = painter->state == RUNNING;
     pthread_mutex_unlock(&painter->lock);
     return running;
@@ -558,7 +398,7 @@ void *drawing_main(void *arg)
     pthread_mutex_unlock(&painter->lock);
     if (good)
         warm_up(&drawing);
-    while (next_batch(&drawing, &schedule, &batch)) {
+    while (drawing_next(&drawing, &schedule, &batch)) {
         turn(&drawing, &schedule, &batch);
         if (gl_lost(drawing.gl))
             rebuild(&drawing);

@@ -40,7 +40,7 @@ struct hub {
     int64_t looked_ns;       /* when the files of tokens and certificate were looked at */
     uint64_t next_client;
     bool asked;                         /* wishes were made: painter_go is due */
-    int64_t still_ns;                   /* what the last refined picture cost */
+    int64_t still_ns;                   /* what the last refined picture cost that was not one before with new readings */
     uint8_t out[LWS_PRE + SLICE_BYTES]; /* lws writes its framing in front of what is sent */
     struct tags_said tags_said;
     struct marker_lists marker_lists; /* of the frame that was sent last */

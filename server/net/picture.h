@@ -15,6 +15,8 @@ struct wish {
     int step;          /* of the ladder, where it moves */
     bool draft;        /* refined, but of less quality than the client shall have in the end */
     bool of_data;      /* for a reading that changed: view.input_ns is when */
+    bool or_moving;    /* a refined picture if it takes no longer than one that moves, with new readings; else one that moves */
+    struct encoder_params moving_quality; /* of that */
     bool only_replace; /* the client may have no more pictures: good only in place of a wish that is not begun */
     bool always;       /* draw and send even if the picture would be the same as the last one of this client */
     bool alone;        /* it must need nothing that was sent before */

@@ -32,6 +32,17 @@ static void on_failure(struct session *session, const struct view *view)
     session_reply_error(session, &error);
 }
 
+/* What came may be less refined than what was asked for, or more: readings overtake a refined picture, which shows them in the end. */
+static void note_refined(struct session *session, const struct wish *wish)
+{
+    struct view view = *session_view(session);
+    view.tier = wish->view.tier;
+    if (wish->or_moving && wish->view.tier == TIER_MOVING)
+        session->refined = REFINED_NOT;
+    else if (wish->view.tier == TIER_STILL && !wish->draft && !session->input_pending && view_equal(&view, &wish->view))
+        session->refined = REFINED_FULL;
+}
+
 void session_on_picture(struct session *session, struct picture *picture)
 {
     if (picture->failed)
@@ -46,6 +57,7 @@ void session_on_picture(struct session *session, struct picture *picture)
     session->newest_number = picture->number;
     if (picture->wish.view.tier == TIER_MOVING)
         session->moved_ns = picture->wish.asked_ns;
+    note_refined(session, &picture->wish);
     if (picture_stands_alone(picture)) /* newer than what the socket has not yet taken */
         session_drop_ready(session);
     struct picture **last = &session->ready;
@@ -92,10 +104,9 @@ static bool refine_due(const struct session *session, int64_t now_ns)
 }
 
 /* The data's picture is refined at once where all can be. */
-static bool data_is_refined(const struct session *session, int64_t now_ns)
+static bool all_can_be_refined(const struct session *session, int64_t now_ns)
 {
-    const struct session_world *world = session->world;
-    return session->refined == REFINED_FULL && !world->loaded && now_ns >= world->moving_until_ns && !is_slow(session);
+    return !session->world->loaded && now_ns >= session->world->moving_until_ns;
 }
 
 static int scaled(int px, double scale)
@@ -122,6 +133,15 @@ static void make_still(const struct session *session, struct wish *wish)
     wish->quality = wish->draft ? DRAFT : STILL;
 }
 
+/* Whoever looks at a refined picture keeps it when readings change, if it is quick to colour again. */
+static void make_refreshed(const struct session *session, int64_t now_ns, struct wish *wish)
+{
+    wish->view.tier = TIER_STILL;
+    wish->quality = STILL;
+    wish->or_moving = !all_can_be_refined(session, now_ns);
+    wish->moving_quality.quality = ladder_rung(&session->pacer.ladder).quality;
+}
+
 static bool wants(const struct session *session, int64_t now_ns, struct wish *wish)
 {
     if (session->input_pending || session->always_pending) {
@@ -137,8 +157,8 @@ static bool wants(const struct session *session, int64_t now_ns, struct wish *wi
         wish->view.input_ns = session->data_ns;
         wish->of_data = true;
         wish->urgency = URGENCY_DATA;
-        if (data_is_refined(session, now_ns))
-            make_still(session, wish);
+        if (session->refined == REFINED_FULL && !is_slow(session))
+            make_refreshed(session, now_ns, wish);
         else
             make_moving(session, wish);
     } else {

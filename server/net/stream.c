@@ -208,7 +208,7 @@ void stream_on_picture(struct hub *hub, struct picture *picture)
 {
     struct stream *stream = stream_find(hub, picture->client);
     const struct frame *frame = picture->packet ? picture->packet->frame : NULL;
-    if (frame && frame->view.tier == TIER_STILL)
+    if (frame && frame->view.tier == TIER_STILL && picture->wish.urgency >= URGENCY_REFINE)
         hub->still_ns = frame->render_ns + frame->readback_ns;
     admission_on_picture(&hub->admission, picture);
     session_on_picture(stream->session, picture);

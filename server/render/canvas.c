@@ -42,6 +42,17 @@ uint64_t canvas_content(struct renderer *renderer, const struct view *view, cons
     return content;
 }
 
+bool canvas_is_quick(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
+{
+    bool quick = true;
+    for (int half = 0; half < count_halves(view) && quick; half++) {
+        struct view one;
+        view_half(view, half, &one);
+        quick = renderer_is_quick(renderer, &one, snapshot);
+    }
+    return quick;
+}
+
 static void copy_pixels(struct frame *whole, const struct frame *part, int x_px)
 {
     for (int y = 0; y < part->height_px; y++)
@@ -147,6 +158,11 @@ struct canvas *canvas_begin(struct renderer *renderer, const struct view *view, 
         }
     }
     return canvas;
+}
+
+bool canvas_keeps(const struct canvas *canvas)
+{
+    return renderer_keeps(canvas->strokes[0]) && (canvas->half_count == 1 || renderer_keeps(canvas->strokes[1]));
 }
 
 bool canvas_step(struct renderer *renderer, struct canvas *canvas, int64_t budget_ns)

@@ -11,8 +11,10 @@ struct canvas;
 bool canvas_prepare(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot, int64_t budget_ns);
 uint64_t canvas_content(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot);
 struct frame *canvas_draw(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot);
+bool canvas_is_quick(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot);
 struct canvas *canvas_begin(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot);
 bool canvas_step(struct renderer *renderer, struct canvas *canvas, int64_t budget_ns);
+bool canvas_keeps(const struct canvas *canvas); /* renderer_keeps */
 struct frame *canvas_end(struct renderer *renderer, struct canvas **canvas);
 void canvas_abandon(struct renderer *renderer, struct canvas **canvas); /* &NULL is fine; leaves NULL */
 

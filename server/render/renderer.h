@@ -43,6 +43,7 @@ bool renderer_measure(struct renderer *renderer, const struct view *view, const 
 /* The same picture drawn bit by bit, so that others can be drawn in between; it shows what there was to see when it was begun.
    As many as fit in memory may be under way. NULL on failure, logged. */
 struct stroke *renderer_begin(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot);
+bool renderer_keeps(const struct stroke *stroke); /* when it is ended, the same with other readings is quick (renderer_is_quick) */
 /* Draws on for about that long, and a bit at least. True: nothing is left to do but renderer_end. */
 bool renderer_step(struct renderer *renderer, struct stroke *stroke, int64_t budget_ns);
 /* Draws what is left. The caller owns the frame. NULL on failure, logged. The stroke is gone in either case. */

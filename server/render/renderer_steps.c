@@ -127,6 +127,11 @@ struct stroke *renderer_begin(struct renderer *renderer, const struct view *view
     return stroke;
 }
 
+bool renderer_keeps(const struct stroke *stroke)
+{
+    return stroke->plate != NULL;
+}
+
 /* A bit on all cores takes some milliseconds. */
 static bool step_plate(struct renderer *renderer, struct stroke *stroke, int64_t budget_ns)
 {

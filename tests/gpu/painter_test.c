@@ -17,6 +17,7 @@
 #include "base/mem.h"
 #include "net/painter.h"
 #include "tests/support/toy.h"
+#include "value/quality.h"
 
 #define ENCODES "plantcast_encodes_total{codec=\"jpeg\"}"
 enum { REFINER = 1, MOVER = 2, PICKER = 3, VIEWERS = 100 };
@@ -282,14 +283,16 @@ static void test_lost_context_is_made_again_under_load(void **state)
     (void)state;
     enum { LOSSES = 3, MOVES = 4 };
     int64_t losses = count_of("plantcast_gl_losses_total"), failures = count_of("plantcast_render_failures_total");
-    struct picture *refined = picture_of(REFINER, URGENCY_REFINE, 5), *moved[MOVES];
+    struct picture *refined[LOSSES], *moved[MOVES];
+    for (int i = 0; i < LOSSES; i++) /* another each time: the same again would be quick */
+        refined[i] = picture_of(REFINER, URGENCY_REFINE, 5 + 0.1 * i);
     for (int i = 0; i < MOVES; i++)
         moved[i] = picture_of(MOVER, URGENCY_INPUT, 6 + i);
     for (int loss = 0; loss < LOSSES; loss++) {
         clock_sleep_ns(RECENT_NS);
         int64_t steps = count_of("plantcast_render_steps_total");
         int refinements = 0;
-        ask(REFINER, URGENCY_REFINE, 5);
+        ask(REFINER, URGENCY_REFINE, 5 + 0.1 * loss);
         if (loss > 0)
             await_step(steps + 1);
         painter_lose_context(painter);
@@ -300,21 +303,22 @@ static void test_lost_context_is_made_again_under_load(void **state)
                 assert_true(picture->packet && !picture->failed);
                 answered = picture->client == MOVER;
                 refinements += !answered;
-                assert_same_bytes(picture->packet, answered ? moved[i++]->packet : refined->packet);
+                assert_same_bytes(picture->packet, answered ? moved[i++]->packet : refined[loss]->packet);
                 picture_destroy(&picture);
             }
         }
         if (refinements == 0) {
             struct picture *picture = next();
             assert_true(picture->client == REFINER && picture->packet);
-            assert_same_bytes(picture->packet, refined->packet);
+            assert_same_bytes(picture->packet, refined[loss]->packet);
             picture_destroy(&picture);
         }
         assert_true(painter_ready(painter));
     }
     assert_true(count_of("plantcast_gl_losses_total") == losses + LOSSES);
     assert_true(count_of("plantcast_render_failures_total") == failures);
-    picture_destroy(&refined);
+    for (int i = 0; i < LOSSES; i++)
+        picture_destroy(&refined[i]);
     for (int i = 0; i < MOVES; i++)
         picture_destroy(&moved[i]);
 }
@@ -374,7 +378,7 @@ static void test_picks_are_answered_between_steps(void **state)
     struct pick_order order = { .client = PICKER, .x_px = 320, .y_px = 180 };
     view_default(&toy->scene, 640, 360, &order.view);
     int64_t steps = count_of("plantcast_render_steps_total");
-    ask(REFINER, URGENCY_REFINE, 0);
+    ask(REFINER, URGENCY_REFINE, 2);
     await_step(steps + 1);
     for (uint32_t i = 1; i <= 20; i++) {
         order.seq = i;
@@ -412,6 +416,62 @@ static void test_newest_pick_wins(void **state)
     print_message("# %d of 500 answered\n", answers);
 }
 
+static void change_readings(double value)
+{
+    for (int tag = 0; tag < (int)toy->plant.tag_count; tag++) {
+        struct sample sample = { .tag = tag, .value = value + tag, .quality = QUALITY_GOOD };
+        store_write(store, &sample, 1, clock_mono_ns(), clock_utc_ns());
+    }
+    painter_new_data(painter);
+}
+
+/* As a session does that looks at a refined picture when a reading changes. Returns how many more pictures will come. */
+static int ask_for_data(uint64_t client, double turn)
+{
+    struct wish wish = { .codec = WIRE_CODEC_JPEG, .quality = { .quality = 80 }, .moving_quality = { .quality = 80 },
+                         .urgency = URGENCY_DATA, .or_moving = true, .of_data = true, .asked_ns = clock_mono_ns() };
+    view_default(&toy->scene, 2400, 1600, &wish.view);
+    wish.view.tier = TIER_STILL;
+    wish.view.camera.eye_m[0] += turn;
+    enum painter_answer answer = painter_ask(painter, client, &wish);
+    painter_go(painter);
+    return answer == PAINTER_ADDED;
+}
+
+/* Readings change all the time: the refined picture comes all the same, with the newest of them, and stays. */
+static void test_changing_readings_leave_refined_pictures(void **state)
+{
+    (void)state;
+    int64_t steps = count_of("plantcast_render_steps_total"), abandoned = count_of("plantcast_renders_abandoned_total");
+    bool refined = false;
+    int owed = 1;
+    change_readings(20);
+    ask(REFINER, URGENCY_REFINE, 0.05);
+    await_step(steps + 1);
+    for (int i = 0; i < 8 || !refined; i++, owed--) {
+        change_readings(30 + i % 40);
+        owed += ask_for_data(REFINER, 0.05);
+        struct picture *picture = next();
+        assert_true(picture->client == REFINER && !picture->failed);
+        refined |= picture->packet && picture->packet->frame->view.tier == TIER_STILL;
+        picture_destroy(&picture);
+    }
+    for (; owed > 0; owed--) {
+        struct picture *last = next();
+        picture_destroy(&last);
+    }
+    assert_int_equal(count_of("plantcast_renders_abandoned_total"), abandoned);
+    steps = count_of("plantcast_render_steps_total");
+    for (int i = 0; i < 8; i++) {
+        change_readings(80 - 5 * i);
+        assert_int_equal(ask_for_data(REFINER, 0.05), 1);
+        struct picture *picture = next();
+        assert_true(picture->packet && picture->packet->frame->view.tier == TIER_STILL && picture->packet->frame->width_px == 2400);
+        picture_destroy(&picture);
+    }
+    assert_int_equal(count_of("plantcast_render_steps_total"), steps);
+}
+
 /* The daemon goes down in the midst of it. */
 static void test_stop_waits_for_no_refinement(void **state)
 {
@@ -433,6 +493,8 @@ static bool start(void)
     logger = log_create(LOG_INFO);
     workers = workers_create(2);
     counters = counters_create();
+    for (size_t i = 0; i < toy->plant.tag_count; i++)
+        toy->plant.tags[i].stale_s = 3600;
     store = store_create(&toy->plant);
     painter = painter_create(&(struct painter_params){ .log = logger, .gl = kind, .scene = &toy->scene, .store = store,
                                                        .workers = workers, .counters = counters, .notify = on_pictures });
@@ -464,6 +526,7 @@ int main(void)
         cmocka_unit_test(test_no_memory_fails_that_picture_alone),
         cmocka_unit_test(test_picks_are_answered_between_steps),
         cmocka_unit_test(test_newest_pick_wins),
+        cmocka_unit_test(test_changing_readings_leave_refined_pictures),
         cmocka_unit_test(test_stop_waits_for_no_refinement),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);

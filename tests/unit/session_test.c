@@ -185,6 +185,20 @@ static struct wish show(struct fixture *f)
     return wish;
 }
 
+/* New readings under a refined picture: quick says whether the render thread can colour it again, or draws a moving one instead. */
+static struct wish show_data(struct fixture *f, bool quick)
+{
+    struct wish wish = { 0 };
+    session_on_data(f->session, f->now_ns);
+    if (!ask(f, &wish))
+        fail_msg("no picture is wanted");
+    if (wish.or_moving && !quick)
+        wish.view.tier = TIER_MOVING;
+    paint(f, &wish, false);
+    ack(f, send_picture(f));
+    return wish;
+}
+
 static void nothing_before_hello(void **state)
 {
     struct fixture *f = *state;
@@ -407,8 +421,7 @@ static void data_on_a_loaded_server_is_not_refined_at_once(void **state)
     f->now_ns += NS_PER_S;
     assert_true(show(f).view.tier == TIER_STILL);
     f->world.loaded = true;
-    session_on_data(f->session, f->now_ns);
-    wish = show(f);
+    wish = show_data(f, false);
     assert_true(wish.view.tier == TIER_MOVING && wish.urgency == URGENCY_DATA);
     f->now_ns += 900 * MS;
     assert_false(ask(f, &wish));
@@ -428,10 +441,28 @@ static void data_on_a_loaded_server_does_not_put_refinement_off_for_ever(void **
     f->world.loaded = true;
     for (int i = 0; i < 20; i++) { /* 10 s */
         f->now_ns += 500 * MS;
-        session_on_data(f->session, f->now_ns);
-        refined += show(f).view.tier == TIER_STILL;
+        refined += show_data(f, false).view.tier == TIER_STILL;
     }
     assert_in_range(refined, 2, 4);
+}
+
+/* A minute of readings that change twice a second: the refined picture stays, whatever else the server has to do. */
+static void data_leaves_a_refined_picture_that_is_quick_to_color(void **state)
+{
+    struct fixture *f = *state;
+    struct wish wish;
+    greet(f);
+    show(f);
+    f->now_ns += NS_PER_S;
+    assert_true(show(f).view.tier == TIER_STILL);
+    f->world.loaded = true;
+    for (int i = 0; i < 120; i++) {
+        f->now_ns += 500 * MS;
+        wish = show_data(f, true);
+        assert_true(wish.view.tier == TIER_STILL && wish.urgency == URGENCY_DATA && wish.quality.full_chroma);
+    }
+    f->now_ns += 5 * NS_PER_S;
+    assert_false(ask(f, &wish));
 }
 
 /* 125 kB/s: what moves becomes smaller, what stands still is refined in two stages. */
@@ -812,6 +843,7 @@ int main(void)
         TEST(others_may_move_for_a_while_not_for_ever),
         TEST(data_on_a_loaded_server_is_not_refined_at_once),
         TEST(data_on_a_loaded_server_does_not_put_refinement_off_for_ever),
+        TEST(data_leaves_a_refined_picture_that_is_quick_to_color),
         TEST(a_slow_client_gets_less_and_everything_in_the_end),
         TEST(a_refined_picture_that_is_out_of_date_is_not_sent_on),
         TEST(who_takes_nothing_is_paused_and_costs_nothing),

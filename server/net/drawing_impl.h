@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the render thread alone touches. Private to drawing.c and turns.c. */
+#ifndef NET_DRAWING_IMPL_H
+#define NET_DRAWING_IMPL_H
+#include "net/held.h"
+#include "net/painter_impl.h"
+#include "net/recent.h"
+#include "render/canvas.h"
+
+struct drawing {
+    struct painter *painter;
+    struct gl *gl;
+    struct field *field;
+    struct renderer *renderer;
+    struct snapshot *snapshot;
+    struct batch same;
+    struct recent recent;
+    struct { /* the picture that takes long and is drawn step by step; at most one */
+        struct canvas *canvas; /* NULL: none */
+        struct batch batch;
+        struct snapshot *snapshot; /* of what it shows */
+        enum urgency urgency;
+        int64_t asked_ns, field_ns;
+        bool keeps; /* when it is done, new readings are quick to show: they need not wait for it, nor it be given up for them */
+    } slow;
+    struct held held; /* pictures whose field takes long: worked on step by step, each in its turn */
+};
+
+/* Waits for work. False: stop. An empty batch: the slow picture may go on by a step. */
+bool drawing_next(struct drawing *drawing, const struct schedule *schedule, struct batch *batch);
+/* The newest readings, if they changed or are some time old. */
+void drawing_refresh(struct drawing *drawing);
+/* Under the painter's lock: until somebody wakes it, or then. */
+void drawing_wait(struct painter *painter, int64_t mono_ns);
+
+#endif
