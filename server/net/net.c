@@ -259,7 +259,7 @@ static bool open_context(struct net *net)
         .uid = -1,
         .options = LWS_SERVER_OPTION_FAIL_UPON_UNABLE_TO_BIND | LWS_SERVER_OPTION_DISABLE_OS_CA_CERTS |
                    (strchr(hub->params.address, ':') ? 0 : LWS_SERVER_OPTION_DISABLE_IPV6),
-        .timeout_secs = 10,
+        .timeout_secs = (unsigned)hub->quotas->at[QUOTA_PATIENCE_S],
         .keepalive_timeout = 30,
         .pt_serv_buf_size = 16 * 1024,
         .fd_limit_per_thread = 0,

@@ -25,6 +25,7 @@ static const struct {
     [QUOTA_ADDRESS_MESSAGES] = { "address-messages", 8000, 10, 1000000, "likewise of one address" },
     [QUOTA_SNAPSHOTS] = { "snapshots", 8, 1, 1000, "pictures and picks over HTTP that are being made" },
     [QUOTA_LEAST_FPS] = { "least-fps", 5, 0, 1000, "frames/s that moving views keep when one more is let in" },
+    [QUOTA_PATIENCE_S] = { "patience", 10, 1, 600, "seconds for a request, for hello, and for the rest of a message" },
 };
 
 struct quotas quotas_default(void)

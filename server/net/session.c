@@ -9,8 +9,6 @@
 #include "net/framing.h"
 #include "net/reply.h"
 
-static const int64_t HELLO_NS = 10 * NS_PER_S; /* who has not said hello by then will not */
-
 struct session *session_create(const struct session_world *world, uint64_t id, int64_t now_ns)
 {
     struct session *session = mem_new(sizeof(*session));
@@ -247,8 +245,8 @@ void session_on_oversize(struct session *session, size_t count, int64_t now_ns)
 
 void session_on_tick(struct session *session, int64_t now_ns)
 {
-    if (!session->hello && now_ns - session->opened_ns >= HELLO_NS)
-        session_close(session, 1008, "no hello within 10 s");
+    if (!session->hello && now_ns - session->opened_ns >= session->world->quotas->at[QUOTA_PATIENCE_S] * NS_PER_S)
+        session_close(session, 1008, "no hello for too long");
     if (session->too_fast && now_ns - session->rate_begin_ns >= NS_PER_S)
         session->too_fast = false;
     if (pacer_state(&session->pacer, now_ns) != PACER_FLOWS)

@@ -10,7 +10,6 @@
 #include "net/visitor.h"
 
 enum { STREAM_CLOSE_STALLED = 4000, LAST_WORDS_S = 2 };
-static const int64_t HALF_MESSAGE_NS = 10 * NS_PER_S;
 static const int64_t MOVING_NS = 200 * NS_PER_MS; /* after an input somebody is taken to be moving */
 
 /* --- coming and going ------------------------------------------------------------------------------------------------------- */
@@ -169,13 +168,13 @@ static void watch_stall(struct hub *hub, struct stream *stream, int64_t now_ns)
 
 void streams_on_tick(struct hub *hub, bool data_changed, bool links_changed)
 {
-    int64_t now_ns = clock_mono_ns();
+    int64_t now_ns = clock_mono_ns(), patience_ns = hub->quotas->at[QUOTA_PATIENCE_S] * NS_PER_S;
     hub->world.loaded = is_loaded(hub);
     hub->world.moving = count_moving(hub, now_ns);
     for (struct stream *stream = hub->streams; stream; stream = stream->next) {
         session_on_tick(stream->session, now_ns);
-        if (stream->in_count > 0 && now_ns - stream->in_begin_ns > HALF_MESSAGE_NS)
-            session_close(stream->session, 1008, "half a message, and no more of it for 10 s");
+        if (stream->in_count > 0 && now_ns - stream->in_begin_ns > patience_ns)
+            session_close(stream->session, 1008, "half a message, and for too long no more of it");
         if (data_changed)
             session_on_data(stream->session, hub->data_ns);
         stream->session->owes_status |= links_changed;

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Clients that mean harm, or do it: each has its answer, all of them at once leave another session its frames, and when they are gone the
+// daemon has what it had.
+import assert from 'node:assert/strict';
+import { spawn } from 'node:child_process';
+import { readdirSync } from 'node:fs';
+import { connect } from 'node:net';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { encodeFrame, get, PlainClient } from './support/plain_client.mjs';
+import { BIN, missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+
+const absent = missing();
+const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
+const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
+const SILENT = 1000, PATIENCE_S = 3, FLOOD_PER_S = 10000;
+const HELLO = { type: 'hello', width: 320, height: 180, codecs: ['jpeg'] };
+let plant;
+
+before(async () => {
+    if (skip)
+        return;
+    plant = await TinyPlant.create();
+    assert.equal(plant.prepare().code, 0);
+    const tokens = join(plant.folder, 'tokens');
+    assert.equal(runProgram('plantcast', ['token', 'add', tokens, '--role', 'viewer', '--name', 'somebody']).code, 0);
+    await plant.startDaemon('--tokens', tokens, '--limit', `patience=${PATIENCE_S}`, '--limit', `connections=${SILENT + 200}`);
+});
+after(() => plant?.destroy());
+
+const closed = (client, timeoutMs = 20000) => client.until('a close', (c) => c.closed, timeoutMs);
+const metric = async (name) => Number((await get(plant.port, '/metrics')).body.toString().match(new RegExp(`^${name} (\\d+)`, 'm'))[1]);
+const descriptors = () => readdirSync(`/proc/${plant.daemon.child.pid}/fd`).length;
+
+// A socket that says what it is told, and when it was closed.
+function raw(port) {
+    const socket = connect(port, '127.0.0.1');
+    socket.on('error', () => {});
+    socket.ended = new Promise((done) => socket.once('close', () => done(performance.now())));
+    socket.resume();
+    return socket;
+}
+
+// Frames per second of another client, a program of its own: its cameras move 60 times a second.
+function othersRate(seconds) {
+    return new Promise((done, fail) => {
+        const url = `http://127.0.0.1:${plant.port}/`;
+        const child = spawn(join(BIN, 'plantcast'), ['probe', url, '--seconds', String(seconds), '--size', '320x180', '--json']);
+        let said = '', errors = '';
+        child.stdout.on('data', (chunk) => { said += chunk; });
+        child.stderr.on('data', (chunk) => { errors += chunk; });
+        child.once('exit', (code) => (code === 0 ? done(JSON.parse(said).fps) : fail(new Error(errors))));
+    });
+}
+
+test('values beyond all sense are refused by name, and the next good ones hold', { skip }, async () => {
+    const client = await PlainClient.open(plant.port);
+    for (const [width, height] of [[0, 0], [1e9, 1e9], [-5, 100], [16.5, 100], [8193, 16]]) {
+        client.say({ ...HELLO, width, height });
+        assert.deepEqual(Object.values(await client.text('error')).slice(1, 2), ['bad_field'], `${width}x${height}`);
+    }
+    await client.hello();
+    const bad = ['{"type":"camera","seq":1,"eye":[1e300,0,0],"target":[0,0,0]}',
+        '{"type":"camera","seq":1,"eye":[NaN,0,0],"target":[0,0,0]}',
+        '{"type":"camera","seq":1,"eye":[1,2,3],"target":[1,2,3]}', '{"type":"resize","width":0,"height":0}',
+        '{"type":"resize","width":1000000000,"height":1000000000}', '{"type":"ack","seq":4000000000}', '{"type":"ack","seq":-1}'];
+    for (const text of bad) {
+        client.say(text);
+        assert.match((await client.text('error')).code, /^(bad_field|not_json)$/, text);
+    }
+    client.say({ type: 'camera', seq: 7, eye: [5, -6, 4], target: [1, 0, 0] });
+    const frame = await client.frameWhere('camera 7', (f) => f.camera_seq === 7);
+    assert.deepEqual([frame.full_width, frame.full_height], [320, 180]);
+    client.close();
+});
+
+test('ten thousand messages a second are read at the pace allowed, and all of them in the end', { skip }, async () => {
+    const client = await PlainClient.open(plant.port);
+    await client.hello();
+    const pings = Buffer.concat(Array.from({ length: 2500 }, (_, t) => encodeFrame(1, `{"type":"ping","t":${t}}`)));
+    const began = performance.now();
+    client.write(pings);
+    assert.equal((await client.text('error')).code, 'too_fast');
+    await client.until('the last answer', (c) => c.texts.some((m) => m.type === 'pong' && m.t === 2499), 20000);
+    assert.ok(performance.now() - began > 1500, 'a thousand a second');
+    client.close();
+});
+
+test('all at once: nobody else is slowed, and each has its answer', { skip }, async () => {
+    const { port } = plant;
+    const filesBefore = descriptors();
+    const alone = await othersRate(2);
+    const began = performance.now();
+
+    const silent = Array.from({ length: SILENT }, () => raw(port));
+    const drips = Array.from({ length: 50 }, () => raw(port));
+    for (const socket of drips)
+        socket.write('GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nX-Slow: ');
+    const half = await PlainClient.open(port, { acknowledge: false });
+    await half.hello();
+    half.write(encodeFrame(1, '{"type":"pi', { fin: false }));
+    const mute = await PlainClient.open(port);
+    const flood = await PlainClient.open(port, { acknowledge: false });
+    await flood.hello();
+    flood.socket.pause(); // and it does not read
+    const camera = encodeFrame(1, '{"type":"camera","seq":1,"eye":[5,-6,4],"target":[1e300,0,0]}');
+    const cameras = Buffer.concat(Array(FLOOD_PER_S / 10).fill(camera));
+    const guesses = [];
+    let turn = 0;
+    const timer = setInterval(async () => {
+        if (flood.socket.writableLength < 1e6)
+            flood.write(cameras);
+        for (const socket of drips)
+            socket.write('y');
+        if (++turn % 2 === 0) {
+            const guess = await PlainClient.open(port).catch(() => null);
+            guess?.say({ ...HELLO, token: `pc_${turn}` });
+            if (guess)
+                guesses.push(guess);
+        }
+    }, 100);
+    const beside = await othersRate(3);
+
+    const ended = await Promise.all([...silent, ...drips].map((socket) => socket.ended));
+    clearInterval(timer);
+    const last = (Math.max(...ended) - began) / 1000;
+    assert.ok(last < PATIENCE_S + 8, `the last was let go after ${last.toFixed(1)} s`);
+    assert.equal((await closed(half)).code, 1008);
+    assert.match((await closed(mute)).text, /no hello/);
+    assert.ok(guesses.length >= 5);
+    for (const guess of guesses)
+        assert.equal((await closed(guess)).code, 1008);
+    assert.equal(guesses[0].texts[0].code, 'bad_token');
+    flood.close();
+    assert.ok(beside > 0.7 * alone, `${alone.toFixed(1)} frames/s alone, ${beside.toFixed(1)} beside all of them`);
+    console.log(`# ${alone.toFixed(1)} frames/s alone, ${beside.toFixed(1)} beside all of them`);
+
+    for (const end = performance.now() + 5000; descriptors() > filesBefore && performance.now() < end;)
+        await sleep(100);
+    assert.ok(descriptors() <= filesBefore, `${filesBefore} descriptors before, ${descriptors()} after`);
+    assert.equal(await metric('plantcast_sessions'), 0);
+    assert.ok(await metric('plantcast_connections') <= 1); // the one that asks
+});
+
+test('beyond the limit connections are cut off, and there is room again once others go', { skip }, async () => {
+    const all = Array.from({ length: SILENT + 300 }, () => raw(plant.port));
+    const first = await Promise.race(all.map((socket) => socket.ended.then(() => performance.now())));
+    assert.ok(first > 0);
+    await sleep(500);
+    assert.ok(all.filter((socket) => socket.destroyed).length >= 50);
+    for (const socket of all)
+        socket.destroy();
+    await sleep(300);
+    assert.equal((await get(plant.port, '/healthz')).status, 200);
+});
+
+test('where drawing is too busy, one more is refused, told why and when to come again', { skip }, async () => {
+    const busy = await TinyPlant.create();
+    try {
+        assert.equal(busy.prepare().code, 0);
+        await busy.startDaemon('--limit', 'least-fps=1000');
+        const load = ['--seconds', '30', '--sessions', '4', '--size', '3840x2160', '--json'];
+        const mover = spawn(join(BIN, 'plantcast'), ['probe', `http://127.0.0.1:${busy.port}/`, ...load], { stdio: 'ignore' });
+        const ended = new Promise((done) => mover.once('exit', done));
+        let refused = null;
+        for (const end = performance.now() + 25000; !refused && performance.now() < end; await sleep(500)) {
+            const client = await PlainClient.open(busy.port);
+            client.say(HELLO);
+            await client.until('welcome or a close', (c) => c.closed || c.texts.some((m) => m.type === 'welcome'));
+            if (client.closed)
+                refused = client;
+            else
+                client.close();
+        }
+        mover.kill();
+        await ended;
+        assert.ok(refused, 'everybody was let in');
+        assert.equal(refused.closed.code, 1013);
+        assert.match(refused.closed.text, /^full: /);
+        const error = refused.texts.find((m) => m.type === 'error');
+        assert.deepEqual([error.code, error.retry_after_s], ['full', 10]);
+        await busy.daemon.stop();
+    } finally {
+        await busy.destroy();
+    }
+});
+
+test('the daemon lives, and ends cleanly', { skip }, async () => {
+    assert.deepEqual(await plant.daemon.stop('SIGTERM'), { code: 0, signal: null }, plant.daemon.said);
+    assert.ok(!/ERROR: |WARNING: ThreadSanitizer|runtime error/.test(plant.daemon.said), plant.daemon.said);
+});
