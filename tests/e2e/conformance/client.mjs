@@ -14,7 +14,8 @@ const FIELDS = [
     [0, 'u8', 'type'], [1, 'u8', 'codec'], [2, 'u16', 'flags'], [4, 'u32', 'payload_bytes'], [8, 'u32', 'seq'], [12, 'u32', 'camera_seq'],
     [16, 'u32', 'params_seq'], [20, 'u32', 'oldest_age_ms'], [24, 'u64', 'data_time_us'], [32, 'u64', 'sent_time_us'],
     [40, 'u32', 'wait_us'], [44, 'u32', 'field_us'], [48, 'u32', 'render_us'], [52, 'u32', 'encode_us'], [56, 'u16', 'x'], [58, 'u16', 'y'],
-    [60, 'u16', 'width'],    [62, 'u16', 'height'], [64, 'u16', 'full_width'], [66, 'u16', 'full_height'], [68, 'f32x3', 'eye'], [80, 'f32x3', 'target'],
+    [60, 'u16', 'width'], [62, 'u16', 'height'], [64, 'u16', 'full_width'], [66, 'u16', 'full_height'], [68, 'f32x3', 'eye'],
+    [80, 'f32x3', 'target'],
     [92, 'f32x3', 'up'], [104, 'f32', 'fov'], [108, 'f32', 'height_m'],
 ];
 const HEADER_BYTES = 112;
