@@ -2,15 +2,16 @@
 // Who is let in: TLS, tokens and their roles by every way, revocation, proxies, names, pages of others; and a person who is asked
 // for a token.
 import assert from 'node:assert/strict';
-import { spawnSync } from 'node:child_process';
-import { chmodSync, copyFileSync, existsSync, readFileSync, unlinkSync } from 'node:fs';
+import { spawn, spawnSync } from 'node:child_process';
+import { chmodSync, copyFileSync, existsSync, readFileSync, unlinkSync, writeFileSync } from 'node:fs';
 import { request } from 'node:https';
 import { connect as connectTls } from 'node:tls';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { http, PlainClient } from './support/plain_client.mjs';
-import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+import { encodeFrame, http, PlainClient } from './support/plain_client.mjs';
+import { freePort, missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 
+const NGINX = '/usr/sbin/nginx';
 const absent = missing();
 const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
 const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
@@ -254,6 +255,62 @@ test('TLS: pictures over wss, no old versions, and a new certificate while it ru
     copyFileSync(plant.file, path('served.pem'));
     await plant.daemon.line(/error TLS: /);
     assert.equal((await subject())[0], 'other.example');
+});
+
+// deploy/proxy/nginx.conf as it is, but for ports and files.
+async function startNginx(port) {
+    const sample = readFileSync('deploy/proxy/nginx.conf', 'utf8').replace('listen 443 ssl', `listen 127.0.0.1:${port} ssl`)
+        .replace('127.0.0.1:8080', `127.0.0.1:${plant.port}`).replace('/etc/ssl/plantcast/fullchain.pem', path('first.pem'))
+        .replace('/etc/ssl/plantcast/privkey.pem', path('first.key'));
+    const temporary = ['client_body', 'proxy', 'fastcgi', 'uwsgi', 'scgi'].map((name) => `${name}_temp_path ${path(name)};`).join('\n');
+    writeFileSync(path('nginx.conf'), `daemon off;\nmaster_process off;\npid ${path('nginx.pid')};\nerror_log stderr;\nevents {}\n`
+        + `http {\naccess_log off;\n${temporary}\n${sample}\n}\n`);
+    const nginx = spawn(NGINX, ['-c', path('nginx.conf'), '-p', plant.folder], { stdio: ['ignore', 'ignore', 'pipe'] });
+    let said = '';
+    nginx.stderr.on('data', (chunk) => { said += chunk; });
+    for (let tries = 0; tries < 100; tries++) {
+        if (await throughNginx(port, '/healthz').catch(() => 0) === 200)
+            return nginx;
+        await sleep(50);
+    }
+    nginx.kill();
+    throw new Error(`nginx: ${said}`);
+}
+function throughNginx(port, url, bearer = null, more = {}) {
+    const headers = { Host: 'plant.example', ...(bearer ? { Authorization: `Bearer ${bearer}` } : {}), ...more };
+    return new Promise((done, fail) => {
+        const asked = request({ port, host: '127.0.0.1', path: url, headers, rejectUnauthorized: false }, (response) => {
+            response.resume();
+            done(response.statusCode);
+        });
+        asked.on('upgrade', (response, socket) => {
+            socket.once('data', () => { socket.destroy(); done(response.statusCode); });
+            socket.write(encodeFrame(1, JSON.stringify({ type: 'hello', width: 64, height: 64, codecs: ['jpeg'], token: tokens.viewer })));
+        });
+        asked.on('error', fail).end();
+    });
+}
+
+test('through nginx, as deploy/proxy has it', { skip: skip || (existsSync(NGINX) ? false : 'nginx is not installed') }, async () => {
+    await behindProxy('--tokens', tokensFile);
+    const port = await freePort(), nginx = await startNginx(port);
+    try {
+        assert.equal(await throughNginx(port, '/'), 200);
+        assert.equal(await throughNginx(port, '/api/v1/tags'), 401);
+        assert.equal(await throughNginx(port, '/api/v1/tags', tokens.viewer), 200);
+        const upgrade = {
+            Connection: 'Upgrade', Upgrade: 'websocket', 'Sec-WebSocket-Version': 13, 'Sec-WebSocket-Key': 'AAAAAAAAAAAAAAAAAAAAAA==',
+            'Sec-WebSocket-Protocol': 'plantcast.v1',
+        };
+        assert.equal(await throughNginx(port, '/stream', null, { ...upgrade, Origin: 'https://plant.example' }), 101);
+        assert.equal(await throughNginx(port, '/stream', null, { ...upgrade, Origin: 'https://evil.example' }), 403);
+        await plant.daemon.stop();
+        await plant.startDaemon('--port', String(plant.port)); // one that was not told of the proxy, asked by a name that is not its own
+        assert.equal(await throughNginx(port, '/healthz'), 403);
+        assert.equal(await throughNginx(port, '/api/v1/tags', null, { Host: 'localhost' }), 403);
+    } finally {
+        nginx.kill();
+    }
 });
 
 test('a person is asked for a token, and sees the plant', {
