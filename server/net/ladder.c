@@ -13,6 +13,7 @@ static const int64_t HARD_NS = 40 * NS_PER_MS;  /* decoding that takes longer ca
 static const int64_t EASY_NS = 20 * NS_PER_MS;
 static const int64_t HARD_FOR_NS = 500 * NS_PER_MS, EASY_FOR_NS = 3 * NS_PER_S;
 static const double SHARE = 0.25;
+enum { FEWEST = 3, NEARLY = 2 }; /* who share a step; how much worse one of them may be */
 static const double BYTES_PER_PIXEL = 0.08; /* of the first step, before any was seen */
 
 /* Bytes beside those of the first step: measured on the demo plant at 1920x1080. */
@@ -30,9 +31,24 @@ void ladder_init(struct ladder *ladder)
     *ladder = (struct ladder){ .step = LADDER_FIRST, .patience_ns = FIRST_PATIENCE_NS };
 }
 
-struct rung ladder_rung(const struct ladder *ladder)
+int ladder_common(const int counts[LADDER_STEPS])
 {
-    struct rung rung = steps[ladder->step].rung;
+    int all = 0, below = 0, step = 0;
+    for (int i = 0; i < LADDER_STEPS; i++)
+        all += counts[i];
+    while (all >= FEWEST && 4 * (below += counts[step]) < 3 * all)
+        step++;
+    return all >= FEWEST ? step : -1;
+}
+
+int ladder_step(const struct ladder *ladder, int common)
+{
+    return common >= 0 && ladder->step <= common + NEARLY ? common : ladder->step;
+}
+
+struct rung ladder_rung(const struct ladder *ladder, int step)
+{
+    struct rung rung = steps[step].rung;
     if (sizes[ladder->size] < rung.scale)
         rung.scale = sizes[ladder->size];
     return rung;

@@ -25,10 +25,15 @@ struct ladder { /* ladder_init */
 void ladder_init(struct ladder *ladder);
 /* Before the first picture, of so many pixels: by what is known of the network already. */
 void ladder_begin(struct ladder *ladder, const struct channel *channel, double pixels);
-struct rung ladder_rung(const struct ladder *ladder);
+struct rung ladder_rung(const struct ladder *ladder, int step); /* at that step, instead of its own */
+/* Those who see the same take one step together, or each picture would be drawn and encoded for every one of them: the worst that
+   three quarters of them need. counts: of them, by step. Negative: too few to matter. */
+int ladder_common(const int counts[LADDER_STEPS]);
+/* The step to take: the common one, unless the own one is much worse. common negative: the own one. */
+int ladder_step(const struct ladder *ladder, int common);
 /* A moving picture of that step was acknowledged. */
 void ladder_on_ack(struct ladder *ladder, const struct channel *channel, int step, size_t bytes, int64_t now_ns);
-/* What a moving picture is expected to have; 0: not known. */
+/* What a moving picture of its own step is expected to have; 0: not known. */
 double ladder_bytes(const struct ladder *ladder);
 
 #endif

@@ -14,6 +14,7 @@ struct session *session_create(const struct session_world *world, uint64_t id, i
     struct session *session = mem_new(sizeof(*session));
     *session = (struct session){ .id = id, .world = world, .role = ROLE_ENGINEER, .opened_ns = now_ns, .rate_begin_ns = now_ns };
     pacer_init(&session->pacer);
+    session->common_step = -1;
     session->tag_changes = mem_array(world->plant->tag_count, sizeof(*session->tag_changes));
     return session;
 }

@@ -71,9 +71,11 @@ struct session {
 
     bool failure_said;      /* of the view as it is */
 
-    const struct session *leader; /* whose view it is shown; NULL: its own. The hub keeps it right */
+    struct session *leader; /* whose view it is shown; NULL: its own. The hub keeps it right */
     bool follow_asked;
     uint64_t follow;            /* whom; 0: nobody */
+    int steps[LADDER_STEPS];    /* of those who see its view, itself too: how many are where */
+    int common_step;            /* of the ladder: of all who see the same; negative: its own */
     uint32_t leader_params_seq; /* as last told; so is its size */
     int leader_size_px[2];
 
@@ -119,7 +121,7 @@ void session_on_pick(struct session *session, const struct pick_answer *answer);
 
 const struct view *session_view(const struct session *session); /* what it is shown: its own, or its leader's */
 /* Answers session->follow_asked: leader NULL: from now on nobody's; session_follow_nobody: there is none such. */
-void session_follow(struct session *session, const struct session *leader, int64_t now_ns);
+void session_follow(struct session *session, struct session *leader, int64_t now_ns);
 void session_follow_nobody(struct session *session);
 void session_on_leader(struct session *session, int64_t now_ns); /* the leader's view changed */
 

@@ -15,9 +15,10 @@ void session_ask_follow(struct session *session, const struct message *message)
     session->follow_asked = true;
 }
 
-void session_follow(struct session *session, const struct session *leader, int64_t now_ns)
+void session_follow(struct session *session, struct session *leader, int64_t now_ns)
 {
     session->leader = leader;
+    session->common_step = -1;
     session->owes_following = true;
     session_on_leader(session, now_ns);
 }

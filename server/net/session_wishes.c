@@ -117,12 +117,14 @@ static int scaled(int px, double scale)
 
 static void make_moving(const struct session *session, struct wish *wish)
 {
-    struct rung rung = ladder_rung(&session->pacer.ladder);
+    const struct ladder *ladder = &session->pacer.ladder;
+    int step = ladder_step(ladder, session->common_step);
+    struct rung rung = ladder_rung(ladder, step);
     wish->view.tier = TIER_MOVING;
     wish->view.width_px = scaled(wish->view.width_px, rung.scale);
     wish->view.height_px = scaled(wish->view.height_px, rung.scale);
     wish->quality = (struct encoder_params){ .quality = rung.quality };
-    wish->step = session->pacer.ladder.step;
+    wish->step = step;
 }
 
 static void make_still(const struct session *session, struct wish *wish)

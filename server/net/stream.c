@@ -171,6 +171,7 @@ void streams_on_tick(struct hub *hub, bool data_changed, bool links_changed)
     int64_t now_ns = clock_mono_ns(), patience_ns = hub->quotas->at[QUOTA_PATIENCE_S] * NS_PER_S;
     hub->world.loaded = is_loaded(hub);
     hub->world.moving = count_moving(hub, now_ns);
+    follow_share_steps(hub);
     for (struct stream *stream = hub->streams; stream; stream = stream->next) {
         session_on_tick(stream->session, now_ns);
         if (stream->in_count > 0 && now_ns - stream->in_begin_ns > patience_ns)

@@ -40,6 +40,7 @@ void stream_give_up(struct hub *hub, struct stream *stream, int64_t now_ns);
 struct stream *stream_find(const struct hub *hub, uint64_t client); /* NULL: not connected */
 void follow_resolve(struct hub *hub, struct stream *stream);        /* its session may have asked to follow another */
 bool follow_spread(struct hub *hub, const struct stream *leader);   /* its view changed. False: nobody follows it */
+void follow_share_steps(struct hub *hub);                           /* every tick */
 void follow_forget(struct hub *hub, const struct stream *leader);   /* it goes */
 void stream_on_pong(struct stream *stream, const void *bytes, size_t count);
 

@@ -54,6 +54,7 @@ class DemoPlant:
             (["plantcast-sim", plant, "--control", str(self.control)], "plantcast-sim: listening"),
             (["plantcastd", plant, "--port", str(self.port)] + self.options, "plantcastd: ready"),
         ):
+            self.daemon_began = time.monotonic()  # of the last of them
             process = subprocess.Popen([os.path.join(self.bin_folder, command[0])] + command[1:], stdout=subprocess.PIPE,
                                        stderr=subprocess.DEVNULL, text=True)
             self.running.append(process)

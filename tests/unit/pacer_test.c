@@ -152,7 +152,7 @@ struct world {
 
 static void deliver(struct world *world, struct pacer *pacer)
 {
-    struct rung rung = ladder_rung(&pacer->ladder);
+    struct rung rung = ladder_rung(&pacer->ladder, pacer->ladder.step);
     double area = rung.scale * rung.scale;
     size_t bytes = (size_t)(world->pixels * 0.12 * area * rung.quality / 78);
     int64_t made_ns = world->now_ns;
@@ -288,6 +288,24 @@ static void steps_do_not_swing(void **state)
     }
 }
 
+static void who_see_the_same_take_one_step(void **state)
+{
+    (void)state;
+    struct ladder ladder = { .step = 1 };
+    assert_int_equal(ladder_common((int[LADDER_STEPS]){ 1, 0, 1 }), -1);
+    int common = ladder_common((int[LADDER_STEPS]){ 60, 30, 5, 0, 0, 5 });
+    assert_int_equal(common, 1); /* the few slow ones do not count */
+    assert_int_equal(ladder_common((int[LADDER_STEPS]){ [LADDER_STEPS - 1] = 10 }), LADDER_STEPS - 1);
+    assert_int_equal(ladder_step(&ladder, common), 1);
+    assert_int_equal(ladder_step(&ladder, -1), 1);
+    ladder.step = 0;
+    assert_int_equal(ladder_step(&ladder, common), 1);
+    ladder.step = 3;
+    assert_int_equal(ladder_step(&ladder, common), 1);
+    ladder.step = 5;
+    assert_int_equal(ladder_step(&ladder, common), 5);
+}
+
 /* Whatever a client acknowledges, the window is never exceeded, and a good acknowledgement always opens it. */
 static void random_clients(void **state)
 {
@@ -326,6 +344,7 @@ int main(void)
         cmocka_unit_test(a_slow_decoder_gets_fewer_pixels),
         cmocka_unit_test(what_recovers_gets_its_quality_back),
         cmocka_unit_test(steps_do_not_swing),
+        cmocka_unit_test(who_see_the_same_take_one_step),
         cmocka_unit_test(random_clients),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
