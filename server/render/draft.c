@@ -3,15 +3,19 @@
 #include "render/draft.h"
 
 #include "base/mem.h"
+#include "render/content.h"
 #include "render/draft_impl.h"
 #include "render/draft_simd.h"
 #include "render/markers.h"
+
+static const size_t KEPT_BYTES = (size_t)128 << 20; /* some five pictures of 1920x1080 */
 
 struct draft *draft_create(struct workers *workers, const struct stage *stage, const struct sky *sky)
 {
     struct draft *draft = mem_new(sizeof(*draft));
     draft->workers = workers;
     draft->stage = stage;
+    draft->kept.bound_bytes = KEPT_BYTES;
     draft->parts = mem_array(stage->model_count, sizeof(*draft->parts));
     if (!draft_read_textures(draft, sky))
         draft_destroy(&draft);
@@ -39,6 +43,7 @@ void draft_destroy(struct draft **draft_ptr)
     }
     for (size_t i = 0; i < draft->found_capacity; i++)
         mem_free(draft->found[i].items);
+    visibility_buffers_finish(&draft->kept);
     mem_free(draft->parts);
     mem_free(draft->found);
     mem_free(draft->chunks);
@@ -100,8 +105,51 @@ static bool complain(const struct draft *draft)
     return false;
 }
 
+/* True: the last pictures had this shape already, so that the camera stands still. */
+static bool is_still(struct draft *draft, uint64_t shape)
+{
+    for (size_t i = 0; i < DRAFT_SHAPES; i++)
+        if (draft->shapes[i] == shape)
+            return true;
+    draft->shapes[draft->shape_count++ % DRAFT_SHAPES] = shape;
+    return false;
+}
+
+static bool draw_selected(struct draft *draft, struct recolor *recolor)
+{
+    if (!is_selected_shown(draft->picture))
+        return true;
+    if (!draft_find_only(draft, draft->picture->view->selected_asset))
+        return complain(draft);
+    draft_tiles(draft, false);
+    if (recolor)
+        draft_keep_rim(draft, recolor);
+    draft_outline(draft);
+    return true;
+}
+
+/* keep: to colour it again, if there is room for that. */
+static bool draw_all(struct draft *draft, struct frame *frame, bool keep)
+{
+    if (keep)
+        draft->ids = mem_try_array((size_t)draft->pitch_px * (size_t)draft->height_px, sizeof(*draft->ids));
+    draft_tiles(draft, true);
+    struct recolor *recolor = draft->ids ? draft_keep(draft) : NULL;
+    mem_free(draft->ids);
+    draft->ids = NULL;
+    markers_find(draft->picture, draft->depth, (size_t)draft->pitch_px, frame);
+    bool good = draw_selected(draft, recolor);
+    if (recolor && good)
+        draft_give(&draft->kept, draft->picture, recolor, frame);
+    else
+        recolor_destroy(&recolor);
+    return good;
+}
+
 bool draft_draw(struct draft *draft, const struct picture *picture, const struct light *light, struct frame *frame)
 {
+    if (draft_recolor(draft, &draft->kept, picture, frame))
+        return true;
     draft->picture = picture;
     draft->light = draft_get_light(draft, picture->light);
     if (!draft->light)
@@ -115,13 +163,5 @@ bool draft_draw(struct draft *draft, const struct picture *picture, const struct
     draft_aim(draft, light);
     if (!draft_find(draft))
         return complain(draft);
-    draft_tiles(draft, true);
-    markers_find(picture, draft->depth, (size_t)draft->pitch_px, frame);
-    if (!is_selected_shown(picture))
-        return true;
-    if (!draft_find_only(draft, picture->view->selected_asset))
-        return complain(draft);
-    draft_tiles(draft, false);
-    draft_outline(draft);
-    return true;
+    return draw_all(draft, frame, is_still(draft, content_shape_hash(picture)));
 }

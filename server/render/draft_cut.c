@@ -72,7 +72,7 @@ static int last_pixel(float x, int high)
     return (int)fminf(fmaxf(x + 0.5f, 0), (float)high + 1) - 1;
 }
 
-static void add_face(struct draft_tile *tile, bool any_side, bool mirrored, int i, int j, int k)
+static void add_face(struct draft_tile *tile, int triangle, bool any_side, bool mirrored, int i, int j, int k)
 {
     const float *x = tile->corners.x, *y = tile->corners.y;
     float area = (x[j] - x[i]) * (y[k] - y[i]) - (x[k] - x[i]) * (y[j] - y[i]);
@@ -83,8 +83,10 @@ static void add_face(struct draft_tile *tile, bool any_side, bool mirrored, int 
     int bottom = last_pixel(fmaxf(fmaxf(y[i], y[j]), y[k]), tile->rect.bottom);
     if (area == 0 || (!any_side && turned != mirrored) || left > right || top > bottom)
         return;
-    tile->faces[tile->face_count++] = (struct draft_face){ { (uint16_t)i, (uint16_t)(turned ? j : k), (uint16_t)(turned ? k : j) },
-                                                           (int16_t)left, (int16_t)right, (int16_t)top, (int16_t)bottom };
+    tile->faces[tile->face_count++] = (struct draft_face){
+        { (uint16_t)i, (uint16_t)(turned ? j : k), (uint16_t)(turned ? k : j) },
+        (uint16_t)triangle, (int16_t)left, (int16_t)right, (int16_t)top, (int16_t)bottom,
+    };
 }
 
 void draft_cut_faces(struct draft_tile *tile, const struct draft_mesh *mesh, const struct draft_parts *parts,
@@ -97,11 +99,11 @@ void draft_cut_faces(struct draft_tile *tile, const struct draft_mesh *mesh, con
     for (int i = 0; i < part->triangle_count; i++) {
         int at[3] = { of_part[i], of_part[part->rounded + i], of_part[2 * part->rounded + i] }, out[4], count;
         if (corners->inverse_w[at[0]] > 0 && corners->inverse_w[at[1]] > 0 && corners->inverse_w[at[2]] > 0) {
-            add_face(tile, any_side, mesh->mirrored, at[0], at[1], at[2]);
+            add_face(tile, i, any_side, mesh->mirrored, at[0], at[1], at[2]);
             continue;
         }
         count = cut(corners, mesh, parts->vertices + part->first_vertex, at, out);
         for (int c = 2; c < count; c++)
-            add_face(tile, any_side, mesh->mirrored, out[0], out[c - 1], out[c]);
+            add_face(tile, i, any_side, mesh->mirrored, out[0], out[c - 1], out[c]);
     }
 }

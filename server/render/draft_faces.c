@@ -42,64 +42,95 @@ DRAFT_KERNEL void draft_place_part(struct draft_tile *tile, const struct draft_m
     corners->flat = most <= LITTLE * least;
 }
 
-/* As palette_column and palette_row in shaders/field.glsl. */
-DRAFT_INLINE void carry_field(const struct draft *draft, const struct draft_mesh *mesh, const uint32_t *vertices, int count,
-                              struct draft_corners *corners)
+/* As palette_column and palette_row in shaders/field.glsl. numbers: of those that carry, up to whole lanes. */
+DRAFT_INLINE void carry_field(const struct draft *draft, const struct draft_mesh *mesh, const uint32_t *vertices, const uint8_t *numbers,
+                              int count, struct draft_corners *corners)
 {
     const float slack = 1e-5f, columns = PALETTE_PLACES / (1 + 2 * slack);
-    lanes_uint all = { 0 };
+    uint32_t all = 0;
     for (int i = 0; i < count; i += LANES) {
         lanes value;
-        lanes_uint light, flags = { 0 };
+        lanes_uint light;
         for (int l = 0; l < LANES; l++) {
-            const struct scalar *scalar = &mesh->scalars[vertices[i + l]];
+            uint32_t number = numbers[i + l], vertex = vertices[number];
+            const struct scalar *scalar = &mesh->scalars[vertex];
+            uint32_t flags = draft_flags(scalar);
             value[l] = scalar->value;
-            light[l] = mesh->baked[vertices[i + l]][0];
-            flags[l] = draft_flags(scalar);
+            light[l] = mesh->baked[vertex][0];
+            corners->flags[number] = flags;
+            all |= flags;
         }
         lanes place = (value - draft->block.scale[0]) * draft->block.scale[1];
-        *(lanes *)(corners->a + i) = lanes_clamp(place * columns + (1 + slack * columns), -FARTHEST, FARTHEST);
-        *(lanes *)(corners->b + i) =
-            __builtin_convertvector((lanes_int)light, lanes) * (1 / 255.0f) * draft->block.shade[0] + draft->block.shade[1];
-        *(lanes_uint *)(corners->flags + i) = flags;
-        all |= flags;
+        lanes a = lanes_clamp(place * columns + (1 + slack * columns), -FARTHEST, FARTHEST);
+        lanes b = __builtin_convertvector((lanes_int)light, lanes) * (1 / 255.0f) * draft->block.shade[0] + draft->block.shade[1];
+        for (int l = 0; l < LANES; l++) {
+            corners->a[numbers[i + l]] = a[l];
+            corners->b[numbers[i + l]] = b[l];
+        }
     }
-    corners->all_flags = 0;
-    for (int l = 0; l < LANES; l++)
-        corners->all_flags |= all[l] & DRAFT_PATTERNS;
+    corners->all_flags = all & DRAFT_PATTERNS;
 }
 
-DRAFT_INLINE void carry_nothing(const struct draft *draft, const struct draft_mesh *mesh, const uint32_t *vertices, int count,
-                                struct draft_corners *corners)
+DRAFT_INLINE void carry_nothing(const struct draft *draft, const struct draft_mesh *mesh, const uint32_t *vertices, const uint8_t *numbers,
+                                int count, struct draft_corners *corners)
 {
     for (int i = 0; i < count; i++) {
-        corners->a[i] = 0;
-        corners->b[i] = (float)mesh->baked[vertices[i]][0] * (1 / 255.0f) * draft->block.shade[0] + draft->block.shade[1];
-        corners->flags[i] = DRAFT_NO_DATA | 255u << DRAFT_LACKING;
+        int n = numbers[i];
+        corners->a[n] = 0;
+        corners->b[n] = (float)mesh->baked[vertices[n]][0] * (1 / 255.0f) * draft->block.shade[0] + draft->block.shade[1];
+        corners->flags[n] = DRAFT_NO_DATA | 255u << DRAFT_LACKING;
     }
     corners->all_flags = DRAFT_NO_DATA;
 }
 
-DRAFT_INLINE void carry_context(const struct draft_mesh *mesh, const uint32_t *vertices, int count, struct draft_corners *corners)
+DRAFT_INLINE void carry_context(const struct draft_mesh *mesh, const uint32_t *vertices, const uint8_t *numbers, int count,
+                                struct draft_corners *corners)
 {
     for (int i = 0; i < count; i++) {
-        corners->a[i] = mesh->baked[vertices[i]][1];
-        corners->b[i] = mesh->baked[vertices[i]][3];
-        corners->flags[i] = 0;
+        int n = numbers[i];
+        corners->a[n] = mesh->baked[vertices[n]][1];
+        corners->b[n] = mesh->baked[vertices[n]][3];
+        corners->flags[n] = 0;
     }
     corners->all_flags = 0;
+}
+
+/* Up to whole lanes. */
+static int list_all(const struct draft_part *part, uint8_t numbers[PART_VERTICES + LANES])
+{
+    for (int i = 0; i < PART_VERTICES + LANES; i++)
+        numbers[i] = (uint8_t)(i < part->vertex_count ? i : part->vertex_count - 1);
+    return part->vertex_count;
+}
+
+static int list_used(const struct draft_tile *tile, uint8_t numbers[PART_VERTICES + LANES])
+{
+    uint8_t used[PART_VERTICES] = { 0 };
+    int count = 0;
+    for (int i = 0; i < tile->face_count; i++)
+        for (int c = 0; c < 3; c++) {
+            uint16_t number = tile->faces[i].corners[c];
+            numbers[count] = (uint8_t)number;
+            count += !used[number];
+            used[number] = 1;
+        }
+    for (int l = 0; l < LANES && count > 0; l++)
+        numbers[count + l] = numbers[count - 1];
+    return count;
 }
 
 DRAFT_KERNEL void draft_carry_part(struct draft_tile *tile, const struct draft_mesh *mesh, const struct draft_parts *parts,
                                    const struct draft_part *part)
 {
     const uint32_t *vertices = parts->vertices + part->first_vertex;
+    uint8_t numbers[PART_VERTICES + LANES];
+    int count = tile->corners.cut ? list_all(part, numbers) : list_used(tile, numbers);
     if (mesh->scalars)
-        carry_field(tile->draft, mesh, vertices, part->vertex_count, &tile->corners);
+        carry_field(tile->draft, mesh, vertices, numbers, count, &tile->corners);
     else if (mesh->has_field)
-        carry_nothing(tile->draft, mesh, vertices, part->vertex_count, &tile->corners);
+        carry_nothing(tile->draft, mesh, vertices, numbers, count, &tile->corners);
     else
-        carry_context(mesh, vertices, part->vertex_count, &tile->corners);
+        carry_context(mesh, vertices, numbers, count, &tile->corners);
 }
 
 /* --- faces ------------------------------------------------------------------------------------------------------------------ */
@@ -172,7 +203,7 @@ DRAFT_KERNEL void draft_find_faces(struct draft_tile *tile, const struct draft_m
                 continue;
             struct draft_face *face = &tile->faces[tile->face_count];
             uint8_t q = second[i + l], r = third[i + l];
-            *face = (struct draft_face){ { first[i + l], turned[l] ? q : r, turned[l] ? r : q },
+            *face = (struct draft_face){ { first[i + l], turned[l] ? q : r, turned[l] ? r : q }, (uint16_t)(i + l),
                                          (int16_t)left[l], (int16_t)right[l], (int16_t)top[l], (int16_t)bottom[l] };
             tile->face_count += !is_hidden(tile, face);
         }

@@ -126,9 +126,15 @@ bool draft_find(struct draft *draft)
     draft->mesh_count = draft->vertex_count = 0;
     for (size_t i = 0; i < picture->visible_count && good; i++)
         good = add_asset(draft, picture->visible[i], false);
-    if (good)
-        workers_for(draft->workers, draft->mesh_count, 1, find_meshes, draft);
-    return good;
+    if (!good)
+        return false;
+    workers_for(draft->workers, draft->mesh_count, 1, find_meshes, draft);
+    uint32_t id = 0;
+    for (size_t m = 0; m < draft->mesh_count; m++) {
+        draft->found[m].first_id = id;
+        id += (uint32_t)draft->found[m].count * PART_TRIANGLES;
+    }
+    return true;
 }
 
 bool draft_find_only(struct draft *draft, int asset)

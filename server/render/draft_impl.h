@@ -6,6 +6,8 @@
 #include "render/draft_parts.h"
 #include "render/frame_block.h"
 #include "render/palette.h"
+#include "render/recolor.h"
+#include "render/visibility_buffers.h"
 
 enum { BAND_ROWS = 32, CHUNK_TRIANGLES = 2048, RAMP_STEPS = MODEL_LIGHT_STEPS };
 
@@ -84,6 +86,7 @@ struct draft_found { /* what of one mesh may be seen; kept from picture to pictu
     bool both_sides;
     float eye_m[3]; /* in the frame of its file */
     struct draft_rect rect;
+    uint32_t first_id; /* PART_TRIANGLES for each item */
     struct draft_item *items;
     size_t count, capacity;
 };
@@ -97,7 +100,7 @@ struct draft_light { /* a light_set, read back */
     int ground_px;
     uint64_t used;
 };
-enum { DRAFT_LIGHTS = 2 };
+enum { DRAFT_LIGHTS = 2, DRAFT_SHAPES = 16 };
 
 struct draft {
     struct workers *workers;
@@ -110,6 +113,9 @@ struct draft {
     uint64_t palette_version;
     struct draft_light lights[DRAFT_LIGHTS];
     uint64_t uses;
+    struct visibility_buffers kept; /* struct recolor, of cameras that stand still */
+    uint64_t shapes[DRAFT_SHAPES];  /* content_shape_hash of the last pictures drawn */
+    size_t shape_count;
     struct draft_parts **parts; /* by number of the model, level; made when they are first needed */
     /* --- of the picture being drawn */
     const struct picture *picture;
@@ -128,6 +134,7 @@ struct draft {
     float reach_px; /* so far from a pixel's middle it is looked at; drafts: 0 */
     float *depth;
     uint32_t *marks;
+    uint32_t *ids; /* NULL: not asked for; else, where there is a mark: first_id of the part found + triangle of it */
     size_t pixel_capacity;
     uint8_t *out;
     size_t out_stride_bytes;
@@ -154,6 +161,14 @@ void draft_sort(struct draft *draft, size_t begin, size_t end);  /* triangles of
 void draft_color(const struct draft *draft, const struct draft_rect *rect); /* from marks; begins at a whole STRETCH */
 enum draft_rim { RIM_NONE, RIM_LIGHT, RIM_DARK };
 const uint8_t *draft_rim(const struct draft *draft); /* per pixel, rows of pitch_px; in place of depth */
+/* What is needed to colour it again, while draft->ids says what is seen and the frame has all but rims: no ink and no markers yet. NULL:
+   out of memory. */
+struct recolor *draft_keep(struct draft *draft);
+void draft_keep_rim(const struct draft *draft, struct recolor *recolor); /* likewise: depth is lost */
+/* Hands it over to a store, with the frame's markers. */
+void draft_give(struct visibility_buffers *store, const struct picture *picture, struct recolor *recolor, const struct frame *frame);
+/* Pixels and markers, if the store has such a picture. False: it has not. */
+bool draft_recolor(struct draft *draft, struct visibility_buffers *store, const struct picture *picture, struct frame *frame);
 void draft_outline(const struct draft *draft);                  /* of all that has a mark; depth is lost */
 
 #endif

@@ -7,7 +7,16 @@
 #include "render/draft_tile.h"
 #include "render/raster.h"
 
-enum { SMALL_PX = LANES };
+enum { SMALL_PX = 4 * LANES };
+
+/* Which triangle a pixel shows, where that is asked for. */
+DRAFT_INLINE void keep_id(const struct draft_tile *tile, const struct draft_face *face, size_t at, lanes_int seen)
+{
+    if (!tile->draft->ids)
+        return;
+    lanes_int *ids = (lanes_int *)(tile->draft->ids + at);
+    *ids = lanes_choose_int(seen, (lanes_int){ 0 } + (int32_t)(tile->first_id + face->triangle), *ids);
+}
 
 /* --- any face --------------------------------------------------------------------------------------------------------------- */
 
@@ -138,17 +147,18 @@ DRAFT_INLINE void draw_face(const struct draft_tile *tile, const struct draft_fa
             lanes_int *marks = (lanes_int *)(tile->draft->marks + start + column), mark = marks_at(setup, ink, x, y);
             *depth = lanes_choose(seen, here, *depth);
             *marks = lanes_choose_int(seen, mark, *marks);
+            keep_id(tile, face, start + (size_t)column, seen);
         }
     }
 }
 
-/* --- small ones: flat, without flags, no wider and no higher than the lanes ----------------------------------------------- */
+/* --- small ones: flat, without flags, and a few blocks of lanes wide and high --------------------------------------------- */
 
 struct small { /* eight of them: a row of lanes is one number of each */
     lanes x, y;
     lanes edge_y[3], edge_dx[3], edge_dy[3], edge_row[3]; /* as struct edge; edge_row: of dy x */
     lanes_int negative[3];
-    lanes at[3], dx[3], dy[3]; /* planes of depth, a, b */
+    lanes at[3], dx[3], dy[3], low[3], high[3]; /* planes of depth, a, b */
     lanes_int thin;
 };
 
@@ -184,21 +194,23 @@ DRAFT_INLINE void small_init(struct small *small, const struct draft_corners *co
     small->y = y[0];
     const float *tables[3] = { corners->depth, corners->a, corners->b };
     for (int p = 0; p < 3; p++) {
-        lanes v0 = corner_values(tables[p], faces, 0), d1 = corner_values(tables[p], faces, 1) - v0;
-        lanes d2 = corner_values(tables[p], faces, 2) - v0;
+        lanes v0 = corner_values(tables[p], faces, 0), v1 = corner_values(tables[p], faces, 1), v2 = corner_values(tables[p], faces, 2);
+        lanes d1 = v1 - v0, d2 = v2 - v0, low = lanes_choose(v1 < v0, v1, v0), high = lanes_choose(v1 > v0, v1, v0);
         small->at[p] = v0;
+        small->low[p] = lanes_choose(v2 < low, v2, low);
+        small->high[p] = lanes_choose(v2 > high, v2, high);
         small->dx[p] = (d1 * y2 - d2 * y1) * over;
         small->dy[p] = (d2 * x1 - d1 * x2) * over;
     }
 }
 
-DRAFT_INLINE void draw_small(const struct draft_tile *tile, const struct draft_face *face, const struct small *small, int l,
-                             uint32_t mark, int32_t last_row)
+/* A block of as many rows and columns as there are lanes. thin: a constant. */
+DRAFT_INLINE void draw_block(const struct draft_tile *tile, const struct draft_face *face, const struct small *small, int l, int left,
+                             int top, int row_count, uint32_t mark, int32_t last_row, bool thin)
 {
-    int last = tile->rect.right + 1 - LANES, left = face->left < last ? face->left : last;
-    size_t pitch = (size_t)tile->draft->pitch_px, start = (size_t)face->top * pitch + (size_t)left;
+    size_t pitch = (size_t)tile->draft->pitch_px, start = (size_t)top * pitch + (size_t)left;
     lanes x = LANES_IOTA + ((float)left + 0.5f), from_x = x - small->x[l]; /* columns */
-    lanes y = LANES_IOTA + ((float)face->top + 0.5f), from_y = y - small->y[l]; /* rows */
+    lanes y = LANES_IOTA + ((float)top + 0.5f), from_y = y - small->y[l];  /* rows */
     lanes across[3], along[3];
     float rows[3][LANES], starts[3][LANES];
     for (int i = 0; i < 3; i++) {
@@ -207,19 +219,38 @@ DRAFT_INLINE void draw_small(const struct draft_tile *tile, const struct draft_f
         across[i] = small->edge_dy[i][l] * x;
         along[i] = small->dx[i][l] * from_x;
     }
-    for (int row = 0; row <= face->bottom - face->top; row++) {
+#define VALUE(i) (thin ? lanes_clamp(starts[i][row] + along[i], small->low[i][l], small->high[i][l]) : starts[i][row] + along[i])
+    for (int row = 0; row < row_count; row++) {
         lanes *depth = (lanes *)(tile->draft->depth + start + (size_t)row * pitch);
         lanes_int side = ((lanes_int)(rows[0][row] - across[0]) ^ small->negative[0][l]) |
                          ((lanes_int)(rows[1][row] - across[1]) ^ small->negative[1][l]) |
                          ((lanes_int)(rows[2][row] - across[2]) ^ small->negative[2][l]);
-        lanes here = starts[0][row] + along[0];
+        lanes here = VALUE(0);
         lanes_int seen = (side >= 0) & (here >= *depth);
         if (!lanes_any(seen))
             continue;
         lanes_int *marks = (lanes_int *)(tile->draft->marks + start + (size_t)row * pitch);
-        lanes a = starts[1][row] + along[1], b = starts[2][row] + along[2];
+        lanes a = VALUE(1), b = VALUE(2);
         *marks = lanes_choose_int(seen, mark == MARK_FIELD ? field_mark(a, b, last_row) : context_mark(a, b, mark), *marks);
         *depth = lanes_choose(seen, here, *depth);
+        keep_id(tile, face, start + (size_t)row * pitch, seen);
+    }
+#undef VALUE
+}
+
+DRAFT_INLINE void draw_small(const struct draft_tile *tile, const struct draft_face *face, const struct small *small, int l,
+                             uint32_t mark, int32_t last_row)
+{
+    int last = tile->rect.right + 1 - LANES; /* beyond the tile another thread draws */
+    for (int top = face->top; top <= face->bottom; top += LANES) {
+        int rows = face->bottom - top + 1 < LANES ? face->bottom - top + 1 : LANES;
+        for (int left = face->left; left <= face->right; left += LANES) {
+            left = left < last ? left : last;
+            if (small->thin[l])
+                draw_block(tile, face, small, l, left, top, rows, mark, last_row, true);
+            else
+                draw_block(tile, face, small, l, left, top, rows, mark, last_row, false);
+        }
     }
 }
 
@@ -240,12 +271,8 @@ DRAFT_INLINE void draw_eight(const struct draft_tile *tile, const struct draft_f
 {
     struct small small;
     small_init(&small, &tile->corners, faces);
-    for (int l = 0; l < count; l++) {
-        if (small.thin[l])
-            draw_any(tile, faces[l], mark, ink);
-        else
-            draw_small(tile, faces[l], &small, l, mark, ink->last_row);
-    }
+    for (int l = 0; l < count; l++)
+        draw_small(tile, faces[l], &small, l, mark, ink->last_row);
 }
 
 DRAFT_KERNEL void draft_raster_faces(const struct draft_tile *tile, uint32_t mark)

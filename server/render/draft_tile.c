@@ -126,6 +126,7 @@ static void draw_part(struct draft_tile *tile, const struct draft_mesh *mesh, co
     }
     if (tile->face_count == 0)
         return;
+    tile->first_id = found->first_id + (uint32_t)(item - found->items) * PART_TRIANGLES;
     draft_raster_faces(tile, mesh->has_field ? MARK_FIELD : MARK_CONTEXT | (found->ramp + part->material) << 16);
     struct draft_rect rect = faces_rect(tile);
     blocks = blocks_of(tile, &rect);

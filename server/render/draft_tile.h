@@ -20,6 +20,7 @@ struct draft_corners { /* vertices of a part, as struct draft_vertex, then those
 
 struct draft_face { /* a triangle that faces the eye and covers a pixel's middle in the tile; its area as pixels go is over 0 */
     uint16_t corners[3];
+    uint16_t triangle;                /* of the part */
     int16_t left, right, top, bottom; /* in the picture */
 };
 
@@ -30,9 +31,10 @@ struct draft_tile {
     struct draft_corners corners;
     struct draft_face faces[MOST_FACES];
     int face_count;
+    uint32_t first_id; /* of the part's triangles, in draft->ids */
 };
 
-/* The vertices of a part: first where they are (a and b of none), then what they carry of field and light. */
+/* The vertices of a part: first where all of them are, then what those of its faces carry of field and light; all, if some are cut. */
 void draft_place_part(struct draft_tile *tile, const struct draft_mesh *mesh, const struct draft_parts *parts,
                       const struct draft_part *part);
 void draft_carry_part(struct draft_tile *tile, const struct draft_mesh *mesh, const struct draft_parts *parts,

@@ -314,18 +314,6 @@ static bool mark(struct plate *plate, const struct frame *frame)
     return true;
 }
 
-static void ink_rim(const struct plate *plate)
-{
-    const struct draft *draft = plate->draft;
-    const uint8_t *rim = draft_rim(draft);
-    for (int y = 0; y < draft->height_px; y++) {
-        size_t from = (size_t)y * (size_t)draft->pitch_px, to = (size_t)y * (size_t)draft->width_px;
-        for (size_t x = 0; x < (size_t)draft->width_px; x++)
-            if (rim[from + x] && !draft->marks[from + x])
-                plate->recolor->ink[to + x] = rim[from + x] == RIM_DARK ? RECOLOR_RIM_DARK : RECOLOR_RIM_LIGHT;
-    }
-}
-
 static bool complain(struct plate *plate)
 {
     log_err(plate->plates->stage->gl->log, "still picture of %dx%d, %zu vertices: out of memory", plate->draft->width_px,
@@ -382,7 +370,7 @@ bool plate_step(struct plate *plate, const struct picture *picture, const struct
         break;
     case PLATE_RIM:
         if (is_selected_shown(picture))
-            ink_rim(plate);
+            draft_keep_rim(plate->draft, plate->recolor);
         break;
     case PLATE_COLOR:
         done = advance(plate, bands, BANDS, &begin, &end);
@@ -397,21 +385,13 @@ bool plate_step(struct plate *plate, const struct picture *picture, const struct
 
 /* --- once more --------------------------------------------------------------------------------------------------------------- */
 
-static void forget(void *recolor)
-{
-    recolor_destroy(&(struct recolor *){ recolor });
-}
-
 bool plates_keep(struct plates *plates, struct plate *plate, const struct picture *picture, const struct frame *frame)
 {
     struct recolor *recolor = plate->recolor;
     if (plate->failed)
         return false;
-    recolor->markers = mem_array(frame->marker_count, sizeof(*recolor->markers));
-    recolor->marker_count = frame->marker_count;
-    memcpy(recolor->markers, frame->markers, frame->marker_count * sizeof(*recolor->markers));
     plate->recolor = NULL;
-    visibility_buffers_give(&plates->kept, content_shape_hash(picture), recolor, recolor_bytes(recolor), forget);
+    draft_give(&plates->kept, picture, recolor, frame);
     return true;
 }
 
@@ -422,16 +402,5 @@ bool plates_know(struct plates *plates, const struct picture *picture)
 
 bool plates_recolor(struct plates *plates, const struct picture *picture, struct frame *frame)
 {
-    struct recolor *recolor = plates_can(plates, picture) ? visibility_buffers_find(&plates->kept, content_shape_hash(picture)) : NULL;
-    struct frame_block block;
-    if (!recolor)
-        return false;
-    frame_block_fill(&block, picture);
-    draft_read_palette(plates->draft, &picture->palette);
-    recolor_read(recolor, picture, plates->workers);
-    recolor_draw(recolor, plates->draft->palette, block.scale[3], plates->workers, 0, recolor->band_count, frame);
-    frame->markers = mem_array(recolor->marker_count, sizeof(*frame->markers));
-    frame->marker_count = recolor->marker_count;
-    memcpy(frame->markers, recolor->markers, recolor->marker_count * sizeof(*recolor->markers));
-    return true;
+    return plates_can(plates, picture) && draft_recolor(plates->draft, &plates->kept, picture, frame);
 }

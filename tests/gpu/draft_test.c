@@ -153,6 +153,42 @@ static void test_hidden_assets(void **state)
     assert_same(&view, 0.003);
 }
 
+static void fill(double more);
+
+/* The third picture of a camera that stands still is coloured anew only; hatches have softer rims then. */
+static void test_still_camera(void **state)
+{
+    struct view view;
+    (void)state;
+    start_view(&view, 640, 360);
+    view.camera.eye_m[0] += 0.25;
+    for (int selected = -1; selected < 2; selected++) {
+        view.selected_asset = selected;
+        for (int i = 0; i < 4; i++) {
+            fill(i * 3.0);
+            assert_same(&view, selected < 0 ? 0.01 : 0.02);
+        }
+        view.colormap = (int)colormap_count() - 1;
+        view.range_max -= 10;
+        assert_same(&view, selected < 0 ? 0.01 : 0.02);
+    }
+    fill(0);
+}
+
+/* Places to draw it anew must not be taken for the same. */
+static void test_moves_after_standing(void **state)
+{
+    struct view view;
+    (void)state;
+    start_view(&view, 320, 200);
+    for (int i = 0; i < 3; i++)
+        assert_same(&view, 0.01);
+    view.camera.eye_m[1] += 0.5;
+    assert_same(&view, 0.01);
+    asset_set_add(&view.visibility.hidden, 0);
+    assert_same(&view, 0.01);
+}
+
 /* What it leaves to GL is what GL draws. */
 static void test_left_to_gl(void **state)
 {
@@ -169,11 +205,11 @@ static void test_left_to_gl(void **state)
 }
 
 /* Values, one beyond the range, one that is uncertain and one that is bad. */
-static void fill(void)
+static void fill(double more)
 {
     static const double values[8] = { 15, 30, 55, 80, 105, 20, 45, 90 };
     for (int i = 0; i < 8; i++)
-        toy_set(stand.snapshot, i, values[i],
+        toy_set(stand.snapshot, i, values[i] + more,
                 i == 6   ? QUALITY_BAD_SENSOR_FAILURE
                 : i == 5 ? QUALITY_UNCERTAIN_LAST_USABLE
                          : (uint32_t)QUALITY_GOOD);
@@ -184,7 +220,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_home),    cmocka_unit_test(test_sizes), cmocka_unit_test(test_flat),
         cmocka_unit_test(test_cameras), cmocka_unit_test(test_sun),   cmocka_unit_test(test_outlines),
-        cmocka_unit_test(test_hidden_assets), cmocka_unit_test(test_left_to_gl),
+        cmocka_unit_test(test_hidden_assets), cmocka_unit_test(test_still_camera),
+        cmocka_unit_test(test_moves_after_standing), cmocka_unit_test(test_left_to_gl),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
     if (!rig_init(&rig, "draft_test"))
@@ -195,7 +232,7 @@ int main(void)
         return 0;
     }
     stand_init(&stand, &rig, toy_unit());
-    fill();
+    fill(0);
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
     stand_finish(&stand);
     rig_finish(&rig);
