@@ -138,10 +138,11 @@ static void make_still(const struct session *session, struct wish *wish)
 /* Whoever looks at a refined picture keeps it when readings change, if it is quick to colour again. */
 static void make_refreshed(const struct session *session, int64_t now_ns, struct wish *wish)
 {
+    const struct ladder *ladder = &session->pacer.ladder;
     wish->view.tier = TIER_STILL;
     wish->quality = STILL;
     wish->or_moving = !all_can_be_refined(session, now_ns);
-    wish->moving_quality.quality = ladder_rung(&session->pacer.ladder).quality;
+    wish->moving_quality.quality = ladder_rung(ladder, ladder_step(ladder, session->common_step)).quality;
 }
 
 static bool wants(const struct session *session, int64_t now_ns, struct wish *wish)
