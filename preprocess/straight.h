@@ -38,7 +38,8 @@ void straight_finish(struct straight *straight);
 void straight_set_radius(struct straight *straight, const float *const largest_m[2]);
 
 /* The sensors' shares at a point: share_count numbers, for geodesic distances and then for straight ones: group by group, shepard's and
-   then paper's (of groups with few sensors). Then, in that order, the most that a value may change there over a metre. geodesic_m: by column; INFINITY: not reached. */
+   then paper's (of groups with few sensors). Then, in that order, the most that a value may change there over a metre. geodesic_m: by
+   column; INFINITY: not reached. */
 size_t straight_sample_count(const struct straight *straight); /* numbers that straight_shares makes */
 void straight_shares(const struct straight *straight, const float point_m[3], const float *geodesic_m, float *shares);
 /* In parts of the range: samples at a point against a line between two others, at share t of the way; against the mean of three corners.
