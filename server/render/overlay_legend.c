@@ -40,12 +40,15 @@ static void write_title(const struct pen *pen, struct legend *legend)
     snprintf(legend->title, sizeof(legend->title), *unit ? "%s [%s]" : "%s", what, unit);
 }
 
-static void choose_rows(struct legend *legend, bool is_operator)
+/* A distance is never below 0, nor uncertain. */
+static void choose_rows(struct legend *legend, const struct view *view)
 {
-    static const enum row values[] = { ROW_BELOW, ROW_NO_DATA, ROW_UNCERTAIN };
+    static const enum row values[] = { ROW_BELOW, ROW_NO_DATA, ROW_UNCERTAIN }, distances[] = { ROW_NO_DATA };
     static const enum row limits[] = { ROW_NO_LIMITS, ROW_NO_DATA, ROW_UNCERTAIN, ROW_WARNING, ROW_ALARM };
-    legend->row_count = is_operator ? 5 : 3;
-    memcpy(legend->rows, is_operator ? limits : values, (size_t)legend->row_count * sizeof(*values));
+    bool is_distance = view->field.show == SHOW_DISTANCE && view->range_min <= 0;
+    const enum row *rows = view_is_operator(view) ? limits : is_distance ? distances : values;
+    legend->row_count = view_is_operator(view) ? 5 : is_distance ? 1 : 3;
+    memcpy(legend->rows, rows, (size_t)legend->row_count * sizeof(*rows));
 }
 
 /* What the difference is from: a name, or the plant's clock then. */
@@ -68,7 +71,7 @@ static void write_words(const struct pen *pen, struct legend *legend)
     double range = view->range_max - view->range_min;
     char number[40];
     write_title(pen, legend);
-    choose_rows(legend, view_is_operator(view));
+    choose_rows(legend, view);
     if (view_is_operator(view)) {
         add_note(legend, "by each tag's limits");
     } else {

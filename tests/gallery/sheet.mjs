@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The gallery's page as one picture. usage: node tests/gallery/sheet.mjs FOLDER
+// The gallery's page as one picture, and each of its sections. usage: node tests/gallery/sheet.mjs FOLDER
 import { createRequire } from 'node:module';
 import { resolve } from 'node:path';
 
@@ -10,4 +10,6 @@ const browser = await chromium.launch({ executablePath, args: ['--no-sandbox', '
 const page = await browser.newPage({ viewport: { width: 1920, height: 1080 } });
 await page.goto(`file://${folder}/index.html`, { waitUntil: 'load' });
 await page.screenshot({ path: `${folder}/sheet.png`, fullPage: true });
+for (const section of await page.locator('section').all())
+    await section.screenshot({ path: `${folder}/sheet_${await section.getAttribute('id')}.png` });
 await browser.close();

@@ -65,8 +65,8 @@ export class Legend {
         const rule = { map, min: range[0], max: range[1], log: scale === 'log', interval: ramp_interval ?? 0, breaks };
         const isOperator = show === 'operator';
         this.element.replaceChildren(this.heading(group, params),
-            isOperator ? this.limitScale() : this.scale(rule, isolines ?? [], show === 'value' ? group.limits : {}),
-            this.keys(isOperator ? LIMIT_BANDS[2].colour : colourOf(rule, valueAt(rule, 0.5)), isOperator));
+            isOperator ? this.limitScale() : this.scale(rule, isolines ?? [], show === 'value' ? group.limits : {}, !(show === 'distance' && range[0] <= 0)),
+            this.keys(show, isOperator ? LIMIT_BANDS[2].colour : colourOf(rule, valueAt(rule, 0.5))));
         for (const note of this.notes(params, map, isOperator))
             this.element.append(make('p', { class: 'note' }, note));
     }
@@ -86,7 +86,8 @@ export class Legend {
         return make('h2', {}, text, ' ', make('span', {}, show === 'operator' ? '' : unitText(unit ?? group.unit)));
     }
 
-    scale(rule, lines, limits) {
+    // below: whether there may be values below the range.
+    scale(rule, lines, limits, below) {
         const { map, min, max } = rule;
         const decimals = (value) => decimalsFor(rule.log ? value : max - min);
         const text = (value) => numberText(value, decimals(value)).replace(/(\.\d*?)0+$/, '$1').replace(/\.$/, '');
@@ -97,7 +98,7 @@ export class Legend {
             ...end('above', map.above, `> ${text(max)}`),
             this.limits(rule, limits ?? {}, text), this.bar(rule, lines, (place) => colourOf(rule, valueAt(rule, place))),
             this.ticks(rule, lines, text),
-            ...end('below', map.below, `< ${text(min)}`));
+            ...(below ? end('below', map.below, `< ${text(min)}`) : []));
     }
 
     // Between limits there are no values: places from -3 to 3.
@@ -144,13 +145,14 @@ export class Legend {
     }
 
     // In small, the pattern is drawn no coarser than can be recognised.
-    keys(colour, isOperator) {
+    keys(show, colour) {
         const period = (height) => Math.min(height / 2, patternPeriodPx(this.session.size.height));
         const noData = pixels((x, y, height) => hatchAt(x, y, height, period(height)));
         const uncertain = pixels((x, y, height) => stippleAt(x, y, height, period(height), colour));
         const noLimits = pixels((x, y, height) => ruleAt(y, height, period(height)));
         return make('div', { class: 'keys' },
-            ...(isOperator ? [swatch(18, 14, noLimits), make('span', {}, 'No limits')] : []),
-            swatch(18, 14, noData), make('span', {}, 'No data'), swatch(18, 14, uncertain), make('span', {}, 'Uncertain'));
+            ...(show === 'operator' ? [swatch(18, 14, noLimits), make('span', {}, 'No limits')] : []),
+            swatch(18, 14, noData), make('span', {}, 'No data'),
+            ...(show === 'distance' ? [] : [swatch(18, 14, uncertain), make('span', {}, 'Uncertain')]));
     }
 }
