@@ -226,6 +226,12 @@ static bool must_again(const struct batch *orders)
     return false;
 }
 
+/* Where all has moved, JPEG and PNG come whole anyway: everyone may come in, at no cost for the others. */
+static bool is_whole(const struct chain *chain, const struct frame *frame, const struct wish *wish)
+{
+    return wish->codec != WIRE_CODEC_H264 && !view_equal(&chain->shown.view, &frame->view);
+}
+
 void chains_plan(struct chains *chains, const struct frame *frame, struct batch *orders, int64_t now_ns, struct plan *plan,
                  struct batch *rest)
 {
@@ -233,7 +239,7 @@ void chains_plan(struct chains *chains, const struct frame *frame, struct batch 
     struct chain *chain = plan->chain = choose(chains, frame, orders);
     bool sized = chain->shown.view.width_px == frame->width_px && chain->shown.view.height_px == frame->height_px;
     rest->count = 0;
-    plan->key = let_in(chains, chain, orders, now_ns, rest) || chain->key == 0 || !sized;
+    plan->key = is_whole(chain, frame, wish) || let_in(chains, chain, orders, now_ns, rest) || chain->key == 0 || !sized;
     plan->again = must_again(orders);
     plan->encode = plan->key || plan->again || chain->content != frame->content || !same_coding(chain, frame, wish);
     if (plan->encode) {
