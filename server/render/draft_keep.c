@@ -129,7 +129,8 @@ struct recolor *draft_keep(struct draft *draft)
     for (size_t m = 0; m < draft->mesh_count; m++) {
         const struct draft_mesh *mesh = &draft->meshes[m];
         if (mesh->has_field)
-            recolor_add_mesh(recolor, &(struct recolor_mesh){ mesh->asset, mesh->first_vertex, mesh->vertex_count });
+            recolor_add_mesh(recolor, &(struct recolor_mesh){
+                                         .asset = mesh->asset, .first_vertex = mesh->first_vertex, .vertex_count = mesh->vertex_count });
     }
     if (!recolor_make_vertices(recolor, draft->vertex_count)) {
         recolor_destroy(&recolor);

@@ -201,7 +201,11 @@ static void note_meshes(struct plate *plate)
         const struct draft_mesh *mesh = &draft->meshes[m];
         matrix_normals(stage->scene->assets[mesh->asset].placement, plate->normals[m]);
         if (mesh->has_field)
-            recolor_add_mesh(plate->recolor, &(struct recolor_mesh){ mesh->asset, mesh->first_vertex, mesh->vertex_count });
+            recolor_add_mesh(plate->recolor, &(struct recolor_mesh){
+                                                 .asset = mesh->asset,
+                                                 .first_vertex = mesh->first_vertex,
+                                                 .vertex_count = mesh->vertex_count,
+                                             });
     }
     for (size_t d = 0; d < draft->draw_count; d++) {
         struct draft_draw *draw = &draft->draws[d];

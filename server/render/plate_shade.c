@@ -142,8 +142,8 @@ static void sort_row(const struct plate *plate, struct row *row, const struct sa
 
 static void add_color(struct recolor_mixed *mixed, uint32_t color, unsigned share)
 {
-    for (int c = 0; c < 3; c++)
-        mixed->rest[c] = (uint16_t)(mixed->rest[c] + (color >> (8 * c) & 0xff) * share);
+    mixed->blue_red += (color & 0xff00ff) * share;
+    mixed->green = (uint16_t)(mixed->green + (color >> 8 & 0xff) * share);
 }
 
 static uint32_t keep_mixed(struct recolor_band *band, const struct row *row, const struct mixed *from)
@@ -153,12 +153,9 @@ static uint32_t keep_mixed(struct recolor_band *band, const struct row *row, con
         add_color(&mixed, row->sky_colors[from->column], from->sky);
     for (uint32_t i = from->first_surface; i < from->first_surface + from->surface_count; i++)
         add_color(&mixed, row->colors[i], row->surfaces[i].share);
-    if (mixed.part_count == 0) {
-        uint32_t color = 0;
-        for (int c = 0; c < 3; c++)
-            color |= (mixed.rest[c] + RECOLOR_SHARES / 2u) / RECOLOR_SHARES << (8 * c);
-        return RECOLOR_FIXED | color;
-    }
+    if (mixed.part_count == 0)
+        return RECOLOR_FIXED | ((mixed.blue_red + RECOLOR_SHARES / 2 * 0x10001u) / RECOLOR_SHARES & 0xff00ff) |
+               (uint32_t)(mixed.green + RECOLOR_SHARES / 2) / RECOLOR_SHARES << 8;
     mem_grow(&band->parts, &band->part_capacity, band->part_count + mixed.part_count, sizeof(*band->parts));
     for (uint32_t i = from->first_field; i < from->first_field + from->field_count; i++)
         band->parts[band->part_count++] = (struct recolor_part){ row->triangles[i], row->weights[i], row->rows[i], row->field[i].share };

@@ -91,12 +91,17 @@ bool recolor_make_vertices(struct recolor *recolor, size_t count)
 
 /* --- vertices ---------------------------------------------------------------------------------------------------------------- */
 
+static inline float clamped(float x, float low, float high)
+{
+    return x < low ? low : x > high ? high : x;
+}
+
 /* As carry_field in draft_place.c. */
 static float column_of(const struct scalar *scalar, const float *scale)
 {
     const float slack = 1e-5f, columns = PALETTE_PLACES / (1 + 2 * slack), farthest = 1e6f;
     float place = (scalar->value - scale[0]) * scale[1];
-    return fminf(fmaxf(place * columns + (1 + slack * columns), -farthest), farthest);
+    return clamped(place * columns + (1 + slack * columns), -farthest, farthest);
 }
 
 struct reading_job {
@@ -122,11 +127,17 @@ void recolor_read(struct recolor *recolor, const struct picture *picture, struct
 {
     struct frame_block block;
     frame_block_fill(&block, picture);
+    bool same_scale = !memcmp(recolor->scale, block.scale, sizeof(recolor->scale));
+    memcpy(recolor->scale, block.scale, sizeof(recolor->scale));
     for (size_t m = 0; m < recolor->mesh_count; m++) {
-        const struct recolor_mesh *mesh = &recolor->meshes[m];
+        struct recolor_mesh *mesh = &recolor->meshes[m];
         const struct fields_entry *field = picture->fields[mesh->asset];
-        struct reading_job job = { recolor, field ? field->shown : NULL, block.scale, mesh->first_vertex };
+        struct reading_job job = { recolor, field->shown, block.scale, mesh->first_vertex };
+        if (mesh->read && same_scale && mesh->content == field->content && field->shown)
+            continue;
         workers_for(workers, mesh->vertex_count, VERTICES_AT_ONCE, read_vertices, &job);
+        mesh->read = true;
+        mesh->content = field->content;
     }
 }
 
@@ -165,11 +176,6 @@ static float stipple(float x, float y, float pattern_px)
     return (0.26f - hypotf(column - floorf(column) - 0.5f, row - floorf(row) - 0.5f)) * pattern_px + 0.5f;
 }
 
-static float clamped(float x, float low, float high)
-{
-    return x < low ? low : x > high ? high : x;
-}
-
 /* Where a corner has flags. */
 static uint32_t flagged_color(const struct coloring *coloring, const uint32_t vertices[3], uint32_t weights, uint8_t row, float x, float y)
 {
@@ -201,19 +207,17 @@ static inline uint32_t field_color(const struct coloring *coloring, const uint32
     return coloring->palette[row * PALETTE_COLUMNS + (int)clamped(column, 0, PALETTE_PLACES + 1)];
 }
 
-static uint32_t mixed_color(const struct coloring *coloring, const struct recolor_band *band, uint32_t number, int x, int y)
+static inline uint32_t mixed_color(const struct coloring *coloring, const struct recolor_band *band, uint32_t number, int x, int y)
 {
     const struct recolor_mixed *mixed = &band->mixed[number];
-    uint32_t sums[3] = { mixed->rest[0], mixed->rest[1], mixed->rest[2] }, out = 0;
+    uint32_t blue_red = mixed->blue_red + RECOLOR_SHARES / 2 * 0x10001u, green = mixed->green + RECOLOR_SHARES / 2; /* both at once */
     for (uint32_t i = 0; i < mixed->part_count; i++) {
         const struct recolor_part *part = &band->parts[mixed->first_part + i];
         uint32_t color = field_color(coloring, band->triangles[part->triangle], part->weights, part->row, x, y);
-        for (int c = 0; c < 3; c++)
-            sums[c] += part->share * (color >> (8 * c) & 0xff);
+        blue_red += part->share * (color & 0xff00ff);
+        green += part->share * (color >> 8 & 0xff);
     }
-    for (int c = 0; c < 3; c++)
-        out |= (sums[c] + RECOLOR_SHARES / 2) / RECOLOR_SHARES << (8 * c);
-    return out;
+    return (blue_red / RECOLOR_SHARES & 0xff00ff) | (green / RECOLOR_SHARES & 0xff) << 8;
 }
 
 static uint32_t inked(uint32_t color, uint8_t ink)
@@ -230,6 +234,29 @@ static uint32_t inked(uint32_t color, uint8_t ink)
     return out;
 }
 
+/* Eight pixels that no reading changes and no line runs over. */
+DRAFT_INLINE bool are_fixed(const struct recolor *recolor, size_t at, uint32_t *out)
+{
+    uint64_t inks;
+    memcpy(&inks, recolor->ink + at, sizeof(inks));
+    lanes_int surfaces = *(const lanes_int *)(recolor->surfaces + at);
+    if (inks || lanes_any(surfaces >= 0))
+        return false;
+    *(lanes_int *)out = surfaces | (int32_t)0xff000000;
+    return true;
+}
+
+DRAFT_INLINE uint32_t color_at(const struct coloring *coloring, const struct recolor_band *band, size_t at, int x, int y)
+{
+    const struct recolor *recolor = coloring->recolor;
+    uint32_t surface = recolor->surfaces[at], color = surface;
+    if (!(surface & (RECOLOR_FIXED | RECOLOR_MIXED)))
+        color = field_color(coloring, band->triangles[surface], recolor->weights[at], recolor->rows[at], x, y);
+    else if (!(surface & RECOLOR_FIXED))
+        color = mixed_color(coloring, band, surface & ~RECOLOR_MIXED, x, y);
+    return recolor->ink[at] ? inked(color, recolor->ink[at]) : color;
+}
+
 DRAFT_KERNEL static void color_band(const struct coloring *coloring, int number)
 {
     const struct recolor *recolor = coloring->recolor;
@@ -238,16 +265,14 @@ DRAFT_KERNEL static void color_band(const struct coloring *coloring, int number)
     for (int y = number * recolor->band_rows; y < end; y++) {
         size_t start = (size_t)y * (size_t)recolor->width_px;
         uint32_t *out = (uint32_t *)(void *)(coloring->frame->bgrx + (size_t)y * (size_t)coloring->frame->stride_bytes);
-        for (int x = 0; x < recolor->width_px; x++) {
-            size_t at = start + (size_t)x;
-            uint32_t surface = recolor->surfaces[at], color = surface;
-            if (!(surface & (RECOLOR_FIXED | RECOLOR_MIXED)))
-                color = field_color(coloring, band->triangles[surface], recolor->weights[at], recolor->rows[at], x, y);
-            else if (surface & RECOLOR_MIXED)
-                color = mixed_color(coloring, band, surface & ~RECOLOR_MIXED, x, y);
-            if (recolor->ink[at])
-                color = inked(color, recolor->ink[at]);
-            out[x] = color | 0xff000000;
+        for (int x = 0; x < recolor->width_px;) {
+            int stop = x + LANES < recolor->width_px ? x + LANES : recolor->width_px;
+            if (stop == x + LANES && are_fixed(recolor, start + (size_t)x, out + x)) {
+                x = stop;
+                continue;
+            }
+            for (; x < stop; x++)
+                out[x] = color_at(coloring, band, start + (size_t)x, x, y) | 0xff000000;
         }
     }
 }

@@ -23,9 +23,9 @@ struct recolor_part { /* of a pixel that shows several surfaces: one of the fiel
 enum { RECOLOR_SHARES = 4 };
 
 struct recolor_mixed {
-    uint16_t rest[3]; /* of what is fixed: colour times share */
+    uint32_t blue_red, first_part; /* of what is fixed: blue and red times share, 16 bits each */
+    uint16_t green;                /* likewise */
     uint8_t part_count;
-    uint32_t first_part;
 };
 
 struct recolor_band { /* of rows; written by one worker */
@@ -39,6 +39,8 @@ struct recolor_band { /* of rows; written by one worker */
 struct recolor_mesh { /* an asset with a field */
     int asset;
     uint32_t first_vertex, vertex_count;
+    bool read;        /* what its vertices show now: */
+    uint64_t content; /* of struct fields_entry */
 };
 
 struct recolor {
@@ -50,6 +52,7 @@ struct recolor {
     struct recolor_band *bands;
     struct recolor_mesh *meshes;
     size_t mesh_count, mesh_capacity, vertex_count;
+    float scale[4]; /* of struct frame_block, when the vertices were read */
     float *columns; /* per vertex, of the palette; NAN: look at flags */
     float *plain;   /* the same without NAN */
     uint16_t *flags; /* as draft_flags */

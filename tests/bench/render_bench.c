@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Cost of the demo plant's pictures at 1920x1080, in time and in work of all cores: one JSON line per row. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
@@ -157,18 +158,20 @@ static void measure_recolour(struct bench *bench)
 static void measure_steps(struct bench *bench)
 {
     struct view view;
-    double work_ms[STILL_ROUNDS], longest_ms[STILL_ROUNDS] = { 0 };
+    double work_ms[STILL_ROUNDS], longest_ms[STILL_ROUNDS] = { 0 }, longest_work_ms[STILL_ROUNDS] = { 0 };
     view_default(bench->scene, 1920, 1080, &view);
+    view.tier = TIER_STILL;
     for (int i = -1; i < STILL_ROUNDS; i++) {
-        double worked_ms = now_ms(CLOCK_PROCESS_CPUTIME_ID), longest = 0;
+        double worked_ms = now_ms(CLOCK_PROCESS_CPUTIME_ID), longest = 0, longest_work = 0;
         struct stroke *stroke = renderer_begin(bench->renderer, &view, bench->snapshot);
         if (!stroke)
             abort();
         for (bool done = false; !done;) {
-            double began_ms = now_ms(CLOCK_MONOTONIC);
+            double began_ms = now_ms(CLOCK_MONOTONIC), work_began_ms = now_ms(CLOCK_PROCESS_CPUTIME_ID);
             done = renderer_step(bench->renderer, stroke, 10 * NS_PER_MS);
             double step_ms = now_ms(CLOCK_MONOTONIC) - began_ms;
             longest = step_ms > longest ? step_ms : longest;
+            longest_work = fmax(longest_work, now_ms(CLOCK_PROCESS_CPUTIME_ID) - work_began_ms);
         }
         struct frame *frame = renderer_end(bench->renderer, &stroke);
         if (!frame)
@@ -177,10 +180,39 @@ static void measure_steps(struct bench *bench)
         if (i < 0)
             continue;
         longest_ms[i] = longest;
+        longest_work_ms[i] = longest_work;
         work_ms[i] = now_ms(CLOCK_PROCESS_CPUTIME_ID) - worked_ms;
     }
     print_row("render_still_1080p_longest_step_ms", longest_ms, STILL_ROUNDS, 10);
+    print_row("render_still_1080p_longest_step_cpu_ms", longest_work_ms, STILL_ROUNDS, 0);
     print_row("render_still_1080p_stepped_cpu_ms", work_ms, STILL_ROUNDS, 0);
+}
+
+/* Under a still camera: one reading, or every one, changed. The field's own part is not counted. */
+static void measure_again(struct bench *bench, bool all, const char *time_name, const char *work_name)
+{
+    struct view view;
+    double time_ms[MOST_ROUNDS], work_ms[MOST_ROUNDS];
+    view_default(bench->scene, 1920, 1080, &view);
+    view.tier = TIER_STILL;
+    for (int i = -2; i < MOVING_ROUNDS; i++) {
+        struct reading *readings = bench->snapshot->readings;
+        for (size_t tag = 0; tag < (all ? bench->plant->tag_count : 1); tag++)
+            readings[tag].value *= i % 2 ? 0.97 : 1 / 0.97;
+        while (!renderer_prepare(bench->renderer, &view, bench->snapshot, INT64_MAX / 4)) {}
+        renderer_content(bench->renderer, &view, bench->snapshot);
+        double began_ms = now_ms(CLOCK_MONOTONIC), worked_ms = now_ms(CLOCK_PROCESS_CPUTIME_ID);
+        struct frame *frame = renderer_draw(bench->renderer, &view, bench->snapshot);
+        if (!frame)
+            abort();
+        if (i >= 0) {
+            time_ms[i] = now_ms(CLOCK_MONOTONIC) - began_ms;
+            work_ms[i] = now_ms(CLOCK_PROCESS_CPUTIME_ID) - worked_ms;
+        }
+        frame_unref(&frame);
+    }
+    print_row(time_name, time_ms, MOVING_ROUNDS, 4);
+    print_row(work_name, work_ms, MOVING_ROUNDS, 0);
 }
 
 int main(void)
@@ -196,6 +228,8 @@ int main(void)
         measure_recolour(&bench);
         measure(&bench, TIER_STILL, "render_still_1080p_ms", "render_still_1080p_cpu_ms", STILL_ROUNDS);
         measure_steps(&bench);
+        measure_again(&bench, false, "render_still_recolor_1080p_ms", "render_still_recolor_1080p_cpu_ms");
+        measure_again(&bench, true, "render_still_recolor_all_1080p_ms", "render_still_recolor_all_1080p_cpu_ms");
     } else {
         print_why("the demo plant could not be opened or drawn; the log says why");
     }
