@@ -3,14 +3,13 @@
 #include "render/labels.h"
 
 #include <math.h>
-#include <stdbool.h>
 #include <stdlib.h>
 
 #include "base/mem.h"
 
 enum { PASSES = 3 };
 static const double SPACINGS[PASSES] = { 0.16, 0.08, 0 }, HELD = 0.8;
-static const double MARK = 5, CLEARANCE = 3, NEAR_GAP = 8, FAR_GAP = 22, ROOM = 0.06, CELL = 96;
+static const double MARK = 5, RING = 13, CLEARANCE = 3, NEAR_GAP = 8, FAR_GAP = 22, ROOM = 0.06, CELL = 96;
 
 struct cell_entry {
     struct box box;
@@ -104,8 +103,9 @@ struct box label_box(const struct label_item *item, int slot, double unit)
                                                    { 0, -1.9 }, { 0, 0.9 },   { 1, -2 },   { -1, -2 }, { 1, 1 },     { -1, 1 },
                                                    { 1, -3.2 }, { -1, -3.2 }, { 1, 2.2 },  { -1, 2.2 } };
     double side = places[slot][0], gap = (slot < LABEL_FIRST_FAR ? NEAR_GAP : FAR_GAP) * unit;
-    double x = side > 0 ? item->x + gap : side < 0 ? item->x - gap - item->width : item->x - item->width / 2;
-    return (struct box){ x, item->y + places[slot][1] * item->height, item->width, item->height };
+    double above = places[slot][1] < -0.5 ? -1 : places[slot][1] > -0.5 ? 1 : 0, more = item->ring ? (RING - MARK) * unit : 0;
+    double x = side > 0 ? item->x + gap + more : side < 0 ? item->x - gap - more - item->width : item->x - item->width / 2;
+    return (struct box){ x, item->y + places[slot][1] * item->height + (side == 0 ? above * more : 0), item->width, item->height };
 }
 
 static bool fits(const struct layout *layout, int index, int slot)
@@ -161,7 +161,7 @@ static void place_rank(struct layout *layout, const int *order, size_t count)
 
 void labels_place(const struct label_item *items, size_t count, const struct label_area *area, int *slots)
 {
-    double radius = MARK * area->unit, cell = CELL * area->unit;
+    double cell = CELL * area->unit;
     struct layout layout = { .items = items, .area = area, .slots = slots };
     layout.columns = (int)(area->box.width / cell) + 1;
     layout.rows = (int)(area->box.height / cell) + 1;
@@ -174,6 +174,7 @@ void labels_place(const struct label_item *items, size_t count, const struct lab
     for (size_t i = 0; i < area->blocked_count; i++)
         take(&layout, &area->blocked[i], -1);
     for (size_t i = 0; i < count; i++) {
+        double radius = (items[i].ring ? RING : MARK) * area->unit;
         struct box mark = { items[i].x - radius, items[i].y - radius, 2 * radius, 2 * radius };
         take(&layout, &mark, (int)i);
         slots[i] = LABEL_NONE;

@@ -2,6 +2,7 @@
 /* Which labels are shown beside their markers, and where: the rule of protocol/LABELS.md. Pure; in pixels. */
 #ifndef RENDER_LABELS_H
 #define RENDER_LABELS_H
+#include <stdbool.h>
 #include <stddef.h>
 
 struct box {
@@ -15,7 +16,8 @@ struct label_item {             /* every marker in sight */
     double x, y, width, height; /* of the marker; of its label */
     double depth_m;
     enum label_rank rank;
-    int held; /* its slot in the picture before, or LABEL_NONE */
+    int held;  /* its slot in the picture before, or LABEL_NONE */
+    bool ring; /* of alarm colours around it */
 };
 struct label_area {
     struct box box;

@@ -144,7 +144,9 @@ static void add_wanted(struct pen *pen, const struct frame_marker *marker, struc
     item->width = text->name_width + pen_text_width(pen, text->value) + 2 * pad;
     item->height = 0.95 * pen->text_px + 2 * pad;
     item->depth_m = depth_of(pen, marker->tag);
-    item->rank = alarm_active(tag, reading) != ALARM_NONE                                           ? LABEL_BEYOND
+    item->ring = alarm_of(pen, marker) != ALARM_NONE;
+    item->rank = marker->occluded                                                                  ? LABEL_NOT_WANTED
+                 : alarm_active(tag, reading) != ALARM_NONE                                           ? LABEL_BEYOND
                  : quality_is_bad(reading->quality)                                                 ? LABEL_BAD
                  : quality_is_uncertain(reading->quality) || tag->asset == pen->view.selected_asset ? LABEL_DOUBTFUL
                                                                                                     : LABEL_PLAIN;
@@ -221,10 +223,10 @@ void overlay_markers(struct pen *pen)
         struct box mark = { (double)marker->x_px - radius, (double)marker->y_px - radius, 2 * radius, 2 * radius };
         if (!is_inside(pen, marker) || is_under(pen, cards, &mark))
             continue;
-        if (!marker->occluded) {
+        if (!marker->occluded)
             pen_take(pen, &mark);
+        if (!marker->occluded || alarm_of(pen, marker) != ALARM_NONE)
             add_wanted(pen, marker, &wanted);
-        }
         if (alarm_of(pen, marker) != ALARM_NONE)
             overlay_ring(pen, marker->x_px, marker->y_px, 9.5 * pen->unit, alarm_of(pen, marker));
         draw_mark(pen, marker, is_bad(pen, marker));

@@ -40,7 +40,8 @@ static void check_vector(const char *name)
     for (size_t i = 0; i < count; i++) {
         const json_t *item = json_array_get(list, i);
         items[i] =
-            (struct label_item){ at(item, 0), at(item, 1), at(item, 2), at(item, 3), at(item, 5), (int)at(item, 4), (int)at(item, 6) };
+            (struct label_item){ at(item, 0), at(item, 1), at(item, 2), at(item, 3), at(item, 5), (int)at(item, 4), (int)at(item, 6),
+                                 at(item, 7) > 0 }; /* left out: no ring */
     }
     for (size_t i = 0; i < blocked_count; i++)
         boxes[i] = box_of(json_array_get(blocked, i));

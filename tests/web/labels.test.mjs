@@ -12,7 +12,7 @@ const box = ([left, top, right, bottom]) => ({ left, top, right, bottom });
 for (const name of readdirSync(folder)) {
     const vector = JSON.parse(readFileSync(new URL(name, folder), 'utf8'));
     test(`labels ${name}: ${vector.what}`, () => {
-        const names = ['x', 'y', 'width', 'height', 'rank', 'depth', 'held'];
+        const names = ['x', 'y', 'width', 'height', 'rank', 'depth', 'held', 'ring'];
         const items = vector.items.map((row, id) => ({ id, ...Object.fromEntries(names.map((n, i) => [n, row[i]])) }));
         const placed = placeLabels(items, { area: box(vector.area), unit: vector.unit, blocked: vector.blocked.map(box) });
         assert.deepEqual(items.map(({ id }) => placed.get(id)?.slot ?? -1), vector.slots);

@@ -168,21 +168,24 @@ export class Overlay {
         return new Map(placed.flatMap((one) => [...one]));
     }
 
-    // All marks in sight, in order of tags; the card speaks for the chosen.
+    // All marks in sight and all rings, in order of tags; the card speaks for the chosen.
     labels() {
-        const inSight = this.markers.filter((marker) => !marker.occluded).sort((a, b) => a.tag.index - b.tag.index || a.half - b.half);
+        const ringed = ({ operator, reading }) => Boolean(operator && reading.alarm);
+        const marks = this.markers.filter((marker) => !marker.occluded || ringed(marker));
+        const inSight = marks.filter(({ occluded }) => !occluded);
+        marks.sort((a, b) => a.tag.index - b.tag.index || a.half - b.half);
         const tooMany = inSight.filter(({ reading }) => reading.quality === 'bad').length > MOST_BAD;
         const named = inSight.length <= NAMES_UP_TO;
-        return inSight.map((marker) => {
+        return marks.map((marker) => {
             const { tag, reading } = marker, id = `${tag.index}/${marker.half}`;
             const limit = limitState(tag, reading.value);
             const onSelected = tag.asset === this.session.params.selected;
             const parts = this.parts(marker, limit, named || onSelected);
             const width = Math.ceil(parts.reduce((sum, part) => sum + this.width(part), 0) + 2 * PADDING + (parts.length - 1) * 5);
-            const bad = reading.quality === 'bad', silent = this.isChosen(tag) || (bad && tooMany);
+            const bad = reading.quality === 'bad', silent = marker.occluded || this.isChosen(tag) || (bad && tooMany);
             const rank = silent ? -1 : limit ? 3 : bad ? 2 : reading.quality !== 'good' || onSelected ? 1 : 0;
             const { x, y, depth, half } = marker;
-            return { id, half, x, y, width, height: LABEL_HEIGHT, rank, depth, held: this.places.get(id)?.slot, parts, limit };
+            return { id, half, x, y, width, height: LABEL_HEIGHT, rank, depth, held: this.places.get(id)?.slot, parts, limit, ring: ringed(marker) };
         });
     }
 

@@ -2,7 +2,7 @@
 // Which labels are shown beside their markers, and where: the rule of protocol/LABELS.md.
 
 const SPACINGS = [0.16, 0.08, 0], HELD = 0.8; // of the area's width; what is held counts so much
-const MARK = 5, CLEARANCE = 3, NEAR_GAP = 8, FAR_GAP = 22; // units
+const MARK = 5, RING = 13, CLEARANCE = 3, NEAR_GAP = 8, FAR_GAP = 22; // units
 const ROOM = 0.06;                            // of the area
 export const FIRST_FAR = 8;                   // from this slot on with a leader line
 export const MOST_BAD = 12;
@@ -40,24 +40,28 @@ class Taken {
     }
 }
 
-function boxAt({ x, y, width, height }, slot, unit) {
+function boxAt({ x, y, width, height, ring }, slot, unit) {
     const [side, edge] = SLOTS[slot];
     const gap = (slot < FIRST_FAR ? NEAR_GAP : FAR_GAP) * unit;
-    const left = side > 0 ? x + gap : side < 0 ? x - gap - width : x - width / 2, top = y + edge * height;
+    const more = ring ? (RING - MARK) * unit : 0;
+    const left = side > 0 ? x + gap + more : side < 0 ? x - gap - more - width : x - width / 2;
+    const top = y + edge * height + (side === 0 ? Math.sign(edge + 0.5) * more : 0);
     return { left, top, right: left + width, bottom: top + height };
 }
 
-// items: { id, x, y (the marker), width, height, rank, depth, held (slot or undefined) }; area: { left, top, right, bottom }.
+// items: { id, x, y (the marker), width, height, rank, depth, held (slot or undefined), ring (of alarm colours around it) }; area: { left, top, right, bottom }.
 // Returns Map id -> { left, top, slot }.
 export function placeLabels(items, { area, unit = 1, blocked = [] }) {
     const wide = area.right - area.left, room = ROOM * wide * (area.bottom - area.top);
     const taken = new Taken(96 * unit), placed = new Map(), centres = [];
-    const radius = MARK * unit, clearance = CLEARANCE * unit;
+    const clearance = CLEARANCE * unit;
     let used = 0;
     for (const box of blocked)
         taken.add(box);
-    for (const { id, x, y } of items)
+    for (const { id, x, y, ring } of items) {
+        const radius = (ring ? RING : MARK) * unit;
         taken.add({ left: x - radius, right: x + radius, top: y - radius, bottom: y + radius, owner: id });
+    }
     const isHeld = (item) => item.held !== undefined && item.held !== null && item.held >= 0;
     const far = (item) => item.depth * (isHeld(item) ? HELD : 1);
     const order = items.map((item, index) => ({ item, index })).filter(({ item }) => item.rank >= 0)
