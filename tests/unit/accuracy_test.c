@@ -200,7 +200,7 @@ static void thin_walled_box(void **state)
     struct cad clean = { 0 };
     (void)state;
     skip_if_watched();
-    cad_thin_box(&clean, &chance, 60 + (int)(20 * cad_random(&chance)), 44, 36, 0.01);
+    cad_thin_box(&clean, &chance, 64 + (int)(20 * cad_random(&chance)), 44, 36, 0.01);
     test_alone("thin-walled box", &clean);
 }
 

@@ -197,5 +197,6 @@ int main(void)
         cmocka_unit_test(a_clock_set_back_loses_nothing),
         cmocka_unit_test(what_is_held_is_the_newest),
     };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

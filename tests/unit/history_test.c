@@ -381,5 +381,6 @@ int main(void)
         cmocka_unit_test_setup_teardown(a_newer_version_is_left_alone, set_up, tear_down),
         cmocka_unit_test_setup_teardown(old_and_large_months_go, set_up, tear_down),
     };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -188,5 +188,6 @@ int main(void)
         cmocka_unit_test_setup_teardown(files_that_are_no_series_are_refused, set_up, tear_down),
         cmocka_unit_test_setup_teardown(out_and_in_again_is_the_same, set_up, tear_down),
     };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -184,5 +184,6 @@ int main(void)
         cmocka_unit_test_setup_teardown(csv_has_quotes_where_it_needs_them, set_up, tear_down),
         cmocka_unit_test_setup_teardown(too_many_are_refused, set_up, tear_down),
     };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

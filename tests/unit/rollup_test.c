@@ -148,5 +148,6 @@ int main(void)
         cmocka_unit_test(a_bridge_is_a_straight_line),
         cmocka_unit_test(months_follow_each_other),
     };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

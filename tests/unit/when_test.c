@@ -96,5 +96,6 @@ int main(void)
         cmocka_unit_test(summer_time_does_not_matter),
         cmocka_unit_test(what_is_written_is_read_again),
     };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
