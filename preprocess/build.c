@@ -240,12 +240,13 @@ static bool put_in_order(struct build *build, uint32_t own)
     for (size_t s = 0; good && s < sensors; s++)
         build->measured.sensors[s].nearest_vertex = new_of[build->measured.sensors[s].nearest_vertex];
     report->level_count = build->levels.count;
+    report->levels_given_up = build->levels.given_up;
     for (size_t i = 0; good && i < build->levels.count; i++) {
         report->levels[i].triangles = build->levels.at[i].whole_count / 3;
         report->levels[i].split_triangles = build->levels.at[i].index_count / 3;
         report->levels[i].vertices = build->file[i].vertex_count;
         report->levels[i].error_m = build->file[i].error_m;
-        report->levels[i].field_error = build->levels.at[i].field_error;
+        memcpy(report->levels[i].left, build->levels.at[i].left, sizeof(report->levels[i].left));
     }
     mem_free(new_of);
     return good || wrong(build->why, "out of memory for the levels of %u vertices", g->vertex_count);

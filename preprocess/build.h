@@ -8,7 +8,7 @@
 #include "preprocess/levels.h"
 #include "surface/surface.h"
 
-#define BUILD_REVISION 15u /* grows when the same input shall give another file */
+#define BUILD_REVISION 16u /* grows when the same input shall give another file */
 
 struct stock;
 struct build_input {
@@ -27,7 +27,8 @@ struct build_level {
     uint32_t triangles;         /* as simplified */
     uint32_t split_triangles;   /* after splitting */
     uint32_t vertices;          /* the prefix */
-    float error_m, field_error; /* field_error: left along its edges, in parts of the range */
+    float error_m;
+    struct level_left left[LEVEL_LIMITS]; /* what splitting left */
 };
 
 struct build_report {
@@ -37,7 +38,7 @@ struct build_report {
     size_t unreachable_vertices;            /* no sensor's distance is finite there */
     uint32_t stocked, kept_sensors;         /* stocked: 1 if the model need not be read; sensors whose distances were there */
     struct build_level levels[LEVELS_MAX];
-    size_t level_count;
+    size_t level_count, levels_given_up;
     double read_s, surface_s, solve_s, levels_s, split_s;
 };
 

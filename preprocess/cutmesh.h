@@ -19,7 +19,9 @@ struct cut_edge {       /* between two places; all levels share them */
     uint32_t middle;    /* the place where it is cut, or TRIMESH_NONE */
     uint32_t load;      /* the last level that it is cut in */
     float share;        /* of the way from place a to place b: where it is cut, or should be */
-    float error;        /* of the field along it; less than 0: not known yet */
+    float error;        /* of the field along it, if cutting may mend that; less than 0: not known yet */
+    float barred;       /* of the field along it, if not */
+    bool jumps;         /* likewise: because the distance jumps, not because it is short */
 };
 
 struct cutmesh {

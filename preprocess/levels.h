@@ -7,18 +7,28 @@
 
 #define LEVELS_MAX 12
 
+/* Why an edge is not cut though the field errs along it: the level may not have more triangles; the pieces would be too short; the distance
+   along the surface jumps there. */
+enum level_limit { LEVEL_LIMIT_TRIANGLES, LEVEL_LIMIT_LENGTH, LEVEL_LIMIT_JUMP, LEVEL_LIMITS };
+
+struct level_left { /* after splitting: edges along which the field errs by more than a step of colour, and by how many at most */
+    uint32_t edges;
+    float steps;
+};
+
 struct level {
     uint32_t *indices;                  /* vertices of the geometry */
     struct asset_primitive *primitives; /* first_index counts from this level's first; without those that have no triangle left */
     uint32_t index_count, primitive_count;
     uint32_t whole_count; /* of indices, before splitting */
     float error_m;        /* no point of the finest surface is farther from this one, nor the other way round; 0 for the finest */
-    float field_error;    /* after splitting: the most that the field errs along an edge, in parts of the range */
+    struct level_left left[LEVEL_LIMITS];
 };
 
 struct levels {
     struct level at[LEVELS_MAX]; /* finest first */
     size_t count;
+    size_t given_up; /* by the splitting: they would need as many triangles as the next finer one */
 };
 
 /* Each level has about half of the triangles of the one before. Borders between materials, texture seams and vertex colours stay where they

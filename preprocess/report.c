@@ -105,8 +105,8 @@ static void print_surfaces(const struct text_report *report)
 static void print_levels(const struct text_report *report)
 {
     static const struct table_column columns[] = {
-        { "", false },         { "asset", false },   { "level", true },         { "error mm", true },
-        { "triangles", true }, { "split to", true }, { "field error %", true },
+        { "", false },        { "asset", false },        { "level", true },      { "error mm", true },  { "triangles", true },
+        { "split to", true }, { "for triangles", true }, { "for length", true }, { "for jumps", true },
     };
     struct table table = { .columns = columns, .column_count = sizeof(columns) / sizeof(columns[0]) };
     for (size_t i = 0; i < report->count; i++) {
@@ -119,13 +119,16 @@ static void print_levels(const struct text_report *report)
             table_add(&table, "%.1f", 1e3 * (double)level->error_m);
             table_add(&table, "%s", NUMBER(level->triangles));
             table_add(&table, "%s", NUMBER(level->split_triangles));
-            if (asset->sensor_count)
-                table_add(&table, "%.2f", 100 * (double)level->field_error);
-            else
-                table_add(&table, "%s", "");
+            for (int limit = 0; limit < LEVEL_LIMITS; limit++)
+                if (level->left[limit].edges)
+                    table_add(&table, "%s: %.1f", NUMBER(level->left[limit].edges), (double)level->left[limit].steps);
+                else
+                    table_add(&table, "%s", "");
         }
     }
-    print(report, "Levels of detail, before and after splitting", &table);
+    print(report,
+          "Levels of detail, before and after splitting (edges left though the field errs by more than a step of colour: by so many steps)",
+          &table);
 }
 
 static void print_times(const struct text_report *report)

@@ -52,9 +52,12 @@ static void add_numbers(struct concerns *concerns, const struct prepare_asset *a
         add(concerns, asset, 10 * (1 + r->surface.heat_disagreement),
             mem_printf("two ways to find its distances differ by %.1f %%: it may not hang together as it looks",
                        100 * r->surface.heat_disagreement));
-    if (r->level_count && asset->sensor_count && (double)r->levels[0].field_error > FIELD_SLACK * SPLIT_ERROR)
-        add(concerns, asset, 1 + (double)r->levels[0].field_error,
-            mem_printf("its field errs by up to %.2f %% of the range along an edge, close to", 100 * (double)r->levels[0].field_error));
+    const struct level_left *left = &r->levels[0].left[LEVEL_LIMIT_TRIANGLES];
+    if (r->level_count && (double)left->steps > FIELD_SLACK)
+        add(concerns, asset, 1 + (double)left->steps / 255,
+            mem_printf("close to, its field errs by up to %.1f steps of colour (1/255 of the range) along %s edges: it may not have more "
+                       "triangles",
+                       (double)left->steps, table_number(left->edges).text));
 }
 
 static int worst_first(const void *a, const void *b)

@@ -29,6 +29,7 @@ static const struct number build_numbers[] = {
     OF_BUILD("skipped_points", skipped_points, COUNT32),
     OF_BUILD("stocked", stocked, COUNT32),
     OF_BUILD("kept_sensors", kept_sensors, COUNT32),
+    OF_BUILD("levels_given_up", levels_given_up, COUNT),
     { 0 },
 };
 static const struct number surface_numbers[] = {
@@ -72,7 +73,12 @@ static const struct number second_numbers[] = {
     }
 static const struct number level_numbers[] = {
     OF_LEVEL("error_m", error_m, SHARE),
-    OF_LEVEL("field_error", field_error, SHARE),
+    OF_LEVEL("limited_by_triangles", left[LEVEL_LIMIT_TRIANGLES].edges, COUNT32),
+    OF_LEVEL("limited_by_length", left[LEVEL_LIMIT_LENGTH].edges, COUNT32),
+    OF_LEVEL("limited_by_jumps", left[LEVEL_LIMIT_JUMP].edges, COUNT32),
+    OF_LEVEL("steps_by_triangles", left[LEVEL_LIMIT_TRIANGLES].steps, SHARE),
+    OF_LEVEL("steps_by_length", left[LEVEL_LIMIT_LENGTH].steps, SHARE),
+    OF_LEVEL("steps_by_jumps", left[LEVEL_LIMIT_JUMP].steps, SHARE),
     OF_LEVEL("triangles_before", triangles, COUNT32),
     OF_LEVEL("triangles", split_triangles, COUNT32),
     OF_LEVEL("vertices", vertices, COUNT32),

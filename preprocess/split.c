@@ -10,7 +10,7 @@
 #include "preprocess/split_impl.h"
 
 #define AIM (0.9 * SPLIT_ERROR) /* errs the field less at the points looked at, it does by less than that in between */
-#define MOST_ROUNDS 12
+#define MOST_ROUNDS 16
 #define MOST_KEPT 512    /* shares of a place */
 #define LARGE 0.25       /* of the way to the nearest sensor */
 #define INSIDE_LEAST 8.0 /* shortest pieces: smaller triangles are not looked at inside */
@@ -22,10 +22,10 @@
 
 /* How many triangles the finest level may get more: so much of its own, or so many, whichever is more. */
 #define FINEST_GROWTH 2.0
-#define FINEST_GROWTH_TRIS 30000.0
+#define FINEST_GROWTH_TRIS 100000.0
 #define WORTH 0.75   /* a coarser level that would get more than so much of the next finer one is of no use */
-#define SHORTEST 2.0 /* pieces of coarser levels, of their error: some pixels */
-#define SLACK 0.5    /* how far away a coarser level may show what the field is, likewise */
+#define SHORTEST 1.0 /* pieces of coarser levels, of their error: two pixels */
+#define SLACK 0.35   /* how far away a coarser level may show what the field is, likewise */
 
 /* --- cutting -------------------------------------------------------------------------------------------------------------- */
 
@@ -75,6 +75,8 @@ static void measure_edges(struct split *split)
     for (size_t i = 0; i < count; i++) {
         struct cut_edge *edge = &mesh->cuts[findings[i].number];
         edge->error = findings[i].error;
+        edge->barred = findings[i].barred;
+        edge->jumps = findings[i].jumps;
         if (edge->middle == TRIMESH_NONE)
             edge->share = findings[i].share;
     }
@@ -217,13 +219,27 @@ static bool cut_worst(struct split *split, double limit)
 
 /* --- all ------------------------------------------------------------------------------------------------------------------ */
 
-static float largest_error(const struct cutmesh *mesh)
+static void note_left(struct level *level, enum level_limit limit, float error)
 {
-    float most = 0;
+    if ((double)error <= SPLIT_ERROR)
+        return;
+    level->left[limit].edges++;
+    level->left[limit].steps = fmaxf(level->left[limit].steps, error / (float)SPLIT_ERROR);
+}
+
+static void tell_left(const struct cutmesh *mesh, struct level *level)
+{
+    char *told = mem_array(mesh->edges.count, 1);
     for (size_t t = 0; t < mesh->tri_count; t++)
-        for (int i = 0; i < 3; i++)
-            most = fmaxf(most, mesh->cuts[mesh->tris[t].e[i]].error);
-    return most;
+        for (int i = 0; i < 3; i++) {
+            const struct cut_edge *edge = &mesh->cuts[mesh->tris[t].e[i]];
+            if (told[edge - mesh->cuts])
+                continue;
+            told[edge - mesh->cuts] = 1;
+            note_left(level, LEVEL_LIMIT_TRIANGLES, edge->error);
+            note_left(level, edge->jumps ? LEVEL_LIMIT_JUMP : LEVEL_LIMIT_LENGTH, edge->barred);
+        }
+    mem_free(told);
 }
 
 /* Large errors go first: should the level come to its bound, the smaller ones are what is left. */
@@ -248,7 +264,7 @@ static void split_level(struct split *split, struct level *level, size_t finer_t
                 break;
         }
     measure_edges(split);
-    level->field_error = largest_error(&split->mesh);
+    tell_left(&split->mesh, level);
     cutmesh_store(&split->mesh, level);
 }
 
@@ -266,6 +282,7 @@ static void split_all(struct split *split, struct levels *levels)
         finer_tris = split->mesh.tri_count;
         levels->at[kept++] = *level;
     }
+    levels->given_up = levels->count - kept;
     levels->count = kept;
 }
 

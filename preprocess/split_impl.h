@@ -23,7 +23,7 @@ struct split {
     bool finest;
     double on_surface_m; /* what is farther from the surface is hidden inside another part */
     double shortest_m, slack_m;
-    bool full; /* it may hardly grow any more */
+    bool full;                     /* it may hardly grow any more */
     size_t most_tris, first_count; /* first_count: before sensors were placed */
 };
 
@@ -36,6 +36,8 @@ const float *split_position(const struct split *split, uint32_t vertex);
 struct split_finding { /* about one edge or one triangle */
     uint32_t number;
     float error, share; /* share: where the edge is best cut */
+    float barred;       /* the error that cutting may not mend */
+    bool jumps;
 };
 
 bool split_find_parts(struct split *split); /* false: out of memory */

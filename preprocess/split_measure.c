@@ -288,16 +288,20 @@ static const float *shares_at(const struct split *split, uint32_t vertex, uint32
     return shares;
 }
 
+static void bar(struct split_finding *finding, bool jumps)
+{
+    finding->barred = finding->error;
+    finding->jumps = jumps;
+    finding->error = 0;
+}
+
 static void try_edge(const struct job *job, struct split_finding *finding, struct room *room)
 {
     const struct split *split = job->split;
     const struct cut_edge *edge = &split->mesh.cuts[finding->number];
     const float *pa = split_position(split, edge->a), *pb = split_position(split, edge->b);
     double length_m = split_length(pa, pb);
-    finding->error = 0;
-    finding->share = 0.5f;
-    if (length_m < 2 * split->shortest_m)
-        return;
+    *finding = (struct split_finding){ .number = finding->number, .share = 0.5f };
     struct line line = { .split = split,
                          .a = pa,
                          .b = pb,
@@ -313,6 +317,10 @@ static void try_edge(const struct job *job, struct split_finding *finding, struc
     split_mix(pa, pb, 0.5, middle);
     double nearest_m = straight_nearest(split->in->straight, middle);
     finding->error = (float)add_point(&line, 0.5);
+    if (length_m < 2 * split->shortest_m) {
+        bar(finding, false);
+        return;
+    }
     if ((double)finding->error < PROBABLE * job->enough && length_m < CLOSE * nearest_m && line.count == 3)
         return;
     if ((double)finding->error <= job->enough || length_m < WIDE * nearest_m)
@@ -320,7 +328,7 @@ static void try_edge(const struct job *job, struct split_finding *finding, struc
     if ((double)finding->error > job->enough && length_m < WIDE * nearest_m)
         find_cut(&line, job->enough, finding);
     if (length_m < JUMP_WIDTH * split->shortest_m && jumps(&line, length_m))
-        finding->error = 0;
+        bar(finding, true);
     double margin = fmin(0.5, split->shortest_m / length_m);
     finding->share = (float)fmin(1 - margin, fmax(margin, (double)finding->share));
 }

@@ -253,6 +253,111 @@ static void a_level_is_a_prefix(void **state)
     mem_free(new_of);
 }
 
+/* --- parts ---------------------------------------------------------------------------------------------------------------- */
+
+static void begin_boxes(struct geometry *g, size_t boxes)
+{
+    *g = (struct geometry){ .primitive_count = 1, .material_count = 1 };
+    g->positions_m = mem_array(24 * boxes, sizeof(*g->positions_m));
+    g->normals = mem_array(24 * boxes, sizeof(*g->normals));
+    g->indices = mem_array(36 * boxes, sizeof(*g->indices));
+    g->primitives = mem_array(1, sizeof(*g->primitives));
+    g->materials = mem_array(1, sizeof(*g->materials));
+    g->materials[0].base_color_texture = g->materials[0].metallic_roughness_texture = g->materials[0].normal_texture =
+        g->materials[0].occlusion_texture = g->materials[0].emissive_texture = ASSET_NO_TEXTURE;
+}
+
+static void add_box(struct geometry *g, double x, double y, double z, double size_x, double size_y, double size_z)
+{
+    const double low[3] = { x, y, z }, size[3] = { size_x, size_y, size_z };
+    for (int side = 0; side < 6; side++) {
+        int axis = side / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
+        uint32_t first = g->vertex_count;
+        for (int corner = 0; corner < 4; corner++) {
+            float *p = g->positions_m[g->vertex_count], *n = g->normals[g->vertex_count++];
+            p[axis] = (float)(low[axis] + side % 2 * size[axis]);
+            p[u] = (float)(low[u] + corner % 2 * size[u]);
+            p[v] = (float)(low[v] + corner / 2 * size[v]);
+            n[axis] = side % 2 ? 1 : -1;
+        }
+        const uint32_t out[6] = { 0, 1, 3, 0, 3, 2 }, in[6] = { 0, 3, 1, 0, 2, 3 };
+        for (int i = 0; i < 6; i++)
+            g->indices[g->index_count++] = first + (side % 2 ? out : in)[i];
+    }
+    g->primitives[0].index_count = g->index_count;
+}
+
+/* The smallest error of a level that has no vertex in the half-space x > from_m; INFINITY: all have. */
+static double error_without(const struct geometry *g, const struct levels *levels, double from_m)
+{
+    for (size_t l = 0; l < levels->count; l++) {
+        bool any = false;
+        for (uint32_t i = 0; i < levels->at[l].index_count; i++)
+            any |= (double)g->positions_m[levels->at[l].indices[i]][0] > from_m;
+        if (!any)
+            return (double)levels->at[l].error_m;
+    }
+    return INFINITY;
+}
+
+static size_t vertices_above(const struct geometry *g, const struct level *level, double from_m)
+{
+    size_t count = 0;
+    for (uint32_t i = 0; i < level->index_count; i++)
+        count += (double)g->positions_m[level->indices[i]][2] > from_m;
+    return count;
+}
+
+/* Bolts that stand 2 cm out of a slab of 10 m go once a level errs by that. */
+static void bolts_go_where_they_hardly_stand_out(void **state)
+{
+    struct geometry g;
+    struct levels levels;
+    (void)state;
+    begin_boxes(&g, 101);
+    add_box(&g, 0, 0, 0, 10, 10, 0.5);
+    for (int i = 0; i < 100; i++)
+        add_box(&g, 0.5 + i % 10, 0.5 + i / 10, 0.45, 0.05, 0.05, 0.07);
+    assert_true(levels_make(&levels, &g, NULL));
+    assert_true(levels.count >= 2);
+    assert_int_equal(vertices_above(&g, &levels.at[levels.count - 1], 0.501), 0);
+    for (size_t l = 0; l < levels.count; l++)
+        if (vertices_above(&g, &levels.at[l], 0.501) < 100)
+            assert_true((double)levels.at[l].error_m >= 0.0199);
+    levels_finish(&levels);
+    geometry_finish(&g);
+}
+
+/* A block of 5 cm alone, 20 m away, goes with levels that err by its size or more. A grating of as small bars is no small thing. */
+static void what_is_alone_and_small_goes_but_no_crowd(void **state)
+{
+    struct geometry g;
+    struct levels levels;
+    (void)state;
+    begin_boxes(&g, 402);
+    add_box(&g, 0, 0, 0, 10, 2, 2);
+    add_box(&g, 30, 0, 0, 0.05, 0.05, 0.05);
+    assert_true(levels_make(&levels, &g, NULL));
+    double alone_m = error_without(&g, &levels, 20);
+    assert_true(isinf(alone_m) || alone_m >= 0.0865); /* with so few triangles there may be no coarser level at all */
+    levels_finish(&levels);
+    for (int i = 0; i < 400; i++)
+        add_box(&g, 40 + 0.1 * (i % 20), 0.1 * (i / 20), 1, 0.05, 0.05, 0.05);
+    assert_true(levels_make(&levels, &g, NULL));
+    assert_true(error_without(&g, &levels, 39.9) >= 2.75); /* the size of the whole */
+    alone_m = INFINITY;
+    for (size_t l = 0; l < levels.count; l++) {
+        bool any = false;
+        for (uint32_t i = 0; i < levels.at[l].index_count; i++) {
+            double x = (double)g.positions_m[levels.at[l].indices[i]][0];
+            any |= x > 20 && x < 35;
+        }
+        assert_true(any || (double)levels.at[l].error_m >= 0.0865);
+    }
+    levels_finish(&levels);
+    geometry_finish(&g);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -262,6 +367,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(materials_keep_their_border, set_up, tear_down),
         cmocka_unit_test_setup_teardown(error_is_a_bound, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_level_is_a_prefix, set_up, tear_down),
+        cmocka_unit_test(bolts_go_where_they_hardly_stand_out),
+        cmocka_unit_test(what_is_alone_and_small_goes_but_no_crowd),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests(tests, NULL, NULL);
