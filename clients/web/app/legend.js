@@ -3,7 +3,7 @@
 import { decimalsFor, numberText, unitText } from '../core/format.js';
 import { colourOf, edges, LIMIT_BANDS, placeOf, scaleTicks, spread, valueAt } from '../core/legend.js';
 import { hatchAt, patternPeriodPx, ruleAt, stippleAt } from '../core/patterns.js';
-import { make, setVariable } from './dom.js';
+import { make, makeSvg, setVariable } from './dom.js';
 
 const BAR_TEXELS = 1024;
 const css = ([r, g, b]) => `rgb(${r} ${g} ${b})`;
@@ -65,7 +65,8 @@ export class Legend {
         const rule = { map, min: range[0], max: range[1], log: scale === 'log', interval: ramp_interval ?? 0, breaks };
         const isOperator = show === 'operator';
         this.element.replaceChildren(this.heading(group, params),
-            isOperator ? this.limitScale() : this.scale(rule, isolines ?? [], show === 'value' ? group.limits : {}, !(show === 'distance' && range[0] <= 0)),
+            isOperator ? this.limitScale()
+                : this.scale(rule, isolines ?? [], show === 'value' ? group.limits : {}, show !== 'distance' || range[0] > 0),
             this.keys(show, isOperator ? LIMIT_BANDS[2].colour : colourOf(rule, valueAt(rule, 0.5))));
         for (const note of this.notes(params, map, isOperator))
             this.element.append(make('p', { class: 'note' }, note));
@@ -104,9 +105,9 @@ export class Legend {
     // Between limits there are no values: places from -3 to 3.
     limitScale() {
         const place = (value) => (value + 3) / 6, band = (p) => LIMIT_BANDS.find(({ to }) => p * 6 - 3 < to) ?? LIMIT_BANDS[4];
-        const ticks = Object.entries(LIMIT_PLACES).map(([name, value]) => at(make('span', {}, name), place(value)));
+        const names = Object.keys(LIMIT_PLACES), places = Object.values(LIMIT_PLACES).map(place);
         return make('div', { class: 'scale' }, make('div', { class: 'limits' }),
-            this.bar({ min: -3, max: 3 }, Object.values(LIMIT_PLACES), (p) => band(p).colour), make('div', { class: 'ticks' }, ...ticks));
+            this.bar({ min: -3, max: 3 }, Object.values(LIMIT_PLACES), (p) => band(p).colour), this.ticksAt(places, places, names));
     }
 
     // A texture along the bar, finer than any screen shows it, with a line at each value that has one.
@@ -129,8 +130,18 @@ export class Legend {
 
     ticks(rule, lines, text) {
         const values = scaleTicks(rule, lines);
-        const places = spread(values.map((value) => placeOf(rule, value)), this.lying.matches ? 0.1 : 0.05);
-        return make('div', { class: 'ticks' }, ...values.map((value, i) => at(make('span', {}, text(value)), places[i])));
+        const places = spread(values.map((value) => placeOf(rule, value)), this.lying.matches ? 0.1 : 0.07);
+        return this.ticksAt(values.map((value) => placeOf(rule, value)), places, values.map(text));
+    }
+
+    // Numbers beside the bar; where they had to move apart, the line from the bar leads to them.
+    ticksAt(from, to, texts) {
+        const lying = this.lying.matches, line = (a, b) => (lying ? { x1: 100 * a, y1: 0, x2: 100 * b, y2: 1 }
+            : { x1: 0, y1: 100 - 100 * a, x2: 1, y2: 100 - 100 * b });
+        const lines = from.map((place, i) => makeSvg('line', line(place, to[i])));
+        const viewBox = lying ? '0 0 100 1' : '0 0 1 100';
+        const svg = makeSvg('svg', { viewBox, preserveAspectRatio: 'none', 'aria-hidden': 'true' }, ...lines);
+        return make('div', { class: 'ticks' }, svg, ...texts.map((text, i) => at(make('span', {}, text), to[i])));
     }
 
     // A line at the limit itself, its name beside it.
@@ -138,7 +149,7 @@ export class Legend {
         const { min, max } = rule;
         const inside = Object.entries(limits).filter(([, value]) => value !== null && value >= min && value <= max);
         inside.sort((a, b) => a[1] - b[1]);
-        const places = spread(inside.map(([, value]) => placeOf(rule, value)), this.lying.matches ? 0.085 : 0.06);
+        const places = spread(inside.map(([, value]) => placeOf(rule, value)), this.lying.matches ? 0.085 : 0.07);
         return make('div', { class: 'limits' }, ...inside.flatMap(([name, value], i) => [
             at(make('i', {}), placeOf(rule, value)), at(make('span', { title: `${name} ${text(value)}` }, name), places[i]),
         ]));

@@ -185,7 +185,8 @@ export class Overlay {
             const bad = reading.quality === 'bad', silent = marker.occluded || this.isChosen(tag) || (bad && tooMany);
             const rank = silent ? -1 : limit ? 3 : bad ? 2 : reading.quality !== 'good' || onSelected ? 1 : 0;
             const { x, y, depth, half } = marker;
-            return { id, half, x, y, width, height: LABEL_HEIGHT, rank, depth, held: this.places.get(id)?.slot, parts, limit, ring: ringed(marker) };
+            const held = this.places.get(id)?.slot, ring = ringed(marker);
+            return { id, half, x, y, width, height: LABEL_HEIGHT, rank, depth, held, parts, limit, ring };
         });
     }
 

@@ -49,7 +49,8 @@ function boxAt({ x, y, width, height, ring }, slot, unit) {
     return { left, top, right: left + width, bottom: top + height };
 }
 
-// items: { id, x, y (the marker), width, height, rank, depth, held (slot or undefined), ring (of alarm colours around it) }; area: { left, top, right, bottom }.
+// items: { id, x, y (the marker), width, height, rank, depth, held (slot or undefined), ring (of alarm colours around it) };
+// area: { left, top, right, bottom }.
 // Returns Map id -> { left, top, slot }.
 export function placeLabels(items, { area, unit = 1, blocked = [] }) {
     const wide = area.right - area.left, room = ROOM * wide * (area.bottom - area.top);
