@@ -185,7 +185,9 @@ static void count_bytes(struct viewer *viewer, bool binary)
     int64_t count = (int64_t)viewer->in.length;
     if (!binary)
         result->text_bytes += count;
-    if (result->frames && clock_mono_ns() - result->first_ns >= VIEWER_SETTLES_S * NS_PER_S)
+    static const char pong[] = "{\"type\":\"pong\"";
+    bool asked_for = !binary && viewer->in.length >= sizeof(pong) && !memcmp(viewer->in.at, pong, sizeof(pong) - 1);
+    if (result->frames && !asked_for && clock_mono_ns() - result->first_ns >= VIEWER_SETTLES_S * NS_PER_S)
         result->steady_bytes += count;
 }
 

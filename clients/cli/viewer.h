@@ -50,7 +50,7 @@ enum viewer_stage { STAGE_WAIT, STAGE_FIELD, STAGE_RENDER, STAGE_ENCODE, STAGE_N
 struct viewer_result {
     int frames, still_frames, errors;
     int given_up; /* frames that the server did not send to their end */
-    int64_t text_bytes, steady_bytes; /* steady: of all messages, once VIEWER_SETTLES_S have gone by since the first frame */
+    int64_t text_bytes, steady_bytes; /* steady: of all messages but pongs, once VIEWER_SETTLES_S have gone by since the first frame */
     int64_t bytes, first_ns, last_ns; /* of frames; monotonic */
     struct samples input;             /* from sending a camera to its frame decoded */
     struct samples sensor;            /* from a reading that changed, in the server, to its frame decoded */
