@@ -5,6 +5,7 @@ import { test } from 'node:test';
 import { health } from '../../clients/web/core/health.js';
 import { orbit } from '../../clients/web/core/camera.js';
 import { limitState } from '../../clients/web/core/model.js';
+import { Timings } from '../../clients/web/core/timings.js';
 import { makeSession, vector, vectorBytes } from './fixtures.mjs';
 
 const welcome = vector('server/welcome.json');
@@ -319,6 +320,43 @@ test('a frame that the server gave up is passed over in silence', () => {
     assert.deepEqual(events.map(([name]) => name), ['ignored']);
     socket.sayBytes(vectorBytes('frame/jpeg-key.bin'));
     assert.equal(events.at(-1)[0], 'frame');
+});
+
+test('following another: its parameters and camera are shown, until a hand moves', () => {
+    const { session, socket, clock } = greeted();
+    session.follow(12);
+    assert.deepEqual(last(socket.sent), vector('client/accepted--follow.json'));
+    socket.say(vector('server/following.json'));
+    assert.deepEqual([session.following, session.params.group], [{ session: 12, width: 1280, height: 720 }, 'temperature']);
+    const camera = { eye: [9, 8, 7], target: [1, 1, 1], up: [0, 0, 1], fov: 40 };
+    session.drawn({ seq: 1, cameraSeq: 0, camera, waitUs: 0, fieldUs: 0, renderUs: 0, encodeUs: 0, sentTimeUs: 0 }, 1);
+    const sent = socket.sent.length;
+    session.flush();
+    assert.equal(socket.sent.length, sent, 'what is seen is not sent back');
+    clock.advance(10);
+    session.setCamera(orbit(session.camera, 3, 0));
+    session.flush();
+    assert.deepEqual(socket.sent.slice(sent).map((m) => [m.type, m.session]), [['follow', null], ['camera', undefined]]);
+    assert.ok(Math.hypot(...last(socket.sent).eye.map((v, i) => v - camera.eye[i])) < 1, 'from where it was seen last');
+    socket.say(vector('server/following-nobody.json'));
+    assert.deepEqual([session.following, session.params.group], [null, 'pressure']);
+});
+
+test('stages of the pictures of the last seconds', () => {
+    const timings = new Timings(5000);
+    const frame = (ms, more = {}) => ({
+        waitUs: ms * 1000, fieldUs: 0, renderUs: 2000, encodeUs: 1000, sentTimeUs: 1e6, payload: { length: 1000 }, ...more,
+    });
+    assert.equal(timings.of('wait'), null);
+    for (let i = 1; i <= 20; i++)
+        timings.add(frame(i), 4, i * 100, 1e6 + 9000);
+    assert.deepEqual([timings.of('wait'), timings.of('network'), timings.of('decode').p50], [{ p50: 10, p95: 19 }, { p50: 5, p95: 5 }, 4]);
+    assert.equal(timings.of('sensor'), null);
+    timings.add(frame(30, { data: true }), 4, 6000, 1e6 + 9000);
+    assert.deepEqual(timings.of('sensor'), { p50: 42, p95: 42 });
+    assert.equal(timings.of('wait').p50, 15, 'the first ones are forgotten');
+    timings.add(frame(1), 4, 6100, null);
+    assert.equal(timings.of('network').p50, 5);
 });
 
 test('a value beyond a limit, by the tag\'s own limits only', () => {

@@ -14,6 +14,7 @@ import { Picture } from './picture.js';
 import { Pilot } from './pilot.js';
 import { Place } from './place.js';
 import { Status } from './status.js';
+import { TimingsPanel } from './timings.js';
 import { TokenDialog } from './token.js';
 import { Toolbar } from './toolbar.js';
 import { Views } from './views.js';
@@ -48,6 +49,7 @@ const pilot = new Pilot({ viewport, session });
 const status = new Status({ session, onFreshness: (fresh) => { overlay.fresh = fresh; refresh(); } });
 const card = new Card({ session, selection, overlay, viewport, onClose: () => selectTag(null) });
 
+const timings = new TimingsPanel({ session });
 const views = new Views({ session, pilot });
 const place = new Place({ session, viewport });
 
@@ -106,6 +108,7 @@ const commands = {
     fit: fitView,
     home: () => session.model && pilot.flyHome(),
     help: () => byId('help').showModal(),
+    timings: () => timings.toggle(),
     assets: () => assets.setOpen(!assets.open),
     search: () => assets.openSearch(),
     top: () => views.lookFrom('top'),
@@ -190,6 +193,26 @@ session.on('welcome', () => {
     viewport.invalidate();
 });
 session.on('status', () => status.show());
+// The view of another keeps its shape.
+function shape() {
+    const { style, classList } = byId('viewport'), { following } = session;
+    style.width = style.height = '';
+    classList.toggle('following-another', Boolean(following));
+    if (!following)
+        return;
+    const box = byId('viewport').parentElement.getBoundingClientRect(), ratio = following.width / following.height;
+    const free = box.right - Math.max(box.left, byId('assets').getBoundingClientRect().right);
+    const width = Math.min(free, box.height * ratio);
+    style.width = `${width}px`;
+    style.height = `${width / ratio}px`;
+}
+window.addEventListener('resize', shape);
+session.on('following', () => {
+    shape();
+    byId('following').hidden = !session.following;
+    setText(byId('following').querySelector('span'), session.following ? `This is the view of session ${session.following.session}` : '');
+});
+byId('following').querySelector('button').addEventListener('click', () => session.follow(null));
 session.on('ignored', (what) => console.warn(`ignored: ${what}`));
 
 // A link that names equipment or a tag but no camera opens there.
@@ -227,6 +250,8 @@ let addressTimer;
 function saveAddress() {
     clearTimeout(addressTimer);
     addressTimer = setTimeout(() => {
+        if (session.leader !== null)
+            return; // the link says whom to follow
         const hash = writeAddress({ camera: session.camera, params: session.params, tag: selection.tag });
         history.replaceState(null, '', location.pathname + location.search + hash);
     }, ADDRESS_WAIT_MS);
@@ -241,6 +266,7 @@ document.addEventListener('visibilitychange', () => {
         refresh();
     }
 });
+session.leader = Number(new URLSearchParams(location.hash.slice(1)).get('follow')) || null;
 connection.start();
 
 // For the console and for tests of the whole.

@@ -40,7 +40,7 @@ export class Place {
     }
 
     pick(x, y) {
-        const { picture, size } = this.session;
+        const { picture } = this.session, size = this.session.following ?? this.session.size;
         if (picture)
             this.session.pick((x * size.width) / this.viewport.width, (y * size.height) / this.viewport.height);
     }

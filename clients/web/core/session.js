@@ -3,6 +3,7 @@
 import { cameraMessage, cameraOfMessage, home, same, valid } from './camera.js';
 import { LatencyMeter, RateMeter } from './meters.js';
 import { Model } from './model.js';
+import { Timings } from './timings.js';
 import { decodeFrame, decodeMessage, isGivenUp, WireError } from './wire.js';
 
 export const PARAMS = [
@@ -43,6 +44,11 @@ export class Session {
         this.freshAt = null;     // when a greeted server last spoke: how old the picture is once it stops
         this.rate = new RateMeter();
         this.latency = new LatencyMeter();
+        this.timings = new Timings();
+        this.skew = null;        // the server's clock less ours, in microseconds, by the shortest round trip: { us, roundTripMs }
+        this.id = null;          // by which others can follow this session
+        this.following = null;   // whose view is shown: { session, width, height }
+        this.leader = null;      // whom to follow once there is a connection
         connection.onOpen = () => this.hello(['camera', 'params']);
         connection.onText = (text) => this.guard(() => this.heard(decodeMessage(text)));
         connection.onBytes = (bytes) => this.guard(() => {
@@ -117,6 +123,8 @@ export class Session {
     setCamera(camera, inputTime = this.now()) {
         if (!valid(camera) || same(camera, this.camera))
             return;
+        if (this.leader !== null)
+            this.follow(null);
         this.camera = camera;
         this.cameraNews = true;
         this.cameraInput = this.cameraInput ?? inputTime;
@@ -124,6 +132,8 @@ export class Session {
     }
 
     setParams(change) {
+        if (this.leader !== null)
+            this.follow(null);
         const own = change.group && change.group !== this.params.group ? pick(this.model?.group(change.group) ?? {}, GROUPS_OWN) : {};
         const split = change.split && { split: { ...this.params.split, ...change.split } };
         this.params = { ...this.params, ...own, ...change, ...split };
@@ -158,6 +168,16 @@ export class Session {
         this.cameraInput = null;
     }
 
+    // null: nobody any more; the camera stays where it was seen last.
+    follow(session) {
+        this.leader = session;
+        if (session === null)
+            this.following = null;
+        if (this.welcomed)
+            this.connection.send({ type: 'follow', session });
+        this.emit('following');
+    }
+
     // Asks for a camera that looks at something (id: asset, tag or null; side: as in plantcast.v1); answered by the event `fitted`.
     fit({ id = null, side = 'now', projection } = {}) {
         if (this.welcomed)
@@ -175,6 +195,9 @@ export class Session {
         const now = this.now();
         this.rate.count(now);
         this.latency.drawn(frame.cameraSeq, now);
+        this.timings.add(frame, decodeMs, now, this.skew ? now * 1000 + this.skew.us : this.clockUs(now));
+        if (this.following)
+            this.camera = asAsked(frame.camera);
         this.picture = { ...frame, payload: null, at: now };
         this.connection.send({ type: 'ack', seq: frame.seq, decode_ms: Math.round(decodeMs * 100) / 100 });
     }
@@ -215,6 +238,8 @@ export class Session {
         const before = this.model;
         this.model = new Model(message);
         this.welcomed = true;
+        this.id = message.session;
+        this.following = this.skew = null;
         this.resume = message.resume ?? null;
         this.role = message.role ?? null;
         this.codec = message.codec;
@@ -225,6 +250,8 @@ export class Session {
         this.camera = this.camera ?? home(this.model.plant, this.size.width / this.size.height);
         this.cameraNews = !same(this.camera, this.greetedCamera ?? this.model.plant.home);
         this.catchUp();
+        if (this.leader !== null)
+            this.connection.send({ type: 'follow', session: this.leader });
         this.emit('welcome');
         this.emit('params');
     }
@@ -251,6 +278,9 @@ export class Session {
     }
 
     hearPong(message) {
+        const now = this.now(), roundTripMs = now - message.t;
+        if (roundTripMs >= 0 && roundTripMs <= (this.skew?.roundTripMs ?? Infinity))
+            this.skew = { us: message.time_us - (now - roundTripMs / 2) * 1000, roundTripMs };
         this.model.notOlder(message.oldest_age_ms ?? null, this.now());
     }
 
@@ -265,6 +295,14 @@ export class Session {
         }
         known.isolines = message.isolines ?? newest.isolines ?? [];
         this.markers.set(message.seq, known);
+    }
+
+    hearFollowing({ session, width, height, ...shown }) {
+        this.following = session === null ? null : { session, width, height };
+        this.leader = session;
+        this.confirmed = this.params = pick(shown, SAID);
+        this.emit('params');
+        this.emit('following');
     }
 
     hearCamera(message) {
@@ -298,6 +336,8 @@ export class Session {
             this.hello(this.helloParts.slice(0, -1));
             return;
         }
+        if (message.about === 'follow')
+            this.leader = null; // there is no such session
         if (message.about === 'params' && this.confirmed) {
             this.params = this.confirmed;
             this.emit('params');
@@ -350,5 +390,6 @@ const HANDLERS = {
     picked: Session.prototype.hearPicked,
     status: Session.prototype.hearStatus,
     error: Session.prototype.hearError,
+    following: Session.prototype.hearFollowing,
     pong: Session.prototype.hearPong,
 };
