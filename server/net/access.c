@@ -70,7 +70,7 @@ bool access_host_name(const char *host, char *out, size_t size)
         return false;
     for (size_t i = 0; i < n; i++) {
         unsigned char c = (unsigned char)begin[i];
-        if (!isalnum(c) && !strchr(six ? ":." : "-._", c))
+        if ((!isalnum(c) && !strchr(six ? ":." : "-._", c)) || (c == '.' && (i == 0 || begin[i - 1] == '.')))
             return false;
         out[i] = (char)tolower(c);
     }

@@ -49,7 +49,8 @@ static void fill_list(const struct draft_tile *tile, struct list *list)
                 list->entries[list->count++] = (struct entry){ order, (uint32_t)m, (uint32_t)i };
             }
     }
-    qsort(list->entries, list->count, sizeof(*list->entries), by_order);
+    if (list->count > 1) /* where there is none, there may be no array */
+        qsort(list->entries, list->count, sizeof(*list->entries), by_order);
 }
 
 /* In blocks of the tile. */

@@ -112,7 +112,7 @@ static void hosts_are_names_without_ports(void **state)
     } good[] = { { "plant.example", "plant.example" }, { "Plant.Example:8443", "plant.example" }, { "plant.example.", "plant.example" },
                  { "127.0.0.1:80", "127.0.0.1" },      { "[::1]", "::1" },                        { "[FD00::2]:443", "fd00::2" } };
     static const char *const bad[] = { "",    ":80",      "[::1",  "[::1]x", "a b",     "plant.example:80x", "user@plant.example",
-                                       "a/b", "a:80:90", "[]:80", "\xc3\xa9", "a,b.example" };
+                                       "a/b", "a:80:90", "[]:80", "\xc3\xa9", "a,b.example", ".", "a..", ".a" };
     char name[64];
     for (size_t i = 0; i < sizeof(good) / sizeof(good[0]); i++) {
         assert_true(access_host_name(good[i].host, name, sizeof(name)));

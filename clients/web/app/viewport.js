@@ -10,6 +10,8 @@ function devicePixels(cssPx, exact) {
     return exact !== undefined && Math.abs(exact - px) <= 2 ? exact : px;
 }
 
+const sizeOf = (width, height) => ({ ...pictureSize(width, height), pixel_ratio: Math.min(8, Math.max(0.25, window.devicePixelRatio)) });
+
 export class Viewport {
     // onTick(now): once per animation frame, before drawing. onDrawn(frame): after.
     constructor({ element, canvas, session, decoding }) {
@@ -44,14 +46,14 @@ export class Viewport {
 
     watchSize() {
         const box = this.element.getBoundingClientRect();
-        this.session.resize(pictureSize(devicePixels(box.width), devicePixels(box.height)));
+        this.session.resize(sizeOf(devicePixels(box.width), devicePixels(box.height)));
         let timer;
         const observer = new ResizeObserver(([entry]) => {
             const exact = entry.devicePixelContentBoxSize?.[0];
             const width = devicePixels(entry.contentRect.width, exact?.inlineSize);
             const height = devicePixels(entry.contentRect.height, exact?.blockSize);
             clearTimeout(timer);
-            timer = setTimeout(() => this.session.resize(pictureSize(width, height)), RESIZE_WAIT_MS);
+            timer = setTimeout(() => this.session.resize(sizeOf(width, height)), RESIZE_WAIT_MS);
             this.invalidate();
         });
         try {

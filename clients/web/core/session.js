@@ -145,7 +145,7 @@ export class Session {
     }
 
     resize(size) {
-        if (size.width === this.size.width && size.height === this.size.height)
+        if (size.width === this.size.width && size.height === this.size.height && size.pixel_ratio === this.size.pixel_ratio)
             return;
         this.size = size;
         if (this.welcomed)
