@@ -2,8 +2,8 @@
 /* Cuts triangles where the field is not straight enough along an edge, and puts a vertex where each sensor stands.
 
    The finest level shows the field to SPLIT_ERROR, whatever the readings are (straight.h). A coarser one, whose surface is up to error_m
-   off, shows it to SPLIT_ERROR at a place no farther away than a third of that or so: it is only drawn where error_m is less than a pixel. What is
-   added to it is put onto the finest level's surface. Pieces no longer than the model's tolerance or, in coarser levels, than
+   off, shows it to SPLIT_ERROR at a place no farther away than a third of that or so: it is only drawn where error_m is less than a pixel.
+   What is added to it is put onto the finest level's surface. Pieces no longer than the model's tolerance or, in coarser levels, than their
    error are not cut; nor, eight times as long, ones where the distance along the surface jumps because the surface does not hang together
    there. What is hidden inside another part does not count.
    A level may not grow for ever, so errors are cut in the order of their size: the finest level to three times its triangles or by 100,000,
@@ -25,8 +25,8 @@ struct split_input {
     struct workers *workers;           /* or NULL */
 };
 
-/* Levels may be fewer afterwards. New vertices come after the geometry's; both faces at an edge are cut at the same vertex, so a level without cracks stays without.
-   *distances: [sensor][vertex], of all vertices (free with mem_free). False: out of memory. */
+/* Levels may be fewer afterwards. New vertices come after the geometry's; both faces at an edge are cut at the same vertex, so a level
+   without cracks stays without. *distances: [sensor][vertex], of all vertices (free with mem_free). False: out of memory. */
 bool split_levels(struct levels *levels, struct geometry *geometry, const struct split_input *input, float **distances);
 
 #endif
