@@ -295,11 +295,24 @@ static void list_pieces(struct surface *surface)
         surface->pieces[surface->piece_first[mesh->tri_source[t] + 1]++] = t;
 }
 
+static void index_some(void *arg, size_t begin, size_t end)
+{
+    struct surface *surface = arg;
+    for (size_t i = begin; i < end; i++)
+        if (i == 0)
+            surface->bvh = bvh_create(&surface->visible);
+        else if (i == 1)
+            unfold_init(&surface->unfold, &surface->mesh, surface->visible.tri_count, &surface->intrinsic);
+        else
+            list_pieces(surface);
+}
+
 void surface_index(struct surface *surface)
 {
-    surface->bvh = bvh_create(&surface->visible);
-    unfold_init(&surface->unfold, &surface->mesh, surface->visible.tri_count, &surface->intrinsic);
-    list_pieces(surface);
+    if (surface->workers)
+        workers_for(surface->workers, 3, 1, index_some, surface);
+    else
+        index_some(surface, 0, 3);
 }
 
 static double mean_edge(const struct intrinsic *in)

@@ -4,7 +4,7 @@
 #define SURFACE_UNFOLD_H
 #include "surface/intrinsic.h"
 
-#define UNFOLD_FANS 4 /* triangles at a point that are looked at side by side, a lane of a vector register each */
+#define UNFOLD_FANS 8 /* triangles at a point that are looked at side by side, a lane of a vector register each */
 
 struct unfold { /* what meets at each point; shared by all walks */
     const struct trimesh *mesh;

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "base/wide.h"
 #include "surface/unfold.h"
 #include "surface/vec.h"
 
@@ -48,7 +49,7 @@ static inline void fetch_fans(const struct unfold *unfold, uint32_t point)
         __builtin_prefetch(from);
 }
 
-static void offer(const struct unfold *unfold, struct unfold_walk *walk, uint32_t point, float distance_m)
+static inline void offer(const struct unfold *unfold, struct unfold_walk *walk, uint32_t point, float distance_m)
 {
     if (!(distance_m < walk->distance_m[point]))
         return;
@@ -65,35 +66,37 @@ static void offer(const struct unfold *unfold, struct unfold_walk *walk, uint32_
     *bucket = (uint32_t)walk->item_count++;
 }
 
-static inline lanes root(lanes x)
+WIDE_BODY void root(lanes *x)
 {
     for (int i = 0; i < UNFOLD_FANS; i++)
-        x[i] = sqrtf(x[i]);
-    return x;
+        (*x)[i] = sqrtf((*x)[i]);
 }
 
-static inline bool any(mask which)
+WIDE_BODY bool any(const mask *which)
 {
-    uint64_t words[2];
-    memcpy(words, &which, sizeof(words));
-    return (words[0] | words[1]) != 0;
+    uint64_t words[4];
+    memcpy(words, which, sizeof(words));
+    return (words[0] | words[1] | words[2] | words[3]) != 0;
 }
 
 /* What the edge from p (at d) to b (at db, pb away) offers to c, pc away from p: the source is laid out in the triangle's plane on the
    other side of the edge. Where its ray to c does not pass between p and b, or b is not nearer than p: along the edge from p. */
-static inline lanes from_edge(lanes d, lanes db, lanes pb, lanes pc, lanes cosine, lanes sine)
+WIDE_BODY void from_edge(const lanes *d_of_p, const lanes *d_of_b, const lanes *p_to_b, const lanes *p_to_c, const lanes *cosine,
+                         const lanes *sine, lanes *out)
 {
-    const lanes zero = { 0 };
+    const lanes zero = { 0 }, d = *d_of_p, db = *d_of_b, pb = *p_to_b, pc = *p_to_c;
     lanes sx = (d - db) * (d + db) / (2 * pb) + 0.5f * pb, sy2 = (d - sx) * (d + sx), along = d + pc;
     mask seen = (sy2 >= zero) & (db <= d);
-    lanes sy = root((lanes)(seen & (mask)sy2)), cx = pc * cosine, cy = pc * sine;
+    lanes sy = (lanes)(seen & (mask)sy2), cx = pc * *cosine, cy = pc * *sine;
+    root(&sy);
     lanes x = cx - sx, height = cy + sy, cut = sx * cy + cx * sy; /* where the ray cuts the edge, times the height */
     seen &= (cy > zero) & (cut >= zero) & (cut <= pb * height);
-    lanes straight = root(x * x + height * height);
-    return (lanes)((seen & (mask)straight) | (~seen & (mask)along));
+    lanes straight = x * x + height * height;
+    root(&straight);
+    *out = (lanes)((seen & (mask)straight) | (~seen & (mask)along));
 }
 
-static void spread(const struct unfold *unfold, struct unfold_walk *walk, uint32_t point)
+WIDE_BODY void spread(const struct unfold *unfold, struct unfold_walk *walk, uint32_t point)
 {
     const lanes d = walk->distance_m[point] - (lanes){ 0 }, zero = { 0 };
     const struct unfold_fans *end = unfold->fans + unfold->first[point + 1];
@@ -109,11 +112,14 @@ static void spread(const struct unfold *unfold, struct unfold_walk *walk, uint32
         memcpy(&cosine, fans->cosine, sizeof(cosine));
         memcpy(&sine, fans->sine, sizeof(sine));
         mask a_waits = (da > d) & (to_a >= zero), b_waits = (db > d) & (to_b >= zero);
-        if (!any(a_waits | b_waits))
+        mask waits = a_waits | b_waits;
+        if (!any(&waits))
             continue;
         to_a = (lanes)((mask)to_a & INT32_MAX);
         to_b = (lanes)((mask)to_b & INT32_MAX);
-        lanes for_a = from_edge(d, db, to_b, to_a, cosine, sine), for_b = from_edge(d, da, to_a, to_b, cosine, sine);
+        lanes for_a, for_b;
+        from_edge(&d, &db, &to_b, &to_a, &cosine, &sine, &for_a);
+        from_edge(&d, &da, &to_a, &to_b, &cosine, &sine, &for_b);
         a_waits &= for_a < da;
         b_waits &= for_b < db;
         for (int i = 0; i < UNFOLD_FANS; i++) {
@@ -202,6 +208,31 @@ static void look_around(const struct unfold *unfold, struct unfold_walk *walk, u
     }
 }
 
+/* From what is in the buckets outwards. */
+WIDE_BODY void go_on(const struct unfold *unfold, struct unfold_walk *walk)
+{
+    for (uint32_t empty = 0; empty < unfold->bucket_count; walk->at++) {
+        uint32_t *bucket = &walk->buckets[walk->at & (unfold->bucket_count - 1)];
+        empty = *bucket == TRIMESH_NONE ? empty + 1 : 0;
+        while (*bucket != TRIMESH_NONE) {
+            struct unfold_item item = walk->items[*bucket];
+            *bucket = item.next;
+            if (!walk->settled[item.point]) /* else it was reached by a shorter way */
+                spread(unfold, walk, item.point);
+        }
+    }
+}
+
+static void go_on_plain(const struct unfold *unfold, struct unfold_walk *walk)
+{
+    go_on(unfold, walk);
+}
+
+WIDE_TARGET static void go_on_wide(const struct unfold *unfold, struct unfold_walk *walk)
+{
+    go_on(unfold, walk);
+}
+
 bool unfold_from(const struct unfold *unfold, struct unfold_walk *walk, uint32_t tri, const double weights[3])
 {
     const struct trimesh *mesh = unfold->mesh;
@@ -215,15 +246,6 @@ bool unfold_from(const struct unfold *unfold, struct unfold_walk *walk, uint32_t
     for (int i = 0; i < 3; i++)
         offer(unfold, walk, v[i], (float)vec_distance(source, mesh->points[v[i]]));
     look_around(unfold, walk, tri, weights);
-    for (uint32_t empty = 0; empty < unfold->bucket_count; walk->at++) {
-        uint32_t *bucket = &walk->buckets[walk->at & (unfold->bucket_count - 1)];
-        empty = *bucket == TRIMESH_NONE ? empty + 1 : 0;
-        while (*bucket != TRIMESH_NONE) {
-            struct unfold_item item = walk->items[*bucket];
-            *bucket = item.next;
-            if (!walk->settled[item.point]) /* else it was reached by a shorter way */
-                spread(unfold, walk, item.point);
-        }
-    }
+    (wide_is_there() ? go_on_wide : go_on_plain)(unfold, walk);
     return true;
 }
