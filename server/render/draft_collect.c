@@ -4,45 +4,10 @@
 #include <stdlib.h>
 
 #include "base/mem.h"
+#include "render/culling.h"
 #include "render/draft_impl.h"
 #include "render/matrix.h"
 #include "render/solid.h"
-
-struct culling { /* one asset, in the frame of its file */
-    float planes[6][4];
-    float eye_m[3];
-    bool cones; /* winding tells what is turned away */
-};
-
-static void start_culling(struct culling *culling, const struct shot *shot, const struct scene_asset *asset, bool mirrored)
-{
-    double file_from_plant[16], eye[4];
-    for (int p = 0; p < 6; p++)
-        for (int c = 0; c < 4; c++) {
-            double sum = c == 3 ? shot->planes[p][3] : 0;
-            for (int r = 0; r < 3; r++)
-                sum += shot->planes[p][r] * asset->placement[4 * c + r];
-            culling->planes[p][c] = (float)sum;
-        }
-    matrix_invert(asset->placement, file_from_plant);
-    matrix_point(file_from_plant, shot->eye_m, eye);
-    for (int c = 0; c < 3; c++)
-        culling->eye_m[c] = (float)eye[c];
-    culling->cones = !mirrored;
-}
-
-static bool in_frustum(const struct culling *culling, const struct asset_cluster *cluster)
-{
-    for (int p = 0; p < 6; p++) {
-        const float *plane = culling->planes[p];
-        float far = plane[3]; /* of the corner that lies farthest inward */
-        for (int c = 0; c < 3; c++)
-            far += plane[c] * (plane[c] > 0 ? cluster->high_m[c] : cluster->low_m[c]);
-        if (far < 0)
-            return false;
-    }
-    return true;
-}
 
 void draft_fill_mesh(struct draft *draft, struct draft_mesh *mesh, int index, const struct model_level *level)
 {
@@ -108,7 +73,7 @@ static void collect_asset(struct draft *draft, int index)
     mem_grow(&draft->meshes, &draft->mesh_capacity, draft->mesh_count + 1, sizeof(*draft->meshes));
     struct draft_mesh *mesh = &draft->meshes[draft->mesh_count];
     draft_fill_mesh(draft, mesh, index, level);
-    start_culling(&culling, &picture->shot, asset, mesh->mirrored);
+    culling_init(&culling, &picture->shot, asset);
     const struct asset_cluster *cluster = &file->clusters[level->first_cluster];
     for (uint32_t p = 0; p < level->primitive_count; p++) {
         const struct asset_primitive *primitive = &file->primitives[level->first_primitive + p];
@@ -119,8 +84,7 @@ static void collect_asset(struct draft *draft, int index)
         for (; cluster < file->clusters + file->header->cluster_count && cluster->first_index < end &&
                cluster->first_index >= primitive->first_index;
              cluster++) {
-            if (!in_frustum(&culling, cluster) ||
-                (culling.cones && !draw.double_sided && asset_cluster_turned_away(cluster, culling.eye_m)))
+            if (!culling_sees(&culling, cluster, draw.double_sided))
                 continue;
             draw.near_m = nearest(&culling, cluster);
             draw.first_index = cluster->first_index;

@@ -64,6 +64,7 @@ static double draw_surfaces(struct renderer *renderer, struct stroke *stroke, co
     glDepthMask(GL_TRUE);
     if (first == 0)
         glClear(GL_DEPTH_BUFFER_BIT);
+    renderer->solid.triangles = 0;
     stroke->drawn = solid_draw_some(&renderer->solid, &picture, first, triangles);
     *done = stroke->drawn == picture.visible_count;
     if (*done) {
@@ -71,9 +72,7 @@ static double draw_surfaces(struct renderer *renderer, struct stroke *stroke, co
         sky_draw(&renderer->sky, &picture, &renderer->light);
         target_resolve(&stroke->target, tile->x_px, tile->y_px, tile->width_px, tile->height_px);
     }
-    picture.visible += first;
-    picture.visible_count = stroke->drawn - first;
-    return TRIANGLE_NS * solid_triangles(&picture);
+    return TRIANGLE_NS * renderer->solid.triangles;
 }
 
 /* First the surfaces of all tiles, then their edges: those look over the rim of a tile. */

@@ -6,6 +6,7 @@
 
 #include "base/text.h"
 #include "gpu/program.h"
+#include "render/culling.h"
 #include "render/matrix.h"
 
 /* Uniform locations and texture units, as in the shaders. */
@@ -55,6 +56,7 @@ bool solid_init(struct solid *solid, struct log *log)
 
 void solid_finish(struct solid *solid)
 {
+    model_draws_finish(&solid->draws);
     for (int i = 0; i < SOLID_KINDS * 2 * SOLID_VARIANTS; i++)
         program_destroy(&solid->programs[i / (2 * SOLID_VARIANTS)][i / SOLID_VARIANTS % 2][i % SOLID_VARIANTS]);
 }
@@ -168,7 +170,9 @@ static void draw_asset(struct solid *solid, const struct picture *picture, int i
     const struct clip *clip = &picture->view->visibility.clip;
     const struct scene_asset *asset = &picture->stage->scene->assets[index];
     bool cut = clip_touches(clip, asset->bounds_min_m, asset->bounds_max_m);
+    struct culling culling;
     GLuint bound = 0;
+    culling_init(&culling, &picture->shot, asset);
     if (cut)
         stage_clip_begin(clip);
     for (size_t b = 0; b < level->batch_count; b++) {
@@ -193,6 +197,8 @@ static void draw_asset(struct solid *solid, const struct picture *picture, int i
         set_material(picture, material, batch, field != NULL, cut);
         if (is_per_fragment(picture, field))
             reference_draw_batch(batch);
+        else if (picture->stage->gl->software && !picture->measured)
+            solid->triangles += model_draw_seen(&solid->draws, model, batch, &culling, batch->double_sided || cut);
         else
             model_draw_batch(batch);
     }
@@ -231,12 +237,10 @@ static void end_pass(const struct picture *picture)
 
 size_t solid_draw_some(struct solid *solid, const struct picture *picture, size_t first, int triangles)
 {
+    int before = solid->triangles;
     begin_pass(picture);
-    while (first < picture->visible_count && triangles > 0) {
-        int index = picture->visible[first++];
-        draw_asset(solid, picture, index, false);
-        triangles -= level_triangles(solid_level(picture, index));
-    }
+    while (first < picture->visible_count && solid->triangles - before < triangles)
+        draw_asset(solid, picture, picture->visible[first++], false);
     end_pass(picture);
     return first;
 }

@@ -13,6 +13,8 @@ enum solid_kind { SOLID_PICTURE, SOLID_PER_FRAGMENT, SOLID_MEASURE, SOLID_MEASUR
 
 struct solid {
     struct log *log;
+    struct model_draws draws;
+    int triangles; /* drawn without those that are not seen; whoever wants to know sets it to 0 before */
     GLuint programs[SOLID_KINDS][2][SOLID_VARIANTS]; /* by tier; 0: not used, or not made yet */
 };
 
