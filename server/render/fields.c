@@ -65,13 +65,15 @@ static struct fields_entry *entry_create(struct fields *fields, int asset, const
     return entry;
 }
 
-/* How far the values have moved from what is shown. */
-static double error_of(const struct fields_entry *entry, const struct scalars *now)
+/* How far the values have moved from what is shown; no farther than is enough. */
+static double error_of(const struct fields_entry *entry, const struct scalars *now, double enough)
 {
     float most = 0;
     size_t ready = entry->ready < now->ready ? entry->ready : now->ready;
-    for (size_t i = 0; i < ready; i++)
-        most = fmaxf(most, fabsf(now->at[i].value - entry->shown[i].value));
+    for (size_t i = 0; i < ready && (double)most < enough; i++) {
+        float error = fabsf(now->at[i].value - entry->shown[i].value);
+        most = error > most ? error : most;
+    }
     return most;
 }
 
@@ -83,22 +85,27 @@ static bool can_be_seen(struct fields_entry *entry, const struct scalars *now)
         return true;
     if (now->travel - entry->travel < half)
         return false;
-    double error = error_of(entry, now);
+    double error = error_of(entry, now, half);
     entry->travel = now->travel - error;
     return error >= half;
 }
 
 static void show(struct fields_entry *entry, const struct scalars *now)
 {
-    size_t bytes = now->ready * sizeof(*entry->shown);
     entry->ready = now->ready;
-    memcpy(entry->shown, now->at, bytes);
-    glNamedBufferSubData(entry->buffer, 0, (GLsizeiptr)bytes, entry->shown);
+    memcpy(entry->shown, now->at, now->ready * sizeof(*entry->shown));
+    entry->uploaded = false;
     entry->hashed = 0;
     entry->flags_version = now->flags_version;
     entry->travel = now->travel;
     glDeleteBuffers(1, &entry->sensors);
     entry->sensors = 0;
+}
+
+static void upload(struct fields_entry *entry)
+{
+    glNamedBufferSubData(entry->buffer, 0, (GLsizeiptr)(entry->ready * sizeof(*entry->shown)), entry->shown);
+    entry->uploaded = true;
 }
 
 const struct fields_entry *fields_get(struct fields *fields, int asset, const struct field_params *params, double step,
@@ -119,6 +126,8 @@ const struct fields_entry *fields_get(struct fields *fields, int asset, const st
         return &fields->lost;
     if (fresh || entry->ready < count || can_be_seen(entry, scalars))
         show(entry, scalars);
+    if (!entry->uploaded && !fields->without_gl)
+        upload(entry);
     if (fields->reference && !entry->sensors)
         entry->sensors = reference_sensors(fields->reference, asset, params);
     if (entry->hashed != count) {

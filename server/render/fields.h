@@ -19,6 +19,7 @@ struct fields_entry { /* buffer 0: it could not be worked out or kept; drawn as 
     struct scalar *shown;
     size_t count, ready; /* vertices: of the file; of which so many of the first are shown */
     GLuint buffer;
+    bool uploaded; /* the buffer holds what is shown */
     GLuint sensors; /* 0, or for fragments that work the field out themselves (render/reference.h) */
     int64_t oldest_age_ns;
     uint64_t used;
@@ -28,6 +29,7 @@ struct fields {
     struct log *log;
     const struct reference *reference; /* NULL: not used */
     struct field *field;
+    bool without_gl; /* who asks now reads `shown` only: buffers may stay behind */
     struct fields_entry **entries;
     struct fields_entry lost; /* stands for all that there is no room for */
     size_t count, capacity, bytes;

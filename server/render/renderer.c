@@ -212,7 +212,9 @@ bool renderer_prepare(struct renderer *renderer, const struct view *view, const 
 uint64_t renderer_content(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
 {
     struct picture picture;
+    renderer->fields.without_gl = true;
     picture_init(renderer, &picture, view, snapshot, false);
+    renderer->fields.without_gl = false;
     return content_hash(&picture);
 }
 
@@ -278,7 +280,9 @@ static bool has_lost(const struct picture *picture)
 static struct frame *draw_draft(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
 {
     struct picture picture;
+    renderer->fields.without_gl = true;
     struct frame *frame = renderer_start(renderer, view, snapshot, &picture);
+    renderer->fields.without_gl = false;
     if (frame && has_lost(&picture)) { /* only GL hatches without scalars */
         frame_unref(&frame);
         return renderer_draw_stroke(renderer, view, snapshot);
