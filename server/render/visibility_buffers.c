@@ -4,7 +4,6 @@
 
 #include <stdbool.h>
 
-#include "base/mem.h"
 
 static void empty(struct visibility_buffers *store, struct visibility_buffer *buffer)
 {
@@ -56,16 +55,6 @@ void visibility_buffers_give(struct visibility_buffers *store, uint64_t shape, v
     empty(store, buffer);
     *buffer = (struct visibility_buffer){ .shape = shape, .at = at, .destroy = destroy, .bytes = bytes, .used = ++store->uses };
     store->bytes += bytes;
-}
-
-void *visibility_buffers_make(struct visibility_buffers *store, uint64_t shape, size_t bytes)
-{
-    void *at = bytes <= store->bound_bytes ? mem_try_array(bytes, 1) : NULL;
-    if (at)
-        visibility_buffers_give(store, shape, at, bytes, mem_free);
-    else
-        visibility_buffers_drop(store, shape);
-    return at;
 }
 
 void visibility_buffers_drop(struct visibility_buffers *store, uint64_t shape)

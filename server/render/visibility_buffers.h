@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the pixels of pictures from still cameras are made of (which triangle, where in it, in what light), so that new values need new
-   colours only. What such bytes mean is up to whoever draws; here they are kept, by content_shape_hash, up to a bound. The least recently
+   colours only. What that is made of is up to whoever draws; here it is kept, by content_shape_hash, up to a bound. The least recently
    used go first. Thread: the one of the GL context. */
 #ifndef RENDER_VISIBILITY_BUFFERS_H
 #define RENDER_VISIBILITY_BUFFERS_H
@@ -21,12 +21,9 @@ struct visibility_buffers { /* zero-initialise, but for the bound */
     uint64_t uses;
 };
 
-/* Bytes that were made for that shape and filled. NULL: there are none. Valid until the next make or drop. */
+/* What was given for that shape. NULL: there is nothing. Valid until the next give or drop. */
 void *visibility_buffers_find(struct visibility_buffers *store, uint64_t shape);
-/* New ones, not set to anything; those that were there before go. The caller fills them at once, or drops them. NULL: more than the
-   bound, or out of memory. */
-void *visibility_buffers_make(struct visibility_buffers *store, uint64_t shape, size_t bytes);
-/* Likewise, for what is not one piece: takes it over, and destroys it at once if it is more than the bound. */
+/* Takes over what was made for that shape, in place of what was there before; destroys it at once if it is more than the bound. */
 void visibility_buffers_give(struct visibility_buffers *store, uint64_t shape, void *at, size_t bytes, void (*destroy)(void *at));
 void visibility_buffers_drop(struct visibility_buffers *store, uint64_t shape);
 void visibility_buffers_finish(struct visibility_buffers *store);
