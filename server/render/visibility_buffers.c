@@ -4,7 +4,6 @@
 
 #include <stdbool.h>
 
-
 static void empty(struct visibility_buffers *store, struct visibility_buffer *buffer)
 {
     if (buffer->at)
