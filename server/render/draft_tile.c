@@ -50,7 +50,6 @@ static void fill_list(const struct draft_tile *tile, struct list *list)
             }
     }
     if (list->count > 1) /* where there is none, there may be no array */
-        if (list->count > 0)
         qsort(list->entries, list->count, sizeof(*list->entries), by_order);
 }
 
