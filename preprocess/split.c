@@ -17,7 +17,7 @@
 #define FLAT 1e-3        /* a triangle's longest edge is no more than that shorter than the way round over the corner across */
 #define ASIDE 0.1        /* of the edge, at least, that corner is from its ends */
 #define LINE 16          /* floats */
-#define MORE_PLACES 4.0  /* room for places, in those that the model has */
+#define MORE_PLACES 12.0 /* room for places, in those that the model has */
 #define FULL 2e-4        /* a level that may grow by less than that is done: each round takes half of what is left */
 
 /* How many triangles the finest level may get more: so much of its own, or so many, whichever is more. */
