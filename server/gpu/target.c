@@ -61,3 +61,25 @@ void target_resolve(const struct target *target, int x_px, int y_px, int width_p
         glBlitNamedFramebuffer(target->framebuffer, target->resolved_framebuffer, x_px, y_px, right_px, bottom_px, x_px, y_px, right_px,
                                bottom_px, GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT, GL_NEAREST);
 }
+
+void layer_fit(struct layer *layer, GLenum format, GLenum attachment, int width_px, int height_px)
+{
+    if (layer->texture && layer->width_px == width_px && layer->height_px == height_px)
+        return;
+    layer_finish(layer);
+    *layer = (struct layer){ .width_px = width_px, .height_px = height_px };
+    glCreateTextures(GL_TEXTURE_2D, 1, &layer->texture);
+    glTextureStorage2D(layer->texture, 1, format, width_px, height_px);
+    glTextureParameteri(layer->texture, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glCreateFramebuffers(1, &layer->framebuffer);
+    glNamedFramebufferTexture(layer->framebuffer, attachment, layer->texture, 0);
+    if (attachment == GL_DEPTH_ATTACHMENT)
+        glNamedFramebufferDrawBuffer(layer->framebuffer, GL_NONE);
+}
+
+void layer_finish(struct layer *layer)
+{
+    glDeleteFramebuffers(1, &layer->framebuffer);
+    glDeleteTextures(1, &layer->texture);
+    *layer = (struct layer){ 0 };
+}

@@ -21,4 +21,12 @@ void target_finish(struct target *target);
 /* A part: colour averaged, depth of one sample; nothing to do for one sample. */
 void target_resolve(const struct target *target, int x_px, int y_px, int width_px, int height_px);
 
+/* One texture to draw to, that is made again when pictures of another size come. Zero-initialise. */
+struct layer {
+    int width_px, height_px;
+    GLuint framebuffer, texture;
+};
+void layer_fit(struct layer *layer, GLenum format, GLenum attachment, int width_px, int height_px);
+void layer_finish(struct layer *layer);
+
 #endif

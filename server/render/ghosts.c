@@ -14,33 +14,11 @@ bool ghosts_init(struct ghosts *ghosts, struct log *log)
     return ghosts->program != 0;
 }
 
-static void depth_finish(struct ghosts *ghosts)
-{
-    glDeleteFramebuffers(1, &ghosts->framebuffer);
-    glDeleteTextures(1, &ghosts->depth);
-    ghosts->framebuffer = ghosts->depth = 0;
-}
-
 void ghosts_finish(struct ghosts *ghosts)
 {
-    depth_finish(ghosts);
+    layer_finish(&ghosts->depth);
     program_destroy(&ghosts->program);
     glDeleteVertexArrays(1, &ghosts->vao);
-}
-
-static void depth_fit(struct ghosts *ghosts, int width_px, int height_px)
-{
-    if (ghosts->depth && ghosts->width_px == width_px && ghosts->height_px == height_px)
-        return;
-    depth_finish(ghosts);
-    ghosts->width_px = width_px;
-    ghosts->height_px = height_px;
-    glCreateTextures(GL_TEXTURE_2D, 1, &ghosts->depth);
-    glTextureStorage2D(ghosts->depth, 1, GL_DEPTH_COMPONENT32F, width_px, height_px);
-    glTextureParameteri(ghosts->depth, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-    glCreateFramebuffers(1, &ghosts->framebuffer);
-    glNamedFramebufferTexture(ghosts->framebuffer, GL_DEPTH_ATTACHMENT, ghosts->depth, 0);
-    glNamedFramebufferDrawBuffer(ghosts->framebuffer, GL_NONE);
 }
 
 static bool any_ghost(const struct picture *picture)
@@ -57,7 +35,7 @@ static void draw_depth(const struct ghosts *ghosts, const struct picture *pictur
 {
     const struct scene *scene = picture->stage->scene;
     const struct visibility *visibility = &picture->view->visibility;
-    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, ghosts->framebuffer);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, ghosts->depth.framebuffer);
     glEnable(GL_DEPTH_TEST);
     glDepthMask(GL_TRUE);
     glClear(GL_DEPTH_BUFFER_BIT);
@@ -107,7 +85,7 @@ void ghosts_draw(struct ghosts *ghosts, const struct picture *picture)
     if (!any_ghost(picture))
         return;
     gl_pass_enter("ghosts");
-    depth_fit(ghosts, picture->target->width_px, picture->target->height_px);
+    layer_fit(&ghosts->depth, GL_DEPTH_COMPONENT32F, GL_DEPTH_ATTACHMENT, picture->target->width_px, picture->target->height_px);
     scissor(picture);
     draw_depth(ghosts, picture);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, picture->target->over_framebuffer);
@@ -115,7 +93,7 @@ void ghosts_draw(struct ghosts *ghosts, const struct picture *picture)
     glDepthMask(GL_FALSE);
     glEnable(GL_BLEND);
     glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE);
-    glBindTextureUnit(0, ghosts->depth);
+    glBindTextureUnit(0, ghosts->depth.texture);
     glBindTextureUnit(1, picture->target->resolved_depth);
     glUseProgram(ghosts->program);
     glBindVertexArray(ghosts->vao);

@@ -3,11 +3,12 @@
    behind one another the nearest is drawn. Thread: the one of the GL context. */
 #ifndef RENDER_GHOSTS_H
 #define RENDER_GHOSTS_H
+#include "gpu/target.h"
 #include "render/picture.h"
 
 struct ghosts {
-    GLuint program, vao, framebuffer, depth;
-    int width_px, height_px; /* of depth; 0: not made yet */
+    GLuint program, vao;
+    struct layer depth;
 };
 
 bool ghosts_init(struct ghosts *ghosts, struct log *log); /* false: logged */

@@ -14,16 +14,9 @@ bool lines_init(struct lines *lines, struct log *log)
     return lines->edge_program && lines->outline_program;
 }
 
-static void mask_finish(struct lines *lines)
-{
-    glDeleteFramebuffers(1, &lines->mask_framebuffer);
-    glDeleteTextures(1, &lines->mask);
-    lines->mask_framebuffer = lines->mask = 0;
-}
-
 void lines_finish(struct lines *lines)
 {
-    mask_finish(lines);
+    layer_finish(&lines->mask);
     program_destroy(&lines->edge_program);
     program_destroy(&lines->outline_program);
     glDeleteVertexArrays(1, &lines->vao);
@@ -52,20 +45,6 @@ void lines_draw_edges(const struct lines *lines, const struct picture *picture)
     gl_pass_leave(picture->stage->gl, "edges");
 }
 
-static void mask_fit(struct lines *lines, int width_px, int height_px)
-{
-    if (lines->mask && lines->mask_width_px == width_px && lines->mask_height_px == height_px)
-        return;
-    mask_finish(lines);
-    lines->mask_width_px = width_px;
-    lines->mask_height_px = height_px;
-    glCreateTextures(GL_TEXTURE_2D, 1, &lines->mask);
-    glTextureStorage2D(lines->mask, 1, GL_R8, width_px, height_px);
-    glTextureParameteri(lines->mask, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-    glCreateFramebuffers(1, &lines->mask_framebuffer);
-    glNamedFramebufferTexture(lines->mask_framebuffer, GL_COLOR_ATTACHMENT0, lines->mask, 0);
-}
-
 double lines_outline_px(const struct view *view)
 {
     return fmax(1.5, view->height_px / 600.0);
@@ -78,12 +57,12 @@ void lines_draw_outline(struct lines *lines, const struct picture *picture)
         !shot_sees(&picture->shot, &picture->stage->scene->assets[asset]))
         return;
     gl_pass_enter("outline");
-    mask_fit(lines, picture->target->width_px, picture->target->height_px);
-    glClearNamedFramebufferfv(lines->mask_framebuffer, GL_COLOR, 0, (float[4]){ 0 });
-    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, lines->mask_framebuffer);
+    layer_fit(&lines->mask, GL_R8, GL_COLOR_ATTACHMENT0, picture->target->width_px, picture->target->height_px);
+    glClearNamedFramebufferfv(lines->mask.framebuffer, GL_COLOR, 0, (float[4]){ 0 });
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, lines->mask.framebuffer);
     glDisable(GL_DEPTH_TEST);
     stage_draw_depth(picture->stage, picture->shot.clip_from_plant, &picture->view->visibility.clip, asset, 0);
-    glBindTextureUnit(0, lines->mask);
+    glBindTextureUnit(0, lines->mask.texture);
     glProgramUniform1f(lines->outline_program, 0, (float)lines_outline_px(picture->view));
     draw_over(lines, picture, lines->outline_program);
     gl_pass_leave(picture->stage->gl, "outline");

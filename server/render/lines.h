@@ -3,12 +3,12 @@
    Thread: the one of the GL context. */
 #ifndef RENDER_LINES_H
 #define RENDER_LINES_H
+#include "gpu/target.h"
 #include "render/picture.h"
 
 struct lines {
     GLuint edge_program, outline_program, vao;
-    GLuint mask_framebuffer, mask;
-    int mask_width_px, mask_height_px;
+    struct layer mask;
 };
 
 bool lines_init(struct lines *lines, struct log *log); /* false: logged */
