@@ -4,7 +4,8 @@ import { STAGES } from '../core/timings.js';
 import { byId, make } from './dom.js';
 
 const WORDS = {
-    sensor: 'Reading to picture', wait: 'waiting', field: 'field', render: 'drawing', encode: 'encoding', network: 'network', decode: 'decoding',
+    sensor: 'Reading to picture', wait: 'waiting', field: 'field', render: 'drawing', encode: 'encoding', network: 'network',
+    decode: 'decoding',
 };
 const ms = (value) => (value === null || value === undefined ? '–' : value < 10 ? value.toFixed(1) : String(Math.round(value)));
 
@@ -29,7 +30,8 @@ export class TimingsPanel {
         const { session } = this, now = performance.now();
         const head = make('tr', {}, make('th', {}, 'Milliseconds'), make('th', {}, 'half'), make('th', {}, '95 %'));
         const rows = ['sensor', ...STAGES].map((name) => this.row(WORDS[name], session.timings.of(name)));
-        const input = make('tr', {}, make('th', {}, 'Input to picture'), make('td', {}, ms(session.latency.median(now))), make('td', {}, ''));
+        const took = make('td', {}, ms(session.latency.median(now)));
+        const input = make('tr', {}, make('th', {}, 'Input to picture'), took, make('td', {}, ''));
         const rate = `${Math.round(session.rate.perSecond(now))} pictures/s, ${Math.round(session.timings.kbitPerS(now))} kbit/s`;
         const link = make('a', { href: `#follow=${session.id}`, target: '_blank', rel: 'noopener' }, `#follow=${session.id}`);
         this.element.replaceChildren(make('table', {}, head, input, ...rows), make('p', {}, rate),
