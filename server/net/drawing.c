@@ -133,6 +133,18 @@ static void deliver(struct drawing *drawing, struct frame *frame, const struct s
 
 /* --- pictures that take long -------------------------------------------------------------------------------------------------- */
 
+/* Whoever it is for left the one before it, not this one. */
+static void stay(struct painter *painter, const struct batch *batch)
+{
+    pthread_mutex_lock(&painter->lock);
+    for (size_t i = 0; i < batch->count; i++) {
+        struct client *client = painter_find(painter, batch->orders[i].client);
+        if (client)
+            client->left = false;
+    }
+    pthread_mutex_unlock(&painter->lock);
+}
+
 static void slow_begin(struct drawing *drawing, struct batch *batch, int64_t field_ns)
 {
     const struct wish *wish = &batch->orders[0].wish;
@@ -146,6 +158,7 @@ static void slow_begin(struct drawing *drawing, struct batch *batch, int64_t fie
     drawing->slow.asked_ns = wish->asked_ns;
     drawing->slow.field_ns = field_ns;
     struct batch empty = drawing->slow.batch;
+    stay(drawing->painter, batch);
     drawing->slow.batch = *batch;
     *batch = empty;
     batch->count = 0;

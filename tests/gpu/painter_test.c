@@ -472,6 +472,28 @@ static void test_changing_readings_leave_refined_pictures(void **state)
     assert_int_equal(count_of("plantcast_render_steps_total"), steps);
 }
 
+/* Bands, which are not quick to colour again: the refined picture is drawn anew, and comes. */
+static void test_readings_change_pictures_that_are_not_quick(void **state)
+{
+    (void)state;
+    int64_t abandoned = count_of("plantcast_renders_abandoned_total");
+    for (int i = 0; i < 4; i++) {
+        struct wish wish = { .codec = WIRE_CODEC_JPEG, .quality = { .quality = 80 }, .of_data = i > 0, .asked_ns = clock_mono_ns() };
+        change_readings(20 + 15 * i);
+        wish.urgency = i ? URGENCY_DATA : URGENCY_REFINE;
+        view_default(&toy->scene, 640, 480, &wish.view);
+        wish.view.tier = TIER_STILL;
+        wish.view.ramp_interval = 10;
+        assert_int_equal(painter_ask(painter, REFINER, &wish), PAINTER_ADDED);
+        painter_go(painter);
+        struct picture *picture = next();
+        assert_true(picture->client == REFINER && picture->packet);
+        assert_int_equal(picture->packet->frame->view.tier, TIER_STILL);
+        picture_destroy(&picture);
+    }
+    assert_int_equal(count_of("plantcast_renders_abandoned_total"), abandoned);
+}
+
 /* The daemon goes down in the midst of it. */
 static void test_stop_waits_for_no_refinement(void **state)
 {
@@ -527,6 +549,7 @@ int main(void)
         cmocka_unit_test(test_picks_are_answered_between_steps),
         cmocka_unit_test(test_newest_pick_wins),
         cmocka_unit_test(test_changing_readings_leave_refined_pictures),
+        cmocka_unit_test(test_readings_change_pictures_that_are_not_quick),
         cmocka_unit_test(test_stop_waits_for_no_refinement),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
