@@ -42,10 +42,11 @@ static bool exists(const char *path)
 }
 
 /* Prepares it once for all runs. False: failed. */
+/* Once, where the same test runs in two contexts at a time. */
 static bool prepare(const char *plant, const char *folder)
 {
     const char *programs = getenv("PLANTCAST_BIN");
-    char *command = mem_printf("mkdir -p '%s' && '%s/plantcast-prep' %s --output '%s' >/dev/null 2>&1", folder,
+    char *command = mem_printf("mkdir -p '%s' && flock '%s.lock' '%s/plantcast-prep' %s --output '%s' >/dev/null 2>&1", folder, folder,
                                programs ? programs : "build", plant, folder);
     int status = system(command);
     mem_free(command);
