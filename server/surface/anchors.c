@@ -85,26 +85,11 @@ static bool find_normals(struct job *job, const uint32_t *triangles, size_t tria
     return job->normals != NULL;
 }
 
-struct facing {
-    const struct trimesh *mesh;
-    const double *normal;
-};
-
-static bool faces(const void *arg, uint32_t tri)
-{
-    const struct facing *facing = arg;
-    const uint32_t *v = facing->mesh->tris[tri];
-    double ab[3], ac[3], n[3];
-    vec_sub(facing->mesh->points[v[1]], facing->mesh->points[v[0]], ab);
-    vec_sub(facing->mesh->points[v[2]], facing->mesh->points[v[0]], ac);
-    vec_cross(ab, ac, n);
-    return vec_dot(n, facing->normal) > 0;
-}
-
 static void find_spot(const struct surface *surface, const double place_m[3], const double normal[3], struct surface_spot *spot)
 {
     struct bvh_place at;
-    bvh_nearest(surface->bvh, place_m, ON_SURFACE * surface->edge_m, faces, &(struct facing){ &surface->visible, normal }, &at);
+    const struct surface_facing facing = { &surface->visible, normal };
+    bvh_nearest(surface->bvh, place_m, ON_SURFACE * surface->edge_m, surface_faces, &facing, &at);
     if (at.tri == TRIMESH_NONE) {
         surface_find_spot(surface, place_m, normal, spot);
         return;

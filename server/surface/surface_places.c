@@ -27,14 +27,9 @@ void surface_nearest(const struct surface *surface, const double point_m[3], str
     }
 }
 
-struct facing {
-    const struct trimesh *mesh;
-    const double *normal;
-};
-
-static bool faces(const void *arg, uint32_t tri)
+bool surface_faces(const void *arg, uint32_t tri)
 {
-    const struct facing *facing = arg;
+    const struct surface_facing *facing = arg;
     const uint32_t *v = facing->mesh->tris[tri];
     double ab[3], ac[3], n[3];
     vec_sub(facing->mesh->points[v[1]], facing->mesh->points[v[0]], ab);
@@ -48,7 +43,8 @@ void surface_find_spot(const struct surface *surface, const double point_m[3], c
     struct bvh_place any, facing = { .tri = TRIMESH_NONE };
     bvh_nearest(surface->bvh, point_m, INFINITY, NULL, NULL, &any);
     if (normal && any.distance_m > surface->edge_m * SPOT_ON_SURFACE)
-        bvh_nearest(surface->bvh, point_m, any.distance_m * SPOT_PATIENCE, faces, &(struct facing){ &surface->visible, normal }, &facing);
+        bvh_nearest(surface->bvh, point_m, any.distance_m * SPOT_PATIENCE, surface_faces,
+                    &(struct surface_facing){ &surface->visible, normal }, &facing);
     const struct bvh_place *at = facing.tri == TRIMESH_NONE ? &any : &facing;
     spot->tri = at->tri;
     spot->distance_m = at->distance_m;

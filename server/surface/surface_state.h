@@ -35,4 +35,11 @@ struct surface {
 /* Makes bvh, unfold and the lists of pieces, of mesh and intrinsic. */
 void surface_index(struct surface *surface);
 
+/* For bvh_nearest: only triangles whose front looks along the normal. */
+struct surface_facing {
+    const struct trimesh *mesh;
+    const double *normal;
+};
+bool surface_faces(const void *facing, uint32_t tri);
+
 #endif

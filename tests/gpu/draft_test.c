@@ -101,14 +101,8 @@ static void test_cameras(void **state)
     struct view view;
     (void)state;
     start_view(&view, 320, 240);
-    const struct scene *scene = &stand.toy->scene;
     for (int i = 0; i < 12; i++) {
-        double away = i % 4 == 3 ? 0.15 : 0.5 + i % 3;
-        for (int c = 0; c < 3; c++) {
-            double size = scene->bounds_max_m[c] - scene->bounds_min_m[c];
-            view.camera.target_m[c] = scene->bounds_min_m[c] + 0.5 * size;
-            view.camera.eye_m[c] = view.camera.target_m[c] + away * size * (c == 0 ? cos(i) : c == 1 ? sin(i) : 0.7 - 0.2 * i);
-        }
+        stand_look(&stand, i, &view);
         assert_same(&view, 0.01);
     }
 }
@@ -153,8 +147,6 @@ static void test_hidden_assets(void **state)
     assert_same(&view, 0.003);
 }
 
-static void fill(double more);
-
 /* The third picture of a camera that stands still is coloured anew only; hatches have softer rims then. */
 static void test_still_camera(void **state)
 {
@@ -165,14 +157,14 @@ static void test_still_camera(void **state)
     for (int selected = -1; selected < 2; selected++) {
         view.selected_asset = selected;
         for (int i = 0; i < 4; i++) {
-            fill(i * 3.0);
+            toy_fill(stand.snapshot, i * 3.0);
             assert_same(&view, selected < 0 ? 0.01 : 0.02);
         }
         view.colormap = (int)colormap_count() - 1;
         view.range_max -= 10;
         assert_same(&view, selected < 0 ? 0.01 : 0.02);
     }
-    fill(0);
+    toy_fill(stand.snapshot, 0);
 }
 
 /* Places to draw it anew must not be taken for the same. */
@@ -204,17 +196,6 @@ static void test_left_to_gl(void **state)
     }
 }
 
-/* Values, one beyond the range, one that is uncertain and one that is bad. */
-static void fill(double more)
-{
-    static const double values[8] = { 15, 30, 55, 80, 105, 20, 45, 90 };
-    for (int i = 0; i < 8; i++)
-        toy_set(stand.snapshot, i, values[i] + more,
-                i == 6   ? QUALITY_BAD_SENSOR_FAILURE
-                : i == 5 ? QUALITY_UNCERTAIN_LAST_USABLE
-                         : (uint32_t)QUALITY_GOOD);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -232,7 +213,7 @@ int main(void)
         return 0;
     }
     stand_init(&stand, &rig, toy_unit());
-    fill(0);
+    toy_fill(stand.snapshot, 0);
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
     stand_finish(&stand);
     rig_finish(&rig);

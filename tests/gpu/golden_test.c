@@ -156,12 +156,7 @@ static void test_golden(void **state)
 /* Values, a sensor beyond the range, one that is uncertain and one that is bad. */
 static void fill(void)
 {
-    static const double values[8] = { 15, 30, 55, 80, 105, 20, 45, 90 };
-    for (int i = 0; i < 8; i++)
-        toy_set(stand.snapshot, i, values[i],
-                i == 6   ? QUALITY_BAD_SENSOR_FAILURE
-                : i == 5 ? QUALITY_UNCERTAIN_LAST_USABLE
-                         : (uint32_t)QUALITY_GOOD);
+    toy_fill(stand.snapshot, 0);
     for (int i = 0; i < 7; i++) /* the last one has none */
         memcpy(stand.toy->plant.tags[i].limits, (double[]){ 10, 20, 70, 100 }, LIMIT_COUNT * sizeof(double));
 }

@@ -104,14 +104,8 @@ static void test_cameras(void **state)
     struct view view;
     (void)state;
     start_view(&view, 320, 240);
-    const struct scene *scene = &stand.toy->scene;
     for (int i = 0; i < 12; i++) {
-        double away = i % 4 == 3 ? 0.15 : 0.5 + i % 3;
-        for (int c = 0; c < 3; c++) {
-            double size = scene->bounds_max_m[c] - scene->bounds_min_m[c];
-            view.camera.target_m[c] = scene->bounds_min_m[c] + 0.5 * size;
-            view.camera.eye_m[c] = view.camera.target_m[c] + away * size * (c == 0 ? cos(i) : c == 1 ? sin(i) : 0.7 - 0.2 * i);
-        }
+        stand_look(&stand, i, &view);
         assert_like_gl(&view, 0.02);
     }
 }
@@ -170,17 +164,6 @@ static void assert_same_anew(const struct view *view)
     frame_unref(&anew);
 }
 
-/* Values, one beyond the range, one that is uncertain and one that is bad. */
-static void fill(void)
-{
-    static const double values[8] = { 15, 30, 55, 80, 105, 20, 45, 90 };
-    for (int i = 0; i < 8; i++)
-        toy_set(stand.snapshot, i, values[i],
-                i == 6   ? QUALITY_BAD_SENSOR_FAILURE
-                : i == 5 ? QUALITY_UNCERTAIN_LAST_USABLE
-                         : (uint32_t)QUALITY_GOOD);
-}
-
 static void test_new_readings_are_a_new_picture(void **state)
 {
     struct view view;
@@ -197,7 +180,7 @@ static void test_new_readings_are_a_new_picture(void **state)
     for (int i = 0; i < 8; i++)
         toy_set(stand.snapshot, i, 50, QUALITY_BAD_SENSOR_FAILURE);
     assert_same_anew(&view);
-    fill();
+    toy_fill(stand.snapshot, 0);
     struct frame *last = stand_draw(&stand, &view);
     assert_memory_equal(first->bgrx, last->bgrx, (size_t)first->height_px * (size_t)first->stride_bytes);
     frame_unref(&first);
@@ -280,7 +263,7 @@ int main(void)
         return 0;
     }
     stand_init(&stand, &rig, toy_unit());
-    fill();
+    toy_fill(stand.snapshot, 0);
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
     stand_finish(&stand);
     rig_finish(&rig);

@@ -6,7 +6,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-
 bool rig_init(struct rig *rig, const char *test)
 {
     const char *name = getenv("PLANTCAST_GL");
@@ -48,6 +47,17 @@ void stand_finish(struct stand *stand)
     field_destroy(&stand->field);
     snapshot_destroy(&stand->snapshot);
     toy_destroy(&stand->toy);
+}
+
+void stand_look(const struct stand *stand, int i, struct view *view)
+{
+    const struct scene *scene = &stand->toy->scene;
+    double away = i % 4 == 3 ? 0.15 : 0.5 + i % 3;
+    for (int c = 0; c < 3; c++) {
+        double size = scene->bounds_max_m[c] - scene->bounds_min_m[c];
+        view->camera.target_m[c] = scene->bounds_min_m[c] + 0.5 * size;
+        view->camera.eye_m[c] = view->camera.target_m[c] + away * size * (c == 0 ? cos(i) : c == 1 ? sin(i) : 0.7 - 0.2 * i);
+    }
 }
 
 struct frame *stand_draw(struct stand *stand, const struct view *view)

@@ -27,6 +27,8 @@ struct stand { /* one plant on its renderer */
 /* Takes the toy. */
 void stand_init(struct stand *stand, struct rig *rig, struct toy *toy);
 void stand_finish(struct stand *stand);
+/* The i-th camera of a walk: all round, from far away, from below and from among the pipes, where triangles pass the eye. */
+void stand_look(const struct stand *stand, int i, struct view *view);
 struct frame *stand_draw(struct stand *stand, const struct view *view); /* never NULL */
 
 const uint8_t *frame_pixel(const struct frame *frame, int x, int y); /* b, g, r, x */

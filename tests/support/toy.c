@@ -203,6 +203,16 @@ void toy_set(struct snapshot *snapshot, int tag, double value, uint32_t quality)
     reading->received_utc_ns = 1000000000;
 }
 
+void toy_fill(struct snapshot *snapshot, double more)
+{
+    static const double values[8] = { 15, 30, 55, 80, 105, 20, 45, 90 };
+    for (int i = 0; i < 8; i++)
+        toy_set(snapshot, i, values[i] + more,
+                i == 6   ? QUALITY_BAD_SENSOR_FAILURE
+                : i == 5 ? QUALITY_UNCERTAIN_LAST_USABLE
+                         : (uint32_t)QUALITY_GOOD);
+}
+
 static void add_exchanger(struct toy *toy)
 {
     static const double sensors[5][3] = { { -1.9, -0.6, 1.2 }, { -0.8, 0, 1.8 }, { 0.2, -0.55, 1.4 }, { 1.1, 0, 1.8 }, { 1.9, -0.6, 1.2 } };

@@ -23,6 +23,9 @@ int toy_add(struct toy *toy, const char *id, struct shape *shape, const double a
 struct snapshot *toy_snapshot(const struct toy *toy);
 void toy_set(struct snapshot *snapshot, int tag, double value, uint32_t quality);
 
+/* Of the eight tags of toy_unit: values, one beyond the range, one that is uncertain and one that is bad; `more` is added to all. */
+void toy_fill(struct snapshot *snapshot, double more);
+
 /* An exchanger with 5 sensors on saddles, a tank with 3, pipes and a pump without. */
 struct toy *toy_unit(void);
 
