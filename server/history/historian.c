@@ -57,14 +57,15 @@ struct historian {
 
 /* --- from the store ----------------------------------------------------------------------------------------------------------- */
 
-static void on_sample(void *arg, int tag, double value, uint32_t quality, int64_t utc_ns)
+static void on_sample(void *arg, const struct heard *heard)
 {
     struct historian *historian = arg;
     pthread_mutex_lock(&historian->lock);
     struct told *told = &historian->told;
     if (told->rows.count < TOLD_MAX) {
         mem_grow(&told->rows.at, &told->rows.capacity, told->rows.count + 1, sizeof(*told->rows.at));
-        told->rows.at[told->rows.count++] = (struct history_row){ tag, { utc_ns / 1000, value, quality } };
+        told->rows.at[told->rows.count++] =
+            (struct history_row){ heard->tag, { heard->utc_ns / 1000, heard->value, heard->quality } };
     } else {
         told->lost++;
     }
@@ -388,7 +389,7 @@ void historian_stop(struct historian **pointer)
     struct historian *historian = *pointer;
     if (!historian)
         return;
-    store_listen(historian->store, NULL, NULL);
+    store_unlisten(historian->store, on_sample, historian);
     pthread_mutex_lock(&historian->lock);
     historian->stopping = true;
     pthread_cond_signal(&historian->wake);

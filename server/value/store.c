@@ -2,6 +2,7 @@
 /* The latest reading of every tag, and what has become of it since. */
 #include "value/store.h"
 
+#include <assert.h>
 #include <math.h>
 #include <pthread.h>
 
@@ -30,8 +31,10 @@ struct store {
     /* --- below: under lock */
     struct held *tags;
     struct link *links;
-    store_listener *listener;
-    void *listener_arg;
+    struct {
+        store_listener *hear;
+        void *arg;
+    } listeners[STORE_LISTENERS];
     int64_t utc_ahead_ns; /* of the monotonic clock, when a sample came last */
 };
 
@@ -73,17 +76,31 @@ void store_destroy(struct store **store)
 
 void store_listen(struct store *store, store_listener *listener, void *arg)
 {
+    int i = 0;
     pthread_mutex_lock(&store->lock);
-    store->listener = listener;
-    store->listener_arg = arg;
+    while (i < STORE_LISTENERS && store->listeners[i].hear)
+        i++;
+    assert(i < STORE_LISTENERS);
+    store->listeners[i].hear = listener;
+    store->listeners[i].arg = arg;
     pthread_mutex_unlock(&store->lock);
 }
 
-static void tell(struct store *store, size_t tag, uint32_t quality, int64_t utc_ns)
+void store_unlisten(struct store *store, store_listener *listener, void *arg)
 {
-    double value = quality_is_bad(quality) ? NAN : store->tags[tag].value;
-    if (store->listener)
-        store->listener(store->listener_arg, (int)tag, value, quality, utc_ns);
+    pthread_mutex_lock(&store->lock);
+    for (int i = 0; i < STORE_LISTENERS; i++)
+        if (store->listeners[i].hear == listener && store->listeners[i].arg == arg)
+            store->listeners[i].hear = NULL;
+    pthread_mutex_unlock(&store->lock);
+}
+
+static void tell(struct store *store, size_t tag, uint32_t quality, int64_t mono_ns, int64_t utc_ns)
+{
+    const struct heard heard = { (int)tag, quality_is_bad(quality) ? NAN : store->tags[tag].value, quality, mono_ns, utc_ns };
+    for (int i = 0; i < STORE_LISTENERS; i++)
+        if (store->listeners[i].hear)
+            store->listeners[i].hear(store->listeners[i].arg, &heard);
 }
 
 static uint32_t quality_now(const struct held *held, int64_t now_mono_ns)
@@ -133,7 +150,7 @@ void store_write(struct store *store, const struct sample *samples, size_t count
     store->utc_ahead_ns = now_utc_ns - now_mono_ns;
     for (size_t i = 0; i < count; i++)
         if (hold(&store->tags[samples[i].tag], &samples[i], now_mono_ns, now_utc_ns))
-            tell(store, (size_t)samples[i].tag, store->tags[samples[i].tag].quality, now_utc_ns);
+            tell(store, (size_t)samples[i].tag, store->tags[samples[i].tag].quality, now_mono_ns, now_utc_ns);
     pthread_mutex_unlock(&store->lock);
 }
 
@@ -146,7 +163,7 @@ static void lose(struct store *store, size_t tag, int64_t now_mono_ns)
     held->lost = true;
     count_change(held, false, now_mono_ns);
     if (held->shown_quality != shown)
-        tell(store, tag, held->shown_quality, now_mono_ns + store->utc_ahead_ns);
+        tell(store, tag, held->shown_quality, now_mono_ns, now_mono_ns + store->utc_ahead_ns);
 }
 
 void store_tags_lost(struct store *store, const int *tags, size_t count, int64_t now_mono_ns)

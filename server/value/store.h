@@ -18,11 +18,19 @@ struct sample {
 };
 
 /* Hears every sample and every link that is lost, in their order, under the store's lock: it copies and returns. value: NaN if Bad. */
-typedef void store_listener(void *arg, int tag, double value, uint32_t quality, int64_t utc_ns);
+struct heard {
+    int tag;
+    double value;
+    uint32_t quality;
+    int64_t mono_ns, utc_ns;
+};
+typedef void store_listener(void *arg, const struct heard *heard);
+enum { STORE_LISTENERS = 4 };
 
 struct store *store_create(const struct plant *plant); /* plant must outlive it */
 void store_destroy(struct store **store);
-void store_listen(struct store *store, store_listener *listener, void *arg); /* NULL: no more */
+void store_listen(struct store *store, store_listener *listener, void *arg); /* at most STORE_LISTENERS of them */
+void store_unlisten(struct store *store, store_listener *listener, void *arg); /* hears nothing more once this has returned */
 /* Times are of arrival. A failed read is not a sample: see store_link_lost. */
 void store_write(struct store *store, const struct sample *samples, size_t count, int64_t now_mono_ns, int64_t now_utc_ns);
 /* The source cannot be read since now. Its tags keep their last values: Uncertain_NoCommunicationLastUsableValue until

@@ -222,6 +222,24 @@ static void the_snapshot_says_when(void **state)
     assert_int_equal(s->snapshot->count, 3);
 }
 
+static void count_heard(void *arg, const struct heard *heard)
+{
+    *(int64_t *)arg += heard->mono_ns;
+}
+
+static void all_who_listen_hear_until_they_leave(void **state)
+{
+    struct setup *s = *state;
+    int64_t one = 0, other = 0;
+    store_listen(s->store, count_heard, &one);
+    store_listen(s->store, count_heard, &other);
+    write_one(s, 0, 1, QUALITY_GOOD, 3);
+    store_unlisten(s->store, count_heard, &one);
+    store_link_lost(s->store, 0, 10);
+    assert_int_equal(one, 3);
+    assert_int_equal(other, 3 + 2 * 10); /* both tags of the link */
+}
+
 static void qualities_have_names_and_classes(void **state)
 {
     (void)state;
@@ -254,6 +272,7 @@ int main(void)
         store_test(counts_every_change),
         store_test(the_newest_sample_wins),
         store_test(the_snapshot_says_when),
+        store_test(all_who_listen_hear_until_they_leave),
         cmocka_unit_test(qualities_have_names_and_classes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
