@@ -25,7 +25,7 @@ struct recorder {
 /* What the values move within: the instrument's own range, else what the group shows. */
 static double span_of(const struct plant *plant, const struct plant_tag *tag)
 {
-    if (tag->scaling != SCALING_NONE)
+    if (tag->has_range)
         return fabs(tag->scaled_high - tag->scaled_low);
     return tag->group >= 0 ? plant->groups[tag->group].max - plant->groups[tag->group].min : 0;
 }

@@ -64,9 +64,14 @@ static void free_groups(struct plant *plant)
 static void free_sources(struct plant *plant)
 {
     for (size_t i = 0; i < plant->source_count; i++) {
-        mem_free(plant->sources[i].id);
-        mem_free(plant->sources[i].kind);
-        mem_free(plant->sources[i].host);
+        struct plant_source *source = &plant->sources[i];
+        mem_free(source->id);
+        mem_free(source->kind);
+        for (int h = 0; h < source->host_count; h++)
+            mem_free(source->hosts[h]);
+        mem_free(source->device);
+        mem_free(source->heartbeat);
+        mem_free(source->file);
     }
     mem_free(plant->sources);
 }

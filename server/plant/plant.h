@@ -64,13 +64,29 @@ struct plant_colormap { /* out of an image */
     uint8_t rgb[256][3]; /* sRGB, from MIN to MAX */
 };
 
+enum transport { TRANSPORT_TCP, TRANSPORT_RTU_TCP /* RTU frames through a socket */, TRANSPORT_RTU /* a serial line */ };
+enum { PLANT_HOSTS = 4 };
 struct plant_source {
-    char *id, *kind;              /* "modbus" */
-    char *host;
+    char *id, *kind;              /* "modbus", "replay" */
+    enum transport transport;
+    char *hosts[PLANT_HOSTS];     /* of one device: the next is tried where one does not answer */
+    int host_count;
+    char *device;                 /* of a serial line */
+    int baud, parity, stop_bits;  /* parity: 'N', 'E' or 'O' */
     int port, unit;               /* unit: Modbus unit identifier */
-    int poll_ms, timeout_ms;
+    int poll_ms, timeout_ms, pause_ms; /* pause: between two requests */
+    int max_registers, max_bits;  /* of one request */
+    int max_gap;                  /* registers or bits that nobody wants and that may be asked for none the less */
     enum byte_order byte_order;
-    int address_base;             /* 0 or 1: what the first register is called in plain addresses */
+    int address_base;             /* 0 or 1: what the first register is called in plain addresses; see base_stated */
+    bool base_stated;
+    char *heartbeat;              /* the tag that must change, or NULL */
+    int heartbeat_tag;            /* index, or -1 */
+    double heartbeat_s;           /* at least this often; 0: there is none */
+    char *file;                   /* of a replay */
+    double speed;
+    bool loop;
+    bool simulated;               /* what it brings was not measured now */
     int line;
 };
 
@@ -82,6 +98,21 @@ struct plant_history {
     double override_s;       /* a point is kept at least this often */
 };
 
+/* A raw value that says "no sensor": as bits, or as a number. */
+struct plant_sentinel {
+    bool is_bits;
+    uint64_t bits;
+    double number;
+};
+
+/* Another tag that says whether this one may be believed: if ((value & mask) == want) != negate. */
+struct plant_quality_tag {
+    int tag;                          /* index */
+    uint64_t mask, want;              /* mask 0: there is none */
+    bool negate;
+};
+
+enum { PLANT_SENTINELS = 4 };
 struct plant_tag {
     char *name, *description, *unit;  /* unit: engineering units */
     int source, group, asset;         /* index, or -1 */
@@ -96,12 +127,18 @@ struct plant_tag {
     int scan_ms;                      /* 0: the source's poll_ms */
     enum scaling scaling;
     double raw_low, raw_high, scaled_low, scaled_high;
+    bool has_range;                   /* scaled_low to scaled_high is what the instrument can measure */
+    bool ne43;                        /* raw_low and raw_high are 4 and 20 mA, and NAMUR NE 43 says what is beyond */
+    struct plant_sentinel sentinels[PLANT_SENTINELS];
+    int sentinel_count;
     bool negate;
     bool has_position;                /* position_m is set; else see node */
     double position_m[3];             /* in the frame that the asset states */
     char *node;                       /* name of the model node whose place this is, or NULL */
     double strength, decay;           /* resolved: own, else the group's */
     double stale_s;                   /* resolved; default 3 polls, at least 5 s */
+    double flatline_s;                /* a value that has not changed for so long is doubted; 0: never */
+    struct plant_quality_tag quality;
     double limits[LIMIT_COUNT];       /* resolved: own, else the group's; NaN: none */
     double deadband;                  /* engineering units: history is within this of what was read; NaN: the plant's history says */
     int line, column;                 /* of its name in the tag list */

@@ -28,8 +28,6 @@ static const struct choice interpolation_choices[] = { { "shepard", INTERPOLATIO
 static const struct choice distance_choices[] = { { "geodesic", DISTANCE_GEODESIC }, { "euclidean", DISTANCE_EUCLIDEAN }, { 0 } };
 static const struct choice fill_choices[] = { { "none", FILL_NONE }, { "neighbours", FILL_NEIGHBOURS }, { 0 } };
 static const struct choice scale_choices[] = { { "linear", 0 }, { "log", 1 }, { 0 } };
-static const struct choice order_choices[] = { { "ABCD", BYTE_ORDER_ABCD }, { "CDAB", BYTE_ORDER_CDAB }, { "BADC", BYTE_ORDER_BADC },
-                                               { "DCBA", BYTE_ORDER_DCBA }, { 0 } };
 
 /* --- plant ------------------------------------------------------------------------------------------------------------------ */
 
@@ -85,9 +83,8 @@ static void read_plant(struct yaml_reader *reader, yaml_node_t *node, void *reco
 
 /* --- lists of things with an id --------------------------------------------------------------------------------------------- */
 
-/* Things begin with `char *id`; the last one was just read. */
-static void check_id(struct yaml_reader *reader, const struct yaml_map *map, const char *what, const void *things, size_t count,
-                     size_t stride, size_t line_offset)
+void plant_list_check_id(struct yaml_reader *reader, const struct yaml_map *map, const char *what, const void *things, size_t count,
+                         size_t stride, size_t line_offset)
 {
     const char *last = (const char *)things + (count - 1) * stride;
     const char *id, *other;
@@ -103,8 +100,7 @@ static void check_id(struct yaml_reader *reader, const struct yaml_map *map, con
     }
 }
 
-/* Room for the items of a list. NULL: not a list, or too long (reported). */
-static void *make_list(struct yaml_reader *reader, yaml_node_t *node, const char *name, int least, size_t bytes_each, int *count)
+void *plant_list_make(struct yaml_reader *reader, yaml_node_t *node, const char *name, int least, size_t bytes_each, int *count)
 {
     *count = yaml_list_count(reader, node, name);
     if (*count >= 0 && *count < least)
@@ -136,8 +132,7 @@ static void read_placement(struct yaml_reader *reader, yaml_node_t *node, void *
     yaml_map_read(reader, node, "placement", keys, record, &map);
 }
 
-/* Relative names are relative to the plant file. */
-static void resolve_path(const struct plant *plant, char **path)
+void plant_resolve_path(const struct plant *plant, char **path)
 {
     if (!*path || **path == '/')
         return;
@@ -181,21 +176,21 @@ static void read_asset(struct yaml_reader *reader, yaml_node_t *node, struct pla
     transform_compose(record.translate_m, record.rotate_deg, asset->placement);
     if (!is_map)
         return;
-    resolve_path(plant, &asset->model);
+    plant_resolve_path(plant, &asset->model);
     if (yaml_map_good(&map, "model"))
         check_model(reader, &map, asset->model);
     if (!asset->tag && asset->id)
         asset->tag = mem_strdup(asset->id);
     if (!asset->description)
         asset->description = mem_strdup("");
-    check_id(reader, &map, "asset", plant->assets, plant->asset_count, sizeof(*asset), offsetof(struct plant_asset, line));
+    plant_list_check_id(reader, &map, "asset", plant->assets, plant->asset_count, sizeof(*asset), offsetof(struct plant_asset, line));
 }
 
 static void read_assets(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
     struct plant *plant = ((struct plant_file *)record)->plant;
     int count;
-    plant->assets = make_list(reader, node, "assets", 1, sizeof(*plant->assets), &count);
+    plant->assets = plant_list_make(reader, node, "assets", 1, sizeof(*plant->assets), &count);
     for (int i = 0; i < count; i++)
         read_asset(reader, yaml_list_item(reader, node, i), plant, &plant->assets[plant->asset_count++]);
 }
@@ -322,57 +317,23 @@ static void read_group(struct yaml_reader *reader, yaml_node_t *node, struct pla
         yaml_error(reader, yaml_map_place(&map, "min"), "min: expected less than max, which is %.9g, found %.9g", group->max, group->min);
     if (group->log && yaml_map_good(&map, "min") && !(group->min > 0))
         yaml_error(reader, yaml_map_place(&map, "scale"), "scale: a logarithmic one needs min above 0, found %.9g", group->min);
-    check_id(reader, &map, "group", plant->groups, plant->group_count, sizeof(*group), offsetof(struct plant_group, line));
+    plant_list_check_id(reader, &map, "group", plant->groups, plant->group_count, sizeof(*group), offsetof(struct plant_group, line));
 }
 
 static void read_groups(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
     struct plant *plant = ((struct plant_file *)record)->plant;
     int count;
-    plant->groups = make_list(reader, node, "groups", 1, sizeof(*plant->groups), &count);
+    plant->groups = plant_list_make(reader, node, "groups", 1, sizeof(*plant->groups), &count);
     for (int i = 0; i < count; i++)
         read_group(reader, yaml_list_item(reader, node, i), plant, &plant->groups[plant->group_count++]);
 }
 
-/* --- sources ---------------------------------------------------------------------------------------------------------------- */
-
-static void read_kind(struct yaml_reader *reader, yaml_node_t *node, void *record)
-{
-    struct plant_source *source = record;
-    if (yaml_text(node) && !strcmp(yaml_text(node), "modbus"))
-        source->kind = mem_strdup("modbus");
-    else
-        yaml_expected(reader, node, "type", "modbus");
-}
-
-static void read_source(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant, struct plant_source *source)
-{
-    static const struct key keys[] = {
-        { "id", KEY_NAME, true, offsetof(struct plant_source, id), 0, 0, NULL, NULL },
-        { "type", KEY_CUSTOM, true, 0, 0, 0, NULL, read_kind },
-        { "host", KEY_NAME, true, offsetof(struct plant_source, host), 0, 0, NULL, NULL },
-        { "port", KEY_INT, false, offsetof(struct plant_source, port), 1, 65535, NULL, NULL },
-        { "unit", KEY_INT, false, offsetof(struct plant_source, unit), 0, 255, NULL, NULL },
-        { "poll_ms", KEY_INT, false, offsetof(struct plant_source, poll_ms), 10, 86400000, NULL, NULL },
-        { "timeout_ms", KEY_INT, false, offsetof(struct plant_source, timeout_ms), 10, 60000, NULL, NULL },
-        { "byte_order", KEY_CHOICE, false, offsetof(struct plant_source, byte_order), 0, 0, order_choices, NULL },
-        { "address_base", KEY_INT, false, offsetof(struct plant_source, address_base), 0, 1, NULL, NULL },
-        { 0 }
-    };
-    struct yaml_map map;
-    *source = (struct plant_source){ .port = 502, .unit = 1, .poll_ms = 1000, .timeout_ms = 1000, .address_base = 1 };
-    source->line = yaml_place(node).line;
-    if (yaml_map_read(reader, node, "a source", keys, source, &map))
-        check_id(reader, &map, "source", plant->sources, plant->source_count, sizeof(*source), offsetof(struct plant_source, line));
-}
+/* --- other keys ------------------------------------------------------------------------------------------------------------- */
 
 static void read_sources(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
-    struct plant *plant = ((struct plant_file *)record)->plant;
-    int count;
-    plant->sources = make_list(reader, node, "sources", 0, sizeof(*plant->sources), &count);
-    for (int i = 0; i < count; i++)
-        read_source(reader, yaml_list_item(reader, node, i), plant, &plant->sources[plant->source_count++]);
+    plant_sources_read(reader, node, ((struct plant_file *)record)->plant);
 }
 
 static void read_colormaps(struct yaml_reader *reader, yaml_node_t *node, void *record)
@@ -400,7 +361,7 @@ static void read_history(struct yaml_reader *reader, yaml_node_t *node, void *re
     struct plant *plant = ((struct plant_file *)record)->plant;
     struct yaml_map map;
     yaml_map_read(reader, node, "history", keys, &plant->history, &map);
-    resolve_path(plant, &plant->history.folder);
+    plant_resolve_path(plant, &plant->history.folder);
 }
 
 /* --- the whole file --------------------------------------------------------------------------------------------------------- */
@@ -431,7 +392,7 @@ void plant_file_read(struct plant *plant, struct diag *diag)
         plant->time_zone = mem_strdup("UTC");
     stand_upright(plant);
     plant->tags_path = file.tags;
-    resolve_path(plant, &plant->tags_path);
+    plant_resolve_path(plant, &plant->tags_path);
     if (plant->tags_path && access(plant->tags_path, R_OK) != 0) {
         yaml_error(&reader, yaml_map_place(&map, "tags"), "tags: '%s' cannot be read: %s", plant->tags_path, strerror(errno));
         mem_free(plant->tags_path);

@@ -12,6 +12,17 @@
 void plant_file_read(struct plant *plant, struct diag *diag);
 /* Likewise the value of its key `environment`; the folder is set. */
 void plant_environments_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
+/* Likewise the list `sources`. */
+void plant_sources_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
+
+/* Of lists of things that begin with `char *id`. Room for the items; NULL: not a list, or too long (reported). */
+void *plant_list_make(struct yaml_reader *reader, yaml_node_t *node, const char *name, int least, size_t bytes_each, int *count);
+/* Reports an id that is there twice; the last thing was just read. */
+void plant_list_check_id(struct yaml_reader *reader, const struct yaml_map *map, const char *what, const void *things, size_t count,
+                         size_t stride, size_t line_offset);
+/* Relative names are relative to the plant file. */
+void plant_resolve_path(const struct plant *plant, char **path);
+
 /* Reads plant->tags_path; assets, groups and sources are known. */
 void tag_list_read(struct plant *plant, struct diag *diag);
 /* The first two limits that do not rise (LL < L < H < HH; NaN: none): true, with their indices. */

@@ -55,6 +55,8 @@ static const struct column_name column_names[] = { /* the first name of a column
     { "Off Delay s", COL_OFF_DELAY },
     { "Priority", COL_PRIORITY },
     { "Quality Tag", COL_QUALITY_TAG },
+    { "NE 43", COL_NE43 },
+    { "Open Circuit", COL_OPEN_CIRCUIT },
 };
 enum { NAME_COUNT = sizeof(column_names) / sizeof(*column_names) };
 

@@ -7,15 +7,17 @@
 #include <strings.h>
 
 #include "base/mem.h"
-#include "plant/address.h"
 #include "plant/plant_parts.h"
 #include "plant/tag_columns.h"
+#include "plant/tag_links.h"
+#include "plant/tag_wire.h"
 
 struct tag_list {
     struct plant *plant;
     struct tag_columns columns;
     struct plant_tag *tag;          /* what the current row becomes */
     const struct plant_group *group; /* its group, or NULL */
+    struct tag_links links;
     size_t capacity;                /* of plant->tags */
     bool said_no_effect[COL_COUNT];
 };
@@ -53,137 +55,6 @@ static void read_group_and_asset(struct tag_list *list)
     else if (plant->asset_count > 0)
         tag->asset = cell_reference(&list->columns, COL_ASSET, "asset", plant->assets, plant->asset_count, sizeof(*plant->assets));
     list->group = tag->group >= 0 ? &plant->groups[tag->group] : NULL;
-}
-
-/* --- on the wire ------------------------------------------------------------------------------------------------------------ */
-
-/* What the row says itself, in the column or in the address. False: reported. */
-static bool read_stated_order(struct tag_list *list, const struct modbus_address *address, enum byte_order *out)
-{
-    const char *text = cell_text(&list->columns, COL_BYTE_ORDER);
-    *out = address->byte_order;
-    if (!*text)
-        return true;
-    if (!byte_order_parse(text, out)) {
-        cell_error(&list->columns, COL_BYTE_ORDER, "Byte Order: expected ABCD, CDAB, BADC or DCBA, found '%.60s'", text);
-        return false;
-    }
-    if (address->byte_order && *out != address->byte_order) {
-        cell_error(&list->columns, COL_BYTE_ORDER, "Byte Order: '%s' contradicts the address '%.60s'", text, list->tag->address);
-        return false;
-    }
-    return true;
-}
-
-static void read_byte_order(struct tag_list *list, const struct modbus_address *address)
-{
-    struct plant_tag *tag = list->tag;
-    enum byte_order order;
-    if (!read_stated_order(list, address, &order) || tag->type == DATA_BIT)
-        return;
-    int registers = data_type_registers(tag->type);
-    if (!order && registers > 1 && tag->source >= 0)
-        order = list->plant->sources[tag->source].byte_order;
-    tag->byte_order = order;
-    if (order || registers == 1)
-        return;
-    enum tag_column column = list->columns.at[COL_BYTE_ORDER] >= 0 ? COL_BYTE_ORDER : COL_DATA_TYPE;
-    cell_error(&list->columns, column,
-               "Byte Order: %s has %d bits, so one is needed: ABCD, CDAB, BADC or DCBA here, or byte_order in the tag's source",
-               data_type_name(tag->type), registers * 16);
-}
-
-/* False: reported. Kepware's "Default" is Word, and Boolean where the address is one bit. */
-static bool read_type(struct tag_list *list, const struct modbus_address *address)
-{
-    struct plant_tag *tag = list->tag;
-    const char *text = cell_text(&list->columns, COL_DATA_TYPE);
-    bool one_bit = address->table == TABLE_COIL || address->table == TABLE_DISCRETE || address->bit >= 0;
-    tag->type = one_bit ? DATA_BIT : DATA_UINT16;
-    if (!*text || !strcasecmp(text, "Default"))
-        return true;
-    if (!data_type_parse(text, &tag->type)) {
-        const char *near = data_type_suggest(text);
-        if (near)
-            cell_error(&list->columns, COL_DATA_TYPE, "Data Type: unknown type '%.60s'; did you mean '%s'?", text, near);
-        else
-            cell_error(&list->columns, COL_DATA_TYPE, "Data Type: unknown type '%.60s'; expected one of: %s", text, data_type_all);
-        return false;
-    }
-    if (one_bit && tag->type != DATA_BIT)
-        cell_error(&list->columns, COL_DATA_TYPE, "Data Type: expected Boolean, since '%.60s' is one bit, found '%s'", tag->address, text);
-    else if (!one_bit && tag->type == DATA_BIT)
-        cell_error(&list->columns, COL_ADDRESS, "Address: expected a bit such as %.60s.0, since the type is %s", tag->address, text);
-    return one_bit == (tag->type == DATA_BIT);
-}
-
-static void read_address(struct tag_list *list)
-{
-    struct plant_tag *tag = list->tag;
-    struct modbus_address address;
-    char why[200];
-    tag->address = mem_strdup(cell_text(&list->columns, COL_ADDRESS));
-    if (!*tag->address) {
-        if (tag->source >= 0 && list->columns.at[COL_ADDRESS] >= 0)
-            cell_error(&list->columns, COL_ADDRESS, "Address: expected the address of a register, such as 400001 or hr:0");
-        return;
-    }
-    int base = tag->source >= 0 ? list->plant->sources[tag->source].address_base : 1;
-    if (!address_parse(tag->address, base, &address, why)) {
-        cell_error(&list->columns, COL_ADDRESS, "Address: '%.60s': %s", tag->address, why);
-        return;
-    }
-    tag->modbus_unit = address.unit;
-    tag->table = address.table;
-    tag->register_index = address.index;
-    tag->bit = address.bit;
-    if (!read_type(list, &address))
-        return;
-    read_byte_order(list, &address);
-    int registers = data_type_registers(tag->type);
-    if (address.index + registers > 65536)
-        cell_error(&list->columns, COL_ADDRESS, "Address: '%.60s': %s takes %d registers, and the last one there is has the index 65535",
-                   tag->address, data_type_name(tag->type), registers);
-}
-
-/* --- scaling ---------------------------------------------------------------------------------------------------------------- */
-
-static void read_range(struct tag_list *list, enum tag_column low, enum tag_column high, double *out_low, double *out_high)
-{
-    int errors = list->columns.csv.diag->errors;
-    bool has_low = cell_number(&list->columns, low, -PLANT_MAX_VALUE, PLANT_MAX_VALUE, out_low);
-    bool has_high = cell_number(&list->columns, high, -PLANT_MAX_VALUE, PLANT_MAX_VALUE, out_high);
-    if (errors != list->columns.csv.diag->errors)
-        return;
-    enum tag_column missing = has_low ? high : low;
-    if (!has_low || !has_high)
-        cell_error(&list->columns, missing, "%s: expected a number, since Scaling is %s", tag_column_name(missing),
-                   cell_text(&list->columns, COL_SCALING));
-    else if (*out_low >= *out_high)
-        cell_error(&list->columns, low, "%s: expected less than %s, which is %.9g, found %.9g", tag_column_name(low), tag_column_name(high),
-                   *out_high, *out_low);
-}
-
-static void read_scaling(struct tag_list *list)
-{
-    struct plant_tag *tag = list->tag;
-    const char *text = cell_text(&list->columns, COL_SCALING);
-    if (!strcasecmp(text, "Linear"))
-        tag->scaling = SCALING_LINEAR;
-    else if (!strcasecmp(text, "Square Root"))
-        tag->scaling = SCALING_SQUARE_ROOT;
-    else if (*text && strcasecmp(text, "None") != 0)
-        cell_error(&list->columns, COL_SCALING, "Scaling: expected None, Linear or Square Root, found '%.60s'", text);
-    if (tag->scaling != SCALING_NONE) {
-        read_range(list, COL_RAW_LOW, COL_RAW_HIGH, &tag->raw_low, &tag->raw_high);
-        read_range(list, COL_SCALED_LOW, COL_SCALED_HIGH, &tag->scaled_low, &tag->scaled_high);
-    } else if (!*text && cell_given(&list->columns, COL_RAW_LOW) && cell_given(&list->columns, COL_SCALED_LOW)) {
-        cell_warning(&list->columns, COL_RAW_LOW, "Scaling is blank, so the raw and scaled ranges have no effect; write Linear or None");
-    }
-    tag->negate = cell_flag(&list->columns, COL_NEGATE);
-    for (enum tag_column clamp = COL_CLAMP_LOW; clamp <= COL_CLAMP_HIGH; clamp++)
-        if (cell_flag(&list->columns, clamp))
-            cell_warning(&list->columns, clamp, "%s has no effect: what is beyond the range is shown as such", tag_column_name(clamp));
 }
 
 /* --- place ------------------------------------------------------------------------------------------------------------------ */
@@ -283,6 +154,7 @@ static void read_timing(struct tag_list *list)
     int poll_ms = tag->scan_ms ? tag->scan_ms : tag->source >= 0 ? list->plant->sources[tag->source].poll_ms : 1000;
     tag->stale_s = fmax(5, 3 * poll_ms / 1000.0);
     cell_number(&list->columns, COL_STALE, 1e-3, 1e6, &tag->stale_s);
+    cell_number(&list->columns, COL_FLATLINE, 1e-3, 1e8, &tag->flatline_s);
 }
 
 static void read_deadband(struct tag_list *list)
@@ -303,11 +175,10 @@ static void read_weights(struct tag_list *list)
 static void check_without_effect(struct tag_list *list)
 {
     double ignored;
-    for (enum tag_column column = COL_FLATLINE; column <= COL_QUALITY_TAG; column++) {
-        if (!cell_given(&list->columns, column) || column == COL_DEADBAND)
+    for (enum tag_column column = COL_ALARM_DEADBAND; column <= COL_PRIORITY; column++) {
+        if (!cell_given(&list->columns, column))
             continue;
-        if (column != COL_QUALITY_TAG)
-            cell_number(&list->columns, column, 0, PLANT_MAX_VALUE, &ignored);
+        cell_number(&list->columns, column, 0, PLANT_MAX_VALUE, &ignored);
         if (!list->said_no_effect[column])
             cell_warning(&list->columns, column, "%s has no effect in this version", tag_column_name(column));
         list->said_no_effect[column] = true;
@@ -332,8 +203,8 @@ static void read_row(struct tag_list *list)
         cell_error(&list->columns, COL_NAME, "Tag Name: expected a name, found none");
     read_source(list);
     read_group_and_asset(list);
-    read_address(list);
-    read_scaling(list);
+    tag_wire_read(&list->columns, plant, list->tag);
+    tag_links_add(&list->links, &list->columns, plant, plant->tag_count - 1);
     read_place(list);
     read_limits(list);
     read_unit(list);
@@ -387,4 +258,5 @@ void tag_list_read(struct plant *plant, struct diag *diag)
     csv_close(&list.columns.csv);
     sort_names(plant);
     check_duplicates(plant, diag);
+    tag_links_resolve(&list.links, plant, diag);
 }

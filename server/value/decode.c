@@ -109,6 +109,37 @@ static bool beyond(double raw, double a, double b)
     return raw < fmin(a, b) || raw > fmax(a, b);
 }
 
+static bool is_sentinel(const struct plant_tag *tag, const uint16_t *words, double raw)
+{
+    uint64_t bits = join_words(tag->byte_order, words, decode_width(tag));
+    for (int i = 0; i < tag->sentinel_count; i++)
+        if (tag->sentinels[i].is_bits ? tag->sentinels[i].bits == bits : tag->sentinels[i].number == raw)
+            return true;
+    return false;
+}
+
+/* NAMUR NE 43: 3.8 to 20.5 mA are measured, at most 3.6 and at least 21 mA say that the transmitter or its loop has failed. */
+static uint32_t judge_current(const struct plant_tag *tag, double raw)
+{
+    static const double MEASURED_LOW_MA = 3.8, MEASURED_HIGH_MA = 20.5, FAILED_LOW_MA = 3.6, FAILED_HIGH_MA = 21;
+    double ma = 4 + 16 * (raw - tag->raw_low) / (tag->raw_high - tag->raw_low);
+    double half_step_ma = 8 / (tag->raw_high - tag->raw_low); /* of whole raw values */
+    double rounding_ma = half_step_ma < 0.05 ? half_step_ma : 0;
+    if (ma <= FAILED_LOW_MA + rounding_ma || ma >= FAILED_HIGH_MA - rounding_ma)
+        return QUALITY_BAD_SENSOR_FAILURE;
+    return ma < MEASURED_LOW_MA - rounding_ma || ma > MEASURED_HIGH_MA + rounding_ma ? QUALITY_UNCERTAIN_UNITS_EXCEEDED : QUALITY_GOOD;
+}
+
+static uint32_t judge_range(const struct plant_tag *tag, double raw)
+{
+    if (tag->ne43)
+        return judge_current(tag, raw);
+    if (tag->scaling != SCALING_NONE ? beyond(raw, tag->raw_low, tag->raw_high)
+                                     : tag->has_range && beyond(raw, tag->scaled_low, tag->scaled_high))
+        return QUALITY_UNCERTAIN_UNITS_EXCEEDED;
+    return QUALITY_GOOD;
+}
+
 static double scale(const struct plant_tag *tag, double raw)
 {
     double part = (raw - tag->raw_low) / (tag->raw_high - tag->raw_low);
@@ -121,15 +152,14 @@ void decode_sample(const struct plant_tag *tag, const uint16_t *words, struct sa
 {
     double value = is_bit(tag) ? bit_of(tag, words[0]) : raw_of(tag, words);
     out->quality = QUALITY_GOOD;
-    if (!isfinite(value)) { /* before scaling, which would hide it */
+    if (!isfinite(value) || is_sentinel(tag, words, value)) { /* before scaling, which would hide it */
         out->value = 0;
         out->quality = QUALITY_BAD_SENSOR_FAILURE;
         return;
     }
-    if (!is_bit(tag) && tag->scaling != SCALING_NONE) {
-        if (beyond(value, tag->raw_low, tag->raw_high))
-            out->quality = QUALITY_UNCERTAIN_UNITS_EXCEEDED;
-        value = scale(tag, value);
+    if (!is_bit(tag)) {
+        out->quality = judge_range(tag, value);
+        value = tag->scaling == SCALING_NONE ? value : scale(tag, value);
     }
     if (!is_bit(tag) && tag->negate)
         value = -value;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* libmodbus over a socket of ours: connected with a deadline, thrown away after any error. */
+/* libmodbus over a socket or a line of ours: opened with a deadline, thrown away after any error. */
 #include "value/modbus_link.h"
 
 #include <errno.h>
@@ -7,8 +7,12 @@
 #include <modbus.h>
 #include <netinet/tcp.h>
 #include <poll.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/ioctl.h>
 #include <sys/select.h>
 #include <sys/socket.h>
+#include <termios.h>
 #include <unistd.h>
 
 #include "base/clock.h"
@@ -24,18 +28,33 @@ struct modbus_link {
     int slot_fd;   /* taken early and kept for life, the connection is put into it: libmodbus calls select(), whose sets end at
                       FD_SETSIZE, while the daemon may hold more files than that by the time of a reconnect */
     bool open;
+    bool suspect;  /* a serial line on which a reply may still come that was given up */
+    int host;      /* index in source->hosts: the one in use */
     struct lookup *lookup;
+    char name[300];
 };
 
-static modbus_t *new_modbus(int timeout_ms, int fd)
+/* Of 8 bits, as RTU demands. Neither kind connects by itself where it is given a socket. */
+static modbus_t *new_modbus(const struct plant_source *source)
 {
-    modbus_t *modbus = modbus_new_tcp("127.0.0.1", MODBUS_TCP_DEFAULT_PORT); /* never connects: it is given a socket */
+    bool line = source->transport == TRANSPORT_RTU;
+    modbus_t *modbus = source->transport == TRANSPORT_TCP
+                           ? modbus_new_tcp("127.0.0.1", MODBUS_TCP_DEFAULT_PORT)
+                           : modbus_new_rtu(line ? source->device : "/dev/null", source->baud, (char)source->parity, 8, source->stop_bits);
     if (!modbus)
         return NULL;
-    modbus_set_response_timeout(modbus, (uint32_t)(timeout_ms / 1000), (uint32_t)(timeout_ms % 1000) * 1000);
+    modbus_set_response_timeout(modbus, (uint32_t)(source->timeout_ms / 1000), (uint32_t)(source->timeout_ms % 1000) * 1000);
     modbus_set_byte_timeout(modbus, 0, 0); /* off: the response timeout is for the whole reply, not anew for each byte */
-    modbus_set_socket(modbus, fd);
     return modbus;
+}
+
+static void name_link(struct modbus_link *link)
+{
+    const struct plant_source *source = link->source;
+    if (source->transport == TRANSPORT_RTU)
+        snprintf(link->name, sizeof(link->name), "%s", source->device);
+    else
+        snprintf(link->name, sizeof(link->name), "%s:%d", source->hosts[link->host], source->port);
 }
 
 struct modbus_link *modbus_link_create(struct log *log, const struct plant_source *source, int stop_fd)
@@ -49,11 +68,13 @@ struct modbus_link *modbus_link_create(struct log *log, const struct plant_sourc
         log_err(log, "source %s: no file descriptor below %d is free", source->id, FD_SETSIZE);
         goto error;
     }
-    link->modbus = new_modbus(source->timeout_ms, link->slot_fd);
+    link->modbus = new_modbus(source);
     if (!link->modbus) {
         log_err(log, "source %s: libmodbus: %s", source->id, modbus_strerror(errno));
         goto error;
     }
+    modbus_set_socket(link->modbus, link->slot_fd);
+    name_link(link);
     return link;
 error:
     modbus_link_destroy(&link);
@@ -81,12 +102,34 @@ bool modbus_link_is_open(const struct modbus_link *link)
     return link->open;
 }
 
+const char *modbus_link_name(const struct modbus_link *link)
+{
+    return link->name;
+}
+
 void modbus_link_close(struct modbus_link *link)
 {
+    if (link->open && link->source->transport == TRANSPORT_RTU) {
+        ioctl(link->slot_fd, TIOCNXCL);
+        link->suspect = true;
+    }
     if (link->open)
         dup3(link->null_fd, link->slot_fd, O_CLOEXEC);
     link->open = false;
 }
+
+bool modbus_link_next_host(struct modbus_link *link)
+{
+    int count = link->source->transport == TRANSPORT_RTU ? 1 : link->source->host_count;
+    modbus_link_close(link);
+    if (count > 1)
+        lookup_destroy(&link->lookup);
+    link->host = (link->host + 1) % count;
+    name_link(link);
+    return link->host == 0;
+}
+
+/* --- opening ---------------------------------------------------------------------------------------------------------------- */
 
 static int finish_connect(int fd, int stop_fd, int64_t deadline_ns)
 {
@@ -119,7 +162,7 @@ static int connect_any(struct modbus_link *link, int64_t deadline_ns, int *out_f
 {
     const struct addrinfo *to = NULL;
     if (!link->lookup)
-        link->lookup = lookup_start(link->source->host, link->source->port);
+        link->lookup = lookup_start(link->source->hosts[link->host], link->source->port);
     int status = lookup_wait(link->lookup, link->stop_fd, deadline_ns, &to);
     if (status == -ETIMEDOUT) /* the resolver hangs: the next attempt waits on for the same answer */
         return status;
@@ -132,10 +175,26 @@ static int connect_any(struct modbus_link *link, int64_t deadline_ns, int *out_f
     return status;
 }
 
+/* libmodbus sets the line up and keeps how it was; a line is nobody else's while it is open. */
+static int open_line(struct modbus_link *link, int *out_fd)
+{
+    if (modbus_connect(link->modbus) != 0) {
+        modbus_set_socket(link->modbus, link->slot_fd);
+        return -errno;
+    }
+    *out_fd = modbus_get_socket(link->modbus);
+    modbus_set_socket(link->modbus, link->slot_fd);
+    ioctl(*out_fd, TIOCEXCL);
+    return 0;
+}
+
 int modbus_link_open(struct modbus_link *link)
 {
-    int fd = -1;
-    int status = connect_any(link, clock_mono_ns() + link->source->timeout_ms * NS_PER_MS, &fd);
+    int fd = -1, status;
+    if (link->source->transport == TRANSPORT_RTU)
+        status = open_line(link, &fd);
+    else
+        status = connect_any(link, clock_mono_ns() + link->source->timeout_ms * NS_PER_MS, &fd);
     if (status)
         return status;
     if (dup3(fd, link->slot_fd, O_CLOEXEC) < 0)
@@ -147,6 +206,19 @@ int modbus_link_open(struct modbus_link *link)
         status = -ECANCELED;
     }
     return status;
+}
+
+/* --- reading ---------------------------------------------------------------------------------------------------------------- */
+
+/* A reply sent twice, or noise. modbus_flush knows a TCP context's socket and a line, but not RTU frames in a socket. */
+static void flush(struct modbus_link *link)
+{
+    uint8_t bytes[512];
+    if (link->source->transport == TRANSPORT_RTU)
+        tcflush(link->slot_fd, TCIOFLUSH);
+    bool more = link->source->transport != TRANSPORT_RTU;
+    for (int i = 0; more && i < 64; i++)
+        more = recv(link->slot_fd, bytes, sizeof(bytes), MSG_DONTWAIT) > 0;
 }
 
 static int read_bits(modbus_t *modbus, enum register_table table, int first, int count, uint16_t *words)
@@ -164,13 +236,32 @@ static int read_words(modbus_t *modbus, enum register_table table, int first, in
                                 : modbus_read_registers(modbus, first, count, words);
 }
 
-int modbus_link_read(struct modbus_link *link, int unit, enum register_table table, int first, int count, uint16_t *words)
+static int ask(struct modbus_link *link, enum register_table table, int first, int count, uint16_t *words)
 {
     bool bits = table == TABLE_COIL || table == TABLE_DISCRETE;
+    flush(link);
+    return bits ? read_bits(link->modbus, table, first, count, words) : read_words(link->modbus, table, first, count, words);
+}
+
+/* RTU frames have no numbers: what was given up may come as the answer to the next question. So after an error one answer is thrown
+   away, and then whatever else comes for a while. False: nobody answers. */
+static bool clear_line(struct modbus_link *link, enum register_table table, int first, int count, uint16_t *words)
+{
+    if (ask(link, table, first, count, words) < 0 && errno == ETIMEDOUT)
+        return false;
+    wait_for(-1, 0, link->stop_fd, clock_mono_ns() + link->source->timeout_ms * NS_PER_MS);
+    link->suspect = false;
+    return true;
+}
+
+int modbus_link_read(struct modbus_link *link, int unit, enum register_table table, int first, int count, uint16_t *words)
+{
     if (modbus_set_slave(link->modbus, unit) != 0)
-        return MODBUS_EXCEPTION_ILLEGAL_DATA_VALUE; /* libmodbus asks units 0..247 and 255 */
-    modbus_flush(link->modbus); /* a reply sent twice */
-    int got = bits ? read_bits(link->modbus, table, first, count, words) : read_words(link->modbus, table, first, count, words);
+        return MODBUS_EXCEPTION_ILLEGAL_DATA_VALUE; /* libmodbus asks units 0..247, and 255 over TCP */
+    int got = -1;
+    errno = ETIMEDOUT;
+    if (!link->suspect || clear_line(link, table, first, count, words))
+        got = ask(link, table, first, count, words);
     int cause = errno;
     if (got == count)
         return 0;

@@ -38,15 +38,16 @@ static int by_place(const void *pa, const void *pb)
     return order;
 }
 
-static int limit_of(int table)
+static int limit_of(const struct plant_source *source, int table)
 {
-    return table == TABLE_COIL || table == TABLE_DISCRETE ? PLAN_MAX_BITS : PLAN_MAX_REGISTERS;
+    return table == TABLE_COIL || table == TABLE_DISCRETE ? source->max_bits : source->max_registers;
 }
 
-static bool fits(const struct plan_block *block, const struct place *place)
+static bool fits(const struct plan_block *block, const struct place *place, const struct plant_source *source)
 {
     return block->unit == place->unit && (int)block->table == place->table && block->scan_ms == place->scan_ms &&
-           place->first <= block->first + block->count && place->end - block->first <= limit_of(place->table);
+           place->first <= block->first + block->count + source->max_gap &&
+           place->end - block->first <= limit_of(source, place->table);
 }
 
 static void stretch(struct plan_block *block, int end)
@@ -55,10 +56,10 @@ static void stretch(struct plan_block *block, int end)
         block->count = end - block->first;
 }
 
-static void add_place(struct plan *plan, const struct place *place)
+static void add_place(struct plan *plan, const struct place *place, const struct plant_source *source)
 {
     struct plan_block *last = plan->block_count ? &plan->blocks[plan->block_count - 1] : NULL;
-    if (!last || !fits(last, place)) {
+    if (!last || !fits(last, place, source)) {
         mem_grow(&plan->blocks, &plan->block_capacity, plan->block_count + 1, sizeof(*plan->blocks));
         if (plan->unit_count == 0 || plan->units[plan->unit_count - 1] != place->unit)
             plan->units[plan->unit_count++] = place->unit;
@@ -86,7 +87,7 @@ void plan_init(struct plan *plan, const struct plant *plant, int source)
     qsort(places, count, sizeof(*places), by_place);
     *plan = (struct plan){ .tags = mem_array(count, sizeof(*plan->tags)), .units = mem_array(count, sizeof(*plan->units)) };
     for (size_t i = 0; i < count; i++)
-        add_place(plan, &places[i]);
+        add_place(plan, &places[i], &plant->sources[source]);
     mem_free(places);
 }
 

@@ -9,13 +9,14 @@
 
 enum { PLAN_MAX_REGISTERS = 125, PLAN_MAX_BITS = 2000 }; /* one request, Modbus Application Protocol 6.1-6.4 */
 
-struct plan_block { /* one request: no register in it that no tag asks for, no tag in two blocks */
+struct plan_block { /* one request: no tag in two blocks; between its tags at most the source's max_gap registers that nobody wants */
     int unit;                  /* Modbus unit identifier */
     enum register_table table;
     int scan_ms;
     int first, count;          /* registers or bits */
     size_t first_tag, tag_count; /* in plan.tags */
     int64_t due_ns;            /* for the reader; 0 in a new plan, copied by plan_split */
+    int busy_count;            /* likewise: answers in a row that said "busy" */
 };
 
 struct plan { /* zero-initialise */

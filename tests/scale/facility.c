@@ -337,7 +337,7 @@ int main(int argc, char **argv)
     for (long asset = 0; asset < f.options.assets; asset++)
         add_asset(&f, asset);
     text_add(&f.yaml, "groups:\n  - { id: temperature, unit: K, min: 0, max: 100 }\n"
-                      "sources:\n  - { id: plc, type: modbus, host: 127.0.0.1, byte_order: CDAB }\ntags: facility.csv\n");
+                      "sources:\n  - { id: plc, type: modbus, host: 127.0.0.1, byte_order: CDAB, address_base: 1 }\ntags: facility.csv\n");
     write_glb(&f);
     must_write(f.options.folder, "facility.yaml", &f.yaml);
     must_write(f.options.folder, "facility.csv", &f.csv);

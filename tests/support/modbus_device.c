@@ -1,23 +1,26 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A Modbus TCP device for tests, with the bad manners that devices have. */
+/* A Modbus device for tests, with the bad manners that devices have. */
 #include "modbus_device.h"
 
 #include <modbus.h>
 #include <netinet/in.h>
 #include <poll.h>
 #include <pthread.h>
+#include <pty.h>
+#include <signal.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/eventfd.h>
 #include <sys/socket.h>
+#include <termios.h>
 #include <unistd.h>
 
 #include "base/clock.h"
 #include "base/mem.h"
 
-enum { MAX_CLIENTS = 8, REGISTERS = 2000, HEADER_BYTES = 7 };
+enum { MAX_CLIENTS = 8, REGISTERS = 2000 };
 
 struct device_thread {
     pthread_t thread;
@@ -25,6 +28,8 @@ struct device_thread {
     modbus_t *modbus;
     modbus_mapping_t *mapping, *wrong;
     int listen_fd, stop_fd;
+    int line_fd;   /* the terminal's own end, so that it lives on while nobody has it open */
+    int header;    /* bytes before the function code; the last of them is the unit */
     int clients[MAX_CLIENTS];
     size_t client_count;
 };
@@ -89,7 +94,7 @@ static void drip(struct device_thread *t, int fd, const uint8_t *request, int by
     uint8_t reply[MODBUS_TCP_MAX_ADU_LENGTH];
     int count = catch_reply(t, request, bytes, t->mapping, reply);
     for (int i = 0; i < count && !stopped_within(t, 300); i++)
-        if (send(fd, reply + i, 1, MSG_NOSIGNAL) != 1)
+        if (write(fd, reply + i, 1) != 1)
             break;
 }
 
@@ -99,15 +104,47 @@ static void reply_wrong(struct device_thread *t, int fd, const uint8_t *request,
     uint8_t reply[MODBUS_TCP_MAX_ADU_LENGTH];
     int count = catch_reply(t, request, bytes, t->wrong, reply);
     int number = ((reply[0] << 8) + reply[1] - behind) & 0xFFFF;
-    reply[0] = (uint8_t)(number >> 8);
-    reply[1] = (uint8_t)number;
-    send(fd, reply, (size_t)count, MSG_NOSIGNAL); /* the client may have had enough */
+    if (t->device->wire == DEVICE_TCP) {
+        reply[0] = (uint8_t)(number >> 8);
+        reply[1] = (uint8_t)number;
+    }
+    (void)!write(fd, reply, (size_t)count); /* the client may have had enough */
 }
 
-static bool asks_for(const uint8_t *request, int wanted)
+/* The answer, and then some of it is wrong. */
+static void reply_spoilt(struct device_thread *t, int fd, const uint8_t *request, int bytes, int manner)
 {
-    int first = request[HEADER_BYTES + 1] << 8 | request[HEADER_BYTES + 2],
-        count = request[HEADER_BYTES + 3] << 8 | request[HEADER_BYTES + 4];
+    uint8_t reply[MODBUS_TCP_MAX_ADU_LENGTH];
+    int count = catch_reply(t, request, bytes, t->mapping, reply);
+    if (manner == DEVICE_SHORT)
+        count--;
+    if (manner == DEVICE_LONG)
+        reply[t->header + 1] = (uint8_t)(reply[t->header + 1] + 2);
+    if (manner == DEVICE_FOREIGN)
+        reply[t->header - 1] ^= 7;
+    for (int i = 0; i < count && manner == DEVICE_GARBAGE; i++)
+        reply[i] = (uint8_t)rand();
+    (void)!write(fd, reply, (size_t)count);
+}
+
+/* How long the client has let us rest, and how much it wants. */
+static void note_request(struct device_thread *t, const uint8_t *request)
+{
+    struct device *device = t->device;
+    int64_t gap_ns = clock_mono_ns() - device->last_ns;
+    int count = request[t->header + 3] << 8 | request[t->header + 4];
+    if (device->last_ns && (!device->least_gap_ns || gap_ns < device->least_gap_ns))
+        device->least_gap_ns = gap_ns;
+    if (count > device->most)
+        device->most = count;
+    atomic_fetch_add(&device->requests, 1);
+    atomic_fetch_or(&device->functions, 1 << (request[t->header] & 31));
+}
+
+static bool asks_for(const uint8_t *request, int header, int wanted)
+{
+    int first = request[header + 1] << 8 | request[header + 2],
+        count = request[header + 3] << 8 | request[header + 4];
     return wanted >= first && wanted < first + count;
 }
 
@@ -121,9 +158,8 @@ static void refuse(struct device_thread *t, const uint8_t *request, int code)
 static bool answer(struct device_thread *t, int fd, const uint8_t *request, int bytes)
 {
     struct device *device = t->device;
-    int unit = request[HEADER_BYTES - 1], manner = device->manner;
-    atomic_fetch_add(&device->requests, 1);
-    atomic_fetch_or(&device->functions, 1 << (request[HEADER_BYTES] & 31));
+    int unit = request[t->header - 1], manner = device->manner;
+    note_request(t, request);
     if (manner == DEVICE_RESETTING)
         return false;
     if (manner == DEVICE_SILENT || (device->silent_unit && unit == device->silent_unit))
@@ -132,12 +168,16 @@ static bool answer(struct device_thread *t, int fd, const uint8_t *request, int 
         refuse(t, request, MODBUS_EXCEPTION_GATEWAY_TARGET);
         return true;
     }
-    if (device->bad_code && asks_for(request, device->bad_register)) {
+    if (device->bad_code && asks_for(request, t->header, device->bad_register)) {
         refuse(t, request, device->bad_code);
         return true;
     }
     if (manner == DEVICE_DRIPPING) {
         drip(t, fd, request, bytes);
+        return true;
+    }
+    if (manner >= DEVICE_SHORT) {
+        reply_spoilt(t, fd, request, bytes, manner);
         return true;
     }
     if (manner == DEVICE_LATE && stopped_within(t, device->late_ms))
@@ -147,6 +187,7 @@ static bool answer(struct device_thread *t, int fd, const uint8_t *request, int 
     modbus_reply(t->modbus, request, bytes, t->mapping);
     if (manner == DEVICE_TWICE)
         reply_wrong(t, fd, request, bytes, 0);
+    device->last_ns = clock_mono_ns();
     return true;
 }
 
@@ -154,8 +195,12 @@ static void serve(struct device_thread *t, size_t index)
 {
     uint8_t request[MODBUS_TCP_MAX_ADU_LENGTH];
     modbus_set_socket(t->modbus, t->clients[index]);
+    if (t->device->wire != DEVICE_TCP)
+        modbus_set_slave(t->modbus, 1);
     int bytes = modbus_receive(t->modbus, request);
-    if (bytes < 0)
+    if (bytes < 0 && t->line_fd >= 0)
+        tcflush(t->clients[index], TCIOFLUSH);
+    else if (bytes < 0)
         drop_client(t, index, false);
     else if (bytes > 0 && !answer(t, t->clients[index], request, bytes))
         drop_client(t, index, true);
@@ -182,14 +227,37 @@ static void *device_main(void *arg)
     }
 }
 
+static void open_socket(struct device_thread *t)
+{
+    modbus_t *listener = modbus_new_tcp(t->device->address ? t->device->address : "127.0.0.1", t->device->port);
+    t->listen_fd = modbus_tcp_listen(listener, MAX_CLIENTS);
+    must(t->listen_fd >= 0, "modbus_tcp_listen");
+    t->device->port = bound_port(t->listen_fd);
+    modbus_free(listener);
+}
+
+/* The terminal is the one client. */
+static void open_line(struct device_thread *t)
+{
+    struct termios raw = { 0 };
+    t->listen_fd = eventfd(0, EFD_CLOEXEC); /* never readable: nobody else comes */
+    cfmakeraw(&raw);
+    must(openpty(&t->clients[0], &t->line_fd, t->device->line, &raw, NULL) == 0, "openpty");
+    t->client_count = 1;
+}
+
 void device_start(struct device *device)
 {
     struct device_thread *t = mem_new(sizeof(*t));
     t->device = device;
-    t->modbus = modbus_new_tcp("127.0.0.1", device->port);
-    t->listen_fd = modbus_tcp_listen(t->modbus, MAX_CLIENTS);
-    must(t->listen_fd >= 0, "modbus_tcp_listen");
-    device->port = bound_port(t->listen_fd);
+    signal(SIGPIPE, SIG_IGN); /* clients may have had enough of an answer */
+    t->line_fd = -1;
+    t->header = device->wire == DEVICE_TCP ? 7 : 1;
+    t->modbus = device->wire == DEVICE_TCP ? modbus_new_tcp("127.0.0.1", 502) : modbus_new_rtu("/dev/null", 9600, 'N', 8, 1);
+    if (device->wire == DEVICE_LINE)
+        open_line(t);
+    else
+        open_socket(t);
     t->mapping = modbus_mapping_new(REGISTERS, REGISTERS, REGISTERS, REGISTERS);
     t->wrong = modbus_mapping_new(REGISTERS, REGISTERS, REGISTERS, REGISTERS);
     for (int i = 0; i < REGISTERS; i++) {
@@ -212,6 +280,8 @@ void device_stop(struct device *device)
     while (t->client_count)
         drop_client(t, 0, true); /* reset: no TIME_WAIT, so that the port is free at once */
     close(t->listen_fd);
+    if (t->line_fd >= 0)
+        close(t->line_fd);
     close(t->stop_fd);
     modbus_free(t->modbus);
     modbus_mapping_free(t->mapping);

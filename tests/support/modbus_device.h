@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A Modbus TCP device for tests: a libmodbus server on a thread, which can be told to misbehave. Holding register r holds r. */
+/* A Modbus device for tests, on TCP, RTU over TCP or a pseudo terminal: a libmodbus server on a thread, which can be told to
+   misbehave. Holding register r holds r. */
 #ifndef TESTS_MODBUS_DEVICE_H
 #define TESTS_MODBUS_DEVICE_H
 #include <stdatomic.h>
+#include <stdint.h>
 
 enum device_manner {
     DEVICE_GOOD,
@@ -12,7 +14,12 @@ enum device_manner {
     DEVICE_TWICE,       /* each answer is followed by one with its own number again and wrong values */
     DEVICE_BEHIND,      /* each answer is preceded by one with the number of the request before and wrong values */
     DEVICE_RESETTING,   /* takes a request, then resets the connection */
+    DEVICE_SHORT,       /* all but the last byte of the answer */
+    DEVICE_LONG,        /* an answer that says it has more values than were asked for */
+    DEVICE_GARBAGE,     /* random bytes */
+    DEVICE_FOREIGN,     /* the answer of another unit */
 };
+enum device_wire { DEVICE_TCP, DEVICE_RTU_TCP, DEVICE_LINE };
 #define DEVICE_WRONG_VALUE 0x7777
 
 struct device { /* set what you like before or while it runs */
@@ -22,7 +29,12 @@ struct device { /* set what you like before or while it runs */
     _Atomic int silent_unit;             /* not answered; 0: none */
     _Atomic int requests, refused, connections;
     _Atomic int functions;               /* bit f: function code f was asked for */
+    _Atomic int most;                    /* registers or bits asked for at a time */
+    _Atomic int64_t last_ns, least_gap_ns; /* between an answer and the next request; least_gap_ns 0: not yet known */
+    enum device_wire wire;               /* before it starts; RTU knows unit 1 only */
+    const char *address;                 /* to listen at; NULL: 127.0.0.1 */
     int port;                            /* 0: device_start chooses one */
+    char line[64];                       /* out: the terminal of DEVICE_LINE */
     struct device_thread *thread;
 };
 

@@ -25,7 +25,8 @@ void plant_by_hand_destroy(struct plant **plant_ptr)
     for (size_t i = 0; i < plant->source_count; i++) {
         mem_free(plant->sources[i].id);
         mem_free(plant->sources[i].kind);
-        mem_free(plant->sources[i].host);
+        for (int h = 0; h < plant->sources[i].host_count; h++)
+            mem_free(plant->sources[i].hosts[h]);
     }
     mem_free(plant->tags);
     mem_free(plant->sources);
@@ -40,7 +41,14 @@ struct plant_source *plant_by_hand_source(struct plant *plant, const char *id, i
     *source = (struct plant_source){
         .id = mem_strdup(id),
         .kind = mem_strdup("modbus"),
-        .host = mem_strdup("127.0.0.1"),
+        .hosts = { mem_strdup("127.0.0.1") },
+        .host_count = 1,
+        .max_registers = 125,
+        .max_bits = 2000,
+        .heartbeat_tag = -1,
+        .baud = 9600,
+        .parity = 'N',
+        .stop_bits = 1,
         .port = port,
         .unit = 1,
         .poll_ms = 100,

@@ -36,7 +36,7 @@ static struct plant_group groups[] = {
       .reach_m = 4,
       .fill = FILL_NEIGHBOURS },
 };
-static struct plant_source sources[] = { { .id = "plc1", .kind = "modbus", .host = "10.20.30.40", .port = 502 } };
+static struct plant_source sources[] = { { .id = "plc1", .kind = "modbus", .hosts = { "10.20.30.40" }, .host_count = 1, .port = 502 } };
 static struct plant_tag tags[] = {
     { .name = "TI-1",
       .description = "shell \342\200\234inlet\342\200\235",

@@ -25,7 +25,7 @@ static const char plant_text[] = "plant: { name: Boxes }\n"
                                  "groups:\n"
                                  "  - { id: temperature, unit: K, min: 0, max: 1 }\n"
                                  "sources:\n"
-                                 "  - { id: plc, type: modbus, host: 127.0.0.1, byte_order: CDAB }\n"
+                                 "  - { id: plc, type: modbus, host: 127.0.0.1, byte_order: CDAB, address_base: 1 }\n"
                                  "tags: tags.csv\n";
 static const char tags_rows[] = "T-GAP,400001,Float,plc,temperature,GAP/1,,0.5,0.5,1\n"
                                 "T-GAP2,400007,Float,plc,temperature,GAP/1,,2,0.5,0.5\n"

@@ -201,11 +201,78 @@ static void what_is_no_number_is_a_sensor_failure(void **state)
     assert_int_equal(decode(&lbcd, (uint16_t[]){ 0x1234, 0x567A }).quality, QUALITY_BAD_SENSOR_FAILURE);
 }
 
+static uint32_t quality_of_raw(struct plant_tag *tag, int raw)
+{
+    return decode(tag, &(uint16_t){ (uint16_t)raw }).quality;
+}
+
+/* 0 to 27648 are 4 to 20 mA, as common analogue cards count: 1728 steps to the milliampere. */
+static void a_current_says_that_its_loop_has_failed(void **state)
+{
+    (void)state;
+    struct plant_tag tag = tag_of(DATA_INT16, BYTE_ORDER_NONE);
+    tag.scaling = SCALING_LINEAR;
+    tag.has_range = true;
+    tag.raw_high = 27648;
+    tag.scaled_high = 100;
+    assert_int_equal(quality_of_raw(&tag, -691), QUALITY_UNCERTAIN_UNITS_EXCEEDED); /* off by default */
+    tag.ne43 = true;
+    const struct {
+        double ma;
+        uint32_t quality;
+    } cases[] = {
+        { 0, QUALITY_BAD_SENSOR_FAILURE }, { 3.6, QUALITY_BAD_SENSOR_FAILURE }, { 3.65, QUALITY_UNCERTAIN_UNITS_EXCEEDED },
+        { 3.79, QUALITY_UNCERTAIN_UNITS_EXCEEDED }, { 3.8, QUALITY_GOOD }, { 4, QUALITY_GOOD }, { 20, QUALITY_GOOD },
+        { 20.5, QUALITY_GOOD },
+        { 20.51, QUALITY_UNCERTAIN_UNITS_EXCEEDED }, { 20.9, QUALITY_UNCERTAIN_UNITS_EXCEEDED }, { 21, QUALITY_BAD_SENSOR_FAILURE },
+        { 22, QUALITY_BAD_SENSOR_FAILURE },
+    };
+    for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++)
+        assert_int_equal(quality_of_raw(&tag, (int)lrint((cases[i].ma - 4) * 1728)), cases[i].quality);
+    double below = decode(&tag, &(uint16_t){ (uint16_t)lrint(-0.2 * 1728) }).value;
+    assert_true(fabs(below + 1.25) < 0.01); /* 3.8 mA is below the range, and measured */
+}
+
+static void an_open_circuit_s_value_is_no_reading(void **state)
+{
+    (void)state;
+    struct plant_tag tag = tag_of(DATA_INT16, BYTE_ORDER_NONE);
+    assert_int_equal(quality_of_raw(&tag, 0x8000), QUALITY_GOOD); /* off by default */
+    tag.sentinels[0] = (struct plant_sentinel){ .is_bits = true, .bits = 0x8000 };
+    tag.sentinels[1] = (struct plant_sentinel){ .number = 32767 };
+    tag.sentinel_count = 2;
+    assert_int_equal(quality_of_raw(&tag, 0x8000), QUALITY_BAD_SENSOR_FAILURE);
+    assert_int_equal(quality_of_raw(&tag, 32767), QUALITY_BAD_SENSOR_FAILURE);
+    assert_int_equal(quality_of_raw(&tag, 32766), QUALITY_GOOD);
+    assert_int_equal(quality_of_raw(&tag, 0), QUALITY_GOOD);
+    struct plant_tag number = tag_of(DATA_FLOAT32, BYTE_ORDER_CDAB);
+    number.sentinels[0].number = -9999;
+    number.sentinel_count = 1;
+    assert_int_equal(decode(&number, (uint16_t[]){ 0x3C00, 0xC61C }).quality, QUALITY_BAD_SENSOR_FAILURE);
+}
+
+static void a_range_without_scaling_is_the_instrument_s(void **state)
+{
+    (void)state;
+    struct plant_tag tag = tag_of(DATA_INT16, BYTE_ORDER_NONE);
+    tag.has_range = true;
+    tag.scaled_low = -50;
+    tag.scaled_high = 150;
+    assert_int_equal(quality_of_raw(&tag, 150), QUALITY_GOOD);
+    assert_int_equal(quality_of_raw(&tag, -50), QUALITY_GOOD);
+    struct sample above = decode(&tag, &(uint16_t){ 151 });
+    assert_true(above.quality == QUALITY_UNCERTAIN_UNITS_EXCEEDED && above.value == 151);
+    assert_int_equal(quality_of_raw(&tag, -51), QUALITY_UNCERTAIN_UNITS_EXCEEDED);
+}
+
 int main(void)
 {
     cmocka_set_message_output(CM_OUTPUT_TAP);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_type_in_every_byte_order),
+        cmocka_unit_test(a_current_says_that_its_loop_has_failed),
+        cmocka_unit_test(an_open_circuit_s_value_is_no_reading),
+        cmocka_unit_test(a_range_without_scaling_is_the_instrument_s),
         cmocka_unit_test(takes_as_many_registers_as_its_type),
         cmocka_unit_test(bits),
         cmocka_unit_test(linear_scaling),

@@ -19,7 +19,7 @@ static const char plant_format[] = "plant: { name: Boxes }\n"
                                    "groups:\n"
                                    "  - { id: temperature, unit: K, min: 0, max: 1 }\n"
                                    "sources:\n"
-                                   "  - { id: plc, type: modbus, host: 127.0.0.1, byte_order: CDAB }\n"
+                                   "  - { id: plc, type: modbus, host: 127.0.0.1, byte_order: CDAB, address_base: 1 }\n"
                                    "tags: %s\n";
 static const char tags_head[] = "Tag Name,Address,Data Type,Source,Group,Asset,Node,X,Y,Z\n";
 

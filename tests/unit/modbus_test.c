@@ -16,88 +16,11 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "base/text.h"
-#include "tests/support/modbus_device.h"
+#include "tests/support/modbus_case.h"
 #include "tests/support/plant_by_hand.h"
 #include "value/quality.h"
-#include "value/source.h"
 
-struct setup {
-    struct device device;
-    struct plant *plant;
-    struct log *log;
-    struct counters *counters;
-    struct store *store;
-    struct snapshot *snapshot;
-    struct source *source;
-};
-
-static int set_up(void **state)
-{
-    struct setup *s = mem_new(sizeof(*s));
-    s->plant = plant_by_hand_create(300);
-    s->device.port = device_free_port();
-    plant_by_hand_source(s->plant, "plc", s->device.port);
-    s->log = log_create(LOG_ERROR);
-    s->counters = counters_create();
-    *state = s;
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    struct setup *s = *state;
-    source_stop(&s->source);
-    if (s->device.thread)
-        device_stop(&s->device);
-    snapshot_destroy(&s->snapshot);
-    store_destroy(&s->store);
-    counters_destroy(&s->counters);
-    log_destroy(&s->log);
-    plant_by_hand_destroy(&s->plant);
-    mem_free(s);
-    return 0;
-}
-
-/* For devices that let us wait. */
-static void be_impatient(struct setup *s)
-{
-    s->plant->sources[0].timeout_ms = 300;
-}
-
-/* Holding registers 0, 1, ... as INT16 tags. */
-static void add_registers(struct setup *s, int count)
-{
-    for (int i = 0; i < count; i++) {
-        char name[20];
-        snprintf(name, sizeof(name), "R%d", i);
-        plant_by_hand_tag(s->plant, name, TABLE_HOLDING, i, DATA_INT16);
-    }
-}
-
-static void start(struct setup *s)
-{
-    s->store = store_create(s->plant);
-    s->snapshot = snapshot_create(s->plant->tag_count);
-    s->source = source_start(s->log, s->plant, 0, s->store, s->counters);
-    assert_non_null(s->source);
-}
-
-static const struct reading *look(struct setup *s, int tag)
-{
-    store_snapshot(s->store, clock_mono_ns(), clock_utc_ns(), s->snapshot);
-    return &s->snapshot->readings[tag];
-}
-
-/* Waits until the tag has this quality. */
-static void expect(struct setup *s, int tag, uint32_t quality, double timeout_s)
-{
-    int64_t end_ns = clock_mono_ns() + (int64_t)(timeout_s * 1e9);
-    while (look(s, tag)->quality != quality && clock_mono_ns() < end_ns)
-        clock_sleep_ns(10 * NS_PER_MS);
-    assert_string_equal(quality_name(look(s, tag)->quality), quality_name(quality));
-}
-
-static int64_t count_of(struct setup *s, const char *line_start)
+static int64_t count_of(struct modbus_case *s, const char *line_start)
 {
     struct text text = { 0 };
     long long count = -1;
@@ -111,8 +34,8 @@ static int64_t count_of(struct setup *s, const char *line_start)
 
 static void values_arrive(void **state)
 {
-    struct setup *s = *state;
-    add_registers(s, 3);
+    struct modbus_case *s = *state;
+    modbus_case_add_registers(s, 3);
     plant_by_hand_tag(s->plant, "input", TABLE_INPUT, 7, DATA_UINT16);
     plant_by_hand_tag(s->plant, "coil", TABLE_COIL, 3, DATA_BIT);
     plant_by_hand_tag(s->plant, "no coil", TABLE_COIL, 4, DATA_BIT);
@@ -120,14 +43,14 @@ static void values_arrive(void **state)
     plant_by_hand_tag(s->plant, "wide", TABLE_HOLDING, 100, DATA_UINT32);
     plant_by_hand_tag(s->plant, "other unit", TABLE_HOLDING, 5, DATA_UINT16)->modbus_unit = 9;
     device_start(&s->device);
-    start(s);
+    modbus_case_start(s);
     const double wanted[] = { 0, 1, 2, 10007, 1, 0, 1, 100 * 65536.0 + 101, 5 };
     for (int i = 0; i < 9; i++) {
-        expect(s, i, QUALITY_GOOD, 3);
-        assert_true(look(s, i)->value == wanted[i]);
+        modbus_case_expect(s, i, QUALITY_GOOD, 3);
+        assert_true(modbus_case_look(s, i)->value == wanted[i]);
     }
     assert_true(store_link_is_up(s->store, 0));
-    assert_true(llabs(look(s, 0)->received_utc_ns - clock_utc_ns()) < 3 * NS_PER_S);
+    assert_true(llabs(modbus_case_look(s, 0)->received_utc_ns - clock_utc_ns()) < 3 * NS_PER_S);
     assert_int_equal(s->device.functions, 1 << 1 | 1 << 2 | 1 << 3 | 1 << 4);
     assert_true(count_of(s, "plantcast_source_reads_total{source=\"plc\",result=\"ok\"} ") >= 6);
     assert_int_equal(count_of(s, "plantcast_source_connects_total{source=\"plc\"} "), 1);
@@ -136,25 +59,25 @@ static void values_arrive(void **state)
 
 static void many_tags_take_few_requests(void **state)
 {
-    struct setup *s = *state;
-    add_registers(s, 300);
+    struct modbus_case *s = *state;
+    modbus_case_add_registers(s, 300);
     s->plant->sources[0].poll_ms = 60000;
     device_start(&s->device);
-    start(s);
+    modbus_case_start(s);
     for (int i = 0; i < 300; i++) {
-        expect(s, i, QUALITY_GOOD, 3);
-        assert_true(look(s, i)->value == i);
+        modbus_case_expect(s, i, QUALITY_GOOD, 3);
+        assert_true(modbus_case_look(s, i)->value == i);
     }
     assert_int_equal(s->device.requests, 3);
 }
 
 static void is_asked_at_its_scan_time(void **state)
 {
-    struct setup *s = *state;
-    add_registers(s, 1); /* each 100 ms */
+    struct modbus_case *s = *state;
+    modbus_case_add_registers(s, 1); /* each 100 ms */
     device_start(&s->device);
-    start(s);
-    expect(s, 0, QUALITY_GOOD, 3);
+    modbus_case_start(s);
+    modbus_case_expect(s, 0, QUALITY_GOOD, 3);
     int before = s->device.requests;
     clock_sleep_ns(NS_PER_S);
     int asked = s->device.requests - before;
@@ -163,76 +86,76 @@ static void is_asked_at_its_scan_time(void **state)
 
 static void absent_at_start_then_appears(void **state)
 {
-    struct setup *s = *state;
-    add_registers(s, 2);
-    start(s);
-    expect(s, 0, QUALITY_BAD_NO_COMMUNICATION, 3);
+    struct modbus_case *s = *state;
+    modbus_case_add_registers(s, 2);
+    modbus_case_start(s);
+    modbus_case_expect(s, 0, QUALITY_BAD_NO_COMMUNICATION, 3);
     assert_false(store_link_is_up(s->store, 0));
     device_start(&s->device);
-    expect(s, 1, QUALITY_GOOD, 8);
+    modbus_case_expect(s, 1, QUALITY_GOOD, 8);
     assert_true(store_link_is_up(s->store, 0));
 }
 
 static void dies_and_returns(void **state)
 {
-    struct setup *s = *state;
-    add_registers(s, 2);
+    struct modbus_case *s = *state;
+    modbus_case_add_registers(s, 2);
     s->plant->tags[0].stale_s = s->plant->tags[1].stale_s = 1.0;
     device_start(&s->device);
-    start(s);
-    expect(s, 1, QUALITY_GOOD, 3);
+    modbus_case_start(s);
+    modbus_case_expect(s, 1, QUALITY_GOOD, 3);
     device_stop(&s->device);
-    expect(s, 1, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE, 2);
-    assert_true(look(s, 1)->value == 1);
+    modbus_case_expect(s, 1, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE, 2);
+    assert_true(modbus_case_look(s, 1)->value == 1);
     assert_false(store_link_is_up(s->store, 0));
-    expect(s, 1, QUALITY_BAD_COMMUNICATION_ERROR, 2);
+    modbus_case_expect(s, 1, QUALITY_BAD_COMMUNICATION_ERROR, 2);
     device_start(&s->device);
-    expect(s, 1, QUALITY_GOOD, 8);
+    modbus_case_expect(s, 1, QUALITY_GOOD, 8);
     assert_true(store_link_is_up(s->store, 0));
     assert_int_equal(count_of(s, "plantcast_source_connects_total{source=\"plc\"} "), 2);
 }
 
 static void silent_device_loses_the_link_though_it_accepts(void **state)
 {
-    struct setup *s = *state;
-    be_impatient(s);
-    add_registers(s, 2);
+    struct modbus_case *s = *state;
+    modbus_case_be_impatient(s);
+    modbus_case_add_registers(s, 2);
     device_start(&s->device);
-    start(s);
-    expect(s, 1, QUALITY_GOOD, 3);
+    modbus_case_start(s);
+    modbus_case_expect(s, 1, QUALITY_GOOD, 3);
     s->device.manner = DEVICE_SILENT;
-    expect(s, 1, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE, 3);
+    modbus_case_expect(s, 1, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE, 3);
     assert_false(store_link_is_up(s->store, 0));
     clock_sleep_ns(2 * NS_PER_S);
     assert_false(store_link_is_up(s->store, 0)); /* to be connected is not to be up */
     s->device.manner = DEVICE_GOOD;
-    expect(s, 1, QUALITY_GOOD, 8);
+    modbus_case_expect(s, 1, QUALITY_GOOD, 8);
 }
 
 static void resets_do_no_harm(void **state)
 {
-    struct setup *s = *state;
-    add_registers(s, 2);
+    struct modbus_case *s = *state;
+    modbus_case_add_registers(s, 2);
     s->device.manner = DEVICE_RESETTING;
     device_start(&s->device);
-    start(s);
-    expect(s, 1, QUALITY_BAD_NO_COMMUNICATION, 3);
+    modbus_case_start(s);
+    modbus_case_expect(s, 1, QUALITY_BAD_NO_COMMUNICATION, 3);
     clock_sleep_ns(NS_PER_S);
     assert_in_range(s->device.connections, 1, 5); /* no storm: it backs off */
     s->device.manner = DEVICE_GOOD;
-    expect(s, 1, QUALITY_GOOD, 8);
+    modbus_case_expect(s, 1, QUALITY_GOOD, 8);
 }
 
 static void dripping_device_holds_no_longer_than_the_deadline(void **state)
 {
-    struct setup *s = *state;
-    add_registers(s, 20);
+    struct modbus_case *s = *state;
+    modbus_case_add_registers(s, 20);
     s->plant->sources[0].timeout_ms = 1000; /* the answer would take 49 x 0.3 s */
     s->device.manner = DEVICE_DRIPPING;
     device_start(&s->device);
     int64_t begin_ns = clock_mono_ns();
-    start(s);
-    expect(s, 0, QUALITY_BAD_NO_COMMUNICATION, 3);
+    modbus_case_start(s);
+    modbus_case_expect(s, 0, QUALITY_BAD_NO_COMMUNICATION, 3);
     int64_t took_ns = clock_mono_ns() - begin_ns;
     print_message("# gave up after %.3f s\n", (double)took_ns / 1e9);
     assert_in_range(took_ns, 900 * NS_PER_MS, 3000 * NS_PER_MS);
@@ -240,102 +163,102 @@ static void dripping_device_holds_no_longer_than_the_deadline(void **state)
 
 static void late_reply_does_not_poison(void **state)
 {
-    struct setup *s = *state;
-    be_impatient(s);
-    add_registers(s, 1);
+    struct modbus_case *s = *state;
+    modbus_case_be_impatient(s);
+    modbus_case_add_registers(s, 1);
     plant_by_hand_tag(s->plant, "far", TABLE_HOLDING, 500, DATA_INT16); /* a second request of the same shape */
     s->device.late_ms = 400;                                            /* the timeout is 300 */
     device_start(&s->device);
-    start(s);
-    expect(s, 1, QUALITY_GOOD, 3);
+    modbus_case_start(s);
+    modbus_case_expect(s, 1, QUALITY_GOOD, 3);
     for (int round = 0; round < 2; round++) {
         s->device.manner = DEVICE_LATE;
-        expect(s, 1, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE, 3);
+        modbus_case_expect(s, 1, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE, 3);
         s->device.manner = DEVICE_GOOD;
         for (int tag = 0; tag < 2; tag++) {
-            expect(s, tag, QUALITY_GOOD, 8);
-            assert_true(look(s, tag)->value == tag * 500);
+            modbus_case_expect(s, tag, QUALITY_GOOD, 8);
+            assert_true(modbus_case_look(s, tag)->value == tag * 500);
         }
     }
 }
 
 static void reply_sent_twice_does_not_poison(void **state)
 {
-    struct setup *s = *state;
-    add_registers(s, 1);
+    struct modbus_case *s = *state;
+    modbus_case_add_registers(s, 1);
     plant_by_hand_tag(s->plant, "far", TABLE_HOLDING, 500, DATA_INT16);
     s->device.manner = DEVICE_TWICE;
     device_start(&s->device);
-    start(s);
-    expect(s, 1, QUALITY_GOOD, 3);
+    modbus_case_start(s);
+    modbus_case_expect(s, 1, QUALITY_GOOD, 3);
     int before = s->device.requests;
     while (s->device.requests < before + 12) {
         for (int tag = 0; tag < 2; tag++)
-            if (!quality_is_bad(look(s, tag)->quality))
-                assert_true(look(s, tag)->value == tag * 500);
+            if (!quality_is_bad(modbus_case_look(s, tag)->quality))
+                assert_true(modbus_case_look(s, tag)->value == tag * 500);
         clock_sleep_ns(5 * NS_PER_MS);
     }
 }
 
 static void reply_to_an_older_request_is_never_taken(void **state)
 {
-    struct setup *s = *state;
-    add_registers(s, 1);
+    struct modbus_case *s = *state;
+    modbus_case_add_registers(s, 1);
     s->device.manner = DEVICE_BEHIND;
     device_start(&s->device);
-    start(s);
-    expect(s, 0, QUALITY_BAD_NO_COMMUNICATION, 3);
+    modbus_case_start(s);
+    modbus_case_expect(s, 0, QUALITY_BAD_NO_COMMUNICATION, 3);
     while (s->device.requests < 3) {
-        assert_true(quality_is_bad(look(s, 0)->quality));
+        assert_true(quality_is_bad(modbus_case_look(s, 0)->quality));
         clock_sleep_ns(5 * NS_PER_MS);
     }
     s->device.manner = DEVICE_GOOD;
-    expect(s, 0, QUALITY_GOOD, 8);
-    assert_true(look(s, 0)->value == 0);
+    modbus_case_expect(s, 0, QUALITY_GOOD, 8);
+    assert_true(modbus_case_look(s, 0)->value == 0);
 }
 
 static void one_bad_register_does_not_lose_the_rest(void **state)
 {
-    struct setup *s = *state;
-    add_registers(s, 120);
+    struct modbus_case *s = *state;
+    modbus_case_add_registers(s, 120);
     s->device.bad_register = 57;
     s->device.bad_code = 2;
     device_start(&s->device);
-    start(s);
-    expect(s, 57, QUALITY_BAD_CONFIGURATION, 3);
+    modbus_case_start(s);
+    modbus_case_expect(s, 57, QUALITY_BAD_CONFIGURATION, 3);
     for (int i = 0; i < 120; i++)
         if (i != 57) {
-            expect(s, i, QUALITY_GOOD, 3);
-            assert_true(look(s, i)->value == i);
+            modbus_case_expect(s, i, QUALITY_GOOD, 3);
+            assert_true(modbus_case_look(s, i)->value == i);
         }
     int refused = s->device.refused;
     assert_in_range(refused, 1, 8);
     clock_sleep_ns(500 * NS_PER_MS);
     assert_int_equal(s->device.refused, refused); /* remembered */
-    expect(s, 0, QUALITY_GOOD, 1);
-    assert_true(look(s, 0)->age_ns < NS_PER_S);
+    modbus_case_expect(s, 0, QUALITY_GOOD, 1);
+    assert_true(modbus_case_look(s, 0)->age_ns < NS_PER_S);
     assert_true(store_link_is_up(s->store, 0));
 }
 
 static void what_was_refused_is_asked_anew_when_the_link_is_back(void **state)
 {
-    struct setup *s = *state;
-    add_registers(s, 20);
+    struct modbus_case *s = *state;
+    modbus_case_add_registers(s, 20);
     s->device.bad_register = 7;
     s->device.bad_code = 2;
     device_start(&s->device);
-    start(s);
-    expect(s, 7, QUALITY_BAD_CONFIGURATION, 3);
+    modbus_case_start(s);
+    modbus_case_expect(s, 7, QUALITY_BAD_CONFIGURATION, 3);
     device_stop(&s->device);
-    expect(s, 7, QUALITY_BAD_NO_COMMUNICATION, 3);
+    modbus_case_expect(s, 7, QUALITY_BAD_NO_COMMUNICATION, 3);
     device_start(&s->device);
-    expect(s, 7, QUALITY_BAD_CONFIGURATION, 8);
-    expect(s, 8, QUALITY_GOOD, 3);
+    modbus_case_expect(s, 7, QUALITY_BAD_CONFIGURATION, 8);
+    modbus_case_expect(s, 8, QUALITY_GOOD, 3);
     device_stop(&s->device);
-    expect(s, 7, QUALITY_BAD_NO_COMMUNICATION, 3);
+    modbus_case_expect(s, 7, QUALITY_BAD_NO_COMMUNICATION, 3);
     s->device.bad_code = 0; /* repaired meanwhile */
     device_start(&s->device);
-    expect(s, 7, QUALITY_GOOD, 8);
+    modbus_case_expect(s, 7, QUALITY_GOOD, 8);
 }
 
 static void exceptions_become_qualities(void **state)
@@ -347,13 +270,13 @@ static void exceptions_become_qualities(void **state)
         { 1, QUALITY_BAD_CONFIGURATION },  { 2, QUALITY_BAD_CONFIGURATION },    { 3, QUALITY_BAD_CONFIGURATION },
         { 4, QUALITY_BAD_DEVICE_FAILURE }, { 10, QUALITY_BAD_NO_COMMUNICATION }, { 11, QUALITY_BAD_NO_COMMUNICATION },
     };
-    struct setup *s = *state;
-    add_registers(s, 1);
+    struct modbus_case *s = *state;
+    modbus_case_add_registers(s, 1);
     device_start(&s->device);
     for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
         s->device.bad_code = cases[i].code;
-        start(s);
-        expect(s, 0, cases[i].quality, 3);
+        modbus_case_start(s);
+        modbus_case_expect(s, 0, cases[i].quality, 3);
         assert_false(store_link_is_up(s->store, 0));
         source_stop(&s->source);
         snapshot_destroy(&s->snapshot);
@@ -363,90 +286,82 @@ static void exceptions_become_qualities(void **state)
 
 static void device_failure_is_asked_again(void **state)
 {
-    struct setup *s = *state;
-    add_registers(s, 10);
+    struct modbus_case *s = *state;
+    modbus_case_add_registers(s, 10);
     s->device.bad_register = 4;
     s->device.bad_code = 4;
     device_start(&s->device);
-    start(s);
-    expect(s, 4, QUALITY_BAD_DEVICE_FAILURE, 3);
-    expect(s, 3, QUALITY_GOOD, 3);
+    modbus_case_start(s);
+    modbus_case_expect(s, 4, QUALITY_BAD_DEVICE_FAILURE, 3);
+    modbus_case_expect(s, 3, QUALITY_GOOD, 3);
     s->device.bad_code = 0;
-    expect(s, 4, QUALITY_GOOD, 3);
+    modbus_case_expect(s, 4, QUALITY_GOOD, 3);
 }
 
 static void busy_is_no_verdict(void **state)
 {
-    struct setup *s = *state;
-    add_registers(s, 2);
+    struct modbus_case *s = *state;
+    modbus_case_add_registers(s, 2);
     s->plant->tags[0].stale_s = s->plant->tags[1].stale_s = 0.6;
     device_start(&s->device);
-    start(s);
-    expect(s, 0, QUALITY_GOOD, 3);
+    modbus_case_start(s);
+    modbus_case_expect(s, 0, QUALITY_GOOD, 3);
     s->device.bad_code = 6;
-    int64_t received_ns = look(s, 0)->received_utc_ns;
-    expect(s, 0, QUALITY_BAD_COMMUNICATION_ERROR, 2); /* by age: a refused read makes nothing younger */
-    assert_true(look(s, 0)->received_utc_ns - received_ns < NS_PER_S);
+    int64_t received_ns = modbus_case_look(s, 0)->received_utc_ns;
+    modbus_case_expect(s, 0, QUALITY_BAD_COMMUNICATION_ERROR, 2); /* by age: a refused read makes nothing younger */
+    assert_true(modbus_case_look(s, 0)->received_utc_ns - received_ns < NS_PER_S);
     s->device.bad_code = 0;
-    expect(s, 0, QUALITY_GOOD, 3);
+    modbus_case_expect(s, 0, QUALITY_GOOD, 3);
 }
 
-static void check_other_unit_lives(struct setup *s)
+static void check_other_unit_lives(struct modbus_case *s)
 {
-    expect(s, 0, QUALITY_GOOD, 3);
-    expect(s, 1, QUALITY_BAD_NO_COMMUNICATION, 3);
+    modbus_case_expect(s, 0, QUALITY_GOOD, 3);
+    modbus_case_expect(s, 1, QUALITY_BAD_NO_COMMUNICATION, 3);
     for (int i = 0; i < 100; i++) {
-        assert_int_equal(look(s, 0)->quality, QUALITY_GOOD);
-        assert_true(look(s, 0)->age_ns < 2 * NS_PER_S);
+        assert_int_equal(modbus_case_look(s, 0)->quality, QUALITY_GOOD);
+        assert_true(modbus_case_look(s, 0)->age_ns < 2 * NS_PER_S);
         assert_true(store_link_is_up(s->store, 0));
         clock_sleep_ns(20 * NS_PER_MS);
     }
     s->device.dead_unit = s->device.silent_unit = 0;
-    expect(s, 1, QUALITY_GOOD, 12);
+    modbus_case_expect(s, 1, QUALITY_GOOD, 12);
 }
 
 static void dead_unit_behind_a_gateway_leaves_the_others_alone(void **state)
 {
-    struct setup *s = *state;
-    add_registers(s, 2);
+    struct modbus_case *s = *state;
+    modbus_case_add_registers(s, 2);
     s->plant->tags[1].modbus_unit = 7;
     s->device.dead_unit = 7;
     device_start(&s->device);
-    start(s);
+    modbus_case_start(s);
     check_other_unit_lives(s);
 }
 
 static void silent_unit_behind_a_gateway_leaves_the_others_alone(void **state)
 {
-    struct setup *s = *state;
-    be_impatient(s);
-    add_registers(s, 2);
+    struct modbus_case *s = *state;
+    modbus_case_be_impatient(s);
+    modbus_case_add_registers(s, 2);
     s->plant->tags[1].modbus_unit = 7;
     s->device.silent_unit = 7;
     device_start(&s->device);
-    start(s);
+    modbus_case_start(s);
     check_other_unit_lives(s);
-}
-
-static void assert_stops_soon(struct setup *s)
-{
-    int64_t begin_ns = clock_mono_ns();
-    source_stop(&s->source);
-    assert_null(s->source);
-    assert_true(clock_mono_ns() - begin_ns < 2 * NS_PER_S);
 }
 
 static void stops_while_the_device_hangs(void **state)
 {
-    struct setup *s = *state;
-    add_registers(s, 2);
+    struct modbus_case *s = *state;
+    modbus_case_add_registers(s, 2);
     s->plant->sources[0].timeout_ms = 20000;
     s->device.manner = DEVICE_SILENT;
     device_start(&s->device);
-    start(s);
+    modbus_case_start(s);
     while (s->device.requests == 0)
         clock_sleep_ns(5 * NS_PER_MS);
-    assert_stops_soon(s);
+    modbus_case_assert_stops_soon(s);
 }
 
 struct full { /* a listener that has room for nobody more: whoever connects, waits */
@@ -476,53 +391,53 @@ static void full_close(struct full *full)
 
 static void stops_while_a_connection_hangs(void **state)
 {
-    struct setup *s = *state;
+    struct modbus_case *s = *state;
     struct full full;
     full_open(&full, s->device.port);
-    add_registers(s, 1);
+    modbus_case_add_registers(s, 1);
     s->plant->sources[0].timeout_ms = 20000;
-    start(s);
+    modbus_case_start(s);
     clock_sleep_ns(300 * NS_PER_MS);
-    assert_int_equal(look(s, 0)->quality, QUALITY_BAD_WAITING); /* still connecting */
-    assert_stops_soon(s);
+    assert_int_equal(modbus_case_look(s, 0)->quality, QUALITY_BAD_WAITING); /* still connecting */
+    modbus_case_assert_stops_soon(s);
     full_close(&full);
 }
 
 static void connecting_ends_by_its_deadline(void **state)
 {
-    struct setup *s = *state;
+    struct modbus_case *s = *state;
     struct full full;
     full_open(&full, s->device.port);
-    be_impatient(s);
-    add_registers(s, 1);
-    start(s);
-    expect(s, 0, QUALITY_BAD_NO_COMMUNICATION, 2.5); /* the system itself would try for two minutes */
+    modbus_case_be_impatient(s);
+    modbus_case_add_registers(s, 1);
+    modbus_case_start(s);
+    modbus_case_expect(s, 0, QUALITY_BAD_NO_COMMUNICATION, 2.5); /* the system itself would try for two minutes */
     full_close(&full);
 }
 
 static void names_are_looked_up(void **state)
 {
-    struct setup *s = *state;
-    add_registers(s, 1);
-    mem_free(s->plant->sources[0].host);
-    s->plant->sources[0].host = mem_strdup("localhost");
+    struct modbus_case *s = *state;
+    modbus_case_add_registers(s, 1);
+    mem_free(s->plant->sources[0].hosts[0]);
+    s->plant->sources[0].hosts[0] = mem_strdup("localhost");
     device_start(&s->device);
-    start(s);
-    expect(s, 0, QUALITY_GOOD, 5);
+    modbus_case_start(s);
+    modbus_case_expect(s, 0, QUALITY_GOOD, 5);
 }
 
 static void two_sources_may_name_one_device(void **state)
 {
-    struct setup *s = *state;
-    add_registers(s, 1);
+    struct modbus_case *s = *state;
+    modbus_case_add_registers(s, 1);
     plant_by_hand_source(s->plant, "again", s->device.port);
     plant_by_hand_tag(s->plant, "second", TABLE_HOLDING, 11, DATA_INT16);
     device_start(&s->device);
-    start(s);
+    modbus_case_start(s);
     struct source *second = source_start(s->log, s->plant, 1, s->store, s->counters);
-    expect(s, 0, QUALITY_GOOD, 3);
-    expect(s, 1, QUALITY_GOOD, 3);
-    assert_true(look(s, 1)->value == 11);
+    modbus_case_expect(s, 0, QUALITY_GOOD, 3);
+    modbus_case_expect(s, 1, QUALITY_GOOD, 3);
+    assert_true(modbus_case_look(s, 1)->value == 11);
     source_stop(&second);
     assert_int_equal(s->device.connections, 2);
 }
@@ -531,7 +446,7 @@ static void two_sources_may_name_one_device(void **state)
 static void reconnects_with_a_thousand_files_open(void **state)
 {
     enum { FILES = 1100, LOW = 4 };
-    struct setup *s = *state;
+    struct modbus_case *s = *state;
     struct rlimit limit;
     int files[FILES];
     getrlimit(RLIMIT_NOFILE, &limit);
@@ -539,23 +454,23 @@ static void reconnects_with_a_thousand_files_open(void **state)
         skip();
     limit.rlim_cur = FILES + 100;
     setrlimit(RLIMIT_NOFILE, &limit);
-    add_registers(s, 1);
-    start(s);
-    expect(s, 0, QUALITY_BAD_NO_COMMUNICATION, 3);
+    modbus_case_add_registers(s, 1);
+    modbus_case_start(s);
+    modbus_case_expect(s, 0, QUALITY_BAD_NO_COMMUNICATION, 3);
     for (int i = 0; i < FILES; i++)
         files[i] = dup(2);
     assert_true(files[FILES - 1] >= 1024);
     device_start(&s->device);
     for (int i = 0; i < LOW; i++) /* the device's own libmodbus needs a low one too */
         close(files[i]);
-    expect(s, 0, QUALITY_GOOD, 8);
+    modbus_case_expect(s, 0, QUALITY_GOOD, 8);
     for (int i = LOW; i < FILES; i++)
         close(files[i]);
 }
 
 static void unknown_kind_is_refused(void **state)
 {
-    struct setup *s = *state;
+    struct modbus_case *s = *state;
     mem_free(s->plant->sources[0].kind);
     s->plant->sources[0].kind = mem_strdup("telepathy");
     s->store = store_create(s->plant);
@@ -581,8 +496,6 @@ static void calls_nothing_that_writes(void **state)
     mem_free(archive);
     mem_free(path);
 }
-
-#define modbus_test(f) cmocka_unit_test_setup_teardown(f, set_up, tear_down)
 
 int main(void)
 {

@@ -101,6 +101,28 @@ static void a_request_is_full_at_its_limit_and_splits_no_value(void **state)
     many(TABLE_DISCRETE, DATA_BIT, 1, 2001, (int[]){ 2000, 1 }, 2);
 }
 
+static void gaps_are_bridged_up_to_the_device_s_limit(void **state)
+{
+    (void)state;
+    struct plan plan;
+    struct plant *plant = plant_of_registers((int[]){ 0, 6, 13, 23 }, 4, TABLE_HOLDING, DATA_FLOAT32);
+    plant->sources[0].max_gap = 5;
+    plan_init(&plan, plant, 0);
+    assert_block(&plan, 0, 0, 15, 3); /* gaps of 4 and 5 */
+    assert_block(&plan, 1, 23, 2, 1); /* of 8 */
+    plan_split(&plan, plant, 0);
+    assert_block(&plan, 0, 0, 2, 1); /* and the gap has gone with it */
+    assert_block(&plan, 1, 6, 9, 2);
+    plan_finish(&plan);
+    plant->sources[0].max_registers = 8;
+    plan_init(&plan, plant, 0);
+    assert_block(&plan, 0, 0, 8, 2);
+    assert_block(&plan, 1, 13, 2, 1);
+    assert_block(&plan, 2, 23, 2, 1);
+    plan_finish(&plan);
+    plant_by_hand_destroy(&plant);
+}
+
 static void two_tags_may_share_registers(void **state)
 {
     (void)state;
@@ -144,7 +166,7 @@ static void splitting_ends_at_single_tags(void **state)
 
 enum { REGISTERS = 1000 };
 
-/* Every tag in one block, blocks within the limits, and no register asked for that no tag is on: it might not exist. */
+/* Every tag in one block, blocks within the limits, and no longer run of registers that no tag is on than the device bears. */
 static void check_rules(const struct plant *plant, const struct plan *plan)
 {
     char wanted[2][REGISTERS + 4] = { { 0 } };
@@ -154,7 +176,9 @@ static void check_rules(const struct plant *plant, const struct plan *plan)
             wanted[plant->tags[i].table == TABLE_COIL][plant->tags[i].register_index + r] = 1;
     for (size_t b = 0; b < plan->block_count; b++) {
         const struct plan_block *block = &plan->blocks[b];
-        assert_true(block->count >= 1 && block->count <= (block->table == TABLE_COIL ? PLAN_MAX_BITS : PLAN_MAX_REGISTERS));
+        int gap = 0;
+        int most = block->table == TABLE_COIL ? plant->sources->max_bits : plant->sources->max_registers;
+        assert_in_range(block->count, 1, most);
         assert_int_equal(block->first_tag, seen);
         for (size_t t = 0; t < block->tag_count; t++, seen++) {
             const struct plant_tag *tag = &plant->tags[plan->tags[seen]];
@@ -162,8 +186,11 @@ static void check_rules(const struct plant *plant, const struct plan *plan)
             assert_int_equal(tag->table, block->table);
             assert_true(offset >= 0 && offset + decode_width(tag) <= block->count);
         }
-        for (int i = 0; i < block->count; i++)
-            assert_int_equal(wanted[block->table == TABLE_COIL][block->first + i], 1);
+        for (int i = 0; i < block->count; i++) {
+            gap = wanted[block->table == TABLE_COIL][block->first + i] ? 0 : gap + 1;
+            assert_true(gap <= plant->sources->max_gap);
+        }
+        assert_int_equal(gap, 0);
     }
     assert_int_equal(seen, plan->tag_count);
 }
@@ -179,7 +206,10 @@ static void random_tag_lists_obey_the_rules(void **state)
         struct plan plan;
         size_t count = 1 + (size_t)rand() % 400;
         struct plant *plant = plant_by_hand_create(count);
-        plant_by_hand_source(plant, "a", 1);
+        struct plant_source *source = plant_by_hand_source(plant, "a", 1);
+        source->max_gap = round % 2 ? rand() % 20 : 0;
+        source->max_registers = round % 3 ? 4 + rand() % 122 : 125;
+        source->max_bits = round % 5 ? 4 + rand() % 1997 : 2000;
         for (size_t i = 0; i < count; i++) {
             char name[24];
             snprintf(name, sizeof(name), "t%zu", i);
@@ -227,6 +257,7 @@ int main(void)
         cmocka_unit_test(neighbours_go_together_and_gaps_part),
         cmocka_unit_test(units_tables_scans_and_sources_part),
         cmocka_unit_test(a_request_is_full_at_its_limit_and_splits_no_value),
+        cmocka_unit_test(gaps_are_bridged_up_to_the_device_s_limit),
         cmocka_unit_test(two_tags_may_share_registers),
         cmocka_unit_test(splitting_ends_at_single_tags),
         cmocka_unit_test(random_tag_lists_obey_the_rules),

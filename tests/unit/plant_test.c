@@ -218,7 +218,7 @@ static void the_locale_changes_nothing(void **state)
 /* --- plant.yaml, bad -------------------------------------------------------------------------------------------------------- */
 
 /* small_yaml with one line replaced; line 0: nothing. */
-static void load_with(struct plant_case *f, int line, const char *text)
+static void load_csv_with(struct plant_case *f, int line, const char *text, const char *csv)
 {
     struct text yaml = { 0 };
     const char *p = small_yaml;
@@ -230,8 +230,13 @@ static void load_with(struct plant_case *f, int line, const char *text)
             text_add_bytes(&yaml, p, length);
         p += length;
     }
-    plant_case_load(f, yaml.at, small_csv);
+    plant_case_load(f, yaml.at, csv);
     text_finish(&yaml);
+}
+
+static void load_with(struct plant_case *f, int line, const char *text)
+{
+    load_csv_with(f, line, text, small_csv);
     assert_null(f->plant);
 }
 
@@ -284,7 +289,7 @@ static void missing_keys_are_named(void **state)
     load_with(f, 3, "groups:\n- id: temp\n  unit: K");
     FOUND(f, { "plant.yaml", 4, 3, "a group needs the key 'min'" }, { "plant.yaml", 4, 3, "a group needs the key 'max'" });
     load_with(f, 4, "sources: [{ id: plc, type: modbus, host: }]");
-    FOUND(f, { "plant.yaml", 4, 42, "host: expected a value, found ''" });
+    FOUND(f, { "plant.yaml", 4, 42, "a source needs the key 'host'" });
     load_with(f, 2, "assets: []");
     FOUND(f, { "plant.yaml", 2, 9, "assets: expected at least one" });
 }
@@ -334,9 +339,65 @@ static void bad_choices_list_the_allowed(void **state)
           { "plant.yaml", 3, 74, "distance: expected geodesic or euclidean, found a list" },
           { "plant.yaml", 3, 92, "fill: expected none or neighbours, found 'some'" });
     load_with(f, 4, "sources: [{ id: s, type: opcua, host: h, byte_order: abcd, address_base: 2 }]");
-    FOUND(f, { "plant.yaml", 4, 26, "type: expected modbus, found 'opcua'" },
+    FOUND(f, { "plant.yaml", 4, 26, "type: expected modbus or replay, found 'opcua'" },
           { "plant.yaml", 4, 54, "byte_order: expected ABCD, CDAB, BADC or DCBA, found 'abcd'" },
           { "plant.yaml", 4, 74, "address_base: expected a whole number from 0 to 1, found '2'" });
+}
+
+static void sources_say_how_they_are_reached(void **state)
+{
+    struct plant_case *f = *state;
+    load_with(f, 4,
+              "sources:\n"
+              "- { id: a, type: modbus, hosts: [10.0.0.1, 10.0.0.2], max_registers: 60, max_bits: 100, max_gap: 8, pause_ms: 20 }\n"
+              "- { id: b, type: modbus, transport: rtu-over-tcp, host: gw, port: 4001, heartbeat: { tag: B, longest_s: 2.5 } }\n"
+              "- { id: c, type: modbus, transport: rtu, device: /dev/ttyS0, baud: 9600, parity: none, stop_bits: 2, simulated: yes }\n"
+              "- { id: d, type: replay, file: tags.csv, speed: 60, loop: yes }\n"
+              "- { id: e, type: modbus, transport: rtu, device: /dev/ttyS1 }");
+    FOUND(f, { "plant.yaml", 6, 1, "heartbeat: unknown tag 'B'" }, { "tags.csv", 2, 1, "Source: expected the id of one of the 5 sources" });
+    load_csv_with(f, 4,
+                  "sources:\n"
+                  "- { id: a, type: modbus, hosts: [10.0.0.1, 10.0.0.2], max_registers: 60, max_bits: 100, max_gap: 8, pause_ms: 20 }\n"
+                  "- { id: b, type: modbus, transport: rtu-over-tcp, host: gw, port: 4001, heartbeat: { tag: B, longest_s: 2.5 } }\n"
+                  "- { id: c, type: modbus, transport: rtu, device: /dev/ttyS0, baud: 9600, parity: none, stop_bits: 2, simulated: yes }\n"
+                  "- { id: d, type: replay, file: tags.csv, speed: 60, loop: yes }\n"
+                  "- { id: e, type: modbus, transport: rtu, device: /dev/ttyS1 }",
+                  "Tag Name,Address,Source\nA,40001,a\nB,40001,b\nC,Shell inlet,d\n");
+    plant_case_assert_loaded(f, 0);
+    const struct plant_source *s = f->plant->sources;
+    assert_true(s[0].host_count == 2 && !strcmp(s[0].hosts[1], "10.0.0.2") && s[0].transport == TRANSPORT_TCP && !s[0].base_stated);
+    assert_true(s[0].max_registers == 60 && s[0].max_bits == 100 && s[0].max_gap == 8 && s[0].pause_ms == 20 && s[0].heartbeat_s == 0);
+    assert_true(s[1].transport == TRANSPORT_RTU_TCP && s[1].port == 4001 && s[1].heartbeat_tag == 1 && s[1].heartbeat_s == 2.5);
+    assert_true(s[1].max_registers == 125 && s[1].max_bits == 2000 && s[1].max_gap == 0 && s[1].pause_ms == 0 && !s[1].simulated);
+    assert_true(s[2].transport == TRANSPORT_RTU && s[2].baud == 9600 && s[2].parity == 'N' && s[2].stop_bits == 2 && s[2].simulated);
+    assert_true(!strcmp(s[3].kind, "replay") && s[3].speed == 60 && s[3].loop && s[3].simulated);
+    assert_true(s[4].baud == 19200 && s[4].parity == 'E' && s[4].stop_bits == 1); /* Modbus over serial line 2.5.1 */
+    assert_string_equal(f->plant->tags[2].address, "Shell inlet");
+}
+
+static void keys_without_meaning_are_errors(void **state)
+{
+    struct plant_case *f = *state;
+    load_csv_with(f, 4,
+                  "sources:\n"
+                  "- { id: a, type: modbus, host: h, baud: 9600, file: x }\n"
+                  "- { id: b, type: modbus, transport: rtu, host: h }\n"
+                  "- { id: c, type: replay, file: no.csv, port: 5 }\n"
+                  "- { id: d, type: modbus, host: g, hosts: [h] }\n"
+                  "- { id: e, type: modbus, hosts: [1, 2, 3, 4, 5] }\n"
+                  "- { id: f, type: modbus, transport: rtu, device: /dev/a }\n"
+                  "- { id: g, type: modbus, transport: rtu, device: /dev/a }\n"
+                  "- { id: h, type: replay, file: tags.csv, heartbeat: { longest_s: 0 } }",
+                  "Tag Name,Address,Source\nA,40001,a\n");
+    FOUND(f, { "plant.yaml", 5, 41, "baud: has no meaning for a modbus source over TCP" }, { "plant.yaml", 5, 53, "file: has no meaning" },
+          { "plant.yaml", 5, 53, "cannot be read" }, { "plant.yaml", 6, 48, "host: has no meaning for transport rtu" },
+          { "plant.yaml", 6, 3, "a source needs the key 'device'" }, { "plant.yaml", 7, 32, "no.csv' cannot be read" },
+          { "plant.yaml", 7, 46, "port: has no meaning for a replay" }, { "plant.yaml", 8, 42, "hosts: expected host or hosts, not both" },
+          { "plant.yaml", 8, 3, "h:502 is source a's too: the device gets two connections" },
+          { "plant.yaml", 8, 3, "h:502 is source b's too" },
+          { "plant.yaml", 9, 33, "hosts: expected 1 to 4, found 5" }, { "plant.yaml", 11, 50, "device: '/dev/a' is source f's already" },
+          { "plant.yaml", 12, 53, "heartbeat needs the key 'tag'" },
+          { "plant.yaml", 12, 66, "longest_s: expected a number from 0.1 to 86400" });
 }
 
 static void numbers_have_ranges(void **state)
@@ -374,7 +435,7 @@ static void meaning_is_checked(void **state)
     FOUND(f, { "plant.yaml", 3, 57, "H: expected a number, found 'hot'" });
     load_with(f, 2, "assets:\n- { id: A, model: m.glb }\n- { id: B, model: m.glb }\n- { model: m.glb, id: A }");
     FOUND(f, { "plant.yaml", 5, 23, "id: asset 'A' is there twice (first at line 3)" });
-    load_with(f, 4, "sources: [{ id: s, type: modbus, host: h }, { id: s, type: modbus, host: h }]");
+    load_with(f, 4, "sources: [{ id: s, type: modbus, host: h }, { id: s, type: modbus, host: g }]");
     FOUND(f, { "plant.yaml", 4, 51, "id: source 's' is there twice" },
           { "tags.csv", 2, 1, "Source: expected the id of one of the 2 sources" });
     load_with(f, 2, "assets: [{ id: A, model: nowhere/x.glb }, { id: B, model: . }]");
@@ -570,6 +631,8 @@ int main(void)
         TEST(missing_keys_are_named),
         TEST(wrong_types_are_named),
         TEST(bad_choices_list_the_allowed),
+        TEST(sources_say_how_they_are_reached),
+        TEST(keys_without_meaning_are_errors),
         TEST(numbers_have_ranges),
         TEST(meaning_is_checked),
         TEST(time_zones_are_looked_up),

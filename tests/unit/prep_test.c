@@ -31,7 +31,7 @@ static const char plant_text[] = "plant: { name: Prep test }\n"
                                  "groups:\n"
                                  "  - { id: temperature, unit: K, min: 0, max: 1 }\n"
                                  "sources:\n"
-                                 "  - { id: plc, type: modbus, host: 127.0.0.1, byte_order: CDAB }\n"
+                                 "  - { id: plc, type: modbus, host: 127.0.0.1, byte_order: CDAB, address_base: 1 }\n"
                                  "tags: tags.csv\n";
 static const char tags_text[] = "T1,400001,Float,plc,temperature,A,,0,0,0\n"
                                 "T2,400003,Float,plc,temperature,A,TT-2,,,\n"

@@ -29,7 +29,7 @@ static const char plant_text[] = "plant: { name: Test }\n"
                                  "assets: [ { id: V-1, model: none.glb } ]\n"
                                  "groups: [ { id: temperature, unit: °C, min: 0, max: 200 } ]\n"
                                  "sources: [ { id: plc, type: modbus, host: 127.0.0.1, port: %d, poll_ms: 50,\n"
-                                 "             timeout_ms: 300, byte_order: CDAB } ]\n"
+                                 "             timeout_ms: 300, byte_order: CDAB, address_base: 1 } ]\n"
                                  "tags: sim-test.csv\n";
 static const char tags_text[] =
     "Tag Name,Address,Data Type,Byte Order,Scaling,Raw Low,Raw High,Scaled Low,Scaled High,Negate Value,Sim Value,Sim Loop\n"

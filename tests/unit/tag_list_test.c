@@ -20,10 +20,11 @@
     "groups: [{ id: temp, unit: °C, min: 0, max: 100, limits: { L: 10, H: 90 }, strength: 3, decay: 4 }]\n" \
     "sources: " source "\n" \
     "tags: tags.csv\n"
-static const char yaml[] = YAML("[{ id: plc, type: modbus, host: h, byte_order: CDAB, poll_ms: 3000 }]");
+static const char yaml[] = YAML("[{ id: plc, type: modbus, host: h, byte_order: CDAB, address_base: 1, poll_ms: 3000 }]");
 static const char yaml_no_order[] = YAML("[{ id: plc, type: modbus, host: h }]");
 static const char yaml_two_sources[] =
-    YAML("[{ id: plc1, type: modbus, host: h, byte_order: ABCD }, { id: plc2, type: modbus, host: h, byte_order: DCBA, address_base: 0 }]");
+    YAML("[{ id: plc1, type: modbus, host: h, byte_order: ABCD, address_base: 1 }, "
+         "{ id: plc2, type: modbus, host: h2, byte_order: DCBA, address_base: 0 }]");
 static const char yaml_no_source[] = YAML("[]");
 
 static void a_kepware_export_is_read(void **state)
@@ -88,15 +89,79 @@ static void byte_orders_are_resolved(void **state)
         assert_int_equal(c->plant->tags[i].byte_order, orders[i]);
     assert_int_equal(c->plant->tags[0].register_index, 0);
     assert_int_equal(c->plant->tags[1].register_index, 1); /* address_base 0 */
-    plant_case_load(c, yaml_no_order, "Tag Name,Address,Data Type,Byte Order\nA,400001,Float,\nB,400003,Double,\nC,400007,Word,\n");
+    plant_case_load(c, yaml_no_order, "Tag Name,Address,Data Type,Byte Order\nA,hr:0,Float,\nB,ir:2,Double,\nC,400007,Word,\n");
     assert_null(c->plant);
-    FOUND(c, { "tags.csv", 2, 16, "Byte Order: float32 has 32 bits, so one is needed: ABCD, CDAB, BADC or DCBA" },
-          { "tags.csv", 3, 17, "float64 has 64 bits" });
-    plant_case_load(c, yaml_no_order, "Tag Name,Address,Data Type\nA,400001,Float\n");
-    FOUND(c, { "tags.csv", 2, 10, "float32 has 32 bits, so one is needed" });
+    FOUND(c, { "tags.csv", 2, 14, "Byte Order: float32 has 32 bits, so one is needed: ABCD, CDAB, BADC or DCBA" },
+          { "tags.csv", 3, 15, "float64 has 64 bits" });
+    plant_case_load(c, yaml_no_order, "Tag Name,Address,Data Type\nA,hr:0,Float\n");
+    FOUND(c, { "tags.csv", 2, 8, "float32 has 32 bits, so one is needed" });
     plant_case_load(c, yaml, "Tag Name,Address,Data Type,Byte Order\nA,400001,Float,big\nB,400001#BB,Float,ABCD\n");
     FOUND(c, { "tags.csv", 2, 16, "Byte Order: expected ABCD, CDAB, BADC or DCBA, found 'big'" },
           { "tags.csv", 3, 19, "Byte Order: 'ABCD' contradicts the address '400001#BB'" });
+}
+
+/* One off by one register looks like a value all the same. */
+static void where_long_values_begin_is_never_guessed(void **state)
+{
+    struct plant_case *c = *state;
+    plant_case_load(c, yaml_no_order,
+                    "Tag Name,Address,Data Type\nA,7!400001#BL,Float\nB,300003#LL,QWord\nC,400009,Word\nD,hr:9#BL,Float\n");
+    assert_null(c->plant);
+    FOUND(c, { "tags.csv", 2, 3, "float32 has 32 bits, so it must be said whether the first register is called 0 or 1" },
+          { "tags.csv", 3, 3, "by address_base in its source, or here by ir:2 (from 0, as on the wire; ir:3 if the first is called 0)" });
+}
+
+static void instruments_say_what_they_can_measure(void **state)
+{
+    struct plant_case *c = *state;
+    plant_case_load(c, yaml,
+                    "Tag Name,Address,Scaling,Raw Low,Raw High,Scaled Low,Scaled High,NE 43,Open Circuit,Flatline s\n"
+                    "A,40001,Linear,4000,20000,0,100,1,0x8000 | 32767 -1.5e3,60\n"
+                    "B,40002,,,,-50,150,,,\n"
+                    "C,40003,,,,,,,,\n");
+    plant_case_assert_loaded(c, 0);
+    const struct plant_tag *t = c->plant->tags;
+    assert_true(t[0].ne43 && t[0].has_range && t[0].sentinel_count == 3 && t[0].flatline_s == 60);
+    assert_true(t[0].sentinels[0].is_bits && t[0].sentinels[0].bits == 0x8000);
+    assert_true(!t[0].sentinels[1].is_bits && t[0].sentinels[1].number == 32767 && t[0].sentinels[2].number == -1500);
+    assert_true(t[1].has_range && t[1].scaling == SCALING_NONE && t[1].scaled_low == -50 && t[1].scaled_high == 150);
+    assert_true(!t[2].has_range && !t[2].ne43 && t[2].sentinel_count == 0 && t[2].flatline_s == 0);
+    plant_case_load(c, yaml,
+                    "Tag Name,Address,NE 43,Open Circuit,Flatline s\n"
+                    "A,40001,yes,,0\n"
+                    "B,40002,,0xZZ,\n"
+                    "C,40003,,open,\n"
+                    "D,40003,,1 2 3 4 5,\n"
+                    "E,40003,,0x,\n");
+    FOUND(c, { "tags.csv", 2, 9, "NE 43: expected Scaling Linear or Square Root" },
+          { "tags.csv", 2, 14, "Flatline s: expected a number from 0.001" },
+          { "tags.csv", 3, 10, "Open Circuit: expected at most 4 raw values such as 0x8000 or -32768, found '0xZZ'" },
+          { "tags.csv", 4, 10, "found 'open'" }, { "tags.csv", 5, 10, "found '5'" }, { "tags.csv", 6, 10, "found '0x'" });
+}
+
+static void tags_vouch_for_other_tags(void **state)
+{
+    struct plant_case *c = *state;
+    plant_case_load(c, yaml,
+                    "Tag Name,Address,Quality Tag\n"
+                    "A,40001,OK\nB,40002,!OK\nC,40003,WORD & 0x0C = 0x04\nD,40004,WORD&3\nE,40005,!WORD&3=1\nOK,00001,\nWORD,40006,\n");
+    plant_case_assert_loaded(c, 0);
+    const struct plant_tag *t = c->plant->tags;
+    const struct plant_quality_tag wanted[] = {
+        { 5, UINT64_MAX, 0, true }, { 5, UINT64_MAX, 0, false }, { 6, 12, 4, false }, { 6, 3, 0, true }, { 6, 3, 1, true }
+    };
+    for (int i = 0; i < 5; i++)
+        assert_true(t[i].quality.tag == wanted[i].tag && t[i].quality.mask == wanted[i].mask && t[i].quality.want == wanted[i].want &&
+                    t[i].quality.negate == wanted[i].negate);
+    assert_true(t[5].quality.mask == 0);
+    plant_case_load(c, yaml,
+                    "Tag Name,Address,Quality Tag\n"
+                    "TI-1,40001,TI-1\nB,40002,TI-11\nC,40003,B&\nD,40004,B&0\nE,40005,B&2=1\nF,40006,!\nG,40007,B&1=1x\nH,40008,B\n");
+    FOUND(c, { "tags.csv", 2, 12, "Quality Tag: expected another tag than 'TI-1' itself" },
+          { "tags.csv", 3, 9, "Quality Tag: unknown tag 'TI-11'; did you mean 'TI-1'?" },
+          { "tags.csv", 4, 9, "expected TAG, !TAG, TAG&MASK" },
+          { "tags.csv", 5, 9, "found 'B&0'" }, { "tags.csv", 6, 9, "found 'B&2=1'" }, { "tags.csv", 7, 9, "found '!'" },
+          { "tags.csv", 8, 9, "found 'B&1=1x'" }, { "tags.csv", 9, 9, "Quality Tag: 'B' has a quality tag of its own" });
 }
 
 static void references_are_looked_up(void **state)
@@ -190,7 +255,7 @@ static void scaling_is_whole(void **state)
           { "tags.csv", 5, 21, "Raw Low: expected a number, since Scaling is Square Root" },
           { "tags.csv", 5, 26, "Scaled High: expected a finite number, found 'inf'" },
           { "tags.csv", 6, 24, "Negate Value: expected 0 or 1, found 'maybe'" },
-          { "tags.csv", 7, 10, "Scaling is blank, so the raw and scaled ranges have no effect" },
+          { "tags.csv", 7, 10, "Scaling is blank, so the raw range has no effect" },
           { "tags.csv", 7, 19, "Clamp Low has no effect" });
 }
 
@@ -231,13 +296,13 @@ static void columns_are_known(void **state)
 {
     struct plant_case *c = *state;
     plant_case_load(c, yaml,
-                    "Tag Name,Adress,Address,Sim Kind,,Colour,Flatline s,Eng Units\n"
+                    "Tag Name,Adress,Address,Sim Kind,,Colour,On Delay s,Eng Units\n"
                     "A,x,40001,ramp,,red,60,bar\n"
                     "B,x,40001,ramp,,red,60,\n");
     plant_case_assert_loaded(c, 4);
     FOUND(c, { "tags.csv", 1, 10, "unknown column 'Adress' is ignored; did you mean 'Address'?" },
           { "tags.csv", 1, 34, "a column without a name is ignored" }, { "tags.csv", 1, 35, "unknown column 'Colour' is ignored" },
-          { "tags.csv", 2, 21, "Flatline s has no effect in this version" });
+          { "tags.csv", 2, 21, "On Delay s has no effect in this version" });
     plant_case_load(c, yaml, "Tag Name,Address,Eng Units,Engineering Units\n");
     FOUND(c, { "tags.csv", 1, 28, "column 'Engineering Units' means the same as 'Eng Units' at column 18" });
     plant_case_load(c, yaml, "Tag Name,Address,Priority,Deadband\nA,40001,high,-1\n");
@@ -292,6 +357,9 @@ int main(void)
         TEST(a_kepware_export_is_read),
         TEST(blank_cells_take_the_group_s_values),
         TEST(byte_orders_are_resolved),
+        TEST(where_long_values_begin_is_never_guessed),
+        TEST(instruments_say_what_they_can_measure),
+        TEST(tags_vouch_for_other_tags),
         TEST(references_are_looked_up),
         TEST(addresses_and_types_are_checked),
         TEST(places_are_whole),

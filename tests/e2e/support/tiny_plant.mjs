@@ -54,7 +54,7 @@ groups:
   - { id: temperature, quantity: Temperature, unit: °C, min: 0, max: 100 }
   - { id: pressure, quantity: Pressure, unit: bar, min: 0, max: 10, distance: euclidean }
 sources:
-  - { id: plc1, type: modbus, host: 127.0.0.1, port: ${port}, poll_ms: 100, timeout_ms: 300, byte_order: ABCD }
+  - { id: plc1, type: modbus, host: 127.0.0.1, port: ${port}, poll_ms: 100, timeout_ms: 300, byte_order: ABCD, address_base: 1 }
 tags: tags.csv
 `;
 const TAGS = `Tag Name,Address,Data Type,Eng Units,Description,Group,Asset,X,Y,Z,Stale s

@@ -1,0 +1,103 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A Modbus source: what a read brings to the store, and to the plan. */
+#include <modbus.h>
+
+#include "base/clock.h"
+#include "value/decode.h"
+#include "value/modbus_impl.h"
+#include "value/quality.h"
+
+static const int64_t REFUSED_NS = 60 * NS_PER_S; /* how long a refused register is believed to be wrong */
+static const int64_t BUSY_NS = 50 * NS_PER_MS;
+enum { BUSY_TRIES = 4 };
+
+/* True: some tag changed. */
+static bool note_refused(struct modbus_source *modbus, const struct plan_block *block, bool refused, const char *why)
+{
+    size_t changed = 0;
+    const char *first = "";
+    for (size_t i = 0; i < block->tag_count; i++) {
+        int tag = modbus->plan.tags[block->first_tag + i];
+        if (modbus->refused[tag] != refused && changed++ == 0)
+            first = modbus->plant->tags[tag].name;
+        modbus->refused[tag] = refused;
+    }
+    if (changed)
+        log_at(modbus->log, refused ? LOG_WARN : LOG_INFO, "source %s: unit %d: %s%s (%d from %d): %s", modbus->config->id, block->unit,
+               first, changed > 1 ? " and others" : "", block->count, block->first, why);
+    return changed > 0;
+}
+
+void modbus_take_values(struct modbus_source *modbus, struct plan_block *block, const uint16_t *words)
+{
+    for (size_t i = 0; i < block->tag_count; i++) {
+        int index = modbus->plan.tags[block->first_tag + i];
+        const struct plant_tag *tag = &modbus->plant->tags[index];
+        modbus->samples[i].tag = index;
+        decode_sample(tag, words + (tag->register_index - block->first), &modbus->samples[i]);
+    }
+    block->busy_count = 0;
+    store_write(modbus->store, modbus->samples, block->tag_count, clock_mono_ns(), clock_utc_ns());
+    bool repaired = note_refused(modbus, block, false, "read again");
+    modbus_unit_is_up(modbus, modbus_unit_of(modbus, block)); /* may make the plan anew: block is of the old one then */
+    if (repaired)
+        modbus_replan(modbus);
+}
+
+static void take_refusal(struct modbus_source *modbus, const struct plan_block *block, uint32_t quality, const char *why)
+{
+    for (size_t i = 0; i < block->tag_count; i++)
+        modbus->samples[i] = (struct sample){ .tag = modbus->plan.tags[block->first_tag + i], .quality = quality };
+    store_write(modbus->store, modbus->samples, block->tag_count, clock_mono_ns(), clock_utc_ns());
+    note_refused(modbus, block, true, why);
+}
+
+static uint32_t quality_of_exception(int code)
+{
+    switch (code) {
+    case MODBUS_EXCEPTION_ILLEGAL_FUNCTION:
+    case MODBUS_EXCEPTION_ILLEGAL_DATA_ADDRESS:
+    case MODBUS_EXCEPTION_ILLEGAL_DATA_VALUE:
+        return QUALITY_BAD_CONFIGURATION;
+    case MODBUS_EXCEPTION_SLAVE_OR_SERVER_FAILURE:
+    case MODBUS_EXCEPTION_MEMORY_PARITY:
+        return QUALITY_BAD_DEVICE_FAILURE;
+    default: /* busy and the like: asked again soon; stale if that goes on */
+        return QUALITY_GOOD;
+    }
+}
+
+void modbus_take_exception(struct modbus_source *modbus, size_t index, int code, int64_t now_ns)
+{
+    struct plan_block *block = &modbus->plan.blocks[index];
+    const char *why = modbus_strerror(MODBUS_ENOBASE + code);
+    uint32_t quality = quality_of_exception(code);
+    if (code == MODBUS_EXCEPTION_GATEWAY_PATH || code == MODBUS_EXCEPTION_GATEWAY_TARGET) {
+        modbus_unit_is_down(modbus, modbus_unit_of(modbus, block), why);
+        return;
+    }
+    modbus_unit_of(modbus, block)->backoff = (struct backoff){ 0 };
+    if (quality_is_good(quality)) {
+        if (++block->busy_count < BUSY_TRIES)
+            block->due_ns = now_ns + (BUSY_NS << block->busy_count);
+        else
+            block->busy_count = 0;
+        return;
+    }
+    modbus->plan_cut = true;
+    if (code != MODBUS_EXCEPTION_ILLEGAL_FUNCTION && block->tag_count > 1) {
+        block->due_ns = now_ns; /* both halves at once, and so on down to the register that is to blame */
+        plan_split(&modbus->plan, modbus->plant, index);
+        return;
+    }
+    if (quality == QUALITY_BAD_CONFIGURATION)
+        block->due_ns = now_ns + REFUSED_NS;
+    take_refusal(modbus, block, quality, why);
+}
+
+void modbus_replan(struct modbus_source *modbus)
+{
+    plan_finish(&modbus->plan);
+    plan_init(&modbus->plan, modbus->plant, modbus->index);
+    modbus->plan_cut = false;
+}

@@ -1,0 +1,86 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A Modbus source, its device and its store. */
+#include "modbus_case.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <cmocka.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "tests/support/plant_by_hand.h"
+#include "value/quality.h"
+
+int modbus_case_set_up(void **state)
+{
+    struct modbus_case *c = mem_new(sizeof(*c));
+    c->plant = plant_by_hand_create(300);
+    c->device.port = device_free_port();
+    plant_by_hand_source(c->plant, "plc", c->device.port);
+    c->log = log_create(LOG_ERROR);
+    c->counters = counters_create();
+    *state = c;
+    return 0;
+}
+
+int modbus_case_tear_down(void **state)
+{
+    struct modbus_case *c = *state;
+    source_stop(&c->source);
+    if (c->device.thread)
+        device_stop(&c->device);
+    snapshot_destroy(&c->snapshot);
+    store_destroy(&c->store);
+    counters_destroy(&c->counters);
+    log_destroy(&c->log);
+    plant_by_hand_destroy(&c->plant);
+    mem_free(c);
+    return 0;
+}
+
+void modbus_case_be_impatient(struct modbus_case *c)
+{
+    c->plant->sources[0].timeout_ms = 300;
+}
+
+void modbus_case_add_registers(struct modbus_case *c, int count)
+{
+    for (int i = 0; i < count; i++) {
+        char name[20];
+        snprintf(name, sizeof(name), "R%d", i);
+        plant_by_hand_tag(c->plant, name, TABLE_HOLDING, i, DATA_INT16);
+    }
+}
+
+void modbus_case_start(struct modbus_case *c)
+{
+    c->store = store_create(c->plant);
+    c->snapshot = snapshot_create(c->plant->tag_count);
+    c->source = source_start(c->log, c->plant, 0, c->store, c->counters);
+    assert_non_null(c->source);
+}
+
+const struct reading *modbus_case_look(struct modbus_case *c, int tag)
+{
+    store_snapshot(c->store, clock_mono_ns(), clock_utc_ns(), c->snapshot);
+    return &c->snapshot->readings[tag];
+}
+
+void modbus_case_expect(struct modbus_case *c, int tag, uint32_t quality, double timeout_s)
+{
+    int64_t end_ns = clock_mono_ns() + (int64_t)(timeout_s * 1e9);
+    while (modbus_case_look(c, tag)->quality != quality && clock_mono_ns() < end_ns)
+        clock_sleep_ns(10 * NS_PER_MS);
+    assert_string_equal(quality_name(modbus_case_look(c, tag)->quality), quality_name(quality));
+}
+
+void modbus_case_assert_stops_soon(struct modbus_case *c)
+{
+    int64_t begin_ns = clock_mono_ns();
+    source_stop(&c->source);
+    assert_null(c->source);
+    assert_true(clock_mono_ns() - begin_ns < 2 * NS_PER_S);
+}

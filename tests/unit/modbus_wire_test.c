@@ -1,0 +1,243 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Modbus by TCP, by RTU frames in a socket and on a line, with hosts that stand in, limits of devices, and hostile answers. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <cmocka.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "tests/support/modbus_case.h"
+#include "tests/support/plant_by_hand.h"
+#include "value/quality.h"
+
+static void use_wire(struct modbus_case *s, enum device_wire wire)
+{
+    s->device.wire = wire;
+    device_start(&s->device);
+    struct plant_source *source = &s->plant->sources[0];
+    source->transport = wire == DEVICE_LINE ? TRANSPORT_RTU : wire == DEVICE_RTU_TCP ? TRANSPORT_RTU_TCP : TRANSPORT_TCP;
+    source->device = s->device.line;
+    modbus_case_be_impatient(s);
+}
+
+static void check_rtu(struct modbus_case *s, enum device_wire wire)
+{
+    modbus_case_add_registers(s, 3);
+    plant_by_hand_tag(s->plant, "wide", TABLE_INPUT, 100, DATA_UINT32);
+    plant_by_hand_tag(s->plant, "coil", TABLE_COIL, 3, DATA_BIT);
+    plant_by_hand_tag(s->plant, "contact", TABLE_DISCRETE, 4, DATA_BIT);
+    use_wire(s, wire);
+    modbus_case_start(s);
+    const double wanted[] = { 0, 1, 2, 10100 * 65536.0 + 10101, 1, 1 };
+    for (int i = 0; i < 6; i++) {
+        modbus_case_expect(s, i, QUALITY_GOOD, 3);
+        assert_true(modbus_case_look(s, i)->value == wanted[i]);
+    }
+    assert_int_equal(s->device.functions, 1 << 1 | 1 << 2 | 1 << 3 | 1 << 4);
+    s->device.manner = DEVICE_SILENT;
+    modbus_case_expect(s, 0, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE, 3);
+    s->device.manner = DEVICE_GOOD;
+    modbus_case_expect(s, 2, QUALITY_GOOD, 8);
+}
+
+static void rtu_over_tcp_is_read(void **state)
+{
+    check_rtu(*state, DEVICE_RTU_TCP);
+}
+
+static void a_serial_line_is_read(void **state)
+{
+    check_rtu(*state, DEVICE_LINE);
+}
+
+/* RTU frames carry no number: a late answer looks just like that to the next question. */
+static void check_late_rtu(struct modbus_case *s, enum device_wire wire)
+{
+    modbus_case_add_registers(s, 1);
+    plant_by_hand_tag(s->plant, "far", TABLE_HOLDING, 500, DATA_INT16);
+    use_wire(s, wire);
+    s->plant->sources[0].timeout_ms = 200;
+    s->device.late_ms = 1000; /* later than the next request: 0.2 s of waiting and at most 0.75 of backing off */
+    modbus_case_start(s);
+    modbus_case_expect(s, 1, QUALITY_GOOD, 3);
+    s->device.manner = DEVICE_LATE;
+    modbus_case_expect(s, 1, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE, 3);
+    s->device.manner = DEVICE_GOOD;
+    for (int64_t end_ns = clock_mono_ns() + 4 * NS_PER_S; clock_mono_ns() < end_ns;) {
+        for (int tag = 0; tag < 2; tag++)
+            if (!quality_is_bad(modbus_case_look(s, tag)->quality))
+                assert_true(modbus_case_look(s, tag)->value == tag * 500);
+        if (modbus_case_look(s, 0)->quality == QUALITY_GOOD && modbus_case_look(s, 1)->quality == QUALITY_GOOD)
+            break;
+        clock_sleep_ns(2 * NS_PER_MS);
+    }
+    modbus_case_expect(s, 1, QUALITY_GOOD, 4);
+}
+
+static void late_replies_do_not_poison_rtu_over_tcp(void **state)
+{
+    check_late_rtu(*state, DEVICE_RTU_TCP);
+}
+
+static void late_replies_do_not_poison_a_serial_line(void **state)
+{
+    check_late_rtu(*state, DEVICE_LINE);
+}
+
+static void an_absent_line_is_tried_again(void **state)
+{
+    struct modbus_case *s = *state;
+    modbus_case_add_registers(s, 1);
+    s->plant->sources[0].transport = TRANSPORT_RTU;
+    s->plant->sources[0].device = "/dev/plantcast-no-such-line";
+    modbus_case_start(s);
+    modbus_case_expect(s, 0, QUALITY_BAD_NO_COMMUNICATION, 3);
+    modbus_case_assert_stops_soon(s);
+}
+
+static void the_second_host_stands_in(void **state)
+{
+    struct modbus_case *s = *state;
+    struct device second = { .address = "127.0.0.2", .port = s->device.port };
+    struct plant_source *source = &s->plant->sources[0];
+    modbus_case_add_registers(s, 1);
+    source->hosts[source->host_count++] = mem_strdup("127.0.0.2");
+    modbus_case_be_impatient(s);
+    device_start(&s->device);
+    device_start(&second);
+    modbus_case_start(s);
+    modbus_case_expect(s, 0, QUALITY_GOOD, 3);
+    assert_int_equal(second.connections, 0); /* one connection, to the first */
+    device_stop(&s->device);
+    modbus_case_expect(s, 0, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE, 2);
+    modbus_case_expect(s, 0, QUALITY_GOOD, 2); /* at once, not after a pause */
+    assert_true(second.requests > 0);
+    device_start(&s->device);
+    second.manner = DEVICE_SILENT; /* it takes connections, and that is all */
+    int before = s->device.requests;
+    while (s->device.requests == before)
+        clock_sleep_ns(10 * NS_PER_MS);
+    modbus_case_expect(s, 0, QUALITY_GOOD, 3);
+    device_stop(&second);
+}
+
+static void requests_keep_to_the_device_s_limits(void **state)
+{
+    struct modbus_case *s = *state;
+    modbus_case_add_registers(s, 40);
+    s->plant->sources[0].max_registers = 10;
+    s->plant->sources[0].pause_ms = 30;
+    device_start(&s->device);
+    modbus_case_start(s);
+    modbus_case_expect(s, 39, QUALITY_GOOD, 3);
+    clock_sleep_ns(300 * NS_PER_MS);
+    assert_int_equal(s->device.most, 10);
+    print_message("# shortest rest %.1f ms\n", (double)s->device.least_gap_ns / 1e6);
+    assert_true(s->device.least_gap_ns > 29 * NS_PER_MS);
+}
+
+/* A small PLC refuses a request over a hole; the hole is found once, and what lies on both sides of it is read on. */
+static void a_hole_is_refused_once(void **state)
+{
+    struct modbus_case *s = *state;
+    modbus_case_add_registers(s, 10);
+    for (int i = 14; i < 20; i++)
+        plant_by_hand_tag(s->plant, "beyond", TABLE_HOLDING, i, DATA_INT16);
+    s->plant->sources[0].max_gap = 8;
+    s->device.bad_register = 12;
+    s->device.bad_code = 2;
+    device_start(&s->device);
+    modbus_case_start(s);
+    for (int i = 0; i < 16; i++)
+        modbus_case_expect(s, i, QUALITY_GOOD, 3);
+    int refused = s->device.refused;
+    clock_sleep_ns(500 * NS_PER_MS);
+    assert_int_equal(s->device.refused, refused);
+    assert_in_range(refused, 1, 4);
+    assert_true(modbus_case_look(s, 0)->age_ns < NS_PER_S && modbus_case_look(s, 15)->age_ns < NS_PER_S);
+}
+
+static void busy_is_asked_again_soon(void **state)
+{
+    struct modbus_case *s = *state;
+    modbus_case_add_registers(s, 1);
+    s->plant->sources[0].poll_ms = 20000;
+    s->device.bad_code = 6;
+    device_start(&s->device);
+    modbus_case_start(s);
+    while (s->device.requests < 2) /* the first was refused, the second comes long before the next poll */
+        clock_sleep_ns(5 * NS_PER_MS);
+    s->device.bad_code = 0;
+    modbus_case_expect(s, 0, QUALITY_GOOD, 3);
+}
+
+/* Whatever comes, no value is taken from it; and when the device is good again, so are its values. */
+static void check_hostile(struct modbus_case *s, enum device_wire wire, int manner)
+{
+    modbus_case_add_registers(s, 20);
+    plant_by_hand_tag(s->plant, "far", TABLE_HOLDING, 500, DATA_INT16);
+    use_wire(s, wire);
+    modbus_case_start(s);
+    modbus_case_expect(s, 20, QUALITY_GOOD, 3);
+    s->device.manner = manner;
+    int before = s->device.requests;
+    while (s->device.requests == before) {
+        for (int tag = 0; tag < 21; tag++)
+            assert_true(modbus_case_look(s, tag)->value == (tag == 20 ? 500 : tag));
+        clock_sleep_ns(5 * NS_PER_MS);
+    }
+    s->device.manner = DEVICE_GOOD;
+    modbus_case_expect(s, 20, QUALITY_GOOD, 8);
+    assert_true(modbus_case_look(s, 20)->value == 500);
+}
+
+static void short_answers(void **state)
+{
+    check_hostile(*state, DEVICE_TCP, DEVICE_SHORT);
+}
+static void long_answers(void **state)
+{
+    check_hostile(*state, DEVICE_TCP, DEVICE_LONG);
+}
+static void garbage(void **state)
+{
+    check_hostile(*state, DEVICE_TCP, DEVICE_GARBAGE);
+}
+static void garbage_on_a_line(void **state)
+{
+    check_hostile(*state, DEVICE_LINE, DEVICE_GARBAGE);
+}
+static void answers_of_other_units(void **state)
+{
+    check_hostile(*state, DEVICE_TCP, DEVICE_FOREIGN);
+}
+static void short_answers_in_rtu_over_tcp(void **state)
+{
+    check_hostile(*state, DEVICE_RTU_TCP, DEVICE_SHORT);
+}
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        modbus_test(rtu_over_tcp_is_read),
+        modbus_test(a_serial_line_is_read),
+        modbus_test(late_replies_do_not_poison_rtu_over_tcp),
+        modbus_test(late_replies_do_not_poison_a_serial_line),
+        modbus_test(an_absent_line_is_tried_again),
+        modbus_test(the_second_host_stands_in),
+        modbus_test(requests_keep_to_the_device_s_limits),
+        modbus_test(a_hole_is_refused_once),
+        modbus_test(busy_is_asked_again_soon),
+        modbus_test(short_answers),
+        modbus_test(long_answers),
+        modbus_test(garbage),
+        modbus_test(garbage_on_a_line),
+        modbus_test(answers_of_other_units),
+        modbus_test(short_answers_in_rtu_over_tcp),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
