@@ -121,6 +121,7 @@ static bool draw(struct studio *studio, const struct snapshot_options *options, 
     struct frame *frame = canvas_draw(studio->renderer, view, studio->snapshot);
     if (!frame)
         return false;
+    frame_read_markers(frame, studio->snapshot, studio->baselines);
     if (!options->no_overlay)
         overlay_draw(frame, studio->scene, studio->snapshot);
     log_info(studio->log, "%s: %dx%d, %d triangles, field %.1f ms, render %.1f ms", options->out, frame->width_px, frame->height_px,

@@ -120,7 +120,7 @@ static void lose_on_demand(struct drawing *drawing)
 static void deliver(struct drawing *drawing, struct frame *frame, const struct snapshot *snapshot, struct batch *batch)
 {
     struct painter *painter = drawing->painter;
-    frame_read_markers(frame, snapshot);
+    frame_read_markers(frame, snapshot, painter->params.baselines);
     if (batch->orders[0].wish.overlay)
         overlay_draw(frame, painter->params.scene, snapshot);
     counter_inc(painter->renders, 1);

@@ -38,17 +38,41 @@ void frame_unref(struct frame **frame_ptr)
     mem_free(frame);
 }
 
-void frame_read_markers(struct frame *frame, const struct snapshot *snapshot)
+/* What one half shows beside readings: what they differ from. */
+struct then {
+    bool wanted;
+    const struct snapshot *snapshot; /* NULL: forgotten */
+};
+
+static struct then take_then(const struct field_params *params, struct baselines *baselines)
 {
+    bool wanted = params->show == SHOW_DIFFERENCE;
+    return (struct then){ wanted, wanted && baselines ? baselines_take(baselines, params->baseline) : NULL };
+}
+
+static void read_marker(struct frame_marker *marker, const struct reading *now, const struct then *then)
+{
+    static const struct reading nothing = { .quality = QUALITY_BAD_WAITING };
+    const struct reading *before = !then->wanted ? NULL : then->snapshot ? &then->snapshot->readings[marker->tag] : &nothing;
+    marker->quality = before && (before->quality >> 30) > (now->quality >> 30) ? before->quality : now->quality;
+    marker->value = quality_is_bad(marker->quality) ? 0 : now->value - (before ? before->value : 0);
+}
+
+void frame_read_markers(struct frame *frame, const struct snapshot *snapshot, struct baselines *baselines)
+{
+    struct then then[2] = { take_then(&frame->view.field, baselines), { 0 } };
     size_t kept = 0;
+    if (frame->view.split)
+        then[1] = take_then(&frame->view.right.field, baselines);
     for (size_t i = 0; i < frame->marker_count; i++) {
         if (frame->markers[i].x_px <= FRAME_BEHIND_PX)
             continue;
-        frame->markers[kept] = frame->markers[i];
         struct frame_marker *marker = &frame->markers[kept++];
-        const struct reading *reading = &snapshot->readings[marker->tag];
-        marker->quality = reading->quality;
-        marker->value = quality_is_bad(reading->quality) ? 0 : reading->value;
+        *marker = frame->markers[i];
+        read_marker(marker, &snapshot->readings[marker->tag], &then[marker->half]);
     }
     frame->marker_count = kept;
+    for (int half = 0; half < 2; half++)
+        if (then[half].snapshot)
+            baselines_give(baselines, &then[half].snapshot);
 }

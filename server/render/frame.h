@@ -13,8 +13,8 @@ struct frame_marker {
     int tag;
     float x_px, y_px; /* from the top left; may lie outside */
     uint8_t occluded; /* behind something, or outside the picture */
-    uint32_t quality; /* of the reading that the picture shows; and below */
-    double value;     /* 0 where quality is Bad */
+    uint32_t quality; /* of the reading that the picture shows; of a difference: the worse of both; and below */
+    double value;     /* 0 where quality is Bad; of a difference: now less then */
     uint8_t half;     /* of a split view: 1 is the right one */
 };
 
@@ -41,8 +41,9 @@ struct frame {
     int triangles;
 };
 
-/* What the snapshot that the picture was drawn from says of its markers; those behind the eye go. Before the frame is shared. */
-void frame_read_markers(struct frame *frame, const struct snapshot *snapshot);
+/* What the snapshot that the picture was drawn from says of its markers; those behind the eye go. Before the frame is shared.
+   baselines: of differences; NULL: there are none. */
+void frame_read_markers(struct frame *frame, const struct snapshot *snapshot, struct baselines *baselines);
 struct frame *frame_create(int width_px, int height_px); /* NULL: out of memory */
 struct frame *frame_ref(struct frame *frame);
 void frame_unref(struct frame **frame);

@@ -56,16 +56,16 @@ static int alarm_of(const struct pen *pen, const struct frame_marker *marker)
 
 static void format_value(const struct pen *pen, const struct frame_marker *marker, char out[64])
 {
-    const struct reading *reading = &pen->snapshot->readings[marker->tag];
     const struct plant_tag *tag = &pen->scene->plant->tags[marker->tag];
     const struct plant_group *group = &pen->scene->plant->groups[pen->view.field.group];
-    int alarm = alarm_of(pen, marker);
-    if (quality_is_bad(reading->quality))
-        snprintf(out, 64, "BAD");
+    bool difference = pen->view.field.show == SHOW_DIFFERENCE, lost = quality_is_bad(pen->snapshot->readings[marker->tag].quality);
+    int alarm = alarm_of(pen, marker), decimals = pen_decimals(group->max - group->min);
+    if (quality_is_bad(marker->quality))
+        snprintf(out, 64, lost ? "BAD" : "not known then");
     else
-        snprintf(out, 64, "%.*f %s%s%s%s", pen_decimals(group->max - group->min), reading->value, tag->unit ? tag->unit : "",
-                 quality_is_uncertain(reading->quality) ? " ?" : "", alarm == ALARM_NONE ? "" : " ",
-                 alarm == ALARM_NONE ? "" : alarm_name(alarm));
+        snprintf(out, 64, "%s%s%.*f %s%s%s%s", difference ? "Δ " : "", difference && marker->value > 0 ? "+" : "", decimals,
+                 marker->value, tag->unit ? tag->unit : "", quality_is_uncertain(marker->quality) ? " ?" : "",
+                 alarm == ALARM_NONE ? "" : " ", alarm == ALARM_NONE ? "" : alarm_name(alarm));
 }
 
 struct label_text {
@@ -109,9 +109,9 @@ static double depth_of(const struct pen *pen, int tag)
     return depth_m;
 }
 
-static bool is_bad(const struct pen *pen, const struct frame_marker *marker)
+static bool is_bad(const struct frame_marker *marker)
 {
-    return quality_is_bad(pen->snapshot->readings[marker->tag].quality);
+    return quality_is_bad(marker->quality);
 }
 
 static bool is_inside(const struct pen *pen, const struct frame_marker *marker)
@@ -147,8 +147,8 @@ static void add_wanted(struct pen *pen, const struct frame_marker *marker, struc
     item->ring = alarm_of(pen, marker) != ALARM_NONE;
     item->rank = marker->occluded                                                                  ? LABEL_NOT_WANTED
                  : alarm_active(tag, reading) != ALARM_NONE                                           ? LABEL_BEYOND
-                 : quality_is_bad(reading->quality)                                                 ? LABEL_BAD
-                 : quality_is_uncertain(reading->quality) || tag->asset == pen->view.selected_asset ? LABEL_DOUBTFUL
+                 : is_bad(marker)                                                                  ? LABEL_BAD
+                 : quality_is_uncertain(marker->quality) || tag->asset == pen->view.selected_asset ? LABEL_DOUBTFUL
                                                                                                     : LABEL_PLAIN;
     wanted->bad += item->rank == LABEL_BAD;
 }
@@ -229,7 +229,7 @@ void overlay_markers(struct pen *pen)
             add_wanted(pen, marker, &wanted);
         if (alarm_of(pen, marker) != ALARM_NONE)
             overlay_ring(pen, marker->x_px, marker->y_px, 9.5 * pen->unit, alarm_of(pen, marker));
-        draw_mark(pen, marker, is_bad(pen, marker));
+        draw_mark(pen, marker, is_bad(marker));
     }
     place_labels(pen, &wanted, cards);
     label_isolines(pen);

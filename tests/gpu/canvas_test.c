@@ -82,6 +82,7 @@ static void test_halves_are_pictures(void **state)
         for (size_t i = 0; i < whole->label_count; i++)
             assert_true(whole->labels[i].half == 1 && whole->labels[i].x_px == parts[1]->labels[i].x_px + LEFT);
         assert_true(whole->content == canvas_content(stand.renderer, &view, stand.snapshot));
+        frame_read_markers(whole, stand.snapshot, NULL);
         overlay_draw(whole, &stand.toy->scene, stand.snapshot); /* two legends; that it ends is what can be said here */
         frame_unref(&parts[0]);
         frame_unref(&parts[1]);
@@ -120,6 +121,7 @@ static void test_narrow(void **state)
     for (view.width_px = 16; view.width_px < 20; view.width_px++) {
         struct frame *frame = canvas_draw(stand.renderer, &view, stand.snapshot);
         assert_int_equal(frame->width_px, view.width_px);
+        frame_read_markers(frame, stand.snapshot, NULL);
         overlay_draw(frame, &stand.toy->scene, stand.snapshot);
         frame_unref(&frame);
     }

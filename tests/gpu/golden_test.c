@@ -145,6 +145,7 @@ static void test_golden(void **state)
     if (golden->split)
         split_up(&view);
     struct frame *frame = canvas_draw(stand.renderer, &view, stand.snapshot);
+    frame_read_markers(frame, stand.snapshot, NULL);
     if (golden->overlay)
         overlay_draw(frame, &stand.toy->scene, stand.snapshot);
     if (getenv("GOLDEN_UPDATE"))

@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { readAddress, writeAddress } from '../../clients/web/core/address.js';
-import { ageText, decimalsFor, numberText, qualityText, unitText, worst, zoneClock } from '../../clients/web/core/format.js';
+import { ageText, changeText, decimalsFor, numberText, qualityText, unitText, worst, zoneClock } from '../../clients/web/core/format.js';
 import { nearestMarker } from '../../clients/web/core/labels.js';
 import { halfAt, halves } from '../../clients/web/core/halves.js';
 import {
@@ -18,6 +18,7 @@ test('decimals follow the range, zero has no minus, what is missing is a dash', 
     assert.equal(numberText(-12.34, 1), '−12.3');
     assert.equal(numberText(0, 1), '0.0');
     assert.equal(numberText(null, 1), '–');
+    assert.deepEqual([4.21, -4.21, 0.01, null].map((change) => changeText(change, 1)), ['Δ +4.2', 'Δ −4.2', 'Δ 0.0', 'Δ –']);
     assert.equal(numberText(NaN, 1), '–');
 });
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Markers and labels, drawn crisply over the picture with the camera that the picture was drawn with.
 import { projector } from '../core/camera.js';
-import { decimalsFor, numberText, unitText } from '../core/format.js';
+import { changeText, decimalsFor, numberText, unitText } from '../core/format.js';
 import { halves } from '../core/halves.js';
 import { FIRST_FAR, leaderLine, MOST_BAD, nearestMarker, placeLabels } from '../core/labels.js';
 import { limitState } from '../core/model.js';
@@ -63,10 +63,12 @@ export class Overlay {
             if (!place || place[0] < -rim || place[1] < -rim || place[0] > width + rim || place[1] > picture.fullHeight + rim)
                 continue;
             const newest = model.readings[tag.index];
-            const reading = said.quality ? { ...newest, value: said.value, quality: said.quality } : newest; // as the picture has it
+            const shown = said.quality ? { ...newest, value: said.value, quality: said.quality } : newest; // as the picture has it
+            const difference = params.show === 'difference';
             markers.push({
                 tag, x: (left + place[0]) * scale[0], y: place[1] * scale[1], depth: place[2], half: number,
-                occluded: said.occluded, reading,
+                occluded: said.occluded, reading: difference ? newest : shown,
+                change: difference && (said.quality === 'bad' ? null : said.value ?? null), // false: the reading itself is shown
                 operator: params.show === 'operator',
             });
         }
@@ -191,13 +193,16 @@ export class Overlay {
     }
 
     // Pieces of a label: [text, weight, colour].
-    parts({ tag, reading }, limit, withName) {
+    parts({ tag, reading, change }, limit, withName) {
         const parts = withName ? [[tag.name, 400, INK_2]] : [];
-        const group = this.session.group;
-        if (reading.value === null || reading.quality === 'bad') {
+        const group = this.session.group, decimals = decimalsFor(group.max - group.min);
+        if (change !== false && reading.quality !== 'bad') {
+            parts.push([changeText(change, decimals), ...(this.fresh ? [650, INK] : [400, INK_2])]);
+            parts.push([change === null ? '' : unitText(tag.unit || group.unit), 400, INK_2]);
+        } else if (reading.value === null || reading.quality === 'bad') {
             parts.push(['no value', 400, INK_2]);
         } else {
-            parts.push([numberText(reading.value, decimalsFor(group.max - group.min)), ...(this.fresh ? [650, INK] : [400, INK_2])]);
+            parts.push([numberText(reading.value, decimals), ...(this.fresh ? [650, INK] : [400, INK_2])]);
             parts.push([unitText(tag.unit || group.unit), 400, INK_2]);
         }
         if (limit)

@@ -19,6 +19,12 @@ export function numberText(value, decimals) {
     return (Number(text) === 0 ? text.replace('-', '') : text).replace('-', '−');
 }
 
+// A difference, with its sign.
+export function changeText(value, decimals) {
+    const text = numberText(value, decimals);
+    return text === '–' ? 'Δ –' : `Δ ${/[1-9]/.test(text) && value > 0 ? '+' : ''}${text}`;
+}
+
 export function ageText(ms) {
     if (ms === null || ms === undefined || !Number.isFinite(ms))
         return '–';

@@ -1,0 +1,86 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What markers say is what the picture shows at their places. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "render/frame.h"
+#include "value/quality.h"
+
+enum { TAGS = 4, WIDTH = 16, HEIGHT = 16 };
+
+static struct snapshot *readings(const double values[TAGS], const uint32_t qualities[TAGS])
+{
+    struct snapshot *snapshot = snapshot_create(TAGS);
+    for (int i = 0; i < TAGS; i++)
+        snapshot->readings[i] = (struct reading){ .value = values[i], .quality = qualities[i] };
+    return snapshot;
+}
+
+/* Each tag in both halves; the right one shows readings. */
+static struct frame *frame_of_two(enum field_show left, uint32_t baseline)
+{
+    struct frame *frame = frame_create(WIDTH, HEIGHT);
+    frame->view = (struct view){ .split = true, .field = { .show = left, .baseline = baseline } };
+    frame->markers = mem_array(2 * TAGS, sizeof(*frame->markers));
+    for (int i = 0; i < 2 * TAGS; i++)
+        frame->markers[frame->marker_count++] = (struct frame_marker){ .tag = i % TAGS, .half = i >= TAGS };
+    return frame;
+}
+
+static void test_a_difference_says_differences(void **state)
+{
+    static const double then[TAGS] = { 20, 30, 40, 50 }, now[TAGS] = { 25, 28, 41, 50 };
+    static const uint32_t then_q[TAGS] = { 0, 0, QUALITY_BAD_SENSOR_FAILURE, QUALITY_UNCERTAIN_LAST_USABLE }, now_q[TAGS] = { 0 };
+    struct baselines *baselines = baselines_create();
+    struct snapshot *before = readings(then, then_q), *after = readings(now, now_q);
+    (void)state;
+    uint32_t id = baselines_set(baselines, "then", before);
+    struct frame *frame = frame_of_two(SHOW_DIFFERENCE, id);
+    frame_read_markers(frame, after, baselines);
+    assert_true(frame->markers[0].value == 5 && frame->markers[1].value == -2 && frame->markers[3].value == 0);
+    assert_true(quality_is_bad(frame->markers[2].quality) && frame->markers[2].value == 0);
+    assert_true(quality_is_uncertain(frame->markers[3].quality));
+    for (int i = 0; i < TAGS; i++)
+        assert_true(frame->markers[TAGS + i].value == now[i] && frame->markers[TAGS + i].quality == now_q[i]);
+    frame_unref(&frame);
+    baselines_remove(baselines, "then");
+    frame = frame_of_two(SHOW_DIFFERENCE, id);
+    frame_read_markers(frame, after, baselines);
+    for (int i = 0; i < TAGS; i++)
+        assert_true(quality_is_bad(frame->markers[i].quality) && frame->markers[i].value == 0);
+    frame_unref(&frame);
+    snapshot_destroy(&before);
+    snapshot_destroy(&after);
+    baselines_destroy(&baselines);
+}
+
+static void test_readings_and_those_behind_the_eye(void **state)
+{
+    static const double now[TAGS] = { 25, 28, 41, 50 };
+    static const uint32_t qualities[TAGS] = { 0, QUALITY_BAD_SENSOR_FAILURE, 0, 0 };
+    struct snapshot *snapshot = readings(now, qualities);
+    struct frame *frame = frame_of_two(SHOW_VALUE, 0);
+    (void)state;
+    frame->markers[0].x_px = FRAME_BEHIND_PX;
+    frame_read_markers(frame, snapshot, NULL);
+    assert_int_equal(frame->marker_count, 2 * TAGS - 1);
+    assert_true(frame->markers[0].tag == 1 && frame->markers[0].value == 0 && quality_is_bad(frame->markers[0].quality));
+    assert_true(frame->markers[1].value == 41);
+    frame_unref(&frame);
+    snapshot_destroy(&snapshot);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_a_difference_says_differences),
+        cmocka_unit_test(test_readings_and_those_behind_the_eye),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
