@@ -42,7 +42,7 @@ void field_probe(struct field *field, int asset, const struct field_params *para
     }
     const struct scalar *at = &scalars->at[vertex];
     out->value = (double)at->value;
-    out->uncertain = at->uncertain;
+    out->uncertain = at->uncertain > 127;
     if (!at->no_data && !at->no_limits)
         out->kind =
             at_sensor && params->interpolation == INTERPOLATION_SHEPARD && params->show != SHOW_DISTANCE ? PROBE_MEASURED : PROBE_BETWEEN;

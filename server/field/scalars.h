@@ -8,7 +8,8 @@
 struct scalar {
     float value;       /* engineering units; may pass MIN and MAX. Finite even where there is no data, so that it can be interpolated */
     uint8_t lacking;   /* beyond the rim of the data, by distance: above 127 there is none; so the rim runs true between vertices */
-    uint8_t uncertain; /* 255: at least half of the weight is on Uncertain sensors (or filled by neighbours); else 0 */
+    uint8_t uncertain; /* above 127: at least half of the weight is on Uncertain sensors (or filled by neighbours); by how much of it, as
+                          its rim too shall run true between vertices */
     uint8_t no_limits; /* 255: for operators; the nearest sensor is good, but its tag has no limits. Then there is data, but no value */
     uint8_t no_data;   /* 255: no good sensor reaches, or the nearest configured one is Bad; else 0. What `lacking` says */
 };

@@ -134,6 +134,14 @@ static uint8_t lacking_of(const struct weights *weights, size_t vertex, bool fil
     return filled || weights->lost[vertex] < reach ? reach : weights->lost[vertex];
 }
 
+/* By how much of the weight is on Uncertain sensors; filled: by how far a lost sensor is the nearest. */
+static uint8_t uncertain_of(double marked, double total, uint8_t filled)
+{
+    double part = total > 0 ? 2 * marked / total : 0;
+    uint8_t leans = (uint8_t)(part >= 1 ? 128 + (int)(127 * (fmin(part, 2) - 1)) : (int)(127 * part));
+    return leans > filled ? leans : filled;
+}
+
 static bool set_flags(const struct update *update, size_t begin, size_t count, const double *total, const double *marked)
 {
     const uint8_t *place = update->state->weights->place + begin;
@@ -143,7 +151,8 @@ static bool set_flags(const struct update *update, size_t begin, size_t count, c
         bool filled = fill && place[j] == PLACE_LOST;
         uint8_t no_limits = place[j] == PLACE_NO_LIMITS ? FLAG : 0;
         uint8_t no_data = place[j] == PLACE_GOOD || filled || no_limits ? 0 : FLAG;
-        uint8_t uncertain = filled || (update->marks && total[j] > 0 && 2 * marked[j] >= total[j]) ? FLAG : 0;
+        uint8_t spread = fill && no_data == 0 && !no_limits ? update->state->weights->lost[begin + j] : 0;
+        uint8_t uncertain = uncertain_of(update->marks ? marked[j] : 0, update->marks ? total[j] : 0, spread);
         uint8_t lacking = lacking_of(update->state->weights, begin + j, filled, no_limits);
         changed |= at[j].lacking != lacking || at[j].no_data != no_data || at[j].uncertain != uncertain || at[j].no_limits != no_limits;
         at[j].no_limits = no_limits;

@@ -78,7 +78,7 @@ DRAFT_INLINE void carry_nothing(const struct draft *draft, const struct draft_me
         int n = numbers[i];
         corners->a[n] = 0;
         corners->b[n] = (float)mesh->baked[vertices[n]][0] * (1 / 255.0f) * draft->block.shade[0] + draft->block.shade[1];
-        corners->flags[n] = DRAFT_NO_DATA | 255u << DRAFT_LACKING;
+        corners->flags[n] = DRAFT_NOTHING_KNOWN;
     }
     corners->all_flags = DRAFT_NO_DATA;
 }

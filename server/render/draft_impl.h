@@ -20,18 +20,24 @@ struct draft_vertex {
     float x, y, depth;     /* pixels from the top left; 1 near, 0 far */
     float inverse_w;       /* 0: nearer than the near plane */
     float a, b;            /* field: column and row of the palette; context: ambient, and how far it faces the sun */
-    uint32_t flags;        /* DRAFT_*; from bit DRAFT_LACKING on a byte: scalar.lacking */
+    uint32_t flags;        /* draft_flags */
     uint32_t source;       /* of one that the near plane made: first index of the triangle that was cut */
 };
-enum { DRAFT_NO_DATA = 1, DRAFT_UNCERTAIN = 2, DRAFT_PATTERNS = 3, DRAFT_LACKING = 8 };
+/* Two bytes: scalar.uncertain, and from bit DRAFT_LACKING on scalar.lacking. Where flags of corners were joined: no less than any. */
+enum { DRAFT_LACKING = 8, DRAFT_NO_DATA = 0x8000, DRAFT_UNCERTAIN = 0x80, DRAFT_PATTERNS = DRAFT_NO_DATA | DRAFT_UNCERTAIN };
+#define DRAFT_NOTHING_KNOWN (255u << DRAFT_LACKING)
 static inline uint32_t draft_flags(const struct scalar *scalar)
 {
-    return (scalar->no_data ? DRAFT_NO_DATA : 0) | (scalar->uncertain ? DRAFT_UNCERTAIN : 0) | (uint32_t)scalar->lacking << DRAFT_LACKING;
+    return (uint32_t)scalar->lacking << DRAFT_LACKING | scalar->uncertain;
 }
-/* 0..1; above 0.5 there is no data. Where flags of corners were joined, what lacks most. */
+/* 0..1; above 0.5 there is no data, or it is uncertain. */
 static inline float draft_lacking(uint32_t flags)
 {
     return (float)(flags >> DRAFT_LACKING & 0xff) * (1 / 255.0f);
+}
+static inline float draft_uncertain(uint32_t flags)
+{
+    return (float)(flags & 0xff) * (1 / 255.0f);
 }
 
 struct draft_mesh { /* one asset in this picture */

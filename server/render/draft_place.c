@@ -36,7 +36,7 @@ static void carry_nothing(const struct draft *draft, const struct draft_mesh *me
 {
     out->a = 0;
     out->b = (float)mesh->baked[v][0] * (1 / 255.0f) * draft->block.shade[0] + draft->block.shade[1];
-    out->flags = DRAFT_NO_DATA | 255u << DRAFT_LACKING;
+    out->flags = DRAFT_NOTHING_KNOWN;
 }
 
 static void carry_context(const struct draft_mesh *mesh, uint32_t v, struct draft_vertex *out)

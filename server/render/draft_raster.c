@@ -24,7 +24,7 @@ struct setup {
     float x, y; /* of the first corner: what planes start from */
     struct edge edges[3];
     struct plane depth, a, b, inverse_w;
-    struct plane no_data, uncertain; /* where flags are set: as draft_lacking; 1 there */
+    struct plane no_data, uncertain; /* where flags are set: as draft_lacking, draft_uncertain */
     uint32_t mark, flags;
     bool flat; /* no perspective to speak of */
     bool thin; /* so much so that rounding may lead out of what lies between its corners */
@@ -76,7 +76,7 @@ DRAFT_INLINE void setup_init(struct setup *setup, const struct draft_vertex v[3]
         float lacking[3], uncertain[3];
         for (int i = 0; i < 3; i++) {
             lacking[i] = draft_lacking(v[i].flags);
-            uncertain[i] = v[i].flags & DRAFT_UNCERTAIN ? 1 : 0;
+            uncertain[i] = draft_uncertain(v[i].flags);
         }
         setup->no_data = part_plane(&slopes, v, lacking, setup->flat);
         setup->uncertain = part_plane(&slopes, v, uncertain, setup->flat);

@@ -117,7 +117,7 @@ static void read_vertices(void *arg, size_t begin, size_t end)
     struct recolor *recolor = job->recolor;
     for (size_t v = begin; v < end; v++) {
         size_t at = job->first_vertex + v;
-        recolor->flags[at] = (uint16_t)(job->scalars ? draft_flags(&job->scalars[v]) : DRAFT_NO_DATA | 255u << DRAFT_LACKING);
+        recolor->flags[at] = (uint16_t)(job->scalars ? draft_flags(&job->scalars[v]) : DRAFT_NOTHING_KNOWN);
         recolor->plain[at] = job->scalars ? column_of(&job->scalars[v], job->scale) : 0;
         recolor->columns[at] = recolor->flags[at] & DRAFT_PATTERNS ? NAN : recolor->plain[at];
     }
@@ -186,7 +186,7 @@ static uint32_t flagged_color(const struct coloring *coloring, const uint32_t ve
     for (int i = 0; i < 3; i++) {
         column += w[i] * recolor->plain[vertices[i]];
         none += w[i] * draft_lacking(recolor->flags[vertices[i]]);
-        little += recolor->flags[vertices[i]] & DRAFT_UNCERTAIN ? w[i] : 0;
+        little += w[i] * draft_uncertain(recolor->flags[vertices[i]]);
     }
     if (none > 0.5f)
         return mix(colors[PALETTE_PATTERNS + PATTERN_HATCH_LIGHT], colors[PALETTE_PATTERNS + PATTERN_HATCH_DARK],

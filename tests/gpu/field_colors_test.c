@@ -313,6 +313,46 @@ static void test_uncertain_is_stippled(void **state)
     }
 }
 
+/* Of the weight at the middle of a pixel: how much the first sensor has, by Shepard with a power of 2. */
+static double part_of_first(int x, int y)
+{
+    static const double sensors[PLATE_TAGS][2] = { { 0, 0 }, { 4, 1 }, { 2, 4 } };
+    double sum = 0, first = 0;
+    for (int i = 0; i < PLATE_TAGS; i++) {
+        double dx = (x + 0.5) / SIDE_PX * side_m - sensors[i][0], dy = (1 - (y + 0.5) / SIDE_PX) * side_m - sensors[i][1];
+        double weight = 1 / (dx * dx + dy * dy);
+        sum += weight;
+        first += i == 0 ? weight : 0;
+    }
+    return first / sum;
+}
+
+/* Between vertices, not along them: triangles are a twelfth of the plate. */
+static void test_the_rim_of_the_uncertain_runs_true(void **state)
+{
+    const double slack = 0.02;
+    struct view view;
+    (void)state;
+    look_down(&view);
+    toy_set(stand.snapshot, 0, 50.2, QUALITY_UNCERTAIN_LAST_USABLE);
+    for (int i = 1; i < PLATE_TAGS; i++)
+        toy_set(stand.snapshot, i, 50.2, QUALITY_GOOD);
+    view.field.distance = DISTANCE_EUCLIDEAN;
+    for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++) {
+        int near_rim = 0;
+        view.tier = (enum tier)tier;
+        struct frame *frame = stand_draw(&stand, &view);
+        for (int y = 2; y < SIDE_PX - 2; y++)
+            for (int x = 2; x < SIDE_PX - 2; x++) {
+                bool dot = !is_color_of(&view, 50.2, frame_pixel(frame, x, y));
+                assert_true(!dot || part_of_first(x, y) > 0.5 - slack);
+                near_rim += dot && part_of_first(x, y) < 0.5 + slack;
+            }
+        assert_true(near_rim > SIDE_PX / 8);
+        frame_unref(&frame);
+    }
+}
+
 /* Alarm colours are saturated; the field's never are. */
 static bool is_alarm_color(const uint8_t *bgrx)
 {
@@ -338,6 +378,7 @@ static void check_alarms(const struct view *view)
         toy_set(stand.snapshot, 1, alarm ? 80 : 69, QUALITY_GOOD);
         struct frame *frame = stand_draw(&stand, &wide);
         assert_int_equal(count_alarm_colors(frame), 0);
+        frame_read_markers(frame, stand.snapshot, NULL);
         overlay_draw(frame, &stand.toy->scene, stand.snapshot);
         int x0 = 400 + (int)(200 * 10 / 14.0), y0 = 200 + (int)(100 * 10 / 14.0), around = 0, left = 0;
         for (int y = 0; y < 400; y++)
@@ -416,6 +457,7 @@ int main(void)
         each(test_no_data_is_grey_stripes),
         each(test_lost_sensor_leaves_its_place_empty),
         each(test_uncertain_is_stippled),
+        each(test_the_rim_of_the_uncertain_runs_true),
         each(test_operator_sees_limits),
         each(test_default_look_keeps_to_the_palette),
     };
