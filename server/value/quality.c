@@ -11,6 +11,7 @@ static const struct {
     { QUALITY_GOOD, "Good" },
     { QUALITY_UNCERTAIN_LAST_USABLE, "Uncertain_LastUsableValue" },
     { QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE, "Uncertain_NoCommunicationLastUsableValue" },
+    { QUALITY_UNCERTAIN_SENSOR_NOT_ACCURATE, "Uncertain_SensorNotAccurate" },
     { QUALITY_UNCERTAIN_UNITS_EXCEEDED, "Uncertain_EngineeringUnitsExceeded" },
     { QUALITY_BAD_COMMUNICATION_ERROR, "Bad_CommunicationError" },
     { QUALITY_BAD_NO_COMMUNICATION, "Bad_NoCommunication" },

@@ -15,7 +15,9 @@ struct held {
     bool has_value, lost;       /* lost: could not be read since the last sample */
     int64_t sampled_mono_ns;    /* last sample, Bad ones too */
     int64_t received_mono_ns, received_utc_ns; /* last usable value */
-    int64_t stale_ns;
+    int64_t changed_mono_ns;    /* when that value was another the last time */
+    int64_t stale_ns, flatline_ns;
+    int first_vouched, next_vouched; /* tags whose quality this one says, and the next of those that share one; -1: none */
     uint32_t shown_quality;     /* as last counted in changes */
     uint32_t changes;
 };
@@ -38,10 +40,18 @@ struct store {
     int64_t utc_ahead_ns; /* of the monotonic clock, when a sample came last */
 };
 
-static int64_t stale_ns_of(const struct plant_tag *tag)
+static int64_t ns_of(double s)
 {
-    double ns = tag->stale_s * 1e9;
-    return ns < 9e18 ? (int64_t)ns : INT64_MAX;
+    return s < 9e9 ? (int64_t)(s * 1e9) : INT64_MAX;
+}
+
+static void add_vouched(struct store *store, int tag)
+{
+    const struct plant_quality_tag *by = &store->plant->tags[tag].quality;
+    if (by->mask == 0)
+        return;
+    store->tags[tag].next_vouched = store->tags[by->tag].first_vouched;
+    store->tags[by->tag].first_vouched = tag;
 }
 
 struct store *store_create(const struct plant *plant)
@@ -55,8 +65,13 @@ struct store *store_create(const struct plant *plant)
             .quality = QUALITY_BAD_WAITING,
             .shown_quality = QUALITY_BAD_WAITING,
             .sampled_mono_ns = INT64_MIN,
-            .stale_ns = stale_ns_of(&plant->tags[i]),
+            .stale_ns = ns_of(plant->tags[i].stale_s),
+            .flatline_ns = plant->tags[i].flatline_s > 0 ? ns_of(plant->tags[i].flatline_s) : INT64_MAX,
+            .first_vouched = -1,
+            .next_vouched = -1,
         };
+    for (size_t i = 0; i < plant->tag_count; i++)
+        add_vouched(store, (int)i);
     for (size_t i = 0; i < plant->source_count; i++)
         store->links[i].changed_mono_ns = INT64_MIN;
     pthread_mutex_init(&store->lock, NULL);
@@ -103,7 +118,8 @@ static void tell(struct store *store, size_t tag, uint32_t quality, int64_t mono
             store->listeners[i].hear(store->listeners[i].arg, &heard);
 }
 
-static uint32_t quality_now(const struct held *held, int64_t now_mono_ns)
+/* By what was read of it alone. */
+static uint32_t own_quality(const struct held *held, int64_t now_mono_ns)
 {
     bool stale = held->has_value && now_mono_ns - held->received_mono_ns >= held->stale_ns;
     if (held->lost && !held->has_value)
@@ -114,19 +130,61 @@ static uint32_t quality_now(const struct held *held, int64_t now_mono_ns)
         return held->quality;
     if (stale)
         return QUALITY_BAD_COMMUNICATION_ERROR;
-    return held->lost ? QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE : held->quality;
+    if (held->lost)
+        return QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE;
+    bool flat = held->received_mono_ns - held->changed_mono_ns >= held->flatline_ns;
+    return flat && quality_is_good(held->quality) ? QUALITY_UNCERTAIN_SENSOR_NOT_ACCURATE : held->quality;
 }
 
-static void count_change(struct held *held, bool value_changed, int64_t now_mono_ns)
+/* Of the controller behind the tag's source: Good, or why nothing of it may be believed. */
+static uint32_t heartbeat_quality(const struct store *store, size_t tag, int64_t now_mono_ns)
 {
-    uint32_t quality = quality_now(held, now_mono_ns);
+    int index = store->plant->tags[tag].source;
+    const struct plant_source *source = index < 0 ? NULL : &store->plant->sources[index];
+    if (!source || !(source->heartbeat_s > 0))
+        return QUALITY_GOOD;
+    const struct held *heart = &store->tags[source->heartbeat_tag];
+    if (!heart->has_value)
+        return heart->quality;
+    return now_mono_ns - heart->changed_mono_ns >= ns_of(source->heartbeat_s) ? QUALITY_BAD_DEVICE_FAILURE : QUALITY_GOOD;
+}
+
+/* What its quality tag says. */
+static uint32_t vouched_quality(const struct store *store, size_t tag, int64_t now_mono_ns)
+{
+    const struct plant_quality_tag *by = &store->plant->tags[tag].quality;
+    if (by->mask == 0)
+        return QUALITY_GOOD;
+    const struct held *word = &store->tags[by->tag];
+    if (!quality_is_good(own_quality(word, now_mono_ns)) || !(fabs(word->value) < 9e18))
+        return QUALITY_UNCERTAIN;
+    bool good = (((uint64_t)(int64_t)word->value & by->mask) == by->want) != by->negate;
+    return good ? QUALITY_GOOD : QUALITY_BAD_SENSOR_FAILURE;
+}
+
+/* The worst that is known. */
+static uint32_t quality_now(const struct store *store, size_t tag, int64_t now_mono_ns)
+{
+    uint32_t quality = own_quality(&store->tags[tag], now_mono_ns);
+    uint32_t others[] = { heartbeat_quality(store, tag, now_mono_ns), vouched_quality(store, tag, now_mono_ns) };
+    for (int i = 0; i < 2; i++)
+        if (others[i] >> 30 > quality >> 30)
+            quality = others[i];
+    return quality;
+}
+
+static void count_change(struct store *store, size_t tag, bool value_changed, int64_t now_mono_ns)
+{
+    struct held *held = &store->tags[tag];
+    uint32_t quality = quality_now(store, tag, now_mono_ns);
     if (value_changed || quality != held->shown_quality)
         held->changes++;
     held->shown_quality = quality;
 }
 
-static bool hold(struct held *held, const struct sample *sample, int64_t now_mono_ns, int64_t now_utc_ns)
+static bool hold(struct store *store, const struct sample *sample, int64_t now_mono_ns, int64_t now_utc_ns)
 {
+    struct held *held = &store->tags[sample->tag];
     bool bad = quality_is_bad(sample->quality), finite = isfinite(sample->value), value_changed = false;
     if (now_mono_ns < held->sampled_mono_ns)
         return false;
@@ -136,12 +194,25 @@ static bool hold(struct held *held, const struct sample *sample, int64_t now_mon
     if (!bad && finite) {
         value_changed = !held->has_value || held->value != sample->value;
         held->value = sample->value;
+        if (value_changed)
+            held->changed_mono_ns = now_mono_ns;
         held->has_value = true;
         held->received_mono_ns = now_mono_ns;
         held->received_utc_ns = now_utc_ns;
     }
-    count_change(held, value_changed, now_mono_ns);
+    count_change(store, (size_t)sample->tag, value_changed, now_mono_ns);
     return true;
+}
+
+/* Of tags that this one vouches for. */
+static void tell_vouched(struct store *store, int tag, int64_t now_mono_ns, int64_t now_utc_ns)
+{
+    for (int i = store->tags[tag].first_vouched; i >= 0; i = store->tags[i].next_vouched) {
+        uint32_t shown = store->tags[i].shown_quality;
+        count_change(store, (size_t)i, false, now_mono_ns);
+        if (store->tags[i].shown_quality != shown)
+            tell(store, (size_t)i, store->tags[i].shown_quality, now_mono_ns, now_utc_ns);
+    }
 }
 
 void store_write(struct store *store, const struct sample *samples, size_t count, int64_t now_mono_ns, int64_t now_utc_ns)
@@ -149,8 +220,10 @@ void store_write(struct store *store, const struct sample *samples, size_t count
     pthread_mutex_lock(&store->lock);
     store->utc_ahead_ns = now_utc_ns - now_mono_ns;
     for (size_t i = 0; i < count; i++)
-        if (hold(&store->tags[samples[i].tag], &samples[i], now_mono_ns, now_utc_ns))
-            tell(store, (size_t)samples[i].tag, store->tags[samples[i].tag].quality, now_mono_ns, now_utc_ns);
+        if (hold(store, &samples[i], now_mono_ns, now_utc_ns)) {
+            tell(store, (size_t)samples[i].tag, store->tags[samples[i].tag].shown_quality, now_mono_ns, now_utc_ns);
+            tell_vouched(store, samples[i].tag, now_mono_ns, now_utc_ns);
+        }
     pthread_mutex_unlock(&store->lock);
 }
 
@@ -161,7 +234,7 @@ static void lose(struct store *store, size_t tag, int64_t now_mono_ns)
     if (now_mono_ns < held->sampled_mono_ns)
         return;
     held->lost = true;
-    count_change(held, false, now_mono_ns);
+    count_change(store, tag, false, now_mono_ns);
     if (held->shown_quality != shown)
         tell(store, tag, held->shown_quality, now_mono_ns, now_mono_ns + store->utc_ahead_ns);
 }
@@ -208,10 +281,11 @@ bool store_link_is_up(const struct store *store, int source)
     return up;
 }
 
-static void read_held(struct held *held, int64_t now_mono_ns, struct reading *out)
+static void read_held(struct store *store, size_t tag, int64_t now_mono_ns, struct reading *out)
 {
+    const struct held *held = &store->tags[tag];
     int64_t age_ns = now_mono_ns - held->received_mono_ns;
-    count_change(held, false, now_mono_ns);
+    count_change(store, tag, false, now_mono_ns);
     *out = (struct reading){
         .value = held->value,
         .quality = held->shown_quality,
@@ -225,7 +299,7 @@ void store_snapshot(struct store *store, int64_t now_mono_ns, int64_t now_utc_ns
 {
     pthread_mutex_lock(&store->lock);
     for (size_t i = 0; i < store->plant->tag_count; i++)
-        read_held(&store->tags[i], now_mono_ns, &into->readings[i]);
+        read_held(store, i, now_mono_ns, &into->readings[i]);
     pthread_mutex_unlock(&store->lock);
     into->taken_mono_ns = now_mono_ns;
     into->taken_utc_ns = now_utc_ns;

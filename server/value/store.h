@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The latest reading of every tag. Sources write, anyone takes snapshots; the newest sample wins. Thread: any. */
+/* The latest reading of every tag. Sources write, anyone takes snapshots; the newest sample wins. Thread: any.
+   A quality is the worst of: the sample's own and its age; Uncertain_SensorNotAccurate once its value has been the same for flatline_s;
+   what its quality tag says; Bad_DeviceFailure once the heartbeat of its source has stopped. */
 #ifndef VALUE_STORE_H
 #define VALUE_STORE_H
 #include <stdbool.h>

@@ -255,12 +255,136 @@ static void qualities_have_names_and_classes(void **state)
 
 #define store_test(f) cmocka_unit_test_setup_teardown(f, set_up, tear_down)
 
+static void set_up_again(struct setup *s)
+{
+    store_destroy(&s->store);
+    s->store = store_create(s->plant);
+}
+
+static void a_value_that_never_moves_is_doubted(void **state)
+{
+    struct setup *s = *state;
+    s->plant->tags[0].flatline_s = 60;
+    set_up_again(s);
+    for (int t = 0; t < 60; t++) {
+        write_one(s, 0, 7, QUALITY_GOOD, t * S);
+        assert_quality(look(s, 0, t * S)->quality, QUALITY_GOOD);
+    }
+    write_one(s, 0, 7, QUALITY_GOOD, 60 * S);
+    assert_quality(look(s, 0, 60 * S)->quality, QUALITY_UNCERTAIN_SENSOR_NOT_ACCURATE);
+    assert_true(look(s, 0, 60 * S)->value == 7);
+    assert_quality(look(s, 0, 66 * S)->quality, QUALITY_BAD_COMMUNICATION_ERROR); /* and old, which is worse */
+    write_one(s, 0, 7.001, QUALITY_GOOD, 67 * S);
+    assert_quality(look(s, 0, 67 * S)->quality, QUALITY_GOOD);
+    for (int t = 68; t < 1000; t++)
+        write_one(s, 1, 7, QUALITY_GOOD, t * S);
+    assert_quality(look(s, 1, 1000 * S)->quality, QUALITY_GOOD); /* nobody asked for it */
+}
+
+/* A gateway goes on answering with what it last had from a controller that has stopped. */
+static void a_stopped_heartbeat_makes_all_bad(void **state)
+{
+    struct setup *s = *state;
+    s->plant->sources[0].heartbeat_s = 3;
+    s->plant->sources[0].heartbeat_tag = 1;
+    set_up_again(s);
+    write_one(s, 0, 20, QUALITY_GOOD, 0);
+    assert_quality(look(s, 0, 0)->quality, QUALITY_BAD_WAITING); /* not heard yet */
+    for (int t = 0; t < 10; t++) {
+        write_one(s, 0, 20, QUALITY_GOOD, t * S);
+        write_one(s, 1, t, QUALITY_GOOD, t * S);
+        write_one(s, 2, 20, QUALITY_GOOD, t * S);
+        assert_quality(look(s, 0, t * S)->quality, QUALITY_GOOD);
+    }
+    for (int t = 10; t < 20; t++) {
+        uint32_t wanted = t < 12 ? QUALITY_GOOD : QUALITY_BAD_DEVICE_FAILURE;
+        for (int tag = 0; tag < 3; tag++)
+            write_one(s, tag, tag == 1 ? 9 : 20, QUALITY_GOOD, t * S);
+        assert_quality(look(s, 0, t * S)->quality, wanted);
+        assert_quality(look(s, 1, t * S)->quality, wanted);
+        assert_quality(look(s, 2, t * S)->quality, QUALITY_GOOD); /* another source */
+    }
+    write_one(s, 1, 10, QUALITY_GOOD, 20 * S);
+    assert_quality(look(s, 0, 20 * S)->quality, QUALITY_GOOD);
+    write_one(s, 1, 0, QUALITY_BAD_CONFIGURATION, 21 * S); /* cannot be read any more: nor does it change */
+    assert_quality(look(s, 0, 22 * S)->quality, QUALITY_GOOD);
+    assert_quality(look(s, 0, 23 * S)->quality, QUALITY_BAD_DEVICE_FAILURE);
+}
+
+static void a_heartbeat_that_is_refused_from_the_start(void **state)
+{
+    struct setup *s = *state;
+    s->plant->sources[0].heartbeat_s = 3;
+    s->plant->sources[0].heartbeat_tag = 1;
+    set_up_again(s);
+    write_one(s, 1, 0, QUALITY_BAD_CONFIGURATION, 0);
+    write_one(s, 0, 20, QUALITY_GOOD, 0);
+    assert_quality(look(s, 0, 0)->quality, QUALITY_BAD_CONFIGURATION);
+}
+
+static void on_heard(void *arg, const struct heard *heard)
+{
+    uint32_t *qualities = arg;
+    qualities[heard->tag] = heard->quality;
+}
+
+static void other_tags_vouch(void **state)
+{
+    struct setup *s = *state;
+    uint32_t heard[3] = { 1, 1, 1 };
+    s->plant->tags[0].quality = (struct plant_quality_tag){ .tag = 1, .mask = 0x0C, .want = 0x04 };
+    s->plant->tags[2].quality = (struct plant_quality_tag){ .tag = 1, .mask = UINT64_MAX, .want = 0, .negate = true };
+    set_up_again(s);
+    store_listen(s->store, on_heard, heard);
+    write_one(s, 0, 20, QUALITY_GOOD, 0);
+    write_one(s, 2, 30, QUALITY_GOOD, 0);
+    assert_quality(look(s, 0, 0)->quality, QUALITY_UNCERTAIN); /* nothing is known of it */
+    const struct {
+        double word;
+        uint32_t pattern, any;
+    } cases[] = { { 0x04, QUALITY_GOOD, QUALITY_GOOD }, { 0xF7, QUALITY_GOOD, QUALITY_GOOD }, { 0x0C, QUALITY_BAD_SENSOR_FAILURE, QUALITY_GOOD },
+                  { 0, QUALITY_BAD_SENSOR_FAILURE, QUALITY_BAD_SENSOR_FAILURE }, { -1, QUALITY_BAD_SENSOR_FAILURE, QUALITY_GOOD } };
+    for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
+        write_one(s, 1, cases[i].word, QUALITY_GOOD, S);
+        assert_quality(heard[0], cases[i].pattern); /* at once, not with its own next sample */
+        assert_quality(heard[2], cases[i].any);
+        assert_quality(look(s, 0, S)->quality, cases[i].pattern);
+        assert_quality(look(s, 2, S)->quality, cases[i].any);
+    }
+    write_one(s, 1, 4, QUALITY_GOOD, S);
+    write_one(s, 0, 20, QUALITY_UNCERTAIN_UNITS_EXCEEDED, 2 * S);
+    assert_quality(look(s, 0, 2 * S)->quality, QUALITY_UNCERTAIN_UNITS_EXCEEDED); /* its own stays */
+    write_one(s, 0, 20, QUALITY_GOOD, 3 * S);
+    write_one(s, 1, 0, QUALITY_BAD_CONFIGURATION, 3 * S);
+    assert_quality(heard[0], QUALITY_UNCERTAIN);
+    assert_quality(look(s, 0, 3 * S)->quality, QUALITY_UNCERTAIN);
+}
+
+/* Times of day in a sample are for people; ages go by the clock that never steps. */
+static void a_step_of_the_wall_clock_makes_nothing_fresh_or_stale(void **state)
+{
+    struct setup *s = *state;
+    store_write(s->store, &(struct sample){ 0, 7, QUALITY_GOOD }, 1, 10 * S, 1000 * S);
+    store_snapshot(s->store, 12 * S, -500000 * S, s->snapshot);
+    assert_true(s->snapshot->readings[0].age_ns == 2 * S && s->snapshot->readings[0].quality == QUALITY_GOOD);
+    store_snapshot(s->store, 16 * S, 1001 * S, s->snapshot);
+    assert_quality(s->snapshot->readings[0].quality, QUALITY_BAD_COMMUNICATION_ERROR);
+    store_write(s->store, &(struct sample){ 0, 8, QUALITY_GOOD }, 1, 17 * S, 5 * S); /* the clock was put back */
+    store_snapshot(s->store, 18 * S, 6 * S, s->snapshot);
+    assert_true(s->snapshot->readings[0].value == 8 && s->snapshot->readings[0].age_ns == S);
+}
+
 int main(void)
 {
     cmocka_set_message_output(CM_OUTPUT_TAP);
     const struct CMUnitTest tests[] = {
         store_test(waits_for_the_first_value),
         store_test(zero_is_a_reading),
+        store_test(a_value_that_never_moves_is_doubted),
+        store_test(a_stopped_heartbeat_makes_all_bad),
+        store_test(a_heartbeat_that_is_refused_from_the_start),
+        store_test(other_tags_vouch),
+        store_test(a_step_of_the_wall_clock_makes_nothing_fresh_or_stale),
         store_test(not_a_number_is_a_sensor_failure),
         store_test(a_bad_sample_does_not_make_the_value_younger),
         store_test(goes_stale),
