@@ -56,12 +56,14 @@ void tag_links_add(struct tag_links *links, struct tag_columns *columns, struct 
         return;
     char *name = read_form(text, quality);
     if (!name) {
-        cell_error(columns, COL_QUALITY_TAG, "Quality Tag: expected TAG, !TAG, TAG&MASK or TAG&MASK=VALUE, such as ST-101&0x0C=0x04, found '%.60s'",
-                   text);
+        cell_error(columns, COL_QUALITY_TAG,
+                   "Quality Tag: expected TAG, !TAG, TAG&MASK or TAG&MASK=VALUE, such as ST-101&0x0C=0x04, found '%.60s'", text);
         return;
     }
     mem_grow(&links->at, &links->capacity, links->count + 1, sizeof(*links->at));
-    links->at[links->count++] = (struct tag_link){ tag, name, csv_cell_line(&columns->csv, column), csv_cell_column(&columns->csv, column) };
+    links->at[links->count++] = (struct tag_link){
+        .tag = tag, .to = name, .line = csv_cell_line(&columns->csv, column), .column = csv_cell_column(&columns->csv, column)
+    };
 }
 
 static void report_unknown(const struct plant *plant, struct diag *diag, const char *path, int line, int column, const char *what,

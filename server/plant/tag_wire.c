@@ -201,8 +201,8 @@ static void read_sentinels(struct tag_wire *wire)
     struct plant_tag *tag = wire->tag;
     for (const char *text; (text = strtok_r(rest, " |", &rest));)
         if (tag->sentinel_count == PLANT_SENTINELS || !read_sentinel(text, &tag->sentinels[tag->sentinel_count++])) {
-            cell_error(wire->columns, COL_OPEN_CIRCUIT, "Open Circuit: expected at most %d raw values such as 0x8000 or -32768, found '%.60s'",
-                       PLANT_SENTINELS, text);
+            cell_error(wire->columns, COL_OPEN_CIRCUIT,
+                       "Open Circuit: expected at most %d raw values such as 0x8000 or -32768, found '%.60s'", PLANT_SENTINELS, text);
             break;
         }
     mem_free(texts);

@@ -342,7 +342,8 @@ static void other_tags_vouch(void **state)
     const struct {
         double word;
         uint32_t pattern, any;
-    } cases[] = { { 0x04, QUALITY_GOOD, QUALITY_GOOD }, { 0xF7, QUALITY_GOOD, QUALITY_GOOD }, { 0x0C, QUALITY_BAD_SENSOR_FAILURE, QUALITY_GOOD },
+    } cases[] = { { 0x04, QUALITY_GOOD, QUALITY_GOOD }, { 0xF7, QUALITY_GOOD, QUALITY_GOOD },
+                  { 0x0C, QUALITY_BAD_SENSOR_FAILURE, QUALITY_GOOD },
                   { 0, QUALITY_BAD_SENSOR_FAILURE, QUALITY_BAD_SENSOR_FAILURE }, { -1, QUALITY_BAD_SENSOR_FAILURE, QUALITY_GOOD } };
     for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
         write_one(s, 1, cases[i].word, QUALITY_GOOD, S);
