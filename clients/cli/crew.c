@@ -51,7 +51,7 @@ static bool worker_start(struct worker *worker)
     return false;
 }
 
-static void raise_file_limit(void)
+void crew_raise_file_limit(void)
 {
     struct rlimit limit;
     if (getrlimit(RLIMIT_NOFILE, &limit) == 0) {
@@ -65,7 +65,7 @@ bool crew_run(struct viewer **viewers, int count)
     struct worker workers[MAX_THREADS];
     int threads = count < MAX_THREADS ? count : MAX_THREADS, started = 0;
     lws_set_log_level(0, NULL);
-    raise_file_limit();
+    crew_raise_file_limit();
     for (; started < threads; started++) {
         workers[started] = (struct worker){ .viewers = viewers + started, .count = count - started, .stride = threads };
         if (!worker_start(&workers[started]))

@@ -6,5 +6,6 @@
 
 /* Runs them all to their ends. False: not all could be started; said. */
 bool crew_run(struct viewer **viewers, int count);
+void crew_raise_file_limit(void); /* as many connections as the system lets this process have */
 
 #endif

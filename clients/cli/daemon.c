@@ -58,6 +58,11 @@ bool daemon_take_options(int *argc, char **argv)
     return true;
 }
 
+const char *daemon_authorization(void)
+{
+    return authorization[0] ? authorization : NULL;
+}
+
 bool daemon_url_parse(const char *text, struct daemon_url *url)
 {
     const char *scheme, *host, *path;

@@ -20,7 +20,7 @@ bool daemon_take_options(int *argc, char **argv);
 bool daemon_url_parse(const char *text, struct daemon_url *url);
 /* GET path. Returns the HTTP status; 0: no answer, the reason is printed. body: zero-initialised; free with text_finish. */
 int daemon_get(const struct daemon_url *url, const char *path, struct text *body);
-
+const char *daemon_authorization(void); /* the header's value; NULL: there is none */
 
 /* What a client of libwebsockets needs for it: before its context is made, */
 void daemon_prepare_context(const struct daemon_url *url, struct lws_context_creation_info *info);

@@ -11,6 +11,7 @@
 #include "commands.h"
 #include "crew.h"
 #include "decoder.h"
+#include "swarm.h"
 
 enum { MAX_SESSIONS = 1000 };
 
@@ -28,10 +29,12 @@ static void print_usage(FILE *out)
           "but answers to pings, once 3 s have gone by.\n"
           "\n"
           "  --motion random   drags of up to 2 s, and pauses between them\n"
-          "  --follow          the first session moves, all others follow it; behind leader: from its sending a camera to their frame\n"
+          "  --follow          the first session moves, all others follow it; behind leader: from its sending a camera to their frame,\n"
+          "                    once 3 s have gone by\n"
           "  --spread          of views that stand still: each from another side\n"
           "  --stall N         the last N sessions read nothing after their first frame; they are left out of the table\n"
-          "  --blind           acknowledges without decoding, to have many sessions on a small machine\n",
+          "  --blind           acknowledges without decoding, to have many sessions on a small machine; but over https:// all of them\n"
+          "                    are served by one thread, which reads no more than the headers of frames\n",
           out);
 }
 
@@ -61,7 +64,8 @@ static int run(struct probe *probe)
     pthread_mutex_init(&probe->lead.lock, NULL);
     for (int i = 0; i < probe->sessions; i++)
         good &= (probe->viewers[i] = make_viewer(probe, i)) != NULL;
-    good = good && crew_run(probe->viewers, probe->sessions) && probe_report(probe);
+    bool (*drive)(struct viewer **, int) = probe->blind && !probe->url.tls ? swarm_run : crew_run;
+    good = good && drive(probe->viewers, probe->sessions) && probe_report(probe);
     for (int i = 0; i < probe->sessions; i++)
         viewer_destroy(&probe->viewers[i]);
     pthread_mutex_destroy(&probe->lead.lock);

@@ -19,7 +19,7 @@ static void add(struct samples *samples, double ms)
     samples->at[samples->count++] = ms;
 }
 
-static void fail(struct viewer *viewer, const char *why)
+void viewer_fail(struct viewer *viewer, const char *why)
 {
     if (!viewer->result.failure[0])
         snprintf(viewer->result.failure, sizeof(viewer->result.failure), "%s", why);
@@ -53,8 +53,23 @@ static void on_pong(struct viewer *viewer, int64_t server_us)
     viewer->offset_us = server_us - (clock_utc_ns() - rtt_ns / 2) / 1000;
 }
 
+/* What it has no use for: most of what comes to many viewers. */
+static bool is_passed_over(const struct text *text)
+{
+    static const char *const types[] = { "tags", "markers" };
+    for (size_t i = 0; i < sizeof(types) / sizeof(types[0]); i++) {
+        char begin[32];
+        int count = snprintf(begin, sizeof(begin), "{\"type\":\"%s\"", types[i]);
+        if (text->length > (size_t)count && !memcmp(text->at, begin, (size_t)count))
+            return true;
+    }
+    return false;
+}
+
 static void on_text(struct viewer *viewer)
 {
+    if (is_passed_over(&viewer->in))
+        return;
     json_t *o = json_loadb(viewer->in.at, viewer->in.length, 0, NULL);
     const char *type = json_string_value(json_object_get(o, "type"));
     if (type && !strcmp(type, "welcome")) {
@@ -71,7 +86,7 @@ static void on_text(struct viewer *viewer)
         viewer->result.errors++;
         const char *text = json_string_value(json_object_get(o, "text"));
         if (!viewer->welcomed)
-            fail(viewer, text ? text : "an error without a text");
+            viewer_fail(viewer, text ? text : "an error without a text");
     }
     json_decref(o);
 }
@@ -90,7 +105,7 @@ static void record_input(struct viewer *viewer, uint32_t camera_seq, int64_t now
 static void record_behind(struct viewer *viewer, const struct wire_frame *frame, int64_t now_ns)
 {
     struct lead *lead = viewer->params.lead;
-    if (!viewer->followed)
+    if (!viewer->followed || now_ns - viewer->result.first_ns < VIEWER_SETTLES_S * NS_PER_S)
         return;
     pthread_mutex_lock(&lead->lock);
     for (uint32_t number = lead->newest; number > 0 && lead->newest - number < LEAD_CAMERAS; number--) {
@@ -149,17 +164,17 @@ static void on_frame(struct viewer *viewer)
     struct wire_frame frame;
     const uint8_t *bytes = (const uint8_t *)viewer->in.at;
     int64_t begin_ns = clock_mono_ns();
-    if (is_given_up(bytes, viewer->in.length)) {
+    if (viewer->in.length >= WIRE_FRAME_HEADER_BYTES && is_given_up(bytes, viewer->in_count)) {
         viewer->result.given_up++;
         viewer->decode_ns = 0;
         return;
     }
-    if (!wire_get_frame(bytes, viewer->in.length, &frame)) {
-        fail(viewer, "a binary message is no frame of " WIRE_SUBPROTOCOL);
+    if (viewer->in.length < WIRE_FRAME_HEADER_BYTES || !wire_get_frame(bytes, viewer->in_count, &frame)) {
+        viewer_fail(viewer, "a binary message is no frame of " WIRE_SUBPROTOCOL);
         return;
     }
     if (!viewer->params.blind && !decoder_decode(viewer->decoder, &frame, bytes + WIRE_FRAME_HEADER_BYTES)) {
-        fail(viewer, "a frame cannot be decoded");
+        viewer_fail(viewer, "a frame cannot be decoded");
         return;
     }
     int64_t now_ns = clock_mono_ns();
@@ -168,21 +183,17 @@ static void on_frame(struct viewer *viewer)
     if (frame.flags & WIRE_FLAG_MORE)
         return;
     record(viewer, &frame, now_ns);
-    if (viewer->ack_count < MAX_ACKS) {
+    if (viewer->ack_count < MAX_ACKS && !viewer->params.stalls) {
         viewer->acks[viewer->ack_count].seq = frame.seq;
         viewer->acks[viewer->ack_count++].decode_ms = (double)viewer->decode_ns / 1e6;
     }
     viewer->decode_ns = 0;
-    if (viewer->params.stalls)
-        lws_rx_flow_control(viewer->wsi, 0);
-    else
-        lws_callback_on_writable(viewer->wsi);
 }
 
 static void count_bytes(struct viewer *viewer, bool binary)
 {
     struct viewer_result *result = &viewer->result;
-    int64_t count = (int64_t)viewer->in.length;
+    int64_t count = (int64_t)viewer->in_count;
     if (!binary)
         result->text_bytes += count;
     static const char pong[] = "{\"type\":\"pong\"";
@@ -191,21 +202,31 @@ static void count_bytes(struct viewer *viewer, bool binary)
         result->steady_bytes += count;
 }
 
+void viewer_on_message(struct viewer *viewer, bool binary)
+{
+    if (binary)
+        on_frame(viewer);
+    else
+        on_text(viewer);
+    count_bytes(viewer, binary);
+}
+
 static int on_receive(struct viewer *viewer, struct lws *wsi, const void *bytes, size_t count)
 {
     if (viewer->in.length + count > MAX_MESSAGE_BYTES) {
-        fail(viewer, "a message without end");
+        viewer_fail(viewer, "a message without end");
         return -1;
     }
     text_add_bytes(&viewer->in, bytes, count);
     if (lws_remaining_packet_payload(wsi) > 0 || !lws_is_final_fragment(wsi))
         return 0;
-    if (lws_frame_is_binary(wsi))
-        on_frame(viewer);
-    else
-        on_text(viewer);
-    count_bytes(viewer, lws_frame_is_binary(wsi));
+    viewer->in_count = viewer->in.length;
+    viewer_on_message(viewer, lws_frame_is_binary(wsi));
     viewer->in.length = 0;
+    if (viewer->params.stalls && viewer->result.frames > 0)
+        lws_rx_flow_control(wsi, 0);
+    if (viewer_has_words(viewer))
+        lws_callback_on_writable(wsi);
     return viewer->done ? -1 : 0;
 }
 
@@ -216,21 +237,35 @@ static bool expects_frames(const struct viewer *viewer)
     return !viewer->result.frames || (viewer->params.motion == MOTION_ORBIT && !viewer->params.stalls);
 }
 
-static void on_timer(lws_sorted_usec_list_t *sul)
+void viewer_on_time(struct viewer *viewer, int64_t now_ns)
 {
-    struct viewer *viewer = lws_container_of(sul, struct viewer, timer);
-    int64_t now_ns = clock_mono_ns(), since_ns = viewer->result.frames ? viewer->result.last_ns : viewer->begin_ns;
+    int64_t since_ns = viewer->result.frames ? viewer->result.last_ns : viewer->begin_ns;
     if (viewer->result.frames && (double)(now_ns - viewer->result.first_ns) >= viewer->params.seconds * 1e9)
         viewer->done = true;
     else if (now_ns - since_ns > PATIENCE_NS && expects_frames(viewer))
-        fail(viewer, "no frame for 20 s");
-    if (viewer->done) {
-        if (viewer->wsi)
-            lws_callback_on_writable(viewer->wsi); /* which closes it */
-        return;
-    }
-    viewer_think(viewer, now_ns);
-    lws_sul_schedule(viewer->context, 0, sul, on_timer, (lws_usec_t)(LWS_US_PER_SEC / viewer->params.hz));
+        viewer_fail(viewer, "no frame for 20 s");
+    else
+        viewer_think(viewer, now_ns);
+}
+
+static void on_timer(lws_sorted_usec_list_t *sul)
+{
+    struct viewer *viewer = lws_container_of(sul, struct viewer, timer);
+    viewer_on_time(viewer, clock_mono_ns());
+    if (viewer->wsi && (viewer->done || viewer_has_words(viewer)))
+        lws_callback_on_writable(viewer->wsi); /* which closes it, if it is done */
+    if (!viewer->done)
+        lws_sul_schedule(viewer->context, 0, sul, on_timer, (lws_usec_t)(LWS_US_PER_SEC / viewer->params.hz));
+}
+
+static int on_writeable(struct viewer *viewer)
+{
+    if (viewer->done)
+        return -1;
+    int status = viewer_say(viewer);
+    if (viewer_has_words(viewer))
+        lws_callback_on_writable(viewer->wsi);
+    return status;
 }
 
 static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t len)
@@ -238,17 +273,17 @@ static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *use
     struct viewer *viewer = user;
     switch (reason) {
     case LWS_CALLBACK_CLIENT_APPEND_HANDSHAKE_HEADER: return daemon_add_token(wsi, in, len);
-    case LWS_CALLBACK_CLIENT_CONNECTION_ERROR: fail(viewer, in ? (const char *)in : "no connection"); break;
+    case LWS_CALLBACK_CLIENT_CONNECTION_ERROR: viewer_fail(viewer, in ? (const char *)in : "no connection"); break;
     case LWS_CALLBACK_CLIENT_ESTABLISHED:
         viewer->wsi = wsi;
         lws_callback_on_writable(wsi);
         break;
     case LWS_CALLBACK_CLIENT_RECEIVE: return on_receive(viewer, wsi, in, len);
-    case LWS_CALLBACK_CLIENT_WRITEABLE: return viewer->done ? -1 : viewer_say(viewer);
+    case LWS_CALLBACK_CLIENT_WRITEABLE: return on_writeable(viewer);
     case LWS_CALLBACK_CLIENT_CLOSED:
         viewer->wsi = NULL;
         if (!viewer->done && !viewer->params.stalls)
-            fail(viewer, "the daemon closed the connection");
+            viewer_fail(viewer, "the daemon closed the connection");
         break;
     default: break;
     }
@@ -289,7 +324,7 @@ void viewer_connect(struct viewer *viewer, struct lws_context *context)
     viewer->begin_ns = clock_mono_ns();
     daemon_prepare_connection(viewer->params.url, &connect);
     if (!lws_client_connect_via_info(&connect))
-        fail(viewer, "no connection");
+        viewer_fail(viewer, "no connection");
     on_timer(&viewer->timer);
 }
 

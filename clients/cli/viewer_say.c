@@ -11,15 +11,17 @@
 static const double TURN_DEG_PER_S = 30;
 static const int64_t PING_NS = 1 * NS_PER_S;
 
-static int say(struct lws *wsi, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
-static int say(struct lws *wsi, const char *fmt, ...)
+static int say(const struct viewer *viewer, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
+static int say(const struct viewer *viewer, const char *fmt, ...)
 {
     unsigned char buffer[LWS_PRE + 512];
     va_list ap;
     va_start(ap, fmt);
     int count = vsnprintf((char *)buffer + LWS_PRE, sizeof(buffer) - LWS_PRE, fmt, ap);
     va_end(ap);
-    return lws_write(wsi, buffer + LWS_PRE, (size_t)count, LWS_WRITE_TEXT) < count ? -1 : 0;
+    if (viewer->bare)
+        return bare_say(viewer->bare, (const char *)buffer + LWS_PRE, (size_t)count) ? 0 : -1;
+    return lws_write(viewer->wsi, buffer + LWS_PRE, (size_t)count, LWS_WRITE_TEXT) < count ? -1 : 0;
 }
 
 static double seconds_of(int64_t ns)
@@ -74,7 +76,7 @@ static int say_camera(struct viewer *viewer)
     viewer->camera_due = false;
     viewer->sent_ns[++viewer->camera_seq % SENT_RING] = now_ns;
     publish(viewer, eye, now_ns);
-    return say(viewer->wsi, "{\"type\":\"camera\",\"seq\":%u,\"eye\":[%.6f,%.6f,%.6f],\"target\":[%.6f,%.6f,%.6f],\"fov\":%.3f}",
+    return say(viewer, "{\"type\":\"camera\",\"seq\":%u,\"eye\":[%.6f,%.6f,%.6f],\"target\":[%.6f,%.6f,%.6f],\"fov\":%.3f}",
                viewer->camera_seq, eye[0], eye[1], eye[2], viewer->target[0], viewer->target[1], viewer->target[2], viewer->fov_deg);
 }
 
@@ -84,7 +86,7 @@ static int say_hello(struct viewer *viewer)
 {
     const struct viewer_params *params = &viewer->params;
     viewer->greeted = true;
-    return say(viewer->wsi, "{\"type\":\"hello\",\"width\":%d,\"height\":%d,\"codecs\":[\"%s\"]}", params->width_px, params->height_px,
+    return say(viewer, "{\"type\":\"hello\",\"width\":%d,\"height\":%d,\"codecs\":[\"%s\"]}", params->width_px, params->height_px,
                params->codec);
 }
 
@@ -94,14 +96,14 @@ static int say_ack(struct viewer *viewer)
     double decode_ms = viewer->acks[0].decode_ms;
     viewer->ack_count--;
     memmove(viewer->acks, viewer->acks + 1, (size_t)viewer->ack_count * sizeof(viewer->acks[0]));
-    return say(viewer->wsi, "{\"type\":\"ack\",\"seq\":%u,\"decode_ms\":%.3f}", seq, decode_ms);
+    return say(viewer, "{\"type\":\"ack\",\"seq\":%u,\"decode_ms\":%.3f}", seq, decode_ms);
 }
 
 static int say_ping(struct viewer *viewer)
 {
     viewer->ping_due = false;
     viewer->ping_ns = clock_mono_ns();
-    return say(viewer->wsi, "{\"type\":\"ping\",\"t\":%lld}", (long long)(viewer->ping_ns / 1000));
+    return say(viewer, "{\"type\":\"ping\",\"t\":%lld}", (long long)(viewer->ping_ns / 1000));
 }
 
 static int say_follow(struct viewer *viewer)
@@ -112,7 +114,12 @@ static int say_follow(struct viewer *viewer)
     pthread_mutex_lock(&lead->lock);
     uint64_t session = lead->session;
     pthread_mutex_unlock(&lead->lock);
-    return say(viewer->wsi, "{\"type\":\"follow\",\"session\":%llu}", (unsigned long long)session);
+    return say(viewer, "{\"type\":\"follow\",\"session\":%llu}", (unsigned long long)session);
+}
+
+bool viewer_has_words(const struct viewer *viewer)
+{
+    return !viewer->greeted || viewer->ack_count > 0 || viewer->camera_due || viewer->follow_due || viewer->ping_due;
 }
 
 int viewer_say(struct viewer *viewer)
@@ -128,8 +135,6 @@ int viewer_say(struct viewer *viewer)
         status = say_follow(viewer);
     else if (viewer->ping_due)
         status = say_ping(viewer);
-    if (viewer->ack_count > 0 || viewer->camera_due || viewer->follow_due || viewer->ping_due)
-        lws_callback_on_writable(viewer->wsi);
     return status;
 }
 
@@ -156,11 +161,9 @@ static bool moves(struct viewer *viewer, int64_t now_ns)
 
 void viewer_think(struct viewer *viewer, int64_t now_ns)
 {
-    if (!viewer->wsi || !viewer->welcomed || viewer->params.stalls)
+    if (!viewer->welcomed || viewer->params.stalls)
         return;
     viewer->camera_due |= moves(viewer, now_ns);
     viewer->follow_due |= viewer->params.follows && !viewer->followed && has_leader(viewer);
     viewer->ping_due |= now_ns - viewer->ping_ns >= PING_NS;
-    if (viewer->camera_due || viewer->follow_due || viewer->ping_due)
-        lws_callback_on_writable(viewer->wsi);
 }

@@ -419,7 +419,17 @@ test('plantcast tags and plantcast probe', { skip }, () => {
     assert.ok(report.frames > 4 && report.fps > 1 && report.input_to_frame_ms.p50 > 0 && report.failures.length === 0);
     // Each camera that was sent has waited, not only those that a frame happened to show.
     assert.ok(report.input_to_frame_ms.count >= 60, `${report.input_to_frame_ms.count} inputs, ${report.frames} frames`);
-    assert.equal(runProgram('plantcast', ['probe', 'http://127.0.0.1:1/', '--seconds', '1']).code, 1);
+    const crowd = ['--sessions', '40', '--follow', '--blind', '--hz', '10', '--seconds', '4', '--size', '640x360', '--json'];
+    const blind = runProgram('plantcast', ['probe', url, ...crowd]);
+    assert.equal(blind.code, 0, blind.err);
+    const followed = JSON.parse(blind.out);
+    assert.equal(followed.sessions_fps.filter((fps) => fps > 1).length, 40, blind.out);
+    assert.ok(followed.behind_leader_ms.count > 40 && followed.kb_per_frame > 1 && followed.errors === 0, blind.out);
+    for (const options of [[], ['--blind']]) {
+        const refused = runProgram('plantcast', ['probe', 'http://127.0.0.1:1/', '--seconds', '1', ...options]);
+        assert.equal(refused.code, 1);
+        assert.match(refused.err, /refused|unable to connect/i);
+    }
     assert.equal(runProgram('plantcast', ['probe', url, '--motion', 'jump']).code, 2);
     assert.equal(runProgram('plantcast', ['tags']).code, 2);
 });
