@@ -96,12 +96,18 @@ static struct chain *most_common(struct chains *chains, const struct batch *orde
     return best;
 }
 
-/* One that shows this already, and all of which can still be had. */
-static struct chain *showing(const struct chains *chains, const struct frame *frame, const struct wish *wish)
+/* It shows this already, and all of it can still be had. */
+static bool shows(const struct chain *chain, const struct frame *frame, const struct wish *wish)
 {
-    struct chain *chain = wish->overlay ? NULL : chains->first; /* with the time of day in it */
-    while (chain && !(chain->key > 0 && chain->key >= chain->oldest && chain->planned < chain->key + CATCH_UP &&
-                      chain->content == frame->content && same_coding(chain, frame, wish)))
+    return !wish->overlay && chain->key > 0 && chain->key >= chain->oldest && chain->planned < chain->key + CATCH_UP &&
+           chain->content == frame->content && same_coding(chain, frame, wish);
+}
+
+/* One that shows this already; whole: by a picture that stands alone. */
+static struct chain *showing(const struct chains *chains, const struct frame *frame, const struct wish *wish, bool whole)
+{
+    struct chain *chain = chains->first;
+    while (chain && !(shows(chain, frame, wish) && (!whole || chain->key == chain->planned)))
         chain = chain->next;
     return chain;
 }
@@ -207,9 +213,13 @@ static void give(struct chains *chains, const struct batch *orders, int64_t now_
 static struct chain *choose(struct chains *chains, const struct frame *frame, const struct batch *orders)
 {
     const struct wish *wish = &orders->orders[0].wish;
-    struct chain *chain = most_common(chains, orders);
+    struct chain *chain = most_common(chains, orders), *other = NULL;
+    if (chain && !shows(chain, frame, wish))
+        other = showing(chains, frame, wish, true);
+    if (other)
+        return other; /* made a moment ago for some who asked first: nobody needs another */
     if (!chain)
-        chain = showing(chains, frame, wish);
+        chain = showing(chains, frame, wish, false);
     else if (chain->content != frame->content && belongs_to_others(chains, chain, frame))
         chain = NULL;
     if (!chain)

@@ -9,65 +9,6 @@ static const int64_t LIGHT_NS = 4 * NS_PER_MS;     /* of each picture of a movin
 static const int64_t FIELD_NS = 6 * NS_PER_MS;              /* of a field that takes long, likewise */
 static const int64_t REBUILD_NS = 100 * NS_PER_MS, REBUILD_MAX_NS = 5 * NS_PER_S; /* between attempts at a new context */
 
-struct content_of {
-    struct painter *painter;
-    uint64_t content;
-    int64_t cost_ns; /* each one's part */
-};
-
-/* Under lock: the client has this picture already. */
-static bool has_it(const struct order *order, void *arg)
-{
-    const struct content_of *now = arg;
-    const struct client *client = painter_find(now->painter, order->client);
-    return !order->wish.always && client && client->has_content && client->content == now->content;
-}
-
-/* Under lock: who is there remembers what it gets. */
-static bool remember(const struct order *order, void *arg)
-{
-    const struct content_of *now = arg;
-    struct client *client = painter_find(now->painter, order->client);
-    if (!client)
-        return false;
-    client->has_content = true;
-    client->content = now->content;
-    client->spent_ns[schedule_share(order->wish.urgency)] += now->cost_ns;
-    return true;
-}
-
-/* Who left has no more part in any stream of packets: decided under the lock that painter_forget takes. Who shares a picture shares its
-   cost. */
-static void submit(struct painter *painter, struct frame *frame, struct batch *batch, int64_t cost_ns)
-{
-    struct content_of now = { .painter = painter, .content = frame->content, .cost_ns = cost_ns / (int64_t)batch->count };
-    struct batch here = { 0 };
-    pthread_mutex_lock(&painter->lock);
-    batch_split(batch, remember, &now, &here);
-    encoding_submit(painter->encoding, frame, &here);
-    pthread_mutex_unlock(&painter->lock);
-    batch_finish(&here);
-    batch->count = 0;
-}
-
-/* Answers those for whom nothing changed, and those for whom another's frame does; takes them out of the batch. */
-static void leave_out_same(struct drawing *drawing, struct batch *batch)
-{
-    struct painter *painter = drawing->painter;
-    struct content_of now = { .painter = painter };
-    now.content = canvas_content(drawing->renderer, &batch->orders[0].wish.view, drawing->snapshot);
-    pthread_mutex_lock(&painter->lock);
-    batch_split(batch, has_it, &now, &drawing->same);
-    pthread_mutex_unlock(&painter->lock);
-    counter_inc(painter->same, (int64_t)drawing->same.count);
-    painter_post_none(painter, &drawing->same, false);
-    struct frame *frame = batch->count > 0 ? recent_find(&drawing->recent, now.content, clock_mono_ns()) : NULL;
-    if (!frame || batch->orders[0].wish.overlay)
-        return;
-    counter_inc(painter->shared, (int64_t)batch->count);
-    submit(painter, frame, batch, 0);
-}
-
 /* Under lock. It is wanted as before; true: a newer wish of its client is there already, and stands for it. */
 static bool wish_again(const struct order *order, void *arg)
 {
@@ -126,8 +67,8 @@ static void deliver(struct drawing *drawing, struct frame *frame, const struct s
     counter_inc(painter->renders, 1);
     counter_inc(painter->render_us, (frame->render_ns + frame->readback_ns) / 1000);
     if (!batch->orders[0].wish.overlay)
-        recent_add(&drawing->recent, frame, clock_mono_ns());
-    submit(painter, frame, batch, frame->field_ns + frame->render_ns + frame->readback_ns);
+        recent_add(&drawing->recent, frame, snapshot->taken_mono_ns, clock_mono_ns());
+    sharing_submit(painter, frame, batch, frame->field_ns + frame->render_ns + frame->readback_ns);
     frame_unref(&frame);
 }
 
@@ -256,6 +197,9 @@ static bool draw(struct drawing *drawing, struct batch *batch)
 {
     int64_t field_begin_ns = clock_mono_ns();
     const struct wish *wish = &batch->orders[0].wish;
+    sharing_take_recent(drawing, batch);
+    if (batch->count == 0)
+        return true;
     drawing_refresh(drawing);
     bool ready = canvas_prepare(drawing->renderer, &wish->view, drawing->snapshot, FIELD_NS);
     bool quick = ready && canvas_is_quick(drawing->renderer, &wish->view, drawing->snapshot);
@@ -266,7 +210,7 @@ static bool draw(struct drawing *drawing, struct batch *batch)
         counter_inc(drawing->painter->steps, 1);
         return false;
     }
-    leave_out_same(drawing, batch);
+    sharing_leave_out_same(drawing, batch);
     if (batch->count == 0)
         return true;
     int64_t field_ns = clock_mono_ns() - field_begin_ns; /* to know what changed, the field was brought up to date already */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the render thread alone touches. Private to drawing.c and turns.c. */
+/* What the render thread alone touches. Private to drawing.c, turns.c and sharing.c. */
 #ifndef NET_DRAWING_IMPL_H
 #define NET_DRAWING_IMPL_H
 #include "net/held.h"
@@ -25,6 +25,18 @@ struct drawing {
     } slow;
     struct held held; /* pictures whose field takes long: worked on step by step, each in its turn */
 };
+
+/* --- sharing.c: one picture for all who want the same, whenever they ask --- */
+
+/* The frame, encoded, to all of the batch that are still there; empties it. cost_ns: what it took to draw, which they share. */
+void sharing_submit(struct painter *painter, struct frame *frame, struct batch *batch, int64_t cost_ns);
+/* Answers those for whom nothing changed, and those for whom another's frame does; takes them out of the batch. */
+void sharing_leave_out_same(struct drawing *drawing, struct batch *batch);
+/* Likewise who asks a moment later than others for the same view: what was drawn for them will do, if all that changed since is readings
+   that he has yet to be told of. Before the field is brought up to date. */
+void sharing_take_recent(struct drawing *drawing, struct batch *batch);
+
+/* --- turns.c --- */
 
 /* Waits for work. False: stop. An empty batch: the slow picture may go on by a step. */
 bool drawing_next(struct drawing *drawing, const struct schedule *schedule, struct batch *batch);

@@ -241,6 +241,7 @@ static void answer(struct job *job)
         for (int p = 0; p < run.count; p++)
             packet_unref(&run.packets[p]);
     }
+    params->all_done(params->done_arg);
 }
 
 static void job_destroy(struct job *job)

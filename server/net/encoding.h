@@ -15,7 +15,8 @@ struct encoding_params {
     /* On a worker: what brings the client up to date, oldest first; none: it shows the same already. failed: it could not be made. The
        packets belong to `encoding`. */
     void (*done)(void *arg, const struct order *order, struct packet *const *packets, int count, bool failed);
-    void *done_arg;
+    void (*all_done)(void *arg); /* after the last client of one packet */
+    void *done_arg;              /* of both */
 };
 
 struct encoding *encoding_create(const struct encoding_params *params); /* never NULL */

@@ -62,5 +62,5 @@ void follow_share_steps(struct hub *hub)
         if (stream->session->pacer.ladder.known)
             seen(stream->session)->steps[stream->session->pacer.ladder.step]++;
     for (stream = hub->streams; stream; stream = stream->next)
-        stream->session->common_step = ladder_common(seen(stream->session)->steps);
+        stream->session->common_step = ladder_common(&seen(stream->session)->pacer.ladder, seen(stream->session)->steps);
 }

@@ -26,7 +26,8 @@ struct hub {
     bool *links_up;
     struct lws_context *context;
     struct recall *recall; /* NULL: nothing is recorded */
-    struct stream *streams;
+    struct stream *streams, **by_client; /* all of them; the same, by number, ascending */
+    size_t by_client_capacity;
     struct request *snapshots; /* HTTP requests that wait for their picture */
     int stream_count, snapshot_count;
     const struct quotas *quotas;

@@ -13,6 +13,7 @@ static const int64_t HARD_NS = 40 * NS_PER_MS;  /* decoding that takes longer ca
 static const int64_t EASY_NS = 20 * NS_PER_MS;
 static const int64_t HARD_FOR_NS = 500 * NS_PER_MS, EASY_FOR_NS = 3 * NS_PER_S;
 static const double SHARE = 0.25;
+static const double CROWD_BYTES = 30e6; /* of one picture, to all who see it: what a loop sends in some tens of milliseconds */
 enum { FEWEST = 3, NEARLY = 2 }; /* who share a step; how much worse one of them may be */
 static const double BYTES_PER_PIXEL = 0.08; /* of the first step, before any was seen */
 
@@ -31,12 +32,14 @@ void ladder_init(struct ladder *ladder)
     *ladder = (struct ladder){ .step = LADDER_FIRST, .patience_ns = FIRST_PATIENCE_NS };
 }
 
-int ladder_common(const int counts[LADDER_STEPS])
+int ladder_common(const struct ladder *seen, const int counts[LADDER_STEPS])
 {
     int all = 0, below = 0, step = 0;
     for (int i = 0; i < LADDER_STEPS; i++)
         all += counts[i];
     while (all >= FEWEST && 4 * (below += counts[step]) < 3 * all)
+        step++;
+    while (step < LADDER_STEPS - 1 && all * seen->unit_bytes * steps[step].bytes > CROWD_BYTES)
         step++;
     return all >= FEWEST ? step : -1;
 }

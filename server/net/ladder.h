@@ -27,8 +27,9 @@ void ladder_init(struct ladder *ladder);
 void ladder_begin(struct ladder *ladder, const struct channel *channel, double pixels);
 struct rung ladder_rung(const struct ladder *ladder, int step); /* at that step, instead of its own */
 /* Those who see the same take one step together, or each picture would be drawn and encoded for every one of them: the worst that
-   three quarters of them need. counts: of them, by step. Negative: too few to matter. */
-int ladder_common(const int counts[LADDER_STEPS]);
+   three quarters of them need, and none whose pictures would keep the loop from anything else while they go to all of them. counts: of
+   them, by step; seen: of the one whose view it is. Negative: too few to matter. */
+int ladder_common(const struct ladder *seen, const int counts[LADDER_STEPS]);
 /* The step to take: the common one, unless the own one is much worse. common negative: the own one. */
 int ladder_step(const struct ladder *ladder, int common);
 /* A moving picture of that step was acknowledged. */

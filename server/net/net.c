@@ -144,6 +144,8 @@ static void on_tick(lws_sorted_usec_list_t *sul)
     counter_set(net->hub.counters.connections, net->hub.connection_count);
     bool data_changed = take_snapshot(&net->hub), links_changed = look_at_links(&net->hub);
     if (data_changed)
+        net->hub.world.changed_ns = net->hub.snapshot->taken_mono_ns;
+    if (data_changed)
         painter_new_data(net->hub.params.painter);
     streams_on_tick(&net->hub, data_changed, links_changed);
     hub_go(&net->hub);
@@ -366,6 +368,7 @@ void net_destroy(struct net **net_ptr)
     tls_destroy(&net->hub.tls);
     tokens_destroy(&net->hub.tokens);
     peers_destroy(&net->hub.peers);
+    mem_free(net->hub.by_client);
     resumes_destroy(&net->hub.world.resumes);
     tags_said_finish(&net->hub.tags_said);
     marker_lists_finish(&net->hub.marker_lists);

@@ -56,15 +56,23 @@ static struct picture *picture_create(const struct order *order, bool failed)
     return picture;
 }
 
-/* Takes it. */
+/* Takes it; who gives several says so once, after the last: announce(). */
 static void give_back(struct painter *painter, struct picture *picture)
 {
     pthread_mutex_lock(&painter->lock);
-    bool was_empty = painter->done == NULL;
     *painter->done_last = picture;
     painter->done_last = &picture->next;
     pthread_mutex_unlock(&painter->lock);
-    if (was_empty)
+}
+
+static void announce(void *arg)
+{
+    struct painter *painter = arg;
+    pthread_mutex_lock(&painter->lock);
+    bool news = painter->done && !painter->announced;
+    painter->announced |= news;
+    pthread_mutex_unlock(&painter->lock);
+    if (news)
         painter->params.notify(painter->params.notify_arg);
 }
 
@@ -72,6 +80,7 @@ void painter_post_none(struct painter *painter, const struct batch *batch, bool 
 {
     for (size_t i = 0; i < batch->count; i++)
         give_back(painter, picture_create(&batch->orders[i], failed));
+    announce(painter);
 }
 
 static void on_encoded(void *arg, const struct order *order, struct packet *const *packets, int count, bool failed)
@@ -92,6 +101,7 @@ struct picture *painter_collect(struct painter *painter)
     struct picture *done = painter->done;
     painter->done = NULL;
     painter->done_last = &painter->done;
+    painter->announced = false;
     pthread_mutex_unlock(&painter->lock);
     return done;
 }
@@ -254,6 +264,7 @@ struct painter *painter_create(const struct painter_params *params)
         .counters = params->counters,
         .h264_library = params->h264_library ? params->h264_library : ENCODER_H264_LIBRARY,
         .done = on_encoded,
+        .all_done = announce,
         .done_arg = painter,
     });
     if (!thread_start(painter))

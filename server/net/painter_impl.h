@@ -33,6 +33,7 @@ struct painter {
     size_t client_count, client_capacity;
     int64_t spent_ns[SCHEDULE_SHARES]; /* what the client that was served last had spent before */
     struct picture *done, **done_last;
+    bool announced; /* somebody was told of them */
 };
 
 /* Under lock. NULL: none. */

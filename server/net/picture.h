@@ -12,6 +12,7 @@ struct wish {
     struct encoder_params quality; /* quality and full_chroma; the rest is zero */
     enum urgency urgency;
     int64_t asked_ns;  /* monotonic */
+    int64_t read_ns;   /* likewise: readings that changed later will be asked for when they are noticed */
     int step;          /* of the ladder, where it moves */
     bool draft;        /* refined, but of less quality than the client shall have in the end */
     bool of_data;      /* for a reading that changed: view.input_ns is when */

@@ -19,7 +19,7 @@ static void forget_old(struct recent *recent, int64_t now_ns)
             frame_unref(&recent->kept[i].frame);
 }
 
-void recent_add(struct recent *recent, struct frame *frame, int64_t now_ns)
+void recent_add(struct recent *recent, struct frame *frame, int64_t read_ns, int64_t now_ns)
 {
     size_t sum = bytes_of(frame);
     forget_old(recent, now_ns);
@@ -28,6 +28,7 @@ void recent_add(struct recent *recent, struct frame *frame, int64_t now_ns)
         recent->kept[i] = recent->kept[i - 1];
     recent->kept[0].frame = frame_ref(frame);
     recent->kept[0].drawn_ns = now_ns;
+    recent->kept[0].read_ns = read_ns;
     for (int i = 1; i < RECENT_FRAMES; i++) {
         sum += bytes_of(recent->kept[i].frame);
         if (sum > KEPT_BYTES)
@@ -40,6 +41,15 @@ struct frame *recent_find(struct recent *recent, uint64_t content, int64_t now_n
     forget_old(recent, now_ns);
     for (int i = 0; i < RECENT_FRAMES; i++)
         if (recent->kept[i].frame && recent->kept[i].frame->content == content)
+            return recent->kept[i].frame;
+    return NULL;
+}
+
+struct frame *recent_find_view(struct recent *recent, const struct view *view, int64_t read_ns, int64_t now_ns)
+{
+    forget_old(recent, now_ns);
+    for (int i = 0; i < RECENT_FRAMES; i++)
+        if (recent->kept[i].frame && recent->kept[i].read_ns >= read_ns && view_equal(&recent->kept[i].frame->view, view))
             return recent->kept[i].frame;
     return NULL;
 }

@@ -9,12 +9,14 @@ enum { RECENT_FRAMES = 4 };
 struct recent { /* zero-initialise */
     struct {
         struct frame *frame; /* NULL: none */
-        int64_t drawn_ns;
+        int64_t drawn_ns, read_ns; /* read: when its readings were taken */
     } kept[RECENT_FRAMES];
 };
 
-void recent_add(struct recent *recent, struct frame *frame, int64_t now_ns); /* takes its own reference */
+void recent_add(struct recent *recent, struct frame *frame, int64_t read_ns, int64_t now_ns); /* takes its own reference */
 struct frame *recent_find(struct recent *recent, uint64_t content, int64_t now_ns); /* borrowed; NULL: none of that content */
+/* One of that view, with readings no older than that. */
+struct frame *recent_find_view(struct recent *recent, const struct view *view, int64_t read_ns, int64_t now_ns);
 void recent_finish(struct recent *recent);
 
 #endif

@@ -118,15 +118,6 @@ static struct wire_frame frame_header(const struct stream *stream)
     return out;
 }
 
-static bool write_header(struct hub *hub, struct stream *stream)
-{
-    uint8_t bytes[WIRE_FRAME_HEADER_BYTES];
-    struct wire_frame head = frame_header(stream);
-    wire_put_frame(&head, bytes);
-    counter_inc(hub->counters.frame_bytes, WIRE_FRAME_HEADER_BYTES);
-    return hub_write(hub, stream->wsi, bytes, sizeof(bytes), LWS_WRITE_BINARY | LWS_WRITE_NO_FIN);
-}
-
 static void part_sent(struct hub *hub, struct stream *stream)
 {
     if (!is_last_part(stream)) {
@@ -137,19 +128,31 @@ static void part_sent(struct hub *hub, struct stream *stream)
     picture_destroy(&stream->sending);
 }
 
+/* The header goes with the first of the payload: each write is a call of the kernel, and a packet of its own. */
+static size_t put_header(struct stream *stream, uint8_t *bytes)
+{
+    struct wire_frame head = frame_header(stream);
+    wire_put_frame(&head, bytes);
+    stream->step = SEND_PAYLOAD;
+    return WIRE_FRAME_HEADER_BYTES;
+}
+
 static bool write_slice(struct hub *hub, struct stream *stream)
 {
     const struct packet *packet = packet_now(stream);
     const struct packet_part *part = &packet->parts[stream->part];
-    size_t left = part->count - stream->sent, slice = left < SLICE_BYTES ? left : SLICE_BYTES;
-    enum lws_write_protocol how = LWS_WRITE_CONTINUATION;
+    uint8_t *out = hub->out + LWS_PRE;
+    enum lws_write_protocol how = stream->step == SEND_HEADER ? LWS_WRITE_BINARY : LWS_WRITE_CONTINUATION;
+    size_t head = stream->step == SEND_HEADER ? put_header(stream, out) : 0;
+    size_t left = part->count - stream->sent, slice = left < SLICE_BYTES - head ? left : SLICE_BYTES - head;
     if (slice < left)
         how |= LWS_WRITE_NO_FIN;
-    bool good = hub_write(hub, stream->wsi, packet->bytes + part->begin + stream->sent, slice, how);
+    memcpy(out + head, packet->bytes + part->begin + stream->sent, slice);
+    bool good = lws_write(stream->wsi, out, head + slice, how) >= (int)(head + slice);
     stream->sent += slice;
     stream->sent_all += slice;
     session_wrote(stream->session, slice == left && is_last_part(stream), clock_mono_ns());
-    counter_inc(hub->counters.frame_bytes, (int64_t)slice);
+    counter_inc(hub->counters.frame_bytes, (int64_t)(head + slice));
     if (slice == left)
         part_sent(hub, stream);
     return good;
@@ -162,10 +165,6 @@ static bool write_picture(struct hub *hub, struct stream *stream)
         stream->step = SEND_HEADER;
         if (wrote)
             return good;
-    }
-    if (stream->step == SEND_HEADER) {
-        stream->step = SEND_PAYLOAD;
-        return write_header(hub, stream);
     }
     return write_slice(hub, stream);
 }

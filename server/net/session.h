@@ -23,6 +23,7 @@ struct session_world {
     const struct scene *scene;
     const struct snapshot *snapshot;
     struct baselines *baselines;
+    int64_t changed_ns;      /* monotonic: the snapshot in which readings were seen to change last */
     const bool *links_up;    /* by source index */
     bool live;               /* values are coming in */
     int64_t moving_until_ns; /* somebody moves; a refined picture of another would make it stutter */

@@ -14,6 +14,7 @@ static const int64_t START_NS = 1000 * NS_PER_MS;        /* the network is not w
 static const int64_t GIVE_UP_NS = 100 * NS_PER_MS;       /* what is left of a refined picture, when its view has changed */
 static const double STILL_OVER_MOVING = 3;               /* in bytes, before one was seen */
 static const struct encoder_params STILL = { .quality = 92, .full_chroma = true }, DRAFT = { .quality = 42 };
+static const int64_t SOON_NS = 120 * NS_PER_MS;          /* cameras of one movement follow each other so soon */
 enum { SMALL_PX = 128 }; /* sides that are not made smaller */
 
 /* The one who already has a picture keeps it; a new one would look at nothing. */
@@ -145,6 +146,12 @@ static void make_refreshed(const struct session *session, int64_t now_ns, struct
     wish->moving_quality.quality = ladder_rung(ladder, ladder_step(ladder, session->common_step)).quality;
 }
 
+/* A camera that moves, if not fast, brings new readings with its next picture: they need none of their own. */
+static bool next_camera_brings(const struct session *session, int64_t now_ns)
+{
+    return session->refined == REFINED_NOT && now_ns - session->input_ns < SOON_NS;
+}
+
 static bool wants(const struct session *session, int64_t now_ns, struct wish *wish)
 {
     if (session->input_pending || session->always_pending) {
@@ -156,7 +163,7 @@ static bool wants(const struct session *session, int64_t now_ns, struct wish *wi
         wish->view.input_ns = now_ns;
         wish->always = session->refined == REFINED_DRAFT; /* the same, but better */
         make_still(session, wish);
-    } else if (session->data_pending) {
+    } else if (session->data_pending && !next_camera_brings(session, now_ns)) {
         wish->view.input_ns = session->data_ns;
         wish->of_data = true;
         wish->urgency = URGENCY_DATA;
@@ -218,6 +225,7 @@ bool session_wish(const struct session *session, int64_t now_ns, struct wish *wi
     if (!session->hello || session->hidden || (!may_add && session->pacer.asked == 0))
         return false;
     *wish = (struct wish){ .view = *session_view(session), .codec = session->codec, .asked_ns = now_ns, .only_replace = !may_add };
+    wish->read_ns = session->world->changed_ns;
     wish->view.camera_seq = session->view.camera_seq;
     wish->view.params_seq = session->view.params_seq;
     return wants(session, now_ns, wish);

@@ -32,6 +32,20 @@ static void close_with(struct stream *stream, int code, const char *text)
 
 static void pump(struct hub *hub, struct stream *stream);
 
+/* Where it is, or would be, in hub->by_client. */
+static size_t place_of(const struct hub *hub, uint64_t client)
+{
+    size_t low = 0, high = (size_t)hub->stream_count;
+    while (low < high) {
+        size_t middle = (low + high) / 2;
+        if (hub->by_client[middle]->session->id < client)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
 static void on_open(struct hub *hub, struct lws *wsi, struct stream **slot)
 {
     struct stream *stream = mem_new(sizeof(*stream));
@@ -42,7 +56,8 @@ static void on_open(struct hub *hub, struct lws *wsi, struct stream **slot)
     stream->session->role = visitor_of(wsi)->role;
     stream->session->holder = visitor_of(wsi)->holder;
     *slot = hub->streams = stream;
-    hub->stream_count++;
+    mem_grow(&hub->by_client, &hub->by_client_capacity, (size_t)hub->stream_count + 1, sizeof(struct stream *));
+    hub->by_client[hub->stream_count++] = stream; /* numbers go up */
     counter_set(hub->counters.sessions, hub->stream_count);
     counter_inc(hub->counters.sessions_all, 1);
     tune_socket(wsi);
@@ -81,7 +96,8 @@ static void on_close(struct hub *hub, struct stream **slot)
     while (*at != stream)
         at = &(*at)->next;
     *at = stream->next;
-    hub->stream_count--;
+    size_t place = place_of(hub, stream->session->id);
+    memmove(hub->by_client + place, hub->by_client + place + 1, ((size_t)hub->stream_count-- - place - 1) * sizeof(struct stream *));
     counter_set(hub->counters.sessions, hub->stream_count);
     count(hub, stream);
     follow_forget(hub, stream);
@@ -193,10 +209,9 @@ void streams_close(struct hub *hub)
 
 struct stream *stream_find(const struct hub *hub, uint64_t client)
 {
-    struct stream *stream = hub->streams;
-    while (stream && stream->session->id != client)
-        stream = stream->next;
-    return stream;
+    size_t place = place_of(hub, client);
+    bool there = place < (size_t)hub->stream_count && hub->by_client[place]->session->id == client;
+    return there ? hub->by_client[place] : NULL;
 }
 
 bool stream_owns(const struct hub *hub, uint64_t client)

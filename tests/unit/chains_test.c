@@ -29,6 +29,7 @@ struct fixture {
     uint64_t last_state;
     int64_t now_ns;
     int encodes, keys;
+    enum wire_codec codec;
 };
 
 struct head { /* of a chain: what its clients show */
@@ -39,6 +40,7 @@ static int set_up(void **state)
 {
     struct fixture *f = mem_new(sizeof(*f));
     f->now_ns = 1000 * NS_PER_S;
+    f->codec = WIRE_CODEC_H264;
     *state = f;
     return 0;
 }
@@ -71,9 +73,9 @@ static int tear_down(void **state)
     return 0;
 }
 
-static struct order order_of(uint64_t client, const struct view *view)
+static struct order order_of(const struct fixture *f, uint64_t client, const struct view *view)
 {
-    struct order order = { .client = client, .wish = { .view = *view, .codec = WIRE_CODEC_H264, .quality = { .quality = 80 } } };
+    struct order order = { .client = client, .wish = { .view = *view, .codec = f->codec, .quality = { .quality = 80 } } };
     return order;
 }
 
@@ -87,7 +89,7 @@ static struct packet *encode(struct fixture *f, struct chain *chain, const struc
     head->state = made.leaves;
     f->encodes++;
     f->keys += key;
-    return packet_create(frame, WIRE_CODEC_H264, key, bytes, key ? sizeof(bytes) : 64);
+    return packet_create(frame, f->codec, key, bytes, key ? sizeof(bytes) : 64);
 }
 
 static void decode(struct fixture *f, uint64_t client, const struct packet *packet)
@@ -129,7 +131,7 @@ static void show(struct fixture *f, unsigned clients, int view_number, uint64_t 
     frame->content = content;
     for (uint64_t client = 0; client < CLIENTS; client++)
         if (clients & 1u << client) {
-            struct order order = order_of(client, &frame->view);
+            struct order order = order_of(f, client, &frame->view);
             order.wish.always = order.wish.alone = alone;
             batch_add(&orders, &order);
         }
@@ -222,6 +224,20 @@ static void a_slow_one_does_not_cost_the_others_key_frames(void **state)
     assert_in_range(chain_count(f), 1, 2);
 }
 
+/* As the acknowledgements of hundreds come in: some ask for the next view while the others still wait for the one before. */
+static void whole_pictures_are_made_once_however_it_is_asked_for(void **state)
+{
+    struct fixture *f = *state;
+    f->codec = WIRE_CODEC_JPEG;
+    show(f, 0xfff, 0, 1, false);
+    for (int i = 1; i < 50; i++) {
+        unsigned first = i % 3 == 0 ? 0x001u : i % 3 == 1 ? 0x807u : 0x0ffu;
+        show(f, first, i, (uint64_t)i + 1, false);
+        show(f, 0xfffu & ~first, i, (uint64_t)i + 1, false);
+    }
+    assert_int_equal(f->encodes, 50);
+}
+
 static void what_broke_starts_anew(void **state)
 {
     struct fixture *f = *state;
@@ -260,6 +276,7 @@ int main(void)
         TEST(who_missed_some_catches_up_without_a_key_frame),
         TEST(who_looks_elsewhere_gets_a_stream_of_its_own),
         TEST(a_slow_one_does_not_cost_the_others_key_frames),
+        TEST(whole_pictures_are_made_once_however_it_is_asked_for),
         TEST(what_broke_starts_anew),
         TEST(whoever_asks_whenever_decodes_it),
     };

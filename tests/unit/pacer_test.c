@@ -291,11 +291,15 @@ static void steps_do_not_swing(void **state)
 static void who_see_the_same_take_one_step(void **state)
 {
     (void)state;
-    struct ladder ladder = { .step = 1 };
-    assert_int_equal(ladder_common((int[LADDER_STEPS]){ 1, 0, 1 }), -1);
-    int common = ladder_common((int[LADDER_STEPS]){ 60, 30, 5, 0, 0, 5 });
+    struct ladder ladder = { .step = 1 }, seen = { 0 };
+    assert_int_equal(ladder_common(&seen, (int[LADDER_STEPS]){ 1, 0, 1 }), -1);
+    int common = ladder_common(&seen, (int[LADDER_STEPS]){ 60, 30, 5, 0, 0, 5 });
     assert_int_equal(common, 1); /* the few slow ones do not count */
-    assert_int_equal(ladder_common((int[LADDER_STEPS]){ [LADDER_STEPS - 1] = 10 }), LADDER_STEPS - 1);
+    assert_int_equal(ladder_common(&seen, (int[LADDER_STEPS]){ [LADDER_STEPS - 1] = 10 }), LADDER_STEPS - 1);
+    seen.unit_bytes = 90e3; /* too much for 500, not for 100 */
+    assert_int_equal(ladder_common(&seen, (int[LADDER_STEPS]){ 100 }), 0);
+    int crowd = ladder_common(&seen, (int[LADDER_STEPS]){ 500 });
+    assert_true(crowd > 0 && ladder_rung(&seen, crowd).scale == 1);
     assert_int_equal(ladder_step(&ladder, common), 1);
     assert_int_equal(ladder_step(&ladder, -1), 1);
     ladder.step = 0;

@@ -336,6 +336,7 @@ static void a_view_that_cannot_be_drawn_is_said_once(void **state)
         assert_true(ask(f, &wish));
         paint_nothing(f, &wish);
         expect_error(f, "no_picture");
+        f->now_ns += 150 * MS;
         session_on_data(f->session, f->now_ns);
         assert_true(ask(f, &wish));
         paint_nothing(f, &wish);
@@ -380,6 +381,29 @@ static void data_under_a_still_view_is_drawn_once_and_refined(void **state)
     assert_true(!wish.always && wish.view.tier == TIER_STILL && wish.view.input_ns == f->now_ns);
     paint(f, &wish, true);
     assert_false(ask(f, &wish));
+}
+
+static void readings_come_with_the_next_camera_of_a_slow_drag(void **state)
+{
+    struct fixture *f = *state;
+    struct wish wish;
+    greet(f);
+    show(f);
+    for (int camera = 1; camera <= 5; camera++) {
+        char text[96];
+        snprintf(text, sizeof(text), "{\"type\":\"camera\",\"seq\":%d,\"eye\":[9,9,%d],\"target\":[0,0,1]}", camera, camera + 5);
+        say(f, text);
+        f->world.changed_ns = f->now_ns;
+        wish = show(f);
+        assert_true(wish.urgency == URGENCY_INPUT && wish.read_ns == f->now_ns);
+        f->now_ns += 50 * MS;
+        session_on_data(f->session, f->now_ns);
+        assert_false(ask(f, &wish));
+        f->now_ns += 50 * MS;
+    }
+    f->now_ns += 50 * MS; /* it was the last */
+    assert_true(ask(f, &wish));
+    assert_true(wish.of_data && wish.urgency == URGENCY_DATA);
 }
 
 static void nobody_is_refined_while_another_moves(void **state)
@@ -839,6 +863,7 @@ int main(void)
         TEST(a_view_that_cannot_be_drawn_is_said_once),
         TEST(overtaken_pictures_are_not_sent),
         TEST(data_under_a_still_view_is_drawn_once_and_refined),
+        TEST(readings_come_with_the_next_camera_of_a_slow_drag),
         TEST(nobody_is_refined_while_another_moves),
         TEST(others_may_move_for_a_while_not_for_ever),
         TEST(data_on_a_loaded_server_is_not_refined_at_once),
