@@ -13,6 +13,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "alarm/alarming.h"
 #include "base/counters.h"
 #include "base/mem.h"
 #include "base/workers.h"
@@ -33,6 +34,7 @@ struct server {
     struct store *store;
     struct baselines *baselines;
     struct historian *historian; /* NULL: nothing is recorded */
+    struct alarming *alarming;
     struct source **sources; /* by index in plant->sources */
     struct workers *workers;
     struct painter *painter;
@@ -167,6 +169,22 @@ static unsigned find_codecs(const struct server *server)
     return codecs;
 }
 
+static bool start_alarming(struct server *server)
+{
+    const struct alarming_params params = {
+        .log = server->log,
+        .counters = server->counters,
+        .plant = server->plant,
+        .store = server->store,
+        .folder = server->history,
+        .keep_days = server->plant->history.keep_days,
+        .notify = on_pictures,
+        .notify_arg = server,
+    };
+    server->alarming = alarming_start(&params);
+    return server->alarming != NULL;
+}
+
 static bool start_historian(struct server *server)
 {
     if (server->plant->history.off)
@@ -207,6 +225,7 @@ static bool start_net(struct server *server)
         .store = server->store,
         .baselines = server->baselines,
         .painter = server->painter,
+        .alarming = server->alarming,
         .counters = server->counters,
         .address = server->params.address,
         .port = server->params.port,
@@ -249,7 +268,7 @@ static bool server_start(struct server *server)
     server->baselines = baselines_create();
     server->workers = workers_create(server->params.threads);
     server->web = find_web(server->params.web);
-    return start_historian(server) && start_sources(server) && start_painter(server) && start_net(server);
+    return start_historian(server) && start_alarming(server) && start_sources(server) && start_painter(server) && start_net(server);
 }
 
 /* Against the flow of data: first who takes, last who gives. */
@@ -264,6 +283,7 @@ static void server_finish(struct server *server)
     for (size_t i = 0; server->sources && i < server->plant->source_count; i++)
         source_stop(&server->sources[i]);
     mem_free(server->sources);
+    alarming_stop(&server->alarming);
     historian_stop(&server->historian);
     workers_destroy(&server->workers);
     store_destroy(&server->store);

@@ -16,6 +16,7 @@
 #include "render/canvas.h"
 #include "render/overlay.h"
 #include "snapshot.h"
+#include "value/alarm.h"
 #include "values.h"
 
 /* All that a picture needs; freed in the opposite order. */
@@ -58,6 +59,8 @@ static bool load_plant(struct studio *studio, struct snapshot_options *options)
     }
     for (size_t i = 0; i < options->value_count && studio->plant; i++)
         good = values_read(studio->plant, options->values[i], studio->snapshot, &diag) && good;
+    if (good)
+        alarm_by_limits(studio->plant, studio->snapshot);
     good = good && load_baseline(studio, options, &diag);
     diag_print(&diag, stderr);
     diag_finish(&diag);

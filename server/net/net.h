@@ -4,6 +4,7 @@
 #define NET_NET_H
 #include <stdbool.h>
 
+#include "alarm/alarming.h"
 #include "base/counters.h"
 #include "base/log.h"
 #include "net/access.h"
@@ -16,6 +17,7 @@ struct net_params {
     struct store *store;
     struct painter *painter;
     struct baselines *baselines;
+    struct alarming *alarming;
     struct counters *counters;
     const char *address;    /* numeric */
     int port;               /* 0: any that is free */

@@ -11,7 +11,7 @@
 #include "field/colormap.h"
 #include "net/names.h"
 #include "net/visibility.h"
-#include "value/alarms.h"
+#include "value/alarm.h"
 #include "value/quality.h"
 
 enum { VALUE_DIGITS = 7, DIGITS = 9, EXACT_DIGITS = 17 };
@@ -308,15 +308,15 @@ static json_t *value_of(const struct reading *reading)
     return quality_is_bad(reading->quality) ? json_null() : number(reading->value);
 }
 
-static json_t *alarm_of(const struct plant *plant, size_t tag, const struct reading *reading)
+static json_t *alarm_of(const struct reading *reading)
 {
-    return string(alarm_name(alarm_active(&plant->tags[tag], reading)));
+    return string(alarm_kind_name((enum alarm_kind)reading->alarm));
 }
 
 /* Nothing to be said but its value. */
-static bool is_plain(const struct plant *plant, size_t tag, const struct reading *reading)
+static bool is_plain(const struct reading *reading)
 {
-    return reading->quality == QUALITY_GOOD && !alarm_name(alarm_active(&plant->tags[tag], reading));
+    return reading->quality == QUALITY_GOOD && !reading->alarm;
 }
 
 char *reply_tags_text(const struct session_world *world, uint32_t *sent, bool all)
@@ -329,12 +329,12 @@ char *reply_tags_text(const struct session_world *world, uint32_t *sent, bool al
         if (!all && sent[i] == r->changes)
             continue;
         sent[i] = r->changes;
-        if (is_plain(world->plant, i, r)) {
+        if (is_plain(r)) {
             oldest_ns = r->age_ns > oldest_ns ? r->age_ns : oldest_ns;
             json_array_append_new(values, json_pack("[I,o]", (json_int_t)i, value_of(r)));
         } else {
             json_array_append_new(values, json_pack("[I,o,o,o,o,o]", (json_int_t)i, value_of(r), string(quality_class(r->quality)),
-                                                    string(quality_name(r->quality)), age_ms(r), alarm_of(world->plant, i, r)));
+                                                    string(quality_name(r->quality)), age_ms(r), alarm_of(r)));
         }
     }
     json_t *object = json_pack("{s:s,s:I,s:I,s:o}", "type", "tags", "time_us", us(snapshot->taken_utc_ns), "age_ms",

@@ -21,6 +21,12 @@ enum byte_order { BYTE_ORDER_NONE, BYTE_ORDER_ABCD, BYTE_ORDER_CDAB, BYTE_ORDER_
 enum register_table { TABLE_COIL, TABLE_DISCRETE, TABLE_INPUT, TABLE_HOLDING }; /* function codes 1, 2, 4, 3 */
 enum scaling { SCALING_NONE, SCALING_LINEAR, SCALING_SQUARE_ROOT };
 enum limit { LIMIT_LL, LIMIT_L, LIMIT_H, LIMIT_HH, LIMIT_COUNT };
+enum alarm_mode { /* whose the alarms are */
+    ALARMS_DISPLAY, /* another system's: limits are watched and shown, nothing can be acknowledged here */
+    ALARMS_MIRROR,  /* likewise; its own alarm bits are read */
+    ALARMS_LOCAL    /* ours */
+};
+enum { ALARM_PRIORITIES = 4, ALARM_PRIORITY_DEFAULT = 2 };
 extern const char *const plant_limit_names[LIMIT_COUNT];
 
 struct plant_view { /* where a client starts looking from; plant frame, metres */
@@ -40,11 +46,25 @@ struct plant_asset {
     int line;
 };
 
+struct plant_alarming { /* how alarms come and go */
+    double deadband;      /* engineering units */
+    double on_delay_s, off_delay_s;
+    int priority;         /* 1, the most urgent, to ALARM_PRIORITIES: of LL and HH; L and H are one less urgent */
+    bool latch;           /* stays until it is reset */
+};
+
+struct plant_mirror { /* a bit of another alarm system */
+    int tag;              /* whose alarm it is, or -1 */
+    int limit;            /* enum limit; LIMIT_COUNT: an alarm of no limit */
+    bool acknowledged;    /* the bit says that, not that the alarm is there */
+};
+
 enum { PLANT_BREAKS = 16, PLANT_ISOLINES = 32 };
 struct plant_group {
     char *id, *quantity, *unit;
     double min, max;
     double limits[LIMIT_COUNT];   /* NaN: none */
+    struct plant_alarming alarming;
     enum interpolation interpolation;
     enum distance_mode distance;
     double strength, decay, power;
@@ -141,6 +161,9 @@ struct plant_tag {
     struct plant_quality_tag quality;
     double limits[LIMIT_COUNT];       /* resolved: own, else the group's; NaN: none */
     double deadband;                  /* engineering units: history is within this of what was read; NaN: the plant's history says */
+    struct plant_alarming alarming;   /* resolved: own, else the group's */
+    int suppressed_by;                /* while this tag, a bit, is 1, by design; -1: none */
+    struct plant_mirror mirror;
     int line, column;                 /* of its name in the tag list */
 };
 
@@ -160,6 +183,7 @@ struct plant {
     struct plant_environment environments[PLANT_ENVIRONMENTS]; /* the first is shown where nobody asks for another */
     size_t environment_count;
     struct plant_history history;
+    enum alarm_mode alarms;
     struct plant_asset *assets;
     struct plant_group *groups;
     struct plant_source *sources;

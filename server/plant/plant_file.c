@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "base/mem.h"
+#include "plant/plant_alarms.h"
 #include "plant/plant_parts.h"
 #include "plant/transform.h"
 #include "plant/yaml_reader.h"
@@ -293,6 +294,7 @@ static void read_group(struct yaml_reader *reader, yaml_node_t *node, struct pla
         { "min", KEY_NUMBER, true, offsetof(struct plant_group, min), -PLANT_MAX_VALUE, PLANT_MAX_VALUE, NULL, NULL },
         { "max", KEY_NUMBER, true, offsetof(struct plant_group, max), -PLANT_MAX_VALUE, PLANT_MAX_VALUE, NULL, NULL },
         { "limits", KEY_CUSTOM, false, 0, 0, 0, NULL, read_limits },
+        { "alarm", KEY_CUSTOM, false, 0, 0, 0, NULL, plant_alarms_read_group },
         { "interpolation", KEY_CHOICE, false, offsetof(struct plant_group, interpolation), 0, 0, interpolation_choices, NULL },
         { "distance", KEY_CHOICE, false, offsetof(struct plant_group, distance), 0, 0, distance_choices, NULL },
         { "strength", KEY_NUMBER, false, offsetof(struct plant_group, strength), 0, 100, NULL, NULL },
@@ -308,6 +310,7 @@ static void read_group(struct yaml_reader *reader, yaml_node_t *node, struct pla
     };
     struct yaml_map map;
     *group = (struct plant_group){ .limits = { NAN, NAN, NAN, NAN }, .strength = 1, .decay = 1, .power = 2, .reach_m = INFINITY,
+                                   .alarming.priority = ALARM_PRIORITY_DEFAULT,
                                    .line = yaml_place(node).line };
     if (!yaml_map_read(reader, node, "a group", keys, group, &map))
         return;
@@ -346,6 +349,11 @@ static void read_environment(struct yaml_reader *reader, yaml_node_t *node, void
     plant_environments_read(reader, node, ((struct plant_file *)record)->plant);
 }
 
+static void read_alarms(struct yaml_reader *reader, yaml_node_t *node, void *record)
+{
+    plant_alarms_read_mode(reader, node, ((struct plant_file *)record)->plant);
+}
+
 static void read_history(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
     static const struct choice record_choices[] = { { "yes", 0 }, { "no", 1 }, { 0 } };
@@ -376,6 +384,7 @@ void plant_file_read(struct plant *plant, struct diag *diag)
         { "colormaps", KEY_CUSTOM, false, 0, 0, 0, NULL, read_colormaps },
         { "environment", KEY_CUSTOM, false, 0, 0, 0, NULL, read_environment },
         { "history", KEY_CUSTOM, false, 0, 0, 0, NULL, read_history },
+        { "alarms", KEY_CUSTOM, false, 0, 0, 0, NULL, read_alarms },
         { "tags", KEY_NAME, true, offsetof(struct plant_file, tags), 0, 0, NULL, NULL },
         { 0 }
     };
@@ -388,6 +397,7 @@ void plant_file_read(struct plant *plant, struct diag *diag)
     if (!yaml_reader_open(&reader, plant->path, diag))
         return;
     yaml_map_read(&reader, yaml_document_get_root_node(&reader.doc), "the plant file", keys, &file, &map);
+    plant_alarms_check(&reader, yaml_map_place(&map, "alarms"), plant);
     if (!plant->time_zone)
         plant->time_zone = mem_strdup("UTC");
     stand_upright(plant);

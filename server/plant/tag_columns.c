@@ -57,6 +57,9 @@ static const struct column_name column_names[] = { /* the first name of a column
     { "Quality Tag", COL_QUALITY_TAG },
     { "NE 43", COL_NE43 },
     { "Open Circuit", COL_OPEN_CIRCUIT },
+    { "Latch", COL_LATCH },
+    { "Suppressed By", COL_SUPPRESSED_BY },
+    { "Mirrors", COL_MIRRORS },
 };
 enum { NAME_COUNT = sizeof(column_names) / sizeof(*column_names) };
 

@@ -7,6 +7,7 @@
 #include <strings.h>
 
 #include "base/mem.h"
+#include "plant/plant_alarms.h"
 #include "plant/plant_parts.h"
 #include "plant/tag_columns.h"
 #include "plant/tag_links.h"
@@ -19,7 +20,7 @@ struct tag_list {
     const struct plant_group *group; /* its group, or NULL */
     struct tag_links links;
     size_t capacity;                /* of plant->tags */
-    bool said_no_effect[COL_COUNT];
+    struct alarm_references references;
 };
 
 /* --- what the tag belongs to ------------------------------------------------------------------------------------------------ */
@@ -171,20 +172,6 @@ static void read_weights(struct tag_list *list)
     cell_number(&list->columns, COL_DECAY, 0, 100, &list->tag->decay);
 }
 
-/* Part of the form, and checked, but nothing acts on them: better said than believed. */
-static void check_without_effect(struct tag_list *list)
-{
-    double ignored;
-    for (enum tag_column column = COL_ALARM_DEADBAND; column <= COL_PRIORITY; column++) {
-        if (!cell_given(&list->columns, column))
-            continue;
-        cell_number(&list->columns, column, 0, PLANT_MAX_VALUE, &ignored);
-        if (!list->said_no_effect[column])
-            cell_warning(&list->columns, column, "%s has no effect in this version", tag_column_name(column));
-        list->said_no_effect[column] = true;
-    }
-}
-
 static void read_row(struct tag_list *list)
 {
     struct plant *plant = list->plant;
@@ -211,7 +198,7 @@ static void read_row(struct tag_list *list)
     read_timing(list);
     read_weights(list);
     read_deadband(list);
-    check_without_effect(list);
+    plant_alarms_read_row(&list->columns, plant, list->tag, &list->references);
 }
 
 /* --- the list as a whole ---------------------------------------------------------------------------------------------------- */
@@ -259,4 +246,5 @@ void tag_list_read(struct plant *plant, struct diag *diag)
     sort_names(plant);
     check_duplicates(plant, diag);
     tag_links_resolve(&list.links, plant, diag);
+    plant_alarms_resolve(plant, diag, &list.references);
 }

@@ -9,9 +9,9 @@
 #include "render/overlay_pen.h"
 #include "render/palette.h"
 
-enum { NOTES = 4, ROWS = 6 };
+enum { NOTES = 4, ROWS = 3 + ALARM_PRIORITIES };
 static const double ROW = 1.5, NOTE = 1.3; /* heights, in text_px */
-enum row { ROW_BELOW, ROW_NO_LIMITS, ROW_NO_DATA, ROW_UNCERTAIN, ROW_ALARM, ROW_WARNING };
+enum row { ROW_BELOW, ROW_NO_LIMITS, ROW_NO_DATA, ROW_UNCERTAIN, ROW_ALARM /* and the other priorities */ };
 /* What it says, and where its parts lie. */
 struct legend {
     char title[160], above[60], below[60], since[120];
@@ -40,15 +40,33 @@ static void write_title(const struct pen *pen, struct legend *legend)
     snprintf(legend->title, sizeof(legend->title), *unit ? "%s [%s]" : "%s", what, unit);
 }
 
+/* Of alarms that a picture shows; bits: 1 << priority. */
+static unsigned priorities_shown(const struct pen *pen)
+{
+    unsigned priorities = 0;
+    for (size_t i = 0; i < pen->frame->marker_count; i++) {
+        const struct frame_marker *marker = &pen->frame->markers[i];
+        int alarm = pen->snapshot->readings[marker->tag].alarm;
+        if (alarm && marker->half == pen->half)
+            priorities |= 1u << alarm_priority(&pen->scene->plant->tags[marker->tag], (enum alarm_kind)alarm);
+    }
+    return priorities;
+}
+
 /* A distance is never below 0, nor uncertain. */
-static void choose_rows(struct legend *legend, const struct view *view)
+static void choose_rows(const struct pen *pen, struct legend *legend)
 {
     static const enum row values[] = { ROW_BELOW, ROW_NO_DATA, ROW_UNCERTAIN }, distances[] = { ROW_NO_DATA };
-    static const enum row limits[] = { ROW_NO_LIMITS, ROW_NO_DATA, ROW_UNCERTAIN, ROW_WARNING, ROW_ALARM };
+    static const enum row limits[] = { ROW_NO_LIMITS, ROW_NO_DATA, ROW_UNCERTAIN };
+    const struct view *view = &pen->view;
     bool is_distance = view->field.show == SHOW_DISTANCE && view->range_min <= 0;
     const enum row *rows = view_is_operator(view) ? limits : is_distance ? distances : values;
-    legend->row_count = view_is_operator(view) ? 5 : is_distance ? 1 : 3;
+    legend->row_count = view_is_operator(view) || !is_distance ? 3 : 1;
     memcpy(legend->rows, rows, (size_t)legend->row_count * sizeof(*rows));
+    unsigned priorities = priorities_shown(pen);
+    for (int i = 1; i <= ALARM_PRIORITIES; i++)
+        if (priorities & 1u << i)
+            legend->rows[legend->row_count++] = (enum row)(ROW_ALARM + i - 1);
 }
 
 /* What the difference is from: a name, or the plant's clock then. */
@@ -71,7 +89,7 @@ static void write_words(const struct pen *pen, struct legend *legend)
     double range = view->range_max - view->range_min;
     char number[40];
     write_title(pen, legend);
-    choose_rows(legend, view);
+    choose_rows(pen, legend);
     if (view_is_operator(view)) {
         add_note(legend, "by each tag's limits");
     } else {
@@ -94,7 +112,8 @@ static void write_words(const struct pen *pen, struct legend *legend)
 
 static const char *row_text(const struct legend *legend, enum row row)
 {
-    static const char *const texts[] = { "", "no limits", "no data", "uncertain", "alarm HH, LL", "alarm H, L" };
+    static const char *const texts[] = { "", "no limits", "no data", "uncertain", "alarm, priority 1", "alarm, priority 2",
+                                         "alarm, priority 3", "alarm, priority 4" };
     return row == ROW_BELOW ? legend->below : texts[row];
 }
 
@@ -194,8 +213,9 @@ static void draw_swatch(struct pen *pen, const struct box *box, enum row row)
     case ROW_NO_LIMITS: draw_rules(pen, box); break;
     case ROW_NO_DATA: draw_stripes(pen, box); break;
     case ROW_UNCERTAIN: draw_dots(pen, box); break;
-    case ROW_ALARM: overlay_ring(pen, box->x + box->width / 2, box->y + box->height / 2, 0.5 * box->height, LIMIT_HH); break;
-    case ROW_WARNING: overlay_ring(pen, box->x + box->width / 2, box->y + box->height / 2, 0.5 * box->height, LIMIT_H); break;
+    default:
+        overlay_ring(pen, box->x + box->width / 2, box->y + box->height / 2, 0.5 * box->height, (int)row - ROW_ALARM + 1, ALARM_ACTIVE);
+        break;
     }
 }
 

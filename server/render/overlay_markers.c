@@ -5,7 +5,6 @@
 
 #include "base/mem.h"
 #include "render/overlay_pen.h"
-#include "value/alarms.h"
 #include "value/quality.h"
 
 /* Filled: in sight. Hollow: something stands before it. Crossed: bad. */
@@ -32,26 +31,40 @@ static void draw_mark(struct pen *pen, const struct frame_marker *marker, bool b
     }
 }
 
-void overlay_ring(struct pen *pen, double x, double y, double radius, int alarm)
+void overlay_ring(struct pen *pen, double x, double y, double radius, int priority, enum alarm_word word)
 {
-    static const double red[3] = { 0.78, 0.06, 0.10 }, amber[3] = { 0.95, 0.66, 0.05 };
-    const double *color = alarm == LIMIT_HH || alarm == LIMIT_LL ? red : amber;
+    static const double colors[ALARM_PRIORITIES][3] = { { 0.80, 0.05, 0.12 }, { 0.93, 0.42, 0.04 }, { 0.96, 0.74, 0.05 },
+                                                        { 0.10, 0.60, 0.74 } };
+    const double *color = colors[priority - 1], gap = 0.55 * radius;
+    double wide = word == ALARM_ACKNOWLEDGED ? 0.22 : 0.42;
     cairo_new_path(pen->cairo);
     cairo_arc(pen->cairo, x, y, radius, 0, 2 * M_PI);
     pen_ink(pen, 0.9);
-    cairo_set_line_width(pen->cairo, fmax(3.2, 0.55 * radius));
+    cairo_set_line_width(pen->cairo, fmax(3.0, (wide + 0.17) * radius));
     cairo_stroke_preserve(pen->cairo);
     cairo_set_source_rgb(pen->cairo, color[0], color[1], color[2]);
-    cairo_set_line_width(pen->cairo, fmax(2.0, 0.38 * radius));
+    cairo_set_line_width(pen->cairo, fmax(1.8, wide * radius));
+    if (word == ALARM_RETURNED || word == ALARM_LATCHED)
+        cairo_set_dash(pen->cairo, &gap, 1, 0);
     cairo_stroke(pen->cairo);
+    cairo_set_dash(pen->cairo, NULL, 0, 0);
 }
 
-/* ALARM_NONE but in the operator's view: elsewhere alarm colours might be taken for values. */
-static int alarm_of(const struct pen *pen, const struct frame_marker *marker)
+static const struct reading *reading_of(const struct pen *pen, const struct frame_marker *marker)
 {
-    if (!view_is_operator(&pen->view))
-        return ALARM_NONE;
-    return alarm_active(&pen->scene->plant->tags[marker->tag], &pen->snapshot->readings[marker->tag]);
+    return &pen->snapshot->readings[marker->tag];
+}
+
+static bool has_alarm(const struct pen *pen, const struct frame_marker *marker)
+{
+    return reading_of(pen, marker)->alarm != ALARM_NONE;
+}
+
+static void draw_alarm(struct pen *pen, const struct frame_marker *marker)
+{
+    const struct reading *reading = reading_of(pen, marker);
+    int priority = alarm_priority(&pen->scene->plant->tags[marker->tag], (enum alarm_kind)reading->alarm);
+    overlay_ring(pen, marker->x_px, marker->y_px, 9.5 * pen->unit, priority, (enum alarm_word)reading->alarm_word);
 }
 
 static void format_value(const struct pen *pen, const struct frame_marker *marker, char out[64])
@@ -59,13 +72,14 @@ static void format_value(const struct pen *pen, const struct frame_marker *marke
     const struct plant_tag *tag = &pen->scene->plant->tags[marker->tag];
     const struct plant_group *group = &pen->scene->plant->groups[pen->view.field.group];
     bool difference = pen->view.field.show == SHOW_DIFFERENCE, lost = quality_is_bad(pen->snapshot->readings[marker->tag].quality);
-    int alarm = alarm_of(pen, marker), decimals = pen_decimals(group->max - group->min);
+    const char *alarm = alarm_kind_name((enum alarm_kind)pen->snapshot->readings[marker->tag].alarm);
+    int decimals = pen_decimals(group->max - group->min);
     if (quality_is_bad(marker->quality))
         snprintf(out, 64, lost ? "BAD" : "not known then");
     else
         snprintf(out, 64, "%s%s%.*f %s%s%s%s", difference ? "Δ " : "", difference && marker->value > 0 ? "+" : "", decimals,
-                 marker->value, tag->unit ? tag->unit : "", quality_is_uncertain(marker->quality) ? " ?" : "",
-                 alarm == ALARM_NONE ? "" : " ", alarm == ALARM_NONE ? "" : alarm_name(alarm));
+                 marker->value, tag->unit ? tag->unit : "", quality_is_uncertain(marker->quality) ? " ?" : "", alarm ? " " : "",
+                 alarm ? alarm : "");
 }
 
 struct label_text {
@@ -131,7 +145,6 @@ struct wanted {
 static void add_wanted(struct pen *pen, const struct frame_marker *marker, struct wanted *wanted)
 {
     const struct plant_tag *tag = &pen->scene->plant->tags[marker->tag];
-    const struct reading *reading = &pen->snapshot->readings[marker->tag];
     struct label_item *item = &wanted->items[wanted->count];
     struct label_text *text = &wanted->texts[wanted->count++];
     double pad = 4 * pen->unit;
@@ -144,9 +157,9 @@ static void add_wanted(struct pen *pen, const struct frame_marker *marker, struc
     item->width = text->name_width + pen_text_width(pen, text->value) + 2 * pad;
     item->height = 0.95 * pen->text_px + 2 * pad;
     item->depth_m = depth_of(pen, marker->tag);
-    item->ring = alarm_of(pen, marker) != ALARM_NONE;
+    item->ring = has_alarm(pen, marker);
     item->rank = marker->occluded                                                                  ? LABEL_NOT_WANTED
-                 : alarm_active(tag, reading) != ALARM_NONE                                           ? LABEL_BEYOND
+                 : has_alarm(pen, marker)                                                          ? LABEL_BEYOND
                  : is_bad(marker)                                                                  ? LABEL_BAD
                  : quality_is_uncertain(marker->quality) || tag->asset == pen->view.selected_asset ? LABEL_DOUBTFUL
                                                                                                     : LABEL_PLAIN;
@@ -225,10 +238,10 @@ void overlay_markers(struct pen *pen)
             continue;
         if (!marker->occluded)
             pen_take(pen, &mark);
-        if (!marker->occluded || alarm_of(pen, marker) != ALARM_NONE)
+        if (!marker->occluded || has_alarm(pen, marker))
             add_wanted(pen, marker, &wanted);
-        if (alarm_of(pen, marker) != ALARM_NONE)
-            overlay_ring(pen, marker->x_px, marker->y_px, 9.5 * pen->unit, alarm_of(pen, marker));
+        if (has_alarm(pen, marker))
+            draw_alarm(pen, marker);
         draw_mark(pen, marker, is_bad(marker));
     }
     place_labels(pen, &wanted, cards);

@@ -8,7 +8,7 @@
 
 #include "render/frame.h"
 #include "render/labels.h"
-
+#include "value/alarm.h"
 
 bool box_meets(const struct box *a, const struct box *b);
 
@@ -45,8 +45,9 @@ void overlay_bar(struct pen *pen, const struct box *bar);
 double overlay_bar_width(struct pen *pen); /* with all that is written beside it */
 double overlay_bar_left(struct pen *pen);  /* of which before the bar itself */
 void overlay_legend(struct pen *pen);
-/* Around a place whose alarm (an enum limit) is active. */
-void overlay_ring(struct pen *pen, double x, double y, double radius, int alarm);
+/* Around a place with an alarm: its colour says the priority, its form how it is. Thick: it calls; thin: it is acknowledged;
+   broken: its cause is gone. */
+void overlay_ring(struct pen *pen, double x, double y, double radius, int priority, enum alarm_word word);
 void overlay_markers(struct pen *pen);
 
 #endif

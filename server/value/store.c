@@ -20,6 +20,7 @@ struct held {
     int first_vouched, next_vouched; /* tags whose quality this one says, and the next of those that share one; -1: none */
     uint32_t shown_quality;     /* as last counted in changes */
     uint32_t changes;
+    uint8_t alarm, alarm_word;
 };
 
 struct link {
@@ -272,6 +273,16 @@ void store_link_up(struct store *store, int source, int64_t now_mono_ns)
     pthread_mutex_unlock(&store->lock);
 }
 
+void store_set_alarm(struct store *store, int tag, int alarm, int word)
+{
+    struct held *held = &store->tags[tag];
+    pthread_mutex_lock(&store->lock);
+    held->changes += held->alarm != alarm || held->alarm_word != word;
+    held->alarm = (uint8_t)alarm;
+    held->alarm_word = (uint8_t)word;
+    pthread_mutex_unlock(&store->lock);
+}
+
 bool store_link_is_up(const struct store *store, int source)
 {
     pthread_mutex_t *lock = (pthread_mutex_t *)&store->lock;
@@ -290,6 +301,8 @@ static void read_held(struct store *store, size_t tag, int64_t now_mono_ns, stru
         .value = held->value,
         .quality = held->shown_quality,
         .changes = held->changes,
+        .alarm = held->alarm,
+        .alarm_word = held->alarm_word,
         .received_utc_ns = held->received_utc_ns,
         .age_ns = held->has_value ? (age_ns > 0 ? age_ns : 0) : INT64_MAX,
     };

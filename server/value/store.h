@@ -42,6 +42,8 @@ void store_link_lost(struct store *store, int source, int64_t now_mono_ns);
 void store_tags_lost(struct store *store, const int *tags, size_t count, int64_t now_mono_ns);
 /* Tags become usable again one by one, with their next sample. */
 void store_link_up(struct store *store, int source, int64_t now_mono_ns);
+/* What readings say of alarms from now on: a tag's gravest (enum alarm_kind), and how that is (enum alarm_word). */
+void store_set_alarm(struct store *store, int tag, int alarm, int word);
 bool store_link_is_up(const struct store *store, int source);
 /* Applies staleness as of now. `into` was made for the same plant. */
 void store_snapshot(struct store *store, int64_t now_mono_ns, int64_t now_utc_ns, struct snapshot *into);

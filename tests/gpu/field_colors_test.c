@@ -14,6 +14,7 @@
 #include "field/lab.h"
 #include "render/palette.h"
 #include "tests/support/rig.h"
+#include "value/alarm.h"
 #include "value/quality.h"
 
 enum { CELLS = 12, SIDE_PX = 256, PLATE_TAGS = 3 };
@@ -376,6 +377,7 @@ static void check_alarms(const struct view *view)
     wide.camera.eye_m[2] = 14;
     for (int alarm = 0; alarm < 2; alarm++) {
         toy_set(stand.snapshot, 1, alarm ? 80 : 69, QUALITY_GOOD);
+        alarm_by_limits(&stand.toy->plant, stand.snapshot);
         struct frame *frame = stand_draw(&stand, &wide);
         assert_int_equal(count_alarm_colors(frame), 0);
         frame_read_markers(frame, stand.snapshot, NULL);

@@ -63,6 +63,9 @@ struct plant_tag *plant_by_hand_tag(struct plant *plant, const char *name, enum 
     bool one_register = type == DATA_BIT || type == DATA_INT16 || type == DATA_UINT16 || type == DATA_BCD;
     struct plant_tag *tag = &plant->tags[plant->tag_count++];
     *tag = (struct plant_tag){
+        .suppressed_by = -1,
+        .mirror.tag = -1,
+        .alarming.priority = ALARM_PRIORITY_DEFAULT,
         .name = mem_strdup(name),
         .source = (int)plant->source_count - 1,
         .group = -1,

@@ -11,7 +11,7 @@
 #include "field/field.h"
 #include "field/limits.h"
 #include "tests/support/synthetic.h"
-#include "value/alarms.h"
+#include "value/alarm.h"
 #include "value/quality.h"
 
 static const struct plant_group range_0_100 = { .min = 0, .max = 100 };
@@ -87,30 +87,30 @@ static void test_places_rise_with_readings(void **state)
             double place = limit_place(&range_0_100, &tag, value);
             assert_true(place >= before - 1e-12 && fabs(place) <= 3);
             struct reading reading = { .value = value };
-            int alarm = alarm_active(&tag, &reading); /* the colours say the same */
-            assert_int_equal(alarm == LIMIT_HH, place >= 2 - 1e-9 && isfinite(limits[LIMIT_HH]));
-            assert_int_equal(alarm == LIMIT_LL, place <= -2 + 1e-9 && isfinite(limits[LIMIT_LL]));
+            enum alarm_kind alarm = alarm_beyond(&tag, &reading); /* the colours say the same */
+            assert_int_equal(alarm == ALARM_HH, place >= 2 - 1e-9 && isfinite(limits[LIMIT_HH]));
+            assert_int_equal(alarm == ALARM_LL, place <= -2 + 1e-9 && isfinite(limits[LIMIT_LL]));
             assert_int_equal(alarm == ALARM_NONE, fabs(place) < 1 - 1e-9);
             before = place;
         }
     }
 }
 
-static void test_alarms_need_good_readings(void **state)
+static void test_alarms_need_usable_readings(void **state)
 {
     (void)state;
     struct plant_tag tag = with_limits(NAN, 20, 60, 90);
     struct reading reading = { .value = 95 };
-    assert_string_equal(alarm_name(alarm_active(&tag, &reading)), "HH");
+    assert_int_equal(alarm_beyond(&tag, &reading), ALARM_HH);
     reading.value = 60;
-    assert_string_equal(alarm_name(alarm_active(&tag, &reading)), "H");
+    assert_int_equal(alarm_beyond(&tag, &reading), ALARM_H);
     reading.value = 1;
-    assert_string_equal(alarm_name(alarm_active(&tag, &reading)), "L");
-    reading.quality = QUALITY_UNCERTAIN_LAST_USABLE;
-    assert_int_equal(alarm_active(&tag, &reading), ALARM_NONE);
+    assert_int_equal(alarm_beyond(&tag, &reading), ALARM_L);
+    reading.quality = QUALITY_UNCERTAIN_UNITS_EXCEEDED; /* beyond its instrument's range is beyond its limits */
+    assert_int_equal(alarm_beyond(&tag, &reading), ALARM_L);
     reading.quality = QUALITY_BAD_SENSOR_FAILURE;
-    assert_int_equal(alarm_active(&tag, &reading), ALARM_NONE);
-    assert_null(alarm_name(ALARM_NONE));
+    assert_int_equal(alarm_beyond(&tag, &reading), ALARM_NONE);
+    assert_null(alarm_kind_name(ALARM_NONE));
 }
 
 /* --- the field of places ------------------------------------------------------------------------------------------------------ */
@@ -205,7 +205,7 @@ int main(void)
         cmocka_unit_test(test_all_limits),
         cmocka_unit_test(test_limits_that_are_missing),
         cmocka_unit_test(test_places_rise_with_readings),
-        cmocka_unit_test(test_alarms_need_good_readings),
+        cmocka_unit_test(test_alarms_need_usable_readings),
         cmocka_unit_test(test_places_are_interpolated_with_the_same_weights),
         cmocka_unit_test(test_tags_without_limits_have_no_place),
     };

@@ -299,15 +299,66 @@ static void columns_are_known(void **state)
                     "Tag Name,Adress,Address,Sim Kind,,Colour,On Delay s,Eng Units\n"
                     "A,x,40001,ramp,,red,60,bar\n"
                     "B,x,40001,ramp,,red,60,\n");
-    plant_case_assert_loaded(c, 4);
+    plant_case_assert_loaded(c, 3);
     FOUND(c, { "tags.csv", 1, 10, "unknown column 'Adress' is ignored; did you mean 'Address'?" },
-          { "tags.csv", 1, 34, "a column without a name is ignored" }, { "tags.csv", 1, 35, "unknown column 'Colour' is ignored" },
-          { "tags.csv", 2, 21, "On Delay s has no effect in this version" });
+          { "tags.csv", 1, 34, "a column without a name is ignored" }, { "tags.csv", 1, 35, "unknown column 'Colour' is ignored" });
     plant_case_load(c, yaml, "Tag Name,Address,Eng Units,Engineering Units\n");
     FOUND(c, { "tags.csv", 1, 28, "column 'Engineering Units' means the same as 'Eng Units' at column 18" });
     plant_case_load(c, yaml, "Tag Name,Address,Priority,Deadband\nA,40001,high,-1\n");
-    FOUND(c, { "tags.csv", 2, 9, "Priority: expected a number, found 'high'" }, { "tags.csv", 2, 14, "Deadband: expected a number from 0" },
-          { "tags.csv", 2, 9, "Priority has no effect" });
+    FOUND(c, { "tags.csv", 2, 9, "Priority: expected a number, found 'high'" },
+          { "tags.csv", 2, 14, "Deadband: expected a number from 0" });
+}
+
+static void alarms_are_of_the_tag_else_of_the_group(void **state)
+{
+    struct plant_case *c = *state;
+    plant_case_load(c, yaml,
+                    "Tag Name,Address,Alarm Deadband,On Delay s,Off Delay s,Priority,Latch,Suppressed By\n"
+                    "A,40001,1.5,2,3,1,yes,STOP\n"
+                    "B,40002,,,,,,\n"
+                    "STOP,10001,,,,,,\n");
+    plant_case_assert_loaded(c, 0);
+    const struct plant_alarming *a = &c->plant->tags[0].alarming, *b = &c->plant->tags[1].alarming;
+    assert_true(a->deadband == 1.5 && a->on_delay_s == 2 && a->off_delay_s == 3 && a->priority == 1 && a->latch);
+    assert_int_equal(c->plant->tags[0].suppressed_by, 2);
+    assert_true(b->deadband == 0 && b->on_delay_s == 0 && b->priority == ALARM_PRIORITY_DEFAULT && !b->latch);
+    assert_int_equal(c->plant->tags[1].suppressed_by, -1);
+    assert_int_equal(c->plant->alarms, ALARMS_DISPLAY);
+    plant_case_load(c, yaml,
+                    "Tag Name,Address,Priority,Suppressed By,Mirrors\n"
+                    "A,40001,2.5,NONE,\n"
+                    "B,40002,9,A,\n"
+                    "C,10001,,,A HH\n");
+    FOUND(c, { "tags.csv", 2, 9, "Priority: expected a whole number" }, { "tags.csv", 2, 13, "Suppressed By: there is no tag 'NONE'" },
+          { "tags.csv", 3, 9, "Priority: expected a number from 1 to 4" }, { "tags.csv", 3, 11, "Suppressed By: 'A' is no Boolean" },
+          { "tags.csv", 4, 11, "Mirrors has no effect" });
+}
+
+static void bits_mirror_alarms(void **state)
+{
+    struct plant_case *c = *state;
+    char *mirror = mem_printf("%s\nalarms: mirror\n", yaml);
+    plant_case_load(c, mirror,
+                    "Tag Name,Address,Mirrors\n"
+                    "TT 101,40001,\n"
+                    "A1,10001,TT 101 HH\n"
+                    "A2,10002,TT 101 hh Acknowledged\n"
+                    "A3,10003,A3 ALM\n");
+    plant_case_assert_loaded(c, 0);
+    const struct plant_mirror *one = &c->plant->tags[1].mirror, *two = &c->plant->tags[2].mirror, *three = &c->plant->tags[3].mirror;
+    assert_true(one->tag == 0 && one->limit == LIMIT_HH && !one->acknowledged);
+    assert_true(two->tag == 0 && two->limit == LIMIT_HH && two->acknowledged);
+    assert_true(three->tag == 3 && three->limit == LIMIT_COUNT && c->plant->tags[0].mirror.tag == -1);
+    plant_case_load(c, mirror,
+                    "Tag Name,Address,Mirrors\n"
+                    "TT,40001,TT H\n"
+                    "A1,10001,TT\n"
+                    "A2,10002,TI HH\n"
+                    "A3,10003,TT LL\n"
+                    "A4,10004,TT LL\n");
+    FOUND(c, { "tags.csv", 2, 10, "Mirrors: 'TT' is no Boolean" }, { "tags.csv", 3, 10, "Mirrors: expected a tag and LL" },
+          { "tags.csv", 4, 10, "Mirrors: there is no tag 'TI'" }, { "tags.csv", 6, 10, "'TT LL' is mirrored at line 5 already" });
+    mem_free(mirror);
 }
 
 static void units_agree_with_the_group(void **state)
@@ -367,6 +418,8 @@ int main(void)
         TEST(numbers_have_ranges_and_limits_rise),
         TEST(names_are_unique),
         TEST(columns_are_known),
+        TEST(alarms_are_of_the_tag_else_of_the_group),
+        TEST(bits_mirror_alarms),
         TEST(units_agree_with_the_group),
         TEST(a_broken_plant_file_does_not_flood),
         TEST(long_lists_are_read),

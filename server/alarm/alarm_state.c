@@ -1,0 +1,117 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The states of one alarm. */
+#include "alarm/alarm_state.h"
+
+#include <string.h>
+
+static const char *const event_names[ALARM_EVENTS] = { "raise",    "clear",    "acknowledge", "reset",          "shelve",
+                                                       "unshelve", "suppress", "unsuppress",  "out_of_service", "in_service" };
+
+const char *alarm_event_name(enum alarm_event event)
+{
+    return event_names[event];
+}
+
+enum alarm_event alarm_event_find(const char *name)
+{
+    int i = 0;
+    while (i < ALARM_EVENTS && strcmp(event_names[i], name) != 0)
+        i++;
+    return (enum alarm_event)i;
+}
+
+/* It is to be seen from now on. */
+static void call(struct alarm_state *state, const struct alarm_rule *rule)
+{
+    state->unacknowledged = rule->acknowledges;
+    state->latched |= rule->acknowledges && rule->latches;
+}
+
+static enum alarm_outcome raise_it(struct alarm_state *state, const struct alarm_rule *rule)
+{
+    if (state->active)
+        return ALARM_AS_IT_WAS;
+    state->active = true;
+    if (!state->aside)
+        call(state, rule);
+    return ALARM_CHANGED;
+}
+
+static enum alarm_outcome clear_it(struct alarm_state *state, const struct alarm_rule *rule)
+{
+    if (!state->active)
+        return ALARM_AS_IT_WAS;
+    state->active = false;
+    state->unacknowledged &= !rule->forgets;
+    return ALARM_CHANGED;
+}
+
+static enum alarm_outcome acknowledge(struct alarm_state *state)
+{
+    if (!state->unacknowledged)
+        return ALARM_REFUSED;
+    state->unacknowledged = false;
+    return ALARM_CHANGED;
+}
+
+/* What is reset was seen: nothing that nobody acknowledged goes away. */
+static enum alarm_outcome reset(struct alarm_state *state)
+{
+    if (!state->latched || state->active || state->unacknowledged || state->aside)
+        return ALARM_REFUSED;
+    state->latched = false;
+    return ALARM_CHANGED;
+}
+
+static enum alarm_outcome set_aside(struct alarm_state *state, int how)
+{
+    if (state->aside & how & ~ALARM_ASIDE_SHELVED)
+        return ALARM_AS_IT_WAS;
+    state->aside |= (uint8_t)how;
+    state->unacknowledged = false;
+    return ALARM_CHANGED;
+}
+
+/* An alarm that is there when it comes back is called as if it were new. */
+static enum alarm_outcome bring_back(struct alarm_state *state, const struct alarm_rule *rule, int how)
+{
+    if (!(state->aside & how))
+        return ALARM_AS_IT_WAS;
+    state->aside &= (uint8_t)~how;
+    if (!state->aside && state->active)
+        call(state, rule);
+    return ALARM_CHANGED;
+}
+
+enum alarm_outcome alarm_state_step(struct alarm_state *state, const struct alarm_rule *rule, enum alarm_event event)
+{
+    switch (event) {
+    case ALARM_RAISE: return raise_it(state, rule);
+    case ALARM_CLEAR: return clear_it(state, rule);
+    case ALARM_ACKNOWLEDGE: return acknowledge(state);
+    case ALARM_RESET: return reset(state);
+    case ALARM_SHELVE: return set_aside(state, ALARM_ASIDE_SHELVED);
+    case ALARM_UNSHELVE: return bring_back(state, rule, ALARM_ASIDE_SHELVED);
+    case ALARM_SUPPRESS: return set_aside(state, ALARM_ASIDE_SUPPRESSED);
+    case ALARM_UNSUPPRESS: return bring_back(state, rule, ALARM_ASIDE_SUPPRESSED);
+    case ALARM_TAKE_OUT: return set_aside(state, ALARM_ASIDE_OUT);
+    case ALARM_PUT_BACK: return bring_back(state, rule, ALARM_ASIDE_OUT);
+    case ALARM_EVENTS: break;
+    }
+    return ALARM_REFUSED;
+}
+
+enum alarm_word alarm_state_word(const struct alarm_state *state, const struct alarm_rule *rule)
+{
+    if (state->aside & ALARM_ASIDE_OUT)
+        return ALARM_OUT_OF_SERVICE;
+    if (state->aside & ALARM_ASIDE_SUPPRESSED)
+        return ALARM_SUPPRESSED;
+    if (state->aside & ALARM_ASIDE_SHELVED)
+        return ALARM_SHELVED;
+    if (state->active)
+        return !rule->acknowledges ? ALARM_ACTIVE : state->unacknowledged ? ALARM_UNACKNOWLEDGED : ALARM_ACKNOWLEDGED;
+    if (state->latched)
+        return ALARM_LATCHED;
+    return state->unacknowledged ? ALARM_RETURNED : ALARM_NORMAL;
+}

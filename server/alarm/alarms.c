@@ -1,0 +1,526 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Alarms of a plant: which there are, what samples, time and people do to them. */
+#include "alarm/alarms_impl.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "value/quality.h"
+
+/* --- which there are -------------------------------------------------------------------------------------------------------- */
+
+static void add_feed(struct alarms *alarms, int tag, int alarm, enum feed_role role)
+{
+    mem_grow(&alarms->feeds, &alarms->feed_capacity, alarms->feed_count + 1, sizeof(*alarms->feeds));
+    alarms->feeds[alarms->feed_count++] = (struct feed){ tag, alarm, role };
+}
+
+static int64_t ns_of(double s)
+{
+    return (int64_t)(s * 1e9);
+}
+
+static int add_alarm(struct alarms *alarms, int tag, enum alarm_kind kind, double limit)
+{
+    const struct plant_alarming *alarming = &alarms->plant->tags[tag].alarming;
+    int index = (int)alarms->count;
+    mem_grow(&alarms->list, &alarms->capacity, alarms->count + 1, sizeof(*alarms->list));
+    alarms->list[alarms->count++] = (struct alarm){
+        .tag = tag,
+        .kind = kind,
+        .priority = alarm_priority(&alarms->plant->tags[tag], kind),
+        .limit = limit,
+        .value = NAN,
+        .rule = { .acknowledges = alarms->plant->alarms == ALARMS_LOCAL, .latches = alarming->latch && kind != ALARM_BAD },
+        .delays = { ns_of(alarming->on_delay_s), ns_of(alarming->off_delay_s) },
+        .older = -1,
+        .newer = -1,
+    };
+    return index;
+}
+
+static void add_suppression(struct alarms *alarms, int index)
+{
+    int by = alarms->plant->tags[alarms->list[index].tag].suppressed_by;
+    if (by >= 0)
+        add_feed(alarms, by, index, FEED_SUPPRESSES);
+}
+
+static void add_bad(struct alarms *alarms, int tag)
+{
+    int index = add_alarm(alarms, tag, ALARM_BAD, NAN);
+    add_feed(alarms, tag, index, FEED_BADNESS);
+    add_suppression(alarms, index);
+}
+
+static void add_limits(struct alarms *alarms, int tag)
+{
+    bool any = false;
+    for (int i = 0; i < LIMIT_COUNT; i++) {
+        double limit = alarms->plant->tags[tag].limits[i];
+        if (isnan(limit))
+            continue;
+        int index = add_alarm(alarms, tag, (enum alarm_kind)(1 + i), limit);
+        add_feed(alarms, tag, index, FEED_VALUE);
+        add_suppression(alarms, index);
+        any = true;
+    }
+    if (any)
+        add_bad(alarms, tag);
+}
+
+static enum alarm_kind kind_of(const struct plant_mirror *mirror)
+{
+    return mirror->limit == LIMIT_COUNT ? ALARM_ON : (enum alarm_kind)(1 + mirror->limit);
+}
+
+/* All bits that mirror alarms of this tag, in their order. The bit itself can go bad. */
+static void add_mirrored(struct alarms *alarms, const int *mirrors, size_t count)
+{
+    const struct plant *plant = alarms->plant;
+    for (size_t i = 0; i < count; i++) {
+        const struct plant_mirror *mirror = &plant->tags[mirrors[i]].mirror;
+        if (mirror->acknowledged)
+            continue;
+        double limit = mirror->limit == LIMIT_COUNT ? NAN : plant->tags[mirror->tag].limits[mirror->limit];
+        int index = add_alarm(alarms, mirror->tag, kind_of(mirror), limit);
+        alarms->list[index].rule.latches = false;
+        alarms->list[index].delays = (struct condition_delays){ 0, 0 };
+        add_feed(alarms, mirrors[i], index, FEED_BIT);
+        for (size_t k = 0; k < count; k++) {
+            const struct plant_mirror *other = &plant->tags[mirrors[k]].mirror;
+            if (!other->acknowledged || kind_of(other) != kind_of(mirror))
+                continue;
+            alarms->list[index].rule.acknowledges = alarms->list[index].rule.forgets = true;
+            add_feed(alarms, mirrors[k], index, FEED_ACKNOWLEDGED);
+        }
+    }
+}
+
+static int by_mirrored(const void *pa, const void *pb, void *plant)
+{
+    const struct plant_tag *tags = ((const struct plant *)plant)->tags;
+    int a = *(const int *)pa, b = *(const int *)pb, order = tags[a].mirror.tag - tags[b].mirror.tag;
+    return order ? order : a - b;
+}
+
+static void add_mirrors(struct alarms *alarms)
+{
+    const struct plant *plant = alarms->plant;
+    int *mirrors = mem_array(plant->tag_count, sizeof(*mirrors));
+    size_t count = 0;
+    for (size_t i = 0; i < plant->tag_count; i++)
+        if (plant->tags[i].mirror.tag >= 0)
+            mirrors[count++] = (int)i;
+    qsort_r(mirrors, count, sizeof(*mirrors), by_mirrored, (void *)plant);
+    for (size_t i = 0, end; i < count; i = end) {
+        int tag = plant->tags[mirrors[i]].mirror.tag;
+        for (end = i; end < count && plant->tags[mirrors[end]].mirror.tag == tag;)
+            end++;
+        add_mirrored(alarms, mirrors + i, end - i);
+    }
+    for (size_t i = 0; i < count; i++)
+        add_bad(alarms, mirrors[i]);
+    mem_free(mirrors);
+}
+
+static int by_tag(const void *pa, const void *pb)
+{
+    const struct feed *a = pa, *b = pb;
+    return a->tag != b->tag ? a->tag - b->tag : a->alarm != b->alarm ? a->alarm - b->alarm : (int)a->role - (int)b->role;
+}
+
+static int by_tag_and_kind(const void *pa, const void *pb, void *list_ptr)
+{
+    const struct alarm *list = list_ptr, *a = &list[*(const int *)pa], *b = &list[*(const int *)pb];
+    return a->tag != b->tag ? a->tag - b->tag : (int)a->kind - (int)b->kind;
+}
+
+/* firsts[tag]..firsts[tag + 1]: what is of a tag. */
+static void index_all(struct alarms *alarms)
+{
+    size_t tags = alarms->plant->tag_count;
+    qsort(alarms->feeds, alarms->feed_count, sizeof(*alarms->feeds), by_tag);
+    alarms->by_tag = mem_array(alarms->count, sizeof(*alarms->by_tag));
+    for (size_t i = 0; i < alarms->count; i++)
+        alarms->by_tag[i] = (int)i;
+    qsort_r(alarms->by_tag, alarms->count, sizeof(*alarms->by_tag), by_tag_and_kind, alarms->list);
+    alarms->first_feed = mem_array(tags + 1, sizeof(*alarms->first_feed));
+    alarms->first_alarm = mem_array(tags + 1, sizeof(*alarms->first_alarm));
+    for (size_t i = 0; i < alarms->feed_count; i++)
+        alarms->first_feed[alarms->feeds[i].tag + 1]++;
+    for (size_t i = 0; i < alarms->count; i++)
+        alarms->first_alarm[alarms->list[i].tag + 1]++;
+    for (size_t i = 0; i < tags; i++) {
+        alarms->first_feed[i + 1] += alarms->first_feed[i];
+        alarms->first_alarm[i + 1] += alarms->first_alarm[i];
+    }
+}
+
+struct alarms *alarms_create(const struct plant *plant, const struct alarms_listener *listener)
+{
+    struct alarms *alarms = mem_new(sizeof(*alarms));
+    alarms->plant = plant;
+    alarms->listener = *listener;
+    alarms->newest = -1;
+    alarms->seen = mem_array(plant->tag_count, sizeof(*alarms->seen));
+    alarms->gravest = mem_array(plant->tag_count, sizeof(*alarms->gravest));
+    if (plant->alarms == ALARMS_MIRROR)
+        add_mirrors(alarms);
+    else
+        for (size_t i = 0; i < plant->tag_count; i++)
+            add_limits(alarms, (int)i);
+    index_all(alarms);
+    return alarms;
+}
+
+void alarms_destroy(struct alarms **pointer)
+{
+    struct alarms *alarms = *pointer;
+    if (!alarms)
+        return;
+    mem_free(alarms->list);
+    mem_free(alarms->feeds);
+    mem_free(alarms->by_tag);
+    mem_free(alarms->first_feed);
+    mem_free(alarms->first_alarm);
+    mem_free(alarms->seen);
+    mem_free(alarms->gravest);
+    mem_free(alarms->timed);
+    mem_free(alarms);
+    *pointer = NULL;
+}
+
+/* --- what becomes of one ---------------------------------------------------------------------------------------------------- */
+
+static void unlink_alarm(struct alarms *alarms, int index)
+{
+    struct alarm *alarm = &alarms->list[index];
+    if (alarm->newer >= 0)
+        alarms->list[alarm->newer].older = alarm->older;
+    if (alarm->older >= 0)
+        alarms->list[alarm->older].newer = alarm->newer;
+    if (alarms->newest == index)
+        alarms->newest = alarm->older;
+}
+
+/* Who asks for changes gets it. */
+void alarms_touch(struct alarms *alarms, int index)
+{
+    struct alarm *alarm = &alarms->list[index];
+    alarm->number = ++alarms->number;
+    if (alarms->newest != index) {
+        unlink_alarm(alarms, index);
+        alarm->newer = -1;
+        alarm->older = alarms->newest;
+        if (alarms->newest >= 0)
+            alarms->list[alarms->newest].newer = index;
+        alarms->newest = index;
+    }
+    alarms_find_gravest(alarms, alarm->tag);
+}
+
+enum alarm_word alarm_word_of(const struct alarm *alarm)
+{
+    return alarm_state_word(&alarm->state, &alarm->rule);
+}
+
+static bool graver(const struct alarm *a, const struct alarm *b)
+{
+    if (a->priority != b->priority)
+        return a->priority < b->priority;
+    return a->state.unacknowledged && !b->state.unacknowledged;
+}
+
+void alarms_find_gravest(struct alarms *alarms, int tag)
+{
+    const struct alarm *gravest = NULL;
+    for (int i = alarms->first_alarm[tag]; i < alarms->first_alarm[tag + 1]; i++) {
+        const struct alarm *alarm = &alarms->list[alarms->by_tag[i]];
+        if (alarm_word_calls(alarm_word_of(alarm)) && (!gravest || graver(alarm, gravest)))
+            gravest = alarm;
+    }
+    struct gravest now = { .kind = (uint8_t)(gravest ? gravest->kind : ALARM_NONE),
+                           .word = (uint8_t)(gravest ? alarm_word_of(gravest) : ALARM_NORMAL) };
+    struct gravest *was = &alarms->gravest[tag];
+    if (was->kind == now.kind && was->word == now.word)
+        return;
+    *was = now;
+    if (alarms->listener.of_tag)
+        alarms->listener.of_tag(alarms->listener.arg, tag, (enum alarm_kind)now.kind, (enum alarm_word)now.word);
+}
+
+void alarms_watch(struct alarms *alarms, int index)
+{
+    struct alarm *alarm = &alarms->list[index];
+    if (alarm->timed || (alarm->condition.pending == CONDITION_RESTS && !alarm->until.mono_ns))
+        return;
+    mem_grow(&alarms->timed, &alarms->timed_capacity, alarms->timed_count + 1, sizeof(*alarms->timed));
+    alarms->timed[alarms->timed_count++] = index;
+    alarm->timed = true;
+}
+
+static enum alarm_outcome step(struct alarms *alarms, int index, const struct alarm_change *what, int64_t mono_ns)
+{
+    struct alarm *alarm = &alarms->list[index];
+    struct alarm_change change = *what;
+    change.before = alarm_word_of(alarm);
+    enum alarm_outcome outcome = alarm_state_step(&alarm->state, &alarm->rule, what->event);
+    if (outcome != ALARM_CHANGED)
+        return outcome;
+    alarm->changed_utc_ns = what->utc_ns;
+    if (what->event == ALARM_RAISE && !alarm->state.aside)
+        alarm->who[0] = alarm->reason[0] = 0;
+    if (what->event == ALARM_RAISE) {
+        alarm->raised_utc_ns = what->utc_ns;
+        alarm->raised_mono_ns = mono_ns;
+        alarm->recent_ns[alarm->raised_count++ % ALARM_RECENT] = mono_ns;
+        alarm->value = what->value;
+    }
+    change.alarm = alarm;
+    change.after = alarm_word_of(alarm);
+    alarms_touch(alarms, index);
+    if (alarms->listener.changed)
+        alarms->listener.changed(alarms->listener.arg, &change);
+    return outcome;
+}
+
+/* As the other system's bit says: acknowledged while it is there, or there once more. */
+static void follow_acknowledgement(struct alarms *alarms, int index, struct instant at)
+{
+    struct alarm *alarm = &alarms->list[index];
+    struct alarm_change change = { .event = ALARM_ACKNOWLEDGE, .utc_ns = at.utc_ns, .value = NAN, .who = "", .reason = "" };
+    if (!alarm->rule.forgets || !alarm->state.active || alarm->state.unacknowledged != alarm->acknowledged_there)
+        return;
+    if (!alarm->acknowledged_there) {
+        alarm->state.active = false;
+        change.event = ALARM_RAISE;
+        change.value = alarm->value;
+    }
+    step(alarms, index, &change, at.mono_ns);
+}
+
+static void turned(struct alarms *alarms, int index, double value, struct instant at)
+{
+    const struct alarm *alarm = &alarms->list[index];
+    step(alarms, index,
+         &(struct alarm_change){ .event = alarm->condition.active ? ALARM_RAISE : ALARM_CLEAR, .utc_ns = at.utc_ns, .value = value,
+                                 .who = "", .reason = "" },
+         at.mono_ns);
+    follow_acknowledgement(alarms, index, at);
+}
+
+/* Delays that are over by then, at the moments when they were. */
+static void advance(struct alarms *alarms, int index, struct instant now)
+{
+    struct alarm *alarm = &alarms->list[index];
+    int64_t at_ns;
+    if (condition_advance(&alarm->condition, &alarm->delays, now.mono_ns, &at_ns))
+        turned(alarms, index, alarms->seen[alarm->tag].value, (struct instant){ at_ns, now.utc_ns - (now.mono_ns - at_ns) });
+}
+
+static void put(struct alarms *alarms, int index, enum condition_side side, double value, struct instant now)
+{
+    struct alarm *alarm = &alarms->list[index];
+    advance(alarms, index, now);
+    if (condition_put(&alarm->condition, &alarm->delays, side, now.mono_ns))
+        turned(alarms, index, value, now);
+    alarms_watch(alarms, index);
+}
+
+/* --- samples ---------------------------------------------------------------------------------------------------------------- */
+
+static void set_held(struct alarms *alarms, int index, bool held)
+{
+    if (alarms->list[index].held == held)
+        return;
+    alarms->list[index].held = held;
+    if (alarm_word_of(&alarms->list[index]) != ALARM_NORMAL)
+        alarms_touch(alarms, index);
+}
+
+static void hear_value(struct alarms *alarms, int index, const struct heard *heard, bool is_bit)
+{
+    struct alarm *alarm = &alarms->list[index];
+    struct instant now = { heard->mono_ns, heard->utc_ns };
+    bool bad = quality_is_bad(heard->quality);
+    set_held(alarms, index, bad);
+    if (bad) {
+        advance(alarms, index, now);
+        condition_hold(&alarm->condition);
+    } else if (is_bit) {
+        put(alarms, index, heard->value != 0 ? CONDITION_BEYOND : CONDITION_CLEAR, heard->value, now);
+    } else {
+        double deadband = alarms->plant->tags[alarm->tag].alarming.deadband;
+        put(alarms, index, condition_side(alarm->kind, alarm->limit, deadband, heard->value), heard->value, now);
+    }
+}
+
+static void hear(struct alarms *alarms, const struct feed *feed, const struct heard *heard)
+{
+    bool bad = quality_is_bad(heard->quality);
+    switch (feed->role) {
+    case FEED_VALUE: hear_value(alarms, feed->alarm, heard, false); break;
+    case FEED_BIT: hear_value(alarms, feed->alarm, heard, true); break;
+    case FEED_BADNESS:
+        put(alarms, feed->alarm, bad ? CONDITION_BEYOND : CONDITION_CLEAR, NAN, (struct instant){ heard->mono_ns, heard->utc_ns });
+        break;
+    case FEED_ACKNOWLEDGED:
+        if (!bad)
+            alarms->list[feed->alarm].acknowledged_there = heard->value != 0;
+        follow_acknowledgement(alarms, feed->alarm, (struct instant){ heard->mono_ns, heard->utc_ns });
+        break;
+    case FEED_SUPPRESSES:
+        if (!bad)
+            step(alarms, feed->alarm,
+                 &(struct alarm_change){ .event = heard->value != 0 ? ALARM_SUPPRESS : ALARM_UNSUPPRESS, .utc_ns = heard->utc_ns,
+                                         .value = NAN, .who = "", .reason = alarms->plant->tags[heard->tag].name },
+                 heard->mono_ns);
+        break;
+    }
+}
+
+void alarms_hear(struct alarms *alarms, const struct heard *heard, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        int tag = heard[i].tag;
+        struct seen *seen = &alarms->seen[tag];
+        if (heard[i].quality == QUALITY_BAD_WAITING)
+            continue;
+        seen->heard = true;
+        seen->bad = quality_is_bad(heard[i].quality);
+        for (int k = alarms->first_feed[tag]; k < alarms->first_feed[tag + 1]; k++)
+            hear(alarms, &alarms->feeds[k], &heard[i]);
+        seen->value = heard[i].value;
+    }
+}
+
+/* --- time ------------------------------------------------------------------------------------------------------------------- */
+
+static bool is_waiting_too_long(struct alarms *alarms, int tag, int64_t mono_ns)
+{
+    return (double)(mono_ns - alarms->begun_ns) >= alarms->plant->tags[tag].stale_s * 1e9;
+}
+
+/* Those that went stale since they were heard, or never came. */
+static void look_at_qualities(struct alarms *alarms, const struct snapshot *now)
+{
+    if (!alarms->begun_ns)
+        alarms->begun_ns = now->taken_mono_ns;
+    for (size_t i = 0; i < now->count; i++) {
+        const struct reading *reading = &now->readings[i];
+        const struct seen *seen = &alarms->seen[i];
+        bool bad = quality_is_bad(reading->quality);
+        if (alarms->first_feed[i] == alarms->first_feed[i + 1] || (seen->heard && seen->bad == bad) || (!seen->heard && !bad))
+            continue;
+        uint32_t quality = reading->quality;
+        if (quality == QUALITY_BAD_WAITING) {
+            if (!is_waiting_too_long(alarms, (int)i, now->taken_mono_ns))
+                continue;
+            quality = QUALITY_BAD_NO_COMMUNICATION;
+        }
+        alarms_hear(alarms, &(struct heard){ (int)i, bad ? NAN : reading->value, quality, now->taken_mono_ns, now->taken_utc_ns }, 1);
+    }
+}
+
+static void end_shelf(struct alarms *alarms, int index, struct instant now)
+{
+    struct alarm *alarm = &alarms->list[index];
+    alarm->until = (struct instant){ 0 };
+    alarm->who[0] = alarm->reason[0] = 0;
+    step(alarms, index,
+         &(struct alarm_change){ .event = ALARM_UNSHELVE, .utc_ns = now.utc_ns, .value = NAN, .who = "", .reason = "time is over" },
+         now.mono_ns);
+}
+
+void alarms_tick(struct alarms *alarms, const struct snapshot *snapshot)
+{
+    struct instant now = { snapshot->taken_mono_ns, snapshot->taken_utc_ns };
+    size_t kept = 0, count = alarms->timed_count;
+    for (size_t i = 0; i < count; i++) {
+        int index = alarms->timed[i];
+        struct alarm *alarm = &alarms->list[index];
+        advance(alarms, index, now);
+        if (alarm->until.mono_ns && now.mono_ns >= alarm->until.mono_ns)
+            end_shelf(alarms, index, now);
+        alarm->timed = alarm->condition.pending != CONDITION_RESTS || alarm->until.mono_ns;
+        if (alarm->timed)
+            alarms->timed[kept++] = index;
+    }
+    alarms->timed_count = kept;
+    look_at_qualities(alarms, snapshot);
+}
+
+/* --- people ----------------------------------------------------------------------------------------------------------------- */
+
+static const char *refusal(enum alarm_event event)
+{
+    switch (event) {
+    case ALARM_ACKNOWLEDGE: return "there is nothing to acknowledge";
+    case ALARM_RESET: return "it is not latched, or still there, or not acknowledged";
+    default: return "it is not in a state for that";
+    }
+}
+
+const char *alarms_act(struct alarms *alarms, int index, const struct alarm_act *act, struct instant now)
+{
+    struct alarm *alarm = &alarms->list[index];
+    bool shelves = act->event == ALARM_SHELVE;
+    if (alarms->plant->alarms != ALARMS_LOCAL)
+        return "alarms are another system's here";
+    if (shelves && (act->for_ns <= 0 || act->for_ns > ALARM_LONGEST_SHELF_NS))
+        return "a shelf has an end, within a week";
+    char who[ALARM_NAME_BYTES], reason[ALARM_REASON_BYTES];
+    memcpy(who, alarm->who, sizeof(who));
+    memcpy(reason, alarm->reason, sizeof(reason));
+    struct instant until = alarm->until;
+    alarm->until = shelves ? (struct instant){ now.mono_ns + act->for_ns, now.utc_ns + act->for_ns }
+                   : act->event == ALARM_UNSHELVE ? (struct instant){ 0 }
+                                                  : until;
+    strncpy(alarm->who, act->who, sizeof(alarm->who) - 1);
+    strncpy(alarm->reason, act->reason, sizeof(alarm->reason) - 1);
+    enum alarm_outcome outcome = step(alarms, index,
+                                      &(struct alarm_change){ .event = act->event, .utc_ns = now.utc_ns, .value = NAN, .who = act->who,
+                                                              .reason = act->reason },
+                                      now.mono_ns);
+    if (outcome == ALARM_CHANGED) {
+        alarms_watch(alarms, index);
+        return NULL;
+    }
+    memcpy(alarm->who, who, sizeof(who));
+    memcpy(alarm->reason, reason, sizeof(reason));
+    alarm->until = until;
+    return outcome == ALARM_AS_IT_WAS ? "it is so already" : refusal(act->event);
+}
+
+/* --- what there is ---------------------------------------------------------------------------------------------------------- */
+
+size_t alarms_count(const struct alarms *alarms)
+{
+    return alarms->count;
+}
+
+const struct alarm *alarms_at(const struct alarms *alarms, int index)
+{
+    return &alarms->list[index];
+}
+
+int alarms_find(const struct alarms *alarms, int tag, enum alarm_kind kind)
+{
+    for (int i = alarms->first_alarm[tag]; i < alarms->first_alarm[tag + 1]; i++)
+        if (alarms->list[alarms->by_tag[i]].kind == kind)
+            return alarms->by_tag[i];
+    return -1;
+}
+
+uint64_t alarms_number(const struct alarms *alarms)
+{
+    return alarms->number;
+}
+
+int alarms_newest(const struct alarms *alarms)
+{
+    return alarms->newest;
+}

@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Limits, deadbands and delays. */
+#include "alarm/condition.h"
+
+enum condition_side condition_side(enum alarm_kind kind, double limit, double deadband, double value)
+{
+    bool high = kind == ALARM_H || kind == ALARM_HH;
+    if (high ? value >= limit : value <= limit)
+        return CONDITION_BEYOND;
+    return (high ? value < limit - deadband : value > limit + deadband) ? CONDITION_CLEAR : CONDITION_BETWEEN;
+}
+
+static bool turn(struct condition *condition)
+{
+    condition->active = !condition->active;
+    condition->pending = CONDITION_RESTS;
+    return true;
+}
+
+bool condition_advance(struct condition *condition, const struct condition_delays *delays, int64_t now_ns, int64_t *at_ns)
+{
+    int64_t delay_ns = condition->pending == CONDITION_COMES ? delays->on_ns : delays->off_ns;
+    if (condition->pending == CONDITION_RESTS || now_ns - condition->since_ns < delay_ns)
+        return false;
+    *at_ns = condition->since_ns + delay_ns;
+    return turn(condition);
+}
+
+bool condition_put(struct condition *condition, const struct condition_delays *delays, enum condition_side side, int64_t now_ns)
+{
+    bool turns = condition->active ? side == CONDITION_CLEAR : side == CONDITION_BEYOND;
+    if (!turns) {
+        condition->pending = CONDITION_RESTS;
+        return false;
+    }
+    if ((condition->active ? delays->off_ns : delays->on_ns) <= 0)
+        return turn(condition);
+    if (condition->pending == CONDITION_RESTS) {
+        condition->pending = condition->active ? CONDITION_GOES : CONDITION_COMES;
+        condition->since_ns = now_ns;
+    }
+    return false;
+}
+
+void condition_hold(struct condition *condition)
+{
+    condition->pending = CONDITION_RESTS;
+}

@@ -1,0 +1,281 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The journal's thread, and asking it. */
+#include "alarm/journal.h"
+
+#include <errno.h>
+#include <math.h>
+#include <pthread.h>
+#include <string.h>
+#include <time.h>
+
+#include "alarm/journal_file.h"
+#include "base/clock.h"
+#include "base/mem.h"
+
+enum { WAITING_MAX = 200000, RETRY_MAX_S = 30 };
+static const int64_t GATHER_NS = NS_PER_S / 4, FORGET_NS = 600 * NS_PER_S;
+#define US_PER_DAY INT64_C(86400000000)
+
+struct entries {
+    struct journal_entry *at;
+    size_t count, capacity;
+};
+
+struct journal {
+    struct log *log;
+    char *folder;
+    double keep_days;
+    struct {
+        counter *rows, *lost, *waiting, *good;
+    } counters;
+    pthread_t thread;
+    bool started;
+    /* --- below: of the thread */
+    struct journal_file *file;
+    struct entries taken;
+    bool failing;
+    int64_t retry_ns, retry_after_ns, forgot_ns;
+    pthread_mutex_t lock;
+    pthread_cond_t wake;
+    /* --- below: under lock */
+    struct entries waiting;
+    bool stopping, asks;
+};
+
+/* --- writing ---------------------------------------------------------------------------------------------------------------- */
+
+static int write_taken(struct journal *journal, int64_t mono_ns)
+{
+    int error = 0;
+    bool renewed = false;
+    if (!journal->file && !(journal->file = journal_file_open(journal->log, journal->folder, &renewed, &error)))
+        return error;
+    if (renewed) {
+        pthread_mutex_lock(&journal->lock);
+        journal->asks = true;
+        pthread_mutex_unlock(&journal->lock);
+    }
+    error = journal_file_write(journal->file, journal->taken.at, journal->taken.count);
+    if (!error) {
+        counter_inc(journal->counters.rows, (int64_t)journal->taken.count);
+        journal->taken.count = 0;
+    }
+    if (!error && (!journal->forgot_ns || mono_ns - journal->forgot_ns >= FORGET_NS)) {
+        journal->forgot_ns = mono_ns;
+        error = journal_file_forget(journal->file, clock_utc_ns() / 1000 - (int64_t)(journal->keep_days * (double)US_PER_DAY));
+    }
+    if (error) /* opening finds out whether it is damaged */
+        journal_file_close(&journal->file);
+    return error;
+}
+
+static void try_to_write(struct journal *journal, bool last)
+{
+    int64_t mono_ns = clock_mono_ns();
+    if (!journal->taken.count || (journal->failing && !last && mono_ns < journal->retry_ns))
+        return;
+    int error = write_taken(journal, mono_ns);
+    if (error) {
+        int64_t wait_ns = journal->retry_after_ns * 2;
+        journal->retry_after_ns = wait_ns < NS_PER_S ? NS_PER_S : wait_ns > RETRY_MAX_S * NS_PER_S ? RETRY_MAX_S * NS_PER_S : wait_ns;
+        journal->retry_ns = mono_ns + journal->retry_after_ns;
+        if (!journal->failing)
+            log_err(journal->log, "alarms: the journal cannot be written (%s); what comes is kept in memory", strerror(-error));
+    } else if (journal->failing) {
+        log_info(journal->log, "alarms: the journal is written again");
+        journal->retry_after_ns = 0;
+    }
+    journal->failing = error != 0;
+    counter_set(journal->counters.good, !error);
+}
+
+/* With those that are waiting behind those that could not be written. */
+static void take(struct journal *journal)
+{
+    struct entries *taken = &journal->taken, *waiting = &journal->waiting;
+    size_t room = WAITING_MAX - taken->count, count = waiting->count < room ? waiting->count : room;
+    counter_inc(journal->counters.lost, (int64_t)(waiting->count - count));
+    mem_grow(&taken->at, &taken->capacity, taken->count + count, sizeof(*taken->at));
+    memcpy(taken->at + taken->count, waiting->at, count * sizeof(*waiting->at));
+    taken->count += count;
+    waiting->count = 0;
+}
+
+/* Until there is something, and then a moment more: what comes together is written together. */
+static bool wait_for_work(struct journal *journal)
+{
+    int64_t now_ns = clock_mono_ns(), until_ns = now_ns + GATHER_NS;
+    struct timespec until = { until_ns / NS_PER_S, until_ns % NS_PER_S };
+    pthread_mutex_lock(&journal->lock);
+    while (!journal->stopping && pthread_cond_timedwait(&journal->wake, &journal->lock, &until) != ETIMEDOUT)
+        continue;
+    while (!journal->stopping && !journal->waiting.count && !journal->taken.count)
+        pthread_cond_wait(&journal->wake, &journal->lock);
+    take(journal);
+    bool stopping = journal->stopping;
+    pthread_mutex_unlock(&journal->lock);
+    counter_set(journal->counters.waiting, (int64_t)journal->taken.count);
+    return !stopping;
+}
+
+static void *run(void *arg)
+{
+    struct journal *journal = arg;
+    while (wait_for_work(journal))
+        try_to_write(journal, false);
+    try_to_write(journal, true);
+    if (journal->taken.count)
+        log_err(journal->log, "alarms: %zu rows of the journal could not be written and are lost", journal->taken.count);
+    return NULL;
+}
+
+/* --- from outside ----------------------------------------------------------------------------------------------------------- */
+
+static void put(struct journal *journal, const struct journal_entry *entry)
+{
+    pthread_mutex_lock(&journal->lock);
+    struct entries *waiting = &journal->waiting;
+    if (waiting->count < WAITING_MAX) {
+        mem_grow(&waiting->at, &waiting->capacity, waiting->count + 1, sizeof(*waiting->at));
+        waiting->at[waiting->count++] = *entry;
+    } else {
+        counter_inc(journal->counters.lost, 1);
+    }
+    if (waiting->count == 1)
+        pthread_cond_signal(&journal->wake);
+    pthread_mutex_unlock(&journal->lock);
+}
+
+void journal_add(struct journal *journal, const struct alarm_change *change, const char *tag)
+{
+    struct journal_entry entry = {
+        .alarm = *change->alarm,
+        .changed = true,
+        .event = change->event,
+        .before = change->before,
+        .after = change->after,
+        .utc_ns = change->utc_ns,
+        .value = change->value,
+    };
+    strncpy(entry.tag, tag, sizeof(entry.tag) - 1);
+    strncpy(entry.who, change->who, sizeof(entry.who) - 1);
+    strncpy(entry.reason, change->reason, sizeof(entry.reason) - 1);
+    put(journal, &entry);
+}
+
+void journal_keep(struct journal *journal, const struct alarm *alarm, const char *tag)
+{
+    struct journal_entry entry = { .alarm = *alarm };
+    strncpy(entry.tag, tag, sizeof(entry.tag) - 1);
+    put(journal, &entry);
+}
+
+bool journal_asks(struct journal *journal)
+{
+    pthread_mutex_lock(&journal->lock);
+    bool asks = journal->asks;
+    journal->asks = false;
+    pthread_mutex_unlock(&journal->lock);
+    return asks;
+}
+
+/* --- life ------------------------------------------------------------------------------------------------------------------- */
+
+struct restoring {
+    struct alarms *alarms;
+    const struct plant *plant;
+    struct instant now;
+};
+
+static void restore(void *arg, const char *tag, const struct alarm *alarm)
+{
+    struct restoring *restoring = arg;
+    int at = plant_find_tag(restoring->plant, tag), index = at < 0 ? -1 : alarms_find(restoring->alarms, at, alarm->kind);
+    if (index >= 0)
+        alarms_restore(restoring->alarms, index, alarm, restoring->now);
+}
+
+/* What is damaged, the thread sets aside when it writes. */
+static void restore_all(struct journal *journal, struct alarms *alarms, const struct plant *plant, struct instant now)
+{
+    struct restoring restoring = { alarms, plant, now };
+    int error;
+    struct journal_file *file = journal_file_read(journal->log, journal->folder, &error);
+    if (file)
+        journal_file_states(file, restore, &restoring);
+    journal_file_close(&file);
+}
+
+static void add_counters(struct journal *journal, struct counters *counters)
+{
+    journal->counters.rows = counters_add(counters, "plantcast_alarm_journal_rows_total", "counter", "Changes of alarms written down.");
+    journal->counters.lost = counters_add(counters, "plantcast_alarm_journal_lost_total", "counter", "Those that could not be kept.");
+    journal->counters.waiting = counters_add(counters, "plantcast_alarm_journal_waiting", "gauge", "Those that wait to be written.");
+    journal->counters.good = counters_add(counters, "plantcast_alarm_journal_good", "gauge", "1 while the journal can be written.");
+    counter_set(journal->counters.good, 1);
+}
+
+struct journal *journal_start(const struct journal_params *params, struct alarms *alarms, const struct plant *plant, struct instant now)
+{
+    struct journal *journal = mem_new(sizeof(*journal));
+    pthread_condattr_t attributes;
+    pthread_condattr_init(&attributes);
+    pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
+    pthread_cond_init(&journal->wake, &attributes);
+    pthread_condattr_destroy(&attributes);
+    pthread_mutex_init(&journal->lock, NULL);
+    journal->log = params->log;
+    journal->folder = mem_strdup(params->folder);
+    journal->keep_days = params->keep_days;
+    add_counters(journal, params->counters);
+    restore_all(journal, alarms, plant, now);
+    int error = pthread_create(&journal->thread, NULL, run, journal);
+    journal->started = !error;
+    if (error) {
+        log_err(params->log, "alarms: no thread for the journal: %s", strerror(error));
+        journal_stop(&journal);
+    }
+    return journal;
+}
+
+void journal_stop(struct journal **pointer)
+{
+    struct journal *journal = *pointer;
+    if (!journal)
+        return;
+    pthread_mutex_lock(&journal->lock);
+    journal->stopping = true;
+    pthread_cond_signal(&journal->wake);
+    pthread_mutex_unlock(&journal->lock);
+    if (journal->started)
+        pthread_join(journal->thread, NULL);
+    journal_file_close(&journal->file);
+    mem_free(journal->waiting.at);
+    mem_free(journal->taken.at);
+    mem_free(journal->folder);
+    pthread_cond_destroy(&journal->wake);
+    pthread_mutex_destroy(&journal->lock);
+    mem_free(journal);
+    *pointer = NULL;
+}
+
+int journal_read(struct log *log, const char *folder, const struct journal_query *query,
+                 void (*each)(void *arg, const struct journal_row *row), void *arg)
+{
+    int error;
+    struct journal_file *file = journal_file_read(log, folder, &error);
+    if (file)
+        error = journal_file_rows(file, query, each, arg);
+    journal_file_close(&file);
+    return error;
+}
+
+int journal_at(struct log *log, const char *folder, int64_t t_us, void (*each)(void *arg, const struct journal_row *row), void *arg)
+{
+    int error;
+    struct journal_file *file = journal_file_read(log, folder, &error);
+    if (file)
+        error = journal_file_at(file, t_us, each, arg);
+    journal_file_close(&file);
+    return error;
+}

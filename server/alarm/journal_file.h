@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The journal as a file. Functions that return int: 0 or -errno, already logged. Thread: one per file. */
+#ifndef ALARM_JOURNAL_FILE_H
+#define ALARM_JOURNAL_FILE_H
+#include "alarm/journal.h"
+
+struct journal_entry {
+    struct alarm alarm;    /* as it was then */
+    bool changed;          /* else only how it is */
+    enum alarm_event event;
+    enum alarm_word before, after;
+    int64_t utc_ns;
+    double value;
+    char tag[256], who[ALARM_NAME_BYTES], reason[ALARM_REASON_BYTES];
+};
+
+struct journal_file;
+/* To write. Makes folder and file; *renewed: one that was damaged is set aside, and this one is empty. NULL: *error. */
+struct journal_file *journal_file_open(struct log *log, const char *folder, bool *renewed, int *error);
+/* To read. NULL with *error 0: there is none. */
+struct journal_file *journal_file_read(struct log *log, const char *folder, int *error);
+void journal_file_close(struct journal_file **file); /* &NULL is fine; leaves NULL */
+/* All in one transaction. -EBADMSG: damaged. */
+int journal_file_write(struct journal_file *file, const struct journal_entry *entries, size_t count);
+int journal_file_forget(struct journal_file *file, int64_t before_us); /* rows that are older */
+/* How alarms were when the journal was last written. */
+int journal_file_states(struct journal_file *file, void (*each)(void *arg, const char *tag, const struct alarm *alarm), void *arg);
+int journal_file_rows(struct journal_file *file, const struct journal_query *query,
+                      void (*each)(void *arg, const struct journal_row *row), void *arg);
+int journal_file_at(struct journal_file *file, int64_t t_us, void (*each)(void *arg, const struct journal_row *row), void *arg);
+
+#endif

@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What alarms are called, and which limit a reading is beyond. Pure. Thread: any. */
+#ifndef VALUE_ALARM_H
+#define VALUE_ALARM_H
+#include "plant/plant.h"
+#include "value/snapshot.h"
+
+enum alarm_kind {
+    ALARM_NONE,
+    ALARM_LL, ALARM_L, ALARM_H, ALARM_HH, /* 1 + enum limit */
+    ALARM_ON,                             /* of a bit of another alarm system */
+    ALARM_BAD,                            /* the measurement is bad */
+    ALARM_KINDS
+};
+
+enum alarm_word { /* the states of ISA-18.2 and IEC 62682, and one for alarms that somebody else's system keeps */
+    ALARM_NORMAL,
+    ALARM_ACTIVE, /* whether it was acknowledged, the other system knows */
+    ALARM_UNACKNOWLEDGED,
+    ALARM_ACKNOWLEDGED,
+    ALARM_RETURNED, /* to normal, not acknowledged */
+    ALARM_LATCHED,  /* the cause is gone; stays until it is reset */
+    ALARM_SHELVED,
+    ALARM_SUPPRESSED, /* by design */
+    ALARM_OUT_OF_SERVICE,
+    ALARM_WORDS
+};
+
+const char *alarm_kind_name(enum alarm_kind kind); /* "HH"; NULL: none */
+enum alarm_kind alarm_kind_find(const char *name); /* ALARM_NONE: there is none of that name */
+const char *alarm_word_name(enum alarm_word word); /* "out_of_service" */
+enum alarm_word alarm_word_find(const char *name); /* ALARM_WORDS: likewise */
+bool alarm_word_calls(enum alarm_word word);       /* it is to be seen: neither normal nor set aside */
+
+int alarm_priority(const struct plant_tag *tag, enum alarm_kind kind); /* 1, the most urgent, to ALARM_PRIORITIES */
+
+/* The limit that a usable reading is at or beyond, the graver of two; ALARM_NONE: none. */
+enum alarm_kind alarm_beyond(const struct plant_tag *tag, const struct reading *reading);
+/* Where no alarms are kept: what is beyond its limit is active. */
+void alarm_by_limits(const struct plant *plant, struct snapshot *snapshot);
+
+#endif

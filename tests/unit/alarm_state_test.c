@@ -1,0 +1,248 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The states of an alarm: every state and every event, by a table that says where each leads; limits, deadbands and delays. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "alarm/alarm_state.h"
+#include "alarm/condition.h"
+
+#define S INT64_C(1000000000)
+
+/* --- the table -------------------------------------------------------------------------------------------------------------- */
+
+/* States of a local alarm, by name: what it is, then +a where its cause is there although the word does not say so, +l latched,
+   and what else it is set aside by. */
+static const struct {
+    const char *name, *word;
+    struct alarm_state state;
+} states[] = {
+    { "normal", "normal", { 0 } },
+    { "unack", "unacknowledged", { .active = true, .unacknowledged = true } },
+    { "acked", "acknowledged", { .active = true } },
+    { "returned", "returned", { .unacknowledged = true } },
+    { "unack+l", "unacknowledged", { .active = true, .unacknowledged = true, .latched = true } },
+    { "acked+l", "acknowledged", { .active = true, .latched = true } },
+    { "latched+u", "latched", { .unacknowledged = true, .latched = true } },
+    { "latched", "latched", { .latched = true } },
+    { "shelved", "shelved", { .aside = ALARM_ASIDE_SHELVED } },
+    { "shelved+a", "shelved", { .active = true, .aside = ALARM_ASIDE_SHELVED } },
+    { "suppr", "suppressed", { .aside = ALARM_ASIDE_SUPPRESSED } },
+    { "suppr+a", "suppressed", { .active = true, .aside = ALARM_ASIDE_SUPPRESSED } },
+    { "out", "out_of_service", { .aside = ALARM_ASIDE_OUT } },
+    { "out+a", "out_of_service", { .active = true, .aside = ALARM_ASIDE_OUT } },
+    { "suppr+s", "suppressed", { .aside = ALARM_ASIDE_SUPPRESSED | ALARM_ASIDE_SHELVED } },
+    { "out+s", "out_of_service", { .aside = ALARM_ASIDE_OUT | ALARM_ASIDE_SHELVED } },
+    { "out+d", "out_of_service", { .aside = ALARM_ASIDE_OUT | ALARM_ASIDE_SUPPRESSED } },
+    { "shelved+l", "shelved", { .latched = true, .aside = ALARM_ASIDE_SHELVED } },
+};
+enum { STATE_COUNT = sizeof(states) / sizeof(states[0]), ROWS = 17 };
+
+/* Columns in the order of enum alarm_event. "=": as it was; "-": refused. Rows of an alarm that does not latch. */
+static const char *const table[ROWS][1 + ALARM_EVENTS] = {
+    /* from       raise        clear       ack       reset     shelve       unshelve    suppress   unsuppr.  take out   put back */
+    { "normal",    "unack",     "=",        "-",      "-",      "shelved",   "=",        "suppr",   "=",      "out",     "=" },
+    { "unack",     "=",         "returned", "acked",  "-",      "shelved+a", "=",        "suppr+a", "=",      "out+a",   "=" },
+    { "acked",     "=",         "normal",   "-",      "-",      "shelved+a", "=",        "suppr+a", "=",      "out+a",   "=" },
+    { "returned",  "unack",     "=",        "normal", "-",      "shelved",   "=",        "suppr",   "=",      "out",     "=" },
+    { "unack+l",   "=",         "latched+u","acked+l","-",      NULL,        "=",        NULL,      "=",      NULL,      "=" },
+    { "acked+l",   "=",         "latched",  "-",      "-",      NULL,        "=",        NULL,      "=",      NULL,      "=" },
+    { "latched+u", NULL,        "=",        "latched","-",      "shelved+l", "=",        NULL,      "=",      NULL,      "=" },
+    { "latched",   NULL,        "=",        "-",      "normal", "shelved+l", "=",        NULL,      "=",      NULL,      "=" },
+    { "shelved",   "shelved+a", "=",        "-",      "-",      "shelved",   "normal",   "suppr+s", "=",      "out+s",   "=" },
+    { "shelved+a", "=",         "shelved",  "-",      "-",      "shelved+a", "unack",    NULL,      "=",      NULL,      "=" },
+    { "suppr",     "suppr+a",   "=",        "-",      "-",      "suppr+s",   "=",        "=",       "normal", "out+d",   "=" },
+    { "suppr+a",   "=",         "suppr",    "-",      "-",      NULL,        "=",        "=",       "unack",  NULL,      "=" },
+    { "out",       "out+a",     "=",        "-",      "-",      "out+s",     "=",        "out+d",   "=",      "=",       "normal" },
+    { "out+a",     "=",         "out",      "-",      "-",      NULL,        "=",        NULL,      "=",      "=",       "unack" },
+    { "suppr+s",   NULL,        "=",        "-",      "-",      "suppr+s",   "suppr",    "=",       "shelved",NULL,      "=" },
+    { "out+s",     NULL,        "=",        "-",      "-",      "out+s",     "out",      NULL,      "=",      "=",       "shelved" },
+    { "shelved+l", NULL,        "=",        "-",      "-",      "shelved+l", "latched",  NULL,      "=",      NULL,      "=" },
+};
+
+static int find_state(const char *name)
+{
+    int i = 0;
+    while (i < STATE_COUNT && strcmp(states[i].name, name) != 0)
+        i++;
+    if (i == STATE_COUNT)
+        fail_msg("no state %s", name);
+    return i;
+}
+
+static void every_event_leads_where_the_table_says(void **unused)
+{
+    static const struct alarm_rule rule = { .acknowledges = true };
+    int said = 0;
+    (void)unused;
+    for (int row = 0; row < ROWS; row++)
+        for (int event = 0; event < ALARM_EVENTS; event++) {
+            const char *wanted = table[row][1 + event];
+            int from = find_state(table[row][0]);
+            struct alarm_state state = states[from].state;
+            enum alarm_outcome outcome = alarm_state_step(&state, &rule, (enum alarm_event)event);
+            if (!wanted)
+                continue; /* leads to a mixture that has no name here; the invariants below hold for it */
+            said++;
+            enum alarm_outcome meant = !strcmp(wanted, "=") ? ALARM_AS_IT_WAS : !strcmp(wanted, "-") ? ALARM_REFUSED : ALARM_CHANGED;
+            int to = meant == ALARM_CHANGED ? find_state(wanted) : from;
+            if (outcome != meant || memcmp(&state, &states[to].state, sizeof(state)) != 0)
+                fail_msg("%s, %s: outcome %d, wanted %s", table[row][0], alarm_event_name((enum alarm_event)event), (int)outcome, wanted);
+        }
+    assert_true(said > 140);
+}
+
+static void every_state_has_its_word(void **unused)
+{
+    static const struct alarm_rule rule = { .acknowledges = true };
+    (void)unused;
+    for (int i = 0; i < STATE_COUNT; i++)
+        assert_string_equal(alarm_word_name(alarm_state_word(&states[i].state, &rule)), states[i].word);
+    for (int i = 0; i < ALARM_WORDS; i++)
+        assert_int_equal(alarm_word_find(alarm_word_name((enum alarm_word)i)), i);
+    for (int i = 0; i < ALARM_EVENTS; i++)
+        assert_int_equal(alarm_event_find(alarm_event_name((enum alarm_event)i)), i);
+    for (int i = 1; i < ALARM_KINDS; i++)
+        assert_int_equal(alarm_kind_find(alarm_kind_name((enum alarm_kind)i)), i);
+    assert_int_equal(alarm_kind_find("XX"), ALARM_NONE);
+}
+
+/* All that can be reached, whatever the rule is. */
+static void check_invariants(const struct alarm_state *state, const struct alarm_rule *rule)
+{
+    enum alarm_word word = alarm_state_word(state, rule);
+    assert_false(state->unacknowledged && state->aside);
+    assert_false(state->unacknowledged && !rule->acknowledges);
+    assert_false(state->latched && !(rule->acknowledges && rule->latches));
+    assert_int_equal(alarm_word_calls(word), !state->aside && (state->active || state->unacknowledged || state->latched));
+    assert_false(word == ALARM_NORMAL && state->active);
+    assert_false(rule->forgets && !state->active && state->unacknowledged);
+    if (rule->latches && rule->acknowledges && state->active && !state->aside)
+        assert_true(state->latched); /* what is seen stays until it is reset */
+}
+
+static void no_sequence_breaks_what_must_hold(void **unused)
+{
+    unsigned seed = 20261120;
+    (void)unused;
+    for (int rules = 0; rules < 8; rules++) {
+        const struct alarm_rule rule = { .acknowledges = rules & 1, .latches = rules & 2, .forgets = rules & 4 };
+        struct alarm_state state = { 0 };
+        for (int i = 0; i < 20000; i++) {
+            enum alarm_event event = (enum alarm_event)(rand_r(&seed) % ALARM_EVENTS);
+            struct alarm_state before = state;
+            enum alarm_outcome outcome = alarm_state_step(&state, &rule, event);
+            if (outcome != ALARM_CHANGED)
+                assert_memory_equal(&before, &state, sizeof(state));
+            check_invariants(&state, &rule);
+        }
+    }
+}
+
+/* --- limits and delays ------------------------------------------------------------------------------------------------------ */
+
+static void a_deadband_lies_inside_its_limit(void **unused)
+{
+    (void)unused;
+    assert_int_equal(condition_side(ALARM_H, 85, 2, 85), CONDITION_BEYOND); /* at it is beyond it */
+    assert_int_equal(condition_side(ALARM_H, 85, 2, 83), CONDITION_BETWEEN);
+    assert_int_equal(condition_side(ALARM_H, 85, 2, 82.999), CONDITION_CLEAR);
+    assert_int_equal(condition_side(ALARM_HH, 85, 0, 84.999), CONDITION_CLEAR);
+    assert_int_equal(condition_side(ALARM_L, 0, 1, 0), CONDITION_BEYOND); /* zero is a limit, and a reading */
+    assert_int_equal(condition_side(ALARM_L, 0, 1, 1), CONDITION_BETWEEN);
+    assert_int_equal(condition_side(ALARM_LL, 0, 1, 1.001), CONDITION_CLEAR);
+    assert_int_equal(condition_side(ALARM_LL, -5, 0, -4.999), CONDITION_CLEAR);
+}
+
+static void delays_run_whole(void **unused)
+{
+    const struct condition_delays delays = { 3 * S, 5 * S };
+    struct condition c = { 0 };
+    int64_t at = 0;
+    (void)unused;
+    assert_false(condition_put(&c, &delays, CONDITION_BEYOND, 10 * S));
+    assert_false(condition_advance(&c, &delays, 13 * S - 1, &at));
+    condition_put(&c, &delays, CONDITION_BETWEEN, 13 * S - 1); /* back below the limit: it begins anew */
+    assert_false(condition_advance(&c, &delays, 20 * S, &at));
+    assert_false(condition_put(&c, &delays, CONDITION_BEYOND, 20 * S));
+    assert_false(condition_put(&c, &delays, CONDITION_BEYOND, 22 * S));
+    assert_true(condition_advance(&c, &delays, 99 * S, &at));
+    assert_true(c.active && at == 23 * S); /* when it was over, not when somebody looked */
+    assert_false(condition_put(&c, &delays, CONDITION_CLEAR, 100 * S));
+    condition_hold(&c);
+    assert_false(condition_advance(&c, &delays, 200 * S, &at)); /* nothing is known: nothing goes */
+    condition_put(&c, &delays, CONDITION_CLEAR, 200 * S);
+    assert_true(condition_advance(&c, &delays, 205 * S, &at));
+    assert_false(c.active);
+}
+
+static bool turns(int side, bool active)
+{
+    return side == (active ? CONDITION_CLEAR : CONDITION_BEYOND);
+}
+
+/* The truth, slowly: looking back from each second, for how many it held. */
+static bool slow_active(const int *sides, int now, const struct condition_delays *delays)
+{
+    bool active = false;
+    for (int t = 0, begin = 0; t <= now; t++) {
+        int held = 0;
+        while (t - 1 - held >= begin && turns(sides[t - 1 - held], active))
+            held++;
+        if (held > 0 && held * S >= (active ? delays->off_ns : delays->on_ns)) {
+            active = !active;
+            begin = t;
+        }
+        if ((active ? delays->off_ns : delays->on_ns) == 0 && turns(sides[t], active)) {
+            active = !active;
+            begin = t + 1;
+        }
+    }
+    return active;
+}
+
+static void what_comes_does_not_depend_on_who_looks(void **unused)
+{
+    enum { LENGTH = 60 };
+    unsigned seed = 7;
+    (void)unused;
+    for (int run = 0; run < 3000; run++) {
+        const struct condition_delays delays = { rand_r(&seed) % 5 * S, rand_r(&seed) % 5 * S };
+        struct condition seldom = { 0 }, often = { 0 };
+        int sides[LENGTH];
+        int64_t at;
+        for (int t = 0; t < LENGTH; t++)
+            sides[t] = rand_r(&seed) % 3 ? t > 0 ? sides[t - 1] : CONDITION_CLEAR : rand_r(&seed) % 3;
+        for (int t = 0; t < LENGTH; t++) {
+            condition_advance(&seldom, &delays, t * S, &at);
+            condition_put(&seldom, &delays, (enum condition_side)sides[t], t * S);
+            for (int k = 0; k < 7; k++)
+                condition_advance(&often, &delays, t * S - (6 - k) * S / 10, &at);
+            condition_put(&often, &delays, (enum condition_side)sides[t], t * S);
+            assert_memory_equal(&seldom.active, &often.active, sizeof(bool));
+            if (seldom.active != slow_active(sides, t, &delays))
+                fail_msg("run %d: at %d s %d, delays %d and %d s", run, t, seldom.active, (int)(delays.on_ns / S),
+                         (int)(delays.off_ns / S));
+        }
+    }
+}
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_event_leads_where_the_table_says),
+        cmocka_unit_test(every_state_has_its_word),
+        cmocka_unit_test(no_sequence_breaks_what_must_hold),
+        cmocka_unit_test(a_deadband_lies_inside_its_limit),
+        cmocka_unit_test(delays_run_whole),
+        cmocka_unit_test(what_comes_does_not_depend_on_who_looks),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

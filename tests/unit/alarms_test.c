@@ -1,0 +1,407 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The alarms of a plant: made of samples, time and people; in the three modes; after a restart and a reload. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "alarm/alarms.h"
+#include "base/mem.h"
+#include "tests/support/plant_by_hand.h"
+#include "value/quality.h"
+
+#define S INT64_C(1000000000)
+#define UTC (1000000 * S)
+
+struct stage { /* TT: LL 0, L 10, H 80, HH 90; PT: H 5, after 2 s; SD: a bit that suppresses PT; B1, B2: bits of a DCS */
+    struct plant *plant;
+    struct alarms *alarms;
+    struct snapshot *snapshot;
+    char log[4000]; /* what was told */
+    int told[8];    /* the gravest of each tag */
+};
+
+static void on_change(void *arg, const struct alarm_change *change)
+{
+    struct stage *s = arg;
+    size_t n = strlen(s->log);
+    snprintf(s->log + n, sizeof(s->log) - n, "%d %s.%s %s: %s > %s%s%s\n", (int)((change->utc_ns - UTC) / S),
+             s->plant->tags[change->alarm->tag].name, alarm_kind_name(change->alarm->kind), alarm_event_name(change->event),
+             alarm_word_name(change->before), alarm_word_name(change->after), change->who[0] ? " by " : "", change->who);
+}
+
+static void on_tag(void *arg, int tag, enum alarm_kind kind, enum alarm_word word)
+{
+    (void)word;
+    ((struct stage *)arg)->told[tag] = (int)kind;
+}
+
+static void make_plant(struct stage *s, enum alarm_mode mode)
+{
+    static const double tt[4] = { 0, 10, 80, 90 }, pt[4] = { NAN, NAN, 5, NAN }, none[4] = { NAN, NAN, NAN, NAN };
+    static const char *const names[] = { "TT", "PT", "SD", "B1", "B2" };
+    s->plant = plant_by_hand_create(8);
+    plant_by_hand_source(s->plant, "a", 1);
+    for (int i = 0; i < 5; i++) {
+        struct plant_tag *tag = plant_by_hand_tag(s->plant, names[i], TABLE_HOLDING, i, i < 2 ? DATA_INT16 : DATA_BIT);
+        memcpy(tag->limits, i == 0 ? tt : i == 1 ? pt : none, sizeof(tag->limits));
+        tag->alarming.deadband = i == 0 ? 2 : 0;
+        tag->alarming.on_delay_s = i == 1 ? 2 : 0;
+    }
+    s->plant->tags[1].suppressed_by = 2;
+    s->plant->tags_by_name = mem_array(5, sizeof(int));
+    static const int sorted[] = { 3, 4, 1, 2, 0 };
+    memcpy(s->plant->tags_by_name, sorted, sizeof(sorted));
+    if (mode == ALARMS_MIRROR) {
+        s->plant->tags[3].mirror = (struct plant_mirror){ 0, LIMIT_HH, false };
+        s->plant->tags[4].mirror = (struct plant_mirror){ 0, LIMIT_HH, true };
+    }
+    s->plant->alarms = mode;
+}
+
+static void begin(struct stage *s, enum alarm_mode mode)
+{
+    *s = (struct stage){ .plant = NULL };
+    make_plant(s, mode);
+    s->alarms = alarms_create(s->plant, &(struct alarms_listener){ on_change, on_tag, s });
+    s->snapshot = snapshot_create(5);
+}
+
+static void end(struct stage *s)
+{
+    alarms_destroy(&s->alarms);
+    alarms_destroy(&s->alarms);
+    snapshot_destroy(&s->snapshot);
+    mem_free(s->plant->tags_by_name);
+    s->plant->tags_by_name = NULL;
+    plant_by_hand_destroy(&s->plant);
+}
+
+static void hear(struct stage *s, int second, int tag, double value, uint32_t quality)
+{
+    struct reading *reading = &s->snapshot->readings[tag];
+    *reading = (struct reading){ .value = quality_is_bad(quality) ? 0 : value, .quality = quality };
+    alarms_hear(s->alarms, &(struct heard){ tag, quality_is_bad(quality) ? NAN : value, quality, second * S, UTC + second * S }, 1);
+}
+
+static void tick(struct stage *s, int second)
+{
+    s->snapshot->taken_mono_ns = second * S;
+    s->snapshot->taken_utc_ns = UTC + second * S;
+    alarms_tick(s->alarms, s->snapshot);
+}
+
+static struct instant at(int second)
+{
+    return (struct instant){ second * S, UTC + second * S };
+}
+
+static const char *word(const struct stage *s, int tag, enum alarm_kind kind)
+{
+    return alarm_word_name(alarm_word_of(alarms_at(s->alarms, alarms_find(s->alarms, tag, kind))));
+}
+
+static const char *act(struct stage *s, int second, int tag, enum alarm_kind kind, enum alarm_event event, int for_s)
+{
+    const struct alarm_act wish = { event, for_s * S, "kim", event == ALARM_SHELVE ? "transmitter is being changed" : "" };
+    return alarms_act(s->alarms, alarms_find(s->alarms, tag, kind), &wish, at(second));
+}
+
+/* What was told since the last time. */
+static void assert_told(struct stage *s, const char *wanted)
+{
+    assert_string_equal(s->log, wanted);
+    s->log[0] = 0;
+}
+
+static void a_life_of_local_alarms(void **unused)
+{
+    struct stage s;
+    (void)unused;
+    begin(&s, ALARMS_LOCAL);
+    hear(&s, 1, 0, 85, QUALITY_GOOD);
+    hear(&s, 2, 0, 91, QUALITY_GOOD);
+    assert_told(&s, "1 TT.H raise: normal > unacknowledged\n2 TT.HH raise: normal > unacknowledged\n");
+    assert_int_equal(s.told[0], ALARM_HH);
+    assert_null(act(&s, 3, 0, ALARM_H, ALARM_ACKNOWLEDGE, 0));
+    assert_string_equal(act(&s, 3, 0, ALARM_H, ALARM_ACKNOWLEDGE, 0), "there is nothing to acknowledge");
+    hear(&s, 4, 0, 88, QUALITY_GOOD); /* within the deadband of HH */
+    hear(&s, 5, 0, 87.9, QUALITY_GOOD);
+    hear(&s, 6, 0, 50, QUALITY_GOOD);
+    assert_told(&s, "3 TT.H acknowledge: unacknowledged > acknowledged by kim\n"
+                    "5 TT.HH clear: unacknowledged > returned\n6 TT.H clear: acknowledged > normal\n");
+    assert_int_equal(s.told[0], ALARM_HH); /* nobody has seen it yet */
+    assert_null(act(&s, 7, 0, ALARM_HH, ALARM_ACKNOWLEDGE, 0));
+    assert_told(&s, "7 TT.HH acknowledge: returned > normal by kim\n");
+    assert_int_equal(s.told[0], ALARM_NONE);
+    end(&s);
+}
+
+static void delays_are_monotonic_and_exact(void **unused)
+{
+    struct stage s;
+    (void)unused;
+    begin(&s, ALARMS_LOCAL);
+    hear(&s, 9, 0, 50, QUALITY_GOOD);
+    hear(&s, 10, 1, 6, QUALITY_GOOD);
+    s.snapshot->taken_utc_ns = UTC + 4000 * S; /* the wall clock is set forward by an hour */
+    s.snapshot->taken_mono_ns = 11 * S;
+    alarms_tick(s.alarms, s.snapshot);
+    assert_told(&s, "");
+    tick(&s, 30); /* nobody looked for long */
+    assert_told(&s, "12 PT.H raise: normal > unacknowledged\n");
+    end(&s);
+}
+
+static void what_is_bad_is_held_and_says_so(void **unused)
+{
+    struct stage s;
+    (void)unused;
+    begin(&s, ALARMS_LOCAL);
+    hear(&s, 1, 0, 95, QUALITY_GOOD);
+    act(&s, 1, 0, ALARM_H, ALARM_ACKNOWLEDGE, 0);
+    s.log[0] = 0;
+    hear(&s, 2, 0, 0, QUALITY_BAD_SENSOR_FAILURE);
+    assert_told(&s, "2 TT.BAD raise: normal > unacknowledged\n");
+    assert_string_equal(word(&s, 0, ALARM_H), "acknowledged");
+    assert_true(alarms_at(s.alarms, alarms_find(s.alarms, 0, ALARM_H))->held);
+    hear(&s, 3, 0, 50, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE);
+    assert_false(alarms_at(s.alarms, alarms_find(s.alarms, 0, ALARM_H))->held);
+    assert_told(&s, "3 TT.H clear: acknowledged > normal\n3 TT.HH clear: unacknowledged > returned\n"
+                    "3 TT.BAD clear: unacknowledged > returned\n");
+    s.snapshot->readings[0].quality = QUALITY_BAD_COMMUNICATION_ERROR; /* stale: nobody told */
+    tick(&s, 9);
+    assert_told(&s, "9 TT.BAD raise: returned > unacknowledged\n");
+    /* What never came is no alarm at first, and one once it should have. */
+    tick(&s, 10);
+    assert_told(&s, "");
+    tick(&s, 14);
+    tick(&s, 16);
+    assert_told(&s, "16 PT.BAD raise: normal > unacknowledged\n");
+    end(&s);
+}
+
+static void shelves_end_and_come_back(void **unused)
+{
+    struct stage s;
+    (void)unused;
+    begin(&s, ALARMS_LOCAL);
+    hear(&s, 1, 0, 85, QUALITY_GOOD);
+    assert_non_null(act(&s, 2, 0, ALARM_H, ALARM_SHELVE, 0));
+    assert_non_null(act(&s, 2, 0, ALARM_H, ALARM_SHELVE, 8 * 86400));
+    assert_null(act(&s, 2, 0, ALARM_H, ALARM_SHELVE, 60));
+    assert_int_equal(s.told[0], ALARM_NONE);
+    const struct alarm *alarm = alarms_at(s.alarms, alarms_find(s.alarms, 0, ALARM_H));
+    assert_string_equal(alarm->reason, "transmitter is being changed");
+    assert_true(alarm->until.utc_ns == UTC + 62 * S);
+    assert_null(act(&s, 30, 0, ALARM_H, ALARM_SHELVE, 60)); /* for longer */
+    tick(&s, 61);
+    s.log[0] = 0;
+    tick(&s, 90);
+    assert_told(&s, "90 TT.H unshelve: shelved > unacknowledged\n");
+    assert_string_equal(alarm->reason, "");
+    assert_null(act(&s, 91, 0, ALARM_H, ALARM_TAKE_OUT, 0));
+    hear(&s, 92, 0, 50, QUALITY_GOOD);
+    assert_null(act(&s, 93, 0, ALARM_H, ALARM_PUT_BACK, 0));
+    assert_told(&s, "91 TT.H out_of_service: unacknowledged > out_of_service by kim\n92 TT.H clear: out_of_service > out_of_service\n"
+                    "93 TT.H in_service: out_of_service > normal by kim\n");
+    end(&s);
+}
+
+static void design_suppresses(void **unused)
+{
+    struct stage s;
+    (void)unused;
+    begin(&s, ALARMS_DISPLAY);
+    hear(&s, 1, 2, 1, QUALITY_GOOD);
+    hear(&s, 2, 1, 9, QUALITY_GOOD);
+    tick(&s, 5);
+    assert_string_equal(word(&s, 1, ALARM_H), "suppressed");
+    assert_int_equal(s.told[1], ALARM_NONE);
+    hear(&s, 6, 2, 1, QUALITY_BAD_SENSOR_FAILURE); /* nothing is known: it stays */
+    assert_string_equal(word(&s, 1, ALARM_H), "suppressed");
+    hear(&s, 7, 2, 0, QUALITY_GOOD);
+    assert_string_equal(word(&s, 1, ALARM_H), "active");
+    assert_int_equal(s.told[1], ALARM_H);
+    end(&s);
+}
+
+static void display_acknowledges_nothing(void **unused)
+{
+    struct stage s;
+    (void)unused;
+    begin(&s, ALARMS_DISPLAY);
+    hear(&s, 1, 0, 95, QUALITY_GOOD);
+    assert_string_equal(act(&s, 2, 0, ALARM_HH, ALARM_ACKNOWLEDGE, 0), "alarms are another system's here");
+    assert_non_null(act(&s, 2, 0, ALARM_HH, ALARM_SHELVE, 60));
+    hear(&s, 3, 0, 50, QUALITY_GOOD);
+    assert_told(&s, "1 TT.H raise: normal > active\n1 TT.HH raise: normal > active\n3 TT.H clear: active > normal\n"
+                    "3 TT.HH clear: active > normal\n");
+    end(&s);
+}
+
+static void a_mirror_shows_what_the_other_system_says(void **unused)
+{
+    struct stage s;
+    (void)unused;
+    begin(&s, ALARMS_MIRROR);
+    assert_int_equal(alarms_count(s.alarms), 3); /* one, and two bits that may go bad */
+    hear(&s, 1, 0, 95, QUALITY_GOOD);             /* the limit is the other's to watch */
+    assert_told(&s, "");
+    hear(&s, 2, 3, 1, QUALITY_GOOD);
+    hear(&s, 3, 4, 1, QUALITY_GOOD);
+    hear(&s, 4, 3, 0, QUALITY_GOOD);
+    assert_told(&s, "2 TT.HH raise: normal > unacknowledged\n3 TT.HH acknowledge: unacknowledged > acknowledged\n"
+                    "4 TT.HH clear: acknowledged > normal\n");
+    hear(&s, 5, 4, 0, QUALITY_GOOD);
+    hear(&s, 5, 3, 1, QUALITY_GOOD);
+    hear(&s, 6, 3, 1, QUALITY_BAD_COMMUNICATION_ERROR);
+    assert_told(&s, "5 TT.HH raise: normal > unacknowledged\n6 B1.BAD raise: normal > active\n");
+    assert_true(alarms_at(s.alarms, alarms_find(s.alarms, 0, ALARM_HH))->held);
+    assert_string_equal(word(&s, 0, ALARM_HH), "unacknowledged");
+    end(&s);
+}
+
+static void what_was_kept_is_taken_up(void **unused)
+{
+    struct stage s, next;
+    (void)unused;
+    begin(&s, ALARMS_LOCAL);
+    hear(&s, 1, 0, 95, QUALITY_GOOD);
+    act(&s, 2, 0, ALARM_H, ALARM_SHELVE, 60);
+    begin(&next, ALARMS_LOCAL);
+    for (int kind = ALARM_H; kind <= ALARM_HH; kind++)
+        alarms_restore(next.alarms, alarms_find(next.alarms, 0, (enum alarm_kind)kind),
+                       alarms_at(s.alarms, alarms_find(s.alarms, 0, (enum alarm_kind)kind)), (struct instant){ 5 * S, UTC + 40 * S });
+    assert_told(&next, ""); /* nothing happened meanwhile that anybody knows of */
+    assert_string_equal(word(&next, 0, ALARM_HH), "unacknowledged");
+    assert_string_equal(word(&next, 0, ALARM_H), "shelved");
+    assert_true(alarms_at(next.alarms, alarms_find(next.alarms, 0, ALARM_HH))->held);
+    hear(&next, 6, 0, 95, QUALITY_GOOD);
+    assert_told(&next, ""); /* still there: not anew */
+    next.snapshot->taken_mono_ns = 27 * S; /* 22 s were left */
+    next.snapshot->taken_utc_ns = UTC + 62 * S;
+    alarms_tick(next.alarms, next.snapshot);
+    assert_told(&next, "62 TT.H unshelve: shelved > unacknowledged\n");
+    end(&next);
+    begin(&next, ALARMS_DISPLAY); /* the site has decided otherwise meanwhile */
+    for (int kind = ALARM_H; kind <= ALARM_HH; kind++)
+        alarms_restore(next.alarms, alarms_find(next.alarms, 0, (enum alarm_kind)kind),
+                       alarms_at(s.alarms, alarms_find(s.alarms, 0, (enum alarm_kind)kind)), at(5));
+    assert_string_equal(word(&next, 0, ALARM_HH), "active");
+    assert_string_equal(word(&next, 0, ALARM_H), "active"); /* nobody could take it off the shelf */
+    end(&next);
+    end(&s);
+}
+
+static void a_reload_keeps_what_stays(void **unused)
+{
+    struct stage s, next;
+    (void)unused;
+    begin(&s, ALARMS_LOCAL);
+    hear(&s, 1, 0, 95, QUALITY_GOOD);
+    hear(&s, 9, 1, 9, QUALITY_GOOD); /* PT's delay of 2 s runs */
+    begin(&next, ALARMS_LOCAL);
+    alarms_adopt(next.alarms, s.alarms, s.plant);
+    assert_told(&next, "");
+    assert_int_equal(next.told[0], ALARM_HH);
+    assert_string_equal(word(&next, 0, ALARM_HH), "unacknowledged");
+    memcpy(next.snapshot->readings, s.snapshot->readings, 5 * sizeof(struct reading));
+    tick(&next, 11);
+    assert_told(&next, "11 PT.H raise: normal > unacknowledged\n");
+    end(&next);
+    end(&s);
+}
+
+static void changes_come_newest_first(void **unused)
+{
+    struct stage s;
+    (void)unused;
+    begin(&s, ALARMS_LOCAL);
+    hear(&s, 1, 0, 95, QUALITY_GOOD);
+    uint64_t before = alarms_number(s.alarms);
+    act(&s, 2, 0, ALARM_H, ALARM_ACKNOWLEDGE, 0);
+    int newest = alarms_newest(s.alarms), second = alarms_at(s.alarms, newest)->older;
+    assert_int_equal(alarms_at(s.alarms, newest)->kind, ALARM_H);
+    assert_true(alarms_at(s.alarms, newest)->number > before && alarms_at(s.alarms, second)->number <= before);
+    assert_int_equal(alarms_at(s.alarms, second)->older, -1);
+    end(&s);
+}
+
+static void counts_are_what_there_is(void **unused)
+{
+    struct stage s;
+    struct alarm_counts counts;
+    (void)unused;
+    begin(&s, ALARMS_LOCAL);
+    for (int i = 0; i < 3; i++) {
+        hear(&s, 10 + 2 * i, 0, 85, QUALITY_GOOD);
+        hear(&s, 11 + 2 * i, 0, 50, QUALITY_GOOD);
+    }
+    hear(&s, 20, 0, 5, QUALITY_GOOD);
+    alarms_counts(s.alarms, 21 * S, &counts);
+    assert_int_equal(counts.words[ALARM_UNACKNOWLEDGED], 1);
+    assert_int_equal(counts.words[ALARM_RETURNED], 1);
+    assert_int_equal(counts.words[ALARM_NORMAL], (int)alarms_count(s.alarms) - 2);
+    assert_int_equal(counts.active, 2);
+    assert_int_equal(counts.chattering, 1);
+    assert_int_equal(counts.standing, 0);
+    alarms_counts(s.alarms, 20 * S + ALARM_STANDING_NS, &counts);
+    assert_int_equal(counts.standing, 1);
+    assert_int_equal(counts.chattering, 0);
+    end(&s);
+}
+
+/* Whatever comes, in whatever order: each step goes on from where the one before ended, and the gravest is the gravest. */
+static void no_sequence_tells_a_contradiction(void **unused)
+{
+    unsigned seed = 42;
+    (void)unused;
+    for (int mode = ALARMS_DISPLAY; mode <= ALARMS_LOCAL; mode++) {
+        struct stage s;
+        begin(&s, (enum alarm_mode)mode);
+        for (int i = 0; i < 20000; i++) {
+            int tag = rand_r(&seed) % 5, kind = ALARM_LL + rand_r(&seed) % (ALARM_KINDS - 1);
+            double value = tag > 1 ? rand_r(&seed) % 2 : rand_r(&seed) % 110 - 5;
+            s.log[0] = 0;
+            hear(&s, i, tag, value, rand_r(&seed) % 8 ? QUALITY_GOOD : QUALITY_BAD_SENSOR_FAILURE);
+            if (rand_r(&seed) % 4 == 0 && alarms_find(s.alarms, tag, (enum alarm_kind)kind) >= 0)
+                act(&s, i, tag, (enum alarm_kind)kind, (enum alarm_event)(ALARM_ACKNOWLEDGE + rand_r(&seed) % 8), 1 + rand_r(&seed) % 20);
+            tick(&s, i);
+            for (size_t k = 0; k < alarms_count(s.alarms); k++) {
+                const struct alarm *alarm = alarms_at(s.alarms, (int)k);
+                bool calls = alarm_word_calls(alarm_word_of(alarm));
+                assert_false(calls && s.told[alarm->tag] == ALARM_NONE);
+                assert_int_equal(alarm->until.mono_ns != 0, (alarm->state.aside & ALARM_ASIDE_SHELVED) != 0);
+                assert_true(alarm->until.mono_ns == 0 || alarm->until.mono_ns > i * S);
+                assert_false(mode == ALARMS_DISPLAY && alarm->state.unacknowledged);
+            }
+        }
+        end(&s);
+    }
+}
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_life_of_local_alarms),
+        cmocka_unit_test(delays_are_monotonic_and_exact),
+        cmocka_unit_test(what_is_bad_is_held_and_says_so),
+        cmocka_unit_test(shelves_end_and_come_back),
+        cmocka_unit_test(design_suppresses),
+        cmocka_unit_test(display_acknowledges_nothing),
+        cmocka_unit_test(a_mirror_shows_what_the_other_system_says),
+        cmocka_unit_test(what_was_kept_is_taken_up),
+        cmocka_unit_test(a_reload_keeps_what_stays),
+        cmocka_unit_test(changes_come_newest_first),
+        cmocka_unit_test(counts_are_what_there_is),
+        cmocka_unit_test(no_sequence_tells_a_contradiction),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
