@@ -45,6 +45,16 @@ static bool params_allowed(enum role role, const struct params_change *change, s
     return true;
 }
 
+static bool alarm_allowed(enum role role, const struct message *message, struct message_error *error)
+{
+    bool service = message->alarm.action == ALARM_TAKE_OUT || message->alarm.action == ALARM_PUT_BACK;
+    if (role >= (service ? ROLE_ENGINEER : ROLE_OPERATOR))
+        return true;
+    message_fail(error, "not_allowed", "%s takes the role %s, not %s", alarm_event_name((enum alarm_event)message->alarm.action),
+                 service ? "engineer" : "operator", name_of(names_role, role));
+    return false;
+}
+
 bool access_message(enum role role, const struct message *message, struct message_error *error)
 {
     if (message->type == MESSAGE_PING)
@@ -53,6 +63,8 @@ bool access_message(enum role role, const struct message *message, struct messag
         message_fail(error, "token_needed", "a token is needed: in hello, as `token`");
         return false;
     }
+    if (message->type == MESSAGE_ALARM)
+        return alarm_allowed(role, message, error);
     if (message->type != MESSAGE_PARAMS && !message->has_params)
         return true;
     return params_allowed(role, &message->params, error) && params_allowed(role, &message->split.right, error);

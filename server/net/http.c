@@ -244,6 +244,43 @@ static int ask_history(struct hub *hub, struct request *request)
     return 0;
 }
 
+/* --- alarms ----------------------------------------------------------------------------------------------------------------- */
+
+static bool read_alarm_query(struct hub *hub, struct request *request, bool journal, struct alarm_query *query, struct message_error *error)
+{
+    struct args args;
+    return read_args(request->wsi, &args, error) &&
+           alarm_query_parse(hub->params.scene->plant, journal, args.list, args.count, clock_utc_ns() / 1000, query, error);
+}
+
+static int api_alarms(struct hub *hub, struct request *request)
+{
+    struct alarm_query query;
+    struct message_error error = { 0 };
+    if (!hub->params.alarming)
+        return answer_text(request, HTTP_STATUS_NOT_FOUND, "there are no alarms here\n");
+    if (!read_alarm_query(hub, request, false, &query, &error))
+        return answer_error(request, &error);
+    char *text = alarms_api_text(hub->params.alarming, hub->params.scene->plant, &query, clock_utc_ns());
+    return query.csv ? answer(request, HTTP_STATUS_OK, "text/csv; charset=utf-8", text, strlen(text), NULL, NULL)
+                     : answer_json(request, text);
+}
+
+static int ask_journal(struct hub *hub, struct request *request)
+{
+    struct recall_order order = { .journal = true };
+    struct message_error error = { 0 };
+    if (!hub->recall)
+        return answer_text(request, HTTP_STATUS_NOT_FOUND, "this daemon records nothing (history: record: no)\n");
+    if (!read_alarm_query(hub, request, true, &order.alarms, &error))
+        return answer_error(request, &error);
+    order.client = hub->next_client;
+    if (!recall_ask(hub->recall, &order))
+        return answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "too much is being asked; try again\n");
+    await(hub, request);
+    return 0;
+}
+
 void http_on_recall(struct hub *hub, struct recall_answer *recalled)
 {
     struct request *request = find_awaiting(hub, recalled->client);
@@ -326,6 +363,8 @@ static const struct {
     { "/api/v1/tags", api_tags, ROLE_VIEWER },
     { "/api/v1/pick", ask_pick, ROLE_VIEWER },
     { "/api/v1/history", ask_history, ROLE_VIEWER },
+    { "/api/v1/alarms", api_alarms, ROLE_VIEWER },
+    { "/api/v1/alarms/journal", ask_journal, ROLE_VIEWER },
 };
 
 static int refuse(struct request *request, const struct refusal *refusal)

@@ -4,6 +4,7 @@
 #define NET_HUB_H
 #include <libwebsockets.h>
 
+#include "net/alarm_text.h"
 #include "net/marker_text.h"
 #include "net/net.h"
 #include "net/recall.h"
@@ -44,6 +45,8 @@ struct hub {
     int64_t still_ns;                   /* what the last refined picture cost that was not one before with new readings */
     uint8_t out[LWS_PRE + SLICE_BYTES]; /* lws writes its framing in front of what is sent */
     struct tags_said tags_said;
+    struct alarms_said alarms_said;
+    uint64_t alarms_number; /* as sessions were last told to look */
     struct marker_lists marker_lists; /* of the frame that was sent last */
     struct stages stages;
     struct {
@@ -66,6 +69,7 @@ void stream_on_picture(struct hub *hub, struct picture *picture); /* takes it ov
 void stream_on_pick(struct hub *hub, const struct pick_answer *answer);
 bool stream_owns(const struct hub *hub, uint64_t client);
 void streams_on_tick(struct hub *hub, bool data_changed, bool links_changed);
+void streams_on_alarms(struct hub *hub); /* some changed */
 void streams_check_tokens(struct hub *hub, int64_t now_utc_ns);
 void streams_close(struct hub *hub); /* server goes down */
 /* 0: upgrade; 1: answered with an HTTP error. */

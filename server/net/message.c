@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "net/alarm_message.h"
 #include "net/fields.h"
 #include "net/framing.h"
 
@@ -196,7 +197,7 @@ static const struct {
     { "resize", MESSAGE_RESIZE, parse_resize },    { "ack", MESSAGE_ACK, parse_ack },          { "ping", MESSAGE_PING, parse_ping },
     { "visible", MESSAGE_VISIBLE, parse_visible }, { "fit", MESSAGE_FIT, parse_fit },          { "pick", MESSAGE_PICK, parse_pick },
     { "key_frame", MESSAGE_KEY_FRAME, parse_key_frame }, { "codecs", MESSAGE_CODECS, parse_codecs },
-    { "follow", MESSAGE_FOLLOW, parse_follow },
+    { "follow", MESSAGE_FOLLOW, parse_follow },    { "alarm", MESSAGE_ALARM, alarm_parse },
 };
 
 static bool parse_object(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)

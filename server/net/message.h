@@ -4,6 +4,7 @@
 #define NET_MESSAGE_H
 #include <jansson.h>
 
+#include "alarm/alarms.h"
 #include "protocol/wire.h"
 #include "render/view.h"
 #include "scene/framing.h"
@@ -20,7 +21,8 @@ enum message_type {
     MESSAGE_PICK,
     MESSAGE_KEY_FRAME,
     MESSAGE_CODECS,
-    MESSAGE_FOLLOW
+    MESSAGE_FOLLOW,
+    MESSAGE_ALARM
 };
 
 enum { TOKEN_MAX_CHARS = 128, RESUME_CHARS = 32 };
@@ -102,6 +104,15 @@ struct pick_request {
     struct camera camera;
 };
 
+enum { ALARM_REQUEST_MOST = 256 };
+struct alarm_request {
+    int action; /* enum alarm_event */
+    int tags[ALARM_REQUEST_MOST], count;
+    uint8_t kinds[ALARM_REQUEST_MOST]; /* enum alarm_kind */
+    double for_s;
+    char reason[ALARM_REASON_BYTES], name[ALARM_NAME_BYTES - 24];
+};
+
 enum { CODEC_LIST_MOST = 4 };
 struct codec_list { /* what a client decodes, what it likes best first */
     enum wire_codec at[CODEC_LIST_MOST];
@@ -126,6 +137,7 @@ struct message {
     double decode_ms; /* ack; negative: not said */
     double t;         /* ping */
     uint64_t follow;  /* a session; 0: none */
+    struct alarm_request alarm;
 };
 
 /* False: *error is what to answer. text need not end in 0. */

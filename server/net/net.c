@@ -174,8 +174,18 @@ static void collect_recalled(struct hub *hub)
     }
 }
 
+static void look_at_alarms(struct hub *hub)
+{
+    uint64_t number = hub->params.alarming ? alarming_number(hub->params.alarming) : 0;
+    if (number == hub->alarms_number)
+        return;
+    hub->alarms_number = number;
+    streams_on_alarms(hub);
+}
+
 static void collect(struct hub *hub)
 {
+    look_at_alarms(hub);
     collect_picks(hub);
     collect_recalled(hub);
     for (struct picture *picture = painter_collect(hub->params.painter), *next; picture; picture = next) {
@@ -338,6 +348,8 @@ struct net *net_create(const struct net_params *params)
         .scene = params->scene,
         .snapshot = hub->snapshot,
         .baselines = params->baselines,
+        .alarming = params->alarming,
+        .alarms_said = &hub->alarms_said,
         .links_up = hub->links_up,
         .tags_said = &hub->tags_said,
         .codecs = params->codecs,
@@ -370,6 +382,7 @@ void net_destroy(struct net **net_ptr)
     peers_destroy(&net->hub.peers);
     mem_free(net->hub.by_client);
     resumes_destroy(&net->hub.world.resumes);
+    alarms_said_finish(&net->hub.alarms_said);
     tags_said_finish(&net->hub.tags_said);
     marker_lists_finish(&net->hub.marker_lists);
     snapshot_destroy(&net->hub.snapshot);

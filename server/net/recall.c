@@ -107,6 +107,7 @@ bool recall_parse(const struct plant *plant, const char *const *args, size_t cou
 struct recall {
     struct log *log;
     const struct plant *plant;
+    char *folder;
     struct history_reader *reader; /* of the thread */
     void (*notify)(void *arg);
     void *notify_arg;
@@ -149,6 +150,18 @@ static void print_json(struct recall *recall, const struct recall_order *order, 
         series_text_json(out, tag->name, tag->unit ? tag->unit : "", &series[i]);
     }
     text_add(out, "]}\n");
+}
+
+static struct recall_answer *answer_journal(struct recall *recall, const struct recall_order *order)
+{
+    struct recall_answer *out = mem_new(sizeof(*out));
+    struct text text = { 0 };
+    out->client = order->client;
+    out->csv = order->alarms.csv;
+    alarms_journal_text(recall->log, recall->folder, &order->alarms, &text);
+    out->text = text.at;
+    out->length = text.length;
+    return out;
 }
 
 static struct recall_answer *answer(struct recall *recall, const struct recall_order *order)
@@ -194,7 +207,7 @@ static void *run(void *arg)
     struct recall *recall = arg;
     struct recall_order order;
     while (next_order(recall, &order)) {
-        struct recall_answer *one = answer(recall, &order);
+        struct recall_answer *one = (order.journal ? answer_journal : answer)(recall, &order);
         pthread_mutex_lock(&recall->lock);
         *recall->last = one;
         recall->last = &one->next;
@@ -211,6 +224,7 @@ struct recall *recall_create(struct log *log, const struct plant *plant, const c
     pthread_cond_init(&recall->wake, NULL);
     recall->log = log;
     recall->plant = plant;
+    recall->folder = mem_strdup(folder);
     recall->reader = history_reader_create(log, folder);
     recall->notify = notify;
     recall->notify_arg = arg;
@@ -246,6 +260,7 @@ void recall_destroy(struct recall **pointer)
         pthread_join(recall->thread, NULL);
     free_answers(recall->answers);
     history_reader_destroy(&recall->reader);
+    mem_free(recall->folder);
     pthread_cond_destroy(&recall->wake);
     pthread_mutex_destroy(&recall->lock);
     mem_free(recall);

@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #include "base/log.h"
+#include "net/alarm_text.h"
 #include "net/message.h"
 #include "plant/plant.h"
 
@@ -18,6 +19,8 @@ struct recall_order {
     int tag_count, max_points;
     int64_t from_us, to_us;
     bool csv;
+    bool journal; /* this is asked instead: */
+    struct alarm_query alarms;
 };
 
 /* `tags=A,B&from=-8h&to=now&points=1000&format=csv`, decoded. False: *error says which is wrong. Pure. */

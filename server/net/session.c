@@ -6,6 +6,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "net/alarm_message.h"
 #include "net/framing.h"
 #include "net/reply.h"
 
@@ -167,6 +168,17 @@ void session_on_pick(struct session *session, const struct pick_answer *answer)
     session_reply(session, reply_picked_text(session->world->plant, answer));
 }
 
+static bool on_alarm(struct session *session, const struct message *message, struct message_error *error)
+{
+    const struct session_world *world = session->world;
+    if (!world->alarming || world->plant->alarms != ALARMS_LOCAL) {
+        message_fail(error, "not_allowed", "alarms are another system's here: nothing can be acknowledged or shelved");
+        return false;
+    }
+    session_reply(session, alarm_do(world->alarming, world->plant, message, session->holder.name[0] ? session->holder.name : "local"));
+    return true;
+}
+
 static bool act(struct session *session, const struct message *message, int64_t now_ns, int64_t now_utc_ns, struct message_error *error)
 {
     switch (message->type) {
@@ -180,6 +192,7 @@ static bool act(struct session *session, const struct message *message, int64_t 
     case MESSAGE_ACK: return on_ack(session, message, now_ns, error);
     case MESSAGE_VISIBLE: on_visible(session, message->visible); return true;
     case MESSAGE_FOLLOW: session_ask_follow(session, message); return true;
+    case MESSAGE_ALARM: return on_alarm(session, message, error);
     case MESSAGE_FIT: on_fit(session, message); return true;
     case MESSAGE_PICK: on_pick(session, message); return true;
     case MESSAGE_KEY_FRAME: session->always_pending = true; return true;

@@ -24,6 +24,8 @@ struct session_world {
     const struct snapshot *snapshot;
     struct baselines *baselines;
     int64_t changed_ns;      /* monotonic: the snapshot in which readings were seen to change last */
+    struct alarming *alarming;       /* NULL: there are none */
+    struct alarms_said *alarms_said; /* NULL: every text is made anew */
     const bool *links_up;    /* by source index */
     bool live;               /* values are coming in */
     int64_t moving_until_ns; /* somebody moves; a refined picture of another would make it stutter */
@@ -84,6 +86,8 @@ struct session {
     uint32_t params_seq;                     /* to be answered */
     int64_t tags_ns, tags_all_ns, status_ns; /* last sent */
     uint32_t *tag_changes;                   /* reading.changes as last sent, by tag */
+    uint64_t alarms_number;                  /* of the last change that was said */
+    bool alarms_said;                        /* at least once */
     bool pick_pending;
     struct pick_order pick; /* to be asked */
     char *replies[SESSION_MAX_REPLIES];      /* pongs and errors, oldest first */

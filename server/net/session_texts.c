@@ -4,6 +4,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "net/alarm_text.h"
 #include "net/reply.h"
 #include "net/session_impl.h"
 #include "net/tags_said.h"
@@ -33,10 +34,17 @@ static bool status_due(const struct session *session)
     return session->hello && !session->hidden && session->owes_status;
 }
 
+static bool alarms_due(const struct session *session)
+{
+    const struct session_world *world = session->world;
+    return session->hello && !session->hidden && world->alarming &&
+           (!session->alarms_said || alarming_number(world->alarming) > session->alarms_number);
+}
+
 bool session_has_text(const struct session *session, int64_t now_ns)
 {
     return session->owes_welcome || session->reply_count > 0 || session->owes_params || session->owes_following ||
-           status_due(session) || tags_due(session, now_ns);
+           status_due(session) || alarms_due(session) || tags_due(session, now_ns);
 }
 
 static void add_tags(struct session *session, int64_t now_ns, struct text *out)
@@ -63,6 +71,9 @@ bool session_next_text(struct session *session, int64_t now_ns, int64_t now_utc_
     } else if (status_due(session)) {
         add_owned(out, reply_status_text(world, now_utc_ns));
         session->owes_status = false;
+    } else if (alarms_due(session)) {
+        add_owned(out, alarms_text(world->alarms_said, world->alarming, world->plant, now_utc_ns, &session->alarms_number));
+        session->alarms_said = true;
     } else if (tags_due(session, now_ns)) {
         add_tags(session, now_ns, out);
     } else {

@@ -201,6 +201,12 @@ void streams_on_tick(struct hub *hub, bool data_changed, bool links_changed)
     }
 }
 
+void streams_on_alarms(struct hub *hub)
+{
+    for (struct stream *stream = hub->streams; stream; stream = stream->next)
+        pump(hub, stream);
+}
+
 void streams_close(struct hub *hub)
 {
     for (struct stream *stream = hub->streams; stream; stream = stream->next)

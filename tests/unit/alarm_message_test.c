@@ -1,0 +1,239 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Alarms on the wire: what sessions hear, what they may do, what programs get. */
+#include <jansson.h>
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "net/access.h"
+#include "net/alarm_message.h"
+#include "net/alarm_text.h"
+#include "tests/support/plant_by_hand.h"
+#include "tests/support/temp.h"
+#include "value/quality.h"
+
+struct setup { /* two tags with H 80 and HH 90 */
+    struct log *log;
+    struct counters *counters;
+    struct plant *plant;
+    struct store *store;
+    struct alarming *alarming;
+    char *folder;
+};
+
+static int set_up(void **state)
+{
+    static struct setup s;
+    static int sorted[] = { 0, 1 };
+    s = (struct setup){ .log = log_create(LOG_ERROR), .counters = counters_create(), .folder = temp_folder_create() };
+    s.plant = plant_by_hand_create(2);
+    s.plant->alarms = ALARMS_LOCAL;
+    s.plant->tags_by_name = sorted;
+    plant_by_hand_source(s.plant, "plc", 502);
+    for (int i = 0; i < 2; i++) {
+        struct plant_tag *tag = plant_by_hand_tag(s.plant, i ? "TT-2" : "TT-1", TABLE_HOLDING, i, DATA_INT16);
+        tag->limits[LIMIT_H] = 80;
+        tag->limits[LIMIT_HH] = 90;
+    }
+    s.store = store_create(s.plant);
+    s.alarming = alarming_start(&(struct alarming_params){ .log = s.log, .counters = s.counters, .plant = s.plant, .store = s.store,
+                                                           .folder = s.folder, .keep_days = 400 });
+    *state = &s;
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    struct setup *s = *state;
+    alarming_stop(&s->alarming);
+    store_destroy(&s->store);
+    s->plant->tags_by_name = NULL;
+    plant_by_hand_destroy(&s->plant);
+    counters_destroy(&s->counters);
+    log_destroy(&s->log);
+    temp_folder_destroy(&s->folder);
+    return 0;
+}
+
+/* And waits until alarms know it. */
+static void give(struct setup *s, int tag, double value, uint32_t quality)
+{
+    uint64_t before = alarming_number(s->alarming);
+    int64_t end_ns = clock_mono_ns() + 5 * NS_PER_S;
+    store_write(s->store, &(struct sample){ tag, value, quality }, 1, clock_mono_ns(), clock_utc_ns());
+    while (alarming_number(s->alarming) == before && clock_mono_ns() < end_ns)
+        clock_sleep_ns(5 * NS_PER_MS);
+}
+
+/* Takes the text. */
+static json_t *parse(char *text)
+{
+    json_t *o = json_loads(text, 0, NULL);
+    assert_non_null(o);
+    mem_free(text);
+    return o;
+}
+
+static const char *state_of(const json_t *message, const char *kind)
+{
+    size_t i;
+    json_t *row;
+    json_array_foreach(json_object_get(message, "alarms"), i, row)
+        if (!strcmp(json_string_value(json_array_get(row, 1)), kind))
+            return json_string_value(json_array_get(row, 2));
+    return NULL;
+}
+
+static bool ask(struct setup *s, const char *text, struct message *message, struct message_error *error)
+{
+    return message_parse(s->plant, text, strlen(text), message, error);
+}
+
+static void sessions_hear_what_changed(void **state)
+{
+    struct setup *s = *state;
+    struct alarms_said said = { 0 };
+    uint64_t number = 0, other = 0;
+    give(s, 0, 95, QUALITY_GOOD);
+    json_t *all = parse(alarms_text(&said, s->alarming, s->plant, 5000, &number));
+    assert_string_equal(json_string_value(json_object_get(all, "mode")), "local");
+    assert_true(json_is_true(json_object_get(all, "all")));
+    assert_int_equal(json_array_size(json_object_get(all, "alarms")), 2);
+    assert_string_equal(state_of(all, "HH"), "unacknowledged");
+    json_decref(all);
+    json_decref(parse(alarms_text(&said, s->alarming, s->plant, 5000, &other))); /* as it was said to the one before */
+    assert_int_equal(number, other);
+    give(s, 0, 85, QUALITY_GOOD);
+    json_t *changed = parse(alarms_text(&said, s->alarming, s->plant, 6000, &number));
+    assert_true(json_is_false(json_object_get(changed, "all")));
+    assert_int_equal(json_array_size(json_object_get(changed, "alarms")), 1);
+    assert_string_equal(state_of(changed, "HH"), "returned");
+    json_decref(changed);
+    alarms_said_finish(&said);
+}
+
+static void what_is_asked_is_done_or_refused(void **state)
+{
+    struct setup *s = *state;
+    struct message message;
+    struct message_error error;
+    give(s, 0, 95, QUALITY_GOOD);
+    assert_true(ask(s, "{\"type\":\"alarm\",\"seq\":4,\"action\":\"acknowledge\",\"name\":\"Kim\",\"alarms\":[[\"TT-1\",\"H\"],[\"TT-2\",\"H\"],"
+                       "[\"TT-2\",\"L\"]]}", &message, &error));
+    json_t *answer = parse(alarm_do(s->alarming, s->plant, &message, "panel")), *refused = json_object_get(answer, "refused");
+    assert_int_equal(json_integer_value(json_object_get(answer, "done")), 1);
+    assert_int_equal(json_array_size(refused), 2);
+    assert_string_equal(json_string_value(json_array_get(json_array_get(refused, 0), 2)), "there is nothing to acknowledge");
+    assert_string_equal(json_string_value(json_array_get(json_array_get(refused, 1), 2)), "there is no such alarm");
+    json_decref(answer);
+    uint64_t number = 0;
+    char *text = alarms_text(NULL, s->alarming, s->plant, 0, &number);
+    assert_non_null(strstr(text, "null,\"Kim (panel)\",\"\"]"));
+    mem_free(text);
+}
+
+static void roles_are_kept(void **state)
+{
+    struct setup *s = *state;
+    static const struct {
+        const char *action;
+        enum role least;
+    } actions[] = { { "acknowledge", ROLE_OPERATOR }, { "reset", ROLE_OPERATOR }, { "shelve", ROLE_OPERATOR },
+                    { "unshelve", ROLE_OPERATOR },    { "out_of_service", ROLE_ENGINEER }, { "in_service", ROLE_ENGINEER } };
+    for (size_t i = 0; i < sizeof(actions) / sizeof(actions[0]); i++) {
+        struct message message;
+        struct message_error error;
+        char *text = mem_printf("{\"type\":\"alarm\",\"seq\":1,\"action\":\"%s\",\"alarms\":[[\"TT-1\",\"H\"]],\"for_s\":60,\"reason\":\"r\"}",
+                                actions[i].action);
+        assert_true(ask(s, text, &message, &error));
+        for (int role = ROLE_OPEN; role <= ROLE_ENGINEER; role++)
+            assert_int_equal(access_message((enum role)role, &message, &error), role >= (int)actions[i].least);
+        mem_free(text);
+    }
+}
+
+static bool query(struct setup *s, bool journal, const char *arg, struct alarm_query *out)
+{
+    struct message_error error = { 0 };
+    return alarm_query_parse(s->plant, journal, &arg, 1, 1000000, out, &error);
+}
+
+static void programs_get_pages(void **state)
+{
+    struct setup *s = *state;
+    struct alarm_query q;
+    give(s, 0, 95, QUALITY_GOOD);
+    give(s, 1, 95, QUALITY_GOOD);
+    assert_true(query(s, false, "limit=3", &q));
+    json_t *page = parse(alarms_api_text(s->alarming, s->plant, &q, 0));
+    assert_int_equal(json_array_size(json_object_get(page, "alarms")), 3);
+    assert_int_equal(json_integer_value(json_object_get(page, "next_offset")), 3);
+    assert_int_equal(json_integer_value(json_object_get(json_object_get(page, "counts"), "active")), 4);
+    json_decref(page);
+    assert_true(query(s, false, "offset=3", &q));
+    page = parse(alarms_api_text(s->alarming, s->plant, &q, 0));
+    assert_int_equal(json_array_size(json_object_get(page, "alarms")), 1);
+    assert_true(json_is_null(json_object_get(page, "next_offset")));
+    json_decref(page);
+    assert_true(query(s, false, "format=csv", &q));
+    char *csv = alarms_api_text(s->alarming, s->plant, &q, 0);
+    assert_non_null(strstr(csv, "\nTT-1,HH,unacknowledged,2,"));
+    assert_non_null(strstr(csv, "Z,95,90,0,,,\n"));
+    mem_free(csv);
+    static const char *const wrong[] = { "limit=0", "limit=x", "limit=10001", "tag=TT-9", "before=3", "format=xml", "what" };
+    for (size_t i = 0; i < sizeof(wrong) / sizeof(wrong[0]); i++)
+        assert_false(query(s, false, wrong[i], &q));
+    assert_false(query(s, true, "offset=3", &q));
+    assert_false(query(s, true, "from=yesterday", &q));
+}
+
+static void the_journal_is_read_by_pages(void **state)
+{
+    struct setup *s = *state;
+    struct alarm_query q;
+    struct text out = { 0 };
+    give(s, 0, 95, QUALITY_GOOD);
+    const struct alarm_act shelve = { ALARM_SHELVE, NS_PER_S * 60, "Kim", "says \"now\", and means it" };
+    assert_null(alarming_act(s->alarming, "TT-1", ALARM_H, &shelve));
+    alarming_halt(s->alarming);
+    alarming_stop(&s->alarming);
+    assert_true(query(s, true, "limit=2", &q));
+    assert_true(alarms_journal_text(s->log, s->folder, &q, &out));
+    json_t *page = json_loads(out.at, 0, NULL), *rows = json_object_get(page, "rows");
+    assert_int_equal(json_array_size(rows), 2);
+    assert_string_equal(json_string_value(json_object_get(json_array_get(rows, 0), "event")), "shelve");
+    assert_string_equal(json_string_value(json_object_get(json_array_get(rows, 0), "who")), "Kim");
+    char *more = mem_printf("before=%lld", (long long)json_integer_value(json_object_get(page, "next_before")));
+    json_decref(page);
+    text_finish(&out);
+    assert_true(query(s, true, more, &q));
+    q.csv = true;
+    assert_true(alarms_journal_text(s->log, s->folder, &q, &out));
+    assert_non_null(strstr(out.at, ",TT-1,H,raise,normal,unacknowledged,3,80,95,,\n"));
+    text_finish(&out);
+    assert_true(query(s, true, "format=csv", &q));
+    assert_true(alarms_journal_text(s->log, s->folder, &q, &out));
+    assert_non_null(strstr(out.at, ",Kim,\"says \"\"now\"\", and means it\"\n"));
+    text_finish(&out);
+    mem_free(more);
+}
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(sessions_hear_what_changed, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(what_is_asked_is_done_or_refused, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(roles_are_kept, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(programs_get_pages, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(the_journal_is_read_by_pages, set_up, tear_down),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
