@@ -20,6 +20,7 @@ static void print_usage(FILE *out)
           "                  [--h264 ENCODER|off] [--tls-cert FILE --tls-key FILE] [--tokens FILE] [--open-viewers]\n"
           "                  [--behind-proxy] [--host NAME] [--origin URL] [--limit NAME=N]\n"
           "       plantcastd --check PLANT.yaml [--prepared DIR]\n"
+          "       plantcastd --dump-plan PLANT.yaml\n"
           "       plantcastd --list-gl-devices | --version | --help\n"
           "\n"
           "Serves live pictures of a plant to browsers and other clients.\n"
@@ -37,6 +38,7 @@ static void print_usage(FILE *out)
           "  --h264 ENCODER   who makes H.264, by its name in libavcodec (libx264): h264_nvenc, h264_vaapi, libopenh264, ...; off:\n"
           "                   nobody. Where it does not work on this machine, clients get JPEG\n"
           "  --check          read everything, report every error, start nothing\n"
+          "  --dump-plan      print what field devices will be asked: requests, addresses on the wire, and the load\n"
           "\n"
           "Who may look: from this machine, anyone. On any other address, TLS and tokens, or --open-viewers.\n"
           "\n"
@@ -122,6 +124,7 @@ enum {
     OPTION_ORIGIN,
     OPTION_LIMIT,
     OPTION_CHECK,
+    OPTION_PLAN,
     OPTION_VERSION,
     OPTION_HELP
 };
@@ -148,6 +151,7 @@ static const struct option options[] = {
     { "origin", required_argument, NULL, OPTION_ORIGIN },
     { "limit", required_argument, NULL, OPTION_LIMIT },
     { "check", no_argument, NULL, OPTION_CHECK },
+    { "dump-plan", no_argument, NULL, OPTION_PLAN },
     { "version", no_argument, NULL, OPTION_VERSION },
     { "help", no_argument, NULL, OPTION_HELP },
     { NULL, 0, NULL, 0 },
@@ -189,7 +193,7 @@ static int take_access_option(int option, struct access_params *access)
 }
 
 /* -1: go on; else the exit code. */
-static int take_option(int option, struct server_params *params, bool *check)
+static int take_option(int option, struct server_params *params, int (**task)(const struct server_params *params))
 {
     switch (option) {
     case OPTION_LISTEN:
@@ -210,7 +214,8 @@ static int take_option(int option, struct server_params *params, bool *check)
     case OPTION_LEVEL: return parse_level(optarg, &params->log_level) ? -1 : usage_error("--log-level: unknown", optarg);
     case OPTION_THREADS:
         return parse_int(optarg, 0, 1024, &params->threads) ? -1 : usage_error("--threads: not a number of threads", optarg);
-    case OPTION_CHECK: *check = true; return -1;
+    case OPTION_CHECK: *task = server_check; return -1;
+    case OPTION_PLAN: *task = server_dump_plan; return -1;
     case OPTION_VERSION: puts("plantcastd " PLANTCAST_VERSION); return GOOD;
     case OPTION_HELP: print_usage(stdout); return GOOD;
     default: return take_access_option(option, &params->access);
@@ -220,17 +225,17 @@ static int take_option(int option, struct server_params *params, bool *check)
 int main(int argc, char **argv)
 {
     struct server_params params = { .address = "127.0.0.1", .port = 8080, .log_level = LOG_INFO, .access.quotas = quotas_default() };
-    bool check = false;
+    int (*task)(const struct server_params *params) = server_run;
     for (int option; (option = getopt_long(argc, argv, "", options, NULL)) != -1;) {
-        int code = take_option(option, &params, &check);
+        int code = take_option(option, &params, &task);
         if (code >= 0)
             return code;
     }
     if (optind + 1 != argc)
         return usage_error("one plant file is expected, not", optind == argc ? "none" : argv[optind + 1]);
     params.plant_path = argv[optind];
-    if (check)
-        return server_check(&params);
+    if (task != server_run)
+        return task(&params);
     const char *why;
     if (!access_allowed_at(&params.access, is_loopback(params.address), &why)) {
         fprintf(stderr, "plantcastd: --listen %s: %s.\n", params.address, why);

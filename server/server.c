@@ -22,6 +22,7 @@
 #include "field/colormap.h"
 #include "history/historian.h"
 #include "net/net.h"
+#include "value/plan_text.h"
 #include "value/source.h"
 #include "version.h"
 
@@ -370,4 +371,18 @@ int server_check(const struct server_params *params)
            plant->source_count, plant->tag_count, status ? "not good" : "good");
     plant_destroy(&plant);
     return status;
+}
+
+int server_dump_plan(const struct server_params *params)
+{
+    struct text text = { 0 };
+    struct plant *plant = load_plant(params->plant_path);
+    if (!plant)
+        return 1;
+    for (size_t i = 0; i < plant->source_count; i++)
+        plan_text(&text, plant, (int)i);
+    fputs(text.at ? text.at : "no sources\n", stdout);
+    text_finish(&text);
+    plant_destroy(&plant);
+    return 0;
 }

@@ -23,8 +23,9 @@ struct server_params {
     bool per_fragment; /* the field anew at each fragment; for comparison */
 };
 
-/* Both return the exit code: 0 good, 1 anything wrong, said on stderr. */
+/* They return the exit code: 0 good, 1 anything wrong, said on stderr. */
 int server_run(const struct server_params *params);   /* until SIGINT or SIGTERM */
 int server_check(const struct server_params *params); /* reads everything, starts nothing */
+int server_dump_plan(const struct server_params *params); /* prints what field devices will be asked */
 
 #endif

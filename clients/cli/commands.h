@@ -3,10 +3,13 @@
    1 anything else. */
 #ifndef CLI_COMMANDS_H
 #define CLI_COMMANDS_H
+#include <stdbool.h>
 
 int cmd_snapshot(int argc, char **argv); /* one picture: offline from a plant file, or from a daemon */
 int cmd_probe(int argc, char **argv);    /* load generator and latency table */
 int cmd_tags(int argc, char **argv);     /* the tags of a daemon with their values */
+/* address_base: 0, 1, or -1: not said. rtu: RTU frames in the connection. */
+int tags_probe(const char *device, const char *address, int address_base, bool rtu);
 int cmd_history(int argc, char **argv);  /* recorded series in and out */
 int cmd_token(int argc, char **argv);    /* who is let in by a daemon */
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast tags URL`: a table of tags with value, quality and age. */
+/* `plantcast tags URL`: a table of tags with value, quality and age; --probe is in tags_probe.c. */
 #include <getopt.h>
 #include <jansson.h>
 #include <stdio.h>
@@ -11,8 +11,11 @@
 static void print_usage(FILE *out)
 {
     fputs("usage: plantcast tags URL [--json]\n"
+          "       plantcast tags --probe DEVICE [--address-base 0|1] [--rtu] ADDRESS\n"
           "\n"
-          "Prints the tags of a daemon (http://HOST:PORT/, or https:// with --token-file FILE) with value, quality and age.\n",
+          "Prints the tags of a daemon (http://HOST:PORT/, or https:// with --token-file FILE) with value, quality and age.\n"
+          "--probe reads one address of a field device, HOST, HOST:PORT or /dev/LINE (19200 baud, even parity), such as hr:0 or\n"
+          "2!400001, and shows what it is in every type and byte order. --rtu: the device takes RTU frames over TCP. It only reads.\n",
           out);
 }
 
@@ -89,21 +92,34 @@ static bool print_table(const char *text)
 
 int cmd_tags(int argc, char **argv)
 {
-    static const struct option options[] = { { "json", no_argument, NULL, 'j' }, { "help", no_argument, NULL, 'h' }, { NULL, 0, NULL, 0 } };
+    static const struct option options[] = { { "json", no_argument, NULL, 'j' },          { "help", no_argument, NULL, 'h' },
+                                             { "probe", required_argument, NULL, 'p' },   { "rtu", no_argument, NULL, 'r' },
+                                             { "address-base", required_argument, NULL, 'b' }, { NULL, 0, NULL, 0 } };
+    const char *device = NULL;
+    int address_base = -1;
+    bool rtu = false;
     struct daemon_url url;
     struct text body = { 0 };
     bool as_json = false;
     for (int option; (option = getopt_long(argc, argv, "", options, NULL)) != -1;) {
-        if (option != 'j') {
+        if (option == 'p')
+            device = optarg;
+        else if (option == 'r')
+            rtu = true;
+        else if (option == 'b' && (!strcmp(optarg, "0") || !strcmp(optarg, "1")))
+            address_base = *optarg - '0';
+        else if (option != 'j') {
             print_usage(option == 'h' ? stdout : stderr);
             return option == 'h' ? 0 : 2;
         }
-        as_json = true;
+        as_json |= option == 'j';
     }
     if (optind + 1 != argc) {
         print_usage(stderr);
         return 2;
     }
+    if (device)
+        return tags_probe(device, argv[optind], address_base, rtu);
     if (!daemon_url_parse(argv[optind], &url))
         return 2;
     int status = daemon_get(&url, "/api/v1/tags", &body);

@@ -144,7 +144,8 @@ static bool same_text(const char *a, const char *b)
 }
 
 /* Many devices take one connection only, and a line has one master. */
-static void check_alone(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant, const struct plant_source *source)
+static void check_alone(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant,
+                        const struct plant_source *source)
 {
     for (const struct plant_source *other = plant->sources; other < source; other++) {
         if (same_text(other->device, source->device))

@@ -6,6 +6,7 @@
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <cmocka.h>
 
 #include "base/mem.h"
@@ -13,6 +14,7 @@
 #include "value/backoff.h"
 #include "value/decode.h"
 #include "value/plan.h"
+#include "value/plan_text.h"
 
 static struct plant *plant_of_registers(const int *registers, size_t count, enum register_table table, enum data_type type)
 {
@@ -230,6 +232,41 @@ static void random_tag_lists_obey_the_rules(void **state)
     }
 }
 
+static void a_plan_is_put_in_words(void **state)
+{
+    (void)state;
+    struct text text = { 0 };
+    struct plant *plant = plant_of_registers((int[]){ 0, 2, 10, 7 }, 4, TABLE_HOLDING, DATA_FLOAT32);
+    plant->tags[3].table = TABLE_INPUT;
+    plant->tags[3].type = DATA_BIT;
+    plant->tags[3].byte_order = BYTE_ORDER_NONE;
+    plant->tags[3].bit = 3;
+    plant->sources[0].poll_ms = 500;
+    plant->sources[0].pause_ms = 10;
+    plan_text(&text, plant, 0);
+    assert_string_equal(text.at, "source a: 127.0.0.1:1: 4 tags in 3 requests\n"
+                                 "  unit 1, function 4, ir:7 to 7: 1 register each 500 ms, 1 tag\n"
+                                 "    ir:7.3 bool t3\n"
+                                 "  unit 1, function 3, hr:0 to 3: 4 registers each 500 ms, 2 tags\n"
+                                 "    hr:0 float32 ABCD t0\n"
+                                 "    hr:2 float32 ABCD t1\n"
+                                 "  unit 1, function 3, hr:10 to 11: 2 registers each 500 ms, 1 tag\n"
+                                 "    hr:10 float32 ABCD t2\n"
+                                 "  load: 6 requests, 8 values and 154 bytes in a second; the pauses take 6 % of the time\n");
+    text_finish(&text);
+    plant->sources[0].transport = TRANSPORT_RTU;
+    plant->sources[0].host_count = 0;
+    plant->sources[0].device = "/dev/ttyS0";
+    plant->sources[0].baud = 1200;
+    plan_text(&text, plant, 0);
+    /* (3 x 13 + 14 bytes of values) x 2, and 7 of silence for each request, of 10 bits */
+    assert_non_null(strstr(text.at, "source a: /dev/ttyS0, 1200 baud, parity N, 1 stop bit: 4 tags"));
+    assert_non_null(strstr(text.at, "106 bytes in a second; the pauses take 6 % of the time; 123 % of what the line can carry: TOO MUCH"));
+    text_finish(&text);
+    mem_free(plant->sources[0].hosts[0]);
+    plant_by_hand_destroy(&plant);
+}
+
 static void backoff_grows_from_half_a_second_to_ten(void **state)
 {
     (void)state;
@@ -261,6 +298,7 @@ int main(void)
         cmocka_unit_test(two_tags_may_share_registers),
         cmocka_unit_test(splitting_ends_at_single_tags),
         cmocka_unit_test(random_tag_lists_obey_the_rules),
+        cmocka_unit_test(a_plan_is_put_in_words),
         cmocka_unit_test(backoff_grows_from_half_a_second_to_ten),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
