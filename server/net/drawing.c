@@ -7,6 +7,7 @@
 static const int64_t STEP_NS = 10 * NS_PER_MS;              /* of a slow picture, before anyone else gets a turn */
 static const int64_t LIGHT_NS = 4 * NS_PER_MS;     /* of each picture of a moving session, for a light that it chose */
 static const int64_t FIELD_NS = 6 * NS_PER_MS;              /* of a field that takes long, likewise */
+static const int64_t IDLE_NS = 5 * NS_PER_MS;               /* of what nobody waits for, before looking whether somebody does */
 static const int64_t REBUILD_NS = 100 * NS_PER_MS, REBUILD_MAX_NS = 5 * NS_PER_S; /* between attempts at a new context */
 
 /* Under lock. It is wanted as before; true: a newer wish of its client is there already, and stands for it. */
@@ -241,8 +242,8 @@ static bool gl_begin(struct drawing *drawing)
     if (!drawing->renderer)
         return false;
     renderer_set_per_fragment(drawing->renderer, params->per_fragment);
-    renderer_hurry(drawing->renderer, LIGHT_NS);
-    return true;
+    drawing->warm = false;
+    return renderer_hurry(drawing->renderer, LIGHT_NS);
 }
 
 static void gl_end(struct drawing *drawing)
@@ -277,14 +278,22 @@ static void drawing_finish(struct drawing *drawing)
     held_finish(&drawing->held);
 }
 
-/* What only the first picture costs (shaders, baked light) is paid before anyone asks. */
-static void warm_up(struct drawing *drawing)
+/* What only the first picture of a tier costs (shaders) is paid before anyone asks. */
+static void warm_up(struct drawing *drawing, enum tier tier)
 {
     struct view view;
     view_default(drawing->painter->params.scene, 64, 36, &view);
+    view.tier = tier;
     struct frame *frame = canvas_draw(drawing->renderer, &view, drawing->snapshot);
     if (frame)
         frame_unref(&frame);
+}
+
+void drawing_idle(struct drawing *drawing)
+{
+    drawing->warm = renderer_idle(drawing->renderer, IDLE_NS);
+    if (drawing->warm)
+        warm_up(drawing, TIER_STILL);
 }
 
 static void set_lost(struct painter *painter, bool lost)
@@ -323,6 +332,7 @@ static void rebuild(struct drawing *drawing)
             return;
         pause_ns = pause_ns * 2 > REBUILD_MAX_NS ? REBUILD_MAX_NS : pause_ns * 2;
     }
+    renderer_idle(drawing->renderer, INT64_MAX); /* pictures go on as they were */
     set_lost(painter, false);
     log_info(painter->params.log, "gl: a new context draws after %.1f s", (double)(clock_mono_ns() - lost_ns) / NS_PER_S);
 }
@@ -354,7 +364,7 @@ void *drawing_main(void *arg)
     pthread_cond_broadcast(&painter->wake);
     pthread_mutex_unlock(&painter->lock);
     if (good)
-        warm_up(&drawing);
+        warm_up(&drawing, TIER_MOVING);
     while (drawing_next(&drawing, &schedule, &batch)) {
         turn(&drawing, &schedule, &batch);
         if (gl_lost(drawing.gl))

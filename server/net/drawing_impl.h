@@ -23,6 +23,7 @@ struct drawing {
         int64_t asked_ns, field_ns;
         bool keeps; /* when it is done, new readings are quick to show: they need not wait for it, nor it be given up for them */
     } slow;
+    bool warm; /* what only the first pictures cost was paid */
     struct held held; /* pictures whose field takes long: worked on step by step, each in its turn */
 };
 
@@ -38,6 +39,8 @@ void sharing_take_recent(struct drawing *drawing, struct batch *batch);
 
 /* --- turns.c --- */
 
+/* Under nobody's lock, while nobody wants a picture: some of what the first still one will cost. */
+void drawing_idle(struct drawing *drawing);
 /* Waits for work. False: stop. An empty batch: the slow picture may go on by a step. */
 bool drawing_next(struct drawing *drawing, const struct schedule *schedule, struct batch *batch);
 /* The newest readings, if they changed or are some time old. */

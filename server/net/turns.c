@@ -140,6 +140,12 @@ bool drawing_next(struct drawing *drawing, const struct schedule *schedule, stru
             break;
         if (picks_wait(painter->picks))
             continue;
+        if (!drawing->warm) {
+            pthread_mutex_unlock(&painter->lock);
+            drawing_idle(drawing);
+            pthread_mutex_lock(&painter->lock);
+            continue;
+        }
         drawing_wait(painter, turn.wait_until_ns);
     }
     bool running = painter->state == RUNNING;

@@ -10,6 +10,7 @@
 #include "render/matrix.h"
 
 enum { SKY_DIRECTIONS = 32, SKY_MAP_PX = 1024, SUN_MAP_PX = 4096, GROUND_PX = 256 };
+static const uint8_t ROUGH_OPENNESS = 190; /* of 255 */
 static const double LARGE_FACE_TEXELS = 8; /* of the sky's maps */
 /* Of a bit, on a processor: vertices, or places in faces, with and without sky, rows of the ground likewise. A GPU takes all at once. */
 enum { SKY_VERTICES = 4096, SUN_VERTICES = 65536, SKY_ROWS = 8, SUN_ROWS = 128 };
@@ -228,7 +229,7 @@ static void ground_bit(struct bake *bake)
     glDispatchCompute((GLuint)(end - first + 63) / 64, 1, 1);
     bake->row += rows;
     if (bake->row >= GROUND_PX)
-        bake->part = BAKE_FACES;
+        bake->part = bake->set.key.rough ? BAKE_VERTICES : BAKE_FACES;
 }
 
 static size_t places_in_a_bit(const struct bake *bake)
@@ -284,7 +285,8 @@ static void vertices_bit(struct bake *bake)
         return;
     bake->vertex = 0;
     bake_faces_finish(&bake->faces);
-    bake->part = ++bake->asset == bake->stage->scene->asset_count ? BAKE_DONE : BAKE_FACES;
+    bool last = ++bake->asset == bake->stage->scene->asset_count;
+    bake->part = last ? BAKE_DONE : bake->set.key.rough ? BAKE_VERTICES : BAKE_FACES;
 }
 
 /* --- life ------------------------------------------------------------------------------------------------------------------------ */
@@ -308,6 +310,9 @@ static bool make_buffers(struct bake *bake, const struct light_set *from)
         set->baked[i] = mesh_buffer(stage->gl->log, stage->scene->assets[i].plant->id, bytes, NULL, 0);
         if (!set->baked[i])
             return false;
+        if (set->key.rough)
+            glClearNamedBufferData(set->baked[i], GL_RGBA8UI, GL_RGBA_INTEGER, GL_UNSIGNED_BYTE,
+                                   (const uint8_t[]){ 0, 0, ROUGH_OPENNESS, 0 });
         if (from)
             glCopyNamedBufferSubData(from->baked[i], set->baked[i], 0, 0, (GLsizeiptr)bytes);
     }
@@ -316,6 +321,8 @@ static bool make_buffers(struct bake *bake, const struct light_set *from)
     glTextureParameteri(set->ground, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
     glTextureParameteri(set->ground, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
     glTextureParameteri(set->ground, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    if (set->key.rough)
+        glClearTexImage(set->ground, 0, GL_RG, GL_UNSIGNED_BYTE, (const uint8_t[]){ 0, ROUGH_OPENNESS });
     if (from)
         glCopyImageSubData(from->ground, GL_TEXTURE_2D, 0, 0, 0, 0, set->ground, GL_TEXTURE_2D, 0, 0, 0, 0, GROUND_PX, GROUND_PX, 1);
     return true;
@@ -333,10 +340,11 @@ struct bake *bake_begin(const struct stage *stage, const struct bake_programs *p
                         const struct light_key *key, const struct light_set *from)
 {
     struct bake *bake = mem_new(sizeof(*bake));
-    *bake = (struct bake){ .stage = stage, .programs = programs, .plant_from_ground = plant_from_ground, .with_sky = !from };
+    *bake = (struct bake){ .stage = stage, .programs = programs, .plant_from_ground = plant_from_ground };
+    bake->with_sky = !from && !key->rough;
     double matrix[16];
     int size_px = sun_map_px(stage);
-    bake->part = from ? BAKE_SUN_MAP : BAKE_SKY_MAPS;
+    bake->part = bake->with_sky ? BAKE_SKY_MAPS : BAKE_SUN_MAP;
     bake->set.bytes = bake_bytes(stage);
     bake->set.texel_m = 2 * stage->radius_m / size_px;
     bake->sky_texel_m = 2 * stage->radius_m / SKY_MAP_PX;
@@ -346,7 +354,7 @@ struct bake *bake_begin(const struct stage *stage, const struct bake_programs *p
     gl_pass_enter("light");
     glCreateFramebuffers(1, &bake->framebuffer);
     glNamedFramebufferDrawBuffer(bake->framebuffer, GL_NONE);
-    bool good = make_buffers(bake, from) && (from || make_sky(bake));
+    bool good = make_buffers(bake, from) && (!bake->with_sky || make_sky(bake));
     bake->set.sun_map = make_map(GL_TEXTURE_2D, size_px, 1);
     if (!gl_pass_leave(stage->gl, "light") || !good)
         bake_abandon(&bake);

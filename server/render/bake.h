@@ -10,6 +10,7 @@ struct light_key {
     double towards[3];       /* the sun; plant frame, unit length */
     int environment;         /* number of the surroundings */
     struct visibility shown; /* what throws shadows; how open a place is, is that of the whole plant */
+    bool rough;              /* every place is taken to be equally open */
 };
 
 struct light_set {
@@ -32,8 +33,8 @@ bool bake_programs_init(struct bake_programs *programs, struct log *log); /* fal
 void bake_programs_finish(struct bake_programs *programs);
 
 struct bake;
-/* Of a set that is to be; `from` need only live for the call. NULL for `from`: openness is worked out too. NULL: out of GPU memory,
-   logged. */
+/* Of a set that is to be; `from` need only live for the call, and is not rough. NULL for `from`: openness is worked out too, which is
+   most of the work, unless the key is rough. NULL: out of GPU memory, logged. */
 struct bake *bake_begin(const struct stage *stage, const struct bake_programs *programs, const double plant_from_ground[16],
                         const struct light_key *key, const struct light_set *from);
 const struct light_key *bake_key(const struct bake *bake);

@@ -56,6 +56,7 @@ static void add_shape(XXH3_state_t *state, const struct picture *picture)
     add(state, view->light_dir, sizeof(view->light_dir));
     add(state, picture->lit_by.towards, sizeof(picture->lit_by.towards));
     add(state, &picture->lit_by.environment, sizeof(picture->lit_by.environment));
+    add(state, &picture->lit_by.rough, sizeof(picture->lit_by.rough));
     bool own_shadows = visibility_equal(&picture->lit_by.shown, &view->visibility);
     add(state, &own_shadows, sizeof(own_shadows));
     add_visibility(state, picture);

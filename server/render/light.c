@@ -56,7 +56,7 @@ void light_finish(struct light *light)
 
 static bool same(const struct light_key *a, const struct light_key *b)
 {
-    return a->environment == b->environment && a->towards[0] == b->towards[0] && a->towards[1] == b->towards[1] &&
+    return a->rough == b->rough && a->environment == b->environment && a->towards[0] == b->towards[0] && a->towards[1] == b->towards[1] &&
            a->towards[2] == b->towards[2] && visibility_equal(&a->shown, &b->shown);
 }
 
@@ -109,8 +109,16 @@ static struct light_set *make_room(struct light *light, size_t bytes)
 
 static bool begin(struct light *light, const struct light_key *key)
 {
-    light->bake = bake_begin(light->stage, &light->programs, light->plant_from_ground, key, light_near(light, key));
+    const struct light_set *near = light_near(light, key);
+    light->bake = bake_begin(light->stage, &light->programs, light->plant_from_ground, key, near && !near->key.rough ? near : NULL);
     return light->bake != NULL;
+}
+
+static void drop_rough(struct light *light)
+{
+    for (int i = 0; i < LIGHT_SETS; i++)
+        if (light->sets[i].id && light->sets[i].key.rough && !light->sets[i].holds)
+            drop(light, &light->sets[i]);
 }
 
 /* All of it was issued. */
@@ -119,6 +127,7 @@ static struct light_set *end(struct light *light)
     struct light_set baked, *set;
     if (!bake_end(&light->bake, &baked))
         return NULL;
+    drop_rough(light);
     set = make_room(light, baked.bytes);
     if (!set) {
         log_err(light->stage->gl->log, "light: %d sets are in use at once, and no more can be", LIGHT_SETS);

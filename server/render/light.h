@@ -21,7 +21,8 @@ struct light {
 
 bool light_init(struct light *light, const struct stage *stage, struct environments *environments); /* false: logged */
 void light_finish(struct light *light);
-/* The light of that sun and those surroundings; baked now if it is not known. NULL: out of GPU memory, logged. */
+/* The light of that sun and those surroundings; baked now if it is not known, which takes a fraction of the time if it is rough: such a
+   set is there until the first other one is. NULL: out of GPU memory, logged. */
 struct light_set *light_get(struct light *light, const struct light_key *key);
 /* The ready one most like it: of the same surroundings if there is one, then of what is shown, then with the sun nearest. NULL: none
    is ready. */

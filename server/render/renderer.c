@@ -25,13 +25,12 @@ static struct light_key wanted_light(const struct view *view)
     return key;
 }
 
-/* Bakes the light that most views have, so that the first picture does not wait for it. */
-static bool bake_default_light(struct renderer *renderer)
+/* The light that most views have. */
+static struct light_key usual_light(const struct renderer *renderer)
 {
     struct view view;
     view_default(renderer->scene, 16, 16, &view);
-    struct light_key key = wanted_light(&view);
-    return light_get(&renderer->light, &key) != NULL;
+    return wanted_light(&view);
 }
 
 struct renderer *renderer_create(struct log *log, struct gl *gl, const struct scene *scene, struct field *field)
@@ -53,7 +52,7 @@ struct renderer *renderer_create(struct log *log, struct gl *gl, const struct sc
     if (!stage_init(&renderer->stage, gl, scene) || !light_init(&renderer->light, &renderer->stage, &renderer->environments) ||
         !solid_init(&renderer->solid, log) || !sky_init(&renderer->sky, log) || !lines_init(&renderer->lines, log) ||
         !ghosts_init(&renderer->ghosts, log) || !markers_init(&renderer->markers, log) ||
-        !isolines_init(&renderer->isolines, log, scene->asset_count) || !bake_default_light(renderer)) {
+        !isolines_init(&renderer->isolines, log, scene->asset_count)) {
         renderer_destroy(&renderer);
         return NULL;
     }
@@ -341,9 +340,18 @@ struct frame *renderer_draw(struct renderer *renderer, const struct view *view, 
     return frame;
 }
 
-void renderer_hurry(struct renderer *renderer, int64_t bake_ns)
+bool renderer_hurry(struct renderer *renderer, int64_t bake_ns)
 {
+    struct light_key usual = usual_light(renderer);
     renderer->hurry_ns = bake_ns;
+    usual.rough = true;
+    return !bake_ns || light_near(&renderer->light, &usual) || light_get(&renderer->light, &usual);
+}
+
+bool renderer_idle(struct renderer *renderer, int64_t budget_ns)
+{
+    struct light_key usual = usual_light(renderer);
+    return light_step(&renderer->light, &usual, budget_ns);
 }
 
 /* --- numbers --------------------------------------------------------------------------------------------------------------- */

@@ -28,8 +28,11 @@ struct frame *renderer_draw(struct renderer *renderer, const struct view *view, 
 void renderer_use_gl(struct renderer *renderer, bool always);
 
 /* A light that is not baked yet: pictures of the moving tier show the one most like it for now, and bake on for about that long each.
-   Without this, and in the still tier, a picture takes the time that its light takes. */
-void renderer_hurry(struct renderer *renderer, int64_t bake_ns);
+   Where none is, a rough one is made for now. Without this, and in the still tier, a picture takes the time that its light takes.
+   False: out of GPU memory, logged. */
+bool renderer_hurry(struct renderer *renderer, int64_t bake_ns);
+/* Nobody wants a picture: bakes the light that most views have, for about that long. True: there is nothing more to do. */
+bool renderer_idle(struct renderer *renderer, int64_t budget_ns);
 
 /* From now on the field is worked out at each fragment, over all sensors, on the finest level (render/reference.h): slow, for
    comparison. */

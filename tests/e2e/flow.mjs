@@ -153,6 +153,7 @@ test(`random connects, drags, stalls and cuts for ${SOAK_S} s: nothing grows`, {
     const early = median(waits.slice(third, 2 * third)), late = median(waits.slice(2 * third));
     const half = memory.length >> 1, grownKb = median(memory.slice(-4)) - median(memory.slice(half, half + 4));
     console.log(`# latency ${early.toFixed(1)}, then ${late.toFixed(1)} ms; memory ${grownKb} kB more in the second half`);
+    console.log(`# MB: ${memory.map((kb) => (kb / 1024).toFixed(1)).join(' ')}`);
     assert.ok(late < 1.5 * early + 20, `latency grew from ${early.toFixed(1)} to ${late.toFixed(1)} ms`);
     assert.ok(sanitized || grownKb < 8 * 1024, `memory grew by ${grownKb} kB`);
     assert.ok(openFiles(pid) <= filesBefore, `${openFiles(pid)} open files, ${filesBefore} before`);

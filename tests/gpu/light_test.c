@@ -179,6 +179,31 @@ static void test_a_moving_session_does_not_wait(void **state)
     frame_unref(&exact);
 }
 
+/* Who is in a hurry has a picture before its light is worked out; it is worked out while nobody asks for anything. */
+static void test_the_first_light_is_rough(void **state)
+{
+    struct stand fresh;
+    struct view view;
+    (void)state;
+    stand_init(&fresh, &rig, toy_unit());
+    for (int i = 0; i < 8; i++)
+        toy_set(fresh.snapshot, i, 20 + 7 * i, QUALITY_GOOD);
+    view_default(&fresh.toy->scene, 320, 180, &view);
+    view.tier = TIER_MOVING;
+    assert_true(renderer_hurry(fresh.renderer, 1));
+    struct frame *first = stand_draw(&fresh, &view);
+    int steps = 1;
+    while (!renderer_idle(fresh.renderer, 1))
+        steps++;
+    assert_true(steps > 8 && renderer_content(fresh.renderer, &view, fresh.snapshot) != first->content);
+    struct frame *after = stand_draw(&fresh, &view), *exact = stand_draw(&stand, &view);
+    assert_true(same_pixels(after, exact) && !same_pixels(first, exact));
+    frame_unref(&first);
+    frame_unref(&after);
+    frame_unref(&exact);
+    stand_finish(&fresh);
+}
+
 /* A still picture shows the sun that was asked for, however long that takes. */
 static void test_a_still_picture_waits_for_its_light(void **state)
 {
@@ -204,6 +229,7 @@ int main(void)
         cmocka_unit_test(test_the_nearest_sun_stands_in),
         cmocka_unit_test(test_a_moving_session_does_not_wait),
         cmocka_unit_test(test_a_still_picture_waits_for_its_light),
+        cmocka_unit_test(test_the_first_light_is_rough),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
     if (!rig_init(&rig, "light_test"))
