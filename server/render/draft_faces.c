@@ -7,20 +7,27 @@
 
 /* --- vertices --------------------------------------------------------------------------------------------------------------- */
 
+/* What eight vertices are going to carry: on its way while they are placed and faces are found. */
+DRAFT_INLINE void fetch_carried(const struct draft_mesh *mesh, const uint32_t vertices[LANES])
+{
+    for (int l = 0; l < LANES && mesh->scalars; l++)
+        __builtin_prefetch(&mesh->scalars[vertices[l]]);
+    for (int l = 0; l < LANES; l++)
+        __builtin_prefetch(mesh->baked[vertices[l]]);
+}
+
 DRAFT_KERNEL void draft_place_part(struct draft_tile *tile, const struct draft_mesh *mesh, const struct draft_parts *parts,
                                    const struct draft_part *part)
 {
     struct draft_corners *corners = &tile->corners;
+    int rounded = (part->vertex_count + LANES - 1) / LANES * LANES;
+    const float *places = draft_part_places(parts, part);
     const uint32_t *vertices = parts->vertices + part->first_vertex;
     lanes none = { 0 }, low = none + 1e30f, high = none;
     for (int i = 0; i < part->vertex_count; i += LANES) {
-        lanes x, y, z, at[4];
-        for (int l = 0; l < LANES; l++) {
-            const float *p = mesh->file->positions_m[vertices[i + l]];
-            x[l] = p[0];
-            y[l] = p[1];
-            z[l] = p[2];
-        }
+        fetch_carried(mesh, vertices + i);
+        lanes x = *(const lanes *)(places + i), y = *(const lanes *)(places + rounded + i), z = *(const lanes *)(places + 2 * rounded + i);
+        lanes at[4];
         for (int r = 0; r < 4; r++)
             at[r] = mesh->place[0][r] * x + mesh->place[1][r] * y + mesh->place[2][r] * z + mesh->place[3][r];
         lanes_int before = (at[3] > 0.0f) & (at[2] <= at[3]);
@@ -172,23 +179,38 @@ DRAFT_INLINE bool is_hidden(const struct draft_tile *tile, const struct draft_fa
     float p = depth[face->corners[0]], q = depth[face->corners[1]], r = depth[face->corners[2]];
     float nearest = p > q ? p : q;
     nearest = nearest > r ? nearest : r;
-    int top = (face->top - tile->rect.top) / BLOCK_PX, bottom = (face->bottom - tile->rect.top) / BLOCK_PX;
-    int left = (face->left - tile->rect.left) / BLOCK_PX, right = (face->right - tile->rect.left) / BLOCK_PX;
-    for (int row = top; row <= bottom; row++)
-        for (int column = left; column <= right; column++)
+    unsigned top = (unsigned)(face->top - tile->rect.top) / BLOCK_PX, bottom = (unsigned)(face->bottom - tile->rect.top) / BLOCK_PX;
+    unsigned left = (unsigned)(face->left - tile->rect.left) / BLOCK_PX, right = (unsigned)(face->right - tile->rect.left) / BLOCK_PX;
+    if (top == bottom && left == right)
+        return nearest < tile->farthest[top][left];
+    for (unsigned row = top; row <= bottom; row++)
+        for (unsigned column = left; column <= right; column++)
             if (nearest >= tile->farthest[row][column])
                 return false;
     return true;
 }
 
-DRAFT_KERNEL void draft_find_faces(struct draft_tile *tile, const struct draft_mesh *mesh, const struct draft_parts *parts,
-                                   const struct draft_part *part, bool both_sides)
+/* Which of eight triangles may look this way: less than 0 is behind. Rounding does not lose one. */
+DRAFT_INLINE lanes_int may_face(const float *planes, int rounded, const float eye_m[3])
+{
+    float slack_m = 1e-5f * (1 + __builtin_fabsf(eye_m[0]) + __builtin_fabsf(eye_m[1]) + __builtin_fabsf(eye_m[2]));
+    lanes x = *(const lanes *)planes, y = *(const lanes *)(planes + rounded), z = *(const lanes *)(planes + 2 * rounded);
+    return x * eye_m[0] + y * eye_m[1] + z * eye_m[2] + slack_m >= *(const lanes *)(planes + 3 * rounded);
+}
+
+DRAFT_KERNEL void draft_find_faces(struct draft_tile *tile, const struct draft_mesh *mesh, const struct draft_found *found,
+                                   const struct draft_part *part)
 {
     const struct draft_corners *corners = &tile->corners;
+    const struct draft_parts *parts = found->parts;
+    const float *planes = draft_part_planes(parts, part);
+    bool both_sides = found->both_sides, one_side = !both_sides && !part->double_sided && !mesh->mirrored;
     const uint8_t *first = parts->corners + part->first_corner, *second = first + part->rounded, *third = second + part->rounded;
     lanes_int any_side = (lanes_int){ 0 } - (int)(both_sides || part->double_sided), mirrored = (lanes_int){ 0 } - (int)mesh->mirrored;
     tile->face_count = 0;
     for (int i = 0; i < part->triangle_count; i += LANES) {
+        if (one_side && !lanes_any(may_face(planes + i, part->rounded, found->eye_m)))
+            continue;
         lanes x0 = look_up(corners->x, first + i), x1 = look_up(corners->x, second + i), x2 = look_up(corners->x, third + i);
         lanes y0 = look_up(corners->y, first + i), y1 = look_up(corners->y, second + i), y2 = look_up(corners->y, third + i);
         lanes area = (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0); /* rows go down: what faces us is negative */
@@ -196,11 +218,8 @@ DRAFT_KERNEL void draft_find_faces(struct draft_tile *tile, const struct draft_m
         lanes_int left = first_pixel(least_of(x0, x1, x2), tile->rect.left), right = last_pixel(most_of(x0, x1, x2), tile->rect.right);
         lanes_int top = first_pixel(least_of(y0, y1, y2), tile->rect.top), bottom = last_pixel(most_of(y0, y1, y2), tile->rect.bottom);
         lanes_int kept = (area != 0.0f) & (any_side | ~(turned ^ mirrored)) & (left <= right) & (top <= bottom);
-        if (!lanes_any(kept))
-            continue;
-        for (int l = 0; l < LANES; l++) {
-            if (!kept[l])
-                continue;
+        for (uint32_t bits = lanes_bits(kept); bits; bits &= bits - 1) {
+            int l = __builtin_ctz(bits);
             struct draft_face *face = &tile->faces[tile->face_count];
             uint8_t q = second[i + l], r = third[i + l];
             *face = (struct draft_face){ { first[i + l], turned[l] ? q : r, turned[l] ? r : q }, (uint16_t)(i + l),

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A level of detail cut into parts: at most 256 neighbouring triangles with vertices of their own numbers, so that a part is placed,
-   tested and drawn without leaving the nearest cache. Private to draft*.c. */
+   tested and drawn without leaving the nearest cache. In a part those that look the same way are next to each other, so that what looks
+   away goes eight at a time. Private to draft*.c. */
 #ifndef RENDER_DRAFT_PARTS_H
 #define RENDER_DRAFT_PARTS_H
 #include "render/model.h"
@@ -20,10 +21,22 @@ struct draft_part {
 struct draft_parts {
     struct draft_part *parts;
     uint32_t *vertices; /* of the file; each part's up to whole lanes, beyond by the last one again */
+    float *places_m;    /* of the same: three times as many; each part's x, then its y, then its z */
     uint8_t *corners;   /* vertices of the part */
+    float *planes;      /* four for three corners: each part's normals (x, then y, then z), then how far along them its triangles lie */
     size_t part_count, vertex_count, corner_count;
-    size_t part_capacity, vertex_capacity, corner_capacity;
+    size_t part_capacity, vertex_capacity, place_capacity, corner_capacity, plane_capacity;
 };
+
+static inline const float *draft_part_places(const struct draft_parts *parts, const struct draft_part *part)
+{
+    return parts->places_m + 3 * (size_t)part->first_vertex;
+}
+
+static inline const float *draft_part_planes(const struct draft_parts *parts, const struct draft_part *part)
+{
+    return parts->planes + 4 * (size_t)(part->first_corner / 3);
+}
 
 /* False: out of memory. Finish in both cases. */
 bool draft_parts_init(struct draft_parts *parts, const struct asset_view *file, const struct model_level *level);

@@ -204,57 +204,67 @@ DRAFT_INLINE void small_init(struct small *small, const struct draft_corners *co
     }
 }
 
-/* A block of as many rows and columns as there are lanes. thin: a constant. */
-DRAFT_INLINE void draw_block(const struct draft_tile *tile, const struct draft_face *face, const struct small *small, int l, int left,
-                             int top, int row_count, uint32_t mark, int32_t last_row, bool thin)
+struct small_row { /* where edges and planes are at its middle */
+    float edges[3], starts[3];
+};
+
+DRAFT_INLINE struct small_row row_of(const struct small *small, int l, float y)
 {
-    size_t pitch = (size_t)tile->draft->pitch_px, start = (size_t)top * pitch + (size_t)left;
-    lanes x = LANES_IOTA + ((float)left + 0.5f), from_x = x - small->x[l]; /* columns */
-    lanes y = LANES_IOTA + ((float)top + 0.5f), from_y = y - small->y[l];  /* rows */
-    lanes across[3], along[3];
-    float rows[3][LANES], starts[3][LANES];
+    struct small_row row;
     for (int i = 0; i < 3; i++) {
-        *(lanes *)rows[i] = small->edge_dx[i][l] * (y - small->edge_y[i][l]) + small->edge_row[i][l];
-        *(lanes *)starts[i] = small->at[i][l] + small->dy[i][l] * from_y;
-        across[i] = small->edge_dy[i][l] * x;
-        along[i] = small->dx[i][l] * from_x;
+        row.edges[i] = small->edge_dx[i][l] * (y - small->edge_y[i][l]) + small->edge_row[i][l];
+        row.starts[i] = small->at[i][l] + small->dy[i][l] * (y - small->y[l]);
     }
-#define VALUE(i) (thin ? lanes_clamp(starts[i][row] + along[i], small->low[i][l], small->high[i][l]) : starts[i][row] + along[i])
-    for (int row = 0; row < row_count; row++) {
-        lanes *depth = (lanes *)(tile->draft->depth + start + (size_t)row * pitch);
-        lanes_int side = ((lanes_int)(rows[0][row] - across[0]) ^ small->negative[0][l]) |
-                         ((lanes_int)(rows[1][row] - across[1]) ^ small->negative[1][l]) |
-                         ((lanes_int)(rows[2][row] - across[2]) ^ small->negative[2][l]);
-        lanes here = VALUE(0);
-        lanes_int seen = (side >= 0) & (here >= *depth);
-        if (!lanes_any(seen))
-            continue;
-        lanes_int *marks = (lanes_int *)(tile->draft->marks + start + (size_t)row * pitch);
-        lanes a = VALUE(1), b = VALUE(2);
-        *marks = lanes_choose_int(seen, mark == MARK_FIELD ? field_mark(a, b, last_row) : context_mark(a, b, mark), *marks);
-        *depth = lanes_choose(seen, here, *depth);
-        keep_id(tile, face, start + (size_t)row * pitch, seen);
-    }
+    return row;
+}
+
+/* A row of lanes. thin: a constant. */
+DRAFT_INLINE void draw_lanes(const struct draft_tile *tile, const struct draft_face *face, const struct small *small, int l,
+                             const struct small_row *row, size_t place, lanes x, uint32_t mark, int32_t last_row, bool thin)
+{
+    lanes *depth = (lanes *)(tile->draft->depth + place), from_x = x - small->x[l];
+    lanes_int side = ((lanes_int)(row->edges[0] - small->edge_dy[0][l] * x) ^ small->negative[0][l]) |
+                     ((lanes_int)(row->edges[1] - small->edge_dy[1][l] * x) ^ small->negative[1][l]) |
+                     ((lanes_int)(row->edges[2] - small->edge_dy[2][l] * x) ^ small->negative[2][l]);
+#define VALUE(i) (thin ? lanes_clamp(row->starts[i] + small->dx[i][l] * from_x, small->low[i][l], small->high[i][l]) \
+                       : row->starts[i] + small->dx[i][l] * from_x)
+    lanes here = VALUE(0);
+    lanes_int seen = (side >= 0) & (here >= *depth);
+    if (!lanes_any(seen))
+        return;
+    lanes_int *marks = (lanes_int *)(tile->draft->marks + place);
+    lanes a = VALUE(1), b = VALUE(2);
 #undef VALUE
+    *marks = lanes_choose_int(seen, mark == MARK_FIELD ? field_mark(a, b, last_row) : context_mark(a, b, mark), *marks);
+    *depth = lanes_choose(seen, here, *depth);
+    keep_id(tile, face, place, seen);
 }
 
 DRAFT_INLINE void draw_small(const struct draft_tile *tile, const struct draft_face *face, const struct small *small, int l,
                              uint32_t mark, int32_t last_row)
 {
     int last = tile->rect.right + 1 - LANES; /* beyond the tile another thread draws */
-    for (int top = face->top; top <= face->bottom; top += LANES) {
-        int rows = face->bottom - top + 1 < LANES ? face->bottom - top + 1 : LANES;
+    for (int y = face->top; y <= face->bottom; y++) {
+        struct small_row row = row_of(small, l, (float)y + 0.5f);
+        size_t start = (size_t)y * (size_t)tile->draft->pitch_px;
         for (int left = face->left; left <= face->right; left += LANES) {
             left = left < last ? left : last;
+            lanes x = LANES_IOTA + ((float)left + 0.5f);
             if (small->thin[l])
-                draw_block(tile, face, small, l, left, top, rows, mark, last_row, true);
+                draw_lanes(tile, face, small, l, &row, start + (size_t)left, x, mark, last_row, true);
             else
-                draw_block(tile, face, small, l, left, top, rows, mark, last_row, false);
+                draw_lanes(tile, face, small, l, &row, start + (size_t)left, x, mark, last_row, false);
         }
     }
 }
 
 /* --- all -------------------------------------------------------------------------------------------------------------------- */
+
+/* Low ones may be as wide as they like: there is little beside them. */
+DRAFT_INLINE bool is_small(const struct draft_face *face)
+{
+    return face->bottom - face->top < SMALL_PX && (face->right - face->left < SMALL_PX || face->bottom - face->top < 2);
+}
 
 DRAFT_KERNEL static void draw_any(const struct draft_tile *tile, const struct draft_face *face, uint32_t mark, const struct ink *ink)
 {
@@ -283,7 +293,7 @@ DRAFT_KERNEL void draft_raster_faces(const struct draft_tile *tile, uint32_t mar
     int count = 0;
     for (int i = 0; i < tile->face_count; i++) {
         const struct draft_face *face = &tile->faces[i];
-        if (!may_be_small || face->right - face->left >= SMALL_PX || face->bottom - face->top >= SMALL_PX) {
+        if (!may_be_small || !is_small(face)) {
             draw_any(tile, face, mark, &ink);
             continue;
         }

@@ -45,6 +45,18 @@ DRAFT_INLINE int lanes_any(lanes_int mask)
     return (both[0] | both[1]) != 0;
 }
 
+/* A bit for each lane, the first one lowest. */
+DRAFT_INLINE uint32_t lanes_bits(lanes_int mask)
+{
+    union {
+        lanes_int all;
+        lanes_pair halves[2];
+    } u = { mask & (lanes_int){ 1, 2, 4, 8, 16, 32, 64, 128 } };
+    lanes_pair both = u.halves[0] | u.halves[1];
+    uint64_t bits = (uint64_t)(both[0] | both[1]);
+    return (uint32_t)(bits | bits >> 32);
+}
+
 DRAFT_INLINE lanes_int lanes_whole(lanes x)
 {
     return __builtin_convertvector(x, lanes_int);

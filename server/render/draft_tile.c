@@ -121,7 +121,7 @@ static void draw_part(struct draft_tile *tile, const struct draft_mesh *mesh, co
         draft_carry_part(tile, mesh, found->parts, part);
         draft_cut_faces(tile, mesh, found->parts, part, found->both_sides);
     } else {
-        draft_find_faces(tile, mesh, found->parts, part, found->both_sides);
+        draft_find_faces(tile, mesh, found, part);
         if (tile->face_count > 0)
             draft_carry_part(tile, mesh, found->parts, part);
     }

@@ -40,8 +40,8 @@ void draft_place_part(struct draft_tile *tile, const struct draft_mesh *mesh, co
 void draft_carry_part(struct draft_tile *tile, const struct draft_mesh *mesh, const struct draft_parts *parts,
                       const struct draft_part *part);
 /* Its faces, out of corners that were placed; if some are cut, they must carry too. */
-void draft_find_faces(struct draft_tile *tile, const struct draft_mesh *mesh, const struct draft_parts *parts,
-                      const struct draft_part *part, bool both_sides);
+void draft_find_faces(struct draft_tile *tile, const struct draft_mesh *mesh, const struct draft_found *found,
+                      const struct draft_part *part);
 void draft_cut_faces(struct draft_tile *tile, const struct draft_mesh *mesh, const struct draft_parts *parts,
                      const struct draft_part *part, bool both_sides);
 /* Depth and marks of all faces. */

@@ -177,7 +177,7 @@ static void try_side(struct bench *bench, double azimuth, double elevation, stru
         *best = (struct side){ azimuth, elevation, coverage };
 }
 
-/* The side from which the picture is filled best, and a swing round it. */
+/* The side from which the picture is filled best, and a swing round it; no camera comes twice, or it would stand still for the renderer. */
 static void choose_cameras(struct bench *bench)
 {
     struct side best = { 0 };
@@ -191,7 +191,7 @@ static void choose_cameras(struct bench *bench)
             try_side(bench, azimuth + a * M_PI / 72, elevation + e * M_PI / 36, &best);
     bench->coverage = 1;
     for (int i = 0; i < CAMERAS; i++) {
-        fit(bench, best.azimuth + SWING_RAD * sin(2 * M_PI * i / CAMERAS), best.elevation, &bench->cameras[i]);
+        fit(bench, best.azimuth + SWING_RAD * sin(2 * M_PI * (i + 0.25) / CAMERAS), best.elevation, &bench->cameras[i]);
         if (i % 6 == 0)
             bench->coverage = fmin(bench->coverage, coverage_from(bench, &bench->cameras[i]));
     }
