@@ -15,7 +15,14 @@
 
 enum wire_type { WIRE_TYPE_FRAME = 1 };
 enum wire_codec { WIRE_CODEC_JPEG = 1, WIRE_CODEC_PNG = 2, WIRE_CODEC_H264 = 3 };
-enum wire_flags { WIRE_FLAG_KEY = 1, WIRE_FLAG_STILL = 2, WIRE_FLAG_NO_LIVE_DATA = 4, WIRE_FLAG_MORE = 8, WIRE_FLAG_DATA = 16 };
+enum wire_flags {
+    WIRE_FLAG_KEY = 1,
+    WIRE_FLAG_STILL = 2,
+    WIRE_FLAG_NO_LIVE_DATA = 4,
+    WIRE_FLAG_MORE = 8,
+    WIRE_FLAG_DATA = 16,
+    WIRE_FLAG_PAST = 32,
+};
 
 struct wire_frame { /* in the order of the bytes */
     uint8_t type, codec;

@@ -34,6 +34,7 @@ struct server {
     struct scene *scene;
     struct store *store;
     struct baselines *baselines;
+    struct moments *moments;
     struct historian *historian; /* NULL: nothing is recorded */
     struct alarming *alarming;
     struct source **sources; /* by index in plant->sources */
@@ -208,6 +209,7 @@ static bool start_painter(struct server *server)
         .scene = server->scene,
         .store = server->store,
         .baselines = server->baselines,
+        .moments = server->moments,
         .workers = server->workers,
         .h264_library = h264_library(server),
         .counters = server->counters,
@@ -225,6 +227,7 @@ static bool start_net(struct server *server)
         .scene = server->scene,
         .store = server->store,
         .baselines = server->baselines,
+        .moments = server->moments,
         .painter = server->painter,
         .alarming = server->alarming,
         .counters = server->counters,
@@ -267,6 +270,7 @@ static bool server_start(struct server *server)
     server->counters = counters_create();
     server->store = store_create(server->plant);
     server->baselines = baselines_create();
+    server->moments = moments_create();
     server->workers = workers_create(server->params.threads);
     server->web = find_web(server->params.web);
     return start_historian(server) && start_alarming(server) && start_sources(server) && start_painter(server) && start_net(server);
@@ -289,6 +293,7 @@ static void server_finish(struct server *server)
     workers_destroy(&server->workers);
     store_destroy(&server->store);
     baselines_destroy(&server->baselines);
+    moments_destroy(&server->moments);
     counters_destroy(&server->counters);
     scene_destroy(&server->scene);
     plant_destroy(&server->plant);

@@ -45,6 +45,7 @@ struct field_params {
     enum field_show show;
     int sensor;        /* tag whose distance is shown; -1: none */
     uint32_t baseline; /* id of what the difference is from; 0: none */
+    int slot;          /* of the instant that the readings are of (value/moments.h): its fields are kept apart; 0: now */
     enum interpolation interpolation;
     enum distance_mode distance;
     enum fill_mode fill;

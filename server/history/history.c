@@ -258,3 +258,25 @@ int history_at(struct history_reader *reader, const struct history_tag *tags, in
     mem_free(pairs);
     return error;
 }
+
+static bool month_span(struct history_reader *reader, int month, int64_t *first_us, int64_t *last_us)
+{
+    int error;
+    struct month_file *file = open_month(reader, month, &error);
+    *first_us = INT64_MAX;
+    return file && month_file_span(file, first_us, last_us) == 0 && *first_us != INT64_MAX;
+}
+
+bool history_span(struct history_reader *reader, int64_t *first_us, int64_t *last_us)
+{
+    size_t count;
+    int *months = month_list(reader->folder, &count);
+    int64_t unused;
+    bool first = false, last = false;
+    for (size_t i = 0; i < count && !first; i++)
+        first = month_span(reader, months[i], first_us, &unused);
+    for (size_t i = count; i > 0 && !last; i--)
+        last = month_span(reader, months[i - 1], &unused, last_us);
+    mem_free(months);
+    return first && last;
+}

@@ -25,6 +25,8 @@ int history_series(struct history_reader *reader, const char *tag, int64_t from_
                    struct history_series *out);
 void history_series_finish(struct history_series *series);
 
+/* From when to when there is something. False: nothing is there, or it cannot be read (logged). */
+bool history_span(struct history_reader *reader, int64_t *first_us, int64_t *last_us);
 /* All readings at t, by tag index of the plant that the tags are of. What was never recorded is Bad_WaitingForInitialData. */
 int history_at(struct history_reader *reader, const struct history_tag *tags, int64_t t_us, struct snapshot *into);
 

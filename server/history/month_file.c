@@ -61,6 +61,8 @@ static const char *const sql[SQL_COUNT] = {
                     " WHERE level_s = ? AND tag = ? AND t > ? AND t <= ? ORDER BY t",
     [SQL_RECENT_ALL] = "SELECT tag, t, v, q FROM recent UNION ALL SELECT tag, t, v, q FROM held",
     [SQL_WAITING] = "SELECT count(*) FROM recent",
+    [SQL_SPAN] = "SELECT min(a), max(b) FROM (SELECT min(t) AS a, max(t) AS b FROM recent UNION ALL SELECT min(t), max(t) FROM held"
+                 " UNION ALL SELECT (SELECT min(t) FROM sample WHERE tag = id), (SELECT max(t) FROM sample WHERE tag = id) FROM tag)",
 };
 
 /* --- for the other files ------------------------------------------------------------------------------------------------------ */

@@ -246,3 +246,17 @@ int month_file_at(struct month_file *file, int64_t t_us, const struct history_ta
     mem_free(index);
     return error;
 }
+
+int month_file_span(struct month_file *file, int64_t *first_us, int64_t *last_us)
+{
+    sqlite3_stmt *span = month_sql(file, SQL_SPAN);
+    if (!span)
+        return month_fail(file, sqlite3_errcode(file->db), "cannot be read");
+    int code = sqlite3_step(span);
+    if (code == SQLITE_ROW && sqlite3_column_type(span, 0) != SQLITE_NULL) {
+        *first_us = sqlite3_column_int64(span, 0);
+        *last_us = sqlite3_column_int64(span, 1);
+    }
+    sqlite3_reset(span);
+    return month_fail(file, code, "cannot be read");
+}

@@ -87,10 +87,12 @@ static void stay(struct painter *painter, const struct batch *batch)
     pthread_mutex_unlock(&painter->lock);
 }
 
-static void slow_begin(struct drawing *drawing, struct batch *batch, int64_t field_ns)
+/* The instant, if it is one, goes over to it. */
+static void slow_begin(struct drawing *drawing, struct batch *batch, const struct moment **moment, int64_t field_ns)
 {
     const struct wish *wish = &batch->orders[0].wish;
-    drawing->slow.canvas = canvas_begin(drawing->renderer, &wish->view, drawing->snapshot);
+    const struct snapshot *snapshot = *moment ? &(*moment)->snapshot : drawing->snapshot;
+    drawing->slow.canvas = canvas_begin(drawing->renderer, &wish->view, snapshot);
     if (!drawing->slow.canvas) {
         fail(drawing, batch);
         return;
@@ -104,6 +106,10 @@ static void slow_begin(struct drawing *drawing, struct batch *batch, int64_t fie
     drawing->slow.batch = *batch;
     *batch = empty;
     batch->count = 0;
+    drawing->slow.moment = *moment;
+    *moment = NULL;
+    if (drawing->slow.moment)
+        return;
     struct snapshot *other = drawing->slow.snapshot;
     drawing->slow.snapshot = drawing->snapshot;
     drawing->snapshot = other;
@@ -116,7 +122,7 @@ static struct frame *slow_again(struct drawing *drawing)
     struct painter *painter = drawing->painter;
     struct batch *batch = &drawing->slow.batch;
     const struct view *view = &batch->orders[0].wish.view;
-    if (!drawing->slow.keeps || batch->orders[0].wish.overlay)
+    if (!drawing->slow.keeps || batch->orders[0].wish.overlay || drawing->slow.moment)
         return NULL;
     drawing_refresh(drawing);
     if (!canvas_is_quick(drawing->renderer, view, drawing->snapshot))
@@ -129,6 +135,17 @@ static struct frame *slow_again(struct drawing *drawing)
     }
     pthread_mutex_unlock(&painter->lock);
     return canvas_draw(drawing->renderer, view, drawing->snapshot);
+}
+
+static const struct snapshot *slow_readings(const struct drawing *drawing)
+{
+    return drawing->slow.moment ? &drawing->slow.moment->snapshot : drawing->slow.snapshot;
+}
+
+static void slow_forget_moment(struct drawing *drawing)
+{
+    if (drawing->slow.moment)
+        moments_give(drawing->painter->params.moments, &drawing->slow.moment);
 }
 
 /* True: it is done. */
@@ -148,10 +165,11 @@ static bool slow_step(struct drawing *drawing)
             newer->render_ns += frame->render_ns;
             frame_unref(&frame);
         }
-        deliver(drawing, newer ? newer : frame, newer ? drawing->snapshot : drawing->slow.snapshot, &drawing->slow.batch);
+        deliver(drawing, newer ? newer : frame, newer ? drawing->snapshot : slow_readings(drawing), &drawing->slow.batch);
     } else {
         fail(drawing, &drawing->slow.batch);
     }
+    slow_forget_moment(drawing);
     drawing->slow.batch.count = 0;
     return true;
 }
@@ -177,6 +195,7 @@ static void slow_leave(struct drawing *drawing)
         return;
     counter_inc(painter->abandoned, 1);
     canvas_abandon(drawing->renderer, &drawing->slow.canvas);
+    slow_forget_moment(drawing);
 }
 
 /* A refined picture was wished for if it were quick, and it is not: the other one that was wished for then. */
@@ -194,16 +213,12 @@ static void choose_other(struct batch *batch)
 }
 
 /* False: held: the field is not there yet, or the place for slow pictures is taken; again later. */
-static bool draw(struct drawing *drawing, struct batch *batch)
+static bool draw_of(struct drawing *drawing, struct batch *batch, const struct snapshot *snapshot, const struct moment **moment)
 {
     int64_t field_begin_ns = clock_mono_ns();
     const struct wish *wish = &batch->orders[0].wish;
-    sharing_take_recent(drawing, batch);
-    if (batch->count == 0)
-        return true;
-    drawing_refresh(drawing);
-    bool ready = canvas_prepare(drawing->renderer, &wish->view, drawing->snapshot, FIELD_NS);
-    bool quick = ready && canvas_is_quick(drawing->renderer, &wish->view, drawing->snapshot);
+    bool ready = canvas_prepare(drawing->renderer, &wish->view, snapshot, FIELD_NS);
+    bool quick = ready && canvas_is_quick(drawing->renderer, &wish->view, snapshot);
     if (ready && !quick && wish->urgency == URGENCY_DATA)
         choose_other(batch);
     quick = quick || wish->urgency < URGENCY_REFINE;
@@ -211,23 +226,42 @@ static bool draw(struct drawing *drawing, struct batch *batch)
         counter_inc(drawing->painter->steps, 1);
         return false;
     }
-    sharing_leave_out_same(drawing, batch);
+    sharing_leave_out_same(drawing, snapshot, batch);
     if (batch->count == 0)
         return true;
     int64_t field_ns = clock_mono_ns() - field_begin_ns; /* to know what changed, the field was brought up to date already */
     if (!quick && !drawing->slow.canvas) {
-        slow_begin(drawing, batch, field_ns);
+        slow_begin(drawing, batch, moment, field_ns);
         return true;
     }
     lose_on_demand(drawing);
-    struct frame *frame = canvas_draw(drawing->renderer, &wish->view, drawing->snapshot);
+    struct frame *frame = canvas_draw(drawing->renderer, &wish->view, snapshot);
     if (!is_good(drawing, frame)) {
         fail(drawing, batch);
         return true;
     }
     frame->field_ns += field_ns;
-    deliver(drawing, frame, drawing->snapshot, batch);
+    deliver(drawing, frame, snapshot, batch);
     return true;
+}
+
+/* As draw_of. */
+static bool draw(struct drawing *drawing, struct batch *batch)
+{
+    const struct moment *moment;
+    sharing_take_recent(drawing, batch);
+    if (batch->count == 0)
+        return true;
+    const struct snapshot *snapshot = drawing_readings(drawing, &batch->orders[0].wish.view, &moment);
+    if (!snapshot) {
+        painter_post_none(drawing->painter, batch, false);
+        batch->count = 0;
+        return true;
+    }
+    bool done = draw_of(drawing, batch, snapshot, &moment);
+    if (moment)
+        moments_give(drawing->painter->params.moments, &moment);
+    return done;
 }
 
 /* --- life of the render thread -------------------------------------------------------------------------------------------------- */
@@ -250,6 +284,7 @@ static void gl_end(struct drawing *drawing)
 {
     if (drawing->renderer)
         canvas_abandon(drawing->renderer, &drawing->slow.canvas);
+    slow_forget_moment(drawing);
     renderer_destroy(&drawing->renderer);
     gl_destroy(&drawing->gl);
 }

@@ -18,7 +18,8 @@ struct drawing {
     struct { /* the picture that takes long and is drawn step by step; at most one */
         struct canvas *canvas; /* NULL: none */
         struct batch batch;
-        struct snapshot *snapshot; /* of what it shows */
+        struct snapshot *snapshot;   /* of what it shows, unless */
+        const struct moment *moment; /* it is of an instant */
         enum urgency urgency;
         int64_t asked_ns, field_ns;
         bool keeps; /* when it is done, new readings are quick to show: they need not wait for it, nor it be given up for them */
@@ -32,7 +33,7 @@ struct drawing {
 /* The frame, encoded, to all of the batch that are still there; empties it. cost_ns: what it took to draw, which they share. */
 void sharing_submit(struct painter *painter, struct frame *frame, struct batch *batch, int64_t cost_ns);
 /* Answers those for whom nothing changed, and those for whom another's frame does; takes them out of the batch. */
-void sharing_leave_out_same(struct drawing *drawing, struct batch *batch);
+void sharing_leave_out_same(struct drawing *drawing, const struct snapshot *snapshot, struct batch *batch);
 /* Likewise who asks a moment later than others for the same view: what was drawn for them will do, if all that changed since is readings
    that he has yet to be told of. Before the field is brought up to date. */
 void sharing_take_recent(struct drawing *drawing, struct batch *batch);
@@ -45,6 +46,9 @@ void drawing_idle(struct drawing *drawing);
 bool drawing_next(struct drawing *drawing, const struct schedule *schedule, struct batch *batch);
 /* The newest readings, if they changed or are some time old. */
 void drawing_refresh(struct drawing *drawing);
+/* What a view is of: an instant, held in *moment until it is given back (moments_give), or the newest readings. NULL: the instant is not
+   at hand (any more): who asked for it has gone on. */
+const struct snapshot *drawing_readings(struct drawing *drawing, const struct view *view, const struct moment **moment);
 /* Under the painter's lock: until somebody wakes it, or then. */
 void drawing_wait(struct painter *painter, int64_t mono_ns);
 

@@ -13,6 +13,13 @@
 
 static const struct encoder_params LOSSLESS = { .quality = 100, .full_chroma = true };
 
+struct asked { /* a picture, or what is at a pixel of it */
+    bool picks;
+    struct wish wish;
+    struct pick_order pick;
+    const struct moment *moment; /* held; NULL: of now, or it is being read */
+};
+
 struct request {
     struct lws *wsi;
     bool head;  /* no body is wanted */
@@ -20,6 +27,7 @@ struct request {
     char *body;
     size_t count, sent;
     uint64_t client;      /* of the painter, while a picture is awaited */
+    struct asked *asked;  /* meanwhile; NULL: not for one */
     struct request *next; /* in hub->snapshots */
 };
 
@@ -107,6 +115,12 @@ static void forget_snapshot(struct hub *hub, struct request *request)
     painter_forget(hub->params.painter, request->client);
     if (hub->recall)
         recall_forget(hub->recall, request->client);
+    if (hub->past)
+        past_forget(hub->past, request->client);
+    if (request->asked && request->asked->moment)
+        moments_give(hub->params.moments, &request->asked->moment);
+    mem_free(request->asked);
+    request->asked = NULL;
 }
 
 enum { MAX_ARGS = 32, MAX_ARG_BYTES = 2048 };
@@ -140,7 +154,9 @@ static int answer_error(struct request *request, const struct message_error *err
 /* place: x and y of a pick; NULL: none is asked. */
 static bool read_query(struct hub *hub, struct lws *wsi, struct view *view, double place[2], struct message_error *error)
 {
-    const struct params_world world = { .scene = hub->params.scene, .baselines = hub->params.baselines };
+    const struct params_world world = {
+        .scene = hub->params.scene, .baselines = hub->params.baselines, .now_us = clock_utc_ns() / 1000
+    };
     struct args args;
     return read_args(wsi, &args, error) && query_parse(&world, visitor_of(wsi)->role, args.list, args.count, view, place, error);
 }
@@ -154,18 +170,54 @@ static void await(struct hub *hub, struct request *request)
     lws_set_timeout(request->wsi, PENDING_TIMEOUT_HTTP_CONTENT, 60);
 }
 
+static const char NOTHING_RECORDED[] = "this daemon records nothing (history: record: no)\n";
+
+static struct view *asked_view(struct asked *asked)
+{
+    return asked->picks ? &asked->pick.view : &asked->wish.view;
+}
+
+/* Of now at once; of an instant when it was read. */
+static void begin(struct hub *hub, struct request *request)
+{
+    struct asked *asked = request->asked;
+    if (asked_view(asked)->at_us && !asked->moment) {
+        past_ask(hub->past, request->client, asked_view(asked)->at_us);
+    } else if (asked->picks) {
+        painter_pick(hub->params.painter, &asked->pick);
+    } else {
+        painter_ask(hub->params.painter, request->client, &asked->wish);
+        painter_go(hub->params.painter);
+    }
+}
+
+/* Whether it may be, before it waits; if not, *result is what came of the answer. */
+static bool may_ask(struct hub *hub, struct request *request, const struct view *view, int *result)
+{
+    if (view->at_us && !hub->past) {
+        *result = answer_text(request, HTTP_STATUS_NOT_FOUND, NOTHING_RECORDED);
+        return false;
+    }
+    if (hub->snapshot_count < hub->quotas->at[QUOTA_SNAPSHOTS])
+        return true;
+    *result = answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "too many pictures are being made; try again\n");
+    return false;
+}
+
 static int ask_snapshot(struct hub *hub, struct request *request)
 {
     struct wish wish = { .codec = WIRE_CODEC_PNG, .quality = LOSSLESS, .urgency = URGENCY_SNAPSHOT, .always = true, .overlay = true };
     struct message_error error = { 0 };
+    int result;
     if (!read_query(hub, request->wsi, &wish.view, NULL, &error))
         return answer_error(request, &error);
-    if (hub->snapshot_count >= hub->quotas->at[QUOTA_SNAPSHOTS])
-        return answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "too many pictures are being made; try again\n");
+    if (!may_ask(hub, request, &wish.view, &result))
+        return result;
     wish.asked_ns = wish.view.input_ns = clock_mono_ns();
     await(hub, request);
-    painter_ask(hub->params.painter, request->client, &wish);
-    painter_go(hub->params.painter);
+    request->asked = mem_new(sizeof(*request->asked));
+    request->asked->wish = wish;
+    begin(hub, request);
     return 0;
 }
 
@@ -203,15 +255,19 @@ static int ask_pick(struct hub *hub, struct request *request)
     struct pick_order order = { 0 };
     struct message_error error = { 0 };
     double place[2];
+    int result;
     if (!read_query(hub, request->wsi, &order.view, place, &error))
         return answer_error(request, &error);
-    if (hub->snapshot_count >= hub->quotas->at[QUOTA_SNAPSHOTS])
-        return answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "too much is being asked; try again\n");
+    if (!may_ask(hub, request, &order.view, &result))
+        return result;
     await(hub, request);
     order.client = request->client;
     order.x_px = place[0];
     order.y_px = place[1];
-    painter_pick(hub->params.painter, &order);
+    request->asked = mem_new(sizeof(*request->asked));
+    request->asked->picks = true;
+    request->asked->pick = order;
+    begin(hub, request);
     return 0;
 }
 
@@ -233,7 +289,7 @@ static int ask_history(struct hub *hub, struct request *request)
     struct message_error error = { 0 };
     struct args args;
     if (!hub->recall)
-        return answer_text(request, HTTP_STATUS_NOT_FOUND, "this daemon records nothing (history: record: no)\n");
+        return answer_text(request, HTTP_STATUS_NOT_FOUND, NOTHING_RECORDED);
     if (!read_args(request->wsi, &args, &error) ||
         !recall_parse(hub->params.scene->plant, args.list, args.count, clock_utc_ns() / 1000, &order, &error))
         return answer_error(request, &error);
@@ -271,7 +327,7 @@ static int ask_journal(struct hub *hub, struct request *request)
     struct recall_order order = { .journal = true };
     struct message_error error = { 0 };
     if (!hub->recall)
-        return answer_text(request, HTTP_STATUS_NOT_FOUND, "this daemon records nothing (history: record: no)\n");
+        return answer_text(request, HTTP_STATUS_NOT_FOUND, NOTHING_RECORDED);
     if (!read_alarm_query(hub, request, true, &order.alarms, &error))
         return answer_error(request, &error);
     order.client = hub->next_client;
@@ -279,6 +335,27 @@ static int ask_journal(struct hub *hub, struct request *request)
         return answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "too much is being asked; try again\n");
     await(hub, request);
     return 0;
+}
+
+/* --- instants ---------------------------------------------------------------------------------------------------------------- */
+
+static const char UNREADABLE[] = "history cannot be read; the log says why\n";
+
+void http_on_moment(struct hub *hub, const struct past_answer *past)
+{
+    struct request *request = find_awaiting(hub, past->client);
+    if (!request)
+        return;
+    struct asked *asked = request->asked;
+    asked->moment = past->good ? moments_take(hub->params.moments, past->at_us) : NULL;
+    if (asked->moment) {
+        view_travel(asked_view(asked), past->at_us, asked->moment->slot);
+        begin(hub, request);
+        return;
+    }
+    forget_snapshot(hub, request);
+    if (answer_text(request, HTTP_STATUS_INTERNAL_SERVER_ERROR, UNREADABLE) < 0)
+        lws_set_timeout(request->wsi, PENDING_TIMEOUT_CLOSE_SEND, LWS_TO_KILL_ASYNC);
 }
 
 void http_on_recall(struct hub *hub, struct recall_answer *recalled)
@@ -291,7 +368,7 @@ void http_on_recall(struct hub *hub, struct recall_answer *recalled)
     forget_snapshot(hub, request);
     int status = recalled->text ? answer(request, HTTP_STATUS_OK, recalled->csv ? "text/csv; charset=utf-8" : "application/json",
                                          recalled->text, recalled->length, NULL, NULL)
-                                : answer_text(request, HTTP_STATUS_INTERNAL_SERVER_ERROR, "history cannot be read; the log says why\n");
+                                : answer_text(request, HTTP_STATUS_INTERNAL_SERVER_ERROR, UNREADABLE);
     if (status < 0)
         lws_set_timeout(request->wsi, PENDING_TIMEOUT_CLOSE_SEND, LWS_TO_KILL_ASYNC);
 }

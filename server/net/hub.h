@@ -7,8 +7,9 @@
 #include "net/alarm_text.h"
 #include "net/marker_text.h"
 #include "net/net.h"
-#include "net/recall.h"
+#include "net/past.h"
 #include "net/peers.h"
+#include "net/recall.h"
 #include "net/session.h"
 #include "net/stages.h"
 #include "net/tags_said.h"
@@ -27,6 +28,7 @@ struct hub {
     bool *links_up;
     struct lws_context *context;
     struct recall *recall; /* NULL: nothing is recorded */
+    struct past *past;     /* likewise */
     struct stream *streams, **by_client; /* all of them; the same, by number, ascending */
     size_t by_client_capacity;
     struct request *snapshots; /* HTTP requests that wait for their picture */
@@ -67,6 +69,7 @@ void hub_go(struct hub *hub); /* after all wishes of one event are made */
 int stream_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t len);
 void stream_on_picture(struct hub *hub, struct picture *picture); /* takes it over; false owner: destroys it */
 void stream_on_pick(struct hub *hub, const struct pick_answer *answer);
+void stream_on_moment(struct hub *hub, const struct past_answer *answer);
 bool stream_owns(const struct hub *hub, uint64_t client);
 void streams_on_tick(struct hub *hub, bool data_changed, bool links_changed);
 void streams_on_alarms(struct hub *hub); /* some changed */
@@ -78,6 +81,7 @@ int stream_check_upgrade(struct hub *hub, struct lws *wsi);
 int http_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t len);
 void http_on_picture(struct hub *hub, struct picture *picture); /* takes it over */
 void http_on_pick(struct hub *hub, const struct pick_answer *answer);
+void http_on_moment(struct hub *hub, const struct past_answer *answer);
 void http_on_recall(struct hub *hub, struct recall_answer *recalled); /* takes its text */
 /* A complete short answer in plain text. Returns what the callback is to return. */
 int http_answer(struct lws *wsi, int status, const char *text);

@@ -110,6 +110,25 @@ static bool parse_key_frame(const struct plant *plant, const json_t *o, struct m
     return true;
 }
 
+/* The microseconds of any instant fit a double. */
+static bool parse_time(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
+{
+    const json_t *at = json_object_get(o, "at_us");
+    double at_us = 0;
+    bool has_speed;
+    (void)plant;
+    out->time = (struct time_wish){ .has_at = at != NULL };
+    if (!may_number(o, "speed", -TIME_MOST_SPEED, TIME_MOST_SPEED, &out->time.speed, &has_speed, error))
+        return false;
+    if (at && !json_is_null(at) && !need_number(o, "at_us", 1, 9e15, &at_us, error))
+        return false;
+    out->time.at_us = (int64_t)at_us;
+    if (at || has_speed)
+        return true;
+    message_fail(error, "bad_field", "at_us: microseconds of UTC since 1970, or null for now, or a speed expected");
+    return false;
+}
+
 static bool parse_hello(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
 {
     const json_t *camera = json_object_get(o, "camera"), *params = json_object_get(o, "params");
@@ -119,6 +138,8 @@ static bool parse_hello(const struct plant *plant, const json_t *o, struct messa
         return false;
     if (((!resumes || json_object_get(o, "width") || json_object_get(o, "height")) && !size_parse(o, out, error)) ||
         ((!resumes || json_object_get(o, "codecs")) && !parse_codecs(plant, o, out, error)))
+        return false;
+    if (json_object_get(o, "at_us") && !parse_time(plant, o, out, error))
         return false;
     out->has_camera = json_is_object(camera);
     out->has_params = json_is_object(params);
@@ -198,6 +219,7 @@ static const struct {
     { "visible", MESSAGE_VISIBLE, parse_visible }, { "fit", MESSAGE_FIT, parse_fit },          { "pick", MESSAGE_PICK, parse_pick },
     { "key_frame", MESSAGE_KEY_FRAME, parse_key_frame }, { "codecs", MESSAGE_CODECS, parse_codecs },
     { "follow", MESSAGE_FOLLOW, parse_follow },    { "alarm", MESSAGE_ALARM, alarm_parse },
+    { "time", MESSAGE_TIME, parse_time },
 };
 
 static bool parse_object(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)

@@ -22,7 +22,8 @@ enum message_type {
     MESSAGE_KEY_FRAME,
     MESSAGE_CODECS,
     MESSAGE_FOLLOW,
-    MESSAGE_ALARM
+    MESSAGE_ALARM,
+    MESSAGE_TIME
 };
 
 enum { TOKEN_MAX_CHARS = 128, RESUME_CHARS = 32 };
@@ -113,6 +114,13 @@ struct alarm_request {
     char reason[ALARM_REASON_BYTES], name[ALARM_NAME_BYTES - 24];
 };
 
+#define TIME_MOST_SPEED 3600
+struct time_wish {
+    bool has_at;   /* else: from where it is */
+    int64_t at_us; /* 0: now */
+    double speed;  /* of play: seconds of the past in each second; negative: backwards; 0: stands */
+};
+
 enum { CODEC_LIST_MOST = 4 };
 struct codec_list { /* what a client decodes, what it likes best first */
     enum wire_codec at[CODEC_LIST_MOST];
@@ -138,6 +146,7 @@ struct message {
     double t;         /* ping */
     uint64_t follow;  /* a session; 0: none */
     struct alarm_request alarm;
+    struct time_wish time; /* time, hello */
 };
 
 /* False: *error is what to answer. text need not end in 0. */
@@ -150,6 +159,7 @@ struct params_world {
     const struct scene *scene;
     struct baselines *baselines;     /* NULL: there are none */
     const struct snapshot *snapshot; /* what may be kept as a baseline; NULL: nothing */
+    int64_t now_us;                  /* UTC; of a query */
 };
 /* Applies a change to a view: all of it, or nothing and *error. A new group brings its own settings first. */
 bool params_apply(const struct params_world *world, const struct params_change *change, struct view *view, struct message_error *error);

@@ -143,6 +143,8 @@ static void on_tick(lws_sorted_usec_list_t *sul)
     counter_set(net->hub.counters.busy, admission_busy_percent(&net->hub.admission));
     counter_set(net->hub.counters.connections, net->hub.connection_count);
     bool data_changed = take_snapshot(&net->hub), links_changed = look_at_links(&net->hub);
+    if (net->hub.past)
+        net->hub.world.history_first_us = past_first_us(net->hub.past);
     if (data_changed)
         net->hub.world.changed_ns = net->hub.snapshot->taken_mono_ns;
     if (data_changed)
@@ -183,11 +185,25 @@ static void look_at_alarms(struct hub *hub)
     streams_on_alarms(hub);
 }
 
+static void collect_moments(struct hub *hub)
+{
+    struct past_answer *answer = hub->past ? past_collect(hub->past) : NULL;
+    for (struct past_answer *next; answer; answer = next) {
+        next = answer->next;
+        if (stream_owns(hub, answer->client))
+            stream_on_moment(hub, answer);
+        else
+            http_on_moment(hub, answer);
+        mem_free(answer);
+    }
+}
+
 static void collect(struct hub *hub)
 {
     look_at_alarms(hub);
     collect_picks(hub);
     collect_recalled(hub);
+    collect_moments(hub);
     for (struct picture *picture = painter_collect(hub->params.painter), *next; picture; picture = next) {
         next = picture->next;
         picture->next = NULL;
@@ -315,9 +331,20 @@ static void wake(void *arg)
 
 static bool open_history(struct net *net)
 {
-    const struct net_params *params = &net->hub.params;
-    return !params->history_folder ||
-           (net->hub.recall = recall_create(params->log, params->scene->plant, params->history_folder, wake, net));
+    struct hub *hub = &net->hub;
+    const struct net_params *params = &hub->params;
+    const struct past_params past = { .log = params->log,
+                                      .plant = params->scene->plant,
+                                      .folder = params->history_folder,
+                                      .moments = params->moments,
+                                      .notify = wake,
+                                      .notify_arg = net };
+    if (!params->history_folder)
+        return true;
+    hub->world.moments = params->moments;
+    hub->recall = recall_create(params->log, params->scene->plant, params->history_folder, wake, net);
+    hub->past = past_create(&past);
+    return hub->recall && hub->past;
 }
 
 bool net_access_good(struct log *log, const struct access_params *access)
@@ -373,7 +400,8 @@ void net_destroy(struct net **net_ptr)
     if (!net)
         return;
     lws_sul_cancel(&net->tick);
-    recall_destroy(&net->hub.recall); /* before what it wakes */
+    recall_destroy(&net->hub.recall); /* before what they wake */
+    past_destroy(&net->hub.past);
     if (net->hub.context)
         lws_context_destroy(net->hub.context);
     atomic_store(&lws_log_to, NULL);

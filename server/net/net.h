@@ -18,6 +18,7 @@ struct net_params {
     struct painter *painter;
     struct baselines *baselines;
     struct alarming *alarming;
+    struct moments *moments;
     struct counters *counters;
     const char *address;    /* numeric */
     int port;               /* 0: any that is free */

@@ -7,6 +7,7 @@
 #include "gpu/gl.h"
 #include "net/picks.h"
 #include "net/picture.h"
+#include "value/moments.h"
 #include "value/store.h"
 
 struct painter;
@@ -18,6 +19,7 @@ struct painter_params {
     const struct scene *scene;
     struct store *store;
     struct baselines *baselines; /* NULL: no differences can be shown */
+    struct moments *moments;     /* where views of an instant find it; NULL: there are none */
     struct workers *workers;
     const char *h264_library; /* an encoder of libavcodec; NULL: the usual one */
     struct counters *counters;

@@ -6,8 +6,10 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "history/when.h"
 #include "net/fields.h"
 #include "net/framing.h"
+#include "net/past.h"
 
 enum kind { NUMBER, STRING, NUMBERS, SENSORS, BREAKS, LINES, SPLIT, STRINGS, PLANES, BOX };
 
@@ -24,7 +26,7 @@ static const struct {
     { "isolines", LINES },  { "split", SPLIT },
     { "projection", STRING }, { "height_m", NUMBER }, { "fit", STRING },    { "side", STRING },          { "hidden", STRINGS },
     { "isolate", STRINGS }, { "ghost", STRINGS },   { "clip", PLANES },     { "clip_box", BOX },         { "x", NUMBER },
-    { "y", NUMBER },
+    { "y", NUMBER },        { "at", STRING },
 };
 
 /* NULL: not a finite number. */
@@ -219,6 +221,25 @@ static bool add(json_t *o, const char *arg, struct message_error *error)
     return false;
 }
 
+static bool apply_at(const struct params_world *world, const json_t *o, struct view *view, struct message_error *error)
+{
+    const char *text = json_string_value(json_object_get(o, "at"));
+    int64_t at_us = 0;
+    if (!text)
+        return true;
+    if (!when_parse(text, world->now_us, &at_us) || at_us <= 0) {
+        char found[48];
+        message_fail(error, "bad_field", "at: expected " WHEN_FORMS ", found '%s'", quoted(text, found));
+        return false;
+    }
+    if (at_us > world->now_us - PAST_BEGINS_US) {
+        message_fail(error, "bad_field", "at: the past begins 3 s ago; without it the picture is of now");
+        return false;
+    }
+    view_travel(view, at_us, 0);
+    return true;
+}
+
 static bool apply(const struct params_world *world, enum role role, const json_t *o, struct view *view, struct message_error *error)
 {
     double w = 1280, h = 720;
@@ -233,7 +254,8 @@ static bool apply(const struct params_world *world, enum role role, const json_t
     view->tier = TIER_STILL;
     return query_camera(world->scene, o, view, error) && params_parse(world->scene->plant, o, &asked.params, error) &&
            split_parse(world->scene->plant, o, &asked.split, error) && access_message(role, &asked, error) &&
-           params_apply(world, &asked.params, view, error) && split_apply(world, &asked.split, view, error);
+           params_apply(world, &asked.params, view, error) && split_apply(world, &asked.split, view, error) &&
+           apply_at(world, o, view, error);
 }
 
 bool query_parse(const struct params_world *world, enum role role, const char *const *args, size_t count, struct view *view,

@@ -4,7 +4,8 @@
 #define NET_QUERY_H
 #include "net/access.h"
 
-/* args: `name=value`, decoded. place: NULL, or the `x` and `y` of a pick, which must be there then. False: *error says which is wrong. */
+/* args: `name=value`, decoded. place: NULL, or the `x` and `y` of a pick, which must be there then. `at` is an
+   instant: view->at_us, whose readings are yet to be found. False: *error says which is wrong. */
 bool query_parse(const struct params_world *world, enum role role, const char *const *args, size_t count, struct view *view,
                  double place[2], struct message_error *error);
 

@@ -319,9 +319,8 @@ static bool is_plain(const struct reading *reading)
     return reading->quality == QUALITY_GOOD && !reading->alarm;
 }
 
-char *reply_tags_text(const struct session_world *world, uint32_t *sent, bool all)
+char *reply_tags_text(const struct snapshot *snapshot, uint32_t *sent, bool all)
 {
-    const struct snapshot *snapshot = world->snapshot;
     json_t *values = json_array();
     int64_t oldest_ns = 0; /* of those whose row is short */
     for (size_t i = 0; i < snapshot->count; i++) {
@@ -362,11 +361,24 @@ static json_t *oldest_age_ms(const struct snapshot *snapshot)
     return oldest ? age_ms(oldest) : json_null();
 }
 
-char *reply_pong_text(const struct session_world *world, double t, int64_t now_utc_ns)
+char *reply_pong_text(const struct snapshot *snapshot, double t, int64_t now_utc_ns)
 {
     return print(json_pack("{s:s,s:f,s:I,s:o}", "type", "pong", "t", t, "time_us", us(now_utc_ns), "oldest_age_ms",
-                           oldest_age_ms(world->snapshot)),
+                           oldest_age_ms(snapshot)),
                  EXACT_DIGITS);
+}
+
+static json_t *instant(int64_t at_us)
+{
+    return at_us ? json_integer(at_us) : json_null();
+}
+
+char *reply_time_text(const struct session *session)
+{
+    const struct travel *travel = session->leader ? &session->leader->travel : &session->travel;
+    return print(json_pack("{s:s,s:o,s:f,s:o}", "type", "time", "at_us", instant(session_view(session)->at_us), "speed", travel->speed,
+                           "from_us", instant(session->world->history_first_us)),
+                 DIGITS);
 }
 
 char *reply_camera_text(const struct camera *camera, uint32_t seq)

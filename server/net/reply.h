@@ -9,9 +9,10 @@ char *reply_welcome_text(const struct session *session, int64_t now_utc_ns);
 char *reply_params_text(const struct session_world *world, const struct view *view, uint32_t seq);
 char *reply_following_text(const struct session_world *world, uint64_t session, const struct view *view); /* session 0: nobody */
 /* All values, or those that differ from `sent` (reading.changes by tag index), which is brought up to date. */
-char *reply_tags_text(const struct session_world *world, uint32_t *sent, bool all);
+char *reply_tags_text(const struct snapshot *snapshot, uint32_t *sent, bool all);
 char *reply_status_text(const struct session_world *world, int64_t now_utc_ns);
-char *reply_pong_text(const struct session_world *world, double t, int64_t now_utc_ns);
+char *reply_pong_text(const struct snapshot *snapshot, double t, int64_t now_utc_ns);
+char *reply_time_text(const struct session *session);
 char *reply_camera_text(const struct camera *camera, uint32_t seq);                   /* of a fit */
 char *reply_picked_text(const struct plant *plant, const struct pick_answer *answer); /* order.seq 0: of nobody's */
 char *reply_error_text(const struct message_error *error);

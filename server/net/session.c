@@ -26,6 +26,7 @@ void session_destroy(struct session **session_ptr)
     if (!session)
         return;
     session_drop_ready(session);
+    session_time_end(session);
     for (int i = 0; i < session->reply_count; i++)
         mem_free(session->replies[i]);
     mem_free(session->tag_changes);
@@ -197,7 +198,8 @@ static bool act(struct session *session, const struct message *message, int64_t 
     case MESSAGE_PICK: on_pick(session, message); return true;
     case MESSAGE_KEY_FRAME: session->always_pending = true; return true;
     case MESSAGE_CODECS: return session_choose_codec(session, &message->codecs, error);
-    case MESSAGE_PING: session_reply(session, reply_pong_text(session->world, message->t, now_utc_ns)); return true;
+    case MESSAGE_TIME: return session_on_time(session, &message->time, now_ns, now_utc_ns, error);
+    case MESSAGE_PING: session_reply(session, reply_pong_text(session_snapshot(session), message->t, now_utc_ns)); return true;
     }
     return true;
 }

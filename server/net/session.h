@@ -12,7 +12,7 @@
 #include "net/resume.h"
 #include "net/tokens.h"
 #include "scene/scene.h"
-#include "value/snapshot.h"
+#include "value/moments.h"
 
 enum { SESSION_MAX_REPLIES = 64 };
 #define SESSION_MAX_INPUT_BYTES (1024 * 1024) /* beyond that the connection is closed */
@@ -23,6 +23,8 @@ struct session_world {
     const struct scene *scene;
     const struct snapshot *snapshot;
     struct baselines *baselines;
+    struct moments *moments;  /* NULL: nothing is recorded, nobody can travel */
+    int64_t history_first_us; /* where what is recorded begins; 0: nothing is there yet */
     int64_t changed_ns;      /* monotonic: the snapshot in which readings were seen to change last */
     struct alarming *alarming;       /* NULL: there are none */
     struct alarms_said *alarms_said; /* NULL: every text is made anew */
@@ -39,6 +41,17 @@ struct session_world {
     struct resumes *resumes;      /* changed by hello */
     struct admission *admission;  /* its pixels are changed by hello and resize */
     struct tags_said *tags_said; /* NULL: every text is made anew */
+};
+
+/* Where in time a session is. What it shows is view.at_us, and moment. */
+struct travel {
+    const struct moment *moment; /* held; NULL: it shows now */
+    int64_t wanted_us;           /* the instant that it goes to; 0: it is there */
+    bool asked;                  /* it is being read */
+    bool first;                  /* nothing is drawn before it is there: it never looked at now */
+    double speed;                /* of play; 0: stands */
+    int64_t from_us, from_ns;    /* play was at from_us when the monotonic clock said from_ns */
+    int64_t stepped_ns;
 };
 
 struct session {
@@ -82,7 +95,10 @@ struct session {
     uint32_t leader_params_seq; /* as last told; so is its size */
     int leader_size_px[2];
 
-    bool owes_welcome, owes_params, owes_following, owes_tags_all, owes_tags, owes_status;
+    struct travel travel;
+    int64_t told_at_us; /* of what is shown, as the client was last told */
+
+    bool owes_welcome, owes_params, owes_following, owes_tags_all, owes_tags, owes_status, owes_time;
     uint32_t params_seq;                     /* to be answered */
     int64_t tags_ns, tags_all_ns, status_ns; /* last sent */
     uint32_t *tag_changes;                   /* reading.changes as last sent, by tag */
@@ -125,6 +141,10 @@ bool session_pick(struct session *session, struct pick_order *order);
 void session_on_pick(struct session *session, const struct pick_answer *answer);
 
 const struct view *session_view(const struct session *session); /* what it is shown: its own, or its leader's */
+const struct snapshot *session_snapshot(const struct session *session); /* the readings that it is shown: of now, or of an instant */
+/* True: the instant that is to be read for it, now. Play goes on, and may end in the present. */
+bool session_wants_moment(struct session *session, int64_t now_ns, int64_t now_utc_ns, int64_t *at_us);
+void session_on_moment(struct session *session, int64_t at_us, bool good, int64_t now_ns); /* it was read, or could not be */
 /* Answers session->follow_asked: leader NULL: from now on nobody's; session_follow_nobody: there is none such. */
 void session_follow(struct session *session, struct session *leader, int64_t now_ns);
 void session_follow_nobody(struct session *session);

@@ -39,5 +39,6 @@ void session_on_leader(struct session *session, int64_t now_ns)
     session->leader_params_seq = view->params_seq;
     size_px[0] = view->width_px;
     size_px[1] = view->height_px;
+    session_tell_time(session);
     session_on_input(session, now_ns);
 }

@@ -60,9 +60,11 @@ static bool begin_view(const struct session *session, const struct message *mess
         message_fail(error, "bad_field", "resume: there is no such view (any more); width, height and codecs are needed");
         return false;
     }
-    if (resumed)
+    if (resumed) {
         *view = resumed->view;
-    else
+        view_travel(view, 0, 0);
+    }
+    if (!resumed)
         view_default(session->world->scene, message->width_px, message->height_px, view);
     if (message->width_px) {
         view->width_px = message->width_px;
@@ -81,10 +83,11 @@ static bool begin_view(const struct session *session, const struct message *mess
 bool session_apply_params(const struct session *session, const struct message *message, struct view *view, struct message_error *error)
 {
     const struct session_world *world = session->world;
-    const struct params_world params = { world->scene, world->baselines, world->snapshot };
+    const struct params_world params = { .scene = world->scene, .baselines = world->baselines, .snapshot = session_snapshot(session) };
     struct view changed = *view;
     if (!params_apply(&params, &message->params, &changed, error) || !split_apply(&params, &message->split, &changed, error))
         return false;
+    view_travel(&changed, view->at_us, view->field.slot);
     *view = changed;
     return true;
 }
@@ -110,9 +113,14 @@ bool session_hello(struct session *session, const struct message *message, int64
     if (back)
         take_over(session, &resumed, message->resume);
     session->view = view;
+    if (message->time.has_at)
+        session_time_begin(session, message->time.at_us, message->time.speed);
+    else if (back)
+        session_time_begin(session, resumed.view.at_us, resumed.speed);
     session->resumed = back;
     session->pixel_ratio = message->pixel_ratio > 0 ? message->pixel_ratio : back ? resumed.pixel_ratio : 1;
     resumes_open(world->resumes, session, session->resume);
     session->hello = session->owes_welcome = session->owes_tags_all = session->owes_status = session->always_pending = true;
+    session->owes_time = world->moments != NULL;
     return true;
 }

@@ -18,6 +18,12 @@ bool session_may_draw(struct session *session, int width_px, int height_px, stru
 bool session_apply_params(const struct session *session, const struct message *message, struct view *view, struct message_error *error);
 
 void session_on_input(struct session *session, int64_t now_ns); /* what it is shown changes */
+/* session_time.c: it goes to an instant, plays, or comes back. */
+bool session_on_time(struct session *session, const struct time_wish *wish, int64_t now_ns, int64_t now_utc_ns,
+                     struct message_error *error);
+void session_time_begin(struct session *session, int64_t at_us, double speed); /* it begins there, not now */
+void session_time_end(struct session *session);
+void session_tell_time(struct session *session); /* what it is shown may be of another time than it was */
 void session_ask_follow(struct session *session, const struct message *message);
 void session_pause(struct session *session);    /* nothing moves: keep no picture for it */
 void session_on_shown(struct session *session); /* session->pacer.acked is on the client's screen */

@@ -43,13 +43,16 @@ static bool alarms_due(const struct session *session)
 
 bool session_has_text(const struct session *session, int64_t now_ns)
 {
-    return session->owes_welcome || session->reply_count > 0 || session->owes_params || session->owes_following ||
+    return session->owes_welcome || session->reply_count > 0 || session->owes_params || session->owes_following || session->owes_time ||
            status_due(session) || alarms_due(session) || tags_due(session, now_ns);
 }
 
 static void add_tags(struct session *session, int64_t now_ns, struct text *out)
 {
-    add_owned(out, tags_said_text(session->world->tags_said, session->world, session->tag_changes, session->owes_tags_all));
+    const struct session_world *world = session->world;
+    const struct snapshot *snapshot = session_snapshot(session);
+    struct tags_said *said = snapshot == world->snapshot ? world->tags_said : NULL;
+    add_owned(out, tags_said_text(said, snapshot, session->tag_changes, session->owes_tags_all));
     session->owes_tags = session->owes_tags_all = false;
     session->tags_ns = now_ns;
 }
@@ -68,6 +71,9 @@ bool session_next_text(struct session *session, int64_t now_ns, int64_t now_utc_
     } else if (session->owes_following) {
         add_owned(out, reply_following_text(world, session->leader ? session->leader->id : 0, session_view(session)));
         session->owes_following = false;
+    } else if (session->owes_time) {
+        add_owned(out, reply_time_text(session));
+        session->owes_time = false;
     } else if (status_due(session)) {
         add_owned(out, reply_status_text(world, now_utc_ns));
         session->owes_status = false;

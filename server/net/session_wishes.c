@@ -219,13 +219,13 @@ void session_choose_again(struct session *session, int64_t now_ns)
 
 bool session_wish(const struct session *session, int64_t now_ns, struct wish *wish)
 {
-    if (session->starting && now_ns - session->starting_ns < START_NS)
+    if ((session->starting && now_ns - session->starting_ns < START_NS) || (session->travel.first && !session->leader))
         return false;
     bool may_add = !session->ready && pacer_may_ask(&session->pacer, now_ns);
     if (!session->hello || session->hidden || (!may_add && session->pacer.asked == 0))
         return false;
     *wish = (struct wish){ .view = *session_view(session), .codec = session->codec, .asked_ns = now_ns, .only_replace = !may_add };
-    wish->read_ns = session->world->changed_ns;
+    wish->read_ns = wish->view.at_us ? 0 : session->world->changed_ns; /* what was does not change */
     wish->view.camera_seq = session->view.camera_seq;
     wish->view.params_seq = session->view.params_seq;
     return wants(session, now_ns, wish);

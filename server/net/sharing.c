@@ -63,10 +63,10 @@ static void answer_with(struct painter *painter, struct frame *frame, struct bat
         sharing_submit(painter, frame, batch, 0);
 }
 
-void sharing_leave_out_same(struct drawing *drawing, struct batch *batch)
+void sharing_leave_out_same(struct drawing *drawing, const struct snapshot *snapshot, struct batch *batch)
 {
     const struct wish *wish = &batch->orders[0].wish;
-    uint64_t content = canvas_content(drawing->renderer, &wish->view, drawing->snapshot);
+    uint64_t content = canvas_content(drawing->renderer, &wish->view, snapshot);
     bool overlay = wish->overlay;
     answer_same(drawing, batch, content);
     struct frame *frame = overlay ? NULL : recent_find(&drawing->recent, content, clock_mono_ns());

@@ -104,6 +104,8 @@ static void on_close(struct hub *hub, struct stream **slot)
     log_debug(hub->params.log, "session %llu: closed (%lld messages, %lld errors)", (unsigned long long)stream->session->id,
               (long long)stream->messages, (long long)stream->errors);
     painter_forget(hub->params.painter, stream->session->id);
+    if (hub->past)
+        past_forget(hub->past, stream->session->id);
     stream->peer->sessions--;
     session_leave(stream->session, may_return(stream), clock_mono_ns());
     session_destroy(&stream->session);
@@ -116,11 +118,23 @@ static void on_close(struct hub *hub, struct stream **slot)
 
 /* --- after anything happened to a session ---------------------------------------------------------------------------------- */
 
+/* Play goes on; those who follow come along. */
+static void travel(struct hub *hub, struct stream *stream, int64_t now_ns)
+{
+    struct session *session = stream->session;
+    int64_t before_us = session->view.at_us, at_us;
+    if (hub->past && session_wants_moment(session, now_ns, clock_utc_ns(), &at_us))
+        past_ask(hub->past, session->id, at_us);
+    if (session->view.at_us != before_us)
+        follow_spread(hub, stream);
+}
+
 static void pump(struct hub *hub, struct stream *stream)
 {
     struct session *session = stream->session;
     struct wish wish;
     int64_t now_ns = clock_mono_ns();
+    travel(hub, stream, now_ns);
     if (session->close_code && session->reply_count == 0 && !stream->close_code) {
         if (session->close_code == 1013)
             counter_inc(hub->counters.refused, 1);
@@ -192,7 +206,7 @@ void streams_on_tick(struct hub *hub, bool data_changed, bool links_changed)
         session_on_tick(stream->session, now_ns);
         if (stream->in_count > 0 && now_ns - stream->in_begin_ns > patience_ns)
             session_close(stream->session, 1008, "half a message, and for too long no more of it");
-        if (data_changed)
+        if (data_changed && session_view(stream->session)->at_us == 0)
             session_on_data(stream->session, hub->data_ns);
         stream->session->owes_status |= links_changed;
         count(hub, stream);
@@ -291,6 +305,15 @@ static void on_receive(struct hub *hub, struct stream *stream, const void *bytes
         text_add_bytes(&stream->in, bytes, len);
     if (lws_remaining_packet_payload(stream->wsi) == 0 && lws_is_final_fragment(stream->wsi))
         on_message(hub, stream);
+    pump(hub, stream);
+}
+
+void stream_on_moment(struct hub *hub, const struct past_answer *answer)
+{
+    struct stream *stream = stream_find(hub, answer->client);
+    session_on_moment(stream->session, answer->at_us, answer->good, clock_mono_ns());
+    if (follow_spread(hub, stream))
+        pump_followers(hub, stream);
     pump(hub, stream);
 }
 

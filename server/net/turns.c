@@ -106,17 +106,31 @@ void drawing_refresh(struct drawing *drawing)
         store_snapshot(painter->params.store, now_ns, clock_utc_ns(), drawing->snapshot);
 }
 
+const struct snapshot *drawing_readings(struct drawing *drawing, const struct view *view, const struct moment **moment)
+{
+    *moment = view->at_us ? moments_take(drawing->painter->params.moments, view->at_us) : NULL;
+    if (view->at_us)
+        return *moment ? &(*moment)->snapshot : NULL;
+    drawing_refresh(drawing);
+    return drawing->snapshot;
+}
+
 /* One question about a pixel. */
 static void answer_pick(struct drawing *drawing)
 {
     struct painter *painter = drawing->painter;
     struct pick_order order;
     struct pick pick;
+    const struct moment *moment;
     int64_t start_ns = clock_mono_ns();
     if (!picks_take(painter->picks, &order))
         return;
-    drawing_refresh(drawing);
-    pick_at(painter->params.scene, drawing->field, &order.view, drawing->snapshot, order.x_px, order.y_px, &pick);
+    const struct snapshot *snapshot = drawing_readings(drawing, &order.view, &moment);
+    if (!snapshot)
+        return;
+    pick_at(painter->params.scene, drawing->field, &order.view, snapshot, order.x_px, order.y_px, &pick);
+    if (moment)
+        moments_give(painter->params.moments, &moment);
     counter_inc(painter->picked, 1);
     counter_inc(painter->pick_us, (clock_mono_ns() - start_ns) / 1000);
     if (picks_give(painter->picks, &order, &pick))

@@ -66,6 +66,7 @@ static void add_colors(XXH3_state_t *state, const struct view *view)
 {
     double numbers[] = { view->colormap, view->ramp_interval, view->range_min, view->range_max };
     add(state, numbers, sizeof(numbers));
+    add(state, &view->at_us, sizeof(view->at_us)); /* the same picture of another instant says another time */
     add_field_params(state, &view->field);
     add_paint(state, &view->paint);
 }

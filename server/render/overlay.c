@@ -110,16 +110,27 @@ static void format_age(int64_t age_ns, char out[40])
         snprintf(out, 40, "%.0f h old", age_s / 3600);
 }
 
-/* Plant name; its clock, in its own time zone; the age of the oldest value that takes part. */
+enum { CLOCK_BYTES = 64 };
+
+/* In the plant's own time zone. */
+static void format_clock(int64_t utc_ns, char out[CLOCK_BYTES])
+{
+    time_t seconds = (time_t)(utc_ns / NS_PER_S);
+    struct tm local;
+    out[0] = 0;
+    if (localtime_r(&seconds, &local))
+        strftime(out, CLOCK_BYTES, "%Y-%m-%d %H:%M:%S %Z", &local);
+}
+
+/* Plant name; its clock; the age of the oldest value that takes part. */
 static void draw_header(struct pen *pen)
 {
-    char clock[64] = "", line[120], age[40] = "no values";
-    time_t seconds = (time_t)(pen->frame->data_utc_ns / NS_PER_S);
-    struct tm local;
-    if (localtime_r(&seconds, &local))
-        strftime(clock, sizeof(clock), "%Y-%m-%d %H:%M:%S %Z", &local);
+    char clock[CLOCK_BYTES], line[120], age[40] = "no values";
+    format_clock(pen->frame->data_utc_ns, clock);
     if (pen->frame->oldest_age_ns != INT64_MAX)
         format_age(pen->frame->oldest_age_ns, age);
+    if (pen->frame->view.at_us)
+        snprintf(age, sizeof(age), "as it was then");
     bool has_age = pen->frame->view.split || pen->frame->view.field.show != SHOW_DISTANCE; /* distances have none */
     snprintf(line, sizeof(line), has_age ? "%s  ·  %s" : "%s", clock, age);
     double pad = 8 * pen->unit;
@@ -153,9 +164,8 @@ static bool is_live(const struct pen *pen)
     return false;
 }
 
-static void draw_banner(struct pen *pen)
+static void draw_banner(struct pen *pen, const char *text, const double rgb[3])
 {
-    static const char text[] = "NO LIVE DATA";
     pen_font(pen, 1.5, true);
     double width = pen_text_width(pen, text), pad = 12 * pen->unit;
     struct box box = { 0.5 * (pen->frame->width_px - width) - pad, 0, width + 2 * pad, 1.5 * pen->text_px + 1.4 * pad };
@@ -163,11 +173,27 @@ static void draw_banner(struct pen *pen)
     if (box.x > pen->taken[0].x + pen->taken[0].width + pad)
         box.y = pad;
     round_path(pen->cairo, &box, 4 * pen->unit);
-    cairo_set_source_rgb(pen->cairo, 0.66, 0.12, 0.10);
+    cairo_set_source_rgb(pen->cairo, rgb[0], rgb[1], rgb[2]);
     cairo_fill(pen->cairo);
     cairo_set_source_rgb(pen->cairo, 1, 1, 1);
     pen_text(pen, box.x + pad, box.y + 0.7 * pad + 1.3 * pen->text_px, text);
     pen_take(pen, &box);
+}
+
+static const double NO_DATA_RGB[3] = { 0.66, 0.12, 0.10 }, PAST_RGB[3] = { 0.36, 0.18, 0.56 };
+
+/* A frame around all of it, and the words: nobody takes it for now, even where the banner is cut off. */
+static void draw_past(struct pen *pen)
+{
+    char text[CLOCK_BYTES + 40], clock[CLOCK_BYTES];
+    double width = fmax(2, 4 * pen->unit);
+    format_clock(pen->frame->data_utc_ns, clock);
+    snprintf(text, sizeof(text), "HISTORY  ·  %s%s", clock, is_live(pen) ? "" : "  ·  NO DATA");
+    cairo_rectangle(pen->cairo, 0.5 * width, 0.5 * width, pen->frame->width_px - width, pen->frame->height_px - width);
+    cairo_set_source_rgb(pen->cairo, PAST_RGB[0], PAST_RGB[1], PAST_RGB[2]);
+    cairo_set_line_width(pen->cairo, width);
+    cairo_stroke(pen->cairo);
+    draw_banner(pen, text, PAST_RGB);
 }
 
 static void choose_half(struct pen *pen, int half)
@@ -191,8 +217,10 @@ void overlay_draw(struct frame *frame, const struct scene *scene, const struct s
     pen->unit = fmin(fmax(fmin(frame->width_px / 1280.0, frame->height_px / 720.0), 0.5), 8);
     pen->text_px = fmax(13 * pen->unit, 9.5);
     draw_header(pen);
-    if (!is_live(pen))
-        draw_banner(pen);
+    if (frame->view.at_us)
+        draw_past(pen);
+    else if (!is_live(pen))
+        draw_banner(pen, "NO LIVE DATA", NO_DATA_RGB);
     for (int half = 0; half < (frame->view.split ? 2 : 1); half++) {
         choose_half(pen, half);
         if (pen->view.look != LOOK_MATERIALS) /* no field, nothing to explain */

@@ -181,6 +181,14 @@ static bool same_shown(const struct shown *a, const struct shown *b)
            a->range_min == b->range_min && a->range_max == b->range_max && same_paint(&a->paint, &b->paint) && a->look == b->look;
 }
 
+void view_travel(struct view *view, int64_t at_us, int slot)
+{
+    view->at_us = at_us;
+    view->field.slot = slot;
+    if (view->split)
+        view->right.field.slot = slot;
+}
+
 bool view_equal(const struct view *a, const struct view *b)
 {
     struct shown a_shown, b_shown;
@@ -189,6 +197,6 @@ bool view_equal(const struct view *a, const struct view *b)
     return a->width_px == b->width_px && a->height_px == b->height_px && same_camera(&a->camera, &b->camera) && a->tier == b->tier &&
            a->selected_asset == b->selected_asset && same_vector(a->light_dir, b->light_dir) &&
            a->environment == b->environment && same_shown(&a_shown, &b_shown) &&
-           visibility_equal(&a->visibility, &b->visibility) &&
+           visibility_equal(&a->visibility, &b->visibility) && a->at_us == b->at_us &&
            a->split == b->split && (!a->split || same_shown(&a->right, &b->right));
 }

@@ -57,6 +57,7 @@ struct view {
     double light_dir[3]; /* towards the sun, plant frame, unit length */
     int environment;     /* surroundings: 0 the built-in sky, then the plant's own */
     struct visibility visibility;
+    int64_t at_us;       /* the instant that is shown, UTC; 0: now. Set by view_travel */
     bool split;          /* two halves beside each other under one camera: this view left, `right` right */
     struct shown right;  /* zero where it is not split */
 };
@@ -74,6 +75,8 @@ enum { VIEW_ALL_LINES = VIEW_LINES + SCALE_EDGES };
 int view_lines(const struct view *view, double lines[VIEW_ALL_LINES]);
 /* Half 0 (all of it, where it is not split) or 1 as a view of its own. */
 void view_half(const struct view *view, int half, struct view *out);
+/* Shows that instant of the past (value/moments.h); 0: now. A field that was set anew is told again. */
+void view_travel(struct view *view, int64_t at_us, int slot);
 int view_left_px(const struct view *view); /* width of the left half; x at which the right one begins */
 /* Splits, with a half that was taken by view_half (or a whole view) on the right. */
 void view_split(struct view *view, const struct view *right);

@@ -27,7 +27,7 @@ const READ = {
     f32: (b, at) => b.readFloatLE(at),
     f32x3: (b, at) => [0, 4, 8].map((o) => b.readFloatLE(at + o)),
 };
-export const FLAG = { key: 1, still: 2, noLiveData: 4, more: 8 };
+export const FLAG = { key: 1, still: 2, noLiveData: 4, more: 8, past: 32 };
 
 export function readHeader(bytes) {
     return Object.fromEntries(FIELDS.map(([at, type, name]) => [name, READ[type](bytes, at)]));

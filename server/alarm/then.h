@@ -1,0 +1,12 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Which alarms readings of the past had: as the journal says, or, before it began, by their limits. */
+#ifndef ALARM_THEN_H
+#define ALARM_THEN_H
+#include "base/log.h"
+#include "plant/plant.h"
+#include "value/snapshot.h"
+
+/* Of snapshot->taken_utc_ns. folder: of the journal. 0 or -errno, logged. Thread: any. */
+int alarms_then(struct log *log, const char *folder, const struct plant *plant, struct snapshot *snapshot);
+
+#endif

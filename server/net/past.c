@@ -1,0 +1,198 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The thread that reads instants. */
+#include "net/past.h"
+
+#include <pthread.h>
+#include <string.h>
+
+#include "alarm/then.h"
+#include "base/clock.h"
+#include "base/mem.h"
+#include "history/history.h"
+
+static const int64_t SPAN_NS = 60 * NS_PER_S; /* months come and go no more often than that */
+
+struct wanted {
+    uint64_t client;
+    int64_t at_us;
+};
+
+struct past {
+    struct past_params params;
+    struct history_reader *reader; /* of the thread; so below */
+    struct history_tag *tags;
+    int64_t spanned_ns;
+    pthread_t thread;
+    bool started;
+    pthread_mutex_t lock;
+    pthread_cond_t wake;
+    /* --- below: under lock */
+    struct wanted *wanted; /* oldest first */
+    size_t count, capacity;
+    struct past_answer *answers, **last;
+    int64_t first_us;
+    bool stopping;
+};
+
+/* --- what is wanted, any thread ------------------------------------------------------------------------------------------------ */
+
+/* Under lock. */
+static void remove_at(struct past *past, size_t i)
+{
+    past->count--;
+    memmove(&past->wanted[i], &past->wanted[i + 1], (past->count - i) * sizeof(*past->wanted));
+}
+
+/* Under lock. */
+static size_t find(const struct past *past, uint64_t client)
+{
+    size_t i = 0;
+    while (i < past->count && past->wanted[i].client != client)
+        i++;
+    return i;
+}
+
+void past_ask(struct past *past, uint64_t client, int64_t at_us)
+{
+    pthread_mutex_lock(&past->lock);
+    size_t i = find(past, client);
+    if (i == past->count)
+        mem_grow(&past->wanted, &past->capacity, ++past->count, sizeof(*past->wanted));
+    past->wanted[i] = (struct wanted){ client, at_us };
+    pthread_cond_signal(&past->wake);
+    pthread_mutex_unlock(&past->lock);
+}
+
+void past_forget(struct past *past, uint64_t client)
+{
+    pthread_mutex_lock(&past->lock);
+    size_t i = find(past, client);
+    if (i < past->count)
+        remove_at(past, i);
+    pthread_mutex_unlock(&past->lock);
+}
+
+struct past_answer *past_collect(struct past *past)
+{
+    pthread_mutex_lock(&past->lock);
+    struct past_answer *answers = past->answers;
+    past->answers = NULL;
+    past->last = &past->answers;
+    pthread_mutex_unlock(&past->lock);
+    return answers;
+}
+
+int64_t past_first_us(struct past *past)
+{
+    pthread_mutex_lock(&past->lock);
+    int64_t first_us = past->first_us;
+    pthread_mutex_unlock(&past->lock);
+    return first_us;
+}
+
+/* --- the thread ---------------------------------------------------------------------------------------------------------------- */
+
+static bool read_moment(struct past *past, int64_t at_us)
+{
+    const struct moment *there = moments_take(past->params.moments, at_us);
+    if (there) {
+        moments_give(past->params.moments, &there);
+        return true;
+    }
+    struct snapshot *snapshot = snapshot_create(past->params.plant->tag_count);
+    bool good = history_at(past->reader, past->tags, at_us, snapshot) == 0 &&
+                alarms_then(past->params.log, past->params.folder, past->params.plant, snapshot) == 0;
+    if (good)
+        moments_add(past->params.moments, at_us, snapshot);
+    snapshot_destroy(&snapshot);
+    return good;
+}
+
+static void look_at_span(struct past *past)
+{
+    int64_t first_us = 0, last_us, now_ns = clock_mono_ns();
+    if (past->spanned_ns && now_ns - past->spanned_ns < SPAN_NS)
+        return;
+    past->spanned_ns = now_ns;
+    if (!history_span(past->reader, &first_us, &last_us)) {
+        first_us = 0;
+        past->spanned_ns = 0; /* nothing is there yet: look again with the next question */
+    }
+    pthread_mutex_lock(&past->lock);
+    past->first_us = first_us;
+    pthread_mutex_unlock(&past->lock);
+}
+
+static bool next_wanted(struct past *past, struct wanted *out)
+{
+    pthread_mutex_lock(&past->lock);
+    while (!past->stopping && past->count == 0)
+        pthread_cond_wait(&past->wake, &past->lock);
+    bool stopping = past->stopping;
+    if (!stopping) {
+        *out = past->wanted[0];
+        remove_at(past, 0);
+    }
+    pthread_mutex_unlock(&past->lock);
+    return !stopping;
+}
+
+static void *run(void *arg)
+{
+    struct past *past = arg;
+    struct wanted wanted;
+    look_at_span(past);
+    while (next_wanted(past, &wanted)) {
+        struct past_answer *answer = mem_new(sizeof(*answer));
+        look_at_span(past);
+        *answer = (struct past_answer){ .client = wanted.client, .at_us = wanted.at_us, .good = read_moment(past, wanted.at_us) };
+        pthread_mutex_lock(&past->lock);
+        *past->last = answer;
+        past->last = &answer->next;
+        pthread_mutex_unlock(&past->lock);
+        past->params.notify(past->params.notify_arg);
+    }
+    return NULL;
+}
+
+struct past *past_create(const struct past_params *params)
+{
+    struct past *past = mem_new(sizeof(*past));
+    past->params = *params;
+    past->reader = history_reader_create(params->log, params->folder);
+    past->tags = history_tags(params->plant);
+    past->last = &past->answers;
+    pthread_mutex_init(&past->lock, NULL);
+    pthread_cond_init(&past->wake, NULL);
+    int error = pthread_create(&past->thread, NULL, run, past);
+    past->started = !error;
+    if (error) {
+        log_err(params->log, "history: no thread to read instants of it: %s", strerror(error));
+        past_destroy(&past);
+    }
+    return past;
+}
+
+void past_destroy(struct past **pointer)
+{
+    struct past *past = *pointer;
+    if (!past)
+        return;
+    pthread_mutex_lock(&past->lock);
+    past->stopping = true;
+    pthread_cond_signal(&past->wake);
+    pthread_mutex_unlock(&past->lock);
+    if (past->started)
+        pthread_join(past->thread, NULL);
+    for (struct past_answer *answer = past->answers, *next; answer; answer = next) {
+        next = answer->next;
+        mem_free(answer);
+    }
+    history_reader_destroy(&past->reader);
+    mem_free(past->tags);
+    mem_free(past->wanted);
+    pthread_cond_destroy(&past->wake);
+    pthread_mutex_destroy(&past->lock);
+    mem_free(past);
+    *pointer = NULL;
+}

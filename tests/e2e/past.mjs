@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Travel in time against a real daemon, by the client that was written from PROTOCOL.md alone: what was, as it was, and nobody else notices.
+import assert from 'node:assert/strict';
+import { existsSync, statSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { Client, FLAG } from './conformance/client.mjs';
+import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+
+const absent = missing();
+const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
+const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
+const BEGIN_S = Math.floor(Date.now() / 1000) - 3600;
+const at = (s) => (BEGIN_S + s) * 1e6;
+let plant;
+
+// TI-1 rises from 10 by 1 a minute for half an hour; TI-2 stands at 40 and is bad from minute 10 to 20; then nothing is recorded.
+function series() {
+    const lines = ['Tag,Time,Value,Quality'];
+    for (let s = 0; s <= 1800; s += 10)
+        lines.push(`TI-1,${BEGIN_S + s},${10 + s / 60},Good`);
+    for (let s = 0; s <= 1800; s += 10)
+        lines.push(s >= 600 && s < 1200 ? `TI-2,${BEGIN_S + s},,0x80050000` : `TI-2,${BEGIN_S + s},40,Good`);
+    lines.push(`TI-1,${BEGIN_S + 1801},,0x80310000`, `TI-2,${BEGIN_S + 1801},,0x80310000`);
+    return `${lines.join('\n')}\n`;
+}
+
+before(async () => {
+    if (skip)
+        return;
+    plant = await TinyPlant.create();
+    assert.equal(plant.prepare().code, 0);
+    writeFileSync(join(plant.folder, 'series.csv'), series());
+    const imported = runProgram('plantcast', ['history', 'import', plant.file, join(plant.folder, 'series.csv')]);
+    assert.equal(imported.code, 0, imported.err);
+    await plant.startSim();
+    await plant.startDaemon();
+});
+after(() => plant?.destroy());
+
+async function open(fields) {
+    const client = await Client.open(plant.port);
+    client.welcome = await client.hello(fields);
+    return client;
+}
+
+async function travel(client, us, speed = 0) {
+    client.say('time', { at_us: us, speed });
+    const seen = await client.wait('the instant', () => client.texts.find((m) => m.type === 'time' && m.at_us === us));
+    await client.picture('of it', (p) => p.flags & FLAG.past && p.data_time_us === us);
+    return seen;
+}
+
+const reading = (client, index) => client.texts.filter((m) => m.type === 'tags').flatMap((m) => m.values).findLast((row) => row[0] === index);
+
+test('a session that says nothing is at now, and knows where history begins', { skip }, async () => {
+    const client = await open();
+    const time = await client.wait('a time with a beginning', () => client.texts.find((m) => m.type === 'time'));
+    assert.deepEqual([time.at_us, time.speed], [null, 0]);
+    const first = await client.picture('the first');
+    assert.equal(first.flags & FLAG.past, 0);
+    client.close();
+});
+
+test('pictures, tags, markers and picks are of the instant, with qualities as they were', { skip }, async () => {
+    const client = await open();
+    const seen = await travel(client, at(300.5));
+    assert.equal(seen.from_us, at(0));
+    const tags = await client.wait('tags of then', () => client.texts.find((m) => m.type === 'tags' && m.time_us === at(300.5)));
+    assert.equal(tags.values.length, 3, 'all of them');
+    assert.ok(Math.abs(reading(client, 0)[1] - (10 + 300.5 / 60)) < 0.2 && reading(client, 1)[1] === 40);
+    assert.deepEqual(reading(client, 2).slice(1, 3), [null, 'bad'], 'never recorded');
+    client.say('fit', { seq: 1, id: 'TI-1' });
+    const camera = await client.text('camera');
+    client.say('pick', { seq: 2, x: 160.5, y: 90.5, camera });
+    const picked = await client.text('picked');
+    assert.equal(picked.time_us, at(300.5));
+    assert.ok(Math.abs(picked.value - 15) < 0.5, `${picked.value}`);
+    await travel(client, at(900));
+    await client.wait('TI-2 lost', () => reading(client, 1)[2] === 'bad');
+    assert.equal(reading(client, 1)[3], 'Bad_CommunicationError');
+    await travel(client, at(2400));
+    const empty = await client.picture('of the time when nothing ran', (p) => p.data_time_us === at(2400));
+    assert.ok(empty.flags & FLAG.noLiveData && empty.oldest_age_ms === 0xffffffff);
+    client.close();
+});
+
+test('play goes on at its speed, stands, and comes back to now', { skip }, async () => {
+    const client = await open();
+    await travel(client, at(60), 120);
+    const began = performance.now();
+    await client.picture('ten seconds of the past later', (p) => p.flags & FLAG.past && p.data_time_us > at(180));
+    const took_s = (performance.now() - began) / 1000, gone_s = client.pictures.at(-1).data_time_us / 1e6 - BEGIN_S - 60;
+    assert.ok(gone_s <= 120 * (took_s + 1), `${gone_s} s of the past in ${took_s} s`);
+    const times = client.pictures.filter((p) => p.flags & FLAG.past).map((p) => p.data_time_us);
+    assert.deepEqual(times, [...times].sort((a, b) => a - b));
+    client.say('time', { speed: 0 });
+    const stood = await client.wait('a stand', () => client.texts.findLast((m) => m.type === 'time' && m.at_us && m.speed === 0));
+    await sleep(700);
+    assert.ok(client.pictures.at(-1).data_time_us <= Math.max(stood.at_us, times.at(-1)) + 120e6);
+    const before = client.pictures.at(-1).seq;
+    client.say('time', { at_us: null });
+    const now = await client.picture('of now', (p) => p.seq > before && !(p.flags & FLAG.past));
+    assert.ok(now.data_time_us > at(3500));
+    client.say('time', { at_us: at(3500), speed: 3600 });
+    await client.wait('the present', () => client.texts.findLast((m) => m.type === 'time')?.at_us === null &&
+        client.pictures.at(-1).data_time_us > at(3550) && !(client.pictures.at(-1).flags & FLAG.past));
+    client.close();
+});
+
+test('who looks at now never notices, and who follows comes along', { skip }, async () => {
+    const live = await open(), client = await open(), follower = await open();
+    follower.say('follow', { session: client.welcome.session });
+    await follower.text('following');
+    await live.picture('refined', (p) => p.flags & FLAG.still);
+    await travel(client, at(300), 600);
+    await follower.picture('of then too', (p) => p.flags & FLAG.past && p.data_time_us >= at(300));
+    await follower.wait('the time', () => follower.texts.find((m) => m.type === 'time' && m.at_us >= at(300) && m.speed === 600));
+    await follower.wait('tags of then', () => follower.texts.find((m) => m.type === 'tags' && m.time_us >= at(300) && m.time_us < at(3000)));
+    await sleep(1000);
+    assert.ok(live.pictures.every((p) => !(p.flags & FLAG.past) && p.data_time_us > at(3000)));
+    assert.ok(live.texts.filter((m) => m.type === 'tags').every((m) => m.time_us > at(3000)));
+    for (const one of [live, client, follower])
+        one.close();
+});
+
+test('the same instant is drawn once for all who look at it', { skip }, async () => {
+    const metric = async (name) => {
+        const text = await (await fetch(`http://127.0.0.1:${plant.port}/metrics`)).text();
+        return Number(text.match(new RegExp(`^${name} (\\d+)`, 'm'))[1]);
+    };
+    const first = await open(), second = await open();
+    await travel(first, at(444));
+    await first.picture('refined', (p) => p.flags & FLAG.still && p.data_time_us === at(444));
+    await second.picture('refined', (p) => p.flags & FLAG.still);
+    const shared = await metric('plantcast_renders_shared_total');
+    await travel(second, at(444));
+    await second.picture('refined', (p) => p.flags & FLAG.still && p.data_time_us === at(444));
+    assert.ok(await metric('plantcast_renders_shared_total') > shared);
+    first.close();
+    second.close();
+});
+
+test('who begins in the past, or comes back there, never sees now', { skip }, async () => {
+    const client = await Client.open(plant.port);
+    const { resume } = await client.hello({ at_us: at(600) });
+    assert.equal((await client.picture('the first')).data_time_us, at(600));
+    client.socket.destroy();
+    const again = await Client.open(plant.port);
+    again.say('hello', { resume });
+    assert.equal((await again.text('welcome')).resumed, true);
+    const first = await again.picture('the first again');
+    assert.deepEqual([first.data_time_us, first.flags & FLAG.past], [at(600), FLAG.past]);
+    again.close();
+});
+
+test('mistakes are answered by their names', { skip }, async () => {
+    const client = await open();
+    for (const fields of [{}, { at_us: 'noon' }, { at_us: -5 }, { speed: 2 }, { at_us: at(0), speed: 1e9 }]) {
+        client.say('time', fields);
+        const error = await client.text('error');
+        assert.deepEqual([error.code, error.about], ['bad_field', 'time'], JSON.stringify(fields));
+    }
+    client.close();
+});
+
+test('single pictures, pixels and films of the past', { skip, timeout: 120000 }, async () => {
+    const url = `http://127.0.0.1:${plant.port}/`, png = join(plant.folder, 'then.png'), film = join(plant.folder, 'then.mp4');
+    for (const [query, status] of [[`at=${BEGIN_S + 300}`, 200], ['at=yesterday', 400], ['at=-1s', 400], [`at=${BEGIN_S + 9000}`, 400]])
+        assert.equal((await fetch(`${url}snapshot.png?width=64&height=36&${query}`)).status, status, query);
+    const taken = runProgram('plantcast', ['snapshot', url, '--at', String(BEGIN_S + 300), '-o', png, '--size', '160x90', '--pick', '80,45']);
+    assert.equal(taken.code, 0, taken.err);
+    assert.equal(JSON.parse(taken.out).time_us, at(300));
+    assert.ok(existsSync(png));
+    const args = ['--from', String(BEGIN_S), '--to', String(BEGIN_S + 600), '--speed', '300', '--fps', '5', '--size', '160x90'];
+    for (const from of [url, plant.file]) {
+        const made = runProgram('plantcast', ['clip', from, '-o', film, ...args], 60000);
+        if (/without H\.264/.test(made.err))
+            return;
+        assert.equal(made.code, 0, made.err);
+        assert.match(made.out, /11 pictures, 2\.2 s/);
+        assert.ok(statSync(film).size > 2000);
+    }
+    const wrong = [['--from', '-1h'], ['--from', '-1h', '--to', '-2h'], ['--from', '-1h', '--to', 'x'], [...args, '--fps', '0'], [...args, '--pick', '1,1']];
+    for (const list of wrong)
+        assert.equal(runProgram('plantcast', ['clip', url, '-o', film, ...list]).code, 2, list.join(' '));
+    const odd = runProgram('plantcast', ['clip', plant.file, '-o', join(plant.folder, 'then.xyz'), ...args]);
+    assert.deepEqual([odd.code, /kind of film/.test(odd.err)], [1, true]);
+    const early = runProgram('plantcast', ['clip', plant.file, '-o', film, '--from', String(BEGIN_S - 60), ...args.slice(2)]);
+    assert.deepEqual([early.code, /nothing was recorded/.test(early.err), existsSync(film)], [1, true, true]);
+});

@@ -1,0 +1,349 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A session that travels in time: what it asks for, what it shows and says there, how it plays, and that others stay in the present. */
+#include <jansson.h>
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "net/past.h"
+#include "net/session.h"
+#include "tests/support/small_scene.h"
+#include "value/quality.h"
+
+#define HELLO "{\"type\":\"hello\",\"width\":640,\"height\":360,\"codecs\":[\"jpeg\"]%s}"
+static const int64_t NOW_US = INT64_C(1793500000000000), MS = NS_PER_MS;
+
+struct fixture {
+    struct session_world world;
+    struct quotas quotas;
+    struct admission admission;
+    struct snapshot *snapshot;
+    bool up[1];
+    struct session *session;
+    int64_t now_ns;
+    char resume[RESUME_CHARS + 1];
+};
+
+static int set_up(void **state)
+{
+    struct fixture *f = mem_new(sizeof(*f));
+    f->snapshot = snapshot_create(small_scene()->plant->tag_count);
+    f->up[0] = true;
+    f->world = (struct session_world){ .plant = small_scene()->plant, .scene = small_scene(), .snapshot = f->snapshot, .links_up = f->up };
+    f->world.version = "1.2.3";
+    f->world.moments = moments_create();
+    f->world.baselines = baselines_create();
+    f->world.history_first_us = NOW_US - INT64_C(3600000000);
+    f->quotas = quotas_default();
+    f->admission.quotas = f->world.quotas = &f->quotas;
+    f->world.admission = &f->admission;
+    f->world.resumes = resumes_create();
+    f->now_ns = 1000 * NS_PER_S;
+    f->session = session_create(&f->world, 7, f->now_ns);
+    *state = f;
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    struct fixture *f = *state;
+    session_destroy(&f->session);
+    snapshot_destroy(&f->snapshot);
+    moments_destroy(&f->world.moments);
+    baselines_destroy(&f->world.baselines);
+    resumes_destroy(&f->world.resumes);
+    mem_free(f);
+    return 0;
+}
+
+static int64_t utc_ns(const struct fixture *f)
+{
+    return NOW_US * 1000 + f->now_ns - 1000 * NS_PER_S;
+}
+
+static void say(struct fixture *f, const char *text)
+{
+    session_on_message(f->session, text, strlen(text), f->now_ns, utc_ns(f));
+}
+
+/* The newest text of that type, of all that are due. */
+static json_t *hear(struct fixture *f, const char *type)
+{
+    struct text text = { 0 };
+    json_t *found = NULL;
+    while (session_next_text(f->session, f->now_ns, utc_ns(f), &text)) {
+        json_t *message = json_loads(text.at, 0, NULL);
+        assert_non_null(message);
+        if (!strcmp(json_string_value(json_object_get(message, "type")), type)) {
+            json_decref(found);
+            found = message;
+        } else {
+            json_decref(message);
+        }
+        text.length = 0;
+    }
+    text_finish(&text);
+    return found;
+}
+
+static int64_t number(json_t *message, const char *name)
+{
+    int64_t value = json_integer_value(json_object_get(message, name));
+    json_decref(message);
+    return value;
+}
+
+static void expect_error(struct fixture *f, const char *code)
+{
+    json_t *message = hear(f, "error");
+    assert_non_null(message);
+    assert_string_equal(json_string_value(json_object_get(message, "code")), code);
+    json_decref(message);
+}
+
+static void greet(struct fixture *f, const char *more)
+{
+    char text[512];
+    snprintf(text, sizeof(text), HELLO, more);
+    say(f, text);
+    json_t *welcome = hear(f, "welcome");
+    assert_non_null(welcome);
+    snprintf(f->resume, sizeof(f->resume), "%s", json_string_value(json_object_get(welcome, "resume")));
+    json_decref(welcome);
+}
+
+static void go(struct fixture *f, int64_t ago_s, double speed)
+{
+    char text[128];
+    snprintf(text, sizeof(text), "{\"type\":\"time\",\"at_us\":%lld,\"speed\":%g}", (long long)(NOW_US - ago_s * 1000000), speed);
+    say(f, text);
+}
+
+/* What it asks for, in seconds before NOW; NAN: nothing. */
+static double wanted(struct fixture *f)
+{
+    int64_t at_us;
+    return session_wants_moment(f->session, f->now_ns, utc_ns(f), &at_us) ? (double)(NOW_US - at_us) / 1e6 : (double)NAN;
+}
+
+static void bring(struct fixture *f, double ago_s, double value)
+{
+    struct snapshot *snapshot = snapshot_create(f->snapshot->count);
+    int64_t at_us = NOW_US - (int64_t)llround(ago_s * 1e6);
+    snapshot->taken_utc_ns = at_us * 1000;
+    snapshot->readings[0] = (struct reading){ .value = value };
+    moments_add(f->world.moments, at_us, snapshot);
+    snapshot_destroy(&snapshot);
+    session_on_moment(f->session, at_us, true, f->now_ns);
+}
+
+static void test_an_instant_is_shown_once_it_was_read(void **state)
+{
+    struct fixture *f = *state;
+    struct wish wish;
+    greet(f, "");
+    go(f, 60, 0);
+    assert_true(f->session->view.at_us == 0);
+    assert_true(wanted(f) == 60);
+    assert_true(isnan(wanted(f))); /* asked once */
+    bring(f, 60, 5);
+    assert_true(session_wish(f->session, f->now_ns, &wish));
+    assert_true(wish.view.at_us == NOW_US - 60000000 && wish.view.field.slot == 1 && wish.urgency == URGENCY_INPUT);
+    assert_true(session_snapshot(f->session)->readings[0].value == 5);
+    json_t *tags = hear(f, "tags");
+    assert_int_equal(number(tags, "time_us"), NOW_US - 60000000);
+    assert_true(f->snapshot->readings[0].value == 0); /* nobody else's is touched */
+}
+
+static void test_the_client_is_told_where_it_is(void **state)
+{
+    struct fixture *f = *state;
+    greet(f, "");
+    go(f, 60, 0);
+    wanted(f);
+    bring(f, 60, 5);
+    json_t *time = hear(f, "time");
+    assert_non_null(time);
+    assert_int_equal(json_integer_value(json_object_get(time, "from_us")), f->world.history_first_us);
+    assert_int_equal(number(time, "at_us"), NOW_US - 60000000);
+    say(f, "{\"type\":\"time\",\"at_us\":null}");
+    time = hear(f, "time");
+    assert_true(json_is_null(json_object_get(time, "at_us")));
+    json_decref(time);
+    assert_true(f->session->view.at_us == 0 && f->session->view.field.slot == 0);
+    assert_ptr_equal(session_snapshot(f->session), f->snapshot);
+}
+
+static void test_play_goes_on_by_the_clock_and_ends_in_the_present(void **state)
+{
+    struct fixture *f = *state;
+    greet(f, "");
+    go(f, 60, 20);
+    assert_true(wanted(f) == 60);
+    bring(f, 60, 1);
+    assert_true(isnan(wanted(f)));
+    f->now_ns += 100 * MS;
+    assert_true(wanted(f) == 58);
+    bring(f, 58, 2);
+    f->now_ns += 1900 * MS; /* late: time does not wait */
+    assert_true(wanted(f) == 20);
+    say(f, "{\"type\":\"time\",\"speed\":0}");
+    bring(f, 20, 3);
+    f->now_ns += 5000 * MS;
+    assert_true(isnan(wanted(f)));
+    assert_true(f->session->view.at_us == NOW_US - 20000000);
+    say(f, "{\"type\":\"time\",\"speed\":100}");
+    f->now_ns += 1000 * MS;
+    assert_true(isnan(wanted(f)));
+    assert_true(f->session->view.at_us == 0 && f->session->travel.speed == 0 && !f->session->travel.moment);
+}
+
+static void test_backwards_it_stops_where_history_begins(void **state)
+{
+    struct fixture *f = *state;
+    greet(f, "");
+    go(f, 3590, -100);
+    wanted(f);
+    bring(f, 3590, 1);
+    f->now_ns += 1000 * MS;
+    assert_true(wanted(f) == 3600);
+    bring(f, 3600, 1);
+    f->now_ns += 1000 * MS;
+    assert_true(isnan(wanted(f)));
+    assert_true(f->session->travel.speed == 0);
+}
+
+static void test_who_drags_sees_what_was_read_on_the_way(void **state)
+{
+    struct fixture *f = *state;
+    greet(f, "");
+    go(f, 60, 0);
+    wanted(f);
+    go(f, 50, 0);
+    bring(f, 60, 1);
+    assert_true(f->session->view.at_us == NOW_US - 60000000);
+    assert_true(wanted(f) == 50);
+    bring(f, 50, 1);
+    assert_true(f->session->view.at_us == NOW_US - 50000000);
+    assert_true(isnan(wanted(f)));
+}
+
+static void test_what_cannot_be_read_is_said_and_changes_nothing(void **state)
+{
+    struct fixture *f = *state;
+    greet(f, "");
+    go(f, 60, 60);
+    wanted(f);
+    session_on_moment(f->session, NOW_US - 60000000, false, f->now_ns);
+    expect_error(f, "no_history");
+    assert_true(f->session->view.at_us == 0 && f->session->travel.speed == 0 && isnan(wanted(f)));
+    say(f, "{\"type\":\"time\",\"speed\":2}");
+    expect_error(f, "bad_field");
+    struct moments *moments = f->world.moments;
+    f->world.moments = NULL;
+    go(f, 60, 0);
+    expect_error(f, "no_history");
+    f->world.moments = moments;
+}
+
+static void test_the_newest_seconds_are_the_present(void **state)
+{
+    struct fixture *f = *state;
+    greet(f, "");
+    go(f, 2, 0);
+    assert_true(isnan(wanted(f)) && f->session->view.at_us == 0);
+}
+
+static void test_new_parameters_stay_in_the_past(void **state)
+{
+    struct fixture *f = *state;
+    greet(f, "");
+    go(f, 60, 0);
+    wanted(f);
+    bring(f, 60, 5);
+    say(f, "{\"type\":\"params\",\"seq\":1,\"group\":\"temperature\",\"split\":{\"interpolation\":\"paper\"}}");
+    assert_true(f->session->view.at_us == NOW_US - 60000000 && f->session->view.field.slot == 1 && f->session->view.right.field.slot == 1);
+    say(f, "{\"type\":\"params\",\"seq\":2,\"baseline\":{\"set\":\"then\"}}");
+    struct baseline list[BASELINES_NAMED];
+    assert_int_equal(baselines_list(f->world.baselines, list), 1);
+    assert_true(list[0].taken_utc_ns == (NOW_US - 60000000) * 1000);
+}
+
+static void test_whoever_begins_in_the_past_never_sees_the_present(void **state)
+{
+    struct fixture *f = *state;
+    char more[64];
+    struct wish wish;
+    snprintf(more, sizeof(more), ",\"at_us\":%lld,\"speed\":60", (long long)(NOW_US - 600000000));
+    greet(f, more);
+    assert_false(session_wish(f->session, f->now_ns, &wish));
+    assert_true(wanted(f) == 600);
+    bring(f, 600, 5);
+    assert_true(session_wish(f->session, f->now_ns, &wish));
+    assert_true(wish.view.at_us == NOW_US - 600000000);
+    f->now_ns += 1000 * MS;
+    assert_true(wanted(f) == 540);
+}
+
+static void test_who_comes_back_is_where_he_was(void **state)
+{
+    struct fixture *f = *state;
+    struct wish wish;
+    char more[128];
+    greet(f, "");
+    go(f, 60, 0);
+    wanted(f);
+    bring(f, 60, 5);
+    session_leave(f->session, true, f->now_ns);
+    session_destroy(&f->session);
+    f->session = session_create(&f->world, 8, f->now_ns);
+    snprintf(more, sizeof(more), ",\"resume\":\"%s\"", f->resume);
+    greet(f, more);
+    assert_false(session_wish(f->session, f->now_ns, &wish));
+    assert_true(wanted(f) == 60);
+    bring(f, 60, 5);
+    assert_true(session_wish(f->session, f->now_ns, &wish));
+    assert_true(wish.view.at_us == NOW_US - 60000000);
+}
+
+static void test_who_follows_comes_along(void **state)
+{
+    struct fixture *f = *state;
+    greet(f, "");
+    struct session *other = session_create(&f->world, 8, f->now_ns);
+    session_follow(other, f->session, f->now_ns);
+    go(f, 60, 0);
+    wanted(f);
+    bring(f, 60, 5);
+    session_on_leader(other, f->now_ns);
+    assert_true(session_view(other)->at_us == NOW_US - 60000000);
+    assert_true(session_snapshot(other)->readings[0].value == 5);
+    assert_true(other->owes_time && other->owes_tags_all);
+    session_destroy(&other);
+}
+
+#define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        TEST(test_an_instant_is_shown_once_it_was_read),
+        TEST(test_the_client_is_told_where_it_is),
+        TEST(test_play_goes_on_by_the_clock_and_ends_in_the_present),
+        TEST(test_backwards_it_stops_where_history_begins),
+        TEST(test_who_drags_sees_what_was_read_on_the_way),
+        TEST(test_what_cannot_be_read_is_said_and_changes_nothing),
+        TEST(test_the_newest_seconds_are_the_present),
+        TEST(test_new_parameters_stay_in_the_past),
+        TEST(test_whoever_begins_in_the_past_never_sees_the_present),
+        TEST(test_who_comes_back_is_where_he_was),
+        TEST(test_who_follows_comes_along),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
