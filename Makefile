@@ -28,7 +28,7 @@ ifneq ($(filter-out jpeg h264,$(CODECS))$(if $(filter jpeg,$(CODECS)),,none),)
 $(error CODECS=$(CODECS) is unknown: jpeg, or jpeg h264)
 endif
 ifneq ($(filter h264,$(CODECS)),)
-packages += libavcodec libavutil
+packages += libavcodec libavformat libavutil
 defines  := -DPLANTCAST_H264
 libyuv   := -lyuv
 endif
@@ -69,7 +69,9 @@ $(bin)/plantcastd: $(call objects,$(wildcard server/*.c)) $(archives)
 	$(link)
 $(bin)/plantcast-prep: $(call objects,preprocess/main.c) $(out)/lib/prep.a $(archives)
 	$(link)
-$(bin)/plantcast: $(call objects,$(wildcard clients/cli/*.c)) $(archives)
+cli_sources := $(if $(filter h264,$(CODECS)),,clients/cli/video.c)
+cli_sources := $(filter-out $(cli_sources),$(wildcard clients/cli/*.c))
+$(bin)/plantcast: $(call objects,$(cli_sources)) $(archives)
 	$(link)
 $(bin)/plantcast-sim: $(call objects,$(sim_sources)) $(archives)
 	$(link)

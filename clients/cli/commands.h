@@ -6,6 +6,7 @@
 #include <stdbool.h>
 
 int cmd_snapshot(int argc, char **argv); /* one picture: offline from a plant file, or from a daemon */
+int cmd_clip(int argc, char **argv);     /* a film of the past, likewise */
 int cmd_probe(int argc, char **argv);    /* load generator and latency table */
 int cmd_tags(int argc, char **argv);     /* the tags of a daemon with their values */
 /* address_base: 0, 1, or -1: not said. rtu: RTU frames in the connection. */

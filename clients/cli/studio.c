@@ -1,0 +1,171 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Draws a prepared plant, with values of a file or of the past. */
+#include "studio.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "alarm/then.h"
+#include "base/clock.h"
+#include "base/mem.h"
+#include "field/colormap.h"
+#include "history/when.h"
+#include "net/query.h"
+#include "plant/image_ramp.h"
+#include "render/overlay.h"
+#include "value/alarm.h"
+#include "values.h"
+
+static bool load_baseline(struct studio *studio, struct snapshot_options *options, struct diag *diag)
+{
+    static const char *const name = "baseline";
+    studio->baselines = baselines_create();
+    if (!options->baseline)
+        return true;
+    struct snapshot *snapshot = snapshot_create(studio->plant->tag_count);
+    bool good = values_read(studio->plant, options->baseline, snapshot, diag) && snapshot_add_arg(options, "baseline", name);
+    baselines_set(studio->baselines, name, snapshot);
+    snapshot_destroy(&snapshot);
+    return good;
+}
+
+static bool load_plant(struct studio *studio, struct snapshot_options *options)
+{
+    struct diag diag = { 0 };
+    studio->plant = plant_load(options->from, &diag);
+    bool good = studio->plant != NULL;
+    if (good) {
+        studio->snapshot = snapshot_create(studio->plant->tag_count);
+        studio->snapshot->taken_mono_ns = clock_mono_ns();
+        studio->snapshot->taken_utc_ns = options->at ? options->at_us * 1000 : clock_utc_ns();
+        setenv("TZ", studio->plant->time_zone, 1);
+        tzset();
+    }
+    for (size_t i = 0; i < options->value_count && studio->plant; i++)
+        good = values_read(studio->plant, options->values[i], studio->snapshot, &diag) && good;
+    if (good)
+        alarm_by_limits(studio->plant, studio->snapshot);
+    good = good && load_baseline(studio, options, &diag);
+    diag_print(&diag, stderr);
+    diag_finish(&diag);
+    return good;
+}
+
+static bool load_scene(struct studio *studio, const struct snapshot_options *options)
+{
+    char *folder = options->prepared ? mem_strdup(options->prepared) : plant_prepared_folder(studio->plant);
+    studio->scene = scene_create(studio->log, studio->plant, folder);
+    mem_free(folder);
+    return studio->scene != NULL;
+}
+
+static void set_up_field(struct studio *studio)
+{
+    studio->workers = workers_create(0);
+    studio->field = field_create(studio->workers, studio->scene);
+    field_set_baselines(studio->field, studio->baselines);
+}
+
+bool studio_open_gl(struct studio *studio, const struct snapshot_options *options)
+{
+    studio->gl = gl_create(studio->log, options->gl, options->has_gl_device ? &options->gl_device : NULL);
+    if (studio->gl)
+        studio->renderer = renderer_create(studio->log, studio->gl, studio->scene, studio->field);
+    if (studio->renderer)
+        renderer_set_per_fragment(studio->renderer, options->per_fragment);
+    return studio->renderer != NULL;
+}
+
+/* Those of the plant, and images that stand where a name could. */
+static bool add_colormaps(const struct studio *studio, const struct snapshot_options *options)
+{
+    static const char name[] = "colormap=";
+    colormaps_of_plant(studio->plant);
+    for (size_t i = 0; i < options->arg_count; i++) {
+        const char *path = options->args[i] + sizeof(name) - 1;
+        uint8_t rgb[256][3];
+        char why[IMAGE_WHY_BYTES];
+        if (strncmp(options->args[i], name, sizeof(name) - 1) != 0 || colormap_find(path) >= 0 || !strpbrk(path, "./"))
+            continue;
+        if (!image_ramp(path, rgb, why)) {
+            fprintf(stderr, "plantcast: --colormap: %s: %s\n", path, why);
+            return false;
+        }
+        colormap_add(path, (const uint8_t(*)[3])rgb);
+    }
+    return true;
+}
+
+int studio_open(struct studio *studio, struct snapshot_options *options, struct view *view)
+{
+    struct message_error error;
+    *studio = (struct studio){ .log = log_create(LOG_INFO) };
+    if (!load_plant(studio, options) || !load_scene(studio, options))
+        return 1;
+    if (!add_colormaps(studio, options))
+        return 2;
+    const struct params_world world = { .scene = studio->scene, .baselines = studio->baselines };
+    if (!query_parse(&world, ROLE_ENGINEER, (const char *const *)options->args, options->arg_count, view, NULL, &error)) {
+        fprintf(stderr, "plantcast: %s\n", error.text);
+        return 2;
+    }
+    set_up_field(studio);
+    return 0;
+}
+
+bool studio_open_history(struct studio *studio, const struct snapshot_options *options)
+{
+    char *folder = options->history ? mem_strdup(options->history) : plant_history_folder(studio->plant);
+    studio->history = folder;
+    studio->reader = history_reader_create(studio->log, folder);
+    studio->tags = history_tags(studio->plant);
+    bool good = history_span(studio->reader, &studio->first_us, &studio->last_us);
+    if (!good)
+        fprintf(stderr, "plantcast: %s: nothing was recorded here; --history names the folder\n", folder);
+    return good;
+}
+
+bool studio_travel(struct studio *studio, int64_t at_us, struct view *view)
+{
+    if (at_us < studio->first_us || at_us > studio->last_us) {
+        char at[WHEN_BYTES], first[WHEN_BYTES], last[WHEN_BYTES];
+        when_print(at_us, at);
+        when_print(studio->first_us, first);
+        when_print(studio->last_us, last);
+        fprintf(stderr, "plantcast: nothing was recorded at %s; it begins at %s and ends at %s\n", at, first, last);
+        return false;
+    }
+    view_travel(view, at_us, 0);
+    return history_at(studio->reader, studio->tags, at_us, studio->snapshot) == 0 &&
+           alarms_then(studio->log, studio->history, studio->plant, studio->snapshot) == 0;
+}
+
+struct frame *studio_draw(struct studio *studio, const struct snapshot_options *options, struct view *view)
+{
+    view->tier = options->moving ? TIER_MOVING : TIER_STILL;
+    struct frame *frame = canvas_draw(studio->renderer, view, studio->snapshot);
+    if (frame)
+        frame_read_markers(frame, studio->snapshot, studio->baselines);
+    if (frame && !options->no_overlay)
+        overlay_draw(frame, studio->scene, studio->snapshot);
+    return frame;
+}
+
+void studio_close(struct studio *studio)
+{
+    history_reader_destroy(&studio->reader);
+    mem_free(studio->tags);
+    mem_free(studio->history);
+    renderer_destroy(&studio->renderer);
+    gl_destroy(&studio->gl);
+    field_destroy(&studio->field);
+    workers_destroy(&studio->workers);
+    snapshot_destroy(&studio->snapshot);
+    baselines_destroy(&studio->baselines);
+    scene_destroy(&studio->scene);
+    plant_destroy(&studio->plant);
+    log_destroy(&studio->log);
+}
+
