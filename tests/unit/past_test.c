@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The thread that reads instants: what it gives back is what was recorded; the newest wish of a client counts; it says where history begins. */
+/* The thread that reads instants: what it gives back is what was recorded; the newest wish of a client counts. */
 #include "net/past.h"
 
 #include <setjmp.h>
