@@ -150,7 +150,8 @@ static void roles_are_kept(void **state)
     for (size_t i = 0; i < sizeof(actions) / sizeof(actions[0]); i++) {
         struct message message;
         struct message_error error;
-        char *text = mem_printf("{\"type\":\"alarm\",\"seq\":1,\"action\":\"%s\",\"alarms\":[[\"TT-1\",\"H\"]],\"for_s\":60,\"reason\":\"r\"}",
+        char *text = mem_printf("{\"type\":\"alarm\",\"seq\":1,\"action\":\"%s\",\"alarms\":[[\"TT-1\",\"H\"]],\"for_s\":60,"
+                                "\"reason\":\"r\"}",
                                 actions[i].action);
         assert_true(ask(s, text, &message, &error));
         for (int role = ROLE_OPEN; role <= ROLE_ENGINEER; role++)

@@ -4,7 +4,6 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { health } from '../../clients/web/core/health.js';
 import { orbit } from '../../clients/web/core/camera.js';
-import { limitState } from '../../clients/web/core/model.js';
 import { Timings } from '../../clients/web/core/timings.js';
 import { makeSession, vector, vectorBytes } from './fixtures.mjs';
 
@@ -359,14 +358,27 @@ test('stages of the pictures of the last seconds', () => {
     assert.equal(timings.of('network').p50, 5);
 });
 
-test('a value beyond a limit, by the tag\'s own limits only', () => {
-    const tag = { limits: { LL: null, L: 10, H: 80, HH: 90 } };
-    assert.deepEqual([5, 10, 50, 80, 95].map((v) => limitState(tag, v)), ['L', 'L', null, 'H', 'HH']);
-    assert.equal(limitState(tag, null), null);
+test('alarms: the gravest of a tag, and what is to be done first', () => {
     const { session, socket } = greeted();
-    const { model } = session;
-    assert.equal(model.worstLimit(model.assets[0]), null);
-    socket.say({ type: 'tags', time_us: 1, values: [[0, 165, 'good', 'Good', 0]] });
-    assert.equal(model.worstLimit(model.assets[0]), 'HH');
-    assert.equal(limitState({}, 95), null);
+    const { model } = session, { alarms } = model;
+    assert.equal(alarms.known, false);
+    assert.equal(model.worstAlarm(model.assets[0]), null);
+    socket.say(vector('server/alarms.json'));
+    assert.deepEqual([alarms.mode, alarms.known], ['local', true]);
+    assert.deepEqual(alarms.list().map(({ tag, kind, state }) => [tag.index, kind, state]),
+        [[0, 'HH', 'unacknowledged'], [1, 'BAD', 'returned']]);
+    assert.deepEqual(alarms.aside().map(({ kind, who, reason }) => [kind, who, reason]),
+        [['H', 'Kim (local)', 'transmitter is being changed']]);
+    assert.equal(alarms.gravest(0).kind, 'HH');
+    assert.deepEqual(alarms.counts(), { all: 2, waiting: 2, of: [0, 1, 0, 1] });
+    assert.deepEqual(alarms.actions(alarms.list()[0], 'operator'), ['acknowledge', 'shelve']);
+    assert.deepEqual(alarms.actions(alarms.list()[0], 'viewer'), [], 'the role does not allow it');
+    socket.say(vector('server/alarms-changed.json'));
+    assert.deepEqual(alarms.list().map(({ tag, kind }) => [tag.index, kind]), [[1, 'BAD'], [1, 'L']], 'what nobody has seen comes first');
+    assert.equal(alarms.gravest(0), null, 'normal again, or set aside');
+    assert.equal(model.worstAlarm({ tags: [model.tags[0], model.tags[1]] }).kind, 'L');
+    socket.say({ ...vector('server/alarms.json'), mode: 'display' });
+    assert.deepEqual(alarms.actions(alarms.list()[0], 'engineer'), [], 'the control system has its own');
+    session.actOnAlarm('acknowledge', [['TT-101', 'HH']]);
+    assert.deepEqual(socket.sent.at(-1), { type: 'alarm', seq: 1, action: 'acknowledge', alarms: [['TT-101', 'HH']] });
 });

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The equipment list: search, quality at a glance, the selected one's sensors with their values, and the way there.
 import { decimalsFor, numberText, qualityText, unitText } from '../core/format.js';
-import { limitState } from '../core/model.js';
 import { byId, glyph, make, setText } from './dom.js';
 
 const NARROW = '(max-width: 1023px)';
@@ -19,7 +18,8 @@ export class Assets {
         byId('assets-close').addEventListener('click', () => this.setOpen(false));
         session.on('welcome', () => this.build());
         session.on('params', () => this.mark());
-        session.on('tags', (changed) => this.update(changed));
+        session.on('tags', () => this.update());
+        session.on('alarms', () => this.update());
         this.setOpen(!this.narrow);
         window.matchMedia(NARROW).addEventListener('change', () => this.setOpen(!this.narrow));
     }
@@ -121,7 +121,7 @@ export class Assets {
             return;
         for (const row of this.rows.values()) {
             this.setQuality(row, row.button, model.worstQuality(row.asset) ?? 'none');
-            this.setLimit(row, row.button, model.worstLimit(row.asset));
+            this.setAlarm(row, row.button, model.worstAlarm(row.asset));
             for (const reading of row.readings.values())
                 this.updateReading(reading);
         }
@@ -140,14 +140,15 @@ export class Assets {
         value.classList.toggle('other', tag.group !== params.group);
         button.setAttribute('aria-pressed', this.selection.tag === tag.name);
         this.setQuality(reading, button, quality);
-        this.setLimit(reading, button, limitState(tag, number));
+        this.setAlarm(reading, button, model.alarms.gravest(tag.index));
     }
 
-    setLimit(row, parent, limit) {
-        if (row.limit === limit)
+    setAlarm(row, parent, alarm) {
+        const text = alarm ? `${alarm.kind} p${alarm.priority}` : '';
+        if (row.alarm === text)
             return;
-        row.limit = limit;
-        parent.querySelector('.flag').replaceChildren(...(limit ? [make('span', { class: `limit-flag ${limit}` }, limit)] : []));
+        row.alarm = text;
+        parent.querySelector('.flag').replaceChildren(...(alarm ? [make('span', { class: `limit-flag p${alarm.priority}` }, alarm.kind)] : []));
     }
 
     setQuality(row, parent, quality) {

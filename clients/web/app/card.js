@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The card of one sensor: what it is, what it says, whether that may be trusted, and how old it is.
 import { ageText, decimalsFor, numberText, qualityText, unitText } from '../core/format.js';
-import { limitState } from '../core/model.js';
 import { byId, glyph, icon, make, setText } from './dom.js';
 
-const LIMIT_WORDS = { HH: 'above the highest limit', H: 'above the high limit', L: 'below the low limit', LL: 'below the lowest limit' };
+const ALARM_WORDS = {
+    HH: 'above the highest limit', H: 'above the high limit', L: 'below the low limit', LL: 'below the lowest limit', BAD: 'bad measurement',
+    ALM: 'alarm',
+};
 const AWAY_PX = 16, WIDTH_PX = 248;
 
 export class Card {
@@ -44,10 +46,10 @@ export class Card {
         if (this.quality.textContent !== quality)
             this.quality.replaceChildren(glyph(reading.quality), quality);
         setText(this.age, ageText(model.ageMs(tag.index, performance.now())));
-        const limit = limitState(tag, reading.value);
-        this.limit.hidden = !limit;
-        if (limit)
-            this.limit.replaceChildren(make('span', { class: `limit-flag ${limit}` }, limit), ` ${LIMIT_WORDS[limit]}`);
+        const alarm = model.alarms.gravest(tag.index);
+        this.limit.hidden = !alarm;
+        if (alarm)
+            this.limit.replaceChildren(make('span', { class: `limit-flag p${alarm.priority}` }, alarm.kind), ` ${ALARM_WORDS[alarm.kind]}, ${alarm.state}`);
     }
 
     build(tag, asset) {

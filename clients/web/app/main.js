@@ -5,6 +5,7 @@ import { face } from '../core/camera.js';
 import { Connection } from '../core/connection.js';
 import { browserDecoding } from '../core/decoding.js';
 import { Session } from '../core/session.js';
+import { AlarmPanel } from './alarms.js';
 import { Assets } from './assets.js';
 import { Card } from './card.js';
 import { byId, setText } from './dom.js';
@@ -52,6 +53,7 @@ const card = new Card({ session, selection, overlay, viewport, onClose: () => se
 const timings = new TimingsPanel({ session });
 const views = new Views({ session, pilot });
 const place = new Place({ session, viewport });
+const alarms = new AlarmPanel({ session, onFly: (tag) => showTag(tag), refresh: () => refresh() });
 
 // --- selection
 
@@ -109,6 +111,7 @@ const commands = {
     home: () => session.model && pilot.flyHome(),
     help: () => byId('help').showModal(),
     timings: () => timings.toggle(),
+    alarms: () => alarms.toggle(),
     assets: () => assets.setOpen(!assets.open),
     search: () => assets.openSearch(),
     top: () => views.lookFrom('top'),
@@ -177,6 +180,7 @@ new ResizeObserver(refresh).observe(byId('viewport'));
 setInterval(() => card.tag && refresh(), 500); // its age goes on
 
 session.on('tags', refresh);
+session.on('alarms', refresh);
 session.on('params', () => {
     byId('viewport').classList.toggle('split', Boolean(session.params.split));
     saveAddress();

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Markers and labels, drawn crisply over the picture with the camera that the picture was drawn with.
+import { isWaiting } from '../core/alarms.js';
 import { projector } from '../core/camera.js';
 import { changeText, decimalsFor, numberText, unitText } from '../core/format.js';
 import { halves } from '../core/halves.js';
 import { FIRST_FAR, leaderLine, MOST_BAD, nearestMarker, placeLabels } from '../core/labels.js';
-import { limitState } from '../core/model.js';
 
 const INK = '#1d252d', INK_2 = '#4d5964', ACCENT = '#2a5f8f';
-const LIMIT_COLOURS = { HH: ['#c62828', '#fff'], LL: ['#c62828', '#fff'], H: ['#f0a30a', '#1b1300'], L: ['#f0a30a', '#1b1300'] };
+const ALARM_COLOURS = [['#c40d20', '#fff'], ['#e06a0a', '#1b0d00'], ['#f2bb0d', '#1b1300'], ['#1b93b5', '#00161d']]; // by priority
 const LABEL_HEIGHT = 20, PADDING = 6, NAMES_UP_TO = 24;
 const ISOLINE_SPACING_PX = 160;
 const REACH_PX = { mouse: 14, pen: 18, touch: 26 };
@@ -58,18 +58,19 @@ export class Overlay {
         const project = projector(picture.camera, width, picture.fullHeight);
         const markers = [];
         for (const tag of model.tags) {
-            const said = known ? known.get(`${tag.index}/${number}`) : { occluded: false, quality: null };
-            const place = said && tag.group === params.group && tag.position ? project(tag.position) : null;
+            const alarm = model.alarms.gravest(tag.index), shown = tag.group === params.group;
+            const unsaid = known && shown ? undefined : { occluded: false, quality: null };
+            const said = (shown && known?.get(`${tag.index}/${number}`)) || (alarm ? { occluded: true, quality: null } : unsaid);
+            const place = said && (shown || alarm) && tag.position ? project(tag.position) : null;
             if (!place || place[0] < -rim || place[1] < -rim || place[0] > width + rim || place[1] > picture.fullHeight + rim)
                 continue;
             const newest = model.readings[tag.index];
-            const shown = said.quality ? { ...newest, value: said.value, quality: said.quality } : newest; // as the picture has it
-            const difference = params.show === 'difference';
+            const pictured = said.quality ? { ...newest, value: said.value, quality: said.quality } : newest; // as the picture has it
+            const difference = params.show === 'difference' && shown;
             markers.push({
                 tag, x: (left + place[0]) * scale[0], y: place[1] * scale[1], depth: place[2], half: number,
-                occluded: said.occluded, reading: difference ? newest : shown,
+                occluded: said.occluded, reading: difference ? newest : pictured, alarm,
                 change: difference && (said.quality === 'bad' ? null : said.value ?? null), // false: the reading itself is shown
-                operator: params.show === 'operator',
             });
         }
         return markers;
@@ -172,30 +173,29 @@ export class Overlay {
 
     // All marks in sight and all rings, in order of tags; the card speaks for the chosen.
     labels() {
-        const ringed = ({ operator, reading }) => Boolean(operator && reading.alarm);
-        const marks = this.markers.filter((marker) => !marker.occluded || ringed(marker));
+        const marks = this.markers.filter((marker) => !marker.occluded || marker.alarm);
         const inSight = marks.filter(({ occluded }) => !occluded);
         marks.sort((a, b) => a.tag.index - b.tag.index || a.half - b.half);
         const tooMany = inSight.filter(({ reading }) => reading.quality === 'bad').length > MOST_BAD;
         const named = inSight.length <= NAMES_UP_TO;
         return marks.map((marker) => {
             const { tag, reading } = marker, id = `${tag.index}/${marker.half}`;
-            const limit = limitState(tag, reading.value);
+            const { alarm } = marker;
             const onSelected = tag.asset === this.session.params.selected;
-            const parts = this.parts(marker, limit, named || onSelected);
+            const parts = this.parts(marker, named || onSelected || alarm !== null);
             const width = Math.ceil(parts.reduce((sum, part) => sum + this.width(part), 0) + 2 * PADDING + (parts.length - 1) * 5);
-            const bad = reading.quality === 'bad', silent = marker.occluded || this.isChosen(tag) || (bad && tooMany);
-            const rank = silent ? -1 : limit ? 3 : bad ? 2 : reading.quality !== 'good' || onSelected ? 1 : 0;
+            const bad = reading.quality === 'bad', silent = (marker.occluded && !alarm) || this.isChosen(tag) || (bad && tooMany);
+            const rank = silent ? -1 : alarm ? 3 : bad ? 2 : reading.quality !== 'good' || onSelected ? 1 : 0;
             const { x, y, depth, half } = marker;
-            const held = this.places.get(id)?.slot, ring = ringed(marker);
-            return { id, half, x, y, width, height: LABEL_HEIGHT, rank, depth, held, parts, limit, ring };
+            const held = this.places.get(id)?.slot, ring = alarm !== null;
+            return { id, half, x, y, width, height: LABEL_HEIGHT, rank, depth, held, parts, alarm, ring };
         });
     }
 
     // Pieces of a label: [text, weight, colour].
-    parts({ tag, reading, change }, limit, withName) {
+    parts({ tag, reading, change, alarm }, withName) {
         const parts = withName ? [[tag.name, 400, INK_2]] : [];
-        const group = this.session.group, decimals = decimalsFor(group.max - group.min);
+        const group = this.session.model.group(tag.group), decimals = decimalsFor(group.max - group.min);
         if (change !== false && reading.quality !== 'bad') {
             parts.push([changeText(change, decimals), ...(this.fresh ? [650, INK] : [400, INK_2])]);
             parts.push([change === null ? '' : unitText(tag.unit || group.unit), 400, INK_2]);
@@ -205,8 +205,8 @@ export class Overlay {
             parts.push([numberText(reading.value, decimals), ...(this.fresh ? [650, INK] : [400, INK_2])]);
             parts.push([unitText(tag.unit || group.unit), 400, INK_2]);
         }
-        if (limit)
-            parts.push([limit, 700, null]);
+        if (alarm)
+            parts.push([alarm.kind, 700, null]);
         return parts;
     }
 
@@ -223,24 +223,27 @@ export class Overlay {
         this.context.font = `${weight} 12.5px ${this.font}`;
     }
 
-    // Alarm colours around a tag whose alarm is active, in the operator's view only.
-    drawAlarm(alarm) {
-        const c = this.context;
-        for (const [colour, width] of [[INK, 6], [LIMIT_COLOURS[alarm][0], 4]]) {
+    // Its colour says the priority, its form the state: thick, and slowly blinking while nobody has acknowledged it; thin; broken.
+    drawAlarm({ priority, state }) {
+        const c = this.context, blinks = isWaiting(state) && document.body.classList.contains('alarm-blink');
+        const wide = state === 'acknowledged' || blinks ? 2 : 4, colour = ALARM_COLOURS[priority - 1][0];
+        for (const [style, width, dash] of [[INK, wide + 2, []], [colour, wide, state === 'returned' || state === 'latched' ? [6, 4] : []]]) {
             c.beginPath();
             c.arc(0, 0, 10, 0, 2 * Math.PI);
             c.lineWidth = width;
-            c.strokeStyle = colour;
+            c.strokeStyle = style;
+            c.setLineDash(dash);
             c.stroke();
         }
+        c.setLineDash([]);
     }
 
-    drawMarker({ tag, x, y, occluded, reading, operator }) {
+    drawMarker({ tag, x, y, occluded, reading, alarm }) {
         const c = this.context, chosen = this.isChosen(tag);
         c.save();
         c.translate(x, y);
-        if (operator && reading.alarm)
-            this.drawAlarm(reading.alarm);
+        if (alarm)
+            this.drawAlarm(alarm);
         c.beginPath();
         (SHAPES[reading.quality] ?? SHAPES.bad)(c, occluded ? 2.5 : this.radius);
         c.lineWidth = occluded ? 1.25 : 1.5;
@@ -263,7 +266,7 @@ export class Overlay {
         }
         if (chosen) {
             c.beginPath();
-            c.arc(0, 0, 9.5, 0, 2 * Math.PI);
+            c.arc(0, 0, alarm ? 14.5 : 9.5, 0, 2 * Math.PI);
             c.lineWidth = 2.5;
             c.strokeStyle = ACCENT;
             c.stroke();
@@ -272,7 +275,7 @@ export class Overlay {
     }
 
     drawLabel(label, place) {
-        const { width, height, parts, limit } = label, { left, top } = place;
+        const { width, height, parts, alarm } = label, { left, top } = place;
         const c = this.context;
         if (place.slot >= FIRST_FAR) {
             const [x1, y1, x2, y2] = leaderLine(label, place, this.radius);
@@ -296,11 +299,11 @@ export class Overlay {
         for (const part of parts) {
             const wide = this.width(part);
             if (part[2] === null) {
-                c.fillStyle = LIMIT_COLOURS[limit][0];
+                c.fillStyle = ALARM_COLOURS[alarm.priority - 1][0];
                 c.fillRect(at - 3, y + 2.5, wide + 6, height - 5);
             }
             this.setFont(part[1]);
-            c.fillStyle = part[2] ?? LIMIT_COLOURS[limit][1];
+            c.fillStyle = part[2] ?? ALARM_COLOURS[alarm.priority - 1][1];
             c.fillText(part[0], at, y + height / 2 + 0.5);
             at += wide + 5;
         }

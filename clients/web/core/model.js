@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What is known of the plant: what `welcome` said, and the newest value, quality and age of every tag.
+import { Alarms } from './alarms.js';
 import { worst } from './format.js';
 import { decodeBase64 } from './wire.js';
 
@@ -12,6 +13,7 @@ export class Model {
         this.readings = this.tags.map(() => ({ value: null, quality: 'bad', qualityName: '', ageMs: null, alarm: null, at: 0 }));
         this.environments = welcome.environments ?? ['sky'];
         this.assets = welcome.assets.map((asset) => ({ ...asset, tags: this.tags.filter((tag) => tag.asset === asset.id) }));
+        this.alarms = new Alarms(this.tags);
         this.links = [];
         this.live = null; // nothing was said yet
         this.oldest = null; // { ms, at }: no reading that is not bad was older than that
@@ -75,24 +77,13 @@ export class Model {
         return oldest;
     }
 
-    // The gravest limit that one of its tags is beyond, or null.
-    worstLimit(asset) {
-        const states = new Set(asset.tags.map((tag) => limitState(tag, this.readings[tag.index].value)));
-        return LIMITS_BY_GRAVITY.find((name) => states.has(name)) ?? null;
+    // The gravest alarm of its tags that is to be seen, or null.
+    worstAlarm(asset) {
+        const alarms = asset.tags.map((tag) => this.alarms.gravest(tag.index)).filter(Boolean);
+        return alarms.sort((a, b) => a.priority - b.priority)[0] ?? null;
     }
 
     worstQuality(asset) {
         return worst(asset.tags.map((tag) => this.readings[tag.index].quality));
     }
-}
-
-const LIMITS_BY_GRAVITY = ['HH', 'LL', 'H', 'L'];
-
-// Beyond a limit, by the tag's own limits where the server sends them: "HH", "H", "L", "LL", or null.
-export function limitState(tag, value) {
-    const limits = tag.limits;
-    if (!limits || value === null)
-        return null;
-    const beyond = { HH: value >= limits.HH, LL: value <= limits.LL, H: value >= limits.H, L: value <= limits.L };
-    return LIMITS_BY_GRAVITY.find((name) => Number.isFinite(limits[name]) && beyond[name]) ?? null;
 }

@@ -23,7 +23,7 @@ const asAsked = (camera) => (camera.height_m === undefined ? camera : cameraOfMe
 
 export class Session {
     // wanted: { camera or null, params } from the page's address. Events: welcome, params, tags (indices), status, frame (frame),
-    // camera, error (message), denied (message: we need a token, or another one), ignored (what).
+    // alarms, alarmed (message), camera, error (message), denied (message: we need a token, or another one), ignored (what).
     constructor({ connection, now, wanted = { camera: null, params: {} }, codecs = ['jpeg', 'png'] }) {
         Object.assign(this, { connection, now, codecs });
         this.listeners = new Map();
@@ -36,7 +36,7 @@ export class Session {
         this.size = { width: 640, height: 360 };
         this.visible = true;
         this.unsent = {};        // parameters that were changed while nobody listened
-        this.cameraSeq = this.paramsSeq = this.fitSeq = this.pickSeq = 0;
+        this.cameraSeq = this.paramsSeq = this.fitSeq = this.pickSeq = this.alarmSeq = 0;
         this.cameraNews = false; // the server does not know the camera yet
         this.cameraInput = null; // when a hand made it; latency counts from there
         this.markers = new Map();
@@ -190,6 +190,12 @@ export class Session {
             this.connection.send({ type: 'pick', seq: ++this.pickSeq, x, y, camera: cameraMessage(asAsked(this.picture.camera)) });
     }
 
+    // alarms: [[tag, kind], ...]; answered by the event `alarmed`.
+    actOnAlarm(action, alarms, more = {}) {
+        if (this.welcomed)
+            this.connection.send({ type: 'alarm', seq: ++this.alarmSeq, action, alarms, ...more });
+    }
+
     // This frame is on the screen.
     drawn(frame, decodeMs) {
         const now = this.now();
@@ -315,6 +321,15 @@ export class Session {
             this.emit('picked', message);
     }
 
+    hearAlarms(message) {
+        this.model.alarms.hear(message);
+        this.emit('alarms');
+    }
+
+    hearAlarmed(message) {
+        this.emit('alarmed', message);
+    }
+
     hearStatus(message) {
         this.model.links = message.links;
         this.model.live = message.live;
@@ -389,6 +404,8 @@ const HANDLERS = {
     camera: Session.prototype.hearCamera,
     picked: Session.prototype.hearPicked,
     status: Session.prototype.hearStatus,
+    alarms: Session.prototype.hearAlarms,
+    alarmed: Session.prototype.hearAlarmed,
     error: Session.prototype.hearError,
     following: Session.prototype.hearFollowing,
     pong: Session.prototype.hearPong,

@@ -75,7 +75,7 @@ function ask(port, line) {
 }
 
 // A plant file of its own, with a port of its own; everything else is the demo's.
-function copyPlant(folder, modbusPort) {
+function copyPlant(folder, modbusPort, more) {
     for (const name of readdirSync(DEMO)) {
         if (name !== 'plant.yaml')
             symlinkSync(join(DEMO, name), join(folder, name));
@@ -84,14 +84,15 @@ function copyPlant(folder, modbusPort) {
     const moved = text.replace(/^(\s+port:\s*)\d+/m, `$1${modbusPort}`);
     if (moved === text)
         throw new Error('the demo plant has no source with a port');
-    writeFileSync(join(folder, 'plant.yaml'), moved);
+    writeFileSync(join(folder, 'plant.yaml'), moved + more);
     return join(folder, 'plant.yaml');
 }
 
-export async function startPlant() {
+// more: what else the plant file says.
+export async function startPlant(more = '') {
     const folder = mkdtempSync(join(tmpdir(), 'plantcast-e2e-'));
     const [modbusPort, controlPort, httpPort] = [await freePort(), await freePort(), await freePort()];
-    const file = copyPlant(folder, modbusPort);
+    const file = copyPlant(folder, modbusPort, more);
     const startDaemon = () => start('plantcastd', [file, '--port', String(httpPort)], 'plantcastd: ready');
     let sim, daemon;
     const plant = {

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Alarms: the strip that counts them in every view, the list, and what can be done about one.
+import { isWaiting } from '../core/alarms.js';
+import { ageText, decimalsFor, numberText, unitText, zoneClock } from '../core/format.js';
+import { byId, make, setText } from './dom.js';
+
+const WORDS = {
+    active: 'Active', unacknowledged: 'Unacknowledged', acknowledged: 'Acknowledged', returned: 'Returned, unacknowledged',
+    latched: 'Latched', shelved: 'Shelved', suppressed: 'Suppressed by design', out_of_service: 'Out of service',
+};
+const KINDS = { HH: 'High high', H: 'High', L: 'Low', LL: 'Low low', BAD: 'Bad measurement', ALM: 'Alarm' };
+const DO = { acknowledge: 'Acknowledge', shelve: 'Shelve…', reset: 'Reset', unshelve: 'Unshelve', in_service: 'Put in service' };
+const MODES = {
+    display: 'Shown here, acknowledged in the control system', mirror: 'As the control system has them', local: 'Local alarms of this site',
+};
+const SHOWN = 200; // rows at once
+
+const badge = (priority) => make('span', { class: `priority p${priority}`, title: `Priority ${priority}` }, String(priority));
+
+export class AlarmPanel {
+    // onFly(tag)
+    constructor({ session, onFly, refresh }) {
+        Object.assign(this, { session, onFly, refresh });
+        byId('alarm-strip').addEventListener('click', () => this.toggle());
+        byId('alarms-close').addEventListener('click', () => this.setOpen(false));
+        byId('shelve-form').addEventListener('submit', (event) => this.shelve(event));
+        byId('shelve-cancel').addEventListener('click', () => byId('shelve').close());
+        session.on('welcome', () => this.show());
+        session.on('alarms', () => this.show());
+        session.on('alarmed', (answer) => this.answered(answer));
+        setInterval(() => this.tick(), 500);
+    }
+
+    get alarms() {
+        return this.session.model?.alarms ?? null;
+    }
+
+    get open() {
+        return !byId('alarms').hidden;
+    }
+
+    toggle() {
+        this.setOpen(!this.open);
+    }
+
+    setOpen(open) {
+        byId('alarms').hidden = !open;
+        byId('alarm-strip').setAttribute('aria-expanded', open);
+        this.show();
+        if (open)
+            byId('alarms-close').focus();
+        else
+            byId('alarm-strip').focus();
+    }
+
+    // What nobody has acknowledged blinks, slowly; and ages go on.
+    tick() {
+        const waiting = Boolean(this.alarms?.counts().waiting) && !window.matchMedia('(prefers-reduced-motion: reduce)').matches;
+        document.body.classList.toggle('alarm-blink', waiting && !document.body.classList.contains('alarm-blink'));
+        if (waiting)
+            this.refresh();
+        if (this.open)
+            for (const [element, alarm] of this.ages ?? [])
+                setText(element, this.since(alarm));
+    }
+
+    show() {
+        if (!this.alarms?.known)
+            return;
+        this.showStrip();
+        if (this.open)
+            this.showList();
+    }
+
+    showStrip() {
+        const { all, waiting, of } = this.alarms.counts(), [newest] = this.alarms.list();
+        byId('alarm-strip').dataset.kind = waiting > 0 ? 'waiting' : all > 0 ? 'some' : 'none';
+        byId('alarm-counts').replaceChildren(...of.flatMap((count, i) => (count > 0 ? [badge(i + 1), make('b', {}, `×\u2009${count}`)] : [])));
+        const open = waiting > 0 ? `, ${waiting} not acknowledged` : '';
+        setText(byId('alarm-words'), all === 0 ? 'No active alarms' : `${all} active ${all === 1 ? 'alarm' : 'alarms'}${open}`);
+        setText(byId('alarm-newest'), newest ? `${newest.tag.name} ${KINDS[newest.kind]}${this.valueText(newest, ' at ')}` : '');
+        setText(byId('alarm-mode'), MODES[this.alarms.mode]);
+    }
+
+    showList() {
+        const list = this.alarms.list(), aside = this.alarms.aside();
+        this.ages = [];
+        byId('alarms-list').replaceChildren(...list.slice(0, SHOWN).map((alarm) => this.row(alarm)));
+        byId('alarms-none').hidden = list.length > 0;
+        byId('alarms-aside-head').hidden = aside.length === 0;
+        setText(byId('alarms-aside-head'), `Set aside (${aside.length})`);
+        byId('alarms-aside').replaceChildren(...aside.slice(0, SHOWN).map((alarm) => this.row(alarm)));
+        const more = Math.max(0, list.length - SHOWN) + Math.max(0, aside.length - SHOWN);
+        setText(byId('alarms-more'), more > 0 ? `and ${more} more` : '');
+    }
+
+    valueText({ tag, value, limit }, before) {
+        if (value === null || limit === null)
+            return '';
+        const group = this.session.model.group(tag.group), decimals = group ? decimalsFor(group.max - group.min) : 2;
+        return `${before}${numberText(value, decimals)} ${unitText(tag.unit || group?.unit)} (limit ${numberText(limit, decimals)})`;
+    }
+
+    since({ raisedUs }) {
+        const now = this.session.clockUs();
+        if (raisedUs === null || now === null)
+            return '';
+        const { time } = zoneClock(this.session.model.plant.time_zone)(raisedUs / 1000);
+        return `since ${time}, ${ageText((now - raisedUs) / 1000)}`;
+    }
+
+    // Who did what about it last, until when, and why.
+    note({ state, who, reason, untilUs, held }) {
+        const until = untilUs === null ? '' : `until ${zoneClock(this.session.model.plant.time_zone)(untilUs / 1000).time.slice(0, 5)}`;
+        const by = who && state !== 'unacknowledged' ? `by ${who}` : '';
+        return [until, by, reason, held ? 'measurement bad: as it last was' : ''].filter(Boolean).join(', ');
+    }
+
+    row(alarm) {
+        const { tag, kind, state, priority } = alarm;
+        const asset = this.session.model.asset(tag.asset), age = make('span', { class: 'since' }, this.since(alarm));
+        this.ages.push([age, alarm]);
+        const fly = make('button', { type: 'button', class: 'alarm-go', title: `Fly to ${tag.name}`, onclick: () => this.onFly(tag) },
+            badge(priority), make('span', { class: 'what' }, make('b', {}, tag.name), ` ${KINDS[kind]}${this.valueText(alarm, ', ')}`),
+            make('span', { class: 'where' }, [asset?.tag ?? asset?.id, tag.description].filter(Boolean).join(', ')),
+            make('span', { class: 'state' }, WORDS[state]), age, make('span', { class: 'note' }, this.note(alarm)));
+        const buttons = this.alarms.actions(alarm, this.session.role).map((action) =>
+            make('button', { type: 'button', 'data-action': action, onclick: () => this.act(action, alarm) }, DO[action]));
+        return make('li', { class: isWaiting(state) ? 'calls' : state, 'data-alarm': alarm.id }, fly, make('div', { class: 'do' }, ...buttons));
+    }
+
+    act(action, alarm) {
+        if (action !== 'shelve') {
+            this.session.actOnAlarm(action, [[alarm.tag.name, alarm.kind]]);
+            return;
+        }
+        this.shelving = alarm;
+        setText(byId('shelve-what'), `${alarm.tag.name} ${KINDS[alarm.kind]}`);
+        byId('shelve-reason').value = '';
+        byId('shelve').showModal();
+    }
+
+    shelve(event) {
+        event.preventDefault();
+        const { tag, kind } = this.shelving;
+        const reason = byId('shelve-reason').value.trim();
+        if (!reason)
+            return;
+        this.session.actOnAlarm('shelve', [[tag.name, kind]], { reason, for_s: Number(byId('shelve-for').value) });
+        byId('shelve').close();
+    }
+
+    answered({ refused }) {
+        setText(byId('alarms-refused'), refused.map(([tag, kind, why]) => `${tag} ${kind}: ${why}`).join('; '));
+    }
+}
+

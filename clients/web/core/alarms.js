@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The alarms that are not normal, as the server tells them: what is to be seen, and in what order.
+
+const CALLS = ['unacknowledged', 'active', 'returned', 'latched', 'acknowledged']; // what is to be seen
+const ACTIONS = { // by state; what can be done where the site keeps its own alarms
+    unacknowledged: ['acknowledge', 'shelve'], returned: ['acknowledge', 'shelve'], acknowledged: ['shelve'], latched: ['acknowledge', 'reset'],
+    shelved: ['unshelve'], out_of_service: ['in_service'],
+};
+const ROLES = { in_service: ['engineer'], out_of_service: ['engineer'] };
+
+export class Alarms {
+    constructor(tags) {
+        Object.assign(this, { tags, mode: 'display', known: false });
+        this.rows = new Map(); // "tag index/kind" -> alarm
+        this.byTag = new Map(); // tag index -> its gravest that is to be seen
+    }
+
+    hear({ mode, all, alarms }) {
+        Object.assign(this, { mode, known: true });
+        if (all)
+            this.rows.clear();
+        for (const [index, kind, state, priority, raisedUs, value, limit, active, held, untilUs = null, who = '', reason = ''] of alarms) {
+            const tag = this.tags[index], id = `${index}/${kind}`;
+            if (state === 'normal' || !tag)
+                this.rows.delete(id);
+            else
+                this.rows.set(id, { id, tag, kind, state, priority, raisedUs, value, limit, active, held, untilUs, who, reason });
+        }
+        this.byTag.clear();
+        for (const alarm of this.list()) {
+            const other = this.byTag.get(alarm.tag.index);
+            if (!other || alarm.priority < other.priority)
+                this.byTag.set(alarm.tag.index, alarm);
+        }
+    }
+
+    // Those that are to be seen: not yet acknowledged first, then by priority, the newest first.
+    list() {
+        const place = ({ state }) => (isWaiting(state) ? 0 : 1);
+        return [...this.rows.values()].filter(({ state }) => CALLS.includes(state))
+            .sort((a, b) => place(a) - place(b) || a.priority - b.priority || b.raisedUs - a.raisedUs);
+    }
+
+    aside() {
+        return [...this.rows.values()].filter(({ state }) => !CALLS.includes(state)).sort((a, b) => a.tag.index - b.tag.index);
+    }
+
+    gravest(index) {
+        return this.byTag.get(index) ?? null;
+    }
+
+    // { all, waiting: for somebody, of: by priority }
+    counts() {
+        const list = this.list(), of = [0, 0, 0, 0];
+        for (const { priority } of list)
+            of[priority - 1]++;
+        return { all: list.length, waiting: list.filter(({ state }) => isWaiting(state)).length, of };
+    }
+
+    actions(alarm, role) {
+        const may = (action) => (ROLES[action] ?? ['operator', 'engineer']).includes(role);
+        const own = this.mode !== 'local' ? [] : ACTIONS[alarm.state] ?? [];
+        return own.filter(may);
+    }
+}
+
+export const isWaiting = (state) => state === 'unacknowledged' || state === 'returned';

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Alarms in the browser: counted and marked in every view, listed, acknowledged, shelved, flown to.
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { DESKTOP, openPage, settle, shoot, TABLET, view, waitForHealth, waitForPicture } from './support/browser.mjs';
+import { missing, startPlant } from './support/plant.mjs';
+
+const why = missing();
+const options = { skip: why ?? false, timeout: 200000 };
+const HOT = 'TE-101';
+let plant, browser, page, tags;
+
+before(async () => {
+    if (why)
+        return;
+    plant = await startPlant('\nalarms: local\n');
+    browser = await openPage(plant.url, DESKTOP);
+    page = browser.page;
+    await waitForPicture(page);
+    await waitForHealth(page, 'live');
+    tags = await page.evaluate(() => globalThis.plantcast.session.model.tags.map(({ name, group, limits }) => ({ name, group, limits })));
+    await plant.freeze(tags.map(({ name }) => name));
+    for (const { name, limits } of tags.filter((tag) => tag.limits.H !== null)) // all are well, between L and H
+        await plant.ask(`set ${name} ${((limits.L ?? 0) + limits.H) / 2}`);
+});
+after(async () => {
+    await browser?.close();
+    await plant?.stop();
+});
+
+const words = () => page.locator('#alarm-words').textContent();
+const waitForWords = (pattern) => page.waitForFunction((p) => new RegExp(p).test(document.getElementById('alarm-words').textContent), pattern,
+    { timeout: 30000 });
+const limitOf = (name) => tags.find((tag) => tag.name === name).limits;
+// Of a tag's alarm: its ring's place over the picture, and the alarm itself. null: none is drawn.
+const ring = (name) => page.evaluate((tag) => {
+    const { overlay } = globalThis.plantcast, found = overlay.markers.find((marker) => marker.tag.name === tag && marker.alarm);
+    const box = document.getElementById('viewport').getBoundingClientRect();
+    return found ? { x: box.left + found.x, y: box.top + found.y, kind: found.alarm.kind, state: found.alarm.state } : null;
+}, name);
+const waitForRing = (name) => page.waitForFunction((tag) => globalThis.plantcast.overlay.markers.some((marker) => marker.tag.name === tag &&
+    marker.alarm), name, { timeout: 30000 });
+
+test('what comes beyond its limit is counted, marked and listed, the most urgent first', options, async () => {
+    await waitForWords('^No active alarms|returned|^\\d+ active');
+    const shaken = tags.find(({ group, limits }) => group === 'vibration' && limits.H !== null).name;
+    await plant.ask(`set ${shaken} ${limitOf(shaken).H + 0.1}`);
+    await plant.ask(`set ${HOT} ${limitOf(HOT).HH + 1}`);
+    await page.waitForFunction((hot) => globalThis.plantcast.session.model.alarms.list().some(({ tag, kind }) => tag.name === hot && kind === 'HH'),
+        HOT, { timeout: 30000 });
+    assert.match(await words(), /^\d+ active alarms, \d+ not acknowledged$/);
+    assert.match(await page.locator('#alarm-mode').textContent(), /Local alarms of this site/);
+    await waitForRing(HOT);
+    assert.deepEqual((({ kind, state }) => [kind, state])(await ring(HOT)), ['HH', 'unacknowledged']);
+    await page.locator('#alarm-strip').click();
+    const first = page.locator('#alarms-list li').first();
+    assert.match(await first.textContent(), new RegExp(`${HOT} High high, ${limitOf(HOT).HH + 1}`));
+    await settle(page);
+    await shoot(page, 'alarms-desktop');
+});
+
+test('whatever group and way of showing is chosen, it stays marked and counted', options, async () => {
+    const before = await words();
+    for (const params of [{ group: 'vibration' }, { group: 'pressure', show: 'operator' }, { group: 'temperature', show: 'distance', sensor: 'TE-102' },
+        { group: 'temperature', show: 'operator' }]) {
+        await page.evaluate((change) => globalThis.plantcast.session.setParams(change), params);
+        await settle(page);
+        assert.ok(await ring(HOT), JSON.stringify(params));
+        assert.equal(await words(), before);
+        if (params.group === 'vibration')
+            await shoot(page, 'alarms-other-group');
+    }
+    await shoot(page, 'alarms-operator');
+    await page.evaluate(() => globalThis.plantcast.session.setParams({ group: 'temperature', show: 'value' }));
+});
+
+test('an acknowledgement is done once, for everybody', options, async () => {
+    const other = await openPage(`${plant.url}?wall`, { viewport: { width: 1280, height: 720 } });
+    try {
+        await waitForPicture(other.page);
+        const id = await page.evaluate((hot) => globalThis.plantcast.session.model.alarms.list().find(({ tag, kind }) => tag.name === hot &&
+            kind === 'HH').id, HOT);
+        await page.locator(`li[data-alarm="${id}"] button[data-action="acknowledge"]`).click();
+        await other.page.waitForFunction((alarm) => globalThis.plantcast.session.model.alarms.rows.get(alarm)?.state === 'acknowledged', id);
+        await page.waitForFunction((alarm) => globalThis.plantcast.session.model.alarms.rows.get(alarm)?.state === 'acknowledged', id);
+        assert.ok(await other.page.locator('#alarm-strip').isVisible(), 'on a wall too');
+        assert.match(await page.locator(`li[data-alarm="${id}"]`).textContent(), /Acknowledged.*by local/s);
+        assert.equal(await page.locator(`li[data-alarm="${id}"] button[data-action="acknowledge"]`).count(), 0);
+        await shoot(other.page, 'alarms-wall');
+        assert.deepEqual(other.errors, []);
+    } finally {
+        await other.close();
+    }
+});
+
+test('a shelf needs a reason, and keeps the alarm from being seen', options, async () => {
+    const id = await page.evaluate((hot) => globalThis.plantcast.session.model.alarms.list().find(({ tag, kind }) => tag.name === hot &&
+        kind === 'HH').id, HOT);
+    await page.locator(`li[data-alarm="${id}"] button[data-action="shelve"]`).click();
+    await page.locator('#shelve button[type="submit"]').click();
+    assert.ok(await page.locator('#shelve').isVisible(), 'without a reason nothing happens');
+    await shoot(page, 'alarms-shelve');
+    await page.locator('#shelve-reason').fill('transmitter is being changed');
+    await page.locator('#shelve button[type="submit"]').click();
+    const row = page.locator(`#alarms-aside li[data-alarm="${id}"]`);
+    await row.waitFor();
+    assert.match(await row.textContent(), /Shelved.*until \d\d:\d\d, by local, transmitter is being changed/s);
+    await row.locator('button[data-action="unshelve"]').click();
+    await page.locator(`#alarms-list li[data-alarm="${id}"].calls`).waitFor(); /* there it is again, as if new */
+});
+
+test('a click flies there, in its own group, and back to normal is said', options, async () => {
+    await page.evaluate(() => globalThis.plantcast.session.setParams({ group: 'pressure' }));
+    const { camera } = await view(page);
+    await page.locator('#alarms-list li .alarm-go').first().click();
+    await page.waitForFunction(() => globalThis.plantcast.session.params.group === 'temperature');
+    await page.waitForFunction((eye) => Math.hypot(...globalThis.plantcast.session.camera.eye.map((x, i) => x - eye[i])) > 1, camera.eye);
+    assert.equal(await page.evaluate(() => globalThis.plantcast.selection?.tag ?? document.querySelector('#card h3').textContent), HOT);
+    await page.waitForTimeout(1500);
+    await settle(page);
+    await shoot(page, 'alarms-fly');
+    await plant.ask(`set ${HOT} ${limitOf(HOT).H - 10}`);
+    await page.waitForFunction((hot) => globalThis.plantcast.session.model.alarms.list().every(({ tag, state }) => tag.name !== hot ||
+        state === 'returned'), HOT, { timeout: 30000 });
+    assert.deepEqual(browser.errors, []);
+});
+
+test('on a tablet in both orientations', options, async () => {
+    await plant.ask(`set ${HOT} ${limitOf(HOT).HH + 1}`);
+    for (const [name, screen] of [['landscape', TABLET], ['portrait', { ...TABLET, viewport: { width: 768, height: 1024 } }]]) {
+        const tablet = await openPage(plant.url, screen);
+        try {
+            await waitForPicture(tablet.page);
+            await tablet.page.waitForFunction(() => globalThis.plantcast.session.model.alarms.list().length > 0);
+            await settle(tablet.page);
+            await tablet.page.locator('#alarm-strip').tap();
+            const small = await tablet.page.evaluate(() => [...document.querySelectorAll('#alarms button, #alarm-strip')]
+                .filter((e) => e.getClientRects().length > 0 && e.getBoundingClientRect().height < 37.5).map((e) => e.id || e.textContent));
+            assert.deepEqual(small, []);
+            await shoot(tablet.page, `alarms-tablet-${name}`);
+            assert.deepEqual(tablet.errors, []);
+        } finally {
+            await tablet.close();
+        }
+    }
+});
