@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a cut opens: the inner side of a surface, flat and neutral, darker than no data and with faint stripes that lean the other way.
-vec3 section_color()
+// What a cut opens, flat and neutral: the inner side of a surface; and, darker, with stripes that lean the other way than those of
+// no data, a body that is solid as far as the model says.
+const vec3 INSIDE = vec3(0.40, 0.41, 0.43);
+
+vec3 cap_color()
 {
     float phase = fract((gl_FragCoord.x - gl_FragCoord.y) / (0.9 * frame.scale.w));
-    return mix(vec3(0.36, 0.37, 0.39), vec3(0.31, 0.32, 0.34), smoothstep(0.28, 0.40, abs(phase - 0.5)));
+    return mix(vec3(0.36, 0.37, 0.39), vec3(0.29, 0.30, 0.32), smoothstep(0.28, 0.40, abs(phase - 0.5)));
 }

@@ -46,7 +46,7 @@ void main()
 {
 #ifdef CLIP
     if (!gl_FrontFacing) {
-        color = vec4(section_color(), 1.0);
+        color = vec4(INSIDE, 1.0);
         return;
     }
 #endif

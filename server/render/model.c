@@ -169,6 +169,16 @@ int model_draw_seen(struct model_draws *draws, const struct model *model, const 
     return (int)(indices / 3);
 }
 
+void model_draw_closed(struct model_draws *draws, const struct model *model, const struct model_level *level)
+{
+    const struct closed *closed = asset_closed(model->file, (uint32_t)(level - model->levels));
+    size_t count = 0;
+    for (size_t i = 0; i < closed->run_count; i++)
+        count = add_draw(draws, count, closed->runs[i].first_index, closed->runs[i].index_count);
+    if (count > 0)
+        glMultiDrawElements(GL_TRIANGLES, draws->counts, GL_UNSIGNED_INT, draws->offsets, (GLsizei)count);
+}
+
 void model_draws_finish(struct model_draws *draws)
 {
     mem_free(draws->counts);

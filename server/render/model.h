@@ -60,5 +60,7 @@ void model_draw_batch(const struct model_batch *batch);
 /* The same without the clusters that are not seen, where vertices are the cost. Returns how many triangles were drawn. */
 int model_draw_seen(struct model_draws *draws, const struct model *model, const struct model_batch *batch, const struct culling *culling,
                     bool double_sided);
+/* Only closed bodies (scene/closed.h), all of them. */
+void model_draw_closed(struct model_draws *draws, const struct model *model, const struct model_level *level);
 
 #endif

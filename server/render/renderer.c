@@ -51,7 +51,7 @@ struct renderer *renderer_create(struct log *log, struct gl *gl, const struct sc
     environments_bind(&renderer->environments, 0);
     if (!stage_init(&renderer->stage, gl, scene) || !light_init(&renderer->light, &renderer->stage, &renderer->environments) ||
         !solid_init(&renderer->solid, log) || !sky_init(&renderer->sky, log) || !lines_init(&renderer->lines, log) ||
-        !ghosts_init(&renderer->ghosts, log) || !markers_init(&renderer->markers, log) ||
+        !ghosts_init(&renderer->ghosts, log) || !caps_init(&renderer->caps, log) || !markers_init(&renderer->markers, log) ||
         !isolines_init(&renderer->isolines, log, scene->asset_count)) {
         renderer_destroy(&renderer);
         return NULL;
@@ -78,6 +78,7 @@ void renderer_destroy(struct renderer **renderer_ptr)
     isolines_finish(&renderer->isolines);
     markers_finish(&renderer->markers);
     ghosts_finish(&renderer->ghosts);
+    caps_finish(&renderer->caps);
     lines_finish(&renderer->lines);
     sky_finish(&renderer->sky);
     solid_finish(&renderer->solid);

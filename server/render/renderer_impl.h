@@ -3,6 +3,7 @@
 #ifndef RENDER_RENDERER_IMPL_H
 #define RENDER_RENDERER_IMPL_H
 #include "gpu/readback.h"
+#include "render/caps.h"
 #include "render/draft.h"
 #include "render/ghosts.h"
 #include "render/isolines.h"
@@ -30,6 +31,7 @@ struct renderer {
     struct sky sky;
     struct lines lines;
     struct ghosts ghosts;
+    struct caps caps;
     struct markers markers;
     struct isolines isolines;
     struct readback readback;

@@ -105,6 +105,8 @@ static struct bit draw_bit(struct renderer *renderer, struct stroke *stroke)
         stroke->next += stroke->span;
         stroke->span = 0;
         stroke->drawn = 0;
+        if (stroke->next == stroke_cells(stroke))
+            caps_draw(&renderer->caps, &stroke->picture);
     }
     return bit;
 }

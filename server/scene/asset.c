@@ -47,7 +47,9 @@ struct asset *asset_open(struct log *log, const char *path)
     if (!asset_view_init(&asset->view, map, bytes, why)) {
         log_err(log, "asset file %s: %s", path, why);
         asset_unref(&asset);
+        return NULL;
     }
+    asset->closed = mem_array(asset->view.header->level_count, sizeof(*asset->closed));
     return asset;
 }
 
@@ -63,7 +65,34 @@ void asset_unref(struct asset **asset_ptr)
     *asset_ptr = NULL;
     if (!asset || atomic_fetch_sub_explicit(&asset->refs, 1, memory_order_acq_rel) != 1)
         return;
+    asset_forget_closed(asset);
     munmap(asset->map, asset->bytes);
     mem_free(asset->path);
     mem_free(asset);
+}
+
+const struct closed *asset_closed(const struct asset *asset, uint32_t level)
+{
+    struct closed *known = atomic_load(&asset->closed[level]);
+    if (known)
+        return known;
+    struct closed *found = mem_new(sizeof(*found));
+    closed_find(&asset->view, level, found);
+    if (atomic_compare_exchange_strong(&asset->closed[level], &known, found))
+        return found;
+    closed_finish(found); /* another thread was faster */
+    mem_free(found);
+    return known;
+}
+
+void asset_forget_closed(struct asset *asset)
+{
+    for (uint32_t i = 0; asset->closed && i < asset->view.header->level_count; i++) {
+        struct closed *closed = atomic_load(&asset->closed[i]);
+        if (closed)
+            closed_finish(closed);
+        mem_free(closed);
+    }
+    mem_free(asset->closed);
+    asset->closed = NULL;
 }

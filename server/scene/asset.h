@@ -4,6 +4,7 @@
 #define SCENE_ASSET_H
 #include "base/log.h"
 #include "protocol/asset_format.h"
+#include "scene/closed.h"
 
 struct asset {
     char *path;
@@ -11,11 +12,15 @@ struct asset {
     void *map;
     size_t bytes;
     _Atomic int refs;
+    struct closed *_Atomic *closed; /* by level; NULL: nobody asked yet */
 };
 
 /* NULL on failure, logged with path and reason. */
 struct asset *asset_open(struct log *log, const char *path);
 struct asset *asset_ref(struct asset *asset);
 void asset_unref(struct asset **asset); /* &NULL is fine; leaves NULL */
+void asset_forget_closed(struct asset *asset); /* nobody may use them any more */
+/* Found when it is first asked for, which takes some milliseconds for each 100,000 triangles. */
+const struct closed *asset_closed(const struct asset *asset, uint32_t level);
 
 #endif

@@ -64,8 +64,13 @@ static void cross(const double a[3], const double b[3], double out[3])
     out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
+struct crossing {
+    double t, u, v;
+    bool back; /* it is left there */
+};
+
 /* Moeller and Trumbore, "Fast, minimum storage ray/triangle intersection", 1997. The determinant is negative where a back is seen. */
-static void try_triangle(struct search *search, const uint32_t corners[3], bool one_sided)
+static bool cross_triangle(const struct search *search, const uint32_t corners[3], struct crossing *out)
 {
     const float *a = search->view->positions_m[corners[0]], *b = search->view->positions_m[corners[1]],
                 *c = search->view->positions_m[corners[2]];
@@ -77,20 +82,29 @@ static void try_triangle(struct search *search, const uint32_t corners[3], bool 
     }
     cross(search->direction, ac, p);
     double determinant = dot(ab, p);
-    if (determinant == 0 || (one_sided && determinant < 0))
-        return;
+    if (determinant == 0)
+        return false;
     double u = dot(s, p) / determinant;
     if (u < -RIM || u > 1 + RIM)
-        return;
+        return false;
     cross(s, ab, q);
-    double v = dot(search->direction, q) / determinant, t = dot(ac, q) / determinant;
-    if (v < -RIM || u + v > 1 + RIM || t < search->low || t >= search->limit)
+    double v = dot(search->direction, q) / determinant;
+    if (v < -RIM || u + v > 1 + RIM)
+        return false;
+    *out = (struct crossing){ dot(ac, q) / determinant, u, v, determinant < 0 };
+    return true;
+}
+
+static void try_triangle(struct search *search, const uint32_t corners[3], bool one_sided)
+{
+    struct crossing at;
+    if (!cross_triangle(search, corners, &at) || (one_sided && at.back) || at.t < search->low || at.t >= search->limit)
         return;
     memcpy(search->hit->corners, corners, sizeof(search->hit->corners));
-    memcpy(search->hit->weights, (double[3]){ 1 - u - v, u, v }, sizeof(search->hit->weights));
+    memcpy(search->hit->weights, (double[3]){ 1 - at.u - at.v, at.u, at.v }, sizeof(search->hit->weights));
     search->hit->asset = search->asset;
-    search->hit->t = search->limit = t;
-    search->hit->inside = search->cut && determinant < 0;
+    search->hit->t = search->limit = at.t;
+    search->hit->inside = search->cut && at.back;
 }
 
 static bool cluster_crossed(const struct search *search, const struct asset_cluster *cluster)
@@ -152,28 +166,98 @@ static double brought_back(const struct ray *ray, const struct scene_asset *asse
     return ray->parallel_m > 0 ? t + forward * ray->parallel_m : t * (1 + forward);
 }
 
+/* The ray in the file's frame. False: it passes the asset by. */
+static bool aim_at(struct search *search, const struct scene_asset *asset, const struct ray *ray, double low, double limit)
+{
+    double file_from_plant[16], ahead[3], enter = low, leave = limit;
+    if (!cross_box(ray->origin, ray->direction, asset->bounds_min_m, asset->bounds_max_m, &enter, &leave) ||
+        !transform_invert(asset->placement, file_from_plant))
+        return false;
+    search->view = &asset->file->view;
+    search->low = low;
+    search->limit = limit;
+    for (int c = 0; c < 3; c++)
+        ahead[c] = ray->origin[c] + ray->direction[c];
+    transform_point(file_from_plant, ray->origin, search->origin);
+    transform_point(file_from_plant, ahead, search->direction);
+    for (int c = 0; c < 3; c++)
+        search->direction[c] -= search->origin[c];
+    return true;
+}
+
+/* How many closed bodies of the asset the ray is in at search->low: those that it leaves less those that it comes into. */
+static int count_bodies(const struct search *search, const struct asset *file)
+{
+    const struct closed *closed = asset_closed(file, 0);
+    struct crossing at;
+    int count = 0;
+    for (size_t r = 0; r < closed->run_count; r++)
+        for (uint32_t i = 0; i < closed->runs[r].index_count; i += 3)
+            if (cross_triangle(search, search->view->indices + closed->runs[r].first_index + i, &at) && at.t >= search->low)
+                count += at.back ? 1 : -1;
+    return count;
+}
+
+/* Within a closed body, where the ray passes the cut: a plane closes that (render/caps.h). */
+static bool hits_cap(const struct scene *scene, const struct visibility *visibility, const struct ray *ray, double low, double high,
+                     struct raycast_hit *hit)
+{
+    int bodies = 0;
+    if (!(low > ray->low)) /* the eye is in what is left */
+        return false;
+    for (size_t i = 0; i < scene->asset_count; i++) {
+        const struct scene_asset *asset = &scene->assets[i];
+        struct search search = { 0 };
+        if (visibility_of(visibility, (int)i) != ASSET_SHOWN ||
+            !clip_touches(&visibility->clip, asset->bounds_min_m, asset->bounds_max_m) || !aim_at(&search, asset, ray, low, high))
+            continue;
+        int own = count_bodies(&search, asset->file);
+        bodies += own;
+        if (own > 0)
+            hit->asset = (int)i;
+    }
+    if (bodies <= 0)
+        return false;
+    hit->t = low;
+    hit->inside = true;
+    return true;
+}
+
+/* Of the plane that the ray passes there. */
+static void find_cap_normal(const struct clip *clip, const struct ray *ray, struct raycast_hit *hit)
+{
+    double least = INFINITY;
+    for (int p = 0; p < clip->plane_count; p++) {
+        double plane[4], height;
+        clip_plane(clip, p, plane);
+        height = plane[3] + dot(plane, ray->origin) + hit->t * dot(plane, ray->direction);
+        if (fabs(height) >= least)
+            continue;
+        least = fabs(height);
+        for (int i = 0; i < 3; i++)
+            hit->normal[i] = -plane[i];
+    }
+}
+
 void raycast(const struct scene *scene, const struct visibility *visibility, const struct ray *ray, struct raycast_hit *hit)
 {
     double low = ray->low, high = ray->high;
     *hit = (struct raycast_hit){ .asset = -1 };
     if (!clip_ray(&visibility->clip, ray->origin, ray->direction, &low, &high))
         return;
+    if (hits_cap(scene, visibility, ray, low, high, hit)) {
+        find_cap_normal(&visibility->clip, ray, hit);
+        return;
+    }
+    hit->asset = -1;
     double nearest = INFINITY;
     for (size_t i = 0; i < scene->asset_count; i++) {
         const struct scene_asset *asset = &scene->assets[i];
-        double file_from_plant[16], enter = low, limit = fmin(high, brought_back(ray, asset, nearest)), leave = limit, ahead[3];
+        struct search search = { .hit = hit, .asset = (int)i };
         if (visibility_of(visibility, (int)i) != ASSET_SHOWN ||
-            !cross_box(ray->origin, ray->direction, asset->bounds_min_m, asset->bounds_max_m, &enter, &leave) ||
-            !transform_invert(asset->placement, file_from_plant))
+            !aim_at(&search, asset, ray, low, fmin(high, brought_back(ray, asset, nearest))))
             continue;
-        struct search search = { .view = &asset->file->view, .low = low, .limit = limit, .hit = hit, .asset = (int)i };
         search.cut = clip_touches(&visibility->clip, asset->bounds_min_m, asset->bounds_max_m);
-        for (int c = 0; c < 3; c++)
-            ahead[c] = ray->origin[c] + ray->direction[c];
-        transform_point(file_from_plant, ray->origin, search.origin);
-        transform_point(file_from_plant, ahead, search.direction);
-        for (int c = 0; c < 3; c++)
-            search.direction[c] -= search.origin[c];
         search_asset(&search);
         if (hit->asset == (int)i)
             nearest = brought_forward(ray, asset, hit->t);

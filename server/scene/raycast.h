@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The first surface along a ray, as far as it is drawn: on the finest level, without what is hidden, a ghost or cut away, and without
-   the backs of one-sided surfaces. Clusters of the asset file are passed over whole. Thread: any. */
+   the backs of one-sided surfaces; where a cut goes through closed bodies (scene/closed.h), the plane that closes them. Clusters of the
+   asset file are passed over whole. Thread: any. */
 #ifndef SCENE_RAYCAST_H
 #define SCENE_RAYCAST_H
 #include "scene/scene.h"
@@ -16,8 +17,8 @@ struct raycast_hit {
     int asset; /* -1: nothing there; then nothing else is set */
     double t;
     uint32_t corners[3]; /* vertices of the asset file */
-    double weights[3];   /* of the corners; together 1 */
-    bool inside;         /* the inner side of something cut open */
+    double weights[3];   /* of the corners; together 1; all 0 where a plane closes a body */
+    bool inside;         /* of something cut open: the inner side of a surface, or the plane that closes a body */
     double normal[3];    /* plant frame, unit length, towards the ray's origin */
 };
 

@@ -108,6 +108,11 @@ static void compare_pixel(struct site *site, const struct view *view, const floa
         tally->differ += centre[1] > MEASURE_NOTHING;
         return;
     }
+    if (pick.inside) { /* planes that close bodies are not measured */
+        tally->inside++;
+        assert_true(pick.state == PICK_CONTEXT && isnan(pick.value));
+        return;
+    }
     double depth = project(view, site, pick.position_m, &x_px, &y_px);
     tally->worst_px = fmax(tally->worst_px, hypot(x_px - x - 0.5, y_px - y - 0.5));
     const float *pixel = same_place(measured, x, y, depth);
@@ -116,10 +121,7 @@ static void compare_pixel(struct site *site, const struct view *view, const floa
         return;
     }
     bool context = pixel[1]<0, no_data = pixel[1]> 0.5f;
-    if (pick.inside) {
-        tally->inside++;
-        assert_true(pick.state == PICK_CONTEXT && isnan(pick.value));
-    } else if (pick.state == PICK_CONTEXT) {
+    if (pick.state == PICK_CONTEXT) {
         tally->context++;
         tally->differ += !context;
     } else if (pick.state == PICK_NO_DATA) {

@@ -10,6 +10,7 @@
 
 #include <cmocka.h>
 
+#include "render/pick.h"
 #include "tests/support/rig.h"
 #include "value/quality.h"
 
@@ -192,6 +193,76 @@ static void test_a_cut_opens_a_neutral_inside(void **state)
         }
 }
 
+/* A body from -1 to 1 with another asset within, both with a sensor. hollow: it has a wall of 0.2; open: it lacks one of many triangles. */
+static struct toy *nested(bool hollow, bool open)
+{
+    static const double sensors[2][1][3] = { { { 1, 0, 0 } }, { { 0, 0, 0.5 } } };
+    struct toy *toy = toy_create();
+    struct shape body = { 0 }, core = { 0 };
+    shape_box(&body, TOY_STEEL, (double[3]){ -1, -1, -1 }, (double[3]){ 1, 1, 1 });
+    if (open)
+        body.index_count = body.primitives[0].index_count -= 3;
+    if (hollow) {
+        size_t first = body.index_count;
+        shape_box(&body, TOY_STEEL, (double[3]){ -0.8, -0.8, -0.8 }, (double[3]){ 0.8, 0.8, 0.8 });
+        for (size_t i = first; i < body.index_count; i += 3) { /* turned inward */
+            uint32_t second = body.indices[i + 1];
+            body.indices[i + 1] = body.indices[i + 2];
+            body.indices[i + 2] = second;
+        }
+    }
+    shape_box(&core, TOY_BLUE, (double[3]){ -0.5, -0.5, -0.5 }, (double[3]){ 0.5, 0.5, 0.5 });
+    toy_add(toy, "BODY", &body, (double[3]){ 0 }, sensors[0], 1);
+    toy_add(toy, "CORE", &core, (double[3]){ 0 }, sensors[1], 1);
+    return toy;
+}
+
+/* By the width of what is neutral in the picture's middle row, in metres to the right of the middle. */
+static void cut_through(struct stand *from, enum tier tier, bool core_cut, double *first_m, double *last_m, struct pick *pick)
+{
+    enum { SIDE = 200 };
+    struct view at;
+    view_default(&from->toy->scene, SIDE, SIDE, &at);
+    at.camera = (struct camera){ .eye_m = { 0, -8, 0 }, .target_m = { 0, 0, 0 }, .up = { 0, 0, 1 }, .height_m = 4 };
+    at.tier = tier;
+    at.look = LOOK_FLAT;
+    at.visibility.clip = (struct clip){ .plane_count = 1, .planes = { { 0, 1, 0, core_cut ? 0 : 0.7 } } };
+    struct frame *frame = stand_draw(from, &at);
+    *first_m = *last_m = NAN;
+    for (int x = SIDE / 2; x < SIDE; x++) {
+        if (!is_neutral(frame_pixel(frame, x, SIDE / 2)))
+            continue;
+        *first_m = isnan(*first_m) ? (x - SIDE / 2) / 50.0 : *first_m;
+        *last_m = (x + 1 - SIDE / 2) / 50.0;
+    }
+    pick_at(&from->toy->scene, from->field, &at, from->snapshot, SIDE / 2 + 0.5, SIDE / 2 + 0.5, pick);
+    frame_unref(&frame);
+}
+
+/* Solid: a plane hides what is within. Hollow: only its walls are closed. Open: what is within is seen as ever. */
+static void test_a_cut_closes_bodies(void **state)
+{
+    double first_m, last_m;
+    struct pick pick;
+    (void)state;
+    for (int way = 0; way < 3; way++)
+        for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++) {
+            struct stand own;
+            stand_init(&own, &rig, nested(way == 1, way == 2));
+            toy_set(own.snapshot, 0, 30, QUALITY_GOOD);
+            toy_set(own.snapshot, 1, 80, QUALITY_GOOD);
+            cut_through(&own, (enum tier)tier, false, &first_m, &last_m, &pick);
+            assert_float_equal(first_m, way == 1 ? 0.8 : way == 2 ? 0.5 : 0, 0.03);
+            assert_float_equal(last_m, 1, 0.03);
+            assert_int_equal(pick.asset, way == 0 ? 0 : 1);
+            assert_int_equal(pick.inside, way == 0);
+            assert_float_equal(pick.position_m[1], way == 0 ? -0.701 : -0.5, 1e-6);
+            cut_through(&own, (enum tier)tier, true, &first_m, &last_m, &pick);
+            assert_true(first_m == 0 && pick.inside); /* the core is solid itself */
+            stand_finish(&own);
+        }
+}
+
 /* What is cut away is no obstacle; what is behind the cut is where it was. */
 static void test_a_cut_leaves_the_rest_alone(void **state)
 {
@@ -293,6 +364,7 @@ int main(void)
         each(test_ghosts_change_few_colours),
         each(test_a_ghost_behind_something_is_not_seen),
         each(test_a_cut_opens_a_neutral_inside),
+        each(test_a_cut_closes_bodies),
         each(test_a_cut_leaves_the_rest_alone),
         each(test_bit_by_bit_is_the_same),
         each(test_what_is_not_shown_throws_no_shadow),

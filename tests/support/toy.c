@@ -47,6 +47,7 @@ void toy_destroy(struct toy **toy_ptr)
     struct plant *plant = &toy->plant;
     for (size_t i = 0; i < toy->scene.asset_count; i++) {
         struct asset *file = toy->scene.assets[i].file;
+        asset_forget_closed(file);
         free((void *)file->view.header);
         mem_free(file->path);
         mem_free(file);
@@ -137,6 +138,7 @@ static struct asset *make_file(const char *id, const struct shape *shape, const 
         abort();
     }
     file->path = mem_strdup(id);
+    file->closed = mem_array(file->view.header->level_count, sizeof(*file->closed));
     file->refs = 1;
     mem_free(distances);
     return file;

@@ -75,6 +75,45 @@ static double slow_raycast(const struct visibility *visibility, const struct ray
     return best;
 }
 
+/* How many closed bodies the ray is in at that t: those it leaves later, less those it comes into. */
+static int slow_bodies(const struct visibility *visibility, const struct ray *ray, double from)
+{
+    int bodies = 0;
+    for (size_t i = 0; i < toy->scene.asset_count; i++) {
+        const struct scene_asset *at = &toy->scene.assets[i];
+        const struct closed *closed = asset_closed(at->file, 0);
+        if (visibility_of(visibility, (int)i) != ASSET_SHOWN || !clip_touches(&visibility->clip, at->bounds_min_m, at->bounds_max_m))
+            continue;
+        for (size_t r = 0; r < closed->run_count; r++)
+            for (uint32_t k = 0; k < closed->runs[r].index_count; k += 3) {
+                const uint32_t *corners = at->file->view.indices + closed->runs[r].first_index + k;
+                double a[3], b[3], c[3], t, facing;
+                corner(at, corners[0], a);
+                corner(at, corners[1], b);
+                corner(at, corners[2], c);
+                if (slow_triangle(ray, a, b, c, &t, &facing) && t >= from)
+                    bodies += facing < 0 ? 1 : -1;
+            }
+    }
+    return bodies;
+}
+
+/* A plane closes what is cut: where the ray passes the cut it is in some body. False: no plane does, and it is in none. */
+static bool agrees_on_cap(const struct visibility *visibility, const struct ray *ray, const struct raycast_hit *hit)
+{
+    double low = ray->low, high = ray->high, facing = 0;
+    bool left = clip_ray(&visibility->clip, ray->origin, ray->direction, &low, &high) && low > ray->low;
+    bool cap = left && slow_bodies(visibility, ray, low) > 0;
+    bool hit_cap = hit->asset >= 0 && hit->weights[0] + hit->weights[1] + hit->weights[2] == 0;
+    assert_int_equal(cap, hit_cap);
+    if (!cap)
+        return false;
+    for (int i = 0; i < 3; i++)
+        facing += hit->normal[i] * ray->direction[i];
+    assert_true(hit->inside && hit->t == low && facing < 0);
+    return true;
+}
+
 static void random_ray(struct ray *ray)
 {
     struct camera camera = { .up = { 0, 0, 1 }, .fov_deg = 50, .height_m = synthetic_random_unit(&seed) < 0.3 ? 4 : 0 };
@@ -100,8 +139,8 @@ static void random_visibility(struct visibility *visibility)
 static void rays_find_what_a_loop_finds(void **state)
 {
     (void)state;
-    int hits = 0, insides = 0;
-    for (int round = 0; round < 1200; round++) {
+    int hits = 0, insides = 0, caps = 0;
+    for (int round = 0; round < 4000; round++) {
         struct visibility visibility;
         struct ray ray;
         struct raycast_hit hit;
@@ -110,6 +149,10 @@ static void rays_find_what_a_loop_finds(void **state)
         random_ray(&ray);
         double t = slow_raycast(&visibility, &ray, &asset);
         raycast(&toy->scene, &visibility, &ray, &hit);
+        if (agrees_on_cap(&visibility, &ray, &hit)) {
+            caps++;
+            continue;
+        }
         assert_int_equal(hit.asset < 0, asset < 0);
         if (asset < 0)
             continue;
@@ -132,8 +175,8 @@ static void rays_find_what_a_loop_finds(void **state)
         assert_float_equal(length, 1, 1e-9);
         assert_true(towards <= 0);
     }
-    print_message("# %d hits of 1200, %d of them inside\n", hits, insides);
-    assert_true(hits > 150 && insides > 5);
+    print_message("# %d hits of 4000, %d of them inside; %d on planes that close bodies\n", hits, insides, caps);
+    assert_true(hits > 150 && insides > 5 && caps > 10);
 }
 
 static void a_picture_of_rays_agrees_with_the_camera(void **state)

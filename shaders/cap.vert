@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Places only, of what a cut leaves.
+#include "frame.glsl"
+#include "clip.glsl"
+layout(location = 0) in vec3 position_m;
+layout(location = 0) uniform mat4 clip_from_file;
+
+void main()
+{
+    gl_Position = clip_from_file * vec4(position_m, 1.0);
+    clip_away();
+}
