@@ -9,81 +9,17 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <cmocka.h>
 
 #include "base/mem.h"
-#include "tests/support/rig.h"
+#include "tests/support/site.h"
 #include "tests/support/synthetic.h"
-#include "value/quality.h"
 
 enum { WIDTH_PX = 640, HEIGHT_PX = 360, PIXELS = WIDTH_PX * HEIGHT_PX, SAMPLES = 10000 };
 static const double TOLERANCE = 1.0 / 255;
 
 static struct rig rig;
-
-/* --- plants ---------------------------------------------------------------------------------------------------------------- */
-
-struct site { /* a whole plant */
-    struct plant *plant;
-    struct scene *scene;
-    struct field *field;
-    struct renderer *renderer;
-    struct snapshot *snapshot;
-    uint64_t random;
-};
-
-static bool exists(const char *path)
-{
-    return access(path, R_OK) == 0;
-}
-
-/* Prepares it once for all runs. False: failed. */
-/* Once, where the same test runs in two contexts at a time. */
-static bool prepare(const char *plant, const char *folder)
-{
-    const char *programs = getenv("PLANTCAST_BIN");
-    char *command = mem_printf("mkdir -p '%s' && flock '%s.lock' '%s/plantcast-prep' %s --output '%s' >/dev/null 2>&1", folder, folder,
-                               programs ? programs : "build", plant, folder);
-    int status = system(command);
-    mem_free(command);
-    return WIFEXITED(status) && WEXITSTATUS(status) == 0;
-}
-
-static bool site_init(struct site *site, const char *path, const char *prepared)
-{
-    struct diag diag = { 0 };
-    *site = (struct site){ .plant = plant_load(path, &diag), .random = 1 };
-    diag_print(&diag, stderr);
-    diag_finish(&diag);
-    site->scene = site->plant ? scene_create(rig.log, site->plant, prepared) : NULL;
-    if (!site->scene)
-        return false;
-    site->field = field_create(rig.workers, site->scene);
-    site->renderer = renderer_create(rig.log, rig.gl, site->scene, site->field);
-    site->snapshot = snapshot_create(site->plant->tag_count);
-    for (size_t i = 0; i < site->plant->tag_count; i++) {
-        const struct plant_tag *tag = &site->plant->tags[i];
-        if (tag->group < 0)
-            continue;
-        const struct plant_group *group = &site->plant->groups[tag->group];
-        site->snapshot->readings[i] =
-            (struct reading){ .value = group->min + (group->max - group->min) * synthetic_random_unit(&site->random) };
-    }
-    return site->renderer != NULL;
-}
-
-static void site_finish(struct site *site)
-{
-    renderer_destroy(&site->renderer);
-    field_destroy(&site->field);
-    snapshot_destroy(&site->snapshot);
-    scene_destroy(&site->scene);
-    plant_destroy(&site->plant);
-}
 
 /* --- comparing ------------------------------------------------------------------------------------------------------------- */
 
@@ -220,28 +156,21 @@ static void compare_plant(struct site *site, double finest_part, double drawn_pa
 static void test_plant(const char *path, const char *name, double finest_part, double drawn_part)
 {
     struct site site;
-    const char *out = getenv("PLANTCAST_OUT");
-    char *folder = mem_printf("%s/prepared/%s", out ? out : "build/release", name);
-    assert_true(prepare(path, folder));
-    assert_true(site_init(&site, path, folder));
+    assert_true(site_init(&site, &rig, path, name));
     compare_plant(&site, finest_part, drawn_part);
     site_finish(&site);
-    mem_free(folder);
 }
 
 static void test_demo(void **state)
 {
-    struct site site;
     (void)state;
-    assert_true(site_init(&site, "build/demo/plant.yaml", "build/demo/plant.prepared"));
-    compare_plant(&site, 0.002, 0.02);
-    site_finish(&site);
+    test_plant(SITE_DEMO, NULL, 0.002, 0.02);
 }
 
 static void test_plant_room(void **state)
 {
     (void)state;
-    if (!exists("../shared/data/models/plm_plant_equipment.glb"))
+    if (!site_is_there("plm_plant_equipment.glb"))
         skip();
     test_plant("tests/plants/plant_room.yaml", "plant_room", 0.05, 0.05);
 }
@@ -249,7 +178,7 @@ static void test_plant_room(void **state)
 static void test_cookie_line(void **state)
 {
     (void)state;
-    if (!exists("../shared/data/models/cookie_factory_mixer.glb"))
+    if (!site_is_there("cookie_factory_mixer.glb"))
         skip();
     test_plant("tests/plants/cookie_line.yaml", "cookie_line", 0.003, 0.01);
 }

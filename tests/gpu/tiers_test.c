@@ -12,7 +12,9 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
-#include "tests/support/rig.h"
+#include "field/lab.h"
+#include "scene/framing.h"
+#include "tests/support/site.h"
 #include "value/quality.h"
 
 static struct rig rig;
@@ -82,6 +84,90 @@ static void test_the_unit_does_not_flash(void **state)
         assert_calm("unit, another sun", &stand, &view, (struct gap){ 2.5, 0.04, 60 });
     }
     stand_finish(&stand);
+}
+
+/* --- real plants -------------------------------------------------------------------------------------------------------------------- */
+
+enum { BLOCK = 4 }; /* pixels: rims that only one tier smooths are no flash */
+struct flash {      /* of what is seen when a moving picture becomes a still one: delta E (CIE 1976) of the mean colours of blocks */
+    double mean, p95;
+};
+
+static int by_size(const void *a, const void *b)
+{
+    double d = *(const double *)a - *(const double *)b;
+    return (d > 0) - (d < 0);
+}
+
+static void block_lab(const struct frame *frame, int column, int row, double lab[3])
+{
+    double rgb[3] = { 0 };
+    for (int i = 0; i < BLOCK * BLOCK; i++)
+        for (int c = 0; c < 3; c++)
+            rgb[c] += frame_pixel(frame, column * BLOCK + i % BLOCK, row * BLOCK + i / BLOCK)[2 - c] / (double)(BLOCK * BLOCK);
+    lab_from_srgb(rgb, SIGHT_NORMAL, lab);
+}
+
+static struct flash flash_of(struct site *site, struct view *view)
+{
+    int columns = view->width_px / BLOCK, count = columns * (view->height_px / BLOCK);
+    double *errors = mem_array((size_t)count, sizeof(*errors)), sum = 0;
+    struct frame *frames[2];
+    for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++) {
+        view->tier = (enum tier)tier;
+        frames[tier] = renderer_draw(site->renderer, view, site->snapshot);
+        assert_non_null(frames[tier]);
+    }
+    for (int i = 0; i < count; i++) {
+        double lab[2][3], square = 0;
+        for (int f = 0; f < 2; f++)
+            block_lab(frames[f], i % columns, i / columns, lab[f]);
+        for (int c = 0; c < 3; c++)
+            square += (lab[0][c] - lab[1][c]) * (lab[0][c] - lab[1][c]);
+        sum += errors[i] = sqrt(square);
+    }
+    qsort(errors, (size_t)count, sizeof(*errors), by_size);
+    struct flash flash = { sum / count, errors[count * 95 / 100] };
+    mem_free(errors);
+    frame_unref(&frames[0]);
+    frame_unref(&frames[1]);
+    return flash;
+}
+
+/* From the plant's own view, near to each of some assets, and with materials alone. What is left are the dark lines around shapes, which
+   moving pictures have not. */
+static void assert_no_flash(const char *path, const char *name)
+{
+    enum { VIEWS = 6 };
+    struct site site;
+    assert_true(site_init(&site, &rig, path, name));
+    for (int i = 0; i < VIEWS; i++) {
+        struct view view;
+        view_default(site.scene, 640, 360, &view);
+        struct framing framing = { .asset = (int)((size_t)i * site.scene->asset_count / VIEWS), .tag = -1, .side = SIDE_ISO };
+        if (i > 0)
+            framing_look(site.scene, &framing, 16.0 / 9, &view.camera);
+        view.look = i == VIEWS - 1 ? LOOK_MATERIALS : LOOK_DEFAULT;
+        struct flash flash = flash_of(&site, &view);
+        print_message("# %s, view %d: delta E %.2f on average, %.2f (p95)\n", name ? name : "demo", i, flash.mean, flash.p95);
+        bool materials = view.look == LOOK_MATERIALS; /* in full contrast */
+        assert_true(flash.mean < (materials ? 4 : 3) && flash.p95 < (materials ? 14 : 10));
+    }
+    site_finish(&site);
+}
+
+static void test_the_demo_does_not_flash(void **state)
+{
+    (void)state;
+    assert_no_flash(SITE_DEMO, NULL);
+}
+
+static void test_a_real_plant_does_not_flash(void **state)
+{
+    (void)state;
+    if (!site_is_there("plm_plant_equipment.glb"))
+        skip();
+    assert_no_flash("tests/plants/plant_room.yaml", "plant_room");
 }
 
 /* --- textures ------------------------------------------------------------------------------------------------------------------------ */
@@ -271,6 +357,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_the_unit_does_not_flash),
+        cmocka_unit_test(test_the_demo_does_not_flash),
+        cmocka_unit_test(test_a_real_plant_does_not_flash),
         cmocka_unit_test(test_base_color),
         cmocka_unit_test(test_metal_and_roughness),
         cmocka_unit_test(test_normals),
