@@ -3,7 +3,10 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/mem.h"
 #include "net/stream.h"
+
+static const int64_t TELL_NS = 500 * NS_PER_MS; /* between two lists of followers: hundreds may come at once */
 
 /* The followers of one become those of another (NULL: of nobody). */
 static void hand_over(struct hub *hub, const struct session *from, struct session *to)
@@ -13,9 +16,27 @@ static void hand_over(struct hub *hub, const struct session *from, struct sessio
             session_follow(stream->session, to, clock_mono_ns());
 }
 
+/* What all of them see does not change, but who moves it does. */
+static void resolve_lead(struct hub *hub, struct session *session)
+{
+    const struct stream *other = stream_find(hub, session->lead);
+    struct session *heir = other ? other->session : NULL;
+    if (!heir || heir->leader != session) {
+        session_lead_nobody(session);
+        return;
+    }
+    session_inherit(heir, session);
+    session_follow(heir, NULL, clock_mono_ns());
+    hand_over(hub, session, heir);
+    session_follow(session, heir, clock_mono_ns());
+}
+
 void follow_resolve(struct hub *hub, struct stream *stream)
 {
     struct session *session = stream->session;
+    if (session->lead)
+        resolve_lead(hub, session);
+    session->lead = 0;
     if (!session->follow_asked)
         return;
     session->follow_asked = false;
@@ -45,6 +66,27 @@ bool follow_spread(struct hub *hub, const struct stream *leader)
 void follow_forget(struct hub *hub, const struct stream *leader)
 {
     hand_over(hub, leader->session, NULL);
+    if (leader->session->leader)
+        leader->session->leader->followers_changed = true;
+}
+
+void follow_tell(struct hub *hub, int64_t now_ns)
+{
+    for (struct stream *stream = hub->streams; stream; stream = stream->next) {
+        struct session *session = stream->session;
+        uint64_t *followers = NULL;
+        size_t count = 0, capacity = 0;
+        if (!session->followers_changed || now_ns - session->followers_ns < TELL_NS)
+            continue;
+        for (const struct stream *other = hub->streams; other; other = other->next) {
+            if (other->session->leader != session)
+                continue;
+            mem_grow(&followers, &capacity, count + 1, sizeof(*followers));
+            followers[count++] = other->session->id;
+        }
+        session_say_followers(session, followers, count, now_ns);
+        mem_free(followers);
+    }
 }
 
 /* Whose view it sees. */

@@ -209,6 +209,14 @@ static bool parse_follow(const struct plant *plant, const json_t *o, struct mess
     return false;
 }
 
+static bool parse_lead(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
+{
+    if (parse_follow(plant, o, out, error) && out->follow)
+        return true;
+    message_fail(error, "bad_field", "session: the number of a session expected");
+    return false;
+}
+
 static const struct {
     const char *name;
     enum message_type type;
@@ -219,7 +227,7 @@ static const struct {
     { "visible", MESSAGE_VISIBLE, parse_visible }, { "fit", MESSAGE_FIT, parse_fit },          { "pick", MESSAGE_PICK, parse_pick },
     { "key_frame", MESSAGE_KEY_FRAME, parse_key_frame }, { "codecs", MESSAGE_CODECS, parse_codecs },
     { "follow", MESSAGE_FOLLOW, parse_follow },    { "alarm", MESSAGE_ALARM, alarm_parse },
-    { "time", MESSAGE_TIME, parse_time },
+    { "lead", MESSAGE_LEAD, parse_lead },        { "time", MESSAGE_TIME, parse_time },
 };
 
 static bool parse_object(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)

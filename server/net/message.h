@@ -22,6 +22,7 @@ enum message_type {
     MESSAGE_KEY_FRAME,
     MESSAGE_CODECS,
     MESSAGE_FOLLOW,
+    MESSAGE_LEAD,
     MESSAGE_ALARM,
     MESSAGE_TIME
 };
@@ -144,7 +145,7 @@ struct message {
     bool visible;
     double decode_ms; /* ack; negative: not said */
     double t;         /* ping */
-    uint64_t follow;  /* a session; 0: none */
+    uint64_t follow;  /* follow, lead: a session; 0: none */
     struct alarm_request alarm;
     struct time_wish time; /* time, hello */
 };

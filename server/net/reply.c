@@ -298,6 +298,14 @@ char *reply_following_text(const struct session_world *world, uint64_t session, 
     return print(object, DIGITS);
 }
 
+char *reply_followers_text(const uint64_t *sessions, size_t count)
+{
+    json_t *list = json_array();
+    for (size_t i = 0; i < count && i < REPLY_FOLLOWERS; i++)
+        json_array_append_new(list, json_integer((json_int_t)sessions[i]));
+    return print(json_pack("{s:s,s:I,s:o}", "type", "followers", "count", (json_int_t)count, "sessions", list), DIGITS);
+}
+
 static json_t *age_ms(const struct reading *reading)
 {
     return reading->age_ns == INT64_MAX ? json_null() : json_integer(reading->age_ns / 1000000);

@@ -30,6 +30,7 @@ void session_destroy(struct session **session_ptr)
     for (int i = 0; i < session->reply_count; i++)
         mem_free(session->replies[i]);
     mem_free(session->tag_changes);
+    mem_free(session->followers);
     mem_free(session);
     *session_ptr = NULL;
 }
@@ -193,6 +194,7 @@ static bool act(struct session *session, const struct message *message, int64_t 
     case MESSAGE_ACK: return on_ack(session, message, now_ns, error);
     case MESSAGE_VISIBLE: on_visible(session, message->visible); return true;
     case MESSAGE_FOLLOW: session_ask_follow(session, message); return true;
+    case MESSAGE_LEAD: session_ask_lead(session, message); return true;
     case MESSAGE_ALARM: return on_alarm(session, message, error);
     case MESSAGE_FIT: on_fit(session, message); return true;
     case MESSAGE_PICK: on_pick(session, message); return true;

@@ -90,6 +90,10 @@ struct session {
     struct session *leader; /* whose view it is shown; NULL: its own. The hub keeps it right */
     bool follow_asked;
     uint64_t follow;            /* whom; 0: nobody */
+    uint64_t lead;              /* who is to have the lead; 0: it stays. Asked for, as follow is */
+    bool followers_changed;     /* they are to be said, in follow_tell */
+    int64_t followers_ns;       /* when they were */
+    char *followers;            /* owed: the text that says who they are; NULL: none */
     int steps[LADDER_STEPS];    /* of those who see its view, itself too: how many are where */
     int common_step;            /* of the ladder: of all who see the same; negative: its own */
     uint32_t leader_params_seq; /* as last told; so is its size */
@@ -148,6 +152,10 @@ void session_on_moment(struct session *session, int64_t at_us, bool good, int64_
 /* Answers session->follow_asked: leader NULL: from now on nobody's; session_follow_nobody: there is none such. */
 void session_follow(struct session *session, struct session *leader, int64_t now_ns);
 void session_follow_nobody(struct session *session);
+/* Likewise session->lead: from now on the heir shows what the session showed, at its own size, until it says otherwise. */
+void session_inherit(struct session *heir, const struct session *session);
+void session_lead_nobody(struct session *session); /* that one does not follow it */
+void session_say_followers(struct session *session, const uint64_t *sessions, size_t count, int64_t now_ns);
 void session_on_leader(struct session *session, int64_t now_ns); /* the leader's view changed */
 
 /* The next text message to send, if any is due: into `out`. Markers of a picture are session_markers. */

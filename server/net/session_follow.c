@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A session that is shown the view of another one. Its own camera, parameters and size go on beneath. */
 #include "base/clock.h"
+#include "base/mem.h"
 #include "net/reply.h"
 #include "net/session_impl.h"
 
@@ -17,10 +18,49 @@ void session_ask_follow(struct session *session, const struct message *message)
 
 void session_follow(struct session *session, struct session *leader, int64_t now_ns)
 {
+    if (session->leader)
+        session->leader->followers_changed = true;
+    if (leader)
+        leader->followers_changed = true;
     session->leader = leader;
     session->common_step = -1;
     session->owes_following = true;
     session_on_leader(session, now_ns);
+}
+
+void session_ask_lead(struct session *session, const struct message *message)
+{
+    session->lead = message->follow;
+}
+
+void session_inherit(struct session *heir, const struct session *session)
+{
+    struct view own = heir->view;
+    heir->view = session->view;
+    heir->view.width_px = own.width_px;
+    heir->view.height_px = own.height_px;
+    heir->view.pixel_ratio = own.pixel_ratio;
+    heir->view.camera_seq = own.camera_seq;
+    heir->view.params_seq = own.params_seq;
+    if (heir->view.width_px < VIEW_SPLIT_LEAST_PX) {
+        heir->view.split = false;
+        heir->view.right = (struct shown){ 0 };
+    }
+}
+
+void session_lead_nobody(struct session *session)
+{
+    struct message_error error = { .about = "lead" };
+    message_fail(&error, "bad_field", "session: %llu does not follow this one", (unsigned long long)session->lead);
+    session_reply_error(session, &error);
+}
+
+void session_say_followers(struct session *session, const uint64_t *sessions, size_t count, int64_t now_ns)
+{
+    mem_free(session->followers);
+    session->followers = reply_followers_text(sessions, count);
+    session->followers_changed = false;
+    session->followers_ns = now_ns;
 }
 
 void session_follow_nobody(struct session *session)

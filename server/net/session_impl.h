@@ -25,6 +25,7 @@ void session_time_begin(struct session *session, int64_t at_us, double speed); /
 void session_time_end(struct session *session);
 void session_tell_time(struct session *session); /* what it is shown may be of another time than it was */
 void session_ask_follow(struct session *session, const struct message *message);
+void session_ask_lead(struct session *session, const struct message *message);
 void session_pause(struct session *session);    /* nothing moves: keep no picture for it */
 void session_on_shown(struct session *session); /* session->pacer.acked is on the client's screen */
 

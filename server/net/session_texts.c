@@ -44,7 +44,7 @@ static bool alarms_due(const struct session *session)
 bool session_has_text(const struct session *session, int64_t now_ns)
 {
     return session->owes_welcome || session->reply_count > 0 || session->owes_params || session->owes_following || session->owes_time ||
-           status_due(session) || alarms_due(session) || tags_due(session, now_ns);
+           session->followers || status_due(session) || alarms_due(session) || tags_due(session, now_ns);
 }
 
 static void add_tags(struct session *session, int64_t now_ns, struct text *out)
@@ -74,6 +74,9 @@ bool session_next_text(struct session *session, int64_t now_ns, int64_t now_utc_
     } else if (session->owes_time) {
         add_owned(out, reply_time_text(session));
         session->owes_time = false;
+    } else if (session->followers) {
+        add_owned(out, session->followers);
+        session->followers = NULL;
     } else if (status_due(session)) {
         add_owned(out, reply_status_text(world, now_utc_ns));
         session->owes_status = false;

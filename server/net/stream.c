@@ -202,6 +202,7 @@ void streams_on_tick(struct hub *hub, bool data_changed, bool links_changed)
     hub->world.loaded = is_loaded(hub);
     hub->world.moving = count_moving(hub, now_ns);
     follow_share_steps(hub);
+    follow_tell(hub, now_ns);
     for (struct stream *stream = hub->streams; stream; stream = stream->next) {
         session_on_tick(stream->session, now_ns);
         if (stream->in_count > 0 && now_ns - stream->in_begin_ns > patience_ns)

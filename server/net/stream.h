@@ -41,7 +41,8 @@ struct stream *stream_find(const struct hub *hub, uint64_t client); /* NULL: not
 void follow_resolve(struct hub *hub, struct stream *stream);        /* its session may have asked to follow another */
 bool follow_spread(struct hub *hub, const struct stream *leader);   /* its view changed. False: nobody follows it */
 void follow_share_steps(struct hub *hub);                           /* every tick */
-void follow_forget(struct hub *hub, const struct stream *leader);   /* it goes */
+void follow_forget(struct hub *hub, const struct stream *leader);   /* it goes, who led or followed */
+void follow_tell(struct hub *hub, int64_t now_ns);                  /* every tick: leaders learn who follows them */
 void stream_on_pong(struct stream *stream, const void *bytes, size_t count);
 
 #endif

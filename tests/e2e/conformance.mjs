@@ -197,6 +197,42 @@ test('who comes back has the view that it left', { skip }, async () => {
     late.close();
 });
 
+test('any number follow one; who leads gives the lead away, and what is shown stays', { skip }, async () => {
+    const [presenter, heir, viewer] = await Promise.all([0, 1, 2].map(() => Client.open(plant.port)));
+    const { session } = await presenter.hello({ width: 400, height: 240, camera: { seq: 1, ...CAMERA }, params: { seq: 1, group: 'pressure' } });
+    const heirs = (await heir.hello({ width: 320, height: 200 })).session, viewers = (await viewer.hello()).session;
+    const told = (client, what, match) => client.wait(what, (c) => c.texts.some((m) => m.type === 'following' && match(m)));
+    presenter.say('lead', { session: heirs });
+    assert.equal((await presenter.text('error')).code, 'bad_field', 'it does not follow');
+    for (const client of [heir, viewer]) {
+        client.say('follow', { session });
+        await told(client, 'whom', (m) => m.session === session && m.width === 400 && m.group === 'pressure');
+        await client.picture('the presenter\'s view', (p) => p.full_width === 400 && p.eye[1] === CAMERA.eye[1] && p.flags & FLAG.still);
+    }
+    const sorted = (list) => [...list].sort((a, b) => a - b);
+    await presenter.wait('two followers', (c) => c.texts.some((m) => m.type === 'followers' && m.count === 2
+        && `${sorted(m.sessions)}` === `${sorted([heirs, viewers])}`));
+    presenter.say('lead', { session: heirs });
+    await told(heir, 'that it leads', (m) => m.session === null && m.group === 'pressure' && m.width === 320);
+    await heir.wait('two followers', (c) => c.texts.some((m) => m.type === 'followers' && m.count === 2
+        && `${sorted(m.sessions)}` === `${sorted([session, viewers])}`));
+    for (const client of [presenter, viewer]) {
+        await told(client, 'the new one', (m) => m.session === heirs && m.width === 320 && m.group === 'pressure');
+        const same = await client.picture('the same from there', (p) => p.full_width === 320 && p.full_height === 200);
+        assert.equal(same.eye[1], CAMERA.eye[1]);
+    }
+    await presenter.wait('nobody follows it', (c) => c.texts.some((m) => m.type === 'followers' && m.count === 0));
+    heir.say('camera', { seq: 5, ...CAMERA, eye: [6, -5, 3] });
+    for (const client of [presenter, viewer])
+        await client.picture('where the new one looks', (p) => p.eye[0] === 6);
+    presenter.say('lead', { session: viewers });
+    assert.equal((await presenter.text('error')).code, 'bad_field', 'who follows has no lead to give');
+    heir.close();
+    await told(viewer, 'its own again', (m) => m.session === null);
+    presenter.close();
+    viewer.close();
+});
+
 test('mistakes are answered by their names, what is unknown is passed over', { skip }, async () => {
     const client = await Client.open(plant.port);
     const expect = async (code, about, type, fields) => {
