@@ -379,6 +379,7 @@ struct net *net_create(const struct net_params *params)
         .alarms_said = &hub->alarms_said,
         .links_up = hub->links_up,
         .tags_said = &hub->tags_said,
+        .lists_said = &hub->lists_said,
         .codecs = params->codecs,
         .version = params->version,
         .quotas = hub->quotas,
@@ -412,6 +413,7 @@ void net_destroy(struct net **net_ptr)
     resumes_destroy(&net->hub.world.resumes);
     alarms_said_finish(&net->hub.alarms_said);
     tags_said_finish(&net->hub.tags_said);
+    mem_free(net->hub.lists_said);
     marker_lists_finish(&net->hub.marker_lists);
     snapshot_destroy(&net->hub.snapshot);
     mem_free(net->hub.changes);

@@ -248,12 +248,17 @@ static json_t *plant_object(const struct session_world *world, const struct came
     return object;
 }
 
-static void set_plant(json_t *object, const struct session_world *world, int width_px, int height_px)
+static void set_home(json_t *object, const struct session_world *world, int width_px, int height_px)
 {
     struct view home;
     view_default(world->scene, width_px, height_px, &home);
     json_object_set_new(object, "server", string(world->version));
     json_object_set_new(object, "plant", plant_object(world, &home.camera));
+}
+
+/* The same for everybody, and long. */
+static void set_lists(json_t *object, const struct session_world *world)
+{
     json_object_set_new(object, "groups", groups(world->plant));
     json_object_set_new(object, "colormaps", colormaps());
     json_object_set_new(object, "environments", environments(world->plant));
@@ -267,6 +272,32 @@ static json_t *quotas_json(const struct quotas *quotas)
                      (json_int_t)quotas->at[QUOTA_MESSAGES], "pixels", (json_int_t)quotas->at[QUOTA_SESSION_PIXELS]);
 }
 
+static char *lists_text(const struct session_world *world)
+{
+    json_t *object = json_object();
+    set_lists(object, world);
+    return print(object, DIGITS);
+}
+
+/* One object of both; takes them. */
+static char *join(char *first, char *second)
+{
+    char *both = mem_printf("%.*s,%s", (int)strlen(first) - 1, first, second + 1);
+    mem_free(first);
+    mem_free(second);
+    return both;
+}
+
+/* Kept for the next who comes. mem_free. */
+static char *lists_said(const struct session_world *world)
+{
+    if (!world->lists_said)
+        return lists_text(world);
+    if (!*world->lists_said)
+        *world->lists_said = lists_text(world);
+    return mem_strdup(*world->lists_said);
+}
+
 char *reply_welcome_text(const struct session *session, int64_t now_utc_ns)
 {
     const struct view *view = &session->view;
@@ -276,10 +307,10 @@ char *reply_welcome_text(const struct session *session, int64_t now_utc_ns)
     json_object_update_new(object, json_pack("{s:s,s:s,s:I,s:b,s:o}", "role", name_of(names_role, (int)session->role), "resume",
                                              session->resume, "resume_s", (json_int_t)(RESUME_KEPT_NS / 1000000000), "resumed",
                                              session->resumed, "limits", quotas_json(session->world->quotas)));
-    set_plant(object, session->world, view->width_px, view->height_px);
+    set_home(object, session->world, view->width_px, view->height_px);
     set_params(params, session->world, view);
     json_object_set_new(object, "view", params);
-    return print(object, DIGITS);
+    return join(print(object, DIGITS), lists_said(session->world));
 }
 
 char *reply_params_text(const struct session_world *world, const struct view *view, uint32_t seq)
@@ -448,8 +479,8 @@ char *reply_error_text(const struct message_error *error)
 char *reply_api_plant_text(const struct session_world *world)
 {
     json_t *object = json_object();
-    set_plant(object, world, 1920, 1080);
-    return print(object, DIGITS);
+    set_home(object, world, 1920, 1080);
+    return join(print(object, DIGITS), lists_said(world));
 }
 
 char *reply_api_tags_text(const struct session_world *world)

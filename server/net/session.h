@@ -41,6 +41,7 @@ struct session_world {
     struct resumes *resumes;      /* changed by hello */
     struct admission *admission;  /* its pixels are changed by hello and resize */
     struct tags_said *tags_said; /* NULL: every text is made anew */
+    char **lists_said;           /* the part of welcome that all share, once one was made; NULL: likewise */
 };
 
 /* Where in time a session is. What it shows is view.at_us, and moment. */
