@@ -46,6 +46,7 @@ void session_inherit(struct session *heir, const struct session *session)
         heir->view.split = false;
         heir->view.right = (struct shown){ 0 };
     }
+    session_time_inherit(heir, session);
 }
 
 void session_lead_nobody(struct session *session)

@@ -23,6 +23,7 @@ bool session_on_time(struct session *session, const struct time_wish *wish, int6
                      struct message_error *error);
 void session_time_begin(struct session *session, int64_t at_us, double speed); /* it begins there, not now */
 void session_time_end(struct session *session);
+void session_time_inherit(struct session *heir, const struct session *session); /* its view is that one's: likewise when */
 void session_tell_time(struct session *session); /* what it is shown may be of another time than it was */
 void session_ask_follow(struct session *session, const struct message *message);
 void session_ask_lead(struct session *session, const struct message *message);

@@ -74,6 +74,18 @@ void session_time_end(struct session *session)
         moments_give(session->world->moments, &session->travel.moment);
 }
 
+void session_time_inherit(struct session *heir, const struct session *session)
+{
+    struct travel *travel = &heir->travel;
+    const struct moment *moment = session->travel.moment ? moments_take(session->world->moments, session->view.at_us) : NULL;
+    session_time_end(heir);
+    *travel = session->travel;
+    travel->moment = moment;
+    travel->asked = travel->first = false;
+    view_travel(&heir->view, moment ? moment->at_us : 0, moment ? moment->slot : 0);
+    session_tell_time(heir);
+}
+
 bool session_on_time(struct session *session, const struct time_wish *wish, int64_t now_ns, int64_t now_utc_ns,
                      struct message_error *error)
 {

@@ -419,7 +419,7 @@ test('plantcast tags and plantcast probe', { skip }, () => {
     assert.ok(report.frames > 4 && report.fps > 1 && report.input_to_frame_ms.p50 > 0 && report.failures.length === 0);
     // Each camera that was sent has waited, not only those that a frame happened to show.
     assert.ok(report.input_to_frame_ms.count >= 60, `${report.input_to_frame_ms.count} inputs, ${report.frames} frames`);
-    const crowd = ['--sessions', '40', '--follow', '--blind', '--hz', '10', '--seconds', '4', '--size', '640x360', '--json'];
+    const crowd = ['--sessions', '40', '--follow', '--blind', '--hz', '10', '--seconds', '6', '--size', '640x360', '--json'];
     const blind = runProgram('plantcast', ['probe', url, ...crowd]);
     assert.equal(blind.code, 0, blind.err);
     const followed = JSON.parse(blind.out);

@@ -328,6 +328,23 @@ static void test_who_follows_comes_along(void **state)
     session_destroy(&other);
 }
 
+static void test_who_is_given_the_lead_stays_there(void **state)
+{
+    struct fixture *f = *state;
+    greet(f, "");
+    struct session *heir = session_create(&f->world, 8, f->now_ns);
+    session_follow(heir, f->session, f->now_ns);
+    go(f, 60, 0);
+    wanted(f);
+    bring(f, 60, 5);
+    session_inherit(heir, f->session);
+    session_follow(heir, NULL, f->now_ns);
+    session_destroy(&f->session);
+    assert_true(session_view(heir)->at_us == NOW_US - 60000000);
+    assert_true(session_snapshot(heir)->readings[0].value == 5);
+    f->session = heir;
+}
+
 #define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
 int main(void)
 {
@@ -343,6 +360,7 @@ int main(void)
         TEST(test_whoever_begins_in_the_past_never_sees_the_present),
         TEST(test_who_comes_back_is_where_he_was),
         TEST(test_who_follows_comes_along),
+        TEST(test_who_is_given_the_lead_stays_there),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests(tests, NULL, NULL);
