@@ -22,6 +22,7 @@
 #include "field/colormap.h"
 #include "history/historian.h"
 #include "net/net.h"
+#include "value/derived.h"
 #include "value/plan_text.h"
 #include "value/source.h"
 #include "version.h"
@@ -38,6 +39,7 @@ struct server {
     struct historian *historian; /* NULL: nothing is recorded */
     struct alarming *alarming;
     struct source **sources; /* by index in plant->sources */
+    struct source *derived;  /* computes tags from tags; NULL: there are none */
     struct workers *workers;
     struct painter *painter;
     pthread_mutex_t wake_lock; /* holds net alive while the render thread wakes it */
@@ -151,7 +153,9 @@ static bool start_sources(struct server *server)
     for (size_t i = 0; i < server->plant->source_count; i++)
         if (!(server->sources[i] = source_start(server->log, server->plant, (int)i, server->store, server->counters)))
             return false;
-    return true;
+    if (server->plant->derived_count > 0)
+        server->derived = derived_start(server->log, server->plant, server->store);
+    return server->plant->derived_count == 0 || server->derived;
 }
 
 static const char *h264_library(const struct server *server)
@@ -285,6 +289,7 @@ static void server_finish(struct server *server)
     pthread_mutex_unlock(&server->wake_lock);
     net_destroy(&net);
     painter_destroy(&server->painter);
+    source_stop(&server->derived);
     for (size_t i = 0; server->sources && i < server->plant->source_count; i++)
         source_stop(&server->sources[i]);
     mem_free(server->sources);

@@ -24,7 +24,9 @@ static const char *const prefixes[] = { [TABLE_COIL] = "co", [TABLE_DISCRETE] = 
 static bool read_device(const char *text, bool rtu, struct plant_source *source, char host[256])
 {
     const char *colon = strrchr(text, ':'), *end = colon && strchr(text, ':') == colon ? colon : text + strlen(text);
-    *source = (struct plant_source){ .id = "probe", .port = 502, .unit = 1, .timeout_ms = 2000, .baud = 19200, .parity = 'E', .stop_bits = 1 };
+    *source = (struct plant_source){
+        .id = "probe", .port = 502, .unit = 1, .timeout_ms = 2000, .baud = 19200, .parity = 'E', .stop_bits = 1
+    };
     source->transport = *text == '/' ? TRANSPORT_RTU : rtu ? TRANSPORT_RTU_TCP : TRANSPORT_TCP;
     source->device = (char *)text;
     if (*text == '[' && colon && colon > text + 1 && colon[-1] == ']') {
@@ -122,7 +124,7 @@ int tags_probe(const char *device, const char *address, int address_base, bool r
     }
     const char *bang = strchr(address, '!'), *place = bang ? bang + 1 : address;
     if (address_base < 0 && *place >= '0' && *place <= '9') {
-        fprintf(stderr, "plantcast: %s: is the first register called 0 or 1? --address-base says it; %s:%d would be it as on the wire if 1\n",
+        fprintf(stderr, "plantcast: %s: is the first register called 0 or 1? Say --address-base, or %s:%d, which it is on the wire if 1\n",
                 address, prefixes[at.table], at.index);
         return 2;
     }

@@ -9,19 +9,19 @@
 #include "base/mem.h"
 #include "plant/csv.h"
 #include "sim_process.h"
-#include "sim_series.h"
+#include "value/series.h"
 
 struct tag_value {
     bool forced;
     double forced_to;
-    const struct sim_series *series; /* NULL: the process */
+    const struct series *series; /* NULL: the process */
     double scale, offset;
 };
 
 struct sim_values {
     const struct plant *plant;
     struct tag_value *tags;
-    struct sim_series *series;
+    struct series *series;
     size_t series_count;
     struct process *process;
     double now_s;
@@ -97,7 +97,7 @@ static struct process *make_process(const struct plant *plant, struct diag *diag
 
 /* --- recorded series -------------------------------------------------------------------------------------------------------- */
 
-static const struct sim_series *find_series(struct sim_values *values, const struct sim_map *map, const struct sim_map_entry *entry,
+static const struct series *find_series(struct sim_values *values, const struct sim_map *map, const struct sim_map_entry *entry,
                                             struct diag *diag)
 {
     char why[200] = "no file of values is given";
@@ -106,7 +106,7 @@ static const struct sim_series *find_series(struct sim_values *values, const str
         if (!strcmp(values->series[i].name, entry->series))
             return &values->series[i];
     for (size_t i = 0; i < map->file_count && !found; i++)
-        if (!sim_series_read(&values->series[values->series_count], map->files[i], entry->series, &found, why))
+        if (!series_read(&values->series[values->series_count], map->files[i], entry->series, &found, why))
             break;
     if (!found)
         diag_error(diag, entry->file, entry->line, 0, "%s: %s", entry->tag, why);
@@ -149,7 +149,7 @@ void sim_values_destroy(struct sim_values **values)
     if (!*values)
         return;
     for (size_t i = 0; i < (*values)->series_count; i++)
-        sim_series_finish(&(*values)->series[i]);
+        series_finish(&(*values)->series[i]);
     mem_free((*values)->series);
     mem_free((*values)->tags);
     process_destroy(&(*values)->process);
@@ -169,7 +169,7 @@ double sim_values_at(const struct sim_values *values, size_t tag)
     if (value->forced)
         return value->forced_to;
     if (value->series)
-        return sim_series_at(value->series, values->now_s, values->loop) * value->scale + value->offset;
+        return series_at(value->series, values->now_s, values->loop) * value->scale + value->offset;
     return process_value(values->process, tag);
 }
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "plant/expression.h"
 #include "plant/plant_parts.h"
 
 static char *folder_of(const char *path)
@@ -83,9 +84,11 @@ static void free_tags(struct plant *plant)
         char *const texts[] = { tag->name, tag->description, tag->unit, tag->address, tag->node, tag->lost_asset };
         for (size_t k = 0; k < sizeof(texts) / sizeof(*texts); k++)
             mem_free(texts[k]);
+        expression_destroy(&tag->expression);
     }
     mem_free(plant->tags);
     mem_free(plant->tags_by_name);
+    mem_free(plant->derived);
 }
 
 void plant_destroy(struct plant **plant_ptr)

@@ -137,7 +137,7 @@ struct plant_tag {
     char *name, *description, *unit;  /* unit: engineering units */
     int source, group, asset;         /* index, or -1 */
     char *lost_asset;                 /* the id of an asset that is not there (plant_load_with_orphans), or NULL */
-    char *address;                    /* as written */
+    char *address;                    /* as written: of a register, the name of a series, or = and an expression */
     int modbus_unit;                  /* -1: the source's */
     enum register_table table;
     int register_index;               /* from 0, as on the wire */
@@ -158,6 +158,8 @@ struct plant_tag {
     double strength, decay;           /* resolved: own, else the group's */
     double stale_s;                   /* resolved; default 3 polls, at least 5 s */
     double flatline_s;                /* a value that has not changed for so long is doubted; 0: never */
+    bool states_stale;                /* in its row */
+    struct expression *expression;    /* of a derived tag: what its value is; else NULL */
     struct plant_quality_tag quality;
     double limits[LIMIT_COUNT];       /* resolved: own, else the group's; NaN: none */
     double deadband;                  /* engineering units: history is within this of what was read; NaN: the plant's history says */
@@ -192,6 +194,8 @@ struct plant {
     struct plant_colormap colormaps[PLANT_COLORMAPS];
     size_t colormap_count;
     int *tags_by_name;                /* indices of tags, sorted by name */
+    int *derived;                     /* of tags with an expression, each after those that it is computed from */
+    size_t derived_count;
 };
 
 /* Reads the plant file and its tag list. Every finding goes to diag. NULL if there was any error. */

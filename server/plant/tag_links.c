@@ -46,12 +46,26 @@ static char *read_form(const char *text, struct plant_quality_tag *out)
     return length > 0 ? mem_printf("%.*s", (int)length, name) : NULL;
 }
 
-void tag_links_add(struct tag_links *links, struct tag_columns *columns, struct plant *plant, size_t tag)
+static void add(struct tag_links *links, struct tag_columns *columns, enum tag_column cell, size_t tag, char *to)
+{
+    int column = columns->at[cell];
+    mem_grow(&links->at, &links->capacity, links->count + 1, sizeof(*links->at));
+    links->at[links->count++] = (struct tag_link){
+        .tag = tag, .to = to, .line = csv_cell_line(&columns->csv, column), .column = csv_cell_column(&columns->csv, column)
+    };
+}
+
+bool tag_is_derived(const struct tag_columns *columns)
+{
+    return *cell_text(columns, COL_ADDRESS) == '=';
+}
+
+void tag_links_add(struct tag_links *links, struct tag_links *derived, struct tag_columns *columns, struct plant *plant, size_t tag)
 {
     struct plant_quality_tag *quality = &plant->tags[tag].quality;
-    int column = columns->at[COL_QUALITY_TAG];
     const char *text = cell_text(columns, COL_QUALITY_TAG);
-    quality->tag = -1;
+    if (tag_is_derived(columns))
+        add(derived, columns, COL_ADDRESS, tag, NULL);
     if (!*text)
         return;
     char *name = read_form(text, quality);
@@ -60,10 +74,7 @@ void tag_links_add(struct tag_links *links, struct tag_columns *columns, struct 
                    "Quality Tag: expected TAG, !TAG, TAG&MASK or TAG&MASK=VALUE, such as ST-101&0x0C=0x04, found '%.60s'", text);
         return;
     }
-    mem_grow(&links->at, &links->capacity, links->count + 1, sizeof(*links->at));
-    links->at[links->count++] = (struct tag_link){
-        .tag = tag, .to = name, .line = csv_cell_line(&columns->csv, column), .column = csv_cell_column(&columns->csv, column)
-    };
+    add(links, columns, COL_QUALITY_TAG, tag, name);
 }
 
 static void report_unknown(const struct plant *plant, struct diag *diag, const char *path, int line, int column, const char *what,

@@ -18,7 +18,7 @@ struct tag_list {
     struct tag_columns columns;
     struct plant_tag *tag;          /* what the current row becomes */
     const struct plant_group *group; /* its group, or NULL */
-    struct tag_links links;
+    struct tag_links links, derived;
     size_t capacity;                /* of plant->tags */
     struct alarm_references references;
 };
@@ -29,7 +29,11 @@ static void read_source(struct tag_list *list)
 {
     const struct plant *plant = list->plant;
     list->tag->source = cell_reference(&list->columns, COL_SOURCE, "source", plant->sources, plant->source_count, sizeof(*plant->sources));
-    if (cell_given(&list->columns, COL_SOURCE))
+    if (cell_given(&list->columns, COL_SOURCE) && tag_is_derived(&list->columns)) {
+        cell_error(&list->columns, COL_SOURCE, "Source: expected none, since the address is an expression");
+        list->tag->source = -1;
+    }
+    if (cell_given(&list->columns, COL_SOURCE) || tag_is_derived(&list->columns))
         return;
     if (plant->source_count == 1)
         list->tag->source = 0;
@@ -154,7 +158,7 @@ static void read_timing(struct tag_list *list)
     tag->scan_ms = (int)ceil(scan_ms);
     int poll_ms = tag->scan_ms ? tag->scan_ms : tag->source >= 0 ? list->plant->sources[tag->source].poll_ms : 1000;
     tag->stale_s = fmax(5, 3 * poll_ms / 1000.0);
-    cell_number(&list->columns, COL_STALE, 1e-3, 1e6, &tag->stale_s);
+    tag->states_stale = cell_number(&list->columns, COL_STALE, 1e-3, 1e6, &tag->stale_s);
     cell_number(&list->columns, COL_FLATLINE, 1e-3, 1e8, &tag->flatline_s);
 }
 
@@ -191,7 +195,7 @@ static void read_row(struct tag_list *list)
     read_source(list);
     read_group_and_asset(list);
     tag_wire_read(&list->columns, plant, list->tag);
-    tag_links_add(&list->links, &list->columns, plant, plant->tag_count - 1);
+    tag_links_add(&list->links, &list->derived, &list->columns, plant, plant->tag_count - 1);
     read_place(list);
     read_limits(list);
     read_unit(list);
@@ -246,5 +250,7 @@ void tag_list_read(struct plant *plant, struct diag *diag)
     sort_names(plant);
     check_duplicates(plant, diag);
     tag_links_resolve(&list.links, plant, diag);
+    tag_derived_resolve(&list.derived, plant, diag);
+    mem_free(list.derived.at);
     plant_alarms_resolve(plant, diag, &list.references);
 }

@@ -11,6 +11,7 @@
 #include "plant/address.h"
 #include "plant/number.h"
 #include "plant/plant_parts.h"
+#include "plant/tag_links.h"
 
 struct tag_wire {
     const struct plant *plant;
@@ -80,10 +81,11 @@ static bool read_type(struct tag_wire *wire, const struct modbus_address *addres
     return one_bit == (tag->type == DATA_BIT);
 }
 
-static bool is_replay(const struct tag_wire *wire)
+/* It comes as a number in engineering units, from a file or from other tags. */
+static bool is_number(const struct tag_wire *wire)
 {
     const char *kind = wire->tag->source >= 0 ? wire->plant->sources[wire->tag->source].kind : NULL;
-    return kind && !strcmp(kind, "replay");
+    return tag_is_derived(wire->columns) || (kind && !strcmp(kind, "replay"));
 }
 
 /* Where the place of a register depends on what the first one is called: a longer value at the wrong one still looks like a value. */
@@ -106,13 +108,15 @@ static void read_address(struct tag_wire *wire)
     struct modbus_address address;
     char why[200];
     tag->address = mem_strdup(cell_text(wire->columns, COL_ADDRESS));
+    if (is_number(wire)) {
+        tag->type = DATA_FLOAT64;
+        return;
+    }
     if (!*tag->address) {
         if (tag->source >= 0 && wire->columns->at[COL_ADDRESS] >= 0)
             cell_error(wire->columns, COL_ADDRESS, "Address: expected the address of a register, such as 400001 or hr:0");
         return;
     }
-    if (is_replay(wire))
-        return;
     int base = tag->source >= 0 ? wire->plant->sources[tag->source].address_base : 1;
     if (!address_parse(tag->address, base, &address, why)) {
         cell_error(wire->columns, COL_ADDRESS, "Address: '%.60s': %s", tag->address, why);
@@ -160,6 +164,8 @@ static void read_scaling(struct tag_wire *wire)
         tag->scaling = SCALING_SQUARE_ROOT;
     else if (*text && strcasecmp(text, "None") != 0)
         cell_error(wire->columns, COL_SCALING, "Scaling: expected None, Linear or Square Root, found '%.60s'", text);
+    if (tag->scaling != SCALING_NONE && is_number(wire))
+        cell_error(wire->columns, COL_SCALING, "Scaling: expected None, since the value is in engineering units already");
     tag->has_range = tag->scaling != SCALING_NONE ||
                      (cell_given(wire->columns, COL_SCALED_LOW) && cell_given(wire->columns, COL_SCALED_HIGH));
     if (tag->scaling != SCALING_NONE)

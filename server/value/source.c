@@ -5,8 +5,9 @@
 #include <string.h>
 
 #include "value/modbus.h"
+#include "value/replay.h"
 
-static const struct source_impl *const table[] = { &modbus_impl };
+static const struct source_impl *const table[] = { &modbus_impl, &replay_impl };
 
 struct source *source_start(struct log *log, const struct plant *plant, int source, struct store *store, struct counters *counters)
 {

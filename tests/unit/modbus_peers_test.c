@@ -120,7 +120,8 @@ static pid_t simulate(const char *folder, int port)
                                "tags: tags.csv\n";
     char number[16], *paths[] = {
         temp_write_text(folder, "m.glb", "glTF"),
-        temp_write_text(folder, "tags.csv", "Tag Name,Address,Data Type\nw,400001,Word\nf,400003,Float\ni,300001,Short\nc,000001,Boolean\n"),
+        temp_write_text(folder, "tags.csv",
+                        "Tag Name,Address,Data Type\nw,400001,Word\nf,400003,Float\ni,300001,Short\nc,000001,Boolean\n"),
         temp_write_text(folder, "still.csv", "t_s,w,f,i,c\n0,1234,-118.625,-2,1\n"),
         temp_write_text(folder, "p.map", "values still.csv\nw=w\nf=f\ni=i\nc=c\n"),
         temp_write_text(folder, "p.yaml", yaml),

@@ -17,7 +17,7 @@
 #include "deploy/demo/sim_image.h"
 #include "deploy/demo/sim_map.h"
 #include "deploy/demo/sim_process.h"
-#include "deploy/demo/sim_series.h"
+#include "value/series.h"
 #include "value/decode.h"
 #include "value/quality.h"
 
@@ -284,23 +284,23 @@ static void wide_series(void **state)
 {
     (void)state;
     char why[200], *path = write_file("wide.csv", "t_min,a,b\r\n10,1.5,-2\r\n13,2.5,\r\n16,3.5,4e1\r\n");
-    struct sim_series series;
+    struct series series;
     bool found;
-    assert_true(sim_series_read(&series, path, "a", &found, why) && found);
+    assert_true(series_read(&series, path, "a", &found, why) && found);
     assert_int_equal(series.count, 3);
     assert_true(series.length_s == 540); /* 6 min and one step */
-    assert_true(sim_series_at(&series, 0, false) == 1.5);
-    assert_true(sim_series_at(&series, 179.9, false) == 1.5); /* held, nothing invented */
-    assert_true(sim_series_at(&series, 180, false) == 2.5);
-    assert_true(sim_series_at(&series, 1e9, false) == 3.5);
-    assert_true(sim_series_at(&series, 539, true) == 3.5);
-    assert_true(sim_series_at(&series, 541, true) == 1.5);
-    sim_series_finish(&series);
-    assert_true(sim_series_read(&series, path, "b", &found, why) && found);
+    assert_true(series_at(&series, 0, false) == 1.5);
+    assert_true(series_at(&series, 179.9, false) == 1.5); /* held, nothing invented */
+    assert_true(series_at(&series, 180, false) == 2.5);
+    assert_true(series_at(&series, 1e9, false) == 3.5);
+    assert_true(series_at(&series, 539, true) == 3.5);
+    assert_true(series_at(&series, 541, true) == 1.5);
+    series_finish(&series);
+    assert_true(series_read(&series, path, "b", &found, why) && found);
     assert_int_equal(series.count, 2); /* an empty cell is no value */
-    assert_true(sim_series_at(&series, 200, false) == -2);
-    sim_series_finish(&series);
-    assert_true(sim_series_read(&series, path, "c", &found, why));
+    assert_true(series_at(&series, 200, false) == -2);
+    series_finish(&series);
+    assert_true(series_read(&series, path, "c", &found, why));
     assert_false(found);
     assert_non_null(strstr(why, "has no series c"));
     drop_file(path);
@@ -311,16 +311,16 @@ static void long_series(void **state)
     (void)state;
     char why[200], *path = write_file("long.csv", "1636070400000,Alarm,M-1,state,NORMAL,VARCHAR\n1636070400001,Mixer,M-1,T,100,DOUBLE\n"
                                                   "1636070400002,Mixer,M-1,RPM,60,DOUBLE\n1636070406001,Mixer,M-1,T,101.5,DOUBLE");
-    struct sim_series series;
+    struct series series;
     bool found;
-    assert_true(sim_series_read(&series, path, "M-1/T", &found, why) && found);
+    assert_true(series_read(&series, path, "M-1/T", &found, why) && found);
     assert_int_equal(series.count, 2);
     assert_true(fabs(series.time_s[1] - 6.001) < 1e-9);
-    assert_true(sim_series_at(&series, 7, false) == 101.5);
-    sim_series_finish(&series);
-    assert_true(sim_series_read(&series, path, "M-2/T", &found, why));
+    assert_true(series_at(&series, 7, false) == 101.5);
+    series_finish(&series);
+    assert_true(series_read(&series, path, "M-2/T", &found, why));
     assert_false(found);
-    assert_false(sim_series_read(&series, path, "M-1/state", &found, why));
+    assert_false(series_read(&series, path, "M-1/state", &found, why));
     assert_non_null(strstr(why, ":1: M-1/state: expected a number"));
     drop_file(path);
 }
@@ -334,17 +334,17 @@ static void bad_series(void **state)
     };
     for (int i = 0; i < 6; i++) {
         char why[200] = "", *path = write_file("bad.csv", texts[i]);
-        struct sim_series series;
+        struct series series;
         bool found;
-        assert_false(sim_series_read(&series, path, "a", &found, why));
+        assert_false(series_read(&series, path, "a", &found, why));
         if (!strstr(why, wanted[i]))
             fail_msg("%s: said %s", wanted[i], why);
         drop_file(path);
     }
     char why[200];
-    struct sim_series series;
+    struct series series;
     bool found;
-    assert_false(sim_series_read(&series, "/nowhere/at/all.csv", "a", &found, why));
+    assert_false(series_read(&series, "/nowhere/at/all.csv", "a", &found, why));
     assert_non_null(strstr(why, "No such file"));
 }
 

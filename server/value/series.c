@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Picks one series out of a CSV file of numbers. */
-#include "sim_series.h"
+#include "value/series.h"
 
 #include <errno.h>
 #include <math.h>
@@ -71,7 +71,7 @@ static double unit_of_time(const struct cell *name)
     return 0;
 }
 
-static void add(struct sim_series *series, double time_s, double value)
+static void add(struct series *series, double time_s, double value)
 {
     mem_grow(&series->time_s, &series->capacity, series->count + 1, sizeof(double));
     mem_grow(&series->value, &series->value_capacity, series->count + 1, sizeof(double));
@@ -100,7 +100,7 @@ static bool tick(struct clock *clock, const struct cell *cell, double *time_s)
     return true;
 }
 
-static bool read_wide(struct sim_series *series, struct lines *lines, size_t time_column, size_t column, struct clock *clock, char why[200])
+static bool read_wide(struct series *series, struct lines *lines, size_t time_column, size_t column, struct clock *clock, char why[200])
 {
     double time_s, value;
     while (next_line(lines)) {
@@ -122,7 +122,7 @@ static bool read_wide(struct sim_series *series, struct lines *lines, size_t tim
     return true;
 }
 
-static bool read_long(struct sim_series *series, struct lines *lines, struct clock *clock, char why[200])
+static bool read_long(struct series *series, struct lines *lines, struct clock *clock, char why[200])
 {
     double time_s, value;
     const char *slash = strrchr(series->name, '/');
@@ -157,13 +157,13 @@ static bool read_header(const struct lines *lines, const char *name, size_t *tim
     return *time_column < lines->count;
 }
 
-bool sim_series_read(struct sim_series *series, const char *path, const char *name, bool *found, char why[200])
+bool series_read(struct series *series, const char *path, const char *name, bool *found, char why[200])
 {
     size_t bytes, time_column = 0, column = 0;
     double number;
     bool good = false;
     *found = false;
-    *series = (struct sim_series){ .name = mem_strdup(name) };
+    *series = (struct series){ .name = mem_strdup(name) };
     char *text = text_read_file(path, MAX_BYTES, &bytes);
     struct lines lines = { .path = path, .at = text ? text : "" };
     struct clock clock = { .unit_s = 0.001 };
@@ -190,19 +190,19 @@ error:
     mem_free(text);
     mem_free(lines.cells);
     if (!*found)
-        sim_series_finish(series);
+        series_finish(series);
     return good;
 }
 
-void sim_series_finish(struct sim_series *series)
+void series_finish(struct series *series)
 {
     mem_free(series->name);
     mem_free(series->time_s);
     mem_free(series->value);
-    *series = (struct sim_series){ 0 };
+    *series = (struct series){ 0 };
 }
 
-double sim_series_at(const struct sim_series *series, double time_s, bool loop)
+double series_at(const struct series *series, double time_s, bool loop)
 {
     size_t low = 0, high = series->count;
     if (loop)

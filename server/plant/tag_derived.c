@@ -1,0 +1,70 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Tags that are computed from others: their expressions, and an order in which each comes after what it needs. */
+#include <math.h>
+
+#include "base/mem.h"
+#include "plant/expression.h"
+#include "plant/tag_links.h"
+
+enum mark { UNSEEN, OPEN, DONE };
+
+struct walk {
+    struct plant *plant;
+    char *marks; /* enum mark, by tag */
+};
+
+static int find_tag(const void *plant, const char *name)
+{
+    return plant_find_tag(plant, name);
+}
+
+static bool parse(const struct tag_link *link, struct plant *plant, struct diag *diag)
+{
+    struct plant_tag *tag = &plant->tags[link->tag];
+    char why[200];
+    size_t at;
+    tag->expression = expression_parse(tag->address + 1, find_tag, plant, why, &at);
+    if (!tag->expression)
+        diag_error(diag, plant->tags_path, link->line, link->column, "Address: '%.60s': %s, at character %zu", tag->address, why, at + 2);
+    return tag->expression != NULL;
+}
+
+/* Depth first: what a tag needs comes before it. A tag is stale where it says so, else no sooner than what it needs. */
+static bool visit(struct walk *walk, int index)
+{
+    struct plant_tag *tag = &walk->plant->tags[index];
+    const int *inputs;
+    if (!tag->expression || walk->marks[index] == DONE)
+        return true;
+    if (walk->marks[index] == OPEN)
+        return false;
+    walk->marks[index] = OPEN;
+    size_t count = expression_inputs(tag->expression, &inputs);
+    for (size_t i = 0; i < count; i++) {
+        if (!visit(walk, inputs[i]))
+            return false;
+        if (!tag->states_stale)
+            tag->stale_s = fmax(tag->stale_s, walk->plant->tags[inputs[i]].stale_s);
+    }
+    walk->marks[index] = DONE;
+    walk->plant->derived[walk->plant->derived_count++] = index;
+    return true;
+}
+
+void tag_derived_resolve(const struct tag_links *derived, struct plant *plant, struct diag *diag)
+{
+    struct walk walk = { .plant = plant, .marks = mem_array(plant->tag_count, 1) };
+    size_t good = 0;
+    for (size_t i = 0; i < derived->count; i++)
+        good += parse(&derived->at[i], plant, diag);
+    plant->derived = mem_array(good, sizeof(*plant->derived));
+    for (size_t i = 0; i < derived->count; i++) {
+        const struct tag_link *link = &derived->at[i];
+        if (visit(&walk, (int)link->tag))
+            continue;
+        diag_error(diag, plant->tags_path, link->line, link->column, "Address: '%.60s' is computed from itself",
+                   plant->tags[link->tag].name);
+        break; /* all tags of the circle would say so */
+    }
+    mem_free(walk.marks);
+}

@@ -1,0 +1,149 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Tags that are computed from tags. */
+#include "value/derived.h"
+
+#include <errno.h>
+#include <math.h>
+#include <pthread.h>
+#include <string.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "plant/expression.h"
+#include "value/lookup.h"
+#include "value/quality.h"
+
+static const int64_t ROUND_NS = 200 * NS_PER_MS;
+
+struct written {
+    uint32_t quality;
+    int64_t mono_ns; /* INT64_MIN: nothing yet */
+};
+
+struct derived_state {
+    const struct plant *plant;
+    struct snapshot *snapshot;
+    struct written *written; /* by index in plant->derived */
+};
+
+struct derived_source {
+    struct source base;
+    struct store *store;
+    struct derived_state *state;
+    int stop_fd;
+    pthread_t thread;
+    bool has_thread;
+};
+
+struct derived_state *derived_create(const struct plant *plant)
+{
+    struct derived_state *state = mem_new(sizeof(*state));
+    state->plant = plant;
+    state->snapshot = snapshot_create(plant->tag_count);
+    state->written = mem_array(plant->derived_count, sizeof(*state->written));
+    for (size_t i = 0; i < plant->derived_count; i++)
+        state->written[i] = (struct written){ QUALITY_BAD_WAITING, INT64_MIN };
+    return state;
+}
+
+void derived_destroy(struct derived_state **state)
+{
+    if (!*state)
+        return;
+    snapshot_destroy(&(*state)->snapshot);
+    mem_free((*state)->written);
+    mem_free(*state);
+    *state = NULL;
+}
+
+/* The value, the worst quality of its inputs, and the age of the newest. */
+static struct reading combine(const struct derived_state *state, const struct expression *expression)
+{
+    const int *inputs;
+    size_t count = expression_inputs(expression, &inputs);
+    struct reading all = { .quality = QUALITY_GOOD, .age_ns = count ? INT64_MAX : 0 };
+    double values[EXPRESSION_INPUTS];
+    for (size_t i = 0; i < count; i++) {
+        const struct reading *one = &state->snapshot->readings[inputs[i]];
+        values[i] = one->value;
+        if (one->quality >> 30 > all.quality >> 30)
+            all.quality = one->quality;
+        if (one->age_ns < all.age_ns)
+            all.age_ns = one->age_ns;
+    }
+    if (quality_is_bad(all.quality))
+        return all;
+    all.value = expression_value(expression, values);
+    if (!isfinite(all.value)) {
+        all.value = 0;
+        all.quality = QUALITY_BAD_SENSOR_FAILURE;
+    }
+    return all;
+}
+
+/* Only where something new came in, or the quality is another: nothing else may make it younger. */
+static void write_new(struct derived_state *state, struct store *store, size_t i, struct reading *reading)
+{
+    struct written *written = &state->written[i];
+    const struct snapshot *snapshot = state->snapshot;
+    bool known = reading->age_ns != INT64_MAX;
+    int64_t mono_ns = known && !quality_is_bad(reading->quality) ? snapshot->taken_mono_ns - reading->age_ns : snapshot->taken_mono_ns;
+    if (mono_ns < written->mono_ns)
+        mono_ns = written->mono_ns;
+    if (reading->quality == written->quality && (quality_is_bad(reading->quality) || mono_ns == written->mono_ns))
+        return;
+    *written = (struct written){ reading->quality, mono_ns };
+    const struct sample sample = { .tag = state->plant->derived[i], .value = reading->value, .quality = reading->quality };
+    store_write(store, &sample, 1, mono_ns, snapshot->taken_utc_ns - (snapshot->taken_mono_ns - mono_ns));
+}
+
+void derived_compute(struct derived_state *state, struct store *store, int64_t now_mono_ns, int64_t now_utc_ns)
+{
+    const struct plant *plant = state->plant;
+    store_snapshot(store, now_mono_ns, now_utc_ns, state->snapshot);
+    for (size_t i = 0; i < plant->derived_count; i++) {
+        struct reading *reading = &state->snapshot->readings[plant->derived[i]];
+        *reading = combine(state, plant->tags[plant->derived[i]].expression); /* those after it see it */
+        write_new(state, store, i, reading);
+    }
+}
+
+static void *derived_main(void *arg)
+{
+    struct derived_source *derived = arg;
+    while (wait_for(-1, 0, derived->stop_fd, clock_mono_ns() + ROUND_NS) != -ECANCELED)
+        derived_compute(derived->state, derived->store, clock_mono_ns(), clock_utc_ns());
+    return NULL;
+}
+
+static void derived_stop(struct source *source)
+{
+    struct derived_source *derived = (struct derived_source *)source;
+    if (derived->has_thread) {
+        eventfd_write(derived->stop_fd, 1);
+        pthread_join(derived->thread, NULL);
+    }
+    if (derived->stop_fd >= 0)
+        close(derived->stop_fd);
+    derived_destroy(&derived->state);
+    mem_free(derived);
+}
+
+static const struct source_impl derived_impl = { .kind = "derived", .stop = derived_stop };
+
+struct source *derived_start(struct log *log, const struct plant *plant, struct store *store)
+{
+    struct derived_source *derived = mem_new(sizeof(*derived));
+    derived->base.impl = &derived_impl;
+    derived->store = store;
+    derived->state = derived_create(plant);
+    derived->stop_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+    derived->has_thread = derived->stop_fd >= 0 && pthread_create(&derived->thread, NULL, derived_main, derived) == 0;
+    if (derived->has_thread)
+        return &derived->base;
+    log_err(log, "derived tags: no thread: %s", strerror(errno));
+    derived_stop(&derived->base);
+    return NULL;
+}

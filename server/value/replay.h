@@ -1,0 +1,9 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The source kind "replay": recorded series from a CSV file (series.h), as fast as is wished. */
+#ifndef VALUE_REPLAY_H
+#define VALUE_REPLAY_H
+#include "value/source.h"
+
+extern const struct source_impl replay_impl;
+
+#endif

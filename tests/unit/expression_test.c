@@ -1,0 +1,196 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Expressions: what they are worth, what is wrong with them and where; and derived tags, with quality and age carried through. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "plant/expression.h"
+#include "tests/support/plant_by_hand.h"
+#include "tests/support/plant_case.h"
+#include "value/derived.h"
+#include "value/quality.h"
+
+#define S INT64_C(1000000000)
+
+/* a is 8, b is 3, TT-1/A (x) is -2. */
+static const char *const names[] = { "a", "b", "TT-1/A (x)" };
+static const double numbers[] = { 8, 3, -2 };
+
+static int find(const void *arg, const char *name)
+{
+    (void)arg;
+    for (int i = 0; i < 3; i++)
+        if (!strcmp(names[i], name))
+            return i;
+    return -1;
+}
+
+static double worth(const char *text)
+{
+    char why[200] = "";
+    size_t at;
+    const int *inputs;
+    double values[EXPRESSION_INPUTS];
+    struct expression *expression = expression_parse(text, find, NULL, why, &at);
+    if (!expression)
+        print_message("# %s: %s at %zu\n", text, why, at);
+    assert_non_null(expression);
+    size_t count = expression_inputs(expression, &inputs);
+    for (size_t i = 0; i < count; i++)
+        values[i] = numbers[inputs[i]];
+    double value = expression_value(expression, values);
+    expression_destroy(&expression);
+    return value;
+}
+
+static void arithmetic(void **state)
+{
+    static const struct {
+        const char *text;
+        double value;
+    } cases[] = {
+        { "1", 1 }, { ".5", .5 }, { "1.5e3", 1500 }, { "2e-1", .2 }, { " 1 + 2 * 3 ", 7 }, { "(1+2)*3", 9 }, { "7-3-2", 2 }, { "8/4/2", 1 },
+        { "2^3^2", 512 }, { "-2^2", -4 }, { "2^-1", .5 }, { "--3", 3 }, { "2*-3", -6 }, { "1-(-1)", 2 }, { "[a]-[b]", 5 }, { "[a]-[a]", 0 },
+        { "[TT-1/A (x)]", -2 }, { "-[TT-1/A (x)]^2", -4 }, { "mean([a],[b],1)", 4 }, { "mean( [a] ; [b] )", 5.5 }, { "sum(1,2,3)", 6 },
+        { "min([a],[b],[TT-1/A (x)])", -2 }, { "max([b],[a])", 8 }, { "abs([TT-1/A (x)])", 2 }, { "sqrt([a]*2)", 4 },
+        { "difference([a],[b])", 5 }, { "approach(100, 60, 20, 50)", 40 }, { "approach(100, 60, 20, 70)", 30 },
+        { "lmtd(100, 60, 20, 60)", 40 }, { "lmtd(100, 40, 20, 60)", 20 / 0.69314718055994531 }, { "mean(mean([a],[b]),min(1,2))", 3.25 },
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++)
+        if (!(fabs(worth(cases[i].text) - cases[i].value) < 1e-12))
+            fail_msg("%s is %.17g, expected %.17g", cases[i].text, worth(cases[i].text), cases[i].value);
+    assert_false(isfinite(worth("1/0")));
+    assert_false(isfinite(worth("sqrt(-1)")));
+    assert_false(isfinite(worth("lmtd(100, 20, 20, 60)")));
+}
+
+static void mistakes_are_found(void **state)
+{
+    static const struct {
+        const char *text, *why;
+        size_t at;
+    } cases[] = {
+        { "", "expected [TAG]", 0 }, { "1+", "expected [TAG]", 2 }, { "1 2", "or the end, found '2'", 2 },
+        { "[c]", "unknown tag 'c'", 0 },
+        { "[a", "expected ]", 0 }, { "(1", "expected )", 2 }, { "1)", "or the end", 1 },
+        { "TT-101", "expected [TAG], a number, or one of", 0 },
+        { "mean 1", "expected ( after mean", 5 }, { "mean()", "expected [TAG]", 5 },
+        { "mean(1", "expected ) after the arguments of mean", 6 },
+        { "abs(1,2)", "another number of arguments is expected for abs", 7 },
+        { "1..2", "expected a number", 0 },
+        { "1e", "expected a number", 0 },
+        { "0x10", "or the end", 1 }, { "2**3", "expected [TAG]", 2 }, { "[]", "unknown tag ''", 0 },
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
+        char why[200] = "";
+        size_t at;
+        assert_null(expression_parse(cases[i].text, find, NULL, why, &at));
+        if (!strstr(why, cases[i].why) || at != cases[i].at)
+            fail_msg("%s: '%s' at %zu, expected '%s' at %zu", cases[i].text, why, at, cases[i].why, cases[i].at);
+    }
+}
+
+static void long_and_deep_ones_are_refused(void **state)
+{
+    char text[4000], why[200];
+    size_t at;
+    (void)state;
+    memset(text, '(', 3000);
+    text[3000] = 0;
+    assert_null(expression_parse(text, find, NULL, why, &at));
+    memset(text, '-', 3000);
+    assert_null(expression_parse(text, find, NULL, why, &at));
+    for (int i = 0; i < 3000; i++)
+        text[i] = i % 2 ? '+' : '1';
+    text[2999] = 0;
+    assert_null(expression_parse(text, find, NULL, why, &at));
+}
+
+/* --- derived tags ----------------------------------------------------------------------------------------------------------- */
+
+static const char yaml[] = "plant: { name: P }\nassets: [{ id: A, model: m.glb }]\ngroups: [{ id: g, unit: K, min: 0, max: 9 }]\n"
+                           "sources: [{ id: plc, type: modbus, host: h }]\ntags: tags.csv\n";
+
+static void write_one(struct store *store, int tag, double value, uint32_t quality, int64_t now_ns)
+{
+    store_write(store, &(struct sample){ tag, value, quality }, 1, now_ns, now_ns + 1000 * S);
+}
+
+static void quality_and_age_are_carried_through(void **state)
+{
+    struct plant_case *c = *state;
+    plant_case_load(c, yaml, "Tag Name,Address,Stale s\nmean,\"=mean([d],[b])\",\na,40001,20\nb,40002,60\nd,= [a] - [b],\n");
+    plant_case_assert_loaded(c, 0);
+    const struct plant *plant = c->plant;
+    assert_true(plant->tags[0].source == -1 && plant->derived_count == 2 && plant->derived[0] == 3 && plant->derived[1] == 0);
+    assert_true(plant->tags[3].stale_s == 60 && plant->tags[0].stale_s == 60); /* no sooner than what they need */
+    struct store *store = store_create(plant);
+    struct snapshot *snapshot = snapshot_create(plant->tag_count);
+    struct derived_state *derived = derived_create(plant);
+    const struct {
+        int64_t at_s;
+        int tag;
+        double value;
+        uint32_t quality, wanted;
+        double d, mean;
+        int64_t age_s;
+    } steps[] = {
+        { 0, 1, 10, QUALITY_GOOD, QUALITY_BAD_WAITING, 0, 0, -1 },
+        { 1, 2, 4, QUALITY_GOOD, QUALITY_GOOD, 6, 5, 0 },
+        { 3, 1, 11, QUALITY_GOOD, QUALITY_GOOD, 7, 5.5, 0 },
+        { 5, -1, 0, 0, QUALITY_GOOD, 7, 5.5, 2 }, /* to compute again makes nothing younger */
+        { 6, 1, 12, QUALITY_UNCERTAIN_UNITS_EXCEEDED, QUALITY_UNCERTAIN_UNITS_EXCEEDED, 8, 6, 0 },
+        { 7, 1, 12, QUALITY_BAD_SENSOR_FAILURE, QUALITY_BAD_SENSOR_FAILURE, 0, 0, -1 },
+        { 8, 1, 12, QUALITY_GOOD, QUALITY_GOOD, 8, 6, 0 },
+        { 29, -1, 0, 0, QUALITY_BAD_COMMUNICATION_ERROR, 0, 0, -1 }, /* a is stale, and so what comes of it */
+    };
+    for (size_t i = 0; i < sizeof(steps) / sizeof(*steps); i++) {
+        int64_t now_ns = steps[i].at_s * S;
+        if (steps[i].tag >= 0)
+            write_one(store, steps[i].tag, steps[i].value, steps[i].quality, now_ns);
+        derived_compute(derived, store, now_ns, now_ns + 1000 * S);
+        store_snapshot(store, now_ns, now_ns + 1000 * S, snapshot);
+        const struct reading *d = &snapshot->readings[3], *mean = &snapshot->readings[0];
+        assert_string_equal(quality_name(d->quality), quality_name(steps[i].wanted));
+        assert_string_equal(quality_name(mean->quality), quality_name(steps[i].wanted));
+        if (steps[i].age_s >= 0)
+            assert_true(d->value == steps[i].d && mean->value == steps[i].mean && d->age_ns == steps[i].age_s * S);
+    }
+    derived_destroy(&derived);
+    snapshot_destroy(&snapshot);
+    store_destroy(&store);
+}
+
+static void rows_are_checked(void **state)
+{
+    struct plant_case *c = *state;
+    plant_case_load(c, yaml,
+                    "Tag Name,Address,Source,Scaling\n"
+                    "a,= [b] + 1,,\nb,= [c],,\nc,=[a]*2,,\nd,=[e],,\nf,=1+,,\ng,=2,plc,\nh,=3,,Linear\ni,=[i],,\n");
+    FOUND(c, { "tags.csv", 2, 3, "'a' is computed from itself" }, { "tags.csv", 5, 3, "unknown tag 'e', at character 2" },
+          { "tags.csv", 6, 3, "Address: '=1+': expected [TAG], a number, or one of" },
+          { "tags.csv", 7, 6, "Source: expected none, since the address is an expression" },
+          { "tags.csv", 8, 7, "Scaling: expected None, since the value is in engineering units already" },
+          { "tags.csv", 8, 1, "Raw Low" }, { "tags.csv", 8, 1, "Scaled Low" });
+}
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(arithmetic),
+        cmocka_unit_test(mistakes_are_found),
+        cmocka_unit_test(long_and_deep_ones_are_refused),
+        cmocka_unit_test_setup_teardown(quality_and_age_are_carried_through, plant_case_set_up, plant_case_tear_down),
+        cmocka_unit_test_setup_teardown(rows_are_checked, plant_case_set_up, plant_case_tear_down),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,183 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Replays: every recorded sample comes through the store, in its order and at its time, once or again and again. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "tests/support/plant_case.h"
+#include "tests/support/temp.h"
+#include "value/quality.h"
+#include "value/source.h"
+
+enum { MOST = 4000 };
+
+struct heard_all {
+    struct heard at[MOST];
+    _Atomic size_t count;
+};
+
+struct setup {
+    struct plant_case *c;
+    struct log *log;
+    struct counters *counters;
+    struct store *store;
+    struct source *source;
+    struct heard_all heard;
+};
+
+static int set_up(void **state)
+{
+    struct setup *s = mem_new(sizeof(*s));
+    void *c;
+    plant_case_set_up(&c);
+    s->c = c;
+    s->log = log_create(LOG_ERROR);
+    s->counters = counters_create();
+    *state = s;
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    struct setup *s = *state;
+    void *c = s->c;
+    source_stop(&s->source);
+    store_destroy(&s->store);
+    counters_destroy(&s->counters);
+    log_destroy(&s->log);
+    mem_free(s);
+    return plant_case_tear_down(&c);
+}
+
+static void on_heard(void *arg, const struct heard *heard)
+{
+    struct heard_all *all = arg;
+    if (all->count < MOST)
+        all->at[all->count++] = *heard;
+}
+
+static void play(struct setup *s, const char *keys, const char *csv, const char *tags)
+{
+    char *yaml = mem_printf("plant: { name: P }\nassets: [{ id: A, model: m.glb }]\ngroups: [{ id: g, unit: K, min: 0, max: 9 }]\n"
+                            "sources: [{ id: r, type: replay, file: series.csv, %s }]\ntags: tags.csv\n", keys);
+    mem_free(temp_write_text(s->c->folder, "series.csv", csv));
+    plant_case_load(s->c, yaml, tags);
+    mem_free(yaml);
+    plant_case_assert_loaded(s->c, 0);
+    s->store = store_create(s->c->plant);
+    store_listen(s->store, on_heard, &s->heard);
+    s->source = source_start(s->log, s->c->plant, 0, s->store, s->counters);
+    assert_non_null(s->source);
+}
+
+static void wait_for_heard(struct setup *s, size_t count)
+{
+    for (int64_t end_ns = clock_mono_ns() + 10 * NS_PER_S; s->heard.count < count && clock_mono_ns() < end_ns;)
+        clock_sleep_ns(5 * NS_PER_MS);
+    assert_true(s->heard.count >= count);
+}
+
+static void wait_for_link(struct setup *s, bool up)
+{
+    for (int64_t end_ns = clock_mono_ns() + 10 * NS_PER_S; store_link_is_up(s->store, 0) != up && clock_mono_ns() < end_ns;)
+        clock_sleep_ns(5 * NS_PER_MS);
+    assert_true(store_link_is_up(s->store, 0) == up);
+}
+
+/* Of one tag, in the order of hearing. */
+static size_t of_tag(const struct setup *s, int tag, struct heard *out, size_t most)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < s->heard.count && count < most; i++)
+        if (s->heard.at[i].tag == tag && !quality_is_bad(s->heard.at[i].quality))
+            out[count++] = s->heard.at[i];
+    return count;
+}
+
+static void every_sample_comes_at_its_time(void **state)
+{
+    struct setup *s = *state;
+    struct heard got[20];
+    const double values[] = { 1, 2.5, -3, 0, 4 }, at_s[] = { 0, 10, 20, 50, 60 };
+    play(s, "speed: 100", "time_s,shell,TT 2\n0,1,5\n10,2.5,\n20,-3,\n50,0,6\n60,4,7\n", "Tag Name,Address\nTT-1,shell\nTT 2,\n");
+    wait_for_heard(s, 8);
+    size_t count = of_tag(s, 0, got, 20);
+    assert_int_equal(count, 6); /* the last one: that the link is lost */
+    for (size_t i = 0; i < 5; i++) {
+        assert_true(got[i].value == values[i] && got[i].quality == QUALITY_GOOD);
+        assert_true(llabs(got[i].mono_ns - got[0].mono_ns - (int64_t)(at_s[i] * 1e7)) < 1000);
+        assert_true(llabs(got[i].utc_ns - got[0].utc_ns - (int64_t)(at_s[i] * 1e7)) < NS_PER_MS);
+    }
+    assert_int_equal(of_tag(s, 1, got, 20), 4); /* blank cells are no samples */
+    wait_for_link(s, false);                    /* it has ended: nothing pretends to be live */
+}
+
+static void a_loop_goes_on(void **state)
+{
+    struct setup *s = *state;
+    struct heard got[MOST];
+    play(s, "speed: 1000, loop: yes", "t_s,a\n0,0\n10,1\n20,2\n", "Tag Name,Address\nA,a\n");
+    wait_for_heard(s, 30);
+    assert_true(store_link_is_up(s->store, 0));
+    size_t count = of_tag(s, 0, got, MOST);
+    for (size_t i = 0; i < count; i++) {
+        assert_true(got[i].value == (double)(i % 3));
+        assert_true(llabs(got[i].mono_ns - got[0].mono_ns - (int64_t)i * 10 * NS_PER_MS) < 1000);
+    }
+}
+
+static void a_long_file_is_read(void **state)
+{
+    struct setup *s = *state;
+    struct heard got[5];
+    play(s, "speed: 10", "1000,x,pump,flow,7,,\n1000,x,pump,temp,70,,\n1500,x,pump,flow,8,,\n2000,x,tank,flow,9,,\n",
+         "Tag Name,Address\nF,pump/flow\nT,pump/temp\n");
+    wait_for_heard(s, 3);
+    assert_int_equal(of_tag(s, 0, got, 2), 2);
+    assert_true(got[0].value == 7 && got[1].value == 8 && llabs(got[1].mono_ns - got[0].mono_ns - 50 * NS_PER_MS) < 1000);
+    assert_int_equal(of_tag(s, 1, got, 1), 1);
+    assert_true(got[0].value == 70);
+}
+
+static void what_is_not_in_the_file_is_bad(void **state)
+{
+    struct setup *s = *state;
+    play(s, "speed: 1", "t_s,a\n0,0\n10,1\n", "Tag Name,Address\nA,a\nB,b\n");
+    wait_for_heard(s, 2);
+    assert_true(s->heard.at[0].tag == 1 && s->heard.at[0].quality == QUALITY_BAD_CONFIGURATION);
+    assert_true(s->heard.at[1].tag == 0 && s->heard.at[1].value == 0);
+    wait_for_link(s, true);
+    int64_t begin_ns = clock_mono_ns();
+    source_stop(&s->source); /* long before it ends */
+    assert_true(clock_mono_ns() - begin_ns < 2 * NS_PER_S);
+}
+
+static void nothing_in_the_file_is_ours(void **state)
+{
+    struct setup *s = *state;
+    play(s, "speed: 1", "t_s,a\n0,0\n", "Tag Name,Address\nB,b\n");
+    wait_for_heard(s, 1);
+    clock_sleep_ns(50 * NS_PER_MS);
+    assert_false(store_link_is_up(s->store, 0));
+}
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(every_sample_comes_at_its_time, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_loop_goes_on, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_long_file_is_read, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(what_is_not_in_the_file_is_bad, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(nothing_in_the_file_is_ours, set_up, tear_down),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
