@@ -56,18 +56,23 @@ void draft_destroy(struct draft **draft_ptr)
     mem_free(draft->ramp_of_model);
     mem_free(draft->backdrops);
     mem_free(draft->palette);
+    mem_free(draft->lines);
     mem_free(draft);
     *draft_ptr = NULL;
 }
 
-/* Holes need textures; isolines and logarithms need the value itself at every pixel; what is see-through and what cuts are other
-   passes' work. */
+/* Holes need textures; what is see-through and what cuts are other passes' work. */
 bool draft_can(const struct draft *draft, const struct view *view)
 {
-    double lines[VIEW_ALL_LINES];
-    return view->tier == TIER_MOVING && view->look != LOOK_GLOSSY && view->look != LOOK_MATERIALS && !view->paint.log &&
-           view_lines(view, lines) == 0 && view->visibility.ghosts.count == 0 && view->visibility.clip.plane_count == 0 &&
-           view->camera.height_m <= 0 && draft->ramp_count <= MOST_RAMPS && !draft->has_holes;
+    return view->tier == TIER_MOVING && view->look != LOOK_GLOSSY && view->look != LOOK_MATERIALS &&
+           view->visibility.ghosts.count == 0 && view->visibility.clip.plane_count == 0 && view->camera.height_m <= 0 &&
+           draft->ramp_count <= MOST_RAMPS && !draft->has_holes;
+}
+
+/* Lines and logarithms are worked out with the triangles: such a picture is drawn anew each time. */
+static bool is_rich(const struct picture *picture)
+{
+    return picture->palette.lines || picture->view->paint.log || view_is_operator(picture->view);
 }
 
 /* Rows end in whole lanes. */
@@ -129,8 +134,9 @@ static bool draw_selected(struct draft *draft, struct recolor *recolor)
 }
 
 /* keep: to colour it again, if there is room for that. */
-static bool draw_all(struct draft *draft, struct frame *frame, bool keep)
+static bool draw_all(struct draft *draft, struct isolines *isolines, struct frame *frame, bool keep)
 {
+    struct isoline_points points = { 0 };
     if (keep)
         draft->ids = mem_try_array((size_t)draft->pitch_px * (size_t)draft->height_px, sizeof(*draft->ids));
     draft_tiles(draft, true);
@@ -138,6 +144,9 @@ static bool draw_all(struct draft *draft, struct frame *frame, bool keep)
     mem_free(draft->ids);
     draft->ids = NULL;
     markers_find(draft->picture, draft->depth, (size_t)draft->pitch_px, frame);
+    isolines_collect(isolines, draft->picture, &points);
+    isolines_find(draft->picture, &points, draft->depth, (size_t)draft->pitch_px, frame);
+    mem_free(points.at);
     bool good = draw_selected(draft, recolor);
     if (recolor && good)
         draft_give(&draft->kept, draft->picture, recolor, frame);
@@ -146,9 +155,11 @@ static bool draw_all(struct draft *draft, struct frame *frame, bool keep)
     return good;
 }
 
-bool draft_draw(struct draft *draft, const struct picture *picture, const struct light *light, struct frame *frame)
+bool draft_draw(struct draft *draft, const struct picture *picture, const struct light *light, struct isolines *isolines,
+                struct frame *frame)
 {
-    if (draft_recolor(draft, &draft->kept, picture, frame))
+    bool rich = is_rich(picture);
+    if (!rich && draft_recolor(draft, &draft->kept, picture, frame))
         return true;
     draft->picture = picture;
     draft->light = draft_get_light(draft, picture->light);
@@ -158,10 +169,11 @@ bool draft_draw(struct draft *draft, const struct picture *picture, const struct
     if (!draft_make_room(draft, frame, BAND_ROWS))
         return complain(draft);
     frame_block_fill(&draft->block, picture);
+    draft->greys = view_is_operator(picture->view);
     draft->out = frame->bgrx;
     draft->out_stride_bytes = (size_t)frame->stride_bytes;
     draft_aim(draft, light);
     if (!draft_find(draft))
         return complain(draft);
-    return draw_all(draft, frame, is_still(draft, content_shape_hash(picture)));
+    return draw_all(draft, isolines, frame, !rich && is_still(draft, content_shape_hash(picture)));
 }

@@ -10,6 +10,7 @@
 #define RENDER_DRAFT_H
 #include "base/workers.h"
 #include "render/frame.h"
+#include "render/isolines.h"
 #include "render/picture.h"
 #include "render/sky.h"
 
@@ -19,7 +20,8 @@ struct draft;
 struct draft *draft_create(struct workers *workers, const struct stage *stage, const struct sky *sky);
 void draft_destroy(struct draft **draft); /* &NULL is fine; leaves NULL */
 bool draft_can(const struct draft *draft, const struct view *view);
-/* Pixels and markers. False: out of memory, or the GL context is lost; logged. */
-bool draft_draw(struct draft *draft, const struct picture *picture, const struct light *light, struct frame *frame);
+/* Pixels, markers and labels. False: out of memory, or the GL context is lost; logged. */
+bool draft_draw(struct draft *draft, const struct picture *picture, const struct light *light, struct isolines *isolines,
+                struct frame *frame);
 
 #endif

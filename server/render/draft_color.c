@@ -112,7 +112,40 @@ DRAFT_INLINE lanes_int context_color(const struct draft *draft, lanes_int marks,
     lanes ambient = byte_of(marks, 1) * (1 / 255.0f), facing = byte_of(marks, 0) * (1 / 255.0f);
     lanes sum = lanes_clamp(0.52f * ambient + 0.48f * facing * sun_at(draft, x, y, depth), 0, 1); /* light_scalar in light.glsl */
     lanes_int step = lanes_whole(sum * (RAMP_STEPS - 1) + 0.5f);
-    return gather(draft->ramps, (marks >> 16 & (MOST_RAMPS - 1)) * RAMP_STEPS + step);
+    lanes_int color = gather(draft->ramps, (marks >> 16 & (MOST_RAMPS - 1)) * RAMP_STEPS + step);
+    if (!draft->greys)
+        return color;
+    lanes grey = 0.11f * byte_of(color, 0) + 0.59f * byte_of(color, 1) + 0.30f * byte_of(color, 2);
+    return lanes_whole(grey + 0.5f) * 0x010101 | (int32_t)0xff000000;
+}
+
+/* Where isolines run, as field_color in shaders/field.glsl. */
+static void draw_lines(const uint32_t marks[LANES], uint32_t colors[LANES])
+{
+    static const float grey_parts[3] = { 0.11f, 0.59f, 0.30f }, dark[3] = { 0.12f * 255, 0.09f * 255, 0.07f * 255 };
+    const float bright = 0.93f * 255, most = 0.8f / MARK_LINE_WHOLE;
+    for (int i = 0; i < LANES; i++) {
+        float part = most * (float)(marks[i] >> MARK_LINE & MARK_LINE_WHOLE), grey = 0;
+        uint32_t was = colors[i], now = 0;
+        if (!(marks[i] & MARK_FIELD) || part <= 0)
+            continue;
+        for (int c = 0; c < 3; c++)
+            grey += grey_parts[c] * (float)(was >> (8 * c) & 0xff);
+        for (int c = 0; c < 3; c++) {
+            float from = (float)(was >> (8 * c) & 0xff), to = grey > 0.32f * 255 ? dark[c] : bright;
+            now |= (uint32_t)(from + part * (to - from) + 0.5f) << (8 * c);
+        }
+        colors[i] = now | 0xff000000;
+    }
+}
+
+DRAFT_INLINE lanes_int lined(const uint32_t *marks, lanes_int color)
+{
+    uint32_t colors[LANES];
+    memcpy(colors, &color, sizeof(colors));
+    draw_lines(marks, colors);
+    memcpy(&color, colors, sizeof(color));
+    return color;
 }
 
 /* What shadow leaves of the ground's brightness, 0..256. */
@@ -157,14 +190,18 @@ DRAFT_INLINE lanes_int color_at(const struct draft *draft, const struct heights 
     if (!lanes_any(~marks & (int32_t)MARK_FIELD)) {
         uint32_t colors[LANES];
         for (int i = 0; i < LANES; i++)
-            colors[i] = draft->palette[mark[i] & ~MARK_FIELD];
+            colors[i] = draft->palette[mark[i] & MARK_PLACE];
+        if (lanes_any(marks & MARK_LINE_WHOLE << MARK_LINE))
+            draw_lines(mark, colors);
         memcpy(&color, colors, sizeof(color));
         return color;
     }
     if (!lanes_any(marks))
         return sky_color(draft, heights, column, row);
     lanes_int is_field = (marks & (int32_t)MARK_FIELD) != 0, is_context = marks < 0, is_sky = marks == 0;
-    color = gather(draft->palette, marks & is_field & (int32_t)~MARK_FIELD);
+    color = gather(draft->palette, marks & is_field & (int32_t)MARK_PLACE);
+    if (lanes_any(marks & is_field & MARK_LINE_WHOLE << MARK_LINE))
+        color = lined(mark, color);
     if (lanes_any(is_context)) {
         lanes depth = *(const lanes *)(draft->depth + place), x = LANES_IOTA + ((float)column + 0.5f);
         color = lanes_choose_int(is_context, context_color(draft, marks & is_context, x, (float)row + 0.5f, depth), color);

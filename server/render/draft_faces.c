@@ -54,6 +54,7 @@ DRAFT_INLINE void carry_field(const struct draft *draft, const struct draft_mesh
                               int count, struct draft_corners *corners)
 {
     const float slack = 1e-5f, columns = PALETTE_PLACES / (1 + 2 * slack);
+    bool log = draft->block.scale[2] > 0.5f;
     uint32_t all = 0;
     for (int i = 0; i < count; i += LANES) {
         lanes value;
@@ -68,7 +69,7 @@ DRAFT_INLINE void carry_field(const struct draft *draft, const struct draft_mesh
             all |= flags;
         }
         lanes place = (value - draft->block.scale[0]) * draft->block.scale[1];
-        lanes a = lanes_clamp(place * columns + (1 + slack * columns), -FARTHEST, FARTHEST);
+        lanes a = log ? value : lanes_clamp(place * columns + (1 + slack * columns), -FARTHEST, FARTHEST);
         lanes b = __builtin_convertvector((lanes_int)light, lanes) * (1 / 255.0f) * draft->block.shade[0] + draft->block.shade[1];
         for (int l = 0; l < LANES; l++) {
             corners->a[numbers[i + l]] = a[l];

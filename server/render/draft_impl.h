@@ -12,23 +12,27 @@
 enum { BAND_ROWS = 32, CHUNK_TRIANGLES = 2048, RAMP_STEPS = MODEL_LIGHT_STEPS };
 
 /* Marks of pixels. 0: nothing. Else a colour of the palette, or a material and the light on it, to be looked up. */
-#define MARK_FIELD 0x40000000u   /* | palette row * PALETTE_COLUMNS + column */
+#define MARK_FIELD 0x40000000u   /* | palette row * PALETTE_COLUMNS + column (MARK_PLACE) | so much of an isoline << MARK_LINE (8 bits) */
+#define MARK_PLACE 0x1ffffu
+enum { MARK_LINE = 17, MARK_LINE_WHOLE = 255 };
 #define MARK_CONTEXT 0x80000000u /* | ambient << 8 (8 bits) | sun (8 bits) | row of the ramps << 16 (14 bits) */
 enum { MOST_RAMPS = 1 << 14 };
 
 struct draft_vertex {
     float x, y, depth;     /* pixels from the top left; 1 near, 0 far */
     float inverse_w;       /* 0: nearer than the near plane */
-    float a, b;            /* field: column and row of the palette; context: ambient, and how far it faces the sun */
+    float a, b;            /* field: column and row of the palette (logarithmic: value and row); context: ambient, facing the sun */
     uint32_t flags;        /* draft_flags */
     uint32_t source;       /* of one that the near plane made: first index of the triangle that was cut */
 };
-/* Two bytes: scalar.uncertain, and from bit DRAFT_LACKING on scalar.lacking. Where flags of corners were joined: no less than any. */
-enum { DRAFT_LACKING = 8, DRAFT_NO_DATA = 0x8000, DRAFT_UNCERTAIN = 0x80, DRAFT_PATTERNS = DRAFT_NO_DATA | DRAFT_UNCERTAIN };
+/* Two bytes, scalar.uncertain and from bit DRAFT_LACKING on scalar.lacking; and a bit. Where flags of corners were joined: no less than
+   any. */
+enum { DRAFT_LACKING = 8, DRAFT_NO_DATA = 0x8000, DRAFT_UNCERTAIN = 0x80, DRAFT_NO_LIMITS = 0x10000 };
+enum { DRAFT_PATTERNS = DRAFT_NO_DATA | DRAFT_UNCERTAIN | DRAFT_NO_LIMITS };
 #define DRAFT_NOTHING_KNOWN (255u << DRAFT_LACKING)
 static inline uint32_t draft_flags(const struct scalar *scalar)
 {
-    return (uint32_t)scalar->lacking << DRAFT_LACKING | scalar->uncertain;
+    return (uint32_t)scalar->lacking << DRAFT_LACKING | scalar->uncertain | (scalar->no_limits ? DRAFT_NO_LIMITS : 0);
 }
 /* 0..1; above 0.5 there is no data, or it is uncertain. */
 static inline float draft_lacking(uint32_t flags)
@@ -116,6 +120,7 @@ struct draft {
     bool has_holes;                  /* some material cuts them by a texture */
     uint32_t *backdrops;             /* as render/sky.c makes them */
     uint32_t *palette;
+    float *lines; /* by place of the scale: the nearest place that has a line */
     uint64_t palette_version;
     struct draft_light lights[DRAFT_LIGHTS];
     uint64_t uses;
@@ -145,6 +150,7 @@ struct draft {
     uint8_t *out;
     size_t out_stride_bytes;
     bool has_ground;
+    bool greys; /* context has no colours */
     float sun_from_pixel[4][4], ground_from_pixel[3][3], ray_from_pixel[3][3]; /* columns */
 };
 

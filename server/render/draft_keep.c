@@ -110,7 +110,7 @@ static void keep_band(const struct keeping *keeping, int number)
                 find_spot(keeping, band, id, spot);
             recolor->surfaces[to + x] = spot->number;
             recolor->weights[to + x] = weights_at(spot, (double)x + 0.5, y + 0.5);
-            recolor->rows[to + x] = (uint8_t)((mark & ~MARK_FIELD) / PALETTE_COLUMNS);
+            recolor->rows[to + x] = (uint8_t)((mark & MARK_PLACE) / PALETTE_COLUMNS);
         }
     }
 }

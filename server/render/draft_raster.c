@@ -24,7 +24,7 @@ struct setup {
     float x, y; /* of the first corner: what planes start from */
     struct edge edges[3];
     struct plane depth, a, b, inverse_w;
-    struct plane no_data, uncertain; /* where flags are set: as draft_lacking, draft_uncertain */
+    struct plane no_data, uncertain, no_limits; /* where flags are set: as draft_lacking, draft_uncertain; 1 there */
     uint32_t mark, flags;
     bool flat; /* no perspective to speak of */
     bool thin; /* so much so that rounding may lead out of what lies between its corners */
@@ -71,16 +71,31 @@ DRAFT_INLINE void setup_init(struct setup *setup, const struct draft_vertex v[3]
         setup->b = plane_of(&slopes, v[0].b * v[0].inverse_w, v[1].b * v[1].inverse_w, v[2].b * v[2].inverse_w);
         setup->inverse_w = plane_of(&slopes, v[0].inverse_w, v[1].inverse_w, v[2].inverse_w);
     }
-    setup->no_data = setup->uncertain = setup->depth; /* not looked at */
+    setup->no_data = setup->uncertain = setup->no_limits = setup->depth; /* not looked at */
     if (setup->flags) {
-        float lacking[3], uncertain[3];
+        float lacking[3], uncertain[3], no_limits[3];
         for (int i = 0; i < 3; i++) {
             lacking[i] = draft_lacking(v[i].flags);
             uncertain[i] = draft_uncertain(v[i].flags);
+            no_limits[i] = v[i].flags & DRAFT_NO_LIMITS ? 1 : 0;
         }
         setup->no_data = part_plane(&slopes, v, lacking, setup->flat);
         setup->uncertain = part_plane(&slopes, v, uncertain, setup->flat);
+        setup->no_limits = part_plane(&slopes, v, no_limits, setup->flat);
     }
+}
+
+/* w: 1 over inverse_w there; looked at if there is perspective. */
+DRAFT_INLINE lanes_int field_marks(const struct setup *setup, const struct ink *ink, lanes a, lanes b, lanes w)
+{
+    lanes none = { 0 }, x = none + setup->a.dx, y = none + setup->a.dy;
+    if (!ink->rich)
+        return field_mark(a, b, ink->last_row);
+    if (!setup->flat) {
+        x = (x - a * setup->inverse_w.dx) * w;
+        y = (y - a * setup->inverse_w.dy) * w;
+    }
+    return rich_mark(a, x, y, b, ink);
 }
 
 DRAFT_INLINE lanes_int marks_at(const struct setup *setup, const struct ink *ink, lanes x, float y)
@@ -95,15 +110,17 @@ DRAFT_INLINE lanes_int marks_at(const struct setup *setup, const struct ink *ink
     }
     if (setup->mark != MARK_FIELD)
         return context_mark(a, b, setup->mark);
-    lanes_int marks = field_mark(a, b, ink->last_row);
+    lanes_int marks = field_marks(setup, ink, a, b, w);
     if (!setup->flags)
         return marks;
     lanes none = plane_at(&setup->no_data, from_x, from_y, setup->thin), little = plane_at(&setup->uncertain, from_x, from_y, setup->thin);
+    lanes free = plane_at(&setup->no_limits, from_x, from_y, setup->thin);
     if (!setup->flat) {
         none *= w;
         little *= w;
+        free *= w;
     }
-    return pattern_marks(marks, none > 0.5f, little > 0.5f, b, x, y, ink);
+    return pattern_marks(marks, none > 0.5f, little > 0.5f, (free > 0.5f) & -(int32_t)ink->rich, b, x, y, ink);
 }
 
 /* Narrows the row to where edges let pixels be; one too many at each end. */
@@ -220,7 +237,7 @@ DRAFT_INLINE struct small_row row_of(const struct small *small, int l, float y)
 
 /* A row of lanes. thin: a constant. */
 DRAFT_INLINE void draw_lanes(const struct draft_tile *tile, const struct draft_face *face, const struct small *small, int l,
-                             const struct small_row *row, size_t place, lanes x, uint32_t mark, int32_t last_row, bool thin)
+                             const struct small_row *row, size_t place, lanes x, uint32_t mark, const struct ink *ink, bool thin)
 {
     lanes *depth = (lanes *)(tile->draft->depth + place), from_x = x - small->x[l];
     lanes_int side = ((lanes_int)(row->edges[0] - small->edge_dy[0][l] * x) ^ small->negative[0][l]) |
@@ -233,15 +250,22 @@ DRAFT_INLINE void draw_lanes(const struct draft_tile *tile, const struct draft_f
     if (!lanes_any(seen))
         return;
     lanes_int *marks = (lanes_int *)(tile->draft->marks + place);
-    lanes a = VALUE(1), b = VALUE(2);
+    lanes a = VALUE(1), b = VALUE(2), none = { 0 };
 #undef VALUE
-    *marks = lanes_choose_int(seen, mark == MARK_FIELD ? field_mark(a, b, last_row) : context_mark(a, b, mark), *marks);
+    lanes_int new_marks;
+    if (mark != MARK_FIELD)
+        new_marks = context_mark(a, b, mark);
+    else if (ink->rich)
+        new_marks = rich_mark(a, none + small->dx[1][l], none + small->dy[1][l], b, ink);
+    else
+        new_marks = field_mark(a, b, ink->last_row);
+    *marks = lanes_choose_int(seen, new_marks, *marks);
     *depth = lanes_choose(seen, here, *depth);
     keep_id(tile, face, place, seen);
 }
 
 DRAFT_INLINE void draw_small(const struct draft_tile *tile, const struct draft_face *face, const struct small *small, int l,
-                             uint32_t mark, int32_t last_row)
+                             uint32_t mark, const struct ink *ink)
 {
     int last = tile->rect.right + 1 - LANES; /* beyond the tile another thread draws */
     for (int y = face->top; y <= face->bottom; y++) {
@@ -251,9 +275,9 @@ DRAFT_INLINE void draw_small(const struct draft_tile *tile, const struct draft_f
             left = left < last ? left : last;
             lanes x = LANES_IOTA + ((float)left + 0.5f);
             if (small->thin[l])
-                draw_lanes(tile, face, small, l, &row, start + (size_t)left, x, mark, last_row, true);
+                draw_lanes(tile, face, small, l, &row, start + (size_t)left, x, mark, ink, true);
             else
-                draw_lanes(tile, face, small, l, &row, start + (size_t)left, x, mark, last_row, false);
+                draw_lanes(tile, face, small, l, &row, start + (size_t)left, x, mark, ink, false);
         }
     }
 }
@@ -282,12 +306,12 @@ DRAFT_INLINE void draw_eight(const struct draft_tile *tile, const struct draft_f
     struct small small;
     small_init(&small, &tile->corners, faces);
     for (int l = 0; l < count; l++)
-        draw_small(tile, faces[l], &small, l, mark, ink->last_row);
+        draw_small(tile, faces[l], &small, l, mark, ink);
 }
 
 DRAFT_KERNEL void draft_raster_faces(const struct draft_tile *tile, uint32_t mark)
 {
-    struct ink ink = { (int32_t)tile->draft->block.shade[2], tile->draft->block.scale[3] };
+    struct ink ink = ink_of(tile->draft);
     bool may_be_small = tile->corners.flat && !tile->corners.all_flags;
     const struct draft_face *waiting[LANES];
     int count = 0;

@@ -36,6 +36,7 @@ bool draft_read_textures(struct draft *draft, const struct sky *sky)
         read_colors(stage->models[m].ramps, draft->ramps + (size_t)draft->ramp_of_model[m] * RAMP_STEPS,
                     stage->models[m].material_count * RAMP_STEPS);
     draft->palette = mem_array(PALETTE_ROWS * PALETTE_COLUMNS, sizeof(*draft->palette));
+    draft->lines = mem_array(PALETTE_PLACES, sizeof(*draft->lines));
     draft->backdrops = mem_array(backdrops, sizeof(*draft->backdrops));
     read_colors(sky->backdrops, draft->backdrops, backdrops);
     return glGetError() == GL_NO_ERROR;
@@ -46,6 +47,8 @@ void draft_read_palette(struct draft *draft, const struct palette *palette)
     if (draft->palette_version == palette->version)
         return;
     read_colors(palette->colors, draft->palette, PALETTE_ROWS * PALETTE_COLUMNS);
+    if (palette->lines)
+        glGetTextureImage(palette->lines, 0, GL_RED, GL_FLOAT, PALETTE_PLACES * sizeof(*draft->lines), draft->lines);
     draft->palette_version = palette->version;
 }
 

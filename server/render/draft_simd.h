@@ -62,6 +62,29 @@ DRAFT_INLINE lanes_int lanes_whole(lanes x)
     return __builtin_convertvector(x, lanes_int);
 }
 
+/* log2, to 1e-7; of 1e-30 where x is less. As in field/kernels.c. */
+DRAFT_INLINE lanes lanes_log2(lanes x)
+{
+    lanes tiny = (lanes){ 0 } + 1e-30f;
+    lanes_int bits = (lanes_int)lanes_choose(x > tiny, x, tiny), exponent = (bits - 0x3f3504f3) >> 23;
+    lanes r = (lanes)(bits - exponent * (1 << 23)) - 1.0f;
+    lanes p = r * -0.1457575112581253f + 0.23688247799873352f;
+    p = p * r - 0.25006118416786194f;
+    p = p * r + 0.2867085337638855f;
+    p = p * r - 0.3600881099700928f;
+    p = p * r + 0.4809393882751465f;
+    p = p * r - 0.7213571071624756f;
+    p = p * r + 1.4426947832107544f;
+    return __builtin_convertvector(exponent, lanes) + r * p;
+}
+
+DRAFT_INLINE lanes lanes_root(lanes x)
+{
+    for (int i = 0; i < LANES; i++)
+        x[i] = __builtin_sqrtf(x[i]);
+    return x;
+}
+
 #define LANES_IOTA ((lanes){ 0, 1, 2, 3, 4, 5, 6, 7 })
 
 #endif

@@ -8,6 +8,7 @@
 #include "base/mem.h"
 #include "gpu/mesh.h"
 #include "gpu/program.h"
+#include "render/markers.h"
 
 enum { POINTS_PER_LINE = 8, POINTS_MOST = 1024, LABELS_MOST = 128 };
 static const double SPACING = 0.2, COARSE = 0.01; /* of an asset's size: between points; error of the level that is searched */
@@ -166,6 +167,18 @@ static bool fit(struct isolines *isolines, struct log *log)
     return isolines->buffer != 0;
 }
 
+/* Eye space, and slack; the caller frees them. */
+static float (*places_of(const struct picture *picture, const struct isoline_points *points))[4]
+{
+    float(*places)[4] = mem_array(points->count, sizeof(*places));
+    for (size_t i = 0; i < points->count; i++) {
+        for (int c = 0; c < 3; c++)
+            places[i][c] = (float)(points->at[i].place_m[c] - picture->shot.eye_m[c]);
+        places[i][3] = points->at[i].slack_m;
+    }
+    return places;
+}
+
 bool isolines_start(struct isolines *isolines, const struct picture *picture, const struct isoline_points *points)
 {
     size_t count = points->count;
@@ -173,12 +186,7 @@ bool isolines_start(struct isolines *isolines, const struct picture *picture, co
         return true;
     if (!fit(isolines, picture->stage->gl->log))
         return false;
-    float(*places)[4] = mem_array(count, sizeof(*places));
-    for (size_t i = 0; i < count; i++) {
-        for (int c = 0; c < 3; c++)
-            places[i][c] = (float)(points->at[i].place_m[c] - picture->shot.eye_m[c]);
-        places[i][3] = points->at[i].slack_m;
-    }
+    float(*places)[4] = places_of(picture, points);
     glNamedBufferSubData(isolines->buffer, 0, (GLsizeiptr)(count * sizeof(*places)), places);
     mem_free(places);
     gl_pass_enter("isolines");
@@ -201,6 +209,17 @@ static bool has_room(const struct frame *frame, const float place[4])
     return frame->label_count < LABELS_MOST;
 }
 
+/* places: x, y in pixels, hidden. */
+static void give(const struct isoline_points *points, float (*places)[4], struct frame *frame)
+{
+    frame->labels = mem_array(points->count, sizeof(*frame->labels));
+    for (size_t i = 0; i < points->count; i++)
+        if (places[i][2] < 0.5f && has_room(frame, places[i]))
+            frame->labels[frame->label_count++] = (struct frame_label){
+                .value = points->at[i].value, .x_px = roundf(10 * places[i][0]) / 10, .y_px = roundf(10 * places[i][1]) / 10
+            };
+}
+
 void isolines_get(const struct isolines *isolines, const struct isoline_points *points, struct frame *frame)
 {
     size_t count = points->count;
@@ -208,11 +227,18 @@ void isolines_get(const struct isolines *isolines, const struct isoline_points *
         return;
     float(*places)[4] = mem_array(count, sizeof(*places));
     glGetNamedBufferSubData(isolines->buffer, 0, (GLsizeiptr)(count * sizeof(*places)), places);
-    frame->labels = mem_array(count, sizeof(*frame->labels));
-    for (size_t i = 0; i < count; i++)
-        if (places[i][2] < 0.5f && has_room(frame, places[i]))
-            frame->labels[frame->label_count++] = (struct frame_label){
-                .value = points->at[i].value, .x_px = roundf(10 * places[i][0]) / 10, .y_px = roundf(10 * places[i][1]) / 10
-            };
+    give(points, places, frame);
+    mem_free(places);
+}
+
+void isolines_find(const struct picture *picture, const struct isoline_points *points, const float *depth, size_t pitch_px,
+                   struct frame *frame)
+{
+    if (points->count == 0)
+        return;
+    float(*places)[4] = places_of(picture, points);
+    for (size_t i = 0; i < points->count; i++)
+        markers_look(picture, depth, pitch_px, places[i]);
+    give(points, places, frame);
     mem_free(places);
 }

@@ -37,5 +37,8 @@ void isolines_collect(struct isolines *isolines, const struct picture *picture, 
 /* Started once the picture is resolved; read into the frame when the GPU is done with it. False: out of GPU memory, logged. */
 bool isolines_start(struct isolines *isolines, const struct picture *picture, const struct isoline_points *points);
 void isolines_get(const struct isolines *isolines, const struct isoline_points *points, struct frame *frame);
+/* The same two by the processor, from a picture's depth: rows from the top, pitch_px apart. */
+void isolines_find(const struct picture *picture, const struct isoline_points *points, const float *depth, size_t pitch_px,
+                   struct frame *frame);
 
 #endif

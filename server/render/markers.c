@@ -126,9 +126,9 @@ static float farthest_near(const float *depth, size_t pitch_px, int width_px, in
     return farthest;
 }
 
-/* As shaders/markers.comp. place: eye space, and slack; becomes x, y in pixels, hidden. */
-static void find_one(const struct picture *picture, const float *depth, size_t pitch_px, const struct frame *frame, float place[4])
+void markers_look(const struct picture *picture, const float *depth, size_t pitch_px, float place[4])
 {
+    int width_px = picture->view->width_px, height_px = picture->view->height_px;
     double eye[3], near[3], clip[4], near_clip[4];
     double length = fmax(sqrt((double)(place[0] * place[0] + place[1] * place[1] + place[2] * place[2])), 1e-6);
     for (int c = 0; c < 3; c++) {
@@ -138,10 +138,10 @@ static void find_one(const struct picture *picture, const float *depth, size_t p
     matrix_point(picture->shot.clip_from_eye, eye, clip);
     matrix_point(picture->shot.clip_from_eye, near, near_clip);
     bool hidden = clip[3] <= 0;
-    double x = hidden ? -1e4 : (0.5 + 0.5 * clip[0] / clip[3]) * frame->width_px;
-    double y = hidden ? -1e4 : (0.5 - 0.5 * clip[1] / clip[3]) * frame->height_px;
-    hidden = hidden || x < 0 || y < 0 || x >= frame->width_px || y >= frame->height_px ||
-             near_clip[2] / near_clip[3] < farthest_near(depth, pitch_px, frame->width_px, frame->height_px, (int)x, (int)y);
+    double x = hidden ? -1e4 : (0.5 + 0.5 * clip[0] / clip[3]) * width_px;
+    double y = hidden ? -1e4 : (0.5 - 0.5 * clip[1] / clip[3]) * height_px;
+    hidden = hidden || x < 0 || y < 0 || x >= width_px || y >= height_px ||
+             near_clip[2] / near_clip[3] < farthest_near(depth, pitch_px, width_px, height_px, (int)x, (int)y);
     place[0] = (float)x;
     place[1] = (float)y;
     place[2] = hidden;
@@ -155,7 +155,7 @@ void markers_find(const struct picture *picture, const float *depth, size_t pitc
     float(*places)[4] = mem_array(count, sizeof(*places));
     fill_places(picture, places);
     for (size_t i = 0; i < count; i++)
-        find_one(picture, depth, pitch_px, frame, places[i]);
+        markers_look(picture, depth, pitch_px, places[i]);
     give(picture, places, count, frame);
     mem_free(places);
 }

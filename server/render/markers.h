@@ -19,5 +19,7 @@ bool markers_start(struct markers *markers, const struct picture *picture);
 void markers_get(const struct markers *markers, const struct picture *picture, struct frame *frame);
 /* The same by the processor, from a picture's depth: rows from the top, pitch_px apart. */
 void markers_find(const struct picture *picture, const float *depth, size_t pitch_px, struct frame *frame);
+/* As shaders/markers.comp. place: eye space, and how far it may lie behind the surface; becomes x, y in pixels, hidden 0 or 1. */
+void markers_look(const struct picture *picture, const float *depth, size_t pitch_px, float place[4]);
 
 #endif

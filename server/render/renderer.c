@@ -292,7 +292,7 @@ static struct frame *draw_draft(struct renderer *renderer, const struct view *vi
     int64_t start_ns = clock_mono_ns();
     picture.light = light_get(&renderer->light, &picture.lit_by);
     picture.palette = palettes_get(&renderer->palettes, view);
-    if (!picture.light || !draft_draw(renderer->draft, &picture, &renderer->light, frame))
+    if (!picture.light || !draft_draw(renderer->draft, &picture, &renderer->light, &renderer->isolines, frame))
         frame_unref(&frame);
     else
         frame->render_ns = clock_mono_ns() - start_ns;

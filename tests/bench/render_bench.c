@@ -104,13 +104,32 @@ static void bench_finish(struct bench *bench)
     log_destroy(&bench->log);
 }
 
+enum dress { PLAIN, LINED, BANDED, LOGARITHMIC, LIMITS };
+
+static void put_on(const struct bench *bench, enum dress dress, struct view *view)
+{
+    double range = view->range_max - view->range_min;
+    for (int i = 1; dress == LINED && i < 10; i++)
+        view->paint.lines[view->paint.line_count++] = view->range_min + 0.1 * i * range;
+    view->ramp_interval = dress == BANDED ? 0.1 * range : 0;
+    if (dress == LOGARITHMIC) {
+        view->range_min = fmax(view->range_min, 0.01 * view->range_max);
+        view->paint.log = true;
+    }
+    if (dress == LIMITS) {
+        view->field.show = SHOW_OPERATOR;
+        view_own_scale(bench->scene, view);
+    }
+}
+
 /* The plant's own view, from a little farther aside each time: a camera that stands still is only coloured anew. */
-static void measure(struct bench *bench, enum tier tier, const char *time_name, const char *work_name, int rounds)
+static void measure(struct bench *bench, enum tier tier, enum dress dress, const char *time_name, const char *work_name, int rounds)
 {
     struct view view;
     double time_ms[MOST_ROUNDS], work_ms[MOST_ROUNDS];
     view_default(bench->scene, 1920, 1080, &view);
     view.tier = tier;
+    put_on(bench, dress, &view);
     for (int i = -2; i < rounds; i++) {
         view.camera.eye_m[0] += 0.001;
         double began_ms = now_ms(CLOCK_MONOTONIC), worked_ms = now_ms(CLOCK_PROCESS_CPUTIME_ID);
@@ -224,9 +243,13 @@ int main(void)
         return 0;
     }
     if (bench_init(&bench)) {
-        measure(&bench, TIER_MOVING, "render_moving_1080p_ms", "render_moving_1080p_cpu_ms", MOVING_ROUNDS);
+        measure(&bench, TIER_MOVING, PLAIN, "render_moving_1080p_ms", "render_moving_1080p_cpu_ms", MOVING_ROUNDS);
+        measure(&bench, TIER_MOVING, LINED, "render_moving_lines_1080p_ms", "render_moving_lines_1080p_cpu_ms", MOVING_ROUNDS);
+        measure(&bench, TIER_MOVING, BANDED, "render_moving_bands_1080p_ms", "render_moving_bands_1080p_cpu_ms", MOVING_ROUNDS);
+        measure(&bench, TIER_MOVING, LOGARITHMIC, "render_moving_log_1080p_ms", "render_moving_log_1080p_cpu_ms", MOVING_ROUNDS);
+        measure(&bench, TIER_MOVING, LIMITS, "render_moving_operator_1080p_ms", "render_moving_operator_1080p_cpu_ms", MOVING_ROUNDS);
         measure_recolour(&bench);
-        measure(&bench, TIER_STILL, "render_still_1080p_ms", "render_still_1080p_cpu_ms", STILL_ROUNDS);
+        measure(&bench, TIER_STILL, PLAIN, "render_still_1080p_ms", "render_still_1080p_cpu_ms", STILL_ROUNDS);
         measure_steps(&bench);
         measure_again(&bench, false, "render_still_recolor_1080p_ms", "render_still_recolor_1080p_cpu_ms");
         measure_again(&bench, true, "render_still_recolor_all_1080p_ms", "render_still_recolor_all_1080p_cpu_ms");

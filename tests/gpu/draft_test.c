@@ -52,6 +52,12 @@ static void assert_same(const struct view *view, double may_differ)
         assert_true(fabsf(draft->markers[i].x_px - gl->markers[i].x_px) < 0.01f);
         assert_true(fabsf(draft->markers[i].y_px - gl->markers[i].y_px) < 0.01f);
     }
+    assert_int_equal(draft->label_count, gl->label_count);
+    for (size_t i = 0; i < gl->label_count; i++) {
+        assert_true(draft->labels[i].value == gl->labels[i].value);
+        assert_true(fabsf(draft->labels[i].x_px - gl->labels[i].x_px) < 0.11f);
+        assert_true(fabsf(draft->labels[i].y_px - gl->labels[i].y_px) < 0.11f);
+    }
     assert_int_equal(draft->content, gl->content);
     assert_int_equal(draft->triangles, gl->triangles);
     frame_unref(&draft);
@@ -182,16 +188,78 @@ static void test_moves_after_standing(void **state)
 }
 
 /* What it leaves to GL is what GL draws. */
+static void draw_lines_every(struct view *view, double step)
+{
+    for (double line = step; line < 100 && view->paint.line_count < VIEW_LINES; line += step)
+        view->paint.lines[view->paint.line_count++] = line;
+}
+
+/* What is worked out pixel by pixel: lines, bands, logarithms. Rims of lines differ by the way slopes are measured. */
+static void test_lines_and_scales(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 5; i++) {
+        struct view view;
+        start_view(&view, 400, 300);
+        if (i == 0 || i == 4)
+            draw_lines_every(&view, 10);
+        view.ramp_interval = i == 1 ? 20 : 0;
+        if (i >= 2) {
+            view.range_min = 10;
+            view.paint.log = true;
+        }
+        view.look = i == 3 ? LOOK_FLAT : LOOK_DEFAULT;
+        for (int camera = 0; camera < 4; camera++) {
+            assert_same(&view, 0.012);
+            stand_look(&stand, 3 * camera, &view);
+        }
+    }
+}
+
+/* One tag without limits: what is near it is plain. What has no field is grey. */
+static void test_operator(void **state)
+{
+    struct view view;
+    struct plant *plant = &stand.toy->plant;
+    (void)state;
+    for (size_t tag = 0; tag < plant->tag_count; tag++)
+        if (tag != 2)
+            memcpy(plant->tags[tag].limits, (double[]){ 0, 20, 70, 90 }, 4 * sizeof(double));
+    start_view(&view, 400, 300);
+    view.field.show = SHOW_OPERATOR;
+    view_own_scale(&stand.toy->scene, &view);
+    for (int camera = 0; camera < 6; camera++) {
+        assert_same(&view, 0.012);
+        stand_look(&stand, 2 * camera, &view);
+    }
+    for (size_t tag = 0; tag < plant->tag_count; tag++)
+        for (int i = 0; i < LIMIT_COUNT; i++)
+            plant->tags[tag].limits[i] = NAN;
+}
+
+/* A still camera is shown again from what was kept; lines of the same view are not. */
+static void test_lines_of_a_still_camera(void **state)
+{
+    struct view view, lined;
+    (void)state;
+    start_view(&view, 400, 300);
+    lined = view;
+    draw_lines_every(&lined, 10);
+    for (int i = 0; i < 3; i++) {
+        assert_same(&view, 0.01);
+        assert_same(&lined, 0.012);
+    }
+}
+
 static void test_left_to_gl(void **state)
 {
     (void)state;
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 2; i++) {
         struct view view;
         start_view(&view, 200, 150);
         if (i == 0)
             asset_set_add(&view.visibility.ghosts, 1);
         view.look = i == 1 ? LOOK_GLOSSY : LOOK_DEFAULT;
-        view.ramp_interval = i == 2 ? 20 : 0;
         assert_same(&view, 0);
     }
 }
@@ -202,7 +270,8 @@ int main(void)
         cmocka_unit_test(test_home),    cmocka_unit_test(test_sizes), cmocka_unit_test(test_flat),
         cmocka_unit_test(test_cameras), cmocka_unit_test(test_sun),   cmocka_unit_test(test_outlines),
         cmocka_unit_test(test_hidden_assets), cmocka_unit_test(test_still_camera),
-        cmocka_unit_test(test_moves_after_standing), cmocka_unit_test(test_left_to_gl),
+        cmocka_unit_test(test_moves_after_standing), cmocka_unit_test(test_lines_and_scales),
+        cmocka_unit_test(test_operator), cmocka_unit_test(test_lines_of_a_still_camera), cmocka_unit_test(test_left_to_gl),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
     if (!rig_init(&rig, "draft_test"))
