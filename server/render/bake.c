@@ -94,24 +94,6 @@ static int sun_map_px(const struct stage *stage)
     return SUN_MAP_PX < stage->gl->max_texture_px ? SUN_MAP_PX : stage->gl->max_texture_px;
 }
 
-/* What throws a shadow: what is blended does not. */
-static void draw_depth(const struct stage *stage, const double clip_from_plant[16], const struct clip *clip, size_t asset, double error_m)
-{
-    const struct model *model = stage->of_asset[asset];
-    const struct model_level *level = model_level(model, error_m);
-    double clip_from_file[16];
-    float matrix[16];
-    stage_depth_begin(stage, clip_from_plant, clip);
-    matrix_multiply(clip_from_plant, stage->scene->assets[asset].placement, clip_from_file);
-    matrix_to_float(clip_from_file, matrix);
-    glUniformMatrix4fv(0, 1, GL_FALSE, matrix);
-    mesh_bind(&model->mesh, 0, 0);
-    for (size_t i = 0; i < level->batch_count; i++)
-        if (!level->batches[i].blend)
-            model_draw_batch(&level->batches[i]);
-    stage_depth_end(clip);
-}
-
 /* One asset, if it is shown, as seen from far away in that direction. layer -1: the texture is not an array. */
 static void draw_on_map(struct bake *bake, GLuint map, int layer, int size_px, const double towards[3], const struct visibility *shown)
 {
@@ -130,7 +112,7 @@ static void draw_on_map(struct bake *bake, GLuint map, int layer, int size_px, c
     if (bake->asset == 0)
         glClear(GL_DEPTH_BUFFER_BIT);
     if (visibility_of(shown, (int)bake->asset) == ASSET_SHOWN)
-        draw_depth(stage, clip_from_plant, &shown->clip, bake->asset, stage->radius_m / size_px);
+        stage_draw_depth(stage, clip_from_plant, &shown->clip, (int)bake->asset, stage->radius_m / size_px, false);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
 }
 

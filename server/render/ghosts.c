@@ -42,7 +42,7 @@ static void draw_depth(const struct ghosts *ghosts, const struct picture *pictur
     for (size_t i = 0; i < scene->asset_count; i++)
         if (visibility_of(visibility, (int)i) == ASSET_GHOST && shot_sees(&picture->shot, &scene->assets[i])) {
             float error_m = stage_level(picture->stage, &picture->shot, (int)i, 1)->error_m;
-            stage_draw_depth(picture->stage, picture->shot.clip_from_plant, &visibility->clip, (int)i, (double)error_m);
+            stage_draw_depth(picture->stage, picture->shot.clip_from_plant, &visibility->clip, (int)i, (double)error_m, true);
         }
 }
 

@@ -61,7 +61,7 @@ void lines_draw_outline(struct lines *lines, const struct picture *picture)
     glClearNamedFramebufferfv(lines->mask.framebuffer, GL_COLOR, 0, (float[4]){ 0 });
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, lines->mask.framebuffer);
     glDisable(GL_DEPTH_TEST);
-    stage_draw_depth(picture->stage, picture->shot.clip_from_plant, &picture->view->visibility.clip, asset, 0);
+    stage_draw_depth(picture->stage, picture->shot.clip_from_plant, &picture->view->visibility.clip, asset, 0, true);
     glBindTextureUnit(0, lines->mask.texture);
     glProgramUniform1f(lines->outline_program, 0, (float)lines_outline_px(picture->view));
     draw_over(lines, picture, lines->outline_program);

@@ -29,16 +29,26 @@ static void find_ball(struct stage *stage)
     stage->radius_m = fmax(sqrt(square) * 1.001, 1e-3);
 }
 
+static bool make_depth_programs(struct stage *stage)
+{
+    static const char *const defines[2][2] = { { "", "#define HOLES\n" }, { "#define CLIP\n", "#define CLIP\n#define HOLES\n" } };
+    bool good = true;
+    for (int cut = 0; cut < 2; cut++)
+        for (int holes = 0; holes < 2; holes++) {
+            stage->depth_programs[cut][holes] = program_create(
+                stage->gl->log, program_params(.vertex = "depth.vert", .fragment = "depth.frag", .defines = defines[cut][holes]));
+            good = good && stage->depth_programs[cut][holes];
+        }
+    return good;
+}
+
 bool stage_init(struct stage *stage, struct gl *gl, const struct scene *scene)
 {
     *stage = (struct stage){ .gl = gl, .scene = scene, .up = { 0, scene->plant->up == AXIS_Y, scene->plant->up == AXIS_Z } };
     stage->models = mem_array(scene->asset_count, sizeof(*stage->models));
     stage->of_asset = mem_array(scene->asset_count, sizeof(*stage->of_asset));
-    stage->depth_program = program_create(gl->log, program_params(.vertex = "depth.vert", .fragment = "depth.frag"));
     GLuint ramp_program = program_create(gl->log, program_params(.compute = "ramp.comp"));
-    stage->clipped_depth_program =
-        program_create(gl->log, program_params(.vertex = "depth.vert", .fragment = "depth.frag", .defines = "#define CLIP\n"));
-    bool good = stage->depth_program && stage->clipped_depth_program && ramp_program;
+    bool good = make_depth_programs(stage) && ramp_program;
     if (good)
         glProgramUniform3f(ramp_program, 0, (float)stage->up[0], (float)stage->up[1], (float)stage->up[2]);
     find_ball(stage);
@@ -60,8 +70,8 @@ void stage_finish(struct stage *stage)
         model_finish(&stage->models[i]);
     mem_free(stage->models);
     mem_free(stage->of_asset);
-    program_destroy(&stage->depth_program);
-    program_destroy(&stage->clipped_depth_program);
+    for (int i = 0; i < 4; i++)
+        program_destroy(&stage->depth_programs[i / 2][i % 2]);
     *stage = (struct stage){ 0 };
 }
 
@@ -138,53 +148,63 @@ void stage_clip_end(const struct clip *clip)
         glDisable(GL_CLIP_DISTANCE0 + (GLenum)i);
 }
 
-static bool is_cut(const struct clip *clip)
-{
-    return clip && clip->plane_count > 0;
-}
+/* Uniform locations and the texture unit, as in the shaders. */
+enum { CLIP_FROM_FILE = 0, MATERIAL = 2, PLANES = 4, UNIT_BASE_COLOR = 3 };
 
-void stage_depth_begin(const struct stage *stage, const double clip_from_plant[16], const struct clip *clip)
+static void set_planes(const double clip_from_plant[16], const struct clip *clip)
 {
-    double plant_from_clip[16];
     float planes[CLIP_MAX_PLANES][4] = { { 0 } };
-    glUseProgram(is_cut(clip) ? stage->clipped_depth_program : stage->depth_program);
-    glDisable(GL_CULL_FACE);
-    if (!is_cut(clip))
-        return;
+    double plant_from_clip[16];
     matrix_invert(clip_from_plant, plant_from_clip);
     for (int i = 0; i < clip->plane_count; i++) {
         double plane[4];
         clip_plane(clip, i, plane);
         matrix_plane(plant_from_clip, plane, planes[i]);
     }
-    glUniform4fv(1, CLIP_MAX_PLANES, planes[0]);
+    glUniform4fv(PLANES, CLIP_MAX_PLANES, planes[0]);
+}
+
+static bool has_holes(const struct model *model, const struct model_batch *batch)
+{
+    const struct model_material *material = &model->materials[batch->material];
+    return material->masked && material->maps[MODEL_BASE_COLOR];
+}
+
+void stage_draw_depth(const struct stage *stage, const double clip_from_plant[16], const struct clip *clip, int asset, double error_m,
+                      bool blended)
+{
+    const struct model *model = stage->of_asset[asset];
+    const struct model_level *level = model_level(model, error_m);
+    bool cut = clip->plane_count > 0;
+    GLuint bound = 0;
+    double clip_from_file[16];
+    float matrix[16];
+    matrix_multiply(clip_from_plant, stage->scene->assets[asset].placement, clip_from_file);
+    matrix_to_float(clip_from_file, matrix);
+    glDisable(GL_CULL_FACE);
     stage_clip_begin(clip);
-}
-
-void stage_depth_end(const struct clip *clip)
-{
-    if (is_cut(clip))
-        stage_clip_end(clip);
-}
-
-void stage_draw_depth(const struct stage *stage, const double clip_from_plant[16], const struct clip *clip, int asset, double error_m)
-{
-    stage_depth_begin(stage, clip_from_plant, clip);
-    for (size_t i = 0; i < stage->scene->asset_count; i++) {
-        if (asset >= 0 && i != (size_t)asset)
+    mesh_bind(&model->mesh, 0, 0);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, model->material_buffer);
+    for (size_t b = 0; b < level->batch_count; b++) {
+        const struct model_batch *batch = &level->batches[b];
+        bool holes = has_holes(model, batch);
+        GLuint program = stage->depth_programs[cut][holes];
+        if (batch->blend && !blended)
             continue;
-        const struct model_level *level = model_level(stage->of_asset[i], error_m);
-        double clip_from_file[16];
-        float matrix[16];
-        matrix_multiply(clip_from_plant, stage->scene->assets[i].placement, clip_from_file);
-        matrix_to_float(clip_from_file, matrix);
-        glUniformMatrix4fv(0, 1, GL_FALSE, matrix);
-        mesh_bind(&stage->of_asset[i]->mesh, 0, 0);
-        for (size_t b = 0; b < level->batch_count; b++)
-            if (!level->batches[b].blend || asset >= 0)
-                model_draw_batch(&level->batches[b]);
+        if (program != bound) {
+            glUseProgram(program);
+            glUniformMatrix4fv(CLIP_FROM_FILE, 1, GL_FALSE, matrix);
+            if (cut)
+                set_planes(clip_from_plant, clip);
+            bound = program;
+        }
+        if (holes) {
+            glUniform1i(MATERIAL, (GLint)batch->material);
+            glBindTextureUnit(UNIT_BASE_COLOR, model->materials[batch->material].maps[MODEL_BASE_COLOR]);
+        }
+        model_draw_batch(batch);
     }
-    stage_depth_end(clip);
+    stage_clip_end(clip);
 }
 
 bool stage_mirrored(const struct scene_asset *asset)

@@ -15,7 +15,7 @@ struct stage {
     const struct model **of_asset; /* by index in scene->assets */
     double middle_m[3], radius_m;  /* a ball that holds the scene */
     double up[3];
-    GLuint depth_program, clipped_depth_program;
+    GLuint depth_programs[2][2]; /* by: something is cut away; textures cut holes */
 };
 
 /* A camera, ready to draw with. Eye space: axes of the plant frame, origin at the camera. */
@@ -42,12 +42,10 @@ bool shot_sees(const struct shot *shot, const struct scene_asset *asset);
 /* The coarsest level of detail that errs by no more than that here. */
 const struct model_level *stage_level(const struct stage *stage, const struct shot *shot, int asset, double error_px);
 
-/* Only depth, of everything (asset -1) or of one asset, with errors up to error_m; clip: NULL, or what is cut away. Framebuffer and
-   viewport are the caller's. */
-void stage_draw_depth(const struct stage *stage, const double clip_from_plant[16], const struct clip *clip, int asset, double error_m);
-/* The program for that, with its planes; between the two, placements are uniform 0. */
-void stage_depth_begin(const struct stage *stage, const double clip_from_plant[16], const struct clip *clip);
-void stage_depth_end(const struct clip *clip);
+/* Only depth, of one asset, with errors up to error_m; clip: what is cut away; blended: what is see-through too. What textures cut are
+   holes. Framebuffer and viewport are the caller's. */
+void stage_draw_depth(const struct stage *stage, const double clip_from_plant[16], const struct clip *clip, int asset, double error_m,
+                      bool blended);
 /* Between the two: programs that cut are drawn with. */
 void stage_clip_begin(const struct clip *clip);
 void stage_clip_end(const struct clip *clip);

@@ -180,6 +180,7 @@ struct plate {
     float (*texcoords)[2];
     struct stand stand;
     struct view view;
+    bool floor; /* 1 m below it, three times as wide */
 };
 
 /* One square of 2 m that lies level, x and y from -1 to 1, seen from above; the texture's columns run along x, its rows along y. */
@@ -196,6 +197,11 @@ static void plate_init(struct plate *plate, const double (*sensors)[3], size_t s
             plate->texcoords[i][c] = (shape.positions[i][c] + 1) / 2;
     shape.texcoords = (void *)plate->texcoords;
     toy_add(toy, "plate", &shape, (double[3]){ 0, 0, 0 }, sensors, sensor_count);
+    if (plate->floor) {
+        struct shape floor = { 0 };
+        shape_plate(&floor, TOY_CONCRETE, (double[3]){ -3, -3, 0 }, (double[3]){ 6, 0, 0 }, (double[3]){ 0, 6, 0 }, 48);
+        toy_add(toy, "floor", &floor, (double[3]){ 0, 0, -1 }, NULL, 0);
+    }
     stand_init(&plate->stand, &rig, toy);
     for (size_t i = 0; i < sensor_count; i++)
         toy_set(plate->stand.snapshot, (int)i, 50, QUALITY_GOOD);
@@ -338,6 +344,29 @@ static void test_holes_are_holes_in_both_tiers(void **state)
     }
 }
 
+/* The sun comes from the right: 1 m below, shadows lie 0.75 m to the left. The plate's right half is a hole, from 0 to 1. */
+static void test_holes_let_the_sun_through(void **state)
+{
+    (void)state;
+    for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++) {
+        struct plate plate = plain_plate();
+        plate.floor = true;
+        plate.material.alpha = ASSET_ALPHA_MASK;
+        plate.material.base_color_texture = 0;
+        paint_right(&plate, (uint8_t[4]){ 255, 255, 255, 0 });
+        plate_init(&plate, NULL, 0);
+        plate.view.tier = (enum tier)tier;
+        plate.view.camera.height_m = 6;
+        struct frame *frame = stand_draw(&plate.stand, &plate.view);
+        int lit = frame_pixel(frame, 17, 100)[1], shaded = frame_pixel(frame, 57, 100)[1];     /* x: -2.5, -1.3 */
+        int through = frame_pixel(frame, 104, 100)[1], beside = frame_pixel(frame, 120, 100)[1]; /* x: 0.12, 0.6 */
+        print_message("# lit %d, shaded %d; through the hole %d, beside its shadow %d\n", lit, shaded, through, beside);
+        assert_true(shaded < lit - 30 && abs(through - beside) < 12 && through > shaded + 20);
+        frame_unref(&frame);
+        plate_finish(&plate);
+    }
+}
+
 /* Context is muted: what its textures are in one tier and their mean in the other is not far apart. */
 static void test_textured_context_does_not_flash(void **state)
 {
@@ -364,6 +393,7 @@ int main(void)
         cmocka_unit_test(test_normals),
         cmocka_unit_test(test_occlusion_and_glow),
         cmocka_unit_test(test_holes_are_holes_in_both_tiers),
+        cmocka_unit_test(test_holes_let_the_sun_through),
         cmocka_unit_test(test_textured_context_does_not_flash),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
