@@ -131,7 +131,8 @@ static void draw_header(struct pen *pen)
         format_age(pen->frame->oldest_age_ns, age);
     if (pen->frame->view.at_us)
         snprintf(age, sizeof(age), "as it was then");
-    bool has_age = pen->frame->view.split || pen->frame->view.field.show != SHOW_DISTANCE; /* distances have none */
+    const struct view *view = &pen->frame->view;
+    bool has_age = view->split || (view->field.show != SHOW_DISTANCE && view->look != LOOK_MATERIALS); /* else no value takes part */
     snprintf(line, sizeof(line), has_age ? "%s  ·  %s" : "%s", clock, age);
     double pad = 8 * pen->unit;
     pen_font(pen, 1.15, true);
