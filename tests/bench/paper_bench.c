@@ -20,6 +20,7 @@
 #define PLANT_MODEL "../shared/data/models/plm_plant_5parts.glb"
 #define FOLDER "build/bench"
 enum { WIDTH_PX = 1920, HEIGHT_PX = 1080, PROBE_WIDTH_PX = 192, PROBE_HEIGHT_PX = 108 };
+enum { FEW_SENSORS = 5, MANY_SENSORS = 512 }; /* of which frames should take equally long */
 enum { CAMERAS = 48, MOST_FRAMES = 96, LEAST_FRAMES = 2, HULL_POINTS = 96 };
 static const int64_t CHANGE_NS = 100 * NS_PER_MS, LONGEST_NS = 3 * NS_PER_S; /* of a row */
 static const double LONGEST_BRUTE_MS = 20e3;
@@ -45,6 +46,7 @@ struct bench {
     double coverage; /* the least of them */
     double brute_ms; /* of the last row by brute force, and its sensors; 0: none */
     int brute_sensors;
+    double few_ms; /* with the fewest sensors of a series; 0: not measured */
 };
 
 struct series { /* of one row */
@@ -304,6 +306,17 @@ static void print_row(const struct bench *bench, const char *name, struct series
     fflush(stdout);
 }
 
+/* A frame's cost does not grow with the sensors. */
+static void compare_sensors(struct bench *bench, const struct model *model, int sensors, const struct series *series)
+{
+    double here_ms = series->work_ms[series->frames / 2];
+    if (sensors == FEW_SENSORS)
+        bench->few_ms = here_ms;
+    if (sensors == MANY_SENSORS && bench->few_ms > 0)
+        printf("{\"name\": \"render_sensors_%d_over_%d%s\", \"value\": %.2f, \"unit\": \"x\", \"goal\": [\"<=\", 1.1]}\n", MANY_SENSORS,
+               FEW_SENSORS, model->suffix, here_ms / bench->few_ms);
+}
+
 static void print_missing(const char *name, const char *why)
 {
     printf("{\"name\": \"%s\", \"value\": null, \"p95\": null, \"unit\": \"ms\", \"why\": \"%s\"}\n", name, why);
@@ -337,6 +350,8 @@ static void measure(struct bench *bench, const struct model *model, const char *
     } else {
         run_series(bench, series);
         print_row(bench, name, series, goal_ms);
+        if (strcmp(kind, "sensors") == 0)
+            compare_sensors(bench, model, sensors, series);
         measure_brute(bench, brute_name, sensors, series);
     }
     bench_finish(bench);
@@ -364,6 +379,7 @@ static void measure_model(struct bench *bench, const struct model *model, bool g
             measure(bench, model, "instances", goal->count, 5, gpu ? goal->gpu_ms : goal->cpu_ms);
     }
     bench->brute_sensors = 0;
+    bench->few_ms = 0;
     for (int i = 0; i < SENSOR_GOALS; i++)
         if (sensors < 0 || sensors == sensor_goals[i].count)
             measure(bench, model, "sensors", 1, sensor_goals[i].count, gpu ? sensor_goals[i].gpu_ms : 0);
