@@ -42,13 +42,19 @@ bench: test-deps
 	@$(MAKE) --no-print-directory all demo $(bench_programs) $(out)/tests/scale/facility $(out)/tests/relay/relay
 	@[ "$(PEERS)" != 1 ] || deploy/deps long
 	@PEERS=$(PEERS) tests/bench/run $(out) $(bin)
-# The paper's experiments on a GPU.
+# Only what is streamed.
+stream-bench: test-deps
+	@$(MAKE) --no-print-directory all demo $(out)/tests/relay/relay
+	@tests/bench/run $(out) $(bin) stream
+.PHONY: stream-bench
+# The paper's experiments and streaming, on a GPU.
 gpu-bench: test-deps
 	@$(MAKE) --no-print-directory all demo $(out)/tests/bench/paper_bench
 	@tests/bench/run $(out) $(bin) gpu
-# tests/bench/RESULTS.md and its plots, from the last `make bench PEERS=1`.
+# The tables of tests/bench/RESULTS.md and its plots, from the last `make bench PEERS=1`, stream-bench and gpu-bench. What lies between the
+# tables is written by hand, and stays.
 results:
-	@tests/bench/results build/bench.json tests/bench
+	@tests/bench/results tests/bench $(wildcard build/bench.json build/stream-bench.json build/gpu-bench.json)
 .PHONY: results
 
 # Every way of looking at a plant, to be looked at: build/gallery/sheet.png.

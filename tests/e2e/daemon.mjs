@@ -446,6 +446,21 @@ test('SIGTERM: clients are told, everything ends cleanly', { skip }, async () =>
     assert.ok(!/ERROR: |WARNING: ThreadSanitizer/.test(plant.daemon.said), plant.daemon.said);
 });
 
+test('an encoder that is not there is said by its name, and clients get JPEG', { skip }, async () => {
+    const other = await TinyPlant.create();
+    try {
+        assert.equal(other.prepare().code, 0);
+        await other.startDaemon('--h264', 'h264_nothing');
+        assert.match(other.daemon.said, /no encoder for it named 'h264_nothing'[^]*h264 by h264_nothing does not work here: clients get JPEG/);
+        const client = await PlainClient.open(other.port);
+        assert.equal((await client.hello({ codecs: ['h264', 'jpeg'] })).codec, 'jpeg');
+        await client.frameWhere('a JPEG', (f) => f.codec === 'jpeg' || f.codec === 1);
+        client.close();
+    } finally {
+        await other.destroy();
+    }
+});
+
 test('no GL at all is said, and ends with 1', { skip }, () => {
     const { status, stderr } = spawnSync(join(BIN, 'plantcastd'), [plant.file, '--port', '0', '--gl', 'egl-device'], {
         encoding: 'utf8', timeout: 30000, env: { ...process.env, __EGL_VENDOR_LIBRARY_DIRS: '/nonexistent' },
