@@ -62,7 +62,10 @@ programs := $(if $(wildcard server/main.c),$(bin)/plantcastd) $(if $(wildcard pr
             $(if $(generate_sources),$(bin)/plantcast-demo)
 
 .PHONY: all programs run demo test test-long bench gpu-bench style layers headers deps test-deps golden-update install clean help
-all: $(programs)
+all: $(programs) clients/web/vendor/uPlot.js
+# The page's charts: asked for again with each make until they are there.
+clients/web/vendor/uPlot.js: clients/web/package-lock.json
+	@echo "  NPM  $(@D)"; deploy/vendor $(build)/npm; [ ! -f $@ ] || touch $@
 programs: all
 
 $(bin)/plantcastd: $(call objects,$(wildcard server/*.c)) $(archives)

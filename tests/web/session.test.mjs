@@ -382,3 +382,35 @@ test('alarms: the gravest of a tag, and what is to be done first', () => {
     session.actOnAlarm('acknowledge', [['TT-101', 'HH']]);
     assert.deepEqual(socket.sent.at(-1), { type: 'alarm', seq: 1, action: 'acknowledge', alarms: [['TT-101', 'HH']] });
 });
+
+test('in the past its clock stands apart, ages stand still, and a new connection goes back there', () => {
+    const { session, socket, sockets, clock } = greeted();
+    const time = vector('server/time.json');
+    session.travel(time.at_us + 0.25, 60);
+    assert.deepEqual(last(socket.sent), { type: 'time', at_us: time.at_us, speed: 60 });
+    session.travel(undefined, 0);
+    assert.deepEqual(last(socket.sent), { type: 'time', speed: 0 });
+    socket.say({ type: 'status', links: [], time_us: 1793500000000000, live: true });
+    socket.say(time);
+    assert.deepEqual(session.time, { atUs: time.at_us, speed: 60, fromUs: time.from_us });
+    socket.say({ type: 'tags', time_us: time.at_us, age_ms: 0, values: [[0, 5]] });
+    assert.ok(Math.abs(session.clockUs() - 1793500000000000) < 1e6, 'the plant’s clock is of now');
+    const age = session.model.ageMs(0, clock.now());
+    assert.equal(session.model.ageMs(0, clock.now() + 60000), age);
+    const { kind, words, detail, banner } = health(session, clock.now());
+    assert.deepEqual([kind, words, banner], ['past', 'History', true]);
+    assert.match(detail, /^2026-1\d-\d\d .*, playing 60×$/);
+    session.hello([]);
+    assert.deepEqual([last(socket.sent).at_us, last(socket.sent).speed], [time.at_us, 60]);
+    assert.equal(sockets.length, 1);
+});
+
+test('until its first picture of now, it is said that the picture is of then', () => {
+    const { session, socket, clock } = greeted();
+    socket.say({ type: 'status', links: [], time_us: 1793500000000000, live: true });
+    session.picture = { past: true, dataTimeUs: 1793491200250000, at: 0 };
+    socket.say(vector('server/time-now.json'));
+    assert.deepEqual([health(session, clock.now()).kind, health(session, clock.now()).words], ['past', 'Returning to now']);
+    session.picture = { past: false, dataTimeUs: 1793500000000000, at: 0 };
+    assert.equal(health(session, clock.now()).kind, 'live');
+});

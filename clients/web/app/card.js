@@ -10,8 +10,8 @@ const ALARM_WORDS = {
 const AWAY_PX = 16, WIDTH_PX = 248;
 
 export class Card {
-    constructor({ session, selection, overlay, viewport, onClose }) {
-        Object.assign(this, { session, selection, overlay, viewport, onClose });
+    constructor({ session, selection, overlay, viewport, onClose, onTrend }) {
+        Object.assign(this, { session, selection, overlay, viewport, onClose, onTrend });
         this.element = byId('card');
     }
 
@@ -62,7 +62,8 @@ export class Card {
             make('button', { type: 'button', class: 'icon small', 'aria-label': 'Close', onclick: () => this.onClose() }, icon('i-close')),
             make('h3', {}, tag.name), make('p', { class: 'about' }, tag.description ?? ''), this.value, this.limit,
             make('dl', {}, make('dt', {}, 'Quality'), this.quality, make('dt', {}, 'Age'), this.age,
-                make('dt', {}, 'On'), make('dd', {}, on)));
+                make('dt', {}, 'On'), make('dd', {}, on)),
+            this.session.recorded ? make('button', { type: 'button', class: 'trend', onclick: () => this.onTrend(tag) }, 'Trend') : null);
     }
 
     // Beside its marker, on the side with more room; in a corner while the marker is out of the picture.

@@ -17,7 +17,9 @@ import { Place } from './place.js';
 import { Status } from './status.js';
 import { TimingsPanel } from './timings.js';
 import { TokenDialog } from './token.js';
+import { Timeline } from './timeline.js';
 import { Toolbar } from './toolbar.js';
+import { Trends } from './trends.js';
 import { Views } from './views.js';
 import { Viewport } from './viewport.js';
 
@@ -48,7 +50,9 @@ const viewport = new Viewport({ element: byId('viewport'), canvas: byId('picture
 const overlay = new Overlay({ canvas: byId('overlay'), viewport, session, selection });
 const pilot = new Pilot({ viewport, session });
 const status = new Status({ session, onFreshness: (fresh) => { overlay.fresh = fresh; refresh(); } });
-const card = new Card({ session, selection, overlay, viewport, onClose: () => selectTag(null) });
+const timeline = new Timeline({ session });
+const trends = new Trends({ session });
+const card = new Card({ session, selection, overlay, viewport, onClose: () => selectTag(null), onTrend: (tag) => trends.add(tag) });
 
 const timings = new TimingsPanel({ session });
 const views = new Views({ session, pilot });
@@ -65,6 +69,8 @@ function refresh() {
 function selectTag(tag) {
     selection.tag = tag?.name ?? null;
     selection.hover = null;
+    if (tag)
+        trends.follow(tag);
     assets.update();
     saveAddress();
     refresh();
@@ -112,6 +118,8 @@ const commands = {
     help: () => byId('help').showModal(),
     timings: () => timings.toggle(),
     alarms: () => alarms.toggle(),
+    past: () => session.recorded && timeline.setOpen(!timeline.open),
+    live: () => session.time.atUs !== null && session.travel(null),
     assets: () => assets.setOpen(!assets.open),
     search: () => assets.openSearch(),
     top: () => views.lookFrom('top'),
@@ -170,6 +178,8 @@ viewport.onTick = (now) => pilot.tick(now);
 viewport.onDrawn = (newPicture) => {
     if (newPicture)
         byId('waiting').hidden = true;
+    if (newPicture && (session.picture.past || status.past))
+        status.show(); // what it shows and what is said of it change together
     if (newPicture || overlay.dirty) {
         card.show();
         place.show();
@@ -181,6 +191,11 @@ setInterval(() => card.tag && refresh(), 500); // its age goes on
 
 session.on('tags', refresh);
 session.on('alarms', refresh);
+session.on('time', () => {
+    saveAddress();
+    status.show();
+    refresh();
+});
 session.on('params', () => {
     byId('viewport').classList.toggle('split', Boolean(session.params.split));
     saveAddress();
@@ -256,7 +271,7 @@ function saveAddress() {
     addressTimer = setTimeout(() => {
         if (session.leader !== null)
             return; // the link says whom to follow
-        const hash = writeAddress({ camera: session.camera, params: session.params, tag: selection.tag });
+        const hash = writeAddress({ camera: session.camera, params: session.params, tag: selection.tag, time: session.time });
         history.replaceState(null, '', location.pathname + location.search + hash);
     }, ADDRESS_WAIT_MS);
 }
@@ -274,4 +289,4 @@ session.leader = Number(new URLSearchParams(location.hash.slice(1)).get('follow'
 connection.start();
 
 // For the console and for tests of the whole.
-globalThis.plantcast = { session, selection, overlay, legend, decoding };
+globalThis.plantcast = { session, selection, overlay, legend, decoding, trends };

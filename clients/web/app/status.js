@@ -31,6 +31,7 @@ export class Status {
         setText(chip.querySelector('.words'), words);
         const fresh = kind !== 'lost' && kind !== 'silent';
         byId('viewport').classList.toggle('is-old', !fresh);
+        byId('viewport').classList.toggle('is-past', kind === 'past');
         if (fresh !== this.fresh)
             this.onFreshness(fresh);
         this.fresh = fresh;
@@ -41,9 +42,14 @@ export class Status {
         byId('retry').hidden = kind !== 'lost';
     }
 
+    // The clock is the one of what is shown.
     showBar({ kind }, now) {
         const { session } = this;
-        const us = session.clockUs(now);
+        const past = kind === 'past' && session.picture?.past;
+        const us = past ? session.picture.dataTimeUs : session.clockUs(now);
+        this.past = past;
+        setText(byId('clock-name'), past ? 'Then' : 'Plant time');
+        byId('clock').parentElement.classList.toggle('past', Boolean(past));
         if (us !== null && this.clock) {
             const { date, time, offset } = this.clock(us / 1000);
             const text = `${date} ${time} ${offset}`;
@@ -51,8 +57,8 @@ export class Status {
                 byId('clock').replaceChildren(make('span', {}, `${date} `), make('b', {}, time), make('span', {}, ` ${offset}`));
         }
         const age = session.model ? session.model.oldestAgeMs(session.params.group, now) : null;
-        setText(byId('age'), age === null ? 'none' : ageText(age));
-        byId('age').parentElement.classList.toggle('late', age === null || (kind !== 'live' && kind !== 'partial'));
+        setText(byId('age'), past ? '–' : age === null ? 'none' : ageText(age));
+        byId('age').parentElement.classList.toggle('late', age === null || !['live', 'partial', 'past'].includes(kind));
         const rate = session.rate.perSecond(now);
         setText(byId('rate'), rate > 0 ? `${Math.round(rate)}/s` : kind === 'live' || kind === 'partial' ? 'still' : 'none');
         const latency = session.latency.median(now);

@@ -10,7 +10,7 @@ const CHOICES = { // null: any name; the server knows which there are
 const SETS = { hide: 'hidden', only: 'isolate', ghost: 'ghost' }; // lists of assets
 const round = (x) => Number(x.toFixed(4)) + 0;
 
-export function writeAddress({ camera, params = {}, tag = null }) {
+export function writeAddress({ camera, params = {}, tag = null, time = null }) {
     const parts = [];
     const put = (name, value) => parts.push(`${name}=${encodeURIComponent(value).replace(/%2C/g, ',')}`);
     for (const name of Object.keys(CHOICES)) {
@@ -31,6 +31,8 @@ export function writeAddress({ camera, params = {}, tag = null }) {
         put('clip', writeClip(params.clip));
     if (tag)
         put('tag', tag);
+    if (time?.atUs)
+        put('at', new Date(time.atUs / 1000).toISOString());
     if (camera)
         put('camera', [...camera.eye, ...camera.target, ...camera.up, camera.fov, camera.height_m ?? []].flat().map(round).join(','));
     return parts.length > 0 ? `#${parts.join('&')}` : '';
@@ -58,7 +60,8 @@ function readCamera(text) {
     return (n.length === 10 || n.length === 11) && valid(camera) ? camera : null;
 }
 
-// { camera or null, params (only what the address names), tag or null }. What makes no sense is left out.
+// { camera or null, params (only what the address names), tag or null, time: { atUs } where it names an instant }. What makes no sense is
+// left out.
 export function readAddress(hash) {
     const fields = new URLSearchParams(hash.replace(/^#/, ''));
     const params = {};
@@ -82,5 +85,7 @@ export function readAddress(hash) {
         params.clip = clip;
     if (fields.get('asset'))
         params.selected = fields.get('asset');
-    return { camera: readCamera(fields.get('camera')), params, tag: fields.get('tag') || null };
+    const at = Date.parse(fields.get('at') ?? '');
+    const time = at > 0 ? { atUs: at * 1000 } : {};
+    return { camera: readCamera(fields.get('camera')), params, tag: fields.get('tag') || null, time };
 }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The one answer to "may I trust this picture?": kind, words for it, and how long it has been so.
-import { ageText } from './format.js';
+import { ageText, zoneClock } from './format.js';
 
 const seconds = (ms) => `${Math.max(1, Math.ceil(ms / 1000))} s`;
 
-// { kind: connecting | live | partial | nodata | silent | lost, words, detail, banner (bool) }
+// { kind: connecting | live | past | partial | nodata | silent | lost, words, detail, banner (bool) }
 export function health(session, now) {
     const { connection, model, picture } = session;
     const old = picture ? `This picture is ${ageText(now - session.freshAt)} old.` : '';
@@ -14,12 +14,26 @@ export function health(session, now) {
     }
     if (connection.state !== 'open' || !session.welcomed || model.live === null)
         return lost(connection, picture, old, now);
+    if (session.time.atUs !== null || picture?.past)
+        return past(session);
     if (model.live === false)
         return { kind: 'nodata', words: 'No live data', detail: downText(model), banner: true };
     const down = model.links.filter((link) => !link.up).length;
     if (down > 0)
         return { kind: 'partial', words: `Live, ${down} of ${model.links.length} sources down`, detail: downText(model), banner: false };
     return { kind: 'live', words: 'Live', detail: '', banner: false };
+}
+
+// The picture's own time where it is one of the past: until then it still shows now, and is not what the words would say.
+function past({ picture, time, model }) {
+    const us = picture?.past ? picture.dataTimeUs : time.atUs;
+    const { date, time: clock, offset } = zoneClock(model.plant.time_zone)(us / 1000);
+    const words = time.atUs === null ? 'Returning to now' : 'History';
+    return { kind: 'past', words, detail: `${date} ${clock} ${offset}${speedText(time)}`, banner: true };
+}
+
+function speedText({ speed }) {
+    return speed === 0 ? '' : speed < 0 ? `, playing back ${-speed}×` : `, playing ${speed}×`;
 }
 
 function downText(model) {

@@ -16,6 +16,7 @@ export class Model {
         this.alarms = new Alarms(this.tags);
         this.links = [];
         this.live = null; // nothing was said yet
+        this.stopped = false; // of an instant of the past: ages are of then, and go no further
         this.oldest = null; // { ms, at }: no reading that is not bad was older than that
     }
 
@@ -63,6 +64,8 @@ export class Model {
         const { ageMs, at, quality } = this.readings[index];
         if (ageMs === null)
             return null;
+        if (this.stopped)
+            return ageMs;
         const age = ageMs + (now - at);
         return this.oldest && quality !== 'bad' ? Math.min(age, this.oldest.ms + (now - this.oldest.at)) : age;
     }

@@ -13,6 +13,8 @@ export const PARAMS = [
 const SAID = [...PARAMS, 'sensor', 'baseline', 'baselines', 'unit']; // by the server
 const SHARED = ['light', 'environment', 'selected', 'hidden', 'isolate', 'ghost', 'clip', 'split']; // by both halves
 const GROUPS_OWN = ['interpolation', 'distance', 'fill', 'power', 'radius_m', 'reach_m', 'scale', 'isolines'];
+const OF_THE_INSTANT = ['tags', 'picked']; // their time is that of what is shown
+const NOW = { atUs: null, speed: 0, fromUs: null };
 const QUALITIES = ['good', 'uncertain', 'bad'];
 const MOST_BACKLOG_BYTES = 64 * 1024;
 
@@ -22,8 +24,8 @@ const pick = (from, names) => Object.fromEntries(names.filter((name) => from[nam
 const asAsked = (camera) => (camera.height_m === undefined ? camera : cameraOfMessage({ ...camera, fov: undefined }));
 
 export class Session {
-    // wanted: { camera or null, params } from the page's address. Events: welcome, params, tags (indices), status, frame (frame),
-    // alarms, alarmed (message), camera, error (message), denied (message: we need a token, or another one), ignored (what).
+    // wanted: { camera or null, params, time } from the page's address. Events: welcome, params, time, tags (indices), status, alarms,
+    // alarmed (message), frame (frame), camera, error (message), denied (message: we need a token, or another one), ignored (what).
     constructor({ connection, now, wanted = { camera: null, params: {} }, codecs = ['jpeg', 'png'] }) {
         Object.assign(this, { connection, now, codecs });
         this.listeners = new Map();
@@ -49,6 +51,7 @@ export class Session {
         this.id = null;          // by which others can follow this session
         this.following = null;   // whose view is shown: { session, width, height }
         this.leader = null;      // whom to follow once there is a connection
+        this.time = { ...NOW, ...wanted.time }; // what the server shows: atUs null: now; fromUs null: nothing is recorded
         connection.onOpen = () => this.hello(['camera', 'params']);
         connection.onText = (text) => this.guard(() => this.heard(decodeMessage(text)));
         connection.onBytes = (bytes) => this.guard(() => {
@@ -90,6 +93,8 @@ export class Session {
         this.cameraSeq = this.paramsSeq = 0;
         this.greetedCamera = parts.includes('camera') ? this.camera : null;
         const message = { type: 'hello', ...this.size, ...this.proofs(), codecs: this.codecs };
+        if (this.time.atUs !== null)
+            Object.assign(message, { at_us: this.time.atUs, speed: this.time.speed });
         if (this.greetedCamera)
             message.camera = { seq: ++this.cameraSeq, ...cameraMessage(this.greetedCamera) };
         const params = this.carried();
@@ -178,6 +183,14 @@ export class Session {
         this.emit('following');
     }
 
+    // Goes to an instant (null: to now; undefined: stays where it is) and plays from there.
+    travel(atUs, speed = 0) {
+        if (this.leader !== null)
+            this.follow(null);
+        if (this.welcomed)
+            this.connection.send({ type: 'time', ...(atUs === undefined ? {} : { at_us: atUs === null ? null : Math.round(atUs) }), speed });
+    }
+
     // Asks for a camera that looks at something (id: asset, tag or null; side: as in plantcast.v1); answered by the event `fitted`.
     fit({ id = null, side = 'now', projection } = {}) {
         if (this.welcomed)
@@ -229,7 +242,8 @@ export class Session {
     // --- from the server
 
     heard(message) {
-        if (message.time_us !== undefined)
+        const ofThen = this.time.atUs !== null && OF_THE_INSTANT.includes(message.type);
+        if (message.time_us !== undefined && !ofThen)
             this.serverTime = { us: message.time_us, at: this.now() };
         if (this.welcomed)
             this.freshAt = this.now();
@@ -309,6 +323,13 @@ export class Session {
         this.confirmed = this.params = pick(shown, SAID);
         this.emit('params');
         this.emit('following');
+    }
+
+    hearTime(message) {
+        this.time = { atUs: message.at_us ?? null, speed: message.speed ?? 0, fromUs: message.from_us ?? null };
+        this.recorded = true;
+        this.model.stopped = this.time.atUs !== null;
+        this.emit('time');
     }
 
     hearCamera(message) {
@@ -408,5 +429,6 @@ const HANDLERS = {
     alarmed: Session.prototype.hearAlarmed,
     error: Session.prototype.hearError,
     following: Session.prototype.hearFollowing,
+    time: Session.prototype.hearTime,
     pong: Session.prototype.hearPong,
 };

@@ -8,7 +8,7 @@ export const MAX_PIXELS = 16 * 1024 * 1024;
 export const MIN_SIDE_PX = 16;
 export const NO_AGE = 0xffffffff;
 export const CODECS = { 1: 'jpeg', 2: 'png', 3: 'h264' };
-export const FLAG_KEY = 1, FLAG_STILL = 2, FLAG_NO_LIVE_DATA = 4, FLAG_MORE = 8, FLAG_DATA = 16;
+export const FLAG_KEY = 1, FLAG_STILL = 2, FLAG_NO_LIVE_DATA = 4, FLAG_MORE = 8, FLAG_DATA = 16, FLAG_PAST = 32;
 const MAX_PAYLOAD_BYTES = 64 * 1024 * 1024;
 
 class WireError extends Error {}
@@ -51,6 +51,7 @@ export function decodeFrame(bytes) {
         codec: CODECS[view.getUint8(1)],
         key: (flags & FLAG_KEY) !== 0, still: (flags & FLAG_STILL) !== 0, noLiveData: (flags & FLAG_NO_LIVE_DATA) !== 0,
         data: (flags & FLAG_DATA) !== 0,
+        past: (flags & FLAG_PAST) !== 0, // it shows the instant dataTimeUs, not now
         more: (flags & FLAG_MORE) !== 0, // another part of the same picture follows
         seq: u32(8), cameraSeq: u32(12), paramsSeq: u32(16),
         oldestAgeMs: u32(20) === NO_AGE ? null : u32(20),

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The time bar: a slider over what was recorded, with the alarms that were raised, play, speed, and the way back to now.
+import { ageText, zoneClock } from '../core/format.js';
+import { ask, raised, ticks } from '../core/history.js';
+import { byId, makeSvg, setText } from './dom.js';
+import { fillSelect } from './fields.js';
+
+const SPANS = [[900, '15 min'], [3600, '1 h'], [28800, '8 h'], [86400, '24 h'], [604800, '7 d'], [2592000, '30 d']];
+const SPEEDS = [1, 10, 60, 300, 600, 3600];
+const STEPS = 2000, MARKS_MS = 15000, MARKS_MOST = 2000, HAND_MS = 400, NOW_US = 3.5e6; // what is newer than that counts as now
+
+export class Timeline {
+    constructor({ session }) {
+        Object.assign(this, { session, open: false, toUs: null, marks: [], wanted: null, draggedAt: -Infinity });
+        this.slider = byId('time-slider');
+        fillSelect(byId('time-span'), SPANS, 3600);
+        fillSelect(byId('time-speed'), SPEEDS.map((speed) => [speed, `${speed}×`]), 60);
+        byId('time-toggle').addEventListener('click', () => this.setOpen(!this.open));
+        byId('time-span').addEventListener('change', () => this.turnTo(this.atUs));
+        byId('time-speed').addEventListener('change', () => session.time.speed && session.travel(undefined, this.speed));
+        byId('time-play').addEventListener('click', () => this.play());
+        byId('time-live').addEventListener('click', () => session.travel(null));
+        this.slider.addEventListener('input', () => this.drag());
+        session.on('welcome', () => {
+            this.clock = zoneClock(session.model.plant.time_zone);
+            byId('time-toggle').hidden = true; // until the server says that it records
+        });
+        session.on('time', () => this.hear());
+        setInterval(() => this.tick(), 500);
+        new ResizeObserver(() => this.draw()).observe(byId('time-track'));
+    }
+
+    get spanUs() {
+        return Number(byId('time-span').value) * 1e6;
+    }
+
+    get speed() {
+        return Number(byId('time-speed').value);
+    }
+
+    get atUs() {
+        return this.session.time.atUs;
+    }
+
+    setOpen(open) {
+        this.open = open;
+        byId('timeline').hidden = !open;
+        byId('time-toggle').setAttribute('aria-expanded', open);
+        if (open)
+            this.turnTo(this.atUs);
+        else if (this.atUs !== null)
+            this.session.travel(null);
+    }
+
+    hear() {
+        byId('time-toggle').hidden = false;
+        if (this.atUs !== null && !this.open)
+            this.setOpen(true);
+        if (this.atUs !== null && this.toUs !== null && (this.atUs > this.toUs || this.atUs < this.toUs - this.spanUs))
+            this.turnTo(this.atUs);
+        this.show();
+    }
+
+    // The slider spans the time up to now; around an instant where that does not hold it.
+    turnTo(atUs) {
+        const now = this.session.clockUs() ?? Date.now() * 1000;
+        const ends = atUs !== null && atUs < now - this.spanUs ? Math.min(now, atUs + this.spanUs / 2) : now;
+        this.toUs = ends;
+        this.askMarks();
+        this.show();
+    }
+
+    tick() {
+        if (!this.open || !this.session.model)
+            return;
+        if (this.atUs === null)
+            this.toUs = this.session.clockUs() ?? this.toUs;
+        if (performance.now() - (this.askedAt ?? 0) > MARKS_MS)
+            this.askMarks();
+        this.show();
+    }
+
+    // Once for each picture of the page, however often the hand moves.
+    drag() {
+        const at = this.toUs - this.spanUs * (1 - Number(this.slider.value) / STEPS);
+        const now = this.session.clockUs();
+        if (this.wanted === null)
+            requestAnimationFrame(() => {
+                this.session.travel(this.wanted > now - NOW_US ? null : this.wanted);
+                this.wanted = null;
+            });
+        this.wanted = at;
+        this.draggedAt = performance.now();
+        this.say(at);
+    }
+
+    play() {
+        const { time } = this.session;
+        if (time.speed)
+            this.session.travel(undefined, 0);
+        else if (time.atUs !== null)
+            this.session.travel(undefined, this.speed);
+        else
+            this.session.travel(this.toUs - this.spanUs, this.speed);
+    }
+
+    async askMarks() {
+        this.askedAt = performance.now();
+        const query = { from: (this.toUs - this.spanUs) / 1e6, to: this.toUs / 1e6, limit: MARKS_MOST };
+        try {
+            const response = await ask('api/v1/alarms/journal', query, this.session.token);
+            this.marks = raised((await response.json()).rows);
+        } catch {
+            this.marks = []; // no journal, or not for us: the slider goes without
+        }
+        this.draw();
+    }
+
+    say(us) {
+        const { date, time, offset } = this.clock(us / 1000);
+        const ago = ageText((this.session.clockUs() - us) / 1000);
+        this.slider.setAttribute('aria-valuetext', `${date} ${time} ${offset}`);
+        setText(byId('time-at'), `${date} ${time} ${offset} · ${ago} ago`);
+    }
+
+    show() {
+        if (!this.open || !this.clock)
+            return;
+        const { atUs, speed } = this.session.time;
+        const place = atUs === null ? 1 : 1 - (this.toUs - atUs) / this.spanUs;
+        if (performance.now() - this.draggedAt > HAND_MS)
+            this.slider.value = Math.round(place * STEPS);
+        if (atUs === null) {
+            setText(byId('time-at'), 'Now');
+            this.slider.setAttribute('aria-valuetext', 'Now');
+        } else if (this.wanted === null) {
+            this.say(atUs);
+        }
+        byId('timeline').classList.toggle('past', atUs !== null);
+        byId('time-live').disabled = atUs === null;
+        const verb = speed ? 'Pause' : 'Play';
+        byId('time-play').setAttribute('aria-label', verb);
+        byId('time-play').title = verb;
+        byId('time-play').querySelector('use').setAttribute('href', speed ? '#i-pause' : '#i-play');
+        this.draw();
+    }
+
+    // Marks, ticks, and where nothing was recorded, over the slider's own length.
+    draw() {
+        const track = byId('time-track'), width = track.clientWidth;
+        if (!this.open || !this.clock || width === 0)
+            return;
+        const from = this.toUs - this.spanUs, x = (us) => 9 + (width - 18) * (us - from) / this.spanUs;
+        const nodes = [], { fromUs } = this.session.time;
+        if (fromUs !== null && fromUs > from) {
+            nodes.push(makeSvg('rect', { class: 'unrecorded', x: 9, y: 16, width: Math.max(0, Math.min(x(fromUs), width - 9) - 9), height: 8 }));
+            if (x(fromUs) > 120)
+                nodes.push(makeSvg('text', { class: 'note', x: 12, y: 12 }, 'not recorded'));
+        }
+        for (const us of ticks(from, this.toUs, Math.max(2, width / 110))) {
+            const { date, time } = this.clock(us / 1000);
+            nodes.push(makeSvg('path', { class: 'tick', d: `M${x(us)} 26v5` }));
+            if (x(us) > 30 && x(us) < width - 30)
+                nodes.push(makeSvg('text', { x: x(us), y: 42, 'text-anchor': 'middle' }, this.spanUs > 2 * 86400e6 ? date.slice(5) : time.slice(0, 5)));
+        }
+        for (const { us, tag, kind, priority } of this.marks)
+            nodes.push(makeSvg('path', { class: `alarm p${priority}`, d: `M${x(us)} 15l-4-8h8z` },
+                makeSvg('title', {}, `${tag} ${kind}, ${this.clock(us / 1000).time}`)));
+        track.replaceChildren(...nodes);
+        setText(byId('time-alarms'), this.marks.length > 0 ? `${this.marks.length} alarm${this.marks.length > 1 ? 's' : ''} raised` : '');
+    }
+}
+

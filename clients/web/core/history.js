@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What /api/v1/history and the alarms' journal say, made into what a chart and a slider draw. Pure, but for the one request.
+
+export const BAD = 2, UNCERTAIN = 1; // the two top bits of a status code
+const severity = (quality) => Math.min(BAD, quality >>> 30);
+
+// headers: with a token where one is needed.
+export async function ask(path, query, token, fetcher = fetch) {
+    const headers = token ? { Authorization: `Bearer ${token}` } : {};
+    const text = new URLSearchParams(query).toString();
+    const response = await fetcher(`${path}?${text}`, { headers });
+    if (!response.ok)
+        throw new Error((await response.text()).trim() || `HTTP ${response.status}`);
+    return response;
+}
+
+// Seconds and values for a chart, from one series: null breaks the line. Spikes stay: of a stretch its first, lowest, highest and last.
+export function line(series, fromUs, toUs) {
+    const xs = [], ys = [];
+    const put = (us, value) => {
+        const x = us / 1e6, last = xs.length - 1;
+        if (last >= 0 && x <= xs[last])
+            return void (ys[last] = value === null || ys[last] === null ? null : value);
+        xs.push(x);
+        ys.push(value);
+    };
+    for (const point of series.points) {
+        if (series.bucket_us > 0)
+            putStretch(put, point, series.bucket_us);
+        else
+            putPoint(put, point, series.step, ys);
+    }
+    const last = ys.findLast((value) => value !== undefined);
+    if (series.points.length > 0 && last !== null && xs.at(-1) < toUs / 1e6)
+        put(toUs, last);
+    return [xs, ys];
+}
+
+// A step holds until the next: a point just before it says so.
+function putPoint(put, [us, value, quality], step, ys) {
+    const shown = severity(quality) === BAD ? null : value;
+    const before = ys.at(-1);
+    if (step && shown !== null && before !== null && before !== undefined)
+        put(us - 1, before);
+    put(us, shown);
+}
+
+function putStretch(put, [us, low, high, , first, last, badUs], lengthUs) {
+    if (low === null)
+        return put(us, null);
+    const falls = (first ?? low) > (last ?? high);
+    put(us, first ?? low);
+    put(us + lengthUs / 3, falls ? high : low);
+    put(us + 2 * lengthUs / 3, falls ? low : high);
+    if (badUs > 0 && last === null)
+        put(us + lengthUs - 2, null);
+    else
+        put(us + lengthUs - 2, last ?? high);
+}
+
+// [{ from, to (seconds), severity }]: when there was no value, or one that is uncertain.
+export function gaps(series, fromUs, toUs) {
+    const out = [];
+    const add = (from, to, grade) => {
+        const begin = Math.max(from, fromUs) / 1e6, end = Math.min(to, toUs) / 1e6, last = out.at(-1);
+        if (grade === 0 || end <= begin)
+            return;
+        if (last && last.severity === grade && begin - last.to < 1e-3)
+            last.to = end;
+        else
+            out.push({ from: begin, to: end, severity: grade });
+    };
+    const { points, bucket_us: length } = series;
+    if (points.length === 0)
+        return [{ from: fromUs / 1e6, to: toUs / 1e6, severity: BAD }];
+    if (points[0][0] > fromUs)
+        add(fromUs, points[0][0], BAD);
+    points.forEach((point, i) => {
+        const next = points[i + 1]?.[0] ?? toUs, quality = length > 0 ? point[7] : point[2];
+        if (length > 0 && point[6] > 0 && severity(quality) !== BAD)
+            add(point[0], point[0] + point[6], BAD); // somewhere in it
+        add(length > 0 && severity(quality) === BAD ? Math.max(point[0], point[0] + length - point[6]) : point[0], next,
+            length > 0 || point[1] !== null ? severity(quality) : BAD);
+    });
+    return out;
+}
+
+// Rows of the journal that raise an alarm: [{ us, tag, kind, priority }], oldest first.
+export function raised(rows) {
+    return rows.filter(({ event }) => event === 'raise').map(({ time_us: us, tag, kind, priority }) => ({ us, tag, kind, priority }))
+        .sort((a, b) => a.us - b.us);
+}
+
+// Round instants between two, at most so many: [us].
+export function ticks(fromUs, toUs, most, offsetUs = 0) {
+    const steps = [1, 5, 10, 30, 60, 300, 600, 1800, 3600, 7200, 14400, 28800, 43200, 86400, 172800, 604800].map((s) => s * 1e6);
+    const step = steps.find((one) => (toUs - fromUs) / one <= most) ?? steps.at(-1);
+    const out = [];
+    for (let us = Math.ceil((fromUs + offsetUs) / step) * step - offsetUs; us <= toUs; us += step)
+        out.push(us);
+    return out;
+}

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Trends and the time slider in the browser: what was is shown, said in words, compared, exported, played, and left again.
+import assert from 'node:assert/strict';
+import { readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { openPage, PHONE, settle, shoot, TABLET, waitForHealth, waitForPicture } from './support/browser.mjs';
+import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+
+const absent = missing();
+const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 200000 };
+const BEGIN_S = Math.floor(Date.now() / 1000) - 3000;
+let plant, browser, page;
+
+// A slow wave, and a fault of TI-1 from minute 20 to 25.
+function series() {
+    const lines = ['Tag,Time,Value,Quality'];
+    for (let s = 0; s <= 2900; s += 5) {
+        const bad = s >= 1200 && s < 1500;
+        lines.push(bad ? `TI-1,${BEGIN_S + s},,0x80050000` : `TI-1,${BEGIN_S + s},${(50 + 30 * Math.sin(s / 300)).toFixed(3)},Good`);
+        lines.push(`TI-2,${BEGIN_S + s},${(40 + 10 * Math.cos(s / 400)).toFixed(3)},Good`, `PI-1,${BEGIN_S + s},${(5 + Math.sin(s / 200)).toFixed(3)},Good`);
+    }
+    return `${lines.join('\n')}\n`;
+}
+
+before(async () => {
+    if (options.skip)
+        return;
+    plant = await TinyPlant.create();
+    assert.equal(plant.prepare().code, 0);
+    writeFileSync(join(plant.folder, 'series.csv'), series());
+    const imported = runProgram('plantcast', ['history', 'import', plant.file, join(plant.folder, 'series.csv')]);
+    assert.equal(imported.code, 0, imported.err);
+    await plant.startSim();
+    await plant.startDaemon();
+    browser = await openPage(`http://127.0.0.1:${plant.port}/`, { viewport: { width: 1440, height: 900 } });
+    page = browser.page;
+    await waitForPicture(page);
+    await waitForHealth(page, 'live');
+    await page.waitForFunction(() => globalThis.plantcast.session.time.fromUs);
+});
+after(async () => {
+    await browser?.close();
+    await plant?.destroy();
+});
+
+const shown = (on = page) => on.evaluate(() => {
+    const { session } = globalThis.plantcast;
+    return { ...session.time, past: session.picture.past, dataTimeUs: session.picture.dataTimeUs };
+});
+
+async function clickMarker(name) {
+    const at = await page.evaluate((tag) => {
+        const { session, overlay } = globalThis.plantcast;
+        const marker = overlay.marker(session.model.tag(tag)), box = document.getElementById('overlay').getBoundingClientRect();
+        return { x: box.left + marker.x, y: box.top + marker.y };
+    }, name);
+    await page.mouse.click(at.x, at.y);
+}
+
+test('a click on a marker leads to its trend, with unit and gap', options, async () => {
+    await settle(page);
+    await clickMarker('TI-1');
+    await page.locator('#card .trend').click();
+    await page.locator('#trend-chart canvas').waitFor();
+    assert.match(await page.locator('#trend-tags').textContent(), /TI-1.*°C/);
+    await page.waitForFunction(() => document.getElementById('trend-note').textContent.includes('TI-1'));
+    const ink = await page.evaluate(() => {
+        const canvas = document.querySelector('#trend-chart canvas');
+        const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+        let blue = 0;
+        for (let i = 0; i < data.length; i += 4)
+            blue += data[i + 3] > 128 && data[i] < 60 && data[i + 2] > 120;
+        return blue;
+    });
+    assert.ok(ink > 300, `a line of ${ink} pixels`);
+    await settle(page);
+    await shoot(page, 'trend');
+});
+
+test('several tags are compared, each by its unit, and exported', options, async () => {
+    for (const name of ['TI-2', 'PI-1'])
+        await page.evaluate((tag) => globalThis.plantcast.trends.add(globalThis.plantcast.session.model.tag(tag)), name);
+    await page.waitForFunction(() => document.querySelectorAll('#trend-chart .u-legend .u-series').length === 4);
+    assert.equal(await page.locator('#trend-tags li').count(), 3);
+    const axes = await page.evaluate(() => globalThis.plantcast.trends.chart.axes.filter((axis) => axis.show).map((axis) => axis.label ?? 'time'));
+    assert.deepEqual(axes, ['time', '°C', 'bar']);
+    const download = page.waitForEvent('download');
+    await page.locator('#trend-csv').click();
+    const file = await download, text = readFileSync(await file.path(), 'utf8');
+    assert.equal(file.suggestedFilename(), 'TI-1_TI-2_PI-1.csv');
+    const rows = text.trim().split('\n');
+    assert.match(rows[0], /tag/i);
+    for (const name of ['TI-1', 'TI-2', 'PI-1'])
+        assert.ok(rows.some((row) => row.includes(name)), name);
+    await page.locator('#trend-span label', { hasText: 'Shift' }).click();
+    await page.waitForFunction(() => { const { span } = globalThis.plantcast.trends; return span[1] - span[0] === 28800e6; });
+    await shoot(page, 'trends');
+    await page.locator('#trend-span label', { hasText: '1 h' }).click();
+});
+
+test('the slider goes to an instant, and nobody can take it for now', options, async () => {
+    await page.locator('#time-toggle').click();
+    assert.equal(await page.locator('#time-live').isDisabled(), true);
+    const slider = page.locator('#time-slider');
+    await slider.focus();
+    await slider.fill('1000');
+    await waitForHealth(page, 'past');
+    await page.waitForFunction(() => globalThis.plantcast.session.picture.past);
+    const { atUs, dataTimeUs } = await shown();
+    assert.ok(Math.abs(atUs / 1e6 - (Date.now() / 1000 - 1800)) < 20 && dataTimeUs === atUs);
+    assert.match(await page.locator('#banner').textContent(), /History.*\d{4}-\d\d-\d\d \d\d:\d\d:\d\d/);
+    assert.equal(await page.locator('#clock-name').textContent(), 'Then');
+    assert.equal(await page.evaluate(() => getComputedStyle(document.getElementById('viewport'), '::after').borderTopWidth), '5px');
+    assert.match(await slider.getAttribute('aria-valuetext'), /\d\d:\d\d:\d\d/);
+    assert.match(new URL(page.url()).hash + await page.evaluate(async () => { await new Promise((done) => setTimeout(done, 600)); return location.hash; }), /at=/);
+    await settle(page);
+    await shoot(page, 'past');
+});
+
+test('a gap is a gap in the picture too', options, async () => {
+    await page.evaluate((us) => globalThis.plantcast.session.travel(us), (BEGIN_S + 1350) * 1e6);
+    await page.waitForFunction((us) => globalThis.plantcast.session.picture.dataTimeUs === us, (BEGIN_S + 1350) * 1e6);
+    await page.waitForFunction(() => globalThis.plantcast.session.model.readings[0].quality === 'bad');
+    await settle(page);
+    await shoot(page, 'past-gap');
+});
+
+test('it plays, pauses, and goes back to live', options, async () => {
+    await page.evaluate((us) => globalThis.plantcast.session.travel(us), (BEGIN_S + 100) * 1e6);
+    await page.waitForFunction((us) => globalThis.plantcast.session.time.atUs === us, (BEGIN_S + 100) * 1e6);
+    await page.locator('#time-speed').selectOption('300');
+    await page.locator('#time-play').click();
+    await page.waitForFunction((us) => globalThis.plantcast.session.picture.dataTimeUs > us, (BEGIN_S + 400) * 1e6);
+    assert.match(await page.locator('#banner .detail').textContent(), /playing 300×/);
+    assert.equal(await page.locator('#time-play').getAttribute('aria-label'), 'Pause');
+    await page.locator('#time-play').click();
+    await page.waitForFunction(() => globalThis.plantcast.session.time.speed === 0);
+    const { atUs } = await shown();
+    await page.waitForTimeout(800);
+    assert.ok(Math.abs((await shown()).atUs - atUs) < 120e6);
+    await page.locator('#time-live').click();
+    await waitForHealth(page, 'live');
+    assert.equal((await shown()).past, false);
+    assert.equal(await page.locator('#banner').isVisible(), false);
+    await page.locator('#time-toggle').click();
+    assert.equal(await page.locator('#timeline').isVisible(), false);
+});
+
+test('a click into a trend goes there; a link to an instant opens there; a reload stays', options, async () => {
+    const box = await page.locator('#trend-chart .u-over').boundingBox();
+    await page.mouse.click(box.x + box.width * 0.6, box.y + box.height / 2);
+    await waitForHealth(page, 'past');
+    const url = `http://127.0.0.1:${plant.port}/#at=${new Date((BEGIN_S + 600) * 1000).toISOString()}`;
+    const other = await openPage(url, TABLET);
+    await waitForPicture(other.page);
+    const first = await shown(other.page);
+    assert.deepEqual([first.past, first.dataTimeUs], [true, (BEGIN_S + 600) * 1e6]);
+    assert.equal(await other.page.locator('#timeline').isVisible(), true);
+    await shoot(other.page, 'past-tablet');
+    assert.deepEqual(other.errors, []);
+    await other.close();
+    await page.keyboard.press('Escape');
+    await page.evaluate(() => globalThis.plantcast.session.travel(null));
+    await waitForHealth(page, 'live');
+});
+
+test('on a phone the bar fits', options, async () => {
+    const phone = await openPage(`http://127.0.0.1:${plant.port}/#at=${new Date((BEGIN_S + 600) * 1000).toISOString()}`, PHONE);
+    await waitForPicture(phone.page);
+    await phone.page.locator('#timeline').waitFor();
+    const wide = await phone.page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+    assert.ok(wide <= 0, `${wide} px too wide`);
+    const box = await phone.page.locator('#time-live').boundingBox();
+    assert.ok(box.x + box.width <= 390 && box.height >= 40, JSON.stringify(box));
+    await phone.page.waitForTimeout(600);
+    await shoot(phone.page, 'past-phone');
+    await phone.close();
+    assert.deepEqual(browser.errors, []);
+});

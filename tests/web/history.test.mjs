@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What was recorded, as charts and the slider draw it: lines with their gaps and spikes, alarms, ticks; and a session in the past.
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { readAddress, writeAddress } from '../../clients/web/core/address.js';
+import { ask, BAD, gaps, line, raised, ticks, UNCERTAIN } from '../../clients/web/core/history.js';
+
+const GOOD_CODE = 0, UNCERTAIN_CODE = 0x408f0000, BAD_CODE = 0x80050000;
+const points = (...list) => ({ step: false, bucket_us: 0, points: list });
+
+test('a line holds its last value until now, and breaks where there is none', () => {
+    const series = points([1e6, 5, GOOD_CODE], [2e6, null, BAD_CODE], [4e6, 7, GOOD_CODE]);
+    assert.deepEqual(line(series, 0, 6e6), [[1, 2, 4, 6], [5, null, 7, 7]]);
+    assert.deepEqual(line(points([1e6, 5, GOOD_CODE], [2e6, null, BAD_CODE]), 0, 6e6), [[1, 2], [5, null]]);
+    assert.deepEqual(line(points(), 0, 6e6), [[], []]);
+    assert.deepEqual(line(points([1e6, 5, BAD_CODE]), 0, 6e6), [[1], [null]], 'a value that is bad is none');
+});
+
+test('steps are steps', () => {
+    const [xs, ys] = line({ ...points([1e6, 0, GOOD_CODE], [3e6, 1, GOOD_CODE]), step: true }, 0, 4e6);
+    assert.deepEqual(ys, [0, 0, 1, 1]);
+    assert.ok(xs[1] < 3 && xs[1] > 2.99);
+});
+
+test('a stretch keeps its spike, and its gap', () => {
+    const stretch = (us, ...rest) => [us, ...rest];
+    const series = { step: false, bucket_us: 10e6, points: [stretch(0, 1, 99, 5, 2, 3, 0, GOOD_CODE), stretch(20e6, null, null, null, null, null, 10e6, BAD_CODE)] };
+    const [, ys] = line(series, 0, 40e6);
+    assert.deepEqual([Math.max(...ys), Math.min(...ys.filter((y) => y !== null)), ys.at(-1)], [99, 1, null]);
+    const lost = { step: false, bucket_us: 10e6, points: [stretch(0, 1, 2, 1, 2, null, 4e6, BAD_CODE)] };
+    assert.equal(line(lost, 0, 10e6)[1].at(-1), null);
+    assert.deepEqual(gaps(lost, 0, 20e6), [{ from: 6, to: 20, severity: BAD }]);
+});
+
+test('gaps are when there was no value; uncertain ones are told apart', () => {
+    const series = points([1e6, 5, GOOD_CODE], [2e6, null, BAD_CODE], [3e6, null, BAD_CODE], [4e6, 7, UNCERTAIN_CODE], [5e6, 7, GOOD_CODE]);
+    assert.deepEqual(gaps(series, 0, 6e6), [{ from: 0, to: 1, severity: BAD }, { from: 2, to: 4, severity: BAD }, { from: 4, to: 5, severity: UNCERTAIN }]);
+    assert.deepEqual(gaps(points(), 0, 6e6), [{ from: 0, to: 6, severity: BAD }]);
+});
+
+test('alarms are marked when they were raised', () => {
+    const row = (event, us) => ({ event, time_us: us, tag: 'A', kind: 'HH', priority: 1 });
+    assert.deepEqual(raised([row('raise', 9), row('clear', 8), row('raise', 3)]).map(({ us }) => us), [3, 9]);
+});
+
+test('ticks are round, in the plant’s own zone', () => {
+    assert.deepEqual(ticks(1e6, 3599e6, 6), [600e6, 1200e6, 1800e6, 2400e6, 3000e6]);
+    assert.ok(ticks(0, 30 * 86400e6, 6).length <= 6);
+    assert.equal(ticks(0, 86400e6, 2, 3600e6)[0] % 3600e6, 0);
+});
+
+test('requests carry the token, and failures are said in the server’s words', async () => {
+    let seen;
+    const fetcher = async (url, options) => { seen = [url, options.headers.Authorization]; return { ok: true }; };
+    await ask('api/x', { tags: 'A,B' }, 'secret', fetcher);
+    assert.deepEqual(seen, ['api/x?tags=A%2CB', 'Bearer secret']);
+    await assert.rejects(ask('api/x', {}, null, async () => ({ ok: false, status: 404, text: async () => 'nothing here\n' })), /^Error: nothing here$/);
+});
+
+test('the address names the instant', () => {
+    const hash = writeAddress({ time: { atUs: 1793491200250000 } });
+    assert.equal(readAddress(hash).time.atUs, 1793491200250000);
+    assert.deepEqual(readAddress('#at=never').time, {});
+    assert.doesNotMatch(writeAddress({ time: { atUs: null } }), /at=/);
+});
