@@ -358,7 +358,15 @@ static bool is_plain(const struct reading *reading)
     return reading->quality == QUALITY_GOOD && !reading->alarm;
 }
 
-char *reply_tags_text(const struct snapshot *snapshot, uint32_t *sent, bool all)
+static void add_alarm(const struct plant *plant, size_t tag, const struct reading *reading, json_t *row)
+{
+    if (!reading->alarm)
+        return;
+    json_array_append_new(row, json_integer(alarm_priority(&plant->tags[tag], (enum alarm_kind)reading->alarm)));
+    json_array_append_new(row, string(alarm_word_name((enum alarm_word)reading->alarm_word)));
+}
+
+char *reply_tags_text(const struct plant *plant, const struct snapshot *snapshot, uint32_t *sent, bool all)
 {
     json_t *values = json_array();
     int64_t oldest_ns = 0; /* of those whose row is short */
@@ -371,8 +379,10 @@ char *reply_tags_text(const struct snapshot *snapshot, uint32_t *sent, bool all)
             oldest_ns = r->age_ns > oldest_ns ? r->age_ns : oldest_ns;
             json_array_append_new(values, json_pack("[I,o]", (json_int_t)i, value_of(r)));
         } else {
-            json_array_append_new(values, json_pack("[I,o,o,o,o,o]", (json_int_t)i, value_of(r), string(quality_class(r->quality)),
-                                                    string(quality_name(r->quality)), age_ms(r), alarm_of(r)));
+            json_t *row = json_pack("[I,o,o,o,o,o]", (json_int_t)i, value_of(r), string(quality_class(r->quality)),
+                                    string(quality_name(r->quality)), age_ms(r), alarm_of(r));
+            add_alarm(plant, i, r, row);
+            json_array_append_new(values, row);
         }
     }
     json_t *object = json_pack("{s:s,s:I,s:I,s:o}", "type", "tags", "time_us", us(snapshot->taken_utc_ns), "age_ms",

@@ -12,7 +12,7 @@ enum { REPLY_FOLLOWERS = 256 };
 char *reply_followers_text(const uint64_t *sessions, size_t count);
 char *reply_following_text(const struct session_world *world, uint64_t session, const struct view *view); /* session 0: nobody */
 /* All values, or those that differ from `sent` (reading.changes by tag index), which is brought up to date. */
-char *reply_tags_text(const struct snapshot *snapshot, uint32_t *sent, bool all);
+char *reply_tags_text(const struct plant *plant, const struct snapshot *snapshot, uint32_t *sent, bool all);
 char *reply_status_text(const struct session_world *world, int64_t now_utc_ns);
 char *reply_pong_text(const struct snapshot *snapshot, double t, int64_t now_utc_ns);
 char *reply_time_text(const struct session *session);

@@ -52,7 +52,7 @@ static void add_tags(struct session *session, int64_t now_ns, struct text *out)
     const struct session_world *world = session->world;
     const struct snapshot *snapshot = session_snapshot(session);
     struct tags_said *said = snapshot == world->snapshot ? world->tags_said : NULL;
-    add_owned(out, tags_said_text(said, snapshot, session->tag_changes, session->owes_tags_all));
+    add_owned(out, tags_said_text(said, world->plant, snapshot, session->tag_changes, session->owes_tags_all));
     session->owes_tags = session->owes_tags_all = false;
     session->tags_ns = now_ns;
 }

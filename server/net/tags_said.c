@@ -13,10 +13,10 @@ static bool is_the_same(const struct tags_said *said, const struct snapshot *sna
            (all || !memcmp(said->before, sent, snapshot->count * sizeof(*sent)));
 }
 
-char *tags_said_text(struct tags_said *said, const struct snapshot *snapshot, uint32_t *sent, bool all)
+char *tags_said_text(struct tags_said *said, const struct plant *plant, const struct snapshot *snapshot, uint32_t *sent, bool all)
 {
     if (!said || snapshot->count == 0)
-        return reply_tags_text(snapshot, sent, all);
+        return reply_tags_text(plant, snapshot, sent, all);
     if (is_the_same(said, snapshot, sent, all)) {
         for (size_t i = 0; i < snapshot->count; i++)
             sent[i] = snapshot->readings[i].changes;
@@ -28,7 +28,7 @@ char *tags_said_text(struct tags_said *said, const struct snapshot *snapshot, ui
     said->taken_ns = snapshot->taken_mono_ns;
     said->all = all;
     mem_free(said->text);
-    said->text = reply_tags_text(snapshot, sent, all);
+    said->text = reply_tags_text(plant, snapshot, sent, all);
     return mem_strdup(said->text);
 }
 

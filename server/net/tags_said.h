@@ -12,7 +12,7 @@ struct tags_said { /* zero-initialise */
 };
 
 /* As reply_tags_text; said NULL: nothing is kept. mem_free. */
-char *tags_said_text(struct tags_said *said, const struct snapshot *snapshot, uint32_t *sent, bool all);
+char *tags_said_text(struct tags_said *said, const struct plant *plant, const struct snapshot *snapshot, uint32_t *sent, bool all);
 void tags_said_finish(struct tags_said *said);
 
 #endif

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Travel in time against a real daemon, by the client that was written from PROTOCOL.md alone: what was, as it was, and nobody else notices.
+// Travel in time against a real daemon, by the client that was written from PROTOCOL.md alone: what was, as it was; nobody else notices.
 import assert from 'node:assert/strict';
 import { existsSync, statSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -51,7 +51,8 @@ async function travel(client, us, speed = 0) {
     return seen;
 }
 
-const reading = (client, index) => client.texts.filter((m) => m.type === 'tags').flatMap((m) => m.values).findLast((row) => row[0] === index);
+const reading = (client, index) => client.texts.filter((m) => m.type === 'tags').flatMap((m) => m.values)
+    .findLast((row) => row[0] === index);
 
 test('a session that says nothing is at now, and knows where history begins', { skip }, async () => {
     const client = await open();
@@ -116,7 +117,8 @@ test('who looks at now never notices, and who follows comes along', { skip }, as
     await travel(client, at(300), 600);
     await follower.picture('of then too', (p) => p.flags & FLAG.past && p.data_time_us >= at(300));
     await follower.wait('the time', () => follower.texts.find((m) => m.type === 'time' && m.at_us >= at(300) && m.speed === 600));
-    await follower.wait('tags of then', () => follower.texts.find((m) => m.type === 'tags' && m.time_us >= at(300) && m.time_us < at(3000)));
+    const ofThen = (m) => m.type === 'tags' && m.time_us >= at(300) && m.time_us < at(3000);
+    await follower.wait('tags of then', () => follower.texts.find(ofThen));
     await sleep(1000);
     assert.ok(live.pictures.every((p) => !(p.flags & FLAG.past) && p.data_time_us > at(3000)));
     assert.ok(live.texts.filter((m) => m.type === 'tags').every((m) => m.time_us > at(3000)));
@@ -168,7 +170,8 @@ test('single pictures, pixels and films of the past', { skip, timeout: 120000 },
     const url = `http://127.0.0.1:${plant.port}/`, png = join(plant.folder, 'then.png'), film = join(plant.folder, 'then.mp4');
     for (const [query, status] of [[`at=${BEGIN_S + 300}`, 200], ['at=yesterday', 400], ['at=-1s', 400], [`at=${BEGIN_S + 9000}`, 400]])
         assert.equal((await fetch(`${url}snapshot.png?width=64&height=36&${query}`)).status, status, query);
-    const taken = runProgram('plantcast', ['snapshot', url, '--at', String(BEGIN_S + 300), '-o', png, '--size', '160x90', '--pick', '80,45']);
+    const options = ['--at', String(BEGIN_S + 300), '-o', png, '--size', '160x90', '--pick', '80,45'];
+    const taken = runProgram('plantcast', ['snapshot', url, ...options]);
     assert.equal(taken.code, 0, taken.err);
     assert.equal(JSON.parse(taken.out).time_us, at(300));
     assert.ok(existsSync(png));
@@ -181,7 +184,10 @@ test('single pictures, pixels and films of the past', { skip, timeout: 120000 },
         assert.match(made.out, /11 pictures, 2\.2 s/);
         assert.ok(statSync(film).size > 2000);
     }
-    const wrong = [['--from', '-1h'], ['--from', '-1h', '--to', '-2h'], ['--from', '-1h', '--to', 'x'], [...args, '--fps', '0'], [...args, '--pick', '1,1']];
+    const wrong = [
+        ['--from', '-1h'], ['--from', '-1h', '--to', '-2h'], ['--from', '-1h', '--to', 'x'],
+        [...args, '--fps', '0'], [...args, '--pick', '1,1'],
+    ];
     for (const list of wrong)
         assert.equal(runProgram('plantcast', ['clip', url, '-o', film, ...list]).code, 2, list.join(' '));
     const odd = runProgram('plantcast', ['clip', plant.file, '-o', join(plant.folder, 'then.xyz'), ...args]);

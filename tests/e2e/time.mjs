@@ -17,8 +17,9 @@ function series() {
     const lines = ['Tag,Time,Value,Quality'];
     for (let s = 0; s <= 2900; s += 5) {
         const bad = s >= 1200 && s < 1500;
-        lines.push(bad ? `TI-1,${BEGIN_S + s},,0x80050000` : `TI-1,${BEGIN_S + s},${(50 + 30 * Math.sin(s / 300)).toFixed(3)},Good`);
-        lines.push(`TI-2,${BEGIN_S + s},${(40 + 10 * Math.cos(s / 400)).toFixed(3)},Good`, `PI-1,${BEGIN_S + s},${(5 + Math.sin(s / 200)).toFixed(3)},Good`);
+        const wave = [50 + 30 * Math.sin(s / 300), 40 + 10 * Math.cos(s / 400), 5 + Math.sin(s / 200)].map((value) => value.toFixed(3));
+        lines.push(bad ? `TI-1,${BEGIN_S + s},,0x80050000` : `TI-1,${BEGIN_S + s},${wave[0]},Good`);
+        lines.push(`TI-2,${BEGIN_S + s},${wave[1]},Good`, `PI-1,${BEGIN_S + s},${wave[2]},Good`);
     }
     return `${lines.join('\n')}\n`;
 }
@@ -83,7 +84,8 @@ test('several tags are compared, each by its unit, and exported', options, async
         await page.evaluate((tag) => globalThis.plantcast.trends.add(globalThis.plantcast.session.model.tag(tag)), name);
     await page.waitForFunction(() => document.querySelectorAll('#trend-chart .u-legend .u-series').length === 4);
     assert.equal(await page.locator('#trend-tags li').count(), 3);
-    const axes = await page.evaluate(() => globalThis.plantcast.trends.chart.axes.filter((axis) => axis.show).map((axis) => axis.label ?? 'time'));
+    const axes = await page.evaluate(() => globalThis.plantcast.trends.chart.axes.filter((axis) => axis.show)
+        .map((axis) => axis.label ?? 'time'));
     assert.deepEqual(axes, ['time', '°C', 'bar']);
     const download = page.waitForEvent('download');
     await page.locator('#trend-csv').click();
@@ -113,7 +115,7 @@ test('the slider goes to an instant, and nobody can take it for now', options, a
     assert.equal(await page.locator('#clock-name').textContent(), 'Then');
     assert.equal(await page.evaluate(() => getComputedStyle(document.getElementById('viewport'), '::after').borderTopWidth), '5px');
     assert.match(await slider.getAttribute('aria-valuetext'), /\d\d:\d\d:\d\d/);
-    assert.match(new URL(page.url()).hash + await page.evaluate(async () => { await new Promise((done) => setTimeout(done, 600)); return location.hash; }), /at=/);
+    await page.waitForFunction(() => location.hash.includes('at='));
     await settle(page);
     await shoot(page, 'past');
 });

@@ -397,6 +397,9 @@ test('in the past its clock stands apart, ages stand still, and a new connection
     assert.ok(Math.abs(session.clockUs() - 1793500000000000) < 1e6, 'the plant’s clock is of now');
     const age = session.model.ageMs(0, clock.now());
     assert.equal(session.model.ageMs(0, clock.now() + 60000), age);
+    assert.equal(session.model.alarms.gravest(0), null);
+    socket.say({ type: 'tags', time_us: time.at_us, age_ms: 0, values: [[0, 99, 'good', 'Good', 0, 'HH', 1, 'unacknowledged']] });
+    assert.deepEqual([session.model.alarms.gravest(0).kind, session.model.alarms.gravest(0).priority], ['HH', 1]);
     const { kind, words, detail, banner } = health(session, clock.now());
     assert.deepEqual([kind, words, banner], ['past', 'History', true]);
     assert.match(detail, /^2026-1\d-\d\d .*, playing 60×$/);

@@ -48,6 +48,7 @@ export class Status {
         const past = kind === 'past' && session.picture?.past;
         const us = past ? session.picture.dataTimeUs : session.clockUs(now);
         this.past = past;
+        document.body.classList.toggle('shows-past', Boolean(past));
         setText(byId('clock-name'), past ? 'Then' : 'Plant time');
         byId('clock').parentElement.classList.toggle('past', Boolean(past));
         if (us !== null && this.clock) {

@@ -153,15 +153,16 @@ export class Timeline {
         const from = this.toUs - this.spanUs, x = (us) => 9 + (width - 18) * (us - from) / this.spanUs;
         const nodes = [], { fromUs } = this.session.time;
         if (fromUs !== null && fromUs > from) {
-            nodes.push(makeSvg('rect', { class: 'unrecorded', x: 9, y: 16, width: Math.max(0, Math.min(x(fromUs), width - 9) - 9), height: 8 }));
+            const length = Math.max(0, Math.min(x(fromUs), width - 9) - 9);
+            nodes.push(makeSvg('rect', { class: 'unrecorded', x: 9, y: 16, width: length, height: 8 }));
             if (x(fromUs) > 120)
                 nodes.push(makeSvg('text', { class: 'note', x: 12, y: 12 }, 'not recorded'));
         }
         for (const us of ticks(from, this.toUs, Math.max(2, width / 110))) {
-            const { date, time } = this.clock(us / 1000);
+            const { date, time } = this.clock(us / 1000), text = this.spanUs > 2 * 86400e6 ? date.slice(5) : time.slice(0, 5);
             nodes.push(makeSvg('path', { class: 'tick', d: `M${x(us)} 26v5` }));
             if (x(us) > 30 && x(us) < width - 30)
-                nodes.push(makeSvg('text', { x: x(us), y: 42, 'text-anchor': 'middle' }, this.spanUs > 2 * 86400e6 ? date.slice(5) : time.slice(0, 5)));
+                nodes.push(makeSvg('text', { x: x(us), y: 42, 'text-anchor': 'middle' }, text));
         }
         for (const { us, tag, kind, priority } of this.marks)
             nodes.push(makeSvg('path', { class: `alarm p${priority}`, d: `M${x(us)} 15l-4-8h8z` },

@@ -5,8 +5,11 @@ import { ask, BAD, gaps, line } from '../core/history.js';
 import { byId, make, setText } from './dom.js';
 import { fillSegments, markSegment } from './fields.js';
 
-const SPANS = [['3600', '1 h', 'Last hour'], ['28800', 'Shift', 'Last 8 hours'], ['86400', 'Day', 'Last 24 hours'], ['604800', 'Week', 'Last 7 days']];
-const COLOURS = ['#0b5c93', '#b34a00', '#00734f', '#8a3a73', '#5b5b00', '#4b4f56'], DASHES = [[], [8, 4], [2, 3], [10, 3, 2, 3], [5, 5], [1, 4]];
+const SPANS = [
+    ['3600', '1 h', 'Last hour'], ['28800', 'Shift', 'Last 8 hours'], ['86400', 'Day', 'Last 24 hours'], ['604800', 'Week', 'Last 7 days'],
+];
+const COLOURS = ['#0b5c93', '#b34a00', '#00734f', '#8a3a73', '#5b5b00', '#4b4f56'];
+const DASHES = [[], [8, 4], [2, 3], [10, 3, 2, 3], [5, 5], [1, 4]];
 const MOST = COLOURS.length, FRESH_MS = 5000, HEIGHT_PX = 210, AXIS_PX = 58;
 const EXPAND = 2; // uPlot's: nulls
 const LIMITS = ['LL', 'L', 'H', 'HH'], INK = '#4d5964', LINE = '#d8dce0';
@@ -91,7 +94,8 @@ export class Trends {
         byId('trend-tags').replaceChildren(...this.tags.map((tag, i) => {
             const unit = this.unitOf(tag), sample = make('span', { class: `sample s${i}`, 'aria-hidden': 'true' });
             return make('li', {}, sample, make('b', {}, tag.name), ` ${tag.description ?? ''}${unit ? ` [${unit}]` : ''}`,
-                make('button', { type: 'button', class: 'drop', 'aria-label': `Remove ${tag.name}`, onclick: () => this.remove(tag) }, '×'));
+                make('button', { type: 'button', class: 'drop', 'aria-label': `Remove ${tag.name}`, onclick: () => this.remove(tag) },
+                    '×'));
         }));
     }
 
@@ -115,7 +119,8 @@ export class Trends {
             return;
         const number = ++this.number, span = this.window, points = Math.max(200, Math.round(byId('trend-chart').clientWidth / 2));
         try {
-            const [uPlot, response] = await Promise.all([load(), ask('api/v1/history', { ...this.query(span), points }, this.session.token)]);
+            const answer = ask('api/v1/history', { ...this.query(span), points }, this.session.token);
+            const [uPlot, response] = await Promise.all([load(), answer]);
             const { series } = await response.json();
             if (number !== this.number || !this.isOpen)
                 return;
@@ -165,19 +170,22 @@ export class Trends {
 
     options() {
         const units = [...new Set(this.tags.map((tag) => this.unitOf(tag) || '–'))];
-        const axis = { stroke: INK, grid: { stroke: LINE, width: 1 }, ticks: { stroke: LINE, width: 1 }, font: '12px system-ui, sans-serif' };
+        const rule = { stroke: LINE, width: 1 }, font = '12px system-ui, sans-serif', axis = { stroke: INK, grid: rule, ticks: rule, font };
         const scales = Object.fromEntries(units.map((unit) => [unit, { range: (_, low, high) => this.range(unit, low, high) }]));
         const dateOf = (s) => this.clock(s * 1000);
+        const tickText = (s) => (this.spanS > 2 * 86400 ? dateOf(s).date.slice(5) : dateOf(s).time.slice(0, 5));
         return {
             width: Math.max(200, byId('trend-chart').clientWidth), height: HEIGHT_PX,
             tzDate: (s) => globalThis.uPlot.tzDate(new Date(s * 1000), this.zone),
             scales: { x: { time: true }, ...scales },
             cursor: { drag: { x: false, y: false } },
             legend: { live: true },
-            series: [{ label: 'Time', value: (_, s) => (s === null ? '–' : `${dateOf(s).date} ${dateOf(s).time}`) }, ...this.tags.map((tag, i) => this.lineOf(tag, i))],
-            axes: [{ ...axis, values: (_, all) => all.map((s) => (this.spanS > 2 * 86400 ? dateOf(s).date.slice(5) : dateOf(s).time.slice(0, 5))), space: 70, size: 28 },
-                ...units.map((unit, i) => ({ ...axis, scale: unit, label: unit, labelFont: axis.font, labelSize: 16, size: AXIS_PX, side: i % 2 ? 1 : 3,
-                    show: i < 2, grid: { ...axis.grid, show: i === 0 } }))],
+            series: [{ label: 'Time', value: (_, s) => (s === null ? '–' : `${dateOf(s).date} ${dateOf(s).time}`) },
+                ...this.tags.map((tag, i) => this.lineOf(tag, i))],
+            axes: [{ ...axis, values: (_, all) => all.map(tickText), space: 70, size: 28 }, ...units.map((unit, i) => ({
+                ...axis, scale: unit, label: unit, labelFont: font, labelSize: 16, size: AXIS_PX, side: i % 2 ? 1 : 3,
+                show: i < 2, grid: { ...rule, show: i === 0 },
+            }))],
             hooks: { drawAxes: [(u) => this.drawGaps(u), (u) => this.drawLimits(u)], draw: [(u) => this.drawInstant(u)],
                 ready: [(u) => u.over.addEventListener('click', () => this.goTo(u))] },
         };
@@ -186,7 +194,7 @@ export class Trends {
     lineOf(tag, i) {
         const group = this.session.model.group(tag.group), decimals = group ? decimalsFor(group.max - group.min) : 2;
         return {
-            label: tag.name, scale: this.unitOf(tag) || '–', stroke: COLOURS[i], dash: DASHES[i], width: 1.75, points: { show: false }, spanGaps: false,
+            label: tag.name, scale: this.unitOf(tag) || '–', stroke: COLOURS[i], dash: DASHES[i], width: 1.75, points: { show: false },
             value: (_, value) => (value === null || value === undefined ? '–' : `${numberText(value, decimals)} ${this.unitOf(tag)}`),
         };
     }

@@ -12,6 +12,7 @@ export class Alarms {
     constructor(tags) {
         Object.assign(this, { tags, mode: 'display', known: false });
         this.rows = new Map(); // "tag index/kind" -> alarm
+        this.then = null; // readings of an instant of the past: a tag's gravest is of then
         this.byTag = new Map(); // tag index -> its gravest that is to be seen
     }
 
@@ -46,6 +47,10 @@ export class Alarms {
     }
 
     gravest(index) {
+        if (this.then) {
+            const { alarm: kind, priority, state } = this.then[index];
+            return kind ? { tag: this.tags[index], kind, priority, state } : null;
+        }
         return this.byTag.get(index) ?? null;
     }
 

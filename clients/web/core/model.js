@@ -16,8 +16,14 @@ export class Model {
         this.alarms = new Alarms(this.tags);
         this.links = [];
         this.live = null; // nothing was said yet
-        this.stopped = false; // of an instant of the past: ages are of then, and go no further
+        this.stopped = false; // see stop
         this.oldest = null; // { ms, at }: no reading that is not bad was older than that
+    }
+
+    // Of an instant of the past: ages and alarms are those of then, as `tags` has them.
+    stop(stopped) {
+        this.stopped = stopped;
+        this.alarms.then = stopped ? this.readings : null;
     }
 
     get identity() {
@@ -43,13 +49,15 @@ export class Model {
     // Returns the indices of the tags whose value or quality changed.
     update(values, now, plainAgeMs = null) {
         const changed = [];
-        for (const [index, value, quality = 'good', qualityName = 'Good', ageMs = plainAgeMs, alarm = null] of values) {
+        for (const [index, value, quality = 'good', qualityName = 'Good', ageMs = plainAgeMs, alarm = null, ...of] of values) {
             const before = this.readings[index];
             if (!before)
                 continue;
             if (before.value !== value || before.quality !== quality || before.qualityName !== qualityName)
                 changed.push(index);
             this.readings[index] = { value, quality, qualityName, ageMs, alarm, at: now };
+            if (alarm !== null)
+                [this.readings[index].priority = 4, this.readings[index].state = 'active'] = of;
         }
         return changed;
     }

@@ -188,7 +188,7 @@ export class Session {
         if (this.leader !== null)
             this.follow(null);
         if (this.welcomed)
-            this.connection.send({ type: 'time', ...(atUs === undefined ? {} : { at_us: atUs === null ? null : Math.round(atUs) }), speed });
+            this.connection.send({ type: 'time', ...(atUs === undefined ? {} : { at_us: atUs && Math.round(atUs) }), speed });
     }
 
     // Asks for a camera that looks at something (id: asset, tag or null; side: as in plantcast.v1); answered by the event `fitted`.
@@ -328,7 +328,7 @@ export class Session {
     hearTime(message) {
         this.time = { atUs: message.at_us ?? null, speed: message.speed ?? 0, fromUs: message.from_us ?? null };
         this.recorded = true;
-        this.model.stopped = this.time.atUs !== null;
+        this.model.stop(this.time.atUs !== null);
         this.emit('time');
     }
 
