@@ -166,7 +166,7 @@ test('mistakes are answered by their names', { skip }, async () => {
     client.close();
 });
 
-test('single pictures, pixels and films of the past', { skip, timeout: 120000 }, async () => {
+test('single pictures, pixels and films of the past', { skip, timeout: 280000 }, async () => {
     const url = `http://127.0.0.1:${plant.port}/`, png = join(plant.folder, 'then.png'), film = join(plant.folder, 'then.mp4');
     for (const [query, status] of [[`at=${BEGIN_S + 300}`, 200], ['at=yesterday', 400], ['at=-1s', 400], [`at=${BEGIN_S + 9000}`, 400]])
         assert.equal((await fetch(`${url}snapshot.png?width=64&height=36&${query}`)).status, status, query);
@@ -177,7 +177,7 @@ test('single pictures, pixels and films of the past', { skip, timeout: 120000 },
     assert.ok(existsSync(png));
     const args = ['--from', String(BEGIN_S), '--to', String(BEGIN_S + 600), '--speed', '300', '--fps', '5', '--size', '160x90'];
     for (const from of [url, plant.file]) {
-        const made = runProgram('plantcast', ['clip', from, '-o', film, ...args], 60000);
+        const made = runProgram('plantcast', ['clip', from, '-o', film, ...args], 120000);
         if (/without H\.264/.test(made.err))
             return;
         assert.equal(made.code, 0, made.err);
