@@ -67,27 +67,57 @@ static void print_tag(const json_t *tag, const int widths[5])
     putchar('\n');
 }
 
-static bool print_table(const char *text)
+static void print_table(const json_t *tags)
 {
-    json_t *o = json_loads(text, 0, NULL), *tags = json_object_get(o, "tags");
-    bool good = json_is_array(tags);
     static const char *const fields[] = { "name", "unit", "quality_name", "group", "asset" };
     int widths[5];
     for (int i = 0; i < 5; i++)
         widths[i] = widest(tags, fields[i]);
-    if (good) {
-        print_cell("tag", widths[0]);
-        printf("%14s ", "value");
-        print_cell("unit", widths[1]);
-        print_cell("quality", widths[2]);
-        printf("%10s    ", "age");
-        print_cell("group", widths[3]);
-        puts("asset");
-    }
-    for (size_t i = 0; good && i < json_array_size(tags); i++)
+    print_cell("tag", widths[0]);
+    printf("%14s ", "value");
+    print_cell("unit", widths[1]);
+    print_cell("quality", widths[2]);
+    printf("%10s    ", "age");
+    print_cell("group", widths[3]);
+    puts("asset");
+    for (size_t i = 0; i < json_array_size(tags); i++)
         print_tag(json_array_get(tags, i), widths);
-    json_decref(o);
-    return good;
+}
+
+/* A page from index `first` on. NULL: said why. */
+static json_t *fetch_page(const struct daemon_url *url, const char *name, size_t first)
+{
+    struct text body = { 0 };
+    char path[60];
+    snprintf(path, sizeof(path), "/api/v1/tags?first=%zu&count=5000", first);
+    int status = daemon_get(url, path, &body);
+    json_t *page = status == 200 && body.at ? json_loads(body.at, 0, NULL) : NULL;
+    if (status && !json_is_array(json_object_get(page, "tags"))) {
+        fprintf(stderr, "plantcast: %s: the daemon answers %d: %s\n", name, status, body.at ? body.at : "");
+        json_decref(page);
+        page = NULL;
+    }
+    text_finish(&body);
+    return page;
+}
+
+/* All pages as one. NULL: said why. */
+static json_t *fetch_all(const struct daemon_url *url, const char *name)
+{
+    json_t *all = fetch_page(url, name, 0);
+    json_t *tags = json_object_get(all, "tags");
+    size_t total = (size_t)json_integer_value(json_object_get(all, "total")), before = 0;
+    while (all && json_array_size(tags) < total && json_array_size(tags) > before) {
+        before = json_array_size(tags);
+        json_t *page = fetch_page(url, name, before);
+        if (page)
+            json_array_extend(tags, json_object_get(page, "tags"));
+        else
+            json_decref(all);
+        all = page ? all : NULL;
+        json_decref(page);
+    }
+    return all;
 }
 
 int cmd_tags(int argc, char **argv)
@@ -99,7 +129,6 @@ int cmd_tags(int argc, char **argv)
     int address_base = -1;
     bool rtu = false;
     struct daemon_url url;
-    struct text body = { 0 };
     bool as_json = false;
     for (int option; (option = getopt_long(argc, argv, "", options, NULL)) != -1;) {
         if (option == 'p')
@@ -122,14 +151,12 @@ int cmd_tags(int argc, char **argv)
         return tags_probe(device, argv[optind], address_base, rtu);
     if (!daemon_url_parse(argv[optind], &url))
         return 2;
-    int status = daemon_get(&url, "/api/v1/tags", &body);
-    bool good = status == 200 && body.at;
-    if (status && !good)
-        fprintf(stderr, "plantcast: %s: the daemon answers %d: %s\n", argv[optind], status, body.at ? body.at : "");
-    if (good && as_json)
-        puts(body.at);
-    else if (good)
-        good = print_table(body.at);
-    text_finish(&body);
+    json_t *all = fetch_all(&url, argv[optind]);
+    if (all && as_json)
+        json_dumpf(all, stdout, JSON_COMPACT | JSON_REAL_PRECISION(15));
+    else if (all)
+        print_table(json_object_get(all, "tags"));
+    bool good = all != NULL;
+    json_decref(all);
     return good ? 0 : 1;
 }

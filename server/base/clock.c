@@ -3,6 +3,7 @@
 #include "base/clock.h"
 
 #include <errno.h>
+#include <sys/timex.h>
 #include <time.h>
 
 static int64_t read_ns(clockid_t id)
@@ -20,6 +21,13 @@ int64_t clock_mono_ns(void)
 int64_t clock_utc_ns(void)
 {
     return read_ns(CLOCK_REALTIME);
+}
+
+bool clock_utc_is_set(void)
+{
+    struct timex asked = { .modes = 0 };
+    int state = adjtimex(&asked);
+    return state >= 0 && state != TIME_ERROR && !(asked.status & STA_UNSYNC);
 }
 
 void clock_sleep_ns(int64_t ns)

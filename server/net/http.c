@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* HTTP beside the stream: the web client, the state of the server, pictures on request. */
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/clock.h"
@@ -387,9 +388,32 @@ static int api_plant(struct hub *hub, struct request *request)
     return answer_json(request, reply_api_plant_text(&hub->world));
 }
 
+enum { TAGS_PAGE = 1000, TAGS_PAGE_MAX = 5000 };
+
+/* `first` and `count` of the query. */
+static bool read_page(const struct args *args, size_t *first, size_t *count)
+{
+    static const char *const names[] = { "first=", "count=" };
+    size_t *const numbers[] = { first, count };
+    for (size_t i = 0; i < args->count; i++) {
+        char *end = NULL;
+        for (int n = 0; n < 2; n++)
+            if (!strncmp(args->list[i], names[n], 6) && args->list[i][6] >= '0' && args->list[i][6] <= '9')
+                *numbers[n] = strtoul(args->list[i] + 6, &end, 10);
+        if (!end || *end)
+            return false;
+    }
+    return *count >= 1 && *count <= TAGS_PAGE_MAX;
+}
+
 static int api_tags(struct hub *hub, struct request *request)
 {
-    return answer_json(request, reply_api_tags_text(&hub->world));
+    struct message_error error = { 0 };
+    struct args args;
+    size_t first = 0, count = TAGS_PAGE;
+    if (!read_args(request->wsi, &args, &error) || !read_page(&args, &first, &count))
+        return answer_text(request, HTTP_STATUS_BAD_REQUEST, "expected first=N and count=N, 1 to 5000\n");
+    return answer_json(request, reply_api_tags_text(&hub->world, first, count));
 }
 
 static int alive(struct hub *hub, struct request *request)

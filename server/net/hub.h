@@ -54,7 +54,7 @@ struct hub {
     struct stages stages;
     struct {
         counter *sessions, *sessions_all, *frames, *frame_bytes, *messages, *errors, *dropped, *given_up, *stalled, *requests, *refused,
-            *connections, *busy;
+            *connections, *busy, *clock_set;
     } counters;
 };
 

@@ -99,6 +99,10 @@ static bool look_at_links(struct hub *hub)
         any |= up;
     }
     hub->world.live = any;
+    bool set = clock_utc_is_set();
+    changed |= hub->world.clock_is_set != set;
+    hub->world.clock_is_set = set;
+    counter_set(hub->counters.clock_set, set);
     return changed;
 }
 
@@ -272,6 +276,8 @@ static void add_counters(struct hub *hub)
     hub->counters.stalled = counters_add(c, "plantcast_sessions_stalled_total", "counter", "Clients closed because they took nothing.");
     hub->counters.messages = counters_add(c, "plantcast_messages_total", "counter", "Messages of clients.");
     hub->counters.errors = counters_add(c, "plantcast_message_errors_total", "counter", "Messages of clients answered with an error.");
+    hub->counters.clock_set =
+        counters_add(c, "plantcast_clock_synchronised", "gauge", "1 while something keeps this machine's clock right.");
     hub->counters.requests = counters_add(c, "plantcast_http_requests_total", "counter", "HTTP requests.");
 }
 

@@ -393,9 +393,15 @@ char *reply_tags_text(const struct plant *plant, const struct snapshot *snapshot
 char *reply_status_text(const struct session_world *world, int64_t now_utc_ns)
 {
     json_t *links = json_array();
-    for (size_t i = 0; i < world->plant->source_count; i++)
-        json_array_append_new(links, json_pack("{s:o,s:b}", "source", string(world->plant->sources[i].id), "up", world->links_up[i]));
-    return print(json_pack("{s:s,s:o,s:I,s:b}", "type", "status", "links", links, "time_us", us(now_utc_ns), "live", world->live), DIGITS);
+    for (size_t i = 0; i < world->plant->source_count; i++) {
+        const struct plant_source *source = &world->plant->sources[i];
+        json_t *link = json_pack("{s:o,s:b}", "source", string(source->id), "up", world->links_up[i]);
+        if (source->simulated)
+            json_object_set_new(link, "simulated", json_true());
+        json_array_append_new(links, link);
+    }
+    return print(json_pack("{s:s,s:o,s:I,s:b,s:b}", "type", "status", "links", links, "time_us", us(now_utc_ns), "live", world->live,
+                           "clock_set", world->clock_is_set), DIGITS);
 }
 
 /* Of the readings that are not bad; null: all are. */
@@ -493,18 +499,21 @@ char *reply_api_plant_text(const struct session_world *world)
     return join(print(object, DIGITS), lists_said(world));
 }
 
-char *reply_api_tags_text(const struct session_world *world)
+char *reply_api_tags_text(const struct session_world *world, size_t first, size_t count)
 {
     const struct plant *plant = world->plant;
     json_t *list = json_array();
-    for (size_t i = 0; i < plant->tag_count; i++) {
+    for (size_t i = first; i < plant->tag_count && i - first < count; i++) {
         const struct reading *r = &world->snapshot->readings[i];
         json_t *object = tag(plant, &plant->tags[i]);
         json_object_set_new(object, "value", value_of(r));
         json_object_set_new(object, "quality", string(quality_class(r->quality)));
         json_object_set_new(object, "quality_name", string(quality_name(r->quality)));
         json_object_set_new(object, "age_ms", age_ms(r));
+        if (plant_tag_simulated(plant, (int)i))
+            json_object_set_new(object, "simulated", json_true());
         json_array_append_new(list, object);
     }
-    return print(json_pack("{s:I,s:o}", "time_us", us(world->snapshot->taken_utc_ns), "tags", list), DIGITS);
+    return print(json_pack("{s:I,s:I,s:I,s:o}", "time_us", us(world->snapshot->taken_utc_ns), "total", (json_int_t)plant->tag_count, "first",
+                           (json_int_t)first, "tags", list), DIGITS);
 }

@@ -20,6 +20,7 @@ char *reply_camera_text(const struct camera *camera, uint32_t seq);             
 char *reply_picked_text(const struct plant *plant, const struct pick_answer *answer); /* order.seq 0: of nobody's */
 char *reply_error_text(const struct message_error *error);
 char *reply_api_plant_text(const struct session_world *world);
-char *reply_api_tags_text(const struct session_world *world);
+/* count tags from index `first` on, fewer where there are no more. */
+char *reply_api_tags_text(const struct session_world *world, size_t first, size_t count);
 
 #endif

@@ -30,6 +30,7 @@ struct session_world {
     struct alarms_said *alarms_said; /* NULL: every text is made anew */
     const bool *links_up;    /* by source index */
     bool live;               /* values are coming in */
+    bool clock_is_set;       /* the wall clock is kept right by something */
     int64_t moving_until_ns; /* somebody moves; a refined picture of another would make it stutter */
     bool loaded;             /* refined pictures for all, whenever a reading changes, are more than can be drawn */
     int moving;              /* sessions whose camera moved within the last second */

@@ -165,3 +165,14 @@ char *plant_history_folder(const struct plant *plant)
 {
     return plant->history.folder ? mem_strdup(plant->history.folder) : beside(plant, "history");
 }
+
+bool plant_tag_simulated(const struct plant *plant, int tag)
+{
+    const struct plant_tag *t = &plant->tags[tag];
+    const int *inputs;
+    size_t count = t->expression ? expression_inputs(t->expression, &inputs) : 0;
+    for (size_t i = 0; i < count; i++)
+        if (plant_tag_simulated(plant, inputs[i]))
+            return true;
+    return t->source >= 0 && plant->sources[t->source].simulated;
+}

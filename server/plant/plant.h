@@ -208,6 +208,7 @@ int plant_find_asset(const struct plant *plant, const char *id); /* index or -1;
 int plant_find_group(const struct plant *plant, const char *id);
 int plant_find_environment(const struct plant *plant, const char *name); /* 0: "sky", 1: the first of the plant's own, ... */
 int plant_find_tag(const struct plant *plant, const char *name);
+bool plant_tag_simulated(const struct plant *plant, int tag); /* its source is, or that of something that it is computed from */
 /* Where prepared asset files of this plant are kept: FOLDER/NAME.prepared beside NAME.yaml. Free with mem_free. */
 char *plant_prepared_folder(const struct plant *plant);
 char *plant_history_folder(const struct plant *plant); /* likewise what was recorded, unless the plant file names another */

@@ -122,10 +122,24 @@ static void format_clock(int64_t utc_ns, char out[CLOCK_BYTES])
         strftime(out, CLOCK_BYTES, "%Y-%m-%d %H:%M:%S %Z", &local);
 }
 
-/* Plant name; its clock; the age of the oldest value that takes part. */
+static bool is_shown(const struct view *view, int group)
+{
+    return group == view->field.group || (view->split && group == view->right.field.group);
+}
+
+static bool shows_simulated(const struct pen *pen)
+{
+    const struct plant *plant = pen->scene->plant;
+    for (size_t i = 0; i < plant->tag_count; i++)
+        if (is_shown(&pen->frame->view, plant->tags[i].group) && plant_tag_simulated(plant, (int)i))
+            return true;
+    return false;
+}
+
+/* Plant name; its clock; the age of the oldest value that takes part; and whether any of it was not measured. */
 static void draw_header(struct pen *pen)
 {
-    char clock[CLOCK_BYTES], line[120], age[40] = "no values";
+    char clock[CLOCK_BYTES], line[160], age[40] = "no values";
     format_clock(pen->frame->data_utc_ns, clock);
     if (pen->frame->oldest_age_ns != INT64_MAX)
         format_age(pen->frame->oldest_age_ns, age);
@@ -133,7 +147,8 @@ static void draw_header(struct pen *pen)
         snprintf(age, sizeof(age), "as it was then");
     const struct view *view = &pen->frame->view;
     bool has_age = view->split || (view->field.show != SHOW_DISTANCE && view->look != LOOK_MATERIALS); /* else no value takes part */
-    snprintf(line, sizeof(line), has_age ? "%s  ·  %s" : "%s", clock, age);
+    snprintf(line, sizeof(line), "%s%s%s%s", clock, has_age ? "  ·  " : "", has_age ? age : "",
+             has_age && shows_simulated(pen) ? "  ·  SIMULATED" : "");
     double pad = 8 * pen->unit;
     pen_font(pen, 1.15, true);
     double name_width = pen_text_width(pen, pen->scene->plant->name);
@@ -148,11 +163,6 @@ static void draw_header(struct pen *pen)
     pen_ink(pen, 0.8);
     pen_text(pen, box.x + pad, box.y + pad + 2.45 * pen->text_px, line);
     pen_take(pen, &box);
-}
-
-static bool is_shown(const struct view *view, int group)
-{
-    return group == view->field.group || (view->split && group == view->right.field.group);
 }
 
 /* Whether any sensor that is shown tells a value. */

@@ -7,7 +7,7 @@
 
 #include "base/mem.h"
 
-enum { MAX_SOURCES = 8 };
+enum { MAX_SOURCES = 16 };
 
 struct plant *plant_by_hand_create(size_t max_tags)
 {

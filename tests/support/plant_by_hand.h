@@ -4,7 +4,7 @@
 #define TESTS_PLANT_BY_HAND_H
 #include "plant/plant.h"
 
-/* Room for at most max_tags tags and 8 sources; none yet. */
+/* Room for at most max_tags tags and 16 sources; none yet. */
 struct plant *plant_by_hand_create(size_t max_tags);
 void plant_by_hand_destroy(struct plant **plant);
 /* Modbus at 127.0.0.1:port, unit 1, polled every 100 ms, timeout 2 s. */

@@ -300,7 +300,16 @@ test('health: each state has its own kind and words', () => {
     assert.equal(now().words, 'Live');
     sockets[0].say({ type: 'status', time_us: 1, live: true, links: [link('plc1', true), link('plc2', false)] });
     assert.deepEqual([now().kind, now().words, now().detail], ['partial', 'Live, 1 of 2 sources down', 'Source plc2 does not answer.']);
+    const said = (links) => sockets[0].say({ type: 'status', time_us: 1, live: true, clock_set: false, links });
+    said([{ ...link('plc1', true), simulated: true }, link('plc2', true)]);
+    assert.deepEqual([now().kind, now().words, now().detail], ['partial', 'Live, partly simulated', 'Not measured in the plant: plc1.']);
+    assert.equal(session.model.clockSet, false);
+    said([{ ...link('plc1', true), simulated: true }]);
+    assert.equal(now().words, 'Simulated');
+    said([{ ...link('plc1', true), simulated: true }, link('plc2', false)]);
+    assert.equal(now().words, 'Live, partly simulated, 1 of 2 sources down');
     sockets[0].say({ type: 'status', time_us: 1, live: false, links: [link('plc1', false), link('plc2', false)] });
+    assert.equal(session.model.clockSet, true);
     assert.deepEqual([now().kind, now().banner], ['nodata', true]);
     session.drawn({ seq: 1, cameraSeq: 0 }, 1);
     clock.advance(6000);

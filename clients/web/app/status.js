@@ -57,6 +57,10 @@ export class Status {
             if (byId('clock').textContent !== text)
                 byId('clock').replaceChildren(make('span', {}, `${date} `), make('b', {}, time), make('span', {}, ` ${offset}`));
         }
+        const clockSet = !session.model || session.model.clockSet;
+        byId('clock').parentElement.classList.toggle('unset', !clockSet);
+        byId('clock').parentElement.title = clockSet ? '' : 'Nothing keeps the server\'s clock right: times may be wrong. Ages are not.';
+        setText(byId('clock').parentElement.querySelector('.name'), clockSet ? 'Plant time' : 'Plant time, unsynchronised');
         const age = session.model ? session.model.oldestAgeMs(session.params.group, now) : null;
         setText(byId('age'), past ? '–' : age === null ? 'none' : ageText(age));
         byId('age').parentElement.classList.toggle('late', age === null || !['live', 'partial', 'past'].includes(kind));

@@ -19,9 +19,13 @@ export function health(session, now) {
     if (model.live === false)
         return { kind: 'nodata', words: 'No live data', detail: downText(model), banner: true };
     const down = model.links.filter((link) => !link.up).length;
+    const simulated = model.links.filter((link) => link.simulated).map((link) => link.source);
+    const live = simulated.length === 0 ? 'Live' : simulated.length < model.links.length ? 'Live, partly simulated' : 'Simulated';
     if (down > 0)
-        return { kind: 'partial', words: `Live, ${down} of ${model.links.length} sources down`, detail: downText(model), banner: false };
-    return { kind: 'live', words: 'Live', detail: '', banner: false };
+        return { kind: 'partial', words: `${live}, ${down} of ${model.links.length} sources down`, detail: downText(model), banner: false };
+    if (simulated.length > 0)
+        return { kind: 'partial', words: live, detail: `Not measured in the plant: ${simulated.join(', ')}.`, banner: false };
+    return { kind: 'live', words: live, detail: '', banner: false };
 }
 
 // The picture's own time where it is one of the past: until then it still shows now, and is not what the words would say.

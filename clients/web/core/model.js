@@ -17,6 +17,7 @@ export class Model {
         this.links = [];
         this.live = null; // nothing was said yet
         this.stopped = false; // see stop
+        this.clockSet = true; // the server's clock is kept right
         this.oldest = null; // { ms, at }: no reading that is not bad was older than that
     }
 

@@ -354,6 +354,7 @@ export class Session {
     hearStatus(message) {
         this.model.links = message.links;
         this.model.live = message.live;
+        this.model.clockSet = message.clock_set !== false;
         this.emit('status');
     }
 

@@ -52,6 +52,7 @@ static const char head[] =
     "    poll_ms: 500\n"
     "    byte_order: CDAB\n"
     "    address_base: 1\n"
+    "    simulated: yes\n"
     "\n"
     "tags: tags.csv\n"
     "\n"
