@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads pictures through a pixel buffer. */
+/* Reads pictures through a pixel buffer that stays mapped. */
 #include "gpu/readback.h"
 
 #include <string.h>
@@ -7,17 +7,24 @@
 #include "gpu/mesh.h"
 
 static const GLuint64 TIMEOUT_NS = 20ull * 1000000000; /* far beyond any frame: the context hangs */
+enum { GRAIN_ROWS = 128 };
+
+static bool fit(struct readback *readback, struct log *log, size_t bytes)
+{
+    GLbitfield read = GL_MAP_READ_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
+    if (bytes <= readback->capacity_bytes)
+        return true;
+    readback_finish(readback);
+    readback->buffer = mesh_buffer(log, "readback", bytes, NULL, read | GL_CLIENT_STORAGE_BIT);
+    readback->pixels = readback->buffer ? glMapNamedBufferRange(readback->buffer, 0, (GLsizeiptr)bytes, read) : NULL;
+    readback->capacity_bytes = readback->pixels ? bytes : 0;
+    return readback->pixels != NULL;
+}
 
 bool readback_start(struct readback *readback, struct log *log, const struct target *target)
 {
-    size_t bytes = (size_t)target->width_px * (size_t)target->height_px * 4;
-    if (bytes > readback->capacity_bytes) {
-        readback_finish(readback);
-        readback->buffer = mesh_buffer(log, "readback", bytes, NULL, GL_MAP_READ_BIT | GL_CLIENT_STORAGE_BIT);
-        if (!readback->buffer)
-            return false;
-        readback->capacity_bytes = bytes;
-    }
+    if (!fit(readback, log, (size_t)target->width_px * (size_t)target->height_px * 4))
+        return false;
     readback->width_px = target->width_px;
     readback->height_px = target->height_px;
     glBindFramebuffer(GL_READ_FRAMEBUFFER, target->resolved_framebuffer);
@@ -25,47 +32,57 @@ bool readback_start(struct readback *readback, struct log *log, const struct tar
     glReadPixels(0, 0, target->width_px, target->height_px, GL_BGRA, GL_UNSIGNED_BYTE, NULL);
     glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
     readback->done = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+    glFlush();
     return true;
 }
 
-static void complain(const struct readback *readback, struct log *log)
+static bool is_signaled(GLenum status)
 {
-    log_err(log, "readback of %dx%d: the GL context does not answer", readback->width_px, readback->height_px);
+    return status == GL_ALREADY_SIGNALED || status == GL_CONDITION_SATISFIED;
+}
+
+bool readback_is_there(const struct readback *readback)
+{
+    return is_signaled(glClientWaitSync(readback->done, 0, 0));
 }
 
 bool readback_wait(struct readback *readback, struct log *log)
 {
-    GLenum status = glClientWaitSync(readback->done, GL_SYNC_FLUSH_COMMANDS_BIT, TIMEOUT_NS);
-    glDeleteSync(readback->done);
-    readback->done = NULL;
-    if (status == GL_ALREADY_SIGNALED || status == GL_CONDITION_SATISFIED)
-        return true;
-    complain(readback, log);
-    return false;
+    bool there = is_signaled(glClientWaitSync(readback->done, GL_SYNC_FLUSH_COMMANDS_BIT, TIMEOUT_NS));
+    if (!there)
+        log_err(log, "readback of %dx%d: the GL context does not answer", readback->width_px, readback->height_px);
+    return there;
 }
 
-bool readback_get(struct readback *readback, struct log *log, uint8_t *bgrx, size_t stride_bytes)
+struct copy {
+    const struct readback *readback;
+    uint8_t *bgrx;
+    size_t stride_bytes;
+};
+
+static void copy_rows(void *arg, size_t begin, size_t end)
 {
-    size_t row_bytes = (size_t)readback->width_px * 4, rows = (size_t)readback->height_px;
-    const uint8_t *from = glMapNamedBufferRange(readback->buffer, 0, (GLsizeiptr)(row_bytes * rows), GL_MAP_READ_BIT);
-    if (!from) {
-        complain(readback, log);
-        return false;
-    }
-    if (stride_bytes == row_bytes) {
-        memcpy(bgrx, from, row_bytes * rows);
-    } else {
-        for (size_t y = 0; y < rows; y++)
-            memcpy(bgrx + y * stride_bytes, from + y * row_bytes, row_bytes);
-    }
-    glUnmapNamedBuffer(readback->buffer);
-    return true;
+    const struct copy *copy = arg;
+    size_t row_bytes = (size_t)copy->readback->width_px * 4;
+    for (size_t y = begin; y < end; y++)
+        memcpy(copy->bgrx + y * copy->stride_bytes, copy->readback->pixels + y * row_bytes, row_bytes);
+}
+
+void readback_get(const struct readback *readback, struct workers *workers, uint8_t *bgrx, size_t stride_bytes)
+{
+    struct copy copy = { .readback = readback, .bgrx = bgrx, .stride_bytes = stride_bytes };
+    workers_for(workers, (size_t)readback->height_px, GRAIN_ROWS, copy_rows, &copy);
+}
+
+void readback_forget(struct readback *readback)
+{
+    glDeleteSync(readback->done);
+    readback->done = NULL;
 }
 
 void readback_finish(struct readback *readback)
 {
-    if (readback->done)
-        glDeleteSync(readback->done);
+    readback_forget(readback);
     glDeleteBuffers(1, &readback->buffer);
     *readback = (struct readback){ 0 };
 }

@@ -1,24 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Crossings of triangle edges with isolines, thinned out; then, as for markers, a compute shader that looks at the depth buffer. */
+/* Crossings of triangle edges with isolines, thinned out. */
 #include "render/isolines.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "base/mem.h"
-#include "gpu/mesh.h"
-#include "gpu/program.h"
 #include "render/markers.h"
 
 enum { POINTS_PER_LINE = 8, POINTS_MOST = 1024, LABELS_MOST = 128 };
 static const double SPACING = 0.2, COARSE = 0.01; /* of an asset's size: between points; error of the level that is searched */
 
-bool isolines_init(struct isolines *isolines, struct log *log, size_t asset_count)
+void isolines_init(struct isolines *isolines, size_t asset_count)
 {
-    isolines->program = program_create(log, program_params(.compute = "markers.comp"));
     isolines->sets = mem_array(asset_count, sizeof(*isolines->sets));
     isolines->asset_count = asset_count;
-    return isolines->program != 0;
 }
 
 void isolines_finish(struct isolines *isolines)
@@ -26,8 +22,6 @@ void isolines_finish(struct isolines *isolines)
     for (size_t i = 0; i < isolines->asset_count; i++)
         mem_free(isolines->sets[i].points);
     mem_free(isolines->sets);
-    program_destroy(&isolines->program);
-    glDeleteBuffers(1, &isolines->buffer);
 }
 
 /* --- points on lines --------------------------------------------------------------------------------------------------------- */
@@ -160,43 +154,26 @@ void isolines_collect(struct isolines *isolines, const struct picture *picture, 
     }
 }
 
-static bool fit(struct isolines *isolines, struct log *log)
+/* Eye space, and slack. */
+static void fill_places(const struct picture *picture, const struct isoline_points *points, float (*places)[4])
 {
-    if (!isolines->buffer)
-        isolines->buffer = mesh_buffer(log, "isolines", POINTS_MOST * sizeof(float[4]), NULL, GL_DYNAMIC_STORAGE_BIT);
-    return isolines->buffer != 0;
-}
-
-/* Eye space, and slack; the caller frees them. */
-static float (*places_of(const struct picture *picture, const struct isoline_points *points))[4]
-{
-    float(*places)[4] = mem_array(points->count, sizeof(*places));
     for (size_t i = 0; i < points->count; i++) {
         for (int c = 0; c < 3; c++)
             places[i][c] = (float)(points->at[i].place_m[c] - picture->shot.eye_m[c]);
         places[i][3] = points->at[i].slack_m;
     }
-    return places;
 }
 
-bool isolines_start(struct isolines *isolines, const struct picture *picture, const struct isoline_points *points)
+bool isolines_start(struct sights *sights, const struct picture *picture, const struct isoline_points *points)
 {
     size_t count = points->count;
     if (count == 0)
         return true;
-    if (!fit(isolines, picture->stage->gl->log))
+    float(*places)[4] = sights_fit(sights, picture->stage->gl->log, count);
+    if (!places)
         return false;
-    float(*places)[4] = places_of(picture, points);
-    glNamedBufferSubData(isolines->buffer, 0, (GLsizeiptr)(count * sizeof(*places)), places);
-    mem_free(places);
-    gl_pass_enter("isolines");
-    glUseProgram(isolines->program);
-    glUniform1i(0, (GLint)count);
-    glBindTextureUnit(0, picture->target->resolved_depth);
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, isolines->buffer);
-    glDispatchCompute(((GLuint)count + 63) / 64, 1, 1);
-    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-    return gl_pass_leave(picture->stage->gl, "isolines");
+    fill_places(picture, points, places);
+    return sights_start(sights, picture, count);
 }
 
 /* A message goes with each frame: no more places than a picture has room for. */
@@ -220,15 +197,10 @@ static void give(const struct isoline_points *points, float (*places)[4], struct
             };
 }
 
-void isolines_get(const struct isolines *isolines, const struct isoline_points *points, struct frame *frame)
+void isolines_get(const struct sights *sights, const struct isoline_points *points, struct frame *frame)
 {
-    size_t count = points->count;
-    if (count == 0)
-        return;
-    float(*places)[4] = mem_array(count, sizeof(*places));
-    glGetNamedBufferSubData(isolines->buffer, 0, (GLsizeiptr)(count * sizeof(*places)), places);
-    give(points, places, frame);
-    mem_free(places);
+    if (points->count > 0)
+        give(points, sights->places, frame);
 }
 
 void isolines_find(const struct picture *picture, const struct isoline_points *points, const float *depth, size_t pitch_px,
@@ -236,7 +208,8 @@ void isolines_find(const struct picture *picture, const struct isoline_points *p
 {
     if (points->count == 0)
         return;
-    float(*places)[4] = places_of(picture, points);
+    float(*places)[4] = mem_array(points->count, sizeof(*places));
+    fill_places(picture, points, places);
     for (size_t i = 0; i < points->count; i++)
         markers_look(picture, depth, pitch_px, places[i]);
     give(points, places, frame);

@@ -4,7 +4,7 @@
 #ifndef RENDER_ISOLINES_H
 #define RENDER_ISOLINES_H
 #include "render/frame.h"
-#include "render/picture.h"
+#include "render/sights.h"
 
 struct isoline_point {
     double value, place_m[3]; /* plant frame */
@@ -19,7 +19,6 @@ struct isoline_set { /* of one asset */
 };
 
 struct isolines {
-    GLuint program, buffer;
     struct isoline_set *sets; /* by asset */
     size_t asset_count;
 };
@@ -28,15 +27,15 @@ struct isoline_points { /* those of a picture; zero-initialise, free `at` with m
     size_t count, capacity;
 };
 
-bool isolines_init(struct isolines *isolines, struct log *log, size_t asset_count); /* false: logged */
+void isolines_init(struct isolines *isolines, size_t asset_count);
 void isolines_finish(struct isolines *isolines);
-/* While picture->fields are what is shown: which points there are. */
 /* So many of the first vertices of an asset must be up to date for its labels. */
 size_t isolines_vertex_count(const struct scene_asset *asset);
+/* While picture->fields are what is shown: which points there are. */
 void isolines_collect(struct isolines *isolines, const struct picture *picture, struct isoline_points *out);
 /* Started once the picture is resolved; read into the frame when the GPU is done with it. False: out of GPU memory, logged. */
-bool isolines_start(struct isolines *isolines, const struct picture *picture, const struct isoline_points *points);
-void isolines_get(const struct isolines *isolines, const struct isoline_points *points, struct frame *frame);
+bool isolines_start(struct sights *sights, const struct picture *picture, const struct isoline_points *points);
+void isolines_get(const struct sights *sights, const struct isoline_points *points, struct frame *frame);
 /* The same two by the processor, from a picture's depth: rows from the top, pitch_px apart. */
 void isolines_find(const struct picture *picture, const struct isoline_points *points, const float *depth, size_t pitch_px,
                    struct frame *frame);

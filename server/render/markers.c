@@ -5,20 +5,7 @@
 #include <math.h>
 
 #include "base/mem.h"
-#include "gpu/program.h"
 #include "render/matrix.h"
-
-bool markers_init(struct markers *markers, struct log *log)
-{
-    markers->program = program_create(log, program_params(.compute = "markers.comp"));
-    return markers->program != 0;
-}
-
-void markers_finish(struct markers *markers)
-{
-    program_destroy(&markers->program);
-    glDeleteBuffers(1, &markers->buffer);
-}
 
 /* Of the shown group, on an asset that is not hidden, and not cut away. */
 static bool is_shown(const struct picture *picture, const struct scene_sensor *sensor)
@@ -61,30 +48,16 @@ static void fill_places(const struct picture *picture, float (*places)[4])
         }
 }
 
-bool markers_start(struct markers *markers, const struct picture *picture)
+bool markers_start(struct sights *sights, const struct picture *picture)
 {
-    size_t count = count_shown(picture), bytes = count * sizeof(float[4]);
+    size_t count = count_shown(picture);
     if (count == 0)
         return true;
-    if (count > markers->capacity) {
-        glDeleteBuffers(1, &markers->buffer);
-        markers->buffer = mesh_buffer(picture->stage->gl->log, "markers", bytes, NULL, GL_DYNAMIC_STORAGE_BIT);
-        markers->capacity = markers->buffer ? count : 0;
-        if (!markers->buffer)
-            return false;
-    }
-    float(*places)[4] = mem_array(count, sizeof(*places));
+    float(*places)[4] = sights_fit(sights, picture->stage->gl->log, count);
+    if (!places)
+        return false;
     fill_places(picture, places);
-    glNamedBufferSubData(markers->buffer, 0, (GLsizeiptr)bytes, places);
-    mem_free(places);
-    gl_pass_enter("markers");
-    glUseProgram(markers->program);
-    glUniform1i(0, (GLint)count);
-    glBindTextureUnit(0, picture->target->resolved_depth);
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, markers->buffer);
-    glDispatchCompute(((GLuint)count + 63) / 64, 1, 1);
-    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-    return gl_pass_leave(picture->stage->gl, "markers");
+    return sights_start(sights, picture, count);
 }
 
 static void give(const struct picture *picture, float (*places)[4], size_t count, struct frame *frame)
@@ -101,15 +74,11 @@ static void give(const struct picture *picture, float (*places)[4], size_t count
         }
 }
 
-void markers_get(const struct markers *markers, const struct picture *picture, struct frame *frame)
+void markers_get(const struct sights *sights, const struct picture *picture, struct frame *frame)
 {
     size_t count = count_shown(picture);
-    if (count == 0)
-        return;
-    float(*places)[4] = mem_array(count, sizeof(*places));
-    glGetNamedBufferSubData(markers->buffer, 0, (GLsizeiptr)(count * sizeof(*places)), places);
-    give(picture, places, count, frame);
-    mem_free(places);
+    if (count > 0)
+        give(picture, sights->places, count, frame);
 }
 
 /* --- without GL ------------------------------------------------------------------------------------------------------------- */

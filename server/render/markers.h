@@ -3,20 +3,13 @@
 #ifndef RENDER_MARKERS_H
 #define RENDER_MARKERS_H
 #include "render/frame.h"
-#include "render/picture.h"
-
-struct markers {
-    GLuint program, buffer;
-    size_t capacity;
-};
+#include "render/sights.h"
 
 /* A marker sits on the surface; curved triangles may put it so far behind. */
 double markers_slack_m(const struct scene_asset *asset);
-bool markers_init(struct markers *markers, struct log *log); /* false: logged */
-void markers_finish(struct markers *markers);
 /* Started once the picture is resolved; read into the frame when the GPU is done with it. False: out of GPU memory, logged. */
-bool markers_start(struct markers *markers, const struct picture *picture);
-void markers_get(const struct markers *markers, const struct picture *picture, struct frame *frame);
+bool markers_start(struct sights *sights, const struct picture *picture);
+void markers_get(const struct sights *sights, const struct picture *picture, struct frame *frame);
 /* The same by the processor, from a picture's depth: rows from the top, pitch_px apart. */
 void markers_find(const struct picture *picture, const float *depth, size_t pitch_px, struct frame *frame);
 /* As shaders/markers.comp. place: eye space, and how far it may lie behind the surface; becomes x, y in pixels, hidden 0 or 1. */

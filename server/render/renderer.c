@@ -43,6 +43,7 @@ struct renderer *renderer_create(struct log *log, struct gl *gl, const struct sc
     renderer->visible = mem_array(scene->asset_count, sizeof(*renderer->visible));
     renderer->distance_m = mem_array(scene->asset_count, sizeof(*renderer->distance_m));
     fields_init(&renderer->fields, log, field);
+    isolines_init(&renderer->isolines, scene->asset_count);
     renderer->frame_buffer = mesh_buffer(log, "frame block", sizeof(struct frame_block), NULL, GL_DYNAMIC_STORAGE_BIT);
     if (!renderer->frame_buffer || !environments_init(&renderer->environments, gl, scene->plant, field_workers(field))) {
         renderer_destroy(&renderer);
@@ -51,8 +52,7 @@ struct renderer *renderer_create(struct log *log, struct gl *gl, const struct sc
     environments_bind(&renderer->environments, 0);
     if (!stage_init(&renderer->stage, gl, scene) || !light_init(&renderer->light, &renderer->stage, &renderer->environments) ||
         !solid_init(&renderer->solid, log) || !sky_init(&renderer->sky, log) || !lines_init(&renderer->lines, log) ||
-        !ghosts_init(&renderer->ghosts, log) || !caps_init(&renderer->caps, log) || !markers_init(&renderer->markers, log) ||
-        !isolines_init(&renderer->isolines, log, scene->asset_count)) {
+        !ghosts_init(&renderer->ghosts, log) || !caps_init(&renderer->caps, log) || !flights_init(&renderer->flights, log)) {
         renderer_destroy(&renderer);
         return NULL;
     }
@@ -74,9 +74,8 @@ void renderer_destroy(struct renderer **renderer_ptr)
     targets_finish(&renderer->targets);
     palettes_finish(&renderer->palettes);
     glDeleteBuffers(1, &renderer->frame_buffer);
-    readback_finish(&renderer->readback);
+    flights_finish(&renderer->flights);
     isolines_finish(&renderer->isolines);
-    markers_finish(&renderer->markers);
     ghosts_finish(&renderer->ghosts);
     caps_finish(&renderer->caps);
     lines_finish(&renderer->lines);

@@ -2,9 +2,13 @@
 /* What the parts of the renderer share. Private to renderer*.c. */
 #ifndef RENDER_RENDERER_IMPL_H
 #define RENDER_RENDERER_IMPL_H
+<<<<<<< HEAD
 #include "gpu/readback.h"
 #include "render/caps.h"
+=======
+>>>>>>> a31a219 (gpu, render: several pictures' pixels, markers and labels may be under way)
 #include "render/draft.h"
+#include "render/flight.h"
 #include "render/ghosts.h"
 #include "render/isolines.h"
 #include "render/lines.h"
@@ -31,10 +35,13 @@ struct renderer {
     struct sky sky;
     struct lines lines;
     struct ghosts ghosts;
+<<<<<<< HEAD
     struct caps caps;
     struct markers markers;
+=======
+>>>>>>> a31a219 (gpu, render: several pictures' pixels, markers and labels may be under way)
     struct isolines isolines;
-    struct readback readback;
+    struct flights flights;
     GLuint frame_buffer;                      /* struct frame_block */
     struct palettes palettes;
     struct targets targets;

@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Where places of the plant stand in a picture, and whether something stands before them: by the GPU, from the picture's depth.
+   Thread: the one of the GL context. */
+#ifndef RENDER_SIGHTS_H
+#define RENDER_SIGHTS_H
+#include "render/picture.h"
+
+struct sights {
+    GLuint program; /* shaders/markers.comp, the caller's; the rest zero-initialised */
+    GLuint buffer;
+    float (*places)[4]; /* as the GPU sees them */
+    size_t capacity;
+};
+
+/* Room for so many places, to be filled in: eye space, metres, and how far it may lie behind the surface. The picture that they were
+   used for last is done. NULL: out of GPU memory, logged. */
+float (*sights_fit(struct sights *sights, struct log *log, size_t count))[4];
+/* Once the picture is resolved. When the GPU is done places hold x, y in pixels, hidden 0 or 1. False: logged. */
+bool sights_start(const struct sights *sights, const struct picture *picture, size_t count);
+void sights_finish(struct sights *sights);
+
+#endif
