@@ -73,6 +73,54 @@ static void deliver(struct drawing *drawing, struct frame *frame, const struct s
     frame_unref(&frame);
 }
 
+/* --- pictures that a GPU draws while another one's pixels come ----------------------------------------------------------------- */
+
+/* The instant, if it is one, goes over to it. */
+static void fly(struct drawing *drawing, struct batch *batch, const struct moment **moment, uint64_t content, int64_t field_ns)
+{
+    struct flying_picture picture = { .moment = *moment, .content = content, .field_ns = field_ns };
+    const struct snapshot *snapshot = *moment ? &(*moment)->snapshot : drawing->snapshot;
+    picture.canvas = canvas_launch(drawing->renderer, &batch->orders[0].wish.view, snapshot);
+    if (!picture.canvas) {
+        fail(drawing, batch);
+        return;
+    }
+    flying_push(&drawing->flying, &picture, batch, &drawing->snapshot);
+    *moment = NULL;
+    if (picture.moment)
+        return;
+    store_snapshot(drawing->painter->params.store, clock_mono_ns(), clock_utc_ns(), drawing->snapshot);
+}
+
+static void flying_gone(struct drawing *drawing)
+{
+    if (drawing->flying.at[0].moment)
+        moments_give(drawing->painter->params.moments, &drawing->flying.at[0].moment);
+    flying_pop(&drawing->flying);
+}
+
+/* The oldest: waits for it. */
+static void land(struct drawing *drawing)
+{
+    struct flying_picture *picture = &drawing->flying.at[0];
+    struct frame *frame = canvas_end(drawing->renderer, &picture->canvas);
+    if (is_good(drawing, frame)) {
+        frame->field_ns += picture->field_ns;
+        deliver(drawing, frame, flying_readings(picture), &picture->batch);
+    } else {
+        fail(drawing, &picture->batch);
+    }
+    flying_gone(drawing);
+}
+
+/* Those that came, and where there is room for no other the oldest. */
+static void land_some(struct drawing *drawing)
+{
+    struct flying *flying = &drawing->flying;
+    while (flying->count > 0 && (flying->count == FLYING_MOST || canvas_landed(flying->at[0].canvas)))
+        land(drawing);
+}
+
 /* --- pictures that take long -------------------------------------------------------------------------------------------------- */
 
 /* Whoever it is for left the one before it, not this one. */
@@ -226,7 +274,7 @@ static bool draw_of(struct drawing *drawing, struct batch *batch, const struct s
         counter_inc(drawing->painter->steps, 1);
         return false;
     }
-    sharing_leave_out_same(drawing, snapshot, batch);
+    uint64_t content = sharing_leave_out_same(drawing, snapshot, batch);
     if (batch->count == 0)
         return true;
     int64_t field_ns = clock_mono_ns() - field_begin_ns; /* to know what changed, the field was brought up to date already */
@@ -235,6 +283,10 @@ static bool draw_of(struct drawing *drawing, struct batch *batch, const struct s
         return true;
     }
     lose_on_demand(drawing);
+    if (renderer_launches(drawing->renderer)) {
+        fly(drawing, batch, moment, content, field_ns);
+        return true;
+    }
     struct frame *frame = canvas_draw(drawing->renderer, &wish->view, snapshot);
     if (!is_good(drawing, frame)) {
         fail(drawing, batch);
@@ -276,12 +328,15 @@ static bool gl_begin(struct drawing *drawing)
     if (!drawing->renderer)
         return false;
     renderer_set_per_fragment(drawing->renderer, params->per_fragment);
+    renderer_use_gl(drawing->renderer, params->by_gl);
     drawing->warm = false;
     return renderer_hurry(drawing->renderer, LIGHT_NS);
 }
 
 static void gl_end(struct drawing *drawing)
 {
+    for (; drawing->flying.count > 0; flying_gone(drawing))
+        canvas_abandon(drawing->renderer, &drawing->flying.at[0].canvas);
     if (drawing->renderer)
         canvas_abandon(drawing->renderer, &drawing->slow.canvas);
     slow_forget_moment(drawing);
@@ -297,6 +352,7 @@ static bool drawing_init(struct drawing *drawing, struct painter *painter)
     field_set_baselines(drawing->field, params->baselines);
     drawing->snapshot = snapshot_create(params->scene->plant->tag_count);
     drawing->slow.snapshot = snapshot_create(params->scene->plant->tag_count);
+    flying_init(&drawing->flying, params->scene->plant->tag_count);
     store_snapshot(params->store, clock_mono_ns(), clock_utc_ns(), drawing->snapshot);
     return gl_begin(drawing);
 }
@@ -311,6 +367,7 @@ static void drawing_finish(struct drawing *drawing)
     batch_finish(&drawing->same);
     recent_finish(&drawing->recent);
     held_finish(&drawing->held);
+    flying_finish(&drawing->flying);
 }
 
 /* What only the first picture of a tier costs (shaders) is paid before anyone asks. */
@@ -359,6 +416,8 @@ static void rebuild(struct drawing *drawing)
     log_err(painter->params.log, "gl: the context is lost; making a new one");
     counter_inc(painter->losses, 1);
     set_lost(painter, true);
+    for (int i = 0; i < drawing->flying.count; i++)
+        fail(drawing, &drawing->flying.at[i].batch);
     fail(drawing, &drawing->slow.batch);
     gl_end(drawing);
     while (!gl_begin(drawing)) {
@@ -377,10 +436,15 @@ static void turn(struct drawing *drawing, struct schedule *schedule, struct batc
     enum urgency urgency = batch->count > 0 ? batch->orders[0].wish.urgency : drawing->slow.urgency;
     bool done = true;
     slow_leave(drawing);
+    if (batch->count == 0 && !drawing->slow.canvas && drawing->flying.count > 0) {
+        land(drawing);
+        return;
+    }
     if (batch->count > 0)
         done = draw(drawing, batch);
     else if (drawing->slow.canvas)
         done = slow_step(drawing);
+    land_some(drawing);
     if (urgency >= URGENCY_REFINE)
         schedule_stepped(schedule);
     if (done && !(urgency >= URGENCY_REFINE && drawing->slow.canvas))

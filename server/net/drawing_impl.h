@@ -2,10 +2,10 @@
 /* What the render thread alone touches. Private to drawing.c, turns.c and sharing.c. */
 #ifndef NET_DRAWING_IMPL_H
 #define NET_DRAWING_IMPL_H
+#include "net/flying.h"
 #include "net/held.h"
 #include "net/painter_impl.h"
 #include "net/recent.h"
-#include "render/canvas.h"
 
 struct drawing {
     struct painter *painter;
@@ -25,6 +25,7 @@ struct drawing {
         bool keeps; /* when it is done, new readings are quick to show: they need not wait for it, nor it be given up for them */
     } slow;
     bool warm; /* what only the first pictures cost was paid */
+    struct flying flying;
     struct held held; /* pictures whose field takes long: worked on step by step, each in its turn */
 };
 
@@ -32,8 +33,9 @@ struct drawing {
 
 /* The frame, encoded, to all of the batch that are still there; empties it. cost_ns: what it took to draw, which they share. */
 void sharing_submit(struct painter *painter, struct frame *frame, struct batch *batch, int64_t cost_ns);
-/* Answers those for whom nothing changed, and those for whom another's frame does; takes them out of the batch. */
-void sharing_leave_out_same(struct drawing *drawing, const struct snapshot *snapshot, struct batch *batch);
+/* Answers those for whom nothing changed, and those for whom another's frame does, or will when it comes; takes them out of the batch.
+   Returns the content (canvas_content). */
+uint64_t sharing_leave_out_same(struct drawing *drawing, const struct snapshot *snapshot, struct batch *batch);
 /* Likewise who asks a moment later than others for the same view: what was drawn for them will do, if all that changed since is readings
    that he has yet to be told of. Before the field is brought up to date. */
 void sharing_take_recent(struct drawing *drawing, struct batch *batch);
@@ -42,7 +44,7 @@ void sharing_take_recent(struct drawing *drawing, struct batch *batch);
 
 /* Under nobody's lock, while nobody wants a picture: some of what the first still one will cost. */
 void drawing_idle(struct drawing *drawing);
-/* Waits for work. False: stop. An empty batch: the slow picture may go on by a step. */
+/* Waits for work. False: stop. An empty batch: the slow picture may go on by a step, or a flying one is waited for. */
 bool drawing_next(struct drawing *drawing, const struct schedule *schedule, struct batch *batch);
 /* The newest readings, if they changed or are some time old. */
 void drawing_refresh(struct drawing *drawing);

@@ -15,6 +15,7 @@ struct painter_params {
     struct log *log;
     enum gl_kind gl;
     bool per_fragment; /* the field anew at each fragment */
+    bool by_gl;        /* all pictures, as on a GPU, where GL is on a processor too: to compare */
     const struct gl_device *gl_device; /* NULL: the first with hardware that works */
     const struct scene *scene;
     struct store *store;

@@ -63,7 +63,19 @@ static void answer_with(struct painter *painter, struct frame *frame, struct bat
         sharing_submit(painter, frame, batch, 0);
 }
 
-void sharing_leave_out_same(struct drawing *drawing, const struct snapshot *snapshot, struct batch *batch)
+/* To those for whom it is drawn goes who asks for it meanwhile. */
+static void join_flying(struct drawing *drawing, struct batch *batch, uint64_t content)
+{
+    struct flying_picture *flying = flying_find(&drawing->flying, content);
+    if (!flying)
+        return;
+    counter_inc(drawing->painter->shared, (int64_t)batch->count);
+    for (size_t i = 0; i < batch->count; i++)
+        batch_add(&flying->batch, &batch->orders[i]);
+    batch->count = 0;
+}
+
+uint64_t sharing_leave_out_same(struct drawing *drawing, const struct snapshot *snapshot, struct batch *batch)
 {
     const struct wish *wish = &batch->orders[0].wish;
     uint64_t content = canvas_content(drawing->renderer, &wish->view, snapshot);
@@ -72,6 +84,9 @@ void sharing_leave_out_same(struct drawing *drawing, const struct snapshot *snap
     struct frame *frame = overlay ? NULL : recent_find(&drawing->recent, content, clock_mono_ns());
     if (frame)
         answer_with(drawing->painter, frame, batch);
+    else if (!overlay)
+        join_flying(drawing, batch, content);
+    return content;
 }
 
 void sharing_take_recent(struct drawing *drawing, struct batch *batch)

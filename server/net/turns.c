@@ -154,6 +154,8 @@ bool drawing_next(struct drawing *drawing, const struct schedule *schedule, stru
             break;
         if (picks_wait(painter->picks))
             continue;
+        if (drawing->flying.count > 0)
+            break;
         if (!drawing->warm) {
             pthread_mutex_unlock(&painter->lock);
             drawing_idle(drawing);
@@ -166,7 +168,7 @@ bool drawing_next(struct drawing *drawing, const struct schedule *schedule, stru
     bool held = held_due(&drawing->held, turn.step || turn.client);
     if (running && held)
         held_pop(&drawing->held, batch);
-    else if (running && !turn.step)
+    else if (running && turn.client && !turn.step)
         begin_all(drawing, turn.client, batch);
     pthread_mutex_unlock(&painter->lock);
     return running;

@@ -143,7 +143,9 @@ struct frame *canvas_draw(struct renderer *renderer, const struct view *view, co
     return join(view, parts);
 }
 
-struct canvas *canvas_begin(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
+typedef struct stroke *begin_fn(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot);
+
+static struct canvas *begin(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot, begin_fn *begin_half)
 {
     struct canvas *canvas = mem_new(sizeof(*canvas));
     canvas->view = *view;
@@ -151,13 +153,28 @@ struct canvas *canvas_begin(struct renderer *renderer, const struct view *view, 
     for (int half = 0; half < canvas->half_count; half++) {
         struct view one;
         view_half(view, half, &one);
-        canvas->strokes[half] = renderer_begin(renderer, &one, snapshot);
+        canvas->strokes[half] = begin_half(renderer, &one, snapshot);
         if (!canvas->strokes[half]) {
             canvas_abandon(renderer, &canvas);
             return NULL;
         }
     }
     return canvas;
+}
+
+struct canvas *canvas_begin(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
+{
+    return begin(renderer, view, snapshot, renderer_begin);
+}
+
+struct canvas *canvas_launch(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
+{
+    return begin(renderer, view, snapshot, renderer_launch);
+}
+
+bool canvas_landed(const struct canvas *canvas)
+{
+    return renderer_landed(canvas->strokes[0]) && (canvas->half_count == 1 || renderer_landed(canvas->strokes[1]));
 }
 
 bool canvas_keeps(const struct canvas *canvas)

@@ -15,6 +15,9 @@ bool canvas_is_quick(struct renderer *renderer, const struct view *view, const s
 struct canvas *canvas_begin(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot);
 bool canvas_step(struct renderer *renderer, struct canvas *canvas, int64_t budget_ns);
 bool canvas_keeps(const struct canvas *canvas); /* renderer_keeps */
+/* On a GPU, as renderer_launch. */
+struct canvas *canvas_launch(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot);
+bool canvas_landed(const struct canvas *canvas);
 struct frame *canvas_end(struct renderer *renderer, struct canvas **canvas);
 void canvas_abandon(struct renderer *renderer, struct canvas **canvas); /* &NULL is fine; leaves NULL */
 

@@ -22,18 +22,21 @@ void flights_finish(struct flights *flights)
     program_destroy(&flights->program);
 }
 
-struct flight *flights_take(struct flights *flights)
+struct flight *flights_take(struct flights *flights, struct log *log)
 {
     for (int i = 0; i < FLIGHTS; i++)
         if (!flights->at[i].taken) {
             flights->at[i].taken = true;
             return &flights->at[i];
         }
+    log_err(log, "%d pictures are under way: no room for one more", FLIGHTS);
     return NULL;
 }
 
 void flights_give(struct flight *flight)
 {
+    if (!flight)
+        return;
     readback_forget(&flight->readback);
     flight->taken = false;
 }

@@ -6,7 +6,7 @@
 #include "gpu/readback.h"
 #include "render/sights.h"
 
-enum { FLIGHTS = 4 };
+enum { FLIGHTS = 8 };
 
 struct flight {
     struct readback readback;
@@ -20,7 +20,7 @@ struct flights {
 
 bool flights_init(struct flights *flights, struct log *log); /* false: logged */
 void flights_finish(struct flights *flights);
-struct flight *flights_take(struct flights *flights); /* NULL: all are taken */
-void flights_give(struct flight *flight);             /* its picture came, or is not waited for */
+struct flight *flights_take(struct flights *flights, struct log *log); /* NULL: all are taken, logged */
+void flights_give(struct flight *flight); /* its picture came, or is not waited for; NULL is fine */
 
 #endif

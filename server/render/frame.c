@@ -2,10 +2,57 @@
 /* Frames come and go. */
 #include "render/frame.h"
 
+#include <pthread.h>
 #include <stdatomic.h>
 
 #include "base/mem.h"
 #include "value/quality.h"
+
+/* Pixels of frames that are gone: memory that is new to the process costs more than it takes to fill it. */
+enum { SPARES = 4 };
+static const size_t SPARE_BYTES = (size_t)16 << 20; /* of one: what is larger is rare */
+static struct {
+    pthread_mutex_t lock;
+    struct {
+        uint8_t *pixels;
+        size_t bytes;
+    } at[SPARES];
+    int next;
+} spares = { .lock = PTHREAD_MUTEX_INITIALIZER };
+
+/* Of any content. NULL: out of memory. */
+static uint8_t *take_pixels(size_t bytes)
+{
+    uint8_t *pixels = NULL;
+    pthread_mutex_lock(&spares.lock);
+    for (int i = 0; i < SPARES && !pixels; i++)
+        if (spares.at[i].pixels && spares.at[i].bytes == bytes) {
+            pixels = spares.at[i].pixels;
+            spares.at[i].pixels = NULL;
+        }
+    pthread_mutex_unlock(&spares.lock);
+    return pixels ? pixels : mem_try_array(bytes, 1);
+}
+
+/* Takes them; NULL is fine. */
+static void give_pixels(uint8_t *pixels, size_t bytes)
+{
+    if (pixels && bytes <= SPARE_BYTES) {
+        pthread_mutex_lock(&spares.lock);
+        uint8_t *oldest = spares.at[spares.next].pixels;
+        spares.at[spares.next].pixels = pixels;
+        spares.at[spares.next].bytes = bytes;
+        spares.next = (spares.next + 1) % SPARES;
+        pthread_mutex_unlock(&spares.lock);
+        pixels = oldest;
+    }
+    mem_free(pixels);
+}
+
+static size_t pixel_bytes(const struct frame *frame)
+{
+    return (size_t)frame->height_px * (size_t)frame->stride_bytes;
+}
 
 struct frame *frame_create(int width_px, int height_px)
 {
@@ -14,7 +61,7 @@ struct frame *frame_create(int width_px, int height_px)
     frame->width_px = width_px;
     frame->height_px = height_px;
     frame->stride_bytes = width_px * 4;
-    frame->bgrx = mem_try_array((size_t)height_px, (size_t)frame->stride_bytes);
+    frame->bgrx = take_pixels(pixel_bytes(frame));
     if (!frame->bgrx)
         frame_unref(&frame);
     return frame;
@@ -34,7 +81,7 @@ void frame_unref(struct frame **frame_ptr)
         return;
     mem_free(frame->markers);
     mem_free(frame->labels);
-    mem_free(frame->bgrx);
+    give_pixels(frame->bgrx, pixel_bytes(frame));
     mem_free(frame);
 }
 

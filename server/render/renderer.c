@@ -14,7 +14,9 @@
 #include "render/matrix.h"
 #include "render/measure.h"
 #include "render/renderer_impl.h"
+#include "render/stroke.h"
 
+static const int64_t QUICK_NS = 12 * NS_PER_MS; /* a still picture that a GPU draws in less is drawn as moving ones are */
 /* Expected of GL on a processor before anything was measured. */
 static const double FIRST_PIXEL_NS[PASSES] = { 200, 20 };
 
@@ -302,7 +304,7 @@ bool renderer_is_quick(struct renderer *renderer, const struct view *view, const
 {
     struct picture picture;
     if (view->tier == TIER_MOVING || !renderer->plates || renderer->always_gl)
-        return view->tier == TIER_MOVING;
+        return view->tier == TIER_MOVING || (renderer->still_ns > 0 && renderer->still_ns <= QUICK_NS);
     picture_init(renderer, &picture, view, snapshot, false);
     return plates_know(renderer->plates, &picture);
 }
@@ -326,18 +328,43 @@ static struct frame *draw_again(struct renderer *renderer, const struct view *vi
     return frame;
 }
 
-struct frame *renderer_draw(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
+/* After a picture: works on the light that it should have had. */
+static void hurry_light(struct renderer *renderer, const struct view *view)
 {
     struct light_key wanted = wanted_light(view);
+    bool steady = visibility_equal(&wanted.shown, &renderer->shown); /* not at each place of a cut that somebody drags */
+    if (renderer->hurry_ns && steady)
+        light_step(&renderer->light, &wanted, renderer->hurry_ns);
+    renderer->shown = view->visibility;
+}
+
+struct frame *renderer_draw(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
+{
     bool draft = renderer->draft && !renderer->always_gl && !renderer->per_fragment && draft_can(renderer->draft, view);
     struct frame *frame = view->tier == TIER_STILL ? draw_again(renderer, view, snapshot) : NULL;
     if (!frame)
         frame = draft ? draw_draft(renderer, view, snapshot) : renderer_draw_stroke(renderer, view, snapshot);
-    bool steady = visibility_equal(&wanted.shown, &renderer->shown); /* not at each place of a cut that somebody drags */
-    if (frame && renderer->hurry_ns && steady)
-        light_step(&renderer->light, &wanted, renderer->hurry_ns);
-    renderer->shown = view->visibility;
+    if (frame)
+        hurry_light(renderer, view);
     return frame;
+}
+
+bool renderer_launches(const struct renderer *renderer)
+{
+    return (!renderer->gl->software || renderer->always_gl) && !renderer->per_fragment;
+}
+
+struct stroke *renderer_launch(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
+{
+    struct stroke *stroke = renderer_launch_stroke(renderer, view, snapshot);
+    if (stroke)
+        hurry_light(renderer, view);
+    return stroke;
+}
+
+bool renderer_landed(const struct stroke *stroke)
+{
+    return readback_is_there(&stroke->flight->readback);
 }
 
 bool renderer_hurry(struct renderer *renderer, int64_t bake_ns)

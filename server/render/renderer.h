@@ -19,8 +19,8 @@ bool renderer_prepare(struct renderer *renderer, const struct view *view, const 
 /* What the picture of this view would show now; equal to frame->content of an earlier frame if drawing it again would give the
    same picture (camera, parameters, size and every field value in view, to a colour step). Brings the field up to date; cheap. */
 uint64_t renderer_content(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot);
-/* renderer_draw draws it in the time of a moving picture: it is one, or it differs in values and colours only from a still one that
-   was drawn lately. Its field is prepared. */
+/* renderer_draw draws it in about the time of a moving picture: it is one, or differs in values and colours only from a still one that
+   was drawn lately, or there is a GPU that is fast enough. Its field is prepared. */
 bool renderer_is_quick(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot);
 /* The caller owns the frame (frame_unref). NULL on failure, logged. view is already checked. */
 struct frame *renderer_draw(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot);
@@ -51,6 +51,11 @@ bool renderer_keeps(const struct stroke *stroke); /* when it is ended, the same 
 bool renderer_step(struct renderer *renderer, struct stroke *stroke, int64_t budget_ns);
 /* Draws what is left. The caller owns the frame. NULL on failure, logged. The stroke is gone in either case. */
 struct frame *renderer_end(struct renderer *renderer, struct stroke **stroke);
+/* With a GPU: gives it the whole picture and does not wait; renderer_end does. A few may be under way, so that one is drawn while
+   another one's pixels come. NULL on failure, logged. */
+bool renderer_launches(const struct renderer *renderer);
+struct stroke *renderer_launch(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot);
+bool renderer_landed(const struct stroke *stroke); /* renderer_end would not wait */
 void renderer_abandon(struct renderer *renderer, struct stroke **stroke); /* &NULL is fine; leaves NULL */
 
 #endif

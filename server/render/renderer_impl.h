@@ -2,11 +2,7 @@
 /* What the parts of the renderer share. Private to renderer*.c. */
 #ifndef RENDER_RENDERER_IMPL_H
 #define RENDER_RENDERER_IMPL_H
-<<<<<<< HEAD
-#include "gpu/readback.h"
 #include "render/caps.h"
-=======
->>>>>>> a31a219 (gpu, render: several pictures' pixels, markers and labels may be under way)
 #include "render/draft.h"
 #include "render/flight.h"
 #include "render/ghosts.h"
@@ -35,11 +31,7 @@ struct renderer {
     struct sky sky;
     struct lines lines;
     struct ghosts ghosts;
-<<<<<<< HEAD
     struct caps caps;
-    struct markers markers;
-=======
->>>>>>> a31a219 (gpu, render: several pictures' pixels, markers and labels may be under way)
     struct isolines isolines;
     struct flights flights;
     GLuint frame_buffer;                      /* struct frame_block */
@@ -47,6 +39,7 @@ struct renderer {
     struct targets targets;
     double pixel_ns[PASSES]; /* as measured lately */
     int64_t hurry_ns;    /* 0: none */
+    int64_t still_ns;    /* what a GPU took for the last still picture; 0: not known */
     struct draft *draft;   /* NULL: a GPU draws moving pictures too; and below */
     struct plates *plates; /* still ones */
     bool always_gl;
@@ -62,5 +55,7 @@ struct frame *renderer_start(struct renderer *renderer, const struct view *view,
 bool renderer_take_up(struct renderer *renderer, struct picture *picture);
 /* The whole picture at once by the steps of a stroke. As renderer_draw. */
 struct frame *renderer_draw_stroke(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot);
+/* As renderer_launch. */
+struct stroke *renderer_launch_stroke(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot);
 
 #endif

@@ -166,6 +166,8 @@ bool renderer_step(struct renderer *renderer, struct stroke *stroke, int64_t bud
         spent_ns += last_ns;
     }
     stroke->frame->render_ns += spent_ns;
+    if (!renderer->gl->software && stroke->view.tier == TIER_STILL && stroke->next == cells)
+        renderer->still_ns = stroke->frame->render_ns;
     return stroke->next == cells;
 }
 
@@ -184,34 +186,54 @@ static struct frame *end_plate(struct renderer *renderer, struct stroke *stroke)
     return frame;
 }
 
-struct frame *renderer_end(struct renderer *renderer, struct stroke **stroke_ptr)
+/* All that is left is given to the GPU, and the pixels are on their way. False: logged. */
+static bool launch(struct renderer *renderer, struct stroke *stroke)
 {
-    struct stroke *stroke = *stroke_ptr;
-    struct frame *frame = NULL;
     struct log *log = renderer->gl->log;
     int64_t start_ns = clock_mono_ns();
-    if (stroke->plate)
-        frame = end_plate(renderer, stroke);
-    if (stroke->plate || !take_up_stroke(renderer, stroke))
-        goto end;
+    struct flight *flight = flights_take(&renderer->flights, log);
+    if (!flight || !take_up_stroke(renderer, stroke)) {
+        flights_give(flight);
+        return false;
+    }
+    stroke->flight = flight;
     while (stroke->next < cells_of(stroke))
         draw_bit(renderer, stroke);
     ghosts_draw(&renderer->ghosts, &stroke->picture);
     lines_draw_outline(&renderer->lines, &stroke->picture);
-    if (!markers_start(&renderer->markers, &stroke->picture) ||
-        !isolines_start(&renderer->isolines, &stroke->picture, &stroke->isolines) ||
-        !readback_start(&renderer->readback, log, &stroke->target) || !readback_wait(&renderer->readback, log))
-        goto end;
+    bool good = markers_start(&flight->markers, &stroke->picture) &&
+                isolines_start(&flight->labels, &stroke->picture, &stroke->isolines) &&
+                readback_start(&flight->readback, log, &stroke->target);
+    stroke->frame->render_ns += clock_mono_ns() - start_ns;
+    return good;
+}
+
+/* What was launched. NULL: it failed, logged. */
+static struct frame *land(struct renderer *renderer, struct stroke *stroke)
+{
+    struct flight *flight = stroke->flight;
+    struct frame *frame = stroke->frame;
+    int64_t start_ns = clock_mono_ns();
+    if (!readback_wait(&flight->readback, renderer->gl->log))
+        return NULL;
     int64_t drawn_ns = clock_mono_ns();
-    if (!readback_get(&renderer->readback, log, stroke->frame->bgrx, (size_t)stroke->frame->stride_bytes))
-        goto end;
-    markers_get(&renderer->markers, &stroke->picture, stroke->frame);
-    isolines_get(&renderer->isolines, &stroke->isolines, stroke->frame);
-    stroke->frame->render_ns += drawn_ns - start_ns;
-    stroke->frame->readback_ns = clock_mono_ns() - drawn_ns;
-    frame = stroke->frame;
+    readback_get(&flight->readback, field_workers(renderer->fields.field), frame->bgrx, (size_t)frame->stride_bytes);
+    markers_get(&flight->markers, &stroke->picture, frame);
+    isolines_get(&flight->labels, &stroke->isolines, frame);
+    frame->render_ns += drawn_ns - start_ns;
+    frame->readback_ns = clock_mono_ns() - drawn_ns;
     stroke->frame = NULL;
-end:
+    return frame;
+}
+
+struct frame *renderer_end(struct renderer *renderer, struct stroke **stroke_ptr)
+{
+    struct stroke *stroke = *stroke_ptr;
+    struct frame *frame = NULL;
+    if (stroke->plate)
+        frame = end_plate(renderer, stroke);
+    else if (stroke->flight || launch(renderer, stroke))
+        frame = land(renderer, stroke);
     renderer_abandon(renderer, stroke_ptr);
     return frame;
 }
@@ -225,6 +247,7 @@ void renderer_abandon(struct renderer *renderer, struct stroke **stroke_ptr)
         plate_end(renderer->plates, &stroke->plate);
     else
         targets_give(&renderer->targets, &stroke->target);
+    flights_give(stroke->flight);
     stroke_finish(stroke);
     mem_free(stroke);
     *stroke_ptr = NULL;
@@ -234,4 +257,12 @@ struct frame *renderer_draw_stroke(struct renderer *renderer, const struct view 
 {
     struct stroke *stroke = begin(renderer, view, snapshot, true);
     return stroke ? renderer_end(renderer, &stroke) : NULL;
+}
+
+struct stroke *renderer_launch_stroke(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
+{
+    struct stroke *stroke = begin(renderer, view, snapshot, true);
+    if (stroke && !launch(renderer, stroke))
+        renderer_abandon(renderer, &stroke);
+    return stroke;
 }

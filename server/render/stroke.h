@@ -3,6 +3,7 @@
    so that tiles fit without a seam. Thread: the one of the GL context. */
 #ifndef RENDER_STROKE_H
 #define RENDER_STROKE_H
+#include "render/flight.h"
 #include "render/frame.h"
 #include "render/isolines.h"
 #include "render/picture.h"
@@ -14,6 +15,7 @@ struct stroke {
     struct target target;
     struct plate *plate; /* it is drawn without GL, and there is no target; NULL: by GL */
     struct frame *frame;
+    struct flight *flight;   /* it is given to the GPU, whole; NULL: not yet */
     struct light_set *light; /* held from when it is ready; NULL: not yet */
     const struct fields_entry **fields; /* per asset */
     struct fields_entry *copies;        /* per asset, with buffers of their own; NULL: drawn at once, no copies needed */

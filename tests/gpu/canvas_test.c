@@ -112,6 +112,37 @@ static void test_bit_by_bit(void **state)
     assert_null(canvas);
 }
 
+/* Two of them at once come as each does alone. */
+static void test_launched_together(void **state)
+{
+    struct view views[2];
+    struct canvas *canvases[2];
+    (void)state;
+    for (int i = 0; i < 2; i++)
+        make_view(&views[i]);
+    renderer_use_gl(stand.renderer, true);
+    assert_true(renderer_launches(stand.renderer));
+    views[1].tier = TIER_STILL;
+    for (int i = 0; i < 2; i++) {
+        views[i].camera.eye_m[0] += i;
+        canvases[i] = canvas_launch(stand.renderer, &views[i], stand.snapshot);
+        assert_non_null(canvases[i]);
+    }
+    while (!canvas_landed(canvases[1])) {}
+    assert_true(canvas_landed(canvases[0]));
+    for (int i = 0; i < 2; i++) {
+        struct frame *frame = canvas_end(stand.renderer, &canvases[i]), *once = canvas_draw(stand.renderer, &views[i], stand.snapshot);
+        assert_memory_equal(frame->bgrx, once->bgrx, (size_t)HEIGHT * (size_t)frame->stride_bytes);
+        assert_true(frame->content == once->content && frame->marker_count == once->marker_count && frame->label_count > 0);
+        assert_memory_equal(frame->markers, once->markers, frame->marker_count * sizeof(*frame->markers));
+        frame_unref(&frame);
+        frame_unref(&once);
+    }
+    canvases[0] = canvas_launch(stand.renderer, &views[0], stand.snapshot);
+    canvas_abandon(stand.renderer, &canvases[0]);
+    renderer_use_gl(stand.renderer, false);
+}
+
 /* A view that was split may become narrow. */
 static void test_narrow(void **state)
 {
@@ -149,6 +180,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         each(test_halves_are_pictures),
         each(test_bit_by_bit),
+        each(test_launched_together),
         each(test_narrow),
         each(test_what_is_not_split_stays_as_it_is),
     };
