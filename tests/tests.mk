@@ -47,9 +47,10 @@ stream-bench: test-deps
 	@$(MAKE) --no-print-directory all demo $(out)/tests/relay/relay
 	@tests/bench/run $(out) $(bin) stream
 .PHONY: stream-bench
-# The paper's experiments and streaming, on a GPU.
+# The demo plant and the paper's experiments, on a GPU.
 gpu-bench: test-deps
-	@$(MAKE) --no-print-directory all demo $(out)/tests/bench/paper_bench
+	@$(MAKE) --no-print-directory all demo $(out)/tests/bench/paper_bench $(out)/tests/bench/render_bench
+	@$(bin)/plantcast-prep build/demo/plant.yaml
 	@tests/bench/run $(out) $(bin) gpu
 # The tables of tests/bench/RESULTS.md and its plots, from the last `make bench PEERS=1`, stream-bench and gpu-bench. What lies between the
 # tables is written by hand, and stays.

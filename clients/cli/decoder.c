@@ -4,12 +4,16 @@
 
 #include <string.h>
 #include <turbojpeg.h>
+#include <unistd.h>
 #ifdef PLANTCAST_H264
 #include <libavcodec/avcodec.h>
 #include <libyuv.h>
 #endif
 
 #include "base/mem.h"
+
+/* Where there are many cores, slices are decoded side by side, as a browser does. */
+enum { MANY_CORES = 8, SLICE_THREADS = 4 };
 
 struct decoder {
     tjhandle turbo;
@@ -55,13 +59,15 @@ static bool open_h264(struct decoder *decoder)
 {
     if (decoder->context)
         return true;
+    long cores = sysconf(_SC_NPROCESSORS_ONLN);
     decoder->packet = av_packet_alloc();
     decoder->picture = av_frame_alloc();
     decoder->context = avcodec_alloc_context3(avcodec_find_decoder(AV_CODEC_ID_H264));
     if (!decoder->packet || !decoder->picture || !decoder->context)
         return false;
     decoder->context->flags |= AV_CODEC_FLAG_LOW_DELAY;
-    decoder->context->thread_count = 1;
+    decoder->context->thread_type = FF_THREAD_SLICE;
+    decoder->context->thread_count = cores >= MANY_CORES ? SLICE_THREADS : 1;
     return avcodec_open2(decoder->context, NULL, NULL) == 0;
 }
 

@@ -26,7 +26,7 @@ static const struct library libraries[] = {
 };
 static const struct library other_library = { "", "", false };
 static const int64_t OTHERS_BITS_PER_PX_S = 4; /* rate of the encoders that need one */
-enum { RATE_HZ = 60, SLICED_PX = 1500000, MOST_THREADS = 4 };
+enum { RATE_HZ = 60, SLICED_PX = 1500000, MANY_CORES = 8, MOST_THREADS = 8 };
 
 struct h264_encoder {
     struct encoder base;
@@ -86,11 +86,14 @@ static int failed(const struct h264_encoder *h264, const char *what, int status)
     return status == AVERROR(ENOMEM) ? -ENOMEM : -EIO;
 }
 
-/* Slices only where one core would be late. */
+/* Slices only where one core would be late; where there are many, for each part of a picture so large. */
 static int thread_count(int width_px, int height_px)
 {
-    long cores = sysconf(_SC_NPROCESSORS_ONLN);
-    return (long)width_px * height_px < SLICED_PX || cores < 2 ? 1 : cores < MOST_THREADS ? (int)cores : MOST_THREADS;
+    long cores = sysconf(_SC_NPROCESSORS_ONLN), pixels = (long)width_px * height_px;
+    if (cores < MANY_CORES)
+        return pixels < SLICED_PX || cores < 2 ? 1 : cores < 4 ? (int)cores : 4;
+    long parts = 1 + MOST_THREADS * pixels / (SLICED_PX + SLICED_PX / 4), most = cores / 2 < MOST_THREADS ? cores / 2 : MOST_THREADS;
+    return (int)(parts < most ? parts : most);
 }
 
 /* Colours are what JPEG has them, BT.601 at full range: libyuv's fastest, and what browsers turn back most exactly (of BT.709 and limited

@@ -313,7 +313,7 @@ bool renderer_is_quick(struct renderer *renderer, const struct view *view, const
 static struct frame *draw_again(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
 {
     struct picture picture;
-    if (!renderer_is_quick(renderer, view, snapshot))
+    if (!renderer->plates || !renderer_is_quick(renderer, view, snapshot))
         return NULL;
     struct frame *frame = renderer_start(renderer, view, snapshot, &picture);
     if (!frame)

@@ -12,6 +12,9 @@
 /* Uniform locations and texture units, as in the shaders. */
 enum { CLIP_FROM_FILE = 0, EYE_FROM_FILE = 1, SUN_FROM_FILE = 1, MATERIAL = 2, TEXTURES = 3, EYE_FROM_NORMAL = 4 };
 static const double LEVEL_ERROR_PX[] = { [TIER_MOVING] = 1.0, [TIER_STILL] = 0.7 }; /* of the silhouette */
+/* Of how much depth changes from pixel to pixel, for each step of scene_asset.front: GPUs round corners to parts of a pixel, each triangle
+   in its own way. */
+static const double FORWARD_SLOPE = 0.05;
 static const double SUN_SLACK_TEXELS = 3;                                           /* against surfaces that shade themselves */
 enum { UNIT_PALETTE = 0, UNIT_RAMPS = 1, UNIT_SUN_MAP = 2, UNIT_MAPS = 3, UNIT_LINES = 15 };
 
@@ -183,6 +186,7 @@ static void draw_asset(struct solid *solid, const struct picture *picture, int i
             continue;
         if (!bound) {
             stage_set_front_face(asset);
+            glPolygonOffset((float)(FORWARD_SLOPE * asset->front), 0);
             mesh_bind(&model->mesh, picture->light->baked[index], field ? field->buffer : 0);
             glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, model->material_buffer);
             glBindTextureUnit(UNIT_RAMPS, picture->view->look == LOOK_MATERIALS ? model->own_ramps : model->ramps);
@@ -218,6 +222,7 @@ static void begin_pass(const struct picture *picture)
 {
     gl_pass_enter("solid");
     glEnable(GL_DEPTH_TEST);
+    glEnable(GL_POLYGON_OFFSET_FILL);
     glDepthMask(GL_TRUE);
     glDisable(GL_BLEND);
     glBindTextureUnit(UNIT_PALETTE, picture->palette.colors);
@@ -232,6 +237,7 @@ static void end_pass(const struct picture *picture)
 {
     glDisable(GL_BLEND);
     glDisable(GL_CULL_FACE);
+    glDisable(GL_POLYGON_OFFSET_FILL);
     gl_pass_leave(picture->stage->gl, "solid");
 }
 

@@ -21,6 +21,7 @@
 #define FOLDER "build/bench"
 enum { WIDTH_PX = 1920, HEIGHT_PX = 1080, PROBE_WIDTH_PX = 192, PROBE_HEIGHT_PX = 108 };
 enum { FEW_SENSORS = 5, MANY_SENSORS = 512 }; /* of which frames should take equally long */
+enum { IN_FLIGHT = 3, FLOW_FRAMES = 960 }; /* of pictures that are not waited for one by one */
 enum { CAMERAS = 48, MOST_FRAMES = 96, LEAST_FRAMES = 2, HULL_POINTS = 96 };
 static const int64_t CHANGE_NS = 100 * NS_PER_MS, LONGEST_NS = 3 * NS_PER_S; /* of a row */
 static const double LONGEST_BRUTE_MS = 20e3;
@@ -290,6 +291,43 @@ static void run_series(struct bench *bench, struct series *series)
     series->seconds = (double)(clock_mono_ns() - began_ns) / 1e9;
 }
 
+/* Pictures given to the GPU before others have come. */
+static void run_flow(struct bench *bench, struct series *series)
+{
+    struct view view;
+    struct stroke *flying[IN_FLIGHT] = { NULL };
+    int64_t began_ns = 0, changed_ns = clock_mono_ns();
+    double worked_ms = 0;
+    *series = (struct series){ 0 };
+    make_view(bench, WIDTH_PX, HEIGHT_PX, &view);
+    for (int i = -IN_FLIGHT; i < FLOW_FRAMES; i++) {
+        int64_t now_ns = clock_mono_ns();
+        struct stroke **stroke = &flying[(i + IN_FLIGHT) % IN_FLIGHT];
+        if (i == 0) {
+            began_ns = now_ns;
+            worked_ms = now_ms(CLOCK_PROCESS_CPUTIME_ID);
+        }
+        if (now_ns - changed_ns >= CHANGE_NS) {
+            changed_ns = now_ns;
+            crowd_change(&bench->crowd, now_ns);
+            series->changes += i >= 0;
+        }
+        if (*stroke) {
+            struct frame *frame = renderer_end(bench->renderer, stroke);
+            series->triangles = frame->triangles;
+            frame_unref(&frame);
+        }
+        view.camera = bench->cameras[(i + CAMERAS) % CAMERAS];
+        *stroke = renderer_launch(bench->renderer, &view, bench->crowd.snapshot);
+    }
+    series->seconds = (double)(clock_mono_ns() - began_ns) / 1e9;
+    for (int i = 0; i < IN_FLIGHT; i++)
+        renderer_abandon(bench->renderer, &flying[i]);
+    series->frames = 1;
+    series->time_ms[0] = series->seconds * 1e3 / FLOW_FRAMES;
+    series->work_ms[0] = (now_ms(CLOCK_PROCESS_CPUTIME_ID) - worked_ms) / FLOW_FRAMES;
+}
+
 static void print_row(const struct bench *bench, const char *name, struct series *series, double goal_ms)
 {
     int middle = series->frames / 2, late = series->frames * 95 / 100;
@@ -342,6 +380,7 @@ static void measure(struct bench *bench, const struct model *model, const char *
     struct series *series = mem_new(sizeof(*series));
     int count = sensors == 5 && !strcmp(kind, "instances") ? instances : sensors;
     char *name = mem_printf("render_%s_%d%s_ms", kind, count, model->suffix);
+    char *flow_name = mem_printf("flow_%s_%d%s_ms", kind, count, model->suffix);
     char *brute_name = mem_printf("brute_%s_%d%s_ms", kind, count, model->suffix);
     if (access(model->path, R_OK) != 0) {
         print_missing(name, "its model is not there");
@@ -352,11 +391,16 @@ static void measure(struct bench *bench, const struct model *model, const char *
         print_row(bench, name, series, goal_ms);
         if (strcmp(kind, "sensors") == 0)
             compare_sensors(bench, model, sensors, series);
+        if (!bench->gl->software) {
+            run_flow(bench, series);
+            print_row(bench, flow_name, series, goal_ms);
+        }
         measure_brute(bench, brute_name, sensors, series);
     }
     bench_finish(bench);
     mem_free(name);
     mem_free(brute_name);
+    mem_free(flow_name);
     mem_free(series);
 }
 

@@ -73,25 +73,3 @@ def stream_rows(bin_folder):
         yield from still_rows(plant, "still_jpeg", "jpeg", (None, None), lambda seconds: change_together(plant, seconds))
         time.sleep(2)
         yield from still_rows(plant, "nothing", "h264", (("<=", 0), ("<=", 1)), time.sleep)
-
-
-GPU_MOST_SESSIONS = 256
-
-
-def gpu_stream_rows(bin_folder):
-    """At 1920x1080, drawn by hardware: one session, and as many as get 30 frames/s each."""
-    size = ("--seconds", 5, "--motion", "orbit", "--size", "1920x1080")
-    limits = [word for name in ("address-sessions=1000", "address-messages=1000000", "least-fps=0") for word in ("--limit", name)]
-    with DemoPlant(bin_folder, "--gl", "egl-device", *limits) as plant:
-        found, why = (None, plant.failed) if plant.failed else plant.probe(*size)
-        if not why and not found["input_to_frame_ms"]:
-            why = "no frame showed a camera that was sent"
-        yield row("gpu_stream_1080p_input_p50_ms", None if why else round(found["input_to_frame_ms"]["p50"], 1), "ms", ("<=", 10),
-                  p95=None if why else round(found["input_to_frame_ms"]["p95"], 1), why=why)
-        served, sessions = 0, 1
-        while not why and sessions <= GPU_MOST_SESSIONS:
-            found, failed = plant.probe("--sessions", sessions, "--blind", *size)
-            if failed or found["failures"] or found["fps_lowest"] < 30:
-                break
-            served, sessions = sessions, sessions + max(1, sessions // 4)
-        yield row("gpu_stream_1080p_sessions", None if why else served, "", why=why)

@@ -157,7 +157,8 @@ static pid_t try_without_drivers(void)
         return child;
     struct log *log = log_create(LOG_INFO);
     setenv("LIBGL_DRIVERS_PATH", "/nowhere", 1);
-    _exit(gl_create(log, GL_EGL_SURFACELESS, NULL) ? 1 : 0);
+    struct gl *gl = gl_create(log, GL_EGL_SURFACELESS, NULL);
+    _exit(gl && gl->software); /* those of a GPU are not Mesa's */
 }
 
 static pid_t without_drivers;
