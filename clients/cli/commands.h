@@ -12,6 +12,8 @@ int cmd_tags(int argc, char **argv);     /* the tags of a daemon with their valu
 /* address_base: 0, 1, or -1: not said. rtu: RTU frames in the connection. */
 int tags_probe(const char *device, const char *address, int address_base, bool rtu);
 int cmd_history(int argc, char **argv);  /* recorded series in and out */
+int cmd_backup(int argc, char **argv);   /* history, journal and configuration, out and in again */
+int cmd_restore(int argc, char **argv);
 int cmd_token(int argc, char **argv);    /* who is let in by a daemon */
 
 /* Fetches PATH (with its query, e.g. "/snapshot.png?width=640&group=temperature") from the daemon at url (http://HOST:PORT/) into

@@ -15,6 +15,8 @@ static const struct command {
     { "probe", "put load on a daemon and print a table of latencies", cmd_probe },
     { "tags", "print the tags of a daemon and their values", cmd_tags },
     { "history", "take series into a plant's history, or print what was recorded", cmd_history },
+    { "backup", "history, journal and configuration of a plant, also while its daemon records", cmd_backup },
+    { "restore", "what backup made, put in place", cmd_restore },
     { "token", "make, list and revoke what lets people and programs in", cmd_token },
 };
 enum { COMMANDS = sizeof(commands) / sizeof(commands[0]) };

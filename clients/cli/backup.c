@@ -1,0 +1,345 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* `plantcast backup` and `restore`: history, the journal of alarms and the configuration of a plant, into one folder and out of it. */
+#include <dirent.h>
+#include <errno.h>
+#include <getopt.h>
+#include <jansson.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "alarm/journal.h"
+#include "base/clock.h"
+#include "base/mem.h"
+#include "base/text.h"
+#include "commands.h"
+#include "history/copy.h"
+#include "history/month.h"
+#include "history/when.h"
+#include "plant/plant.h"
+
+#define MANIFEST "backup.json"
+#define PLANT_FILE "plant.yaml"
+enum { MANIFEST_VERSION = 1, MANIFEST_MAX = 1 << 20 };
+
+struct job {
+    struct log *log;
+    const char *folder;  /* of the backup */
+    const char *history; /* --history */
+    json_t *files;       /* of the manifest: {"name":...,"bytes":...,"xxh128":...} */
+};
+
+static void print_usage(FILE *out)
+{
+    fputs("usage: plantcast backup PLANT.yaml -o FOLDER [--history DIR]\n"
+          "       plantcast restore FOLDER PLANT.yaml [--history DIR]\n"
+          "\n"
+          "backup copies history, the journal of alarms, the plant file and its tag list into a new folder, also while the daemon\n"
+          "records: each database as it was at one moment. Models are not in it.\n"
+          "\n"
+          "restore checks that a backup is whole and puts it in place: the plant file as PLANT.yaml, its tag list beside it, history\n"
+          "where the plant file says. Nothing is overwritten: where a file is in the way, nothing is restored.\n"
+          "\n"
+          "  --history DIR    where history is, or is to be (as the plant file says; else beside it)\n",
+          out);
+}
+
+static bool say(const char *what, const char *why)
+{
+    fprintf(stderr, "plantcast: %s: %s\n", what, why);
+    return false;
+}
+
+static struct plant *load(const char *path)
+{
+    struct diag diag = { 0 };
+    struct plant *plant = plant_load(path, &diag);
+    if (!plant)
+        diag_print(&diag, stderr);
+    diag_finish(&diag);
+    return plant;
+}
+
+static char *history_folder(const struct job *job, const struct plant *plant)
+{
+    return job->history ? mem_strdup(job->history) : plant_history_folder(plant);
+}
+
+/* The tag list's name, as the plant file of the copy finds it: below its own folder. NULL: it lies elsewhere. */
+static const char *tags_name(const struct plant *plant)
+{
+    size_t n = strlen(plant->folder);
+    const char *rest = plant->tags_path + n;
+    return !strncmp(plant->tags_path, plant->folder, n) && *rest == '/' && !strchr(rest + 1, '/') ? rest + 1 : NULL;
+}
+
+/* --- backup --------------------------------------------------------------------------------------------------------------------- */
+
+typedef bool copier(struct log *log, const char *from, const char *to);
+
+static bool add(struct job *job, copier *copy, const char *from, const char *name)
+{
+    char *to = mem_printf("%s/%s", job->folder, name), hash[COPY_HASH_BYTES];
+    long long bytes;
+    bool good = copy(job->log, from, to) && copy_hash(job->log, to, hash, &bytes);
+    if (good)
+        json_array_append_new(job->files, json_pack("{s:s,s:I,s:s}", "name", name, "bytes", (json_int_t)bytes, "xxh128", hash));
+    mem_free(to);
+    return good;
+}
+
+/* The newest month last: what is written meanwhile is in there. */
+static bool add_history(struct job *job, const char *folder)
+{
+    size_t count;
+    int *months = month_list(folder, &count);
+    bool good = true;
+    for (size_t i = 0; i < count && good; i++) {
+        char name[MONTH_NAME_BYTES];
+        month_name(months[i], name);
+        char *from = mem_printf("%s/%s", folder, name);
+        good = add(job, copy_database, from, name);
+        mem_free(from);
+    }
+    mem_free(months);
+    char *journal = mem_printf("%s/" JOURNAL_FILE, folder);
+    if (good && access(journal, F_OK) == 0)
+        good = add(job, copy_database, journal, JOURNAL_FILE);
+    mem_free(journal);
+    return good;
+}
+
+/* As the plant file means it: below its own folder, or anywhere. NULL: beside it. */
+static const char *history_name(const struct plant *plant)
+{
+    size_t n = strlen(plant->folder);
+    const char *folder = plant->history.folder;
+    return folder && !strncmp(folder, plant->folder, n) && folder[n] == '/' ? folder + n + 1 : folder;
+}
+
+static bool write_manifest(struct job *job, const struct plant *plant)
+{
+    char now[WHEN_BYTES];
+    when_print(clock_utc_ns() / 1000, now);
+    json_t *manifest = json_pack("{s:i,s:s,s:s?,s:O}", "version", MANIFEST_VERSION, "made", now, "history", history_name(plant),
+                                 "files", job->files);
+    char *path = mem_printf("%s/" MANIFEST, job->folder), *text = json_dumps(manifest, JSON_INDENT(2));
+    int error = text_write_file(path, text, strlen(text));
+    if (error)
+        say(path, strerror(-error));
+    free(text);
+    mem_free(path);
+    json_decref(manifest);
+    return !error;
+}
+
+static void remove_folder(const char *folder)
+{
+    DIR *dir = opendir(folder);
+    for (struct dirent *entry; dir && (entry = readdir(dir));) {
+        char *path = mem_printf("%s/%s", folder, entry->d_name);
+        unlink(path);
+        mem_free(path);
+    }
+    if (dir)
+        closedir(dir);
+    rmdir(folder);
+}
+
+/* The folder has its name once all is in it. */
+static bool back_up(struct job *job, const struct plant *plant, const char *out)
+{
+    const char *tags = tags_name(plant);
+    char *history = history_folder(job, plant), *part = mem_printf("%s.part", out);
+    bool good = false;
+    job->folder = part;
+    if (!tags)
+        say(plant->tags_path, "the tag list lies in another folder than the plant file; it cannot be backed up with it");
+    else if (access(out, F_OK) == 0)
+        say(out, "is there already");
+    else if (mkdir(part, 0777) != 0)
+        say(part, strerror(errno));
+    else {
+        good = add(job, copy_file, plant->path, PLANT_FILE) && add(job, copy_file, plant->tags_path, tags) && add_history(job, history) &&
+               write_manifest(job, plant);
+        if (good && rename(part, out) != 0)
+            good = say(out, strerror(errno));
+        if (!good)
+            remove_folder(part);
+    }
+    if (good)
+        printf("%s: %zu files\n", out, json_array_size(job->files));
+    mem_free(history);
+    mem_free(part);
+    return good;
+}
+
+/* --- restore -------------------------------------------------------------------------------------------------------------------- */
+
+static json_t *read_manifest(const char *folder)
+{
+    char *path = mem_printf("%s/" MANIFEST, folder);
+    size_t bytes;
+    char *text = text_read_file(path, MANIFEST_MAX, &bytes);
+    json_t *manifest = text ? json_loads(text, 0, NULL) : NULL;
+    bool good = json_integer_value(json_object_get(manifest, "version")) == MANIFEST_VERSION &&
+                json_is_array(json_object_get(manifest, "files"));
+    if (!good)
+        say(path, text ? "is no list of a backup that this program knows" : strerror(errno));
+    if (!good && manifest) {
+        json_decref(manifest);
+        manifest = NULL;
+    }
+    mem_free(text);
+    mem_free(path);
+    return manifest;
+}
+
+/* A name from a file is no way out of the folder. */
+static bool is_plain(const char *name)
+{
+    return name && *name && *name != '.' && !strchr(name, '/');
+}
+
+static bool is_whole(struct job *job)
+{
+    bool good = true;
+    size_t i;
+    json_t *file;
+    json_array_foreach(job->files, i, file)
+    {
+        const char *name = json_string_value(json_object_get(file, "name")), *expected = json_string_value(json_object_get(file, "xxh128"));
+        char hash[COPY_HASH_BYTES];
+        long long bytes;
+        if (!is_plain(name) || !expected)
+            return say(job->folder, "its list is wrong");
+        char *path = mem_printf("%s/%s", job->folder, name);
+        if (!copy_hash(job->log, path, hash, &bytes) || strcmp(hash, expected) != 0)
+            good = say(path, "is not as it was when the backup was made");
+        mem_free(path);
+    }
+    return good;
+}
+
+static bool is_free(const char *path)
+{
+    return access(path, F_OK) != 0 || say(path, "is in the way; nothing was restored");
+}
+
+/* Where a file of the backup goes. */
+static char *place_of(const char *name, const char *plant_path, const char *history)
+{
+    const char *slash = strrchr(plant_path, '/');
+    if (!strcmp(name, PLANT_FILE))
+        return mem_strdup(plant_path);
+    int month;
+    if (month_parse(name, &month) || !strcmp(name, JOURNAL_FILE))
+        return mem_printf("%s/%s", history, name);
+    return slash ? mem_printf("%.*s/%s", (int)(slash - plant_path), plant_path, name) : mem_strdup(name);
+}
+
+static bool each_file(struct job *job, const char *plant_path, const char *history, bool put)
+{
+    size_t i;
+    json_t *file;
+    bool good = true;
+    json_array_foreach(job->files, i, file)
+    {
+        const char *name = json_string_value(json_object_get(file, "name"));
+        char *from = mem_printf("%s/%s", job->folder, name), *to = place_of(name, plant_path, history);
+        good = good && (put ? copy_file(job->log, from, to) : is_free(to));
+        mem_free(from);
+        mem_free(to);
+    }
+    return good;
+}
+
+/* Where the plant file, in its new place, will look for it. */
+static char *future_history(const struct job *job, const json_t *manifest, const char *plant_path)
+{
+    const char *name = json_string_value(json_object_get(manifest, "history")), *slash = strrchr(plant_path, '/');
+    const char *file = slash ? slash + 1 : plant_path, *dot = strrchr(file, '.');
+    if (job->history || (name && *name == '/'))
+        return mem_strdup(job->history ? job->history : name);
+    if (name)
+        return mem_printf("%.*s%s", (int)(file - plant_path), plant_path, name);
+    return mem_printf("%.*s.history", (int)(dot ? dot - plant_path : (long)strlen(plant_path)), plant_path);
+}
+
+static bool restore(struct job *job, const char *plant_path)
+{
+    json_t *manifest = read_manifest(job->folder);
+    job->files = json_object_get(manifest, "files");
+    char *history = manifest && is_whole(job) ? future_history(job, manifest, plant_path) : NULL;
+    bool good = history && each_file(job, plant_path, history, false);
+    if (good && mkdir(history, 0777) != 0 && errno != EEXIST)
+        good = say(history, strerror(errno));
+    good = good && each_file(job, plant_path, history, true);
+    if (good)
+        printf("%s: restored, as of %s; its history is in %s\n", plant_path, json_string_value(json_object_get(manifest, "made")), history);
+    mem_free(history);
+    json_decref(manifest);
+    return good;
+}
+
+/* --- the command line ------------------------------------------------------------------------------------------------------------ */
+
+/* -1: go on; else the exit code. */
+static int parse(int argc, char **argv, struct job *job, const char **out)
+{
+    static const struct option options[] = {
+        { "history", required_argument, NULL, 'd' }, { "out", required_argument, NULL, 'o' }, { "help", no_argument, NULL, 'h' }, { 0 }
+    };
+    for (int option; (option = getopt_long(argc, argv, "o:h", options, NULL)) != -1;) {
+        switch (option) {
+        case 'd': job->history = optarg; break;
+        case 'o': *out = optarg; break;
+        case 'h': print_usage(stdout); return 0;
+        default: print_usage(stderr); return 2;
+        }
+    }
+    return -1;
+}
+
+int cmd_backup(int argc, char **argv)
+{
+    struct job job = { 0 };
+    const char *out = NULL;
+    int code = parse(argc, argv, &job, &out);
+    if (code >= 0)
+        return code;
+    if (argc - optind != 1 || !out) {
+        print_usage(stderr);
+        return 2;
+    }
+    struct plant *plant = load(argv[optind]);
+    if (!plant)
+        return 1;
+    job.log = log_create(LOG_WARN);
+    job.files = json_array();
+    code = back_up(&job, plant, out) ? 0 : 1;
+    json_decref(job.files);
+    log_destroy(&job.log);
+    plant_destroy(&plant);
+    return code;
+}
+
+int cmd_restore(int argc, char **argv)
+{
+    struct job job = { 0 };
+    const char *out = NULL;
+    int code = parse(argc, argv, &job, &out);
+    if (code >= 0)
+        return code;
+    if (argc - optind != 2 || out) {
+        print_usage(stderr);
+        return 2;
+    }
+    job.log = log_create(LOG_WARN);
+    job.folder = argv[optind];
+    code = restore(&job, argv[optind + 1]) ? 0 : 1;
+    log_destroy(&job.log);
+    return code;
+}

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Backup while a daemon records, restore elsewhere, and the two compared; what is damaged or in the way is refused by name.
+import assert from 'node:assert/strict';
+import { appendFileSync, copyFileSync, existsSync, mkdirSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+
+const absent = missing();
+const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
+const BEGIN_S = Math.floor(Date.now() / 1000) - 40 * 86400; // over a border of months
+let plant;
+
+before(async () => {
+    if (skip)
+        return;
+    plant = await TinyPlant.create();
+    const row = (_, i) => `TI-1,${BEGIN_S + i * 860},${(50 + 40 * Math.sin(i / 9)).toFixed(3)}`;
+    const lines = ['Tag,Time,Value', ...Array.from({ length: 4000 }, row)];
+    writeFileSync(join(plant.folder, 'series.csv'), `${lines.join('\n')}\n`);
+    assert.equal(plant.prepare().code, 0);
+    const imported = runProgram('plantcast', ['history', 'import', plant.file, join(plant.folder, 'series.csv')]);
+    assert.equal(imported.code, 0, imported.err);
+    await plant.startSim();
+    await plant.startDaemon();
+});
+after(() => plant?.destroy());
+
+const folder = (name) => join(plant.folder, name);
+const exported = (file, to) => {
+    const args = ['history', 'export', file, '--tags', 'TI-1,TI-2,PI-1', '--from', String(BEGIN_S - 10), '--to', to];
+    const result = runProgram('plantcast', args);
+    assert.equal(result.code, 0, result.err);
+    return result.out.trim().split('\n');
+};
+
+test('what was recorded comes back elsewhere, point by point', { skip }, async () => {
+    await new Promise((done) => setTimeout(done, 3000)); // something of now
+    const to = String(Math.floor(Date.now() / 1000) - 1);
+    for (const name of ['one', 'two', 'three']) {
+        const made = runProgram('plantcast', ['backup', plant.file, '-o', folder(name)]);
+        assert.equal(made.code, 0, made.err);
+        assert.ok(!existsSync(folder(`${name}.part`)));
+    }
+    const names = readdirSync(folder('one'));
+    assert.ok(names.filter((name) => /^history-\d{4}-\d\d\.sqlite$/.test(name)).length >= 2, names.join(' '));
+    assert.ok(names.includes('backup.json') && names.includes('plant.yaml') && names.includes('tags.csv'));
+    assert.ok(!names.some((name) => /-wal|-shm|part/.test(name)), names.join(' '));
+    mkdirSync(folder('elsewhere'));
+    const other = join(folder('elsewhere'), 'other.yaml');
+    copyFileSync(join(plant.folder, 'box.gltf'), join(folder('elsewhere'), 'box.gltf')); // models are not in a backup
+    const restored = runProgram('plantcast', ['restore', folder('three'), other]);
+    assert.equal(restored.code, 0, restored.err);
+    assert.equal(readFileSync(other, 'utf8'), readFileSync(plant.file, 'utf8'));
+    const was = exported(plant.file, to), is = exported(other, to);
+    assert.ok(was.length > 3000, `${was.length} points`);
+    assert.deepEqual(is.slice(0, was.length - 20), was.slice(0, was.length - 20));
+    const again = runProgram('plantcast', ['restore', folder('three'), other]);
+    assert.deepEqual([again.code, /in the way; nothing was restored/.test(again.err)], [1, true], again.err);
+});
+
+test('the daemon never notices', { skip }, async () => {
+    const text = await (await fetch(`http://127.0.0.1:${plant.port}/metrics`)).text();
+    assert.match(text, /^plantcast_history_good 1$/m);
+    assert.match(text, /^plantcast_history_lost_total 0$/m);
+});
+
+test('what is damaged, missing or in the way is refused by name', { skip }, () => {
+    const damaged = readdirSync(folder('one')).find((name) => name.startsWith('history-'));
+    appendFileSync(join(folder('one'), damaged), 'x');
+    const target = join(folder('elsewhere'), 'third.yaml');
+    const refused = runProgram('plantcast', ['restore', folder('one'), target]);
+    assert.deepEqual([refused.code, refused.err.includes(`${damaged}: is not as it was`), existsSync(target)], [1, true, false], refused.err);
+    const none = runProgram('plantcast', ['restore', folder('nothing'), target]);
+    assert.deepEqual([none.code, /backup\.json/.test(none.err)], [1, true]);
+    const list = join(folder('two'), 'backup.json');
+    writeFileSync(list, readFileSync(list, 'utf8').replace('tags.csv', '../tags.csv'));
+    assert.equal(runProgram('plantcast', ['restore', folder('two'), target]).code, 1);
+    const there = runProgram('plantcast', ['backup', plant.file, '-o', folder('three')]);
+    assert.deepEqual([there.code, /is there already/.test(there.err)], [1, true]);
+    for (const args of [['backup', plant.file], ['backup'], ['restore', folder('three')], ['restore', 'a', 'b', 'c']])
+        assert.equal(runProgram('plantcast', args).code, 2, args.join(' '));
+});
