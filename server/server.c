@@ -13,38 +13,27 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "alarm/alarming.h"
 #include "base/counters.h"
 #include "base/mem.h"
-#include "base/workers.h"
 #include "encode/encoder.h"
 #include "far.h"
 #include "field/colormap.h"
-#include "history/historian.h"
-#include "net/net.h"
-#include "value/derived.h"
+#include "loaded.h"
+#include "reload.h"
 #include "value/plan_text.h"
-#include "value/source.h"
 #include "version.h"
 
 struct server {
     struct server_params params;
     struct log *log;
     struct counters *counters;
-    struct plant *plant;
-    struct scene *scene;
-    struct store *store;
-    struct baselines *baselines;
-    struct moments *moments;
-    struct historian *historian; /* NULL: nothing is recorded */
-    struct alarming *alarming;
-    struct source **sources; /* by index in plant->sources */
-    struct source *derived;  /* computes tags from tags; NULL: there are none */
     struct workers *workers;
-    struct painter *painter;
+    struct loaded_context context;
+    struct loaded *loaded;
+    struct reload *reload;
     pthread_mutex_t wake_lock; /* holds net alive while the render thread wakes it */
     struct net *net;
-    char *web, *history; /* folders; NULL: none */
+    char *web; /* folder; NULL: none */
 };
 
 static struct net *_Atomic to_stop;
@@ -59,7 +48,7 @@ static void on_signal(int number)
     errno = cause;
 }
 
-/* The files of tokens and certificate are looked at once a second in any case. */
+/* The plant is loaded anew; the files of tokens and certificate are looked at once a second in any case. */
 static void on_hangup(int number)
 {
     (void)number;
@@ -92,22 +81,6 @@ static struct plant *load_plant(const char *path)
     return plant;
 }
 
-static char *prepared_folder(const struct server_params *params, const struct plant *plant)
-{
-    return params->prepared ? mem_strdup(params->prepared) : plant_prepared_folder(plant);
-}
-
-static struct scene *open_scene(struct log *log, const struct server_params *params, const struct plant *plant)
-{
-    char *folder = prepared_folder(params, plant);
-    colormaps_of_plant(plant);
-    struct scene *scene = scene_create(log, plant, folder);
-    if (!scene)
-        log_err(log, "%s: the prepared files in %s cannot be used; run plantcast-prep %s", params->plant_path, folder, params->plant_path);
-    mem_free(folder);
-    return scene;
-}
-
 /* The client's files lie beside an installed program, or in the tree that it was built in. */
 static char *find_web(const char *given)
 {
@@ -132,41 +105,12 @@ static char *find_web(const char *given)
     return NULL;
 }
 
-static void warn_of_far_sensors(struct log *log, const struct scene *scene)
-{
-    size_t count;
-    struct far_sensor *far = far_sensors(scene, &count);
-    for (size_t i = 0; i < count && i < 10; i++)
-        log_warn(log, "%s: sensor %s is %.3f m from the surface of %s (at most %.3f m is expected)", scene->plant->tags_path,
-                 scene->plant->tags[far[i].sensor->tag].name, far[i].sensor->surface_distance_m, far[i].asset->plant->id, far[i].limit_m);
-    if (count > 10)
-        log_warn(log, "%s: %zu more sensors are far from their surface; plantcastd --check lists them", scene->plant->tags_path,
-                 count - 10);
-    mem_free(far);
-}
-
 /* --- life ------------------------------------------------------------------------------------------------------------------ */
-
-static bool start_sources(struct server *server)
-{
-    server->sources = mem_array(server->plant->source_count, sizeof(*server->sources));
-    for (size_t i = 0; i < server->plant->source_count; i++)
-        if (!(server->sources[i] = source_start(server->log, server->plant, (int)i, server->store, server->counters)))
-            return false;
-    if (server->plant->derived_count > 0)
-        server->derived = derived_start(server->log, server->plant, server->store);
-    return server->plant->derived_count == 0 || server->derived;
-}
-
-static const char *h264_library(const struct server *server)
-{
-    return server->params.h264 ? server->params.h264 : ENCODER_H264_LIBRARY;
-}
 
 /* H.264 is offered where it works; JPEG always is. */
 static unsigned find_codecs(const struct server *server)
 {
-    const char *library = h264_library(server);
+    const char *library = loaded_h264_library(&server->params);
     unsigned codecs = 1u << WIRE_CODEC_JPEG | 1u << WIRE_CODEC_PNG;
     if (strcmp(library, "off") != 0 && encoder_works(server->log, "h264", library))
         codecs |= 1u << WIRE_CODEC_H264;
@@ -175,73 +119,32 @@ static unsigned find_codecs(const struct server *server)
     return codecs;
 }
 
-static bool start_alarming(struct server *server)
+/* In the loop, which begins once there is a reload. */
+static void ask_reload(void *arg)
 {
-    const struct alarming_params params = {
-        .log = server->log,
-        .counters = server->counters,
-        .plant = server->plant,
-        .store = server->store,
-        .folder = server->history,
-        .keep_days = server->plant->history.keep_days,
-        .notify = on_pictures,
-        .notify_arg = server,
-    };
-    server->alarming = alarming_start(&params);
-    return server->alarming != NULL;
-}
-
-static bool start_historian(struct server *server)
-{
-    if (server->plant->history.off)
-        return true;
-    server->history = server->params.history ? mem_strdup(server->params.history) : plant_history_folder(server->plant);
-    const struct historian_params params = {
-        .log = server->log, .counters = server->counters, .plant = server->plant, .store = server->store, .folder = server->history
-    };
-    server->historian = historian_start(&params);
-    return server->historian != NULL;
-}
-
-static bool start_painter(struct server *server)
-{
-    struct painter_params params = {
-        .log = server->log,
-        .gl = server->params.gl,
-        .per_fragment = server->params.per_fragment,
-        .gl_device = server->params.has_gl_device ? &server->params.gl_device : NULL,
-        .scene = server->scene,
-        .store = server->store,
-        .baselines = server->baselines,
-        .moments = server->moments,
-        .workers = server->workers,
-        .h264_library = h264_library(server),
-        .counters = server->counters,
-        .notify = on_pictures,
-        .notify_arg = server,
-    };
-    server->painter = painter_create(&params);
-    return server->painter != NULL;
+    reload_ask(((struct server *)arg)->reload);
 }
 
 static bool start_net(struct server *server)
 {
     struct net_params params = {
         .log = server->log,
-        .scene = server->scene,
-        .store = server->store,
-        .baselines = server->baselines,
-        .moments = server->moments,
-        .painter = server->painter,
-        .alarming = server->alarming,
+        .scene = server->loaded->scene,
+        .store = server->loaded->store,
+        .baselines = server->loaded->baselines,
+        .moments = server->loaded->moments,
+        .painter = server->loaded->painter,
+        .alarming = server->loaded->alarming,
         .counters = server->counters,
         .address = server->params.address,
         .port = server->params.port,
         .access = server->params.access,
         .codecs = find_codecs(server),
-        .history_folder = server->history,
+        .history_folder = server->loaded->history,
         .web_folder = server->web,
         .version = PLANTCAST_VERSION,
+        .reload = ask_reload,
+        .reload_arg = server,
     };
     if (!server->web)
         log_warn(server->log, "no web client was found beside the program; --web FOLDER names it");
@@ -249,7 +152,7 @@ static bool start_net(struct server *server)
     pthread_mutex_lock(&server->wake_lock);
     server->net = net;
     pthread_mutex_unlock(&server->wake_lock);
-    return net != NULL;
+    return net && (server->reload = reload_create(&server->context, &server->loaded, net));
 }
 
 /* Clocks in pictures show the plant's time. The environment may be changed only while there is one thread. */
@@ -259,25 +162,36 @@ static void set_time_zone(const struct plant *plant)
     tzset();
 }
 
+/* Findings are printed, errors and warnings. */
+static bool read_plant(struct server *server)
+{
+    struct diag diag = { 0 };
+    server->loaded = loaded_read(&server->context, &diag);
+    diag_print(&diag, stderr);
+    if (diag.errors)
+        fprintf(stderr, "plantcastd: %s: %d error%s\n", server->params.plant_path, diag.errors, diag.errors == 1 ? "" : "s");
+    diag_finish(&diag);
+    return server->loaded != NULL;
+}
+
 static bool server_start(struct server *server)
 {
-    server->plant = load_plant(server->params.plant_path);
-    if (!server->plant)
+    server->counters = counters_create();
+    server->context = (struct loaded_context){
+        .params = &server->params, .log = server->log, .counters = server->counters, .notify = on_pictures, .notify_arg = server
+    };
+    if (!read_plant(server))
         return false;
-    set_time_zone(server->plant);
-    if (!(server->scene = open_scene(server->log, &server->params, server->plant)))
-        return false;
-    warn_of_far_sensors(server->log, server->scene);
+    set_time_zone(server->loaded->plant);
+    colormaps_of_plant(server->loaded->plant);
     if (!net_port_free(server->log, server->params.address, server->params.port) ||
         !net_access_good(server->log, &server->params.access))
         return false;
-    server->counters = counters_create();
-    server->store = store_create(server->plant);
-    server->baselines = baselines_create();
-    server->moments = moments_create();
-    server->workers = workers_create(server->params.threads);
+    server->context.workers = server->workers = workers_create(server->params.threads);
     server->web = find_web(server->params.web);
-    return start_historian(server) && start_alarming(server) && start_sources(server) && start_painter(server) && start_net(server);
+    reload_count(server->counters, server->loaded->plant->hash, true);
+    return loaded_start_recording(server->loaded, NULL) && loaded_start_sources(server->loaded) && loaded_start_painter(server->loaded) &&
+           start_net(server);
 }
 
 /* Against the flow of data: first who takes, last who gives. */
@@ -287,23 +201,12 @@ static void server_finish(struct server *server)
     struct net *net = server->net;
     server->net = NULL;
     pthread_mutex_unlock(&server->wake_lock);
+    reload_destroy(&server->reload);
     net_destroy(&net);
-    painter_destroy(&server->painter);
-    source_stop(&server->derived);
-    for (size_t i = 0; server->sources && i < server->plant->source_count; i++)
-        source_stop(&server->sources[i]);
-    mem_free(server->sources);
-    alarming_stop(&server->alarming);
-    historian_stop(&server->historian);
+    loaded_destroy(&server->loaded);
     workers_destroy(&server->workers);
-    store_destroy(&server->store);
-    baselines_destroy(&server->baselines);
-    moments_destroy(&server->moments);
     counters_destroy(&server->counters);
-    scene_destroy(&server->scene);
-    plant_destroy(&server->plant);
     mem_free(server->web);
-    mem_free(server->history);
     pthread_mutex_destroy(&server->wake_lock);
     log_destroy(&server->log);
 }
@@ -346,7 +249,7 @@ int server_run(const struct server_params *params)
 
 static int check_prepared(const struct server_params *params, const struct plant *plant)
 {
-    char *folder = prepared_folder(params, plant);
+    char *folder = loaded_prepared_folder(params, plant);
     bool exists = access(folder, F_OK) == 0;
     if (!exists)
         printf("%s: not prepared yet (%s)\n", params->plant_path, folder);
@@ -354,7 +257,7 @@ static int check_prepared(const struct server_params *params, const struct plant
     if (!exists)
         return 0;
     struct log *log = log_create(LOG_WARN);
-    struct scene *scene = open_scene(log, params, plant);
+    struct scene *scene = loaded_open_scene(log, params, plant);
     int status = scene ? 0 : 1;
     if (scene) {
         size_t count;

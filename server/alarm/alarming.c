@@ -27,7 +27,7 @@ struct alarming {
         counter *words[ALARM_WORDS], *active, *standing, *chattering, *held, *rate, *raised, *lost;
     } counters;
     pthread_t thread;
-    bool started;
+    _Atomic bool started;
     _Atomic uint64_t number;
     /* --- below: of the thread */
     struct told taken;
@@ -213,7 +213,7 @@ static bool start_journal(struct alarming *alarming)
 static bool start_thread(struct alarming *alarming)
 {
     int error = pthread_create(&alarming->thread, NULL, run, alarming);
-    alarming->started = !error;
+    atomic_store(&alarming->started, !error);
     if (error)
         log_err(alarming->params.log, "alarms: no thread: %s", strerror(error));
     return !error;
@@ -263,6 +263,7 @@ void alarming_halt(struct alarming *alarming)
     if (alarming->started)
         pthread_join(alarming->thread, NULL);
     alarming->started = false;
+    journal_stop(&alarming->journal);
 }
 
 void alarming_stop(struct alarming **pointer)
@@ -271,7 +272,6 @@ void alarming_stop(struct alarming **pointer)
     if (!alarming)
         return;
     alarming_halt(alarming);
-    journal_stop(&alarming->journal);
     alarms_destroy(&alarming->alarms);
     snapshot_destroy(&alarming->snapshot);
     mem_free(alarming->told.at);
@@ -309,6 +309,8 @@ uint64_t alarming_changes(struct alarming *alarming, uint64_t since, void (*each
 const char *alarming_act(struct alarming *alarming, const char *tag, enum alarm_kind kind, const struct alarm_act *act)
 {
     const char *why = "there is no such alarm";
+    if (!alarming->started)
+        return "the plant is being loaded anew; try again";
     int at = plant_find_tag(alarming->params.plant, tag);
     pthread_mutex_lock(&alarming->lock);
     int index = at < 0 ? -1 : alarms_find(alarming->alarms, at, kind);

@@ -53,6 +53,7 @@ struct historian {
     /* --- below: under lock */
     struct told told;
     bool stopping;
+    const struct plant *next; /* whose historian follows; NULL: none */
 };
 
 /* --- from the store ----------------------------------------------------------------------------------------------------------- */
@@ -305,6 +306,17 @@ static void watch_clock(struct historian *historian, int64_t mono_ns, int64_t ut
     historian->utc_ahead_ns = ahead_ns;
 }
 
+/* Every line ends at its newest sample, kept as such; what nobody will record any more has no value from now on. */
+static void end_lines(struct historian *historian, int64_t utc_ns)
+{
+    if (!historian->next)
+        return;
+    for (size_t i = 0; i < historian->plant->tag_count; i++)
+        if (plant_find_tag(historian->next, historian->plant->tags[i].name) < 0)
+            put(historian, (int)i, &(struct history_point){ utc_ns / 1000, NAN, QUALITY_BAD_NO_COMMUNICATION });
+    recorder_end(historian->recorder, &historian->waiting);
+}
+
 static void tick(struct historian *historian, bool last)
 {
     int64_t mono_ns = clock_mono_ns(), utc_ns = clock_utc_ns();
@@ -313,6 +325,8 @@ static void tick(struct historian *historian, bool last)
     watch_clock(historian, mono_ns, utc_ns);
     if (historian->file && month_file_month(historian->file) != month_of(utc_ns / 1000))
         recorder_end(historian->recorder, &historian->waiting); /* no line is held over the border */
+    if (last)
+        end_lines(historian, utc_ns);
     try_to_write(historian, mono_ns, utc_ns, last);
     counter_set(historian->counters.waiting, (int64_t)historian->waiting.count);
 }
@@ -342,6 +356,8 @@ static void *run(void *arg)
     tick(historian, true);
     if (historian->file)
         month_file_tidy(historian->file);
+    if (historian->file && historian->next)
+        month_file_clear_held(historian->file);
     if (historian->waiting.count)
         log_err(historian->log, "history: %zu points could not be written and are lost", historian->waiting.count);
     return NULL;
@@ -370,6 +386,7 @@ struct historian *historian_start(const struct historian_params *params)
     historian->plant = params->plant;
     historian->store = params->store;
     historian->folder = mem_strdup(params->folder);
+    historian->recovered = params->follows;
     historian->tags = history_tags(params->plant);
     historian->recorder = recorder_create(params->plant);
     historian->snapshot = snapshot_create(params->plant->tag_count);
@@ -409,4 +426,14 @@ void historian_stop(struct historian **pointer)
     pthread_mutex_destroy(&historian->lock);
     mem_free(historian);
     *pointer = NULL;
+}
+
+void historian_end(struct historian **historian, const struct plant *next)
+{
+    if (!*historian)
+        return;
+    pthread_mutex_lock(&(*historian)->lock);
+    (*historian)->next = next;
+    pthread_mutex_unlock(&(*historian)->lock);
+    historian_stop(historian);
 }

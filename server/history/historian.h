@@ -14,10 +14,13 @@ struct historian_params {
     const struct plant *plant;
     struct store *store; /* outlives it */
     const char *folder;  /* made where it is missing */
+    bool follows;        /* upon one that was ended: lines go on, and no gap is noted */
 };
 
 struct historian;
 struct historian *historian_start(const struct historian_params *params); /* NULL: no thread; logged */
+/* Writes what there is and ends, for one of another plant to follow: tags that are not in it have no value from now on. Leaves NULL. */
+void historian_end(struct historian **historian, const struct plant *next);
 /* Writes what there is and ends. &NULL is fine; leaves NULL. */
 void historian_stop(struct historian **historian);
 

@@ -28,6 +28,7 @@ struct request {
     char *body;
     size_t count, sent;
     uint64_t client;      /* of the painter, while a picture is awaited */
+    bool reloads;         /* the plant is: that is what is awaited */
     struct asked *asked;  /* meanwhile; NULL: not for one */
     struct request *next; /* in hub->snapshots */
 };
@@ -374,6 +375,52 @@ void http_on_recall(struct hub *hub, struct recall_answer *recalled)
         lws_set_timeout(request->wsi, PENDING_TIMEOUT_CLOSE_SEND, LWS_TO_KILL_ASYNC);
 }
 
+/* --- the plant anew --------------------------------------------------------------------------------------------------------- */
+
+/* A page of another site may have its user's browser send this. */
+static bool may_change(struct hub *hub, struct lws *wsi)
+{
+    char origin[256], host[256];
+    return visitor_header(wsi, WSI_TOKEN_ORIGIN, origin, sizeof(origin)) && visitor_header(wsi, WSI_TOKEN_HOST, host, sizeof(host)) &&
+           access_origin(&hub->params.access, origin, host, hub->tls != NULL);
+}
+
+static int ask_reload(struct hub *hub, struct request *request)
+{
+    request->close = true; /* there may be a body that nobody reads */
+    if (!may_change(hub, request->wsi))
+        return answer_text(request, HTTP_STATUS_FORBIDDEN, "pages of other sites may not do this\n");
+    if (!hub->params.reload)
+        return answer_text(request, HTTP_STATUS_NOT_FOUND, "this plant cannot be loaded anew\n");
+    request->reloads = true;
+    await(hub, request);
+    hub->params.reload(hub->params.reload_arg);
+    return 0;
+}
+
+static void answer_all(struct hub *hub, bool reloads, int status, const char *type, const char *text)
+{
+    for (struct request *request = hub->snapshots, *next; request; request = next) {
+        next = request->next;
+        if (request->reloads != reloads)
+            continue;
+        forget_snapshot(hub, request);
+        request->reloads = false;
+        if (answer(request, status, type, mem_strdup(text), strlen(text), NULL, NULL) < 0)
+            lws_set_timeout(request->wsi, PENDING_TIMEOUT_CLOSE_SEND, LWS_TO_KILL_ASYNC);
+    }
+}
+
+void http_let_go(struct hub *hub)
+{
+    answer_all(hub, false, HTTP_STATUS_SERVICE_UNAVAILABLE, "text/plain; charset=utf-8", "the plant was loaded anew meanwhile; try again\n");
+}
+
+void http_on_reloaded(struct hub *hub, bool good, const char *text)
+{
+    answer_all(hub, true, good ? HTTP_STATUS_OK : 422, "application/json", text);
+}
+
 /* --- routes ----------------------------------------------------------------------------------------------------------------- */
 
 static int metrics(struct hub *hub, struct request *request)
@@ -467,6 +514,7 @@ static const struct {
     { "/api/v1/alarms", api_alarms, ROLE_VIEWER },
     { "/api/v1/alarms/journal", ask_journal, ROLE_VIEWER },
 };
+static const char RELOAD_PATH[] = "/api/v1/reload"; /* POST */
 
 static int refuse(struct request *request, const struct refusal *refusal)
 {
@@ -484,6 +532,7 @@ static bool is_foreign_page(struct lws *wsi)
 
 static const struct refusal NEED_TOKEN = { HTTP_STATUS_UNAUTHORIZED, "a token is needed: Authorization: Bearer TOKEN\n" };
 static const struct refusal NOT_FOR_YOU = { HTTP_STATUS_FORBIDDEN, "viewers get pictures only\n" };
+static const struct refusal NOT_ENGINEER = { HTTP_STATUS_FORBIDDEN, "this takes the role engineer\n" };
 static const struct refusal FOREIGN = { HTTP_STATUS_FORBIDDEN, "pages of other sites do not get this\n" };
 
 static int serve_route(struct hub *hub, struct request *request, size_t i)
@@ -496,20 +545,32 @@ static int serve_route(struct hub *hub, struct request *request, size_t i)
     return routes[i].serve(hub, request);
 }
 
+static int serve_reload(struct hub *hub, struct request *request)
+{
+    enum role role = visitor_of(request->wsi)->role;
+    request->close = true;
+    if (role < ROLE_ENGINEER)
+        return refuse(request, role == ROLE_NOBODY ? &NEED_TOKEN : &NOT_ENGINEER);
+    return is_foreign_page(request->wsi) ? refuse(request, &FOREIGN) : ask_reload(hub, request);
+}
+
 static int serve(struct hub *hub, struct request *request, const char *path)
 {
+    bool post = lws_hdr_total_length(request->wsi, WSI_TOKEN_POST_URI) > 0 && !strcmp(path, RELOAD_PATH);
     bool get = lws_hdr_total_length(request->wsi, WSI_TOKEN_GET_URI) > 0;
     struct refusal refusal;
     request->head = lws_hdr_total_length(request->wsi, WSI_TOKEN_HEAD_URI) > 0;
     counter_inc(hub->counters.requests, 1);
-    if (!get && !request->head) {
+    if (!get && !request->head && !post) {
         request->close = true; /* there may be a body that nobody reads */
-        static const char text[] = "only GET and HEAD\n";
+        static const char text[] = "only GET and HEAD (POST: /api/v1/reload)\n";
         return answer(request, HTTP_STATUS_METHOD_NOT_ALLOWED, "text/plain; charset=utf-8", mem_strdup(text), strlen(text),
                       "allow:", "GET, HEAD");
     }
     if (!visitor_enter(hub, request->wsi, &refusal))
         return refuse(request, &refusal);
+    if (post)
+        return serve_reload(hub, request);
     for (size_t i = 0; i < sizeof(routes) / sizeof(routes[0]); i++)
         if (!strcmp(routes[i].path, path))
             return serve_route(hub, request, i);

@@ -83,6 +83,8 @@ int http_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user,
 void http_on_picture(struct hub *hub, struct picture *picture); /* takes it over */
 void http_on_pick(struct hub *hub, const struct pick_answer *answer);
 void http_on_moment(struct hub *hub, const struct past_answer *answer);
+void http_let_go(struct hub *hub); /* the plant is loaded anew: what waits for the old one is answered */
+void http_on_reloaded(struct hub *hub, bool good, const char *text);
 void http_on_recall(struct hub *hub, struct recall_answer *recalled); /* takes its text */
 /* A complete short answer in plain text. Returns what the callback is to return. */
 int http_answer(struct lws *wsi, int status, const char *text);

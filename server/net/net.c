@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The loop: its context, its tick, its end. */
-#include "net/net.h"
+#include "net/net_impl.h"
 
 #include <arpa/inet.h>
 #include <errno.h>
@@ -22,15 +22,6 @@ static const int64_t TICK_NS = 100 * NS_PER_MS;
 static const int64_t GOODBYE_NS = 500 * NS_PER_MS; /* for the close frames to leave */
 static const int64_t LOOK_NS = NS_PER_S;           /* at the files of tokens and certificate, so often */
 enum { SPARE_FILES = 256 };                        /* beside connections: models, sources, the database */
-
-struct net {
-    struct hub hub;
-    struct lws_vhost *vhost;
-    lws_sorted_usec_list_t tick;
-    struct cpu_meter cpu;
-    int64_t cpu_ns; /* when it was last read */
-    _Atomic bool stopping, look;
-};
 
 static const struct lws_protocols protocols[] = {
     { .name = "http", .callback = http_callback, .per_session_data_size = sizeof(void *) },
@@ -114,6 +105,8 @@ static void look_at_files(struct net *net, int64_t now_ns)
     if (!asked && now_ns - hub->looked_ns < LOOK_NS)
         return;
     hub->looked_ns = now_ns;
+    if (asked && hub->params.reload)
+        hub->params.reload(hub->params.reload_arg);
     if (hub->tls)
         tls_look(hub->tls);
     if (hub->tokens) {
@@ -202,8 +195,10 @@ static void collect_moments(struct hub *hub)
     }
 }
 
-static void collect(struct hub *hub)
+static void collect(struct net *net)
 {
+    struct hub *hub = &net->hub;
+    net_calls_run(net);
     look_at_alarms(hub);
     collect_picks(hub);
     collect_recalled(hub);
@@ -335,7 +330,7 @@ static void wake(void *arg)
     net_wake(arg);
 }
 
-static bool open_history(struct net *net)
+bool net_open_history(struct net *net)
 {
     struct hub *hub = &net->hub;
     const struct net_params *params = &hub->params;
@@ -363,27 +358,35 @@ bool net_access_good(struct log *log, const struct access_params *access)
     return good;
 }
 
+void net_look_at_plant(struct net *net)
+{
+    struct hub *hub = &net->hub;
+    const struct plant *plant = hub->params.scene->plant;
+    hub->snapshot = snapshot_create(plant->tag_count);
+    hub->changes = mem_array(plant->tag_count, sizeof(*hub->changes));
+    hub->links_up = mem_array(plant->source_count, sizeof(*hub->links_up));
+    hub->world.plant = plant;
+    hub->world.scene = hub->params.scene;
+    hub->world.snapshot = hub->snapshot;
+    hub->world.baselines = hub->params.baselines;
+    hub->world.alarming = hub->params.alarming;
+    hub->world.links_up = hub->links_up;
+    take_snapshot(hub);
+    look_at_links(hub);
+}
+
 struct net *net_create(const struct net_params *params)
 {
     struct net *net = mem_new(sizeof(*net));
     struct hub *hub = &net->hub;
-    const struct plant *plant = params->scene->plant;
+    net_calls_init(net);
     hub->params = *params;
-    hub->snapshot = snapshot_create(plant->tag_count);
-    hub->changes = mem_array(plant->tag_count, sizeof(*hub->changes));
-    hub->links_up = mem_array(plant->source_count, sizeof(*hub->links_up));
     hub->next_client = 1;
     hub->quotas = &hub->params.access.quotas;
     hub->admission.quotas = hub->quotas;
     hub->peers = peers_create(hub->quotas);
     hub->world = (struct session_world){
-        .plant = plant,
-        .scene = params->scene,
-        .snapshot = hub->snapshot,
-        .baselines = params->baselines,
-        .alarming = params->alarming,
         .alarms_said = &hub->alarms_said,
-        .links_up = hub->links_up,
         .tags_said = &hub->tags_said,
         .lists_said = &hub->lists_said,
         .codecs = params->codecs,
@@ -393,10 +396,9 @@ struct net *net_create(const struct net_params *params)
         .admission = &hub->admission,
     };
     add_counters(hub);
-    take_snapshot(hub);
-    look_at_links(hub);
+    net_look_at_plant(net);
     raise_file_limit(params->log, hub->quotas);
-    if (!open_access(net) || !open_context(net) || !open_history(net))
+    if (!open_access(net) || !open_context(net) || !net_open_history(net))
         net_destroy(&net);
     return net;
 }
@@ -424,6 +426,7 @@ void net_destroy(struct net **net_ptr)
     snapshot_destroy(&net->hub.snapshot);
     mem_free(net->hub.changes);
     mem_free(net->hub.links_up);
+    net_calls_finish(net);
     mem_free(net);
     *net_ptr = NULL;
 }
@@ -438,7 +441,8 @@ void net_run(struct net *net)
     struct hub *hub = &net->hub;
     on_tick(&net->tick);
     while (!atomic_load(&net->stopping) && lws_service(hub->context, 0) >= 0)
-        collect(hub);
+        collect(net);
+    net_calls_close(net);
     streams_close(hub);
     for (int64_t end_ns = clock_mono_ns() + GOODBYE_NS; hub->stream_count > 0 && clock_mono_ns() < end_ns;)
         lws_service(hub->context, 0);

@@ -11,14 +11,23 @@
 #include "net/painter.h"
 
 struct net;
+struct net_plant { /* of net_params, what is another once the plant is loaded anew */
+    const struct scene *scene;
+    struct store *store;
+    struct painter *painter;
+    struct baselines *baselines;
+    struct moments *moments;
+    struct alarming *alarming;
+};
+
 struct net_params {
     struct log *log;
     const struct scene *scene;
     struct store *store;
     struct painter *painter;
     struct baselines *baselines;
-    struct alarming *alarming;
     struct moments *moments;
+    struct alarming *alarming;
     struct counters *counters;
     const char *address;    /* numeric */
     int port;               /* 0: any that is free */
@@ -27,6 +36,8 @@ struct net_params {
     const char *history_folder; /* NULL: nothing is recorded */
     const char *web_folder; /* NULL: no client is served */
     const char *version;
+    void (*reload)(void *arg); /* load the plant anew: somebody asks for it; in the loop. NULL: cannot be done */
+    void *reload_arg;
 };
 
 /* Whether the port could be bound now; if not, the reason is logged. For before the slow part of starting. */
@@ -41,6 +52,13 @@ int net_port(const struct net *net);
 void net_run(struct net *net);
 void net_wake(struct net *net); /* pictures are there */
 void net_stop(struct net *net); /* safe in a signal handler */
+/* Has the loop do something; returns once it is done. Any thread but the loop. False: the loop has ended. */
+bool net_call(struct net *net, void (*what)(void *arg), void *arg);
+/* In the loop: lets go of all that is of the plant, before any of it is destroyed; then takes another. Sessions stay, and look at what
+   is still there by the same name. False: history cannot be read any more (logged). */
+void net_let_go(struct net *net);
+bool net_take(struct net *net, const struct net_plant *plant);
+void net_say_reloaded(struct net *net, bool good, const char *text); /* in the loop: to those who asked for it */
 void net_look(struct net *net); /* at the files of tokens and certificate, now; likewise safe */
 
 #endif

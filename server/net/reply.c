@@ -242,6 +242,7 @@ static json_t *plant_object(const struct session_world *world, const struct came
 {
     json_t *object = json_pack("{s:o,s:o,s:o}", "name", string(world->plant->name), "time_zone", string(world->plant->time_zone), "bounds",
                                box(world->scene->bounds_min_m, world->scene->bounds_max_m));
+    json_object_set_new(object, "configuration", string(world->plant->hash));
     json_object_set_new(object, "home",
                         json_pack("{s:o,s:o,s:o,s:o}", "eye", vector(home->eye_m), "target", vector(home->target_m), "up", vector(home->up),
                                   "fov", number(home->fov_deg)));

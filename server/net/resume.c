@@ -108,6 +108,13 @@ bool resumes_find(const struct resumes *resumes, const char *secret, const struc
     return true;
 }
 
+void resumes_forget_gone(struct resumes *resumes)
+{
+    for (size_t i = resumes->count; i-- > 0;)
+        if (!resumes->kept[i].what.live)
+            forget(resumes, i);
+}
+
 void resumes_forget(struct resumes *resumes, const char *secret)
 {
     const struct kept *kept = find(resumes, secret);

@@ -27,6 +27,7 @@ struct resumed {
 };
 /* False: there is none, its time is over, or it is another's than `session`'s. */
 bool resumes_find(const struct resumes *resumes, const char *secret, const struct session *session, int64_t now_ns, struct resumed *out);
+void resumes_forget_gone(struct resumes *resumes); /* views of those who are not connected */
 void resumes_forget(struct resumes *resumes, const char *secret);
 
 #endif

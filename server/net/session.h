@@ -128,6 +128,10 @@ void session_leave(struct session *session, bool keep, int64_t now_ns);
 void session_close(struct session *session, int code, const char *text); /* the first reason stands; text is static */
 void session_check_token(struct session *session, int64_t now_utc_ns);   /* the file of tokens was read again, or time went by */
 
+/* The plant is loaded anew. First: what it looks at, by names (mem_free); it travels no more. Then, with the world as it is by now. */
+char *session_carry(struct session *session);
+void session_replant(struct session *session, const char *carried);
+
 /* One text message. Bad ones are answered with an error and change nothing. */
 void session_on_message(struct session *session, const char *text, size_t count, int64_t now_ns, int64_t now_utc_ns);
 void session_on_oversize(struct session *session, size_t count, int64_t now_ns); /* a message too long to be kept */

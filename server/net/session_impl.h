@@ -30,4 +30,6 @@ void session_ask_lead(struct session *session, const struct message *message);
 void session_pause(struct session *session);    /* nothing moves: keep no picture for it */
 void session_on_shown(struct session *session); /* session->pacer.acked is on the client's screen */
 
+void session_time_leave(struct session *session); /* at once, to now; nothing of its moment is used any more */
+
 #endif

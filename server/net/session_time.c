@@ -68,6 +68,14 @@ void session_time_begin(struct session *session, int64_t at_us, double speed)
     go(session, at_us);
 }
 
+void session_time_leave(struct session *session)
+{
+    session_time_end(session);
+    session->travel = (struct travel){ .moment = NULL };
+    view_travel(&session->view, 0, 0);
+    session_tell_time(session);
+}
+
 void session_time_end(struct session *session)
 {
     if (session->travel.moment)

@@ -26,6 +26,7 @@ struct stream {
     size_t first_bytes;
     int64_t first_ns; /* when the first of them was sent */
     struct marker_said said;
+    char *carried; /* while the plant is loaded anew: what it looks at */
     bool throttled;
     int close_code; /* 0: stays open */
     const char *close_text;

@@ -2,11 +2,16 @@
 /* Loading a plant, and finding things in it. */
 #include "plant/plant.h"
 
+#include <stdio.h>
 #include <string.h>
+#include <xxhash.h>
 
 #include "base/mem.h"
+#include "base/text.h"
 #include "plant/expression.h"
 #include "plant/plant_parts.h"
+
+enum { MAX_FILE_BYTES = 1 << 28 };
 
 static char *folder_of(const char *path)
 {
@@ -14,6 +19,24 @@ static char *folder_of(const char *path)
     if (!slash)
         return mem_strdup(".");
     return slash == path ? mem_strdup("/.") : mem_printf("%.*s", (int)(slash - path), path);
+}
+
+/* Of the bytes that were read: also where a file is changed back. */
+static void hash_files(struct plant *plant)
+{
+    const char *const paths[] = { plant->path, plant->tags_path };
+    XXH3_state_t *state = XXH3_createState();
+    XXH3_64bits_reset(state);
+    for (size_t i = 0; i < 2; i++) {
+        size_t count = 0;
+        char *bytes = paths[i] ? text_read_file(paths[i], MAX_FILE_BYTES, &count) : NULL;
+        XXH3_64bits_update(state, &count, sizeof(count));
+        if (bytes)
+            XXH3_64bits_update(state, bytes, count);
+        mem_free(bytes);
+    }
+    snprintf(plant->hash, sizeof(plant->hash), "%016llx", (unsigned long long)XXH3_64bits_digest(state));
+    XXH3_freeState(state);
 }
 
 static struct plant *load(const char *path, bool keeps_orphans, struct diag *diag)
@@ -26,6 +49,7 @@ static struct plant *load(const char *path, bool keeps_orphans, struct diag *dia
     plant_file_read(plant, diag);
     if (plant->tags_path)
         tag_list_read(plant, diag);
+    hash_files(plant);
     if (diag->errors != errors)
         plant_destroy(&plant);
     return plant;

@@ -178,6 +178,7 @@ struct plant_environment { /* pictures of surroundings, to light the plant with 
 struct plant {
     char *path, *folder;              /* of the plant file; folder without trailing slash */
     char *tags_path;
+    char hash[17];                    /* of both files, hexadecimal: which configuration this is */
     bool keeps_orphans;               /* while it is loaded: tags of assets that are not there are no error */
     char *name, *time_zone;           /* IANA name; default UTC */
     enum axis up;                     /* of the plant frame */

@@ -5,6 +5,7 @@
 #include <assert.h>
 #include <math.h>
 #include <pthread.h>
+#include <string.h>
 
 #include "base/mem.h"
 #include "value/quality.h"
@@ -88,6 +89,38 @@ void store_destroy(struct store **store)
     mem_free((*store)->links);
     mem_free(*store);
     *store = NULL;
+}
+
+static int find_source(const struct plant *plant, const char *id)
+{
+    int i = (int)plant->source_count - 1;
+    while (i >= 0 && strcmp(plant->sources[i].id, id) != 0)
+        i--;
+    return i;
+}
+
+void store_adopt(struct store *store, struct store *before)
+{
+    pthread_mutex_lock(&before->lock);
+    for (size_t i = 0; i < before->plant->tag_count; i++) {
+        int tag = plant_find_tag(store->plant, before->plant->tags[i].name);
+        struct held *to = tag < 0 ? NULL : &store->tags[tag];
+        if (!to)
+            continue;
+        const struct held own = *to;
+        *to = before->tags[i];
+        to->stale_ns = own.stale_ns;
+        to->flatline_ns = own.flatline_ns;
+        to->first_vouched = own.first_vouched;
+        to->next_vouched = own.next_vouched;
+    }
+    for (size_t i = 0; i < before->plant->source_count; i++) {
+        int source = find_source(store->plant, before->plant->sources[i].id);
+        if (source >= 0)
+            store->links[source] = before->links[i];
+    }
+    store->utc_ahead_ns = before->utc_ahead_ns;
+    pthread_mutex_unlock(&before->lock);
 }
 
 void store_listen(struct store *store, store_listener *listener, void *arg)

@@ -31,6 +31,8 @@ enum { STORE_LISTENERS = 4 };
 
 struct store *store_create(const struct plant *plant); /* plant must outlive it */
 void store_destroy(struct store **store);
+/* Readings of tags, and links of sources, that go by the same name in another store: as they are there. Before anybody listens. */
+void store_adopt(struct store *store, struct store *before);
 void store_listen(struct store *store, store_listener *listener, void *arg); /* at most STORE_LISTENERS of them */
 void store_unlisten(struct store *store, store_listener *listener, void *arg); /* hears nothing more once this has returned */
 /* Times are of arrival. A failed read is not a sample: see store_link_lost. */

@@ -125,7 +125,8 @@ static void what_is_asked_is_done_or_refused(void **state)
     struct message message;
     struct message_error error;
     give(s, 0, 95, QUALITY_GOOD);
-    assert_true(ask(s, "{\"type\":\"alarm\",\"seq\":4,\"action\":\"acknowledge\",\"name\":\"Kim\",\"alarms\":[[\"TT-1\",\"H\"],[\"TT-2\",\"H\"],"
+    assert_true(ask(s, "{\"type\":\"alarm\",\"seq\":4,\"action\":\"acknowledge\",\"name\":\"Kim\","
+                       "\"alarms\":[[\"TT-1\",\"H\"],[\"TT-2\",\"H\"],"
                        "[\"TT-2\",\"L\"]]}", &message, &error));
     json_t *answer = parse(alarm_do(s->alarming, s->plant, &message, "panel")), *refused = json_object_get(answer, "refused");
     assert_int_equal(json_integer_value(json_object_get(answer, "done")), 1);

@@ -11,6 +11,7 @@ export class Status {
         this.fresh = true;
         session.on('welcome', () => {
             this.clock = zoneClock(session.model.plant.time_zone);
+            setText(byId('config'), (session.model.plant.configuration ?? '–').slice(0, 8));
         });
         setInterval(() => this.show(), 250);
         session.connection.onState = () => this.show();

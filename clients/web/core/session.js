@@ -257,6 +257,7 @@ export class Session {
     hearWelcome(message) {
         const before = this.model;
         this.model = new Model(message);
+        this.markers.clear(); // also where the plant was loaded anew
         this.welcomed = true;
         this.id = message.session;
         this.following = this.skew = null;

@@ -1,0 +1,176 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What depends on the plant: made, started, handed over, ended. */
+#include "loaded.h"
+
+#include <string.h>
+
+#include "base/mem.h"
+#include "far.h"
+#include "field/colormap.h"
+
+/* --- what lies on disk ----------------------------------------------------------------------------------------------------- */
+
+char *loaded_prepared_folder(const struct server_params *params, const struct plant *plant)
+{
+    return params->prepared ? mem_strdup(params->prepared) : plant_prepared_folder(plant);
+}
+
+struct scene *loaded_open_scene(struct log *log, const struct server_params *params, const struct plant *plant)
+{
+    char *folder = loaded_prepared_folder(params, plant);
+    struct scene *scene = scene_create(log, plant, folder);
+    if (!scene)
+        log_err(log, "%s: the prepared files in %s cannot be used; run plantcast-prep %s", params->plant_path, folder, params->plant_path);
+    mem_free(folder);
+    return scene;
+}
+
+static void warn_of_far_sensors(struct log *log, const struct scene *scene)
+{
+    size_t count;
+    struct far_sensor *far = far_sensors(scene, &count);
+    for (size_t i = 0; i < count && i < 10; i++)
+        log_warn(log, "%s: sensor %s is %.3f m from the surface of %s (at most %.3f m is expected)", scene->plant->tags_path,
+                 scene->plant->tags[far[i].sensor->tag].name, far[i].sensor->surface_distance_m, far[i].asset->plant->id, far[i].limit_m);
+    if (count > 10)
+        log_warn(log, "%s: %zu more sensors are far from their surface; plantcastd --check lists them", scene->plant->tags_path,
+                 count - 10);
+    mem_free(far);
+}
+
+struct loaded *loaded_read(const struct loaded_context *context, struct diag *diag)
+{
+    struct loaded *loaded = mem_new(sizeof(*loaded));
+    const struct server_params *params = context->params;
+    loaded->context = context;
+    if (!(loaded->plant = plant_load(params->plant_path, diag)) ||
+        !(loaded->scene = loaded_open_scene(context->log, params, loaded->plant))) {
+        loaded_destroy(&loaded);
+        return NULL;
+    }
+    warn_of_far_sensors(context->log, loaded->scene);
+    loaded->store = store_create(loaded->plant);
+    loaded->baselines = baselines_create();
+    loaded->moments = moments_create();
+    if (!loaded->plant->history.off)
+        loaded->history = params->history ? mem_strdup(params->history) : plant_history_folder(loaded->plant);
+    return loaded;
+}
+
+/* --- life ------------------------------------------------------------------------------------------------------------------ */
+
+static bool start_historian(struct loaded *loaded, bool follows)
+{
+    const struct loaded_context *context = loaded->context;
+    const struct historian_params params = { .log = context->log,
+                                             .counters = context->counters,
+                                             .plant = loaded->plant,
+                                             .store = loaded->store,
+                                             .folder = loaded->history,
+                                             .follows = follows };
+    return !loaded->history || (loaded->historian = historian_start(&params));
+}
+
+static bool start_alarming(struct loaded *loaded, struct alarming *before)
+{
+    const struct loaded_context *context = loaded->context;
+    const struct alarming_params params = {
+        .log = context->log,
+        .counters = context->counters,
+        .plant = loaded->plant,
+        .store = loaded->store,
+        .folder = loaded->history,
+        .keep_days = loaded->plant->history.keep_days,
+        .before = before,
+        .notify = context->notify,
+        .notify_arg = context->notify_arg,
+    };
+    return (loaded->alarming = alarming_start(&params));
+}
+
+bool loaded_start_recording(struct loaded *loaded, struct loaded *before)
+{
+    if (before)
+        store_adopt(loaded->store, before->store);
+    return start_historian(loaded, before != NULL) && start_alarming(loaded, before ? before->alarming : NULL);
+}
+
+bool loaded_start_sources(struct loaded *loaded)
+{
+    const struct loaded_context *context = loaded->context;
+    loaded->sources = mem_array(loaded->plant->source_count, sizeof(*loaded->sources));
+    for (size_t i = 0; i < loaded->plant->source_count; i++)
+        if (!(loaded->sources[i] = source_start(context->log, loaded->plant, (int)i, loaded->store, context->counters)))
+            return false;
+    if (loaded->plant->derived_count > 0)
+        loaded->derived = derived_start(context->log, loaded->plant, loaded->store);
+    return loaded->plant->derived_count == 0 || loaded->derived;
+}
+
+const char *loaded_h264_library(const struct server_params *params)
+{
+    return params->h264 ? params->h264 : ENCODER_H264_LIBRARY;
+}
+
+bool loaded_start_painter(struct loaded *loaded)
+{
+    const struct loaded_context *context = loaded->context;
+    const struct server_params *server = context->params;
+    struct painter_params params = {
+        .log = context->log,
+        .gl = server->gl,
+        .per_fragment = server->per_fragment,
+        .gl_device = server->has_gl_device ? &server->gl_device : NULL,
+        .scene = loaded->scene,
+        .store = loaded->store,
+        .baselines = loaded->baselines,
+        .moments = loaded->moments,
+        .workers = context->workers,
+        .h264_library = loaded_h264_library(server),
+        .counters = context->counters,
+        .notify = context->notify,
+        .notify_arg = context->notify_arg,
+    };
+    return (loaded->painter = painter_create(&params));
+}
+
+static void stop_sources(struct loaded *loaded)
+{
+    for (size_t i = 0; loaded->sources && i < loaded->plant->source_count; i++)
+        source_stop(&loaded->sources[i]);
+    source_stop(&loaded->derived);
+    mem_free(loaded->sources);
+    loaded->sources = NULL;
+}
+
+void loaded_hand_over(struct loaded *loaded, const struct plant *next)
+{
+    stop_sources(loaded);
+    historian_end(&loaded->historian, next);
+    alarming_halt(loaded->alarming);
+}
+
+struct net_plant loaded_net_plant(const struct loaded *loaded)
+{
+    return (struct net_plant){ loaded->scene, loaded->store, loaded->painter, loaded->baselines, loaded->moments, loaded->alarming };
+}
+
+void loaded_destroy(struct loaded **pointer)
+{
+    struct loaded *loaded = *pointer;
+    if (!loaded)
+        return;
+    painter_destroy(&loaded->painter);
+    stop_sources(loaded);
+    alarming_stop(&loaded->alarming);
+    historian_stop(&loaded->historian);
+    store_destroy(&loaded->store);
+    baselines_destroy(&loaded->baselines);
+    if (loaded->moments)
+        moments_destroy(&loaded->moments);
+    scene_destroy(&loaded->scene);
+    plant_destroy(&loaded->plant);
+    mem_free(loaded->history);
+    mem_free(loaded);
+    *pointer = NULL;
+}

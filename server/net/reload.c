@@ -1,0 +1,111 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The loop while the plant is loaded anew: sessions and requests let go of the old one and take the new one. */
+#include <pthread.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "net/net_impl.h"
+#include "net/stream.h"
+
+/* --- calls into the loop ---------------------------------------------------------------------------------------------------- */
+
+void net_calls_init(struct net *net)
+{
+    pthread_mutex_init(&net->call.lock, NULL);
+    pthread_cond_init(&net->call.done, NULL);
+}
+
+void net_calls_finish(struct net *net)
+{
+    pthread_cond_destroy(&net->call.done);
+    pthread_mutex_destroy(&net->call.lock);
+}
+
+bool net_call(struct net *net, void (*what)(void *arg), void *arg)
+{
+    pthread_mutex_lock(&net->call.lock);
+    bool open = !net->call.closed;
+    net->call.what = what;
+    net->call.arg = arg;
+    net_wake(net);
+    while (net->call.what && !net->call.closed)
+        pthread_cond_wait(&net->call.done, &net->call.lock);
+    open = open && !net->call.what;
+    net->call.what = NULL;
+    pthread_mutex_unlock(&net->call.lock);
+    return open;
+}
+
+void net_calls_run(struct net *net)
+{
+    pthread_mutex_lock(&net->call.lock);
+    void (*what)(void *arg) = net->call.what;
+    void *arg = net->call.arg;
+    pthread_mutex_unlock(&net->call.lock);
+    if (!what)
+        return;
+    what(arg); /* who asked waits, and so changes nothing */
+    pthread_mutex_lock(&net->call.lock);
+    net->call.what = NULL;
+    pthread_cond_signal(&net->call.done);
+    pthread_mutex_unlock(&net->call.lock);
+}
+
+void net_calls_close(struct net *net)
+{
+    pthread_mutex_lock(&net->call.lock);
+    net->call.closed = true;
+    pthread_cond_signal(&net->call.done);
+    pthread_mutex_unlock(&net->call.lock);
+}
+
+/* --- the old one, the new one ----------------------------------------------------------------------------------------------- */
+
+void net_let_go(struct net *net)
+{
+    struct hub *hub = &net->hub;
+    for (struct stream *stream = hub->streams; stream; stream = stream->next)
+        stream->carried = session_carry(stream->session);
+    http_let_go(hub);
+    recall_destroy(&hub->recall);
+    past_destroy(&hub->past);
+    resumes_forget_gone(hub->world.resumes);
+    tags_said_finish(&hub->tags_said);
+    alarms_said_finish(&hub->alarms_said);
+    mem_free(hub->lists_said);
+    hub->lists_said = NULL;
+    marker_lists_finish(&hub->marker_lists);
+    hub->marker_lists = (struct marker_lists){ .frame = NULL };
+    snapshot_destroy(&hub->snapshot);
+    mem_free(hub->changes);
+    mem_free(hub->links_up);
+}
+
+bool net_take(struct net *net, const struct net_plant *plant)
+{
+    struct hub *hub = &net->hub;
+    hub->params.scene = plant->scene;
+    hub->params.store = plant->store;
+    hub->params.painter = plant->painter;
+    hub->params.baselines = plant->baselines;
+    hub->params.moments = plant->moments;
+    hub->params.alarming = plant->alarming;
+    hub->alarms_number = 0;
+    net_look_at_plant(net);
+    bool good = net_open_history(net);
+    for (struct stream *stream = hub->streams; stream; stream = stream->next) {
+        session_replant(stream->session, stream->carried);
+        mem_free(stream->carried);
+        stream->carried = NULL;
+        marker_said_finish(&stream->said);
+        stream->said = (struct marker_said){ 0 };
+    }
+    streams_on_alarms(hub);
+    hub_go(hub);
+    return good;
+}
+
+void net_say_reloaded(struct net *net, bool good, const char *text)
+{
+    http_on_reloaded(&net->hub, good, text);
+}

@@ -1,0 +1,202 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Two plants side by side. */
+#include "plant/plant_diff.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/mem.h"
+
+static void __attribute__((format(printf, 2, 3))) say(struct plant_diff *diff, const char *fmt, ...)
+{
+    char line[400];
+    va_list ap;
+    if (diff->count == PLANT_DIFF_LINES) {
+        diff->more++;
+        return;
+    }
+    va_start(ap, fmt);
+    vsnprintf(line, sizeof(line), fmt, ap);
+    va_end(ap);
+    mem_grow(&diff->lines, &diff->capacity, diff->count + 1, sizeof(*diff->lines));
+    diff->lines[diff->count++] = mem_strdup(line);
+}
+
+static bool same_text(const char *a, const char *b)
+{
+    return a == b || (a && b && !strcmp(a, b));
+}
+
+static bool same_number(double a, double b)
+{
+    return a == b || (isnan(a) && isnan(b));
+}
+
+/* --- tags ------------------------------------------------------------------------------------------------------------------- */
+
+static void add(char *what, size_t size, bool differs, const char *name)
+{
+    size_t n = strlen(what);
+    if (differs)
+        snprintf(what + n, size - n, "%s%s", n ? ", " : "", name);
+}
+
+static const char *group_of(const struct plant *plant, const struct plant_tag *tag)
+{
+    return tag->group < 0 ? "" : plant->groups[tag->group].id;
+}
+
+static const char *asset_of(const struct plant *plant, const struct plant_tag *tag)
+{
+    return tag->asset < 0 ? "" : plant->assets[tag->asset].id;
+}
+
+static const char *source_of(const struct plant *plant, const struct plant_tag *tag)
+{
+    return tag->source < 0 ? "" : plant->sources[tag->source].id;
+}
+
+static void compare_limits(struct plant_diff *diff, const struct plant_tag *a, const struct plant_tag *b)
+{
+    for (int i = 0; i < LIMIT_COUNT; i++)
+        if (!same_number(a->limits[i], b->limits[i]))
+            say(diff, "tag %s: %s %g > %g", b->name, plant_limit_names[i], a->limits[i], b->limits[i]);
+}
+
+static void compare_tags(struct plant_diff *diff, const struct plant *before, const struct plant_tag *a, const struct plant *after,
+                         const struct plant_tag *b)
+{
+    char what[300] = "";
+    compare_limits(diff, a, b);
+    add(what, sizeof(what), !same_text(a->address, b->address) || a->type != b->type || a->byte_order != b->byte_order, "address");
+    add(what, sizeof(what), !same_text(source_of(before, a), source_of(after, b)), "source");
+    add(what, sizeof(what), !same_text(group_of(before, a), group_of(after, b)), "group");
+    add(what, sizeof(what), !same_text(asset_of(before, a), asset_of(after, b)), "asset");
+    add(what, sizeof(what), !same_text(a->node, b->node) || memcmp(a->position_m, b->position_m, sizeof(a->position_m)) != 0, "place");
+    add(what, sizeof(what), a->scaling != b->scaling || a->raw_low != b->raw_low || a->raw_high != b->raw_high ||
+            a->scaled_low != b->scaled_low || a->scaled_high != b->scaled_high || a->negate != b->negate, "scaling");
+    add(what, sizeof(what), a->scan_ms != b->scan_ms || a->stale_s != b->stale_s, "timing");
+    add(what, sizeof(what), a->strength != b->strength || a->decay != b->decay, "strength, decay");
+    add(what, sizeof(what), !same_text(a->unit, b->unit) || !same_text(a->description, b->description), "unit, description");
+    add(what, sizeof(what), !same_number(a->deadband, b->deadband), "deadband");
+    add(what, sizeof(what), a->alarming.deadband != b->alarming.deadband || a->alarming.on_delay_s != b->alarming.on_delay_s ||
+            a->alarming.off_delay_s != b->alarming.off_delay_s || a->alarming.priority != b->alarming.priority ||
+            a->alarming.latch != b->alarming.latch, "alarming");
+    if (what[0])
+        say(diff, "tag %s changed: %s", b->name, what);
+}
+
+static void diff_tags(struct plant_diff *diff, const struct plant *before, const struct plant *after)
+{
+    for (size_t i = 0; i < before->tag_count; i++)
+        if (plant_find_tag(after, before->tags[i].name) < 0)
+            say(diff, "tag %s removed", before->tags[i].name);
+    for (size_t i = 0; i < after->tag_count; i++) {
+        int was = plant_find_tag(before, after->tags[i].name);
+        if (was < 0)
+            say(diff, "tag %s added", after->tags[i].name);
+        else
+            compare_tags(diff, before, &before->tags[was], after, &after->tags[i]);
+    }
+}
+
+/* --- the rest --------------------------------------------------------------------------------------------------------------- */
+
+static void diff_assets(struct plant_diff *diff, const struct plant *before, const struct plant *after)
+{
+    for (size_t i = 0; i < before->asset_count; i++)
+        if (plant_find_asset(after, before->assets[i].id) < 0)
+            say(diff, "asset %s removed", before->assets[i].id);
+    for (size_t i = 0; i < after->asset_count; i++) {
+        const struct plant_asset *b = &after->assets[i];
+        int was = plant_find_asset(before, b->id);
+        const struct plant_asset *a = was < 0 ? NULL : &before->assets[was];
+        if (!a)
+            say(diff, "asset %s added", b->id);
+        else if (!same_text(a->model, b->model) || !same_text(a->nodes, b->nodes) || a->unit_m != b->unit_m || a->up != b->up ||
+                 memcmp(a->placement, b->placement, sizeof(a->placement)) != 0 || !same_text(a->tag, b->tag) ||
+                 !same_text(a->description, b->description))
+            say(diff, "asset %s changed", b->id);
+    }
+}
+
+static bool same_group(const struct plant_group *a, const struct plant_group *b)
+{
+    bool same = same_text(a->unit, b->unit) && same_text(a->quantity, b->quantity) && a->min == b->min && a->max == b->max;
+    for (int i = 0; i < LIMIT_COUNT; i++)
+        same = same && same_number(a->limits[i], b->limits[i]);
+    return same && a->interpolation == b->interpolation && a->distance == b->distance && a->strength == b->strength &&
+           a->decay == b->decay && a->power == b->power && a->radius_m == b->radius_m && a->reach_m == b->reach_m && a->fill == b->fill &&
+           a->log == b->log && a->break_count == b->break_count && a->isoline_count == b->isoline_count &&
+           !memcmp(a->breaks, b->breaks, sizeof(a->breaks)) && !memcmp(a->isolines, b->isolines, sizeof(a->isolines)) &&
+           a->alarming.deadband == b->alarming.deadband && a->alarming.priority == b->alarming.priority;
+}
+
+static void diff_groups(struct plant_diff *diff, const struct plant *before, const struct plant *after)
+{
+    for (size_t i = 0; i < before->group_count; i++)
+        if (plant_find_group(after, before->groups[i].id) < 0)
+            say(diff, "group %s removed", before->groups[i].id);
+    for (size_t i = 0; i < after->group_count; i++) {
+        int was = plant_find_group(before, after->groups[i].id);
+        if (was < 0)
+            say(diff, "group %s added", after->groups[i].id);
+        else if (!same_group(&before->groups[was], &after->groups[i]))
+            say(diff, "group %s changed", after->groups[i].id);
+    }
+}
+
+static const struct plant_source *find_source(const struct plant *plant, const char *id)
+{
+    for (size_t i = 0; i < plant->source_count; i++)
+        if (!strcmp(plant->sources[i].id, id))
+            return &plant->sources[i];
+    return NULL;
+}
+
+static void diff_sources(struct plant_diff *diff, const struct plant *before, const struct plant *after)
+{
+    for (size_t i = 0; i < before->source_count; i++)
+        if (!find_source(after, before->sources[i].id))
+            say(diff, "source %s removed", before->sources[i].id);
+    for (size_t i = 0; i < after->source_count; i++)
+        if (!find_source(before, after->sources[i].id))
+            say(diff, "source %s added", after->sources[i].id);
+}
+
+void plant_diff(const struct plant *before, const struct plant *after, struct plant_diff *out)
+{
+    if (before->alarms != after->alarms)
+        say(out, "whose the alarms are has changed");
+    diff_assets(out, before, after);
+    diff_groups(out, before, after);
+    diff_sources(out, before, after);
+    diff_tags(out, before, after);
+    if (out->more > 0) {
+        mem_free(out->lines[PLANT_DIFF_LINES - 1]);
+        out->lines[PLANT_DIFF_LINES - 1] = mem_printf("and %zu more", out->more + 1);
+    }
+}
+
+void plant_diff_finish(struct plant_diff *diff)
+{
+    for (size_t i = 0; i < diff->count; i++)
+        mem_free(diff->lines[i]);
+    mem_free(diff->lines);
+    *diff = (struct plant_diff){ 0 };
+}
+
+const char *plant_needs_restart(const struct plant *before, const struct plant *after)
+{
+    if (strcmp(before->time_zone, after->time_zone) != 0)
+        return "another time zone needs a restart";
+    if (before->history.off != after->history.off || !same_text(before->history.folder, after->history.folder))
+        return "another folder of history, or none, needs a restart";
+    bool same = before->colormap_count == after->colormap_count;
+    for (size_t i = 0; same && i < before->colormap_count; i++)
+        same = same_text(before->colormaps[i].name, after->colormaps[i].name) &&
+               !memcmp(before->colormaps[i].rgb, after->colormaps[i].rgb, sizeof(before->colormaps[i].rgb));
+    return same ? NULL : "other colour maps need a restart";
+}

@@ -1,0 +1,211 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The thread that loads the plant anew: reads, compares, hands over. */
+#include "reload.h"
+
+#include <jansson.h>
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "plant/plant_diff.h"
+
+struct reload {
+    const struct loaded_context *context;
+    struct loaded **loaded;
+    struct net *net;
+    pthread_t thread;
+    bool started;
+    pthread_mutex_t lock;
+    pthread_cond_t wake;
+    /* --- below: under lock */
+    bool asked, stopping;
+};
+
+void reload_count(struct counters *counters, const char *hash, bool in_force)
+{
+    char *name = mem_printf("plantcast_configuration_info{hash=\"%s\"}", hash);
+    counter_set(counters_add(counters, name, "gauge", "1: the configuration in force, by the hash of plant file and tag list."), in_force);
+    mem_free(name);
+}
+
+/* --- what becomes of it ----------------------------------------------------------------------------------------------------- */
+
+struct verdict {
+    struct net *net;
+    bool good;
+    char *text;
+};
+
+static void say(void *arg)
+{
+    struct verdict *verdict = arg;
+    net_say_reloaded(verdict->net, verdict->good, verdict->text);
+}
+
+/* Takes the object. */
+static void answer(struct reload *reload, bool good, json_t *object)
+{
+    char *dumped = json_dumps(object, JSON_COMPACT);
+    struct verdict verdict = { reload->net, good, mem_printf("%s\n", dumped ? dumped : "{}") };
+    free(dumped);
+    json_decref(object);
+    net_call(reload->net, say, &verdict);
+    mem_free(verdict.text);
+}
+
+static void refuse(struct reload *reload, const struct diag *diag, const char *why)
+{
+    struct log *log = reload->context->log;
+    json_t *errors = json_array();
+    for (size_t i = 0; i < diag->count; i++) {
+        const struct diag_item *item = &diag->items[i];
+        if (item->severity != DIAG_ERROR)
+            continue;
+        char *line = mem_printf("%s:%d:%d: %s", item->file, item->line, item->column, item->text);
+        log_err(log, "reload: %s", line);
+        json_array_append_new(errors, json_string(line));
+        mem_free(line);
+    }
+    if (why)
+        json_array_append_new(errors, json_string(why));
+    log_err(log, "reload: the configuration %s stays in force%s%s", (*reload->loaded)->plant->hash, why ? ": " : "", why ? why : "");
+    answer(reload, false, json_pack("{s:b,s:s,s:o}", "reloaded", false, "configuration", (*reload->loaded)->plant->hash, "errors", errors));
+}
+
+/* --- the swap --------------------------------------------------------------------------------------------------------------- */
+
+struct swap {
+    struct net *net;
+    struct loaded *before, *after;
+    bool good;
+};
+
+/* In the loop. There is one GL context at a time; if no other can be made, the old plant's is made again. */
+static void swap(void *arg)
+{
+    struct swap *swap = arg;
+    net_let_go(swap->net);
+    painter_destroy(&swap->before->painter);
+    swap->good = loaded_start_painter(swap->after);
+    if (!swap->good && !loaded_start_painter(swap->before))
+        abort(); /* neither draws: a supervisor starts us again */
+    const struct net_plant plant = loaded_net_plant(swap->good ? swap->after : swap->before);
+    net_take(swap->net, &plant);
+}
+
+static void say_difference(struct reload *reload, const struct plant_diff *diff, const char *before, double took_s)
+{
+    struct log *log = reload->context->log;
+    json_t *changes = json_array();
+    for (size_t i = 0; i < diff->count; i++) {
+        log_info(log, "reload: %s", diff->lines[i]);
+        json_array_append_new(changes, json_string(diff->lines[i]));
+    }
+    log_info(log, "reload: configuration %s in place of %s, after %.1f s", (*reload->loaded)->plant->hash, before, took_s);
+    answer(reload, true,
+           json_pack("{s:b,s:s,s:s,s:o}", "reloaded", true, "configuration", (*reload->loaded)->plant->hash, "before", before, "changes",
+                     changes));
+}
+
+/* Sources have ended: from here on there is a new plant, or, if no thread or context can be had any more, no daemon. */
+static void put_in_force(struct reload *reload, struct loaded *after, const struct plant_diff *diff)
+{
+    struct loaded *before = *reload->loaded;
+    struct swap both = { reload->net, before, after, false };
+    int64_t begun_ns = clock_mono_ns();
+    char *hash = mem_strdup(before->plant->hash);
+    loaded_hand_over(before, after->plant);
+    bool good = loaded_start_recording(after, before) && loaded_start_sources(after) && net_call(reload->net, swap, &both) && both.good;
+    if (good) {
+        *reload->loaded = after;
+        loaded_destroy(&before);
+        reload_count(reload->context->counters, hash, false);
+        reload_count(reload->context->counters, after->plant->hash, true);
+        say_difference(reload, diff, hash, (double)(clock_mono_ns() - begun_ns) / 1e9);
+    } else {
+        log_err(reload->context->log, "reload: the new plant cannot be put in force; the daemon ends, and starts with it when it is started");
+        net_stop(reload->net);
+        loaded_destroy(&after);
+    }
+    mem_free(hash);
+}
+
+static void reload_now(struct reload *reload)
+{
+    struct diag diag = { 0 };
+    struct plant_diff diff = { 0 };
+    struct loaded *before = *reload->loaded, *after = loaded_read(reload->context, &diag);
+    const char *why = after ? plant_needs_restart(before->plant, after->plant) : diag.errors ? NULL : "the log says why";
+    if (!after || why) {
+        refuse(reload, &diag, why);
+        loaded_destroy(&after);
+    } else {
+        plant_diff(before->plant, after->plant, &diff);
+        put_in_force(reload, after, &diff);
+    }
+    plant_diff_finish(&diff);
+    diag_finish(&diag);
+}
+
+/* --- life ------------------------------------------------------------------------------------------------------------------- */
+
+static void *run(void *arg)
+{
+    struct reload *reload = arg;
+    for (;;) {
+        pthread_mutex_lock(&reload->lock);
+        while (!reload->asked && !reload->stopping)
+            pthread_cond_wait(&reload->wake, &reload->lock);
+        bool stopping = reload->stopping;
+        reload->asked = false;
+        pthread_mutex_unlock(&reload->lock);
+        if (stopping)
+            return NULL;
+        reload_now(reload);
+    }
+}
+
+struct reload *reload_create(const struct loaded_context *context, struct loaded **loaded, struct net *net)
+{
+    struct reload *reload = mem_new(sizeof(*reload));
+    reload->context = context;
+    reload->loaded = loaded;
+    reload->net = net;
+    pthread_mutex_init(&reload->lock, NULL);
+    pthread_cond_init(&reload->wake, NULL);
+    int error = pthread_create(&reload->thread, NULL, run, reload);
+    reload->started = !error;
+    if (error) {
+        log_err(context->log, "reload: no thread: %s", strerror(error));
+        reload_destroy(&reload);
+    }
+    return reload;
+}
+
+void reload_destroy(struct reload **pointer)
+{
+    struct reload *reload = *pointer;
+    if (!reload)
+        return;
+    pthread_mutex_lock(&reload->lock);
+    reload->stopping = true;
+    pthread_cond_signal(&reload->wake);
+    pthread_mutex_unlock(&reload->lock);
+    if (reload->started)
+        pthread_join(reload->thread, NULL);
+    pthread_cond_destroy(&reload->wake);
+    pthread_mutex_destroy(&reload->lock);
+    mem_free(reload);
+    *pointer = NULL;
+}
+
+void reload_ask(void *arg)
+{
+    struct reload *reload = arg;
+    pthread_mutex_lock(&reload->lock);
+    reload->asked = true;
+    pthread_cond_signal(&reload->wake);
+    pthread_mutex_unlock(&reload->lock);
+}

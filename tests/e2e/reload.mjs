@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The plant loaded anew under clients that look at it: all of it or nothing, and nobody is sent away.
+import assert from 'node:assert/strict';
+import { readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { Client } from './conformance/client.mjs';
+import { missing, TinyPlant } from './support/tiny_plant.mjs';
+
+const absent = missing();
+const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
+const options = { skip, timeout: 120000 };
+const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
+let plant, tagsFile, firstTags;
+
+before(async () => {
+    if (skip)
+        return;
+    plant = await TinyPlant.create();
+    tagsFile = join(plant.folder, 'tags.csv');
+    firstTags = readFileSync(tagsFile, 'utf8').replace('Stale s', 'Stale s,H').replace(/,1$/gm, ',1,');
+    writeFileSync(tagsFile, firstTags.replace('E-101,0.5,0,0,1,', 'E-101,0.5,0,0,1,-1')); // TI-1 is beyond H
+    writeFileSync(plant.file, `${readFileSync(plant.file, 'utf8')}alarms: local\n`);
+    assert.equal(plant.prepare().code, 0);
+    await plant.startSim();
+    await plant.startDaemon();
+});
+after(() => plant?.destroy());
+
+const url = (path) => `http://127.0.0.1:${plant.port}${path}`;
+const reload = async () => {
+    const answer = await fetch(url('/api/v1/reload'), { method: 'POST' });
+    return { status: answer.status, ...await answer.json() };
+};
+const metric = async (name) => (await (await fetch(url('/metrics'))).text()).split('\n').find((line) => line.startsWith(name));
+const active = async () => (await (await fetch(url('/api/v1/alarms'))).json()).alarms.map(({ tag, kind, state }) => `${tag}/${kind} ${state}`);
+
+test('errors leave what was there in force, and are named with their place', options, async () => {
+    const before = await (await fetch(url('/api/v1/plant'))).json();
+    const good = readFileSync(tagsFile, 'utf8');
+    writeFileSync(tagsFile, good.replace('TI-2,400003,Float', 'TI-2,400003,Flaot'));
+    const answer = await reload();
+    writeFileSync(tagsFile, good);
+    assert.equal(answer.status, 422);
+    assert.equal(answer.reloaded, false);
+    assert.match(answer.errors.join('\n'), /tags\.csv:3:\d+: Data Type: unknown type 'Flaot'/);
+    assert.deepEqual((await (await fetch(url('/api/v1/plant'))).json()).plant.configuration, before.plant.configuration);
+});
+
+test('what changed is said; sessions, alarms and readings go on', options, async () => {
+    const client = await Client.open(plant.port);
+    const welcome = await client.hello({});
+    client.say('params', { seq: 1, group: 'temperature', ramp_interval: 10 });
+    client.say('camera', { seq: 1, eye: [5, -6, 4], target: [1, 0, 0] });
+    await client.text('alarms');
+    for (let i = 0; i < 50 && !(await active()).includes('TI-1/H unacknowledged'); i++)
+        await sleep(100);
+    client.say('alarm', { seq: 1, action: 'acknowledge', alarms: [['TI-1', 'H']], name: 'Kim' });
+    await client.text('alarmed');
+    assert.ok((await active()).includes('TI-1/H acknowledged'));
+    const first = welcome.plant.configuration;
+    assert.match(first, /^[0-9a-f]{16}$/);
+    assert.match(await metric(`plantcast_configuration_info{hash="${first}"}`), / 1$/);
+
+    writeFileSync(tagsFile, `${readFileSync(tagsFile, 'utf8').replace('P-101A,3,0,0.5,1,', 'P-101A,3,0,0.5,1,9')}XX-9,400007,Float,bar,spare,,,,,,1,\n`);
+    const shown = client.pictures.length, answer = await reload();
+    assert.equal(answer.status, 200, JSON.stringify(answer));
+    assert.deepEqual(answer.changes.sort(), ['tag PI-1: H nan > 9', 'tag XX-9 added']);
+    assert.equal(answer.before, first);
+    const again = await client.text('welcome');
+    assert.equal(again.plant.configuration, answer.configuration);
+    assert.equal(again.session, welcome.session, 'the same session');
+    assert.equal(again.view.ramp_interval, 10, 'and the same view');
+    assert.deepEqual(again.tags.map(({ name }) => name), ['TI-1', 'TI-2', 'PI-1', 'XX-9']);
+    await client.wait('a picture of the new plant', () => client.pictures.length > shown); // they go on
+    assert.ok((await active()).includes('TI-1/H acknowledged'), 'nobody has to acknowledge it again');
+    assert.match(await metric(`plantcast_configuration_info{hash="${first}"}`), / 0$/);
+    const tags = (await (await fetch(url('/api/v1/tags'))).json()).tags;
+    assert.equal(tags.find(({ name }) => name === 'TI-1').quality, 'good');
+    client.close();
+});
+
+test('history has no gap where the tag stays', options, async () => {
+    await sleep(1500);
+    const { series } = await (await fetch(url('/api/v1/history?tags=TI-1&from=-10m'))).json();
+    const values = series[0].points.filter(([, value]) => value !== null).length;
+    assert.ok(values > 0);
+    assert.equal(series[0].points.findLastIndex(([, value]) => value === null) > series[0].points.findIndex(([, value]) => value !== null), false,
+        JSON.stringify(series[0].points));
+});
+
+test('who may not, and from where it may not be', options, async () => {
+    assert.equal((await fetch(url('/api/v1/reload'))).status, 404, 'GET changes nothing');
+    const foreign = await fetch(url('/api/v1/reload'), { method: 'POST', headers: { Origin: 'http://elsewhere.example' } });
+    assert.equal(foreign.status, 403);
+    assert.equal((await fetch(url('/api/v1/tags'), { method: 'POST' })).status, 405);
+});
+
+test('again and again, by signal, under clients that move', options, async () => {
+    const clients = await Promise.all([1, 2, 3].map(() => Client.open(plant.port)));
+    for (const client of clients)
+        await client.hello({});
+    const base = readFileSync(tagsFile, 'utf8');
+    for (let i = 0; i < 5; i++) {
+        writeFileSync(tagsFile, base.replace('XX-9', `XX-${i}`));
+        plant.daemon.child.kill('SIGHUP');
+        for (let k = 1; k <= 20; k++) {
+            for (const client of clients)
+                client.say('camera', { seq: 100 * i + k, eye: [5, -6, 4 + 0.05 * k], target: [1, 0, 0] });
+            await sleep(25);
+        }
+        for (const client of clients)
+            await client.text('welcome');
+    }
+    for (const client of clients) {
+        const shown = client.pictures.length;
+        client.say('camera', { seq: 9999, eye: [6, -6, 4], target: [1, 0, 0] });
+        await client.wait('a picture in the end', () => client.pictures.length > shown);
+        client.close();
+    }
+});

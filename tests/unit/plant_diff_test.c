@@ -1,0 +1,117 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Two plants side by side: what is said to have come, gone and changed; and what makes a configuration another one. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "base/text.h"
+#include "plant/plant_diff.h"
+#include "tests/support/plant_case.h"
+#include "tests/support/temp.h"
+
+#define YAML(groups, more) \
+    "plant: { name: P }\nassets:\n  - { id: E-101, model: m.glb }\ngroups:\n" groups \
+    "sources:\n  - { id: plc, type: modbus, host: h, byte_order: CDAB, address_base: 1 }\ntags: tags.csv\n" more
+#define TEMP "  - { id: temp, unit: bar, min: 0, max: 100 }\n"
+#define TAGS "Tag Name,Address,Eng Units,H\n"
+
+static struct plant *load(struct plant_case *c, const char *yaml, const char *tags)
+{
+    plant_case_load(c, yaml, tags);
+    plant_case_assert_loaded(c, 0);
+    struct plant *plant = c->plant;
+    c->plant = NULL;
+    return plant;
+}
+
+static void assert_diff(struct plant_case *c, struct plant *before, struct plant *after, const char *const *wanted, size_t count)
+{
+    struct plant_diff diff = { 0 };
+    (void)c;
+    plant_diff(before, after, &diff);
+    assert_int_equal(diff.count, count);
+    for (size_t i = 0; i < count; i++)
+        assert_string_equal(diff.lines[i], wanted[i]);
+    plant_diff_finish(&diff);
+}
+
+static void each_difference_is_said(void **state)
+{
+    struct plant_case *c = *state;
+    struct plant *before = load(c, YAML(TEMP, ""), TAGS "A,40001,bar,90\nB,40002,bar,\nGONE,40003,bar,\n");
+    struct plant *after = load(c, YAML("  - { id: temp, unit: bar, min: 0, max: 120 }\n  - { id: flow, unit: m, min: 0, max: 1 }\n",
+                                       "alarms: local\n"),
+                               TAGS "NEW,40009,bar,\nB,40004,bar,\nA,40001,bar,95\n");
+    static const char *const wanted[] = { "whose the alarms are has changed", "group temp changed",   "group flow added",
+                                          "tag GONE removed",                 "tag NEW added",        "tag B changed: address",
+                                          "tag A: H 90 > 95" };
+    assert_diff(c, before, after, wanted, 7);
+    assert_string_not_equal(before->hash, after->hash);
+    assert_null(plant_needs_restart(before, after));
+    assert_diff(c, before, before, NULL, 0);
+    plant_destroy(&before);
+    plant_destroy(&after);
+}
+
+static void the_same_files_have_the_same_hash(void **state)
+{
+    struct plant_case *c = *state;
+    struct plant *one = load(c, YAML(TEMP, ""), TAGS "A,40001,bar,90\n"), *two = load(c, YAML(TEMP, ""), TAGS "A,40001,bar,90\n");
+    struct plant *moved = load(c, YAML(TEMP, "\n"), TAGS "A,40001,bar,90\n");
+    assert_string_equal(one->hash, two->hash);
+    assert_int_equal(strlen(one->hash), 16);
+    assert_string_not_equal(one->hash, moved->hash);
+    plant_destroy(&one);
+    plant_destroy(&two);
+    plant_destroy(&moved);
+}
+
+static void what_a_daemon_cannot_change_is_named(void **state)
+{
+    struct plant_case *c = *state;
+    struct plant *one = load(c, YAML(TEMP, ""), TAGS "A,40001,bar,90\n");
+    struct plant *elsewhere = load(c, YAML(TEMP, "history: { folder: there }\n"), TAGS "A,40001,bar,90\n");
+    struct plant *off = load(c, YAML(TEMP, "history: { record: no }\n"), TAGS "A,40001,bar,90\n");
+    assert_non_null(plant_needs_restart(one, elsewhere));
+    assert_non_null(plant_needs_restart(one, off));
+    plant_destroy(&one);
+    plant_destroy(&elsewhere);
+    plant_destroy(&off);
+}
+
+static void many_differences_end_in_their_number(void **state)
+{
+    struct plant_case *c = *state;
+    struct text tags = { 0 };
+    text_add(&tags, TAGS);
+    for (int i = 0; i < 500; i++)
+        text_add(&tags, "T-%d,%d,bar,\n", i, 40001 + i);
+    struct plant *before = load(c, YAML(TEMP, ""), TAGS "T-0,40001,bar,\n"), *after = load(c, YAML(TEMP, ""), tags.at);
+    struct plant_diff diff = { 0 };
+    plant_diff(before, after, &diff);
+    assert_int_equal(diff.count, PLANT_DIFF_LINES);
+    assert_string_equal(diff.lines[PLANT_DIFF_LINES - 1], "and 300 more");
+    plant_diff_finish(&diff);
+    text_finish(&tags);
+    plant_destroy(&before);
+    plant_destroy(&after);
+}
+
+#define TEST(f) cmocka_unit_test_setup_teardown(f, plant_case_set_up, plant_case_tear_down)
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        TEST(each_difference_is_said),
+        TEST(the_same_files_have_the_same_hash),
+        TEST(what_a_daemon_cannot_change_is_named),
+        TEST(many_differences_end_in_their_number),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
