@@ -24,6 +24,7 @@ struct update {
     struct kernel_value rule;
     size_t next, old, end; /* blocks: to do next, shown before, to be shown */
     bool anew;             /* sum all columns; else below `old` only those that changed */
+    bool flags;            /* qualities changed, and with them what flags say; values alone leave those below `old` as they are */
     bool marks;            /* some sensor is Uncertain */
     pthread_mutex_t lock;
     /* --- below: under lock */
@@ -91,9 +92,9 @@ static void choose_rule(struct update *update)
     update->rule.empty = difference || places ? 0 : (float)group->min;
 }
 
-static bool must_sum_anew(const struct state *state)
+static bool qualities_changed(const struct state *state)
 {
-    if (state->scalars.version == 0 || state->added >= ADDED_MOST)
+    if (state->scalars.version == 0)
         return true;
     for (size_t i = 0; i < state->layout->sensor_count; i++)
         if (state->now[i].usable != state->shown[i].usable || state->now[i].uncertain != state->shown[i].uncertain)
@@ -108,7 +109,8 @@ void update_begin(struct state *state, size_t count)
     *update = (struct update){ .state = state, .old = blocks_of(state->scalars.ready), .end = blocks_of(wanted) };
     update->all = choose_terms(state, true);
     update->changed = choose_terms(state, false);
-    update->anew = must_sum_anew(state) || !steps_are_small(update);
+    update->flags = qualities_changed(state);
+    update->anew = update->flags || state->added >= ADDED_MOST || !steps_are_small(update);
     for (size_t i = 0; i < update->all.count; i++)
         update->marks |= update->all.marked[i];
     if (!update->anew && update->changed.count == 0) /* only more vertices than before */
@@ -173,18 +175,18 @@ static bool sum_block(const struct update *update, size_t block, size_t begin, s
         weights_add(weights, begin, count, &update->changed, &sums);
         return false;
     }
-    bool total_wanted = !(weights->known[block] & KNOWN_TOTAL);
+    bool total_wanted = !(weights->known[block] & KNOWN_TOTAL), flags = update->flags || block >= update->old;
     weights_prepare(weights, begin, count);
-    if (total_wanted || update->marks)
+    if (total_wanted || (flags && update->marks))
         sums.total = memset(total, 0, sizeof(total));
-    if (update->marks)
+    if (flags && update->marks)
         sums.marked = memset(marked, 0, sizeof(marked));
     memset(sums.values, 0, count * sizeof(*sums.values));
     weights_add(weights, begin, count, &update->all, &sums);
     for (size_t j = 0; total_wanted && j < count; j++)
         weights->total[begin + j] = (float)total[j];
     weights->known[block] |= KNOWN_TOTAL;
-    return set_flags(update, begin, count, total, marked);
+    return flags && set_flags(update, begin, count, total, marked);
 }
 
 static void update_blocks(void *arg, size_t begin, size_t end)
