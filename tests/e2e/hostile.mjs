@@ -160,7 +160,7 @@ test('where drawing is too busy, one more is refused, told why and when to come 
     try {
         assert.equal(busy.prepare().code, 0);
         await busy.startDaemon('--limit', 'least-fps=1000');
-        const load = ['--seconds', '30', '--sessions', '4', '--size', '3840x2160', '--json'];
+        const load = ['--seconds', '30', '--sessions', '4', '--size', '3840x2160', '--blind', '--json'];
         const mover = spawn(join(BIN, 'plantcast'), ['probe', `http://127.0.0.1:${busy.port}/`, ...load], { stdio: 'ignore' });
         const ended = new Promise((done) => mover.once('exit', done));
         let refused = null;
