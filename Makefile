@@ -124,8 +124,8 @@ unit_tests := $(patsubst tests/%.c,$(out)/tests/%,$(wildcard tests/unit/*_test.c
 gpu_tests  := $(patsubst tests/%.c,$(out)/tests/%,$(wildcard tests/gpu/*_test.c))
 support    := $(call objects,$(wildcard tests/support/*.c tests/support/*.cc))
 # The exact solver that distances are held against, by CGAL.
-$(out)/tests/unit/accuracy_test: $(call objects,$(wildcard tests/oracle/*.cc))
-$(out)/tests/unit/accuracy_test: pkg_libs += -lgmp -lmpfr
+$(out)/tests/unit/accuracy_test $(out)/tests/unit/contact_test: $(call objects,$(wildcard tests/oracle/*.cc))
+$(out)/tests/unit/accuracy_test $(out)/tests/unit/contact_test: pkg_libs += -lgmp -lmpfr
 $(out)/tests/%: $(out)/obj/tests/%.o $(support) $(archives) $(out)/lib/prep.a $(sim_archive)
 	$(link) -lcmocka
 # Where memory runs out: the test decides.

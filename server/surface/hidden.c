@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Triangles inside another, closed part, by counting what rays meet. */
+/* Triangles inside another, closed part, or covered by one, by counting what rays meet. */
 #include "surface/hidden.h"
 
 #include <math.h>
@@ -9,58 +9,29 @@
 #include "surface/bvh.h"
 #include "surface/vec.h"
 
-#define OPEN_OF_SIZE 0.05 /* open edges together, in roots of the part's area: a hair gap's leftovers, not a pipe's end */
 #define RAYS 5
 #define RAYS_INSIDE 4 /* so many must agree */
 #define VOTE_EVERY 16 /* of a region's triangles, one of so many is asked */
-
-void hidden_closed_parts(const struct trimesh *mesh, const uint32_t *part, size_t parts, char *closed)
-{
-    struct edge_table edges;
-    double *area_m2 = mem_array(parts, sizeof(*area_m2)), *open_m = mem_array(parts, sizeof(*open_m));
-    unsigned char *faces = mem_array(mesh->tri_count * 3, 1);
-    edge_table_init(&edges, mesh->tri_count * 3 / 2);
-    for (size_t t = 0; t < mesh->tri_count; t++) {
-        const uint32_t *v = mesh->tris[t];
-        double ab[3], ac[3], n[3];
-        vec_sub(mesh->points[v[1]], mesh->points[v[0]], ab);
-        vec_sub(mesh->points[v[2]], mesh->points[v[0]], ac);
-        vec_cross(ab, ac, n);
-        area_m2[part[t]] += sqrt(vec_dot(n, n)) / 2;
-        for (int i = 0; i < 3; i++) {
-            uint32_t e = edge_table_add(&edges, v[i], v[(i + 1) % 3]);
-            faces[e] = (unsigned char)(faces[e] < 3 ? faces[e] + 1 : 3);
-        }
-    }
-    for (size_t t = 0; t < mesh->tri_count; t++) {
-        double open = 0;
-        bool fin = false; /* it stands on an edge that is closed without it */
-        for (int i = 0; i < 3; i++) {
-            const uint32_t a = mesh->tris[t][i], b = mesh->tris[t][(i + 1) % 3], e = edge_table_find(&edges, a, b);
-            open += faces[e] == 1 ? vec_distance(mesh->points[a], mesh->points[b]) : 0;
-            fin = fin || faces[e] > 2;
-        }
-        open_m[part[t]] += fin ? 0 : open;
-    }
-    for (size_t p = 0; p < parts; p++)
-        closed[p] = open_m[p] <= OPEN_OF_SIZE * sqrt(area_m2[p]);
-    edge_table_finish(&edges);
-    mem_free(area_m2);
-    mem_free(open_m);
-    mem_free(faces);
-}
+#define BESIDE 1.5    /* tolerances: so far to either side of a triangle that lies on another part's surface is looked */
+#define BARELY 0.05   /* likewise, of one that may be inside its own part */
+#define FLUSH 0.9     /* cosine between faces that lie on each other, at least */
+#define SLIVER 2.0    /* tolerances high: a triangle that looks anywhere */
 
 struct solid { /* a closed part, as it was before it was cut up */
     uint32_t part;
+    bool winds; /* it passes through itself: its inside is what it goes round */
     double low[3], high[3];
-    struct trimesh mesh; /* its triangles; the arrays belong to others */
+    struct trimesh mesh;     /* its triangles; the arrays belong to others */
+    const signed char *side; /* of its triangles, as in struct parts */
     struct bvh *bvh;
 };
 
 struct solids {
     struct solid *at;
     size_t count;
-    uint32_t (*tris)[3]; /* of all solids, part by part */
+    uint32_t (*tris)[3];    /* of all parts, part by part */
+    signed char *sides;     /* likewise */
+    struct solid **of_part; /* NULL: it is not closed */
 };
 
 static void solids_finish(struct solids *solids)
@@ -69,6 +40,8 @@ static void solids_finish(struct solids *solids)
         bvh_destroy(&solids->at[i].bvh);
     mem_free(solids->at);
     mem_free(solids->tris);
+    mem_free(solids->sides);
+    mem_free(solids->of_part);
 }
 
 static void solid_init(struct solid *solid)
@@ -86,25 +59,36 @@ static void solid_init(struct solid *solid)
     solid->bvh = bvh_create(&solid->mesh);
 }
 
-static void solids_init(struct solids *solids, const struct trimesh *mesh, const uint32_t *part, size_t parts, const char *closed)
+static void solids_init(struct solids *solids, const struct parts *parts)
 {
-    uint32_t *first = mem_array(parts + 1, sizeof(*first));
-    *solids = (struct solids){ .at = mem_array(parts, sizeof(*solids->at)), .tris = mem_array(mesh->tri_count, sizeof(*solids->tris)) };
+    const struct trimesh *mesh = &parts->solid;
+    uint32_t *first = mem_array(parts->count + 1, sizeof(*first));
+    *solids = (struct solids){ .at = mem_array(parts->count, sizeof(*solids->at)),
+                               .tris = mem_array(mesh->tri_count, sizeof(*solids->tris)),
+                               .sides = mem_array(mesh->tri_count, 1),
+                               .of_part = mem_array(parts->count, sizeof(struct solid *)) };
     for (size_t t = 0; t < mesh->tri_count; t++)
-        first[part[t] + 1]++;
-    for (size_t p = 0; p < parts; p++) {
-        if (closed[p])
-            solids->at[solids->count++] = (struct solid){
+        first[parts->of_tri[t] + 1]++;
+    for (size_t p = 0; p < parts->count; p++) {
+        if (parts->closed[p]) {
+            solids->of_part[p] = &solids->at[solids->count++];
+            *solids->of_part[p] = (struct solid){
                 .part = (uint32_t)p,
+                .winds = parts->crossed[p],
                 .mesh = { .points = mesh->points,
                           .point_count = mesh->point_count,
                           .tris = solids->tris + first[p],
                           .tri_count = first[p + 1] },
+                .side = solids->sides + first[p],
             };
+        }
         first[p + 1] += first[p];
     }
-    for (size_t t = 0; t < mesh->tri_count; t++)
-        memcpy(solids->tris[first[part[t]]++], mesh->tris[t], sizeof(*mesh->tris));
+    for (size_t t = 0; t < mesh->tri_count; t++) {
+        uint32_t at = first[parts->of_tri[t]]++;
+        memcpy(solids->tris[at], mesh->tris[t], sizeof(*mesh->tris));
+        solids->sides[at] = parts->side[t];
+    }
     for (size_t i = 0; i < solids->count; i++)
         solid_init(&solids->at[i]);
     mem_free(first);
@@ -113,6 +97,7 @@ static void solids_init(struct solids *solids, const struct trimesh *mesh, const
 struct search {
     const struct trimesh *mesh;
     const uint32_t *part;
+    const struct parts *parts;
     const struct solids *solids;
     double tolerance_m;
     const size_t *asked; /* triangles to look at */
@@ -125,46 +110,146 @@ static const double directions[RAYS][3] = {
     { -0.4419, -0.3251, -0.8361 }, { 0.8523, 0.2951, -0.4318 },
 };
 
+#define HITS 32
+struct hits { /* of one ray */
+    const struct solid *solid;
+    const double *direction;
+    double same_m;
+    int count, turns; /* count: of places; turns: how often it goes out more than in */
+    struct hit {      /* the first places */
+        double t;
+        int faces;
+        bool bounds;
+    } at[HITS];
+};
+
+static void tri_normal(const struct trimesh *mesh, size_t t, double n[3])
+{
+    const uint32_t *v = mesh->tris[t];
+    double ab[3], ac[3];
+    vec_sub(mesh->points[v[1]], mesh->points[v[0]], ab);
+    vec_sub(mesh->points[v[2]], mesh->points[v[0]], ac);
+    vec_cross(ab, ac, n);
+}
+
 static void count_hit(void *arg, uint32_t tri, double t)
 {
-    (void)tri, (void)t;
-    ++*(unsigned *)arg;
+    struct hits *hits = arg;
+    if (hits->solid->winds) {
+        double n[3];
+        tri_normal(&hits->solid->mesh, tri, n);
+        hits->turns += vec_dot(n, hits->direction) > 0 ? hits->solid->side[tri] : -hits->solid->side[tri];
+        return;
+    }
+    for (int i = 0; i < hits->count && i < HITS; i++)
+        if (fabs(hits->at[i].t - t) < hits->same_m) {
+            hits->at[i].faces++;
+            return;
+        }
+    if (hits->count < HITS)
+        hits->at[hits->count] = (struct hit){ .t = t, .faces = 1, .bounds = hits->solid->side[tri] != 0 };
+    hits->count++;
 }
 
-/* Inside the solid, and not on its surface. */
-static bool is_inside(const struct solid *solid, const double place[3], double tolerance_m)
+/* Two faces at one place are a wall between two bodies. */
+static bool says_inside(const struct hits *hits)
 {
-    struct bvh_place at;
-    int outside = 0;
+    int bounds = hits->count > HITS ? hits->count - HITS : 0;
+    for (int i = 0; i < hits->count && i < HITS; i++)
+        bounds += hits->at[i].faces == 1 ? hits->at[i].bounds : hits->at[i].faces;
+    return hits->solid->winds ? hits->turns != 0 : bounds % 2 == 1;
+}
+
+static bool is_near(const struct solid *solid, const double place[3], double margin_m)
+{
     for (int axis = 0; axis < 3; axis++)
-        if (place[axis] < solid->low[axis] || place[axis] > solid->high[axis])
+        if (place[axis] < solid->low[axis] - margin_m || place[axis] > solid->high[axis] + margin_m)
             return false;
-    for (int r = 0; r < RAYS; r++) {
-        unsigned hits = 0;
+    return true;
+}
+
+static bool is_inside(const struct solid *solid, const double place[3], double same_m)
+{
+    int outside = 0;
+    if (!is_near(solid, place, 0))
+        return false;
+    for (int r = 0; r < RAYS && outside <= RAYS - RAYS_INSIDE; r++) {
+        struct hits hits;
+        hits.solid = solid;
+        hits.direction = directions[r];
+        hits.same_m = same_m;
+        hits.count = hits.turns = 0;
         bvh_ray(solid->bvh, place, directions[r], count_hit, &hits);
-        outside += hits % 2 == 0;
-        if (outside > RAYS - RAYS_INSIDE)
+        outside += !says_inside(&hits);
+    }
+    return outside <= RAYS - RAYS_INSIDE;
+}
+
+struct face { /* in question: its middle and normal, and the solid that it is part of, if that is closed */
+    double middle[3], normal[3];
+    double height_m; /* over its longest edge */
+    const struct solid *own;
+};
+
+/* Is one side of it inside the one solid, and the other side inside the other? */
+static bool is_between(const struct face *face, const double normal[3], const struct solid *one, const struct solid *other, double beside_m,
+                       double same_m)
+{
+    for (int turn = 0; turn < 2; turn++) {
+        double above[3], below[3], step_m = turn ? -beside_m : beside_m;
+        for (int axis = 0; axis < 3; axis++) {
+            above[axis] = face->middle[axis] + step_m * normal[axis];
+            below[axis] = face->middle[axis] - step_m * normal[axis];
+        }
+        if (is_inside(one, above, same_m) && is_inside(other, below, same_m))
+            return true;
+        if (one == other)
             return false;
     }
-    bvh_nearest(solid->bvh, place, tolerance_m, NULL, NULL, &at);
-    return at.tri == TRIMESH_NONE;
+    return false;
 }
 
-static bool is_hidden(const struct search *s, const double place[3], uint32_t own)
+static bool is_hidden_by(const struct search *s, const struct face *face, const struct solid *solid)
 {
-    for (size_t i = 0; i < s->solids->count; i++)
-        if (s->solids->at[i].part != own && is_inside(&s->solids->at[i], place, s->tolerance_m))
-            return true;
-    return false;
+    struct bvh_place at;
+    double n[3];
+    if (!is_near(solid, face->middle, s->tolerance_m))
+        return false;
+    bvh_nearest(solid->bvh, face->middle, s->tolerance_m, NULL, NULL, &at);
+    if (at.tri == TRIMESH_NONE)
+        return is_inside(solid, face->middle, BARELY * s->tolerance_m);
+    tri_normal(&solid->mesh, at.tri, n);
+    double length = sqrt(vec_dot(n, n));
+    for (int axis = 0; axis < 3; axis++)
+        n[axis] /= length;
+    /* A sliver between points of both looks anywhere. */
+    bool flush = face->height_m < SLIVER * s->tolerance_m || fabs(vec_dot(n, face->normal)) > FLUSH;
+    return face->own && flush && is_between(face, n, solid, face->own, BESIDE * s->tolerance_m, BARELY * s->tolerance_m);
+}
+
+static double longest_side(const struct trimesh *mesh, size_t t)
+{
+    const uint32_t *v = mesh->tris[t];
+    double ab = vec_distance(mesh->points[v[0]], mesh->points[v[1]]), bc = vec_distance(mesh->points[v[1]], mesh->points[v[2]]);
+    return max_of(max_of(ab, bc), vec_distance(mesh->points[v[2]], mesh->points[v[0]]));
 }
 
 static bool tri_is_hidden(const struct search *s, size_t t)
 {
-    const uint32_t *v = s->mesh->tris[t];
-    double middle[3];
-    for (int axis = 0; axis < 3; axis++)
-        middle[axis] = (s->mesh->points[v[0]][axis] + s->mesh->points[v[1]][axis] + s->mesh->points[v[2]][axis]) / 3;
-    return is_hidden(s, middle, s->part[t]);
+    const uint32_t *v = s->mesh->tris[t], part = s->part[t];
+    struct face face = { .own = s->solids->of_part[part] };
+    tri_normal(s->mesh, t, face.normal);
+    double length = sqrt(vec_dot(face.normal, face.normal));
+    for (int axis = 0; axis < 3; axis++) {
+        face.middle[axis] = (s->mesh->points[v[0]][axis] + s->mesh->points[v[1]][axis] + s->mesh->points[v[2]][axis]) / 3;
+        face.normal[axis] /= length > 0 ? length : 1;
+    }
+    face.height_m = length / longest_side(s->mesh, t);
+    for (size_t i = 0; i < s->solids->count; i++)
+        if (s->solids->at[i].part != part && is_hidden_by(s, &face, &s->solids->at[i]))
+            return true;
+    return face.own && s->parts->tangled[part] &&
+           is_between(&face, face.normal, face.own, face.own, 2 * BARELY * s->tolerance_m, BARELY * s->tolerance_m);
 }
 
 static void search_some(void *arg, size_t begin, size_t end)
@@ -176,8 +261,8 @@ static void search_some(void *arg, size_t begin, size_t end)
 
 /* --- regions ------------------------------------------------------------------------------------------------------------------ */
 
-/* Of each point the one part whose triangles meet there, or TRIMESH_NONE: parts meet. A part passes from outside to inside only there. */
-static uint32_t *parts_of_points(const struct trimesh *mesh, const uint32_t *part, char *mixed)
+/* Points where triangles of several parts meet. A part passes from outside to inside another only there. */
+static void mix_parts(const struct trimesh *mesh, const uint32_t *part, char *mixed)
 {
     uint32_t *of_point = mem_array(mesh->point_count, sizeof(*of_point));
     memset(of_point, 0xff, mesh->point_count * sizeof(*of_point));
@@ -187,7 +272,24 @@ static uint32_t *parts_of_points(const struct trimesh *mesh, const uint32_t *par
             mixed[p] = mixed[p] || (of_point[p] != TRIMESH_NONE && of_point[p] != part[t]);
             of_point[p] = part[t];
         }
-    return of_point;
+    mem_free(of_point);
+}
+
+/* Points on edges with three faces or more: a part passes from outside to inside itself there, or where it was found to cross itself. */
+static void mix_branches(const struct trimesh *mesh, const uint32_t *part, const char *tangled, char *mixed)
+{
+    struct edge_table edges;
+    unsigned char *faces = mem_array(mesh->tri_count * 3, 1);
+    edge_table_init(&edges, 1024);
+    for (size_t t = 0; t < mesh->tri_count; t++)
+        for (int i = 0; i < 3 && tangled[part[t]]; i++) {
+            uint32_t a = mesh->tris[t][i], b = mesh->tris[t][(i + 1) % 3], e = edge_table_add(&edges, a, b);
+            faces[e] = (unsigned char)(faces[e] < 3 ? faces[e] + 1 : 3);
+            mixed[a] = mixed[a] || faces[e] == 3;
+            mixed[b] = mixed[b] || faces[e] == 3;
+        }
+    edge_table_finish(&edges);
+    mem_free(faces);
 }
 
 /* region[point]: points that hang together without passing a point where parts meet. */
@@ -234,16 +336,20 @@ struct vote { /* of a region */
     size_t seen, asked, hidden;
 };
 
-void hidden_find(const struct trimesh *mesh, const uint32_t *part, const struct trimesh *solid, const uint32_t *solid_part, size_t parts,
-                 const char *closed, double tolerance_m, struct workers *workers, char *hidden)
+void hidden_find(const struct trimesh *mesh, const uint32_t *part, const struct parts *parts, const uint32_t *crossings,
+                 size_t crossing_count, double tolerance_m, struct workers *workers, char *hidden)
 {
     struct solids solids;
-    solids_init(&solids, solid, solid_part, parts, closed);
+    solids_init(&solids, parts);
     char *mixed = mem_array(mesh->point_count, 1);
-    uint32_t *of_point = parts_of_points(mesh, part, mixed), *region = find_regions(mesh, mixed);
+    mix_parts(mesh, part, mixed);
+    mix_branches(mesh, part, parts->tangled, mixed);
+    for (size_t i = 0; i < crossing_count; i++)
+        mixed[crossings[i]] = 1;
+    uint32_t *region = find_regions(mesh, mixed);
     size_t *asked = mem_array(mesh->tri_count, sizeof(*asked)), asked_count = 0;
     struct vote *votes = mem_array(mesh->point_count, sizeof(*votes));
-    struct search search = { .mesh = mesh, .part = part, .solids = &solids, .tolerance_m = tolerance_m, .hidden = hidden };
+    struct search search = { .mesh = mesh, .part = part, .parts = parts, .solids = &solids, .tolerance_m = tolerance_m, .hidden = hidden };
     for (size_t t = 0; t < mesh->tri_count; t++) { /* those where parts meet, and of each region some */
         uint32_t r = region_of(mesh, t, mixed, region);
         if (!untouched(mesh, t, mixed) || votes[r].seen++ % VOTE_EVERY == 0)
@@ -267,7 +373,6 @@ void hidden_find(const struct trimesh *mesh, const uint32_t *part, const struct 
     ask(&search, workers, asked, asked_count);
     solids_finish(&solids);
     mem_free(mixed);
-    mem_free(of_point);
     mem_free(region);
     mem_free(asked);
     mem_free(votes);

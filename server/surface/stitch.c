@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Bridging what is broken: seams along open edges, and parts that touch or cross. */
+/* Bridging what is broken: seams along open edges. */
 #include "surface/stitch.h"
 
 #include <math.h>
@@ -9,11 +9,11 @@
 #include "surface/attach.h"
 #include "surface/bvh.h"
 #include "surface/cloud.h"
+#include "surface/stitch_impl.h"
 #include "surface/vec.h"
 
 #define GAP_OF_EDGE 0.45 /* two points become one only if they are nearer than this share of the shortest edge at either */
 #define EXACT_OF_TOLERANCE 0.01
-#define AT_END 1e-3 /* this near to an end of an edge, as a share of its length, it is the end */
 
 /* --- open edges ------------------------------------------------------------------------------------------------------------ */
 
@@ -135,16 +135,11 @@ static void join_near(void *arg, size_t i, size_t j, double distance_m)
         attach_points(s->attach, b->points[i], b->points[j], distance_m);
 }
 
-static bool tri_has(const struct trimesh *mesh, uint32_t tri, uint32_t point)
-{
-    return mesh->tris[tri][0] == point || mesh->tris[tri][1] == point || mesh->tris[tri][2] == point;
-}
-
 static void try_edge(struct seams *s, size_t i, uint32_t e)
 {
     const struct borders *b = s->borders;
     uint32_t p = b->points[i], u = b->edges[e][0], v = b->edges[e][1];
-    if (tri_has(s->mesh, b->edge_tri[e], p))
+    if (stitch_tri_has(s->mesh, b->edge_tri[e], p))
         return;
     const double *a = s->mesh->points[u], *c = s->mesh->points[v], *q = s->mesh->points[p];
     double ac[3], aq[3], at[3], length2;
@@ -152,7 +147,7 @@ static void try_edge(struct seams *s, size_t i, uint32_t e)
     vec_sub(q, a, aq);
     length2 = vec_dot(ac, ac);
     double t = length2 > 0 ? vec_dot(aq, ac) / length2 : 0;
-    double end = max_of(AT_END, length2 > 0 ? s->end_m / sqrt(length2) : 1);
+    double end = max_of(STITCH_AT_END, length2 > 0 ? s->end_m / sqrt(length2) : 1);
     if (t <= end || t >= 1 - end)
         return;
     vec_mix(a, c, t, at);
@@ -196,67 +191,6 @@ static void set_into_edges(struct seams *s)
     mem_free(s->nearest);
 }
 
-static void compose(uint32_t *target, size_t count, const uint32_t *then)
-{
-    for (size_t i = 0; i < count; i++)
-        target[i] = then[target[i]];
-}
-
-static void note_bridge(struct stitch_report *report, const double from_m[3], const double to_m[3])
-{
-    mem_grow(&report->made, &report->made_capacity, report->made_count + 1, sizeof(*report->made));
-    struct stitch_bridge *bridge = &report->made[report->made_count++];
-    memcpy(bridge->from_m, from_m, sizeof(bridge->from_m));
-    memcpy(bridge->to_m, to_m, sizeof(bridge->to_m));
-}
-
-static void place_of(const struct trimesh *mesh, const struct attach_item *item, double place[3])
-{
-    if (item->tri == TRIMESH_NONE) {
-        vec_mix(mesh->points[item->a], mesh->points[item->b], item->t, place);
-        return;
-    }
-    const uint32_t *v = mesh->tris[item->tri];
-    double w[3];
-    triangle_nearest(mesh->points[item->point], mesh->points[v[0]], mesh->points[v[1]], mesh->points[v[2]], w);
-    for (int axis = 0; axis < 3; axis++)
-        place[axis] = w[0] * mesh->points[v[0]][axis] + w[1] * mesh->points[v[1]][axis] + w[2] * mesh->points[v[2]][axis];
-}
-
-/* Points from first_new on are crossings: each is set into an edge first, and then into a face or one with a corner of it. */
-static void note_bridges(struct stitch_report *report, const struct attach *attach, const struct trimesh *mesh, uint32_t first_new)
-{
-    uint32_t last_new = TRIMESH_NONE;
-    for (size_t i = 0; i < attach->pair_count; i++)
-        if (attach->pairs[i].a < first_new)
-            note_bridge(report, mesh->points[attach->pairs[i].a], mesh->points[attach->pairs[i].b]);
-    for (size_t i = 0; i < attach->item_count; i++) {
-        const struct attach_item *item = &attach->items[i];
-        double place[3];
-        if (item->point >= first_new && item->point == last_new)
-            continue;
-        last_new = item->point;
-        place_of(mesh, item, place);
-        note_bridge(report, mesh->points[item->point], place);
-    }
-}
-
-/* Applies what was collected, and counts it. */
-static void carry_out(struct attach *attach, struct trimesh *mesh, uint32_t *target, size_t target_count, size_t crossings,
-                      struct stitch_report *report)
-{
-    uint32_t *then = mem_array(mesh->point_count, sizeof(*then));
-    report->bridges += attach->item_count + attach->pair_count - crossings; /* a crossing is set into both parts, and is one */
-    report->longest_m = max_of(report->longest_m, attach->longest_m);
-    note_bridges(report, attach, mesh, (uint32_t)(mesh->point_count - crossings));
-    if (attach->item_count + attach->pair_count) {
-        attach_apply(attach, mesh, then);
-        compose(target, target_count, then);
-    }
-    attach_finish(attach);
-    mem_free(then);
-}
-
 /* Joins points on open edges, or sets them into open edges, where they are within tolerance_m. */
 static void seam_round(struct trimesh *mesh, double tolerance_m, double end_m, bool into_edges, uint32_t *target, size_t target_count,
                        struct stitch_report *report)
@@ -277,7 +211,7 @@ static void seam_round(struct trimesh *mesh, double tolerance_m, double end_m, b
         mem_free(cloud);
     }
     borders_finish(&borders);
-    carry_out(&attach, mesh, target, target_count, 0, report);
+    stitch_carry_out(&attach, mesh, target, target_count, 0, report);
 }
 
 void stitch_seams(struct trimesh *mesh, double tolerance_m, uint32_t *target, struct stitch_report *report)
@@ -291,130 +225,4 @@ void stitch_seams(struct trimesh *mesh, double tolerance_m, uint32_t *target, st
         seam_round(mesh, tolerances_m[i], 0, false, target, target_count, report);
         seam_round(mesh, tolerances_m[i], i == 0 ? tolerance_m : 0, true, target, target_count, report);
     }
-}
-
-/* --- parts that touch or cross ------------------------------------------------------------------------------------------------ */
-
-struct contacts {
-    struct trimesh *mesh;
-    const uint32_t *part;
-    const struct bvh *bvh;
-    struct attach *attach;
-    double tolerance_m;
-    uint32_t own_part; /* of the edge or point in hand */
-    uint32_t edge[2];
-    struct crossing {
-        uint32_t tri, a, b;
-        double t, weights[3];
-    } * crossings;
-    size_t crossing_count, crossing_capacity;
-};
-
-static void visit_crossed(void *arg, uint32_t tri)
-{
-    struct contacts *c = arg;
-    const uint32_t *v = c->mesh->tris[tri];
-    double t, w[3];
-    if (c->part[tri] == c->own_part)
-        return;
-    const double *p = c->mesh->points[c->edge[0]], *q = c->mesh->points[c->edge[1]];
-    if (!triangle_crossed(p, q, c->mesh->points[v[0]], c->mesh->points[v[1]], c->mesh->points[v[2]], &t, w))
-        return;
-    double length = vec_distance(p, q);
-    if (t * length < c->tolerance_m || (1 - t) * length < c->tolerance_m)
-        return; /* the end of the edge touches; that is found by points */
-    mem_grow(&c->crossings, &c->crossing_capacity, c->crossing_count + 1, sizeof(*c->crossings));
-    struct crossing *found = &c->crossings[c->crossing_count++];
-    *found = (struct crossing){ .tri = tri, .a = c->edge[0], .b = c->edge[1], .t = t };
-    memcpy(found->weights, w, sizeof(w));
-}
-
-/* Sets a point into the face tri at the place with these weights: into the side it is on, or made one with the corner it is at. */
-static void set_into_face(const struct contacts *c, uint32_t point, uint32_t tri, const double w[3], double distance_m)
-{
-    const uint32_t *v = c->mesh->tris[tri];
-    for (int i = 0; i < 3; i++)
-        if (w[i] > 1 - AT_END) {
-            attach_points(c->attach, point, v[i], distance_m);
-            return;
-        }
-    for (int i = 0; i < 3; i++)
-        if (w[i] < AT_END) {
-            uint32_t a = v[(i + 1) % 3], b = v[(i + 2) % 3];
-            attach_to_edge(c->attach, point, a, b, w[(i + 2) % 3] / (w[(i + 1) % 3] + w[(i + 2) % 3]), distance_m);
-            return;
-        }
-    attach_to_tri(c->attach, point, tri, distance_m);
-}
-
-static void find_crossings(struct contacts *c)
-{
-    struct edge_table edges;
-    edge_table_init(&edges, c->mesh->tri_count * 3 / 2);
-    for (uint32_t t = 0; t < c->mesh->tri_count; t++)
-        for (int i = 0; i < 3; i++) {
-            size_t before = edges.count;
-            c->edge[0] = c->mesh->tris[t][i];
-            c->edge[1] = c->mesh->tris[t][(i + 1) % 3];
-            edge_table_add(&edges, c->edge[0], c->edge[1]);
-            if (edges.count == before)
-                continue;
-            double low[3], high[3];
-            const double *p = c->mesh->points[c->edge[0]], *q = c->mesh->points[c->edge[1]];
-            for (int axis = 0; axis < 3; axis++) {
-                low[axis] = min_of(p[axis], q[axis]);
-                high[axis] = max_of(p[axis], q[axis]);
-            }
-            c->own_part = c->part[t];
-            bvh_overlaps(c->bvh, low, high, 0, visit_crossed, c);
-        }
-    edge_table_finish(&edges);
-    for (size_t i = 0; i < c->crossing_count; i++) { /* points are added only now: the search above looks at the array they are in */
-        const struct crossing *x = &c->crossings[i];
-        double place[3];
-        vec_mix(c->mesh->points[x->a], c->mesh->points[x->b], x->t, place);
-        uint32_t point = trimesh_add_point(c->mesh, place);
-        attach_to_edge(c->attach, point, x->a, x->b, x->t, 0);
-        set_into_face(c, point, x->tri, x->weights, 0);
-    }
-    mem_free(c->crossings);
-}
-
-static bool other_part(const void *arg, uint32_t tri)
-{
-    const struct contacts *c = arg;
-    return c->part[tri] != c->own_part;
-}
-
-static void find_touches(struct contacts *c)
-{
-    char *seen = mem_array(c->mesh->point_count, 1);
-    for (uint32_t t = 0; t < c->mesh->tri_count; t++)
-        for (int i = 0; i < 3; i++) {
-            uint32_t p = c->mesh->tris[t][i];
-            struct bvh_place place;
-            if (seen[p])
-                continue;
-            seen[p] = 1;
-            c->own_part = c->part[t];
-            bvh_nearest(c->bvh, c->mesh->points[p], c->tolerance_m, other_part, c, &place);
-            if (place.tri != TRIMESH_NONE && !tri_has(c->mesh, place.tri, p))
-                set_into_face(c, p, place.tri, place.weights, place.distance_m);
-        }
-    mem_free(seen);
-}
-
-void stitch_parts(struct trimesh *mesh, const uint32_t *part, double tolerance_m, uint32_t *target, struct stitch_report *report)
-{
-    struct attach attach;
-    struct bvh *bvh = bvh_create(mesh);
-    struct contacts contacts = { .mesh = mesh, .part = part, .bvh = bvh, .attach = &attach, .tolerance_m = tolerance_m };
-    size_t target_count = mesh->point_count;
-    attach_init(&attach);
-    for (uint32_t i = 0; i < target_count; i++)
-        target[i] = i;
-    find_touches(&contacts);
-    find_crossings(&contacts);
-    bvh_destroy(&bvh);
-    carry_out(&attach, mesh, target, target_count, contacts.crossing_count, report);
 }

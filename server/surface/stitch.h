@@ -2,7 +2,7 @@
 /* Bridging what is broken, within one tolerance. */
 #ifndef SURFACE_STITCH_H
 #define SURFACE_STITCH_H
-#include "surface/trimesh.h"
+#include "surface/parts.h"
 
 /* What was joined: a place of the surface and the one that it became part of. Equal where edges cross a face. */
 struct stitch_bridge {
@@ -14,7 +14,9 @@ struct stitch_report {
     struct stitch_bridge *made; /* of all of them; mem_free. Grows from call to call */
     size_t made_count, made_capacity;
     double longest_m;
-    int k; /* neighbours asked of the point cloud; -1: out of memory */
+    int k;               /* neighbours asked of the point cloud; -1: out of memory */
+    uint32_t *crossings; /* points where a part passes through itself; mem_free */
+    size_t crossing_count, crossing_capacity;
 };
 
 /* Seams: points on open edges become one with other points on open edges (unwelded vertices), or are set into open edges (hanging vertices,
@@ -22,8 +24,9 @@ struct stitch_report {
    gap are left alone, so that nothing small collapses. target[point] (of mesh->point_count before): what it has become. */
 void stitch_seams(struct trimesh *mesh, double tolerance_m, uint32_t *target, struct stitch_report *report);
 
-/* Contacts between parts (part[tri]): where an edge of one passes through a face of another, a point is set into both; where a point lies
-   within the tolerance of another part's surface, it is set into that. */
-void stitch_parts(struct trimesh *mesh, const uint32_t *part, double tolerance_m, uint32_t *target, struct stitch_report *report);
+/* Contacts between parts: where an edge passes through a face, also of its own part (parts->crossed, tangled), a point is set into both;
+   where a point lies within the tolerance of another patch's surface, it is set into that; where the rim of a face that lies on another
+   part crosses an edge there, a point is set into both edges. */
+void stitch_parts(struct trimesh *mesh, struct parts *parts, double tolerance_m, uint32_t *target, struct stitch_report *report);
 
 #endif

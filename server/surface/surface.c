@@ -9,6 +9,7 @@
 #include "base/mem.h"
 #include "surface/hidden.h"
 #include "surface/order.h"
+#include "surface/parts.h"
 #include "surface/stitch.h"
 #include "surface/surface_state.h"
 #include "surface/vec.h"
@@ -116,78 +117,6 @@ static bool close_seams(struct surface *surface)
     return made.k >= 0;
 }
 
-/* Parts are what hangs together by edges before parts are joined to each other (a point in common is not enough: a corner may touch
-   anything); numbered from 0. part[tri]. */
-static size_t number_parts(const struct trimesh *mesh, uint32_t *part)
-{
-    struct edge_table edges;
-    uint32_t *first = mem_array(mesh->tri_count * 3, sizeof(*first)), count = 0;
-    edge_table_init(&edges, mesh->tri_count * 3 / 2);
-    for (uint32_t t = 0; t < mesh->tri_count; t++)
-        part[t] = t;
-    for (uint32_t t = 0; t < mesh->tri_count; t++)
-        for (int i = 0; i < 3; i++) {
-            size_t before = edges.count;
-            uint32_t e = edge_table_add(&edges, mesh->tris[t][i], mesh->tris[t][(i + 1) % 3]);
-            if (edges.count > before)
-                first[e] = t;
-            else
-                trimesh_join(part, t, first[e]);
-        }
-    for (uint32_t t = 0; t < mesh->tri_count; t++) /* the root is the lowest, so it is numbered before the others ask for it */
-        first[t] = trimesh_root(part, t) == t ? count++ : first[trimesh_root(part, t)];
-    memcpy(part, first, mesh->tri_count * sizeof(*part));
-    mem_free(first);
-    edge_table_finish(&edges);
-    return count;
-}
-
-static void copy_mesh(struct trimesh *to, const struct trimesh *from)
-{
-    *to = (struct trimesh){ .point_count = from->point_count, .tri_count = from->tri_count };
-    to->points = mem_array(from->point_count, sizeof(*to->points));
-    to->tris = mem_array(from->tri_count, sizeof(*to->tris));
-    memcpy(to->points, from->points, from->point_count * sizeof(*to->points));
-    memcpy(to->tris, from->tris, from->tri_count * sizeof(*to->tris));
-}
-
-struct parts { /* as they were before they were cut up and joined */
-    struct trimesh solid;
-    uint32_t *of_tri, *of_source; /* of the solid's triangles; of the model's */
-    char *closed;
-    size_t count;
-};
-
-static void parts_init(struct parts *parts, const struct surface *surface)
-{
-    const struct trimesh *mesh = &surface->mesh;
-    *parts = (struct parts){ 0 };
-    copy_mesh(&parts->solid, mesh);
-    parts->of_tri = mem_array(mesh->tri_count, sizeof(*parts->of_tri));
-    parts->of_source = mem_array(surface->report.triangles, sizeof(*parts->of_source));
-    parts->count = number_parts(mesh, parts->of_tri);
-    for (size_t t = 0; t < mesh->tri_count; t++)
-        parts->of_source[mesh->tri_source[t]] = parts->of_tri[t];
-    parts->closed = mem_array(parts->count, 1);
-    hidden_closed_parts(mesh, parts->of_tri, parts->count, parts->closed);
-}
-
-static void parts_finish(struct parts *parts)
-{
-    trimesh_finish(&parts->solid);
-    mem_free(parts->of_tri);
-    mem_free(parts->of_source);
-    mem_free(parts->closed);
-}
-
-static uint32_t *parts_now(const struct parts *parts, const struct trimesh *mesh)
-{
-    uint32_t *part = mem_array(mesh->tri_count, sizeof(*part));
-    for (size_t t = 0; t < mesh->tri_count; t++)
-        part[t] = parts->of_source[mesh->tri_source[t]];
-    return part;
-}
-
 /* Puts visible triangles first. Returns how many there are. */
 static size_t sort_hidden(struct trimesh *mesh, char *hidden)
 {
@@ -210,31 +139,31 @@ static size_t sort_hidden(struct trimesh *mesh, char *hidden)
 }
 
 /* Where edges cross just at an edge, each of its faces got a point of its own: a crack that distances would have to go round. */
-static void merge_twins(struct surface *surface)
+static void merge_twins(struct surface *surface, uint32_t *crossings, size_t crossing_count)
 {
     uint32_t *target = mem_array(surface->mesh.point_count, sizeof(*target));
     size_t degenerate = 0, repeated = 0;
     if (trimesh_find_twins(&surface->mesh, surface->size_m * WELD_OF_SIZE, target)) {
         trimesh_rename(&surface->mesh, target, &degenerate, &repeated);
         follow(surface, target);
+        for (size_t i = 0; i < crossing_count; i++)
+            crossings[i] = target[crossings[i]];
     }
     mem_free(target);
 }
 
-static void join_parts(struct surface *surface, const struct parts *parts)
+static void join_parts(struct surface *surface, struct parts *parts)
 {
     struct stitch_report made = { 0 };
-    uint32_t *part = parts_now(parts, &surface->mesh), *target = mem_array(surface->mesh.point_count, sizeof(*target));
-    stitch_parts(&surface->mesh, part, surface->report.tolerance_m, target, &made);
+    uint32_t *target = mem_array(surface->mesh.point_count, sizeof(*target));
+    stitch_parts(&surface->mesh, parts, surface->report.tolerance_m, target, &made);
     follow(surface, target);
     note_bridges(surface, &made);
-    mem_free(part);
     mem_free(target);
-    merge_twins(surface);
+    merge_twins(surface, made.crossings, made.crossing_count);
     char *hidden = mem_array(surface->mesh.tri_count, 1);
-    part = parts_now(parts, &surface->mesh);
-    hidden_find(&surface->mesh, part, &parts->solid, parts->of_tri, parts->count, parts->closed, surface->report.tolerance_m,
-                surface->workers, hidden);
+    uint32_t *part = parts_spread(&surface->mesh, parts->of_source);
+    hidden_find(&surface->mesh, part, parts, made.crossings, made.crossing_count, surface->report.tolerance_m, surface->workers, hidden);
     size_t visible_count = sort_hidden(&surface->mesh, hidden);
     target = mem_array(surface->mesh.point_count, sizeof(*target));
     order_mesh(&surface->mesh, visible_count, target);
@@ -244,6 +173,7 @@ static void join_parts(struct surface *surface, const struct parts *parts)
     mem_free(target);
     mem_free(part);
     mem_free(hidden);
+    mem_free(made.crossings);
 }
 
 static void sample(struct surface *surface)
@@ -342,7 +272,7 @@ struct surface *surface_create(struct log *log, struct workers *workers, const f
     report->weld_s = seconds_since(&since_ns);
     if (!close_seams(surface))
         goto error;
-    parts_init(&parts, surface);
+    parts_init(&parts, &surface->mesh, triangles, triangle_count, surface->vertex_point);
     report->border_edges_after = border_edges(&surface->mesh);
     report->bridge_s = seconds_since(&since_ns);
     sample(surface);

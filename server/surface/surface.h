@@ -6,8 +6,9 @@
    heat method runs on that graph. On clean CAD this loses what the mesh knows (neighbours reach through thin walls and across
    narrow slots); on broken CAD it is what still works. So here:
      1. what the mesh knows is kept: vertices at one place are welded, repeated faces dropped (trimesh.h);
-     2. what is broken is bridged: open borders and parts that touch or cross are joined within one tolerance. Candidates on open
-        borders come from the point cloud, by kNN (cloud.h, stitch.h); what lies inside another closed part leaves (hidden.h);
+     2. what is broken is bridged: open borders and parts that touch or cross, also themselves, are joined within one tolerance.
+        Candidates on open borders come from the point cloud, by kNN (cloud.h, stitch.h); what lies inside another closed part, or
+        between two that touch face to face, leaves (parts.h, hidden.h);
      3. the surface is sampled evenly: long edges are split until no edge is longer than the spacing (trimesh.h);
      4. the heat method (Crane, Weischedel, Wardetzky 2013) with the cotangent Laplacian of the intrinsic Delaunay triangulation, which
         has no negative weights inside a patch (intrinsic.h, heat.h). Diffusion time: 3 times the mean edge squared, more where the
@@ -44,7 +45,7 @@ struct surface_report {
     double longest_bridge_m;
     int k;                    /* neighbours asked for; 0: nothing to bridge */
     size_t samples;           /* points added */
-    size_t hidden_vertices;   /* of the model: inside another closed part */
+    size_t hidden_vertices;   /* of the model: inside another closed part, or covered by one */
     double heat_disagreement; /* root mean square difference to the heat method, as a share of the largest distance; worst source checked */
     double weld_s, bridge_s, sample_s, laplacian_s, factor_s, check_s;
 };

@@ -264,6 +264,14 @@ void cad_thin_box(struct cad *cad, struct cad_random *random, int x, int y, int 
             cad->positions[v][axis] = (float)(cell * (double)cad->positions[v][axis]);
 }
 
+void cad_box(struct cad *cad, struct cad_random *random, int x, int y, int z, double cell)
+{
+    make_block(cad, random, &(struct block){ { x, y, z }, in_cube });
+    for (size_t v = 0; v < cad->vertex_count; v++)
+        for (int axis = 0; axis < 3; axis++)
+            cad->positions[v][axis] = (float)(cell * (double)cad->positions[v][axis]);
+}
+
 /* --- pipes ---------------------------------------------------------------------------------------------------------------------- */
 
 static uint32_t add_ring(struct cad *cad, double radius, double z, int around)
@@ -314,6 +322,43 @@ void cad_closed_pipe(struct cad *cad, struct cad_random *random, double radius, 
         p[0] = (float)(cos(turn_rad) * x + sin(turn_rad) * z + centre[0]);
         p[1] = (float)((double)p[1] + centre[1]);
         p[2] = (float)(cos(turn_rad) * z - sin(turn_rad) * x + centre[2]);
+    }
+}
+
+/* From the left end (s = 0) over the middle to the right end (s = 0.5), and back. */
+static uint32_t add_eight_ring(struct cad *cad, double s, double radius, int around)
+{
+    uint32_t first = (uint32_t)cad->vertex_count;
+    double a = 2 * PI * (s < 1 ? s : 0), tx = sin(a), ty = 0.07 * cos(a) - 1.2 * cos(2 * a), length = hypot(tx, ty);
+    for (int i = 0; i < around; i++) {
+        double b = 2 * PI * i / around + 0.9 * sin(a + 0.4);
+        add_vertex(cad, -cos(a) - radius * cos(b) * ty / length, 0.07 * sin(a) - 0.6 * sin(2 * a) + radius * cos(b) * tx / length,
+                   0.2 * radius * sin(a) + radius * sin(b));
+    }
+    return first;
+}
+
+static void cap(struct cad *cad, uint32_t ring, int around, double x, bool turned)
+{
+    uint32_t middle = add_vertex(cad, x, 0, 0);
+    for (int i = 0; i < around; i++) {
+        uint32_t a = ring + (uint32_t)i, b = ring + (uint32_t)((i + 1) % around);
+        add_triangle(cad, turned ? b : a, turned ? a : b, middle);
+    }
+}
+
+void cad_eight(struct cad *cad, struct cad_random *random, int along, int around, double tube_radius, int half)
+{
+    int begin = half == 2 ? along / 2 : 0, end = half == 1 ? along / 2 : along;
+    uint32_t first = add_eight_ring(cad, (double)begin / along, tube_radius, around), last = first;
+    for (int j = begin + 1; j <= end; j++) {
+        uint32_t next = half || j < end ? add_eight_ring(cad, (double)j / along, tube_radius, around) : first;
+        join_rings(cad, random, last, next, around);
+        last = next;
+    }
+    if (half) {
+        cap(cad, first, around, half == 1 ? -1 : 1, true);
+        cap(cad, last, around, half == 1 ? 1 : -1, false);
     }
 }
 

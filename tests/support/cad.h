@@ -30,6 +30,11 @@ void cad_torus(struct cad *cad, struct cad_random *random, int around, int tube,
 void cad_bent_pipe(struct cad *cad, struct cad_random *random, int along, int around, double pipe_radius, double jitter);
 /* An open box of x * y * z cells outside, its walls and bottom one cell thick. */
 void cad_thin_box(struct cad *cad, struct cad_random *random, int x, int y, int z, double cell);
+/* A closed box of x * y * z cells, its lowest corner at the origin. */
+void cad_box(struct cad *cad, struct cad_random *random, int x, int y, int z, double cell);
+/* A closed tube along a lying eight that is 2 wide: it passes through itself. With half: only the ways from its left end to its right end
+   that go up (1) or down (2), closed there. */
+void cad_eight(struct cad *cad, struct cad_random *random, int along, int around, double tube_radius, int half);
 /* A closed cylinder about an axis through `centre`, turned from z towards x. */
 void cad_closed_pipe(struct cad *cad, struct cad_random *random, double radius, double length, int around, int along, int rings,
                      double turn_rad, const double centre[3]);

@@ -1,0 +1,262 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Bridging what is broken: parts that touch or cross. */
+#include <math.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "surface/attach.h"
+#include "surface/bvh.h"
+#include "surface/stitch.h"
+#include "surface/stitch_impl.h"
+#include "surface/vec.h"
+
+#define CLEAR 0.05    /* tolerances */
+#define PARALLEL 1e-4 /* squared sine of the angle between edges */
+
+struct contacts {
+    struct trimesh *mesh;
+    struct parts *parts;
+    const uint32_t *part, *patch; /* of its triangles, as they are now */
+    const struct bvh *bvh;
+    struct attach *attach;
+    double tolerance_m;
+    uint32_t own; /* of the edge's triangle: its part; of the point's: its patch */
+    uint32_t edge[2];
+    uint32_t *touched; /* of each point: the patch that it touches, or TRIMESH_NONE */
+    struct crossing {
+        uint32_t tri, a, b, c, d; /* edge a-b through tri, or, if that is TRIMESH_NONE, over the edge c-d */
+        double t, s, weights[3];
+        bool own; /* within one part */
+    } * crossings;
+    size_t crossing_count, crossing_capacity;
+};
+
+static struct crossing *add_crossing(struct contacts *c)
+{
+    mem_grow(&c->crossings, &c->crossing_capacity, c->crossing_count + 1, sizeof(*c->crossings));
+    return &c->crossings[c->crossing_count++];
+}
+
+/* Both ends stand clear of the triangle's plane: faces of one part that lie on each other do not count as crossing. */
+static bool stands_clear(const struct contacts *c, const uint32_t *v)
+{
+    double ab[3], ac[3], n[3], up[3];
+    vec_sub(c->mesh->points[v[1]], c->mesh->points[v[0]], ab);
+    vec_sub(c->mesh->points[v[2]], c->mesh->points[v[0]], ac);
+    vec_cross(ab, ac, n);
+    for (int i = 0; i < 2; i++) {
+        vec_sub(c->mesh->points[c->edge[i]], c->mesh->points[v[0]], up);
+        if (fabs(vec_dot(up, n)) < CLEAR * c->tolerance_m * sqrt(vec_dot(n, n)))
+            return false;
+    }
+    return true;
+}
+
+static void visit_crossed(void *arg, uint32_t tri)
+{
+    struct contacts *c = arg;
+    const uint32_t *v = c->mesh->tris[tri];
+    double t, w[3];
+    bool own = c->part[tri] == c->own;
+    if (own && (stitch_tri_has(c->mesh, tri, c->edge[0]) || stitch_tri_has(c->mesh, tri, c->edge[1])))
+        return;
+    const double *p = c->mesh->points[c->edge[0]], *q = c->mesh->points[c->edge[1]];
+    if (!triangle_crossed(p, q, c->mesh->points[v[0]], c->mesh->points[v[1]], c->mesh->points[v[2]], &t, w))
+        return;
+    double length = vec_distance(p, q);
+    if (t * length < c->tolerance_m || (1 - t) * length < c->tolerance_m || (own && !stands_clear(c, v)))
+        return; /* the end of the edge touches; that is found by points */
+    struct crossing *found = add_crossing(c);
+    *found = (struct crossing){ .tri = tri, .a = c->edge[0], .b = c->edge[1], .t = t, .own = own };
+    memcpy(found->weights, w, sizeof(w));
+    if (own)
+        c->parts->crossed[c->own] = c->parts->tangled[c->own] = 1;
+}
+
+/* Sets a point into the face tri at the place with these weights: into the side it is on, or made one with the corner it is at. */
+static void set_into_face(const struct contacts *c, uint32_t point, uint32_t tri, const double w[3], double distance_m)
+{
+    const uint32_t *v = c->mesh->tris[tri];
+    for (int i = 0; i < 3; i++)
+        if (w[i] > 1 - STITCH_AT_END) {
+            attach_points(c->attach, point, v[i], distance_m);
+            return;
+        }
+    for (int i = 0; i < 3; i++)
+        if (w[i] < STITCH_AT_END) {
+            uint32_t a = v[(i + 1) % 3], b = v[(i + 2) % 3];
+            attach_to_edge(c->attach, point, a, b, w[(i + 2) % 3] / (w[(i + 1) % 3] + w[(i + 2) % 3]), distance_m);
+            return;
+        }
+    attach_to_tri(c->attach, point, tri, distance_m);
+}
+
+/* Triangles near the edge in hand. */
+static void look_around(struct contacts *c, void (*visit)(void *arg, uint32_t tri), double margin_m)
+{
+    const double *p = c->mesh->points[c->edge[0]], *q = c->mesh->points[c->edge[1]];
+    double low[3], high[3];
+    for (int axis = 0; axis < 3; axis++) {
+        low[axis] = min_of(p[axis], q[axis]);
+        high[axis] = max_of(p[axis], q[axis]);
+    }
+    bvh_overlaps(c->bvh, low, high, margin_m, visit, c);
+}
+
+static void find_crossings(struct contacts *c)
+{
+    struct edge_table edges;
+    edge_table_init(&edges, c->mesh->tri_count * 3 / 2);
+    for (uint32_t t = 0; t < c->mesh->tri_count; t++)
+        for (int i = 0; i < 3; i++) {
+            size_t before = edges.count;
+            c->edge[0] = c->mesh->tris[t][i];
+            c->edge[1] = c->mesh->tris[t][(i + 1) % 3];
+            edge_table_add(&edges, c->edge[0], c->edge[1]);
+            if (edges.count == before)
+                continue;
+            c->own = c->part[t];
+            look_around(c, visit_crossed, 0);
+        }
+    edge_table_finish(&edges);
+}
+
+static bool other_patch(const void *arg, uint32_t tri)
+{
+    const struct contacts *c = arg;
+    return c->patch[tri] != c->own;
+}
+
+static void find_touches(struct contacts *c)
+{
+    char *seen = mem_array(c->mesh->point_count, 1);
+    memset(c->touched, 0xff, c->mesh->point_count * sizeof(*c->touched));
+    for (uint32_t t = 0; t < c->mesh->tri_count; t++)
+        for (int i = 0; i < 3; i++) {
+            uint32_t p = c->mesh->tris[t][i];
+            struct bvh_place place;
+            if (seen[p])
+                continue;
+            seen[p] = 1;
+            c->own = c->patch[t];
+            bvh_nearest(c->bvh, c->mesh->points[p], c->tolerance_m, other_patch, c, &place);
+            if (place.tri == TRIMESH_NONE)
+                continue;
+            c->touched[p] = c->patch[place.tri];
+            if (!stitch_tri_has(c->mesh, place.tri, p))
+                set_into_face(c, p, place.tri, place.weights, place.distance_m);
+        }
+    mem_free(seen);
+}
+
+/* --- the rim of a contact ----------------------------------------------------------------------------------------------------- */
+
+/* Where two edges that are not parallel come nearest to each other: shares of the way. */
+static bool edges_meet(const double a[3], const double b[3], const double c[3], const double d[3], double *t, double *s)
+{
+    double ab[3], cd[3], ac[3];
+    vec_sub(b, a, ab);
+    vec_sub(d, c, cd);
+    vec_sub(c, a, ac);
+    double aa = vec_dot(ab, ab), cc = vec_dot(cd, cd), both = vec_dot(ab, cd), det = aa * cc - both * both;
+    if (!(det > PARALLEL * aa * cc))
+        return false;
+    *t = (vec_dot(ac, ab) * cc - vec_dot(ac, cd) * both) / det;
+    *s = (vec_dot(ac, ab) * both - vec_dot(ac, cd) * aa) / det;
+    return *t > 0 && *t < 1 && *s > 0 && *s < 1;
+}
+
+static bool is_known(const struct contacts *c, uint32_t u, uint32_t v)
+{
+    for (size_t i = c->crossing_count; i-- > 0;) {
+        const struct crossing *x = &c->crossings[i];
+        if (x->tri != TRIMESH_NONE || x->a != c->edge[0] || x->b != c->edge[1])
+            return false;
+        if ((x->c == u && x->d == v) || (x->c == v && x->d == u))
+            return true;
+    }
+    return false;
+}
+
+static void visit_rim(void *arg, uint32_t tri)
+{
+    struct contacts *c = arg;
+    if (c->patch[tri] != c->touched[c->edge[0]])
+        return;
+    for (int i = 0; i < 3; i++) {
+        uint32_t u = c->mesh->tris[tri][i], v = c->mesh->tris[tri][(i + 1) % 3];
+        const double *p = c->mesh->points[c->edge[0]], *q = c->mesh->points[c->edge[1]], *a = c->mesh->points[u], *b = c->mesh->points[v];
+        double t, s, at[3], beside[3], end = c->tolerance_m;
+        if (!edges_meet(p, q, a, b, &t, &s) || is_known(c, u, v))
+            continue;
+        double length = vec_distance(p, q), other = vec_distance(a, b);
+        vec_mix(p, q, t, at);
+        vec_mix(a, b, s, beside);
+        if (vec_distance(at, beside) <= c->tolerance_m && fmin(t, 1 - t) * length > end && fmin(s, 1 - s) * other > end)
+            *add_crossing(c) = (struct crossing){ TRIMESH_NONE, c->edge[0], c->edge[1], u, v, t, s, { 0 }, false };
+    }
+}
+
+/* Edges both of whose ends touch another patch, while a face at them leaves it: that patch is cut along them. */
+static void find_rims(struct contacts *c)
+{
+    for (uint32_t t = 0; t < c->mesh->tri_count; t++)
+        for (int i = 0; i < 3; i++) {
+            const uint32_t *v = c->mesh->tris[t];
+            uint32_t p = v[i], q = v[(i + 1) % 3], apex = v[(i + 2) % 3], patch = c->touched[p];
+            if (patch == TRIMESH_NONE || patch != c->touched[q] || patch == c->touched[apex])
+                continue;
+            c->edge[0] = p;
+            c->edge[1] = q;
+            look_around(c, visit_rim, c->tolerance_m);
+        }
+}
+
+/* Points are added only when all is found: the searches look at the array that they are in. */
+static void set_crossings(struct contacts *c, struct stitch_report *report)
+{
+    for (size_t i = 0; i < c->crossing_count; i++) {
+        const struct crossing *x = &c->crossings[i];
+        double place[3];
+        vec_mix(c->mesh->points[x->a], c->mesh->points[x->b], x->t, place);
+        uint32_t point = trimesh_add_point(c->mesh, place);
+        attach_to_edge(c->attach, point, x->a, x->b, x->t, 0);
+        if (x->tri == TRIMESH_NONE)
+            attach_to_edge(c->attach, point, x->c, x->d, x->s, 0);
+        else
+            set_into_face(c, point, x->tri, x->weights, 0);
+        if (!x->own)
+            continue;
+        mem_grow(&report->crossings, &report->crossing_capacity, report->crossing_count + 1, sizeof(*report->crossings));
+        report->crossings[report->crossing_count++] = point;
+    }
+}
+
+void stitch_parts(struct trimesh *mesh, struct parts *parts, double tolerance_m, uint32_t *target, struct stitch_report *report)
+{
+    struct attach attach;
+    struct bvh *bvh = bvh_create(mesh);
+    uint32_t *part = parts_spread(mesh, parts->of_source), *patch = parts_spread(mesh, parts->patch_of_source);
+    size_t target_count = mesh->point_count;
+    struct contacts contacts = { .mesh = mesh,
+                                 .parts = parts,
+                                 .part = part,
+                                 .patch = patch,
+                                 .bvh = bvh,
+                                 .attach = &attach,
+                                 .tolerance_m = tolerance_m,
+                                 .touched = mem_array(target_count, sizeof(*contacts.touched)) };
+    attach_init(&attach);
+    for (uint32_t i = 0; i < target_count; i++)
+        target[i] = i;
+    find_touches(&contacts);
+    find_crossings(&contacts);
+    find_rims(&contacts);
+    bvh_destroy(&bvh);
+    set_crossings(&contacts, report);
+    stitch_carry_out(&attach, mesh, target, target_count, contacts.crossing_count, report);
+    mem_free(contacts.crossings);
+    mem_free(contacts.touched);
+    mem_free(part);
+    mem_free(patch);
+}

@@ -1,0 +1,305 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Which triangles make up a body, which of its faces look the same way, which are walls within it. */
+#include "surface/parts.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "surface/vec.h"
+
+#define OPEN_OF_SIZE 0.05 /* open edges together, in roots of the part's area: a hair gap's leftovers, not a pipe's end */
+#define DOUBLES 0.9       /* of a wall's triangles, at least */
+
+struct edge_use {
+    uint32_t tris[2], faces;
+};
+
+struct finding {
+    struct parts *parts;
+    struct edge_use *uses;
+    uint32_t (*edge)[3];            /* of each triangle, in uses: from its corner i to the next */
+    uint32_t *patch;                /* of each triangle: its lowest one */
+    struct patch {                  /* by its lowest triangle */
+        double open_m, branching_m; /* edges with one face; with three or more */
+        size_t tris, doubles;
+    } * patches;
+};
+
+static void list_edges(struct finding *f)
+{
+    const struct trimesh *mesh = &f->parts->solid;
+    struct edge_table edges;
+    edge_table_init(&edges, mesh->tri_count * 3 / 2);
+    f->uses = mem_array(3 * mesh->tri_count, sizeof(*f->uses));
+    f->edge = mem_array(mesh->tri_count, sizeof(*f->edge));
+    for (uint32_t t = 0; t < mesh->tri_count; t++)
+        for (int i = 0; i < 3; i++) {
+            f->edge[t][i] = edge_table_add(&edges, mesh->tris[t][i], mesh->tris[t][(i + 1) % 3]);
+            struct edge_use *use = &f->uses[f->edge[t][i]];
+            if (use->faces < 2)
+                use->tris[use->faces] = t;
+            use->faces++;
+        }
+    edge_table_finish(&edges);
+}
+
+static const struct edge_use *use_of(const struct finding *f, size_t t, int i)
+{
+    return &f->uses[f->edge[t][i]];
+}
+
+/* Numbers parts from 0, in the order of their first triangles. */
+static void number_parts(struct finding *f)
+{
+    struct parts *parts = f->parts;
+    const struct trimesh *mesh = &parts->solid;
+    uint32_t *number = mem_array(mesh->tri_count, sizeof(*number)), *part = parts->of_tri;
+    for (uint32_t t = 0; t < mesh->tri_count; t++)
+        part[t] = f->patch[t] = t;
+    for (uint32_t t = 0; t < mesh->tri_count; t++)
+        for (int i = 0; i < 3; i++) {
+            const struct edge_use *use = use_of(f, t, i);
+            trimesh_join(part, t, use->tris[0]);
+            if (use->faces == 2)
+                trimesh_join(f->patch, t, use->tris[0]);
+        }
+    for (uint32_t t = 0; t < mesh->tri_count; t++) { /* the root is the lowest, so it is numbered before the others ask for it */
+        number[t] = trimesh_root(part, t) == t ? (uint32_t)parts->count++ : number[trimesh_root(part, t)];
+        f->patch[t] = trimesh_root(f->patch, t);
+    }
+    memcpy(part, number, mesh->tri_count * sizeof(*part));
+    mem_free(number);
+}
+
+static void tri_normal(const struct trimesh *mesh, size_t t, double n[3])
+{
+    const uint32_t *v = mesh->tris[t];
+    double ab[3], ac[3];
+    vec_sub(mesh->points[v[1]], mesh->points[v[0]], ab);
+    vec_sub(mesh->points[v[2]], mesh->points[v[0]], ac);
+    vec_cross(ab, ac, n);
+}
+
+static void find_closed(struct finding *f)
+{
+    struct parts *parts = f->parts;
+    const struct trimesh *mesh = &parts->solid;
+    double *area_m2 = mem_array(parts->count, sizeof(*area_m2)), *open_m = mem_array(parts->count, sizeof(*open_m));
+    for (size_t t = 0; t < mesh->tri_count; t++) {
+        double n[3], open = 0;
+        bool fin = false; /* it stands on an edge that is closed without it */
+        tri_normal(mesh, t, n);
+        area_m2[parts->of_tri[t]] += sqrt(vec_dot(n, n)) / 2;
+        for (int i = 0; i < 3; i++) {
+            const struct edge_use *use = use_of(f, t, i);
+            struct patch *patch = &f->patches[f->patch[t]];
+            double length_m = vec_distance(mesh->points[mesh->tris[t][i]], mesh->points[mesh->tris[t][(i + 1) % 3]]);
+            open += use->faces == 1 ? length_m : 0;
+            fin = fin || use->faces > 2;
+            patch->open_m += use->faces == 1 ? length_m : 0;
+            patch->branching_m += use->faces > 2 ? length_m : 0;
+            parts->tangled[parts->of_tri[t]] |= use->faces > 2;
+        }
+        open_m[parts->of_tri[t]] += fin ? 0 : open;
+    }
+    for (size_t p = 0; p < parts->count; p++)
+        parts->closed[p] = open_m[p] <= OPEN_OF_SIZE * sqrt(area_m2[p]);
+    mem_free(area_m2);
+    mem_free(open_m);
+}
+
+/* --- which way patches face ----------------------------------------------------------------------------------------------- */
+
+static bool runs(const uint32_t tri[3], uint32_t from, uint32_t to)
+{
+    return (tri[0] == from && tri[1] == to) || (tri[1] == from && tri[2] == to) || (tri[2] == from && tri[0] == to);
+}
+
+/* From one triangle to its neighbours: they run along a common edge in opposite ways, or one of them is turned. */
+static void face_one_way(struct finding *f)
+{
+    const struct trimesh *mesh = &f->parts->solid;
+    signed char *side = f->parts->side;
+    uint32_t *todo = mem_array(mesh->tri_count, sizeof(*todo));
+    for (uint32_t start = 0; start < mesh->tri_count; start++) {
+        size_t count = 0;
+        if (side[start])
+            continue;
+        side[start] = 1;
+        for (todo[count++] = start; count;) {
+            uint32_t t = todo[--count];
+            for (int i = 0; i < 3; i++) {
+                const struct edge_use *use = use_of(f, t, i);
+                uint32_t other = use->tris[use->tris[0] == t];
+                if (use->faces != 2 || side[other])
+                    continue;
+                bool same = runs(mesh->tris[other], mesh->tris[t][(i + 1) % 3], mesh->tris[t][i]);
+                side[other] = (signed char)(same ? side[t] : -side[t]);
+                todo[count++] = other;
+            }
+        }
+    }
+    mem_free(todo);
+}
+
+/* Turns patches whose volume, seen from their middle, is negative: outwards is the same side for all. */
+static void face_outwards(struct finding *f)
+{
+    const struct trimesh *mesh = &f->parts->solid;
+    signed char *side = f->parts->side;
+    struct vote {
+        double middle[3], volume;
+        size_t corners;
+    } *votes = mem_array(mesh->tri_count, sizeof(*votes));
+    for (size_t t = 0; t < mesh->tri_count; t++)
+        for (int i = 0; i < 3; i++) {
+            struct vote *vote = &votes[f->patch[t]];
+            for (int axis = 0; axis < 3; axis++)
+                vote->middle[axis] += mesh->points[mesh->tris[t][i]][axis];
+            vote->corners++;
+        }
+    for (size_t t = 0; t < mesh->tri_count; t++) {
+        struct vote *vote = &votes[f->patch[t]];
+        double from[3], n[3];
+        for (int axis = 0; axis < 3; axis++)
+            from[axis] = mesh->points[mesh->tris[t][0]][axis] - vote->middle[axis] / (double)vote->corners;
+        tri_normal(mesh, t, n);
+        vote->volume += side[t] * vec_dot(from, n);
+    }
+    for (size_t t = 0; t < mesh->tri_count; t++)
+        if (votes[f->patch[t]].volume < 0)
+            side[t] = (signed char)-side[t];
+    mem_free(votes);
+}
+
+static uint32_t triple_of(struct edge_table *pairs, struct edge_table *triples, const uint32_t tri[3])
+{
+    uint32_t low = tri[0] < tri[1] ? tri[0] : tri[1], high = tri[0] < tri[1] ? tri[1] : tri[0], last = tri[2];
+    if (last < low) {
+        uint32_t swap = last;
+        last = high;
+        high = low;
+        low = swap;
+    } else if (last < high) {
+        uint32_t swap = last;
+        last = high;
+        high = swap;
+    }
+    /* Pair and point are numbers of different kinds: keep them apart, the table does not know order. */
+    return edge_table_add(triples, edge_table_add(pairs, low, high) * 2u, last * 2u + 1u);
+}
+
+/* How often each triangle is there in the model; 0: it is a piece of one that a seam cut. */
+static uint32_t *count_repeats(const struct trimesh *mesh, const uint32_t *source_tris, size_t source_count, const uint32_t *vertex_point)
+{
+    struct edge_table pairs, triples;
+    uint32_t *often = mem_array(mesh->tri_count + source_count, sizeof(*often)), *of_tri = mem_array(mesh->tri_count, sizeof(*of_tri));
+    edge_table_init(&pairs, mesh->tri_count * 3 / 2);
+    edge_table_init(&triples, mesh->tri_count);
+    for (size_t t = 0; t < mesh->tri_count; t++)
+        of_tri[t] = triple_of(&pairs, &triples, mesh->tris[t]);
+    for (size_t s = 0; s < source_count; s++) {
+        const uint32_t *v = source_tris + 3 * s;
+        const uint32_t tri[3] = { vertex_point[v[0]], vertex_point[v[1]], vertex_point[v[2]] };
+        often[triple_of(&pairs, &triples, tri)]++;
+    }
+    for (size_t t = 0; t < mesh->tri_count; t++)
+        of_tri[t] = often[of_tri[t]];
+    edge_table_finish(&pairs);
+    edge_table_finish(&triples);
+    mem_free(often);
+    return of_tri;
+}
+
+/* Where two bodies touch with the same vertices, welding left one face of two: it is a wall between them. A patch that ends at edges of three
+   faces or more, and whose triangles are there twice as often as others of its part, is such a wall. What stands on a surface,
+   like a fin, bounds nothing either. */
+static void drop_walls(struct finding *f, const uint32_t *source_tris, size_t source_count, const uint32_t *vertex_point)
+{
+    struct parts *parts = f->parts;
+    const struct trimesh *mesh = &parts->solid;
+    uint32_t *often = NULL, *least = mem_array(parts->count, sizeof(*least));
+    for (size_t t = 0; t < mesh->tri_count && !often; t++)
+        if (f->patches[f->patch[t]].branching_m > 0)
+            often = count_repeats(mesh, source_tris, source_count, vertex_point);
+    for (size_t t = 0; often && t < mesh->tri_count; t++) {
+        uint32_t *low = &least[parts->of_tri[t]];
+        *low = often[t] && (!*low || often[t] < *low) ? often[t] : *low;
+    }
+    for (size_t t = 0; often && t < mesh->tri_count; t++) {
+        struct patch *patch = &f->patches[f->patch[t]];
+        patch->tris += often[t] > 0;
+        patch->doubles += often[t] >= 2 * least[parts->of_tri[t]];
+    }
+    for (size_t t = 0; often && t < mesh->tri_count; t++) {
+        const struct patch *patch = &f->patches[f->patch[t]];
+        bool fin = patch->open_m > patch->branching_m, wall = (double)patch->doubles > DOUBLES * (double)patch->tris;
+        if (patch->branching_m > 0 && (fin || wall))
+            parts->side[t] = 0;
+    }
+    mem_free(often);
+    mem_free(least);
+}
+
+/* --- all ------------------------------------------------------------------------------------------------------------------ */
+
+static void copy_mesh(struct trimesh *to, const struct trimesh *from)
+{
+    *to = (struct trimesh){ .point_count = from->point_count, .tri_count = from->tri_count };
+    to->points = mem_array(from->point_count, sizeof(*to->points));
+    to->tris = mem_array(from->tri_count, sizeof(*to->tris));
+    memcpy(to->points, from->points, from->point_count * sizeof(*to->points));
+    memcpy(to->tris, from->tris, from->tri_count * sizeof(*to->tris));
+}
+
+void parts_init(struct parts *parts, const struct trimesh *mesh, const uint32_t *source_tris, size_t source_count,
+                const uint32_t *vertex_point)
+{
+    struct finding f = { .parts = parts };
+    *parts = (struct parts){ 0 };
+    copy_mesh(&parts->solid, mesh);
+    parts->of_tri = mem_array(mesh->tri_count, sizeof(*parts->of_tri));
+    parts->side = mem_array(mesh->tri_count, 1);
+    parts->of_source = mem_array(source_count, sizeof(*parts->of_source));
+    parts->patch_of_source = mem_array(source_count, sizeof(*parts->patch_of_source));
+    f.patch = mem_array(mesh->tri_count, sizeof(*f.patch));
+    f.patches = mem_array(mesh->tri_count, sizeof(*f.patches));
+    list_edges(&f);
+    number_parts(&f);
+    for (size_t t = 0; t < mesh->tri_count; t++) {
+        parts->of_source[mesh->tri_source[t]] = parts->of_tri[t];
+        parts->patch_of_source[mesh->tri_source[t]] = f.patch[t];
+    }
+    parts->closed = mem_array(parts->count, 1);
+    parts->tangled = mem_array(parts->count, 1);
+    parts->crossed = mem_array(parts->count, 1);
+    find_closed(&f);
+    face_one_way(&f);
+    face_outwards(&f);
+    drop_walls(&f, source_tris, source_count, vertex_point);
+    mem_free(f.uses);
+    mem_free(f.edge);
+    mem_free(f.patch);
+    mem_free(f.patches);
+}
+
+void parts_finish(struct parts *parts)
+{
+    trimesh_finish(&parts->solid);
+    mem_free(parts->of_tri);
+    mem_free(parts->side);
+    mem_free(parts->of_source);
+    mem_free(parts->patch_of_source);
+    mem_free(parts->closed);
+    mem_free(parts->tangled);
+    mem_free(parts->crossed);
+}
+
+uint32_t *parts_spread(const struct trimesh *mesh, const uint32_t *of_source)
+{
+    uint32_t *of = mem_array(mesh->tri_count, sizeof(*of));
+    for (size_t t = 0; t < mesh->tri_count; t++)
+        of[t] = of_source[mesh->tri_source[t]];
+    return of;
+}

@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The bodies that a surface is made of, as they were before they were cut up and joined. */
+#ifndef SURFACE_PARTS_H
+#define SURFACE_PARTS_H
+#include "surface/trimesh.h"
+
+/* A part is what hangs together by edges (a point in common is not enough: a corner may touch anything), a patch what does so by edges with
+   two faces. */
+struct parts {
+    struct trimesh solid;
+    uint32_t *of_tri;                      /* of the solid's triangles: part */
+    signed char *side;                     /* likewise: +1 or -1, by which each patch faces the same way throughout; 0: it bounds nothing */
+    uint32_t *of_source, *patch_of_source; /* of the model's triangles */
+    char *closed;                          /* of each part: its open edges are short against its size */
+    char *tangled;                         /* likewise: it has edges with three faces or more, or passes through itself */
+    char *crossed;                         /* likewise: it passes through itself; set by stitch_parts */
+    size_t count;
+};
+
+/* mesh: the model's triangles (source_tris of them), welded, seams closed; vertex_point[vertex of the model] = point. */
+void parts_init(struct parts *parts, const struct trimesh *mesh, const uint32_t *source_tris, size_t source_count,
+                const uint32_t *vertex_point);
+void parts_finish(struct parts *parts);
+
+/* of_source for each triangle of the mesh as it is now; mem_free. */
+uint32_t *parts_spread(const struct trimesh *mesh, const uint32_t *of_source);
+
+#endif

@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the files of the bridging share. */
+#ifndef SURFACE_STITCH_IMPL_H
+#define SURFACE_STITCH_IMPL_H
+#include "surface/attach.h"
+#include "surface/stitch.h"
+
+#define STITCH_AT_END 1e-3 /* this near to an end of an edge, as a share of its length, it is the end */
+
+bool stitch_tri_has(const struct trimesh *mesh, uint32_t tri, uint32_t point);
+/* Applies what was collected, and counts it; the last `crossings` points of the mesh are each set into two places. Finishes attach. */
+void stitch_carry_out(struct attach *attach, struct trimesh *mesh, uint32_t *target, size_t target_count, size_t crossings,
+                      struct stitch_report *report);
+
+#endif

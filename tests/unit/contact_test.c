@@ -1,0 +1,286 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Bodies that touch face to face, and bodies that pass through themselves: distances against an exact solver on their union's surface. */
+#include "surface/surface.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "tests/oracle/geodesic.h"
+#include "tests/support/cad.h"
+
+#define MEAN_MAX 0.006 /* of the largest distance */
+#define WORST_MAX 0.03
+#define SAME_PLACE 1e-5f
+
+static struct log *the_log;
+static struct workers *workers;
+static struct cad_random chance;
+
+static int set_up(void **state)
+{
+    const char *seed = getenv("PLANTCAST_SEED");
+    (void)state;
+    chance.state = seed ? strtoull(seed, NULL, 10) : (uint64_t)time(NULL);
+    print_message("# PLANTCAST_SEED=%llu\n", (unsigned long long)chance.state);
+    the_log = log_create(LOG_ERROR);
+    workers = workers_create(0);
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    workers_destroy(&workers);
+    log_destroy(&the_log);
+    return 0;
+}
+
+static void append(struct cad *cad, const struct cad *other)
+{
+    uint32_t first = (uint32_t)cad->vertex_count;
+    mem_grow(&cad->positions, &cad->position_capacity, cad->vertex_count + other->vertex_count, sizeof(*cad->positions));
+    mem_grow(&cad->triangles, &cad->index_capacity, 3 * (cad->triangle_count + other->triangle_count), sizeof(*cad->triangles));
+    memcpy(cad->positions + cad->vertex_count, other->positions, other->vertex_count * sizeof(*cad->positions));
+    for (size_t i = 0; i < 3 * other->triangle_count; i++)
+        cad->triangles[3 * cad->triangle_count + i] = first + other->triangles[i];
+    cad->vertex_count += other->vertex_count;
+    cad->triangle_count += other->triangle_count;
+}
+
+static void move(struct cad *cad, double turn_rad, double x, double y, double z)
+{
+    for (size_t v = 0; v < cad->vertex_count; v++) {
+        float *p = cad->positions[v];
+        double px = (double)p[0], py = (double)p[1];
+        p[0] = (float)(px * cos(turn_rad) - py * sin(turn_rad) + x);
+        p[1] = (float)(px * sin(turn_rad) + py * cos(turn_rad) + y);
+        p[2] = (float)((double)p[2] + z);
+    }
+}
+
+/* --- scoring ------------------------------------------------------------------------------------------------------------------ */
+
+struct outer { /* the union's surface */
+    struct oracle_mesh mesh;
+    double *distances, source[3];
+    long *of_vertex; /* of the tested shape: the outer surface's vertex at its place; -1: it is covered */
+};
+
+static long same_place(const struct oracle_mesh *mesh, const float p[3])
+{
+    for (size_t v = 0; v < mesh->vertex_count; v++) {
+        const float *q = mesh->positions[v];
+        if (fabsf(p[0] - q[0]) < SAME_PLACE && fabsf(p[1] - q[1]) < SAME_PLACE && fabsf(p[2] - q[2]) < SAME_PLACE)
+            return (long)v;
+    }
+    return -1;
+}
+
+static void outer_init(struct outer *outer, const struct cad *a, const struct cad *b, const struct cad *tested)
+{
+    const struct oracle_mesh first = { (const float(*)[3])a->positions, a->triangles, a->vertex_count, a->triangle_count },
+                             second = { (const float(*)[3])b->positions, b->triangles, b->vertex_count, b->triangle_count };
+    *outer = (struct outer){ 0 };
+    assert_true(oracle_union(&first, &second, &outer->mesh));
+    size_t t = (size_t)(cad_random(&chance) * (double)outer->mesh.triangle_count);
+    const double w[3] = { 0.3, 0.5, 0.2 };
+    for (int axis = 0; axis < 3; axis++)
+        for (size_t i = 0; i < 3; i++)
+            outer->source[axis] += w[i] * (double)outer->mesh.positions[outer->mesh.triangles[3 * t + i]][axis];
+    outer->distances = mem_array(outer->mesh.vertex_count, sizeof(*outer->distances));
+    assert_true(oracle_distances(&outer->mesh, t, w, outer->distances));
+    outer->of_vertex = mem_array(tested->vertex_count, sizeof(*outer->of_vertex));
+    for (size_t v = 0; v < tested->vertex_count; v++)
+        outer->of_vertex[v] = same_place(&outer->mesh, tested->positions[v]);
+}
+
+static void outer_finish(struct outer *outer)
+{
+    free((void *)outer->mesh.positions);
+    free((void *)outer->mesh.triangles);
+    mem_free(outer->distances);
+    mem_free(outer->of_vertex);
+}
+
+/* Breaks the shape in one way, turns it, and holds what comes out against the truth. Returns how many of its vertices are hidden. */
+static size_t score(const char *name, const struct cad *shape, const struct outer *outer, enum cad_fault fault)
+{
+    struct cad broken;
+    struct cad_place place;
+    uint32_t *vertex_of = mem_array(shape->vertex_count, sizeof(*vertex_of));
+    double source[1][3], mean = 0, worst = 0, largest = 0, count = 0;
+    cad_random_place(&place, &chance);
+    for (int axis = 0; axis < 3; axis++) {
+        const double *row = place.rotation + 3 * axis, *p = outer->source;
+        source[0][axis] = place.scale * (row[0] * p[0] + row[1] * p[1] + row[2] * p[2]) + place.move[axis];
+    }
+    cad_break(&broken, shape, fault, &chance, vertex_of);
+    cad_put(&broken, &place);
+    struct surface *surface = surface_create(the_log, workers, (const float(*)[3])broken.positions, broken.vertex_count, broken.triangles,
+                                             broken.triangle_count, &(struct surface_params){ 0 });
+    float *found = mem_array(broken.vertex_count, sizeof(*found));
+    assert_non_null(surface);
+    assert_true(surface_distances(surface, (const double(*)[3])source, 1, found));
+    for (size_t v = 0; v < shape->vertex_count; v++) {
+        if (outer->of_vertex[v] < 0)
+            continue;
+        double truth = outer->distances[outer->of_vertex[v]], error = fabs((double)found[vertex_of[v]] / place.scale - truth);
+        mean += error;
+        worst = fmax(worst, error);
+        largest = fmax(largest, truth);
+        count++;
+    }
+    size_t hidden = surface_report(surface)->hidden_vertices;
+    print_message("# %-26s %-17s mean %.3f %%  worst %.3f %%  %zu vertices hidden, %zu pieces\n", name, cad_fault_names[fault],
+                  100 * mean / count / largest, 100 * worst / largest, hidden, surface_report(surface)->components_after);
+    assert_true(mean / count / largest <= MEAN_MAX);
+    assert_true(worst / largest <= WORST_MAX);
+    if (fault != CAD_FINS) /* some fins end up between the bodies, alone */
+        assert_int_equal(surface_report(surface)->components_after, 1);
+    surface_destroy(&surface);
+    cad_finish(&broken);
+    mem_free(found);
+    mem_free(vertex_of);
+    return hidden;
+}
+
+static size_t covered(const struct outer *outer, const struct cad *shape)
+{
+    size_t count = 0;
+    for (size_t v = 0; v < shape->vertex_count; v++)
+        count += outer->of_vertex[v] < 0;
+    return count;
+}
+
+/* Two bodies, with a gap in z between the tested ones: the truth has none. Vertices within are hidden, those outside are not. Where they
+   have vertices in common, hanging ones in the faces between them are left out: those fit neither body. */
+static void test_pair(const char *name, const struct cad *below, const struct cad *above, double gap, bool hanging)
+{
+    struct cad both = { 0 };
+    struct outer outer;
+    append(&both, below);
+    append(&both, above);
+    outer_init(&outer, below, above, &both);
+    for (size_t v = below->vertex_count; v < both.vertex_count; v++)
+        both.positions[v][2] += (float)gap;
+    for (int fault = 0; fault < CAD_FAULTS; fault++) {
+        if (fault == CAD_HANGING && !hanging)
+            continue;
+        size_t hidden = score(name, &both, &outer, (enum cad_fault)fault);
+        if (fault == CAD_CLEAN)
+            assert_in_range(hidden, covered(&outer, &both) * 9 / 10, covered(&outer, &both));
+    }
+    outer_finish(&outer);
+    cad_finish(&both);
+}
+
+/* The solver takes minutes under a sanitizer, and is not what they watch. */
+static void skip_if_watched(void)
+{
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    print_message("# too slow under a sanitizer\n");
+    skip();
+#endif
+}
+
+/* --- face to face ------------------------------------------------------------------------------------------------------------- */
+
+static void a_foot_stands_on_a_base(void **state)
+{
+    struct cad base = { 0 }, foot = { 0 };
+    double turn = cad_random(&chance);
+    (void)state;
+    skip_if_watched();
+    cad_box(&base, &chance, 40, 40, 6, 0.05);
+    cad_box(&foot, &chance, 13, 11, 20, 0.06);
+    move(&foot, turn, 0.8 + 0.1 * cad_random(&chance), 0.5 + 0.1 * cad_random(&chance), (double)(6 * 0.05f));
+    test_pair("foot on a base", &base, &foot, 0, true);
+    test_pair("foot just over a base", &base, &foot, 0.0005, true);
+    test_pair("foot just into a base", &base, &foot, -0.0005, true);
+    cad_finish(&base);
+    cad_finish(&foot);
+}
+
+static void a_flange_lies_on_a_plate(void **state)
+{
+    struct cad plate = { 0 }, pipe = { 0 };
+    (void)state;
+    skip_if_watched();
+    cad_box(&plate, &chance, 36, 40, 4, 0.05);
+    cad_closed_pipe(&pipe, &chance, 0.4 + 0.2 * cad_random(&chance), 1, 64, 20, 8, 0, (const double[3]){ 0, 0, 0.5 });
+    move(&pipe, 0.1, 0.9, 1, (double)(4 * 0.05f));
+    test_pair("flange on a plate", &plate, &pipe, 0, true);
+    cad_finish(&plate);
+    cad_finish(&pipe);
+}
+
+/* The same vertices on both sides, so that one face is left of two, or two with other diagonals. */
+static void boxes_are_stacked(void **state)
+{
+    struct cad below = { 0 }, above = { 0 };
+    (void)state;
+    skip_if_watched();
+    cad_box(&below, &chance, 20, 24, 10, 0.05);
+    cad_box(&above, &chance, 20, 24, 22, 0.05);
+    move(&above, 0, 0, 0, (double)(10 * 0.05f));
+    test_pair("stacked boxes", &below, &above, 0, false);
+    cad_finish(&below);
+    cad_finish(&above);
+}
+
+/* They share three edges of the step, with the same vertices. */
+static void a_box_stands_at_the_edge_of_another(void **state)
+{
+    struct cad below = { 0 }, above = { 0 };
+    (void)state;
+    skip_if_watched();
+    cad_box(&below, &chance, 30, 24, 10, 0.05);
+    cad_box(&above, &chance, 14, 24, 22, 0.05);
+    move(&above, 0, 0, 0, (double)(10 * 0.05f));
+    test_pair("box at a box's edge", &below, &above, 0, false);
+    cad_finish(&below);
+    cad_finish(&above);
+}
+
+/* --- through itself ------------------------------------------------------------------------------------------------------------ */
+
+static void a_tube_passes_through_itself(void **state)
+{
+    struct cad tube = { 0 }, up = { 0 }, down = { 0 };
+    struct outer outer;
+    double radius = 0.12 + 0.06 * cad_random(&chance);
+    (void)state;
+    skip_if_watched();
+    cad_eight(&tube, &chance, 150, 36, radius, 0);
+    cad_eight(&up, &chance, 150, 36, radius, 1);
+    cad_eight(&down, &chance, 150, 36, radius, 2);
+    outer_init(&outer, &up, &down, &tube);
+    for (int fault = 0; fault < CAD_FAULTS; fault++)
+        assert_in_range(score("tube through itself", &tube, &outer, (enum cad_fault)fault), covered(&outer, &tube) * 9 / 10,
+                        6 * covered(&outer, &tube)); /* soup has each vertex six times */
+    outer_finish(&outer);
+    cad_finish(&tube);
+    cad_finish(&up);
+    cad_finish(&down);
+}
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_tube_passes_through_itself),
+        cmocka_unit_test(a_foot_stands_on_a_base),
+        cmocka_unit_test(a_flange_lies_on_a_plate),
+        cmocka_unit_test(boxes_are_stacked),
+        cmocka_unit_test(a_box_stands_at_the_edge_of_another),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}
