@@ -23,9 +23,11 @@
 /* How many triangles the finest level may get more: so much of its own, or so many, whichever is more. */
 #define FINEST_GROWTH 2.0
 #define FINEST_GROWTH_TRIS 100000.0
-#define WORTH 0.75   /* a coarser level that would get more than so much of the next finer one is of no use */
-#define SHORTEST 1.0 /* pieces of coarser levels, of their error: two pixels */
-#define SLACK 0.35   /* how far away a coarser level may show what the field is, likewise */
+#define WORTH 0.75          /* a coarser level that would get more than so much of the next finer one is of no use */
+#define SHORTEST_NEAR 0.125 /* pieces of the finest level, of the tolerance: sensors may stand side by side */
+#define SHORTEST 1.0        /* pieces of coarser levels, of their error: two pixels */
+#define JUMP_WIDTH 8        /* tolerances, or errors */
+#define SLACK 0.35          /* how far away a coarser level may show what the field is, likewise */
 
 /* --- cutting -------------------------------------------------------------------------------------------------------------- */
 
@@ -250,7 +252,8 @@ static void split_level(struct split *split, struct level *level, size_t finer_t
     split->finest = finer_tris == 0;
     split->on_surface_m = split->finest ? 0.25 * tolerance_m : 1.5 * error_m;
     split->slack_m = SLACK * error_m;
-    split->shortest_m = fmax(tolerance_m, SHORTEST * error_m);
+    split->shortest_m = split->finest ? SHORTEST_NEAR * tolerance_m : fmax(tolerance_m, SHORTEST * error_m);
+    split->jump_m = JUMP_WIDTH * fmax(tolerance_m, SHORTEST * error_m);
     cutmesh_load(&split->mesh, level);
     double tris = (double)split->mesh.tri_count;
     split->most_tris = (size_t)(split->finest ? tris + fmax(FINEST_GROWTH * tris, FINEST_GROWTH_TRIS) : WORTH * (double)finer_tris);

@@ -23,6 +23,7 @@ struct split {
     bool finest;
     double on_surface_m; /* what is farther from the surface is hidden inside another part */
     double shortest_m, slack_m;
+    double jump_m; /* where a distance jumps, shorter edges are not cut */
     bool full;                     /* it may hardly grow any more */
     size_t most_tris, first_count; /* first_count: before sensors were placed */
 };

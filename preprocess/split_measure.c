@@ -14,7 +14,6 @@
 #define CORNERS 61   /* whose shares are at hand */
 #define STEPS 2      /* in which the best place for a cut is narrowed down */
 #define JUMP 1.5     /* times the way gone: a distance cannot grow by more, unless the surface does not hang together there */
-#define JUMP_WIDTH 8 /* shortest pieces: an edge where a distance jumps is not cut any shorter */
 
 void split_mix(const float a[3], const float b[3], double t, float out[3])
 {
@@ -327,7 +326,7 @@ static void try_edge(const struct job *job, struct split_finding *finding, struc
         finding->error = fmaxf(finding->error, (float)fmax(add_point(&line, 0.25), add_point(&line, 0.75)));
     if ((double)finding->error > job->enough && length_m < WIDE * nearest_m)
         find_cut(&line, job->enough, finding);
-    if (length_m < JUMP_WIDTH * split->shortest_m && jumps(&line, length_m))
+    if (length_m < split->jump_m && jumps(&line, length_m))
         bar(finding, true);
     double margin = fmin(0.5, split->shortest_m / length_m);
     finding->share = (float)fmin(1 - margin, fmax(margin, (double)finding->share));

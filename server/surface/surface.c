@@ -164,6 +164,7 @@ static void join_parts(struct surface *surface, struct parts *parts)
     char *hidden = mem_array(surface->mesh.tri_count, 1);
     uint32_t *part = parts_spread(&surface->mesh, parts->of_source);
     hidden_find(&surface->mesh, part, parts, made.crossings, made.crossing_count, surface->report.tolerance_m, surface->workers, hidden);
+    hidden_islands(&surface->mesh, hidden);
     size_t visible_count = sort_hidden(&surface->mesh, hidden);
     target = mem_array(surface->mesh.point_count, sizeof(*target));
     order_mesh(&surface->mesh, visible_count, target);

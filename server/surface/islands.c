@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Visible triangles left over amid hidden ones. */
+#include <math.h>
+
+#include "base/mem.h"
+#include "surface/hidden.h"
+#include "surface/vec.h"
+
+static double area_of(const struct trimesh *mesh, size_t t)
+{
+    const uint32_t *v = mesh->tris[t];
+    double ab[3], ac[3], n[3];
+    vec_sub(mesh->points[v[1]], mesh->points[v[0]], ab);
+    vec_sub(mesh->points[v[2]], mesh->points[v[0]], ac);
+    vec_cross(ab, ac, n);
+    return sqrt(vec_dot(n, n)) / 2;
+}
+
+struct island {                /* by its lowest point */
+    double seen_m2, hidden_m2; /* area; of hidden triangles that touch it */
+};
+
+void hidden_islands(const struct trimesh *mesh, char *hidden)
+{
+    uint32_t *root = mem_array(mesh->point_count, sizeof(*root));
+    struct island *islands = mem_array(mesh->point_count, sizeof(*islands));
+    for (uint32_t i = 0; i < mesh->point_count; i++)
+        root[i] = i;
+    for (size_t t = 0; t < mesh->tri_count; t++)
+        for (int i = 1; i < 3 && !hidden[t]; i++)
+            trimesh_join(root, mesh->tris[t][0], mesh->tris[t][i]);
+    for (size_t t = 0; t < mesh->tri_count; t++) {
+        const uint32_t r[3] = { trimesh_root(root, mesh->tris[t][0]), trimesh_root(root, mesh->tris[t][1]),
+                                trimesh_root(root, mesh->tris[t][2]) };
+        double area_m2 = area_of(mesh, t);
+        for (int i = 0; i < (hidden[t] ? 3 : 1); i++)
+            *(hidden[t] ? &islands[r[i]].hidden_m2 : &islands[r[i]].seen_m2) += area_m2;
+    }
+    for (size_t t = 0; t < mesh->tri_count; t++) {
+        const struct island *island = &islands[trimesh_root(root, mesh->tris[t][0])];
+        hidden[t] = hidden[t] || island->seen_m2 < island->hidden_m2;
+    }
+    mem_free(root);
+    mem_free(islands);
+}
