@@ -13,7 +13,7 @@
 #include "base/mem.h"
 
 /* Where there are many cores, slices are decoded side by side, as a browser does. */
-enum { MANY_CORES = 8, SLICE_THREADS = 4 };
+enum { MANY_CORES = 8, SLICE_THREADS = 8 };
 
 struct decoder {
     tjhandle turbo;

@@ -3,6 +3,7 @@
 #ifndef ENCODE_ENCODER_H
 #define ENCODE_ENCODER_H
 #include "base/log.h"
+#include "base/workers.h"
 #include "encode/packet.h"
 
 #define ENCODER_H264_LIBRARY "libx264" /* the encoder of libavcodec that is taken unless another one is named */
@@ -12,6 +13,7 @@ struct encoder_params {
     int quality;          /* 1..100, for codecs that have one */
     bool full_chroma;     /* 4:4:4 instead of 4:2:0, for codecs that have both */
     bool key;             /* the packet must stand alone */
+    struct workers *workers; /* that may help; NULL: none */
     struct frame *before; /* what the peer shows, in this quality; NULL: unknown. What equals it need not be sent */
 };
 

@@ -26,7 +26,7 @@ static const struct library libraries[] = {
 };
 static const struct library other_library = { "", "", false };
 static const int64_t OTHERS_BITS_PER_PX_S = 4; /* rate of the encoders that need one */
-enum { RATE_HZ = 60, SLICED_PX = 1500000, MANY_CORES = 8, MOST_THREADS = 8 };
+enum { RATE_HZ = 60, SLICED_PX = 1500000, MANY_CORES = 8, MOST_THREADS = 8, GRAIN_ROWS = 256 };
 
 struct h264_encoder {
     struct encoder base;
@@ -153,14 +153,35 @@ static void extend(AVFrame *picture, int width_px, int height_px)
         memcpy(picture->data[0] + (size_t)height_px * pitch, picture->data[0] + (size_t)(height_px - 1) * pitch, (size_t)picture->width);
 }
 
+struct conversion {
+    const struct frame *frame;
+    AVFrame *picture;
+};
+
+/* Pairs of rows. */
+static void convert_rows(void *arg, size_t begin, size_t end)
+{
+    const struct conversion *conversion = arg;
+    const struct frame *frame = conversion->frame;
+    AVFrame *p = conversion->picture;
+    size_t y = 2 * begin, rows = (end * 2 < (size_t)frame->height_px ? end * 2 : (size_t)frame->height_px) - y;
+    ARGBToJ420(frame->bgrx + y * (size_t)frame->stride_bytes, frame->stride_bytes, p->data[0] + y * (size_t)p->linesize[0], p->linesize[0],
+               p->data[1] + begin * (size_t)p->linesize[1], p->linesize[1], p->data[2] + begin * (size_t)p->linesize[2], p->linesize[2],
+               frame->width_px, (int)rows);
+}
+
 static int fill_picture(struct h264_encoder *h264, const struct frame *frame, const struct encoder_params *params)
 {
     AVFrame *p = h264->picture;
     int status = av_frame_make_writable(p);
     if (status < 0)
         return status;
-    ARGBToJ420(frame->bgrx, frame->stride_bytes, p->data[0], p->linesize[0], p->data[1], p->linesize[1], p->data[2], p->linesize[2],
-               frame->width_px, frame->height_px);
+    struct conversion conversion = { frame, p };
+    size_t pairs = (size_t)(frame->height_px + 1) / 2;
+    if (params->workers)
+        workers_for(params->workers, pairs, GRAIN_ROWS / 2, convert_rows, &conversion);
+    else
+        convert_rows(&conversion, 0, pairs);
     extend(p, frame->width_px, frame->height_px);
     p->pts = h264->next++;
     p->pict_type = params->key ? AV_PICTURE_TYPE_I : AV_PICTURE_TYPE_NONE;

@@ -193,6 +193,7 @@ static bool encode(struct job *job, struct packet **out)
     struct encoder_params params = job->quality;
     struct encoder *encoder = encoder_take(encoding, work, codec);
     params.before = !job->again && same_quality(&work->quality, &params) ? work->before : NULL;
+    params.workers = encoding->params.workers;
     bool good = encoder && encoder_send(encoder, job->frame, &params) == 0;
     if (good && encoder_receive(encoder, out) == 0)
         count(encoding, *out);

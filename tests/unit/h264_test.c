@@ -18,6 +18,7 @@
 
 struct fixture {
     struct log *log;
+    struct workers *workers; /* that help; NULL: none */
     struct encoder *encoder;
     AVCodecContext *decoder;
     AVFrame *picture;
@@ -71,7 +72,7 @@ static struct frame *picture(int w, int h, int level)
 /* Encodes and decodes. False: nothing had changed. */
 static bool pass(struct fixture *f, struct frame *frame, int quality, bool key, struct frame *before)
 {
-    struct encoder_params params = { .quality = quality, .key = key, .before = before };
+    struct encoder_params params = { .quality = quality, .key = key, .workers = f->workers, .before = before };
     struct packet *packet;
     assert_int_equal(encoder_send(f->encoder, frame, &params), 0);
     if (encoder_receive(f->encoder, &packet) != 0)
@@ -122,6 +123,25 @@ static void colours_are_kept_at_any_size(void **state)
     check_size(*state, 333, 77);
     check_size(*state, 160, 91);
     check_size(*state, 16, 16);
+}
+
+/* Rows that one converts, and those of another, make the picture that one alone makes. */
+static void many_make_the_same_picture(void **state)
+{
+    struct fixture *f = *state;
+    for (int odd = 0; odd < 2; odd++) {
+        struct frame *frame = picture(322 - odd, 1042 + odd, 0);
+        size_t bytes = (size_t)frame->width_px * 4 * (size_t)frame->height_px;
+        assert_true(pass(f, frame, 92, true, NULL));
+        uint8_t *alone = f->bgrx;
+        f->bgrx = NULL;
+        f->workers = workers_create(3);
+        assert_true(pass(f, frame, 92, true, NULL));
+        workers_destroy(&f->workers);
+        assert_memory_equal(f->bgrx, alone, bytes);
+        mem_free(alone);
+        frame_unref(&frame);
+    }
 }
 
 static void colours_are_described(void **state)
@@ -208,6 +228,7 @@ int main(void)
 #define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
     const struct CMUnitTest tests[] = {
         TEST(colours_are_kept_at_any_size),
+        TEST(many_make_the_same_picture),
         TEST(colours_are_described),
         TEST(key_frames_come_on_demand_only),
         TEST(equal_pictures_are_not_sent_and_little_costs_little),
