@@ -7,6 +7,12 @@
 
 #include "base/mem.h"
 
+/* RTU is not simulated. */
+static bool is_served(const struct plant_source *source)
+{
+    return !strcmp(source->kind, "modbus") && source->transport == TRANSPORT_TCP;
+}
+
 static struct sim_device *device_at(const struct sim *sim, int port)
 {
     for (size_t i = 0; i < sim->device_count; i++)
@@ -17,7 +23,7 @@ static struct sim_device *device_at(const struct sim *sim, int port)
 
 struct sim_device *sim_device_of(const struct sim *sim, const struct plant_tag *tag, int *unit)
 {
-    if (tag->source < 0 || strcmp(sim->plant->sources[tag->source].kind, "modbus") != 0)
+    if (tag->source < 0 || !is_served(&sim->plant->sources[tag->source]))
         return NULL;
     const struct plant_source *source = &sim->plant->sources[tag->source];
     *unit = tag->modbus_unit >= 0 ? tag->modbus_unit : source->unit;
@@ -29,7 +35,7 @@ static bool add_devices(struct sim *sim, int port)
     sim->devices = mem_array(sim->plant->source_count, sizeof(*sim->devices));
     for (size_t i = 0; i < sim->plant->source_count; i++) {
         const struct plant_source *source = &sim->plant->sources[i];
-        if (strcmp(source->kind, "modbus") != 0 || device_at(sim, source->port))
+        if (!is_served(source) || device_at(sim, source->port))
             continue;
         struct sim_device *device = &sim->devices[sim->device_count];
         device->port = source->port;
@@ -45,7 +51,7 @@ bool sim_init(struct sim *sim, const struct plant *plant, struct sim_values *val
 {
     *sim = (struct sim){ .plant = plant, .values = values };
     if (!add_devices(sim, port)) {
-        fprintf(stderr, "plantcast-sim: %s: no Modbus source to simulate\n", plant->path);
+        fprintf(stderr, "plantcast-sim: %s: no Modbus TCP source to simulate\n", plant->path);
         return false;
     }
     for (size_t i = 0; i < plant->tag_count; i++) {
