@@ -119,9 +119,9 @@ export class TinyPlant {
         return runProgram('plantcast-prep', [this.file], 60000);
     }
 
-    async startSim() {
+    async startSim(...args) {
         this.controlPort = await freePort();
-        this.sim = new Program('plantcast-sim', [this.file, '--control', String(this.controlPort)]);
+        this.sim = new Program('plantcast-sim', [this.file, '--control', String(this.controlPort), ...args]);
         await this.sim.line(/^plantcast-sim: listening/m);
     }
 
