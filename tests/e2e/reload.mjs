@@ -33,7 +33,10 @@ const reload = async () => {
     return { status: answer.status, ...await answer.json() };
 };
 const metric = async (name) => (await (await fetch(url('/metrics'))).text()).split('\n').find((line) => line.startsWith(name));
-const active = async () => (await (await fetch(url('/api/v1/alarms'))).json()).alarms.map(({ tag, kind, state }) => `${tag}/${kind} ${state}`);
+const active = async () => {
+    const { alarms } = await (await fetch(url('/api/v1/alarms'))).json();
+    return alarms.map(({ tag, kind, state }) => `${tag}/${kind} ${state}`);
+};
 
 test('errors leave what was there in force, and are named with their place', options, async () => {
     const before = await (await fetch(url('/api/v1/plant'))).json();
@@ -62,7 +65,8 @@ test('what changed is said; sessions, alarms and readings go on', options, async
     assert.match(first, /^[0-9a-f]{16}$/);
     assert.match(await metric(`plantcast_configuration_info{hash="${first}"}`), / 1$/);
 
-    writeFileSync(tagsFile, `${readFileSync(tagsFile, 'utf8').replace('P-101A,3,0,0.5,1,', 'P-101A,3,0,0.5,1,9')}XX-9,400007,Float,bar,spare,,,,,,1,\n`);
+    const limited = readFileSync(tagsFile, 'utf8').replace('P-101A,3,0,0.5,1,', 'P-101A,3,0,0.5,1,9');
+    writeFileSync(tagsFile, `${limited}XX-9,400007,Float,bar,spare,,,,,,1,\n`);
     const shown = client.pictures.length, answer = await reload();
     assert.equal(answer.status, 200, JSON.stringify(answer));
     assert.deepEqual(answer.changes.sort(), ['tag PI-1: H nan > 9', 'tag XX-9 added']);
@@ -85,8 +89,8 @@ test('history has no gap where the tag stays', options, async () => {
     const { series } = await (await fetch(url('/api/v1/history?tags=TI-1&from=-10m'))).json();
     const values = series[0].points.filter(([, value]) => value !== null).length;
     assert.ok(values > 0);
-    assert.equal(series[0].points.findLastIndex(([, value]) => value === null) > series[0].points.findIndex(([, value]) => value !== null), false,
-        JSON.stringify(series[0].points));
+    const begins = series[0].points.findIndex(([, value]) => value !== null);
+    assert.ok(series[0].points.slice(begins).every(([, value]) => value !== null), JSON.stringify(series[0].points));
 });
 
 test('who may not, and from where it may not be', options, async () => {
