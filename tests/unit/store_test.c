@@ -227,6 +227,33 @@ static void count_heard(void *arg, const struct heard *heard)
     *(int64_t *)arg += heard->mono_ns;
 }
 
+/* Another plant: one tag stays, at another place and with another patience; one is new. */
+static void readings_go_on_in_another_plant(void **state)
+{
+    struct setup *s = *state;
+    static int by_name[] = { 1, 0 };
+    struct plant *plant = plant_by_hand_create(2);
+    plant_by_hand_source(plant, "a", 1);
+    plant_by_hand_tag(plant, "new", TABLE_HOLDING, 0, DATA_INT16);
+    plant_by_hand_tag(plant, "a1", TABLE_HOLDING, 1, DATA_INT16)->stale_s = 60;
+    plant->tags_by_name = by_name;
+    write_one(s, 1, 42, QUALITY_GOOD, 10 * S);
+    store_link_up(s->store, 0, 10 * S);
+    struct store *store = store_create(plant);
+    struct snapshot *snapshot = snapshot_create(2);
+    store_adopt(store, s->store);
+    store_snapshot(store, 30 * S, 1030 * S, snapshot);
+    assert_true(snapshot->readings[1].value == 42);
+    assert_quality(snapshot->readings[1].quality, QUALITY_GOOD); /* by its new patience */
+    assert_true(snapshot->readings[1].age_ns == 20 * S);
+    assert_quality(snapshot->readings[0].quality, QUALITY_BAD_WAITING);
+    assert_true(store_link_is_up(store, 0));
+    snapshot_destroy(&snapshot);
+    store_destroy(&store);
+    plant->tags_by_name = NULL;
+    plant_by_hand_destroy(&plant);
+}
+
 static void all_who_listen_hear_until_they_leave(void **state)
 {
     struct setup *s = *state;
@@ -398,6 +425,7 @@ int main(void)
         store_test(the_newest_sample_wins),
         store_test(the_snapshot_says_when),
         store_test(all_who_listen_hear_until_they_leave),
+        store_test(readings_go_on_in_another_plant),
         cmocka_unit_test(qualities_have_names_and_classes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
