@@ -28,6 +28,10 @@ before(async () => {
     if (options.skip)
         return;
     plant = await TinyPlant.create();
+    const tags = join(plant.folder, 'tags.csv'), [head, ...rows] = readFileSync(tags, 'utf8').trim().split('\n');
+    const limits = { 'TI-1': '90,95', 'TI-2': '85,90' };
+    const limited = rows.map((row) => `${row},${limits[row.split(',')[0]] ?? ','}`);
+    writeFileSync(tags, `${[`${head},H,HH`, ...limited].join('\n')}\n`);
     assert.equal(plant.prepare().code, 0);
     writeFileSync(join(plant.folder, 'series.csv'), series());
     const imported = runProgram('plantcast', ['history', 'import', plant.file, join(plant.folder, 'series.csv')]);
@@ -112,7 +116,7 @@ test('the slider goes to an instant, and nobody can take it for now', options, a
     const { atUs, dataTimeUs } = await shown();
     assert.ok(Math.abs(atUs / 1e6 - (Date.now() / 1000 - 1800)) < 20 && dataTimeUs === atUs);
     assert.match(await page.locator('#banner').textContent(), /History.*\d{4}-\d\d-\d\d \d\d:\d\d:\d\d/);
-    assert.equal(await page.locator('#clock-name').textContent(), 'Then');
+    assert.match(await page.locator('#clock-name').textContent(), /^Then/);
     assert.equal(await page.evaluate(() => getComputedStyle(document.getElementById('viewport'), '::after').borderTopWidth), '5px');
     assert.match(await slider.getAttribute('aria-valuetext'), /\d\d:\d\d:\d\d/);
     await page.waitForFunction(() => location.hash.includes('at='));
@@ -165,6 +169,20 @@ test('a click into a trend goes there; a link to an instant opens there; a reloa
     await page.keyboard.press('Escape');
     await page.evaluate(() => globalThis.plantcast.session.travel(null));
     await waitForHealth(page, 'live');
+});
+
+test('alarms are marked where they were raised', options, async () => {
+    await plant.tell('set TI-2 92');
+    await page.waitForFunction(() => globalThis.plantcast.session.model.alarms.list().some(({ kind }) => kind === 'HH'));
+    await page.waitForTimeout(1000); // the journal is written four times a second
+    if (await page.locator('#timeline').isVisible())
+        await page.locator('#time-toggle').click();
+    await page.locator('#time-toggle').click();
+    await page.locator('#time-track .alarm').first().waitFor({ state: 'attached' });
+    assert.match(await page.locator('#time-alarms').textContent(), /^\d+ alarms? raised$/);
+    assert.match(await page.locator('#time-track .alarm title').first().textContent(), /^TI-2 HH?, \d\d:\d\d:\d\d$/);
+    await settle(page);
+    await shoot(page, 'time-alarms');
 });
 
 test('on a phone the bar fits', options, async () => {

@@ -50,7 +50,6 @@ export class Status {
         const us = past ? session.picture.dataTimeUs : session.clockUs(now);
         this.past = past;
         document.body.classList.toggle('shows-past', Boolean(past));
-        setText(byId('clock-name'), past ? 'Then' : 'Plant time');
         byId('clock').parentElement.classList.toggle('past', Boolean(past));
         if (us !== null && this.clock) {
             const { date, time, offset } = this.clock(us / 1000);
@@ -61,7 +60,7 @@ export class Status {
         const clockSet = !session.model || session.model.clockSet;
         byId('clock').parentElement.classList.toggle('unset', !clockSet);
         byId('clock').parentElement.title = clockSet ? '' : 'Nothing keeps the server\'s clock right: times may be wrong. Ages are not.';
-        setText(byId('clock').parentElement.querySelector('.name'), clockSet ? 'Plant time' : 'Plant time, unsynchronised');
+        setText(byId('clock-name'), (past ? 'Then' : 'Plant time') + (clockSet ? '' : ', unsynchronised'));
         const age = session.model ? session.model.oldestAgeMs(session.params.group, now) : null;
         setText(byId('age'), past ? '–' : age === null ? 'none' : ageText(age));
         byId('age').parentElement.classList.toggle('late', age === null || !['live', 'partial', 'past'].includes(kind));

@@ -164,8 +164,8 @@ export class Timeline {
             if (x(us) > 30 && x(us) < width - 30)
                 nodes.push(makeSvg('text', { x: x(us), y: 42, 'text-anchor': 'middle' }, text));
         }
-        for (const { us, tag, kind, priority } of this.marks)
-            nodes.push(makeSvg('path', { class: `alarm p${priority}`, d: `M${x(us)} 15l-4-8h8z` },
+        for (const { us, tag, kind, priority } of [...this.marks].sort((a, b) => b.priority - a.priority)) // the gravest on top
+            nodes.push(makeSvg('path', { class: `alarm p${priority}`, d: `M${x(us)} 15l-5.500-11h11z` },
                 makeSvg('title', {}, `${tag} ${kind}, ${this.clock(us / 1000).time}`)));
         track.replaceChildren(...nodes);
         setText(byId('time-alarms'), this.marks.length > 0 ? `${this.marks.length} alarm${this.marks.length > 1 ? 's' : ''} raised` : '');
