@@ -19,12 +19,17 @@ static double slope_to(const struct door *door, const struct history_point *poin
     return (point->value + offset - door->anchor.value) / (double)(point->t_us - door->anchor.t_us);
 }
 
+static bool passes(const struct door *door, const struct history_point *sample)
+{
+    double slope = slope_to(door, sample, 0);
+    return slope >= door->slope_low && slope <= door->slope_high;
+}
+
 /* A sample that passed the deadband; it has the anchor's quality and is newer than what is held. */
 static int swing(struct door *door, const struct door_params *params, const struct history_point *sample, struct history_point *kept,
                  int count)
 {
-    double slope = slope_to(door, sample, 0);
-    if (door->has_held && (slope < door->slope_low || slope > door->slope_high)) {
+    if (door->has_held && !passes(door, sample)) {
         struct history_point held = door->held;
         count = keep(door, &held, kept, count);
     }
@@ -70,9 +75,13 @@ int door_put(struct door *door, const struct door_params *params, const struct h
     bool usable = history_point_usable(sample), due = sample->t_us - door->anchor.t_us >= params->override_us;
     const struct history_point *passed = door->has_held ? &door->held : &door->anchor;
     if (!usable || fabs(sample->value - passed->value) <= params->deadband) {
+        if (usable && door->has_held && !passes(door, sample)) { /* else whoever reads now sees a ramp where there was a step */
+            struct history_point held = door->held;
+            count = keep(door, &held, kept, count);
+        }
         door->skipped = *sample;
         door->has_skipped = true;
-        return due ? keep_last(door, params, kept, count) : 0;
+        return due ? keep_last(door, params, kept, count) : count;
     }
     if (door->has_skipped) { /* the line must not rise before the values did */
         struct history_point skipped = door->skipped;
