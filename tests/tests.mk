@@ -12,6 +12,7 @@ test-long: test
 	    tests/run $(build)/$$c $(build)/$$c/bin gpu && tests/run $(build)/$$c $(build)/$$c/bin daemon || exit 1; \
 	done
 	@KILLS=100 $(out)/tests/unit/historian_test
+	@REPLAY_S=3600 $(out)/tests/unit/modbus_history_test
 	@PLANTCAST_BIN=$(bin) node --test tests/long/replay.mjs
 	@$(MAKE) --no-print-directory scale soak
 # 10 million triangles in 2,000 assets, prepared, killed and continued, within 8 GB: some minutes.
