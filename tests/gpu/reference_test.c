@@ -172,7 +172,8 @@ static void test_plant_room(void **state)
     (void)state;
     if (!site_is_there("plm_plant_equipment.glb"))
         skip();
-    test_plant("tests/plants/plant_room.yaml", "plant_room", 0.05, 0.05);
+    /* V-1105 close to needs more triangles than it may have, which its report says */
+    test_plant("tests/plants/plant_room.yaml", "plant_room", 0.055, 0.01);
 }
 
 static void test_cookie_line(void **state)
