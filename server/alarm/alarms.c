@@ -142,7 +142,8 @@ static int by_tag_and_kind(const void *pa, const void *pb, void *list_ptr)
 static void index_all(struct alarms *alarms)
 {
     size_t tags = alarms->plant->tag_count;
-    qsort(alarms->feeds, alarms->feed_count, sizeof(*alarms->feeds), by_tag);
+    if (alarms->feed_count > 0)
+        qsort(alarms->feeds, alarms->feed_count, sizeof(*alarms->feeds), by_tag);
     alarms->by_tag = mem_array(alarms->count, sizeof(*alarms->by_tag));
     for (size_t i = 0; i < alarms->count; i++)
         alarms->by_tag[i] = (int)i;
