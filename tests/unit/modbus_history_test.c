@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A real series, sixty times as fast as it was recorded, through Modbus into history, and what history gives back: spikes, gaps,
-   quality and all. REPLAY_S says
-   for how many seconds; `make test-long` says an hour. */
+   quality and all. REPLAY_S says for how many seconds; `make test-long` says an hour. */
 #include <math.h>
 #include <pthread.h>
 #include <setjmp.h>
