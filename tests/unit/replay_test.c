@@ -60,8 +60,10 @@ static int tear_down(void **state)
 static void on_heard(void *arg, const struct heard *heard)
 {
     struct heard_all *all = arg;
-    if (all->count < MOST)
-        all->at[all->count++] = *heard;
+    if (all->count == MOST)
+        return;
+    all->at[all->count] = *heard;
+    all->count++; /* only now may it be looked at */
 }
 
 static void play(struct setup *s, const char *keys, const char *csv, const char *tags)
