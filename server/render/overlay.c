@@ -144,7 +144,7 @@ static void draw_header(struct pen *pen)
     if (pen->frame->oldest_age_ns != INT64_MAX)
         format_age(pen->frame->oldest_age_ns, age);
     if (pen->frame->view.at_us)
-        snprintf(age, sizeof(age), "as it was then");
+        snprintf(age, sizeof(age), "configuration %s", pen->scene->plant->hash);
     const struct view *view = &pen->frame->view;
     bool has_age = view->split || (view->field.show != SHOW_DISTANCE && view->look != LOOK_MATERIALS); /* else no value takes part */
     snprintf(line, sizeof(line), "%s%s%s%s", clock, has_age ? "  ·  " : "", has_age ? age : "",
