@@ -96,7 +96,8 @@ static void take(struct journal *journal)
     size_t room = WAITING_MAX - taken->count, count = waiting->count < room ? waiting->count : room;
     counter_inc(journal->counters.lost, (int64_t)(waiting->count - count));
     mem_grow(&taken->at, &taken->capacity, taken->count + count, sizeof(*taken->at));
-    memcpy(taken->at + taken->count, waiting->at, count * sizeof(*waiting->at));
+    if (count > 0)
+        memcpy(taken->at + taken->count, waiting->at, count * sizeof(*waiting->at));
     taken->count += count;
     waiting->count = 0;
 }
