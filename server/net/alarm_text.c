@@ -53,8 +53,10 @@ static void add_row(void *arg, const struct alarm *alarm)
     json_array_append_new(arg, row);
     if (word == ALARM_NORMAL)
         return;
-    json_array_extend(row, json_pack("[i,o,o,o,b,b]", alarm->priority, instant(alarm->raised_utc_ns), number(alarm->value),
-                                     number(alarm->limit), alarm->state.active, alarm->held));
+    json_t *rest = json_pack("[i,o,o,o,b,b]", alarm->priority, instant(alarm->raised_utc_ns), number(alarm->value), number(alarm->limit),
+                             alarm->state.active, alarm->held);
+    json_array_extend(row, rest);
+    json_decref(rest);
     if (alarm->who[0] || alarm->reason[0] || alarm->until.utc_ns) {
         json_array_append_new(row, instant(alarm->until.utc_ns));
         json_array_append_new(row, string(alarm->who));
