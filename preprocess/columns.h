@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Distances that were found before, by the place that they start from: KEY.columns beside the asset files. Safe to delete; columns that
-   are no good count as none. One process at a time writes to it: while another does, what is new is not kept. It grows to the most sensors
-   that the asset ever had at once. */
+   are no good count as none. It grows to the most sensors that the asset ever had at once. */
 #ifndef PREPROCESS_COLUMNS_H
 #define PREPROCESS_COLUMNS_H
 #include <stdatomic.h>

@@ -10,6 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -19,6 +20,8 @@
 
 #define KEY_DIGITS 16
 #define MANIFEST "manifest.json"
+#define LOCK "lock" /* the number of the process that has it, or had it last */
+#define AGAIN_US 50000
 #define ASSET ".asset"
 #define REPORT ".report.json"
 #define REPORT_MAX_BYTES ((size_t)1 << 20)
@@ -32,6 +35,35 @@ char *folder_file_name(uint64_t key)
 char *folder_path(const char *folder, uint64_t key, const char *ending)
 {
     return mem_printf("%s/%016" PRIx64 "%s", folder, key, ending);
+}
+
+/* Of the file with the lock, if it says. */
+static long holder_of(int fd)
+{
+    char text[32] = "";
+    ssize_t got = pread(fd, text, sizeof(text) - 1, 0);
+    return got > 0 ? strtol(text, NULL, 10) : 0;
+}
+
+int folder_lock(const char *folder, struct log *log, const atomic_bool *stop)
+{
+    char *path = mem_printf("%s/" LOCK, folder), own[32];
+    int fd = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666), status = fd < 0 ? -1 : flock(fd, LOCK_EX | LOCK_NB);
+    if (fd >= 0 && status != 0 && errno == EWOULDBLOCK)
+        log_warn(log, "%s: process %ld prepares into it; waiting until it is done", folder, holder_of(fd));
+    while (fd >= 0 && status != 0 && errno == EWOULDBLOCK && !(stop && atomic_load(stop))) {
+        usleep(AGAIN_US);
+        status = flock(fd, LOCK_EX | LOCK_NB);
+    }
+    int length = snprintf(own, sizeof(own), "%-10ld\n", (long)getpid());
+    if (status == 0 && pwrite(fd, own, (size_t)length, 0) != length)
+        log_warn(log, "%s: %s", path, strerror(errno));
+    if (fd >= 0 && status != 0) {
+        close(fd);
+        fd = -1;
+    }
+    mem_free(path);
+    return fd;
 }
 
 int folder_open(struct folder_file *file, const char *folder, uint64_t key, char why[200])

@@ -2,10 +2,12 @@
 /* The folder of prepared files: KEY.asset files and manifest.json (protocol/ASSET.md), and what is kept for the next time. */
 #ifndef PREPROCESS_FOLDER_H
 #define PREPROCESS_FOLDER_H
+#include <stdatomic.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/log.h"
 #include "protocol/asset_format.h"
 
 /* A file mapped for reading. */
@@ -17,6 +19,10 @@ struct folder_file {
 
 /* KEY.asset. Free with mem_free. */
 char *folder_file_name(uint64_t key);
+
+/* Holds the folder for this process alone until what it returns is closed, or the process ends. While another one has it, says so with its
+   number and waits until *stop is true (NULL: for ever). -1: it was stopped, or no file can be made there, and so nothing written. */
+int folder_lock(const char *folder, struct log *log, const atomic_bool *stop);
 
 #define FOLDER_STOCK ".stock"     /* stock.h */
 #define FOLDER_SURFACE ".surface" /* surface_store.h; its key is the stock's */

@@ -19,7 +19,7 @@ static const char usage[] =
     "\n"
     "Prepares the models that a plant file names: triangles cut out, sensors dropped onto them, and the distance along the surface from "
     "every\n"
-    "sensor to every vertex. What has not changed since the last time is left as it is.\n"
+    "sensor to every vertex. What has not changed since the last time is left as it is. One run at a time has a folder; the next waits.\n"
     "\n"
     "  --output DIR    where the prepared files go (default: NAME.prepared beside NAME.yaml)\n"
     "  --report KIND   what is printed at the end: text has every asset, json is for programs; without it, text of what was built,\n"

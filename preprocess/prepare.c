@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 #include <xxhash.h>
 
 #include "base/clock.h"
@@ -419,6 +420,7 @@ bool prepare_run(struct prepare *prepare, struct log *log, struct workers *worke
             (struct prepare_asset){ .plant = &plant->assets[i], .wanted = !params->only || strcmp(plant->assets[i].id, params->only) == 0 };
     if (mkdir(params->folder, 0777) != 0 && errno != EEXIST)
         fail(&run, plant->path, 0, "%s: cannot be made: %s", params->folder, strerror(errno));
+    int lock = run.failed ? -1 : folder_lock(params->folder, log, params->stop);
     if (!run.failed) {
         find_keys(&run);
         sort_out(&run);
@@ -430,6 +432,8 @@ bool prepare_run(struct prepare *prepare, struct log *log, struct workers *worke
     prepare->interrupted = is_stopped(&run);
     if (!run.failed && !params->only && !prepare->interrupted)
         write_manifest(&run);
+    if (lock >= 0)
+        close(lock);
     prepare->seconds = (double)(clock_mono_ns() - start_ns) / NS_PER_S;
     pthread_mutex_destroy(&run.lock);
     mem_free(run.todo);

@@ -49,8 +49,8 @@ struct prepare_params {
     const atomic_bool *stop; /* no asset is begun any more once it is true. NULL: never */
 };
 
-/* Findings go to diag (errors by the plant file's or tag list's line). False: something failed or it was interrupted; what is good was
-   written, but the manifest is as it was. Finish in both cases. */
+/* One process at a time prepares into a folder; another one waits. Findings go to diag (errors by the plant file's or tag list's line).
+   False: something failed or it was interrupted; what is good was written, but the manifest is as it was. Finish in both cases. */
 bool prepare_run(struct prepare *prepare, struct log *log, struct workers *workers, const struct plant *plant,
                  const struct prepare_params *params, struct diag *diag);
 void prepare_finish(struct prepare *prepare);

@@ -22,7 +22,7 @@ bool site_is_there(const char *model)
 static bool prepare(const char *plant, const char *folder)
 {
     const char *programs = getenv("PLANTCAST_BIN");
-    char *command = mem_printf("mkdir -p '%s' && flock '%s.lock' '%s/plantcast-prep' %s --output '%s' >/dev/null 2>&1", folder, folder,
+    char *command = mem_printf("mkdir -p '%s' && '%s/plantcast-prep' %s --output '%s' >/dev/null 2>&1", folder,
                                programs ? programs : "build", plant, folder);
     int status = system(command);
     mem_free(command);

@@ -1,14 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* plantcast-prep as a program: what it makes, what it leaves alone, what it makes anew, and what it says is wrong. */
+#include <fcntl.h>
 #include <jansson.h>
 #include <math.h>
 #include <setjmp.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 #include <cmocka.h>
 
@@ -188,6 +192,59 @@ static void only_what_changed_is_made_anew(void **state)
     mem_free(old);
 }
 
+static void two_at_a_time_take_turns(void **state)
+{
+    struct prep_case *s = *state;
+    char *program = prep_case_program();
+    char *both = mem_printf("'%s' '%s' --report json >'%s/first' & '%s' '%s' --report json >'%s/second' && wait $!", program, s->plant,
+                            s->folder, program, s->plant, s->folder);
+    int built[2];
+    assert_int_equal(system(both), 0);
+    for (int i = 0; i < 2; i++) {
+        prep_case_read(s, i ? "second" : "first", &s->out);
+        json_t *report = prep_case_json(&s->out);
+        built[i] = strcmp(state_of(report, 2), "built") == 0;
+        assert_string_equal(state_of(report, 2), built[i] ? "built" : "unchanged");
+        json_decref(report);
+    }
+    assert_int_equal(built[0] + built[1], 1);
+    mem_free(program);
+    mem_free(both);
+}
+
+static void who_waits_says_for_whom_and_can_be_stopped(void **state)
+{
+    struct prep_case *s = *state;
+    char *program = prep_case_program(), *folder = temp_path(s->folder, "plant.prepared"), words[100];
+    assert_int_equal(mkdir(folder, 0777), 0);
+    struct log *log = log_create(LOG_ERROR);
+    int lock = folder_lock(folder, log, NULL), status;
+    assert_true(lock >= 0);
+    mem_free(temp_write_text(s->folder, "err", ""));
+    pid_t child = fork();
+    if (child == 0) {
+        char *err = temp_path(s->folder, "err");
+        dup2(open(err, O_WRONLY), 2);
+        execl(program, program, s->plant, (char *)NULL);
+        _exit(99);
+    }
+    snprintf(words, sizeof(words), "process %ld prepares into it", (long)getpid());
+    for (int tries = 0; tries < 1000 && (!s->err.at || !strstr(s->err.at, words)); tries++) {
+        usleep(10000);
+        prep_case_read(s, "err", &s->err);
+    }
+    prep_case_says(&s->err, words);
+    assert_int_equal(waitpid(child, &status, WNOHANG), 0);
+    kill(child, SIGINT);
+    assert_int_equal(waitpid(child, &status, 0), child);
+    assert_int_equal(WEXITSTATUS(status), 1);
+    close(lock);
+    prep_case_expect(s, "$PLANT", 0);
+    log_destroy(&log);
+    mem_free(folder);
+    mem_free(program);
+}
+
 static void distances_are_printed(void **state)
 {
     struct prep_case *s = *state;
@@ -254,6 +311,8 @@ int main(void)
         WITH_PLANT(a_second_run_does_nothing),
         WITH_PLANT(damaged_files_are_made_anew_and_said),
         WITH_PLANT(only_what_changed_is_made_anew),
+        WITH_PLANT(two_at_a_time_take_turns),
+        WITH_PLANT(who_waits_says_for_whom_and_can_be_stopped),
         WITH_PLANT(distances_are_printed),
         WITH_PLANT(what_is_wrong_is_said_with_its_place),
         WITH_PLANT(wrong_use_is_told_from_wrong_input),
