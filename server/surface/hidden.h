@@ -11,8 +11,8 @@
    part: of mesh's triangles. crossings: points where a part passes through itself. workers may be NULL. */
 void hidden_find(const struct trimesh *mesh, const uint32_t *part, const struct parts *parts, const uint32_t *crossings,
                  size_t crossing_count, double tolerance_m, struct workers *workers, char *hidden);
-/* Hides what is left over amid hidden triangles: pieces that hang together by points with nothing else that is seen, and are smaller than
-   the hidden triangles that touch them. */
+/* Hides what is left over amid hidden triangles: pieces that hang together by points with nothing else that is seen, all of whose points
+   touch hidden triangles, and which are smaller than those. */
 void hidden_islands(const struct trimesh *mesh, char *hidden);
 
 #endif

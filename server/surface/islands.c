@@ -18,11 +18,13 @@ static double area_of(const struct trimesh *mesh, size_t t)
 
 struct island {                /* by its lowest point */
     double seen_m2, hidden_m2; /* area; of hidden triangles that touch it */
+    bool free;                 /* a point of it touches none */
 };
 
 void hidden_islands(const struct trimesh *mesh, char *hidden)
 {
     uint32_t *root = mem_array(mesh->point_count, sizeof(*root));
+    char *touched = mem_array(mesh->point_count, 1);
     struct island *islands = mem_array(mesh->point_count, sizeof(*islands));
     for (uint32_t i = 0; i < mesh->point_count; i++)
         root[i] = i;
@@ -33,13 +35,18 @@ void hidden_islands(const struct trimesh *mesh, char *hidden)
         const uint32_t r[3] = { trimesh_root(root, mesh->tris[t][0]), trimesh_root(root, mesh->tris[t][1]),
                                 trimesh_root(root, mesh->tris[t][2]) };
         double area_m2 = area_of(mesh, t);
+        for (int i = 0; i < 3; i++)
+            touched[mesh->tris[t][i]] |= hidden[t];
         for (int i = 0; i < (hidden[t] ? 3 : 1); i++)
             *(hidden[t] ? &islands[r[i]].hidden_m2 : &islands[r[i]].seen_m2) += area_m2;
     }
+    for (uint32_t i = 0; i < mesh->point_count; i++)
+        islands[trimesh_root(root, i)].free |= !touched[i];
     for (size_t t = 0; t < mesh->tri_count; t++) {
         const struct island *island = &islands[trimesh_root(root, mesh->tris[t][0])];
-        hidden[t] = hidden[t] || island->seen_m2 < island->hidden_m2;
+        hidden[t] = hidden[t] || (!island->free && island->seen_m2 < island->hidden_m2);
     }
     mem_free(root);
     mem_free(islands);
+    mem_free(touched);
 }
