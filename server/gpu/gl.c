@@ -127,6 +127,12 @@ void gl_destroy(struct gl **gl)
     *gl = NULL;
 }
 
+void gl_forget_errors(void)
+{
+    for (int i = 0; i < 8 && glGetError() != GL_NO_ERROR; i++) { /* a lost context has no end of them */
+    }
+}
+
 void gl_pass_enter(const char *name)
 {
     glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, -1, name);

@@ -41,6 +41,7 @@ bool gl_lost(const struct gl *gl);
 /* Destroys the context underneath, as a reset of the device does. So that tests can see what comes after. */
 void gl_lose(struct gl *gl);
 
+void gl_forget_errors(void); /* those of what was done before, so that the next one is of what is done now */
 /* Around everything a pass does: a debug group, and on leaving the GL errors of the pass, logged by its name. False: there was one. */
 void gl_pass_enter(const char *name);
 bool gl_pass_leave(struct gl *gl, const char *name);

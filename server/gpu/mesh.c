@@ -2,13 +2,14 @@
 /* Vertex and index buffers, and how shaders see them. */
 #include "gpu/mesh.h"
 
+#include "gpu/gl.h"
+
 enum { BIND_POSITION, BIND_NORMAL, BIND_TEXCOORD, BIND_COLOR, BIND_LIGHT, BIND_SCALAR };
 
 GLuint mesh_buffer(struct log *log, const char *name, size_t bytes, const void *data, GLbitfield flags)
 {
     GLuint buffer = 0;
-    for (int i = 0; i < 8 && glGetError() != GL_NO_ERROR; i++) { /* a lost context has no end of them */
-    }
+    gl_forget_errors();
     glCreateBuffers(1, &buffer);
     glNamedBufferStorage(buffer, (GLsizeiptr)bytes, data, flags);
     if (glGetError() == GL_NO_ERROR)

@@ -2,8 +2,11 @@
 /* Framebuffers. */
 #include "gpu/target.h"
 
+#include "gpu/gl.h"
+
 static bool make(GLuint *framebuffer, GLuint *color, GLuint *depth, int width_px, int height_px, int samples)
 {
+    gl_forget_errors();
     GLenum kind = samples > 1 ? GL_TEXTURE_2D_MULTISAMPLE : GL_TEXTURE_2D;
     glCreateTextures(kind, 1, color);
     glCreateTextures(kind, 1, depth);

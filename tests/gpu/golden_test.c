@@ -17,6 +17,7 @@
 #include "render/overlay.h"
 #include "scene/framing.h"
 #include "tests/support/rig.h"
+#include "value/alarm.h"
 #include "value/quality.h"
 
 enum { WIDTH = 480, HEIGHT = 270, BYTES = WIDTH * HEIGHT * 4 };
@@ -160,6 +161,7 @@ static void fill(void)
     toy_fill(stand.snapshot, 0);
     for (int i = 0; i < 7; i++) /* the last one has none */
         memcpy(stand.toy->plant.tags[i].limits, (double[]){ 10, 20, 70, 100 }, LIMIT_COUNT * sizeof(double));
+    alarm_by_limits(&stand.toy->plant, stand.snapshot);
 }
 
 int main(void)
