@@ -125,7 +125,7 @@ static void put_in_force(struct reload *reload, struct loaded *after, const stru
         reload_count(reload->context->counters, after->plant->hash, true);
         say_difference(reload, diff, hash, (double)(clock_mono_ns() - begun_ns) / 1e9);
     } else {
-        log_err(reload->context->log, "reload: the new plant cannot be put in force; the daemon ends, and starts with it when it is started");
+        log_err(reload->context->log, "reload: the new plant cannot be put in force; the daemon ends, and has it when it starts again");
         net_stop(reload->net);
         loaded_destroy(&after);
     }

@@ -95,7 +95,8 @@ static bool take_count(const char *name, const char *text, int64_t low, int64_t 
     char *end;
     long long value = strtoll(text, &end, 10);
     if (end == text || *end || value < low || value > high) {
-        message_fail(error, "bad_field", "%s: expected a number from %lld to %lld, found '%.60s'", name, (long long)low, (long long)high, text);
+        message_fail(error, "bad_field", "%s: expected a number from %lld to %lld, found '%.60s'", name, (long long)low, (long long)high,
+                     text);
         return false;
     }
     *out = value;

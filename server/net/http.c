@@ -413,7 +413,8 @@ static void answer_all(struct hub *hub, bool reloads, int status, const char *ty
 
 void http_let_go(struct hub *hub)
 {
-    answer_all(hub, false, HTTP_STATUS_SERVICE_UNAVAILABLE, "text/plain; charset=utf-8", "the plant was loaded anew meanwhile; try again\n");
+    answer_all(hub, false, HTTP_STATUS_SERVICE_UNAVAILABLE, "text/plain; charset=utf-8",
+               "the plant was loaded anew meanwhile; try again\n");
 }
 
 void http_on_reloaded(struct hub *hub, bool good, const char *text)

@@ -515,6 +515,7 @@ char *reply_api_tags_text(const struct session_world *world, size_t first, size_
             json_object_set_new(object, "simulated", json_true());
         json_array_append_new(list, object);
     }
-    return print(json_pack("{s:I,s:I,s:I,s:o}", "time_us", us(world->snapshot->taken_utc_ns), "total", (json_int_t)plant->tag_count, "first",
-                           (json_int_t)first, "tags", list), DIGITS);
+    json_t *page = json_pack("{s:I,s:I,s:I,s:o}", "time_us", us(world->snapshot->taken_utc_ns), "total", (json_int_t)plant->tag_count,
+                             "first", (json_int_t)first, "tags", list);
+    return print(page, DIGITS);
 }

@@ -212,8 +212,8 @@ static uint32_t *count_repeats(const struct trimesh *mesh, const uint32_t *sourc
     return of_tri;
 }
 
-/* Where two bodies touch with the same vertices, welding left one face of two: it is a wall between them. A patch that ends at edges of three
-   faces or more, and whose triangles are there twice as often as others of its part, is such a wall. What stands on a surface,
+/* Where two bodies touch with the same vertices, welding left one face of two: it is a wall between them. A patch that ends at edges of
+   three faces or more, and whose triangles are there twice as often as others of its part, is such a wall. What stands on a surface,
    like a fin, bounds nothing either. */
 static void drop_walls(struct finding *f, const uint32_t *source_tris, size_t source_count, const uint32_t *vertex_point)
 {

@@ -29,7 +29,8 @@ after(async () => {
 });
 
 const words = () => page.locator('#alarm-words').textContent();
-const waitForWords = (pattern) => page.waitForFunction((p) => new RegExp(p).test(document.getElementById('alarm-words').textContent), pattern,
+const waitForWords = (pattern) => page.waitForFunction(
+    (p) => new RegExp(p).test(document.getElementById('alarm-words').textContent), pattern,
     { timeout: 30000 });
 const limitOf = (name) => tags.find((tag) => tag.name === name).limits;
 // Of a tag's alarm: its ring's place over the picture, and the alarm itself. null: none is drawn.
@@ -46,7 +47,8 @@ test('what comes beyond its limit is counted, marked and listed, the most urgent
     const shaken = tags.find(({ group, limits }) => group === 'vibration' && limits.H !== null).name;
     await plant.ask(`set ${shaken} ${limitOf(shaken).H + 0.1}`);
     await plant.ask(`set ${HOT} ${limitOf(HOT).HH + 1}`);
-    await page.waitForFunction((hot) => globalThis.plantcast.session.model.alarms.list().some(({ tag, kind }) => tag.name === hot && kind === 'HH'),
+    await page.waitForFunction(
+        (hot) => globalThis.plantcast.session.model.alarms.list().some(({ tag, kind }) => tag.name === hot && kind === 'HH'),
         HOT, { timeout: 30000 });
     assert.match(await words(), /^\d+ active alarms, \d+ not acknowledged$/);
     assert.match(await page.locator('#alarm-mode').textContent(), /Local alarms of this site/);
@@ -61,7 +63,8 @@ test('what comes beyond its limit is counted, marked and listed, the most urgent
 
 test('whatever group and way of showing is chosen, it stays marked and counted', options, async () => {
     const before = await words();
-    for (const params of [{ group: 'vibration' }, { group: 'pressure', show: 'operator' }, { group: 'temperature', show: 'distance', sensor: 'TE-102' },
+    for (const params of [{ group: 'vibration' }, { group: 'pressure', show: 'operator' },
+        { group: 'temperature', show: 'distance', sensor: 'TE-102' },
         { group: 'temperature', show: 'operator' }]) {
         await page.evaluate((change) => globalThis.plantcast.session.setParams(change), params);
         await settle(page);
@@ -81,7 +84,8 @@ test('an acknowledgement is done once, for everybody', options, async () => {
         const id = await page.evaluate((hot) => globalThis.plantcast.session.model.alarms.list().find(({ tag, kind }) => tag.name === hot &&
             kind === 'HH').id, HOT);
         await page.locator(`li[data-alarm="${id}"] button[data-action="acknowledge"]`).click();
-        await other.page.waitForFunction((alarm) => globalThis.plantcast.session.model.alarms.rows.get(alarm)?.state === 'acknowledged', id);
+        await other.page.waitForFunction(
+            (alarm) => globalThis.plantcast.session.model.alarms.rows.get(alarm)?.state === 'acknowledged', id);
         await page.waitForFunction((alarm) => globalThis.plantcast.session.model.alarms.rows.get(alarm)?.state === 'acknowledged', id);
         assert.ok(await other.page.locator('#alarm-strip').isVisible(), 'on a wall too');
         assert.match(await page.locator(`li[data-alarm="${id}"]`).textContent(), /Acknowledged.*by local/s);

@@ -199,7 +199,8 @@ test('who comes back has the view that it left', { skip }, async () => {
 
 test('any number follow one; who leads gives the lead away, and what is shown stays', { skip }, async () => {
     const [presenter, heir, viewer] = await Promise.all([0, 1, 2].map(() => Client.open(plant.port)));
-    const { session } = await presenter.hello({ width: 400, height: 240, camera: { seq: 1, ...CAMERA }, params: { seq: 1, group: 'pressure' } });
+    const camera = { seq: 1, ...CAMERA };
+    const { session } = await presenter.hello({ width: 400, height: 240, camera, params: { seq: 1, group: 'pressure' } });
     const heirs = (await heir.hello({ width: 320, height: 200 })).session, viewers = (await viewer.hello()).session;
     const told = (client, what, match) => client.wait(what, (c) => c.texts.some((m) => m.type === 'following' && match(m)));
     presenter.say('lead', { session: heirs });

@@ -75,7 +75,8 @@ export class AlarmPanel {
     showStrip() {
         const { all, waiting, of } = this.alarms.counts(), [newest] = this.alarms.list();
         byId('alarm-strip').dataset.kind = waiting > 0 ? 'waiting' : all > 0 ? 'some' : 'none';
-        byId('alarm-counts').replaceChildren(...of.flatMap((count, i) => (count > 0 ? [badge(i + 1), make('b', {}, `×\u2009${count}`)] : [])));
+        const counts = of.flatMap((count, i) => (count > 0 ? [badge(i + 1), make('b', {}, `×\u2009${count}`)] : []));
+        byId('alarm-counts').replaceChildren(...counts);
         const open = waiting > 0 ? `, ${waiting} not acknowledged` : '';
         setText(byId('alarm-words'), all === 0 ? 'No active alarms' : `${all} active ${all === 1 ? 'alarm' : 'alarms'}${open}`);
         setText(byId('alarm-newest'), newest ? `${newest.tag.name} ${KINDS[newest.kind]}${this.valueText(newest, ' at ')}` : '');
@@ -126,7 +127,8 @@ export class AlarmPanel {
             make('span', { class: 'state' }, WORDS[state]), age, make('span', { class: 'note' }, this.note(alarm)));
         const buttons = this.alarms.actions(alarm, this.session.role).map((action) =>
             make('button', { type: 'button', 'data-action': action, onclick: () => this.act(action, alarm) }, DO[action]));
-        return make('li', { class: isWaiting(state) ? 'calls' : state, 'data-alarm': alarm.id }, fly, make('div', { class: 'do' }, ...buttons));
+        const look = { class: isWaiting(state) ? 'calls' : state, 'data-alarm': alarm.id };
+        return make('li', look, fly, make('div', { class: 'do' }, ...buttons));
     }
 
     act(action, alarm) {

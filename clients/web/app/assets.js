@@ -148,7 +148,8 @@ export class Assets {
         if (row.alarm === text)
             return;
         row.alarm = text;
-        parent.querySelector('.flag').replaceChildren(...(alarm ? [make('span', { class: `limit-flag p${alarm.priority}` }, alarm.kind)] : []));
+        const flag = alarm ? [make('span', { class: `limit-flag p${alarm.priority}` }, alarm.kind)] : [];
+        parent.querySelector('.flag').replaceChildren(...flag);
     }
 
     setQuality(row, parent, quality) {

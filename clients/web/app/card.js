@@ -4,7 +4,8 @@ import { ageText, decimalsFor, numberText, qualityText, unitText } from '../core
 import { byId, glyph, icon, make, setText } from './dom.js';
 
 const ALARM_WORDS = {
-    HH: 'above the highest limit', H: 'above the high limit', L: 'below the low limit', LL: 'below the lowest limit', BAD: 'bad measurement',
+    HH: 'above the highest limit', H: 'above the high limit', L: 'below the low limit', LL: 'below the lowest limit',
+    BAD: 'bad measurement',
     ALM: 'alarm',
 };
 const AWAY_PX = 16, WIDTH_PX = 248;
@@ -48,8 +49,10 @@ export class Card {
         setText(this.age, ageText(model.ageMs(tag.index, performance.now())));
         const alarm = model.alarms.gravest(tag.index);
         this.limit.hidden = !alarm;
-        if (alarm)
-            this.limit.replaceChildren(make('span', { class: `limit-flag p${alarm.priority}` }, alarm.kind), ` ${ALARM_WORDS[alarm.kind]}, ${alarm.state}`);
+        if (alarm) {
+            const flag = make('span', { class: `limit-flag p${alarm.priority}` }, alarm.kind);
+            this.limit.replaceChildren(flag, ` ${ALARM_WORDS[alarm.kind]}, ${alarm.state}`);
+        }
     }
 
     build(tag, asset) {

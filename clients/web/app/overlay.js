@@ -227,7 +227,8 @@ export class Overlay {
     drawAlarm({ priority, state }) {
         const c = this.context, blinks = isWaiting(state) && document.body.classList.contains('alarm-blink');
         const wide = state === 'acknowledged' || blinks ? 2 : 4, colour = ALARM_COLOURS[priority - 1][0];
-        for (const [style, width, dash] of [[INK, wide + 2, []], [colour, wide, state === 'returned' || state === 'latched' ? [6, 4] : []]]) {
+        const broken = state === 'returned' || state === 'latched' ? [6, 4] : [];
+        for (const [style, width, dash] of [[INK, wide + 2, []], [colour, wide, broken]]) {
             c.beginPath();
             c.arc(0, 0, 10, 0, 2 * Math.PI);
             c.lineWidth = width;

@@ -3,7 +3,8 @@
 
 const CALLS = ['unacknowledged', 'active', 'returned', 'latched', 'acknowledged']; // what is to be seen
 const ACTIONS = { // by state; what can be done where the site keeps its own alarms
-    unacknowledged: ['acknowledge', 'shelve'], returned: ['acknowledge', 'shelve'], acknowledged: ['shelve'], latched: ['acknowledge', 'reset'],
+    unacknowledged: ['acknowledge', 'shelve'], returned: ['acknowledge', 'shelve'], acknowledged: ['shelve'],
+    latched: ['acknowledge', 'reset'],
     shelved: ['unshelve'], out_of_service: ['in_service'],
 };
 const ROLES = { in_service: ['engineer'], out_of_service: ['engineer'] };
