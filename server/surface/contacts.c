@@ -16,13 +16,13 @@
 struct contacts {
     struct trimesh *mesh;
     struct parts *parts;
-    const uint32_t *part, *patch; /* of its triangles, as they are now */
+    const uint32_t *part, *body; /* of its triangles, as they are now */
     const struct bvh *bvh;
     struct attach *attach;
     double tolerance_m;
-    uint32_t own; /* of the edge's triangle: its part; of the point's: its patch */
+    uint32_t own; /* of the edge's triangle: its part; of the point's: its body */
     uint32_t edge[2];
-    uint32_t *touched; /* of each point: the patch that it touches, or TRIMESH_NONE */
+    uint32_t *touched; /* of each point: the body that it touches, or TRIMESH_NONE */
     struct crossing {
         uint32_t tri, a, b, c, d; /* edge a-b through tri, or, if that is TRIMESH_NONE, over the edge c-d */
         double t, s, weights[3];
@@ -121,10 +121,10 @@ static void find_crossings(struct contacts *c)
     edge_table_finish(&edges);
 }
 
-static bool other_patch(const void *arg, uint32_t tri)
+static bool other_body(const void *arg, uint32_t tri)
 {
     const struct contacts *c = arg;
-    return c->patch[tri] != c->own;
+    return c->body[tri] != c->own;
 }
 
 static void find_touches(struct contacts *c)
@@ -138,11 +138,11 @@ static void find_touches(struct contacts *c)
             if (seen[p])
                 continue;
             seen[p] = 1;
-            c->own = c->patch[t];
-            bvh_nearest(c->bvh, c->mesh->points[p], c->tolerance_m, other_patch, c, &place);
+            c->own = c->body[t];
+            bvh_nearest(c->bvh, c->mesh->points[p], c->tolerance_m, other_body, c, &place);
             if (place.tri == TRIMESH_NONE)
                 continue;
-            c->touched[p] = c->patch[place.tri];
+            c->touched[p] = c->body[place.tri];
             if (!stitch_tri_has(c->mesh, place.tri, p))
                 set_into_face(c, p, place.tri, place.weights, place.distance_m);
         }
@@ -181,7 +181,7 @@ static bool is_known(const struct contacts *c, uint32_t u, uint32_t v)
 static void visit_rim(void *arg, uint32_t tri)
 {
     struct contacts *c = arg;
-    if (c->patch[tri] != c->touched[c->edge[0]])
+    if (c->body[tri] != c->touched[c->edge[0]])
         return;
     for (int i = 0; i < 3; i++) {
         uint32_t u = c->mesh->tris[tri][i], v = c->mesh->tris[tri][(i + 1) % 3];
@@ -197,14 +197,14 @@ static void visit_rim(void *arg, uint32_t tri)
     }
 }
 
-/* Edges both of whose ends touch another patch, while a face at them leaves it: that patch is cut along them. */
+/* Edges both of whose ends touch another body, while a face at them leaves it: that body is cut along them. */
 static void find_rims(struct contacts *c)
 {
     for (uint32_t t = 0; t < c->mesh->tri_count; t++)
         for (int i = 0; i < 3; i++) {
             const uint32_t *v = c->mesh->tris[t];
-            uint32_t p = v[i], q = v[(i + 1) % 3], apex = v[(i + 2) % 3], patch = c->touched[p];
-            if (patch == TRIMESH_NONE || patch != c->touched[q] || patch == c->touched[apex])
+            uint32_t p = v[i], q = v[(i + 1) % 3], apex = v[(i + 2) % 3], body = c->touched[p];
+            if (body == TRIMESH_NONE || body != c->touched[q] || body == c->touched[apex])
                 continue;
             c->edge[0] = p;
             c->edge[1] = q;
@@ -236,12 +236,12 @@ void stitch_parts(struct trimesh *mesh, struct parts *parts, double tolerance_m,
 {
     struct attach attach;
     struct bvh *bvh = bvh_create(mesh);
-    uint32_t *part = parts_spread(mesh, parts->of_source), *patch = parts_spread(mesh, parts->patch_of_source);
+    uint32_t *part = parts_spread(mesh, parts->of_source), *body = parts_spread(mesh, parts->body_of_source);
     size_t target_count = mesh->point_count;
     struct contacts contacts = { .mesh = mesh,
                                  .parts = parts,
                                  .part = part,
-                                 .patch = patch,
+                                 .body = body,
                                  .bvh = bvh,
                                  .attach = &attach,
                                  .tolerance_m = tolerance_m,
@@ -258,5 +258,5 @@ void stitch_parts(struct trimesh *mesh, struct parts *parts, double tolerance_m,
     mem_free(contacts.crossings);
     mem_free(contacts.touched);
     mem_free(part);
-    mem_free(patch);
+    mem_free(body);
 }

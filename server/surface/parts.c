@@ -9,6 +9,7 @@
 #include "surface/vec.h"
 
 #define OPEN_OF_SIZE 0.05 /* open edges together, in roots of the part's area: a hair gap's leftovers, not a pipe's end */
+#define ALONE 0.5         /* likewise, of a patch and all edges that it ends at */
 #define DOUBLES 0.9       /* of a wall's triangles, at least */
 
 struct edge_use {
@@ -18,10 +19,10 @@ struct edge_use {
 struct finding {
     struct parts *parts;
     struct edge_use *uses;
-    uint32_t (*edge)[3];            /* of each triangle, in uses: from its corner i to the next */
-    uint32_t *patch;                /* of each triangle: its lowest one */
-    struct patch {                  /* by its lowest triangle */
-        double open_m, branching_m; /* edges with one face; with three or more */
+    uint32_t (*edge)[3];                     /* of each triangle, in uses: from its corner i to the next */
+    uint32_t *patch;                         /* of each triangle: its lowest one */
+    struct patch {                           /* by its lowest triangle */
+        double open_m, branching_m, area_m2; /* edges with one face; with three or more */
         size_t tris, doubles;
     } * patches;
 };
@@ -91,6 +92,7 @@ static void find_closed(struct finding *f)
         bool fin = false; /* it stands on an edge that is closed without it */
         tri_normal(mesh, t, n);
         area_m2[parts->of_tri[t]] += sqrt(vec_dot(n, n)) / 2;
+        f->patches[f->patch[t]].area_m2 += sqrt(vec_dot(n, n)) / 2;
         for (int i = 0; i < 3; i++) {
             const struct edge_use *use = use_of(f, t, i);
             struct patch *patch = &f->patches[f->patch[t]];
@@ -107,6 +109,17 @@ static void find_closed(struct finding *f)
         parts->closed[p] = open_m[p] <= OPEN_OF_SIZE * sqrt(area_m2[p]);
     mem_free(area_m2);
     mem_free(open_m);
+}
+
+/* Bodies that a few edges join to others by mistake are told from them: such a patch is nearly closed by itself. */
+static void find_bodies(struct finding *f, const struct trimesh *mesh)
+{
+    struct parts *parts = f->parts;
+    for (size_t t = 0; t < mesh->tri_count; t++) {
+        const struct patch *patch = &f->patches[f->patch[t]];
+        bool alone = patch->branching_m > 0 && patch->open_m + patch->branching_m < ALONE * sqrt(patch->area_m2);
+        parts->body_of_source[mesh->tri_source[t]] = alone ? (uint32_t)parts->count + f->patch[t] : parts->of_tri[t];
+    }
 }
 
 /* --- which way patches face ----------------------------------------------------------------------------------------------- */
@@ -262,19 +275,18 @@ void parts_init(struct parts *parts, const struct trimesh *mesh, const uint32_t 
     parts->of_tri = mem_array(mesh->tri_count, sizeof(*parts->of_tri));
     parts->side = mem_array(mesh->tri_count, 1);
     parts->of_source = mem_array(source_count, sizeof(*parts->of_source));
-    parts->patch_of_source = mem_array(source_count, sizeof(*parts->patch_of_source));
+    parts->body_of_source = mem_array(source_count, sizeof(*parts->body_of_source));
     f.patch = mem_array(mesh->tri_count, sizeof(*f.patch));
     f.patches = mem_array(mesh->tri_count, sizeof(*f.patches));
     list_edges(&f);
     number_parts(&f);
-    for (size_t t = 0; t < mesh->tri_count; t++) {
+    for (size_t t = 0; t < mesh->tri_count; t++)
         parts->of_source[mesh->tri_source[t]] = parts->of_tri[t];
-        parts->patch_of_source[mesh->tri_source[t]] = f.patch[t];
-    }
     parts->closed = mem_array(parts->count, 1);
     parts->tangled = mem_array(parts->count, 1);
     parts->crossed = mem_array(parts->count, 1);
     find_closed(&f);
+    find_bodies(&f, mesh);
     face_one_way(&f);
     face_outwards(&f);
     drop_walls(&f, source_tris, source_count, vertex_point);
@@ -290,7 +302,7 @@ void parts_finish(struct parts *parts)
     mem_free(parts->of_tri);
     mem_free(parts->side);
     mem_free(parts->of_source);
-    mem_free(parts->patch_of_source);
+    mem_free(parts->body_of_source);
     mem_free(parts->closed);
     mem_free(parts->tangled);
     mem_free(parts->crossed);

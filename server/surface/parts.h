@@ -8,12 +8,12 @@
    two faces. */
 struct parts {
     struct trimesh solid;
-    uint32_t *of_tri;                      /* of the solid's triangles: part */
-    signed char *side;                     /* likewise: +1 or -1, by which each patch faces the same way throughout; 0: it bounds nothing */
-    uint32_t *of_source, *patch_of_source; /* of the model's triangles */
-    char *closed;                          /* of each part: its open edges are short against its size */
-    char *tangled;                         /* likewise: it has edges with three faces or more, or passes through itself */
-    char *crossed;                         /* likewise: it passes through itself; set by stitch_parts */
+    uint32_t *of_tri;                     /* of the solid's triangles: part */
+    signed char *side;                    /* likewise: +1 or -1, by which each patch faces the same way throughout; 0: it bounds nothing */
+    uint32_t *of_source, *body_of_source; /* of the model's triangles: part; body, mostly the part */
+    char *closed;                         /* of each part: its open edges are short against its size */
+    char *tangled;                        /* likewise: it has edges with three faces or more, or passes through itself */
+    char *crossed;                        /* likewise: it passes through itself; set by stitch_parts */
     size_t count;
 };
 

