@@ -81,7 +81,8 @@ function copyPlant(folder, modbusPort, more) {
             symlinkSync(join(DEMO, name), join(folder, name));
     }
     const text = readFileSync(join(DEMO, 'plant.yaml'), 'utf8');
-    const moved = text.replace(/^(\s+port:\s*)\d+/m, `$1${modbusPort}`);
+    // Its values are taken for measured ones: what simulated ones look like is said elsewhere.
+    const moved = text.replace(/^(\s+port:\s*)\d+/m, `$1${modbusPort}`).replace(/^\s+simulated: yes\n/m, '');
     if (moved === text)
         throw new Error('the demo plant has no source with a port');
     writeFileSync(join(folder, 'plant.yaml'), moved + more);
