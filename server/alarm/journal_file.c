@@ -8,9 +8,9 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <time.h>
 #include <unistd.h>
 
+#include "base/damaged.h"
 #include "base/mem.h"
 
 enum { APPLICATION_ID = 0x5043414A /* "PCAJ" */, BUSY_MS = 5000 };
@@ -129,24 +129,8 @@ static void close_database(struct journal_file *file)
 
 static bool set_aside(struct journal_file *file)
 {
-    static const char *const parts[] = { "", "-wal", "-shm" };
-    char stamp[32];
-    time_t now = time(NULL);
-    struct tm tm;
-    strftime(stamp, sizeof(stamp), "%Y%m%dT%H%M%SZ", gmtime_r(&now, &tm));
-    int stem = (int)(strlen(file->path) - strlen(".sqlite"));
-    bool moved = false;
     close_database(file);
-    for (size_t i = 0; i < sizeof(parts) / sizeof(parts[0]); i++) {
-        char *from = mem_printf("%s%s", file->path, parts[i]);
-        char *to = mem_printf("%.*s.damaged-%s.sqlite%s", stem, file->path, stamp, parts[i]);
-        moved |= rename(from, to) == 0 && i == 0;
-        mem_free(from);
-        mem_free(to);
-    }
-    log_err(file->log, "%s: is damaged%s", file->path,
-            moved ? "; it was set aside, and a new one is begun" : " and cannot be set aside");
-    return moved;
+    return damaged_set_aside(file->log, file->path);
 }
 
 static struct journal_file *create(struct log *log, const char *folder)

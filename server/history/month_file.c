@@ -4,9 +4,9 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <time.h>
 #include <unistd.h>
 
+#include "base/damaged.h"
 #include "base/mem.h"
 #include "history/month.h"
 #include "history/month_file_impl.h"
@@ -220,32 +220,10 @@ static void close_database(struct month_file *file)
     file->db = NULL;
 }
 
-/* Out of the way, for whoever wants to look into it. */
 static bool set_aside(struct month_file *file)
 {
-    static const char *const parts[] = { "", "-wal", "-shm" };
-    char stamp[32];
-    time_t now = time(NULL);
-    struct tm tm;
-    strftime(stamp, sizeof(stamp), "%Y%m%dT%H%M%SZ", gmtime_r(&now, &tm));
-    int stem = (int)(strlen(file->path) - strlen(".sqlite"));
-    bool moved = false;
     close_database(file);
-    for (size_t i = 0; i < sizeof(parts) / sizeof(parts[0]); i++) {
-        char *from = mem_printf("%s%s", file->path, parts[i]);
-        char *to = mem_printf("%.*s.damaged-%s.sqlite%s", stem, file->path, stamp, parts[i]);
-        bool good = rename(from, to) == 0;
-        if (i == 0) {
-            moved = good;
-            if (good)
-                log_err(file->log, "%s: is damaged; it was set aside as %s and a new one is begun", file->path, to);
-            else
-                log_err(file->log, "%s: is damaged and cannot be set aside: %s", file->path, strerror(errno));
-        }
-        mem_free(from);
-        mem_free(to);
-    }
-    return moved;
+    return damaged_set_aside(file->log, file->path);
 }
 
 static ino_t inode_of(const char *path)
