@@ -326,10 +326,7 @@ test('messages in pieces, one byte at a time, half a message, and beyond all mea
     client.write(encodeFrame(0, text.slice(7, 12), { fin: false }));
     client.write(encodeFrame(0, text.slice(12)));
     assert.equal((await client.text('pong')).t, 5);
-    for (const byte of encodeFrame(1, '{"type":"ping","t":6}')) {
-        client.write(Buffer.from([byte]));
-        await sleep(1);
-    }
+    await client.trickle(encodeFrame(1, '{"type":"ping","t":6}'), 1);
     assert.equal((await client.text('pong')).t, 6);
     client.write(encodeFrame(1, ' '.repeat(900000)));
     assert.equal((await client.text('error')).code, 'too_long');

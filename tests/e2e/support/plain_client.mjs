@@ -101,7 +101,7 @@ export class PlainClient {
     }
 
     constructor() {
-        Object.assign(this, { bytes: Buffer.alloc(0), parts: [], opcode: 0, texts: [], frames: [], closed: null, waiting: [] });
+        Object.assign(this, { bytes: Buffer.alloc(0), parts: [], opcode: 0, texts: [], frames: [], closed: null, waiting: [], held: null });
     }
 
     take(chunk) {
@@ -159,8 +159,24 @@ export class PlainClient {
     }
 
     write(bytes) {
-        if (!this.socket.destroyed)
+        if (this.held)
+            this.held.push(bytes);
+        else if (!this.socket.destroyed)
             this.socket.write(bytes);
+    }
+
+    // One byte at a time. What else is written meanwhile, as the pong to a ping, waits: no frame may begin inside another.
+    async trickle(bytes, pauseMs) {
+        this.held = [];
+        for (const byte of bytes) {
+            if (!this.socket.destroyed)
+                this.socket.write(Buffer.from([byte]));
+            await new Promise((done) => setTimeout(done, pauseMs));
+        }
+        const waiting = this.held;
+        this.held = null;
+        for (const one of waiting)
+            this.write(one);
     }
 
     say(message) {
