@@ -17,7 +17,7 @@
 enum { SLICE_BYTES = 32 * 1024 };
 
 struct stream;  /* stream.c */
-struct request; /* http.c */
+struct request; /* http_impl.h */
 
 struct hub {
     struct net_params params;

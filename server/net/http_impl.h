@@ -1,0 +1,62 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the files of HTTP share: a request, its answer, and waiting for it. Private to http*.c. Thread: the loop. */
+#ifndef NET_HTTP_IMPL_H
+#define NET_HTTP_IMPL_H
+#include "net/hub.h"
+
+struct asked { /* a picture, or what is at a pixel of it */
+    bool picks;
+    struct wish wish;
+    struct pick_order pick;
+    const struct moment *moment; /* held; NULL: of now, or it is being read */
+};
+
+struct request {
+    struct lws *wsi;
+    bool head;  /* no body is wanted */
+    bool close; /* after the answer */
+    char *body;
+    size_t count, sent;
+    uint64_t client;      /* of the painter, while a picture is awaited */
+    bool reloads;         /* the plant is: that is what is awaited */
+    struct asked *asked;  /* meanwhile; NULL: not for one */
+    struct request *next; /* in hub->snapshots */
+};
+
+enum { MAX_ARGS = 32, MAX_ARG_BYTES = 2048 };
+struct args { /* of the query, decoded */
+    char bytes[MAX_ARGS][MAX_ARG_BYTES];
+    const char *list[MAX_ARGS];
+    size_t count;
+};
+
+#define HTTP_TEXT "text/plain; charset=utf-8"
+#define HTTP_NOTHING_RECORDED "this daemon records nothing (history: record: no)\n"
+#define HTTP_UNREADABLE "history cannot be read; the log says why\n"
+
+/* Answers return what the callback is to return. request_answer takes body; the rest happens as the socket takes it. */
+int request_answer(struct request *request, int status, const char *type, char *body, size_t count, const char *extra_name,
+                   const char *extra);
+int request_answer_text(struct request *request, int status, const char *text);
+int request_answer_json(struct request *request, char *text); /* takes text */
+int request_answer_error(struct request *request, const struct message_error *error);
+int request_done(struct request *request); /* all of its answer was sent */
+bool request_args(struct lws *wsi, struct args *args, struct message_error *error);
+
+/* A request that waits has a number, request->client, and is answered outside of its own callback. */
+void request_await(struct hub *hub, struct request *request);
+struct request *request_find(const struct hub *hub, uint64_t client);
+void request_forget(struct hub *hub, struct request *request); /* it waits no more; as well if it did not */
+void request_answered(struct request *request, int result);   /* result of its answer: a broken connection is closed soon */
+
+int ask_snapshot(struct hub *hub, struct request *request);
+int ask_pick(struct hub *hub, struct request *request);
+int ask_history(struct hub *hub, struct request *request);
+int ask_journal(struct hub *hub, struct request *request);
+int ask_reload(struct hub *hub, struct request *request);
+int api_alarms(struct hub *hub, struct request *request);
+int api_plant(struct hub *hub, struct request *request);
+int api_tags(struct hub *hub, struct request *request);
+int metrics(struct hub *hub, struct request *request);
+
+#endif
