@@ -9,6 +9,7 @@ import { halfAt, halves } from '../../clients/web/core/halves.js';
 import {
     colourOf, edges, niceStep, placeOf, rampChoices, scaleTicks, spread, ticks, valueAt,
 } from '../../clients/web/core/legend.js';
+import { snapshotQuery } from '../../clients/web/core/query.js';
 import { hatchAt, patternPeriodPx, stippleAt } from '../../clients/web/core/patterns.js';
 import { LatencyMeter, RateMeter } from '../../clients/web/core/meters.js';
 
@@ -184,10 +185,41 @@ test('the address carries the view there and back', () => {
     assert.deepEqual(readAddress(writeAddress(view)), { ...view, time: {} });
 });
 
+test('so it does with all that a view can have', () => {
+    const params = {
+        group: 'temperature', show: 'difference', baseline: { name: 'before, 10:00' }, scale: 'linear', fill: 'neighbours', range: [-5, 5],
+        breaks: [-2, 0, 2.5], isolines: [1, 2], strength: 2, decay: 0.5, power: 3, radius_m: 4, reach_m: 2.5, light: [0, 0.6, 0.8],
+        sensors: { 'TT=1': { strength: 2 }, 'TT-2': { strength: 1, decay: 0 }, 'TT-3': { decay: 4 } },
+        split: { group: 'pressure', look: 'flat' }, hidden: ['A', 'B'], clip: { box: { min: [0, 0, 0], max: [1, 2, 3] } },
+    };
+    const at = Date.UTC(2026, 4, 1, 12) * 1000, text = writeAddress({ params, time: { atUs: at } });
+    assert.deepEqual(readAddress(text), { camera: null, params, tag: null, time: { atUs: at } });
+    assert.ok(!writeAddress({ params, own: { power: 3, range: [-5, 5] } }).match(/power|range/), 'what is usual is not said');
+    assert.equal(writeAddress({ params: { strength: 1, decay: 1, radius_m: 0, reach_m: null, sensors: {} } }), '');
+    assert.deepEqual(readAddress(writeAddress({ params: { look: 'flat', split: { look: 'flat' } } })).params, { look: 'flat', split: {} });
+});
+
+test('a snapshot is asked for as the view is', () => {
+    const view = {
+        carried: {
+            group: 'g', range: [0, 50], isolines: [], hidden: [], ghost: ['A', 'B'], selected: null, split: { group: 'h', range: [1, 2] },
+            sensors: { 'T-1': { strength: 2, decay: 3 } }, clip: { planes: [[1, 0, 0, -2]] }, light: [0, 0, 1],
+        },
+        camera: { eye: [1, 2, 3], target: [0, 0, 0], up: [0, 0, 1], fov: 45 }, size: { width: 800, height: 600 }, time: { atUs: null },
+    };
+    assert.deepEqual(snapshotQuery(view), {
+        width: 800, height: 600, group: 'g', range: '0,50', ghost: 'A,B', split: 'group=h;range=1,2', sensors: 'T-1=2:3',
+        clip: '1,0,0,-2', light: '0,0,1', camera: '1,2,3,0,0,0,45',
+    });
+    const { camera, projection, height_m, at } = snapshotQuery({ ...view, camera: { ...view.camera, height_m: 7 }, time: { atUs: 1e15 } });
+    assert.deepEqual([camera, projection, height_m, at], ['1,2,3,0,0,0', 'orthographic', 7, '2001-09-09T01:46:40.000Z']);
+});
+
 test('an address that makes no sense is as good as none', () => {
     const senseless = [
         '', '#', '#camera=1,2,3', '#camera=NaN,0,0,0,0,0,0,0,1,45', '#ramp=-3', '#ramp=x', '#look=psychedelic', '#%%%',
-        '#camera=1,1,1,1,1,1,0,0,1,45',
+        '#camera=1,1,1,1,1,1,0,0,1,45', '#range=5,1', '#light=0,0,0', '#sensors=A', '#sensors=A=x',
+        '#power=-1', '#show=difference', '#breaks=1,,2',
     ];
     for (const hash of senseless)
         assert.deepEqual(readAddress(hash), { camera: null, params: {}, tag: null, time: {} }, hash);

@@ -73,6 +73,41 @@ test('a view that is refused is given up in steps', () => {
     assert.deepEqual(sockets[0].sent.map((m) => [!!m.camera, !!m.params]), [[true, true], [true, false], [false, false]]);
 });
 
+test('a comparison that is not kept any more is given up alone', () => {
+    const params = { colormap: 'cividis', show: 'difference', baseline: { name: 'before' } };
+    const { connection, sockets } = makeSession({ ...WANTED, params });
+    connection.start();
+    sockets[0].accept();
+    sockets[0].say({ type: 'error', code: 'bad_field', text: 'baseline: there is none of that name', about: 'hello' });
+    assert.deepEqual(sockets[0].sent.map(({ params: { seq, ...asked } }) => asked),
+        [{ colormap: 'cividis', show: 'difference', baseline: 'before' }, { colormap: 'cividis' }]);
+});
+
+test('who may not set how the field is computed does not ask for it again', () => {
+    for (const role of ['viewer', 'engineer']) {
+        const { session, socket, sockets, clock } = greeted();
+        socket.say({ ...welcome, role });
+        session.setParams({ look: 'flat', fill: 'neighbours', strength: 2, sensors: { [welcome.tags[0].name]: { strength: 3 } } });
+        socket.fail();
+        clock.advance(500);
+        sockets[1].accept();
+        const { params } = sockets[1].sent[0];
+        assert.equal(params.look, 'flat');
+        assert.deepEqual([params.fill, params.strength, params.decay, Boolean(params.sensors)],
+            role === 'viewer' ? [undefined, undefined, undefined, false] : ['neighbours', 2, undefined, true]);
+    }
+});
+
+test('who leads knows who follows, and gives the lead to one of them', () => {
+    const { session, socket } = greeted();
+    const heard = [];
+    session.on('followers', () => heard.push(session.followers));
+    socket.say({ type: 'followers', count: 2, sessions: [7, 9] });
+    assert.deepEqual(heard, [{ count: 2, sessions: [7, 9] }]);
+    session.lead(9);
+    assert.deepEqual(last(socket.sent), { type: 'lead', session: 9 });
+});
+
 test('at most one camera per animation frame, the newest', () => {
     const { session, socket, clock } = greeted(WANTED);
     const before = socket.sent.length;

@@ -271,7 +271,8 @@ function saveAddress() {
     addressTimer = setTimeout(() => {
         if (session.leader !== null)
             return; // the link says whom to follow
-        const hash = writeAddress({ camera: session.camera, params: session.params, tag: selection.tag, time: session.time });
+        const { camera, params, time, ownParams: own } = session;
+        const hash = writeAddress({ camera, params, tag: selection.tag, time, own });
         history.replaceState(null, '', location.pathname + location.search + hash);
     }, ADDRESS_WAIT_MS);
 }

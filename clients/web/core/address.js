@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The view in the address of the page (what follows #), so that a reload or a shared link shows the same.
 import { valid } from './camera.js';
+import { clipText, numbersText, readNumbers, readSensors, sensorsText } from './query.js';
 
 const CHOICES = { // null: any name; the server knows which there are
     group: null, interpolation: ['shepard', 'paper'], distance: ['geodesic', 'euclidean'], colormap: null,
@@ -8,19 +9,39 @@ const CHOICES = { // null: any name; the server knows which there are
     show: ['value', 'operator', 'distance'], sensor: null, environment: null,
 };
 const SETS = { hide: 'hidden', only: 'isolate', ghost: 'ghost' }; // lists of assets
-const round = (x) => Number(x.toFixed(4)) + 0;
+const LISTS = { range: 2, light: 3, breaks: null, isolines: null }; // of so many numbers
+const FACTORS = { strength: 1, decay: 1, power: null, radius: 0, reach: null }; // what they are where nothing is said
+const PARAMS = { radius: 'radius_m', reach: 'reach_m' };
+const HALF = ['group', 'show', 'distance', 'interpolation', 'colormap', 'look'];
 
-export function writeAddress({ camera, params = {}, tag = null, time = null }) {
-    const parts = [];
-    const put = (name, value) => parts.push(`${name}=${encodeURIComponent(value).replace(/%2C/g, ',')}`);
+// own: parameters that need not be said, such as a group's own.
+export function writeAddress({ camera, params = {}, tag = null, time = null, own = {} }) {
+    const parts = [], differs = (name) => JSON.stringify(params[name]) !== JSON.stringify(own[name]);
+    const put = (name, value) => parts.push(`${name}=${encodeURIComponent(value).replace(/%2C|%3A|%3B/g, decodeURIComponent)}`);
     for (const name of Object.keys(CHOICES)) {
         if (params[name] && (!CHOICES[name] || CHOICES[name].includes(params[name])))
             put(name, params[name]);
     }
+    if (params.show === 'difference' && params.baseline?.name) {
+        put('show', params.show);
+        put('baseline', params.baseline.name);
+    }
     if (params.ramp_interval > 0)
         put('ramp', params.ramp_interval);
-    if (params.light)
-        put('light', params.light.map(round).join(','));
+    for (const name of Object.keys(LISTS)) {
+        if (params[name]?.length > 0 && differs(name))
+            put(name, numbersText(params[name]));
+    }
+    for (const [name, usual] of Object.entries(FACTORS)) {
+        const value = params[PARAMS[name] ?? name];
+        if (Number.isFinite(value) && value !== usual && differs(PARAMS[name] ?? name))
+            put(name, value);
+    }
+    if (Object.keys(params.sensors ?? {}).length > 0)
+        put('sensors', sensorsText(params.sensors));
+    if (params.split)
+        put('split', HALF.filter((name) => params.split[name] && params.split[name] !== params[name])
+            .map((name) => `${name}:${params.split[name]}`).join(';') || 'same');
     if (params.selected)
         put('asset', params.selected);
     for (const [name, param] of Object.entries(SETS)) {
@@ -28,19 +49,20 @@ export function writeAddress({ camera, params = {}, tag = null, time = null }) {
             put(name, params[param].join(','));
     }
     if (params.clip)
-        put('clip', writeClip(params.clip));
+        put('clip', clipText(params.clip));
     if (tag)
         put('tag', tag);
     if (time?.atUs)
         put('at', new Date(time.atUs / 1000).toISOString());
     if (camera)
-        put('camera', [...camera.eye, ...camera.target, ...camera.up, camera.fov, camera.height_m ?? []].flat().map(round).join(','));
+        put('camera', numbersText([...camera.eye, ...camera.target, ...camera.up, camera.fov, camera.height_m ?? []].flat()));
     return parts.length > 0 ? `#${parts.join('&')}` : '';
 }
 
-// Planes as nx,ny,nz,d with semicolons; a box as its six numbers.
-function writeClip({ planes, box }) {
-    return planes ? planes.map((plane) => plane.map(round).join(',')).join(';') : [...box.min, ...box.max].map(round).join(',');
+// group:pressure;look:flat
+function readSplit(text) {
+    const pairs = text.split(';').map((part) => [part.slice(0, part.indexOf(':')), part.slice(part.indexOf(':') + 1)]);
+    return Object.fromEntries(pairs.filter(([name, value]) => HALF.includes(name) && value));
 }
 
 function readClip(text) {
@@ -73,9 +95,23 @@ export function readAddress(hash) {
     const ramp = Number(fields.get('ramp'));
     if (fields.has('ramp') && Number.isFinite(ramp) && ramp >= 0)
         params.ramp_interval = ramp;
-    const light = (fields.get('light') ?? '').split(',').map(Number);
-    if (light.length === 3 && light.every(Number.isFinite) && light.some((n) => n !== 0))
-        params.light = light;
+    for (const [name, count] of Object.entries(LISTS)) {
+        const list = readNumbers(fields.get(name), count);
+        if (list && (name !== 'light' || list.some((n) => n !== 0)) && (name !== 'range' || list[0] < list[1]))
+            params[name] = list;
+    }
+    for (const name of Object.keys(FACTORS)) {
+        const [value] = readNumbers(fields.get(name), 1) ?? [-1];
+        if (value >= 0)
+            params[PARAMS[name] ?? name] = value;
+    }
+    const sensors = readSensors(fields.get('sensors'));
+    if (sensors)
+        params.sensors = sensors;
+    if (fields.get('split'))
+        params.split = readSplit(fields.get('split'));
+    if (fields.get('show') === 'difference' && fields.get('baseline'))
+        Object.assign(params, { show: 'difference', baseline: { name: fields.get('baseline') } });
     for (const [name, param] of Object.entries(SETS)) {
         if (fields.get(name))
             params[param] = fields.get(name).split(',');

@@ -10,7 +10,8 @@ export const PARAMS = [
     'group', 'interpolation', 'distance', 'fill', 'strength', 'decay', 'power', 'radius_m', 'reach_m', 'colormap', 'ramp_interval', 'range',
     'scale', 'breaks', 'isolines', 'look', 'light', 'environment', 'selected', 'hidden', 'isolate', 'ghost', 'clip', 'show', 'split',
 ];
-const SAID = [...PARAMS, 'sensor', 'baseline', 'baselines', 'unit']; // by the server
+const SAID = [...PARAMS, 'sensor', 'baseline', 'baselines', 'sensors', 'unit']; // by the server
+export const ENGINEERS = ['fill', 'strength', 'decay', 'power', 'radius_m', 'reach_m', 'sensors']; // others may not ask for these
 const SHARED = ['light', 'environment', 'selected', 'hidden', 'isolate', 'ghost', 'clip', 'split']; // by both halves
 const GROUPS_OWN = ['interpolation', 'distance', 'fill', 'power', 'radius_m', 'reach_m', 'scale', 'isolines'];
 const OF_THE_INSTANT = ['tags', 'picked']; // their time is that of what is shown
@@ -51,8 +52,12 @@ export class Session {
         this.id = null;          // by which others can follow this session
         this.following = null;   // whose view is shown: { session, width, height }
         this.leader = null;      // whom to follow once there is a connection
+        this.followers = { count: 0, sessions: [] }; // who follows us
         this.time = { ...NOW, ...wanted.time }; // what the server shows: atUs null: now; fromUs null: nothing is recorded
-        connection.onOpen = () => this.hello(['camera', 'params']);
+        connection.onOpen = () => {
+            const compares = this.params.show === 'difference' && this.params.baseline?.name;
+            this.hello(['camera', 'params', ...(compares ? ['baseline'] : [])]);
+        };
         connection.onText = (text) => this.guard(() => this.heard(decodeMessage(text)));
         connection.onBytes = (bytes) => this.guard(() => {
             this.freshAt = this.now();
@@ -97,7 +102,7 @@ export class Session {
             Object.assign(message, { at_us: this.time.atUs, speed: this.time.speed });
         if (this.greetedCamera)
             message.camera = { seq: ++this.cameraSeq, ...cameraMessage(this.greetedCamera) };
-        const params = this.carried();
+        const params = this.carried({ baseline: parts.includes('baseline') });
         if (parts.includes('params') && Object.keys(params).length > 0)
             message.params = { seq: ++this.paramsSeq, ...params };
         this.connection.send(message);
@@ -108,18 +113,27 @@ export class Session {
         return { ...(this.token ? { token: this.token } : {}), ...(this.resume ? { resume: this.resume } : {}) };
     }
 
+    // What need not be said of the parameters: a group has it by itself.
+    get ownParams() {
+        const { group } = this;
+        return group ? { ...pick(group, GROUPS_OWN), range: [group.min, group.max], strength: 1, decay: 1 } : {};
+    }
+
     // The parameters to ask for again: not those that only are the group's own, which may have been changed there since.
-    carried() {
-        const params = pick(this.params, PARAMS), { group } = this;
-        if (!group)
-            return params;
-        const own = { ...pick(group, GROUPS_OWN), range: [group.min, group.max] };
-        const wanted = pick(params, PARAMS.filter((name) => JSON.stringify(params[name]) !== JSON.stringify(own[name])));
+    // What is compared with can have been forgotten meanwhile, and may then be left out.
+    carried({ baseline = true } = {}) {
+        const { params, ownParams: own } = this;
+        const may = (name) => !this.role || this.role === 'engineer' || !ENGINEERS.includes(name);
+        const wanted = pick(params, PARAMS.filter((name) => may(name) && JSON.stringify(params[name]) !== JSON.stringify(own[name])));
+        if (may('sensors') && Object.keys(params.sensors ?? {}).length > 0)
+            wanted.sensors = params.sensors;
         if (wanted.split)
-            wanted.split = pick(wanted.split, PARAMS.filter((name) => !SHARED.includes(name)));
+            wanted.split = pick(wanted.split, PARAMS.filter((name) => may(name) && !SHARED.includes(name)));
         if (wanted.show === 'distance')
-            wanted.sensor = this.params.sensor;
-        if (wanted.show === 'difference') // the server may have forgotten from what
+            wanted.sensor = params.sensor;
+        if (wanted.show === 'difference' && baseline && params.baseline?.name)
+            wanted.baseline = params.baseline.name;
+        else if (wanted.show === 'difference')
             delete wanted.show;
         return wanted;
     }
@@ -181,6 +195,12 @@ export class Session {
         if (this.welcomed)
             this.connection.send({ type: 'follow', session });
         this.emit('following');
+    }
+
+    // One of those who follow us leads from now on; the event `following` says that it does.
+    lead(session) {
+        if (this.welcomed)
+            this.connection.send({ type: 'lead', session });
     }
 
     // Goes to an instant (null: to now; undefined: stays where it is) and plays from there.
@@ -261,6 +281,7 @@ export class Session {
         this.welcomed = true;
         this.id = message.session;
         this.following = this.skew = null;
+        this.followers = { count: 0, sessions: [] };
         this.resume = message.resume ?? null;
         this.role = message.role ?? null;
         this.codec = message.codec;
@@ -324,6 +345,11 @@ export class Session {
         this.confirmed = this.params = pick(shown, SAID);
         this.emit('params');
         this.emit('following');
+    }
+
+    hearFollowers({ count, sessions }) {
+        this.followers = { count, sessions };
+        this.emit('followers');
     }
 
     hearTime(message) {
@@ -431,6 +457,7 @@ const HANDLERS = {
     alarmed: Session.prototype.hearAlarmed,
     error: Session.prototype.hearError,
     following: Session.prototype.hearFollowing,
+    followers: Session.prototype.hearFollowers,
     time: Session.prototype.hearTime,
     pong: Session.prototype.hearPong,
 };

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Parameters as text, by the grammar of /snapshot.png (protocol/PROTOCOL.md): what the page's address and a snapshot's query have.
+
+const round = (x) => Number(x.toFixed(4)) + 0;
+export const numbersText = (list) => list.map(round).join(',');
+
+// null: that is no list of numbers, or not of that many.
+export function readNumbers(text, count = null) {
+    const list = (text ?? '').split(',').map((part) => (part.trim() === '' ? NaN : Number(part)));
+    return list.every(Number.isFinite) && (count === null || list.length === count) ? list : null;
+}
+
+// { tag: { strength, decay } } as TAG=STRENGTH[:DECAY],...
+export function sensorsText(sensors) {
+    const factors = ({ strength = null, decay = null }) => `${strength ?? ''}${decay === null ? '' : `:${decay}`}`;
+    return Object.entries(sensors).filter(([, own]) => own).map(([tag, own]) => `${tag}=${factors(own)}`).join(',');
+}
+
+export function readSensors(text) {
+    const all = {};
+    for (const part of (text ?? '').split(',').filter(Boolean)) {
+        const equals = part.lastIndexOf('='), [strength, decay = ''] = part.slice(equals + 1).split(':');
+        const given = [['strength', strength], ['decay', decay]].filter(([, n]) => n !== '');
+        const own = Object.fromEntries(given.map(([name, n]) => [name, Number(n)]));
+        if (equals < 1 || Object.keys(own).length === 0 || !Object.values(own).every((n) => n >= 0 && n <= 100))
+            return null;
+        all[part.slice(0, equals)] = own;
+    }
+    return Object.keys(all).length > 0 ? all : null;
+}
+
+export function clipText({ planes, box }) {
+    return planes ? planes.map(numbersText).join(';') : numbersText([...box.min, ...box.max]);
+}
+
+const LISTS = ['range', 'light', 'breaks', 'isolines'], NAMES = ['hidden', 'isolate', 'ghost'];
+const APART = ['split', 'clip', 'baseline']; // see snapshotQuery
+
+function text(name, value) {
+    if (LISTS.includes(name))
+        return numbersText(value);
+    if (NAMES.includes(name))
+        return value.join(',');
+    return name === 'sensors' ? sensorsText(value) : String(value);
+}
+
+const isSaid = ([name, value]) => !APART.includes(name) && value !== null && value !== undefined &&
+    !(Array.isArray(value) && value.length === 0);
+
+// The query of one picture of what a session shows. carried: its parameters, as after a reconnect.
+export function snapshotQuery({ carried, camera, size, time }) {
+    const query = { width: size.width, height: size.height };
+    for (const [name, value] of Object.entries(carried).filter(isSaid))
+        query[name] = text(name, value);
+    if (carried.baseline)
+        query.baseline = carried.baseline;
+    if (carried.clip)
+        query[carried.clip.planes ? 'clip' : 'clip_box'] = clipText(carried.clip);
+    if (carried.split)
+        query.split = Object.entries(carried.split).filter(isSaid).map(([name, value]) => `${name}=${text(name, value)}`).join(';');
+    const parallel = camera.height_m !== undefined;
+    query.camera = numbersText([...camera.eye, ...camera.target, ...(parallel ? [] : [camera.fov])]);
+    if (parallel)
+        Object.assign(query, { projection: 'orthographic', height_m: camera.height_m });
+    if (time.atUs !== null)
+        query.at = new Date(time.atUs / 1000).toISOString();
+    return query;
+}
