@@ -248,14 +248,19 @@ void viewer_on_time(struct viewer *viewer, int64_t now_ns)
         viewer_think(viewer, now_ns);
 }
 
+/* Ticks keep to a grid: what one is late, the next is not. */
 static void on_timer(lws_sorted_usec_list_t *sul)
 {
     struct viewer *viewer = lws_container_of(sul, struct viewer, timer);
-    viewer_on_time(viewer, clock_mono_ns());
+    int64_t now_ns = clock_mono_ns();
+    viewer_on_time(viewer, now_ns);
     if (viewer->wsi && (viewer->done || viewer_has_words(viewer)))
         lws_callback_on_writable(viewer->wsi); /* which closes it, if it is done */
+    viewer->next_ns += (int64_t)(1e9 / viewer->params.hz);
+    if (viewer->next_ns < now_ns)
+        viewer->next_ns = now_ns;
     if (!viewer->done)
-        lws_sul_schedule(viewer->context, 0, sul, on_timer, (lws_usec_t)(LWS_US_PER_SEC / viewer->params.hz));
+        lws_sul_schedule(viewer->context, 0, sul, on_timer, (viewer->next_ns - now_ns) / 1000 + 1);
 }
 
 static int on_writeable(struct viewer *viewer)
@@ -321,7 +326,7 @@ void viewer_connect(struct viewer *viewer, struct lws_context *context)
         .userdata = viewer,
     };
     viewer->context = context;
-    viewer->begin_ns = clock_mono_ns();
+    viewer->begin_ns = viewer->next_ns = clock_mono_ns();
     daemon_prepare_connection(viewer->params.url, &connect);
     if (!lws_client_connect_via_info(&connect))
         viewer_fail(viewer, "no connection");

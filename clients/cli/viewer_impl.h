@@ -24,7 +24,7 @@ struct viewer {
     double eye[3], target[3], fov_deg;
     uint64_t session;
     uint32_t camera_seq, shown_camera_seq;
-    int64_t sent_ns[SENT_RING], begin_ns;
+    int64_t sent_ns[SENT_RING], begin_ns, next_ns;
     int64_t ping_ns, rtt_ns, offset_us; /* the server's clock less ours, by the shortest round trip */
     double angle_deg, speed_deg;        /* of random motion, from `leg_ns` on */
     int64_t leg_ns, leg_end_ns;
