@@ -71,11 +71,15 @@ test('tablet: one finger turns, two pan and zoom; device pixels', options, () =>
     const start = await view(page);
     await hand.drag([[x, y]], [[x + 120, y]]);
     const turned = await view(page);
-    assert.deepEqual(turned.camera.target, start.camera.target);
     assert.notDeepEqual(turned.camera.eye, start.camera.eye);
+    assert.ok(Math.abs(distance(turned) - distance(start)) < 1e-6, 'turned, and no nearer');
     await hand.drag([[x - 40, y], [x + 40, y]], [[x - 120, y], [x + 120, y]]);
     const pinched = await view(page);
     assert.ok(distance(pinched) < distance(turned) * 0.6, `${distance(turned)} -> ${distance(pinched)}`);
+    await hand.drag([[x - 90, y], [x, y], [x + 90, y]], [[x - 30, y + 20], [x + 60, y + 20], [x + 150, y + 20]]);
+    const looked = await view(page);
+    looked.camera.eye.forEach((m, i) => assert.ok(Math.abs(m - pinched.camera.eye[i]) < 1e-6, 'three fingers: the eye stays'));
+    assert.notDeepEqual(looked.camera.target, pinched.camera.target);
     await page.locator('#home').tap();
     await page.waitForTimeout(1200);
     const back = await view(page);

@@ -3,8 +3,8 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import {
-    basis, depthAt, distance, elevation, enterBox, face, fit, home, MAX_ELEVATION_DEG, MIN_DISTANCE_M, orbit, pan, projector, same, sight,
-    toParallel, toPerspective, valid, zoom,
+    basis, depthAt, depthOf, distance, elevation, enterBox, face, fit, home, lookAround, MAX_ELEVATION_DEG, MIN_DISTANCE_M, orbit, pan,
+    projector, same, sight, toParallel, toPerspective, valid, zoom,
 } from '../../clients/web/core/camera.js';
 import { flight, FLIGHT_MS } from '../../clients/web/core/flight.js';
 import { along, dot, length, subtract } from '../../clients/web/core/vector.js';
@@ -71,11 +71,25 @@ test('orbit to the right by quarter turns comes home after four', () => {
     closeTo(c.eye, camera.eye, 1e-9);
 });
 
-test('orbit about another point keeps that point where it is in depth', () => {
-    const pivot = [4, 3, 2];
-    const turned = orbit(camera, 30, 10, pivot);
-    close(length(subtract(turned.eye, pivot)), length(subtract(camera.eye, pivot)), 1e-9);
-    close(elevation(turned), elevation(camera) + 10, 1e-6);
+test('orbit about another point keeps that point where it is in the picture, and the horizon level', () => {
+    for (const start of [camera, toParallel(camera)]) {
+        for (let n = 0; n < 200; n++) {
+            const pivot = [random(-5, 15), random(-5, 10), random(0, 9)];
+            const turned = orbit(start, random(-180, 180), random(-90, 90), pivot);
+            closeTo(projector(turned, 1608, 996)(pivot), projector(start, 1608, 996)(pivot), 1e-6);
+            close(depthOf(turned, pivot), depthOf(start, pivot), 1e-9);
+            close(dot(basis(turned).right, [0, 0, 1]), 0, 1e-12);
+        }
+    }
+    close(elevation(orbit(camera, 30, 10, [4, 3, 2])), elevation(camera) + 10, 1e-6);
+});
+
+test('looking around: the eye stays, and what was in the middle follows the pointer', () => {
+    const [dx, dy] = [60, 25], looked = lookAround(camera, dx, dy, 996);
+    closeTo(looked.eye, camera.eye, 1e-9);
+    const [x, y] = projector(looked, 1608, 996)(camera.target);
+    assert.ok(Math.abs(x - 804 - dx) < 8 && Math.abs(y - 498 - dy) < 8, `${x}, ${y}`);
+    assert.ok(valid(lookAround(toParallel(camera), dx, dy, 996)));
 });
 
 test('orbit works with Y up', () => {
@@ -89,6 +103,8 @@ test('pan: what is at the target follows the pointer by the pixel', () => {
     const moved = pan(camera, 120, -75, 996);
     const [x, y] = projector(moved, 1608, 996)(camera.target);
     closeTo([x, y], [804 + 120, 498 - 75], 1e-9);
+    const near = along(camera.eye, sight(camera, 300, 200, 1608, 996).direction, 7);
+    closeTo(projector(pan(camera, 120, -75, 996, 7), 1608, 996)(near), [420, 125, 7], 1e-6);
 });
 
 test('zoom keeps what is under the cursor there, at any depth, and goes back exactly', () => {
@@ -121,12 +137,12 @@ test('boxes: entered from outside, missed, started inside, parallel to a face', 
     assert.equal(enterBox([-5, 1, 0], [1, 0, 0], box), 4);
 });
 
-test('depth under the cursor: the nearest box, else the target', () => {
+test('depth under the cursor: the nearest box, else none', () => {
     const looking = { eye: [0, -10, 0], target: [0, 0, 0], up: [0, 0, 1], fov: 60 };
     const near = { min: [-1, -4, -1], max: [1, -2, 1] }, far = { min: [-5, 4, -5], max: [5, 6, 5] };
     close(depthAt(looking, 500, 500, 1000, 1000, [far, near]), 6);
     close(depthAt(looking, 800, 500, 1000, 1000, [far, near]), 14);
-    close(depthAt(looking, 5, 5, 1000, 1000, [near]), 10);
+    assert.equal(depthAt(looking, 5, 5, 1000, 1000, [near]), null);
 });
 
 test('fit: all eight corners inside, one side touching the margin, the direction kept', () => {

@@ -290,4 +290,4 @@ session.leader = Number(new URLSearchParams(location.hash.slice(1)).get('follow'
 connection.start();
 
 // For the console and for tests of the whole.
-globalThis.plantcast = { session, selection, overlay, legend, decoding, trends };
+globalThis.plantcast = { session, selection, overlay, legend, decoding, trends, pilot };

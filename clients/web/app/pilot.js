@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Hands to camera: pointers, wheel and keys over the viewport, and flights between views.
-import { depthAt, elevation, fit, home, orbit, pan, zoom } from '../core/camera.js';
+import {
+    depthAt, depthOf, elevation, fit, home, lookAround, MIN_DISTANCE_M, orbit, pan, sight, zoom,
+} from '../core/camera.js';
+import { along } from '../core/vector.js';
 import { halfAt } from '../core/halves.js';
 import { flight, FLIGHT_MS } from '../core/flight.js';
 import { Gestures, wheelZoom } from '../core/gestures.js';
@@ -8,6 +11,7 @@ import { HeldKeys, keyMeaning } from '../core/keys.js';
 
 const DEGREES_PER_HEIGHT = 180; // a drag over the whole height of the picture
 const DOUBLE_CLICK_MS = 350, DOUBLE_CLICK_PX = 24;
+const ANCHOR_MS = 600, ANCHOR_PX = 10; // a wheel that goes on, about the same place
 const LEAST_ARRIVAL_DEG = 15;   // nobody wants to arrive below the floor
 
 export class Pilot {
@@ -19,6 +23,11 @@ export class Pilot {
         this.fly = null;
         this.lastTick = null;
         this.lastClick = null;
+        this.anchor = null; // what a hand took hold of: { x, y, time, point }; the point as the boxes have it until the server says it
+        session.on('picked', ({ purpose, position }) => {
+            if (purpose === 'anchor' && this.anchor)
+                Object.assign(this.anchor, { point: position ?? this.anchor.point, sure: true });
+        });
         this.onClick = this.onPoint = this.onCommand = this.onGroup = () => {};
         this.listen(viewport.element);
     }
@@ -56,7 +65,28 @@ export class Pilot {
         if (event.button === 1)
             event.preventDefault(); // no scrolling by the middle button
         this.fly = null;
-        this.gestures.down({ ...this.place(event), kind: event.pointerType, button: event.button, shift: event.shiftKey });
+        const place = this.place(event);
+        if (!this.gestures.active)
+            this.takeHold(place);
+        this.gestures.down({ ...place, kind: event.pointerType, button: event.button, shift: event.shiftKey, ctrl: event.ctrlKey });
+    }
+
+    // What is under the pointer is what is turned about and zoomed to; of the sky, what was turned about before.
+    takeHold({ x, y, time }) {
+        const { camera } = this.session;
+        if (!camera || !this.session.model)
+            return;
+        const { half, at, depth } = this.under(camera, x, y);
+        const { origin, direction } = sight(camera, at, y, half.width, this.viewport.height);
+        this.anchor = { x, y, time, point: depth === null ? null : along(origin, direction, depth) };
+        this.session.pick(...this.viewport.pixelOf(x, y), 'anchor');
+    }
+
+    // depth: of the nearest box there; null: none.
+    under(camera, x, y) {
+        const half = halfAt(this.session.params, this.viewport.width, x), at = x - half.left;
+        const boxes = this.session.model?.assets.map((asset) => asset.bounds) ?? [];
+        return { half, at, depth: depthAt(camera, at, y, half.width, this.viewport.height, boxes) };
     }
 
     pointerMove(event) {
@@ -94,7 +124,11 @@ export class Pilot {
         if (!this.isOurs(event))
             return;
         this.fly = null;
-        const { x, y } = this.place(event);
+        const place = this.place(event), { x, y, time } = place, { anchor } = this;
+        if (!anchor || time - anchor.time > ANCHOR_MS || Math.hypot(x - anchor.x, y - anchor.y) > ANCHOR_PX)
+            this.takeHold(place);
+        else
+            anchor.time = time;
         this.apply([{ zoom: wheelZoom(event), at: [x, y] }], event.timeStamp);
     }
 
@@ -123,11 +157,14 @@ export class Pilot {
             return;
         for (const move of moves) {
             if (move.orbit)
-                camera = orbit(camera, (-move.orbit[0] * DEGREES_PER_HEIGHT) / height, (move.orbit[1] * DEGREES_PER_HEIGHT) / height);
+                camera = orbit(camera, (-move.orbit[0] * DEGREES_PER_HEIGHT) / height, (move.orbit[1] * DEGREES_PER_HEIGHT) / height,
+                    this.anchor?.point ?? camera.target);
+            if (move.look)
+                camera = lookAround(camera, move.look[0], move.look[1], height);
             if (move.orbitDeg)
                 camera = orbit(camera, move.orbitDeg[0], move.orbitDeg[1]);
             if (move.pan)
-                camera = pan(camera, move.pan[0], move.pan[1], height);
+                camera = pan(camera, move.pan[0], move.pan[1], height, this.heldDepth(camera));
             if (move.panHeights)
                 camera = pan(camera, -move.panHeights[0] * height, move.panHeights[1] * height, height);
             if (move.zoom)
@@ -136,11 +173,16 @@ export class Pilot {
         this.session.setCamera(camera, time);
     }
 
-    zoomed(camera, factor, [atX, y]) {
-        const { height } = this.viewport;
-        const { left, width } = halfAt(this.session.params, this.viewport.width, atX), x = atX - left;
-        const boxes = this.session.model ? this.session.model.assets.map((asset) => asset.bounds) : [];
-        return zoom(camera, factor, x, y, width, height, depthAt(camera, x, y, width, height, boxes));
+    zoomed(camera, factor, [x, y]) {
+        const { anchor } = this, { half, at, depth } = this.under(camera, x, y);
+        const known = anchor && Math.hypot(x - anchor.x, y - anchor.y) < ANCHOR_PX ? this.heldDepth(camera) : undefined;
+        return zoom(camera, factor, at, y, half.width, this.viewport.height, known ?? depth ?? undefined);
+    }
+
+    // How far off that is which the hand holds; undefined: nothing.
+    heldDepth(camera) {
+        const depth = this.anchor?.point ? depthOf(camera, this.anchor.point) : 0;
+        return depth > MIN_DISTANCE_M ? depth : undefined;
     }
 
     // --- flights

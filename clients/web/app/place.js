@@ -40,9 +40,7 @@ export class Place {
     }
 
     pick(x, y) {
-        const { picture } = this.session, size = this.session.following ?? this.session.size;
-        if (picture)
-            this.session.pick((x * size.width) / this.viewport.width, (y * size.height) / this.viewport.height);
+        this.session.pick(...this.viewport.pixelOf(x, y), 'place');
     }
 
     // Values go on: what is said of the place is said anew.
@@ -57,6 +55,10 @@ export class Place {
     hear(picked) {
         if (this.asked === null)
             return; // closed meanwhile
+        if (picked.purpose !== 'place') { // another question came between
+            this.asked = null;
+            return;
+        }
         const again = this.asked === 'again';
         this.asked = null;
         if (again && !this.isSamePlace(picked)) {

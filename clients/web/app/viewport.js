@@ -44,6 +44,12 @@ export class Viewport {
         return this.element.clientHeight;
     }
 
+    // CSS pixels to those of the picture that was asked for.
+    pixelOf(x, y) {
+        const size = this.session.following ?? this.session.size;
+        return [(x * size.width) / this.width, (y * size.height) / this.height];
+    }
+
     watchSize() {
         const box = this.element.getBoundingClientRect();
         this.session.resize(sizeOf(devicePixels(box.width), devicePixels(box.height)));

@@ -56,6 +56,15 @@ export function orbit(camera, azimuthDeg, elevationDeg, pivot = camera.target) {
     return { ...camera, eye: move(camera.eye), target: move(camera.target) };
 }
 
+// The eye stays and looks elsewhere: what is seen follows the pointer. In parallel there is no eye to stay, and it turns instead.
+export function lookAround(camera, dxPx, dyPx, heightPx) {
+    const degrees = (isParallel(camera) ? -USUAL_FOV : camera.fov) / heightPx;
+    return orbit(camera, dxPx * degrees, -dyPx * degrees, isParallel(camera) ? camera.target : camera.eye);
+}
+
+// How far off a point lies, along the line of sight.
+export const depthOf = (camera, point) => dot(subtract(point, camera.eye), basis(camera).forward);
+
 export const isParallel = (camera) => camera.height_m !== undefined;
 
 const heightAt = (camera, depth) => camera.height_m ?? 2 * depth * Math.tan((camera.fov * RADIANS) / 2);
@@ -73,10 +82,10 @@ export function toPerspective(camera) {
     return { ...rest, fov, eye: along(rest.target, basis(camera).forward, -back) };
 }
 
-// What lies at the target's depth follows the pointer exactly.
-export function pan(camera, dxPx, dyPx, heightPx) {
+// What lies at that depth follows the pointer exactly.
+export function pan(camera, dxPx, dyPx, heightPx, depth = distance(camera)) {
     const { right, up } = basis(camera);
-    const step = metresPerPixel(camera, heightPx, distance(camera));
+    const step = metresPerPixel(camera, heightPx, depth);
     const move = along(scale(right, -dxPx * step), up, dyPx * step);
     return { ...camera, eye: add(camera.eye, move), target: add(camera.target, move) };
 }
@@ -121,13 +130,13 @@ export function enterBox(origin, direction, box) {
     return near <= far && near > 0 ? near : null;
 }
 
-// The depth of the nearest box under a place of the picture, else the target's.
+// The depth of the nearest box under a place of the picture; null: none is there.
 export function depthAt(camera, xPx, yPx, widthPx, heightPx, boxes) {
     const { origin, direction } = sight(camera, xPx, yPx, widthPx, heightPx);
     let depth = Infinity;
     for (const box of boxes)
         depth = Math.min(depth, enterBox(origin, direction, box) ?? Infinity);
-    return Number.isFinite(depth) && depth > MIN_DISTANCE_M ? depth : distance(camera);
+    return Number.isFinite(depth) && depth > MIN_DISTANCE_M ? depth : null;
 }
 
 const corners = (box) => [0, 1, 2, 3, 4, 5, 6, 7].map((n) => [0, 1, 2].map((i) => (n & (1 << i) ? box.max[i] : box.min[i])));

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Pointers and the wheel to camera moves. Places in CSS pixels of the viewport. Each call returns a list of moves:
-// { orbit: [dx, dy] }, { pan: [dx, dy] }, { zoom: factor, at: [x, y] }, { click: [x, y] }. No momentum: what stops, stops.
+// { orbit: [dx, dy] }, { pan: [dx, dy] }, { look: [dx, dy] }, { zoom: factor, at: [x, y] }, { click: [x, y] }. No momentum: what stops,
+// stops.
 
 const CLICK_MS = 500;
 const SLOP_PX = { mouse: 3, pen: 5, touch: 8 };
 const LINE_PX = 16, PAGE_PX = 400;
 const WHEEL_PER_PX = 0.0016, PINCH_PER_PX = 0.01, MOST_PER_EVENT = 0.5;
 
-const centre = ([a, b]) => [(a.x + b.x) / 2, (a.y + b.y) / 2];
+const centre = (all) => ['x', 'y'].map((axis) => all.reduce((sum, p) => sum + p[axis], 0) / all.length);
 const apart = ([a, b]) => Math.hypot(a.x - b.x, a.y - b.y);
 
 export class Gestures {
@@ -20,8 +21,8 @@ export class Gestures {
         return this.pointers.size > 0;
     }
 
-    down({ id, x, y, kind = 'mouse', button = 0, shift = false, time = 0 }) {
-        this.pointers.set(id, { x, y, mode: button !== 0 || shift ? 'pan' : 'orbit' });
+    down({ id, x, y, kind = 'mouse', button = 0, shift = false, ctrl = false, time = 0 }) {
+        this.pointers.set(id, { x, y, mode: button !== 0 || shift ? 'pan' : ctrl ? 'look' : 'orbit' });
         if (this.pointers.size === 1)
             this.first = { x, y, time, slop: SLOP_PX[kind] ?? SLOP_PX.mouse, button };
         this.moved = this.pointers.size > 1;
@@ -40,10 +41,16 @@ export class Gestures {
         Object.assign(pointer, { x, y });
         if (this.pointers.size === 1)
             return [{ [pointer.mode]: [dx, dy] }];
-        return this.pinch(before);
+        return this.pointers.size === 2 ? this.pinch(before) : this.lookAround(before);
     }
 
-    // Two fingers: the plant stays under both of them. Further fingers only hold on.
+    // Three fingers: the eye stays where it is and looks elsewhere. Further fingers only hold on.
+    lookAround(before) {
+        const from = centre(before.slice(0, 3)), to = centre([...this.pointers.values()].slice(0, 3));
+        return [{ look: [to[0] - from[0], to[1] - from[1]] }];
+    }
+
+    // Two fingers: the plant stays under both of them.
     pinch(before) {
         const then = before.slice(0, 2), now = [...this.pointers.values()].slice(0, 2);
         const from = centre(then), to = centre(now);

@@ -217,10 +217,12 @@ export class Session {
             this.connection.send({ type: 'fit', seq: ++this.fitSeq, id, side, ...(projection ? { projection } : {}) });
     }
 
-    // Asks what is at a pixel of the picture on the screen; answered by the event `picked`.
-    pick(x, y) {
-        if (this.welcomed && this.picture)
-            this.connection.send({ type: 'pick', seq: ++this.pickSeq, x, y, camera: cameraMessage(asAsked(this.picture.camera)) });
+    // Asks what is at a pixel of the picture on the screen; the event `picked` answers the newest question, and says its purpose.
+    pick(x, y, purpose) {
+        if (!this.welcomed || !this.picture)
+            return;
+        this.pickPurpose = purpose;
+        this.connection.send({ type: 'pick', seq: ++this.pickSeq, x, y, camera: cameraMessage(asAsked(this.picture.camera)) });
     }
 
     // alarms: [[tag, kind], ...]; answered by the event `alarmed`.
@@ -366,7 +368,7 @@ export class Session {
 
     hearPicked(message) {
         if (message.seq === this.pickSeq)
-            this.emit('picked', message);
+            this.emit('picked', { ...message, purpose: this.pickPurpose });
     }
 
     hearAlarms(message) {

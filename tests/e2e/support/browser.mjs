@@ -85,6 +85,20 @@ export const view = (page) => page.evaluate(() => {
     return { camera, params };
 });
 
+// Where a place of the plant is in the page by the camera that the page asks for: [x, y].
+export const pageOf = (page, point) => page.evaluate(async (at) => {
+    const { projector } = await import('/core/camera.js');
+    const box = document.getElementById('viewport').getBoundingClientRect();
+    const [x, y] = projector(globalThis.plantcast.session.camera, box.width, box.height)(at);
+    return [box.left + x, box.top + y];
+}, point);
+
+// What the hand took hold of, once the server has said where that is; null: nothing.
+export async function held(page) {
+    await page.waitForFunction(() => globalThis.plantcast.pilot.anchor?.sure, null, { timeout: 20000 });
+    return page.evaluate(() => globalThis.plantcast.pilot.anchor.point);
+}
+
 // Markers of the shown group: name, asset, place in pixels of the picture, in sight or not.
 export const markers = (page) => page.evaluate(() => {
     const { overlay, session } = globalThis.plantcast;
