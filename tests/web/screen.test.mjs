@@ -3,7 +3,9 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { readAddress, writeAddress } from '../../clients/web/core/address.js';
-import { ageText, changeText, decimalsFor, numberText, qualityText, unitText, worst, zoneClock } from '../../clients/web/core/format.js';
+import {
+    ageText, changeText, decimalsFor, numberText, qualityText, shortNumberText, unitText, worst, zoneClock,
+} from '../../clients/web/core/format.js';
 import { nearestMarker } from '../../clients/web/core/labels.js';
 import { halfAt, halves } from '../../clients/web/core/halves.js';
 import {
@@ -21,6 +23,8 @@ test('decimals follow the range, zero has no minus, what is missing is a dash', 
     assert.equal(numberText(null, 1), '–');
     assert.deepEqual([4.21, -4.21, 0.01, null].map((change) => changeText(change, 1)), ['Δ +4.2', 'Δ −4.2', 'Δ 0.0', 'Δ –']);
     assert.equal(numberText(NaN, 1), '–');
+    const short = [[20, 1], [0.05, 2], [-1.5, 3], [0, 2], [null, 1], [100, 0]].map((of) => shortNumberText(...of));
+    assert.deepEqual(short, ['20', '0.05', '−1.5', '0', '–', '100']);
 });
 
 test('units as engineers write them', () => {
@@ -35,10 +39,11 @@ test('ages', () => {
 
 test('the plant clock is in the plant\'s zone and says the offset, winter and summer', () => {
     const oslo = zoneClock('Europe/Oslo');
-    assert.deepEqual(oslo(Date.UTC(2026, 0, 1, 0, 0, 7)), { date: '2026-01-01', time: '01:00:07', offset: 'UTC+01:00' });
-    assert.deepEqual(oslo(Date.UTC(2026, 6, 1, 22, 30)), { date: '2026-07-02', time: '00:30:00', offset: 'UTC+02:00' });
+    assert.deepEqual(oslo(Date.UTC(2026, 0, 1, 0, 0, 7)), { date: 'Jan 1, 2026', day: 'Jan 1', time: '01:00:07', offset: 'UTC+01:00' });
+    assert.deepEqual(oslo(Date.UTC(2026, 6, 1, 22, 30)), { date: 'Jul 2, 2026', day: 'Jul 2', time: '00:30:00', offset: 'UTC+02:00' });
     assert.equal(zoneClock('America/St_Johns')(Date.UTC(2026, 0, 1)).offset, 'UTC−03:30');
-    assert.deepEqual(zoneClock('Nowhere/At_All')(Date.UTC(2026, 0, 1)), { date: '2026-01-01', time: '00:00:00', offset: 'UTC' });
+    const nowhere = zoneClock('Nowhere/At_All')(Date.UTC(2026, 0, 1));
+    assert.deepEqual(nowhere, { date: 'Jan 1, 2026', day: 'Jan 1', time: '00:00:00', offset: 'UTC' });
 });
 
 test('qualities in words', () => {

@@ -2,20 +2,12 @@
 // Alarms: the strip that counts them in every view, the list, and what can be done about one.
 import { isWaiting } from '../core/alarms.js';
 import { ageText, decimalsFor, numberText, unitText, zoneClock } from '../core/format.js';
+import { say } from '../core/words.js';
 import { byId, make, setText } from './dom.js';
 
-const WORDS = {
-    active: 'Active', unacknowledged: 'Unacknowledged', acknowledged: 'Acknowledged', returned: 'Returned, unacknowledged',
-    latched: 'Latched', shelved: 'Shelved', suppressed: 'Suppressed by design', out_of_service: 'Out of service',
-};
-const KINDS = { HH: 'High high', H: 'High', L: 'Low', LL: 'Low low', BAD: 'Bad measurement', ALM: 'Alarm' };
-const DO = { acknowledge: 'Acknowledge', shelve: 'Shelve…', reset: 'Reset', unshelve: 'Unshelve', in_service: 'Put in service' };
-const MODES = {
-    display: 'Shown here, acknowledged in the control system', mirror: 'As the control system has them', local: 'Local alarms of this site',
-};
 const SHOWN = 200; // rows at once
 
-const badge = (priority) => make('span', { class: `priority p${priority}`, title: `Priority ${priority}` }, String(priority));
+const badge = (priority) => make('span', { class: `priority p${priority}`, title: say('alarms.priority', { priority }) }, String(priority));
 
 export class AlarmPanel {
     // onFly(tag)
@@ -27,6 +19,7 @@ export class AlarmPanel {
         byId('shelve-cancel').addEventListener('click', () => byId('shelve').close());
         session.on('welcome', () => this.show());
         session.on('alarms', () => this.show());
+        session.on('time', () => this.show());
         session.on('alarmed', (answer) => this.answered(answer));
         setInterval(() => this.tick(), 500);
     }
@@ -77,10 +70,16 @@ export class AlarmPanel {
         byId('alarm-strip').dataset.kind = waiting > 0 ? 'waiting' : all > 0 ? 'some' : 'none';
         const counts = of.flatMap((count, i) => (count > 0 ? [badge(i + 1), make('b', {}, `×\u2009${count}`)] : []));
         byId('alarm-counts').replaceChildren(...counts);
-        const open = waiting > 0 ? `, ${waiting} not acknowledged` : '';
-        setText(byId('alarm-words'), all === 0 ? 'No active alarms' : `${all} active ${all === 1 ? 'alarm' : 'alarms'}${open}`);
-        setText(byId('alarm-newest'), newest ? `${newest.tag.name} ${KINDS[newest.kind]}${this.valueText(newest, ' at ')}` : '');
-        setText(byId('alarm-mode'), MODES[this.alarms.mode]);
+        const some = all === 0 ? say('alarms.none') : say('alarms.some', { count: all });
+        const alarms = waiting > 0 ? say('alarms.waiting', { alarms: some, waiting }) : some;
+        setText(byId('alarm-words'), this.session.time.atUs === null ? alarms : say('alarms.now', { alarms }));
+        setText(byId('alarm-newest'), newest ? this.newestText(newest) : '');
+        setText(byId('alarm-mode'), say(`mode.${this.alarms.mode}`));
+    }
+
+    newestText(newest) {
+        const alarm = `${newest.tag.name} ${say(`kind.${newest.kind}`)}`, value = this.valueText(newest);
+        return value ? say('alarms.at', { alarm, value }) : alarm;
     }
 
     showList() {
@@ -89,17 +88,18 @@ export class AlarmPanel {
         byId('alarms-list').replaceChildren(...list.slice(0, SHOWN).map((alarm) => this.row(alarm)));
         byId('alarms-none').hidden = list.length > 0;
         byId('alarms-aside-head').hidden = aside.length === 0;
-        setText(byId('alarms-aside-head'), `Set aside (${aside.length})`);
+        setText(byId('alarms-aside-head'), say('alarms.aside', { count: aside.length }));
         byId('alarms-aside').replaceChildren(...aside.slice(0, SHOWN).map((alarm) => this.row(alarm)));
         const more = Math.max(0, list.length - SHOWN) + Math.max(0, aside.length - SHOWN);
-        setText(byId('alarms-more'), more > 0 ? `and ${more} more` : '');
+        setText(byId('alarms-more'), more > 0 ? say('alarms.more', { count: more }) : '');
     }
 
-    valueText({ tag, value, limit }, before) {
+    valueText({ tag, value, limit }) {
         if (value === null || limit === null)
             return '';
         const group = this.session.model.group(tag.group), decimals = group ? decimalsFor(group.max - group.min) : 2;
-        return `${before}${numberText(value, decimals)} ${unitText(tag.unit || group?.unit)} (limit ${numberText(limit, decimals)})`;
+        const text = `${numberText(value, decimals)} ${unitText(tag.unit || group?.unit)}`;
+        return say('alarms.value', { value: text, limit: numberText(limit, decimals) });
     }
 
     since({ raisedUs }) {
@@ -107,26 +107,29 @@ export class AlarmPanel {
         if (raisedUs === null || now === null)
             return '';
         const { time } = zoneClock(this.session.model.plant.time_zone)(raisedUs / 1000);
-        return `since ${time}, ${ageText((now - raisedUs) / 1000)}`;
+        return say('alarms.since', { time, age: ageText((now - raisedUs) / 1000) });
     }
 
     // Who did what about it last, until when, and why.
     note({ state, who, reason, untilUs, held }) {
-        const until = untilUs === null ? '' : `until ${zoneClock(this.session.model.plant.time_zone)(untilUs / 1000).time.slice(0, 5)}`;
-        const by = who && state !== 'unacknowledged' ? `by ${who}` : '';
-        return [until, by, reason, held ? 'measurement bad: as it last was' : ''].filter(Boolean).join(', ');
+        const clock = zoneClock(this.session.model.plant.time_zone);
+        const until = untilUs === null ? '' : say('alarms.until', { time: clock(untilUs / 1000).time.slice(0, 5) });
+        const by = who && state !== 'unacknowledged' ? say('alarms.by', { who }) : '';
+        return [until, by, reason, held ? say('alarms.held') : ''].filter(Boolean).join(', ');
     }
 
     row(alarm) {
         const { tag, kind, state, priority } = alarm;
+        const value = this.valueText(alarm), what = ` ${say(`kind.${kind}`)}${value ? `, ${value}` : ''}`;
         const asset = this.session.model.asset(tag.asset), age = make('span', { class: 'since' }, this.since(alarm));
         this.ages.push([age, alarm]);
-        const fly = make('button', { type: 'button', class: 'alarm-go', title: `Fly to ${tag.name}`, onclick: () => this.onFly(tag) },
-            badge(priority), make('span', { class: 'what' }, make('b', {}, tag.name), ` ${KINDS[kind]}${this.valueText(alarm, ', ')}`),
+        const title = say('alarms.fly', { tag: tag.name });
+        const fly = make('button', { type: 'button', class: 'alarm-go', title, onclick: () => this.onFly(tag) },
+            badge(priority), make('span', { class: 'what' }, make('b', {}, tag.name), what),
             make('span', { class: 'where' }, [asset?.tag ?? asset?.id, tag.description].filter(Boolean).join(', ')),
-            make('span', { class: 'state' }, WORDS[state]), age, make('span', { class: 'note' }, this.note(alarm)));
+            make('span', { class: 'state' }, say(`state.${state}`)), age, make('span', { class: 'note' }, this.note(alarm)));
         const buttons = this.alarms.actions(alarm, this.session.role).map((action) =>
-            make('button', { type: 'button', 'data-action': action, onclick: () => this.act(action, alarm) }, DO[action]));
+            make('button', { type: 'button', 'data-action': action, onclick: () => this.act(action, alarm) }, say(`action.${action}`)));
         const look = { class: isWaiting(state) ? 'calls' : state, 'data-alarm': alarm.id };
         return make('li', look, fly, make('div', { class: 'do' }, ...buttons));
     }
@@ -137,7 +140,7 @@ export class AlarmPanel {
             return;
         }
         this.shelving = alarm;
-        setText(byId('shelve-what'), `${alarm.tag.name} ${KINDS[alarm.kind]}`);
+        setText(byId('shelve-title'), say('shelve.title', { what: `${alarm.tag.name} ${say(`kind.${alarm.kind}`)}` }));
         byId('shelve-reason').value = '';
         byId('shelve').showModal();
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The equipment list: search, quality at a glance, the selected one's sensors with their values, and the way there.
 import { decimalsFor, numberText, qualityText, unitText } from '../core/format.js';
+import { say } from '../core/words.js';
 import { byId, glyph, make, setText } from './dom.js';
 
 const NARROW = '(max-width: 1023px)';
@@ -44,7 +45,7 @@ export class Assets {
         const { model } = this.session;
         this.rows.clear();
         this.list.replaceChildren(...model.assets.map((asset) => this.row(asset)));
-        this.empty = make('li', { class: 'nothing', hidden: true }, 'Nothing has that name.');
+        this.empty = make('li', { class: 'nothing', hidden: true }, say('assets.nothing'));
         this.list.append(this.empty);
         setText(byId('assets-count'), String(model.assets.length));
         this.filter();
@@ -53,7 +54,7 @@ export class Assets {
 
     row(asset) {
         const count = asset.tags.length;
-        const sensors = count === 0 ? '' : count === 1 ? '1 sensor' : `${count} sensors`;
+        const sensors = count === 0 ? '' : say('assets.sensors', { count });
         const button = make('button', { type: 'button', class: 'asset', 'aria-pressed': 'false', onclick: () => this.choose(asset) },
             glyph('none'),
             make('span', { class: 'text' }, make('b', {}, asset.tag || asset.id), make('span', {}, asset.description ?? '')),
@@ -133,7 +134,7 @@ export class Assets {
         const { value: number, quality } = model.readings[tag.index];
         const group = model.group(tag.group);
         const known = number !== null && quality !== 'bad';
-        const text = known ? numberText(number, group ? decimalsFor(group.max - group.min) : 2) : 'no value';
+        const text = known ? numberText(number, group ? decimalsFor(group.max - group.min) : 2) : say('novalue');
         const unit = known ? ` ${unitText(tag.unit || group?.unit)}` : '';
         if (value.textContent !== text + unit)
             value.replaceChildren(text, make('i', {}, unit));
@@ -160,6 +161,6 @@ export class Assets {
         if (quality === 'good' || quality === 'none')
             parent.removeAttribute('aria-description');
         else
-            parent.setAttribute('aria-description', `worst quality: ${qualityText(quality)}`);
+            parent.setAttribute('aria-description', say('assets.worst', { quality: qualityText(quality) }));
     }
 }

@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The card of one sensor: what it is, what it says, whether that may be trusted, and how old it is.
 import { ageText, decimalsFor, numberText, qualityText, unitText } from '../core/format.js';
-import { byId, glyph, icon, make, setText } from './dom.js';
+import { say } from '../core/words.js';
+import { byId, closeButton, fill, glyph, make, setText } from './dom.js';
 
-const ALARM_WORDS = {
-    HH: 'above the highest limit', H: 'above the high limit', L: 'below the low limit', LL: 'below the lowest limit',
-    BAD: 'bad measurement',
-    ALM: 'alarm',
-};
 const AWAY_PX = 16, WIDTH_PX = 248;
 
 export class Card {
@@ -39,7 +35,7 @@ export class Card {
         }
         const reading = model.readings[tag.index], group = model.group(tag.group);
         const known = reading.value !== null;
-        const number = known ? numberText(reading.value, group ? decimalsFor(group.max - group.min) : 2) : 'No value';
+        const number = known ? numberText(reading.value, group ? decimalsFor(group.max - group.min) : 2) : say('card.novalue');
         const unit = known ? ` ${unitText(tag.unit || group?.unit)}` : '';
         if (this.value.textContent !== number + unit)
             this.value.replaceChildren(number, make('i', {}, unit));
@@ -51,7 +47,7 @@ export class Card {
         this.limit.hidden = !alarm;
         if (alarm) {
             const flag = make('span', { class: `limit-flag p${alarm.priority}` }, alarm.kind);
-            this.limit.replaceChildren(flag, ` ${ALARM_WORDS[alarm.kind]}, ${alarm.state}`);
+            this.limit.replaceChildren(flag, ` ${say(`card.${alarm.kind}`)}, ${say(`state.${alarm.state}`)}`);
         }
     }
 
@@ -61,12 +57,13 @@ export class Card {
         this.limit = make('p', { class: 'limit', hidden: true });
         this.quality = make('dd');
         this.age = make('dd');
-        this.element.replaceChildren(
-            make('button', { type: 'button', class: 'icon small', 'aria-label': 'Close', onclick: () => this.onClose() }, icon('i-close')),
+        fill(this.element,
+            closeButton('close', () => this.onClose()),
             make('h3', {}, tag.name), make('p', { class: 'about' }, tag.description ?? ''), this.value, this.limit,
-            make('dl', {}, make('dt', {}, 'Quality'), this.quality, make('dt', {}, 'Age'), this.age,
-                make('dt', {}, 'On'), make('dd', {}, on)),
-            this.session.recorded ? make('button', { type: 'button', class: 'trend', onclick: () => this.onTrend(tag) }, 'Trend') : null);
+            make('dl', {}, make('dt', {}, say('card.quality')), this.quality, make('dt', {}, say('card.age')), this.age,
+                make('dt', {}, say('card.on')), make('dd', {}, on)),
+            this.session.recorded ?
+                make('button', { type: 'button', class: 'trend', onclick: () => this.onTrend(tag) }, say('card.trend')) : null);
     }
 
     // Beside its marker, on the side with more room; in a corner while the marker is out of the picture.

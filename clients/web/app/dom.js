@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Small helpers around the document. Nothing here writes inline markup: the page runs under a strict content policy.
 
+import { say } from '../core/words.js';
+
 const SVG = 'http://www.w3.org/2000/svg';
 
 export const byId = (id) => document.getElementById(id);
@@ -25,6 +27,35 @@ function furnish(element, attributes, children) {
     return element;
 }
 
+// Puts the words into what names them: data-say for its text, data-label, data-title, data-hint (of an empty field), data-name for
+// label and title; data-key is the key on the keyboard that does the same.
+export function sayAll(root) {
+    for (const element of root.querySelectorAll('[data-say], [data-label], [data-title], [data-hint], [data-name]')) {
+        const { say: text, label, title, hint, name, key } = element.dataset;
+        if (text)
+            element.textContent = say(text);
+        if (hint)
+            element.placeholder = say(hint);
+        if (label ?? hint ?? name)
+            element.setAttribute('aria-label', say(label ?? hint ?? name));
+        if (title ?? name)
+            element.title = say(title ?? name) + (key ? ` (${key})` : '');
+    }
+}
+
+// Its children from now on; null is none.
+export const fill = (element, ...children) => element.replaceChildren(...children.filter((child) => child !== null));
+
+// A text with [keys] of the keyboard in it, as nodes.
+export const withKeys = (text) => text.split(/(\[[^\]]+\])/).filter(Boolean).map((part) =>
+    (/^\[.+\]$/.test(part) ? make('kbd', {}, part.slice(1, -1)) : part));
+
+// A text with one {name} left to be a node.
+export function around(text, node) {
+    const [before, after] = text.split('\u0000');
+    return [before, node, after];
+}
+
 // Writes only what differs: screen readers and the layout are left alone otherwise.
 export function setText(element, text) {
     if (element.textContent !== text)
@@ -45,6 +76,9 @@ export function glyph(quality) {
     return makeSvg('svg', { viewBox: '-8 -8 16 16', class: `glyph ${GLYPHS[quality] ? quality : 'none'}`, 'aria-hidden': 'true' },
         makeSvg(name, { class: 'mark', ...shape }));
 }
+
+export const closeButton = (key, onclick) =>
+    make('button', { type: 'button', class: 'icon small', 'aria-label': say(key), onclick }, icon('i-close'));
 
 export function icon(id) {
     return makeSvg('svg', { 'aria-hidden': 'true' }, makeSvg('use', { href: `#${id}` }));

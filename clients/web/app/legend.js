@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The legend: the colours as the server uses them, with units, limits, and the patterns for what is not known.
-import { decimalsFor, numberText, unitText } from '../core/format.js';
+import { decimalsFor, quantityText, shortNumberText, unitText } from '../core/format.js';
 import { colourOf, edges, LIMIT_BANDS, placeOf, scaleTicks, spread, valueAt } from '../core/legend.js';
 import { hatchAt, patternPeriodPx, ruleAt, stippleAt } from '../core/patterns.js';
+import { say } from '../core/words.js';
 import { make, makeSvg, setVariable } from './dom.js';
 
 const BAR_TEXELS = 1024;
@@ -74,16 +75,15 @@ export class Legend {
 
     notes({ look, scale }, map, isOperator) {
         return [
-            isOperator && 'By each tag’s own limits.',
-            !isOperator && scale === 'log' && 'Logarithmic scale.',
-            !isOperator && map.safe === false && 'These colours may be misread.',
-            look === 'glossy' && 'Glossy look: light changes the colours. Do not read values.',
+            isOperator && say('legend.operator'),
+            !isOperator && scale === 'log' && say('legend.log'),
+            !isOperator && map.safe === false && say('legend.unsafe'),
+            look === 'glossy' && say('legend.glossy'),
         ].filter(Boolean);
     }
 
     heading(group, { show, unit }) {
-        const name = group.quantity || group.id;
-        const text = { difference: `Δ ${name}`, distance: 'Distance' }[show] ?? name.charAt(0).toUpperCase() + name.slice(1);
+        const name = quantityText(group), text = { difference: `Δ ${name}`, distance: say('legend.distance') }[show] ?? name;
         return make('h2', {}, text, ' ', make('span', {}, show === 'operator' ? '' : unitText(unit ?? group.unit)));
     }
 
@@ -91,7 +91,7 @@ export class Legend {
     scale(rule, lines, limits, below) {
         const { map, min, max } = rule;
         const decimals = (value) => decimalsFor(rule.log ? value : max - min);
-        const text = (value) => numberText(value, decimals(value)).replace(/(\.\d*?)0+$/, '$1').replace(/\.$/, '');
+        const text = (value) => shortNumberText(value, decimals(value));
         const end = (name, colour, words) => [
             make('div', { class: `end ${name}` }, swatch(18, 14, solid(colour))), make('div', { class: 'end-text' }, words),
         ];
@@ -112,7 +112,7 @@ export class Legend {
 
     // A texture along the bar, finer than any screen shows it, with a line at each value that has one.
     bar(rule, lines, colourAt) {
-        const canvas = make('canvas', { class: 'bar', role: 'img', 'aria-label': `Colours from ${rule.min} to ${rule.max}` });
+        const canvas = make('canvas', { class: 'bar', role: 'img', 'aria-label': say('legend.colours', { min: rule.min, max: rule.max }) });
         const lying = this.lying.matches;
         canvas.width = lying ? BAR_TEXELS : 1;
         canvas.height = lying ? 1 : BAR_TEXELS;
@@ -162,8 +162,8 @@ export class Legend {
         const uncertain = pixels((x, y, height) => stippleAt(x, y, height, period(height), colour));
         const noLimits = pixels((x, y, height) => ruleAt(y, height, period(height)));
         return make('div', { class: 'keys' },
-            ...(show === 'operator' ? [swatch(18, 14, noLimits), make('span', {}, 'No limits')] : []),
-            swatch(18, 14, noData), make('span', {}, 'No data'),
-            ...(show === 'distance' ? [] : [swatch(18, 14, uncertain), make('span', {}, 'Uncertain')]));
+            ...(show === 'operator' ? [swatch(18, 14, noLimits), make('span', {}, say('legend.nolimits'))] : []),
+            swatch(18, 14, noData), make('span', {}, say('legend.nodata')),
+            ...(show === 'distance' ? [] : [swatch(18, 14, uncertain), make('span', {}, say('legend.uncertain'))]));
     }
 }

@@ -5,10 +5,11 @@ import { face } from '../core/camera.js';
 import { Connection } from '../core/connection.js';
 import { browserDecoding } from '../core/decoding.js';
 import { Session } from '../core/session.js';
+import { language, say } from '../core/words.js';
 import { AlarmPanel } from './alarms.js';
 import { Assets } from './assets.js';
 import { Card } from './card.js';
-import { byId, setText } from './dom.js';
+import { byId, sayAll, setText } from './dom.js';
 import { Legend } from './legend.js';
 import { Overlay } from './overlay.js';
 import { Picture } from './picture.js';
@@ -26,6 +27,9 @@ import { Viewport } from './viewport.js';
 const ADDRESS_WAIT_MS = 400, TOAST_MS = 6000;
 const ARRIVAL_MARGIN = 1.7; // around one piece of equipment
 const TAG_DISTANCE_M = 5;
+
+document.documentElement.lang = language;
+sayAll(document);
 
 const clock = { now: () => performance.now(), setTimeout: (f, ms) => setTimeout(f, ms), clearTimeout: (id) => clearTimeout(id) };
 const address = readAddress(location.hash);
@@ -115,7 +119,7 @@ function fitView() {
 const commands = {
     fit: fitView,
     home: () => session.model && pilot.flyHome(),
-    help: () => byId('help').showModal(),
+    help: async () => (await import('./help.js')).openHelp(),
     timings: () => timings.toggle(),
     alarms: () => alarms.toggle(),
     past: () => session.recorded && timeline.setOpen(!timeline.open),
@@ -169,7 +173,6 @@ assets.onTag = showTag;
 byId('fit').addEventListener('click', fitView);
 byId('home').addEventListener('click', commands.home);
 byId('help-open').addEventListener('click', commands.help);
-byId('help-close').addEventListener('click', () => byId('help').close());
 byId('help').addEventListener('click', (event) => event.target === event.currentTarget && byId('help').close());
 
 // --- the picture and what lies over it
@@ -229,7 +232,7 @@ window.addEventListener('resize', shape);
 session.on('following', () => {
     shape();
     byId('following').hidden = !session.following;
-    setText(byId('following').querySelector('span'), session.following ? `This is the view of session ${session.following.session}` : '');
+    setText(byId('following').querySelector('span'), session.following ? say('following.title', session.following) : '');
 });
 byId('following').querySelector('button').addEventListener('click', () => session.follow(null));
 session.on('ignored', (what) => console.warn(`ignored: ${what}`));
@@ -257,7 +260,7 @@ session.on('error', ({ text, about }) => {
     console.warn(`error about ${about}: ${text}`);
     if (about === 'ack')
         return; // nothing that a person did
-    setText(byId('toast'), `The server refused: ${text}`);
+    setText(byId('toast'), say('viewport.refused', { text }));
     byId('toast').hidden = false;
     clearTimeout(toastTimer);
     toastTimer = setTimeout(() => { byId('toast').hidden = true; }, TOAST_MS);

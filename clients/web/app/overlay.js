@@ -2,9 +2,10 @@
 // Markers and labels, drawn crisply over the picture with the camera that the picture was drawn with.
 import { isWaiting } from '../core/alarms.js';
 import { projector } from '../core/camera.js';
-import { changeText, decimalsFor, numberText, unitText } from '../core/format.js';
+import { changeText, decimalsFor, numberText, shortNumberText, unitText } from '../core/format.js';
 import { halves } from '../core/halves.js';
 import { FIRST_FAR, leaderLine, MOST_BAD, nearestMarker, placeLabels } from '../core/labels.js';
+import { say } from '../core/words.js';
 
 const INK = '#1d252d', INK_2 = '#4d5964', ACCENT = '#2a5f8f';
 const ALARM_COLOURS = [['#c40d20', '#fff'], ['#e06a0a', '#1b0d00'], ['#f2bb0d', '#1b1300'], ['#1b93b5', '#00161d']]; // by priority
@@ -87,7 +88,7 @@ export class Overlay {
         c.textBaseline = 'middle';
         c.textAlign = 'center';
         for (const { text, x, y } of (this.session.markersOf(picture.seq)?.isolines ?? []).map(([value, px, py]) => ({
-            text: numberText(value, decimalsFor(max - min)).replace(/\.0+$/, ''), x: px * scale[0], y: py * scale[1],
+            text: shortNumberText(value, decimalsFor(max - min)), x: px * scale[0], y: py * scale[1],
         }))) {
             const wide = c.measureText(text).width + 6, box = { left: x - wide / 2, right: x + wide / 2, top: y - 8, bottom: y + 8, text };
             const meets = (o) => box.left < o.right && o.left < box.right && box.top < o.bottom && o.top < box.bottom;
@@ -200,7 +201,7 @@ export class Overlay {
             parts.push([changeText(change, decimals), ...(this.fresh ? [650, INK] : [400, INK_2])]);
             parts.push([change === null ? '' : unitText(tag.unit || group.unit), 400, INK_2]);
         } else if (reading.value === null || reading.quality === 'bad') {
-            parts.push(['no value', 400, INK_2]);
+            parts.push([say('novalue'), 400, INK_2]);
         } else {
             parts.push([numberText(reading.value, decimals), ...(this.fresh ? [650, INK] : [400, INK_2])]);
             parts.push([unitText(tag.unit || group.unit), 400, INK_2]);

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The panel of the picture: what is compared with what, the scale, the light, and the right half of a split view.
+import { quantityText, title, zoneClock } from '../core/format.js';
 import { sunOf, sunText, towardsSun } from '../core/sun.js';
+import { say, sayIfKnown } from '../core/words.js';
 import { byId, make, setText } from './dom.js';
 import { fillSegments, fillSelect, foldPanel, markSegment } from './fields.js';
-import { DISTANCES, INTERPOLATIONS, LOOKS, SHOWS, title } from './toolbar.js';
+import { DISTANCES, INTERPOLATIONS, LOOKS, SHOWS } from './toolbar.js';
 
-const SCALES = [['linear', 'Linear'], ['log', 'Logarithmic']];
-const FILLS = [['none', 'Hatched', 'Where no good sensor reaches nothing is shown'], ['neighbours', 'By neighbours', 'Filled and dotted']];
-const HALF = ['group', 'show', 'distance', 'interpolation', 'colormap', 'look'];
-const HALF_NAMES = {
-    group: 'Quantity', show: 'Show', distance: 'Distance', interpolation: 'Interpolation', colormap: 'Colours', look: 'Look',
+const SCALES = ['linear', 'log'].map((scale) => [scale, say(`scale.${scale}`)]);
+const FILLS = ['none', 'neighbours'].map((fill) => [fill, say(`fill.${fill}`), say(`fill.${fill}.why`)]);
+const HALF = {
+    group: 'bar.quantity', show: 'bar.show', distance: 'bar.distance', interpolation: 'bar.interpolation', colormap: 'bar.colours',
+    look: 'bar.look',
 };
 
 export class Picture {
@@ -68,7 +70,7 @@ export class Picture {
     // Once per animation frame: a slider speaks oftener.
     moveSun() {
         const sun = { turn: Number(byId('sun-turn').value), height: Number(byId('sun-height').value) };
-        setText(byId('sun-text'), sunText(sun));
+        setText(byId('sun-text'), say('picture.light', { where: sunText(sun) }));
         if (!this.sun)
             requestAnimationFrame(() => {
                 this.session.setParams({ light: towardsSun(this.sun, this.isYUp) });
@@ -78,23 +80,26 @@ export class Picture {
     }
 
     updateLight({ model, params }) {
-        fillSelect(byId('environment'), model.environments.map((name) => [name, title(name)]), params.environment);
+        const places = model.environments.map((name) => [name, sayIfKnown(`environment.${name}`, title(name))]);
+        fillSelect(byId('environment'), places, params.environment);
         if (this.sun || !params.light)
             return;
         const sun = sunOf(params.light, this.isYUp);
         byId('sun-turn').value = sun.turn;
         byId('sun-height').value = sun.height;
-        setText(byId('sun-text'), sunText(sun));
+        setText(byId('sun-text'), say('picture.light', { where: sunText(sun) }));
     }
 
     // --- the right half
 
     addHalf() {
-        this.half = Object.fromEntries(HALF.map((name) => [name, make('select', { id: `right-${name}`, onchange: ({ target }) =>
-            this.session.setParams({ split: { [name]: target.value } }) })]));
-        const labels = HALF.map((name) => make('label', { class: 'choice' }, make('span', {}, HALF_NAMES[name]), this.half[name]));
+        const choose = (name) => ({ target }) => this.session.setParams({ split: { [name]: target.value } });
+        this.half = Object.fromEntries(Object.keys(HALF).map((name) =>
+            [name, make('select', { id: `right-${name}`, onchange: choose(name) })]));
+        const labels = Object.entries(HALF).map(([name, key]) =>
+            make('label', { class: 'choice' }, make('span', {}, say(key)), this.half[name]));
         byId('right-half').append(make('div', { class: 'pairs' }, ...labels));
-        fillSegments(byId('split-on'), 'split-on', [['', 'One picture'], ['on', 'Two halves']], (value) =>
+        fillSegments(byId('split-on'), 'split-on', [['', say('split.one')], ['on', say('split.two')]], (value) =>
             this.session.setParams({ split: value ? {} : null }));
     }
 
@@ -108,10 +113,10 @@ export class Picture {
         const needs = SHOWS.filter(([value]) => ['value', 'operator', right.show].includes(value) ||
             (value === 'distance' && params.sensor) || (value === 'difference' && params.baseline));
         const choices = {
-            group: model.groups.map(({ id, quantity }) => [id, title(quantity || id)]), show: plain(needs), distance: plain(DISTANCES),
+            group: model.groups.map((group) => [group.id, quantityText(group)]), show: plain(needs), distance: plain(DISTANCES),
             interpolation: plain(INTERPOLATIONS), colormap: model.colormaps.map(({ name }) => [name, title(name)]), look: plain(LOOKS),
         };
-        for (const name of HALF)
+        for (const name of Object.keys(HALF))
             fillSelect(this.half[name], choices[name], right[name]);
     }
 
@@ -133,6 +138,6 @@ export class Picture {
 
     instantText(baseline) {
         const timeZone = this.session.model.plant.time_zone;
-        return baseline?.time_us ? new Date(baseline.time_us / 1000).toLocaleTimeString([], { timeZone }) : '–';
+        return baseline?.time_us ? zoneClock(timeZone)(baseline.time_us / 1000).time : '–';
     }
 }

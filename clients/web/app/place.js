@@ -3,14 +3,9 @@
 import { projector } from '../core/camera.js';
 import { decimalsFor, numberText, unitText } from '../core/format.js';
 import { halves } from '../core/halves.js';
-import { byId, glyph, icon, make } from './dom.js';
+import { say } from '../core/words.js';
+import { byId, closeButton, fill, glyph, make } from './dom.js';
 
-const STATES = {
-    measured: 'Measured here',
-    between: 'Between sensors',
-    'no data': 'No data: its nearest sensor is bad, or none reaches',
-    context: 'No sensor of this quantity on it',
-};
 const AWAY_PX = 14, WIDTH_PX = 248, SAME_M = 0.05;
 
 export class Place {
@@ -93,18 +88,20 @@ export class Place {
     build() {
         const { state, value, unit, uncertain, inside, nearest } = this.picked;
         const asset = this.session.model.asset(this.picked.asset);
-        const words = inside ? 'Inside of what is cut open' : STATES[state] + (uncertain ? ', uncertain' : '');
+        const found = say(`place.${state}`);
+        const words = inside ? say('place.inside') : uncertain ? say('place.uncertain', { state: found }) : found;
         const rows = nearest.map(({ tag, distance_m, value: reading, quality }) => make('li', {}, glyph(quality), make('span', {}, tag),
-            make('span', {}, `${distance_m.toFixed(distance_m < 10 ? 2 : 1)} m`), make('b', {}, this.number(reading))));
-        const button = (how, text) => make('button', { type: 'button', onclick: () => this.onShow(how, asset) }, text);
-        this.element.replaceChildren(
-            make('button', { type: 'button', class: 'icon small', 'aria-label': 'Close', onclick: () => this.close() }, icon('i-close')),
+            make('span', {}, say('distance.metres', { metres: numberText(distance_m, distance_m < 10 ? 2 : 1) })),
+            make('b', {}, this.number(reading))));
+        const button = (how) => make('button', { type: 'button', onclick: () => this.onShow(how, asset) }, say(`place.${how}`));
+        fill(this.element,
+            closeButton('close', () => this.close()),
             make('h3', {}, asset.tag || asset.id), make('p', { class: 'about' }, asset.description ?? ''),
             value === null ? null : make('p', { class: 'value' }, this.number(value), make('i', {}, ` ${unitText(unit)}`)),
             make('p', { class: 'state' }, words),
             rows.length > 0 ? make('ul', { class: 'nearest' }, ...rows) : null,
-            make('div', { class: 'buttons' }, make('button', { type: 'button', onclick: () => this.onSelect(asset) }, 'Select'),
-                button('hide', 'Hide'), button('ghost', 'Ghost'), button('only', 'Only')));
+            make('div', { class: 'buttons' }, make('button', { type: 'button', onclick: () => this.onSelect(asset) }, say('place.select')),
+                ...['hide', 'ghost', 'only'].map(button)));
     }
 
     // Beside its place, in step with the picture.

@@ -2,6 +2,7 @@
 // Status bar, connection state and banner: always there, in words, aged by this page's own clock.
 import { ageText, zoneClock } from '../core/format.js';
 import { health } from '../core/health.js';
+import { say } from '../core/words.js';
 import { byId, make, setText } from './dom.js';
 
 export class Status {
@@ -59,15 +60,17 @@ export class Status {
         }
         const clockSet = !session.model || session.model.clockSet;
         byId('clock').parentElement.classList.toggle('unset', !clockSet);
-        byId('clock').parentElement.title = clockSet ? '' : 'Nothing keeps the server\'s clock right: times may be wrong. Ages are not.';
-        setText(byId('clock-name'), (past ? 'Then' : 'Plant time') + (clockSet ? '' : ', unsynchronised'));
+        byId('clock').parentElement.title = clockSet ? '' : say('status.unset.why');
+        const clock = say(past ? 'status.then' : 'status.clock');
+        setText(byId('clock-name'), clockSet ? clock : say('status.unset', { clock }));
         const age = session.model ? session.model.oldestAgeMs(session.params.group, now) : null;
-        setText(byId('age'), past ? '–' : age === null ? 'none' : ageText(age));
+        setText(byId('age'), past ? '–' : age === null ? say('none') : ageText(age));
         byId('age').parentElement.classList.toggle('late', age === null || !['live', 'partial', 'past'].includes(kind));
         const rate = session.rate.perSecond(now);
-        setText(byId('rate'), rate > 0 ? `${Math.round(rate)}/s` : kind === 'live' || kind === 'partial' ? 'still' : 'none');
+        const quiet = say(kind === 'live' || kind === 'partial' ? 'status.still' : 'none');
+        setText(byId('rate'), rate > 0 ? say('status.rate', { count: Math.round(rate) }) : quiet);
         const latency = session.latency.median(now);
-        setText(byId('latency'), latency === null ? '–' : `${Math.round(latency)} ms`);
+        setText(byId('latency'), latency === null ? '–' : say('status.ms', { n: Math.round(latency) }));
         const { picture } = session;
         if (picture)
             setText(byId('size'), `${picture.fullWidth}×${picture.fullHeight} ${picture.codec.toUpperCase()}`);

@@ -2,10 +2,11 @@
 // The time bar: a slider over what was recorded, with the alarms that were raised, play, speed, and the way back to now.
 import { ageText, zoneClock } from '../core/format.js';
 import { ask, raised, ticks } from '../core/history.js';
+import { say } from '../core/words.js';
 import { byId, makeSvg, setText } from './dom.js';
 import { fillSelect } from './fields.js';
 
-const SPANS = [[900, '15 min'], [3600, '1 h'], [28800, '8 h'], [86400, '24 h'], [604800, '7 d'], [2592000, '30 d']];
+const SPANS = [[900, 'min', 15], [3600, 'h', 1], [28800, 'h', 8], [86400, 'h', 24], [604800, 'd', 7], [2592000, 'd', 30]];
 const SPEEDS = [1, 10, 60, 300, 600, 3600];
 const STEPS = 2000, MARKS_MS = 15000, MARKS_MOST = 2000, HAND_MS = 400, NOW_US = 3.5e6; // what is newer than that counts as now
 
@@ -13,7 +14,7 @@ export class Timeline {
     constructor({ session }) {
         Object.assign(this, { session, open: false, toUs: null, marks: [], wanted: null, draggedAt: -Infinity });
         this.slider = byId('time-slider');
-        fillSelect(byId('time-span'), SPANS, 3600);
+        fillSelect(byId('time-span'), SPANS.map(([seconds, unit, n]) => [seconds, say(`age.${unit}`, { n })]), 3600);
         fillSelect(byId('time-speed'), SPEEDS.map((speed) => [speed, `${speed}×`]), 60);
         byId('time-toggle').addEventListener('click', () => this.setOpen(!this.open));
         byId('time-span').addEventListener('change', () => this.turnTo(this.atUs));
@@ -120,7 +121,7 @@ export class Timeline {
         const { date, time, offset } = this.clock(us / 1000);
         const ago = ageText((this.session.clockUs() - us) / 1000);
         this.slider.setAttribute('aria-valuetext', `${date} ${time} ${offset}`);
-        setText(byId('time-at'), `${date} ${time} ${offset} · ${ago} ago`);
+        setText(byId('time-at'), say('time.ago', { instant: `${date} ${time} ${offset}`, age: ago }));
     }
 
     show() {
@@ -131,14 +132,14 @@ export class Timeline {
         if (performance.now() - this.draggedAt > HAND_MS)
             this.slider.value = Math.round(place * STEPS);
         if (atUs === null) {
-            setText(byId('time-at'), 'Now');
-            this.slider.setAttribute('aria-valuetext', 'Now');
+            setText(byId('time-at'), say('time.now'));
+            this.slider.setAttribute('aria-valuetext', say('time.now'));
         } else if (this.wanted === null) {
             this.say(atUs);
         }
         byId('timeline').classList.toggle('past', atUs !== null);
         byId('time-live').disabled = atUs === null;
-        const verb = speed ? 'Pause' : 'Play';
+        const verb = say(speed ? 'time.pause' : 'time.play');
         byId('time-play').setAttribute('aria-label', verb);
         byId('time-play').title = verb;
         byId('time-play').querySelector('use').setAttribute('href', speed ? '#i-pause' : '#i-play');
@@ -156,10 +157,10 @@ export class Timeline {
             const length = Math.max(0, Math.min(x(fromUs), width - 9) - 9);
             nodes.push(makeSvg('rect', { class: 'unrecorded', x: 9, y: 16, width: length, height: 8 }));
             if (x(fromUs) > 120)
-                nodes.push(makeSvg('text', { class: 'note', x: 12, y: 12 }, 'not recorded'));
+                nodes.push(makeSvg('text', { class: 'note', x: 12, y: 12 }, say('time.unrecorded')));
         }
         for (const us of ticks(from, this.toUs, Math.max(2, width / 110))) {
-            const { date, time } = this.clock(us / 1000), text = this.spanUs > 2 * 86400e6 ? date.slice(5) : time.slice(0, 5);
+            const { day, time } = this.clock(us / 1000), text = this.spanUs > 2 * 86400e6 ? day : time.slice(0, 5);
             nodes.push(makeSvg('path', { class: 'tick', d: `M${x(us)} 26v5` }));
             if (x(us) > 30 && x(us) < width - 30)
                 nodes.push(makeSvg('text', { x: x(us), y: 42, 'text-anchor': 'middle' }, text));
@@ -168,7 +169,7 @@ export class Timeline {
             nodes.push(makeSvg('path', { class: `alarm p${priority}`, d: `M${x(us)} 15l-5.500-11h11z` },
                 makeSvg('title', {}, `${tag} ${kind}, ${this.clock(us / 1000).time}`)));
         track.replaceChildren(...nodes);
-        setText(byId('time-alarms'), this.marks.length > 0 ? `${this.marks.length} alarm${this.marks.length > 1 ? 's' : ''} raised` : '');
+        setText(byId('time-alarms'), this.marks.length > 0 ? say('time.raised', { count: this.marks.length }) : '');
     }
 }
 

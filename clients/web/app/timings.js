@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The panel of measurements, on a key: which session this is, and where the time of its pictures goes.
+import { numberText } from '../core/format.js';
 import { STAGES } from '../core/timings.js';
-import { byId, make } from './dom.js';
+import { say } from '../core/words.js';
+import { around, byId, make } from './dom.js';
 
-const WORDS = {
-    sensor: 'Reading to picture', wait: 'waiting', field: 'field', render: 'drawing', encode: 'encoding', network: 'network',
-    decode: 'decoding',
-};
-const ms = (value) => (value === null || value === undefined ? '–' : value < 10 ? value.toFixed(1) : String(Math.round(value)));
+const ms = (value) => (value === null || value === undefined ? '–' : value < 10 ? numberText(value, 1) : String(Math.round(value)));
 
 export class TimingsPanel {
     constructor({ session }) {
@@ -28,13 +26,13 @@ export class TimingsPanel {
 
     show() {
         const { session } = this, now = performance.now();
-        const head = make('tr', {}, make('th', {}, 'Milliseconds'), make('th', {}, 'half'), make('th', {}, '95 %'));
-        const rows = ['sensor', ...STAGES].map((name) => this.row(WORDS[name], session.timings.of(name)));
+        const head = make('tr', {}, ...['ms', 'half', 'most'].map((name) => make('th', {}, say(`timings.${name}`))));
+        const rows = ['sensor', ...STAGES].map((name) => this.row(say(`timings.${name}`), session.timings.of(name)));
         const took = make('td', {}, ms(session.latency.median(now)));
-        const input = make('tr', {}, make('th', {}, 'Input to picture'), took, make('td', {}, ''));
-        const rate = `${Math.round(session.rate.perSecond(now))} pictures/s, ${Math.round(session.timings.kbitPerS(now))} kbit/s`;
+        const input = make('tr', {}, make('th', {}, say('timings.input')), took, make('td', {}, ''));
+        const [pictures, kbit] = [session.rate.perSecond(now), session.timings.kbitPerS(now)].map(Math.round);
         const link = make('a', { href: `#follow=${session.id}`, target: '_blank', rel: 'noopener' }, `#follow=${session.id}`);
-        this.element.replaceChildren(make('table', {}, head, input, ...rows), make('p', {}, rate),
-            make('p', {}, `Session ${session.id}. Who opens `, link, ' sees this view.'));
+        this.element.replaceChildren(make('table', {}, head, input, ...rows), make('p', {}, say('timings.rate', { pictures, kbit })),
+            make('p', {}, ...around(say('timings.follow', { session: session.id, link: '\u0000' }), link)));
     }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Asks for a token where the server wants one, and keeps it as long as this tab lives.
-import { byId, setText } from './dom.js';
+import { say } from '../core/words.js';
+import { around, byId, make, setText } from './dom.js';
 
 const KEY = 'plantcast.token';
 
@@ -25,8 +26,10 @@ export class TokenDialog {
     constructor({ session }) {
         const dialog = byId('token'), field = byId('token-text');
         session.token = stored();
+        const command = make('code', {}, 'plantcast token add');
+        byId('token-note').replaceChildren(...around(say('token.note', { command: '\u0000' }), command));
         session.on('denied', ({ code }) => {
-            setText(byId('token-why'), code === 'bad_token' ? 'This token is not valid, or no longer.' : 'This server asks who you are.');
+            setText(byId('token-why'), say(code === 'bad_token' ? 'token.bad' : 'token.needed'));
             field.value = '';
             if (!dialog.open)
                 dialog.showModal();

@@ -1,23 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The toolbar: what is shown and how. It shows the parameters in force and asks for others.
-import { numberText, unitText } from '../core/format.js';
+import { numberText, quantityText, title, unitText } from '../core/format.js';
 import { multiples, rampChoices } from '../core/legend.js';
+import { say } from '../core/words.js';
 import { byId, setText } from './dom.js';
 import { fillSegments, fillSelect, markSegment } from './fields.js';
 
-export const DISTANCES = [
-    ['geodesic', 'Geodesic', 'Distance along the surface: heat does not jump across a gap'],
-    ['euclidean', 'Euclidean', 'Straight distance through space'],
-];
-export const INTERPOLATIONS = [
-    ['shepard', 'Shepard', 'Inverse distance: exactly the reading at each sensor'],
-    ['paper', 'Paper', 'Algorithm 1 of Kim & Suh 2025: smoother, does not reach the readings'],
-];
-export const SHOWS = [['value', 'Values'], ['operator', 'Limits'], ['distance', 'Distance'], ['difference', 'Difference']];
-export const LOOKS = [['default', 'Measured'], ['glossy', 'Glossy'], ['flat', 'Flat'], ['materials', 'Materials']];
+const choices = (kind, ...values) => values.map((value) => [value, say(`${kind}.${value}`)]);
+const explained = (kind, ...values) => values.map((value) => [value, say(`${kind}.${value}`), say(`${kind}.${value}.why`)]);
+export const DISTANCES = explained('distance', 'geodesic', 'euclidean');
+export const INTERPOLATIONS = explained('interpolation', 'shepard', 'paper');
+export const SHOWS = choices('show', 'value', 'operator', 'distance', 'difference');
+export const LOOKS = choices('look', 'default', 'glossy', 'flat', 'materials');
 
 const decimalsOf = (step) => Math.max(0, Math.ceil(-Math.log10(step) - 1e-9));
-export const title = (text) => text.charAt(0).toUpperCase() + text.slice(1);
 
 export class Toolbar {
     // showParams: what else to ask for with a `show`.
@@ -54,7 +50,7 @@ export class Toolbar {
         setText(byId('plant-name'), model.plant.name);
         document.title = `${model.plant.name} – Plantcast`;
         const choices = model.groups.map((group, i) => {
-            const name = title(group.quantity || group.id);
+            const name = quantityText(group);
             return [group.id, name, `${name} (${i + 1})`];
         });
         fillSegments(byId('groups'), 'group', choices, (group) => this.session.setParams({ group }));
@@ -102,10 +98,10 @@ export class Toolbar {
     isolines() {
         const { group, range, params } = this.session;
         const every = (step) => multiples(...range, step);
-        const text = (step) => `Every ${numberText(step, decimalsOf(step))} ${unitText(group?.unit)}`;
-        const choices = [['null', 'None'], ...rampChoices(...range).map((step) => [JSON.stringify(every(step)), text(step)])];
+        const text = (step) => say('lines.every', { step: `${numberText(step, decimalsOf(step))} ${unitText(group?.unit)}` });
+        const choices = [['null', say('lines.none')], ...rampChoices(...range).map((step) => [JSON.stringify(every(step)), text(step)])];
         const now = JSON.stringify(params.isolines ?? null);
-        return choices.some(([value]) => value === now) ? choices : [...choices, [now, 'Chosen']];
+        return choices.some(([value]) => value === now) ? choices : [...choices, [now, say('lines.chosen')]];
     }
 
     ramps() {
@@ -115,9 +111,9 @@ export class Toolbar {
             steps.add(params.ramp_interval);
         const text = (step) => `${numberText(step, decimalsOf(step))} ${unitText(group?.unit)}`;
         const own = this.bands();
-        const bands = [['group', 'Own bands'], ['limits', 'Limits']].filter(([name]) => own[name].length > 0);
+        const bands = choices('ramp', 'group', 'limits').filter(([name]) => own[name].length > 0);
         if (params.breaks?.length > 0 && this.breaksName() === 'chosen')
-            bands.push(['chosen', 'Chosen bands']);
-        return [[0, 'Smooth'], ...bands, ...[...steps].sort((a, b) => a - b).map((step) => [step, text(step)])];
+            bands.push(['chosen', say('ramp.chosen')]);
+        return [[0, say('ramp.smooth')], ...bands, ...[...steps].sort((a, b) => a - b).map((step) => [step, text(step)])];
     }
 }

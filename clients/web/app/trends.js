@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Trends of tags: what was recorded of the last hour, shift, day or week, with limits, gaps in quality and units; several compared.
-import { decimalsFor, numberText, unitText, zoneClock } from '../core/format.js';
+import { decimalsFor, numberText, unitText, zoneClock, zoneOf } from '../core/format.js';
 import { ask, BAD, gaps, line } from '../core/history.js';
+import { say } from '../core/words.js';
 import { byId, make, setText } from './dom.js';
 import { fillSegments, markSegment } from './fields.js';
 
-const SPANS = [
-    ['3600', '1 h', 'Last hour'], ['28800', 'Shift', 'Last 8 hours'], ['86400', 'Day', 'Last 24 hours'], ['604800', 'Week', 'Last 7 days'],
-];
+const SPANS = [['3600', 'hour'], ['28800', 'shift'], ['86400', 'day'], ['604800', 'week']]
+    .map(([seconds, name]) => [seconds, say(`trends.${name}`), say(`trends.${name}.why`)]);
 const COLOURS = ['#0b5c93', '#b34a00', '#00734f', '#8a3a73', '#5b5b00', '#4b4f56'];
 const DASHES = [[], [8, 4], [2, 3], [10, 3, 2, 3], [5, 5], [1, 4]];
 const MOST = COLOURS.length, FRESH_MS = 5000, HEIGHT_PX = 210, AXIS_PX = 58;
@@ -21,7 +21,7 @@ function load() {
         const style = make('link', { rel: 'stylesheet', href: 'vendor/uPlot.css' });
         const script = make('script', { src: 'vendor/uPlot.js' });
         script.addEventListener('load', () => done(globalThis.uPlot));
-        script.addEventListener('error', () => fail(new Error('this server was built without its charts (npm was not there)')));
+        script.addEventListener('error', () => fail(new Error(say('trends.uncharted'))));
         document.head.append(style, script);
     });
     return library;
@@ -92,10 +92,10 @@ export class Trends {
     show() {
         markSegment(byId('trend-span'), String(this.spanS));
         byId('trend-tags').replaceChildren(...this.tags.map((tag, i) => {
-            const unit = this.unitOf(tag), sample = make('span', { class: `sample s${i}`, 'aria-hidden': 'true' });
+            const title = say('trends.remove', { tag: tag.name }), unit = this.unitOf(tag);
+            const sample = make('span', { class: `sample s${i}`, 'aria-hidden': 'true' });
             return make('li', {}, sample, make('b', {}, tag.name), ` ${tag.description ?? ''}${unit ? ` [${unit}]` : ''}`,
-                make('button', { type: 'button', class: 'drop', 'aria-label': `Remove ${tag.name}`, onclick: () => this.remove(tag) },
-                    '×'));
+                make('button', { type: 'button', class: 'drop', 'aria-label': title, onclick: () => this.remove(tag) }, '×'));
         }));
     }
 
@@ -130,14 +130,14 @@ export class Trends {
             this.draw(uPlot);
         } catch (error) {
             if (number === this.number)
-                setText(byId('trend-note'), `No trend: ${error.message}`);
+                setText(byId('trend-note'), say('trends.failed', { why: error.message }));
         }
     }
 
     words() {
         const [from, to] = this.span;
         const lacking = this.series.filter((one) => gaps(one, from, to).some(({ severity }) => severity === BAD)).map(({ tag }) => tag);
-        return lacking.length > 0 ? `Hatched: no value of ${lacking.join(', ')}` : '';
+        return lacking.length > 0 ? say('trends.gaps', { tags: lacking.join(', ') }) : '';
     }
 
     data(uPlot) {
@@ -173,14 +173,14 @@ export class Trends {
         const rule = { stroke: LINE, width: 1 }, font = '12px system-ui, sans-serif', axis = { stroke: INK, grid: rule, ticks: rule, font };
         const scales = Object.fromEntries(units.map((unit) => [unit, { range: (_, low, high) => this.range(unit, low, high) }]));
         const dateOf = (s) => this.clock(s * 1000);
-        const tickText = (s) => (this.spanS > 2 * 86400 ? dateOf(s).date.slice(5) : dateOf(s).time.slice(0, 5));
+        const tickText = (s) => (this.spanS > 2 * 86400 ? dateOf(s).day : dateOf(s).time.slice(0, 5));
         return {
             width: Math.max(200, byId('trend-chart').clientWidth), height: HEIGHT_PX,
             tzDate: (s) => globalThis.uPlot.tzDate(new Date(s * 1000), this.zone),
             scales: { x: { time: true }, ...scales },
             cursor: { drag: { x: false, y: false } },
             legend: { live: true },
-            series: [{ label: 'Time', value: (_, s) => (s === null ? '–' : `${dateOf(s).date} ${dateOf(s).time}`) },
+            series: [{ label: say('trends.time'), value: (_, s) => (s === null ? '–' : `${dateOf(s).date} ${dateOf(s).time}`) },
                 ...this.tags.map((tag, i) => this.lineOf(tag, i))],
             axes: [{ ...axis, values: (_, all) => all.map(tickText), space: 70, size: 28 }, ...units.map((unit, i) => ({
                 ...axis, scale: unit, label: unit, labelFont: font, labelSize: 16, size: AXIS_PX, side: i % 2 ? 1 : 3,
@@ -285,17 +285,8 @@ export class Trends {
             make('a', { href: url, download: `${this.tags.map(({ name }) => name).join('_')}.csv` }).click();
             setTimeout(() => URL.revokeObjectURL(url), 10000);
         } catch (error) {
-            setText(byId('trend-note'), `Not exported: ${error.message}`);
+            setText(byId('trend-note'), say('trends.unsaved', { why: error.message }));
         }
-    }
-}
-
-// As zoneClock: what the browser does not know is UTC.
-function zoneOf(name) {
-    try {
-        return new Intl.DateTimeFormat('en', { timeZone: name }).resolvedOptions().timeZone;
-    } catch {
-        return 'UTC';
     }
 }
 

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The panel of views: from where to look, in which projection, what is cut away and which equipment is shown.
 import { isParallel, toParallel, toPerspective } from '../core/camera.js';
+import { numberText } from '../core/format.js';
 import { AXES, boxAround, cut, readBox, readCut, showAll, showAsset } from '../core/section.js';
+import { say } from '../core/words.js';
 import { byId, make, setText } from './dom.js';
 import { fillSegments, foldPanel, markSegment } from './fields.js';
 
-const SIDES = [['top', 'Top'], ['front', 'Front'], ['right', 'Right'], ['back', 'Back'], ['left', 'Left'], ['iso', 'Corner']];
-const PROJECTIONS = [['perspective', 'Perspective'], ['parallel', 'Parallel']];
-const CUTS = [['off', 'Off'], ...AXES.map((axis) => [axis, axis.toUpperCase()]), ['box', 'Box']];
-const SHOWS = [['hide', 'Hide'], ['ghost', 'Ghost'], ['only', 'Only this']];
+const choices = (kind, ...values) => values.map((value) => [value, say(`${kind}.${value}`)]);
+const SIDES = choices('side', 'top', 'front', 'right', 'back', 'left', 'iso');
+const PROJECTIONS = choices('projection', 'perspective', 'parallel');
+const CUTS = [...choices('cut', 'off'), ...AXES.map((axis) => [axis, axis.toUpperCase()]), ...choices('cut', 'box')];
+const SHOWS = choices('shown', 'hide', 'ghost', 'only');
 const STEPS = 500, LARGEST_BOX = 2;
 
 export class Views {
@@ -24,7 +27,7 @@ export class Views {
         this.at.addEventListener('input', () => this.move());
         byId('shows').append(make('div', { class: 'buttons' },
             ...SHOWS.map(([how, text]) => make('button', { type: 'button', 'data-how': how, onclick: () => this.show(how) }, text)),
-            make('button', { type: 'button', id: 'show-all', onclick: () => this.showAll() }, 'Show all')));
+            make('button', { type: 'button', id: 'show-all', onclick: () => this.showAll() }, say('views.all'))));
         this.set = foldPanel(this.panel, byId('views-toggle'), () => this.update());
         session.on('fitted', (camera) => this.pilot.flyTo(camera));
         session.on('params', () => this.update());
@@ -127,18 +130,19 @@ export class Views {
         byId('cut-place').hidden = !now && part === null;
         byId('cut-turn').hidden = !now;
         if (part !== null) {
+            const what = model.asset(params.selected)?.tag || say('views.plant');
             this.at.value = Math.round((part * STEPS) / LARGEST_BOX);
-            setText(byId('cut-text'), `${Math.round(100 * part)} % of ${model.asset(params.selected)?.tag || 'the plant'}`);
+            setText(byId('cut-text'), say('views.part', { percent: Math.round(100 * part), what }));
         }
         if (now) {
             const [min, max] = this.range(now.axis);
             this.at.max = STEPS;
             if (document.activeElement !== this.at || !this.moving)
                 this.at.value = Math.round(((now.at - min) / (max - min)) * STEPS);
-            setText(byId('cut-text'), `${now.axis} ${now.turned ? '≤' : '≥'} ${now.at.toFixed(1)} m stays`);
+            setText(byId('cut-text'), say('views.stays', { axis: now.axis, sign: now.turned ? '≤' : '≥', at: numberText(now.at, 1) }));
         }
         const asset = model.asset(params.selected);
-        setText(byId('shows-what'), asset ? asset.tag || asset.id : 'Select equipment first');
+        setText(byId('shows-what'), say('views.equipment', { what: asset ? asset.tag || asset.id : say('views.select') }));
         for (const button of byId('shows').querySelectorAll('[data-how]'))
             button.disabled = !asset;
         byId('show-all').disabled = Object.keys(showAll(params)).length === 0;

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A WebSocket that comes back: waits between tries, notices a peer that has fallen silent, and says what state it is in.
 import { SUBPROTOCOL } from './wire.js';
+import { say } from './words.js';
 
 export const FIRST_WAIT_MS = 500, LONGEST_WAIT_MS = 8000, JITTER = 0.25;
 export const PING_MS = 2000;   // a server with nothing to say answers at least these
 export const QUIET_MS = 5000;
 export const DEAD_MS = 12000;
+
 const FULL = 1013, FULL_MS = 10000, OPENING_MS = 10000, ANSWER_MS = 1000;
 const CLOSE_REASONS = {
-    1001: 'the server went down', 1002: 'this page and the server speak different versions', 1008: 'not allowed',
-    1009: 'a message was too long', 1013: 'the server is full', 4000: 'this page was too slow',
+    1001: 'reason.down', 1002: 'reason.version', 1008: 'reason.forbidden', 1009: 'reason.long', 1013: 'reason.full', 4000: 'reason.slow',
 };
 
 export class Connection {
@@ -95,9 +96,10 @@ export class Connection {
         socket.onclose = (event) => {
             if (event.code === FULL)
                 this.leastWait = this.leastWait || FULL_MS;
-            this.lose(event.reason || CLOSE_REASONS[event.code] || 'the server cannot be reached');
+            const known = CLOSE_REASONS[event.code];
+            this.lose(known ? say(known) : event.reason || say('reason.unreachable'));
         };
-        this.timer = this.clock.setTimeout(() => this.lose('the server does not answer'), OPENING_MS);
+        this.timer = this.clock.setTimeout(() => this.lose(say('reason.unanswered')), OPENING_MS);
         this.become('connecting');
     }
 
@@ -126,7 +128,7 @@ export class Connection {
         this.timer = this.clock.setTimeout(() => {
             const silent = this.ask();
             if (silent >= DEAD_MS) {
-                this.lose('the server fell silent');
+                this.lose(say('reason.silent'));
                 return;
             }
             if (!this.quiet && silent >= QUIET_MS)

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Numbers, units, times and qualities in the words that the screen shows.
 
+import { locale, say, sayIfKnown } from './words.js';
+
 const UNITS = { degC: '°C', degF: '°F', 'deg C': '°C', 'deg F': '°F', C: '°C' };
 
 export function unitText(unit) {
@@ -12,12 +14,22 @@ export function decimalsFor(range) {
     return range > 0 && Number.isFinite(range) ? Math.max(0, Math.min(6, 2 - Math.floor(Math.log10(range / 4)))) : 2;
 }
 
-export function numberText(value, decimals) {
-    if (value === null || value === undefined || !Number.isFinite(value))
-        return '–';
+const DECIMAL = new Intl.NumberFormat(locale).format(0.5).replace(/[\d٠-٩]/g, '');
+const inLocale = (text) => text.replace('-', '−').replace('.', DECIMAL);
+
+const known = (value) => value !== null && value !== undefined && Number.isFinite(value);
+
+function plainText(value, decimals) {
     const text = value.toFixed(decimals);
-    return (Number(text) === 0 ? text.replace('-', '') : text).replace('-', '−');
+    return Number(text) === 0 ? text.replace('-', '') : text;
 }
+
+// In the reader's own way, without marks between thousands: they would be somebody else's decimal mark.
+export const numberText = (value, decimals) => (known(value) ? inLocale(plainText(value, decimals)) : '–');
+
+// Without the zeros at the end of its decimals.
+export const shortNumberText = (value, decimals) =>
+    (known(value) ? inLocale(plainText(value, decimals).replace(/(\.\d*?)0+$/, '$1').replace(/\.$/, '')) : '–');
 
 // A difference, with its sign.
 export function changeText(value, decimals) {
@@ -30,33 +42,43 @@ export function ageText(ms) {
         return '–';
     const s = Math.max(0, ms) / 1000;
     if (s < 9.95)
-        return `${s.toFixed(1)} s`;
+        return say('age.s', { n: numberText(s, 1) });
     if (s < 120)
-        return `${Math.round(s)} s`;
+        return say('age.s', { n: Math.round(s) });
     if (s < 7200)
-        return `${Math.floor(s / 60)} min`;
-    return s < 172800 ? `${Math.floor(s / 3600)} h` : `${Math.floor(s / 86400)} d`;
+        return say('age.min', { n: Math.floor(s / 60) });
+    return s < 172800 ? say('age.h', { n: Math.floor(s / 3600) }) : say('age.d', { n: Math.floor(s / 86400) });
 }
 
 const two = (n) => String(n).padStart(2, '0');
+const clocks = new Map(); // by zone: to make one takes long
 
-// { date, time, offset } of an instant in a time zone by its IANA name. A zone that the browser does not know is shown as UTC, and says so.
+// { date, day (of the year, without it), time, offset } of an instant in a time zone by its IANA name, as the reader writes a date; hours
+// are always 0 to 23. A zone that the browser does not know is shown as UTC, and says so.
 export function zoneClock(timeZone) {
-    const options = {
-        year: 'numeric', month: '2-digit', day: '2-digit', hour: '2-digit', minute: '2-digit', second: '2-digit', hourCycle: 'h23',
-        timeZoneName: 'longOffset',
-    };
-    let format;
+    if (!clocks.has(timeZone))
+        clocks.set(timeZone, makeClock(zoneOf(timeZone)));
+    return clocks.get(timeZone);
+}
+
+// What the browser does not know is UTC.
+export function zoneOf(name) {
     try {
-        format = new Intl.DateTimeFormat('en-GB', { ...options, timeZone });
+        return new Intl.DateTimeFormat('en', { timeZone: name }).resolvedOptions().timeZone;
     } catch {
-        format = new Intl.DateTimeFormat('en-GB', { ...options, timeZone: 'UTC' });
+        return 'UTC';
     }
+}
+
+function makeClock(timeZone) {
+    const options = { hour: '2-digit', minute: '2-digit', second: '2-digit', hourCycle: 'h23', timeZoneName: 'longOffset', timeZone };
+    const clock = new Intl.DateTimeFormat('en-GB', options), dates = new Intl.DateTimeFormat(locale, { dateStyle: 'medium', timeZone });
+    const days = new Intl.DateTimeFormat(locale, { month: 'short', day: 'numeric', timeZone });
     return (utcMs) => {
-        const part = Object.fromEntries(format.formatToParts(utcMs).map((p) => [p.type, p.value]));
+        const part = Object.fromEntries(clock.formatToParts(utcMs).map((p) => [p.type, p.value]));
         const offset = part.timeZoneName.replace('GMT', 'UTC').replace('-', '−');
         return {
-            date: `${part.year}-${part.month}-${part.day}`,
+            date: dates.format(utcMs), day: days.format(utcMs),
             time: `${two(part.hour)}:${part.minute}:${part.second}`,
             offset: offset === 'UTC+00:00' ? 'UTC' : offset,
         };
@@ -64,14 +86,18 @@ export function zoneClock(timeZone) {
 }
 
 export const QUALITIES = ['good', 'uncertain', 'bad']; // from best to worst
-const QUALITY_WORDS = { good: 'Good', uncertain: 'Uncertain', bad: 'Bad' };
 
-// "bad", "Bad_SensorFailure" -> "Bad: sensor failure"
+// "bad", "Bad_SensorFailure" -> "Bad: sensor failure". What has no words of ours is told as it is spelt.
 export function qualityText(quality, name = '') {
-    const word = QUALITY_WORDS[quality] ?? 'Unknown';
-    const detail = String(name ?? '').replace(/^(good|uncertain|bad)[_ :]*/i, '').replace(/_/g, ' ')
-        .replace(/([a-z])([A-Z])/g, '$1 $2').trim().toLowerCase();
-    return detail ? `${word}: ${detail}` : word;
+    const word = say(QUALITIES.includes(quality) ? `quality.${quality}` : 'quality.unknown');
+    const code = String(name ?? '').replace(/^(good|uncertain|bad)[_ :]*/i, '');
+    const spelt = code.replace(/_/g, ' ').replace(/([a-z])([A-Z])/g, '$1 $2').trim().toLowerCase();
+    return spelt ? say('quality.because', { quality: word, detail: sayIfKnown(`detail.${code}`, spelt) }) : word;
 }
+
+export const title = (text) => text.charAt(0).toUpperCase() + text.slice(1);
+
+// What a plant calls a quantity, in the reader's language where it is a usual one.
+export const quantityText = ({ quantity, id }) => sayIfKnown(`quantity.${(quantity || id).toLowerCase()}`, title(quantity || id));
 
 export const worst = (qualities) => QUALITIES[Math.max(-1, ...qualities.map((q) => QUALITIES.indexOf(q)))] ?? null;

@@ -5,6 +5,7 @@ import { LatencyMeter, RateMeter } from './meters.js';
 import { Model } from './model.js';
 import { Timings } from './timings.js';
 import { decodeFrame, decodeMessage, isGivenUp, WireError } from './wire.js';
+import { say } from './words.js';
 
 export const PARAMS = [
     'group', 'interpolation', 'distance', 'fill', 'strength', 'decay', 'power', 'radius_m', 'reach_m', 'colormap', 'ramp_interval', 'range',
@@ -389,7 +390,7 @@ export class Session {
 
     hearError(message) {
         if (['token_needed', 'bad_token'].includes(message.code)) {
-            this.connection.bar(message.text);
+            this.connection.bar(say(`reason.${message.code}`));
             this.emit('denied', message);
             return;
         }

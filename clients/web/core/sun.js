@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Where the sun stands, as people say it: from which side (degrees from north through east) and how high, and as the server has it.
 // North is y in a plant frame that is Z up, -z in one that is Y up.
+import { say } from './words.js';
 
 const WINDS = ['N', 'NE', 'E', 'SE', 'S', 'SW', 'W', 'NW'];
 const radians = (degrees) => (degrees * Math.PI) / 180, degrees = (angle) => (angle * 180) / Math.PI;
@@ -17,4 +18,4 @@ export function sunOf([x, y, z], isYUp) {
     return { turn, height: Math.round(degrees(Math.atan2(up, Math.hypot(x, north)))) };
 }
 
-export const sunText = ({ turn, height }) => `from ${WINDS[Math.round(turn / 45) % 8]}, ${height}° high`;
+export const sunText = ({ turn, height }) => say('sun', { wind: say(`wind.${WINDS[Math.round(turn / 45) % 8]}`), height });

@@ -16,8 +16,8 @@ export const TABLET = { viewport: { width: 1024, height: 768 }, deviceScaleFacto
 export const PHONE = { viewport: { width: 390, height: 844 }, deviceScaleFactor: 2, hasTouch: true, isMobile: true };
 
 // { page, errors, close }. errors: what went wrong in the page and what it tried to fetch from elsewhere. before: a function that runs in
-// the page before its own scripts.
-export async function openPage(url, screen = DESKTOP, before = null) {
+// the page before its own scripts; arrange(page): what else to do before.
+export async function openPage(url, screen = DESKTOP, before = null, arrange = () => {}) {
     const { chromium } = await import('playwright-core');
     const folder = mkdtempSync(join(tmpdir(), 'plantcast-chromium-'));
     const context = await chromium.launchPersistentContext(folder, { executablePath: CHROMIUM, args: QUIET, ...screen });
@@ -34,6 +34,7 @@ export async function openPage(url, screen = DESKTOP, before = null) {
     });
     if (before)
         await page.addInitScript(before);
+    await arrange(page);
     await page.goto(url);
     return {
         page, errors,

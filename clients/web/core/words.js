@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the page says, in the language of who reads it: one file of words per language beside this folder, and only one of them is loaded.
+
+export const LANGUAGES = ['en', 'ko', 'de'];
+
+// { language, locale } by ?lang=, else by what the browser prefers, else English. The locale is the reader's own where it is of that
+// language.
+export function chooseLanguage(search = '', preferred = []) {
+    const tags = [new URLSearchParams(search).get('lang'), ...preferred].filter(Boolean);
+    const languageOf = (tag) => tag.toLowerCase().split('-')[0];
+    const language = tags.map(languageOf).find((name) => LANGUAGES.includes(name)) ?? LANGUAGES[0];
+    return { language, locale: known(tags.find((tag) => languageOf(tag) === language)) ?? language };
+}
+
+function known(tag) {
+    try {
+        return Intl.getCanonicalLocales(tag ?? [])[0] ?? null;
+    } catch {
+        return null; // no tag of a language
+    }
+}
+
+// table: key to text with {names} in it, or to { one, other, ... } by the plural of `count`.
+export function phrase(table, plural, key, values = {}) {
+    const entry = table[key];
+    if (entry === undefined)
+        throw new Error(`no words for ${key}`);
+    const text = typeof entry === 'string' ? entry : entry[plural.select(values.count)] ?? entry.other;
+    return text.replace(/\{(\w+)\}/g, (_, name) => values[name]);
+}
+
+const reader = globalThis.document ? chooseLanguage(location.search, navigator.languages) : chooseLanguage();
+const { default: words } = await import(`../words/${reader.language}.js`);
+const rules = new Intl.PluralRules(reader.language);
+
+export const { language, locale } = reader;
+export const say = (key, values) => phrase(words, rules, key, values);
+
+// Of what has a name of its own that may be known to us: that, else what it is called.
+export const sayIfKnown = (key, otherwise) => (words[key] === undefined ? otherwise : say(key));

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The page in its languages: nothing is said but by the files of words, and nothing that is said is cut off.
+import assert from 'node:assert/strict';
+import { appendFileSync, readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { DESKTOP, openPage, PHONE, settle, shoot, TABLET, waitForPicture } from './support/browser.mjs';
+import { missing, TinyPlant } from './support/tiny_plant.mjs';
+
+const absent = missing();
+const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 200000 };
+let plant, url;
+
+before(async () => {
+    if (options.skip)
+        return;
+    plant = await TinyPlant.create();
+    appendFileSync(plant.file, 'alarms: local\n');
+    const tags = join(plant.folder, 'tags.csv');
+    writeFileSync(tags, readFileSync(tags, 'utf8').split('\n').map((line, i) => line && line + (i === 0 ? ',H,HH' : ',60,90')).join('\n'));
+    assert.equal(plant.prepare().code, 0);
+    await plant.startSim();
+    await plant.startDaemon();
+    await plant.tell('set TI-1 95.5');
+    url = `http://127.0.0.1:${plant.port}/`;
+});
+after(() => plant?.destroy());
+
+// Everything that opens, one after the other; f looks at each.
+async function everyPanel(page, f) {
+    const press = async (key, name) => {
+        await page.locator('#viewport').focus();
+        await page.keyboard.press(key);
+        await f(name);
+    };
+    await page.waitForFunction(() => globalThis.plantcast.session.recorded && globalThis.plantcast.session.model.alarms.list().length > 0);
+    await f('page');
+    const at = await page.evaluate(() => {
+        const { overlay, session: { model } } = globalThis.plantcast;
+        return [overlay.pageOf(model.tag('TI-1').position), overlay.pageOf(model.asset('P-101A').bounds.max)];
+    });
+    await page.mouse.click(at[0].x, at[0].y);
+    await page.locator('#card').waitFor();
+    await f('card');
+    await page.mouse.click(at[1].x - 6, at[1].y + 30);
+    await page.locator('#place').waitFor();
+    await f('place');
+    await press('Escape', 'closed');
+    await press('p', 'picture');
+    await page.locator('#split-on label').nth(1).click();
+    await f('split');
+    await page.locator('#split-on label').nth(0).click();
+    await press('Escape', 'closed');
+    await press('v', 'views');
+    await press('Escape', 'closed');
+    if (await page.locator('#display-toggle').isVisible()) {
+        await page.locator('#display-toggle').click();
+        await f('display');
+        await press('Escape', 'closed');
+    }
+    await page.evaluate(() => {
+        const { session, trends } = globalThis.plantcast;
+        session.setParams({ selected: session.model.assets[0].id });
+        trends.add(session.model.tag('TI-1'));
+    });
+    await page.locator('#trend-chart canvas').waitFor();
+    await press('y', 'trend');
+    await page.locator('#trend-close').click();
+    await press('y', 'closed');
+    await press('e', 'alarms');
+    await page.locator('[data-action="shelve"]').first().click();
+    await f('shelve');
+    await page.locator('#shelve-cancel').click();
+    await page.locator('#alarms-close').click();
+    await press('m', 'timings');
+    await press('m', 'closed');
+    await page.locator('#viewport').focus();
+    await page.keyboard.press('?');
+    await page.locator('#help[open]').waitFor();
+    await f('help');
+    await page.keyboard.press('Escape');
+}
+
+// With words that are only marks, what else can be read is the plant's own or nobody's.
+const unsaid = (page) => page.evaluate(() => {
+    const { session: { model } } = globalThis.plantcast;
+    const own = [model.plant, ...model.groups, ...model.assets, ...model.tags, ...model.colormaps].flatMap((one) =>
+        [one.name, one.id, one.tag, one.description, one.quantity, one.unit]).filter(Boolean);
+    const ours = ['Plantcast', '°C', 'JPEG', 'UTC'];
+    const allowed = new Set([...own, ...own.map((text) => text[0].toUpperCase() + text.slice(1)), ...ours]);
+    const shown = (element) => element?.checkVisibility?.() && !element.closest('code, kbd, a, svg, .limit-flag, .limits, #config, #clock');
+    const found = [], say = (text, where) => {
+        const rest = [...allowed].sort((a, b) => b.length - a.length).reduce((left, word) => left.replaceAll(word, ' '), text);
+        if (/\p{L}{3,}/u.test(rest.replace(/⟦[^⟦⟧]*⟧/g, ' ').replace(/⟦|⟧/g, ' ')))
+            found.push(`${where}: ${text}`);
+    };
+    const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+    for (let node = walker.nextNode(); node; node = walker.nextNode()) {
+        if (shown(node.parentElement))
+            say(node.data, node.parentElement.id || node.parentElement.className || node.parentElement.tagName);
+    }
+    for (const element of document.querySelectorAll('[title], [aria-label], [placeholder], [aria-description]')) {
+        for (const name of ['title', 'aria-label', 'placeholder', 'aria-description'])
+            say(element.getAttribute(name) ?? '', `${name} of ${element.id || element.className}`);
+    }
+    return found;
+});
+
+test('no word is said that is not in the files of words, and no key is shown', options, async () => {
+    const browser = await openPage(`${url}?lang=de`, { viewport: { width: 1440, height: 900 } }, null, async (page) => {
+        await page.route('**/words/de.js', async (route) => {
+            const text = await (await route.fetch()).text();
+            const marked = text.replace(/: '([^']*)'/g, (_, said) => `: '⟦${(said.match(/\{\w+\}/g) ?? []).join('⟧⟦')}⟧'`);
+            await route.fulfill({ body: marked, contentType: 'text/javascript' });
+        });
+    });
+    try {
+        await waitForPicture(browser.page);
+        await everyPanel(browser.page, async (name) => assert.deepEqual(await unsaid(browser.page), [], name));
+        assert.deepEqual(browser.errors, []);
+    } finally {
+        await browser.close();
+    }
+});
+
+// Words that do not fit where they stand, and parts of the page beyond the screen.
+const cutOff = (page) => page.evaluate(() => {
+    const seen = (element) => element.checkVisibility() && element.getBoundingClientRect().width > 0;
+    const tight = [...document.querySelectorAll('button, label > span, legend, h2, th, td, dt, dd, .state, .choice > span, output')]
+        .filter((e) => seen(e) && e.scrollWidth > e.clientWidth + 1 && getComputedStyle(e).display !== 'inline' &&
+            getComputedStyle(e).textOverflow !== 'ellipsis' && !e.closest('.alarm-strip'));
+    const parts = 'header, header button, .panel.open, footer, aside, .legend, .card, dialog[open], .alarms, .trends';
+    const out = [...document.querySelectorAll(parts)]
+        .filter((e) => seen(e) && (e.getBoundingClientRect().right > innerWidth + 0.5 || e.getBoundingClientRect().left < -0.5));
+    const wide = document.documentElement.scrollWidth > innerWidth ? [document.body] : [];
+    return [...tight, ...out, ...wide].map((e) => `${e.tagName}#${e.id}.${e.className} ${e.textContent.trim().slice(0, 40)} ` +
+        `${e.scrollWidth}>${e.clientWidth}`);
+});
+
+const READERS = [['en', '.', /^\w{3} \d+, \d{4} /], ['ko', '.', /^\d{4}\. \d+\. \d+\. /], ['de', ',', /^\d\d\.\d\d\.\d{4} /]];
+for (const [lang, decimal, date] of READERS) {
+    test(`in ${lang}: words, numbers and dates; every panel fits on every screen`, options, async () => {
+        const browser = await openPage(`${url}?lang=${lang}`, DESKTOP), { page } = browser;
+        const look = async (name) => {
+            assert.deepEqual(await cutOff(page), [], name);
+            if (!name.endsWith('closed'))
+                await shoot(page, `words-${lang}-${name}`);
+        };
+        try {
+            await waitForPicture(page);
+            assert.equal(await page.evaluate(() => document.documentElement.lang), lang);
+            await everyPanel(page, look);
+            assert.match(await page.locator('#clock').textContent(), date);
+            const number = new RegExp(`^\\d+\\${decimal}\\d+ `);
+            assert.ok((await page.locator('.reading .value').allTextContents()).some((text) => number.test(text)));
+            for (const [name, { viewport }] of [['tablet', TABLET], ['phone', PHONE]]) {
+                await page.setViewportSize(viewport);
+                await settle(page);
+                await look(`page-${name}`);
+            }
+            assert.deepEqual(browser.errors, []);
+        } finally {
+            await browser.close();
+        }
+    });
+}
