@@ -131,6 +131,8 @@ $(out)/tests/%: $(out)/obj/tests/%.o $(support) $(archives) $(out)/lib/prep.a $(
 # Where memory runs out: the test decides.
 $(out)/tests/unit/mover_test: ldflags += -Wl,--wrap=mem_try_array
 $(out)/tests/gpu/field_memory_test: ldflags += -Wl,--wrap=mem_try_array,--wrap=mesh_buffer
+# The wall clock: the test sets it.
+$(out)/tests/unit/historian_test: ldflags += -Wl,--wrap=clock_utc_ns
 .SECONDARY:
 
 include tests/tests.mk

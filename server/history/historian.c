@@ -4,6 +4,7 @@
 
 #include <errno.h>
 #include <pthread.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <time.h>
@@ -22,11 +23,15 @@ enum {
     TIDY_ROWS = 200000,
     RETRY_MAX_S = 30,
 };
-static const int64_t TICK_NS = NS_PER_S, TIDY_NS = 60 * NS_PER_S, KEEP_NS = 600 * NS_PER_S, STEP_NS = 2 * NS_PER_S;
+static const int64_t TICK_NS = NS_PER_S, TIDY_NS = 60 * NS_PER_S, KEEP_NS = 600 * NS_PER_S, STEP_NS = 2 * NS_PER_S,
+                     LOOK_NS = 20 * NS_PER_MS;
 
 struct told {
-    struct recorder_rows rows; /* samples as they came */
-    size_t lost;
+    struct heard *at; /* samples as they came */
+    size_t count, capacity, lost;
+};
+struct now {
+    int64_t mono_ns, utc_ns;
 };
 
 struct historian {
@@ -63,10 +68,9 @@ static void on_sample(void *arg, const struct heard *heard)
     struct historian *historian = arg;
     pthread_mutex_lock(&historian->lock);
     struct told *told = &historian->told;
-    if (told->rows.count < TOLD_MAX) {
-        mem_grow(&told->rows.at, &told->rows.capacity, told->rows.count + 1, sizeof(*told->rows.at));
-        told->rows.at[told->rows.count++] =
-            (struct history_row){ heard->tag, { heard->utc_ns / 1000, heard->value, heard->quality } };
+    if (told->count < TOLD_MAX) {
+        mem_grow(&told->at, &told->capacity, told->count + 1, sizeof(*told->at));
+        told->at[told->count++] = *heard;
     } else {
         told->lost++;
     }
@@ -97,19 +101,45 @@ static void take_qualities(struct historian *historian, int64_t mono_ns, int64_t
     }
 }
 
-static void take_told(struct historian *historian)
+/* The clock was set forward: nothing is known of the time that it left out. */
+static void leave_out(struct historian *historian, int64_t last_us)
+{
+    for (size_t i = 0; i < historian->plant->tag_count; i++)
+        if (!quality_is_bad(recorder_quality(historian->recorder, (int)i)))
+            put(historian, (int)i, &(struct history_point){ last_us + 1, NAN, QUALITY_BAD_NO_COMMUNICATION });
+}
+
+/* By the clock as it is now, and not as it was before. */
+static bool is_after_step(const struct heard *heard, int64_t ahead_ns, int64_t step_ns)
+{
+    int64_t off_ns = heard->utc_ns - heard->mono_ns - ahead_ns;
+    return llabs(off_ns) < llabs(off_ns + step_ns);
+}
+
+/* step_ns: by which the wall clock was set since the last time; 0: it was not. */
+static void take_told(struct historian *historian, const struct now *now, int64_t step_ns)
 {
     pthread_mutex_lock(&historian->lock);
     struct told taken = historian->told;
     historian->told = historian->taken;
     pthread_mutex_unlock(&historian->lock);
-    for (size_t i = 0; i < taken.rows.count; i++)
-        put(historian, taken.rows.at[i].tag, &taken.rows.at[i].point);
-    counter_inc(historian->counters.samples, (int64_t)taken.rows.count);
+    int64_t ahead_ns = now->utc_ns - now->mono_ns;
+    bool left_out = step_ns <= 0;
+    for (size_t i = 0; i < taken.count; i++) {
+        const struct heard *heard = &taken.at[i];
+        if (!left_out && is_after_step(heard, ahead_ns, step_ns)) {
+            leave_out(historian, (heard->utc_ns - step_ns) / 1000);
+            left_out = true;
+        }
+        put(historian, heard->tag, &(struct history_point){ heard->utc_ns / 1000, heard->value, heard->quality });
+    }
+    if (!left_out)
+        leave_out(historian, (now->utc_ns - step_ns) / 1000);
+    counter_inc(historian->counters.samples, (int64_t)taken.count);
     counter_inc(historian->counters.lost, (int64_t)taken.lost);
     if (taken.lost)
         log_err(historian->log, "history: %zu samples in one second were too many and are lost", taken.lost);
-    taken.rows.count = taken.lost = 0;
+    taken.count = taken.lost = 0;
     historian->taken = taken;
 }
 
@@ -292,18 +322,36 @@ static void try_to_write(struct historian *historian, int64_t mono_ns, int64_t u
 
 /* --- life --------------------------------------------------------------------------------------------------------------------- */
 
-/* The wall clock was set: what follows is not told apart from what was by its time alone, so it is noted. */
-static void watch_clock(struct historian *historian, int64_t mono_ns, int64_t utc_ns)
+/* Both at one moment: a thread may stand still between two looks. */
+static struct now look_at_clocks(void)
 {
-    int64_t ahead_ns = utc_ns - mono_ns, step_ns = ahead_ns - historian->utc_ahead_ns;
-    if (historian->utc_ahead_ns && (step_ns > STEP_NS || step_ns < -STEP_NS)) {
-        char *text = mem_printf("the clock was set %s by %.1f s", step_ns > 0 ? "forward" : "back", fabs((double)step_ns) / 1e9);
-        log_warn(historian->log, "history: %s", text);
-        if (historian->file)
-            month_file_note(historian->file, utc_ns / 1000, "clock", text);
-        mem_free(text);
-    }
+    struct now now;
+    int64_t began_ns;
+    int looks = 0;
+    do {
+        began_ns = clock_mono_ns();
+        now.utc_ns = clock_utc_ns();
+        now.mono_ns = clock_mono_ns();
+    } while (now.mono_ns - began_ns > LOOK_NS && ++looks < 100);
+    return now;
+}
+
+/* By how much the wall clock was set since the last time, 0: it was not. */
+static int64_t watch_clock(struct historian *historian, const struct now *now)
+{
+    int64_t ahead_ns = now->utc_ns - now->mono_ns, step_ns = historian->utc_ahead_ns ? ahead_ns - historian->utc_ahead_ns : 0;
     historian->utc_ahead_ns = ahead_ns;
+    return llabs(step_ns) > STEP_NS ? step_ns : 0;
+}
+
+/* What follows is not told apart from what was by its time alone, so it is noted. */
+static void note_step(struct historian *historian, int64_t utc_ns, int64_t step_ns)
+{
+    char *text = mem_printf("the clock was set %s by %.1f s", step_ns > 0 ? "forward" : "back", fabs((double)step_ns) / 1e9);
+    log_warn(historian->log, "history: %s", text);
+    if (historian->file)
+        month_file_note(historian->file, utc_ns / 1000, "clock", text);
+    mem_free(text);
 }
 
 /* Every line ends at its newest sample, kept as such; what nobody will record any more has no value from now on. */
@@ -319,10 +367,12 @@ static void end_lines(struct historian *historian, int64_t utc_ns)
 
 static void tick(struct historian *historian, bool last)
 {
-    int64_t mono_ns = clock_mono_ns(), utc_ns = clock_utc_ns();
-    take_told(historian);
+    const struct now now = look_at_clocks();
+    int64_t mono_ns = now.mono_ns, utc_ns = now.utc_ns, step_ns = watch_clock(historian, &now);
+    take_told(historian, &now, step_ns);
     take_qualities(historian, mono_ns, utc_ns);
-    watch_clock(historian, mono_ns, utc_ns);
+    if (step_ns)
+        note_step(historian, utc_ns, step_ns);
     if (historian->file && month_file_month(historian->file) != month_of(utc_ns / 1000))
         recorder_end(historian->recorder, &historian->waiting); /* no line is held over the border */
     if (last)
@@ -419,8 +469,8 @@ void historian_stop(struct historian **pointer)
     mem_free(historian->tags);
     mem_free(historian->waiting.at);
     mem_free(historian->held.at);
-    mem_free(historian->told.rows.at);
-    mem_free(historian->taken.rows.at);
+    mem_free(historian->told.at);
+    mem_free(historian->taken.at);
     mem_free(historian->folder);
     pthread_cond_destroy(&historian->wake);
     pthread_mutex_destroy(&historian->lock);

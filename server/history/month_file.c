@@ -8,6 +8,7 @@
 
 #include "base/damaged.h"
 #include "base/mem.h"
+#include "base/text.h"
 #include "history/month.h"
 #include "history/month_file_impl.h"
 
@@ -15,7 +16,7 @@ enum { APPLICATION_ID = 0x50434849 /* "PCHI" */, BUSY_MS = 5000 };
 
 const int64_t history_level_us[LEVEL_COUNT] = { 10 * US_PER_S, 60 * US_PER_S, 600 * US_PER_S, 3600 * US_PER_S };
 
-/* Version 1. Each later version adds one list of statements that leads to it. */
+/* Each version adds one list of statements that leads to it. */
 static const char schema_1[] =
     "CREATE TABLE tag(id INTEGER PRIMARY KEY, name TEXT NOT NULL UNIQUE, unit TEXT NOT NULL, step INTEGER NOT NULL, within REAL NOT NULL);"
     "CREATE TABLE sample(tag INTEGER NOT NULL, t INTEGER NOT NULL, v REAL, q INTEGER NOT NULL, PRIMARY KEY(tag, t)) WITHOUT ROWID;"
@@ -28,7 +29,14 @@ static const char schema_1[] =
     "CREATE VIEW history AS SELECT name AS tag, strftime('%Y-%m-%dT%H:%M:%fZ', s.t / 1e6, 'unixepoch') AS utc, s.v AS value, unit,"
     " printf('0x%08X', s.q) AS quality FROM (SELECT * FROM sample UNION ALL SELECT * FROM recent UNION ALL SELECT * FROM held) s"
     " JOIN tag ON tag.id = s.tag;";
-static const char *const schemas[HISTORY_VERSION] = { schema_1 };
+/* What is held may be kept already: it is told once. */
+static const char schema_2[] =
+    "DROP VIEW history;"
+    "CREATE VIEW history AS SELECT name AS tag, strftime('%Y-%m-%dT%H:%M:%fZ', s.t / 1e6, 'unixepoch') AS utc, s.v AS value, unit,"
+    " printf('0x%08X', s.q) AS quality FROM (SELECT * FROM sample UNION ALL SELECT * FROM recent UNION ALL SELECT * FROM held h"
+    " WHERE NOT EXISTS (SELECT 1 FROM sample WHERE tag = h.tag AND t = h.t)"
+    " AND NOT EXISTS (SELECT 1 FROM recent WHERE tag = h.tag AND t = h.t)) s JOIN tag ON tag.id = s.tag;";
+static const char *const schemas[HISTORY_VERSION] = { schema_1, schema_2 };
 
 static const char *const sql[SQL_COUNT] = {
     [SQL_BEGIN] = "BEGIN IMMEDIATE",
@@ -104,13 +112,23 @@ static int errno_of(int code)
     }
 }
 
+/* What the system said, where SQLite only says that it cannot. */
+static int cause_of(const struct month_file *file)
+{
+    if (access(file->path, W_OK) != 0 && errno == EROFS)
+        return EROFS;
+    return sqlite3_system_errno(file->db);
+}
+
 int month_fail(struct month_file *file, int code, const char *doing)
 {
     if (code == SQLITE_OK || code == SQLITE_ROW || code == SQLITE_DONE)
         return 0;
     bool told = file->db && sqlite3_errcode(file->db) != SQLITE_OK;
-    log_err(file->log, "%s: %s: %s", file->path, doing, told ? sqlite3_errmsg(file->db) : sqlite3_errstr(code));
-    return -errno_of(code);
+    int error = errno_of(code), cause = (error == EACCES || error == EIO) && told ? cause_of(file) : 0;
+    log_err(file->log, "%s: %s: %s%s%s", file->path, doing, told ? sqlite3_errmsg(file->db) : sqlite3_errstr(code), cause ? ": " : "",
+            cause ? strerror(cause) : "");
+    return -(cause ? cause : error);
 }
 
 void month_bind_value(sqlite3_stmt *statement, int index, double value)
@@ -187,6 +205,41 @@ static int open_database(struct month_file *file, int flags)
         return code;
     sqlite3_extended_result_codes(file->db, 1);
     sqlite3_busy_timeout(file->db, BUSY_MS);
+    return code;
+}
+
+/* On a disk that cannot be written SQLite makes no files beside it; where there are none, nothing is missing. */
+static int open_unchanging(struct month_file *file)
+{
+    struct text uri = { 0 };
+    text_add(&uri, "file:");
+    for (const char *c = file->path; *c; c++)
+        text_add(&uri, strchr("%?#", *c) ? "%%%02X" : "%c", (unsigned char)*c);
+    text_add(&uri, "?immutable=1");
+    sqlite3_close(file->db);
+    int code = sqlite3_open_v2(uri.at, &file->db, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX, NULL);
+    text_finish(&uri);
+    return code;
+}
+
+static bool has_log(const struct month_file *file)
+{
+    char *path = mem_printf("%s-wal", file->path);
+    bool there = access(path, F_OK) == 0;
+    mem_free(path);
+    return there;
+}
+
+static int open_to_read(struct month_file *file, int *version)
+{
+    int code = open_database(file, SQLITE_OPEN_READONLY);
+    if (code == SQLITE_OK)
+        *version = pragma_int(file->db, "PRAGMA user_version", &code);
+    if ((code & 0xff) != SQLITE_CANTOPEN || has_log(file))
+        return code;
+    code = open_unchanging(file);
+    if (code == SQLITE_OK)
+        *version = pragma_int(file->db, "PRAGMA user_version", &code);
     return code;
 }
 
@@ -271,12 +324,10 @@ struct month_file *month_file_read(struct log *log, const char *folder, int mont
         *error = -errno;
         goto error;
     }
-    int code = open_database(file, SQLITE_OPEN_READONLY), version = 0;
-    if (code == SQLITE_OK)
-        version = pragma_int(file->db, "PRAGMA user_version", &code);
+    int version = 0, code = open_to_read(file, &version);
     *error = month_fail(file, code, "cannot be read");
-    if (!*error && version != HISTORY_VERSION) {
-        log_err(log, "%s: is of version %d; this program reads %d", file->path, version, HISTORY_VERSION);
+    if (!*error && (version < 1 || version > HISTORY_VERSION)) {
+        log_err(log, "%s: is of version %d; this program reads 1 to %d", file->path, version, HISTORY_VERSION);
         *error = -EPROTO;
     }
     if (*error)

@@ -9,7 +9,7 @@
 #include "history/point.h"
 #include "history/rollup.h"
 
-enum { HISTORY_VERSION = 1 };
+enum { HISTORY_VERSION = 2 };
 enum history_level { LEVEL_10_S, LEVEL_1_MIN, LEVEL_10_MIN, LEVEL_1_H, LEVEL_COUNT };
 extern const int64_t history_level_us[LEVEL_COUNT];
 
@@ -37,10 +37,10 @@ struct history_buckets { /* likewise */
 struct month_file;
 
 /* To write, made where it is missing; a damaged one is renamed (history-2026-11.damaged-TIME.sqlite), said so, and a new one is begun.
-   tags must outlive it. NULL: *error says why. */
+   One of an older version is brought up to this one, with all that is in it. tags must outlive it. NULL: *error says why. */
 struct month_file *month_file_open(struct log *log, const char *folder, int month, const struct history_tag *tags, size_t tag_count,
                                    int *error);
-/* Of a month that has a file already, to read. -ENOENT: it has none. */
+/* Of a month that has a file already, of any version until this one, to read. -ENOENT: it has none. */
 struct month_file *month_file_read(struct log *log, const char *folder, int month, int *error);
 void month_file_close(struct month_file **file); /* &NULL is fine; leaves NULL */
 /* Found damaged while in use: closes it and puts it out of the way. */

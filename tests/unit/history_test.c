@@ -11,6 +11,7 @@
 #include <string.h>
 #include <unistd.h>
 #include <cmocka.h>
+#include <sqlite3.h>
 
 #include "base/mem.h"
 #include "base/text.h"
@@ -337,6 +338,122 @@ static void a_newer_version_is_left_alone(void **state)
     mem_free(path);
 }
 
+/* What version 1 made, statement for statement. */
+static const char version_1[] =
+    "CREATE TABLE tag(id INTEGER PRIMARY KEY, name TEXT NOT NULL UNIQUE, unit TEXT NOT NULL, step INTEGER NOT NULL, within REAL NOT NULL);"
+    "CREATE TABLE sample(tag INTEGER NOT NULL, t INTEGER NOT NULL, v REAL, q INTEGER NOT NULL, PRIMARY KEY(tag, t)) WITHOUT ROWID;"
+    "CREATE TABLE recent(tag INTEGER NOT NULL, t INTEGER NOT NULL, v REAL, q INTEGER NOT NULL);"
+    "CREATE TABLE held(tag INTEGER PRIMARY KEY, t INTEGER NOT NULL, v REAL, q INTEGER NOT NULL);"
+    "CREATE TABLE rollup(level_s INTEGER NOT NULL, tag INTEGER NOT NULL, t INTEGER NOT NULL, low REAL, high REAL, mean REAL,"
+    " first REAL, last REAL,"
+    " good_us INTEGER NOT NULL, bad_us INTEGER NOT NULL, q INTEGER NOT NULL, PRIMARY KEY(level_s, tag, t)) WITHOUT ROWID;"
+    "CREATE TABLE event(t INTEGER NOT NULL, kind TEXT NOT NULL, text TEXT NOT NULL);"
+    "CREATE VIEW history AS SELECT name AS tag, strftime('%Y-%m-%dT%H:%M:%fZ', s.t / 1e6, 'unixepoch') AS utc, s.v AS value, unit,"
+    " printf('0x%08X', s.q) AS quality FROM (SELECT * FROM sample UNION ALL SELECT * FROM recent UNION ALL SELECT * FROM held) s"
+    " JOIN tag ON tag.id = s.tag;"
+    "INSERT INTO tag VALUES(7, 'TT-1', 'K', 0, 0.4), (9, 'XS-1', '', 1, 0), (11, 'GONE', 'bar', 0, 1);"
+    "INSERT INTO sample VALUES(7, 1793491200000000, 10, 0), (7, 1793491210000000, 30, 0), (7, 1793491220000000, NULL, 2147811328),"
+    " (9, 1793491200000000, 1, 0), (11, 1793491201000000, 5, 0);"
+    "INSERT INTO recent VALUES(7, 1793491230000000, 12, 0), (7, 1793491240000000, 14, 0);"
+    "INSERT INTO held VALUES(7, 1793491240000000, 14, 0), (9, 1793491241000000, 1, 0);"
+    "INSERT INTO rollup VALUES(10, 11, 1793491200000000, 5, 5, 5, 5, 5, 1000000, 0, 0);"
+    "INSERT INTO event VALUES(1793491200000000, 'gap', 'not recorded for 3 s');"
+    "PRAGMA user_version = 1; PRAGMA application_id = 1346586697; PRAGMA journal_mode = WAL;";
+
+static sqlite3 *open_database(const char *path)
+{
+    sqlite3 *db;
+    assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
+    return db;
+}
+
+/* Rows of a query in one text. */
+static void assert_rows(sqlite3 *db, const char *query, const char *wanted)
+{
+    struct text found = { 0 };
+    sqlite3_stmt *s;
+    assert_int_equal(sqlite3_prepare_v2(db, query, -1, &s, NULL), SQLITE_OK);
+    text_add(&found, "%s", "");
+    while (sqlite3_step(s) == SQLITE_ROW)
+        for (int i = 0, n = sqlite3_column_count(s); i < n; i++)
+            text_add(&found, "%s%s", sqlite3_column_text(s, i) ? (const char *)sqlite3_column_text(s, i) : "-", i + 1 < n ? " " : "; ");
+    sqlite3_finalize(s);
+    assert_string_equal(found.at, wanted);
+    text_finish(&found);
+}
+
+static void check_contents(sqlite3 *db)
+{
+    assert_rows(db, "SELECT * FROM tag WHERE id > 7 ORDER BY id", "9 XS-1  1 0.0; 11 GONE bar 0 1.0; ");
+    assert_rows(db, "SELECT t / 1000000 - 1793491200, v, q FROM (SELECT * FROM sample UNION SELECT * FROM recent) WHERE tag = 7 ORDER BY t",
+                "0 10.0 0; 10 30.0 0; 20 - 2147811328; 30 12.0 0; 40 14.0 0; ");
+    assert_rows(db, "SELECT tag, v, q FROM held", "7 14.0 0; 9 1.0 0; ");
+    assert_rows(db, "SELECT level_s, tag, low, bad_us FROM rollup WHERE tag = 11", "10 11 5.0 0; ");
+    assert_rows(db, "SELECT kind, text FROM event", "gap not recorded for 3 s; ");
+}
+
+/* Read as it is; brought up by whoever writes, with all that is in it; and written on. */
+static void an_older_version_is_read_and_brought_up(void **state)
+{
+    struct setup *s = *state;
+    char *path = temp_path(s->folder, "history-2026-11.sqlite");
+    struct snapshot *snapshot = snapshot_create(TAGS);
+    sqlite3 *db = open_database(path);
+    assert_int_equal(sqlite3_exec(db, version_1, NULL, NULL, NULL), SQLITE_OK);
+    assert_int_equal(history_at(s->reader, s->tags, NOVEMBER + 5 * S, snapshot), 0);
+    assert_true(snapshot->readings[0].value == 20);
+    assert_rows(db, "PRAGMA user_version", "1; ");
+    assert_rows(db, "SELECT count(*) FROM history WHERE tag = 'TT-1'", "6; "); /* what was wrong with it: the newest comes twice */
+    struct month_file *file = open_file(s, NOVEMBER);
+    assert_rows(db, "PRAGMA user_version", "2; ");
+    assert_rows(db, "SELECT count(*) FROM history WHERE tag = 'TT-1'", "5; ");
+    assert_rows(db, "SELECT count(*) FROM history", "8; ");
+    check_contents(db);
+    const struct history_row next = { 0, { NOVEMBER + 60 * S, 34, QUALITY_GOOD } };
+    assert_int_equal(month_file_write(file, &next, 1, NULL, 0), 0);
+    assert_int_equal(month_file_tidy(file), 0);
+    month_file_close(&file);
+    assert_rows(db, "SELECT id FROM tag WHERE name = 'TT-1'", "7; ");
+    for (int i = 0; i < 2; i++) { /* between what was there and what came: the reader follows the new version */
+        assert_int_equal(history_at(s->reader, s->tags, NOVEMBER + (i ? 50 : 35) * S, snapshot), 0);
+        assert_true(snapshot->readings[0].value == (i ? 24 : 13));
+    }
+    assert_int_equal(count_damaged(s->folder), 0);
+    sqlite3_close(db);
+    snapshot_destroy(&snapshot);
+    mem_free(path);
+}
+
+static int refuse_views(void *arg, int action, const char *a, const char *b, const char *c, const char *d)
+{
+    (void)arg, (void)a, (void)b, (void)c, (void)d;
+    return action == SQLITE_CREATE_VIEW ? SQLITE_DENY : SQLITE_OK;
+}
+
+static int on_open(sqlite3 *db, const char **error, const void *api)
+{
+    (void)error, (void)api;
+    return sqlite3_set_authorizer(db, refuse_views, NULL);
+}
+
+/* In its middle something goes wrong: the file is of the old version, whole. */
+static void what_cannot_be_brought_up_stays_as_it_was(void **state)
+{
+    struct setup *s = *state;
+    char *path = temp_path(s->folder, "history-2026-11.sqlite");
+    int error;
+    sqlite3 *db = open_database(path);
+    assert_int_equal(sqlite3_exec(db, version_1, NULL, NULL, NULL), SQLITE_OK);
+    sqlite3_auto_extension((void (*)(void))on_open);
+    assert_null(month_file_open(s->log, s->folder, month_of(NOVEMBER), s->tags, TAGS, &error));
+    sqlite3_reset_auto_extension();
+    assert_rows(db, "PRAGMA user_version", "1; ");
+    assert_rows(db, "SELECT count(*) FROM history WHERE tag = 'TT-1'", "6; ");
+    check_contents(db);
+    sqlite3_close(db);
+    mem_free(path);
+}
+
 static void make_month(const struct setup *s, const char *name, size_t bytes)
 {
     char *content = mem_array(bytes, 1), *path = temp_write(s->folder, name, content, bytes);
@@ -379,6 +496,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(a_damaged_file_is_set_aside, set_up, tear_down),
         cmocka_unit_test_setup_teardown(damage_inside_is_noticed, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_newer_version_is_left_alone, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(an_older_version_is_read_and_brought_up, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(what_cannot_be_brought_up_stays_as_it_was, set_up, tear_down),
         cmocka_unit_test_setup_teardown(old_and_large_months_go, set_up, tear_down),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
