@@ -341,22 +341,40 @@ static void tell(sqlite3_stmt *s, void (*each)(void *arg, const struct journal_r
     each(arg, &row);
 }
 
+/* When a row was; INT64_MIN: it is not there any more. */
+static int64_t time_of(struct journal_file *file, int64_t id)
+{
+    sqlite3_stmt *s = NULL;
+    int64_t t_us = INT64_MIN;
+    if (sqlite3_prepare_v2(file->db, "SELECT t FROM event WHERE id = ?", -1, &s, NULL) == SQLITE_OK) {
+        sqlite3_bind_int64(s, 1, id);
+        if (sqlite3_step(s) == SQLITE_ROW)
+            t_us = sqlite3_column_int64(s, 0);
+    }
+    sqlite3_finalize(s);
+    return t_us;
+}
+
+/* In the order of an index: a page costs its own rows, wherever it lies. */
+#define IN_TIME "SELECT " ROW " FROM event WHERE t BETWEEN ?1 AND ?2 AND (t < ?3 OR id < ?4)"
+#define NEWEST " ORDER BY t DESC, id DESC LIMIT ?5"
+
 int journal_file_rows(struct journal_file *file, const struct journal_query *query,
                       void (*each)(void *arg, const struct journal_row *row), void *arg)
 {
     sqlite3_stmt *s = NULL;
-    int code = sqlite3_prepare_v2(file->db,
-                                  query->tag ? "SELECT " ROW " FROM event WHERE t BETWEEN ?1 AND ?2 AND id < ?3 AND tag = ?5"
-                                               " ORDER BY id DESC LIMIT ?4"
-                                             : "SELECT " ROW " FROM event WHERE t BETWEEN ?1 AND ?2 AND id < ?3 ORDER BY id DESC LIMIT ?4",
-                                  -1, &s, NULL);
+    int64_t before_us = query->before_id == INT64_MAX ? INT64_MIN : time_of(file, query->before_id), to_us = query->to_us;
+    int code = sqlite3_prepare_v2(file->db, query->tag ? IN_TIME " AND tag = ?6" NEWEST : IN_TIME NEWEST, -1, &s, NULL);
+    if (before_us != INT64_MIN && before_us < to_us)
+        to_us = before_us;
     if (code == SQLITE_OK) {
         sqlite3_bind_int64(s, 1, query->from_us);
-        sqlite3_bind_int64(s, 2, query->to_us);
-        sqlite3_bind_int64(s, 3, query->before_id);
-        sqlite3_bind_int(s, 4, query->limit);
+        sqlite3_bind_int64(s, 2, to_us);
+        sqlite3_bind_int64(s, 3, before_us);
+        sqlite3_bind_int64(s, 4, query->before_id);
+        sqlite3_bind_int(s, 5, query->limit);
         if (query->tag)
-            bind_text(s, 5, query->tag);
+            bind_text(s, 6, query->tag);
         while ((code = sqlite3_step(s)) == SQLITE_ROW)
             tell(s, each, arg);
     }
@@ -364,13 +382,20 @@ int journal_file_rows(struct journal_file *file, const struct journal_query *que
     return fail(file, code, "cannot be read");
 }
 
+/* From one alarm to the next in the index, and of each the last row until then: a few steps an alarm, however long the journal is. */
+static const char rows_at[] =
+    "WITH RECURSIVE known(tag, kind) AS ("
+    " SELECT * FROM (SELECT tag, kind FROM event ORDER BY tag, kind LIMIT 1)"
+    " UNION ALL SELECT next.tag, next.kind FROM known JOIN event next ON next.id ="
+    " coalesce((SELECT id FROM event WHERE tag = known.tag AND kind > known.kind ORDER BY kind LIMIT 1),"
+    " (SELECT id FROM event WHERE tag > known.tag ORDER BY tag, kind LIMIT 1))) "
+    "SELECT " ROW " FROM event WHERE id IN (SELECT (SELECT id FROM event WHERE tag = known.tag AND kind = known.kind AND t <= ?1"
+    " ORDER BY t DESC, id DESC LIMIT 1) FROM known) AND after <> 'normal' ORDER BY id";
+
 int journal_file_at(struct journal_file *file, int64_t t_us, void (*each)(void *arg, const struct journal_row *row), void *arg)
 {
     sqlite3_stmt *s = NULL;
-    int code = sqlite3_prepare_v2(file->db,
-                                  "SELECT " ROW " FROM event WHERE id IN (SELECT max(id) FROM event WHERE t <= ? GROUP BY tag, kind)"
-                                  " AND after <> 'normal' ORDER BY id",
-                                  -1, &s, NULL);
+    int code = sqlite3_prepare_v2(file->db, rows_at, -1, &s, NULL);
     if (code == SQLITE_OK) {
         sqlite3_bind_int64(s, 1, t_us);
         while ((code = sqlite3_step(s)) == SQLITE_ROW)

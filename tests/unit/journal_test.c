@@ -1,0 +1,183 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The journal of alarms as it is asked: pages, and how each alarm was at an instant, held against a plain walk over all rows. */
+#include <inttypes.h>
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "alarm/journal_file.h"
+#include "base/clock.h"
+#include "base/mem.h"
+#include "tests/support/temp.h"
+
+enum { ROWS = 3000, TAGS = 7, KINDS = 3, BEGIN_US = 1000000 };
+
+struct row {
+    int tag, kind;
+    int64_t t_us;
+    enum alarm_word after;
+};
+
+struct setup {
+    char *folder;
+    struct log *log;
+    struct journal_file *file;
+    struct row rows[ROWS]; /* by id, from 1 on */
+};
+
+static void write_rows(struct setup *s)
+{
+    struct journal_entry *entries = mem_array(ROWS, sizeof(*entries));
+    for (int i = 0; i < ROWS; i++) {
+        const struct row *row = &s->rows[i];
+        entries[i] = (struct journal_entry){
+            .alarm = { .kind = (enum alarm_kind)(ALARM_LL + row->kind), .priority = 2, .limit = NAN, .value = NAN },
+            .changed = true,
+            .event = row->after == ALARM_NORMAL ? ALARM_CLEAR : ALARM_RAISE,
+            .after = row->after,
+            .utc_ns = row->t_us * 1000,
+            .value = i,
+        };
+        snprintf(entries[i].tag, sizeof(entries[i].tag), "T-%d", row->tag);
+    }
+    assert_int_equal(journal_file_write(s->file, entries, ROWS), 0);
+    mem_free(entries);
+}
+
+/* Many at the same time, as in a flood, and some gaps. */
+static int set_up(void **state)
+{
+    static struct setup s;
+    bool renewed;
+    int error;
+    unsigned seed = (unsigned)clock_mono_ns();
+    int64_t t_us = BEGIN_US;
+    print_message("# seed %u\n", seed);
+    s = (struct setup){ .folder = temp_folder_create(), .log = log_create(LOG_ERROR) };
+    s.file = journal_file_open(s.log, s.folder, &renewed, &error);
+    assert_non_null(s.file);
+    for (int i = 0; i < ROWS; i++) {
+        t_us += rand_r(&seed) % 3 ? 0 : rand_r(&seed) % 1000;
+        s.rows[i] = (struct row){ rand_r(&seed) % TAGS, rand_r(&seed) % KINDS, t_us,
+                                  rand_r(&seed) % 2 ? ALARM_NORMAL : ALARM_UNACKNOWLEDGED };
+    }
+    write_rows(&s);
+    *state = &s;
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    struct setup *s = *state;
+    journal_file_close(&s->file);
+    log_destroy(&s->log);
+    temp_folder_destroy(&s->folder);
+    return 0;
+}
+
+struct found {
+    int64_t ids[ROWS];
+    int count;
+};
+
+static void on_row(void *arg, const struct journal_row *row)
+{
+    struct found *found = arg;
+    assert_true(found->count < ROWS);
+    found->ids[found->count++] = row->id;
+}
+
+static void check_at(struct setup *s, int64_t t_us)
+{
+    int64_t last[TAGS][KINDS] = { 0 };
+    int wanted = 0;
+    struct found found = { .count = 0 };
+    for (int i = 0; i < ROWS && s->rows[i].t_us <= t_us; i++)
+        last[s->rows[i].tag][s->rows[i].kind] = i + 1;
+    assert_int_equal(journal_file_at(s->file, t_us, on_row, &found), 0);
+    for (int tag = 0; tag < TAGS; tag++)
+        for (int kind = 0; kind < KINDS; kind++) {
+            int64_t id = last[tag][kind];
+            if (!id || s->rows[id - 1].after == ALARM_NORMAL)
+                continue;
+            int k = 0;
+            while (k < found.count && found.ids[k] != id)
+                k++;
+            assert_true(k < found.count);
+            wanted++;
+        }
+    assert_int_equal(found.count, wanted);
+}
+
+static void each_alarm_is_as_it_was_then(void **state)
+{
+    struct setup *s = *state;
+    check_at(s, BEGIN_US - 1);
+    check_at(s, INT64_MAX);
+    for (int i = 0; i < ROWS; i += 37) {
+        check_at(s, s->rows[i].t_us);
+        check_at(s, s->rows[i].t_us - 1);
+    }
+}
+
+/* Page by page, the newest first: every row of the time asked for once, whether of one tag or of all. */
+static void check_pages(struct setup *s, const char *tag, int64_t from_us, int64_t to_us, int limit)
+{
+    struct journal_query query = { from_us, to_us, INT64_MAX, tag, limit };
+    int at = ROWS;
+    for (;;) {
+        struct found found = { .count = 0 };
+        assert_int_equal(journal_file_rows(s->file, &query, on_row, &found), 0);
+        for (int k = 0; k < found.count; k++) {
+            do
+                assert_true(--at >= 0);
+            while (s->rows[at].t_us < from_us || s->rows[at].t_us > to_us || (tag && s->rows[at].tag != atoi(tag + 2)));
+            assert_int_equal(found.ids[k], at + 1);
+        }
+        if (found.count < limit)
+            break;
+        query.before_id = found.ids[found.count - 1];
+    }
+    while (--at >= 0)
+        assert_true(s->rows[at].t_us < from_us || s->rows[at].t_us > to_us || (tag && s->rows[at].tag != atoi(tag + 2)));
+}
+
+static void pages_follow_each_other(void **state)
+{
+    struct setup *s = *state;
+    check_pages(s, NULL, INT64_MIN, INT64_MAX, 7);
+    check_pages(s, NULL, s->rows[700].t_us, s->rows[2100].t_us, 100);
+    check_pages(s, "T-3", INT64_MIN, INT64_MAX, 11);
+    check_pages(s, "T-3", s->rows[900].t_us, s->rows[901].t_us, 1);
+    check_pages(s, NULL, s->rows[ROWS - 1].t_us + 1, INT64_MAX, 5);
+}
+
+/* Rows that a page ended with may be forgotten before the next is asked for. */
+static void a_page_after_rows_that_are_gone(void **state)
+{
+    struct setup *s = *state;
+    struct found found = { .count = 0 };
+    const struct journal_query query = { INT64_MIN, INT64_MAX, 500, NULL, ROWS };
+    assert_int_equal(journal_file_forget(s->file, INT64_MAX), 0);
+    assert_int_equal(journal_file_rows(s->file, &query, on_row, &found), 0);
+    assert_int_equal(found.count, 0);
+    assert_int_equal(journal_file_at(s->file, INT64_MAX, on_row, &found), 0);
+    assert_int_equal(found.count, 0);
+}
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(each_alarm_is_as_it_was_then, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(pages_follow_each_other, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_page_after_rows_that_are_gone, set_up, tear_down),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
