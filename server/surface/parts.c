@@ -1,126 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which triangles make up a body, which of its faces look the same way, which are walls within it. */
+/* Which faces of a body look the same way, and which are walls within it. */
 #include "surface/parts.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "base/mem.h"
+#include "surface/parts_impl.h"
 #include "surface/vec.h"
 
-#define OPEN_OF_SIZE 0.05 /* open edges together, in roots of the part's area: a hair gap's leftovers, not a pipe's end */
-#define ALONE 0.5         /* likewise, of a patch and all edges that it ends at */
-#define DOUBLES 0.9       /* of a wall's triangles, at least */
-
-struct edge_use {
-    uint32_t tris[2], faces;
-};
-
-struct finding {
-    struct parts *parts;
-    struct edge_use *uses;
-    uint32_t (*edge)[3];                     /* of each triangle, in uses: from its corner i to the next */
-    uint32_t *patch;                         /* of each triangle: its lowest one */
-    struct patch {                           /* by its lowest triangle */
-        double open_m, branching_m, area_m2; /* edges with one face; with three or more */
-        size_t tris, doubles;
-    } * patches;
-};
-
-static void list_edges(struct finding *f)
-{
-    const struct trimesh *mesh = &f->parts->solid;
-    struct edge_table edges;
-    edge_table_init(&edges, mesh->tri_count * 3 / 2);
-    f->uses = mem_array(3 * mesh->tri_count, sizeof(*f->uses));
-    f->edge = mem_array(mesh->tri_count, sizeof(*f->edge));
-    for (uint32_t t = 0; t < mesh->tri_count; t++)
-        for (int i = 0; i < 3; i++) {
-            f->edge[t][i] = edge_table_add(&edges, mesh->tris[t][i], mesh->tris[t][(i + 1) % 3]);
-            struct edge_use *use = &f->uses[f->edge[t][i]];
-            if (use->faces < 2)
-                use->tris[use->faces] = t;
-            use->faces++;
-        }
-    edge_table_finish(&edges);
-}
-
-static const struct edge_use *use_of(const struct finding *f, size_t t, int i)
-{
-    return &f->uses[f->edge[t][i]];
-}
-
-/* Numbers parts from 0, in the order of their first triangles. */
-static void number_parts(struct finding *f)
-{
-    struct parts *parts = f->parts;
-    const struct trimesh *mesh = &parts->solid;
-    uint32_t *number = mem_array(mesh->tri_count, sizeof(*number)), *part = parts->of_tri;
-    for (uint32_t t = 0; t < mesh->tri_count; t++)
-        part[t] = f->patch[t] = t;
-    for (uint32_t t = 0; t < mesh->tri_count; t++)
-        for (int i = 0; i < 3; i++) {
-            const struct edge_use *use = use_of(f, t, i);
-            trimesh_join(part, t, use->tris[0]);
-            if (use->faces == 2)
-                trimesh_join(f->patch, t, use->tris[0]);
-        }
-    for (uint32_t t = 0; t < mesh->tri_count; t++) { /* the root is the lowest, so it is numbered before the others ask for it */
-        number[t] = trimesh_root(part, t) == t ? (uint32_t)parts->count++ : number[trimesh_root(part, t)];
-        f->patch[t] = trimesh_root(f->patch, t);
-    }
-    memcpy(part, number, mesh->tri_count * sizeof(*part));
-    mem_free(number);
-}
-
-static void tri_normal(const struct trimesh *mesh, size_t t, double n[3])
-{
-    const uint32_t *v = mesh->tris[t];
-    double ab[3], ac[3];
-    vec_sub(mesh->points[v[1]], mesh->points[v[0]], ab);
-    vec_sub(mesh->points[v[2]], mesh->points[v[0]], ac);
-    vec_cross(ab, ac, n);
-}
-
-static void find_closed(struct finding *f)
-{
-    struct parts *parts = f->parts;
-    const struct trimesh *mesh = &parts->solid;
-    double *area_m2 = mem_array(parts->count, sizeof(*area_m2)), *open_m = mem_array(parts->count, sizeof(*open_m));
-    for (size_t t = 0; t < mesh->tri_count; t++) {
-        double n[3], open = 0;
-        bool fin = false; /* it stands on an edge that is closed without it */
-        tri_normal(mesh, t, n);
-        area_m2[parts->of_tri[t]] += sqrt(vec_dot(n, n)) / 2;
-        f->patches[f->patch[t]].area_m2 += sqrt(vec_dot(n, n)) / 2;
-        for (int i = 0; i < 3; i++) {
-            const struct edge_use *use = use_of(f, t, i);
-            struct patch *patch = &f->patches[f->patch[t]];
-            double length_m = vec_distance(mesh->points[mesh->tris[t][i]], mesh->points[mesh->tris[t][(i + 1) % 3]]);
-            open += use->faces == 1 ? length_m : 0;
-            fin = fin || use->faces > 2;
-            patch->open_m += use->faces == 1 ? length_m : 0;
-            patch->branching_m += use->faces > 2 ? length_m : 0;
-            parts->tangled[parts->of_tri[t]] |= use->faces > 2;
-        }
-        open_m[parts->of_tri[t]] += fin ? 0 : open;
-    }
-    for (size_t p = 0; p < parts->count; p++)
-        parts->closed[p] = open_m[p] <= OPEN_OF_SIZE * sqrt(area_m2[p]);
-    mem_free(area_m2);
-    mem_free(open_m);
-}
-
-/* Bodies that a few edges join to others by mistake are told from them: such a patch is nearly closed by itself. */
-static void find_bodies(struct finding *f, const struct trimesh *mesh)
-{
-    struct parts *parts = f->parts;
-    for (size_t t = 0; t < mesh->tri_count; t++) {
-        const struct patch *patch = &f->patches[f->patch[t]];
-        bool alone = patch->branching_m > 0 && patch->open_m + patch->branching_m < ALONE * sqrt(patch->area_m2);
-        parts->body_of_source[mesh->tri_source[t]] = alone ? (uint32_t)parts->count + f->patch[t] : parts->of_tri[t];
-    }
-}
+#define DOUBLES 0.9 /* of a wall's triangles, at least */
 
 /* --- which way patches face ----------------------------------------------------------------------------------------------- */
 
@@ -177,7 +66,7 @@ static void face_outwards(struct finding *f)
         double from[3], n[3];
         for (int axis = 0; axis < 3; axis++)
             from[axis] = mesh->points[mesh->tris[t][0]][axis] - vote->middle[axis] / (double)vote->corners;
-        tri_normal(mesh, t, n);
+        tri_cross(mesh, t, n);
         vote->volume += side[t] * vec_dot(from, n);
     }
     for (size_t t = 0; t < mesh->tri_count; t++)
@@ -248,7 +137,7 @@ static void drop_walls(struct finding *f, const uint32_t *source_tris, size_t so
     for (size_t t = 0; often && t < mesh->tri_count; t++) {
         const struct patch *patch = &f->patches[f->patch[t]];
         bool fin = patch->open_m > patch->branching_m, wall = (double)patch->doubles > DOUBLES * (double)patch->tris;
-        if (patch->branching_m > 0 && (fin || wall))
+        if (patch->loose || (patch->branching_m > 0 && (fin || wall)))
             parts->side[t] = 0;
     }
     mem_free(often);
@@ -278,15 +167,7 @@ void parts_init(struct parts *parts, const struct trimesh *mesh, const uint32_t 
     parts->body_of_source = mem_array(source_count, sizeof(*parts->body_of_source));
     f.patch = mem_array(mesh->tri_count, sizeof(*f.patch));
     f.patches = mem_array(mesh->tri_count, sizeof(*f.patches));
-    list_edges(&f);
-    number_parts(&f);
-    for (size_t t = 0; t < mesh->tri_count; t++)
-        parts->of_source[mesh->tri_source[t]] = parts->of_tri[t];
-    parts->closed = mem_array(parts->count, 1);
-    parts->tangled = mem_array(parts->count, 1);
-    parts->crossed = mem_array(parts->count, 1);
-    find_closed(&f);
-    find_bodies(&f, mesh);
+    parts_number(&f, mesh);
     face_one_way(&f);
     face_outwards(&f);
     drop_walls(&f, source_tris, source_count, vertex_point);

@@ -5,7 +5,8 @@
 #include "surface/trimesh.h"
 
 /* A part is what hangs together by edges (a point in common is not enough: a corner may touch anything), a patch what does so by edges with
-   two faces. */
+   two faces. Where one patch has two faces at an edge with more, the others only stand on it, like a fin: that does not make two closed
+   bodies one part. */
 struct parts {
     struct trimesh solid;
     uint32_t *of_tri;                     /* of the solid's triangles: part */

@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What numbering parts and facing them share. */
+#ifndef SURFACE_PARTS_IMPL_H
+#define SURFACE_PARTS_IMPL_H
+#include "surface/parts.h"
+
+struct edge_use {
+    uint32_t tris[2], faces;
+};
+
+struct finding {
+    struct parts *parts;
+    struct edge_use *uses;
+    uint32_t (*edge)[3];                     /* of each triangle, in uses: from its corner i to the next */
+    uint32_t *patch;                         /* of each triangle: its lowest one */
+    struct patch {                           /* by its lowest triangle */
+        double open_m, branching_m, area_m2; /* edges with one face; with three or more, of which it has only one */
+        size_t tris, doubles;
+        bool loose; /* it stands on others, and is open */
+    } * patches;
+};
+
+static inline const struct edge_use *use_of(const struct finding *f, size_t t, int i)
+{
+    return &f->uses[f->edge[t][i]];
+}
+
+void tri_cross(const struct trimesh *mesh, size_t t, double n[3]); /* twice its area, along its normal */
+
+/* Edges, patches and parts of parts->solid, which of them are closed, and the bodies of mesh, whose triangles are the solid's. */
+void parts_number(struct finding *f, const struct trimesh *mesh);
+
+#endif
