@@ -26,14 +26,26 @@ export function fillSelect(select, choices, value) {
     select.value = String(value);
 }
 
-// A panel under the toolbar that its button opens and a press elsewhere, but for the plant, closes.
+// A panel under the toolbar that its button opens; a press elsewhere, but for the plant, or Escape closes it. Whoever comes by the keyboard
+// is led into it, and back to the button.
 export function foldPanel(panel, button, onChange) {
     const set = (open) => {
         panel.classList.toggle('open', open);
         button.setAttribute('aria-expanded', open);
         onChange();
     };
-    button.addEventListener('click', () => set(!panel.classList.contains('open')));
+    button.addEventListener('click', (event) => {
+        set(!panel.classList.contains('open'));
+        if (event.detail === 0 && panel.classList.contains('open'))
+            [...panel.querySelectorAll('button, input, select')].find((one) => one.checkVisibility() && !one.matches(':disabled'))?.focus();
+    });
+    panel.addEventListener('keydown', (event) => {
+        if (event.key !== 'Escape')
+            return;
+        event.stopPropagation();
+        set(false);
+        button.focus();
+    });
     document.addEventListener('pointerdown', (event) => {
         if (!panel.contains(event.target) && !button.contains(event.target) && !event.target.closest('#viewport'))
             set(false);

@@ -139,7 +139,9 @@ const commands = {
         toolbar.closeDisplay();
         views.close();
         picture.close();
-        if (place.picked)
+        if (alarms.open)
+            alarms.setOpen(false);
+        else if (place.picked)
             place.close();
         else
             clearSelection();

@@ -4,7 +4,7 @@ import { numberText, quantityText, title, unitText } from '../core/format.js';
 import { multiples, rampChoices } from '../core/legend.js';
 import { say } from '../core/words.js';
 import { byId, setText } from './dom.js';
-import { fillSegments, fillSelect, markSegment } from './fields.js';
+import { fillSegments, fillSelect, foldPanel, markSegment } from './fields.js';
 
 const choices = (kind, ...values) => values.map((value) => [value, say(`${kind}.${value}`)]);
 const explained = (kind, ...values) => values.map((value) => [value, say(`${kind}.${value}`), say(`${kind}.${value}.why`)]);
@@ -32,17 +32,8 @@ export class Toolbar {
     }
 
     foldDisplay() {
-        const button = byId('display-toggle'), panel = byId('display');
-        const set = (open) => {
-            panel.classList.toggle('open', open);
-            button.setAttribute('aria-expanded', open);
-        };
+        const set = foldPanel(byId('display'), byId('display-toggle'), () => {});
         this.closeDisplay = () => set(false);
-        button.addEventListener('click', () => set(!panel.classList.contains('open')));
-        document.addEventListener('pointerdown', (event) => {
-            if (!event.target.closest('#display, #display-toggle'))
-                set(false);
-        });
     }
 
     welcome() {

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The page for everybody: axe-core finds nothing on any panel, and the keyboard reaches everything and sees where it is.
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { createRequire } from 'node:module';
+import { after, before, test } from 'node:test';
+import { openPage, shoot, waitForPicture } from './support/browser.mjs';
+import { everyPanel, startAlarmed } from './support/panels.mjs';
+import { missing } from './support/tiny_plant.mjs';
+
+const absent = missing();
+const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 200000 };
+const SCREEN = { viewport: { width: 1680, height: 1000 } };
+const RULES = ['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa', 'wcag22aa', 'best-practice'];
+let plant, browser, page;
+
+before(async () => {
+    if (options.skip)
+        return;
+    let url;
+    [plant, url] = await startAlarmed();
+    browser = await openPage(url, SCREEN);
+    page = browser.page;
+    await waitForPicture(page);
+});
+after(async () => {
+    await browser?.close();
+    await plant?.destroy();
+});
+
+async function findings(on) {
+    if (!await on.evaluate(() => globalThis.axe !== undefined))
+        await on.evaluate(readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8'));
+    const { violations } = await on.evaluate((tags) => globalThis.axe.run(document, { runOnly: tags, resultTypes: ['violations'] }), RULES);
+    return violations.flatMap(({ id, nodes }) => nodes.map((node) => `${id}: ${node.target.join(' ')} ${node.any[0]?.message ?? ''}`));
+}
+
+test('axe-core finds nothing on any panel or dialog', options, async () => {
+    const seen = [];
+    await everyPanel(page, async (name) => {
+        if (name === 'closed')
+            return;
+        seen.push(name);
+        assert.deepEqual(await findings(page), [], name);
+    });
+    for (const name of ['page', 'card', 'place', 'picture', 'split', 'views', 'trend', 'alarms', 'shelve', 'timings', 'help'])
+        assert.ok(seen.includes(name), name);
+});
+
+// What has the focus: who it is, whether one sees that, and where it stands.
+const focused = () => page.evaluate(() => {
+    const element = document.activeElement;
+    (globalThis.reached ??= new Set()).add(element);
+    const shown = element.matches('.segments input') ? element.nextElementSibling : element;
+    const { outlineStyle, outlineWidth } = getComputedStyle(shown), box = shown.getBoundingClientRect();
+    return { name: element.id, seen: outlineStyle !== 'none' && parseFloat(outlineWidth) >= 2, inToolbar: Boolean(element.closest('.toolbar')),
+        left: box.left, inside: box.right <= innerWidth + 1 && box.bottom <= innerHeight + 1 && box.width > 0, body: element === document.body };
+});
+
+test('the keyboard reaches everything in the order in which it stands, and one sees where it is', options, async () => {
+    await page.evaluate(() => document.getElementById('assets-toggle').focus());
+    const first = await focused(), reached = [];
+    for (let n = 0; n < 80; n++) {
+        await page.keyboard.press('Tab');
+        const now = await focused();
+        if (now.body || now.name === first.name)
+            break;
+        reached.push(now);
+    }
+    assert.deepEqual(reached.filter(({ seen, inside }) => !seen || !inside), []);
+    const bar = reached.filter(({ inToolbar }) => inToolbar);
+    assert.deepEqual(bar.map(({ left }) => left), bar.map(({ left }) => left).sort((a, b) => a - b), 'from left to right');
+    const missed = await page.evaluate(() => [...document.querySelectorAll('button, select, input:not([type="radio"]), [tabindex="0"]')]
+        .filter((e) => e.checkVisibility({ visibilityProperty: true }) && !e.disabled)
+        .filter((e) => !globalThis.reached.has(e)).map((e) => e.id || e.textContent));
+    assert.deepEqual(missed, []);
+    assert.ok(reached.length > 15, `${reached.length}`);
+});
+
+test('a dialog keeps the focus within, lets go of it by Escape, and gives it back', options, async () => {
+    await page.locator('#help-open').focus();
+    await page.keyboard.press('Enter');
+    await page.locator('#help[open]').waitFor();
+    await shoot(page, 'focus-help');
+    for (let n = 0; n < 4; n++) {
+        const where = await page.evaluate(() => document.activeElement.closest('dialog, body').id || document.activeElement.tagName);
+        assert.ok(['help', 'BODY'].includes(where), where); // between the last and the first the browser's own parts have it
+        await page.keyboard.press('Tab');
+    }
+    await page.keyboard.press('Escape');
+    assert.equal((await focused()).name, 'help-open');
+});
+
+test('panels open and close by keys, and the focus goes along', options, async () => {
+    await page.locator('#alarm-strip').focus();
+    await page.keyboard.press('Enter');
+    assert.equal((await focused()).name, 'alarms-close');
+    await page.keyboard.press('Escape');
+    assert.equal(await page.locator('#alarms').isVisible(), false, 'Escape closes the list');
+    assert.equal((await focused()).name, 'alarm-strip');
+    for (const name of ['picture', 'views']) {
+        await page.locator(`#${name}-toggle`).focus();
+        await page.keyboard.press('Enter');
+        await page.keyboard.press('Tab');
+        const within = await page.evaluate(() => document.activeElement.closest('.panel, .toolbar')?.id ?? document.activeElement.id);
+        assert.ok(within !== 'viewport', `${name}: ${within}`);
+        await page.keyboard.press('Escape');
+        assert.equal(await page.locator(name === 'views' ? '#views' : '#picture-panel').isVisible(), false);
+        assert.equal((await focused()).name, `${name}-toggle`, 'back where it came from');
+    }
+    assert.deepEqual(browser.errors, []);
+});

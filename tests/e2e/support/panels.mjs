@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A plant with alarms, and the way through everything of the page that opens.
+import assert from 'node:assert/strict';
+import { appendFileSync, readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { TinyPlant } from './tiny_plant.mjs';
+
+// [plant, url].
+export async function startAlarmed() {
+    const plant = await TinyPlant.create();
+    appendFileSync(plant.file, 'alarms: local\n');
+    const tags = join(plant.folder, 'tags.csv');
+    writeFileSync(tags, readFileSync(tags, 'utf8').split('\n').map((line, i) => line && line + (i === 0 ? ',H,HH' : ',60,90')).join('\n'));
+    assert.equal(plant.prepare().code, 0);
+    await plant.startSim();
+    await plant.startDaemon();
+    await plant.tell('set TI-1 95.5');
+    return [plant, `http://127.0.0.1:${plant.port}/`];
+}
+
+// Everything that opens, one after the other; f looks at each.
+export async function everyPanel(page, f) {
+    const press = async (key, name) => {
+        await page.locator('#viewport').focus();
+        await page.keyboard.press(key);
+        await f(name);
+    };
+    await page.waitForFunction(() => globalThis.plantcast.session.recorded && globalThis.plantcast.session.model.alarms.list().length > 0);
+    await f('page');
+    const at = await page.evaluate(() => {
+        const { overlay, session: { model } } = globalThis.plantcast;
+        return [overlay.pageOf(model.tag('TI-1').position), overlay.pageOf(model.asset('P-101A').bounds.max)];
+    });
+    await page.mouse.click(at[0].x, at[0].y);
+    await page.locator('#card').waitFor();
+    await f('card');
+    await page.mouse.click(at[1].x - 6, at[1].y + 30);
+    await page.locator('#place').waitFor();
+    await f('place');
+    await press('Escape', 'closed');
+    await press('p', 'picture');
+    await page.locator('#split-on label').nth(1).click();
+    await f('split');
+    await page.locator('#split-on label').nth(0).click();
+    await press('Escape', 'closed');
+    await press('v', 'views');
+    await press('Escape', 'closed');
+    if (await page.locator('#display-toggle').isVisible()) {
+        await page.locator('#display-toggle').click();
+        await f('display');
+        await press('Escape', 'closed');
+    }
+    await page.evaluate(() => {
+        const { session, trends } = globalThis.plantcast;
+        session.setParams({ selected: session.model.assets[0].id });
+        trends.add(session.model.tag('TI-1'));
+    });
+    await page.locator('#trend-chart canvas').waitFor();
+    await press('y', 'trend');
+    await page.locator('#trend-close').click();
+    await press('y', 'closed');
+    await press('e', 'alarms');
+    await page.locator('[data-action="shelve"]').first().click();
+    await f('shelve');
+    await page.locator('#shelve-cancel').click();
+    await page.locator('#alarms-close').click();
+    await press('m', 'timings');
+    await press('m', 'closed');
+    await page.locator('#viewport').focus();
+    await page.keyboard.press('?');
+    await page.locator('#help[open]').waitFor();
+    await f('help');
+    await page.keyboard.press('Escape');
+}
