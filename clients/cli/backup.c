@@ -52,16 +52,6 @@ static bool say(const char *what, const char *why)
     return false;
 }
 
-static struct plant *load(const char *path)
-{
-    struct diag diag = { 0 };
-    struct plant *plant = plant_load(path, &diag);
-    if (!plant)
-        diag_print(&diag, stderr);
-    diag_finish(&diag);
-    return plant;
-}
-
 static char *history_folder(const struct job *job, const struct plant *plant)
 {
     return job->history ? mem_strdup(job->history) : plant_history_folder(plant);
@@ -314,7 +304,7 @@ int cmd_backup(int argc, char **argv)
         print_usage(stderr);
         return 2;
     }
-    struct plant *plant = load(argv[optind]);
+    struct plant *plant = plant_load_or_print(argv[optind]);
     if (!plant)
         return 1;
     job.log = log_create(LOG_WARN);

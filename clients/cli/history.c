@@ -44,16 +44,6 @@ static int wrong(const char *what, const char *value)
     return 2;
 }
 
-static struct plant *load(const char *path)
-{
-    struct diag diag = { 0 };
-    struct plant *plant = plant_load(path, &diag);
-    if (!plant)
-        diag_print(&diag, stderr);
-    diag_finish(&diag);
-    return plant;
-}
-
 /* --- import --------------------------------------------------------------------------------------------------------------------- */
 
 static bool parse_unit(const char *text, int64_t *unit_us)
@@ -189,7 +179,7 @@ int cmd_history(int argc, char **argv)
     }
     options.plant = argv[optind + 1];
     options.csv = import ? argv[optind + 2] : NULL;
-    struct plant *plant = load(options.plant);
+    struct plant *plant = plant_load_or_print(options.plant);
     if (!plant)
         return 1;
     struct log *log = log_create(LOG_WARN);

@@ -60,6 +60,16 @@ struct plant *plant_load(const char *path, struct diag *diag)
     return load(path, false, diag);
 }
 
+struct plant *plant_load_or_print(const char *path)
+{
+    struct diag diag = { 0 };
+    struct plant *plant = plant_load(path, &diag);
+    if (!plant)
+        diag_print(&diag, stderr);
+    diag_finish(&diag);
+    return plant;
+}
+
 struct plant *plant_load_with_orphans(const char *path, struct diag *diag)
 {
     return load(path, true, diag);

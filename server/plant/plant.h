@@ -201,6 +201,7 @@ struct plant {
 
 /* Reads the plant file and its tag list. Every finding goes to diag. NULL if there was any error. */
 struct plant *plant_load(const char *path, struct diag *diag);
+struct plant *plant_load_or_print(const char *path); /* errors go to standard error */
 /* The same, but a tag may name an asset that is not there: it has no asset then, and its lost_asset is set. */
 struct plant *plant_load_with_orphans(const char *path, struct diag *diag);
 void plant_destroy(struct plant **plant); /* &NULL is fine; leaves NULL */

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "plant/address.h"
 #include "value/quality.h"
 
 static bool is_bit(const struct plant_tag *tag)
@@ -14,21 +15,7 @@ static bool is_bit(const struct plant_tag *tag)
 
 int decode_width(const struct plant_tag *tag)
 {
-    if (is_bit(tag))
-        return 1;
-    switch (tag->type) {
-    case DATA_INT32:
-    case DATA_UINT32:
-    case DATA_FLOAT32:
-    case DATA_LBCD:
-        return 2;
-    case DATA_INT64:
-    case DATA_UINT64:
-    case DATA_FLOAT64:
-        return 4;
-    default:
-        return 1;
-    }
+    return is_bit(tag) ? 1 : data_type_registers(tag->type);
 }
 
 /* The named order is that of the bytes on the wire, A the most significant: so B first means swapped within each word, and
