@@ -5,7 +5,8 @@
 #include <string.h>
 
 static const char *const event_names[ALARM_EVENTS] = { "raise",    "clear",    "acknowledge", "reset",          "shelve",
-                                                       "unshelve", "suppress", "unsuppress",  "out_of_service", "in_service" };
+                                                       "unshelve", "suppress", "unsuppress",  "out_of_service", "in_service",
+                                                       "carry",    "call" };
 
 const char *alarm_event_name(enum alarm_event event)
 {
@@ -32,6 +33,10 @@ static enum alarm_outcome raise_it(struct alarm_state *state, const struct alarm
     if (state->active)
         return ALARM_AS_IT_WAS;
     state->active = true;
+    if (rule->carried) {
+        state->aside |= ALARM_ASIDE_CARRIED;
+        state->unacknowledged = false;
+    }
     if (!state->aside)
         call(state, rule);
     return ALARM_CHANGED;
@@ -42,6 +47,7 @@ static enum alarm_outcome clear_it(struct alarm_state *state, const struct alarm
     if (!state->active)
         return ALARM_AS_IT_WAS;
     state->active = false;
+    state->aside &= (uint8_t)~ALARM_ASIDE_CARRIED;
     state->unacknowledged &= !rule->forgets;
     return ALARM_CHANGED;
 }
@@ -96,6 +102,8 @@ enum alarm_outcome alarm_state_step(struct alarm_state *state, const struct alar
     case ALARM_UNSUPPRESS: return bring_back(state, rule, ALARM_ASIDE_SUPPRESSED);
     case ALARM_TAKE_OUT: return set_aside(state, ALARM_ASIDE_OUT);
     case ALARM_PUT_BACK: return bring_back(state, rule, ALARM_ASIDE_OUT);
+    case ALARM_CARRY: return state->active ? set_aside(state, ALARM_ASIDE_CARRIED) : ALARM_AS_IT_WAS;
+    case ALARM_CALL: return bring_back(state, rule, ALARM_ASIDE_CARRIED);
     case ALARM_EVENTS: break;
     }
     return ALARM_REFUSED;
@@ -109,6 +117,8 @@ enum alarm_word alarm_state_word(const struct alarm_state *state, const struct a
         return ALARM_SUPPRESSED;
     if (state->aside & ALARM_ASIDE_SHELVED)
         return ALARM_SHELVED;
+    if (state->aside & ALARM_ASIDE_CARRIED)
+        return ALARM_SUPPRESSED;
     if (state->active)
         return !rule->acknowledges ? ALARM_ACTIVE : state->unacknowledged ? ALARM_UNACKNOWLEDGED : ALARM_ACKNOWLEDGED;
     if (state->latched)

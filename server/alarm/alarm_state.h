@@ -18,10 +18,12 @@ enum alarm_event {
     ALARM_UNSUPPRESS,
     ALARM_TAKE_OUT, /* of service */
     ALARM_PUT_BACK,
+    ALARM_CARRY, /* the alarm of its device stands for it, from now on */
+    ALARM_CALL,  /* it does not any more */
     ALARM_EVENTS
 };
 
-enum { ALARM_ASIDE_SHELVED = 1, ALARM_ASIDE_SUPPRESSED = 2, ALARM_ASIDE_OUT = 4 };
+enum { ALARM_ASIDE_SHELVED = 1, ALARM_ASIDE_SUPPRESSED = 2, ALARM_ASIDE_OUT = 4, ALARM_ASIDE_CARRIED = 8, ALARM_ASIDE_ALL = 15 };
 
 struct alarm_state { /* zero-initialised: normal */
     bool active;         /* its cause is there */
@@ -34,6 +36,7 @@ struct alarm_rule {
     bool acknowledges; /* somebody here has to; else it is only active or not */
     bool latches;
     bool forgets;      /* who acknowledges what is gone, is not known */
+    bool carried;      /* when it is raised now, the alarm of its device stands for it */
 };
 
 enum alarm_outcome { ALARM_CHANGED, ALARM_AS_IT_WAS, ALARM_REFUSED /* it is not in a state for that */ };

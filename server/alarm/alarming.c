@@ -65,10 +65,9 @@ static void on_sample(void *arg, const struct heard *heard)
 static void on_change(void *arg, const struct alarm_change *change)
 {
     struct alarming *alarming = arg;
-    const char *tag = alarming->params.plant->tags[change->alarm->tag].name;
     alarming->raised_now += change->event == ALARM_RAISE && alarm_word_calls(change->after);
     if (alarming->journal)
-        journal_add(alarming->journal, change, tag);
+        journal_add(alarming->journal, change, change->alarm->name);
 }
 
 static void on_tag(void *arg, int tag, enum alarm_kind kind, enum alarm_word word)
@@ -122,7 +121,7 @@ static void keep_all(struct alarming *alarming)
     for (int i = alarms_newest(alarming->alarms); i >= 0; i = alarms_at(alarming->alarms, i)->older) {
         const struct alarm *alarm = alarms_at(alarming->alarms, i);
         if (alarm_word_of(alarm) != ALARM_NORMAL)
-            journal_keep(alarming->journal, alarm, alarming->params.plant->tags[alarm->tag].name);
+            journal_keep(alarming->journal, alarm, alarm->name);
     }
 }
 
@@ -207,7 +206,7 @@ static bool start_journal(struct alarming *alarming)
         .log = params->log, .counters = params->counters, .folder = params->folder, .keep_days = params->keep_days
     };
     const struct instant now = { clock_mono_ns(), clock_utc_ns() };
-    return !params->folder || (alarming->journal = journal_start(&journal, alarming->alarms, params->plant, now));
+    return !params->folder || (alarming->journal = journal_start(&journal, alarming->alarms, now));
 }
 
 static bool start_thread(struct alarming *alarming)
@@ -222,7 +221,7 @@ static bool start_thread(struct alarming *alarming)
 static void adopt(struct alarming *alarming, struct alarming *before)
 {
     pthread_mutex_lock(&before->lock);
-    alarms_adopt(alarming->alarms, before->alarms, before->params.plant);
+    alarms_adopt(alarming->alarms, before->alarms);
     memcpy(alarming->raised, before->raised, sizeof(alarming->raised));
     alarming->slot = before->slot;
     pthread_mutex_unlock(&before->lock);
@@ -306,14 +305,13 @@ uint64_t alarming_changes(struct alarming *alarming, uint64_t since, void (*each
     return number;
 }
 
-const char *alarming_act(struct alarming *alarming, const char *tag, enum alarm_kind kind, const struct alarm_act *act)
+const char *alarming_act(struct alarming *alarming, const char *name, enum alarm_kind kind, const struct alarm_act *act)
 {
     const char *why = "there is no such alarm";
     if (!alarming->started)
         return "the plant is being loaded anew; try again";
-    int at = plant_find_tag(alarming->params.plant, tag);
     pthread_mutex_lock(&alarming->lock);
-    int index = at < 0 ? -1 : alarms_find(alarming->alarms, at, kind);
+    int index = alarms_find_named(alarming->alarms, name, kind);
     if (index >= 0)
         why = alarms_act(alarming->alarms, index, act, (struct instant){ clock_mono_ns(), clock_utc_ns() });
     uint64_t number = alarms_number(alarming->alarms);

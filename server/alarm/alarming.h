@@ -27,8 +27,8 @@ void alarming_stop(struct alarming **alarming);                       /* writes 
 uint64_t alarming_number(const struct alarming *alarming); /* of the last change of any alarm */
 /* Under the lock: those that changed after `since`, the newest first; since 0: all that are not normal. Returns alarming_number. */
 uint64_t alarming_changes(struct alarming *alarming, uint64_t since, void (*each)(void *arg, const struct alarm *alarm), void *arg);
-/* NULL: it was done; else why not (static). */
-const char *alarming_act(struct alarming *alarming, const char *tag, enum alarm_kind kind, const struct alarm_act *act);
+/* name: of a tag, or for ALARM_LINK of a device. NULL: it was done; else why not (static). */
+const char *alarming_act(struct alarming *alarming, const char *name, enum alarm_kind kind, const struct alarm_act *act);
 void alarming_counts(struct alarming *alarming, struct alarm_counts *out);
 
 #endif

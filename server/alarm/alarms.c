@@ -9,6 +9,8 @@
 #include "base/mem.h"
 #include "value/quality.h"
 
+enum { LONGEST_RETURN_S = 60 };
+
 /* --- which there are -------------------------------------------------------------------------------------------------------- */
 
 static void add_feed(struct alarms *alarms, int tag, int alarm, enum feed_role role)
@@ -28,6 +30,7 @@ static int add_alarm(struct alarms *alarms, int tag, enum alarm_kind kind, doubl
     int index = (int)alarms->count;
     mem_grow(&alarms->list, &alarms->capacity, alarms->count + 1, sizeof(*alarms->list));
     alarms->list[alarms->count++] = (struct alarm){
+        .name = alarms->plant->tags[tag].name,
         .tag = tag,
         .kind = kind,
         .priority = alarm_priority(&alarms->plant->tags[tag], kind),
@@ -53,6 +56,46 @@ static void add_bad(struct alarms *alarms, int tag)
     int index = add_alarm(alarms, tag, ALARM_BAD, NAN);
     add_feed(alarms, tag, index, FEED_BADNESS);
     add_suppression(alarms, index);
+}
+
+/* As soon, and one less urgent, as the first and the most urgent of those that it stands for. */
+static void add_link(struct alarms *alarms, struct device *device, const struct alarm *bad)
+{
+    const struct plant_alarming *alarming = &alarms->plant->tags[bad->tag].alarming;
+    int priority = (alarming->priority ? alarming->priority : ALARM_PRIORITY_DEFAULT) + 1;
+    priority = priority > ALARM_PRIORITIES ? ALARM_PRIORITIES : priority;
+    if (device->alarm >= 0) {
+        struct alarm *link = &alarms->list[device->alarm];
+        link->priority = priority < link->priority ? priority : link->priority;
+        link->delays.on_ns = bad->delays.on_ns < link->delays.on_ns ? bad->delays.on_ns : link->delays.on_ns;
+        link->delays.off_ns = bad->delays.off_ns < link->delays.off_ns ? bad->delays.off_ns : link->delays.off_ns;
+        return;
+    }
+    const struct alarm link = { .name = device->name,
+                                .tag = -1,
+                                .kind = ALARM_LINK,
+                                .priority = priority,
+                                .limit = NAN,
+                                .value = NAN,
+                                .rule = { .acknowledges = alarms->plant->alarms == ALARMS_LOCAL },
+                                .delays = bad->delays,
+                                .older = -1,
+                                .newer = -1 };
+    device->alarm = (int)alarms->count;
+    mem_grow(&alarms->list, &alarms->capacity, alarms->count + 1, sizeof(*alarms->list));
+    alarms->list[alarms->count++] = link;
+}
+
+static void add_links(struct alarms *alarms)
+{
+    size_t count = alarms->count;
+    alarms->devices = devices_create(alarms->plant);
+    for (size_t i = 0; i < count; i++) {
+        const struct alarm bad = alarms->list[i];
+        int of = bad.kind == ALARM_BAD ? alarms->devices->of_tag[bad.tag] : -1;
+        if (of >= 0)
+            add_link(alarms, &alarms->devices->list[of], &bad);
+    }
 }
 
 static void add_limits(struct alarms *alarms, int tag)
@@ -173,6 +216,8 @@ struct alarms *alarms_create(const struct plant *plant, const struct alarms_list
     else
         for (size_t i = 0; i < plant->tag_count; i++)
             add_limits(alarms, (int)i);
+    add_links(alarms);
+    alarms->noticed = mem_array(plant->tag_count ? plant->tag_count : 1, sizeof(*alarms->noticed));
     index_all(alarms);
     return alarms;
 }
@@ -188,6 +233,8 @@ void alarms_destroy(struct alarms **pointer)
     mem_free(alarms->first_feed);
     mem_free(alarms->first_alarm);
     mem_free(alarms->seen);
+    mem_free(alarms->noticed);
+    devices_destroy(&alarms->devices);
     mem_free(alarms->gravest);
     mem_free(alarms->timed);
     mem_free(alarms);
@@ -220,7 +267,8 @@ void alarms_touch(struct alarms *alarms, int index)
             alarms->list[alarms->newest].newer = index;
         alarms->newest = index;
     }
-    alarms_find_gravest(alarms, alarm->tag);
+    if (alarm->tag >= 0)
+        alarms_find_gravest(alarms, alarm->tag);
 }
 
 enum alarm_word alarm_word_of(const struct alarm *alarm)
@@ -268,7 +316,9 @@ static enum alarm_outcome step(struct alarms *alarms, int index, const struct al
     struct alarm *alarm = &alarms->list[index];
     struct alarm_change change = *what;
     change.before = alarm_word_of(alarm);
+    alarms->carried -= (alarm->state.aside & ALARM_ASIDE_CARRIED) != 0;
     enum alarm_outcome outcome = alarm_state_step(&alarm->state, &alarm->rule, what->event);
+    alarms->carried += (alarm->state.aside & ALARM_ASIDE_CARRIED) != 0;
     if (outcome != ALARM_CHANGED)
         return outcome;
     alarm->changed_utc_ns = what->utc_ns;
@@ -303,12 +353,22 @@ static void follow_acknowledgement(struct alarms *alarms, int index, struct inst
     step(alarms, index, &change, at.mono_ns);
 }
 
+/* Of a tag whose device is lost as a whole: that is said once, of the device. */
+static const struct device *carrier_of(const struct alarms *alarms, const struct alarm *alarm)
+{
+    int of = alarm->kind == ALARM_BAD ? alarms->devices->of_tag[alarm->tag] : -1;
+    const struct device *device = of < 0 ? NULL : &alarms->devices->list[of];
+    return device && device_is_lost(device) && alarms->devices->words[alarm->tag] == DEVICE_GONE ? device : NULL;
+}
+
 static void turned(struct alarms *alarms, int index, double value, struct instant at)
 {
-    const struct alarm *alarm = &alarms->list[index];
+    struct alarm *alarm = &alarms->list[index];
+    const struct device *carrier = alarm->condition.active ? carrier_of(alarms, alarm) : NULL;
+    alarm->rule.carried = carrier != NULL;
     step(alarms, index,
          &(struct alarm_change){ .event = alarm->condition.active ? ALARM_RAISE : ALARM_CLEAR, .utc_ns = at.utc_ns, .value = value,
-                                 .who = "", .reason = "" },
+                                 .who = "", .reason = carrier ? carrier->name : "" },
          at.mono_ns);
     follow_acknowledgement(alarms, index, at);
 }
@@ -319,7 +379,8 @@ static void advance(struct alarms *alarms, int index, struct instant now)
     struct alarm *alarm = &alarms->list[index];
     int64_t at_ns;
     if (condition_advance(&alarm->condition, &alarm->delays, now.mono_ns, &at_ns))
-        turned(alarms, index, alarms->seen[alarm->tag].value, (struct instant){ at_ns, now.utc_ns - (now.mono_ns - at_ns) });
+        turned(alarms, index, alarm->tag < 0 ? NAN : alarms->seen[alarm->tag].value,
+               (struct instant){ at_ns, now.utc_ns - (now.mono_ns - at_ns) });
 }
 
 static void put(struct alarms *alarms, int index, enum condition_side side, double value, struct instant now)
@@ -383,8 +444,59 @@ static void hear(struct alarms *alarms, const struct feed *feed, const struct he
     }
 }
 
+/* --- devices ---------------------------------------------------------------------------------------------------------------- */
+
+/* Bad measurements that nobody has acknowledged yet, which came before it was clear that all are gone. */
+static void carry_all(struct alarms *alarms, const struct device *device, struct instant now)
+{
+    for (size_t i = 0; i < alarms->count; i++) {
+        const struct alarm *alarm = &alarms->list[i];
+        bool seen = alarm->rule.acknowledges && !alarm->state.unacknowledged;
+        if (alarm->kind == ALARM_BAD && alarm->state.active && !alarm->state.aside && !seen && carrier_of(alarms, alarm) == device)
+            step(alarms, (int)i,
+                 &(struct alarm_change){ .event = ALARM_CARRY, .utc_ns = now.utc_ns, .value = NAN, .who = "", .reason = device->name },
+                 now.mono_ns);
+    }
+}
+
+static void look_at_devices(struct alarms *alarms, struct instant now)
+{
+    for (size_t i = 0; i < alarms->devices->count; i++) {
+        struct device *device = &alarms->devices->list[i];
+        if (!device->changed || device->alarm < 0)
+            continue;
+        device->changed = false;
+        put(alarms, device->alarm, device_is_lost(device) ? CONDITION_BEYOND : CONDITION_CLEAR, NAN, now);
+        if (device_is_lost(device))
+            carry_all(alarms, device, now);
+    }
+}
+
+/* Its device gives readings again, and this tag none, for as long as would make it stale: that is its own. */
+static bool calls_by_itself(const struct alarms *alarms, const struct alarm *alarm, int64_t mono_ns)
+{
+    const struct device *device = &alarms->devices->list[alarms->devices->of_tag[alarm->tag]];
+    double stale_s = fmin(alarms->plant->tags[alarm->tag].stale_s, LONGEST_RETURN_S);
+    return device->usable > 0 && (double)(mono_ns - device->back_ns) >= stale_s * 1e9;
+}
+
+static void call_those_left(struct alarms *alarms, struct instant now)
+{
+    for (size_t i = 0; i < alarms->count && alarms->carried > 0; i++) {
+        const struct alarm *alarm = &alarms->list[i];
+        if (alarm->state.aside & ALARM_ASIDE_CARRIED && calls_by_itself(alarms, alarm, now.mono_ns))
+            step(alarms, (int)i,
+                 &(struct alarm_change){ .event = ALARM_CALL, .utc_ns = now.utc_ns, .value = NAN, .who = "", .reason = "" }, now.mono_ns);
+    }
+}
+
+/* What becomes of devices is known before what becomes of their tags is judged. */
 void alarms_hear(struct alarms *alarms, const struct heard *heard, size_t count)
 {
+    for (size_t i = 0; i < count; i++)
+        devices_hear(alarms->devices, heard[i].tag, device_word_of(heard[i].quality), heard[i].mono_ns);
+    if (count > 0)
+        look_at_devices(alarms, (struct instant){ heard[count - 1].mono_ns, heard[count - 1].utc_ns });
     for (size_t i = 0; i < count; i++) {
         int tag = heard[i].tag;
         struct seen *seen = &alarms->seen[tag];
@@ -405,16 +517,29 @@ static bool is_waiting_too_long(struct alarms *alarms, int tag, int64_t mono_ns)
     return (double)(mono_ns - alarms->begun_ns) >= alarms->plant->tags[tag].stale_s * 1e9;
 }
 
+/* Nobody hears it, or it is as it was. */
+static bool is_no_news(const struct alarms *alarms, size_t tag, bool bad, uint32_t quality)
+{
+    const struct seen *seen = &alarms->seen[tag];
+    int of = alarms->devices->of_tag[tag];
+    bool counts = of >= 0 && alarms->devices->list[of].alarm >= 0;
+    if (alarms->first_feed[tag] == alarms->first_feed[tag + 1] && !counts)
+        return true;
+    if (!seen->heard)
+        return !bad;
+    return seen->bad == bad && (!counts || alarms->devices->words[tag] == device_word_of(quality));
+}
+
 /* Those that went stale since they were heard, or never came. */
 static void look_at_qualities(struct alarms *alarms, const struct snapshot *now)
 {
+    size_t count = 0;
     if (!alarms->begun_ns)
         alarms->begun_ns = now->taken_mono_ns;
     for (size_t i = 0; i < now->count; i++) {
         const struct reading *reading = &now->readings[i];
-        const struct seen *seen = &alarms->seen[i];
         bool bad = quality_is_bad(reading->quality);
-        if (alarms->first_feed[i] == alarms->first_feed[i + 1] || (seen->heard && seen->bad == bad) || (!seen->heard && !bad))
+        if (is_no_news(alarms, i, bad, reading->quality))
             continue;
         uint32_t quality = reading->quality;
         if (quality == QUALITY_BAD_WAITING) {
@@ -422,8 +547,10 @@ static void look_at_qualities(struct alarms *alarms, const struct snapshot *now)
                 continue;
             quality = QUALITY_BAD_NO_COMMUNICATION;
         }
-        alarms_hear(alarms, &(struct heard){ (int)i, bad ? NAN : reading->value, quality, now->taken_mono_ns, now->taken_utc_ns }, 1);
+        alarms->noticed[count++] =
+            (struct heard){ (int)i, bad ? NAN : reading->value, quality, now->taken_mono_ns, now->taken_utc_ns };
     }
+    alarms_hear(alarms, alarms->noticed, count);
 }
 
 static void end_shelf(struct alarms *alarms, int index, struct instant now)
@@ -452,6 +579,7 @@ void alarms_tick(struct alarms *alarms, const struct snapshot *snapshot)
     }
     alarms->timed_count = kept;
     look_at_qualities(alarms, snapshot);
+    call_those_left(alarms, now);
 }
 
 /* --- people ----------------------------------------------------------------------------------------------------------------- */
@@ -514,6 +642,16 @@ int alarms_find(const struct alarms *alarms, int tag, enum alarm_kind kind)
         if (alarms->list[alarms->by_tag[i]].kind == kind)
             return alarms->by_tag[i];
     return -1;
+}
+
+int alarms_find_named(const struct alarms *alarms, const char *name, enum alarm_kind kind)
+{
+    if (kind == ALARM_LINK) {
+        int of = devices_find(alarms->devices, name);
+        return of < 0 ? -1 : alarms->devices->list[of].alarm;
+    }
+    int tag = plant_find_tag(alarms->plant, name);
+    return tag < 0 ? -1 : alarms_find(alarms, tag, kind);
 }
 
 uint64_t alarms_number(const struct alarms *alarms)

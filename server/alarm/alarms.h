@@ -19,7 +19,8 @@ struct instant {
 };
 
 struct alarm {
-    int tag;
+    const char *name;          /* of its tag, or of its device (alarm/devices.h) */
+    int tag;                   /* -1: of a device; kind is ALARM_LINK then */
     enum alarm_kind kind;
     int priority;              /* 1 is the most urgent */
     double limit;              /* NaN: none */
@@ -78,6 +79,7 @@ const char *alarms_act(struct alarms *alarms, int index, const struct alarm_act 
 size_t alarms_count(const struct alarms *alarms);
 const struct alarm *alarms_at(const struct alarms *alarms, int index);
 int alarms_find(const struct alarms *alarms, int tag, enum alarm_kind kind); /* index or -1 */
+int alarms_find_named(const struct alarms *alarms, const char *name, enum alarm_kind kind); /* likewise; ALARM_LINK: name of a device */
 enum alarm_word alarm_word_of(const struct alarm *alarm);
 uint64_t alarms_number(const struct alarms *alarms);                 /* of the last change of any */
 int alarms_newest(const struct alarms *alarms);                      /* the one that changed last, then ->older; -1: none */
@@ -97,6 +99,6 @@ void alarms_counts(const struct alarms *alarms, int64_t now_mono_ns, struct alar
 /* As a journal kept it: nothing is told of it but the tag's gravest. What this plant's mode does not know is dropped. */
 void alarms_restore(struct alarms *alarms, int index, const struct alarm *saved, struct instant now);
 /* Takes over alarms of the same tag and kind from those of an earlier plant, with delays that run and all. */
-void alarms_adopt(struct alarms *alarms, const struct alarms *before, const struct plant *plant_before);
+void alarms_adopt(struct alarms *alarms, const struct alarms *before);
 
 #endif

@@ -3,6 +3,7 @@
 #ifndef ALARM_ALARMS_IMPL_H
 #define ALARM_ALARMS_IMPL_H
 #include "alarm/alarms.h"
+#include "alarm/devices.h"
 
 enum feed_role { FEED_VALUE, FEED_BIT, FEED_BADNESS, FEED_ACKNOWLEDGED, FEED_SUPPRESSES };
 struct feed { /* which samples an alarm hears, and as what */
@@ -29,9 +30,12 @@ struct alarms {
     int *by_tag;        /* indices of alarms, by tag */
     int *first_feed, *first_alarm; /* by tag, and one more: in feeds, by_tag */
     struct seen *seen;
+    struct devices *devices;
+    struct heard *noticed; /* room for what alarms_tick finds out; by tag */
     struct gravest *gravest;
     int *timed;         /* alarms with a delay or a shelf that runs */
     size_t timed_count, timed_capacity;
+    int carried;        /* alarms that those of their devices stand for */
     uint64_t number;
     int newest;
     int64_t begun_ns;   /* monotonic, of the first tick */

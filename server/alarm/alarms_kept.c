@@ -12,7 +12,7 @@ static void fit_to_rule(struct alarm *alarm, bool by_hand)
     if (!alarm->rule.latches)
         alarm->state.latched = false;
     if (!by_hand)
-        alarm->state.aside &= ALARM_ASIDE_SUPPRESSED;
+        alarm->state.aside &= ALARM_ASIDE_SUPPRESSED | ALARM_ASIDE_CARRIED;
     if (!(alarm->state.aside & ALARM_ASIDE_SHELVED))
         alarm->until = (struct instant){ 0 };
 }
@@ -28,8 +28,11 @@ static void take(struct alarms *alarms, int index, const struct alarm *from)
     memcpy(alarm->who, from->who, sizeof(alarm->who));
     memcpy(alarm->reason, from->reason, sizeof(alarm->reason));
     fit_to_rule(alarm, alarms->plant->alarms == ALARMS_LOCAL);
-    if (alarms->plant->tags[alarm->tag].suppressed_by < 0 && alarm->state.aside & ALARM_ASIDE_SUPPRESSED)
+    if ((alarm->tag < 0 || alarms->plant->tags[alarm->tag].suppressed_by < 0) && alarm->state.aside & ALARM_ASIDE_SUPPRESSED)
         alarm_state_step(&alarm->state, &alarm->rule, ALARM_UNSUPPRESS);
+    if (alarm->kind != ALARM_BAD || alarms->devices->of_tag[alarm->tag] < 0)
+        alarm_state_step(&alarm->state, &alarm->rule, ALARM_CALL);
+    alarms->carried += (alarm->state.aside & ALARM_ASIDE_CARRIED) != 0;
     alarm->condition.active = alarm->state.active;
     if (alarm_word_of(alarm) != ALARM_NORMAL)
         alarms_touch(alarms, index);
@@ -41,7 +44,7 @@ void alarms_restore(struct alarms *alarms, int index, const struct alarm *saved,
     struct alarm from = *saved;
     if (from.until.utc_ns) /* at once, where its time is over */
         from.until.mono_ns = now.mono_ns + (from.until.utc_ns > now.utc_ns ? from.until.utc_ns - now.utc_ns : 1);
-    alarms->list[index].held = alarms->list[index].kind != ALARM_BAD; /* until it is heard */
+    alarms->list[index].held = alarms->list[index].kind != ALARM_BAD && alarms->list[index].kind != ALARM_LINK; /* until it is heard */
     alarms->list[index].raised_mono_ns = now.mono_ns - (from.raised_utc_ns ? now.utc_ns - from.raised_utc_ns : 0);
     take(alarms, index, &from);
 }
@@ -51,13 +54,25 @@ static bool same_limit(const struct alarm *a, const struct alarm *b)
     return !memcmp(&a->limit, &b->limit, sizeof(a->limit)) && !memcmp(&a->delays, &b->delays, sizeof(a->delays));
 }
 
-void alarms_adopt(struct alarms *alarms, const struct alarms *before, const struct plant *plant_before)
+/* What was known of tags, and so of their devices. */
+static void adopt_seen(struct alarms *alarms, const struct alarms *before)
+{
+    for (size_t i = 0; i < before->plant->tag_count; i++) {
+        int tag = plant_find_tag(alarms->plant, before->plant->tags[i].name), of = before->devices->of_tag[i];
+        if (tag < 0)
+            continue;
+        alarms->seen[tag] = before->seen[i];
+        devices_hear(alarms->devices, tag, (enum device_word)before->devices->words[i], of < 0 ? 0 : before->devices->list[of].back_ns);
+    }
+}
+
+void alarms_adopt(struct alarms *alarms, const struct alarms *before)
 {
     alarms->begun_ns = before->begun_ns;
+    adopt_seen(alarms, before);
     for (size_t i = 0; i < before->count; i++) {
         const struct alarm *from = &before->list[i];
-        int tag = plant_find_tag(alarms->plant, plant_before->tags[from->tag].name);
-        int index = tag < 0 ? -1 : alarms_find(alarms, tag, from->kind);
+        int index = alarms_find_named(alarms, from->name, from->kind);
         if (index < 0)
             continue;
         struct alarm *alarm = &alarms->list[index];
@@ -68,7 +83,6 @@ void alarms_adopt(struct alarms *alarms, const struct alarms *before, const stru
         if (same_limit(alarm, from))
             alarm->condition = from->condition;
         take(alarms, index, from);
-        alarms->seen[tag] = before->seen[from->tag];
     }
 }
 

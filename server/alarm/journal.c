@@ -184,22 +184,21 @@ bool journal_asks(struct journal *journal)
 
 struct restoring {
     struct alarms *alarms;
-    const struct plant *plant;
     struct instant now;
 };
 
 static void restore(void *arg, const char *tag, const struct alarm *alarm)
 {
     struct restoring *restoring = arg;
-    int at = plant_find_tag(restoring->plant, tag), index = at < 0 ? -1 : alarms_find(restoring->alarms, at, alarm->kind);
+    int index = alarms_find_named(restoring->alarms, tag, alarm->kind);
     if (index >= 0)
         alarms_restore(restoring->alarms, index, alarm, restoring->now);
 }
 
 /* What is damaged, the thread sets aside when it writes. */
-static void restore_all(struct journal *journal, struct alarms *alarms, const struct plant *plant, struct instant now)
+static void restore_all(struct journal *journal, struct alarms *alarms, struct instant now)
 {
-    struct restoring restoring = { alarms, plant, now };
+    struct restoring restoring = { alarms, now };
     int error;
     struct journal_file *file = journal_file_read(journal->log, journal->folder, &error);
     if (file)
@@ -216,7 +215,7 @@ static void add_counters(struct journal *journal, struct counters *counters)
     counter_set(journal->counters.good, 1);
 }
 
-struct journal *journal_start(const struct journal_params *params, struct alarms *alarms, const struct plant *plant, struct instant now)
+struct journal *journal_start(const struct journal_params *params, struct alarms *alarms, struct instant now)
 {
     struct journal *journal = mem_new(sizeof(*journal));
     pthread_condattr_t attributes;
@@ -229,7 +228,7 @@ struct journal *journal_start(const struct journal_params *params, struct alarms
     journal->folder = mem_strdup(params->folder);
     journal->keep_days = params->keep_days;
     add_counters(journal, params->counters);
-    restore_all(journal, alarms, plant, now);
+    restore_all(journal, alarms, now);
     int error = pthread_create(&journal->thread, NULL, run, journal);
     journal->started = !error;
     if (error) {

@@ -18,7 +18,7 @@ struct journal_params {
 };
 
 /* Takes back how alarms were into those of `alarms`. A file that is damaged is set aside. NULL: no thread; logged. */
-struct journal *journal_start(const struct journal_params *params, struct alarms *alarms, const struct plant *plant, struct instant now);
+struct journal *journal_start(const struct journal_params *params, struct alarms *alarms, struct instant now);
 void journal_stop(struct journal **journal); /* writes what there is; &NULL is fine; leaves NULL */
 /* Does not wait. Names are copied. */
 void journal_add(struct journal *journal, const struct alarm_change *change, const char *tag);

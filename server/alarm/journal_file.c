@@ -308,7 +308,7 @@ int journal_file_states(struct journal_file *file, void (*each)(void *arg, const
         struct alarm alarm = {
             .kind = alarm_kind_find(text_at(s, 1)),
             .state = { sqlite3_column_int(s, 2) != 0, sqlite3_column_int(s, 3) != 0, sqlite3_column_int(s, 4) != 0,
-                       (uint8_t)(sqlite3_column_int(s, 5) & 7) },
+                       (uint8_t)(sqlite3_column_int(s, 5) & ALARM_ASIDE_ALL) },
             .value = value_at(s, 6),
             .raised_utc_ns = sqlite3_column_int64(s, 7) * 1000,
             .changed_utc_ns = sqlite3_column_int64(s, 8) * 1000,

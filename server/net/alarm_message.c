@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "alarm/devices.h"
 #include "base/mem.h"
 #include "net/fields.h"
 
@@ -30,6 +31,17 @@ static bool words(const json_t *o, const char *name, bool needed, char *out, siz
     return good;
 }
 
+/* By the name of a tag, or of a device. -1: there is none. */
+static int find_named(const struct plant *plant, const char *name, enum alarm_kind kind)
+{
+    if (kind != ALARM_LINK)
+        return plant_find_tag(plant, name);
+    struct devices *devices = devices_create(plant);
+    int index = devices_find(devices, name);
+    devices_destroy(&devices);
+    return index;
+}
+
 static bool take_alarm(const struct plant *plant, const json_t *pair, struct alarm_request *request, struct message_error *error)
 {
     const char *tag = json_string_value(json_array_get(pair, 0)), *kind = json_string_value(json_array_get(pair, 1));
@@ -38,12 +50,12 @@ static bool take_alarm(const struct plant *plant, const json_t *pair, struct ala
         message_fail(error, "bad_field", "alarms: a list of [tag, kind] expected, such as [\"TT-101\", \"HH\"]");
         return false;
     }
-    request->tags[request->count] = plant_find_tag(plant, tag);
     request->kinds[request->count] = (uint8_t)alarm_kind_find(kind);
+    request->tags[request->count] = find_named(plant, tag, alarm_kind_find(kind));
     if (request->tags[request->count] < 0)
-        message_fail(error, "bad_field", "alarms: there is no tag '%s'", quoted(tag, name));
+        message_fail(error, "bad_field", "alarms: there is no %s '%s'", strcmp(kind, "LINK") ? "tag" : "device", quoted(tag, name));
     else if (!request->kinds[request->count])
-        message_fail(error, "bad_field", "alarms: LL, L, H, HH, ALM or BAD expected, found '%s'", quoted(kind, name));
+        message_fail(error, "bad_field", "alarms: LL, L, H, HH, ALM, BAD or LINK expected, found '%s'", quoted(kind, name));
     else
         return ++request->count;
     return false;
@@ -74,13 +86,15 @@ char *alarm_do(struct alarming *alarming, const struct plant *plant, const struc
 {
     const struct alarm_request *request = &message->alarm;
     json_t *refused = json_array();
+    struct devices *devices = devices_create(plant);
     char *person = request->name[0] ? mem_printf("%.40s (%s)", request->name, who) : mem_strdup(who);
     const struct alarm_act act = { (enum alarm_event)request->action, (int64_t)(request->for_s * 1e9), person, request->reason };
     for (int i = 0; i < request->count; i++) {
-        const char *tag = plant->tags[request->tags[i]].name, *kind = alarm_kind_name((enum alarm_kind)request->kinds[i]);
-        const char *why = alarming_act(alarming, tag, (enum alarm_kind)request->kinds[i], &act);
+        enum alarm_kind kind = (enum alarm_kind)request->kinds[i];
+        const char *name = kind == ALARM_LINK ? devices->list[request->tags[i]].name : plant->tags[request->tags[i]].name;
+        const char *why = alarming_act(alarming, name, kind, &act);
         if (why)
-            json_array_append_new(refused, json_pack("[s,s,s]", tag, kind, why));
+            json_array_append_new(refused, json_pack("[s,s,s]", name, alarm_kind_name(kind), why));
     }
     int done = request->count - (int)json_array_size(refused);
     json_t *object = json_pack("{s:s,s:I,s:i,s:o}", "type", "alarmed", "seq", (json_int_t)message->seq, "done", done, "refused", refused);
@@ -88,5 +102,6 @@ char *alarm_do(struct alarming *alarming, const struct plant *plant, const struc
     free(dumped);
     json_decref(object);
     mem_free(person);
+    devices_destroy(&devices);
     return text;
 }

@@ -49,7 +49,8 @@ static char *print(json_t *object)
 static void add_row(void *arg, const struct alarm *alarm)
 {
     enum alarm_word word = alarm_word_of(alarm);
-    json_t *row = json_pack("[i,s,s]", alarm->tag, alarm_kind_name(alarm->kind), alarm_word_name(word));
+    json_t *of = alarm->tag < 0 ? string(alarm->name) : json_integer(alarm->tag);
+    json_t *row = json_pack("[o,s,s]", of, alarm_kind_name(alarm->kind), alarm_word_name(word));
     json_array_append_new(arg, row);
     if (word == ALARM_NORMAL)
         return;
@@ -193,7 +194,7 @@ static void add_csv_alarm(struct listing *listing, const struct alarm *alarm)
     struct text *out = &listing->csv;
     char when[WHEN_BYTES] = "";
     when_print(alarm->raised_utc_ns / 1000, when);
-    add_csv_text(out, listing->plant->tags[alarm->tag].name);
+    add_csv_text(out, alarm->name);
     text_add(out, ",%s,%s,%d,%s,", alarm_kind_name(alarm->kind), alarm_word_name(alarm_word_of(alarm)), alarm->priority, when);
     add_csv_number(out, alarm->value);
     text_add(out, ",");
@@ -206,9 +207,9 @@ static void add_csv_alarm(struct listing *listing, const struct alarm *alarm)
     text_add(out, "\n");
 }
 
-static json_t *alarm_object(const struct plant *plant, const struct alarm *alarm)
+static json_t *alarm_object(const struct alarm *alarm)
 {
-    return json_pack("{s:o,s:s,s:s,s:i,s:o,s:o,s:o,s:o,s:b,s:b,s:o,s:o,s:o}", "tag", string(plant->tags[alarm->tag].name), "kind",
+    return json_pack("{s:o,s:s,s:s,s:i,s:o,s:o,s:o,s:o,s:b,s:b,s:o,s:o,s:o}", "tag", string(alarm->name), "kind",
                      alarm_kind_name(alarm->kind), "state", alarm_word_name(alarm_word_of(alarm)), "priority", alarm->priority,
                      "raised_us", instant(alarm->raised_utc_ns), "changed_us", instant(alarm->changed_utc_ns), "value",
                      number(alarm->value), "limit", number(alarm->limit), "active", alarm->state.active, "held", alarm->held, "until_us",
@@ -219,7 +220,7 @@ static void list(void *arg, const struct alarm *alarm)
 {
     struct listing *listing = arg;
     const struct alarm_query *query = listing->query;
-    if (query->tag[0] && strcmp(query->tag, listing->plant->tags[alarm->tag].name) != 0)
+    if (query->tag[0] && strcmp(query->tag, alarm->name) != 0)
         return;
     listing->total++;
     if (listing->passed < query->offset) {
@@ -232,7 +233,7 @@ static void list(void *arg, const struct alarm *alarm)
     if (query->csv)
         add_csv_alarm(listing, alarm);
     else
-        json_array_append_new(listing->rows, alarm_object(listing->plant, alarm));
+        json_array_append_new(listing->rows, alarm_object(alarm));
 }
 
 static json_t *counts(struct alarming *alarming)

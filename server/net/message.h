@@ -109,7 +109,7 @@ struct pick_request {
 enum { ALARM_REQUEST_MOST = 256 };
 struct alarm_request {
     int action; /* enum alarm_event */
-    int tags[ALARM_REQUEST_MOST], count;
+    int tags[ALARM_REQUEST_MOST], count; /* ALARM_LINK: index of a device (alarm/devices.h) */
     uint8_t kinds[ALARM_REQUEST_MOST]; /* enum alarm_kind */
     double for_s;
     char reason[ALARM_REASON_BYTES], name[ALARM_NAME_BYTES - 24];

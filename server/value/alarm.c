@@ -7,7 +7,7 @@
 
 #include "value/quality.h"
 
-static const char *const kind_names[ALARM_KINDS] = { NULL, "LL", "L", "H", "HH", "ALM", "BAD" };
+static const char *const kind_names[ALARM_KINDS] = { NULL, "LL", "L", "H", "HH", "ALM", "BAD", "LINK" };
 static const char *const word_names[ALARM_WORDS] = { "normal",  "active",  "unacknowledged", "acknowledged",  "returned",
                                                      "latched", "shelved", "suppressed",     "out_of_service" };
 

@@ -10,6 +10,7 @@ enum alarm_kind {
     ALARM_LL, ALARM_L, ALARM_H, ALARM_HH, /* 1 + enum limit */
     ALARM_ON,                             /* of a bit of another alarm system */
     ALARM_BAD,                            /* the measurement is bad */
+    ALARM_LINK,                           /* of a device: none of its measurements can be used */
     ALARM_KINDS
 };
 

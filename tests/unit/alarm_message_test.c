@@ -140,6 +140,40 @@ static void what_is_asked_is_done_or_refused(void **state)
     mem_free(text);
 }
 
+/* The device of both tags: by its name, once. */
+static void a_device_has_its_own(void **state)
+{
+    struct setup *s = *state;
+    struct message message;
+    struct message_error error;
+    uint64_t number = 0;
+    int64_t end_ns = clock_mono_ns() + 5 * NS_PER_S;
+    store_link_lost(s->store, 0, clock_mono_ns());
+    while (alarming_number(s->alarming) == 0 && clock_mono_ns() < end_ns)
+        clock_sleep_ns(5 * NS_PER_MS);
+    json_t *all = parse(alarms_text(NULL, s->alarming, s->plant, 5000, &number)), *link = NULL, *row;
+    json_t *rows = json_object_get(all, "alarms");
+    size_t i;
+    json_array_foreach(rows, i, row)
+        if (!strcmp(json_string_value(json_array_get(row, 1)), "LINK"))
+            link = row;
+    assert_int_equal(json_array_size(rows), 3);
+    assert_string_equal(json_string_value(json_array_get(link, 0)), "plc");
+    assert_string_equal(state_of(all, "BAD"), "suppressed");
+    json_decref(all);
+    assert_true(ask(s, "{\"type\":\"alarm\",\"seq\":1,\"action\":\"acknowledge\",\"alarms\":[[\"plc\",\"LINK\"],[\"TT-1\",\"BAD\"]]}",
+                    &message, &error));
+    json_t *answer = parse(alarm_do(s->alarming, s->plant, &message, "local"));
+    assert_int_equal(json_integer_value(json_object_get(answer, "done")), 1); /* a carried one is not to be acknowledged */
+    json_decref(answer);
+    assert_false(ask(s, "{\"type\":\"alarm\",\"seq\":2,\"action\":\"acknowledge\",\"alarms\":[[\"TT-1\",\"LINK\"]]}", &message,
+                     &error));
+    assert_non_null(strstr(error.text, "there is no device 'TT-1'"));
+    json_t *api = parse(alarms_api_text(s->alarming, s->plant, &(struct alarm_query){ .limit = 10 }, 5000));
+    assert_int_equal(json_integer_value(json_object_get(json_object_get(api, "counts"), "active")), 1);
+    json_decref(api);
+}
+
 static void roles_are_kept(void **state)
 {
     struct setup *s = *state;
@@ -233,6 +267,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(sessions_hear_what_changed, set_up, tear_down),
         cmocka_unit_test_setup_teardown(what_is_asked_is_done_or_refused, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_device_has_its_own, set_up, tear_down),
         cmocka_unit_test_setup_teardown(roles_are_kept, set_up, tear_down),
         cmocka_unit_test_setup_teardown(programs_get_pages, set_up, tear_down),
         cmocka_unit_test_setup_teardown(the_journal_is_read_by_pages, set_up, tear_down),

@@ -41,29 +41,31 @@ static const struct {
     { "out+s", "out_of_service", { .aside = ALARM_ASIDE_OUT | ALARM_ASIDE_SHELVED } },
     { "out+d", "out_of_service", { .aside = ALARM_ASIDE_OUT | ALARM_ASIDE_SUPPRESSED } },
     { "shelved+l", "shelved", { .latched = true, .aside = ALARM_ASIDE_SHELVED } },
+    { "carried", "suppressed", { .active = true, .aside = ALARM_ASIDE_CARRIED } },
 };
-enum { STATE_COUNT = sizeof(states) / sizeof(states[0]), ROWS = 17 };
+enum { STATE_COUNT = sizeof(states) / sizeof(states[0]), ROWS = 18 };
 
 /* Columns in the order of enum alarm_event. "=": as it was; "-": refused. Rows of an alarm that does not latch. */
 static const char *const table[ROWS][1 + ALARM_EVENTS] = {
-    /* from       raise        clear       ack       reset     shelve       unshelve    suppress   unsuppr.  take out   put back */
-    { "normal",    "unack",     "=",        "-",      "-",      "shelved",   "=",        "suppr",   "=",      "out",     "=" },
-    { "unack",     "=",         "returned", "acked",  "-",      "shelved+a", "=",        "suppr+a", "=",      "out+a",   "=" },
-    { "acked",     "=",         "normal",   "-",      "-",      "shelved+a", "=",        "suppr+a", "=",      "out+a",   "=" },
-    { "returned",  "unack",     "=",        "normal", "-",      "shelved",   "=",        "suppr",   "=",      "out",     "=" },
-    { "unack+l",   "=",         "latched+u","acked+l","-",      NULL,        "=",        NULL,      "=",      NULL,      "=" },
-    { "acked+l",   "=",         "latched",  "-",      "-",      NULL,        "=",        NULL,      "=",      NULL,      "=" },
-    { "latched+u", NULL,        "=",        "latched","-",      "shelved+l", "=",        NULL,      "=",      NULL,      "=" },
-    { "latched",   NULL,        "=",        "-",      "normal", "shelved+l", "=",        NULL,      "=",      NULL,      "=" },
-    { "shelved",   "shelved+a", "=",        "-",      "-",      "shelved",   "normal",   "suppr+s", "=",      "out+s",   "=" },
-    { "shelved+a", "=",         "shelved",  "-",      "-",      "shelved+a", "unack",    NULL,      "=",      NULL,      "=" },
-    { "suppr",     "suppr+a",   "=",        "-",      "-",      "suppr+s",   "=",        "=",       "normal", "out+d",   "=" },
-    { "suppr+a",   "=",         "suppr",    "-",      "-",      NULL,        "=",        "=",       "unack",  NULL,      "=" },
-    { "out",       "out+a",     "=",        "-",      "-",      "out+s",     "=",        "out+d",   "=",      "=",       "normal" },
-    { "out+a",     "=",         "out",      "-",      "-",      NULL,        "=",        NULL,      "=",      "=",       "unack" },
-    { "suppr+s",   NULL,        "=",        "-",      "-",      "suppr+s",   "suppr",    "=",       "shelved",NULL,      "=" },
-    { "out+s",     NULL,        "=",        "-",      "-",      "out+s",     "out",      NULL,      "=",      "=",       "shelved" },
-    { "shelved+l", NULL,        "=",        "-",      "-",      "shelved+l", "latched",  NULL,      "=",      NULL,      "=" },
+    /* each row: from; raise, clear, acknowledge, reset, shelve, unshelve, suppress, unsuppress, take out, put back, carry, call */
+    { "normal"   , "unack"    , "="        , "-"      , "-"     , "shelved"  , "=", "suppr", "=", "out", "=", "=", "=" },
+    { "unack"    , "="        , "returned" , "acked"  , "-"     , "shelved+a", "=", "suppr+a", "=", "out+a", "=", "carried", "=" },
+    { "acked"    , "="        , "normal"   , "-"      , "-"     , "shelved+a", "=", "suppr+a", "=", "out+a", "=", "carried", "=" },
+    { "returned" , "unack"    , "="        , "normal" , "-"     , "shelved"  , "=", "suppr", "=", "out", "=", "=", "=" },
+    { "unack+l"  , "="        , "latched+u", "acked+l", "-"     , NULL       , "=", NULL, "=", NULL, "=", NULL, "=" },
+    { "acked+l"  , "="        , "latched"  , "-"      , "-"     , NULL       , "=", NULL, "=", NULL, "=", NULL, "=" },
+    { "latched+u", NULL       , "="        , "latched", "-"     , "shelved+l", "=", NULL, "=", NULL, "=", "=", "=" },
+    { "latched"  , NULL       , "="        , "-"      , "normal", "shelved+l", "=", NULL, "=", NULL, "=", "=", "=" },
+    { "shelved"  , "shelved+a", "="        , "-"      , "-"     , "shelved"  , "normal", "suppr+s", "=", "out+s", "=", "=", "=" },
+    { "shelved+a", "="        , "shelved"  , "-"      , "-"     , "shelved+a", "unack", NULL, "=", NULL, "=", NULL, "=" },
+    { "suppr"    , "suppr+a"  , "="        , "-"      , "-"     , "suppr+s"  , "=", "=", "normal", "out+d", "=", "=", "=" },
+    { "suppr+a"  , "="        , "suppr"    , "-"      , "-"     , NULL       , "=", "=", "unack", NULL, "=", NULL, "=" },
+    { "out"      , "out+a"    , "="        , "-"      , "-"     , "out+s"    , "=", "out+d", "=", "=", "normal", "=", "=" },
+    { "out+a"    , "="        , "out"      , "-"      , "-"     , NULL       , "=", NULL, "=", "=", "unack", NULL, "=" },
+    { "suppr+s"  , NULL       , "="        , "-"      , "-"     , "suppr+s"  , "suppr", "=", "shelved", NULL, "=", "=", "=" },
+    { "out+s"    , NULL       , "="        , "-"      , "-"     , "out+s"    , "out", NULL, "=", "=", "shelved", "=", "=" },
+    { "shelved+l", NULL       , "="        , "-"      , "-"     , "shelved+l", "latched", NULL, "=", NULL, "=", "=", "=" },
+    { "carried"  , "="        , "normal"   , "-"      , "-"     , NULL       , "=", NULL, "=", NULL, "=", "=", "unack" },
 };
 
 static int find_state(const char *name)
@@ -131,8 +133,8 @@ static void no_sequence_breaks_what_must_hold(void **unused)
 {
     unsigned seed = 20261120;
     (void)unused;
-    for (int rules = 0; rules < 8; rules++) {
-        const struct alarm_rule rule = { .acknowledges = rules & 1, .latches = rules & 2, .forgets = rules & 4 };
+    for (int rules = 0; rules < 16; rules++) {
+        const struct alarm_rule rule = { .acknowledges = rules & 1, .latches = rules & 2, .forgets = rules & 4, .carried = rules & 8 };
         struct alarm_state state = { 0 };
         for (int i = 0; i < 20000; i++) {
             enum alarm_event event = (enum alarm_event)(rand_r(&seed) % ALARM_EVENTS);

@@ -187,6 +187,41 @@ static void killed_at_any_moment_it_goes_on(void **state)
     assert_int_equal(read_rows(s, NULL, 100000, INT64_MAX).count, TAGS + 400); /* still there is nothing new */
 }
 
+static double counted(struct setup *s, const char *name)
+{
+    return (double)*counters_add(s->counters, name, "counter", "");
+}
+
+/* A thousand tags lose their device: each is journalled, and one is to be acknowledged. */
+static void a_lost_device_is_no_flood(void **state)
+{
+    struct setup *s = *state;
+    for (int i = 0; i < TAGS; i++)
+        s->plant->tags[i].stale_s = 0.5;
+    store_destroy(&s->store);
+    s->store = store_create(s->plant);
+    start(s);
+    give_all(s, 50);
+    store_link_lost(s->store, 0, clock_mono_ns());
+    assert_int_equal(wait_for(s, ALARM_SUPPRESSED, TAGS), TAGS);
+    assert_int_equal(wait_for(s, ALARM_UNACKNOWLEDGED, 1), 1);
+    struct alarm_counts counts;
+    alarming_counts(s->alarming, &counts);
+    assert_int_equal(counts.active, 1);
+    const struct alarm_act act = { ALARM_ACKNOWLEDGE, 0, "kim", "" };
+    assert_null(alarming_act(s->alarming, "plc", ALARM_LINK, &act));
+    assert_string_equal(alarming_act(s->alarming, "T-0001", ALARM_LINK, &act), "there is no such alarm");
+    give_all(s, 50);
+    assert_int_equal(wait_for(s, ALARM_SUPPRESSED, 0), 0);
+    alarming_stop(&s->alarming);
+    assert_int_equal((int)counted(s, "plantcast_alarms_raised_total"), 1);
+    struct rows one = read_rows(s, "T-0007", 2, INT64_MAX), device = read_rows(s, "plc", 10, INT64_MAX);
+    assert_int_equal(one.count, 2);
+    assert_string_equal(one.last, "T-0007 BAD raise suppressed 4 nan  plc");
+    assert_int_equal(device.count, 3);
+    assert_string_equal(device.last, "plc LINK raise unacknowledged 3 nan  ");
+}
+
 static void a_damaged_journal_is_set_aside(void **state)
 {
     struct setup *s = *state;
@@ -207,6 +242,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(a_thousand_at_once_are_all_written, set_up, tear_down),
         cmocka_unit_test_setup_teardown(killed_at_any_moment_it_goes_on, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_lost_device_is_no_flood, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_damaged_journal_is_set_aside, set_up, tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -31,7 +31,7 @@ static void on_change(void *arg, const struct alarm_change *change)
     struct stage *s = arg;
     size_t n = strlen(s->log);
     snprintf(s->log + n, sizeof(s->log) - n, "%d %s.%s %s: %s > %s%s%s\n", (int)((change->utc_ns - UTC) / S),
-             s->plant->tags[change->alarm->tag].name, alarm_kind_name(change->alarm->kind), alarm_event_name(change->event),
+             change->alarm->name, alarm_kind_name(change->alarm->kind), alarm_event_name(change->event),
              alarm_word_name(change->before), alarm_word_name(change->after), change->who[0] ? " by " : "", change->who);
 }
 
@@ -87,6 +87,17 @@ static void hear(struct stage *s, int second, int tag, double value, uint32_t qu
     struct reading *reading = &s->snapshot->readings[tag];
     *reading = (struct reading){ .value = quality_is_bad(quality) ? 0 : value, .quality = quality };
     alarms_hear(s->alarms, &(struct heard){ tag, quality_is_bad(quality) ? NAN : value, quality, second * S, UTC + second * S }, 1);
+}
+
+/* All tags at once, as a lost link tells it. */
+static void hear_all(struct stage *s, int second, double value, uint32_t quality)
+{
+    struct heard heard[5];
+    for (int tag = 0; tag < 5; tag++) {
+        s->snapshot->readings[tag] = (struct reading){ .value = quality_is_bad(quality) ? 0 : value, .quality = quality };
+        heard[tag] = (struct heard){ tag, quality_is_bad(quality) ? NAN : value, quality, second * S, UTC + second * S };
+    }
+    alarms_hear(s->alarms, heard, 5);
 }
 
 static void tick(struct stage *s, int second)
@@ -168,6 +179,7 @@ static void what_is_bad_is_held_and_says_so(void **unused)
     s.log[0] = 0;
     hear(&s, 2, 0, 0, QUALITY_BAD_SENSOR_FAILURE);
     assert_told(&s, "2 TT.BAD raise: normal > unacknowledged\n");
+    hear(&s, 2, 2, 0, QUALITY_GOOD); /* of the same device, which is there */
     assert_string_equal(word(&s, 0, ALARM_H), "acknowledged");
     assert_true(alarms_at(s.alarms, alarms_find(s.alarms, 0, ALARM_H))->held);
     hear(&s, 3, 0, 50, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE);
@@ -250,7 +262,7 @@ static void a_mirror_shows_what_the_other_system_says(void **unused)
     struct stage s;
     (void)unused;
     begin(&s, ALARMS_MIRROR);
-    assert_int_equal(alarms_count(s.alarms), 3); /* one, and two bits that may go bad */
+    assert_int_equal(alarms_count(s.alarms), 4); /* one, two bits that may go bad, and their device */
     hear(&s, 1, 0, 95, QUALITY_GOOD);             /* the limit is the other's to watch */
     assert_told(&s, "");
     hear(&s, 2, 3, 1, QUALITY_GOOD);
@@ -307,7 +319,7 @@ static void a_reload_keeps_what_stays(void **unused)
     hear(&s, 1, 0, 95, QUALITY_GOOD);
     hear(&s, 9, 1, 9, QUALITY_GOOD); /* PT's delay of 2 s runs */
     begin(&next, ALARMS_LOCAL);
-    alarms_adopt(next.alarms, s.alarms, s.plant);
+    alarms_adopt(next.alarms, s.alarms);
     assert_told(&next, "");
     assert_int_equal(next.told[0], ALARM_HH);
     assert_string_equal(word(&next, 0, ALARM_HH), "unacknowledged");
@@ -360,6 +372,8 @@ static void counts_are_what_there_is(void **unused)
 /* Whatever comes, in whatever order: each step goes on from where the one before ended, and the gravest is the gravest. */
 static void no_sequence_tells_a_contradiction(void **unused)
 {
+    static const uint32_t bad[12] = { [9] = QUALITY_BAD_SENSOR_FAILURE, [10] = QUALITY_BAD_COMMUNICATION_ERROR,
+                                      [11] = QUALITY_BAD_DEVICE_FAILURE };
     unsigned seed = 42;
     (void)unused;
     for (int mode = ALARMS_DISPLAY; mode <= ALARMS_LOCAL; mode++) {
@@ -369,14 +383,18 @@ static void no_sequence_tells_a_contradiction(void **unused)
             int tag = rand_r(&seed) % 5, kind = ALARM_LL + rand_r(&seed) % (ALARM_KINDS - 1);
             double value = tag > 1 ? rand_r(&seed) % 2 : rand_r(&seed) % 110 - 5;
             s.log[0] = 0;
-            hear(&s, i, tag, value, rand_r(&seed) % 8 ? QUALITY_GOOD : QUALITY_BAD_SENSOR_FAILURE);
+            if (rand_r(&seed) % 50 == 0)
+                hear_all(&s, i, 0, rand_r(&seed) % 2 ? QUALITY_BAD_COMMUNICATION_ERROR : QUALITY_BAD_DEVICE_FAILURE);
+            hear(&s, i, tag, value, bad[rand_r(&seed) % 12]);
             if (rand_r(&seed) % 4 == 0 && alarms_find(s.alarms, tag, (enum alarm_kind)kind) >= 0)
                 act(&s, i, tag, (enum alarm_kind)kind, (enum alarm_event)(ALARM_ACKNOWLEDGE + rand_r(&seed) % 8), 1 + rand_r(&seed) % 20);
             tick(&s, i);
             for (size_t k = 0; k < alarms_count(s.alarms); k++) {
                 const struct alarm *alarm = alarms_at(s.alarms, (int)k);
                 bool calls = alarm_word_calls(alarm_word_of(alarm));
-                assert_false(calls && s.told[alarm->tag] == ALARM_NONE);
+                assert_false(calls && alarm->tag >= 0 && s.told[alarm->tag] == ALARM_NONE);
+                assert_true(alarm->kind == ALARM_BAD || !(alarm->state.aside & ALARM_ASIDE_CARRIED));
+                assert_true(alarm->state.active || !(alarm->state.aside & ALARM_ASIDE_CARRIED));
                 assert_int_equal(alarm->until.mono_ns != 0, (alarm->state.aside & ALARM_ASIDE_SHELVED) != 0);
                 assert_true(alarm->until.mono_ns == 0 || alarm->until.mono_ns > i * S);
                 assert_false(mode == ALARMS_DISPLAY && alarm->state.unacknowledged);
@@ -384,6 +402,159 @@ static void no_sequence_tells_a_contradiction(void **unused)
         }
         end(&s);
     }
+}
+
+/* --- devices ---------------------------------------------------------------------------------------------------------------- */
+
+static void set_all(struct stage *s, uint32_t quality)
+{
+    for (int tag = 0; tag < 5; tag++)
+        s->snapshot->readings[tag].quality = quality;
+}
+
+static const char *act_on_link(struct stage *s, int second, const char *name, enum alarm_event event)
+{
+    int index = alarms_find_named(s->alarms, name, ALARM_LINK);
+    assert_true(index >= 0);
+    return alarms_act(s->alarms, index, &(struct alarm_act){ event, 0, "kim", "" }, at(second));
+}
+
+static int active_count(struct stage *s)
+{
+    struct alarm_counts counts;
+    alarms_counts(s->alarms, 0, &counts);
+    return counts.active;
+}
+
+static void a_lost_device_is_one_alarm(void **unused)
+{
+    struct stage s;
+    (void)unused;
+    begin(&s, ALARMS_LOCAL);
+    hear_all(&s, 1, 50, QUALITY_GOOD);
+    hear(&s, 1, 1, 1, QUALITY_GOOD);
+    s.log[0] = 0;
+    hear(&s, 1, 2, 0, QUALITY_GOOD); /* PT is not suppressed by design */
+    s.log[0] = 0;
+    hear_all(&s, 10, 50, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE);
+    hear(&s, 10, 1, 1, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE);
+    hear(&s, 10, 2, 0, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE);
+    tick(&s, 12);
+    s.log[0] = 0;
+    set_all(&s, QUALITY_BAD_COMMUNICATION_ERROR); /* stale: nobody told */
+    tick(&s, 15);
+    tick(&s, 18);
+    assert_told(&s, "15 a.LINK raise: normal > unacknowledged\n15 TT.BAD raise: normal > suppressed\n"
+                    "17 PT.BAD raise: normal > suppressed\n");
+    assert_int_equal(active_count(&s), 1);
+    assert_int_equal(s.told[0], ALARM_NONE); /* that it is bad, its marker shows by itself */
+    assert_null(act_on_link(&s, 19, "a", ALARM_ACKNOWLEDGE));
+    assert_int_equal(alarms_find_named(s.alarms, "b", ALARM_LINK), -1);
+    hear(&s, 20, 0, 50, QUALITY_GOOD);
+    assert_told(&s, "19 a.LINK acknowledge: unacknowledged > acknowledged by kim\n20 a.LINK clear: acknowledged > normal\n"
+                    "20 TT.BAD clear: suppressed > normal\n");
+    tick(&s, 24);
+    assert_told(&s, "");
+    tick(&s, 25); /* PT's own: its device gives readings, and it gives none for its stale time */
+    assert_told(&s, "25 PT.BAD call: suppressed > unacknowledged\n");
+    assert_int_equal(s.told[1], ALARM_BAD);
+    end(&s);
+}
+
+/* One after the other goes stale: what was said of the first is taken back into the one of the device, unless somebody has seen it. */
+static void those_that_went_before_are_carried_too(void **unused)
+{
+    for (int seen = 0; seen < 2; seen++) {
+        struct stage s;
+        (void)unused;
+        begin(&s, ALARMS_LOCAL);
+        hear_all(&s, 1, 0, QUALITY_GOOD);
+        hear(&s, 2, 0, 50, QUALITY_GOOD);
+        hear(&s, 3, 0, 0, QUALITY_BAD_COMMUNICATION_ERROR);
+        if (seen)
+            assert_null(act(&s, 3, 0, ALARM_BAD, ALARM_ACKNOWLEDGE, 0));
+        s.log[0] = 0;
+        hear_all(&s, 4, 0, QUALITY_BAD_COMMUNICATION_ERROR);
+        assert_told(&s, seen ? "4 a.LINK raise: normal > unacknowledged\n"
+                             : "4 a.LINK raise: normal > unacknowledged\n4 TT.BAD carry: unacknowledged > suppressed\n");
+        assert_string_equal(word(&s, 0, ALARM_BAD), seen ? "acknowledged" : "suppressed");
+        end(&s);
+    }
+}
+
+/* A gateway that goes on answering for a controller that has stopped; and a sensor that fails while all others are read. */
+static void a_stopped_controller_is_one_and_a_failed_sensor_its_own(void **unused)
+{
+    struct stage s;
+    (void)unused;
+    begin(&s, ALARMS_DISPLAY);
+    hear_all(&s, 1, 0, QUALITY_GOOD);
+    hear(&s, 2, 0, 50, QUALITY_GOOD);
+    hear(&s, 3, 0, 0, QUALITY_BAD_SENSOR_FAILURE);
+    s.log[0] = 0;
+    set_all(&s, QUALITY_BAD_DEVICE_FAILURE);
+    s.snapshot->readings[0].quality = QUALITY_BAD_SENSOR_FAILURE; /* as it was: a store tells the worst that it knew first */
+    tick(&s, 4);
+    tick(&s, 9);
+    assert_told(&s, "4 a.LINK raise: normal > active\n6 PT.BAD raise: normal > suppressed\n");
+    assert_string_equal(word(&s, 0, ALARM_BAD), "active");
+    assert_int_equal(active_count(&s), 2);
+    end(&s);
+}
+
+/* One of two units behind a gateway: an alarm of that unit, and nothing of the other. */
+static void units_are_devices_of_their_own(void **unused)
+{
+    struct stage s;
+    (void)unused;
+    s = (struct stage){ .plant = NULL };
+    make_plant(&s, ALARMS_LOCAL);
+    s.plant->tags[1].modbus_unit = 7;
+    s.plant->tags[1].alarming.on_delay_s = 0;
+    s.plant->tags[1].suppressed_by = -1;
+    s.alarms = alarms_create(s.plant, &(struct alarms_listener){ on_change, on_tag, &s });
+    s.snapshot = snapshot_create(5);
+    hear_all(&s, 1, 3, QUALITY_GOOD);
+    s.log[0] = 0;
+    hear(&s, 2, 1, 0, QUALITY_BAD_COMMUNICATION_ERROR);
+    assert_told(&s, "2 a/7.LINK raise: normal > unacknowledged\n2 PT.BAD raise: normal > suppressed\n");
+    tick(&s, 100);
+    assert_told(&s, "");
+    end(&s);
+}
+
+/* A restart and a reload while a device is lost: nothing is raised anew, and those that it carried are still carried. */
+static void what_a_device_carries_outlives_us(void **unused)
+{
+    struct stage s, next;
+    (void)unused;
+    begin(&s, ALARMS_LOCAL);
+    hear_all(&s, 1, 50, QUALITY_GOOD);
+    hear_all(&s, 2, 0, QUALITY_BAD_COMMUNICATION_ERROR);
+    for (int restart = 0; restart < 2; restart++) {
+        begin(&next, ALARMS_LOCAL);
+        if (restart) {
+            int link = alarms_find_named(s.alarms, "a", ALARM_LINK);
+            alarms_restore(next.alarms, alarms_find_named(next.alarms, "a", ALARM_LINK), alarms_at(s.alarms, link), at(3));
+            alarms_restore(next.alarms, alarms_find(next.alarms, 0, ALARM_BAD), alarms_at(s.alarms, alarms_find(s.alarms, 0, ALARM_BAD)),
+                           at(3));
+        } else {
+            alarms_adopt(next.alarms, s.alarms);
+        }
+        assert_told(&next, "");
+        assert_string_equal(word(&next, 0, ALARM_BAD), "suppressed");
+        assert_int_equal(active_count(&next), 1);
+        memcpy(next.snapshot->readings, s.snapshot->readings, 5 * sizeof(struct reading));
+        hear_all(&next, 4, 0, QUALITY_BAD_COMMUNICATION_ERROR);
+        tick(&next, 5);
+        assert_string_equal(word(&next, 0, ALARM_BAD), "suppressed");
+        next.log[0] = 0;
+        hear_all(&next, 8, 50, QUALITY_GOOD);
+        assert_string_equal(word(&next, 0, ALARM_BAD), "normal");
+        assert_non_null(strstr(next.log, "8 a.LINK clear: unacknowledged > returned\n"));
+        end(&next);
+    }
+    end(&s);
 }
 
 int main(void)
@@ -401,6 +572,11 @@ int main(void)
         cmocka_unit_test(a_reload_keeps_what_stays),
         cmocka_unit_test(changes_come_newest_first),
         cmocka_unit_test(counts_are_what_there_is),
+        cmocka_unit_test(a_lost_device_is_one_alarm),
+        cmocka_unit_test(those_that_went_before_are_carried_too),
+        cmocka_unit_test(a_stopped_controller_is_one_and_a_failed_sensor_its_own),
+        cmocka_unit_test(units_are_devices_of_their_own),
+        cmocka_unit_test(what_a_device_carries_outlives_us),
         cmocka_unit_test(no_sequence_tells_a_contradiction),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

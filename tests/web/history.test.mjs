@@ -41,8 +41,9 @@ test('gaps are when there was no value; uncertain ones are told apart', () => {
 });
 
 test('alarms are marked when they were raised', () => {
-    const row = (event, us) => ({ event, time_us: us, tag: 'A', kind: 'HH', priority: 1 });
-    assert.deepEqual(raised([row('raise', 9), row('clear', 8), row('raise', 3)]).map(({ us }) => us), [3, 9]);
+    const row = (event, us, state) => ({ event, time_us: us, tag: 'A', kind: 'HH', priority: 1, state });
+    const rows = [row('raise', 9, 'active'), row('clear', 8, 'normal'), row('raise', 5, 'suppressed'), row('raise', 3, 'unacknowledged')];
+    assert.deepEqual(raised(rows).map(({ us }) => us), [3, 9]);
 });
 
 test('ticks are round, in the plant’s own zone', () => {

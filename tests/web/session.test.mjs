@@ -427,6 +427,19 @@ test('alarms: the gravest of a tag, and what is to be done first', () => {
     assert.deepEqual(socket.sent.at(-1), { type: 'alarm', seq: 1, action: 'acknowledge', alarms: [['TT-101', 'HH']] });
 });
 
+test('alarms: a lost device is one, and of no tag', () => {
+    const { session, socket } = greeted();
+    const { alarms } = session.model;
+    socket.say(vector('server/alarms-device.json'));
+    assert.deepEqual(alarms.list().map(({ tag, kind }) => [tag.name, tag.index, kind]), [['plc1', null, 'LINK']]);
+    assert.deepEqual(alarms.counts(), { all: 1, waiting: 1, of: [0, 0, 1, 0] });
+    assert.deepEqual(alarms.aside().map(({ tag, kind, state, reason }) => [tag.index, kind, state, reason]),
+        [[0, 'BAD', 'suppressed', ''], [1, 'BAD', 'suppressed', '']]);
+    assert.equal(alarms.gravest(0), null);
+    socket.say({ type: 'alarms', mode: 'local', all: false, time_us: 2, alarms: [['plc1', 'LINK', 'normal']] });
+    assert.deepEqual(alarms.list(), []);
+});
+
 test('in the past its clock stands apart, ages stand still, and a new connection goes back there', () => {
     const { session, socket, sockets, clock } = greeted();
     const time = vector('server/time.json');

@@ -123,9 +123,9 @@ export class AlarmPanel {
         const value = this.valueText(alarm), what = ` ${say(`kind.${kind}`)}${value ? `, ${value}` : ''}`;
         const asset = this.session.model.asset(tag.asset), age = make('span', { class: 'since' }, this.since(alarm));
         this.ages.push([age, alarm]);
-        const title = say('alarms.fly', { tag: tag.name });
-        const fly = make('button', { type: 'button', class: 'alarm-go', title, onclick: () => this.onFly(tag) },
-            badge(priority), make('span', { class: 'what' }, make('b', {}, tag.name), what),
+        const title = say('alarms.fly', { tag: tag.name }), nowhere = tag.index === null; // a device is at no place of the model
+        const how = nowhere ? { class: 'alarm-go' } : { type: 'button', class: 'alarm-go', title, onclick: () => this.onFly(tag) };
+        const fly = make(nowhere ? 'div' : 'button', how, badge(priority), make('span', { class: 'what' }, make('b', {}, tag.name), what),
             make('span', { class: 'where' }, [asset?.tag ?? asset?.id, tag.description].filter(Boolean).join(', ')),
             make('span', { class: 'state' }, say(`state.${state}`)), age, make('span', { class: 'note' }, this.note(alarm)));
         const buttons = this.alarms.actions(alarm, this.session.role).map((action) =>

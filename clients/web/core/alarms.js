@@ -9,6 +9,10 @@ const ACTIONS = { // by state; what can be done where the site keeps its own ala
 };
 const ROLES = { in_service: ['engineer'], out_of_service: ['engineer'] };
 
+export const calls = (state) => CALLS.includes(state);
+// Where an alarm is not of a tag but of the device that many come from.
+const deviceOf = (name) => ({ name, index: null, group: null, asset: null, description: '' });
+
 export class Alarms {
     constructor(tags) {
         Object.assign(this, { tags, mode: 'display', known: false });
@@ -22,7 +26,7 @@ export class Alarms {
         if (all)
             this.rows.clear();
         for (const [index, kind, state, priority, raisedUs, value, limit, active, held, untilUs = null, who = '', reason = ''] of alarms) {
-            const tag = this.tags[index], id = `${index}/${kind}`;
+            const tag = kind === 'LINK' ? deviceOf(index) : this.tags[index], id = `${index}/${kind}`;
             if (state === 'normal' || !tag)
                 this.rows.delete(id);
             else
@@ -31,6 +35,8 @@ export class Alarms {
         this.byTag.clear();
         for (const alarm of this.list()) {
             const other = this.byTag.get(alarm.tag.index);
+            if (alarm.tag.index === null)
+                continue;
             if (!other || alarm.priority < other.priority)
                 this.byTag.set(alarm.tag.index, alarm);
         }
@@ -39,12 +45,12 @@ export class Alarms {
     // Those that are to be seen: not yet acknowledged first, then by priority, the newest first.
     list() {
         const place = ({ state }) => (isWaiting(state) ? 0 : 1);
-        return [...this.rows.values()].filter(({ state }) => CALLS.includes(state))
+        return [...this.rows.values()].filter(({ state }) => calls(state))
             .sort((a, b) => place(a) - place(b) || a.priority - b.priority || b.raisedUs - a.raisedUs);
     }
 
     aside() {
-        return [...this.rows.values()].filter(({ state }) => !CALLS.includes(state)).sort((a, b) => a.tag.index - b.tag.index);
+        return [...this.rows.values()].filter(({ state }) => !calls(state)).sort((a, b) => (a.tag.index ?? -1) - (b.tag.index ?? -1));
     }
 
     gravest(index) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What /api/v1/history and the alarms' journal say, made into what a chart and a slider draw. Pure, but for the one request.
+import { calls } from './alarms.js';
 
 export const BAD = 2, UNCERTAIN = 1; // the two top bits of a status code
 const severity = (quality) => Math.min(BAD, quality >>> 30);
@@ -85,9 +86,10 @@ export function gaps(series, fromUs, toUs) {
     return out;
 }
 
-// Rows of the journal that raise an alarm: [{ us, tag, kind, priority }], oldest first.
+// Rows of the journal that raise an alarm which is to be seen: [{ us, tag, kind, priority }], oldest first.
 export function raised(rows) {
-    return rows.filter(({ event }) => event === 'raise').map(({ time_us: us, tag, kind, priority }) => ({ us, tag, kind, priority }))
+    return rows.filter(({ event, state }) => event === 'raise' && calls(state))
+        .map(({ time_us: us, tag, kind, priority }) => ({ us, tag, kind, priority }))
         .sort((a, b) => a.us - b.us);
 }
 

@@ -207,6 +207,7 @@ export default {
     'kind.LL': 'Tief tief',
     'kind.BAD': 'Messung gestört',
     'kind.ALM': 'Alarm',
+    'kind.LINK': 'Gerät liefert keine Werte',
     'action.acknowledge': 'Quittieren',
     'action.shelve': 'Zurückstellen …',
     'action.reset': 'Zurücksetzen',

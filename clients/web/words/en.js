@@ -207,6 +207,7 @@ export default {
     'kind.LL': 'Low low',
     'kind.BAD': 'Bad measurement',
     'kind.ALM': 'Alarm',
+    'kind.LINK': 'Device gives no readings',
     'action.acknowledge': 'Acknowledge',
     'action.shelve': 'Shelve…',
     'action.reset': 'Reset',

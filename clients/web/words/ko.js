@@ -207,6 +207,7 @@ export default {
     'kind.LL': '하하한',
     'kind.BAD': '계측 불량',
     'kind.ALM': '알람',
+    'kind.LINK': '장치 값 없음',
     'action.acknowledge': '확인',
     'action.shelve': '보류…',
     'action.reset': '리셋',
