@@ -12,7 +12,7 @@
 #include "plant/transform.h"
 #include "preprocess/geometry_parts.h"
 
-#define MAX_CORNERS 150000000ull /* indices of one asset */
+#define MAX_TRIANGLES 50000000ull /* of one asset */
 
 /* --- which nodes --------------------------------------------------------------------------------------------------------- */
 
@@ -74,10 +74,30 @@ static bool no_triangles(const struct geometry *geometry, const char *pattern, c
                  pattern ? pattern : "", pattern ? "'" : "", geometry->skipped_lines, geometry->skipped_points);
 }
 
-/* A node that matches brings its whole sub-tree, once. Sorted by material, blended ones last. */
-static bool find_parts(struct parts *parts, struct geometry *geometry, const struct gltf_model *model, const char *pattern, char *why)
+uint64_t geometry_triangles(const struct gltf_model *model, const struct geometry_params *params)
 {
+    uint64_t corners = 0;
+    bool literally = is_literal(model, params->nodes);
+    for (uint32_t i = 0; i < model->node_count;) {
+        if (!node_matches(params->nodes, literally, &model->nodes[i])) {
+            i++;
+            continue;
+        }
+        for (uint32_t end = model->nodes[i].end; i < end; i++)
+            corners += model->nodes[i].mesh >= 0 ? model->meshes[model->nodes[i].mesh].index_count : 0;
+    }
+    return corners / 3;
+}
+
+/* A node that matches brings its whole sub-tree, once. Sorted by material, blended ones last. */
+static bool find_parts(struct parts *parts, struct geometry *geometry, const struct gltf_model *model, const struct geometry_params *params,
+                       char *why)
+{
+    const char *pattern = params->nodes;
     bool literally = is_literal(model, pattern);
+    uint64_t triangles = geometry_triangles(model, params);
+    if (triangles > MAX_TRIANGLES)
+        return wrong(why, "%llu triangles are more than %llu", (unsigned long long)triangles, MAX_TRIANGLES);
     for (uint32_t i = 0; i < model->node_count;) {
         if (!node_matches(pattern, literally, &model->nodes[i])) {
             i++;
@@ -91,33 +111,10 @@ static bool find_parts(struct parts *parts, struct geometry *geometry, const str
     }
     if (geometry->node_count == 0)
         return pattern ? no_match(model, pattern, why) : wrong(why, "the scene has no node");
-    uint64_t corners = 0;
-    for (size_t i = 0; i < parts->count; i++)
-        corners += parts->at[i].primitive->index_count;
-    if (corners == 0)
+    if (triangles == 0)
         return no_triangles(geometry, pattern, why);
-    if (corners > MAX_CORNERS)
-        return wrong(why, "%llu triangles are more than %llu", (unsigned long long)(corners / 3), MAX_CORNERS / 3);
     qsort(parts->at, parts->count, sizeof(*parts->at), by_material);
     return true;
-}
-
-uint64_t geometry_triangles(const struct gltf_model *model, const struct geometry_params *params)
-{
-    uint64_t corners = 0;
-    bool literally = is_literal(model, params->nodes);
-    for (uint32_t i = 0; i < model->node_count;) {
-        if (!node_matches(params->nodes, literally, &model->nodes[i])) {
-            i++;
-            continue;
-        }
-        for (uint32_t end = model->nodes[i].end; i < end; i++) {
-            const struct gltf_mesh *mesh = model->nodes[i].mesh >= 0 ? &model->meshes[model->nodes[i].mesh] : NULL;
-            for (uint32_t p = 0; mesh && p < mesh->primitive_count; p++)
-                corners += model->primitives[mesh->first_primitive + p].index_count;
-        }
-    }
-    return corners / 3;
 }
 
 /* --- boxes --------------------------------------------------------------------------------------------------------------- */
@@ -300,7 +297,7 @@ bool geometry_cut(struct geometry *geometry, const struct gltf_model *model, con
 {
     struct parts parts = { 0 };
     *geometry = (struct geometry){ 0 };
-    bool good = find_parts(&parts, geometry, model, params->nodes, why) && find_origin(geometry, &parts, params, why) &&
+    bool good = find_parts(&parts, geometry, model, params, why) && find_origin(geometry, &parts, params, why) &&
                 join_parts(geometry, &parts, model, params, why) && geometry_join_textures(geometry, model, why);
     mem_free(parts.at);
     if (!good)

@@ -62,6 +62,10 @@ class accessor
     {
         return type;
     }
+    bool is_normalized() const
+    {
+        return normalized;
+    }
     void get(size_t element, double *out) const; /* finite, or refused */
 
   private:

@@ -26,6 +26,8 @@ std::vector<uint32_t> read_indices(work *w, const tinygltf::Primitive &p, size_t
     if (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE && type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
         type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT)
         refuse("%s: indices: component type %d is no index", what.c_str(), type);
+    if (from.is_normalized())
+        refuse("%s: indices: normalized, which indices cannot be", what.c_str());
     if (from.width() != 1)
         refuse("%s: indices: %d components, expected 1", what.c_str(), from.width());
     take_elements(w, from.count(), what + ": indices");
@@ -184,7 +186,7 @@ void check_morphing(const std::vector<double> &weights, const std::string &what)
             refuse("%s: its shape is morphed, which is not supported", what.c_str());
 }
 
-/* False: nothing to draw here (lines, points). */
+/* False: nothing to draw here (lines, points, no triangle). */
 bool read_primitive(work *w, const tinygltf::Primitive &p, gltf_primitive *out, gltf_mesh *mesh, const std::string &what)
 {
     int mode = p.mode;
@@ -199,13 +201,15 @@ bool read_primitive(work *w, const tinygltf::Primitive &p, gltf_primitive *out, 
         refuse("%s: has no POSITION", what.c_str());
     size_t vertices = accessor(*w, position->second, 3, what + ": POSITION").count();
     std::vector<uint32_t> indices = triangle_list(read_indices(w, p, vertices, what), mode, what), used = compact(&indices);
+    if (indices.empty())
+        return false;
     take_elements(w, used.size() + indices.size(), what);
     out->material = p.material;
     out->vertex_count = static_cast<uint32_t>(used.size());
     out->index_count = static_cast<uint32_t>(indices.size());
-    out->indices = new_array<uint32_t>(indices.size() + 1);
-    if (!indices.empty())
-        memcpy(out->indices, indices.data(), indices.size() * sizeof(uint32_t));
+    out->indices = new_array<uint32_t>(indices.size());
+    memcpy(out->indices, indices.data(), indices.size() * sizeof(uint32_t));
+    mesh->index_count += indices.size();
     read_vertices({ *w, p, used, vertices, what }, out, p.material);
     return true;
 }

@@ -21,8 +21,9 @@ struct gltf_primitive { /* triangles of one material; model units, the mesh's ow
 
 struct gltf_mesh {
     char *name;
-    uint32_t first_primitive, primitive_count;
-    uint32_t skipped_lines, skipped_points; /* primitives that are no triangles */
+    uint32_t first_primitive, primitive_count; /* each has a triangle */
+    uint64_t index_count;                      /* of them all */
+    uint32_t skipped_lines, skipped_points;    /* primitives that are no triangles */
 };
 
 struct gltf_node {    /* depth first: a node's sub-tree are the nodes [node, end) */

@@ -316,6 +316,8 @@ static bool head_good(json_t *root, char *why)
                *least = json_string_value(json_object_get(asset, "minVersion"));
     if (!version || strncmp(version, "2.", 2) != 0 || (least && strcmp(least, "2.0") != 0))
         return wrong(why, "glTF version '%.20s', expected 2.0", !version ? "" : least ? least : version);
+    if (required && !json_is_array(required))
+        return wrong(why, "extensionsRequired is not a list");
     for (size_t i = 0; i < json_array_size(required); i++) {
         const char *name = json_string_value(json_array_get(required, i));
         bool known = false;

@@ -60,6 +60,15 @@ results:
 	@tests/bench/results tests/bench $(wildcard build/bench.json build/stream-bench.json build/gpu-bench.json)
 .PHONY: results
 
+# Distances along surfaces with many seeds; the table of accuracy in tests/bench/RESULTS.md is of the worst of them all.
+seeds ?= 40
+accuracy: $(patsubst %,$(out)/tests/unit/%_test,surface accuracy contact)
+	@mkdir -p $(build)/accuracy; for s in $$(seq $(seeds)); do for t in surface accuracy contact; do \
+	    PLANTCAST_SEED=$$s $(out)/tests/unit/$${t}_test >$(build)/accuracy/$$t.$$s || { grep '^not ok' $(build)/accuracy/$$t.$$s; exit 1; }; \
+	done; done
+	@tests/bench/accuracy tests/bench/RESULTS.md $(build)/accuracy/surface.* $(build)/accuracy/accuracy.* $(build)/accuracy/contact.*
+.PHONY: accuracy
+
 # Every way of looking at a plant, to be looked at: build/gallery/sheet.png.
 gallery: test-deps
 	@deploy/deps gallery

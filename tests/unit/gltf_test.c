@@ -70,7 +70,8 @@ static const struct bin bin = {
     "{\"bufferView\":0,\"byteOffset\":300,\"componentType\":5126,\"count\":4,\"type\":\"VEC3\"}," /* 12 past the end */                    \
     "{\"bufferView\":0,\"componentType\":5126,\"count\":4611686018427387904,\"type\":\"VEC3\"},"  /* 13 absurd */                          \
     "{\"bufferView\":7,\"componentType\":5126,\"count\":4,\"type\":\"VEC3\"},"                    /* 14 no such view */                    \
-    "{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}]"                    /* 15 three positions */
+    "{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"},"                    /* 15 three positions */                 \
+    "{\"bufferView\":0,\"byteOffset\":60,\"componentType\":5121,\"normalized\":true,\"count\":4,\"type\":\"SCALAR\"}]" /* 16 strip8 */
 #define HEAD "{\"asset\":{\"version\":\"2.0\"}," VIEWS
 #define PLAIN_NODES "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"name\":\"part\",\"mesh\":0}],"
 #define MESH(primitive) "\"meshes\":[{\"name\":\"m\",\"primitives\":[" primitive "]}],"
@@ -221,6 +222,7 @@ static void wrong_numbers_are_refused(void **state)
     refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":0,\"NORMAL\":15},\"indices\":1}") ACCESSORS "}",
             "NORMAL: 3 elements, positions have 4");
     refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":0},\"indices\":0}") ACCESSORS "}", "is no index");
+    refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":0},\"indices\":16,\"mode\":5}") ACCESSORS "}", "indices: normalized");
     refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"NORMAL\":0},\"indices\":1}") ACCESSORS "}", "has no POSITION");
     refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":0},\"indices\":2}") ACCESSORS "}", "4 indices are not whole triangles");
     refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":0},\"indices\":1,\"mode\":7}") ACCESSORS "}", "mode 7");
@@ -255,6 +257,8 @@ static void unknown_extensions_are_refused(void **state)
 {
     struct loaded *l = *state;
     refused(l, HEAD "\"extensionsRequired\":[\"ACME_secret\"]," PLAIN_NODES MESH(SQUARE) ACCESSORS "}", "ACME_secret");
+    refused(l, HEAD "\"extensionsRequired\":{\"ACME_secret\":1}," PLAIN_NODES MESH(SQUARE) ACCESSORS "}",
+            "extensionsRequired is not a list");
     refused(l,
             HEAD PLAIN_NODES MESH(
                 "{\"attributes\":{\"POSITION\":0},\"extensions\":{\"KHR_draco_mesh_compression\":{\"bufferView\":0,\"attributes\":{}}}}")
@@ -309,12 +313,18 @@ static void files_outside_the_folder_are_refused(void **state)
             fail_msg("%s: %s", bad[i], l->good ? "accepted" : l->why);
         mem_free(text);
     }
-    char *text = mem_printf(json, "with%20space.bin");
-    load_bytes(l, "inner/model.gltf", text, strlen(text));
-    if (!l->good)
-        fail_msg("%s", l->why);
-    assert_square(&l->model.primitives[0]);
-    mem_free(text);
+    char *encoded = temp_write(l->folder, "inner/w\303\244rme 100%.bin", &bin, sizeof(bin));
+    const char *const right[] = { "with%20space.bin", "with space.bin", "./with%20space.bin", "w%C3%A4rme%20100%25.bin",
+                                  "w%c3%a4rme 100%.bin" };
+    for (size_t i = 0; i < sizeof(right) / sizeof(right[0]); i++) {
+        char *text = mem_printf(json, right[i]);
+        load_bytes(l, "inner/model.gltf", text, strlen(text));
+        if (!l->good)
+            fail_msg("%s", l->why);
+        assert_square(&l->model.primitives[0]);
+        mem_free(text);
+    }
+    mem_free(encoded);
     mem_free(inside);
     mem_free(outside);
     mem_free(link);

@@ -482,6 +482,27 @@ static void heads_are_checked(void **state)
     }
 }
 
+static void colors_are_read_in_every_type(void **state)
+{
+    struct loaded *l = *state;
+    const float corners[3][3] = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 } }, reals[3][3] = { { 1, 0.5f, 0 }, { 0, 0, 0 }, { 2, -1, 1 } };
+    const uint16_t shorts[3][4] = { { 65535, 32768, 0, 65535 }, { 0, 0, 0, 65535 }, { 65535, 0, 65535, 65535 } };
+    for (int way = 0; way < 2; way++) {
+        struct maker maker;
+        maker_init(&maker);
+        int at = maker_numbers(&maker, corners, sizeof(corners), FLOAT, 3, "VEC3");
+        int colors = way ? maker_numbers(&maker, shorts, sizeof(shorts), USHORT, 3, "VEC4")
+                         : maker_numbers(&maker, reals, sizeof(reals), FLOAT, 3, "VEC3");
+        if (way)
+            json_object_set_new(maker_get(&maker, "accessors", colors), "normalized", json_true());
+        maker_node(&maker, "n", maker_mesh(&maker, json_pack("{s:{s:i,s:i}}", "attributes", "POSITION", at, "COLOR_0", colors)), NULL);
+        try_model(l, &maker);
+        assert_good(l);
+        assert_memory_equal(l->model.primitives[0].colors, ((uint8_t[12]){ 255, 128, 0, 255, 0, 0, 0, 255, 255, 0, 255, 255 }),
+                            12); /* 2 and -1 are cut off */
+    }
+}
+
 /* --- materials ----------------------------------------------------------------------------------------------------------- */
 
 static void textures_lie_where_their_transform_puts_them(void **state)
@@ -514,6 +535,16 @@ static void textures_lie_where_their_transform_puts_them(void **state)
     assert_good(l);
     assert_int_equal(l->model.left_out_textures, 1);
     assert_true(l->model.materials[0].occlusion_texture == ASSET_NO_TEXTURE && l->model.materials[0].base_color_texture == 0);
+
+    maker = seed_open(15, "textured.glb", &sheet); /* the transform has the last word on which coordinates are meant */
+    json_t *attributes = json_object_get(primitive_of(&maker), "attributes");
+    json_object_set(attributes, "TEXCOORD_1", json_object_get(attributes, "TEXCOORD_0"));
+    json_object_set_new(attributes, "TEXCOORD_0", json_integer(maker_accessor(&maker, -1, FLOAT, sheet.vertex_count, "VEC2")));
+    json_t *lead = json_object_get(json_object_get(maker_get(&maker, "materials", 0), "pbrMetallicRoughness"), "baseColorTexture");
+    json_object_set_new(json_object_get(json_object_get(lead, "extensions"), "KHR_texture_transform"), "texCoord", json_integer(1));
+    try_model(l, &maker);
+    assert_good(l);
+    assert_true(l->model.primitives[0].texcoords[1][0] != l->model.primitives[0].texcoords[0][0]);
 
     maker = seed_open(15, "textured.glb", &sheet); /* mirrored beyond 0..1, which this sheet is */
     json_object_set_new(maker_get(&maker, "samplers", 0), "wrapS", json_integer(33648));
@@ -608,6 +639,52 @@ static void assets_are_cut_from_a_tree(void **state)
     sheet_finish(&sheet);
 }
 
+static void mirrored_instances_keep_their_outside(void **state)
+{
+    struct loaded *l = *state;
+    struct sheet sheet;
+    sheet_init(&sheet, 4, 2);
+    struct maker maker = seed_open(14, "instances.glb", &sheet);
+    try_model(l, &maker);
+    assert_good(l);
+    struct geometry g = cut(l, "sheet", 1, AXIS_Z);
+    assert_int_equal(g.index_count, 3 * sheet.index_count);
+    for (uint32_t t = 0; t < g.index_count / 3; t++) {
+        double n[3], y = (double)g.positions_m[g.indices[3 * t]][1] + g.origin_m[1];
+        bool upside_down = y > 1.5 && y < 3.5; /* the second of three, by a scale of -1 */
+        face_normal(&g, t, n);
+        assert_true(upside_down ? n[2] < 0 : n[2] > 0);
+        assert_true(upside_down == (g.normals[g.indices[3 * t]][2] < 0));
+    }
+    geometry_finish(&g);
+    sheet_finish(&sheet);
+}
+
+/* Fifty thousand nodes of a mesh of a thousand triangles, each a primitive of its own. */
+static void what_many_nodes_draw_is_bounded(void **state)
+{
+    struct loaded *l = *state;
+    struct maker maker;
+    struct geometry g;
+    char why[MODEL_WHY_BYTES];
+    const float corners[3][3] = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 } };
+    maker_init(&maker);
+    int at = maker_numbers(&maker, corners, sizeof(corners), FLOAT, 3, "VEC3"), mesh = maker_mesh(&maker, json_null());
+    json_array_clear(json_object_get(maker_get(&maker, "meshes", mesh), "primitives"));
+    for (int i = 0; i < 1000; i++)
+        json_array_append_new(json_object_get(maker_get(&maker, "meshes", mesh), "primitives"),
+                              json_pack("{s:{s:i}}", "attributes", "POSITION", at));
+    for (int i = 0; i < 50001; i++)
+        maker_node(&maker, i == 7 ? "one" : "n", mesh, NULL);
+    try_model(l, &maker);
+    assert_good(l);
+    assert_false(geometry_cut(&g, &l->model, &(struct geometry_params){ .unit_m = 1 }, why));
+    assert_string_equal(why, "50001000 triangles are more than 50000000");
+    g = cut(l, "one", 1, AXIS_Z);
+    assert_int_equal(g.index_count, 3000);
+    geometry_finish(&g);
+}
+
 static void a_name_is_meant_as_it_stands(void **state)
 {
     struct loaded *l = *state;
@@ -689,6 +766,82 @@ static void real_models_have_the_triangles_that_they_are_known_to_have(void **st
     }
 }
 
+static void measure(const struct gltf_model *model, double low[3], double high[3], double *area)
+{
+    const struct gltf_primitive *p = &model->primitives[0];
+    *area = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        low[axis] = INFINITY;
+        high[axis] = -INFINITY;
+    }
+    for (uint32_t i = 0; i < p->index_count; i += 3) {
+        const float *a = p->positions[p->indices[i]];
+        double ab[3], ac[3], n2 = 0;
+        for (int axis = 0; axis < 3; axis++) {
+            ab[axis] = (double)p->positions[p->indices[i + 1]][axis] - (double)a[axis];
+            ac[axis] = (double)p->positions[p->indices[i + 2]][axis] - (double)a[axis];
+            for (uint32_t c = i; c < i + 3; c++) {
+                low[axis] = fmin(low[axis], (double)p->positions[p->indices[c]][axis]);
+                high[axis] = fmax(high[axis], (double)p->positions[p->indices[c]][axis]);
+            }
+        }
+        for (int axis = 0; axis < 3; axis++)
+            n2 += pow(ab[(axis + 1) % 3] * ac[(axis + 2) % 3] - ab[(axis + 2) % 3] * ac[(axis + 1) % 3], 2);
+        *area += sqrt(n2) / 2;
+    }
+}
+
+/* The greatest primitive of a real plant, by every compression: as large, with the same area. */
+static void a_real_model_survives_compression(void **state)
+{
+    struct loaded *l = *state;
+    static const int ways[] = { 8, 9, 11, 12 };
+    struct model_source source;
+    struct gltf_model real;
+    if (access("../shared/data/models", R_OK) != 0) {
+        print_message("# ../shared/data/models is not there\n");
+        skip();
+    }
+    assert_true(model_source_open(&source, "../shared/data/models/plm_plant_equipment.glb", l->why));
+    assert_true(gltf_load(&real, &source, l->why));
+    model_source_finish(&source);
+    const struct gltf_primitive *most = &real.primitives[0];
+    for (uint32_t p = 0; p < real.primitive_count; p++)
+        most = real.primitives[p].index_count > most->index_count && real.primitives[p].normals ? &real.primitives[p] : most;
+    struct sheet sheet = { .vertex_count = most->vertex_count,
+                           .index_count = most->index_count,
+                           .positions = most->positions,
+                           .normals = most->normals,
+                           .indices = most->indices };
+    sheet.colors = mem_array(sheet.vertex_count, sizeof(*sheet.colors));
+    double low[3], high[3], area = 0;
+    for (size_t i = 0; i < sizeof(ways) / sizeof(ways[0]); i++) {
+        struct seed seed;
+        double own_low[3], own_high[3], own_area;
+        seed_make(&seed, ways[i], &sheet);
+        const char *name = seed.name;
+        size_t size = seed.size;
+        try_bytes(l, seed.bytes, seed.size);
+        assert_good(l);
+        measure(&l->model, own_low, own_high, &own_area);
+        if (i == 0) {
+            memcpy(low, own_low, sizeof(low));
+            memcpy(high, own_high, sizeof(high));
+            area = own_area;
+        }
+        print_message("# %-24s %7zu bytes, %u of %u triangles, area %.6f of %.6f\n", name, size, l->model.primitives[0].index_count / 3,
+                      sheet.index_count / 3, own_area, area);
+        assert_in_range(l->model.primitives[0].index_count, sheet.index_count * 98 / 100, sheet.index_count);
+        assert_true(fabs(own_area - area) < 0.01 * area);
+        for (int axis = 0; axis < 3; axis++) {
+            double within = 1e-3 * (high[axis] - low[axis]) + 1e-6;
+            assert_true(fabs(own_low[axis] - low[axis]) < within && fabs(own_high[axis] - high[axis]) < within);
+        }
+    }
+    mem_free(sheet.colors);
+    gltf_free(&real);
+}
+
 #define WITH_MODEL(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
 
 int main(void)
@@ -707,9 +860,13 @@ int main(void)
         WITH_MODEL(heads_are_checked),
         WITH_MODEL(textures_lie_where_their_transform_puts_them),
         WITH_MODEL(assets_are_cut_from_a_tree),
+        WITH_MODEL(mirrored_instances_keep_their_outside),
+        WITH_MODEL(what_many_nodes_draw_is_bounded),
+        WITH_MODEL(colors_are_read_in_every_type),
         WITH_MODEL(a_name_is_meant_as_it_stands),
         WITH_MODEL(lines_are_counted_for_the_asset_that_has_them),
         WITH_MODEL(real_models_have_the_triangles_that_they_are_known_to_have),
+        WITH_MODEL(a_real_model_survives_compression),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
