@@ -62,10 +62,14 @@ programs := $(if $(wildcard server/main.c),$(bin)/plantcastd) $(if $(wildcard pr
             $(if $(generate_sources),$(bin)/plantcast-demo)
 
 .PHONY: all programs run demo test test-long bench gpu-bench style layers headers deps test-deps golden-update install clean help
-all: $(programs) clients/web/vendor/uPlot.js
+all: $(programs) clients/web/vendor/uPlot.js clients/web/made/version.js
 # The page's charts: asked for again with each make until they are there.
 clients/web/vendor/uPlot.js: clients/web/package-lock.json
 	@echo "  NPM  $(@D)"; deploy/vendor $(build)/npm; [ ! -f $@ ] || touch $@
+# Icons of the page, and its version.
+page := $(filter-out clients/web/made/%,$(wildcard clients/web/*.* clients/web/*/*))
+clients/web/made/version.js: deploy/stamp $(page) clients/web/vendor/uPlot.js
+	@echo "  WEB  $(@D)"; deploy/stamp clients/web
 programs: all
 
 $(bin)/plantcastd: $(call objects,$(wildcard server/*.c)) $(archives)

@@ -337,7 +337,7 @@ test('health: each state has its own kind and words', () => {
     assert.deepEqual([now().kind, now().words, now().detail], ['partial', 'Live, 1 of 2 sources down', 'Source plc2 does not answer.']);
     const said = (links) => sockets[0].say({ type: 'status', time_us: 1, live: true, clock_set: false, links });
     said([{ ...link('plc1', true), simulated: true }, link('plc2', true)]);
-    assert.deepEqual([now().kind, now().words, now().detail], ['partial', 'Live, partly simulated', 'Not measured in the plant: plc1.']);
+    assert.deepEqual([now().kind, now().words, now().detail], ['simulated', 'Live, partly simulated', 'Not measured in the plant: plc1.']);
     assert.equal(session.model.clockSet, false);
     said([{ ...link('plc1', true), simulated: true }]);
     assert.equal(now().words, 'Simulated');

@@ -2,6 +2,7 @@
 // The card of one sensor: what it is, what it says, whether that may be trusted, and how old it is.
 import { ageText, decimalsFor, numberText, qualityText, unitText } from '../core/format.js';
 import { say } from '../core/words.js';
+import { clock } from './clock.js';
 import { byId, closeButton, fill, glyph, make, setText } from './dom.js';
 
 const AWAY_PX = 16, WIDTH_PX = 248;
@@ -42,7 +43,7 @@ export class Card {
         const quality = qualityText(reading.quality, reading.qualityName);
         if (this.quality.textContent !== quality)
             this.quality.replaceChildren(glyph(reading.quality), quality);
-        setText(this.age, ageText(model.ageMs(tag.index, performance.now())));
+        setText(this.age, ageText(model.ageMs(tag.index, clock.now())));
         const alarm = model.alarms.gravest(tag.index);
         this.limit.hidden = !alarm;
         if (alarm) {
@@ -72,8 +73,9 @@ export class Card {
         const tall = this.element.offsetHeight;
         let x = 12, y = height - tall - 12;
         if (marker) {
-            x = marker.x < width / 2 ? marker.x + AWAY_PX : marker.x - AWAY_PX - WIDTH_PX;
-            y = marker.y - tall / 2;
+            const at = this.overlay.placeOf(marker);
+            x = at.x < width / 2 ? at.x + AWAY_PX : at.x - AWAY_PX - WIDTH_PX;
+            y = at.y - tall / 2;
         }
         x = Math.max(8, Math.min(width - WIDTH_PX - 8, x));
         y = Math.max(8, Math.min(height - tall - 8, y));

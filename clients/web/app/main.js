@@ -5,11 +5,14 @@ import { face } from '../core/camera.js';
 import { Connection } from '../core/connection.js';
 import { browserDecoding } from '../core/decoding.js';
 import { Session } from '../core/session.js';
+import { readWall } from '../core/wall.js';
 import { language, say } from '../core/words.js';
 import { AlarmPanel } from './alarms.js';
 import { Assets } from './assets.js';
 import { Card } from './card.js';
+import { clock, watchSleep } from './clock.js';
 import { byId, sayAll, setText } from './dom.js';
+import { renewIfOld, serveInstalled } from './install.js';
 import { Legend } from './legend.js';
 import { Overlay } from './overlay.js';
 import { Picture } from './picture.js';
@@ -19,6 +22,7 @@ import { Status } from './status.js';
 import { TimingsPanel } from './timings.js';
 import { TokenDialog } from './token.js';
 import { Timeline } from './timeline.js';
+import { chooseTheme, Tools } from './tools.js';
 import { Toolbar } from './toolbar.js';
 import { Trends } from './trends.js';
 import { Views } from './views.js';
@@ -30,8 +34,8 @@ const TAG_DISTANCE_M = 5;
 
 document.documentElement.lang = language;
 sayAll(document);
+chooseTheme(location.search);
 
-const clock = { now: () => performance.now(), setTimeout: (f, ms) => setTimeout(f, ms), clearTimeout: (id) => clearTimeout(id) };
 const address = readAddress(location.hash);
 const selection = { tag: address.tag, hover: null };
 
@@ -61,6 +65,7 @@ const card = new Card({ session, selection, overlay, viewport, onClose: () => se
 const timings = new TimingsPanel({ session });
 const views = new Views({ session, pilot });
 const place = new Place({ session, viewport });
+const tools = new Tools({ session, selection, viewport, tell });
 const alarms = new AlarmPanel({ session, onFly: (tag) => showTag(tag), refresh: () => refresh() });
 
 // --- selection
@@ -135,12 +140,19 @@ const commands = {
     ghost: () => views.show('ghost'),
     only: () => views.show('only'),
     showAll: () => views.showAll(),
+    hold: () => tools.hold(),
+    measure: () => tools.measure(),
+    snapshot: () => tools.snapshot(),
+    share: () => tools.share(),
+    theme: () => tools.theme(),
     escape() {
         toolbar.closeDisplay();
         views.close();
         picture.close();
         if (alarms.open)
             alarms.setOpen(false);
+        else if (tools.measuring?.on)
+            tools.measuring.setOn(false);
         else if (place.picked)
             place.close();
         else
@@ -150,6 +162,10 @@ const commands = {
 pilot.onCommand = (name) => commands[name]();
 pilot.onGroup = (index) => toolbar.chooseGroup(index);
 pilot.onClick = (x, y, kind) => {
+    if (tools.measuring?.on) {
+        tools.measuring.click(x, y);
+        return;
+    }
     const tag = overlay.at(x, y, kind);
     selectTag(tag);
     if (tag)
@@ -188,6 +204,7 @@ viewport.onDrawn = (newPicture) => {
     if (newPicture || overlay.dirty) {
         card.show();
         place.show();
+        tools.measuring?.show();
         overlay.draw();
     }
 };
@@ -262,11 +279,15 @@ session.on('error', ({ text, about }) => {
     console.warn(`error about ${about}: ${text}`);
     if (about === 'ack')
         return; // nothing that a person did
-    setText(byId('toast'), say('viewport.refused', { text }));
+    tell(say('viewport.refused', { text }));
+});
+
+function tell(text) {
+    setText(byId('toast'), text);
     byId('toast').hidden = false;
     clearTimeout(toastTimer);
     toastTimer = setTimeout(() => { byId('toast').hidden = true; }, TOAST_MS);
-});
+}
 
 // --- the page
 
@@ -292,7 +313,17 @@ document.addEventListener('visibilitychange', () => {
     }
 });
 session.leader = Number(new URLSearchParams(location.hash.slice(1)).get('follow')) || null;
+const wall = readWall(location.search);
+if (wall)
+    (await import('./wall.js')).hangOnWall(wall, { overlay, refresh });
+watchSleep(() => {
+    connection.doubt();
+    connection.retryNow();
+    status.show();
+});
+renewIfOld(session);
+serveInstalled();
 connection.start();
 
 // For the console and for tests of the whole.
-globalThis.plantcast = { session, selection, overlay, legend, decoding, trends, pilot };
+globalThis.plantcast = { session, selection, overlay, legend, decoding, trends, pilot, assets };

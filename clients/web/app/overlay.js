@@ -36,11 +36,20 @@ export class Overlay {
         Object.assign(this, { canvas, viewport, session, selection });
         this.context = canvas.getContext('2d');
         this.font = getComputedStyle(document.body).fontFamily;
-        this.markers = []; // { tag, x, y, depth, occluded, reading }, CSS pixels
+        this.unit = 1;     // CSS pixels: larger on a wall
+        this.markers = []; // { tag, x, y, depth, occluded, reading }, in units
         this.places = new Map();
         this.widths = new Map();
         this.dirty = true;
         this.fresh = true; // false: the values are those of a lost connection
+    }
+
+    get wide() {
+        return this.viewport.width / this.unit;
+    }
+
+    get high() {
+        return this.viewport.height / this.unit;
     }
 
     // Sensors of the shown group, where the last drawn picture has them.
@@ -54,7 +63,7 @@ export class Overlay {
 
     projectHalf({ params, left, width }, number, known) {
         const { model, picture } = this.session;
-        const scale = [this.viewport.width / picture.fullWidth, this.viewport.height / picture.fullHeight];
+        const scale = [this.wide / picture.fullWidth, this.high / picture.fullHeight];
         const rim = params.split ? 0 : 20; // what lies beyond would be seen in the other half
         const project = projector(picture.camera, width, picture.fullHeight);
         const markers = [];
@@ -82,7 +91,7 @@ export class Overlay {
         const { picture, params } = this.session, c = this.context;
         if (!picture || params.show === 'operator')
             return;
-        const scale = [this.viewport.width / picture.fullWidth, this.viewport.height / picture.fullHeight];
+        const scale = [this.wide / picture.fullWidth, this.high / picture.fullHeight];
         const [min, max] = this.session.range, taken = [...blocked];
         this.setFont(600);
         c.textBaseline = 'middle';
@@ -113,16 +122,21 @@ export class Overlay {
     }
 
     at(x, y, kind) {
-        return nearestMarker(this.markers, x, y, REACH_PX[kind] ?? REACH_PX.mouse)?.tag ?? null;
+        return nearestMarker(this.markers, x / this.unit, y / this.unit, REACH_PX[kind] ?? REACH_PX.mouse)?.tag ?? null;
     }
 
     marker(tag) {
         return this.markers.find((marker) => marker.tag === tag) ?? null;
     }
 
+    // CSS pixels of the viewport.
+    placeOf({ x, y }) {
+        return { x: x * this.unit, y: y * this.unit };
+    }
+
     draw() {
         this.dirty = false;
-        const { width, height } = this.viewport, ratio = window.devicePixelRatio;
+        const { wide: width, high: height, unit } = this, ratio = window.devicePixelRatio * unit;
         const c = this.context;
         const pixels = [Math.round(width * ratio), Math.round(height * ratio)];
         if (this.canvas.width !== pixels[0] || this.canvas.height !== pixels[1])
@@ -152,11 +166,13 @@ export class Overlay {
     blocked() {
         const origin = this.viewport.element.getBoundingClientRect();
         const boxes = [...this.viewport.element.querySelectorAll('.legend, .banner, .card')].map((e) => e.getBoundingClientRect());
+        const { unit } = this;
         const own = boxes.filter((box) => box.width > 0).map((box) => ({
-            left: box.left - origin.left, right: box.right - origin.left, top: box.top - origin.top, bottom: box.bottom - origin.top,
+            left: (box.left - origin.left) / unit, right: (box.right - origin.left) / unit,
+            top: (box.top - origin.top) / unit, bottom: (box.bottom - origin.top) / unit,
         }));
-        const middle = this.viewport.width / 2; // no label in both halves
-        return this.session.params.split ? [...own, { left: middle - 1, right: middle + 1, top: 0, bottom: this.viewport.height }] : own;
+        const middle = this.wide / 2; // no label in both halves
+        return this.session.params.split ? [...own, { left: middle - 1, right: middle + 1, top: 0, bottom: this.high }] : own;
     }
 
     isChosen(tag) {
@@ -165,7 +181,7 @@ export class Overlay {
 
     // Each half for itself.
     place(labels) {
-        const { params } = this.session, { width, height } = this.viewport, blocked = this.blocked();
+        const { params } = this.session, { wide: width, high: height } = this, blocked = this.blocked();
         const placed = halves(params, width).map((half, number) => placeLabels(labels.filter((label) => label.half === number), {
             area: { left: half.left, top: 0, right: half.left + half.width, bottom: height }, blocked,
         }));

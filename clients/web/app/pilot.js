@@ -4,6 +4,7 @@ import {
     depthAt, depthOf, elevation, fit, home, lookAround, MIN_DISTANCE_M, orbit, pan, sight, zoom,
 } from '../core/camera.js';
 import { along } from '../core/vector.js';
+import { clock } from './clock.js';
 import { halfAt } from '../core/halves.js';
 import { flight, FLIGHT_MS } from '../core/flight.js';
 import { Gestures, wheelZoom } from '../core/gestures.js';
@@ -138,6 +139,8 @@ export class Pilot {
         const meaning = keyMeaning(event);
         if (!meaning || (meaning.motion?.startsWith('Arrow') && event.target.closest('fieldset')))
             return; // arrows inside a group of buttons choose among them
+        if (event.key === ' ' && event.target.closest('button, input, a'))
+            return; // it presses what has the focus
         event.preventDefault();
         if (meaning.motion) {
             this.fly = null;
@@ -170,7 +173,7 @@ export class Pilot {
             if (move.zoom)
                 camera = this.zoomed(camera, move.zoom, move.at ?? [width / 2, height / 2]);
         }
-        this.session.setCamera(camera, time);
+        this.session.setCamera(camera, clock.of(time));
     }
 
     zoomed(camera, factor, [x, y]) {
@@ -214,7 +217,7 @@ export class Pilot {
             const camera = this.fly.path(now - this.fly.start);
             if (camera === this.fly.path(Infinity))
                 this.fly = null;
-            this.session.setCamera(camera, now);
+            this.session.setCamera(camera, clock.of(now));
         }
         if (this.keys.moving)
             this.apply(this.keys.step(seconds), now);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Status bar, connection state and banner: always there, in words, aged by this page's own clock.
 import { ageText, zoneClock } from '../core/format.js';
-import { health } from '../core/health.js';
+import { health, simulatedText } from '../core/health.js';
 import { say } from '../core/words.js';
+import { clock } from './clock.js';
 import { byId, make, setText } from './dom.js';
 
 export class Status {
@@ -20,7 +21,7 @@ export class Status {
     }
 
     show() {
-        const now = performance.now();
+        const now = clock.now();
         const state = health(this.session, now);
         this.showHealth(state);
         this.showBar(state, now);
@@ -34,6 +35,10 @@ export class Status {
         const fresh = kind !== 'lost' && kind !== 'silent';
         byId('viewport').classList.toggle('is-old', !fresh);
         byId('viewport').classList.toggle('is-past', kind === 'past');
+        const simulated = simulatedText(this.session);
+        byId('viewport').classList.toggle('is-simulated', simulated !== '');
+        byId('simulated').hidden = simulated === '';
+        setText(byId('simulated'), simulated);
         if (fresh !== this.fresh)
             this.onFreshness(fresh);
         this.fresh = fresh;
@@ -61,13 +66,13 @@ export class Status {
         const clockSet = !session.model || session.model.clockSet;
         byId('clock').parentElement.classList.toggle('unset', !clockSet);
         byId('clock').parentElement.title = clockSet ? '' : say('status.unset.why');
-        const clock = say(past ? 'status.then' : 'status.clock');
-        setText(byId('clock-name'), clockSet ? clock : say('status.unset', { clock }));
+        const named = say(past ? 'status.then' : 'status.clock');
+        setText(byId('clock-name'), clockSet ? named : say('status.unset', { clock: named }));
         const age = session.model ? session.model.oldestAgeMs(session.params.group, now) : null;
         setText(byId('age'), past ? '–' : age === null ? say('none') : ageText(age));
-        byId('age').parentElement.classList.toggle('late', age === null || !['live', 'partial', 'past'].includes(kind));
+        byId('age').parentElement.classList.toggle('late', age === null || !['live', 'simulated', 'partial', 'past'].includes(kind));
         const rate = session.rate.perSecond(now);
-        const quiet = say(kind === 'live' || kind === 'partial' ? 'status.still' : 'none');
+        const quiet = say(['live', 'simulated', 'partial'].includes(kind) ? 'status.still' : 'none');
         setText(byId('rate'), rate > 0 ? say('status.rate', { count: Math.round(rate) }) : quiet);
         const latency = session.latency.median(now);
         setText(byId('latency'), latency === null ? '–' : say('status.ms', { n: Math.round(latency) }));

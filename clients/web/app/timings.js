@@ -4,6 +4,7 @@ import { numberText } from '../core/format.js';
 import { STAGES } from '../core/timings.js';
 import { say } from '../core/words.js';
 import { around, byId, make } from './dom.js';
+import { clock } from './clock.js';
 
 const ms = (value) => (value === null || value === undefined ? '–' : value < 10 ? numberText(value, 1) : String(Math.round(value)));
 
@@ -25,7 +26,7 @@ export class TimingsPanel {
     }
 
     show() {
-        const { session } = this, now = performance.now();
+        const { session } = this, now = clock.now();
         const head = make('tr', {}, ...['ms', 'half', 'most'].map((name) => make('th', {}, say(`timings.${name}`))));
         const rows = ['sensor', ...STAGES].map((name) => this.row(say(`timings.${name}`), session.timings.of(name)));
         const took = make('td', {}, ms(session.latency.median(now)));

@@ -149,6 +149,16 @@ export class Connection {
         return this.pingAt !== null && now - this.pingAt >= ANSWER_MS ? now - this.lastHeard : 0;
     }
 
+    // We slept, or something else makes it doubtful that the peer is still there: until it speaks it counts as silent.
+    doubt() {
+        if (this.state !== 'open')
+            return;
+        this.nextPing = this.clock.now();
+        this.ask();
+        this.become('open', true);
+        this.watch();
+    }
+
     // Lets go of the socket at once: a close over a dead line can take minutes.
     drop() {
         this.clock.clearTimeout(this.timer);

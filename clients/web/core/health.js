@@ -5,7 +5,7 @@ import { say } from './words.js';
 
 const seconds = (ms) => say('age.s', { n: Math.max(1, Math.ceil(ms / 1000)) });
 
-// { kind: connecting | live | past | partial | nodata | silent | lost, words, detail, banner (bool) }
+// { kind: connecting | live | simulated | past | partial | nodata | silent | lost, words, detail, banner (bool) }
 export function health(session, now) {
     const { connection, model, picture } = session;
     const old = picture ? say('health.old', { age: ageText(now - session.freshAt) }) : '';
@@ -28,8 +28,16 @@ export function health(session, now) {
         return { kind: 'partial', words, detail: downText(model), banner: false };
     }
     if (simulated.length > 0)
-        return { kind: 'partial', words: live, detail: say('health.unmeasured', { sources: simulated.join(', ') }), banner: false };
+        return { kind: 'simulated', words: live, detail: say('health.unmeasured', { sources: simulated.join(', ') }), banner: false };
     return { kind: 'live', words: live, detail: '', banner: false };
+}
+
+// What is to be written on the picture itself: that some of it, or all, was not measured. '': all was, or it is of another time.
+export function simulatedText({ model, picture, time }) {
+    const links = model?.links ?? [], simulated = links.filter((link) => link.simulated).length;
+    if (simulated === 0 || time.atUs !== null || picture?.past)
+        return '';
+    return say(simulated < links.length ? 'simulated.partly' : 'simulated.all');
 }
 
 // The picture's own time where it is one of the past: until then it still shows now, and is not what the words would say.

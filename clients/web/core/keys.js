@@ -10,7 +10,7 @@ const SHIFTED = { ArrowLeft: 'KeyA', ArrowRight: 'KeyD', ArrowUp: 'KeyW', ArrowD
 const COMMANDS = {
     f: 'fit', h: 'home', '?': 'help', b: 'assets', '/': 'search', Escape: 'escape',
     t: 'top', i: 'corner', o: 'projection', v: 'views', p: 'picture', x: 'hide', g: 'ghost', l: 'only', u: 'showAll', m: 'timings',
-    e: 'alarms', y: 'past', n: 'live',
+    e: 'alarms', y: 'past', n: 'live', ' ': 'hold', r: 'measure', c: 'snapshot', k: 'share', z: 'theme',
 };
 export const TAP_S = 1 / 15; // a key moves at once by this much, and steadily once it has been held for
 export const HOLD_S = 0.25;

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How large everything on a control room's wall must be to be read from where people sit.
+
+// ISO 9241-303: a capital letter is well read from 20 minutes of arc on, and no smaller than 16.
+export const MINUTES = 16;
+const CAPITAL = 0.72;  // of a letter's size, in the fonts of the page
+const SMALLEST_PX = 12.5; // what is written in the page, before it is enlarged
+export const USUAL = { inches: 55, metres: 3 };
+
+// ?wall, ?wall=65 (inches of the screen), ?wall=65,4 (and metres to it). null: no wall.
+export function readWall(search) {
+    const text = new URLSearchParams(search).get('wall');
+    if (text === null)
+        return null;
+    const [inches, metres] = text.split(',').map(Number);
+    const sane = (n, low, high, usual) => (n >= low && n <= high ? n : usual);
+    return { inches: sane(inches, 10, 400, USUAL.inches), metres: sane(metres, 0.5, 50, USUAL.metres) };
+}
+
+// How much larger than on a desk: screen in CSS pixels, which its diagonal holds.
+export function wallScale({ inches, metres }, screen) {
+    const millimetresPerPx = (inches * 25.4) / Math.hypot(screen.width, screen.height);
+    const needed = metres * 1000 * Math.tan((MINUTES / 60) * (Math.PI / 180));
+    return Math.max(1, needed / (CAPITAL * SMALLEST_PX * millimetresPerPx));
+}
+
+// Height of a capital letter in minutes of arc, for fontPx on that screen.
+export function letterMinutes(fontPx, { inches, metres }, screen) {
+    const millimetres = (CAPITAL * fontPx * inches * 25.4) / Math.hypot(screen.width, screen.height);
+    return (Math.atan(millimetres / (metres * 1000)) * 60 * 180) / Math.PI;
+}

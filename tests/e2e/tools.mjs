@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The tools of the toolbar: values that stand still, a distance, a picture, links with a code, following and leading, dark and light.
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { after, before, test } from 'node:test';
+import jsqr from 'jsqr';
+import { grab, openPage, PHONE, readPng, settle, shoot, view, waitForHealth, waitForPicture } from './support/browser.mjs';
+import { contrast, deltaE } from './support/pixels.mjs';
+import { missing, TinyPlant } from './support/tiny_plant.mjs';
+
+const absent = missing();
+const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 200000 };
+const SCREEN = { viewport: { width: 1280, height: 800 } };
+let plant, url, browser, page;
+
+before(async () => {
+    if (options.skip)
+        return;
+    plant = await TinyPlant.create();
+    assert.equal(plant.prepare().code, 0);
+    await plant.startSim();
+    await plant.startDaemon();
+    for (const [tag, value] of [['TI-1', 80], ['TI-2', 20], ['PI-1', 5]])
+        await plant.tell(`set ${tag} ${value}`);
+    url = `http://127.0.0.1:${plant.port}/`;
+    browser = await openPage(url, SCREEN);
+    page = browser.page;
+    await waitForPicture(page);
+    await waitForHealth(page, 'live');
+    await page.waitForFunction(() => globalThis.plantcast.session.time.fromUs !== undefined && globalThis.plantcast.session.recorded);
+    await settle(page);
+});
+after(async () => {
+    await browser?.close();
+    await plant?.destroy();
+});
+
+// CSS pixels in the page of a place of the plant.
+const placeOf = (point) => page.evaluate((at) => globalThis.plantcast.overlay.pageOf(at), point);
+
+test('values stand still, and go on again', options, async () => {
+    await page.waitForFunction(() => {
+        const { session } = globalThis.plantcast;
+        return session.time.fromUs !== null && session.clockUs() - session.time.fromUs > 4e6;
+    });
+    await page.locator('#hold').click();
+    await waitForHealth(page, 'past');
+    await page.waitForFunction(() => globalThis.plantcast.session.picture.past);
+    const then = await page.evaluate(() => globalThis.plantcast.session.picture.dataTimeUs);
+    assert.match(await page.locator('#banner').textContent(), /History.*\d\d:\d\d:\d\d/);
+    assert.equal(await page.locator('#hold').getAttribute('aria-label'), 'Go on: live values');
+    await plant.tell('set TI-1 30');
+    await page.waitForFunction((us) => globalThis.plantcast.session.clockUs() > us + 6e6, then);
+    assert.equal(await page.evaluate(() => globalThis.plantcast.session.picture.dataTimeUs), then, 'nothing moves');
+    assert.equal(await page.evaluate(() => globalThis.plantcast.session.model.readings[0].value), 80);
+    await page.locator('#viewport').focus();
+    await page.keyboard.press(' ');
+    await waitForHealth(page, 'live');
+    await page.waitForFunction(() => globalThis.plantcast.session.model.readings[0].value === 30);
+    await plant.tell('set TI-1 80');
+});
+
+test('a distance between two places', options, async () => {
+    await page.keyboard.press('r');
+    const ends = [[0, -0.5, 0.2], [0, -0.5, -0.2]];
+    await page.evaluate(() => globalThis.plantcast.session.setCamera({ eye: [0.8, -4, 1], target: [0, 0, 0], up: [0, 0, 1], fov: 30 }));
+    await page.evaluate(() => globalThis.plantcast.pilot.viewport.invalidate());
+    await settle(page);
+    assert.match(await page.locator('.measuring').textContent(), /first place/);
+    for (const [i, end] of ends.entries()) {
+        const { x, y } = await placeOf(end);
+        await page.mouse.click(x, y);
+        await page.waitForFunction((words) => document.querySelector('.measuring').textContent.includes(words),
+            ['second place', 'measure again'][i]);
+    }
+    await page.locator('#measured').waitFor();
+    const [, metres] = (await page.locator('#measured').textContent()).match(/^(0\.\d{3}) m level 0\.0\d\d m, rise -0\.\d{3} m$/);
+    assert.ok(Math.abs(metres - 0.4) < 0.012, `${metres} m`);
+    await shoot(page, 'measure');
+    const before = await page.locator('#measured').boundingBox();
+    await page.keyboard.press('ArrowRight');
+    await page.keyboard.press('-');
+    await settle(page);
+    assert.notDeepEqual(await page.locator('#measured').boundingBox(), before, 'it goes with the picture');
+    await page.keyboard.press('Escape');
+    assert.equal(await page.locator('#measured').isVisible(), false);
+    assert.equal(await page.locator('#card').isVisible(), false, 'a click that measures selects nothing');
+});
+
+test('the picture that is kept is the one that is seen', options, async () => {
+    await page.evaluate(() => globalThis.plantcast.session.setParams({ colormap: 'cividis', range: [0, 120], ghost: ['P-101A'] }));
+    await settle(page, 1000);
+    const shown = await grab(page), download = page.waitForEvent('download');
+    await page.locator('#snapshot').click();
+    const file = await download;
+    assert.match(file.suggestedFilename(), /^Two boxes \d{4}-\d\d-\d\dT\d\d-\d\d-\d\dZ\.png$/);
+    const kept = await readPng(page, readFileSync(await file.path()));
+    assert.ok(contrast(kept) > 5);
+    const { mean } = deltaE(shown, kept); // markers, legend and clock are drawn into the one that is kept
+    assert.ok(mean < 4, `they differ by ${mean}`);
+    await page.evaluate(() => globalThis.plantcast.session.setParams({ show: 'difference', baseline: 'now' }));
+    await page.locator('#snapshot').click();
+    await page.waitForFunction(() => /under a name/.test(document.getElementById('toast').textContent));
+    await page.evaluate(() => globalThis.plantcast.session.setParams({ show: 'value', ghost: [] }));
+});
+
+// What a camera reads from the code on the screen.
+async function scan(where) {
+    const { width, height, rgba } = await readPng(where, await where.locator('#share-code svg').screenshot());
+    return jsqr.default ? jsqr.default(rgba, width, height)?.data : jsqr(rgba, width, height)?.data;
+}
+
+test('links to the view, the tag and the equipment, each with a code that a camera reads', options, async () => {
+    await page.evaluate(() => globalThis.plantcast.session.setParams({ selected: 'E-101', colormap: 'cividis', range: [0, 120] }));
+    await page.evaluate(() => globalThis.plantcast.assets.onTag(globalThis.plantcast.session.model.tag('TI-1')));
+    await page.locator('#share-open').click();
+    await page.locator('#share-code svg').waitFor();
+    const links = {};
+    for (const kind of ['This view', 'This equipment', 'This tag']) {
+        await page.locator('#share-kind label', { hasText: kind }).click();
+        const link = await page.locator('#share-link').inputValue();
+        await page.waitForFunction(() => document.querySelector('#share-code svg path'));
+        assert.equal(await scan(page), link, kind);
+        links[kind] = link;
+    }
+    assert.equal(links['This tag'], `${url}#tag=TI-1`);
+    assert.equal(links['This equipment'], `${url}#asset=E-101`);
+    assert.match(links['This view'], /colormap=cividis.*range=0,120.*camera=/);
+    assert.match(await page.locator('#share-note').textContent(), /this machine only/);
+    await shoot(page, 'share');
+    await page.locator('#share .icon').click();
+    const asked = await view(page);
+    const other = await openPage(links['This view'], SCREEN);
+    await waitForPicture(other.page);
+    const there = await view(other.page);
+    there.camera.eye.forEach((m, i) => assert.ok(Math.abs(m - asked.camera.eye[i]) < 1e-3, 'the same camera'));
+    for (const name of ['group', 'colormap', 'range', 'selected', 'show'])
+        assert.deepEqual(there.params[name], asked.params[name], name);
+    await other.close();
+});
+
+test('a code at the equipment opens there, on a phone', options, async () => {
+    const phone = await openPage(`${url}#tag=PI-1`, PHONE);
+    await waitForPicture(phone.page);
+    await phone.page.waitForFunction(() => globalThis.plantcast.session.params.group === 'pressure');
+    await phone.page.locator('#card').waitFor();
+    assert.match(await phone.page.locator('#card h3').textContent(), /PI-1/);
+    await phone.page.waitForFunction(() => globalThis.plantcast.overlay.markers.some(({ tag, x, occluded }) =>
+        tag.name === 'PI-1' && x > 0 && !occluded));
+    await settle(phone.page);
+    await shoot(phone.page, 'phone-tag');
+    assert.deepEqual(phone.errors, []);
+    await phone.close();
+});
+
+test('others follow; the lead is handed over, and what is shown stays', options, async () => {
+    const id = await page.evaluate(() => globalThis.plantcast.session.id);
+    const second = await openPage(`${url}#follow=${id}`, { viewport: { width: 1000, height: 700 } });
+    await second.page.waitForFunction((leader) => globalThis.plantcast.session.following?.session === leader, id);
+    await page.waitForFunction(() => document.getElementById('share-open').dataset.count === '1');
+    const before = await view(page);
+    await page.keyboard.press('k');
+    assert.match(await page.locator('#share-people').textContent(), new RegExp(`1 follows this view, of session ${id}`));
+    await shoot(page, 'share-lead');
+    await page.locator('#share-people button').click();
+    const heir = await second.page.evaluate(() => globalThis.plantcast.session.id);
+    await page.waitForFunction((leader) => globalThis.plantcast.session.following?.session === leader, heir);
+    await second.page.waitForFunction(() => globalThis.plantcast.session.following === null);
+    assert.match(await page.locator('#following').textContent(), new RegExp(`view of session ${heir}`));
+    const after = await view(second.page);
+    after.camera.eye.forEach((m, i) => assert.ok(Math.abs(m - before.camera.eye[i]) < 1e-3, 'what is shown stays'));
+    await second.page.evaluate(() => globalThis.plantcast.session.setParams({ group: 'pressure' }));
+    await page.waitForFunction(() => globalThis.plantcast.session.params.group === 'pressure');
+    await page.keyboard.press('Escape');
+    await shoot(page, 'following');
+    await page.locator('#following button').click();
+    await page.waitForFunction(() => globalThis.plantcast.session.following === null);
+    assert.deepEqual(second.errors, []);
+    await second.close();
+});
+
+test('dark, and light again; it stays as it was left', options, async () => {
+    await page.evaluate(() => globalThis.plantcast.session.setParams({ group: 'temperature' }));
+    await page.keyboard.press('z');
+    assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), 'dark');
+    await settle(page);
+    await shoot(page, 'dark');
+    await page.reload();
+    await waitForPicture(page);
+    assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), 'dark');
+    await page.locator('#theme').click();
+    assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), 'light');
+    assert.deepEqual(browser.errors, []);
+});
