@@ -77,6 +77,7 @@ void field_destroy(struct field **field_ptr)
             weights_remove(field, &field->weights[i]);
     for (size_t i = 0; i < field->scene->asset_count * field->scene->plant->group_count; i++)
         layout_destroy(&field->layouts[i]);
+    field_trials_finish(field);
     mem_free(field->layouts);
     mem_free(field->states);
     mem_free(field);
@@ -172,12 +173,29 @@ static void keep_columns(struct field *field, struct weights *weights, const str
 
 /* --- finding what is there, making what is not -------------------------------------------------------------------------- */
 
-struct layout *field_layout(struct field *field, int asset, int group)
+struct layout *field_layout(struct field *field, int asset, const struct field_params *params)
 {
-    struct layout **at = &field->layouts[(size_t)asset * field->scene->plant->group_count + (size_t)group];
+    struct layout **at = &field->layouts[(size_t)asset * field->scene->plant->group_count + (size_t)params->group];
+    if (params->trial)
+        return field_tried_layout(field, asset, params);
     if (!*at)
-        *at = layout_create(field->scene, asset, group);
+        *at = layout_create(field->scene, asset, params->group, NULL);
     return *at;
+}
+
+void field_forget_tried(struct field *field, const struct tried *tried)
+{
+    for (struct state **link = &field->states[tried->asset]; *link;)
+        if ((*link)->layout == tried->layout)
+            state_remove(field, link);
+        else
+            link = &(*link)->next;
+    for (size_t i = 0; i < FIELD_BUCKETS; i++)
+        for (struct weights **link = &field->weights[i]; *link;)
+            if ((*link)->layout == tried->layout)
+                weights_remove(field, link);
+            else
+                link = &(*link)->next;
 }
 
 static float radius_of(const struct field *field, struct layout *layout, const struct field_params *params)
@@ -222,7 +240,7 @@ struct state *field_state(struct field *field, int asset, const struct field_par
         state = state->next;
     if (state)
         return state;
-    struct layout *layout = field_layout(field, asset, params->group);
+    struct layout *layout = field_layout(field, asset, params);
     if (!layout)
         return NULL;
     make_room(field, state_bytes(layout), params, field->tick);
@@ -247,7 +265,7 @@ static int find_sensor(const struct layout *layout, int tag)
 static const struct scalars *distance_scalars(struct field *field, int asset, const struct field_params *params,
                                               const struct snapshot *snapshot)
 {
-    int sensor = find_sensor(field_layout(field, asset, params->group), params->sensor);
+    int sensor = find_sensor(field_layout(field, asset, params), params->sensor);
     struct state *state = sensor < 0 ? NULL : field_state(field, asset, params);
     if (!state)
         return NULL;
@@ -261,7 +279,7 @@ static const struct scalars *distance_scalars(struct field *field, int asset, co
 
 bool field_covers(struct field *field, int asset, const struct field_params *params)
 {
-    const struct layout *layout = field_layout(field, asset, params->group);
+    const struct layout *layout = field_layout(field, asset, params);
     return params->show == SHOW_DISTANCE ? find_sensor(layout, params->sensor) >= 0 : layout != NULL;
 }
 
@@ -305,6 +323,8 @@ static bool begin_update(struct field *field, struct state *state, const struct 
 static const struct scalars *advance(struct field *field, int asset, const struct field_params *params, const struct snapshot *snapshot,
                                      size_t count, double work, bool *done)
 {
+    struct field_params room;
+    params = field_params_of(field, asset, params, &room);
     field->tick++;
     *done = true;
     if (params->show == SHOW_DISTANCE)

@@ -24,6 +24,7 @@
 #ifndef FIELD_FIELD_H
 #define FIELD_FIELD_H
 #include "base/workers.h"
+#include "field/trials.h"
 #include "field/scalars.h"
 #include "plant/plant.h"
 #include "scene/scene.h"
@@ -45,6 +46,7 @@ struct field_params {
     enum field_show show;
     int sensor;        /* tag whose distance is shown; -1: none */
     uint32_t baseline; /* id of what the difference is from; 0: none */
+    uint32_t trial;    /* places of sensors that are tried out (field/trials.h); 0: none */
     int slot;          /* of the instant that the readings are of (value/moments.h): its fields are kept apart; 0: now */
     enum interpolation interpolation;
     enum distance_mode distance;
@@ -74,6 +76,13 @@ struct workers *field_workers(const struct field *field);
 /* Where differences look their baselines up; it must outlive the field. Without it, and for a baseline that was forgotten, a
    difference has no data anywhere. */
 void field_set_baselines(struct field *field, struct baselines *baselines);
+/* Where places that are tried out are looked up, likewise. Without it, and for a trial that is gone, sensors are where the plant has them. */
+void field_set_trials(struct field *field, struct trials *trials);
+/* The parameters that the field of this asset is kept under: without the trial, where it moves nothing there. `room` is for a copy. */
+const struct field_params *field_params_of(struct field *field, int asset, const struct field_params *params, struct field_params *room);
+/* What is tried out, held until trials_give. NULL: nothing. */
+const struct trial *field_take_trial(struct field *field, const struct field_params *params);
+void field_give_trial(struct field *field, const struct trial **trial);
 /* What the difference is from. False: no difference is shown, or it was forgotten. */
 bool field_baseline(const struct field *field, const struct field_params *params, struct baseline *out);
 /* The bound on what is kept, FIELD_DEFAULT_BYTES at first. What the parameters asked for last need for themselves may pass it. */
@@ -101,8 +110,10 @@ bool field_covers(struct field *field, int asset, const struct field_params *par
 
 /* What the field at any point of an asset is made of, for whoever works it out by himself. */
 struct field_sensor {
+    int tag;
     float surface_m[3]; /* as the asset file's positions */
-    uint32_t column;    /* in the asset file's sensors */
+    uint32_t column;    /* in the asset file's sensors; beyond them: it is tried out */
+    const float *along_m; /* distances along the surface, of each vertex; NULL: not known yet */
     float strength, decay;
     float value; /* as it is summed: for `paper` 0..1, for a difference that of two */
     bool configured, usable, uncertain; /* configured: would take part, were it good */

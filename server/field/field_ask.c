@@ -29,7 +29,9 @@ void field_probe(struct field *field, int asset, const struct field_params *para
     const struct scalars *scalars = field_scalars(field, asset, params, snapshot);
     if (!scalars || vertex >= scalars->count)
         return;
-    const struct layout *layout = field_layout(field, asset, params->group);
+    struct field_params room;
+    params = field_params_of(field, asset, params, &room);
+    const struct layout *layout = field_layout(field, asset, params);
     const struct state *state = field_state(field, asset, params);
     bool at_sensor = false;
     for (size_t i = 0; i < layout->sensor_count; i++) {
@@ -38,7 +40,7 @@ void field_probe(struct field *field, int asset, const struct field_params *para
         if (state->usable[i] != SENSOR_USED || !(distance_m <= params->reach_m) || distance_m > 1e30f)
             continue;
         insert_nearest(out, sensor->tag, (double)distance_m);
-        at_sensor |= distance_m == 0 || layout->file->view.sensors[sensor->column].nearest_vertex == vertex;
+        at_sensor |= distance_m == 0 || sensor->vertex == vertex;
     }
     const struct scalar *at = &scalars->at[vertex];
     out->value = (double)at->value;
@@ -50,7 +52,9 @@ void field_probe(struct field *field, int asset, const struct field_params *para
 
 size_t field_sensors(struct field *field, int asset, const struct field_params *params, struct field_sensor **out, float *radius_m)
 {
-    const struct state *state = field_layout(field, asset, params->group) ? field_state(field, asset, params) : NULL;
+    struct field_params room;
+    params = field_params_of(field, asset, params, &room);
+    const struct state *state = field_layout(field, asset, params) ? field_state(field, asset, params) : NULL;
     if (!state || (!state->weights && params->show != SHOW_DISTANCE))
         return 0;
     const struct layout *layout = state->layout;
@@ -61,7 +65,9 @@ size_t field_sensors(struct field *field, int asset, const struct field_params *
         struct field_sensor *to = &sensors[i];
         bool sum = weights != NULL;
         *to = (struct field_sensor){
+            .tag = from->tag,
             .column = from->column,
+            .along_m = from->along_m,
             .strength = sum ? weights->strength[i] : 1,
             .decay = sum ? weights->decay[i] : 1,
             .value = (float)state->shown[i].value,
@@ -69,7 +75,7 @@ size_t field_sensors(struct field *field, int asset, const struct field_params *
             .usable = sum ? weights->configured[i] == SENSOR_USED && state->shown[i].usable == SENSOR_USED : from->tag == params->sensor,
             .uncertain = sum && state->shown[i].uncertain,
         };
-        memcpy(to->surface_m, layout->file->view.sensors[from->column].surface_m, sizeof(to->surface_m));
+        memcpy(to->surface_m, from->surface_m, sizeof(to->surface_m));
     }
     *out = sensors;
     *radius_m = weights ? weights->radius_m : 1;

@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <pthread.h>
+#include <string.h>
 
 #include "base/mem.h"
 #include "field/kernels.h"
@@ -18,31 +19,64 @@ static float not_negative(double x)
     return x > 0 && x < 1e30 ? (float)x : 0.0f;
 }
 
-struct layout *layout_create(const struct scene *scene, int asset, int group)
+bool layout_is_touched(const struct scene *scene, int asset, int group, const struct trial *trial)
+{
+    for (size_t i = 0; trial && i < trial->count; i++) {
+        const struct plant_tag *tag = &scene->plant->tags[trial->sensors[i].tag];
+        if (tag->group == group && (trial->sensors[i].asset == asset || tag->asset == asset))
+            return true;
+    }
+    return false;
+}
+
+static void add(struct layout *layout, struct layout_sensor sensor)
+{
+    const struct plant_tag *tag = &layout->tags[sensor.tag];
+    sensor.strength = not_negative(tag->strength);
+    sensor.decay = not_negative(tag->decay);
+    layout->sensors[layout->sensor_count++] = sensor;
+}
+
+static void add_prepared(struct layout *layout, const struct scene_sensor *sensor)
+{
+    const struct asset_view *view = &layout->file->view;
+    const struct asset_sensor *in_file = &view->sensors[sensor->column];
+    struct layout_sensor made = { .tag = sensor->tag,
+                                  .column = (uint32_t)sensor->column,
+                                  .vertex = in_file->nearest_vertex,
+                                  .along_m = view->geodesic_m + (size_t)sensor->column * layout->vertex_count };
+    memcpy(made.surface_m, in_file->surface_m, sizeof(made.surface_m));
+    add(layout, made);
+}
+
+static void add_trial(struct layout *layout, const struct trial_sensor *sensor)
+{
+    struct layout_sensor made = { .tag = sensor->tag,
+                                  .column = layout->file->view.header->sensor_count + sensor->number,
+                                  .vertex = sensor->vertex,
+                                  .along_m = trial_distances(sensor) };
+    memcpy(made.surface_m, sensor->surface_m, sizeof(made.surface_m));
+    add(layout, made);
+}
+
+struct layout *layout_create(const struct scene *scene, int asset, int group, const struct trial *trial)
 {
     const struct scene_asset *from = &scene->assets[asset];
-    size_t count = 0;
-    for (size_t i = 0; i < from->sensor_count; i++)
-        count += of_group(scene, &from->sensors[i], group);
-    if (count == 0)
-        return NULL;
     struct layout *layout = mem_new(sizeof(*layout));
     layout->file = from->file;
     layout->group = &scene->plant->groups[group];
     layout->tags = scene->plant->tags;
     layout->vertex_count = from->file->view.header->vertex_count;
-    layout->sensors = mem_array(count, sizeof(*layout->sensors));
-    for (size_t i = 0; i < from->sensor_count; i++) {
-        const struct scene_sensor *sensor = &from->sensors[i];
-        const struct plant_tag *tag = &scene->plant->tags[sensor->tag];
-        if (of_group(scene, sensor, group))
-            layout->sensors[layout->sensor_count++] = (struct layout_sensor){
-                .tag = sensor->tag,
-                .column = (uint32_t)sensor->column,
-                .strength = not_negative(tag->strength),
-                .decay = not_negative(tag->decay),
-            };
-    }
+    layout->trial = trial ? trial->id : 0;
+    layout->sensors = mem_array(from->sensor_count + (trial ? trial->count : 0), sizeof(*layout->sensors));
+    for (size_t i = 0; i < from->sensor_count; i++)
+        if (of_group(scene, &from->sensors[i], group) && !trial_find(trial, from->sensors[i].tag))
+            add_prepared(layout, &from->sensors[i]);
+    for (size_t i = 0; trial && i < trial->count; i++)
+        if (trial->sensors[i].asset == asset && scene->plant->tags[trial->sensors[i].tag].group == group)
+            add_trial(layout, &trial->sensors[i]);
+    if (layout->sensor_count == 0)
+        layout_destroy(&layout);
     return layout;
 }
 
@@ -59,11 +93,10 @@ void layout_destroy(struct layout **layout_ptr)
 const float *layout_distances(const struct layout *layout, enum distance_mode mode, size_t sensor, size_t begin, size_t count,
                               float *scratch)
 {
-    const struct asset_view *view = &layout->file->view;
-    uint32_t column = layout->sensors[sensor].column;
-    if (mode == DISTANCE_GEODESIC)
-        return view->geodesic_m + (size_t)column * layout->vertex_count + begin;
-    kernel_euclidean(view->positions_m + begin, count, view->sensors[column].surface_m, scratch);
+    const struct layout_sensor *from = &layout->sensors[sensor];
+    if (mode == DISTANCE_GEODESIC && from->along_m)
+        return from->along_m + begin;
+    kernel_euclidean(layout->file->view.positions_m + begin, count, from->surface_m, scratch);
     return scratch;
 }
 

@@ -3,12 +3,16 @@
 #ifndef FIELD_LAYOUT_H
 #define FIELD_LAYOUT_H
 #include "base/workers.h"
+#include "field/trials.h"
 #include "plant/plant.h"
 #include "scene/scene.h"
 
 struct layout_sensor {
     int tag;               /* in plant->tags */
-    uint32_t column;       /* in the asset file's sensors */
+    uint32_t column;       /* in the asset file's sensors; of one that is tried out: its own number, beyond them */
+    float surface_m[3];    /* as the file's positions */
+    uint32_t vertex;       /* the nearest one */
+    const float *along_m;  /* of each vertex; NULL: not known yet */
     float strength, decay; /* as configured, >= 0 */
 };
 
@@ -19,13 +23,16 @@ struct layout {
     struct layout_sensor *sensors;
     size_t sensor_count, vertex_count;
     float largest_m[2]; /* by distance_mode; 0: not looked for yet */
+    uint32_t trial;     /* of which some of the places are; 0: none */
 };
 
-/* NULL: no sensor of the group on the asset. scene must outlive it. */
-struct layout *layout_create(const struct scene *scene, int asset, int group);
+/* NULL: no sensor of the group on the asset. scene, and trial (NULL: none), must outlive it. */
+struct layout *layout_create(const struct scene *scene, int asset, int group, const struct trial *trial);
+/* Whether sensors of the group come to the asset, go from it or move on it. */
+bool layout_is_touched(const struct scene *scene, int asset, int group, const struct trial *trial);
 void layout_destroy(struct layout **layout); /* &NULL is fine; leaves NULL */
 /* Distances of `count` vertices from `begin` on from one sensor: in the file, or made in scratch. Euclidean ones are taken from
-   the sensor's place on the surface, so that both kinds are 0 at the same point. */
+   the sensor's place on the surface, so that both kinds are 0 at the same point; they stand in for those not known yet. */
 const float *layout_distances(const struct layout *layout, enum distance_mode mode, size_t sensor, size_t begin, size_t count,
                               float *scratch);
 /* The largest finite distance of any vertex from any of the sensors; 1 where all are 0 or infinite. Kept. */

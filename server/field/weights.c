@@ -13,7 +13,7 @@ struct key_head { /* without holes: compared as bytes */
     const struct asset *file;
     uint32_t interpolation, distance;
     float power, reach_m, radius_m;
-    uint32_t sensor_count;
+    uint32_t trial; /* of which the layout is; how many sensors there are, the length says */
 };
 struct key_sensor {
     uint32_t column, usable;
@@ -49,7 +49,7 @@ void weights_key_init(struct weights_key *key, const struct layout *layout, cons
         .power = paper ? 0 : (float)params->power,
         .reach_m = (float)params->reach_m,
         .radius_m = paper ? radius_m : 0,
-        .sensor_count = (uint32_t)layout->sensor_count,
+        .trial = layout->trial,
     };
     struct key_sensor *sensors = (struct key_sensor *)(head + 1);
     for (size_t i = 0; i < layout->sensor_count; i++)

@@ -13,7 +13,7 @@ static void add(XXH3_state_t *state, const void *bytes, size_t count)
 static void add_field_params(XXH3_state_t *state, const struct field_params *params)
 {
     int32_t choices[] = { params->group,    (int32_t)params->show, params->sensor,           params->interpolation,
-                          params->distance, params->fill,          (int32_t)params->baseline };
+                          params->distance, params->fill,          (int32_t)params->baseline, (int32_t)params->trial };
     double numbers[] = { params->strength, params->decay, params->power, params->radius_m, params->reach_m };
     add(state, choices, sizeof(choices));
     add(state, numbers, sizeof(numbers));
@@ -45,8 +45,8 @@ static void add_visibility(XXH3_state_t *state, const struct picture *picture)
 static void add_shape(XXH3_state_t *state, const struct picture *picture)
 {
     const struct view *view = picture->view;
-    int32_t choices[] = { view->width_px,      view->height_px,      (int32_t)view->look,
-                          (int32_t)view->tier, view->selected_asset, view->environment };
+    int32_t choices[] = { view->width_px,       view->height_px,   (int32_t)view->look,           (int32_t)view->tier,
+                          view->selected_asset, view->environment, (int32_t)view->field.trial };
     double numbers[] = { view->camera.fov_deg, view->camera.height_m };
     add(state, choices, sizeof(choices));
     add(state, numbers, sizeof(numbers));

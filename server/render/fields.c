@@ -111,6 +111,8 @@ static void upload(struct fields_entry *entry)
 const struct fields_entry *fields_get(struct fields *fields, int asset, const struct field_params *params, double step,
                                       const struct snapshot *snapshot, size_t count)
 {
+    struct field_params room;
+    params = field_params_of(fields->field, asset, params, &room);
     const struct scalars *scalars = field_scalars_of(fields->field, asset, params, snapshot, count);
     if (!scalars && !field_covers(fields->field, asset, params))
         return NULL;

@@ -7,22 +7,53 @@
 #include "base/mem.h"
 #include "render/matrix.h"
 
-/* Of the shown group, on an asset that is not hidden, and not cut away. */
-static bool is_shown(const struct picture *picture, const struct scene_sensor *sensor)
+bool marker_next(struct marker_walk *walk, struct marker_place *out)
 {
-    const struct visibility *visibility = &picture->view->visibility;
-    const struct plant_tag *tag = &picture->stage->scene->plant->tags[sensor->tag];
-    return tag->group == picture->view->field.group && visibility_of(visibility, tag->asset) != ASSET_HIDDEN &&
-           clip_keeps(&visibility->clip, sensor->surface_m);
+    for (; walk->asset < walk->scene->asset_count; walk->asset++, walk->sensor = 0)
+        while (walk->sensor < walk->scene->assets[walk->asset].sensor_count) {
+            const struct scene_sensor *sensor = &walk->scene->assets[walk->asset].sensors[walk->sensor++];
+            *out = (struct marker_place){ sensor->tag, (int)walk->asset, sensor->surface_m };
+            if (!trial_find(walk->trial, sensor->tag))
+                return true;
+        }
+    if (!walk->trial || walk->tried == walk->trial->count)
+        return false;
+    const struct trial_sensor *sensor = &walk->trial->sensors[walk->tried++];
+    *out = (struct marker_place){ sensor->tag, sensor->asset, sensor->place_m };
+    return true;
+}
+
+/* Of the shown group, on an asset that is not hidden, and not cut away. */
+bool marker_is_shown(const struct scene *scene, const struct view *view, const struct marker_place *place)
+{
+    return scene->plant->tags[place->tag].group == view->field.group && visibility_of(&view->visibility, place->asset) != ASSET_HIDDEN &&
+           clip_keeps(&view->visibility.clip, place->surface_m);
+}
+
+static struct marker_walk walk_of(const struct picture *picture, const struct trial **trial)
+{
+    *trial = field_take_trial(picture->field, &picture->view->field);
+    return (struct marker_walk){ .scene = picture->stage->scene, .trial = *trial };
+}
+
+/* The next of those that are shown. */
+static bool next_shown(struct marker_walk *walk, const struct picture *picture, struct marker_place *place)
+{
+    while (marker_next(walk, place))
+        if (marker_is_shown(walk->scene, picture->view, place))
+            return true;
+    return false;
 }
 
 static size_t count_shown(const struct picture *picture)
 {
-    const struct scene *scene = picture->stage->scene;
+    const struct trial *trial;
+    struct marker_walk walk = walk_of(picture, &trial);
+    struct marker_place place;
     size_t count = 0;
-    for (size_t a = 0; a < scene->asset_count; a++)
-        for (size_t s = 0; s < scene->assets[a].sensor_count; s++)
-            count += is_shown(picture, &scene->assets[a].sensors[s]);
+    while (next_shown(&walk, picture, &place))
+        count++;
+    field_give_trial(picture->field, &trial);
     return count;
 }
 
@@ -36,16 +67,15 @@ double markers_slack_m(const struct scene_asset *asset)
 
 static void fill_places(const struct picture *picture, float (*places)[4])
 {
-    const struct scene *scene = picture->stage->scene;
-    for (size_t a = 0; a < scene->asset_count; a++)
-        for (size_t s = 0; s < scene->assets[a].sensor_count; s++) {
-            const struct scene_sensor *sensor = &scene->assets[a].sensors[s];
-            if (!is_shown(picture, sensor))
-                continue;
-            for (int c = 0; c < 3; c++)
-                (*places)[c] = (float)(sensor->surface_m[c] - picture->shot.eye_m[c]);
-            (*places++)[3] = (float)markers_slack_m(&scene->assets[a]);
-        }
+    const struct trial *trial;
+    struct marker_walk walk = walk_of(picture, &trial);
+    struct marker_place place;
+    for (; next_shown(&walk, picture, &place); places++) {
+        for (int c = 0; c < 3; c++)
+            (*places)[c] = (float)(place.surface_m[c] - picture->shot.eye_m[c]);
+        (*places)[3] = (float)markers_slack_m(&walk.scene->assets[place.asset]);
+    }
+    field_give_trial(picture->field, &trial);
 }
 
 bool markers_start(struct sights *sights, const struct picture *picture)
@@ -62,22 +92,22 @@ bool markers_start(struct sights *sights, const struct picture *picture)
 
 static void give(const struct picture *picture, float (*places)[4], size_t count, struct frame *frame)
 {
-    const struct scene *scene = picture->stage->scene;
+    const struct trial *trial;
+    struct marker_walk walk = walk_of(picture, &trial);
+    struct marker_place place;
     frame->markers = mem_array(count, sizeof(*frame->markers));
-    for (size_t a = 0; a < scene->asset_count; a++)
-        for (size_t s = 0; s < scene->assets[a].sensor_count; s++) {
-            const struct scene_sensor *sensor = &scene->assets[a].sensors[s];
-            const float *place = places[frame->marker_count];
-            if (is_shown(picture, sensor))
-                frame->markers[frame->marker_count++] =
-                    (struct frame_marker){ .tag = sensor->tag, .x_px = place[0], .y_px = place[1], .occluded = place[2] > 0.5f };
-        }
+    while (frame->marker_count < count && next_shown(&walk, picture, &place)) {
+        const float *at = places[frame->marker_count];
+        frame->markers[frame->marker_count++] =
+            (struct frame_marker){ .tag = place.tag, .x_px = at[0], .y_px = at[1], .occluded = at[2] > 0.5f };
+    }
+    field_give_trial(picture->field, &trial);
 }
 
 void markers_get(const struct sights *sights, const struct picture *picture, struct frame *frame)
 {
     size_t count = count_shown(picture);
-    if (count > 0)
+    if (count > 0 && count <= sights->capacity) /* a trial may have gone since it was started */
         give(picture, sights->places, count, frame);
 }
 

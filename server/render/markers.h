@@ -5,6 +5,19 @@
 #include "render/frame.h"
 #include "render/sights.h"
 
+/* All sensors one after another, each where it stands: as prepared, or as somebody tries it out. */
+struct marker_walk {
+    const struct scene *scene;
+    const struct trial *trial; /* NULL: none */
+    size_t asset, sensor, tried; /* begin at 0 */
+};
+struct marker_place {
+    int tag, asset;
+    const double *surface_m; /* plant frame */
+};
+bool marker_next(struct marker_walk *walk, struct marker_place *out); /* false: that was all */
+bool marker_is_shown(const struct scene *scene, const struct view *view, const struct marker_place *place);
+
 /* A marker sits on the surface; curved triangles may put it so far behind. */
 double markers_slack_m(const struct scene_asset *asset);
 /* Started once the picture is resolved; read into the frame when the GPU is done with it. False: out of GPU memory, logged. */

@@ -57,7 +57,7 @@ static void ray_through(const struct view *view, double x_px, double y_px, struc
 }
 
 /* A ray towards it meets nothing before. */
-static bool in_sight(const struct spot *spot, int asset, const struct scene_sensor *sensor, double x_px, double y_px)
+static bool in_sight(const struct spot *spot, const struct marker_place *place, double x_px, double y_px)
 {
     struct ray ray;
     struct raycast_hit hit;
@@ -65,37 +65,34 @@ static bool in_sight(const struct spot *spot, int asset, const struct scene_sens
     ray_through(spot->view, x_px, y_px, &ray);
     raycast(spot->scene, &spot->view->visibility, &ray, &hit);
     for (int i = 0; i < 3; i++) {
-        ahead += (sensor->surface_m[i] - ray.origin[i]) * ray.direction[i];
+        ahead += (place->surface_m[i] - ray.origin[i]) * ray.direction[i];
         square += ray.direction[i] * ray.direction[i];
     }
-    return hit.asset < 0 || hit.t * sqrt(square) > ahead / sqrt(square) - markers_slack_m(&spot->scene->assets[asset]);
+    return hit.asset < 0 || hit.t * sqrt(square) > ahead / sqrt(square) - markers_slack_m(&spot->scene->assets[place->asset]);
 }
 
-static void find_sensor(const struct spot *spot, double x_px, double y_px, struct pick *out)
+static void find_sensor(const struct spot *spot, const struct trial *trial, double x_px, double y_px, struct pick *out)
 {
-    const struct visibility *visibility = &spot->view->visibility;
+    struct marker_walk walk = { .scene = spot->scene, .trial = trial };
+    struct marker_place place;
     struct lens lens;
     double near_px = MARKER_PX * (spot->view->pixel_ratio > 0 ? spot->view->pixel_ratio : 1);
     double least[2] = { near_px, near_px }; /* in sight, and not */
     lens_init(&lens, spot->view);
-    for (size_t a = 0; a < spot->scene->asset_count; a++)
-        for (size_t s = 0; s < spot->scene->assets[a].sensor_count; s++) {
-            const struct scene_sensor *sensor = &spot->scene->assets[a].sensors[s];
-            double x, y;
-            if (spot->scene->plant->tags[sensor->tag].group != spot->view->field.group ||
-                visibility_of(visibility, (int)a) == ASSET_HIDDEN || !clip_keeps(&visibility->clip, sensor->surface_m) ||
-                !lens_project(&lens, spot->view, sensor->surface_m, &x, &y))
-                continue;
-            double away = hypot(x - x_px, y - y_px);
-            if (away >= least[0])
-                continue;
-            bool occluded = !in_sight(spot, (int)a, sensor, x, y);
-            if (away >= least[occluded] || (occluded && least[0] < near_px))
-                continue;
-            least[occluded] = away;
-            out->sensor = sensor->tag;
-            out->sensor_occluded = occluded;
-        }
+    while (marker_next(&walk, &place)) {
+        double x, y;
+        if (!marker_is_shown(spot->scene, spot->view, &place) || !lens_project(&lens, spot->view, place.surface_m, &x, &y))
+            continue;
+        double away = hypot(x - x_px, y - y_px);
+        if (away >= least[0])
+            continue;
+        bool occluded = !in_sight(spot, &place, x, y);
+        if (away >= least[occluded] || (occluded && least[0] < near_px))
+            continue;
+        least[occluded] = away;
+        out->sensor = place.tag;
+        out->sensor_occluded = occluded;
+    }
 }
 
 /* --- what the field says ----------------------------------------------------------------------------------------------------- */
@@ -118,14 +115,13 @@ static void read_field(const struct spot *spot, const struct scalars *scalars, s
 
 static double distance_of(const struct spot *spot, const struct field_sensor *sensor, const double place_file_m[3])
 {
-    const struct asset_view *view = &spot->scene->assets[spot->hit.asset].file->view;
+    const float *distances = sensor->along_m;
     double sum = 0;
-    if (spot->view->field.distance == DISTANCE_EUCLIDEAN) {
+    if (spot->view->field.distance == DISTANCE_EUCLIDEAN || !distances) {
         for (int i = 0; i < 3; i++)
             sum += pow(place_file_m[i] - (double)sensor->surface_m[i], 2);
         return sqrt(sum);
     }
-    const float *distances = view->geodesic_m + (size_t)sensor->column * view->header->vertex_count;
     for (int k = 0; k < 3; k++)
         if (spot->hit.weights[k] != 0)
             sum += spot->hit.weights[k] * (double)distances[spot->hit.corners[k]];
@@ -155,7 +151,7 @@ static void read_sensors(const struct spot *spot, struct field *field, const str
             place_m[i] += spot->hit.weights[k] * (double)asset->file->view.positions_m[spot->hit.corners[k]][i];
     size_t count = field_sensors(field, spot->hit.asset, params, &sensors, &radius_m);
     for (size_t i = 0; i < count; i++) {
-        int tag = asset->sensors[sensors[i].column].tag;
+        int tag = sensors[i].tag;
         const struct reading *reading = &spot->snapshot->readings[tag];
         double distance_m = distance_of(spot, &sensors[i], place_m);
         if (sensors[i].usable && distance_m <= params->reach_m && isfinite(distance_m))
@@ -197,7 +193,9 @@ void pick_at(const struct scene *scene, struct field *field, const struct view *
     *out = (struct pick){ .asset = -1, .sensor = -1, .value = NAN, .data_utc_ns = snapshot->taken_utc_ns };
     if (x_px < 0 || y_px < 0 || x_px >= half.width_px || y_px >= half.height_px)
         return;
-    find_sensor(&spot, x_px, y_px, out);
+    const struct trial *trial = field_take_trial(field, &half.field);
+    find_sensor(&spot, trial, x_px, y_px, out);
+    field_give_trial(field, &trial);
     ray_through(&half, x_px, y_px, &ray);
     raycast(scene, &half.visibility, &ray, &spot.hit);
     if (spot.hit.asset < 0)

@@ -16,6 +16,7 @@ struct picture {
     struct light_key lit_by;            /* what it is drawn with: what the view asks for, or the most alike */
     const struct light_set *light;
     const struct target *target;
+    struct field *field;
     const struct fields_entry **fields; /* per asset; NULL: context */
     const int *visible;                 /* assets, nearest first */
     size_t visible_count;

@@ -159,6 +159,7 @@ static void look(struct renderer *renderer, struct picture *picture, const struc
 {
     *picture = (struct picture){ .stage = &renderer->stage,
                                  .view = view,
+                                 .field = renderer->fields.field,
                                  .fields = renderer->asset_fields,
                                  .reference = renderer->per_fragment ? &renderer->reference : NULL };
     picture->lit_by = choose_light(renderer, view);

@@ -1,0 +1,80 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Fields of sensors whose places are tried out: their layouts, kept as long as somebody may ask for them. */
+#include "base/mem.h"
+#include "field/field_impl.h"
+
+void field_set_trials(struct field *field, struct trials *trials)
+{
+    field->trials = trials;
+}
+
+const struct trial *field_take_trial(struct field *field, const struct field_params *params)
+{
+    return params->trial && field->trials ? trials_take(field->trials, params->trial) : NULL;
+}
+
+void field_give_trial(struct field *field, const struct trial **trial)
+{
+    if (*trial)
+        trials_give(field->trials, trial);
+}
+
+static void tried_remove(struct field *field, struct tried **link)
+{
+    struct tried *tried = *link;
+    *link = tried->next;
+    if (tried->layout)
+        field_forget_tried(field, tried);
+    layout_destroy(&tried->layout);
+    trials_give(field->trials, &tried->trial);
+    mem_free(tried);
+}
+
+void field_trials_finish(struct field *field)
+{
+    while (field->tried)
+        tried_remove(field, &field->tried);
+}
+
+/* A sensor that is dragged leaves a layout behind at every step. */
+static void forget_dropped(struct field *field, uint32_t keep)
+{
+    for (struct tried **link = &field->tried; *link;)
+        if ((*link)->trial->id != keep && !trials_live(field->trials, (*link)->trial->id))
+            tried_remove(field, link);
+        else
+            link = &(*link)->next;
+}
+
+static struct tried *find(const struct field *field, int asset, const struct field_params *params)
+{
+    struct tried *tried = field->tried;
+    while (tried && (tried->trial->id != params->trial || tried->asset != asset || tried->group != params->group))
+        tried = tried->next;
+    return tried;
+}
+
+const struct field_params *field_params_of(struct field *field, int asset, const struct field_params *params, struct field_params *room)
+{
+    if (!params->trial || find(field, asset, params))
+        return params;
+    const struct trial *trial = field_take_trial(field, params);
+    bool touched = layout_is_touched(field->scene, asset, params->group, trial);
+    if (touched) {
+        struct tried *tried = mem_new(sizeof(*tried));
+        forget_dropped(field, params->trial);
+        *tried = (struct tried){ .trial = trial, .asset = asset, .group = params->group, .next = field->tried };
+        tried->layout = layout_create(field->scene, asset, params->group, trial);
+        field->tried = tried;
+        return params;
+    }
+    field_give_trial(field, &trial);
+    *room = *params;
+    room->trial = 0;
+    return room;
+}
+
+struct layout *field_tried_layout(struct field *field, int asset, const struct field_params *params)
+{
+    return find(field, asset, params)->layout;
+}
