@@ -1,0 +1,189 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Places of sensors written into a tag list: what is changed is changed, and nothing else is, to the byte. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "base/mem.h"
+#include "base/text.h"
+#include "plant/csv.h"
+#include "plant/tag_edit.h"
+
+static void expect(const char *text, const struct tag_edit *edits, size_t count, const char *expected)
+{
+    char *why, *out = tag_edit(text, edits, count, &why);
+    if (why)
+        print_message("# %s\n", why);
+    assert_non_null(out);
+    assert_string_equal(out, expected);
+    mem_free(out);
+}
+
+static void test_one_row(void **state)
+{
+    (void)state;
+    const struct tag_edit to = { "TT-2", NULL, NULL, { 1.25, -3, 0.12345 } };
+    expect("Tag Name,Group,Asset,X,Y,Z\nTT-1,t,E,1.50,2.000,3\nTT-2,t,E, 4.0 ,5,6\nTT-3,t,E,7,8,9\n", &to, 1,
+           "Tag Name,Group,Asset,X,Y,Z\nTT-1,t,E,1.50,2.000,3\nTT-2,t,E,1.25,-3,0.123\nTT-3,t,E,7,8,9\n");
+}
+
+/* A mark at the beginning, another separator, unknown columns, comments in them, blank rows, quotes, line ends, no end at the end. */
+static void test_the_rest_stays_to_the_byte(void **state)
+{
+    (void)state;
+    const struct tag_edit to = { "T;\"2\"", "E 2", NULL, { 10, 20, -0.0001 } };
+    expect("\xEF\xBB\xBF" "Remark;TAG NAME;x;Y;Z;Asset;Node\r\n\r\n\"# old; see\r\nMaria\";T1;1,0;2;3;E;\r\n; \"T;\"\"2\"\"\" ;1;;;E;N-1;more\r\nlast;T3", &to, 1,
+           "\xEF\xBB\xBF" "Remark;TAG NAME;x;Y;Z;Asset;Node\r\n\r\n\"# old; see\r\nMaria\";T1;1,0;2;3;E;\r\n; \"T;\"\"2\"\"\" ;10;20;0;E 2;;more\r\nlast;T3");
+}
+
+static void test_columns_that_are_not_there(void **state)
+{
+    (void)state;
+    const struct tag_edit to = { "b", "E,1", "t", { 1, 2, 3 } };
+    expect("Tag Name,Address\na,hr:1\nb\nc,hr:3", &to, 1, "Tag Name,Address,Asset,Group,X,Y,Z\na,hr:1\nb,,\"E,1\",t,1,2,3\nc,hr:3");
+}
+
+static void test_several_and_none(void **state)
+{
+    (void)state;
+    const struct tag_edit to[] = { { "b", NULL, NULL, { 1, 2, 3 } }, { "a", NULL, NULL, { 4, 5, 6 } } };
+    expect("Tag Name\tX\tY\tZ\na\t0\t0\t0\nb\t0\t0\t0\n", to, 2, "Tag Name\tX\tY\tZ\na\t4\t5\t6\nb\t1\t2\t3\n");
+    expect("Tag Name,X,Y,Z\na,4,5.0,6\n", to + 1, 1, "Tag Name,X,Y,Z\na,4,5,6\n");
+    expect("Tag Name,X,Y,Z\na,1,1,1\n", to, 0, "Tag Name,X,Y,Z\na,1,1,1\n");
+}
+
+static void test_what_is_not_there_is_refused(void **state)
+{
+    (void)state;
+    const struct tag_edit to = { "zz", NULL, NULL, { 1, 2, 3 } };
+    char *why;
+    assert_null(tag_edit("Tag Name,X,Y,Z\na,1,1,1\n", &to, 1, &why));
+    assert_string_equal(why, "tag zz is not in the tag list");
+    mem_free(why);
+    assert_null(tag_edit("Name,X\na,1\n", &to, 1, &why));
+    assert_non_null(strstr(why, "Tag Name"));
+    mem_free(why);
+    assert_null(tag_edit("", &to, 1, &why));
+    mem_free(why);
+}
+
+static void test_lines(void **state)
+{
+    (void)state;
+    struct tag_lines lines = { 0 };
+    tag_lines("h\na\nb\nc\n", "h\na\nB\nc\n", &lines);
+    assert_int_equal(lines.count, 1);
+    assert_int_equal(lines.at[0].line, 3);
+    assert_string_equal(lines.at[0].before, "b");
+    assert_string_equal(lines.at[0].after, "B");
+    tag_lines_finish(&lines);
+    tag_lines("h\na\nc\n", "h\na\nb\nc\n", &lines);
+    assert_int_equal(lines.count, 1);
+    assert_null(lines.at[0].before);
+    assert_string_equal(lines.at[0].after, "b");
+    tag_lines_finish(&lines);
+    tag_lines("h\na\n", "h\na\n", &lines);
+    assert_int_equal(lines.count, 0);
+    tag_lines_finish(&lines);
+}
+
+/* Random lists: read by the reader that the plant is read with, all cells but those of the edit are what they were. */
+static unsigned seed;
+static int below(int n)
+{
+    return (int)((unsigned)rand_r(&seed) % (unsigned)n);
+}
+
+static void add_random_cell(struct text *text, char separator)
+{
+    static const char *const cells[] = { "", " ", "1.50", "-2", "\"q \"\"x\"\"\"", "\"a\nb\"", "\xC3\xBC", "# 3", "\"s,;\t\"", " b " };
+    const char *cell = cells[below(10)];
+    text_add(text, "%s%c", separator == '\t' && (cell[0] == ' ') ? "" : cell, separator);
+}
+
+static void write_random(struct text *text, char separator, int rows)
+{
+    text_add(text, "K%cTag Name%cX%cNode%cZ%cY%cAsset%cU\n", separator, separator, separator, separator, separator, separator, separator);
+    for (int r = 0; r < rows; r++) {
+        add_random_cell(text, separator);
+        text_add(text, "tag%d%c", r, separator);
+        for (int c = 0; c < 5; c++)
+            add_random_cell(text, separator);
+        text_add(text, "u%d%s", below(9), below(3) ? "\n" : "\r\n\n");
+    }
+}
+
+static void save(const char *path, const char *text)
+{
+    assert_int_equal(text_write_file(path, text, strlen(text)), 0);
+}
+
+static void compare(const char *before_path, const char *after_path, int changed)
+{
+    struct diag diag = { 0 };
+    struct csv before, after;
+    assert_true(csv_open(&before, before_path, &diag) && csv_open(&after, after_path, &diag));
+    for (int r = 0; csv_next(&before); r++) {
+        assert_true(csv_next(&after));
+        for (int c = 0; c < 8; c++) {
+            static const char *const to[8] = { NULL, NULL, "1.5", "", "-0.25", "2", "NEW", NULL };
+            assert_string_equal(csv_text(&after, c), r == changed && to[c] ? to[c] : csv_text(&before, c));
+        }
+    }
+    assert_false(csv_next(&after));
+    assert_int_equal(diag.errors, 0);
+    csv_close(&before);
+    csv_close(&after);
+    diag_finish(&diag);
+}
+
+static void test_random_lists(void **state)
+{
+    (void)state;
+    char folder[] = "/tmp/tag_edit.XXXXXX";
+    assert_non_null(mkdtemp(folder));
+    char *before_path = mem_printf("%s/before.csv", folder), *after_path = mem_printf("%s/after.csv", folder);
+    seed = (unsigned)time(NULL);
+    print_message("# seed %u\n", seed);
+    for (int round = 0; round < 200; round++) {
+        struct text text = { 0 };
+        int rows = 1 + below(6), changed = below(rows);
+        write_random(&text, ",;\t"[below(3)], rows);
+        char name[16], *why;
+        snprintf(name, sizeof(name), "tag%d", changed);
+        const struct tag_edit edit = { name, "NEW", NULL, { 1.5, 2, -0.25 } };
+        char *out = tag_edit(text.at, &edit, 1, &why);
+        assert_non_null(out);
+        save(before_path, text.at);
+        save(after_path, out);
+        compare(before_path, after_path, changed);
+        mem_free(out);
+        text_finish(&text);
+    }
+    remove(before_path);
+    remove(after_path);
+    remove(folder);
+    mem_free(before_path);
+    mem_free(after_path);
+}
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_one_row),
+        cmocka_unit_test(test_the_rest_stays_to_the_byte),
+        cmocka_unit_test(test_columns_that_are_not_there),
+        cmocka_unit_test(test_several_and_none),
+        cmocka_unit_test(test_what_is_not_there_is_refused),
+        cmocka_unit_test(test_lines),
+        cmocka_unit_test(test_random_lists),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

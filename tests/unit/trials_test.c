@@ -1,0 +1,199 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Sensors that are tried out elsewhere: the field is that of a plant that has them there, for who asks and for nobody else. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "base/mem.h"
+#include "field/field.h"
+#include "tests/support/synthetic.h"
+
+enum { VERTICES = 900, SENSORS = 6, MOVED = 2, TO = 400 };
+
+struct fixture {
+    struct synthetic *plant;
+    struct workers *workers;
+    struct field *field;
+    struct trials *trials;
+    struct field_params params;
+};
+
+static int setup(void **state)
+{
+    struct fixture *f = mem_new(sizeof(*f));
+    f->plant = synthetic_create(.vertices = VERTICES, .sensors = SENSORS, .assets = 2, .seed = (uint64_t)time(NULL));
+    f->workers = workers_create(2);
+    f->field = field_create(f->workers, &f->plant->scene);
+    f->trials = trials_create();
+    field_set_trials(f->field, f->trials);
+    field_params_default(&f->plant->plant, 0, &f->params);
+    *state = f;
+    return 0;
+}
+
+static int teardown(void **state)
+{
+    struct fixture *f = *state;
+    field_destroy(&f->field);
+    trials_destroy(&f->trials);
+    workers_destroy(&f->workers);
+    synthetic_destroy(&f->plant);
+    mem_free(f);
+    return 0;
+}
+
+/* Along the surface from vertex `to`, as the synthetic plant has it: the sum of the ways along the axes. */
+static float *along(const struct fixture *f, size_t to)
+{
+    const float(*at)[3] = f->plant->file.view.positions_m;
+    float *distance_m = mem_array(VERTICES, sizeof(*distance_m));
+    for (size_t i = 0; i < VERTICES; i++)
+        for (int c = 0; c < 3; c++)
+            distance_m[i] += fabsf(at[i][c] - at[to][c]);
+    return distance_m;
+}
+
+static struct trial_sensor sensor_at(const struct fixture *f, int tag, int asset, size_t vertex, bool known)
+{
+    struct trial_sensor sensor = { .tag = tag, .asset = asset, .vertex = (uint32_t)vertex };
+    memcpy(sensor.surface_m, f->plant->file.view.positions_m[vertex], sizeof(sensor.surface_m));
+    sensor.reach = known ? trial_reach_create(along(f, vertex)) : NULL;
+    return sensor;
+}
+
+static uint32_t put(struct fixture *f, struct trial_sensor sensor)
+{
+    uint32_t id = trials_put(f->trials, &sensor, 1);
+    trial_reach_unref(&sensor.reach);
+    return id;
+}
+
+static struct scalar *copy_of(struct fixture *f, int asset, uint32_t trial)
+{
+    struct field_params params = f->params;
+    params.trial = trial;
+    const struct scalars *scalars = field_scalars(f->field, asset, &params, f->plant->snapshot);
+    if (!scalars)
+        return NULL;
+    struct scalar *copy = mem_array(scalars->count, sizeof(*copy));
+    memcpy(copy, scalars->at, scalars->count * sizeof(*copy));
+    return copy;
+}
+
+/* What a plant would show that has the sensor there: the plain sum, in double precision. */
+static double truth(const struct fixture *f, const float *moved_m, size_t vertex)
+{
+    double sum = 0, total = 0;
+    for (size_t i = 0; i < SENSORS; i++) {
+        double d = (double)(i == MOVED ? moved_m[vertex] : f->plant->file.view.geodesic_m[i * VERTICES + vertex]);
+        if (d == 0)
+            return f->plant->snapshot->readings[i].value;
+        sum += f->plant->snapshot->readings[i].value / (d * d);
+        total += 1 / (d * d);
+    }
+    return sum / total;
+}
+
+static void test_a_moved_sensor_is_where_it_is_tried(void **state)
+{
+    struct fixture *f = *state;
+    struct scalar *before = copy_of(f, 0, 0), *tried = copy_of(f, 0, put(f, sensor_at(f, MOVED, 0, TO, true))), *after = copy_of(f, 0, 0);
+    float *moved_m = along(f, TO);
+    size_t changed = 0;
+    for (size_t i = 0; i < VERTICES; i++) {
+        assert_true(fabs((double)tried[i].value - truth(f, moved_m, i)) < 0.01);
+        changed += fabsf(tried[i].value - before[i].value) > 0.5f;
+        assert_true(before[i].value == after[i].value);
+    }
+    assert_true(changed > VERTICES / 10);
+    assert_true(fabs((double)tried[TO].value - f->plant->snapshot->readings[MOVED].value) < 1e-4);
+    mem_free(before);
+    mem_free(tried);
+    mem_free(after);
+    mem_free(moved_m);
+}
+
+static void test_straight_distances_stand_in(void **state)
+{
+    struct fixture *f = *state;
+    struct scalar *guess = copy_of(f, 0, put(f, sensor_at(f, MOVED, 0, TO, false)));
+    const float(*at)[3] = f->plant->file.view.positions_m;
+    float *straight_m = mem_array(VERTICES, sizeof(*straight_m));
+    for (size_t i = 0; i < VERTICES; i++)
+        straight_m[i] = sqrtf(powf(at[i][0] - at[TO][0], 2) + powf(at[i][1] - at[TO][1], 2) + powf(at[i][2] - at[TO][2], 2));
+    for (size_t i = 0; i < VERTICES; i++)
+        assert_true(fabs((double)guess[i].value - truth(f, straight_m, i)) < 0.01);
+    mem_free(guess);
+    mem_free(straight_m);
+}
+
+static void test_it_may_go_to_another_asset(void **state)
+{
+    struct fixture *f = *state;
+    uint32_t id = put(f, sensor_at(f, MOVED, 1, TO, true));
+    struct scalar *left = copy_of(f, 0, id), *there = copy_of(f, 1, id), *was = copy_of(f, 0, 0);
+    assert_true(fabs((double)there[TO].value - f->plant->snapshot->readings[MOVED].value) < 1e-4);
+    assert_true(fabsf(was[MOVED].value - (float)f->plant->snapshot->readings[MOVED].value) < 1e-3f); /* it stood at its vertex */
+    size_t changed = 0;
+    for (size_t i = 0; i < VERTICES; i++)
+        changed += left[i].value != was[i].value;
+    assert_true(changed > VERTICES / 2);
+    mem_free(left);
+    mem_free(there);
+    mem_free(was);
+}
+
+static void test_what_it_does_not_touch_is_shared(void **state)
+{
+    struct fixture *f = *state;
+    struct field_params params = f->params;
+    const struct scalars *plain = field_scalars(f->field, 1, &params, f->plant->snapshot);
+    uint64_t version = plain->version;
+    params.trial = put(f, sensor_at(f, MOVED, 0, TO, true));
+    assert_ptr_equal(field_scalars(f->field, 1, &params, f->plant->snapshot), plain);
+    assert_int_equal(plain->version, version);
+}
+
+/* Each step leaves a set behind; none of it stays. */
+static void test_dragging_leaves_nothing_behind(void **state)
+{
+    struct fixture *f = *state;
+    uint32_t id = 0, first = 0;
+    size_t bytes = 0;
+    for (size_t step = 0; step < 60; step++) {
+        uint32_t next = put(f, sensor_at(f, MOVED, 0, TO + step, step % 2));
+        trials_drop(f->trials, id);
+        id = next;
+        first = first ? first : id;
+        mem_free(copy_of(f, 0, id));
+        if (step == 20)
+            bytes = field_bytes(f->field);
+    }
+    assert_true(field_bytes(f->field) <= bytes);
+    assert_null(trials_take(f->trials, first));
+    assert_true(trials_live(f->trials, id));
+    struct scalar *gone = copy_of(f, 0, first), *plain = copy_of(f, 0, 0); /* of one that is gone: as the plant has it */
+    assert_memory_equal(gone, plain, VERTICES * sizeof(*plain));
+    mem_free(gone);
+    mem_free(plain);
+}
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(test_a_moved_sensor_is_where_it_is_tried, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_straight_distances_stand_in, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_it_may_go_to_another_asset, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_what_it_does_not_touch_is_shared, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_dragging_leaves_nothing_behind, setup, teardown),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
