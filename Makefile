@@ -44,7 +44,7 @@ cxxflags = -std=c++17 -D_GNU_SOURCE $(warn) $(common) $(CXXFLAGS)
 ldflags  = $(flags_$(config)) -pthread -Wl,--as-needed $(LDFLAGS)
 
 # --- what is built: one archive per layer, left to right ------------------------------------------------------------------
-layers   := base plant surface value history alarm scene field gpu render encode net
+layers   := base plant surface value history alarm proving scene field placing gpu render encode net
 layers   := $(foreach l,$(layers),$(if $(wildcard server/$(l)/*.c),$(l)))
 without  := $(if $(filter h264,$(CODECS)),,$(wildcard server/encode/h264*))
 archives := $(foreach l,$(layers),$(out)/lib/$(l).a) $(out)/lib/protocol.a

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "far.h"
+#include "scene/far.h"
 #include "field/colormap.h"
 
 /* --- what lies on disk ----------------------------------------------------------------------------------------------------- */
@@ -38,6 +38,26 @@ static void warn_of_far_sensors(struct log *log, const struct scene *scene)
     mem_free(far);
 }
 
+/* Made from what is loaded; works only once somebody asks. */
+static void start_placing(struct loaded *loaded)
+{
+    const struct loaded_context *context = loaded->context;
+    char *folder = loaded_prepared_folder(context->params, loaded->plant), *why;
+    loaded->placing = placing_create(&(struct placing_params){ .log = context->log,
+                                                               .workers = context->workers,
+                                                               .scene = loaded->scene,
+                                                               .folder = folder,
+                                                               .notify = context->notify,
+                                                               .notify_arg = context->notify_arg });
+    loaded->tag_list = tag_file_read(loaded->plant->tags_path, &why);
+    if (why)
+        log_warn(context->log, "%s", why);
+    mem_free(why);
+    mem_free(folder);
+    if (loaded->history)
+        loaded->proofs = proofs_open(context->log, loaded->plant, loaded->history);
+}
+
 struct loaded *loaded_read(const struct loaded_context *context, struct diag *diag)
 {
     struct loaded *loaded = mem_new(sizeof(*loaded));
@@ -54,6 +74,7 @@ struct loaded *loaded_read(const struct loaded_context *context, struct diag *di
     loaded->moments = moments_create();
     if (!loaded->plant->history.off)
         loaded->history = params->history ? mem_strdup(params->history) : plant_history_folder(loaded->plant);
+    start_placing(loaded);
     return loaded;
 }
 
@@ -125,6 +146,7 @@ bool loaded_start_painter(struct loaded *loaded)
         .store = loaded->store,
         .baselines = loaded->baselines,
         .moments = loaded->moments,
+        .trials = placing_trials(loaded->placing),
         .workers = context->workers,
         .h264_library = loaded_h264_library(server),
         .counters = context->counters,
@@ -152,7 +174,8 @@ void loaded_hand_over(struct loaded *loaded, const struct plant *next)
 
 struct net_plant loaded_net_plant(const struct loaded *loaded)
 {
-    return (struct net_plant){ loaded->scene, loaded->store, loaded->painter, loaded->baselines, loaded->moments, loaded->alarming };
+    return (struct net_plant){ loaded->scene, loaded->store, loaded->painter, loaded->baselines, loaded->moments,
+                               loaded->alarming, loaded->placing, loaded->proofs, loaded->tag_list };
 }
 
 void loaded_destroy(struct loaded **pointer)
@@ -161,6 +184,9 @@ void loaded_destroy(struct loaded **pointer)
     if (!loaded)
         return;
     painter_destroy(&loaded->painter);
+    placing_destroy(&loaded->placing);
+    proofs_close(&loaded->proofs);
+    mem_free(loaded->tag_list);
     stop_sources(loaded);
     alarming_stop(&loaded->alarming);
     historian_stop(&loaded->historian);

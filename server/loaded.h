@@ -6,6 +6,7 @@
 #include "base/workers.h"
 #include "history/historian.h"
 #include "net/net.h"
+#include "placing/placing.h"
 #include "server.h"
 #include "value/derived.h"
 #include "value/source.h"
@@ -32,6 +33,9 @@ struct loaded {
     struct source *derived;  /* computes tags from tags; NULL: there are none */
     struct painter *painter;
     char *history; /* folder; NULL: none */
+    struct placing *placing;
+    struct proofs *proofs; /* NULL: nothing is recorded */
+    char *tag_list;        /* the text; NULL: it could not be read a second time */
 };
 
 /* Plant and scene, from disk, and the store; nothing runs yet. Findings go to diag. NULL: with an error there, or in the log. */

@@ -3,9 +3,15 @@
 #include "reload.h"
 
 #include <jansson.h>
+#include <limits.h>
 #include <pthread.h>
+#include <signal.h>
+#include <spawn.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "base/clock.h"
 #include "base/mem.h"
@@ -17,10 +23,13 @@ struct reload {
     struct net *net;
     pthread_t thread;
     bool started;
+    const struct tag_save *saving; /* for whom this is done; NULL: for nobody's list */
+    const char *kept;              /* the list before it */
     pthread_mutex_t lock;
     pthread_cond_t wake;
     /* --- below: under lock */
     bool asked, stopping;
+    struct tag_save *save; /* NULL: none is asked for */
 };
 
 void reload_count(struct counters *counters, const char *hash, bool in_force)
@@ -36,23 +45,54 @@ struct verdict {
     struct net *net;
     bool good;
     char *text;
+    uint64_t client; /* who saved; its text */
+    char *saved;     /* NULL: nobody */
 };
 
 static void say(void *arg)
 {
     struct verdict *verdict = arg;
     net_say_reloaded(verdict->net, verdict->good, verdict->text);
+    if (verdict->saved)
+        net_say_saved(verdict->net, verdict->client, verdict->saved);
+}
+
+static char *print(const json_t *object)
+{
+    char *dumped = json_dumps(object, JSON_COMPACT), *text = mem_strdup(dumped ? dumped : "{}");
+    free(dumped);
+    return text;
+}
+
+/* The same for who saved a list. */
+static char *saved_text(const struct reload *reload, bool good, const json_t *object)
+{
+    json_t *said = json_pack("{s:s,s:I,s:b}", "type", "tags_saved", "seq", (json_int_t)reload->saving->seq, "saved", good);
+    static const char *const names[] = { "configuration", "changes", "errors" };
+    for (size_t i = 0; i < sizeof(names) / sizeof(names[0]); i++)
+        if (json_object_get(object, names[i]))
+            json_object_set(said, names[i], json_object_get(object, names[i]));
+    if (good)
+        json_object_set_new(said, "kept", json_string(strrchr(reload->kept, '/') + 1));
+    char *text = print(said);
+    json_decref(said);
+    return text;
 }
 
 /* Takes the object. */
 static void answer(struct reload *reload, bool good, json_t *object)
 {
-    char *dumped = json_dumps(object, JSON_COMPACT);
-    struct verdict verdict = { reload->net, good, mem_printf("%s\n", dumped ? dumped : "{}") };
-    free(dumped);
+    char *text = print(object);
+    struct verdict verdict = { reload->net, good, mem_printf("%s\n", text), 0, NULL };
+    if (reload->saving) {
+        verdict.client = reload->saving->client;
+        verdict.saved = saved_text(reload, good, object);
+    }
     json_decref(object);
     net_call(reload->net, say, &verdict);
     mem_free(verdict.text);
+    mem_free(verdict.saved);
+    mem_free(text);
 }
 
 static void refuse(struct reload *reload, const struct diag *diag, const char *why)
@@ -132,21 +172,91 @@ static void put_in_force(struct reload *reload, struct loaded *after, const stru
     mem_free(hash);
 }
 
-static void reload_now(struct reload *reload)
+/* Nothing has changed, if false comes: said already. */
+static bool reload_now(struct reload *reload)
 {
     struct diag diag = { 0 };
     struct plant_diff diff = { 0 };
     struct loaded *before = *reload->loaded, *after = loaded_read(reload->context, &diag);
     const char *why = after ? plant_needs_restart(before->plant, after->plant) : diag.errors ? NULL : "the log says why";
-    if (!after || why) {
-        refuse(reload, &diag, why);
-        loaded_destroy(&after);
-    } else {
+    bool good = after && !why;
+    if (good) {
         plant_diff(before->plant, after->plant, &diff);
         put_in_force(reload, after, &diff);
+    } else {
+        refuse(reload, &diag, why);
+        loaded_destroy(&after);
     }
     plant_diff_finish(&diff);
     diag_finish(&diag);
+    return good;
+}
+
+/* --- another tag list --------------------------------------------------------------------------------------------------------- */
+
+static bool is_stopping(struct reload *reload)
+{
+    pthread_mutex_lock(&reload->lock);
+    bool stopping = reload->stopping;
+    pthread_mutex_unlock(&reload->lock);
+    return stopping;
+}
+
+/* As somebody would by hand, and no more urgent than serving pictures is. */
+static bool prepare(struct reload *reload)
+{
+    const struct loaded_context *context = reload->context;
+    char program[PATH_MAX], *folder = loaded_prepared_folder(context->params, (*reload->loaded)->plant);
+    ssize_t n = readlink("/proc/self/exe", program, sizeof(program) - 32);
+    program[n > 0 ? n : 0] = 0;
+    char *slash = strrchr(program, '/');
+    strcpy(slash ? slash + 1 : program, "plantcast-prep");
+    char *const arguments[] = { program, "-o", folder, (char *)(uintptr_t)context->params->plant_path, NULL };
+    pid_t child;
+    int status = 0, error = posix_spawn(&child, program, NULL, NULL, arguments, environ);
+    if (error)
+        log_err(context->log, "%s: cannot be run: %s", program, strerror(error));
+    else
+        setpriority(PRIO_PROCESS, (id_t)child, 10);
+    for (bool told = false; !error && waitpid(child, &status, WNOHANG) == 0; usleep(20000))
+        if (!told && (told = is_stopping(reload)))
+            kill(child, SIGTERM);
+    mem_free(folder);
+    return !error && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+static void put_back(struct reload *reload, const struct tag_save *save, const char *kept)
+{
+    char *why = NULL;
+    if (!tag_file_put_back(save, kept, &why))
+        log_err(reload->context->log, "tag list: %s", why);
+    else
+        prepare(reload); /* what was prepared before is still there: next to nothing to do */
+    mem_free(why);
+}
+
+static void save_now(struct reload *reload, const struct tag_save *save)
+{
+    struct log *log = reload->context->log;
+    struct diag none = { 0 };
+    char *kept = NULL, *why = NULL;
+    reload->saving = save;
+    if (!tag_file_put(save, &kept, &why)) {
+        refuse(reload, &none, why);
+    } else {
+        reload->kept = kept;
+        log_info(log, "tag list: %s by %s; as it was: %s", save->path, save->who, kept);
+        if (!prepare(reload)) {
+            put_back(reload, save, kept);
+            refuse(reload, &none, "plantcast-prep could not prepare it; the log says why");
+        } else if (!reload_now(reload)) {
+            put_back(reload, save, kept);
+        }
+    }
+    reload->saving = NULL;
+    reload->kept = NULL;
+    mem_free(kept);
+    mem_free(why);
 }
 
 /* --- life ------------------------------------------------------------------------------------------------------------------- */
@@ -156,14 +266,20 @@ static void *run(void *arg)
     struct reload *reload = arg;
     for (;;) {
         pthread_mutex_lock(&reload->lock);
-        while (!reload->asked && !reload->stopping)
+        while (!reload->asked && !reload->save && !reload->stopping)
             pthread_cond_wait(&reload->wake, &reload->lock);
-        bool stopping = reload->stopping;
+        bool stopping = reload->stopping, asked = reload->asked;
+        struct tag_save *save = reload->save;
         reload->asked = false;
+        reload->save = NULL;
         pthread_mutex_unlock(&reload->lock);
+        if (save && !stopping)
+            save_now(reload, save);
+        tag_save_free(save);
         if (stopping)
             return NULL;
-        reload_now(reload);
+        if (asked)
+            reload_now(reload);
     }
 }
 
@@ -195,6 +311,7 @@ void reload_destroy(struct reload **pointer)
     pthread_mutex_unlock(&reload->lock);
     if (reload->started)
         pthread_join(reload->thread, NULL);
+    tag_save_free(reload->save);
     pthread_cond_destroy(&reload->wake);
     pthread_mutex_destroy(&reload->lock);
     mem_free(reload);
@@ -206,6 +323,15 @@ void reload_ask(void *arg)
     struct reload *reload = arg;
     pthread_mutex_lock(&reload->lock);
     reload->asked = true;
+    pthread_cond_signal(&reload->wake);
+    pthread_mutex_unlock(&reload->lock);
+}
+
+void reload_save(struct reload *reload, struct tag_save *save)
+{
+    pthread_mutex_lock(&reload->lock);
+    tag_save_free(reload->save); /* there is none: the loop lets one through at a time */
+    reload->save = save;
     pthread_cond_signal(&reload->wake);
     pthread_mutex_unlock(&reload->lock);
 }

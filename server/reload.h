@@ -9,6 +9,9 @@ struct reload;
 struct reload *reload_create(const struct loaded_context *context, struct loaded **loaded, struct net *net);
 void reload_destroy(struct reload **reload); /* once the loop has ended; &NULL is fine; leaves NULL */
 void reload_ask(void *reload);               /* any thread; soon */
+/* Puts another tag list in force: it takes the name, plantcast-prep runs, the plant is loaded anew. All of it, or the list is put back.
+   Takes it; one at a time. Any thread. */
+void reload_save(struct reload *reload, struct tag_save *save);
 /* Says which configuration is in force, in the counters. */
 void reload_count(struct counters *counters, const char *hash, bool in_force);
 

@@ -16,7 +16,7 @@
 #include "base/counters.h"
 #include "base/mem.h"
 #include "encode/encoder.h"
-#include "far.h"
+#include "scene/far.h"
 #include "field/colormap.h"
 #include "loaded.h"
 #include "reload.h"
@@ -125,6 +125,11 @@ static void ask_reload(void *arg)
     reload_ask(((struct server *)arg)->reload);
 }
 
+static void ask_save(void *arg, struct tag_save *save)
+{
+    reload_save(((struct server *)arg)->reload, save);
+}
+
 static bool start_net(struct server *server)
 {
     struct net_params params = {
@@ -135,6 +140,9 @@ static bool start_net(struct server *server)
         .moments = server->loaded->moments,
         .painter = server->loaded->painter,
         .alarming = server->loaded->alarming,
+        .placing = server->loaded->placing,
+        .proofs = server->loaded->proofs,
+        .tag_list = server->loaded->tag_list,
         .counters = server->counters,
         .address = server->params.address,
         .port = server->params.port,
@@ -144,6 +152,7 @@ static bool start_net(struct server *server)
         .web_folder = server->web,
         .version = PLANTCAST_VERSION,
         .reload = ask_reload,
+        .save = ask_save,
         .reload_arg = server,
     };
     if (!server->web)

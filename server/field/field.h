@@ -76,7 +76,8 @@ struct workers *field_workers(const struct field *field);
 /* Where differences look their baselines up; it must outlive the field. Without it, and for a baseline that was forgotten, a
    difference has no data anywhere. */
 void field_set_baselines(struct field *field, struct baselines *baselines);
-/* Where places that are tried out are looked up, likewise. Without it, and for a trial that is gone, sensors are where the plant has them. */
+/* Where places that are tried out are looked up, likewise. Without it, and for a trial that is gone, sensors are where the plant has
+   them. */
 void field_set_trials(struct field *field, struct trials *trials);
 /* The parameters that the field of this asset is kept under: without the trial, where it moves nothing there. `room` is for a copy. */
 const struct field_params *field_params_of(struct field *field, int asset, const struct field_params *params, struct field_params *room);

@@ -65,6 +65,12 @@ bool access_message(enum role role, const struct message *message, struct messag
     }
     if (message->type == MESSAGE_ALARM)
         return alarm_allowed(role, message, error);
+    bool engineers = message->type == MESSAGE_PLACE || message->type == MESSAGE_GAPS || message->type == MESSAGE_SAVE_TAGS ||
+                     message->type == MESSAGE_PROVE;
+    if (engineers && role < ROLE_ENGINEER) {
+        message_fail(error, "not_allowed", "to place or prove sensors takes the role engineer, not %s", name_of(names_role, role));
+        return false;
+    }
     if (message->type != MESSAGE_PARAMS && !message->has_params)
         return true;
     return params_allowed(role, &message->params, error) && params_allowed(role, &message->split.right, error);

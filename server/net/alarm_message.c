@@ -15,22 +15,6 @@ static const struct name names_action[] = { { "acknowledge", ALARM_ACKNOWLEDGE }
                                             { "out_of_service", ALARM_TAKE_OUT }, { "in_service", ALARM_PUT_BACK },
                                             { NULL, 0 } };
 
-/* People's own words: any characters but control ones, less than size bytes. */
-static bool words(const json_t *o, const char *name, bool needed, char *out, size_t size, struct message_error *error)
-{
-    const json_t *value = json_object_get(o, name);
-    const char *text = json_string_value(value);
-    bool good = text ? json_string_length(value) < size && strlen(text) == json_string_length(value) : !value;
-    for (const char *c = text; good && c && *c; c++)
-        good = (unsigned char)*c >= 32 && *c != 127;
-    good = good && (!needed || (text && text[strspn(text, " ")]));
-    if (good)
-        snprintf(out, size, "%s", text ? text : "");
-    else
-        message_fail(error, "bad_field", "%s: a text of %s%zu bytes expected", name, needed ? "1 to " : "at most ", size - 1);
-    return good;
-}
-
 /* By the name of a tag, or of a device. -1: there is none. */
 static int find_named(const struct plant *plant, const char *name, enum alarm_kind kind)
 {
@@ -78,8 +62,8 @@ bool alarm_parse(const struct plant *plant, const json_t *o, struct message *out
         if (!take_alarm(plant, json_array_get(alarms, i), request, error))
             return false;
     return (!shelve || need_number(o, "for_s", 1, (double)(ALARM_LONGEST_SHELF_NS / 1000000000), &request->for_s, error)) &&
-           words(o, "reason", shelve || service, request->reason, sizeof(request->reason), error) &&
-           words(o, "name", false, request->name, sizeof(request->name), error);
+           need_words(o, "reason", shelve || service, request->reason, sizeof(request->reason), error) &&
+           need_words(o, "name", false, request->name, sizeof(request->name), error);
 }
 
 char *alarm_do(struct alarming *alarming, const struct plant *plant, const struct message *message, const char *who)

@@ -350,6 +350,7 @@ static bool drawing_init(struct drawing *drawing, struct painter *painter)
     *drawing = (struct drawing){ .painter = painter };
     drawing->field = field_create(params->workers, params->scene);
     field_set_baselines(drawing->field, params->baselines);
+    field_set_trials(drawing->field, params->trials);
     drawing->snapshot = snapshot_create(params->scene->plant->tag_count);
     drawing->slow.snapshot = snapshot_create(params->scene->plant->tag_count);
     flying_init(&drawing->flying, params->scene->plant->tag_count);

@@ -123,3 +123,18 @@ bool may_name(const json_t *o, const char *name, const struct name *names, int *
     message_fail(error, "bad_field", "%s: one of %s expected", name, list);
     return false;
 }
+
+bool need_words(const json_t *o, const char *name, bool needed, char *out, size_t size, struct message_error *error)
+{
+    const json_t *value = json_object_get(o, name);
+    const char *text = json_string_value(value);
+    bool good = text ? json_string_length(value) < size && strlen(text) == json_string_length(value) : !value;
+    for (const char *c = text; good && c && *c; c++)
+        good = (unsigned char)*c >= 32 && *c != 127;
+    good = good && (!needed || (text && text[strspn(text, " ")]));
+    if (good)
+        snprintf(out, size, "%s", text ? text : "");
+    else
+        message_fail(error, "bad_field", "%s: a text of %s%zu bytes expected", name, needed ? "1 to " : "at most ", size - 1);
+    return good;
+}

@@ -71,6 +71,9 @@ int stream_callback(struct lws *wsi, enum lws_callback_reasons reason, void *use
 void stream_on_picture(struct hub *hub, struct picture *picture); /* takes it over; false owner: destroys it */
 void stream_on_pick(struct hub *hub, const struct pick_answer *answer);
 void stream_on_moment(struct hub *hub, const struct past_answer *answer);
+void stream_on_gaps(struct hub *hub, const struct gaps_answer *answer); /* whoever asked may have gone */
+void streams_on_placed(struct hub *hub);                                /* distances of sensors that are placed came in */
+void stream_say(struct hub *hub, uint64_t client, const char *text);    /* likewise */
 bool stream_owns(const struct hub *hub, uint64_t client);
 void streams_on_tick(struct hub *hub, bool data_changed, bool links_changed);
 void streams_on_alarms(struct hub *hub); /* some changed */

@@ -10,6 +10,8 @@
 #include "net/alarm_message.h"
 #include "net/fields.h"
 #include "net/framing.h"
+#include "net/place_message.h"
+#include "net/prove_message.h"
 
 void message_fail(struct message_error *error, const char *code, const char *fmt, ...)
 {
@@ -228,6 +230,8 @@ static const struct {
     { "key_frame", MESSAGE_KEY_FRAME, parse_key_frame }, { "codecs", MESSAGE_CODECS, parse_codecs },
     { "follow", MESSAGE_FOLLOW, parse_follow },    { "alarm", MESSAGE_ALARM, alarm_parse },
     { "lead", MESSAGE_LEAD, parse_lead },        { "time", MESSAGE_TIME, parse_time },
+    { "place", MESSAGE_PLACE, place_parse },       { "gaps", MESSAGE_GAPS, gaps_parse },
+    { "save_tags", MESSAGE_SAVE_TAGS, save_tags_parse }, { "prove", MESSAGE_PROVE, prove_parse },
 };
 
 static bool parse_object(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)

@@ -5,6 +5,8 @@
 #include <jansson.h>
 
 #include "alarm/alarms.h"
+#include "placing/placing.h"
+#include "proving/proofs.h"
 #include "protocol/wire.h"
 #include "render/view.h"
 #include "scene/framing.h"
@@ -24,7 +26,11 @@ enum message_type {
     MESSAGE_FOLLOW,
     MESSAGE_LEAD,
     MESSAGE_ALARM,
-    MESSAGE_TIME
+    MESSAGE_TIME,
+    MESSAGE_PLACE,
+    MESSAGE_GAPS,
+    MESSAGE_SAVE_TAGS,
+    MESSAGE_PROVE
 };
 
 enum { TOKEN_MAX_CHARS = 128, RESUME_CHARS = 32 };
@@ -129,6 +135,23 @@ struct codec_list { /* what a client decodes, what it likes best first */
     bool choose; /* the server may choose among them, and choose again */
 };
 
+struct place_request {
+    struct place_move moves[PLACING_MOVES];
+    size_t count;
+};
+
+struct gaps_request {
+    int group; /* -1: the one that is shown */
+    double far_m; /* 0: as usual */
+};
+
+struct prove_request {
+    int tag;
+    double expected, tolerance;
+    bool fail; /* whatever the value is */
+    char remark[PROOF_REMARK_BYTES];
+};
+
 struct message {
     enum message_type type;
     int width_px, height_px;     /* hello, resize; 0: as what is resumed */
@@ -148,6 +171,10 @@ struct message {
     uint64_t follow;  /* follow, lead: a session; 0: none */
     struct alarm_request alarm;
     struct time_wish time; /* time, hello */
+    struct place_request place;
+    struct gaps_request gaps;
+    char confirm[17]; /* save_tags: hash of the list that was seen; "": none yet */
+    struct prove_request prove;
 };
 
 /* False: *error is what to answer. text need not end in 0. */

@@ -195,6 +195,18 @@ static void collect_moments(struct hub *hub)
     }
 }
 
+static void collect_places(struct hub *hub)
+{
+    struct gaps_answer *answer = hub->params.placing ? placing_collect(hub->params.placing) : NULL;
+    for (struct gaps_answer *next; answer; answer = next) {
+        next = answer->next;
+        stream_on_gaps(hub, answer);
+        gaps_answer_free(answer);
+    }
+    if (hub->params.placing)
+        streams_on_placed(hub);
+}
+
 static void collect(struct net *net)
 {
     struct hub *hub = &net->hub;
@@ -203,6 +215,7 @@ static void collect(struct net *net)
     collect_picks(hub);
     collect_recalled(hub);
     collect_moments(hub);
+    collect_places(hub);
     for (struct picture *picture = painter_collect(hub->params.painter), *next; picture; picture = next) {
         next = picture->next;
         picture->next = NULL;
@@ -370,6 +383,9 @@ void net_look_at_plant(struct net *net)
     hub->world.snapshot = hub->snapshot;
     hub->world.baselines = hub->params.baselines;
     hub->world.alarming = hub->params.alarming;
+    hub->world.placing = hub->params.save ? hub->params.placing : NULL;
+    hub->world.proofs = hub->params.proofs;
+    hub->world.tag_list = hub->params.tag_list;
     hub->world.links_up = hub->links_up;
     take_snapshot(hub);
     look_at_links(hub);

@@ -9,6 +9,8 @@
 #include "base/log.h"
 #include "net/access.h"
 #include "net/painter.h"
+#include "placing/tag_file.h"
+#include "proving/proofs.h"
 
 struct net;
 struct net_plant { /* of net_params, what is another once the plant is loaded anew */
@@ -18,6 +20,9 @@ struct net_plant { /* of net_params, what is another once the plant is loaded an
     struct baselines *baselines;
     struct moments *moments;
     struct alarming *alarming;
+    struct placing *placing; /* NULL: sensors cannot be placed */
+    struct proofs *proofs;   /* NULL: nothing can be proven */
+    const char *tag_list;    /* the text in force; NULL: not known */
 };
 
 struct net_params {
@@ -28,6 +33,9 @@ struct net_params {
     struct baselines *baselines;
     struct moments *moments;
     struct alarming *alarming;
+    struct placing *placing; /* as in net_plant, these three */
+    struct proofs *proofs;
+    const char *tag_list;
     struct counters *counters;
     const char *address;    /* numeric */
     int port;               /* 0: any that is free */
@@ -37,6 +45,7 @@ struct net_params {
     const char *web_folder; /* NULL: no client is served */
     const char *version;
     void (*reload)(void *arg); /* load the plant anew: somebody asks for it; in the loop. NULL: cannot be done */
+    void (*save)(void *arg, struct tag_save *save); /* put another tag list in force: takes it; likewise, NULL: cannot be done */
     void *reload_arg;
 };
 
@@ -59,6 +68,8 @@ bool net_call(struct net *net, void (*what)(void *arg), void *arg);
 void net_let_go(struct net *net);
 bool net_take(struct net *net, const struct net_plant *plant);
 void net_say_reloaded(struct net *net, bool good, const char *text); /* in the loop: to those who asked for it */
+/* In the loop: what became of a list that somebody wanted in force. */
+void net_say_saved(struct net *net, uint64_t client, const char *text);
 void net_look(struct net *net); /* at the files of tokens and certificate, now; likewise safe */
 
 #endif

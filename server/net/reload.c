@@ -90,6 +90,9 @@ bool net_take(struct net *net, const struct net_plant *plant)
     hub->params.baselines = plant->baselines;
     hub->params.moments = plant->moments;
     hub->params.alarming = plant->alarming;
+    hub->params.placing = plant->placing;
+    hub->params.proofs = plant->proofs;
+    hub->params.tag_list = plant->tag_list;
     hub->alarms_number = 0;
     net_look_at_plant(net);
     bool good = net_open_history(net);
@@ -108,4 +111,11 @@ bool net_take(struct net *net, const struct net_plant *plant)
 void net_say_reloaded(struct net *net, bool good, const char *text)
 {
     http_on_reloaded(&net->hub, good, text);
+}
+
+void net_say_saved(struct net *net, uint64_t client, const char *text)
+{
+    net->hub.world.saving = false;
+    stream_say(&net->hub, client, text);
+    hub_go(&net->hub);
 }

@@ -27,6 +27,7 @@ void session_destroy(struct session **session_ptr)
         return;
     session_drop_ready(session);
     session_time_end(session);
+    session_place_leave(session);
     for (int i = 0; i < session->reply_count; i++)
         mem_free(session->replies[i]);
     mem_free(session->tag_changes);
@@ -147,7 +148,7 @@ static void on_fit(struct session *session, const struct message *message)
 
 static void on_pick(struct session *session, const struct message *message)
 {
-    session->pick = (struct pick_order){ .client = session->id, .seq = message->seq, .view = *session_view(session) };
+    session->pick = (struct pick_order){ .client = session->id, .seq = message->seq, .view = session_shown(session) };
     session->pick.x_px = message->pick.x_px;
     session->pick.y_px = message->pick.y_px;
     session->pick.view.pixel_ratio = session->pixel_ratio;
@@ -177,7 +178,7 @@ static bool on_alarm(struct session *session, const struct message *message, str
         message_fail(error, "not_allowed", "alarms are another system's here: nothing can be acknowledged or shelved");
         return false;
     }
-    session_reply(session, alarm_do(world->alarming, world->plant, message, session->holder.name[0] ? session->holder.name : "local"));
+    session_reply(session, alarm_do(world->alarming, world->plant, message, session_who(session)));
     return true;
 }
 
@@ -201,6 +202,10 @@ static bool act(struct session *session, const struct message *message, int64_t 
     case MESSAGE_KEY_FRAME: session->always_pending = true; return true;
     case MESSAGE_CODECS: return session_choose_codec(session, &message->codecs, error);
     case MESSAGE_TIME: return session_on_time(session, &message->time, now_ns, now_utc_ns, error);
+    case MESSAGE_PLACE: return session_on_place(session, message, now_ns, error);
+    case MESSAGE_GAPS: return session_ask_gaps(session, message, error);
+    case MESSAGE_SAVE_TAGS: return session_save_tags(session, message, error);
+    case MESSAGE_PROVE: return session_prove(session, message, error);
     case MESSAGE_PING: session_reply(session, reply_pong_text(session_snapshot(session), message->t, now_utc_ns)); return true;
     }
     return true;

@@ -11,6 +11,7 @@
 #include "net/picture.h"
 #include "net/resume.h"
 #include "net/tokens.h"
+#include "placing/tag_file.h"
 #include "scene/scene.h"
 #include "value/moments.h"
 
@@ -28,6 +29,10 @@ struct session_world {
     int64_t changed_ns;      /* monotonic: the snapshot in which readings were seen to change last */
     struct alarming *alarming;       /* NULL: there are none */
     struct alarms_said *alarms_said; /* NULL: every text is made anew */
+    struct placing *placing;         /* NULL: nothing can be placed */
+    const char *tag_list;            /* the text in force; NULL: it was not read */
+    bool saving;                     /* somebody's list is being put in force */
+    struct proofs *proofs;           /* NULL: nothing can be proven */
     const bool *links_up;    /* by source index */
     bool live;               /* values are coming in */
     bool clock_is_set;       /* the wall clock is kept right by something */
@@ -110,6 +115,11 @@ struct session {
     uint32_t *tag_changes;                   /* reading.changes as last sent, by tag */
     uint64_t alarms_number;                  /* of the last change that was said */
     bool alarms_said;                        /* at least once */
+    struct place_set *places;   /* of its own; NULL: it never placed anything */
+    uint32_t place_seq;         /* of the newest `place` */
+    struct tag_save *save;      /* it wants this list in force; the hub takes it */
+    uint64_t proofs_said;       /* number of the newest proof that was said */
+    bool owes_proofs;           /* all of them */
     bool pick_pending;
     struct pick_order pick; /* to be asked */
     char *replies[SESSION_MAX_REPLIES];      /* pongs and errors, oldest first */
@@ -163,6 +173,11 @@ void session_inherit(struct session *heir, const struct session *session);
 void session_lead_nobody(struct session *session); /* that one does not follow it */
 void session_say_followers(struct session *session, const uint64_t *sessions, size_t count, int64_t now_ns);
 void session_on_leader(struct session *session, int64_t now_ns); /* the leader's view changed */
+
+/* session_place.c: distances of its sensors came in; gaps were found. */
+void session_on_placed(struct session *session, int64_t now_ns);
+void session_on_gaps(struct session *session, const struct gaps_answer *answer);
+void session_say(struct session *session, const char *text); /* what came of something that it asked for */
 
 /* The next text message to send, if any is due: into `out`. Markers of a picture are session_markers. */
 bool session_next_text(struct session *session, int64_t now_ns, int64_t now_utc_ns, struct text *out);

@@ -10,6 +10,14 @@ const struct view *session_view(const struct session *session)
     return session->leader ? &session->leader->view : &session->view;
 }
 
+struct view session_shown(const struct session *session)
+{
+    struct view view = *session_view(session);
+    if (session->leader)
+        view_try(&view, 0);
+    return view;
+}
+
 void session_ask_follow(struct session *session, const struct message *message)
 {
     session->follow = message->follow;

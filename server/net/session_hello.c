@@ -63,6 +63,7 @@ static bool begin_view(const struct session *session, const struct message *mess
     if (resumed) {
         *view = resumed->view;
         view_travel(view, 0, 0);
+        view_try(view, 0);
     }
     if (!resumed)
         view_default(session->world->scene, message->width_px, message->height_px, view);
@@ -88,6 +89,7 @@ bool session_apply_params(const struct session *session, const struct message *m
     if (!params_apply(&params, &message->params, &changed, error) || !split_apply(&params, &message->split, &changed, error))
         return false;
     view_travel(&changed, view->at_us, view->field.slot);
+    view_try(&changed, view->field.trial);
     *view = changed;
     return true;
 }
@@ -122,5 +124,6 @@ bool session_hello(struct session *session, const struct message *message, int64
     resumes_open(world->resumes, session, session->resume);
     session->hello = session->owes_welcome = session->owes_tags_all = session->owes_status = session->always_pending = true;
     session->owes_time = world->moments != NULL;
+    session->owes_proofs = true;
     return true;
 }

@@ -30,6 +30,16 @@ void session_ask_lead(struct session *session, const struct message *message);
 void session_pause(struct session *session);    /* nothing moves: keep no picture for it */
 void session_on_shown(struct session *session); /* session->pacer.acked is on the client's screen */
 
+/* session_follow.c: what is drawn for it. What a leader tries out is the leader's own affair. */
+struct view session_shown(const struct session *session);
+/* session_place.c */
+bool session_on_place(struct session *session, const struct message *message, int64_t now_ns, struct message_error *error);
+bool session_ask_gaps(struct session *session, const struct message *message, struct message_error *error);
+bool session_save_tags(struct session *session, const struct message *message, struct message_error *error);
+bool session_prove(struct session *session, const struct message *message, struct message_error *error);
+void session_place_leave(struct session *session); /* nothing of the plant's is used any more */
+const char *session_who(const struct session *session);
+
 void session_time_leave(struct session *session); /* at once, to now; nothing of its moment is used any more */
 
 #endif

@@ -10,6 +10,7 @@
 char *session_carry(struct session *session)
 {
     session_time_leave(session);
+    session_place_leave(session);
     session_drop_ready(session);
     return session->hello ? reply_params_text(session->world, &session->view, 0) : NULL;
 }
@@ -67,6 +68,7 @@ void session_replant(struct session *session, const char *carried)
     session->pick_pending = false;
     session->alarms_said = false;
     session->alarms_number = 0;
+    session->proofs_said = 0;
     session->refined = REFINED_NOT;
     while (session->pacer.asked > 0) /* what was asked for does not come */
         pacer_dropped(&session->pacer);
@@ -79,4 +81,5 @@ void session_replant(struct session *session, const char *carried)
     apply_carried(session, carried);
     session->owes_welcome = session->owes_tags_all = session->owes_status = session->always_pending = true;
     session->owes_params = false;
+    session->owes_proofs = true;
 }

@@ -5,6 +5,7 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "net/alarm_text.h"
+#include "net/prove_message.h"
 #include "net/reply.h"
 #include "net/session_impl.h"
 #include "net/tags_said.h"
@@ -41,10 +42,24 @@ static bool alarms_due(const struct session *session)
            (!session->alarms_said || alarming_number(world->alarming) > session->alarms_number);
 }
 
+static bool proofs_due(const struct session *session)
+{
+    const struct proofs *proofs = session->world->proofs;
+    return session->hello && proofs && (session->owes_proofs || proofs_number(proofs) > session->proofs_said);
+}
+
+static void add_proofs(struct session *session, struct text *out)
+{
+    const struct session_world *world = session->world;
+    add_owned(out, proofs_text(world->proofs, world->plant, session->proofs_said, session->owes_proofs));
+    session->proofs_said = proofs_number(world->proofs);
+    session->owes_proofs = false;
+}
+
 bool session_has_text(const struct session *session, int64_t now_ns)
 {
     return session->owes_welcome || session->reply_count > 0 || session->owes_params || session->owes_following || session->owes_time ||
-           session->followers || status_due(session) || alarms_due(session) || tags_due(session, now_ns);
+           session->followers || proofs_due(session) || status_due(session) || alarms_due(session) || tags_due(session, now_ns);
 }
 
 static void add_tags(struct session *session, int64_t now_ns, struct text *out)
@@ -77,6 +92,8 @@ bool session_next_text(struct session *session, int64_t now_ns, int64_t now_utc_
     } else if (session->followers) {
         add_owned(out, session->followers);
         session->followers = NULL;
+    } else if (proofs_due(session)) {
+        add_proofs(session, out);
     } else if (status_due(session)) {
         add_owned(out, reply_status_text(world, now_utc_ns));
         session->owes_status = false;

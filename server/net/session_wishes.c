@@ -36,7 +36,7 @@ static void on_failure(struct session *session, const struct view *view)
 /* What came may be less refined than what was asked for, or more: readings overtake a refined picture, which shows them in the end. */
 static void note_refined(struct session *session, const struct wish *wish)
 {
-    struct view view = *session_view(session);
+    struct view view = session_shown(session);
     view.tier = wish->view.tier;
     if (wish->or_moving && wish->view.tier == TIER_MOVING)
         session->refined = REFINED_NOT;
@@ -224,7 +224,7 @@ bool session_wish(const struct session *session, int64_t now_ns, struct wish *wi
     bool may_add = !session->ready && pacer_may_ask(&session->pacer, now_ns);
     if (!session->hello || session->hidden || (!may_add && session->pacer.asked == 0))
         return false;
-    *wish = (struct wish){ .view = *session_view(session), .codec = session->codec, .asked_ns = now_ns, .only_replace = !may_add };
+    *wish = (struct wish){ .view = session_shown(session), .codec = session->codec, .asked_ns = now_ns, .only_replace = !may_add };
     wish->read_ns = wish->view.at_us ? 0 : session->world->changed_ns; /* what was does not change */
     wish->view.camera_seq = session->view.camera_seq;
     wish->view.params_seq = session->view.params_seq;

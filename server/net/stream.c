@@ -267,6 +267,46 @@ static void pump_followers(struct hub *hub, const struct stream *leader)
             pump(hub, stream);
 }
 
+void stream_on_gaps(struct hub *hub, const struct gaps_answer *answer)
+{
+    struct stream *stream = stream_find(hub, answer->client);
+    if (!stream)
+        return;
+    session_on_gaps(stream->session, answer);
+    pump(hub, stream);
+}
+
+void streams_on_placed(struct hub *hub)
+{
+    int64_t now_ns = clock_mono_ns();
+    for (struct stream *stream = hub->streams; stream; stream = stream->next)
+        if (stream->session->places) {
+            session_on_placed(stream->session, now_ns);
+            pump(hub, stream);
+        }
+}
+
+void stream_say(struct hub *hub, uint64_t client, const char *text)
+{
+    struct stream *stream = stream_find(hub, client);
+    if (!stream)
+        return;
+    session_say(stream->session, text);
+    pump(hub, stream);
+}
+
+/* It goes to the thread that loads the plant anew. */
+static void save_resolve(struct hub *hub, struct session *session)
+{
+    struct tag_save *save = session->save;
+    if (!save)
+        return;
+    session->save = NULL;
+    save->client = session->id;
+    hub->world.saving = true;
+    hub->params.save(hub->params.reload_arg, save);
+}
+
 static void on_message(struct hub *hub, struct stream *stream)
 {
     struct session *session = stream->session;
@@ -278,6 +318,7 @@ static void on_message(struct hub *hub, struct stream *stream)
     else
         session_on_message(session, stream->in.at ? stream->in.at : "", stream->in.length, now_ns, clock_utc_ns());
     follow_resolve(hub, stream);
+    save_resolve(hub, session);
     if (session->measured)
         stages_shown(&hub->stages, &session->pacer);
     session->measured = false;

@@ -76,7 +76,8 @@ GLuint reference_sensors(const struct reference *reference, int asset, const str
         const struct field_sensor *from = &sensors[i];
         blocks[i] = (struct sensor_block){ .strength = from->strength, .decay = from->decay, .value = from->value, .column = from->column };
         memcpy(blocks[i].place_m, from->surface_m, sizeof(from->surface_m));
-        bool has_column = from->column < reference->stage->scene->assets[asset].file->view.header->sensor_count; /* else it is tried out */
+        /* One that is tried out has no column, and no say here. */
+        bool has_column = from->column < reference->stage->scene->assets[asset].file->view.header->sensor_count;
         blocks[i].state = !has_column ? 0 : (from->configured ? CONFIGURED : 0) | (from->usable ? USABLE : 0) | (from->uncertain ? UNCERTAIN : 0);
     }
     GLuint buffer = count ? mesh_buffer(reference->stage->gl->log, "sensors", bytes, head, 0) : 0;

@@ -181,6 +181,13 @@ static bool same_shown(const struct shown *a, const struct shown *b)
            a->range_min == b->range_min && a->range_max == b->range_max && same_paint(&a->paint, &b->paint) && a->look == b->look;
 }
 
+void view_try(struct view *view, uint32_t trial)
+{
+    view->field.trial = trial;
+    if (view->split)
+        view->right.field.trial = trial;
+}
+
 void view_travel(struct view *view, int64_t at_us, int slot)
 {
     view->at_us = at_us;

@@ -77,6 +77,8 @@ int view_lines(const struct view *view, double lines[VIEW_ALL_LINES]);
 void view_half(const struct view *view, int half, struct view *out);
 /* Shows that instant of the past (value/moments.h); 0: now. A field that was set anew is told again. */
 void view_travel(struct view *view, int64_t at_us, int slot);
+/* Likewise: with sensors where somebody tries them out (field/trials.h); 0: where the plant has them. */
+void view_try(struct view *view, uint32_t trial);
 int view_left_px(const struct view *view); /* width of the left half; x at which the right one begins */
 /* Splits, with a half that was taken by view_half (or a whole view) on the right. */
 void view_split(struct view *view, const struct view *right);

@@ -43,7 +43,11 @@ static bool read_entry(struct log *log, struct manifest *manifest, size_t index,
         log_err(log, "%s: asset %zu: expected an id, the name of a file and a recipe; run plantcast-prep", manifest->path, index);
         return false;
     }
-    manifest->entries[index] = (struct manifest_entry){ mem_strdup(id), mem_strdup(file), strtoull(recipe, NULL, 16) };
+    const char *surface = json_string_value(json_object_get(item, "surface"));
+    manifest->entries[index] = (struct manifest_entry){ .id = mem_strdup(id),
+                                                        .file = mem_strdup(file),
+                                                        .surface = file_name_good(surface) ? mem_strdup(surface) : NULL,
+                                                        .recipe = strtoull(recipe, NULL, 16) };
     manifest->count = index + 1;
     return true;
 }
@@ -77,6 +81,7 @@ void manifest_finish(struct manifest *manifest)
     for (size_t i = 0; i < manifest->count; i++) {
         mem_free(manifest->entries[i].id);
         mem_free(manifest->entries[i].file);
+        mem_free(manifest->entries[i].surface);
     }
     mem_free(manifest->entries);
     mem_free(manifest->path);

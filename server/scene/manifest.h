@@ -12,6 +12,7 @@ struct manifest {
     char *path;
     struct manifest_entry {
         char *id, *file; /* file: a name in the same folder */
+        char *surface;   /* likewise, surface_store.h; NULL: none was kept */
         uint64_t recipe; /* plant/recipe.h */
     } *entries;
     size_t count;

@@ -38,8 +38,8 @@ static void test_the_rest_stays_to_the_byte(void **state)
 {
     (void)state;
     const struct tag_edit to = { "T;\"2\"", "E 2", NULL, { 10, 20, -0.0001 } };
-    expect("\xEF\xBB\xBF" "Remark;TAG NAME;x;Y;Z;Asset;Node\r\n\r\n\"# old; see\r\nMaria\";T1;1,0;2;3;E;\r\n; \"T;\"\"2\"\"\" ;1;;;E;N-1;more\r\nlast;T3", &to, 1,
-           "\xEF\xBB\xBF" "Remark;TAG NAME;x;Y;Z;Asset;Node\r\n\r\n\"# old; see\r\nMaria\";T1;1,0;2;3;E;\r\n; \"T;\"\"2\"\"\" ;10;20;0;E 2;;more\r\nlast;T3");
+#define HEAD "\xEF\xBB\xBF" "Remark;TAG NAME;x;Y;Z;Asset;Node\r\n\r\n\"# old; see\r\nMaria\";T1;1,0;2;3;E;\r\n"
+    expect(HEAD "; \"T;\"\"2\"\"\" ;1;;;E;N-1;more\r\nlast;T3", &to, 1, HEAD "; \"T;\"\"2\"\"\" ;10;20;0;E 2;;more\r\nlast;T3");
 }
 
 static void test_columns_that_are_not_there(void **state)

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Sensors too far from their surface. */
-#include "far.h"
+#include "scene/far.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 #include "base/mem.h"
 
-static double limit_m(const struct scene_asset *asset)
+double far_limit_m(const struct scene_asset *asset)
 {
     const double *min = asset->bounds_min_m, *max = asset->bounds_max_m;
     double diagonal_m = sqrt(pow(max[0] - min[0], 2) + pow(max[1] - min[1], 2) + pow(max[2] - min[2], 2));
@@ -29,10 +29,10 @@ struct far_sensor *far_sensors(const struct scene *scene, size_t *count)
     for (size_t a = 0; a < scene->asset_count; a++) {
         const struct scene_asset *asset = &scene->assets[a];
         for (size_t s = 0; s < asset->sensor_count; s++) {
-            if (asset->sensors[s].surface_distance_m <= limit_m(asset))
+            if (asset->sensors[s].surface_distance_m <= far_limit_m(asset))
                 continue;
             mem_grow(&found, &capacity, *count + 1, sizeof(*found));
-            found[(*count)++] = (struct far_sensor){ .asset = asset, .sensor = &asset->sensors[s], .limit_m = limit_m(asset) };
+            found[(*count)++] = (struct far_sensor){ .asset = asset, .sensor = &asset->sensors[s], .limit_m = far_limit_m(asset) };
         }
     }
     if (found)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Sensors that lie too far from the surface of their asset to be believed. */
-#ifndef SERVER_FAR_H
-#define SERVER_FAR_H
+#ifndef SCENE_FAR_H
+#define SCENE_FAR_H
 #include "scene/scene.h"
 
 struct far_sensor {
@@ -12,5 +12,7 @@ struct far_sensor {
 
 /* Sorted, farthest first. Free with mem_free. */
 struct far_sensor *far_sensors(const struct scene *scene, size_t *count);
+/* Farther from the surface is worth a word: it may stand on something else, or its numbers are wrong. */
+double far_limit_m(const struct scene_asset *asset);
 
 #endif

@@ -1,0 +1,460 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Sets of moves, the movers of the assets they are on, and what workers find out for them. */
+#include "placing/placing.h"
+
+#include <math.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "plant/transform.h"
+#include "scene/far.h"
+#include "scene/manifest.h"
+#include "surface/mover.h"
+#include "value/quality.h"
+
+enum { MOVERS = 4 }; /* kept warm; those that moves are on, in any case */
+
+struct ask { /* distances of one move, on their way */
+    struct placing *placing;
+    uint64_t number;
+    float *along_m; /* NULL: none came */
+    struct ask *next;
+};
+
+struct entry { /* a move; beside it, in the set, what is said of it */
+    uint64_t asked; /* number; 0: nothing is asked */
+    uint64_t ticket;
+    struct trial_sensor sensor;
+};
+
+struct place_set {
+    struct placing *placing;
+    uint32_t trial;
+    bool changed;
+    size_t count;
+    struct entry entries[PLACING_MOVES];
+    struct placed placed[PLACING_MOVES];
+    struct place_set *next;
+};
+
+struct warm {
+    struct mover *mover; /* NULL: none */
+    uint64_t used;
+};
+
+struct placing {
+    struct placing_params params;
+    char *folder;
+    struct trials *trials;
+    struct warm *warm; /* by asset */
+    struct place_set *sets;
+    uint64_t uses, asked;
+    pthread_mutex_t lock;
+    pthread_cond_t idle;
+    /* --- below: under lock */
+    struct ask *done;
+    struct gaps_answer *gaps, **gaps_last;
+    int jobs; /* for gaps */
+};
+
+/* --- life ------------------------------------------------------------------------------------------------------------------- */
+
+struct placing *placing_create(const struct placing_params *params)
+{
+    struct placing *placing = mem_new(sizeof(*placing));
+    placing->params = *params;
+    placing->folder = mem_strdup(params->folder);
+    placing->trials = trials_create();
+    placing->warm = mem_array(params->scene->asset_count, sizeof(*placing->warm));
+    placing->gaps_last = &placing->gaps;
+    pthread_mutex_init(&placing->lock, NULL);
+    pthread_cond_init(&placing->idle, NULL);
+    return placing;
+}
+
+struct trials *placing_trials(struct placing *placing)
+{
+    return placing->trials;
+}
+
+static void forget_done(struct ask *done)
+{
+    for (struct ask *next; done; done = next) {
+        next = done->next;
+        mem_free(done->along_m);
+        mem_free(done);
+    }
+}
+
+void gaps_answer_free(struct gaps_answer *answer)
+{
+    mem_free(answer->assets);
+    mem_free(answer);
+}
+
+void placing_destroy(struct placing **pointer)
+{
+    struct placing *placing = *pointer;
+    if (!placing)
+        return;
+    pthread_mutex_lock(&placing->lock);
+    while (placing->jobs > 0)
+        pthread_cond_wait(&placing->idle, &placing->lock);
+    pthread_mutex_unlock(&placing->lock);
+    for (size_t i = 0; i < placing->params.scene->asset_count; i++)
+        mover_destroy(&placing->warm[i].mover);
+    forget_done(placing->done);
+    for (struct gaps_answer *answer = placing->gaps, *next; answer; answer = next) {
+        next = answer->next;
+        gaps_answer_free(answer);
+    }
+    trials_destroy(&placing->trials);
+    pthread_mutex_destroy(&placing->lock);
+    pthread_cond_destroy(&placing->idle);
+    mem_free(placing->warm);
+    mem_free(placing->folder);
+    mem_free(placing);
+    *pointer = NULL;
+}
+
+/* --- movers ------------------------------------------------------------------------------------------------------------------ */
+
+static void shape_of(const struct scene_asset *asset, struct mover_shape *shape)
+{
+    const struct asset_view *view = &asset->file->view;
+    const struct asset_level *finest = &view->levels[0];
+    const struct asset_primitive *first = &view->primitives[finest->first_primitive], *last = first + finest->primitive_count - 1;
+    *shape = (struct mover_shape){ .positions_m = view->positions_m,
+                                   .vertex_count = view->header->vertex_count,
+                                   .triangles = view->indices + first->first_index,
+                                   .triangle_count = (last->first_index + last->index_count - first->first_index) / 3,
+                                   .tolerance_m = asset->plant->tolerance_m };
+}
+
+static struct mover *make_mover(const struct placing *placing, int asset)
+{
+    const struct scene_asset *of = &placing->params.scene->assets[asset];
+    struct manifest manifest = { 0 };
+    struct mover_shape shape;
+    char *path = NULL;
+    shape_of(of, &shape);
+    bool read = manifest_read(placing->params.log, placing->folder, &manifest);
+    const struct manifest_entry *entry = read ? manifest_find(&manifest, of->plant->id) : NULL;
+    if (entry && entry->surface) {
+        shape.surface_path = path = mem_printf("%s/%s", placing->folder, entry->surface);
+        shape.surface_key = strtoull(entry->surface, NULL, 16); /* KEY.surface */
+    }
+    struct mover *mover = mover_create(placing->params.log, placing->params.workers, &shape);
+    mem_free(path);
+    if (read)
+        manifest_finish(&manifest);
+    return mover;
+}
+
+static bool is_moved_on(const struct placing *placing, int asset)
+{
+    for (const struct place_set *set = placing->sets; set; set = set->next)
+        for (size_t i = 0; i < set->count; i++)
+            if (set->placed[i].move.asset == asset)
+                return true;
+    return false;
+}
+
+/* A surface takes memory: only a few stay that nobody moves anything on. One that is still being made would have to be waited for. */
+static void cool(struct placing *placing, int keep)
+{
+    int count = 0, oldest = -1;
+    for (int i = 0; i < (int)placing->params.scene->asset_count; i++) {
+        const struct warm *warm = &placing->warm[i];
+        count += warm->mover != NULL;
+        if (warm->mover && i != keep && mover_state(warm->mover) != MOVER_WARMING && !is_moved_on(placing, i) &&
+            (oldest < 0 || warm->used < placing->warm[oldest].used))
+            oldest = i;
+    }
+    if (count > MOVERS && oldest >= 0)
+        mover_destroy(&placing->warm[oldest].mover);
+}
+
+static struct mover *mover_of(struct placing *placing, int asset)
+{
+    struct warm *warm = &placing->warm[asset];
+    if (!warm->mover) {
+        warm->mover = make_mover(placing, asset);
+        cool(placing, asset);
+    }
+    warm->used = ++placing->uses;
+    return warm->mover;
+}
+
+/* --- one move ---------------------------------------------------------------------------------------------------------------- */
+
+static void on_distances(void *arg, struct mover_result *result)
+{
+    struct ask *ask = arg;
+    struct placing *placing = ask->placing;
+    if (result->status == MOVER_CANCELLED) {
+        mem_free(result->geodesic_m);
+        mem_free(ask);
+        return;
+    }
+    ask->along_m = result->geodesic_m;
+    pthread_mutex_lock(&placing->lock);
+    ask->next = placing->done;
+    placing->done = ask;
+    pthread_mutex_unlock(&placing->lock);
+    placing->params.notify(placing->params.notify_arg);
+}
+
+static void to_file(const struct scene_asset *asset, const double plant_m[3], double out[3])
+{
+    double file_from_plant[16];
+    if (!transform_invert(asset->placement, file_from_plant)) /* plant_load refuses such a placement */
+        memcpy(file_from_plant, transform_identity, sizeof(file_from_plant));
+    transform_point(file_from_plant, plant_m, out);
+}
+
+/* Where it would be. False: nowhere on the asset. */
+static bool find_place(struct placing *placing, const struct place_move *move, struct entry *entry, struct placed *placed)
+{
+    const struct scene_asset *asset = &placing->params.scene->assets[move->asset];
+    struct mover_place place;
+    double at_m[3];
+    to_file(asset, move->position_m, at_m);
+    if (!mover_place(mover_of(placing, move->asset), at_m, &place, NULL))
+        return false;
+    *placed = (struct placed){ .move = *move, .distance_m = place.distance_m, .limit_m = far_limit_m(asset) };
+    transform_point(asset->placement, place.surface_m, placed->surface_m);
+    *entry = (struct entry){ .sensor = { .tag = move->tag, .asset = move->asset, .vertex = place.vertex } };
+    memcpy(entry->sensor.place_m, placed->surface_m, sizeof(placed->surface_m));
+    for (int c = 0; c < 3; c++)
+        entry->sensor.surface_m[c] = (float)place.surface_m[c];
+    return true;
+}
+
+static void ask_distances(struct placing *placing, struct entry *entry, struct placed *placed)
+{
+    struct ask *ask = mem_new(sizeof(*ask));
+    double at_m[3];
+    to_file(&placing->params.scene->assets[placed->move.asset], placed->move.position_m, at_m);
+    *ask = (struct ask){ .placing = placing, .number = ++placing->asked };
+    entry->asked = ask->number;
+    entry->ticket = mover_ask(mover_of(placing, placed->move.asset), at_m, on_distances, ask);
+    if (entry->ticket == 0) {
+        entry->asked = 0;
+        placed->state = PLACED_STRAIGHT;
+        mem_free(ask);
+    }
+}
+
+static void let_go(struct placing *placing, struct entry *entry, const struct placed *placed)
+{
+    if (entry->asked)
+        mover_cancel(placing->warm[placed->move.asset].mover, entry->ticket);
+    entry->asked = 0;
+    trial_reach_unref(&entry->sensor.reach);
+}
+
+/* --- sets --------------------------------------------------------------------------------------------------------------------- */
+
+struct place_set *place_set_create(struct placing *placing)
+{
+    struct place_set *set = mem_new(sizeof(*set));
+    *set = (struct place_set){ .placing = placing, .next = placing->sets };
+    placing->sets = set;
+    return set;
+}
+
+static void put_trial(struct place_set *set)
+{
+    struct trial_sensor sensors[PLACING_MOVES];
+    trials_drop(set->placing->trials, set->trial);
+    for (size_t i = 0; i < set->count; i++)
+        sensors[i] = set->entries[i].sensor;
+    set->trial = set->count ? trials_put(set->placing->trials, sensors, set->count) : 0;
+}
+
+void place_set_destroy(struct place_set **pointer)
+{
+    struct place_set *set = *pointer;
+    if (!set)
+        return;
+    struct place_set **at = &set->placing->sets;
+    while (*at != set)
+        at = &(*at)->next;
+    *at = set->next;
+    for (size_t i = 0; i < set->count; i++)
+        let_go(set->placing, &set->entries[i], &set->placed[i]);
+    trials_drop(set->placing->trials, set->trial);
+    mem_free(set);
+    *pointer = NULL;
+}
+
+/* Index in the set of the same move; -1: none. */
+static int find_same(const struct place_set *set, const struct place_move *move)
+{
+    for (size_t i = 0; i < set->count; i++) {
+        const struct place_move *other = &set->placed[i].move;
+        if (other->tag == move->tag && other->asset == move->asset &&
+            memcmp(other->position_m, move->position_m, sizeof(move->position_m)) == 0)
+            return (int)i;
+    }
+    return -1;
+}
+
+static bool check(const struct placing *placing, const struct place_move *moves, size_t i, char why[160])
+{
+    const struct plant *plant = placing->params.scene->plant;
+    const struct plant_tag *tag = &plant->tags[moves[i].tag];
+    why[0] = 0;
+    if (tag->group < 0)
+        snprintf(why, 160, "%s belongs to no group: its row of the tag list has to name one first", tag->name);
+    for (size_t j = 0; j < i; j++)
+        if (moves[j].tag == moves[i].tag)
+            snprintf(why, 160, "%s is there twice", tag->name);
+    return !why[0];
+}
+
+bool place_set_moves(struct place_set *set, const struct place_move *moves, size_t count, char why[160])
+{
+    struct placing *placing = set->placing;
+    struct entry entries[PLACING_MOVES] = { 0 };
+    struct placed placed[PLACING_MOVES] = { 0 };
+    int same[PLACING_MOVES];
+    bool kept[PLACING_MOVES] = { 0 };
+    for (size_t i = 0; i < count; i++) {
+        same[i] = find_same(set, &moves[i]);
+        if (!check(placing, moves, i, why))
+            return false;
+        if (same[i] < 0 && !find_place(placing, &moves[i], &entries[i], &placed[i])) {
+            snprintf(why, 160, "%s: that place is farther from %s than it is large", placing->params.scene->plant->tags[moves[i].tag].name,
+                     placing->params.scene->assets[moves[i].asset].plant->id);
+            return false;
+        }
+    }
+    for (size_t i = 0; i < count; i++)
+        if (same[i] >= 0) {
+            kept[same[i]] = true;
+            entries[i] = set->entries[same[i]];
+            placed[i] = set->placed[same[i]];
+        } else {
+            ask_distances(placing, &entries[i], &placed[i]);
+        }
+    for (size_t i = 0; i < set->count; i++)
+        if (!kept[i])
+            let_go(placing, &set->entries[i], &set->placed[i]);
+    memcpy(set->entries, entries, sizeof(entries));
+    memcpy(set->placed, placed, sizeof(placed));
+    set->count = count;
+    put_trial(set);
+    return true;
+}
+
+uint32_t place_set_trial(const struct place_set *set)
+{
+    return set->trial;
+}
+
+size_t place_set_get(const struct place_set *set, const struct placed **out)
+{
+    *out = set->placed;
+    return set->count;
+}
+
+bool place_set_changed(struct place_set *set)
+{
+    bool changed = set->changed;
+    set->changed = false;
+    return changed;
+}
+
+/* --- what workers found ------------------------------------------------------------------------------------------------------- */
+
+static void take(struct placing *placing, struct ask *ask)
+{
+    for (struct place_set *set = placing->sets; set; set = set->next)
+        for (size_t i = 0; i < set->count; i++) {
+            struct entry *entry = &set->entries[i];
+            if (entry->asked != ask->number)
+                continue;
+            entry->asked = 0;
+            entry->sensor.reach = ask->along_m ? trial_reach_create(ask->along_m) : NULL;
+            set->placed[i].state = ask->along_m ? PLACED_READY : PLACED_STRAIGHT;
+            ask->along_m = NULL;
+            set->changed = true;
+            put_trial(set);
+            return;
+        }
+}
+
+struct gaps_answer *placing_collect(struct placing *placing)
+{
+    pthread_mutex_lock(&placing->lock);
+    struct ask *done = placing->done;
+    struct gaps_answer *gaps = placing->gaps;
+    placing->done = NULL;
+    placing->gaps = NULL;
+    placing->gaps_last = &placing->gaps;
+    pthread_mutex_unlock(&placing->lock);
+    for (struct ask *ask = done; ask; ask = ask->next)
+        take(placing, ask);
+    forget_done(done);
+    return gaps;
+}
+
+/* --- gaps --------------------------------------------------------------------------------------------------------------------- */
+
+struct gaps_job {
+    struct placing *placing;
+    struct gaps_order order;
+    uint8_t *good;
+    struct gaps_answer *answer;
+};
+
+static void find_gaps(void *arg)
+{
+    struct gaps_job *job = arg;
+    struct placing *placing = job->placing;
+    struct gaps_answer *answer = job->answer;
+    const struct scene *scene = placing->params.scene;
+    answer->assets = mem_array(scene->asset_count, sizeof(*answer->assets));
+    for (size_t a = 0; a < scene->asset_count; a++) {
+        job->order.asset = answer->assets[answer->count].asset = (int)a;
+        answer->count += gaps_find(&job->order, &answer->assets[answer->count].gaps);
+    }
+    trials_give(placing->trials, &job->order.trial);
+    mem_free(job->good);
+    mem_free(job);
+    pthread_mutex_lock(&placing->lock);
+    *placing->gaps_last = answer;
+    placing->gaps_last = &answer->next;
+    pthread_mutex_unlock(&placing->lock);
+    placing->params.notify(placing->params.notify_arg);
+    pthread_mutex_lock(&placing->lock);
+    placing->jobs--;
+    pthread_cond_broadcast(&placing->idle);
+    pthread_mutex_unlock(&placing->lock);
+}
+
+void placing_ask_gaps(struct placing *placing, const struct place_set *set, int group, double far_m, const struct snapshot *snapshot,
+                      uint64_t client, uint32_t seq)
+{
+    const struct scene *scene = placing->params.scene;
+    const struct plant_group *of = &scene->plant->groups[group];
+    struct gaps_job *job = mem_new(sizeof(*job));
+    *job = (struct gaps_job){ .placing = placing,
+                              .order = { .scene = scene, .group = group, .mode = of->distance, .reach_m = of->reach_m, .far_m = far_m },
+                              .good = mem_array(scene->plant->tag_count, 1),
+                              .answer = mem_new(sizeof(*job->answer)) };
+    for (size_t i = 0; i < scene->plant->tag_count; i++)
+        job->good[i] = !quality_is_bad(snapshot->readings[i].quality);
+    job->order.good = job->good;
+    job->order.trial = set && set->trial ? trials_take(placing->trials, set->trial) : NULL;
+    *job->answer = (struct gaps_answer){ .client = client, .seq = seq, .group = group, .reach_m = of->reach_m };
+    pthread_mutex_lock(&placing->lock);
+    placing->jobs++;
+    pthread_mutex_unlock(&placing->lock);
+    workers_submit(placing->params.workers, find_gaps, job);
+}
