@@ -38,26 +38,6 @@ static void warn_of_far_sensors(struct log *log, const struct scene *scene)
     mem_free(far);
 }
 
-/* Made from what is loaded; works only once somebody asks. */
-static void start_placing(struct loaded *loaded)
-{
-    const struct loaded_context *context = loaded->context;
-    char *folder = loaded_prepared_folder(context->params, loaded->plant), *why;
-    loaded->placing = placing_create(&(struct placing_params){ .log = context->log,
-                                                               .workers = context->workers,
-                                                               .scene = loaded->scene,
-                                                               .folder = folder,
-                                                               .notify = context->notify,
-                                                               .notify_arg = context->notify_arg });
-    loaded->tag_list = tag_file_read(loaded->plant->tags_path, &why);
-    if (why)
-        log_warn(context->log, "%s", why);
-    mem_free(why);
-    mem_free(folder);
-    if (loaded->history)
-        loaded->proofs = proofs_open(context->log, loaded->plant, loaded->history);
-}
-
 struct loaded *loaded_read(const struct loaded_context *context, struct diag *diag)
 {
     struct loaded *loaded = mem_new(sizeof(*loaded));
@@ -74,7 +54,6 @@ struct loaded *loaded_read(const struct loaded_context *context, struct diag *di
     loaded->moments = moments_create();
     if (!loaded->plant->history.off)
         loaded->history = params->history ? mem_strdup(params->history) : plant_history_folder(loaded->plant);
-    start_placing(loaded);
     return loaded;
 }
 
@@ -109,10 +88,31 @@ static bool start_alarming(struct loaded *loaded, struct alarming *before)
     return (loaded->alarming = alarming_start(&params));
 }
 
+/* Made from what is loaded; works only once somebody asks. */
+static void start_placing(struct loaded *loaded)
+{
+    const struct loaded_context *context = loaded->context;
+    char *folder = loaded_prepared_folder(context->params, loaded->plant), *why;
+    loaded->placing = placing_create(&(struct placing_params){ .log = context->log,
+                                                               .workers = context->workers,
+                                                               .scene = loaded->scene,
+                                                               .folder = folder,
+                                                               .notify = context->notify,
+                                                               .notify_arg = context->notify_arg });
+    loaded->tag_list = tag_file_read(loaded->plant->tags_path, &why);
+    if (why)
+        log_warn(context->log, "%s", why);
+    mem_free(why);
+    mem_free(folder);
+    if (loaded->history)
+        loaded->proofs = proofs_open(context->log, loaded->plant, loaded->history);
+}
+
 bool loaded_start_recording(struct loaded *loaded, struct loaded *before)
 {
     if (before)
         store_adopt(loaded->store, before->store);
+    start_placing(loaded);
     return start_historian(loaded, before != NULL) && start_alarming(loaded, before ? before->alarming : NULL);
 }
 

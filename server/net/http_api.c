@@ -113,3 +113,13 @@ int api_tags(struct hub *hub, struct request *request)
         return request_answer_text(request, HTTP_STATUS_BAD_REQUEST, "expected first=N and count=N, 1 to 5000\n");
     return request_answer_json(request, reply_api_tags_text(&hub->world, first, count));
 }
+
+int api_proofs(struct hub *hub, struct request *request)
+{
+    struct text text = { 0 };
+    if (!hub->params.proofs)
+        return request_answer_text(request, HTTP_STATUS_NOT_FOUND, HTTP_NOTHING_RECORDED);
+    proofs_print(hub->params.proofs, &text);
+    return request_answer(request, HTTP_STATUS_OK, "text/csv; charset=utf-8", text.at, text.length, "content-disposition:",
+                          "attachment; filename=\"proofs.csv\"");
+}

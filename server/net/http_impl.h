@@ -56,6 +56,7 @@ int ask_journal(struct hub *hub, struct request *request);
 int ask_reload(struct hub *hub, struct request *request);
 int api_alarms(struct hub *hub, struct request *request);
 int api_plant(struct hub *hub, struct request *request);
+int api_proofs(struct hub *hub, struct request *request);
 int api_tags(struct hub *hub, struct request *request);
 int metrics(struct hub *hub, struct request *request);
 

@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Placing sensors and proving them, by the protocol alone: what one engineer tries out nobody else sees, a list that is saved comes into
+// force with the one before beside it, and proofs outlive the daemon.
+import assert from 'node:assert/strict';
+import { appendFileSync, existsSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { Client } from './conformance/client.mjs';
+import { missing, TinyPlant } from './support/tiny_plant.mjs';
+
+const absent = missing();
+const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
+const options = { skip, timeout: 120000 };
+let plant, tagsFile, seq = 0;
+
+before(async () => {
+    if (skip)
+        return;
+    plant = await TinyPlant.create();
+    tagsFile = join(plant.folder, 'tags.csv');
+    // A tag that stands nowhere yet, a comment in a column of somebody's own, numbers as people write them.
+    writeFileSync(tagsFile, readFileSync(tagsFile, 'utf8').replace('Stale s\n', 'Stale s,Remark\n').replace('0.5,0,0,1\n', '0.500,0.00,0,1,"# by Kim; ""new"""\n')
+        + 'TI-9,400007,Float,°C,spare,temperature,,,,,1,\n');
+    assert.equal(plant.prepare().code, 0);
+    await plant.startSim();
+    await plant.tell('set TI-1 80');
+    await plant.tell('set TI-2 20');
+    await plant.tell('set TI-9 50');
+    await plant.startDaemon();
+});
+after(() => plant?.destroy());
+
+async function enter(more = {}) {
+    const client = await Client.open(plant.port);
+    client.welcome = await client.hello({ params: { seq: 1, group: 'temperature' }, ...more });
+    return client;
+}
+
+const place = (client, moves) => client.say('place', { seq: ++seq, moves });
+const probe = (client) => {
+    client.say('pick', { seq: ++seq, x: 160, y: 90, camera: { eye: [2, 0.1, 0.1], target: [0, 0, 0] } });
+    return client.text('picked');
+};
+
+// Until distances along the surface are there.
+async function placed(client) {
+    for (;;) {
+        const message = await client.text('placed');
+        if (message.sensors.every(({ along }) => along !== 'waiting'))
+            return message;
+    }
+}
+
+test('who tries a place sees its field, and nobody else does', options, async () => {
+    const engineer = await enter(), other = await enter();
+    await engineer.wait('readings', () => engineer.pictures.length > 0);
+    const before = await probe(other);
+    place(engineer, [{ tag: 'TI-9', asset: 'E-101', position: [0.5, 0.05, 0.05] }]);
+    const { sensors: [sensor] } = await placed(engineer);
+    assert.equal(sensor.along, 'ready');
+    assert.ok(sensor.distance_m < 1e-3 && sensor.distance_m < sensor.limit_m, JSON.stringify(sensor));
+    const mine = await probe(engineer), theirs = await probe(other);
+    assert.equal(mine.nearest[0].tag, 'TI-9');
+    assert.ok(theirs.nearest.every(({ tag }) => tag !== 'TI-9'));
+    assert.ok(Math.abs(theirs.value - before.value) < 1);
+    assert.ok(Math.abs(mine.value - theirs.value) > 2, `${mine.value} and ${theirs.value}`);
+
+    place(engineer, []);
+    assert.deepEqual((await placed(engineer)).sensors, []);
+    assert.ok((await probe(engineer)).nearest.every(({ tag }) => tag !== 'TI-9'));
+    engineer.close();
+    other.close();
+});
+
+test('who follows an engineer is shown the plant as it is', options, async () => {
+    const engineer = await enter(), other = await enter();
+    place(engineer, [{ tag: 'TI-9', asset: 'E-101', position: [0.5, 0, 0] }]);
+    await placed(engineer);
+    other.say('follow', { session: engineer.welcome.session });
+    await other.text('following');
+    assert.ok((await probe(other)).nearest.every(({ tag }) => tag !== 'TI-9'));
+    engineer.close();
+    other.close();
+});
+
+test('what cannot be is refused with the reason, and nothing moves', options, async () => {
+    const engineer = await enter();
+    const wrong = async (moves, pattern) => {
+        place(engineer, moves);
+        const { code, about, text } = await engineer.text('error');
+        assert.deepEqual([code, about], ['bad_field', 'place']);
+        assert.match(text, pattern);
+    };
+    await wrong([{ tag: 'XX', asset: 'E-101', position: [0, 0, 0] }], /no tag 'XX'/);
+    await wrong([{ tag: 'TI-1', asset: 'XX', position: [0, 0, 0] }], /no asset 'XX'/);
+    await wrong([{ tag: 'TI-1', asset: 'E-101', position: [50, 0, 0] }], /TI-1: that place is farther from E-101 than it is large/);
+    await wrong([{ tag: 'TI-1', asset: 'E-101', position: [0, 0, 'a'] }], /position/);
+    await wrong([1, 2].map((z) => ({ tag: 'TI-1', asset: 'E-101', position: [0, 0, z / 4] })), /TI-1 is there twice/);
+    engineer.say('save_tags', { seq: ++seq });
+    assert.match((await engineer.text('error')).text, /no sensor has been moved/);
+    place(engineer, [{ tag: 'TI-1', asset: 'E-101', position: [1, 0, 0] }]);
+    const { sensors: [far] } = await placed(engineer);
+    assert.ok(far.distance_m > far.limit_m, 'off the surface is said, and may be meant');
+    engineer.close();
+});
+
+test('gaps: what is far from every sensor, and what has no data', options, async () => {
+    const engineer = await enter();
+    engineer.say('gaps', { seq: ++seq, far_m: 0.5 });
+    const before = await engineer.text('gaps');
+    assert.equal(before.seq, seq);
+    assert.deepEqual(before.assets.map(({ asset, sensors }) => [asset, sensors]), [['E-101', 2]]);
+    assert.deepEqual(before.far, []);
+    const [box] = before.assets;
+    assert.ok(box.far_share > 0.2 && box.far_share <= 1 && box.lost_share === 0, JSON.stringify(box));
+    assert.ok(Math.abs(box.next_m - 2) < 0.1, 'from one side to the other over an edge'); // 0.5 + 1 + 0.5
+    assert.deepEqual(box.next.sort(), ['TI-1', 'TI-2']);
+
+    place(engineer, [{ tag: 'TI-9', asset: 'E-101', position: [0, 0.8, 0] }]);
+    await placed(engineer);
+    engineer.say('gaps', { seq: ++seq, far_m: 0.5 });
+    const after = await engineer.text('gaps');
+    assert.equal(after.assets[0].sensors, 3);
+    assert.ok(after.assets[0].far_share < box.far_share);
+    assert.deepEqual(after.far.map(([tag, asset]) => [tag, asset]), [['TI-9', 'E-101']]);
+    engineer.close();
+});
+
+test('a list is saved: the difference first, then in force for all, the old one beside it', options, async () => {
+    const engineer = await enter(), other = await enter(), old = readFileSync(tagsFile, 'utf8');
+    place(engineer, [{ tag: 'TI-9', asset: 'E-101', position: [0, 0.5, 0.12345] }, { tag: 'TI-2', asset: 'E-101', position: [-0.5, 0.25, 0] }]);
+    await placed(engineer);
+    engineer.say('save_tags', { seq: ++seq });
+    const diff = await engineer.text('tags_diff');
+    assert.equal(diff.conflict, false);
+    assert.deepEqual(diff.lines, [
+        [3, 'TI-2,400003,Float,°C,right,temperature,E-101,-0.5,0,0,1', 'TI-2,400003,Float,°C,right,temperature,E-101,-0.5,0.25,0,1'],
+        [5, 'TI-9,400007,Float,°C,spare,temperature,,,,,1,', 'TI-9,400007,Float,°C,spare,temperature,E-101,0,0.5,0.123,1,'],
+    ]);
+    assert.equal(readFileSync(tagsFile, 'utf8'), old, 'nothing is written before it is confirmed');
+
+    engineer.say('save_tags', { seq: ++seq, confirm: '0123456789abcdef' }); // of something else
+    await engineer.text('tags_diff');
+    assert.equal(readFileSync(tagsFile, 'utf8'), old);
+
+    engineer.say('save_tags', { seq: ++seq, confirm: diff.hash });
+    engineer.say('save_tags', { seq: ++seq, confirm: diff.hash }); // and again, at the same time
+    const answers = [await engineer.text('tags_saved', 60000), await engineer.text('tags_saved', 60000)];
+    const saved = answers.find((answer) => answer.saved), refused = answers.find((answer) => !answer.saved);
+    assert.match(refused.errors.join(), /another list is being put in force/);
+    assert.equal(saved.kept, 'tags.csv.1', JSON.stringify(saved));
+    assert.deepEqual(saved.changes.sort(), ['tag TI-2 changed: place', 'tag TI-9 changed: asset, place']);
+    assert.equal(readFileSync(`${tagsFile}.1`, 'utf8'), old);
+    assert.equal(readFileSync(tagsFile, 'utf8'), diff.lines.reduce((text, [, from, to]) => text.replace(from, to), old));
+
+    for (const client of [engineer, other]) {
+        const again = await client.text('welcome', 60000);
+        assert.equal(again.plant.configuration, saved.configuration);
+        assert.deepEqual(again.tags.find(({ name }) => name === 'TI-9').position.map((x) => Math.round(x * 1000)), [0, 500, 123]);
+    }
+    other.say('pick', { seq: ++seq, x: 160, y: 90, camera: { eye: [0.1, 4, 0.15], target: [0, 0, 0.1] } });
+    assert.equal((await other.text('picked')).nearest[0].tag, 'TI-9');
+    engineer.close();
+    other.close();
+});
+
+test('a list that somebody else changed meanwhile is not written over: what they changed is shown', options, async () => {
+    const engineer = await enter(), good = readFileSync(tagsFile, 'utf8');
+    place(engineer, [{ tag: 'TI-1', asset: 'E-101', position: [0.5, 0.25, 0] }]);
+    await placed(engineer);
+    engineer.say('save_tags', { seq: ++seq });
+    const { hash } = await engineer.text('tags_diff');
+    appendFileSync(tagsFile, 'TI-10,400009,Float,°C,theirs,temperature,,,,,1,\n');
+    const theirs = readFileSync(tagsFile, 'utf8');
+    engineer.say('save_tags', { seq: ++seq, confirm: hash });
+    const { conflict, lines } = await engineer.text('tags_diff');
+    assert.equal(conflict, true);
+    assert.deepEqual(lines, [[6, null, 'TI-10,400009,Float,°C,theirs,temperature,,,,,1,']]);
+    assert.equal(readFileSync(tagsFile, 'utf8'), theirs);
+    writeFileSync(tagsFile, good);
+    engineer.close();
+});
+
+test('a list that cannot be prepared is put back', options, async () => {
+    const engineer = await enter(), good = readFileSync(tagsFile, 'utf8'), model = join(plant.folder, 'box.gltf');
+    const box = readFileSync(model), files = readdirSync(plant.folder).sort();
+    place(engineer, [{ tag: 'TI-1', asset: 'E-101', position: [0.5, 0.25, 0] }]);
+    await placed(engineer);
+    engineer.say('save_tags', { seq: ++seq });
+    const { hash } = await engineer.text('tags_diff');
+    writeFileSync(model, 'not a model');
+    engineer.say('save_tags', { seq: ++seq, confirm: hash });
+    const answer = await engineer.text('tags_saved', 60000);
+    writeFileSync(model, box);
+    assert.equal(answer.saved, false);
+    assert.match(answer.errors.join(), /plantcast-prep/);
+    assert.equal(readFileSync(tagsFile, 'utf8'), good);
+    assert.deepEqual(readdirSync(plant.folder).sort(), files);
+    assert.equal((await probe(engineer)).nearest[0].tag, 'TI-1', 'and goes on as it was tried');
+    engineer.close();
+});
+
+const prove = (client, tag, expected, more = {}) => {
+    client.say('prove', { seq: ++seq, tag, expected, tolerance: 0.5, ...more });
+    return client.text('proved');
+};
+
+async function forced(tag, value) {
+    await plant.tell(`set ${tag} ${value}`);
+    for (;;) {
+        const { tags } = await (await fetch(`http://127.0.0.1:${plant.port}/api/v1/tags`)).json();
+        if (Math.abs(tags.find(({ name }) => name === tag).value - value) < 0.01)
+            return;
+    }
+}
+
+test('a forced value proves a tag, for all to see; beyond the tolerance it does not', options, async () => {
+    const engineer = await enter(), other = await enter();
+    const { all, begun, tags } = await other.text('proofs');
+    assert.deepEqual([all, begun, tags], [true, false, []]);
+    await forced('TI-1', 42);
+    const passed = await prove(engineer, 'TI-1', 42.3, { remark: 'calibrator 7' });
+    assert.deepEqual([passed.kept, passed.passed, passed.value], [true, true, 42]);
+    const { all: again, begun: now, tags: [[index, result, time, value, expected, tolerance, who, remark]] } = await other.text('proofs');
+    assert.deepEqual([again, now, index, result, value, expected, tolerance, who, remark],
+        [false, true, 0, 'pass', 42, 42.3, 0.5, 'local', 'calibrator 7']);
+    assert.ok(Math.abs(time / 1000 - Date.now()) < 60000);
+    const failed = await prove(engineer, 'TI-2', 90);
+    assert.deepEqual([failed.passed, failed.why], [false, 'the value is beyond the tolerance']);
+    assert.equal((await prove(engineer, 'TI-9', 50, { fail: true })).passed, false);
+    await plant.tell('fail PI-1');
+    for (let quality = 'good'; quality === 'good';) {
+        const list = (await (await fetch(`http://127.0.0.1:${plant.port}/api/v1/tags`)).json()).tags;
+        quality = list.find(({ name }) => name === 'PI-1').quality;
+    }
+    assert.equal((await prove(engineer, 'PI-1', 5)).why, 'the reading is not good');
+    engineer.say('prove', { seq: ++seq, tag: 'TI-1', expected: 1 });
+    assert.match((await engineer.text('error')).text, /tolerance/);
+    engineer.close();
+    other.close();
+});
+
+test('proofs are exported, outlive the daemon, and end where the tag is another', options, async () => {
+    const csv = await (await fetch(`http://127.0.0.1:${plant.port}/api/v1/proofs`)).text();
+    const [head, first] = csv.split('\n');
+    assert.equal(head, 'Time,Tag Name,Result,Value,Unit,Expected,Tolerance,By,Remark,Fingerprint');
+    assert.match(first, /^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ,"TI-1",pass,42,"°C",42\.3,0\.5,"local","calibrator 7",[0-9a-f]{16}$/);
+    assert.ok(existsSync(join(plant.folder, 'plant.history', 'proofs.csv')));
+    await plant.daemon.stop();
+    appendFileSync(join(plant.folder, 'plant.history', 'proofs.csv'), '2026-01-01T00:00:00Z,"TI-1",fa'); // cut off by a power cut
+    writeFileSync(tagsFile, readFileSync(tagsFile, 'utf8').replace('TI-2,400003', 'TI-2,400011'));
+    await plant.startDaemon();
+    const engineer = await enter(), { begun, tags } = await engineer.text('proofs');
+    assert.equal(begun, true);
+    assert.deepEqual(tags.map(([index, result]) => [index, result]), [[0, 'pass'], [1, 'changed'], [2, 'fail'], [3, 'fail']]);
+    await forced('TI-9', 51);
+    assert.equal((await prove(engineer, 'TI-9', 51)).passed, true, 'and the file goes on after the line that was cut off');
+    assert.match(readFileSync(join(plant.folder, 'plant.history', 'proofs.csv'), 'utf8'), /,fa\n|"TI-1",fa\n[^\n]*"TI-9",pass/);
+    engineer.close();
+});
