@@ -126,15 +126,16 @@ char *gaps_text(const struct scene *scene, const struct place_set *set, const st
     json_t *assets = json_array();
     for (size_t i = 0; i < answer->count; i++) {
         const struct gaps *gaps = &answer->assets[i].gaps;
-        json_t *next = gaps->next_tags[0] < 0 ? json_null()
-                                              : json_pack("[s,s]", plant->tags[gaps->next_tags[0]].name, plant->tags[gaps->next_tags[1]].name);
-        json_array_append_new(assets, json_pack("{s:s,s:i,s:f,s:f,s:o,s:f,s:f,s:f,s:o}", "asset", plant->assets[answer->assets[i].asset].id,
-                                                "sensors", (int)gaps->sensors, "far_m", gaps->far_m, "farthest_m", gaps->farthest_m,
-                                                "farthest_at", vector(gaps->farthest_at_m), "far_share", gaps->far_share, "lost_share",
-                                                gaps->lost_share, "next_m", gaps->next_m, "next", next));
+        const int *pair = gaps->next_tags;
+        json_t *next = pair[0] < 0 ? json_null() : json_pack("[s,s]", plant->tags[pair[0]].name, plant->tags[pair[1]].name);
+        json_t *said = json_pack("{s:s,s:i,s:f,s:f,s:o}", "asset", plant->assets[answer->assets[i].asset].id, "sensors", (int)gaps->sensors,
+                                 "far_m", gaps->far_m, "farthest_m", gaps->farthest_m, "farthest_at", vector(gaps->farthest_at_m));
+        json_object_update_new(said, json_pack("{s:f,s:f,s:f,s:o}", "far_share", gaps->far_share, "lost_share", gaps->lost_share, "next_m",
+                                               gaps->next_m, "next", next));
+        json_array_append_new(assets, said);
     }
-    return print(json_pack("{s:s,s:I,s:s,s:o,s:o}", "type", "gaps", "seq", (json_int_t)answer->seq, "group", plant->groups[answer->group].id,
-                           "far", far_list(scene, set, answer->group), "assets", assets));
+    return print(json_pack("{s:s,s:I,s:s,s:o,s:o}", "type", "gaps", "seq", (json_int_t)answer->seq, "group",
+                           plant->groups[answer->group].id, "far", far_list(scene, set, answer->group), "assets", assets));
 }
 
 /* --- the tag list --------------------------------------------------------------------------------------------------------------- */
@@ -214,7 +215,12 @@ char *tags_diff_text(const struct plant *plant, const char *before, const struct
     if (after && message->confirm[0] && !strcmp(message->confirm, hash)) {
         *order = mem_new(sizeof(**order));
         char real[PATH_MAX]; /* through links, so that they stay */
-        **order = (struct tag_save){ mem_strdup(realpath(plant->tags_path, real) ? real : plant->tags_path), mem_strdup(before), after, mem_strdup(who), 0, message->seq };
+        const char *path = realpath(plant->tags_path, real);
+        **order = (struct tag_save){ .path = mem_strdup(path ? path : plant->tags_path),
+                                     .before = mem_strdup(before),
+                                     .after = after,
+                                     .who = mem_strdup(who),
+                                     .seq = message->seq };
         after = NULL;
     }
     if (!text)

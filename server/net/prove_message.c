@@ -44,7 +44,8 @@ static json_t *number(double value)
     return isfinite(value) ? json_real(value) : json_null();
 }
 
-char *prove_do(struct proofs *proofs, const struct plant *plant, const struct snapshot *now, const struct message *message, const char *who)
+char *prove_do(struct proofs *proofs, const struct plant *plant, const struct snapshot *now, const struct message *message,
+               const char *who)
 {
     const struct prove_request *prove = &message->prove;
     const struct reading *reading = &now->readings[prove->tag];

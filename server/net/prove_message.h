@@ -8,7 +8,8 @@
 
 bool prove_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 /* Judges the tag by its reading now, keeps that, and answers (mem_free). who: of the token. */
-char *prove_do(struct proofs *proofs, const struct plant *plant, const struct snapshot *now, const struct message *message, const char *who);
+char *prove_do(struct proofs *proofs, const struct plant *plant, const struct snapshot *now, const struct message *message,
+               const char *who);
 /* All that was ever looked at (since 0), or what was added since; mem_free. */
 char *proofs_text(const struct proofs *proofs, const struct plant *plant, uint64_t since, bool all);
 

@@ -216,10 +216,10 @@ static json_t *assets(const struct scene *scene)
 
 static json_t *tag(const struct plant *plant, const struct plant_tag *t)
 {
-    return json_pack("{s:o,s:o,s:o,s:o,s:o,s:o,s:o}", "source",
-                     t->source < 0 ? json_null() : string(plant->sources[t->source].id), "name", string(t->name), "description", string(t->description ? t->description : ""),
-                     "unit", string(t->unit ? t->unit : ""), "group", t->group < 0 ? json_null() : string(plant->groups[t->group].id),
-                     "asset", t->asset < 0 ? json_null() : string(plant->assets[t->asset].id), "limits", limits(t->limits));
+    return json_pack("{s:o,s:o,s:o,s:o,s:o,s:o,s:o}", "name", string(t->name), "description", string(t->description ? t->description : ""),
+                     "unit", string(t->unit ? t->unit : ""), "source", t->source < 0 ? json_null() : string(plant->sources[t->source].id),
+                     "group", t->group < 0 ? json_null() : string(plant->groups[t->group].id), "asset",
+                     t->asset < 0 ? json_null() : string(plant->assets[t->asset].id), "limits", limits(t->limits));
 }
 
 static json_t *tags(const struct session_world *world)

@@ -10,7 +10,7 @@ struct gaps_order {
     int asset, group;
     enum distance_mode mode;
     double reach_m;            /* INFINITY: no limit */
-    double far_m;              /* farther than that from every sensor is far; 0: half of the group's reach, or a fifth of the asset's size */
+    double far_m;              /* farther than that from every sensor is far; 0: half of the reach, or a fifth of the asset's size */
     const uint8_t *good;       /* by tag: its reading can be used now */
 };
 

@@ -78,7 +78,8 @@ GLuint reference_sensors(const struct reference *reference, int asset, const str
         memcpy(blocks[i].place_m, from->surface_m, sizeof(from->surface_m));
         /* One that is tried out has no column, and no say here. */
         bool has_column = from->column < reference->stage->scene->assets[asset].file->view.header->sensor_count;
-        blocks[i].state = !has_column ? 0 : (from->configured ? CONFIGURED : 0) | (from->usable ? USABLE : 0) | (from->uncertain ? UNCERTAIN : 0);
+        blocks[i].state = (from->configured ? CONFIGURED : 0) | (from->usable ? USABLE : 0) | (from->uncertain ? UNCERTAIN : 0);
+        blocks[i].state = has_column ? blocks[i].state : 0;
     }
     GLuint buffer = count ? mesh_buffer(reference->stage->gl->log, "sensors", bytes, head, 0) : 0;
     mem_free(head);

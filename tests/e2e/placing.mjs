@@ -19,7 +19,8 @@ before(async () => {
     plant = await TinyPlant.create();
     tagsFile = join(plant.folder, 'tags.csv');
     // A tag that stands nowhere yet, a comment in a column of somebody's own, numbers as people write them.
-    writeFileSync(tagsFile, readFileSync(tagsFile, 'utf8').replace('Stale s\n', 'Stale s,Remark\n').replace('0.5,0,0,1\n', '0.500,0.00,0,1,"# by Kim; ""new"""\n')
+    const list = readFileSync(tagsFile, 'utf8').replace('Stale s\n', 'Stale s,Remark\n');
+    writeFileSync(tagsFile, list.replace('0.5,0,0,1\n', '0.500,0.00,0,1,"# by Kim; ""new"""\n')
         + 'TI-9,400007,Float,°C,spare,temperature,,,,,1,\n');
     assert.equal(plant.prepare().code, 0);
     await plant.startSim();
@@ -38,7 +39,7 @@ async function enter(more = {}) {
 
 const place = (client, moves) => client.say('place', { seq: ++seq, moves });
 const probe = (client) => {
-    client.say('pick', { seq: ++seq, x: 160, y: 90, camera: { eye: [2, 0.1, 0.1], target: [0, 0, 0] } });
+    client.say('pick', { seq: ++seq, x: 160, y: 90, camera: { eye: [2, 0.1, 0.1], target: [0.5, 0.1, 0.1] } });
     return client.text('picked');
 };
 
@@ -128,7 +129,8 @@ test('gaps: what is far from every sensor, and what has no data', options, async
 
 test('a list is saved: the difference first, then in force for all, the old one beside it', options, async () => {
     const engineer = await enter(), other = await enter(), old = readFileSync(tagsFile, 'utf8');
-    place(engineer, [{ tag: 'TI-9', asset: 'E-101', position: [0, 0.5, 0.12345] }, { tag: 'TI-2', asset: 'E-101', position: [-0.5, 0.25, 0] }]);
+    place(engineer, [{ tag: 'TI-9', asset: 'E-101', position: [0, 0.5, 0.12345] },
+        { tag: 'TI-2', asset: 'E-101', position: [-0.5, 0.25, 0] }]);
     await placed(engineer);
     engineer.say('save_tags', { seq: ++seq });
     const diff = await engineer.text('tags_diff');
