@@ -119,6 +119,7 @@ static void add_counters(struct modbus_source *modbus, struct counters *counters
     modbus->reads_failed = add_counter(counters, "reads_total", id, ",result=\"failed\"", "counter", reads);
     modbus->connects = add_counter(counters, "connects_total", id, "", "counter", "connections made to field devices");
     modbus->up = add_counter(counters, "up", id, "", "gauge", up);
+    modbus->host = add_counter(counters, "host", id, "", "gauge", "which of its hosts readings come from, 1: the first; 0: from none");
 }
 
 static void add_plan(struct modbus_source *modbus)

@@ -26,7 +26,7 @@ struct modbus_source {
     const struct plant_source *config;
     int index;
     struct store *store;
-    counter *reads_ok, *reads_failed, *connects, *up;
+    counter *reads_ok, *reads_failed, *connects, *up, *host;
     int stop_fd;
     pthread_t thread;
     bool has_thread;

@@ -107,6 +107,11 @@ const char *modbus_link_name(const struct modbus_link *link)
     return link->name;
 }
 
+int modbus_link_host(const struct modbus_link *link)
+{
+    return link->host;
+}
+
 void modbus_link_close(struct modbus_link *link)
 {
     if (link->open && link->source->transport == TRANSPORT_RTU) {

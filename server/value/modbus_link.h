@@ -18,6 +18,7 @@ void modbus_link_destroy(struct modbus_link **link); /* &NULL is fine; leaves NU
 bool modbus_link_is_open(const struct modbus_link *link);
 /* To where it goes now, or would: "10.0.0.1:502", "/dev/ttyS0". Valid until the next call. */
 const char *modbus_link_name(const struct modbus_link *link);
+int modbus_link_host(const struct modbus_link *link); /* which of the source's hosts that is; 0: the first */
 /* Within the source's timeout_ms. 0 or -errno; -ECANCELED: stopping. */
 int modbus_link_open(struct modbus_link *link);
 void modbus_link_close(struct modbus_link *link);

@@ -22,6 +22,7 @@ static void link_lost(struct modbus_source *modbus, const char *why)
     modbus->link_up = false;
     modbus->link_known = true;
     counter_set(modbus->up, 0);
+    counter_set(modbus->host, 0);
     store_link_lost(modbus->store, modbus->index, now_ns);
 }
 
@@ -37,6 +38,7 @@ void modbus_unit_is_up(struct modbus_source *modbus, struct unit *unit)
         return;
     modbus->link_up = modbus->link_known = true;
     counter_set(modbus->up, 1);
+    counter_set(modbus->host, 1 + modbus_link_host(modbus->link));
     store_link_up(modbus->store, modbus->index, clock_mono_ns());
     log_info(modbus->log, "source %s: %s: reading", modbus->config->id, modbus_link_name(modbus->link));
 }

@@ -98,6 +98,11 @@ static void an_absent_line_is_tried_again(void **state)
     modbus_case_assert_stops_soon(s);
 }
 
+static int host_of(struct modbus_case *s)
+{
+    return (int)*counters_add(s->counters, "plantcast_source_host{source=\"plc\"}", "gauge", "");
+}
+
 static void the_second_host_stands_in(void **state)
 {
     struct modbus_case *s = *state;
@@ -111,16 +116,24 @@ static void the_second_host_stands_in(void **state)
     modbus_case_start(s);
     modbus_case_expect(s, 0, QUALITY_GOOD, 3);
     assert_int_equal(second.connections, 0); /* one connection, to the first */
+    assert_int_equal(host_of(s), 1);
     device_stop(&s->device);
+    int first_asked = s->device.requests;
     modbus_case_expect(s, 0, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE, 2);
     modbus_case_expect(s, 0, QUALITY_GOOD, 2); /* at once, not after a pause */
     assert_true(second.requests > 0);
-    device_start(&s->device);
+    assert_int_equal(host_of(s), 2);
+    device_start(&s->device); /* the first is back, and nothing goes back to it while the second answers */
+    for (int asked = second.requests + 10; second.requests < asked;)
+        clock_sleep_ns(10 * NS_PER_MS);
+    assert_int_equal(s->device.requests, first_asked);
+    assert_int_equal(host_of(s), 2);
     second.manner = DEVICE_SILENT; /* it takes connections, and that is all */
     int before = s->device.requests;
     while (s->device.requests == before)
         clock_sleep_ns(10 * NS_PER_MS);
     modbus_case_expect(s, 0, QUALITY_GOOD, 3);
+    assert_int_equal(host_of(s), 1);
     device_stop(&second);
 }
 
