@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// 20,000 tags through the whole daemon: read once a second, shown, recorded, and served to programs by pages; a page of tags is whole
+// and in order, what a client sees goes on meanwhile, and the loss of their device is one alarm.
+import assert from 'node:assert/strict';
+import { readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { Client } from './conformance/client.mjs';
+import { missing, TinyPlant } from './support/tiny_plant.mjs';
+
+const absent = missing();
+const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 150000 };
+const MANY = 20000;
+const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
+const name = (i) => `X-${String(i).padStart(5, '0')}`;
+let plant;
+
+// As many as 65,536 registers hold, of one device, each with a limit. Numbers before ours are those of the tiny plant's own tags.
+before(async () => {
+    if (options.skip)
+        return;
+    plant = await TinyPlant.create();
+    const file = join(plant.folder, 'tags.csv'), own = readFileSync(file, 'utf8').replace('Stale s', 'Stale s,H');
+    const lines = Array.from({ length: MANY }, (_, i) => `${name(i)},${400101 + i},Short,bar,spare,,,,,,3,30000`);
+    writeFileSync(file, `${own.replace(/,1$/gm, ',3,')}${lines.join('\n')}\n`);
+    writeFileSync(plant.file, readFileSync(plant.file, 'utf8').replace('poll_ms: 100', 'poll_ms: 1000'));
+    const prepared = plant.prepare();
+    assert.equal(prepared.code, 0, prepared.err);
+    await plant.startSim();
+    await plant.startDaemon();
+});
+after(() => plant?.destroy());
+
+const get = async (path) => {
+    const response = await fetch(`http://127.0.0.1:${plant.port}${path}`);
+    assert.equal(response.status, 200, path);
+    return response.json();
+};
+
+async function pages(count) {
+    const tags = [];
+    for (let first = 0; ; first += count) {
+        const page = await get(`/api/v1/tags?first=${first}&count=${count}`);
+        assert.deepEqual([page.total, page.first], [MANY + 3, first]);
+        tags.push(...page.tags);
+        if (page.tags.length < count)
+            return tags;
+    }
+}
+
+async function until(what, found, seconds = 60) {
+    for (const end = performance.now() + seconds * 1000; performance.now() < end; await sleep(200))
+        if (await found())
+            return;
+    assert.fail(`not within ${seconds} s: ${what}`);
+}
+
+test('pages hold every tag once, in order, with what its register holds', options, async () => {
+    await until('all are good', async () => (await pages(5000)).every(({ quality }) => quality === 'good'));
+    for (const count of [1000, 4096]) {
+        const tags = await pages(count);
+        assert.deepEqual(tags.slice(3).map((tag) => tag.name), Array.from({ length: MANY }, (_, i) => name(i)));
+        assert.ok(tags.every(({ quality, value, age_ms: age }) => quality === 'good' && value !== null && age < 60000));
+    }
+    assert.equal((await get('/api/v1/tags')).tags.length, 1000, 'if nothing is said');
+    assert.deepEqual((await get(`/api/v1/tags?first=${MANY + 3}`)).tags, [], 'behind the last');
+    for (const query of ['count=5001', 'count=0', 'first=-1', 'first=x', 'page=2'])
+        assert.equal((await fetch(`http://127.0.0.1:${plant.port}/api/v1/tags?${query}`)).status, 400, query);
+});
+
+test('who looks meanwhile gets pictures, and all tags', options, async () => {
+    const client = await Client.open(plant.port);
+    const welcome = await client.hello({});
+    assert.equal(welcome.tags.length, MANY + 3);
+    await client.picture('the first');
+    let asking = true;
+    const asked = (async () => {
+        while (asking)
+            await pages(5000);
+    })();
+    const shown = client.pictures.length;
+    for (let i = 0; i < 10; i++) {
+        client.say('camera', { seq: i + 1, eye: [5, -6, 3 + 0.2 * i], target: [1, 0, 0] });
+        await sleep(100);
+    }
+    await client.wait('pictures between the pages', () => client.pictures.length > shown + 2);
+    asking = false;
+    await asked;
+    client.close();
+});
+
+test('the loss of their device is one alarm, journalled for each of them, and over when it is back', options, async () => {
+    const counts = async () => (await get('/api/v1/alarms?limit=1')).counts;
+    await plant.sim.stop('SIGKILL');
+    await until('all are carried', async () => (await counts()).states.suppressed === MANY);
+    const { alarms, counts: { active } } = await get('/api/v1/alarms?limit=10000');
+    const seen = alarms.filter(({ state }) => state !== 'suppressed').map(({ tag, kind }) => [tag, kind]);
+    assert.equal(active, 1);
+    assert.ok(seen.length === 0 || (seen.length === 1 && seen[0].join() === 'plc1,LINK'), JSON.stringify(seen));
+    const { rows } = await get('/api/v1/alarms/journal?limit=10000');
+    assert.ok(rows.filter(({ kind, state, reason }) => kind === 'BAD' && state === 'suppressed' && reason === 'plc1').length > 9000);
+    await plant.startSim();
+    await until('it is over', async () => (await counts()).states.suppressed === 0 && (await counts()).active === 0);
+});
