@@ -207,9 +207,21 @@ static json_t *assets(const struct scene *scene)
     json_t *list = json_array();
     for (size_t i = 0; i < scene->asset_count; i++) {
         const struct scene_asset *a = &scene->assets[i];
-        json_array_append_new(list, json_pack("{s:o,s:o,s:o,s:o}", "id", string(a->plant->id), "tag", string(a->plant->tag), "description",
-                                              string(a->plant->description ? a->plant->description : ""), "bounds",
+        const char *description = a->plant->description ? a->plant->description : "", *area = a->plant->area ? a->plant->area : "";
+        json_array_append_new(list, json_pack("{s:o,s:o,s:o,s:o,s:o}", "id", string(a->plant->id), "tag", string(a->plant->tag),
+                                              "description", string(description), "area", string(area), "bounds",
                                               box(a->bounds_min_m, a->bounds_max_m)));
+    }
+    return list;
+}
+
+static json_t *links(const struct plant *plant)
+{
+    json_t *list = json_array();
+    for (size_t i = 0; i < plant->link_count; i++) {
+        const struct plant_link *link = &plant->links[i];
+        json_array_append_new(list, json_pack("{s:o,s:s,s:o}", "name", string(link->name), "of", link->of_tags ? "tag" : "asset", "url",
+                                              string(link->url)));
     }
     return list;
 }
@@ -264,6 +276,7 @@ static void set_lists(json_t *object, const struct session_world *world)
     json_object_set_new(object, "groups", groups(world->plant));
     json_object_set_new(object, "colormaps", colormaps());
     json_object_set_new(object, "environments", environments(world->plant));
+    json_object_set_new(object, "links", links(world->plant));
     json_object_set_new(object, "assets", assets(world->scene));
     json_object_set_new(object, "tags", tags(world));
 }

@@ -79,7 +79,7 @@ static void free_assets(struct plant *plant)
 {
     for (size_t i = 0; i < plant->asset_count; i++) {
         struct plant_asset *asset = &plant->assets[i];
-        char *const texts[] = { asset->id, asset->tag, asset->description, asset->model, asset->nodes };
+        char *const texts[] = { asset->id, asset->tag, asset->description, asset->area, asset->model, asset->nodes };
         for (size_t k = 0; k < sizeof(texts) / sizeof(*texts); k++)
             mem_free(texts[k]);
     }
@@ -139,6 +139,10 @@ void plant_destroy(struct plant **plant_ptr)
     for (size_t i = 0; i < plant->environment_count; i++) {
         mem_free(plant->environments[i].name);
         mem_free(plant->environments[i].path);
+    }
+    for (size_t i = 0; i < plant->link_count; i++) {
+        mem_free(plant->links[i].name);
+        mem_free(plant->links[i].url);
     }
     mem_free(plant->history.folder);
     mem_free(plant->path);

@@ -36,6 +36,7 @@ struct plant_view { /* where a client starts looking from; plant frame, metres *
 
 struct plant_asset {
     char *id, *tag, *description; /* tag defaults to id */
+    char *area;                   /* of the plant, by which assets are listed; "": none */
     char *model;                  /* path, relative names resolved against the plant file's folder */
     char *nodes;                  /* glob (fnmatch) on node names; a node that matches brings its whole sub-tree. NULL: the whole model */
     double unit_m;                /* metres per model unit, placement's scale taken in */
@@ -175,6 +176,13 @@ struct plant_environment { /* pictures of surroundings, to light the plant with 
     char *path;
 };
 
+enum { PLANT_LINKS = 16 };
+struct plant_link { /* where else one reads about an asset, or a tag */
+    char *name;
+    char *url;             /* http or https; what is in braces is put in, escaped (PLANT.md) */
+    bool of_tags;
+};
+
 struct plant {
     char *path, *folder;              /* of the plant file; folder without trailing slash */
     char *tags_path;
@@ -185,6 +193,8 @@ struct plant {
     struct plant_view view;
     struct plant_environment environments[PLANT_ENVIRONMENTS]; /* the first is shown where nobody asks for another */
     size_t environment_count;
+    struct plant_link links[PLANT_LINKS];
+    size_t link_count;
     struct plant_history history;
     enum alarm_mode alarms;
     struct plant_asset *assets;

@@ -160,6 +160,7 @@ static void read_asset(struct yaml_reader *reader, yaml_node_t *node, struct pla
         { "id", KEY_NAME, true, offsetof(struct asset_record, asset.id), 0, 0, NULL, NULL },
         { "tag", KEY_TEXT, false, offsetof(struct asset_record, asset.tag), 0, 0, NULL, NULL },
         { "description", KEY_TEXT, false, offsetof(struct asset_record, asset.description), 0, 0, NULL, NULL },
+        { "area", KEY_TEXT, false, offsetof(struct asset_record, asset.area), 0, 0, NULL, NULL },
         { "model", KEY_NAME, true, offsetof(struct asset_record, asset.model), 0, 0, NULL, NULL },
         { "nodes", KEY_NAME, false, offsetof(struct asset_record, asset.nodes), 0, 0, NULL, NULL },
         { "units", KEY_FACTOR, false, offsetof(struct asset_record, asset.unit_m), 0, 0, unit_choices, NULL },
@@ -184,6 +185,8 @@ static void read_asset(struct yaml_reader *reader, yaml_node_t *node, struct pla
         asset->tag = mem_strdup(asset->id);
     if (!asset->description)
         asset->description = mem_strdup("");
+    if (!asset->area)
+        asset->area = mem_strdup("");
     plant_list_check_id(reader, &map, "asset", plant->assets, plant->asset_count, sizeof(*asset), offsetof(struct plant_asset, line));
 }
 
@@ -349,6 +352,11 @@ static void read_environment(struct yaml_reader *reader, yaml_node_t *node, void
     plant_environments_read(reader, node, ((struct plant_file *)record)->plant);
 }
 
+static void read_links(struct yaml_reader *reader, yaml_node_t *node, void *record)
+{
+    plant_links_read(reader, node, ((struct plant_file *)record)->plant);
+}
+
 static void read_alarms(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
     plant_alarms_read_mode(reader, node, ((struct plant_file *)record)->plant);
@@ -383,6 +391,7 @@ void plant_file_read(struct plant *plant, struct diag *diag)
         { "sources", KEY_CUSTOM, false, 0, 0, 0, NULL, read_sources },
         { "colormaps", KEY_CUSTOM, false, 0, 0, 0, NULL, read_colormaps },
         { "environment", KEY_CUSTOM, false, 0, 0, 0, NULL, read_environment },
+        { "links", KEY_CUSTOM, false, 0, 0, 0, NULL, read_links },
         { "history", KEY_CUSTOM, false, 0, 0, 0, NULL, read_history },
         { "alarms", KEY_CUSTOM, false, 0, 0, 0, NULL, read_alarms },
         { "tags", KEY_NAME, true, offsetof(struct plant_file, tags), 0, 0, NULL, NULL },

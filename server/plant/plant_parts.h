@@ -12,6 +12,8 @@
 void plant_file_read(struct plant *plant, struct diag *diag);
 /* Likewise the value of its key `environment`; the folder is set. */
 void plant_environments_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
+/* Likewise the list `links`. */
+void plant_links_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
 /* Likewise the list `sources`. */
 void plant_sources_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
 

@@ -53,8 +53,9 @@ const focused = () => page.evaluate(() => {
     (globalThis.reached ??= new Set()).add(element);
     const shown = element.matches('.segments input') ? element.nextElementSibling : element;
     const { outlineStyle, outlineWidth } = getComputedStyle(shown), box = shown.getBoundingClientRect();
-    return { name: element.id, seen: outlineStyle !== 'none' && parseFloat(outlineWidth) >= 2, inToolbar: Boolean(element.closest('.toolbar')),
-        left: box.left, inside: box.right <= innerWidth + 1 && box.bottom <= innerHeight + 1 && box.width > 0, body: element === document.body };
+    const inside = box.right <= innerWidth + 1 && box.bottom <= innerHeight + 1 && box.width > 0;
+    const seen = outlineStyle !== 'none' && parseFloat(outlineWidth) >= 2, inToolbar = Boolean(element.closest('.toolbar'));
+    return { name: element.id, seen, inToolbar, left: box.left, inside, body: element === document.body };
 });
 
 test('the keyboard reaches everything in the order in which it stands, and one sees where it is', options, async () => {

@@ -279,6 +279,29 @@ static void surroundings_are_read(void **state)
     mem_free(text);
 }
 
+static void links_are_templates_of_addresses(void **state)
+{
+    struct plant_case *f = *state;
+    load_csv_with(f, 1,
+                  "plant: { name: P }\nlinks: [{ name: Maintenance, url: 'https://cmms.example/e?id={id}&in={area}' },"
+                  " { name: DCS, of: tag, url: 'http://dcs.example:81/{name}' }]",
+                  small_csv);
+    plant_case_assert_loaded(f, 0);
+    assert_int_equal(f->plant->link_count, 2);
+    assert_string_equal(f->plant->links[0].name, "Maintenance");
+    assert_false(f->plant->links[0].of_tags);
+    assert_true(f->plant->links[1].of_tags);
+    assert_string_equal(f->plant->links[1].url, "http://dcs.example:81/{name}");
+    load_with(f, 1,
+              "plant: { name: P }\nlinks:\n- { name: A, url: 'javascript:alert(1)' }\n- { name: B, url: 'https://{id}.example/' }\n"
+              "- { name: C, url: 'https://a.example/{name}' }\n- { name: D, url: 'https:// a/' }\n- { url: 'http://a/' }\n"
+              "- { name: F, of: pump, url: 'http:///x' }\n- { name: G, of: tag, url: 'http://a/{tag' }");
+    FOUND(f, { "plant.yaml", 3, 19, "neither with https:// nor" }, { "plant.yaml", 4, 19, "it names no server" },
+          { "plant.yaml", 5, 19, "in braces there may be {id}, {tag} and {area}" }, { "plant.yaml", 6, 19, "white space" },
+          { "plant.yaml", 7, 3, "a link needs the key 'name'" }, { "plant.yaml", 8, 18, "expected" },
+          { "plant.yaml", 8, 29, "it names no server" }, { "plant.yaml", 9, 28, "in braces there may be {name}, {asset} and {group}" });
+}
+
 static void missing_keys_are_named(void **state)
 {
     struct plant_case *f = *state;
@@ -628,6 +651,7 @@ int main(void)
         TEST(the_locale_changes_nothing),
         TEST(unknown_keys_are_named),
         TEST(surroundings_are_read),
+        TEST(links_are_templates_of_addresses),
         TEST(missing_keys_are_named),
         TEST(wrong_types_are_named),
         TEST(bad_choices_list_the_allowed),

@@ -1,32 +1,50 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The equipment list: search, quality at a glance, the selected one's sensors with their values, and the way there.
+// The list of equipment: areas, assets and their sensors with what they say, search, what is known of the selected one, and the way there.
 import { decimalsFor, numberText, qualityText, unitText } from '../core/format.js';
+import { linkUrl, Tree } from '../core/tree.js';
 import { say } from '../core/words.js';
 import { byId, glyph, make, setText } from './dom.js';
+import { LongList } from './list.js';
 
-const NARROW = '(max-width: 1023px)';
+const NARROW = '(max-width: 1023px)', SEARCH_MS = 80, ASSET_PX = 53;
+const keyOf = ({ kind, id }) => `${kind}/${id}`;
+
+export const linksOf = (model, of, item) => model.references.filter((link) => link.of === of)
+    .map((link) => ({ name: link.name, href: linkUrl(link, item) })).filter(({ href }) => href)
+    .map(({ name, href }) => make('a', { href, target: '_blank', rel: 'noopener noreferrer' }, name));
 
 export class Assets {
     // Handlers: onAsset(asset), onTag(tag).
     constructor({ session, selection }) {
         Object.assign(this, { session, selection });
-        this.list = byId('assets-list');
         this.search = byId('assets-search');
-        this.rows = new Map(); // asset id -> { item, quality, readings: Map index -> elements }
+        this.about = byId('asset-about');
         this.onAsset = this.onTag = () => {};
-        this.search.addEventListener('input', () => this.filter());
+        this.setOpen(!this.narrow);
+        this.list = new LongList({
+            root: byId('assets-list'), make: (row) => this.make(row), fill: (row, element) => this.fill(row, element), keyOf,
+            height: ({ kind }) => (kind === 'asset' ? ASSET_PX : this.touchPx), onKey: (key, row, i) => this.press(key, row, i),
+        });
+        this.search.addEventListener('input', () => {
+            clearTimeout(this.waiting);
+            this.waiting = setTimeout(() => this.filter(), SEARCH_MS);
+        });
         byId('assets-toggle').addEventListener('click', () => this.setOpen(!this.open));
         byId('assets-close').addEventListener('click', () => this.setOpen(false));
         session.on('welcome', () => this.build());
         session.on('params', () => this.mark());
-        session.on('tags', () => this.update());
-        session.on('alarms', () => this.update());
-        this.setOpen(!this.narrow);
+        session.on('tags', () => this.soon());
+        session.on('alarms', () => this.soon());
         window.matchMedia(NARROW).addEventListener('change', () => this.setOpen(!this.narrow));
+        window.matchMedia('(pointer: coarse)').addEventListener('change', () => this.filter());
     }
 
     get narrow() {
         return window.matchMedia(NARROW).matches;
+    }
+
+    get touchPx() {
+        return window.matchMedia('(pointer: coarse)').matches ? 44 : 36;
     }
 
     setOpen(open) {
@@ -42,125 +60,183 @@ export class Assets {
     }
 
     build() {
-        const { model } = this.session;
-        this.rows.clear();
-        this.list.replaceChildren(...model.assets.map((asset) => this.row(asset)));
-        this.empty = make('li', { class: 'nothing', hidden: true }, say('assets.nothing'));
-        this.list.append(this.empty);
+        const { model } = this.session, before = this.tree;
+        this.tree = new Tree(model, say('assets.loose'));
+        if (before)
+            Object.assign(this.tree, { open: before.open, folded: before.folded }); // a new connection finds it as it was
         setText(byId('assets-count'), String(model.assets.length));
-        this.filter();
+        this.selected = undefined;
         this.mark();
     }
 
-    row(asset) {
-        const count = asset.tags.length;
-        const sensors = count === 0 ? '' : say('assets.sensors', { count });
-        const button = make('button', { type: 'button', class: 'asset', 'aria-pressed': 'false', onclick: () => this.choose(asset) },
-            glyph('none'),
-            make('span', { class: 'text' }, make('b', {}, asset.tag || asset.id), make('span', {}, asset.description ?? '')),
-            make('span', { class: 'count' }, make('span', { class: 'flag' }), sensors));
-        const item = make('li', {}, button);
-        this.rows.set(asset.id, { asset, item, button, quality: null, readings: new Map() });
-        return item;
+    filter() {
+        if (!this.tree)
+            return;
+        const rows = this.tree.rows(this.search.value);
+        byId('assets-nothing').hidden = rows.length > 0;
+        this.list.set(rows);
     }
 
-    choose(asset) {
-        this.onAsset(asset);
+    // --- what is selected
+
+    mark() {
+        const { selected = null } = this.session.params, tag = this.selection.tag;
+        if (!this.tree || (selected === this.selected && tag === this.marked))
+            return;
+        const { model } = this.session, asset = model.asset(selected), chosen = model.tag(tag);
+        const isNew = chosen !== null && tag !== this.marked, owner = isNew ? model.asset(chosen.asset) : asset;
+        if (owner)
+            this.tree.unfold(owner);
+        this.showAbout(asset);
+        const reveal = isNew ? `tag/${chosen.index}` : asset && selected !== this.selected && `asset/${selected}`;
+        Object.assign(this, { selected, marked: tag });
+        this.filter();
+        if (reveal)
+            this.list.reveal(reveal);
+    }
+
+    showAbout(asset) {
+        this.about.hidden = !asset;
+        if (!asset)
+            return;
+        const { min, max } = asset.bounds, metres = (list) => list.map((m) => numberText(m, 1)).join(' × ');
+        const facts = [
+            ['assets.description', asset.description], ['assets.area', asset.area],
+            ['assets.size', say('distance.metres', { metres: metres(max.map((m, i) => m - min[i])) })],
+            ['assets.place', max.map((m, i) => numberText((m + min[i]) / 2, 1)).join(' · ')],
+            ['assets.sensors.name', asset.tags.length],
+        ].filter(([, text]) => text !== '' && text !== undefined && text !== 0);
+        const links = linksOf(this.session.model, 'asset', asset);
+        this.about.replaceChildren(make('h3', {}, asset.tag || asset.id),
+            make('dl', {}, ...facts.flatMap(([key, text]) => [make('dt', {}, say(key)), make('dd', {}, String(text))])),
+            ...(links.length > 0 ? [make('p', { class: 'links' }, ...links)] : []));
+    }
+
+    // --- rows
+
+    toggle(row) {
+        this.tree.toggle(row);
+        this.filter();
+    }
+
+    act(row) {
+        const { kind, item } = row;
+        if (kind === 'area')
+            return this.toggle(row);
+        if (kind === 'tag')
+            return this.onTag(item);
+        if (item.id === null)
+            return this.toggle(row);
+        this.onAsset(item);
         if (this.narrow)
             this.setOpen(false);
+        return undefined;
     }
 
-    filter() {
-        const words = this.search.value.toLowerCase().split(/\s+/).filter(Boolean);
-        let shown = 0;
-        for (const { asset, item } of this.rows.values()) {
-            const tags = asset.tags.map((tag) => `${tag.name} ${tag.description}`);
-            const text = [asset.id, asset.tag, asset.description, ...tags].join(' ').toLowerCase();
-            item.hidden = !words.every((word) => text.includes(word));
-            shown += item.hidden ? 0 : 1;
+    // Right opens or goes in, left closes or goes out. True: that was for us.
+    press(key, row, i) {
+        const { rows } = this.list, hasRows = row.kind !== 'tag';
+        if (key === 'Enter' || key === ' ')
+            this.act(row);
+        else if (key === 'ArrowRight' && hasRows && !row.open)
+            this.toggle(row);
+        else if (key === 'ArrowRight')
+            this.list.at(rows[i + 1]?.level > row.level ? i + 1 : i);
+        else if (key === 'ArrowLeft' && hasRows && row.open)
+            this.toggle(row);
+        else if (key === 'ArrowLeft')
+            this.list.at(rows.findLastIndex((one, n) => n < i && one.level < row.level));
+        else
+            return false;
+        return true;
+    }
+
+    make(row) {
+        const { kind, item } = row, press = { onclick: () => this.act(this.rowOf(row)) };
+        const twist = make('span', { class: 'twist', 'aria-hidden': 'true', onclick: (event) => {
+            event.stopPropagation();
+            this.toggle(this.rowOf(row));
+        } });
+        const common = { role: 'treeitem', 'aria-level': row.level, ...press };
+        if (kind === 'area')
+            return make('div', { ...common, class: 'area' }, twist, make('b', {}, row.text), make('span', { class: 'flag' }),
+                make('span', { class: 'count' }, String(row.count)));
+        if (kind === 'tag')
+            return make('div', { ...common, class: 'reading', title: item.description }, glyph('none'),
+                make('span', {}, item.name, make('span', { class: 'flag' })), make('span', { class: 'value' }));
+        const count = item.tags.length;
+        return make('div', { ...common, class: 'asset' }, count > 0 ? twist : make('span'), glyph('none'),
+            make('span', { class: 'text' }, make('b', {}, item.tag || item.id), make('span', {}, item.description ?? '')),
+            make('span', { class: 'count' }, make('span', { class: 'flag' }), count > 0 ? say('assets.sensors', { count }) : ''));
+    }
+
+    // As the row is now.
+    rowOf(row) {
+        return this.list.rows[this.list.places.get(keyOf(row))];
+    }
+
+    fill(row, element) {
+        const { model, params } = this.session, { kind, item } = row;
+        put(element, 'aria-setsize', row.setSize);
+        put(element, 'aria-posinset', row.place);
+        if (kind === 'area')
+            return void put(element, 'aria-expanded', row.open);
+        if (kind === 'asset') {
+            put(element, 'aria-expanded', item.tags.length > 0 ? row.open : null);
+            put(element, 'aria-selected', item.id !== null && item.id === params.selected);
+            setQuality(element, model.worstQuality(item) ?? 'none');
+            setAlarm(element, model.worstAlarm(item));
+            return undefined;
         }
-        if (this.empty)
-            this.empty.hidden = shown > 0;
+        put(element, 'aria-selected', this.selection.tag === item.name);
+        this.fillReading(item, element);
+        return undefined;
     }
 
-    // Shows which one is selected, and its sensors beneath it.
-    mark() {
-        const { selected } = this.session.params;
-        for (const row of this.rows.values()) {
-            const on = row.asset.id === selected;
-            row.button.setAttribute('aria-pressed', on);
-            if (on && !row.sensors)
-                this.unfold(row);
-            else if (!on && row.sensors)
-                this.fold(row);
-        }
-        this.update();
-    }
-
-    unfold(row) {
-        row.sensors = make('div', { class: 'readings' });
-        for (const tag of row.asset.tags) {
-            const value = make('span', { class: 'value' });
-            const button = make('button', { type: 'button', class: 'reading', title: tag.description, onclick: () => this.onTag(tag) },
-                glyph('none'), make('span', {}, tag.name, make('span', { class: 'flag' })), value);
-            row.readings.set(tag.index, { tag, button, value, quality: null });
-            row.sensors.append(button);
-        }
-        row.item.append(row.sensors);
-        row.item.scrollIntoView({ block: 'nearest' });
-    }
-
-    fold(row) {
-        row.sensors.remove();
-        row.sensors = null;
-        row.readings.clear();
-    }
-
-    update() {
-        const { model } = this.session;
-        if (!model)
-            return;
-        for (const row of this.rows.values()) {
-            this.setQuality(row, row.button, model.worstQuality(row.asset) ?? 'none');
-            this.setAlarm(row, row.button, model.worstAlarm(row.asset));
-            for (const reading of row.readings.values())
-                this.updateReading(reading);
-        }
-    }
-
-    updateReading(reading) {
-        const { tag, value, button } = reading;
-        const { model, params } = this.session;
-        const { value: number, quality } = model.readings[tag.index];
-        const group = model.group(tag.group);
+    fillReading(tag, element) {
+        const { model, params } = this.session, value = element.lastChild;
+        const { value: number, quality } = model.readings[tag.index], group = model.group(tag.group);
         const known = number !== null && quality !== 'bad';
         const text = known ? numberText(number, group ? decimalsFor(group.max - group.min) : 2) : say('novalue');
         const unit = known ? ` ${unitText(tag.unit || group?.unit)}` : '';
         if (value.textContent !== text + unit)
             value.replaceChildren(text, make('i', {}, unit));
         value.classList.toggle('other', tag.group !== params.group);
-        button.setAttribute('aria-pressed', this.selection.tag === tag.name);
-        this.setQuality(reading, button, quality);
-        this.setAlarm(reading, button, model.alarms.gravest(tag.index));
+        setQuality(element, quality);
+        setAlarm(element, model.alarms.gravest(tag.index));
     }
 
-    setAlarm(row, parent, alarm) {
-        const text = alarm ? `${alarm.kind} p${alarm.priority}` : '';
-        if (row.alarm === text)
-            return;
-        row.alarm = text;
-        const flag = alarm ? [make('span', { class: `limit-flag p${alarm.priority}` }, alarm.kind)] : [];
-        parent.querySelector('.flag').replaceChildren(...flag);
+    // Once per picture of the page, however much comes in.
+    soon() {
+        this.mark();
+        this.asked ??= requestAnimationFrame(() => {
+            this.asked = null;
+            if (this.open && this.tree)
+                this.list.show();
+        });
     }
+}
 
-    setQuality(row, parent, quality) {
-        if (row.quality === quality)
-            return;
-        row.quality = quality;
-        parent.querySelector('.glyph').replaceWith(glyph(quality));
-        if (quality === 'good' || quality === 'none')
-            parent.removeAttribute('aria-description');
-        else
-            parent.setAttribute('aria-description', say('assets.worst', { quality: qualityText(quality) }));
-    }
+function put(element, name, value) {
+    if (value === null || value === undefined)
+        element.removeAttribute(name);
+    else if (element.getAttribute(name) !== String(value))
+        element.setAttribute(name, value);
+}
+
+function setAlarm(element, alarm) {
+    const text = alarm ? `${alarm.kind} p${alarm.priority}` : '';
+    if ((element.dataset.alarm ?? '') === text)
+        return;
+    element.dataset.alarm = text;
+    const flag = alarm ? [make('span', { class: `limit-flag p${alarm.priority}` }, alarm.kind)] : [];
+    element.querySelector('.flag').replaceChildren(...flag);
+}
+
+function setQuality(element, quality) {
+    if (element.dataset.quality === quality)
+        return;
+    element.dataset.quality = quality;
+    element.querySelector('.glyph').replaceWith(glyph(quality));
+    put(element, 'aria-description', ['good', 'none'].includes(quality) ? null : say('assets.worst', { quality: qualityText(quality) }));
 }

@@ -2,6 +2,7 @@
 // The card of one sensor: what it is, what it says, whether that may be trusted, and how old it is.
 import { ageText, decimalsFor, numberText, qualityText, unitText } from '../core/format.js';
 import { say } from '../core/words.js';
+import { linksOf } from './assets.js';
 import { clock } from './clock.js';
 import { byId, closeButton, fill, glyph, make, setText } from './dom.js';
 
@@ -53,6 +54,7 @@ export class Card {
     }
 
     build(tag, asset) {
+        const links = linksOf(this.session.model, 'tag', tag);
         const on = asset ? [asset.tag || asset.id, asset.description].filter(Boolean).join(', ') : '–';
         this.value = make('p', { class: 'value' });
         this.limit = make('p', { class: 'limit', hidden: true });
@@ -64,7 +66,8 @@ export class Card {
             make('dl', {}, make('dt', {}, say('card.quality')), this.quality, make('dt', {}, say('card.age')), this.age,
                 make('dt', {}, say('card.on')), make('dd', {}, on)),
             this.session.recorded ?
-                make('button', { type: 'button', class: 'trend', onclick: () => this.onTrend(tag) }, say('card.trend')) : null);
+                make('button', { type: 'button', class: 'trend', onclick: () => this.onTrend(tag) }, say('card.trend')) : null,
+            links.length > 0 ? make('p', { class: 'links' }, ...links) : null);
     }
 
     // Beside its marker, on the side with more room; in a corner while the marker is out of the picture.

@@ -80,7 +80,7 @@ function selectTag(tag) {
     selection.hover = null;
     if (tag)
         trends.follow(tag);
-    assets.update();
+    assets.mark();
     saveAddress();
     refresh();
 }

@@ -64,6 +64,8 @@ export class Place {
         this.element.hidden = !this.picked;
         if (this.picked)
             this.build();
+        if (this.picked && !again)
+            this.onSelect(this.session.model.asset(this.picked.asset));
         this.show();
     }
 
@@ -100,8 +102,7 @@ export class Place {
             value === null ? null : make('p', { class: 'value' }, this.number(value), make('i', {}, ` ${unitText(unit)}`)),
             make('p', { class: 'state' }, words),
             rows.length > 0 ? make('ul', { class: 'nearest' }, ...rows) : null,
-            make('div', { class: 'buttons' }, make('button', { type: 'button', onclick: () => this.onSelect(asset) }, say('place.select')),
-                ...['hide', 'ghost', 'only'].map(button)));
+            make('div', { class: 'buttons' }, ...['hide', 'ghost', 'only'].map(button)));
     }
 
     // Beside its place, in step with the picture.

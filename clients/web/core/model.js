@@ -12,7 +12,11 @@ export class Model {
         this.colormaps = welcome.colormaps.map((map) => ({ ...map, rgb: decodeBase64(map.rgb) }));
         this.readings = this.tags.map(() => ({ value: null, quality: 'bad', qualityName: '', ageMs: null, alarm: null, at: 0 }));
         this.environments = welcome.environments ?? ['sky'];
-        this.assets = welcome.assets.map((asset) => ({ ...asset, tags: this.tags.filter((tag) => tag.asset === asset.id) }));
+        this.references = welcome.links ?? []; // where else one reads about assets and tags
+        this.assets = welcome.assets.map((asset) => ({ ...asset, tags: [] }));
+        const assets = new Map(this.assets.map((asset) => [asset.id, asset]));
+        for (const tag of this.tags)
+            assets.get(tag.asset)?.tags.push(tag);
         this.alarms = new Alarms(this.tags);
         this.links = [];
         this.live = null; // nothing was said yet

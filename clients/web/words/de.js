@@ -139,6 +139,13 @@ export default {
     'assets.search': 'Teile, Messstellen suchen',
     'assets.nothing': 'Nichts heißt so.',
     'assets.sensors': { one: '{count} Sensor', other: '{count} Sensoren' },
+    'assets.loose': 'Messstellen ohne Anlagenteil',
+    'assets.about': 'Über das gewählte Anlagenteil',
+    'assets.description': 'Beschreibung',
+    'assets.area': 'Bereich',
+    'assets.size': 'Größe',
+    'assets.place': 'Mitte bei',
+    'assets.sensors.name': 'Sensoren',
     'assets.worst': 'schlechteste Qualität: {quality}',
 
     // --- the picture and what lies over it
@@ -175,7 +182,6 @@ export default {
     'place.context': 'Kein Sensor dieser Messgröße daran',
     'place.inside': 'Inneres des Aufgeschnittenen',
     'place.uncertain': '{state}, unsicher',
-    'place.select': 'Wählen',
     'place.hide': 'Ausblenden',
     'place.ghost': 'Durchsichtig',
     'place.only': 'Nur dies',

@@ -139,6 +139,13 @@ export default {
     'assets.search': 'Search equipment and tags',
     'assets.nothing': 'Nothing has that name.',
     'assets.sensors': { one: '{count} sensor', other: '{count} sensors' },
+    'assets.loose': 'Tags without equipment',
+    'assets.about': 'About the selected equipment',
+    'assets.description': 'Description',
+    'assets.area': 'Area',
+    'assets.size': 'Size',
+    'assets.place': 'Middle at',
+    'assets.sensors.name': 'Sensors',
     'assets.worst': 'worst quality: {quality}',
 
     // --- the picture and what lies over it
@@ -175,7 +182,6 @@ export default {
     'place.context': 'No sensor of this quantity on it',
     'place.inside': 'Inside of what is cut open',
     'place.uncertain': '{state}, uncertain',
-    'place.select': 'Select',
     'place.hide': 'Hide',
     'place.ghost': 'Ghost',
     'place.only': 'Only',

@@ -139,6 +139,13 @@ export default {
     'assets.search': '설비와 태그 검색',
     'assets.nothing': '그런 이름이 없습니다.',
     'assets.sensors': { other: '센서 {count}개' },
+    'assets.loose': '설비 없는 태그',
+    'assets.about': '선택한 설비 정보',
+    'assets.description': '설명',
+    'assets.area': '구역',
+    'assets.size': '크기',
+    'assets.place': '중심',
+    'assets.sensors.name': '센서',
     'assets.worst': '가장 나쁜 품질: {quality}',
 
     // --- the picture and what lies over it
@@ -175,7 +182,6 @@ export default {
     'place.context': '이 측정량의 센서가 없는 설비',
     'place.inside': '잘린 설비의 내부',
     'place.uncertain': '{state}, 불확실',
-    'place.select': '선택',
     'place.hide': '숨기기',
     'place.ghost': '투명',
     'place.only': '이것만',

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The list of equipment as rows: areas, assets, their tags, and tags that belong to nothing; what of it is open, and what a search finds.
+
+// Rows: { kind: area | asset | tag, level, id, open (areas and assets), item (asset or tag), text (of an area), setSize, place }.
+export class Tree {
+    // loose: what tags without equipment are listed under.
+    constructor(model, loose) {
+        this.folded = new Set(); // areas
+        this.open = new Set();   // assets
+        const low = (...texts) => texts.filter(Boolean).join(' ').toLowerCase();
+        const known = new Map();
+        for (const asset of model.assets) {
+            const area = asset.area ?? '';
+            const tags = asset.tags.map((tag) => ({ tag, text: low(tag.name, tag.description) }));
+            if (!known.has(area))
+                known.set(area, []);
+            known.get(area).push({ asset, tags, text: low(asset.id, asset.tag, asset.description, area) });
+        }
+        this.areas = [...known].sort(([a], [b]) => Number(a === '') - Number(b === '') || a.localeCompare(b, undefined, { numeric: true }))
+            .map(([name, assets]) => ({ name, assets }));
+        const strays = model.tags.filter(({ asset }) => asset === null);
+        if (strays.length > 0) {
+            const tags = strays.map((tag) => ({ tag, text: low(tag.name, tag.description) }));
+            const asset = { id: null, tag: loose, description: '', tags: strays };
+            this.areas.push({ name: '', assets: [{ asset, tags, text: low(loose) }] });
+        }
+    }
+
+    toggle({ kind, id, open }) {
+        const set = kind === 'area' ? this.folded : this.open;
+        if (open === (kind === 'area'))
+            set.add(id);
+        else
+            set.delete(id);
+    }
+
+    // What belongs to an asset is shown.
+    unfold(asset) {
+        this.open.add(asset.id);
+        this.folded.delete(asset.area ?? '');
+    }
+
+    // words: of a search; each must be found in an asset, with all its tags, or in a tag.
+    rows(search = '') {
+        const words = search.toLowerCase().split(/\s+/).filter(Boolean);
+        const rows = [];
+        for (const { name, assets } of this.areas) {
+            const found = assets.map((one) => find(one, words)).filter(Boolean);
+            if (found.length === 0)
+                continue;
+            const level = name ? 1 : 0, open = words.length > 0 || !this.folded.has(name);
+            if (name)
+                rows.push({ kind: 'area', level: 1, id: name, open, text: name, count: found.length });
+            if (open)
+                this.addAssets(rows, found, level + 1);
+        }
+        return rows;
+    }
+
+    addAssets(rows, found, level) {
+        found.forEach(({ asset, tags, byTag }, i) => {
+            const open = byTag || this.open.has(asset.id);
+            const at = { setSize: found.length, place: i + 1 };
+            rows.push({ kind: 'asset', level, id: asset.id, open: tags.length > 0 && open, item: asset, ...at });
+            if (open)
+                tags.forEach(({ tag }, n) =>
+                    rows.push({ kind: 'tag', level: level + 1, id: tag.index, item: tag, setSize: tags.length, place: n + 1 }));
+        });
+    }
+}
+
+// An asset that a search finds, with the tags to list; null: it does not. byTag: it is there for its tags.
+function find({ asset, tags, text }, words) {
+    if (words.every((word) => text.includes(word)))
+        return { asset, tags, byTag: false };
+    const those = tags.filter((one) => words.every((word) => one.text.includes(word) || text.includes(word)));
+    return those.length > 0 ? { asset, tags: those, byTag: true } : null;
+}
+
+// The address of a link for an asset or a tag; null: it is not one to follow.
+export function linkUrl({ of, url }, item) {
+    const fields = of === 'tag' ? { name: item.name, asset: item.asset, group: item.group } :
+        { id: item.id, tag: item.tag, area: item.area };
+    const text = url.replace(/\{(\w+)\}/g, (_, name) => encodeURIComponent(fields[name] ?? ''));
+    try {
+        const { protocol, href } = new URL(text);
+        return protocol === 'https:' || protocol === 'http:' ? href : null;
+    } catch {
+        return null;
+    }
+}

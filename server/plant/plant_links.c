@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The plant file's `links`: where else one reads about an asset or a tag, as templates of addresses. */
+#include <ctype.h>
+#include <string.h>
+
+#include "plant/plant_parts.h"
+
+static const struct choice of_choices[] = { { "asset", 0 }, { "tag", 1 }, { 0 } };
+
+static size_t scheme_length(const char *url)
+{
+    static const char *const schemes[] = { "https://", "http://" };
+    for (size_t i = 0; i < sizeof(schemes) / sizeof(*schemes); i++)
+        if (!strncmp(url, schemes[i], strlen(schemes[i])))
+            return strlen(schemes[i]);
+    return 0;
+}
+
+/* What is wrong with an address, or NULL. What is put in must not choose whose address it is: that ends before the first brace. */
+static const char *wrong_with(const char *url, bool of_tags)
+{
+    static const char *const of_asset[] = { "{id}", "{tag}", "{area}" }, *const of_tag[] = { "{name}", "{asset}", "{group}" };
+    const char *const *known = of_tags ? of_tag : of_asset;
+    size_t scheme = scheme_length(url), host = strcspn(url + scheme, "/?#{");
+    if (scheme == 0)
+        return "it begins neither with https:// nor with http://";
+    if (host == 0 || url[scheme + host] == '{')
+        return "it names no server";
+    for (const char *at = url; *at; at++) {
+        if (isspace((unsigned char)*at) || iscntrl((unsigned char)*at))
+            return "there is white space in it";
+        bool put_in = false;
+        for (size_t i = 0; *at == '{' && i < 3; i++)
+            put_in |= !strncmp(at, known[i], strlen(known[i]));
+        if (*at == '{' && !put_in)
+            return of_tags ? "in braces there may be {name}, {asset} and {group}" : "in braces there may be {id}, {tag} and {area}";
+    }
+    return NULL;
+}
+
+void plant_links_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant)
+{
+    static const struct key keys[] = {
+        { "name", KEY_NAME, true, offsetof(struct plant_link, name), 0, 0, NULL, NULL },
+        { "url", KEY_NAME, true, offsetof(struct plant_link, url), 0, 0, NULL, NULL },
+        { "of", KEY_FLAG, false, offsetof(struct plant_link, of_tags), 0, 0, of_choices, NULL },
+        { 0 }
+    };
+    int count = yaml_list_count(reader, node, "links");
+    if (count > PLANT_LINKS)
+        yaml_error(reader, yaml_place(node), "links: expected at most %d, found %d", PLANT_LINKS, count);
+    for (int i = 0; i < count && i < PLANT_LINKS; i++) {
+        struct plant_link *link = &plant->links[plant->link_count++];
+        struct yaml_map map;
+        yaml_map_read(reader, yaml_list_item(reader, node, i), "a link", keys, link, &map);
+        const char *wrong = link->url ? wrong_with(link->url, link->of_tags) : NULL;
+        if (wrong)
+            yaml_error(reader, yaml_map_place(&map, "url"), "url: '%s': %s", link->url, wrong);
+    }
+}

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The list of equipment: areas, search, keyboard, links, selecting there and in 3D; and a plant of 20,000 tags, which scrolls smoothly.
+import assert from 'node:assert/strict';
+import { readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { openPage, settle, shoot, view, waitForPicture } from './support/browser.mjs';
+import { missing, TinyPlant } from './support/tiny_plant.mjs';
+
+const absent = missing();
+const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 200000 };
+const ASSETS = 200, TAGS_EACH = 100;
+let plant, browser, page;
+
+const LINKS = `links:
+  - { name: Work orders, url: 'https://maintenance.example/equipment/{tag}?area={area}' }
+  - { name: Faceplate, of: tag, url: 'https://dcs.example/faceplate?tag={name}' }
+`;
+
+// Boxes in rows of twenty, each with its sensors; only the first of each is placed on it.
+function makeLarge(folder) {
+    const assets = [], tags = ['Tag Name,Address,Data Type,Eng Units,Description,Group,Asset,X,Y,Z,H'];
+    for (let a = 0; a < ASSETS; a++) {
+        const [x, y] = [(a % 20) * 3, Math.floor(a / 20) * 3];
+        assets.push(`  - { id: E-${a}, tag: "E ${a}", area: Unit ${a % 7}, model: box.gltf, description: box ${a}, placement: ` +
+            `{ translate: [${x}, ${y}, 0] } }`);
+        for (let t = 0; t < TAGS_EACH; t++) {
+            const n = a * TAGS_EACH + t, placed = t === 0 ? ['temperature', `E-${a}`, x + 0.5, y, 0, 90] : ['', `E-${a}`, '', '', '', ''];
+            tags.push(`TI-${a}-${t},${400001 + 2 * n},Float,°C,point ${t},${placed.join(',')}`);
+        }
+    }
+    const file = join(folder, 'plant.yaml'), text = readFileSync(file, 'utf8').replace('poll_ms: 100', 'poll_ms: 2000');
+    writeFileSync(file, text.replace(/assets:\n(?: {2}- .*\n)+/, `assets:\n${assets.join('\n')}\n`) + LINKS);
+    writeFileSync(join(folder, 'tags.csv'), `${tags.join('\n')}\n`);
+}
+
+before(async () => {
+    if (options.skip)
+        return;
+    plant = await TinyPlant.create();
+    makeLarge(plant.folder);
+    const { code, err, out } = plant.prepare();
+    assert.equal(code, 0, err + out);
+    await plant.startSim();
+    await plant.startDaemon();
+    browser = await openPage(`http://127.0.0.1:${plant.port}/`, { viewport: { width: 1440, height: 900 } });
+    page = browser.page;
+    await waitForPicture(page);
+});
+after(async () => {
+    await browser?.close();
+    await plant?.destroy();
+});
+
+const selected = () => page.locator('#assets-list [aria-selected="true"]').first().textContent();
+
+test('areas, assets and tags; a search finds each of 20,000', options, async () => {
+    const { model } = await page.evaluate(() => ({ model: globalThis.plantcast.session.model.tags.length }));
+    assert.equal(model, ASSETS * TAGS_EACH);
+    const list = page.locator('#assets-list');
+    assert.equal(await list.locator('.area').first().textContent(), 'Unit 029');
+    assert.ok(await list.locator('[role="treeitem"]').count() < 60, 'only what is in sight is in the page');
+    await page.locator('#assets-search').fill('TI-137-42');
+    await list.locator('.reading', { hasText: 'TI-137-42' }).waitFor();
+    assert.deepEqual(await list.locator('b').allTextContents(), ['Unit 4', 'E 137']);
+    await shoot(page, 'assets-search');
+    await page.locator('#assets-search').fill('no such thing');
+    await page.locator('#assets-nothing').waitFor();
+    await page.locator('#assets-search').fill('');
+});
+
+test('a click selects and flies there; what is known of it and its links are shown', options, async () => {
+    const { camera } = await view(page);
+    await page.locator('#assets-search').fill('E 137');
+    await page.locator('#assets-list .asset', { hasText: 'E 137' }).click();
+    await page.waitForFunction((eye) => Math.hypot(...globalThis.plantcast.session.camera.eye.map((x, i) => x - eye[i])) > 1, camera.eye);
+    assert.equal((await view(page)).params.selected, 'E-137');
+    assert.match(await page.locator('#asset-about').textContent(), /E 137.*box 137.*Unit 4.*1\.0 × 1\.0 × 1\.0 m.*100/);
+    const link = page.locator('#asset-about a');
+    assert.equal(await link.getAttribute('href'), 'https://maintenance.example/equipment/E%20137?area=Unit%204');
+    assert.equal(await link.getAttribute('rel'), 'noopener noreferrer');
+    await page.locator('#assets-search').fill('');
+    await page.waitForFunction(() => /E 137/.test(document.querySelector('#assets-list [aria-selected="true"]')?.textContent));
+    await page.waitForTimeout(1000); // the flight
+    await settle(page);
+    await shoot(page, 'assets-selected');
+});
+
+test('what is picked in 3D is selected there, a marker with its tag', options, async () => {
+    const [box, marker] = await page.evaluate(() => {
+        const { overlay, session: { model } } = globalThis.plantcast, { min, max } = model.asset('E-137').bounds;
+        return [overlay.pageOf([(min[0] + max[0]) / 2, (min[1] + max[1]) / 2, max[2]]), overlay.pageOf(model.tag('TI-137-0').position)];
+    });
+    await page.evaluate(() => globalThis.plantcast.session.setParams({ selected: null }));
+    await page.mouse.click(box.x, box.y);
+    await page.waitForFunction(() => globalThis.plantcast.session.params.selected === 'E-137');
+    await page.locator('#place').waitFor();
+    await page.keyboard.press('Escape'); // its card may lie over the marker
+    await page.mouse.click(marker.x, marker.y);
+    await page.waitForFunction(() => /TI-137-0/.test(document.querySelector('.reading[aria-selected="true"]')?.textContent));
+    assert.equal(await page.locator('#card .links a').getAttribute('href'), 'https://dcs.example/faceplate?tag=TI-137-0');
+    await page.keyboard.press('Escape');
+});
+
+test('by the keyboard alone', options, async () => {
+    await page.locator('#assets-search').focus();
+    await page.keyboard.press('Tab');
+    await page.keyboard.press('Home');
+    const at = () => page.evaluate(() => document.activeElement.textContent);
+    assert.equal(await at(), 'Unit 029');
+    await page.keyboard.press('ArrowLeft');
+    assert.equal(await page.evaluate(() => document.activeElement.getAttribute('aria-expanded')), 'false');
+    await page.keyboard.press('ArrowDown');
+    assert.match(await at(), /^Unit 1/);
+    await page.keyboard.press('ArrowDown');
+    assert.match(await at(), /^E 1box 1/);
+    await page.keyboard.press('ArrowRight');
+    await page.keyboard.press('ArrowRight');
+    assert.match(await at(), /^TI-1-0/);
+    await page.keyboard.press('ArrowLeft');
+    const { camera } = await view(page);
+    await page.keyboard.press('Enter');
+    await page.waitForFunction(() => globalThis.plantcast.session.params.selected === 'E-1');
+    assert.match(await selected(), /E 1/);
+    await page.waitForFunction((eye) =>
+        Math.hypot(...globalThis.plantcast.session.picture.camera.eye.map((x, i) => x - eye[i])) > 10, camera.eye);
+    await page.keyboard.press('End');
+    assert.ok(await page.evaluate(() => document.activeElement.getBoundingClientRect().bottom <= innerHeight), 'the last is in sight');
+    assert.deepEqual(browser.errors, []);
+});
+
+// What the page itself does for each picture of a list that scrolls, every asset of it open; drawing is the browser's and the processor's.
+test('20,000 tags scroll smoothly', options, async (t) => {
+    const { frames, work, rows } = await page.evaluate(async () => {
+        const { assets, session } = globalThis.plantcast;
+        for (const asset of session.model.assets)
+            assets.tree.unfold(asset);
+        assets.filter();
+        const list = assets.list, root = list.root, all = root.scrollHeight - root.clientHeight, took = [];
+        const show = list.show.bind(list);
+        list.show = () => { const began = performance.now(); show(); took.push(performance.now() - began); };
+        const stamps = [];
+        for (let n = 0; n < 200; n++) {
+            root.scrollTop = (all * n) / 200;
+            stamps.push(await new Promise((done) => requestAnimationFrame(done)));
+        }
+        list.show = show;
+        const steps = stamps.slice(1).map((at, i) => at - stamps[i]);
+        const inPage = root.querySelectorAll('[role="treeitem"]').length;
+        return { frames: steps.sort((a, b) => a - b), work: took.sort((a, b) => a - b), rows: inPage };
+    });
+    const middle = (list, part = 0.5) => list[Math.floor(list.length * part)];
+    t.diagnostic(`pictures every ${middle(frames).toFixed(1)} ms (95 %: ${middle(frames, 0.95).toFixed(1)}), of which the list takes ` +
+        `${middle(work).toFixed(2)} ms (95 %: ${middle(work, 0.95).toFixed(2)}); ${rows} rows in the page`);
+    assert.ok(middle(work) < 16, `more than a picture has: ${middle(work)} ms`);
+    assert.ok(rows < 80, `${rows} rows`);
+    await shoot(page, 'assets-20000');
+});
+
+// Forced collections before each measure; ten seconds here, half an hour in `make test-long`.
+const USE_S = Number(process.env.USE_S ?? 10);
+test('memory does not grow with use', { ...options, timeout: options.timeout + 1000 * USE_S }, async (t) => {
+    const client = await page.context().newCDPSession(page);
+    const heap = async () => {
+        await client.send('HeapProfiler.collectGarbage');
+        const { usedSize } = await client.send('Runtime.getHeapUsage');
+        const { nodes } = await client.send('Memory.getDOMCounters');
+        return { megabytes: usedSize / 1e6, nodes };
+    };
+    const use = (ms) => page.evaluate(async (long) => {
+        const { assets, session, pilot } = globalThis.plantcast, { root } = assets.list;
+        const search = document.getElementById('assets-search');
+        for (const end = performance.now() + long; performance.now() < end;) {
+            root.scrollTop = Math.random() * root.scrollHeight;
+            search.value = `TI-${Math.floor(Math.random() * 200)}`;
+            search.dispatchEvent(new Event('input'));
+            session.setParams({ selected: `E-${Math.floor(Math.random() * 200)}` });
+            pilot.flyHome();
+            await new Promise((done) => setTimeout(done, 50));
+        }
+        search.value = '';
+        search.dispatchEvent(new Event('input'));
+        await new Promise((done) => setTimeout(done, 500));
+    }, ms);
+    await use(3000); // what is made once is made
+    const before = await heap();
+    await use(USE_S * 1000);
+    const after = await heap();
+    t.diagnostic(`${USE_S} s: ${before.megabytes.toFixed(1)} -> ${after.megabytes.toFixed(1)} MB, ${before.nodes} -> ${after.nodes} nodes`);
+    assert.ok(after.megabytes < before.megabytes * 1.1 + 2, `${before.megabytes} -> ${after.megabytes} MB`);
+    assert.ok(after.nodes < before.nodes * 1.2 + 500, `${before.nodes} -> ${after.nodes} nodes`);
+    assert.deepEqual(browser.errors, []);
+});
