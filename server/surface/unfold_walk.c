@@ -9,6 +9,7 @@
 #include "surface/vec.h"
 
 #define INSIDE 1e-6 /* least weight of a corner: the source is a little inside its triangle */
+#define ASIDE 1e-3  /* of the way to the side across: a place beside a corner */
 #define DEEPEST 32  /* triangles that a straight line near the source passes through */
 
 typedef float lanes __attribute__((vector_size(4 * UNFOLD_FANS)));
@@ -177,30 +178,126 @@ static void look_through(const struct unfold *unfold, struct unfold_walk *walk, 
     }
 }
 
+/* A triangle laid out in a plane, the source at (0, 0). */
+struct laid {
+    uint32_t tri; /* of the intrinsic triangulation */
+    double corners[3][2];
+};
+
+/* False: an edge of the triangle was flipped. */
+static bool lay_out_kept(const struct intrinsic *in, const uint32_t given[3], uint32_t tri, const double weights[3], struct laid *laid)
+{
+    const uint32_t *v = in->points[tri];
+    double source[2] = { 0 };
+    *laid = (struct laid){ tri, { { 0, 0 }, { in->lengths[tri][0], 0 } } };
+    intrinsic_layout(in->lengths[tri], &laid->corners[2][0], &laid->corners[2][1]);
+    for (int i = 0; i < 3; i++) {
+        int same = v[i] == given[0] ? 0 : v[i] == given[1] ? 1 : v[i] == given[2] ? 2 : -1;
+        if (same < 0)
+            return false;
+        source[0] += weights[same] * laid->corners[i][0];
+        source[1] += weights[same] * laid->corners[i][1];
+    }
+    for (int i = 0; i < 3; i++)
+        for (int axis = 0; axis < 2; axis++)
+            laid->corners[i][axis] -= source[axis];
+    return true;
+}
+
+/* Straight on from the middle of the window's edge to a place beyond, triangle by triangle; the window is then that through which the last
+   one was entered. False: the surface ends before. */
+static bool walk_to(const struct intrinsic *in, const double to[2], struct window *window, double apex[2])
+{
+    const double from[2] = { (window->l[0] + window->r[0]) / 2, (window->l[1] + window->r[1]) / 2 };
+    const double way[2] = { to[0] - from[0], to[1] - from[1] };
+    for (int depth = 0; depth < DEEPEST; depth++) {
+        uint32_t t = window->entered / 3, side = window->entered % 3;
+        lay_out_apex(window, in->lengths[t][(side + 1) % 3], in->lengths[t][(side + 2) % 3], apex);
+        bool passes_l = cross(way, (const double[2]){ apex[0] - from[0], apex[1] - from[1] }) > 0;
+        const double *end = passes_l ? window->l : window->r; /* of the side that the way is bound for */
+        double along[2] = { apex[0] - end[0], apex[1] - end[1] }, beyond[2] = { to[0] - end[0], to[1] - end[1] };
+        if (passes_l ? cross(along, beyond) >= 0 : cross(beyond, along) >= 0)
+            return true;
+        window->entered = in->glue[t][(side + (passes_l ? 1 : 2)) % 3];
+        memcpy(passes_l ? window->r : window->l, apex, sizeof(window->r));
+        if (window->entered == TRIMESH_NONE)
+            return false;
+    }
+    return false;
+}
+
+/* Where a place is with r at (0, 0), l at (side, 0) and the rest above. */
+static void place_above(double side, double to_r_m, double to_l_m, double out[2])
+{
+    intrinsic_layout((const double[3]){ side, to_l_m, to_r_m }, &out[0], &out[1]);
+}
+
+/* In the triangles that lie beyond a side that was not flipped, if these are the flipped triangle's: its third corner is among them. */
+static bool lay_out_beyond(const struct unfold *unfold, uint32_t entered, uint32_t third, const double source[3], struct laid *laid)
+{
+    const struct intrinsic *in = unfold->in;
+    const double(*points)[3] = (const double(*)[3])unfold->mesh->points;
+    uint32_t t = entered / 3, side = entered % 3, r = in->points[t][side], l = in->points[t][(side + 1) % 3];
+    const struct window first = { .l = { in->lengths[t][side], 0 }, .entered = entered };
+    double at[2], corner[2], apex[2];
+    place_above(first.l[0], vec_distance(points[r], points[third]), vec_distance(points[l], points[third]), corner);
+    place_above(first.l[0], vec_distance(points[r], source), vec_distance(points[l], source), at);
+    corner[0] += ASIDE * (first.l[0] / 2 - corner[0]);
+    corner[1] -= ASIDE * corner[1];
+    struct window window = first;
+    if (!walk_to(in, corner, &window, apex) || in->points[window.entered / 3][(window.entered + 2) % 3] != third)
+        return false;
+    window = first;
+    if (!walk_to(in, at, &window, apex))
+        return false;
+    laid->tri = window.entered / 3;
+    side = window.entered % 3;
+    for (int axis = 0; axis < 2; axis++) {
+        laid->corners[side][axis] = window.r[axis] - at[axis];
+        laid->corners[(side + 1) % 3][axis] = window.l[axis] - at[axis];
+        laid->corners[(side + 2) % 3][axis] = apex[axis] - at[axis];
+    }
+    return true;
+}
+
+static bool lay_out_flipped(const struct unfold *unfold, const uint32_t given[3], const double weights[3], struct laid *laid)
+{
+    const struct intrinsic *in = unfold->in;
+    double source[3] = { 0 };
+    for (int i = 0; i < 3; i++)
+        for (int axis = 0; axis < 3; axis++)
+            source[axis] += weights[i] * unfold->mesh->points[given[i]][axis];
+    for (uint32_t t = 0; t < in->tri_count; t++)
+        for (uint32_t side = 0; side < 3; side++) {
+            uint32_t p = in->points[t][side], q = in->points[t][(side + 1) % 3], third = TRIMESH_NONE;
+            for (int i = 0; i < 3; i++)
+                if ((p == given[i] && q == given[(i + 1) % 3]) || (q == given[i] && p == given[(i + 1) % 3]))
+                    third = given[(i + 2) % 3];
+            if (third != TRIMESH_NONE && lay_out_beyond(unfold, 3 * t + side, third, source, laid))
+                return true;
+        }
+    return false;
+}
+
 /* Points that the source sees in a straight line have that distance, though its ray may pass between points that are farther away than
    they are: the order from near to far, which is right elsewhere, is wrong so near to it. */
 static void look_around(const struct unfold *unfold, struct unfold_walk *walk, uint32_t tri, const double weights[3])
 {
     const struct intrinsic *in = unfold->in;
-    const uint32_t *given = unfold->mesh->tris[tri], *v = in->points[tri];
-    double corners[3][2] = { { 0, 0 }, { in->lengths[tri][0], 0 } }, source[2] = { 0 }, sum = 0;
-    intrinsic_layout(in->lengths[tri], &corners[2][0], &corners[2][1]);
-    for (int i = 0; i < 3; i++) {
-        int same = v[i] == given[0] ? 0 : v[i] == given[1] ? 1 : v[i] == given[2] ? 2 : -1;
-        if (same < 0)
-            return; /* an edge of it was flipped */
-        double weight = max_of(weights[same], INSIDE);
-        source[0] += weight * corners[i][0];
-        source[1] += weight * corners[i][1];
-        sum += weight;
-    }
+    const uint32_t *given = unfold->mesh->tris[tri];
+    double inside[3], sum = 0;
+    struct laid laid;
     for (int i = 0; i < 3; i++)
-        for (int axis = 0; axis < 2; axis++)
-            corners[i][axis] -= source[axis] / sum;
+        sum += max_of(weights[i], INSIDE);
+    for (int i = 0; i < 3; i++)
+        inside[i] = max_of(weights[i], INSIDE) / sum;
+    if (!lay_out_kept(in, given, tri, inside, &laid) && !lay_out_flipped(unfold, given, inside, &laid))
+        return;
     for (int i = 0; i < 3; i++) {
-        struct window window = { .entered = in->glue[tri][i] };
-        memcpy(window.l, corners[i], sizeof(window.l));
-        memcpy(window.r, corners[(i + 1) % 3], sizeof(window.r));
+        struct window window = { .entered = in->glue[laid.tri][i] };
+        offer(unfold, walk, in->points[laid.tri][i], (float)hypot(laid.corners[i][0], laid.corners[i][1]));
+        memcpy(window.l, laid.corners[i], sizeof(window.l));
+        memcpy(window.r, laid.corners[(i + 1) % 3], sizeof(window.r));
         memcpy(window.low, window.l, sizeof(window.low));
         memcpy(window.high, window.r, sizeof(window.high));
         if (window.entered != TRIMESH_NONE)
