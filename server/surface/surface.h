@@ -101,6 +101,7 @@ bool surface_distances(const struct surface *surface, const double (*points_m)[3
 struct surface_field {
     size_t source_count;
     struct surface_spot *sources;
+    uint32_t *source_tris; /* theirs, side by side */
     float *distances_m; /* [point of the sampled surface][source] */
 };
 /* Distances from sources that were found before: at each point of the sampled surface. Both are called on any thread. */

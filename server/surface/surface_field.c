@@ -129,6 +129,9 @@ bool surface_field_init(struct surface_field *field, const struct surface *surfa
     *field = (struct surface_field){ .source_count = point_count };
     field->distances_m = mem_try_array(surface->mesh.point_count, field->source_count * sizeof(*field->distances_m));
     field->sources = find_spots(surface, points_m, point_count);
+    field->source_tris = mem_array(point_count, sizeof(*field->source_tris));
+    for (size_t s = 0; s < point_count; s++)
+        field->source_tris[s] = field->sources[s].tri;
     solve.spots = field->sources;
     if (!field->distances_m)
         log_err(surface->log, "distances of %zu places on %zu points: out of memory", point_count, surface->mesh.point_count);
@@ -141,6 +144,7 @@ bool surface_field_init(struct surface_field *field, const struct surface *surfa
 void surface_field_finish(struct surface_field *field)
 {
     mem_free(field->sources);
+    mem_free(field->source_tris);
     mem_free(field->distances_m);
     *field = (struct surface_field){ 0 };
 }
@@ -154,61 +158,77 @@ void surface_field_at_vertex(const struct surface_field *field, const struct sur
         out[s] = at_stray(stray, field->distances_m + s, field->source_count);
 }
 
-/* Seen from a spot c, an edge a-b of its triangle: lengths, and c's place with a at (0, 0) and b at (side, 0). */
+/* Seen from a spot, an edge of its triangle from corner a to corner b: its length, and the spot's place with a at (0, 0) and b at
+   (side, 0). */
 struct sight {
-    float side, x, y, to_a, to_b;
+    float side, half, per, x, y;
 };
 
-static struct sight sight_of(double ab, double ac, double bc)
+static struct sight sight_of(double ab, double to_a, double to_b)
 {
     double x, y;
     ab = max_of(ab, 1e-30);
-    intrinsic_layout((const double[3]){ ab, bc, ac }, &x, &y);
-    return (struct sight){ (float)ab, (float)x, (float)y, (float)ac, (float)bc };
+    intrinsic_layout((const double[3]){ ab, to_b, to_a }, &x, &y);
+    return (struct sight){ (float)ab, (float)ab / 2, 1 / (2 * (float)ab), (float)x, (float)y };
 }
 
-/* out[s] becomes what a's and b's distances offer to the spot, if that is less: the source is laid out beyond the edge. */
-WIDE_BODY void step_row(const struct sight *sight, const float *restrict a, const float *restrict b, size_t count, float *restrict out)
+/* The square of what the corners' distances offer through the edge, where the source, laid out beyond it, has a ray there: else best2. */
+WIDE_BODY float through_edge(const struct sight *sight, float da, float db, float best2)
 {
-    const float side = sight->side, half = side / 2, per = 1 / (2 * side), x = sight->x, y = sight->y;
+    const float x = sight->x, y = sight->y;
+    float sx = (da - db) * (da + db) * sight->per + sight->half, sy2 = (da - sx) * (da + sx), sy = sqrtf(sy2 > 0 ? sy2 : 0);
+    float dx = x - sx, dy = y + sy, cut = sx * y + x * sy; /* where the source's ray cuts the edge, times dy */
+    float straight2 = dx * dx + dy * dy;
+    straight2 = sy2 >= 0 ? straight2 : INFINITY; /* not where da or db is INFINITY */
+    straight2 = cut >= 0 ? straight2 : INFINITY;
+    straight2 = cut <= sight->side * dy ? straight2 : INFINITY;
+    return straight2 < best2 ? straight2 : best2;
+}
+
+/* Through each of the edges, or along a straight line from a corner. */
+WIDE_BODY void fill_row(const struct sight sights[3], const float to_m[3], const float *restrict a, const float *restrict b,
+                        const float *restrict c, size_t count, float *restrict out)
+{
+    const struct sight ab = sights[0], bc = sights[1], ca = sights[2];
+    const float to_a = to_m[0], to_b = to_m[1], to_c = to_m[2];
     for (size_t s = 0; s < count; s++) {
-        float da = a[s], db = b[s], along_a = da + sight->to_a, along_b = db + sight->to_b;
-        float sx = (da - db) * (da + db) * per + half, sy2 = (da - sx) * (da + sx), sy = sqrtf(sy2 > 0 ? sy2 : 0);
-        float dx = x - sx, dy = y + sy, cut = sx * y + x * sy; /* where the source's ray cuts the edge, times dy */
-        float straight = sqrtf(dx * dx + dy * dy), edges = along_a < along_b ? along_a : along_b;
-        float least = sy2 >= 0 ? straight : edges; /* not where da or db is INFINITY */
-        least = cut >= 0 ? least : edges;
-        least = cut <= side * dy ? least : edges;
-        out[s] = least < out[s] ? least : out[s];
+        float da = a[s], db = b[s], dc = c[s], along_a = da + to_a, along_b = db + to_b, along_c = dc + to_c;
+        float straight = sqrtf(through_edge(&ca, dc, da, through_edge(&bc, db, dc, through_edge(&ab, da, db, INFINITY))));
+        float along = along_a < along_b ? along_a : along_b;
+        along = along_c < along ? along_c : along;
+        out[s] = straight < along ? straight : along;
     }
 }
 
-static void step_row_plain(const struct sight *sight, const float *a, const float *b, size_t count, float *out)
+static void fill_row_plain(const struct sight sights[3], const float to_m[3], const float *const rows[3], size_t count, float *out)
 {
-    step_row(sight, a, b, count, out);
+    fill_row(sights, to_m, rows[0], rows[1], rows[2], count, out);
 }
 
-WIDE_TARGET static void step_row_wide(const struct sight *sight, const float *a, const float *b, size_t count, float *out)
+WIDE_TARGET static void fill_row_wide(const struct sight sights[3], const float to_m[3], const float *const rows[3], size_t count,
+                                      float *out)
 {
-    step_row(sight, a, b, count, out);
+    fill_row(sights, to_m, rows[0], rows[1], rows[2], count, out);
 }
 
 void surface_field_at_spot(const struct surface_field *field, const struct surface *surface, const struct surface_spot *spot, float *out)
 {
     const struct trimesh *mesh = &surface->visible;
     const uint32_t *v = mesh->tris[spot->tri];
+    const float *rows[3];
+    struct sight sights[3];
     double to_m[3];
-    for (int i = 0; i < 3; i++)
+    for (int i = 0; i < 3; i++) {
         to_m[i] = vec_distance(spot->point_m, mesh->points[v[i]]);
-    for (size_t s = 0; s < field->source_count; s++)
-        out[s] = INFINITY;
+        rows[i] = field->distances_m + v[i] * field->source_count;
+    }
     for (int i = 0; i < 3; i++) {
         int j = (i + 1) % 3;
-        struct sight sight = sight_of(vec_distance(mesh->points[v[i]], mesh->points[v[j]]), to_m[i], to_m[j]);
-        (wide_is_there() ? step_row_wide : step_row_plain)(&sight, field->distances_m + v[i] * field->source_count,
-                                                           field->distances_m + v[j] * field->source_count, field->source_count, out);
+        sights[i] = sight_of(vec_distance(mesh->points[v[i]], mesh->points[v[j]]), to_m[i], to_m[j]);
     }
+    (wide_is_there() ? fill_row_wide : fill_row_plain)(sights, (const float[3]){ (float)to_m[0], (float)to_m[1], (float)to_m[2] }, rows,
+                                                       field->source_count, out);
     for (size_t s = 0; s < field->source_count; s++)
-        if (field->sources[s].tri == spot->tri)
+        if (field->source_tris[s] == spot->tri)
             out[s] = (float)vec_distance(spot->point_m, field->sources[s].point_m);
 }
