@@ -244,6 +244,21 @@ static void tell_left(const struct cutmesh *mesh, struct level *level)
     mem_free(told);
 }
 
+/* A coarser level that is sure to come to its bound, which is best known before it is cut that far: an edge that errs has to be cut itself,
+   and half as often as its error can be halved, since a cut leaves a quarter of it where the field bends evenly and more where it peaks. */
+static bool comes_to_bound(const struct split *split)
+{
+    const struct cutmesh *mesh = &split->mesh;
+    double needed = (double)mesh->tri_count;
+    for (size_t t = 0; t < mesh->tri_count && !split->finest; t++)
+        for (int i = 0; i < 3; i++) {
+            double error = (double)mesh->cuts[mesh->tris[t].e[i]].error;
+            if (error > AIM)
+                needed += ceil(0.5 * log2(error / AIM));
+        }
+    return !split->finest && needed > (double)split->most_tris;
+}
+
 /* Large errors go first: should the level come to its bound, the smaller ones are what is left. */
 static void split_level(struct split *split, struct level *level, size_t finer_tris)
 {
@@ -262,10 +277,15 @@ static void split_level(struct split *split, struct level *level, size_t finer_t
     for (size_t l = 0; l < sizeof(limits) / sizeof(*limits) && !split->full; l++)
         for (int round = 0; round < MOST_ROUNDS; round++) {
             measure_edges(split);
+            split->full = comes_to_bound(split);
+            if (split->full)
+                break;
             measure_insides(split, limits[l]);
             if (!cut_worst(split, limits[l]))
                 break;
         }
+    if (split->full && !split->finest)
+        return;
     measure_edges(split);
     tell_left(&split->mesh, level);
     cutmesh_store(&split->mesh, level);
