@@ -214,15 +214,16 @@ static void write_stock(struct build *build)
     mem_free(nodes);
 }
 
-/* Distances of one sensor after another follow the vertices to their new numbers. */
-static bool move_distances(float *distances, size_t sensor_count, uint32_t vertex_count, const uint32_t *new_of)
+/* Distances of one sensor after another follow the vertices to their new numbers; those of dropped ones make room. */
+static bool move_distances(float *distances, size_t sensor_count, uint32_t vertex_count, uint32_t kept, const uint32_t *new_of)
 {
-    float *column = mem_try_array(vertex_count, sizeof(*column));
+    float *column = mem_try_array(kept, sizeof(*column));
     for (size_t s = 0; column && s < sensor_count; s++) {
-        float *at = distances + s * vertex_count;
+        const float *from = distances + s * vertex_count;
         for (uint32_t v = 0; v < vertex_count; v++)
-            column[new_of[v]] = at[v];
-        memcpy(at, column, vertex_count * sizeof(*column));
+            if (new_of[v] != TRIMESH_NONE)
+                column[new_of[v]] = from[v];
+        memcpy(distances + s * kept, column, kept * sizeof(*column));
     }
     mem_free(column);
     return column != NULL;
@@ -234,9 +235,9 @@ static bool put_in_order(struct build *build, uint32_t own)
     struct build_report *report = &build->output->report;
     struct geometry *g = &build->geometry;
     size_t sensors = build->input->sensor_count;
-    uint32_t *new_of = NULL;
-    bool good =
-        order_vertices(g, &build->levels, own, build->file, &new_of) && move_distances(build->distances, sensors, g->vertex_count, new_of);
+    uint32_t *new_of = NULL, count = g->vertex_count;
+    bool good = order_vertices(g, &build->levels, own, build->file, &new_of) &&
+                move_distances(build->distances, sensors, count, g->vertex_count, new_of);
     for (size_t s = 0; good && s < sensors; s++)
         build->measured.sensors[s].nearest_vertex = new_of[build->measured.sensors[s].nearest_vertex];
     report->level_count = build->levels.count;

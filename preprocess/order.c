@@ -6,39 +6,46 @@
 
 #include "base/mem.h"
 
-/* bins[vertex]: coarsest level that uses it, coarsest first; twice, for the model's vertices and for added ones. */
+#define BINS (2 * LEVELS_MAX)
+
+/* bins[vertex]: coarsest level that uses it, coarsest first; twice, for the model's vertices and for added ones. BINS: an added one that
+   only levels used which were given up. */
 static void find_bins(const struct levels *levels, uint32_t vertex_count, uint32_t first_added, uint8_t *bins)
 {
     for (uint32_t v = 0; v < vertex_count; v++)
-        bins[v] = (uint8_t)(2 * (levels->count - 1));
-    for (size_t l = 1; l < levels->count; l++)
-        for (uint32_t i = 0; i < levels->at[l].index_count; i++)
-            bins[levels->at[l].indices[i]] = (uint8_t)(2 * (levels->count - 1 - l));
-    for (uint32_t v = first_added; v < vertex_count; v++)
-        bins[v]++;
+        bins[v] = v < first_added ? (uint8_t)(2 * (levels->count - 1)) : BINS;
+    for (size_t l = 0; l < levels->count; l++)
+        for (uint32_t i = 0; i < levels->at[l].index_count; i++) {
+            uint32_t v = levels->at[l].indices[i];
+            bins[v] = (uint8_t)(2 * (levels->count - 1 - l) + (v >= first_added));
+        }
 }
 
-static void number_vertices(const struct levels *levels, uint32_t vertex_count, const uint8_t *bins, struct asset_level *out,
+/* Returns how many stay. */
+static uint32_t number_vertices(const struct levels *levels, uint32_t vertex_count, const uint8_t *bins, struct asset_level *out,
                             uint32_t *new_of)
 {
-    uint32_t next[2 * LEVELS_MAX + 1] = { 0 };
+    uint32_t next[BINS + 2] = { 0 }, kept;
     for (uint32_t v = 0; v < vertex_count; v++)
         next[bins[v] + 1]++;
     for (size_t l = 0; l < levels->count; l++)
         out[l].added_count = next[2 * (levels->count - 1 - l) + 2];
-    for (int b = 1; b <= 2 * LEVELS_MAX; b++)
+    for (int b = 1; b <= BINS; b++)
         next[b] += next[b - 1];
+    kept = next[BINS];
     for (size_t l = 0; l < levels->count; l++)
         out[l].vertex_count = next[2 * (levels->count - l)];
     for (uint32_t v = 0; v < vertex_count; v++)
-        new_of[v] = next[bins[v]]++;
+        new_of[v] = bins[v] == BINS ? TRIMESH_NONE : next[bins[v]]++;
+    return kept;
 }
 
-static void *moved(const void *from, size_t bytes_each, uint32_t count, const uint32_t *new_of)
+static void *moved(const void *from, size_t bytes_each, uint32_t count, const uint32_t *new_of, uint32_t kept)
 {
-    char *to = from ? mem_array(count, bytes_each) : NULL;
+    char *to = from ? mem_array(kept, bytes_each) : NULL;
     for (uint32_t v = 0; from && v < count; v++)
-        memcpy(to + new_of[v] * bytes_each, (const char *)from + v * bytes_each, bytes_each);
+        if (new_of[v] != TRIMESH_NONE)
+            memcpy(to + new_of[v] * bytes_each, (const char *)from + v * bytes_each, bytes_each);
     return to;
 }
 
@@ -82,12 +89,13 @@ bool order_vertices(struct geometry *geometry, const struct levels *levels, uint
     bool good = bins && *new_of;
     if (good) {
         find_bins(levels, count, first_added, bins);
-        number_vertices(levels, count, bins, out, *new_of);
-        replace(&geometry->positions_m, moved(geometry->positions_m, sizeof(*geometry->positions_m), count, *new_of));
-        replace(&geometry->normals, moved(geometry->normals, sizeof(*geometry->normals), count, *new_of));
-        replace(&geometry->texcoords, moved(geometry->texcoords, sizeof(*geometry->texcoords), count, *new_of));
-        replace(&geometry->colors, moved(geometry->colors, sizeof(*geometry->colors), count, *new_of));
+        uint32_t kept = number_vertices(levels, count, bins, out, *new_of);
+        replace(&geometry->positions_m, moved(geometry->positions_m, sizeof(*geometry->positions_m), count, *new_of, kept));
+        replace(&geometry->normals, moved(geometry->normals, sizeof(*geometry->normals), count, *new_of, kept));
+        replace(&geometry->texcoords, moved(geometry->texcoords, sizeof(*geometry->texcoords), count, *new_of, kept));
+        replace(&geometry->colors, moved(geometry->colors, sizeof(*geometry->colors), count, *new_of, kept));
         join_levels(geometry, levels, *new_of, out);
+        geometry->vertex_count = kept;
     }
     mem_free(bins);
     return good;

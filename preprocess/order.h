@@ -3,10 +3,11 @@
 #ifndef PREPROCESS_ORDER_H
 #define PREPROCESS_ORDER_H
 #include "preprocess/levels.h"
+#include "surface/trimesh.h" /* TRIMESH_NONE */
 
 /* Renumbers the geometry's vertices and makes its indices and primitives those of all levels, finest first; the levels' own indices keep
-   the old numbers. Vertices from first_added on are not the model's. out[level]; new_of[old vertex] gives the new number (free with
-   mem_free). False: out of memory; the geometry is as it was. */
+   the old numbers. Vertices from first_added on are not the model's: those that no level uses are dropped. out[level]; new_of[old vertex]
+   gives the new number, or TRIMESH_NONE (free with mem_free). False: out of memory; the geometry is as it was. */
 bool order_vertices(struct geometry *geometry, const struct levels *levels, uint32_t first_added, struct asset_level out[LEVELS_MAX],
                     uint32_t **new_of);
 

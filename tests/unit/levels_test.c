@@ -220,6 +220,20 @@ static void error_is_a_bound(void **state)
     }
 }
 
+enum { LONE = 3 }; /* added vertices that no level uses */
+
+static void add_lone(struct geometry *g)
+{
+    size_t positions = g->vertex_count, normals = g->vertex_count;
+    assert_true(!g->texcoords && !g->colors);
+    mem_grow(&g->positions_m, &positions, g->vertex_count + LONE, sizeof(*g->positions_m));
+    mem_grow(&g->normals, &normals, g->vertex_count + LONE, sizeof(*g->normals));
+    for (int i = 0; i < LONE; i++) {
+        memset(g->positions_m[g->vertex_count], 0, sizeof(*g->positions_m));
+        memset(g->normals[g->vertex_count++], 0, sizeof(*g->normals));
+    }
+}
+
 static void a_level_is_a_prefix(void **state)
 {
     struct set_of *s = *state;
@@ -227,7 +241,12 @@ static void a_level_is_a_prefix(void **state)
     uint32_t *new_of, first_added = s->g.vertex_count - 5, count = s->g.vertex_count, primitives = 0;
     float(*before)[3] = mem_array(count, sizeof(*before));
     memcpy(before, s->g.positions_m, count * sizeof(*before));
+    add_lone(&s->g);
     assert_true(order_vertices(&s->g, &s->levels, first_added, file, &new_of));
+    assert_int_equal(s->g.vertex_count, count);
+    assert_int_equal(file[0].vertex_count, count);
+    for (uint32_t v = count; v < count + LONE; v++)
+        assert_int_equal(new_of[v], TRIMESH_NONE);
     for (uint32_t v = 0; v < count; v++)
         assert_memory_equal(before[v], s->g.positions_m[new_of[v]], sizeof(*before));
     for (size_t l = 0; l < s->levels.count; l++) {
