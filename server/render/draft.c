@@ -69,10 +69,10 @@ bool draft_can(const struct draft *draft, const struct view *view)
            draft->ramp_count <= MOST_RAMPS && !draft->has_holes;
 }
 
-/* Lines and logarithms are worked out with the triangles: such a picture is drawn anew each time. */
-static bool is_rich(const struct picture *picture)
+/* Lines are worked out with the triangles: such a picture is drawn anew each time. */
+static bool has_lines(const struct picture *picture)
 {
-    return picture->palette.lines || picture->view->paint.log || view_is_operator(picture->view);
+    return picture->palette.lines || view_is_operator(picture->view);
 }
 
 /* Rows end in whole lanes. */
@@ -158,8 +158,8 @@ static bool draw_all(struct draft *draft, struct isolines *isolines, struct fram
 bool draft_draw(struct draft *draft, const struct picture *picture, const struct light *light, struct isolines *isolines,
                 struct frame *frame)
 {
-    bool rich = is_rich(picture);
-    if (!rich && draft_recolor(draft, &draft->kept, picture, frame))
+    bool lined = has_lines(picture);
+    if (!lined && draft_recolor(draft, &draft->kept, picture, frame))
         return true;
     draft->picture = picture;
     draft->light = draft_get_light(draft, picture->light);
@@ -175,5 +175,5 @@ bool draft_draw(struct draft *draft, const struct picture *picture, const struct
     draft_aim(draft, light);
     if (!draft_find(draft))
         return complain(draft);
-    return draw_all(draft, isolines, frame, !rich && is_still(draft, content_shape_hash(picture)));
+    return draw_all(draft, isolines, frame, !lined && is_still(draft, content_shape_hash(picture)));
 }

@@ -88,7 +88,7 @@ bool plates_can(const struct plates *plates, const struct picture *picture)
 {
     const struct view *view = picture->view;
     double lines[VIEW_ALL_LINES];
-    if (view->tier != TIER_STILL || view->look == LOOK_GLOSSY || view->paint.log || view_lines(view, lines) > 0 || view_is_operator(view) ||
+    if (view->tier != TIER_STILL || view->look == LOOK_GLOSSY || view_lines(view, lines) > 0 || view_is_operator(view) ||
         view->visibility.ghosts.count > 0 || view->visibility.clip.plane_count > 0 || view->camera.height_m > 0 || picture->reference)
         return false;
     for (size_t i = 0; i < picture->visible_count; i++) {

@@ -45,7 +45,7 @@ void recolor_destroy(struct recolor **recolor_ptr)
     mem_free(recolor->weights);
     mem_free(recolor->rows);
     mem_free(recolor->ink);
-    mem_free(recolor->columns);
+    mem_free(recolor->carried);
     mem_free(recolor->plain);
     mem_free(recolor->flags);
     mem_free(recolor->markers);
@@ -83,10 +83,10 @@ void recolor_add_mesh(struct recolor *recolor, const struct recolor_mesh *mesh)
 bool recolor_make_vertices(struct recolor *recolor, size_t count)
 {
     recolor->vertex_count = count;
-    recolor->columns = mem_try_array(count, sizeof(*recolor->columns));
+    recolor->carried = mem_try_array(count, sizeof(*recolor->carried));
     recolor->plain = mem_try_array(count, sizeof(*recolor->plain));
     recolor->flags = mem_try_array(count, sizeof(*recolor->flags));
-    return recolor->columns && recolor->plain && recolor->flags;
+    return recolor->carried && recolor->plain && recolor->flags;
 }
 
 /* --- vertices ---------------------------------------------------------------------------------------------------------------- */
@@ -96,12 +96,22 @@ static inline float clamped(float x, float low, float high)
     return x < low ? low : x > high ? high : x;
 }
 
-/* As carry_field in draft_place.c. */
-static float column_of(const struct scalar *scalar, const float *scale)
+/* As carry_field in draft_place.c. x: the value, or log2 of it. */
+static inline float column_of(float x, const float *scale)
 {
     const float slack = 1e-5f, columns = PALETTE_PLACES / (1 + 2 * slack), farthest = 1e6f;
-    float place = (scalar->value - scale[0]) * scale[1];
+    float place = (x - scale[0]) * scale[1];
     return clamped(place * columns + (1 + slack * columns), -farthest, farthest);
+}
+
+static bool is_log(const float *scale)
+{
+    return scale[2] > 0.5f;
+}
+
+static float carried_of(const struct scalar *scalar, const float *scale)
+{
+    return is_log(scale) ? scalar->value : column_of(scalar->value, scale);
 }
 
 struct reading_job {
@@ -118,8 +128,8 @@ static void read_vertices(void *arg, size_t begin, size_t end)
     for (size_t v = begin; v < end; v++) {
         size_t at = job->first_vertex + v;
         recolor->flags[at] = (uint16_t)(job->scalars ? draft_flags(&job->scalars[v]) : DRAFT_NOTHING_KNOWN);
-        recolor->plain[at] = job->scalars ? column_of(&job->scalars[v], job->scale) : 0;
-        recolor->columns[at] = recolor->flags[at] & DRAFT_PATTERNS ? NAN : recolor->plain[at];
+        recolor->plain[at] = job->scalars ? carried_of(&job->scalars[v], job->scale) : 0;
+        recolor->carried[at] = recolor->flags[at] & DRAFT_PATTERNS ? NAN : recolor->plain[at];
     }
 }
 
@@ -147,6 +157,7 @@ struct coloring {
     const struct recolor *recolor;
     const uint32_t *palette;
     float pattern_px;
+    bool log;
     struct frame *frame;
     size_t first_band;
 };
@@ -176,22 +187,29 @@ static float stipple(float x, float y, float pattern_px)
     return (0.26f - hypotf(column - floorf(column) - 0.5f, row - floorf(row) - 0.5f)) * pattern_px + 0.5f;
 }
 
+static inline int column_at(const struct coloring *coloring, float carried)
+{
+    if (coloring->log)
+        carried = column_of(lanes_log2((lanes){ 0 } + carried)[0], coloring->recolor->scale);
+    return (int)clamped(carried, 0, PALETTE_PLACES + 1);
+}
+
 /* Where a corner has flags. */
 static uint32_t flagged_color(const struct coloring *coloring, const uint32_t vertices[3], uint32_t weights, uint8_t row, float x, float y)
 {
     const struct recolor *recolor = coloring->recolor;
     const uint32_t *colors = coloring->palette + row * PALETTE_COLUMNS;
     float w1 = (float)(weights & 0xffff) * WEIGHT, w2 = (float)(weights >> 16) * WEIGHT, w[3] = { 1 - w1 - w2, w1, w2 };
-    float column = 0, none = 0, little = 0;
+    float carried = 0, none = 0, little = 0;
     for (int i = 0; i < 3; i++) {
-        column += w[i] * recolor->plain[vertices[i]];
+        carried += w[i] * recolor->plain[vertices[i]];
         none += w[i] * draft_lacking(recolor->flags[vertices[i]]);
         little += w[i] * draft_uncertain(recolor->flags[vertices[i]]);
     }
     if (none > 0.5f)
         return mix(colors[PALETTE_PATTERNS + PATTERN_HATCH_LIGHT], colors[PALETTE_PATTERNS + PATTERN_HATCH_DARK],
                    clamped(hatch(x, y, coloring->pattern_px), 0, 1));
-    uint32_t color = colors[(int)clamped(column, 0, PALETTE_PLACES + 1)];
+    uint32_t color = colors[column_at(coloring, carried)];
     if (little <= 0.5f)
         return color;
     return mix(color, colors[PALETTE_PATTERNS + PATTERN_STIPPLE], clamped(stipple(x, y, coloring->pattern_px), 0, 1));
@@ -199,12 +217,12 @@ static uint32_t flagged_color(const struct coloring *coloring, const uint32_t ve
 
 static inline uint32_t field_color(const struct coloring *coloring, const uint32_t vertices[3], uint32_t weights, uint8_t row, int x, int y)
 {
-    const float *columns = coloring->recolor->columns, first = columns[vertices[0]];
+    const float *corners = coloring->recolor->carried, first = corners[vertices[0]];
     float w1 = (float)(weights & 0xffff) * WEIGHT, w2 = (float)(weights >> 16) * WEIGHT;
-    float column = first + w1 * (columns[vertices[1]] - first) + w2 * (columns[vertices[2]] - first);
-    if (column != column)
+    float carried = first + w1 * (corners[vertices[1]] - first) + w2 * (corners[vertices[2]] - first);
+    if (carried != carried)
         return flagged_color(coloring, vertices, weights, row, (float)x + 0.5f, (float)y + 0.5f);
-    return coloring->palette[row * PALETTE_COLUMNS + (int)clamped(column, 0, PALETTE_PLACES + 1)];
+    return coloring->palette[row * PALETTE_COLUMNS + column_at(coloring, carried)];
 }
 
 static inline uint32_t mixed_color(const struct coloring *coloring, const struct recolor_band *band, uint32_t number, int x, int y)
@@ -287,6 +305,6 @@ static void color_bands(void *arg, size_t begin, size_t end)
 void recolor_draw(const struct recolor *recolor, const uint32_t *palette, float pattern_px, struct workers *workers, int first, int count,
                   struct frame *frame)
 {
-    struct coloring coloring = { recolor, palette, pattern_px, frame, (size_t)first };
+    struct coloring coloring = { recolor, palette, pattern_px, is_log(recolor->scale), frame, (size_t)first };
     workers_for(workers, (size_t)count, 2, color_bands, &coloring);
 }

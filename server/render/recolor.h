@@ -53,7 +53,7 @@ struct recolor {
     struct recolor_mesh *meshes;
     size_t mesh_count, mesh_capacity, vertex_count;
     float scale[4]; /* of struct frame_block, when the vertices were read */
-    float *columns; /* per vertex, of the palette; NAN: look at flags */
+    float *carried; /* per vertex: column of the palette (on a logarithmic scale: the value); NAN: look at flags */
     float *plain;   /* the same without NAN */
     uint16_t *flags; /* as draft_flags */
     struct frame_marker *markers; /* places, and whether they are hidden */
@@ -68,7 +68,7 @@ uint32_t recolor_triangle(struct recolor_band *band, const uint32_t vertices[3])
 void recolor_add_mesh(struct recolor *recolor, const struct recolor_mesh *mesh);
 bool recolor_make_vertices(struct recolor *recolor, size_t count); /* after the last mesh. False: out of memory */
 
-/* The fields of the picture, into columns and flags. */
+/* The fields of the picture, into what vertices carry. */
 void recolor_read(struct recolor *recolor, const struct picture *picture, struct workers *workers);
 /* Colours of those bands. palette: PALETTE_ROWS x PALETTE_COLUMNS, as it comes from the GPU. pattern_px: size of its cells. */
 void recolor_draw(const struct recolor *recolor, const uint32_t *palette, float pattern_px, struct workers *workers, int first, int count,

@@ -169,6 +169,13 @@ static void test_still_camera(void **state)
         view.colormap = (int)colormap_count() - 1;
         view.range_max -= 10;
         assert_same(&view, selected < 0 ? 0.01 : 0.02);
+        view.range_min = 10;
+        view.paint.log = true;
+        assert_same(&view, selected < 0 ? 0.01 : 0.02);
+        toy_fill(stand.snapshot, 2.0);
+        assert_same(&view, selected < 0 ? 0.01 : 0.02);
+        start_view(&view, 640, 360);
+        view.camera.eye_m[0] += 0.25;
     }
     toy_fill(stand.snapshot, 0);
 }

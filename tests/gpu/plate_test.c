@@ -85,6 +85,10 @@ static void test_home(void **state)
     assert_like_gl(&view, 0.005);
     view.look = LOOK_MATERIALS;
     assert_like_gl(&view, 0.01);
+    view.look = LOOK_DEFAULT;
+    view.range_min = 10;
+    view.paint.log = true;
+    assert_like_gl(&view, 0.005);
 }
 
 static void test_sizes(void **state)
@@ -198,6 +202,12 @@ static void test_new_colors_too(void **state)
     view.range_min = 30;
     view.range_max = 70;
     assert_same_anew(&view);
+    view.paint.log = true;
+    assert_same_anew(&view);
+    toy_set(stand.snapshot, 0, 75, QUALITY_GOOD);
+    toy_set(stand.snapshot, 3, 20, QUALITY_UNCERTAIN_LAST_USABLE);
+    assert_same_anew(&view);
+    toy_fill(stand.snapshot, 0);
 }
 
 static void test_what_else_changes_is_drawn(void **state)
