@@ -104,7 +104,7 @@ static void bench_finish(struct bench *bench)
     log_destroy(&bench->log);
 }
 
-enum dress { PLAIN, LINED, BANDED, LOGARITHMIC, LIMITS };
+enum dress { PLAIN, LINED, BANDED, LOGARITHMIC, LIMITS, CUT };
 
 static void put_on(const struct bench *bench, enum dress dress, struct view *view)
 {
@@ -119,6 +119,10 @@ static void put_on(const struct bench *bench, enum dress dress, struct view *vie
     if (dress == LIMITS) {
         view->field.show = SHOW_OPERATOR;
         view_own_scale(bench->scene, view);
+    }
+    if (dress == CUT) { /* half-way up, what is closed with caps */
+        double middle_m = 0.5 * (bench->scene->bounds_min_m[2] + bench->scene->bounds_max_m[2]);
+        view->visibility.clip = (struct clip){ .plane_count = 1, .planes = { { 0, 0, -1, middle_m } } };
     }
 }
 
@@ -208,12 +212,13 @@ static void measure_steps(struct bench *bench)
 }
 
 /* Under a still camera: one reading, or every one, changed. The field's own part is not counted. */
-static void measure_again(struct bench *bench, bool all, const char *time_name, const char *work_name)
+static void measure_again(struct bench *bench, enum dress dress, bool all, const char *time_name, const char *work_name)
 {
     struct view view;
     double time_ms[MOST_ROUNDS], work_ms[MOST_ROUNDS];
     view_default(bench->scene, 1920, 1080, &view);
     view.tier = TIER_STILL;
+    put_on(bench, dress, &view);
     for (int i = -2; i < MOVING_ROUNDS; i++) {
         struct reading *readings = bench->snapshot->readings;
         for (size_t tag = 0; tag < (all ? bench->plant->tag_count : 1); tag++)
@@ -249,10 +254,12 @@ int main(void)
         measure(&bench, TIER_MOVING, LOGARITHMIC, "render_moving_log_1080p_ms", "render_moving_log_1080p_cpu_ms", MOVING_ROUNDS);
         measure(&bench, TIER_MOVING, LIMITS, "render_moving_operator_1080p_ms", "render_moving_operator_1080p_cpu_ms", MOVING_ROUNDS);
         measure_recolour(&bench);
+        measure(&bench, TIER_MOVING, CUT, "render_moving_cut_1080p_ms", "render_moving_cut_1080p_cpu_ms", STILL_ROUNDS);
         measure(&bench, TIER_STILL, PLAIN, "render_still_1080p_ms", "render_still_1080p_cpu_ms", STILL_ROUNDS);
         measure_steps(&bench);
-        measure_again(&bench, false, "render_still_recolor_1080p_ms", "render_still_recolor_1080p_cpu_ms");
-        measure_again(&bench, true, "render_still_recolor_all_1080p_ms", "render_still_recolor_all_1080p_cpu_ms");
+        measure_again(&bench, PLAIN, false, "render_still_recolor_1080p_ms", "render_still_recolor_1080p_cpu_ms");
+        measure_again(&bench, PLAIN, true, "render_still_recolor_all_1080p_ms", "render_still_recolor_all_1080p_cpu_ms");
+        measure_again(&bench, LOGARITHMIC, true, "render_still_recolor_log_1080p_ms", "render_still_recolor_log_1080p_cpu_ms");
     } else {
         print_why("the demo plant could not be opened or drawn; the log says why");
     }
