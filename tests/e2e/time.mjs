@@ -119,6 +119,11 @@ test('the slider goes to an instant, and nobody can take it for now', options, a
     assert.match(await page.locator('#clock-name').textContent(), /^Then/);
     assert.equal(await page.evaluate(() => getComputedStyle(document.getElementById('viewport'), '::after').borderTopWidth), '5px');
     assert.match(await slider.getAttribute('aria-valuetext'), /\d\d:\d\d:\d\d/);
+    assert.match(await page.locator('#alarm-words').textContent(), /^Now: /);
+    await page.locator('#alarm-strip').click();
+    assert.match(await page.locator('#alarms-then').textContent(), /as it was.*of now/, 'the list is not of then');
+    await shoot(page, 'past-alarms');
+    await page.locator('#alarms-close').click();
     await page.waitForFunction(() => location.hash.includes('at='));
     await settle(page);
     await shoot(page, 'past');

@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { readAddress, writeAddress } from '../../clients/web/core/address.js';
-import { ask, BAD, gaps, line, raised, ticks, UNCERTAIN } from '../../clients/web/core/history.js';
+import { ask, BAD, gaps, limitLines, line, raised, ticks, UNCERTAIN } from '../../clients/web/core/history.js';
 
 const GOOD_CODE = 0, UNCERTAIN_CODE = 0x408f0000, BAD_CODE = 0x80050000;
 const points = (...list) => ({ step: false, bucket_us: 0, points: list });
@@ -66,4 +66,18 @@ test('the address names the instant', () => {
     assert.equal(readAddress(hash).time.atUs, 1793491200250000);
     assert.deepEqual(readAddress('#at=never').time, {});
     assert.doesNotMatch(writeAddress({ time: { atUs: null } }), /at=/);
+});
+
+test('limits of several tags: each once, by its axis, with whose it is unless it is everybody\'s', () => {
+    const tag = (name, unit, limits) => ({ name, unit, limits });
+    const tags = [
+        tag('a', 'degC', { L: null, H: 60, HH: 90 }), tag('b', 'degC', { L: 5, H: 60, HH: 80 }), tag('c', 'bar', { H: 60 }),
+        tag('d', 'bar'),
+    ];
+    const lines = limitLines(tags, ({ unit }) => unit)
+        .map(({ scale, name, value, tags: of }) => [scale, name, value, ...of.map((one) => one.name)]);
+    assert.deepEqual(lines, [
+        ['degC', 'H', 60], ['degC', 'HH', 90, 'a'], ['degC', 'L', 5, 'b'], ['degC', 'HH', 80, 'b'], ['bar', 'H', 60, 'c'],
+    ]);
+    assert.deepEqual(limitLines([], () => ''), []);
 });

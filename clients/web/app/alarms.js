@@ -61,6 +61,7 @@ export class AlarmPanel {
         if (!this.alarms?.known)
             return;
         this.showStrip();
+        byId('alarms-then').hidden = this.session.time.atUs === null;
         if (this.open)
             this.showList();
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Trends of tags: what was recorded of the last hour, shift, day or week, with limits, gaps in quality and units; several compared.
-import { decimalsFor, numberText, unitText, zoneClock, zoneOf } from '../core/format.js';
-import { ask, BAD, gaps, line } from '../core/history.js';
+import { decimalsFor, numberText, shortNumberText, unitText, zoneClock, zoneOf } from '../core/format.js';
+import { ask, BAD, gaps, limitLines, line } from '../core/history.js';
 import { say } from '../core/words.js';
 import { byId, make, setText } from './dom.js';
 import { fillSegments, markSegment } from './fields.js';
@@ -12,7 +12,7 @@ const COLOURS = ['#0b5c93', '#b34a00', '#00734f', '#8a3a73', '#5b5b00', '#4b4f56
 const DASHES = [[], [8, 4], [2, 3], [10, 3, 2, 3], [5, 5], [1, 4]];
 const MOST = COLOURS.length, FRESH_MS = 5000, HEIGHT_PX = 210, AXIS_PX = 58;
 const EXPAND = 2; // uPlot's: nulls
-const LIMITS = ['LL', 'L', 'H', 'HH'], INK = '#4d5964', LINE = '#d8dce0';
+const LIMIT_PX = 110, INK = '#4d5964', LINE = '#d8dce0';
 
 // Loaded when the first trend is asked for.
 let library;
@@ -234,25 +234,26 @@ export class Trends {
         ctx.restore();
     }
 
+    // Each in its own place along the line, so that names do not lie on each other.
     drawLimits({ ctx, bbox, valToPos, scales }) {
-        const [tag] = this.tags, scale = this.unitOf(tag) || '–';
         ctx.save();
         ctx.font = `${11 * devicePixelRatio}px system-ui, sans-serif`;
         ctx.textAlign = 'left';
         ctx.textBaseline = 'bottom';
         ctx.lineWidth = devicePixelRatio;
         ctx.setLineDash([6 * devicePixelRatio, 4 * devicePixelRatio]);
-        for (const name of LIMITS) {
-            const value = tag.limits?.[name];
-            if (!Number.isFinite(value) || value < scales[scale].min || value > scales[scale].max)
+        for (const { scale, name, value, tags } of limitLines(this.tags, (tag) => this.unitOf(tag) || '–')) {
+            const { min, max } = scales[scale] ?? {};
+            if (!(value >= min && value <= max))
                 continue;
-            const y = Math.round(valToPos(value, scale, true));
-            ctx.strokeStyle = ctx.fillStyle = name.length > 1 ? '#a31515' : '#8a5a00';
+            const y = Math.round(valToPos(value, scale, true)), place = tags.length > 0 ? this.tags.indexOf(tags[0]) : 0;
+            ctx.strokeStyle = ctx.fillStyle = tags.length > 0 ? COLOURS[place] : name.length > 1 ? '#a31515' : '#8a5a00';
             ctx.beginPath();
             ctx.moveTo(bbox.left, y);
             ctx.lineTo(bbox.left + bbox.width, y);
             ctx.stroke();
-            ctx.fillText(`${name} ${numberText(value, 1)}`, bbox.left + 5 * devicePixelRatio, y - 2 * devicePixelRatio);
+            const words = [...tags.map((tag) => tag.name), name, shortNumberText(value, 3)].join(' ');
+            ctx.fillText(words, bbox.left + (5 + place * LIMIT_PX) * devicePixelRatio, y - 2 * devicePixelRatio);
         }
         ctx.restore();
     }

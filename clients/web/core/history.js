@@ -86,6 +86,22 @@ export function gaps(series, fromUs, toUs) {
     return out;
 }
 
+// The limits of some tags, each once: [{ scale, name, value, tags }], where scaleOf(tag) says by which axis; tags: those that have it, or
+// none where all of that axis have.
+export function limitLines(tags, scaleOf) {
+    const lines = new Map();
+    for (const tag of tags) {
+        for (const [name, value] of Object.entries(tag.limits ?? {}).filter(([, limit]) => Number.isFinite(limit))) {
+            const scale = scaleOf(tag), key = JSON.stringify([scale, name, value]);
+            const line = lines.get(key) ?? { scale, name, value, tags: [] };
+            line.tags.push(tag);
+            lines.set(key, line);
+        }
+    }
+    const all = (scale) => tags.filter((tag) => scaleOf(tag) === scale).length;
+    return [...lines.values()].map((line) => (line.tags.length === all(line.scale) ? { ...line, tags: [] } : line));
+}
+
 // Rows of the journal that raise an alarm which is to be seen: [{ us, tag, kind, priority }], oldest first.
 export function raised(rows) {
     return rows.filter(({ event, state }) => event === 'raise' && calls(state))

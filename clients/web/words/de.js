@@ -196,6 +196,7 @@ export default {
     'alarms.some': { one: '{count} aktiver Alarm', other: '{count} aktive Alarme' },
     'alarms.waiting': '{alarms}, {waiting} unquittiert',
     'alarms.now': 'Jetzt: {alarms}',
+    'alarms.then': 'Gezeigt wird die Anlage von damals. Diese Alarme sind die von jetzt.',
     'alarms.at': '{alarm} bei {value}',
     'alarms.value': '{value} (Grenzwert {limit})',
     'alarms.quiet': 'Keine aktiven Alarme.',

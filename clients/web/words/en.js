@@ -196,6 +196,7 @@ export default {
     'alarms.some': { one: '{count} active alarm', other: '{count} active alarms' },
     'alarms.waiting': '{alarms}, {waiting} not acknowledged',
     'alarms.now': 'Now: {alarms}',
+    'alarms.then': 'The plant is shown as it was. These alarms are those of now.',
     'alarms.at': '{alarm} at {value}',
     'alarms.value': '{value} (limit {limit})',
     'alarms.quiet': 'No active alarms.',

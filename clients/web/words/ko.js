@@ -196,6 +196,7 @@ export default {
     'alarms.some': { other: '활성 알람 {count}건' },
     'alarms.waiting': '{alarms}, 미확인 {waiting}건',
     'alarms.now': '현재: {alarms}',
+    'alarms.then': '화면은 과거의 플랜트입니다. 이 알람은 현재의 알람입니다.',
     'alarms.at': '{alarm}, {value}',
     'alarms.value': '{value} (한계 {limit})',
     'alarms.quiet': '활성 알람이 없습니다.',
