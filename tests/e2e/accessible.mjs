@@ -12,12 +12,11 @@ const absent = missing();
 const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 200000 };
 const SCREEN = { viewport: { width: 1680, height: 1000 } };
 const RULES = ['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa', 'wcag22aa', 'best-practice'];
-let plant, browser, page;
+let plant, url, browser, page;
 
 before(async () => {
     if (options.skip)
         return;
-    let url;
     [plant, url] = await startAlarmed();
     browser = await openPage(url, SCREEN);
     page = browser.page;
@@ -35,17 +34,32 @@ async function findings(on) {
     return violations.flatMap(({ id, nodes }) => nodes.map((node) => `${id}: ${node.target.join(' ')} ${node.any[0]?.message ?? ''}`));
 }
 
-test('axe-core finds nothing on any panel or dialog', options, async () => {
+for (const theme of ['dark', 'light']) {
+    test(`axe-core finds nothing on any panel or dialog, ${theme}`, options, async () => {
+        await page.goto(`${url}?theme=${theme}`);
+        await waitForPicture(page);
+        await lookAtEverything(theme);
+    });
+}
+
+async function lookAtEverything(theme) {
     const seen = [];
-    await everyPanel(page, async (name) => {
+    const look = async (name) => {
         if (name === 'closed')
             return;
         seen.push(name);
+        await shoot(page, `axe-${theme}-${name}`);
         assert.deepEqual(await findings(page), [], name);
-    });
+    };
+    await everyPanel(page, look);
+    await page.evaluate(() => globalThis.plantcast.session.travel(globalThis.plantcast.session.clockUs() - 5e6));
+    await page.waitForFunction(() => globalThis.plantcast.session.picture.past && document.body.classList.contains('shows-past'));
+    await look('past');
+    await page.evaluate(() => globalThis.plantcast.session.travel(null));
+    await page.waitForFunction(() => !globalThis.plantcast.session.picture.past);
     for (const name of ['page', 'card', 'place', 'picture', 'split', 'views', 'trend', 'alarms', 'shelve', 'timings', 'help'])
         assert.ok(seen.includes(name), name);
-});
+}
 
 // What has the focus: who it is, whether one sees that, and where it stands.
 const focused = () => page.evaluate(() => {
