@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// An operator's tour, as somebody new would be shown it: overview, alarm, the way there, trend, the past, acknowledgement, sharing.
+// Its pictures are those of the README (deploy/pictures), 1280 x 720.
+import assert from 'node:assert/strict';
+import { mkdirSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { openPage, SCREENSHOTS, settle, waitForHealth, waitForPicture } from './support/browser.mjs';
+import { missing, startPlant } from './support/plant.mjs';
+
+const why = missing();
+const options = { skip: why ?? false, timeout: 280000 };
+const HOT = 'TE-101', MOST_MS = 180000;
+let plant, browser, page, began;
+
+before(async () => {
+    if (why)
+        return;
+    plant = await startPlant('\nalarms: local\n');
+    browser = await openPage(plant.url, { viewport: { width: 1280, height: 720 } });
+    page = browser.page;
+    await waitForPicture(page);
+    await waitForHealth(page, 'live');
+    began = performance.now();
+});
+after(async () => {
+    await browser?.close();
+    await plant?.stop();
+});
+
+async function keep(name) {
+    mkdirSync(SCREENSHOTS, { recursive: true });
+    await page.screenshot({ path: join(SCREENSHOTS, `tour-${name}.jpg`), type: 'jpeg', quality: 62 });
+}
+
+test('overview: the whole plant, live', options, async () => {
+    await settle(page);
+    assert.match(await page.locator('#health .words').textContent(), /Live|Simulated/);
+    assert.ok(await page.evaluate(() => globalThis.plantcast.overlay.markers.filter(({ occluded }) => !occluded).length) > 5);
+    await keep('1-overview');
+});
+
+test('an alarm: counted at once, listed, and one click leads there', options, async () => {
+    const limit = await page.evaluate((name) => globalThis.plantcast.session.model.tag(name).limits.HH, HOT);
+    await plant.ask(`set ${HOT} ${limit + 2}`);
+    await page.waitForFunction((name) => globalThis.plantcast.session.model.alarms.list().some(({ tag, kind }) =>
+        tag.name === name && kind === 'HH'), HOT, { timeout: 30000 });
+    await page.locator('#alarm-strip').click();
+    const row = page.locator('#alarms-list li', { hasText: `${HOT} High high` });
+    await row.waitFor();
+    await settle(page);
+    await keep('2-alarm');
+    await row.locator('.alarm-go').click();
+    await page.locator('#alarms-close').click();
+    await page.locator('#card').waitFor();
+    assert.match(await page.locator('#card h3').textContent(), new RegExp(HOT));
+    await page.waitForFunction((name) => globalThis.plantcast.overlay.markers.some(({ tag, occluded }) => tag.name === name && !occluded), HOT);
+    await settle(page);
+    await keep('3-there');
+});
+
+test('its trend, and the instant before it began', options, async () => {
+    await page.locator('#card .trend').click();
+    await page.locator('#trend-chart canvas').waitFor();
+    await page.waitForFunction(() => globalThis.plantcast.trends.series.length > 0);
+    await settle(page);
+    await page.locator('#time-toggle').click();
+    const slider = page.locator('#time-slider');
+    await slider.focus();
+    await page.locator('#time-span').selectOption('900');
+    await slider.fill('1960');
+    await waitForHealth(page, 'past');
+    await page.waitForFunction(() => globalThis.plantcast.session.picture.past);
+    assert.match(await page.locator('#banner').textContent(), /History/);
+    await settle(page);
+    await keep('4-past');
+    await page.locator('#time-live').click();
+    await page.waitForFunction(() => globalThis.plantcast.session.time.atUs === null && !globalThis.plantcast.session.picture.past);
+    await page.locator('#trend-close').click();
+    await page.locator('#time-toggle').click();
+});
+
+test('acknowledged, and said to everybody', options, async () => {
+    await page.locator('#alarm-strip').click();
+    const row = page.locator('#alarms-list li', { hasText: `${HOT} High high` });
+    await row.locator('button[data-action="acknowledge"]').click();
+    await page.waitForFunction((name) => globalThis.plantcast.session.model.alarms.list().some(({ tag, kind, state }) =>
+        tag.name === name && kind === 'HH' && state === 'acknowledged'), HOT, { timeout: 20000 });
+    await settle(page);
+    await keep('5-acknowledged');
+    await page.locator('#alarms-close').click();
+});
+
+test('shared: a link and a code to this place', options, async (t) => {
+    await page.locator('#share-open').click();
+    await page.locator('#share-code svg').waitFor();
+    assert.equal(await page.locator('#share-link').inputValue(), `${plant.url}#tag=${HOT}`);
+    await keep('6-share');
+    const took = performance.now() - began;
+    t.diagnostic(`the tour took ${(took / 1000).toFixed(0)} s`);
+    assert.ok(took < MOST_MS, `${took} ms`);
+    assert.deepEqual(browser.errors, []);
+});

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What is not now, not measured or not here says so: simulated, asleep, a page of another version; and on a wall, from afar.
+import assert from 'node:assert/strict';
+import { appendFileSync, readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { openPage, settle, shoot, TABLET, waitForHealth, waitForPicture } from './support/browser.mjs';
+import { missing, TinyPlant } from './support/tiny_plant.mjs';
+
+const absent = missing();
+const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 200000 };
+const WALL = { viewport: { width: 3840, height: 2160 }, screen: { width: 3840, height: 2160 } };
+let plant, url;
+
+before(async () => {
+    if (options.skip)
+        return;
+    plant = await TinyPlant.create();
+    appendFileSync(plant.file, 'alarms: local\n');
+    const tags = join(plant.folder, 'tags.csv');
+    writeFileSync(tags, readFileSync(tags, 'utf8').split('\n').map((line, i) => line && line + (i === 0 ? ',H,HH' : ',60,90')).join('\n'));
+    assert.equal(plant.prepare().code, 0);
+    await plant.startSim();
+    await plant.startDaemon();
+    for (const [tag, value] of [['TI-1', 95.5], ['TI-2', 20], ['PI-1', 5]])
+        await plant.tell(`set ${tag} ${value}`);
+    url = `http://127.0.0.1:${plant.port}/`;
+});
+after(() => plant?.destroy());
+
+async function withPage(address, screen, f, init = null) {
+    const browser = await openPage(address, screen, init);
+    try {
+        await waitForPicture(browser.page);
+        await f(browser.page, browser);
+        assert.deepEqual(browser.errors, []);
+    } finally {
+        await browser.close();
+    }
+}
+
+// Size of what is written, in CSS pixels of the screen.
+const letters = (page) => page.evaluate(() => {
+    const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT), found = [];
+    for (let node = walker.nextNode(); node; node = walker.nextNode()) {
+        const parent = node.parentElement, text = node.textContent.trim();
+        if (!text || !parent.checkVisibility() || parent.getClientRects().length === 0)
+            continue;
+        const range = document.createRange();
+        range.selectNodeContents(node);
+        const zoom = parent.currentCSSZoom ?? 1, { fontSize } = getComputedStyle(parent);
+        found.push({ text, px: parseFloat(fontSize) * zoom });
+    }
+    return found;
+});
+
+test('a 4K wall: every letter is read from 3 m, alarms are counted, and nothing is to be pressed', options, () =>
+    withPage(`${url}?wall&theme=dark`, WALL, async (page) => {
+        await waitForHealth(page, 'live');
+        await page.waitForFunction(() => document.querySelector('#alarm-counts .priority'));
+        await settle(page);
+        const { letterMinutes, readWall } = await import('../../clients/web/core/wall.js');
+        const seen = await letters(page);
+        assert.ok(seen.length > 12, `${seen.length} texts`);
+        const small = seen.map(({ text, px }) => ({ text, minutes: letterMinutes(px, readWall('?wall'), WALL.screen) }))
+            .filter(({ minutes }) => minutes < 14.5);
+        assert.deepEqual(small, [], 'minutes of arc');
+        assert.ok(await page.evaluate(() => globalThis.plantcast.overlay.unit) > 4);
+        assert.equal(await page.evaluate(() => [...document.querySelectorAll('button, select, input')]
+            .filter((e) => e.id !== 'alarm-strip' && e.checkVisibility() && e.getBoundingClientRect().width > 1 &&
+                !e.closest('#groups')).length), 0);
+        const out = await page.evaluate(() => [...document.querySelectorAll('.toolbar *, .alarm-strip *, .status *, .legend *')]
+            .map((e) => e.getBoundingClientRect()).filter((b) => b.width > 0 && (b.right > innerWidth + 1 || b.bottom > innerHeight + 1)).length);
+        assert.equal(out, 0, 'nothing is cut off');
+        await shoot(page, 'wall');
+    }));
+
+test('simulated values are called so on the picture itself, and by a frame', options, () =>
+    withPage(url, TABLET, async (page) => {
+        await waitForHealth(page, 'live');
+        await page.evaluate(() => {
+            const { session } = globalThis.plantcast;
+            session.heard({ type: 'status', links: [{ source: 'plc1', up: true, simulated: true }], live: true });
+        });
+        await waitForHealth(page, 'simulated');
+        assert.equal(await page.locator('#simulated').textContent(), 'Simulated');
+        assert.equal(await page.evaluate(() => getComputedStyle(document.getElementById('viewport'), '::after').borderTopStyle), 'dashed');
+        await settle(page);
+        await shoot(page, 'simulated');
+    }));
+
+test('a tablet that slept knows that its picture is old, until the server speaks', options, () =>
+    withPage(url, TABLET, async (page) => {
+        await waitForHealth(page, 'live');
+        await settle(page);
+        await page.evaluate(() => {
+            const { session } = globalThis.plantcast, real = Date.now;
+            session.connection.socket.onmessage = null; // as a line that is dead
+            Date.now = () => real() + 7 * 3600e3;
+        });
+        await waitForHealth(page, 'silent', 5000);
+        assert.match(await page.locator('#banner').textContent(), /No answer.*This picture is 7 h old/);
+        assert.equal(await page.evaluate(() => document.getElementById('viewport').classList.contains('is-old')), true);
+        await shoot(page, 'slept');
+        await waitForHealth(page, 'live', 30000);
+        assert.equal(await page.locator('#banner').isVisible(), false);
+    }));
+
+test('a page that was kept from another version loads itself anew, once', options, async () => {
+    const asked = [];
+    await withPage(url, TABLET, async (page, browser) => {
+        browser.page.on('domcontentloaded', () => asked.push('loaded'));
+        let first = true;
+        await page.route('**/made/version.js', (route) => {
+            const version = first ? 'aaaaaaaaaaaa' : 'bbbbbbbbbbbb';
+            first = false;
+            return route.fulfill({ contentType: 'text/javascript', body: `export const version = '${version}';\n` });
+        });
+        await page.reload();
+        await waitForPicture(page);
+        await page.waitForFunction(() => sessionStorage.getItem('plantcast.renewed') === 'bbbbbbbbbbbb');
+        await page.waitForFunction(() => globalThis.plantcast?.session.picture);
+        await waitForHealth(page, 'live');
+        await page.waitForTimeout(1000);
+        assert.equal(asked.length, 2, 'asked for, and once more by itself');
+    });
+});
+
+test('it can be installed: a manifest with icons, all there; no service worker on plain http', options, () =>
+    withPage(url, TABLET, async (page) => {
+        const manifest = await (await fetch(new URL(await page.locator('link[rel=manifest]').getAttribute('href'), url))).json();
+        assert.deepEqual([manifest.display, manifest.start_url], ['standalone', './']);
+        for (const { src, sizes, type } of manifest.icons) {
+            const answer = await fetch(new URL(src, url));
+            assert.deepEqual([answer.status, answer.headers.get('content-type')], [200, type], src);
+            if (type !== 'image/png')
+                continue;
+            const head = Buffer.from(await answer.arrayBuffer());
+            assert.equal(`${head.readUInt32BE(16)}x${head.readUInt32BE(20)}`, sizes, src);
+        }
+        assert.equal(await page.evaluate(async () => (await navigator.serviceWorker?.getRegistrations())?.length ?? 0), 0);
+    }));

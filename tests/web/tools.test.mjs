@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sleep that is noticed, letters that are read from afar, distances, and links.
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { health, simulatedText } from '../../clients/web/core/health.js';
+import { shareLinks } from '../../clients/web/core/links.js';
+import { measure, metresText } from '../../clients/web/core/measure.js';
+import { Wake } from '../../clients/web/core/wake.js';
+import { letterMinutes, MINUTES, readWall, wallScale } from '../../clients/web/core/wall.js';
+import { makeSession, vector } from './fixtures.mjs';
+
+test('a sleep is seen by the calendar going on without the monotonic clock', () => {
+    const time = { now: 0, date: 1e12 }, slept = [];
+    const wake = new Wake({ now: () => time.now, date: () => time.date, onWake: (ms) => slept.push(ms) });
+    const pass = (now, date) => {
+        time.now += now;
+        time.date += date;
+        wake.check();
+    };
+    pass(500, 500);
+    pass(500, 2500);
+    assert.deepEqual(slept, [], 'a timer that was late, or a clock that was corrected a little');
+    pass(500, 3600500);
+    assert.deepEqual(slept, [3600000]);
+    pass(500, 500);
+    pass(500, -7200000);
+    pass(500, 500);
+    assert.deepEqual(slept, [3600000], 'a clock that was set back is no sleep');
+});
+
+test('after a sleep the picture counts as old until the server speaks again', () => {
+    const { session, connection, sockets, clock } = makeSession();
+    connection.start();
+    sockets[0].accept();
+    sockets[0].say(vector('server/welcome.json'));
+    session.picture = {};
+    clock.time += 3600000;
+    connection.doubt();
+    assert.equal(sockets[0].sent.at(-1).type, 'ping', 'it is asked at once');
+    const { kind, banner, detail } = health(session, clock.now());
+    assert.deepEqual([kind, banner], ['silent', true]);
+    assert.match(detail, /This picture is 60 min old/);
+    sockets[0].say({ type: 'pong', t: clock.now(), time_us: 1 });
+    assert.equal(connection.quiet, false);
+    connection.doubt();
+    clock.advance(1500);
+    assert.equal(connection.quiet, true);
+    clock.time += 12000;
+    clock.advance(600);
+    assert.notEqual(connection.state, 'open', 'nothing came: the line is dead');
+});
+
+test('simulated is said on the picture, but not of the past', () => {
+    const model = { links: [{ source: 'a', up: true, simulated: true }, { source: 'b', up: true }] }, time = { atUs: null };
+    assert.equal(simulatedText({ model, time, picture: {} }), 'Partly simulated');
+    assert.equal(simulatedText({ model: { links: [model.links[0]] }, time, picture: {} }), 'Simulated');
+    assert.equal(simulatedText({ model: { links: [model.links[1]] }, time, picture: {} }), '');
+    assert.equal(simulatedText({ model, time: { atUs: 5 }, picture: {} }), '');
+    assert.equal(simulatedText({ model: null, time, picture: null }), '');
+});
+
+test('the wall: capitals of 16 minutes of arc and more, wherever the screen hangs', () => {
+    assert.equal(readWall('?lang=ko'), null);
+    assert.deepEqual(readWall('?wall'), { inches: 55, metres: 3 });
+    assert.deepEqual(readWall('?wall=85,5'), { inches: 85, metres: 5 });
+    assert.deepEqual(readWall('?wall=-3,x'), { inches: 55, metres: 3 });
+    for (const [wall, screen] of [['?wall', [3840, 2160]], ['?wall=85,5', [1920, 1080]], ['?wall=110,8', [7680, 4320]]]) {
+        const at = readWall(wall), [width, height] = screen, scale = wallScale(at, { width, height });
+        assert.ok(letterMinutes(12.5 * scale, at, { width, height }) >= MINUTES - 1e-6, wall);
+    }
+    assert.equal(wallScale({ inches: 55, metres: 0.5 }, { width: 800, height: 600 }), 1, 'never smaller than on a desk');
+});
+
+test('distances: straight, level and rise; as many figures as a tape has', () => {
+    assert.deepEqual(measure([0, 0, 0], [3, 4, 12], [0, 0, 1]), { metres: 13, level: 5, rise: 12 });
+    assert.deepEqual(measure([1, 1, 1], [1, 0, 1], [0, 1, 0]), { metres: 1, level: 0, rise: -1 });
+    assert.deepEqual([0.1234, 12.345, 123.45, -3.2].map(metresText), ['0.123', '12.35', '123.5', '-3.200']);
+});
+
+test('links: what is chosen, and no more', () => {
+    const session = { id: 7, camera: null, params: { group: 'g' }, time: { atUs: null }, ownParams: {}, following: null };
+    const location = { origin: 'https://plant.example', pathname: '/' };
+    assert.deepEqual(shareLinks({ location, session, tag: null }),
+        { view: 'https://plant.example/#group=g', follow: 'https://plant.example/#follow=7' });
+    const links = shareLinks({ location, session: { ...session, params: { selected: 'E 1' }, following: { session: 3 } }, tag: 'T&1' });
+    assert.deepEqual([links.tag, links.asset, links.follow].map((link) => link.slice(link.indexOf('#'))),
+        ['#tag=T%261', '#asset=E%201', '#follow=3']);
+});
