@@ -110,6 +110,38 @@ async function scan(where) {
     return jsqr.default ? jsqr.default(rgba, width, height)?.data : jsqr(rgba, width, height)?.data;
 }
 
+test('an engineer sets range, factors and one sensor\'s own, and has them as configured again', options, async () => {
+    const params = () => page.evaluate(() => globalThis.plantcast.session.confirmed);
+    const waitForParam = (name, value) => page.waitForFunction(([n, v]) =>
+        JSON.stringify(globalThis.plantcast.session.confirmed[n]) === v, [name, JSON.stringify(value)]);
+    const write = async (id, text) => {
+        await page.locator(id).fill(text);
+        await page.locator(id).blur();
+    };
+    await page.evaluate(() => globalThis.plantcast.assets.onTag(globalThis.plantcast.session.model.tag('TI-1')));
+    await page.locator('#picture-toggle').click();
+    await page.locator('#own-factors').waitFor();
+    await write('#range-max', '60');
+    await waitForParam('range', [0, 60]);
+    await write('#factor-power', '4');
+    await waitForParam('power', 4);
+    await write('#factor-reach_m', '0.4');
+    await page.waitForFunction(() => Math.abs(globalThis.plantcast.session.confirmed.reach_m - 0.4) < 1e-6);
+    await write('#own-strength', '5');
+    await page.waitForFunction(() => globalThis.plantcast.session.confirmed.sensors['TI-1']?.strength === 5);
+    assert.match(await page.locator('#own-reset').textContent(), /1 sensor\b/);
+    await settle(page);
+    await shoot(page, 'factors');
+    await page.locator('#own-reset').click();
+    await waitForParam('sensors', {});
+    await write('#factor-reach_m', '');
+    await waitForParam('reach_m', null);
+    await page.locator('#range-own').click();
+    await waitForParam('range', [0, 100]);
+    assert.equal((await params()).power, 4);
+    await page.keyboard.press('Escape');
+});
+
 test('links to the view, the tag and the equipment, each with a code that a camera reads', options, async () => {
     await page.evaluate(() => globalThis.plantcast.session.setParams({ selected: 'E-101', colormap: 'cividis', range: [0, 120] }));
     await page.evaluate(() => globalThis.plantcast.assets.onTag(globalThis.plantcast.session.model.tag('TI-1')));
@@ -156,7 +188,7 @@ test('a code at the equipment opens there, on a phone', options, async () => {
 test('others follow; the lead is handed over, and what is shown stays', options, async () => {
     const id = await page.evaluate(() => globalThis.plantcast.session.id);
     const second = await openPage(`${url}#follow=${id}`, { viewport: { width: 1000, height: 700 } });
-    await second.page.waitForFunction((leader) => globalThis.plantcast.session.following?.session === leader, id);
+    await second.page.waitForFunction((leader) => globalThis.plantcast?.session.following?.session === leader, id);
     await page.waitForFunction(() => document.getElementById('share-open').dataset.count === '1');
     const before = await view(page);
     await page.keyboard.press('k');

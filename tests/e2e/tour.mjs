@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // An operator's tour, as somebody new would be shown it: overview, alarm, the way there, trend, the past, acknowledgement, sharing.
-// Its pictures are those of the README (deploy/pictures), 1280 x 720.
+// Its pictures, made smaller, are those of the README (deploy/pictures).
 import assert from 'node:assert/strict';
 import { mkdirSync } from 'node:fs';
 import { join } from 'node:path';
@@ -17,7 +17,7 @@ before(async () => {
     if (why)
         return;
     plant = await startPlant('\nalarms: local\n');
-    browser = await openPage(plant.url, { viewport: { width: 1280, height: 720 } });
+    browser = await openPage(plant.url, { viewport: { width: 1280, height: 800 } });
     page = browser.page;
     await waitForPicture(page);
     await waitForHealth(page, 'live');
@@ -54,8 +54,13 @@ test('an alarm: counted at once, listed, and one click leads there', options, as
     await page.locator('#alarms-close').click();
     await page.locator('#card').waitFor();
     assert.match(await page.locator('#card h3').textContent(), new RegExp(HOT));
-    await page.waitForFunction((name) => globalThis.plantcast.overlay.markers.some(({ tag, occluded }) => tag.name === name && !occluded), HOT);
+    await page.waitForFunction(() => globalThis.plantcast.pilot.fly === null);
     await settle(page);
+    const near = await page.evaluate((name) => {
+        const { overlay, session } = globalThis.plantcast, marker = overlay.marker(session.model.tag(name));
+        return marker && { depth: marker.depth, occluded: marker.occluded };
+    }, HOT);
+    assert.ok(near && !near.occluded && near.depth < 8, `flown there: ${JSON.stringify(near)}`);
     await keep('3-there');
 });
 

@@ -70,7 +70,8 @@ test('a 4K wall: every letter is read from 3 m, alarms are counted, and nothing 
             .filter((e) => e.id !== 'alarm-strip' && e.checkVisibility() && e.getBoundingClientRect().width > 1 &&
                 !e.closest('#groups')).length), 0);
         const out = await page.evaluate(() => [...document.querySelectorAll('.toolbar *, .alarm-strip *, .status *, .legend *')]
-            .map((e) => e.getBoundingClientRect()).filter((b) => b.width > 0 && (b.right > innerWidth + 1 || b.bottom > innerHeight + 1)).length);
+            .map((e) => e.getBoundingClientRect())
+            .filter((b) => b.width > 0 && (b.right > innerWidth + 1 || b.bottom > innerHeight + 1)).length);
         assert.equal(out, 0, 'nothing is cut off');
         await shoot(page, 'wall');
     }));

@@ -108,6 +108,18 @@ test('who leads knows who follows, and gives the lead to one of them', () => {
     assert.deepEqual(last(socket.sent), { type: 'lead', session: 9 });
 });
 
+test('strength and decay of single sensors are changed one by one, and undone', () => {
+    const { session, socket } = greeted();
+    session.setParams({ sensors: { A: { strength: 2 } } });
+    session.setParams({ sensors: { B: { decay: 3 } } });
+    assert.deepEqual(session.params.sensors, { A: { strength: 2 }, B: { decay: 3 } });
+    assert.deepEqual(last(socket.sent).sensors, { B: { decay: 3 } }, 'only the change goes out');
+    session.setParams({ sensors: { A: null } });
+    assert.deepEqual(session.params.sensors, { B: { decay: 3 } });
+    session.setParams({ sensors: null });
+    assert.deepEqual(session.params.sensors, {});
+});
+
 test('at most one camera per animation frame, the newest', () => {
     const { session, socket, clock } = greeted(WANTED);
     const before = socket.sent.length;

@@ -66,7 +66,7 @@ const timings = new TimingsPanel({ session });
 const views = new Views({ session, pilot });
 const place = new Place({ session, viewport });
 const tools = new Tools({ session, selection, viewport, tell });
-const alarms = new AlarmPanel({ session, onFly: (tag) => showTag(tag), refresh: () => refresh() });
+const alarms = new AlarmPanel({ session, onFly: (tag) => { showTag(tag); flyToTag(tag); }, refresh: () => refresh() });
 
 // --- selection
 

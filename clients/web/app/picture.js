@@ -18,7 +18,7 @@ export class Picture {
     constructor({ session, selection }) {
         Object.assign(this, { session, selection });
         this.panel = byId('picture-panel');
-        this.set = foldPanel(this.panel, byId('picture-toggle'), () => this.update());
+        this.set = foldPanel(this.panel, byId('picture-toggle'), () => this.opened());
         fillSegments(byId('scale'), 'scale', SCALES, (scale) => session.setParams({ scale }));
         fillSegments(byId('fill'), 'fill', FILLS, (fill) => session.setParams({ fill }));
         byId('environment').addEventListener('change', ({ target }) => session.setParams({ environment: target.value }));
@@ -36,6 +36,14 @@ export class Picture {
 
     close() {
         this.set(false);
+    }
+
+    // Its numbers are fetched when it is first opened.
+    async opened() {
+        this.update();
+        const { Factors } = await import('./factors.js');
+        this.factors ??= new Factors(this);
+        this.update();
     }
 
     // What `show` needs besides: a sensor that is chosen, else the first of the group; the instant of now.
@@ -134,6 +142,7 @@ export class Picture {
         markSegment(byId('fill'), params.fill ?? 'none');
         this.updateLight(this.session);
         this.updateHalf(this.session);
+        this.factors?.update();
     }
 
     instantText(baseline) {

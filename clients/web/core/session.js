@@ -156,12 +156,20 @@ export class Session {
             this.follow(null);
         const own = change.group && change.group !== this.params.group ? pick(this.model?.group(change.group) ?? {}, GROUPS_OWN) : {};
         const split = change.split && { split: { ...this.params.split, ...change.split } };
-        this.params = { ...this.params, ...own, ...change, ...split };
+        this.params = { ...this.params, ...own, ...change, ...split, ...this.mergedSensors(change.sensors) };
         if (this.welcomed)
             this.connection.send({ type: 'params', seq: ++this.paramsSeq, ...change });
         else
             Object.assign(this.unsent, change);
         this.emit('params');
+    }
+
+    // Those of single sensors that are named are changed, null undoes one, or all.
+    mergedSensors(change) {
+        if (change === undefined)
+            return {};
+        const all = change === null ? [] : Object.entries({ ...this.params.sensors, ...change });
+        return { sensors: Object.fromEntries(all.filter(([, own]) => own !== null)) };
     }
 
     resize(size) {
