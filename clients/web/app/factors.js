@@ -4,27 +4,30 @@ import { unitText } from '../core/format.js';
 import { say } from '../core/words.js';
 import { byId, make, setText } from './dom.js';
 
-const FACTORS = { strength: [0, 100, 0.1], decay: [0, 100, 0.1], power: [0.1, 16, 0.1], radius_m: [0, 10000, 0.1], reach_m: [0, 10000, 0.1] };
+const FACTORS = {
+    strength: [0, 100], decay: [0, 100], power: [0.5, 16], radius_m: [0, 1e6], reach_m: [1e-6, 1e6], // as the server takes them
+};
+const pairs = (all) => make('div', { class: 'pairs' }, ...all.map(([, { label }]) => label));
 const OWN = ['strength', 'decay'];
 
 export class Factors {
     constructor({ session, selection }) {
         Object.assign(this, { session, selection });
         this.range = ['min', 'max'].map((end) => this.field(`range-${end}`, say(`factor.${end}`), {}, () => this.setRange()));
-        this.factors = Object.entries(FACTORS).map(([name, [min, max, step]]) => [name,
-            this.field(`factor-${name}`, say(`factor.${name}`), { min, max, step }, (value) => this.setFactor(name, value))]);
-        this.own = OWN.map((name) => [name, this.field(`own-${name}`, say(`factor.${name}`), { min: 0, max: 100, step: 0.1 },
+        this.factors = Object.entries(FACTORS).map(([name, [min, max]]) => [name,
+            this.field(`factor-${name}`, say(`factor.${name}`), { min, max }, (value) => this.setFactor(name, value))]);
+        this.own = OWN.map((name) => [name, this.field(`own-${name}`, say(`factor.${name}`), { min: 0, max: 100 },
             (value) => this.setOwn({ [name]: value ?? undefined }))]);
         this.title = make('legend');
         this.reset = make('button', { type: 'button', id: 'own-reset', onclick: () => session.setParams({ sensors: null }) });
+        const own = make('button', { type: 'button', id: 'range-own', onclick: () => session.setParams({ range: null }) });
         this.engineers = make('div', { id: 'factors' },
-            make('fieldset', {}, make('legend', {}, say('factor.title')), make('div', { class: 'pairs' }, ...this.factors.map(([, f]) => f.label))),
-            make('fieldset', { id: 'own-factors' }, this.title, make('div', { class: 'pairs' }, ...this.own.map(([, f]) => f.label)),
+            make('fieldset', {}, make('legend', {}, say('factor.title')), pairs(this.factors)),
+            make('fieldset', { id: 'own-factors' }, this.title, pairs(this.own),
                 make('div', { class: 'line' }, this.reset)));
         byId('light').before(make('fieldset', {}, make('legend', {}, say('factor.range')),
             make('div', { class: 'pairs' }, ...this.range.map((f) => f.label)),
-            make('div', { class: 'line' }, make('button', { type: 'button', id: 'range-own', onclick: () => session.setParams({ range: null }) },
-                say('factor.own')))), this.engineers);
+            make('div', { class: 'line' }, own)), this.engineers);
     }
 
     // onNumber(number, or null where nothing is written).
@@ -62,7 +65,8 @@ export class Factors {
                 input.value = value ?? '';
         };
         this.range.forEach((f, i) => write(f, session.range[i]));
-        byId('range-own').textContent = `${say('factor.own')} (${session.group.min}–${session.group.max} ${unitText(session.group.unit)})`;
+        const { min, max, unit } = session.group;
+        setText(byId('range-own'), `${say('factor.own')} (${min}–${max} ${unitText(unit)})`);
         this.engineers.hidden = session.role !== 'engineer';
         for (const [name, f] of this.factors)
             write(f, params[name]);

@@ -4,10 +4,10 @@
 const KEY = 'plantcast.renewed';
 
 // Asked with each greeting: the server may have been another one meanwhile.
-export async function renewIfOld(session) {
-    const mine = await import('../made/version.js').then(({ version }) => version, () => null); // null: built without
+export function renewIfOld(session) {
+    const ours = import('../made/version.js').then(({ version }) => version, () => null); // null: built without
     session.on('welcome', async () => {
-        const theirs = await fetch('made/version.js', { cache: 'no-store' })
+        const mine = await ours, theirs = await fetch('made/version.js', { cache: 'no-store' })
             .then((answer) => (answer.ok ? answer.text() : ''), () => '');
         const version = theirs.match(/version = '(\w+)'/)?.[1];
         if (mine && version && version !== mine)
