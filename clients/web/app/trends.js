@@ -240,20 +240,25 @@ export class Trends {
         ctx.font = `${11 * devicePixelRatio}px system-ui, sans-serif`;
         ctx.textAlign = 'left';
         ctx.textBaseline = 'bottom';
-        ctx.lineWidth = devicePixelRatio;
-        ctx.setLineDash([6 * devicePixelRatio, 4 * devicePixelRatio]);
         for (const { scale, name, value, tags } of limitLines(this.tags, (tag) => this.unitOf(tag) || '–')) {
             const { min, max } = scales[scale] ?? {};
             if (!(value >= min && value <= max))
                 continue;
             const y = Math.round(valToPos(value, scale, true)), place = tags.length > 0 ? this.tags.indexOf(tags[0]) : 0;
             ctx.strokeStyle = ctx.fillStyle = tags.length > 0 ? COLOURS[place] : name.length > 1 ? '#a31515' : '#8a5a00';
+            ctx.lineWidth = devicePixelRatio;
+            ctx.setLineDash([6 * devicePixelRatio, 4 * devicePixelRatio]);
             ctx.beginPath();
             ctx.moveTo(bbox.left, y);
             ctx.lineTo(bbox.left + bbox.width, y);
             ctx.stroke();
             const words = [...tags.map((tag) => tag.name), name, shortNumberText(value, 3)].join(' ');
-            ctx.fillText(words, bbox.left + (5 + place * LIMIT_PX) * devicePixelRatio, y - 2 * devicePixelRatio);
+            const at = [bbox.left + (5 + place * LIMIT_PX) * devicePixelRatio, y - 2 * devicePixelRatio];
+            ctx.strokeStyle = '#fff'; // read over hatching, too
+            ctx.lineWidth = 3 * devicePixelRatio;
+            ctx.setLineDash([]);
+            ctx.strokeText(words, ...at);
+            ctx.fillText(words, ...at);
         }
         ctx.restore();
     }
