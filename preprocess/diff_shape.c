@@ -20,24 +20,40 @@ struct diff_shape {
     double low[3], high[3];
 };
 
+/* In order, those that a triangle uses: of a prepared asset the others are of its coarser levels, and lie off the surface. */
+static void take_points(struct trimesh *mesh, const struct side_shape *from)
+{
+    char *used = mem_array(from->vertex_count, 1);
+    uint32_t *number = mem_array(from->vertex_count, sizeof(*number));
+    for (size_t i = 0; i < from->index_count; i++)
+        used[from->indices[i]] = 1;
+    for (size_t v = 0; v < from->vertex_count; v++) {
+        if (!used[v])
+            continue;
+        for (int axis = 0; axis < 3; axis++)
+            mesh->points[mesh->point_count][axis] = (double)from->positions_m[v][axis];
+        number[v] = (uint32_t)mesh->point_count++;
+    }
+    for (size_t i = 0; i < from->index_count; i++)
+        mesh->tris[i / 3][i % 3] = number[from->indices[i]];
+    mem_free(used);
+    mem_free(number);
+}
+
 struct diff_shape *diff_shape_create(const struct side_shape *from)
 {
     struct diff_shape *shape = mem_new(sizeof(*shape));
     struct trimesh *mesh = &shape->mesh;
     mesh->points = mem_array(from->vertex_count, sizeof(*mesh->points));
     mesh->tris = mem_array(from->index_count / 3, sizeof(*mesh->tris));
-    mesh->point_count = from->vertex_count;
     mesh->tri_count = from->index_count / 3;
-    if (from->index_count)
-        memcpy(mesh->tris, from->indices, from->index_count / 3 * sizeof(*mesh->tris));
+    take_points(mesh, from);
     for (int axis = 0; axis < 3; axis++) {
         shape->low[axis] = INFINITY;
         shape->high[axis] = -INFINITY;
-        for (size_t v = 0; v < from->vertex_count; v++) {
-            double at = (double)from->positions_m[v][axis];
-            mesh->points[v][axis] = at;
-            shape->low[axis] = min_of(shape->low[axis], at);
-            shape->high[axis] = max_of(shape->high[axis], at);
+        for (size_t v = 0; v < mesh->point_count; v++) {
+            shape->low[axis] = min_of(shape->low[axis], mesh->points[v][axis]);
+            shape->high[axis] = max_of(shape->high[axis], mesh->points[v][axis]);
         }
     }
     shape->bvh = bvh_create(mesh);

@@ -10,6 +10,7 @@
 
 #include "base/mem.h"
 #include "tests/support/boxes.h"
+#include "tests/support/cad.h"
 #include "tests/support/prep_case.h"
 #include "tests/support/temp.h"
 
@@ -39,13 +40,13 @@ static void write_plant(struct prep_case *c, const char *name, const char *asset
 #define OLD_ASSETS                                                                                                                         \
     ASSET("SAME", "old.glb", "")                                                                                                           \
     ASSET("MOVED", "old.glb", "")                                                                                                          \
-    ASSET("PLACED", "old.glb", "") ASSET("TURNED", "old.glb", "") ASSET("CHANGED", "old.glb", "") ASSET("GONE", "old.glb", "")             \
-        ASSET("DROPPED", "old.glb", "")
+    ASSET("PLACED", "old.glb", "")                                                                                                         \
+    ASSET("TURNED", "old.glb", "") ASSET("CHANGED", "old.glb", "") ASSET("GONE", "old.glb", "") ASSET("DROPPED", "old.glb", "")
 #define NEW_ASSETS                                                                                                                         \
     ASSET("SAME", "new.glb", "")                                                                                                           \
     ASSET("MOVED", "new.glb", "")                                                                                                          \
-    ASSET("PLACED", "new.glb", ", placement: { translate: [0, 0, 0.5], rotate_deg: [0, 0, 0] }") ASSET("TURNED", "new.glb", "")            \
-        ASSET("CHANGED", "new.glb", "") ASSET("GONE", "new.glb", "") ASSET("ADDED", "new.glb", "")
+    ASSET("PLACED", "new.glb", ", placement: { translate: [0, 0, 0.5], rotate_deg: [0, 0, 0] }")                                           \
+    ASSET("TURNED", "new.glb", "") ASSET("CHANGED", "new.glb", "") ASSET("GONE", "new.glb", "") ASSET("ADDED", "new.glb", "")
 static const char tags_rows[] = "T-SAME,400001,Float,plc,temperature,SAME,,0.5,0.5,1\n"
                                 "T-MOVED,400003,Float,plc,temperature,MOVED,,10.5,0.5,1\n"
                                 "T-CARRIED,400005,Float,plc,temperature,MOVED,TT-1,,,\n"
@@ -204,6 +205,32 @@ static void nothing_lost_is_no_error(void **state)
     json_decref(root);
 }
 
+/* Points that only its coarser levels have lie off its surface. */
+static void levels_are_no_change(void **state)
+{
+    struct prep_case *c = *state;
+    struct cad_random chance = { 1 };
+    struct cad ball = { 0 };
+    struct maker maker;
+    cad_sphere(&ball, &chance, 20);
+    maker_init(&maker);
+    int at = maker_numbers(&maker, ball.positions, 12 * ball.vertex_count, FLOAT, ball.vertex_count, "VEC3");
+    int list = maker_numbers(&maker, ball.triangles, 12 * ball.triangle_count, UINT, 3 * ball.triangle_count, "SCALAR");
+    maker_node(&maker, "BALL", maker_mesh(&maker, json_pack("{s:{s:i},s:i}", "attributes", "POSITION", at, "indices", list)), NULL);
+    boxes_write(&maker, c->folder, "ball.glb");
+    maker_finish(&maker);
+    cad_finish(&ball);
+    write_plant(c, "ball", ASSET("BALL", "ball.glb", ""), "T-1,400001,Float,plc,temperature,BALL,,1,0,0\n");
+    prep_case_expect(c, "$FOLDER/ball.yaml --report json", 0);
+    json_t *report = prep_case_json(&c->out);
+    const json_t *levels = json_object_get(json_array_get(json_object_get(report, "assets"), 0), "levels");
+    assert_true(prep_case_number(json_array_get(levels, json_array_size(levels) - 1), "error_m") > 0.02); /* the tolerance is 0.01 */
+    json_decref(report);
+    json_t *root = compare(c, "$FOLDER/ball.prepared $FOLDER/ball.yaml", 0);
+    asset_of(root, "BALL", "same");
+    json_decref(root);
+}
+
 static void the_tolerance_decides(void **state)
 {
     struct prep_case *c = *state;
@@ -232,8 +259,9 @@ int main(void)
 {
     cmocka_set_message_output(CM_OUTPUT_TAP);
     const struct CMUnitTest tests[] = {
-        WITH_PLANTS(a_revision_is_compared), WITH_PLANTS(a_prepared_folder_stands_for_the_old_plant), WITH_PLANTS(nothing_lost_is_no_error),
-        WITH_PLANTS(the_tolerance_decides),  WITH_PLANTS(wrong_use_and_wrong_input_are_told_apart),
+        WITH_PLANTS(a_revision_is_compared),   WITH_PLANTS(a_prepared_folder_stands_for_the_old_plant),
+        WITH_PLANTS(nothing_lost_is_no_error), WITH_PLANTS(levels_are_no_change),
+        WITH_PLANTS(the_tolerance_decides),    WITH_PLANTS(wrong_use_and_wrong_input_are_told_apart),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
