@@ -40,6 +40,7 @@ struct store {
         void *arg;
     } listeners[STORE_LISTENERS];
     int64_t utc_ahead_ns; /* of the monotonic clock, when a sample came last */
+    bool has_utc;         /* one came */
 };
 
 static int64_t ns_of(double s)
@@ -120,6 +121,7 @@ void store_adopt(struct store *store, struct store *before)
             store->links[source] = before->links[i];
     }
     store->utc_ahead_ns = before->utc_ahead_ns;
+    store->has_utc = before->has_utc;
     pthread_mutex_unlock(&before->lock);
 }
 
@@ -253,6 +255,7 @@ void store_write(struct store *store, const struct sample *samples, size_t count
 {
     pthread_mutex_lock(&store->lock);
     store->utc_ahead_ns = now_utc_ns - now_mono_ns;
+    store->has_utc = true;
     for (size_t i = 0; i < count; i++)
         if (hold(store, &samples[i], now_mono_ns, now_utc_ns)) {
             tell(store, (size_t)samples[i].tag, store->tags[samples[i].tag].shown_quality, now_mono_ns, now_utc_ns);
@@ -269,7 +272,7 @@ static void lose(struct store *store, size_t tag, int64_t now_mono_ns)
         return;
     held->lost = true;
     count_change(store, tag, false, now_mono_ns);
-    if (held->shown_quality != shown)
+    if (held->shown_quality != shown && store->has_utc)
         tell(store, tag, held->shown_quality, now_mono_ns, now_mono_ns + store->utc_ahead_ns);
 }
 

@@ -19,7 +19,8 @@ struct sample {
     uint32_t quality;
 };
 
-/* Hears every sample and every link that is lost, in their order, under the store's lock: it copies and returns. value: NaN if Bad. */
+/* Hears every sample and every link that is lost, in their order, under the store's lock: it copies and returns. value: NaN if Bad.
+   What is lost before the first sample of all is not told, as its UTC is not known: a snapshot has it. */
 struct heard {
     int tag;
     double value;

@@ -267,6 +267,20 @@ static void all_who_listen_hear_until_they_leave(void **state)
     assert_int_equal(other, 3 + 2 * 10); /* both tags of the link */
 }
 
+/* Before the first sample nobody knows what time it is: an alarm or a point in history would be of 1970. */
+static void what_is_lost_at_first_is_not_told_at_a_wrong_time(void **state)
+{
+    struct setup *s = *state;
+    int64_t heard = 0;
+    store_listen(s->store, count_heard, &heard);
+    store_link_lost(s->store, 0, 10);
+    assert_int_equal(heard, 0);
+    assert_int_equal(look(s, 0, 10)->quality, QUALITY_BAD_NO_COMMUNICATION); /* whoever looks has it */
+    write_one(s, 0, 1, QUALITY_GOOD, 13);
+    store_link_lost(s->store, 0, 20);
+    assert_true(heard > 13);
+}
+
 static void qualities_have_names_and_classes(void **state)
 {
     (void)state;
@@ -425,6 +439,7 @@ int main(void)
         store_test(the_newest_sample_wins),
         store_test(the_snapshot_says_when),
         store_test(all_who_listen_hear_until_they_leave),
+        store_test(what_is_lost_at_first_is_not_told_at_a_wrong_time),
         store_test(readings_go_on_in_another_plant),
         cmocka_unit_test(qualities_have_names_and_classes),
     };
