@@ -9,7 +9,7 @@ import { Client } from './conformance/client.mjs';
 import { missing, TinyPlant } from './support/tiny_plant.mjs';
 
 const absent = missing();
-const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 150000 };
+const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 280000 };
 const MANY = 20000;
 const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 const name = (i) => `X-${String(i).padStart(5, '0')}`;
@@ -48,7 +48,7 @@ async function pages(count) {
     }
 }
 
-async function until(what, found, seconds = 60) {
+async function until(what, found, seconds = 120) {
     for (const end = performance.now() + seconds * 1000; performance.now() < end; await sleep(200))
         if (await found())
             return;
