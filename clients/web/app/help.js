@@ -7,6 +7,7 @@ import { byId, closeButton, make, makeSvg, withKeys } from './dom.js';
 const ROWS = [
     ['help.turn', 'help.turn.mouse', 'help.turn.touch', '[←] [→] [↑] [↓]'],
     ['help.move', 'help.move.mouse', 'help.move.touch', '[W] [A] [S] [D]'],
+    ['help.look', 'help.look.mouse', 'help.look.touch', ''],
     ['help.zoom', 'help.zoom.mouse', 'help.zoom.touch', '[+] [−]'],
     ['help.fit', 'help.fit.mouse', 'help.fit.touch', '[F]'],
     ['help.home', '', '', '[H]'],
@@ -18,6 +19,11 @@ const ROWS = [
     ['alarms.title', '', '', '[E]'],
     ['time.title', '', '', 'help.history.keys'],
     ['timings', '', '', '[M]'],
+    ['bar.hold', '', '', '[␣]'],
+    ['bar.measure', '', '', '[R]'],
+    ['bar.snapshot', '', '', '[C]'],
+    ['bar.share', '', '', '[K]'],
+    ['bar.theme', '', '', '[Z]'],
 ];
 const MARKS = [
     ['help.mark.good', 'circle', { class: 'mark', r: 4.5 }],
