@@ -45,6 +45,8 @@ export class Card {
         if (this.quality.textContent !== quality)
             this.quality.replaceChildren(glyph(reading.quality), quality);
         setText(this.age, ageText(model.ageMs(tag.index, clock.now())));
+        const unproven = model.unproven(tag);
+        setText(this.proof, unproven ? say(`proof.${unproven}`) : '');
         const alarm = model.alarms.gravest(tag.index);
         this.limit.hidden = !alarm;
         if (alarm) {
@@ -58,11 +60,12 @@ export class Card {
         const on = asset ? [asset.tag || asset.id, asset.description].filter(Boolean).join(', ') : '–';
         this.value = make('p', { class: 'value' });
         this.limit = make('p', { class: 'limit', hidden: true });
+        this.proof = make('p', { class: 'proof' });
         this.quality = make('dd');
         this.age = make('dd');
         fill(this.element,
             closeButton('close', () => this.onClose()),
-            make('h3', {}, tag.name), make('p', { class: 'about' }, tag.description ?? ''), this.value, this.limit,
+            make('h3', {}, tag.name), make('p', { class: 'about' }, tag.description ?? ''), this.value, this.limit, this.proof,
             make('dl', {}, make('dt', {}, say('card.quality')), this.quality, make('dt', {}, say('card.age')), this.age,
                 make('dt', {}, say('card.on')), make('dd', {}, on)),
             this.session.recorded ?

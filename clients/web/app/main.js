@@ -161,7 +161,20 @@ const commands = {
 };
 pilot.onCommand = (name) => commands[name]();
 pilot.onGroup = (index) => toolbar.chooseGroup(index);
+let engineer = null; // made when it is first opened
+async function openEngineer() {
+    if (!engineer) {
+        const { Engineer } = await import('./engineer.js');
+        engineer = engineer ?? new Engineer({ session, viewport, overlay, selection, selectTag, showTag, refresh });
+    }
+    engineer.toggle();
+}
+byId('engineer-toggle').addEventListener('click', openEngineer);
+session.on('proofs', refresh);
+
 pilot.onClick = (x, y, kind) => {
+    if (engineer?.takesClick(x, y))
+        return;
     if (tools.measuring?.on) {
         tools.measuring.click(x, y);
         return;
@@ -228,6 +241,7 @@ session.on('camera', () => {
     viewport.invalidate();
 });
 session.on('welcome', () => {
+    byId('engineer-toggle').hidden = session.role !== 'engineer';
     viewport.forget();
     status.show();
     arrive();

@@ -265,6 +265,8 @@ export class Overlay {
         c.beginPath();
         (SHAPES[reading.quality] ?? SHAPES.bad)(c, occluded ? 2.5 : this.radius);
         c.lineWidth = occluded ? 1.25 : 1.5;
+        if (this.session.model.unproven(tag))
+            c.setLineDash([2.5, 2]);
         if (occluded && !chosen) {
             c.globalAlpha = 0.5;
         } else {
@@ -273,6 +275,8 @@ export class Overlay {
         }
         c.strokeStyle = INK;
         c.stroke();
+        c.setLineDash([]);
+        this.drawTried?.(tag);
         if (reading.quality === 'bad' && !occluded) {
             c.beginPath();
             const arm = this.radius - 2;

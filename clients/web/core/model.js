@@ -18,6 +18,9 @@ export class Model {
         for (const tag of this.tags)
             assets.get(tag.asset)?.tags.push(tag);
         this.alarms = new Alarms(this.tags);
+        this.placed = new Map(); // by name: what `placed` says
+        this.proofs = new Map(); // by index
+        this.provingBegun = false;
         this.links = [];
         this.live = null; // nothing was said yet
         this.stopped = false; // see stop
@@ -29,6 +32,29 @@ export class Model {
     stop(stopped) {
         this.stopped = stopped;
         this.alarms.then = stopped ? this.readings : null;
+    }
+
+    // Sensors that stand elsewhere for us; all others are where the plant has them.
+    place(sensors) {
+        this.placed = new Map(sensors.map((sensor) => [sensor.tag, sensor]));
+        for (const tag of this.tags) {
+            tag.saved ??= { position: tag.position, asset: tag.asset };
+            const moved = this.placed.get(tag.name);
+            Object.assign(tag, moved ? { position: moved.surface, asset: moved.asset } : tag.saved);
+        }
+    }
+
+    hearProofs({ all, begun, tags }) {
+        this.proofs = all ? new Map() : this.proofs;
+        this.provingBegun = begun;
+        for (const [index, state, timeUs, value, expected, tolerance, who, remark] of tags)
+            this.proofs.set(index, { state, timeUs, value, expected, tolerance, who, remark });
+    }
+
+    // None has shown yet that this is what is measured there; null: nobody has begun to, or it is computed.
+    unproven(tag) {
+        const state = this.proofs.get(tag.index)?.state ?? 'none';
+        return this.provingBegun && tag.source && state !== 'pass' ? state : null;
     }
 
     get identity() {

@@ -40,7 +40,7 @@ export class Session {
         this.size = { width: 640, height: 360 };
         this.visible = true;
         this.unsent = {};        // parameters that were changed while nobody listened
-        this.cameraSeq = this.paramsSeq = this.fitSeq = this.pickSeq = this.alarmSeq = 0;
+        this.cameraSeq = this.paramsSeq = this.fitSeq = this.pickSeq = this.alarmSeq = this.toldSeq = 0;
         this.cameraNews = false; // the server does not know the camera yet
         this.cameraInput = null; // when a hand made it; latency counts from there
         this.markers = new Map();
@@ -240,6 +240,14 @@ export class Session {
             this.connection.send({ type: 'alarm', seq: ++this.alarmSeq, action, alarms, ...more });
     }
 
+    // What engineers say: place, gaps, save_tags, prove; each answer comes as the event of its type. Its number; 0: nobody listens.
+    tell(type, fields = {}) {
+        if (!this.welcomed)
+            return 0;
+        this.connection.send({ type, seq: ++this.toldSeq, ...fields });
+        return this.toldSeq;
+    }
+
     // This frame is on the screen.
     drawn(frame, decodeMs) {
         const now = this.now();
@@ -389,6 +397,17 @@ export class Session {
         this.emit('alarmed', message);
     }
 
+    // The server's word on what an engineer tries out: until it is saved, these sensors stand there for us alone.
+    hearPlaced(message) {
+        this.model.place(message.sensors);
+        this.emit('placed', message);
+    }
+
+    hearProofs(message) {
+        this.model.hearProofs(message);
+        this.emit('proofs', message);
+    }
+
     hearStatus(message) {
         this.model.links = message.links;
         this.model.live = message.live;
@@ -466,6 +485,10 @@ const HANDLERS = {
     status: Session.prototype.hearStatus,
     alarms: Session.prototype.hearAlarms,
     alarmed: Session.prototype.hearAlarmed,
+    placed: Session.prototype.hearPlaced,
+    proofs: Session.prototype.hearProofs,
+    ...Object.fromEntries(['gaps', 'tags_diff', 'tags_saved', 'proved'].map((type) =>
+        [type, function hear(message) { this.emit(type, message); }])),
     error: Session.prototype.hearError,
     following: Session.prototype.hearFollowing,
     followers: Session.prototype.hearFollowers,

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The engineer's panel: sensors are placed, and proven. Loaded when it is first opened.
+import { say } from '../core/words.js';
+import { byId, closeButton, make } from './dom.js';
+import { Placing } from './placing.js';
+import { Proving } from './proving.js';
+
+export class Engineer {
+    constructor(page) {
+        document.head.append(make('link', { rel: 'stylesheet', href: new URL('engineer.css', import.meta.url).href }));
+        this.page = page;
+        this.button = byId('engineer-toggle');
+        this.parts = { place: new Placing(page), prove: new Proving(page) };
+        const choice = (name) => make('label', {},
+            make('input', { type: 'radio', name: 'engineer-part', value: name, checked: name === 'place', onchange: () => this.choose(name) }),
+            make('span', {}, say(`eng.${name}`)));
+        this.element = make('section', { class: 'engineer', id: 'engineer', hidden: true, 'aria-label': say('eng.title') },
+            make('header', {}, make('h2', {}, say('eng.title')), closeButton('eng.close', () => this.toggle())),
+            make('fieldset', { class: 'segments' }, make('legend', {}, say('eng.what')), choice('place'), choice('prove')),
+            this.parts.place.element, this.parts.prove.element);
+        byId('viewport').parentElement.append(this.element);
+        this.choose('place');
+        page.overlay.drawTried = (tag) => this.mark(tag);
+        page.session.on('welcome', () => { if (page.session.role !== 'engineer' && this.open) this.toggle(); });
+    }
+
+    get open() {
+        return !this.element.hidden;
+    }
+
+    toggle() {
+        this.element.hidden = this.open;
+        this.button.setAttribute('aria-expanded', this.open);
+        (this.open ? this.element.querySelector('input') : this.button).focus();
+        this.parts[this.part].show();
+        this.page.refresh();
+    }
+
+    choose(part) {
+        this.part = part;
+        for (const [name, { element }] of Object.entries(this.parts))
+            element.hidden = name !== part;
+        this.parts[part].show();
+        this.page.refresh();
+    }
+
+    takesClick(x, y) {
+        return this.open && this.part === 'place' && this.parts.place.takesClick(x, y);
+    }
+
+    // Over its marker: a dashed ring where it is tried out, a double one where it moved.
+    mark(tag) {
+        const c = this.page.overlay.context, moved = this.page.session.model.placed.has(tag.name);
+        const stirred = this.open && this.part === 'prove' && this.parts.prove.stirred === tag.name;
+        const ring = (radius, dash, width) => {
+            c.beginPath();
+            c.arc(0, 0, radius, 0, 2 * Math.PI);
+            c.lineWidth = width;
+            c.setLineDash(dash);
+            c.strokeStyle = '#1d252d';
+            c.stroke();
+            c.setLineDash([]);
+        };
+        if (moved)
+            ring(13, [4, 3], 2);
+        if (stirred)
+            [12, 16].forEach((radius) => ring(radius, [], 2.5));
+    }
+}

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The engineer's panel in the browser: a sensor is put onto the surface, dragged, saved; and proven against a transmitter that is forced.
+import assert from 'node:assert/strict';
+import { existsSync, readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { DESKTOP, openPage, settle, shoot, TABLET, waitForPicture } from './support/browser.mjs';
+import { missing, TinyPlant } from './support/tiny_plant.mjs';
+
+const absent = missing();
+const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : !existsSync('/usr/bin/chromium') ? 'no chromium' : false;
+const options = { skip, timeout: 200000 };
+let plant, browser, page, tagsFile;
+
+before(async () => {
+    if (skip)
+        return;
+    plant = await TinyPlant.create();
+    tagsFile = join(plant.folder, 'tags.csv');
+    writeFileSync(tagsFile, `${readFileSync(tagsFile, 'utf8')}TI-9,400007,Float,°C,spare,temperature,,,,,1\n`);
+    assert.equal(plant.prepare().code, 0);
+    await plant.startSim();
+    for (const [tag, value] of [['TI-1', 80], ['TI-2', 20], ['TI-9', 50], ['PI-1', 5]])
+        await plant.tell(`set ${tag} ${value}`);
+    await plant.startDaemon();
+    browser = await openPage(`http://127.0.0.1:${plant.port}/`, DESKTOP);
+    page = browser.page;
+    await ready(page);
+});
+after(async () => {
+    await browser?.close();
+    await plant?.destroy();
+});
+
+async function ready(on) {
+    await waitForPicture(on);
+    await look(on, [2.2, -2.2, 1.6]);
+}
+
+async function look(on, eye) {
+    await on.evaluate((from) => globalThis.plantcast.session.setCamera({ eye: from, target: [0, 0, 0], up: [0, 0, 1], fov: 45 }), eye);
+    await on.waitForFunction((from) => {
+        const at = globalThis.plantcast.session.picture?.camera.eye;
+        return at && Math.hypot(...at.map((v, i) => v - from[i])) < 1e-3;
+    }, eye);
+}
+
+const text = (selector, on = page) => on.locator(selector).textContent();
+const says = (selector, pattern, on = page) => on.waitForFunction(
+    ([where, what]) => new RegExp(what).test(document.querySelector(where)?.textContent ?? ''), [selector, pattern], { timeout: 60000 });
+// In the page, where a place of the plant is.
+const at = (place, on = page) => on.evaluate((point) => globalThis.plantcast.overlay.pageOf(point), place);
+const moved = (on = page) => on.evaluate(() => [...globalThis.plantcast.session.model.placed.values()][0]?.position ?? null);
+const button = (name, on = page) => on.locator('#engineer').getByRole('button', { name, exact: true });
+
+test('a tag that stands nowhere is put onto the surface by a click, and its field is there', options, async () => {
+    await page.locator('#engineer-toggle').click();
+    await says('#engineer .tags li', 'TI-9 spare.*stands nowhere yet');
+    await page.locator('#engineer .tags button').first().click();
+    await says('#engineer .hint', '^TI-9: click on the surface');
+    const { x, y } = await at([0.2, -0.5, 0.2]);
+    await page.mouse.click(x, y);
+    await says('#engineer .moves', 'TI-9 on E-101 .*along the surface');
+    const place = await moved();
+    assert.ok(Math.hypot(place[0] - 0.2, place[1] + 0.5, place[2] - 0.2) < 0.02, `${place}`);
+    await page.waitForFunction(() => globalThis.plantcast.overlay.markers.some(({ tag }) => tag.name === 'TI-9'));
+    await settle(page);
+    await shoot(page, 'engineer-placed');
+});
+
+test('its marker is dragged over the surface; one step back for the whole way', options, async () => {
+    const before = await moved(), from = await at(before), to = await at([-0.2, -0.5, -0.1]);
+    const eye = await page.evaluate(() => globalThis.plantcast.session.camera.eye);
+    await page.mouse.move(from.x, from.y);
+    await page.mouse.down();
+    for (let i = 1; i <= 8; i++) {
+        await page.mouse.move(from.x + ((to.x - from.x) * i) / 8, from.y + ((to.y - from.y) * i) / 8);
+        await page.waitForTimeout(30);
+    }
+    await page.mouse.up();
+    await page.waitForFunction(() => {
+        const position = [...globalThis.plantcast.session.model.placed.values()][0]?.position;
+        return position && Math.hypot(position[0] + 0.2, position[1] + 0.5, position[2] + 0.1) < 0.02;
+    });
+    assert.deepEqual(await page.evaluate(() => globalThis.plantcast.session.camera.eye), eye, 'the camera stays');
+    await button('Undo').click();
+    await page.waitForFunction((x) => Math.abs([...globalThis.plantcast.session.model.placed.values()][0].position[0] - x) < 1e-9, before[0]);
+    await page.mouse.click(5 + (await page.locator('#viewport').boundingBox()).x, 5 + (await page.locator('#viewport').boundingBox()).y);
+    await says('#engineer .note', 'There is no surface');
+});
+
+test('gaps are told', options, async () => {
+    await button('Gaps').click();
+    await says('#engineer .gaps', 'Gaps: Temperature.*No sensor is off its surface.*E-101 Farthest from any sensor: \\d.*Farthest apart');
+    await settle(page);
+    await shoot(page, 'engineer-gaps');
+});
+
+test('the list is saved: what changes is shown, then it is in force', options, async () => {
+    const old = readFileSync(tagsFile, 'utf8');
+    await button('Save …').click();
+    await says('dialog.diff[open]', 'line 5');
+    await shoot(page, 'engineer-diff');
+    await page.getByRole('button', { name: 'Cancel', exact: true }).click();
+    assert.equal(readFileSync(tagsFile, 'utf8'), old);
+    await button('Save …').click();
+    await page.getByRole('button', { name: 'Save and put in force' }).click();
+    await says('#engineer .part .note', 'In force. The list before it is tags\\.csv\\.1');
+    assert.equal(readFileSync(`${tagsFile}.1`, 'utf8'), old);
+    assert.match(readFileSync(tagsFile, 'utf8'), /TI-9,400007,Float,°C,spare,temperature,E-101,0\.\d+,-0\.5,0\.\d+,1/);
+    await page.waitForFunction(() => globalThis.plantcast.session.model.tag('TI-9').position !== null);
+    assert.equal(await moved(), null);
+    await ready(page);
+});
+
+test('walk: who moved is pointed out, swapped ones too; a value that fits proves the tag', options, async () => {
+    await page.locator('#engineer label', { hasText: 'Prove' }).click();
+    await says('#engineer .count', '^0 of 4 proven');
+    await page.locator('#engineer .part:not([hidden]) .tags button', { hasText: 'TI-1' }).click();
+    await says('#engineer .judge output', '^now 80');
+    await page.waitForTimeout(700); // some readings, for the noise
+    await button('Watch').click();
+    await plant.tell('set TI-2 60');
+    await says('#engineer .judge .note', 'TI-2 moved, not TI-1: are they swapped');
+    await settle(page);
+    await shoot(page, 'engineer-swapped');
+    await button('Watch').click();
+    await plant.tell('set TI-1 90');
+    await says('#engineer .judge .note', '^TI-1 moved most: by 10');
+    await page.getByLabel('Expected').fill('90,2');
+    await page.getByLabel('Tolerance').fill('0.5');
+    await button('Compare').click();
+    await says('#engineer .count', '^1 of 4 proven');
+    await says('#engineer .judge h3', '^TI-2$');
+    await page.getByLabel('Expected').fill('10');
+    await button('Compare').click();
+    await says('#engineer', 'TI-2 failed: the value is beyond the tolerance \\(60');
+    await settle(page);
+    await shoot(page, 'engineer-proving');
+});
+
+test('what is not proven is said to be so to everybody, and stays through a reload of the page', options, async () => {
+    await page.reload();
+    await ready(page);
+    await page.waitForFunction(() => globalThis.plantcast.session.model.provingBegun);
+    await page.evaluate(() => {
+        const { selection, session } = globalThis.plantcast;
+        selection.tag = session.model.tag('TI-2').name;
+    });
+    await says('#card .proof', '^Unproven: failed$');
+    assert.deepEqual(await page.evaluate(() => globalThis.plantcast.session.model.tags.map((tag) =>
+        globalThis.plantcast.session.model.unproven(tag))), [null, 'fail', 'none', 'none']);
+    await settle(page);
+    await shoot(page, 'engineer-unproven');
+    assert.deepEqual(browser.errors, []);
+});
+
+test('on a tablet: a tap places, a finger drags', options, async () => {
+    const tablet = await openPage(`http://127.0.0.1:${plant.port}/`, TABLET), on = tablet.page;
+    await ready(on);
+    await on.locator('#engineer-toggle').tap();
+    await on.locator('#engineer .tags button', { hasText: 'TI-1' }).tap();
+    await on.waitForTimeout(800); // it may fly there
+    await look(on, [2.6, -2.2, 1.6]);
+    const { x, y } = await at([0.1, -0.5, 0.1], on);
+    await on.touchscreen.tap(x, y);
+    await says('#engineer .moves', 'TI-1 on E-101', on);
+    assert.ok(Math.hypot(...(await moved(on)).map((v, i) => v - [0.1, -0.5, 0.1][i])) < 0.03);
+    await says('#engineer .moves', 'along the surface', on);
+    await settle(on);
+    await shoot(on, 'engineer-tablet');
+    assert.equal(await text('#engineer .hint', on), 'TI-1: click on the surface, or drag its marker.');
+    assert.deepEqual(tablet.errors, []);
+    await tablet.close();
+});
