@@ -109,7 +109,7 @@ test('each URL asks for its role', { skip }, async () => {
     for (const url of ['/', '/app/main.js', '/healthz', '/readyz'])
         assert.deepEqual(await statuses(url), [200, 401, 200, 200, 200], url);
     const small = 'width=64&height=64';
-    for (const url of ['/api/v1/plant', '/api/v1/tags', '/metrics', `/snapshot.png?${small}`, `/api/v1/pick?${small}&x=1&y=1`])
+    for (const url of ['/api/v1/plant', '/api/v1/tags', '/api/v1/proofs', '/metrics', `/snapshot.png?${small}`, `/api/v1/pick?${small}&x=1&y=1`])
         assert.deepEqual(await statuses(url), [401, 401, 200, 200, 200], url);
     for (const field of ['power=3', 'strength=2', 'decay=2', 'radius_m=1', 'reach_m=1', 'fill=neighbours', 'sensors=TI-1=2',
         'split=power=3'])
@@ -151,6 +151,9 @@ test('a token by each of its three ways, and what roles may say', { skip }, asyn
             client.say({ type: 'params', seq: 2, power: 3 });
             assert.equal(role === 'engineer' ? (await client.text('params')).power : (await client.text('error')).code,
                 role === 'engineer' ? 3 : 'not_allowed');
+            client.say({ type: 'place', seq: 1, moves: [] });
+            assert.equal(role === 'engineer' ? (await client.text('placed')).seq : (await client.text('error')).code,
+                role === 'engineer' ? 1 : 'not_allowed');
             client.say({ type: 'params', seq: 3, interpolation: 'paper' });
             assert.equal((await client.text('params')).interpolation, 'paper');
             client.close();

@@ -48,7 +48,7 @@ export class Engineer {
         return this.open && this.part === 'place' && this.parts.place.takesClick(x, y);
     }
 
-    // Over its marker: a dashed ring where it is tried out, a double one where it moved.
+    // Over its marker: a dashed ring where it is tried out, a whole one where it is chosen, a double one where it moved.
     mark(tag) {
         const c = this.page.overlay.context, moved = this.page.session.model.placed.has(tag.name);
         const stirred = this.open && this.part === 'prove' && this.parts.prove.stirred === tag.name;
@@ -63,6 +63,8 @@ export class Engineer {
         };
         if (moved)
             ring(13, [4, 3], 2);
+        if (this.open && this.part === 'place' && this.parts.place.tag === tag.name)
+            ring(9, [], 2.5);
         if (stirred)
             [12, 16].forEach((radius) => ring(radius, [], 2.5));
     }

@@ -176,7 +176,7 @@ export class Placing {
         this.tag = this.tag === tag.name ? null : tag.name;
         if (this.tag && tag.group !== this.session.params.group)
             this.session.setParams({ group: tag.group });
-        this.selectTag(this.tag && tag.position ? tag : null);
+        this.selectTag(null); // its card would lie over the surface
         this.show();
     }
 
