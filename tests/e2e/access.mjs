@@ -109,7 +109,8 @@ test('each URL asks for its role', { skip }, async () => {
     for (const url of ['/', '/app/main.js', '/healthz', '/readyz'])
         assert.deepEqual(await statuses(url), [200, 401, 200, 200, 200], url);
     const small = 'width=64&height=64';
-    for (const url of ['/api/v1/plant', '/api/v1/tags', '/api/v1/proofs', '/metrics', `/snapshot.png?${small}`, `/api/v1/pick?${small}&x=1&y=1`])
+    for (const url of ['/api/v1/plant', '/api/v1/tags', '/api/v1/proofs', '/metrics', `/snapshot.png?${small}`,
+        `/api/v1/pick?${small}&x=1&y=1`])
         assert.deepEqual(await statuses(url), [401, 401, 200, 200, 200], url);
     for (const field of ['power=3', 'strength=2', 'decay=2', 'radius_m=1', 'reach_m=1', 'fill=neighbours', 'sensors=TI-1=2',
         'split=power=3'])

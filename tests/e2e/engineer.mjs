@@ -84,7 +84,8 @@ test('its marker is dragged over the surface; one step back for the whole way', 
     });
     assert.deepEqual(await page.evaluate(() => globalThis.plantcast.session.camera.eye), eye, 'the camera stays');
     await button('Undo').click();
-    await page.waitForFunction((x) => Math.abs([...globalThis.plantcast.session.model.placed.values()][0].position[0] - x) < 1e-9, before[0]);
+    await page.waitForFunction((x) => Math.abs([...globalThis.plantcast.session.model.placed.values()][0].position[0] - x) < 1e-9,
+        before[0]);
     await page.mouse.click(5 + (await page.locator('#viewport').boundingBox()).x, 5 + (await page.locator('#viewport').boundingBox()).y);
     await says('#engineer .note', 'There is no surface');
 });

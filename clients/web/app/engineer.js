@@ -12,7 +12,8 @@ export class Engineer {
         this.button = byId('engineer-toggle');
         this.parts = { place: new Placing(page), prove: new Proving(page) };
         const choice = (name) => make('label', {},
-            make('input', { type: 'radio', name: 'engineer-part', value: name, checked: name === 'place', onchange: () => this.choose(name) }),
+            make('input', { type: 'radio', name: 'engineer-part', value: name, checked: name === 'place',
+                onchange: () => this.choose(name) }),
             make('span', {}, say(`eng.${name}`)));
         this.element = make('section', { class: 'engineer', id: 'engineer', hidden: true, 'aria-label': say('eng.title') },
             make('header', {}, make('h2', {}, say('eng.title')), closeButton('eng.close', () => this.toggle())),

@@ -23,7 +23,8 @@ export class Placing {
     build() {
         const button = (key, onclick) => make('button', { type: 'button', onclick }, say(key));
         this.hint = make('p', { class: 'hint', role: 'status' });
-        this.find = make('input', { type: 'search', placeholder: say('eng.find'), 'aria-label': say('eng.find'), oninput: () => this.showTags() });
+        this.find = make('input', { type: 'search', placeholder: say('eng.find'), 'aria-label': say('eng.find'),
+            oninput: () => this.showTags() });
         this.list = make('ul', { class: 'tags' });
         this.tried = make('ul', { class: 'moves' });
         this.none = make('p', { class: 'quiet' }, say('eng.nomoves'));
@@ -33,7 +34,8 @@ export class Placing {
         this.gaps = make('div', { class: 'gaps' });
         this.note = make('p', { class: 'note', role: 'status' });
         this.dialog = make('dialog', { class: 'help diff', 'aria-label': say('eng.save') });
-        this.element = make('div', { class: 'part' }, this.hint, this.find, this.list, make('h3', {}, say('eng.moves')), this.none, this.tried,
+        this.element = make('div', { class: 'part' }, this.hint, this.find, this.list, make('h3', {}, say('eng.moves')), this.none,
+            this.tried,
             make('div', { class: 'line' }, this.undo, this.back, button('eng.gaps', () => this.session.tell('gaps')), this.save),
             this.note, this.gaps, this.dialog);
     }
@@ -169,7 +171,8 @@ export class Placing {
         tags.sort((a, b) => Boolean(a.position) - Boolean(b.position));
         fill(this.list, ...tags.slice(0, SHOWN_TAGS).map((tag) => make('li', {}, make('button', {
             type: 'button', 'aria-pressed': String(tag.name === this.tag), onclick: () => this.choose(tag),
-        }, make('b', {}, tag.name), ' ', tag.description ?? '', make('i', {}, tag.asset ? say('eng.on', { asset: tag.asset }) : say('eng.nowhere'))))));
+        }, make('b', {}, tag.name), ' ', tag.description ?? '', make('i', {},
+            tag.asset ? say('eng.on', { asset: tag.asset }) : say('eng.nowhere'))))));
     }
 
     choose(tag) {
@@ -187,7 +190,8 @@ export class Placing {
                 make('p', { class: 'off' }, say('eng.gap.off', { tag, asset, metres: metres(m), limit: metres(limit) })))
                 : [make('p', {}, say('eng.gap.none'))]),
             ...assets.map((of) => make('p', {}, make('b', {}, of.asset), ' ',
-                say('eng.gap', { metres: metres(of.farthest_m), far: percent(of.far_share), limit: metres(of.far_m), lost: percent(of.lost_share) }),
+                say('eng.gap', { metres: metres(of.farthest_m), far: percent(of.far_share), limit: metres(of.far_m),
+                    lost: percent(of.lost_share) }),
                 of.next ? ` ${say('eng.gap.next', { a: of.next[0], b: of.next[1], metres: metres(of.next_m) })}` : '')));
     }
 
@@ -205,7 +209,8 @@ export class Placing {
             make('p', {}, conflict ? say('eng.diff.conflict', { file }) : say('eng.diff.note')),
             make('div', { class: 'lines', tabindex: '0' }, ...lines.map(change)),
             more > 0 ? make('p', {}, say('eng.diff.more', { count: more })) : null,
-            make('div', { class: 'line' }, make('button', { type: 'button', onclick: close }, say('eng.cancel')), conflict ? null : confirm));
+            make('div', { class: 'line' }, make('button', { type: 'button', onclick: close }, say('eng.cancel')),
+                conflict ? null : confirm));
         this.dialog.showModal();
     }
 

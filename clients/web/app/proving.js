@@ -40,11 +40,13 @@ export class Proving {
         this.watch = button('eng.watch', () => this.arm());
         this.words = make('p', { class: 'note', role: 'status' });
         this.result = make('p', { class: 'note', role: 'status' });
-        this.judge = make('div', { class: 'judge' }, this.title = make('h3'), this.now, make('div', { class: 'line' }, this.watch), this.words,
+        this.judge = make('div', { class: 'judge' }, this.title = make('h3'), this.now, make('div', { class: 'line' }, this.watch),
+            this.words,
             make('div', { class: 'line' }, wantedLabel, toleranceLabel), remarkLabel,
             make('div', { class: 'line' }, button('eng.compare', () => this.send(false)), button('eng.fails', () => this.send(true))));
         this.file = make('input', { type: 'file', accept: '.csv,text/csv', hidden: true, onchange: () => this.readFile() });
-        this.element = make('div', { class: 'part' }, make('label', { class: 'device' }, say('eng.device'), this.device), this.count, this.list,
+        this.element = make('div', { class: 'part' }, make('label', { class: 'device' }, say('eng.device'), this.device),
+            this.count, this.list,
             this.judge, this.result, make('div', { class: 'line' }, button('eng.csv', () => this.file.click()), this.file,
                 button('eng.export', () => this.exportAll())));
     }
@@ -129,7 +131,8 @@ export class Proving {
         if (!found)
             return;
         const by = this.text(model.tags[found.index], found.by);
-        setText(this.words, [say('eng.moved', { tag: name, by }), name === this.tag ? '' : say('eng.swapped', { tag: name, wanted: this.tag })]
+        setText(this.words, [say('eng.moved', { tag: name, by }), name === this.tag ? ''
+            : say('eng.swapped', { tag: name, wanted: this.tag })]
             .join(' ').trim());
         if (name !== this.stirred) {
             this.stirred = name;
@@ -147,7 +150,8 @@ export class Proving {
         if (wrong.length > 0)
             wrong[0][0].focus();
         else
-            this.session.tell('prove', { tag: this.tag, expected, tolerance, fail, ...(this.remark.value ? { remark: this.remark.value } : {}) });
+            this.session.tell('prove', { tag: this.tag, expected, tolerance, fail, ...(this.remark.value
+                ? { remark: this.remark.value } : {}) });
     }
 
     // On to the next that is not proven.

@@ -51,13 +51,15 @@ export class Walk {
 export function readExpected(text) {
     const lines = text.replace(/^\uFEFF/, '').split(/\r\n|\n|\r/).filter((line) => line.trim());
     const separator = [',', ';', '\t'].reduce((a, b) => (lines[0]?.split(b).length > lines[0]?.split(a).length ? b : a), ',');
-    const cells = (line) => [...line.matchAll(separators(separator))].map(([, quoted, plain]) => (quoted?.replace(/""/g, '"') ?? plain).trim());
+    const cells = (line) => [...line.matchAll(separators(separator))].map(([, quoted, plain]) => (quoted?.replace(/""/g, '"')
+        ?? plain).trim());
     const head = cells(lines[0] ?? '').map((name) => name.toLowerCase());
     const [name, expected, tolerance] = ['tag name', 'expected', 'tolerance'].map((column) => head.indexOf(column));
     if (name < 0 || expected < 0 || tolerance < 0)
         return null;
     const number = (cell) => (cell?.trim() ? Number(cell) : NaN);
-    return new Map(lines.slice(1).map(cells).map((row) => [row[name], { expected: number(row[expected]), tolerance: number(row[tolerance]) }])
+    return new Map(lines.slice(1).map(cells).map((row) => [row[name], { expected: number(row[expected]),
+        tolerance: number(row[tolerance]) }])
         .filter(([, of]) => Number.isFinite(of.expected) && of.tolerance >= 0));
 }
 

@@ -472,7 +472,8 @@ export default {
     'eng.gaps': '빈틈',
     'eng.save': '저장 …',
     'eng.gaps.of': '빈틈: {quantity}',
-    'eng.gap': '모든 센서에서 가장 먼 곳: {metres} m. 표면의 {far} %가 {limit} m보다 멀고, {lost} %는 지금 데이터가 없습니다.',
+    'eng.gap': '모든 센서에서 가장 먼 곳: {metres} m. 표면의 {far} %가 {limit} m보다 멀고, ' +
+    '{lost} %는 지금 데이터가 없습니다.',
     'eng.gap.next': '가장 멀리 떨어진 이웃: {a} – {b}, {metres} m.',
     'eng.gap.off': '{tag}은(는) {asset} 표면에서 {metres} m 떨어져 있습니다 (최대 {limit} m)',
     'eng.gap.none': '표면에서 벗어난 센서가 없습니다.',
@@ -481,7 +482,8 @@ export default {
     'eng.diff.after': '이후',
     'eng.diff.line': '{n}행',
     'eng.diff.note': '지금의 목록은 옆에 그대로 남습니다. 저장하면 모두에게 적용되며 몇 초가 걸립니다.',
-    'eng.diff.conflict': '{file}을(를) 다른 사람이 바꾸었고 아직 불러오지 않았습니다. 저장하지 않았습니다. 바뀐 내용:',
+    'eng.diff.conflict': '{file}을(를) 다른 사람이 바꾸었고 아직 불러오지 않았습니다. ' +
+    '저장하지 않았습니다. 바뀐 내용:',
     'eng.diff.more': '… 그 밖에 {count}행',
     'eng.cancel': '취소',
     'eng.confirm': '저장하고 적용',
