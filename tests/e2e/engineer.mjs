@@ -60,7 +60,7 @@ test('a tag that stands nowhere is put onto the surface by a click, and its fiel
     await says('#engineer .hint', '^TI-9: click on the surface');
     const { x, y } = await at([0.2, -0.5, 0.2]);
     await page.mouse.click(x, y);
-    await says('#engineer .moves', 'TI-9 on E-101 .*along the surface');
+    await says('#engineer .moves', 'TI-9 on E-101 .*\\d{3}along the surface');
     const place = await moved();
     assert.ok(Math.hypot(place[0] - 0.2, place[1] + 0.5, place[2] - 0.2) < 0.02, `${place}`);
     await page.waitForFunction(() => globalThis.plantcast.overlay.markers.some(({ tag }) => tag.name === 'TI-9'));
@@ -167,7 +167,7 @@ test('on a tablet: a tap places, a finger drags', options, async () => {
     await on.touchscreen.tap(x, y);
     await says('#engineer .moves', 'TI-1 on E-101', on);
     assert.ok(Math.hypot(...(await moved(on)).map((v, i) => v - [0.1, -0.5, 0.1][i])) < 0.03);
-    await says('#engineer .moves', 'along the surface', on);
+    await says('#engineer .moves', '\\d{3}along the surface', on);
     await settle(on);
     await shoot(on, 'engineer-tablet');
     assert.equal(await text('#engineer .hint', on), 'TI-1: click on the surface, or drag its marker.');
