@@ -8,6 +8,7 @@
 
 #include "base/mem.h"
 #include "preprocess/split_impl.h"
+#include "surface/vec.h"
 
 #define AIM (0.9 * SPLIT_ERROR) /* errs the field less at the points looked at, it does by less than that in between */
 #define MOST_ROUNDS 16
@@ -16,6 +17,7 @@
 #define INSIDE_LEAST 8.0 /* shortest pieces: smaller triangles are not looked at inside */
 #define FLAT 1e-3        /* a triangle's longest edge is no more than that shorter than the way round over the corner across */
 #define ASIDE 0.1        /* of the edge, at least, that corner is from its ends */
+#define LINE_OF_SIZE 2.5e-7 /* a triangle no higher than that, a few units of the last place, is a line */
 #define LINE 16          /* floats */
 #define MORE_PLACES 12.0 /* room for places, in those that the model has */
 #define FULL 2e-4        /* a level that may grow by less than that is done: each round takes half of what is left */
@@ -60,17 +62,40 @@ static size_t keep_worst(struct split_finding *findings, size_t count, size_t mo
     return kept;
 }
 
-/* Measures edges that are new. */
+/* It has no width that a picture could show. */
+static bool is_line(const struct split *split, const struct cut_tri *tri)
+{
+    double p[3][3], ab[3], ac[3], normal[3], longest_m = 0;
+    for (int c = 0; c < 3; c++)
+        for (int axis = 0; axis < 3; axis++)
+            p[c][axis] = (double)split_position(split, tri->v[c])[axis];
+    for (int c = 0; c < 3; c++)
+        longest_m = fmax(longest_m, vec_distance(p[c], p[(c + 1) % 3]));
+    vec_sub(p[1], p[0], ab);
+    vec_sub(p[2], p[0], ac);
+    vec_cross(ab, ac, normal);
+    return sqrt(vec_dot(normal, normal)) <= LINE_OF_SIZE * split->size_m * longest_m;
+}
+
+/* Measures edges that are new. One that only lines have is not seen; were it cut, they would become ever more. */
 static void measure_edges(struct split *split)
 {
     struct cutmesh *mesh = &split->mesh;
     struct split_finding *findings = mem_array(3 * mesh->tri_count, sizeof(*findings));
     size_t count = 0;
+    for (size_t t = 0; t < mesh->tri_count; t++) {
+        struct cut_tri *tri = &mesh->tris[t];
+        bool any_new = mesh->cuts[tri->e[0]].error < 0 || mesh->cuts[tri->e[1]].error < 0 || mesh->cuts[tri->e[2]].error < 0;
+        for (int i = 0; i < 3 && any_new && !is_line(split, tri); i++) {
+            struct cut_edge *edge = &mesh->cuts[tri->e[i]];
+            if (edge->error < 0)
+                findings[count++].number = tri->e[i];
+            edge->error = fmaxf(edge->error, 0);
+        }
+    }
     for (size_t t = 0; t < mesh->tri_count; t++)
         for (int i = 0; i < 3; i++) {
             struct cut_edge *edge = &mesh->cuts[mesh->tris[t].e[i]];
-            if (edge->error < 0)
-                findings[count++].number = mesh->tris[t].e[i];
             edge->error = fmaxf(edge->error, 0);
         }
     split_measure_edges(split, findings, count, AIM);
@@ -187,7 +212,8 @@ static void cut_beside_corners(struct split *split)
     for (size_t t = 0; t < mesh->tri_count; t++) {
         const struct cut_tri *tri = &mesh->tris[t];
         bool others_cut = cutmesh_is_cut(mesh, tri->e[0]) || cutmesh_is_cut(mesh, tri->e[1]) || cutmesh_is_cut(mesh, tri->e[2]);
-        if (others_cut && aim_at_corner(split, tri, &findings[count].number) && !cutmesh_is_cut(mesh, findings[count].number))
+        if (others_cut && !is_line(split, tri) && aim_at_corner(split, tri, &findings[count].number) &&
+            !cutmesh_is_cut(mesh, findings[count].number))
             count++;
     }
     cut_edges(split, findings, count);

@@ -13,6 +13,7 @@
 #define POINTS 16    /* of an edge that are looked at, at most */
 #define CORNERS 61   /* whose shares are at hand */
 #define STEPS 2      /* in which the best place for a cut is narrowed down */
+#define NO_GAIN 0.5  /* of the error, left by the best cut: a bend leaves a quarter, a kink nothing */
 #define JUMP 1.5     /* times the way gone: a distance cannot grow by more, unless the surface does not hang together there */
 
 void split_mix(const float a[3], const float b[3], double t, float out[3])
@@ -224,13 +225,16 @@ static int best_cut(const struct line *line, double *left)
     return best;
 }
 
-/* A field bends evenly, then the middle is best; or it has a kink, where two ways round are equally long, and straight pieces beside it. */
-static void find_cut(struct line *line, double enough, struct split_finding *finding)
+/* A field bends evenly, then the middle is best; or it has a kink, where two ways round are equally long, and straight pieces beside it.
+   Where it jumps, no cut mends anything, and only halves come to an end: they close in on it. */
+static void find_cut(struct line *line, double length_m, double enough, struct split_finding *finding)
 {
     double left;
     for (int i = 1; i < 8; i += 2)
         finding->error = fmaxf(finding->error, (float)add_point(line, i / 8.0));
     int best = best_cut(line, &left);
+    if (left > NO_GAIN * (double)finding->error && jumps(line, length_m))
+        return;
     for (double step = 1 / 16.0; step > 1 / 16.0 / (1 << STEPS) && left > enough; step /= 2) {
         double t = line->t[best];
         add_point(line, t - step);
@@ -325,7 +329,7 @@ static void try_edge(const struct job *job, struct split_finding *finding, struc
     if ((double)finding->error <= job->enough || length_m < WIDE * nearest_m)
         finding->error = fmaxf(finding->error, (float)fmax(add_point(&line, 0.25), add_point(&line, 0.75)));
     if ((double)finding->error > job->enough && length_m < WIDE * nearest_m)
-        find_cut(&line, job->enough, finding);
+        find_cut(&line, length_m, job->enough, finding);
     if (length_m < split->jump_m && jumps(&line, length_m))
         bar(finding, true);
     double margin = fmin(0.5, split->shortest_m / length_m);
