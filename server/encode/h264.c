@@ -2,13 +2,13 @@
 /* H.264 by libavcodec: Annex B, no picture waits for another, key frames only on demand. */
 #include <errno.h>
 #include <libavutil/opt.h>
-#include <libyuv.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "base/mem.h"
 #include "encode/encoder_impl.h"
 #include "encode/h264_upload.h"
+#include "encode/planes.h"
 
 /* Options of libavcodec's encoders. x264: qcomp=1 makes every picture of one quality, however little moves; without ipratio key frames
    are no finer than what follows, which would only be a spike. */
@@ -153,21 +153,26 @@ static void extend(AVFrame *picture, int width_px, int height_px)
         memcpy(picture->data[0] + (size_t)height_px * pitch, picture->data[0] + (size_t)(height_px - 1) * pitch, (size_t)picture->width);
 }
 
-struct conversion {
-    const struct frame *frame;
-    AVFrame *picture;
-};
-
-/* Pairs of rows. */
-static void convert_rows(void *arg, size_t begin, size_t end)
+static void convert_bands(void *arg, size_t begin, size_t end)
 {
-    const struct conversion *conversion = arg;
-    const struct frame *frame = conversion->frame;
-    AVFrame *p = conversion->picture;
-    size_t y = 2 * begin, rows = (end * 2 < (size_t)frame->height_px ? end * 2 : (size_t)frame->height_px) - y;
-    ARGBToJ420(frame->bgrx + y * (size_t)frame->stride_bytes, frame->stride_bytes, p->data[0] + y * (size_t)p->linesize[0], p->linesize[0],
-               p->data[1] + begin * (size_t)p->linesize[1], p->linesize[1], p->data[2] + begin * (size_t)p->linesize[2], p->linesize[2],
-               frame->width_px, (int)rows);
+    planes_convert(arg, begin, end);
+}
+
+static void convert(struct h264_encoder *h264, const struct frame *frame, struct workers *workers)
+{
+    AVFrame *p = h264->picture;
+    struct planes planes = { frame->bgrx,
+                             frame->stride_bytes,
+                             frame->width_px,
+                             frame->height_px,
+                             { p->data[0], p->data[1], p->data[2] },
+                             { p->linesize[0], p->linesize[1], p->linesize[2] } };
+    size_t bands = planes_bands(frame->height_px);
+    if (workers)
+        workers_for(workers, bands, GRAIN_ROWS / PLANES_BAND_PX, convert_bands, &planes);
+    else
+        convert_bands(&planes, 0, bands);
+    extend(p, frame->width_px, frame->height_px);
 }
 
 static int fill_picture(struct h264_encoder *h264, const struct frame *frame, const struct encoder_params *params)
@@ -176,13 +181,7 @@ static int fill_picture(struct h264_encoder *h264, const struct frame *frame, co
     int status = av_frame_make_writable(p);
     if (status < 0)
         return status;
-    struct conversion conversion = { frame, p };
-    size_t pairs = (size_t)(frame->height_px + 1) / 2;
-    if (params->workers)
-        workers_for(params->workers, pairs, GRAIN_ROWS / 2, convert_rows, &conversion);
-    else
-        convert_rows(&conversion, 0, pairs);
-    extend(p, frame->width_px, frame->height_px);
+    convert(h264, frame, params->workers);
     p->pts = h264->next++;
     p->pict_type = params->key ? AV_PICTURE_TYPE_I : AV_PICTURE_TYPE_NONE;
     if (h264->library->has_crf) /* JPEG's 92 looks as 18 does, 78 as 25, 50 as 39 */

@@ -1,16 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Baseline JPEG by TurboJPEG. */
 #include <errno.h>
+#include <string.h>
 #include <turbojpeg.h>
 
 #include "base/mem.h"
 #include "encode/encoder_impl.h"
+#include "encode/planes.h"
 
 struct jpeg_encoder {
     struct encoder base;
     tjhandle turbo;
     unsigned char *out; /* kept from picture to picture */
     size_t capacity;
+    unsigned char *planes; /* of one rectangle, halved chroma behind its luma */
+    size_t planes_capacity;
 };
 
 static void jpeg_destroy(struct encoder *encoder)
@@ -19,6 +23,7 @@ static void jpeg_destroy(struct encoder *encoder)
     if (jpeg->turbo)
         tjDestroy(jpeg->turbo);
     mem_free(jpeg->out);
+    mem_free(jpeg->planes);
     mem_free(jpeg);
 }
 
@@ -36,27 +41,61 @@ static struct encoder *jpeg_create(struct log *log, const char *library)
     return &jpeg->base;
 }
 
-static bool reserve(struct jpeg_encoder *jpeg, size_t need)
+/* What was there is lost. */
+static bool reserve(unsigned char **at, size_t *capacity, size_t need)
 {
-    if (need <= jpeg->capacity)
+    if (need <= *capacity)
         return true;
-    mem_free(jpeg->out);
-    jpeg->out = mem_try_array(need, 1);
-    jpeg->capacity = jpeg->out ? need : 0;
-    return jpeg->out != NULL;
+    mem_free(*at);
+    *at = mem_try_array(need, 1);
+    *capacity = *at ? need : 0;
+    return *at != NULL;
+}
+
+static int even(int px)
+{
+    return (px + 1) & ~1;
+}
+
+/* Luma beyond an odd edge is what stands at the edge; even: TurboJPEG wants whole pairs. */
+static void extend(const struct planes *planes)
+{
+    size_t width = (size_t)planes->width_px, pitch = (size_t)planes->pitch[0];
+    for (size_t y = 0; y < (size_t)planes->height_px && pitch > width; y++)
+        planes->plane[0][y * pitch + width] = planes->plane[0][y * pitch + width - 1];
+    if (planes->height_px & 1)
+        memcpy(planes->plane[0] + (size_t)planes->height_px * pitch, planes->plane[0] + (size_t)(planes->height_px - 1) * pitch, pitch);
+}
+
+static int compress_halved(struct jpeg_encoder *jpeg, const uint8_t *from, int stride_bytes, const struct change *part, int quality,
+                           unsigned char **to, unsigned long *count)
+{
+    int width = even(part->width_px), height = even(part->height_px);
+    size_t luma = (size_t)width * (size_t)height;
+    struct planes planes = { from, stride_bytes, part->width_px, part->height_px, { 0 }, { width, width / 2, width / 2 } };
+    if (!reserve(&jpeg->planes, &jpeg->planes_capacity, luma * 3 / 2))
+        return -1;
+    for (int i = 0; i < 3; i++)
+        planes.plane[i] = jpeg->planes + (i > 0 ? luma : 0) + (i > 1 ? luma / 4 : 0);
+    planes_convert(&planes, 0, planes_bands(part->height_px));
+    extend(&planes);
+    return tjCompressFromYUVPlanes(jpeg->turbo, (const unsigned char **)planes.plane, part->width_px, planes.pitch, part->height_px,
+                                   TJSAMP_420, to, count, quality, TJFLAG_NOREALLOC);
 }
 
 /* Appends one rectangle at *end of what is reserved. */
 static bool compress(struct jpeg_encoder *jpeg, const struct frame *frame, const struct change *part, const struct encoder_params *params,
                      size_t *end)
 {
-    int sampling = params->full_chroma ? TJSAMP_444 : TJSAMP_420;
     const uint8_t *from = frame->bgrx + (size_t)part->y_px * (size_t)frame->stride_bytes + (size_t)part->x_px * 4;
     unsigned char *to = jpeg->out + *end;
-    unsigned long count = tjBufSize(part->width_px, part->height_px, sampling);
-    if (tjCompress2(jpeg->turbo, from, part->width_px, frame->stride_bytes, part->height_px, TJPF_BGRX, &to, &count, sampling,
-                    params->quality, TJFLAG_NOREALLOC) != 0) {
-        log_err(jpeg->base.log, "jpeg %dx%d: %s", part->width_px, part->height_px, tjGetErrorStr2(jpeg->turbo));
+    unsigned long count = tjBufSize(part->width_px, part->height_px, params->full_chroma ? TJSAMP_444 : TJSAMP_420);
+    int status = params->full_chroma ? tjCompress2(jpeg->turbo, from, part->width_px, frame->stride_bytes, part->height_px, TJPF_BGRX, &to,
+                                                   &count, TJSAMP_444, params->quality, TJFLAG_NOREALLOC)
+                                     : compress_halved(jpeg, from, frame->stride_bytes, part, params->quality, &to, &count);
+    if (status != 0) {
+        log_err(jpeg->base.log, "jpeg %dx%d: %s", part->width_px, part->height_px,
+                jpeg->planes || params->full_chroma ? tjGetErrorStr2(jpeg->turbo) : "no memory for it");
         return false;
     }
     *end += count;
@@ -68,7 +107,7 @@ static bool reserve_for(struct jpeg_encoder *jpeg, const struct change *parts, i
     size_t need = 0;
     for (int i = 0; i < count; i++)
         need += tjBufSize(parts[i].width_px, parts[i].height_px, full_chroma ? TJSAMP_444 : TJSAMP_420);
-    return reserve(jpeg, need);
+    return reserve(&jpeg->out, &jpeg->capacity, need);
 }
 
 static int jpeg_send(struct encoder *encoder, struct frame *frame, const struct encoder_params *params, const struct change *changes,

@@ -134,21 +134,22 @@ static void look_close(struct view *view)
     look_from(0.5, view);
 }
 
-/* Small in the picture, halved chroma runs over the rims of things: no more than without any shading, and not in refined pictures. */
+/* The whole plant in the picture is read nearly as well. Twice as far, where its parts are a few pixels wide, JPEG itself is what limits
+   it: without any shading it is read no better. */
 static void test_far_away_it_is_not_either(void **state)
 {
     struct view view;
     double shaded[WAYS], flat[WAYS];
     (void)state;
-    for (double distance = 1; distance < 3; distance += 1) {
+    for (int distance = 1; distance < 3; distance++) {
         look_from(distance, &view);
         view.tier = TIER_STILL;
-        measure(&view, shaded);
+        double worst = measure(&view, shaded);
+        assert_true(worst <= (distance == 1 ? 3.2 : 5.2)); /* a step of the map is 0.39 */
         view.look = LOOK_FLAT;
         measure(&view, flat);
         for (int i = 0; i < WAYS; i++)
             assert_true(shaded[i] <= fmax(3, flat[i] + 0.5));
-        assert_true(distance > 1 || shaded[AS_SENT] <= 3);
     }
 }
 
