@@ -146,8 +146,10 @@ struct frame *studio_draw(struct studio *studio, const struct snapshot_options *
 {
     view->tier = options->moving ? TIER_MOVING : TIER_STILL;
     struct frame *frame = canvas_draw(studio->renderer, view, studio->snapshot);
-    if (frame)
+    if (frame) {
         frame_read_markers(frame, studio->snapshot, studio->baselines);
+        frame->clock_unset = !view->at_us && !clock_utc_is_set();
+    }
     if (frame && !options->no_overlay)
         overlay_draw(frame, studio->scene, studio->snapshot);
     return frame;

@@ -63,6 +63,7 @@ static void deliver(struct drawing *drawing, struct frame *frame, const struct s
 {
     struct painter *painter = drawing->painter;
     frame_read_markers(frame, snapshot, painter->params.baselines);
+    frame->clock_unset = !frame->view.at_us && !clock_utc_is_set();
     if (batch->orders[0].wish.overlay)
         overlay_draw(frame, painter->params.scene, snapshot);
     counter_inc(painter->renders, 1);

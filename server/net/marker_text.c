@@ -19,9 +19,11 @@ static json_t *tenths(double px)
     return json_real(round(px * 10) / 10);
 }
 
-static json_t *value_of(const struct frame_marker *marker)
+static json_t *value_of(const struct frame *frame, const struct frame_marker *marker)
 {
-    return quality_is_bad(marker->quality) || !isfinite(marker->value) ? json_null() : json_real(marker->value);
+    const struct field_params *params = frame->view.split && marker->half ? &frame->view.right.field : &frame->view.field;
+    bool lost = quality_is_bad(marker->quality) && params->show != SHOW_DISTANCE;
+    return lost || !isfinite(marker->value) ? json_null() : json_real(marker->value);
 }
 
 static int class_of(const struct frame_marker *marker)
@@ -69,7 +71,7 @@ static json_t *all_markers(const struct frame *frame)
         const struct frame_marker *m = &frame->markers[i];
         if (is_placed(m))
             json_array_append_new(list, json_pack("[i,o,o,i,i,o,i]", m->tag, tenths(m->x_px), tenths(m->y_px), m->occluded, m->half,
-                                                  value_of(m), class_of(m)));
+                                                  value_of(frame, m), class_of(m)));
     }
     return list;
 }
@@ -82,7 +84,7 @@ static json_t *changed_values(const struct frame *frame, const struct marker_sai
         const struct frame_marker *m = &frame->markers[i], *before = &said->markers[i];
         if (!is_placed(m) || (m->value == before->value && m->quality == before->quality))
             continue;
-        json_t *row = json_pack("[i,i,o]", m->tag, m->half, value_of(m));
+        json_t *row = json_pack("[i,i,o]", m->tag, m->half, value_of(frame, m));
         if (class_of(m) != 0)
             json_array_append_new(row, json_integer(class_of(m)));
         json_array_append_new(list, row);

@@ -87,14 +87,14 @@ void frame_unref(struct frame **frame_ptr)
 
 /* What one half shows beside readings: what they differ from. */
 struct then {
-    bool wanted;
+    bool wanted, distance; /* of a distance: nothing, the markers tell it */
     const struct snapshot *snapshot; /* NULL: forgotten */
 };
 
 static struct then take_then(const struct field_params *params, struct baselines *baselines)
 {
     bool wanted = params->show == SHOW_DIFFERENCE;
-    return (struct then){ wanted, wanted && baselines ? baselines_take(baselines, params->baseline) : NULL };
+    return (struct then){ wanted, params->show == SHOW_DISTANCE, wanted && baselines ? baselines_take(baselines, params->baseline) : NULL };
 }
 
 static void read_marker(struct frame_marker *marker, const struct reading *now, const struct then *then)
@@ -102,7 +102,8 @@ static void read_marker(struct frame_marker *marker, const struct reading *now, 
     static const struct reading nothing = { .quality = QUALITY_BAD_WAITING };
     const struct reading *before = !then->wanted ? NULL : then->snapshot ? &then->snapshot->readings[marker->tag] : &nothing;
     marker->quality = before && (before->quality >> 30) > (now->quality >> 30) ? before->quality : now->quality;
-    marker->value = quality_is_bad(marker->quality) ? 0 : now->value - (before ? before->value : 0);
+    if (!then->distance)
+        marker->value = quality_is_bad(marker->quality) ? 0 : now->value - (before ? before->value : 0);
 }
 
 void frame_read_markers(struct frame *frame, const struct snapshot *snapshot, struct baselines *baselines)

@@ -14,7 +14,7 @@ struct frame_marker {
     float x_px, y_px; /* from the top left; may lie outside */
     uint8_t occluded; /* behind something, or outside the picture */
     uint32_t quality; /* of the reading that the picture shows; of a difference: the worse of both; and below */
-    double value;     /* 0 where quality is Bad; of a difference: now less then */
+    double value;     /* 0 where quality is Bad; of a difference: now less then; of a distance: metres, NAN where none is known */
     uint8_t half;     /* of a split view: 1 is the right one */
 };
 
@@ -34,6 +34,7 @@ struct frame {
     struct frame_label *labels; /* where isolines may be labelled: more than there is room for */
     size_t label_count;
     int64_t data_utc_ns;                      /* of the snapshot it shows */
+    bool clock_unset;                         /* nothing kept the clock right that told it */
     int64_t oldest_age_ns;                    /* INT64_MAX: no value takes part */
     int64_t field_ns, render_ns, readback_ns; /* stage times */
     struct baseline baseline;                 /* of a difference; id 0: none */

@@ -90,6 +90,37 @@ bool markers_start(struct sights *sights, const struct picture *picture)
     return sights_start(sights, picture, count);
 }
 
+/* NULL: it does not stand on that asset, or is tried out elsewhere. */
+static const struct scene_sensor *standing(const struct marker_walk *walk, int asset, int tag)
+{
+    const struct scene_asset *on = &walk->scene->assets[asset];
+    for (size_t i = 0; i < on->sensor_count && !trial_find(walk->trial, tag); i++)
+        if (on->sensors[i].tag == tag)
+            return &on->sensors[i];
+    return NULL;
+}
+
+/* From the sensor that distances are shown of. NAN: it stands on another asset, there is no way, or the way is not known yet. */
+static double distance_m(const struct marker_walk *walk, const struct marker_place *place, const struct field_params *params)
+{
+    const struct trial_sensor *tried = trial_find(walk->trial, params->sensor);
+    const struct trial_sensor *tried_to = trial_find(walk->trial, place->tag);
+    const struct scene_sensor *from = standing(walk, place->asset, params->sensor), *to = standing(walk, place->asset, place->tag);
+    const struct asset_view *file = &walk->scene->assets[place->asset].file->view;
+    if ((!from && !tried) || (tried && tried->asset != place->asset))
+        return NAN;
+    if (place->tag == params->sensor)
+        return 0;
+    if (params->distance == DISTANCE_EUCLIDEAN) {
+        const double *a = tried ? tried->place_m : from->surface_m, *b = place->surface_m;
+        return hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
+    }
+    const float *along_m = tried ? trial_distances(tried) : file->geodesic_m + (size_t)from->column * file->header->vertex_count;
+    uint32_t vertex = tried_to ? tried_to->vertex : file->sensors[to->column].nearest_vertex;
+    double away_m = along_m ? (double)along_m[vertex] : INFINITY;
+    return away_m < 1e30 ? away_m : NAN;
+}
+
 static void give(const struct picture *picture, float (*places)[4], size_t count, struct frame *frame)
 {
     const struct trial *trial;
@@ -98,8 +129,10 @@ static void give(const struct picture *picture, float (*places)[4], size_t count
     frame->markers = mem_array(count, sizeof(*frame->markers));
     while (frame->marker_count < count && next_shown(&walk, picture, &place)) {
         const float *at = places[frame->marker_count];
-        frame->markers[frame->marker_count++] =
-            (struct frame_marker){ .tag = place.tag, .x_px = at[0], .y_px = at[1], .occluded = at[2] > 0.5f };
+        struct frame_marker *marker = &frame->markers[frame->marker_count++];
+        *marker = (struct frame_marker){ .tag = place.tag, .x_px = at[0], .y_px = at[1], .occluded = at[2] > 0.5f };
+        if (picture->view->field.show == SHOW_DISTANCE)
+            marker->value = distance_m(&walk, &place, &picture->view->field);
     }
     field_give_trial(picture->field, &trial);
 }

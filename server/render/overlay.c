@@ -139,7 +139,7 @@ static bool shows_simulated(const struct pen *pen)
 /* Plant name; its clock; the age of the oldest value that takes part; and whether any of it was not measured. */
 static void draw_header(struct pen *pen)
 {
-    char clock[CLOCK_BYTES], line[160], age[40] = "no values";
+    char clock[CLOCK_BYTES], line[200], age[40] = "no values";
     format_clock(pen->frame->data_utc_ns, clock);
     if (pen->frame->oldest_age_ns != INT64_MAX)
         format_age(pen->frame->oldest_age_ns, age);
@@ -147,7 +147,8 @@ static void draw_header(struct pen *pen)
         snprintf(age, sizeof(age), "configuration %s", pen->scene->plant->hash);
     const struct view *view = &pen->frame->view;
     bool has_age = view->split || (view->field.show != SHOW_DISTANCE && view->look != LOOK_MATERIALS); /* else no value takes part */
-    snprintf(line, sizeof(line), "%s%s%s%s", clock, has_age ? "  ·  " : "", has_age ? age : "",
+    const char *unset = pen->frame->clock_unset ? "  ·  CLOCK NOT SYNCHRONISED" : "";
+    snprintf(line, sizeof(line), "%s%s%s%s%s", clock, unset, has_age ? "  ·  " : "", has_age ? age : "",
              has_age && shows_simulated(pen) ? "  ·  SIMULATED" : "");
     double pad = 8 * pen->unit;
     pen_font(pen, 1.15, true);

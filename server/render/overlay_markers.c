@@ -74,7 +74,9 @@ static void format_value(const struct pen *pen, const struct frame_marker *marke
     bool difference = pen->view.field.show == SHOW_DIFFERENCE, lost = quality_is_bad(pen->snapshot->readings[marker->tag].quality);
     const char *alarm = alarm_kind_name((enum alarm_kind)pen->snapshot->readings[marker->tag].alarm);
     int decimals = pen_decimals(group->max - group->min);
-    if (quality_is_bad(marker->quality))
+    if (pen->view.field.show == SHOW_DISTANCE)
+        snprintf(out, 64, isnan(marker->value) ? "no distance" : "%.2f m", marker->value);
+    else if (quality_is_bad(marker->quality))
         snprintf(out, 64, lost ? "BAD" : "not known then");
     else
         snprintf(out, 64, "%s%s%.*f %s%s%s%s", difference ? "Δ " : "", difference && marker->value > 0 ? "+" : "", decimals,

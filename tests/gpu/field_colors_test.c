@@ -421,6 +421,53 @@ static void test_operator_sees_limits(void **state)
     check_alarms(&view);
 }
 
+/* At each sensor, how far it is from the one that is asked of: straight, and along the plate the same. */
+static void test_markers_tell_distances(void **state)
+{
+    const double want_m[PLATE_TAGS] = { hypot(4, 1), 0, hypot(2, 3) };
+    struct view view;
+    (void)state;
+    look_down(&view);
+    view.camera.eye_m[2] = 14;
+    view.field.show = SHOW_DISTANCE;
+    view.field.sensor = 1;
+    for (int mode = DISTANCE_GEODESIC; mode <= DISTANCE_EUCLIDEAN; mode++)
+        for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++) {
+            view.field.distance = (enum distance_mode)mode;
+            view.tier = (enum tier)tier;
+            view_own_scale(&stand.toy->scene, &view);
+            struct frame *frame = stand_draw(&stand, &view);
+            frame_read_markers(frame, stand.snapshot, NULL);
+            assert_int_equal(frame->marker_count, PLATE_TAGS);
+            for (int i = 0; i < PLATE_TAGS; i++)
+                assert_true(fabs(frame->markers[i].value - want_m[frame->markers[i].tag]) <= (mode == DISTANCE_GEODESIC ? 0.08 : 1e-6));
+            frame_unref(&frame);
+        }
+}
+
+/* Pictures of a clock that nothing keeps right say so beside it. */
+static void test_a_clock_that_is_not_set_is_said(void **state)
+{
+    struct view view;
+    int differ = 0;
+    (void)state;
+    look_down(&view);
+    view.width_px = 800;
+    struct frame *set = stand_draw(&stand, &view), *unset = stand_draw(&stand, &view);
+    unset->clock_unset = true;
+    overlay_draw(set, &stand.toy->scene, stand.snapshot);
+    overlay_draw(unset, &stand.toy->scene, stand.snapshot);
+    for (int y = 0; y < SIDE_PX; y++)
+        for (int x = 0; x < 800; x++) {
+            bool differs = memcmp(frame_pixel(set, x, y), frame_pixel(unset, x, y), 3) != 0;
+            differ += differs;
+            assert_true(!differs || y < 50);
+        }
+    assert_true(differ > 1000);
+    frame_unref(&set);
+    frame_unref(&unset);
+}
+
 static void test_default_look_keeps_to_the_palette(void **state)
 {
     struct view view;
@@ -461,6 +508,8 @@ int main(void)
         each(test_uncertain_is_stippled),
         each(test_the_rim_of_the_uncertain_runs_true),
         each(test_operator_sees_limits),
+        each(test_markers_tell_distances),
+        each(test_a_clock_that_is_not_set_is_said),
         each(test_default_look_keeps_to_the_palette),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);

@@ -75,11 +75,31 @@ static void test_readings_and_those_behind_the_eye(void **state)
     snapshot_destroy(&snapshot);
 }
 
+/* Metres, whatever the reading is. */
+static void test_distances_stay_what_they_are(void **state)
+{
+    static const double now[TAGS] = { 25, 28, 41, 50 };
+    static const uint32_t qualities[TAGS] = { 0, QUALITY_BAD_SENSOR_FAILURE, 0, 0 };
+    struct snapshot *snapshot = readings(now, qualities);
+    struct frame *frame = frame_of_two(SHOW_DISTANCE, 0);
+    (void)state;
+    for (int i = 0; i < TAGS; i++)
+        frame->markers[i].value = 0.5 * i;
+    frame_read_markers(frame, snapshot, NULL);
+    for (int i = 0; i < TAGS; i++) {
+        assert_true(frame->markers[i].value == 0.5 * i && frame->markers[i].quality == qualities[i]);
+        assert_true(frame->markers[TAGS + i].value == (qualities[i] ? 0 : now[i]));
+    }
+    frame_unref(&frame);
+    snapshot_destroy(&snapshot);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_a_difference_says_differences),
         cmocka_unit_test(test_readings_and_those_behind_the_eye),
+        cmocka_unit_test(test_distances_stay_what_they_are),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests(tests, NULL, NULL);

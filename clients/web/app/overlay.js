@@ -76,11 +76,12 @@ export class Overlay {
                 continue;
             const newest = model.readings[tag.index];
             const pictured = said.quality ? { ...newest, value: said.value, quality: said.quality } : newest; // as the picture has it
-            const difference = params.show === 'difference' && shown;
+            const difference = params.show === 'difference' && shown, away = params.show === 'distance' && shown;
             markers.push({
                 tag, x: (left + place[0]) * scale[0], y: place[1] * scale[1], depth: place[2], half: number,
-                occluded: said.occluded, reading: difference ? newest : pictured, alarm,
+                occluded: said.occluded, reading: difference || away ? newest : pictured, alarm,
                 change: difference && (said.quality === 'bad' ? null : said.value ?? null), // false: the reading itself is shown
+                distance_m: away && (said.value ?? null), // likewise; null: not known
             });
         }
         return markers;
@@ -210,10 +211,12 @@ export class Overlay {
     }
 
     // Pieces of a label: [text, weight, colour].
-    parts({ tag, reading, change, alarm }, withName) {
+    parts({ tag, reading, change, distance_m, alarm }, withName) {
         const parts = withName ? [[tag.name, 400, INK_2]] : [];
         const group = this.session.model.group(tag.group), decimals = decimalsFor(group.max - group.min);
-        if (change !== false && reading.quality !== 'bad') {
+        if (distance_m !== false) {
+            parts.push([distance_m === null ? '–' : `${numberText(distance_m, 2)}\u202fm`, 650, INK]);
+        } else if (change !== false && reading.quality !== 'bad') {
             parts.push([changeText(change, decimals), ...(this.fresh ? [650, INK] : [400, INK_2])]);
             parts.push([change === null ? '' : unitText(tag.unit || group.unit), 400, INK_2]);
         } else if (reading.value === null || reading.quality === 'bad') {
