@@ -88,7 +88,7 @@ $(bin)/plantcast-demo: $(call objects,$(generate_sources)) $(archives)
 embedded := $(out)/obj/gen/embedded.o
 glad     := $(out)/obj/gen/glad/src/gl.o $(out)/obj/gen/glad/src/egl.o
 define archive_rule
-$(out)/lib/$(1).a: $(call objects,$(filter-out $(without),$(wildcard $(addprefix server/$(1)/*,.c .cc)))) \
+$(out)/lib/$(1).a: $(call objects,$(filter-out $(without),$(wildcard $(foreach d,* */*,server/$(1)/$(d).c server/$(1)/$(d).cc)))) \
     $(if $(filter base,$(1)),$(embedded)) $(if $(filter gpu,$(1)),$(glad))
 endef
 $(foreach l,$(layers),$(eval $(call archive_rule,$(l))))

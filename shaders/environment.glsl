@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The light of the surroundings (render/environments.c): 1 is what makes a level white surface under the open sky reflect 1.
+// The light of the surroundings (render/light/environments.c): 1 is what makes a level white surface under the open sky reflect 1.
 // Directions: axes of the plant.
 layout(std140, binding = 1) uniform Environment {
     vec4 irradiance_terms[9];

@@ -8,7 +8,7 @@
 
 #include "base/mem.h"
 #include "commands.h"
-#include "net/message.h"
+#include "net/message/message.h"
 
 enum { MAX_BODY_BYTES = 256 * 1024 * 1024, RECEIVE_BYTES = 16 * 1024 };
 

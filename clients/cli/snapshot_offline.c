@@ -5,7 +5,7 @@
 
 #include "base/mem.h"
 #include "encode/encoder.h"
-#include "net/reply.h"
+#include "net/message/reply.h"
 #include "studio.h"
 
 static bool save(struct studio *studio, struct frame *frame, const char *path)

@@ -12,9 +12,9 @@
 #include "base/mem.h"
 #include "field/colormap.h"
 #include "history/when.h"
-#include "net/query.h"
+#include "net/message/query.h"
 #include "plant/image_ramp.h"
-#include "render/overlay.h"
+#include "render/overlay/overlay.h"
 #include "value/alarm.h"
 #include "values.h"
 

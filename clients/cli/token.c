@@ -13,7 +13,7 @@
 #include "base/mem.h"
 #include "base/text.h"
 #include "commands.h"
-#include "net/names.h"
+#include "net/message/names.h"
 #include "net/tokens.h"
 
 enum { MAX_FILE_BYTES = 1024 * 1024 };

@@ -7,7 +7,7 @@
 #include <string.h>
 #include <strings.h>
 
-#include "net/names.h"
+#include "net/message/names.h"
 
 /* How the field is computed: each set of these costs the server a field of its own, and takes somebody who knows. */
 static const unsigned ENGINEERS = GIVEN_FILL | GIVEN_STRENGTH | GIVEN_DECAY | GIVEN_POWER | GIVEN_RADIUS | GIVEN_REACH | GIVEN_SENSORS;

@@ -2,8 +2,8 @@
 /* Who may do what: roles, and what a message, a host or a page must be. Pure. PROTOCOL.md holds the table for readers. */
 #ifndef NET_ACCESS_H
 #define NET_ACCESS_H
-#include "net/quota.h"
-#include "net/message.h"
+#include "net/message/message.h"
+#include "net/session/quota.h"
 
 enum role {
     ROLE_NOBODY,   /* has yet to say who it is */

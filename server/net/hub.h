@@ -4,15 +4,15 @@
 #define NET_HUB_H
 #include <libwebsockets.h>
 
-#include "net/alarm_text.h"
-#include "net/marker_text.h"
+#include "net/message/alarm_text.h"
+#include "net/message/marker_text.h"
 #include "net/net.h"
 #include "net/past.h"
 #include "net/peers.h"
 #include "net/recall.h"
-#include "net/session.h"
+#include "net/session/session.h"
+#include "net/session/tags_said.h"
 #include "net/stages.h"
-#include "net/tags_said.h"
 
 enum { SLICE_BYTES = 32 * 1024 };
 

@@ -8,7 +8,7 @@
 #include "base/counters.h"
 #include "base/log.h"
 #include "net/access.h"
-#include "net/painter.h"
+#include "net/paint/painter.h"
 #include "placing/tag_file.h"
 #include "proving/proofs.h"
 

@@ -3,7 +3,7 @@
    customer has whole. Pure: time is handed in. Thread: the loop. */
 #ifndef NET_PEERS_H
 #define NET_PEERS_H
-#include "net/quota.h"
+#include "net/session/quota.h"
 
 struct peer {
     uint8_t address[16]; /* version 4 as ::ffff:a.b.c.d */

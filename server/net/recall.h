@@ -7,8 +7,8 @@
 #include <stdint.h>
 
 #include "base/log.h"
-#include "net/alarm_text.h"
-#include "net/message.h"
+#include "net/message/alarm_text.h"
+#include "net/message/message.h"
 #include "plant/plant.h"
 
 enum { RECALL_TAGS = 64, RECALL_POINTS = 20000, RECALL_WAITING = 16 };

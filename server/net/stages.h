@@ -3,8 +3,8 @@
 #ifndef NET_STAGES_H
 #define NET_STAGES_H
 #include "base/counters.h"
-#include "net/pacer.h"
-#include "net/picture.h"
+#include "net/paint/picture.h"
+#include "net/session/pacer.h"
 
 enum { STAGE_WAIT, STAGE_FIELD, STAGE_RENDER, STAGE_ENCODE, STAGE_QUEUE, STAGE_WRITE, STAGE_NETWORK, STAGE_DECODE, STAGE_COUNT };
 struct stages {

@@ -4,7 +4,7 @@
 #ifndef NET_STREAM_H
 #define NET_STREAM_H
 #include "net/hub.h"
-#include "net/marker_text.h"
+#include "net/message/marker_text.h"
 
 struct stream {
     struct lws *wsi;

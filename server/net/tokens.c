@@ -17,7 +17,7 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "net/file_watch.h"
-#include "net/names.h"
+#include "net/message/names.h"
 
 enum { MAX_FILE_BYTES = 1024 * 1024, RANDOM_BYTES = 32 };
 

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "net/fields.h"
+#include "net/message/fields.h"
 #include "net/visitor.h"
 
 static int refuse(struct hub *hub, struct lws *wsi, int status, const char *text)

@@ -4,7 +4,7 @@
 #define RENDER_PICTURE_H
 #include "gpu/target.h"
 #include "render/fields.h"
-#include "render/light.h"
+#include "render/light/light.h"
 #include "render/palettes.h"
 #include "render/reference.h"
 #include "render/view.h"

@@ -4,8 +4,8 @@
 #define RENDER_RASTER_H
 #include <stdbool.h>
 
-#include "render/draft_impl.h"
-#include "render/draft_simd.h"
+#include "render/draft/draft_impl.h"
+#include "render/draft/draft_simd.h"
 
 struct edge {
     float x, y, dx, dy; /* from its upper end */

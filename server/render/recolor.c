@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "render/draft_impl.h"
-#include "render/draft_simd.h"
+#include "render/draft/draft_impl.h"
+#include "render/draft/draft_simd.h"
 
 enum { VERTICES_AT_ONCE = 8192 };
 static const float RIM_DARK_BGR[3] = { 41, 23, 13 }, INK_BGR[3] = { 0.14f * 255, 0.10f * 255, 0.08f * 255 };

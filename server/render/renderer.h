@@ -24,7 +24,7 @@ uint64_t renderer_content(struct renderer *renderer, const struct view *view, co
 bool renderer_is_quick(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot);
 /* The caller owns the frame (frame_unref). NULL on failure, logged. view is already checked. */
 struct frame *renderer_draw(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot);
-/* Without a GPU most moving pictures are drawn by other means (render/draft.h), unless GL shall draw them always: to compare. */
+/* Without a GPU most moving pictures are drawn by other means (render/draft/draft.h), unless GL shall draw them always: to compare. */
 void renderer_use_gl(struct renderer *renderer, bool always);
 
 /* A light that is not baked yet: pictures of the moving tier show the one most like it for now, and bake on for about that long each.

@@ -3,16 +3,16 @@
 #ifndef RENDER_RENDERER_IMPL_H
 #define RENDER_RENDERER_IMPL_H
 #include "render/caps.h"
-#include "render/draft.h"
+#include "render/draft/draft.h"
 #include "render/flight.h"
 #include "render/ghosts.h"
 #include "render/isolines.h"
+#include "render/light/sky.h"
 #include "render/lines.h"
 #include "render/markers.h"
 #include "render/palettes.h"
-#include "render/plate.h"
+#include "render/plate/plate.h"
 #include "render/renderer.h"
-#include "render/sky.h"
 #include "render/solid.h"
 #include "render/targets.h"
 

@@ -30,7 +30,7 @@ struct shot {
     double planes[6][4];    /* of the frustum, inward, plant frame */
 };
 
-/* With the sky bound (render/environments.h). False: logged. */
+/* With the sky bound (render/light/environments.h). False: logged. */
 bool stage_init(struct stage *stage, struct gl *gl, const struct scene *scene);
 void stage_finish(struct stage *stage);
 

@@ -7,7 +7,7 @@
 #include "render/frame.h"
 #include "render/isolines.h"
 #include "render/picture.h"
-#include "render/plate.h"
+#include "render/plate/plate.h"
 
 struct stroke {
     struct picture picture; /* view, target, fields and visible point into this struct */

@@ -11,7 +11,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
-#include "net/session.h"
+#include "net/session/session.h"
 #include "tests/support/small_scene.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count);

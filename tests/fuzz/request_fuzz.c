@@ -8,8 +8,8 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "net/query.h"
-#include "net/site.h"
+#include "net/http/site.h"
+#include "net/message/query.h"
 #include "net/tokens.h"
 #include "tests/support/small_scene.h"
 

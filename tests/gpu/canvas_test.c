@@ -12,7 +12,7 @@
 
 #include "base/clock.h"
 #include "render/canvas.h"
-#include "render/overlay.h"
+#include "render/overlay/overlay.h"
 #include "tests/support/rig.h"
 #include "value/quality.h"
 

@@ -10,8 +10,8 @@
 
 #include <cmocka.h>
 
-#include "render/overlay.h"
 #include "field/lab.h"
+#include "render/overlay/overlay.h"
 #include "render/palette.h"
 #include "tests/support/rig.h"
 #include "value/alarm.h"

@@ -14,7 +14,7 @@
 
 #include "base/mem.h"
 #include "render/canvas.h"
-#include "render/overlay.h"
+#include "render/overlay/overlay.h"
 #include "scene/framing.h"
 #include "tests/support/rig.h"
 #include "value/alarm.h"

@@ -11,7 +11,7 @@
 #include <cmocka.h>
 
 #include "base/clock.h"
-#include "render/light.h"
+#include "render/light/light.h"
 #include "tests/support/rig.h"
 #include "value/quality.h"
 

@@ -15,7 +15,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
-#include "net/painter.h"
+#include "net/paint/painter.h"
 #include "tests/support/toy.h"
 #include "value/quality.h"
 

@@ -49,7 +49,7 @@ static const struct way ways[] = {
     { "JPEG q80 4:2:0", 80, false, false },
     { "deuteranope", 0, false, true },
     { "JPEG, deuteranope", 80, false, true },
-    { "refined, as sent, deuteranope", 92, true, true }, /* server/net/session_wishes.c */
+    { "refined, as sent, deuteranope", 92, true, true }, /* server/net/session/session_wishes.c */
 };
 enum { WAYS = sizeof(ways) / sizeof(*ways), AS_SENT = WAYS - 1 };
 

@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "net/names.h"
+#include "net/message/names.h"
 #include "tests/support/small_scene.h"
 
 #define HELLO_WITH(params) "{\"type\":\"hello\",\"width\":64,\"height\":64,\"codecs\":[\"png\"],\"params\":{\"seq\":1," params "}}"

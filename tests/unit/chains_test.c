@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Who gets which packets, by a model: each client decodes what it is given, and a packet is good only right after the one it needs. */
-#include "net/chains.h"
+#include "net/paint/chains.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

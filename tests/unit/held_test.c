@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "net/held.h"
+#include "net/paint/held.h"
 
 static void fill(struct batch *batch, uint64_t first, int count)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The first message of a session: whom its token stands for, the view it comes back to, and whether there is room. */
-#include "net/session.h"
+#include "net/session/session.h"
 
 #include <jansson.h>
 #include <setjmp.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What clients say: the vectors, the merging of parameters, the query of snapshots, and text that was damaged at random. */
-#include "net/message.h"
+#include "net/message/message.h"
 
 #include <dirent.h>
 #include <math.h>
@@ -15,7 +15,7 @@
 #include "base/mem.h"
 #include "base/text.h"
 #include "field/colormap.h"
-#include "net/query.h"
+#include "net/message/query.h"
 #include "tests/support/small_scene.h"
 
 #define FOLDER "protocol/vectors/client"

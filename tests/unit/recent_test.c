@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Which of the frames drawn last will do for who asks a moment later. */
-#include "net/recent.h"
+#include "net/paint/recent.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Whose picture is drawn next: a renderer that takes its time is simulated, and who got what is counted. */
-#include "net/schedule.h"
+#include "net/paint/schedule.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

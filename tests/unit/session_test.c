@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A session without socket, clock or renderer: what it wants, what it is told, what it answers. */
-#include "net/session.h"
+#include "net/session/session.h"
 
 #include <jansson.h>
 #include <setjmp.h>
@@ -12,7 +12,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
-#include "net/reply.h"
+#include "net/message/reply.h"
 #include "tests/support/small_scene.h"
 #include "value/quality.h"
 

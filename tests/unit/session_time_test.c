@@ -12,7 +12,7 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "net/past.h"
-#include "net/session.h"
+#include "net/session/session.h"
 #include "tests/support/small_scene.h"
 #include "value/quality.h"
 

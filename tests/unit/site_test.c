@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The files of the web client: those below the folder, by every honest path, and nothing by any other. */
-#include "net/site.h"
+#include "net/http/site.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,0 +1,193 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* HTTP beside the stream: who may ask what, and the files of the web client. */
+#include <string.h>
+
+#include "base/mem.h"
+#include "net/http/http_impl.h"
+#include "net/http/site.h"
+#include "net/tls.h"
+#include "net/visitor.h"
+
+static int alive(struct hub *hub, struct request *request)
+{
+    (void)hub;
+    return request_answer_text(request, HTTP_STATUS_OK, "ok\n");
+}
+
+static int ready(struct hub *hub, struct request *request)
+{
+    if (painter_ready(hub->params.painter))
+        return request_answer_text(request, HTTP_STATUS_OK, "ok\n");
+    return request_answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "the GL context was lost; a new one is being made\n");
+}
+
+static int stream_without_upgrade(struct hub *hub, struct request *request)
+{
+    (void)hub;
+    static const char text[] = "a WebSocket with the subprotocol " WIRE_SUBPROTOCOL " is here\n";
+    return request_answer(request, 426, HTTP_TEXT, mem_strdup(text), strlen(text), "upgrade:", "websocket");
+}
+
+static int file(struct hub *hub, struct request *request, const char *path)
+{
+    struct site_file found;
+    char seen[64] = "";
+    bool cached = false;
+    if (lws_hdr_copy(request->wsi, seen, sizeof(seen), WSI_TOKEN_HTTP_IF_NONE_MATCH) > 0)
+        cached = site_read(hub->params.web_folder, path, true, &found) && !strcmp(seen, found.etag);
+    if (cached)
+        return request_answer(request, HTTP_STATUS_NOT_MODIFIED, found.type, NULL, 0, "etag:", found.etag);
+    if (!site_read(hub->params.web_folder, path, false, &found))
+        return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "not found\n");
+    return request_answer(request, HTTP_STATUS_OK, found.type, found.bytes, found.count, "etag:", found.etag);
+}
+
+static const struct {
+    const char *path;
+    int (*serve)(struct hub *hub, struct request *request);
+    enum role least;
+} routes[] = {
+    { "/healthz", alive, ROLE_NOBODY },
+    { "/readyz", ready, ROLE_NOBODY }, /* the loop only runs once model, GL and store are there; GL may go again */
+    { "/stream", stream_without_upgrade, ROLE_NOBODY },
+    { "/snapshot.png", ask_snapshot, ROLE_OPEN },
+    { "/metrics", metrics, ROLE_VIEWER },
+    { "/api/v1/plant", api_plant, ROLE_VIEWER },
+    { "/api/v1/tags", api_tags, ROLE_VIEWER },
+    { "/api/v1/proofs", api_proofs, ROLE_VIEWER },
+    { "/api/v1/pick", ask_pick, ROLE_VIEWER },
+    { "/api/v1/history", ask_history, ROLE_VIEWER },
+    { "/api/v1/alarms", api_alarms, ROLE_VIEWER },
+    { "/api/v1/alarms/journal", ask_journal, ROLE_VIEWER },
+};
+static const char RELOAD_PATH[] = "/api/v1/reload"; /* POST */
+
+static int refuse(struct request *request, const struct refusal *refusal)
+{
+    bool whose = refusal->status == HTTP_STATUS_UNAUTHORIZED;
+    return request_answer(request, refusal->status, HTTP_TEXT, mem_strdup(refusal->text), strlen(refusal->text),
+                  whose ? "www-authenticate:" : NULL, "Bearer realm=\"plantcast\"");
+}
+
+/* Pages of other sites may link to us, but not have us draw. */
+static bool is_foreign_page(struct lws *wsi)
+{
+    char site[32];
+    return lws_hdr_custom_copy(wsi, site, sizeof(site), "sec-fetch-site:", 15) > 0 && !strcmp(site, "cross-site");
+}
+
+static const struct refusal NEED_TOKEN = { HTTP_STATUS_UNAUTHORIZED, "a token is needed: Authorization: Bearer TOKEN\n" };
+static const struct refusal NOT_FOR_YOU = { HTTP_STATUS_FORBIDDEN, "viewers get pictures only\n" };
+static const struct refusal NOT_ENGINEER = { HTTP_STATUS_FORBIDDEN, "this takes the role engineer\n" };
+static const struct refusal FOREIGN = { HTTP_STATUS_FORBIDDEN, "pages of other sites do not get this\n" };
+
+static int serve_route(struct hub *hub, struct request *request, size_t i)
+{
+    enum role role = visitor_of(request->wsi)->role;
+    if (role < routes[i].least)
+        return refuse(request, role == ROLE_NOBODY ? &NEED_TOKEN : &NOT_FOR_YOU);
+    if (routes[i].least > ROLE_NOBODY && is_foreign_page(request->wsi))
+        return refuse(request, &FOREIGN);
+    return routes[i].serve(hub, request);
+}
+
+static int serve_reload(struct hub *hub, struct request *request)
+{
+    enum role role = visitor_of(request->wsi)->role;
+    request->close = true;
+    if (role < ROLE_ENGINEER)
+        return refuse(request, role == ROLE_NOBODY ? &NEED_TOKEN : &NOT_ENGINEER);
+    return is_foreign_page(request->wsi) ? refuse(request, &FOREIGN) : ask_reload(hub, request);
+}
+
+static int serve(struct hub *hub, struct request *request, const char *path)
+{
+    bool post = lws_hdr_total_length(request->wsi, WSI_TOKEN_POST_URI) > 0 && !strcmp(path, RELOAD_PATH);
+    bool get = lws_hdr_total_length(request->wsi, WSI_TOKEN_GET_URI) > 0;
+    struct refusal refusal;
+    request->head = lws_hdr_total_length(request->wsi, WSI_TOKEN_HEAD_URI) > 0;
+    counter_inc(hub->counters.requests, 1);
+    if (!get && !request->head && !post) {
+        request->close = true; /* there may be a body that nobody reads */
+        static const char text[] = "only GET and HEAD (POST: /api/v1/reload)\n";
+        return request_answer(request, HTTP_STATUS_METHOD_NOT_ALLOWED, HTTP_TEXT, mem_strdup(text), strlen(text),
+                      "allow:", "GET, HEAD");
+    }
+    if (!visitor_enter(hub, request->wsi, &refusal))
+        return refuse(request, &refusal);
+    if (post)
+        return serve_reload(hub, request);
+    for (size_t i = 0; i < sizeof(routes) / sizeof(routes[0]); i++)
+        if (!strcmp(routes[i].path, path))
+            return serve_route(hub, request, i);
+    return file(hub, request, path);
+}
+
+static int on_writeable(struct hub *hub, struct request *request)
+{
+    size_t left = request->count - request->sent, slice = left < SLICE_BYTES ? left : SLICE_BYTES;
+    if (!request->body)
+        return 0;
+    if (!hub_write(hub, request->wsi, request->body + request->sent, slice, slice == left ? LWS_WRITE_HTTP_FINAL : LWS_WRITE_HTTP))
+        return -1;
+    request->sent += slice;
+    if (slice == left)
+        return request_done(request);
+    lws_set_timeout(request->wsi, PENDING_TIMEOUT_HTTP_CONTENT, 20);
+    lws_callback_on_writable(request->wsi);
+    return 0;
+}
+
+static struct request *request_of(struct lws *wsi, struct request **slot)
+{
+    if (!*slot) {
+        *slot = mem_new(sizeof(**slot));
+        (*slot)->wsi = wsi;
+    }
+    return *slot;
+}
+
+static void request_end(struct hub *hub, struct request **slot)
+{
+    if (!slot || !*slot)
+        return;
+    request_forget(hub, *slot);
+    mem_free((*slot)->body);
+    mem_free(*slot);
+    *slot = NULL;
+}
+
+/* False: not about a connection as such. */
+static bool on_connection(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, int *result)
+{
+    *result = 0;
+    switch (reason) {
+    case LWS_CALLBACK_FILTER_NETWORK_CONNECTION: *result = visitor_may_come(hub_of(wsi), (int)(intptr_t)in) ? 0 : -1; return true;
+    case LWS_CALLBACK_SERVER_NEW_CLIENT_INSTANTIATED: visitor_come(hub_of(wsi), wsi); return true;
+    case LWS_CALLBACK_WSI_DESTROY: visitor_go(hub_of(wsi), wsi); return true;
+    case LWS_CALLBACK_OPENSSL_LOAD_EXTRA_SERVER_VERIFY_CERTS: tls_serve(hub_of(wsi)->tls, user); return true;
+    default: return false;
+    }
+}
+
+int http_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t len)
+{
+    struct request **slot = user;
+    int result;
+    (void)len;
+    if (on_connection(wsi, reason, user, in, &result))
+        return result;
+    switch (reason) {
+    case LWS_CALLBACK_HTTP: return serve(hub_of(wsi), request_of(wsi, slot), in);
+    case LWS_CALLBACK_HTTP_WRITEABLE: return *slot ? on_writeable(hub_of(wsi), *slot) : 0;
+    case LWS_CALLBACK_HTTP_DROP_PROTOCOL: /* also when the connection is upgraded */
+    case LWS_CALLBACK_CLOSED_HTTP: request_end(hub_of(wsi), slot); return 0;
+    case LWS_CALLBACK_HTTP_CONFIRM_UPGRADE: return strcasecmp(in, "websocket") == 0 ? stream_check_upgrade(hub_of(wsi), wsi) : -1;
+    case LWS_CALLBACK_ESTABLISHED: { /* a WebSocket without a subprotocol lands here */
+        static unsigned char text[] = "the subprotocol is " WIRE_SUBPROTOCOL;
+        lws_close_reason(wsi, LWS_CLOSE_STATUS_PROTOCOL_ERR, text, sizeof(text) - 1);
+        return -1;
+    }
+    default: return 0;
+    }
+}

@@ -1,0 +1,140 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Answers to HTTP requests: head and body, and those that have to wait for theirs. */
+#include <string.h>
+
+#include "base/mem.h"
+#include "net/http/http_impl.h"
+
+static const char *const security[][2] = {
+    { "content-security-policy:", "default-src 'self'; connect-src 'self' ws: wss:; img-src 'self' data: blob:; worker-src 'self' blob:; "
+                                  "object-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'self'" },
+    { "x-content-type-options:", "nosniff" },
+    { "referrer-policy:", "no-referrer" },
+    { "cross-origin-resource-policy:", "same-origin" },
+    { "cache-control:", "no-cache" },
+};
+
+static bool add_header(struct lws *wsi, const char *name, const char *value, unsigned char **p, unsigned char *end)
+{
+    return lws_add_http_header_by_name(wsi, (const unsigned char *)name, (const unsigned char *)value, (int)strlen(value), p, end) == 0;
+}
+
+static bool write_head(struct request *request, int status, const char *type, const char *extra_name, const char *extra)
+{
+    unsigned char buffer[LWS_PRE + 2048], *start = buffer + LWS_PRE, *p = start, *end = buffer + sizeof(buffer) - 1;
+    struct lws *wsi = request->wsi;
+    if (lws_add_http_common_headers(wsi, (unsigned)status, type, status == HTTP_STATUS_NOT_MODIFIED ? 0 : request->count, &p, end))
+        return false;
+    for (size_t i = 0; i < sizeof(security) / sizeof(security[0]); i++)
+        if (!add_header(wsi, security[i][0], security[i][1], &p, end))
+            return false;
+    if (extra_name && !add_header(wsi, extra_name, extra, &p, end))
+        return false;
+    return lws_finalize_write_http_header(wsi, start, &p, end) == 0;
+}
+
+int request_done(struct request *request)
+{
+    mem_free(request->body);
+    request->body = NULL;
+    request->count = request->sent = 0;
+    return request->close || lws_http_transaction_completed(request->wsi) ? -1 : 0;
+}
+
+/* Takes body. The rest happens as the socket takes it. */
+int request_answer(struct request *request, int status, const char *type, char *body, size_t count, const char *extra_name,
+                  const char *extra)
+{
+    mem_free(request->body);
+    request->body = body;
+    request->count = count;
+    request->sent = 0;
+    if (!write_head(request, status, type, extra_name, extra))
+        return -1;
+    if (request->head || count == 0)
+        return request_done(request);
+    lws_callback_on_writable(request->wsi);
+    return 0;
+}
+
+int request_answer_text(struct request *request, int status, const char *text)
+{
+    return request_answer(request, status, HTTP_TEXT, mem_strdup(text), strlen(text), NULL, NULL);
+}
+
+int request_answer_json(struct request *request, char *text)
+{
+    return request_answer(request, HTTP_STATUS_OK, "application/json", text, strlen(text), NULL, NULL);
+}
+
+int request_answer_error(struct request *request, const struct message_error *error)
+{
+    char *text = mem_printf("%s\n", error->text);
+    int status = strcmp(error->code, "not_allowed") == 0 ? HTTP_STATUS_FORBIDDEN : HTTP_STATUS_BAD_REQUEST;
+    return request_answer(request, status, HTTP_TEXT, text, strlen(text), NULL, NULL);
+}
+
+int http_answer(struct lws *wsi, int status, const char *text)
+{
+    struct request request = { .wsi = wsi, .count = strlen(text) };
+    if (!write_head(&request, status, HTTP_TEXT, NULL, NULL))
+        return -1;
+    return lws_write(wsi, (unsigned char *)text, strlen(text), LWS_WRITE_HTTP_FINAL) < 0 ? -1 : 0;
+}
+
+bool request_args(struct lws *wsi, struct args *args, struct message_error *error)
+{
+    int count = 0;
+    for (; count < MAX_ARGS && lws_hdr_fragment_length(wsi, WSI_TOKEN_HTTP_URI_ARGS, count) > 0; count++) {
+        if (lws_hdr_copy_fragment(wsi, args->bytes[count], MAX_ARG_BYTES, WSI_TOKEN_HTTP_URI_ARGS, count) < 0) {
+            message_fail(error, "bad_field", "argument %d is longer than %d bytes", count + 1, MAX_ARG_BYTES - 1);
+            return false;
+        }
+        args->list[count] = args->bytes[count];
+    }
+    args->count = (size_t)count;
+    return true;
+}
+
+void request_await(struct hub *hub, struct request *request)
+{
+    request->client = hub->next_client++;
+    request->next = hub->snapshots;
+    hub->snapshots = request;
+    hub->snapshot_count++;
+    lws_set_timeout(request->wsi, PENDING_TIMEOUT_HTTP_CONTENT, 60);
+}
+
+struct request *request_find(const struct hub *hub, uint64_t client)
+{
+    struct request *request = hub->snapshots;
+    while (request && request->client != client)
+        request = request->next;
+    return request;
+}
+
+void request_forget(struct hub *hub, struct request *request)
+{
+    struct request **at = &hub->snapshots;
+    while (*at && *at != request)
+        at = &(*at)->next;
+    if (!*at)
+        return;
+    *at = request->next;
+    hub->snapshot_count--;
+    painter_forget(hub->params.painter, request->client);
+    if (hub->recall)
+        recall_forget(hub->recall, request->client);
+    if (hub->past)
+        past_forget(hub->past, request->client);
+    if (request->asked && request->asked->moment)
+        moments_give(hub->params.moments, &request->asked->moment);
+    mem_free(request->asked);
+    request->asked = NULL;
+}
+
+void request_answered(struct request *request, int result)
+{
+    if (result < 0)
+        lws_set_timeout(request->wsi, PENDING_TIMEOUT_CLOSE_SEND, LWS_TO_KILL_ASYNC);
+}

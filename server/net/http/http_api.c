@@ -1,0 +1,125 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What /api/v1 and /metrics tell: plant, tags, alarms and what was recorded. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "net/http/http_impl.h"
+#include "net/message/reply.h"
+
+int ask_history(struct hub *hub, struct request *request)
+{
+    struct recall_order order;
+    struct message_error error = { 0 };
+    struct args args;
+    if (!hub->recall)
+        return request_answer_text(request, HTTP_STATUS_NOT_FOUND, HTTP_NOTHING_RECORDED);
+    if (!request_args(request->wsi, &args, &error) ||
+        !recall_parse(hub->params.scene->plant, args.list, args.count, clock_utc_ns() / 1000, &order, &error))
+        return request_answer_error(request, &error);
+    order.client = hub->next_client;
+    if (!recall_ask(hub->recall, &order))
+        return request_answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "too much is being asked; try again\n");
+    request_await(hub, request);
+    return 0;
+}
+
+static bool read_alarm_query(struct hub *hub, struct request *request, bool journal, struct alarm_query *query, struct message_error *error)
+{
+    struct args args;
+    return request_args(request->wsi, &args, error) &&
+           alarm_query_parse(hub->params.scene->plant, journal, args.list, args.count, clock_utc_ns() / 1000, query, error);
+}
+
+int api_alarms(struct hub *hub, struct request *request)
+{
+    struct alarm_query query;
+    struct message_error error = { 0 };
+    if (!hub->params.alarming)
+        return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "there are no alarms here\n");
+    if (!read_alarm_query(hub, request, false, &query, &error))
+        return request_answer_error(request, &error);
+    char *text = alarms_api_text(hub->params.alarming, hub->params.scene->plant, &query, clock_utc_ns());
+    return query.csv ? request_answer(request, HTTP_STATUS_OK, "text/csv; charset=utf-8", text, strlen(text), NULL, NULL)
+                     : request_answer_json(request, text);
+}
+
+int ask_journal(struct hub *hub, struct request *request)
+{
+    struct recall_order order = { .journal = true };
+    struct message_error error = { 0 };
+    if (!hub->recall)
+        return request_answer_text(request, HTTP_STATUS_NOT_FOUND, HTTP_NOTHING_RECORDED);
+    if (!read_alarm_query(hub, request, true, &order.alarms, &error))
+        return request_answer_error(request, &error);
+    order.client = hub->next_client;
+    if (!recall_ask(hub->recall, &order))
+        return request_answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "too much is being asked; try again\n");
+    request_await(hub, request);
+    return 0;
+}
+
+void http_on_recall(struct hub *hub, struct recall_answer *recalled)
+{
+    struct request *request = request_find(hub, recalled->client);
+    if (!request) {
+        mem_free(recalled->text);
+        return;
+    }
+    request_forget(hub, request);
+    int status = recalled->text ? request_answer(request, HTTP_STATUS_OK, recalled->csv ? "text/csv; charset=utf-8" : "application/json",
+                                         recalled->text, recalled->length, NULL, NULL)
+                                : request_answer_text(request, HTTP_STATUS_INTERNAL_SERVER_ERROR, HTTP_UNREADABLE);
+    request_answered(request, status);
+}
+
+int metrics(struct hub *hub, struct request *request)
+{
+    struct text text = { 0 };
+    counters_print(hub->params.counters, &text);
+    return request_answer(request, HTTP_STATUS_OK, "text/plain; version=0.0.4; charset=utf-8", text.at, text.length, NULL, NULL);
+}
+
+int api_plant(struct hub *hub, struct request *request)
+{
+    return request_answer_json(request, reply_api_plant_text(&hub->world));
+}
+
+enum { TAGS_PAGE = 1000, TAGS_PAGE_MAX = 5000 };
+
+/* `first` and `count` of the query. */
+static bool read_page(const struct args *args, size_t *first, size_t *count)
+{
+    static const char *const names[] = { "first=", "count=" };
+    size_t *const numbers[] = { first, count };
+    for (size_t i = 0; i < args->count; i++) {
+        char *end = NULL;
+        for (int n = 0; n < 2; n++)
+            if (!strncmp(args->list[i], names[n], 6) && args->list[i][6] >= '0' && args->list[i][6] <= '9')
+                *numbers[n] = strtoul(args->list[i] + 6, &end, 10);
+        if (!end || *end)
+            return false;
+    }
+    return *count >= 1 && *count <= TAGS_PAGE_MAX;
+}
+
+int api_tags(struct hub *hub, struct request *request)
+{
+    struct message_error error = { 0 };
+    struct args args;
+    size_t first = 0, count = TAGS_PAGE;
+    if (!request_args(request->wsi, &args, &error) || !read_page(&args, &first, &count))
+        return request_answer_text(request, HTTP_STATUS_BAD_REQUEST, "expected first=N and count=N, 1 to 5000\n");
+    return request_answer_json(request, reply_api_tags_text(&hub->world, first, count));
+}
+
+int api_proofs(struct hub *hub, struct request *request)
+{
+    struct text text = { 0 };
+    if (!hub->params.proofs)
+        return request_answer_text(request, HTTP_STATUS_NOT_FOUND, HTTP_NOTHING_RECORDED);
+    proofs_print(hub->params.proofs, &text);
+    return request_answer(request, HTTP_STATUS_OK, "text/csv; charset=utf-8", text.at, text.length, "content-disposition:",
+                          "attachment; filename=\"proofs.csv\"");
+}

@@ -1,0 +1,135 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Pictures and picks over HTTP, of now or of an instant. */
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "net/http/http_impl.h"
+#include "net/message/query.h"
+#include "net/message/reply.h"
+#include "net/visitor.h"
+
+static const struct encoder_params LOSSLESS = { .quality = 100, .full_chroma = true };
+
+/* place: x and y of a pick; NULL: none is asked. */
+static bool read_query(struct hub *hub, struct lws *wsi, struct view *view, double place[2], struct message_error *error)
+{
+    const struct params_world world = {
+        .scene = hub->params.scene, .baselines = hub->params.baselines, .now_us = clock_utc_ns() / 1000
+    };
+    struct args args;
+    return request_args(wsi, &args, error) && query_parse(&world, visitor_of(wsi)->role, args.list, args.count, view, place, error);
+}
+
+static struct view *asked_view(struct asked *asked)
+{
+    return asked->picks ? &asked->pick.view : &asked->wish.view;
+}
+
+/* Of now at once; of an instant when it was read. */
+static void begin(struct hub *hub, struct request *request)
+{
+    struct asked *asked = request->asked;
+    if (asked_view(asked)->at_us && !asked->moment) {
+        past_ask(hub->past, request->client, asked_view(asked)->at_us);
+    } else if (asked->picks) {
+        painter_pick(hub->params.painter, &asked->pick);
+    } else {
+        painter_ask(hub->params.painter, request->client, &asked->wish);
+        painter_go(hub->params.painter);
+    }
+}
+
+/* Whether it may be, before it waits; if not, *result is what came of the answer. */
+static bool may_ask(struct hub *hub, struct request *request, const struct view *view, int *result)
+{
+    if (view->at_us && !hub->past) {
+        *result = request_answer_text(request, HTTP_STATUS_NOT_FOUND, HTTP_NOTHING_RECORDED);
+        return false;
+    }
+    if (hub->snapshot_count < hub->quotas->at[QUOTA_SNAPSHOTS])
+        return true;
+    *result = request_answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "too many pictures are being made; try again\n");
+    return false;
+}
+
+int ask_snapshot(struct hub *hub, struct request *request)
+{
+    struct wish wish = { .codec = WIRE_CODEC_PNG, .quality = LOSSLESS, .urgency = URGENCY_SNAPSHOT, .always = true, .overlay = true };
+    struct message_error error = { 0 };
+    int result;
+    if (!read_query(hub, request->wsi, &wish.view, NULL, &error))
+        return request_answer_error(request, &error);
+    if (!may_ask(hub, request, &wish.view, &result))
+        return result;
+    wish.asked_ns = wish.view.input_ns = clock_mono_ns();
+    request_await(hub, request);
+    request->asked = mem_new(sizeof(*request->asked));
+    request->asked->wish = wish;
+    begin(hub, request);
+    return 0;
+}
+
+void http_on_picture(struct hub *hub, struct picture *picture)
+{
+    struct request *request = request_find(hub, picture->client);
+    if (request) {
+        int status;
+        request_forget(hub, request);
+        if (picture->packet) {
+            char *body = mem_array(picture->packet->count, 1);
+            memcpy(body, picture->packet->bytes, picture->packet->count);
+            status = request_answer(request, HTTP_STATUS_OK, "image/png", body, picture->packet->count, NULL, NULL);
+        } else {
+            status = request_answer_text(request, HTTP_STATUS_INTERNAL_SERVER_ERROR, "the picture could not be made\n");
+        }
+        request_answered(request, status);
+    }
+    picture_destroy(&picture);
+}
+
+int ask_pick(struct hub *hub, struct request *request)
+{
+    struct pick_order order = { 0 };
+    struct message_error error = { 0 };
+    double place[2];
+    int result;
+    if (!read_query(hub, request->wsi, &order.view, place, &error))
+        return request_answer_error(request, &error);
+    if (!may_ask(hub, request, &order.view, &result))
+        return result;
+    request_await(hub, request);
+    order.client = request->client;
+    order.x_px = place[0];
+    order.y_px = place[1];
+    request->asked = mem_new(sizeof(*request->asked));
+    request->asked->picks = true;
+    request->asked->pick = order;
+    begin(hub, request);
+    return 0;
+}
+
+void http_on_pick(struct hub *hub, const struct pick_answer *pick)
+{
+    struct request *request = request_find(hub, pick->order.client);
+    if (!request)
+        return;
+    request_forget(hub, request);
+    request_answered(request, request_answer_json(request, reply_picked_text(hub->params.scene->plant, pick)));
+}
+
+void http_on_moment(struct hub *hub, const struct past_answer *past)
+{
+    struct request *request = request_find(hub, past->client);
+    if (!request)
+        return;
+    struct asked *asked = request->asked;
+    asked->moment = past->good ? moments_take(hub->params.moments, past->at_us) : NULL;
+    if (asked->moment) {
+        view_travel(asked_view(asked), past->at_us, asked->moment->slot);
+        begin(hub, request);
+        return;
+    }
+    request_forget(hub, request);
+    request_answered(request, request_answer_text(request, HTTP_STATUS_INTERNAL_SERVER_ERROR, HTTP_UNREADABLE));
+}

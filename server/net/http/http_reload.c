@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The plant loaded anew, asked over HTTP. */
+#include <string.h>
+
+#include "base/mem.h"
+#include "net/http/http_impl.h"
+#include "net/visitor.h"
+
+/* A page of another site may have its user's browser send this. */
+static bool may_change(struct hub *hub, struct lws *wsi)
+{
+    char origin[256], host[256];
+    return visitor_header(wsi, WSI_TOKEN_ORIGIN, origin, sizeof(origin)) && visitor_header(wsi, WSI_TOKEN_HOST, host, sizeof(host)) &&
+           access_origin(&hub->params.access, origin, host, hub->tls != NULL);
+}
+
+int ask_reload(struct hub *hub, struct request *request)
+{
+    request->close = true; /* there may be a body that nobody reads */
+    if (!may_change(hub, request->wsi))
+        return request_answer_text(request, HTTP_STATUS_FORBIDDEN, "pages of other sites may not do this\n");
+    if (!hub->params.reload)
+        return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "this plant cannot be loaded anew\n");
+    request->reloads = true;
+    request_await(hub, request);
+    hub->params.reload(hub->params.reload_arg);
+    return 0;
+}
+
+static void answer_all(struct hub *hub, bool reloads, int status, const char *type, const char *text)
+{
+    for (struct request *request = hub->snapshots, *next; request; request = next) {
+        next = request->next;
+        if (request->reloads != reloads)
+            continue;
+        request_forget(hub, request);
+        request->reloads = false;
+        request_answered(request, request_answer(request, status, type, mem_strdup(text), strlen(text), NULL, NULL));
+    }
+}
+
+void http_let_go(struct hub *hub)
+{
+    answer_all(hub, false, HTTP_STATUS_SERVICE_UNAVAILABLE, HTTP_TEXT,
+               "the plant was loaded anew meanwhile; try again\n");
+}
+
+void http_on_reloaded(struct hub *hub, bool good, const char *text)
+{
+    answer_all(hub, true, good ? HTTP_STATUS_OK : 422, "application/json", text);
+}

@@ -1,0 +1,328 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Alarms in words: JSON and CSV. */
+#include "net/message/alarm_text.h"
+
+#include <jansson.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "history/when.h"
+
+enum { ROWS_DEFAULT = 1000, ROWS_MOST = 10000, DIGITS = 7 };
+
+const char *alarm_mode_name(enum alarm_mode mode)
+{
+    static const char *const names[] = { [ALARMS_DISPLAY] = "display", [ALARMS_MIRROR] = "mirror", [ALARMS_LOCAL] = "local" };
+    return names[mode];
+}
+
+static json_t *number(double value)
+{
+    return isfinite(value) ? json_real(value) : json_null();
+}
+
+static json_t *string(const char *text)
+{
+    json_t *value = json_string(text);
+    return value ? value : json_string("(not UTF-8)");
+}
+
+static json_t *instant(int64_t utc_ns)
+{
+    return utc_ns ? json_integer(utc_ns / 1000) : json_null();
+}
+
+/* Takes the object. */
+static char *print(json_t *object)
+{
+    char *dumped = json_dumps(object, JSON_COMPACT | JSON_REAL_PRECISION(DIGITS));
+    char *text = mem_strdup(dumped ? dumped : "{}");
+    free(dumped);
+    json_decref(object);
+    return text;
+}
+
+/* --- to sessions ------------------------------------------------------------------------------------------------------------- */
+
+static void add_row(void *arg, const struct alarm *alarm)
+{
+    enum alarm_word word = alarm_word_of(alarm);
+    json_t *of = alarm->tag < 0 ? string(alarm->name) : json_integer(alarm->tag);
+    json_t *row = json_pack("[o,s,s]", of, alarm_kind_name(alarm->kind), alarm_word_name(word));
+    json_array_append_new(arg, row);
+    if (word == ALARM_NORMAL)
+        return;
+    json_t *rest = json_pack("[i,o,o,o,b,b]", alarm->priority, instant(alarm->raised_utc_ns), number(alarm->value), number(alarm->limit),
+                             alarm->state.active, alarm->held);
+    json_array_extend(row, rest);
+    json_decref(rest);
+    if (alarm->who[0] || alarm->reason[0] || alarm->until.utc_ns) {
+        json_array_append_new(row, instant(alarm->until.utc_ns));
+        json_array_append_new(row, string(alarm->who));
+        json_array_append_new(row, string(alarm->reason));
+    }
+}
+
+char *alarms_text(struct alarms_said *said, struct alarming *alarming, const struct plant *plant, int64_t now_utc_ns, uint64_t *number_out)
+{
+    uint64_t since = *number_out;
+    if (said && said->text && said->since == since && said->number == alarming_number(alarming)) {
+        *number_out = said->number;
+        return mem_strdup(said->text);
+    }
+    json_t *rows = json_array();
+    *number_out = alarming_changes(alarming, since, add_row, rows);
+    char *text = print(json_pack("{s:s,s:s,s:b,s:I,s:o}", "type", "alarms", "mode", alarm_mode_name(plant->alarms), "all", since == 0,
+                                 "time_us", (json_int_t)(now_utc_ns / 1000), "alarms", rows));
+    if (said) {
+        alarms_said_finish(said);
+        *said = (struct alarms_said){ mem_strdup(text), since, *number_out };
+    }
+    return text;
+}
+
+void alarms_said_finish(struct alarms_said *said)
+{
+    mem_free(said->text);
+    *said = (struct alarms_said){ 0 };
+}
+
+/* --- to programs: what is asked --------------------------------------------------------------------------------------------- */
+
+static bool take_count(const char *name, const char *text, int64_t low, int64_t high, int64_t *out, struct message_error *error)
+{
+    char *end;
+    long long value = strtoll(text, &end, 10);
+    if (end == text || *end || value < low || value > high) {
+        message_fail(error, "bad_field", "%s: expected a number from %lld to %lld, found '%.60s'", name, (long long)low, (long long)high,
+                     text);
+        return false;
+    }
+    *out = value;
+    return true;
+}
+
+static bool take_when(const char *name, const char *text, int64_t now_us, int64_t *out, struct message_error *error)
+{
+    if (when_parse(text, now_us, out))
+        return true;
+    message_fail(error, "bad_field", "%s: expected " WHEN_FORMS ", found '%.60s'", name, text);
+    return false;
+}
+
+static bool take_tag(const struct plant *plant, const char *text, struct alarm_query *query, struct message_error *error)
+{
+    strncpy(query->tag, text, sizeof(query->tag) - 1);
+    if (plant_find_tag(plant, text) >= 0)
+        return true;
+    message_fail(error, "unknown_tag", "tag: there is no tag '%.60s'", text);
+    return false;
+}
+
+static bool take(const struct plant *plant, bool journal, const char *arg, int64_t now_us, struct alarm_query *query,
+                 struct message_error *error)
+{
+    size_t n = strcspn(arg, "=");
+    const char *value = arg[n] ? arg + n + 1 : "";
+    int64_t count;
+#define IS(name) (n == strlen(name) && !memcmp(arg, name, n))
+    if (IS("limit")) {
+        bool good = take_count("limit", value, 1, ROWS_MOST, &count, error);
+        query->limit = good ? (int)count : query->limit;
+        return good;
+    }
+    if (IS("tag"))
+        return take_tag(plant, value, query, error);
+    if (IS("offset") && !journal)
+        return take_count("offset", value, 0, INT64_MAX, &query->offset, error);
+    if (IS("before") && journal)
+        return take_count("before", value, 1, INT64_MAX, &query->before_id, error);
+    if (IS("from") && journal)
+        return take_when("from", value, now_us, &query->from_us, error);
+    if (IS("to") && journal)
+        return take_when("to", value, now_us, &query->to_us, error);
+    if (IS("format") && (!strcmp(value, "csv") || !strcmp(value, "json"))) {
+        query->csv = value[0] == 'c';
+        return true;
+    }
+#undef IS
+    message_fail(error, "unknown_field", "'%.60s': expected limit, tag, format (json or csv)%s", arg,
+                 journal ? ", from, to, before" : " or offset");
+    return false;
+}
+
+bool alarm_query_parse(const struct plant *plant, bool journal, const char *const *args, size_t count, int64_t now_us,
+                       struct alarm_query *query, struct message_error *error)
+{
+    *query = (struct alarm_query){ .limit = ROWS_DEFAULT, .from_us = INT64_MIN, .to_us = INT64_MAX, .before_id = INT64_MAX };
+    for (size_t i = 0; i < count; i++)
+        if (!take(plant, journal, args[i], now_us, query, error))
+            return false;
+    return true;
+}
+
+/* --- to programs: what there is --------------------------------------------------------------------------------------------- */
+
+struct listing {
+    const struct plant *plant;
+    const struct alarm_query *query;
+    int64_t passed, total;
+    int count;
+    json_t *rows;
+    struct text csv;
+};
+
+static void add_csv_text(struct text *out, const char *text)
+{
+    bool plain = !strpbrk(text, ",\"\n\r");
+    text_add(out, plain ? "" : "\"");
+    for (const char *c = text; *c; c++)
+        text_add(out, *c == '"' ? "\"\"" : "%c", *c);
+    text_add(out, plain ? "" : "\"");
+}
+
+static void add_csv_number(struct text *out, double value)
+{
+    if (isfinite(value))
+        text_add(out, "%.9g", value);
+}
+
+static void add_csv_alarm(struct listing *listing, const struct alarm *alarm)
+{
+    struct text *out = &listing->csv;
+    char when[WHEN_BYTES] = "";
+    when_print(alarm->raised_utc_ns / 1000, when);
+    add_csv_text(out, alarm->name);
+    text_add(out, ",%s,%s,%d,%s,", alarm_kind_name(alarm->kind), alarm_word_name(alarm_word_of(alarm)), alarm->priority, when);
+    add_csv_number(out, alarm->value);
+    text_add(out, ",");
+    add_csv_number(out, alarm->limit);
+    when_print(alarm->until.utc_ns / 1000, when);
+    text_add(out, ",%d,%s,", alarm->held, alarm->until.utc_ns ? when : "");
+    add_csv_text(out, alarm->who);
+    text_add(out, ",");
+    add_csv_text(out, alarm->reason);
+    text_add(out, "\n");
+}
+
+static json_t *alarm_object(const struct alarm *alarm)
+{
+    return json_pack("{s:o,s:s,s:s,s:i,s:o,s:o,s:o,s:o,s:b,s:b,s:o,s:o,s:o}", "tag", string(alarm->name), "kind",
+                     alarm_kind_name(alarm->kind), "state", alarm_word_name(alarm_word_of(alarm)), "priority", alarm->priority,
+                     "raised_us", instant(alarm->raised_utc_ns), "changed_us", instant(alarm->changed_utc_ns), "value",
+                     number(alarm->value), "limit", number(alarm->limit), "active", alarm->state.active, "held", alarm->held, "until_us",
+                     instant(alarm->until.utc_ns), "who", string(alarm->who), "reason", string(alarm->reason));
+}
+
+static void list(void *arg, const struct alarm *alarm)
+{
+    struct listing *listing = arg;
+    const struct alarm_query *query = listing->query;
+    if (query->tag[0] && strcmp(query->tag, alarm->name) != 0)
+        return;
+    listing->total++;
+    if (listing->passed < query->offset) {
+        listing->passed++;
+        return;
+    }
+    if (listing->count == query->limit)
+        return;
+    listing->count++;
+    if (query->csv)
+        add_csv_alarm(listing, alarm);
+    else
+        json_array_append_new(listing->rows, alarm_object(alarm));
+}
+
+static json_t *counts(struct alarming *alarming)
+{
+    struct alarm_counts c;
+    json_t *states = json_object();
+    alarming_counts(alarming, &c);
+    for (int i = 0; i < ALARM_WORDS; i++)
+        json_object_set_new(states, alarm_word_name((enum alarm_word)i), json_integer(c.words[i]));
+    return json_pack("{s:i,s:i,s:i,s:i,s:o}", "active", c.active, "standing", c.standing, "chattering", c.chattering, "held", c.held,
+                     "states", states);
+}
+
+char *alarms_api_text(struct alarming *alarming, const struct plant *plant, const struct alarm_query *query, int64_t now_utc_ns)
+{
+    struct listing listing = { .plant = plant, .query = query, .rows = json_array() };
+    text_add(&listing.csv, "tag,kind,state,priority,raised,value,limit,held,until,who,reason\n");
+    alarming_changes(alarming, 0, list, &listing);
+    if (query->csv) {
+        json_decref(listing.rows);
+        return listing.csv.at;
+    }
+    text_finish(&listing.csv);
+    int64_t next = query->offset + listing.count;
+    return print(json_pack("{s:s,s:I,s:o,s:I,s:o,s:o}", "mode", alarm_mode_name(plant->alarms), "time_us", (json_int_t)(now_utc_ns / 1000),
+                           "counts", counts(alarming), "total", (json_int_t)listing.total, "alarms", listing.rows, "next_offset",
+                           next < listing.total ? json_integer(next) : json_null()));
+}
+
+/* --- the journal ------------------------------------------------------------------------------------------------------------ */
+
+struct paging {
+    json_t *rows;
+    struct text *csv; /* NULL: JSON */
+    int64_t last_id;
+    int count;
+};
+
+static void add_journal_csv(struct text *out, const struct journal_row *row)
+{
+    char when[WHEN_BYTES];
+    when_print(row->t_us, when);
+    text_add(out, "%lld,%s,", (long long)row->id, when);
+    add_csv_text(out, row->tag);
+    text_add(out, ",%s,%s,%s,%s,%d,", row->kind, row->event, row->before, row->after, row->priority);
+    add_csv_number(out, row->limit);
+    text_add(out, ",");
+    add_csv_number(out, row->value);
+    text_add(out, ",");
+    add_csv_text(out, row->who);
+    text_add(out, ",");
+    add_csv_text(out, row->reason);
+    text_add(out, "\n");
+}
+
+static void add_journal_row(void *arg, const struct journal_row *row)
+{
+    struct paging *paging = arg;
+    paging->last_id = row->id;
+    paging->count++;
+    if (paging->csv)
+        add_journal_csv(paging->csv, row);
+    else
+        json_array_append_new(paging->rows,
+                              json_pack("{s:I,s:I,s:o,s:s,s:s,s:s,s:s,s:i,s:o,s:o,s:o,s:o}", "id", (json_int_t)row->id, "time_us",
+                                        (json_int_t)row->t_us, "tag", string(row->tag), "kind", row->kind, "event", row->event, "before",
+                                        row->before, "state", row->after, "priority", row->priority, "limit", number(row->limit), "value",
+                                        number(row->value), "who", string(row->who), "reason", string(row->reason)));
+}
+
+bool alarms_journal_text(struct log *log, const char *folder, const struct alarm_query *query, struct text *out)
+{
+    struct paging paging = { .rows = json_array(), .csv = query->csv ? out : NULL };
+    const struct journal_query asked = {
+        .from_us = query->from_us, .to_us = query->to_us, .before_id = query->before_id, .tag = query->tag[0] ? query->tag : NULL,
+        .limit = query->limit
+    };
+    if (query->csv)
+        text_add(out, "id,time,tag,kind,event,before,state,priority,limit,value,who,reason\n");
+    bool good = journal_read(log, folder, &asked, add_journal_row, &paging) == 0;
+    if (!good)
+        text_finish(out);
+    if (!good || query->csv) {
+        json_decref(paging.rows);
+        return good;
+    }
+    char *text = print(json_pack("{s:o,s:o}", "rows", paging.rows, "next_before",
+                                 paging.count == query->limit ? json_integer(paging.last_id) : json_null()));
+    text_add(out, "%s", text);
+    mem_free(text);
+    return true;
+}

@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What is said of alarms: to sessions as they change, and to programs that ask. Every result is freed with mem_free. */
+#ifndef NET_ALARM_TEXT_H
+#define NET_ALARM_TEXT_H
+#include "alarm/alarming.h"
+#include "alarm/journal.h"
+#include "base/text.h"
+#include "net/message/message.h"
+
+/* What was last said, for the next session that is to hear the same. Zero-initialise. */
+struct alarms_said {
+    char *text;
+    uint64_t since, number;
+};
+void alarms_said_finish(struct alarms_said *said);
+/* The message `alarms`: what changed after *number (0: all that is not normal), which is brought up to date. said NULL: nothing is kept. */
+char *alarms_text(struct alarms_said *said, struct alarming *alarming, const struct plant *plant, int64_t now_utc_ns, uint64_t *number);
+
+/* `/api/v1/alarms` and `/api/v1/alarms/journal`. */
+struct alarm_query {
+    bool csv;
+    int limit;      /* rows, at most */
+    int64_t offset; /* of alarms: so many are passed over */
+    char tag[256];  /* "": of all */
+    int64_t from_us, to_us, before_id; /* of the journal */
+};
+/* `limit=100&format=csv`, decoded. False: *error says which is wrong. */
+bool alarm_query_parse(const struct plant *plant, bool journal, const char *const *args, size_t count, int64_t now_us,
+                       struct alarm_query *query, struct message_error *error);
+char *alarms_api_text(struct alarming *alarming, const struct plant *plant, const struct alarm_query *query, int64_t now_utc_ns);
+/* False: it could not be read; logged. */
+bool alarms_journal_text(struct log *log, const char *folder, const struct alarm_query *query, struct text *out);
+const char *alarm_mode_name(enum alarm_mode mode);
+
+#endif

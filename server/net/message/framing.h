@@ -1,0 +1,14 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a client wants to look at, and the camera that does. */
+#ifndef NET_FRAMING_H
+#define NET_FRAMING_H
+#include "net/message/message.h"
+
+/* Reads `id`, `side` and `projection`. False: *error names the field. */
+bool fit_parse(const struct plant *plant, const json_t *o, struct fit *out, struct message_error *error);
+/* The camera that a fit asks for, from the one that is there. */
+void fit_apply(const struct scene *scene, const struct fit *fit, double aspect, struct camera *camera);
+/* The camera of a picture by its query: `camera`, `projection`, `height_m`, `fit` and `side`; else the plant's own. */
+bool query_camera(const struct scene *scene, const json_t *o, struct view *view, struct message_error *error);
+
+#endif

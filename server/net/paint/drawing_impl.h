@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the render thread alone touches. Private to drawing.c, turns.c and sharing.c. */
+#ifndef NET_DRAWING_IMPL_H
+#define NET_DRAWING_IMPL_H
+#include "net/paint/flying.h"
+#include "net/paint/held.h"
+#include "net/paint/painter_impl.h"
+#include "net/paint/recent.h"
+
+struct drawing {
+    struct painter *painter;
+    struct gl *gl;
+    struct field *field;
+    struct renderer *renderer;
+    struct snapshot *snapshot;
+    struct batch same;
+    struct recent recent;
+    struct { /* the picture that takes long and is drawn step by step; at most one */
+        struct canvas *canvas; /* NULL: none */
+        struct batch batch;
+        struct snapshot *snapshot;   /* of what it shows, unless */
+        const struct moment *moment; /* it is of an instant */
+        enum urgency urgency;
+        int64_t asked_ns, field_ns;
+        bool keeps; /* when it is done, new readings are quick to show: they need not wait for it, nor it be given up for them */
+    } slow;
+    bool warm; /* what only the first pictures cost was paid */
+    struct flying flying;
+    struct held held; /* pictures whose field takes long: worked on step by step, each in its turn */
+};
+
+/* --- sharing.c: one picture for all who want the same, whenever they ask --- */
+
+/* The frame, encoded, to all of the batch that are still there; empties it. cost_ns: what it took to draw, which they share. */
+void sharing_submit(struct painter *painter, struct frame *frame, struct batch *batch, int64_t cost_ns);
+/* Answers those for whom nothing changed, and those for whom another's frame does, or will when it comes; takes them out of the batch.
+   Returns the content (canvas_content). */
+uint64_t sharing_leave_out_same(struct drawing *drawing, const struct snapshot *snapshot, struct batch *batch);
+/* Likewise who asks a moment later than others for the same view: what was drawn for them will do, if all that changed since is readings
+   that he has yet to be told of. Before the field is brought up to date. */
+void sharing_take_recent(struct drawing *drawing, struct batch *batch);
+
+/* --- turns.c --- */
+
+/* Under nobody's lock, while nobody wants a picture: some of what the first still one will cost. */
+void drawing_idle(struct drawing *drawing);
+/* Waits for work. False: stop. An empty batch: the slow picture may go on by a step, or a flying one is waited for. */
+bool drawing_next(struct drawing *drawing, const struct schedule *schedule, struct batch *batch);
+/* The newest readings, if they changed or are some time old. */
+void drawing_refresh(struct drawing *drawing);
+/* What a view is of: an instant, held in *moment until it is given back (moments_give), or the newest readings. NULL: the instant is not
+   at hand (any more): who asked for it has gone on. */
+const struct snapshot *drawing_readings(struct drawing *drawing, const struct view *view, const struct moment **moment);
+/* Under the painter's lock: until somebody wakes it, or then. */
+void drawing_wait(struct painter *painter, int64_t mono_ns);
+
+#endif

@@ -1,0 +1,106 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One picture for all who want the same, whenever they ask. */
+#include "base/clock.h"
+#include "net/paint/drawing_impl.h"
+
+struct content_of {
+    struct painter *painter;
+    uint64_t content;
+    int64_t cost_ns; /* each one's part */
+};
+
+/* Under lock: the client has this picture already. */
+static bool has_it(const struct order *order, void *arg)
+{
+    const struct content_of *now = arg;
+    const struct client *client = painter_find(now->painter, order->client);
+    return !order->wish.always && client && client->has_content && client->content == now->content;
+}
+
+/* Under lock: who is there remembers what it gets. */
+static bool remember(const struct order *order, void *arg)
+{
+    const struct content_of *now = arg;
+    struct client *client = painter_find(now->painter, order->client);
+    if (!client)
+        return false;
+    client->has_content = true;
+    client->content = now->content;
+    client->spent_ns[schedule_share(order->wish.urgency)] += now->cost_ns;
+    return true;
+}
+
+/* Who left has no more part in any stream of packets: decided under the lock that painter_forget takes. Who shares a picture shares its
+   cost. */
+void sharing_submit(struct painter *painter, struct frame *frame, struct batch *batch, int64_t cost_ns)
+{
+    struct content_of now = { .painter = painter, .content = frame->content, .cost_ns = cost_ns / (int64_t)batch->count };
+    struct batch here = { 0 };
+    pthread_mutex_lock(&painter->lock);
+    batch_split(batch, remember, &now, &here);
+    encoding_submit(painter->encoding, frame, &here);
+    pthread_mutex_unlock(&painter->lock);
+    batch_finish(&here);
+    batch->count = 0;
+}
+
+/* To those who have that picture already: nothing new. */
+static void answer_same(struct drawing *drawing, struct batch *batch, uint64_t content)
+{
+    struct painter *painter = drawing->painter;
+    struct content_of now = { .painter = painter, .content = content };
+    pthread_mutex_lock(&painter->lock);
+    batch_split(batch, has_it, &now, &drawing->same);
+    pthread_mutex_unlock(&painter->lock);
+    counter_inc(painter->same, (int64_t)drawing->same.count);
+    painter_post_none(painter, &drawing->same, false);
+}
+
+static void answer_with(struct painter *painter, struct frame *frame, struct batch *batch)
+{
+    counter_inc(painter->shared, (int64_t)batch->count);
+    if (batch->count > 0)
+        sharing_submit(painter, frame, batch, 0);
+}
+
+/* To those for whom it is drawn goes who asks for it meanwhile. */
+static void join_flying(struct drawing *drawing, struct batch *batch, uint64_t content)
+{
+    struct flying_picture *flying = flying_find(&drawing->flying, content);
+    if (!flying)
+        return;
+    counter_inc(drawing->painter->shared, (int64_t)batch->count);
+    for (size_t i = 0; i < batch->count; i++)
+        batch_add(&flying->batch, &batch->orders[i]);
+    batch->count = 0;
+}
+
+uint64_t sharing_leave_out_same(struct drawing *drawing, const struct snapshot *snapshot, struct batch *batch)
+{
+    const struct wish *wish = &batch->orders[0].wish;
+    uint64_t content = canvas_content(drawing->renderer, &wish->view, snapshot);
+    bool overlay = wish->overlay;
+    answer_same(drawing, batch, content);
+    struct frame *frame = overlay ? NULL : recent_find(&drawing->recent, content, clock_mono_ns());
+    if (frame)
+        answer_with(drawing->painter, frame, batch);
+    else if (!overlay)
+        join_flying(drawing, batch, content);
+    return content;
+}
+
+void sharing_take_recent(struct drawing *drawing, struct batch *batch)
+{
+    const struct wish *wish = &batch->orders[0].wish;
+    int64_t read_ns = 0;
+    for (size_t i = 0; i < batch->count; i++)
+        if (batch->orders[i].wish.read_ns > read_ns)
+            read_ns = batch->orders[i].wish.read_ns;
+    if (wish->view.tier != TIER_MOVING || wish->overlay)
+        return;
+    struct frame *frame = recent_find_view(&drawing->recent, &wish->view, read_ns, clock_mono_ns());
+    if (!frame)
+        return;
+    answer_same(drawing, batch, frame->content);
+    answer_with(drawing->painter, frame, batch);
+}

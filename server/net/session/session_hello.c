@@ -1,0 +1,129 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The first message of a session: who it is, whether there is room for it, and what it looks at. */
+#include <string.h>
+
+#include "net/session/session_impl.h"
+
+/* With a token, its holder's role counts, even where none is needed. */
+static bool identify(struct session *session, const struct message *message, int64_t now_utc_ns, struct message_error *error)
+{
+    const struct tokens *tokens = session->world->tokens;
+    if (message->token[0] && tokens) {
+        if (!tokens_find(tokens, message->token, now_utc_ns, &session->holder)) {
+            message_fail(error, "bad_token", "this token is not, or no longer, let in");
+            session_close(session, 1008, "this token is not let in");
+            return false;
+        }
+        session->role = session->holder.role;
+    }
+    if (access_message(session->role, message, error))
+        return true;
+    if (session->role == ROLE_NOBODY)
+        session_close(session, 1008, "a token is needed");
+    return false;
+}
+
+bool session_may_draw(struct session *session, int width_px, int height_px, struct message_error *error)
+{
+    const struct session_world *world = session->world;
+    int64_t pixels = (int64_t)width_px * height_px, most = world->quotas->at[QUOTA_SESSION_PIXELS];
+    if (pixels > most) {
+        message_fail(error, "limit", "width, height: this server draws at most %lld pixels for one view", (long long)most);
+        return false;
+    }
+    if (session->hello && world->admission->pixels - session->pixels + pixels > world->quotas->at[QUOTA_PIXELS]) {
+        message_fail(error, "limit", "width, height: all views together have as many pixels as this server may draw");
+        return false;
+    }
+    world->admission->pixels += pixels - session->pixels;
+    session->pixels = pixels;
+    return true;
+}
+
+static bool admit(struct session *session, const struct view *view, struct message_error *error)
+{
+    const struct session_world *world = session->world;
+    const char *why = admission_refuses(world->admission, (int64_t)view->width_px * view->height_px, world->moving);
+    if (!why)
+        return session_may_draw(session, view->width_px, view->height_px, error);
+    message_fail(error, "full", "%s", why);
+    error->retry_after_s = ADMISSION_RETRY_S;
+    session_close(session, 1013, why);
+    return false;
+}
+
+/* The view to begin with: the one it left, or the plant's own. */
+static bool begin_view(const struct session *session, const struct message *message, const struct resumed *resumed, struct view *view,
+                       struct message_error *error)
+{
+    if (!resumed && (message->width_px == 0 || message->codecs.count == 0)) {
+        message_fail(error, "bad_field", "resume: there is no such view (any more); width, height and codecs are needed");
+        return false;
+    }
+    if (resumed) {
+        *view = resumed->view;
+        view_travel(view, 0, 0);
+        view_try(view, 0);
+    }
+    if (!resumed)
+        view_default(session->world->scene, message->width_px, message->height_px, view);
+    if (message->width_px) {
+        view->width_px = message->width_px;
+        view->height_px = message->height_px;
+    }
+    view->camera_seq = view->params_seq = 0;
+    if (message->has_camera) {
+        view->camera = message->camera;
+        view->camera_seq = message->seq;
+    }
+    if (message->has_params)
+        view->params_seq = message->params.seq;
+    return !message->has_params || session_apply_params(session, message, view, error);
+}
+
+bool session_apply_params(const struct session *session, const struct message *message, struct view *view, struct message_error *error)
+{
+    const struct session_world *world = session->world;
+    const struct params_world params = { .scene = world->scene, .baselines = world->baselines, .snapshot = session_snapshot(session) };
+    struct view changed = *view;
+    if (!params_apply(&params, &message->params, &changed, error) || !split_apply(&params, &message->split, &changed, error))
+        return false;
+    view_travel(&changed, view->at_us, view->field.slot);
+    view_try(&changed, view->field.trial);
+    *view = changed;
+    return true;
+}
+
+static void take_over(struct session *session, const struct resumed *resumed, const char *secret)
+{
+    resumes_forget(session->world->resumes, secret);
+    if (resumed->live)
+        session_close(resumed->live, 1000, "a new connection has taken this view over");
+}
+
+bool session_hello(struct session *session, const struct message *message, int64_t now_ns, int64_t now_utc_ns, struct message_error *error)
+{
+    const struct session_world *world = session->world;
+    struct resumed resumed = { .live = NULL };
+    struct view view;
+    if (!identify(session, message, now_utc_ns, error))
+        return false;
+    bool back = message->resume[0] && resumes_find(world->resumes, message->resume, session, now_ns, &resumed);
+    if (!begin_view(session, message, back ? &resumed : NULL, &view, error) ||
+        !session_choose_codec(session, message->codecs.count ? &message->codecs : &resumed.codecs, error) || !admit(session, &view, error))
+        return false;
+    if (back)
+        take_over(session, &resumed, message->resume);
+    session->view = view;
+    if (message->time.has_at)
+        session_time_begin(session, message->time.at_us, message->time.speed);
+    else if (back)
+        session_time_begin(session, resumed.view.at_us, resumed.speed);
+    session->resumed = back;
+    session->pixel_ratio = message->pixel_ratio > 0 ? message->pixel_ratio : back ? resumed.pixel_ratio : 1;
+    resumes_open(world->resumes, session, session->resume);
+    session->hello = session->owes_welcome = session->owes_tags_all = session->owes_status = session->always_pending = true;
+    session->owes_time = world->moments != NULL;
+    session->owes_proofs = true;
+    return true;
+}

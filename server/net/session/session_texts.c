@@ -1,0 +1,109 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a session is to be told in words, and when. */
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "net/message/alarm_text.h"
+#include "net/message/prove_message.h"
+#include "net/message/reply.h"
+#include "net/session/session_impl.h"
+#include "net/session/tags_said.h"
+
+static const int64_t TAGS_NS = 500 * NS_PER_MS;          /* changed values, at most this often */
+
+static void add_owned(struct text *out, char *text)
+{
+    text_add_bytes(out, text, strlen(text));
+    mem_free(text);
+}
+
+static void add_reply(struct session *session, struct text *out)
+{
+    add_owned(out, session->replies[0]);
+    session->reply_count--;
+    memmove(session->replies, session->replies + 1, (size_t)session->reply_count * sizeof(session->replies[0]));
+}
+
+static bool tags_due(const struct session *session, int64_t now_ns)
+{
+    return session->hello && !session->hidden && (session->owes_tags_all || (session->owes_tags && now_ns - session->tags_ns >= TAGS_NS));
+}
+
+static bool status_due(const struct session *session)
+{
+    return session->hello && !session->hidden && session->owes_status;
+}
+
+static bool alarms_due(const struct session *session)
+{
+    const struct session_world *world = session->world;
+    return session->hello && !session->hidden && world->alarming &&
+           (!session->alarms_said || alarming_number(world->alarming) > session->alarms_number);
+}
+
+static bool proofs_due(const struct session *session)
+{
+    const struct proofs *proofs = session->world->proofs;
+    return session->hello && proofs && (session->owes_proofs || proofs_number(proofs) > session->proofs_said);
+}
+
+static void add_proofs(struct session *session, struct text *out)
+{
+    const struct session_world *world = session->world;
+    add_owned(out, proofs_text(world->proofs, world->plant, session->proofs_said, session->owes_proofs));
+    session->proofs_said = proofs_number(world->proofs);
+    session->owes_proofs = false;
+}
+
+bool session_has_text(const struct session *session, int64_t now_ns)
+{
+    return session->owes_welcome || session->reply_count > 0 || session->owes_params || session->owes_following || session->owes_time ||
+           session->followers || proofs_due(session) || status_due(session) || alarms_due(session) || tags_due(session, now_ns);
+}
+
+static void add_tags(struct session *session, int64_t now_ns, struct text *out)
+{
+    const struct session_world *world = session->world;
+    const struct snapshot *snapshot = session_snapshot(session);
+    struct tags_said *said = snapshot == world->snapshot ? world->tags_said : NULL;
+    add_owned(out, tags_said_text(said, world->plant, snapshot, session->tag_changes, session->owes_tags_all));
+    session->owes_tags = session->owes_tags_all = false;
+    session->tags_ns = now_ns;
+}
+
+bool session_next_text(struct session *session, int64_t now_ns, int64_t now_utc_ns, struct text *out)
+{
+    const struct session_world *world = session->world;
+    if (session->owes_welcome) {
+        add_owned(out, reply_welcome_text(session, now_utc_ns));
+        session->owes_welcome = false;
+    } else if (session->reply_count > 0) {
+        add_reply(session, out);
+    } else if (session->owes_params) {
+        add_owned(out, reply_params_text(world, &session->view, session->params_seq));
+        session->owes_params = false;
+    } else if (session->owes_following) {
+        add_owned(out, reply_following_text(world, session->leader ? session->leader->id : 0, session_view(session)));
+        session->owes_following = false;
+    } else if (session->owes_time) {
+        add_owned(out, reply_time_text(session));
+        session->owes_time = false;
+    } else if (session->followers) {
+        add_owned(out, session->followers);
+        session->followers = NULL;
+    } else if (proofs_due(session)) {
+        add_proofs(session, out);
+    } else if (status_due(session)) {
+        add_owned(out, reply_status_text(world, now_utc_ns));
+        session->owes_status = false;
+    } else if (alarms_due(session)) {
+        add_owned(out, alarms_text(world->alarms_said, world->alarming, world->plant, now_utc_ns, &session->alarms_number));
+        session->alarms_said = true;
+    } else if (tags_due(session, now_ns)) {
+        add_tags(session, now_ns, out);
+    } else {
+        return false;
+    }
+    return true;
+}

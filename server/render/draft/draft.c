@@ -1,0 +1,179 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The steps of a draft, and what it keeps between pictures. */
+#include "render/draft/draft.h"
+
+#include "base/mem.h"
+#include "render/content.h"
+#include "render/draft/draft_impl.h"
+#include "render/draft/draft_simd.h"
+#include "render/markers.h"
+
+static const size_t KEPT_BYTES = (size_t)128 << 20; /* some five pictures of 1920x1080 */
+
+struct draft *draft_create(struct workers *workers, const struct stage *stage, const struct sky *sky)
+{
+    struct draft *draft = mem_new(sizeof(*draft));
+    draft->workers = workers;
+    draft->stage = stage;
+    draft->kept.bound_bytes = KEPT_BYTES;
+    draft->parts = mem_array(stage->model_count, sizeof(*draft->parts));
+    if (!draft_read_textures(draft, sky))
+        draft_destroy(&draft);
+    return draft;
+}
+
+void draft_destroy(struct draft **draft_ptr)
+{
+    struct draft *draft = *draft_ptr;
+    if (!draft)
+        return;
+    for (int i = 0; i < DRAFT_LIGHTS; i++)
+        draft_free_light(draft, &draft->lights[i]);
+    for (size_t i = 0; i < draft->chunk_capacity; i++) {
+        mem_free(draft->chunks[i].triangles);
+        mem_free(draft->chunks[i].extra);
+        mem_free(draft->chunks[i].bands);
+        mem_free(draft->chunks[i].sorted);
+        mem_free(draft->chunks[i].starts);
+    }
+    for (size_t m = 0; draft->parts && m < draft->stage->model_count; m++) {
+        for (size_t l = 0; draft->parts[m] && l < draft->stage->models[m].level_count; l++)
+            draft_parts_finish(&draft->parts[m][l]);
+        mem_free(draft->parts[m]);
+    }
+    for (size_t i = 0; i < draft->found_capacity; i++)
+        mem_free(draft->found[i].items);
+    visibility_buffers_finish(&draft->kept);
+    mem_free(draft->parts);
+    mem_free(draft->found);
+    mem_free(draft->chunks);
+    mem_free(draft->meshes);
+    mem_free(draft->draws);
+    mem_free(draft->vertices);
+    mem_free(draft->depth);
+    mem_free(draft->marks);
+    mem_free(draft->ramps);
+    mem_free(draft->ramp_of_model);
+    mem_free(draft->backdrops);
+    mem_free(draft->palette);
+    mem_free(draft->lines);
+    mem_free(draft);
+    *draft_ptr = NULL;
+}
+
+/* Holes need textures; what is see-through and what cuts are other passes' work. */
+bool draft_can(const struct draft *draft, const struct view *view)
+{
+    return view->tier == TIER_MOVING && view->look != LOOK_GLOSSY && view->look != LOOK_MATERIALS &&
+           view->visibility.ghosts.count == 0 && view->visibility.clip.plane_count == 0 && view->camera.height_m <= 0 &&
+           draft->ramp_count <= MOST_RAMPS && !draft->has_holes;
+}
+
+/* Lines are worked out with the triangles: such a picture is drawn anew each time. */
+static bool has_lines(const struct picture *picture)
+{
+    return picture->palette.lines || view_is_operator(picture->view);
+}
+
+/* Rows end in whole lanes. */
+bool draft_make_room(struct draft *draft, const struct frame *frame, int band_rows)
+{
+    draft->width_px = frame->width_px;
+    draft->height_px = frame->height_px;
+    draft->pitch_px = (frame->width_px + LANES - 1) / LANES * LANES;
+    draft->band_rows = band_rows;
+    draft->band_count = (frame->height_px + band_rows - 1) / band_rows;
+    size_t pixels = (size_t)draft->pitch_px * (size_t)frame->height_px;
+    if (pixels <= draft->pixel_capacity)
+        return true;
+    mem_free(draft->depth);
+    mem_free(draft->marks);
+    draft->depth = mem_try_array(pixels, sizeof(*draft->depth));
+    draft->marks = mem_try_array(pixels, sizeof(*draft->marks));
+    draft->pixel_capacity = draft->depth && draft->marks ? pixels : 0;
+    return draft->pixel_capacity > 0;
+}
+
+static bool is_selected_shown(const struct picture *picture)
+{
+    int selected = picture->view->selected_asset;
+    for (size_t i = 0; i < picture->visible_count && selected >= 0; i++)
+        if (picture->visible[i] == selected)
+            return true;
+    return false;
+}
+
+static bool complain(const struct draft *draft)
+{
+    log_err(draft->stage->gl->log, "moving picture of %dx%d, %zu vertices: out of memory", draft->width_px, draft->height_px,
+            draft->vertex_count);
+    return false;
+}
+
+/* True: the last pictures had this shape already, so that the camera stands still. */
+static bool is_still(struct draft *draft, uint64_t shape)
+{
+    for (size_t i = 0; i < DRAFT_SHAPES; i++)
+        if (draft->shapes[i] == shape)
+            return true;
+    draft->shapes[draft->shape_count++ % DRAFT_SHAPES] = shape;
+    return false;
+}
+
+static bool draw_selected(struct draft *draft, struct recolor *recolor)
+{
+    if (!is_selected_shown(draft->picture))
+        return true;
+    if (!draft_find_only(draft, draft->picture->view->selected_asset))
+        return complain(draft);
+    draft_tiles(draft, false);
+    if (recolor)
+        draft_keep_rim(draft, recolor);
+    draft_outline(draft);
+    return true;
+}
+
+/* keep: to colour it again, if there is room for that. */
+static bool draw_all(struct draft *draft, struct isolines *isolines, struct frame *frame, bool keep)
+{
+    struct isoline_points points = { 0 };
+    if (keep)
+        draft->ids = mem_try_array((size_t)draft->pitch_px * (size_t)draft->height_px, sizeof(*draft->ids));
+    draft_tiles(draft, true);
+    struct recolor *recolor = draft->ids ? draft_keep(draft) : NULL;
+    mem_free(draft->ids);
+    draft->ids = NULL;
+    markers_find(draft->picture, draft->depth, (size_t)draft->pitch_px, frame);
+    isolines_collect(isolines, draft->picture, &points);
+    isolines_find(draft->picture, &points, draft->depth, (size_t)draft->pitch_px, frame);
+    mem_free(points.at);
+    bool good = draw_selected(draft, recolor);
+    if (recolor && good)
+        draft_give(&draft->kept, draft->picture, recolor, frame);
+    else
+        recolor_destroy(&recolor);
+    return good;
+}
+
+bool draft_draw(struct draft *draft, const struct picture *picture, const struct light *light, struct isolines *isolines,
+                struct frame *frame)
+{
+    bool lined = has_lines(picture);
+    if (!lined && draft_recolor(draft, &draft->kept, picture, frame))
+        return true;
+    draft->picture = picture;
+    draft->light = draft_get_light(draft, picture->light);
+    if (!draft->light)
+        return false;
+    draft_read_palette(draft, &picture->palette);
+    if (!draft_make_room(draft, frame, BAND_ROWS))
+        return complain(draft);
+    frame_block_fill(&draft->block, picture);
+    draft->greys = view_is_operator(picture->view);
+    draft->out = frame->bgrx;
+    draft->out_stride_bytes = (size_t)frame->stride_bytes;
+    draft_aim(draft, light);
+    if (!draft_find(draft))
+        return complain(draft);
+    return draw_all(draft, isolines, frame, !lined && is_still(draft, content_shape_hash(picture)));
+}

@@ -1,0 +1,150 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Which clusters of triangles a picture may show. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/mem.h"
+#include "render/culling.h"
+#include "render/draft/draft_impl.h"
+#include "render/matrix.h"
+#include "render/solid.h"
+
+void draft_fill_mesh(struct draft *draft, struct draft_mesh *mesh, int index, const struct model_level *level)
+{
+    const struct picture *picture = draft->picture;
+    const struct scene_asset *asset = &picture->stage->scene->assets[index];
+    double clip[16], half[2] = { 0.5 * draft->width_px, 0.5 * draft->height_px };
+    *mesh = (struct draft_mesh){
+        .asset = index,
+        .file = &asset->file->view,
+        .has_field = picture->fields[index] != NULL,
+        .scalars = picture->fields[index] ? picture->fields[index]->shown : NULL,
+        .baked = (const uint8_t(*)[4])draft->light->baked[index],
+        .first_vertex = (uint32_t)draft->vertex_count,
+        .vertex_count = level->vertex_count,
+        .mirrored = stage_mirrored(asset),
+    };
+    matrix_multiply(picture->shot.clip_from_plant, asset->placement, clip);
+    shot_bring_forward(&picture->shot, asset, clip);
+    for (int c = 0; c < 4; c++) {
+        mesh->place[c][0] = (float)(half[0] * (clip[4 * c + 3] + clip[4 * c]));
+        mesh->place[c][1] = (float)(half[1] * (clip[4 * c + 3] - clip[4 * c + 1]));
+        mesh->place[c][2] = (float)clip[4 * c + 2];
+        mesh->place[c][3] = (float)clip[4 * c + 3];
+    }
+    draft->vertex_count += level->vertex_count;
+}
+
+/* A cluster of any size, in draws that fit into chunks. */
+static void add_cluster(struct draft *draft, const struct draft_draw *whole)
+{
+    for (uint32_t done = 0; done < whole->index_count; done += 3 * CHUNK_TRIANGLES) {
+        struct draft_draw part = *whole;
+        uint32_t left = whole->index_count - done;
+        part.first_index += done;
+        part.index_count = left < 3 * CHUNK_TRIANGLES ? left : 3 * CHUNK_TRIANGLES;
+        mem_grow(&draft->draws, &draft->draw_capacity, draft->draw_count + 1, sizeof(*draft->draws));
+        draft->draws[draft->draw_count++] = part;
+    }
+}
+
+/* In metres of the plant: a placement turns and moves only. */
+static float nearest(const struct culling *culling, const struct asset_cluster *cluster)
+{
+    float away = 0, size = 0;
+    for (int c = 0; c < 3; c++) {
+        float half = 0.5f * (cluster->high_m[c] - cluster->low_m[c]), by = cluster->low_m[c] + half - culling->eye_m[c];
+        away += by * by;
+        size += half * half;
+    }
+    return sqrtf(away) - sqrtf(size);
+}
+
+static void collect_asset(struct draft *draft, int index)
+{
+    const struct picture *picture = draft->picture;
+    const struct scene_asset *asset = &picture->stage->scene->assets[index];
+    const struct model *model = picture->stage->of_asset[index];
+    const struct model_level *level = solid_level(picture, index);
+    const struct asset_view *file = &asset->file->view;
+    uint32_t ramp = draft->ramp_of_model[model - picture->stage->models];
+    size_t draws = draft->draw_count, vertices = draft->vertex_count;
+    struct culling culling;
+    mem_grow(&draft->meshes, &draft->mesh_capacity, draft->mesh_count + 1, sizeof(*draft->meshes));
+    struct draft_mesh *mesh = &draft->meshes[draft->mesh_count];
+    draft_fill_mesh(draft, mesh, index, level);
+    culling_init(&culling, &picture->shot, asset);
+    const struct asset_cluster *cluster = &file->clusters[level->first_cluster];
+    for (uint32_t p = 0; p < level->primitive_count; p++) {
+        const struct asset_primitive *primitive = &file->primitives[level->first_primitive + p];
+        const struct asset_material *material = &file->materials[primitive->material];
+        uint32_t end = primitive->first_index + primitive->index_count;
+        struct draft_draw draw = { .mesh = (uint32_t)draft->mesh_count, .double_sided = material->double_sided };
+        draw.mark = mesh->has_field ? MARK_FIELD : MARK_CONTEXT | (ramp + primitive->material) << 16;
+        for (; cluster < file->clusters + file->header->cluster_count && cluster->first_index < end &&
+               cluster->first_index >= primitive->first_index;
+             cluster++) {
+            if (!culling_sees(&culling, cluster, draw.double_sided))
+                continue;
+            draw.near_m = nearest(&culling, cluster);
+            draw.first_index = cluster->first_index;
+            draw.index_count = cluster->index_count;
+            add_cluster(draft, &draw);
+        }
+    }
+    if (draft->draw_count > draws)
+        draft->mesh_count++;
+    else
+        draft->vertex_count = vertices;
+}
+
+/* Nearest first, so that what is hidden costs little; always in the same order. */
+static int by_distance(const void *a, const void *b)
+{
+    const struct draft_draw *x = a, *y = b;
+    if (x->near_m != y->near_m)
+        return x->near_m < y->near_m ? -1 : 1;
+    if (x->mesh != y->mesh)
+        return x->mesh < y->mesh ? -1 : 1;
+    return (x->first_index > y->first_index) - (x->first_index < y->first_index);
+}
+
+static void cut_into_chunks(struct draft *draft)
+{
+    size_t triangles = 0;
+    draft->chunk_count = 0;
+    for (size_t d = 0; d < draft->draw_count; d++) {
+        size_t count = draft->draws[d].index_count / 3;
+        if (draft->chunk_count == 0 || triangles + count > CHUNK_TRIANGLES) {
+            mem_grow(&draft->chunks, &draft->chunk_capacity, draft->chunk_count + 1, sizeof(*draft->chunks));
+            struct draft_chunk *chunk = &draft->chunks[draft->chunk_count++];
+            chunk->first_draw = d;
+            chunk->draw_count = 0;
+            triangles = 0;
+        }
+        draft->chunks[draft->chunk_count - 1].draw_count++;
+        triangles += count;
+    }
+}
+
+/* False: out of memory. */
+static bool finish(struct draft *draft)
+{
+    qsort(draft->draws, draft->draw_count, sizeof(*draft->draws), by_distance);
+    cut_into_chunks(draft);
+    if (draft->vertex_count <= draft->vertex_capacity)
+        return true;
+    mem_free(draft->vertices);
+    draft->vertices = mem_try_array(draft->vertex_count + draft->vertex_count / 4, sizeof(*draft->vertices));
+    draft->vertex_capacity = draft->vertices ? draft->vertex_count + draft->vertex_count / 4 : 0;
+    return draft->vertices != NULL;
+}
+
+bool draft_collect(struct draft *draft)
+{
+    const struct picture *picture = draft->picture;
+    draft->mesh_count = draft->draw_count = draft->vertex_count = 0;
+    for (size_t i = 0; i < picture->visible_count; i++)
+        collect_asset(draft, picture->visible[i]);
+    return finish(draft);
+}

@@ -1,0 +1,227 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A rectangle of the picture: from marks to colours. Only what is seen comes here: the sun's shadow and the backdrop are looked up per
+   pixel. */
+#include <math.h>
+#include <string.h>
+
+#include "render/draft/draft_impl.h"
+#include "render/draft/draft_look.h"
+#include "render/light/sky.h"
+#include "render/matrix.h"
+#include "render/solid.h"
+
+/* --- matrices --------------------------------------------------------------------------------------------------------------- */
+
+static void copy_columns(const double from[16], float to[4][4])
+{
+    for (int c = 0; c < 4; c++)
+        for (int r = 0; r < 4; r++)
+            to[c][r] = (float)from[4 * c + r];
+}
+
+/* Clip space from pixels and depth, for w = 1. */
+static void clip_from_pixel(const struct draft *draft, double out[16])
+{
+    matrix_identity(out);
+    out[0] = 2.0 / draft->width_px;
+    out[5] = -2.0 / draft->height_px;
+    out[12] = -1;
+    out[13] = 1;
+}
+
+static void aim_sun(struct draft *draft, const double clip[16])
+{
+    const struct picture *picture = draft->picture;
+    double plant_from_clip[16], out[16];
+    matrix_invert(picture->shot.clip_from_plant, plant_from_clip);
+    matrix_multiply(picture->light->texture_from_plant, plant_from_clip, out);
+    matrix_multiply(out, clip, out);
+    for (int c = 0; c < 4; c++)
+        out[4 * c + 2] += solid_sun_slack(picture) * out[4 * c + 3];
+    copy_columns(out, draft->sun_from_pixel);
+}
+
+/* Where a pixel looks: near.xyz / near.w of shaders/sky.vert, whose w is the same everywhere. */
+static void aim_rays(struct draft *draft, const double clip[16])
+{
+    double eye_from_clip[16], out[16];
+    matrix_invert(draft->picture->shot.clip_from_eye, eye_from_clip);
+    matrix_multiply(eye_from_clip, clip, out);
+    double w = out[11] + out[15]; /* at depth 1 */
+    for (int r = 0; r < 3; r++) {
+        draft->ray_from_pixel[0][r] = (float)(out[r] / w);
+        draft->ray_from_pixel[1][r] = (float)(out[4 + r] / w);
+        draft->ray_from_pixel[2][r] = (float)((out[8 + r] + out[12 + r]) / w);
+    }
+}
+
+/* The ground is flat: its coordinates and the picture's map to each other by 3x3 matrices. */
+static void aim_ground(struct draft *draft, const struct light *light)
+{
+    double clip[16];
+    float(*to)[3] = draft->ground_from_pixel;
+    draft->has_ground = sky_sees_ground(draft->picture, light);
+    matrix_multiply(draft->picture->shot.clip_from_plant, light->plant_from_ground, clip);
+    double h[3][3]; /* rows: x w, y w in pixels, w; columns: u, v, 1 */
+    for (int c = 0; c < 3; c++) {
+        const double *column = &clip[c == 2 ? 12 : 4 * c];
+        h[0][c] = 0.5 * draft->width_px * (column[3] + column[0]);
+        h[1][c] = 0.5 * draft->height_px * (column[3] - column[1]);
+        h[2][c] = column[3];
+    }
+    double determinant = 0;
+    for (int c = 0; c < 3; c++) {
+        int a = (c + 1) % 3, b = (c + 2) % 3;
+        determinant += h[0][c] * (h[1][a] * h[2][b] - h[1][b] * h[2][a]);
+        for (int r = 0; r < 3; r++) { /* adjugate */
+            int p = (r + 1) % 3, q = (r + 2) % 3;
+            to[c][r] = (float)(h[p][a] * h[q][b] - h[p][b] * h[q][a]);
+        }
+    }
+    double sign = determinant < 0 ? -1 : 1, size = 0;
+    for (int i = 0; i < 9; i++)
+        size = fmax(size, fabs((double)to[i / 3][i % 3]));
+    for (int i = 0; i < 9; i++)
+        to[i / 3][i % 3] = (float)((double)to[i / 3][i % 3] * sign / size);
+}
+
+void draft_aim(struct draft *draft, const struct light *light)
+{
+    double clip[16];
+    clip_from_pixel(draft, clip);
+    aim_sun(draft, clip);
+    aim_rays(draft, clip);
+    aim_ground(draft, light);
+}
+
+/* --- pixels ----------------------------------------------------------------------------------------------------------------- */
+
+/* How much of the sun is seen, 0..1. */
+DRAFT_INLINE lanes sun_at(const struct draft *draft, lanes x, float y, lanes depth)
+{
+    const float(*m)[4] = draft->sun_from_pixel;
+    lanes s[4];
+    for (int r = 0; r < 4; r++)
+        s[r] = x * m[0][r] + (y * m[1][r] + m[3][r]) + depth * m[2][r];
+    lanes over = 1.0f / s[3];
+    return sun_tap(draft->light, s[0] * over, s[1] * over, s[2] * over);
+}
+
+DRAFT_INLINE lanes_int context_color(const struct draft *draft, lanes_int marks, lanes x, float y, lanes depth)
+{
+    lanes ambient = byte_of(marks, 1) * (1 / 255.0f), facing = byte_of(marks, 0) * (1 / 255.0f);
+    lanes sum = lanes_clamp(0.52f * ambient + 0.48f * facing * sun_at(draft, x, y, depth), 0, 1); /* light_scalar in light.glsl */
+    lanes_int step = lanes_whole(sum * (RAMP_STEPS - 1) + 0.5f);
+    lanes_int color = gather(draft->ramps, (marks >> 16 & (MOST_RAMPS - 1)) * RAMP_STEPS + step);
+    if (!draft->greys)
+        return color;
+    lanes grey = 0.11f * byte_of(color, 0) + 0.59f * byte_of(color, 1) + 0.30f * byte_of(color, 2);
+    return lanes_whole(grey + 0.5f) * 0x010101 | (int32_t)0xff000000;
+}
+
+/* Where isolines run, as field_color in shaders/field.glsl. */
+static void draw_lines(const uint32_t marks[LANES], uint32_t colors[LANES])
+{
+    static const float grey_parts[3] = { 0.11f, 0.59f, 0.30f }, dark[3] = { 0.12f * 255, 0.09f * 255, 0.07f * 255 };
+    const float bright = 0.93f * 255, most = 0.8f / MARK_LINE_WHOLE;
+    for (int i = 0; i < LANES; i++) {
+        float part = most * (float)(marks[i] >> MARK_LINE & MARK_LINE_WHOLE), grey = 0;
+        uint32_t was = colors[i], now = 0;
+        if (!(marks[i] & MARK_FIELD) || part <= 0)
+            continue;
+        for (int c = 0; c < 3; c++)
+            grey += grey_parts[c] * (float)(was >> (8 * c) & 0xff);
+        for (int c = 0; c < 3; c++) {
+            float from = (float)(was >> (8 * c) & 0xff), to = grey > 0.32f * 255 ? dark[c] : bright;
+            now |= (uint32_t)(from + part * (to - from) + 0.5f) << (8 * c);
+        }
+        colors[i] = now | 0xff000000;
+    }
+}
+
+DRAFT_INLINE lanes_int lined(const uint32_t *marks, lanes_int color)
+{
+    uint32_t colors[LANES];
+    memcpy(colors, &color, sizeof(colors));
+    draw_lines(marks, colors);
+    memcpy(&color, colors, sizeof(color));
+    return color;
+}
+
+/* What shadow leaves of the ground's brightness, 0..256. */
+DRAFT_INLINE lanes_int ground_at(const struct draft *draft, lanes x, float y)
+{
+    const float(*m)[3] = draft->ground_from_pixel;
+    const struct draft_light *light = draft->light;
+    float size = (float)light->ground_px;
+    lanes u = x * m[0][0] + (y * m[0][1] + m[0][2]), v = x * m[1][0] + (y * m[1][1] + m[1][2]), w = x * m[2][0] + (y * m[2][1] + m[2][2]);
+    lanes one = (lanes){ 0 } + 1.0f;
+    lanes over = 1.0f / lanes_choose(w > 0.0f, w, one);
+    u *= over;
+    v *= over;
+    lanes_int inside = (w > 0.0f) & (u > 0.0f) & (u < 1.0f) & (v > 0.0f) & (v < 1.0f);
+    if (!lanes_any(inside))
+        return (lanes_int){ 0 } + 256;
+    u = lanes_clamp(u * size - 0.5f, 0, size - 1);
+    v = lanes_clamp(v * size - 0.5f, 0, size - 1);
+    lanes u0 = whole_part(u), v0 = whole_part(v), u_part = u - u0, v_part = v - v0;
+    lanes_int four =
+        gather(light->ground, lanes_whole(v0) * light->ground_px + lanes_whole(u0));
+    lanes upper = byte_of(four, 0) + u_part * (byte_of(four, 1) - byte_of(four, 0));
+    lanes lower = byte_of(four, 2) + u_part * (byte_of(four, 3) - byte_of(four, 2));
+    lanes_int factor = lanes_whole((upper + v_part * (lower - upper)) * (256 / 255.0f) + 0.5f);
+    return lanes_choose_int(inside, factor, (lanes_int){ 0 } + 256);
+}
+
+DRAFT_INLINE lanes_int sky_color(const struct draft *draft, const struct heights *heights, int column, int row)
+{
+    lanes_int color = backdrop_at(draft, heights, column, row);
+    if (!draft->has_ground)
+        return color;
+    return darkened(color, ground_at(draft, LANES_IOTA + ((float)column + 0.5f), (float)row + 0.5f));
+}
+
+/* All eight of a field, or all empty: as most are. */
+DRAFT_INLINE lanes_int color_at(const struct draft *draft, const struct heights *heights, int column, int row)
+{
+    size_t place = (size_t)row * (size_t)draft->pitch_px + (size_t)column;
+    const uint32_t *mark = draft->marks + place;
+    lanes_int marks = *(const lanes_int *)mark, color;
+    if (!lanes_any(~marks & (int32_t)MARK_FIELD)) {
+        uint32_t colors[LANES];
+        for (int i = 0; i < LANES; i++)
+            colors[i] = draft->palette[mark[i] & MARK_PLACE];
+        if (lanes_any(marks & MARK_LINE_WHOLE << MARK_LINE))
+            draw_lines(mark, colors);
+        memcpy(&color, colors, sizeof(color));
+        return color;
+    }
+    if (!lanes_any(marks))
+        return sky_color(draft, heights, column, row);
+    lanes_int is_field = (marks & (int32_t)MARK_FIELD) != 0, is_context = marks < 0, is_sky = marks == 0;
+    color = gather(draft->palette, marks & is_field & (int32_t)MARK_PLACE);
+    if (lanes_any(marks & is_field & MARK_LINE_WHOLE << MARK_LINE))
+        color = lined(mark, color);
+    if (lanes_any(is_context)) {
+        lanes depth = *(const lanes *)(draft->depth + place), x = LANES_IOTA + ((float)column + 0.5f);
+        color = lanes_choose_int(is_context, context_color(draft, marks & is_context, x, (float)row + 0.5f, depth), color);
+    }
+    if (lanes_any(is_sky))
+        color = lanes_choose_int(is_sky, sky_color(draft, heights, column, row), color);
+    return color;
+}
+
+DRAFT_KERNEL void draft_color(const struct draft *draft, const struct draft_rect *rect)
+{
+    for (int row = rect->top; row <= rect->bottom; row++) {
+        uint8_t *out = draft->out + (size_t)row * draft->out_stride_bytes;
+        struct heights heights = { 0 };
+        for (int column = rect->left; column <= rect->right; column += LANES) {
+            if (column % STRETCH == 0)
+                heights = heights_from(draft, column, row);
+            lanes_int color = color_at(draft, &heights, column, row);
+            int count = draft->width_px - column;
+            memcpy(out + 4 * column, &color, count < LANES ? 4 * (size_t)count : sizeof(color));
+        }
+    }
+}

@@ -1,0 +1,109 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Triangles of a part that the near plane may cut. */
+#include <math.h>
+
+#include "render/draft/draft_tile.h"
+
+struct corner { /* in clip space, x and y in pixels */
+    float at[4], a, b;
+};
+
+static struct corner corner_of(const struct draft_corners *corners, const struct draft_mesh *mesh, uint32_t vertex, int number)
+{
+    const float *p = mesh->file->positions_m[vertex];
+    struct corner corner = { .a = corners->a[number], .b = corners->b[number] };
+    for (int r = 0; r < 4; r++)
+        corner.at[r] = mesh->place[0][r] * p[0] + mesh->place[1][r] * p[1] + mesh->place[2][r] * p[2] + mesh->place[3][r];
+    return corner;
+}
+
+static struct corner between(const struct corner *from, const struct corner *to, float part)
+{
+    struct corner corner = { .a = from->a + part * (to->a - from->a), .b = from->b + part * (to->b - from->b) };
+    for (int r = 0; r < 4; r++)
+        corner.at[r] = from->at[r] + part * (to->at[r] - from->at[r]);
+    return corner;
+}
+
+static int add_corner(struct draft_corners *corners, const struct corner *corner, uint32_t flags)
+{
+    float inverse = 1 / fmaxf(corner->at[3], 1e-30f);
+    int number = corners->count++;
+    corners->x[number] = corner->at[0] * inverse;
+    corners->y[number] = corner->at[1] * inverse;
+    corners->depth[number] = corner->at[2] * inverse;
+    corners->inverse_w[number] = inverse;
+    corners->a[number] = corner->a;
+    corners->b[number] = corner->b;
+    corners->flags[number] = flags;
+    return number;
+}
+
+/* What lies beyond the near plane. How many corners it has, in order: 0, 3 or 4. */
+static int cut(struct draft_corners *corners, const struct draft_mesh *mesh, const uint32_t *vertices, const int numbers[3], int out[4])
+{
+    struct corner at[3];
+    uint32_t flags = 0;
+    int count = 0;
+    for (int i = 0; i < 3; i++) {
+        at[i] = corner_of(corners, mesh, vertices[numbers[i]], numbers[i]);
+        flags |= corners->flags[numbers[i]];
+    }
+    for (int i = 0; i < 3; i++) {
+        const struct corner *here = &at[i], *next = &at[(i + 1) % 3];
+        float inside = here->at[3] - here->at[2], after = next->at[3] - next->at[2];
+        if (inside >= 0)
+            out[count++] = add_corner(corners, here, flags);
+        if ((inside >= 0) != (after >= 0)) {
+            struct corner crossing = between(here, next, inside / (inside - after));
+            out[count++] = add_corner(corners, &crossing, flags);
+        }
+    }
+    return count >= 3 ? count : 0;
+}
+
+static int first_pixel(float x, int low)
+{
+    return (int)fminf(fmaxf(x + 0.4999f, (float)low), 1e5f);
+}
+
+static int last_pixel(float x, int high)
+{
+    return (int)fminf(fmaxf(x + 0.5f, 0), (float)high + 1) - 1;
+}
+
+static void add_face(struct draft_tile *tile, int triangle, bool any_side, bool mirrored, int i, int j, int k)
+{
+    const float *x = tile->corners.x, *y = tile->corners.y;
+    float area = (x[j] - x[i]) * (y[k] - y[i]) - (x[k] - x[i]) * (y[j] - y[i]);
+    bool turned = area > 0;
+    int left = first_pixel(fminf(fminf(x[i], x[j]), x[k]), tile->rect.left);
+    int right = last_pixel(fmaxf(fmaxf(x[i], x[j]), x[k]), tile->rect.right);
+    int top = first_pixel(fminf(fminf(y[i], y[j]), y[k]), tile->rect.top);
+    int bottom = last_pixel(fmaxf(fmaxf(y[i], y[j]), y[k]), tile->rect.bottom);
+    if (area == 0 || (!any_side && turned != mirrored) || left > right || top > bottom)
+        return;
+    tile->faces[tile->face_count++] = (struct draft_face){
+        { (uint16_t)i, (uint16_t)(turned ? j : k), (uint16_t)(turned ? k : j) },
+        (uint16_t)triangle, (int16_t)left, (int16_t)right, (int16_t)top, (int16_t)bottom,
+    };
+}
+
+void draft_cut_faces(struct draft_tile *tile, const struct draft_mesh *mesh, const struct draft_parts *parts,
+                     const struct draft_part *part, bool both_sides)
+{
+    struct draft_corners *corners = &tile->corners;
+    const uint8_t *of_part = parts->corners + part->first_corner;
+    bool any_side = both_sides || part->double_sided;
+    tile->face_count = 0;
+    for (int i = 0; i < part->triangle_count; i++) {
+        int at[3] = { of_part[i], of_part[part->rounded + i], of_part[2 * part->rounded + i] }, out[4], count;
+        if (corners->inverse_w[at[0]] > 0 && corners->inverse_w[at[1]] > 0 && corners->inverse_w[at[2]] > 0) {
+            add_face(tile, i, any_side, mesh->mirrored, at[0], at[1], at[2]);
+            continue;
+        }
+        count = cut(corners, mesh, parts->vertices + part->first_vertex, at, out);
+        for (int c = 2; c < count; c++)
+            add_face(tile, i, any_side, mesh->mirrored, out[0], out[c - 1], out[c]);
+    }
+}

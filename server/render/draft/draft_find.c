@@ -1,0 +1,147 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Which parts of which assets a picture may show, and where in it. */
+#include <float.h>
+#include <math.h>
+
+#include "base/mem.h"
+#include "render/draft/draft_impl.h"
+#include "render/draft/draft_simd.h"
+#include "render/matrix.h"
+#include "render/solid.h"
+
+#define SLACK_PX 0.02f    /* boxes and vertices round differently */
+#define SLACK_DEPTH 1e-5f /* of it */
+#define BEFORE 2.0f       /* nearer than the near plane */
+
+/* Where a box may be in the picture. False: outside. */
+DRAFT_INLINE bool project(const struct draft *draft, const struct draft_mesh *mesh, const float low[3], const float high[3],
+                          struct draft_rect *rect, float *near)
+{
+    const lanes_int right = { 0, -1, 0, -1, 0, -1, 0, -1 }, upper = { 0, 0, -1, -1, 0, 0, -1, -1 }, front = { 0, 0, 0, 0, -1, -1, -1, -1 };
+    lanes none = { 0 }, at[4];
+    lanes x = lanes_choose(right, none + high[0], none + low[0]), y = lanes_choose(upper, none + high[1], none + low[1]);
+    lanes z = lanes_choose(front, none + high[2], none + low[2]);
+    for (int r = 0; r < 4; r++)
+        at[r] = mesh->place[0][r] * x + mesh->place[1][r] * y + mesh->place[2][r] * z + mesh->place[3][r];
+    *rect = (struct draft_rect){ 0, 0, draft->width_px - 1, draft->height_px - 1 };
+    *near = BEFORE;
+    if (lanes_any((at[3] <= 0.0f) | (at[2] > at[3])))
+        return lanes_any((at[3] > 0.0f) & (at[2] <= at[3])) != 0;
+    lanes over = 1.0f / at[3], px = at[0] * over, py = at[1] * over, depth = at[2] * over;
+    float left = px[0], last = px[0], top = py[0], bottom = py[0], nearest = depth[0];
+    for (int i = 1; i < LANES; i++) {
+        left = px[i] < left ? px[i] : left;
+        last = px[i] > last ? px[i] : last;
+        top = py[i] < top ? py[i] : top;
+        bottom = py[i] > bottom ? py[i] : bottom;
+        nearest = depth[i] > nearest ? depth[i] : nearest;
+    }
+    left += 0.5f - SLACK_PX; /* whose middles lie within */
+    top += 0.5f - SLACK_PX;
+    last += 0.5f + SLACK_PX;
+    bottom += 0.5f + SLACK_PX;
+    if (last < 1 || bottom < 1 || left >= (float)draft->width_px || top >= (float)draft->height_px || nearest < 0)
+        return false;
+    rect->left = left > 0 ? (int)left : 0;
+    rect->top = top > 0 ? (int)top : 0;
+    rect->right = last < (float)draft->width_px ? (int)last - 1 : rect->right;
+    rect->bottom = bottom < (float)draft->height_px ? (int)bottom - 1 : rect->bottom;
+    *near = nearest * (1 + SLACK_DEPTH);
+    return rect->left <= rect->right && rect->top <= rect->bottom;
+}
+
+static void include(struct draft_rect *rect, const struct draft_rect *other)
+{
+    rect->left = other->left < rect->left ? other->left : rect->left;
+    rect->top = other->top < rect->top ? other->top : rect->top;
+    rect->right = other->right > rect->right ? other->right : rect->right;
+    rect->bottom = other->bottom > rect->bottom ? other->bottom : rect->bottom;
+}
+
+DRAFT_KERNEL static void find_parts(const struct draft *draft, const struct draft_mesh *mesh, struct draft_found *found)
+{
+    found->count = 0;
+    found->rect = (struct draft_rect){ INT16_MAX, INT16_MAX, -1, -1 };
+    for (uint32_t p = 0; p < found->parts->part_count; p++) {
+        const struct draft_part *part = &found->parts->parts[p];
+        struct draft_item *item = &found->items[found->count];
+        if (!part->double_sided && !found->both_sides && !mesh->mirrored && asset_cluster_turned_away(&part->cluster, found->eye_m))
+            continue;
+        if (!project(draft, mesh, part->cluster.low_m, part->cluster.high_m, &item->rect, &item->near))
+            continue;
+        item->part = p;
+        include(&found->rect, &item->rect);
+        found->count++;
+    }
+}
+
+static void find_meshes(void *arg, size_t begin, size_t end)
+{
+    struct draft *draft = arg;
+    for (size_t m = begin; m < end; m++) {
+        struct draft_found *found = &draft->found[m];
+        mem_grow(&found->items, &found->capacity, found->parts->part_count, sizeof(*found->items));
+        find_parts(draft, &draft->meshes[m], found);
+    }
+}
+
+/* NULL: out of memory. */
+static const struct draft_parts *parts_of(struct draft *draft, const struct model *model, const struct model_level *level)
+{
+    struct draft_parts **of_model = &draft->parts[model - draft->stage->models];
+    if (!*of_model)
+        *of_model = mem_array(model->level_count, sizeof(**of_model));
+    struct draft_parts *parts = &(*of_model)[level - model->levels];
+    if (!parts->parts && !draft_parts_init(parts, &model->file->view, level)) {
+        draft_parts_finish(parts);
+        return NULL;
+    }
+    return parts;
+}
+
+static bool add_asset(struct draft *draft, int asset, bool both_sides)
+{
+    const struct picture *picture = draft->picture;
+    const struct model *model = draft->stage->of_asset[asset];
+    const struct model_level *level = solid_level(picture, asset);
+    double file_from_plant[16], eye[4];
+    mem_grow(&draft->meshes, &draft->mesh_capacity, draft->mesh_count + 1, sizeof(*draft->meshes));
+    mem_grow(&draft->found, &draft->found_capacity, draft->mesh_count + 1, sizeof(*draft->found));
+    draft_fill_mesh(draft, &draft->meshes[draft->mesh_count], asset, level);
+    struct draft_found *found = &draft->found[draft->mesh_count++];
+    found->parts = parts_of(draft, model, level);
+    found->ramp = draft->ramp_of_model[model - draft->stage->models];
+    found->both_sides = both_sides;
+    matrix_invert(draft->stage->scene->assets[asset].placement, file_from_plant);
+    matrix_point(file_from_plant, picture->shot.eye_m, eye);
+    for (int c = 0; c < 3; c++)
+        found->eye_m[c] = (float)eye[c];
+    return found->parts != NULL;
+}
+
+bool draft_find(struct draft *draft)
+{
+    const struct picture *picture = draft->picture;
+    bool good = true;
+    draft->mesh_count = draft->vertex_count = 0;
+    for (size_t i = 0; i < picture->visible_count && good; i++)
+        good = add_asset(draft, picture->visible[i], false);
+    if (!good)
+        return false;
+    workers_for(draft->workers, draft->mesh_count, 1, find_meshes, draft);
+    uint32_t id = 0;
+    for (size_t m = 0; m < draft->mesh_count; m++) {
+        draft->found[m].first_id = id;
+        id += (uint32_t)draft->found[m].count * PART_TRIANGLES;
+    }
+    return true;
+}
+
+bool draft_find_only(struct draft *draft, int asset)
+{
+    draft->mesh_count = draft->vertex_count = 0;
+    if (!add_asset(draft, asset, true))
+        return false;
+    find_meshes(draft, 0, 1);
+    return true;
+}

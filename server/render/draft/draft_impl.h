@@ -1,0 +1,186 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the steps of a draft hand to each other. Private to draft*.c. */
+#ifndef RENDER_DRAFT_IMPL_H
+#define RENDER_DRAFT_IMPL_H
+#include "render/draft/draft.h"
+#include "render/draft/draft_parts.h"
+#include "render/frame_block.h"
+#include "render/palette.h"
+#include "render/recolor.h"
+#include "render/visibility_buffers.h"
+
+enum { BAND_ROWS = 32, CHUNK_TRIANGLES = 2048, RAMP_STEPS = MODEL_LIGHT_STEPS };
+
+/* Marks of pixels. 0: nothing. Else a colour of the palette, or a material and the light on it, to be looked up. */
+#define MARK_FIELD 0x40000000u   /* | palette row * PALETTE_COLUMNS + column (MARK_PLACE) | so much of an isoline << MARK_LINE (8 bits) */
+#define MARK_PLACE 0x1ffffu
+enum { MARK_LINE = 17, MARK_LINE_WHOLE = 255 };
+#define MARK_CONTEXT 0x80000000u /* | ambient << 8 (8 bits) | sun (8 bits) | row of the ramps << 16 (14 bits) */
+enum { MOST_RAMPS = 1 << 14 };
+
+struct draft_vertex {
+    float x, y, depth;     /* pixels from the top left; 1 near, 0 far */
+    float inverse_w;       /* 0: nearer than the near plane */
+    float a, b;            /* field: column and row of the palette (logarithmic: value and row); context: ambient, facing the sun */
+    uint32_t flags;        /* draft_flags */
+    uint32_t source;       /* of one that the near plane made: first index of the triangle that was cut */
+};
+/* Two bytes, scalar.uncertain and from bit DRAFT_LACKING on scalar.lacking; and a bit. Where flags of corners were joined: no less than
+   any. */
+enum { DRAFT_LACKING = 8, DRAFT_NO_DATA = 0x8000, DRAFT_UNCERTAIN = 0x80, DRAFT_NO_LIMITS = 0x10000 };
+enum { DRAFT_PATTERNS = DRAFT_NO_DATA | DRAFT_UNCERTAIN | DRAFT_NO_LIMITS };
+#define DRAFT_NOTHING_KNOWN (255u << DRAFT_LACKING)
+static inline uint32_t draft_flags(const struct scalar *scalar)
+{
+    return (uint32_t)scalar->lacking << DRAFT_LACKING | scalar->uncertain | (scalar->no_limits ? DRAFT_NO_LIMITS : 0);
+}
+/* 0..1; above 0.5 there is no data, or it is uncertain. */
+static inline float draft_lacking(uint32_t flags)
+{
+    return (float)(flags >> DRAFT_LACKING & 0xff) * (1 / 255.0f);
+}
+static inline float draft_uncertain(uint32_t flags)
+{
+    return (float)(flags & 0xff) * (1 / 255.0f);
+}
+
+struct draft_mesh { /* one asset in this picture */
+    int asset;
+    const struct asset_view *file;
+    bool has_field;
+    const struct scalar *scalars; /* NULL: context, or a field that could not be worked out: no data */
+    const uint8_t (*baked)[4];
+    float place[4][4]; /* columns; x w, y w in pixels, z and w of clip space */
+    uint32_t first_vertex, vertex_count;
+    bool mirrored;
+};
+
+struct draft_draw { /* neighbouring triangles of one material */
+    float near_m;   /* from the eye to the ball around them; less than 0: within */
+    uint32_t mesh, first_index, index_count;
+    uint32_t mark; /* MARK_FIELD, or MARK_CONTEXT with its ramp */
+    uint32_t back; /* added to it on triangles that look away; drafts: 0 */
+    bool double_sided;
+};
+
+struct draft_triangle {
+    uint32_t vertices[3]; /* of the picture, or EXTRA_VERTEX | number in the chunk */
+    uint32_t mark;
+};
+#define EXTRA_VERTEX 0x80000000u
+
+struct draft_chunk { /* what one job sorts into bands; kept from picture to picture */
+    size_t first_draw, draw_count;
+    struct draft_triangle *triangles;
+    struct draft_vertex *extra; /* where the near plane cuts */
+    uint32_t *bands;            /* of each triangle: first | last << 16 */
+    uint16_t *sorted;           /* triangles, band by band */
+    uint32_t *starts;           /* in sorted, by band; one more at the end */
+    size_t triangle_count, extra_count;
+    size_t triangle_capacity, extra_capacity, band_capacity, sorted_capacity, start_capacity;
+};
+
+struct draft_rect { /* pixels, the last ones included */
+    int left, top, right, bottom;
+};
+
+struct draft_item { /* a part that may be seen */
+    float near; /* depth; over 1: some of it is nearer than the near plane */
+    struct draft_rect rect;
+    uint32_t part;
+};
+
+struct draft_found { /* what of one mesh may be seen; kept from picture to picture */
+    const struct draft_parts *parts;
+    uint32_t ramp; /* of its first material */
+    bool both_sides;
+    float eye_m[3]; /* in the frame of its file */
+    struct draft_rect rect;
+    uint32_t first_id; /* PART_TRIANGLES for each item */
+    struct draft_item *items;
+    size_t count, capacity;
+};
+
+struct draft_light { /* a light_set, read back */
+    uint64_t id;          /* of the set; 0: empty */
+    uint8_t (**baked)[4]; /* by asset */
+    uint16_t *sun_map;    /* rows from the top; one more row and column than it has */
+    int sun_map_px;
+    uint32_t *ground;     /* a byte each: this texel, its right, lower, lower right neighbour; 255: no shadow */
+    int ground_px;
+    uint64_t used;
+};
+enum { DRAFT_LIGHTS = 2, DRAFT_SHAPES = 16 };
+
+struct draft {
+    struct workers *workers;
+    const struct stage *stage;
+    uint32_t *ramps, *ramp_of_model; /* colours, RAMP_STEPS to a row; first row, by number of the model */
+    size_t ramp_count;
+    bool has_holes;                  /* some material cuts them by a texture */
+    uint32_t *backdrops;             /* as render/light/sky.c makes them */
+    uint32_t *palette;
+    float *lines; /* by place of the scale: the nearest place that has a line */
+    uint64_t palette_version;
+    struct draft_light lights[DRAFT_LIGHTS];
+    uint64_t uses;
+    struct visibility_buffers kept; /* struct recolor, of cameras that stand still */
+    uint64_t shapes[DRAFT_SHAPES];  /* content_shape_hash of the last pictures drawn */
+    size_t shape_count;
+    struct draft_parts **parts; /* by number of the model, level; made when they are first needed */
+    /* --- of the picture being drawn */
+    const struct picture *picture;
+    const struct draft_light *light;
+    struct frame_block block;
+    struct draft_mesh *meshes;
+    struct draft_found *found; /* by mesh */
+    size_t found_capacity;
+    struct draft_draw *draws;
+    struct draft_vertex *vertices;
+    struct draft_chunk *chunks;
+    size_t mesh_count, draw_count, chunk_count, vertex_count;
+    size_t mesh_capacity, draw_capacity, chunk_capacity, vertex_capacity;
+    int width_px, height_px, pitch_px, band_count; /* pitch: a multiple of LANES */
+    int band_rows;
+    float reach_px; /* so far from a pixel's middle it is looked at; drafts: 0 */
+    float *depth;
+    uint32_t *marks;
+    uint32_t *ids; /* NULL: not asked for; else, where there is a mark: first_id of the part found + triangle of it */
+    size_t pixel_capacity;
+    uint8_t *out;
+    size_t out_stride_bytes;
+    bool has_ground;
+    bool greys; /* context has no colours */
+    float sun_from_pixel[4][4], ground_from_pixel[3][3], ray_from_pixel[3][3]; /* columns */
+};
+
+/* From the GPU: what is the same in all pictures (false: the context is lost); light (NULL: out of memory, logged); a palette. */
+bool draft_read_textures(struct draft *draft, const struct sky *sky);
+const struct draft_light *draft_get_light(struct draft *draft, const struct light_set *set);
+void draft_free_light(const struct draft *draft, struct draft_light *light);
+void draft_read_palette(struct draft *draft, const struct palette *palette);
+/* The steps. */
+void draft_aim(struct draft *draft, const struct light *light); /* the matrices from pixels */
+bool draft_collect(struct draft *draft);                        /* meshes, draws and chunks: what may be seen. False: out of memory */
+/* An asset, its vertices counted on from draft->vertex_count. */
+void draft_fill_mesh(struct draft *draft, struct draft_mesh *mesh, int asset, const struct model_level *level);
+bool draft_find(struct draft *draft);                           /* meshes, and which of their parts may be seen. False: out of memory */
+bool draft_find_only(struct draft *draft, int asset);           /* the same of one, from both sides */
+void draft_tiles(struct draft *draft, bool color);              /* depth and marks of what was found; and colours, or not */
+bool draft_make_room(struct draft *draft, const struct frame *frame, int band_rows); /* false: out of memory */
+void draft_place(struct draft *draft, size_t begin, size_t end); /* vertices */
+void draft_sort(struct draft *draft, size_t begin, size_t end);  /* triangles of chunks into bands */
+void draft_color(const struct draft *draft, const struct draft_rect *rect); /* from marks; begins at a whole STRETCH */
+enum draft_rim { RIM_NONE, RIM_LIGHT, RIM_DARK };
+const uint8_t *draft_rim(const struct draft *draft); /* per pixel, rows of pitch_px; in place of depth */
+/* What is needed to colour it again, while draft->ids says what is seen and the frame has all but rims: no ink and no markers yet. NULL:
+   out of memory. */
+struct recolor *draft_keep(struct draft *draft);
+void draft_keep_rim(const struct draft *draft, struct recolor *recolor); /* likewise: depth is lost */
+/* Hands it over to a store, with the frame's markers. */
+void draft_give(struct visibility_buffers *store, const struct picture *picture, struct recolor *recolor, const struct frame *frame);
+/* Pixels and markers, if the store has such a picture. False: it has not. */
+bool draft_recolor(struct draft *draft, struct visibility_buffers *store, const struct picture *picture, struct frame *frame);
+void draft_outline(const struct draft *draft);                  /* of all that has a mark; depth is lost */
+
+#endif

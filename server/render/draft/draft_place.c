@@ -1,0 +1,88 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Vertices into the picture, and what of light and field they carry. */
+#include <math.h>
+#include <string.h>
+
+#include "render/draft/draft_impl.h"
+
+enum { BLOCK = 2048 };
+#define FARTHEST 1e6f /* columns: what lies so far outside the scale is outside all the same */
+
+static inline void place_one(const struct draft_mesh *mesh, const float p[3], struct draft_vertex *out)
+{
+    float at[4];
+    for (int r = 0; r < 4; r++)
+        at[r] = mesh->place[0][r] * p[0] + mesh->place[1][r] * p[1] + mesh->place[2][r] * p[2] + mesh->place[3][r];
+    bool before = at[3] > 0 && at[2] <= at[3];
+    float inverse = before ? 1 / at[3] : 0;
+    out->x = at[0] * inverse;
+    out->y = at[1] * inverse;
+    out->depth = at[2] * inverse;
+    out->inverse_w = inverse;
+}
+
+static void carry_field(const struct draft *draft, const struct draft_mesh *mesh, uint32_t v, struct draft_vertex *out)
+{
+    /* As palette_column and palette_row in shaders/field.glsl. */
+    const float slack = 1e-5f, columns = PALETTE_PLACES / (1 + 2 * slack);
+    const struct scalar *scalar = &mesh->scalars[v];
+    float place = (scalar->value - draft->block.scale[0]) * draft->block.scale[1];
+    out->a = fminf(fmaxf(place * columns + (1 + slack * columns), -FARTHEST), FARTHEST);
+    out->b = (float)mesh->baked[v][0] * (1 / 255.0f) * draft->block.shade[0] + draft->block.shade[1];
+    out->flags = draft_flags(scalar);
+}
+
+static void carry_nothing(const struct draft *draft, const struct draft_mesh *mesh, uint32_t v, struct draft_vertex *out)
+{
+    out->a = 0;
+    out->b = (float)mesh->baked[v][0] * (1 / 255.0f) * draft->block.shade[0] + draft->block.shade[1];
+    out->flags = DRAFT_NOTHING_KNOWN;
+}
+
+static void carry_context(const struct draft_mesh *mesh, uint32_t v, struct draft_vertex *out)
+{
+    out->a = mesh->baked[v][1];
+    out->b = mesh->baked[v][3];
+    out->flags = 0;
+}
+
+static void place_range(const struct draft *draft, const struct draft_mesh *mesh, uint32_t begin, uint32_t end)
+{
+    struct draft_vertex *out = draft->vertices + mesh->first_vertex;
+    for (uint32_t v = begin; v < end; v++)
+        place_one(mesh, mesh->file->positions_m[v], &out[v]);
+    for (uint32_t v = begin; v < end; v++) {
+        if (mesh->scalars)
+            carry_field(draft, mesh, v, &out[v]);
+        else if (mesh->has_field)
+            carry_nothing(draft, mesh, v, &out[v]);
+        else
+            carry_context(mesh, v, &out[v]);
+    }
+}
+
+struct placing {
+    const struct draft *draft;
+    size_t first;
+};
+
+/* Vertices of all meshes, counted through. */
+static void place_block(void *arg, size_t begin, size_t end)
+{
+    const struct placing *placing = arg;
+    const struct draft *draft = placing->draft;
+    begin += placing->first;
+    end += placing->first;
+    for (size_t m = 0; m < draft->mesh_count; m++) {
+        const struct draft_mesh *mesh = &draft->meshes[m];
+        size_t first = mesh->first_vertex, last = first + mesh->vertex_count;
+        if (first < end && last > begin)
+            place_range(draft, mesh, (uint32_t)((begin > first ? begin : first) - first), (uint32_t)((end < last ? end : last) - first));
+    }
+}
+
+void draft_place(struct draft *draft, size_t begin, size_t end)
+{
+    struct placing placing = { draft, begin };
+    workers_for(draft->workers, end - begin, BLOCK, place_block, &placing);
+}

@@ -1,0 +1,158 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the other passes made on the GPU, brought here: light, ramps, backdrops and palettes. */
+#include <math.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "render/draft/draft_impl.h"
+#include "render/light/sky.h"
+
+static bool fail(const struct draft *draft, const char *what)
+{
+    log_err(draft->stage->gl->log, "moving pictures: %s cannot be read back: out of memory", what);
+    return false;
+}
+
+/* Four bytes a texel: blue, green, red, alpha. */
+static void read_colors(GLuint texture, uint32_t *to, size_t texels)
+{
+    glGetTextureImage(texture, 0, GL_BGRA, GL_UNSIGNED_BYTE, (GLsizei)(texels * 4), to);
+}
+
+bool draft_read_textures(struct draft *draft, const struct sky *sky)
+{
+    const struct stage *stage = draft->stage;
+    size_t rows = 0, backdrops = SKY_BACKDROPS * SKY_ROUNDINGS;
+    draft->ramp_of_model = mem_array(stage->model_count, sizeof(*draft->ramp_of_model));
+    for (size_t m = 0; m < stage->model_count; m++) {
+        draft->ramp_of_model[m] = (uint32_t)rows;
+        rows += stage->models[m].material_count;
+        for (size_t i = 0; i < stage->models[m].material_count; i++)
+            draft->has_holes |= stage->models[m].materials[i].masked;
+    }
+    draft->ramp_count = rows;
+    draft->ramps = mem_array(rows * RAMP_STEPS, sizeof(*draft->ramps));
+    for (size_t m = 0; m < stage->model_count; m++)
+        read_colors(stage->models[m].ramps, draft->ramps + (size_t)draft->ramp_of_model[m] * RAMP_STEPS,
+                    stage->models[m].material_count * RAMP_STEPS);
+    draft->palette = mem_array(PALETTE_ROWS * PALETTE_COLUMNS, sizeof(*draft->palette));
+    draft->lines = mem_array(PALETTE_PLACES, sizeof(*draft->lines));
+    draft->backdrops = mem_array(backdrops, sizeof(*draft->backdrops));
+    read_colors(sky->backdrops, draft->backdrops, backdrops);
+    return glGetError() == GL_NO_ERROR;
+}
+
+void draft_read_palette(struct draft *draft, const struct palette *palette)
+{
+    if (draft->palette_version == palette->version)
+        return;
+    read_colors(palette->colors, draft->palette, PALETTE_ROWS * PALETTE_COLUMNS);
+    if (palette->lines)
+        glGetTextureImage(palette->lines, 0, GL_RED, GL_FLOAT, PALETTE_PLACES * sizeof(*draft->lines), draft->lines);
+    draft->palette_version = palette->version;
+}
+
+/* --- light ------------------------------------------------------------------------------------------------------------------ */
+
+void draft_free_light(const struct draft *draft, struct draft_light *light)
+{
+    for (size_t i = 0; light->baked && i < draft->stage->scene->asset_count; i++)
+        mem_free(light->baked[i]);
+    mem_free(light->baked);
+    mem_free(light->sun_map);
+    mem_free(light->ground);
+    *light = (struct draft_light){ 0 };
+}
+
+static bool read_baked(const struct draft *draft, struct draft_light *light, const struct light_set *set)
+{
+    const struct stage *stage = draft->stage;
+    light->baked = mem_array(stage->scene->asset_count, sizeof(*light->baked));
+    for (size_t i = 0; i < stage->scene->asset_count; i++) {
+        size_t vertices = stage->of_asset[i]->mesh.vertex_count;
+        light->baked[i] = mem_try_array(vertices, 4);
+        if (!light->baked[i])
+            return fail(draft, "light");
+        glGetNamedBufferSubData(set->baked[i], 0, (GLsizeiptr)(4 * vertices), light->baked[i]);
+    }
+    return true;
+}
+
+/* The last row and column twice: comparisons look at right and lower neighbours. */
+static bool read_sun_map(const struct draft *draft, struct draft_light *light, GLuint map)
+{
+    GLint size = 0;
+    glGetTextureLevelParameteriv(map, 0, GL_TEXTURE_WIDTH, &size);
+    size_t row = (size_t)size + 1;
+    light->sun_map_px = size;
+    light->sun_map = mem_try_array(row * row, sizeof(*light->sun_map));
+    if (!light->sun_map)
+        return fail(draft, "shadows");
+    glPixelStorei(GL_PACK_ROW_LENGTH, size + 1);
+    glPixelStorei(GL_PACK_ALIGNMENT, 2);
+    glGetTextureImage(map, 0, GL_DEPTH_COMPONENT, GL_UNSIGNED_SHORT, (GLsizei)(row * row * 2), light->sun_map);
+    glPixelStorei(GL_PACK_ALIGNMENT, 4);
+    glPixelStorei(GL_PACK_ROW_LENGTH, 0);
+    for (size_t y = 0; y < row - 1; y++)
+        light->sun_map[y * row + row - 1] = light->sun_map[y * row + row - 2];
+    memcpy(light->sun_map + (row - 1) * row, light->sun_map + (row - 2) * row, row * sizeof(*light->sun_map));
+    return true;
+}
+
+static double margin(double at)
+{
+    double t = fmin(fmax((fabs(at - 0.5) - 0.5) / (0.3 - 0.5), 0), 1);
+    return t * t * (3 - 2 * t);
+}
+
+/* As shaders/ground.frag. */
+static uint8_t ground_factor(const uint8_t light[2], double u, double v)
+{
+    double dark = fmin(0.20 * (1 - light[0] / 255.0) + 0.42 * (1 - light[1] / 255.0), 0.5);
+    return (uint8_t)lround(255 * (1 - margin(u) * margin(v) * dark));
+}
+
+static bool read_ground(const struct draft *draft, struct draft_light *light, GLuint ground)
+{
+    GLint size = 0;
+    glGetTextureLevelParameteriv(ground, 0, GL_TEXTURE_WIDTH, &size);
+    size_t side = (size_t)size;
+    uint8_t(*texels)[2] = mem_try_array(side * side, sizeof(*texels)), *factors = mem_try_array(side * side, 1);
+    light->ground_px = size;
+    light->ground = mem_try_array(side * side, sizeof(*light->ground));
+    bool good = texels && factors && light->ground;
+    if (good) {
+        glGetTextureImage(ground, 0, GL_RG, GL_UNSIGNED_BYTE, (GLsizei)(side * side * 2), texels);
+        for (size_t i = 0; i < side * side; i++)
+            factors[i] = ground_factor(texels[i], ((double)(i % side) + 0.5) / (double)side, ((double)(i / side) + 0.5) / (double)side);
+        for (size_t i = 0; i < side * side; i++) {
+            size_t right = i % side + 1 < side ? 1 : 0, below = i / side + 1 < side ? side : 0;
+            light->ground[i] = factors[i] | (uint32_t)factors[i + right] << 8 | (uint32_t)factors[i + below] << 16 |
+                               (uint32_t)factors[i + right + below] << 24;
+        }
+    }
+    mem_free(texels);
+    mem_free(factors);
+    return good || fail(draft, "the ground");
+}
+
+const struct draft_light *draft_get_light(struct draft *draft, const struct light_set *set)
+{
+    struct draft_light *oldest = &draft->lights[0];
+    for (int i = 0; i < DRAFT_LIGHTS; i++) {
+        struct draft_light *light = &draft->lights[i];
+        if (light->id == set->id) {
+            light->used = ++draft->uses;
+            return light;
+        }
+        if (light->used < oldest->used)
+            oldest = light;
+    }
+    draft_free_light(draft, oldest);
+    oldest->id = set->id;
+    oldest->used = ++draft->uses;
+    if (read_baked(draft, oldest, set) && read_sun_map(draft, oldest, set->sun_map) && read_ground(draft, oldest, set->ground))
+        return oldest;
+    draft_free_light(draft, oldest);
+    return NULL;
+}

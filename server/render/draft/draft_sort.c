@@ -1,0 +1,185 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Triangles that cover a pixel's middle and look this way, into bands of rows. */
+#include <math.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "render/draft/draft_impl.h"
+
+/* --- the near plane --------------------------------------------------------------------------------------------------------- */
+
+struct corner { /* in clip space, x and y in pixels */
+    float at[4], a, b;
+};
+
+static struct corner corner_of(const struct draft *draft, const struct draft_mesh *mesh, uint32_t v)
+{
+    const struct draft_vertex *vertex = &draft->vertices[mesh->first_vertex + v];
+    const float *p = mesh->file->positions_m[v];
+    struct corner corner = { .a = vertex->a, .b = vertex->b };
+    for (int r = 0; r < 4; r++)
+        corner.at[r] = mesh->place[0][r] * p[0] + mesh->place[1][r] * p[1] + mesh->place[2][r] * p[2] + mesh->place[3][r];
+    return corner;
+}
+
+static struct corner between(const struct corner *from, const struct corner *to, float part)
+{
+    struct corner corner = { .a = from->a + part * (to->a - from->a), .b = from->b + part * (to->b - from->b) };
+    for (int r = 0; r < 4; r++)
+        corner.at[r] = from->at[r] + part * (to->at[r] - from->at[r]);
+    return corner;
+}
+
+static uint32_t add_extra(struct draft_chunk *chunk, const struct corner *corner, uint32_t flags, uint32_t source)
+{
+    float inverse = 1 / fmaxf(corner->at[3], 1e-30f);
+    mem_grow(&chunk->extra, &chunk->extra_capacity, chunk->extra_count + 1, sizeof(*chunk->extra));
+    chunk->extra[chunk->extra_count] = (struct draft_vertex){
+        .x = corner->at[0] * inverse,
+        .y = corner->at[1] * inverse,
+        .depth = corner->at[2] * inverse,
+        .inverse_w = inverse,
+        .a = corner->a,
+        .b = corner->b,
+        .flags = flags,
+        .source = source,
+    };
+    return EXTRA_VERTEX | (uint32_t)chunk->extra_count++;
+}
+
+/* What lies beyond the near plane. How many corners it has, in order: 0, 3 or 4. */
+static int cut(const struct draft *draft, struct draft_chunk *chunk, const struct draft_mesh *mesh, const uint32_t *indices,
+               uint32_t corners[4])
+{
+    struct corner at[3];
+    uint32_t flags = 0, source = (uint32_t)(indices - mesh->file->indices);
+    int count = 0;
+    for (int i = 0; i < 3; i++) {
+        at[i] = corner_of(draft, mesh, indices[i]);
+        flags |= draft->vertices[mesh->first_vertex + indices[i]].flags;
+    }
+    for (int i = 0; i < 3; i++) {
+        const struct corner *here = &at[i], *next = &at[(i + 1) % 3];
+        float inside = here->at[3] - here->at[2], after = next->at[3] - next->at[2];
+        if (inside >= 0)
+            corners[count++] = add_extra(chunk, here, flags, source);
+        if ((inside >= 0) != (after >= 0)) {
+            struct corner crossing = between(here, next, inside / (inside - after));
+            corners[count++] = add_extra(chunk, &crossing, flags, source);
+        }
+    }
+    return count >= 3 ? count : 0;
+}
+
+/* --- bands ------------------------------------------------------------------------------------------------------------------ */
+
+static const struct draft_vertex *vertex_of(const struct draft *draft, const struct draft_chunk *chunk, uint32_t v)
+{
+    return v & EXTRA_VERTEX ? &chunk->extra[v & ~EXTRA_VERTEX] : &draft->vertices[v];
+}
+
+static inline float least(float a, float b)
+{
+    return a < b ? a : b;
+}
+
+static inline float most(float a, float b)
+{
+    return a > b ? a : b;
+}
+
+/* The first pixel whose middle may be covered, and the last one, kept to the picture. */
+static inline int first_pixel(float x)
+{
+    return (int)(most(x, -0.4f) + 0.4999f);
+}
+
+static inline int last_pixel(float x, int count)
+{
+    return (int)(least(most(x, -0.5f), (float)count) + 0.5f) - 1;
+}
+
+static void add_triangle(const struct draft *draft, struct draft_chunk *chunk, const struct draft_draw *draw, uint32_t v0, uint32_t v1,
+                         uint32_t v2)
+{
+    const struct draft_vertex *p = vertex_of(draft, chunk, v0), *q = vertex_of(draft, chunk, v1), *r = vertex_of(draft, chunk, v2);
+    float area = (q->x - p->x) * (r->y - p->y) - (r->x - p->x) * (q->y - p->y); /* rows go down: what faces us is negative */
+    bool turned = area > 0;
+    bool back = turned != draft->meshes[draw->mesh].mirrored;
+    if (area == 0 || (!draw->double_sided && back))
+        return;
+    float reach = draft->reach_px;
+    int left = first_pixel(least(least(p->x, q->x), r->x) - reach), top = first_pixel(least(least(p->y, q->y), r->y) - reach);
+    int right = last_pixel(most(most(p->x, q->x), r->x) + reach, draft->width_px);
+    int bottom = last_pixel(most(most(p->y, q->y), r->y) + reach, draft->height_px);
+    if (left > right || top > bottom)
+        return;
+    uint32_t first = (uint32_t)(top / draft->band_rows), last = (uint32_t)(bottom / draft->band_rows);
+    size_t i = chunk->triangle_count++;
+    chunk->triangles[i] = (struct draft_triangle){ { v0, turned ? v1 : v2, turned ? v2 : v1 }, /* area > 0 from here on */
+                                                   draw->mark | (back ? draw->back : 0) };
+    chunk->bands[i] = first | last << 16;
+    for (uint32_t b = first; b <= last; b++)
+        chunk->starts[b + 1]++;
+}
+
+static void add_draw(const struct draft *draft, struct draft_chunk *chunk, const struct draft_draw *draw)
+{
+    const struct draft_mesh *mesh = &draft->meshes[draw->mesh];
+    const uint32_t *indices = mesh->file->indices + draw->first_index;
+    const struct draft_vertex *vertices = draft->vertices + mesh->first_vertex;
+    for (uint32_t i = 0; i < draw->index_count; i += 3) {
+        const uint32_t *at = &indices[i];
+        if (vertices[at[0]].inverse_w > 0 && vertices[at[1]].inverse_w > 0 && vertices[at[2]].inverse_w > 0) {
+            add_triangle(draft, chunk, draw, mesh->first_vertex + at[0], mesh->first_vertex + at[1], mesh->first_vertex + at[2]);
+            continue;
+        }
+        uint32_t corners[4];
+        int count = cut(draft, chunk, mesh, at, corners);
+        for (int c = 2; c < count; c++)
+            add_triangle(draft, chunk, draw, corners[0], corners[c - 1], corners[c]);
+    }
+}
+
+/* Counting sort: stable, so that the order of drawing stays. */
+static void sort(const struct draft *draft, struct draft_chunk *chunk)
+{
+    uint32_t bands = (uint32_t)draft->band_count;
+    for (uint32_t b = 0; b < bands; b++)
+        chunk->starts[b + 1] += chunk->starts[b];
+    mem_grow(&chunk->sorted, &chunk->sorted_capacity, chunk->starts[bands], sizeof(*chunk->sorted));
+    for (size_t i = 0; i < chunk->triangle_count; i++)
+        for (uint32_t b = chunk->bands[i] & 0xffff; b <= chunk->bands[i] >> 16; b++)
+            chunk->sorted[chunk->starts[b]++] = (uint16_t)i;
+    memmove(chunk->starts + 1, chunk->starts, bands * sizeof(*chunk->starts)); /* the loop moved each to the next one's start */
+    chunk->starts[0] = 0;
+}
+
+struct sorting {
+    struct draft *draft;
+    size_t first;
+};
+
+static void sort_chunks(void *arg, size_t begin, size_t end)
+{
+    const struct sorting *sorting = arg;
+    struct draft *draft = sorting->draft;
+    for (size_t c = sorting->first + begin; c < sorting->first + end; c++) {
+        struct draft_chunk *chunk = &draft->chunks[c];
+        size_t starts = (size_t)draft->band_count + 1, most_triangles = 2 * CHUNK_TRIANGLES; /* the near plane may make two of one */
+        chunk->triangle_count = chunk->extra_count = 0;
+        mem_grow(&chunk->triangles, &chunk->triangle_capacity, most_triangles, sizeof(*chunk->triangles));
+        mem_grow(&chunk->bands, &chunk->band_capacity, most_triangles, sizeof(*chunk->bands));
+        mem_grow(&chunk->starts, &chunk->start_capacity, starts, sizeof(*chunk->starts));
+        memset(chunk->starts, 0, starts * sizeof(*chunk->starts));
+        for (size_t d = 0; d < chunk->draw_count; d++)
+            add_draw(draft, chunk, &draft->draws[chunk->first_draw + d]);
+        sort(draft, chunk);
+    }
+}
+
+void draft_sort(struct draft *draft, size_t begin, size_t end)
+{
+    struct sorting sorting = { draft, begin };
+    workers_for(draft->workers, end - begin, 1, sort_chunks, &sorting);
+}

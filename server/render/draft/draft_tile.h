@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A rectangle of the picture while one thread draws it, part by part, nearest first. Private to draft*.c. */
+#ifndef RENDER_DRAFT_TILE_H
+#define RENDER_DRAFT_TILE_H
+#include "render/draft/draft_impl.h"
+#include "render/draft/draft_simd.h"
+
+enum { TILE_WIDTH_PX = 320, TILE_HEIGHT_PX = 184, BLOCK_PX = 8 };
+enum { BLOCK_COLUMNS = TILE_WIDTH_PX / BLOCK_PX, BLOCK_ROWS = TILE_HEIGHT_PX / BLOCK_PX };
+enum { MOST_FACES = 2 * PART_TRIANGLES, MOST_CORNERS = PART_VERTICES + 4 * PART_TRIANGLES }; /* the near plane may make two of one */
+
+struct draft_corners { /* vertices of a part, as struct draft_vertex, then those that the near plane made */
+    float x[MOST_CORNERS], y[MOST_CORNERS], depth[MOST_CORNERS], inverse_w[MOST_CORNERS], a[MOST_CORNERS], b[MOST_CORNERS];
+    uint32_t flags[MOST_CORNERS];
+    int count;
+    uint32_t all_flags; /* of any of them */
+    bool flat;          /* no perspective to speak of */
+    bool cut;           /* some are nearer than the near plane */
+};
+
+struct draft_face { /* a triangle that faces the eye and covers a pixel's middle in the tile; its area as pixels go is over 0 */
+    uint16_t corners[3];
+    uint16_t triangle;                /* of the part */
+    int16_t left, right, top, bottom; /* in the picture */
+};
+
+struct draft_tile {
+    const struct draft *draft;
+    struct draft_rect rect; /* whole lanes wide */
+    float farthest[BLOCK_ROWS][BLOCK_COLUMNS]; /* depth in each block: what lies behind it is hidden */
+    struct draft_corners corners;
+    struct draft_face faces[MOST_FACES];
+    int face_count;
+    uint32_t first_id; /* of the part's triangles, in draft->ids */
+};
+
+/* The vertices of a part: first where all of them are, then what those of its faces carry of field and light; all, if some are cut. */
+void draft_place_part(struct draft_tile *tile, const struct draft_mesh *mesh, const struct draft_parts *parts,
+                      const struct draft_part *part);
+void draft_carry_part(struct draft_tile *tile, const struct draft_mesh *mesh, const struct draft_parts *parts,
+                      const struct draft_part *part);
+/* Its faces, out of corners that were placed; if some are cut, they must carry too. */
+void draft_find_faces(struct draft_tile *tile, const struct draft_mesh *mesh, const struct draft_found *found,
+                      const struct draft_part *part);
+void draft_cut_faces(struct draft_tile *tile, const struct draft_mesh *mesh, const struct draft_parts *parts,
+                     const struct draft_part *part, bool both_sides);
+/* Depth and marks of all faces. */
+void draft_raster_faces(const struct draft_tile *tile, uint32_t mark);
+
+#endif

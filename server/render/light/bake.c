@@ -1,0 +1,402 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Depth maps and compute shaders, cut into bits: one asset on one map, some thousand places, some rows of the ground. */
+#include "render/light/bake.h"
+
+#include <math.h>
+
+#include "base/mem.h"
+#include "gpu/program.h"
+#include "render/light/bake_faces.h"
+#include "render/matrix.h"
+
+enum { SKY_DIRECTIONS = 32, SKY_MAP_PX = 1024, SUN_MAP_PX = 4096, GROUND_PX = 256 };
+static const uint8_t ROUGH_OPENNESS = 190; /* of 255 */
+static const double LARGE_FACE_TEXELS = 8; /* of the sky's maps */
+/* Of a bit, on a processor: vertices, or places in faces, with and without sky, rows of the ground likewise. A GPU takes all at once. */
+enum { SKY_VERTICES = 4096, SUN_VERTICES = 65536, SKY_ROWS = 8, SUN_ROWS = 128 };
+
+/* As in shaders/bake.comp. */
+struct directions_block {
+    float map_from_plant[SKY_DIRECTIONS][16];
+    float direction[SKY_DIRECTIONS][4];
+};
+
+struct bake {
+    const struct stage *stage;
+    const struct bake_programs *programs;
+    const double *plant_from_ground;
+    struct light_set set;
+    bool with_sky;
+    struct directions_block *directions;
+    GLuint sky_maps, directions_buffer, framebuffer;
+    double sky_texel_m;
+    enum { BAKE_SKY_MAPS, BAKE_SUN_MAP, BAKE_GROUND, BAKE_FACES, BAKE_VERTICES, BAKE_DONE } part;
+    int direction, row;
+    size_t asset, place, vertex;
+    struct bake_faces faces; /* of the asset whose vertices are next */
+};
+
+bool bake_programs_init(struct bake_programs *programs, struct log *log)
+{
+    programs->sky = program_create(log, program_params(.compute = "bake.comp", .defines = "#define SKY\n"));
+    programs->sun = program_create(log, program_params(.compute = "bake.comp"));
+    programs->faces_sky = program_create(log, program_params(.compute = "bake.comp", .defines = "#define FACES\n#define SKY\n"));
+    programs->faces_sun = program_create(log, program_params(.compute = "bake.comp", .defines = "#define FACES\n"));
+    programs->ground_sky = program_create(log, program_params(.compute = "bake.comp", .defines = "#define GROUND\n#define SKY\n"));
+    programs->ground_sun = program_create(log, program_params(.compute = "bake.comp", .defines = "#define GROUND\n"));
+    return programs->sky && programs->sun && programs->faces_sky && programs->faces_sun && programs->ground_sky && programs->ground_sun;
+}
+
+void bake_programs_finish(struct bake_programs *programs)
+{
+    program_destroy(&programs->sky);
+    program_destroy(&programs->sun);
+    program_destroy(&programs->faces_sky);
+    program_destroy(&programs->faces_sun);
+    program_destroy(&programs->ground_sky);
+    program_destroy(&programs->ground_sun);
+}
+
+void light_set_finish(struct light_set *set, const struct stage *stage)
+{
+    glDeleteTextures(1, &set->sun_map);
+    glDeleteTextures(1, &set->ground);
+    if (set->baked)
+        glDeleteBuffers((GLsizei)stage->scene->asset_count, set->baked);
+    mem_free(set->baked);
+    *set = (struct light_set){ 0 };
+}
+
+/* --- maps ---------------------------------------------------------------------------------------------------------------------- */
+
+/* A depth texture to compare with; outside it nothing stands in the light. */
+static GLuint make_map(GLenum kind, int size_px, int layers)
+{
+    static const float nothing[4] = { 0 };
+    GLuint map = 0;
+    glCreateTextures(kind, 1, &map);
+    if (kind == GL_TEXTURE_2D_ARRAY)
+        glTextureStorage3D(map, 1, GL_DEPTH_COMPONENT16, size_px, size_px, layers);
+    else
+        glTextureStorage2D(map, 1, GL_DEPTH_COMPONENT16, size_px, size_px);
+    glTextureParameteri(map, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+    glTextureParameteri(map, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    glTextureParameteri(map, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_BORDER);
+    glTextureParameteri(map, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_BORDER);
+    glTextureParameterfv(map, GL_TEXTURE_BORDER_COLOR, nothing);
+    glTextureParameteri(map, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
+    glTextureParameteri(map, GL_TEXTURE_COMPARE_FUNC, GL_GEQUAL);
+    return map;
+}
+
+static int sun_map_px(const struct stage *stage)
+{
+    return SUN_MAP_PX < stage->gl->max_texture_px ? SUN_MAP_PX : stage->gl->max_texture_px;
+}
+
+/* One asset, if it is shown, as seen from far away in that direction. layer -1: the texture is not an array. */
+static void draw_on_map(struct bake *bake, GLuint map, int layer, int size_px, const double towards[3], const struct visibility *shown)
+{
+    const struct stage *stage = bake->stage;
+    double clip_from_plant[16];
+    matrix_parallel(stage->middle_m, stage->radius_m, towards, clip_from_plant);
+    if (layer < 0)
+        glNamedFramebufferTexture(bake->framebuffer, GL_DEPTH_ATTACHMENT, map, 0);
+    else
+        glNamedFramebufferTextureLayer(bake->framebuffer, GL_DEPTH_ATTACHMENT, map, 0, layer);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, bake->framebuffer);
+    glViewport(0, 0, size_px, size_px);
+    glEnable(GL_DEPTH_TEST);
+    glDisable(GL_BLEND);
+    glDepthMask(GL_TRUE);
+    if (bake->asset == 0)
+        glClear(GL_DEPTH_BUFFER_BIT);
+    if (visibility_of(shown, (int)bake->asset) == ASSET_SHOWN)
+        stage_draw_depth(stage, clip_from_plant, &shown->clip, (int)bake->asset, stage->radius_m / size_px, false);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+}
+
+/* Evenly over the sphere (Fibonacci lattice). Ground throws back less than half of what the sky gives. */
+static void sky_direction(const struct stage *stage, int i, double towards[3], float *brightness)
+{
+    double height = 1 - (2 * i + 1.0) / SKY_DIRECTIONS, angle = i * 2.399963229728653, flat = sqrt(1 - height * height);
+    double a = flat * cos(angle), b = flat * sin(angle);
+    bool y_up = stage->up[1] > 0;
+    towards[0] = a;
+    towards[1] = y_up ? height : b;
+    towards[2] = y_up ? -b : height;
+    *brightness = (float)(height > 0 ? 0.92 + 0.12 * height : 0.42);
+}
+
+static void find_directions(struct bake *bake)
+{
+    const struct stage *stage = bake->stage;
+    double to_middle[16], matrix[16];
+    bake->directions = mem_new(sizeof(*bake->directions));
+    matrix_translation(stage->middle_m, to_middle);
+    for (int i = 0; i < SKY_DIRECTIONS; i++) {
+        double towards[3];
+        sky_direction(stage, i, towards, &bake->directions->direction[i][3]);
+        matrix_parallel(stage->middle_m, stage->radius_m, towards, matrix);
+        matrix_texture_from_clip(matrix, matrix);
+        matrix_multiply(matrix, to_middle, matrix);
+        matrix_to_float(matrix, bake->directions->map_from_plant[i]);
+        for (int c = 0; c < 3; c++)
+            bake->directions->direction[i][c] = (float)towards[c];
+    }
+}
+
+static void sky_map_bit(struct bake *bake)
+{
+    static const struct visibility everything;
+    double towards[3];
+    float brightness;
+    sky_direction(bake->stage, bake->direction, towards, &brightness);
+    draw_on_map(bake, bake->sky_maps, bake->direction, SKY_MAP_PX, towards, &everything);
+    if (++bake->asset < bake->stage->scene->asset_count)
+        return;
+    bake->asset = 0;
+    if (++bake->direction == SKY_DIRECTIONS)
+        bake->part = BAKE_SUN_MAP;
+}
+
+static void sun_map_bit(struct bake *bake)
+{
+    draw_on_map(bake, bake->set.sun_map, -1, sun_map_px(bake->stage), bake->set.key.towards, &bake->set.key.shown);
+    if (++bake->asset < bake->stage->scene->asset_count)
+        return;
+    bake->asset = 0;
+    bake->part = BAKE_GROUND;
+}
+
+/* --- what reaches the surfaces --------------------------------------------------------------------------------------------------- */
+
+static void set_uniforms(const struct bake *bake, const double plant_from_here[16], size_t first, size_t end)
+{
+    double around_middle[16];
+    float matrix[16], normals[9];
+    const double *middle = bake->stage->middle_m, *towards = bake->set.key.towards;
+    matrix_translation((double[3]){ -middle[0], -middle[1], -middle[2] }, around_middle);
+    matrix_multiply(around_middle, plant_from_here, around_middle);
+    matrix_to_float(around_middle, matrix);
+    glUniformMatrix4fv(0, 1, GL_FALSE, matrix);
+    matrix_normals(plant_from_here, normals);
+    glUniformMatrix3fv(4, 1, GL_FALSE, normals);
+    matrix_translation(middle, around_middle);
+    matrix_multiply(bake->set.texture_from_plant, around_middle, around_middle);
+    matrix_to_float(around_middle, matrix);
+    glUniformMatrix4fv(1, 1, GL_FALSE, matrix);
+    glUniform4f(8, (float)towards[0], (float)towards[1], (float)towards[2], (float)bake->set.texel_m);
+    glUniform1f(9, (float)bake->sky_texel_m);
+    glUniform2i(10, (GLint)first, (GLint)end);
+    glBindTextureUnit(1, bake->sky_maps);
+    glBindTextureUnit(2, bake->set.sun_map);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, bake->directions_buffer);
+}
+
+static size_t smaller(size_t a, size_t b)
+{
+    return a < b ? a : b;
+}
+
+static void ground_bit(struct bake *bake)
+{
+    const struct stage *stage = bake->stage;
+    int rows = !stage->gl->software ? GROUND_PX : bake->with_sky ? SKY_ROWS : SUN_ROWS;
+    size_t first = (size_t)bake->row * GROUND_PX, end = smaller(first + (size_t)rows * GROUND_PX, GROUND_PX * GROUND_PX);
+    glUseProgram(bake->with_sky ? bake->programs->ground_sky : bake->programs->ground_sun);
+    set_uniforms(bake, bake->plant_from_ground, first, end);
+    glUniform3f(11, (float)stage->up[0], (float)stage->up[1], (float)stage->up[2]);
+    glBindImageTexture(0, bake->set.ground, 0, GL_FALSE, 0, GL_READ_WRITE, GL_RG8);
+    glDispatchCompute((GLuint)(end - first + 63) / 64, 1, 1);
+    bake->row += rows;
+    if (bake->row >= GROUND_PX)
+        bake->part = bake->set.key.rough ? BAKE_VERTICES : BAKE_FACES;
+}
+
+static size_t places_in_a_bit(const struct bake *bake)
+{
+    return !bake->stage->gl->software ? SIZE_MAX / 2 : bake->with_sky ? SKY_VERTICES : SUN_VERTICES;
+}
+
+static void bind_vertices(const struct bake *bake)
+{
+    const struct mesh *mesh = &bake->stage->of_asset[bake->asset]->mesh;
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, mesh->positions);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, mesh->normals);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, bake->set.baked[bake->asset]);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 5, bake->faces.corners);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 6, bake->faces.sums);
+}
+
+/* Without memory for it, vertices are looked at alone. */
+static void faces_bit(struct bake *bake)
+{
+    const struct scene_asset *asset = &bake->stage->scene->assets[bake->asset];
+    double least_m = LARGE_FACE_TEXELS * bake->sky_texel_m;
+    if (bake->place == 0)
+        bake_faces_init(&bake->faces, bake->stage, bake->asset, least_m);
+    size_t all = bake->faces.count * BAKE_FACE_SAMPLES, end = smaller(bake->place + places_in_a_bit(bake), all);
+    if (all > 0) {
+        glUseProgram(bake->with_sky ? bake->programs->faces_sky : bake->programs->faces_sun);
+        set_uniforms(bake, asset->placement, bake->place, end);
+        glUniform1f(12, (float)least_m);
+        bind_vertices(bake);
+        glDispatchCompute((GLuint)(end - bake->place + 63) / 64, 1, 1);
+    }
+    bake->place = end;
+    if (end < all)
+        return;
+    bake->place = 0;
+    bake->part = BAKE_VERTICES;
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+static void vertices_bit(struct bake *bake)
+{
+    const struct scene_asset *asset = &bake->stage->scene->assets[bake->asset];
+    const struct mesh *mesh = &bake->stage->of_asset[bake->asset]->mesh;
+    size_t end = smaller(bake->vertex + places_in_a_bit(bake), mesh->vertex_count);
+    glUseProgram(bake->with_sky ? bake->programs->sky : bake->programs->sun);
+    set_uniforms(bake, asset->placement, bake->vertex, end);
+    glUniform1i(13, bake->faces.count > 0);
+    bind_vertices(bake);
+    glDispatchCompute((GLuint)(end - bake->vertex + 63) / 64, 1, 1);
+    bake->vertex = end;
+    if (end < mesh->vertex_count)
+        return;
+    bake->vertex = 0;
+    bake_faces_finish(&bake->faces);
+    bool last = ++bake->asset == bake->stage->scene->asset_count;
+    bake->part = last ? BAKE_DONE : bake->set.key.rough ? BAKE_VERTICES : BAKE_FACES;
+}
+
+/* --- life ------------------------------------------------------------------------------------------------------------------------ */
+
+size_t bake_bytes(const struct stage *stage)
+{
+    size_t side = (size_t)sun_map_px(stage), bytes = 2 * side * side + 2 * GROUND_PX * GROUND_PX;
+    for (size_t i = 0; i < stage->scene->asset_count; i++)
+        bytes += 4 * stage->of_asset[i]->mesh.vertex_count;
+    return bytes;
+}
+
+static bool make_buffers(struct bake *bake, const struct light_set *from)
+{
+    const struct stage *stage = bake->stage;
+    struct light_set *set = &bake->set;
+    size_t assets = stage->scene->asset_count;
+    set->baked = mem_array(assets, sizeof(*set->baked));
+    for (size_t i = 0; i < assets; i++) {
+        size_t bytes = 4 * stage->of_asset[i]->mesh.vertex_count;
+        set->baked[i] = mesh_buffer(stage->gl->log, stage->scene->assets[i].plant->id, bytes, NULL, 0);
+        if (!set->baked[i])
+            return false;
+        if (set->key.rough)
+            glClearNamedBufferData(set->baked[i], GL_RGBA8UI, GL_RGBA_INTEGER, GL_UNSIGNED_BYTE,
+                                   (const uint8_t[]){ 0, 0, ROUGH_OPENNESS, 0 });
+        if (from)
+            glCopyNamedBufferSubData(from->baked[i], set->baked[i], 0, 0, (GLsizeiptr)bytes);
+    }
+    glCreateTextures(GL_TEXTURE_2D, 1, &set->ground);
+    glTextureStorage2D(set->ground, 1, GL_RG8, GROUND_PX, GROUND_PX);
+    glTextureParameteri(set->ground, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+    glTextureParameteri(set->ground, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    glTextureParameteri(set->ground, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    if (set->key.rough)
+        glClearTexImage(set->ground, 0, GL_RG, GL_UNSIGNED_BYTE, (const uint8_t[]){ 0, ROUGH_OPENNESS });
+    if (from)
+        glCopyImageSubData(from->ground, GL_TEXTURE_2D, 0, 0, 0, 0, set->ground, GL_TEXTURE_2D, 0, 0, 0, 0, GROUND_PX, GROUND_PX, 1);
+    return true;
+}
+
+static bool make_sky(struct bake *bake)
+{
+    find_directions(bake);
+    bake->sky_maps = make_map(GL_TEXTURE_2D_ARRAY, SKY_MAP_PX, SKY_DIRECTIONS);
+    bake->directions_buffer = mesh_buffer(bake->stage->gl->log, "sky directions", sizeof(*bake->directions), bake->directions, 0);
+    return bake->directions_buffer != 0;
+}
+
+struct bake *bake_begin(const struct stage *stage, const struct bake_programs *programs, const double plant_from_ground[16],
+                        const struct light_key *key, const struct light_set *from)
+{
+    struct bake *bake = mem_new(sizeof(*bake));
+    *bake = (struct bake){ .stage = stage, .programs = programs, .plant_from_ground = plant_from_ground };
+    bake->with_sky = !from && !key->rough;
+    double matrix[16];
+    int size_px = sun_map_px(stage);
+    bake->part = bake->with_sky ? BAKE_SKY_MAPS : BAKE_SUN_MAP;
+    bake->set.bytes = bake_bytes(stage);
+    bake->set.texel_m = 2 * stage->radius_m / size_px;
+    bake->sky_texel_m = 2 * stage->radius_m / SKY_MAP_PX;
+    bake->set.key = *key;
+    matrix_parallel(stage->middle_m, stage->radius_m, key->towards, matrix);
+    matrix_texture_from_clip(matrix, bake->set.texture_from_plant);
+    gl_pass_enter("light");
+    glCreateFramebuffers(1, &bake->framebuffer);
+    glNamedFramebufferDrawBuffer(bake->framebuffer, GL_NONE);
+    bool good = make_buffers(bake, from) && (!bake->with_sky || make_sky(bake));
+    bake->set.sun_map = make_map(GL_TEXTURE_2D, size_px, 1);
+    if (!gl_pass_leave(stage->gl, "light") || !good)
+        bake_abandon(&bake);
+    return bake;
+}
+
+const struct light_key *bake_key(const struct bake *bake)
+{
+    return &bake->set.key;
+}
+
+bool bake_step(struct bake *bake)
+{
+    switch (bake->part) {
+    case BAKE_SKY_MAPS:
+        sky_map_bit(bake);
+        break;
+    case BAKE_SUN_MAP:
+        sun_map_bit(bake);
+        break;
+    case BAKE_GROUND:
+        ground_bit(bake);
+        break;
+    case BAKE_FACES:
+        faces_bit(bake);
+        break;
+    case BAKE_VERTICES:
+        vertices_bit(bake);
+        break;
+    case BAKE_DONE:
+        break;
+    }
+    return bake->part == BAKE_DONE;
+}
+
+bool bake_end(struct bake **bake_ptr, struct light_set *set)
+{
+    struct bake *bake = *bake_ptr;
+    gl_pass_enter("light");
+    glMemoryBarrier(GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+    bool good = gl_pass_leave(bake->stage->gl, "light");
+    if (good) {
+        *set = bake->set;
+        bake->set = (struct light_set){ 0 };
+    }
+    bake_abandon(bake_ptr);
+    return good;
+}
+
+void bake_abandon(struct bake **bake_ptr)
+{
+    struct bake *bake = *bake_ptr;
+    if (!bake)
+        return;
+    light_set_finish(&bake->set, bake->stage);
+    bake_faces_finish(&bake->faces);
+    glDeleteTextures(1, &bake->sky_maps);
+    glDeleteBuffers(1, &bake->directions_buffer);
+    glDeleteFramebuffers(1, &bake->framebuffer);
+    mem_free(bake->directions);
+    mem_free(bake);
+    *bake_ptr = NULL;
+}

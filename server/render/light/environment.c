@@ -1,0 +1,347 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Convolutions of the surroundings, on the workers. */
+#include "render/light/environment.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "render/light/ggx.h"
+
+enum { SKY_WIDTH = 512, SKY_HEIGHT = 256, BASE_PX = 256, PYRAMID = 6, SAMPLES = 128 };
+static const double BRIGHTEST = 24; /* times the mean: brighter spots are the sun or lamps, and the sun is one of its own */
+/* Rough layers are smooth: worked out small and enlarged. */
+static const int layer_px[ENVIRONMENT_LAYERS] = { 128, 128, 128, 64, 64, 32, 32, 32 };
+
+struct source { /* equirectangular, as the image; then octahedral, plant axes */
+    const float (*pixels)[4];
+    int width, height;
+    bool y_up;
+    double factor[3], most; /* most: of the brightest channel, before the factor */
+    float (*pyramid[PYRAMID])[4];
+};
+
+/* --- directions ---------------------------------------------------------------------------------------------------------------- */
+
+void environment_texel(int x, int y, int side_px, double towards[3])
+{
+    double u = (2.0 * x) / (side_px - 1) - 1, v = (2.0 * y) / (side_px - 1) - 1, z = 1 - fabs(u) - fabs(v);
+    if (z < 0) {
+        double old = u;
+        u = copysign(1 - fabs(v), u);
+        v = copysign(1 - fabs(old), v);
+    }
+    double size = sqrt(u * u + v * v + z * z);
+    towards[0] = u / size;
+    towards[1] = v / size;
+    towards[2] = z / size;
+}
+
+/* Place in a square of that side, 0 to side - 1. */
+static void texel_of(const double towards[3], int side_px, double *x, double *y)
+{
+    double sum = fabs(towards[0]) + fabs(towards[1]) + fabs(towards[2]), u = towards[0] / sum, v = towards[1] / sum;
+    if (towards[2] < 0) {
+        double old = u;
+        u = copysign(1 - fabs(v), u);
+        v = copysign(1 - fabs(old), v);
+    }
+    *x = 0.5 * (u + 1) * (side_px - 1);
+    *y = 0.5 * (v + 1) * (side_px - 1);
+}
+
+static void bilinear(const float (*texels)[4], int width, int height, double x, double y, bool wrap, double out[3])
+{
+    int x0 = (int)floor(x), y0 = (int)floor(y);
+    double fx = x - x0, fy = y - y0;
+    int left = wrap ? (x0 + width) % width : x0 < 0 ? 0 : x0, right = wrap ? (x0 + 1 + width) % width : x0 + 1 < width ? x0 + 1 : width - 1;
+    int above = y0 < 0 ? 0 : y0, below = y0 + 1 < height ? y0 + 1 : height - 1;
+    const float *a = texels[above * width + left], *b = texels[above * width + right], *c = texels[below * width + left],
+                *d = texels[below * width + right];
+    for (int i = 0; i < 3; i++)
+        out[i] = (1 - fy) * ((1 - fx) * a[i] + fx * b[i]) + fy * ((1 - fx) * c[i] + fx * d[i]);
+}
+
+/* --- the source ------------------------------------------------------------------------------------------------------------------ */
+
+/* The built-in sky by height over the horizon: bright there, bluer above, over light ground. */
+static void sky_color(double height, float out[4])
+{
+    static const double horizon[3] = { 1.13, 1.12, 1.10 }, zenith[3] = { 0.86, 0.96, 1.06 }, ground[3] = { 0.43, 0.42, 0.41 };
+    double above = fmin(fmax((height + 0.03) / 0.06, 0), 1), up = sqrt(fmax(height, 0)), band = exp(-pow((height - 0.16) / 0.12, 2));
+    above = above * above * (3 - 2 * above);
+    for (int i = 0; i < 3; i++) {
+        double sky = horizon[i] + (zenith[i] - horizon[i]) * up + 0.45 * band;
+        out[i] = (float)(ground[i] + (sky - ground[i]) * above);
+    }
+    out[3] = 1;
+}
+
+static float (*make_sky(void))[4]
+{
+    float (*pixels)[4] = mem_array(SKY_WIDTH * SKY_HEIGHT, sizeof(*pixels));
+    for (int i = 0; i < SKY_WIDTH * SKY_HEIGHT; i++)
+        sky_color(cos(M_PI * (i / SKY_WIDTH + 0.5) / SKY_HEIGHT), pixels[i]);
+    return pixels;
+}
+
+/* Towards the pixel's centre, plant axes. */
+static void pixel_direction(const struct source *source, int x, int y, double towards[3])
+{
+    double down = M_PI * (y + 0.5) / source->height, turn = 2 * M_PI * (x + 0.5) / source->width - M_PI;
+    double a = sin(down) * cos(turn), b = -sin(down) * sin(turn), height = cos(down);
+    towards[0] = a;
+    towards[1] = source->y_up ? height : b;
+    towards[2] = source->y_up ? -b : height;
+}
+
+static void clipped(const struct source *source, const float pixel[4], double out[3])
+{
+    double peak = 0, scale = 1;
+    for (int i = 0; i < 3; i++) {
+        out[i] = isfinite(pixel[i]) && pixel[i] > 0 ? pixel[i] : 0;
+        peak = fmax(peak, out[i]);
+    }
+    if (peak > source->most)
+        scale = source->most / peak;
+    for (int i = 0; i < 3; i++)
+        out[i] *= scale * source->factor[i];
+}
+
+/* Real spherical harmonics without their factors, which are below. */
+static void terms_of(const double n[3], double terms[ENVIRONMENT_TERMS])
+{
+    const double all[ENVIRONMENT_TERMS] = { 1,           n[1],        n[2], n[0], n[0] * n[1], n[1] * n[2], 3 * n[2] * n[2] - 1,
+                                            n[0] * n[2], n[0] * n[0] - n[1] * n[1] };
+    memcpy(terms, all, sizeof(all));
+}
+
+/* Squares of the factors of the real harmonics, times what the cosine lobe leaves of each band over pi. */
+static const double term_factors[ENVIRONMENT_TERMS] = {
+    0.079577472, 0.238732415 * 2 / 3, 0.238732415 * 2 / 3, 0.238732415 * 2 / 3, 1.092548431 * 1.092548431 / 4,
+    1.092548431 * 1.092548431 / 4, 0.315391565 * 0.315391565 / 4, 1.092548431 * 1.092548431 / 4, 0.546274215 * 0.546274215 / 4,
+};
+
+struct sums {
+    double harmonic[ENVIRONMENT_TERMS][3], level[3], mean, solid_angle;
+};
+
+static void add_up(const struct source *source, struct sums *sums)
+{
+    int up = source->y_up ? 1 : 2;
+    *sums = (struct sums){ 0 };
+    for (int y = 0; y < source->height; y++) {
+        double weight = 2 * M_PI / source->width * (cos(M_PI * y / source->height) - cos(M_PI * (y + 1) / source->height));
+        for (int x = 0; x < source->width; x++) {
+            double towards[3], terms[ENVIRONMENT_TERMS], color[3];
+            pixel_direction(source, x, y, towards);
+            clipped(source, source->pixels[y * source->width + x], color);
+            terms_of(towards, terms);
+            sums->solid_angle += weight;
+            sums->mean += weight * fmax(color[0], fmax(color[1], color[2]));
+            for (int c = 0; c < 3; c++) {
+                sums->level[c] += weight * fmax(towards[up], 0) * color[c] / M_PI;
+                for (int t = 0; t < ENVIRONMENT_TERMS; t++)
+                    sums->harmonic[t][c] += weight * terms[t] * color[c];
+            }
+        }
+    }
+    sums->mean /= sums->solid_angle;
+}
+
+/* Clips what is too bright, then exposes and balances. False: there is no light from above. */
+static bool expose(struct source *source, struct environment *environment)
+{
+    struct sums sums;
+    for (int i = 0; i < 3; i++)
+        source->factor[i] = 1;
+    source->most = INFINITY;
+    add_up(source, &sums);
+    source->most = BRIGHTEST * sums.mean;
+    add_up(source, &sums);
+    for (int i = 0; i < 3; i++) {
+        if (!(sums.level[i] > 1e-9))
+            return false;
+        source->factor[i] = 1 / sums.level[i];
+    }
+    for (int t = 0; t < ENVIRONMENT_TERMS; t++)
+        for (int c = 0; c < 3; c++)
+            environment->irradiance[t][c] = (float)(sums.harmonic[t][c] * term_factors[t] * source->factor[c]);
+    return true;
+}
+
+static void source_radiance(const struct source *source, const double towards[3], double out[3])
+{
+    double height = source->y_up ? towards[1] : towards[2], b = source->y_up ? -towards[2] : towards[1], pixels[3];
+    double x = (atan2(-b, towards[0]) + M_PI) / (2 * M_PI) * source->width - 0.5;
+    double y = acos(fmin(fmax(height, -1), 1)) / M_PI * source->height - 0.5;
+    bilinear(source->pixels, source->width, source->height, x, y, true, pixels);
+    clipped(source, (float[4]){ (float)pixels[0], (float)pixels[1], (float)pixels[2], 1 }, out);
+}
+
+/* --- mirrored light ------------------------------------------------------------------------------------------------------------- */
+
+struct job {
+    struct source *source;
+    float (*out)[4];
+    int side_px, layer;
+};
+
+/* The base of the pyramid: the mean of 4 x 4 places in each texel. */
+static void base_rows(void *arg, size_t begin, size_t end)
+{
+    struct job *job = arg;
+    for (size_t i = begin * BASE_PX; i < end * BASE_PX; i++) {
+        double sum[3] = { 0 };
+        for (int k = 0; k < 16; k++) {
+            double towards[3], color[3];
+            environment_texel((int)(i % BASE_PX) * 4 + k % 4, (int)(i / BASE_PX) * 4 + k / 4, BASE_PX * 4, towards);
+            source_radiance(job->source, towards, color);
+            for (int c = 0; c < 3; c++)
+                sum[c] += color[c] / 16;
+        }
+        for (int c = 0; c < 3; c++)
+            job->out[i][c] = (float)sum[c];
+        job->out[i][3] = 1;
+    }
+}
+
+static void make_pyramid(struct source *source, struct workers *workers)
+{
+    struct job job = { .source = source };
+    for (int level = 0, side = BASE_PX; level < PYRAMID; level++, side /= 2) {
+        float (*to)[4] = source->pyramid[level] = mem_array((size_t)side * (size_t)side, sizeof(*to));
+        if (level == 0) {
+            job.out = to;
+            workers_for(workers, BASE_PX, 8, base_rows, &job);
+            continue;
+        }
+        const float (*from)[4] = (const float(*)[4])source->pyramid[level - 1];
+        for (int i = 0; i < side * side; i++)
+            for (int c = 0; c < 4; c++) {
+                int at = (i / side) * 4 * side + (i % side) * 2;
+                to[i][c] = 0.25f * (from[at][c] + from[at + 1][c] + from[at + 2 * side][c] + from[at + 2 * side + 1][c]);
+            }
+    }
+}
+
+static void frame_of(const double n[3], double t[3], double b[3])
+{
+    const double other[3] = { fabs(n[2]) < 0.7 ? 0 : 1, 0, fabs(n[2]) < 0.7 ? 1 : 0 };
+    t[0] = other[1] * n[2] - other[2] * n[1];
+    t[1] = other[2] * n[0] - other[0] * n[2];
+    t[2] = other[0] * n[1] - other[1] * n[0];
+    double size = sqrt(t[0] * t[0] + t[1] * t[1] + t[2] * t[2]);
+    for (int i = 0; i < 3; i++)
+        t[i] /= size;
+    b[0] = n[1] * t[2] - n[2] * t[1];
+    b[1] = n[2] * t[0] - n[0] * t[2];
+    b[2] = n[0] * t[1] - n[1] * t[0];
+}
+
+/* The level of the pyramid whose texels are as large as the sample is wide. */
+static int level_of(double alpha, double n_h)
+{
+    double d = n_h * n_h * (alpha * alpha - 1) + 1, density = alpha * alpha / (M_PI * d * d) / 4;
+    double texel = 4 * M_PI / (BASE_PX * BASE_PX), sample = 1 / (SAMPLES * density);
+    int level = (int)lround(0.5 * log2(fmax(sample / texel, 1)));
+    return level < PYRAMID - 1 ? level : PYRAMID - 1;
+}
+
+static void mirror(const struct source *source, const double n[3], double alpha, double out[3])
+{
+    double t[3], b[3], sum[3] = { 0 }, all = 0;
+    frame_of(n, t, b);
+    for (unsigned i = 0; i < SAMPLES; i++) {
+        double n_h = ggx_cosine(alpha, (i + 0.5) / SAMPLES), angle = 2 * M_PI * ggx_turn(i);
+        double n_l = 2 * n_h * n_h - 1, flat = 2 * n_h * sqrt(1 - n_h * n_h), towards[3], x, y, color[3];
+        if (n_l <= 0)
+            continue;
+        for (int c = 0; c < 3; c++)
+            towards[c] = n_l * n[c] + flat * (cos(angle) * t[c] + sin(angle) * b[c]);
+        int level = level_of(alpha, n_h), side = BASE_PX >> level;
+        texel_of(towards, side, &x, &y);
+        bilinear((const float(*)[4])source->pyramid[level], side, side, x, y, false, color);
+        for (int c = 0; c < 3; c++)
+            sum[c] += n_l * color[c];
+        all += n_l;
+    }
+    for (int c = 0; c < 3; c++)
+        out[c] = sum[c] / all;
+}
+
+static void layer_rows(void *arg, size_t begin, size_t end)
+{
+    struct job *job = arg;
+    double roughness = (double)job->layer / (ENVIRONMENT_LAYERS - 1);
+    for (size_t i = begin * (size_t)job->side_px; i < end * (size_t)job->side_px; i++) {
+        double towards[3], color[3], x, y;
+        environment_texel((int)(i % (size_t)job->side_px), (int)(i / (size_t)job->side_px), job->side_px, towards);
+        if (job->layer == 0) {
+            texel_of(towards, BASE_PX / 2, &x, &y);
+            bilinear((const float(*)[4])job->source->pyramid[1], BASE_PX / 2, BASE_PX / 2, x, y, false, color);
+        } else {
+            mirror(job->source, towards, roughness * roughness, color);
+        }
+        for (int c = 0; c < 3; c++)
+            job->out[i][c] = (float)color[c];
+        job->out[i][3] = 1;
+    }
+}
+
+static void make_layer(struct source *source, struct workers *workers, int layer, float (*out)[4])
+{
+    int side = layer_px[layer];
+    bool small = side < ENVIRONMENT_PX;
+    struct job job = { .source = source, .side_px = side, .layer = layer };
+    job.out = small ? mem_array((size_t)side * (size_t)side, sizeof(*job.out)) : out;
+    workers_for(workers, (size_t)side, 4, layer_rows, &job);
+    for (int i = 0; small && i < ENVIRONMENT_PX * ENVIRONMENT_PX; i++) {
+        double scale = (side - 1.0) / (ENVIRONMENT_PX - 1), color[3];
+        bilinear((const float(*)[4])job.out, side, side, i % ENVIRONMENT_PX * scale, i / ENVIRONMENT_PX * scale, false, color);
+        for (int c = 0; c < 3; c++)
+            out[i][c] = (float)color[c];
+        out[i][3] = 1;
+    }
+    if (small)
+        mem_free(job.out);
+}
+
+bool environment_init(struct environment *environment, const struct image_float *image, bool y_up, struct workers *workers)
+{
+    float (*sky)[4] = image ? NULL : make_sky();
+    struct source source = { .pixels = image ? (const float(*)[4])image->rgba : (const float(*)[4])sky,
+                             .width = image ? (int)image->width_px : SKY_WIDTH,
+                             .height = image ? (int)image->height_px : SKY_HEIGHT,
+                             .y_up = y_up };
+    *environment = (struct environment){ 0 };
+    bool good = expose(&source, environment);
+    if (good) {
+        environment->mirrored = mem_array(ENVIRONMENT_LAYERS * ENVIRONMENT_PX * ENVIRONMENT_PX, sizeof(*environment->mirrored));
+        make_pyramid(&source, workers);
+        for (int layer = 0; layer < ENVIRONMENT_LAYERS; layer++)
+            make_layer(&source, workers, layer, environment->mirrored + (size_t)layer * ENVIRONMENT_PX * ENVIRONMENT_PX);
+    }
+    for (int i = 0; i < PYRAMID; i++)
+        mem_free(source.pyramid[i]);
+    mem_free(sky);
+    return good;
+}
+
+void environment_finish(struct environment *environment)
+{
+    mem_free(environment->mirrored);
+    *environment = (struct environment){ 0 };
+}
+
+void environment_irradiance(const struct environment *environment, const double normal[3], double out[3])
+{
+    double terms[ENVIRONMENT_TERMS];
+    terms_of(normal, terms);
+    for (int c = 0; c < 3; c++) {
+        out[c] = 0;
+        for (int t = 0; t < ENVIRONMENT_TERMS; t++)
+            out[c] += terms[t] * (double)environment->irradiance[t][c];
+        out[c] = fmax(out[c], 0);
+    }
+}

@@ -1,0 +1,188 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A short list of sets of light, and the one that is being baked. */
+#include "render/light/light.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+
+static const size_t LIGHT_BYTES = 256 << 20;
+static const int64_t READ_NS = 60 * NS_PER_S; /* a picture of surroundings is read by then */
+
+static void find_ground(struct light *light)
+{
+    const struct stage *stage = light->stage;
+    const struct scene *scene = stage->scene;
+    int up = stage->up[1] > 0 ? 1 : 2, across[2] = { 0, up == 1 ? 2 : 1 };
+    double side_m = 0.6 * stage->radius_m;
+    for (int i = 0; i < 2; i++)
+        side_m = fmax(side_m, scene->bounds_max_m[across[i]] - scene->bounds_min_m[across[i]]);
+    side_m += 1.2 * stage->radius_m;
+    light->ground_height_m = scene->bounds_min_m[up] - 0.001 * stage->radius_m; /* nothing of the plant in its plane */
+    memset(light->plant_from_ground, 0, sizeof(light->plant_from_ground));
+    for (int i = 0; i < 2; i++) {
+        light->plant_from_ground[4 * i + across[i]] = side_m;
+        light->plant_from_ground[12 + across[i]] = stage->middle_m[across[i]] - 0.5 * side_m;
+    }
+    light->plant_from_ground[8 + up] = 1;
+    light->plant_from_ground[12 + up] = light->ground_height_m;
+    light->plant_from_ground[15] = 1;
+}
+
+bool light_init(struct light *light, const struct stage *stage, struct environments *environments)
+{
+    size_t two = 2 * bake_bytes(stage); /* one to show while the next is baked */
+    *light = (struct light){ .stage = stage, .environments = environments, .bound_bytes = two > LIGHT_BYTES ? two : LIGHT_BYTES };
+    find_ground(light);
+    return bake_programs_init(&light->programs, stage->gl->log);
+}
+
+static void drop(struct light *light, struct light_set *set)
+{
+    light->bytes -= set->bytes;
+    light_set_finish(set, light->stage);
+}
+
+void light_finish(struct light *light)
+{
+    bake_abandon(&light->bake);
+    for (int i = 0; i < LIGHT_SETS; i++)
+        if (light->sets[i].id)
+            drop(light, &light->sets[i]);
+    bake_programs_finish(&light->programs);
+}
+
+static bool same(const struct light_key *a, const struct light_key *b)
+{
+    return a->rough == b->rough && a->environment == b->environment && a->towards[0] == b->towards[0] && a->towards[1] == b->towards[1] &&
+           a->towards[2] == b->towards[2] && visibility_equal(&a->shown, &b->shown);
+}
+
+static struct light_set *find(struct light *light, const struct light_key *key)
+{
+    for (int i = 0; i < LIGHT_SETS; i++)
+        if (light->sets[i].id && same(&light->sets[i].key, key)) {
+            light->sets[i].used = ++light->uses;
+            return &light->sets[i];
+        }
+    return NULL;
+}
+
+struct light_set *light_near(struct light *light, const struct light_key *key)
+{
+    struct light_set *nearest = NULL;
+    double most = -INFINITY;
+    for (int i = 0; i < LIGHT_SETS; i++) {
+        struct light_set *set = &light->sets[i];
+        const double *a = set->key.towards, *b = key->towards;
+        double alike = a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + (set->key.environment == key->environment ? 8 : 0) +
+                       (visibility_equal(&set->key.shown, &key->shown) ? 3 : 0);
+        if (set->id && alike > most) {
+            nearest = set;
+            most = alike;
+        }
+    }
+    if (nearest)
+        nearest->used = ++light->uses;
+    return nearest;
+}
+
+/* An empty place for another set, with the bound kept as far as what is held allows. NULL: all are held. */
+static struct light_set *make_room(struct light *light, size_t bytes)
+{
+    for (;;) {
+        struct light_set *oldest = NULL, *empty = NULL;
+        for (int i = 0; i < LIGHT_SETS; i++) {
+            struct light_set *set = &light->sets[i];
+            if (!set->id)
+                empty = set;
+            else if (!set->holds && (!oldest || set->used < oldest->used))
+                oldest = set;
+        }
+        if ((empty && light->bytes + bytes <= light->bound_bytes) || !oldest)
+            return empty;
+        drop(light, oldest);
+    }
+}
+
+static bool begin(struct light *light, const struct light_key *key)
+{
+    const struct light_set *near = light_near(light, key);
+    light->bake = bake_begin(light->stage, &light->programs, light->plant_from_ground, key, near && !near->key.rough ? near : NULL);
+    return light->bake != NULL;
+}
+
+static void drop_rough(struct light *light)
+{
+    for (int i = 0; i < LIGHT_SETS; i++)
+        if (light->sets[i].id && light->sets[i].key.rough && !light->sets[i].holds)
+            drop(light, &light->sets[i]);
+}
+
+/* All of it was issued. */
+static struct light_set *end(struct light *light)
+{
+    struct light_set baked, *set;
+    if (!bake_end(&light->bake, &baked))
+        return NULL;
+    drop_rough(light);
+    set = make_room(light, baked.bytes);
+    if (!set) {
+        log_err(light->stage->gl->log, "light: %d sets are in use at once, and no more can be", LIGHT_SETS);
+        light_set_finish(&baked, light->stage);
+        return NULL;
+    }
+    *set = baked;
+    set->id = ++light->last_id;
+    set->used = ++light->uses;
+    light->bytes += set->bytes;
+    return set;
+}
+
+struct light_set *light_get(struct light *light, const struct light_key *key)
+{
+    struct light_set *set = find(light, key);
+    if (set)
+        return set;
+    environments_wait(light->environments, key->environment, READ_NS);
+    if (light->bake && !same(bake_key(light->bake), key))
+        bake_abandon(&light->bake);
+    if (!light->bake && !begin(light, key))
+        return NULL;
+    environments_bind(light->environments, key->environment);
+    while (!bake_step(light->bake)) {}
+    return end(light);
+}
+
+bool light_step(struct light *light, const struct light_key *key, int64_t budget_ns)
+{
+    int64_t start_ns = clock_mono_ns(), spent_ns = 0, last_ns = 0;
+    bool issued = false;
+    if (find(light, key))
+        return true;
+    if (!environments_wait(light->environments, key->environment, budget_ns / 2))
+        return false;
+    if (!light->bake && !begin(light, key))
+        return true; /* light_get fails likewise */
+    environments_bind(light->environments, bake_key(light->bake)->environment);
+    while (!issued && spent_ns + last_ns <= budget_ns) {
+        issued = bake_step(light->bake);
+        glFinish();
+        last_ns = clock_mono_ns() - start_ns - spent_ns;
+        spent_ns += last_ns;
+    }
+    return issued && end(light) && find(light, key);
+}
+
+void light_hold(struct light_set *set)
+{
+    set->holds++;
+}
+
+void light_release(struct light_set *set)
+{
+    if (set)
+        set->holds--;
+}

@@ -1,0 +1,246 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The overlay: what plant, when, how fresh; and the parts that the other overlay files draw. */
+#include "render/overlay/overlay.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <time.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "render/overlay/overlay_pen.h"
+#include "value/quality.h"
+
+bool box_meets(const struct box *a, const struct box *b)
+{
+    return a->x < b->x + b->width && b->x < a->x + a->width && a->y < b->y + b->height && b->y < a->y + a->height;
+}
+
+bool pen_is_free(const struct pen *pen, const struct box *box)
+{
+    const struct box *area = &pen->area;
+    double right = area->x + area->width, bottom = area->y + area->height;
+    if (box->x < area->x || box->y < area->y || box->x + box->width > right || box->y + box->height > bottom)
+        return false;
+    for (int i = 0; i < pen->taken_count; i++)
+        if (box_meets(&pen->taken[i], box))
+            return false;
+    return true;
+}
+
+void pen_take(struct pen *pen, const struct box *box)
+{
+    if (pen->taken_count < PEN_MAX_TAKEN)
+        pen->taken[pen->taken_count++] = *box;
+}
+
+static void round_path(cairo_t *cairo, const struct box *box, double radius)
+{
+    double x = box->x, y = box->y, right = x + box->width, bottom = y + box->height;
+    cairo_new_path(cairo);
+    cairo_arc(cairo, right - radius, y + radius, radius, -M_PI / 2, 0);
+    cairo_arc(cairo, right - radius, bottom - radius, radius, 0, M_PI / 2);
+    cairo_arc(cairo, x + radius, bottom - radius, radius, M_PI / 2, M_PI);
+    cairo_arc(cairo, x + radius, y + radius, radius, M_PI, 3 * M_PI / 2);
+    cairo_close_path(cairo);
+}
+
+void pen_card(struct pen *pen, const struct box *box)
+{
+    round_path(pen->cairo, box, 4 * pen->unit);
+    cairo_set_source_rgba(pen->cairo, 1, 1, 1, 0.88);
+    cairo_fill_preserve(pen->cairo);
+    cairo_set_source_rgba(pen->cairo, 0.35, 0.40, 0.46, 0.35);
+    cairo_set_line_width(pen->cairo, fmax(1, pen->unit));
+    cairo_stroke(pen->cairo);
+}
+
+void pen_rgb(struct pen *pen, const uint8_t rgb[3])
+{
+    cairo_set_source_rgb(pen->cairo, rgb[0] / 255.0, rgb[1] / 255.0, rgb[2] / 255.0);
+}
+
+void pen_ink(struct pen *pen, double alpha)
+{
+    cairo_set_source_rgba(pen->cairo, 0.10, 0.13, 0.17, alpha);
+}
+
+void pen_font(struct pen *pen, double size, bool bold)
+{
+    cairo_select_font_face(pen->cairo, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL, bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
+    cairo_set_font_size(pen->cairo, size * pen->text_px);
+}
+
+double pen_text_width(struct pen *pen, const char *text)
+{
+    cairo_text_extents_t extents;
+    cairo_text_extents(pen->cairo, text, &extents);
+    return extents.x_advance;
+}
+
+void pen_text(struct pen *pen, double x, double y, const char *text)
+{
+    cairo_move_to(pen->cairo, x, y);
+    cairo_show_text(pen->cairo, text);
+}
+
+void pen_number(double value, double range, char out[40])
+{
+    int decimals = 0;
+    for (double unit = 1; decimals < 9 && fabs(value - round(value * unit) / unit) > range / 5000; unit *= 10)
+        decimals++;
+    snprintf(out, 40, "%.*f", decimals, fabs(value) < range / 5000 ? 0.0 : value);
+}
+
+int pen_decimals(double range)
+{
+    return (int)fmin(fmax(ceil(-log10(range / 500)), 0), 6);
+}
+
+static void format_age(int64_t age_ns, char out[40])
+{
+    double age_s = (double)age_ns / NS_PER_S;
+    if (age_s < 10)
+        snprintf(out, 40, "%.1f s old", age_s);
+    else if (age_s < 120)
+        snprintf(out, 40, "%.0f s old", age_s);
+    else if (age_s < 7200)
+        snprintf(out, 40, "%.0f min old", age_s / 60);
+    else
+        snprintf(out, 40, "%.0f h old", age_s / 3600);
+}
+
+enum { CLOCK_BYTES = 64 };
+
+/* In the plant's own time zone. */
+static void format_clock(int64_t utc_ns, char out[CLOCK_BYTES])
+{
+    time_t seconds = (time_t)(utc_ns / NS_PER_S);
+    struct tm local;
+    out[0] = 0;
+    if (localtime_r(&seconds, &local))
+        strftime(out, CLOCK_BYTES, "%Y-%m-%d %H:%M:%S %Z", &local);
+}
+
+static bool is_shown(const struct view *view, int group)
+{
+    return group == view->field.group || (view->split && group == view->right.field.group);
+}
+
+static bool shows_simulated(const struct pen *pen)
+{
+    const struct plant *plant = pen->scene->plant;
+    for (size_t i = 0; i < plant->tag_count; i++)
+        if (is_shown(&pen->frame->view, plant->tags[i].group) && plant_tag_simulated(plant, (int)i))
+            return true;
+    return false;
+}
+
+/* Plant name; its clock; the age of the oldest value that takes part; and whether any of it was not measured. */
+static void draw_header(struct pen *pen)
+{
+    char clock[CLOCK_BYTES], line[200], age[40] = "no values";
+    format_clock(pen->frame->data_utc_ns, clock);
+    if (pen->frame->oldest_age_ns != INT64_MAX)
+        format_age(pen->frame->oldest_age_ns, age);
+    if (pen->frame->view.at_us)
+        snprintf(age, sizeof(age), "configuration %s", pen->scene->plant->hash);
+    const struct view *view = &pen->frame->view;
+    bool has_age = view->split || (view->field.show != SHOW_DISTANCE && view->look != LOOK_MATERIALS); /* else no value takes part */
+    const char *unset = pen->frame->clock_unset ? "  ·  CLOCK NOT SYNCHRONISED" : "";
+    snprintf(line, sizeof(line), "%s%s%s%s%s", clock, unset, has_age ? "  ·  " : "", has_age ? age : "",
+             has_age && shows_simulated(pen) ? "  ·  SIMULATED" : "");
+    double pad = 8 * pen->unit;
+    pen_font(pen, 1.15, true);
+    double name_width = pen_text_width(pen, pen->scene->plant->name);
+    pen_font(pen, 0.92, false);
+    double line_width = pen_text_width(pen, line);
+    struct box box = { pad, pad, fmax(name_width, line_width) + 2 * pad, 2.6 * pen->text_px + 1.5 * pad };
+    pen_card(pen, &box);
+    pen_ink(pen, 1);
+    pen_font(pen, 1.15, true);
+    pen_text(pen, box.x + pad, box.y + pad + pen->text_px, pen->scene->plant->name);
+    pen_font(pen, 0.92, false);
+    pen_ink(pen, 0.8);
+    pen_text(pen, box.x + pad, box.y + pad + 2.45 * pen->text_px, line);
+    pen_take(pen, &box);
+}
+
+/* Whether any sensor that is shown tells a value. */
+static bool is_live(const struct pen *pen)
+{
+    const struct plant *plant = pen->scene->plant;
+    for (size_t i = 0; i < plant->tag_count && i < pen->snapshot->count; i++)
+        if (is_shown(&pen->frame->view, plant->tags[i].group) && !quality_is_bad(pen->snapshot->readings[i].quality))
+            return true;
+    return false;
+}
+
+static void draw_banner(struct pen *pen, const char *text, const double rgb[3])
+{
+    pen_font(pen, 1.5, true);
+    double width = pen_text_width(pen, text), pad = 12 * pen->unit;
+    struct box box = { 0.5 * (pen->frame->width_px - width) - pad, 0, width + 2 * pad, 1.5 * pen->text_px + 1.4 * pad };
+    box.y = pen->taken[0].y + pen->taken[0].height + pad;
+    if (box.x > pen->taken[0].x + pen->taken[0].width + pad)
+        box.y = pad;
+    round_path(pen->cairo, &box, 4 * pen->unit);
+    cairo_set_source_rgb(pen->cairo, rgb[0], rgb[1], rgb[2]);
+    cairo_fill(pen->cairo);
+    cairo_set_source_rgb(pen->cairo, 1, 1, 1);
+    pen_text(pen, box.x + pad, box.y + 0.7 * pad + 1.3 * pen->text_px, text);
+    pen_take(pen, &box);
+}
+
+static const double NO_DATA_RGB[3] = { 0.66, 0.12, 0.10 }, PAST_RGB[3] = { 0.36, 0.18, 0.56 };
+
+/* A frame around all of it, and the words: nobody takes it for now, even where the banner is cut off. */
+static void draw_past(struct pen *pen)
+{
+    char text[CLOCK_BYTES + 40], clock[CLOCK_BYTES];
+    double width = fmax(2, 4 * pen->unit);
+    format_clock(pen->frame->data_utc_ns, clock);
+    snprintf(text, sizeof(text), "HISTORY  ·  %s%s", clock, is_live(pen) ? "" : "  ·  NO DATA");
+    cairo_rectangle(pen->cairo, 0.5 * width, 0.5 * width, pen->frame->width_px - width, pen->frame->height_px - width);
+    cairo_set_source_rgb(pen->cairo, PAST_RGB[0], PAST_RGB[1], PAST_RGB[2]);
+    cairo_set_line_width(pen->cairo, width);
+    cairo_stroke(pen->cairo);
+    draw_banner(pen, text, PAST_RGB);
+}
+
+static void choose_half(struct pen *pen, int half)
+{
+    const struct view *view = &pen->frame->view;
+    int left_px = half ? view_left_px(view) : 0;
+    pen->half = half;
+    view_half(view, half, &pen->view);
+    pen->area = (struct box){ left_px, 0, pen->view.width_px, pen->view.height_px };
+}
+
+void overlay_draw(struct frame *frame, const struct scene *scene, const struct snapshot *snapshot)
+{
+    cairo_surface_t *surface =
+        cairo_image_surface_create_for_data(frame->bgrx, CAIRO_FORMAT_RGB24, frame->width_px, frame->height_px, frame->stride_bytes);
+    struct pen *pen = mem_new(sizeof(*pen));
+    pen->cairo = cairo_create(surface);
+    pen->frame = frame;
+    pen->scene = scene;
+    pen->snapshot = snapshot;
+    pen->unit = fmin(fmax(fmin(frame->width_px / 1280.0, frame->height_px / 720.0), 0.5), 8);
+    pen->text_px = fmax(13 * pen->unit, 9.5);
+    draw_header(pen);
+    if (frame->view.at_us)
+        draw_past(pen);
+    else if (!is_live(pen))
+        draw_banner(pen, "NO LIVE DATA", NO_DATA_RGB);
+    for (int half = 0; half < (frame->view.split ? 2 : 1); half++) {
+        choose_half(pen, half);
+        if (pen->view.look != LOOK_MATERIALS) /* no field, nothing to explain */
+            overlay_legend(pen);
+        overlay_markers(pen);
+    }
+    cairo_destroy(pen->cairo);
+    cairo_surface_finish(surface);
+    cairo_surface_destroy(surface);
+    mem_free(pen);
+}

@@ -1,0 +1,261 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The legend: what each colour, stripe, dot and ring means. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+
+#include "base/clock.h"
+#include "render/overlay/overlay_pen.h"
+#include "render/palette.h"
+
+enum { NOTES = 4, ROWS = 3 + ALARM_PRIORITIES };
+static const double ROW = 1.5, NOTE = 1.3; /* heights, in text_px */
+enum row { ROW_BELOW, ROW_NO_LIMITS, ROW_NO_DATA, ROW_UNCERTAIN, ROW_ALARM /* and the other priorities */ };
+/* What it says, and where its parts lie. */
+struct legend {
+    char title[160], above[60], below[60], since[120];
+    enum row rows[ROWS]; /* under the bar */
+    const char *notes[NOTES];
+    int row_count, note_count;
+    struct box card, bar;
+    double pad;
+};
+
+static void add_note(struct legend *legend, const char *note)
+{
+    if (legend->note_count < NOTES)
+        legend->notes[legend->note_count++] = note;
+}
+
+static void write_title(const struct pen *pen, struct legend *legend)
+{
+    const struct plant *plant = pen->scene->plant;
+    const struct view *view = &pen->view;
+    const char *unit = view_unit(plant, view), *quantity = plant->groups[view->field.group].quantity;
+    static const char *const forms[] = { "%s", "From %s", "\u0394 %s", "%s" }; /* by enum field_show */
+    const char *name = view->field.show == SHOW_DISTANCE ? plant->tags[view->field.sensor].name : quantity;
+    char what[128];
+    snprintf(what, sizeof(what), forms[view->field.show], name);
+    snprintf(legend->title, sizeof(legend->title), *unit ? "%s [%s]" : "%s", what, unit);
+}
+
+/* Of alarms that a picture shows; bits: 1 << priority. */
+static unsigned priorities_shown(const struct pen *pen)
+{
+    unsigned priorities = 0;
+    for (size_t i = 0; i < pen->frame->marker_count; i++) {
+        const struct frame_marker *marker = &pen->frame->markers[i];
+        int alarm = pen->snapshot->readings[marker->tag].alarm;
+        if (alarm && marker->half == pen->half)
+            priorities |= 1u << alarm_priority(&pen->scene->plant->tags[marker->tag], (enum alarm_kind)alarm);
+    }
+    return priorities;
+}
+
+/* A distance is never below 0, nor uncertain. */
+static void choose_rows(const struct pen *pen, struct legend *legend)
+{
+    static const enum row values[] = { ROW_BELOW, ROW_NO_DATA, ROW_UNCERTAIN }, distances[] = { ROW_NO_DATA };
+    static const enum row limits[] = { ROW_NO_LIMITS, ROW_NO_DATA, ROW_UNCERTAIN };
+    const struct view *view = &pen->view;
+    bool is_distance = view->field.show == SHOW_DISTANCE && view->range_min <= 0;
+    const enum row *rows = view_is_operator(view) ? limits : is_distance ? distances : values;
+    legend->row_count = view_is_operator(view) || !is_distance ? 3 : 1;
+    memcpy(legend->rows, rows, (size_t)legend->row_count * sizeof(*rows));
+    unsigned priorities = priorities_shown(pen);
+    for (int i = 1; i <= ALARM_PRIORITIES; i++)
+        if (priorities & 1u << i)
+            legend->rows[legend->row_count++] = (enum row)(ROW_ALARM + i - 1);
+}
+
+/* What the difference is from: a name, or the plant's clock then. */
+static void write_baseline(const struct pen *pen, struct legend *legend)
+{
+    const struct baseline *baseline = &pen->frame->baseline;
+    time_t seconds = (time_t)(baseline->taken_utc_ns / NS_PER_S);
+    struct tm local;
+    if (baseline->name[0])
+        snprintf(legend->since, sizeof(legend->since), "since %.80s", baseline->name);
+    else if (localtime_r(&seconds, &local))
+        strftime(legend->since, sizeof(legend->since), "since %m-%d %H:%M:%S", &local);
+    if (baseline->id && baseline->id == pen->view.field.baseline)
+        add_note(legend, legend->since);
+}
+
+static void write_words(const struct pen *pen, struct legend *legend)
+{
+    const struct view *view = &pen->view;
+    double range = view->range_max - view->range_min;
+    char number[40];
+    write_title(pen, legend);
+    choose_rows(pen, legend);
+    if (view_is_operator(view)) {
+        add_note(legend, "by each tag's limits");
+    } else {
+        pen_number(view->range_max, view->paint.log ? view->range_max : range, number);
+        snprintf(legend->above, sizeof(legend->above), "> %s", number);
+        pen_number(view->range_min, view->paint.log ? view->range_min : range, number);
+        snprintf(legend->below, sizeof(legend->below), "< %s", number);
+        if (view->paint.log)
+            add_note(legend, "logarithmic scale");
+    }
+    if (view->field.show == SHOW_DIFFERENCE)
+        write_baseline(pen, legend);
+    if (!view_is_operator(view) && !colormap_at((size_t)view->colormap)->safe)
+        add_note(legend, "may be misread");
+    if (view->look == LOOK_GLOSSY) {
+        add_note(legend, "glossy: light changes");
+        add_note(legend, "the colours");
+    }
+}
+
+static const char *row_text(const struct legend *legend, enum row row)
+{
+    static const char *const texts[] = { "", "no limits", "no data", "uncertain", "alarm, priority 1", "alarm, priority 2",
+                                         "alarm, priority 3", "alarm, priority 4" };
+    return row == ROW_BELOW ? legend->below : texts[row];
+}
+
+/* Below what lies over the picture already, where the card would lie on it. */
+static double free_from(const struct pen *pen, const struct box *card)
+{
+    double from = pen->area.y;
+    for (int i = 0; i < pen->taken_count; i++)
+        if (card->x < pen->taken[i].x + pen->taken[i].width && pen->taken[i].x < card->x + card->width && pen->taken[i].y < card->y)
+            from = fmax(from, pen->taken[i].y + pen->taken[i].height);
+    return from;
+}
+
+static void lay_out(struct pen *pen, struct legend *legend)
+{
+    const struct box *area = &pen->area;
+    double left = overlay_bar_left(pen), beside = left + 2.2 * pen->text_px, width;
+    double top = (legend->above[0] ? 3.3 : 1.7) * pen->text_px, bottom = (0.4 + ROW * legend->row_count) * pen->text_px;
+    if (legend->note_count > 0)
+        bottom += (0.4 + NOTE * legend->note_count) * pen->text_px;
+    pen_font(pen, 1, true);
+    width = pen_text_width(pen, legend->title);
+    pen_font(pen, 0.9, false);
+    width = fmax(width, beside + pen_text_width(pen, legend->above));
+    for (int i = 0; i < legend->row_count; i++)
+        width = fmax(width, beside + pen_text_width(pen, row_text(legend, legend->rows[i])));
+    for (int i = 0; i < legend->note_count; i++)
+        width = fmax(width, pen_text_width(pen, legend->notes[i]));
+    width = fmax(width, overlay_bar_width(pen));
+    legend->pad = 9 * pen->unit;
+    double others = top + bottom + 2 * legend->pad;
+    double bar_height = fmax(fmin(0.46 * area->height, area->height - others - 4 * legend->pad), 3 * pen->text_px);
+    legend->card = (struct box){ 0, 0, width + 2 * legend->pad, bar_height + others };
+    legend->card.x = area->x + area->width - legend->card.width - legend->pad;
+    legend->card.y = area->y + 0.5 * (area->height - legend->card.height);
+    double from = free_from(pen, &legend->card) + legend->pad, room = area->y + area->height - legend->pad - from;
+    if (legend->card.y < from) {
+        bar_height = fmax(bar_height - fmax(legend->card.height - room, 0), 3 * pen->text_px);
+        legend->card.height = bar_height + others;
+        legend->card.y = from;
+    }
+    legend->bar = (struct box){ legend->card.x + legend->pad + left, legend->card.y + legend->pad + top, 1.6 * pen->text_px, bar_height };
+}
+
+/* --- swatches ---------------------------------------------------------------------------------------------------------------- */
+
+static void fill_box(struct pen *pen, const struct box *box, const uint8_t rgb[3])
+{
+    cairo_rectangle(pen->cairo, box->x, box->y, box->width, box->height);
+    pen_rgb(pen, rgb);
+    cairo_fill(pen->cairo);
+}
+
+static void draw_stripes(struct pen *pen, const struct box *box)
+{
+    fill_box(pen, box, palette_no_data[0]);
+    cairo_save(pen->cairo);
+    cairo_rectangle(pen->cairo, box->x, box->y, box->width, box->height);
+    cairo_clip(pen->cairo);
+    pen_rgb(pen, palette_no_data[1]);
+    cairo_set_line_width(pen->cairo, 0.25 * pen->text_px);
+    for (double x = -box->height; x < box->width; x += 0.5 * pen->text_px) {
+        cairo_move_to(pen->cairo, box->x + x, box->y + box->height);
+        cairo_rel_line_to(pen->cairo, box->height, -box->height);
+    }
+    cairo_stroke(pen->cairo);
+    cairo_restore(pen->cairo);
+}
+
+static void draw_rules(struct pen *pen, const struct box *box)
+{
+    fill_box(pen, box, palette_no_limits[0]);
+    for (int i = 0; i < 3; i++)
+        fill_box(pen, &(struct box){ box->x, box->y + box->height * (0.12 + 0.33 * i), box->width, 0.1 * box->height },
+                 palette_no_limits[1]);
+}
+
+static void draw_dots(struct pen *pen, const struct box *box)
+{
+    struct scale scale;
+    view_scale(&pen->view, &scale);
+    fill_box(pen, box, scale.map->rgb[128]);
+    pen_rgb(pen, palette_uncertain);
+    for (int i = 0; i < 6; i++) {
+        cairo_arc(pen->cairo, box->x + box->width * (i + 0.5) / 6, box->y + box->height * (i % 2 ? 0.7 : 0.3), 0.13 * pen->text_px, 0,
+                  2 * M_PI);
+        cairo_fill(pen->cairo);
+    }
+}
+
+static void draw_swatch(struct pen *pen, const struct box *box, enum row row)
+{
+    struct scale scale;
+    view_scale(&pen->view, &scale);
+    switch (row) {
+    case ROW_BELOW: fill_box(pen, box, scale.map->below); break;
+    case ROW_NO_LIMITS: draw_rules(pen, box); break;
+    case ROW_NO_DATA: draw_stripes(pen, box); break;
+    case ROW_UNCERTAIN: draw_dots(pen, box); break;
+    default:
+        overlay_ring(pen, box->x + box->width / 2, box->y + box->height / 2, 0.5 * box->height, (int)row - ROW_ALARM + 1, ALARM_ACTIVE);
+        break;
+    }
+}
+
+static void draw_text(struct pen *pen, const struct legend *legend, double y, const char *text)
+{
+    pen_ink(pen, 0.95);
+    pen_text(pen, legend->bar.x + legend->bar.width + 0.55 * pen->text_px, y + 0.92 * pen->text_px, text);
+}
+
+static void draw_rows(struct pen *pen, const struct legend *legend)
+{
+    double y = legend->bar.y + legend->bar.height + 0.55 * pen->text_px;
+    pen_font(pen, 0.9, false);
+    for (int i = 0; i < legend->row_count; i++, y += ROW * pen->text_px) {
+        draw_swatch(pen, &(struct box){ legend->bar.x, y, legend->bar.width, 1.1 * pen->text_px }, legend->rows[i]);
+        draw_text(pen, legend, y, row_text(legend, legend->rows[i]));
+    }
+    pen_ink(pen, 1);
+    for (int i = 0; i < legend->note_count; i++)
+        pen_text(pen, legend->card.x + legend->pad, y + (1.1 + NOTE * i) * pen->text_px, legend->notes[i]);
+}
+
+void overlay_legend(struct pen *pen)
+{
+    struct scale scale;
+    struct legend legend = { .note_count = 0 };
+    view_scale(&pen->view, &scale);
+    write_words(pen, &legend);
+    lay_out(pen, &legend);
+    pen_card(pen, &legend.card);
+    pen_take(pen, &legend.card);
+    pen_font(pen, 1, true);
+    pen_ink(pen, 1);
+    pen_text(pen, legend.card.x + legend.pad, legend.card.y + legend.pad + pen->text_px, legend.title);
+    pen_font(pen, 0.9, false);
+    if (legend.above[0]) {
+        struct box above = { legend.bar.x, legend.bar.y - 1.65 * pen->text_px, legend.bar.width, 1.1 * pen->text_px };
+        fill_box(pen, &above, scale.map->above);
+        draw_text(pen, &legend, above.y, legend.above);
+    }
+    overlay_bar(pen, &legend.bar);
+    draw_rows(pen, &legend);
+}

@@ -1,0 +1,253 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Sensors: a mark at each place, and a label wherever it covers nothing else. */
+#include <math.h>
+#include <stdio.h>
+
+#include "base/mem.h"
+#include "render/overlay/overlay_pen.h"
+#include "value/quality.h"
+
+/* Filled: in sight. Hollow: something stands before it. Crossed: bad. */
+static void draw_mark(struct pen *pen, const struct frame_marker *marker, bool bad)
+{
+    double radius = 4.2 * pen->unit, x = marker->x_px, y = marker->y_px;
+    cairo_new_path(pen->cairo);
+    cairo_arc(pen->cairo, x, y, radius, 0, 2 * M_PI);
+    cairo_set_source_rgba(pen->cairo, 1, 1, 1, marker->occluded ? 0.35 : 0.95);
+    cairo_fill_preserve(pen->cairo);
+    pen_ink(pen, marker->occluded ? 0.7 : 1);
+    cairo_set_line_width(pen->cairo, fmax(1.2, 1.6 * pen->unit));
+    cairo_stroke(pen->cairo);
+    if (bad) {
+        double arm = 0.62 * radius;
+        cairo_move_to(pen->cairo, x - arm, y - arm);
+        cairo_line_to(pen->cairo, x + arm, y + arm);
+        cairo_move_to(pen->cairo, x - arm, y + arm);
+        cairo_line_to(pen->cairo, x + arm, y - arm);
+        cairo_stroke(pen->cairo);
+    } else if (!marker->occluded) {
+        cairo_arc(pen->cairo, x, y, 0.45 * radius, 0, 2 * M_PI);
+        cairo_fill(pen->cairo);
+    }
+}
+
+void overlay_ring(struct pen *pen, double x, double y, double radius, int priority, enum alarm_word word)
+{
+    static const double colors[ALARM_PRIORITIES][3] = { { 0.80, 0.05, 0.12 }, { 0.93, 0.42, 0.04 }, { 0.96, 0.74, 0.05 },
+                                                        { 0.10, 0.60, 0.74 } };
+    const double *color = colors[priority - 1], gap = 0.55 * radius;
+    double wide = word == ALARM_ACKNOWLEDGED ? 0.22 : 0.42;
+    cairo_new_path(pen->cairo);
+    cairo_arc(pen->cairo, x, y, radius, 0, 2 * M_PI);
+    pen_ink(pen, 0.9);
+    cairo_set_line_width(pen->cairo, fmax(3.0, (wide + 0.17) * radius));
+    cairo_stroke_preserve(pen->cairo);
+    cairo_set_source_rgb(pen->cairo, color[0], color[1], color[2]);
+    cairo_set_line_width(pen->cairo, fmax(1.8, wide * radius));
+    if (word == ALARM_RETURNED || word == ALARM_LATCHED)
+        cairo_set_dash(pen->cairo, &gap, 1, 0);
+    cairo_stroke(pen->cairo);
+    cairo_set_dash(pen->cairo, NULL, 0, 0);
+}
+
+static const struct reading *reading_of(const struct pen *pen, const struct frame_marker *marker)
+{
+    return &pen->snapshot->readings[marker->tag];
+}
+
+static bool has_alarm(const struct pen *pen, const struct frame_marker *marker)
+{
+    return reading_of(pen, marker)->alarm != ALARM_NONE;
+}
+
+static void draw_alarm(struct pen *pen, const struct frame_marker *marker)
+{
+    const struct reading *reading = reading_of(pen, marker);
+    int priority = alarm_priority(&pen->scene->plant->tags[marker->tag], (enum alarm_kind)reading->alarm);
+    overlay_ring(pen, marker->x_px, marker->y_px, 9.5 * pen->unit, priority, (enum alarm_word)reading->alarm_word);
+}
+
+static void format_value(const struct pen *pen, const struct frame_marker *marker, char out[64])
+{
+    const struct plant_tag *tag = &pen->scene->plant->tags[marker->tag];
+    const struct plant_group *group = &pen->scene->plant->groups[pen->view.field.group];
+    bool difference = pen->view.field.show == SHOW_DIFFERENCE, lost = quality_is_bad(pen->snapshot->readings[marker->tag].quality);
+    const char *alarm = alarm_kind_name((enum alarm_kind)pen->snapshot->readings[marker->tag].alarm);
+    int decimals = pen_decimals(group->max - group->min);
+    if (pen->view.field.show == SHOW_DISTANCE)
+        snprintf(out, 64, isnan(marker->value) ? "no distance" : "%.2f m", marker->value);
+    else if (quality_is_bad(marker->quality))
+        snprintf(out, 64, lost ? "BAD" : "not known then");
+    else
+        snprintf(out, 64, "%s%s%.*f %s%s%s%s", difference ? "Δ " : "", difference && marker->value > 0 ? "+" : "", decimals,
+                 marker->value, tag->unit ? tag->unit : "", quality_is_uncertain(marker->quality) ? " ?" : "", alarm ? " " : "",
+                 alarm ? alarm : "");
+}
+
+struct label_text {
+    char name[140], value[64];
+    double name_width;
+};
+
+/* From the mark's rim to the nearest point of the label. */
+static void draw_leader(struct pen *pen, const struct label_item *item, const struct box *box)
+{
+    double x = fmax(box->x, fmin(box->x + box->width, item->x)), y = fmax(box->y, fmin(box->y + box->height, item->y));
+    double away = fmax(hypot(x - item->x, y - item->y), 1e-6), rim = 5 * pen->unit / away;
+    cairo_move_to(pen->cairo, item->x + (x - item->x) * rim, item->y + (y - item->y) * rim);
+    cairo_line_to(pen->cairo, x, y);
+    cairo_set_line_width(pen->cairo, fmax(1, pen->unit));
+    pen_ink(pen, 0.7);
+    cairo_stroke(pen->cairo);
+}
+
+static void draw_label(struct pen *pen, const struct box *box, const struct label_text *text)
+{
+    double pad = 4 * pen->unit;
+    pen_card(pen, box);
+    pen_font(pen, 0.85, false);
+    pen_ink(pen, 0.85);
+    pen_text(pen, box->x + pad, box->y + pad + 0.72 * pen->text_px, text->name);
+    pen_font(pen, 0.85, true);
+    pen_text(pen, box->x + pad + text->name_width, box->y + pad + 0.72 * pen->text_px, text->value);
+}
+
+/* Along the view. */
+static double depth_of(const struct pen *pen, int tag)
+{
+    const struct scene_asset *asset = &pen->scene->assets[pen->scene->plant->tags[tag].asset];
+    const struct camera *camera = &pen->view.camera;
+    double right[3], up[3], forward[3], depth_m = 0;
+    camera_basis(camera, right, up, forward);
+    for (size_t i = 0; i < asset->sensor_count; i++)
+        for (int c = 0; c < 3 && asset->sensors[i].tag == tag; c++)
+            depth_m += (asset->sensors[i].surface_m[c] - camera->eye_m[c]) * forward[c];
+    return depth_m;
+}
+
+static bool is_bad(const struct frame_marker *marker)
+{
+    return quality_is_bad(marker->quality);
+}
+
+static bool is_inside(const struct pen *pen, const struct frame_marker *marker)
+{
+    const struct box *area = &pen->area;
+    return marker->half == pen->half && marker->x_px >= area->x && marker->y_px >= 0 && marker->x_px < area->x + area->width &&
+           marker->y_px < area->height;
+}
+
+/* What there is to place: every mark in sight that no card covers. The caller owns both lists. */
+struct wanted {
+    struct label_item *items;
+    struct label_text *texts;
+    size_t count, bad;
+};
+
+static void add_wanted(struct pen *pen, const struct frame_marker *marker, struct wanted *wanted)
+{
+    const struct plant_tag *tag = &pen->scene->plant->tags[marker->tag];
+    struct label_item *item = &wanted->items[wanted->count];
+    struct label_text *text = &wanted->texts[wanted->count++];
+    double pad = 4 * pen->unit;
+    format_value(pen, marker, text->value);
+    snprintf(text->name, sizeof(text->name), "%s  ", tag->name);
+    pen_font(pen, 0.85, false);
+    text->name_width = pen_text_width(pen, text->name);
+    pen_font(pen, 0.85, true);
+    *item = (struct label_item){ .x = (double)marker->x_px, .y = (double)marker->y_px, .held = LABEL_NONE };
+    item->width = text->name_width + pen_text_width(pen, text->value) + 2 * pad;
+    item->height = 0.95 * pen->text_px + 2 * pad;
+    item->depth_m = depth_of(pen, marker->tag);
+    item->ring = has_alarm(pen, marker);
+    item->rank = marker->occluded                                                                  ? LABEL_NOT_WANTED
+                 : has_alarm(pen, marker)                                                          ? LABEL_BEYOND
+                 : is_bad(marker)                                                                  ? LABEL_BAD
+                 : quality_is_uncertain(marker->quality) || tag->asset == pen->view.selected_asset ? LABEL_DOUBTFUL
+                                                                                                    : LABEL_PLAIN;
+    wanted->bad += item->rank == LABEL_BAD;
+}
+
+static void place_labels(struct pen *pen, struct wanted *wanted, int cards)
+{
+    struct label_area area = { .box = pen->area, .unit = pen->unit, .blocked = pen->taken, .blocked_count = (size_t)cards };
+    int *slots = mem_array(wanted->count, sizeof(*slots));
+    for (size_t i = 0; i < wanted->count; i++)
+        if (wanted->bad > LABEL_MOST_BAD && wanted->items[i].rank == LABEL_BAD)
+            wanted->items[i].rank = LABEL_NOT_WANTED;
+    labels_place(wanted->items, wanted->count, &area, slots);
+    for (size_t i = 0; i < wanted->count; i++) {
+        if (slots[i] == LABEL_NONE)
+            continue;
+        struct box box = label_box(&wanted->items[i], slots[i], pen->unit);
+        if (slots[i] >= LABEL_FIRST_FAR)
+            draw_leader(pen, &wanted->items[i], &box);
+        draw_label(pen, &box, &wanted->texts[i]);
+        pen_take(pen, &box);
+    }
+    mem_free(slots);
+}
+
+static bool is_under(const struct pen *pen, int cards, const struct box *mark)
+{
+    for (int i = 0; i < cards; i++)
+        if (box_meets(&pen->taken[i], mark))
+            return true;
+    return false;
+}
+
+/* The value on its line, wherever nothing else is; those of one value stand far apart. */
+static void label_isolines(struct pen *pen)
+{
+    const struct frame *frame = pen->frame;
+    double least_px = 0.16 * pen->area.width, range = pen->view.range_max - pen->view.range_min, pad = 2 * pen->unit;
+    bool *done = mem_array(frame->label_count, sizeof(*done));
+    for (size_t i = 0; i < frame->label_count && !view_is_operator(&pen->view); i++) {
+        const struct frame_label *label = &frame->labels[i];
+        bool crowded = label->half != pen->half;
+        for (size_t k = 0; k < i && !crowded; k++)
+            crowded = done[k] && frame->labels[k].value == label->value &&
+                      hypot(frame->labels[k].x_px - label->x_px, frame->labels[k].y_px - label->y_px) < least_px;
+        char text[40];
+        pen_number(label->value, pen->view.paint.log ? label->value : range, text);
+        pen_font(pen, 0.75, true);
+        double width = pen_text_width(pen, text) + 2 * pad, height = 0.75 * pen->text_px + 2 * pad;
+        struct box box = { label->x_px - 0.5 * width, label->y_px - 0.5 * height, width, height };
+        if (crowded || !pen_is_free(pen, &box))
+            continue;
+        done[i] = true;
+        pen_take(pen, &box);
+        cairo_rectangle(pen->cairo, box.x, box.y, box.width, box.height);
+        cairo_set_source_rgba(pen->cairo, 1, 1, 1, 0.75);
+        cairo_fill(pen->cairo);
+        pen_ink(pen, 1);
+        pen_text(pen, box.x + pad, box.y + pad + 0.66 * pen->text_px, text);
+    }
+    mem_free(done);
+}
+
+void overlay_markers(struct pen *pen)
+{
+    int cards = pen->taken_count; /* what lies over the picture already */
+    double radius = 5 * pen->unit;
+    struct wanted wanted = { 0 };
+    wanted.items = mem_array(pen->frame->marker_count, sizeof(*wanted.items));
+    wanted.texts = mem_array(pen->frame->marker_count, sizeof(*wanted.texts));
+    for (size_t i = 0; i < pen->frame->marker_count; i++) {
+        const struct frame_marker *marker = &pen->frame->markers[i];
+        struct box mark = { (double)marker->x_px - radius, (double)marker->y_px - radius, 2 * radius, 2 * radius };
+        if (!is_inside(pen, marker) || is_under(pen, cards, &mark))
+            continue;
+        if (!marker->occluded)
+            pen_take(pen, &mark);
+        if (!marker->occluded || has_alarm(pen, marker))
+            add_wanted(pen, marker, &wanted);
+        if (has_alarm(pen, marker))
+            draw_alarm(pen, marker);
+        draw_mark(pen, marker, is_bad(marker));
+    }
+    place_labels(pen, &wanted, cards);
+    label_isolines(pen);
+    mem_free(wanted.items);
+    mem_free(wanted.texts);
+}

@@ -1,0 +1,410 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The steps of a plate. */
+#include "render/plate/plate.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "render/content.h"
+#include "render/markers.h"
+#include "render/matrix.h"
+#include "render/plate/plate_impl.h"
+#include "render/solid.h"
+
+/* Of a step, for each core: some milliseconds' worth. */
+enum { VERTICES = 65536, CHUNKS = 32, SHADED_BANDS = 1, BANDS = 8 };
+static const size_t KEPT_BYTES = (size_t)256 << 20; /* some ten pictures of 1920 x 1080 */
+static const double OFF_SURFACE_TEXELS = 2.7; /* as sun_visibility in shaders/shadow.glsl */
+
+/* --- what plates share ------------------------------------------------------------------------------------------------------- */
+
+static void find_models(struct plates *plates)
+{
+    const struct stage *stage = plates->stage;
+    plates->textured = mem_array(stage->model_count, sizeof(bool));
+    plates->masked = mem_array(stage->model_count, sizeof(bool));
+    plates->blended = mem_array(stage->model_count, sizeof(bool));
+    for (size_t m = 0; m < stage->model_count; m++) {
+        const struct model *model = &stage->models[m];
+        for (size_t i = 0; i < model->material_count; i++) {
+            plates->textured[m] |= model->materials[i].mask != 0;
+            plates->masked[m] |= model->materials[i].masked && model->materials[i].mask;
+            plates->blended[m] |= model->file->view.materials[i].alpha == ASSET_ALPHA_BLEND;
+        }
+    }
+}
+
+static void find_tones(struct plates *plates)
+{
+    for (int i = 0; i <= TONES; i++) {
+        double x = (double)i / TONES;
+        plates->tones[i] = (float)(x <= 0.0031308 ? 12.92 * x : 1.055 * pow(x, 1 / 2.4) - 0.055);
+    }
+}
+
+struct plates *plates_create(struct workers *workers, const struct stage *stage, const struct sky *sky, struct draft *draft,
+                             const struct environments *environments)
+{
+    struct plates *plates = mem_new(sizeof(*plates));
+    *plates = (struct plates){ .workers = workers, .stage = stage, .sky = sky, .draft = draft, .environments = environments };
+    plates->kept.bound_bytes = KEPT_BYTES;
+    find_models(plates);
+    find_tones(plates);
+    return plates;
+}
+
+static void destroy(struct plate **plate_ptr)
+{
+    struct plate *plate = *plate_ptr;
+    if (!plate)
+        return;
+    draft_destroy(&plate->draft);
+    recolor_destroy(&plate->recolor);
+    mem_free(plate->normals);
+    mem_free(plate->draws);
+    mem_free(plate->attributes);
+    mem_free(plate);
+    *plate_ptr = NULL;
+}
+
+void plates_destroy(struct plates **plates_ptr)
+{
+    struct plates *plates = *plates_ptr;
+    if (!plates)
+        return;
+    destroy(&plates->spare);
+    visibility_buffers_finish(&plates->kept);
+    mem_free(plates->textured);
+    mem_free(plates->masked);
+    mem_free(plates->blended);
+    mem_free(plates->surroundings.texels);
+    mem_free(plates->light.open);
+    mem_free(plates);
+    *plates_ptr = NULL;
+}
+
+bool plates_can(const struct plates *plates, const struct picture *picture)
+{
+    const struct view *view = picture->view;
+    double lines[VIEW_ALL_LINES];
+    if (view->tier != TIER_STILL || view->look == LOOK_GLOSSY || view_lines(view, lines) > 0 || view_is_operator(view) ||
+        view->visibility.ghosts.count > 0 || view->visibility.clip.plane_count > 0 || view->camera.height_m > 0 || picture->reference)
+        return false;
+    for (size_t i = 0; i < picture->visible_count; i++) {
+        int asset = picture->visible[i];
+        size_t model = (size_t)(picture->stage->of_asset[asset] - picture->stage->models);
+        bool field = picture->fields[asset] != NULL, lost = field && !picture->fields[asset]->buffer; /* only GL hatches without scalars */
+        if (lost || plates->masked[model] || (!field && (plates->textured[model] || plates->blended[model])))
+            return false;
+    }
+    return true;
+}
+
+/* --- life -------------------------------------------------------------------------------------------------------------------- */
+
+struct plate *plate_begin(struct plates *plates)
+{
+    struct plate *plate = plates->spare;
+    plates->spare = NULL;
+    if (!plate) {
+        plate = mem_new(sizeof(*plate));
+        plate->plates = plates;
+        plate->draft = draft_create(plates->workers, plates->stage, plates->sky);
+        if (!plate->draft)
+            destroy(&plate);
+    }
+    return plate;
+}
+
+void plate_end(struct plates *plates, struct plate **plate_ptr)
+{
+    struct plate *plate = *plate_ptr;
+    if (!plate)
+        return;
+    *plate_ptr = NULL;
+    recolor_destroy(&plate->recolor);
+    plate->step = PLATE_COLLECT;
+    plate->at = 0;
+    plate->failed = false;
+    if (plates->spare)
+        destroy(&plate);
+    else
+        plates->spare = plate;
+}
+
+/* --- steps ------------------------------------------------------------------------------------------------------------------- */
+
+static void copy_columns(const double from[16], float to[4][4])
+{
+    for (int c = 0; c < 4; c++)
+        for (int r = 0; r < 4; r++)
+            to[c][r] = (float)from[4 * c + r];
+}
+
+static void aim(struct plate *plate, const struct light *light)
+{
+    struct draft *draft = plate->draft;
+    const struct picture *picture = plate->picture;
+    const double *sun = picture->light->texture_from_plant;
+    double off_m = OFF_SURFACE_TEXELS * picture->light->texel_m, matrix[16];
+    draft_aim(draft, light);
+    for (int c = 0; c < 4; c++)
+        for (int r = 0; r < 4; r++) /* a draft moves surfaces towards the sun, here they step off along their normals */
+            plate->sun_from_pixel[c][r] = draft->sun_from_pixel[c][r] -
+                                          (r == 2 ? (float)solid_sun_slack(picture) * draft->sun_from_pixel[c][3] : 0);
+    for (int c = 0; c < 3; c++)
+        for (int r = 0; r < 3; r++)
+            plate->sun_from_normal[c][r] = (float)(sun[4 * c + r] * off_m);
+    for (int r = 0; r < 3; r++) {
+        plate->ground_step[r] = 0;
+        for (int c = 0; c < 3; c++)
+            plate->ground_step[r] += plate->sun_from_normal[c][r] * (float)plate->plates->stage->up[c];
+    }
+    matrix_multiply(sun, light->plant_from_ground, matrix);
+    copy_columns(matrix, plate->sun_from_ground);
+}
+
+/* Others drew meanwhile. */
+static bool take_up(struct plate *plate, const struct picture *picture, struct frame *frame)
+{
+    struct draft *draft = plate->draft;
+    plate->picture = draft->picture = picture;
+    draft->light = draft_get_light(plate->plates->draft, picture->light);
+    if (!draft->light || !plate_read_light(plate->plates, picture->light) ||
+        !plate_read_surroundings(plate->plates, picture->lit_by.environment))
+        return false;
+    draft_read_palette(draft, &picture->palette);
+    frame_block_fill(&draft->block, picture);
+    draft->out = frame->bgrx;
+    draft->out_stride_bytes = (size_t)frame->stride_bytes;
+    if (plate->step > PLATE_COLLECT && plate->step < PLATE_INK)
+        for (size_t m = 0; m < draft->mesh_count; m++)
+            draft->meshes[m].baked = (const uint8_t(*)[4])draft->light->baked[draft->meshes[m].asset];
+    return true;
+}
+
+static lanes material_of(const struct asset_material *material)
+{
+    return (lanes){ material->base_color[0], material->base_color[1], material->base_color[2], material->metallic,
+                    material->roughness,     material->emissive[0],   material->emissive[1],   material->emissive[2] };
+}
+
+/* The draft's meshes and draws, with what a plate needs of them besides. Marks become numbers of draws. */
+static void note_meshes(struct plate *plate)
+{
+    struct draft *draft = plate->draft;
+    const struct stage *stage = plate->plates->stage;
+    mem_grow(&plate->normals, &plate->mesh_capacity, draft->mesh_count, sizeof(*plate->normals));
+    mem_grow(&plate->draws, &plate->draw_capacity, draft->draw_count, sizeof(*plate->draws));
+    for (size_t m = 0; m < draft->mesh_count; m++) {
+        const struct draft_mesh *mesh = &draft->meshes[m];
+        matrix_normals(stage->scene->assets[mesh->asset].placement, plate->normals[m]);
+        if (mesh->has_field)
+            recolor_add_mesh(plate->recolor, &(struct recolor_mesh){
+                                                 .asset = mesh->asset,
+                                                 .first_vertex = mesh->first_vertex,
+                                                 .vertex_count = mesh->vertex_count,
+                                             });
+    }
+    for (size_t d = 0; d < draft->draw_count; d++) {
+        struct draft_draw *draw = &draft->draws[d];
+        const struct model *model = stage->of_asset[draft->meshes[draw->mesh].asset];
+        bool field = draw->mark == MARK_FIELD;
+        size_t row = draw->mark >> 16 & (MOST_RAMPS - 1), material = row - draft->ramp_of_model[model - stage->models];
+        plate->draws[d] = (struct plate_draw){ .mesh = draw->mesh, .field = field };
+        if (!field)
+            plate->draws[d].material = material_of(&model->file->view.materials[material]);
+        draw->mark = (uint32_t)d;
+        draw->back = MARK_BACK;
+    }
+}
+
+static bool collect(struct plate *plate, const struct frame *frame, const struct light *light)
+{
+    struct draft *draft = plate->draft;
+    draft->reach_px = 0.5f;
+    if (!draft_make_room(draft, frame, PLATE_ROWS))
+        return false;
+    plate->recolor = recolor_create(frame->width_px, frame->height_px, PLATE_ROWS);
+    if (!plate->recolor || !draft_collect(draft) || draft->chunk_count > ID_NOTHING >> ID_BITS)
+        return false;
+    note_meshes(plate);
+    aim(plate, light);
+    if (plate->attribute_capacity < draft->vertex_count) {
+        mem_free(plate->attributes);
+        plate->attributes = mem_try_array(draft->vertex_capacity, sizeof(*plate->attributes));
+        plate->attribute_capacity = plate->attributes ? draft->vertex_capacity : 0;
+    }
+    return plate->attributes && recolor_make_vertices(plate->recolor, draft->vertex_count);
+}
+
+static void place_mesh(const struct plate *plate, size_t m, size_t begin, size_t end)
+{
+    const struct draft_mesh *mesh = &plate->draft->meshes[m];
+    const float *turn = plate->normals[m];
+    for (size_t v = begin; v < end; v++) {
+        const float *n = mesh->file->normals[v];
+        const uint8_t *baked = mesh->baked[v], *color = mesh->file->colors ? mesh->file->colors[v] : NULL;
+        lanes *to = &plate->attributes[mesh->first_vertex + v];
+        for (int r = 0; r < 3; r++) {
+            (*to)[NORMAL_X + r] = turn[r] * n[0] + turn[3 + r] * n[1] + turn[6 + r] * n[2];
+            (*to)[TINT + r] = color ? (float)color[r] * (1 / 255.0f) : 1;
+        }
+        (*to)[AMBIENT] = (float)baked[1] * (1 / 255.0f);
+        (*to)[OPEN] = (float)baked[2] * (1 / 255.0f);
+    }
+}
+
+struct piece {
+    struct plate *plate;
+    size_t first;
+};
+
+static void place_some(void *arg, size_t begin, size_t end)
+{
+    const struct piece *piece = arg;
+    const struct draft *draft = piece->plate->draft;
+    begin += piece->first;
+    end += piece->first;
+    for (size_t m = 0; m < draft->mesh_count; m++) {
+        size_t first = draft->meshes[m].first_vertex, last = first + draft->meshes[m].vertex_count;
+        if (first < end && last > begin)
+            place_mesh(piece->plate, m, (begin > first ? begin : first) - first, (end < last ? end : last) - first);
+    }
+}
+
+static void shade_some(void *arg, size_t begin, size_t end)
+{
+    const struct piece *piece = arg;
+    for (size_t band = begin; band < end; band++)
+        if (!plate_shade_band(piece->plate, (int)(piece->first + band)))
+            __atomic_store_n(&piece->plate->failed, true, __ATOMIC_RELAXED);
+}
+
+static void ink_some(void *arg, size_t begin, size_t end)
+{
+    const struct piece *piece = arg;
+    for (size_t band = begin; band < end; band++)
+        plate_ink_band(piece->plate, (int)(piece->first + band));
+}
+
+/* The next of `all` pieces of work, so many for each core. True: that was the last. */
+static bool advance(struct plate *plate, size_t all, size_t some, size_t *begin, size_t *end)
+{
+    some *= (size_t)workers_count(plate->plates->workers);
+    *begin = plate->at;
+    *end = all - plate->at < some ? all : plate->at + some;
+    plate->at = *end == all ? 0 : *end;
+    return *end == all;
+}
+
+static bool is_selected_shown(const struct picture *picture)
+{
+    int selected = picture->view->selected_asset;
+    for (size_t i = 0; i < picture->visible_count && selected >= 0; i++)
+        if (picture->visible[i] == selected)
+            return true;
+    return false;
+}
+
+/* Of the selected asset. */
+static bool mark(struct plate *plate, const struct frame *frame)
+{
+    struct draft *draft = plate->draft;
+    if (!draft_make_room(draft, frame, BAND_ROWS) || !draft_find_only(draft, plate->picture->view->selected_asset))
+        return false;
+    draft_tiles(draft, false);
+    return true;
+}
+
+static bool complain(struct plate *plate)
+{
+    log_err(plate->plates->stage->gl->log, "still picture of %dx%d, %zu vertices: out of memory", plate->draft->width_px,
+            plate->draft->height_px, plate->draft->vertex_count);
+    plate->failed = true;
+    return true;
+}
+
+bool plate_step(struct plate *plate, const struct picture *picture, const struct light *light, struct frame *frame)
+{
+    struct draft *draft = plate->draft;
+    struct workers *workers = plate->plates->workers;
+    struct piece piece = { .plate = plate };
+    size_t begin = 0, end = 0, bands = plate->recolor ? (size_t)plate->recolor->band_count : 0;
+    bool done = true;
+    if (plate->failed)
+        return true;
+    if (!take_up(plate, picture, frame))
+        return complain(plate);
+    switch (plate->step) {
+    case PLATE_COLLECT:
+        if (!collect(plate, frame, light))
+            return complain(plate);
+        break;
+    case PLATE_PLACE:
+        done = advance(plate, draft->vertex_count, VERTICES, &begin, &end);
+        piece.first = begin;
+        draft_place(draft, begin, end);
+        workers_for(workers, end - begin, 4096, place_some, &piece);
+        break;
+    case PLATE_SORT:
+        done = advance(plate, draft->chunk_count, CHUNKS, &begin, &end);
+        draft_sort(draft, begin, end);
+        break;
+    case PLATE_SHADE:
+        done = advance(plate, bands, SHADED_BANDS, &begin, &end);
+        piece.first = begin;
+        workers_for(workers, end - begin, 1, shade_some, &piece);
+        if (plate->failed)
+            return complain(plate);
+        break;
+    case PLATE_INK:
+        done = advance(plate, bands, BANDS, &begin, &end);
+        piece.first = begin;
+        workers_for(workers, end - begin, 1, ink_some, &piece);
+        if (done) {
+            markers_find(picture, draft->depth, (size_t)draft->pitch_px, frame);
+            recolor_read(plate->recolor, picture, workers);
+        }
+        break;
+    case PLATE_MARK:
+        if (is_selected_shown(picture) && !mark(plate, frame))
+            return complain(plate);
+        break;
+    case PLATE_RIM:
+        if (is_selected_shown(picture))
+            draft_keep_rim(plate->draft, plate->recolor);
+        break;
+    case PLATE_COLOR:
+        done = advance(plate, bands, BANDS, &begin, &end);
+        recolor_draw(plate->recolor, draft->palette, draft->block.scale[3], workers, (int)begin, (int)(end - begin), frame);
+        break;
+    case PLATE_DONE: return true;
+    }
+    if (done)
+        plate->step++;
+    return plate->step == PLATE_DONE;
+}
+
+/* --- once more --------------------------------------------------------------------------------------------------------------- */
+
+bool plates_keep(struct plates *plates, struct plate *plate, const struct picture *picture, const struct frame *frame)
+{
+    struct recolor *recolor = plate->recolor;
+    if (plate->failed)
+        return false;
+    plate->recolor = NULL;
+    draft_give(&plates->kept, picture, recolor, frame);
+    return true;
+}
+
+bool plates_know(struct plates *plates, const struct picture *picture)
+{
+    return plates_can(plates, picture) && visibility_buffers_find(&plates->kept, content_shape_hash(picture));
+}
+
+bool plates_recolor(struct plates *plates, const struct picture *picture, struct frame *frame)
+{
+    return plates_can(plates, picture) && draft_recolor(plates->draft, &plates->kept, picture, frame);
+}

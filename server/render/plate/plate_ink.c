@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Thin dark lines around shapes, found in depth: shaders/edges.frag once more. */
+#include <math.h>
+
+#include "render/plate/plate_impl.h"
+
+struct view_of_depth {
+    const float *depth;
+    int width_px, height_px, pitch_px;
+};
+
+DRAFT_INLINE lanes at(const struct view_of_depth *view, int column, int row)
+{
+    row = row < 0 ? 0 : row < view->height_px ? row : view->height_px - 1;
+    const float *from = view->depth + (size_t)row * (size_t)view->pitch_px;
+    if (column >= 0 && column + LANES <= view->width_px)
+        return *(const lanes *)(from + column);
+    lanes out;
+    for (int i = 0; i < LANES; i++) {
+        int c = column + i;
+        out[i] = from[c < 0 ? 0 : c < view->width_px ? c : view->width_px - 1];
+    }
+    return out;
+}
+
+DRAFT_INLINE lanes low(lanes a, lanes b)
+{
+    return lanes_choose(a < b, a, b);
+}
+
+DRAFT_INLINE lanes high(lanes a, lanes b)
+{
+    return lanes_choose(a > b, a, b);
+}
+
+/* From here, one pixel to that side: how much nearer, as a part. */
+DRAFT_INLINE lanes rise(const struct view_of_depth *view, int x, int y, lanes here, int dx, int dy)
+{
+    lanes next = at(view, x + dx, y + dy), zero = { 0 };
+    if (!lanes_any(next > here))
+        return zero;
+    lanes wide = low(at(view, x + 3 * dx, y + 3 * dy), at(view, x + 4 * dx, y + 4 * dy));
+    lanes tall = high(at(view, x + dx + 2 * dy, y + dy + 2 * dx), at(view, x + dx - 2 * dy, y + dy - 2 * dx));
+    lanes back = at(view, x - dx, y - dy);
+    return (low(next, low(wide, tall)) - here - high(here - back, zero)) / high(next, zero + 1e-9f);
+}
+
+DRAFT_KERNEL void plate_ink_band(const struct plate *plate, int number)
+{
+    const struct draft *draft = plate->draft;
+    struct view_of_depth view = { draft->depth, draft->width_px, draft->height_px, draft->pitch_px };
+    int end = (number + 1) * PLATE_ROWS < draft->height_px ? (number + 1) * PLATE_ROWS : draft->height_px;
+    for (int y = number * PLATE_ROWS; y < end; y++)
+        for (int x = 0; x < draft->width_px; x += LANES) {
+            lanes here = at(&view, x, y);
+            lanes most = high(high(rise(&view, x, y, here, 1, 0), rise(&view, x, y, here, -1, 0)),
+                              high(rise(&view, x, y, here, 0, 1), rise(&view, x, y, here, 0, -1)));
+            lanes t = lanes_clamp((most - 0.006f) * (1 / (0.03f - 0.006f)), 0, 1), edge = t * t * (3.0f - 2.0f * t);
+            uint8_t *ink = plate->recolor->ink + (size_t)y * (size_t)draft->width_px + (size_t)x;
+            if (!lanes_any(edge > 0.0f))
+                continue;
+            for (int i = 0; i < LANES && x + i < draft->width_px; i++)
+                ink[i] = (uint8_t)(edge[i] * RECOLOR_INK + 0.5f);
+        }
+}

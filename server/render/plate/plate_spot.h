@@ -1,0 +1,242 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Spots of surfaces, eight at a time: where they are, which way they look, and how much of the sun they see. Private to plate*.c. */
+#ifndef RENDER_PLATE_SPOT_H
+#define RENDER_PLATE_SPOT_H
+#include <math.h>
+#include <string.h>
+
+#include "render/draft/draft_look.h"
+#include "render/plate/plate_impl.h"
+
+typedef struct {
+    lanes x, y, z;
+} vec;
+
+struct spot { /* eight of them */
+    lanes attributes[8]; /* NORMAL_X ... */
+    lanes material[8];
+    lanes x, y, depth; /* in the picture */
+    lanes weights[3];
+    uint32_t vertices[LANES][3];
+    lanes_int back; /* -1: looks away */
+    vec normal;
+};
+
+DRAFT_INLINE lanes all(float x)
+{
+    return (lanes){ 0 } + x;
+}
+
+DRAFT_INLINE lanes least_of(lanes a, lanes b)
+{
+    return lanes_choose(a < b, a, b);
+}
+
+DRAFT_INLINE lanes most_of(lanes a, lanes b)
+{
+    return lanes_choose(a > b, a, b);
+}
+
+DRAFT_INLINE lanes root(lanes x)
+{
+    lanes out;
+    for (int i = 0; i < LANES; i++)
+        out[i] = sqrtf(x[i]);
+    return out;
+}
+
+DRAFT_INLINE vec times(vec a, lanes by)
+{
+    return (vec){ a.x * by, a.y * by, a.z * by };
+}
+
+DRAFT_INLINE vec plus(vec a, vec b)
+{
+    return (vec){ a.x + b.x, a.y + b.y, a.z + b.z };
+}
+
+DRAFT_INLINE vec multiplied(vec a, vec b)
+{
+    return (vec){ a.x * b.x, a.y * b.y, a.z * b.z };
+}
+
+DRAFT_INLINE vec between(vec a, vec b, lanes part)
+{
+    return (vec){ a.x + (b.x - a.x) * part, a.y + (b.y - a.y) * part, a.z + (b.z - a.z) * part };
+}
+
+DRAFT_INLINE lanes dot(vec a, vec b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+DRAFT_INLINE vec unit(vec a)
+{
+    return times(a, 1.0f / root(most_of(dot(a, a), all(1e-30f))));
+}
+
+/* --- where ------------------------------------------------------------------------------------------------------------------- */
+
+struct corners { /* of eight triangles, seen from the spots: what the weights are made of */
+    float a[3][LANES], b[3][LANES]; /* to the corner, in pixels; by w where the corner has no place in the picture */
+    float w[3][LANES];              /* 1/w, or 1 */
+    float z[3][LANES], g[3][LANES]; /* depth times g, and g: 1, or w */
+};
+
+/* A triangle that the near plane cuts: its corners may lie behind the eye. */
+static inline void see_cut_corner(const struct draft_mesh *mesh, uint32_t v, const struct item *item, int k, int i,
+                                  struct corners *out)
+{
+    const float *p = mesh->file->positions_m[v];
+    float at[4];
+    for (int r = 0; r < 4; r++)
+        at[r] = mesh->place[0][r] * p[0] + mesh->place[1][r] * p[1] + mesh->place[2][r] * p[2] + mesh->place[3][r];
+    out->a[k][i] = at[0] - item->x * at[3];
+    out->b[k][i] = at[1] - item->y * at[3];
+    out->w[k][i] = 1;
+    out->z[k][i] = at[2];
+    out->g[k][i] = at[3];
+}
+
+DRAFT_INLINE void see_corners(const struct plate *plate, const struct item *item, int i, struct spot *spot, struct corners *out)
+{
+    const struct draft *draft = plate->draft;
+    const struct draft_triangle *triangle = plate_triangle(draft, item->id);
+    bool is_cut = (triangle->vertices[0] | triangle->vertices[1] | triangle->vertices[2]) & EXTRA_VERTEX;
+    if (is_cut) {
+        const struct draft_mesh *mesh = &draft->meshes[plate->draws[triangle->mark & ~MARK_BACK].mesh];
+        const struct draft_chunk *chunk = &draft->chunks[item->id >> ID_BITS];
+        const uint32_t *source = mesh->file->indices + chunk->extra[triangle->vertices[0] & ~EXTRA_VERTEX].source;
+        for (int k = 0; k < 3; k++) {
+            spot->vertices[i][k] = mesh->first_vertex + source[k];
+            see_cut_corner(mesh, source[k], item, k, i, out);
+        }
+        return;
+    }
+    for (int k = 0; k < 3; k++) {
+        const struct draft_vertex *vertex = &draft->vertices[triangle->vertices[k]];
+        spot->vertices[i][k] = triangle->vertices[k];
+        out->a[k][i] = vertex->x - item->x;
+        out->b[k][i] = vertex->y - item->y;
+        out->w[k][i] = vertex->inverse_w;
+        out->z[k][i] = vertex->depth;
+        out->g[k][i] = 1;
+    }
+}
+
+DRAFT_INLINE lanes load(const float at[LANES])
+{
+    return *(const lanes *)at;
+}
+
+/* Weights of the corners with perspective, kept within the triangle; the spot moves to the place that they have. */
+DRAFT_INLINE void weigh(struct spot *spot, const struct corners *corners)
+{
+    lanes e[3], sum, depth = all(0), over = all(0), x = all(0), y = all(0);
+    for (int k = 0; k < 3; k++) {
+        int p = (k + 1) % 3, q = (k + 2) % 3;
+        e[k] = load(corners->a[p]) * load(corners->b[q]) - load(corners->a[q]) * load(corners->b[p]);
+    }
+    lanes sign = lanes_choose(e[0] + e[1] + e[2] < 0.0f, all(-1), all(1));
+    for (int k = 0; k < 3; k++) {
+        e[k] = most_of(e[k] * sign, all(0));
+        depth += e[k] * load(corners->z[k]);
+        over += e[k] * load(corners->g[k]);
+        x += e[k] * load(corners->a[k]);
+        y += e[k] * load(corners->b[k]);
+        spot->weights[k] = e[k] * load(corners->w[k]);
+    }
+    sum = spot->weights[0] + spot->weights[1] + spot->weights[2];
+    lanes_int flat = ~((sum > 0.0f) & (over > 0.0f));
+    sum = lanes_choose(flat, all(1), 1.0f / sum);
+    for (int k = 0; k < 3; k++)
+        spot->weights[k] = lanes_choose(flat, all(k == 0), spot->weights[k] * sum);
+    over = lanes_choose(flat, all(1), 1.0f / over);
+    spot->depth = lanes_choose(flat, load(corners->z[0]) / load(corners->g[0]), depth * over);
+    spot->x += lanes_choose(flat, all(0), x * over);
+    spot->y += lanes_choose(flat, all(0), y * over);
+}
+
+DRAFT_INLINE void turn(float rows[LANES][8], lanes columns[8])
+{
+    for (int c = 0; c < 8; c++)
+        for (int i = 0; i < LANES; i++)
+            columns[c][i] = rows[i][c];
+}
+
+/* Up to eight items; the last one fills what is left. */
+DRAFT_INLINE void look(const struct plate *plate, const struct item *items, size_t count, bool with_material, struct spot *spot)
+{
+    struct corners corners;
+    float rows[LANES][8], materials[LANES][8];
+    for (int i = 0; i < LANES; i++) {
+        const struct item *item = &items[(size_t)i < count ? (size_t)i : count - 1];
+        see_corners(plate, item, i, spot, &corners);
+        spot->x[i] = item->x;
+        spot->y[i] = item->y;
+        uint32_t mark = plate_triangle(plate->draft, item->id)->mark;
+        spot->back[i] = mark & MARK_BACK ? -1 : 0;
+        if (with_material)
+            memcpy(materials[i], &plate->draws[mark & ~MARK_BACK].material, sizeof(lanes));
+    }
+    weigh(spot, &corners);
+    for (int i = 0; i < LANES; i++) {
+        lanes sum = all(0);
+        for (int k = 0; k < 3; k++)
+            sum += plate->attributes[spot->vertices[i][k]] * spot->weights[k][i];
+        memcpy(rows[i], &sum, sizeof(sum));
+    }
+    turn(rows, spot->attributes);
+    if (with_material)
+        turn(materials, spot->material);
+    spot->normal = unit((vec){ spot->attributes[NORMAL_X], spot->attributes[NORMAL_Y], spot->attributes[NORMAL_Z] });
+}
+
+DRAFT_INLINE vec view_of(const struct plate *plate, const struct spot *spot)
+{
+    const float(*m)[3] = plate->draft->ray_from_pixel;
+    lanes ray[3];
+    for (int r = 0; r < 3; r++)
+        ray[r] = -(spot->x * m[0][r] + spot->y * m[1][r] + m[2][r]);
+    return unit((vec){ ray[0], ray[1], ray[2] });
+}
+
+/* Two-sided surfaces from behind. */
+DRAFT_INLINE vec facing(const struct spot *spot, vec view)
+{
+    lanes sign = lanes_choose(spot->back & (dot(spot->normal, view) < 0.0f), all(-1), all(1));
+    return times(spot->normal, sign);
+}
+
+/* --- the sun ----------------------------------------------------------------------------------------------------------------- */
+
+/* Four taps on a turned square. s, t, depth: 0..1 over the map, a step off the surface. Outside it nothing stands in the light. */
+DRAFT_INLINE lanes sun_visible(const struct draft_light *light, lanes s, lanes t, lanes depth)
+{
+    const float spread = 1.7f / (float)light->sun_map_px, u = 0.88f * spread, v = 0.47f * spread;
+    depth = lanes_clamp(depth, 0, 1);
+    lanes sum = sun_tap(light, s + u, t + v, depth) + sun_tap(light, s - u, t - v, depth);
+    sum += sun_tap(light, s - v, t + u, depth) + sun_tap(light, s + v, t - u, depth);
+    return lanes_choose((s > 0.0f) & (s < 1.0f) & (t > 0.0f) & (t < 1.0f), 0.25f * sum, all(1));
+}
+
+DRAFT_INLINE lanes sun_at(const struct plate *plate, const struct spot *spot, vec n)
+{
+    const float(*m)[4] = plate->sun_from_pixel;
+    const float(*step)[3] = plate->sun_from_normal;
+    lanes at[4], place[3];
+    for (int r = 0; r < 4; r++)
+        at[r] = spot->x * m[0][r] + spot->y * m[1][r] + spot->depth * m[2][r] + m[3][r];
+    lanes over = 1.0f / at[3];
+    for (int r = 0; r < 3; r++)
+        place[r] = at[r] * over + n.x * step[0][r] + n.y * step[1][r] + n.z * step[2][r];
+    return sun_visible(plate->draft->light, place[0], place[1], place[2]);
+}
+
+DRAFT_INLINE vec towards_sun(const struct plate *plate)
+{
+    const float *sun = plate->draft->block.sun;
+    return (vec){ all(sun[0]), all(sun[1]), all(sun[2]) };
+}
+
+#endif
