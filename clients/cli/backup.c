@@ -19,6 +19,7 @@
 #include "history/month.h"
 #include "history/when.h"
 #include "plant/plant.h"
+#include "proving/proofs.h"
 
 #define MANIFEST "backup.json"
 #define PLANT_FILE "plant.yaml"
@@ -36,8 +37,8 @@ static void print_usage(FILE *out)
     fputs("usage: plantcast backup PLANT.yaml -o FOLDER [--history DIR]\n"
           "       plantcast restore FOLDER PLANT.yaml [--history DIR]\n"
           "\n"
-          "backup copies history, the journal of alarms, the plant file and its tag list into a new folder, also while the daemon\n"
-          "records: each database as it was at one moment. Models are not in it.\n"
+          "backup copies history, the journal of alarms, what was proven, the plant file and its tag list into a new folder, also\n"
+          "while the daemon records: each database as it was at one moment. Models are not in it.\n"
           "\n"
           "restore checks that a backup is whole and puts it in place: the plant file as PLANT.yaml, its tag list beside it, history\n"
           "where the plant file says. Nothing is overwritten: where a file is in the way, nothing is restored.\n"
@@ -94,10 +95,13 @@ static bool add_history(struct job *job, const char *folder)
         mem_free(from);
     }
     mem_free(months);
-    char *journal = mem_printf("%s/" JOURNAL_FILE, folder);
+    char *journal = mem_printf("%s/" JOURNAL_FILE, folder), *proofs = mem_printf("%s/" PROOFS_FILE, folder);
     if (good && access(journal, F_OK) == 0)
         good = add(job, copy_database, journal, JOURNAL_FILE);
+    if (good && access(proofs, F_OK) == 0)
+        good = add(job, copy_file, proofs, PROOFS_FILE);
     mem_free(journal);
+    mem_free(proofs);
     return good;
 }
 
@@ -225,7 +229,7 @@ static char *place_of(const char *name, const char *plant_path, const char *hist
     if (!strcmp(name, PLANT_FILE))
         return mem_strdup(plant_path);
     int month;
-    if (month_parse(name, &month) || !strcmp(name, JOURNAL_FILE))
+    if (month_parse(name, &month) || !strcmp(name, JOURNAL_FILE) || !strcmp(name, PROOFS_FILE))
         return mem_printf("%s/%s", history, name);
     return slash ? mem_printf("%.*s/%s", (int)(slash - plant_path), plant_path, name) : mem_strdup(name);
 }

@@ -145,7 +145,7 @@ struct proofs *proofs_open(struct log *log, const struct plant *plant, const cha
     struct proofs *proofs = mem_new(sizeof(*proofs));
     proofs->log = log;
     proofs->plant = plant;
-    proofs->path = mem_printf("%s/proofs.csv", folder);
+    proofs->path = mem_printf("%s/" PROOFS_FILE, folder);
     proofs->at = mem_array(plant->tag_count, sizeof(*proofs->at));
     proofs->numbers = mem_array(plant->tag_count, sizeof(*proofs->numbers));
     for (size_t i = 0; i < plant->tag_count; i++)

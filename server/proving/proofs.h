@@ -24,6 +24,8 @@ struct proof {
     char who[PROOF_NAME_BYTES], remark[PROOF_REMARK_BYTES];
 };
 
+#define PROOFS_FILE "proofs.csv"
+
 struct proofs;
 /* folder must be there, or come to be there before the first is added. A file that cannot be read counts as none, and says so in the log.
    Never NULL. plant must outlive it. */

@@ -4,6 +4,7 @@ import assert from 'node:assert/strict';
 import { appendFileSync, copyFileSync, existsSync, mkdirSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
+import { PlainClient } from './support/plain_client.mjs';
 import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 
 const absent = missing();
@@ -36,6 +37,11 @@ const exported = (file, to) => {
 
 test('what was recorded comes back elsewhere, point by point', { skip }, async () => {
     await new Promise((done) => setTimeout(done, 3000)); // something of now
+    const engineer = await PlainClient.open(plant.port);
+    await engineer.hello();
+    engineer.say({ type: 'prove', seq: 1, tag: 'TI-1', expected: 1, tolerance: 0.5, fail: true });
+    assert.equal((await engineer.text('proved')).kept, true);
+    engineer.close();
     const to = String(Math.floor(Date.now() / 1000) - 1);
     for (const name of ['one', 'two', 'three']) {
         const made = runProgram('plantcast', ['backup', plant.file, '-o', folder(name)]);
@@ -52,6 +58,9 @@ test('what was recorded comes back elsewhere, point by point', { skip }, async (
     const restored = runProgram('plantcast', ['restore', folder('three'), other]);
     assert.equal(restored.code, 0, restored.err);
     assert.equal(readFileSync(other, 'utf8'), readFileSync(plant.file, 'utf8'));
+    const proofs = join(restored.out.trim().replace(/^.* its history is in /, ''), 'proofs.csv');
+    assert.equal(readFileSync(proofs, 'utf8'), readFileSync(join(folder('three'), 'proofs.csv'), 'utf8'));
+    assert.match(readFileSync(proofs, 'utf8'), /TI-1/);
     const was = exported(plant.file, to), is = exported(other, to);
     assert.ok(was.length > 3000, `${was.length} points`);
     assert.deepEqual(is.slice(0, was.length - 20), was.slice(0, was.length - 20));
