@@ -20,6 +20,8 @@
 #include "value/lookup.h"
 #include "value/plan.h"
 
+static const int64_t SETTLE_NS = 50 * NS_PER_MS;
+
 struct modbus_link {
     const struct plant_source *source;
     modbus_t *modbus;
@@ -259,6 +261,14 @@ static bool clear_line(struct modbus_link *link, enum register_table table, int 
     return true;
 }
 
+/* An answer with the number of another question: one that came twice, or late. What belongs to that is let come, and the question put
+   once more; who answers wrongly again is disconnected. */
+static int ask_anew(struct modbus_link *link, enum register_table table, int first, int count, uint16_t *words)
+{
+    wait_for(-1, 0, link->stop_fd, clock_mono_ns() + SETTLE_NS);
+    return ask(link, table, first, count, words);
+}
+
 int modbus_link_read(struct modbus_link *link, int unit, enum register_table table, int first, int count, uint16_t *words)
 {
     if (modbus_set_slave(link->modbus, unit) != 0)
@@ -267,6 +277,8 @@ int modbus_link_read(struct modbus_link *link, int unit, enum register_table tab
     errno = ETIMEDOUT;
     if (!link->suspect || clear_line(link, table, first, count, words))
         got = ask(link, table, first, count, words);
+    if (got < 0 && errno == EMBBADDATA && link->source->transport == TRANSPORT_TCP)
+        got = ask_anew(link, table, first, count, words);
     int cause = errno;
     if (got == count)
         return 0;

@@ -103,7 +103,8 @@ test('the API tells tags and plant, and no addresses', { skip }, async () => {
     const tags = JSON.parse((await get(plant.port, '/api/v1/tags')).body);
     const whole = JSON.parse((await get(plant.port, '/api/v1/plant')).body);
     assert.deepEqual(tags.tags.map((tag) => tag.name), ['TI-1', 'TI-2', 'PI-1']);
-    const fields = ['age_ms', 'asset', 'description', 'group', 'limits', 'name', 'quality', 'quality_name', 'unit', 'value'];
+    const fields = ['age_ms', 'asset', 'description', 'group', 'limits', 'name', 'quality', 'quality_name', 'source', 'unit',
+        'value'];
     assert.deepEqual(Object.keys(tags.tags[0]).sort(), fields);
     assert.deepEqual(whole.assets.map((asset) => asset.id), ['E-101', 'P-101A']);
     assert.ok(!/40000|127\.0\.0\.1|\.gltf/.test(JSON.stringify([tags, whole])));

@@ -185,7 +185,7 @@ static bool answer(struct device_thread *t, int fd, const uint8_t *request, int 
     if (manner == DEVICE_BEHIND)
         reply_wrong(t, fd, request, bytes, 1);
     modbus_reply(t->modbus, request, bytes, t->mapping);
-    if (manner == DEVICE_TWICE)
+    if (manner == DEVICE_TWICE && !stopped_within(t, device->late_ms))
         reply_wrong(t, fd, request, bytes, 0);
     device->last_ns = clock_mono_ns();
     return true;

@@ -11,7 +11,7 @@ enum device_manner {
     DEVICE_SILENT,      /* takes requests, never answers */
     DEVICE_DRIPPING,    /* one byte each 0.3 s */
     DEVICE_LATE,        /* answers after late_ms, on the same connection */
-    DEVICE_TWICE,       /* each answer is followed by one with its own number again and wrong values */
+    DEVICE_TWICE,       /* each answer is followed, after late_ms, by one with its own number again and wrong values */
     DEVICE_BEHIND,      /* each answer is preceded by one with the number of the request before and wrong values */
     DEVICE_RESETTING,   /* takes a request, then resets the connection */
     DEVICE_SHORT,       /* all but the last byte of the answer */

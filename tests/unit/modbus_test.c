@@ -200,6 +200,21 @@ static void reply_sent_twice_does_not_poison(void **state)
     }
 }
 
+/* It comes after the next question, with the number of the one before. */
+static void late_twin_of_a_reply_does_not_disconnect(void **state)
+{
+    struct modbus_case *s = *state;
+    modbus_case_add_registers(s, 1);
+    plant_by_hand_tag(s->plant, "far", TABLE_HOLDING, 500, DATA_INT16);
+    s->device.manner = DEVICE_TWICE;
+    s->device.late_ms = 10;
+    device_start(&s->device);
+    modbus_case_start(s);
+    modbus_case_expect(s, 1, QUALITY_GOOD, 3);
+    assert_true(modbus_case_look(s, 0)->value == 0 && modbus_case_look(s, 1)->value == 500);
+    assert_int_equal(count_of(s, "plantcast_source_connects_total{source=\"plc\"} "), 1);
+}
+
 static void reply_to_an_older_request_is_never_taken(void **state)
 {
     struct modbus_case *s = *state;
@@ -511,6 +526,7 @@ int main(void)
         modbus_test(dripping_device_holds_no_longer_than_the_deadline),
         modbus_test(late_reply_does_not_poison),
         modbus_test(reply_sent_twice_does_not_poison),
+        modbus_test(late_twin_of_a_reply_does_not_disconnect),
         modbus_test(reply_to_an_older_request_is_never_taken),
         modbus_test(one_bad_register_does_not_lose_the_rest),
         modbus_test(what_was_refused_is_asked_anew_when_the_link_is_back),
