@@ -112,12 +112,15 @@ static int errno_of(int code)
     }
 }
 
+static bool is_on_read_only_disk(const struct month_file *file)
+{
+    return access(file->path, W_OK) != 0 && errno == EROFS;
+}
+
 /* What the system said, where SQLite only says that it cannot. */
 static int cause_of(const struct month_file *file)
 {
-    if (access(file->path, W_OK) != 0 && errno == EROFS)
-        return EROFS;
-    return sqlite3_system_errno(file->db);
+    return is_on_read_only_disk(file) ? EROFS : sqlite3_system_errno(file->db);
 }
 
 int month_fail(struct month_file *file, int code, const char *doing)
@@ -235,8 +238,8 @@ static int open_to_read(struct month_file *file, int *version)
     int code = open_database(file, SQLITE_OPEN_READONLY);
     if (code == SQLITE_OK)
         *version = pragma_int(file->db, "PRAGMA user_version", &code);
-    if ((code & 0xff) != SQLITE_CANTOPEN || has_log(file))
-        return code;
+    if ((code & 0xff) != SQLITE_CANTOPEN || has_log(file) || !is_on_read_only_disk(file))
+        return code; /* elsewhere somebody may be about to write it */
     code = open_unchanging(file);
     if (code == SQLITE_OK)
         *version = pragma_int(file->db, "PRAGMA user_version", &code);

@@ -185,6 +185,8 @@ static void look_at_alarms(struct hub *hub)
 static void collect_moments(struct hub *hub)
 {
     struct past_answer *answer = hub->past ? past_collect(hub->past) : NULL;
+    if (answer)
+        hub->world.history_first_us = past_first_us(hub->past);
     for (struct past_answer *next; answer; answer = next) {
         next = answer->next;
         if (stream_owns(hub, answer->client))

@@ -2,6 +2,7 @@
 /* The thread that reads instants. */
 #include "net/past.h"
 
+#include <errno.h>
 #include <pthread.h>
 #include <string.h>
 
@@ -11,6 +12,7 @@
 #include "history/history.h"
 
 static const int64_t SPAN_NS = 60 * NS_PER_S; /* months come and go no more often than that */
+static const int64_t LOOK_NS = 2 * NS_PER_S;  /* while nothing is recorded */
 
 struct wanted {
     uint64_t client;
@@ -116,41 +118,58 @@ static void look_at_span(struct past *past)
     past->spanned_ns = now_ns;
     if (!history_span(past->reader, &first_us, &last_us)) {
         first_us = 0;
-        past->spanned_ns = 0; /* nothing is there yet: look again with the next question */
+        past->spanned_ns = 0; /* nothing is there yet: look again soon, and with the next question */
     }
     pthread_mutex_lock(&past->lock);
     past->first_us = first_us;
     pthread_mutex_unlock(&past->lock);
 }
 
-static bool next_wanted(struct past *past, struct wanted *out)
+/* False: nothing is, and it is time to look again for the beginning of what is recorded, or to stop. */
+static bool next_wanted(struct past *past, struct wanted *out, bool *stopping)
 {
+    int64_t until_ns = clock_mono_ns() + LOOK_NS;
+    struct timespec until = { .tv_sec = until_ns / NS_PER_S, .tv_nsec = until_ns % NS_PER_S };
+    int status = 0;
     pthread_mutex_lock(&past->lock);
-    while (!past->stopping && past->count == 0)
-        pthread_cond_wait(&past->wake, &past->lock);
-    bool stopping = past->stopping;
-    if (!stopping) {
+    while (!past->stopping && past->count == 0 && status != ETIMEDOUT) {
+        if (past->first_us)
+            pthread_cond_wait(&past->wake, &past->lock);
+        else
+            status = pthread_cond_timedwait(&past->wake, &past->lock, &until);
+    }
+    *stopping = past->stopping;
+    bool any = !*stopping && past->count > 0;
+    if (any) {
         *out = past->wanted[0];
         remove_at(past, 0);
     }
     pthread_mutex_unlock(&past->lock);
-    return !stopping;
+    return any;
+}
+
+static void answer(struct past *past, const struct wanted *wanted)
+{
+    struct past_answer *answer = mem_new(sizeof(*answer));
+    *answer = (struct past_answer){ .client = wanted->client, .at_us = wanted->at_us, .good = read_moment(past, wanted->at_us) };
+    pthread_mutex_lock(&past->lock);
+    *past->last = answer;
+    past->last = &answer->next;
+    pthread_mutex_unlock(&past->lock);
+    past->params.notify(past->params.notify_arg);
 }
 
 static void *run(void *arg)
 {
     struct past *past = arg;
     struct wanted wanted;
-    look_at_span(past);
-    while (next_wanted(past, &wanted)) {
-        struct past_answer *answer = mem_new(sizeof(*answer));
+    bool stopping = false;
+    while (!stopping) {
         look_at_span(past);
-        *answer = (struct past_answer){ .client = wanted.client, .at_us = wanted.at_us, .good = read_moment(past, wanted.at_us) };
-        pthread_mutex_lock(&past->lock);
-        *past->last = answer;
-        past->last = &answer->next;
-        pthread_mutex_unlock(&past->lock);
-        past->params.notify(past->params.notify_arg);
+        if (next_wanted(past, &wanted, &stopping)) {
+            look_at_span(past);
+            answer(past, &wanted);
+        }
     }
     return NULL;
 }
@@ -163,7 +182,7 @@ struct past *past_create(const struct past_params *params)
     past->tags = history_tags(params->plant);
     past->last = &past->answers;
     pthread_mutex_init(&past->lock, NULL);
-    pthread_cond_init(&past->wake, NULL);
+    clock_cond_init(&past->wake);
     int error = pthread_create(&past->thread, NULL, run, past);
     past->started = !error;
     if (error) {

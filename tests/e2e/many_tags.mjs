@@ -97,8 +97,11 @@ test('the loss of their device is one alarm, journalled for each of them, and ov
     const seen = alarms.filter(({ state }) => state !== 'suppressed').map(({ tag, kind }) => [tag, kind]);
     assert.equal(active, 1);
     assert.ok(seen.length === 0 || (seen.length === 1 && seen[0].join() === 'plc1,LINK'), JSON.stringify(seen));
-    const { rows } = await get('/api/v1/alarms/journal?limit=10000');
-    assert.ok(rows.filter(({ kind, state, reason }) => kind === 'BAD' && state === 'suppressed' && reason === 'plc1').length > 9000);
+    const isCarried = ({ kind, state, reason }) => kind === 'BAD' && state === 'suppressed' && reason === 'plc1';
+    await until('all are journalled', async () => {
+        const { rows } = await get('/api/v1/alarms/journal?limit=10000');
+        return rows.filter(isCarried).length > 9000;
+    });
     await plant.startSim();
     await until('it is over', async () => (await counts()).states.suppressed === 0 && (await counts()).active === 0);
 });

@@ -240,15 +240,6 @@ static void add_counters(struct painter *painter, struct counters *counters)
     painter->losses = counters_add(counters, "plantcast_gl_losses_total", "counter", "GL contexts that were lost and made again.");
 }
 
-static void init_wake(pthread_cond_t *wake)
-{
-    pthread_condattr_t attributes;
-    pthread_condattr_init(&attributes);
-    pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
-    pthread_cond_init(wake, &attributes);
-    pthread_condattr_destroy(&attributes);
-}
-
 struct painter *painter_create(const struct painter_params *params)
 {
     struct painter *painter = mem_new(sizeof(*painter));
@@ -256,7 +247,7 @@ struct painter *painter_create(const struct painter_params *params)
     painter->done_last = &painter->done;
     painter->picks = picks_create();
     pthread_mutex_init(&painter->lock, NULL);
-    init_wake(&painter->wake);
+    clock_cond_init(&painter->wake);
     add_counters(painter, params->counters);
     painter->encoding = encoding_create(&(struct encoding_params){
         .log = params->log,

@@ -275,6 +275,7 @@ void session_on_tick(struct session *session, int64_t now_ns)
     if (pacer_state(&session->pacer, now_ns) != PACER_FLOWS)
         session_pause(session);
     session_choose_again(session, now_ns);
+    session->owes_time |= session->hello && session->world->moments && session->world->history_first_us && !session->told_beginning;
 }
 
 void session_on_data(struct session *session, int64_t data_ns)

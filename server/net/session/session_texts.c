@@ -89,6 +89,7 @@ bool session_next_text(struct session *session, int64_t now_ns, int64_t now_utc_
     } else if (session->owes_time) {
         add_owned(out, reply_time_text(session));
         session->owes_time = false;
+        session->told_beginning = session->world->history_first_us != 0;
     } else if (session->followers) {
         add_owned(out, session->followers);
         session->followers = NULL;
