@@ -148,7 +148,7 @@ static bool next_wanted(struct past *past, struct wanted *out, bool *stopping)
     return any;
 }
 
-static void answer(struct past *past, const struct wanted *wanted)
+static void give_answer(struct past *past, const struct wanted *wanted)
 {
     struct past_answer *answer = mem_new(sizeof(*answer));
     *answer = (struct past_answer){ .client = wanted->client, .at_us = wanted->at_us, .good = read_moment(past, wanted->at_us) };
@@ -168,7 +168,7 @@ static void *run(void *arg)
         look_at_span(past);
         if (next_wanted(past, &wanted, &stopping)) {
             look_at_span(past);
-            answer(past, &wanted);
+            give_answer(past, &wanted);
         }
     }
     return NULL;
