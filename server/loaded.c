@@ -175,7 +175,7 @@ void loaded_hand_over(struct loaded *loaded, const struct plant *next)
 struct net_plant loaded_net_plant(const struct loaded *loaded)
 {
     return (struct net_plant){ loaded->scene, loaded->store, loaded->painter, loaded->baselines, loaded->moments,
-                               loaded->alarming, loaded->placing, loaded->proofs, loaded->tag_list };
+                               loaded->alarming, loaded->placing, loaded->proofs, loaded->tag_list, loaded->history };
 }
 
 void loaded_destroy(struct loaded **pointer)

@@ -355,9 +355,9 @@ bool net_open_history(struct net *net)
                                       .moments = params->moments,
                                       .notify = wake,
                                       .notify_arg = net };
+    hub->world.moments = params->history_folder ? params->moments : NULL;
     if (!params->history_folder)
         return true;
-    hub->world.moments = params->moments;
     hub->recall = recall_create(params->log, params->scene->plant, params->history_folder, wake, net);
     hub->past = past_create(&past);
     return hub->recall && hub->past;

@@ -23,6 +23,7 @@ struct net_plant { /* of net_params, what is another once the plant is loaded an
     struct placing *placing; /* NULL: sensors cannot be placed */
     struct proofs *proofs;   /* NULL: nothing can be proven */
     const char *tag_list;    /* the text in force; NULL: not known */
+    const char *history_folder; /* NULL: nothing is recorded */
 };
 
 struct net_params {

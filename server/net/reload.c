@@ -93,6 +93,7 @@ bool net_take(struct net *net, const struct net_plant *plant)
     hub->params.placing = plant->placing;
     hub->params.proofs = plant->proofs;
     hub->params.tag_list = plant->tag_list;
+    hub->params.history_folder = plant->history_folder;
     hub->alarms_number = 0;
     net_look_at_plant(net);
     bool good = net_open_history(net);
