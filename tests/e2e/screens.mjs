@@ -80,10 +80,13 @@ test('tablet: one finger turns, two pan and zoom; device pixels', options, () =>
     const looked = await view(page);
     looked.camera.eye.forEach((m, i) => assert.ok(Math.abs(m - pinched.camera.eye[i]) < 1e-6, 'three fingers: the eye stays'));
     assert.notDeepEqual(looked.camera.target, pinched.camera.target);
-    await page.locator('#home').tap();
     const isHome = ({ camera }) => camera.eye.every((m, i) => Math.abs(m - start.camera.eye[i]) < 1e-6);
-    for (let tries = 0; tries < 100 && !isHome(await view(page)); tries++)
+    await settle(page);
+    for (let tries = 0; tries < 100 && !isHome(await view(page)); tries++) {
+        if (tries % 30 === 0) // chromium may take a tap right after three fingers for the end of their gesture
+            await page.locator('#home').tap();
         await page.waitForTimeout(100);
+    }
     assert.ok(isHome(await view(page)), 'home again');
     await settle(page);
     assert.deepEqual(await tooSmall(page), []);
