@@ -174,8 +174,18 @@ void loaded_hand_over(struct loaded *loaded, const struct plant *next)
 
 struct net_plant loaded_net_plant(const struct loaded *loaded)
 {
-    return (struct net_plant){ loaded->scene, loaded->store, loaded->painter, loaded->baselines, loaded->moments,
-                               loaded->alarming, loaded->placing, loaded->proofs, loaded->tag_list, loaded->history };
+    return (struct net_plant){
+        .scene = loaded->scene,
+        .store = loaded->store,
+        .painter = loaded->painter,
+        .baselines = loaded->baselines,
+        .moments = loaded->moments,
+        .alarming = loaded->alarming,
+        .placing = loaded->placing,
+        .proofs = loaded->proofs,
+        .tag_list = loaded->tag_list,
+        .history_folder = loaded->history,
+    };
 }
 
 void loaded_destroy(struct loaded **pointer)

@@ -50,7 +50,7 @@ bool hub_write(struct hub *hub, struct lws *wsi, const void *bytes, size_t count
 void hub_go(struct hub *hub)
 {
     if (hub->asked)
-        painter_go(hub->params.painter);
+        painter_go(hub->params.plant.painter);
     hub->asked = false;
 }
 
@@ -66,7 +66,7 @@ static int64_t changed_ns(const struct snapshot *snapshot, const struct reading 
 static bool take_snapshot(struct hub *hub)
 {
     bool changed = false;
-    store_snapshot(hub->params.store, clock_mono_ns(), clock_utc_ns(), hub->snapshot);
+    store_snapshot(hub->params.plant.store, clock_mono_ns(), clock_utc_ns(), hub->snapshot);
     hub->data_ns = hub->snapshot->taken_mono_ns;
     for (size_t i = 0; i < hub->snapshot->count; i++) {
         const struct reading *reading = &hub->snapshot->readings[i];
@@ -84,7 +84,7 @@ static bool look_at_links(struct hub *hub)
 {
     bool changed = false, any = false;
     for (size_t i = 0; i < hub->world.plant->source_count; i++) {
-        bool up = store_link_is_up(hub->params.store, (int)i);
+        bool up = store_link_is_up(hub->params.plant.store, (int)i);
         changed |= hub->links_up[i] != up;
         hub->links_up[i] = up;
         any |= up;
@@ -145,7 +145,7 @@ static void on_tick(lws_sorted_usec_list_t *sul)
     if (data_changed)
         net->hub.world.changed_ns = net->hub.snapshot->taken_mono_ns;
     if (data_changed)
-        painter_new_data(net->hub.params.painter);
+        painter_new_data(net->hub.params.plant.painter);
     streams_on_tick(&net->hub, data_changed, links_changed);
     hub_go(&net->hub);
     lws_sul_schedule(net->hub.context, 0, sul, on_tick, TICK_NS / 1000);
@@ -153,7 +153,7 @@ static void on_tick(lws_sorted_usec_list_t *sul)
 
 static void collect_picks(struct hub *hub)
 {
-    for (struct pick_answer *answer = painter_collect_picks(hub->params.painter), *next; answer; answer = next) {
+    for (struct pick_answer *answer = painter_collect_picks(hub->params.plant.painter), *next; answer; answer = next) {
         next = answer->next;
         if (stream_owns(hub, answer->order.client))
             stream_on_pick(hub, answer);
@@ -175,7 +175,7 @@ static void collect_recalled(struct hub *hub)
 
 static void look_at_alarms(struct hub *hub)
 {
-    uint64_t number = hub->params.alarming ? alarming_number(hub->params.alarming) : 0;
+    uint64_t number = hub->params.plant.alarming ? alarming_number(hub->params.plant.alarming) : 0;
     if (number == hub->alarms_number)
         return;
     hub->alarms_number = number;
@@ -199,13 +199,13 @@ static void collect_moments(struct hub *hub)
 
 static void collect_places(struct hub *hub)
 {
-    struct gaps_answer *answer = hub->params.placing ? placing_collect(hub->params.placing) : NULL;
+    struct gaps_answer *answer = hub->params.plant.placing ? placing_collect(hub->params.plant.placing) : NULL;
     for (struct gaps_answer *next; answer; answer = next) {
         next = answer->next;
         stream_on_gaps(hub, answer);
         gaps_answer_free(answer);
     }
-    if (hub->params.placing)
+    if (hub->params.plant.placing)
         streams_on_placed(hub);
 }
 
@@ -218,7 +218,7 @@ static void collect(struct net *net)
     collect_recalled(hub);
     collect_moments(hub);
     collect_places(hub);
-    for (struct picture *picture = painter_collect(hub->params.painter), *next; picture; picture = next) {
+    for (struct picture *picture = painter_collect(hub->params.plant.painter), *next; picture; picture = next) {
         next = picture->next;
         picture->next = NULL;
         if (stream_owns(hub, picture->client))
@@ -348,17 +348,17 @@ static void wake(void *arg)
 bool net_open_history(struct net *net)
 {
     struct hub *hub = &net->hub;
-    const struct net_params *params = &hub->params;
-    const struct past_params past = { .log = params->log,
-                                      .plant = params->scene->plant,
-                                      .folder = params->history_folder,
-                                      .moments = params->moments,
+    const struct net_plant *plant = &hub->params.plant;
+    const struct past_params past = { .log = hub->params.log,
+                                      .plant = plant->scene->plant,
+                                      .folder = plant->history_folder,
+                                      .moments = plant->moments,
                                       .notify = wake,
                                       .notify_arg = net };
-    hub->world.moments = params->history_folder ? params->moments : NULL;
-    if (!params->history_folder)
+    hub->world.moments = plant->history_folder ? plant->moments : NULL;
+    if (!plant->history_folder)
         return true;
-    hub->recall = recall_create(params->log, params->scene->plant, params->history_folder, wake, net);
+    hub->recall = recall_create(hub->params.log, plant->scene->plant, plant->history_folder, wake, net);
     hub->past = past_create(&past);
     return hub->recall && hub->past;
 }
@@ -376,18 +376,18 @@ bool net_access_good(struct log *log, const struct access_params *access)
 void net_look_at_plant(struct net *net)
 {
     struct hub *hub = &net->hub;
-    const struct plant *plant = hub->params.scene->plant;
+    const struct plant *plant = hub->params.plant.scene->plant;
     hub->snapshot = snapshot_create(plant->tag_count);
     hub->changes = mem_array(plant->tag_count, sizeof(*hub->changes));
     hub->links_up = mem_array(plant->source_count, sizeof(*hub->links_up));
     hub->world.plant = plant;
-    hub->world.scene = hub->params.scene;
+    hub->world.scene = hub->params.plant.scene;
     hub->world.snapshot = hub->snapshot;
-    hub->world.baselines = hub->params.baselines;
-    hub->world.alarming = hub->params.alarming;
-    hub->world.placing = hub->params.save ? hub->params.placing : NULL;
-    hub->world.proofs = hub->params.proofs;
-    hub->world.tag_list = hub->params.tag_list;
+    hub->world.baselines = hub->params.plant.baselines;
+    hub->world.alarming = hub->params.plant.alarming;
+    hub->world.placing = hub->params.save ? hub->params.plant.placing : NULL;
+    hub->world.proofs = hub->params.plant.proofs;
+    hub->world.tag_list = hub->params.plant.tag_list;
     hub->world.links_up = hub->links_up;
     take_snapshot(hub);
     look_at_links(hub);

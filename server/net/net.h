@@ -13,36 +13,27 @@
 #include "proving/proofs.h"
 
 struct net;
-struct net_plant { /* of net_params, what is another once the plant is loaded anew */
+struct net_plant { /* what is another once the plant is loaded anew */
     const struct scene *scene;
     struct store *store;
     struct painter *painter;
     struct baselines *baselines;
     struct moments *moments;
     struct alarming *alarming;
-    struct placing *placing; /* NULL: sensors cannot be placed */
-    struct proofs *proofs;   /* NULL: nothing can be proven */
-    const char *tag_list;    /* the text in force; NULL: not known */
+    struct placing *placing;    /* NULL: sensors cannot be placed */
+    struct proofs *proofs;      /* NULL: nothing can be proven */
+    const char *tag_list;       /* the text in force; NULL: not known */
     const char *history_folder; /* NULL: nothing is recorded */
 };
 
 struct net_params {
     struct log *log;
-    const struct scene *scene;
-    struct store *store;
-    struct painter *painter;
-    struct baselines *baselines;
-    struct moments *moments;
-    struct alarming *alarming;
-    struct placing *placing; /* as in net_plant, these three */
-    struct proofs *proofs;
-    const char *tag_list;
+    struct net_plant plant;
     struct counters *counters;
     const char *address;    /* numeric */
     int port;               /* 0: any that is free */
     struct access_params access;
     unsigned codecs;        /* a bit, 1 << enum wire_codec, for each that works here */
-    const char *history_folder; /* NULL: nothing is recorded */
     const char *web_folder; /* NULL: no client is served */
     const char *version;
     void (*reload)(void *arg); /* load the plant anew: somebody asks for it; in the loop. NULL: cannot be done */

@@ -84,16 +84,7 @@ void net_let_go(struct net *net)
 bool net_take(struct net *net, const struct net_plant *plant)
 {
     struct hub *hub = &net->hub;
-    hub->params.scene = plant->scene;
-    hub->params.store = plant->store;
-    hub->params.painter = plant->painter;
-    hub->params.baselines = plant->baselines;
-    hub->params.moments = plant->moments;
-    hub->params.alarming = plant->alarming;
-    hub->params.placing = plant->placing;
-    hub->params.proofs = plant->proofs;
-    hub->params.tag_list = plant->tag_list;
-    hub->params.history_folder = plant->history_folder;
+    hub->params.plant = *plant;
     hub->alarms_number = 0;
     net_look_at_plant(net);
     bool good = net_open_history(net);

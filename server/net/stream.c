@@ -103,7 +103,7 @@ static void on_close(struct hub *hub, struct stream **slot)
     follow_forget(hub, stream);
     log_debug(hub->params.log, "session %llu: closed (%lld messages, %lld errors)", (unsigned long long)stream->session->id,
               (long long)stream->messages, (long long)stream->errors);
-    painter_forget(hub->params.painter, stream->session->id);
+    painter_forget(hub->params.plant.painter, stream->session->id);
     if (hub->past)
         past_forget(hub->past, stream->session->id);
     stream->peer->sessions--;
@@ -143,14 +143,14 @@ static void pump(struct hub *hub, struct stream *stream)
     if (stream->close_code)
         return;
     if (session_wish(session, now_ns, &wish)) {
-        enum painter_answer answer = painter_ask(hub->params.painter, session->id, &wish);
+        enum painter_answer answer = painter_ask(hub->params.plant.painter, session->id, &wish);
         if (answer != PAINTER_REFUSED)
             session_asked(session, &wish, answer == PAINTER_REPLACED);
         hub->asked = true;
     }
     struct pick_order order;
     if (session_pick(session, &order))
-        painter_pick(hub->params.painter, &order);
+        painter_pick(hub->params.plant.painter, &order);
     if (session->too_fast != stream->throttled) {
         stream->throttled = session->too_fast;
         lws_rx_flow_control(stream->wsi, !stream->throttled);

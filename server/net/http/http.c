@@ -16,7 +16,7 @@ static int alive(struct hub *hub, struct request *request)
 
 static int ready(struct hub *hub, struct request *request)
 {
-    if (painter_ready(hub->params.painter))
+    if (painter_ready(hub->params.plant.painter))
         return request_answer_text(request, HTTP_STATUS_OK, "ok\n");
     return request_answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "the GL context was lost; a new one is being made\n");
 }

@@ -122,13 +122,13 @@ void request_forget(struct hub *hub, struct request *request)
         return;
     *at = request->next;
     hub->snapshot_count--;
-    painter_forget(hub->params.painter, request->client);
+    painter_forget(hub->params.plant.painter, request->client);
     if (hub->recall)
         recall_forget(hub->recall, request->client);
     if (hub->past)
         past_forget(hub->past, request->client);
     if (request->asked && request->asked->moment)
-        moments_give(hub->params.moments, &request->asked->moment);
+        moments_give(hub->params.plant.moments, &request->asked->moment);
     mem_free(request->asked);
     request->asked = NULL;
 }

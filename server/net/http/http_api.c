@@ -16,7 +16,7 @@ int ask_history(struct hub *hub, struct request *request)
     if (!hub->recall)
         return request_answer_text(request, HTTP_STATUS_NOT_FOUND, HTTP_NOTHING_RECORDED);
     if (!request_args(request->wsi, &args, &error) ||
-        !recall_parse(hub->params.scene->plant, args.list, args.count, clock_utc_ns() / 1000, &order, &error))
+        !recall_parse(hub->params.plant.scene->plant, args.list, args.count, clock_utc_ns() / 1000, &order, &error))
         return request_answer_error(request, &error);
     order.client = hub->next_client;
     if (!recall_ask(hub->recall, &order))
@@ -29,18 +29,18 @@ static bool read_alarm_query(struct hub *hub, struct request *request, bool jour
 {
     struct args args;
     return request_args(request->wsi, &args, error) &&
-           alarm_query_parse(hub->params.scene->plant, journal, args.list, args.count, clock_utc_ns() / 1000, query, error);
+           alarm_query_parse(hub->params.plant.scene->plant, journal, args.list, args.count, clock_utc_ns() / 1000, query, error);
 }
 
 int api_alarms(struct hub *hub, struct request *request)
 {
     struct alarm_query query;
     struct message_error error = { 0 };
-    if (!hub->params.alarming)
+    if (!hub->params.plant.alarming)
         return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "there are no alarms here\n");
     if (!read_alarm_query(hub, request, false, &query, &error))
         return request_answer_error(request, &error);
-    char *text = alarms_api_text(hub->params.alarming, hub->params.scene->plant, &query, clock_utc_ns());
+    char *text = alarms_api_text(hub->params.plant.alarming, hub->params.plant.scene->plant, &query, clock_utc_ns());
     return query.csv ? request_answer(request, HTTP_STATUS_OK, "text/csv; charset=utf-8", text, strlen(text), NULL, NULL)
                      : request_answer_json(request, text);
 }
@@ -117,9 +117,9 @@ int api_tags(struct hub *hub, struct request *request)
 int api_proofs(struct hub *hub, struct request *request)
 {
     struct text text = { 0 };
-    if (!hub->params.proofs)
+    if (!hub->params.plant.proofs)
         return request_answer_text(request, HTTP_STATUS_NOT_FOUND, HTTP_NOTHING_RECORDED);
-    proofs_print(hub->params.proofs, &text);
+    proofs_print(hub->params.plant.proofs, &text);
     return request_answer(request, HTTP_STATUS_OK, "text/csv; charset=utf-8", text.at, text.length, "content-disposition:",
                           "attachment; filename=\"proofs.csv\"");
 }

@@ -15,7 +15,7 @@ static const struct encoder_params LOSSLESS = { .quality = 100, .full_chroma = t
 static bool read_query(struct hub *hub, struct lws *wsi, struct view *view, double place[2], struct message_error *error)
 {
     const struct params_world world = {
-        .scene = hub->params.scene, .baselines = hub->params.baselines, .now_us = clock_utc_ns() / 1000
+        .scene = hub->params.plant.scene, .baselines = hub->params.plant.baselines, .now_us = clock_utc_ns() / 1000
     };
     struct args args;
     return request_args(wsi, &args, error) && query_parse(&world, visitor_of(wsi)->role, args.list, args.count, view, place, error);
@@ -33,10 +33,10 @@ static void begin(struct hub *hub, struct request *request)
     if (asked_view(asked)->at_us && !asked->moment) {
         past_ask(hub->past, request->client, asked_view(asked)->at_us);
     } else if (asked->picks) {
-        painter_pick(hub->params.painter, &asked->pick);
+        painter_pick(hub->params.plant.painter, &asked->pick);
     } else {
-        painter_ask(hub->params.painter, request->client, &asked->wish);
-        painter_go(hub->params.painter);
+        painter_ask(hub->params.plant.painter, request->client, &asked->wish);
+        painter_go(hub->params.plant.painter);
     }
 }
 
@@ -115,7 +115,7 @@ void http_on_pick(struct hub *hub, const struct pick_answer *pick)
     if (!request)
         return;
     request_forget(hub, request);
-    request_answered(request, request_answer_json(request, reply_picked_text(hub->params.scene->plant, pick)));
+    request_answered(request, request_answer_json(request, reply_picked_text(hub->params.plant.scene->plant, pick)));
 }
 
 void http_on_moment(struct hub *hub, const struct past_answer *past)
@@ -124,7 +124,7 @@ void http_on_moment(struct hub *hub, const struct past_answer *past)
     if (!request)
         return;
     struct asked *asked = request->asked;
-    asked->moment = past->good ? moments_take(hub->params.moments, past->at_us) : NULL;
+    asked->moment = past->good ? moments_take(hub->params.plant.moments, past->at_us) : NULL;
     if (asked->moment) {
         view_travel(asked_view(asked), past->at_us, asked->moment->slot);
         begin(hub, request);
