@@ -169,7 +169,7 @@ bool isolines_start(struct sights *sights, const struct picture *picture, const 
     size_t count = points->count;
     if (count == 0)
         return true;
-    float(*places)[4] = sights_fit(sights, picture->stage->gl->log, count);
+    float(*places)[4] = sights_fit(sights, picture->stage->gl, count);
     if (!places)
         return false;
     fill_places(picture, points, places);

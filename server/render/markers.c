@@ -83,7 +83,7 @@ bool markers_start(struct sights *sights, const struct picture *picture)
     size_t count = count_shown(picture);
     if (count == 0)
         return true;
-    float(*places)[4] = sights_fit(sights, picture->stage->gl->log, count);
+    float(*places)[4] = sights_fit(sights, picture->stage->gl, count);
     if (!places)
         return false;
     fill_places(picture, places);

@@ -6,14 +6,16 @@
 
 enum { LEAST_PLACES = 256 };
 
-float (*sights_fit(struct sights *sights, struct log *log, size_t count))[4]
+float (*sights_fit(struct sights *sights, const struct gl *gl, size_t count))[4]
 {
     GLbitfield both = GL_MAP_READ_BIT | GL_MAP_WRITE_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
+    if (gl_lost(gl))
+        return NULL;
     if (count <= sights->capacity)
         return sights->places;
     sights_finish(sights);
     size_t capacity = count > LEAST_PLACES ? count : LEAST_PLACES, bytes = capacity * sizeof(*sights->places);
-    sights->buffer = mesh_buffer(log, "places in a picture", bytes, NULL, both | GL_CLIENT_STORAGE_BIT);
+    sights->buffer = mesh_buffer(gl->log, "places in a picture", bytes, NULL, both | GL_CLIENT_STORAGE_BIT);
     sights->places = sights->buffer ? glMapNamedBufferRange(sights->buffer, 0, (GLsizeiptr)bytes, both) : NULL;
     sights->capacity = sights->places ? capacity : 0;
     return sights->places;

@@ -13,8 +13,8 @@ struct sights {
 };
 
 /* Room for so many places, to be filled in: eye space, metres, and how far it may lie behind the surface. The picture that they were
-   used for last is done. NULL: out of GPU memory, logged. */
-float (*sights_fit(struct sights *sights, struct log *log, size_t count))[4];
+   used for last is done. NULL: out of GPU memory, logged, or the context is lost, and what it had mapped with it. */
+float (*sights_fit(struct sights *sights, const struct gl *gl, size_t count))[4];
 /* Once the picture is resolved. When the GPU is done places hold x, y in pixels, hidden 0 or 1. False: logged. */
 bool sights_start(const struct sights *sights, const struct picture *picture, size_t count);
 void sights_finish(struct sights *sights);
