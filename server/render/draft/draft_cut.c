@@ -2,30 +2,10 @@
 /* Triangles of a part that the near plane may cut. */
 #include <math.h>
 
+#include "render/draft/draft_near.h"
 #include "render/draft/draft_tile.h"
 
-struct corner { /* in clip space, x and y in pixels */
-    float at[4], a, b;
-};
-
-static struct corner corner_of(const struct draft_corners *corners, const struct draft_mesh *mesh, uint32_t vertex, int number)
-{
-    const float *p = mesh->file->positions_m[vertex];
-    struct corner corner = { .a = corners->a[number], .b = corners->b[number] };
-    for (int r = 0; r < 4; r++)
-        corner.at[r] = mesh->place[0][r] * p[0] + mesh->place[1][r] * p[1] + mesh->place[2][r] * p[2] + mesh->place[3][r];
-    return corner;
-}
-
-static struct corner between(const struct corner *from, const struct corner *to, float part)
-{
-    struct corner corner = { .a = from->a + part * (to->a - from->a), .b = from->b + part * (to->b - from->b) };
-    for (int r = 0; r < 4; r++)
-        corner.at[r] = from->at[r] + part * (to->at[r] - from->at[r]);
-    return corner;
-}
-
-static int add_corner(struct draft_corners *corners, const struct corner *corner, uint32_t flags)
+static int add_corner(struct draft_corners *corners, const struct near_corner *corner, uint32_t flags)
 {
     float inverse = 1 / fmaxf(corner->at[3], 1e-30f);
     int number = corners->count++;
@@ -39,27 +19,18 @@ static int add_corner(struct draft_corners *corners, const struct corner *corner
     return number;
 }
 
-/* What lies beyond the near plane. How many corners it has, in order: 0, 3 or 4. */
 static int cut(struct draft_corners *corners, const struct draft_mesh *mesh, const uint32_t *vertices, const int numbers[3], int out[4])
 {
-    struct corner at[3];
+    struct near_corner at[3], left[4];
     uint32_t flags = 0;
-    int count = 0;
     for (int i = 0; i < 3; i++) {
-        at[i] = corner_of(corners, mesh, vertices[numbers[i]], numbers[i]);
+        at[i] = near_corner_of(mesh, vertices[numbers[i]], corners->a[numbers[i]], corners->b[numbers[i]]);
         flags |= corners->flags[numbers[i]];
     }
-    for (int i = 0; i < 3; i++) {
-        const struct corner *here = &at[i], *next = &at[(i + 1) % 3];
-        float inside = here->at[3] - here->at[2], after = next->at[3] - next->at[2];
-        if (inside >= 0)
-            out[count++] = add_corner(corners, here, flags);
-        if ((inside >= 0) != (after >= 0)) {
-            struct corner crossing = between(here, next, inside / (inside - after));
-            out[count++] = add_corner(corners, &crossing, flags);
-        }
-    }
-    return count >= 3 ? count : 0;
+    int count = near_cut(at, left);
+    for (int i = 0; i < count; i++)
+        out[i] = add_corner(corners, &left[i], flags);
+    return count;
 }
 
 static int first_pixel(float x, int low)

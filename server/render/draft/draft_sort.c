@@ -4,33 +4,11 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "render/draft/draft_impl.h"
+#include "render/draft/draft_near.h"
 
 /* --- the near plane --------------------------------------------------------------------------------------------------------- */
 
-struct corner { /* in clip space, x and y in pixels */
-    float at[4], a, b;
-};
-
-static struct corner corner_of(const struct draft *draft, const struct draft_mesh *mesh, uint32_t v)
-{
-    const struct draft_vertex *vertex = &draft->vertices[mesh->first_vertex + v];
-    const float *p = mesh->file->positions_m[v];
-    struct corner corner = { .a = vertex->a, .b = vertex->b };
-    for (int r = 0; r < 4; r++)
-        corner.at[r] = mesh->place[0][r] * p[0] + mesh->place[1][r] * p[1] + mesh->place[2][r] * p[2] + mesh->place[3][r];
-    return corner;
-}
-
-static struct corner between(const struct corner *from, const struct corner *to, float part)
-{
-    struct corner corner = { .a = from->a + part * (to->a - from->a), .b = from->b + part * (to->b - from->b) };
-    for (int r = 0; r < 4; r++)
-        corner.at[r] = from->at[r] + part * (to->at[r] - from->at[r]);
-    return corner;
-}
-
-static uint32_t add_extra(struct draft_chunk *chunk, const struct corner *corner, uint32_t flags, uint32_t source)
+static uint32_t add_extra(struct draft_chunk *chunk, const struct near_corner *corner, uint32_t flags, uint32_t source)
 {
     float inverse = 1 / fmaxf(corner->at[3], 1e-30f);
     mem_grow(&chunk->extra, &chunk->extra_capacity, chunk->extra_count + 1, sizeof(*chunk->extra));
@@ -47,28 +25,20 @@ static uint32_t add_extra(struct draft_chunk *chunk, const struct corner *corner
     return EXTRA_VERTEX | (uint32_t)chunk->extra_count++;
 }
 
-/* What lies beyond the near plane. How many corners it has, in order: 0, 3 or 4. */
 static int cut(const struct draft *draft, struct draft_chunk *chunk, const struct draft_mesh *mesh, const uint32_t *indices,
                uint32_t corners[4])
 {
-    struct corner at[3];
+    struct near_corner at[3], left[4];
     uint32_t flags = 0, source = (uint32_t)(indices - mesh->file->indices);
-    int count = 0;
     for (int i = 0; i < 3; i++) {
-        at[i] = corner_of(draft, mesh, indices[i]);
-        flags |= draft->vertices[mesh->first_vertex + indices[i]].flags;
+        const struct draft_vertex *vertex = &draft->vertices[mesh->first_vertex + indices[i]];
+        at[i] = near_corner_of(mesh, indices[i], vertex->a, vertex->b);
+        flags |= vertex->flags;
     }
-    for (int i = 0; i < 3; i++) {
-        const struct corner *here = &at[i], *next = &at[(i + 1) % 3];
-        float inside = here->at[3] - here->at[2], after = next->at[3] - next->at[2];
-        if (inside >= 0)
-            corners[count++] = add_extra(chunk, here, flags, source);
-        if ((inside >= 0) != (after >= 0)) {
-            struct corner crossing = between(here, next, inside / (inside - after));
-            corners[count++] = add_extra(chunk, &crossing, flags, source);
-        }
-    }
-    return count >= 3 ? count : 0;
+    int count = near_cut(at, left);
+    for (int i = 0; i < count; i++)
+        corners[i] = add_extra(chunk, &left[i], flags, source);
+    return count;
 }
 
 /* --- bands ------------------------------------------------------------------------------------------------------------------ */
