@@ -8,6 +8,15 @@
 #include "net/http/http_impl.h"
 #include "net/message/reply.h"
 
+static int await_recalled(struct hub *hub, struct request *request, struct recall_order *order)
+{
+    order->client = hub->next_client;
+    if (!recall_ask(hub->recall, order))
+        return request_answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "too much is being asked; try again\n");
+    request_await(hub, request);
+    return 0;
+}
+
 int ask_history(struct hub *hub, struct request *request)
 {
     struct recall_order order;
@@ -18,11 +27,7 @@ int ask_history(struct hub *hub, struct request *request)
     if (!request_args(request->wsi, &args, &error) ||
         !recall_parse(hub->params.plant.scene->plant, args.list, args.count, clock_utc_ns() / 1000, &order, &error))
         return request_answer_error(request, &error);
-    order.client = hub->next_client;
-    if (!recall_ask(hub->recall, &order))
-        return request_answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "too much is being asked; try again\n");
-    request_await(hub, request);
-    return 0;
+    return await_recalled(hub, request, &order);
 }
 
 static bool read_alarm_query(struct hub *hub, struct request *request, bool journal, struct alarm_query *query, struct message_error *error)
@@ -53,11 +58,7 @@ int ask_journal(struct hub *hub, struct request *request)
         return request_answer_text(request, HTTP_STATUS_NOT_FOUND, HTTP_NOTHING_RECORDED);
     if (!read_alarm_query(hub, request, true, &order.alarms, &error))
         return request_answer_error(request, &error);
-    order.client = hub->next_client;
-    if (!recall_ask(hub->recall, &order))
-        return request_answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "too much is being asked; try again\n");
-    request_await(hub, request);
-    return 0;
+    return await_recalled(hub, request, &order);
 }
 
 void http_on_recall(struct hub *hub, struct recall_answer *recalled)
