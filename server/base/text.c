@@ -39,6 +39,14 @@ void text_add(struct text *text, const char *fmt, ...)
     va_end(ap);
 }
 
+void text_add_quoted(struct text *text, const char *cell)
+{
+    text_add(text, "\"");
+    for (; *cell; cell++)
+        text_add(text, *cell == '"' ? "\"\"" : "%c", *cell);
+    text_add(text, "\"");
+}
+
 void text_finish(struct text *text)
 {
     mem_free(text->at);

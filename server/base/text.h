@@ -14,6 +14,7 @@ struct text { /* zero-initialise; .at is NULL until the first byte, then always 
 void text_add(struct text *text, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
 void text_add_v(struct text *text, const char *fmt, va_list ap) __attribute__((format(printf, 2, 0)));
 void text_add_bytes(struct text *text, const void *bytes, size_t count);
+void text_add_quoted(struct text *text, const char *cell); /* as CSV quotes: those inside twice */
 void text_finish(struct text *text); /* frees; leaves it empty */
 
 /* Reads a whole file of at most max_bytes; one 0 byte follows the content. NULL on failure: errno says why (EFBIG: too large).

@@ -69,11 +69,10 @@ void series_text_json(struct text *out, const char *tag, const char *unit, const
 
 static void add_cell(struct text *out, const char *text)
 {
-    bool plain = !strpbrk(text, ",;\t\"\r\n ");
-    text_add(out, plain ? "" : "\"");
-    for (; *text; text++)
-        text_add(out, *text == '"' ? "\"\"" : "%c", *text);
-    text_add(out, plain ? "" : "\"");
+    if (strpbrk(text, ",;\t\"\r\n "))
+        text_add_quoted(out, text);
+    else
+        text_add(out, "%s", text);
 }
 
 static void begin_row(struct text *out, const char *tag, int64_t t_us)

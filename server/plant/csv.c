@@ -126,8 +126,7 @@ static bool read_row(struct csv *csv, struct csv_row *row)
     return false;
 }
 
-/* The separator that the first line with text has most of, outside quotes. */
-static char detect_separator(const char *p)
+char csv_separator(const char *p)
 {
     static const char separators[] = ",;\t";
     size_t counts[3] = { 0 }, best = 0;
@@ -168,7 +167,7 @@ bool csv_open(struct csv *csv, const char *path, struct diag *diag)
     if (!text)
         return false;
     *csv = (struct csv){ .path = mem_strdup(path), .diag = diag, .bytes = text, .at = text, .line = 1, .column = 1 };
-    csv->separator = detect_separator(text);
+    csv->separator = csv_separator(text);
     if (!read_row(csv, &csv->header)) {
         diag_error(diag, path, 1, 1, "has no header row");
         csv_close(csv);

@@ -32,6 +32,8 @@ bool csv_open(struct csv *csv, const char *path, struct diag *diag);
 void csv_close(struct csv *csv);
 /* The next row that is not blank. False: no more. What is wrong with quotes or the number of cells is reported. */
 bool csv_next(struct csv *csv);
+/* The separator that the first line with text has most of, outside quotes. */
+char csv_separator(const char *text);
 /* Index of the column with this name, upper or lower case, or -1. */
 int csv_find(const struct csv *csv, const char *name);
 /* The cell's text in the current row; "" where column is -1 or the row is shorter. Valid until csv_close. */

@@ -9,6 +9,7 @@
 
 #include "base/mem.h"
 #include "base/text.h"
+#include "plant/csv.h"
 
 enum edited { EDIT_NAME, EDIT_ASSET, EDIT_GROUP, EDIT_NODE, EDIT_X, EDIT_Y, EDIT_Z, EDIT_COLUMNS };
 static const char *const names[EDIT_COLUMNS] = { "Tag Name", "Asset", "Group", "Node", "X", "Y", "Z" };
@@ -93,24 +94,6 @@ static void read_cell(struct span span, char *out, size_t size)
     out[n] = 0;
 }
 
-static char separator_of(const char *text)
-{
-    static const char separators[] = ",;\t";
-    size_t counts[3] = { 0 }, best = 0;
-    bool quoted = false;
-    text += strspn(text, " \t\r\n");
-    for (; *text && (quoted || !ends(*text)); text++) {
-        const char *found = strchr(separators, *text);
-        quoted ^= *text == '"';
-        if (found && !quoted)
-            counts[found - separators]++;
-    }
-    for (size_t i = 1; i < 3; i++)
-        if (counts[i] > counts[best])
-            best = i;
-    return separators[best];
-}
-
 static bool row_is_blank(const struct row *row)
 {
     char text[8];
@@ -150,10 +133,7 @@ static void add_cell(struct text *out, const char *text, char separator)
         text_add(out, "%s", text);
         return;
     }
-    text_add(out, "\"");
-    for (; *text; text++)
-        text_add(out, *text == '"' ? "\"\"" : "%c", *text);
-    text_add(out, "\"");
+    text_add_quoted(out, text);
 }
 
 /* Millimetres, without zeros that say nothing. */
@@ -262,7 +242,7 @@ static char *all_rows(struct list *list, const char *text, const struct tag_edit
 char *tag_edit(const char *text, const struct tag_edit *edits, size_t count, char **why)
 {
     const char *begin = strncmp(text, "\xEF\xBB\xBF", 3) ? text : text + 3;
-    struct list list = { .separator = separator_of(begin), .at = begin };
+    struct list list = { .separator = csv_separator(begin), .at = begin };
     bool *done = mem_array(count + 1, sizeof(*done));
     char *out = NULL;
     *why = NULL;

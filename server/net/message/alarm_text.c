@@ -176,11 +176,10 @@ struct listing {
 
 static void add_csv_text(struct text *out, const char *text)
 {
-    bool plain = !strpbrk(text, ",\"\n\r");
-    text_add(out, plain ? "" : "\"");
-    for (const char *c = text; *c; c++)
-        text_add(out, *c == '"' ? "\"\"" : "%c", *c);
-    text_add(out, plain ? "" : "\"");
+    if (strpbrk(text, ",\"\n\r"))
+        text_add_quoted(out, text);
+    else
+        text_add(out, "%s", text);
 }
 
 static void add_csv_number(struct text *out, double value)
