@@ -17,6 +17,9 @@ test('a box comes back as large as it was made', () => {
     const bounds = { min: [0, -1, 2], max: [10, 1, 3] };
     assert.deepEqual(boxAround(bounds, 0.5), { box: { min: [2.5, -0.5, 2.25], max: [7.5, 0.5, 2.75] } });
     assert.equal(readBox(boxAround(bounds, 1.5), bounds), 1.5);
+    const drawn = boxAround(bounds, 0.5);
+    drawn.box.max[1] += 0.1;
+    assert.equal(readBox(drawn, bounds), null, 'one side was drawn out');
     assert.equal(readBox(cut('x', 1, false), bounds), null);
 });
 

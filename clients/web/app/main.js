@@ -38,6 +38,7 @@ chooseTheme(location.search);
 
 const address = readAddress(location.hash);
 const selection = { tag: address.tag, hover: null };
+const wall = readWall(location.search);
 
 const streamUrl = new URL('stream', location.href.replace(/^http/, 'ws').replace(/#.*$/, '')).href;
 const connection = new Connection({ url: streamUrl, open: (url, protocol) => new WebSocket(url, protocol), clock });
@@ -170,6 +171,15 @@ async function openEngineer() {
     engineer.toggle();
 }
 byId('engineer-toggle').addEventListener('click', openEngineer);
+
+let grips = null; // of what is cut away; made when something is
+session.on('params', async () => {
+    if (!session.params.clip || wall || grips)
+        return;
+    const { Grips } = await import('./grips.js');
+    grips ??= new Grips({ session, viewport });
+    refresh();
+});
 session.on('proofs', refresh);
 
 pilot.onClick = (x, y, kind) => {
@@ -218,6 +228,7 @@ viewport.onDrawn = (newPicture) => {
         card.show();
         place.show();
         tools.measuring?.show();
+        grips?.show();
         overlay.draw();
     }
 };
@@ -327,7 +338,6 @@ document.addEventListener('visibilitychange', () => {
     }
 });
 session.leader = Number(new URLSearchParams(location.hash.slice(1)).get('follow')) || null;
-const wall = readWall(location.search);
 if (wall)
     (await import('./wall.js')).hangOnWall(wall, { overlay, refresh });
 watchSleep(() => {

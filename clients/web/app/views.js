@@ -126,9 +126,13 @@ export class Views {
         markSegment(byId('projection'), this.projection === 'orthographic' ? 'parallel' : 'perspective');
         const now = readCut(params.clip);
         const part = readBox(params.clip, this.boxed);
-        markSegment(byId('cut'), now?.axis ?? (part !== null ? 'box' : params.clip ? '' : 'off'));
-        byId('cut-place').hidden = !now && part === null;
+        const box = params.clip?.box;
+        markSegment(byId('cut'), now?.axis ?? (box ? 'box' : params.clip ? '' : 'off'));
+        byId('cut-place').hidden = !now && !box;
         byId('cut-turn').hidden = !now;
+        this.at.hidden = box && part === null;
+        if (box && part === null)
+            setText(byId('cut-text'), `${box.max.map((high, i) => numberText(high - box.min[i], 1)).join(' × ')} m`);
         if (part !== null) {
             const what = model.asset(params.selected)?.tag || say('views.plant');
             this.at.value = Math.round((part * STEPS) / LARGEST_BOX);
@@ -139,7 +143,8 @@ export class Views {
             this.at.max = STEPS;
             if (document.activeElement !== this.at || !this.moving)
                 this.at.value = Math.round(((now.at - min) / (max - min)) * STEPS);
-            setText(byId('cut-text'), say('views.stays', { axis: now.axis, sign: now.turned ? '≤' : '≥', at: numberText(now.at, 1) }));
+            setText(byId('cut-text'), say('views.stays', {
+                axis: now.axis.toUpperCase(), sign: now.turned ? '≤' : '≥', at: numberText(now.at, 1) }));
         }
         const asset = model.asset(params.selected);
         setText(byId('shows-what'), say('views.equipment', { what: asset ? asset.tag || asset.id : say('views.select') }));

@@ -26,10 +26,14 @@ export function boxAround({ min, max }, part) {
     return { box: { min: [0, 1, 2].map((i) => side(i, -1)), max: [0, 1, 2].map((i) => side(i, 1)) } };
 }
 
-// The part, the other way round; by the longest side.
-export function readBox(clip, { min, max }) {
-    const lengths = max.map((high, i) => high - min[i]), longest = lengths.indexOf(Math.max(...lengths));
-    return clip?.box ? (clip.box.max[longest] - clip.box.min[longest]) / lengths[longest] : null;
+// The part, the other way round. null: no box, or one that was drawn out by hand.
+export function readBox(clip, bounds) {
+    if (!clip?.box)
+        return null;
+    const lengths = bounds.max.map((high, i) => high - bounds.min[i]), most = Math.max(...lengths), longest = lengths.indexOf(most);
+    const part = (clip.box.max[longest] - clip.box.min[longest]) / most, { box } = boxAround(bounds, part);
+    const near = (name) => box[name].every((m, i) => Math.abs(m - clip.box[name][i]) < 1e-4 * most);
+    return near('min') && near('max') ? part : null;
 }
 
 const without = (list, id) => (list ?? []).filter((other) => other !== id);

@@ -129,6 +129,8 @@ export default {
     'projection.parallel': 'Parallel',
     'cut.off': 'Aus',
     'cut.box': 'Quader',
+    'cut.move': 'Schnitt verschieben: {axis}',
+    'cut.oblique': 'schräg',
     'shown.hide': 'Ausblenden',
     'shown.ghost': 'Durchsichtig',
     'shown.only': 'Nur dies',

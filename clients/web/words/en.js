@@ -129,6 +129,8 @@ export default {
     'projection.parallel': 'Parallel',
     'cut.off': 'Off',
     'cut.box': 'Box',
+    'cut.move': 'Move the cut: {axis}',
+    'cut.oblique': 'oblique',
     'shown.hide': 'Hide',
     'shown.ghost': 'Ghost',
     'shown.only': 'Only this',

@@ -129,6 +129,8 @@ export default {
     'projection.parallel': '평행',
     'cut.off': '끔',
     'cut.box': '상자',
+    'cut.move': '단면 옮기기: {axis}',
+    'cut.oblique': '비스듬히',
     'shown.hide': '숨기기',
     'shown.ghost': '투명',
     'shown.only': '이것만',

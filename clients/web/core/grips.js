@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Grips of what is cut away: one for each plane, one for each side of a box; where they are, and where a hand takes them.
+import { basis, isParallel } from './camera.js';
+import { AXES } from './section.js';
+import { add, along, cross, dot, length, mix, scale, subtract, unit } from './vector.js';
+
+const LEAST_BOX_M = 0.05, MARGIN = 1e-3; // a plane stays inside the plant by this part of it
+const NEAR_M = 0.02;                     // of the eye
+const STEEP = 0.03;                      // sine squared between sight and way: below, a hand cannot say how far
+
+const middleOf = (points) => scale(points.reduce(add), 1 / points.length);
+
+export const cornersOf = ({ min, max }) =>
+    [0, 1, 2, 3, 4, 5, 6, 7].map((n) => [0, 1, 2].map((i) => (n & (1 << i) ? max[i] : min[i])));
+
+// Where a plane p·direction = at meets a box: the corners of that polygon, in order.
+function crossing(direction, at, box) {
+    const corners = cornersOf(box), found = [];
+    for (let a = 0; a < 8; a++) {
+        for (const bit of [1, 2, 4]) {
+            if (a & bit)
+                continue;
+            const p = corners[a], q = corners[a | bit], from = dot(p, direction) - at, to = dot(q, direction) - at;
+            if (from * to < 0)
+                found.push(mix(p, q, from / (from - to)));
+        }
+    }
+    if (found.length < 3)
+        return [];
+    const middle = middleOf(found), u = unit(subtract(found[0], middle)), v = cross(direction, u);
+    const angle = (p) => Math.atan2(dot(subtract(p, middle), v), dot(subtract(p, middle), u));
+    return found.sort((p, q) => angle(p) - angle(q));
+}
+
+function planeGrip([nx, ny, nz, d], index, bounds) {
+    const normal = [nx, ny, nz], size = length(normal), towards = unit(normal);
+    const longest = [0, 1, 2].reduce((best, i) => (Math.abs(towards[i]) > Math.abs(towards[best]) + 1e-9 ? i : best), 0);
+    const turned = towards[longest] < 0, direction = towards.map((v) => (turned ? 0 - v : v));
+    const reach = cornersOf(bounds).map((p) => dot(p, direction)), low = Math.min(...reach), high = Math.max(...reach);
+    const at = (turned ? d : -d) / size, room = MARGIN * (high - low);
+    const axis = Math.abs(direction[longest]) > 1 - 1e-9 ? AXES[longest] : null;
+    return { id: `plane${index}`, index, size, turned, direction, axis, at, low: low + room, high: high - room,
+        corners: crossing(direction, at, bounds) };
+}
+
+function sideGrip(box, index, high, bounds) {
+    const direction = [0, 0, 0], side = high ? box.max : box.min, more = (bounds.max[index] - bounds.min[index]) / 2;
+    direction[index] = 1;
+    const corners = [[0, 0], [1, 0], [1, 1], [0, 1]].map(([u, v]) => {
+        const p = [...side], others = [0, 1, 2].filter((i) => i !== index);
+        p[others[0]] = (u ? box.max : box.min)[others[0]];
+        p[others[1]] = (v ? box.max : box.min)[others[1]];
+        return p;
+    });
+    return { id: `${AXES[index]}${high ? 'max' : 'min'}`, index, turned: high, direction, axis: AXES[index], at: side[index], corners,
+        low: high ? box.min[index] + LEAST_BOX_M : Math.min(bounds.min[index] - more, box.min[index]),
+        high: high ? Math.max(bounds.max[index] + more, box.max[index]) : box.max[index] - LEAST_BOX_M };
+}
+
+// [{ id, axis (null: oblique), turned (what is smaller stays), direction (unit vector), at, low, high (metres along it), corners }].
+export function gripsOf(clip, bounds) {
+    if (clip?.planes)
+        return clip.planes.map((plane, index) => planeGrip(plane, index, bounds));
+    return clip?.box ? [0, 1, 2].flatMap((i) => [false, true].map((high) => sideGrip(clip.box, i, high, bounds))) : [];
+}
+
+// The clip with that grip at another place, as far as it goes.
+export function moveGrip(clip, { index, size, turned, direction, low, high }, to) {
+    const at = Math.max(low, Math.min(high, to));
+    if (clip.planes) {
+        const towards = turned ? -size : size;
+        return { planes: clip.planes.map((plane, i) => (i === index ? [...scale(direction, towards), -at * towards] : plane)) };
+    }
+    const box = { min: [...clip.box.min], max: [...clip.box.max] };
+    (turned ? box.max : box.min)[index] = at;
+    return { box };
+}
+
+// Where on its plane a grip may stand: the middle first.
+export function spotsOf({ corners }) {
+    if (corners.length === 0)
+        return [];
+    const middle = middleOf(corners);
+    const around = corners.flatMap((p, i) => [p, mix(p, corners[(i + 1) % corners.length], 0.5)]);
+    return [middle, ...[0.3, 0.6, 0.9].flatMap((part) => around.map((p) => mix(middle, p, part)))];
+}
+
+// Metres from `point` along `direction` to where a line of sight passes nearest; null: it does not say.
+export function alongSight(point, direction, { origin, direction: towards }) {
+    const w = subtract(point, origin), c = dot(towards, towards), b = dot(direction, towards), sine2 = 1 - (b * b) / c;
+    if (sine2 < STEEP)
+        return null;
+    const ahead = (dot(w, towards) - b * dot(w, direction)) / (c * sine2); // in front of the eye
+    return ahead > 0 ? (b * dot(w, towards) - c * dot(w, direction)) / (c * sine2) : null;
+}
+
+// What of a line lies before the eye; null: nothing.
+export function beforeEye(camera, a, b) {
+    if (isParallel(camera))
+        return [a, b];
+    const { forward } = basis(camera), depth = (p) => dot(subtract(p, camera.eye), forward) - NEAR_M;
+    const from = depth(a), to = depth(b);
+    if (from <= 0 && to <= 0)
+        return null;
+    const meet = () => along(a, subtract(b, a), from / (from - to));
+    return [from > 0 ? a : meet(), to > 0 ? b : meet()];
+}
