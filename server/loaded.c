@@ -147,6 +147,7 @@ bool loaded_start_painter(struct loaded *loaded)
         .baselines = loaded->baselines,
         .moments = loaded->moments,
         .trials = placing_trials(loaded->placing),
+        .proofs = loaded->proofs,
         .workers = context->workers,
         .h264_library = loaded_h264_library(server),
         .counters = context->counters,

@@ -151,7 +151,7 @@ struct frame *studio_draw(struct studio *studio, const struct snapshot_options *
         frame->clock_unset = !view->at_us && !clock_utc_is_set();
     }
     if (frame && !options->no_overlay)
-        overlay_draw(frame, studio->scene, studio->snapshot);
+        overlay_draw(frame, studio->scene, studio->snapshot, NULL);
     return frame;
 }
 

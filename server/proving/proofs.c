@@ -5,6 +5,7 @@
 #include <errno.h>
 #include <inttypes.h>
 #include <math.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -29,6 +30,7 @@ struct proofs {
     uint64_t *numbers; /* likewise */
     uint64_t number;
     bool begun;
+    atomic_bool *unproven; /* by tag */
 };
 
 /* --- what a proof is of ------------------------------------------------------------------------------------------------------- */
@@ -126,6 +128,12 @@ static void read_row(struct proofs *proofs, const struct csv *csv)
     snprintf(proof->remark, sizeof(proof->remark), "%s", csv_text(csv, REMARK));
 }
 
+static void mark_unproven(struct proofs *proofs)
+{
+    for (size_t i = 0; i < proofs->plant->tag_count; i++)
+        atomic_store(&proofs->unproven[i], proofs->begun && proofs->plant->tags[i].source >= 0 && proofs->at[i].state != PROOF_PASSED);
+}
+
 static void read_all(struct proofs *proofs)
 {
     struct diag diag = { 0 };
@@ -150,8 +158,10 @@ struct proofs *proofs_open(struct log *log, const struct plant *plant, const cha
     proofs->numbers = mem_array(plant->tag_count, sizeof(*proofs->numbers));
     for (size_t i = 0; i < plant->tag_count; i++)
         proofs->at[i] = (struct proof){ .value = NAN, .expected = NAN, .tolerance = NAN };
+    proofs->unproven = mem_array(plant->tag_count, sizeof(*proofs->unproven));
     if (access(proofs->path, F_OK) == 0)
         read_all(proofs);
+    mark_unproven(proofs);
     return proofs;
 }
 
@@ -163,6 +173,7 @@ void proofs_close(struct proofs **pointer)
     mem_free(proofs->path);
     mem_free(proofs->at);
     mem_free(proofs->numbers);
+    mem_free(proofs->unproven);
     mem_free(proofs);
     *pointer = NULL;
 }
@@ -199,6 +210,7 @@ const char *proofs_add(struct proofs *proofs, int tag, const struct proof *proof
     proofs->at[tag] = *proof;
     proofs->numbers[tag] = ++proofs->number;
     proofs->begun = true;
+    mark_unproven(proofs);
     return NULL;
 }
 
@@ -212,6 +224,11 @@ const struct proof *proofs_of(const struct proofs *proofs, int tag)
 bool proofs_begun(const struct proofs *proofs)
 {
     return proofs->begun;
+}
+
+bool proofs_unproven(const struct proofs *proofs, int tag)
+{
+    return atomic_load(&proofs->unproven[tag]);
 }
 
 uint64_t proofs_number(const struct proofs *proofs)

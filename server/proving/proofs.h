@@ -38,6 +38,8 @@ bool proofs_begun(const struct proofs *proofs);      /* somebody looked at a tag
 uint64_t proofs_number(const struct proofs *proofs); /* grows with each that is added */
 uint64_t proofs_number_of(const struct proofs *proofs, int tag); /* when this one was added; 0: before */
 void proofs_print(const struct proofs *proofs, struct text *out); /* all tags with a source, as CSV */
+/* To be said with every value: others have been looked at, and this one has not passed. Computed tags need none. Thread: any. */
+bool proofs_unproven(const struct proofs *proofs, int tag);
 /* Of what makes a proof void when it changes: source, address, type, byte order, scaling, asset and place. */
 uint64_t proof_fingerprint(const struct plant *plant, int tag);
 

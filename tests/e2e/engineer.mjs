@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The engineer's panel in the browser: a sensor is put onto the surface, dragged, saved; and proven against a transmitter that is forced.
 import assert from 'node:assert/strict';
-import { existsSync, readFileSync, writeFileSync } from 'node:fs';
+import { chmodSync, existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { DESKTOP, openPage, settle, shoot, TABLET, waitForPicture } from './support/browser.mjs';
@@ -22,6 +22,7 @@ before(async () => {
     await plant.startSim();
     for (const [tag, value] of [['TI-1', 80], ['TI-2', 20], ['TI-9', 50], ['PI-1', 5]])
         await plant.tell(`set ${tag} ${value}`);
+    plant.disown();
     await plant.startDaemon();
     browser = await openPage(`http://127.0.0.1:${plant.port}/`, DESKTOP);
     page = browser.page;
@@ -151,6 +152,7 @@ test('what is not proven is said to be so to everybody, and stays through a relo
     await says('#card .proof', '^Unproven: failed$');
     assert.deepEqual(await page.evaluate(() => globalThis.plantcast.session.model.tags.map((tag) =>
         globalThis.plantcast.session.model.unproven(tag))), [null, 'fail', 'none', 'none']);
+    await says('#legend .keys', 'Unproven');
     await settle(page);
     await shoot(page, 'engineer-unproven');
     assert.deepEqual(browser.errors, []);
@@ -170,7 +172,47 @@ test('on a tablet: a tap places, a finger drags', options, async () => {
     await says('#engineer .moves', '\\d{3}along the surface', on);
     await settle(on);
     await shoot(on, 'engineer-tablet');
+    const from = await at(await moved(on), on), to = await at([0.3, -0.5, -0.2], on), client = await on.context().newCDPSession(on);
+    const eye = await on.evaluate(() => globalThis.plantcast.session.camera.eye);
+    const touch = (type, ...touchPoints) => client.send('Input.dispatchTouchEvent', { type, touchPoints });
+    await touch('touchStart', from);
+    for (let i = 1; i <= 5; i++)
+        await touch('touchMove', { x: from.x + ((to.x - from.x) * i) / 5, y: from.y + ((to.y - from.y) * i) / 5 });
+    await on.waitForFunction(() => {
+        const [x, y, z] = [...globalThis.plantcast.session.model.placed.values()][0].position;
+        return Math.hypot(x - 0.3, y + 0.5, z + 0.2) < 0.03;
+    });
+    await touch('touchEnd');
+    assert.deepEqual(await on.evaluate(() => globalThis.plantcast.session.camera.eye), eye, 'the camera stays');
+    await says('#engineer .moves', '\\d{3}along the surface', on);
+    await settle(on);
+    await shoot(on, 'engineer-tablet-dragged');
     assert.equal(await text('#engineer .hint', on), 'TI-1: click on the surface, or drag its marker.');
     assert.deepEqual(tablet.errors, []);
     await tablet.close();
+});
+
+test('where the folder of the list may not be written, that is said, and nothing changes', options, async () => {
+    const before = readFileSync(tagsFile, 'utf8');
+    await page.locator('#engineer-toggle').click();
+    await page.locator('#engineer .tags button', { hasText: 'TI-9' }).click();
+    await look(page, [2.2, -2.2, 1.6]);
+    const { x, y } = await at([0.1, -0.5, 0.3]);
+    await page.mouse.click(x, y);
+    await says('#engineer .moves', 'TI-9 on E-101 .*\\d{3}along the surface');
+    chmodSync(plant.folder, 0o555);
+    try {
+        await button('Save …').click();
+        await page.getByRole('button', { name: 'Save and put in force' }).click();
+        await says('#engineer .part .note', 'Not saved.*tags\\.csv\\.2.*Permission denied');
+    } finally {
+        chmodSync(plant.folder, 0o755);
+    }
+    assert.equal(readFileSync(tagsFile, 'utf8'), before);
+    assert.ok(await moved(), 'what was tried is still there');
+    await settle(page);
+    await shoot(page, 'engineer-refused');
+    await button('Save …').click();
+    await page.getByRole('button', { name: 'Save and put in force' }).click();
+    await says('#engineer .part .note', 'In force. The list before it is tags\\.csv\\.2');
 });

@@ -83,7 +83,7 @@ static void test_halves_are_pictures(void **state)
             assert_true(whole->labels[i].half == 1 && whole->labels[i].x_px == parts[1]->labels[i].x_px + LEFT);
         assert_true(whole->content == canvas_content(stand.renderer, &view, stand.snapshot));
         frame_read_markers(whole, stand.snapshot, NULL);
-        overlay_draw(whole, &stand.toy->scene, stand.snapshot); /* two legends; that it ends is what can be said here */
+        overlay_draw(whole, &stand.toy->scene, stand.snapshot, NULL); /* two legends; that it ends is what can be said here */
         frame_unref(&parts[0]);
         frame_unref(&parts[1]);
         frame_unref(&whole);
@@ -153,7 +153,7 @@ static void test_narrow(void **state)
         struct frame *frame = canvas_draw(stand.renderer, &view, stand.snapshot);
         assert_int_equal(frame->width_px, view.width_px);
         frame_read_markers(frame, stand.snapshot, NULL);
-        overlay_draw(frame, &stand.toy->scene, stand.snapshot);
+        overlay_draw(frame, &stand.toy->scene, stand.snapshot, NULL);
         frame_unref(&frame);
     }
 }

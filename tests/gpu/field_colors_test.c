@@ -14,6 +14,7 @@
 #include "render/overlay/overlay.h"
 #include "render/palette.h"
 #include "tests/support/rig.h"
+#include "tests/support/temp.h"
 #include "value/alarm.h"
 #include "value/quality.h"
 
@@ -381,7 +382,7 @@ static void check_alarms(const struct view *view)
         struct frame *frame = stand_draw(&stand, &wide);
         assert_int_equal(count_alarm_colors(frame), 0);
         frame_read_markers(frame, stand.snapshot, NULL);
-        overlay_draw(frame, &stand.toy->scene, stand.snapshot);
+        overlay_draw(frame, &stand.toy->scene, stand.snapshot, NULL);
         int x0 = 400 + (int)(200 * 10 / 14.0), y0 = 200 + (int)(100 * 10 / 14.0), around = 0, left = 0;
         for (int y = 0; y < 400; y++)
             for (int x = 0; x < 600; x++) { /* the legend is to the right of it */
@@ -455,8 +456,8 @@ static void test_a_clock_that_is_not_set_is_said(void **state)
     view.width_px = 800;
     struct frame *set = stand_draw(&stand, &view), *unset = stand_draw(&stand, &view);
     unset->clock_unset = true;
-    overlay_draw(set, &stand.toy->scene, stand.snapshot);
-    overlay_draw(unset, &stand.toy->scene, stand.snapshot);
+    overlay_draw(set, &stand.toy->scene, stand.snapshot, NULL);
+    overlay_draw(unset, &stand.toy->scene, stand.snapshot, NULL);
     for (int y = 0; y < SIDE_PX; y++)
         for (int x = 0; x < 800; x++) {
             bool differs = memcmp(frame_pixel(set, x, y), frame_pixel(unset, x, y), 3) != 0;
@@ -466,6 +467,49 @@ static void test_a_clock_that_is_not_set_is_said(void **state)
     assert_true(differ > 1000);
     frame_unref(&set);
     frame_unref(&unset);
+}
+
+/* Of tags that were not proven, once one was: markers and legend say so; elsewhere the picture is as before. */
+static void test_unproven_tags_are_marked(void **state)
+{
+    enum { WIDE_PX = 600 };
+    struct view view;
+    char *folder = temp_folder_create();
+    struct plant *plant = &stand.toy->plant;
+    struct plant_source source = { .id = (char[]){ "plc" } };
+    int by_name[PLATE_TAGS] = { 0, 1, 2 }, differ[PLATE_TAGS] = { 0 };
+    (void)state;
+    plant->tags_by_name = by_name;
+    plant->sources = &source;
+    for (int i = 0; i < PLATE_TAGS; i++)
+        plant->tags[i].source = 0;
+    struct proofs *proofs = proofs_open(rig.log, plant, folder);
+    look_down(&view);
+    view.camera.eye_m[2] = 14;
+    view.width_px = view.height_px = WIDE_PX;
+    struct frame *plain = stand_draw(&stand, &view), *before = stand_draw(&stand, &view), *begun = stand_draw(&stand, &view);
+    overlay_draw(plain, &stand.toy->scene, stand.snapshot, NULL);
+    overlay_draw(before, &stand.toy->scene, stand.snapshot, proofs);
+    assert_memory_equal(plain->bgrx, before->bgrx, (size_t)WIDE_PX * (size_t)plain->stride_bytes); /* nobody has begun */
+    assert_null(proofs_add(proofs, 0, &(struct proof){ .state = PROOF_PASSED, .value = 10, .expected = 10, .tolerance = 1 }));
+    overlay_draw(begun, &stand.toy->scene, stand.snapshot, proofs);
+    for (size_t i = 0; i < begun->marker_count; i++)
+        for (int y = -6; y <= 6; y++)
+            for (int x = -6; x <= 6; x++) {
+                int px = (int)lround((double)begun->markers[i].x_px) + x, py = (int)lround((double)begun->markers[i].y_px) + y;
+                differ[begun->markers[i].tag] += memcmp(frame_pixel(plain, px, py), frame_pixel(begun, px, py), 3) != 0;
+            }
+    assert_int_equal(differ[0], 0);
+    assert_true(differ[1] > 4 && differ[2] > 4);
+    frame_unref(&plain);
+    frame_unref(&before);
+    frame_unref(&begun);
+    proofs_close(&proofs);
+    plant->tags_by_name = NULL;
+    plant->sources = NULL;
+    for (int i = 0; i < PLATE_TAGS; i++)
+        plant->tags[i].source = -1;
+    temp_folder_destroy(&folder);
 }
 
 static void test_default_look_keeps_to_the_palette(void **state)
@@ -510,6 +554,7 @@ int main(void)
         each(test_operator_sees_limits),
         each(test_markers_tell_distances),
         each(test_a_clock_that_is_not_set_is_said),
+        each(test_unproven_tags_are_marked),
         each(test_default_look_keeps_to_the_palette),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);

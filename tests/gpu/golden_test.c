@@ -148,7 +148,7 @@ static void test_golden(void **state)
     struct frame *frame = canvas_draw(stand.renderer, &view, stand.snapshot);
     frame_read_markers(frame, stand.snapshot, NULL);
     if (golden->overlay)
-        overlay_draw(frame, &stand.toy->scene, stand.snapshot);
+        overlay_draw(frame, &stand.toy->scene, stand.snapshot, NULL);
     if (getenv("GOLDEN_UPDATE"))
         save("tests/golden", golden->name, "", frame->bgrx);
     judge(golden, frame->bgrx);

@@ -23,6 +23,19 @@ const solid = (colour) => (c, width, height) => {
     c.fillRect(0, 0, width, height);
 };
 
+// As the overlay draws the marker of a tag that is unproven.
+const brokenMark = (c, width, height) => {
+    const radius = 0.38 * height;
+    c.beginPath();
+    c.arc(width / 2, height / 2, radius, 0, 2 * Math.PI);
+    c.fillStyle = '#fff';
+    c.fill();
+    c.lineWidth = 0.11 * height;
+    c.strokeStyle = '#1d252d';
+    c.setLineDash([(2 * Math.PI * radius) / 12]);
+    c.stroke();
+};
+
 const pixels = (colourAt) => (c, width, height) => {
     const image = c.createImageData(width, height);
     for (let y = 0; y < height; y++) {
@@ -47,6 +60,7 @@ export class Legend {
         this.lying.addEventListener('change', () => this.show(true));
         this.shown = '';
         session.on('params', () => this.show());
+        session.on('proofs', () => this.show());
         window.matchMedia(`(resolution: ${window.devicePixelRatio}dppx)`).addEventListener('change', () => this.show(true));
     }
 
@@ -58,7 +72,8 @@ export class Legend {
             return;
         const range = this.session.rangeOf(params);
         const { show, colormap, ramp_interval, scale, breaks, isolines, look } = params;
-        const wanted = JSON.stringify([params.group, show, colormap, ramp_interval, range, scale, breaks, isolines, look, params.unit]);
+        const wanted = JSON.stringify([params.group, show, colormap, ramp_interval, range, scale, breaks, isolines, look, params.unit,
+            this.unproven(params)]);
         if (wanted === this.shown && !again)
             return;
         this.shown = wanted;
@@ -68,7 +83,7 @@ export class Legend {
         this.element.replaceChildren(this.heading(group, params),
             isOperator ? this.limitScale()
                 : this.scale(rule, isolines ?? [], show === 'value' ? group.limits : {}, show !== 'distance' || range[0] > 0),
-            this.keys(show, isOperator ? LIMIT_BANDS[2].colour : colourOf(rule, valueAt(rule, 0.5))));
+            this.keys(params, isOperator ? LIMIT_BANDS[2].colour : colourOf(rule, valueAt(rule, 0.5))));
         for (const note of this.notes(params, map, isOperator))
             this.element.append(make('p', { class: 'note' }, note));
     }
@@ -155,8 +170,14 @@ export class Legend {
         ]));
     }
 
+    unproven({ group }) {
+        const { model } = this.session;
+        return model.tags.some((tag) => tag.group === group && tag.position && model.unproven(tag));
+    }
+
     // In small, the pattern is drawn no coarser than can be recognised.
-    keys(show, colour) {
+    keys(params, colour) {
+        const { show } = params;
         const period = (height) => Math.min(height / 2, patternPeriodPx(this.session.size.height));
         const noData = pixels((x, y, height) => hatchAt(x, y, height, period(height)));
         const uncertain = pixels((x, y, height) => stippleAt(x, y, height, period(height), colour));
@@ -164,6 +185,7 @@ export class Legend {
         return make('div', { class: 'keys' },
             ...(show === 'operator' ? [swatch(18, 14, noLimits), make('span', {}, say('legend.nolimits'))] : []),
             swatch(18, 14, noData), make('span', {}, say('legend.nodata')),
-            ...(show === 'distance' ? [] : [swatch(18, 14, uncertain), make('span', {}, say('legend.uncertain'))]));
+            ...(show === 'distance' ? [] : [swatch(18, 14, uncertain), make('span', {}, say('legend.uncertain'))]),
+            ...(this.unproven(params) ? [swatch(18, 14, brokenMark), make('span', {}, say('proof.none'))] : []));
     }
 }

@@ -266,10 +266,11 @@ export class Overlay {
         if (alarm)
             this.drawAlarm(alarm);
         c.beginPath();
-        (SHAPES[reading.quality] ?? SHAPES.bad)(c, occluded ? 2.5 : this.radius);
+        const unproven = this.session.model.unproven(tag), radius = occluded ? 2.5 : unproven ? Math.max(4, this.radius) : this.radius;
+        (SHAPES[reading.quality] ?? SHAPES.bad)(c, radius);
         c.lineWidth = occluded ? 1.25 : 1.5;
-        if (this.session.model.unproven(tag))
-            c.setLineDash([2.5, 2]);
+        if (unproven)
+            c.setLineDash([(2 * Math.PI * radius) / 10]);
         if (occluded && !chosen) {
             c.globalAlpha = 0.5;
         } else {

@@ -65,7 +65,7 @@ static void deliver(struct drawing *drawing, struct frame *frame, const struct s
     frame_read_markers(frame, snapshot, painter->params.baselines);
     frame->clock_unset = !frame->view.at_us && !clock_utc_is_set();
     if (batch->orders[0].wish.overlay)
-        overlay_draw(frame, painter->params.scene, snapshot);
+        overlay_draw(frame, painter->params.scene, snapshot, painter->params.proofs);
     counter_inc(painter->renders, 1);
     counter_inc(painter->render_us, (frame->render_ns + frame->readback_ns) / 1000);
     if (!batch->orders[0].wish.overlay)

@@ -22,6 +22,7 @@ struct painter_params {
     struct baselines *baselines; /* NULL: no differences can be shown */
     struct moments *moments;     /* where views of an instant find it; NULL: there are none */
     struct trials *trials;    /* where views of places that are tried out find them; NULL: there are none */
+    const struct proofs *proofs; /* tags that are unproven are marked where the server draws markers; NULL: none is */
     struct workers *workers;
     const char *h264_library; /* an encoder of libavcodec; NULL: the usual one */
     struct counters *counters;

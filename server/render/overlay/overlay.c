@@ -217,7 +217,7 @@ static void choose_half(struct pen *pen, int half)
     pen->area = (struct box){ left_px, 0, pen->view.width_px, pen->view.height_px };
 }
 
-void overlay_draw(struct frame *frame, const struct scene *scene, const struct snapshot *snapshot)
+void overlay_draw(struct frame *frame, const struct scene *scene, const struct snapshot *snapshot, const struct proofs *proofs)
 {
     cairo_surface_t *surface =
         cairo_image_surface_create_for_data(frame->bgrx, CAIRO_FORMAT_RGB24, frame->width_px, frame->height_px, frame->stride_bytes);
@@ -226,6 +226,7 @@ void overlay_draw(struct frame *frame, const struct scene *scene, const struct s
     pen->frame = frame;
     pen->scene = scene;
     pen->snapshot = snapshot;
+    pen->proofs = proofs;
     pen->unit = fmin(fmax(fmin(frame->width_px / 1280.0, frame->height_px / 720.0), 0.5), 8);
     pen->text_px = fmax(13 * pen->unit, 9.5);
     draw_header(pen);

@@ -2,10 +2,11 @@
 /* Legend, markers, labels, clock and data age drawn into a frame, for snapshots, clips and walls (streams leave it to the client). */
 #ifndef RENDER_OVERLAY_H
 #define RENDER_OVERLAY_H
+#include "proving/proofs.h"
 #include "render/frame.h"
 
 /* Draws over frame->bgrx. The frame must not be shared yet. The clock is shown in the time zone of the process (TZ), which its main
-   file sets to the plant's. */
-void overlay_draw(struct frame *frame, const struct scene *scene, const struct snapshot *snapshot);
+   file sets to the plant's. proofs: tags that are unproven are marked as such; NULL: none is. */
+void overlay_draw(struct frame *frame, const struct scene *scene, const struct snapshot *snapshot, const struct proofs *proofs);
 
 #endif

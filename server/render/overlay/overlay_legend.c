@@ -9,9 +9,9 @@
 #include "render/overlay/overlay_pen.h"
 #include "render/palette.h"
 
-enum { NOTES = 4, ROWS = 3 + ALARM_PRIORITIES };
+enum { NOTES = 4, ROWS = 4 + ALARM_PRIORITIES };
 static const double ROW = 1.5, NOTE = 1.3; /* heights, in text_px */
-enum row { ROW_BELOW, ROW_NO_LIMITS, ROW_NO_DATA, ROW_UNCERTAIN, ROW_ALARM /* and the other priorities */ };
+enum row { ROW_BELOW, ROW_NO_LIMITS, ROW_NO_DATA, ROW_UNCERTAIN, ROW_UNPROVEN, ROW_ALARM /* and the other priorities */ };
 /* What it says, and where its parts lie. */
 struct legend {
     char title[160], above[60], below[60], since[120];
@@ -53,6 +53,14 @@ static unsigned priorities_shown(const struct pen *pen)
     return priorities;
 }
 
+static bool shows_unproven(const struct pen *pen)
+{
+    for (size_t i = 0; i < pen->frame->marker_count; i++)
+        if (pen->frame->markers[i].half == pen->half && overlay_unproven(pen, pen->frame->markers[i].tag))
+            return true;
+    return false;
+}
+
 /* A distance is never below 0, nor uncertain. */
 static void choose_rows(const struct pen *pen, struct legend *legend)
 {
@@ -63,6 +71,8 @@ static void choose_rows(const struct pen *pen, struct legend *legend)
     const enum row *rows = view_is_operator(view) ? limits : is_distance ? distances : values;
     legend->row_count = view_is_operator(view) || !is_distance ? 3 : 1;
     memcpy(legend->rows, rows, (size_t)legend->row_count * sizeof(*rows));
+    if (shows_unproven(pen))
+        legend->rows[legend->row_count++] = ROW_UNPROVEN;
     unsigned priorities = priorities_shown(pen);
     for (int i = 1; i <= ALARM_PRIORITIES; i++)
         if (priorities & 1u << i)
@@ -112,8 +122,8 @@ static void write_words(const struct pen *pen, struct legend *legend)
 
 static const char *row_text(const struct legend *legend, enum row row)
 {
-    static const char *const texts[] = { "", "no limits", "no data", "uncertain", "alarm, priority 1", "alarm, priority 2",
-                                         "alarm, priority 3", "alarm, priority 4" };
+    static const char *const texts[] = { "", "no limits", "no data", "uncertain", "unproven", "alarm, priority 1",
+                                         "alarm, priority 2", "alarm, priority 3", "alarm, priority 4" };
     return row == ROW_BELOW ? legend->below : texts[row];
 }
 
@@ -213,6 +223,10 @@ static void draw_swatch(struct pen *pen, const struct box *box, enum row row)
     case ROW_NO_LIMITS: draw_rules(pen, box); break;
     case ROW_NO_DATA: draw_stripes(pen, box); break;
     case ROW_UNCERTAIN: draw_dots(pen, box); break;
+    case ROW_UNPROVEN:
+        pen_ink(pen, 1);
+        overlay_outline(pen, box->x + box->width / 2, box->y + box->height / 2, 0.4 * box->height, true);
+        break;
     default:
         overlay_ring(pen, box->x + box->width / 2, box->y + box->height / 2, 0.5 * box->height, (int)row - ROW_ALARM + 1, ALARM_ACTIVE);
         break;

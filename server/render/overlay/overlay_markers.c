@@ -7,17 +7,33 @@
 #include "render/overlay/overlay_pen.h"
 #include "value/quality.h"
 
-/* Filled: in sight. Hollow: something stands before it. Crossed: bad. */
+bool overlay_unproven(const struct pen *pen, int tag)
+{
+    return pen->proofs && proofs_unproven(pen->proofs, tag);
+}
+
+void overlay_outline(struct pen *pen, double x, double y, double radius, bool broken)
+{
+    double gap = 2 * M_PI * radius / 12;
+    cairo_new_path(pen->cairo);
+    cairo_arc(pen->cairo, x, y, radius, 0, 2 * M_PI);
+    cairo_set_line_width(pen->cairo, fmax(1.2, 1.6 * pen->unit));
+    if (broken)
+        cairo_set_dash(pen->cairo, &gap, 1, 0);
+    cairo_stroke(pen->cairo);
+    cairo_set_dash(pen->cairo, NULL, 0, 0);
+}
+
+/* Filled: in sight. Hollow: something stands before it. Crossed: bad. Broken: unproven. */
 static void draw_mark(struct pen *pen, const struct frame_marker *marker, bool bad)
 {
     double radius = 4.2 * pen->unit, x = marker->x_px, y = marker->y_px;
     cairo_new_path(pen->cairo);
     cairo_arc(pen->cairo, x, y, radius, 0, 2 * M_PI);
     cairo_set_source_rgba(pen->cairo, 1, 1, 1, marker->occluded ? 0.35 : 0.95);
-    cairo_fill_preserve(pen->cairo);
+    cairo_fill(pen->cairo);
     pen_ink(pen, marker->occluded ? 0.7 : 1);
-    cairo_set_line_width(pen->cairo, fmax(1.2, 1.6 * pen->unit));
-    cairo_stroke(pen->cairo);
+    overlay_outline(pen, x, y, radius, overlay_unproven(pen, marker->tag));
     if (bad) {
         double arm = 0.62 * radius;
         cairo_move_to(pen->cairo, x - arm, y - arm);

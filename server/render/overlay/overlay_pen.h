@@ -6,6 +6,7 @@
 
 #include <cairo.h>
 
+#include "proving/proofs.h"
 #include "render/frame.h"
 #include "render/labels.h"
 #include "value/alarm.h"
@@ -21,6 +22,7 @@ struct pen {
     struct box area;   /* that half */
     const struct scene *scene;
     const struct snapshot *snapshot;
+    const struct proofs *proofs; /* NULL: none */
     double unit, text_px;
     struct box taken[PEN_MAX_TAKEN]; /* where nothing more may be put */
     int taken_count;
@@ -45,6 +47,9 @@ void overlay_bar(struct pen *pen, const struct box *bar);
 double overlay_bar_width(struct pen *pen); /* with all that is written beside it */
 double overlay_bar_left(struct pen *pen);  /* of which before the bar itself */
 void overlay_legend(struct pen *pen);
+/* A mark's outline: broken where its tag is unproven. */
+void overlay_outline(struct pen *pen, double x, double y, double radius, bool broken);
+bool overlay_unproven(const struct pen *pen, int tag);
 /* Around a place with an alarm: its colour says the priority, its form how it is. Thick: it calls; thin: it is acknowledged;
    broken: its cause is gone. */
 void overlay_ring(struct pen *pen, double x, double y, double radius, int priority, enum alarm_word word);

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A plant of two boxes and three tags in a folder of its own, prepared and served on free ports.
 import { spawn, spawnSync } from 'node:child_process';
-import { existsSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { chownSync, existsSync, mkdtempSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
 import { connect, createServer } from 'node:net';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 
 export const BIN = resolve(process.env.PLANTCAST_BIN ?? 'build');
+const NOBODY = 65534;
 export const PROGRAMS = ['plantcastd', 'plantcast-prep', 'plantcast-sim', 'plantcast'];
 export const missing = () => PROGRAMS.filter((name) => !existsSync(join(BIN, name)));
 
@@ -78,9 +79,9 @@ export function runProgram(name, args, timeout = 30000) {
 }
 
 class Program {
-    constructor(name, args) {
+    constructor(name, args, as = {}) {
         this.said = '';
-        this.child = spawn(join(BIN, name), args, { stdio: ['ignore', 'pipe', 'pipe'] });
+        this.child = spawn(join(BIN, name), args, { stdio: ['ignore', 'pipe', 'pipe'], ...as });
         this.ended = new Promise((done) => this.child.once('exit', (code, signal) => done({ code, signal })));
         for (const pipe of [this.child.stdout, this.child.stderr])
             pipe.on('data', (chunk) => { this.said = (this.said + chunk).slice(-100000); });
@@ -125,6 +126,15 @@ export class TinyPlant {
         await this.sim.line(/^plantcast-sim: listening/m);
     }
 
+    // From now on the daemon is somebody whom the rights of files hold for, as its service is; root they do not.
+    disown() {
+        if (process.getuid() !== 0)
+            return;
+        this.as = { uid: NOBODY, gid: NOBODY };
+        for (const name of ['.', ...readdirSync(this.folder, { recursive: true })])
+            chownSync(join(this.folder, name), NOBODY, NOBODY);
+    }
+
     // One line to the simulator, one line back.
     tell(line) {
         return new Promise((done, fail) => {
@@ -135,7 +145,7 @@ export class TinyPlant {
     }
 
     async startDaemon(...args) {
-        this.daemon = new Program('plantcastd', [this.file, '--port', '0', ...args]);
+        this.daemon = new Program('plantcastd', [this.file, '--port', '0', ...args], this.as);
         const [, port] = await this.daemon.line(/^plantcastd: ready https?:\/\/127\.0\.0\.1:(\d+)\/$/m);
         this.port = Number(port);
     }

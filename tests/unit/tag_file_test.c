@@ -1,0 +1,155 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Versions of a tag list on disk: none is ever lost, and what cannot be written is refused with the reason. */
+#include "placing/tag_file.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "tests/support/temp.h"
+
+enum { NOBODY = 65534 };
+struct fixture {
+    char *folder, *path;
+};
+
+static int set_up(void **state)
+{
+    struct fixture *f = mem_new(sizeof(*f));
+    f->folder = temp_folder_create();
+    f->path = temp_write_text(f->folder, "tags.csv", "one\n");
+    *state = f;
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    struct fixture *f = *state;
+    temp_folder_destroy(&f->folder);
+    mem_free(f->path);
+    mem_free(f);
+    return 0;
+}
+
+static void expect_text(const char *folder, const char *name, const char *want)
+{
+    char *path = temp_path(folder, name), *why = NULL, *text = tag_file_read(path, &why);
+    assert_non_null(text);
+    assert_null(why);
+    assert_string_equal(text, want);
+    mem_free(text);
+    mem_free(path);
+}
+
+static bool put(const struct fixture *f, char *before, char *after, char **kept, char **why)
+{
+    struct tag_save save = { .path = f->path, .before = before, .after = after };
+    *kept = *why = NULL;
+    return tag_file_put(&save, kept, why);
+}
+
+static void test_every_list_stays_beside_the_next(void **state)
+{
+    struct fixture *f = *state;
+    char *kept, *why, *taken = temp_write_text(f->folder, "tags.csv.2", "somebody's own\n");
+    static const char *const names[] = { "tags.csv.1", "tags.csv.3" };
+    char *texts[] = { "one\n", "two\n", "three\n" };
+    assert_int_equal(chmod(f->path, 0640), 0);
+    for (int i = 0; i < 2; i++) {
+        assert_true(put(f, texts[i], texts[i + 1], &kept, &why));
+        assert_string_equal(strrchr(kept, '/') + 1, names[i]);
+        expect_text(f->folder, names[i], texts[i]);
+        expect_text(f->folder, "tags.csv", texts[i + 1]);
+        mem_free(kept);
+    }
+    struct stat st;
+    assert_int_equal(stat(f->path, &st), 0);
+    assert_int_equal(st.st_mode & 0777, 0640); /* who may read it stays */
+    expect_text(f->folder, "tags.csv.2", "somebody's own\n");
+    mem_free(taken);
+}
+
+static void test_what_was_put_is_put_back(void **state)
+{
+    struct fixture *f = *state;
+    char *kept, *why, *gone;
+    assert_true(put(f, "one\n", "two\n", &kept, &why));
+    assert_true(tag_file_put_back(&(struct tag_save){ .path = f->path }, kept, &why));
+    expect_text(f->folder, "tags.csv", "one\n");
+    assert_int_equal(access(kept, F_OK), -1);
+    assert_false(tag_file_put_back(&(struct tag_save){ .path = f->path }, kept, &why));
+    assert_non_null(strstr(why, "tags.csv cannot be put back from tags.csv.1: No such file"));
+    mem_free(why);
+    mem_free(kept);
+    gone = temp_path(f->folder, "none.csv");
+    assert_null(tag_file_read(gone, &why));
+    assert_string_equal(why, "none.csv cannot be read: No such file or directory");
+    mem_free(why);
+    mem_free(gone);
+}
+
+static void test_a_list_that_changed_meanwhile_is_not_written_over(void **state)
+{
+    struct fixture *f = *state;
+    char *kept, *why;
+    assert_false(put(f, "another\n", "two\n", &kept, &why));
+    assert_string_equal(why, "tags.csv was changed by somebody else meanwhile");
+    mem_free(why);
+    expect_text(f->folder, "tags.csv", "one\n");
+    char *first = temp_path(f->folder, "tags.csv.1");
+    assert_int_equal(access(first, F_OK), -1);
+    mem_free(first);
+}
+
+/* As the daemon sees it whose service may not write there. */
+static void test_a_folder_that_may_not_be_written_is_said(void **state)
+{
+    struct fixture *f = *state;
+    char *kept, *why;
+    assert_int_equal(chmod(f->folder, 0555), 0);
+    bool root = geteuid() == 0;
+    if (root)
+        assert_int_equal(chown(f->path, NOBODY, NOBODY) | chown(f->folder, NOBODY, NOBODY) | seteuid(NOBODY), 0);
+    bool saved = put(f, "one\n", "two\n", &kept, &why);
+    if (root)
+        assert_int_equal(seteuid(0), 0);
+    assert_int_equal(chmod(f->folder, 0755), 0);
+    assert_false(saved);
+    assert_null(kept);
+    assert_string_equal(why, "the list as it is cannot be kept as tags.csv.1: Permission denied");
+    mem_free(why);
+    expect_text(f->folder, "tags.csv", "one\n");
+}
+
+static void test_a_hash_tells_texts_apart(void **state)
+{
+    char one[17], two[17], again[17];
+    (void)state;
+    tag_file_hash("one\n", one);
+    tag_file_hash("one", two);
+    tag_file_hash("one\n", again);
+    assert_int_equal(strlen(one), 16);
+    assert_int_equal(strspn(one, "0123456789abcdef"), 16);
+    assert_string_equal(one, again);
+    assert_string_not_equal(one, two);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(test_every_list_stays_beside_the_next, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_what_was_put_is_put_back, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_a_list_that_changed_meanwhile_is_not_written_over, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_a_folder_that_may_not_be_written_is_said, set_up, tear_down),
+        cmocka_unit_test(test_a_hash_tells_texts_apart),
+    };
+    return cmocka_run_group_tests_name("tag_file", tests, NULL, NULL);
+}
