@@ -189,7 +189,8 @@ static void test_all_tags_with_a_source_are_told(void **state)
     assert_null(proofs_add(f->proofs, 0, &passed));
     proofs_print(f->proofs, &text);
     assert_int_equal(strncmp(text.at, "Time,Tag Name,Result,", 21), 0);
-    assert_non_null(strstr(text.at, "\n2023-11-14T22:13:20Z,\"TI-1\",pass,42,\"\",42.3,0.5,\"Kim, \"\"field\"\"\",\"calibrator 7 line 2\","));
+    assert_non_null(strstr(text.at, "\n2023-11-14T22:13:20Z,\"TI-1\",pass,42,\"\",42.3,0.5,"
+                                    "\"Kim, \"\"field\"\"\",\"calibrator 7 line 2\","));
     assert_non_null(strstr(text.at, "\n,\"TI-2\",none,,\"\",,,\"\",\"\","));
     assert_null(strstr(text.at, "SUM"));
     text_finish(&text);
