@@ -85,7 +85,7 @@ test('a click on a marker leads to its trend, with unit and gap', options, async
 
 test('several tags are compared, each by its unit, and exported', options, async () => {
     for (const name of ['TI-2', 'PI-1'])
-        await page.evaluate((tag) => globalThis.plantcast.trends.add(globalThis.plantcast.session.model.tag(tag)), name);
+        await page.evaluate((tag) => globalThis.plantcast.showTrend(globalThis.plantcast.session.model.tag(tag)), name);
     await page.waitForFunction(() => document.querySelectorAll('#trend-chart .u-legend .u-series').length === 4);
     assert.equal(await page.locator('#trend-tags li').count(), 3);
     const axes = await page.evaluate(() => globalThis.plantcast.trends.chart.axes.filter((axis) => axis.show)

@@ -10,7 +10,8 @@ const tables = Object.fromEntries(await Promise.all(LANGUAGES.map(async (languag
     [language, (await import(`../../clients/web/words/${language}.js`)).default])));
 const source = ['core', 'app'].flatMap((folder) => readdirSync(new URL(folder, WEB)).filter((name) => name.endsWith('.js'))
     .map((name) => readFileSync(new URL(`${folder}/${name}`, WEB), 'utf8'))).join('\n');
-const page = readFileSync(new URL('index.html', WEB), 'utf8');
+const html = readdirSync(new URL('app', WEB)).filter((name) => name.endsWith('.html')).map((name) => `app/${name}`);
+const page = ['index.html', ...html].map((name) => readFileSync(new URL(name, WEB), 'utf8')).join('\n');
 
 const blanks = (entry) => [...new Set((typeof entry === 'string' ? entry : entry.other).match(/\{\w+\}|\[[^\]]+\]/g) ?? [])].sort();
 

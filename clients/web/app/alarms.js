@@ -1,19 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Alarms: the strip that counts them in every view, the list, and what can be done about one.
+// The list of alarms, and what can be done about one.
 import { isWaiting } from '../core/alarms.js';
-import { ageText, decimalsFor, numberText, unitText, zoneClock } from '../core/format.js';
+import { ageText, zoneClock } from '../core/format.js';
 import { say } from '../core/words.js';
 import { byId, make, setText } from './dom.js';
+import { badge, limitText } from './strip.js';
 
 const SHOWN = 200; // rows at once
 
-const badge = (priority) => make('span', { class: `priority p${priority}`, title: say('alarms.priority', { priority }) }, String(priority));
-
-export class AlarmPanel {
-    // onFly(tag)
-    constructor({ session, onFly, refresh }) {
-        Object.assign(this, { session, onFly, refresh });
-        byId('alarm-strip').addEventListener('click', () => this.toggle());
+export class AlarmList {
+    // showTag(tag), flyToTag(tag): as the page has them.
+    constructor({ session, showTag, flyToTag }) {
+        Object.assign(this, { session, showTag, flyToTag });
         byId('alarms-close').addEventListener('click', () => this.setOpen(false));
         byId('shelve-form').addEventListener('submit', (event) => this.shelve(event));
         byId('shelve-cancel').addEventListener('click', () => byId('shelve').close());
@@ -46,41 +44,18 @@ export class AlarmPanel {
             byId('alarm-strip').focus();
     }
 
-    // What nobody has acknowledged blinks, slowly; and ages go on.
+    // Ages go on.
     tick() {
-        const waiting = Boolean(this.alarms?.counts().waiting) && !window.matchMedia('(prefers-reduced-motion: reduce)').matches;
-        document.body.classList.toggle('alarm-blink', waiting && !document.body.classList.contains('alarm-blink'));
-        if (waiting)
-            this.refresh();
         if (this.open)
             for (const [element, alarm] of this.ages ?? [])
                 setText(element, this.since(alarm));
     }
 
     show() {
-        if (!this.alarms?.known)
+        if (!this.alarms?.known || !this.open)
             return;
-        this.showStrip();
         byId('alarms-then').hidden = this.session.time.atUs === null;
-        if (this.open)
-            this.showList();
-    }
-
-    showStrip() {
-        const { all, waiting, of } = this.alarms.counts(), [newest] = this.alarms.list();
-        byId('alarm-strip').dataset.kind = waiting > 0 ? 'waiting' : all > 0 ? 'some' : 'none';
-        const counts = of.flatMap((count, i) => (count > 0 ? [badge(i + 1), make('b', {}, `×\u2009${count}`)] : []));
-        byId('alarm-counts').replaceChildren(...counts);
-        const some = all === 0 ? say('alarms.none') : say('alarms.some', { count: all });
-        const alarms = waiting > 0 ? say('alarms.waiting', { alarms: some, waiting }) : some;
-        setText(byId('alarm-words'), this.session.time.atUs === null ? alarms : say('alarms.now', { alarms }));
-        setText(byId('alarm-newest'), newest ? this.newestText(newest) : '');
-        setText(byId('alarm-mode'), say(`mode.${this.alarms.mode}`));
-    }
-
-    newestText(newest) {
-        const alarm = `${newest.tag.name} ${say(`kind.${newest.kind}`)}`, value = this.valueText(newest);
-        return value ? say('alarms.at', { alarm, value }) : alarm;
+        this.showList();
     }
 
     showList() {
@@ -93,14 +68,6 @@ export class AlarmPanel {
         byId('alarms-aside').replaceChildren(...aside.slice(0, SHOWN).map((alarm) => this.row(alarm)));
         const more = Math.max(0, list.length - SHOWN) + Math.max(0, aside.length - SHOWN);
         setText(byId('alarms-more'), more > 0 ? say('alarms.more', { count: more }) : '');
-    }
-
-    valueText({ tag, value, limit }) {
-        if (value === null || limit === null)
-            return '';
-        const group = this.session.model.group(tag.group), decimals = group ? decimalsFor(group.max - group.min) : 2;
-        const text = `${numberText(value, decimals)} ${unitText(tag.unit || group?.unit)}`;
-        return say('alarms.value', { value: text, limit: numberText(limit, decimals) });
     }
 
     since({ raisedUs }) {
@@ -121,11 +88,11 @@ export class AlarmPanel {
 
     row(alarm) {
         const { tag, kind, state, priority } = alarm;
-        const value = this.valueText(alarm), what = ` ${say(`kind.${kind}`)}${value ? `, ${value}` : ''}`;
+        const value = limitText(this.session.model, alarm), what = ` ${say(`kind.${kind}`)}${value ? `, ${value}` : ''}`;
         const asset = this.session.model.asset(tag.asset), age = make('span', { class: 'since' }, this.since(alarm));
         this.ages.push([age, alarm]);
         const title = say('alarms.fly', { tag: tag.name }), nowhere = tag.index === null; // a device is at no place of the model
-        const how = nowhere ? { class: 'alarm-go' } : { type: 'button', class: 'alarm-go', title, onclick: () => this.onFly(tag) };
+        const how = nowhere ? { class: 'alarm-go' } : { type: 'button', class: 'alarm-go', title, onclick: () => this.flyTo(tag) };
         const fly = make(nowhere ? 'div' : 'button', how, badge(priority), make('span', { class: 'what' }, make('b', {}, tag.name), what),
             make('span', { class: 'where' }, [asset?.tag ?? asset?.id, tag.description].filter(Boolean).join(', ')),
             make('span', { class: 'state' }, say(`state.${state}`)), age, make('span', { class: 'note' }, this.note(alarm)));
@@ -133,6 +100,11 @@ export class AlarmPanel {
             make('button', { type: 'button', 'data-action': action, onclick: () => this.act(action, alarm) }, say(`action.${action}`)));
         const look = { class: isWaiting(state) ? 'calls' : state, 'data-alarm': alarm.id };
         return make('li', look, fly, make('div', { class: 'do' }, ...buttons));
+    }
+
+    flyTo(tag) {
+        this.showTag(tag);
+        this.flyToTag(tag);
     }
 
     act(action, alarm) {

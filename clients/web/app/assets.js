@@ -4,9 +4,10 @@ import { decimalsFor, numberText, qualityText, unitText } from '../core/format.j
 import { linkUrl, Tree } from '../core/tree.js';
 import { say } from '../core/words.js';
 import { byId, glyph, make, setText } from './dom.js';
+import { NARROW } from './first.js';
 import { LongList } from './list.js';
 
-const NARROW = '(max-width: 1023px)', SEARCH_MS = 80, ASSET_PX = 53;
+const SEARCH_MS = 80, ASSET_PX = 53;
 const keyOf = ({ kind, id }) => `${kind}/${id}`;
 
 export const linksOf = (model, of, item) => model.references.filter((link) => link.of === of)

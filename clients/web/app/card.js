@@ -9,9 +9,10 @@ import { byId, closeButton, fill, glyph, make, setText } from './dom.js';
 const AWAY_PX = 16, WIDTH_PX = 248;
 
 export class Card {
-    constructor({ session, selection, overlay, viewport, onClose, onTrend }) {
-        Object.assign(this, { session, selection, overlay, viewport, onClose, onTrend });
+    constructor({ session, selection, overlay, viewport, selectTag, showTrend }) {
+        Object.assign(this, { session, selection, overlay, viewport, selectTag, showTrend });
         this.element = byId('card');
+        this.show();
     }
 
     get tag() {
@@ -64,12 +65,12 @@ export class Card {
         this.quality = make('dd');
         this.age = make('dd');
         fill(this.element,
-            closeButton('close', () => this.onClose()),
+            closeButton('close', () => this.selectTag(null)),
             make('h3', {}, tag.name), make('p', { class: 'about' }, tag.description ?? ''), this.value, this.limit, this.proof,
             make('dl', {}, make('dt', {}, say('card.quality')), this.quality, make('dt', {}, say('card.age')), this.age,
                 make('dt', {}, say('card.on')), make('dd', {}, on)),
             this.session.recorded ?
-                make('button', { type: 'button', class: 'trend', onclick: () => this.onTrend(tag) }, say('card.trend')) : null,
+                make('button', { type: 'button', class: 'trend', onclick: () => this.showTrend(tag) }, say('card.trend')) : null,
             links.length > 0 ? make('p', { class: 'links' }, ...links) : null);
     }
 

@@ -62,6 +62,21 @@ export function setText(element, text) {
         element.textContent = text;
 }
 
+// A style sheet of this folder, there from now on; a promise, which fails where it cannot be fetched.
+const sheets = new Map();
+export function styled(name) {
+    if (!sheets.has(name))
+        sheets.set(name, new Promise((done, fail) => {
+            const link = make('link', { rel: 'stylesheet', href: new URL(`${name}.css`, import.meta.url).href, onload: done, onerror: () => {
+                sheets.delete(name);
+                link.remove();
+                fail(new Error(`${name}.css cannot be fetched`));
+            } });
+            document.head.append(link);
+        }));
+    return sheets.get(name);
+}
+
 export const setVariable = (element, name, value) => element.style.setProperty(name, value);
 
 // The shape that stands for a quality, the same in lists, cards and over the picture (overlay.js draws it there).

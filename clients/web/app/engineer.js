@@ -7,7 +7,6 @@ import { Proving } from './proving.js';
 
 export class Engineer {
     constructor(page) {
-        document.head.append(make('link', { rel: 'stylesheet', href: new URL('engineer.css', import.meta.url).href }));
         this.page = page;
         this.button = byId('engineer-toggle');
         this.parts = { place: new Placing(page), prove: new Proving(page) };

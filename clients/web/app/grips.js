@@ -20,7 +20,6 @@ export class Grips {
         this.lines = makeSvg('svg', { class: 'cut-lines', 'aria-hidden': 'true' });
         this.label = make('output', { class: 'measured cut-label', 'aria-hidden': 'true', hidden: true });
         this.buttons = new Map(); // id of the grip -> button
-        document.head.append(make('link', { rel: 'stylesheet', href: new URL('grips.css', import.meta.url).href }));
         byId('overlay').after(this.lines);
         viewport.element.append(this.label);
     }

@@ -51,9 +51,14 @@ function build(dialog) {
         make('h2', {}, say('help.markers')), make('ul', { class: 'marks' }, ...marks));
 }
 
-export function openHelp() {
-    const dialog = byId('help');
-    if (dialog.childElementCount === 0)
+export class Help {
+    constructor() {
+        const dialog = byId('help');
         build(dialog);
-    dialog.showModal();
+        dialog.addEventListener('click', (event) => event.target === dialog && dialog.close());
+    }
+
+    open() {
+        byId('help').showModal();
+    }
 }

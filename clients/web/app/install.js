@@ -1,30 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A page that was kept from another version of the server loads itself anew; where https allows, it can be installed.
+import { store, stored } from './stored.js';
 
-const KEY = 'plantcast.renewed';
+const versionIn = (text) => text.match(/version = '(\w+)'/)?.[1];
+const fetched = (options) => fetch('made/version.js', options).then((answer) => (answer.ok ? answer.text() : ''), () => '');
+const ours = fetched({}).then(versionIn); // undefined: built without
 
-// Asked with each greeting: the server may have been another one meanwhile.
-export function renewIfOld(session) {
-    const ours = import('../made/version.js').then(({ version }) => version, () => null); // null: built without
-    session.on('welcome', async () => {
-        const mine = await ours, theirs = await fetch('made/version.js', { cache: 'no-store' })
-            .then((answer) => (answer.ok ? answer.text() : ''), () => '');
-        const version = theirs.match(/version = '(\w+)'/)?.[1];
-        if (mine && version && version !== mine)
-            renew(version);
-    });
-}
-
-// Once for each version, whatever comes back.
-function renew(version) {
-    try {
-        if (sessionStorage.getItem(KEY) === version)
-            return;
-        sessionStorage.setItem(KEY, version);
-    } catch {
-        return; // nothing can be kept: it would go on for ever
-    }
+// Asked with each greeting, and with each part that is loaded later: the server may be another one meanwhile. True: the page goes, once
+// for each version, whatever comes back.
+export async function renewIfOld() {
+    const mine = await ours, version = versionIn(await fetched({ cache: 'no-store' }));
+    if (!mine || !version || version === mine || stored('renewed') === version || !store('renewed', version))
+        return false;
     location.reload();
+    return true;
 }
 
 // On plain http a page has no service worker, and needs none.

@@ -1,73 +1,43 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Puts the page together: one session, the viewport, and the panels around it.
-import { readAddress, writeAddress } from '../core/address.js';
 import { face } from '../core/camera.js';
-import { Connection } from '../core/connection.js';
-import { browserDecoding } from '../core/decoding.js';
-import { Session } from '../core/session.js';
-import { readWall } from '../core/wall.js';
-import { language, say } from '../core/words.js';
-import { AlarmPanel } from './alarms.js';
+import { say } from '../core/words.js';
 import { Assets } from './assets.js';
-import { Card } from './card.js';
-import { clock, watchSleep } from './clock.js';
-import { byId, sayAll, setText } from './dom.js';
+import { watchSleep } from './clock.js';
+import { byId, setText } from './dom.js';
+import { address, connection, page, proveCodecs, session, viewport } from './first.js';
 import { renewIfOld, serveInstalled } from './install.js';
 import { Legend } from './legend.js';
 import { Overlay } from './overlay.js';
-import { Picture } from './picture.js';
+import { Parts } from './parts.js';
 import { Pilot } from './pilot.js';
-import { Place } from './place.js';
 import { Status } from './status.js';
-import { TimingsPanel } from './timings.js';
-import { TokenDialog } from './token.js';
-import { Timeline } from './timeline.js';
-import { chooseTheme, Tools } from './tools.js';
+import { AlarmStrip } from './strip.js';
+import { changeTheme } from './theme.js';
+import { Tools } from './tools.js';
 import { Toolbar } from './toolbar.js';
-import { Trends } from './trends.js';
-import { Views } from './views.js';
-import { Viewport } from './viewport.js';
 
 const ADDRESS_WAIT_MS = 400, TOAST_MS = 6000;
 const ARRIVAL_MARGIN = 1.7; // around one piece of equipment
 const TAG_DISTANCE_M = 5;
 
-document.documentElement.lang = language;
-sayAll(document);
-chooseTheme(location.search);
-
-const address = readAddress(location.hash);
 const selection = { tag: address.tag, hover: null };
-const wall = readWall(location.search);
-
-const streamUrl = new URL('stream', location.href.replace(/^http/, 'ws').replace(/#.*$/, '')).href;
-const connection = new Connection({ url: streamUrl, open: (url, protocol) => new WebSocket(url, protocol), clock });
-const decoding = browserDecoding();
-const wantedCodec = new URLSearchParams(location.search).get('codec') ?? 'auto'; // jpeg, h264, or as the server chooses
-if (wantedCodec !== 'jpeg')
-    await decoding.prove();
-const codecs = decoding.codecs.filter((name) => name !== 'auto' || wantedCodec === 'auto');
-const session = new Session({ connection, now: clock.now, wanted: address, codecs });
-
-new TokenDialog({ session });
+const parts = new Parts(page, tell);
 const assets = new Assets({ session, selection });
-const picture = new Picture({ session, selection });
-const toolbar = new Toolbar({ session, showParams: (show) => picture.showParams(show) });
+const toolbar = new Toolbar({ session, selection });
 const legend = new Legend({ session, element: byId('legend') });
 new Legend({ session, element: byId('legend-right'), paramsOf: (params) => params.split && { ...params, ...params.split } });
-const viewport = new Viewport({ element: byId('viewport'), canvas: byId('picture'), session, decoding });
 const overlay = new Overlay({ canvas: byId('overlay'), viewport, session, selection });
+overlay.unit = page.unit;
 const pilot = new Pilot({ viewport, session });
 const status = new Status({ session, onFreshness: (fresh) => { overlay.fresh = fresh; refresh(); } });
-const timeline = new Timeline({ session });
-const trends = new Trends({ session });
-const card = new Card({ session, selection, overlay, viewport, onClose: () => selectTag(null), onTrend: (tag) => trends.add(tag) });
-
-const timings = new TimingsPanel({ session });
-const views = new Views({ session, pilot });
-const place = new Place({ session, viewport });
-const tools = new Tools({ session, selection, viewport, tell });
-const alarms = new AlarmPanel({ session, onFly: (tag) => { showTag(tag); flyToTag(tag); }, refresh: () => refresh() });
+const tools = new Tools({ session });
+new AlarmStrip({ session, refresh });
+Object.assign(page, { selection, overlay, pilot, assets, parts, selectTag, showTag, flyToTag, refresh, tell });
+page.onUnit = () => {
+    overlay.unit = page.unit;
+    refresh();
+};
 
 // --- selection
 
@@ -79,8 +49,10 @@ function refresh() {
 function selectTag(tag) {
     selection.tag = tag?.name ?? null;
     selection.hover = null;
-    if (tag)
-        trends.follow(tag);
+    if (tag) {
+        parts.there('trends')?.follow(tag);
+        parts.get('card');
+    }
     assets.mark();
     saveAddress();
     refresh();
@@ -122,122 +94,118 @@ function fitView() {
         pilot.flyToBox(chosen ? chosen.bounds : session.model.plant.bounds, chosen ? ARRIVAL_MARGIN : undefined);
 }
 
+// What a part does, once it is there.
+const withPart = (name, f) => parts.get(name).then((part) => part && f(part));
+const opens = (name) => (event) => withPart(name, (part) => part.toggle(event));
+const ofViews = (f) => () => withPart('views', f);
+
 const commands = {
     fit: fitView,
     home: () => session.model && pilot.flyHome(),
-    help: async () => (await import('./help.js')).openHelp(),
-    timings: () => timings.toggle(),
-    alarms: () => alarms.toggle(),
-    past: () => session.recorded && timeline.setOpen(!timeline.open),
+    help: () => withPart('help', (help) => help.open()),
+    timings: opens('timings'),
+    alarms: opens('alarms'),
+    past: () => session.recorded && opens('timeline')(),
     live: () => session.time.atUs !== null && session.travel(null),
     assets: () => assets.setOpen(!assets.open),
     search: () => assets.openSearch(),
-    top: () => views.lookFrom('top'),
-    corner: () => views.lookFrom('iso'),
-    projection: () => views.toggleProjection(),
-    views: () => views.toggle(),
-    picture: () => byId('picture-toggle').click(),
-    hide: () => views.show('hide'),
-    ghost: () => views.show('ghost'),
-    only: () => views.show('only'),
-    showAll: () => views.showAll(),
+    top: ofViews((views) => views.lookFrom('top')),
+    corner: ofViews((views) => views.lookFrom('iso')),
+    projection: ofViews((views) => views.toggleProjection()),
+    views: opens('views'),
+    picture: opens('picture'),
+    hide: ofViews((views) => views.show('hide')),
+    ghost: ofViews((views) => views.show('ghost')),
+    only: ofViews((views) => views.show('only')),
+    showAll: ofViews((views) => views.showAll()),
     hold: () => tools.hold(),
-    measure: () => tools.measure(),
-    snapshot: () => tools.snapshot(),
-    share: () => tools.share(),
-    theme: () => tools.theme(),
+    measure: opens('measure'),
+    snapshot: () => withPart('snapshot', (snapshot) => snapshot.save()),
+    share: () => withPart('share', (share) => share.open()),
+    theme: changeTheme,
     escape() {
         toolbar.closeDisplay();
-        views.close();
-        picture.close();
-        if (alarms.open)
+        for (const name of ['views', 'picture'])
+            parts.there(name)?.close();
+        const [alarms, measure, place] = ['alarms', 'measure', 'place'].map((name) => parts.there(name));
+        if (alarms?.open)
             alarms.setOpen(false);
-        else if (tools.measuring?.on)
-            tools.measuring.setOn(false);
-        else if (place.picked)
+        else if (measure?.on)
+            measure.setOn(false);
+        else if (place?.picked)
             place.close();
         else
             clearSelection();
     },
 };
+const BUTTONS = { fit: 'fit', home: 'home', measure: 'measure', snapshot: 'snapshot', theme: 'theme', hold: 'hold', 'share-open': 'share',
+    'help-open': 'help', 'time-toggle': 'past', 'alarm-strip': 'alarms', 'views-toggle': 'views', 'picture-toggle': 'picture' };
+for (const [id, name] of Object.entries(BUTTONS))
+    byId(id).addEventListener('click', (event) => commands[name](event));
+byId('engineer-toggle').addEventListener('click', opens('engineer'));
 pilot.onCommand = (name) => commands[name]();
 pilot.onGroup = (index) => toolbar.chooseGroup(index);
-let engineer = null; // made when it is first opened
-async function openEngineer() {
-    if (!engineer) {
-        const { Engineer } = await import('./engineer.js');
-        engineer = engineer ?? new Engineer({ session, viewport, overlay, selection, selectTag, showTag, refresh });
-    }
-    engineer.toggle();
-}
-byId('engineer-toggle').addEventListener('click', openEngineer);
-
-let grips = null; // of what is cut away; made when something is
+// What is cut away is moved by hand, but for a wall.
 session.on('params', async () => {
-    if (!session.params.clip || wall || grips)
-        return;
-    const { Grips } = await import('./grips.js');
-    grips ??= new Grips({ session, viewport });
-    refresh();
+    if (session.params.clip && !document.body.classList.contains('wall') && await parts.get('grips'))
+        refresh();
 });
 session.on('proofs', refresh);
 
 pilot.onClick = (x, y, kind) => {
-    if (engineer?.takesClick(x, y))
+    if (parts.there('engineer')?.takesClick(x, y))
         return;
-    if (tools.measuring?.on) {
-        tools.measuring.click(x, y);
+    if (parts.there('measure')?.on) {
+        parts.there('measure').click(x, y);
         return;
     }
     const tag = overlay.at(x, y, kind);
     selectTag(tag);
     if (tag)
-        place.close();
+        parts.there('place')?.close();
     else
-        place.open(x, y);
+        withPart('place', (place) => place.open(x, y));
 };
-place.onSelect = (asset) => session.setParams({ selected: asset.id });
-place.onShow = (how, asset) => {
-    views.show(how, asset.id);
-    place.close();
-};
+page.showTrend = (tag) => withPart('trends', (trends) => trends.add(tag));
+page.showAsset = (how, asset) => ofViews((views) => views.show(how, asset.id))();
 pilot.onPoint = (place) => {
     const tag = place ? overlay.at(place.x, place.y, 'mouse') : null;
     byId('viewport').classList.toggle('pointing', tag !== null);
     if (tag !== selection.hover) {
         selection.hover = tag;
+        if (tag)
+            parts.get('card');
         refresh();
     }
 };
 assets.onAsset = selectAsset;
 assets.onTag = showTag;
-byId('fit').addEventListener('click', fitView);
-byId('home').addEventListener('click', commands.home);
-byId('help-open').addEventListener('click', commands.help);
-byId('help').addEventListener('click', (event) => event.target === event.currentTarget && byId('help').close());
-
 // --- the picture and what lies over it
 
+let proving = null; // once there is a picture
 viewport.onTick = (now) => pilot.tick(now);
 viewport.onDrawn = (newPicture) => {
-    if (newPicture)
+    if (newPicture && !proving) {
         byId('waiting').hidden = true;
+        proving = proveCodecs();
+    }
     if (newPicture && (session.picture.past || status.past))
         status.show(); // what it shows and what is said of it change together
     if (newPicture || overlay.dirty) {
-        card.show();
-        place.show();
-        tools.measuring?.show();
-        grips?.show();
+        for (const name of ['card', 'place', 'measure', 'grips'])
+            parts.there(name)?.show();
         overlay.draw();
     }
 };
 new ResizeObserver(refresh).observe(byId('viewport'));
-setInterval(() => card.tag && refresh(), 500); // its age goes on
+setInterval(() => parts.there('card')?.tag && refresh(), 500); // its age goes on
 
 session.on('tags', refresh);
 session.on('alarms', refresh);
 session.on('time', () => {
+    byId('time-toggle').hidden = false;
+    if (session.time.atUs !== null)
+        parts.get('timeline');
     saveAddress();
     status.show();
     refresh();
@@ -252,13 +220,17 @@ session.on('camera', () => {
     viewport.invalidate();
 });
 session.on('welcome', () => {
+    renewIfOld();
     byId('engineer-toggle').hidden = session.role !== 'engineer';
-    viewport.forget();
+    byId('time-toggle').hidden = true; // until the server says that it records
     status.show();
     arrive();
+    if (selection.tag)
+        parts.get('card');
     viewport.invalidate();
 });
 session.on('status', () => status.show());
+session.on('denied', ({ code }) => withPart('token', (token) => token.ask(code)));
 // The view of another keeps its shape.
 function shape() {
     const { style, classList } = byId('viewport'), { following } = session;
@@ -319,10 +291,11 @@ function tell(text) {
 let addressTimer;
 function saveAddress() {
     clearTimeout(addressTimer);
-    addressTimer = setTimeout(() => {
+    addressTimer = setTimeout(async () => {
         if (session.leader !== null)
             return; // the link says whom to follow
         const { camera, params, time, ownParams: own } = session;
+        const { writeAddress } = await import('../core/address.js');
         const hash = writeAddress({ camera, params, tag: selection.tag, time, own });
         history.replaceState(null, '', location.pathname + location.search + hash);
     }, ADDRESS_WAIT_MS);
@@ -337,17 +310,14 @@ document.addEventListener('visibilitychange', () => {
         refresh();
     }
 });
-session.leader = Number(new URLSearchParams(location.hash.slice(1)).get('follow')) || null;
-if (wall)
-    (await import('./wall.js')).hangOnWall(wall, { overlay, refresh });
 watchSleep(() => {
     connection.doubt();
     connection.retryNow();
     status.show();
 });
-renewIfOld(session);
 serveInstalled();
-connection.start();
+session.listen();
+refresh();
 
 // For the console and for tests of the whole.
-globalThis.plantcast = { session, selection, overlay, legend, decoding, trends, pilot, assets };
+globalThis.plantcast = { ...page, legend, get trends() { return parts.there('trends'); } };

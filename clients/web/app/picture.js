@@ -4,8 +4,9 @@ import { quantityText, title, zoneClock } from '../core/format.js';
 import { sunOf, sunText, towardsSun } from '../core/sun.js';
 import { say, sayIfKnown } from '../core/words.js';
 import { byId, make, setText } from './dom.js';
+import { Factors } from './factors.js';
 import { fillSegments, fillSelect, foldPanel, markSegment } from './fields.js';
-import { DISTANCES, INTERPOLATIONS, LOOKS, SHOWS } from './toolbar.js';
+import { DISTANCES, INTERPOLATIONS, LOOKS, sensorsOf, SHOWS } from './toolbar.js';
 
 const SCALES = ['linear', 'log'].map((scale) => [scale, say(`scale.${scale}`)]);
 const FILLS = ['none', 'neighbours'].map((fill) => [fill, say(`fill.${fill}`), say(`fill.${fill}.why`)]);
@@ -18,7 +19,7 @@ export class Picture {
     constructor({ session, selection }) {
         Object.assign(this, { session, selection });
         this.panel = byId('picture-panel');
-        this.set = foldPanel(this.panel, byId('picture-toggle'), () => this.opened());
+        Object.assign(this, foldPanel(this.panel, byId('picture-toggle'), () => this.update()));
         fillSegments(byId('scale'), 'scale', SCALES, (scale) => session.setParams({ scale }));
         fillSegments(byId('fill'), 'fill', FILLS, (fill) => session.setParams({ fill }));
         byId('environment').addEventListener('change', ({ target }) => session.setParams({ environment: target.value }));
@@ -30,35 +31,13 @@ export class Picture {
         for (const id of ['sun-turn', 'sun-height'])
             byId(id).addEventListener('input', () => this.moveSun());
         this.addHalf();
+        this.factors = new Factors(this);
         session.on('params', () => this.update());
         session.on('welcome', () => this.update());
     }
 
     close() {
         this.set(false);
-    }
-
-    // Its numbers are fetched when it is first opened.
-    async opened() {
-        this.update();
-        const { Factors } = await import('./factors.js');
-        this.factors ??= new Factors(this);
-        this.update();
-    }
-
-    // What `show` needs besides: a sensor that is chosen, else the first of the group; the instant of now.
-    showParams(show) {
-        const { model, params } = this.session;
-        const chosen = [this.selection.tag, params.sensor].map((name) => model.tag(name)).find((tag) => tag?.group === params.group);
-        const sensor = chosen ?? this.sensors()[0];
-        if (show === 'distance')
-            return sensor ? { show, sensor: sensor.name } : {};
-        return show === 'difference' && !params.baseline ? { show, baseline: 'now' } : { show };
-    }
-
-    sensors() {
-        const { model, params } = this.session;
-        return model.tags.filter(({ group, asset, position }) => group === params.group && asset && position);
     }
 
     keep() {
@@ -133,7 +112,7 @@ export class Picture {
         if (!model || !this.panel.classList.contains('open'))
             return;
         byId('from-sensor').hidden = params.show !== 'distance';
-        fillSelect(byId('sensor'), this.sensors().map(({ name, asset }) => [name, `${name}, ${asset}`]), params.sensor ?? '');
+        fillSelect(byId('sensor'), sensorsOf(this.session).map(({ name, asset }) => [name, `${name}, ${asset}`]), params.sensor ?? '');
         byId('from-baseline').hidden = params.show !== 'difference';
         const kept = (params.baselines ?? []).map(({ name }) => [name, name]), now = params.baseline?.name ?? '';
         fillSelect(byId('baseline'), now ? kept : [['', this.instantText(params.baseline)], ...kept], now);
@@ -142,7 +121,7 @@ export class Picture {
         markSegment(byId('fill'), params.fill ?? 'none');
         this.updateLight(this.session);
         this.updateHalf(this.session);
-        this.factors?.update();
+        this.factors.update();
     }
 
     instantText(baseline) {

@@ -9,13 +9,12 @@ import { byId, closeButton, fill, glyph, make } from './dom.js';
 const AWAY_PX = 14, WIDTH_PX = 248, SAME_M = 0.05;
 
 export class Place {
-    // Handlers: onSelect(asset), onShow(how, asset).
-    constructor({ session, viewport }) {
-        Object.assign(this, { session, viewport });
+    // showAsset(how, asset): hides it, shows it alone, ...
+    constructor({ session, viewport, showAsset }) {
+        Object.assign(this, { session, viewport, showAsset });
         this.element = byId('place');
         this.picked = null;
         this.asked = null; // 'new' or 'again'
-        this.onSelect = this.onShow = () => {};
         session.on('picked', (picked) => this.hear(picked));
         session.on('tags', () => this.ask());
         session.on('params', () => this.ask());
@@ -65,7 +64,7 @@ export class Place {
         if (this.picked)
             this.build();
         if (this.picked && !again)
-            this.onSelect(this.session.model.asset(this.picked.asset));
+            this.session.setParams({ selected: this.picked.asset });
         this.show();
     }
 
@@ -95,7 +94,7 @@ export class Place {
         const rows = nearest.map(({ tag, distance_m, value: reading, quality }) => make('li', {}, glyph(quality), make('span', {}, tag),
             make('span', {}, say('distance.metres', { metres: numberText(distance_m, distance_m < 10 ? 2 : 1) })),
             make('b', {}, this.number(reading))));
-        const button = (how) => make('button', { type: 'button', onclick: () => this.onShow(how, asset) }, say(`place.${how}`));
+        const button = (how) => make('button', { type: 'button', onclick: () => this.showOnly(how, asset) }, say(`place.${how}`));
         fill(this.element,
             closeButton('close', () => this.close()),
             make('h3', {}, asset.tag || asset.id), make('p', { class: 'about' }, asset.description ?? ''),
@@ -103,6 +102,11 @@ export class Place {
             make('p', { class: 'state' }, words),
             rows.length > 0 ? make('ul', { class: 'nearest' }, ...rows) : null,
             make('div', { class: 'buttons' }, ...['hide', 'ghost', 'only'].map(button)));
+    }
+
+    showOnly(how, asset) {
+        this.showAsset(how, asset);
+        this.close();
     }
 
     // Beside its place, in step with the picture.

@@ -16,17 +16,14 @@ export class Timeline {
         this.slider = byId('time-slider');
         fillSelect(byId('time-span'), SPANS.map(([seconds, unit, n]) => [seconds, say(`age.${unit}`, { n })]), 3600);
         fillSelect(byId('time-speed'), SPEEDS.map((speed) => [speed, `${speed}×`]), 60);
-        byId('time-toggle').addEventListener('click', () => this.setOpen(!this.open));
         byId('time-span').addEventListener('change', () => this.turnTo(this.atUs));
         byId('time-speed').addEventListener('change', () => session.time.speed && session.travel(undefined, this.speed));
         byId('time-play').addEventListener('click', () => this.play());
         byId('time-live').addEventListener('click', () => session.travel(null));
         this.slider.addEventListener('input', () => this.drag());
-        session.on('welcome', () => {
-            this.clock = zoneClock(session.model.plant.time_zone);
-            byId('time-toggle').hidden = true; // until the server says that it records
-        });
+        session.greeted(() => { this.clock = zoneClock(session.model.plant.time_zone); });
         session.on('time', () => this.hear());
+        this.hear();
         setInterval(() => this.tick(), 500);
         new ResizeObserver(() => this.draw()).observe(byId('time-track'));
     }
@@ -43,6 +40,10 @@ export class Timeline {
         return this.session.time.atUs;
     }
 
+    toggle() {
+        this.setOpen(!this.open);
+    }
+
     setOpen(open) {
         this.open = open;
         byId('timeline').hidden = !open;
@@ -54,7 +55,6 @@ export class Timeline {
     }
 
     hear() {
-        byId('time-toggle').hidden = false;
         if (this.atUs !== null && !this.open)
             this.setOpen(true);
         if (this.atUs !== null && this.toUs !== null && (this.atUs > this.toUs || this.atUs < this.toUs - this.spanUs))

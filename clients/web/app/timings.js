@@ -15,6 +15,7 @@ export class TimingsPanel {
         setInterval(() => !this.element.hidden && this.show(), 500);
     }
 
+    // Open or shut.
     toggle() {
         this.element.hidden = !this.element.hidden;
         if (!this.element.hidden)

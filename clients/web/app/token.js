@@ -2,46 +2,30 @@
 // Asks for a token where the server wants one, and keeps it as long as this tab lives.
 import { say } from '../core/words.js';
 import { around, byId, make, setText } from './dom.js';
-
-const KEY = 'plantcast.token';
-
-// A browser may forbid storage; the token is then asked for again after a reload.
-function stored() {
-    try {
-        return sessionStorage.getItem(KEY);
-    } catch {
-        return null;
-    }
-}
-
-function store(token) {
-    try {
-        sessionStorage.setItem(KEY, token);
-    } catch {
-        // see above
-    }
-}
+import { store } from './stored.js';
 
 export class TokenDialog {
     constructor({ session }) {
         const dialog = byId('token'), field = byId('token-text');
-        session.token = stored();
         const command = make('code', {}, 'plantcast token add');
         byId('token-note').replaceChildren(...around(say('token.note', { command: '\u0000' }), command));
-        session.on('denied', ({ code }) => {
-            setText(byId('token-why'), say(code === 'bad_token' ? 'token.bad' : 'token.needed'));
-            field.value = '';
-            if (!dialog.open)
-                dialog.showModal();
-            field.focus();
-        });
         session.on('welcome', () => dialog.close());
         byId('token-form').addEventListener('submit', (event) => {
             event.preventDefault();
             session.token = field.value.trim();
-            store(session.token);
+            store('token', session.token);
             dialog.close();
             session.connection.retryNow();
         });
+    }
+
+    // code: of what the server refused.
+    ask(code) {
+        const dialog = byId('token'), field = byId('token-text');
+        setText(byId('token-why'), say(code === 'bad_token' ? 'token.bad' : 'token.needed'));
+        field.value = '';
+        if (!dialog.open)
+            dialog.showModal();
+        field.focus();
     }
 }

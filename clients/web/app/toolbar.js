@@ -13,12 +13,15 @@ export const INTERPOLATIONS = explained('interpolation', 'shepard', 'paper');
 export const SHOWS = choices('show', 'value', 'operator', 'distance', 'difference');
 export const LOOKS = choices('look', 'default', 'glossy', 'flat', 'materials');
 
+// Those of the shown group that stand somewhere.
+export const sensorsOf = ({ model, params }) =>
+    model.tags.filter(({ group, asset, position }) => group === params.group && asset && position);
+
 const decimalsOf = (step) => Math.max(0, Math.ceil(-Math.log10(step) - 1e-9));
 
 export class Toolbar {
-    // showParams: what else to ask for with a `show`.
-    constructor({ session, showParams }) {
-        Object.assign(this, { session, showParams });
+    constructor({ session, selection }) {
+        Object.assign(this, { session, selection });
         fillSegments(byId('distance'), 'distance', DISTANCES, (distance) => session.setParams({ distance }));
         fillSegments(byId('interpolation'), 'interpolation', INTERPOLATIONS, (interpolation) => session.setParams({ interpolation }));
         byId('colormap').addEventListener('change', (event) => session.setParams({ colormap: event.target.value }));
@@ -32,7 +35,8 @@ export class Toolbar {
     }
 
     foldDisplay() {
-        const set = foldPanel(byId('display'), byId('display-toggle'), () => {});
+        const { set, toggle } = foldPanel(byId('display'), byId('display-toggle'), () => {});
+        byId('display-toggle').addEventListener('click', toggle);
         this.closeDisplay = () => set(false);
     }
 
@@ -45,6 +49,16 @@ export class Toolbar {
             return [group.id, name, `${name} (${i + 1})`];
         });
         fillSegments(byId('groups'), 'group', choices, (group) => this.session.setParams({ group }));
+    }
+
+    // What `show` needs besides: a sensor that is chosen, else the first of the group; the instant of now.
+    showParams(show) {
+        const { model, params } = this.session;
+        const chosen = [this.selection.tag, params.sensor].map((name) => model.tag(name)).find((tag) => tag?.group === params.group);
+        const sensor = chosen ?? sensorsOf(this.session)[0];
+        if (show === 'distance')
+            return sensor ? { show, sensor: sensor.name } : {};
+        return show === 'difference' && !params.baseline ? { show, baseline: 'now' } : { show };
     }
 
     chooseGroup(index) {

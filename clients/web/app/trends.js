@@ -38,7 +38,7 @@ export class Trends {
         byId('trend-close').addEventListener('click', () => this.close());
         byId('trend-csv').addEventListener('click', () => this.save());
         session.on('time', () => this.chart?.redraw(false));
-        session.on('welcome', () => {
+        session.greeted(() => {
             this.zone = zoneOf(session.model.plant.time_zone);
             this.clock = zoneClock(this.zone);
             this.tags = this.tags.map(({ name }) => session.model.tag(name)).filter(Boolean);

@@ -28,15 +28,11 @@ export class Views {
         byId('shows').append(make('div', { class: 'buttons' },
             ...SHOWS.map(([how, text]) => make('button', { type: 'button', 'data-how': how, onclick: () => this.show(how) }, text)),
             make('button', { type: 'button', id: 'show-all', onclick: () => this.showAll() }, say('views.all'))));
-        this.set = foldPanel(this.panel, byId('views-toggle'), () => this.update());
+        Object.assign(this, foldPanel(this.panel, byId('views-toggle'), () => this.update()));
         session.on('fitted', (camera) => this.pilot.flyTo(camera));
         session.on('params', () => this.update());
         session.on('camera', () => this.update());
         session.on('welcome', () => this.update());
-    }
-
-    toggle() {
-        this.set(!this.panel.classList.contains('open'));
     }
 
     close() {

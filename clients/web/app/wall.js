@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The page on a control room's wall: larger, with nothing to press, and the screen stays on.
-import { wallScale } from '../core/wall.js';
-import { setVariable } from './dom.js';
+import { readWall, wallScale } from '../core/wall.js';
+import { setVariable, styled } from './dom.js';
 
-// wall: as core/wall.js reads it.
-export function hangOnWall(wall, { overlay, refresh }) {
-    const fit = () => {
-        overlay.unit = wallScale(wall, window.screen);
-        setVariable(document.body, '--wall', overlay.unit);
-        refresh();
+// page.unit from now on: how large a unit of the page is; page.onUnit() where that changes.
+export async function hangOnWall(search, page) {
+    const wall = readWall(search), fit = () => {
+        page.unit = wallScale(wall, window.screen);
+        setVariable(document.body, '--wall', page.unit);
+        page.onUnit();
     };
+    await styled('wall');
     document.body.classList.add('wall');
     window.addEventListener('resize', fit);
     fit();

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which codecs this browser decodes, tried once and remembered, and the decoder of each.
-import { H264Decoder, whatIsWrong } from './h264.js';
 
 export const PLAIN = ['jpeg', 'png'];
 const MIME = { jpeg: 'image/jpeg', png: 'image/png' };
@@ -28,7 +27,7 @@ function remember(store, agent, way) {
 
 // Frames to pictures that can be drawn. onCodecs(list): what to ask the server for from now on. onLost(): a key frame is needed.
 export class Decoding {
-    // env: { api (with VideoDecoder, or without), store, agent, now, makeBitmap(blob), tryOut(decoder) }.
+    // env: { api (with VideoDecoder, or without), store, agent, now, makeBitmap(blob), tryOut(decoder) where not the usual one }.
     constructor(env) {
         Object.assign(this, { env, h264: null, lost: false, failedAt: -Infinity });
         this.codecs = PLAIN;
@@ -41,9 +40,13 @@ export class Decoding {
         const known = remembered(store, agent);
         if (!api.VideoDecoder || known === 'none')
             return;
+        const { H264Decoder, whatIsWrong } = await import('./h264.js').catch(() => ({}));
+        if (!H264Decoder)
+            return; // the server is away: JPEG it stays
+        Object.assign(this, { H264Decoder });
         for (const acceleration of WAYS.slice(Math.max(0, WAYS.indexOf(known)))) {
             const decoder = new H264Decoder({ acceleration, api });
-            const wrong = await this.env.tryOut(decoder);
+            const wrong = await (this.env.tryOut ?? whatIsWrong)(decoder);
             if (wrong === null) {
                 this.use(acceleration);
                 return;
@@ -56,7 +59,7 @@ export class Decoding {
     use(acceleration) {
         const { api, store, agent } = this.env;
         this.acceleration = acceleration;
-        this.h264 = new H264Decoder({ acceleration, api });
+        this.h264 = new this.H264Decoder({ acceleration, api });
         this.codecs = ['auto', 'h264', ...PLAIN];
         remember(store, agent, acceleration);
     }
@@ -120,6 +123,6 @@ export const browserDecoding = () => {
     }
     return new Decoding({
         api: globalThis, store, agent: navigator.userAgent, now: () => performance.now(),
-        makeBitmap: (blob) => createImageBitmap(blob), tryOut: whatIsWrong,
+        makeBitmap: (blob) => createImageBitmap(blob),
     });
 };

@@ -26,7 +26,7 @@ const pick = (from, names) => Object.fromEntries(names.filter((name) => from[nam
 const asAsked = (camera) => (camera.height_m === undefined ? camera : cameraOfMessage({ ...camera, fov: undefined }));
 
 export class Session {
-    // wanted: { camera or null, params, time } from the page's address. Events: welcome, params, time, tags (indices), status, alarms,
+    // wanted: { camera or null, params, time } from the page's address. Events: hello (a new connection), welcome, params, time, tags (indices), status, alarms,
     // alarmed (message), frame (frame), camera, error (message), denied (message: we need a token, or another one), ignored (what).
     constructor({ connection, now, wanted = { camera: null, params: {} }, codecs = ['jpeg', 'png'] }) {
         Object.assign(this, { connection, now, codecs });
@@ -59,7 +59,8 @@ export class Session {
             const compares = this.params.show === 'difference' && this.params.baseline?.name;
             this.hello(['camera', 'params', ...(compares ? ['baseline'] : [])]);
         };
-        connection.onText = (text) => this.guard(() => this.heard(decodeMessage(text)));
+        this.unheard = null;     // texts, while nobody is there to hear what they say: [[when, text], ...]
+        connection.onText = (text) => (this.unheard ? this.unheard.push([this.now(), text]) : this.hear(text));
         connection.onBytes = (bytes) => this.guard(() => {
             this.freshAt = this.now();
             if (!isGivenUp(bytes))
@@ -69,6 +70,36 @@ export class Session {
 
     on(name, listener) {
         this.listeners.set(name, [...(this.listeners.get(name) ?? []), listener]);
+    }
+
+    // Called with each greeting, and at once where there was one.
+    greeted(listener) {
+        this.on('welcome', listener);
+        if (this.model)
+            listener();
+    }
+
+    // Pictures are drawn meanwhile; what else is said waits for listen().
+    wait() {
+        this.unheard = [];
+    }
+
+    // What waited is heard as of when it came.
+    listen() {
+        const { now, unheard } = this;
+        this.unheard = null;
+        try {
+            for (const [at, text] of unheard) {
+                this.now = () => at;
+                this.hear(text);
+            }
+        } finally {
+            this.now = now;
+        }
+    }
+
+    hear(text) {
+        this.guard(() => this.heard(decodeMessage(text)));
     }
 
     emit(name, value) {
@@ -91,6 +122,9 @@ export class Session {
     // parts: what of our view to ask for.
     hello(parts) {
         this.welcomed = false;
+        if (this.unheard)
+            this.unheard = []; // of a connection that is gone
+        this.emit('hello');
         this.helloParts = parts;
         this.greetedSize = this.size;
         this.unsent = {};

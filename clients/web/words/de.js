@@ -4,6 +4,7 @@ export default {
     'close': 'Schließen',
     'none': 'keine',
     'novalue': 'kein Wert',
+    'part.failed': 'Dieser Teil der Seite konnte nicht geladen werden. Noch einmal drücken, sobald der Server da ist.',
     'distance.metres': '{metres} m',
 
     // --- ages and durations

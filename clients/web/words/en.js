@@ -4,6 +4,7 @@ export default {
     'close': 'Close',
     'none': 'none',
     'novalue': 'no value',
+    'part.failed': 'This part of the page could not be loaded. Press again once the server is there.',
     'distance.metres': '{metres} m',
 
     // --- ages and durations

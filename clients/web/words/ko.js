@@ -4,6 +4,7 @@ export default {
     'close': '닫기',
     'none': '없음',
     'novalue': '값 없음',
+    'part.failed': '화면의 이 부분을 불러오지 못했습니다. 서버가 응답하면 다시 누르십시오.',
     'distance.metres': '{metres} m',
 
     // --- ages and durations

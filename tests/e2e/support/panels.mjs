@@ -18,11 +18,15 @@ export async function startAlarmed() {
     return [plant, `http://127.0.0.1:${plant.port}/`];
 }
 
+const PARTS = { picture: '#picture-panel.open', views: '#views.open', trend: '#timeline', alarms: '#alarms', timings: '#timings' };
+
 // Everything that opens, one after the other; f looks at each.
 export async function everyPanel(page, f) {
     const press = async (key, name) => {
         await page.locator('#viewport').focus();
         await page.keyboard.press(key);
+        if (PARTS[name])
+            await page.locator(PARTS[name]).waitFor(); // it is loaded when it is first opened
         await f(name);
     };
     await page.waitForFunction(() => globalThis.plantcast.session.recorded && globalThis.plantcast.session.model.alarms.list().length > 0);
@@ -51,9 +55,9 @@ export async function everyPanel(page, f) {
         await press('Escape', 'closed');
     }
     await page.evaluate(() => {
-        const { session, trends } = globalThis.plantcast;
+        const { session, showTrend } = globalThis.plantcast;
         session.setParams({ selected: session.model.assets[0].id });
-        trends.add(session.model.tag('TI-1'));
+        showTrend(session.model.tag('TI-1'));
     });
     await page.locator('#trend-chart canvas').waitFor();
     await press('y', 'trend');

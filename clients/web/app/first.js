@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the first picture takes: connection, session and viewport. What is around them (main.js) comes meanwhile.
+import { Connection } from '../core/connection.js';
+import { browserDecoding } from '../core/decoding.js';
+import { Session } from '../core/session.js';
+import { language } from '../core/words.js';
+import { clock } from './clock.js';
+import { byId, sayAll } from './dom.js';
+import { stored } from './stored.js';
+import { chooseTheme } from './theme.js';
+import { Viewport } from './viewport.js';
+
+export const NARROW = '(max-width: 1023px)'; // there the list of equipment lies over the picture
+const query = new URLSearchParams(location.search);
+export const page = { unit: 1, onUnit: () => {} };
+
+// What decides how large the picture is comes before it.
+document.documentElement.lang = language;
+sayAll(document);
+chooseTheme(query);
+document.querySelector('.stage').classList.toggle('without-assets', window.matchMedia(NARROW).matches);
+if (query.has('wall'))
+    await (await import('./wall.js')).hangOnWall(location.search, page);
+
+const named = location.hash.length > 1 ? (await import('../core/address.js')).readAddress(location.hash) : {};
+export const address = { camera: null, params: {}, tag: null, time: {}, ...named };
+
+// JPEG is shown at once; whether H.264 works here is found out later, unless the address asks for it.
+const wantedCodec = query.get('codec') ?? 'auto';
+const decoding = browserDecoding();
+const codecs = () => decoding.codecs.filter((name) => name !== 'auto' || wantedCodec === 'auto');
+if (wantedCodec === 'h264')
+    await decoding.prove();
+export async function proveCodecs() {
+    if (wantedCodec !== 'auto')
+        return;
+    await decoding.prove();
+    if (codecs().length > session.codecs.length)
+        session.setCodecs(codecs());
+}
+
+const streamUrl = new URL('stream', location.href.replace(/^http/, 'ws').replace(/#.*$/, '')).href;
+export const connection = new Connection({ url: streamUrl, open: (url, protocol) => new WebSocket(url, protocol), clock });
+export const session = new Session({ connection, now: clock.now, wanted: address, codecs: codecs() });
+session.token = stored('token');
+session.leader = Number(new URLSearchParams(location.hash.slice(1)).get('follow')) || null;
+session.wait();
+export const viewport = new Viewport({ element: byId('viewport'), canvas: byId('picture'), session, decoding });
+viewport.onDrawn = () => { byId('waiting').hidden = true; };
+session.on('hello', () => viewport.forget());
+connection.start();
+Object.assign(page, { session, viewport, decoding });
