@@ -67,11 +67,12 @@ const sheets = new Map();
 export function styled(name) {
     if (!sheets.has(name))
         sheets.set(name, new Promise((done, fail) => {
-            const link = make('link', { rel: 'stylesheet', href: new URL(`${name}.css`, import.meta.url).href, onload: done, onerror: () => {
+            const link = make('link', { rel: 'stylesheet', href: new URL(`${name}.css`, import.meta.url).href, onload: done });
+            link.addEventListener('error', () => {
                 sheets.delete(name);
                 link.remove();
                 fail(new Error(`${name}.css cannot be fetched`));
-            } });
+            });
             document.head.append(link);
         }));
     return sheets.get(name);

@@ -215,7 +215,9 @@ session.on('params', () => {
     saveAddress();
     refresh();
 });
+let moved = false;
 session.on('camera', () => {
+    moved = true;
     saveAddress();
     viewport.invalidate();
 });
@@ -288,8 +290,13 @@ function tell(text) {
 
 // --- the page
 
+// Nobody has changed anything: the address stays as it came.
+const isUntouched = () => !location.hash && session.paramsSeq === 0 && !moved && !selection.tag && session.time.atUs === null;
+
 let addressTimer;
 function saveAddress() {
+    if (isUntouched())
+        return;
     clearTimeout(addressTimer);
     addressTimer = setTimeout(async () => {
         if (session.leader !== null)

@@ -4,7 +4,8 @@ import { decimalsFor, numberText, unitText } from '../core/format.js';
 import { say } from '../core/words.js';
 import { byId, make, setText } from './dom.js';
 
-export const badge = (priority) => make('span', { class: `priority p${priority}`, title: say('alarms.priority', { priority }) }, String(priority));
+export const badge = (priority) =>
+    make('span', { class: `priority p${priority}`, title: say('alarms.priority', { priority }) }, String(priority));
 
 // Its value and its limit, in words; empty where it has none.
 export function limitText(model, { tag, value, limit }) {

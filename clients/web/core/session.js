@@ -26,8 +26,9 @@ const pick = (from, names) => Object.fromEntries(names.filter((name) => from[nam
 const asAsked = (camera) => (camera.height_m === undefined ? camera : cameraOfMessage({ ...camera, fov: undefined }));
 
 export class Session {
-    // wanted: { camera or null, params, time } from the page's address. Events: hello (a new connection), welcome, params, time, tags (indices), status, alarms,
-    // alarmed (message), frame (frame), camera, error (message), denied (message: we need a token, or another one), ignored (what).
+    // wanted: { camera or null, params, time } from the page's address. Events: hello (a new connection), welcome, params, time, tags
+    // (indices), status, alarms, alarmed (message), frame (frame), camera, error (message), denied (message: we need a token, or another
+    // one), ignored (what).
     constructor({ connection, now, wanted = { camera: null, params: {} }, codecs = ['jpeg', 'png'] }) {
         Object.assign(this, { connection, now, codecs });
         this.listeners = new Map();

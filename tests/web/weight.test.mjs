@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the page fetches first: all that the first picture takes is asked for at once, and it is little.
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { posix } from 'node:path';
+import { test } from 'node:test';
+
+const WEB = new URL('../../clients/web/', import.meta.url);
+const read = (path) => readFileSync(new URL(path, WEB), 'utf8');
+const page = read('index.html');
+const all = (pattern) => [...page.matchAll(pattern)].map(([, path]) => path);
+const scripts = all(/<script type="module" src="([^"]+)"/g), sheets = all(/<link rel="stylesheet" href="([^"]+)"/g);
+const MOST_BYTES = 160000;
+
+// A module and all that it imports at once.
+function graph(path, seen = new Set()) {
+    if (seen.has(path))
+        return seen;
+    seen.add(path);
+    for (const [, , other] of read(path).matchAll(/^(?:import|export) ([^;]*? from )?'([^']+)';/gm))
+        graph(posix.join(posix.dirname(path), other), seen);
+    return seen;
+}
+
+test('what the first picture takes is asked for by the page itself, and nothing else is', () => {
+    const needed = [...graph('app/first.js')].filter((path) => !scripts.includes(path));
+    assert.deepEqual(all(/<link rel="modulepreload" href="([^"]+)"/g).sort(), needed.sort());
+});
+
+test('it is little: page, styles, words and modules', (t) => {
+    for (const language of ['en', 'de', 'ko']) {
+        const files = ['index.html', ...sheets, ...graph('app/first.js'), `words/${language}.js`];
+        const bytes = files.reduce((sum, path) => sum + Buffer.byteLength(read(path)), 0);
+        t.diagnostic(`${language}: ${bytes} bytes in ${files.length} files`);
+        assert.ok(bytes <= MOST_BYTES, `${bytes}`);
+    }
+});
