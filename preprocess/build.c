@@ -131,20 +131,30 @@ static void split(struct build *build)
     const struct build_input *input = build->input;
     struct measured *measured = &build->measured;
     struct straight straight;
+    struct split_kept kept = { 0 };
     int64_t since_ns = clock_mono_ns();
     float(*places)[3] = mem_array(input->sensor_count, sizeof(*places));
     for (size_t i = 0; i < input->sensor_count; i++)
         memcpy(places[i], measured->sensors[i].surface_m, sizeof(*places));
     straight_init(&straight, input->plant, input->sensors, input->sensor_count, (const float(*)[3])places);
+    bool keep = input->folder && build->geometry.index_count / 3 >= STOCK_TRIANGLES;
+    if (keep)
+        split_kept_open(&kept, input->folder, input->columns_key, &straight);
     build->failed[0] = !split_levels(&build->levels, &build->geometry,
                                      &(struct split_input){ .straight = &straight,
                                                             .surface = measured->surface,
                                                             .field = &measured->field,
                                                             .sensors = measured->sensors,
-                                                            .workers = build->workers },
+                                                            .workers = build->workers,
+                                                            .kept = &kept },
                                      &build->distances);
     if (build->failed[0])
         wrong(build->why, "out of memory for the levels of %u vertices", build->geometry.vertex_count);
+    if (keep && !build->failed[0])
+        split_kept_write(&kept, input->folder, input->columns_key);
+    build->output->report.split_measured = kept.measured_count;
+    build->output->report.split_kept = kept.kept_count;
+    split_kept_close(&kept);
     straight_finish(&straight);
     mem_free(places);
     build->output->report.split_s = seconds_since(&since_ns);

@@ -8,7 +8,7 @@
 #include "preprocess/levels.h"
 #include "surface/surface.h"
 
-#define BUILD_REVISION 20u /* grows when the same input shall give another file */
+#define BUILD_REVISION 21u /* grows when the same input shall give another file */
 
 struct stock;
 struct build_input {
@@ -39,6 +39,7 @@ struct build_report {
     uint32_t stocked, kept_sensors;         /* stocked: 1 if the model need not be read; sensors whose distances were there */
     struct build_level levels[LEVELS_MAX];
     size_t level_count, levels_given_up;
+    size_t split_measured, split_kept; /* findings of the splitting: of this time, and of the last that still hold */
     double read_s, surface_s, solve_s, levels_s, split_s;
 };
 

@@ -171,6 +171,7 @@ static const struct kind { /* of files, beside the manifest */
     { FOLDER_STOCK, offsetof(struct folder_entry, stock_key) },
     { FOLDER_SURFACE, offsetof(struct folder_entry, stock_key) },
     { FOLDER_COLUMNS, offsetof(struct folder_entry, columns_key) },
+    { FOLDER_SPLITTING, offsetof(struct folder_entry, columns_key) },
 };
 
 static bool named(const char *name, const struct kind *kind, const struct folder_entry *entries, size_t count)

@@ -27,6 +27,7 @@ int folder_lock(const char *folder, struct log *log, const atomic_bool *stop);
 #define FOLDER_STOCK ".stock"     /* stock.h */
 #define FOLDER_SURFACE ".surface" /* surface_store.h; its key is the stock's */
 #define FOLDER_COLUMNS ".columns" /* columns.h */
+#define FOLDER_SPLITTING ".splitting" /* split_kept.h; its key is the columns' */
 /* FOLDER/KEY.ending. Free with mem_free. */
 char *folder_path(const char *folder, uint64_t key, const char *ending);
 

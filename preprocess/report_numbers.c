@@ -30,6 +30,8 @@ static const struct number build_numbers[] = {
     OF_BUILD("stocked", stocked, COUNT32),
     OF_BUILD("kept_sensors", kept_sensors, COUNT32),
     OF_BUILD("levels_given_up", levels_given_up, COUNT),
+    OF_BUILD("split_measured", split_measured, COUNT),
+    OF_BUILD("split_kept", split_kept, COUNT),
     { 0 },
 };
 static const struct number surface_numbers[] = {

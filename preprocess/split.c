@@ -323,6 +323,7 @@ static void split_all(struct split *split, struct levels *levels)
     size_t kept = 0, finer_tris = 0;
     for (size_t l = 0; l < levels->count; l++) {
         struct level *level = &levels->at[l];
+        split->level = (uint32_t)l;
         split_level(split, level, finer_tris);
         if (finer_tris > 0 && split->full) {
             level_finish(level);
@@ -369,6 +370,10 @@ static bool start(struct split *split, struct geometry *geometry)
     if (split->samples <= MOST_KEPT) {
         split->share_capacity = places * split->samples;
         split->shares = mem_try_array(split->share_capacity, sizeof(*split->shares));
+    }
+    if (split->in->kept && split->in->kept->applies) {
+        split->near_capacity = places * split->in->straight->group_count;
+        split->near_m = mem_array(split->near_capacity, sizeof(*split->near_m));
     }
     if (!split->geodesic_m || (split->samples <= MOST_KEPT && !split->shares))
         return false;
@@ -429,6 +434,7 @@ bool split_levels(struct levels *levels, struct geometry *geometry, const struct
     cutmesh_finish(&split.mesh);
     mem_free(split.geodesic_m);
     mem_free(split.shares);
+    mem_free(split.near_m);
     mem_free(split.part);
     mem_free(split.faces);
     return *distances != NULL;

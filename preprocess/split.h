@@ -13,6 +13,7 @@
 #ifndef PREPROCESS_SPLIT_H
 #define PREPROCESS_SPLIT_H
 #include "preprocess/levels.h"
+#include "preprocess/split_kept.h"
 #include "preprocess/straight.h"
 #include "surface/surface.h"
 
@@ -24,6 +25,7 @@ struct split_input {
     const struct surface_field *field; /* of the sensors */
     struct asset_sensor *sensors;      /* nearest_vertex becomes the sensor's own vertex of the finest level */
     struct workers *workers;           /* or NULL */
+    struct split_kept *kept;           /* from one time to the next; a zeroed one, or NULL: nothing is */
 };
 
 /* Levels may be fewer afterwards. New vertices come after the geometry's; both faces at an edge are cut at the same vertex, so a level

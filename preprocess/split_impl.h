@@ -11,7 +11,8 @@ struct split {
     const uint32_t *model;      /* the finest level's triangles before any is cut: the model's */
     size_t sensors, samples;    /* samples: of each place */
     float *geodesic_m, *shares; /* [place][sensor]; [place][sample], or NULL: too many */
-    size_t geodesic_capacity, share_capacity;
+    float *near_m;              /* [place][group]: along the surface, to the nearest sensor; NULL unless something is kept */
+    size_t geodesic_capacity, share_capacity, near_capacity;
     uint32_t *part; /* of each place: what hangs together by edges */
     struct split_face {
         double normal[3]; /* of no certain length */
@@ -20,6 +21,7 @@ struct split {
     size_t part_capacity;
     double size_m;
     /* of the level in hand: */
+    uint32_t level; /* its number */
     bool finest;
     double on_surface_m; /* what is farther from the surface is hidden inside another part */
     double shortest_m, slack_m;
@@ -39,6 +41,8 @@ struct split_finding { /* about one edge or one triangle */
     float error, share; /* share: where the edge is best cut */
     float barred;       /* the error that cutting may not mend */
     bool jumps;
+    bool kept;   /* it is of the last time */
+    float doubt; /* split_kept.h */
 };
 
 bool split_find_parts(struct split *split); /* false: out of memory */
@@ -49,6 +53,12 @@ void split_measure_places(struct split *split, uint32_t first, const uint32_t *e
 void split_measure_edges(struct split *split, struct split_finding *findings, size_t count, double enough);
 /* Of triangles, at their middles. */
 void split_measure_insides(struct split *split, struct split_finding *findings, size_t count);
+
+/* --- keeping (split_kept.c) --- */
+
+/* About an edge or a triangle, by its corners. False: it is not known, or may no longer hold. */
+bool split_recall(const struct split *split, const uint32_t *corners, size_t count, struct split_finding *finding);
+void split_remember(struct split *split, const uint32_t *corners, size_t count, const struct split_finding *finding);
 
 /* --- sensors (split_sensors.c) --- */
 

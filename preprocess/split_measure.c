@@ -336,13 +336,20 @@ static void try_edge(const struct job *job, struct split_finding *finding, struc
     finding->share = (float)fmin(1 - margin, fmax(margin, (double)finding->share));
 }
 
+static bool recall_edge(const struct split *split, struct split_finding *finding)
+{
+    const struct cut_edge *edge = &split->mesh.cuts[finding->number];
+    return split_recall(split, (const uint32_t[2]){ edge->a, edge->b }, 2, finding);
+}
+
 static void try_edges(void *arg, size_t begin, size_t end)
 {
     const struct job *job = arg;
     struct room room;
     room_init(&room, job->split, POINTS);
     for (size_t i = begin; i < end; i++)
-        try_edge(job, &job->findings[i], &room);
+        if (!recall_edge(job->split, &job->findings[i]))
+            try_edge(job, &job->findings[i], &room);
     room_finish(&room);
 }
 
@@ -357,7 +364,7 @@ static void try_inside(const struct split *split, struct split_finding *finding,
         corners[c] = shares_at(split, tri->v[c], c, room);
         middle[c] = (split_position(split, tri->v[0])[c] + split_position(split, tri->v[1])[c] + split_position(split, tri->v[2])[c]) / 3;
     }
-    finding->error = 0;
+    *finding = (struct split_finding){ .number = finding->number };
     if (!measure(&sight, middle, geodesic_m))
         return;
     straight_shares(straight, middle, geodesic_m, shares);
@@ -370,7 +377,8 @@ static void try_insides(void *arg, size_t begin, size_t end)
     struct room room;
     room_init(&room, job->split, 1);
     for (size_t i = begin; i < end; i++)
-        try_inside(job->split, &job->findings[i], &room);
+        if (!split_recall(job->split, job->split->mesh.tris[job->findings[i].number].v, 3, &job->findings[i]))
+            try_inside(job->split, &job->findings[i], &room);
     room_finish(&room);
 }
 
@@ -388,6 +396,8 @@ static void measure_places(void *arg, size_t begin, size_t end)
         }
         if (split->shares)
             straight_shares(split->in->straight, point, geodesic_m, split->shares + place * split->samples);
+        if (split->near_m)
+            straight_near(split->in->straight, geodesic_m, split->near_m + place * split->in->straight->group_count);
     }
 }
 
@@ -402,11 +412,17 @@ static void for_all(struct split *split, size_t count, void (*body)(void *arg, s
 void split_measure_edges(struct split *split, struct split_finding *findings, size_t count, double enough)
 {
     for_all(split, count, try_edges, &(struct job){ .split = split, .findings = findings, .enough = enough });
+    for (size_t i = 0; i < count; i++) {
+        const struct cut_edge *edge = &split->mesh.cuts[findings[i].number];
+        split_remember(split, (const uint32_t[2]){ edge->a, edge->b }, 2, &findings[i]);
+    }
 }
 
 void split_measure_insides(struct split *split, struct split_finding *findings, size_t count)
 {
     for_all(split, count, try_insides, &(struct job){ .split = split, .findings = findings });
+    for (size_t i = 0; i < count; i++)
+        split_remember(split, split->mesh.tris[findings[i].number].v, 3, &findings[i]);
 }
 
 void split_measure_places(struct split *split, uint32_t first, const uint32_t *edges, size_t count)
@@ -419,6 +435,8 @@ void split_add_place(struct split *split, uint32_t place, uint32_t part)
     mem_grow(&split->geodesic_m, &split->geodesic_capacity, (place + 1) * split->sensors, sizeof(*split->geodesic_m));
     if (split->shares)
         mem_grow(&split->shares, &split->share_capacity, (place + 1) * split->samples, sizeof(*split->shares));
+    if (split->near_m)
+        mem_grow(&split->near_m, &split->near_capacity, (place + 1) * split->in->straight->group_count, sizeof(*split->near_m));
     mem_grow(&split->part, &split->part_capacity, place + 1, sizeof(*split->part));
     split->part[place] = part;
 }

@@ -181,6 +181,17 @@ double straight_error_inside(const struct straight *straight, const float *const
     return worst_of(straight, corners, (const float[3]){ 1 / 3.0f, 1 / 3.0f, 1 / 3.0f }, 3, inside, slack_m);
 }
 
+void straight_near(const struct straight *straight, const float *geodesic_m, float *near_m)
+{
+    struct room room;
+    float *distance_m = room_for(&room, straight->most_count);
+    for (size_t g = 0; g < straight->group_count; g++) {
+        pick(&straight->groups[g], geodesic_m, distance_m);
+        near_m[g] = shares_least(distance_m, straight->groups[g].of.count);
+    }
+    room_finish(&room);
+}
+
 double straight_nearest(const struct straight *straight, const float point_m[3])
 {
     struct room room;

@@ -46,6 +46,8 @@ void straight_shares(const struct straight *straight, const float point_m[3], co
    Less what a value may change over slack_m. */
 double straight_error(const struct straight *straight, const float *a, const float *b, double t, const float *between, double slack_m);
 double straight_error_inside(const struct straight *straight, const float *const corners[3], const float *inside, double slack_m);
+/* Of each group, the distance of the nearest sensor. */
+void straight_near(const struct straight *straight, const float *geodesic_m, float *near_m);
 /* Metres from the point to the nearest sensor, as the crow flies. */
 double straight_nearest(const struct straight *straight, const float point_m[3]);
 

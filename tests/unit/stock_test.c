@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What plantcast-prep keeps for the next time: a changed sensor gives the file that preparing all anew gives, to the last bit, without the
-   model being read; what is damaged is not used. */
+   model being read; among very many sensors, one that shows the field as well. What is damaged is not used. */
 #include <jansson.h>
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -12,7 +13,9 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
+#include "preprocess/folder.h"
 #include "preprocess/stock.h"
+#include "surface/bvh.h"
 #include "surface/surface_store.h"
 #include "tests/support/cad.h"
 #include "tests/support/model_maker.h"
@@ -202,6 +205,144 @@ static void what_nothing_needs_any_more_is_removed(void **state)
     mem_free(other);
 }
 
+/* --- among many sensors ------------------------------------------------------------------------------------------------------- */
+
+#define MANY 65
+#define STEP (1 / 255.0)
+
+/* Of one group, all round the ring; the first one, numbered so, stands elsewhere each time. */
+static char *many_tags(int first)
+{
+    struct text rows = { 0 };
+    for (int i = 0; i < MANY; i++) {
+        double a = 2.4 * (i ? i : MANY + first), b = 1.7 * (i ? i : first), r = 1 + 0.4 * cos(b);
+        char *row = mem_printf("s%d,,,,t,A,,%.4f,%.4f,%.4f\n", i, r * cos(a), r * sin(a), 0.4 * sin(b));
+        text_add_bytes(&rows, row, strlen(row));
+        mem_free(row);
+    }
+    text_add_bytes(&rows, "", 1);
+    return rows.at;
+}
+
+struct prepared {
+    struct folder_file file;
+    struct trimesh mesh; /* of the finest level */
+    struct bvh *bvh;
+    float *values;       /* of its vertices, for some readings */
+};
+
+static float value_at(const struct asset_view *view, uint32_t vertex)
+{
+    double sum = 0, weights = 0;
+    for (uint32_t s = 0; s < view->header->sensor_count; s++) {
+        double d = fmax(1e-5, (double)view->geodesic_m[(size_t)s * view->header->vertex_count + vertex]), weight = 1 / (d * d);
+        sum += (s * 7 % 3 == 0) * weight;
+        weights += weight;
+    }
+    return (float)(sum / weights);
+}
+
+static void open_prepared(struct prepared *at, const struct prep_case *c, const char *into, const json_t *asset)
+{
+    char why[200], *folder = temp_path(c->folder, into);
+    *at = (struct prepared){ 0 };
+    assert_int_equal(folder_open(&at->file, folder, strtoull(json_string_value(json_object_get(asset, "file")), NULL, 16), why), 1);
+    const struct asset_view *view = &at->file.view;
+    at->values = mem_array(view->header->vertex_count, sizeof(*at->values));
+    for (uint32_t v = 0; v < view->header->vertex_count; v++) {
+        const float *p = view->positions_m[v];
+        trimesh_add_point(&at->mesh, (const double[3]){ (double)p[0], (double)p[1], (double)p[2] });
+        at->values[v] = value_at(view, v);
+    }
+    const struct asset_level *finest = &view->levels[0];
+    for (uint32_t p = finest->first_primitive; p < finest->first_primitive + finest->primitive_count; p++)
+        for (uint32_t i = 0; i < view->primitives[p].index_count; i += 3) {
+            const uint32_t *v = view->indices + view->primitives[p].first_index + i;
+            trimesh_add_tri(&at->mesh, v[0], v[1], v[2], 0);
+        }
+    at->bvh = bvh_create(&at->mesh);
+    mem_free(folder);
+}
+
+static void close_prepared(struct prepared *at)
+{
+    bvh_destroy(&at->bvh);
+    trimesh_finish(&at->mesh);
+    mem_free(at->values);
+    folder_close(&at->file);
+}
+
+static int by_size(const void *a, const void *b)
+{
+    float p = *(const float *)a, q = *(const float *)b;
+    return (p > q) - (p < q);
+}
+
+/* What one shows at corners of the other's triangles, where that has the field as it is solved. */
+static void assert_shows(const struct prepared *at, const struct prepared *other, const char *name)
+{
+    size_t count = other->mesh.tri_count;
+    float *errors = mem_array(count, sizeof(*errors));
+    for (size_t t = 0; t < count; t++) {
+        struct bvh_place place;
+        uint32_t v = other->mesh.tris[t][t % 3];
+        double value = 0;
+        bvh_nearest(at->bvh, other->mesh.points[v], INFINITY, NULL, NULL, &place);
+        for (int c = 0; c < 3; c++)
+            value += place.weights[c] * (double)at->values[at->mesh.tris[place.tri][c]];
+        errors[t] = fabsf((float)value - other->values[v]);
+    }
+    qsort(errors, count, sizeof(*errors), by_size);
+    print_message("# %s, %zu triangles, at %zu places: %.2f steps (99.9 %%), %.2f at most\n", name, at->mesh.tri_count, count,
+                  (double)errors[count * 999 / 1000] / STEP, (double)errors[count - 1] / STEP);
+    assert_true((double)errors[count * 999 / 1000] <= STEP);
+    assert_true((double)errors[count - 1] <= 12 * STEP);
+    mem_free(errors);
+}
+
+static void assert_on_vertices(const struct prepared *at)
+{
+    const struct asset_view *view = &at->file.view;
+    assert_int_equal(view->header->sensor_count, MANY);
+    for (uint32_t s = 0; s < MANY; s++) {
+        uint32_t v = view->sensors[s].nearest_vertex;
+        assert_memory_equal(view->positions_m[v], view->sensors[s].surface_m, sizeof(float[3]));
+        assert_true(view->geodesic_m[(size_t)s * view->header->vertex_count + v] == 0);
+    }
+}
+
+static void one_of_many_sensors_is_split_for_alone(void **state)
+{
+    struct prep_case *c = *state;
+    struct prepared moved, anew;
+    bool model_read;
+    for (int move = 0; move < 4; move++) {
+        char *tags = many_tags(move == 3 ? 1 : move), *findings = move == 3 ? kept_file(c, ".splitting") : NULL;
+        if (findings)
+            damage(findings, false);
+        json_t *found = prepare(c, tags, "kept", &model_read), *fresh = move == 2 ? prepare(c, tags, "fresh", &model_read) : NULL;
+        int measured = number(found, "split_measured"), kept = number(found, "split_kept");
+        print_message("# move %d: %d findings, %d of them kept\n", move, measured + kept, kept);
+        assert_true(measured > 0);
+        assert_true(move == 0 || move == 3 ? kept == 0 : kept > measured / 2);
+        if (fresh) { /* the doubts of two moves have added up */
+            assert_int_equal(number(fresh, "split_kept"), 0);
+            open_prepared(&moved, c, "kept", found);
+            open_prepared(&anew, c, "fresh", fresh);
+            assert_on_vertices(&moved);
+            assert_shows(&anew, &moved, "prepared anew");
+            assert_shows(&moved, &anew, "moved");
+            assert_true(moved.mesh.tri_count < anew.mesh.tri_count * 11 / 10);
+            close_prepared(&moved);
+            close_prepared(&anew);
+            json_decref(fresh);
+        }
+        json_decref(found);
+        mem_free(findings);
+        mem_free(tags);
+    }
+}
+
 /* --- the surface alone --------------------------------------------------------------------------------------------------------- */
 
 static void a_surface_comes_back_whole(void **state)
@@ -246,6 +387,7 @@ int main(void)
         WITH_PLANT(a_changed_sensor_costs_its_own_distances),
         WITH_PLANT(what_is_damaged_is_made_anew),
         WITH_PLANT(what_nothing_needs_any_more_is_removed),
+        WITH_PLANT(one_of_many_sensors_is_split_for_alone),
         cmocka_unit_test(a_surface_comes_back_whole),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

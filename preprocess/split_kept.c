@@ -1,0 +1,240 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Findings by the places of the corners that they are about, and whether they still hold. */
+#include "preprocess/split_kept.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <xxhash.h>
+
+#include "base/mem.h"
+#include "preprocess/folder.h"
+#include "preprocess/split_impl.h"
+
+#define MAGIC "PLCSPLIT"
+#define MOST_CHANGES 16 /* sensors */
+#define FEW 16          /* changes must be fewer than one in so many sensors */
+#define MOST_DOUBT 0.05f /* then, of edges that err by about a step, one in a thousand errs by a tenth of a step more or less: measured */
+
+struct split_kept_finding {
+    uint64_t key;
+    float error, share, barred, doubt;
+    uint64_t jumps;
+};
+
+struct sensor { /* all that its shares depend on */
+    float place_m[3], strength, power;
+    uint32_t group;
+};
+
+struct counts {
+    uint64_t sensors, findings;
+};
+
+/* --- sensors ---------------------------------------------------------------------------------------------------------------------- */
+
+static bool is_local(const struct straight_group *group)
+{
+    for (size_t i = 0; i < group->count; i++)
+        if (!(group->of.strength[i] > 0) || group->of.strength[i] != group->of.strength[0])
+            return false;
+    return !group->papers;
+}
+
+static int compare_sensors(const void *a, const void *b)
+{
+    return memcmp(a, b, sizeof(struct sensor));
+}
+
+static void list_sensors(const struct straight *straight, struct text *list)
+{
+    for (uint32_t g = 0; g < straight->group_count; g++) {
+        const struct straight_group *group = &straight->groups[g];
+        for (size_t i = 0; i < group->count; i++) {
+            struct sensor sensor = { .strength = group->of.strength[i], .power = group->of.power, .group = g };
+            for (int axis = 0; axis < 3; axis++)
+                sensor.place_m[axis] = straight->axes_m[axis][group->columns[i]];
+            text_add_bytes(list, &sensor, sizeof(sensor));
+        }
+    }
+    qsort(list->at, list->length / sizeof(struct sensor), sizeof(struct sensor), compare_sensors);
+}
+
+/* Those that only one of two sorted lists has. False: too many, or of a group that is no more. */
+static bool find_changes(struct split_kept *kept, const struct straight *straight, const struct sensor *old, size_t old_count)
+{
+    const struct sensor *now = (const struct sensor *)(const void *)kept->sensors.at;
+    size_t count = kept->sensors.length / sizeof(*now), i = 0, j = 0;
+    kept->changes = mem_array(MOST_CHANGES, sizeof(*kept->changes));
+    while (i < old_count || j < count) {
+        int order = i == old_count ? 1 : j == count ? -1 : compare_sensors(&old[i], &now[j]);
+        const struct sensor *changed = order < 0 ? &old[i] : &now[j];
+        i += order <= 0;
+        j += order >= 0;
+        if (order == 0)
+            continue;
+        if (kept->change_count == MOST_CHANGES || FEW * kept->change_count >= count || changed->group >= straight->group_count)
+            return false;
+        struct split_change *change = &kept->changes[kept->change_count++];
+        *change = (struct split_change){ .power = changed->power, .group = changed->group };
+        memcpy(change->place_m, changed->place_m, sizeof(change->place_m));
+    }
+    return true;
+}
+
+/* --- the file --------------------------------------------------------------------------------------------------------------------- */
+
+static void index_findings(struct split_kept *kept, size_t count)
+{
+    kept->mask = 15;
+    while (kept->mask < 2 * count)
+        kept->mask = kept->mask * 2 + 1;
+    kept->slots = mem_array(kept->mask + 1, sizeof(*kept->slots));
+    for (uint32_t i = 0; i < count; i++) {
+        size_t slot = kept->findings[i].key & kept->mask;
+        while (kept->slots[slot])
+            slot = (slot + 1) & kept->mask;
+        kept->slots[slot] = i + 1;
+    }
+}
+
+static void read_file(struct split_kept *kept, const struct straight *straight)
+{
+    struct counts counts = { 0 };
+    if (kept->file.count < sizeof(counts))
+        return;
+    memcpy(&counts, kept->file.bytes, sizeof(counts));
+    size_t left = kept->file.count - sizeof(counts);
+    if (counts.sensors > left / sizeof(struct sensor) || counts.findings > UINT32_MAX / 2 ||
+        left != counts.sensors * sizeof(struct sensor) + counts.findings * sizeof(struct split_kept_finding))
+        return;
+    const char *sensors = kept->file.bytes + sizeof(counts), *findings = sensors + counts.sensors * sizeof(struct sensor);
+    if (!find_changes(kept, straight, (const struct sensor *)(const void *)sensors, counts.sensors))
+        return;
+    kept->findings = (const struct split_kept_finding *)(const void *)findings;
+    index_findings(kept, counts.findings);
+}
+
+void split_kept_open(struct split_kept *kept, const char *folder, uint64_t key, const struct straight *straight)
+{
+    char *path = folder_path(folder, key, FOLDER_SPLITTING);
+    *kept = (struct split_kept){ .applies = true };
+    for (size_t g = 0; g < straight->group_count; g++)
+        kept->applies &= is_local(&straight->groups[g]);
+    if (kept->applies)
+        list_sensors(straight, &kept->sensors);
+    if (kept->applies && kept_open(&kept->file, path, MAGIC, key))
+        read_file(kept, straight);
+    mem_free(path);
+}
+
+void split_kept_close(struct split_kept *kept)
+{
+    kept_close(&kept->file);
+    mem_free(kept->slots);
+    mem_free(kept->changes);
+    text_finish(&kept->sensors);
+    text_finish(&kept->found);
+    *kept = (struct split_kept){ 0 };
+}
+
+void split_kept_write(const struct split_kept *kept, const char *folder, uint64_t key)
+{
+    const struct counts counts = { kept->sensors.length / sizeof(struct sensor), kept->found.length / sizeof(struct split_kept_finding) };
+    struct text file = { 0 };
+    if (!kept->applies)
+        return;
+    char *path = folder_path(folder, key, FOLDER_SPLITTING);
+    text_add_bytes(&file, &counts, sizeof(counts));
+    text_add_bytes(&file, kept->sensors.at, kept->sensors.length);
+    text_add_bytes(&file, kept->found.at, kept->found.length);
+    kept_write(path, MAGIC, key, file.at, file.length);
+    text_finish(&file);
+    mem_free(path);
+}
+
+/* --- findings --------------------------------------------------------------------------------------------------------------------- */
+
+static int compare_places(const void *a, const void *b)
+{
+    return memcmp(a, b, sizeof(float[3]));
+}
+
+/* The same for every order of the corners. */
+static uint64_t key_of(const struct split *split, const uint32_t *corners, size_t count)
+{
+    float places_m[3][3];
+    for (size_t c = 0; c < count; c++)
+        memcpy(places_m[c], split_position(split, corners[c]), sizeof(places_m[c]));
+    qsort(places_m, count, sizeof(*places_m), compare_places);
+    return XXH3_64bits_withSeed(places_m, count * sizeof(*places_m), split->level);
+}
+
+/* The most that the sensors that are new or gone have, together, of a value between these corners. A distance along the surface is no
+   shorter than the straight one. */
+static float share_of_changes(const struct split *split, const uint32_t *corners, size_t count)
+{
+    const struct split_kept *kept = split->in->kept;
+    const size_t groups = split->in->straight->group_count;
+    float middle[3] = { 0 }, share = 0;
+    double wide_m = 0;
+    for (size_t c = 0; c < count; c++)
+        for (int axis = 0; axis < 3; axis++)
+            middle[axis] += split_position(split, corners[c])[axis] / (float)count;
+    for (size_t c = 0; c < count; c++)
+        wide_m = fmax(wide_m, split_length(middle, split_position(split, corners[c])));
+    for (size_t i = 0; i < kept->change_count; i++) {
+        const struct split_change *change = &kept->changes[i];
+        double near_m = 0, far_m = split_length(middle, change->place_m) - wide_m - split->on_surface_m;
+        for (size_t c = 0; c < count; c++) {
+            uint32_t place = split->mesh.places.of_vertex[corners[c]];
+            near_m = fmax(near_m, (double)split->near_m[place * groups + change->group]);
+        }
+        double ratio = (near_m + wide_m) / fmax(far_m, 1e-9);
+        share += ratio < 1 ? powf((float)ratio, change->power) : 1;
+    }
+    return share;
+}
+
+bool split_recall(const struct split *split, const uint32_t *corners, size_t count, struct split_finding *finding)
+{
+    const struct split_kept *kept = split->in->kept;
+    if (!kept || !kept->findings)
+        return false;
+    uint64_t key = key_of(split, corners, count);
+    size_t slot = key & kept->mask;
+    while (kept->slots[slot] && kept->findings[kept->slots[slot] - 1].key != key)
+        slot = (slot + 1) & kept->mask;
+    if (!kept->slots[slot])
+        return false;
+    const struct split_kept_finding *old = &kept->findings[kept->slots[slot] - 1];
+    float doubt = old->doubt + share_of_changes(split, corners, count);
+    if (!(doubt <= MOST_DOUBT))
+        return false;
+    *finding = (struct split_finding){ .number = finding->number,
+                                       .error = old->error,
+                                       .share = old->share,
+                                       .barred = old->barred,
+                                       .jumps = old->jumps != 0,
+                                       .kept = true,
+                                       .doubt = doubt };
+    return true;
+}
+
+void split_remember(struct split *split, const uint32_t *corners, size_t count, const struct split_finding *finding)
+{
+    struct split_kept *kept = split->in->kept;
+    if (!kept)
+        return;
+    kept->measured_count += !finding->kept;
+    kept->kept_count += finding->kept;
+    if (!kept->applies)
+        return;
+    const struct split_kept_finding found = { .key = key_of(split, corners, count),
+                                              .error = finding->error,
+                                              .share = finding->share,
+                                              .barred = finding->barred,
+                                              .doubt = finding->doubt,
+                                              .jumps = finding->jumps };
+    text_add_bytes(&kept->found, &found, sizeof(found));
+}

@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What splitting found out about edges and triangles, for the next time: KEY.splitting beside the asset files. Where few of many sensors
+   have changed, it still holds everywhere but near these, and only there is measured anew.
+
+   A sensor that has at most the share x of a value changes what the field errs along an edge by about x times as much as it errs, and so
+   does one that is gone. Such shares add up from one time to the next (doubt) until an edge is measured again; what they may be together
+   is far below the tenth of a step of colour by which the splitting keeps within SPLIT_ERROR. That is so for shepard with one strength for
+   all sensors of a group. In paper every sensor has a share everywhere: nothing is kept for an asset with a group that is looked at in it.
+   Safe to delete; one that is no good counts as none. */
+#ifndef PREPROCESS_SPLIT_KEPT_H
+#define PREPROCESS_SPLIT_KEPT_H
+#include "base/kept.h"
+#include "base/text.h"
+#include "preprocess/straight.h"
+
+struct split_kept {
+    bool applies;    /* else nothing is kept */
+    struct kept file;
+    const struct split_kept_finding *findings; /* of the last time, in the file; NULL: none of use */
+    uint32_t *slots;                           /* findings by key, one more than their number; 0: none */
+    size_t mask;
+    struct split_change { /* a sensor that is new or gone */
+        float place_m[3], power;
+        uint32_t group; /* of straight's */
+    } * changes;
+    size_t change_count;
+    struct text sensors, found; /* of this time */
+    size_t measured_count, kept_count;
+};
+
+/* Never fails. straight must outlive it. */
+void split_kept_open(struct split_kept *kept, const char *folder, uint64_t key, const struct straight *straight);
+void split_kept_close(struct split_kept *kept); /* a zeroed one is fine */
+/* After splitting. What cannot be written is not kept. */
+void split_kept_write(const struct split_kept *kept, const char *folder, uint64_t key);
+
+#endif
