@@ -106,7 +106,7 @@ int studio_open(struct studio *studio, struct snapshot_options *options, struct 
         return 1;
     if (!add_colormaps(studio, options))
         return 2;
-    const struct params_world world = { .scene = studio->scene, .baselines = studio->baselines };
+    const struct params_world world = { .scene = studio->scene, .baselines = studio->baselines, .bare = options->no_overlay };
     if (!query_parse(&world, ROLE_ENGINEER, (const char *const *)options->args, options->arg_count, view, NULL, &error)) {
         fprintf(stderr, "plantcast: %s\n", error.text);
         return 2;

@@ -94,41 +94,67 @@ static void safe_box(const double min_m[3], const double max_m[3], double safe_m
     }
 }
 
-/* Along one axis of the picture, the planes of the view touch the box where low = max(-x - z t) and high = max(x - z t), with
-   z forward and t the tangent of half the angle. Between them stands the eye, at least this far back. */
+/* One axis of the picture, and the part of it that is to be filled: the tangents of its planes, or, without perspective, where they lie
+   in halves of the picture. They touch the box where low = max(-x + z from) and high = max(x - z to), with z forward. Between them
+   stands the eye. */
 struct side {
-    double low, high;
+    double from, to, low, high;
 };
 
-static void side_add(struct side *side, double x, double z, double t)
+static void side_init(struct side *side, double low, double high, double scale)
 {
-    side->high = fmax(side->high, x - z * t);
-    side->low = fmax(side->low, -x - z * t);
+    double middle = (low + high) / 2, half = (high - low) / 2 / FIT_MARGIN;
+    *side = (struct side){ (middle - half) * scale, (middle + half) * scale, -INFINITY, -INFINITY };
+}
+
+static void side_add(struct side *side, double x, double z)
+{
+    side->high = fmax(side->high, x - z * side->to);
+    side->low = fmax(side->low, -x + z * side->from);
+}
+
+/* At least so far back. */
+static double side_back(const struct side *side)
+{
+    return (side->low + side->high) / (side->to - side->from);
+}
+
+/* To which side, from that far back. */
+static double side_shift(const struct side *side, double back_m)
+{
+    return (side->high - side->low - back_m * (side->to + side->from)) / 2;
 }
 
 /* How far the box reaches from its middle, to the sides of an orthographic picture. */
 static void place_parallel(struct camera *camera, const struct basis *basis, const double half_m[3], const double center_m[3],
-                           double aspect)
+                           double aspect, const struct camera_window *window)
 {
+    struct side right, up;
     double right_m = 0, up_m = 0, deep_m = 0;
     for (int i = 0; i < 3; i++) {
         right_m += fabs(basis->right[i]) * half_m[i];
         up_m += fabs(basis->up[i]) * half_m[i];
         deep_m += fabs(basis->forward[i]) * half_m[i];
     }
-    camera->height_m = fmax(2 * FIT_MARGIN * fmax(up_m, right_m / aspect), LEAST_HEIGHT_M);
+    side_init(&right, window->left, window->right, aspect);
+    side_init(&up, window->bottom, window->top, 1);
+    right.low = right.high = right_m;
+    up.low = up.high = up_m;
+    camera->height_m = fmax(2 * fmax(side_back(&up), side_back(&right)), LEAST_HEIGHT_M);
+    double sideways_m = side_shift(&right, camera->height_m / 2), upwards_m = side_shift(&up, camera->height_m / 2);
     for (int i = 0; i < 3; i++) {
-        camera->target_m[i] = center_m[i];
-        camera->eye_m[i] = center_m[i] - (2 * deep_m + camera->height_m) * basis->forward[i];
+        camera->target_m[i] = center_m[i] + sideways_m * basis->right[i] + upwards_m * basis->up[i];
+        camera->eye_m[i] = camera->target_m[i] - (2 * deep_m + camera->height_m) * basis->forward[i];
     }
 }
 
 static void place_eye(struct camera *camera, const struct basis *basis, const double min_m[3], const double max_m[3],
-                      const double center_m[3], double aspect)
+                      const double center_m[3], double aspect, const struct camera_window *window)
 {
-    double t_up = tan(camera->fov_deg * M_PI / 360) / FIT_MARGIN, t_right = t_up * aspect;
-    struct side right = { -INFINITY, -INFINITY }, up = { -INFINITY, -INFINITY };
-    double nearest_m = INFINITY;
+    double t_up = tan(camera->fov_deg * M_PI / 360), nearest_m = INFINITY;
+    struct side right, up;
+    side_init(&right, window->left, window->right, t_up * aspect);
+    side_init(&up, window->bottom, window->top, t_up);
     for (int corner = 0; corner < 8; corner++) {
         double p[3];
         corner_of(min_m, max_m, corner, p);
@@ -136,22 +162,24 @@ static void place_eye(struct camera *camera, const struct basis *basis, const do
             p[i] -= center_m[i];
         double z = dot(p, basis->forward);
         nearest_m = fmin(nearest_m, z);
-        side_add(&right, dot(p, basis->right), z, t_right);
-        side_add(&up, dot(p, basis->up), z, t_up);
+        side_add(&right, dot(p, basis->right), z);
+        side_add(&up, dot(p, basis->up), z);
     }
-    double back_m = fmax((right.low + right.high) / (2 * t_right), (up.low + up.high) / (2 * t_up));
-    double sideways_m = (right.high - right.low) / 2, upwards_m = (up.high - up.low) / 2;
-    back_m = fmax(back_m, -nearest_m * 1.001);
+    double back_m = fmax(fmax(side_back(&right), side_back(&up)), -nearest_m * 1.001);
+    double sideways_m = side_shift(&right, back_m), upwards_m = side_shift(&up, back_m);
     for (int i = 0; i < 3; i++) {
         camera->target_m[i] = center_m[i] + sideways_m * basis->right[i] + upwards_m * basis->up[i];
         camera->eye_m[i] = camera->target_m[i] - back_m * basis->forward[i];
     }
 }
 
-void camera_fit_along(struct camera *camera, const double forward[3], const double min_m[3], const double max_m[3], double aspect)
+void camera_fit_along(struct camera *camera, const double forward[3], const double min_m[3], const double max_m[3], double aspect,
+                      const struct camera_window *window)
 {
+    static const struct camera_window whole = { -1, 1, -1, 1 };
     double safe_min_m[3], safe_max_m[3], center_m[3], half_m[3];
     struct basis basis;
+    window = window->left < window->right && window->bottom < window->top ? window : &whole;
     basis_of(forward, camera->up, &basis);
     safe_box(min_m, max_m, safe_min_m, safe_max_m);
     for (int i = 0; i < 3; i++) {
@@ -159,16 +187,16 @@ void camera_fit_along(struct camera *camera, const double forward[3], const doub
         half_m[i] = (safe_max_m[i] - safe_min_m[i]) / 2;
     }
     if (camera->height_m > 0)
-        place_parallel(camera, &basis, half_m, center_m, aspect);
+        place_parallel(camera, &basis, half_m, center_m, aspect, window);
     else
-        place_eye(camera, &basis, safe_min_m, safe_max_m, center_m, aspect);
+        place_eye(camera, &basis, safe_min_m, safe_max_m, center_m, aspect, window);
 }
 
 void camera_fit_up(struct camera *camera, enum axis up, const double min_m[3], const double max_m[3], double aspect)
 {
     static const double forward[2][3] = { [AXIS_Z] = { 0.62, 0.68, -0.42 }, [AXIS_Y] = { 0.62, -0.42, -0.68 } };
     *camera = (struct camera){ .up = { 0, up == AXIS_Y, up == AXIS_Z }, .fov_deg = 45 };
-    camera_fit_along(camera, forward[up], min_m, max_m, aspect);
+    camera_fit_along(camera, forward[up], min_m, max_m, aspect, &(struct camera_window){ 0 });
 }
 
 void camera_fit(struct camera *camera, const double min_m[3], const double max_m[3], double aspect)

@@ -18,9 +18,13 @@ bool camera_valid(const struct camera *camera);
 void camera_fit(struct camera *camera, const double min_m[3], const double max_m[3], double aspect);
 /* The same for either kind of plant frame: x is east; north is y in a Z-up frame and -z in a Y-up one. */
 void camera_fit_up(struct camera *camera, enum axis up, const double min_m[3], const double max_m[3], double aspect);
+struct camera_window { /* a part of the picture, each way from -1 to 1. Zero: all of it */
+    double left, right, bottom, top;
+};
 /* The same in a direction that is not along camera->up, with the lens and the up of `camera`: of an orthographic one, height_m > 0, the
-   height is chosen. */
-void camera_fit_along(struct camera *camera, const double forward[3], const double min_m[3], const double max_m[3], double aspect);
+   height is chosen. It fills that window. */
+void camera_fit_along(struct camera *camera, const double forward[3], const double min_m[3], const double max_m[3], double aspect,
+                      const struct camera_window *window);
 /* Unit vectors of the picture. */
 void camera_basis(const struct camera *camera, double right[3], double up[3], double forward[3]);
 /* From so far off, an eye of the usual angle sees as much as an orthographic picture shows. 0: perspective. */

@@ -107,5 +107,5 @@ void framing_look(const struct scene *scene, const struct framing *framing, doub
     }
     if (framing->side != SIDE_NOW)
         memcpy(camera->up, up, sizeof(up));
-    camera_fit_along(camera, forward, min_m, max_m, aspect);
+    camera_fit_along(camera, forward, min_m, max_m, aspect, &framing->window);
 }

@@ -10,6 +10,7 @@ enum side { SIDE_NOW, SIDE_TOP, SIDE_BOTTOM, SIDE_FRONT, SIDE_BACK, SIDE_LEFT, S
 struct framing {
     int asset, tag; /* -1: not asked for; both: the whole plant */
     enum side side; /* SIDE_NOW: as the camera looks now; a sensor from outside its asset */
+    struct camera_window window; /* that it fills */
 };
 
 /* False: no asset and no tag that stands on one has this name. Assets come first. NULL: the whole plant.

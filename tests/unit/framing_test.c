@@ -13,10 +13,11 @@
 
 #include "tests/support/small_scene.h"
 
-/* How far towards the picture's edge the farthest corner of a box lies: 1 is on it. */
-static double reach(const struct camera *camera, double aspect, const double min[3], const double max[3])
+/* The part of the picture, -1 to 1 each way, that a box takes. */
+static struct camera_window taken(const struct camera *camera, double aspect, const double min[3], const double max[3])
 {
-    double view[16], projection[16], most = 0;
+    struct camera_window out = { INFINITY, -INFINITY, INFINITY, -INFINITY };
+    double view[16], projection[16];
     camera_matrices(camera, aspect, min, max, view, projection);
     for (int corner = 0; corner < 8; corner++) {
         double p[3], eye[4] = { 0 }, clip[4] = { 0 };
@@ -28,9 +29,19 @@ static double reach(const struct camera *camera, double aspect, const double min
             for (int c = 0; c < 4; c++)
                 clip[row] += projection[4 * c + row] * eye[c];
         assert_true(clip[3] > 0);
-        most = fmax(most, fmax(fabs(clip[0] / clip[3]), fabs(clip[1] / clip[3])));
+        out.left = fmin(out.left, clip[0] / clip[3]);
+        out.right = fmax(out.right, clip[0] / clip[3]);
+        out.bottom = fmin(out.bottom, clip[1] / clip[3]);
+        out.top = fmax(out.top, clip[1] / clip[3]);
     }
-    return most;
+    return out;
+}
+
+/* How far towards the picture's edge the farthest corner of a box lies: 1 is on it. */
+static double reach(const struct camera *camera, double aspect, const double min[3], const double max[3])
+{
+    struct camera_window box = taken(camera, aspect, min, max);
+    return fmax(fmax(-box.left, box.right), fmax(-box.bottom, box.top));
 }
 
 static void forward_of(const struct camera *camera, double forward[3])
@@ -64,6 +75,29 @@ static void every_side_shows_all_of_it(void **state)
                     double most = reach(&camera, aspect, min, max);
                     assert_true(most < 0.96 && most > 0.9);
                 }
+}
+
+static void a_window_is_filled(void **state)
+{
+    (void)state;
+    static const struct camera_window windows[] = { { -1, 0.6, -1, 0.8 }, { -0.2, 0.9, 0.1, 0.4 }, { -1, -0.5, -1, 1 } };
+    const struct scene *scene = small_scene();
+    for (int side = SIDE_NOW; side <= SIDE_ISO; side++)
+        for (int parallel = 0; parallel < 2; parallel++)
+            for (int w = 0; w < 3; w++) {
+                const struct camera_window *window = &windows[w];
+                struct framing framing = { .asset = 0, .tag = -1, .side = (enum side)side, .window = *window };
+                struct camera camera;
+                scene_home(scene, 1.6, &camera);
+                camera.height_m = parallel;
+                framing_look(scene, &framing, 1.6, &camera);
+                struct camera_window box = taken(&camera, 1.6, scene->assets[0].bounds_min_m, scene->assets[0].bounds_max_m);
+                double wide = (box.right - box.left) / (window->right - window->left);
+                double high = (box.top - box.bottom) / (window->top - window->bottom);
+                assert_true(box.left > window->left && box.right < window->right);
+                assert_true(box.bottom > window->bottom && box.top < window->top);
+                assert_true(fmax(wide, high) > 0.9);
+            }
 }
 
 static void sides_are_where_they_should_be(void **state)
@@ -129,7 +163,8 @@ static void a_sensor_is_seen_from_outside(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_side_shows_all_of_it),    cmocka_unit_test(sides_are_where_they_should_be),
+        cmocka_unit_test(every_side_shows_all_of_it),    cmocka_unit_test(a_window_is_filled),
+        cmocka_unit_test(sides_are_where_they_should_be),
         cmocka_unit_test(north_is_above_in_a_plan),      cmocka_unit_test(names_are_found),
         cmocka_unit_test(a_sensor_is_seen_from_outside),
     };

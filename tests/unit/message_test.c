@@ -330,15 +330,33 @@ static void queries_make_views(void **state)
     static const char *const seen[] = { "fit=E-101",     "side=top",           "projection=orthographic",
                                         "hidden=P-101A", "ghost=E-101,P-101A", "clip=1,0,0,2;0,3,0,1.5" };
     assert_true(query(seen, sizeof(seen) / sizeof(seen[0]), &view, &error));
-    assert_true(view.camera.height_m > 2 && view.camera.target_m[0] == 0 && view.camera.eye_m[2] > 2.5);
+    assert_true(view.camera.height_m > 2 && view.camera.target_m[0] > 0.2 && view.camera.eye_m[2] > 2.5); /* beside the legend */
     assert_int_equal(visibility_of(&view.visibility, 0), ASSET_GHOST);
     assert_int_equal(visibility_of(&view.visibility, 1), ASSET_HIDDEN);
     assert_true(view.visibility.clip.plane_count == 2 && view.visibility.clip.planes[1][3] == 0.5 && !view.visibility.clip.is_box);
     static const char *const parallel[] = { "projection=orthographic", "height_m=7", "clip_box=-1,-1,0,1,1,2" };
     assert_true(query(parallel, 3, &view, &error));
     assert_true(view.camera.height_m == 7 && view.visibility.clip.is_box);
+    assert_true(query(&(const char *){ "backdrop=dark" }, 1, &view, &error) && view.dark);
     assert_true(query(NULL, 0, &view, &error));
-    assert_true(view.width_px == 1280 && view.height_px == 720);
+    assert_true(view.width_px == 1280 && view.height_px == 720 && !view.dark);
+}
+
+static void what_is_fitted_lies_beside_the_legend(void **state)
+{
+    (void)state;
+    static const char *const args[] = { "fit=E-101", "side=front", "look=materials", "split=colormap=viridis;look=default" };
+    const struct params_world bare = { .scene = small_scene(), .bare = true };
+    struct message_error error = { 0 };
+    struct view whole, view;
+    assert_true(query_parse(&bare, ROLE_ENGINEER, args, 2, &whole, NULL, &error));
+    assert_float_equal(whole.camera.target_m[0], 0, 1e-6);
+    assert_true(query(args, 2, &view, &error));
+    assert_true(view.camera.target_m[0] > 0.2 && view.camera.eye_m[1] < whole.camera.eye_m[1]);
+    assert_true(query(args, 3, &view, &error)); /* no legend */
+    assert_float_equal(view.camera.target_m[0], 0, 1e-6);
+    assert_true(query(args, 4, &view, &error)); /* one to the right */
+    assert_true(view.camera.target_m[0] > 0.2 && view.camera.eye_m[1] < 1.5 * whole.camera.eye_m[1]);
 }
 
 static void bad_queries_are_named(void **state)
@@ -447,6 +465,7 @@ int main(void)
         cmocka_unit_test(a_new_group_brings_its_settings),
         cmocka_unit_test(bands_and_lines),
         cmocka_unit_test(a_view_splits),
+        cmocka_unit_test(what_is_fitted_lies_beside_the_legend),
         cmocka_unit_test(queries_make_views),
         cmocka_unit_test(bad_queries_are_named),
         cmocka_unit_test(damaged_messages_stay_harmless),

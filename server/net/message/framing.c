@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "net/message/fields.h"
+#include "render/overlay/overlay.h"
 
 bool fit_parse(const struct plant *plant, const json_t *o, struct fit *out, struct message_error *error)
 {
@@ -25,11 +26,13 @@ bool fit_parse(const struct plant *plant, const json_t *o, struct fit *out, stru
     return true;
 }
 
-void fit_apply(const struct scene *scene, const struct fit *fit, double aspect, struct camera *camera)
+void fit_apply(const struct scene *scene, const struct fit *fit, const struct view *view, struct camera *camera)
 {
+    struct view half;
+    view_half(view, 0, &half);
     if (fit->projection != PROJECTION_AS_IT_IS)
         camera->height_m = fit->projection == PROJECTION_ORTHOGRAPHIC;
-    framing_look(scene, &fit->framing, aspect, camera);
+    framing_look(scene, &fit->framing, (double)half.width_px / half.height_px, camera);
 }
 
 static json_t *vector(const double v[3])
@@ -76,7 +79,7 @@ static bool parse_given(const json_t *o, bool lens, struct view *view, struct me
     return good;
 }
 
-bool query_camera(const struct scene *scene, const json_t *o, struct view *view, struct message_error *error)
+bool query_camera(const struct scene *scene, const json_t *o, bool bare, struct view *view, struct message_error *error)
 {
     json_t *fit_o = json_object();
     struct fit fit;
@@ -85,8 +88,10 @@ bool query_camera(const struct scene *scene, const json_t *o, struct view *view,
     json_object_set(fit_o, "side", json_object_get(o, "side"));
     json_object_set(fit_o, "projection", json_object_get(o, "projection"));
     bool good = fit_parse(scene->plant, fit_o, &fit, error) && parse_given(o, !fits, view, error);
+    if (good && fits && !bare)
+        overlay_window(scene, view, &fit.framing.window);
     if (good && fits)
-        fit_apply(scene, &fit, (double)view->width_px / view->height_px, &view->camera);
+        fit_apply(scene, &fit, view, &view->camera);
     json_decref(fit_o);
     return good;
 }

@@ -69,6 +69,7 @@ enum params_given { /* which fields of a params message were there */
                     GIVEN_GHOST = 1 << 23,
                     GIVEN_CLIP = 1 << 24,
                     GIVEN_ENVIRONMENT = 1 << 25,
+                    GIVEN_BACKDROP = 1 << 26,
 };
 
 enum baseline_wish { BASELINE_STAYS, BASELINE_NONE, BASELINE_NAMED, BASELINE_NOW, BASELINE_SET, BASELINE_REMOVE };
@@ -85,6 +86,7 @@ struct params_change {
     bool range_of_group; /* range: null */
     double range_min, range_max;
     enum look look;
+    bool dark;
     double light_dir[3];
     int environment;
     int selected_asset;
@@ -188,6 +190,7 @@ struct params_world {
     struct baselines *baselines;     /* NULL: there are none */
     const struct snapshot *snapshot; /* what may be kept as a baseline; NULL: nothing */
     int64_t now_us;                  /* UTC; of a query */
+    bool bare;                       /* of a query: its picture has no legend and no clock */
 };
 /* Applies a change to a view: all of it, or nothing and *error. A new group brings its own settings first. */
 bool params_apply(const struct params_world *world, const struct params_change *change, struct view *view, struct message_error *error);

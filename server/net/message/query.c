@@ -21,7 +21,7 @@ static const struct {
     { "distance", STRING }, { "fill", STRING },     { "strength", NUMBER }, { "decay", NUMBER },         { "power", NUMBER },
     { "radius_m", NUMBER }, { "reach_m", NUMBER },  { "colormap", STRING }, { "ramp_interval", NUMBER }, { "range", NUMBERS },
     { "look", STRING },     { "light", NUMBERS },   { "selected", STRING }, { "show", STRING },          { "sensor", STRING },
-    { "environment", STRING },
+    { "environment", STRING }, { "backdrop", STRING },
     { "sensors", SENSORS }, { "baseline", STRING }, { "scale", STRING },    { "breaks", BREAKS },
     { "isolines", LINES },  { "split", SPLIT },
     { "projection", STRING }, { "height_m", NUMBER }, { "fit", STRING },    { "side", STRING },          { "hidden", STRINGS },
@@ -252,9 +252,9 @@ static bool apply(const struct params_world *world, enum role role, const json_t
     }
     view_default(world->scene, (int)w, (int)h, view);
     view->tier = TIER_STILL;
-    return query_camera(world->scene, o, view, error) && params_parse(world->scene->plant, o, &asked.params, error) &&
-           split_parse(world->scene->plant, o, &asked.split, error) && access_message(role, &asked, error) &&
-           params_apply(world, &asked.params, view, error) && split_apply(world, &asked.split, view, error) &&
+    return params_parse(world->scene->plant, o, &asked.params, error) && split_parse(world->scene->plant, o, &asked.split, error) &&
+           access_message(role, &asked, error) && params_apply(world, &asked.params, view, error) &&
+           split_apply(world, &asked.split, view, error) && query_camera(world->scene, o, world->bare, view, error) &&
            apply_at(world, o, view, error);
 }
 

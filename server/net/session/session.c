@@ -142,7 +142,7 @@ static void on_visible(struct session *session, bool visible)
 static void on_fit(struct session *session, const struct message *message)
 {
     struct camera camera = session->view.camera;
-    fit_apply(session->world->scene, &message->fit, (double)session->view.width_px / session->view.height_px, &camera);
+    fit_apply(session->world->scene, &message->fit, &session->view, &camera);
     session_reply(session, reply_camera_text(&camera, message->seq));
 }
 

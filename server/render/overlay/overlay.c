@@ -136,6 +136,11 @@ static bool shows_simulated(const struct pen *pen)
     return false;
 }
 
+static double header_height(const struct pen *pen)
+{
+    return 2.6 * pen->text_px + 12 * pen->unit;
+}
+
 /* Plant name; its clock; the age of the oldest value that takes part; and whether any of it was not measured. */
 static void draw_header(struct pen *pen)
 {
@@ -155,7 +160,7 @@ static void draw_header(struct pen *pen)
     double name_width = pen_text_width(pen, pen->scene->plant->name);
     pen_font(pen, 0.92, false);
     double line_width = pen_text_width(pen, line);
-    struct box box = { pad, pad, fmax(name_width, line_width) + 2 * pad, 2.6 * pen->text_px + 1.5 * pad };
+    struct box box = { pad, pad, fmax(name_width, line_width) + 2 * pad, header_height(pen) };
     pen_card(pen, &box);
     pen_ink(pen, 1);
     pen_font(pen, 1.15, true);
@@ -208,7 +213,7 @@ static void draw_past(struct pen *pen)
     draw_banner(pen, text, PAST_RGB);
 }
 
-static void choose_half(struct pen *pen, int half)
+void pen_choose_half(struct pen *pen, int half)
 {
     const struct view *view = &pen->frame->view;
     int left_px = half ? view_left_px(view) : 0;
@@ -217,31 +222,58 @@ static void choose_half(struct pen *pen, int half)
     pen->area = (struct box){ left_px, 0, pen->view.width_px, pen->view.height_px };
 }
 
+static void pen_init(struct pen *pen, cairo_surface_t *surface, const struct frame *frame, const struct scene *scene,
+                     const struct snapshot *snapshot, const struct proofs *proofs)
+{
+    *pen = (struct pen){ .cairo = cairo_create(surface), .frame = frame, .scene = scene, .snapshot = snapshot, .proofs = proofs };
+    pen->unit = fmin(fmax(fmin(frame->width_px / 1280.0, frame->height_px / 720.0), 0.5), 8);
+    pen->text_px = fmax(13 * pen->unit, 9.5);
+}
+
 void overlay_draw(struct frame *frame, const struct scene *scene, const struct snapshot *snapshot, const struct proofs *proofs)
 {
     cairo_surface_t *surface =
         cairo_image_surface_create_for_data(frame->bgrx, CAIRO_FORMAT_RGB24, frame->width_px, frame->height_px, frame->stride_bytes);
     struct pen *pen = mem_new(sizeof(*pen));
-    pen->cairo = cairo_create(surface);
-    pen->frame = frame;
-    pen->scene = scene;
-    pen->snapshot = snapshot;
-    pen->proofs = proofs;
-    pen->unit = fmin(fmax(fmin(frame->width_px / 1280.0, frame->height_px / 720.0), 0.5), 8);
-    pen->text_px = fmax(13 * pen->unit, 9.5);
+    pen_init(pen, surface, frame, scene, snapshot, proofs);
     draw_header(pen);
     if (frame->view.at_us)
         draw_past(pen);
     else if (!is_live(pen))
         draw_banner(pen, "NO LIVE DATA", NO_DATA_RGB);
     for (int half = 0; half < (frame->view.split ? 2 : 1); half++) {
-        choose_half(pen, half);
+        pen_choose_half(pen, half);
         if (pen->view.look != LOOK_MATERIALS) /* no field, nothing to explain */
             overlay_legend(pen);
+    }
+    overlay_alarms(pen);
+    for (int half = 0; half < (frame->view.split ? 2 : 1); half++) {
+        pen_choose_half(pen, half);
         overlay_markers(pen);
     }
     cairo_destroy(pen->cairo);
     cairo_surface_finish(surface);
     cairo_surface_destroy(surface);
     mem_free(pen);
+}
+
+void overlay_window(const struct scene *scene, const struct view *view, struct camera_window *out)
+{
+    cairo_surface_t *surface = cairo_image_surface_create(CAIRO_FORMAT_A8, 1, 1);
+    struct frame *frame = mem_new(sizeof(*frame));
+    struct pen *pen = mem_new(sizeof(*pen));
+    double legend_px = 0, width_px = view->width_px;
+    *frame = (struct frame){ .width_px = view->width_px, .height_px = view->height_px, .view = *view };
+    pen_init(pen, surface, frame, scene, NULL, NULL);
+    for (int half = 0; half < (view->split ? 2 : 1); half++) {
+        pen_choose_half(pen, half);
+        width_px = fmin(width_px, pen->area.width);
+        if (pen->view.look != LOOK_MATERIALS)
+            legend_px = fmax(legend_px, overlay_legend_width(pen));
+    }
+    *out = (struct camera_window){ -1, 1 - 2 * legend_px / width_px, -1, 1 - 2 * (header_height(pen) + 8 * pen->unit) / view->height_px };
+    cairo_destroy(pen->cairo);
+    cairo_surface_destroy(surface);
+    mem_free(pen);
+    mem_free(frame);
 }

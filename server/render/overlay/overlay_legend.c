@@ -40,15 +40,15 @@ static void write_title(const struct pen *pen, struct legend *legend)
     snprintf(legend->title, sizeof(legend->title), *unit ? "%s [%s]" : "%s", what, unit);
 }
 
-/* Of alarms that a picture shows; bits: 1 << priority. */
+/* Of all active alarms, since those out of sight are listed; bits: 1 << priority. Without readings: as wide as with them. */
 static unsigned priorities_shown(const struct pen *pen)
 {
-    unsigned priorities = 0;
-    for (size_t i = 0; i < pen->frame->marker_count; i++) {
-        const struct frame_marker *marker = &pen->frame->markers[i];
-        int alarm = pen->snapshot->readings[marker->tag].alarm;
-        if (alarm && marker->half == pen->half)
-            priorities |= 1u << alarm_priority(&pen->scene->plant->tags[marker->tag], (enum alarm_kind)alarm);
+    const struct plant *plant = pen->scene->plant;
+    unsigned priorities = pen->snapshot ? 0 : 1u << ALARM_PRIORITIES;
+    for (size_t i = 0; pen->snapshot && i < plant->tag_count && i < pen->snapshot->count; i++) {
+        enum alarm_kind alarm = (enum alarm_kind)pen->snapshot->readings[i].alarm;
+        if (alarm)
+            priorities |= 1u << alarm_priority(&plant->tags[i], alarm);
     }
     return priorities;
 }
@@ -272,4 +272,12 @@ void overlay_legend(struct pen *pen)
     }
     overlay_bar(pen, &legend.bar);
     draw_rows(pen, &legend);
+}
+
+double overlay_legend_width(struct pen *pen)
+{
+    struct legend legend = { .note_count = 0 };
+    write_words(pen, &legend);
+    lay_out(pen, &legend);
+    return pen->area.x + pen->area.width - legend.card.x + legend.pad;
 }

@@ -242,16 +242,27 @@ static void label_isolines(struct pen *pen)
     mem_free(done);
 }
 
+static struct box mark_box(const struct pen *pen, const struct frame_marker *marker)
+{
+    double radius = 5 * pen->unit;
+    return (struct box){ (double)marker->x_px - radius, (double)marker->y_px - radius, 2 * radius, 2 * radius };
+}
+
+bool overlay_marker_seen(const struct pen *pen, const struct frame_marker *marker)
+{
+    struct box mark = mark_box(pen, marker);
+    return !marker->occluded && is_inside(pen, marker) && !is_under(pen, pen->taken_count, &mark);
+}
+
 void overlay_markers(struct pen *pen)
 {
     int cards = pen->taken_count; /* what lies over the picture already */
-    double radius = 5 * pen->unit;
     struct wanted wanted = { 0 };
     wanted.items = mem_array(pen->frame->marker_count, sizeof(*wanted.items));
     wanted.texts = mem_array(pen->frame->marker_count, sizeof(*wanted.texts));
     for (size_t i = 0; i < pen->frame->marker_count; i++) {
         const struct frame_marker *marker = &pen->frame->markers[i];
-        struct box mark = { (double)marker->x_px - radius, (double)marker->y_px - radius, 2 * radius, 2 * radius };
+        struct box mark = mark_box(pen, marker);
         if (!is_inside(pen, marker) || is_under(pen, cards, &mark))
             continue;
         if (!marker->occluded)

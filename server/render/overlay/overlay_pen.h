@@ -28,6 +28,7 @@ struct pen {
     int taken_count;
 };
 
+void pen_choose_half(struct pen *pen, int half); /* what is drawn over from now on */
 bool pen_is_free(const struct pen *pen, const struct box *box); /* inside the area, and over nothing that is taken */
 void pen_take(struct pen *pen, const struct box *box);
 void pen_card(struct pen *pen, const struct box *box); /* a light plate with a thin rim, for text to stand on */
@@ -47,6 +48,7 @@ void overlay_bar(struct pen *pen, const struct box *bar);
 double overlay_bar_width(struct pen *pen); /* with all that is written beside it */
 double overlay_bar_left(struct pen *pen);  /* of which before the bar itself */
 void overlay_legend(struct pen *pen);
+double overlay_legend_width(struct pen *pen); /* what it takes of the area, with its margins */
 /* A mark's outline: broken where its tag is unproven. */
 void overlay_outline(struct pen *pen, double x, double y, double radius, bool broken);
 bool overlay_unproven(const struct pen *pen, int tag);
@@ -54,5 +56,9 @@ bool overlay_unproven(const struct pen *pen, int tag);
    broken: its cause is gone. */
 void overlay_ring(struct pen *pen, double x, double y, double radius, int priority, enum alarm_word word);
 void overlay_markers(struct pen *pen);
+/* Within the half that is chosen, with nothing before it, and under nothing that was drawn over the picture so far. */
+bool overlay_marker_seen(const struct pen *pen, const struct frame_marker *marker);
+/* Active alarms of the whole plant that no mark in the picture shows, the gravest first. */
+void overlay_alarms(struct pen *pen);
 
 #endif
