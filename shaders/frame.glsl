@@ -9,7 +9,7 @@ layout(std140, binding = 0) uniform Frame {
     vec4 scale;          // linear: MIN, 1/(MAX - MIN); of the binary logarithms on a logarithmic scale, where z is 1; w: size of a
                          // pattern cell, in pixels
     vec4 shade;          // row of the palette = light * x + y, at most z
-    vec4 lines;          // width of isolines in pixels; 0: none
+    vec4 lines;          // width of isolines in pixels; 0: none; y: first row of the backdrop
     vec4 back;           // orthographic: towards the viewer; w: of depth, to what perspective would give. 0: perspective
     vec4 clip[6];        // planes that cut, in clip space
 } frame;

@@ -31,5 +31,6 @@ void main()
     bool level = pixel.y % 10 == 0;
     if (line < 0.05 && !level)
         discard;
-    color = vec4(0.20, 0.26, 0.33, max(line, level ? 0.4 : 0.0));
+    vec3 ink = frame.lines.y > 0.0 ? vec3(0.56, 0.64, 0.72) : vec3(0.20, 0.26, 0.33);
+    color = vec4(ink, max(line, level ? 0.4 : 0.0));
 }

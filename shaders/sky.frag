@@ -9,5 +9,5 @@ void main()
 {
     float height = dot(ray, frame.up.xyz) * inversesqrt(dot(ray, ray));
     ivec2 tile = ivec2(gl_FragCoord.xy) & 3;
-    color = texelFetch(backdrops, ivec2(int(height * 1023.5 + 1024.0), tile.y * 4 + tile.x), 0);
+    color = texelFetch(backdrops, ivec2(int(height * 1023.5 + 1024.0), tile.y * 4 + tile.x + int(frame.lines.y)), 0);
 }

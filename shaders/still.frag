@@ -73,7 +73,7 @@ void main()
     vec3 glow = m.emissive.rgb;
 #ifdef GLOSSY
     s.base = linear_from_srgb(color.rgb);
-    s.metallic *= 0.3; // a mirror would show the sky instead of the field
+    s.metallic = 0.0; // a mirror would show the sky instead of the field
 #endif
 #ifdef TEXTURED
     if ((textures & 2) != 0) {
@@ -88,7 +88,11 @@ void main()
     if ((textures & 16) != 0)
         glow *= texture(emissive_map, uv).rgb;
 #endif
+#ifdef GLOSSY // softer light: what lies in shadow keeps a colour that can be named
+    vec3 c = srgb_from_linear(tone_map(1.45 * sky_shade(s, v) + 0.75 * sun_shade(s, v, l) + glow));
+#else
     vec3 c = srgb_from_linear(tone_map(sky_shade(s, v) + sun_shade(s, v, l) + glow));
+#endif
 #ifdef GLOSSY
     color.rgb = c;
 #else

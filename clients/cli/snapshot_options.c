@@ -52,6 +52,7 @@ static const char view_usage[] =
     "                          turbo, one of the plant's; offline also an image file: its colours from left to right\n"
     "  --look NAME             default, glossy, flat, materials  --light X,Y,Z   towards the sun\n"
     "  --environment NAME      surroundings that light the plant: sky, or one of the plant file\n"
+    "  --backdrop NAME         light or dark: what is behind the plant\n"
     "  --select ASSET          outline this asset\n"
     "  --split \"NAME=V;...\"    a second picture beside it, under the same camera; names as above without dashes, but\n"
     "                          ramp_interval, radius_m, reach_m. What is not named is as in the first\n"
@@ -74,7 +75,7 @@ static const struct {
     { "fill", "fill" },         { "strength", "strength" }, { "decay", "decay" },        { "power", "power" },
     { "radius", "radius_m" },   { "reach", "reach_m" },     { "ramp", "ramp_interval" }, { "range", "range" },
     { "colormap", "colormap" }, { "look", "look" },         { "light", "light" },
-    { "environment", "environment" },        { "select", "selected" },
+    { "backdrop", "backdrop" }, { "environment", "environment" },        { "select", "selected" },
     { "show", "show" },         { "sensor", "sensor" },     { "sensors", "sensors" },
     { "scale", "scale" },       { "breaks", "breaks" },     { "isolines", "isolines" },  { "split", "split" },
     { "projection", "projection" }, { "height", "height_m" }, { "fit", "fit" },          { "side", "side" },

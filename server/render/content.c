@@ -46,7 +46,7 @@ static void add_shape(XXH3_state_t *state, const struct picture *picture)
 {
     const struct view *view = picture->view;
     int32_t choices[] = { view->width_px,       view->height_px,   (int32_t)view->look,           (int32_t)view->tier,
-                          view->selected_asset, view->environment, (int32_t)view->field.trial };
+                          view->selected_asset, view->environment, (int32_t)view->field.trial, view->dark };
     double numbers[] = { view->camera.fov_deg, view->camera.height_m };
     add(state, choices, sizeof(choices));
     add(state, numbers, sizeof(numbers));

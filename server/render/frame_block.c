@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "render/light/sky.h"
 #include "render/matrix.h"
 
 double frame_block_pattern_px(const struct view *view)
@@ -36,7 +37,8 @@ static void fill_scale(struct frame_block *block, const struct picture *picture)
     block->scale[2] = scale.log;
     block->scale[3] = (float)frame_block_pattern_px(view);
     block->lines[0] = picture->palette.lines ? (float)frame_block_line_px(view) : 0;
-    block->lines[1] = block->lines[2] = block->lines[3] = 0;
+    block->lines[1] = view->dark ? SKY_ROUNDINGS : 0;
+    block->lines[2] = block->lines[3] = 0;
 }
 
 /* Light to a row of the palette: all of them, or the middle one where light must not touch the colours. */

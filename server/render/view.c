@@ -203,7 +203,7 @@ bool view_equal(const struct view *a, const struct view *b)
     get_shown(b, &b_shown);
     return a->width_px == b->width_px && a->height_px == b->height_px && same_camera(&a->camera, &b->camera) && a->tier == b->tier &&
            a->selected_asset == b->selected_asset && same_vector(a->light_dir, b->light_dir) &&
-           a->environment == b->environment && same_shown(&a_shown, &b_shown) &&
+           a->environment == b->environment && a->dark == b->dark && same_shown(&a_shown, &b_shown) &&
            visibility_equal(&a->visibility, &b->visibility) && a->at_us == b->at_us &&
            a->split == b->split && (!a->split || same_shown(&a->right, &b->right));
 }

@@ -217,6 +217,10 @@ test('dark, and light again; it stays as it was left', options, async () => {
     await page.keyboard.press('z');
     assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), 'dark');
     await settle(page);
+    await page.waitForFunction(() => { // what is behind the plant, too
+        const canvas = document.getElementById('picture');
+        return Math.max(...canvas.getContext('2d').getImageData(4, Math.floor(canvas.height / 2), 1, 1).data.slice(0, 3)) < 110;
+    });
     await shoot(page, 'dark');
     await page.reload();
     await waitForPicture(page);

@@ -33,17 +33,19 @@ struct golden {
     bool overlay, opened; /* opened: an orthographic picture with a cut and a ghost */
     double far_part;      /* of the pixels may differ by more than FAR, in any channel */
     bool split;           /* limits to the left; isolines and breaks on a logarithmic scale to the right */
+    bool dark;
 };
 enum { FAR = 20 };
 
 static const struct golden goldens[] = {
-    { "moving", TIER_MOVING, LOOK_DEFAULT, 0, -1, false, false, 0.01, false },
-    { "still", TIER_STILL, LOOK_DEFAULT, 0, -1, false, false, 0.01, false },
-    { "ramp", TIER_STILL, LOOK_FLAT, 20, 1, false, false, 0.01, false },
-    { "glossy", TIER_STILL, LOOK_GLOSSY, 0, -1, false, false, 0.015, false },
-    { "opened", TIER_STILL, LOOK_DEFAULT, 0, -1, false, true, 0.015, false },
-    { "split", TIER_STILL, LOOK_DEFAULT, 0, -1, true, false, 0.04, true },
-    { "overlay", TIER_STILL, LOOK_DEFAULT, 0, -1, true, false, 0.04, false }, /* letters differ between versions of the font library */
+    { "moving", TIER_MOVING, LOOK_DEFAULT, 0, -1, false, false, 0.01, false, false },
+    { "still", TIER_STILL, LOOK_DEFAULT, 0, -1, false, false, 0.01, false, false },
+    { "ramp", TIER_STILL, LOOK_FLAT, 20, 1, false, false, 0.01, false, false },
+    { "glossy", TIER_STILL, LOOK_GLOSSY, 0, -1, false, false, 0.015, false, false },
+    { "opened", TIER_STILL, LOOK_DEFAULT, 0, -1, false, true, 0.015, false, false },
+    { "split", TIER_STILL, LOOK_DEFAULT, 0, -1, true, false, 0.04, true, false },
+    { "dark", TIER_MOVING, LOOK_DEFAULT, 0, -1, false, false, 0.01, false, true },
+    { "overlay", TIER_STILL, LOOK_DEFAULT, 0, -1, true, false, 0.04, false, false }, /* fonts differ by version */
 };
 
 static void save(const char *folder, const char *name, const char *what, const uint8_t *bgrx)
@@ -140,6 +142,7 @@ static void test_golden(void **state)
     view.tier = golden->tier;
     view.look = golden->look;
     view.ramp_interval = golden->ramp_interval;
+    view.dark = golden->dark;
     view.selected_asset = golden->selected_asset;
     if (golden->opened)
         open_up(&view);

@@ -17,7 +17,7 @@ export const page = { unit: 1, onUnit: () => {} };
 // What decides how large the picture is comes before it.
 document.documentElement.lang = language;
 sayAll(document);
-chooseTheme(query);
+const backdrop = chooseTheme(query);
 document.querySelector('.stage').classList.toggle('without-assets', window.matchMedia(NARROW).matches);
 if (query.has('wall'))
     await (await import('./wall.js')).hangOnWall(location.search, page);
@@ -41,7 +41,8 @@ export async function proveCodecs() {
 
 const streamUrl = new URL('stream', location.href.replace(/^http/, 'ws').replace(/#.*$/, '')).href;
 export const connection = new Connection({ url: streamUrl, open: (url, protocol) => new WebSocket(url, protocol), clock });
-export const session = new Session({ connection, now: clock.now, wanted: address, codecs: codecs() });
+const wanted = { ...address, params: { ...address.params, backdrop } };
+export const session = new Session({ connection, now: clock.now, wanted, codecs: codecs() });
 session.token = stored('token');
 session.leader = Number(new URLSearchParams(location.hash.slice(1)).get('follow')) || null;
 session.wait();

@@ -122,7 +122,7 @@ const commands = {
     measure: opens('measure'),
     snapshot: () => withPart('snapshot', (snapshot) => snapshot.save()),
     share: () => withPart('share', (share) => share.open()),
-    theme: changeTheme,
+    theme: () => session.setParams({ backdrop: changeTheme() }),
     escape() {
         toolbar.closeDisplay();
         for (const name of ['views', 'picture'])

@@ -17,7 +17,7 @@ export class Snapshot {
                 return;
             if (session.params.show === 'difference' && !session.params.baseline?.name)
                 throw new Error(say('snapshot.unnamed'));
-            const query = snapshotQuery({ carried: session.carried(), camera, size, time });
+            const query = snapshotQuery({ carried: { ...session.carried(), backdrop: null }, camera, size, time });
             const answer = await ask('snapshot.png', query, session.token);
             const url = URL.createObjectURL(await answer.blob()), at = new Date((time.atUs ?? session.clockUs()) / 1000).toISOString();
             make('a', { href: url, download: `${model.plant.name} ${at.slice(0, 19).replace(/:/g, '-')}Z.png` }).click();

@@ -7,15 +7,17 @@ function wear(theme) {
     document.documentElement.dataset.theme = theme;
     if (theme === 'dark')
         styled('dark').catch(() => {}); // its sheet is asked for again with the next change
+    return theme;
 }
 
-// ?theme=dark or light, else as it was left.
+// ?theme=dark or light, else as it was left; returns which.
 export function chooseTheme(query) {
-    wear((query.get('theme') ?? stored('theme')) === 'dark' ? 'dark' : 'light');
+    return wear((query.get('theme') ?? stored('theme')) === 'dark' ? 'dark' : 'light');
 }
 
+// Returns which it is now.
 export function changeTheme() {
     const theme = document.documentElement.dataset.theme === 'dark' ? 'light' : 'dark';
-    wear(theme);
     store('theme', theme);
+    return wear(theme);
 }

@@ -20,6 +20,7 @@ const struct name names_show[] = {
 const struct name names_scale[] = { { "linear", false }, { "log", true }, { NULL, 0 } };
 const struct name names_look[] = { { "default", LOOK_DEFAULT }, { "glossy", LOOK_GLOSSY }, { "flat", LOOK_FLAT },
                                     { "materials", LOOK_MATERIALS }, { NULL, 0 } };
+const struct name names_backdrop[] = { { "light", false }, { "dark", true }, { NULL, 0 } };
 const struct name names_codec[] = { { "jpeg", WIRE_CODEC_JPEG }, { "png", WIRE_CODEC_PNG }, { "h264", WIRE_CODEC_H264 }, { NULL, 0 } };
 const struct name names_projection[] = { { "perspective", PROJECTION_PERSPECTIVE },
                                          { "orthographic", PROJECTION_ORTHOGRAPHIC },

@@ -78,7 +78,7 @@ DRAFT_INLINE lanes_int backdrop_at(const struct draft *draft, const struct heigh
     lanes x = LANES_IOTA + ((float)column + 0.5f);
     lanes height = (LANES_IOTA + (float)(column % STRETCH)) * heights->step + heights->first;
     lanes_int at = lanes_whole(lanes_clamp(height, 0, SKY_BACKDROPS - 1));
-    lanes_int tile = (row & 3) * 4 + (lanes_whole(x) & 3);
+    lanes_int tile = (draft->picture->view->dark ? SKY_ROUNDINGS : 0) + (row & 3) * 4 + (lanes_whole(x) & 3);
     return gather(draft->backdrops, tile * SKY_BACKDROPS + at);
 }
 

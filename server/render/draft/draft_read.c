@@ -22,7 +22,7 @@ static void read_colors(GLuint texture, uint32_t *to, size_t texels)
 bool draft_read_textures(struct draft *draft, const struct sky *sky)
 {
     const struct stage *stage = draft->stage;
-    size_t rows = 0, backdrops = SKY_BACKDROPS * SKY_ROUNDINGS;
+    size_t rows = 0, backdrops = SKY_BACKDROPS * SKY_ROWS;
     draft->ramp_of_model = mem_array(stage->model_count, sizeof(*draft->ramp_of_model));
     for (size_t m = 0; m < stage->model_count; m++) {
         draft->ramp_of_model[m] = (uint32_t)rows;

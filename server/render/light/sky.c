@@ -5,19 +5,17 @@
 #include "gpu/program.h"
 #include "render/matrix.h"
 
-enum { BACKDROPS = SKY_BACKDROPS, ROUNDINGS = SKY_ROUNDINGS };
-
 static bool make_backdrops(struct sky *sky, struct log *log)
 {
     GLuint program = program_create(log, program_params(.compute = "backdrop.comp"));
     if (!program)
         return false;
     glCreateTextures(GL_TEXTURE_2D, 1, &sky->backdrops);
-    glTextureStorage2D(sky->backdrops, 1, GL_RGBA8, BACKDROPS, ROUNDINGS);
+    glTextureStorage2D(sky->backdrops, 1, GL_RGBA8, SKY_BACKDROPS, SKY_ROWS);
     glTextureParameteri(sky->backdrops, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     glUseProgram(program);
     glBindImageTexture(0, sky->backdrops, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA8);
-    glDispatchCompute(BACKDROPS / 64, ROUNDINGS, 1);
+    glDispatchCompute(SKY_BACKDROPS / 64, SKY_ROWS, 1);
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
     program_destroy(&program);
     return true;

@@ -4,7 +4,8 @@
 #define RENDER_SKY_H
 #include "render/picture.h"
 
-enum { SKY_BACKDROPS = 2048, SKY_ROUNDINGS = 16 }; /* columns by height over the horizon, rows by place in a 4x4 tile */
+/* Columns by height over the horizon; rows by place in a 4x4 tile, of the light backdrop and then of the dark one. */
+enum { SKY_BACKDROPS = 2048, SKY_ROUNDINGS = 16, SKY_ROWS = 2 * SKY_ROUNDINGS };
 struct sky {
     GLuint sky_program, ground_programs[2]; /* by tier */
     GLuint backdrops;                       /* by height over the horizon */
