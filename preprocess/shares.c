@@ -11,6 +11,7 @@
 #define L SHARES_LANES
 #define LEAST_M 1e-5f    /* a sensor nearer than that has all the weight */
 #define LEAST_EXP -87.0f /* below it, exp is no normal number */
+#define LEAST_NEAR 1e-3f /* a decay below 1 makes the value rise without bound where the radius ends; here, up to there */
 
 typedef float lanes __attribute__((vector_size(4 * L)));
 typedef int32_t mask __attribute__((vector_size(4 * L))); /* of each lane all bits, or none */
@@ -154,10 +155,47 @@ WIDE_BODY void nearness(const float *distance_m, float per_m, lanes *out)
     take_more(&zero, out);
 }
 
-WIDE_BODY void paper(const struct shares_group *group, float radius_m, const float *distance_m, float *shares)
+/* Softmax weights, not yet divided by their sum; `near` of each. */
+WIDE_BODY void paper_weight(const struct shares_group *group, size_t i, float per_m, const float *distance_m, float largest, lanes *near,
+                            lanes *weight)
 {
     const lanes infinite = (lanes){ 0 } + INFINITY;
-    lanes high = { 0 }, sum = { 0 }, d, weight, strength, far;
+    lanes strength, far;
+    load(distance_m + i, &far);
+    mask reached = far < infinite;
+    nearness(distance_m + i, per_m, near);
+    load(group->strength + i, &strength);
+    *weight = *near * strength - largest;
+    exponential(weight);
+    keep(&reached, weight);
+}
+
+/* The most that a value changes where all nearnesses change by one at most: a sensor's changes its own share, by its weight's part and its
+   decay's, and the weights of the others, of whose shares there are all but its own. Beyond the radius nothing changes. */
+WIDE_BODY float paper_slope(const struct shares_group *group, float per_m, const float *distance_m, float largest, float per,
+                            const float *shares, float all)
+{
+    const lanes zero = { 0 }, least_near = (lanes){ 0 } + LEAST_NEAR;
+    lanes sum = { 0 }, near, weight, strength, decay, share;
+    for (size_t i = 0; i < group->count; i += L) {
+        paper_weight(group, i, per_m, distance_m, largest, &near, &weight);
+        load(group->strength + i, &strength);
+        load(group->decay + i, &decay);
+        load(shares + i, &share);
+        mask within = near > zero;
+        take_more(&least_near, &near);
+        weight *= per;
+        lanes own = strength * share * (1 - weight) + decay * share / near, others = strength * weight * (all - share);
+        take_more(&others, &own);
+        keep(&within, &own);
+        sum += own;
+    }
+    return sum_of(&sum);
+}
+
+WIDE_BODY float paper(const struct shares_group *group, float radius_m, const float *distance_m, float *shares)
+{
+    lanes high = { 0 }, sum = { 0 }, valued = { 0 }, d, weight, strength;
     float per_m = 1 / radius_m, largest;
     for (size_t i = 0; i < group->count; i += L) {
         nearness(distance_m + i, per_m, &d);
@@ -169,17 +207,12 @@ WIDE_BODY void paper(const struct shares_group *group, float radius_m, const flo
     for (int l = 1; l < L; l++)
         largest = high[l] > largest ? high[l] : largest;
     for (size_t i = 0; i < group->count; i += L) {
-        load(distance_m + i, &far);
-        mask reached = far < infinite;
-        nearness(distance_m + i, per_m, &d);
-        load(group->strength + i, &strength);
-        weight = d * strength - largest;
-        exponential(&weight);
-        keep(&reached, &weight);
+        paper_weight(group, i, per_m, distance_m, largest, &d, &weight);
         sum += weight;
         for (int l = 0; l < L && group->decays; l++)
             d[l] = powf(d[l], group->decay[i + (size_t)l]);
         weight *= d;
+        valued += weight;
         store(&weight, shares + i);
     }
     float total = sum_of(&sum), per = total > 0 ? 1 / total : 0;
@@ -188,6 +221,7 @@ WIDE_BODY void paper(const struct shares_group *group, float radius_m, const flo
         weight *= per;
         store(&weight, shares + i);
     }
+    return per_m * paper_slope(group, per_m, distance_m, largest, per, shares, per * sum_of(&valued));
 }
 
 /* --- errors ------------------------------------------------------------------------------------------------------------------- */
@@ -229,9 +263,9 @@ WIDE_TARGET static float shepard_wide(const struct shares_group *group, const fl
     return shepard(group, distance_m, shares);
 }
 
-WIDE_TARGET static void paper_wide(const struct shares_group *group, float radius_m, const float *distance_m, float *shares)
+WIDE_TARGET static float paper_wide(const struct shares_group *group, float radius_m, const float *distance_m, float *shares)
 {
-    paper(group, radius_m, distance_m, shares);
+    return paper(group, radius_m, distance_m, shares);
 }
 
 WIDE_TARGET static float error_wide(const float *const *corners, const float *weights, size_t corner_count, const float *sample,
@@ -258,12 +292,9 @@ float shares_shepard(const struct shares_group *group, const float *distance_m, 
     return wide_is_there() ? shepard_wide(group, distance_m, shares) : shepard(group, distance_m, shares);
 }
 
-void shares_paper(const struct shares_group *group, float radius_m, const float *distance_m, float *shares)
+float shares_paper(const struct shares_group *group, float radius_m, const float *distance_m, float *shares)
 {
-    if (wide_is_there())
-        paper_wide(group, radius_m, distance_m, shares);
-    else
-        paper(group, radius_m, distance_m, shares);
+    return wide_is_there() ? paper_wide(group, radius_m, distance_m, shares) : paper(group, radius_m, distance_m, shares);
 }
 
 float shares_error(const float *const *corners, const float *weights, size_t corner_count, const float *sample, size_t count)

@@ -22,9 +22,9 @@ struct shares_group {
     float power;
     size_t count;
 };
-/* Returns the most that a value changes over a metre. */
+/* They return the most that a value changes over a metre there, whatever the readings. */
 float shares_shepard(const struct shares_group *group, const float *distance_m, float *shares);
-void shares_paper(const struct shares_group *group, float radius_m, const float *distance_m, float *shares);
+float shares_paper(const struct shares_group *group, float radius_m, const float *distance_m, float *shares);
 
 /* Shares at a point against those at corners, weighted: the sum of what is more, or of what is less, whichever is larger. */
 float shares_error(const float *const *corners, const float *weights, size_t corner_count, const float *sample, size_t count);

@@ -35,8 +35,6 @@ static void add_group(struct straight *straight, const struct plant *plant, int 
         strength[i] = tag ? (float)factor_of(tag->strength) : 0;
         decay[i] = tag ? (float)factor_of(tag->decay) : 1;
         to->of.decays |= decay[i] != 1;
-        if (tag)
-            to->steepness = fmax(to->steepness, 2 * (double)strength[i] + fmax(1, (double)decay[i]));
     }
     to->in_a_row = to->columns[to->count - 1] - to->columns[0] == to->count - 1;
     to->papers = to->count <= MANY;
@@ -127,11 +125,8 @@ void straight_shares(const struct straight *straight, const float point_m[3], co
             pick(group, from, distance_m);
             *slope++ = shares_shepard(&group->of, distance_m, shares);
             shares += group->of.count;
-            if (group->papers) {
-                shares_paper(&group->of, (float)group->radius_m[mode], distance_m, shares);
-                shares += group->of.count;
-            }
-            *slope++ = (float)(group->steepness / group->radius_m[mode]);
+            *slope++ = group->papers ? shares_paper(&group->of, (float)group->radius_m[mode], distance_m, shares) : 0;
+            shares += group->papers ? group->of.count : 0;
         }
     room_finish(&rooms[0]);
     room_finish(&rooms[1]);

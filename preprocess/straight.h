@@ -14,7 +14,6 @@
 #include "preprocess/shares.h"
 
 struct straight_group {
-    double steepness;  /* paper: the most that a value changes over R */
     uint32_t *columns; /* of the asset's sensors */
     bool in_a_row;     /* columns follow one another */
     bool papers;       /* paper is looked at */

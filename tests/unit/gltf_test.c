@@ -430,6 +430,67 @@ static void a_nodes_place_is_the_middle_of_its_meshes(void **state)
     assert_false(geometry_node_place(&l->model, &params, "TT-1", place));
 }
 
+/* What cannot become an asset, though its file is whole. */
+static void what_cannot_be_cut_is_refused(void **state)
+{
+    struct loaded *l = *state;
+    static const struct {
+        const char *json, *reason;
+    } cases[] = {
+        { HEAD "\"scenes\":[{\"nodes\":[]}],\"nodes\":[{\"mesh\":0}]," MESH(SQUARE) ACCESSORS "}", "the scene has no node" },
+        { HEAD "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0,\"scale\":[1,0,1]}]," MESH(SQUARE) ACCESSORS "}",
+          "none of its 2 triangles has an area" },
+        { HEAD "\"scenes\":[{\"nodes\":[0,1]}],\"nodes\":[{\"mesh\":0},{\"mesh\":0,\"translation\":[0,2e7,0]}]," MESH(SQUARE) ACCESSORS
+               "}",
+          "its size is 2e+07 m along axis 1" },
+    };
+    for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
+        struct geometry g;
+        char why[MODEL_WHY_BYTES];
+        good(l, cases[i].json);
+        assert_false(geometry_cut(&g, &l->model, &(struct geometry_params){ .unit_m = 1, .up = AXIS_Z }, why));
+        assert_string_equal(why, cases[i].reason);
+    }
+}
+
+static void wrong_instances_and_sparse_elements_are_refused(void **state)
+{
+    struct loaded *l = *state;
+    static const struct {
+        const char *attributes, *reason;
+    } instances[] = {
+        { "\"_OWN\":11", "node 0 'i': EXT_mesh_gpu_instancing: has neither TRANSLATION, ROTATION nor SCALE" },
+        { "\"TRANSLATION\":11,\"SCALE\":15", "node 0 'i': EXT_mesh_gpu_instancing: 2 and 3 instances" },
+        { "\"TRANSLATION\":10", "node 0 'i': EXT_mesh_gpu_instancing: TRANSLATION: 2 components, expected 3" },
+        { "\"TRANSLATION\":6", "TRANSLATION: element 1 is not finite" },
+    };
+    for (size_t i = 0; i < sizeof(instances) / sizeof(instances[0]); i++) {
+        char *json = mem_printf(HEAD "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"name\":\"i\",\"mesh\":0,\"extensions\":"
+                                     "{\"EXT_mesh_gpu_instancing\":{\"attributes\":{%s}}}}]," MESH(SQUARE) ACCESSORS "}",
+                                instances[i].attributes);
+        refused(l, json, instances[i].reason);
+        mem_free(json);
+    }
+    static const struct {
+        int count, type, at;
+        const char *reason;
+    } sparse[] = {
+        { 5, 5123, 112, "POSITION: sparse: 5 of 4 elements, by indices of component type 5123" },
+        { 1, 5122, 112, "POSITION: sparse: 1 of 4 elements, by indices of component type 5122" },
+        { 1, 5123, 186, "POSITION: sparse: element 4 of 4, or out of order" },
+        { 1, 5123, 307, "do not fit into bufferView 0" },
+    };
+    for (size_t i = 0; i < sizeof(sparse) / sizeof(sparse[0]); i++) {
+        char *json = mem_printf(HEAD PLAIN_NODES MESH(SQUARE) "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":4,"
+                                "\"type\":\"VEC3\",\"sparse\":{\"count\":%d,\"indices\":{\"bufferView\":0,\"byteOffset\":%d,"
+                                "\"componentType\":%d},\"values\":{\"bufferView\":0,\"byteOffset\":116}}},"
+                                "{\"bufferView\":0,\"byteOffset\":48,\"componentType\":5123,\"count\":6,\"type\":\"SCALAR\"}]}",
+                                sparse[i].count, sparse[i].at, sparse[i].type);
+        refused(l, json, sparse[i].reason);
+        mem_free(json);
+    }
+}
+
 /* By their normals, as by their winding. Smoothed ones may lean over an edge. */
 static bool faces_outward(const struct geometry *g, uint32_t tri)
 {
@@ -497,6 +558,8 @@ int main(void)
         WITH_MODEL(mirrored_nodes_keep_their_outside),
         WITH_MODEL(triangles_without_area_are_left_out),
         WITH_MODEL(a_nodes_place_is_the_middle_of_its_meshes),
+        WITH_MODEL(what_cannot_be_cut_is_refused),
+        WITH_MODEL(wrong_instances_and_sparse_elements_are_refused),
         WITH_MODEL(real_models_go_through),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -83,16 +83,52 @@ static void papers_shares_are_those_of_a_plain_loop(void **state)
     for (int n = 0; n < 2000; n++) {
         struct trial trial;
         float shares[MOST], radius_m = (float)exp(4 * cad_random(&chance) - 1);
-        double weights[MOST], near[MOST], sum = 0;
+        double weights[MOST], near[MOST], sum = 0, all = 0, slope = 0;
         make(&trial, n % 2);
         for (size_t i = 0; i < trial.count; i++) {
             near[i] = fmax(0, 1 - (double)trial.distance_m[i] / (double)radius_m);
             weights[i] = isfinite(trial.distance_m[i]) ? exp(near[i] * (double)trial.strength[i]) : 0;
             sum += weights[i];
         }
-        shares_paper(&trial.group, radius_m, trial.distance_m, shares);
-        for (size_t i = 0; i < trial.padded; i++)
-            assert_float_equal(shares[i], i < trial.count && sum > 0 ? weights[i] / sum * pow(near[i], (double)trial.decay[i]) : 0, SAME);
+        float found = shares_paper(&trial.group, radius_m, trial.distance_m, shares);
+        for (size_t i = 0; i < trial.padded; i++) {
+            double share = i < trial.count && sum > 0 ? weights[i] / sum * pow(near[i], (double)trial.decay[i]) : 0;
+            assert_float_equal(shares[i], share, SAME);
+            all += share;
+        }
+        for (size_t i = 0; i < trial.count; i++) {
+            double weight = sum > 0 ? weights[i] / sum : 0, share = (double)shares[i], s = (double)trial.strength[i];
+            if (near[i] > 0)
+                slope += fmax(s * share * (1 - weight) + (double)trial.decay[i] * share / fmax(near[i], 1e-3), s * weight * (all - share));
+        }
+        slope /= (double)radius_m;
+        assert_float_equal(found, slope, 1e-3 * slope + 1e-4 / (double)radius_m);
+    }
+}
+
+/* Nearer and farther at random, but nobody over the radius, whatever the sensors read. */
+static void no_value_changes_faster_than_is_said(void **state)
+{
+    (void)state;
+    for (int n = 0; n < 2000; n++) {
+        struct trial trial;
+        float shares[2][MOST], radius_m = (float)exp(4 * cad_random(&chance) - 1), step_m = 1e-3f * radius_m;
+        double more = 0, less = 0;
+        make(&trial, n % 2);
+        for (size_t i = 0; i < trial.count; i++)
+            if (trial.distance_m[i] < radius_m)
+                trial.distance_m[i] = fminf(fmaxf(trial.distance_m[i], step_m), 0.95f * radius_m);
+        float said = shares_paper(&trial.group, radius_m, trial.distance_m, shares[0]);
+        for (size_t i = 0; i < trial.count; i++)
+            if (trial.distance_m[i] < radius_m)
+                trial.distance_m[i] += (float)(2 * cad_random(&chance) - 1) * step_m;
+        shares_paper(&trial.group, radius_m, trial.distance_m, shares[1]);
+        for (size_t i = 0; i < trial.count; i++) {
+            double change = (double)shares[1][i] - (double)shares[0][i];
+            more += fmax(change, 0);
+            less -= fmin(change, 0);
+        }
+        assert_true(fmax(more, less) <= 1.05 * (double)said * (double)step_m + 2e-5);
     }
 }
 
@@ -134,6 +170,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(shepards_shares_are_those_of_a_plain_loop),
         cmocka_unit_test(papers_shares_are_those_of_a_plain_loop),
+        cmocka_unit_test(no_value_changes_faster_than_is_said),
         cmocka_unit_test(distances_and_errors_are_those_of_a_plain_loop),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
