@@ -82,6 +82,7 @@ static void free_assets(struct plant *plant)
         char *const texts[] = { asset->id, asset->tag, asset->description, asset->area, asset->model, asset->nodes };
         for (size_t k = 0; k < sizeof(texts) / sizeof(*texts); k++)
             mem_free(texts[k]);
+        plant_properties_free(asset);
     }
     mem_free(plant->assets);
 }

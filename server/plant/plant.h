@@ -34,6 +34,11 @@ struct plant_view { /* where a client starts looking from; plant frame, metres *
     double eye_m[3], target_m[3], fov_deg;
 };
 
+enum { PLANT_PROPERTIES = 32 };
+struct plant_property {
+    char *name, *text;
+};
+
 struct plant_asset {
     char *id, *tag, *description; /* tag defaults to id */
     char *area;                   /* of the plant, by which assets are listed; "": none */
@@ -44,6 +49,8 @@ struct plant_asset {
     double tolerance_m;           /* gaps up to this are closed when distances are found; 0: chosen from the model */
     double placement[16];         /* plant from asset frame (Z up), column-major; turns and moves only: both are in the same metres */
     bool sensors_in_asset_frame;  /* X, Y, Z of its tags; else plant frame */
+    struct plant_property *properties; /* of its people's own, in their order */
+    size_t property_count;
     int line;
 };
 

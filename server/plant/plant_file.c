@@ -154,6 +154,11 @@ static void check_model(struct yaml_reader *reader, const struct yaml_map *map, 
         fclose(file);
 }
 
+static void read_properties(struct yaml_reader *reader, yaml_node_t *node, void *record)
+{
+    plant_properties_read(reader, node, &((struct asset_record *)record)->asset);
+}
+
 static void read_asset(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant, struct plant_asset *asset)
 {
     static const struct key keys[] = {
@@ -161,6 +166,7 @@ static void read_asset(struct yaml_reader *reader, yaml_node_t *node, struct pla
         { "tag", KEY_TEXT, false, offsetof(struct asset_record, asset.tag), 0, 0, NULL, NULL },
         { "description", KEY_TEXT, false, offsetof(struct asset_record, asset.description), 0, 0, NULL, NULL },
         { "area", KEY_TEXT, false, offsetof(struct asset_record, asset.area), 0, 0, NULL, NULL },
+        { "properties", KEY_CUSTOM, false, 0, 0, 0, NULL, read_properties },
         { "model", KEY_NAME, true, offsetof(struct asset_record, asset.model), 0, 0, NULL, NULL },
         { "nodes", KEY_NAME, false, offsetof(struct asset_record, asset.nodes), 0, 0, NULL, NULL },
         { "units", KEY_FACTOR, false, offsetof(struct asset_record, asset.unit_m), 0, 0, unit_choices, NULL },

@@ -14,6 +14,10 @@ void plant_file_read(struct plant *plant, struct diag *diag);
 void plant_environments_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
 /* Likewise the list `links`. */
 void plant_links_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
+/* An asset's `properties`. */
+void plant_properties_read(struct yaml_reader *reader, yaml_node_t *node, struct plant_asset *asset);
+void plant_properties_free(struct plant_asset *asset);
+bool plant_properties_same(const struct plant_asset *a, const struct plant_asset *b); /* order counts */
 /* Likewise the list `sources`. */
 void plant_sources_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
 

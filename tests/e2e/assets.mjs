@@ -22,7 +22,9 @@ function makeLarge(folder) {
     const assets = [], tags = ['Tag Name,Address,Data Type,Eng Units,Description,Group,Asset,X,Y,Z,H'];
     for (let a = 0; a < ASSETS; a++) {
         const [x, y] = [(a % 20) * 3, Math.floor(a / 20) * 3];
-        assets.push(`  - { id: E-${a}, tag: "E ${a}", area: Unit ${a % 7}, model: box.gltf, description: box ${a}, placement: ` +
+        const properties = `{ Maker: Example Works, Built: ${1990 + a % 30} }`;
+        assets.push(`  - { id: E-${a}, tag: "E ${a}", area: Unit ${a % 7}, model: box.gltf, description: box ${a}, ` +
+            `properties: ${properties}, placement: ` +
             `{ translate: [${x}, ${y}, 0] } }`);
         for (let t = 0; t < TAGS_EACH; t++) {
             const n = a * TAGS_EACH + t, placed = t === 0 ? ['temperature', `E-${a}`, x + 0.5, y, 0, 90] : ['', `E-${a}`, '', '', '', ''];
@@ -75,7 +77,8 @@ test('a click selects and flies there; what is known of it and its links are sho
     await page.locator('#assets-list .asset', { hasText: 'E 137' }).click();
     await page.waitForFunction((eye) => Math.hypot(...globalThis.plantcast.session.camera.eye.map((x, i) => x - eye[i])) > 1, camera.eye);
     assert.equal((await view(page)).params.selected, 'E-137');
-    assert.match(await page.locator('#asset-about').textContent(), /E 137.*box 137.*Unit 4.*1\.0 × 1\.0 × 1\.0 m.*100/);
+    assert.match(await page.locator('#asset-about').textContent(),
+        /E 137.*box 137.*Unit 4.*1\.0 × 1\.0 × 1\.0 m.*100.*MakerExample WorksBuilt2007/);
     const link = page.locator('#asset-about a');
     assert.equal(await link.getAttribute('href'), 'https://maintenance.example/equipment/E%20137?area=Unit%204');
     assert.equal(await link.getAttribute('rel'), 'noopener noreferrer');

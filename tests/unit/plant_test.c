@@ -302,6 +302,28 @@ static void links_are_templates_of_addresses(void **state)
           { "plant.yaml", 8, 29, "it names no server" }, { "plant.yaml", 9, 28, "in braces there may be {name}, {asset} and {group}" });
 }
 
+static void assets_have_properties_of_their_own(void **state)
+{
+    struct plant_case *f = *state;
+    load_csv_with(f, 2,
+                  "assets: [{ id: E-1, model: m.glb, properties: { Maker: Example Works, Built: 2011, Länge: '3 m', None: ~ } }, "
+                  "{ id: E-2, model: m.glb }]",
+                  small_csv);
+    plant_case_assert_loaded(f, 0);
+    const struct plant_asset *asset = &f->plant->assets[0];
+    assert_int_equal(asset->property_count, 3);
+    assert_string_equal(asset->properties[0].name, "Maker");
+    assert_string_equal(asset->properties[0].text, "Example Works");
+    assert_string_equal(asset->properties[1].text, "2011");
+    assert_string_equal(asset->properties[2].name, "Länge");
+    assert_int_equal(f->plant->assets[1].property_count, 0);
+    load_with(f, 2, "assets: [{ id: E-1, model: m.glb, properties: { Maker: [a], A: 1, A: 2, '': x } }, { id: E-2, model: m.glb }]");
+    FOUND(f, { "plant.yaml", 2, 56, "Maker: expected text or a number" }, { "plant.yaml", 2, 67, "'A' is there twice" },
+          { "plant.yaml", 2, 73, "expected a name of 1 to 63 bytes" });
+    load_with(f, 2, "assets: [{ id: E-1, model: m.glb, properties: [a] }, { id: E-2, model: m.glb }]");
+    FOUND(f, { "plant.yaml", 2, 47, "properties: expected a mapping" });
+}
+
 static void missing_keys_are_named(void **state)
 {
     struct plant_case *f = *state;
@@ -652,6 +674,7 @@ int main(void)
         TEST(unknown_keys_are_named),
         TEST(surroundings_are_read),
         TEST(links_are_templates_of_addresses),
+        TEST(assets_have_properties_of_their_own),
         TEST(missing_keys_are_named),
         TEST(wrong_types_are_named),
         TEST(bad_choices_list_the_allowed),

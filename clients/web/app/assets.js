@@ -107,9 +107,10 @@ export class Assets {
             ['assets.place', max.map((m, i) => numberText((m + min[i]) / 2, 1)).join(' · ')],
             ['assets.sensors.name', asset.tags.length],
         ].filter(([, text]) => text !== '' && text !== undefined && text !== 0);
-        const links = linksOf(this.session.model, 'asset', asset);
+        const links = linksOf(this.session.model, 'asset', asset), named = facts.map(([key, text]) => [say(key), text]);
         this.about.replaceChildren(make('h3', {}, asset.tag || asset.id),
-            make('dl', {}, ...facts.flatMap(([key, text]) => [make('dt', {}, say(key)), make('dd', {}, String(text))])),
+            make('dl', {}, ...[...named, ...(asset.properties ?? [])].flatMap(([name, text]) =>
+                [make('dt', {}, name), make('dd', {}, String(text))])),
             ...(links.length > 0 ? [make('p', { class: 'links' }, ...links)] : []));
     }
 

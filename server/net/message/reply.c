@@ -203,15 +203,26 @@ static json_t *colormaps(void)
     return list;
 }
 
+static json_t *properties(const struct plant_asset *asset)
+{
+    json_t *list = json_array();
+    for (size_t i = 0; i < asset->property_count; i++)
+        json_array_append_new(list, json_pack("[o,o]", string(asset->properties[i].name), string(asset->properties[i].text)));
+    return list;
+}
+
 static json_t *assets(const struct scene *scene)
 {
     json_t *list = json_array();
     for (size_t i = 0; i < scene->asset_count; i++) {
         const struct scene_asset *a = &scene->assets[i];
         const char *description = a->plant->description ? a->plant->description : "", *area = a->plant->area ? a->plant->area : "";
-        json_array_append_new(list, json_pack("{s:o,s:o,s:o,s:o,s:o}", "id", string(a->plant->id), "tag", string(a->plant->tag),
-                                              "description", string(description), "area", string(area), "bounds",
-                                              box(a->bounds_min_m, a->bounds_max_m)));
+        json_t *asset = json_pack("{s:o,s:o,s:o,s:o,s:o}", "id", string(a->plant->id), "tag", string(a->plant->tag),
+                                  "description", string(description), "area", string(area), "bounds",
+                                  box(a->bounds_min_m, a->bounds_max_m));
+        if (a->plant->property_count > 0)
+            json_object_set_new(asset, "properties", properties(a->plant));
+        json_array_append_new(list, asset);
     }
     return list;
 }
