@@ -4,13 +4,14 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { after, before, test } from 'node:test';
-import { openPage, shoot, waitForPicture } from './support/browser.mjs';
+import { openPage, PHONE, shoot, TABLET, waitForPicture } from './support/browser.mjs';
 import { everyPanel, startAlarmed } from './support/panels.mjs';
 import { missing } from './support/tiny_plant.mjs';
 
 const absent = missing();
 const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 200000 };
 const SCREEN = { viewport: { width: 1680, height: 1000 } };
+const UPRIGHT = { ...TABLET, viewport: { width: 768, height: 1024 } };
 const RULES = ['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa', 'wcag22aa', 'best-practice'];
 let plant, url, browser, page;
 
@@ -57,8 +58,63 @@ async function lookAtEverything(theme) {
     await look('past');
     await page.evaluate(() => globalThis.plantcast.session.travel(null));
     await page.waitForFunction(() => !globalThis.plantcast.session.picture.past);
+    await lookAtTools(look);
     for (const name of ['page', 'card', 'place', 'picture', 'split', 'views', 'trend', 'alarms', 'shelve', 'timings', 'help'])
         assert.ok(seen.includes(name), name);
+}
+
+async function lookAtTools(look) {
+    const setClip = (clip) => page.evaluate((value) => globalThis.plantcast.session.setParams({ clip: value }), clip);
+    await setClip({ box: { min: [-1, -1, -1], max: [1, 1, 1] } });
+    await page.locator('.grip:visible').first().waitFor();
+    await look('cut');
+    await setClip(null);
+    await page.waitForFunction(() => document.querySelectorAll('.grip').length === 0);
+    await page.locator('#viewport').focus();
+    await page.keyboard.press('r');
+    await page.locator('.measuring').waitFor();
+    for (const place of [[0, -0.5, 0.2], [0, -0.5, -0.2]]) {
+        const count = await page.evaluate(() => document.querySelectorAll('.measure .end').length);
+        const { x, y } = await page.evaluate((at) => globalThis.plantcast.overlay.pageOf(at), place);
+        await page.mouse.click(x, y);
+        await page.waitForFunction((n) => document.querySelectorAll('.measure .end').length > n, count);
+    }
+    await look('measure');
+    await page.keyboard.press('Escape');
+    await page.keyboard.press('k');
+    await page.locator('#share-code svg').waitFor();
+    await look('share');
+    await page.keyboard.press('Escape');
+    await page.locator('#engineer-toggle').click();
+    await page.locator('#engineer .tags button').first().click();
+    await look('engineer-place');
+    await page.getByRole('button', { name: 'Gaps', exact: true }).click();
+    await page.locator('#engineer .gaps h3').waitFor();
+    await look('engineer-gaps');
+    await page.locator('#engineer label', { hasText: 'Prove' }).click();
+    await page.locator('#engineer .part:not([hidden]) .tags button').first().click();
+    await page.locator('#engineer .judge').waitFor();
+    await look('engineer-prove');
+    await page.locator('#engineer-toggle').click();
+    await page.evaluate(() => globalThis.plantcast.session.emit('denied', { code: 'token_needed' }));
+    await page.locator('#token[open]').waitFor();
+    await look('token');
+    await page.keyboard.press('Escape');
+}
+
+for (const theme of ['dark', 'light']) {
+    test(`axe-core finds nothing on a wall, on a tablet held upright and on a phone, ${theme}`, options, async () => {
+        for (const [name, query, screen] of [['wall', '&wall', { viewport: { width: 3840, height: 2160 } }],
+            ['tablet', '', UPRIGHT], ['phone', '', PHONE]]) {
+            const other = await openPage(`${url}?theme=${theme}${query}`, screen);
+            await waitForPicture(other.page);
+            await other.page.waitForFunction(() => document.querySelector('#alarm-counts .priority'));
+            await shoot(other.page, `axe-${theme}-${name}`);
+            assert.deepEqual(await findings(other.page), [], name);
+            assert.deepEqual(other.errors, []);
+            await other.close();
+        }
+    });
 }
 
 // What has the focus: who it is, whether one sees that, and where it stands.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What is not now, not measured or not here says so: simulated, asleep, a page of another version; and on a wall, from afar.
 import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { createHash, X509Certificate } from 'node:crypto';
 import { appendFileSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
@@ -143,3 +145,47 @@ test('it can be installed: a manifest with icons, all there; no service worker o
         }
         assert.equal(await page.evaluate(async () => (await navigator.serviceWorker?.getRegistrations())?.length ?? 0), 0);
     }));
+
+// A certificate of its own, and what makes chromium take it for good: service workers are refused where one is only waved through.
+function certify(folder) {
+    const [key, cert] = ['key.pem', 'cert.pem'].map((name) => join(folder, name));
+    const { status, stderr } = spawnSync('openssl', ['req', '-x509', '-newkey', 'ec', '-pkeyopt', 'ec_paramgen_curve:prime256v1', '-nodes',
+        '-keyout', key, '-out', cert, '-days', '2', '-subj', '/CN=127.0.0.1', '-addext', 'subjectAltName=IP:127.0.0.1'],
+    { encoding: 'utf8' });
+    assert.equal(status, 0, stderr);
+    const spki = new X509Certificate(readFileSync(cert)).publicKey.export({ type: 'spki', format: 'der' });
+    const hash = createHash('sha256').update(spki).digest('base64');
+    return { daemon: ['--tls-cert', cert, '--tls-key', key], browser: [`--ignore-certificate-errors-spki-list=${hash}`] };
+}
+
+test('by https it is installed: it opens without its server, says so, and is live again with it', options, async () => {
+    const secure = await TinyPlant.create(), by = certify(secure.folder);
+    assert.equal(secure.prepare().code, 0);
+    await secure.startSim();
+    await secure.startDaemon(...by.daemon);
+    const { port } = secure, address = `https://127.0.0.1:${port}/`;
+    await withPage(address, { ...TABLET, args: by.browser }, async (page) => {
+        await page.evaluate(() => navigator.serviceWorker.ready);
+        const client = await page.context().newCDPSession(page);
+        assert.deepEqual((await client.send('Page.getInstallabilityErrors')).installabilityErrors, []);
+        await page.waitForFunction(() => navigator.serviceWorker.controller);
+        await page.reload(); // through the worker, which keeps what it sees
+        await waitForPicture(page);
+        await waitForHealth(page, 'live');
+        await page.waitForFunction(async () => {
+            const kept = (await (await caches.open('plantcast')).keys()).map(({ url: of }) => new URL(of).pathname);
+            return ['/', '/app/main.js', '/words/en.js'].every((path) => kept.includes(path));
+        });
+        const kept = await page.evaluate(async () => (await (await caches.open('plantcast')).keys()).map(({ url: of }) => of));
+        assert.deepEqual(kept.filter((of) => /api|snapshot|stream/.test(of)), [], 'nothing that the plant says is kept');
+        await secure.daemon.stop('SIGKILL');
+        await page.reload();
+        await waitForHealth(page, 'lost');
+        assert.equal(await page.locator('#banner').isVisible(), true);
+        await shoot(page, 'installed-alone');
+        await secure.startDaemon('--port', String(port), ...by.daemon);
+        await waitForPicture(page);
+        await waitForHealth(page, 'live');
+    });
+    await secure.destroy();
+});

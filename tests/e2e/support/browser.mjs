@@ -20,7 +20,9 @@ export const PHONE = { viewport: { width: 390, height: 844 }, deviceScaleFactor:
 export async function openPage(url, screen = DESKTOP, before = null, arrange = () => {}) {
     const { chromium } = await import('playwright-core');
     const folder = mkdtempSync(join(tmpdir(), 'plantcast-chromium-'));
-    const context = await chromium.launchPersistentContext(folder, { executablePath: CHROMIUM, args: QUIET, ...screen });
+    const context = await chromium.launchPersistentContext(folder, {
+        executablePath: CHROMIUM, ...screen, args: [...QUIET, ...screen.args ?? []],
+    });
     const page = context.pages()[0] ?? await context.newPage();
     const errors = [];
     page.on('pageerror', (error) => errors.push(String(error)));
