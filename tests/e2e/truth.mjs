@@ -7,9 +7,10 @@ import { appendFileSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { openPage, settle, shoot, TABLET, waitForHealth, waitForPicture } from './support/browser.mjs';
+import { Relay, relayMissing } from './support/relay.mjs';
 import { missing, TinyPlant } from './support/tiny_plant.mjs';
 
-const absent = missing();
+const absent = [...missing(), relayMissing()].filter(Boolean);
 const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 200000 };
 const WALL = { viewport: { width: 3840, height: 2160 }, screen: { width: 3840, height: 2160 } };
 let plant, url;
@@ -111,6 +112,47 @@ test('a tablet that slept knows that its picture is old, until the server speaks
         assert.equal(await page.locator('#banner').isVisible(), false);
     }));
 
+// Of the picture as it is on the screen: colours of places of a grid.
+const samples = (page) => page.evaluate(() => {
+    const canvas = document.getElementById('picture'), c = canvas.getContext('2d');
+    return [...Array(64).keys()].map((n) => [...c.getImageData(Math.floor(((n % 8) + 0.5) * canvas.width / 8),
+        Math.floor((Math.floor(n / 8) + 0.5) * canvas.height / 8), 1, 1).data]);
+});
+
+test('a slow link that comes to a halt: the last picture stays, marked as old, and the view is as it was', options, async () => {
+    const relay = await Relay.open(plant.port, { bytesPerS: 250000, delayMs: 60 });
+    await withPage(`http://127.0.0.1:${relay.port}/`, TABLET, async (page) => {
+        await waitForHealth(page, 'live');
+        await page.evaluate(() => {
+            const { session } = globalThis.plantcast;
+            session.setCamera({ eye: [2.2, -2.2, 1.6], target: [0, 0, 0], up: [0, 0, 1], fov: 45 });
+            session.setParams({ selected: 'E-101' });
+        });
+        await settle(page);
+        const view = () => page.evaluate(() => {
+            const { camera, params } = globalThis.plantcast.session;
+            return { camera, selected: params.selected, group: params.group };
+        });
+        const was = await view();
+        relay.child.kill('SIGSTOP'); // nothing comes, and nothing says so
+        try {
+            await page.waitForFunction(() => document.getElementById('viewport').classList.contains('is-old'));
+            assert.match(await page.locator('#banner').textContent(), /This picture is [\d.]+ s old/);
+            const now = await samples(page);
+            assert.ok(now.every(([r, g, b]) => r + g + b > 30), 'nowhere black');
+            assert.ok(new Set(now.map(String)).size > 20, 'and still the picture');
+            await shoot(page, 'halted');
+        } finally {
+            relay.child.kill('SIGCONT');
+        }
+        await waitForHealth(page, 'live', 60000);
+        await settle(page);
+        assert.deepEqual(await view(), was);
+        assert.equal(await page.locator('#banner').isVisible(), false);
+    });
+    relay.close();
+});
+
 test('a page that was kept from another version loads itself anew, once', options, async () => {
     const asked = [];
     await withPage(url, TABLET, async (page, browser) => {
@@ -182,6 +224,7 @@ test('by https it is installed: it opens without its server, says so, and is liv
         await page.reload();
         await waitForHealth(page, 'lost');
         assert.equal(await page.locator('#banner').isVisible(), true);
+        assert.equal(await page.locator('#picture').isVisible(), false, 'no black picture');
         await shoot(page, 'installed-alone');
         await secure.startDaemon('--port', String(port), ...by.daemon);
         await waitForPicture(page);
