@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Cost of moving a sensor on the demo plant's exchanger while it is shown: one JSON line. */
+/* Cost of moving a sensor on the demo plant's exchanger while it is shown, as the daemon does it: one JSON line. */
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -7,11 +7,14 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "scene/manifest.h"
 #include "scene/scene.h"
 #include "surface/mover.h"
 
 #define ROUNDS 30
 #define NAME "prep_move_sensor_ms"
+#define ASSET "E-101"
+#define PREPARED "build/demo/plant.prepared"
 
 struct box {
     pthread_mutex_t lock;
@@ -71,30 +74,49 @@ static void measure(struct mover *mover, const struct asset_view *view)
     mem_free(euclidean_m);
 }
 
+/* With the surface that plantcast-prep kept. NULL: there is none. */
+static struct mover *create_mover(struct log *log, struct workers *workers, const struct asset_view *view)
+{
+    const struct asset_level *finest = &view->levels[0];
+    const struct asset_primitive *first = &view->primitives[finest->first_primitive], *last = first + finest->primitive_count - 1;
+    struct manifest manifest = { 0 };
+    struct mover *mover = NULL;
+    bool read = manifest_read(log, PREPARED, &manifest);
+    const struct manifest_entry *entry = read ? manifest_find(&manifest, ASSET) : NULL;
+    if (entry && entry->surface) {
+        char *path = mem_printf(PREPARED "/%s", entry->surface);
+        mover = mover_create(log, workers,
+                             &(struct mover_shape){ .positions_m = view->positions_m,
+                                                    .vertex_count = view->header->vertex_count,
+                                                    .triangles = view->indices + first->first_index,
+                                                    .triangle_count = (last->first_index + last->index_count - first->first_index) / 3,
+                                                    .surface_path = path,
+                                                    .surface_key = strtoull(entry->surface, NULL, 16) });
+        mem_free(path);
+    }
+    if (read)
+        manifest_finish(&manifest);
+    return mover;
+}
+
 int main(void)
 {
     struct diag diag = { 0 };
     struct log *log = log_create(LOG_ERROR);
+    struct workers *workers = workers_create(0);
     struct plant *plant = plant_load("build/demo/plant.yaml", &diag);
-    struct scene *scene = plant ? scene_create(log, plant, "build/demo/plant.prepared") : NULL;
-    const struct asset_view *view = scene ? find(scene, "E-101") : NULL;
-    if (view) {
-        const struct asset_level *finest = &view->levels[0];
-        const struct asset_primitive *first = &view->primitives[finest->first_primitive], *last = first + finest->primitive_count - 1;
-        struct mover_shape shape = { .positions_m = view->positions_m,
-                                     .vertex_count = finest->vertex_count,
-                                     .triangles = view->indices + first->first_index,
-                                     .triangle_count = (last->first_index + last->index_count - first->first_index) / 3 };
-        struct workers *workers = workers_create(0);
-        struct mover *mover = mover_create(log, workers, &shape);
+    struct scene *scene = plant ? scene_create(log, plant, PREPARED) : NULL;
+    const struct asset_view *view = scene ? find(scene, ASSET) : NULL;
+    struct mover *mover = view ? create_mover(log, workers, view) : NULL;
+    if (mover) {
         while (mover_state(mover) == MOVER_WARMING)
             clock_sleep_ns(NS_PER_MS);
         measure(mover, view);
-        mover_destroy(&mover);
-        workers_destroy(&workers);
     } else {
-        printf("{\"name\": \"" NAME "\", \"value\": null, \"unit\": \"ms\", \"why\": \"there is no E-101 in build/demo\"}\n");
+        printf("{\"name\": \"" NAME "\", \"value\": null, \"unit\": \"ms\", \"why\": \"there is no " ASSET " in build/demo\"}\n");
     }
+    mover_destroy(&mover);
+    workers_destroy(&workers);
     scene_destroy(&scene);
     plant_destroy(&plant);
     diag_finish(&diag);

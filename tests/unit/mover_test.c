@@ -232,8 +232,8 @@ static void try_sensors(const struct asset *asset, const struct mover_shape *fro
 
 static void a_moved_sensor_has_the_distances_that_would_be_stored(void **state)
 {
-    static const struct most as_stored = { 1e-4, 0.05, 1e-2 }; /* at single points where faces of two parts lie in each other */
-    static const struct most as_made_anew = { 8e-4, 0.07, 0.025 };
+    static const struct most as_stored = { 5e-5, 0.02, 2e-3 }; /* at single points where faces of two parts lie in each other */
+    static const struct most as_made_anew = { 5e-4, 0.05, 0.015 };
     struct asset *asset = prepared(*state);
     struct mover_shape shape = finest_of(asset);
     char *path = surface_path(*state, &shape.surface_key);
