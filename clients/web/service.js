@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Of an installed page, by https only: the page's own files from the network, and where there is none as they last were, so that it opens
-// and says that it is disconnected. Nothing that the plant says is ever kept.
-const KEPT = 'plantcast';
+// and says that it is disconnected. Files of one version are kept at a time: those of another would not fit. Nothing that the plant says is
+// ever kept.
 const OURS = /^(\/|\/index\.html|\/(app|core|words|vendor|made)\/.*)$/;
+let kept = null; // a promise of the store of the version that is shown
 
 self.addEventListener('install', () => self.skipWaiting());
 self.addEventListener('activate', (event) => event.waitUntil(self.clients.claim()));
@@ -12,15 +13,25 @@ self.addEventListener('fetch', (event) => {
         event.respondWith(newest(event.request));
 });
 
+// The server's version, and no other is kept; without the server the one that is there.
+async function choose() {
+    const text = await fetch('made/version.js', { cache: 'no-store' }).then((answer) => (answer.ok ? answer.text() : ''), () => '');
+    const names = await caches.keys(), name = text.match(/version = '(\w+)'/)?.[1] ?? names.at(-1) ?? 'plantcast';
+    await Promise.all(names.filter((other) => other !== name).map((other) => caches.delete(other)));
+    return caches.open(name);
+}
+
 async function newest(request) {
-    const kept = await caches.open(KEPT);
+    if (request.mode === 'navigate' || !kept)
+        kept = choose();
+    const store = await kept;
     try {
         const answer = await fetch(request);
         if (answer.status === 200)
-            await kept.put(request, answer.clone());
+            await store.put(request, answer.clone());
         return answer;
     } catch (error) {
-        const before = await kept.match(request, { ignoreSearch: true });
+        const before = await store.match(request, { ignoreSearch: true });
         if (before)
             return before;
         throw error;

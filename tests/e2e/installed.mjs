@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The page as it is installed: its service worker keeps one version of its files, for the time without a network. The server here has
+// nothing but these files.
+import assert from 'node:assert/strict';
+import { existsSync, readFileSync } from 'node:fs';
+import { createServer } from 'node:http';
+import { extname, join, resolve } from 'node:path';
+import { after, before, test } from 'node:test';
+import { openPage, shoot } from './support/browser.mjs';
+
+const WEB = resolve('clients/web'), VERSION = '/made/version.js';
+const TYPES = { '.html': 'text/html', '.js': 'text/javascript', '.css': 'text/css', '.svg': 'image/svg+xml' };
+const options = { skip: existsSync(join(WEB, VERSION)) ? false : 'not built', timeout: 100000 };
+let server, browser, page, version = 'aaaaaaaaaaaa';
+
+function serve(request, response) {
+    const path = new URL(request.url, 'http://localhost').pathname.replace(/\/$/, '/index.html'), file = join(WEB, path);
+    if (!existsSync(file))
+        return response.writeHead(404).end();
+    response.writeHead(200, { 'content-type': TYPES[extname(file)] ?? 'application/octet-stream', 'cache-control': 'no-cache' });
+    return response.end(path === VERSION ? `export const version = '${version}';\n` : readFileSync(file));
+}
+
+before(async () => {
+    if (options.skip)
+        return;
+    server = createServer(serve).listen(0, '127.0.0.1');
+    await new Promise((done) => server.once('listening', done));
+    browser = await openPage(`http://127.0.0.1:${server.address().port}/?lang=en`);
+    page = browser.page;
+    await page.waitForFunction(() => globalThis.plantcast);
+    await page.evaluate(async () => { // as the page does where it came by https
+        await navigator.serviceWorker.register('service.js');
+        await navigator.serviceWorker.ready;
+    });
+    await page.waitForFunction(() => navigator.serviceWorker.controller);
+});
+after(async () => {
+    await browser?.close();
+    server?.close();
+});
+
+// { version: [path, ...] }
+const kept = () => page.evaluate(async () => Object.fromEntries(await Promise.all((await caches.keys()).map(async (name) =>
+    [name, (await (await caches.open(name)).keys()).map(({ url }) => new URL(url).pathname)]))));
+const reload = async () => {
+    await page.reload();
+    await page.waitForFunction(() => globalThis.plantcast);
+};
+const open = async (key) => {
+    await page.locator('#viewport').focus();
+    await page.keyboard.press(key);
+};
+
+test('files are kept as they are used, parts too', options, async () => {
+    await reload();
+    await open('v');
+    await page.locator('#views.open').waitFor();
+    const { [version]: files, ...others } = await kept();
+    assert.deepEqual(others, {});
+    for (const path of ['/', '/app/first.js', '/app/main.js', '/app/style.css', '/words/en.js', '/app/views.js', '/app/views.html'])
+        assert.ok(files.includes(path), path);
+});
+
+test('with another version nothing of the one before stays', options, async () => {
+    version = 'bbbbbbbbbbbb';
+    await reload();
+    const { [version]: files, ...others } = await kept();
+    assert.deepEqual(others, {});
+    assert.ok(files.includes('/app/main.js') && !files.includes('/app/views.js'), 'what was used of it, and no more');
+});
+
+test('without a network it opens, and says what is missing', options, async () => {
+    await open('v');
+    await page.locator('#views.open').waitFor();
+    server.closeAllConnections();
+    await new Promise((done) => server.close(done));
+    await reload();
+    await page.waitForFunction(() => document.getElementById('health').dataset.kind === 'lost');
+    await open('v');
+    await page.locator('#views.open').waitFor();
+    await open('p');
+    await page.locator('#toast', { hasText: 'could not be loaded' }).waitFor();
+    await shoot(page, 'installed-offline');
+    assert.deepEqual(browser.errors, []);
+});
