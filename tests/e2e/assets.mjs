@@ -171,9 +171,18 @@ test('memory does not grow with use', { ...options, timeout: options.timeout + 1
         return { megabytes: usedSize / 1e6, nodes };
     };
     const use = (ms) => page.evaluate(async (long) => {
-        const { assets, session, pilot } = globalThis.plantcast, { root } = assets.list;
+        const { assets, session, pilot, selectTag, showTrend } = globalThis.plantcast, { root } = assets.list;
         const search = document.getElementById('assets-search');
-        for (const end = performance.now() + long; performance.now() < end;) {
+        const press = (key) => document.getElementById('viewport').dispatchEvent(new KeyboardEvent('keydown', { key, bubbles: true }));
+        // Every panel that opens and shuts, trends of some tags and their cards.
+        const panels = ['e', 'v', 'p', 'm', 'b', 'b', 'm', 'p', 'v', 'e'];
+        for (let n = 0, end = performance.now() + long; performance.now() < end || n < 4 * panels.length; n++) {
+            if (n % 4 === 0) {
+                const tag = session.model.tags[100 * Math.floor(Math.random() * 200)];
+                press(panels[(n / 4) % panels.length]);
+                selectTag(tag);
+                showTrend(tag);
+            }
             root.scrollTop = Math.random() * root.scrollHeight;
             search.value = `TI-${Math.floor(Math.random() * 200)}`;
             search.dispatchEvent(new Event('input'));

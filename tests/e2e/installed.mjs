@@ -77,6 +77,7 @@ test('without a network it opens, and says what is missing', options, async () =
     await new Promise((done) => server.close(done));
     await reload();
     await page.waitForFunction(() => document.getElementById('health').dataset.kind === 'lost');
+    assert.equal(await page.locator('#picture').isVisible(), false, 'no black picture where none has come');
     await open('v');
     await page.locator('#views.open').waitFor();
     await open('p');
