@@ -47,7 +47,10 @@ session.token = stored('token');
 session.leader = Number(new URLSearchParams(location.hash.slice(1)).get('follow')) || null;
 session.wait();
 export const viewport = new Viewport({ element: byId('viewport'), canvas: byId('picture'), session, decoding });
-viewport.onDrawn = () => { byId('waiting').hidden = true; };
+viewport.onDrawn = (newPicture) => {
+    if (newPicture)
+        byId('waiting').hidden = true;
+};
 session.on('hello', () => viewport.forget());
 connection.start();
 Object.assign(page, { session, viewport, decoding });

@@ -290,8 +290,8 @@ function tell(text) {
 
 // --- the page
 
-// Nobody has changed anything: the address stays as it came.
-const isUntouched = () => !location.hash && session.paramsSeq === 0 && !moved && !selection.tag && session.time.atUs === null;
+// Nobody has changed anything since the greeting: the address stays as it came.
+const isUntouched = () => !location.hash && session.paramsSeq <= 1 && !moved && !selection.tag && session.time.atUs === null;
 
 let addressTimer;
 function saveAddress() {
