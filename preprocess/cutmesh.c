@@ -72,7 +72,7 @@ void cutmesh_load(struct cutmesh *mesh, const struct level *level)
     mesh->tri_count = 0;
     mesh->loads++;
     for (size_t e = 0; e < mesh->edges.count; e++) /* each level has its own idea of what is an error */
-        mesh->cuts[e].error = -1;
+        mesh->cuts[e].error = mesh->cuts[e].proven ? mesh->cuts[e].error : -1;
     for (uint32_t p = 0; p < level->primitive_count; p++)
         for (uint32_t i = 0; i < level->primitives[p].index_count; i += 3) {
             uint32_t at = level->primitives[p].first_index + i;

@@ -22,6 +22,7 @@ struct cut_edge {       /* between two places; all levels share them */
     float error;        /* of the field along it, if cutting may mend that; less than 0: not known yet */
     float barred;       /* of the field along it, if not */
     bool jumps;         /* likewise: because the distance jumps, not because it is short */
+    bool proven;        /* measured, and needs no cut; coarser levels ask for no more */
 };
 
 struct cutmesh {

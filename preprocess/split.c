@@ -104,6 +104,7 @@ static void measure_edges(struct split *split)
         edge->error = findings[i].error;
         edge->barred = findings[i].barred;
         edge->jumps = findings[i].jumps;
+        edge->proven = findings[i].error <= (float)AIM && findings[i].barred <= (float)AIM;
         if (edge->middle == TRIMESH_NONE)
             edge->share = findings[i].share;
     }
@@ -160,7 +161,9 @@ static void measure_insides(struct split *split, double limit)
     for (size_t i = 0; i < count; i++)
         if ((double)findings[i].error > AIM) {
             const struct cut_tri *tri = &mesh->tris[findings[i].number];
-            mesh->cuts[tri->e[longest_edge(split, tri)]].error = findings[i].error;
+            struct cut_edge *edge = &mesh->cuts[tri->e[longest_edge(split, tri)]];
+            edge->error = findings[i].error;
+            edge->proven = false;
         }
     mem_free(findings);
 }

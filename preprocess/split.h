@@ -3,10 +3,10 @@
 
    The finest level shows the field to SPLIT_ERROR, whatever the readings are (straight.h). A coarser one, whose surface is up to error_m
    off, shows it to SPLIT_ERROR at a place no farther away than a third of that or so: it is only drawn where error_m is less than a pixel.
-   What is added to it is put onto the finest level's surface. Pieces no longer than an eighth of the model's tolerance or, in coarser
-   levels, than their error are not cut; nor, up to eight tolerances or errors long, ones where the distance along the surface jumps because
-   the surface does not hang together there: no cut mends a jump, cuts only close in on it. What is hidden inside another part does not
-   count, nor do triangles that have no width.
+   What is added to it is put onto the finest level's surface. An edge that a finer level has too, and need not cut, is not looked at.
+   Pieces no longer than an eighth of the model's tolerance or, in coarser levels, than their error are not cut; nor, up to eight tolerances
+   or errors long, ones where the distance along the surface jumps because the surface does not hang together there: no cut mends a jump,
+   cuts only close in on it. What is hidden inside another part does not count, nor do triangles that have no width.
    A level may not grow for ever, so errors are cut in the order of their size: the finest level to three times its triangles or by 100,000,
    whichever is more. A coarser one that would need more than three quarters of the next finer one's triangles is given up.
    What is left is told by its reason (level.left). */
