@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Baseline JPEG by TurboJPEG. */
+/* Baseline JPEG. */
 #include <errno.h>
 #include <string.h>
-#include <turbojpeg.h>
 
 #include "base/mem.h"
 #include "encode/encoder_impl.h"
+#include "encode/jpeg_write.h"
 #include "encode/planes.h"
 
 struct jpeg_encoder {
     struct encoder base;
-    tjhandle turbo;
+    struct jpeg_writer *writer;
     unsigned char *out; /* kept from picture to picture */
     size_t capacity;
     unsigned char *planes; /* of one rectangle, halved chroma behind its luma */
@@ -20,8 +20,7 @@ struct jpeg_encoder {
 static void jpeg_destroy(struct encoder *encoder)
 {
     struct jpeg_encoder *jpeg = (struct jpeg_encoder *)encoder;
-    if (jpeg->turbo)
-        tjDestroy(jpeg->turbo);
+    jpeg_writer_destroy(&jpeg->writer);
     mem_free(jpeg->out);
     mem_free(jpeg->planes);
     mem_free(jpeg);
@@ -32,9 +31,9 @@ static struct encoder *jpeg_create(struct log *log, const char *library)
     (void)library;
     struct jpeg_encoder *jpeg = mem_new(sizeof(*jpeg));
     jpeg->base = (struct encoder){ .impl = &jpeg_impl, .log = log };
-    jpeg->turbo = tjInitCompress();
-    if (!jpeg->turbo) {
-        log_err(log, "jpeg: %s", tjGetErrorStr2(NULL));
+    jpeg->writer = jpeg_writer_create();
+    if (!jpeg->writer) {
+        log_err(log, "jpeg: no memory for it");
         jpeg_destroy(&jpeg->base);
         return NULL;
     }
@@ -52,35 +51,45 @@ static bool reserve(unsigned char **at, size_t *capacity, size_t need)
     return *at != NULL;
 }
 
-static int even(int px)
+static int padded(int px)
 {
-    return (px + 1) & ~1;
+    return (px + JPEG_PAD_PX - 1) / JPEG_PAD_PX * JPEG_PAD_PX;
 }
 
-/* Luma beyond an odd edge is what stands at the edge; even: TurboJPEG wants whole pairs. */
+/* No picture needs more: TurboJPEG's bound. */
+static size_t most_bytes(const struct change *part)
+{
+    return (size_t)padded(part->width_px) * (size_t)padded(part->height_px) * 6 + 2048;
+}
+
+/* Beyond the right edge lies what stands at it. */
 static void extend(const struct planes *planes)
 {
-    size_t width = (size_t)planes->width_px, pitch = (size_t)planes->pitch[0];
-    for (size_t y = 0; y < (size_t)planes->height_px && pitch > width; y++)
-        planes->plane[0][y * pitch + width] = planes->plane[0][y * pitch + width - 1];
-    if (planes->height_px & 1)
-        memcpy(planes->plane[0] + (size_t)planes->height_px * pitch, planes->plane[0] + (size_t)(planes->height_px - 1) * pitch, pitch);
+    for (int c = 0; c < 3; c++) {
+        int width = c ? (planes->width_px + 1) / 2 : planes->width_px, height = c ? (planes->height_px + 1) / 2 : planes->height_px;
+        for (int y = 0; y < height; y++) {
+            uint8_t *row = planes->plane[c] + (ptrdiff_t)y * planes->pitch[c];
+            memset(row + width, row[width - 1], (size_t)(planes->pitch[c] - width));
+        }
+    }
 }
 
-static int compress_halved(struct jpeg_encoder *jpeg, const uint8_t *from, int stride_bytes, const struct change *part, int quality,
-                           unsigned char **to, unsigned long *count)
+/* Returns how many bytes; 0: failed, why says how. */
+static size_t compress_halved(struct jpeg_encoder *jpeg, const uint8_t *from, int stride_bytes, const struct change *part, int quality,
+                              unsigned char *to, const char **why)
 {
-    int width = even(part->width_px), height = even(part->height_px);
+    int width = padded(part->width_px), height = padded(part->height_px);
     size_t luma = (size_t)width * (size_t)height;
     struct planes planes = { from, stride_bytes, part->width_px, part->height_px, { 0 }, { width, width / 2, width / 2 } };
-    if (!reserve(&jpeg->planes, &jpeg->planes_capacity, luma * 3 / 2))
-        return -1;
+    if (!reserve(&jpeg->planes, &jpeg->planes_capacity, luma * 3 / 2)) {
+        *why = "no memory for it";
+        return 0;
+    }
     for (int i = 0; i < 3; i++)
         planes.plane[i] = jpeg->planes + (i > 0 ? luma : 0) + (i > 1 ? luma / 4 : 0);
     planes_convert(&planes, 0, planes_bands(part->height_px));
     extend(&planes);
-    return tjCompressFromYUVPlanes(jpeg->turbo, (const unsigned char **)planes.plane, part->width_px, planes.pitch, part->height_px,
-                                   TJSAMP_420, to, count, quality, TJFLAG_NOREALLOC);
+    return jpeg_write_halved(jpeg->writer, &planes, quality, to, most_bytes(part));
 }
 
 /* Appends one rectangle at *end of what is reserved. */
@@ -88,25 +97,22 @@ static bool compress(struct jpeg_encoder *jpeg, const struct frame *frame, const
                      size_t *end)
 {
     const uint8_t *from = frame->bgrx + (size_t)part->y_px * (size_t)frame->stride_bytes + (size_t)part->x_px * 4;
+    const char *why = jpeg_writer_why(jpeg->writer);
     unsigned char *to = jpeg->out + *end;
-    unsigned long count = tjBufSize(part->width_px, part->height_px, params->full_chroma ? TJSAMP_444 : TJSAMP_420);
-    int status = params->full_chroma ? tjCompress2(jpeg->turbo, from, part->width_px, frame->stride_bytes, part->height_px, TJPF_BGRX, &to,
-                                                   &count, TJSAMP_444, params->quality, TJFLAG_NOREALLOC)
-                                     : compress_halved(jpeg, from, frame->stride_bytes, part, params->quality, &to, &count);
-    if (status != 0) {
-        log_err(jpeg->base.log, "jpeg %dx%d: %s", part->width_px, part->height_px,
-                jpeg->planes || params->full_chroma ? tjGetErrorStr2(jpeg->turbo) : "no memory for it");
-        return false;
-    }
+    size_t count = params->full_chroma ? jpeg_write_whole(jpeg->writer, from, frame->stride_bytes, part->width_px, part->height_px,
+                                                          params->quality, to, most_bytes(part))
+                                       : compress_halved(jpeg, from, frame->stride_bytes, part, params->quality, to, &why);
+    if (count == 0)
+        log_err(jpeg->base.log, "jpeg %dx%d: %s", part->width_px, part->height_px, why);
     *end += count;
-    return true;
+    return count > 0;
 }
 
-static bool reserve_for(struct jpeg_encoder *jpeg, const struct change *parts, int count, bool full_chroma)
+static bool reserve_for(struct jpeg_encoder *jpeg, const struct change *parts, int count)
 {
     size_t need = 0;
     for (int i = 0; i < count; i++)
-        need += tjBufSize(parts[i].width_px, parts[i].height_px, full_chroma ? TJSAMP_444 : TJSAMP_420);
+        need += most_bytes(&parts[i]);
     return reserve(&jpeg->out, &jpeg->capacity, need);
 }
 
@@ -119,7 +125,7 @@ static int jpeg_send(struct encoder *encoder, struct frame *frame, const struct 
     const struct change *from = count ? changes : &whole;
     int part_count = count ? count : 1;
     size_t end = 0;
-    if (!reserve_for(jpeg, from, part_count, params->full_chroma)) {
+    if (!reserve_for(jpeg, from, part_count)) {
         log_err(encoder->log, "jpeg %dx%d: no memory for it", frame->width_px, frame->height_px);
         return -ENOMEM;
     }

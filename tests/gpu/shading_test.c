@@ -42,16 +42,39 @@ static int tear_down(void **state)
 struct way {
     const char *name;
     int quality; /* of JPEG; 0: none */
-    bool full_chroma, deuteranope;
+    bool full_chroma, deuteranope, standard; /* standard: by any encoder, with the tables that everybody has */
 };
 static const struct way ways[] = {
-    { "as drawn", 0, false, false },
-    { "JPEG q80 4:2:0", 80, false, false },
-    { "deuteranope", 0, false, true },
-    { "JPEG, deuteranope", 80, false, true },
-    { "refined, as sent, deuteranope", 92, true, true }, /* server/net/session/session_wishes.c */
+    { "as drawn", 0, false, false, false },
+    { "JPEG q80 4:2:0", 80, false, false, false },
+    { "deuteranope", 0, false, true, false },
+    { "JPEG, deuteranope", 80, false, true, false },
+    { "refined, as sent, deuteranope", 92, true, true, false }, /* server/net/session/session_wishes.c */
+    { "JPEG by another", 80, false, false, true },
+    { "that, deuteranope", 80, false, true, true },
 };
-enum { WAYS = sizeof(ways) / sizeof(*ways), AS_SENT = WAYS - 1 };
+enum { WAYS = sizeof(ways) / sizeof(*ways), OURS = 5 };
+
+static void decode(struct frame *frame, const uint8_t *bytes, size_t count)
+{
+    tjhandle turbo = tjInitDecompress();
+    assert_int_equal(
+        tjDecompress2(turbo, bytes, count, frame->bgrx, frame->width_px, frame->stride_bytes, frame->height_px, TJPF_BGRX, 0), 0);
+    tjDestroy(turbo);
+}
+
+static void through_standard_jpeg(struct frame *frame, const struct way *way)
+{
+    unsigned char *bytes = NULL;
+    unsigned long count = 0;
+    tjhandle turbo = tjInitCompress();
+    assert_int_equal(tjCompress2(turbo, frame->bgrx, frame->width_px, frame->stride_bytes, frame->height_px, TJPF_BGRX, &bytes, &count,
+                                 TJSAMP_420, way->quality, 0),
+                     0);
+    decode(frame, bytes, count);
+    tjFree(bytes);
+    tjDestroy(turbo);
+}
 
 /* The pixels after a JPEG, as a stream sends it. */
 static void through_jpeg(struct frame *frame, const struct way *way)
@@ -60,11 +83,7 @@ static void through_jpeg(struct frame *frame, const struct way *way)
     struct packet *packet;
     assert_int_equal(encoder_send(encoder, frame, &(struct encoder_params){ .quality = way->quality, .full_chroma = way->full_chroma }), 0);
     assert_int_equal(encoder_receive(encoder, &packet), 0);
-    tjhandle turbo = tjInitDecompress();
-    assert_int_equal(tjDecompress2(turbo, packet->bytes, packet->count, frame->bgrx, frame->width_px, frame->stride_bytes,
-                                   frame->height_px, TJPF_BGRX, 0),
-                     0);
-    tjDestroy(turbo);
+    decode(frame, packet->bytes, packet->count);
     packet_unref(&packet);
     encoder_destroy(&encoder);
 }
@@ -107,7 +126,7 @@ static double measure(const struct view *view, double p95[WAYS])
         struct frame *shaded = frame_create(WIDTH, HEIGHT);
         memcpy(shaded->bgrx, drawn->bgrx, (size_t)HEIGHT * (size_t)drawn->stride_bytes);
         if (ways[i].quality)
-            through_jpeg(shaded, &ways[i]);
+            (ways[i].standard ? through_standard_jpeg : through_jpeg)(shaded, &ways[i]);
         p95[i] = misread(map, truth, shaded, ways[i].deuteranope);
         worst = fmax(worst, p95[i]);
         frame_unref(&shaded);
@@ -134,8 +153,8 @@ static void look_close(struct view *view)
     look_from(0.5, view);
 }
 
-/* The whole plant in the picture is read nearly as well. Twice as far, where its parts are a few pixels wide, JPEG itself is what limits
-   it: without any shading it is read no better. */
+/* So is the whole plant in the picture, and twice as far, where its parts are a few pixels wide. There the standard tables, made for
+   photographs, drop more of the chroma than that, shaded or not. */
 static void test_far_away_it_is_not_either(void **state)
 {
     struct view view;
@@ -144,14 +163,11 @@ static void test_far_away_it_is_not_either(void **state)
     for (int distance = 1; distance < 3; distance++) {
         look_from(distance, &view);
         view.tier = TIER_STILL;
-        double worst = measure(&view, shaded);
-        assert_true(worst <= (distance == 1 ? 3.2 : 5.2)); /* a step of the map is 0.39 */
+        measure(&view, shaded);
         view.look = LOOK_FLAT;
         measure(&view, flat);
         for (int i = 0; i < WAYS; i++)
-            assert_true(shaded[i] <= fmax(3, flat[i] + 0.5));
-        if (distance == 1)
-            assert_true(shaded[AS_SENT] <= 3); /* refined pictures have whole chroma */
+            assert_true(shaded[i] <= (i < OURS ? 3 : flat[i] + 0.8)); /* a step of the map is 0.39 */
     }
 }
 

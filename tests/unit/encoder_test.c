@@ -91,6 +91,74 @@ static void jpeg_keeps_the_picture(void **state)
     check_jpeg(16, 16, 90, true, 40, 8);
 }
 
+/* Upright lines three pixels wide, blue and amber in turn, on grey. */
+static bool is_line(int x)
+{
+    return x % 11 < 3;
+}
+
+static struct frame *thin_lines(int w, int h)
+{
+    static const uint8_t colors[3][3] = { { 231, 146, 89 }, { 42, 183, 216 }, { 230, 231, 232 } }; /* b, g, r */
+    struct frame *frame = frame_create(w, h);
+    for (int y = 0; y < h; y++)
+        for (int x = 0; x < w; x++)
+            memcpy(frame->bgrx + (size_t)y * (size_t)frame->stride_bytes + (size_t)x * 4, colors[is_line(x) ? x / 11 % 2 : 2], 3);
+    return frame;
+}
+
+/* Of the lines' blue, by a JPEG of the frame: mean, in steps of 255. */
+static double lines_off(const struct frame *frame, const uint8_t *bytes, size_t count)
+{
+    int w = frame->width_px, h = frame->height_px, lines = 0;
+    uint8_t *bgr = mem_array((size_t)w * (size_t)h, 3);
+    tjhandle turbo = tjInitDecompress();
+    double sum = 0;
+    assert_int_equal(tjDecompress2(turbo, bytes, count, bgr, w, w * 3, h, TJPF_BGR, 0), 0);
+    for (int y = 0; y < h; y++)
+        for (int x = 0; x < w; x++) {
+            sum += is_line(x) ? abs(bgr[(y * w + x) * 3] - frame->bgrx[(size_t)y * (size_t)frame->stride_bytes + (size_t)x * 4]) : 0;
+            lines += is_line(x);
+        }
+    tjDestroy(turbo);
+    mem_free(bgr);
+    return sum / lines;
+}
+
+static size_t head_of(const uint8_t *bytes, size_t count) /* up to the picture itself */
+{
+    size_t at = 0;
+    while (at + 1 < count && !(bytes[at] == 0xff && bytes[at + 1] == 0xda))
+        at++;
+    return at;
+}
+
+/* A draft's head, and so its tables, are everybody's. From JPEG_READ_QUALITY on, thin things keep more of their colour. */
+static void jpeg_keeps_the_colour_of_thin_things(void **state)
+{
+    struct frame *frame = thin_lines(320, 200);
+    tjhandle turbo = tjInitCompress();
+    (void)state;
+    for (int quality = 66; quality <= 80; quality += 14) {
+        unsigned char *bytes = NULL;
+        unsigned long count = 0;
+        assert_int_equal(tjCompress2(turbo, frame->bgrx, 320, frame->stride_bytes, 200, TJPF_BGRX, &bytes, &count, TJSAMP_420, quality, 0),
+                         0);
+        struct packet *packet = encode("jpeg", frame, quality, false);
+        size_t head = head_of(bytes, count);
+        bool same = head == head_of(packet->bytes, packet->count) && memcmp(packet->bytes, bytes, head) == 0;
+        double ours = lines_off(frame, packet->bytes, packet->count), standard = lines_off(frame, bytes, count);
+        print_message("# quality %d: thin lines are %.1f off in %zu bytes, by the standard %.1f in %lu\n", quality, ours, packet->count,
+                      standard, count);
+        assert_true(same == (quality < 75));
+        assert_true(quality < 75 || ours < 0.4 * standard);
+        packet_unref(&packet);
+        tjFree(bytes);
+    }
+    tjDestroy(turbo);
+    frame_unref(&frame);
+}
+
 /* Puts the parts of a packet into bgr, which is of the whole picture. */
 static void decode_parts(const struct packet *packet, uint8_t *bgr)
 {
@@ -196,6 +264,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(jpeg_keeps_the_picture),
+        cmocka_unit_test(jpeg_keeps_the_colour_of_thin_things),
         cmocka_unit_test(jpeg_sends_only_what_changed),
         cmocka_unit_test(png_keeps_every_pixel),
         cmocka_unit_test(packets_outlive_frames_without_their_pixels),

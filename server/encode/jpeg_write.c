@@ -1,0 +1,157 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* libjpeg, whose errors jump. */
+#include "encode/jpeg_write.h"
+
+#include <setjmp.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <jpeglib.h>
+
+#include "base/mem.h"
+
+enum { ROWS = JPEG_PAD_PX };
+
+struct jpeg_writer {
+    struct jpeg_compress_struct codec;
+    struct jpeg_error_mgr errors;
+    struct jpeg_destination_mgr to;
+    jmp_buf failed;
+    char why[JMSG_LENGTH_MAX];
+};
+
+static void fail(j_common_ptr codec)
+{
+    struct jpeg_writer *writer = codec->client_data;
+    codec->err->format_message(codec, writer->why);
+    longjmp(writer->failed, 1);
+}
+
+static void start(j_compress_ptr codec) /* `to` is set by then */
+{
+    (void)codec;
+}
+
+static boolean need_room(j_compress_ptr codec)
+{
+    struct jpeg_writer *writer = codec->client_data;
+    snprintf(writer->why, sizeof(writer->why), "larger than the room for it");
+    longjmp(writer->failed, 1);
+}
+
+static void say_nothing(j_common_ptr codec)
+{
+    (void)codec;
+}
+
+struct jpeg_writer *jpeg_writer_create(void)
+{
+    struct jpeg_writer *writer = mem_new(sizeof(*writer));
+    writer->codec.err = jpeg_std_error(&writer->errors);
+    writer->codec.client_data = writer;
+    writer->errors.error_exit = fail;
+    writer->errors.output_message = say_nothing;
+    if (setjmp(writer->failed)) {
+        mem_free(writer);
+        return NULL;
+    }
+    jpeg_create_compress(&writer->codec); /* keeps err and client_data */
+    writer->to = (struct jpeg_destination_mgr){ .init_destination = start, .empty_output_buffer = need_room, .term_destination = start };
+    writer->codec.dest = &writer->to;
+    return writer;
+}
+
+void jpeg_writer_destroy(struct jpeg_writer **writer)
+{
+    if (!*writer)
+        return;
+    jpeg_destroy_compress(&(*writer)->codec);
+    mem_free(*writer);
+    *writer = NULL;
+}
+
+const char *jpeg_writer_why(const struct jpeg_writer *writer)
+{
+    return writer->why;
+}
+
+static void set_tables(struct jpeg_compress_struct *codec, int quality, bool halved)
+{
+    JQUANT_TBL luma;
+    jpeg_set_quality(codec, quality, TRUE);
+    if (quality < JPEG_READ_QUALITY)
+        return;
+    luma = *codec->quant_tbl_ptrs[0];
+    jpeg_set_quality(codec, 100 - (100 - quality) / (halved ? 5 : 2), TRUE);
+    *codec->quant_tbl_ptrs[0] = luma;
+}
+
+static void begin(struct jpeg_compress_struct *codec, int width_px, int height_px, J_COLOR_SPACE from, int quality, bool halved)
+{
+    codec->image_width = (JDIMENSION)width_px;
+    codec->image_height = (JDIMENSION)height_px;
+    codec->in_color_space = from;
+    codec->input_components = from == JCS_YCbCr ? 3 : 4;
+    jpeg_set_defaults(codec);
+    set_tables(codec, quality, halved);
+    codec->raw_data_in = halved;
+    codec->comp_info[0].h_samp_factor = codec->comp_info[0].v_samp_factor = halved ? 2 : 1;
+    jpeg_start_compress(codec, TRUE);
+}
+
+static void write_halved(struct jpeg_compress_struct *codec, const struct planes *planes, int quality)
+{
+    JSAMPROW rows[3][ROWS];
+    JSAMPARRAY all[3] = { rows[0], rows[1], rows[2] };
+    begin(codec, planes->width_px, planes->height_px, JCS_YCbCr, quality, true);
+    while (codec->next_scanline < codec->image_height) {
+        for (int c = 0; c < 3; c++)
+            for (int j = 0; j < (c ? ROWS / 2 : ROWS); j++) { /* beyond the picture, its last row */
+                int height = c ? (planes->height_px + 1) / 2 : planes->height_px;
+                int y = (int)codec->next_scanline / (c ? 2 : 1) + j;
+                rows[c][j] = planes->plane[c] + (ptrdiff_t)(y < height ? y : height - 1) * planes->pitch[c];
+            }
+        jpeg_write_raw_data(codec, all, ROWS);
+    }
+}
+
+static void write_whole(struct jpeg_compress_struct *codec, const uint8_t *bgrx, int stride_bytes, int width_px, int height_px,
+                        int quality)
+{
+    begin(codec, width_px, height_px, JCS_EXT_BGRX, quality, false);
+    while (codec->next_scanline < codec->image_height) {
+        JSAMPROW row = (JSAMPROW)(uintptr_t)(bgrx + (ptrdiff_t)codec->next_scanline * stride_bytes);
+        jpeg_write_scanlines(codec, &row, 1);
+    }
+}
+
+static void set_room(struct jpeg_writer *writer, unsigned char *to, size_t capacity)
+{
+    writer->to.next_output_byte = to;
+    writer->to.free_in_buffer = capacity;
+}
+
+size_t jpeg_write_whole(struct jpeg_writer *writer, const uint8_t *bgrx, int stride_bytes, int width_px, int height_px, int quality,
+                        unsigned char *to, size_t capacity)
+{
+    set_room(writer, to, capacity);
+    if (setjmp(writer->failed)) {
+        jpeg_abort_compress(&writer->codec);
+        return 0;
+    }
+    write_whole(&writer->codec, bgrx, stride_bytes, width_px, height_px, quality);
+    jpeg_finish_compress(&writer->codec);
+    return capacity - writer->to.free_in_buffer;
+}
+
+size_t jpeg_write_halved(struct jpeg_writer *writer, const struct planes *planes, int quality, unsigned char *to, size_t capacity)
+{
+    set_room(writer, to, capacity);
+    if (setjmp(writer->failed)) {
+        jpeg_abort_compress(&writer->codec);
+        return 0;
+    }
+    write_halved(&writer->codec, planes, quality);
+    jpeg_finish_compress(&writer->codec);
+    return capacity - writer->to.free_in_buffer;
+}
