@@ -54,18 +54,18 @@ static void egl_destroy(struct gl *gl)
     bool used = egl->used;
     if (egl->context)
         egl_lose(gl);
-    if (egl->display && !used)
+    if (egl->display && !used && !gl_others())
         eglTerminate(egl->display);
     if (egl->display && eglReleaseThread) /* EGL 1.2: not loaded yet where the display could not be initialised */
         eglReleaseThread();
-    if (!used)
+    if (!used && !gl_others())
         gladLoaderUnloadEGL();
     mem_free(egl);
 }
 
 static bool load_client(const char *name, struct text *why)
 {
-    if (gladLoaderLoadEGL(EGL_NO_DISPLAY))
+    if (gl_others() || gladLoaderLoadEGL(EGL_NO_DISPLAY))
         return true;
     text_add(why, "; %s: libEGL.so.1 cannot be loaded", name);
     return false;
@@ -97,7 +97,8 @@ static bool make_current(struct egl *egl, const char *name, struct text *why)
         text_add(why, "; %s: cannot initialise: %s", name, egl_error_text());
         return false;
     }
-    gladLoaderLoadEGL(egl->display);
+    if (!gl_others())
+        gladLoaderLoadEGL(egl->display);
     if (!eglBindAPI(EGL_OPENGL_API)) {
         text_add(why, "; %s: EGL %d.%d has no desktop OpenGL", name, major, minor);
         return false;
@@ -116,7 +117,7 @@ static bool make_current(struct egl *egl, const char *name, struct text *why)
         return false;
     }
     egl->used = true;
-    if (gladLoadGL((GLADloadfunc)eglGetProcAddress) < GLAD_MAKE_VERSION(4, 5)) {
+    if (!gl_others() && gladLoadGL((GLADloadfunc)eglGetProcAddress) < GLAD_MAKE_VERSION(4, 5)) {
         text_add(why, "; %s: OpenGL is older than 4.5", name);
         return false;
     }
@@ -200,7 +201,7 @@ static struct gl *egl_surfaceless_create(const struct gl_device *device, bool so
     (void)device, (void)software;
     if (!load_client(impl->name, why))
         return NULL;
-    if (!GLAD_EGL_MESA_platform_surfaceless || !eglGetPlatformDisplayEXT) {
+    if (!egl_client_has("EGL_MESA_platform_surfaceless") || !eglGetPlatformDisplayEXT) {
         text_add(why, "; %s: this EGL has no surfaceless platform", impl->name);
         return NULL;
     }

@@ -26,11 +26,26 @@ good:
     return true;
 }
 
+static bool has_word(const char *all, const char *name)
+{
+    size_t length = strlen(name);
+    for (const char *at = all; at && (at = strstr(at, name)); at += length)
+        if ((at == all || at[-1] == ' ') && (at[length] == ' ' || !at[length]))
+            return true;
+    return false;
+}
+
+/* Asked of EGL itself: what the loader notes is of the display that it was last told. */
+bool egl_client_has(const char *name)
+{
+    return has_word(eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS), name);
+}
+
 bool egl_devices_read(struct egl_devices *devices, const char *name, struct text *why)
 {
     EGLint count = 0;
     devices->count = 0;
-    if (!GLAD_EGL_EXT_platform_device || !eglQueryDevicesEXT || !eglGetPlatformDisplayEXT) {
+    if (!egl_client_has("EGL_EXT_platform_device") || !eglQueryDevicesEXT || !eglGetPlatformDisplayEXT) {
         text_add(why, "; %s: this EGL cannot list devices", name);
         return false;
     }
@@ -42,19 +57,9 @@ bool egl_devices_read(struct egl_devices *devices, const char *name, struct text
     return true;
 }
 
-static bool has_extension(EGLDeviceEXT device, const char *name)
-{
-    const char *all = eglQueryDeviceStringEXT(device, EGL_EXTENSIONS);
-    size_t length = strlen(name);
-    for (const char *at = all; at && (at = strstr(at, name)); at += length)
-        if ((at == all || at[-1] == ' ') && (at[length] == ' ' || !at[length]))
-            return true;
-    return false;
-}
-
 bool egl_device_is_software(EGLDeviceEXT device)
 {
-    return has_extension(device, "EGL_MESA_device_software");
+    return has_word(eglQueryDeviceStringEXT(device, EGL_EXTENSIONS), "EGL_MESA_device_software");
 }
 
 /* /sys/dev/char/226:0/device leads to .../0000:65:00.0. */
@@ -75,13 +80,13 @@ static bool address_of_file(const char *path, struct gl_device *address)
 
 bool egl_device_address(EGLDeviceEXT device, struct gl_device *address)
 {
-    const char *path = NULL;
-    if (has_extension(device, "EGL_EXT_device_drm"))
+    const char *extensions = eglQueryDeviceStringEXT(device, EGL_EXTENSIONS), *path = NULL;
+    if (has_word(extensions, "EGL_EXT_device_drm"))
         path = eglQueryDeviceStringEXT(device, EGL_DRM_DEVICE_FILE_EXT);
     if (path && address_of_file(path, address))
         return true;
     path = NULL;
-    if (has_extension(device, "EGL_EXT_device_drm_render_node"))
+    if (has_word(extensions, "EGL_EXT_device_drm_render_node"))
         path = eglQueryDeviceStringEXT(device, EGL_DRM_RENDER_NODE_FILE_EXT);
     return path && address_of_file(path, address);
 }

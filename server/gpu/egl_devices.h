@@ -13,6 +13,8 @@ struct egl_devices {
     int count;
 };
 
+/* Extensions of EGL itself, not of a display. */
+bool egl_client_has(const char *name);
 /* False: this EGL has none, or cannot list them; the reason is added to why. */
 bool egl_devices_read(struct egl_devices *devices, const char *name, struct text *why);
 bool egl_device_is_software(EGLDeviceEXT device);

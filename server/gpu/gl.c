@@ -2,6 +2,7 @@
 /* Chooses a way to a GL context and reads what it can do. */
 #include "gpu/gl.h"
 
+#include <pthread.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -20,6 +21,18 @@ static const struct attempt attempts[] = {
     { &gl_osmesa_impl, true, true },
 };
 enum { ATTEMPTS = sizeof(attempts) / sizeof(attempts[0]) };
+
+static struct {
+    pthread_mutex_t lock; /* held while a context is made or destroyed */
+    /* --- below: under lock */
+    int count;         /* of contexts that are there */
+    enum gl_kind kind; /* theirs */
+} living = { .lock = PTHREAD_MUTEX_INITIALIZER };
+
+bool gl_others(void)
+{
+    return living.count > 0;
+}
 
 bool gl_kind_parse(const char *name, enum gl_kind *kind)
 {
@@ -85,6 +98,8 @@ static struct gl *attempt_all(enum gl_kind kind, const struct gl_device *device,
     for (int i = 0; i < ATTEMPTS; i++) {
         const struct attempt *attempt = &attempts[i];
         bool wanted = kind == GL_AUTO ? !device || attempt->impl->kind == GL_EGL_DEVICE : attempt->impl->kind == kind;
+        if (living.count > 0 && attempt->impl->kind != living.kind)
+            continue;
         struct gl *gl = wanted ? attempt->impl->create(device, kind != GL_AUTO || device || attempt->software, why) : NULL;
         if (gl)
             return gl;
@@ -95,7 +110,13 @@ static struct gl *attempt_all(enum gl_kind kind, const struct gl_device *device,
 struct gl *gl_create(struct log *log, enum gl_kind kind, const struct gl_device *device)
 {
     struct text why = { 0 };
+    pthread_mutex_lock(&living.lock);
     struct gl *gl = attempt_all(kind, device, &why);
+    if (gl) {
+        living.kind = gl->kind;
+        living.count++;
+    }
+    pthread_mutex_unlock(&living.lock);
     const char *reasons = why.length ? why.at : "; nothing to try";
     if (gl) {
         gl->log = log;
@@ -123,7 +144,10 @@ void gl_destroy(struct gl **gl)
 {
     if (!*gl)
         return;
+    pthread_mutex_lock(&living.lock);
+    living.count--;
     (*gl)->impl->destroy(*gl);
+    pthread_mutex_unlock(&living.lock);
     *gl = NULL;
 }
 

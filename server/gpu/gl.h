@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* An OpenGL 4.5 core context without a window. One back end per process; current on the thread that made it, for life. */
+/* OpenGL 4.5 core contexts without a window. One back end at a time in a process; each is current on the thread that made it, for life. */
 #ifndef GPU_GL_H
 #define GPU_GL_H
 #include <stdbool.h>
@@ -31,7 +31,7 @@ bool gl_device_parse(const char *text, struct gl_device *device);
 /* One line for each EGL device: index, PCI address, what draws. Their number. Leaves no context current. */
 int gl_list_devices(FILE *out);
 /* Tries in the order EGL device (device NULL: the first with hardware that works), EGL surfaceless, OSMesa, or only the kind asked for;
-   with a device only EGL devices. NULL: none works; every reason is logged. */
+   with a device only EGL devices. While there is a context already, only of its kind. NULL: none works; every reason is logged. */
 struct gl *gl_create(struct log *log, enum gl_kind kind, const struct gl_device *device);
 void gl_destroy(struct gl **gl); /* &NULL is fine; leaves NULL */
 

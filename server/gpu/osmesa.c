@@ -92,7 +92,7 @@ static struct gl *osmesa_create(const struct gl_device *device, bool software, s
         text_add(why, "; osmesa: no OpenGL 4.5 core context");
         goto error;
     }
-    if (gladLoadGL(osmesa->get_proc) < GLAD_MAKE_VERSION(4, 5)) {
+    if (!gl_others() && gladLoadGL(osmesa->get_proc) < GLAD_MAKE_VERSION(4, 5)) {
         text_add(why, "; osmesa: OpenGL is older than 4.5");
         goto error;
     }

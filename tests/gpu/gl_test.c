@@ -54,6 +54,16 @@ static void test_context_tells_what_it_is(void **state)
     assert_int_equal(rig.gl->software, strstr(rig.gl->renderer, "llvmpipe") != NULL);
 }
 
+/* Functions of GL are loaded once for all contexts, so that there can be none of another back end beside this one. */
+static void test_contexts_beside_each_other_are_of_one_kind(void **state)
+{
+    (void)state;
+    for (enum gl_kind kind = GL_EGL_DEVICE; kind <= GL_OSMESA; kind++)
+        if (kind != rig.gl->kind)
+            assert_null(gl_create(rig.log, kind, NULL));
+    assert_false(gl_lost(rig.gl));
+}
+
 static void test_pass_tells_its_errors(void **state)
 {
     (void)state;
@@ -177,6 +187,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_names_of_contexts),          cmocka_unit_test(test_addresses_of_devices),
         cmocka_unit_test(test_context_tells_what_it_is),
+        cmocka_unit_test(test_contexts_beside_each_other_are_of_one_kind),
         cmocka_unit_test(test_pass_tells_its_errors),      cmocka_unit_test(test_program_that_does_not_compile),
         cmocka_unit_test(test_program_that_does_not_link), cmocka_unit_test(test_defines_and_includes_reach_the_compiler),
         cmocka_unit_test(test_readback_from_the_top),      cmocka_unit_test(test_target_too_large_is_refused),
