@@ -104,15 +104,14 @@ static void start_placing(struct loaded *loaded)
         log_warn(context->log, "%s", why);
     mem_free(why);
     mem_free(folder);
-    if (loaded->history)
-        loaded->proofs = proofs_open(context->log, loaded->plant, loaded->history);
 }
 
 bool loaded_start_recording(struct loaded *loaded, struct loaded *before)
 {
     if (before)
         store_adopt(loaded->store, before->store);
-    start_placing(loaded);
+    if (loaded->history)
+        loaded->proofs = proofs_open(loaded->context->log, loaded->plant, loaded->history);
     return start_historian(loaded, before != NULL) && start_alarming(loaded, before ? before->alarming : NULL);
 }
 
@@ -133,10 +132,11 @@ const char *loaded_h264_library(const struct server_params *params)
     return params->h264 ? params->h264 : ENCODER_H264_LIBRARY;
 }
 
-bool loaded_start_painter(struct loaded *loaded)
+bool loaded_start_painter(struct loaded *loaded, const struct view *first, size_t first_count)
 {
     const struct loaded_context *context = loaded->context;
     const struct server_params *server = context->params;
+    start_placing(loaded);
     struct painter_params params = {
         .log = context->log,
         .gl = server->gl,
@@ -151,6 +151,8 @@ bool loaded_start_painter(struct loaded *loaded)
         .workers = context->workers,
         .h264_library = loaded_h264_library(server),
         .counters = context->counters,
+        .first = first,
+        .first_count = first_count,
         .notify = context->notify,
         .notify_arg = context->notify_arg,
     };

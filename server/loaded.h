@@ -45,7 +45,8 @@ void loaded_destroy(struct loaded **loaded); /* ends what runs, against the flow
 /* Each false: logged. before: whose history, alarms and readings go on (loaded_hand_over); NULL: none. */
 bool loaded_start_recording(struct loaded *loaded, struct loaded *before);
 bool loaded_start_sources(struct loaded *loaded);
-bool loaded_start_painter(struct loaded *loaded);
+/* first: pictures that it shall be quick to draw from the beginning (painter.h). */
+bool loaded_start_painter(struct loaded *loaded, const struct view *first, size_t first_count);
 /* Nothing is read, recorded or evaluated any more; pictures are still drawn of what there was. */
 void loaded_hand_over(struct loaded *loaded, const struct plant *next);
 struct net_plant loaded_net_plant(const struct loaded *loaded);

@@ -4,6 +4,7 @@
 
 #include <jansson.h>
 #include <limits.h>
+#include <malloc.h>
 #include <pthread.h>
 #include <signal.h>
 #include <spawn.h>
@@ -16,6 +17,8 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "plant/plant_diff.h"
+
+enum { FIRST = 16 }; /* views that the new plant is drawn from before it takes over */
 
 struct reload {
     const struct loaded_context *context;
@@ -118,20 +121,33 @@ static void refuse(struct reload *reload, const struct diag *diag, const char *w
 
 struct swap {
     struct net *net;
-    struct loaded *before, *after;
-    bool good;
+    const struct loaded *after;
+    struct view first[FIRST];
+    size_t first_count;
 };
 
-/* In the loop. There is one GL context at a time; if no other can be made, the old plant's is made again. */
+/* In the loop. */
+static void look_at_views(void *arg)
+{
+    struct swap *swap = arg;
+    const struct net_plant plant = loaded_net_plant(swap->after);
+    swap->first_count = net_views(swap->net, &plant, swap->first, FIRST);
+}
+
+/* Beside the old plant's painter, which goes on meanwhile, so that the new one is as quick from its first picture on. */
+static bool start_painter(struct reload *reload, struct loaded *after)
+{
+    struct swap swap = { .net = reload->net, .after = after };
+    store_adopt(after->store, (*reload->loaded)->store);
+    return net_call(reload->net, look_at_views, &swap) && loaded_start_painter(after, swap.first, swap.first_count);
+}
+
+/* In the loop. */
 static void swap(void *arg)
 {
     struct swap *swap = arg;
+    const struct net_plant plant = loaded_net_plant(swap->after);
     net_let_go(swap->net);
-    painter_destroy(&swap->before->painter);
-    swap->good = loaded_start_painter(swap->after);
-    if (!swap->good && !loaded_start_painter(swap->before))
-        abort(); /* neither draws: a supervisor starts us again */
-    const struct net_plant plant = loaded_net_plant(swap->good ? swap->after : swap->before);
     net_take(swap->net, &plant);
 }
 
@@ -149,18 +165,18 @@ static void say_difference(struct reload *reload, const struct plant_diff *diff,
                      changes));
 }
 
-/* Sources have ended: from here on there is a new plant, or, if no thread or context can be had any more, no daemon. */
-static void put_in_force(struct reload *reload, struct loaded *after, const struct plant_diff *diff)
+/* Sources end: from here on there is a new plant, or, if no thread can be had any more, no daemon. begun_ns: when it was asked for. */
+static void put_in_force(struct reload *reload, struct loaded *after, const struct plant_diff *diff, int64_t begun_ns)
 {
     struct loaded *before = *reload->loaded;
-    struct swap both = { reload->net, before, after, false };
-    int64_t begun_ns = clock_mono_ns();
+    struct swap both = { .net = reload->net, .after = after };
     char *hash = mem_strdup(before->plant->hash);
     loaded_hand_over(before, after->plant);
-    bool good = loaded_start_recording(after, before) && loaded_start_sources(after) && net_call(reload->net, swap, &both) && both.good;
+    bool good = loaded_start_recording(after, before) && loaded_start_sources(after) && net_call(reload->net, swap, &both);
     if (good) {
         *reload->loaded = after;
         loaded_destroy(&before);
+        malloc_trim(0);
         reload_count(reload->context->counters, hash, false);
         reload_count(reload->context->counters, after->plant->hash, true);
         say_difference(reload, diff, hash, (double)(clock_mono_ns() - begun_ns) / 1e9);
@@ -177,12 +193,15 @@ static bool reload_now(struct reload *reload)
 {
     struct diag diag = { 0 };
     struct plant_diff diff = { 0 };
+    int64_t begun_ns = clock_mono_ns();
     struct loaded *before = *reload->loaded, *after = loaded_read(reload->context, &diag);
     const char *why = after ? plant_needs_restart(before->plant, after->plant) : diag.errors ? NULL : "the log says why";
+    if (after && !why && !start_painter(reload, after))
+        why = "nothing draws it beside the one in force; the log says why";
     bool good = after && !why;
     if (good) {
         plant_diff(before->plant, after->plant, &diff);
-        put_in_force(reload, after, &diff);
+        put_in_force(reload, after, &diff, begun_ns);
     } else {
         refuse(reload, &diag, why);
         loaded_destroy(&after);

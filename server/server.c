@@ -190,8 +190,8 @@ static bool server_start(struct server *server)
     server->context.workers = server->workers = workers_create(server->params.threads);
     server->web = find_web(server->params.web);
     reload_count(server->counters, server->loaded->plant->hash, true);
-    return loaded_start_recording(server->loaded, NULL) && loaded_start_sources(server->loaded) && loaded_start_painter(server->loaded) &&
-           start_net(server);
+    return loaded_start_recording(server->loaded, NULL) && loaded_start_sources(server->loaded) &&
+           loaded_start_painter(server->loaded, NULL, 0) && start_net(server);
 }
 
 /* Against the flow of data: first who takes, last who gives. */

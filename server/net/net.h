@@ -59,6 +59,8 @@ bool net_call(struct net *net, void (*what)(void *arg), void *arg);
    is still there by the same name. False: history cannot be read any more (logged). */
 void net_let_go(struct net *net);
 bool net_take(struct net *net, const struct net_plant *plant);
+/* In the loop, before: what sessions look at, as they will in that plant, each view once. Its painter need not be there. Their number. */
+size_t net_views(struct net *net, const struct net_plant *next, struct view *out, size_t most);
 void net_say_reloaded(struct net *net, bool good, const char *text); /* in the loop: to those who asked for it */
 /* In the loop: what became of a list that somebody wanted in force. */
 void net_say_saved(struct net *net, uint64_t client, const char *text);

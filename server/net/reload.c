@@ -59,6 +59,35 @@ void net_calls_close(struct net *net)
     pthread_mutex_unlock(&net->call.lock);
 }
 
+/* --- what will be looked at ------------------------------------------------------------------------------------------------- */
+
+static bool is_new(const struct view *view, const struct view *others, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        if (view_equal(view, &others[i]))
+            return false;
+    return true;
+}
+
+size_t net_views(struct net *net, const struct net_plant *next, struct view *out, size_t most)
+{
+    struct snapshot *snapshot = snapshot_create(next->scene->plant->tag_count);
+    struct session_world world = net->hub.world;
+    size_t count = 0;
+    store_snapshot(next->store, clock_mono_ns(), clock_utc_ns(), snapshot);
+    world.plant = next->scene->plant;
+    world.scene = next->scene;
+    world.snapshot = snapshot;
+    world.baselines = next->baselines;
+    for (const struct stream *stream = net->hub.streams; stream && count < most; stream = stream->next)
+        if (stream->session->hello && !stream->session->hidden) {
+            session_view_in(stream->session, &world, &out[count]);
+            count += is_new(&out[count], out, count);
+        }
+    snapshot_destroy(&snapshot);
+    return count;
+}
+
 /* --- the old one, the new one ----------------------------------------------------------------------------------------------- */
 
 void net_let_go(struct net *net)

@@ -103,6 +103,7 @@ static int find_source(const struct plant *plant, const char *id)
 void store_adopt(struct store *store, struct store *before)
 {
     pthread_mutex_lock(&before->lock);
+    pthread_mutex_lock(&store->lock);
     for (size_t i = 0; i < before->plant->tag_count; i++) {
         int tag = plant_find_tag(store->plant, before->plant->tags[i].name);
         struct held *to = tag < 0 ? NULL : &store->tags[tag];
@@ -122,6 +123,7 @@ void store_adopt(struct store *store, struct store *before)
     }
     store->utc_ahead_ns = before->utc_ahead_ns;
     store->has_utc = before->has_utc;
+    pthread_mutex_unlock(&store->lock);
     pthread_mutex_unlock(&before->lock);
 }
 

@@ -100,6 +100,25 @@ test('who may not, and from where it may not be', options, async () => {
     assert.equal((await fetch(url('/api/v1/tags'), { method: 'POST' })).status, 405);
 });
 
+test('the picture goes on until the new plant has one', options, async () => {
+    const client = await Client.open(plant.port);
+    await client.hello({ width: 1280, height: 720 });
+    let seq = 0, welcome = null;
+    const turn = setInterval(() => client.say('camera', { seq: ++seq, eye: [5, -6, 4 + 0.5 * Math.sin(seq / 10)], target: [1, 0, 0] }), 16);
+    await client.wait('pictures', () => client.pictures.length >= 10);
+    const asked = performance.now();
+    plant.daemon.child.kill('SIGHUP');
+    await client.wait('a welcome', () => (welcome = client.texts.some((m) => m.type === 'welcome') ? performance.now() : null));
+    const shown = client.pictures.length;
+    await client.wait('pictures of the new plant', () => client.pictures.length >= shown + 5);
+    clearInterval(turn);
+    const times = client.pictures.map(({ at }) => at).filter((at) => at > asked);
+    const gaps = times.map((at, i) => at - (times[i - 1] ?? asked));
+    const longest = Math.max(...gaps), whole = welcome - asked;
+    assert.ok(longest < 0.6 * whole, `${longest} ms without a picture, in a reload of ${whole} ms`);
+    client.close();
+});
+
 test('again and again, by signal, under clients that move', options, async () => {
     const clients = await Promise.all([1, 2, 3].map(() => Client.open(plant.port)));
     for (const client of clients)

@@ -345,6 +345,35 @@ static void gl_end(struct drawing *drawing)
     gl_destroy(&drawing->gl);
 }
 
+/* For what it costs. */
+static void draw_for_nobody(struct drawing *drawing, const struct view *view)
+{
+    struct frame *frame = canvas_draw(drawing->renderer, view, drawing->snapshot);
+    if (frame)
+        frame_unref(&frame);
+}
+
+/* What only the first picture of a tier costs (shaders) is paid before anyone asks. */
+static void warm_up(struct drawing *drawing, enum tier tier)
+{
+    struct view view;
+    view_default(drawing->painter->params.scene, 64, 36, &view);
+    view.tier = tier;
+    draw_for_nobody(drawing, &view);
+}
+
+/* Pictures that somebody waits for: the next ones find their fields, buffers and shaders. */
+static void rehearse(struct drawing *drawing)
+{
+    const struct painter_params *params = &drawing->painter->params;
+    for (size_t i = 0; i < params->first_count; i++) {
+        struct view view = params->first[i];
+        view.tier = TIER_MOVING;
+        canvas_prepare(drawing->renderer, &view, drawing->snapshot, INT64_MAX);
+        draw_for_nobody(drawing, &view);
+    }
+}
+
 static bool drawing_init(struct drawing *drawing, struct painter *painter)
 {
     const struct painter_params *params = &painter->params;
@@ -370,17 +399,6 @@ static void drawing_finish(struct drawing *drawing)
     recent_finish(&drawing->recent);
     held_finish(&drawing->held);
     flying_finish(&drawing->flying);
-}
-
-/* What only the first picture of a tier costs (shaders) is paid before anyone asks. */
-static void warm_up(struct drawing *drawing, enum tier tier)
-{
-    struct view view;
-    view_default(drawing->painter->params.scene, 64, 36, &view);
-    view.tier = tier;
-    struct frame *frame = canvas_draw(drawing->renderer, &view, drawing->snapshot);
-    if (frame)
-        frame_unref(&frame);
 }
 
 void drawing_idle(struct drawing *drawing)
@@ -460,6 +478,8 @@ void *drawing_main(void *arg)
     struct batch batch = { 0 };
     struct schedule schedule = { 0 };
     bool good = drawing_init(&drawing, painter);
+    if (good)
+        rehearse(&drawing);
     pthread_mutex_lock(&painter->lock);
     painter->state = good ? RUNNING : FAILED;
     pthread_cond_broadcast(&painter->wake);

@@ -26,6 +26,9 @@ struct painter_params {
     struct workers *workers;
     const char *h264_library; /* an encoder of libavcodec; NULL: the usual one */
     struct counters *counters;
+    const struct view *first;    /* pictures that are drawn, and thrown away, in painter_create: what only the first cost is paid. Need live
+                                    for that call only */
+    size_t first_count;
     void (*notify)(void *arg); /* pictures are there to be collected; called on any thread */
     void *notify_arg;
 };

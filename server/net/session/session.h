@@ -142,6 +142,8 @@ void session_check_token(struct session *session, int64_t now_utc_ns);   /* the 
 /* The plant is loaded anew. First: what it looks at, by names (mem_free); it travels no more. Then, with the world as it is by now. */
 char *session_carry(struct session *session);
 void session_replant(struct session *session, const char *carried);
+/* Before that: what it will look at in such a world, now. */
+void session_view_in(const struct session *session, const struct session_world *world, struct view *out);
 
 /* One text message. Bad ones are answered with an error and change nothing. */
 void session_on_message(struct session *session, const char *text, size_t count, int64_t now_ns, int64_t now_utc_ns);

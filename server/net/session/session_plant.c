@@ -59,6 +59,26 @@ static void apply_carried(struct session *session, const char *carried)
     json_decref(o);
 }
 
+static void look_again(struct session *session, const struct view *before, const char *carried)
+{
+    view_default(session->world->scene, before->width_px, before->height_px, &session->view);
+    session->view.camera = before->camera;
+    session->view.camera_seq = before->camera_seq;
+    session->view.params_seq = before->params_seq;
+    apply_carried(session, carried);
+}
+
+void session_view_in(const struct session *session, const struct session_world *world, struct view *out)
+{
+    const struct view *view = session_view(session);
+    struct session *other = session_create(world, session->id, 0);
+    char *carried = reply_params_text(session->world, view, 0);
+    look_again(other, view, carried);
+    *out = other->view;
+    mem_free(carried);
+    session_destroy(&other);
+}
+
 void session_replant(struct session *session, const char *carried)
 {
     const struct view before = session->view;
@@ -74,11 +94,7 @@ void session_replant(struct session *session, const char *carried)
         pacer_dropped(&session->pacer);
     if (!session->hello)
         return;
-    view_default(session->world->scene, before.width_px, before.height_px, &session->view);
-    session->view.camera = before.camera;
-    session->view.camera_seq = before.camera_seq;
-    session->view.params_seq = before.params_seq;
-    apply_carried(session, carried);
+    look_again(session, &before, carried);
     session->owes_welcome = session->owes_tags_all = session->owes_status = session->always_pending = true;
     session->owes_params = false;
     session->owes_proofs = true;
