@@ -3,6 +3,7 @@
 #include <pthread.h>
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdatomic.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -589,6 +590,61 @@ static void test_pictures_fly(void **state)
     assert_non_null(painter);
 }
 
+/* Another painter, while the first is at work, in one process and on one driver. */
+struct making {
+    struct view first;
+    struct painter *made;
+    _Atomic bool done;
+};
+
+static void *make_another(void *arg)
+{
+    struct making *making = arg;
+    making->made = painter_create(&(struct painter_params){ .log = logger, .scene = &toy->scene, .store = store, .workers = workers,
+                                                            .counters = counters, .notify = on_pictures, .first = &making->first,
+                                                            .first_count = 1 });
+    making->done = true;
+    return NULL;
+}
+
+static void *unmake(void *arg)
+{
+    painter_destroy(arg);
+    return NULL;
+}
+
+static int move_while(const _Atomic bool *done, pthread_t thread)
+{
+    int drawn = 0;
+    for (; !done || !*done || drawn == 0; drawn++) {
+        struct picture *picture = picture_of(MOVER, URGENCY_INPUT, 0.05 * (drawn % 20));
+        picture_destroy(&picture);
+        if (!done && drawn == 20)
+            break;
+    }
+    pthread_join(thread, NULL);
+    return drawn;
+}
+
+static void test_another_is_made_and_the_first_destroyed_beside_it(void **state)
+{
+    (void)state;
+    struct making making = { .made = NULL };
+    struct painter *first = painter;
+    pthread_t thread;
+    view_default(&toy->scene, 320, 180, &making.first);
+    assert_int_equal(pthread_create(&thread, NULL, make_another, &making), 0);
+    assert_true(move_while(&making.done, thread) > 0);
+    assert_non_null(making.made);
+    painter = making.made;
+    struct picture *by_other = picture_of(MOVER, URGENCY_INPUT, 3);
+    assert_true(by_other->packet->frame->marker_count > 0);
+    picture_destroy(&by_other);
+    assert_int_equal(pthread_create(&thread, NULL, unmake, &first), 0);
+    move_while(NULL, thread);
+    assert_null(first);
+}
+
 static bool start(void)
 {
     toy = toy_unit();
@@ -627,6 +683,7 @@ int main(void)
         cmocka_unit_test(test_changing_readings_leave_refined_pictures),
         cmocka_unit_test(test_readings_change_pictures_that_are_not_quick),
         cmocka_unit_test(test_pictures_fly),
+        cmocka_unit_test(test_another_is_made_and_the_first_destroyed_beside_it),
         cmocka_unit_test(test_stop_waits_for_no_refinement),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
