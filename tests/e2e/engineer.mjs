@@ -204,7 +204,7 @@ test('where the folder of the list may not be written, that is said, and nothing
     try {
         await button('Save …').click();
         await page.getByRole('button', { name: 'Save and put in force' }).click();
-        await says('#engineer .part .note', 'Not saved.*tags\\.csv\\.2.*Permission denied');
+        await says('#engineer .part .note', 'Not saved: the daemon may not write into the folder of the tag list \\(tags\\.csv\\.2\\)');
     } finally {
         chmodSync(plant.folder, 0o755);
     }

@@ -2,6 +2,7 @@
 // The list of alarms, and what can be done about one.
 import { isWaiting } from '../core/alarms.js';
 import { ageText, zoneClock } from '../core/format.js';
+import { refusalText } from '../core/refusals.js';
 import { say } from '../core/words.js';
 import { byId, make, setText } from './dom.js';
 import { badge, limitText } from './strip.js';
@@ -129,7 +130,7 @@ export class AlarmList {
     }
 
     answered({ refused }) {
-        setText(byId('alarms-refused'), refused.map(([tag, kind, why]) => `${tag} ${kind}: ${why}`).join('; '));
+        setText(byId('alarms-refused'), refused.map(([tag, kind, why]) => `${tag} ${kind}: ${refusalText(why)}`).join('; '));
     }
 }
 

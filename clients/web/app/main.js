@@ -274,11 +274,12 @@ function arrive() {
 }
 
 let toastTimer;
-session.on('error', ({ text, about }) => {
+session.on('error', async ({ text, about }) => {
     console.warn(`error about ${about}: ${text}`);
     if (about === 'ack')
         return; // nothing that a person did
-    tell(say('viewport.refused', { text }));
+    const { refusalText } = await import('../core/refusals.js');
+    tell(say('viewport.refused', { text: refusalText(text) }));
 });
 
 function tell(text) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Sensors are placed: chosen from a list, put onto the surface by a click or dragged there, and the list is saved.
 import { numberText } from '../core/format.js';
+import { refusalText } from '../core/refusals.js';
 import { say } from '../core/words.js';
 import { fill, make, setText } from './dom.js';
 
@@ -223,7 +224,7 @@ export class Placing {
 
     onSaved({ saved, kept, errors }) {
         this.saving = false;
-        setText(this.note, saved ? say('eng.saved', { kept }) : say('eng.unsaved', { text: errors.join('; ') }));
+        setText(this.note, saved ? say('eng.saved', { kept }) : say('eng.unsaved', { text: errors.map(refusalText).join('; ') }));
         if (saved) {
             this.moves = this.undone = [];
             this.tag = null;

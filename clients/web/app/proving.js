@@ -2,6 +2,7 @@
 // Tags are proven one after another, device by device: what moved when a transmitter was forced, and whether it is what it should be.
 import { decimalsFor, numberText, unitText } from '../core/format.js';
 import { readExpected, Walk } from '../core/walk.js';
+import { refusalText } from '../core/refusals.js';
 import { say } from '../core/words.js';
 import { fill, make, setText } from './dom.js';
 
@@ -158,7 +159,8 @@ export class Proving {
     onProved({ tag, passed, value, why }) {
         const { model } = this.session, { tags } = this, at = tags.findIndex(({ name }) => name === tag);
         const text = value === null ? say('novalue') : this.text(model.tag(tag), value);
-        setText(this.result, passed ? say('eng.passed', { tag, value: text }) : say('eng.failed', { tag, why: `${why} (${text})` }));
+        const because = `${refusalText(why)} (${text})`;
+        setText(this.result, passed ? say('eng.passed', { tag, value: text }) : say('eng.failed', { tag, why: because }));
         const next = [...tags.slice(at + 1), ...tags.slice(0, at)].find((one) => this.stateOf(one) !== 'pass');
         if (passed && next)
             this.choose(next);
