@@ -104,4 +104,11 @@ test('the loss of their device is one alarm, journalled for each of them, and ov
     });
     await plant.startSim();
     await until('it is over', async () => (await counts()).states.suppressed === 0 && (await counts()).active === 0);
+    await until('its own changes are journalled, by its name', async () => {
+        const { rows } = await get('/api/v1/alarms/journal?tag=plc1');
+        return rows.length >= 2 && rows.every(({ tag, kind }) => tag === 'plc1' && kind === 'LINK');
+    });
+    const unknown = await fetch(`http://127.0.0.1:${plant.port}/api/v1/alarms/journal?tag=plc9`);
+    assert.equal(unknown.status, 400);
+    assert.match(await unknown.text(), /there is no tag or device 'plc9'/);
 });

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "alarm/devices.h"
 #include "base/mem.h"
 #include "history/when.h"
 
@@ -112,12 +113,20 @@ static bool take_when(const char *name, const char *text, int64_t now_us, int64_
     return false;
 }
 
+static bool is_device(const struct plant *plant, const char *name)
+{
+    struct devices *devices = devices_create(plant);
+    bool found = devices_find(devices, name) >= 0;
+    devices_destroy(&devices);
+    return found;
+}
+
 static bool take_tag(const struct plant *plant, const char *text, struct alarm_query *query, struct message_error *error)
 {
     strncpy(query->tag, text, sizeof(query->tag) - 1);
-    if (plant_find_tag(plant, text) >= 0)
+    if (plant_find_tag(plant, text) >= 0 || is_device(plant, text))
         return true;
-    message_fail(error, "unknown_tag", "tag: there is no tag '%.60s'", text);
+    message_fail(error, "unknown_tag", "tag: there is no tag or device '%.60s'", text);
     return false;
 }
 

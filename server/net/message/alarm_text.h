@@ -21,7 +21,7 @@ struct alarm_query {
     bool csv;
     int limit;      /* rows, at most */
     int64_t offset; /* of alarms: so many are passed over */
-    char tag[256];  /* "": of all */
+    char tag[256];  /* or device; "": of all */
     int64_t from_us, to_us, before_id; /* of the journal */
 };
 /* `limit=100&format=csv`, decoded. False: *error says which is wrong. */
