@@ -355,6 +355,10 @@ static void what_is_fitted_lies_beside_the_legend(void **state)
     assert_true(view.camera.target_m[0] > 0.2 && view.camera.eye_m[1] < whole.camera.eye_m[1]);
     assert_true(query(args, 3, &view, &error)); /* no legend */
     assert_float_equal(view.camera.target_m[0], 0, 1e-6);
+    struct view all;
+    assert_true(query_parse(&bare, ROLE_ENGINEER, NULL, 0, &whole, NULL, &error) && query(NULL, 0, &all, &error));
+    assert_true(all.camera.target_m[0] > whole.camera.target_m[0] && all.camera.eye_m[1] < whole.camera.eye_m[1]);
+    assert_true(query_parse(&bare, ROLE_ENGINEER, args, 2, &whole, NULL, &error));
     assert_true(query(args, 4, &view, &error)); /* one to the right */
     assert_true(view.camera.target_m[0] > 0.2 && view.camera.eye_m[1] < 1.5 * whole.camera.eye_m[1]);
 }

@@ -79,11 +79,17 @@ static bool parse_given(const json_t *o, bool lens, struct view *view, struct me
     return good;
 }
 
+/* Nothing says where to look from, nor does the plant. */
+static bool shows_all(const struct plant *plant, const json_t *o)
+{
+    return !plant->view.set && !json_object_get(o, "camera") && !json_object_get(o, "projection") && !json_object_get(o, "height_m");
+}
+
 bool query_camera(const struct scene *scene, const json_t *o, bool bare, struct view *view, struct message_error *error)
 {
     json_t *fit_o = json_object();
     struct fit fit;
-    bool fits = json_object_get(o, "fit") || json_object_get(o, "side");
+    bool fits = json_object_get(o, "fit") || json_object_get(o, "side") || shows_all(scene->plant, o);
     json_object_set(fit_o, "id", json_object_get(o, "fit"));
     json_object_set(fit_o, "side", json_object_get(o, "side"));
     json_object_set(fit_o, "projection", json_object_get(o, "projection"));
