@@ -42,6 +42,9 @@ vec3 mapped_normal(vec3 n, float scale)
     return normalize(t * m.x - b * m.y + n * m.z);
 }
 
+const float MOST_AWAY = -0.3;   // from the eye, cosine of what is smoothed round a rim
+const float OPEN_BEHIND = 0.7; // at least: what is baked is of the other side
+
 void main()
 {
 #ifdef CLIP
@@ -51,7 +54,8 @@ void main()
     }
 #endif
     vec3 v = frame.back.w > 0.0 ? frame.back.xyz : normalize(-place), n = normalize(surface_normal), l = frame.sun.xyz;
-    if (dot(n, v) < 0.0 && !gl_FrontFacing)
+    bool turned = dot(n, v) < (gl_FrontFacing ? MOST_AWAY : 0.0); // from behind; or its normals are those of the other side
+    if (turned)
         n = -n;
 #if defined(TEXTURED) || !defined(FIELD) || defined(GLOSSY)
     Material m = materials[material];
@@ -69,7 +73,7 @@ void main()
     color = vec4(field_color(field_here(field), light_scalar(ambient, max(dot(n, l), 0.0) * sun_visible)), 1.0);
 #endif
 #if !defined(FIELD) || defined(GLOSSY)
-    Surface s = Surface(base.rgb, m.factors.x, m.factors.y, n, sky.y, sun_visible);
+    Surface s = Surface(base.rgb, m.factors.x, m.factors.y, n, turned ? max(sky.y, OPEN_BEHIND) : sky.y, sun_visible);
     vec3 glow = m.emissive.rgb;
 #ifdef GLOSSY
     s.base = linear_from_srgb(color.rgb);

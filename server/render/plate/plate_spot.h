@@ -201,11 +201,17 @@ DRAFT_INLINE vec view_of(const struct plate *plate, const struct spot *spot)
     return unit((vec){ ray[0], ray[1], ray[2] });
 }
 
-/* Two-sided surfaces from behind. */
+/* Two-sided surfaces from behind, and those whose normals are of the other side: -1. */
+DRAFT_INLINE lanes_int is_turned(const struct spot *spot, vec view)
+{
+    const float most_away = -0.3f; /* as in shaders/still.frag */
+    lanes towards = dot(spot->normal, view);
+    return (spot->back & (towards < 0.0f)) | (towards < most_away);
+}
+
 DRAFT_INLINE vec facing(const struct spot *spot, vec view)
 {
-    lanes sign = lanes_choose(spot->back & (dot(spot->normal, view) < 0.0f), all(-1), all(1));
-    return times(spot->normal, sign);
+    return times(spot->normal, lanes_choose(is_turned(spot, view), all(-1), all(1)));
 }
 
 /* --- the sun ----------------------------------------------------------------------------------------------------------------- */

@@ -2,6 +2,8 @@
 /* Light on surfaces without a field, eight at a time: shaders/still.frag, light.glsl, pbr.glsl and environment.glsl once more. */
 #include "render/plate/plate_spot.h"
 
+static const float OPEN_BEHIND = 0.7f; /* as in shaders/still.frag */
+
 struct brdf {
     lanes scale, bias;
 };
@@ -180,7 +182,7 @@ DRAFT_KERNEL void plate_shade_surfaces(const struct plate *plate, const struct i
             .normal = n,
             .metallic = m[METALLIC],
             .roughness = m[ROUGHNESS],
-            .open = spot.attributes[OPEN],
+            .open = lanes_choose(is_turned(&spot, v), most_of(spot.attributes[OPEN], all(OPEN_BEHIND)), spot.attributes[OPEN]),
             .sun_visible = all(0),
         };
         if (lanes_any(dot(n, l) > 0.0f))
