@@ -25,11 +25,14 @@ test('the server still says what is known here', () => {
     const folder = new URL('../../server/', import.meta.url);
     const source = readdirSync(folder, { recursive: true }).filter((name) => name.endsWith('.c'))
         .map((name) => readFileSync(new URL(name, folder), 'utf8')).join('\n');
-    for (const text of ['takes the role', 'alarms are another system\'s here', 'the plant is being loaded anew; try again',
-        'there is nothing to acknowledge', 'it is not latched, or still there, or not acknowledged', 'it is not in a state for that',
-        'a shelf has an end, within a week', 'the value is beyond the tolerance', 'the reading is not good', 'said to have failed',
-        'it could not be kept on disk; the log says why', 'this daemon records nothing',
-        '%s: that place is farther from %s than it is large', '%s belongs to no group', 'another list is being put in force; look again in a moment', 'cannot be kept as %s.%d: %s',
-        '%s cannot be written: %s', '%s was changed by somebody else meanwhile'])
+    for (const text of [
+        'takes the role', 'alarms are another system\'s here', 'the plant is being loaded anew; try again',
+        'there is nothing to acknowledge', 'it is not latched, or still there, or not acknowledged',
+        'it is not in a state for that', 'a shelf has an end, within a week', 'the value is beyond the tolerance',
+        'the reading is not good', 'said to have failed', 'it could not be kept on disk; the log says why',
+        'this daemon records nothing', '%s: that place is farther from %s than it is large', '%s belongs to no group',
+        'another list is being put in force; look again in a moment', 'cannot be kept as %s.%d: %s', '%s cannot be written: %s',
+        '%s was changed by somebody else meanwhile'
+    ])
         assert.ok(source.includes(text), text);
 });
