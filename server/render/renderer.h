@@ -34,8 +34,8 @@ bool renderer_hurry(struct renderer *renderer, int64_t bake_ns);
 /* Nobody wants a picture: bakes the light that most views have, for about that long. True: there is nothing more to do. */
 bool renderer_idle(struct renderer *renderer, int64_t budget_ns);
 
-/* From now on the field is worked out at each fragment, over all sensors, on the finest level (render/reference.h): slow, for
-   comparison. */
+/* From now on the field is worked out at each fragment, over all sensors, on the finest level (renderer_measure: on the one it is asked
+   for; render/reference.h): slow, for comparison. */
 void renderer_set_per_fragment(struct renderer *renderer, bool per_fragment);
 /* What the pixels of the view's tier stand for, at one sample each, rows from the top: the field's place in the range (unclamped,
    never on a logarithmic scale), no data (0..1; MEASURE_CONTEXT: an asset without a field; MEASURE_NOTHING), uncertain (0..1), depth

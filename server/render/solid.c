@@ -159,7 +159,7 @@ static void set_material(const struct picture *picture, const struct model_mater
 
 const struct model_level *solid_level(const struct picture *picture, int asset)
 {
-    if (picture->reference || picture->finest)
+    if (picture->finest || (picture->reference && !picture->measured))
         return &picture->stage->of_asset[asset]->levels[0];
     return stage_level(picture->stage, &picture->shot, asset, LEVEL_ERROR_PX[picture->view->tier]);
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The field that pictures show against the one worked out anew at each fragment, over all sensors, on the finest level: numbers, not
-   colours, at random pixels of whole plants, seen from near and far. */
+/* The field that pictures show against the one worked out anew at each fragment, over all sensors: numbers, not colours, at random pixels
+   of whole plants, seen from near and far. Twice: at the very point of the level that the pixel shows; and within a pixel of there on the
+   finest level, since a coarser one may have moved its surface that far. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -24,8 +25,8 @@ static struct rig rig;
 /* --- comparing ------------------------------------------------------------------------------------------------------------- */
 
 struct tally {
-    size_t compared, over, over_strictly, flags_differ;
-    double worst, worst_strictly;
+    size_t compared, over, beyond, flags_differ; /* over: at the very point; beyond: of what the finest level has within a pixel */
+    double worst, worst_beyond;
     int worst_camera;
 };
 
@@ -49,26 +50,27 @@ static double error_within_a_pixel(const float (*reference)[4], int x, int y, do
     return value < low ? low - value : value > high ? value - high : 0;
 }
 
-static void compare(struct site *site, const float (*shown)[4], const float (*reference)[4], size_t samples, int camera,
-                    struct tally *tally)
+struct seen { /* by a camera: numbers of pixels */
+    float (*shown)[4], (*here)[4], (*finest)[4]; /* here: the reference on the level that is shown */
+};
+
+static void compare(struct site *site, const struct seen *seen, size_t samples, int camera, struct tally *tally)
 {
     for (size_t i = 0, tries = 0; i < samples && tries < 100 * samples; tries++) {
         size_t at = (size_t)(synthetic_random_unit(&site->random) * PIXELS);
-        bool here = has_value(shown[at]);
-        if (!here)
+        if (!has_value(seen->shown[at]))
             continue;
         i++;
-        bool both = has_value(reference[at]);
-        double strict = both ? fabs((double)shown[at][0] - (double)reference[at][0]) : 0;
-        double error = error_within_a_pixel(reference, (int)(at % WIDTH_PX), (int)(at / WIDTH_PX), (double)shown[at][0]);
-        if (isinf(error)) {
+        if (!has_value(seen->here[at])) {
             tally->flags_differ++;
             continue;
         }
+        double value = (double)seen->shown[at][0], error = fabs(value - (double)seen->here[at][0]);
+        double beyond = error_within_a_pixel((const float(*)[4])seen->finest, (int)(at % WIDTH_PX), (int)(at / WIDTH_PX), value);
         tally->compared++;
         tally->over += error > TOLERANCE;
-        tally->over_strictly += strict > TOLERANCE;
-        tally->worst_strictly = fmax(tally->worst_strictly, strict);
+        tally->beyond += beyond > TOLERANCE; /* also where the finest level has nothing near */
+        tally->worst_beyond = isinf(beyond) ? tally->worst_beyond : fmax(tally->worst_beyond, beyond);
         if (error > tally->worst) {
             tally->worst = error;
             tally->worst_camera = camera;
@@ -104,7 +106,8 @@ static void compare_views(struct site *site, const struct way *way, struct tally
 {
     static const double away[] = { 0.8, 1.2, 2, 4, 8, 16, 32 };
     enum { VIEWS = 2 * sizeof(away) / sizeof(away[0]) };
-    float(*shown)[4] = mem_array(PIXELS, sizeof(*shown)), (*reference)[4] = mem_array(PIXELS, sizeof(*reference));
+    struct seen seen = { mem_array(PIXELS, sizeof(*seen.shown)), mem_array(PIXELS, sizeof(*seen.here)),
+                         way->finest ? NULL : mem_array(PIXELS, sizeof(*seen.finest)) };
     for (int i = 0; i < (int)VIEWS; i++) {
         struct view view;
         view_default(site->scene, WIDTH_PX, HEIGHT_PX, &view);
@@ -113,27 +116,35 @@ static void compare_views(struct site *site, const struct way *way, struct tally
         view.field.interpolation = way->interpolation;
         view.field.distance = way->distance;
         look_at_some_asset(site, away[i / 2], &view);
-        assert_true(renderer_measure(site->renderer, &view, site->snapshot, way->finest, shown));
+        assert_true(renderer_measure(site->renderer, &view, site->snapshot, way->finest, seen.shown));
         renderer_set_per_fragment(site->renderer, true);
-        assert_true(renderer_measure(site->renderer, &view, site->snapshot, true, reference));
+        assert_true(renderer_measure(site->renderer, &view, site->snapshot, way->finest, seen.here));
+        assert_true(way->finest || renderer_measure(site->renderer, &view, site->snapshot, true, seen.finest));
         renderer_set_per_fragment(site->renderer, false);
-        compare(site, (const float(*)[4])shown, (const float(*)[4])reference, SAMPLES / VIEWS + 1, i, tally);
+        struct seen all = { seen.shown, seen.here, way->finest ? seen.here : seen.finest };
+        compare(site, &all, SAMPLES / VIEWS + 1, i, tally);
     }
-    mem_free(shown);
-    mem_free(reference);
+    mem_free(seen.shown);
+    mem_free(seen.here);
+    mem_free(seen.finest);
 }
 
 static void say(const struct way *way, const struct tally *tally)
 {
-    print_message(
-        "# %s, %s, %s, %s: %zu pixels; over 1/255: %zu (on the very pixel %zu), worst %.3f %% (%.3f %%, camera %d); other flags %zu\n",
-        way->interpolation == INTERPOLATION_PAPER ? "paper" : "shepard", way->distance == DISTANCE_EUCLIDEAN ? "euclidean" : "geodesic",
-        way->tier == TIER_STILL ? "still" : "moving", way->finest ? "finest level" : "levels as drawn", tally->compared, tally->over,
-        tally->over_strictly, 100 * tally->worst, 100 * tally->worst_strictly, tally->worst_camera, tally->flags_differ);
+    print_message("# %s, %s, %s, %s: %zu pixels; over 1/255: %zu, worst %.3f %% (camera %d); "
+                  "within a pixel of the finest level: %zu, worst %.3f %%; other flags %zu\n",
+                  way->interpolation == INTERPOLATION_PAPER ? "paper" : "shepard",
+                  way->distance == DISTANCE_EUCLIDEAN ? "euclidean" : "geodesic", way->tier == TIER_STILL ? "still" : "moving",
+                  way->finest ? "finest level" : "levels as drawn", tally->compared, tally->over, 100 * tally->worst, tally->worst_camera,
+                  tally->beyond, 100 * tally->worst_beyond, tally->flags_differ);
 }
 
-/* Of all pixels, so large a part may err by more than 1/255 of the range: on the finest level, and on the levels that are drawn. */
-static void compare_plant(struct site *site, double finest_part, double drawn_part)
+struct bounds { /* so large a part of the pixels may err by more than 1/255 of the range: at the very point on the finest level, */
+    double finest;
+    double drawn, beyond; /* and on the levels that are drawn; there also within a pixel */
+};
+
+static void compare_plant(struct site *site, const struct bounds *bounds)
 {
     int bad = 0;
     for (int i = 0; i < 16; i++) {
@@ -148,23 +159,24 @@ static void compare_plant(struct site *site, double finest_part, double drawn_pa
         say(&way, &tally);
         assert_true(tally.compared > SAMPLES / 2);
         assert_in_range(tally.flags_differ, 0, tally.compared / 200);
-        bad += (double)tally.over > (way.finest ? finest_part : drawn_part) * (double)tally.compared;
+        bad += (double)tally.over > (way.finest ? bounds->finest : bounds->drawn) * (double)tally.compared;
+        bad += (double)tally.beyond > (way.finest ? bounds->finest : bounds->beyond) * (double)tally.compared;
     }
     assert_int_equal(bad, 0);
 }
 
-static void test_plant(const char *path, const char *name, double finest_part, double drawn_part)
+static void test_plant(const char *path, const char *name, const struct bounds *bounds)
 {
     struct site site;
     assert_true(site_init(&site, &rig, path, name));
-    compare_plant(&site, finest_part, drawn_part);
+    compare_plant(&site, bounds);
     site_finish(&site);
 }
 
 static void test_demo(void **state)
 {
     (void)state;
-    test_plant(SITE_DEMO, NULL, 0.002, 0.02);
+    test_plant(SITE_DEMO, NULL, &(struct bounds){ 0.002, 0.1, 0.015 });
 }
 
 static void test_plant_room(void **state)
@@ -172,8 +184,8 @@ static void test_plant_room(void **state)
     (void)state;
     if (!site_is_there("plm_plant_equipment.glb"))
         skip();
-    /* V-1105 close to needs more triangles than it may have, which its report says */
-    test_plant("tests/plants/plant_room.yaml", "plant_room", 0.05, 0.01);
+    /* on the finest level, shepard: nearly all of them in one view, by 2.2 % at most */
+    test_plant("tests/plants/plant_room.yaml", "plant_room", &(struct bounds){ 0.05, 0.015, 0.005 });
 }
 
 static void test_cookie_line(void **state)
@@ -181,7 +193,7 @@ static void test_cookie_line(void **state)
     (void)state;
     if (!site_is_there("cookie_factory_mixer.glb"))
         skip();
-    test_plant("tests/plants/cookie_line.yaml", "cookie_line", 0.003, 0.01);
+    test_plant("tests/plants/cookie_line.yaml", "cookie_line", &(struct bounds){ 0.003, 0.045, 0.007 });
 }
 
 int main(void)
