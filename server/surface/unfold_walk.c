@@ -232,20 +232,22 @@ static void place_above(double side, double to_r_m, double to_l_m, double out[2]
     intrinsic_layout((const double[3]){ side, to_l_m, to_r_m }, &out[0], &out[1]);
 }
 
-/* In the triangles that lie beyond a side that was not flipped, if these are the flipped triangle's: its third corner is among them. */
+/* In the triangles that lie beyond a side that was not flipped, if these are the flipped triangle's: its third corner is among them, and
+   where it is to be; round an end of the side they may have it, too. */
 static bool lay_out_beyond(const struct unfold *unfold, uint32_t entered, uint32_t third, const double source[3], struct laid *laid)
 {
     const struct intrinsic *in = unfold->in;
     const double(*points)[3] = (const double(*)[3])unfold->mesh->points;
     uint32_t t = entered / 3, side = entered % 3, r = in->points[t][side], l = in->points[t][(side + 1) % 3];
     const struct window first = { .l = { in->lengths[t][side], 0 }, .entered = entered };
-    double at[2], corner[2], apex[2];
+    double at[2], corner[2], beside[2], apex[2];
     place_above(first.l[0], vec_distance(points[r], points[third]), vec_distance(points[l], points[third]), corner);
     place_above(first.l[0], vec_distance(points[r], source), vec_distance(points[l], source), at);
-    corner[0] += ASIDE * (first.l[0] / 2 - corner[0]);
-    corner[1] -= ASIDE * corner[1];
+    beside[0] = corner[0] + ASIDE * (first.l[0] / 2 - corner[0]);
+    beside[1] = corner[1] - ASIDE * corner[1];
     struct window window = first;
-    if (!walk_to(in, corner, &window, apex) || in->points[window.entered / 3][(window.entered + 2) % 3] != third)
+    if (!walk_to(in, beside, &window, apex) || in->points[window.entered / 3][(window.entered + 2) % 3] != third ||
+        hypot(apex[0] - corner[0], apex[1] - corner[1]) > ASIDE * first.l[0])
         return false;
     window = first;
     if (!walk_to(in, at, &window, apex))

@@ -493,8 +493,13 @@ static void short_ways_are_exact_whatever_edges_are_flipped(void **state)
 {
     enum { PLATES = 6, SOURCES = 8, PLACES = 800 };
     double worst = 0;
+    struct cad_random usual = chance;
     (void)state;
-    for (int n = 0; n < PLATES; n++) {
+    for (int n = 0; n <= PLATES; n++) {
+        if (n == PLATES) { /* one where a corner lies behind an end of the side across */
+            usual = chance;
+            chance.state = 4865252314693032163u;
+        }
         struct cad plate = { 0 };
         double sources[SOURCES][3] = { 0 };
         cad_plate(&plate, &chance, 1 + (int)(6 * cad_random(&chance)), 1 + (int)(6 * cad_random(&chance)), 2, 1, 0.6);
@@ -520,6 +525,7 @@ static void short_ways_are_exact_whatever_edges_are_flipped(void **state)
         surface_destroy(&surface);
         cad_finish(&plate);
     }
+    chance = usual;
     print_message("# plates of few cells: places are off by %.3f %% of the way itself at most\n", 100 * worst);
     assert_true(worst < 0.03);
 }
