@@ -8,6 +8,7 @@ static const int64_t STEP_NS = 10 * NS_PER_MS;              /* of a slow picture
 static const int64_t LIGHT_NS = 4 * NS_PER_MS;     /* of each picture of a moving session, for a light that it chose */
 static const int64_t FIELD_NS = 6 * NS_PER_MS;              /* of a field that takes long, likewise */
 static const int64_t IDLE_NS = 5 * NS_PER_MS;               /* of what nobody waits for, before looking whether somebody does */
+static const int64_t REHEARSE_NS = 10 * NS_PER_S;           /* of a field, before anyone asks; what is left is worked on as for others */
 static const int64_t REBUILD_NS = 100 * NS_PER_MS, REBUILD_MAX_NS = 5 * NS_PER_S; /* between attempts at a new context */
 
 /* Under lock. It is wanted as before; true: a newer wish of its client is there already, and stands for it. */
@@ -369,7 +370,7 @@ static void rehearse(struct drawing *drawing)
     for (size_t i = 0; i < params->first_count; i++) {
         struct view view = params->first[i];
         view.tier = TIER_MOVING;
-        canvas_prepare(drawing->renderer, &view, drawing->snapshot, INT64_MAX);
+        canvas_prepare(drawing->renderer, &view, drawing->snapshot, REHEARSE_NS);
         draw_for_nobody(drawing, &view);
     }
 }
