@@ -133,5 +133,6 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_shares_are_of_the_area, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_a_sensor_that_is_tried_out_counts, set_up, tear_down),
     };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests_name("gaps", tests, NULL, NULL);
 }

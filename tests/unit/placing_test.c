@@ -217,5 +217,6 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_gaps_are_of_what_the_set_has_moved, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_a_set_that_goes_takes_its_questions_along, set_up, tear_down),
     };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests_name("placing", tests, NULL, NULL);
 }

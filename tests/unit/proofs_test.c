@@ -206,5 +206,6 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_what_cannot_be_kept_is_refused_and_counts_for_nothing, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_all_tags_with_a_source_are_told, set_up, tear_down),
     };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests_name("proofs", tests, NULL, NULL);
 }

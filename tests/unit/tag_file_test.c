@@ -151,5 +151,6 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_a_folder_that_may_not_be_written_is_said, set_up, tear_down),
         cmocka_unit_test(test_a_hash_tells_texts_apart),
     };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests_name("tag_file", tests, NULL, NULL);
 }
