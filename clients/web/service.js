@@ -3,6 +3,7 @@
 // and says that it is disconnected. Files of one version are kept at a time: those of another would not fit. Nothing that the plant says is
 // ever kept.
 const OURS = /^(\/|\/index\.html|\/(app|core|words|vendor|made)\/.*)$/;
+const PREFIX = 'plantcast-';
 let kept = null; // a promise of the store of the version that is shown
 
 self.addEventListener('install', () => self.skipWaiting());
@@ -13,12 +14,14 @@ self.addEventListener('fetch', (event) => {
         event.respondWith(newest(event.request));
 });
 
-// The server's version, and no other is kept; without the server the one that is there.
+// The server's version, and no other is kept; without the server the one that is there. Others of this address have stores of their own.
 async function choose() {
     const text = await fetch('made/version.js', { cache: 'no-store' }).then((answer) => (answer.ok ? answer.text() : ''), () => '');
-    const names = await caches.keys(), name = text.match(/version = '(\w+)'/)?.[1] ?? names.at(-1) ?? 'plantcast';
-    await Promise.all(names.filter((other) => other !== name).map((other) => caches.delete(other)));
-    return caches.open(name);
+    const names = (await caches.keys()).filter((name) => name.startsWith(PREFIX)), version = text.match(/version = '(\w+)'/)?.[1];
+    if (!version)
+        return caches.open(names.at(-1) ?? PREFIX);
+    await Promise.all(names.filter((name) => name !== PREFIX + version).map((name) => caches.delete(name)));
+    return caches.open(PREFIX + version);
 }
 
 async function newest(request) {

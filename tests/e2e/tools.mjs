@@ -39,10 +39,9 @@ after(async () => {
 const placeOf = (point) => page.evaluate((at) => globalThis.plantcast.overlay.pageOf(at), point);
 
 test('values stand still, and go on again', options, async () => {
-    await page.waitForFunction(() => {
-        const { session } = globalThis.plantcast;
-        return session.time.fromUs !== null && session.clockUs() - session.time.fromUs > 4e6;
-    });
+    await page.waitForFunction(() => globalThis.plantcast.session.model.readings[0].value === 80);
+    const since = await page.evaluate(() => globalThis.plantcast.session.clockUs());
+    await page.waitForFunction((us) => globalThis.plantcast.session.clockUs() > us + 5e6, since); // it has been 80 for that long
     await page.locator('#hold').click();
     await waitForHealth(page, 'past');
     await page.waitForFunction(() => globalThis.plantcast.session.picture.past);
