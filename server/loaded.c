@@ -112,6 +112,8 @@ bool loaded_start_recording(struct loaded *loaded, struct loaded *before)
         store_adopt(loaded->store, before->store);
     if (loaded->history)
         loaded->proofs = proofs_open(loaded->context->log, loaded->plant, loaded->history);
+    if (loaded->painter)
+        painter_set_proofs(loaded->painter, loaded->proofs);
     return start_historian(loaded, before != NULL) && start_alarming(loaded, before ? before->alarming : NULL);
 }
 
@@ -147,7 +149,6 @@ bool loaded_start_painter(struct loaded *loaded, const struct view *first, size_
         .baselines = loaded->baselines,
         .moments = loaded->moments,
         .trials = placing_trials(loaded->placing),
-        .proofs = loaded->proofs,
         .workers = context->workers,
         .h264_library = loaded_h264_library(server),
         .counters = context->counters,
@@ -156,7 +157,10 @@ bool loaded_start_painter(struct loaded *loaded, const struct view *first, size_
         .notify = context->notify,
         .notify_arg = context->notify_arg,
     };
-    return (loaded->painter = painter_create(&params));
+    loaded->painter = painter_create(&params);
+    if (loaded->painter)
+        painter_set_proofs(loaded->painter, loaded->proofs);
+    return loaded->painter != NULL;
 }
 
 static void stop_sources(struct loaded *loaded)

@@ -98,6 +98,14 @@ test('gaps are told', options, async () => {
     await shoot(page, 'engineer-gaps');
 });
 
+// Of an instant that is over: only what is proven makes a difference.
+let instant, plain;
+const snapshot = async () => {
+    const answer = await fetch(`http://127.0.0.1:${plant.port}/snapshot.png?width=640&height=400&look=flat&at=${instant}`);
+    assert.equal(answer.status, 200);
+    return Buffer.from(await answer.arrayBuffer());
+};
+
 test('the list is saved: what changes is shown, then it is in force', options, async () => {
     const old = readFileSync(tagsFile, 'utf8');
     await button('Save …').click();
@@ -113,6 +121,10 @@ test('the list is saved: what changes is shown, then it is in force', options, a
     await page.waitForFunction(() => globalThis.plantcast.session.model.tag('TI-9').position !== null);
     assert.equal(await moved(), null);
     await ready(page);
+    instant = new Date().toISOString();
+    await page.waitForFunction((us) => globalThis.plantcast.session.clockUs() > us + 3e6, Date.now() * 1000);
+    plain = await snapshot();
+    assert.deepEqual(await snapshot(), plain);
 });
 
 test('walk: who moved is pointed out, swapped ones too; a value that fits proves the tag', options, async () => {
@@ -153,6 +165,7 @@ test('what is not proven is said to be so to everybody, and stays through a relo
     assert.deepEqual(await page.evaluate(() => globalThis.plantcast.session.model.tags.map((tag) =>
         globalThis.plantcast.session.model.unproven(tag))), [null, 'fail', 'none', 'none']);
     await says('#legend .keys', 'Unproven');
+    assert.notDeepEqual(await snapshot(), plain, 'in the server\'s pictures too, whose plant was loaded anew before');
     await settle(page);
     await shoot(page, 'engineer-unproven');
     assert.deepEqual(browser.errors, []);

@@ -59,6 +59,14 @@ static void lose_on_demand(struct drawing *drawing)
         gl_lose(drawing->gl);
 }
 
+static const struct proofs *proofs_now(struct painter *painter)
+{
+    pthread_mutex_lock(&painter->lock);
+    const struct proofs *proofs = painter->proofs;
+    pthread_mutex_unlock(&painter->lock);
+    return proofs;
+}
+
 /* Takes the frame. */
 static void deliver(struct drawing *drawing, struct frame *frame, const struct snapshot *snapshot, struct batch *batch)
 {
@@ -66,7 +74,7 @@ static void deliver(struct drawing *drawing, struct frame *frame, const struct s
     frame_read_markers(frame, snapshot, painter->params.baselines);
     frame->clock_unset = !frame->view.at_us && !clock_utc_is_set();
     if (batch->orders[0].wish.overlay)
-        overlay_draw(frame, painter->params.scene, snapshot, painter->params.proofs);
+        overlay_draw(frame, painter->params.scene, snapshot, proofs_now(painter));
     counter_inc(painter->renders, 1);
     counter_inc(painter->render_us, (frame->render_ns + frame->readback_ns) / 1000);
     if (!batch->orders[0].wish.overlay)

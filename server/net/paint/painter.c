@@ -177,6 +177,13 @@ void painter_forget(struct painter *painter, uint64_t id)
     encoding_sweep(painter->encoding);
 }
 
+void painter_set_proofs(struct painter *painter, const struct proofs *proofs)
+{
+    pthread_mutex_lock(&painter->lock);
+    painter->proofs = proofs;
+    pthread_mutex_unlock(&painter->lock);
+}
+
 void painter_new_data(struct painter *painter)
 {
     pthread_mutex_lock(&painter->lock);

@@ -7,6 +7,7 @@
 #include "gpu/gl.h"
 #include "net/paint/picks.h"
 #include "net/paint/picture.h"
+#include "proving/proofs.h"
 #include "value/moments.h"
 #include "value/store.h"
 
@@ -22,7 +23,6 @@ struct painter_params {
     struct baselines *baselines; /* NULL: no differences can be shown */
     struct moments *moments;     /* where views of an instant find it; NULL: there are none */
     struct trials *trials;    /* where views of places that are tried out find them; NULL: there are none */
-    const struct proofs *proofs; /* tags that are unproven are marked where the server draws markers; NULL: none is */
     struct workers *workers;
     const char *h264_library; /* an encoder of libavcodec; NULL: the usual one */
     struct counters *counters;
@@ -43,6 +43,8 @@ enum painter_answer { PAINTER_ADDED, PAINTER_REPLACED, PAINTER_REFUSED };
 enum painter_answer painter_ask(struct painter *painter, uint64_t client, const struct wish *wish);
 void painter_go(struct painter *painter);
 void painter_forget(struct painter *painter, uint64_t client);
+/* Tags that are unproven are marked from now on where the server draws markers. Must outlive it. */
+void painter_set_proofs(struct painter *painter, const struct proofs *proofs);
 void painter_new_data(struct painter *painter); /* readings changed: look again before the next picture */
 /* A GL context is there. False while a lost one is being made again: readings, texts and connections go on, pictures wait. */
 bool painter_ready(struct painter *painter);

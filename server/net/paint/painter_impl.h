@@ -28,6 +28,7 @@ struct painter {
     /* --- below: under lock */
     enum { STARTING, RUNNING, FAILED, STOPPING } state;
     bool new_data;
+    const struct proofs *proofs; /* NULL: nothing is unproven */
     bool lost, lose; /* the GL context; at the next picture */
     struct client **clients; /* by id, ascending */
     size_t client_count, client_capacity;
