@@ -16,12 +16,7 @@ let plant, url, browser, page;
 before(async () => {
     if (options.skip)
         return;
-    plant = await TinyPlant.create();
-    assert.equal(plant.prepare().code, 0);
-    await plant.startSim();
-    await plant.startDaemon();
-    for (const [tag, value] of [['TI-1', 80], ['TI-2', 20], ['PI-1', 5]])
-        await plant.tell(`set ${tag} ${value}`);
+    plant = await TinyPlant.running();
     url = `http://127.0.0.1:${plant.port}/`;
     browser = await openPage(url, SCREEN);
     page = browser.page;

@@ -12,7 +12,7 @@ import { byId, make, makeSvg, setText } from './dom.js';
 const RIM_PX = 34; // no grip nearer to the edge of the picture
 const APART_PX = 46; // nor nearer to another
 const STEPS = { ArrowRight: 0.01, ArrowUp: 0.01, ArrowLeft: -0.01, ArrowDown: -0.01, PageUp: 0.1, PageDown: -0.1, Home: -2, End: 2 };
-const ARROW = 'M-13 0h26M-13 0l6-5.500M-13 0l6 5.500M13 0l-6-5.500M13 0l-6 5.500';
+const ARROW = 'M-13 0h26M-13 0l6-5.5M-13 0l6 5.5M13 0l-6-5.5M13 0l-6 5.5';
 
 export class Grips {
     constructor({ session, viewport }) {

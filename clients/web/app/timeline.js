@@ -166,7 +166,7 @@ export class Timeline {
                 nodes.push(makeSvg('text', { x: x(us), y: 42, 'text-anchor': 'middle' }, text));
         }
         for (const { us, tag, kind, priority } of [...this.marks].sort((a, b) => b.priority - a.priority)) // the gravest on top
-            nodes.push(makeSvg('path', { class: `alarm p${priority}`, d: `M${x(us)} 15l-5.500-11h11z` },
+            nodes.push(makeSvg('path', { class: `alarm p${priority}`, d: `M${x(us)} 15l-5.5-11h11z` },
                 makeSvg('title', {}, `${tag} ${kind}, ${this.clock(us / 1000).time}`)));
         track.replaceChildren(...nodes);
         setText(byId('time-alarms'), this.marks.length > 0 ? say('time.raised', { count: this.marks.length }) : '');

@@ -116,6 +116,18 @@ export class TinyPlant {
         return plant;
     }
 
+    // Prepared, with simulator and daemon, and a warm and a cold side.
+    static async running() {
+        const plant = await TinyPlant.create(), { code, err } = plant.prepare();
+        if (code !== 0)
+            throw new Error(`it cannot be prepared: ${err}`);
+        await plant.startSim();
+        await plant.startDaemon();
+        for (const [tag, value] of [['TI-1', 80], ['TI-2', 20], ['PI-1', 5]])
+            await plant.tell(`set ${tag} ${value}`);
+        return plant;
+    }
+
     prepare() {
         return runProgram('plantcast-prep', [this.file], 60000);
     }
