@@ -3,11 +3,11 @@
 import assert from 'node:assert/strict';
 import { readdirSync, readFileSync } from 'node:fs';
 import { test } from 'node:test';
-import { chooseLanguage, LANGUAGES, phrase, say, sayIfKnown } from '../../clients/web/core/words.js';
+import { chooseLanguage, LANGUAGES, phrase, readWords, say, sayIfKnown } from '../../clients/web/core/words.js';
 
 const WEB = new URL('../../clients/web/', import.meta.url);
 const tables = Object.fromEntries(await Promise.all(LANGUAGES.map(async (language) =>
-    [language, (await import(`../../clients/web/words/${language}.js`)).default])));
+    [language, readWords((await import(`../../clients/web/words/${language}.js`)).default)])));
 const source = ['core', 'app'].flatMap((folder) => readdirSync(new URL(folder, WEB)).filter((name) => name.endsWith('.js'))
     .map((name) => readFileSync(new URL(`${folder}/${name}`, WEB), 'utf8'))).join('\n');
 const html = readdirSync(new URL('app', WEB)).filter((name) => name.endsWith('.html')).map((name) => `app/${name}`);
@@ -22,6 +22,21 @@ test('every language has every key, with the same things to put in', () => {
             assert.deepEqual(blanks(entry), blanks(tables.en[key]), `${language}: ${key}`);
             assert.ok(typeof entry === 'string' ? entry.trim() : entry.other.trim(), `${language}: ${key} says nothing`);
         }
+    }
+});
+
+test('a file of words: sections, plurals, and lines that say nothing', () => {
+    assert.deepEqual(readWords('a: x:\n    y\n\n[b]\nc d.e: {n}\nf(one): 1 f\nf(other): {count} f\n'),
+        { a: 'x: y', 'b.c d.e': '{n}', 'b.f': { one: '1 f', other: '{count} f' } });
+    for (const bad of ['a', 'a:', '[b', 'f(): x', 'a: '])
+        assert.throws(() => readWords(bad), /no words: /, bad);
+});
+
+test('no key is said twice in a language', () => {
+    for (const language of LANGUAGES) {
+        const lines = readFileSync(new URL(`words/${language}.js`, WEB), 'utf8').match(/^[\w. ]+(\(\w+\))?: /gm);
+        const said = Object.values(tables[language]).flatMap((entry) => (typeof entry === 'string' ? [entry] : Object.values(entry)));
+        assert.equal(lines.length, said.length, language);
     }
 });
 

@@ -20,7 +20,23 @@ function known(tag) {
     }
 }
 
-// table: key to text with {names} in it, or to { one, other, ... } by the plural of `count`.
+// Lines of a file of words to a table: key to text with {names} in it, or to { one, other, ... } by the plural of `count`. [section] is
+// how the keys of the lines after it begin; a line that is indented goes on with the text before it.
+export function readWords(text) {
+    const table = {};
+    let begin = '';
+    for (const line of text.replace(/\n +/g, ' ').split('\n').filter(Boolean)) {
+        const [, section] = line.match(/^\[(\w+)\]$/) ?? [], [, key, form, said] = line.match(/^([\w. ]+)(?:\((\w+)\))?: (.+)$/) ?? [];
+        if (section)
+            begin = `${section}.`;
+        else if (!key)
+            throw new Error(`no words: ${line}`);
+        else
+            table[begin + key] = form ? { ...table[begin + key], [form]: said } : said;
+    }
+    return table;
+}
+
 export function phrase(table, plural, key, values = {}) {
     const entry = table[key];
     if (entry === undefined)
@@ -30,7 +46,7 @@ export function phrase(table, plural, key, values = {}) {
 }
 
 const reader = globalThis.document ? chooseLanguage(location.search, navigator.languages) : chooseLanguage();
-const { default: words } = await import(`../words/${reader.language}.js`);
+const words = readWords((await import(`../words/${reader.language}.js`)).default);
 const rules = new Intl.PluralRules(reader.language);
 
 export const { language, locale } = reader;

@@ -1,534 +1,608 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The words of the page in German.
-export default {
-    'close': 'Schließen',
-    'none': 'keine',
-    'novalue': 'kein Wert',
-    'part.failed': 'Dieser Teil der Seite konnte nicht geladen werden. Noch einmal drücken, sobald der Server da ist.',
-    'distance.metres': '{metres} m',
+// The words of the page in German. [beginning] of keys, then key: text; {name} is put in, [X] is a key to press, (one) a plural.
+export default `
+close: Schließen
+none: keine
+novalue: kein Wert
+sun: aus {wind}, {height}° hoch
+viewport: Anlage, 3D-Ansicht. Pfeiltasten drehen, Plus und Minus zoomen, W A S D verschieben, F passt ein, Fragezeichen hilft.
+legend: Legende
+card: Messstelle
+place: Stelle
+status: Status
+timings: Messungen
 
-    // --- ages and durations
-    'age.s': '{n} s',
-    'age.min': '{n} min',
-    'age.h': '{n} h',
-    'age.d': '{n} d',
+[part]
+failed: Dieser Teil der Seite konnte nicht geladen werden. Noch einmal drücken, sobald der Server da ist.
 
-    // --- toolbar
-    'bar.equipment': 'Anlagenliste',
-    'bar.quantity': 'Messgröße',
-    'bar.display': 'Darstellung',
-    'bar.distance': 'Abstand',
-    'bar.interpolation': 'Interpolation',
-    'bar.colours': 'Farben',
-    'bar.ramp': 'Stufen',
-    'bar.lines': 'Linien',
-    'bar.look': 'Optik',
-    'bar.show': 'Zeigen',
-    'bar.views': 'Ansichten, Schnitt und gezeigte Anlagenteile',
-    'bar.picture': 'Bild: Vergleich, Licht, geteilte Ansicht',
-    'bar.history': 'Verlauf',
-    'bar.fit': 'Einpassen',
-    'bar.home': 'Grundansicht',
-    'bar.help': 'Hilfe',
-    'bar.hold': 'Anhalten: Werte stehen still',
-    'bar.go': 'Weiter: aktuelle Werte',
-    'bar.unrecorded': 'Hier wird nichts aufgezeichnet: Werte können nicht angehalten werden',
-    'bar.more': 'Mehr',
-    'bar.measure': 'Abstand messen',
-    'bar.snapshot': 'Bild speichern',
-    'bar.share': 'Teilen',
-    'bar.theme': 'Dunkel oder hell',
-    'distance.geodesic': 'Geodätisch',
-    'distance.geodesic.why': 'Abstand entlang der Oberfläche: Wärme springt nicht über einen Spalt',
-    'distance.euclidean': 'Euklidisch',
-    'distance.euclidean.why': 'Gerader Abstand durch den Raum',
-    'interpolation.shepard': 'Shepard',
-    'interpolation.shepard.why': 'Inverser Abstand: an jedem Messpunkt genau der Messwert',
-    'interpolation.paper': 'Paper',
-    'interpolation.paper.why': 'Algorithmus 1 von Kim & Suh 2025: glatter, erreicht die Messwerte nicht',
-    'show.value': 'Werte',
-    'show.operator': 'Grenzwerte',
-    'show.distance': 'Abstand',
-    'show.difference': 'Differenz',
-    'look.default': 'Messtreu',
-    'look.glossy': 'Glänzend',
-    'look.flat': 'Flach',
-    'look.materials': 'Werkstoffe',
-    'lines.none': 'Keine',
-    'lines.every': 'Alle {step}',
-    'lines.chosen': 'Gewählte',
-    'ramp.smooth': 'Stufenlos',
-    'ramp.group': 'Eigene Bänder',
-    'ramp.limits': 'Grenzwerte',
-    'ramp.chosen': 'Gewählte Bänder',
-    'quantity.temperature': 'Temperatur',
-    'quantity.pressure': 'Druck',
-    'quantity.vibration': 'Schwingung',
-    'quantity.flow': 'Durchfluss',
-    'quantity.level': 'Füllstand',
-    'quantity.gas': 'Gas',
+[distance]
+metres: {metres} m
+geodesic: Geodätisch
+geodesic.why: Abstand entlang der Oberfläche: Wärme springt nicht über einen Spalt
+euclidean: Euklidisch
+euclidean.why: Gerader Abstand durch den Raum
 
-    // --- panel of the picture
-    'picture.title': 'Bild',
-    'picture.from': 'Abstand von',
-    'picture.tag': 'Messstelle',
-    'picture.difference': 'Differenz zu',
-    'picture.kept': 'Behaltene Messwerte',
-    'picture.now': 'Jetzt',
-    'picture.name': 'Name für die jetzigen Messwerte',
-    'picture.keep': 'Behalten',
-    'picture.scale': 'Skala',
-    'picture.fill': 'Stellen ohne Daten',
-    'picture.light': 'Licht: Sonne {where}',
-    'picture.turn': 'Seite',
-    'picture.turn.why': 'Seite der Sonne, Grad von Norden',
-    'picture.height': 'Höhe',
-    'picture.height.why': 'Höhe der Sonne, Grad',
-    'picture.around': 'Umgebung',
-    'picture.around.why': 'Umgebung',
-    'picture.split': 'Geteilte Ansicht',
-    'picture.right': 'Rechte Hälfte',
-    'scale.linear': 'Linear',
-    'scale.log': 'Logarithmisch',
-    'fill.none': 'Schraffiert',
-    'fill.none.why': 'Wo kein guter Messpunkt hinreicht, wird nichts gezeigt',
-    'fill.neighbours': 'Aus Nachbarn',
-    'fill.neighbours.why': 'Gefüllt und gepunktet',
-    'split.one': 'Ein Bild',
-    'split.two': 'Zwei Hälften',
-    'environment.sky': 'Himmel',
-    'sun': 'aus {wind}, {height}° hoch',
-    'wind.N': 'N',
-    'wind.NE': 'NO',
-    'wind.E': 'O',
-    'wind.SE': 'SO',
-    'wind.S': 'S',
-    'wind.SW': 'SW',
-    'wind.W': 'W',
-    'wind.NW': 'NW',
+[age]
+s: {n} s
+min: {n} min
+h: {n} h
+d: {n} d
 
-    // --- panel of views
-    'views.title': 'Ansichten',
-    'views.from': 'Blick von',
-    'views.projection': 'Projektion',
-    'views.cut': 'Wegschneiden',
-    'views.where': 'Lage des Schnitts',
-    'views.turn': 'Andere Seite',
-    'views.equipment': 'Anlagenteil: {what}',
-    'views.select': 'erst eines wählen',
-    'views.all': 'Alle zeigen',
-    'views.stays': '{axis} {sign} {at} m bleibt',
-    'views.part': '{percent} % von {what}',
-    'views.plant': 'der Anlage',
-    'side.top': 'Oben',
-    'side.front': 'Vorn',
-    'side.right': 'Rechts',
-    'side.back': 'Hinten',
-    'side.left': 'Links',
-    'side.iso': 'Schräg',
-    'projection.perspective': 'Perspektive',
-    'projection.parallel': 'Parallel',
-    'cut.off': 'Aus',
-    'cut.box': 'Quader',
-    'cut.move': 'Schnitt verschieben: {axis}',
-    'cut.oblique': 'schräg',
-    'shown.hide': 'Ausblenden',
-    'shown.ghost': 'Durchsichtig',
-    'shown.only': 'Nur dies',
+[bar]
+equipment: Anlagenliste
+quantity: Messgröße
+display: Darstellung
+distance: Abstand
+interpolation: Interpolation
+colours: Farben
+ramp: Stufen
+lines: Linien
+look: Optik
+show: Zeigen
+views: Ansichten, Schnitt und gezeigte Anlagenteile
+picture: Bild: Vergleich, Licht, geteilte Ansicht
+history: Verlauf
+fit: Einpassen
+home: Grundansicht
+help: Hilfe
+hold: Anhalten: Werte stehen still
+go: Weiter: aktuelle Werte
+unrecorded: Hier wird nichts aufgezeichnet: Werte können nicht angehalten werden
+more: Mehr
+measure: Abstand messen
+snapshot: Bild speichern
+share: Teilen
+theme: Dunkel oder hell
+engineer: Ingenieur: Messstellen setzen und prüfen
 
-    // --- equipment
-    'assets.title': 'Anlagenteile',
-    'assets.close': 'Anlagenliste schließen',
-    'assets.search': 'Teile, Messstellen suchen',
-    'assets.nothing': 'Nichts heißt so.',
-    'assets.sensors': { one: '{count} Sensor', other: '{count} Sensoren' },
-    'assets.loose': 'Messstellen ohne Anlagenteil',
-    'assets.about': 'Über das gewählte Anlagenteil',
-    'assets.description': 'Beschreibung',
-    'assets.area': 'Bereich',
-    'assets.size': 'Größe',
-    'assets.place': 'Mitte bei',
-    'assets.sensors.name': 'Sensoren',
-    'assets.worst': 'schlechteste Qualität: {quality}',
+[interpolation]
+shepard: Shepard
+shepard.why: Inverser Abstand: an jedem Messpunkt genau der Messwert
+paper: Paper
+paper.why: Algorithmus 1 von Kim & Suh 2025: glatter, erreicht die Messwerte nicht
 
-    // --- the picture and what lies over it
-    'viewport': 'Anlage, 3D-Ansicht. Pfeiltasten drehen, Plus und Minus zoomen, W A S D verschieben, F passt ein, Fragezeichen hilft.',
-    'viewport.waiting': 'Warten auf das erste Bild',
-    'viewport.refused': 'Der Server hat abgelehnt: {text}',
-    'legend': 'Legende',
-    'legend.right': 'Legende der rechten Hälfte',
-    'legend.colours': 'Farben von {min} bis {max}',
-    'legend.distance': 'Abstand',
-    'legend.operator': 'Nach den Grenzwerten jeder Messstelle.',
-    'legend.log': 'Logarithmische Skala.',
-    'legend.unsafe': 'Diese Farben können täuschen.',
-    'legend.glossy': 'Glänzend: Licht ändert die Farben. Keine Werte ablesen.',
-    'legend.nolimits': 'Ohne Grenzwerte',
-    'legend.nodata': 'Keine Daten',
-    'legend.uncertain': 'Unsicher',
-    'card': 'Messstelle',
-    'card.novalue': 'Kein Wert',
-    'card.quality': 'Qualität',
-    'card.age': 'Alter',
-    'card.on': 'An',
-    'card.trend': 'Trend',
-    'card.HH': 'über dem höchsten Grenzwert',
-    'card.H': 'über dem oberen Grenzwert',
-    'card.L': 'unter dem unteren Grenzwert',
-    'card.LL': 'unter dem tiefsten Grenzwert',
-    'card.BAD': 'Messung gestört',
-    'card.ALM': 'Alarm',
-    'place': 'Stelle',
-    'place.measured': 'Hier gemessen',
-    'place.between': 'Zwischen Messpunkten',
-    'place.no data': 'Keine Daten: der nächste Sensor ist gestört, oder keiner reicht hin',
-    'place.context': 'Kein Sensor dieser Messgröße daran',
-    'place.inside': 'Inneres des Aufgeschnittenen',
-    'place.uncertain': '{state}, unsicher',
-    'place.hide': 'Ausblenden',
-    'place.ghost': 'Durchsichtig',
-    'place.only': 'Nur dies',
-    'following.title': 'Dies ist die Ansicht von Sitzung {session}',
-    'following.own': 'Eigene Ansicht',
+[show]
+value: Werte
+operator: Grenzwerte
+distance: Abstand
+difference: Differenz
 
-    // --- alarms
-    'alarms.title': 'Alarme',
-    'alarms.close': 'Alarme schließen',
-    'alarms.unheard': 'Alarme: noch nichts gehört',
-    'alarms.none': 'Keine aktiven Alarme',
-    'alarms.some': { one: '{count} aktiver Alarm', other: '{count} aktive Alarme' },
-    'alarms.waiting': '{alarms}, {waiting} unquittiert',
-    'alarms.now': 'Jetzt: {alarms}',
-    'alarms.then': 'Gezeigt wird die Anlage von damals. Diese Alarme sind die von jetzt.',
-    'alarms.at': '{alarm} bei {value}',
-    'alarms.value': '{value} (Grenzwert {limit})',
-    'alarms.quiet': 'Keine aktiven Alarme.',
-    'alarms.aside': 'Zurückgestellt ({count})',
-    'alarms.more': 'und {count} weitere',
-    'alarms.since': 'seit {time}, {age}',
-    'alarms.until': 'bis {time}',
-    'alarms.by': 'durch {who}',
-    'alarms.held': 'Messung gestört: wie zuletzt',
-    'alarms.priority': 'Priorität {priority}',
-    'alarms.fly': 'Zu {tag} fliegen',
-    'state.active': 'Aktiv',
-    'state.unacknowledged': 'Nicht quittiert',
-    'state.acknowledged': 'Quittiert',
-    'state.returned': 'Gegangen, nicht quittiert',
-    'state.latched': 'Gehalten',
-    'state.shelved': 'Zurückgestellt',
-    'state.suppressed': 'Planmäßig unterdrückt',
-    'state.out_of_service': 'Außer Betrieb',
-    'kind.HH': 'Hoch hoch',
-    'kind.H': 'Hoch',
-    'kind.L': 'Tief',
-    'kind.LL': 'Tief tief',
-    'kind.BAD': 'Messung gestört',
-    'kind.ALM': 'Alarm',
-    'kind.LINK': 'Gerät liefert keine Werte',
-    'action.acknowledge': 'Quittieren',
-    'action.shelve': 'Zurückstellen …',
-    'action.reset': 'Zurücksetzen',
-    'action.unshelve': 'Wieder melden',
-    'action.in_service': 'In Betrieb nehmen',
-    'mode.display': 'Hier nur gezeigt, quittiert wird im Leitsystem',
-    'mode.mirror': 'Wie das Leitsystem sie hat',
-    'mode.local': 'Eigene Alarme dieses Standorts',
-    'shelve.title': '{what} zurückstellen',
-    'shelve.for': 'Für',
-    'shelve.quarter': '15 Minuten',
-    'shelve.hour': '1 Stunde',
-    'shelve.shift': '8 Stunden',
-    'shelve.day': '1 Tag',
-    'shelve.reason': 'Grund',
-    'shelve.cancel': 'Abbrechen',
-    'shelve.do': 'Zurückstellen',
+[look]
+default: Messtreu
+glossy: Glänzend
+flat: Flach
+materials: Werkstoffe
 
-    // --- trends and the time bar
-    'trends.title': 'Trend',
-    'trends.time': 'Zeit',
-    'trends.csv': 'CSV exportieren',
-    'trends.close': 'Trends schließen',
-    'trends.hour': '1 h',
-    'trends.hour.why': 'Letzte Stunde',
-    'trends.shift': 'Schicht',
-    'trends.shift.why': 'Letzte 8 Stunden',
-    'trends.day': 'Tag',
-    'trends.day.why': 'Letzte 24 Stunden',
-    'trends.week': 'Woche',
-    'trends.week.why': 'Letzte 7 Tage',
-    'trends.remove': '{tag} entfernen',
-    'trends.gaps': 'Schraffiert: kein Wert von {tags}',
-    'trends.failed': 'Kein Trend: {why}',
-    'trends.unsaved': 'Nicht exportiert: {why}',
-    'trends.uncharted': 'dieser Server wurde ohne seine Diagramme gebaut (npm fehlte)',
-    'time.title': 'Verlauf',
-    'time.play': 'Abspielen',
-    'time.pause': 'Anhalten',
-    'time.speed': 'Geschwindigkeit',
-    'time.span': 'Zeitspanne des Schiebers',
-    'time.slider': 'Gezeigter Zeitpunkt',
-    'time.live': 'Zurück zu jetzt',
-    'time.now': 'Jetzt',
-    'time.ago': '{instant} · vor {age}',
-    'time.unrecorded': 'nicht aufgezeichnet',
-    'time.raised': { one: '{count} Alarm gekommen', other: '{count} Alarme gekommen' },
+[lines]
+none: Keine
+every: Alle {step}
+chosen: Gewählte
 
-    // --- status bar, and whether the picture may be trusted
-    'status': 'Status',
-    'status.clock': 'Anlagenzeit',
-    'status.then': 'Damals',
-    'status.unset': '{clock}, nicht synchronisiert',
-    'status.unset.why': 'Nichts stellt die Uhr des Servers: Zeiten können falsch sein, Altersangaben nicht.',
-    'status.oldest': 'Ältester Messwert',
-    'status.frames': 'Bilder',
-    'status.rate': '{count}/s',
-    'status.still': 'ruht',
-    'status.latency': 'Latenz',
-    'status.ms': '{n} ms',
-    'status.config': 'Konfiguration',
-    'status.picture': 'Bild',
-    'status.retry': 'Jetzt versuchen',
-    'health.connecting': 'Verbinden',
-    'health.live': 'Live',
-    'health.partly': 'Live, teils simuliert',
-    'health.simulated': 'Simuliert',
-    'health.down': '{live}, {down} von {all} Quellen gestört',
-    'health.unmeasured': 'Nicht in der Anlage gemessen: {sources}.',
-    'health.nodata': 'Keine Live-Daten',
-    'health.nosensor': 'Kein Sensor liefert Werte.',
-    'health.source': 'Quelle {source} antwortet nicht.',
-    'health.sources': 'Quellen {sources} antworten nicht.',
-    'health.past': 'Vergangenheit',
-    'health.returning': 'Zurück zu jetzt',
-    'health.playing': '{instant}, Wiedergabe {speed}×',
-    'health.back': '{instant}, Rücklauf {speed}×',
-    'health.noanswer': 'Keine Antwort',
-    'health.silent': 'Der Server schweigt seit {age}.',
-    'health.old': 'Dieses Bild ist {age} alt.',
-    'health.barred': 'Kein Zutritt',
-    'health.disconnected': 'Getrennt',
-    'health.because': '{reason}.',
-    'health.retry': 'Nächster Versuch in {age}.',
-    'health.retrying': 'Neuer Versuch läuft.',
-    'reason.down': 'Der Server wurde beendet',
-    'reason.version': 'Diese Seite und der Server haben verschiedene Versionen',
-    'reason.forbidden': 'Nicht erlaubt',
-    'reason.long': 'Eine Nachricht war zu lang',
-    'reason.full': 'Der Server ist voll',
-    'reason.slow': 'Diese Seite war zu langsam',
-    'reason.unreachable': 'Der Server ist nicht erreichbar',
-    'reason.unanswered': 'Der Server antwortet nicht',
-    'reason.silent': 'Der Server ist verstummt',
-    'reason.token_needed': 'Ein Token wird verlangt',
-    'reason.bad_token': 'Dieses Token gilt nicht oder nicht mehr',
+[ramp]
+smooth: Stufenlos
+group: Eigene Bänder
+limits: Grenzwerte
+chosen: Gewählte Bänder
 
-    // --- qualities: the three, and by the names that OPC UA gives them
-    'quality.good': 'Gut',
-    'quality.uncertain': 'Unsicher',
-    'quality.bad': 'Schlecht',
-    'quality.unknown': 'Unbekannt',
-    'quality.because': '{quality}: {detail}',
-    'detail.CommunicationError': 'Kommunikationsfehler',
-    'detail.ConfigurationError': 'Konfigurationsfehler',
-    'detail.DeviceFailure': 'Gerätefehler',
-    'detail.NoCommunication': 'keine Kommunikation',
-    'detail.OutOfService': 'außer Betrieb',
-    'detail.SensorFailure': 'Sensorfehler',
-    'detail.WaitingForInitialData': 'wartet auf erste Daten',
-    'detail.EngineeringUnitsExceeded': 'außerhalb des Messbereichs',
-    'detail.LastUsableValue': 'letzter brauchbarer Wert',
-    'detail.NoCommunicationLastUsableValue': 'keine Kommunikation, letzter brauchbarer Wert',
-    'detail.SensorNotAccurate': 'Sensor ungenau',
+[quantity]
+temperature: Temperatur
+pressure: Druck
+vibration: Schwingung
+flow: Durchfluss
+level: Füllstand
+gas: Gas
 
-    // --- measurements
-    'timings': 'Messungen',
-    'timings.ms': 'Millisekunden',
-    'timings.half': 'Median',
-    'timings.most': '95 %',
-    'timings.input': 'Eingabe bis Bild',
-    'timings.sensor': 'Messwert bis Bild',
-    'timings.wait': 'Warten',
-    'timings.field': 'Feld',
-    'timings.render': 'Zeichnen',
-    'timings.encode': 'Kodieren',
-    'timings.network': 'Netz',
-    'timings.decode': 'Dekodieren',
-    'timings.rate': '{pictures} Bilder/s, {kbit} kbit/s',
-    'timings.follow': 'Sitzung {session}. Wer {link} öffnet, sieht diese Ansicht.',
+[picture]
+title: Bild
+from: Abstand von
+tag: Messstelle
+difference: Differenz zu
+kept: Behaltene Messwerte
+now: Jetzt
+name: Name für die jetzigen Messwerte
+keep: Behalten
+scale: Skala
+fill: Stellen ohne Daten
+light: Licht: Sonne {where}
+turn: Seite
+turn.why: Seite der Sonne, Grad von Norden
+height: Höhe
+height.why: Höhe der Sonne, Grad
+around: Umgebung
+around.why: Umgebung
+split: Geteilte Ansicht
+right: Rechte Hälfte
 
-    // --- dialogs; [X] is a key
-    'token.title': 'Token',
-    'token.needed': 'Dieser Server fragt, wer Sie sind.',
-    'token.bad': 'Dieses Token gilt nicht oder nicht mehr.',
-    'token.go': 'Weiter',
-    'token.note': 'Tokens macht, wer diesen Server betreibt: {command}. Es wird behalten, bis dieser Tab geschlossen wird.',
-    'help.title': 'Bedienung',
-    'help.close': 'Hilfe schließen',
-    'help.mouse': 'Maus',
-    'help.touch': 'Berühren',
-    'help.keys': 'Tasten',
-    'help.turn': 'Drehen',
-    'help.turn.mouse': 'Links ziehen',
-    'help.turn.touch': 'Ein Finger',
-    'help.move': 'Verschieben',
-    'help.move.mouse': 'Rechts, Mitte oder [Shift] ziehen',
-    'help.move.touch': 'Zwei Finger',
-    'help.look': 'Umsehen',
-    'help.look.mouse': 'Ziehen mit [Ctrl]',
-    'help.look.touch': 'Drei Finger',
-    'help.zoom': 'Zoomen',
-    'help.zoom.mouse': 'Rad',
-    'help.zoom.touch': 'Spreizen',
-    'help.fit': 'Einpassen',
-    'help.fit.mouse': 'Doppelklick',
-    'help.fit.touch': 'Doppelt tippen',
-    'help.home': 'Grundansicht',
-    'help.from': 'Blick von',
-    'help.from.keys': '[T] oben, [I] schräg, [O] parallel, [V] alle Ansichten, [P] Bild',
-    'help.what': 'Was dort ist',
-    'help.what.mouse': 'Klick',
-    'help.what.touch': 'Tippen',
-    'help.selected': 'Gewähltes',
-    'help.selected.keys': '[X] ausblenden, [G] durchsichtig, [L] allein, [U] alle',
-    'help.quantity.keys': '[1] bis [9]',
-    'help.equipment.keys': '[B], suchen [/]',
-    'help.history.keys': '[Y], zurück zu jetzt [N]',
-    'help.markers': 'Markierungen',
-    'help.mark.good': 'guter Messwert',
-    'help.mark.uncertain': 'unsicherer Messwert',
-    'help.mark.bad': 'gestört: kein Wert',
-    'help.mark.behind': 'verdeckt',
-    'help.mark.alarm': 'Alarm; die Farbe ist die Priorität',
-    'help.mark.acknowledged': 'quittierter Alarm',
-    'help.mark.returned': 'gegangen oder gehalten',
+[scale]
+linear: Linear
+log: Logarithmisch
 
-    // --- Werkzeuge: Messen, Bilder, Teilen
-    'measure.first': 'Ersten Punkt anklicken',
-    'measure.second': 'Zweiten Punkt anklicken',
-    'measure.done': 'Für eine neue Messung klicken',
-    'measure.missed': 'Dort ist nichts: auf die Anlage klicken',
-    'measure.end': 'Fertig',
-    'measure.parts': 'waagrecht {level} m, Höhe {rise} m',
-    'snapshot.failed': 'Kein Bild: {why}',
-    'snapshot.unnamed': 'ein Vergleich braucht Werte, die unter einem Namen behalten wurden',
-    'share.title': 'Teilen',
-    'share.what': 'Was sich öffnet',
-    'share.view': 'Ansicht',
-    'share.view.why': 'Öffnet diese Ansicht: Kamera, Größe, Farben, Zeitpunkt.',
-    'share.tag': 'Messstelle',
-    'share.tag.why': 'Öffnet sich an der Messstelle. Zum Ausdrucken und Anbringen.',
-    'share.asset': 'Apparat',
-    'share.asset.why': 'Öffnet sich am Apparat. Zum Ausdrucken und Anbringen.',
-    'share.follow': 'Mir folgen',
-    'share.follow.why': 'Wer ihn öffnet, sieht mit, solange Sie schauen.',
-    'share.link': 'Link',
-    'share.copy': 'Kopieren',
-    'share.copied': 'Kopiert',
-    'share.code': 'Der Link als Code zum Scannen',
-    'share.nocode': 'Dieser Server wurde ohne Codes zum Scannen gebaut (npm fehlte).',
-    'share.local': 'Öffnet sich nur auf diesem Rechner: seine Adresse hier ist eine lokale.',
-    'share.people': 'Wer mitschaut',
-    'share.followers': {
-        one: '{count} folgt dieser Ansicht, Sitzung {session}.', other: '{count} folgen dieser Ansicht, Sitzung {session}.',
-    },
-    'share.lead': 'Sitzung {session} führen lassen',
-    'simulated.all': 'Simuliert',
-    'simulated.partly': 'Teilweise simuliert',
-    'factor.range': 'Bereich der Farben',
-    'factor.min': 'Von',
-    'factor.max': 'Bis',
-    'factor.own': 'Der eigene der Größe',
-    'factor.title': 'Wie das Feld berechnet wird',
-    'factor.strength': 'Stärke',
-    'factor.decay': 'Abfall',
-    'factor.power': 'Exponent',
-    'factor.radius_m': 'Radius m, 0: von selbst',
-    'factor.reach_m': 'Reichweite m, leer: ohne',
-    'factor.of': 'Nur von {tag}',
-    'factor.choose': 'Eines Sensors: erst auswählen',
-    'factor.reset': { one: 'Wie eingestellt ({count} Sensor)', other: 'Wie eingestellt ({count} Sensoren)' },
+[fill]
+none: Schraffiert
+none.why: Wo kein guter Messpunkt hinreicht, wird nichts gezeigt
+neighbours: Aus Nachbarn
+neighbours.why: Gefüllt und gepunktet
 
-    // --- the engineer's panel
-    'bar.engineer': 'Ingenieur: Messstellen setzen und prüfen',
-    'proof.none': 'Ungeprüft',
-    'proof.fail': 'Ungeprüft: nicht bestanden',
-    'proof.changed': 'Ungeprüft: seither geändert',
-    'proof.pass': 'Geprüft',
-    'eng.title': 'Ingenieur',
-    'eng.close': 'Feld des Ingenieurs schließen',
-    'eng.place': 'Setzen',
-    'eng.prove': 'Prüfen',
-    'eng.what': 'Was zu tun ist',
-    'eng.find': 'Messstelle suchen',
-    'eng.nowhere': 'steht noch nirgends',
-    'eng.on': 'an {asset}',
-    'eng.choose': 'Eine Messstelle wählen, dann auf die Oberfläche klicken; oder ihr Zeichen ziehen.',
-    'eng.click': '{tag}: auf die Oberfläche klicken oder das Zeichen ziehen.',
-    'eng.missed': 'Dort ist keine Oberfläche.',
-    'eng.moves': 'Ausprobiert, nur für Sie',
-    'eng.nomoves': 'Nichts ist versetzt. Was Sie ausprobieren, sehen nur Sie, bis es gespeichert ist.',
-    'eng.off': '{metres} m neben der Oberfläche',
-    'eng.waiting': 'gerade Abstände, die entlang der Oberfläche folgen',
-    'eng.straight': 'nur gerade Abstände',
-    'eng.ready': 'entlang der Oberfläche',
-    'eng.undo': 'Zurück',
-    'eng.back': 'Alles zurück',
-    'eng.gaps': 'Lücken',
-    'eng.save': 'Speichern …',
-    'eng.gaps.of': 'Lücken: {quantity}',
-    'eng.gap':
-        'Am weitesten von jeder Messstelle: {metres} m. {far} % der Oberfläche sind über {limit} ' +
-        'm entfernt; {lost} % haben jetzt keine Daten.',
-    'eng.gap.next': 'Am weitesten auseinander: {a} zu {b}, {metres} m.',
-    'eng.gap.off': '{tag} ist {metres} m neben der Oberfläche von {asset} (höchstens {limit} m)',
-    'eng.gap.none': 'Keine Messstelle steht neben ihrer Oberfläche.',
-    'eng.diff': '{file} speichern?',
-    'eng.diff.before': 'vorher',
-    'eng.diff.after': 'nachher',
-    'eng.diff.line': 'Zeile {n}',
-    'eng.diff.note': 'Die Liste, wie sie ist, bleibt daneben stehen. Danach gilt sie für alle; das dauert einige Sekunden.',
-    'eng.diff.conflict':
-        '{file} wurde von jemand anderem geändert und ist noch nicht geladen. Nichts wurde gespeichert; das wurde geändert:',
-    'eng.diff.more': '… und {count} weitere Zeilen',
-    'eng.cancel': 'Abbrechen',
-    'eng.confirm': 'Speichern und in Kraft setzen',
-    'eng.saving': 'Wird vorbereitet; alle sehen die Anlage noch, wie sie war.',
-    'eng.saved': 'In Kraft. Die Liste davor ist {kept}.',
-    'eng.unsaved': 'Nicht gespeichert: {text}',
-    'eng.device': 'Gerät',
-    'eng.proven': '{done} von {count} geprüft',
-    'eng.expected': 'Erwartet',
-    'eng.tolerance': 'Toleranz ±',
-    'eng.watch': 'Beobachten',
-    'eng.watching': 'Jetzt den Messumformer verstellen.',
-    'eng.still': 'Noch hat sich nichts bewegt.',
-    'eng.moved': '{tag} hat sich am meisten bewegt: um {by}.',
-    'eng.swapped': '{tag} hat sich bewegt, nicht {wanted}: sind sie vertauscht?',
-    'eng.compare': 'Vergleichen',
-    'eng.fails': 'Nicht bestanden',
-    'eng.csv': 'Werte aus CSV …',
-    'eng.csv.note': '{count} erwartete Werte wurden gelesen.',
-    'eng.csv.bad': 'Die Spalten Tag Name, Expected, Tolerance werden gebraucht.',
-    'eng.export': 'Ergebnisse ausgeben',
-    'eng.remark': 'Bemerkung',
-    'eng.passed': '{tag} bestanden: {value}.',
-    'eng.failed': '{tag} nicht bestanden: {why}.',
-    'eng.now': 'jetzt {value}',
+[split]
+one: Ein Bild
+two: Zwei Hälften
 
-    // --- refusals
-    'role.operator': 'Bediener',
-    'role.engineer': 'Ingenieur',
-    'said.role': 'das darf nur die Rolle {role}',
-    'said.elsewhere': 'die Alarme gehören einem anderen System',
-    'said.anew': 'die Anlage wird gerade neu geladen; bitte noch einmal',
-    'said.quiet': 'es gibt nichts zu quittieren',
-    'said.tolerance': 'der Wert liegt außerhalb der Toleranz',
-    'said.reading': 'der Messwert ist nicht gut',
-    'said.failed': 'als durchgefallen gemeldet',
-    'said.far': '{tag}: diese Stelle liegt zu weit von {asset} weg',
-    'said.groupless': '{tag} gehört zu keiner Gruppe; die Messstellenliste muss eine nennen',
-    'said.busy': 'eine andere Liste wird gerade in Kraft gesetzt',
-    'said.locked': 'der Dienst darf in den Ordner der Messstellenliste nicht schreiben ({file})',
-    'said.changed': '{file} wurde inzwischen von anderen geändert',
-};
+[environment]
+sky: Himmel
+
+[wind]
+N: N
+NE: NO
+E: O
+SE: SO
+S: S
+SW: SW
+W: W
+NW: NW
+
+[views]
+title: Ansichten
+from: Blick von
+projection: Projektion
+cut: Wegschneiden
+where: Lage des Schnitts
+turn: Andere Seite
+equipment: Anlagenteil: {what}
+select: erst eines wählen
+all: Alle zeigen
+stays: {axis} {sign} {at} m bleibt
+part: {percent} % von {what}
+plant: der Anlage
+
+[side]
+top: Oben
+front: Vorn
+right: Rechts
+back: Hinten
+left: Links
+iso: Schräg
+
+[projection]
+perspective: Perspektive
+parallel: Parallel
+
+[cut]
+off: Aus
+box: Quader
+move: Schnitt verschieben: {axis}
+oblique: schräg
+
+[shown]
+hide: Ausblenden
+ghost: Durchsichtig
+only: Nur dies
+
+[assets]
+title: Anlagenteile
+close: Anlagenliste schließen
+search: Teile, Messstellen suchen
+nothing: Nichts heißt so.
+sensors(one): {count} Sensor
+sensors(other): {count} Sensoren
+loose: Messstellen ohne Anlagenteil
+about: Über das gewählte Anlagenteil
+description: Beschreibung
+area: Bereich
+size: Größe
+place: Mitte bei
+sensors.name: Sensoren
+worst: schlechteste Qualität: {quality}
+
+[viewport]
+waiting: Warten auf das erste Bild
+refused: Der Server hat abgelehnt: {text}
+
+[legend]
+right: Legende der rechten Hälfte
+colours: Farben von {min} bis {max}
+distance: Abstand
+operator: Nach den Grenzwerten jeder Messstelle.
+log: Logarithmische Skala.
+unsafe: Diese Farben können täuschen.
+glossy: Glänzend: Licht ändert die Farben. Keine Werte ablesen.
+nolimits: Ohne Grenzwerte
+nodata: Keine Daten
+uncertain: Unsicher
+
+[card]
+novalue: Kein Wert
+quality: Qualität
+age: Alter
+on: An
+trend: Trend
+HH: über dem höchsten Grenzwert
+H: über dem oberen Grenzwert
+L: unter dem unteren Grenzwert
+LL: unter dem tiefsten Grenzwert
+BAD: Messung gestört
+ALM: Alarm
+
+[place]
+measured: Hier gemessen
+between: Zwischen Messpunkten
+no data: Keine Daten: der nächste Sensor ist gestört, oder keiner reicht hin
+context: Kein Sensor dieser Messgröße daran
+inside: Inneres des Aufgeschnittenen
+uncertain: {state}, unsicher
+hide: Ausblenden
+ghost: Durchsichtig
+only: Nur dies
+
+[following]
+title: Dies ist die Ansicht von Sitzung {session}
+own: Eigene Ansicht
+
+[alarms]
+title: Alarme
+close: Alarme schließen
+unheard: Alarme: noch nichts gehört
+none: Keine aktiven Alarme
+some(one): {count} aktiver Alarm
+some(other): {count} aktive Alarme
+waiting: {alarms}, {waiting} unquittiert
+now: Jetzt: {alarms}
+then: Gezeigt wird die Anlage von damals. Diese Alarme sind die von jetzt.
+at: {alarm} bei {value}
+value: {value} (Grenzwert {limit})
+quiet: Keine aktiven Alarme.
+aside: Zurückgestellt ({count})
+more: und {count} weitere
+since: seit {time}, {age}
+until: bis {time}
+by: durch {who}
+held: Messung gestört: wie zuletzt
+priority: Priorität {priority}
+fly: Zu {tag} fliegen
+
+[state]
+active: Aktiv
+unacknowledged: Nicht quittiert
+acknowledged: Quittiert
+returned: Gegangen, nicht quittiert
+latched: Gehalten
+shelved: Zurückgestellt
+suppressed: Planmäßig unterdrückt
+out_of_service: Außer Betrieb
+
+[kind]
+HH: Hoch hoch
+H: Hoch
+L: Tief
+LL: Tief tief
+BAD: Messung gestört
+ALM: Alarm
+LINK: Gerät liefert keine Werte
+
+[action]
+acknowledge: Quittieren
+shelve: Zurückstellen …
+reset: Zurücksetzen
+unshelve: Wieder melden
+in_service: In Betrieb nehmen
+
+[mode]
+display: Hier nur gezeigt, quittiert wird im Leitsystem
+mirror: Wie das Leitsystem sie hat
+local: Eigene Alarme dieses Standorts
+
+[shelve]
+title: {what} zurückstellen
+for: Für
+quarter: 15 Minuten
+hour: 1 Stunde
+shift: 8 Stunden
+day: 1 Tag
+reason: Grund
+cancel: Abbrechen
+do: Zurückstellen
+
+[trends]
+title: Trend
+time: Zeit
+csv: CSV exportieren
+close: Trends schließen
+hour: 1 h
+hour.why: Letzte Stunde
+shift: Schicht
+shift.why: Letzte 8 Stunden
+day: Tag
+day.why: Letzte 24 Stunden
+week: Woche
+week.why: Letzte 7 Tage
+remove: {tag} entfernen
+gaps: Schraffiert: kein Wert von {tags}
+failed: Kein Trend: {why}
+unsaved: Nicht exportiert: {why}
+uncharted: dieser Server wurde ohne seine Diagramme gebaut (npm fehlte)
+
+[time]
+title: Verlauf
+play: Abspielen
+pause: Anhalten
+speed: Geschwindigkeit
+span: Zeitspanne des Schiebers
+slider: Gezeigter Zeitpunkt
+live: Zurück zu jetzt
+now: Jetzt
+ago: {instant} · vor {age}
+unrecorded: nicht aufgezeichnet
+raised(one): {count} Alarm gekommen
+raised(other): {count} Alarme gekommen
+
+[status]
+clock: Anlagenzeit
+then: Damals
+unset: {clock}, nicht synchronisiert
+unset.why: Nichts stellt die Uhr des Servers: Zeiten können falsch sein, Altersangaben nicht.
+oldest: Ältester Messwert
+frames: Bilder
+rate: {count}/s
+still: ruht
+latency: Latenz
+ms: {n} ms
+config: Konfiguration
+picture: Bild
+retry: Jetzt versuchen
+
+[health]
+connecting: Verbinden
+live: Live
+partly: Live, teils simuliert
+simulated: Simuliert
+down: {live}, {down} von {all} Quellen gestört
+unmeasured: Nicht in der Anlage gemessen: {sources}.
+nodata: Keine Live-Daten
+nosensor: Kein Sensor liefert Werte.
+source: Quelle {source} antwortet nicht.
+sources: Quellen {sources} antworten nicht.
+past: Vergangenheit
+returning: Zurück zu jetzt
+playing: {instant}, Wiedergabe {speed}×
+back: {instant}, Rücklauf {speed}×
+noanswer: Keine Antwort
+silent: Der Server schweigt seit {age}.
+old: Dieses Bild ist {age} alt.
+barred: Kein Zutritt
+disconnected: Getrennt
+because: {reason}.
+retry: Nächster Versuch in {age}.
+retrying: Neuer Versuch läuft.
+
+[reason]
+down: Der Server wurde beendet
+version: Diese Seite und der Server haben verschiedene Versionen
+forbidden: Nicht erlaubt
+long: Eine Nachricht war zu lang
+full: Der Server ist voll
+slow: Diese Seite war zu langsam
+unreachable: Der Server ist nicht erreichbar
+unanswered: Der Server antwortet nicht
+silent: Der Server ist verstummt
+token_needed: Ein Token wird verlangt
+bad_token: Dieses Token gilt nicht oder nicht mehr
+
+[quality]
+good: Gut
+uncertain: Unsicher
+bad: Schlecht
+unknown: Unbekannt
+because: {quality}: {detail}
+
+[detail]
+CommunicationError: Kommunikationsfehler
+ConfigurationError: Konfigurationsfehler
+DeviceFailure: Gerätefehler
+NoCommunication: keine Kommunikation
+OutOfService: außer Betrieb
+SensorFailure: Sensorfehler
+WaitingForInitialData: wartet auf erste Daten
+EngineeringUnitsExceeded: außerhalb des Messbereichs
+LastUsableValue: letzter brauchbarer Wert
+NoCommunicationLastUsableValue: keine Kommunikation, letzter brauchbarer Wert
+SensorNotAccurate: Sensor ungenau
+
+[timings]
+ms: Millisekunden
+half: Median
+most: 95 %
+input: Eingabe bis Bild
+sensor: Messwert bis Bild
+wait: Warten
+field: Feld
+render: Zeichnen
+encode: Kodieren
+network: Netz
+decode: Dekodieren
+rate: {pictures} Bilder/s, {kbit} kbit/s
+follow: Sitzung {session}. Wer {link} öffnet, sieht diese Ansicht.
+
+[token]
+title: Token
+needed: Dieser Server fragt, wer Sie sind.
+bad: Dieses Token gilt nicht oder nicht mehr.
+go: Weiter
+note: Tokens macht, wer diesen Server betreibt: {command}. Es wird behalten, bis dieser Tab geschlossen wird.
+
+[help]
+title: Bedienung
+close: Hilfe schließen
+mouse: Maus
+touch: Berühren
+keys: Tasten
+turn: Drehen
+turn.mouse: Links ziehen
+turn.touch: Ein Finger
+move: Verschieben
+move.mouse: Rechts, Mitte oder [Shift] ziehen
+move.touch: Zwei Finger
+look: Umsehen
+look.mouse: Ziehen mit [Ctrl]
+look.touch: Drei Finger
+zoom: Zoomen
+zoom.mouse: Rad
+zoom.touch: Spreizen
+fit: Einpassen
+fit.mouse: Doppelklick
+fit.touch: Doppelt tippen
+home: Grundansicht
+from: Blick von
+from.keys: [T] oben, [I] schräg, [O] parallel, [V] alle Ansichten, [P] Bild
+what: Was dort ist
+what.mouse: Klick
+what.touch: Tippen
+selected: Gewähltes
+selected.keys: [X] ausblenden, [G] durchsichtig, [L] allein, [U] alle
+quantity.keys: [1] bis [9]
+equipment.keys: [B], suchen [/]
+history.keys: [Y], zurück zu jetzt [N]
+markers: Markierungen
+mark.good: guter Messwert
+mark.uncertain: unsicherer Messwert
+mark.bad: gestört: kein Wert
+mark.behind: verdeckt
+mark.alarm: Alarm; die Farbe ist die Priorität
+mark.acknowledged: quittierter Alarm
+mark.returned: gegangen oder gehalten
+
+[measure]
+first: Ersten Punkt anklicken
+second: Zweiten Punkt anklicken
+done: Für eine neue Messung klicken
+missed: Dort ist nichts: auf die Anlage klicken
+end: Fertig
+parts: waagrecht {level} m, Höhe {rise} m
+
+[snapshot]
+failed: Kein Bild: {why}
+unnamed: ein Vergleich braucht Werte, die unter einem Namen behalten wurden
+
+[share]
+title: Teilen
+what: Was sich öffnet
+view: Ansicht
+view.why: Öffnet diese Ansicht: Kamera, Größe, Farben, Zeitpunkt.
+tag: Messstelle
+tag.why: Öffnet sich an der Messstelle. Zum Ausdrucken und Anbringen.
+asset: Apparat
+asset.why: Öffnet sich am Apparat. Zum Ausdrucken und Anbringen.
+follow: Mir folgen
+follow.why: Wer ihn öffnet, sieht mit, solange Sie schauen.
+link: Link
+copy: Kopieren
+copied: Kopiert
+code: Der Link als Code zum Scannen
+nocode: Dieser Server wurde ohne Codes zum Scannen gebaut (npm fehlte).
+local: Öffnet sich nur auf diesem Rechner: seine Adresse hier ist eine lokale.
+people: Wer mitschaut
+followers(one): {count} folgt dieser Ansicht, Sitzung {session}.
+followers(other): {count} folgen dieser Ansicht, Sitzung {session}.
+lead: Sitzung {session} führen lassen
+
+[simulated]
+all: Simuliert
+partly: Teilweise simuliert
+
+[factor]
+range: Bereich der Farben
+min: Von
+max: Bis
+own: Der eigene der Größe
+title: Wie das Feld berechnet wird
+strength: Stärke
+decay: Abfall
+power: Exponent
+radius_m: Radius m, 0: von selbst
+reach_m: Reichweite m, leer: ohne
+of: Nur von {tag}
+choose: Eines Sensors: erst auswählen
+reset(one): Wie eingestellt ({count} Sensor)
+reset(other): Wie eingestellt ({count} Sensoren)
+
+[proof]
+none: Ungeprüft
+fail: Ungeprüft: nicht bestanden
+changed: Ungeprüft: seither geändert
+pass: Geprüft
+
+[eng]
+title: Ingenieur
+close: Feld des Ingenieurs schließen
+place: Setzen
+prove: Prüfen
+what: Was zu tun ist
+find: Messstelle suchen
+nowhere: steht noch nirgends
+on: an {asset}
+choose: Eine Messstelle wählen, dann auf die Oberfläche klicken; oder ihr Zeichen ziehen.
+click: {tag}: auf die Oberfläche klicken oder das Zeichen ziehen.
+missed: Dort ist keine Oberfläche.
+moves: Ausprobiert, nur für Sie
+nomoves: Nichts ist versetzt. Was Sie ausprobieren, sehen nur Sie, bis es gespeichert ist.
+off: {metres} m neben der Oberfläche
+waiting: gerade Abstände, die entlang der Oberfläche folgen
+straight: nur gerade Abstände
+ready: entlang der Oberfläche
+undo: Zurück
+back: Alles zurück
+gaps: Lücken
+save: Speichern …
+gaps.of: Lücken: {quantity}
+gap: Am weitesten von jeder Messstelle: {metres} m. {far} % der Oberfläche sind über {limit} m entfernt; {lost} % haben jetzt keine Daten.
+gap.next: Am weitesten auseinander: {a} zu {b}, {metres} m.
+gap.off: {tag} ist {metres} m neben der Oberfläche von {asset} (höchstens {limit} m)
+gap.none: Keine Messstelle steht neben ihrer Oberfläche.
+diff: {file} speichern?
+diff.before: vorher
+diff.after: nachher
+diff.line: Zeile {n}
+diff.note: Die Liste, wie sie ist, bleibt daneben stehen. Danach gilt sie für alle; das dauert einige Sekunden.
+diff.conflict: {file} wurde von jemand anderem geändert und ist noch nicht geladen. Nichts wurde gespeichert; das wurde geändert:
+diff.more: … und {count} weitere Zeilen
+cancel: Abbrechen
+confirm: Speichern und in Kraft setzen
+saving: Wird vorbereitet; alle sehen die Anlage noch, wie sie war.
+saved: In Kraft. Die Liste davor ist {kept}.
+unsaved: Nicht gespeichert: {text}
+device: Gerät
+proven: {done} von {count} geprüft
+expected: Erwartet
+tolerance: Toleranz ±
+watch: Beobachten
+watching: Jetzt den Messumformer verstellen.
+still: Noch hat sich nichts bewegt.
+moved: {tag} hat sich am meisten bewegt: um {by}.
+swapped: {tag} hat sich bewegt, nicht {wanted}: sind sie vertauscht?
+compare: Vergleichen
+fails: Nicht bestanden
+csv: Werte aus CSV …
+csv.note: {count} erwartete Werte wurden gelesen.
+csv.bad: Die Spalten Tag Name, Expected, Tolerance werden gebraucht.
+export: Ergebnisse ausgeben
+remark: Bemerkung
+passed: {tag} bestanden: {value}.
+failed: {tag} nicht bestanden: {why}.
+now: jetzt {value}
+
+[role]
+operator: Bediener
+engineer: Ingenieur
+
+[said]
+role: das darf nur die Rolle {role}
+elsewhere: die Alarme gehören einem anderen System
+anew: die Anlage wird gerade neu geladen; bitte noch einmal
+quiet: es gibt nichts zu quittieren
+tolerance: der Wert liegt außerhalb der Toleranz
+reading: der Messwert ist nicht gut
+failed: als durchgefallen gemeldet
+far: {tag}: diese Stelle liegt zu weit von {asset} weg
+groupless: {tag} gehört zu keiner Gruppe; die Messstellenliste muss eine nennen
+busy: eine andere Liste wird gerade in Kraft gesetzt
+locked: der Dienst darf in den Ordner der Messstellenliste nicht schreiben ({file})
+changed: {file} wurde inzwischen von anderen geändert
+`;

@@ -1,531 +1,608 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The words of the page in English.
-export default {
-    'close': 'Close',
-    'none': 'none',
-    'novalue': 'no value',
-    'part.failed': 'This part of the page could not be loaded. Press again once the server is there.',
-    'distance.metres': '{metres} m',
+// The words of the page in English. [beginning] of keys, then key: text; {name} is put in, [X] is a key to press, (one) a plural.
+export default `
+close: Close
+none: none
+novalue: no value
+sun: from {wind}, {height}° high
+viewport: Plant, 3D view. Arrow keys turn, plus and minus zoom, W A S D move, F fits, question mark helps.
+legend: Legend
+card: Tag
+place: Place
+status: Status
+timings: Measurements
 
-    // --- ages and durations
-    'age.s': '{n} s',
-    'age.min': '{n} min',
-    'age.h': '{n} h',
-    'age.d': '{n} d',
+[part]
+failed: This part of the page could not be loaded. Press again once the server is there.
 
-    // --- toolbar
-    'bar.equipment': 'Equipment list',
-    'bar.quantity': 'Quantity',
-    'bar.display': 'Display settings',
-    'bar.distance': 'Distance',
-    'bar.interpolation': 'Interpolation',
-    'bar.colours': 'Colours',
-    'bar.ramp': 'Ramp',
-    'bar.lines': 'Lines',
-    'bar.look': 'Look',
-    'bar.show': 'Show',
-    'bar.views': 'Views, cut and equipment shown',
-    'bar.picture': 'Picture: comparison, light, split view',
-    'bar.history': 'History',
-    'bar.fit': 'Fit to picture',
-    'bar.home': 'Home view',
-    'bar.help': 'Help',
-    'bar.hold': 'Stop here: values stand still',
-    'bar.go': 'Go on: live values',
-    'bar.unrecorded': 'Nothing is recorded here: values cannot be stopped',
-    'bar.more': 'More',
-    'bar.measure': 'Measure a distance',
-    'bar.snapshot': 'Save a picture',
-    'bar.share': 'Share',
-    'bar.theme': 'Dark or light',
-    'distance.geodesic': 'Geodesic',
-    'distance.geodesic.why': 'Distance along the surface: heat does not jump across a gap',
-    'distance.euclidean': 'Euclidean',
-    'distance.euclidean.why': 'Straight distance through space',
-    'interpolation.shepard': 'Shepard',
-    'interpolation.shepard.why': 'Inverse distance: exactly the reading at each sensor',
-    'interpolation.paper': 'Paper',
-    'interpolation.paper.why': 'Algorithm 1 of Kim & Suh 2025: smoother, does not reach the readings',
-    'show.value': 'Values',
-    'show.operator': 'Limits',
-    'show.distance': 'Distance',
-    'show.difference': 'Difference',
-    'look.default': 'Measured',
-    'look.glossy': 'Glossy',
-    'look.flat': 'Flat',
-    'look.materials': 'Materials',
-    'lines.none': 'None',
-    'lines.every': 'Every {step}',
-    'lines.chosen': 'Chosen',
-    'ramp.smooth': 'Smooth',
-    'ramp.group': 'Own bands',
-    'ramp.limits': 'Limits',
-    'ramp.chosen': 'Chosen bands',
-    'quantity.temperature': 'Temperature',
-    'quantity.pressure': 'Pressure',
-    'quantity.vibration': 'Vibration',
-    'quantity.flow': 'Flow',
-    'quantity.level': 'Level',
-    'quantity.gas': 'Gas',
+[distance]
+metres: {metres} m
+geodesic: Geodesic
+geodesic.why: Distance along the surface: heat does not jump across a gap
+euclidean: Euclidean
+euclidean.why: Straight distance through space
 
-    // --- panel of the picture
-    'picture.title': 'Picture',
-    'picture.from': 'Distance from',
-    'picture.tag': 'Tag',
-    'picture.difference': 'Difference from',
-    'picture.kept': 'Readings kept',
-    'picture.now': 'Now',
-    'picture.name': 'Name for the readings of now',
-    'picture.keep': 'Keep',
-    'picture.scale': 'Scale',
-    'picture.fill': 'Places without data',
-    'picture.light': 'Light: sun {where}',
-    'picture.turn': 'Side',
-    'picture.turn.why': 'Side of the sun, degrees from north',
-    'picture.height': 'Height',
-    'picture.height.why': 'Height of the sun, degrees',
-    'picture.around': 'Around',
-    'picture.around.why': 'Surroundings',
-    'picture.split': 'Split view',
-    'picture.right': 'Right half',
-    'scale.linear': 'Linear',
-    'scale.log': 'Logarithmic',
-    'fill.none': 'Hatched',
-    'fill.none.why': 'Where no good sensor reaches nothing is shown',
-    'fill.neighbours': 'By neighbours',
-    'fill.neighbours.why': 'Filled and dotted',
-    'split.one': 'One picture',
-    'split.two': 'Two halves',
-    'environment.sky': 'Sky',
-    'sun': 'from {wind}, {height}° high',
-    'wind.N': 'N',
-    'wind.NE': 'NE',
-    'wind.E': 'E',
-    'wind.SE': 'SE',
-    'wind.S': 'S',
-    'wind.SW': 'SW',
-    'wind.W': 'W',
-    'wind.NW': 'NW',
+[age]
+s: {n} s
+min: {n} min
+h: {n} h
+d: {n} d
 
-    // --- panel of views
-    'views.title': 'Views',
-    'views.from': 'Look from',
-    'views.projection': 'Projection',
-    'views.cut': 'Cut away',
-    'views.where': 'Where to cut',
-    'views.turn': 'Other side',
-    'views.equipment': 'Equipment: {what}',
-    'views.select': 'select some first',
-    'views.all': 'Show all',
-    'views.stays': '{axis} {sign} {at} m stays',
-    'views.part': '{percent} % of {what}',
-    'views.plant': 'the plant',
-    'side.top': 'Top',
-    'side.front': 'Front',
-    'side.right': 'Right',
-    'side.back': 'Back',
-    'side.left': 'Left',
-    'side.iso': 'Corner',
-    'projection.perspective': 'Perspective',
-    'projection.parallel': 'Parallel',
-    'cut.off': 'Off',
-    'cut.box': 'Box',
-    'cut.move': 'Move the cut: {axis}',
-    'cut.oblique': 'oblique',
-    'shown.hide': 'Hide',
-    'shown.ghost': 'Ghost',
-    'shown.only': 'Only this',
+[bar]
+equipment: Equipment list
+quantity: Quantity
+display: Display settings
+distance: Distance
+interpolation: Interpolation
+colours: Colours
+ramp: Ramp
+lines: Lines
+look: Look
+show: Show
+views: Views, cut and equipment shown
+picture: Picture: comparison, light, split view
+history: History
+fit: Fit to picture
+home: Home view
+help: Help
+hold: Stop here: values stand still
+go: Go on: live values
+unrecorded: Nothing is recorded here: values cannot be stopped
+more: More
+measure: Measure a distance
+snapshot: Save a picture
+share: Share
+theme: Dark or light
+engineer: Engineer: place and prove sensors
 
-    // --- equipment
-    'assets.title': 'Equipment',
-    'assets.close': 'Close equipment list',
-    'assets.search': 'Search equipment and tags',
-    'assets.nothing': 'Nothing has that name.',
-    'assets.sensors': { one: '{count} sensor', other: '{count} sensors' },
-    'assets.loose': 'Tags without equipment',
-    'assets.about': 'About the selected equipment',
-    'assets.description': 'Description',
-    'assets.area': 'Area',
-    'assets.size': 'Size',
-    'assets.place': 'Middle at',
-    'assets.sensors.name': 'Sensors',
-    'assets.worst': 'worst quality: {quality}',
+[interpolation]
+shepard: Shepard
+shepard.why: Inverse distance: exactly the reading at each sensor
+paper: Paper
+paper.why: Algorithm 1 of Kim & Suh 2025: smoother, does not reach the readings
 
-    // --- the picture and what lies over it
-    'viewport': 'Plant, 3D view. Arrow keys turn, plus and minus zoom, W A S D move, F fits, question mark helps.',
-    'viewport.waiting': 'Waiting for the first picture',
-    'viewport.refused': 'The server refused: {text}',
-    'legend': 'Legend',
-    'legend.right': 'Legend of the right half',
-    'legend.colours': 'Colours from {min} to {max}',
-    'legend.distance': 'Distance',
-    'legend.operator': 'By each tag’s own limits.',
-    'legend.log': 'Logarithmic scale.',
-    'legend.unsafe': 'These colours may be misread.',
-    'legend.glossy': 'Glossy look: light changes the colours. Do not read values.',
-    'legend.nolimits': 'No limits',
-    'legend.nodata': 'No data',
-    'legend.uncertain': 'Uncertain',
-    'card': 'Tag',
-    'card.novalue': 'No value',
-    'card.quality': 'Quality',
-    'card.age': 'Age',
-    'card.on': 'On',
-    'card.trend': 'Trend',
-    'card.HH': 'above the highest limit',
-    'card.H': 'above the high limit',
-    'card.L': 'below the low limit',
-    'card.LL': 'below the lowest limit',
-    'card.BAD': 'bad measurement',
-    'card.ALM': 'alarm',
-    'place': 'Place',
-    'place.measured': 'Measured here',
-    'place.between': 'Between sensors',
-    'place.no data': 'No data: its nearest sensor is bad, or none reaches',
-    'place.context': 'No sensor of this quantity on it',
-    'place.inside': 'Inside of what is cut open',
-    'place.uncertain': '{state}, uncertain',
-    'place.hide': 'Hide',
-    'place.ghost': 'Ghost',
-    'place.only': 'Only',
-    'following.title': 'This is the view of session {session}',
-    'following.own': 'Own view',
+[show]
+value: Values
+operator: Limits
+distance: Distance
+difference: Difference
 
-    // --- alarms
-    'alarms.title': 'Alarms',
-    'alarms.close': 'Close alarms',
-    'alarms.unheard': 'Alarms: nothing heard yet',
-    'alarms.none': 'No active alarms',
-    'alarms.some': { one: '{count} active alarm', other: '{count} active alarms' },
-    'alarms.waiting': '{alarms}, {waiting} not acknowledged',
-    'alarms.now': 'Now: {alarms}',
-    'alarms.then': 'The plant is shown as it was. These alarms are those of now.',
-    'alarms.at': '{alarm} at {value}',
-    'alarms.value': '{value} (limit {limit})',
-    'alarms.quiet': 'No active alarms.',
-    'alarms.aside': 'Set aside ({count})',
-    'alarms.more': 'and {count} more',
-    'alarms.since': 'since {time}, {age}',
-    'alarms.until': 'until {time}',
-    'alarms.by': 'by {who}',
-    'alarms.held': 'measurement bad: as it last was',
-    'alarms.priority': 'Priority {priority}',
-    'alarms.fly': 'Fly to {tag}',
-    'state.active': 'Active',
-    'state.unacknowledged': 'Unacknowledged',
-    'state.acknowledged': 'Acknowledged',
-    'state.returned': 'Returned, unacknowledged',
-    'state.latched': 'Latched',
-    'state.shelved': 'Shelved',
-    'state.suppressed': 'Suppressed by design',
-    'state.out_of_service': 'Out of service',
-    'kind.HH': 'High high',
-    'kind.H': 'High',
-    'kind.L': 'Low',
-    'kind.LL': 'Low low',
-    'kind.BAD': 'Bad measurement',
-    'kind.ALM': 'Alarm',
-    'kind.LINK': 'Device gives no readings',
-    'action.acknowledge': 'Acknowledge',
-    'action.shelve': 'Shelve…',
-    'action.reset': 'Reset',
-    'action.unshelve': 'Unshelve',
-    'action.in_service': 'Put in service',
-    'mode.display': 'Shown here, acknowledged in the control system',
-    'mode.mirror': 'As the control system has them',
-    'mode.local': 'Local alarms of this site',
-    'shelve.title': 'Shelve {what}',
-    'shelve.for': 'For',
-    'shelve.quarter': '15 minutes',
-    'shelve.hour': '1 hour',
-    'shelve.shift': '8 hours',
-    'shelve.day': '1 day',
-    'shelve.reason': 'Reason',
-    'shelve.cancel': 'Cancel',
-    'shelve.do': 'Shelve',
+[look]
+default: Measured
+glossy: Glossy
+flat: Flat
+materials: Materials
 
-    // --- trends and the time bar
-    'trends.title': 'Trend',
-    'trends.time': 'Time',
-    'trends.csv': 'Export CSV',
-    'trends.close': 'Close trends',
-    'trends.hour': '1 h',
-    'trends.hour.why': 'Last hour',
-    'trends.shift': 'Shift',
-    'trends.shift.why': 'Last 8 hours',
-    'trends.day': 'Day',
-    'trends.day.why': 'Last 24 hours',
-    'trends.week': 'Week',
-    'trends.week.why': 'Last 7 days',
-    'trends.remove': 'Remove {tag}',
-    'trends.gaps': 'Hatched: no value of {tags}',
-    'trends.failed': 'No trend: {why}',
-    'trends.unsaved': 'Not exported: {why}',
-    'trends.uncharted': 'this server was built without its charts (npm was not there)',
-    'time.title': 'History',
-    'time.play': 'Play',
-    'time.pause': 'Pause',
-    'time.speed': 'Speed of play',
-    'time.span': 'Time that the slider spans',
-    'time.slider': 'Instant that is shown',
-    'time.live': 'Back to live',
-    'time.now': 'Now',
-    'time.ago': '{instant} · {age} ago',
-    'time.unrecorded': 'not recorded',
-    'time.raised': { one: '{count} alarm raised', other: '{count} alarms raised' },
+[lines]
+none: None
+every: Every {step}
+chosen: Chosen
 
-    // --- status bar, and whether the picture may be trusted
-    'status': 'Status',
-    'status.clock': 'Plant time',
-    'status.then': 'Then',
-    'status.unset': '{clock}, unsynchronised',
-    'status.unset.why': 'Nothing keeps the server’s clock right: times may be wrong. Ages are not.',
-    'status.oldest': 'Oldest reading',
-    'status.frames': 'Frames',
-    'status.rate': '{count}/s',
-    'status.still': 'still',
-    'status.latency': 'Latency',
-    'status.ms': '{n} ms',
-    'status.config': 'Configuration',
-    'status.picture': 'Picture',
-    'status.retry': 'Try now',
-    'health.connecting': 'Connecting',
-    'health.live': 'Live',
-    'health.partly': 'Live, partly simulated',
-    'health.simulated': 'Simulated',
-    'health.down': '{live}, {down} of {all} sources down',
-    'health.unmeasured': 'Not measured in the plant: {sources}.',
-    'health.nodata': 'No live data',
-    'health.nosensor': 'No sensor delivers values.',
-    'health.source': 'Source {source} does not answer.',
-    'health.sources': 'Sources {sources} do not answer.',
-    'health.past': 'History',
-    'health.returning': 'Returning to now',
-    'health.playing': '{instant}, playing {speed}×',
-    'health.back': '{instant}, playing back {speed}×',
-    'health.noanswer': 'No answer',
-    'health.silent': 'The server has been silent for {age}.',
-    'health.old': 'This picture is {age} old.',
-    'health.barred': 'Not let in',
-    'health.disconnected': 'Disconnected',
-    'health.because': '{reason}.',
-    'health.retry': 'Trying again in {age}.',
-    'health.retrying': 'Trying again now.',
-    'reason.down': 'The server went down',
-    'reason.version': 'This page and the server speak different versions',
-    'reason.forbidden': 'Not allowed',
-    'reason.long': 'A message was too long',
-    'reason.full': 'The server is full',
-    'reason.slow': 'This page was too slow',
-    'reason.unreachable': 'The server cannot be reached',
-    'reason.unanswered': 'The server does not answer',
-    'reason.silent': 'The server fell silent',
-    'reason.token_needed': 'A token is needed',
-    'reason.bad_token': 'This token is not valid, or no longer',
+[ramp]
+smooth: Smooth
+group: Own bands
+limits: Limits
+chosen: Chosen bands
 
-    // --- qualities: the three, and by the names that OPC UA gives them
-    'quality.good': 'Good',
-    'quality.uncertain': 'Uncertain',
-    'quality.bad': 'Bad',
-    'quality.unknown': 'Unknown',
-    'quality.because': '{quality}: {detail}',
-    'detail.CommunicationError': 'communication error',
-    'detail.ConfigurationError': 'configuration error',
-    'detail.DeviceFailure': 'device failure',
-    'detail.NoCommunication': 'no communication',
-    'detail.OutOfService': 'out of service',
-    'detail.SensorFailure': 'sensor failure',
-    'detail.WaitingForInitialData': 'waiting for initial data',
-    'detail.EngineeringUnitsExceeded': 'engineering units exceeded',
-    'detail.LastUsableValue': 'last usable value',
-    'detail.NoCommunicationLastUsableValue': 'no communication last usable value',
-    'detail.SensorNotAccurate': 'sensor not accurate',
+[quantity]
+temperature: Temperature
+pressure: Pressure
+vibration: Vibration
+flow: Flow
+level: Level
+gas: Gas
 
-    // --- measurements
-    'timings': 'Measurements',
-    'timings.ms': 'Milliseconds',
-    'timings.half': 'half',
-    'timings.most': '95 %',
-    'timings.input': 'Input to picture',
-    'timings.sensor': 'Reading to picture',
-    'timings.wait': 'waiting',
-    'timings.field': 'field',
-    'timings.render': 'drawing',
-    'timings.encode': 'encoding',
-    'timings.network': 'network',
-    'timings.decode': 'decoding',
-    'timings.rate': '{pictures} pictures/s, {kbit} kbit/s',
-    'timings.follow': 'Session {session}. Who opens {link} sees this view.',
+[picture]
+title: Picture
+from: Distance from
+tag: Tag
+difference: Difference from
+kept: Readings kept
+now: Now
+name: Name for the readings of now
+keep: Keep
+scale: Scale
+fill: Places without data
+light: Light: sun {where}
+turn: Side
+turn.why: Side of the sun, degrees from north
+height: Height
+height.why: Height of the sun, degrees
+around: Around
+around.why: Surroundings
+split: Split view
+right: Right half
 
-    // --- dialogs; [X] is a key
-    'token.title': 'Token',
-    'token.needed': 'This server asks who you are.',
-    'token.bad': 'This token is not valid, or no longer.',
-    'token.go': 'Continue',
-    'token.note': 'Whoever runs this server makes tokens: {command}. It is kept until this tab is closed.',
-    'help.title': 'Moving around',
-    'help.close': 'Close help',
-    'help.mouse': 'Mouse',
-    'help.touch': 'Touch',
-    'help.keys': 'Keys',
-    'help.turn': 'Turn',
-    'help.turn.mouse': 'Left drag',
-    'help.turn.touch': 'One finger',
-    'help.move': 'Move',
-    'help.move.mouse': 'Right, middle or [Shift] drag',
-    'help.move.touch': 'Two fingers',
-    'help.look': 'Look around',
-    'help.look.mouse': '[Ctrl] drag',
-    'help.look.touch': 'Three fingers',
-    'help.zoom': 'Zoom',
-    'help.zoom.mouse': 'Wheel',
-    'help.zoom.touch': 'Pinch',
-    'help.fit': 'Fit',
-    'help.fit.mouse': 'Double click',
-    'help.fit.touch': 'Double tap',
-    'help.home': 'Home',
-    'help.from': 'Look from',
-    'help.from.keys': '[T] top, [I] corner, [O] parallel, [V] all views, [P] picture',
-    'help.what': 'What is there',
-    'help.what.mouse': 'Click',
-    'help.what.touch': 'Tap',
-    'help.selected': 'Selected',
-    'help.selected.keys': '[X] hide, [G] ghost, [L] alone, [U] all',
-    'help.quantity.keys': '[1] to [9]',
-    'help.equipment.keys': '[B], search [/]',
-    'help.history.keys': '[Y], back to live [N]',
-    'help.markers': 'Markers',
-    'help.mark.good': 'good reading',
-    'help.mark.uncertain': 'uncertain reading',
-    'help.mark.bad': 'bad: no value',
-    'help.mark.behind': 'behind something',
-    'help.mark.alarm': 'alarm; its colour is the priority',
-    'help.mark.acknowledged': 'acknowledged alarm',
-    'help.mark.returned': 'returned or latched',
+[scale]
+linear: Linear
+log: Logarithmic
 
-    // --- tools: measuring, pictures, sharing
-    'measure.first': 'Click the first place',
-    'measure.second': 'Click the second place',
-    'measure.done': 'Click to measure again',
-    'measure.missed': 'Nothing is there: click on the plant',
-    'measure.end': 'Done',
-    'measure.parts': 'level {level} m, rise {rise} m',
-    'snapshot.failed': 'No picture: {why}',
-    'snapshot.unnamed': 'a comparison needs readings that were kept under a name',
-    'share.title': 'Share',
-    'share.what': 'What to open',
-    'share.view': 'This view',
-    'share.view.why': 'Opens this view: camera, quantity, colours, instant.',
-    'share.tag': 'This tag',
-    'share.tag.why': 'Opens at the tag. To be printed and put at the equipment.',
-    'share.asset': 'This equipment',
-    'share.asset.why': 'Opens at the equipment. To be printed and put there.',
-    'share.follow': 'Follow me',
-    'share.follow.why': 'Whoever opens it sees what you see, while you look.',
-    'share.link': 'Link',
-    'share.copy': 'Copy',
-    'share.copied': 'Copied',
-    'share.code': 'The link as a code to scan',
-    'share.nocode': 'This server was built without codes to scan (npm was not there).',
-    'share.local': 'Opens on this machine only: its address here is a local one.',
-    'share.people': 'Who looks along',
-    'share.followers': {
-        one: '{count} follows this view, of session {session}.', other: '{count} follow this view, of session {session}.',
-    },
-    'share.lead': 'Let session {session} lead',
-    'simulated.all': 'Simulated',
-    'simulated.partly': 'Partly simulated',
-    'factor.range': 'Range of the colours',
-    'factor.min': 'From',
-    'factor.max': 'To',
-    'factor.own': 'The group’s own',
-    'factor.title': 'How the field is computed',
-    'factor.strength': 'Strength',
-    'factor.decay': 'Decay',
-    'factor.power': 'Power',
-    'factor.radius_m': 'Radius m, 0: by itself',
-    'factor.reach_m': 'Reach m, empty: no limit',
-    'factor.of': 'Of {tag} alone',
-    'factor.choose': 'Of one sensor: select it first',
-    'factor.reset': { one: 'As configured ({count} sensor)', other: 'As configured ({count} sensors)' },
+[fill]
+none: Hatched
+none.why: Where no good sensor reaches nothing is shown
+neighbours: By neighbours
+neighbours.why: Filled and dotted
 
-    // --- the engineer's panel
-    'bar.engineer': 'Engineer: place and prove sensors',
-    'proof.none': 'Unproven',
-    'proof.fail': 'Unproven: failed',
-    'proof.changed': 'Unproven: changed since',
-    'proof.pass': 'Proven',
-    'eng.title': 'Engineer',
-    'eng.close': 'Close the engineer’s panel',
-    'eng.place': 'Place',
-    'eng.prove': 'Prove',
-    'eng.what': 'What to do',
-    'eng.find': 'Find a tag',
-    'eng.nowhere': 'stands nowhere yet',
-    'eng.on': 'on {asset}',
-    'eng.choose': 'Choose a tag, then click on the surface; or drag its marker.',
-    'eng.click': '{tag}: click on the surface, or drag its marker.',
-    'eng.missed': 'There is no surface at that place.',
-    'eng.moves': 'Tried out, for you alone',
-    'eng.nomoves': 'Nothing is moved. What you try out only you can see, until it is saved.',
-    'eng.off': '{metres} m off the surface',
-    'eng.waiting': 'straight distances, those along the surface follow',
-    'eng.straight': 'straight distances only',
-    'eng.ready': 'along the surface',
-    'eng.undo': 'Undo',
-    'eng.back': 'Take all back',
-    'eng.gaps': 'Gaps',
-    'eng.save': 'Save …',
-    'eng.gaps.of': 'Gaps: {quantity}',
-    'eng.gap': 'Farthest from any sensor: {metres} m. {far} % of the surface is more than {limit} m away; {lost} % has no data now.',
-    'eng.gap.next': 'Farthest apart: {a} to {b}, {metres} m.',
-    'eng.gap.off': '{tag} is {metres} m off the surface of {asset} (at most {limit} m)',
-    'eng.gap.none': 'No sensor is off its surface.',
-    'eng.diff': 'Save {file}?',
-    'eng.diff.before': 'before',
-    'eng.diff.after': 'after',
-    'eng.diff.line': 'line {n}',
-    'eng.diff.note': 'The list as it is stays beside it. It is then in force for everybody; that takes some seconds.',
-    'eng.diff.conflict': '{file} was changed by somebody else and is not loaded yet. Nothing was saved; this is what they changed:',
-    'eng.diff.more': '… and {count} more lines',
-    'eng.cancel': 'Cancel',
-    'eng.confirm': 'Save and put in force',
-    'eng.saving': 'Being prepared; everybody is still shown the plant as it was.',
-    'eng.saved': 'In force. The list before it is {kept}.',
-    'eng.unsaved': 'Not saved: {text}',
-    'eng.device': 'Device',
-    'eng.proven': '{done} of {count} proven',
-    'eng.expected': 'Expected',
-    'eng.tolerance': 'Tolerance ±',
-    'eng.watch': 'Watch',
-    'eng.watching': 'Force the transmitter now.',
-    'eng.still': 'Nothing has moved yet.',
-    'eng.moved': '{tag} moved most: by {by}.',
-    'eng.swapped': '{tag} moved, not {wanted}: are they swapped?',
-    'eng.compare': 'Compare',
-    'eng.fails': 'Fails',
-    'eng.csv': 'Values from CSV …',
-    'eng.csv.note': '{count} expected values were read.',
-    'eng.csv.bad': 'Columns Tag Name, Expected, Tolerance are needed.',
-    'eng.export': 'Export results',
-    'eng.remark': 'Remark',
-    'eng.passed': '{tag} passed: {value}.',
-    'eng.failed': '{tag} failed: {why}.',
-    'eng.now': 'now {value}',
+[split]
+one: One picture
+two: Two halves
 
-    // --- refusals
-    'role.operator': 'operator',
-    'role.engineer': 'engineer',
-    'said.role': 'that takes the role {role}',
-    'said.elsewhere': 'alarms are another system’s here',
-    'said.anew': 'the plant is being loaded anew; try again',
-    'said.quiet': 'there is nothing to acknowledge',
-    'said.tolerance': 'the value is beyond the tolerance',
-    'said.reading': 'the reading is not good',
-    'said.failed': 'said to have failed',
-    'said.far': '{tag}: that place is too far from {asset}',
-    'said.groupless': '{tag} belongs to no group: the tag list has to name one',
-    'said.busy': 'another list is being put in force',
-    'said.locked': 'the daemon may not write into the folder of the tag list ({file})',
-    'said.changed': '{file} was changed by somebody else meanwhile',
-};
+[environment]
+sky: Sky
+
+[wind]
+N: N
+NE: NE
+E: E
+SE: SE
+S: S
+SW: SW
+W: W
+NW: NW
+
+[views]
+title: Views
+from: Look from
+projection: Projection
+cut: Cut away
+where: Where to cut
+turn: Other side
+equipment: Equipment: {what}
+select: select some first
+all: Show all
+stays: {axis} {sign} {at} m stays
+part: {percent} % of {what}
+plant: the plant
+
+[side]
+top: Top
+front: Front
+right: Right
+back: Back
+left: Left
+iso: Corner
+
+[projection]
+perspective: Perspective
+parallel: Parallel
+
+[cut]
+off: Off
+box: Box
+move: Move the cut: {axis}
+oblique: oblique
+
+[shown]
+hide: Hide
+ghost: Ghost
+only: Only this
+
+[assets]
+title: Equipment
+close: Close equipment list
+search: Search equipment and tags
+nothing: Nothing has that name.
+sensors(one): {count} sensor
+sensors(other): {count} sensors
+loose: Tags without equipment
+about: About the selected equipment
+description: Description
+area: Area
+size: Size
+place: Middle at
+sensors.name: Sensors
+worst: worst quality: {quality}
+
+[viewport]
+waiting: Waiting for the first picture
+refused: The server refused: {text}
+
+[legend]
+right: Legend of the right half
+colours: Colours from {min} to {max}
+distance: Distance
+operator: By each tag’s own limits.
+log: Logarithmic scale.
+unsafe: These colours may be misread.
+glossy: Glossy look: light changes the colours. Do not read values.
+nolimits: No limits
+nodata: No data
+uncertain: Uncertain
+
+[card]
+novalue: No value
+quality: Quality
+age: Age
+on: On
+trend: Trend
+HH: above the highest limit
+H: above the high limit
+L: below the low limit
+LL: below the lowest limit
+BAD: bad measurement
+ALM: alarm
+
+[place]
+measured: Measured here
+between: Between sensors
+no data: No data: its nearest sensor is bad, or none reaches
+context: No sensor of this quantity on it
+inside: Inside of what is cut open
+uncertain: {state}, uncertain
+hide: Hide
+ghost: Ghost
+only: Only
+
+[following]
+title: This is the view of session {session}
+own: Own view
+
+[alarms]
+title: Alarms
+close: Close alarms
+unheard: Alarms: nothing heard yet
+none: No active alarms
+some(one): {count} active alarm
+some(other): {count} active alarms
+waiting: {alarms}, {waiting} not acknowledged
+now: Now: {alarms}
+then: The plant is shown as it was. These alarms are those of now.
+at: {alarm} at {value}
+value: {value} (limit {limit})
+quiet: No active alarms.
+aside: Set aside ({count})
+more: and {count} more
+since: since {time}, {age}
+until: until {time}
+by: by {who}
+held: measurement bad: as it last was
+priority: Priority {priority}
+fly: Fly to {tag}
+
+[state]
+active: Active
+unacknowledged: Unacknowledged
+acknowledged: Acknowledged
+returned: Returned, unacknowledged
+latched: Latched
+shelved: Shelved
+suppressed: Suppressed by design
+out_of_service: Out of service
+
+[kind]
+HH: High high
+H: High
+L: Low
+LL: Low low
+BAD: Bad measurement
+ALM: Alarm
+LINK: Device gives no readings
+
+[action]
+acknowledge: Acknowledge
+shelve: Shelve…
+reset: Reset
+unshelve: Unshelve
+in_service: Put in service
+
+[mode]
+display: Shown here, acknowledged in the control system
+mirror: As the control system has them
+local: Local alarms of this site
+
+[shelve]
+title: Shelve {what}
+for: For
+quarter: 15 minutes
+hour: 1 hour
+shift: 8 hours
+day: 1 day
+reason: Reason
+cancel: Cancel
+do: Shelve
+
+[trends]
+title: Trend
+time: Time
+csv: Export CSV
+close: Close trends
+hour: 1 h
+hour.why: Last hour
+shift: Shift
+shift.why: Last 8 hours
+day: Day
+day.why: Last 24 hours
+week: Week
+week.why: Last 7 days
+remove: Remove {tag}
+gaps: Hatched: no value of {tags}
+failed: No trend: {why}
+unsaved: Not exported: {why}
+uncharted: this server was built without its charts (npm was not there)
+
+[time]
+title: History
+play: Play
+pause: Pause
+speed: Speed of play
+span: Time that the slider spans
+slider: Instant that is shown
+live: Back to live
+now: Now
+ago: {instant} · {age} ago
+unrecorded: not recorded
+raised(one): {count} alarm raised
+raised(other): {count} alarms raised
+
+[status]
+clock: Plant time
+then: Then
+unset: {clock}, unsynchronised
+unset.why: Nothing keeps the server’s clock right: times may be wrong. Ages are not.
+oldest: Oldest reading
+frames: Frames
+rate: {count}/s
+still: still
+latency: Latency
+ms: {n} ms
+config: Configuration
+picture: Picture
+retry: Try now
+
+[health]
+connecting: Connecting
+live: Live
+partly: Live, partly simulated
+simulated: Simulated
+down: {live}, {down} of {all} sources down
+unmeasured: Not measured in the plant: {sources}.
+nodata: No live data
+nosensor: No sensor delivers values.
+source: Source {source} does not answer.
+sources: Sources {sources} do not answer.
+past: History
+returning: Returning to now
+playing: {instant}, playing {speed}×
+back: {instant}, playing back {speed}×
+noanswer: No answer
+silent: The server has been silent for {age}.
+old: This picture is {age} old.
+barred: Not let in
+disconnected: Disconnected
+because: {reason}.
+retry: Trying again in {age}.
+retrying: Trying again now.
+
+[reason]
+down: The server went down
+version: This page and the server speak different versions
+forbidden: Not allowed
+long: A message was too long
+full: The server is full
+slow: This page was too slow
+unreachable: The server cannot be reached
+unanswered: The server does not answer
+silent: The server fell silent
+token_needed: A token is needed
+bad_token: This token is not valid, or no longer
+
+[quality]
+good: Good
+uncertain: Uncertain
+bad: Bad
+unknown: Unknown
+because: {quality}: {detail}
+
+[detail]
+CommunicationError: communication error
+ConfigurationError: configuration error
+DeviceFailure: device failure
+NoCommunication: no communication
+OutOfService: out of service
+SensorFailure: sensor failure
+WaitingForInitialData: waiting for initial data
+EngineeringUnitsExceeded: engineering units exceeded
+LastUsableValue: last usable value
+NoCommunicationLastUsableValue: no communication last usable value
+SensorNotAccurate: sensor not accurate
+
+[timings]
+ms: Milliseconds
+half: half
+most: 95 %
+input: Input to picture
+sensor: Reading to picture
+wait: waiting
+field: field
+render: drawing
+encode: encoding
+network: network
+decode: decoding
+rate: {pictures} pictures/s, {kbit} kbit/s
+follow: Session {session}. Who opens {link} sees this view.
+
+[token]
+title: Token
+needed: This server asks who you are.
+bad: This token is not valid, or no longer.
+go: Continue
+note: Whoever runs this server makes tokens: {command}. It is kept until this tab is closed.
+
+[help]
+title: Moving around
+close: Close help
+mouse: Mouse
+touch: Touch
+keys: Keys
+turn: Turn
+turn.mouse: Left drag
+turn.touch: One finger
+move: Move
+move.mouse: Right, middle or [Shift] drag
+move.touch: Two fingers
+look: Look around
+look.mouse: [Ctrl] drag
+look.touch: Three fingers
+zoom: Zoom
+zoom.mouse: Wheel
+zoom.touch: Pinch
+fit: Fit
+fit.mouse: Double click
+fit.touch: Double tap
+home: Home
+from: Look from
+from.keys: [T] top, [I] corner, [O] parallel, [V] all views, [P] picture
+what: What is there
+what.mouse: Click
+what.touch: Tap
+selected: Selected
+selected.keys: [X] hide, [G] ghost, [L] alone, [U] all
+quantity.keys: [1] to [9]
+equipment.keys: [B], search [/]
+history.keys: [Y], back to live [N]
+markers: Markers
+mark.good: good reading
+mark.uncertain: uncertain reading
+mark.bad: bad: no value
+mark.behind: behind something
+mark.alarm: alarm; its colour is the priority
+mark.acknowledged: acknowledged alarm
+mark.returned: returned or latched
+
+[measure]
+first: Click the first place
+second: Click the second place
+done: Click to measure again
+missed: Nothing is there: click on the plant
+end: Done
+parts: level {level} m, rise {rise} m
+
+[snapshot]
+failed: No picture: {why}
+unnamed: a comparison needs readings that were kept under a name
+
+[share]
+title: Share
+what: What to open
+view: This view
+view.why: Opens this view: camera, quantity, colours, instant.
+tag: This tag
+tag.why: Opens at the tag. To be printed and put at the equipment.
+asset: This equipment
+asset.why: Opens at the equipment. To be printed and put there.
+follow: Follow me
+follow.why: Whoever opens it sees what you see, while you look.
+link: Link
+copy: Copy
+copied: Copied
+code: The link as a code to scan
+nocode: This server was built without codes to scan (npm was not there).
+local: Opens on this machine only: its address here is a local one.
+people: Who looks along
+followers(one): {count} follows this view, of session {session}.
+followers(other): {count} follow this view, of session {session}.
+lead: Let session {session} lead
+
+[simulated]
+all: Simulated
+partly: Partly simulated
+
+[factor]
+range: Range of the colours
+min: From
+max: To
+own: The group’s own
+title: How the field is computed
+strength: Strength
+decay: Decay
+power: Power
+radius_m: Radius m, 0: by itself
+reach_m: Reach m, empty: no limit
+of: Of {tag} alone
+choose: Of one sensor: select it first
+reset(one): As configured ({count} sensor)
+reset(other): As configured ({count} sensors)
+
+[proof]
+none: Unproven
+fail: Unproven: failed
+changed: Unproven: changed since
+pass: Proven
+
+[eng]
+title: Engineer
+close: Close the engineer’s panel
+place: Place
+prove: Prove
+what: What to do
+find: Find a tag
+nowhere: stands nowhere yet
+on: on {asset}
+choose: Choose a tag, then click on the surface; or drag its marker.
+click: {tag}: click on the surface, or drag its marker.
+missed: There is no surface at that place.
+moves: Tried out, for you alone
+nomoves: Nothing is moved. What you try out only you can see, until it is saved.
+off: {metres} m off the surface
+waiting: straight distances, those along the surface follow
+straight: straight distances only
+ready: along the surface
+undo: Undo
+back: Take all back
+gaps: Gaps
+save: Save …
+gaps.of: Gaps: {quantity}
+gap: Farthest from any sensor: {metres} m. {far} % of the surface is more than {limit} m away; {lost} % has no data now.
+gap.next: Farthest apart: {a} to {b}, {metres} m.
+gap.off: {tag} is {metres} m off the surface of {asset} (at most {limit} m)
+gap.none: No sensor is off its surface.
+diff: Save {file}?
+diff.before: before
+diff.after: after
+diff.line: line {n}
+diff.note: The list as it is stays beside it. It is then in force for everybody; that takes some seconds.
+diff.conflict: {file} was changed by somebody else and is not loaded yet. Nothing was saved; this is what they changed:
+diff.more: … and {count} more lines
+cancel: Cancel
+confirm: Save and put in force
+saving: Being prepared; everybody is still shown the plant as it was.
+saved: In force. The list before it is {kept}.
+unsaved: Not saved: {text}
+device: Device
+proven: {done} of {count} proven
+expected: Expected
+tolerance: Tolerance ±
+watch: Watch
+watching: Force the transmitter now.
+still: Nothing has moved yet.
+moved: {tag} moved most: by {by}.
+swapped: {tag} moved, not {wanted}: are they swapped?
+compare: Compare
+fails: Fails
+csv: Values from CSV …
+csv.note: {count} expected values were read.
+csv.bad: Columns Tag Name, Expected, Tolerance are needed.
+export: Export results
+remark: Remark
+passed: {tag} passed: {value}.
+failed: {tag} failed: {why}.
+now: now {value}
+
+[role]
+operator: operator
+engineer: engineer
+
+[said]
+role: that takes the role {role}
+elsewhere: alarms are another system’s here
+anew: the plant is being loaded anew; try again
+quiet: there is nothing to acknowledge
+tolerance: the value is beyond the tolerance
+reading: the reading is not good
+failed: said to have failed
+far: {tag}: that place is too far from {asset}
+groupless: {tag} belongs to no group: the tag list has to name one
+busy: another list is being put in force
+locked: the daemon may not write into the folder of the tag list ({file})
+changed: {file} was changed by somebody else meanwhile
+`;

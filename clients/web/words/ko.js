@@ -1,531 +1,605 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The words of the page in Korean.
-export default {
-    'close': '닫기',
-    'none': '없음',
-    'novalue': '값 없음',
-    'part.failed': '화면의 이 부분을 불러오지 못했습니다. 서버가 응답하면 다시 누르십시오.',
-    'distance.metres': '{metres} m',
+// The words of the page in Korean. [beginning] of keys, then key: text; {name} is put in, [X] is a key to press, (one) a plural.
+export default `
+close: 닫기
+none: 없음
+novalue: 값 없음
+sun: {wind}쪽, 고도 {height}°
+viewport: 플랜트 3D 보기. 화살표 회전, +와 - 확대·축소, W A S D 이동, F 맞춤, 물음표 도움말.
+legend: 범례
+card: 태그
+place: 위치
+status: 상태
+timings: 성능 측정
 
-    // --- ages and durations
-    'age.s': '{n}초',
-    'age.min': '{n}분',
-    'age.h': '{n}시간',
-    'age.d': '{n}일',
+[part]
+failed: 화면의 이 부분을 불러오지 못했습니다. 서버가 응답하면 다시 누르십시오.
 
-    // --- toolbar
-    'bar.equipment': '설비 목록',
-    'bar.quantity': '측정량',
-    'bar.display': '표시 설정',
-    'bar.distance': '거리',
-    'bar.interpolation': '보간',
-    'bar.colours': '색상표',
-    'bar.ramp': '색 단계',
-    'bar.lines': '등치선',
-    'bar.look': '모양',
-    'bar.show': '보기',
-    'bar.views': '시점, 단면, 설비 표시',
-    'bar.picture': '화면: 비교, 조명, 화면 분할',
-    'bar.history': '이력',
-    'bar.fit': '화면에 맞춤',
-    'bar.home': '기본 시점',
-    'bar.help': '도움말',
-    'bar.hold': '여기서 정지: 값이 멈춤',
-    'bar.go': '계속: 실시간 값',
-    'bar.unrecorded': '기록이 없어 값을 정지할 수 없습니다',
-    'bar.more': '더 보기',
-    'bar.measure': '거리 측정',
-    'bar.snapshot': '그림 저장',
-    'bar.share': '공유',
-    'bar.theme': '어둡게 또는 밝게',
-    'distance.geodesic': '측지 거리',
-    'distance.geodesic.why': '표면을 따르는 거리: 열은 틈을 건너뛰지 않습니다',
-    'distance.euclidean': '직선 거리',
-    'distance.euclidean.why': '공간을 가로지르는 직선 거리',
-    'interpolation.shepard': 'Shepard',
-    'interpolation.shepard.why': '역거리 가중: 각 센서 위치에서 지시값과 정확히 일치',
-    'interpolation.paper': '논문식',
-    'interpolation.paper.why': 'Kim & Suh 2025의 알고리즘 1: 더 부드럽지만 지시값에 도달하지 않음',
-    'show.value': '값',
-    'show.operator': '한계',
-    'show.distance': '거리',
-    'show.difference': '차이',
-    'look.default': '계측',
-    'look.glossy': '광택',
-    'look.flat': '평면',
-    'look.materials': '재질',
-    'lines.none': '없음',
-    'lines.every': '{step} 간격',
-    'lines.chosen': '선택한 값',
-    'ramp.smooth': '연속',
-    'ramp.group': '고유 구간',
-    'ramp.limits': '한계',
-    'ramp.chosen': '선택한 구간',
-    'quantity.temperature': '온도',
-    'quantity.pressure': '압력',
-    'quantity.vibration': '진동',
-    'quantity.flow': '유량',
-    'quantity.level': '레벨',
-    'quantity.gas': '가스',
+[distance]
+metres: {metres} m
+geodesic: 측지 거리
+geodesic.why: 표면을 따르는 거리: 열은 틈을 건너뛰지 않습니다
+euclidean: 직선 거리
+euclidean.why: 공간을 가로지르는 직선 거리
 
-    // --- panel of the picture
-    'picture.title': '화면',
-    'picture.from': '거리의 기준',
-    'picture.tag': '태그',
-    'picture.difference': '차이의 기준',
-    'picture.kept': '저장한 지시값',
-    'picture.now': '지금',
-    'picture.name': '현재 지시값의 이름',
-    'picture.keep': '저장',
-    'picture.scale': '눈금',
-    'picture.fill': '데이터가 없는 곳',
-    'picture.light': '조명: 태양 {where}',
-    'picture.turn': '방향',
-    'picture.turn.why': '태양의 방향, 북쪽에서 잰 각도',
-    'picture.height': '높이',
-    'picture.height.why': '태양의 높이, 각도',
-    'picture.around': '주변',
-    'picture.around.why': '주변 환경',
-    'picture.split': '화면 분할',
-    'picture.right': '오른쪽 화면',
-    'scale.linear': '선형',
-    'scale.log': '로그',
-    'fill.none': '빗금',
-    'fill.none.why': '정상 센서가 닿지 않는 곳에는 아무 값도 표시하지 않음',
-    'fill.neighbours': '이웃 값',
-    'fill.neighbours.why': '채우고 점으로 표시',
-    'split.one': '한 화면',
-    'split.two': '두 화면',
-    'environment.sky': '하늘',
-    'sun': '{wind}쪽, 고도 {height}°',
-    'wind.N': '북',
-    'wind.NE': '북동',
-    'wind.E': '동',
-    'wind.SE': '남동',
-    'wind.S': '남',
-    'wind.SW': '남서',
-    'wind.W': '서',
-    'wind.NW': '북서',
+[age]
+s: {n}초
+min: {n}분
+h: {n}시간
+d: {n}일
 
-    // --- panel of views
-    'views.title': '시점',
-    'views.from': '보는 방향',
-    'views.projection': '투영',
-    'views.cut': '단면',
-    'views.where': '자를 위치',
-    'views.turn': '반대쪽',
-    'views.equipment': '설비: {what}',
-    'views.select': '먼저 선택하세요',
-    'views.all': '모두 표시',
-    'views.stays': '{axis} {sign} {at} m 남김',
-    'views.part': '{what}의 {percent} %',
-    'views.plant': '플랜트',
-    'side.top': '위',
-    'side.front': '앞',
-    'side.right': '오른쪽',
-    'side.back': '뒤',
-    'side.left': '왼쪽',
-    'side.iso': '모서리',
-    'projection.perspective': '원근',
-    'projection.parallel': '평행',
-    'cut.off': '끔',
-    'cut.box': '상자',
-    'cut.move': '단면 옮기기: {axis}',
-    'cut.oblique': '비스듬히',
-    'shown.hide': '숨기기',
-    'shown.ghost': '투명',
-    'shown.only': '이것만',
+[bar]
+equipment: 설비 목록
+quantity: 측정량
+display: 표시 설정
+distance: 거리
+interpolation: 보간
+colours: 색상표
+ramp: 색 단계
+lines: 등치선
+look: 모양
+show: 보기
+views: 시점, 단면, 설비 표시
+picture: 화면: 비교, 조명, 화면 분할
+history: 이력
+fit: 화면에 맞춤
+home: 기본 시점
+help: 도움말
+hold: 여기서 정지: 값이 멈춤
+go: 계속: 실시간 값
+unrecorded: 기록이 없어 값을 정지할 수 없습니다
+more: 더 보기
+measure: 거리 측정
+snapshot: 그림 저장
+share: 공유
+theme: 어둡게 또는 밝게
+engineer: 엔지니어: 센서 배치와 확인
 
-    // --- equipment
-    'assets.title': '설비',
-    'assets.close': '설비 목록 닫기',
-    'assets.search': '설비와 태그 검색',
-    'assets.nothing': '그런 이름이 없습니다.',
-    'assets.sensors': { other: '센서 {count}개' },
-    'assets.loose': '설비 없는 태그',
-    'assets.about': '선택한 설비 정보',
-    'assets.description': '설명',
-    'assets.area': '구역',
-    'assets.size': '크기',
-    'assets.place': '중심',
-    'assets.sensors.name': '센서',
-    'assets.worst': '가장 나쁜 품질: {quality}',
+[interpolation]
+shepard: Shepard
+shepard.why: 역거리 가중: 각 센서 위치에서 지시값과 정확히 일치
+paper: 논문식
+paper.why: Kim & Suh 2025의 알고리즘 1: 더 부드럽지만 지시값에 도달하지 않음
 
-    // --- the picture and what lies over it
-    'viewport': '플랜트 3D 보기. 화살표 회전, +와 - 확대·축소, W A S D 이동, F 맞춤, 물음표 도움말.',
-    'viewport.waiting': '첫 화면을 기다리는 중',
-    'viewport.refused': '서버가 거부했습니다: {text}',
-    'legend': '범례',
-    'legend.right': '오른쪽 화면의 범례',
-    'legend.colours': '{min}부터 {max}까지의 색',
-    'legend.distance': '거리',
-    'legend.operator': '태그마다 정해진 한계 기준.',
-    'legend.log': '로그 눈금.',
-    'legend.unsafe': '잘못 읽기 쉬운 색입니다.',
-    'legend.glossy': '광택 모양: 빛이 색을 바꾸므로 값을 읽지 마십시오.',
-    'legend.nolimits': '한계 없음',
-    'legend.nodata': '데이터 없음',
-    'legend.uncertain': '불확실',
-    'card': '태그',
-    'card.novalue': '값 없음',
-    'card.quality': '품질',
-    'card.age': '경과',
-    'card.on': '설비',
-    'card.trend': '추세',
-    'card.HH': '최고 한계 초과',
-    'card.H': '상한 초과',
-    'card.L': '하한 미만',
-    'card.LL': '최저 한계 미만',
-    'card.BAD': '계측 불량',
-    'card.ALM': '알람',
-    'place': '위치',
-    'place.measured': '측정된 곳',
-    'place.between': '센서 사이',
-    'place.no data': '데이터 없음: 가장 가까운 센서가 불량이거나 닿는 센서가 없음',
-    'place.context': '이 측정량의 센서가 없는 설비',
-    'place.inside': '잘린 설비의 내부',
-    'place.uncertain': '{state}, 불확실',
-    'place.hide': '숨기기',
-    'place.ghost': '투명',
-    'place.only': '이것만',
-    'following.title': '세션 {session}의 화면입니다',
-    'following.own': '내 화면',
+[show]
+value: 값
+operator: 한계
+distance: 거리
+difference: 차이
 
-    // --- alarms
-    'alarms.title': '알람',
-    'alarms.close': '알람 닫기',
-    'alarms.unheard': '알람: 아직 수신 없음',
-    'alarms.none': '활성 알람 없음',
-    'alarms.some': { other: '활성 알람 {count}건' },
-    'alarms.waiting': '{alarms}, 미확인 {waiting}건',
-    'alarms.now': '현재: {alarms}',
-    'alarms.then': '화면은 과거의 플랜트입니다. 이 알람은 현재의 알람입니다.',
-    'alarms.at': '{alarm}, {value}',
-    'alarms.value': '{value} (한계 {limit})',
-    'alarms.quiet': '활성 알람이 없습니다.',
-    'alarms.aside': '보류됨 ({count})',
-    'alarms.more': '외 {count}건',
-    'alarms.since': '{time}부터, {age}',
-    'alarms.until': '{time}까지',
-    'alarms.by': '처리: {who}',
-    'alarms.held': '계측 불량: 마지막 상태 유지',
-    'alarms.priority': '우선순위 {priority}',
-    'alarms.fly': '{tag}(으)로 이동',
-    'state.active': '활성',
-    'state.unacknowledged': '미확인',
-    'state.acknowledged': '확인됨',
-    'state.returned': '복귀, 미확인',
-    'state.latched': '유지',
-    'state.shelved': '보류',
-    'state.suppressed': '설계에 따라 억제',
-    'state.out_of_service': '사용 중지',
-    'kind.HH': '상상한',
-    'kind.H': '상한',
-    'kind.L': '하한',
-    'kind.LL': '하하한',
-    'kind.BAD': '계측 불량',
-    'kind.ALM': '알람',
-    'kind.LINK': '장치 값 없음',
-    'action.acknowledge': '확인',
-    'action.shelve': '보류…',
-    'action.reset': '리셋',
-    'action.unshelve': '보류 해제',
-    'action.in_service': '사용 재개',
-    'mode.display': '표시 전용, 확인은 제어 시스템에서',
-    'mode.mirror': '제어 시스템의 상태 그대로',
-    'mode.local': '이 사업장의 자체 알람',
-    'shelve.title': '{what} 보류',
-    'shelve.for': '기간',
-    'shelve.quarter': '15분',
-    'shelve.hour': '1시간',
-    'shelve.shift': '8시간',
-    'shelve.day': '1일',
-    'shelve.reason': '사유',
-    'shelve.cancel': '취소',
-    'shelve.do': '보류',
+[look]
+default: 계측
+glossy: 광택
+flat: 평면
+materials: 재질
 
-    // --- trends and the time bar
-    'trends.title': '추세',
-    'trends.time': '시각',
-    'trends.csv': 'CSV 내보내기',
-    'trends.close': '추세 닫기',
-    'trends.hour': '1시간',
-    'trends.hour.why': '지난 1시간',
-    'trends.shift': '근무조',
-    'trends.shift.why': '지난 8시간',
-    'trends.day': '하루',
-    'trends.day.why': '지난 24시간',
-    'trends.week': '일주일',
-    'trends.week.why': '지난 7일',
-    'trends.remove': '{tag} 제거',
-    'trends.gaps': '빗금: {tags} 값 없음',
-    'trends.failed': '추세 없음: {why}',
-    'trends.unsaved': '내보내지 못함: {why}',
-    'trends.uncharted': '이 서버는 차트 없이 빌드되었습니다 (npm이 없었음)',
-    'time.title': '이력',
-    'time.play': '재생',
-    'time.pause': '일시 정지',
-    'time.speed': '재생 속도',
-    'time.span': '슬라이더의 시간 범위',
-    'time.slider': '표시하는 시점',
-    'time.live': '실시간으로',
-    'time.now': '지금',
-    'time.ago': '{instant} · {age} 전',
-    'time.unrecorded': '기록 없음',
-    'time.raised': { other: '알람 {count}건 발생' },
+[lines]
+none: 없음
+every: {step} 간격
+chosen: 선택한 값
 
-    // --- status bar, and whether the picture may be trusted
-    'status': '상태',
-    'status.clock': '플랜트 시각',
-    'status.then': '당시 시각',
-    'status.unset': '{clock}, 동기화 안 됨',
-    'status.unset.why': '서버 시계를 맞추는 것이 없습니다. 시각은 틀릴 수 있으나 경과 시간은 맞습니다.',
-    'status.oldest': '가장 오래된 지시값',
-    'status.frames': '프레임',
-    'status.rate': '{count}/s',
-    'status.still': '정지',
-    'status.latency': '지연',
-    'status.ms': '{n} ms',
-    'status.config': '구성',
-    'status.picture': '화면',
-    'status.retry': '지금 시도',
-    'health.connecting': '연결 중',
-    'health.live': '실시간',
-    'health.partly': '실시간, 일부 모의값',
-    'health.simulated': '모의값',
-    'health.down': '{live}, 소스 {all}개 중 {down}개 중단',
-    'health.unmeasured': '플랜트에서 측정한 값이 아님: {sources}.',
-    'health.nodata': '실시간 데이터 없음',
-    'health.nosensor': '값을 보내는 센서가 없습니다.',
-    'health.source': '소스 {source}이(가) 응답하지 않습니다.',
-    'health.sources': '소스 {sources}이(가) 응답하지 않습니다.',
-    'health.past': '과거 이력',
-    'health.returning': '실시간으로 복귀 중',
-    'health.playing': '{instant}, {speed}× 재생',
-    'health.back': '{instant}, {speed}× 역재생',
-    'health.noanswer': '응답 없음',
-    'health.silent': '서버가 {age} 동안 응답하지 않습니다.',
-    'health.old': '이 화면은 {age} 전의 것입니다.',
-    'health.barred': '접근 불가',
-    'health.disconnected': '연결 끊김',
-    'health.because': '{reason}.',
-    'health.retry': '{age} 뒤 다시 시도합니다.',
-    'health.retrying': '다시 시도하는 중입니다.',
-    'reason.down': '서버가 종료되었습니다',
-    'reason.version': '이 페이지와 서버의 버전이 다릅니다',
-    'reason.forbidden': '허용되지 않았습니다',
-    'reason.long': '메시지가 너무 길었습니다',
-    'reason.full': '서버가 가득 찼습니다',
-    'reason.slow': '이 페이지가 너무 느렸습니다',
-    'reason.unreachable': '서버에 연결할 수 없습니다',
-    'reason.unanswered': '서버가 응답하지 않습니다',
-    'reason.silent': '서버의 응답이 끊겼습니다',
-    'reason.token_needed': '토큰이 필요합니다',
-    'reason.bad_token': '토큰이 올바르지 않거나 만료되었습니다',
+[ramp]
+smooth: 연속
+group: 고유 구간
+limits: 한계
+chosen: 선택한 구간
 
-    // --- qualities: the three, and by the names that OPC UA gives them
-    'quality.good': '정상',
-    'quality.uncertain': '불확실',
-    'quality.bad': '불량',
-    'quality.unknown': '알 수 없음',
-    'quality.because': '{quality}: {detail}',
-    'detail.CommunicationError': '통신 오류',
-    'detail.ConfigurationError': '구성 오류',
-    'detail.DeviceFailure': '장치 고장',
-    'detail.NoCommunication': '통신 없음',
-    'detail.OutOfService': '사용 중지',
-    'detail.SensorFailure': '센서 고장',
-    'detail.WaitingForInitialData': '첫 데이터 대기',
-    'detail.EngineeringUnitsExceeded': '측정 범위 초과',
-    'detail.LastUsableValue': '마지막 유효값',
-    'detail.NoCommunicationLastUsableValue': '통신 없음, 마지막 유효값',
-    'detail.SensorNotAccurate': '센서 부정확',
+[quantity]
+temperature: 온도
+pressure: 압력
+vibration: 진동
+flow: 유량
+level: 레벨
+gas: 가스
 
-    // --- measurements
-    'timings': '성능 측정',
-    'timings.ms': '밀리초',
-    'timings.half': '중앙값',
-    'timings.most': '95 %',
-    'timings.input': '입력에서 화면까지',
-    'timings.sensor': '지시값에서 화면까지',
-    'timings.wait': '대기',
-    'timings.field': '필드',
-    'timings.render': '그리기',
-    'timings.encode': '부호화',
-    'timings.network': '네트워크',
-    'timings.decode': '복호화',
-    'timings.rate': '화면 {pictures}/s, {kbit} kbit/s',
-    'timings.follow': '세션 {session}. {link} 링크를 열면 이 화면을 함께 봅니다.',
+[picture]
+title: 화면
+from: 거리의 기준
+tag: 태그
+difference: 차이의 기준
+kept: 저장한 지시값
+now: 지금
+name: 현재 지시값의 이름
+keep: 저장
+scale: 눈금
+fill: 데이터가 없는 곳
+light: 조명: 태양 {where}
+turn: 방향
+turn.why: 태양의 방향, 북쪽에서 잰 각도
+height: 높이
+height.why: 태양의 높이, 각도
+around: 주변
+around.why: 주변 환경
+split: 화면 분할
+right: 오른쪽 화면
 
-    // --- dialogs; [X] is a key
-    'token.title': '토큰',
-    'token.needed': '이 서버는 사용자 확인이 필요합니다.',
-    'token.bad': '토큰이 올바르지 않거나 만료되었습니다.',
-    'token.go': '계속',
-    'token.note': '토큰은 서버 운영자가 만듭니다: {command}. 이 탭을 닫을 때까지 보관됩니다.',
-    'help.title': '조작 방법',
-    'help.close': '도움말 닫기',
-    'help.mouse': '마우스',
-    'help.touch': '터치',
-    'help.keys': '키보드',
-    'help.turn': '회전',
-    'help.turn.mouse': '왼쪽 끌기',
-    'help.turn.touch': '한 손가락',
-    'help.move': '이동',
-    'help.move.mouse': '오른쪽, 가운데 또는 [Shift] 끌기',
-    'help.move.touch': '두 손가락',
-    'help.look': '둘러보기',
-    'help.look.mouse': '[Ctrl] 끌기',
-    'help.look.touch': '세 손가락',
-    'help.zoom': '확대·축소',
-    'help.zoom.mouse': '휠',
-    'help.zoom.touch': '벌리기·오므리기',
-    'help.fit': '맞춤',
-    'help.fit.mouse': '두 번 클릭',
-    'help.fit.touch': '두 번 탭',
-    'help.home': '기본 시점',
-    'help.from': '보는 방향',
-    'help.from.keys': '[T] 위, [I] 모서리, [O] 평행 투영, [V] 모든 시점, [P] 화면',
-    'help.what': '위치 정보',
-    'help.what.mouse': '클릭',
-    'help.what.touch': '탭',
-    'help.selected': '선택한 설비',
-    'help.selected.keys': '[X] 숨기기, [G] 투명, [L] 이것만, [U] 모두',
-    'help.quantity.keys': '[1]부터 [9]까지',
-    'help.equipment.keys': '[B], 검색 [/]',
-    'help.history.keys': '[Y], 실시간으로 [N]',
-    'help.markers': '표식',
-    'help.mark.good': '정상 지시값',
-    'help.mark.uncertain': '불확실한 지시값',
-    'help.mark.bad': '불량: 값 없음',
-    'help.mark.behind': '가려짐',
-    'help.mark.alarm': '알람, 색은 우선순위',
-    'help.mark.acknowledged': '확인된 알람',
-    'help.mark.returned': '복귀 또는 유지',
+[scale]
+linear: 선형
+log: 로그
 
-    // --- 도구: 측정, 그림, 공유
-    'measure.first': '첫 번째 지점을 누르세요',
-    'measure.second': '두 번째 지점을 누르세요',
-    'measure.done': '다시 측정하려면 누르세요',
-    'measure.missed': '그곳에는 아무것도 없습니다: 설비를 누르세요',
-    'measure.end': '완료',
-    'measure.parts': '수평 {level} m, 높이 {rise} m',
-    'snapshot.failed': '그림 없음: {why}',
-    'snapshot.unnamed': '비교하려면 이름을 붙여 보관한 값이 필요합니다',
-    'share.title': '공유',
-    'share.what': '무엇을 열까요',
-    'share.view': '이 화면',
-    'share.view.why': '이 화면을 엽니다: 카메라, 물리량, 색, 시각.',
-    'share.tag': '이 태그',
-    'share.tag.why': '태그 위치에서 열립니다. 인쇄하여 설비에 붙이세요.',
-    'share.asset': '이 설비',
-    'share.asset.why': '설비 위치에서 열립니다. 인쇄하여 그곳에 붙이세요.',
-    'share.follow': '나를 따라 보기',
-    'share.follow.why': '여는 사람은 내가 보는 동안 같은 화면을 봅니다.',
-    'share.link': '링크',
-    'share.copy': '복사',
-    'share.copied': '복사됨',
-    'share.code': '스캔할 수 있는 링크 코드',
-    'share.nocode': '이 서버는 스캔 코드 없이 만들어졌습니다 (npm 없음).',
-    'share.local': '이 컴퓨터에서만 열립니다: 주소가 로컬 주소입니다.',
-    'share.people': '함께 보는 사람',
-    'share.followers': { other: '{count}명이 이 화면(세션 {session})을 따라 봅니다.' },
-    'share.lead': '세션 {session}에 주도권 넘기기',
-    'simulated.all': '시뮬레이션',
-    'simulated.partly': '일부 시뮬레이션',
-    'factor.range': '색 범위',
-    'factor.min': '최소',
-    'factor.max': '최대',
-    'factor.own': '그룹 기본값',
-    'factor.title': '필드 계산 방법',
-    'factor.strength': '세기',
-    'factor.decay': '감쇠',
-    'factor.power': '지수',
-    'factor.radius_m': '반경 m, 0: 자동',
-    'factor.reach_m': '도달 거리 m, 비움: 무제한',
-    'factor.of': '{tag} 하나만',
-    'factor.choose': '센서 하나: 먼저 선택하세요',
-    'factor.reset': { other: '설정값으로 (센서 {count}개)' },
+[fill]
+none: 빗금
+none.why: 정상 센서가 닿지 않는 곳에는 아무 값도 표시하지 않음
+neighbours: 이웃 값
+neighbours.why: 채우고 점으로 표시
 
-    // --- the engineer's panel
-    'bar.engineer': '엔지니어: 센서 배치와 확인',
-    'proof.none': '미확인',
-    'proof.fail': '미확인: 불합격',
-    'proof.changed': '미확인: 이후 변경됨',
-    'proof.pass': '확인됨',
-    'eng.title': '엔지니어',
-    'eng.close': '엔지니어 패널 닫기',
-    'eng.place': '배치',
-    'eng.prove': '확인',
-    'eng.what': '할 일',
-    'eng.find': '태그 찾기',
-    'eng.nowhere': '아직 위치 없음',
-    'eng.on': '{asset} 위',
-    'eng.choose': '태그를 선택한 다음 표면을 클릭하거나 표식을 끌어다 놓으세요.',
-    'eng.click': '{tag}: 표면을 클릭하거나 표식을 끄세요.',
-    'eng.missed': '그곳에는 표면이 없습니다.',
-    'eng.moves': '시험 중, 본인에게만 보임',
-    'eng.nomoves': '옮긴 것이 없습니다. 시험하는 위치는 저장할 때까지 본인에게만 보입니다.',
-    'eng.off': '표면에서 {metres} m 떨어짐',
-    'eng.waiting': '직선 거리, 표면 거리는 곧 이어짐',
-    'eng.straight': '직선 거리만',
-    'eng.ready': '표면을 따라',
-    'eng.undo': '실행 취소',
-    'eng.back': '모두 되돌리기',
-    'eng.gaps': '빈틈',
-    'eng.save': '저장 …',
-    'eng.gaps.of': '빈틈: {quantity}',
-    'eng.gap': '모든 센서에서 가장 먼 곳: {metres} m. 표면의 {far} %가 {limit} m보다 멀고, ' +
-    '{lost} %는 지금 데이터가 없습니다.',
-    'eng.gap.next': '가장 멀리 떨어진 이웃: {a} – {b}, {metres} m.',
-    'eng.gap.off': '{tag}은(는) {asset} 표면에서 {metres} m 떨어져 있습니다 (최대 {limit} m)',
-    'eng.gap.none': '표면에서 벗어난 센서가 없습니다.',
-    'eng.diff': '{file}을(를) 저장할까요?',
-    'eng.diff.before': '이전',
-    'eng.diff.after': '이후',
-    'eng.diff.line': '{n}행',
-    'eng.diff.note': '지금의 목록은 옆에 그대로 남습니다. 저장하면 모두에게 적용되며 몇 초가 걸립니다.',
-    'eng.diff.conflict': '{file}을(를) 다른 사람이 바꾸었고 아직 불러오지 않았습니다. ' +
-    '저장하지 않았습니다. 바뀐 내용:',
-    'eng.diff.more': '… 그 밖에 {count}행',
-    'eng.cancel': '취소',
-    'eng.confirm': '저장하고 적용',
-    'eng.saving': '준비 중입니다. 모두에게는 아직 이전의 설비가 보입니다.',
-    'eng.saved': '적용되었습니다. 이전 목록은 {kept}입니다.',
-    'eng.unsaved': '저장하지 않음: {text}',
-    'eng.device': '장치',
-    'eng.proven': '{count}개 중 {done}개 확인됨',
-    'eng.expected': '기댓값',
-    'eng.tolerance': '허용 오차 ±',
-    'eng.watch': '지켜보기',
-    'eng.watching': '지금 전송기 값을 강제로 바꾸세요.',
-    'eng.still': '아직 움직인 것이 없습니다.',
-    'eng.moved': '{tag}이(가) 가장 많이 움직임: {by}.',
-    'eng.swapped': '{wanted}이(가) 아니라 {tag}이(가) 움직였습니다. 서로 바뀌었나요?',
-    'eng.compare': '비교',
-    'eng.fails': '불합격',
-    'eng.csv': 'CSV의 값 …',
-    'eng.csv.note': '기댓값 {count}개를 읽었습니다.',
-    'eng.csv.bad': 'Tag Name, Expected, Tolerance 열이 필요합니다.',
-    'eng.export': '결과 내보내기',
-    'eng.remark': '비고',
-    'eng.passed': '{tag} 합격: {value}.',
-    'eng.failed': '{tag} 불합격: {why}.',
-    'eng.now': '현재 {value}',
+[split]
+one: 한 화면
+two: 두 화면
 
-    // --- refusals
-    'role.operator': '운전원',
-    'role.engineer': '엔지니어',
-    'said.role': '{role} 권한이 필요합니다',
-    'said.elsewhere': '여기의 알람은 다른 시스템이 관리합니다',
-    'said.anew': '플랜트를 다시 불러오는 중입니다. 다시 시도하세요',
-    'said.quiet': '확인할 알람이 없습니다',
-    'said.tolerance': '값이 허용 오차를 벗어났습니다',
-    'said.reading': '측정값이 정상이 아닙니다',
-    'said.failed': '불합격으로 보고되었습니다',
-    'said.far': '{tag}: {asset}에서 너무 먼 위치입니다',
-    'said.groupless': '{tag}에 그룹이 없습니다. 태그 목록에 적으세요',
-    'said.busy': '다른 목록을 적용하는 중입니다',
-    'said.locked': '데몬이 태그 목록 폴더에 쓸 수 없습니다({file})',
-    'said.changed': '{file}을(를) 그사이 다른 사람이 바꾸었습니다',
-};
+[environment]
+sky: 하늘
+
+[wind]
+N: 북
+NE: 북동
+E: 동
+SE: 남동
+S: 남
+SW: 남서
+W: 서
+NW: 북서
+
+[views]
+title: 시점
+from: 보는 방향
+projection: 투영
+cut: 단면
+where: 자를 위치
+turn: 반대쪽
+equipment: 설비: {what}
+select: 먼저 선택하세요
+all: 모두 표시
+stays: {axis} {sign} {at} m 남김
+part: {what}의 {percent} %
+plant: 플랜트
+
+[side]
+top: 위
+front: 앞
+right: 오른쪽
+back: 뒤
+left: 왼쪽
+iso: 모서리
+
+[projection]
+perspective: 원근
+parallel: 평행
+
+[cut]
+off: 끔
+box: 상자
+move: 단면 옮기기: {axis}
+oblique: 비스듬히
+
+[shown]
+hide: 숨기기
+ghost: 투명
+only: 이것만
+
+[assets]
+title: 설비
+close: 설비 목록 닫기
+search: 설비와 태그 검색
+nothing: 그런 이름이 없습니다.
+sensors(other): 센서 {count}개
+loose: 설비 없는 태그
+about: 선택한 설비 정보
+description: 설명
+area: 구역
+size: 크기
+place: 중심
+sensors.name: 센서
+worst: 가장 나쁜 품질: {quality}
+
+[viewport]
+waiting: 첫 화면을 기다리는 중
+refused: 서버가 거부했습니다: {text}
+
+[legend]
+right: 오른쪽 화면의 범례
+colours: {min}부터 {max}까지의 색
+distance: 거리
+operator: 태그마다 정해진 한계 기준.
+log: 로그 눈금.
+unsafe: 잘못 읽기 쉬운 색입니다.
+glossy: 광택 모양: 빛이 색을 바꾸므로 값을 읽지 마십시오.
+nolimits: 한계 없음
+nodata: 데이터 없음
+uncertain: 불확실
+
+[card]
+novalue: 값 없음
+quality: 품질
+age: 경과
+on: 설비
+trend: 추세
+HH: 최고 한계 초과
+H: 상한 초과
+L: 하한 미만
+LL: 최저 한계 미만
+BAD: 계측 불량
+ALM: 알람
+
+[place]
+measured: 측정된 곳
+between: 센서 사이
+no data: 데이터 없음: 가장 가까운 센서가 불량이거나 닿는 센서가 없음
+context: 이 측정량의 센서가 없는 설비
+inside: 잘린 설비의 내부
+uncertain: {state}, 불확실
+hide: 숨기기
+ghost: 투명
+only: 이것만
+
+[following]
+title: 세션 {session}의 화면입니다
+own: 내 화면
+
+[alarms]
+title: 알람
+close: 알람 닫기
+unheard: 알람: 아직 수신 없음
+none: 활성 알람 없음
+some(other): 활성 알람 {count}건
+waiting: {alarms}, 미확인 {waiting}건
+now: 현재: {alarms}
+then: 화면은 과거의 플랜트입니다. 이 알람은 현재의 알람입니다.
+at: {alarm}, {value}
+value: {value} (한계 {limit})
+quiet: 활성 알람이 없습니다.
+aside: 보류됨 ({count})
+more: 외 {count}건
+since: {time}부터, {age}
+until: {time}까지
+by: 처리: {who}
+held: 계측 불량: 마지막 상태 유지
+priority: 우선순위 {priority}
+fly: {tag}(으)로 이동
+
+[state]
+active: 활성
+unacknowledged: 미확인
+acknowledged: 확인됨
+returned: 복귀, 미확인
+latched: 유지
+shelved: 보류
+suppressed: 설계에 따라 억제
+out_of_service: 사용 중지
+
+[kind]
+HH: 상상한
+H: 상한
+L: 하한
+LL: 하하한
+BAD: 계측 불량
+ALM: 알람
+LINK: 장치 값 없음
+
+[action]
+acknowledge: 확인
+shelve: 보류…
+reset: 리셋
+unshelve: 보류 해제
+in_service: 사용 재개
+
+[mode]
+display: 표시 전용, 확인은 제어 시스템에서
+mirror: 제어 시스템의 상태 그대로
+local: 이 사업장의 자체 알람
+
+[shelve]
+title: {what} 보류
+for: 기간
+quarter: 15분
+hour: 1시간
+shift: 8시간
+day: 1일
+reason: 사유
+cancel: 취소
+do: 보류
+
+[trends]
+title: 추세
+time: 시각
+csv: CSV 내보내기
+close: 추세 닫기
+hour: 1시간
+hour.why: 지난 1시간
+shift: 근무조
+shift.why: 지난 8시간
+day: 하루
+day.why: 지난 24시간
+week: 일주일
+week.why: 지난 7일
+remove: {tag} 제거
+gaps: 빗금: {tags} 값 없음
+failed: 추세 없음: {why}
+unsaved: 내보내지 못함: {why}
+uncharted: 이 서버는 차트 없이 빌드되었습니다 (npm이 없었음)
+
+[time]
+title: 이력
+play: 재생
+pause: 일시 정지
+speed: 재생 속도
+span: 슬라이더의 시간 범위
+slider: 표시하는 시점
+live: 실시간으로
+now: 지금
+ago: {instant} · {age} 전
+unrecorded: 기록 없음
+raised(other): 알람 {count}건 발생
+
+[status]
+clock: 플랜트 시각
+then: 당시 시각
+unset: {clock}, 동기화 안 됨
+unset.why: 서버 시계를 맞추는 것이 없습니다. 시각은 틀릴 수 있으나 경과 시간은 맞습니다.
+oldest: 가장 오래된 지시값
+frames: 프레임
+rate: {count}/s
+still: 정지
+latency: 지연
+ms: {n} ms
+config: 구성
+picture: 화면
+retry: 지금 시도
+
+[health]
+connecting: 연결 중
+live: 실시간
+partly: 실시간, 일부 모의값
+simulated: 모의값
+down: {live}, 소스 {all}개 중 {down}개 중단
+unmeasured: 플랜트에서 측정한 값이 아님: {sources}.
+nodata: 실시간 데이터 없음
+nosensor: 값을 보내는 센서가 없습니다.
+source: 소스 {source}이(가) 응답하지 않습니다.
+sources: 소스 {sources}이(가) 응답하지 않습니다.
+past: 과거 이력
+returning: 실시간으로 복귀 중
+playing: {instant}, {speed}× 재생
+back: {instant}, {speed}× 역재생
+noanswer: 응답 없음
+silent: 서버가 {age} 동안 응답하지 않습니다.
+old: 이 화면은 {age} 전의 것입니다.
+barred: 접근 불가
+disconnected: 연결 끊김
+because: {reason}.
+retry: {age} 뒤 다시 시도합니다.
+retrying: 다시 시도하는 중입니다.
+
+[reason]
+down: 서버가 종료되었습니다
+version: 이 페이지와 서버의 버전이 다릅니다
+forbidden: 허용되지 않았습니다
+long: 메시지가 너무 길었습니다
+full: 서버가 가득 찼습니다
+slow: 이 페이지가 너무 느렸습니다
+unreachable: 서버에 연결할 수 없습니다
+unanswered: 서버가 응답하지 않습니다
+silent: 서버의 응답이 끊겼습니다
+token_needed: 토큰이 필요합니다
+bad_token: 토큰이 올바르지 않거나 만료되었습니다
+
+[quality]
+good: 정상
+uncertain: 불확실
+bad: 불량
+unknown: 알 수 없음
+because: {quality}: {detail}
+
+[detail]
+CommunicationError: 통신 오류
+ConfigurationError: 구성 오류
+DeviceFailure: 장치 고장
+NoCommunication: 통신 없음
+OutOfService: 사용 중지
+SensorFailure: 센서 고장
+WaitingForInitialData: 첫 데이터 대기
+EngineeringUnitsExceeded: 측정 범위 초과
+LastUsableValue: 마지막 유효값
+NoCommunicationLastUsableValue: 통신 없음, 마지막 유효값
+SensorNotAccurate: 센서 부정확
+
+[timings]
+ms: 밀리초
+half: 중앙값
+most: 95 %
+input: 입력에서 화면까지
+sensor: 지시값에서 화면까지
+wait: 대기
+field: 필드
+render: 그리기
+encode: 부호화
+network: 네트워크
+decode: 복호화
+rate: 화면 {pictures}/s, {kbit} kbit/s
+follow: 세션 {session}. {link} 링크를 열면 이 화면을 함께 봅니다.
+
+[token]
+title: 토큰
+needed: 이 서버는 사용자 확인이 필요합니다.
+bad: 토큰이 올바르지 않거나 만료되었습니다.
+go: 계속
+note: 토큰은 서버 운영자가 만듭니다: {command}. 이 탭을 닫을 때까지 보관됩니다.
+
+[help]
+title: 조작 방법
+close: 도움말 닫기
+mouse: 마우스
+touch: 터치
+keys: 키보드
+turn: 회전
+turn.mouse: 왼쪽 끌기
+turn.touch: 한 손가락
+move: 이동
+move.mouse: 오른쪽, 가운데 또는 [Shift] 끌기
+move.touch: 두 손가락
+look: 둘러보기
+look.mouse: [Ctrl] 끌기
+look.touch: 세 손가락
+zoom: 확대·축소
+zoom.mouse: 휠
+zoom.touch: 벌리기·오므리기
+fit: 맞춤
+fit.mouse: 두 번 클릭
+fit.touch: 두 번 탭
+home: 기본 시점
+from: 보는 방향
+from.keys: [T] 위, [I] 모서리, [O] 평행 투영, [V] 모든 시점, [P] 화면
+what: 위치 정보
+what.mouse: 클릭
+what.touch: 탭
+selected: 선택한 설비
+selected.keys: [X] 숨기기, [G] 투명, [L] 이것만, [U] 모두
+quantity.keys: [1]부터 [9]까지
+equipment.keys: [B], 검색 [/]
+history.keys: [Y], 실시간으로 [N]
+markers: 표식
+mark.good: 정상 지시값
+mark.uncertain: 불확실한 지시값
+mark.bad: 불량: 값 없음
+mark.behind: 가려짐
+mark.alarm: 알람, 색은 우선순위
+mark.acknowledged: 확인된 알람
+mark.returned: 복귀 또는 유지
+
+[measure]
+first: 첫 번째 지점을 누르세요
+second: 두 번째 지점을 누르세요
+done: 다시 측정하려면 누르세요
+missed: 그곳에는 아무것도 없습니다: 설비를 누르세요
+end: 완료
+parts: 수평 {level} m, 높이 {rise} m
+
+[snapshot]
+failed: 그림 없음: {why}
+unnamed: 비교하려면 이름을 붙여 보관한 값이 필요합니다
+
+[share]
+title: 공유
+what: 무엇을 열까요
+view: 이 화면
+view.why: 이 화면을 엽니다: 카메라, 물리량, 색, 시각.
+tag: 이 태그
+tag.why: 태그 위치에서 열립니다. 인쇄하여 설비에 붙이세요.
+asset: 이 설비
+asset.why: 설비 위치에서 열립니다. 인쇄하여 그곳에 붙이세요.
+follow: 나를 따라 보기
+follow.why: 여는 사람은 내가 보는 동안 같은 화면을 봅니다.
+link: 링크
+copy: 복사
+copied: 복사됨
+code: 스캔할 수 있는 링크 코드
+nocode: 이 서버는 스캔 코드 없이 만들어졌습니다 (npm 없음).
+local: 이 컴퓨터에서만 열립니다: 주소가 로컬 주소입니다.
+people: 함께 보는 사람
+followers(other): {count}명이 이 화면(세션 {session})을 따라 봅니다.
+lead: 세션 {session}에 주도권 넘기기
+
+[simulated]
+all: 시뮬레이션
+partly: 일부 시뮬레이션
+
+[factor]
+range: 색 범위
+min: 최소
+max: 최대
+own: 그룹 기본값
+title: 필드 계산 방법
+strength: 세기
+decay: 감쇠
+power: 지수
+radius_m: 반경 m, 0: 자동
+reach_m: 도달 거리 m, 비움: 무제한
+of: {tag} 하나만
+choose: 센서 하나: 먼저 선택하세요
+reset(other): 설정값으로 (센서 {count}개)
+
+[proof]
+none: 미확인
+fail: 미확인: 불합격
+changed: 미확인: 이후 변경됨
+pass: 확인됨
+
+[eng]
+title: 엔지니어
+close: 엔지니어 패널 닫기
+place: 배치
+prove: 확인
+what: 할 일
+find: 태그 찾기
+nowhere: 아직 위치 없음
+on: {asset} 위
+choose: 태그를 선택한 다음 표면을 클릭하거나 표식을 끌어다 놓으세요.
+click: {tag}: 표면을 클릭하거나 표식을 끄세요.
+missed: 그곳에는 표면이 없습니다.
+moves: 시험 중, 본인에게만 보임
+nomoves: 옮긴 것이 없습니다. 시험하는 위치는 저장할 때까지 본인에게만 보입니다.
+off: 표면에서 {metres} m 떨어짐
+waiting: 직선 거리, 표면 거리는 곧 이어짐
+straight: 직선 거리만
+ready: 표면을 따라
+undo: 실행 취소
+back: 모두 되돌리기
+gaps: 빈틈
+save: 저장 …
+gaps.of: 빈틈: {quantity}
+gap: 모든 센서에서 가장 먼 곳: {metres} m. 표면의 {far} %가 {limit} m보다 멀고,
+    {lost} %는 지금 데이터가 없습니다.
+gap.next: 가장 멀리 떨어진 이웃: {a} – {b}, {metres} m.
+gap.off: {tag}은(는) {asset} 표면에서 {metres} m 떨어져 있습니다 (최대 {limit} m)
+gap.none: 표면에서 벗어난 센서가 없습니다.
+diff: {file}을(를) 저장할까요?
+diff.before: 이전
+diff.after: 이후
+diff.line: {n}행
+diff.note: 지금의 목록은 옆에 그대로 남습니다. 저장하면 모두에게 적용되며 몇 초가 걸립니다.
+diff.conflict: {file}을(를) 다른 사람이 바꾸었고 아직 불러오지 않았습니다.
+    저장하지 않았습니다. 바뀐 내용:
+diff.more: … 그 밖에 {count}행
+cancel: 취소
+confirm: 저장하고 적용
+saving: 준비 중입니다. 모두에게는 아직 이전의 설비가 보입니다.
+saved: 적용되었습니다. 이전 목록은 {kept}입니다.
+unsaved: 저장하지 않음: {text}
+device: 장치
+proven: {count}개 중 {done}개 확인됨
+expected: 기댓값
+tolerance: 허용 오차 ±
+watch: 지켜보기
+watching: 지금 전송기 값을 강제로 바꾸세요.
+still: 아직 움직인 것이 없습니다.
+moved: {tag}이(가) 가장 많이 움직임: {by}.
+swapped: {wanted}이(가) 아니라 {tag}이(가) 움직였습니다. 서로 바뀌었나요?
+compare: 비교
+fails: 불합격
+csv: CSV의 값 …
+csv.note: 기댓값 {count}개를 읽었습니다.
+csv.bad: Tag Name, Expected, Tolerance 열이 필요합니다.
+export: 결과 내보내기
+remark: 비고
+passed: {tag} 합격: {value}.
+failed: {tag} 불합격: {why}.
+now: 현재 {value}
+
+[role]
+operator: 운전원
+engineer: 엔지니어
+
+[said]
+role: {role} 권한이 필요합니다
+elsewhere: 여기의 알람은 다른 시스템이 관리합니다
+anew: 플랜트를 다시 불러오는 중입니다. 다시 시도하세요
+quiet: 확인할 알람이 없습니다
+tolerance: 값이 허용 오차를 벗어났습니다
+reading: 측정값이 정상이 아닙니다
+failed: 불합격으로 보고되었습니다
+far: {tag}: {asset}에서 너무 먼 위치입니다
+groupless: {tag}에 그룹이 없습니다. 태그 목록에 적으세요
+busy: 다른 목록을 적용하는 중입니다
+locked: 데몬이 태그 목록 폴더에 쓸 수 없습니다({file})
+changed: {file}을(를) 그사이 다른 사람이 바꾸었습니다
+`;
