@@ -14,6 +14,7 @@
 
 #include "base/mem.h"
 #include "tests/support/glb.h"
+#include "tests/support/gltf_case.h"
 #include "tests/support/temp.h"
 
 /* One binary chunk for every model here; what lies where is said by the accessors below. */
@@ -77,66 +78,22 @@ static const struct bin bin = {
 #define MESH(primitive) "\"meshes\":[{\"name\":\"m\",\"primitives\":[" primitive "]}],"
 #define SQUARE "{\"attributes\":{\"POSITION\":0},\"indices\":1}"
 
-struct loaded {
-    char *folder;
-    struct gltf_model model;
-    char why[MODEL_WHY_BYTES];
-    bool good;
-};
-
-static int set_up(void **state)
-{
-    struct loaded *l = mem_new(sizeof(*l));
-    l->folder = temp_folder_create();
-    *state = l;
-    return 0;
-}
-
-static void forget(struct loaded *l)
-{
-    if (l->good)
-        gltf_free(&l->model);
-    l->good = false;
-}
-
-static int tear_down(void **state)
-{
-    struct loaded *l = *state;
-    forget(l);
-    temp_folder_destroy(&l->folder);
-    mem_free(l);
-    return 0;
-}
-
-static void load_bytes(struct loaded *l, const char *name, const void *bytes, size_t size)
-{
-    struct model_source source;
-    char *path = temp_write(l->folder, name, bytes, size);
-    forget(l);
-    l->why[0] = 0;
-    if (model_source_open(&source, path, l->why)) {
-        l->good = gltf_load(&l->model, &source, l->why);
-        model_source_finish(&source);
-    }
-    mem_free(path);
-}
-
-static void load(struct loaded *l, const char *json)
+static void load(struct gltf_case *l, const char *json)
 {
     size_t size;
     char *bytes = glb_build(json, &bin, sizeof(bin), &size);
-    load_bytes(l, "model.glb", bytes, size);
+    gltf_case_load(l, "model.glb", bytes, size);
     mem_free(bytes);
 }
 
-static void good(struct loaded *l, const char *json)
+static void good(struct gltf_case *l, const char *json)
 {
     load(l, json);
     if (!l->good)
         fail_msg("refused: %s", l->why);
 }
 
-static void refused(struct loaded *l, const char *json, const char *reason)
+static void refused(struct gltf_case *l, const char *json, const char *reason)
 {
     load(l, json);
     if (l->good)
@@ -157,7 +114,7 @@ static void assert_square(const struct gltf_primitive *p)
 
 static void every_kind_of_index_and_position_is_read(void **state)
 {
-    struct loaded *l = *state;
+    struct gltf_case *l = *state;
     assert_int_equal(sizeof(bin), 308);
     good(l, HEAD PLAIN_NODES MESH(SQUARE) ACCESSORS "}");
     assert_square(&l->model.primitives[0]);
@@ -177,7 +134,7 @@ static void every_kind_of_index_and_position_is_read(void **state)
 
 static void lines_and_points_are_skipped_and_counted(void **state)
 {
-    struct loaded *l = *state;
+    struct gltf_case *l = *state;
     good(l,
          HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":0},\"mode\":1}," SQUARE
                                ",{\"attributes\":{\"POSITION\":0},\"mode\":0},{\"attributes\":{\"POSITION\":0},\"mode\":3}") ACCESSORS "}");
@@ -188,7 +145,7 @@ static void lines_and_points_are_skipped_and_counted(void **state)
 
 static void nodes_are_put_in_place(void **state)
 {
-    struct loaded *l = *state;
+    struct gltf_case *l = *state;
     good(l, HEAD
          "\"scenes\":[{\"nodes\":[1]}],\"nodes\":[{\"name\":\"b\",\"mesh\":0,\"translation\":[1,2,3]},"
          "{\"name\":\"a\",\"children\":[0,2],\"scale\":[2,2,2]},{\"name\":\"c\",\"rotation\":[0,0,0.70710678,0.70710678]}]," MESH(SQUARE)
@@ -209,7 +166,7 @@ static void nodes_are_put_in_place(void **state)
 
 static void wrong_numbers_are_refused(void **state)
 {
-    struct loaded *l = *state;
+    struct gltf_case *l = *state;
     refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":0},\"indices\":7}") ACCESSORS "}",
             "mesh 0 'm', primitive 0: indices: index 5 names vertex 4 of 4");
     refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":6},\"indices\":1}") ACCESSORS "}", "POSITION: element 1 is not finite");
@@ -232,7 +189,7 @@ static void wrong_numbers_are_refused(void **state)
 
 static void wrong_trees_are_refused(void **state)
 {
-    struct loaded *l = *state;
+    struct gltf_case *l = *state;
     refused(l,
             HEAD "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"children\":[1]},{\"name\":\"x\",\"children\":[0]}]," MESH(SQUARE) ACCESSORS
             "}",
@@ -255,7 +212,7 @@ static void wrong_trees_are_refused(void **state)
 
 static void unknown_extensions_are_refused(void **state)
 {
-    struct loaded *l = *state;
+    struct gltf_case *l = *state;
     refused(l, HEAD "\"extensionsRequired\":[\"ACME_secret\"]," PLAIN_NODES MESH(SQUARE) ACCESSORS "}", "ACME_secret");
     refused(l, HEAD "\"extensionsRequired\":{\"ACME_secret\":1}," PLAIN_NODES MESH(SQUARE) ACCESSORS "}",
             "extensionsRequired is not a list");
@@ -269,11 +226,11 @@ static void unknown_extensions_are_refused(void **state)
 
 static void broken_files_are_refused(void **state)
 {
-    struct loaded *l = *state;
+    struct gltf_case *l = *state;
     size_t size;
     char *bytes = glb_build(HEAD PLAIN_NODES MESH(SQUARE) ACCESSORS "}", &bin, sizeof(bin), &size);
     for (size_t cut = 0; cut < size; cut += 1 + cut / 16) { /* everything but the whole file */
-        load_bytes(l, "cut.glb", bytes, cut);
+        gltf_case_load(l, "cut.glb", bytes, cut);
         if (l->good || !l->why[0])
             fail_msg("the first %zu bytes of %zu: %s", cut, size, l->good ? "accepted" : "refused without a reason");
     }
@@ -291,13 +248,13 @@ static void broken_files_are_refused(void **state)
         text_add(&deep, "[");
     refused(l, deep.at, "nested deeper");
     text_finish(&deep);
-    load_bytes(l, "text.glb", "hello", 5);
+    gltf_case_load(l, "text.glb", "hello", 5);
     assert_false(l->good);
 }
 
 static void files_outside_the_folder_are_refused(void **state)
 {
-    struct loaded *l = *state;
+    struct gltf_case *l = *state;
     const char *json = "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"uri\":\"%s\",\"byteLength\":308}],\"bufferViews\":[{\"buffer\":0,"
                        "\"byteLength\":308},"
                        "{\"buffer\":0,\"byteOffset\":80,\"byteLength\":32,\"byteStride\":8}]," PLAIN_NODES MESH(SQUARE) ACCESSORS "}";
@@ -308,7 +265,7 @@ static void files_outside_the_folder_are_refused(void **state)
     assert_int_equal(symlink(outside, link), 0);
     for (size_t i = 0; i < sizeof(bad) / sizeof(bad[0]); i++) {
         char *text = mem_printf(json, bad[i]);
-        load_bytes(l, "inner/model.gltf", text, strlen(text));
+        gltf_case_load(l, "inner/model.gltf", text, strlen(text));
         if (l->good || !strstr(l->why, "is not a readable file inside the model's folder"))
             fail_msg("%s: %s", bad[i], l->good ? "accepted" : l->why);
         mem_free(text);
@@ -318,7 +275,7 @@ static void files_outside_the_folder_are_refused(void **state)
                                   "w%c3%a4rme 100%.bin" };
     for (size_t i = 0; i < sizeof(right) / sizeof(right[0]); i++) {
         char *text = mem_printf(json, right[i]);
-        load_bytes(l, "inner/model.gltf", text, strlen(text));
+        gltf_case_load(l, "inner/model.gltf", text, strlen(text));
         if (!l->good)
             fail_msg("%s", l->why);
         assert_square(&l->model.primitives[0]);
@@ -332,7 +289,7 @@ static void files_outside_the_folder_are_refused(void **state)
 
 /* --- cutting assets ------------------------------------------------------------------------------------------------------- */
 
-static struct geometry cut(struct loaded *l, const struct geometry_params *params)
+static struct geometry cut(struct gltf_case *l, const struct geometry_params *params)
 {
     struct geometry g;
     char why[MODEL_WHY_BYTES];
@@ -359,7 +316,7 @@ static void face_normal(const struct geometry *g, uint32_t tri, float out[3])
 
 static void nodes_are_chosen_by_pattern_and_taken_once(void **state)
 {
-    struct loaded *l = *state;
+    struct gltf_case *l = *state;
     good(l, FACILITY);
     struct geometry g = cut(l, &(struct geometry_params){ .nodes = "P-101*", .unit_m = 1, .up = AXIS_Z });
     assert_int_equal(g.primitive_count, 3); /* the seal matches too, and comes once */
@@ -376,7 +333,7 @@ static void nodes_are_chosen_by_pattern_and_taken_once(void **state)
 
 static void units_and_axes_are_turned_to_metres_and_z_up(void **state)
 {
-    struct loaded *l = *state;
+    struct gltf_case *l = *state;
     good(l, HEAD "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"name\":\"p\",\"mesh\":0,\"translation\":[0,0,7000]}]," MESH(SQUARE) ACCESSORS
          "}");
     struct geometry g = cut(l, &(struct geometry_params){ .unit_m = 0.001, .up = AXIS_Y });
@@ -390,7 +347,7 @@ static void units_and_axes_are_turned_to_metres_and_z_up(void **state)
 
 static void mirrored_nodes_keep_their_outside(void **state)
 {
-    struct loaded *l = *state;
+    struct gltf_case *l = *state;
     good(l, HEAD "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0,\"scale\":[-1,1,2]}]," MESH(
                 "{\"attributes\":{\"POSITION\":0,\"NORMAL\":8},\"indices\":1}") ACCESSORS "}");
     struct geometry g = cut(l, &(struct geometry_params){ .unit_m = 1, .up = AXIS_Z });
@@ -406,7 +363,7 @@ static void mirrored_nodes_keep_their_outside(void **state)
 
 static void triangles_without_area_are_left_out(void **state)
 {
-    struct loaded *l = *state;
+    struct gltf_case *l = *state;
     good(l, HEAD "\"scenes\":[{\"nodes\":[0,1]}],\"nodes\":[{\"mesh\":0},{\"mesh\":0,\"scale\":[1,0,1]}]," MESH(SQUARE) ACCESSORS "}");
     struct geometry g = cut(l, &(struct geometry_params){ .unit_m = 1, .up = AXIS_Z });
     assert_int_equal(g.index_count, 6);
@@ -417,7 +374,7 @@ static void triangles_without_area_are_left_out(void **state)
 
 static void a_nodes_place_is_the_middle_of_its_meshes(void **state)
 {
-    struct loaded *l = *state;
+    struct gltf_case *l = *state;
     double place[3];
     struct geometry_params params = { .nodes = "P-101B", .unit_m = 1, .up = AXIS_Z };
     good(l, FACILITY);
@@ -433,7 +390,7 @@ static void a_nodes_place_is_the_middle_of_its_meshes(void **state)
 /* What cannot become an asset, though its file is whole. */
 static void what_cannot_be_cut_is_refused(void **state)
 {
-    struct loaded *l = *state;
+    struct gltf_case *l = *state;
     static const struct {
         const char *json, *reason;
     } cases[] = {
@@ -455,7 +412,7 @@ static void what_cannot_be_cut_is_refused(void **state)
 
 static void wrong_instances_and_sparse_elements_are_refused(void **state)
 {
-    struct loaded *l = *state;
+    struct gltf_case *l = *state;
     static const struct {
         const char *attributes, *reason;
     } instances[] = {
@@ -511,20 +468,16 @@ static void real_models_go_through(void **state)
         "plm_plant_equipment",        "plm_plant_5parts",     "plm_plant_hierarchy",       "huldra_wd1_psup",  "duplex_mep",
         "offshore_platform_overview", "cookie_factory_mixer", "cookie_factory_water_tank", "industrial_tanker"
     };
-    struct loaded *l = *state;
+    struct gltf_case *l = *state;
     if (access("../shared/data/models", R_OK) != 0) {
         print_message("# ../shared/data/models is not there\n");
         skip();
     }
     for (size_t i = 0; i < sizeof(names) / sizeof(names[0]); i++) {
-        struct model_source source;
-        char *path = mem_printf("../shared/data/models/%s.glb", names[i]), why[MODEL_WHY_BYTES];
-        if (!model_source_open(&source, path, why))
-            fail_msg("%s: %s", path, why);
-        forget(l);
-        l->good = gltf_load(&l->model, &source, why);
+        char *path = mem_printf("../shared/data/models/%s.glb", names[i]);
+        gltf_case_read(l, path);
         if (!l->good)
-            fail_msg("%s: %s", path, why);
+            fail_msg("%s: %s", path, l->why);
         struct geometry g = cut(l, &(struct geometry_params){ .unit_m = 1, .up = AXIS_Y });
         assert_true(g.index_count > 3000);
         for (uint32_t v = 0; v < g.vertex_count; v++) {
@@ -534,12 +487,11 @@ static void real_models_go_through(void **state)
         for (uint32_t t = 0; t < g.index_count / 3; t++)
             assert_true(faces_outward(&g, t));
         geometry_finish(&g);
-        model_source_finish(&source);
         mem_free(path);
     }
 }
 
-#define WITH_MODEL(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
+#define WITH_MODEL(test) cmocka_unit_test_setup_teardown(test, gltf_case_set_up, gltf_case_tear_down)
 
 int main(void)
 {

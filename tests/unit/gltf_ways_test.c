@@ -13,57 +13,25 @@
 
 #include "base/mem.h"
 #include "plant/transform.h"
+#include "tests/support/gltf_case.h"
 #include "tests/support/model_maker.h"
 #include "tests/support/model_seeds.h"
 #include "tests/support/temp.h"
 
-struct loaded {
-    char *folder;
-    struct gltf_model model;
-    char why[MODEL_WHY_BYTES];
-    bool good;
-};
-
 static int set_up(void **state)
 {
-    struct loaded *l = mem_new(sizeof(*l));
-    l->folder = temp_folder_create();
-    mem_free(temp_write_text(l->folder, "a picture.png", "no picture, and never looked at"));
-    *state = l;
+    gltf_case_set_up(state);
+    mem_free(temp_write_text(((struct gltf_case *)*state)->folder, "a picture.png", "no picture, and never looked at"));
     return 0;
 }
 
-static void forget(struct loaded *l)
+static void try_bytes(struct gltf_case *l, char *bytes, size_t size)
 {
-    if (l->good)
-        gltf_free(&l->model);
-    l->good = false;
-}
-
-static int tear_down(void **state)
-{
-    struct loaded *l = *state;
-    forget(l);
-    temp_folder_destroy(&l->folder);
-    mem_free(l);
-    return 0;
-}
-
-static void try_bytes(struct loaded *l, char *bytes, size_t size)
-{
-    struct model_source source;
-    char *path = temp_write(l->folder, "model.glb", bytes, size);
-    forget(l);
-    snprintf(l->why, sizeof(l->why), "not refused");
-    if (model_source_open(&source, path, l->why)) {
-        l->good = gltf_load(&l->model, &source, l->why);
-        model_source_finish(&source);
-    }
-    mem_free(path);
+    gltf_case_load(l, "model.glb", bytes, size);
     mem_free(bytes);
 }
 
-static void try_model(struct loaded *l, struct maker *maker)
+static void try_model(struct gltf_case *l, struct maker *maker)
 {
     size_t size;
     char *bytes = maker_glb(maker, &size);
@@ -71,13 +39,13 @@ static void try_model(struct loaded *l, struct maker *maker)
     try_bytes(l, bytes, size);
 }
 
-static void assert_refused(const struct loaded *l, const char *reason)
+static void assert_refused(const struct gltf_case *l, const char *reason)
 {
     if (l->good || !strstr(l->why, reason))
         fail_msg("'%s', expected '%s'", l->good ? "accepted" : l->why, reason);
 }
 
-static void assert_good(const struct loaded *l)
+static void assert_good(const struct gltf_case *l)
 {
     if (!l->good)
         fail_msg("%s", l->why);
@@ -167,7 +135,7 @@ static const struct gltf_node *first_drawn(const struct gltf_model *model)
 
 static void every_way_gives_the_same_surface(void **state)
 {
-    struct loaded *l = *state;
+    struct gltf_case *l = *state;
     struct sheet sheet;
     sheet_init(&sheet, 24, 10);
     for (int i = 0; i < SEED_COUNT; i++) {
@@ -184,7 +152,7 @@ static void every_way_gives_the_same_surface(void **state)
 
 static void great_meshes_are_decompressed(void **state)
 {
-    struct loaded *l = *state;
+    struct gltf_case *l = *state;
     static const char *const names[] = { "meshopt.glb", "meshopt_filters.glb", "draco_edgebreaker.glb", "draco_sequential.glb" };
     struct sheet sheet;
     sheet_init(&sheet, 300, 200); /* 120,000 triangles, 60,501 vertices */
@@ -212,7 +180,7 @@ static void great_meshes_are_decompressed(void **state)
 /* Every byte of the compressed data in turn is another: never a crash, and what is accepted holds together. */
 static void broken_compression_is_refused_or_harmless(void **state)
 {
-    struct loaded *l = *state;
+    struct gltf_case *l = *state;
     struct sheet sheet;
     sheet_init(&sheet, 6, 4);
     for (int i = 9; i <= 12; i++) {
@@ -261,7 +229,7 @@ static json_t *meshopt_of(struct maker *maker, int view)
 
 static void false_claims_of_compressed_views_are_refused(void **state)
 {
-    struct loaded *l = *state;
+    struct gltf_case *l = *state;
     struct sheet sheet;
     sheet_init(&sheet, 6, 4);
     const struct {
@@ -301,7 +269,7 @@ static json_t *primitive_of(struct maker *maker)
 
 static void false_claims_of_draco_are_refused(void **state)
 {
-    struct loaded *l = *state;
+    struct gltf_case *l = *state;
     struct sheet sheet;
     sheet_init(&sheet, 6, 4);
     struct maker maker = seed_open(11, "draco_edgebreaker.glb", &sheet);
@@ -330,7 +298,7 @@ static void false_claims_of_draco_are_refused(void **state)
 
 static void vertices_that_are_not_used_are_left_out(void **state)
 {
-    struct loaded *l = *state;
+    struct gltf_case *l = *state;
     struct maker maker;
     float many[1000][3] = { { 0 } };
     for (int i = 0; i < 1000; i++)
@@ -350,7 +318,7 @@ static void vertices_that_are_not_used_are_left_out(void **state)
 
 static void what_a_small_file_claims_is_bounded(void **state)
 {
-    struct loaded *l = *state;
+    struct gltf_case *l = *state;
     struct maker maker;
     maker_init(&maker);
     int at = maker_accessor(&maker, -1, FLOAT, 4000000000u, "VEC3");
@@ -379,7 +347,7 @@ static void what_a_small_file_claims_is_bounded(void **state)
 
 static void wrong_types_and_references_are_refused_by_name(void **state)
 {
-    struct loaded *l = *state;
+    struct gltf_case *l = *state;
     struct sheet sheet;
     sheet_init(&sheet, 2, 2);
     static const struct {
@@ -441,7 +409,7 @@ static void wrong_types_and_references_are_refused_by_name(void **state)
 
 static void whole_numbers_may_be_written_as_reals(void **state)
 {
-    struct loaded *l = *state;
+    struct gltf_case *l = *state;
     struct sheet sheet;
     struct maker maker;
     sheet_init(&sheet, 2, 2);
@@ -456,7 +424,7 @@ static void whole_numbers_may_be_written_as_reals(void **state)
 
 static void heads_are_checked(void **state)
 {
-    struct loaded *l = *state;
+    struct gltf_case *l = *state;
     static const struct {
         const char *json, *reason;
     } cases[] = {
@@ -484,7 +452,7 @@ static void heads_are_checked(void **state)
 
 static void colors_are_read_in_every_type(void **state)
 {
-    struct loaded *l = *state;
+    struct gltf_case *l = *state;
     const float corners[3][3] = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 } }, reals[3][3] = { { 1, 0.5f, 0 }, { 0, 0, 0 }, { 2, -1, 1 } };
     const uint16_t shorts[3][4] = { { 65535, 32768, 0, 65535 }, { 0, 0, 0, 65535 }, { 65535, 0, 65535, 65535 } };
     for (int way = 0; way < 2; way++) {
@@ -507,7 +475,7 @@ static void colors_are_read_in_every_type(void **state)
 
 static void textures_lie_where_their_transform_puts_them(void **state)
 {
-    struct loaded *l = *state;
+    struct gltf_case *l = *state;
     struct sheet sheet;
     struct maker maker;
     sheet_init(&sheet, 2, 2);
@@ -565,7 +533,7 @@ static void textures_lie_where_their_transform_puts_them(void **state)
 
 /* --- cutting ------------------------------------------------------------------------------------------------------------- */
 
-static struct geometry cut(const struct loaded *l, const char *nodes, double unit_m, enum axis up)
+static struct geometry cut(const struct gltf_case *l, const char *nodes, double unit_m, enum axis up)
 {
     struct geometry g;
     char why[MODEL_WHY_BYTES];
@@ -590,7 +558,7 @@ static void face_normal(const struct geometry *g, uint32_t triangle, double out[
 
 static void assets_are_cut_from_a_tree(void **state)
 {
-    struct loaded *l = *state;
+    struct gltf_case *l = *state;
     struct sheet sheet;
     struct maker maker;
     char why[MODEL_WHY_BYTES];
@@ -641,7 +609,7 @@ static void assets_are_cut_from_a_tree(void **state)
 
 static void mirrored_instances_keep_their_outside(void **state)
 {
-    struct loaded *l = *state;
+    struct gltf_case *l = *state;
     struct sheet sheet;
     sheet_init(&sheet, 4, 2);
     struct maker maker = seed_open(14, "instances.glb", &sheet);
@@ -663,7 +631,7 @@ static void mirrored_instances_keep_their_outside(void **state)
 /* Fifty thousand nodes of a mesh of a thousand triangles, each a primitive of its own. */
 static void what_many_nodes_draw_is_bounded(void **state)
 {
-    struct loaded *l = *state;
+    struct gltf_case *l = *state;
     struct maker maker;
     struct geometry g;
     char why[MODEL_WHY_BYTES];
@@ -687,7 +655,7 @@ static void what_many_nodes_draw_is_bounded(void **state)
 
 static void a_name_is_meant_as_it_stands(void **state)
 {
-    struct loaded *l = *state;
+    struct gltf_case *l = *state;
     struct sheet sheet;
     struct maker maker;
     sheet_init(&sheet, 2, 2);
@@ -708,7 +676,7 @@ static void a_name_is_meant_as_it_stands(void **state)
 
 static void lines_are_counted_for_the_asset_that_has_them(void **state)
 {
-    struct loaded *l = *state;
+    struct gltf_case *l = *state;
     struct sheet sheet;
     struct maker maker;
     char why[MODEL_WHY_BYTES];
@@ -741,20 +709,14 @@ static void real_models_have_the_triangles_that_they_are_known_to_have(void **st
         { "cookie_factory_mixer", 22083, 0, 0 },   { "cookie_factory_water_tank", 1275, 0, 0 },
         { "industrial_tanker", 3720, 0, 0 },
     };
-    struct loaded *l = *state;
+    struct gltf_case *l = *state;
     if (access("../shared/data/models", R_OK) != 0) {
         print_message("# ../shared/data/models is not there\n");
         skip();
     }
     for (size_t i = 0; i < sizeof(models) / sizeof(models[0]); i++) {
-        struct model_source source;
         char *path = mem_printf("../shared/data/models/%s.glb", models[i].name);
-        forget(l);
-        l->good = false;
-        if (!model_source_open(&source, path, l->why))
-            fail_msg("%s: %s", path, l->why);
-        l->good = gltf_load(&l->model, &source, l->why);
-        model_source_finish(&source);
+        gltf_case_read(l, path);
         mem_free(path);
         assert_good(l);
         struct geometry g = cut(l, NULL, 1, AXIS_Y);
@@ -794,7 +756,7 @@ static void measure(const struct gltf_model *model, double low[3], double high[3
 /* The greatest primitive of a real plant, by every compression: as large, with the same area. */
 static void a_real_model_survives_compression(void **state)
 {
-    struct loaded *l = *state;
+    struct gltf_case *l = *state;
     static const int ways[] = { 8, 9, 11, 12 };
     struct model_source source;
     struct gltf_model real;
@@ -842,7 +804,7 @@ static void a_real_model_survives_compression(void **state)
     gltf_free(&real);
 }
 
-#define WITH_MODEL(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
+#define WITH_MODEL(test) cmocka_unit_test_setup_teardown(test, set_up, gltf_case_tear_down)
 
 int main(void)
 {
