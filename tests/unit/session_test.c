@@ -13,60 +13,19 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "net/message/reply.h"
-#include "tests/support/small_scene.h"
+#include "tests/support/session_case.h"
 #include "value/quality.h"
 
 #define HELLO "{\"type\":\"hello\",\"width\":640,\"height\":360,\"codecs\":[\"jpeg\"]}"
 static const int64_t MS = NS_PER_MS;
 
-struct fixture {
-    struct session_world world;
-    struct quotas quotas;
-    struct admission admission;
-    struct snapshot *snapshot;
-    bool up[1];
-    struct session *session;
-    int64_t now_ns;
-    uint64_t number;
-};
-
-static int set_up(void **state)
-{
-    struct fixture *f = mem_new(sizeof(*f));
-    f->snapshot = snapshot_create(small_scene()->plant->tag_count);
-    f->up[0] = true;
-    f->world = (struct session_world){
-        .plant = small_scene()->plant, .scene = small_scene(), .snapshot = f->snapshot, .links_up = f->up, .live = true, .version = "1.2.3"
-    };
-    f->world.baselines = baselines_create();
-    f->quotas = quotas_default();
-    f->admission.quotas = f->world.quotas = &f->quotas;
-    f->world.admission = &f->admission;
-    f->world.resumes = resumes_create();
-    f->now_ns = 1000 * NS_PER_S;
-    f->session = session_create(&f->world, 7, f->now_ns);
-    *state = f;
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    struct fixture *f = *state;
-    session_destroy(&f->session);
-    snapshot_destroy(&f->snapshot);
-    baselines_destroy(&f->world.baselines);
-    resumes_destroy(&f->world.resumes);
-    mem_free(f);
-    return 0;
-}
-
-static void say(struct fixture *f, const char *text)
+static void say(struct session_case *f, const char *text)
 {
     session_on_message(f->session, text, strlen(text), f->now_ns, f->now_ns);
 }
 
 /* The next text, as JSON; NULL: none is due. */
-static json_t *hear(struct fixture *f)
+static json_t *hear(struct session_case *f)
 {
     struct text text = { 0 };
     json_t *message = NULL;
@@ -84,7 +43,7 @@ static const char *type_of(const json_t *message)
 }
 
 /* Takes all that is due; fails unless it is of these types, in this order. */
-static void expect(struct fixture *f, const char *types)
+static void expect(struct session_case *f, const char *types)
 {
     char got[256] = "";
     for (json_t *message; (message = hear(f)); json_decref(message))
@@ -92,7 +51,7 @@ static void expect(struct fixture *f, const char *types)
     assert_string_equal(got, types);
 }
 
-static void expect_error(struct fixture *f, const char *code)
+static void expect_error(struct session_case *f, const char *code)
 {
     json_t *message = hear(f);
     assert_string_equal(type_of(message), "error");
@@ -100,14 +59,14 @@ static void expect_error(struct fixture *f, const char *code)
     json_decref(message);
 }
 
-static void greet(struct fixture *f)
+static void greet(struct session_case *f)
 {
     say(f, HELLO);
     expect(f, "welcome status tags ");
 }
 
 /* Asks the painter that there is not. False: the session wants nothing, or the painter would refuse. */
-static bool ask(struct fixture *f, struct wish *wish)
+static bool ask(struct session_case *f, struct wish *wish)
 {
     if (!session_wish(f->session, f->now_ns, wish) || wish->only_replace)
         return false;
@@ -115,21 +74,21 @@ static bool ask(struct fixture *f, struct wish *wish)
     return true;
 }
 
-static struct picture *empty_picture(struct fixture *f, const struct wish *wish)
+static struct picture *empty_picture(struct session_case *f, const struct wish *wish)
 {
     struct picture *picture = mem_new(sizeof(*picture));
     *picture = (struct picture){ .client = 7, .number = ++f->number, .wish = *wish };
     return picture;
 }
 
-static void paint_nothing(struct fixture *f, const struct wish *wish)
+static void paint_nothing(struct session_case *f, const struct wish *wish)
 {
     struct picture *picture = empty_picture(f, wish);
     picture->failed = true;
     session_on_picture(f->session, picture);
 }
 
-static void paint(struct fixture *f, const struct wish *wish, bool same)
+static void paint(struct session_case *f, const struct wish *wish, bool same)
 {
     struct picture *picture = empty_picture(f, wish);
     if (!same) {
@@ -141,7 +100,7 @@ static void paint(struct fixture *f, const struct wish *wish, bool same)
     session_on_picture(f->session, picture);
 }
 
-static uint32_t send_picture(struct fixture *f)
+static uint32_t send_picture(struct session_case *f)
 {
     uint32_t seq = 0;
     struct picture *picture = session_next_picture(f->session, f->now_ns, &seq);
@@ -151,7 +110,7 @@ static uint32_t send_picture(struct fixture *f)
     return seq;
 }
 
-static void ack(struct fixture *f, uint32_t seq)
+static void ack(struct session_case *f, uint32_t seq)
 {
     char text[64];
     snprintf(text, sizeof(text), "{\"type\":\"ack\",\"seq\":%u}", seq);
@@ -159,7 +118,7 @@ static void ack(struct fixture *f, uint32_t seq)
 }
 
 /* It is drawn, sent, and acknowledged after so long. */
-static void carry(struct fixture *f, const struct wish *wish, size_t bytes, int64_t way_ns)
+static void carry(struct session_case *f, const struct wish *wish, size_t bytes, int64_t way_ns)
 {
     struct picture *picture = empty_picture(f, wish);
     struct frame *frame = frame_create(16, 16);
@@ -175,7 +134,7 @@ static void carry(struct fixture *f, const struct wish *wish, size_t bytes, int6
 }
 
 /* One picture all the way. */
-static struct wish show(struct fixture *f)
+static struct wish show(struct session_case *f)
 {
     struct wish wish = { 0 };
     if (!ask(f, &wish))
@@ -186,7 +145,7 @@ static struct wish show(struct fixture *f)
 }
 
 /* New readings under a refined picture: quick says whether the render thread can colour it again, or draws a moving one instead. */
-static struct wish show_data(struct fixture *f, bool quick)
+static struct wish show_data(struct session_case *f, bool quick)
 {
     struct wish wish = { 0 };
     session_on_data(f->session, f->now_ns);
@@ -201,7 +160,7 @@ static struct wish show_data(struct fixture *f, bool quick)
 
 static void nothing_before_hello(void **state)
 {
-    struct fixture *f = *state;
+    struct session_case *f = *state;
     struct wish wish;
     assert_false(session_wish(f->session, f->now_ns, &wish));
     session_on_data(f->session, f->now_ns);
@@ -216,7 +175,7 @@ static void nothing_before_hello(void **state)
 
 static void welcome_tells_the_plant_and_no_addresses(void **state)
 {
-    struct fixture *f = *state;
+    struct session_case *f = *state;
     struct text text = { 0 };
     say(f, HELLO);
     assert_true(session_next_text(f->session, f->now_ns, f->now_ns, &text));
@@ -240,7 +199,7 @@ static void welcome_tells_the_plant_and_no_addresses(void **state)
 
 static void first_picture_comes_at_once_then_refined_then_nothing(void **state)
 {
-    struct fixture *f = *state;
+    struct session_case *f = *state;
     struct wish wish;
     greet(f);
     assert_true(ask(f, &wish));
@@ -261,7 +220,7 @@ static void first_picture_comes_at_once_then_refined_then_nothing(void **state)
 
 static void newest_camera_wins_and_the_last_state_arrives(void **state)
 {
-    struct fixture *f = *state;
+    struct session_case *f = *state;
     struct wish wish;
     greet(f);
     show(f);
@@ -284,7 +243,7 @@ static void newest_camera_wins_and_the_last_state_arrives(void **state)
 
 static void a_full_window_only_replaces(void **state)
 {
-    struct fixture *f = *state;
+    struct session_case *f = *state;
     struct wish wish;
     greet(f);
     assert_true(ask(f, &wish));
@@ -300,7 +259,7 @@ static void a_full_window_only_replaces(void **state)
 
 static void equal_pictures_free_their_place(void **state)
 {
-    struct fixture *f = *state;
+    struct session_case *f = *state;
     struct wish wish;
     greet(f);
     for (int i = 0; i < 10; i++) {
@@ -314,7 +273,7 @@ static void equal_pictures_free_their_place(void **state)
 
 static void without_a_first_picture_a_session_is_refused(void **state)
 {
-    struct fixture *f = *state;
+    struct session_case *f = *state;
     struct wish wish;
     greet(f);
     assert_true(ask(f, &wish));
@@ -325,7 +284,7 @@ static void without_a_first_picture_a_session_is_refused(void **state)
 
 static void a_view_that_cannot_be_drawn_is_said_once(void **state)
 {
-    struct fixture *f = *state;
+    struct session_case *f = *state;
     struct wish wish;
     greet(f);
     show(f);
@@ -348,7 +307,7 @@ static void a_view_that_cannot_be_drawn_is_said_once(void **state)
 
 static void overtaken_pictures_are_not_sent(void **state)
 {
-    struct fixture *f = *state;
+    struct session_case *f = *state;
     struct wish wish;
     greet(f);
     assert_true(ask(f, &wish));
@@ -370,7 +329,7 @@ static void overtaken_pictures_are_not_sent(void **state)
 
 static void data_under_a_still_view_is_drawn_once_and_refined(void **state)
 {
-    struct fixture *f = *state;
+    struct session_case *f = *state;
     struct wish wish;
     greet(f);
     show(f);
@@ -385,7 +344,7 @@ static void data_under_a_still_view_is_drawn_once_and_refined(void **state)
 
 static void readings_come_with_the_next_camera_of_a_slow_drag(void **state)
 {
-    struct fixture *f = *state;
+    struct session_case *f = *state;
     struct wish wish;
     greet(f);
     show(f);
@@ -408,7 +367,7 @@ static void readings_come_with_the_next_camera_of_a_slow_drag(void **state)
 
 static void nobody_is_refined_while_another_moves(void **state)
 {
-    struct fixture *f = *state;
+    struct session_case *f = *state;
     struct wish wish;
     greet(f);
     show(f);
@@ -426,7 +385,7 @@ static void nobody_is_refined_while_another_moves(void **state)
 
 static void others_may_move_for_a_while_not_for_ever(void **state)
 {
-    struct fixture *f = *state;
+    struct session_case *f = *state;
     struct wish wish;
     greet(f);
     show(f);
@@ -438,7 +397,7 @@ static void others_may_move_for_a_while_not_for_ever(void **state)
 
 static void data_on_a_loaded_server_is_not_refined_at_once(void **state)
 {
-    struct fixture *f = *state;
+    struct session_case *f = *state;
     struct wish wish;
     greet(f);
     show(f);
@@ -456,7 +415,7 @@ static void data_on_a_loaded_server_is_not_refined_at_once(void **state)
 
 static void data_on_a_loaded_server_does_not_put_refinement_off_for_ever(void **state)
 {
-    struct fixture *f = *state;
+    struct session_case *f = *state;
     int refined = 0;
     greet(f);
     show(f);
@@ -473,7 +432,7 @@ static void data_on_a_loaded_server_does_not_put_refinement_off_for_ever(void **
 /* A minute of readings that change twice a second: the refined picture stays, whatever else the server has to do. */
 static void data_leaves_a_refined_picture_that_is_quick_to_color(void **state)
 {
-    struct fixture *f = *state;
+    struct session_case *f = *state;
     struct wish wish;
     greet(f);
     show(f);
@@ -492,7 +451,7 @@ static void data_leaves_a_refined_picture_that_is_quick_to_color(void **state)
 /* 125 kB/s: what moves becomes smaller, what stands still is refined in two stages. */
 static void a_slow_client_gets_less_and_everything_in_the_end(void **state)
 {
-    struct fixture *f = *state;
+    struct session_case *f = *state;
     struct wish wish;
     greet(f);
     for (int i = 1; i <= 40; i++) {
@@ -519,7 +478,7 @@ static void a_slow_client_gets_less_and_everything_in_the_end(void **state)
 
 static void a_refined_picture_that_is_out_of_date_is_not_sent_on(void **state)
 {
-    struct fixture *f = *state;
+    struct session_case *f = *state;
     struct wish wish;
     uint32_t seq;
     greet(f);
@@ -544,7 +503,7 @@ static void a_refined_picture_that_is_out_of_date_is_not_sent_on(void **state)
 
 static void who_takes_nothing_is_paused_and_costs_nothing(void **state)
 {
-    struct fixture *f = *state;
+    struct session_case *f = *state;
     struct wish wish;
     greet(f);
     assert_true(ask(f, &wish));
@@ -571,7 +530,7 @@ static void who_takes_nothing_is_paused_and_costs_nothing(void **state)
 
 static void hidden_pages_get_nothing(void **state)
 {
-    struct fixture *f = *state;
+    struct session_case *f = *state;
     struct wish wish;
     greet(f);
     show(f);
@@ -588,7 +547,7 @@ static void hidden_pages_get_nothing(void **state)
 
 static void tags_come_whole_then_by_change_then_nothing(void **state)
 {
-    struct fixture *f = *state;
+    struct session_case *f = *state;
     greet(f);
     f->snapshot->readings[1] = (struct reading){ .value = 3.25, .quality = QUALITY_GOOD, .changes = 5, .age_ns = 40 * MS };
     session_on_data(f->session, f->now_ns);
@@ -620,7 +579,7 @@ static void tags_come_whole_then_by_change_then_nothing(void **state)
 
 static void what_is_shown_is_confirmed(void **state)
 {
-    struct fixture *f = *state;
+    struct session_case *f = *state;
     greet(f);
     f->snapshot->taken_utc_ns = 5000;
     say(f, "{\"type\":\"params\",\"seq\":1,\"show\":\"difference\",\"baseline\":{\"set\":\"calm\"},"
@@ -645,7 +604,7 @@ static void what_is_shown_is_confirmed(void **state)
 
 static void params_are_confirmed_and_bad_ones_change_nothing(void **state)
 {
-    struct fixture *f = *state;
+    struct session_case *f = *state;
     greet(f);
     say(f, "{\"type\":\"params\",\"seq\":4,\"group\":\"pressure\",\"ramp_interval\":2}");
     json_t *params = hear(f);
@@ -663,7 +622,7 @@ static void params_are_confirmed_and_bad_ones_change_nothing(void **state)
 
 static void a_client_that_does_not_read_costs_a_bounded_list(void **state)
 {
-    struct fixture *f = *state;
+    struct session_case *f = *state;
     greet(f);
     for (int i = 0; i < 10000; i++)
         say(f, "{\"type\":\"ping\",\"t\":1.5}");
@@ -672,7 +631,7 @@ static void a_client_that_does_not_read_costs_a_bounded_list(void **state)
 
 static void too_many_messages_are_put_off(void **state)
 {
-    struct fixture *f = *state;
+    struct session_case *f = *state;
     greet(f);
     for (int i = 0; i < f->quotas.at[QUOTA_MESSAGES]; i++)
         say(f, "{\"type\":\"camera\",\"seq\":1,\"eye\":[9,9,9],\"target\":[0,0,1]}");
@@ -689,7 +648,7 @@ static void too_many_messages_are_put_off(void **state)
 
 static void acks_for_nothing_are_errors(void **state)
 {
-    struct fixture *f = *state;
+    struct session_case *f = *state;
     greet(f);
     ack(f, 1);
     expect_error(f, "bad_field");
@@ -702,7 +661,7 @@ static void acks_for_nothing_are_errors(void **state)
 
 static void a_fit_is_answered_with_a_camera_and_moves_nothing(void **state)
 {
-    struct fixture *f = *state;
+    struct session_case *f = *state;
     greet(f);
     struct camera before = f->session->view.camera;
     say(f, "{\"type\":\"fit\",\"seq\":9,\"id\":\"P-101A\",\"side\":\"top\",\"projection\":\"orthographic\"}");
@@ -723,7 +682,7 @@ static void a_fit_is_answered_with_a_camera_and_moves_nothing(void **state)
 
 static void a_pick_is_asked_once_and_answered(void **state)
 {
-    struct fixture *f = *state;
+    struct session_case *f = *state;
     struct pick_order order;
     greet(f);
     assert_false(session_pick(f->session, &order));
@@ -758,7 +717,7 @@ static void a_pick_is_asked_once_and_answered(void **state)
 
 static void a_follower_is_shown_its_leaders_view(void **state)
 {
-    struct fixture *f = *state;
+    struct session_case *f = *state;
     struct wish wish;
     struct session *leader = session_create(&f->world, 8, f->now_ns);
     static const char hello[] = "{\"type\":\"hello\",\"width\":800,\"height\":600,\"codecs\":[\"jpeg\"]}";
@@ -804,7 +763,7 @@ static void a_follower_is_shown_its_leaders_view(void **state)
 
 static void pings_come_back_exactly(void **state)
 {
-    struct fixture *f = *state;
+    struct session_case *f = *state;
     say(f, "{\"type\":\"ping\",\"t\":123456.78901234567}");
     json_t *pong = hear(f);
     assert_string_equal(type_of(pong), "pong");
@@ -823,7 +782,7 @@ static void pings_come_back_exactly(void **state)
 
 static void codecs_are_chosen_and_chosen_again(void **state)
 {
-    struct fixture *f = *state;
+    struct session_case *f = *state;
     struct wish wish;
     f->world.codecs = 1u << WIRE_CODEC_JPEG | 1u << WIRE_CODEC_H264;
     say(f, "{\"type\":\"hello\",\"width\":640,\"height\":360,\"codecs\":[\"auto\",\"h264\",\"jpeg\"]}");
@@ -851,7 +810,7 @@ static void codecs_are_chosen_and_chosen_again(void **state)
 
 int main(void)
 {
-#define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
+#define TEST(name) cmocka_unit_test_setup_teardown(name, session_case_set_up, session_case_tear_down)
     const struct CMUnitTest tests[] = {
         TEST(nothing_before_hello),
         TEST(welcome_tells_the_plant_and_no_addresses),

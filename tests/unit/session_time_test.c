@@ -10,70 +10,45 @@
 #include <cmocka.h>
 
 #include "base/clock.h"
-#include "base/mem.h"
 #include "net/past.h"
 #include "net/session/session.h"
-#include "tests/support/small_scene.h"
+#include "tests/support/session_case.h"
 #include "value/quality.h"
 
 #define HELLO "{\"type\":\"hello\",\"width\":640,\"height\":360,\"codecs\":[\"jpeg\"]%s}"
 static const int64_t NOW_US = INT64_C(1793500000000000), MS = NS_PER_MS;
 
-struct fixture {
-    struct session_world world;
-    struct quotas quotas;
-    struct admission admission;
-    struct snapshot *snapshot;
-    bool up[1];
-    struct session *session;
-    int64_t now_ns;
-    char resume[RESUME_CHARS + 1];
-};
-
 static int set_up(void **state)
 {
-    struct fixture *f = mem_new(sizeof(*f));
-    f->snapshot = snapshot_create(small_scene()->plant->tag_count);
-    f->up[0] = true;
-    f->world = (struct session_world){ .plant = small_scene()->plant, .scene = small_scene(), .snapshot = f->snapshot, .links_up = f->up };
-    f->world.version = "1.2.3";
+    session_case_set_up(state);
+    struct session_case *f = *state;
+    f->world.live = false;
     f->world.moments = moments_create();
-    f->world.baselines = baselines_create();
     f->world.history_first_us = NOW_US - INT64_C(3600000000);
-    f->quotas = quotas_default();
-    f->admission.quotas = f->world.quotas = &f->quotas;
-    f->world.admission = &f->admission;
-    f->world.resumes = resumes_create();
-    f->now_ns = 1000 * NS_PER_S;
-    f->session = session_create(&f->world, 7, f->now_ns);
-    *state = f;
     return 0;
 }
 
 static int tear_down(void **state)
 {
-    struct fixture *f = *state;
-    session_destroy(&f->session);
-    snapshot_destroy(&f->snapshot);
-    moments_destroy(&f->world.moments);
-    baselines_destroy(&f->world.baselines);
-    resumes_destroy(&f->world.resumes);
-    mem_free(f);
+    struct session_case *f = *state;
+    struct moments *moments = f->world.moments;
+    session_case_tear_down(state);
+    moments_destroy(&moments);
     return 0;
 }
 
-static int64_t utc_ns(const struct fixture *f)
+static int64_t utc_ns(const struct session_case *f)
 {
     return NOW_US * 1000 + f->now_ns - 1000 * NS_PER_S;
 }
 
-static void say(struct fixture *f, const char *text)
+static void say(struct session_case *f, const char *text)
 {
     session_on_message(f->session, text, strlen(text), f->now_ns, utc_ns(f));
 }
 
 /* The newest text of that type, of all that are due. */
-static json_t *hear(struct fixture *f, const char *type)
+static json_t *hear(struct session_case *f, const char *type)
 {
     struct text text = { 0 };
     json_t *found = NULL;
@@ -99,7 +74,7 @@ static int64_t number(json_t *message, const char *name)
     return value;
 }
 
-static void expect_error(struct fixture *f, const char *code)
+static void expect_error(struct session_case *f, const char *code)
 {
     json_t *message = hear(f, "error");
     assert_non_null(message);
@@ -107,7 +82,7 @@ static void expect_error(struct fixture *f, const char *code)
     json_decref(message);
 }
 
-static void greet(struct fixture *f, const char *more)
+static void greet(struct session_case *f, const char *more)
 {
     char text[512];
     snprintf(text, sizeof(text), HELLO, more);
@@ -118,7 +93,7 @@ static void greet(struct fixture *f, const char *more)
     json_decref(welcome);
 }
 
-static void go(struct fixture *f, int64_t ago_s, double speed)
+static void go(struct session_case *f, int64_t ago_s, double speed)
 {
     char text[128];
     snprintf(text, sizeof(text), "{\"type\":\"time\",\"at_us\":%lld,\"speed\":%g}", (long long)(NOW_US - ago_s * 1000000), speed);
@@ -126,13 +101,13 @@ static void go(struct fixture *f, int64_t ago_s, double speed)
 }
 
 /* What it asks for, in seconds before NOW; NAN: nothing. */
-static double wanted(struct fixture *f)
+static double wanted(struct session_case *f)
 {
     int64_t at_us;
     return session_wants_moment(f->session, f->now_ns, utc_ns(f), &at_us) ? (double)(NOW_US - at_us) / 1e6 : (double)NAN;
 }
 
-static void bring(struct fixture *f, double ago_s, double value)
+static void bring(struct session_case *f, double ago_s, double value)
 {
     struct snapshot *snapshot = snapshot_create(f->snapshot->count);
     int64_t at_us = NOW_US - (int64_t)llround(ago_s * 1e6);
@@ -145,7 +120,7 @@ static void bring(struct fixture *f, double ago_s, double value)
 
 static void test_an_instant_is_shown_once_it_was_read(void **state)
 {
-    struct fixture *f = *state;
+    struct session_case *f = *state;
     struct wish wish;
     greet(f, "");
     go(f, 60, 0);
@@ -163,7 +138,7 @@ static void test_an_instant_is_shown_once_it_was_read(void **state)
 
 static void test_the_client_is_told_where_it_is(void **state)
 {
-    struct fixture *f = *state;
+    struct session_case *f = *state;
     greet(f, "");
     go(f, 60, 0);
     wanted(f);
@@ -182,7 +157,7 @@ static void test_the_client_is_told_where_it_is(void **state)
 
 static void test_play_goes_on_by_the_clock_and_ends_in_the_present(void **state)
 {
-    struct fixture *f = *state;
+    struct session_case *f = *state;
     greet(f, "");
     go(f, 60, 20);
     assert_true(wanted(f) == 60);
@@ -206,7 +181,7 @@ static void test_play_goes_on_by_the_clock_and_ends_in_the_present(void **state)
 
 static void test_backwards_it_stops_where_history_begins(void **state)
 {
-    struct fixture *f = *state;
+    struct session_case *f = *state;
     greet(f, "");
     go(f, 3590, -100);
     wanted(f);
@@ -221,7 +196,7 @@ static void test_backwards_it_stops_where_history_begins(void **state)
 
 static void test_who_drags_sees_what_was_read_on_the_way(void **state)
 {
-    struct fixture *f = *state;
+    struct session_case *f = *state;
     greet(f, "");
     go(f, 60, 0);
     wanted(f);
@@ -236,7 +211,7 @@ static void test_who_drags_sees_what_was_read_on_the_way(void **state)
 
 static void test_what_cannot_be_read_is_said_and_changes_nothing(void **state)
 {
-    struct fixture *f = *state;
+    struct session_case *f = *state;
     greet(f, "");
     go(f, 60, 60);
     wanted(f);
@@ -254,7 +229,7 @@ static void test_what_cannot_be_read_is_said_and_changes_nothing(void **state)
 
 static void test_the_newest_seconds_are_the_present(void **state)
 {
-    struct fixture *f = *state;
+    struct session_case *f = *state;
     greet(f, "");
     go(f, 2, 0);
     assert_true(isnan(wanted(f)) && f->session->view.at_us == 0);
@@ -262,7 +237,7 @@ static void test_the_newest_seconds_are_the_present(void **state)
 
 static void test_new_parameters_stay_in_the_past(void **state)
 {
-    struct fixture *f = *state;
+    struct session_case *f = *state;
     greet(f, "");
     go(f, 60, 0);
     wanted(f);
@@ -277,7 +252,7 @@ static void test_new_parameters_stay_in_the_past(void **state)
 
 static void test_whoever_begins_in_the_past_never_sees_the_present(void **state)
 {
-    struct fixture *f = *state;
+    struct session_case *f = *state;
     char more[64];
     struct wish wish;
     snprintf(more, sizeof(more), ",\"at_us\":%lld,\"speed\":60", (long long)(NOW_US - 600000000));
@@ -293,7 +268,7 @@ static void test_whoever_begins_in_the_past_never_sees_the_present(void **state)
 
 static void test_who_comes_back_is_where_he_was(void **state)
 {
-    struct fixture *f = *state;
+    struct session_case *f = *state;
     struct wish wish;
     char more[128];
     greet(f, "");
@@ -314,7 +289,7 @@ static void test_who_comes_back_is_where_he_was(void **state)
 
 static void test_who_follows_comes_along(void **state)
 {
-    struct fixture *f = *state;
+    struct session_case *f = *state;
     greet(f, "");
     struct session *other = session_create(&f->world, 8, f->now_ns);
     session_follow(other, f->session, f->now_ns);
@@ -330,7 +305,7 @@ static void test_who_follows_comes_along(void **state)
 
 static void test_who_is_given_the_lead_stays_there(void **state)
 {
-    struct fixture *f = *state;
+    struct session_case *f = *state;
     greet(f, "");
     struct session *heir = session_create(&f->world, 8, f->now_ns);
     session_follow(heir, f->session, f->now_ns);

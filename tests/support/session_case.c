@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One session on the small scene, without socket, clock or painter. */
+#include "tests/support/session_case.h"
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "tests/support/small_scene.h"
+
+int session_case_set_up(void **state)
+{
+    struct session_case *c = mem_new(sizeof(*c));
+    c->snapshot = snapshot_create(small_scene()->plant->tag_count);
+    c->up[0] = true;
+    c->world = (struct session_world){
+        .plant = small_scene()->plant, .scene = small_scene(), .snapshot = c->snapshot, .links_up = c->up, .live = true, .version = "1.2.3"
+    };
+    c->world.baselines = baselines_create();
+    c->quotas = quotas_default();
+    c->admission.quotas = c->world.quotas = &c->quotas;
+    c->world.admission = &c->admission;
+    c->world.resumes = resumes_create();
+    c->now_ns = 1000 * NS_PER_S;
+    c->session = session_create(&c->world, 7, c->now_ns);
+    *state = c;
+    return 0;
+}
+
+int session_case_tear_down(void **state)
+{
+    struct session_case *c = *state;
+    session_destroy(&c->session);
+    snapshot_destroy(&c->snapshot);
+    baselines_destroy(&c->world.baselines);
+    resumes_destroy(&c->world.resumes);
+    mem_free(c);
+    return 0;
+}
