@@ -179,6 +179,39 @@ test('a code at the equipment opens there, on a phone', options, async () => {
     await phone.close();
 });
 
+test('what of a link is not in this plant is said, in the reader\'s language; the rest of it holds', options, async () => {
+    const opened = async (address, screen, said, f) => {
+        const other = await openPage(address, screen), note = other.page.locator('#toast');
+        await waitForPicture(other.page);
+        await note.waitFor();
+        assert.match(await note.textContent(), said);
+        await settle(other.page);
+        await f(other.page);
+        assert.deepEqual(other.errors, []);
+        await other.close();
+    };
+    await opened(`${url}?lang=en#tag=TT-9`, PHONE, /^This link does not fit: this plant has no tag “TT-9”\./, async (phone) => {
+        assert.equal(await phone.locator('#card').isVisible(), false);
+        await shoot(phone, 'link-astray');
+    });
+    await opened(`${url}?lang=de#asset=E-9&group=pressure&distance=geodesic`, SCREEN,
+        /^Dieser Link passt nicht: in dieser Anlage gibt es „E-9“ nicht \(Ausrüstung\)\./, async (other) => {
+            const { params } = await view(other);
+            assert.deepEqual([params.group, params.distance, params.selected ?? null], ['pressure', 'geodesic', null]);
+        });
+});
+
+test('what the server refuses is said in the reader\'s language', options, async () => {
+    const other = await openPage(`${url}?lang=ko`, SCREEN);
+    await waitForPicture(other.page);
+    await other.page.evaluate(() => globalThis.plantcast.session.setParams({ strength: 500 }));
+    await other.page.locator('#toast', { hasText: '서버가 거부했습니다: 0–100 범위의 수가 필요합니다' }).waitFor();
+    await other.page.evaluate(() => globalThis.plantcast.session.fit({ side: 'inside out' }));
+    await other.page.locator('#toast', { hasText: '서버가 거부했습니다: 영어로 “side:' }).waitFor();
+    await shoot(other.page, 'refused-ko');
+    await other.close();
+});
+
 test('others follow; the lead is handed over, and what is shown stays', options, async () => {
     const id = await page.evaluate(() => globalThis.plantcast.session.id);
     const second = await openPage(`${url}#follow=${id}`, { viewport: { width: 1000, height: 700 } });

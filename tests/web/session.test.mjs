@@ -166,6 +166,20 @@ test('after a reconnect the same camera and the same parameters are asked for', 
     assert.equal(session.params.ramp_interval, 10);
 });
 
+test('what of our view is not in this plant is left out and said; the rest is asked for again', () => {
+    const { connection, sockets, events } = makeSession({ camera: WANTED.camera, params: { group: 'pressure', selected: 'E-9', ghost: ['P-9'] } });
+    connection.start();
+    sockets[0].accept();
+    const texts = ['selected: \'E-9\' is no asset of this plant', 'ghost: \'P-9\' is no asset of this plant'];
+    for (const text of texts)
+        sockets[0].say({ type: 'error', code: 'bad_field', text, about: 'hello' });
+    const { camera, params } = sockets[0].sent.at(-1);
+    assert.deepEqual([camera.eye, params], [WANTED.camera.eye, { seq: 1, group: 'pressure' }]);
+    assert.deepEqual(events, texts.map((text) => ['astray', text]));
+    sockets[0].say({ type: 'error', code: 'bad_field', text: 'group: \'pressure\' is no group of this plant', about: 'hello' });
+    assert.deepEqual(sockets[0].sent.at(-1).params, undefined);
+});
+
 test('a token is asked for once, said in hello, and the view is asked for again', () => {
     const { session, sockets, events, connection } = makeSession();
     connection.start();

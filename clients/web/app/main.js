@@ -33,7 +33,7 @@ const pilot = new Pilot({ viewport, session });
 const status = new Status({ session, onFreshness: (fresh) => { overlay.fresh = fresh; refresh(); } });
 const tools = new Tools({ session });
 new AlarmStrip({ session, refresh });
-Object.assign(page, { selection, overlay, pilot, assets, parts, selectTag, showTag, flyToTag, refresh, tell });
+Object.assign(page, { selection, overlay, pilot, assets, parts, selectTag, showTag, flyToTag, fitView, refresh, tell });
 page.onUnit = () => {
     overlay.unit = page.unit;
     refresh();
@@ -255,38 +255,31 @@ session.on('following', () => {
 byId('following').querySelector('button').addEventListener('click', () => session.follow(null));
 session.on('ignored', (what) => console.warn(`ignored: ${what}`));
 
-// A link that names equipment or a tag but no camera opens there.
-let arrived = false;
+// Where a link leads, and what of it, or of the view before, is not in this plant.
+let arrived = false, astray = [];
+session.on('astray', (text) => astray.push(text));
 function arrive() {
-    if (arrived)
-        return;
+    const link = arrived ? null : address, refused = astray;
+    if (refused.length > 0 || (!arrived && location.hash.length > 1))
+        withPart('arrival', (arrival) => arrival.come(link, refused));
     arrived = true;
-    const tag = session.model.tag(selection.tag), asset = session.model.asset(session.params.selected);
-    if (address.camera)
-        return;
-    if (tag) {
-        if (tag.group && tag.group !== session.params.group)
-            session.setParams({ group: tag.group });
-        flyToTag(tag);
-    } else if (asset) {
-        pilot.flyToBox(asset.bounds, ARRIVAL_MARGIN);
-    }
+    astray = [];
 }
 
 let toastTimer;
-session.on('error', async ({ text, about }) => {
+session.on('error', async ({ text, about, code }) => {
     console.warn(`error about ${about}: ${text}`);
     if (about === 'ack')
         return; // nothing that a person did
-    const { refusalText } = await import('../core/refusals.js');
-    tell(say('viewport.refused', { text: refusalText(text) }));
+    const { put, refusalText } = await import('../core/refusals.js');
+    tell(put('refused', { text: refusalText(text, code) }));
 });
 
-function tell(text) {
+function tell(text, ms = TOAST_MS) {
     setText(byId('toast'), text);
     byId('toast').hidden = false;
     clearTimeout(toastTimer);
-    toastTimer = setTimeout(() => { byId('toast').hidden = true; }, TOAST_MS);
+    toastTimer = setTimeout(() => { byId('toast').hidden = true; }, ms);
 }
 
 // --- the page

@@ -7,6 +7,7 @@ import { renewIfOld } from './install.js';
 // Of each module: its class, its style sheets, and the element that its markup fills.
 const PARTS = {
     alarms: { type: 'AlarmList', styles: ['alarms', 'help'], fills: 'alarms' },
+    arrival: { type: 'Arrival' },
     card: { type: 'Card', styles: ['card'] },
     engineer: { type: 'Engineer', styles: ['panel', 'help', 'engineer'] },
     grips: { type: 'Grips', styles: ['measure', 'grips'] },

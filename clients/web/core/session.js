@@ -28,8 +28,8 @@ const asAsked = (camera) => (camera.height_m === undefined ? camera : cameraOfMe
 
 export class Session {
     // wanted: { camera or null, params, time } from the page's address. Events: hello (a new connection), welcome, params, time, tags
-    // (indices), status, alarms, alarmed (message), frame (frame), camera, error (message), denied (message: we need a token, or another
-    // one), ignored (what).
+    // (indices), status, alarms, alarmed (message), frame (frame), camera, error (message), astray (text: why a part of our view
+    // is not asked for again), denied (message: we need a token, or another one), ignored (what).
     constructor({ connection, now, wanted = { camera: null, params: {} }, codecs = ['jpeg', 'png'] }) {
         Object.assign(this, { connection, now, codecs });
         this.listeners = new Map();
@@ -462,8 +462,8 @@ export class Session {
             return;
         }
         if (message.about === 'hello' && !this.welcomed && this.helloParts.length > 0) {
-            this.emit('ignored', `our view of before: ${message.text}`); // it is of another plant, or of another version
-            this.hello(this.helloParts.slice(0, -1));
+            this.emit('astray', message.text); // our view of before is of another plant, or of another version
+            this.helloWithout(message.text.split(':')[0]);
             return;
         }
         if (message.about === 'follow')
@@ -473,6 +473,16 @@ export class Session {
             this.emit('params');
         }
         this.emit('error', message);
+    }
+
+    // The parameter that the server does not take; where it names none, a part of our view.
+    helloWithout(name) {
+        const isParam = name !== 'baseline' && this.params[name] !== undefined;
+        if (isParam)
+            delete this.params[name];
+        if (name === 'sensor')
+            delete this.params.show;
+        this.hello(isParam ? this.helloParts : this.helloParts.slice(0, -1));
     }
 
     // Map from "tag/half" to { occluded, value, quality } for a picture, and its `isolines`; those of earlier ones are forgotten. What is

@@ -195,7 +195,6 @@ worst: schlechteste Qualität: {quality}
 
 [viewport]
 waiting: Warten auf das erste Bild
-refused: Der Server hat abgelehnt: {text}
 
 [legend]
 right: Legende der rechten Hälfte
@@ -587,22 +586,4 @@ remark: Bemerkung
 passed: {tag} bestanden: {value}.
 failed: {tag} nicht bestanden: {why}.
 now: jetzt {value}
-
-[role]
-operator: Bediener
-engineer: Ingenieur
-
-[said]
-role: das darf nur die Rolle {role}
-elsewhere: die Alarme gehören einem anderen System
-anew: die Anlage wird gerade neu geladen; bitte noch einmal
-quiet: es gibt nichts zu quittieren
-tolerance: der Wert liegt außerhalb der Toleranz
-reading: der Messwert ist nicht gut
-failed: als durchgefallen gemeldet
-far: {tag}: diese Stelle liegt zu weit von {asset} weg
-groupless: {tag} gehört zu keiner Gruppe; die Messstellenliste muss eine nennen
-busy: eine andere Liste wird gerade in Kraft gesetzt
-locked: der Dienst darf in den Ordner der Messstellenliste nicht schreiben ({file})
-changed: {file} wurde inzwischen von anderen geändert
 `;

@@ -195,7 +195,6 @@ worst: worst quality: {quality}
 
 [viewport]
 waiting: Waiting for the first picture
-refused: The server refused: {text}
 
 [legend]
 right: Legend of the right half
@@ -587,22 +586,4 @@ remark: Remark
 passed: {tag} passed: {value}.
 failed: {tag} failed: {why}.
 now: now {value}
-
-[role]
-operator: operator
-engineer: engineer
-
-[said]
-role: that takes the role {role}
-elsewhere: alarms are another system’s here
-anew: the plant is being loaded anew; try again
-quiet: there is nothing to acknowledge
-tolerance: the value is beyond the tolerance
-reading: the reading is not good
-failed: said to have failed
-far: {tag}: that place is too far from {asset}
-groupless: {tag} belongs to no group: the tag list has to name one
-busy: another list is being put in force
-locked: the daemon may not write into the folder of the tag list ({file})
-changed: {file} was changed by somebody else meanwhile
 `;

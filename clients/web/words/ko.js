@@ -194,7 +194,6 @@ worst: 가장 나쁜 품질: {quality}
 
 [viewport]
 waiting: 첫 화면을 기다리는 중
-refused: 서버가 거부했습니다: {text}
 
 [legend]
 right: 오른쪽 화면의 범례
@@ -584,22 +583,4 @@ remark: 비고
 passed: {tag} 합격: {value}.
 failed: {tag} 불합격: {why}.
 now: 현재 {value}
-
-[role]
-operator: 운전원
-engineer: 엔지니어
-
-[said]
-role: {role} 권한이 필요합니다
-elsewhere: 여기의 알람은 다른 시스템이 관리합니다
-anew: 플랜트를 다시 불러오는 중입니다. 다시 시도하세요
-quiet: 확인할 알람이 없습니다
-tolerance: 값이 허용 오차를 벗어났습니다
-reading: 측정값이 정상이 아닙니다
-failed: 불합격으로 보고되었습니다
-far: {tag}: {asset}에서 너무 먼 위치입니다
-groupless: {tag}에 그룹이 없습니다. 태그 목록에 적으세요
-busy: 다른 목록을 적용하는 중입니다
-locked: 데몬이 태그 목록 폴더에 쓸 수 없습니다({file})
-changed: {file}을(를) 그사이 다른 사람이 바꾸었습니다
 `;

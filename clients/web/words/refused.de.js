@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the server refuses, in German; loaded when it first does.
+export default `
+refused: Der Server hat abgelehnt: {text}
+other: auf Englisch: „{text}“
+too_fast: es wurde zu viel auf einmal verlangt; es geschieht etwas später
+limit: das Bild ist größer, als dieser Server zeichnet
+not_allowed: das ist hier nicht erlaubt
+role: das darf nur die Rolle {role}
+no: in dieser Anlage gibt es „{name}“ nicht ({kind})
+link: Dieser Link passt nicht: {why}. Er kann zu einer anderen Anlage gehören oder älter sein als eine Änderung der Anlage.
+unknown: „{name}“ ist hier nicht bekannt
+elsewhere: die Alarme gehören einem anderen System
+anew: die Anlage wird gerade neu geladen; bitte noch einmal
+quiet: es gibt nichts zu quittieren
+latched: er ist nicht gehalten, steht noch an oder ist nicht quittiert
+otherwise: sein Zustand ist inzwischen ein anderer
+shelf: ein Alarm kann höchstens eine Woche zurückgestellt werden
+tolerance: der Wert liegt außerhalb der Toleranz
+reading: der Messwert ist nicht gut
+failed: als durchgefallen gemeldet
+disk: es konnte auf dem Server nicht gespeichert werden
+computed: {tag} wird aus anderen Messstellen berechnet; diese sind zu prüfen
+far: {tag}: diese Stelle liegt zu weit von {asset} weg
+groupless: {tag} gehört zu keiner Gruppe; die Messstellenliste muss eine nennen
+busy: eine andere Liste wird gerade in Kraft gesetzt
+unmoved: es wurde kein Sensor verschoben
+unread: die Messstellenliste war beim Laden der Anlage nicht lesbar
+locked: der Dienst darf in den Ordner der Messstellenliste nicht schreiben ({file})
+changed: {file} wurde inzwischen von anderen geändert
+kept: es sind schon {count} Vergleichsstände gespeichert; bitte erst einen löschen
+lines: ein Abstand von {step} ergibt mehr als {count} Linien
+numbers: höchstens {count} Zahlen, jede größer als die vorige
+log: eine logarithmische Skala braucht einen Bereich über 0
+range: der Bereich muss unter seinem Ende beginnen
+between: erwartet wird eine Zahl von {span}
+placeless: dieser Sensor hat keinen Ort in dieser Messgröße
+narrow: das Bild ist zu schmal für zwei Hälften
+memory: dem Server fehlt Speicher; das letzte Bild bleibt
+gone: die Sitzung {session} ist nicht mehr verbunden
+history: hier wird nichts aufgezeichnet, oder es ist nicht lesbar
+
+[role]
+operator: Bediener
+engineer: Ingenieur
+
+[kind]
+group: Messgröße
+asset: Ausrüstung
+tag: Messstelle
+`;

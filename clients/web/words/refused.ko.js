@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the server refuses, in Korean; loaded when it first does.
+export default `
+refused: 서버가 거부했습니다: {text}
+other: 영어로 “{text}”
+too_fast: 한꺼번에 너무 많이 요청하여 조금 늦게 처리됩니다
+limit: 이 서버가 그릴 수 있는 크기보다 그림이 큽니다
+not_allowed: 여기서는 허용되지 않습니다
+role: {role} 권한이 필요합니다
+no: 이 플랜트에는 “{name}” {kind} 항목이 없습니다
+link: 이 링크는 맞지 않습니다: {why}. 다른 플랜트의 링크이거나 플랜트가 바뀌기 전의 링크일 수 있습니다.
+unknown: “{name}”은(는) 여기서 알 수 없습니다
+elsewhere: 여기의 알람은 다른 시스템이 관리합니다
+anew: 플랜트를 다시 불러오는 중입니다. 다시 시도하세요
+quiet: 확인할 알람이 없습니다
+latched: 유지된 알람이 아니거나, 아직 발생 중이거나, 확인되지 않았습니다
+otherwise: 그사이 상태가 바뀌었습니다
+shelf: 알람은 최대 일주일까지 보류할 수 있습니다
+tolerance: 값이 허용 오차를 벗어났습니다
+reading: 측정값이 정상이 아닙니다
+failed: 불합격으로 보고되었습니다
+disk: 서버 디스크에 저장할 수 없습니다
+computed: {tag}은(는) 다른 태그로 계산됩니다. 그 태그들을 검증하세요
+far: {tag}: {asset}에서 너무 먼 위치입니다
+groupless: {tag}에 그룹이 없습니다. 태그 목록에 적으세요
+busy: 다른 목록을 적용하는 중입니다
+unmoved: 옮긴 센서가 없습니다
+unread: 플랜트를 불러올 때 태그 목록을 읽을 수 없었습니다
+locked: 데몬이 태그 목록 폴더에 쓸 수 없습니다({file})
+changed: {file}을(를) 그사이 다른 사람이 바꾸었습니다
+kept: 비교 기준이 이미 {count}개 저장되어 있습니다. 먼저 하나를 지우세요
+lines: 간격이 {step}이면 선이 {count}개를 넘습니다
+numbers: 최대 {count}개의 숫자를 작은 것부터 적으세요
+log: 로그 눈금에는 0보다 큰 범위가 필요합니다
+range: 범위의 시작은 끝보다 작아야 합니다
+between: {span} 범위의 수가 필요합니다
+placeless: 이 센서는 이 물리량에 위치가 없습니다
+narrow: 그림이 좁아 둘로 나눌 수 없습니다
+memory: 서버 메모리가 부족하여 마지막 그림이 유지됩니다
+gone: 세션 {session}은(는) 더 이상 연결되어 있지 않습니다
+history: 여기에는 기록이 없거나 읽을 수 없습니다
+
+[role]
+operator: 운전원
+engineer: 엔지니어
+
+[kind]
+group: 물리량
+asset: 설비
+tag: 태그
+`;
