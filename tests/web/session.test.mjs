@@ -167,14 +167,15 @@ test('after a reconnect the same camera and the same parameters are asked for', 
 });
 
 test('what of our view is not in this plant is left out and said; the rest is asked for again', () => {
-    const { connection, sockets, events } = makeSession({ camera: WANTED.camera, params: { group: 'pressure', selected: 'E-9', ghost: ['P-9'] } });
+    const params = { group: 'pressure', selected: 'E-9', ghost: ['P-9'] };
+    const { connection, sockets, events } = makeSession({ camera: WANTED.camera, params });
     connection.start();
     sockets[0].accept();
     const texts = ['selected: \'E-9\' is no asset of this plant', 'ghost: \'P-9\' is no asset of this plant'];
     for (const text of texts)
         sockets[0].say({ type: 'error', code: 'bad_field', text, about: 'hello' });
-    const { camera, params } = sockets[0].sent.at(-1);
-    assert.deepEqual([camera.eye, params], [WANTED.camera.eye, { seq: 1, group: 'pressure' }]);
+    const again = sockets[0].sent.at(-1);
+    assert.deepEqual([again.camera.eye, again.params], [WANTED.camera.eye, { seq: 1, group: 'pressure' }]);
     assert.deepEqual(events, texts.map((text) => ['astray', text]));
     sockets[0].say({ type: 'error', code: 'bad_field', text: 'group: \'pressure\' is no group of this plant', about: 'hello' });
     assert.deepEqual(sockets[0].sent.at(-1).params, undefined);
