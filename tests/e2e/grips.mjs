@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is cut away, by hand: arrows on the plane and on the sides of the box, for mouse, keys and finger.
+// What is cut away, by hand: arrows on the plane, on the sides of the box and for all of it, in both halves, for mouse, keys and finger.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { openPage, settle, shoot, TABLET, waitForPicture } from './support/browser.mjs';
@@ -25,7 +25,7 @@ after(async () => {
 
 const setClip = async (on, clip) => {
     await on.evaluate((value) => globalThis.plantcast.session.setParams({ clip: value }), clip);
-    await on.waitForFunction((is) => document.querySelectorAll('.grip').length === is, clip?.box ? 6 : clip ? 1 : 0);
+    await on.waitForFunction((is) => document.querySelectorAll('.grip').length === is, clip?.box ? 7 : clip ? 1 : 0);
     await settle(on);
 };
 const readClip = (on) => on.evaluate(() => globalThis.plantcast.session.params.clip);
@@ -81,7 +81,7 @@ test('keys move it, as far as it goes; a screen reader is told where it is', opt
 test('a box has an arrow on each side; Escape puts back what is being dragged', options, async () => {
     await setClip(page, { box: { min: [-0.7, -0.7, -0.7], max: [0.3, 0.7, 0.3] } });
     const shown = await page.locator('.grip').evaluateAll((all) => all.filter((e) => e.checkVisibility()).map((e) => e.dataset.id).sort());
-    assert.deepEqual(shown, ['xmax', 'xmin', 'ymax', 'ymin', 'zmax', 'zmin']);
+    assert.deepEqual(shown, ['whole', 'xmax', 'xmin', 'ymax', 'ymin', 'zmax', 'zmin']);
     await shoot(page, 'grip-box');
     const was = await readClip(page), [x, y] = await gripAt(page, 'zmax');
     const lower = (by) => page.waitForFunction((z) => globalThis.plantcast.session.params.clip.box.max[2] < z, was.box.max[2] - by);
@@ -100,6 +100,64 @@ test('a box has an arrow on each side; Escape puts back what is being dragged', 
     await page.keyboard.press('v');
     assert.match(await page.locator('#cut-text').textContent(), /^1\.0 × 1\.4 × \d\.\d m$/, 'the panel says how large it is');
     await page.keyboard.press('v');
+    assert.deepEqual(browser.errors, []);
+});
+
+test('the box is moved as a whole: it goes where the hand goes and keeps its size; by keys, too', options, async () => {
+    const box = { min: [-0.6, -0.7, -0.6], max: [0.2, 0.1, 0.2] }, middle = ({ min, max }) => min.map((m, i) => (m + max[i]) / 2);
+    await setClip(page, { box });
+    const camera = await readCamera(page), [x, y] = await gripAt(page, 'whole');
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    await page.mouse.move(x + 20, y - 10);
+    await page.mouse.move(x + 60, y - 30);
+    await page.waitForFunction((was) => globalThis.plantcast.session.params.clip.box.min.some((m, i) => Math.abs(m - was[i]) > 0.03),
+        box.min);
+    await settle(page);
+    const now = await gripAt(page, 'whole');
+    assert.ok(Math.hypot(now[0] - x - 60, now[1] - y + 30) < 6, `${now} is not under the hand`);
+    await shoot(page, 'grip-whole');
+    await page.mouse.up();
+    const moved = (await readClip(page)).box;
+    for (const i of [0, 1, 2])
+        assert.ok(Math.abs((moved.max[i] - moved.min[i]) - 0.8) < 1e-6, 'as large as it was');
+    await page.getByRole('button', { name: 'Move the box' }).focus();
+    await page.keyboard.press('PageUp');
+    assert.ok(middle((await readClip(page)).box)[2] > middle(moved)[2]);
+    for (let i = 0; i < 12; i++)
+        await page.keyboard.press('Shift+ArrowRight');
+    const most = await page.evaluate(() => globalThis.plantcast.session.model.plant.bounds.max[0]);
+    assert.ok(Math.abs(middle((await readClip(page)).box)[0] - most) < 1e-6, 'it is not lost beyond the plant');
+    assert.deepEqual(await readCamera(page), camera);
+    await setClip(page, null);
+});
+
+test('in a split view the right half has arrows, too, and both halves are cut alike', options, async () => {
+    await page.evaluate(() => globalThis.plantcast.session.setParams({ split: { look: 'flat' } }));
+    await page.evaluate(() => globalThis.plantcast.session.setParams({ clip: { planes: [[1, 0, 0, 0.1]] } }));
+    await page.waitForFunction(() => document.querySelectorAll('.grip').length === 2);
+    await settle(page);
+    const boxes = await page.locator('.grip').evaluateAll((all) => all.map((e) => e.getBoundingClientRect()).map((b) => b.x + b.width / 2));
+    const picture = await page.locator('#viewport').boundingBox(), middle = picture.x + picture.width / 2;
+    assert.ok(boxes[0] < middle && boxes[1] > middle, `${boxes} about ${middle}`);
+    assert.equal(await page.getByRole('slider', { name: 'Move the cut: X' }).count(), 1, 'once for who does not see them');
+    const right = page.locator('.grip').nth(1), at = await right.boundingBox();
+    const to = await page.evaluate(async () => {
+        const { spotsOf } = await import('/core/grips.js'), { grip, spot, half } = document.querySelectorAll('.grip')[1];
+        const [px, py, pz] = spotsOf(grip)[spot.number], box = document.getElementById('viewport').getBoundingClientRect();
+        const { projector } = await import('/core/camera.js');
+        const place = projector(globalThis.plantcast.session.camera, box.width / 2, box.height)([px + 0.4, py, pz]);
+        return [box.left + (half * box.width) / 2 + place[0], box.top + place[1]];
+    });
+    await page.mouse.move(at.x + at.width / 2, at.y + at.height / 2);
+    await page.mouse.down();
+    await page.mouse.move(...to, { steps: 3 });
+    await page.waitForFunction(() => Math.abs(globalThis.plantcast.session.params.clip.planes[0][3] + 0.3) < 0.02);
+    await settle(page);
+    await shoot(page, 'grip-split');
+    await page.mouse.up();
+    await page.evaluate(() => globalThis.plantcast.session.setParams({ split: null }));
+    await page.waitForFunction(() => document.querySelectorAll('.grip').length === 1);
     await setClip(page, null);
     assert.deepEqual(browser.errors, []);
 });

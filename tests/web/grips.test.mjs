@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { sight } from '../../clients/web/core/camera.js';
-import { alongSight, beforeEye, gripsOf, moveGrip, spotsOf } from '../../clients/web/core/grips.js';
+import { alongSight, beforeEye, facing, gripsOf, moveBox, moveGrip, spotsOf, wholeOf } from '../../clients/web/core/grips.js';
 import { cut } from '../../clients/web/core/section.js';
 
 const BOUNDS = { min: [0, 0, 0], max: [10, 20, 4] };
@@ -84,4 +84,22 @@ test('lines end before the eye', () => {
     const [a, b] = beforeEye(camera, [-1, 1, 0], [1, 1, 0]);
     assert.ok(a[0] > 0 && a[0] < 0.05 && a[1] === 1);
     assert.deepEqual(b, [1, 1, 0]);
+});
+
+test('a box is moved as a whole, as far as its middle stays in the plant', () => {
+    const clip = { box: { min: [1, 2, 1], max: [3, 6, 2] } };
+    assert.deepEqual(spotsOf(wholeOf(clip))[0], [2, 4, 1.5]);
+    assert.equal(wholeOf(cut('x', 3, false)), null);
+    assert.equal(wholeOf(null), null);
+    assert.deepEqual(moveBox(clip, [1, -1, 0.5], BOUNDS), { box: { min: [2, 1, 1.5], max: [4, 5, 2.5] } });
+    const { box } = moveBox(clip, [100, -100, 0], BOUNDS);
+    assert.deepEqual([box.min, box.max], [[9, -2, 1], [11, 2, 2]]);
+});
+
+test('a hand moves it in the plane that faces the camera', () => {
+    const camera = { eye: [0, -10, 0], target: [0, 0, 0], up: [0, 0, 1], fov: 60 };
+    const [x, y, z] = facing(camera, [2, 3, 1], sight(camera, 400, 100, 800, 600));
+    near(x, 0);
+    near(y, 3);
+    near(z, (13 * Math.tan(Math.PI / 6) * 200) / 300);
 });

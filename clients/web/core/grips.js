@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Grips of what is cut away: one for each plane, one for each side of a box; where they are, and where a hand takes them.
+// Grips of what is cut away: one for each plane, one for each side of a box and one for all of it; where they are, and where a hand takes
+// them.
 import { basis, isParallel } from './camera.js';
 import { AXES } from './section.js';
-import { add, along, cross, dot, length, mix, scale, subtract, unit } from './vector.js';
+import { add, along, cross, dot, length, middle, mix, scale, subtract, unit } from './vector.js';
 
 const LEAST_BOX_M = 0.05, MARGIN = 1e-3; // a plane stays inside the plant by this part of it
 const NEAR_M = 0.02;                     // of the eye
@@ -74,6 +75,23 @@ export function moveGrip(clip, { index, size, turned, direction, low, high }, to
     const box = { min: [...clip.box.min], max: [...clip.box.max] };
     (turned ? box.max : box.min)[index] = at;
     return { box };
+}
+
+// Of a box as a whole, in its middle; null: there is no box.
+export const wholeOf = (clip) => clip?.box
+    ? { id: 'whole', corners: [middle(clip.box.min, clip.box.max)], direction: [0, 0, 0], low: 0, high: 0 } : null;
+
+// All of the box moved by so much; its middle stays inside the plant.
+export function moveBox({ box }, by, bounds) {
+    const at = middle(box.min, box.max);
+    const way = by.map((m, i) => Math.max(bounds.min[i] - at[i], Math.min(bounds.max[i] - at[i], m)));
+    return { box: { min: add(box.min, way), max: add(box.max, way) } };
+}
+
+// Where a line of sight passes through the plane that faces the camera in a point.
+export function facing(camera, point, { origin, direction }) {
+    const { forward } = basis(camera);
+    return along(origin, direction, dot(subtract(point, origin), forward) / dot(direction, forward));
 }
 
 // Where on its plane a grip may stand: the middle first.

@@ -170,6 +170,7 @@ parallel: Parallel
 off: Aus
 box: Quader
 move: Schnitt verschieben: {axis}
+whole: Quader verschieben: Pfeiltasten entlang X und Y, Bildtasten entlang Z
 oblique: schräg
 
 [shown]

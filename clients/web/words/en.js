@@ -170,6 +170,7 @@ parallel: Parallel
 off: Off
 box: Box
 move: Move the cut: {axis}
+whole: Move the box: arrow keys along X and Y, page keys along Z
 oblique: oblique
 
 [shown]

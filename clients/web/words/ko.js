@@ -170,6 +170,7 @@ parallel: 평행
 off: 끔
 box: 상자
 move: 단면 옮기기: {axis}
+whole: 상자 옮기기: 화살표 키는 X와 Y, Page 키는 Z 방향
 oblique: 비스듬히
 
 [shown]
