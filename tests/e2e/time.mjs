@@ -101,6 +101,7 @@ test('several tags are compared, each by its unit, and exported', options, async
         assert.ok(rows.some((row) => row.includes(name)), name);
     await page.locator('#trend-span label', { hasText: 'Shift' }).click();
     await page.waitForFunction(() => { const { span } = globalThis.plantcast.trends; return span[1] - span[0] === 28800e6; });
+    await settle(page);
     await shoot(page, 'trends');
     await page.locator('#trend-span label', { hasText: '1 h' }).click();
 });
@@ -168,6 +169,7 @@ test('a click into a trend goes there; a link to an instant opens there; a reloa
     const first = await shown(other.page);
     assert.deepEqual([first.past, first.dataTimeUs], [true, (BEGIN_S + 600) * 1e6]);
     assert.equal(await other.page.locator('#timeline').isVisible(), true);
+    await settle(other.page);
     await shoot(other.page, 'past-tablet');
     assert.deepEqual(other.errors, []);
     await other.close();
@@ -179,13 +181,16 @@ test('a click into a trend goes there; a link to an instant opens there; a reloa
 test('alarms are marked where they were raised', options, async () => {
     await plant.tell('set TI-2 92');
     await page.waitForFunction(() => globalThis.plantcast.session.model.alarms.list().some(({ kind }) => kind === 'HH'));
-    await page.waitForTimeout(1000); // the journal is written four times a second
+    await page.waitForFunction(async () => { // the journal is written a little later
+        const { rows } = await (await fetch('/api/v1/alarms/journal')).json();
+        return rows.some(({ event, tag }) => event === 'raise' && tag === 'TI-2');
+    }, null, { polling: 200 });
     if (await page.locator('#timeline').isVisible())
         await page.locator('#time-toggle').click();
     await page.locator('#time-toggle').click();
-    await page.locator('#time-track .alarm').first().waitFor({ state: 'attached' });
+    const mark = page.locator('#time-track .alarm title', { hasText: /^TI-2 HH?, \d\d:\d\d:\d\d$/ }).first();
+    await mark.waitFor({ state: 'attached' });
     assert.match(await page.locator('#time-alarms').textContent(), /^\d+ alarms? raised$/);
-    assert.match(await page.locator('#time-track .alarm title').first().textContent(), /^TI-2 HH?, \d\d:\d\d:\d\d$/);
     await settle(page);
     await shoot(page, 'time-alarms');
 });
@@ -198,7 +203,7 @@ test('on a phone the bar fits', options, async () => {
     assert.ok(wide <= 0, `${wide} px too wide`);
     const box = await phone.page.locator('#time-live').boundingBox();
     assert.ok(box.x + box.width <= 390 && box.height >= 40, JSON.stringify(box));
-    await phone.page.waitForTimeout(600);
+    await settle(phone.page);
     await shoot(phone.page, 'past-phone');
     await phone.close();
     assert.deepEqual(browser.errors, []);
