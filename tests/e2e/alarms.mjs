@@ -58,6 +58,8 @@ test('what comes beyond its limit is counted, marked and listed, the most urgent
     const first = page.locator('#alarms-list li').first();
     assert.match(await first.textContent(), new RegExp(`${HOT} High high, ${limitOf(HOT).HH + 1}`));
     await settle(page);
+    const [legend, list] = await Promise.all(['#legend', '#alarms'].map((id) => page.locator(id).boundingBox()));
+    assert.ok(legend.x + legend.width <= list.x, 'the legend is read beside the list');
     await shoot(page, 'alarms-desktop');
 });
 

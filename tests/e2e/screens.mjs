@@ -99,6 +99,11 @@ test('tablet: one finger turns, two pan and zoom; device pixels', options, () =>
 
 test('desktop: two sets of parameters side by side, each with legend and markers', options, () => withPage(DESKTOP, async (page) => {
     const choose = (id, value) => page.locator(`#${id}`).selectOption(value);
+    const whole = await page.evaluate(() => ['plant-name', 'health'].filter((id) => {
+        const { scrollWidth, clientWidth } = document.getElementById(id);
+        return clientWidth < 150 || (id === 'health' && scrollWidth > clientWidth);
+    }));
+    assert.deepEqual(whole, [], 'name and state of the plant have room');
     const tags = await page.evaluate(() => globalThis.plantcast.session.model.tags.map((tag) => tag.name));
     await plant.freeze(tags);
     await page.waitForTimeout(2000); // two polls

@@ -74,7 +74,7 @@ test('the wall: capitals of 16 minutes of arc and more, wherever the screen hang
 test('distances: straight, level and rise; as many figures as a tape has', () => {
     assert.deepEqual(measure([0, 0, 0], [3, 4, 12], [0, 0, 1]), { metres: 13, level: 5, rise: 12 });
     assert.deepEqual(measure([1, 1, 1], [1, 0, 1], [0, 1, 0]), { metres: 1, level: 0, rise: -1 });
-    assert.deepEqual([0.1234, 12.345, 123.45, -3.2].map(metresText), ['0.123', '12.35', '123.5', '-3.200']);
+    assert.deepEqual([0.1234, 12.345, 123.45, -3.2].map(metresText), ['0.123', '12.35', '123.5', '−3.200']);
 });
 
 test('links: what is chosen, and no more', () => {

@@ -12,7 +12,7 @@ const COLOURS = ['#0b5c93', '#b34a00', '#00734f', '#8a3a73', '#5b5b00', '#4b4f56
 const DASHES = [[], [8, 4], [2, 3], [10, 3, 2, 3], [5, 5], [1, 4]];
 const MOST = COLOURS.length, FRESH_MS = 5000, HEIGHT_PX = 210, AXIS_PX = 58;
 const EXPAND = 2; // uPlot's: nulls
-const LIMIT_PX = 110, INK = '#4d5964', LINE = '#d8dce0';
+const LIMIT_PX = 15, INK = '#4d5964', LINE = '#d8dce0';
 
 // Loaded when the first trend is asked for.
 let library;
@@ -186,7 +186,8 @@ export class Trends {
                 ...axis, scale: unit, label: unit, labelFont: font, labelSize: 16, size: AXIS_PX, side: i % 2 ? 1 : 3,
                 show: i < 2, grid: { ...rule, show: i === 0 },
             }))],
-            hooks: { drawAxes: [(u) => this.drawGaps(u), (u) => this.drawLimits(u)], draw: [(u) => this.drawInstant(u)],
+            hooks: { drawAxes: [(u) => this.drawGaps(u), (u) => this.drawLimits(u)],
+                draw: [(u) => this.nameLimits(u), (u) => this.drawInstant(u)],
                 ready: [(u) => u.over.addEventListener('click', () => this.goTo(u))] },
         };
     }
@@ -234,31 +235,45 @@ export class Trends {
         ctx.restore();
     }
 
-    // Each in its own place along the line, so that names do not lie on each other.
-    drawLimits({ ctx, bbox, valToPos, scales }) {
+    limitsOf({ scales, valToPos }) {
+        return limitLines(this.tags, (tag) => this.unitOf(tag) || '–').filter(({ scale, value }) =>
+            value >= scales[scale]?.min && value <= scales[scale]?.max).map(({ scale, name, value, tags }) => ({
+            y: Math.round(valToPos(value, scale, true)), words: [...tags.map((tag) => tag.name), name, shortNumberText(value, 3)].join(' '),
+            colour: tags.length > 0 ? COLOURS[this.tags.indexOf(tags[0])] : name.length > 1 ? '#a31515' : '#8a5a00',
+        })).sort((a, b) => a.y - b.y);
+    }
+
+    drawLimits(chart) {
+        const { ctx, bbox } = chart;
         ctx.save();
-        ctx.font = `${11 * devicePixelRatio}px system-ui, sans-serif`;
-        ctx.textAlign = 'left';
-        ctx.textBaseline = 'bottom';
-        for (const { scale, name, value, tags } of limitLines(this.tags, (tag) => this.unitOf(tag) || '–')) {
-            const { min, max } = scales[scale] ?? {};
-            if (!(value >= min && value <= max))
-                continue;
-            const y = Math.round(valToPos(value, scale, true)), place = tags.length > 0 ? this.tags.indexOf(tags[0]) : 0;
-            ctx.strokeStyle = ctx.fillStyle = tags.length > 0 ? COLOURS[place] : name.length > 1 ? '#a31515' : '#8a5a00';
-            ctx.lineWidth = devicePixelRatio;
-            ctx.setLineDash([6 * devicePixelRatio, 4 * devicePixelRatio]);
+        ctx.lineWidth = devicePixelRatio;
+        ctx.setLineDash([6 * devicePixelRatio, 4 * devicePixelRatio]);
+        for (const { y, colour } of this.limitsOf(chart)) {
+            ctx.strokeStyle = colour;
             ctx.beginPath();
             ctx.moveTo(bbox.left, y);
             ctx.lineTo(bbox.left + bbox.width, y);
             ctx.stroke();
-            const words = [...tags.map((tag) => tag.name), name, shortNumberText(value, 3)].join(' ');
-            const at = [bbox.left + (5 + place * LIMIT_PX) * devicePixelRatio, y - 2 * devicePixelRatio];
-            ctx.strokeStyle = '#fff'; // read over hatching, too
-            ctx.lineWidth = 3 * devicePixelRatio;
-            ctx.setLineDash([]);
-            ctx.strokeText(words, ...at);
-            ctx.fillText(words, ...at);
+        }
+        ctx.restore();
+    }
+
+    // On its line, on a ground of its own over everything else; where lines are near each other, beside the name before.
+    nameLimits(chart) {
+        const { ctx, bbox } = chart, px = devicePixelRatio, height = LIMIT_PX * px, placed = [];
+        ctx.save();
+        ctx.font = `${11 * px}px system-ui, sans-serif`;
+        ctx.textBaseline = 'middle';
+        for (const { y, words, colour } of this.limitsOf(chart)) {
+            const near = placed.filter((other) => Math.abs(other.y - y) < height);
+            const left = Math.max(bbox.left, ...near.map((other) => other.right)) + 5 * px;
+            const right = left + ctx.measureText(words).width + 6 * px;
+            const middle = Math.max(bbox.top + height / 2, y);
+            placed.push({ y, right });
+            ctx.fillStyle = '#fff';
+            ctx.fillRect(left, middle - height / 2, right - left, height);
+            ctx.fillStyle = colour;
+            ctx.fillText(words, left + 3 * px, middle);
         }
         ctx.restore();
     }

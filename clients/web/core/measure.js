@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A distance between two places that were picked on the plant.
+import { numberText } from './format.js';
 import { length, subtract } from './vector.js';
 
 // { metres, level (along the ground), rise } from one place to the other; up: the plant's vertical, a unit vector.
@@ -10,6 +11,4 @@ export function measure(from, to, up) {
 }
 
 // Millimetres for what is near: a tape shows no more of what is far.
-export function metresText(metres) {
-    return Math.abs(metres) < 10 ? metres.toFixed(3) : Math.abs(metres) < 100 ? metres.toFixed(2) : metres.toFixed(1);
-}
+export const metresText = (metres) => numberText(metres, Math.abs(metres) < 10 ? 3 : Math.abs(metres) < 100 ? 2 : 1);
