@@ -58,7 +58,7 @@ test('a distance between two places', options, async () => {
     await page.keyboard.press('r');
     const ends = [[0, -0.5, 0.2], [0, -0.5, -0.2]];
     await page.evaluate(() => globalThis.plantcast.session.setCamera({ eye: [0.8, -4, 1], target: [0, 0, 0], up: [0, 0, 1], fov: 30 }));
-    await page.evaluate(() => globalThis.plantcast.pilot.viewport.invalidate());
+    await page.evaluate(() => globalThis.plantcast.viewport.invalidate());
     await settle(page);
     assert.match(await page.locator('.measuring').textContent(), /first place/);
     for (const [i, end] of ends.entries()) {

@@ -2,11 +2,12 @@
 // The camera's mathematics: what must stay put stays put, the horizon stays level, and what should fit fits.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import {
-    basis, depthAt, depthOf, distance, elevation, enterBox, face, fit, home, lookAround, MAX_ELEVATION_DEG, MIN_DISTANCE_M, orbit, pan,
-    projector, same, sight, toParallel, toPerspective, valid, zoom,
-} from '../../clients/web/core/camera.js';
+import { basis, fit, home, MIN_DISTANCE_M, projector, same, valid } from '../../clients/web/core/camera.js';
 import { flight, FLIGHT_MS } from '../../clients/web/core/flight.js';
+import {
+    depthAt, depthOf, distance, elevation, enterBox, face, lookAround, MAX_ELEVATION_DEG, orbit, pan, sight, toParallel, toPerspective,
+    zoom,
+} from '../../clients/web/core/moves.js';
 import { along, dot, length, subtract } from '../../clients/web/core/vector.js';
 
 const camera = { eye: [35, -42, 24], target: [1, 0.5, 6], up: [0, 0, 1], fov: 45 };

@@ -2,8 +2,8 @@
 // Grips of a cut: where they are, where a hand takes them, and how far that goes.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { sight } from '../../clients/web/core/camera.js';
 import { alongSight, beforeEye, facing, gripsOf, moveBox, moveGrip, spotsOf, wholeOf } from '../../clients/web/core/grips.js';
+import { sight } from '../../clients/web/core/moves.js';
 import { cut } from '../../clients/web/core/section.js';
 
 const BOUNDS = { min: [0, 0, 0], max: [10, 20, 4] };

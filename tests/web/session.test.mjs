@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { health } from '../../clients/web/core/health.js';
-import { orbit } from '../../clients/web/core/camera.js';
+import { orbit } from '../../clients/web/core/moves.js';
 import { Timings } from '../../clients/web/core/timings.js';
 import { makeSession, vector, vectorBytes } from './fixtures.mjs';
 

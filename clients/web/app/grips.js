@@ -2,10 +2,11 @@
 // What is cut away, by hand: arrows on the plane, or on the sides and in the middle of the box, for mouse, finger, pen and keys, in step
 // with the picture, in each half of it.
 // Loaded when something is cut for the first time.
-import { projector, sight } from '../core/camera.js';
+import { projector } from '../core/camera.js';
 import { numberText } from '../core/format.js';
 import { alongSight, beforeEye, facing, gripsOf, moveBox, moveGrip, spotsOf, wholeOf } from '../core/grips.js';
 import { halves } from '../core/halves.js';
+import { sight } from '../core/moves.js';
 import { along, subtract } from '../core/vector.js';
 import { say } from '../core/words.js';
 import { byId, make, makeSvg, setText } from './dom.js';

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Puts the page together: one session, the viewport, and the panels around it.
-import { face } from '../core/camera.js';
 import { say } from '../core/words.js';
 import { Assets } from './assets.js';
 import { watchSleep } from './clock.js';
 import { byId, setText } from './dom.js';
 import { address, connection, page, proveCodecs, session, viewport } from './first.js';
+import { listenToHands } from './hands.js';
 import { renewIfOld, serveInstalled } from './install.js';
 import { Legend } from './legend.js';
 import { Overlay } from './overlay.js';
 import { Parts } from './parts.js';
-import { Pilot } from './pilot.js';
 import { Status } from './status.js';
 import { AlarmStrip } from './strip.js';
 import { changeTheme } from './theme.js';
@@ -19,7 +18,6 @@ import { Toolbar } from './toolbar.js';
 
 const ADDRESS_WAIT_MS = 400, TOAST_MS = 6000;
 const ARRIVAL_MARGIN = 1.7; // around one piece of equipment
-const TAG_DISTANCE_M = 5;
 
 const selection = { tag: address.tag, hover: null };
 const parts = new Parts(page, tell);
@@ -29,11 +27,10 @@ const legend = new Legend({ session, element: byId('legend') });
 new Legend({ session, element: byId('legend-right'), paramsOf: (params) => params.split && { ...params, ...params.split } });
 const overlay = new Overlay({ canvas: byId('overlay'), viewport, session, selection });
 overlay.unit = page.unit;
-const pilot = new Pilot({ viewport, session });
 const status = new Status({ session, onFreshness: (fresh) => { overlay.fresh = fresh; refresh(); } });
 const tools = new Tools({ session });
 new AlarmStrip({ session, refresh });
-Object.assign(page, { selection, overlay, pilot, assets, parts, selectTag, showTag, flyToTag, fitView, refresh, tell });
+Object.assign(page, { selection, overlay, assets, parts, selectTag, showTag, flyToTag, fitView, refresh, tell });
 page.onUnit = () => {
     overlay.unit = page.unit;
     refresh();
@@ -69,15 +66,17 @@ function showTag(tag) {
 function flyToTag(tag) {
     const asset = session.model.asset(tag.asset);
     if (tag.position && asset)
-        pilot.flyTo(face(session.camera, tag.position, asset.bounds, TAG_DISTANCE_M));
+        parts.use('pilot', (pilot) => pilot.flyToTag(tag, asset));
 }
 
 function selectAsset(asset) {
     const again = session.params.selected === asset.id;
     if (!again)
         session.setParams({ selected: asset.id });
-    pilot.flyToBox(asset.bounds, ARRIVAL_MARGIN);
+    flyToAsset(asset);
 }
+
+const flyToAsset = ({ bounds }) => parts.use('pilot', (pilot) => pilot.flyToBox(bounds, ARRIVAL_MARGIN));
 
 function clearSelection() {
     if (selection.tag)
@@ -90,19 +89,19 @@ function clearSelection() {
 
 function fitView() {
     const chosen = session.model?.asset(session.params.selected);
-    if (session.model)
-        pilot.flyToBox(chosen ? chosen.bounds : session.model.plant.bounds, chosen ? ARRIVAL_MARGIN : undefined);
+    if (chosen)
+        flyToAsset(chosen);
+    else if (session.model)
+        parts.use('pilot', (pilot) => pilot.flyToBox(session.model.plant.bounds));
 }
 
-// What a part does, once it is there.
-const withPart = (name, f) => parts.get(name).then((part) => part && f(part));
-const opens = (name) => (event) => withPart(name, (part) => part.toggle(event));
-const ofViews = (f) => () => withPart('views', f);
+const opens = (name) => (event) => parts.use(name, (part) => part.toggle(event), 'toggle');
+const ofViews = (f) => () => parts.use('views', f);
 
 const commands = {
     fit: fitView,
-    home: () => session.model && pilot.flyHome(),
-    help: () => withPart('help', (help) => help.open()),
+    home: () => session.model && parts.use('pilot', (pilot) => pilot.flyHome()),
+    help: () => parts.use('help', (help) => help.open()),
     timings: opens('timings'),
     alarms: opens('alarms'),
     past: () => session.recorded && opens('timeline')(),
@@ -120,10 +119,11 @@ const commands = {
     showAll: ofViews((views) => views.showAll()),
     hold: () => tools.hold(),
     measure: opens('measure'),
-    snapshot: () => withPart('snapshot', (snapshot) => snapshot.save()),
-    share: () => withPart('share', (share) => share.open()),
+    snapshot: () => parts.use('snapshot', (snapshot) => snapshot.save()),
+    share: () => parts.use('share', (share) => share.open()),
     theme: () => session.setParams({ backdrop: changeTheme() }),
     escape() {
+        parts.giveUp();
         toolbar.closeDisplay();
         for (const name of ['views', 'picture'])
             parts.there(name)?.close();
@@ -143,8 +143,6 @@ const BUTTONS = { fit: 'fit', home: 'home', measure: 'measure', snapshot: 'snaps
 for (const [id, name] of Object.entries(BUTTONS))
     byId(id).addEventListener('click', (event) => commands[name](event));
 byId('engineer-toggle').addEventListener('click', opens('engineer'));
-pilot.onCommand = (name) => commands[name]();
-pilot.onGroup = (index) => toolbar.chooseGroup(index);
 // What is cut away is moved by hand, but for a wall.
 session.on('params', async () => {
     if (session.params.clip && !document.body.classList.contains('wall') && await parts.get('grips'))
@@ -152,7 +150,7 @@ session.on('params', async () => {
 });
 session.on('proofs', refresh);
 
-pilot.onClick = (x, y, kind) => {
+function click(x, y, kind) {
     if (parts.there('engineer')?.takesClick(x, y))
         return;
     if (parts.there('measure')?.on) {
@@ -164,11 +162,15 @@ pilot.onClick = (x, y, kind) => {
     if (tag)
         parts.there('place')?.close();
     else
-        withPart('place', (place) => place.open(x, y));
-};
-page.showTrend = (tag) => withPart('trends', (trends) => trends.add(tag));
+        openPlace(x, y, session.camera);
+}
+
+// By another camera something else would be there.
+const openPlace = (x, y, camera) => parts.use('place', (place) => camera === session.camera && place.open(x, y));
+
+page.showTrend = (tag) => parts.use('trends', (trends) => trends.add(tag));
 page.showAsset = (how, asset) => ofViews((views) => views.show(how, asset.id))();
-pilot.onPoint = (place) => {
+function point(place) {
     const tag = place ? overlay.at(place.x, place.y, 'mouse') : null;
     byId('viewport').classList.toggle('pointing', tag !== null);
     if (tag !== selection.hover) {
@@ -177,13 +179,15 @@ pilot.onPoint = (place) => {
             parts.get('card');
         refresh();
     }
-};
+}
+page.told = { click, point, command: (name) => commands[name](), group: (index) => toolbar.chooseGroup(index) };
+listenToHands(byId('viewport'), parts);
 assets.onAsset = selectAsset;
 assets.onTag = showTag;
 // --- the picture and what lies over it
 
 let proving = null; // once there is a picture
-viewport.onTick = (now) => pilot.tick(now);
+viewport.onTick = (now) => parts.there('pilot')?.tick(now);
 viewport.onDrawn = (newPicture) => {
     if (newPicture && !proving) {
         byId('waiting').hidden = true;
@@ -223,6 +227,7 @@ session.on('camera', () => {
 });
 session.on('welcome', () => {
     renewIfOld();
+    parts.retryNow();
     byId('engineer-toggle').hidden = session.role !== 'engineer';
     byId('time-toggle').hidden = true; // until the server says that it records
     status.show();
@@ -232,7 +237,7 @@ session.on('welcome', () => {
     viewport.invalidate();
 });
 session.on('status', () => status.show());
-session.on('denied', ({ code }) => withPart('token', (token) => token.ask(code)));
+session.on('denied', ({ code }) => parts.use('token', (token) => token.ask(code)));
 // The view of another keeps its shape.
 function shape() {
     const { style, classList } = byId('viewport'), { following } = session;
@@ -261,7 +266,7 @@ session.on('astray', (text) => astray.push(text));
 function arrive() {
     const link = arrived ? null : address, refused = astray;
     if (refused.length > 0 || (!arrived && location.hash.length > 1))
-        withPart('arrival', (arrival) => arrival.come(link, refused));
+        parts.use('arrival', (arrival) => arrival.come(link, refused));
     arrived = true;
     astray = [];
 }
@@ -321,4 +326,4 @@ session.listen();
 refresh();
 
 // For the console and for tests of the whole.
-globalThis.plantcast = { ...page, legend, get trends() { return parts.there('trends'); } };
+globalThis.plantcast = { ...page, legend, get pilot() { return parts.there('pilot'); }, get trends() { return parts.there('trends'); } };

@@ -4,6 +4,8 @@ import { say } from '../core/words.js';
 import { sayAll, styled } from './dom.js';
 import { renewIfOld } from './install.js';
 
+const FIRST_WAIT_MS = 1000, LONGEST_WAIT_MS = 8000; // between tries
+
 // Of each module: its class, its style sheets, and the element that its markup fills.
 const PARTS = {
     alarms: { type: 'AlarmList', styles: ['alarms', 'help'], fills: 'alarms' },
@@ -13,6 +15,7 @@ const PARTS = {
     grips: { type: 'Grips', styles: ['measure', 'grips'] },
     help: { type: 'Help', styles: ['help'] },
     measure: { type: 'Measure', styles: ['measure'] },
+    pilot: { type: 'Pilot' },
     picture: { type: 'Picture', styles: ['panel'], fills: 'picture-panel' },
     place: { type: 'Place', styles: ['card', 'panel'] },
     share: { type: 'Share', styles: ['panel', 'help', 'share'] },
@@ -34,9 +37,12 @@ async function markupOf(name) {
 export class Parts {
     // page: what the parts are given. tell(text): to the person.
     constructor(page, tell) {
-        Object.assign(this, { page, tell, tries: 0 });
-        this.made = new Map();    // by name
-        this.awaited = new Map(); // likewise: promises of those that are on their way
+        Object.assign(this, { page, tell });
+        this.made = new Map();     // by name
+        this.awaited = new Map();  // likewise: promises of those that are on their way
+        this.uses = new Map();     // likewise: what is to be done with one once it is there, by kind
+        this.missed = new Set();   // names of those that somebody waits for, and was not told that they failed
+        this.pauses = new Set();   // between tries: functions that end them
     }
 
     // A part that is there already, or undefined.
@@ -44,19 +50,70 @@ export class Parts {
         return this.made.get(name);
     }
 
-    // A part, loaded if need be; null: that failed, and was said. It is tried again when it is asked for again.
-    async get(name) {
+    // What a person wants of a part, done once it is there. Of wishes of one kind the last is done: who presses again while it is on its
+    // way does not want it shut.
+    async use(name, f, kind = f) {
+        if (this.made.has(name)) {
+            f(this.made.get(name));
+            return;
+        }
+        this.uses.set(name, (this.uses.get(name) ?? new Map()).set(kind, f));
+        const part = await this.get(name), wishes = this.uses.get(name);
+        this.uses.delete(name);
+        wishes?.forEach((wish) => wish(part));
+    }
+
+    // Nobody wants any more what did not come.
+    giveUp() {
+        this.uses.clear();
+        this.missed.clear();
+    }
+
+    // A part, loaded if need be. Where that fails it is said, and tried until it comes.
+    get(name) {
+        if (!this.made.has(name)) {
+            this.missed.add(name);
+            this.retryNow();
+        }
+        return this.prepare(name);
+    }
+
+    // Without a word: nobody asked for it yet.
+    prepare(name) {
         if (!this.awaited.has(name))
-            this.awaited.set(name, this.load(name).catch((error) => this.fail(name, error)));
+            this.awaited.set(name, this.bring(name));
         return this.awaited.get(name);
     }
 
+    async bring(name) {
+        for (let tries = 0; ; tries++) {
+            try {
+                return await this.load(name, tries);
+            } catch (error) {
+                console.warn(`${name}: ${error.message}`);
+                if (!await renewIfOld() && this.missed.delete(name))
+                    this.tell(say('part.failed'));
+            }
+            await new Promise((go) => {
+                this.pauses.add(go);
+                setTimeout(go, Math.min(LONGEST_WAIT_MS, FIRST_WAIT_MS * 2 ** tries));
+            });
+        }
+    }
+
+    // The server is there again, or somebody asks.
+    retryNow() {
+        for (const go of this.pauses)
+            go();
+        this.pauses.clear();
+    }
+
     // A browser may remember for good that it could not fetch a module by its address, so that another one is asked for again.
-    async load(name) {
-        const { type, styles = [], fills } = PARTS[name], again = this.tries > 0 ? `?again=${this.tries}` : '';
+    async load(name, tries) {
+        const { type, styles = [], fills } = PARTS[name], again = tries > 0 ? `?again=${tries}` : '';
         const [module, markup] = await Promise.all([import(`./${name}.js${again}`), fills && markupOf(name), ...styles.map(styled)]);
         if (await renewIfOld())
-            return null; // what came may be of another version than what is here
+            return new Promise(() => {}); // what came may be of another version than what is here, which goes
         if (fills) {
             const element = document.getElementById(fills);
             element.innerHTML = markup;
@@ -64,15 +121,7 @@ export class Parts {
         }
         const part = new module[type](this.page);
         this.made.set(name, part);
+        this.missed.delete(name);
         return part;
-    }
-
-    async fail(name, error) {
-        this.awaited.delete(name);
-        this.tries++;
-        console.warn(`${name}: ${error.message}`);
-        if (!await renewIfOld())
-            this.tell(say('part.failed'));
-        return null;
     }
 }

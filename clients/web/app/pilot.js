@@ -1,24 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Hands to camera: pointers, wheel and keys over the viewport, and flights between views.
-import {
-    depthAt, depthOf, elevation, fit, home, lookAround, MIN_DISTANCE_M, orbit, pan, sight, zoom,
-} from '../core/camera.js';
-import { along } from '../core/vector.js';
-import { clock } from './clock.js';
-import { halfAt } from '../core/halves.js';
+// Loaded when hands first come near (hands.js).
+import { fit, home, MIN_DISTANCE_M } from '../core/camera.js';
 import { flight, FLIGHT_MS } from '../core/flight.js';
 import { Gestures, wheelZoom } from '../core/gestures.js';
+import { halfAt } from '../core/halves.js';
 import { HeldKeys, keyMeaning } from '../core/keys.js';
+import { depthAt, depthOf, elevation, face, lookAround, orbit, pan, sight, zoom } from '../core/moves.js';
+import { along } from '../core/vector.js';
+import { clock } from './clock.js';
+import { isOnPicture } from './hands.js';
 
 const DEGREES_PER_HEIGHT = 180; // a drag over the whole height of the picture
 const DOUBLE_CLICK_MS = 350, DOUBLE_CLICK_PX = 24;
 const ANCHOR_MS = 600, ANCHOR_PX = 10; // a wheel that goes on, about the same place
 const LEAST_ARRIVAL_DEG = 15;   // nobody wants to arrive below the floor
+const TAG_DISTANCE_M = 5;
 
 export class Pilot {
-    // Handlers: onClick(x, y, kind), onPoint(x, y or null), onCommand(name), onGroup(index).
-    constructor({ viewport, session }) {
-        Object.assign(this, { viewport, session });
+    // told: who is told what hands say that moves no camera: { click(x, y, kind), point({ x, y } or null), command(name), group(index) }.
+    constructor({ viewport, session, told }) {
+        Object.assign(this, { viewport, session, told });
         this.gestures = new Gestures();
         this.keys = new HeldKeys();
         this.fly = null;
@@ -29,23 +31,12 @@ export class Pilot {
             if (purpose === 'anchor' && this.anchor)
                 Object.assign(this.anchor, { point: position ?? this.anchor.point, sure: true });
         });
-        this.onClick = this.onPoint = this.onCommand = this.onGroup = () => {};
-        this.listen(viewport.element);
+        window.addEventListener('blur', () => this.keys.clear());
     }
 
-    listen(element) {
-        const on = (name, f) => element.addEventListener(name, f, { passive: false });
-        on('pointerdown', (event) => this.pointerDown(event));
-        on('pointermove', (event) => this.pointerMove(event));
-        on('pointerup', (event) => this.pointerUp(event));
-        on('pointercancel', (event) => this.gestures.cancel({ id: event.pointerId }));
-        on('pointerleave', () => this.onPoint(null));
-        on('wheel', (event) => this.wheel(event));
-        on('contextmenu', (event) => event.preventDefault());
-        on('auxclick', (event) => event.preventDefault());
-        document.addEventListener('keydown', (event) => this.keyDown(event));
-        document.addEventListener('keyup', (event) => this.keys.release(event));
-        window.addEventListener('blur', () => this.keys.clear());
+    // An event of hands.js.
+    hear(event) {
+        this[event.type](event);
     }
 
     place(event) {
@@ -53,18 +44,9 @@ export class Pilot {
         return { id: event.pointerId, x: event.clientX - box.left, y: event.clientY - box.top, time: event.timeStamp };
     }
 
-    // Controls that lie over the picture keep their own clicks.
-    isOurs(event) {
-        return !event.target.closest('button, .card, .banner, .legend');
-    }
-
-    pointerDown(event) {
-        if (!this.isOurs(event))
+    pointerdown(event) {
+        if (!isOnPicture(event))
             return;
-        this.viewport.element.setPointerCapture(event.pointerId);
-        this.viewport.element.focus({ preventScroll: true });
-        if (event.button === 1)
-            event.preventDefault(); // no scrolling by the middle button
         this.fly = null;
         const place = this.place(event);
         if (!this.gestures.active)
@@ -90,23 +72,31 @@ export class Pilot {
         return { half, at, depth: depthAt(camera, at, y, half.width, this.viewport.height, boxes) };
     }
 
-    pointerMove(event) {
+    pointermove(event) {
         const place = this.place(event);
         if (!this.gestures.active) {
-            this.onPoint(this.isOurs(event) && event.pointerType !== 'touch' ? place : null);
+            this.told.point(isOnPicture(event) && event.pointerType !== 'touch' ? place : null);
             return;
         }
         this.apply(this.gestures.move(place), event.timeStamp);
         this.viewport.element.classList.toggle('moving', this.gestures.moved);
         if (this.gestures.moved)
-            this.onPoint(null);
+            this.told.point(null);
     }
 
-    pointerUp(event) {
+    pointerup(event) {
         const moves = this.gestures.up(this.place(event));
         this.viewport.element.classList.toggle('moving', this.gestures.active && this.gestures.moved);
         for (const { click } of moves)
             this.click(click, event);
+    }
+
+    pointercancel(event) {
+        this.gestures.cancel({ id: event.pointerId });
+    }
+
+    pointerleave() {
+        this.told.point(null);
     }
 
     click([x, y], event) {
@@ -114,15 +104,14 @@ export class Pilot {
         this.lastClick = { x, y, time: event.timeStamp };
         if (last && event.timeStamp - last.time < DOUBLE_CLICK_MS && Math.hypot(x - last.x, y - last.y) < DOUBLE_CLICK_PX) {
             this.lastClick = null;
-            this.onCommand('fit');
+            this.told.command('fit');
             return;
         }
-        this.onClick(x, y, event.pointerType);
+        this.told.click(x, y, event.pointerType);
     }
 
     wheel(event) {
-        event.preventDefault();
-        if (!this.isOurs(event))
+        if (!isOnPicture(event))
             return;
         this.fly = null;
         const place = this.place(event), { x, y, time } = place, { anchor } = this;
@@ -133,7 +122,7 @@ export class Pilot {
         this.apply([{ zoom: wheelZoom(event), at: [x, y] }], event.timeStamp);
     }
 
-    keyDown(event) {
+    keydown(event) {
         if (document.querySelector('dialog[open]') || event.target.closest('input[type="search"], input[type="text"], select'))
             return;
         const meaning = keyMeaning(event);
@@ -147,10 +136,14 @@ export class Pilot {
             this.apply(this.keys.press(meaning.motion), event.timeStamp);
             this.viewport.invalidate();
         } else if (meaning.command) {
-            this.onCommand(meaning.command);
+            this.told.command(meaning.command);
         } else {
-            this.onGroup(meaning.group);
+            this.told.group(meaning.group);
         }
+    }
+
+    keyup(event) {
+        this.keys.release(event);
     }
 
     apply(moves, time) {
@@ -202,6 +195,10 @@ export class Pilot {
 
     flyHome() {
         this.flyTo(home(this.session.model.plant, this.aspect));
+    }
+
+    flyToTag({ position }, { bounds }) {
+        this.flyTo(face(this.session.camera, position, bounds, TAG_DISTANCE_M));
     }
 
     flyToBox(box, margin) {

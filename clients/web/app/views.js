@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The panel of views: from where to look, in which projection, what is cut away and which equipment is shown.
-import { isParallel, toParallel, toPerspective } from '../core/camera.js';
+import { isParallel } from '../core/camera.js';
 import { numberText } from '../core/format.js';
+import { toParallel, toPerspective } from '../core/moves.js';
 import { AXES, boxAround, cut, readBox, readCut, showAll, showAsset } from '../core/section.js';
 import { say } from '../core/words.js';
 import { byId, make, setText } from './dom.js';
@@ -15,8 +16,8 @@ const SHOWS = choices('shown', 'hide', 'ghost', 'only');
 const STEPS = 500, LARGEST_BOX = 2;
 
 export class Views {
-    constructor({ session, pilot }) {
-        Object.assign(this, { session, pilot });
+    constructor({ session, parts, viewport }) {
+        Object.assign(this, { session, viewport });
         this.panel = byId('views');
         this.at = byId('cut-at');
         byId('sides').append(make('div', { class: 'buttons' }, ...SIDES.map(([side, text]) =>
@@ -29,7 +30,7 @@ export class Views {
             ...SHOWS.map(([how, text]) => make('button', { type: 'button', 'data-how': how, onclick: () => this.show(how) }, text)),
             make('button', { type: 'button', id: 'show-all', onclick: () => this.showAll() }, say('views.all'))));
         Object.assign(this, foldPanel(this.panel, byId('views-toggle'), () => this.update()));
-        session.on('fitted', (camera) => this.pilot.flyTo(camera));
+        session.on('fitted', (camera) => parts.use('pilot', (pilot) => pilot.flyTo(camera)));
         session.on('params', () => this.update());
         session.on('camera', () => this.update());
         session.on('welcome', () => this.update());
@@ -51,7 +52,7 @@ export class Views {
         const { camera } = this.session;
         if (camera && isParallel(camera) !== parallel)
             this.session.setCamera(parallel ? toParallel(camera) : toPerspective(camera));
-        this.pilot.viewport.invalidate();
+        this.viewport.invalidate();
     }
 
     toggleProjection() {

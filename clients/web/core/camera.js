@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The camera of one viewer and how it moves. A camera is { eye, target, up, fov }: metres in the plant frame, fov vertical in
+// The camera of one viewer (moves.js moves it). A camera is { eye, target, up, fov }: metres in the plant frame, fov vertical in
 // degrees; target is what it turns about. One that has height_m, what its picture is high, is orthographic; fov is then kept for
 // later. Every function returns a new camera. Picture places are pixels from the top left.
-import { add, along, cross, dot, finite, length, middle, scale, subtract, turn, unit } from './vector.js';
+import { along, cross, dot, finite, length, middle, scale, subtract, unit } from './vector.js';
 
-const RADIANS = Math.PI / 180;
-export const MAX_ELEVATION_DEG = 89; // straight up or down the horizon has no direction, and the picture would spin
+export const RADIANS = Math.PI / 180;
 export const MIN_DISTANCE_M = 0.05;
 export const MAX_DISTANCE_M = 1e5;
 const MAX_COORDINATE_M = 1e6; // what the server accepts
 const MIN_HEIGHT_M = 1e-3;
-const USUAL_FOV = 45;
+export const USUAL_FOV = 45;
 
 export function valid(camera) {
     if (!camera || !finite(camera.eye) || !finite(camera.target) || !finite(camera.up) || !Number.isFinite(camera.fov))
@@ -28,8 +27,6 @@ export function same(a, b) {
     return a === b || (sameLens && ['eye', 'target', 'up'].every((k) => a[k].every((x, i) => x === b[k][i])));
 }
 
-export const distance = (camera) => length(subtract(camera.target, camera.eye));
-
 // Unit vectors of the picture: forward into it, right, and up within it (camera.up is the vertical of the plant).
 export function basis(camera) {
     const forward = unit(subtract(camera.target, camera.eye));
@@ -37,107 +34,10 @@ export function basis(camera) {
     return { forward, right, up: cross(right, forward) };
 }
 
-// How far above the target the eye stands, degrees.
-export function elevation(camera) {
-    return Math.asin(Math.max(-1, Math.min(1, -dot(basis(camera).forward, unit(camera.up))))) / RADIANS;
-}
-
-// Turns about the vertical through `pivot`, then tilts about the picture's horizontal, so the horizon stays level.
-export function orbit(camera, azimuthDeg, elevationDeg, pivot = camera.target) {
-    const vertical = unit(camera.up);
-    const before = elevation(camera);
-    const limit = Math.max(MAX_ELEVATION_DEG, Math.abs(before));
-    const tilt = Math.max(-limit, Math.min(limit, before + elevationDeg)) - before;
-    const right = basis(camera).right;
-    const move = (point) => {
-        const tilted = turn(subtract(point, pivot), right, -tilt * RADIANS);
-        return add(pivot, turn(tilted, vertical, azimuthDeg * RADIANS));
-    };
-    return { ...camera, eye: move(camera.eye), target: move(camera.target) };
-}
-
-// The eye stays and looks elsewhere: what is seen follows the pointer. In parallel there is no eye to stay, and it turns instead.
-export function lookAround(camera, dxPx, dyPx, heightPx) {
-    const degrees = (isParallel(camera) ? -USUAL_FOV : camera.fov) / heightPx;
-    return orbit(camera, dxPx * degrees, -dyPx * degrees, isParallel(camera) ? camera.target : camera.eye);
-}
-
-// How far off a point lies, along the line of sight.
-export const depthOf = (camera, point) => dot(subtract(point, camera.eye), basis(camera).forward);
-
 export const isParallel = (camera) => camera.height_m !== undefined;
 
-const heightAt = (camera, depth) => camera.height_m ?? 2 * depth * Math.tan((camera.fov * RADIANS) / 2);
-const metresPerPixel = (camera, heightPx, depth) => heightAt(camera, depth) / heightPx;
-
-// The same at the target's depth, by the other projection.
-export function toParallel(camera) {
-    return { ...camera, height_m: heightAt(camera, distance(camera)) };
-}
-
-export function toPerspective(camera) {
-    const { height_m, ...rest } = camera;
-    const fov = rest.fov >= 1 ? rest.fov : USUAL_FOV;
-    const back = Math.max(MIN_DISTANCE_M, height_m / (2 * Math.tan((fov * RADIANS) / 2)));
-    return { ...rest, fov, eye: along(rest.target, basis(camera).forward, -back) };
-}
-
-// What lies at that depth follows the pointer exactly.
-export function pan(camera, dxPx, dyPx, heightPx, depth = distance(camera)) {
-    const { right, up } = basis(camera);
-    const step = metresPerPixel(camera, heightPx, depth);
-    const move = along(scale(right, -dxPx * step), up, dyPx * step);
-    return { ...camera, eye: add(camera.eye, move), target: add(camera.target, move) };
-}
-
-// The line of sight through a place of the picture: where it begins, and its direction, one metre deep along `forward` per unit.
-export function sight(camera, xPx, yPx, widthPx, heightPx) {
-    const { forward, right, up } = basis(camera);
-    const step = metresPerPixel(camera, heightPx, 1);
-    const aside = along(scale(right, (xPx - widthPx / 2) * step), up, (heightPx / 2 - yPx) * step);
-    if (isParallel(camera))
-        return { origin: add(camera.eye, aside), direction: forward };
-    return { origin: camera.eye, direction: add(forward, aside) };
-}
-
-function zoomParallel(camera, factor, xPx, yPx, widthPx, heightPx) {
-    const height_m = Math.max(MIN_DISTANCE_M, Math.min(MAX_DISTANCE_M, camera.height_m * factor));
-    const zoomed = { ...camera, height_m };
-    const move = subtract(sight(camera, xPx, yPx, widthPx, heightPx).origin, sight(zoomed, xPx, yPx, widthPx, heightPx).origin);
-    return { ...zoomed, eye: add(camera.eye, move), target: add(camera.target, move) };
-}
-
-// Factor < 1 goes nearer. What is under (xPx, yPx) stays there at any depth; `depth` says how far off it is, and the target
-// is brought to that depth, so that the next turn is about what was looked at.
-export function zoom(camera, factor, xPx, yPx, widthPx, heightPx, depth = distance(camera)) {
-    if (isParallel(camera))
-        return zoomParallel(camera, factor, xPx, yPx, widthPx, heightPx);
-    const wanted = Math.max(MIN_DISTANCE_M, Math.min(MAX_DISTANCE_M, depth * factor));
-    const eye = along(camera.eye, sight(camera, xPx, yPx, widthPx, heightPx).direction, depth - wanted);
-    return { ...camera, eye, target: along(eye, basis(camera).forward, wanted) };
-}
-
-// Where a line enters a box, in units of the direction; null: it misses, or starts inside.
-export function enterBox(origin, direction, box) {
-    let near = -Infinity, far = Infinity;
-    for (let i = 0; i < 3; i++) {
-        const a = (box.min[i] - origin[i]) / direction[i], b = (box.max[i] - origin[i]) / direction[i];
-        if (Number.isNaN(a) || Number.isNaN(b)) // parallel to this pair of faces and exactly in one of them
-            continue;
-        near = Math.max(near, Math.min(a, b));
-        far = Math.min(far, Math.max(a, b));
-    }
-    return near <= far && near > 0 ? near : null;
-}
-
-// The depth of the nearest box under a place of the picture; null: none is there.
-export function depthAt(camera, xPx, yPx, widthPx, heightPx, boxes) {
-    const { origin, direction } = sight(camera, xPx, yPx, widthPx, heightPx);
-    let depth = Infinity;
-    for (const box of boxes)
-        depth = Math.min(depth, enterBox(origin, direction, box) ?? Infinity);
-    return Number.isFinite(depth) && depth > MIN_DISTANCE_M ? depth : null;
-}
+export const heightAt = (camera, depth) => camera.height_m ?? 2 * depth * Math.tan((camera.fov * RADIANS) / 2);
+export const metresPerPixel = (camera, heightPx, depth) => heightAt(camera, depth) / heightPx;
 
 const corners = (box) => [0, 1, 2, 3, 4, 5, 6, 7].map((n) => [0, 1, 2].map((i) => (n & (1 << i) ? box.max[i] : box.min[i])));
 
@@ -162,19 +62,6 @@ export function fit(camera, box, aspect, margin = 1.08) {
         far = Math.max(far, Math.abs(dot(c, right)) / wide - dot(c, forward), Math.abs(dot(c, up)) / tall - dot(c, forward));
     }
     return { ...camera, eye: along(centre, forward, -Math.min(far, MAX_DISTANCE_M)), target: centre };
-}
-
-// Looks at a point of something from its own side, a little from above: along the normal of the ellipsoid in its box.
-export function face(camera, point, box, distanceM, elevationDeg = 20) {
-    const vertical = unit(camera.up), centre = middle(box.min, box.max);
-    const outwards = point.map((x, i) => (x - centre[i]) / Math.max(1e-6, (box.max[i] - box.min[i]) ** 2));
-    const level = subtract(outwards, scale(vertical, dot(outwards, vertical)));
-    const back = subtract(camera.eye, camera.target);
-    const direction = unit(length(level) > 1e-4 ? level : subtract(back, scale(vertical, dot(back, vertical))));
-    const tilt = elevationDeg * RADIANS;
-    const towards = add(scale(direction, Math.cos(tilt)), scale(vertical, Math.sin(tilt)));
-    const lens = isParallel(camera) ? { height_m: 0.8 * distanceM } : {};
-    return { ...camera, ...lens, target: point, eye: along(point, towards, distanceM) };
 }
 
 // As plantcast.v1 says it.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A camera's flight from one view to another: the horizon level all the way, the turn by the shorter side.
-import { distance, isParallel, toParallel, toPerspective, valid } from './camera.js';
+import { isParallel, valid } from './camera.js';
+import { distance, toParallel, toPerspective } from './moves.js';
 import { add, cross, dot, mix, scale, subtract, unit } from './vector.js';
 
 export const FLIGHT_MS = 700;

@@ -13,7 +13,7 @@ status: Status
 timings: Messungen
 
 [part]
-failed: Dieser Teil der Seite konnte nicht geladen werden. Noch einmal drücken, sobald der Server da ist.
+failed: Dieser Teil der Seite konnte nicht geladen werden. Er kommt von selbst, sobald der Server da ist.
 
 [distance]
 metres: {metres} m

@@ -13,7 +13,7 @@ status: Status
 timings: Measurements
 
 [part]
-failed: This part of the page could not be loaded. Press again once the server is there.
+failed: This part of the page could not be loaded. It comes by itself once the server is there.
 
 [distance]
 metres: {metres} m

@@ -13,7 +13,7 @@ status: 상태
 timings: 성능 측정
 
 [part]
-failed: 화면의 이 부분을 불러오지 못했습니다. 서버가 응답하면 다시 누르십시오.
+failed: 화면의 이 부분을 불러오지 못했습니다. 서버가 응답하면 저절로 나타납니다.
 
 [distance]
 metres: {metres} m

@@ -98,7 +98,7 @@ export const pageOf = (page, point) => page.evaluate(async (at) => {
 
 // What the hand took hold of, once the server has said where that is; null: nothing.
 export async function held(page) {
-    await page.waitForFunction(() => globalThis.plantcast.pilot.anchor?.sure, null, { timeout: 20000 });
+    await page.waitForFunction(() => globalThis.plantcast.pilot?.anchor?.sure, null, { timeout: 20000 });
     return page.evaluate(() => globalThis.plantcast.pilot.anchor.point);
 }
 
