@@ -82,7 +82,7 @@ struct build {
     struct measured measured;
     struct asset_level file[LEVELS_MAX]; /* the levels as the file has them */
     struct text parts;                   /* of a stock, unless there is one */
-    float *distances;                    /* [sensor][vertex] */
+    struct rows distances;               /* of the vertices, as they come to be numbered */
     void (*tasks[2])(struct build *build); /* side by side */
     bool failed[2];
     char *why;
@@ -224,30 +224,16 @@ static void write_stock(struct build *build)
     mem_free(nodes);
 }
 
-/* Distances of one sensor after another follow the vertices to their new numbers; those of dropped ones make room. */
-static bool move_distances(float *distances, size_t sensor_count, uint32_t vertex_count, uint32_t kept, const uint32_t *new_of)
-{
-    float *column = mem_try_array(kept, sizeof(*column));
-    for (size_t s = 0; column && s < sensor_count; s++) {
-        const float *from = distances + s * vertex_count;
-        for (uint32_t v = 0; v < vertex_count; v++)
-            if (new_of[v] != TRIMESH_NONE)
-                column[new_of[v]] = from[v];
-        memcpy(distances + s * kept, column, kept * sizeof(*column));
-    }
-    mem_free(column);
-    return column != NULL;
-}
-
 /* Levels first, then each is split; so a level has no more vertices than it needs. */
 static bool put_in_order(struct build *build, uint32_t own)
 {
     struct build_report *report = &build->output->report;
     struct geometry *g = &build->geometry;
     size_t sensors = build->input->sensor_count;
-    uint32_t *new_of = NULL, count = g->vertex_count;
-    bool good = order_vertices(g, &build->levels, own, build->file, &new_of) &&
-                move_distances(build->distances, sensors, count, g->vertex_count, new_of);
+    uint32_t *new_of = NULL;
+    bool good = order_vertices(g, &build->levels, own, build->file, &new_of);
+    if (good && sensors)
+        rows_renumber(&build->distances, new_of, g->vertex_count);
     for (size_t s = 0; good && s < sensors; s++)
         build->measured.sensors[s].nearest_vertex = new_of[build->measured.sensors[s].nearest_vertex];
     report->level_count = build->levels.count;
@@ -263,10 +249,17 @@ static bool put_in_order(struct build *build, uint32_t own)
     return good || wrong(build->why, "out of memory for the levels of %u vertices", g->vertex_count);
 }
 
-static bool lay_out(const struct build_input *input, const struct geometry *g, const struct asset_level *levels, size_t level_count,
-                    const struct clusters *clusters, const struct asset_sensor *sensors, const float *distances,
-                    struct build_output *output, char *why)
+static void write_distances(const void *arg, float *geodesic_m)
 {
+    const struct build *build = arg;
+    rows_turn(&build->distances, build->workers, geodesic_m);
+}
+
+static bool lay_out(struct build *build, const struct clusters *clusters)
+{
+    const struct build_input *input = build->input;
+    const struct geometry *g = &build->geometry;
+    struct build_output *output = build->output;
     struct asset_parts parts = {
         .key = input->key,
         .positions_m = (const float(*)[3])g->positions_m,
@@ -275,15 +268,16 @@ static bool lay_out(const struct build_input *input, const struct geometry *g, c
         .colors = (const uint8_t(*)[4])g->colors,
         .indices = g->indices,
         .primitives = g->primitives,
-        .levels = levels,
-        .level_count = (uint32_t)level_count,
+        .levels = build->file,
+        .level_count = (uint32_t)output->report.level_count,
         .clusters = clusters->at,
         .cluster_count = clusters->count,
         .materials = g->materials,
         .textures = g->textures,
         .texels = g->texels,
-        .sensors = sensors,
-        .geodesic_m = distances,
+        .sensors = build->measured.sensors,
+        .write_geodesic = write_distances,
+        .write_arg = build,
         .names = g->names.at,
         .vertex_count = g->vertex_count,
         .index_count = g->index_count,
@@ -295,18 +289,12 @@ static bool lay_out(const struct build_input *input, const struct geometry *g, c
         .name_bytes = g->names.length,
     };
     char view_why[200];
-    struct asset_view view;
     memcpy(parts.origin_m, g->origin_m, sizeof(parts.origin_m));
     output->bytes = asset_build(&parts, &output->size);
-    if (!output->bytes) {
-        snprintf(why, MODEL_WHY_BYTES, "out of memory for its file");
-        return false;
-    }
-    if (!asset_view_init(&view, output->bytes, output->size, view_why)) { /* what a reader would refuse is not written */
-        snprintf(why, MODEL_WHY_BYTES, "its file would be wrong: %s", view_why);
-        return false;
-    }
-    return true;
+    if (!output->bytes)
+        return wrong(build->why, "out of memory for its file");
+    return asset_view_init(&output->view, output->bytes, output->size, view_why) || /* what a reader would refuse is not written */
+           wrong(build->why, "its file would be wrong: %s", view_why);
 }
 
 static bool build_file(struct build *build)
@@ -323,12 +311,12 @@ static bool build_file(struct build *build)
         if (!run_both(build, split, input->stock ? NULL : check))
             return false;
         write_stock(build);
+        surface_field_finish(&build->measured.field); /* it is large */
     }
     if (!put_in_order(build, own))
         return false;
     clusters_make(&clusters, g, build->workers);
-    bool good = lay_out(input, g, build->file, build->output->report.level_count, &clusters, build->measured.sensors, build->distances,
-                        build->output, build->why);
+    bool good = lay_out(build, &clusters);
     clusters_finish(&clusters);
     return good;
 }
@@ -375,7 +363,7 @@ bool build_asset(struct log *log, struct workers *workers, const struct build_in
     levels_finish(&build.levels);
     geometry_finish(&build.geometry);
     text_finish(&build.parts);
-    mem_free(build.distances);
+    rows_finish(&build.distances);
     if (!good) {
         free(output->bytes);
         output->bytes = NULL;

@@ -8,7 +8,7 @@
 #include "preprocess/levels.h"
 #include "surface/surface.h"
 
-#define BUILD_REVISION 23u /* grows when the same input shall give another file */
+#define BUILD_REVISION 24u /* grows when the same input shall give another file */
 
 struct stock;
 struct build_input {
@@ -46,6 +46,7 @@ struct build_report {
 struct build_output {
     void *bytes; /* free() */
     size_t size;
+    struct asset_view view; /* of bytes */
     struct build_report report;
     int missing_node; /* index of a sensor whose node is not in the model, -1: none */
 };

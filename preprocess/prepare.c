@@ -229,13 +229,12 @@ static void build_one(struct run *run, struct prepare_asset *asset)
                                  .stock_key = asset->stock_key,
                                  .columns_key = asset->columns_key };
     struct build_output output;
-    struct asset_view view;
-    char why[MODEL_WHY_BYTES], view_why[200];
+    char why[MODEL_WHY_BYTES];
     int64_t start_ns = clock_mono_ns();
     bool good = build_asset(run->log, run->workers, &input, &output, why);
     int status = good ? write_file(run, asset, &output) : 0;
-    if (good && asset_view_init(&view, output.bytes, output.size, view_why))
-        take_file(asset, &view);
+    if (good)
+        take_file(asset, &output.view);
     free(output.bytes);
     stock_close(&asset->stock);
     asset->reported = good;

@@ -10,7 +10,7 @@
 #include "preprocess/split_impl.h"
 #include "surface/vec.h"
 
-#define AIM (0.9 * SPLIT_ERROR) /* errs the field less at the points looked at, it does by less than that in between */
+#define AIM SPLIT_AIM
 #define MOST_ROUNDS 16
 #define MOST_KEPT 512    /* shares of a place */
 #define LARGE 0.25       /* of the way to the nearest sensor */
@@ -18,7 +18,6 @@
 #define FLAT 1e-3        /* a triangle's longest edge is no more than that shorter than the way round over the corner across */
 #define ASIDE 0.1        /* of the edge, at least, that corner is from its ends */
 #define LINE_OF_SIZE 2.5e-7 /* a triangle no higher than that, a few units of the last place, is a line */
-#define LINE 16          /* floats */
 #define MORE_PLACES 12.0 /* room for places, in those that the model has */
 #define FULL 2e-4        /* a level that may grow by less than that is done: each round takes half of what is left */
 
@@ -394,45 +393,25 @@ static bool start(struct split *split, struct geometry *geometry)
     return true;
 }
 
-struct turn {
-    const struct split *split;
-    float *columns;
-};
-
-/* A few columns at a time: as many as one line of memory has of a row. */
-static void turn_rows(void *arg, size_t begin, size_t end)
+/* Taken out of what is then done with. */
+static void take_rows(struct split *split, struct rows *rows)
 {
-    const struct turn *turn = arg;
-    const struct split *split = turn->split;
-    size_t count = split->mesh.geometry->vertex_count;
-    for (size_t first = begin * LINE; first < end * LINE && first < split->sensors; first += LINE) {
-        size_t width = first + LINE < split->sensors ? LINE : split->sensors - first;
-        for (size_t v = 0; v < count; v++) {
-            const float *row = split->geodesic_m + split->mesh.places.of_vertex[v] * split->sensors + first;
-            for (size_t s = 0; s < width; s++)
-                turn->columns[(first + s) * count + v] = row[s];
-        }
-    }
+    *rows = (struct rows){ .distances_m = split->geodesic_m,
+                           .place_of = split->mesh.places.of_vertex,
+                           .sensor_count = split->sensors,
+                           .vertex_count = split->mesh.geometry->vertex_count };
+    split->geodesic_m = NULL;
+    split->mesh.places.of_vertex = NULL;
 }
 
-static float *columns_of(const struct split *split)
-{
-    size_t lines = (split->sensors + LINE - 1) / LINE;
-    struct turn turn = { split, mem_try_array(split->sensors * (size_t)split->mesh.geometry->vertex_count, sizeof(float)) };
-    if (turn.columns && split->in->workers)
-        workers_for(split->in->workers, lines, 1, turn_rows, &turn);
-    else if (turn.columns)
-        turn_rows(&turn, 0, lines);
-    return turn.columns;
-}
-
-bool split_levels(struct levels *levels, struct geometry *geometry, const struct split_input *input, float **distances)
+bool split_levels(struct levels *levels, struct geometry *geometry, const struct split_input *input, struct rows *distances)
 {
     struct split split = { .in = input, .sensors = input->straight->sensor_count, .samples = straight_sample_count(input->straight) };
-    *distances = NULL;
-    if (start(&split, geometry)) {
+    bool good = start(&split, geometry);
+    *distances = (struct rows){ 0 };
+    if (good) {
         split_all(&split, levels);
-        *distances = columns_of(&split);
+        take_rows(&split, distances);
     }
     cutmesh_finish(&split.mesh);
     mem_free(split.geodesic_m);
@@ -440,5 +419,5 @@ bool split_levels(struct levels *levels, struct geometry *geometry, const struct
     mem_free(split.near_m);
     mem_free(split.part);
     mem_free(split.faces);
-    return *distances != NULL;
+    return good;
 }

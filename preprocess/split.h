@@ -13,6 +13,7 @@
 #ifndef PREPROCESS_SPLIT_H
 #define PREPROCESS_SPLIT_H
 #include "preprocess/levels.h"
+#include "preprocess/rows.h"
 #include "preprocess/split_kept.h"
 #include "preprocess/straight.h"
 #include "surface/surface.h"
@@ -29,7 +30,7 @@ struct split_input {
 };
 
 /* Levels may be fewer afterwards. New vertices come after the geometry's; both faces at an edge are cut at the same vertex, so a level
-   without cracks stays without. *distances: [sensor][vertex], of all vertices (free with mem_free). False: out of memory. */
-bool split_levels(struct levels *levels, struct geometry *geometry, const struct split_input *input, float **distances);
+   without cracks stays without. distances: of all vertices, to be finished by the caller. False: out of memory, and there are none. */
+bool split_levels(struct levels *levels, struct geometry *geometry, const struct split_input *input, struct rows *distances);
 
 #endif

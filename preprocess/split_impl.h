@@ -5,6 +5,8 @@
 #include "preprocess/cutmesh.h"
 #include "preprocess/split.h"
 
+#define SPLIT_AIM (0.9 * SPLIT_ERROR) /* errs the field less at the points looked at, it does by less than SPLIT_ERROR in between */
+
 struct split {
     const struct split_input *in;
     struct cutmesh mesh;
@@ -41,8 +43,8 @@ struct split_finding { /* about one edge or one triangle */
     float error, share; /* share: where the edge is best cut */
     float barred;       /* the error that cutting may not mend */
     bool jumps;
-    bool kept;   /* it is of the last time */
-    float doubt; /* split_kept.h */
+    bool kept;        /* it is of the last time */
+    float doubt, off; /* split_kept.h */
 };
 
 bool split_find_parts(struct split *split); /* false: out of memory */

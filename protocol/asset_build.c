@@ -119,17 +119,24 @@ static void *lay_out(const struct asset_parts *parts, size_t *out_bytes)
         else if (i == ASSET_NAMES)
             need = parts->names ? parts->name_bytes : 1;
         h.sections[i].offset = align_up(end);
-        h.sections[i].bytes = from[i] ? need : 0;
+        h.sections[i].bytes = from[i] || (i == ASSET_GEODESIC && parts->write_geodesic) ? need : 0;
         end = h.sections[i].offset + h.sections[i].bytes;
     }
     h.file_bytes = align_up(end);
     char *bytes = aligned_alloc(ASSET_ALIGN, h.file_bytes);
     if (!bytes)
         return NULL;
-    memset(bytes, 0, h.file_bytes);
-    for (int i = 0; i < ASSET_SECTION_COUNT; i++)
-        if (h.sections[i].bytes)
-            memcpy(bytes + h.sections[i].offset, from[i], h.sections[i].bytes);
+    end = sizeof(h);
+    for (int i = 0; i < ASSET_SECTION_COUNT; i++) {
+        char *to = bytes + h.sections[i].offset;
+        memset(bytes + end, 0, h.sections[i].offset - end);
+        if (i == ASSET_GEODESIC && parts->write_geodesic && h.sections[i].bytes)
+            parts->write_geodesic(parts->write_arg, (float *)(void *)to);
+        else if (h.sections[i].bytes)
+            memcpy(to, from[i], h.sections[i].bytes);
+        end = h.sections[i].offset + h.sections[i].bytes;
+    }
+    memset(bytes + end, 0, h.file_bytes - end);
     memcpy(bytes, &h, sizeof(h));
     h.checksum = asset_checksum(bytes, h.file_bytes);
     memcpy(bytes, &h, sizeof(h));

@@ -136,6 +136,8 @@ struct asset_parts {
     const uint8_t *texels;
     const struct asset_sensor *sensors;
     const float *geodesic_m;
+    void (*write_geodesic)(const void *arg, float *geodesic_m); /* instead of geodesic_m, which may be large: to where it belongs */
+    const void *write_arg;
     const char *names; /* NULL: one empty name */
     uint32_t vertex_count, index_count, primitive_count, level_count, material_count, texture_count, sensor_count, cluster_count;
     size_t texel_bytes, name_bytes;

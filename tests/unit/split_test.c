@@ -219,10 +219,14 @@ static void prepare(struct body *body, const double (*points)[3])
             places[i][axis] = body->places[i].surface_m[axis] = (float)body->field.sources[i].point_m[axis];
     straight_init(&straight, &body->plant, body->sensors, SENSORS, (const float(*)[3])places);
     assert_true(levels_make(&body->levels, g, NULL));
+    struct rows rows;
     assert_true(split_levels(&body->levels, g,
                              &(struct split_input){
                                  .straight = &straight, .surface = body->surface, .field = &body->field, .sensors = body->places },
-                             &body->distances));
+                             &rows));
+    body->distances = mem_array((size_t)g->vertex_count * SENSORS, sizeof(*body->distances));
+    rows_turn(&rows, NULL, body->distances);
+    rows_finish(&rows);
     straight_finish(&straight);
     mem_free(places);
     for (int geodesic = 0; geodesic < 2; geodesic++) {

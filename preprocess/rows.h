@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Distances place by place, as splitting finds them; turned into columns vertex by vertex, as an asset file has them. */
+#ifndef PREPROCESS_ROWS_H
+#define PREPROCESS_ROWS_H
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/workers.h"
+
+struct rows {
+    float *distances_m; /* [place][sensor] */
+    uint32_t *place_of; /* of each vertex */
+    size_t sensor_count;
+    uint32_t vertex_count;
+};
+
+void rows_finish(struct rows *rows); /* a zeroed one is fine */
+/* Vertices follow to their new numbers; those without one (TRIMESH_NONE) are dropped, and `kept` are left. */
+void rows_renumber(struct rows *rows, const uint32_t *new_of, uint32_t kept);
+/* columns: [sensor][vertex]. workers may be NULL. */
+void rows_turn(const struct rows *rows, struct workers *workers, float *columns);
+
+#endif
