@@ -15,11 +15,13 @@
 #define MOST_CHANGES 16 /* sensors */
 #define FEW 16          /* changes must be fewer than one in so many sensors */
 #define MOST_DOUBT 0.05f /* then, of edges that err by about a step, one in a thousand errs by a tenth of a step more or less: measured */
+#define MOST_SETTLED 0.5f /* doubt, where the error is so far from what matters that it cannot have come there */
+#define LITTLE 0.4f       /* of the error that matters: what errs by less at its middle was not looked at elsewhere */
 
 struct split_kept_finding {
     uint64_t key;
-    float error, share, barred, doubt;
-    uint64_t jumps;
+    float error, share, barred, doubt, off;
+    uint32_t jumps;
 };
 
 struct sensor { /* all that its shares depend on */
@@ -60,6 +62,18 @@ static void list_sensors(const struct straight *straight, struct text *list)
     qsort(list->at, list->length / sizeof(struct sensor), sizeof(struct sensor), compare_sensors);
 }
 
+static uint32_t column_of(const struct straight *straight, const struct sensor *sensor)
+{
+    const struct straight_group *group = &straight->groups[sensor->group];
+    for (size_t i = 0; i < group->count; i++) {
+        const float place_m[3] = { straight->axes_m[0][group->columns[i]], straight->axes_m[1][group->columns[i]],
+                                   straight->axes_m[2][group->columns[i]] };
+        if (memcmp(place_m, sensor->place_m, sizeof(place_m)) == 0)
+            return group->columns[i];
+    }
+    return UINT32_MAX;
+}
+
 /* Those that only one of two sorted lists has. False: too many, or of a group that is no more. */
 static bool find_changes(struct split_kept *kept, const struct straight *straight, const struct sensor *old, size_t old_count)
 {
@@ -76,8 +90,10 @@ static bool find_changes(struct split_kept *kept, const struct straight *straigh
         if (kept->change_count == MOST_CHANGES || FEW * kept->change_count >= count || changed->group >= straight->group_count)
             return false;
         struct split_change *change = &kept->changes[kept->change_count++];
-        *change = (struct split_change){ .power = changed->power, .group = changed->group };
+        *change = (struct split_change){ .power = changed->power, .group = changed->group, .column = UINT32_MAX };
         memcpy(change->place_m, changed->place_m, sizeof(change->place_m));
+        if (order > 0)
+            change->column = column_of(straight, changed);
     }
     return true;
 }
@@ -170,14 +186,32 @@ static uint64_t key_of(const struct split *split, const uint32_t *corners, size_
     return XXH3_64bits_withSeed(places_m, count * sizeof(*places_m), split->level);
 }
 
+/* How far from straight the share of a new sensor is between these corners, at most: since it bends, and since its distance along the
+   surface may have a kink there, where two ways round are equally long; on an edge, where it does not grow as fast as it can. */
+static float bend_of(const struct split *split, const struct split_change *change, const uint32_t *corners, size_t count, double wide_m,
+                     double near_m, double far_m, double share)
+{
+    const double p = (double)change->power, near = wide_m / fmax(near_m, 1e-9), far = wide_m / far_m;
+    double low_m = INFINITY, high_m = 0;
+    for (size_t c = 0; c < count; c++) {
+        double m = (double)split->geodesic_m[split->mesh.places.of_vertex[corners[c]] * split->sensors + change->column];
+        low_m = fmin(low_m, m);
+        high_m = fmax(high_m, m);
+    }
+    double kink_m = high_m < INFINITY ? wide_m - (count == 2 ? (high_m - low_m) / 2 : 0) : 0, round_m = fmax(low_m - wide_m, far_m);
+    double kink = pow(fmin(1, (near_m + wide_m) / round_m), p) * p * fmax(kink_m, 0) / round_m;
+    return (float)(share * (p * (p - 1) / 2 * near * near + p * p * near * far + p * (p + 1) / 2 * far * far) + kink);
+}
+
 /* The most that the sensors that are new or gone have, together, of a value between these corners. A distance along the surface is no
    shorter than the straight one. */
-static float share_of_changes(const struct split *split, const uint32_t *corners, size_t count)
+static float share_of_changes(const struct split *split, const uint32_t *corners, size_t count, float *off)
 {
     const struct split_kept *kept = split->in->kept;
     const size_t groups = split->in->straight->group_count;
     float middle[3] = { 0 }, share = 0;
     double wide_m = 0;
+    *off = 0;
     for (size_t c = 0; c < count; c++)
         for (int axis = 0; axis < 3; axis++)
             middle[axis] += split_position(split, corners[c])[axis] / (float)count;
@@ -185,15 +219,26 @@ static float share_of_changes(const struct split *split, const uint32_t *corners
         wide_m = fmax(wide_m, split_length(middle, split_position(split, corners[c])));
     for (size_t i = 0; i < kept->change_count; i++) {
         const struct split_change *change = &kept->changes[i];
-        double near_m = 0, far_m = split_length(middle, change->place_m) - wide_m - split->on_surface_m;
+        double near_m = 0, far_m = fmax(1e-9, split_length(middle, change->place_m) - wide_m - split->on_surface_m);
         for (size_t c = 0; c < count; c++) {
             uint32_t place = split->mesh.places.of_vertex[corners[c]];
             near_m = fmax(near_m, (double)split->near_m[place * groups + change->group]);
         }
-        double ratio = (near_m + wide_m) / fmax(far_m, 1e-9);
-        share += ratio < 1 ? powf((float)ratio, change->power) : 1;
+        double ratio = (near_m + wide_m) / far_m;
+        float own = ratio < 1 ? powf((float)ratio, change->power) : 1;
+        share += own;
+        if (change->column != UINT32_MAX && own < MOST_SETTLED)
+            *off += bend_of(split, change, corners, count, wide_m, near_m, far_m, (double)own);
     }
     return share;
+}
+
+/* So far from the error that matters that it is sure to stay on its side. */
+static bool is_settled(const struct split_kept_finding *old, float doubt, float off)
+{
+    const float matters = (float)SPLIT_AIM, error = fmaxf(old->error, old->barred);
+    float most = error / (1 - doubt) + off, least = error * (1 - 2 * doubt) - off;
+    return doubt <= MOST_SETTLED && (most <= LITTLE * matters || (error > LITTLE * matters && most <= matters) || least > matters);
 }
 
 bool split_recall(const struct split *split, const uint32_t *corners, size_t count, struct split_finding *finding)
@@ -208,8 +253,9 @@ bool split_recall(const struct split *split, const uint32_t *corners, size_t cou
     if (!kept->slots[slot])
         return false;
     const struct split_kept_finding *old = &kept->findings[kept->slots[slot] - 1];
-    float doubt = old->doubt + share_of_changes(split, corners, count);
-    if (!(doubt <= MOST_DOUBT))
+    float off, doubt = old->doubt + share_of_changes(split, corners, count, &off);
+    off += old->off;
+    if (!(doubt <= MOST_DOUBT) && !is_settled(old, doubt, off))
         return false;
     *finding = (struct split_finding){ .number = finding->number,
                                        .error = old->error,
@@ -217,7 +263,8 @@ bool split_recall(const struct split *split, const uint32_t *corners, size_t cou
                                        .barred = old->barred,
                                        .jumps = old->jumps != 0,
                                        .kept = true,
-                                       .doubt = doubt };
+                                       .doubt = doubt,
+                                       .off = off };
     return true;
 }
 
@@ -235,6 +282,7 @@ void split_remember(struct split *split, const uint32_t *corners, size_t count, 
                                               .share = finding->share,
                                               .barred = finding->barred,
                                               .doubt = finding->doubt,
+                                              .off = finding->off,
                                               .jumps = finding->jumps };
     text_add_bytes(&kept->found, &found, sizeof(found));
 }

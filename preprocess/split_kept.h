@@ -4,7 +4,8 @@
 
    A sensor that has at most the share x of a value changes what the field errs along an edge by about x times as much as it errs, and so
    does one that is gone. Such shares add up from one time to the next (doubt) until an edge is measured again; what they may be together
-   is far below the tenth of a step of colour by which the splitting keeps within SPLIT_ERROR. That is so for shepard with one strength for
+   is far below the tenth of a step of colour by which the splitting keeps within SPLIT_ERROR. Where doubts are larger, a finding still
+   holds if it is so far from what matters that no such change brings it there. That is so for shepard with one strength for
    all sensors of a group. In paper every sensor has a share everywhere: nothing is kept for an asset with a group that is looked at in it.
    Safe to delete; one that is no good counts as none. */
 #ifndef PREPROCESS_SPLIT_KEPT_H
@@ -21,7 +22,8 @@ struct split_kept {
     size_t mask;
     struct split_change { /* a sensor that is new or gone */
         float place_m[3], power;
-        uint32_t group; /* of straight's */
+        uint32_t group;  /* of straight's */
+        uint32_t column; /* of a new one; UINT32_MAX: it is gone */
     } * changes;
     size_t change_count;
     struct text sensors, found; /* of this time */
