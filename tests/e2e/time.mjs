@@ -5,6 +5,7 @@ import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { openPage, PHONE, settle, shoot, TABLET, waitForHealth, waitForPicture } from './support/browser.mjs';
+import { contrastRatio } from './support/pixels.mjs';
 import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 
 const absent = missing();
@@ -104,6 +105,22 @@ test('several tags are compared, each by its unit, and exported', options, async
     await settle(page);
     await shoot(page, 'trends');
     await page.locator('#trend-span label', { hasText: '1 h' }).click();
+});
+
+test('in the dark theme the chart is dark, and its lines and limits are read', options, async () => {
+    await page.locator('#theme').click();
+    await page.waitForFunction(() => globalThis.plantcast.trends.shownTheme === 'dark');
+    const rgbOf = (hex) => [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16));
+    const { ground, lines, limit, grave, ink } = await page.evaluate(() => globalThis.plantcast.trends.look);
+    await page.waitForFunction((is) => getComputedStyle(document.getElementById('trends')).backgroundColor === is,
+        `rgb(${rgbOf(ground).join(', ')})`); // the panel is of that colour, too, once its sheet is there
+    assert.ok(Math.max(...rgbOf(ground)) < 90, ground);
+    for (const colour of [...lines, limit, grave, ink])
+        assert.ok(contrastRatio(rgbOf(colour), rgbOf(ground)) >= 4.5, `${colour} on ${ground}`);
+    await settle(page);
+    await shoot(page, 'trends-dark');
+    await page.locator('#theme').click();
+    await page.waitForFunction(() => globalThis.plantcast.trends.shownTheme === 'light');
 });
 
 test('the slider goes to an instant, and nobody can take it for now', options, async () => {

@@ -59,6 +59,8 @@ test('requests carry the token, and failures are said in the server’s words', 
     assert.deepEqual(seen, ['api/x?tags=A%2CB', 'Bearer secret']);
     const refusal = async () => ({ ok: false, status: 404, text: async () => 'nothing here\n' });
     await assert.rejects(ask('api/x', {}, null, refusal), /^Error: nothing here$/);
+    const gone = () => Promise.reject(new TypeError('Failed to fetch'));
+    await assert.rejects(ask('api/x', {}, null, gone), /^Error: The server cannot be reached$/);
 });
 
 test('the address names the instant', () => {

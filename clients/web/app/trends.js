@@ -5,14 +5,14 @@ import { ask, BAD, gaps, limitLines, line } from '../core/history.js';
 import { say } from '../core/words.js';
 import { byId, make, setText } from './dom.js';
 import { fillSegments, markSegment } from './fields.js';
+import { dots, hatch, LOOKS } from './ink.js';
 
 const SPANS = [['3600', 'hour'], ['28800', 'shift'], ['86400', 'day'], ['604800', 'week']]
     .map(([seconds, name]) => [seconds, say(`trends.${name}`), say(`trends.${name}.why`)]);
-const COLOURS = ['#0b5c93', '#b34a00', '#00734f', '#8a3a73', '#5b5b00', '#4b4f56'];
 const DASHES = [[], [8, 4], [2, 3], [10, 3, 2, 3], [5, 5], [1, 4]];
-const MOST = COLOURS.length, FRESH_MS = 5000, HEIGHT_PX = 210, AXIS_PX = 58;
+const MOST = DASHES.length, FRESH_MS = 5000, HEIGHT_PX = 210, AXIS_PX = 58;
 const EXPAND = 2; // uPlot's: nulls
-const LIMIT_PX = 15, INK = '#4d5964', LINE = '#d8dce0';
+const LIMIT_PX = 15;
 
 // Loaded when the first trend is asked for.
 let library;
@@ -38,6 +38,7 @@ export class Trends {
         byId('trend-close').addEventListener('click', () => this.close());
         byId('trend-csv').addEventListener('click', () => this.save());
         session.on('time', () => this.chart?.redraw(false));
+        session.on('params', () => this.chart && this.theme !== this.shownTheme && this.draw(globalThis.uPlot));
         session.greeted(() => {
             this.zone = zoneOf(session.model.plant.time_zone);
             this.clock = zoneClock(this.zone);
@@ -45,6 +46,14 @@ export class Trends {
         });
         setInterval(() => this.isOpen && !document.hidden && this.refresh(), FRESH_MS);
         new ResizeObserver(() => this.resize()).observe(byId('trend-chart'));
+    }
+
+    get theme() {
+        return document.documentElement.dataset.theme;
+    }
+
+    get look() {
+        return LOOKS[this.theme] ?? LOOKS.light;
     }
 
     get isOpen() {
@@ -147,7 +156,7 @@ export class Trends {
     }
 
     draw(uPlot) {
-        const shape = JSON.stringify([this.tags.map(({ name }) => name), this.spanS]);
+        const shape = JSON.stringify([this.tags.map(({ name }) => name), this.spanS, this.theme]);
         const [min, max] = this.span.map((us) => us / 1e6);
         if (this.chart && this.shape === shape) {
             this.chart.setData(this.data(uPlot), false);
@@ -156,6 +165,7 @@ export class Trends {
         }
         this.drop();
         this.shape = shape;
+        this.shownTheme = this.theme;
         this.chart = new uPlot(this.options(), this.data(uPlot), byId('trend-chart'));
         this.chart.setScale('x', { min, max });
     }
@@ -170,7 +180,8 @@ export class Trends {
 
     options() {
         const units = [...new Set(this.tags.map((tag) => this.unitOf(tag) || '–'))];
-        const rule = { stroke: LINE, width: 1 }, font = '12px system-ui, sans-serif', axis = { stroke: INK, grid: rule, ticks: rule, font };
+        const { ink, rule: stroke } = this.look, rule = { stroke, width: 1 }, font = '12px system-ui, sans-serif';
+        const axis = { stroke: ink, grid: rule, ticks: rule, font, labelFont: font };
         const scales = Object.fromEntries(units.map((unit) => [unit, { range: (_, low, high) => this.range(unit, low, high) }]));
         const dateOf = (s) => this.clock(s * 1000);
         const tickText = (s) => (this.spanS > 2 * 86400 ? dateOf(s).day : dateOf(s).time.slice(0, 5));
@@ -183,7 +194,7 @@ export class Trends {
             series: [{ label: say('trends.time'), value: (_, s) => (s === null ? '–' : `${dateOf(s).date} ${dateOf(s).time}`) },
                 ...this.tags.map((tag, i) => this.lineOf(tag, i))],
             axes: [{ ...axis, values: (_, all) => all.map(tickText), space: 70, size: 28 }, ...units.map((unit, i) => ({
-                ...axis, scale: unit, label: unit, labelFont: font, labelSize: 16, size: AXIS_PX, side: i % 2 ? 1 : 3,
+                ...axis, scale: unit, label: unit, labelSize: 16, size: AXIS_PX, side: i % 2 ? 1 : 3,
                 show: i < 2, grid: { ...rule, show: i === 0 },
             }))],
             hooks: { drawAxes: [(u) => this.drawGaps(u), (u) => this.drawLimits(u)],
@@ -195,7 +206,8 @@ export class Trends {
     lineOf(tag, i) {
         const group = this.session.model.group(tag.group), decimals = group ? decimalsFor(group.max - group.min) : 2;
         return {
-            label: tag.name, scale: this.unitOf(tag) || '–', stroke: COLOURS[i], dash: DASHES[i], width: 1.75, points: { show: false },
+            label: tag.name, scale: this.unitOf(tag) || '–', stroke: this.look.lines[i], dash: DASHES[i], width: 1.75,
+            points: { show: false },
             value: (_, value) => (value === null || value === undefined ? '–' : `${numberText(value, decimals)} ${this.unitOf(tag)}`),
         };
     }
@@ -227,9 +239,9 @@ export class Trends {
             for (const { from, to, severity } of gaps(one, ...this.span)) {
                 const left = valToPos(from, 'x', true), right = Math.max(left + 2, valToPos(to, 'x', true));
                 if (severity === BAD)
-                    hatch(ctx, left, top, right - left, height, rows > 1 ? COLOURS[i] : '#8b949c');
+                    hatch(ctx, left, top, right - left, height, rows > 1 ? this.look.lines[i] : this.look.gap);
                 else
-                    dots(ctx, left, right, top + height - 5, COLOURS[i]);
+                    dots(ctx, left, right, top + height - 5, this.look.lines[i]);
             }
         });
         ctx.restore();
@@ -239,7 +251,7 @@ export class Trends {
         return limitLines(this.tags, (tag) => this.unitOf(tag) || '–').filter(({ scale, value }) =>
             value >= scales[scale]?.min && value <= scales[scale]?.max).map(({ scale, name, value, tags }) => ({
             y: Math.round(valToPos(value, scale, true)), words: [...tags.map((tag) => tag.name), name, shortNumberText(value, 3)].join(' '),
-            colour: tags.length > 0 ? COLOURS[this.tags.indexOf(tags[0])] : name.length > 1 ? '#a31515' : '#8a5a00',
+            colour: tags.length > 0 ? this.look.lines[this.tags.indexOf(tags[0])] : name.length > 1 ? this.look.grave : this.look.limit,
         })).sort((a, b) => a.y - b.y);
     }
 
@@ -263,6 +275,7 @@ export class Trends {
         const { ctx, bbox } = chart, px = devicePixelRatio, height = LIMIT_PX * px, placed = [];
         ctx.save();
         ctx.font = `${11 * px}px system-ui, sans-serif`;
+        ctx.textAlign = 'left';
         ctx.textBaseline = 'middle';
         for (const { y, words, colour } of this.limitsOf(chart)) {
             const near = placed.filter((other) => Math.abs(other.y - y) < height);
@@ -270,7 +283,7 @@ export class Trends {
             const right = left + ctx.measureText(words).width + 6 * px;
             const middle = Math.max(bbox.top + height / 2, y);
             placed.push({ y, right });
-            ctx.fillStyle = '#fff';
+            ctx.fillStyle = this.look.ground;
             ctx.fillRect(left, middle - height / 2, right - left, height);
             ctx.fillStyle = colour;
             ctx.fillText(words, left + 3 * px, middle);
@@ -284,7 +297,7 @@ export class Trends {
             return;
         const x = Math.round(valToPos(atUs / 1e6, 'x', true));
         ctx.save();
-        ctx.strokeStyle = '#5b2d8e';
+        ctx.strokeStyle = this.look.then;
         ctx.lineWidth = 2 * devicePixelRatio;
         ctx.beginPath();
         ctx.moveTo(x, bbox.top);
@@ -309,28 +322,4 @@ export class Trends {
             setText(byId('trend-note'), say('trends.unsaved', { why: error.message }));
         }
     }
-}
-
-function hatch(ctx, left, top, width, height, colour) {
-    const step = 7 * devicePixelRatio;
-    ctx.save();
-    ctx.beginPath();
-    ctx.rect(left, top, width, height);
-    ctx.clip();
-    ctx.globalAlpha = 0.45;
-    ctx.strokeStyle = colour;
-    ctx.lineWidth = 1.5 * devicePixelRatio;
-    ctx.beginPath();
-    for (let x = left - height - (left - height) % step; x < left + width; x += step) {
-        ctx.moveTo(x, top + height);
-        ctx.lineTo(x + height, top);
-    }
-    ctx.stroke();
-    ctx.restore();
-}
-
-function dots(ctx, left, right, y, colour) {
-    ctx.fillStyle = colour;
-    for (let x = left; x < right; x += 6 * devicePixelRatio)
-        ctx.fillRect(x, y, 3 * devicePixelRatio, 3 * devicePixelRatio);
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What /api/v1/history and the alarms' journal say, made into what a chart and a slider draw. Pure, but for the one request.
 import { calls } from './alarms.js';
+import { refusalText } from './refusals.js';
+import { say } from './words.js';
 
 export const BAD = 2, UNCERTAIN = 1; // the two top bits of a status code
 const severity = (quality) => Math.min(BAD, quality >>> 30);
@@ -9,9 +11,11 @@ const severity = (quality) => Math.min(BAD, quality >>> 30);
 export async function ask(path, query, token, fetcher = fetch) {
     const headers = token ? { Authorization: `Bearer ${token}` } : {};
     const text = new URLSearchParams(query).toString();
-    const response = await fetcher(`${path}?${text}`, { headers });
+    const response = await fetcher(`${path}?${text}`, { headers }).catch(() => {
+        throw new Error(say('reason.unreachable'));
+    });
     if (!response.ok)
-        throw new Error((await response.text()).trim() || `HTTP ${response.status}`);
+        throw new Error(refusalText((await response.text()).trim() || `HTTP ${response.status}`));
     return response;
 }
 

@@ -50,8 +50,16 @@ export function contrast({ rgba }) {
     return Math.sqrt(squares / count - (sum / count) ** 2);
 }
 
+const toLinear = (v) => (v <= 10.31475 ? v / 255 / 12.92 : ((v / 255 + 0.055) / 1.055) ** 2.4);
+
+// Of two colours by WCAG: 1 (none) to 21.
+export function contrastRatio(a, b) {
+    const lights = [a, b].map((rgb) => [0.2126, 0.7152, 0.0722].reduce((sum, k, i) => sum + k * toLinear(rgb[i]), 0.05));
+    return Math.max(...lights) / Math.min(...lights);
+}
+
 function lab(r, g, b) {
-    const linear = [r, g, b].map((v) => (v <= 10.31475 ? v / 255 / 12.92 : ((v / 255 + 0.055) / 1.055) ** 2.4));
+    const linear = [r, g, b].map(toLinear);
     const xyz = [[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]].map((row, i) =>
         row.reduce((sum, k, c) => sum + k * linear[c], 0) / [0.9505, 1, 1.089][i]);
     const [x, y, z] = xyz.map((t) => (t > 216 / 24389 ? Math.cbrt(t) : (24389 / 27 * t + 16) / 116));

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What charts are drawn with: colours by theme, and patterns for what is missing.
+
+// The lines of tags as in trends.css.
+export const LOOKS = {
+    light: { ground: '#ffffff', ink: '#4d5964', rule: '#d8dce0', gap: '#8b949c', grave: '#a31515', limit: '#8a5a00', then: '#5b2d8e',
+        lines: ['#0b5c93', '#b34a00', '#00734f', '#8a3a73', '#5b5b00', '#4b4f56'] },
+    dark: { ground: '#363d44', ink: '#c3cad0', rule: '#515a63', gap: '#8b949c', grave: '#ff9d94', limit: '#f0c265', then: '#cdb4f0',
+        lines: ['#84c1f2', '#ffb27a', '#66d6a6', '#e8a5d6', '#d9d977', '#d5dbe0'] },
+};
+
+export function hatch(ctx, left, top, width, height, colour) {
+    const step = 7 * devicePixelRatio;
+    ctx.save();
+    ctx.beginPath();
+    ctx.rect(left, top, width, height);
+    ctx.clip();
+    ctx.globalAlpha = 0.45;
+    ctx.strokeStyle = colour;
+    ctx.lineWidth = 1.5 * devicePixelRatio;
+    ctx.beginPath();
+    for (let x = left - height - (left - height) % step; x < left + width; x += step) {
+        ctx.moveTo(x, top + height);
+        ctx.lineTo(x + height, top);
+    }
+    ctx.stroke();
+    ctx.restore();
+}
+
+export function dots(ctx, left, right, y, colour) {
+    ctx.fillStyle = colour;
+    for (let x = left; x < right; x += 6 * devicePixelRatio)
+        ctx.fillRect(x, y, 3 * devicePixelRatio, 3 * devicePixelRatio);
+}
