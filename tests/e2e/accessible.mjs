@@ -163,6 +163,13 @@ test('a dialog keeps the focus within, lets go of it by Escape, and gives it bac
 });
 
 test('panels open and close by keys, and the focus goes along', options, async () => {
+    await page.locator('#viewport').focus();
+    await page.keyboard.press('/');
+    await page.keyboard.type('TI');
+    await page.keyboard.press('Escape'); // what was searched for is gone
+    assert.deepEqual(await page.evaluate(() => [document.activeElement.id, document.activeElement.value]), ['assets-search', '']);
+    await page.keyboard.press('Escape'); // and the keys are the picture's again
+    assert.equal(await page.evaluate(() => document.activeElement.id), 'viewport');
     await page.locator('#alarm-strip').focus();
     await page.keyboard.press('Enter');
     assert.equal((await focused()).name, 'alarms-close');

@@ -79,7 +79,8 @@ test('limits of several tags: each once, by its axis, with whose it is unless it
     const lines = limitLines(tags, ({ unit }) => unit)
         .map(({ scale, name, value, tags: of }) => [scale, name, value, ...of.map((one) => one.name)]);
     assert.deepEqual(lines, [
-        ['degC', 'H', 60], ['degC', 'HH', 90, 'a'], ['degC', 'L', 5, 'b'], ['degC', 'HH', 80, 'b'], ['bar', 'H', 60, 'c'],
+        ['degC', 'H', 60, 'a', 'b'], ['degC', 'HH', 90, 'a'], ['degC', 'L', 5, 'b'], ['degC', 'HH', 80, 'b'], ['bar', 'H', 60, 'c'],
     ]);
+    assert.deepEqual(limitLines(tags.slice(0, 2), ({ unit }) => unit)[0], { scale: 'degC', name: 'H', value: 60, tags: [] });
     assert.deepEqual(limitLines([], () => ''), []);
 });

@@ -30,6 +30,7 @@ export class Assets {
             clearTimeout(this.waiting);
             this.waiting = setTimeout(() => this.filter(), SEARCH_MS);
         });
+        this.search.addEventListener('keydown', ({ key }) => key === 'Escape' && !this.search.value && byId('viewport').focus());
         byId('assets-toggle').addEventListener('click', () => this.setOpen(!this.open));
         byId('assets-close').addEventListener('click', () => this.setOpen(false));
         session.on('welcome', () => this.build());

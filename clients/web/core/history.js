@@ -91,7 +91,7 @@ export function gaps(series, fromUs, toUs) {
 }
 
 // The limits of some tags, each once: [{ scale, name, value, tags }], where scaleOf(tag) says by which axis; tags: those that have it, or
-// none where all of that axis have.
+// none where all have, by one axis.
 export function limitLines(tags, scaleOf) {
     const lines = new Map();
     for (const tag of tags) {
@@ -102,8 +102,7 @@ export function limitLines(tags, scaleOf) {
             lines.set(key, line);
         }
     }
-    const all = (scale) => tags.filter((tag) => scaleOf(tag) === scale).length;
-    return [...lines.values()].map((line) => (line.tags.length === all(line.scale) ? { ...line, tags: [] } : line));
+    return [...lines.values()].map((line) => (line.tags.length === tags.length ? { ...line, tags: [] } : line));
 }
 
 // Rows of the journal that raise an alarm which is to be seen: [{ us, tag, kind, priority }], oldest first.
