@@ -102,6 +102,7 @@ static bool find_changes(struct split_kept *kept, const struct straight *straigh
 
 static void index_findings(struct split_kept *kept, size_t count)
 {
+    kept->finding_count = count;
     kept->mask = 15;
     while (kept->mask < 2 * count)
         kept->mask = kept->mask * 2 + 1;
@@ -171,18 +172,17 @@ void split_kept_write(const struct split_kept *kept, const char *folder, uint64_
 
 /* --- findings --------------------------------------------------------------------------------------------------------------------- */
 
-static int compare_places(const void *a, const void *b)
-{
-    return memcmp(a, b, sizeof(float[3]));
-}
-
 /* The same for every order of the corners. */
 static uint64_t key_of(const struct split *split, const uint32_t *corners, size_t count)
 {
     float places_m[3][3];
-    for (size_t c = 0; c < count; c++)
-        memcpy(places_m[c], split_position(split, corners[c]), sizeof(places_m[c]));
-    qsort(places_m, count, sizeof(*places_m), compare_places);
+    for (size_t c = 0; c < count; c++) {
+        const float *place_m = split_position(split, corners[c]);
+        size_t at = c;
+        for (; at > 0 && memcmp(places_m[at - 1], place_m, sizeof(*places_m)) > 0; at--)
+            memcpy(places_m[at], places_m[at - 1], sizeof(*places_m));
+        memcpy(places_m[at], place_m, sizeof(*places_m));
+    }
     return XXH3_64bits_withSeed(places_m, count * sizeof(*places_m), split->level);
 }
 
@@ -241,18 +241,26 @@ static bool is_settled(const struct split_kept_finding *old, float doubt, float 
     return doubt <= MOST_SETTLED && (most <= LITTLE * matters || (error > LITTLE * matters && most <= matters) || least > matters);
 }
 
-bool split_recall(const struct split *split, const uint32_t *corners, size_t count, struct split_finding *finding)
+/* Most come in the order that they had the last time. */
+static const struct split_kept_finding *find(const struct split_kept *kept, uint64_t key, uint32_t *next)
+{
+    if (*next >= kept->finding_count || kept->findings[*next].key != key) {
+        size_t slot = key & kept->mask;
+        while (kept->slots[slot] && kept->findings[kept->slots[slot] - 1].key != key)
+            slot = (slot + 1) & kept->mask;
+        if (!kept->slots[slot])
+            return NULL;
+        *next = kept->slots[slot] - 1;
+    }
+    return &kept->findings[(*next)++];
+}
+
+bool split_recall(const struct split *split, const uint32_t *corners, size_t count, uint32_t *next, struct split_finding *finding)
 {
     const struct split_kept *kept = split->in->kept;
-    if (!kept || !kept->findings)
+    const struct split_kept_finding *old = kept && kept->findings ? find(kept, key_of(split, corners, count), next) : NULL;
+    if (!old)
         return false;
-    uint64_t key = key_of(split, corners, count);
-    size_t slot = key & kept->mask;
-    while (kept->slots[slot] && kept->findings[kept->slots[slot] - 1].key != key)
-        slot = (slot + 1) & kept->mask;
-    if (!kept->slots[slot])
-        return false;
-    const struct split_kept_finding *old = &kept->findings[kept->slots[slot] - 1];
     float off, doubt = old->doubt + share_of_changes(split, corners, count, &off);
     off += old->off;
     if (!(doubt <= MOST_DOUBT) && !is_settled(old, doubt, off))

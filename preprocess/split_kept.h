@@ -19,7 +19,7 @@ struct split_kept {
     struct kept file;
     const struct split_kept_finding *findings; /* of the last time, in the file; NULL: none of use */
     uint32_t *slots;                           /* findings by key, one more than their number; 0: none */
-    size_t mask;
+    size_t mask, finding_count;
     struct split_change { /* a sensor that is new or gone */
         float place_m[3], power;
         uint32_t group;  /* of straight's */

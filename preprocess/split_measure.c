@@ -336,19 +336,20 @@ static void try_edge(const struct job *job, struct split_finding *finding, struc
     finding->share = (float)fmin(1 - margin, fmax(margin, (double)finding->share));
 }
 
-static bool recall_edge(const struct split *split, struct split_finding *finding)
+static bool recall_edge(const struct split *split, uint32_t *next, struct split_finding *finding)
 {
     const struct cut_edge *edge = &split->mesh.cuts[finding->number];
-    return split_recall(split, (const uint32_t[2]){ edge->a, edge->b }, 2, finding);
+    return split_recall(split, (const uint32_t[2]){ edge->a, edge->b }, 2, next, finding);
 }
 
 static void try_edges(void *arg, size_t begin, size_t end)
 {
     const struct job *job = arg;
     struct room room;
+    uint32_t next = 0;
     room_init(&room, job->split, POINTS);
     for (size_t i = begin; i < end; i++)
-        if (!recall_edge(job->split, &job->findings[i]))
+        if (!recall_edge(job->split, &next, &job->findings[i]))
             try_edge(job, &job->findings[i], &room);
     room_finish(&room);
 }
@@ -375,9 +376,10 @@ static void try_insides(void *arg, size_t begin, size_t end)
 {
     const struct job *job = arg;
     struct room room;
+    uint32_t next = 0;
     room_init(&room, job->split, 1);
     for (size_t i = begin; i < end; i++)
-        if (!split_recall(job->split, job->split->mesh.tris[job->findings[i].number].v, 3, &job->findings[i]))
+        if (!split_recall(job->split, job->split->mesh.tris[job->findings[i].number].v, 3, &next, &job->findings[i]))
             try_inside(job->split, &job->findings[i], &room);
     room_finish(&room);
 }
