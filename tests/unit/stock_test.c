@@ -1,14 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What plantcast-prep keeps for the next time: a changed sensor gives the file that preparing all anew gives, to the last bit, without the
-   model being read; among very many sensors, one that shows the field as well. What is damaged is not used. */
+   model being read; among very many sensors, one that shows the field as well. What is damaged is not used, and killed midway it goes on. */
+#include <fcntl.h>
 #include <jansson.h>
 #include <math.h>
 #include <setjmp.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 #include <cmocka.h>
 
@@ -185,6 +190,76 @@ static void what_is_damaged_is_made_anew(void **state)
     }
 }
 
+/* --- killed midway ------------------------------------------------------------------------------------------------------------ */
+
+/* Prepares into FOLDER/kept, and is killed by the system where it would write behind so many bytes of a file. */
+static void prepare_killed_at(struct prep_case *c, const char *tags, size_t bytes)
+{
+    char *program = prep_case_program(), *folder = temp_path(c->folder, "kept");
+    int status;
+    prep_case_tags(c, tags);
+    pid_t pid = fork();
+    if (pid == 0) {
+        const struct rlimit most = { bytes, bytes }, none = { 0, 0 };
+        int nothing = open("/dev/null", O_WRONLY);
+        dup2(nothing, STDOUT_FILENO);
+        dup2(nothing, STDERR_FILENO);
+        setrlimit(RLIMIT_CORE, &none);
+        setrlimit(RLIMIT_FSIZE, &most);
+        execl(program, program, c->plant, "--output", folder, (char *)NULL);
+        _exit(127);
+    }
+    assert_true(pid > 0);
+    assert_int_equal(waitpid(pid, &status, 0), pid);
+    assert_true(WIFSIGNALED(status) && WTERMSIG(status) == SIGXFSZ);
+    mem_free(program);
+    mem_free(folder);
+}
+
+static size_t bytes_of(const char *path)
+{
+    struct stat st;
+    assert_int_equal(stat(path, &st), 0);
+    return (size_t)st.st_size;
+}
+
+/* In a column, in the file: what was there before stays, also for who has it mapped, and the next time gives what preparing anew gives. */
+static void killed_midway_it_goes_on(void **state)
+{
+    struct prep_case *c = *state;
+    bool model_read;
+    json_t *first = prepare(c, first_tags, "kept", &model_read);
+    char *before = path_of(c, "kept", first), *columns = kept_file(c, ".columns"), *folder = temp_path(c->folder, "kept"), why[200];
+    const size_t limits[] = { bytes_of(columns) - bytes_of(columns) / 8, bytes_of(before) / 2 };
+    struct folder_file mapped;
+    struct asset_view view;
+    uint64_t key = strtoull(json_string_value(json_object_get(first, "file")), NULL, 16);
+    assert_true(limits[1] > bytes_of(columns));
+    assert_int_equal(folder_open(&mapped, folder, key, why), 1);
+    for (int i = 0; i < 2; i++) {
+        char *tags = mem_printf("a,,,,t,A,,1.3,0,0\nb,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,,0.%d,-1.2,0\n", 1 + i);
+        if (i)
+            json_decref(prepare(c, first_tags, "kept", &model_read));
+        prepare_killed_at(c, tags, limits[i]);
+        struct folder_file old;
+        assert_int_equal(folder_open(&old, folder, key, why), 1);
+        folder_close(&old);
+        json_t *asset = prepare(c, tags, "kept", &model_read);
+        print_message("# killed at %zu bytes, then %d of the distances were there\n", limits[i], number(asset, "kept_sensors"));
+        assert_false(model_read);
+        assert_int_equal(number(asset, "kept_sensors"), i ? 4 : 3);
+        assert_as_fresh(c, tags, asset);
+        assert_true(asset_view_init(&view, mapped.bytes, mapped.size, why));
+        json_decref(asset);
+        mem_free(tags);
+    }
+    folder_close(&mapped);
+    json_decref(first);
+    mem_free(before);
+    mem_free(columns);
+    mem_free(folder);
+}
+
 static void what_nothing_needs_any_more_is_removed(void **state)
 {
     struct prep_case *c = *state;
@@ -320,6 +395,11 @@ static void one_of_many_sensors_is_split_for_alone(void **state)
         char *tags = many_tags(move == 3 ? 1 : move), *findings = move == 3 ? kept_file(c, ".splitting") : NULL;
         if (findings)
             damage(findings, false);
+        if (move == 1) { /* as if nothing had been */
+            char *kept = kept_file(c, ".splitting");
+            prepare_killed_at(c, tags, bytes_of(kept) / 2);
+            mem_free(kept);
+        }
         json_t *found = prepare(c, tags, "kept", &model_read), *fresh = move == 2 ? prepare(c, tags, "fresh", &model_read) : NULL;
         int measured = number(found, "split_measured"), kept = number(found, "split_kept");
         print_message("# move %d: %d findings, %d of them kept\n", move, measured + kept, kept);
@@ -386,6 +466,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         WITH_PLANT(a_changed_sensor_costs_its_own_distances),
         WITH_PLANT(what_is_damaged_is_made_anew),
+        WITH_PLANT(killed_midway_it_goes_on),
         WITH_PLANT(what_nothing_needs_any_more_is_removed),
         WITH_PLANT(one_of_many_sensors_is_split_for_alone),
         cmocka_unit_test(a_surface_comes_back_whole),
