@@ -58,8 +58,8 @@ void split_measure_insides(struct split *split, struct split_finding *findings, 
 
 /* --- keeping (split_kept.c) --- */
 
-/* About an edge or a triangle, by its corners. *next: a guess where it is, 0 at first; then one for what is asked for next. False: it is not
-   known, or may no longer hold. */
+/* About an edge or a triangle, by its corners. *next: a guess where it is, 0 at first; then one for what is asked for next. False: it is
+   not known, or may no longer hold. */
 bool split_recall(const struct split *split, const uint32_t *corners, size_t count, uint32_t *next, struct split_finding *finding);
 void split_remember(struct split *split, const uint32_t *corners, size_t count, const struct split_finding *finding);
 

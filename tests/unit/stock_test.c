@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What plantcast-prep keeps for the next time: a changed sensor gives the file that preparing all anew gives, to the last bit, without the
-   model being read; among very many sensors, one that shows the field as well. What is damaged is not used, and killed midway it goes on. */
+   model being read; among very many sensors, one that shows the field as well. What is damaged is not used; killed midway, it goes on. */
 #include <fcntl.h>
 #include <jansson.h>
 #include <math.h>
