@@ -153,6 +153,26 @@ test('walk: who moved is pointed out, swapped ones too; a value that fits proves
     await shoot(page, 'engineer-proving');
 });
 
+test('expected values come from a CSV file; results are exported with name, time and value', options, async () => {
+    const choose = (name, body) =>
+        page.locator('#engineer input[type="file"]').setInputFiles({ name, mimeType: 'text/csv', buffer: Buffer.from(body) });
+    await choose('wrong.csv', 'Tag,Value\nTI-9,50\n');
+    await says('#engineer .part:not([hidden])', 'Columns Tag Name, Expected, Tolerance are needed');
+    await choose('loop.csv', 'Tag Name;Expected;Tolerance\r\nTI-9;50,3;0,5\r\nPI-1;5;0,1\r\n');
+    await says('#engineer .part:not([hidden])', '2 expected values were read');
+    await page.locator('#engineer .part:not([hidden]) .tags button', { hasText: 'TI-9' }).click();
+    assert.deepEqual([await page.getByLabel('Expected').inputValue(), await page.getByLabel('Tolerance').inputValue()], ['50.3', '0.5']);
+    await says('#engineer .judge output', '^now 50');
+    await button('Compare').click();
+    await says('#engineer .count', '^2 of 4 proven');
+    const download = page.waitForEvent('download');
+    await button('Export results').click();
+    const file = await download, rows = readFileSync(await file.path(), 'utf8').trim().split('\n');
+    assert.equal(file.suggestedFilename(), 'proofs.csv');
+    assert.match(rows[0], /^Time,Tag Name,Result,Value,Unit,Expected,Tolerance,By/);
+    assert.match(rows.find((row) => row.includes('"TI-9"')), /^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ,"TI-9",pass,50,"°C",50\.3,0\.5,"local"/);
+});
+
 test('what is not proven is said to be so to everybody, and stays through a reload of the page', options, async () => {
     await page.reload();
     await ready(page);
@@ -163,7 +183,7 @@ test('what is not proven is said to be so to everybody, and stays through a relo
     });
     await says('#card .proof', '^Unproven: failed$');
     assert.deepEqual(await page.evaluate(() => globalThis.plantcast.session.model.tags.map((tag) =>
-        globalThis.plantcast.session.model.unproven(tag))), [null, 'fail', 'none', 'none']);
+        globalThis.plantcast.session.model.unproven(tag))), [null, 'fail', 'none', null]);
     await says('#legend .keys', 'Unproven');
     assert.notDeepEqual(await snapshot(), plain, 'in the server\'s pictures too, whose plant was loaded anew before');
     await settle(page);

@@ -43,6 +43,7 @@ test('expected values: any separator, quotes, columns in any order; what is no n
     const list = readExpected('\uFEFFTolerance;Remark;"Tag Name";Expected\r\n0.5;"a;""b""";TT-1;42\r\n;x;TT-2;1\r\n1;;"TT;3";-2.5\r\n');
     assert.deepEqual([...list], [['TT-1', { expected: 42, tolerance: 0.5 }], ['TT;3', { expected: -2.5, tolerance: 1 }]]);
     assert.deepEqual([...readExpected('Tag Name,Expected,Tolerance\nA,1,0\n')], [['A', { expected: 1, tolerance: 0 }]]);
+    assert.deepEqual([...readExpected('Tag Name;Expected;Tolerance\nA;-50,3;0,5\n')], [['A', { expected: -50.3, tolerance: 0.5 }]]);
     assert.equal(readExpected('Tag Name,Value\nA,1\n'), null);
     assert.equal(readExpected(''), null);
 });

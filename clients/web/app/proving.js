@@ -2,6 +2,7 @@
 // Tags are proven one after another, device by device: what moved when a transmitter was forced, and whether it is what it should be.
 import { decimalsFor, numberText, unitText } from '../core/format.js';
 import { readExpected, Walk } from '../core/walk.js';
+import { ask } from '../core/history.js';
 import { refusalText } from '../core/refusals.js';
 import { say } from '../core/words.js';
 import { fill, make, setText } from './dom.js';
@@ -105,6 +106,8 @@ export class Proving {
         if (tag.position)
             this.showTag(tag);
         this.show();
+        for (const part of [this.list.querySelector('[aria-pressed="true"]'), this.judge])
+            part?.scrollIntoView({ block: 'nearest' });
     }
 
     spanOf(index) {
@@ -179,12 +182,13 @@ export class Proving {
     }
 
     async exportAll() {
-        const { token } = this.session;
-        const answer = await fetch('api/v1/proofs', token ? { headers: { Authorization: `Bearer ${token}` } } : {});
-        if (!answer.ok)
-            return setText(this.result, await answer.text());
-        const link = make('a', { href: URL.createObjectURL(await answer.blob()), download: 'proofs.csv' });
-        link.click();
-        return setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+        try {
+            const answer = await ask('api/v1/proofs', {}, this.session.token);
+            const link = make('a', { href: URL.createObjectURL(await answer.blob()), download: 'proofs.csv' });
+            link.click();
+            setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+        } catch (error) {
+            setText(this.result, error.message);
+        }
     }
 }

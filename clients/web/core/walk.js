@@ -57,7 +57,8 @@ export function readExpected(text) {
     const [name, expected, tolerance] = ['tag name', 'expected', 'tolerance'].map((column) => head.indexOf(column));
     if (name < 0 || expected < 0 || tolerance < 0)
         return null;
-    const number = (cell) => (cell?.trim() ? Number(cell) : NaN);
+    const point = (cell) => (separator === ',' ? cell : cell.replace(',', '.')); // a decimal comma is a decimal point
+    const number = (cell) => (cell?.trim() ? Number(point(cell)) : NaN);
     return new Map(lines.slice(1).map(cells).map((row) => [row[name], { expected: number(row[expected]),
         tolerance: number(row[tolerance]) }])
         .filter(([, of]) => Number.isFinite(of.expected) && of.tolerance >= 0));
