@@ -579,7 +579,14 @@ static void straight_edges_are_not_cut(void **state)
     finish(&body);
 }
 
-/* A rectangle of shifted cells, sensors anywhere on it. */
+static bool turns_left(const struct geometry *g, uint32_t a, uint32_t b, uint32_t c)
+{
+    const float *p = g->positions_m[a], *q = g->positions_m[b], *r = g->positions_m[c];
+    return (q[0] - p[0]) * (r[1] - p[1]) > (q[1] - p[1]) * (r[0] - p[0]);
+}
+
+/* A rectangle of shifted cells, sensors anywhere on it. Each cell is cut so that it does not lie over itself: where surfaces do, one place
+   has two distances. */
 static void make_random_plate(struct body *body, double points[SENSORS][3], uint32_t *seed)
 {
     struct geometry *g = &body->g;
@@ -594,8 +601,9 @@ static void make_random_plate(struct body *body, double points[SENSORS][3], uint
     for (uint32_t y = 0; y < up; y++)
         for (uint32_t x = 0; x < across; x++) {
             uint32_t a = y * (across + 1) + x, c = a + across + 2;
-            add_triangle(g, a, a + 1, c);
-            add_triangle(g, a, c, c - 1);
+            bool flat = turns_left(g, a, a + 1, c) && turns_left(g, a, c, c - 1);
+            add_triangle(g, a, a + 1, flat ? c : c - 1);
+            add_triangle(g, flat ? a : a + 1, c, c - 1);
         }
     for (int i = 0; i < SENSORS; i++) {
         points[i][0] = width_m * random_unit(seed);
