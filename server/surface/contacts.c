@@ -10,7 +10,7 @@
 #include "surface/stitch_impl.h"
 #include "surface/vec.h"
 
-#define CLEAR 0.05    /* tolerances */
+#define CLEAR 0.05    /* of the reach */
 #define PARALLEL 1e-4 /* squared sine of the angle between edges */
 
 struct contacts {
@@ -19,8 +19,8 @@ struct contacts {
     const uint32_t *part, *body; /* of its triangles, as they are now */
     const struct bvh *bvh;
     struct attach *attach;
-    double tolerance_m;
-    uint32_t own; /* of the edge's triangle: its part; of the point's: its body */
+    uint32_t own;   /* of the edge's triangle: its part; of the point's: its body */
+    double reach_m; /* of the point's part, or of the rim's */
     uint32_t edge[2];
     uint32_t *touched; /* of each point: the body that it touches, or TRIMESH_NONE */
     struct crossing {
@@ -37,6 +37,11 @@ static struct crossing *add_crossing(struct contacts *c)
     return &c->crossings[c->crossing_count++];
 }
 
+static double reach_of(const struct contacts *c, uint32_t tri)
+{
+    return c->parts->reach_m[c->part[tri]];
+}
+
 /* Both ends stand clear of the triangle's plane: faces of one part that lie on each other do not count as crossing. */
 static bool stands_clear(const struct contacts *c, const uint32_t *v)
 {
@@ -46,7 +51,7 @@ static bool stands_clear(const struct contacts *c, const uint32_t *v)
     vec_cross(ab, ac, n);
     for (int i = 0; i < 2; i++) {
         vec_sub(c->mesh->points[c->edge[i]], c->mesh->points[v[0]], up);
-        if (fabs(vec_dot(up, n)) < CLEAR * c->tolerance_m * sqrt(vec_dot(n, n)))
+        if (fabs(vec_dot(up, n)) < CLEAR * c->parts->reach_m[c->own] * sqrt(vec_dot(n, n)))
             return false;
     }
     return true;
@@ -63,8 +68,8 @@ static void visit_crossed(void *arg, uint32_t tri)
     const double *p = c->mesh->points[c->edge[0]], *q = c->mesh->points[c->edge[1]];
     if (!triangle_crossed(p, q, c->mesh->points[v[0]], c->mesh->points[v[1]], c->mesh->points[v[2]], &t, w))
         return;
-    double length = vec_distance(p, q);
-    if (t * length < c->tolerance_m || (1 - t) * length < c->tolerance_m || (own && !stands_clear(c, v)))
+    double length = vec_distance(p, q), reach_m = min_of(c->parts->reach_m[c->own], reach_of(c, tri));
+    if (t * length < reach_m || (1 - t) * length < reach_m || (own && !stands_clear(c, v)))
         return; /* the end of the edge touches; that is found by points */
     struct crossing *found = add_crossing(c);
     *found = (struct crossing){ .tri = tri, .a = c->edge[0], .b = c->edge[1], .t = t, .own = own };
@@ -127,6 +132,20 @@ static bool other_body(const void *arg, uint32_t tri)
     return c->body[tri] != c->own;
 }
 
+static bool other_body_as_far(const void *arg, uint32_t tri)
+{
+    const struct contacts *c = arg;
+    return c->body[tri] != c->own && reach_of(c, tri) >= c->reach_m;
+}
+
+/* The nearest place of another body, within the reach of both. */
+static void find_touch(const struct contacts *c, const double point_m[3], struct bvh_place *place)
+{
+    bvh_nearest(c->bvh, point_m, c->reach_m, other_body, c, place);
+    if (place->tri != TRIMESH_NONE && place->distance_m > reach_of(c, place->tri))
+        bvh_nearest(c->bvh, point_m, c->reach_m, other_body_as_far, c, place);
+}
+
 static void find_touches(struct contacts *c)
 {
     char *seen = mem_array(c->mesh->point_count, 1);
@@ -139,7 +158,8 @@ static void find_touches(struct contacts *c)
                 continue;
             seen[p] = 1;
             c->own = c->body[t];
-            bvh_nearest(c->bvh, c->mesh->points[p], c->tolerance_m, other_body, c, &place);
+            c->reach_m = reach_of(c, t);
+            find_touch(c, c->mesh->points[p], &place);
             if (place.tri == TRIMESH_NONE)
                 continue;
             c->touched[p] = c->body[place.tri];
@@ -186,13 +206,13 @@ static void visit_rim(void *arg, uint32_t tri)
     for (int i = 0; i < 3; i++) {
         uint32_t u = c->mesh->tris[tri][i], v = c->mesh->tris[tri][(i + 1) % 3];
         const double *p = c->mesh->points[c->edge[0]], *q = c->mesh->points[c->edge[1]], *a = c->mesh->points[u], *b = c->mesh->points[v];
-        double t, s, at[3], beside[3], end = c->tolerance_m;
+        double t, s, at[3], beside[3], end = min_of(c->reach_m, reach_of(c, tri));
         if (!edges_meet(p, q, a, b, &t, &s) || is_known(c, u, v))
             continue;
         double length = vec_distance(p, q), other = vec_distance(a, b);
         vec_mix(p, q, t, at);
         vec_mix(a, b, s, beside);
-        if (vec_distance(at, beside) <= c->tolerance_m && fmin(t, 1 - t) * length > end && fmin(s, 1 - s) * other > end)
+        if (vec_distance(at, beside) <= end && fmin(t, 1 - t) * length > end && fmin(s, 1 - s) * other > end)
             *add_crossing(c) = (struct crossing){ TRIMESH_NONE, c->edge[0], c->edge[1], u, v, t, s, { 0 }, false };
     }
 }
@@ -208,7 +228,8 @@ static void find_rims(struct contacts *c)
                 continue;
             c->edge[0] = p;
             c->edge[1] = q;
-            look_around(c, visit_rim, c->tolerance_m);
+            c->reach_m = reach_of(c, t);
+            look_around(c, visit_rim, c->reach_m);
         }
 }
 
@@ -232,7 +253,7 @@ static void set_crossings(struct contacts *c, struct stitch_report *report)
     }
 }
 
-void stitch_parts(struct trimesh *mesh, struct parts *parts, double tolerance_m, uint32_t *target, struct stitch_report *report)
+void stitch_parts(struct trimesh *mesh, struct parts *parts, uint32_t *target, struct stitch_report *report)
 {
     struct attach attach;
     struct bvh *bvh = bvh_create(mesh);
@@ -244,7 +265,6 @@ void stitch_parts(struct trimesh *mesh, struct parts *parts, double tolerance_m,
                                  .body = body,
                                  .bvh = bvh,
                                  .attach = &attach,
-                                 .tolerance_m = tolerance_m,
                                  .touched = mem_array(target_count, sizeof(*contacts.touched)) };
     attach_init(&attach);
     for (uint32_t i = 0; i < target_count; i++)

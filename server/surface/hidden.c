@@ -12,10 +12,10 @@
 #define RAYS 5
 #define RAYS_INSIDE 4 /* so many must agree */
 #define VOTE_EVERY 16 /* of a region's triangles, one of so many is asked */
-#define BESIDE 1.5    /* tolerances: so far to either side of a triangle that lies on another part's surface is looked */
+#define BESIDE 1.5    /* reaches: so far to either side of a triangle that lies on another part's surface is looked */
 #define BARELY 0.05   /* likewise, of one that may be inside its own part */
 #define FLUSH 0.9     /* cosine between faces that lie on each other, at least */
-#define SLIVER 2.0    /* tolerances high: a triangle that looks anywhere */
+#define SLIVER 2.0    /* likewise, high: a triangle that looks anywhere */
 
 struct solid { /* a closed part, as it was before it was cut up */
     uint32_t part;
@@ -99,7 +99,6 @@ struct search {
     const uint32_t *part;
     const struct parts *parts;
     const struct solids *solids;
-    double tolerance_m;
     const size_t *asked; /* triangles to look at */
     char *hidden;
 };
@@ -209,22 +208,22 @@ static bool is_between(const struct face *face, const double normal[3], const st
     return false;
 }
 
-static bool is_hidden_by(const struct search *s, const struct face *face, const struct solid *solid)
+static bool is_hidden_by(const struct face *face, const struct solid *solid, double reach_m)
 {
     struct bvh_place at;
     double n[3];
-    if (!is_near(solid, face->middle, s->tolerance_m))
+    if (!is_near(solid, face->middle, reach_m))
         return false;
-    bvh_nearest(solid->bvh, face->middle, s->tolerance_m, NULL, NULL, &at);
+    bvh_nearest(solid->bvh, face->middle, reach_m, NULL, NULL, &at);
     if (at.tri == TRIMESH_NONE)
-        return is_inside(solid, face->middle, BARELY * s->tolerance_m);
+        return is_inside(solid, face->middle, BARELY * reach_m);
     tri_normal(&solid->mesh, at.tri, n);
     double length = sqrt(vec_dot(n, n));
     for (int axis = 0; axis < 3; axis++)
         n[axis] /= length;
     /* A sliver between points of both looks anywhere. */
-    bool flush = face->height_m < SLIVER * s->tolerance_m || fabs(vec_dot(n, face->normal)) > FLUSH;
-    return face->own && flush && is_between(face, n, solid, face->own, BESIDE * s->tolerance_m, BARELY * s->tolerance_m);
+    bool flush = face->height_m < SLIVER * reach_m || fabs(vec_dot(n, face->normal)) > FLUSH;
+    return face->own && flush && is_between(face, n, solid, face->own, BESIDE * reach_m, BARELY * reach_m);
 }
 
 static double longest_side(const struct trimesh *mesh, size_t t)
@@ -238,6 +237,7 @@ static bool tri_is_hidden(const struct search *s, size_t t)
 {
     const uint32_t *v = s->mesh->tris[t], part = s->part[t];
     struct face face = { .own = s->solids->of_part[part] };
+    double reach_m = s->parts->reach_m[part];
     tri_normal(s->mesh, t, face.normal);
     double length = sqrt(vec_dot(face.normal, face.normal));
     for (int axis = 0; axis < 3; axis++) {
@@ -245,11 +245,13 @@ static bool tri_is_hidden(const struct search *s, size_t t)
         face.normal[axis] /= length > 0 ? length : 1;
     }
     face.height_m = length / longest_side(s->mesh, t);
-    for (size_t i = 0; i < s->solids->count; i++)
-        if (s->solids->at[i].part != part && is_hidden_by(s, &face, &s->solids->at[i]))
+    for (size_t i = 0; i < s->solids->count; i++) {
+        const struct solid *solid = &s->solids->at[i];
+        if (solid->part != part && is_hidden_by(&face, solid, min_of(reach_m, s->parts->reach_m[solid->part])))
             return true;
+    }
     return face.own && s->parts->tangled[part] &&
-           is_between(&face, face.normal, face.own, face.own, 2 * BARELY * s->tolerance_m, BARELY * s->tolerance_m);
+           is_between(&face, face.normal, face.own, face.own, 2 * BARELY * reach_m, BARELY * reach_m);
 }
 
 static void search_some(void *arg, size_t begin, size_t end)
@@ -337,7 +339,7 @@ struct vote { /* of a region */
 };
 
 void hidden_find(const struct trimesh *mesh, const uint32_t *part, const struct parts *parts, const uint32_t *crossings,
-                 size_t crossing_count, double tolerance_m, struct workers *workers, char *hidden)
+                 size_t crossing_count, struct workers *workers, char *hidden)
 {
     struct solids solids;
     solids_init(&solids, parts);
@@ -349,7 +351,7 @@ void hidden_find(const struct trimesh *mesh, const uint32_t *part, const struct 
     uint32_t *region = find_regions(mesh, mixed);
     size_t *asked = mem_array(mesh->tri_count, sizeof(*asked)), asked_count = 0;
     struct vote *votes = mem_array(mesh->point_count, sizeof(*votes));
-    struct search search = { .mesh = mesh, .part = part, .parts = parts, .solids = &solids, .tolerance_m = tolerance_m, .hidden = hidden };
+    struct search search = { .mesh = mesh, .part = part, .parts = parts, .solids = &solids, .hidden = hidden };
     for (size_t t = 0; t < mesh->tri_count; t++) { /* those where parts meet, and of each region some */
         uint32_t r = region_of(mesh, t, mixed, region);
         if (!untouched(mesh, t, mixed) || votes[r].seen++ % VOTE_EVERY == 0)

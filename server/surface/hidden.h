@@ -6,11 +6,12 @@
 #include "surface/parts.h"
 
 /* hidden[tri] = 1 where the middle of the triangle is inside a closed part other than its own: rays into five directions say so, four at
-   least. Where it lies on the other part's surface (within tolerance_m), it is hidden if it is covered: the other part is on one side of it
-   and its own on the other. In a part that passes through itself, or has walls within, where both sides are inside that part.
+   least. Where it lies on the other part's surface (within both parts' reach), it is hidden if it is covered: the other part is
+   on one side of it and its own on the other. In a part that passes through itself, or has walls within, where both sides are inside that
+   part.
    part: of mesh's triangles. crossings: points where a part passes through itself. workers may be NULL. */
 void hidden_find(const struct trimesh *mesh, const uint32_t *part, const struct parts *parts, const uint32_t *crossings,
-                 size_t crossing_count, double tolerance_m, struct workers *workers, char *hidden);
+                 size_t crossing_count, struct workers *workers, char *hidden);
 /* Hides what is left over amid hidden triangles: pieces that hang together by points with nothing else that is seen, all of whose points
    touch hidden triangles, and which are smaller than those. */
 void hidden_islands(const struct trimesh *mesh, char *hidden);

@@ -9,7 +9,9 @@
 #include "surface/parts_impl.h"
 #include "surface/vec.h"
 
-#define DOUBLES 0.9 /* of a wall's triangles, at least */
+#define DOUBLES 0.9    /* of a wall's triangles, at least */
+#define OF_THICKNESS 0.5
+#define REACH_LEAST 0.05 /* tolerances */
 
 /* --- which way patches face ----------------------------------------------------------------------------------------------- */
 
@@ -144,6 +146,34 @@ static void drop_walls(struct finding *f, const uint32_t *source_tris, size_t so
     mem_free(least);
 }
 
+/* --- how near is touching --------------------------------------------------------------------------------------------------- */
+
+/* A plate's thickness is twice its volume by its area; other bodies are thicker than that. */
+static void limit_reach(struct parts *parts, double tolerance_m)
+{
+    const struct trimesh *mesh = &parts->solid;
+    double *area_m2 = mem_array(parts->count, sizeof(*area_m2)), *volume_m3 = mem_array(parts->count, sizeof(*volume_m3));
+    uint32_t *first = mem_array(parts->count, sizeof(*first));
+    for (size_t t = mesh->tri_count; t-- > 0;)
+        first[parts->of_tri[t]] = mesh->tris[t][0];
+    for (size_t t = 0; t < mesh->tri_count; t++) {
+        uint32_t part = parts->of_tri[t];
+        double from[3], n[3];
+        tri_cross(mesh, t, n);
+        vec_sub(mesh->points[mesh->tris[t][0]], mesh->points[first[part]], from);
+        area_m2[part] += sqrt(vec_dot(n, n)) / 2;
+        volume_m3[part] += parts->side[t] * vec_dot(from, n) / 6;
+    }
+    for (size_t p = 0; p < parts->count; p++)
+        if (parts->closed[p]) {
+            double thickness_m = 2 * fabs(volume_m3[p]) / area_m2[p];
+            parts->reach_m[p] = min_of(tolerance_m, max_of(OF_THICKNESS * thickness_m, REACH_LEAST * tolerance_m));
+        }
+    mem_free(area_m2);
+    mem_free(volume_m3);
+    mem_free(first);
+}
+
 /* --- all ------------------------------------------------------------------------------------------------------------------ */
 
 static void copy_mesh(struct trimesh *to, const struct trimesh *from)
@@ -156,7 +186,7 @@ static void copy_mesh(struct trimesh *to, const struct trimesh *from)
 }
 
 void parts_init(struct parts *parts, const struct trimesh *mesh, const uint32_t *source_tris, size_t source_count,
-                const uint32_t *vertex_point)
+                const uint32_t *vertex_point, double tolerance_m, bool is_chosen)
 {
     struct finding f = { .parts = parts };
     *parts = (struct parts){ 0 };
@@ -171,6 +201,11 @@ void parts_init(struct parts *parts, const struct trimesh *mesh, const uint32_t 
     face_one_way(&f);
     face_outwards(&f);
     drop_walls(&f, source_tris, source_count, vertex_point);
+    parts->reach_m = mem_array(parts->count, sizeof(*parts->reach_m));
+    for (size_t p = 0; p < parts->count; p++)
+        parts->reach_m[p] = tolerance_m;
+    if (is_chosen)
+        limit_reach(parts, tolerance_m);
     mem_free(f.uses);
     mem_free(f.edge);
     mem_free(f.patch);
@@ -187,6 +222,7 @@ void parts_finish(struct parts *parts)
     mem_free(parts->closed);
     mem_free(parts->tangled);
     mem_free(parts->crossed);
+    mem_free(parts->reach_m);
 }
 
 uint32_t *parts_spread(const struct trimesh *mesh, const uint32_t *of_source)

@@ -15,12 +15,15 @@ struct parts {
     char *closed;                         /* of each part: its open edges are short against its size */
     char *tangled;                        /* likewise: it has edges with three faces or more, or passes through itself */
     char *crossed;                        /* likewise: it passes through itself; set by stitch_parts */
+    double *reach_m;                      /* likewise: what is nearer touches it */
     size_t count;
 };
 
-/* mesh: the model's triangles (source_tris of them), welded, seams closed; vertex_point[vertex of the model] = point. */
+/* mesh: the model's triangles (source_tris of them), welded, seams closed; vertex_point[vertex of the model] = point. tolerance_m is every
+   part's reach; if it is the program's choice, that of a closed part is at most half of its thickness, or what touches a thin plate's one
+   side would touch its other side too. */
 void parts_init(struct parts *parts, const struct trimesh *mesh, const uint32_t *source_tris, size_t source_count,
-                const uint32_t *vertex_point);
+                const uint32_t *vertex_point, double tolerance_m, bool is_chosen);
 void parts_finish(struct parts *parts);
 
 /* of_source for each triangle of the mesh as it is now; mem_free. */

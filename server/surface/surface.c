@@ -156,14 +156,14 @@ static void join_parts(struct surface *surface, struct parts *parts)
 {
     struct stitch_report made = { 0 };
     uint32_t *target = mem_array(surface->mesh.point_count, sizeof(*target));
-    stitch_parts(&surface->mesh, parts, surface->report.tolerance_m, target, &made);
+    stitch_parts(&surface->mesh, parts, target, &made);
     follow(surface, target);
     note_bridges(surface, &made);
     mem_free(target);
     merge_twins(surface, made.crossings, made.crossing_count);
     char *hidden = mem_array(surface->mesh.tri_count, 1);
     uint32_t *part = parts_spread(&surface->mesh, parts->of_source);
-    hidden_find(&surface->mesh, part, parts, made.crossings, made.crossing_count, surface->report.tolerance_m, surface->workers, hidden);
+    hidden_find(&surface->mesh, part, parts, made.crossings, made.crossing_count, surface->workers, hidden);
     hidden_islands(&surface->mesh, hidden);
     size_t visible_count = sort_hidden(&surface->mesh, hidden);
     target = mem_array(surface->mesh.point_count, sizeof(*target));
@@ -273,7 +273,7 @@ struct surface *surface_create(struct log *log, struct workers *workers, const f
     report->weld_s = seconds_since(&since_ns);
     if (!close_seams(surface))
         goto error;
-    parts_init(&parts, &surface->mesh, triangles, triangle_count, surface->vertex_point);
+    parts_init(&parts, &surface->mesh, triangles, triangle_count, surface->vertex_point, report->tolerance_m, params->tolerance_m <= 0);
     report->border_edges_after = border_edges(&surface->mesh);
     report->bridge_s = seconds_since(&since_ns);
     sample(surface);

@@ -32,7 +32,7 @@
 struct surface;
 
 struct surface_params { /* zero: chosen from the model */
-    double tolerance_m; /* gaps up to this are closed */
+    double tolerance_m; /* gaps up to this are closed; if it is chosen, at thin parts smaller ones (parts.h) */
     double spacing_m;   /* longest edge of the sampled surface */
 };
 

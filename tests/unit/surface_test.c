@@ -401,6 +401,43 @@ static void nothing_leads_through_a_closed_part(void **state)
     mem_free(distances);
 }
 
+/* A closed box of 12 triangles. */
+static void add_box(struct cad *all, const double low[3], const double high[3])
+{
+    struct cad box = { 0 };
+    cad_box(&box, &chance, 1, 1, 1, 1);
+    for (size_t v = 0; v < box.vertex_count; v++)
+        for (int axis = 0; axis < 3; axis++)
+            box.positions[v][axis] = (float)(low[axis] + (double)box.positions[v][axis] * (high[axis] - low[axis]));
+    append(all, &box, 0, 0, 0);
+    cad_finish(&box);
+}
+
+/* Two ducts that end in flanges of 3.9 mm, which lie on each other; the tolerance, from the ducts' length, is more. What touches one side
+   of a flange is not joined to its other side. */
+static void thin_flanges_are_not_bridged(void **state)
+{
+    struct cad ducts = { 0 };
+    const double low = 4 - 0.0039, high = 4 + 0.0039, truth = hypot(0.2, 8 + 2 * 0.1); /* unrolled: over the flanges' rim */
+    (void)state;
+    add_box(&ducts, (const double[3]){ 0, 0, 0 }, (const double[3]){ 0.4, 0.4, low });
+    add_box(&ducts, (const double[3]){ -0.1, -0.1, low }, (const double[3]){ 0.5, 0.5, 4 });
+    add_box(&ducts, (const double[3]){ -0.1, -0.1, 4 }, (const double[3]){ 0.5, 0.5, high });
+    add_box(&ducts, (const double[3]){ 0, 0, high }, (const double[3]){ 0.4, 0.4, 8 });
+    struct surface *surface = surface_of(&ducts);
+    const struct surface_report *report = surface_report(surface);
+    float *distances = distances_from(surface, &ducts, 0.2, 0, 0);
+    assert_true(report->tolerance_m > 0.0039);
+    assert_int_equal(report->components_after, 1);
+    assert_true(report->longest_bridge_m < 1e-6);
+    for (size_t v = 0; v < ducts.vertex_count; v++)
+        if (ducts.positions[v][2] > 7.9f && ducts.positions[v][1] < 0.1f)
+            assert_float_equal(distances[v], truth, 0.003 * truth);
+    surface_destroy(&surface);
+    cad_finish(&ducts);
+    mem_free(distances);
+}
+
 /* --- places -------------------------------------------------------------------------------------------------------------------- */
 
 static void a_sensor_is_dropped_onto_the_surface(void **state)
@@ -595,6 +632,7 @@ int main(void)
         cmocka_unit_test(bridges_lie_in_the_gap),
         cmocka_unit_test(a_pipe_that_ends_inside_a_shell_is_joined_to_it),
         cmocka_unit_test(nothing_leads_through_a_closed_part),
+        cmocka_unit_test(thin_flanges_are_not_bridged),
         cmocka_unit_test(a_sensor_is_dropped_onto_the_surface),
         cmocka_unit_test(nearest_is_the_nearest),
         cmocka_unit_test(long_thin_strips_are_exact_near_a_source_too),
