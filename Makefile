@@ -132,6 +132,8 @@ $(out)/tests/unit/accuracy_test $(out)/tests/unit/contact_test: $(call objects,$
 $(out)/tests/unit/accuracy_test $(out)/tests/unit/contact_test: pkg_libs += -lgmp -lmpfr
 $(out)/tests/%: $(out)/obj/tests/%.o $(support) $(archives) $(out)/lib/prep.a $(sim_archive)
 	$(link) -lcmocka
+# Draws as the command line does.
+$(out)/tests/gallery/album: $(filter-out %/main.o,$(call objects,$(cli_sources)))
 # Where memory runs out: the test decides.
 $(out)/tests/unit/mover_test: ldflags += -Wl,--wrap=mem_try_array
 $(out)/tests/gpu/field_memory_test: ldflags += -Wl,--wrap=mem_try_array,--wrap=mesh_buffer

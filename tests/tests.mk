@@ -70,11 +70,11 @@ accuracy: $(patsubst %,$(out)/tests/unit/%_test,surface accuracy contact)
 	@tests/bench/accuracy tests/bench/RESULTS.md $(build)/accuracy/surface.* $(build)/accuracy/accuracy.* $(build)/accuracy/contact.*
 .PHONY: accuracy
 
-# Every way of looking at a plant, to be looked at: build/gallery/sheet.png.
+# Every way of looking at a plant, to be looked at: build/gallery/sheet.png. only="demo cookie_line viewer": parts of it.
 gallery: test-deps
 	@deploy/deps gallery
-	@$(MAKE) --no-print-directory all demo
-	@tests/gallery/run $(bin)
+	@$(MAKE) --no-print-directory all demo $(out)/tests/gallery/album
+	@tests/gallery/run $(out) $(bin) $(only)
 .PHONY: gallery
 
 # Makes the golden pictures anew, on llvmpipe. Look at them before they are committed.

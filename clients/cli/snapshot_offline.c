@@ -1,25 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One picture of a prepared plant, without a daemon. */
 #include <stdio.h>
-#include <string.h>
 
 #include "base/mem.h"
-#include "encode/encoder.h"
 #include "net/message/reply.h"
 #include "studio.h"
-
-static bool save(struct studio *studio, struct frame *frame, const char *path)
-{
-    struct encoder *encoder = encoder_create(studio->log, "png", NULL);
-    struct packet *packet = NULL;
-    bool good = encoder && encoder_send(encoder, frame, &(struct encoder_params){ 0 }) == 0 && encoder_receive(encoder, &packet) == 0;
-    int status = good ? text_write_file(path, packet->bytes, packet->count) : 0;
-    if (status < 0)
-        log_err(studio->log, "%s: %s", path, strerror(-status));
-    packet_unref(&packet);
-    encoder_destroy(&encoder);
-    return good && status == 0;
-}
 
 static bool draw(struct studio *studio, const struct snapshot_options *options, struct view *view)
 {
@@ -28,7 +13,7 @@ static bool draw(struct studio *studio, const struct snapshot_options *options, 
         return false;
     log_info(studio->log, "%s: %dx%d, %d triangles, field %.1f ms, render %.1f ms", options->out, frame->width_px, frame->height_px,
              frame->triangles, frame->field_ns / 1e6, frame->render_ns / 1e6);
-    bool good = save(studio, frame, options->out);
+    bool good = studio_save(studio, frame, options->out);
     frame_unref(&frame);
     return good;
 }

@@ -10,6 +10,7 @@
 #include "alarm/then.h"
 #include "base/clock.h"
 #include "base/mem.h"
+#include "encode/encoder.h"
 #include "field/colormap.h"
 #include "history/when.h"
 #include "net/message/query.h"
@@ -21,7 +22,6 @@
 static bool load_baseline(struct studio *studio, struct snapshot_options *options, struct diag *diag)
 {
     static const char *const name = "baseline";
-    studio->baselines = baselines_create();
     if (!options->baseline)
         return true;
     struct snapshot *snapshot = snapshot_create(studio->plant->tag_count);
@@ -31,23 +31,34 @@ static bool load_baseline(struct studio *studio, struct snapshot_options *option
     return good;
 }
 
+/* Without those of another picture. */
+static bool load_values(struct studio *studio, struct snapshot_options *options, struct diag *diag)
+{
+    bool good = true;
+    studio->turn++;
+    snapshot_destroy(&studio->snapshot);
+    studio->snapshot = snapshot_create(studio->plant->tag_count);
+    studio->snapshot->taken_mono_ns = clock_mono_ns();
+    studio->snapshot->taken_utc_ns = options->at ? options->at_us * 1000 : clock_utc_ns();
+    for (size_t i = 0; i < options->value_count; i++)
+        good = values_read(studio->plant, options->values[i], studio->snapshot, diag) && good;
+    if (good)
+        alarm_by_limits(studio->plant, studio->snapshot);
+    for (size_t i = 0; i < studio->plant->tag_count; i++)
+        studio->snapshot->readings[i].changes += studio->turn;
+    return load_baseline(studio, options, diag) && good;
+}
+
 static bool load_plant(struct studio *studio, struct snapshot_options *options)
 {
     struct diag diag = { 0 };
     studio->plant = plant_load(options->from, &diag);
-    bool good = studio->plant != NULL;
-    if (good) {
-        studio->snapshot = snapshot_create(studio->plant->tag_count);
-        studio->snapshot->taken_mono_ns = clock_mono_ns();
-        studio->snapshot->taken_utc_ns = options->at ? options->at_us * 1000 : clock_utc_ns();
+    studio->baselines = baselines_create();
+    if (studio->plant) {
         setenv("TZ", studio->plant->time_zone, 1);
         tzset();
     }
-    for (size_t i = 0; i < options->value_count && studio->plant; i++)
-        good = values_read(studio->plant, options->values[i], studio->snapshot, &diag) && good;
-    if (good)
-        alarm_by_limits(studio->plant, studio->snapshot);
-    good = good && load_baseline(studio, options, &diag);
+    bool good = studio->plant && load_values(studio, options, &diag);
     diag_print(&diag, stderr);
     diag_finish(&diag);
     return good;
@@ -98,21 +109,34 @@ static bool add_colormaps(const struct studio *studio, const struct snapshot_opt
     return true;
 }
 
-int studio_open(struct studio *studio, struct snapshot_options *options, struct view *view)
+static bool take_view(const struct studio *studio, const struct snapshot_options *options, struct view *view)
 {
     struct message_error error;
+    const struct params_world world = { .scene = studio->scene, .baselines = studio->baselines, .bare = options->no_overlay };
+    bool good = query_parse(&world, ROLE_ENGINEER, (const char *const *)options->args, options->arg_count, view, NULL, &error);
+    if (!good)
+        fprintf(stderr, "plantcast: %s\n", error.text);
+    return good;
+}
+
+int studio_open(struct studio *studio, struct snapshot_options *options, struct view *view)
+{
     *studio = (struct studio){ .log = log_create(LOG_INFO) };
     if (!load_plant(studio, options) || !load_scene(studio, options))
         return 1;
-    if (!add_colormaps(studio, options))
+    if (!add_colormaps(studio, options) || !take_view(studio, options, view))
         return 2;
-    const struct params_world world = { .scene = studio->scene, .baselines = studio->baselines, .bare = options->no_overlay };
-    if (!query_parse(&world, ROLE_ENGINEER, (const char *const *)options->args, options->arg_count, view, NULL, &error)) {
-        fprintf(stderr, "plantcast: %s\n", error.text);
-        return 2;
-    }
     set_up_field(studio);
     return 0;
+}
+
+int studio_turn(struct studio *studio, struct snapshot_options *options, struct view *view)
+{
+    struct diag diag = { 0 };
+    bool good = load_values(studio, options, &diag);
+    diag_print(&diag, stderr);
+    diag_finish(&diag);
+    return !good ? 1 : take_view(studio, options, view) ? 0 : 2;
 }
 
 bool studio_open_history(struct studio *studio, const struct snapshot_options *options)
@@ -153,6 +177,19 @@ struct frame *studio_draw(struct studio *studio, const struct snapshot_options *
     if (frame && !options->no_overlay)
         overlay_draw(frame, studio->scene, studio->snapshot, NULL);
     return frame;
+}
+
+bool studio_save(struct studio *studio, struct frame *frame, const char *path)
+{
+    struct encoder *encoder = encoder_create(studio->log, "png", NULL);
+    struct packet *packet = NULL;
+    bool good = encoder && encoder_send(encoder, frame, &(struct encoder_params){ 0 }) == 0 && encoder_receive(encoder, &packet) == 0;
+    int status = good ? text_write_file(path, packet->bytes, packet->count) : 0;
+    if (status < 0)
+        log_err(studio->log, "%s: %s", path, strerror(-status));
+    packet_unref(&packet);
+    encoder_destroy(&encoder);
+    return good && status == 0;
 }
 
 void studio_close(struct studio *studio)

@@ -1,0 +1,49 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Many pictures of one plant, whose light is worked out once. usage: album PLANT.yaml <LIST
+   Each line: a file to write, then what `plantcast snapshot` is told, between tabs. */
+#include <getopt.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "clients/cli/studio.h"
+
+enum { WORDS = 64, LINE_BYTES = 4096 };
+
+static int split(char *line, char **words)
+{
+    int count = 0;
+    line[strcspn(line, "\n")] = 0;
+    for (char *word = strtok(line, "\t"); word && count < WORDS; word = strtok(NULL, "\t"))
+        words[count++] = word;
+    return count;
+}
+
+static bool draw(struct studio *studio, char *plant, char *line)
+{
+    char *words[WORDS + 4] = { "album", plant, "-o" };
+    struct snapshot_options options;
+    struct view view;
+    int count = 3 + split(line, words + 3);
+    optind = 0; /* from the first word again */
+    bool first = !studio->gl, good = snapshot_parse(count, words, false, &options) < 0;
+    good = good && (first ? studio_open(studio, &options, &view) : studio_turn(studio, &options, &view)) == 0;
+    good = good && (!first || studio_open_gl(studio, &options));
+    struct frame *frame = good ? studio_draw(studio, &options, &view) : NULL;
+    good = frame && studio_save(studio, frame, options.out);
+    printf("gallery: %s%s\n", options.out ? options.out : "?", good ? "" : ": failed");
+    fflush(stdout);
+    frame_unref(&frame);
+    snapshot_options_finish(&options);
+    return good;
+}
+
+int main(int argc, char **argv)
+{
+    struct studio studio = { 0 };
+    char line[LINE_BYTES];
+    bool good = argc == 2;
+    while (good && fgets(line, sizeof(line), stdin))
+        good = draw(&studio, argv[1], line);
+    studio_close(&studio);
+    return !good;
+}
