@@ -30,6 +30,7 @@ layout(std430, binding = 5) readonly buffer Corners { uint corners[]; }; // of l
 layout(std430, binding = 6) buffer Sums { uint sums[]; }; // of each vertex, from these: weight, openness, sun
 layout(location = 12) uniform float large_m;
 layout(location = 13) uniform bool has_faces;
+layout(location = 14) uniform float least_open; // where some of the plant is not shown
 #endif
 
 const vec2 disc[16] = vec2[](vec2(0.177, 0.000), vec2(-0.226, 0.207), vec2(0.035, -0.394), vec2(0.285, 0.371), vec2(-0.522, -0.092),
@@ -128,10 +129,10 @@ void main()
     float weight = has_faces ? float(sums[3 * i]) : 0.0;
 #ifdef SKY
     float open = weight > 0.0 ? float(sums[3 * i + 1]) / weight : openness(place, normal);
-    open = round(open * 255.0) / 255.0; // as it will be read back when the sun moves
 #else
     float open = unpackUnorm4x8(baked[i]).z;
 #endif
+    open = round(max(open, least_open) * 255.0) / 255.0; // as it will be read back when the sun moves
     float ambient = open * sky_brightness(normal);
     float facing = max(dot(normal, sun.xyz), 0.0);
     float sun_visible = weight > 0.0 ? float(sums[3 * i + 2]) / weight : sun_visibility(sun_from_plant, place, normal, sun.w);

@@ -106,7 +106,7 @@ static GLuint choose_program(struct solid *solid, const struct picture *picture,
 
 double solid_sun_slack(const struct picture *picture)
 {
-    return SUN_SLACK_TEXELS * picture->light->texel_m / (2 * picture->stage->radius_m);
+    return SUN_SLACK_TEXELS * picture->light->texel_m / picture->light->depth_m;
 }
 
 static void set_placement(const struct picture *picture, const struct scene_asset *asset)

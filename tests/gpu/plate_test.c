@@ -11,6 +11,7 @@
 
 #include <cmocka.h>
 
+#include "base/mem.h"
 #include "tests/support/rig.h"
 #include "value/quality.h"
 
@@ -146,6 +147,60 @@ static void test_hidden_assets(void **state)
     assert_like_gl(&view, 0.01);
 }
 
+/* A floor of 8 m, cut into strips that share their edges. */
+static void make_floor(struct shape *shape, uint32_t strips)
+{
+    shape->vertex_count = 2 * (strips + 1);
+    shape->index_count = 6 * strips;
+    shape->primitive_count = 1;
+    shape->positions = mem_array(shape->vertex_count, sizeof(*shape->positions));
+    shape->normals = mem_array(shape->vertex_count, sizeof(*shape->normals));
+    shape->indices = mem_array(shape->index_count, sizeof(*shape->indices));
+    shape->primitives = mem_array(1, sizeof(*shape->primitives));
+    *shape->primitives = (struct asset_primitive){ .index_count = (uint32_t)shape->index_count, .material = TOY_CONCRETE };
+    for (uint32_t v = 0; v < shape->vertex_count; v++) {
+        memcpy(shape->positions[v], (float[3]){ v % 2 ? 4 : -4, -4 + 8 * (float)(v / 2) / (float)strips, 0 }, 3 * sizeof(float));
+        memcpy(shape->normals[v], (float[3]){ 0, 0, 1 }, sizeof(shape->normals[v]));
+    }
+    for (uint32_t i = 0; i < strips; i++)
+        memcpy(shape->indices + 6 * i, (uint32_t[6]){ 2 * i, 2 * i + 1, 2 * i + 2, 2 * i + 1, 2 * i + 3, 2 * i + 2 }, 6 * sizeof(uint32_t));
+}
+
+static struct frame *draw_box_over_floor(uint32_t strips, const double light[3])
+{
+    struct toy *toy = toy_create();
+    struct shape floor = { 0 }, box = { 0 };
+    struct stand others = stand;
+    struct view view;
+    make_floor(&floor, strips);
+    shape_box(&box, TOY_STEEL, (double[3]){ -1, -1, 0 }, (double[3]){ 1, 1, 1 });
+    toy_add(toy, "FLOOR", &floor, (double[3]){ 0, 0, 0 }, NULL, 0);
+    toy_add(toy, "BOX", &box, (double[3]){ 0, 0, 0.5 }, NULL, 0);
+    stand_init(&stand, &rig, toy);
+    start_view(&view, 400, 300);
+    memcpy(view.light_dir, light, sizeof(view.light_dir));
+    struct frame *frame = draw_anew(&view);
+    stand_finish(&stand);
+    stand = others;
+    return frame;
+}
+
+/* A pixel's middle may lie beside the sliver that it is told by: it must not slip along it. */
+static void test_shadows_on_slivers(void **state)
+{
+    (void)state;
+    for (int light = 0; light < 3; light++) {
+        const double towards[3] = { 0.6 * cos(2 * light), 0.6 * sin(2 * light), 0.8 };
+        struct frame *slivers = draw_box_over_floor(1000, towards), *whole = draw_box_over_floor(1, towards);
+        int far = 0, pixels = slivers->width_px * slivers->height_px;
+        for (int i = 0; i < pixels; i++)
+            far += difference(slivers, whole, i) > 8;
+        assert_in_range(far, 0, pixels / 1000);
+        frame_unref(&slivers);
+        frame_unref(&whole);
+    }
+}
+
 /* --- once more ------------------------------------------------------------------------------------------------------------------- */
 
 static bool is_quick(const struct view *view)
@@ -259,6 +314,7 @@ int main(void)
         cmocka_unit_test(test_suns),
         cmocka_unit_test(test_outlines),
         cmocka_unit_test(test_hidden_assets),
+        cmocka_unit_test(test_shadows_on_slivers),
         cmocka_unit_test(test_new_readings_are_a_new_picture),
         cmocka_unit_test(test_new_colors_too),
         cmocka_unit_test(test_what_else_changes_is_drawn),

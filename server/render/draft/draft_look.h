@@ -32,7 +32,7 @@ DRAFT_INLINE lanes sun_tap(const struct draft_light *light, lanes s, lanes t, la
 {
     float size = (float)light->sun_map_px;
     lanes u = lanes_clamp(s * size - 0.5f, 0, size - 1), v = lanes_clamp(t * size - 0.5f, 0, size - 1);
-    lanes place = depth * 65535.0f;
+    lanes place = lanes_clamp(depth, 0, 1) * 65535.0f;
     lanes u0 = whole_part(u), v0 = whole_part(v), u_part = u - u0, v_part = v - v0;
     lanes_int at = lanes_whole(v0) * (light->sun_map_px + 1) + lanes_whole(u0);
     uint32_t pairs[2][LANES]; /* of neighbours; above, below */

@@ -3,15 +3,19 @@
 #include "render/light/bake.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "base/mem.h"
 #include "gpu/program.h"
 #include "render/light/bake_faces.h"
+#include "render/light/sun_frame.h"
 #include "render/matrix.h"
 
 enum { SKY_DIRECTIONS = 32, SKY_MAP_PX = 1024, SUN_MAP_PX = 4096, GROUND_PX = 256 };
 static const uint8_t ROUGH_OPENNESS = 190; /* of 255 */
 static const double LARGE_FACE_TEXELS = 8; /* of the sky's maps */
+static const double SUN_MARGIN = 0.002;    /* of its map's width, empty at its rim: taps reach beyond a place */
+static const double OPEN_AT_LEAST = 0.6;   /* where what hid a place, and is as large as the plant, is not shown */
 /* Of a bit, on a processor: vertices, or places in faces, with and without sky, rows of the ground likewise. A GPU takes all at once. */
 enum { SKY_VERTICES = 4096, SUN_VERTICES = 65536, SKY_ROWS = 8, SUN_ROWS = 128 };
 
@@ -29,7 +33,7 @@ struct bake {
     bool with_sky;
     struct directions_block *directions;
     GLuint sky_maps, directions_buffer, framebuffer;
-    double sky_texel_m;
+    double sky_texel_m, sun_clip_from_plant[16];
     enum { BAKE_SKY_MAPS, BAKE_SUN_MAP, BAKE_GROUND, BAKE_FACES, BAKE_VERTICES, BAKE_DONE } part;
     int direction, row;
     size_t asset, place, vertex;
@@ -94,12 +98,11 @@ static int sun_map_px(const struct stage *stage)
     return SUN_MAP_PX < stage->gl->max_texture_px ? SUN_MAP_PX : stage->gl->max_texture_px;
 }
 
-/* One asset, if it is shown, as seen from far away in that direction. layer -1: the texture is not an array. */
-static void draw_on_map(struct bake *bake, GLuint map, int layer, int size_px, const double towards[3], const struct visibility *shown)
+/* One asset, if it is shown. layer -1: the texture is not an array. error_m: of the level of detail. */
+static void draw_on_map(struct bake *bake, GLuint map, int layer, int size_px, const double clip_from_plant[16],
+                        const struct visibility *shown, double error_m)
 {
     const struct stage *stage = bake->stage;
-    double clip_from_plant[16];
-    matrix_parallel(stage->middle_m, stage->radius_m, towards, clip_from_plant);
     if (layer < 0)
         glNamedFramebufferTexture(bake->framebuffer, GL_DEPTH_ATTACHMENT, map, 0);
     else
@@ -112,7 +115,7 @@ static void draw_on_map(struct bake *bake, GLuint map, int layer, int size_px, c
     if (bake->asset == 0)
         glClear(GL_DEPTH_BUFFER_BIT);
     if (visibility_of(shown, (int)bake->asset) == ASSET_SHOWN)
-        stage_draw_depth(stage, clip_from_plant, &shown->clip, (int)bake->asset, stage->radius_m / size_px, false);
+        stage_draw_depth(stage, clip_from_plant, &shown->clip, (int)bake->asset, error_m, false);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
 }
 
@@ -149,10 +152,12 @@ static void find_directions(struct bake *bake)
 static void sky_map_bit(struct bake *bake)
 {
     static const struct visibility everything;
-    double towards[3];
+    const struct stage *stage = bake->stage;
+    double towards[3], clip_from_plant[16];
     float brightness;
-    sky_direction(bake->stage, bake->direction, towards, &brightness);
-    draw_on_map(bake, bake->sky_maps, bake->direction, SKY_MAP_PX, towards, &everything);
+    sky_direction(stage, bake->direction, towards, &brightness);
+    matrix_parallel(stage->middle_m, stage->radius_m, towards, clip_from_plant);
+    draw_on_map(bake, bake->sky_maps, bake->direction, SKY_MAP_PX, clip_from_plant, &everything, 0.5 * bake->sky_texel_m);
     if (++bake->asset < bake->stage->scene->asset_count)
         return;
     bake->asset = 0;
@@ -162,7 +167,8 @@ static void sky_map_bit(struct bake *bake)
 
 static void sun_map_bit(struct bake *bake)
 {
-    draw_on_map(bake, bake->set.sun_map, -1, sun_map_px(bake->stage), bake->set.key.towards, &bake->set.key.shown);
+    const struct light_set *set = &bake->set;
+    draw_on_map(bake, set->sun_map, -1, sun_map_px(bake->stage), bake->sun_clip_from_plant, &set->key.shown, 0.5 * set->texel_m);
     if (++bake->asset < bake->stage->scene->asset_count)
         return;
     bake->asset = 0;
@@ -252,6 +258,22 @@ static void faces_bit(struct bake *bake)
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
+static double size_of(const double min_m[3], const double max_m[3])
+{
+    return sqrt((max_m[0] - min_m[0]) * (max_m[0] - min_m[0]) + (max_m[1] - min_m[1]) * (max_m[1] - min_m[1]) +
+                (max_m[2] - min_m[2]) * (max_m[2] - min_m[2]));
+}
+
+double bake_least_open(const struct stage *stage, const struct visibility *shown)
+{
+    const struct scene *scene = stage->scene;
+    double missing_m = shown->clip.plane_count > 0 ? stage->radius_m : 0;
+    for (size_t i = 0; i < scene->asset_count; i++)
+        if (visibility_of(shown, (int)i) != ASSET_SHOWN)
+            missing_m = fmax(missing_m, size_of(scene->assets[i].bounds_min_m, scene->assets[i].bounds_max_m));
+    return OPEN_AT_LEAST * fmin(missing_m / (2 * stage->radius_m), 1);
+}
+
 static void vertices_bit(struct bake *bake)
 {
     const struct scene_asset *asset = &bake->stage->scene->assets[bake->asset];
@@ -260,6 +282,7 @@ static void vertices_bit(struct bake *bake)
     glUseProgram(bake->with_sky ? bake->programs->sky : bake->programs->sun);
     set_uniforms(bake, asset->placement, bake->vertex, end);
     glUniform1i(13, bake->faces.count > 0);
+    glUniform1f(14, (float)bake_least_open(bake->stage, &bake->set.key.shown));
     bind_vertices(bake);
     glDispatchCompute((GLuint)(end - bake->vertex + 63) / 64, 1, 1);
     bake->vertex = end;
@@ -324,15 +347,17 @@ struct bake *bake_begin(const struct stage *stage, const struct bake_programs *p
     struct bake *bake = mem_new(sizeof(*bake));
     *bake = (struct bake){ .stage = stage, .programs = programs, .plant_from_ground = plant_from_ground };
     bake->with_sky = !from && !key->rough;
-    double matrix[16];
+    struct sun_frame sun;
     int size_px = sun_map_px(stage);
     bake->part = bake->with_sky ? BAKE_SKY_MAPS : BAKE_SUN_MAP;
     bake->set.bytes = bake_bytes(stage);
-    bake->set.texel_m = 2 * stage->radius_m / size_px;
     bake->sky_texel_m = 2 * stage->radius_m / SKY_MAP_PX;
     bake->set.key = *key;
-    matrix_parallel(stage->middle_m, stage->radius_m, key->towards, matrix);
-    matrix_texture_from_clip(matrix, bake->set.texture_from_plant);
+    sun_frame_fit(&sun, stage, key->towards, &key->shown, SUN_MARGIN);
+    memcpy(bake->sun_clip_from_plant, sun.clip_from_plant, sizeof(sun.clip_from_plant));
+    matrix_texture_from_clip(sun.clip_from_plant, bake->set.texture_from_plant);
+    bake->set.texel_m = sun.width_m / size_px;
+    bake->set.depth_m = sun.depth_m;
     gl_pass_enter("light");
     glCreateFramebuffers(1, &bake->framebuffer);
     glNamedFramebufferDrawBuffer(bake->framebuffer, GL_NONE);

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Works out one set of light, bit by bit, so that pictures can be drawn in between: a map of what the sun sees, and what reaches each
    vertex and the ground. Sky light and openness come from depth maps taken from 32 directions all round; how open a place is
-   depends on neither sun nor surroundings, and is taken over from a set that has it. Thread: the one of the GL context. */
+   depends on neither sun nor surroundings, and is taken over from a set that has it. That is of the whole plant; where some of it is not
+   shown, it is only kept from being too dark. Thread: the one of the GL context. */
 #ifndef RENDER_BAKE_H
 #define RENDER_BAKE_H
 #include "render/stage.h"
@@ -9,7 +10,7 @@
 struct light_key {
     double towards[3];       /* the sun; plant frame, unit length */
     int environment;         /* number of the surroundings */
-    struct visibility shown; /* what throws shadows; how open a place is, is that of the whole plant */
+    struct visibility shown; /* what throws shadows */
     bool rough;              /* every place is taken to be equally open */
 };
 
@@ -17,7 +18,7 @@ struct light_set {
     uint64_t id; /* of no other set, ever; 0: empty */
     struct light_key key;
     double texture_from_plant[16]; /* texture coordinates and depth of sun_map */
-    double texel_m;
+    double texel_m, depth_m;       /* of sun_map: side of a texel; what its depths span */
     GLuint sun_map;
     GLuint ground; /* RG8: sun and openness on the ground */
     GLuint *baked; /* per asset: 4 bytes a vertex: light, ambient, openness, sun */
@@ -33,8 +34,10 @@ bool bake_programs_init(struct bake_programs *programs, struct log *log); /* fal
 void bake_programs_finish(struct bake_programs *programs);
 
 struct bake;
-/* Of a set that is to be; `from` need only live for the call, and is not rough. NULL for `from`: openness is worked out too, which is
-   most of the work, unless the key is rough. NULL: out of GPU memory, logged. */
+/* Where a part of the plant is hidden, what it hid must not stay in the dark: how open any place there is at least, 0..1. */
+double bake_least_open(const struct stage *stage, const struct visibility *shown);
+/* Of a set that is to be; `from` need only live for the call, is not rough, and is of no larger bake_least_open. NULL for `from`: openness
+   is worked out too, which is most of the work, unless the key is rough. NULL: out of GPU memory, logged. */
 struct bake *bake_begin(const struct stage *stage, const struct bake_programs *programs, const double plant_from_ground[16],
                         const struct light_key *key, const struct light_set *from);
 const struct light_key *bake_key(const struct bake *bake);

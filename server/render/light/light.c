@@ -107,10 +107,21 @@ static struct light_set *make_room(struct light *light, size_t bytes)
     }
 }
 
+/* One that knows how open places are. NULL: none does. */
+static const struct light_set *find_open(const struct light *light, const struct light_key *key)
+{
+    double most = bake_least_open(light->stage, &key->shown);
+    for (int i = 0; i < LIGHT_SETS; i++) {
+        const struct light_set *set = &light->sets[i];
+        if (set->id && !set->key.rough && bake_least_open(light->stage, &set->key.shown) <= most)
+            return set;
+    }
+    return NULL;
+}
+
 static bool begin(struct light *light, const struct light_key *key)
 {
-    const struct light_set *near = light_near(light, key);
-    light->bake = bake_begin(light->stage, &light->programs, light->plant_from_ground, key, near && !near->key.rough ? near : NULL);
+    light->bake = bake_begin(light->stage, &light->programs, light->plant_from_ground, key, find_open(light, key));
     return light->bake != NULL;
 }
 

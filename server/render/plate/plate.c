@@ -15,7 +15,7 @@
 /* Of a step, for each core: some milliseconds' worth. */
 enum { VERTICES = 65536, CHUNKS = 32, SHADED_BANDS = 1, BANDS = 8 };
 static const size_t KEPT_BYTES = (size_t)256 << 20; /* some ten pictures of 1920 x 1080 */
-static const double OFF_SURFACE_TEXELS = 2.7; /* as sun_visibility in shaders/shadow.glsl */
+static const double OFF_SURFACE_TEXELS = 2.58; /* as sun_visibility in shaders/shadow.glsl */
 
 /* --- what plates share ------------------------------------------------------------------------------------------------------- */
 

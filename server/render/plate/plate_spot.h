@@ -129,6 +129,29 @@ DRAFT_INLINE lanes load(const float at[LANES])
     return *(const lanes *)at;
 }
 
+/* e: twice the areas to the corners, negative where the spot lies beyond an edge: it moves to the nearest place of the rim. Weights that
+   are just cut off at 0 would be those of a place far along a sliver. Triangles that the near plane cuts are cut off all the same. */
+DRAFT_INLINE void keep_within(const struct corners *corners, lanes e[3])
+{
+    lanes_int outside = (e[0] < 0.0f) | (e[1] < 0.0f) | (e[2] < 0.0f);
+    outside &= (load(corners->g[0]) == 1.0f) & (load(corners->g[1]) == 1.0f) & (load(corners->g[2]) == 1.0f);
+    lanes least = all(INFINITY), best[3] = { all(1), all(0), all(0) };
+    for (int k = 0; k < 3 && lanes_any(outside); k++) {
+        int p = (k + 1) % 3, q = (k + 2) % 3;
+        lanes x = load(corners->a[p]), y = load(corners->b[p]), dx = load(corners->a[q]) - x, dy = load(corners->b[q]) - y;
+        lanes part = lanes_clamp(-(x * dx + y * dy) / most_of(dx * dx + dy * dy, all(1e-20f)), 0, 1);
+        x += part * dx;
+        y += part * dy;
+        lanes_int nearer = x * x + y * y < least;
+        least = lanes_choose(nearer, x * x + y * y, least);
+        best[k] = lanes_choose(nearer, all(0), best[k]);
+        best[p] = lanes_choose(nearer, 1.0f - part, best[p]);
+        best[q] = lanes_choose(nearer, part, best[q]);
+    }
+    for (int k = 0; k < 3; k++)
+        e[k] = lanes_choose(outside, best[k], most_of(e[k], all(0)));
+}
+
 /* Weights of the corners with perspective, kept within the triangle; the spot moves to the place that they have. */
 DRAFT_INLINE void weigh(struct spot *spot, const struct corners *corners)
 {
@@ -138,8 +161,10 @@ DRAFT_INLINE void weigh(struct spot *spot, const struct corners *corners)
         e[k] = load(corners->a[p]) * load(corners->b[q]) - load(corners->a[q]) * load(corners->b[p]);
     }
     lanes sign = lanes_choose(e[0] + e[1] + e[2] < 0.0f, all(-1), all(1));
+    for (int k = 0; k < 3; k++)
+        e[k] *= sign;
+    keep_within(corners, e);
     for (int k = 0; k < 3; k++) {
-        e[k] = most_of(e[k] * sign, all(0));
         depth += e[k] * load(corners->z[k]);
         over += e[k] * load(corners->g[k]);
         x += e[k] * load(corners->a[k]);
@@ -219,8 +244,7 @@ DRAFT_INLINE vec facing(const struct spot *spot, vec view)
 /* Four taps on a turned square. s, t, depth: 0..1 over the map, a step off the surface. Outside it nothing stands in the light. */
 DRAFT_INLINE lanes sun_visible(const struct draft_light *light, lanes s, lanes t, lanes depth)
 {
-    const float spread = 1.7f / (float)light->sun_map_px, u = 0.88f * spread, v = 0.47f * spread;
-    depth = lanes_clamp(depth, 0, 1);
+    const float spread = 1.58f / (float)light->sun_map_px, u = 0.949f * spread, v = 0.316f * spread;
     lanes sum = sun_tap(light, s + u, t + v, depth) + sun_tap(light, s - u, t - v, depth);
     sum += sun_tap(light, s - v, t + u, depth) + sun_tap(light, s + v, t - u, depth);
     return lanes_choose((s > 0.0f) & (s < 1.0f) & (t > 0.0f) & (t < 1.0f), 0.25f * sum, all(1));

@@ -1,0 +1,94 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The boxes of all assets, seen from the sun and turned until the longer side is shortest. */
+#include "render/light/sun_frame.h"
+
+#include <math.h>
+
+#include "render/matrix.h"
+
+enum { TURNS = 32 }; /* tried, in a quarter of a circle */
+
+struct extent {
+    double low[3], high[3]; /* across, upward, towards the sun; from the middle of the scene */
+};
+
+static void axes_of(const double towards[3], double turn, double axes[3][3])
+{
+    double side[3], up[3], most = fabs(towards[2]) < 0.9, c = cos(turn), s = sin(turn);
+    double helper[3] = { 1 - most, 0, most };
+    for (int i = 0; i < 3; i++)
+        side[i] = helper[(i + 1) % 3] * towards[(i + 2) % 3] - helper[(i + 2) % 3] * towards[(i + 1) % 3];
+    double length = sqrt(side[0] * side[0] + side[1] * side[1] + side[2] * side[2]);
+    for (int i = 0; i < 3; i++)
+        side[i] /= length;
+    for (int i = 0; i < 3; i++)
+        up[i] = towards[(i + 1) % 3] * side[(i + 2) % 3] - towards[(i + 2) % 3] * side[(i + 1) % 3];
+    for (int i = 0; i < 3; i++) {
+        axes[0][i] = c * side[i] + s * up[i];
+        axes[1][i] = c * up[i] - s * side[i];
+        axes[2][i] = towards[i];
+    }
+}
+
+static void add_box(struct extent *extent, const double axes[3][3], const double middle_m[3], const struct scene_asset *asset)
+{
+    for (int a = 0; a < 3; a++) {
+        double low = 0, high = 0;
+        for (int i = 0; i < 3; i++) {
+            double one = axes[a][i] * (asset->bounds_min_m[i] - middle_m[i]), other = axes[a][i] * (asset->bounds_max_m[i] - middle_m[i]);
+            low += fmin(one, other);
+            high += fmax(one, other);
+        }
+        extent->low[a] = fmin(extent->low[a], low);
+        extent->high[a] = fmax(extent->high[a], high);
+    }
+}
+
+static struct extent extent_of(const struct stage *stage, const double axes[3][3], const struct visibility *shown)
+{
+    struct extent extent = { { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY } };
+    for (size_t i = 0; i < stage->scene->asset_count; i++) {
+        const struct scene_asset *asset = &stage->scene->assets[i];
+        if (visibility_of(shown, (int)i) == ASSET_SHOWN && !clip_drops(&shown->clip, asset->bounds_min_m, asset->bounds_max_m))
+            add_box(&extent, axes, stage->middle_m, asset);
+    }
+    for (int a = 0; a < 3; a++)
+        if (!(extent.low[a] < extent.high[a])) { /* nothing throws a shadow */
+            extent.low[a] = -stage->radius_m;
+            extent.high[a] = stage->radius_m;
+        }
+    return extent;
+}
+
+static double longer_side(const struct extent *extent)
+{
+    return fmax(extent->high[0] - extent->low[0], extent->high[1] - extent->low[1]);
+}
+
+void sun_frame_fit(struct sun_frame *frame, const struct stage *stage, const double towards[3], const struct visibility *shown,
+                   double margin)
+{
+    double best[3][3], axes[3][3];
+    struct extent extent = { 0 };
+    for (int turn = 0; turn < TURNS; turn++) {
+        axes_of(towards, turn * 1.5707963267948966 / TURNS, axes);
+        struct extent tried = extent_of(stage, (const double(*)[3])axes, shown);
+        if (turn > 0 && longer_side(&tried) >= longer_side(&extent))
+            continue;
+        extent = tried;
+        for (int i = 0; i < 9; i++)
+            best[i / 3][i % 3] = axes[i / 3][i % 3];
+    }
+    double margin_m = margin * longer_side(&extent);
+    matrix_identity(frame->clip_from_plant);
+    for (int a = 0; a < 3; a++) {
+        double low = extent.low[a] - margin_m, high = extent.high[a] + margin_m, scale = (a == 2 ? 1 : 2) / (high - low);
+        frame->clip_from_plant[12 + a] = (a == 2 ? 0 : -1) - low * scale;
+        for (int i = 0; i < 3; i++) {
+            frame->clip_from_plant[4 * i + a] = best[a][i] * scale;
+            frame->clip_from_plant[12 + a] -= best[a][i] * scale * stage->middle_m[i];
+        }
+    }
+    frame->width_m = longer_side(&extent) + 2 * margin_m;
+    frame->depth_m = extent.high[2] - extent.low[2] + 2 * margin_m;
+}
