@@ -21,6 +21,7 @@ layout(location = 2) in vec3 hole;
 #endif
 layout(location = 0) out vec4 color;
 #ifdef CLIP
+layout(location = 6) in vec3 place;
 #include "section.glsl"
 #endif
 
@@ -32,7 +33,8 @@ void main()
 #endif
 #ifdef CLIP
     if (!gl_FrontFacing) {
-        color = vec4(INSIDE, 1.0);
+        vec3 v = frame.back.w > 0.0 ? frame.back.xyz : normalize(-place);
+        color = vec4(inside_color(v, cross(dFdx(place), dFdy(place))), 1.0);
         return;
     }
 #endif

@@ -15,6 +15,9 @@ layout(location = 1) out FIELD_TYPE field;
 layout(location = 0) out vec2 light; // ambient, facing the sun
 layout(location = 1) out vec3 sun_place;
 #endif
+#ifdef CLIP
+layout(location = 6) out vec3 place;
+#endif
 #ifdef PER_FRAGMENT
 layout(location = 7) out vec3 file_place;
 #endif
@@ -35,6 +38,7 @@ void main()
 #endif
 #ifdef CLIP
     clip_away();
+    place = (frame.eye_from_clip * gl_Position).xyz;
 #endif
 #ifdef FIELD
     light = baked.x;

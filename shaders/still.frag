@@ -47,13 +47,13 @@ const float OPEN_BEHIND = 0.7; // at least: what is baked is of the other side
 
 void main()
 {
+    vec3 v = frame.back.w > 0.0 ? frame.back.xyz : normalize(-place), n = normalize(surface_normal), l = frame.sun.xyz;
 #ifdef CLIP
     if (!gl_FrontFacing) {
-        color = vec4(INSIDE, 1.0);
+        color = vec4(inside_color(v, n), 1.0);
         return;
     }
 #endif
-    vec3 v = frame.back.w > 0.0 ? frame.back.xyz : normalize(-place), n = normalize(surface_normal), l = frame.sun.xyz;
     bool turned = dot(n, v) < (gl_FrontFacing ? MOST_AWAY : 0.0); // from behind; or its normals are those of the other side
     if (turned)
         n = -n;
@@ -92,7 +92,8 @@ void main()
     if ((textures & 16) != 0)
         glow *= texture(emissive_map, uv).rgb;
 #endif
-#ifdef GLOSSY // softer light: what lies in shadow keeps a colour that can be named
+#ifdef GLOSSY // softer light: what lies in shadow, or in a black part of an occlusion map, keeps a colour that can be named
+    s.open = mix(0.3, 1.0, s.open);
     vec3 c = srgb_from_linear(tone_map(1.45 * sky_shade(s, v) + 0.75 * sun_shade(s, v, l) + glow));
 #else
     vec3 c = srgb_from_linear(tone_map(sky_shade(s, v) + sun_shade(s, v, l) + glow));

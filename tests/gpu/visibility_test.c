@@ -186,6 +186,12 @@ static void test_a_cut_opens_a_neutral_inside(void **state)
             for (int x = -60; x <= 60; x += 7)
                 for (int y = -12; y <= 12; y += 3)
                     assert_true(is_neutral(frame_pixel(cut, 240 + x, 135 + y)));
+            int darkest = 255, brightest = 0; /* it is seen to be hollow */
+            for (int y = -12; y <= 12; y++) {
+                darkest = frame_pixel(cut, 240, 135 + y)[1] < darkest ? frame_pixel(cut, 240, 135 + y)[1] : darkest;
+                brightest = frame_pixel(cut, 240, 135 + y)[1] > brightest ? frame_pixel(cut, 240, 135 + y)[1] : brightest;
+            }
+            assert_true(brightest > darkest + 5);
             assert_int_equal(whole->marker_count, 8);
             assert_int_equal(cut->marker_count, 5); /* two on top of the exchanger, and those of the tank */
             frame_unref(&whole);
@@ -355,6 +361,48 @@ static void test_what_is_not_shown_throws_no_shadow(void **state)
 
 #define each(test) cmocka_unit_test_setup(test, reset)
 
+/* A ball in a closed room. */
+static void stand_room(struct stand *room, struct view *of)
+{
+    struct toy *toy = toy_create();
+    struct shape ball = { 0 }, walls = { 0 };
+    shape_sphere(&ball, TOY_CONCRETE, (double[3]){ 0, 0, 0 }, 1, 12);
+    shape_box(&walls, TOY_CONCRETE, (double[3]){ -1.2, -1.2, -1.2 }, (double[3]){ 1.2, 1.2, 1.2 });
+    toy_add(toy, "BALL", &ball, (double[3]){ 0, 0, 2 }, NULL, 0);
+    toy_add(toy, "WALLS", &walls, (double[3]){ 0, 0, 2 }, NULL, 0);
+    stand_init(room, &rig, toy);
+    view_default(&toy->scene, 240, 180, of);
+    of->tier = TIER_STILL;
+    of->look = LOOK_MATERIALS;
+}
+
+/* With the walls hidden the ball is not as dark as within them; and they themselves are as they were. */
+static void test_what_is_hidden_leaves_no_dark(void **state)
+{
+    struct stand room;
+    struct view whole, opened;
+    struct frame *first, *again;
+    (void)state;
+    for (int hidden_first = 0; hidden_first <= 1; hidden_first++) {
+        stand_room(&room, &whole);
+        opened = whole;
+        asset_set_add(&opened.visibility.hidden, 1);
+        first = hidden_first ? NULL : stand_draw(&room, &whole);
+        struct frame *ball = stand_draw(&room, &opened);
+        int below = frame_pixel(ball, 120, 90 + 24)[1], middle = frame_pixel(ball, 120, 90)[1];
+        assert_true(middle > 110 && below > 60);
+        frame_unref(&ball);
+        again = stand_draw(&room, &whole);
+        if (first)
+            assert_int_equal(count_different(first, again), 0);
+        int wall = frame_pixel(again, 120, 90)[1];
+        print_message("# ball %d, from below %d, wall %d\n", middle, below, wall);
+        frame_unref(&first);
+        frame_unref(&again);
+        stand_finish(&room);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -368,6 +416,7 @@ int main(void)
         each(test_a_cut_leaves_the_rest_alone),
         each(test_bit_by_bit_is_the_same),
         each(test_what_is_not_shown_throws_no_shadow),
+        each(test_what_is_hidden_leaves_no_dark),
         each(test_orthographic_markers_stand_where_they_should),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
