@@ -8,8 +8,9 @@
 #include "base/mem.h"
 #include "render/markers.h"
 
-enum { POINTS_PER_LINE = 8, POINTS_MOST = 1024, LABELS_MOST = 128 };
-static const double SPACING = 0.2, COARSE = 0.01; /* of an asset's size: between points; error of the level that is searched */
+enum { POINTS_PER_LINE = 16, POINTS_MOST = 2048, LABELS_MOST = 128 };
+static const double SPACING = 0.1, COARSE = 0.01; /* of an asset's size: between points; error of the level that is searched */
+static const double SAME_LINE = 4;                   /* times as far apart as labels of different lines */
 
 void isolines_init(struct isolines *isolines, size_t asset_count)
 {
@@ -176,13 +177,16 @@ bool isolines_start(struct sights *sights, const struct picture *picture, const 
     return sights_start(sights, picture, count);
 }
 
-/* A message goes with each frame: no more places than a picture has room for. */
-static bool has_room(const struct frame *frame, const float place[4])
+/* A message goes with each frame: no more places than a picture has room for, and few of one line. */
+static bool has_room(const struct frame *frame, const float place[4], double value)
 {
     double least_px = fmax(40, frame->width_px / 32.0);
-    for (size_t i = 0; i < frame->label_count; i++)
-        if (hypot((double)(frame->labels[i].x_px - place[0]), (double)(frame->labels[i].y_px - place[1])) < least_px)
+    for (size_t i = 0; i < frame->label_count; i++) {
+        const struct frame_label *label = &frame->labels[i];
+        double away_px = hypot((double)(label->x_px - place[0]), (double)(label->y_px - place[1]));
+        if (away_px < (label->value == value ? SAME_LINE * least_px : least_px))
             return false;
+    }
     return frame->label_count < LABELS_MOST;
 }
 
@@ -191,7 +195,7 @@ static void give(const struct isoline_points *points, float (*places)[4], struct
 {
     frame->labels = mem_array(points->count, sizeof(*frame->labels));
     for (size_t i = 0; i < points->count; i++)
-        if (places[i][2] < 0.5f && has_room(frame, places[i]))
+        if (places[i][2] < 0.5f && has_room(frame, places[i], points->at[i].value))
             frame->labels[frame->label_count++] = (struct frame_label){
                 .value = points->at[i].value, .x_px = roundf(10 * places[i][0]) / 10, .y_px = roundf(10 * places[i][1]) / 10
             };
