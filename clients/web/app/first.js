@@ -25,15 +25,17 @@ if (query.has('wall'))
 const named = location.hash.length > 1 ? (await import('../core/address.js')).readAddress(location.hash) : {};
 export const address = { camera: null, params: {}, tag: null, time: {}, ...named };
 
-// JPEG is shown at once; whether H.264 works here is found out later, unless the address asks for it.
+// JPEG is shown at once; whether H.264 works here is found out when it pays, unless the address asks for it.
 const wantedCodec = query.get('codec') ?? 'auto';
 const decoding = browserDecoding();
 const codecs = () => decoding.codecs.filter((name) => name !== 'auto' || wantedCodec === 'auto');
 if (wantedCodec === 'h264')
     await decoding.prove();
+let isProven = wantedCodec !== 'auto';
 export async function proveCodecs() {
-    if (wantedCodec !== 'auto')
+    if (isProven)
         return;
+    isProven = true;
     await decoding.prove();
     if (codecs().length > session.codecs.length)
         session.setCodecs(codecs());

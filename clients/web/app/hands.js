@@ -42,6 +42,7 @@ export function listenToHands(element, parts) {
         untold = [];
     }
 
+    const near = () => ['pilot', 'commands'].forEach((name) => parts.prepare(name));
     const isFresh = ({ timeStamp }) => performance.now() - timeStamp < STALE_MS;
     const listen = (on, names) => names.forEach((name) => on.addEventListener(name, hear, { passive: false }));
     listen(element, ON_PICTURE);
@@ -49,5 +50,5 @@ export function listenToHands(element, parts) {
     for (const name of ['contextmenu', 'auxclick'])
         element.addEventListener(name, (event) => event.preventDefault());
     for (const name of NEAR)
-        document.addEventListener(name, () => parts.prepare('pilot'), { once: true, capture: true, passive: true });
+        document.addEventListener(name, near, { once: true, capture: true, passive: true });
 }

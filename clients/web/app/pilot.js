@@ -9,6 +9,7 @@ import { HeldKeys, keyMeaning } from '../core/keys.js';
 import { depthAt, depthOf, elevation, face, lookAround, orbit, pan, sight, zoom } from '../core/moves.js';
 import { along } from '../core/vector.js';
 import { clock } from './clock.js';
+import { proveCodecs } from './first.js';
 import { isOnPicture } from './hands.js';
 
 const DEGREES_PER_HEIGHT = 180; // a drag over the whole height of the picture
@@ -32,6 +33,7 @@ export class Pilot {
                 Object.assign(this.anchor, { point: position ?? this.anchor.point, sure: true });
         });
         window.addEventListener('blur', () => this.keys.clear());
+        proveCodecs(); // there will be motion
     }
 
     // An event of hands.js.

@@ -1,29 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which codecs this browser decodes, tried once and remembered, and the decoder of each.
+// Pictures of frames: JPEG and PNG by the browser itself, H.264 once it has been found (ways.js) to work here.
 
 export const PLAIN = ['jpeg', 'png'];
 const MIME = { jpeg: 'image/jpeg', png: 'image/png' };
-const WAYS = ['no-preference', 'prefer-software']; // hardware first, if there is any
-const KEPT = 'plantcast.h264';
 const AGAIN_MS = 10000; // two failures within so long: it does not work
-
-// What was learnt of this very browser: a way to decode H.264, 'none', or null.
-function remembered(store, agent) {
-    try {
-        const known = JSON.parse(store?.getItem(KEPT) ?? 'null');
-        return known?.agent === agent ? known.way : null;
-    } catch {
-        return null; // a store that may not be read
-    }
-}
-
-function remember(store, agent, way) {
-    try {
-        store?.setItem(KEPT, JSON.stringify({ agent, way }));
-    } catch {
-        // it is tried again next time
-    }
-}
 
 // Frames to pictures that can be drawn. onCodecs(list): what to ask the server for from now on. onLost(): a key frame is needed.
 export class Decoding {
@@ -36,32 +16,9 @@ export class Decoding {
 
     // Finds out whether H.264 works here.
     async prove() {
-        const { api, store, agent } = this.env;
-        const known = remembered(store, agent);
-        if (!api.VideoDecoder || known === 'none')
-            return;
-        const { H264Decoder, whatIsWrong } = await import('./h264.js').catch(() => ({}));
-        if (!H264Decoder)
-            return; // the server is away: JPEG it stays
-        Object.assign(this, { H264Decoder });
-        for (const acceleration of WAYS.slice(Math.max(0, WAYS.indexOf(known)))) {
-            const decoder = new H264Decoder({ acceleration, api });
-            const wrong = await (this.env.tryOut ?? whatIsWrong)(decoder);
-            if (wrong === null) {
-                this.use(acceleration);
-                return;
-            }
-            this.why = wrong;
-        }
-        remember(store, agent, 'none');
-    }
-
-    use(acceleration) {
-        const { api, store, agent } = this.env;
-        this.acceleration = acceleration;
-        this.h264 = new this.H264Decoder({ acceleration, api });
-        this.codecs = ['auto', 'h264', ...PLAIN];
-        remember(store, agent, acceleration);
+        if (this.env.api.VideoDecoder)
+            this.ways = await import('./ways.js').catch(() => null); // the server is away: JPEG it stays
+        await this.ways?.prove(this);
     }
 
     // A promise of something with close() that a canvas draws.
@@ -90,27 +47,12 @@ export class Decoding {
         const first = !this.lost, now = this.env.now(), again = now - this.failedAt < AGAIN_MS;
         this.lost = true;
         if (frame.codec === 'h264' && this.h264 && (again || frame.key)) {
-            this.demote();
+            this.ways.demote(this);
             return;
         }
         this.failedAt = now;
         if (first)
             this.onLost();
-    }
-
-    // Hardware gives way to software, that to JPEG.
-    demote() {
-        const next = WAYS[WAYS.indexOf(this.acceleration) + 1];
-        this.h264.close();
-        if (next) {
-            this.use(next);
-            this.onLost();
-            return;
-        }
-        this.h264 = null;
-        this.codecs = PLAIN;
-        remember(this.env.store, this.env.agent, 'none');
-        this.onCodecs(this.codecs);
     }
 }
 
