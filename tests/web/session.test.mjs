@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { health } from '../../clients/web/core/health.js';
 import { orbit } from '../../clients/web/core/moves.js';
-import { Timings } from '../../clients/web/core/timings.js';
+import { kbitPerS, timingOf } from '../../clients/web/core/timings.js';
 import { makeSession, vector, vectorBytes } from './fixtures.mjs';
 
 const welcome = vector('server/welcome.json');
@@ -413,20 +413,27 @@ test('following another: its parameters and camera are shown, until a hand moves
 });
 
 test('stages of the pictures of the last seconds', () => {
-    const timings = new Timings(5000);
-    const frame = (ms, more = {}) => ({
-        waitUs: ms * 1000, fieldUs: 0, renderUs: 2000, encodeUs: 1000, sentTimeUs: 1e6, payload: { length: 1000 }, ...more,
+    const picture = (ms, at, hereUs = 1e6 + 9000, more = {}) => ({
+        picture: { waitUs: ms * 1000, fieldUs: 0, renderUs: 2000, encodeUs: 1000, sentTimeUs: 1e6, bytes: 1000, at, ...more },
+        decodeMs: 4, hereUs,
     });
-    assert.equal(timings.of('wait'), null);
-    for (let i = 1; i <= 20; i++)
-        timings.add(frame(i), 4, i * 100, 1e6 + 9000);
-    assert.deepEqual([timings.of('wait'), timings.of('network'), timings.of('decode').p50], [{ p50: 10, p95: 19 }, { p50: 5, p95: 5 }, 4]);
-    assert.equal(timings.of('sensor'), null);
-    timings.add(frame(30, { data: true }), 4, 6000, 1e6 + 9000);
-    assert.deepEqual(timings.of('sensor'), { p50: 42, p95: 42 });
-    assert.equal(timings.of('wait').p50, 15, 'the first ones are forgotten');
-    timings.add(frame(1), 4, 6100, null);
-    assert.equal(timings.of('network').p50, 5);
+    assert.equal(timingOf([], 'wait'), null);
+    const recent = Array.from({ length: 20 }, (_, i) => picture(i + 1, (i + 1) * 100));
+    assert.deepEqual(['wait', 'network'].map((name) => timingOf(recent, name)), [{ p50: 10, p95: 19 }, { p50: 5, p95: 5 }]);
+    assert.equal(timingOf(recent, 'decode').p50, 4);
+    assert.equal(timingOf(recent, 'sensor'), null);
+    const sensor = [...recent, picture(30, 2100, 1e6 + 9000, { data: true }), picture(1, 2200, null)];
+    assert.deepEqual(timingOf(sensor, 'sensor'), { p50: 42, p95: 42 });
+    assert.equal(timingOf(sensor, 'network').p50, 5, 'where the clock is not known there is none');
+    assert.deepEqual([kbitPerS(recent, 2000), kbitPerS(recent, 6050)], [32, 16]);
+});
+
+test('only the pictures of the last seconds are kept', () => {
+    const { session, socket, clock } = greeted();
+    for (let n = 0; n < 8; n++, clock.advance(1000))
+        session.drawn({ seq: n + 1, cameraSeq: 0, payload: new Uint8Array(100 + n) }, 2);
+    assert.deepEqual(session.recent.map(({ picture }) => picture.bytes), [102, 103, 104, 105, 106, 107]);
+    assert.equal(socket.sent.filter(({ type }) => type === 'ack').length, 8);
 });
 
 test('alarms: the gravest of a tag, and what is to be done first', () => {

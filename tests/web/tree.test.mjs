@@ -2,7 +2,8 @@
 // The list of equipment: its rows, what a search finds, which of them are in sight, and links made from templates.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { linkUrl, Tree } from '../../clients/web/core/tree.js';
+import { linkUrl } from '../../clients/web/core/references.js';
+import { Tree } from '../../clients/web/core/tree.js';
 import { rowAt, rowsInSight, scrollTo, stack } from '../../clients/web/core/window.js';
 
 function plant() {

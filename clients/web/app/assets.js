@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The list of equipment: areas, assets and their sensors with what they say, search, what is known of the selected one, and the way there.
 import { decimalsFor, numberText, qualityText, unitText } from '../core/format.js';
-import { linkUrl, Tree } from '../core/tree.js';
+import { Tree } from '../core/tree.js';
 import { say } from '../core/words.js';
 import { byId, glyph, make, setText } from './dom.js';
 import { NARROW } from './first.js';
@@ -10,17 +10,12 @@ import { LongList } from './list.js';
 const SEARCH_MS = 80, ASSET_PX = 53;
 const keyOf = ({ kind, id }) => `${kind}/${id}`;
 
-export const linksOf = (model, of, item) => model.references.filter((link) => link.of === of)
-    .map((link) => ({ name: link.name, href: linkUrl(link, item) })).filter(({ href }) => href)
-    .map(({ name, href }) => make('a', { href, target: '_blank', rel: 'noopener noreferrer' }, name));
-
 export class Assets {
-    // Handlers: onAsset(asset), onTag(tag).
+    // Handlers: onAsset(asset) and onTag(tag) for a row that is chosen, onSelected(asset or null) once one is.
     constructor({ session, selection }) {
         Object.assign(this, { session, selection });
         this.search = byId('assets-search');
-        this.about = byId('asset-about');
-        this.onAsset = this.onTag = () => {};
+        this.onAsset = this.onTag = this.onSelected = () => {};
         this.setOpen(!this.narrow);
         this.list = new LongList({
             root: byId('assets-list'), make: (row) => this.make(row), fill: (row, element) => this.fill(row, element), keyOf,
@@ -89,30 +84,12 @@ export class Assets {
         const isNew = chosen !== null && tag !== this.marked, owner = isNew ? model.asset(chosen.asset) : asset;
         if (owner)
             this.tree.unfold(owner);
-        this.showAbout(asset);
+        this.onSelected(asset);
         const reveal = isNew ? `tag/${chosen.index}` : asset && selected !== this.selected && `asset/${selected}`;
         Object.assign(this, { selected, marked: tag });
         this.filter();
         if (reveal)
             this.list.reveal(reveal);
-    }
-
-    showAbout(asset) {
-        this.about.hidden = !asset;
-        if (!asset)
-            return;
-        const { min, max } = asset.bounds, metres = (list) => list.map((m) => numberText(m, 1)).join(' × ');
-        const facts = [
-            ['assets.description', asset.description], ['assets.area', asset.area],
-            ['assets.size', say('distance.metres', { metres: metres(max.map((m, i) => m - min[i])) })],
-            ['assets.place', max.map((m, i) => numberText((m + min[i]) / 2, 1)).join(' · ')],
-            ['assets.sensors.name', asset.tags.length],
-        ].filter(([, text]) => text !== '' && text !== undefined && text !== 0);
-        const links = linksOf(this.session.model, 'asset', asset), named = facts.map(([key, text]) => [say(key), text]);
-        this.about.replaceChildren(make('h3', {}, asset.tag || asset.id),
-            make('dl', {}, ...[...named, ...(asset.properties ?? [])].flatMap(([name, text]) =>
-                [make('dt', {}, name), make('dd', {}, String(text))])),
-            ...(links.length > 0 ? [make('p', { class: 'links' }, ...links)] : []));
     }
 
     // --- rows

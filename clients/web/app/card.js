@@ -2,7 +2,7 @@
 // The card of one sensor: what it is, what it says, whether that may be trusted, and how old it is.
 import { ageText, decimalsFor, numberText, qualityText, unitText } from '../core/format.js';
 import { say } from '../core/words.js';
-import { linksOf } from './assets.js';
+import { linksOf } from './about.js';
 import { clock } from './clock.js';
 import { byId, closeButton, fill, glyph, make, setText } from './dom.js';
 

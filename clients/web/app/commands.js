@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What clicks, keys and buttons do: the selection, the flight to what is chosen, and the parts of the page that they open. Loaded when hands
-// first come near.
+// What clicks, keys and buttons do: the selection, the flight to what is chosen, and the parts of the page that they open. Loaded when
+// hands first come near.
 import { byId } from './dom.js';
 import { changeTheme } from './theme.js';
 

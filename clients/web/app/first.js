@@ -5,7 +5,7 @@ import { browserDecoding } from '../core/decoding.js';
 import { Session } from '../core/session.js';
 import { language } from '../core/words.js';
 import { clock } from './clock.js';
-import { byId, sayAll } from './dom.js';
+import { byId, sayAll, styled } from './dom.js';
 import { stored } from './stored.js';
 import { chooseTheme } from './theme.js';
 import { Viewport } from './viewport.js';
@@ -18,7 +18,10 @@ export const page = { unit: 1, onUnit: () => {} };
 document.documentElement.lang = language;
 sayAll(document);
 const backdrop = chooseTheme(query);
-document.querySelector('.stage').classList.toggle('without-assets', window.matchMedia(NARROW).matches);
+const narrow = window.matchMedia(NARROW), fold = () => narrow.matches && styled('narrow').catch(() => {});
+narrow.addEventListener('change', fold);
+document.querySelector('.stage').classList.toggle('without-assets', narrow.matches);
+await fold();
 if (query.has('wall'))
     await (await import('./wall.js')).hangOnWall(location.search, page);
 
@@ -54,5 +57,6 @@ viewport.onDrawn = (newPicture) => {
         byId('waiting').hidden = true;
 };
 session.on('hello', () => viewport.forget());
+session.on('welcome', fold); // where it could not be fetched before
 connection.start();
 Object.assign(page, { session, viewport, decoding });

@@ -64,6 +64,7 @@ page.told = {
 listenToHands(byId('viewport'), parts);
 assets.onAsset = page.selectAsset;
 assets.onTag = page.showTag;
+assets.onSelected = (asset) => (asset || parts.there('about')) && parts.use('about', (about) => about.show(), 'show');
 
 // --- the picture and what lies over it
 

@@ -8,9 +8,10 @@ const FIRST_WAIT_MS = 1000, LONGEST_WAIT_MS = 8000; // between tries
 
 // Of each module: its class, its style sheets, and the element that its markup fills.
 const PARTS = {
+    about: { type: 'About', styles: ['about'] },
     alarms: { type: 'AlarmList', styles: ['alarms', 'help'], fills: 'alarms' },
     arrival: { type: 'Arrival' },
-    card: { type: 'Card', styles: ['card'] },
+    card: { type: 'Card', styles: ['card', 'about'] },
     commands: { type: 'Commands' },
     engineer: { type: 'Engineer', styles: ['panel', 'help', 'engineer'] },
     following: { type: 'Following' },

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The panel of measurements, on a key: which session this is, and where the time of its pictures goes.
 import { numberText } from '../core/format.js';
-import { STAGES } from '../core/timings.js';
+import { kbitPerS, STAGES, timingOf } from '../core/timings.js';
 import { say } from '../core/words.js';
 import { around, byId, make } from './dom.js';
 import { clock } from './clock.js';
@@ -29,10 +29,10 @@ export class TimingsPanel {
     show() {
         const { session } = this, now = clock.now();
         const head = make('tr', {}, ...['ms', 'half', 'most'].map((name) => make('th', {}, say(`timings.${name}`))));
-        const rows = ['sensor', ...STAGES].map((name) => this.row(say(`timings.${name}`), session.timings.of(name)));
+        const rows = ['sensor', ...STAGES].map((name) => this.row(say(`timings.${name}`), timingOf(session.recent, name)));
         const took = make('td', {}, ms(session.latency.median(now)));
         const input = make('tr', {}, make('th', {}, say('timings.input')), took, make('td', {}, ''));
-        const [pictures, kbit] = [session.rate.perSecond(now), session.timings.kbitPerS(now)].map(Math.round);
+        const [pictures, kbit] = [session.rate.perSecond(now), kbitPerS(session.recent, now)].map(Math.round);
         const link = make('a', { href: `#follow=${session.id}`, target: '_blank', rel: 'noopener' }, `#follow=${session.id}`);
         this.element.replaceChildren(make('table', {}, head, input, ...rows), make('p', {}, say('timings.rate', { pictures, kbit })),
             make('p', {}, ...around(say('timings.follow', { session: session.id, link: '\u0000' }), link)));

@@ -3,7 +3,6 @@
 import { cameraMessage, cameraOfMessage, home, same, valid } from './camera.js';
 import { LatencyMeter, RateMeter } from './meters.js';
 import { Model } from './model.js';
-import { Timings } from './timings.js';
 import { decodeFrame, decodeMessage, isGivenUp, WireError } from './wire.js';
 import { say } from './words.js';
 
@@ -19,7 +18,7 @@ const GROUPS_OWN = ['interpolation', 'distance', 'fill', 'power', 'radius_m', 'r
 const OF_THE_INSTANT = ['tags', 'picked']; // their time is that of what is shown
 const NOW = { atUs: null, speed: 0, fromUs: null };
 const QUALITIES = ['good', 'uncertain', 'bad'];
-const MOST_BACKLOG_BYTES = 64 * 1024;
+const MOST_BACKLOG_BYTES = 64 * 1024, RECENT_MS = 5000;
 
 const pick = (from, names) => Object.fromEntries(names.filter((name) => from[name] !== undefined).map((name) => [name, from[name]]));
 
@@ -50,7 +49,7 @@ export class Session {
         this.freshAt = null;     // when a greeted server last spoke: how old the picture is once it stops
         this.rate = new RateMeter();
         this.latency = new LatencyMeter();
-        this.timings = new Timings();
+        this.recent = [];        // pictures of the last moments, and how they came: { picture, decodeMs, hereUs }
         this.skew = null;        // the server's clock less ours, in microseconds, by the shortest round trip: { us, roundTripMs }
         this.id = null;          // by which others can follow this session
         this.following = null;   // whose view is shown: { session, width, height }
@@ -120,6 +119,12 @@ export class Session {
     }
 
     // --- to the server
+
+    // What is said to who has greeted us.
+    post(message) {
+        if (this.welcomed)
+            this.connection.send(message);
+    }
 
     // parts: what of our view to ask for.
     hello(parts) {
@@ -212,14 +217,12 @@ export class Session {
         if (size.width === this.size.width && size.height === this.size.height && size.pixel_ratio === this.size.pixel_ratio)
             return;
         this.size = size;
-        if (this.welcomed)
-            this.connection.send({ type: 'resize', ...size });
+        this.post({ type: 'resize', ...size });
     }
 
     setVisible(visible) {
         this.visible = visible;
-        if (this.welcomed)
-            this.connection.send({ type: 'visible', visible });
+        this.post({ type: 'visible', visible });
     }
 
     // Once per animation frame: the newest camera goes out, the ones in between never do.
@@ -237,29 +240,25 @@ export class Session {
         this.leader = session;
         if (session === null)
             this.following = null;
-        if (this.welcomed)
-            this.connection.send({ type: 'follow', session });
+        this.post({ type: 'follow', session });
         this.emit('following');
     }
 
     // One of those who follow us leads from now on; the event `following` says that it does.
     lead(session) {
-        if (this.welcomed)
-            this.connection.send({ type: 'lead', session });
+        this.post({ type: 'lead', session });
     }
 
     // Goes to an instant (null: to now; undefined: stays where it is) and plays from there.
     travel(atUs, speed = 0) {
         if (this.leader !== null)
             this.follow(null);
-        if (this.welcomed)
-            this.connection.send({ type: 'time', ...(atUs === undefined ? {} : { at_us: atUs && Math.round(atUs) }), speed });
+        this.post({ type: 'time', ...(atUs === undefined ? {} : { at_us: atUs && Math.round(atUs) }), speed });
     }
 
     // Asks for a camera that looks at something (id: asset, tag or null; side: as in plantcast.v1); answered by the event `fitted`.
     fit({ id = null, side = 'now', projection } = {}) {
-        if (this.welcomed)
-            this.connection.send({ type: 'fit', seq: ++this.fitSeq, id, side, ...(projection ? { projection } : {}) });
+        this.post({ type: 'fit', seq: ++this.fitSeq, id, side, ...(projection ? { projection } : {}) });
     }
 
     // Asks what is at a pixel of the picture on the screen; the event `picked` answers the newest question, and says its purpose.
@@ -272,8 +271,7 @@ export class Session {
 
     // alarms: [[tag, kind], ...]; answered by the event `alarmed`.
     actOnAlarm(action, alarms, more = {}) {
-        if (this.welcomed)
-            this.connection.send({ type: 'alarm', seq: ++this.alarmSeq, action, alarms, ...more });
+        this.post({ type: 'alarm', seq: ++this.alarmSeq, action, alarms, ...more });
     }
 
     // What engineers say: place, gaps, save_tags, prove; each answer comes as the event of its type. Its number; 0: nobody listens.
@@ -289,10 +287,11 @@ export class Session {
         const now = this.now();
         this.rate.count(now);
         this.latency.drawn(frame.cameraSeq, now);
-        this.timings.add(frame, decodeMs, now, this.skew ? now * 1000 + this.skew.us : this.clockUs(now));
         if (this.following)
             this.camera = asAsked(frame.camera);
-        this.picture = { ...frame, payload: null, at: now };
+        this.picture = { ...frame, payload: null, bytes: frame.payload?.length ?? 0, at: now };
+        this.recent = this.recent.filter(({ picture }) => now - picture.at <= RECENT_MS);
+        this.recent.push({ picture: this.picture, decodeMs, hereUs: this.skew ? now * 1000 + this.skew.us : this.clockUs(now) });
         this.connection.send({ type: 'ack', seq: frame.seq, decode_ms: Math.round(decodeMs * 100) / 100 });
     }
 
@@ -304,14 +303,12 @@ export class Session {
 
     // The decoder lost its place: the next frame shall stand alone.
     askKeyFrame() {
-        if (this.welcomed)
-            this.connection.send({ type: 'key_frame' });
+        this.post({ type: 'key_frame' });
     }
 
     setCodecs(codecs) {
         this.codecs = codecs;
-        if (this.welcomed)
-            this.connection.send({ type: 'codecs', codecs });
+        this.post({ type: 'codecs', codecs });
     }
 
     // --- from the server
@@ -329,30 +326,6 @@ export class Session {
             handler.call(this, message);
     }
 
-    hearWelcome(message) {
-        const before = this.model;
-        this.model = new Model(message);
-        this.markers.clear(); // also where the plant was loaded anew
-        this.welcomed = true;
-        this.id = message.session;
-        this.following = this.skew = null;
-        this.followers = { count: 0, sessions: [] };
-        this.resume = message.resume ?? null;
-        this.role = message.role ?? null;
-        this.codec = message.codec;
-        this.connection.settle();
-        this.confirmed = this.params = pick(message.view, SAID);
-        if (!this.helloParts.includes('camera') || (before && before.identity !== this.model.identity))
-            this.camera = null;
-        this.camera = this.camera ?? home(this.model.plant, this.size.width / this.size.height);
-        this.cameraNews = !same(this.camera, this.greetedCamera ?? this.model.plant.home);
-        this.catchUp();
-        if (this.leader !== null)
-            this.connection.send({ type: 'follow', session: this.leader });
-        this.emit('welcome');
-        this.emit('params');
-    }
-
     // What changed between hello and welcome.
     catchUp() {
         if (!this.visible)
@@ -361,118 +334,6 @@ export class Session {
             this.connection.send({ type: 'resize', ...this.size });
         if (Object.keys(this.unsent).length > 0)
             this.setParams(this.unsent);
-    }
-
-    hearParams(message) {
-        if (message.seq < this.paramsSeq)
-            return; // an answer to what was changed again since
-        this.confirmed = this.params = pick(message, SAID);
-        this.emit('params');
-    }
-
-    hearTags(message) {
-        this.emit('tags', this.model.update(message.values, this.now(), message.age_ms));
-    }
-
-    hearPong(message) {
-        const now = this.now(), roundTripMs = now - message.t;
-        if (roundTripMs >= 0 && roundTripMs <= (this.skew?.roundTripMs ?? Infinity))
-            this.skew = { us: message.time_us - (now - roundTripMs / 2) * 1000, roundTripMs };
-        this.model.notOlder(message.oldest_age_ms ?? null, this.now());
-    }
-
-    // After the first message only what changed since the one before.
-    hearMarkers(message) {
-        const newest = this.markers.get(Math.max(...this.markers.keys())) ?? new Map();
-        const known = message.markers ? new Map(message.markers.map(([tag, , , occluded, half = 0, value = null, quality = null]) =>
-            [`${tag}/${half}`, { occluded: occluded !== 0, value, quality: QUALITIES[quality] ?? null }])) : new Map(newest);
-        for (const [tag, half, value, quality = 0] of message.values ?? []) {
-            const id = `${tag}/${half}`;
-            known.set(id, { ...known.get(id), value, quality: QUALITIES[quality] ?? null });
-        }
-        known.isolines = message.isolines ?? newest.isolines ?? [];
-        this.markers.set(message.seq, known);
-    }
-
-    hearFollowing({ session, width, height, ...shown }) {
-        this.following = session === null ? null : { session, width, height };
-        this.leader = session;
-        this.confirmed = this.params = pick(shown, SAID);
-        this.emit('params');
-        this.emit('following');
-    }
-
-    hearFollowers({ count, sessions }) {
-        this.followers = { count, sessions };
-        this.emit('followers');
-    }
-
-    hearTime(message) {
-        this.time = { atUs: message.at_us ?? null, speed: message.speed ?? 0, fromUs: message.from_us ?? null };
-        this.recorded = true;
-        this.model.stop(this.time.atUs !== null);
-        this.emit('time');
-    }
-
-    hearCamera(message) {
-        if (message.seq === this.fitSeq)
-            this.emit('fitted', cameraOfMessage(message));
-    }
-
-    hearPicked(message) {
-        if (message.seq === this.pickSeq)
-            this.emit('picked', { ...message, purpose: this.pickPurpose });
-    }
-
-    hearAlarms(message) {
-        this.model.alarms.hear(message);
-        this.emit('alarms');
-    }
-
-    hearAlarmed(message) {
-        this.emit('alarmed', message);
-    }
-
-    // The server's word on what an engineer tries out: until it is saved, these sensors stand there for us alone.
-    hearPlaced(message) {
-        this.model.place(message.sensors);
-        this.emit('placed', message);
-    }
-
-    hearProofs(message) {
-        this.model.hearProofs(message);
-        this.emit('proofs', message);
-    }
-
-    hearStatus(message) {
-        this.model.links = message.links;
-        this.model.live = message.live;
-        this.model.clockSet = message.clock_set !== false;
-        this.emit('status');
-    }
-
-    hearError(message) {
-        if (['token_needed', 'bad_token'].includes(message.code)) {
-            this.connection.bar(say(`reason.${message.code}`));
-            this.emit('denied', message);
-            return;
-        }
-        if (message.code === 'full') {
-            this.connection.hold((message.retry_after_s ?? 10) * 1000);
-            return;
-        }
-        if (message.about === 'hello' && !this.welcomed && this.helloParts.length > 0) {
-            this.emit('astray', message.text); // our view of before is of another plant, or of another version
-            this.helloWithout(message.text.split(':')[0]);
-            return;
-        }
-        if (message.about === 'follow')
-            this.leader = null; // there is no such session
-        if (message.about === 'params' && this.confirmed) {
-            this.params = this.confirmed;
-            this.emit('params');
-        }
-        this.emit('error', message);
     }
 
     // The parameter that the server does not take; where it names none, a part of our view.
@@ -521,23 +382,140 @@ export class Session {
     }
 }
 
+// What the server says, by its type; `this` is the session.
 const HANDLERS = {
-    welcome: Session.prototype.hearWelcome,
-    params: Session.prototype.hearParams,
-    tags: Session.prototype.hearTags,
-    markers: Session.prototype.hearMarkers,
-    camera: Session.prototype.hearCamera,
-    picked: Session.prototype.hearPicked,
-    status: Session.prototype.hearStatus,
-    alarms: Session.prototype.hearAlarms,
-    alarmed: Session.prototype.hearAlarmed,
-    placed: Session.prototype.hearPlaced,
-    proofs: Session.prototype.hearProofs,
-    ...Object.fromEntries(['gaps', 'tags_diff', 'tags_saved', 'proved'].map((type) =>
-        [type, function hear(message) { this.emit(type, message); }])),
-    error: Session.prototype.hearError,
-    following: Session.prototype.hearFollowing,
-    followers: Session.prototype.hearFollowers,
-    time: Session.prototype.hearTime,
-    pong: Session.prototype.hearPong,
+    welcome(message) {
+        const before = this.model;
+        this.model = new Model(message);
+        this.markers.clear(); // also where the plant was loaded anew
+        this.welcomed = true;
+        this.id = message.session;
+        this.following = this.skew = null;
+        this.followers = { count: 0, sessions: [] };
+        this.resume = message.resume ?? null;
+        this.role = message.role ?? null;
+        this.codec = message.codec;
+        this.connection.settle();
+        this.confirmed = this.params = pick(message.view, SAID);
+        if (!this.helloParts.includes('camera') || (before && before.identity !== this.model.identity))
+            this.camera = null;
+        this.camera = this.camera ?? home(this.model.plant, this.size.width / this.size.height);
+        this.cameraNews = !same(this.camera, this.greetedCamera ?? this.model.plant.home);
+        this.catchUp();
+        if (this.leader !== null)
+            this.connection.send({ type: 'follow', session: this.leader });
+        this.emit('welcome');
+        this.emit('params');
+    },
+
+    params(message) {
+        if (message.seq < this.paramsSeq)
+            return; // an answer to what was changed again since
+        this.confirmed = this.params = pick(message, SAID);
+        this.emit('params');
+    },
+
+    tags(message) {
+        this.emit('tags', this.model.update(message.values, this.now(), message.age_ms));
+    },
+
+    pong(message) {
+        const now = this.now(), roundTripMs = now - message.t;
+        if (roundTripMs >= 0 && roundTripMs <= (this.skew?.roundTripMs ?? Infinity))
+            this.skew = { us: message.time_us - (now - roundTripMs / 2) * 1000, roundTripMs };
+        this.model.notOlder(message.oldest_age_ms ?? null, this.now());
+    },
+
+    // After the first message only what changed since the one before.
+    markers(message) {
+        const newest = this.markers.get(Math.max(...this.markers.keys())) ?? new Map();
+        const known = message.markers ? new Map(message.markers.map(([tag, , , occluded, half = 0, value = null, quality = null]) =>
+            [`${tag}/${half}`, { occluded: occluded !== 0, value, quality: QUALITIES[quality] ?? null }])) : new Map(newest);
+        for (const [tag, half, value, quality = 0] of message.values ?? []) {
+            const id = `${tag}/${half}`;
+            known.set(id, { ...known.get(id), value, quality: QUALITIES[quality] ?? null });
+        }
+        known.isolines = message.isolines ?? newest.isolines ?? [];
+        this.markers.set(message.seq, known);
+    },
+
+    following({ session, width, height, ...shown }) {
+        this.following = session === null ? null : { session, width, height };
+        this.leader = session;
+        this.confirmed = this.params = pick(shown, SAID);
+        this.emit('params');
+        this.emit('following');
+    },
+
+    followers({ count, sessions }) {
+        this.followers = { count, sessions };
+        this.emit('followers');
+    },
+
+    time(message) {
+        this.time = { atUs: message.at_us ?? null, speed: message.speed ?? 0, fromUs: message.from_us ?? null };
+        this.recorded = true;
+        this.model.stop(this.time.atUs !== null);
+        this.emit('time');
+    },
+
+    camera(message) {
+        if (message.seq === this.fitSeq)
+            this.emit('fitted', cameraOfMessage(message));
+    },
+
+    picked(message) {
+        if (message.seq === this.pickSeq)
+            this.emit('picked', { ...message, purpose: this.pickPurpose });
+    },
+
+    alarms(message) {
+        this.model.alarms.hear(message);
+        this.emit('alarms');
+    },
+
+    // The server's word on what an engineer tries out: until it is saved, these sensors stand there for us alone.
+    placed(message) {
+        this.model.place(message.sensors);
+        this.emit('placed', message);
+    },
+
+    proofs(message) {
+        this.model.hearProofs(message);
+        this.emit('proofs', message);
+    },
+
+    status(message) {
+        this.model.links = message.links;
+        this.model.live = message.live;
+        this.model.clockSet = message.clock_set !== false;
+        this.emit('status');
+    },
+
+    error(message) {
+        if (['token_needed', 'bad_token'].includes(message.code)) {
+            this.connection.bar(say(`reason.${message.code}`));
+            this.emit('denied', message);
+            return;
+        }
+        if (message.code === 'full') {
+            this.connection.hold((message.retry_after_s ?? 10) * 1000);
+            return;
+        }
+        if (message.about === 'hello' && !this.welcomed && this.helloParts.length > 0) {
+            this.emit('astray', message.text); // our view of before is of another plant, or of another version
+            this.helloWithout(message.text.split(':')[0]);
+            return;
+        }
+        if (message.about === 'follow')
+            this.leader = null; // there is no such session
+        if (message.about === 'params' && this.confirmed) {
+            this.params = this.confirmed;
+            this.emit('params');
+        }
+        this.emit('error', message);
+    },
+
+    ...Object.fromEntries(['alarmed', 'gaps', 'tags_diff', 'tags_saved', 'proved'].map((type) =>
+        [type, function passOn(message) { this.emit(type, message); }])),
 };

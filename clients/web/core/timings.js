@@ -1,41 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where the time of each picture went, stage by stage, over the last seconds.
+// Where the time of the last pictures went, stage by stage.
 
 export const STAGES = ['wait', 'field', 'render', 'encode', 'network', 'decode'];
+const STATED = ['wait', 'field', 'render', 'encode']; // by the server, in microseconds
 
 const rank = (sorted, share) => sorted[Math.min(sorted.length - 1, Math.ceil(share * sorted.length) - 1)];
 
-export class Timings {
-    constructor(keepMs = 5000) {
-        this.keepMs = keepMs;
-        this.samples = []; // { at, bytes, data, [stage]: ms }
-    }
-
-    // hereUs: the server's clock when the frame was decoded; null: not known.
-    add(frame, decodeMs, at, hereUs) {
-        const network = hereUs === null ? null : Math.max(0, (hereUs - frame.sentTimeUs) / 1000 - decodeMs);
-        this.samples.push({
-            at, bytes: frame.payload?.length ?? 0, data: frame.data === true, network, decode: decodeMs,
-            wait: frame.waitUs / 1000, field: frame.fieldUs / 1000, render: frame.renderUs / 1000, encode: frame.encodeUs / 1000,
-        });
-        while (at - this.samples[0].at > this.keepMs)
-            this.samples.shift();
-    }
-
-    // { p50, p95 } of a stage, or of `sensor`: from a reading that changed to the picture that was made for it; null: none.
-    of(name) {
-        const whole = (s) => (s.data ? STAGES.reduce((sum, stage) => sum + (s[stage] ?? 0), 0) : null);
-        const known = this.samples.map((s) => (name === 'sensor' ? whole(s) : s[name])).filter((ms) => ms !== null);
-        known.sort((a, b) => a - b);
-        return known.length > 0 ? { p50: rank(known, 0.5), p95: rank(known, 0.95) } : null;
-    }
-
-    kbitPerS(now) {
-        const recent = this.samples.filter((s) => now - s.at <= this.keepMs);
-        return (recent.reduce((sum, s) => sum + s.bytes, 0) * 8) / this.keepMs;
-    }
-
-    clear() {
-        this.samples = [];
-    }
+// Milliseconds by stage; null: not known. hereUs: the server's clock when the picture was decoded, or null.
+function stages({ picture, decodeMs, hereUs }) {
+    const network = hereUs === null ? null : Math.max(0, (hereUs - picture.sentTimeUs) / 1000 - decodeMs);
+    return { network, decode: decodeMs, ...Object.fromEntries(STATED.map((name) => [name, picture[`${name}Us`] / 1000])) };
 }
+
+// recent: pictures as a session has them. { p50, p95 } of a stage, or of `sensor`: from a reading that changed to the picture that was made
+// for it; null: none.
+export function timingOf(recent, name) {
+    const whole = (one) => (one.picture.data ? Object.values(stages(one)).reduce((sum, ms) => sum + (ms ?? 0), 0) : null);
+    const known = recent.map((one) => (name === 'sensor' ? whole(one) : stages(one)[name])).filter((ms) => ms !== null);
+    known.sort((a, b) => a - b);
+    return known.length > 0 ? { p50: rank(known, 0.5), p95: rank(known, 0.95) } : null;
+}
+
+// Of those within so long before now.
+export const kbitPerS = (recent, now, withinMs = 5000) =>
+    (recent.filter(({ picture }) => now - picture.at <= withinMs).reduce((sum, { picture }) => sum + picture.bytes, 0) * 8) / withinMs;

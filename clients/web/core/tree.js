@@ -76,16 +76,3 @@ function find({ asset, tags, text }, words) {
     const those = tags.filter((one) => words.every((word) => one.text.includes(word) || text.includes(word)));
     return those.length > 0 ? { asset, tags: those, byTag: true } : null;
 }
-
-// The address of a link for an asset or a tag; null: it is not one to follow.
-export function linkUrl({ of, url }, item) {
-    const fields = of === 'tag' ? { name: item.name, asset: item.asset, group: item.group } :
-        { id: item.id, tag: item.tag, area: item.area };
-    const text = url.replace(/\{(\w+)\}/g, (_, name) => encodeURIComponent(fields[name] ?? ''));
-    try {
-        const { protocol, href } = new URL(text);
-        return protocol === 'https:' || protocol === 'http:' ? href : null;
-    } catch {
-        return null;
-    }
-}

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where else one reads about assets and tags: links by the plant's templates.
+
+// The address of a link for an asset or a tag; null: it is not one to follow.
+export function linkUrl({ of, url }, item) {
+    const fields = of === 'tag' ? { name: item.name, asset: item.asset, group: item.group } :
+        { id: item.id, tag: item.tag, area: item.area };
+    const text = url.replace(/\{(\w+)\}/g, (_, name) => encodeURIComponent(fields[name] ?? ''));
+    try {
+        const { protocol, href } = new URL(text);
+        return protocol === 'https:' || protocol === 'http:' ? href : null;
+    } catch {
+        return null;
+    }
+}
