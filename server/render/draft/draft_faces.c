@@ -2,8 +2,7 @@
 /* The vertices of a part into the picture, and those of its triangles that cover a pixel's middle there and look this way. */
 #include "render/draft/draft_tile.h"
 
-#define FARTHEST 1e6f      /* columns: what lies so far outside the scale is outside all the same */
-#define LITTLE 1.02f       /* from the nearest to the farthest: perspective is not seen */
+#define FARTHEST 1e6f /* columns: what lies so far outside the scale is outside all the same */
 
 /* --- vertices --------------------------------------------------------------------------------------------------------------- */
 
@@ -46,7 +45,7 @@ DRAFT_KERNEL void draft_place_part(struct draft_tile *tile, const struct draft_m
     }
     corners->count = part->vertex_count;
     corners->cut = least == 0;
-    corners->flat = most <= LITTLE * least;
+    corners->flat = most <= DRAFT_LITTLE * least;
 }
 
 /* As palette_column and palette_row in shaders/field.glsl. numbers: of those that carry, up to whole lanes. */

@@ -16,6 +16,8 @@ enum { LANES = 8 };
 typedef float lanes __attribute__((vector_size(32), aligned(4)));
 typedef int32_t lanes_int __attribute__((vector_size(32), aligned(4)));
 typedef uint32_t lanes_uint __attribute__((vector_size(32), aligned(4)));
+typedef float quad __attribute__((vector_size(16), aligned(4)));
+typedef int32_t quad_int __attribute__((vector_size(16), aligned(4)));
 typedef int64_t lanes_pair __attribute__((vector_size(16)));
 
 DRAFT_INLINE lanes lanes_choose(lanes_int mask, lanes a, lanes b)

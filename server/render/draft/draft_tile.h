@@ -9,6 +9,8 @@ enum { TILE_WIDTH_PX = 320, TILE_HEIGHT_PX = 184, BLOCK_PX = 8 };
 enum { BLOCK_COLUMNS = TILE_WIDTH_PX / BLOCK_PX, BLOCK_ROWS = TILE_HEIGHT_PX / BLOCK_PX };
 enum { MOST_FACES = 2 * PART_TRIANGLES, MOST_CORNERS = PART_VERTICES + 4 * PART_TRIANGLES }; /* the near plane may make two of one */
 
+#define DRAFT_LITTLE 1.02f /* from the nearest to the farthest: perspective is not seen */
+
 struct draft_corners { /* vertices of a part, as struct draft_vertex, then those that the near plane made */
     float x[MOST_CORNERS], y[MOST_CORNERS], depth[MOST_CORNERS], inverse_w[MOST_CORNERS], a[MOST_CORNERS], b[MOST_CORNERS];
     uint32_t flags[MOST_CORNERS];
