@@ -80,7 +80,8 @@ static void test_home(void **state)
 
 static void test_sizes(void **state)
 {
-    static const int sizes[][2] = { { 16, 16 }, { 17, 33 }, { 333, 217 }, { 64, 500 }, { 1001, 31 }, { 200, 185 } }; /* 185: a tile of one row */
+    enum { ONE_ROW_MORE = 185 }; /* than a tile has */
+    static const int sizes[][2] = { { 16, 16 }, { 17, 33 }, { 333, 217 }, { 64, 500 }, { 1001, 31 }, { 200, ONE_ROW_MORE } };
     (void)state;
     for (size_t i = 0; i < sizeof(sizes) / sizeof(sizes[0]); i++) {
         struct view view;
