@@ -56,13 +56,14 @@ sim_sources      := $(filter-out %/generate.c,$(wildcard deploy/demo/*.c))
 generate_sources := $(wildcard deploy/demo/generate*.c deploy/demo/generate/*.c)
 sim_sources      := $(filter-out $(generate_sources),$(sim_sources))
 sim_archive      := $(if $(sim_sources),$(out)/lib/sim.a)
-prep_sources     := $(filter-out %/main.c,$(wildcard preprocess/*.c preprocess/*.cc))
+prep_sources     := $(filter-out %/main.c %/image_later.c,$(wildcard preprocess/*.c preprocess/*.cc))
 programs := $(if $(wildcard server/main.c),$(bin)/plantcastd) $(if $(wildcard preprocess/main.c),$(bin)/plantcast-prep) \
             $(if $(wildcard clients/cli/main.c),$(bin)/plantcast) $(if $(sim_sources),$(bin)/plantcast-sim) \
             $(if $(generate_sources),$(bin)/plantcast-demo)
+modules  := $(bin)/plantcast-images.so
 
 .PHONY: all programs run demo test test-long bench gpu-bench style layers headers deps test-deps golden-update install clean help
-all: $(programs) clients/web/vendor/uPlot.js clients/web/made/version.js
+all: $(programs) $(modules) clients/web/vendor/uPlot.js clients/web/made/version.js
 # The page's charts: asked for again with each make until they are there.
 clients/web/vendor/uPlot.js: clients/web/package-lock.json
 	@echo "  NPM  $(@D)"; deploy/vendor $(build)/npm; [ ! -f $@ ] || touch $@
@@ -74,8 +75,10 @@ programs: all
 
 $(bin)/plantcastd: $(call objects,$(wildcard server/*.c)) $(archives)
 	$(link)
-$(bin)/plantcast-prep: $(call objects,preprocess/main.c) $(out)/lib/prep.a $(archives)
+$(bin)/plantcast-prep: $(call objects,preprocess/main.c preprocess/image_later.c) $(out)/lib/prep.a $(archives) | $(modules)
 	$(link)
+$(bin)/plantcast-images.so: $(patsubst %,$(out)/obj/server/base/%.pic.o,image_shim mem)
+	@mkdir -p $(@D); echo "  LINK $@"; $(CXX) $(ldflags) -shared -o $@ $^ $(pkg_libs)
 cli_sources := $(if $(filter h264,$(CODECS)),,clients/cli/video.c)
 cli_sources := $(filter-out $(cli_sources),$(wildcard clients/cli/*.c))
 $(bin)/plantcast: $(call objects,$(cli_sources)) $(archives)
@@ -106,6 +109,12 @@ $(out)/obj/%.o: %.c Makefile $(out)/codecs | $(gen)/glad/include/glad/gl.h
 $(out)/obj/%.o: %.cc Makefile
 	@mkdir -p $(@D); echo "  CXX  $<"
 	@$(CXX) $(cxxflags) -c -o $@ $<
+$(out)/obj/%.pic.o: %.c Makefile
+	@mkdir -p $(@D); echo "  CC   $< (shared)"
+	@$(CC) $(cflags) -fPIC -c -o $@ $<
+$(out)/obj/%.pic.o: %.cc Makefile
+	@mkdir -p $(@D); echo "  CXX  $< (shared)"
+	@$(CXX) $(cxxflags) -fPIC -c -o $@ $<
 $(out)/obj/gen/%.o: $(gen)/%.c
 	@mkdir -p $(@D)
 	@$(CC) $(cflags) -w -c -o $@ $<

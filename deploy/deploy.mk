@@ -21,6 +21,7 @@ $(build)/demo/plant.yaml: $(bin)/plantcast-demo
 
 prefix ?= /usr/local
 install: all
-	install -d $(DESTDIR)$(prefix)/bin $(DESTDIR)$(prefix)/share/plantcast
+	install -d $(DESTDIR)$(prefix)/bin $(DESTDIR)$(prefix)/lib/plantcast $(DESTDIR)$(prefix)/share/plantcast
 	install -m 755 $(programs) $(DESTDIR)$(prefix)/bin
+	install -m 755 $(modules) $(DESTDIR)$(prefix)/lib/plantcast
 	cp -r clients/web $(DESTDIR)$(prefix)/share/plantcast/

@@ -20,6 +20,7 @@
 #include "base/text.h"
 #include "preprocess/folder.h"
 #include "tests/support/glb.h"
+#include "tests/support/model_seeds.h"
 #include "tests/support/prep_case.h"
 #include "tests/support/temp.h"
 
@@ -265,6 +266,47 @@ static void distances_are_printed(void **state)
     prep_case_expect(s, "distances $PLANT --asset B", 2);
 }
 
+/* The program reads images by a module beside it, which most plants never need. */
+static void textures_are_read(void **state)
+{
+    struct prep_case *c = *state;
+    struct sheet sheet;
+    struct seed seed = { 0 };
+    sheet_init(&sheet, 8, 4);
+    for (int i = 0; i < SEED_COUNT && (!seed.name || strcmp(seed.name, "textured.glb") != 0); i++) {
+        mem_free(seed.bytes);
+        seed_make(&seed, i, &sheet);
+    }
+    assert_string_equal(seed.name, "textured.glb");
+    mem_free(temp_write(c->folder, "model.glb", seed.bytes, seed.size));
+    prep_case_plant(c, "plant: { name: Textured }\nassets: [{ id: A, model: model.glb }]\n"
+                       "groups: [{ id: temperature, unit: K, min: 0, max: 1 }]\ntags: tags.csv\n");
+    prep_case_tags(c, "");
+    prep_case_expect(c, "$PLANT --report json", 0);
+    json_t *report = prep_case_json(&c->out);
+    assert_true(prep_case_number(report, "assets.0.textures") == 1);
+    json_decref(report);
+    char *bin = mem_strdup(getenv("PLANTCAST_BIN") ? getenv("PLANTCAST_BIN") : "build"), *installed = temp_path(c->folder, "bin");
+    char *copy =
+        mem_printf("mkdir -p '%s'/bin '%s'/lib/plantcast && cp '%s'/plantcast-prep '%s'/bin", c->folder, c->folder, bin, c->folder);
+    char *module = mem_printf("cp '%s'/plantcast-images.so '%s'/lib/plantcast", bin, c->folder);
+    assert_int_equal(system(copy), 0);
+    setenv("PLANTCAST_BIN", installed, 1);
+    int alone = prep_case_run(c, "$PLANT --output $FOLDER/alone");
+    prep_case_says(&c->err, "plantcast-images.so");
+    int copied = system(module), with = prep_case_run(c, "$PLANT --output $FOLDER/alone");
+    setenv("PLANTCAST_BIN", bin, 1);
+    assert_int_equal(alone, 1);
+    assert_int_equal(copied, 0);
+    assert_int_equal(with, 0);
+    mem_free(installed);
+    mem_free(module);
+    mem_free(copy);
+    mem_free(bin);
+    mem_free(seed.bytes);
+    sheet_finish(&sheet);
+}
+
 static void what_is_wrong_is_said_with_its_place(void **state)
 {
     struct prep_case *s = *state;
@@ -314,6 +356,7 @@ int main(void)
         WITH_PLANT(two_at_a_time_take_turns),
         WITH_PLANT(who_waits_says_for_whom_and_can_be_stopped),
         WITH_PLANT(distances_are_printed),
+        WITH_PLANT(textures_are_read),
         WITH_PLANT(what_is_wrong_is_said_with_its_place),
         WITH_PLANT(wrong_use_is_told_from_wrong_input),
     };
