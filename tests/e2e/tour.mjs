@@ -78,6 +78,10 @@ test('its trend, and the instant before it began', options, async () => {
     await page.waitForFunction(() => globalThis.plantcast.session.picture.past);
     assert.match(await page.locator('#banner').textContent(), /History/);
     await settle(page);
+    const [banner, card, legend, picture] = await Promise.all(['#banner', '#card', '#legend', '#viewport'].map((id) =>
+        page.locator(id).boundingBox()));
+    assert.ok(card.y >= banner.y + banner.height, 'nothing lies over the card');
+    assert.ok(legend.y + legend.height <= picture.y + picture.height, 'the legend is whole');
     await keep('4-past');
     await page.locator('#time-live').click();
     await page.waitForFunction(() => globalThis.plantcast.session.time.atUs === null && !globalThis.plantcast.session.picture.past);

@@ -3,10 +3,9 @@
 import { ageText, decimalsFor, numberText, qualityText, unitText } from '../core/format.js';
 import { say } from '../core/words.js';
 import { linksOf } from './about.js';
+import { standBeside } from './cards.js';
 import { clock } from './clock.js';
 import { byId, closeButton, fill, glyph, make, setText } from './dom.js';
-
-const AWAY_PX = 16, WIDTH_PX = 248;
 
 export class Card {
     constructor({ session, selection, overlay, viewport, selectTag, showTrend }) {
@@ -74,18 +73,8 @@ export class Card {
             links.length > 0 ? make('p', { class: 'links' }, ...links) : null);
     }
 
-    // Beside its marker, on the side with more room; in a corner while the marker is out of the picture.
     place(marker) {
-        const { width, height } = this.viewport;
-        const tall = this.element.offsetHeight;
-        let x = 12, y = height - tall - 12;
-        if (marker) {
-            const at = this.overlay.placeOf(marker);
-            x = at.x < width / 2 ? at.x + AWAY_PX : at.x - AWAY_PX - WIDTH_PX;
-            y = at.y - tall / 2;
-        }
-        x = Math.max(8, Math.min(width - WIDTH_PX - 8, x));
-        y = Math.max(8, Math.min(height - tall - 8, y));
-        this.element.style.transform = `translate(${Math.round(x)}px, ${Math.round(y)}px)`;
+        const at = marker && this.overlay.placeOf(marker);
+        standBeside(this.element, this.viewport, at && [at.x, at.y]);
     }
 }

@@ -4,9 +4,10 @@ import { projector } from '../core/camera.js';
 import { decimalsFor, numberText, unitText } from '../core/format.js';
 import { halves } from '../core/halves.js';
 import { say } from '../core/words.js';
+import { standBeside } from './cards.js';
 import { byId, closeButton, fill, glyph, make } from './dom.js';
 
-const AWAY_PX = 14, WIDTH_PX = 248, SAME_M = 0.05;
+const SAME_M = 0.05;
 
 export class Place {
     // showAsset(how, asset): hides it, shows it alone, ...
@@ -109,15 +110,9 @@ export class Place {
         this.close();
     }
 
-    // Beside its place, in step with the picture.
+    // In step with the picture.
     show() {
-        if (!this.picked)
-            return;
-        const { width, height } = this.viewport;
-        const tall = this.element.offsetHeight, at = this.project() ?? [12, height];
-        const x = at[0] < width / 2 ? at[0] + AWAY_PX : at[0] - AWAY_PX - WIDTH_PX;
-        const within = (low, n, high) => Math.round(Math.max(low, Math.min(high, n)));
-        const left = within(8, x, width - WIDTH_PX - 8), top = within(8, at[1] - tall / 2, height - tall - 8);
-        this.element.style.transform = `translate(${left}px, ${top}px)`;
+        if (this.picked)
+            standBeside(this.element, this.viewport, this.project());
     }
 }
