@@ -77,7 +77,7 @@ function ask(port, line) {
 // A plant file of its own, with a port of its own; everything else is the demo's.
 function copyPlant(folder, modbusPort, more) {
     for (const name of readdirSync(DEMO)) {
-        if (name !== 'plant.yaml')
+        if (name !== 'plant.yaml' && !name.endsWith('.history')) // what was recorded elsewhere stays there
             symlinkSync(join(DEMO, name), join(folder, name));
     }
     const text = readFileSync(join(DEMO, 'plant.yaml'), 'utf8');
@@ -89,14 +89,15 @@ function copyPlant(folder, modbusPort, more) {
     return join(folder, 'plant.yaml');
 }
 
-// more: what else the plant file says.
-export async function startPlant(more = '') {
+// more: what else the plant file says. arrange(plant): what to do once its simulator runs, before its daemon does.
+export async function startPlant(more = '', arrange = () => {}) {
     const folder = mkdtempSync(join(tmpdir(), 'plantcast-e2e-'));
     const [modbusPort, controlPort, httpPort] = [await freePort(), await freePort(), await freePort()];
     const file = copyPlant(folder, modbusPort, more);
     const startDaemon = () => start('plantcastd', [file, '--port', String(httpPort)], 'plantcastd: ready');
     let sim, daemon;
     const plant = {
+        file,
         url: `http://127.0.0.1:${httpPort}/`,
         ask: (line) => ask(controlPort, line),
         stopDaemon: (signal) => daemon.end(signal),
@@ -118,6 +119,7 @@ export async function startPlant(more = '') {
     };
     try {
         sim = await start('plantcast-sim', [file, '--port', String(modbusPort), '--control', String(controlPort)], 'plantcast-sim:');
+        await arrange(plant);
         await plant.startDaemon();
     } catch (error) {
         await plant.stop();
