@@ -291,6 +291,24 @@ static void false_claims_of_draco_are_refused(void **state)
     json_object_set_new(maker_get(&maker, "bufferViews", 0), "byteLength", json_integer(100));
     try_model(l, &maker);
     assert_refused(l, "KHR_draco_mesh_compression: ");
+    maker = seed_open(12, "draco_sequential.glb", &sheet);
+    json_object_set_new(maker_get(&maker, "bufferViews", 0), "byteLength", json_integer(12));
+    try_model(l, &maker);
+    assert_refused(l, "mesh 0 'm', primitive 0: KHR_draco_mesh_compression: truncated at 12 bytes");
+    maker = seed_open(11, "draco_edgebreaker.glb", &sheet);
+    maker.bin.at[0] = 'X';
+    try_model(l, &maker);
+    assert_refused(l, "bytes without its mark");
+    maker = seed_open(11, "draco_edgebreaker.glb", &sheet);
+    maker.bin.at[5] = 1;
+    try_model(l, &maker);
+    assert_refused(l, "version 1.2, type 1, method 1: only meshes of version 2.2 are read");
+    maker = seed_open(11, "draco_edgebreaker.glb", &sheet);
+    json_object_set_new(json_object_get(json_object_get(json_object_get(primitive_of(&maker), "extensions"), "KHR_draco_mesh_compression"),
+                                        "attributes"),
+                        "TANGENT", json_integer(0));
+    try_model(l, &maker);
+    assert_refused(l, "mesh 0 'm', primitive 0: Draco holds TANGENT, which the primitive does not have");
     sheet_finish(&sheet);
 }
 
@@ -528,6 +546,15 @@ static void textures_lie_where_their_transform_puts_them(void **state)
     json_object_set_new(maker_get(&maker, "materials", 0), "alphaMode", json_string("GLOW"));
     try_model(l, &maker);
     assert_refused(l, "alphaMode 'GLOW'");
+
+    maker = seed_open(15, "textured.glb", &sheet); /* its picture is broken, which is seen when it is needed */
+    const json_t *number = json_object_get(maker_get(&maker, "images", 0), "bufferView");
+    const json_t *view = maker_get(&maker, "bufferViews", (int)json_integer_value(number));
+    memset(maker.bin.at + json_integer_value(json_object_get(view, "byteOffset")), 'X', 16);
+    try_model(l, &maker);
+    assert_good(l);
+    assert_false(geometry_cut(&g, &l->model, &(struct geometry_params){ .unit_m = 1, .up = AXIS_Y }, why));
+    assert_non_null(strstr(why, "image 0 '"));
     sheet_finish(&sheet);
 }
 
