@@ -81,6 +81,29 @@ test('a distance between two places', options, async () => {
     assert.equal(await page.locator('#card').isVisible(), false, 'a click that measures selects nothing');
 });
 
+test('a pen turns the picture, and the measurements say how soon it did', options, async () => {
+    await page.keyboard.press('m');
+    await page.locator('#timings').waitFor();
+    const kinds = page.evaluate(() => new Promise((done) => {
+        document.getElementById('viewport').addEventListener('pointerdown', ({ pointerType }) => done(pointerType), { once: true });
+    }));
+    const { eye } = (await view(page)).camera, { x, y } = await placeOf([0, 0, 0.5]);
+    const client = await page.context().newCDPSession(page);
+    const pen = (type, dx) => client.send('Input.dispatchMouseEvent', { type, x: x + dx, y, button: 'left', buttons: 1, clickCount: 1,
+        pointerType: 'pen' });
+    await pen('mousePressed', 0);
+    for (const dx of [20, 50, 90])
+        await pen('mouseMoved', dx);
+    await pen('mouseReleased', 90);
+    assert.equal(await kinds, 'pen');
+    await page.waitForFunction((from) => Math.hypot(...globalThis.plantcast.session.camera.eye.map((m, i) => m - from[i])) > 0.3, eye);
+    await page.waitForFunction(() => /Input to picture\D*\d/.test(document.getElementById('timings').textContent));
+    await settle(page);
+    await shoot(page, 'timings');
+    await page.keyboard.press('m');
+    assert.equal(await page.locator('#timings').isVisible(), false);
+});
+
 test('the picture that is kept is the one that is seen', options, async () => {
     await page.evaluate(() => globalThis.plantcast.session.setParams({ colormap: 'cividis', range: [0, 120], ghost: ['P-101A'] }));
     await settle(page, 1000);
