@@ -240,6 +240,36 @@ uint32_t cutmesh_insert(struct cutmesh *mesh, size_t tri, const double weights[3
     return vertex;
 }
 
+/* --- turning -------------------------------------------------------------------------------------------------------------- */
+
+/* The corners in their order, the first two at the edge. */
+static void corners_from(const struct cut_tri *tri, uint32_t edge, uint32_t v[3])
+{
+    int first = tri->e[0] == edge ? 0 : tri->e[1] == edge ? 1 : 2;
+    for (int i = 0; i < 3; i++)
+        v[i] = tri->v[(first + i) % 3];
+}
+
+uint32_t cutmesh_across(struct cutmesh *mesh, const uint32_t tris[2], uint32_t edge)
+{
+    uint32_t v[3], w[3];
+    corners_from(&mesh->tris[tris[0]], edge, v);
+    corners_from(&mesh->tris[tris[1]], edge, w);
+    if (v[0] != w[1] || v[1] != w[0] || place_of(mesh, v[2]) == place_of(mesh, w[2]))
+        return TRIMESH_NONE;
+    return edge_of(mesh, v[2], w[2], mesh->tris[tris[0]].origin);
+}
+
+void cutmesh_turn(struct cutmesh *mesh, const uint32_t tris[2], uint32_t edge)
+{
+    const struct cut_tri old[2] = { mesh->tris[tris[0]], mesh->tris[tris[1]] };
+    uint32_t v[3], w[3];
+    corners_from(&old[0], edge, v);
+    corners_from(&old[1], edge, w);
+    mesh->tris[tris[0]] = make_tri(mesh, &old[0], v[0], w[2], v[2]);
+    mesh->tris[tris[1]] = make_tri(mesh, &old[1], w[2], v[1], v[2]);
+}
+
 void cutmesh_normal(const struct cutmesh *mesh, const struct cut_edge *edge, double normal[3])
 {
     for (int i = 0; i < 3; i++)

@@ -55,6 +55,12 @@ size_t cutmesh_apply(struct cutmesh *mesh);
 /* Puts a new vertex into a triangle. Returns it. */
 uint32_t cutmesh_insert(struct cutmesh *mesh, size_t tri, const double weights[3], const float position_m[3]);
 
+/* Two triangles at an edge whose corners there are the same vertices: tris[1] has them the other way round. The edge between their other
+   corners, which need not be in the level; TRIMESH_NONE: they are no such two. */
+uint32_t cutmesh_across(struct cutmesh *mesh, const uint32_t tris[2], uint32_t edge);
+/* Has that edge in place of this one. */
+void cutmesh_turn(struct cutmesh *mesh, const uint32_t tris[2], uint32_t edge);
+
 /* Which way the surface looks at an edge; of no certain length. */
 void cutmesh_normal(const struct cutmesh *mesh, const struct cut_edge *edge, double normal[3]);
 

@@ -99,13 +99,18 @@ static bool shares_triangle(const struct deviation *surface, const uint32_t indi
 
 struct probing {
     const struct deviation *from, *to;
+    const char *only; /* by part: it is probed; NULL: all are */
+    bool anywhere;    /* against all of `to`, or each part against itself */
     double expected_m;
-    float *found_m; /* of each point, then of each triangle */
+    const float *known_m; /* of each part, from before: what is no farther is of no interest */
+    float *found_m;       /* of each point, then of each triangle */
 };
 
 struct probe { /* a point, and the part that it is of */
     const struct deviation *to;
+    bool anywhere; /* against all of `to` */
     uint32_t part;
+    double known_m;
     double point[3];
 };
 
@@ -120,23 +125,31 @@ static bool is_of_part(const void *arg, uint32_t tri)
     return part_of(probe->to, tri) == probe->part;
 }
 
-/* Looks near by first: most points are where they should be. */
+/* 0: no more than is known. Looks near by first: most points are where they should be. */
 static double distance_of(const struct probe *probe, double expected_m)
 {
     struct bvh_place place;
-    if (!probe->to->has_part[probe->part])
+    bool (*counts)(const void *, uint32_t) = probe->anywhere ? NULL : is_of_part;
+    if (!probe->anywhere && !probe->to->has_part[probe->part])
         return INFINITY;
-    bvh_nearest(probe->to->bvh, probe->point, 2 * expected_m, is_of_part, probe, &place);
+    if (isinf(probe->known_m) || (probe->known_m > 0 && bvh_any_within(probe->to->bvh, probe->point, probe->known_m, counts, probe)))
+        return 0;
+    bvh_nearest(probe->to->bvh, probe->point, 2 * expected_m, counts, probe, &place);
     if (place.tri == TRIMESH_NONE)
-        bvh_nearest(probe->to->bvh, probe->point, INFINITY, is_of_part, probe, &place);
+        bvh_nearest(probe->to->bvh, probe->point, INFINITY, counts, probe, &place);
     return place.distance_m;
+}
+
+static struct probe probe_of(const struct probing *probing, uint32_t part)
+{
+    return (struct probe){ .to = probing->to, .anywhere = probing->anywhere, .part = part, .known_m = (double)probing->known_m[part] };
 }
 
 static void probe_point(const struct probing *probing, size_t i)
 {
     const struct deviation *from = probing->from;
-    struct probe probe = { .to = probing->to, .part = from->part[from->index[i]] };
-    if (shares_point(probing->to, from->index[i]))
+    struct probe probe = probe_of(probing, from->part[from->index[i]]);
+    if ((probing->only && !probing->only[probe.part]) || shares_point(probing->to, from->index[i]))
         return;
     memcpy(probe.point, from->mesh.points[i], sizeof(probe.point));
     probing->found_m[i] = (float)distance_of(&probe, probing->expected_m);
@@ -152,7 +165,7 @@ static double probe_at(const struct probing *probing, size_t t, const double w[3
 {
     const struct trimesh *mesh = &probing->from->mesh;
     const uint32_t *v = mesh->tris[t];
-    struct probe probe = { .to = probing->to, .part = part_of(probing->from, (uint32_t)t) };
+    struct probe probe = probe_of(probing, part_of(probing->from, (uint32_t)t));
     for (int axis = 0; axis < 3; axis++)
         probe.point[axis] = w[0] * mesh->points[v[0]][axis] + w[1] * mesh->points[v[1]][axis] + w[2] * mesh->points[v[2]][axis];
     return distance_of(&probe, probing->expected_m);
@@ -175,6 +188,8 @@ static void probe_triangle(const struct probing *probing, size_t t)
 {
     const struct deviation *from = probing->from;
     const uint32_t *v = from->mesh.tris[t], indices[3] = { from->index[v[0]], from->index[v[1]], from->index[v[2]] };
+    if (probing->only && !probing->only[part_of(from, (uint32_t)t)])
+        return;
     double longest_m = longest_edge(&from->mesh, v), most_m;
     if (longest_m <= probing->expected_m || shares_triangle(probing->to, indices))
         return;
@@ -195,10 +210,11 @@ static void probe_some(void *arg, size_t begin, size_t end)
             probe_triangle(probing, i - probing->from->mesh.point_count);
 }
 
-void deviation_measure(const struct deviation *from, const struct deviation *to, double expected_m, float *apart_m, struct workers *workers)
+static void measure(const struct deviation *from, const struct deviation *to, const char *only, bool anywhere, double expected_m,
+                    float *apart_m, struct workers *workers)
 {
     size_t points = from->mesh.point_count, count = points + from->mesh.tri_count;
-    struct probing probing = { .from = from, .to = to, .expected_m = expected_m, .found_m = mem_array(count, sizeof(float)) };
+    struct probing probing = { from, to, only, anywhere, expected_m, apart_m, mem_array(count, sizeof(float)) };
     if (workers)
         workers_for(workers, count, 1024, probe_some, &probing);
     else
@@ -208,4 +224,16 @@ void deviation_measure(const struct deviation *from, const struct deviation *to,
         *at = *at < probing.found_m[i] ? probing.found_m[i] : *at;
     }
     mem_free(probing.found_m);
+}
+
+void deviation_measure(const struct deviation *from, const struct deviation *to, const char *only, double expected_m, float *apart_m,
+                       struct workers *workers)
+{
+    measure(from, to, only, false, expected_m, apart_m, workers);
+}
+
+void deviation_measure_lost(const struct deviation *from, const struct deviation *to, const char *lost, double expected_m, float *apart_m,
+                            struct workers *workers)
+{
+    measure(from, to, lost, true, expected_m, apart_m, workers);
 }

@@ -23,9 +23,12 @@ void deviation_init(struct deviation *surface, const float (*positions_m)[3], co
 void deviation_finish(struct deviation *surface);
 
 /* Raises apart_m[part] to the largest distance from points of `from` to the same part of `to`: from its corners, and from inner points of
-   triangles larger than the distances that matter, but for what both have. INFINITY where `to` has nothing of that part. expected_m: about
-   what is hoped for. workers may be NULL. */
-void deviation_measure(const struct deviation *from, const struct deviation *to, double expected_m, float *apart_m,
+   triangles larger than the distances that matter, but for what both have. INFINITY where `to` has nothing of that part. only: by part, or
+   NULL: all. expected_m: about what is hoped for. workers may be NULL. */
+void deviation_measure(const struct deviation *from, const struct deviation *to, const char *only, double expected_m, float *apart_m,
                        struct workers *workers);
+/* The same of parts that are lost, to whatever of `to` is nearest: where they lay on others, those are seen in their place. */
+void deviation_measure_lost(const struct deviation *from, const struct deviation *to, const char *lost, double expected_m, float *apart_m,
+                            struct workers *workers);
 
 #endif

@@ -10,11 +10,14 @@
 #include "base/mem.h"
 #include "preprocess/levels_impl.h"
 
-#define LEVEL_WORTH 0.7 /* of the triangles of the level before, at most; */
-#define WAIT 1.25       /* and then for so many times the error, what else comes */
-#define FARTHEST 0.08   /* of the size: a level that errs by more is never drawn larger than a dozen pixels */
+#define NEAR_WORTH 0.6      /* of the triangles of the level before, at most; */
+#define FAR_TRIANGLES 20000 /* of those with no more, many instances are drawn in one picture, so these lie closer together: */
+#define FAR_WORTH 0.85      /* likewise, */
+#define STEP 1.3            /* and at so many times its error, at least */
+#define WAIT 1.1            /* times the error, for what else comes until then */
 
 struct making {
+    struct workers *workers;
     struct knots knots;
     struct versions versions;
     struct omission *omissions;
@@ -43,7 +46,7 @@ static int smallest_first(const void *a, const void *b)
 
 static size_t list_events(const struct making *making, struct event *events)
 {
-    double most_m = FARTHEST * making->knots.whole_m;
+    double most_m = LEVELS_FARTHEST * making->knots.whole_m;
     size_t count = 0;
     for (uint32_t p = 0; p < making->knots.part_count; p++) {
         for (uint32_t v = 1; v < making->versions.count; v++)
@@ -140,29 +143,36 @@ static void write_level(struct making *making, struct level *level, const uint32
     mem_free(fill);
 }
 
-/* A part that is left out errs by its distance from others, beside what those err by. They are larger, so this comes to an end. */
-static float error_of_part(const struct making *making, uint32_t part, float kept_m)
+/* What of a part that is left out lay on others is seen in their place. */
+static float error_of_lost(const struct making *making, const uint32_t *knots, size_t count, double expected_m)
 {
-    const struct omission *omission = &making->omissions[part];
-    float over_m = 0;
-    if (making->version[part] != ABSENT)
-        return making->versions.at[making->version[part]].error_m[part];
-    if (omission->alone)
-        return omission->from_m;
-    for (uint32_t i = 0; i < omission->over_count && i < OVER_MAX; i++)
-        over_m = fmaxf(over_m, error_of_part(making, omission->over[i], kept_m));
-    return omission->apart_m + (omission->over_count > OVER_MAX ? fmaxf(over_m, kept_m) : over_m);
+    const struct knots *of = &making->knots;
+    struct deviation level;
+    float *apart_m = mem_array(of->part_count, sizeof(*apart_m)), most_m = 0;
+    char *lost = mem_array(of->part_count, 1), any = 0;
+    for (uint32_t p = 0; p < of->part_count; p++)
+        any |= lost[p] = making->version[p] == ABSENT && !making->omissions[p].alone;
+    if (any) {
+        deviation_init(&level, (const float(*)[3])of->positions_m, of->part, of->part_count, knots, count / 3);
+        deviation_measure_lost(&making->versions.first, &level, lost, expected_m, apart_m, making->workers);
+        deviation_finish(&level);
+    }
+    for (uint32_t p = 0; p < of->part_count; p++)
+        most_m = fmaxf(most_m, apart_m[p]);
+    mem_free(apart_m);
+    mem_free(lost);
+    return most_m;
 }
 
-static float error_of(const struct making *making)
+static float error_of(const struct making *making, const uint32_t *knots, size_t count)
 {
-    float kept_m = 0, most_m = 0;
+    float most_m = 0;
     for (uint32_t p = 0; p < making->knots.part_count; p++)
         if (making->version[p] != ABSENT)
-            kept_m = fmaxf(kept_m, error_of_part(making, p, 0));
-    for (uint32_t p = 0; p < making->knots.part_count; p++)
-        most_m = fmaxf(most_m, error_of_part(making, p, kept_m));
-    return most_m;
+            most_m = fmaxf(most_m, making->versions.at[making->version[p]].error_m[p]);
+        else if (making->omissions[p].alone)
+            most_m = fmaxf(most_m, making->omissions[p].from_m);
+    return fmaxf(most_m, error_of_lost(making, knots, count, (double)most_m));
 }
 
 static void add_level(struct making *making, struct levels *levels)
@@ -179,7 +189,7 @@ static void add_level(struct making *making, struct levels *levels)
     }
     struct level *level = &levels->at[levels->count++];
     write_level(making, level, knots, count);
-    level->error_m = fmaxf(error_of(making), (level - 1)->error_m);
+    level->error_m = fmaxf(error_of(making, knots, count), (level - 1)->error_m);
     mem_free(knots);
 }
 
@@ -194,16 +204,23 @@ static void copy_finest(struct level *level, const struct geometry *g)
     memcpy(level->primitives, g->primitives, g->primitive_count * sizeof(*level->primitives));
 }
 
+/* Whether what there is so far is a level that is worth its room after the last one. */
+static bool is_worth(const struct making *making, const struct level *last, float error_m)
+{
+    double before = (double)(last->index_count / 3), now = (double)making->tri_count;
+    return now <= NEAR_WORTH * before || (before <= FAR_TRIANGLES && now <= FAR_WORTH * before && error_m >= (float)STEP * last->error_m);
+}
+
 static void make_coarse(struct making *making, struct levels *levels)
 {
     struct event *events = mem_array(making->knots.part_count * (making->versions.count + 1), sizeof(*events));
-    size_t count = list_events(making, events), last = making->tri_count;
+    size_t count = list_events(making, events);
     making->used = mem_array(making->knots.geometry->vertex_count, 1);
     making->version = mem_array(making->knots.part_count, sizeof(*making->version));
     memset(making->used, 1, making->knots.geometry->vertex_count);
     for (size_t i = 0; i < count && levels->count < LEVELS_MAX;) {
         let_happen(making, &events[i++]);
-        if ((double)making->tri_count > LEVEL_WORTH * (double)last)
+        if (!is_worth(making, &levels->at[levels->count - 1], events[i - 1].error_m))
             continue;
         float until_m = (float)WAIT * events[i - 1].error_m;
         while (i < count && events[i].error_m <= until_m)
@@ -211,14 +228,13 @@ static void make_coarse(struct making *making, struct levels *levels)
         if (making->tri_count == 0)
             break;
         add_level(making, levels);
-        last = making->tri_count;
     }
     mem_free(events);
 }
 
 bool levels_make(struct levels *levels, const struct geometry *geometry, struct workers *workers)
 {
-    struct making making = { .tri_count = geometry->index_count / 3 };
+    struct making making = { .workers = workers, .tri_count = geometry->index_count / 3 };
     *levels = (struct levels){ .count = 1 };
     bool good = knots_init(&making.knots, geometry);
     if (good) {

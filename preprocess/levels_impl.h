@@ -2,7 +2,10 @@
 /* What the files of the simplifying share. */
 #ifndef PREPROCESS_LEVELS_IMPL_H
 #define PREPROCESS_LEVELS_IMPL_H
+#include "preprocess/deviation.h"
 #include "preprocess/levels.h"
+
+#define LEVELS_FARTHEST 0.08 /* of the size: a level that errs by more is never drawn larger than a dozen pixels */
 
 /* --- knots and parts (levels_knots.c) --- */
 
@@ -36,6 +39,7 @@ struct version {
 struct versions {
     struct version at[VERSIONS_MAX]; /* the first as the model is */
     size_t count;
+    struct deviation first; /* its surface */
 };
 
 void versions_make(struct versions *versions, const struct knots *knots, struct workers *workers);
@@ -43,12 +47,9 @@ void versions_finish(struct versions *versions);
 
 /* --- parts that far levels leave out (levels_parts.c) --- */
 
-#define OVER_MAX 4
 struct omission {
-    float from_m;                        /* left out of levels that err by so much or more; INFINITY: of none */
-    float apart_m;                       /* no point of it is farther from others, */
-    uint32_t over[OVER_MAX], over_count; /* these; more than OVER_MAX: any */
-    bool alone;                          /* there are none near; it is no larger than from_m */
+    float from_m; /* left out of levels that err by so much or more; INFINITY: of none */
+    bool alone;   /* no others are near; it is no larger than from_m */
 };
 
 /* Of each part. A part may be left out where it lies on others that are much larger, and where it is no more than a pixel large, and so are

@@ -11,6 +11,7 @@
 
 #define MUCH_LARGER 4.0f /* times: a part that another may lie on */
 #define MOST_PX 8.0f     /* a part that lies on another is left out once it is no larger than so many pixels */
+#define OVER 1.5f        /* times as far as it is from those, their own error included, it will about err */
 #define SMALL 0.1        /* of the whole: larger parts are never left out */
 #define AROUND 4.0f      /* sizes: parts so near to each other are looked at together */
 #define PROBES 4         /* on each edge of a part's triangles */
@@ -60,47 +61,35 @@ static bool is_larger(const void *arg, uint32_t tri)
     return larger->search->knots->size_m[larger->search->part[tri]] > larger->than_m;
 }
 
-static void note_over(struct omission *omission, uint32_t part)
-{
-    for (uint32_t i = 0; i < omission->over_count && i < OVER_MAX; i++)
-        if (omission->over[i] == part)
-            return;
-    if (omission->over_count < OVER_MAX)
-        omission->over[omission->over_count] = part;
-    omission->over_count++;
-}
-
-/* How far a triangle's edges are from larger parts. INFINITY: beyond the limit. */
-static void look_from(const struct larger *larger, uint32_t tri, double limit_m, struct omission *omission)
+/* How far a triangle's edges are from larger parts, if that is more. INFINITY: beyond the limit. */
+static float look_from(const struct larger *larger, uint32_t tri, double limit_m, float apart_m)
 {
     const struct search *search = larger->search;
     const struct trimesh *mesh = &search->mesh;
-    for (int i = 0; i < 3 * PROBES && !isinf(omission->apart_m); i++) {
+    for (int i = 0; i < 3 * PROBES && !isinf(apart_m); i++) {
         const double *a = mesh->points[mesh->tris[tri][i / PROBES]], *b = mesh->points[mesh->tris[tri][(i / PROBES + 1) % 3]];
         double t = (double)(i % PROBES) / PROBES, point[3];
         struct bvh_place place;
         for (int axis = 0; axis < 3; axis++)
             point[axis] = a[axis] + t * (b[axis] - a[axis]);
         bvh_nearest(search->bvh, point, limit_m, is_larger, larger, &place);
-        omission->apart_m = place.tri == TRIMESH_NONE ? INFINITY : fmaxf(omission->apart_m, (float)place.distance_m);
-        if (place.tri != TRIMESH_NONE)
-            note_over(omission, search->part[place.tri]);
+        apart_m = place.tri == TRIMESH_NONE ? INFINITY : fmaxf(apart_m, (float)place.distance_m);
     }
+    return apart_m;
 }
 
 static void look_for_larger(void *arg, size_t begin, size_t end)
 {
     const struct search *search = arg;
     for (size_t p = begin; p < end; p++) {
-        float size_m = search->knots->size_m[p];
+        float size_m = search->knots->size_m[p], apart_m = 0;
         struct larger larger = { search, MUCH_LARGER * size_m };
-        struct omission *omission = &search->omissions[p];
         if ((double)size_m > SMALL * search->knots->whole_m)
             continue;
-        for (uint32_t i = search->first[p]; i < search->first[p + 1] && !isinf(omission->apart_m); i++)
-            look_from(&larger, search->tris[i], (double)size_m / 2, omission);
-        if (!isinf(omission->apart_m))
-            omission->from_m = fmaxf(omission->apart_m, size_m / MOST_PX);
+        for (uint32_t i = search->first[p]; i < search->first[p + 1] && !isinf(apart_m); i++)
+            apart_m = look_from(&larger, search->tris[i], (double)size_m / 2, apart_m);
+        if (!isinf(apart_m))
+            search->omissions[p].from_m = fmaxf(OVER * apart_m, size_m / MOST_PX);
     }
 }
 

@@ -5,10 +5,12 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "preprocess/deviation.h"
 #include "preprocess/levels_impl.h"
 
 #define SHRINK 0.55        /* of the triangles of the version before, are asked for */
+#define SHRINK_FAR 0.72    /* likewise where that has so many: levels that many instances are drawn with lie close together */
+#define FAR_LEAST 2000
+#define FAR_MOST 20000
 #define STUCK 0.9          /* likewise; a version with more is the last */
 #define LEAST_TRIANGLES 60 /* fewer are not simplified */
 #define NEAR 0.01          /* of the size: versions that err less keep open borders as they are, or hair gaps between patches would open */
@@ -34,9 +36,15 @@ static void count_tris(struct version *version, const struct knots *knots)
         version->tris[knots->part[version->knots[i]]]++;
 }
 
+static double shrink_of(const struct version *from)
+{
+    size_t tris = from->count / 3;
+    return tris >= FAR_LEAST && tris <= FAR_MOST ? SHRINK_FAR : SHRINK;
+}
+
 static size_t simplify(const struct knots *knots, const struct version *from, uint32_t *to, unsigned options, float *error)
 {
-    size_t target = (size_t)(SHRINK * (double)(from->count / 3)) * 3;
+    size_t target = (size_t)(shrink_of(from) * (double)(from->count / 3)) * 3;
     return meshopt_simplify(to, from->knots, from->count, &knots->positions_m[0][0], knots->count, sizeof(*knots->positions_m), target, 1,
                             options, error);
 }
@@ -47,7 +55,7 @@ static double halve(struct version *to, const struct version *from, const struct
     float error = 0;
     double scale_m = (double)meshopt_simplifyScale(&knots->positions_m[0][0], knots->count, sizeof(*knots->positions_m));
     to->count = simplify(knots, from, to->knots, meshopt_SimplifyLockBorder, &error);
-    if ((double)to->count > 1.1 * SHRINK * (double)from->count || (double)error * scale_m > NEAR * knots->whole_m)
+    if ((double)to->count > 1.1 * shrink_of(from) * (double)from->count || (double)error * scale_m > NEAR * knots->whole_m)
         to->count = simplify(knots, from, to->knots, 0, &error);
     return (double)error * scale_m;
 }
@@ -56,11 +64,15 @@ static void measure(struct version *version, const struct version *before, const
                     double expected_m, struct workers *workers)
 {
     struct deviation surface;
+    char *changed = mem_array(knots->part_count, 1);
     deviation_init(&surface, (const float(*)[3])knots->positions_m, knots->part, knots->part_count, version->knots, version->count / 3);
     memcpy(version->error_m, before->error_m, knots->part_count * sizeof(*version->error_m));
-    deviation_measure(&surface, first, expected_m, version->error_m, workers);
-    deviation_measure(first, &surface, expected_m, version->error_m, workers);
+    for (size_t p = 0; p < knots->part_count; p++)
+        changed[p] = version->tris[p] != before->tris[p] && (double)before->error_m[p] <= LEVELS_FARTHEST * knots->whole_m;
+    deviation_measure(&surface, first, changed, expected_m, version->error_m, workers);
+    deviation_measure(first, &surface, changed, expected_m, version->error_m, workers);
     deviation_finish(&surface);
+    mem_free(changed);
 }
 
 static void drop_last(struct versions *versions)
@@ -75,14 +87,13 @@ static void drop_last(struct versions *versions)
 void versions_make(struct versions *versions, const struct knots *knots, struct workers *workers)
 {
     const struct geometry *g = knots->geometry;
-    struct deviation first;
     versions->count = 0;
     struct version *model = add_version(versions, knots, g->index_count);
     model->count = g->index_count;
     for (size_t i = 0; i < model->count; i++)
         model->knots[i] = knots->of_vertex[g->indices[i]];
     count_tris(model, knots);
-    deviation_init(&first, (const float(*)[3])knots->positions_m, knots->part, knots->part_count, model->knots, model->count / 3);
+    deviation_init(&versions->first, (const float(*)[3])knots->positions_m, knots->part, knots->part_count, model->knots, model->count / 3);
     while (versions->count < VERSIONS_MAX && triangles_of(versions) > LEAST_TRIANGLES) {
         const struct version *before = &versions->at[versions->count - 1];
         struct version *version = add_version(versions, knots, before->count);
@@ -91,14 +102,14 @@ void versions_make(struct versions *versions, const struct knots *knots, struct 
             drop_last(versions);
             break;
         }
-        measure(version, before, knots, &first, fmax(BEYOND * error_m, 1e-5 * knots->whole_m), workers);
         count_tris(version, knots);
+        measure(version, before, knots, &versions->first, fmax(BEYOND * error_m, 1e-5 * knots->whole_m), workers);
     }
-    deviation_finish(&first);
 }
 
 void versions_finish(struct versions *versions)
 {
     while (versions->count)
         drop_last(versions);
+    deviation_finish(&versions->first);
 }

@@ -24,11 +24,11 @@
 /* How many triangles the finest level may get more: so much of its own, or so many, whichever is more. */
 #define FINEST_GROWTH 2.0
 #define FINEST_GROWTH_TRIS 100000.0
-#define WORTH 0.75          /* a coarser level that would get more than so much of the next finer one is of no use */
+#define WORTH 0.85          /* a coarser level that would get more than so much of the next finer one is of no use */
 #define SHORTEST_NEAR 0.125 /* pieces of the finest level, of the tolerance: sensors may stand side by side */
 #define SHORTEST 1.0        /* pieces of coarser levels, of their error: two pixels */
 #define JUMP_WIDTH 8        /* tolerances, or errors */
-#define SLACK 0.35          /* how far away a coarser level may show what the field is, likewise */
+#define SLACK 0.7           /* how far away a coarser level may show what the field is, likewise */
 
 /* --- cutting -------------------------------------------------------------------------------------------------------------- */
 
@@ -76,6 +76,20 @@ static bool is_line(const struct split *split, const struct cut_tri *tri)
     return sqrt(vec_dot(normal, normal)) <= LINE_OF_SIZE * split->size_m * longest_m;
 }
 
+void split_measure_new_edges(struct split *split, struct split_finding *findings, size_t count)
+{
+    split_measure_edges(split, findings, count, AIM);
+    for (size_t i = 0; i < count; i++) {
+        struct cut_edge *edge = &split->mesh.cuts[findings[i].number];
+        edge->error = findings[i].error;
+        edge->barred = findings[i].barred;
+        edge->jumps = findings[i].jumps;
+        edge->proven = findings[i].error <= (float)AIM && findings[i].barred <= (float)AIM;
+        if (edge->middle == TRIMESH_NONE)
+            edge->share = findings[i].share;
+    }
+}
+
 /* Measures edges that are new. One that only lines have is not seen; were it cut, they would become ever more. */
 static void measure_edges(struct split *split)
 {
@@ -97,16 +111,7 @@ static void measure_edges(struct split *split)
             struct cut_edge *edge = &mesh->cuts[mesh->tris[t].e[i]];
             edge->error = fmaxf(edge->error, 0);
         }
-    split_measure_edges(split, findings, count, AIM);
-    for (size_t i = 0; i < count; i++) {
-        struct cut_edge *edge = &mesh->cuts[findings[i].number];
-        edge->error = findings[i].error;
-        edge->barred = findings[i].barred;
-        edge->jumps = findings[i].jumps;
-        edge->proven = findings[i].error <= (float)AIM && findings[i].barred <= (float)AIM;
-        if (edge->middle == TRIMESH_NONE)
-            edge->share = findings[i].share;
-    }
+    split_measure_new_edges(split, findings, count);
     mem_free(findings);
 }
 
@@ -293,6 +298,7 @@ static void split_level(struct split *split, struct level *level, size_t finer_t
     static const double limits[] = { 16 * AIM, 4 * AIM, 2 * AIM, AIM };
     double error_m = (double)level->error_m, tolerance_m = surface_report(split->in->surface)->tolerance_m;
     split->finest = finer_tris == 0;
+    split->error_m = error_m;
     split->on_surface_m = split->finest ? 0.25 * tolerance_m : 1.5 * error_m;
     split->slack_m = SLACK * error_m;
     split->shortest_m = split->finest ? SHORTEST_NEAR * tolerance_m : fmax(tolerance_m, SHORTEST * error_m);
@@ -305,6 +311,8 @@ static void split_level(struct split *split, struct level *level, size_t finer_t
     for (size_t l = 0; l < sizeof(limits) / sizeof(*limits) && !split->full; l++)
         for (int round = 0; round < MOST_ROUNDS; round++) {
             measure_edges(split);
+            if (!split->finest)
+                split_turn_edges(split, limits[l]);
             split->full = comes_to_bound(split);
             if (split->full)
                 break;

@@ -2,8 +2,9 @@
 /* Cuts triangles where the field is not straight enough along an edge, and puts a vertex where each sensor stands.
 
    The finest level shows the field to SPLIT_ERROR, whatever the readings are (straight.h). A coarser one, whose surface is up to error_m
-   off, shows it to SPLIT_ERROR at a place no farther away than a third of that or so: it is only drawn where error_m is less than a pixel.
-   What is added to it is put onto the finest level's surface. An edge that a finer level has too, and need not cut, is not looked at.
+   off, shows it to SPLIT_ERROR at a place no farther away than two thirds of that or so, and to three times SPLIT_ERROR where it is: it is
+   only drawn where error_m is less than a pixel. Its surface stays as it is but that edges in flat places may be turned to run the other
+   way between two triangles. An edge that a finer level has too, and need not cut, is not looked at.
    Pieces no longer than an eighth of the model's tolerance or, in coarser levels, than their error are not cut; nor, up to eight tolerances
    or errors long, ones where the distance along the surface jumps because the surface does not hang together there: no cut mends a jump,
    cuts only close in on it. What is hidden inside another part does not count, nor do triangles that have no width.

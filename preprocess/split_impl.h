@@ -26,7 +26,7 @@ struct split {
     uint32_t level; /* its number */
     bool finest;
     double on_surface_m; /* what is farther from the surface is hidden inside another part */
-    double shortest_m, slack_m;
+    double error_m, shortest_m, slack_m;
     double jump_m; /* where a distance jumps, shorter edges are not cut */
     bool full;                     /* it may hardly grow any more */
     size_t most_tris, first_count; /* first_count: before sensors were placed */
@@ -53,6 +53,8 @@ void split_add_place(struct split *split, uint32_t place, uint32_t part);
 void split_measure_places(struct split *split, uint32_t first, const uint32_t *edges, size_t count);
 /* Of edges. Errors below `enough` need not be exact, and tell no share. */
 void split_measure_edges(struct split *split, struct split_finding *findings, size_t count, double enough);
+/* And notes them at the edges. */
+void split_measure_new_edges(struct split *split, struct split_finding *findings, size_t count);
 /* Of triangles, at their middles. */
 void split_measure_insides(struct split *split, struct split_finding *findings, size_t count);
 
@@ -62,6 +64,12 @@ void split_measure_insides(struct split *split, struct split_finding *findings, 
    not known, or may no longer hold. */
 bool split_recall(const struct split *split, const uint32_t *corners, size_t count, uint32_t *next, struct split_finding *finding);
 void split_remember(struct split *split, const uint32_t *corners, size_t count, const struct split_finding *finding);
+
+/* --- turning (split_turn.c) --- */
+
+/* Has edges that err by more than the limit run between the other corners of their triangles, if the field errs less there and the surface
+   stays about where it is. */
+void split_turn_edges(struct split *split, double limit);
 
 /* --- sensors (split_sensors.c) --- */
 

@@ -114,15 +114,9 @@ static void to_doubles(const float point[3], double at[3])
         at[i] = (double)point[i];
 }
 
-static void to_floats(const double point[3], float at[3])
-{
-    for (int i = 0; i < 3; i++)
-        at[i] = (float)point[i];
-}
-
-/* Distances along the surface, onto which a coarser level's point is moved. False: the point is hidden inside another part, and nobody
+/* Distances along the surface, where it is nearest to a coarser level's point. False: the point is hidden inside another part, and nobody
    sees an error. */
-static bool measure(const struct sight *sight, float point[3], float *geodesic_m)
+static bool measure(const struct sight *sight, const float point[3], float *geodesic_m)
 {
     const struct split *split = sight->split;
     struct surface_spot spot;
@@ -133,13 +127,11 @@ static bool measure(const struct sight *sight, float point[3], float *geodesic_m
     if (!seen)
         return false;
     surface_field_at_spot(split->in->field, split->in->surface, &spot, geodesic_m);
-    if (!split->finest)
-        to_floats(spot.point_m, point);
     return true;
 }
 
 /* The same; at a hidden point, those of the nearest one that is seen. */
-static void measure_always(const struct sight *sight, float point[3], float *geodesic_m)
+static void measure_always(const struct sight *sight, const float point[3], float *geodesic_m)
 {
     struct surface_spot spot;
     double at[3];
@@ -390,7 +382,7 @@ static void measure_places(void *arg, size_t begin, size_t end)
     const struct split *split = job->split;
     for (size_t i = begin; i < end; i++) {
         uint32_t place = job->first + (uint32_t)i;
-        float *point = split->mesh.places.positions_m[place];
+        const float *point = split->mesh.places.positions_m[place];
         float *geodesic_m = split->geodesic_m + place * split->sensors;
         if (job->edges) {
             struct sight sight = sight_of_edge(split, &split->mesh.cuts[job->edges[i]]);

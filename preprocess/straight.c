@@ -7,6 +7,7 @@
 
 #include "base/mem.h"
 
+#define MOST_SLACK (2 / 255.0) /* of the range */
 #define MANY 64 /* sensors: with more, each has so small a share in paper that its bends are far below shepard's, and are not looked at */
 
 static double factor_of(double x)
@@ -160,7 +161,7 @@ static double worst_of(const struct straight *straight, const float *const *corn
         }
         if (reached)
             most = fmax(most, (double)shares_error(at, weights, corner_count, sample + first, count) -
-                                  slack_m * (double)sample[straight->share_count + g]);
+                                  fmin(slack_m * (double)sample[straight->share_count + g], MOST_SLACK));
         first += count;
     }
     return most;

@@ -258,6 +258,45 @@ void bvh_nearest(const struct bvh *bvh, const double point[3], double limit_m, b
         place->distance_m = sqrt(best2);
 }
 
+static bool any_of_node(const struct bvh *bvh, const struct node *node, const double point[3], double limit2,
+                        bool (*allowed)(const void *arg, uint32_t tri), const void *arg)
+{
+    struct bvh_place place = { .tri = TRIMESH_NONE };
+    for (uint32_t i = 0; i < node->count && place.tri == TRIMESH_NONE; i++) {
+        uint32_t tri = bvh->order[node->first + i];
+        if (!allowed || allowed(arg, tri))
+            try_tri(bvh, tri, point, &limit2, &place);
+    }
+    return place.tri != TRIMESH_NONE;
+}
+
+bool bvh_any_within(const struct bvh *bvh, const double point[3], double limit_m, bool (*allowed)(const void *arg, uint32_t tri),
+                    const void *arg)
+{
+    uint32_t stack[STACK_NODES];
+    int depth = 0;
+    double limit2 = limit_m * limit_m;
+    if (bvh->node_count)
+        stack[depth++] = 0;
+    while (depth) {
+        uint32_t at = stack[--depth];
+        const struct node *node = &bvh->nodes[at];
+        if (node->count) {
+            if (any_of_node(bvh, node, point, limit2, allowed, arg))
+                return true;
+            continue;
+        }
+        uint32_t near = at + 1, far = node->first;
+        double near2 = box_distance2(&bvh->nodes[near], point), far2 = box_distance2(&bvh->nodes[far], point);
+        bool swap = near2 > far2;
+        if (fmax(near2, far2) <= limit2)
+            stack[depth++] = swap ? near : far;
+        if (fmin(near2, far2) <= limit2)
+            stack[depth++] = swap ? far : near;
+    }
+    return false;
+}
+
 void bvh_overlaps(const struct bvh *bvh, const double low[3], const double high[3], double margin_m, void (*visit)(void *arg, uint32_t tri),
                   void *arg)
 {

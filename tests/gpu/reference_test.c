@@ -221,7 +221,7 @@ static void test_plant(const char *path, const char *name, const struct bounds *
 static void test_demo(void **state)
 {
     (void)state;
-    test_plant(SITE_DEMO, NULL, &(struct bounds){ 0.0005, 0.1, 0.015 });
+    test_plant(SITE_DEMO, NULL, &(struct bounds){ 0.0005, 0.08, 0.025 });
 }
 
 static void test_plant_room(void **state)
@@ -229,7 +229,7 @@ static void test_plant_room(void **state)
     (void)state;
     if (!site_is_there("plm_plant_equipment.glb"))
         skip();
-    test_plant("tests/plants/plant_room.yaml", "plant_room", &(struct bounds){ 0.01, 0.025, 0.005 });
+    test_plant("tests/plants/plant_room.yaml", "plant_room", &(struct bounds){ 0.01, 0.015, 0.01 });
 }
 
 static void test_cookie_line(void **state)
@@ -237,7 +237,7 @@ static void test_cookie_line(void **state)
     (void)state;
     if (!site_is_there("cookie_factory_mixer.glb"))
         skip();
-    test_plant("tests/plants/cookie_line.yaml", "cookie_line", &(struct bounds){ 0.003, 0.045, 0.007 });
+    test_plant("tests/plants/cookie_line.yaml", "cookie_line", &(struct bounds){ 0.003, 0.02, 0.007 });
 }
 
 int main(void)

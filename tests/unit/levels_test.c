@@ -99,7 +99,7 @@ static void levels_grow_coarser(void **state)
     for (size_t l = 1; l < s->levels.count; l++) {
         const struct level *level = &s->levels.at[l];
         print_message("# level %zu: %u triangles, error %.4f m\n", l, level->index_count / 3, (double)level->error_m);
-        assert_true(level->index_count * 10 <= (level - 1)->index_count * 7);
+        assert_true(level->index_count * 20 <= (level - 1)->index_count * 17);
         assert_true(level->index_count * 10 >= (level - 1)->index_count * 3);
         assert_true(level->error_m > 0 && level->error_m >= (level - 1)->error_m);
     }
