@@ -95,8 +95,8 @@ static void measure(struct bench *bench, const char *name, void (*change)(struct
     qsort(ms, ROUNDS, sizeof(*ms), by_size);
     qsort(work_ms, ROUNDS, sizeof(*work_ms), by_size);
     mend_all(bench);
-    printf("{\"name\": \"%s\", \"value\": %.4f, \"p95\": %.4f, \"unit\": \"ms\", \"cpu\": %.4f", name, ms[ROUNDS / 2], ms[ROUNDS * 95 / 100],
-           work_ms[ROUNDS / 2]);
+    printf("{\"name\": \"%s\", \"value\": %.4f, \"p95\": %.4f, \"unit\": \"ms\", \"cpu\": %.4f", name, ms[ROUNDS / 2],
+           ms[ROUNDS * 95 / 100], work_ms[ROUNDS / 2]);
     if (goal_ms > 0)
         printf(", \"goal\": [\"<=\", %g]", goal_ms);
     printf("}\n");
