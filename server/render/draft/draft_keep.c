@@ -161,7 +161,8 @@ void draft_give(struct visibility_buffers *store, const struct picture *picture,
 {
     recolor->markers = mem_array(frame->marker_count, sizeof(*recolor->markers));
     recolor->marker_count = frame->marker_count;
-    memcpy(recolor->markers, frame->markers, frame->marker_count * sizeof(*recolor->markers));
+    if (frame->marker_count > 0)
+        memcpy(recolor->markers, frame->markers, frame->marker_count * sizeof(*recolor->markers));
     visibility_buffers_give(store, content_shape_hash(picture), recolor, recolor_bytes(recolor), forget);
 }
 
