@@ -1,22 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The list of equipment: areas, assets and their sensors with what they say, search, what is known of the selected one, and the way there.
+// The list of equipment: areas, assets and their sensors with what they say, search, and the way there. On narrow screens it is loaded
+// when it is first opened.
 import { decimalsFor, numberText, qualityText, unitText } from '../core/format.js';
 import { Tree } from '../core/tree.js';
 import { say } from '../core/words.js';
 import { byId, glyph, make, setText } from './dom.js';
-import { NARROW } from './first.js';
+import { narrow } from './first.js';
 import { LongList } from './list.js';
 
 const SEARCH_MS = 80, ASSET_PX = 53;
 const keyOf = ({ kind, id }) => `${kind}/${id}`;
 
 export class Assets {
-    // Handlers: onAsset(asset) and onTag(tag) for a row that is chosen, onSelected(asset or null) once one is.
-    constructor({ session, selection }) {
-        Object.assign(this, { session, selection });
+    constructor({ session, selection, parts, selectAsset, showTag }) {
+        Object.assign(this, { session, selection, parts, onAsset: selectAsset, onTag: showTag });
         this.search = byId('assets-search');
-        this.onAsset = this.onTag = this.onSelected = () => {};
-        this.setOpen(!this.narrow);
+        this.setOpen(!narrow.matches);
         this.list = new LongList({
             root: byId('assets-list'), make: (row) => this.make(row), fill: (row, element) => this.fill(row, element), keyOf,
             height: ({ kind }) => (kind === 'asset' ? ASSET_PX : this.touchPx), onKey: (key, row, i) => this.press(key, row, i),
@@ -26,18 +25,13 @@ export class Assets {
             this.waiting = setTimeout(() => this.filter(), SEARCH_MS);
         });
         this.search.addEventListener('keydown', ({ key }) => key === 'Escape' && !this.search.value && byId('viewport').focus());
-        byId('assets-toggle').addEventListener('click', () => this.setOpen(!this.open));
         byId('assets-close').addEventListener('click', () => this.setOpen(false));
-        session.on('welcome', () => this.build());
+        session.greeted(() => this.build());
         session.on('params', () => this.mark());
         session.on('tags', () => this.soon());
         session.on('alarms', () => this.soon());
-        window.matchMedia(NARROW).addEventListener('change', () => this.setOpen(!this.narrow));
+        narrow.addEventListener('change', () => this.setOpen(!narrow.matches));
         window.matchMedia('(pointer: coarse)').addEventListener('change', () => this.filter());
-    }
-
-    get narrow() {
-        return window.matchMedia(NARROW).matches;
     }
 
     get touchPx() {
@@ -84,7 +78,8 @@ export class Assets {
         const isNew = chosen !== null && tag !== this.marked, owner = isNew ? model.asset(chosen.asset) : asset;
         if (owner)
             this.tree.unfold(owner);
-        this.onSelected(asset);
+        if (asset || this.parts.there('about'))
+            this.parts.use('about', (about) => about.show(), 'show');
         const reveal = isNew ? `tag/${chosen.index}` : asset && selected !== this.selected && `asset/${selected}`;
         Object.assign(this, { selected, marked: tag });
         this.filter();
@@ -108,7 +103,7 @@ export class Assets {
         if (item.id === null)
             return this.toggle(row);
         this.onAsset(item);
-        if (this.narrow)
+        if (narrow.matches)
             this.setOpen(false);
         return undefined;
     }

@@ -13,7 +13,7 @@ export class Commands {
 }
 
 // By name; those of the page, and those of keys (core/keys.js).
-function commandsOf({ session, parts, selection, assets, overlay, toolbar, tools, saveAddress, refresh }) {
+function commandsOf({ session, parts, selection, overlay, toolbar, tools, saveAddress, refresh }) {
     function selectTag(tag) {
         selection.tag = tag?.name ?? null;
         selection.hover = null;
@@ -21,7 +21,7 @@ function commandsOf({ session, parts, selection, assets, overlay, toolbar, tools
             parts.there('trends')?.follow(tag);
             parts.get('card');
         }
-        assets.mark();
+        parts.there('assets')?.mark();
         saveAddress();
         refresh();
     }
@@ -108,8 +108,8 @@ function commandsOf({ session, parts, selection, assets, overlay, toolbar, tools
         alarms: opens('alarms'),
         past: () => session.recorded && opens('timeline')(),
         live: () => session.time.atUs !== null && session.travel(null),
-        assets: () => assets.setOpen(!assets.open),
-        search: () => assets.openSearch(),
+        assets: () => parts.use('assets', (assets) => assets.setOpen(!assets.open), 'toggle'),
+        search: () => parts.use('assets', (assets) => assets.openSearch()),
         top: ofViews((views) => views.lookFrom('top')),
         corner: ofViews((views) => views.lookFrom('iso')),
         projection: ofViews((views) => views.toggleProjection()),

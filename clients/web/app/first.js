@@ -10,7 +10,6 @@ import { stored } from './stored.js';
 import { chooseTheme } from './theme.js';
 import { Viewport } from './viewport.js';
 
-export const NARROW = '(max-width: 1023px)'; // there the list of equipment lies over the picture
 const query = new URLSearchParams(location.search);
 export const page = { unit: 1, onUnit: () => {} };
 
@@ -18,7 +17,8 @@ export const page = { unit: 1, onUnit: () => {} };
 document.documentElement.lang = language;
 sayAll(document);
 const backdrop = chooseTheme(query);
-const narrow = window.matchMedia(NARROW), fold = () => narrow.matches && styled('narrow').catch(() => {});
+export const narrow = window.matchMedia('(max-width: 1023px)'); // there the list of equipment lies over the picture
+const fold = () => narrow.matches && styled('narrow').catch(() => {});
 narrow.addEventListener('change', fold);
 document.querySelector('.stage').classList.toggle('without-assets', narrow.matches);
 await fold();

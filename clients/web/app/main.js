@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Puts the page together: one session, the viewport, and the panels around it.
-import { Assets } from './assets.js';
 import { watchSleep } from './clock.js';
 import { byId, setText } from './dom.js';
-import { address, connection, page, proveCodecs, session, viewport } from './first.js';
+import { address, connection, narrow, page, proveCodecs, session, viewport } from './first.js';
 import { listenToHands } from './hands.js';
 import { renewIfOld, serveInstalled } from './install.js';
 import { Legend } from './legend.js';
@@ -20,7 +19,6 @@ const COMMANDS = ['selectTag', 'showTag', 'flyToTag', 'fitView', 'selectAsset', 
 
 const selection = { tag: address.tag, hover: null };
 const parts = new Parts(page, tell);
-const assets = new Assets({ session, selection });
 const toolbar = new Toolbar({ session, selection });
 const legend = new Legend({ session, element: byId('legend') });
 new Legend({ session, element: byId('legend-right'), paramsOf: (params) => params.split && { ...params, ...params.split } });
@@ -29,7 +27,7 @@ overlay.unit = page.unit;
 const status = new Status({ session, onFreshness: (fresh) => { overlay.fresh = fresh; refresh(); } });
 const tools = new Tools({ session });
 new AlarmStrip({ session, refresh });
-Object.assign(page, { selection, overlay, assets, parts, toolbar, tools, saveAddress, refresh, tell });
+Object.assign(page, { selection, overlay, parts, toolbar, tools, saveAddress, refresh, tell });
 const does = (name) => (...given) => parts.use('commands', (commands) => commands[name](...given));
 for (const name of COMMANDS)
     page[name] = does(name);
@@ -47,7 +45,7 @@ function refresh() {
 
 const BUTTONS = { fit: 'fit', home: 'home', measure: 'measure', snapshot: 'snapshot', theme: 'theme', hold: 'hold', 'share-open': 'share',
     'help-open': 'help', 'time-toggle': 'past', 'alarm-strip': 'alarms', 'views-toggle': 'views', 'picture-toggle': 'picture',
-    'engineer-toggle': 'engineer' };
+    'engineer-toggle': 'engineer', 'assets-toggle': 'assets' };
 for (const [id, name] of Object.entries(BUTTONS))
     byId(id).addEventListener('click', does(name));
 // What is cut away is moved by hand, but for a wall.
@@ -62,9 +60,6 @@ page.told = {
     group: (index) => toolbar.chooseGroup(index),
 };
 listenToHands(byId('viewport'), parts);
-assets.onAsset = page.selectAsset;
-assets.onTag = page.showTag;
-assets.onSelected = (asset) => (asset || parts.there('about')) && parts.use('about', (about) => about.show(), 'show');
 
 // --- the picture and what lies over it
 
@@ -186,8 +181,13 @@ watchSleep(() => {
     status.show();
 });
 serveInstalled();
+// The list of equipment is there from the beginning where there is room for it.
+const showAssets = () => !narrow.matches && !document.body.classList.contains('wall') && parts.get('assets');
+narrow.addEventListener('change', showAssets);
+showAssets();
 session.listen();
 refresh();
 
 // For the console and for tests of the whole.
-globalThis.plantcast = { ...page, legend, get pilot() { return parts.there('pilot'); }, get trends() { return parts.there('trends'); } };
+globalThis.plantcast = { ...page, legend, get pilot() { return parts.there('pilot'); }, get trends() { return parts.there('trends'); },
+    get assets() { return parts.there('assets'); } };

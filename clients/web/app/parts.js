@@ -11,6 +11,7 @@ const PARTS = {
     about: { type: 'About', styles: ['about'] },
     alarms: { type: 'AlarmList', styles: ['alarms', 'help'], fills: 'alarms' },
     arrival: { type: 'Arrival' },
+    assets: { type: 'Assets' },
     card: { type: 'Card', styles: ['card', 'about'] },
     commands: { type: 'Commands' },
     engineer: { type: 'Engineer', styles: ['panel', 'help', 'engineer'] },
