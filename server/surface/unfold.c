@@ -10,6 +10,7 @@
 #define STEPS_PER_EDGE 32.0 /* buckets to a mean edge: points in one bucket are taken in any order */
 #define NEAR_EDGES 5.0
 #define MAX_BUCKETS (1u << 16)
+#define MOST_TRIED 64 /* triangles at a point that may be the next one round it; else a row ends */
 
 /* The corners of the t-th triangle walked over, and its sides from corner i to corner i + 1. */
 static const uint32_t *tri_points(const struct unfold *unfold, const struct intrinsic *in, size_t t)
@@ -24,51 +25,145 @@ static void tri_sides(const struct unfold *unfold, const struct intrinsic *in, s
         sides[i] = t < in->tri_count ? in->lengths[t][i] : vec_distance(unfold->mesh->points[v[i]], unfold->mesh->points[v[(i + 1) % 3]]);
 }
 
-/* How many triangles each point has, then where its fans begin. */
-static uint32_t *count_fans(struct unfold *unfold, const struct intrinsic *in)
+/* --- fans ---------------------------------------------------------------------------------------------------------------------- */
+
+struct end { /* of a side that leaves the point in hand */
+    uint32_t to;
+    float length_m; /* as in a fan */
+};
+
+struct wedge { /* a triangle at the point */
+    struct end ends[2];
+    float cosine, sine;
+};
+
+static struct wedge wedge_of(const struct unfold *unfold, const struct intrinsic *in, size_t t, int corner)
 {
-    size_t points = unfold->mesh->point_count;
-    uint32_t *counts = mem_array(points, sizeof(*counts));
-    for (size_t t = 0; t < unfold->mesh->tri_count; t++)
-        for (int i = 0; i < 3; i++)
-            counts[tri_points(unfold, in, t)[i]]++;
-    for (size_t i = 0; i < points; i++)
-        unfold->first[i + 1] = unfold->first[i] + (counts[i] + UNFOLD_FANS - 1) / UNFOLD_FANS;
-    memset(counts, 0, points * sizeof(*counts));
-    return counts;
+    const uint32_t *v = tri_points(unfold, in, t);
+    bool inside = t >= in->tri_count;
+    double sides[3];
+    tri_sides(unfold, in, t, sides);
+    double to_a = sides[corner], to_b = sides[(corner + 2) % 3], across = sides[(corner + 1) % 3];
+    double cosine = min_of(max_of((to_a * to_a + to_b * to_b - across * across) / (2 * to_a * to_b), -1), 1);
+    uint32_t a = v[(corner + 1) % 3], b = v[(corner + 2) % 3];
+    return (struct wedge){ { { a, (float)(inside && !unfold->hidden[a] ? -to_a : to_a) },
+                             { b, (float)(inside && !unfold->hidden[b] ? -to_b : to_b) } },
+                           (float)cosine,
+                           (float)sqrt(1 - cosine * cosine) };
 }
 
-static void set_empty(struct unfold *unfold)
+static void turn_round(struct wedge *wedge)
 {
-    for (uint32_t p = 0; p < unfold->mesh->point_count; p++)
-        for (uint32_t f = unfold->first[p]; f < unfold->first[p + 1]; f++)
-            for (int i = 0; i < UNFOLD_FANS; i++) {
-                unfold->fans[f].a[i] = unfold->fans[f].b[i] = p;
-                unfold->fans[f].to_a_m[i] = unfold->fans[f].to_b_m[i] = INFINITY;
-            }
+    struct end swap = wedge->ends[0];
+    wedge->ends[0] = wedge->ends[1];
+    wedge->ends[1] = swap;
 }
 
-static void fill_fans(struct unfold *unfold, const struct intrinsic *in, uint32_t *filled)
+/* Puts wedges that follow one another after the first `count` ones, as many as there are. Returns how many that makes. */
+static size_t extend(struct wedge *wedges, size_t count, size_t all)
 {
-    for (size_t t = 0; t < unfold->mesh->tri_count; t++) {
-        const uint32_t *v = tri_points(unfold, in, t);
-        bool inside = t >= in->tri_count;
-        double sides[3];
-        tri_sides(unfold, in, t, sides);
-        for (int i = 0; i < 3; i++) {
-            uint32_t a = v[(i + 1) % 3], b = v[(i + 2) % 3], number = filled[v[i]]++;
-            double to_a = sides[i], to_b = sides[(i + 2) % 3], across = sides[(i + 1) % 3];
-            double cosine = min_of(max_of((to_a * to_a + to_b * to_b - across * across) / (2 * to_a * to_b), -1), 1);
-            struct unfold_fans *fans = &unfold->fans[unfold->first[v[i]] + number / UNFOLD_FANS];
-            number %= UNFOLD_FANS;
-            fans->a[number] = a;
-            fans->b[number] = b;
-            fans->to_a_m[number] = (float)(inside && !unfold->hidden[a] ? -to_a : to_a);
-            fans->to_b_m[number] = (float)(inside && !unfold->hidden[b] ? -to_b : to_b);
-            fans->cosine[number] = (float)cosine;
-            fans->sine[number] = (float)sqrt(1 - cosine * cosine);
+    for (size_t i = count; i < all && i < count + MOST_TRIED; i++)
+        for (int end = 0; end < 2; end++) {
+            const struct end *last = &wedges[count - 1].ends[1];
+            if (wedges[i].ends[end].to != last->to || wedges[i].ends[end].length_m != last->length_m)
+                continue;
+            struct wedge next = wedges[i];
+            wedges[i] = wedges[count];
+            wedges[count] = next;
+            if (end == 1)
+                turn_round(&wedges[count]);
+            i = count++;
+            break;
+        }
+    return count;
+}
+
+static void reverse(struct wedge *wedges, size_t count)
+{
+    for (size_t i = 0; i < (count + 1) / 2; i++) {
+        struct wedge swap = wedges[i];
+        wedges[i] = wedges[count - 1 - i];
+        wedges[count - 1 - i] = swap;
+    }
+    for (size_t i = 0; i < count; i++)
+        turn_round(&wedges[i]);
+}
+
+static struct unfold_fan *add_fan(struct unfold *unfold, uint32_t point)
+{
+    mem_grow(&unfold->fans, &unfold->fan_capacity, unfold->fan_count + 1, sizeof(*unfold->fans));
+    struct unfold_fan *fan = &unfold->fans[unfold->fan_count++];
+    for (int i = 0; i < UNFOLD_FAN; i++) {
+        fan->to[i] = point;
+        fan->length_m[i] = INFINITY;
+        fan->cosine[i] = fan->sine[i] = 0;
+    }
+    return fan;
+}
+
+/* Ends of wedges in a row, and the wedges in between. What is cut by a fan's end begins the next one too. Returns the lanes in use. */
+static int add_row(struct unfold *unfold, uint32_t point, const struct wedge *row, size_t count, int lane)
+{
+    for (size_t i = 0; i <= count; i++) {
+        const struct end *end = i < count ? &row[i].ends[0] : &row[count - 1].ends[1];
+        for (bool again = true; again;) {
+            struct unfold_fan *fan = lane == UNFOLD_FAN ? add_fan(unfold, point) : &unfold->fans[unfold->fan_count - 1];
+            lane = lane == UNFOLD_FAN ? 0 : lane;
+            again = lane == UNFOLD_FAN - 1 && i < count;
+            fan->to[lane] = end->to;
+            fan->length_m[lane] = end->length_m;
+            fan->cosine[lane] = i < count && !again ? row[i].cosine : 0;
+            fan->sine[lane++] = i < count && !again ? row[i].sine : 0;
         }
     }
+    return lane;
+}
+
+static void add_fans(struct unfold *unfold, uint32_t point, struct wedge *wedges, size_t count)
+{
+    int lane = UNFOLD_FAN;
+    for (size_t begin = 0, row; begin < count; begin += row) {
+        row = extend(wedges + begin, 1, count - begin);
+        reverse(wedges + begin, row);
+        row = extend(wedges + begin, row, count - begin);
+        lane = add_row(unfold, point, wedges + begin, row, lane);
+    }
+}
+
+/* Where the corners at each point begin; one more at the end. */
+static uint32_t *count_corners(const struct unfold *unfold, const struct intrinsic *in)
+{
+    size_t points = unfold->mesh->point_count;
+    uint32_t *first = mem_array(points + 2, sizeof(*first));
+    for (size_t t = 0; t < unfold->mesh->tri_count; t++)
+        for (int i = 0; i < 3; i++)
+            first[tri_points(unfold, in, t)[i] + 2]++;
+    for (size_t p = 2; p < points + 2; p++)
+        first[p] += first[p - 1];
+    return first;
+}
+
+static void make_fans(struct unfold *unfold, const struct intrinsic *in)
+{
+    size_t points = unfold->mesh->point_count, tris = unfold->mesh->tri_count, most = 0;
+    uint32_t *first = count_corners(unfold, in), *corners = mem_array(3 * tris, sizeof(*corners));
+    for (uint32_t t = 0; t < tris; t++)
+        for (uint32_t i = 0; i < 3; i++)
+            corners[first[tri_points(unfold, in, t)[i] + 1]++] = 3 * t + i;
+    for (size_t p = 0; p < points; p++)
+        most = first[p + 1] - first[p] > most ? first[p + 1] - first[p] : most;
+    struct wedge *wedges = mem_array(most, sizeof(*wedges));
+    for (uint32_t p = 0; p < points; p++) {
+        size_t count = first[p + 1] - first[p];
+        for (size_t i = 0; i < count; i++)
+            wedges[i] = wedge_of(unfold, in, corners[first[p] + i] / 3, (int)(corners[first[p] + i] % 3));
+        unfold->first[p] = (uint32_t)unfold->fan_count;
+        add_fans(unfold, p, wedges, count);
+    }
+    unfold->first[points] = (uint32_t)unfold->fan_count;
+    mem_free(wedges);
+    mem_free(corners);
+    mem_free(first);
 }
 
 /* The ring of buckets must span the longest edge, and what is near: an offer is never farther ahead than that. */
@@ -97,11 +192,7 @@ void unfold_init(struct unfold *unfold, const struct trimesh *mesh, size_t visib
     for (size_t t = 0; t < visible_count; t++)
         for (int i = 0; i < 3; i++)
             unfold->hidden[mesh->tris[t][i]] = 0;
-    uint32_t *filled = count_fans(unfold, in);
-    unfold->fans = mem_array(unfold->first[mesh->point_count], sizeof(*unfold->fans));
-    set_empty(unfold);
-    fill_fans(unfold, in, filled);
-    mem_free(filled);
+    make_fans(unfold, in);
     choose_buckets(unfold, in);
 }
 

@@ -4,17 +4,18 @@
 #define SURFACE_UNFOLD_H
 #include "surface/intrinsic.h"
 
-#define UNFOLD_FANS 8 /* triangles at a point that are looked at side by side, a lane of a vector register each */
+#define UNFOLD_FAN 8 /* points around one that are looked at side by side, a lane of a vector register each */
 
 struct unfold { /* what meets at each point; shared by all walks */
     const struct trimesh *mesh;
     const struct intrinsic *in;
-    uint32_t *first;                                    /* of each point in fans; one more at the end */
-    struct unfold_fans {                                /* triangles seen from one of their corners */
-        uint32_t a[UNFOLD_FANS], b[UNFOLD_FANS];        /* the others; the corner itself where there is no more triangle */
-        float to_a_m[UNFOLD_FANS], to_b_m[UNFOLD_FANS]; /* < 0: that one may not be reached through this triangle; INFINITY: none */
-        float cosine[UNFOLD_FANS], sine[UNFOLD_FANS];   /* of the angle at the corner */
+    uint32_t *first;                  /* of each point in fans; one more at the end */
+    struct unfold_fan {               /* seen from a point, others in order, and the triangle between each and the next */
+        uint32_t to[UNFOLD_FAN];      /* the point itself where there is no more */
+        float length_m[UNFOLD_FAN];   /* < 0: not to be reached through these triangles; INFINITY: none */
+        float cosine[UNFOLD_FAN], sine[UNFOLD_FAN]; /* of the angle to the next; sine 0: no triangle in between */
     } * fans;
+    size_t fan_count, fan_capacity;
     char *hidden;      /* of each point: it has no visible triangle */
     float steps_per_m; /* buckets of a walk */
     double near_m;     /* so far points are looked for straight from the source */

@@ -12,8 +12,8 @@
 #define ASIDE 1e-3  /* of the way to the side across: a place beside a corner */
 #define DEEPEST 32  /* triangles that a straight line near the source passes through */
 
-typedef float lanes __attribute__((vector_size(4 * UNFOLD_FANS)));
-typedef int32_t mask __attribute__((vector_size(4 * UNFOLD_FANS))); /* of each lane all bits, or none */
+typedef float lanes __attribute__((vector_size(4 * UNFOLD_FAN)));
+typedef int32_t mask __attribute__((vector_size(4 * UNFOLD_FAN))); /* of each lane all bits, or none */
 
 void unfold_walk_finish(struct unfold_walk *walk)
 {
@@ -61,7 +61,7 @@ static inline void offer(const struct unfold *unfold, struct unfold_walk *walk, 
         return; /* nothing goes out from a point twice, or small corrections would run over the whole surface again and again */
     if (walk->item_count == walk->item_capacity)
         mem_grow(&walk->items, &walk->item_capacity, walk->item_count + 1, sizeof(*walk->items));
-    uint64_t number = (uint64_t)(distance_m * unfold->steps_per_m);
+    uint64_t number = (uint64_t)(int64_t)(distance_m * unfold->steps_per_m); /* not negative, but so it is one instruction */
     uint32_t *bucket = &walk->buckets[(number > walk->at ? number : walk->at) & (unfold->bucket_count - 1)];
     walk->items[walk->item_count] = (struct unfold_item){ point, *bucket };
     *bucket = (uint32_t)walk->item_count++;
@@ -69,24 +69,32 @@ static inline void offer(const struct unfold *unfold, struct unfold_walk *walk, 
 
 WIDE_BODY void root(lanes *x)
 {
-    for (int i = 0; i < UNFOLD_FANS; i++)
+    for (int i = 0; i < UNFOLD_FAN; i++)
         (*x)[i] = sqrtf((*x)[i]);
 }
 
-WIDE_BODY bool any(const mask *which)
+/* A bit for each lane. */
+WIDE_BODY uint32_t bits_of(const mask *which)
 {
-    uint64_t words[4];
-    memcpy(words, which, sizeof(words));
-    return (words[0] | words[1] | words[2] | words[3]) != 0;
+    const mask bits = { 1, 2, 4, 8, 16, 32, 64, 128 }, left = *which & bits;
+    uint64_t words[4], all;
+    memcpy(words, &left, sizeof(words));
+    all = (words[0] | words[1]) | (words[2] | words[3]);
+    return (uint32_t)(all | all >> 32);
+}
+
+WIDE_BODY void choose(const mask *which, const lanes *x, const lanes *otherwise, lanes *out)
+{
+    *out = (lanes)((*which & (mask)*x) | (~*which & (mask)*otherwise));
 }
 
 /* What the edge from p (at d) to b (at db, pb away) offers to c, pc away from p: the source is laid out in the triangle's plane on the
-   other side of the edge. Where its ray to c does not pass between p and b, or b is not nearer than p: along the edge from p. */
-WIDE_BODY void from_edge(const lanes *d_of_p, const lanes *d_of_b, const lanes *p_to_b, const lanes *p_to_c, const lanes *cosine,
-                         const lanes *sine, lanes *out)
+   other side of the edge. INFINITY where its ray to c does not pass between p and b, or b is not nearer than p. */
+WIDE_BODY void through_edge(const lanes *d_of_p, const lanes *d_of_b, const lanes *p_to_b, const lanes *p_to_c, const lanes *cosine,
+                            const lanes *sine, lanes *out)
 {
-    const lanes zero = { 0 }, d = *d_of_p, db = *d_of_b, pb = *p_to_b, pc = *p_to_c;
-    lanes sx = (d - db) * (d + db) / (2 * pb) + 0.5f * pb, sy2 = (d - sx) * (d + sx), along = d + pc;
+    const lanes zero = { 0 }, infinite = zero + INFINITY, d = *d_of_p, db = *d_of_b, pb = *p_to_b, pc = *p_to_c;
+    lanes sx = (d - db) * (d + db) / (2 * pb) + 0.5f * pb, sy2 = (d - sx) * (d + sx);
     mask seen = (sy2 >= zero) & (db <= d);
     lanes sy = (lanes)(seen & (mask)sy2), cx = pc * *cosine, cy = pc * *sine;
     root(&sy);
@@ -94,40 +102,56 @@ WIDE_BODY void from_edge(const lanes *d_of_p, const lanes *d_of_b, const lanes *
     seen &= (cy > zero) & (cut >= zero) & (cut <= pb * height);
     lanes straight = x * x + height * height;
     root(&straight);
-    *out = (lanes)((seen & (mask)straight) | (~seen & (mask)along));
+    choose(&seen, &straight, &infinite, out);
+}
+
+/* To each of a fan's points: along the edge from p (at d), or through the triangle that it has with the point before or after it, if that
+   one is nearer. */
+WIDE_BODY void offers_of(const lanes *d_of_p, const lanes *d_of_each, const lanes *length_m, const lanes *cosine, const lanes *sine,
+                         lanes *out)
+{
+    const lanes infinite = (lanes){ 0 } + INFINITY, here = *d_of_each, length = *length_m;
+    lanes next = __builtin_shufflevector(here, here, 1, 2, 3, 4, 5, 6, 7, 7);
+    lanes next_length = __builtin_shufflevector(length, length, 1, 2, 3, 4, 5, 6, 7, 7);
+    mask to_here = here > next;
+    lanes near, near_length, far_length, through, to_this, to_next;
+    choose(&to_here, &next, &here, &near);
+    choose(&to_here, &next_length, &length, &near_length);
+    choose(&to_here, &length, &next_length, &far_length);
+    through_edge(d_of_p, &near, &near_length, &far_length, cosine, sine, &through);
+    choose(&to_here, &through, &infinite, &to_this);
+    choose(&to_here, &infinite, &through, &to_next);
+    to_next = __builtin_shufflevector(to_next, infinite, 8, 0, 1, 2, 3, 4, 5, 6);
+    mask less = to_next < to_this;
+    choose(&less, &to_next, &to_this, &through);
+    lanes along = *d_of_p + length;
+    less = through < along;
+    choose(&less, &through, &along, out);
 }
 
 WIDE_BODY void spread(const struct unfold *unfold, struct unfold_walk *walk, uint32_t point)
 {
     const lanes d = walk->distance_m[point] - (lanes){ 0 }, zero = { 0 };
-    const struct unfold_fans *end = unfold->fans + unfold->first[point + 1];
+    const struct unfold_fan *end = unfold->fans + unfold->first[point + 1];
     walk->settled[point] = 1;
-    for (const struct unfold_fans *fans = unfold->fans + unfold->first[point]; fans < end; fans++) {
-        lanes da, db, to_a, to_b, cosine, sine;
-        for (int i = 0; i < UNFOLD_FANS; i++) {
-            da[i] = walk->distance_m[fans->a[i]];
-            db[i] = walk->distance_m[fans->b[i]];
-        }
-        memcpy(&to_a, fans->to_a_m, sizeof(to_a));
-        memcpy(&to_b, fans->to_b_m, sizeof(to_b));
-        memcpy(&cosine, fans->cosine, sizeof(cosine));
-        memcpy(&sine, fans->sine, sizeof(sine));
-        mask a_waits = (da > d) & (to_a >= zero), b_waits = (db > d) & (to_b >= zero);
-        mask waits = a_waits | b_waits;
-        if (!any(&waits))
+    for (const struct unfold_fan *fan = unfold->fans + unfold->first[point]; fan < end; fan++) {
+        lanes each, length, cosine, sine, offers;
+        float offered_m[UNFOLD_FAN];
+        for (int i = 0; i < UNFOLD_FAN; i++)
+            each[i] = walk->distance_m[fan->to[i]];
+        memcpy(&length, fan->length_m, sizeof(length));
+        mask waits = (each > d) & (length >= zero);
+        if (!bits_of(&waits))
             continue;
-        to_a = (lanes)((mask)to_a & INT32_MAX);
-        to_b = (lanes)((mask)to_b & INT32_MAX);
-        lanes for_a, for_b;
-        from_edge(&d, &db, &to_b, &to_a, &cosine, &sine, &for_a);
-        from_edge(&d, &da, &to_a, &to_b, &cosine, &sine, &for_b);
-        a_waits &= for_a < da;
-        b_waits &= for_b < db;
-        for (int i = 0; i < UNFOLD_FANS; i++) {
-            if (a_waits[i])
-                offer(unfold, walk, fans->a[i], for_a[i]);
-            if (b_waits[i])
-                offer(unfold, walk, fans->b[i], for_b[i]);
+        memcpy(&cosine, fan->cosine, sizeof(cosine));
+        memcpy(&sine, fan->sine, sizeof(sine));
+        length = (lanes)((mask)length & INT32_MAX);
+        offers_of(&d, &each, &length, &cosine, &sine, &offers);
+        waits &= offers < each;
+        memcpy(offered_m, &offers, sizeof(offered_m));
+        for (uint32_t left = bits_of(&waits); left; left &= left - 1) {
+            int i = __builtin_ctz(left);
+            offer(unfold, walk, fan->to[i], offered_m[i]);
         }
     }
 }
