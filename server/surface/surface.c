@@ -12,6 +12,7 @@
 #include "surface/parts.h"
 #include "surface/stitch.h"
 #include "surface/surface_state.h"
+#include "surface/thin.h"
 #include "surface/vec.h"
 
 #define WELD_OF_SIZE 1e-6 /* vertices this near are one: float positions are no finer */
@@ -152,10 +153,31 @@ static void merge_twins(struct surface *surface, uint32_t *crossings, size_t cro
     mem_free(target);
 }
 
+/* The model's own points stay, and so do samples: all before `added`. */
+static void thin_out(struct surface *surface, const uint32_t *part, size_t added, char *hidden)
+{
+    struct trimesh *mesh = &surface->mesh;
+    uint32_t *target = mem_array(mesh->point_count, sizeof(*target));
+    char *keep = mem_array(mesh->point_count, 1);
+    for (size_t p = 0; p < added; p++)
+        keep[p] = 1;
+    for (size_t v = 0; v < surface->vertex_count; v++)
+        keep[surface->vertex_point[v]] = 1;
+    surface->plane = mem_array(surface->report.triangles, sizeof(*surface->plane));
+    thin_mesh(mesh, hidden,
+              &(struct thin_params){
+                  .part = part, .keep = keep, .within_m = surface->size_m * WELD_OF_SIZE / 4, .longest_m = surface->report.spacing_m },
+              surface->plane, surface->report.triangles, target);
+    follow(surface, target);
+    mem_free(target);
+    mem_free(keep);
+}
+
 static void join_parts(struct surface *surface, struct parts *parts)
 {
     struct stitch_report made = { 0 };
-    uint32_t *target = mem_array(surface->mesh.point_count, sizeof(*target));
+    size_t own = surface->mesh.point_count;
+    uint32_t *target = mem_array(own, sizeof(*target));
     stitch_parts(&surface->mesh, parts, target, &made);
     follow(surface, target);
     note_bridges(surface, &made);
@@ -165,6 +187,7 @@ static void join_parts(struct surface *surface, struct parts *parts)
     uint32_t *part = parts_spread(&surface->mesh, parts->of_source);
     hidden_find(&surface->mesh, part, parts, made.crossings, made.crossing_count, surface->workers, hidden);
     hidden_islands(&surface->mesh, hidden);
+    thin_out(surface, part, own, hidden);
     size_t visible_count = sort_hidden(&surface->mesh, hidden);
     target = mem_array(surface->mesh.point_count, sizeof(*target));
     order_mesh(&surface->mesh, visible_count, target);
@@ -212,18 +235,18 @@ static void find_strays(struct surface *surface)
     mem_free(used);
 }
 
-/* The pieces of each of the model's triangles that are seen. */
+/* The pieces of each of the model's triangles that are seen; of several in one plane together, if they are not told apart. */
 static void list_pieces(struct surface *surface)
 {
     const struct trimesh *mesh = &surface->visible;
     surface->piece_first = mem_array(surface->report.triangles + 2, sizeof(*surface->piece_first));
     surface->pieces = mem_array(mesh->tri_count, sizeof(*surface->pieces));
     for (size_t t = 0; t < mesh->tri_count; t++)
-        surface->piece_first[mesh->tri_source[t] + 2]++;
+        surface->piece_first[surface->plane[mesh->tri_source[t]] + 2]++;
     for (size_t s = 2; s < surface->report.triangles + 2; s++)
         surface->piece_first[s] += surface->piece_first[s - 1];
     for (uint32_t t = 0; t < mesh->tri_count; t++)
-        surface->pieces[surface->piece_first[mesh->tri_source[t] + 1]++] = t;
+        surface->pieces[surface->piece_first[surface->plane[mesh->tri_source[t]] + 1]++] = t;
 }
 
 static void index_some(void *arg, size_t begin, size_t end)
@@ -305,6 +328,7 @@ void surface_destroy(struct surface **surface_ptr)
     trimesh_finish(&surface->mesh);
     mem_free(surface->vertex_point);
     mem_free(surface->component);
+    mem_free(surface->plane);
     mem_free(surface->strays);
     mem_free(surface->piece_first);
     mem_free(surface->pieces);

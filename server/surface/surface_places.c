@@ -78,10 +78,15 @@ bool surface_find_spot_among(const struct surface *surface, const double point_m
     return true;
 }
 
-static bool is_one_of(const void *arg, uint32_t triangle)
+struct planes {
+    const uint32_t *of;
+    uint32_t at[2];
+};
+
+static bool is_in_one_of(const void *arg, uint32_t triangle)
 {
-    const uint32_t *triangles = arg;
-    return triangle == triangles[0] || triangle == triangles[1];
+    const struct planes *planes = arg;
+    return planes->of[triangle] == planes->at[0] || planes->of[triangle] == planes->at[1];
 }
 
 static void try_piece(const struct surface *surface, const double point_m[3], uint32_t tri, struct surface_spot *spot)
@@ -104,15 +109,16 @@ bool surface_find_spot_on(const struct surface *surface, const double point_m[3]
                           struct surface_spot *spot)
 {
     const uint32_t *first = surface->piece_first;
-    size_t count = triangles[0] == triangles[1] ? 1 : 2, pieces = 0;
+    const struct planes planes = { surface->plane, { surface->plane[triangles[0]], surface->plane[triangles[1]] } };
+    size_t count = planes.at[0] == planes.at[1] ? 1 : 2, pieces = 0;
     *spot = (struct surface_spot){ .tri = TRIMESH_NONE, .distance_m = limit_m };
     for (size_t i = 0; i < count; i++)
-        pieces += first[triangles[i] + 1] - first[triangles[i]];
+        pieces += first[planes.at[i] + 1] - first[planes.at[i]];
     if (pieces > FEW_PIECES)
-        return surface_find_spot_among(surface, point_m, limit_m, is_one_of, triangles, spot);
+        return surface_find_spot_among(surface, point_m, limit_m, is_in_one_of, &planes, spot);
     double enough_m = fmin(surface->edge_m * ON_PIECE, limit_m / 2);
     for (size_t i = 0; i < count; i++)
-        for (uint32_t p = first[triangles[i]]; p < first[triangles[i] + 1] && spot->distance_m > enough_m; p++)
+        for (uint32_t p = first[planes.at[i]]; p < first[planes.at[i] + 1] && spot->distance_m > enough_m; p++)
             try_piece(surface, point_m, surface->pieces[p], spot);
     return spot->tri != TRIMESH_NONE;
 }

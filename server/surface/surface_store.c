@@ -27,6 +27,7 @@ void surface_pack(const struct surface *surface, struct text *to)
     pack_array(to, mesh->tris, mesh->tri_count, sizeof(*mesh->tris));
     pack_array(to, mesh->tri_source, mesh->tri_count, sizeof(*mesh->tri_source));
     pack_array(to, surface->component, mesh->point_count, sizeof(*surface->component));
+    pack_array(to, surface->plane, surface->report.triangles, sizeof(*surface->plane));
     pack_array(to, surface->strays, surface->stray_count, sizeof(*surface->strays));
     pack_array(to, in->points, in->tri_count, sizeof(*in->points));
     pack_array(to, in->lengths, in->tri_count, sizeof(*in->lengths));
@@ -40,7 +41,7 @@ struct surface *surface_unpack(struct unpack *from, struct log *log, struct work
     struct trimesh *mesh = &surface->mesh;
     struct intrinsic *in = &surface->intrinsic;
     struct numbers numbers = { 0 };
-    size_t vertices, sources, components, lengths, glues;
+    size_t vertices, sources, components, planes, lengths, glues;
     unpack_into(from, &numbers, 1, sizeof(numbers));
     *surface = (struct surface){ .log = log,
                                  .workers = workers,
@@ -53,6 +54,7 @@ struct surface *surface_unpack(struct unpack *from, struct log *log, struct work
     mesh->tris = unpack_array(from, &mesh->tri_count, sizeof(*mesh->tris));
     mesh->tri_source = unpack_array(from, &sources, sizeof(*mesh->tri_source));
     surface->component = unpack_array(from, &components, sizeof(*surface->component));
+    surface->plane = unpack_array(from, &planes, sizeof(*surface->plane));
     surface->strays = unpack_array(from, &surface->stray_count, sizeof(*surface->strays));
     in->points = unpack_array(from, &in->tri_count, sizeof(*in->points));
     in->lengths = unpack_array(from, &lengths, sizeof(*in->lengths));
@@ -64,6 +66,7 @@ struct surface *surface_unpack(struct unpack *from, struct log *log, struct work
     mesh->tri_capacity = mesh->source_capacity = mesh->tri_count;
     surface->bridge_capacity = surface->bridge_count;
     if (from->bad || vertices != surface->vertex_count || sources != mesh->tri_count || components != mesh->point_count ||
+        planes != surface->report.triangles ||
         numbers.visible_count != in->tri_count || in->tri_count > mesh->tri_count || lengths != in->tri_count || glues != in->tri_count) {
         surface_destroy(&surface);
         return NULL;

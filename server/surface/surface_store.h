@@ -10,6 +10,6 @@ void surface_pack(const struct surface *surface, struct text *to);
 struct surface *surface_unpack(struct unpack *from, struct log *log, struct workers *workers);
 
 /* Its file holds that and no more (base/kept.h). */
-#define SURFACE_MAGIC "PLCSURF1"
+#define SURFACE_MAGIC "PLCSURF2"
 
 #endif
