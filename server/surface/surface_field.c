@@ -179,8 +179,7 @@ WIDE_BODY float through_edge(const struct sight *sight, float da, float db, floa
     float sx = (da - db) * (da + db) * sight->per + sight->half, sy2 = (da - sx) * (da + sx), sy = sqrtf(sy2 > 0 ? sy2 : 0);
     float dx = x - sx, dy = y + sy, cut = sx * y + x * sy; /* where the source's ray cuts the edge, times dy */
     float straight2 = dx * dx + dy * dy;
-    straight2 = sy2 >= 0 ? straight2 : INFINITY; /* not where da or db is INFINITY */
-    straight2 = cut >= 0 ? straight2 : INFINITY;
+    straight2 = cut >= 0 ? straight2 : INFINITY; /* not where da or db is INFINITY */
     straight2 = cut <= sight->side * dy ? straight2 : INFINITY;
     return straight2 < best2 ? straight2 : best2;
 }

@@ -10,6 +10,7 @@
 
 #define INSIDE 1e-6 /* least weight of a corner: the source is a little inside its triangle */
 #define ASIDE 1e-3  /* of the way to the side across: a place beside a corner */
+#define ANY_ORDER 2 /* buckets within which a point may be taken before a nearer one */
 #define DEEPEST 32  /* triangles that a straight line near the source passes through */
 
 typedef float lanes __attribute__((vector_size(4 * UNFOLD_FAN)));
@@ -89,13 +90,13 @@ WIDE_BODY void choose(const mask *which, const lanes *x, const lanes *otherwise,
 }
 
 /* What the edge from p (at d) to b (at db, pb away) offers to c, pc away from p: the source is laid out in the triangle's plane on the
-   other side of the edge. INFINITY where its ray to c does not pass between p and b, or b is not nearer than p. */
-WIDE_BODY void through_edge(const lanes *d_of_p, const lanes *d_of_b, const lanes *p_to_b, const lanes *p_to_c, const lanes *cosine,
-                            const lanes *sine, lanes *out)
+   other side of the edge. INFINITY where its ray to c does not pass between p and b, or b is farther than `reached`. */
+WIDE_BODY void through_edge(const lanes *d_of_p, const lanes *reached, const lanes *d_of_b, const lanes *p_to_b, const lanes *p_to_c,
+                            const lanes *cosine, const lanes *sine, lanes *out)
 {
     const lanes zero = { 0 }, infinite = zero + INFINITY, d = *d_of_p, db = *d_of_b, pb = *p_to_b, pc = *p_to_c;
     lanes sx = (d - db) * (d + db) / (2 * pb) + 0.5f * pb, sy2 = (d - sx) * (d + sx);
-    mask seen = (sy2 >= zero) & (db <= d);
+    mask seen = (sy2 >= zero) & (db <= *reached);
     lanes sy = (lanes)(seen & (mask)sy2), cx = pc * *cosine, cy = pc * *sine;
     root(&sy);
     lanes x = cx - sx, height = cy + sy, cut = sx * cy + cx * sy; /* where the ray cuts the edge, times the height */
@@ -107,8 +108,8 @@ WIDE_BODY void through_edge(const lanes *d_of_p, const lanes *d_of_b, const lane
 
 /* To each of a fan's points: along the edge from p (at d), or through the triangle that it has with the point before or after it, if that
    one is nearer. */
-WIDE_BODY void offers_of(const lanes *d_of_p, const lanes *d_of_each, const lanes *length_m, const lanes *cosine, const lanes *sine,
-                         lanes *out)
+WIDE_BODY void offers_of(const lanes *d_of_p, const lanes *reached, const lanes *d_of_each, const lanes *length_m, const lanes *cosine,
+                         const lanes *sine, lanes *out)
 {
     const lanes infinite = (lanes){ 0 } + INFINITY, here = *d_of_each, length = *length_m;
     lanes next = __builtin_shufflevector(here, here, 1, 2, 3, 4, 5, 6, 7, 7);
@@ -118,7 +119,7 @@ WIDE_BODY void offers_of(const lanes *d_of_p, const lanes *d_of_each, const lane
     choose(&to_here, &next, &here, &near);
     choose(&to_here, &next_length, &length, &near_length);
     choose(&to_here, &length, &next_length, &far_length);
-    through_edge(d_of_p, &near, &near_length, &far_length, cosine, sine, &through);
+    through_edge(d_of_p, reached, &near, &near_length, &far_length, cosine, sine, &through);
     choose(&to_here, &through, &infinite, &to_this);
     choose(&to_here, &infinite, &through, &to_next);
     to_next = __builtin_shufflevector(to_next, infinite, 8, 0, 1, 2, 3, 4, 5, 6);
@@ -131,7 +132,7 @@ WIDE_BODY void offers_of(const lanes *d_of_p, const lanes *d_of_each, const lane
 
 WIDE_BODY void spread(const struct unfold *unfold, struct unfold_walk *walk, uint32_t point)
 {
-    const lanes d = walk->distance_m[point] - (lanes){ 0 }, zero = { 0 };
+    const lanes d = walk->distance_m[point] - (lanes){ 0 }, zero = { 0 }, reached = d + ANY_ORDER / unfold->steps_per_m;
     const struct unfold_fan *end = unfold->fans + unfold->first[point + 1];
     walk->settled[point] = 1;
     for (const struct unfold_fan *fan = unfold->fans + unfold->first[point]; fan < end; fan++) {
@@ -146,7 +147,7 @@ WIDE_BODY void spread(const struct unfold *unfold, struct unfold_walk *walk, uin
         memcpy(&cosine, fan->cosine, sizeof(cosine));
         memcpy(&sine, fan->sine, sizeof(sine));
         length = (lanes)((mask)length & INT32_MAX);
-        offers_of(&d, &each, &length, &cosine, &sine, &offers);
+        offers_of(&d, &reached, &each, &length, &cosine, &sine, &offers);
         waits &= offers < each;
         memcpy(offered_m, &offers, sizeof(offered_m));
         for (uint32_t left = bits_of(&waits); left; left &= left - 1) {
