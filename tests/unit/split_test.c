@@ -454,7 +454,9 @@ static void assert_field(const struct body *body, const char *name, void (*snap)
 
 #define PIXELS 6000
 /* On a coarser level, seen from all sides: within the outline 99.9 % within `most` steps, since one ray in thousands slips through between
-   triangles, and 99.5 % within one; at the outline 95 %. */
+   triangles, and 99.5 % within one; at the outline 95 %. What is mostly outline is so few pixels thick that what lies behind its edges is
+   no farther than OUTLINE, and beside a sensor a pixel's shift towards the eye, which no eye beside this one makes up for, is much of the
+   way to it: there it is 98 %. */
 static void assert_pixels(const struct body *body, size_t number, const char *name, double most)
 {
     const struct level *level = &body->levels.at[number];
@@ -476,7 +478,7 @@ static void assert_pixels(const struct body *body, size_t number, const char *na
     say_errors(body, number, name, "within", errors[0], counts[0]);
     say_errors(body, number, name, "at the outline", errors[1], counts[1]);
     assert_true(counts[0] + counts[1] > PIXELS * 9 / 10);
-    bool large = counts[0] > PIXELS / 4; /* else it is a few pixels wide, nearly all of them at its outline */
+    bool large = counts[0] > PIXELS / 2; /* else it is a few pixels wide, most of them at its outline */
     bool some = counts[0] > PIXELS / 50; /* else two in a hundred are no number */
     assert_true(!some || errors[0][counts[0] * (large ? 995 : 980) / 1000] <= 1 / 255.0);
     assert_true(!large || errors[0][counts[0] * 999 / 1000] <= most / 255.0);
@@ -651,7 +653,8 @@ static void a_cylinder_shows_the_field(void **state)
     finish(&body);
 }
 
-/* A ring of random size whose thickness waves, turned at random; sensors at random vertices. */
+/* A ring of random size whose thickness waves, turned at random; sensors at random vertices, no two at one: there is no field
+   where two readings are at one place. */
 static void make_random_ring(struct body *body, double points[SENSORS][3], uint32_t *seed)
 {
     struct geometry *g = &body->g;
@@ -675,7 +678,7 @@ static void make_random_ring(struct body *body, double points[SENSORS][3], uint3
             add_triangle(g, a, c, d);
         }
     for (int s = 0; s < SENSORS; s++) {
-        const float *at = g->positions_m[(uint32_t)(random_unit(seed) * g->vertex_count)];
+        const float *at = g->positions_m[(uint32_t)((s + random_unit(seed)) * (g->vertex_count / SENSORS))];
         for (int axis = 0; axis < 3; axis++)
             points[s][axis] = (double)at[axis];
     }
@@ -692,9 +695,9 @@ static void random_rings_show_the_field_on_every_level(void **state)
         prepare(&body, (const double(*)[3])points);
         assert_sensors(&body);
         assert_true(body.levels.count >= 3);
-        assert_field(&body, "ring", NULL, 2);
+        assert_field(&body, "ring", NULL, 3); /* splitting looks at a few places of a triangle */
         for (size_t l = 1; l < body.levels.count; l++)
-            assert_pixels(&body, l, "ring", 12); /* the coarsest are a few pixels large */
+            assert_pixels(&body, l, "ring", 4);
         finish(&body);
     }
 }
