@@ -112,12 +112,13 @@ static bool has(const struct thin *thin, uint32_t tri, uint32_t point)
     return v[0] == point || v[1] == point || v[2] == point;
 }
 
-/* Whether a corner that loses a face keeps one that is seen: one may be no more than a line, and all that is seen at a vertex. */
-static bool stays_seen(const struct thin *thin, uint32_t point, uint32_t from, uint32_t to)
+/* Whether a corner that loses its face at both is still joined to where the point goes by one that is seen: the lost one may be no more
+   than a line, and all that holds parts together there. */
+static bool stays_joined(const struct thin *thin, uint32_t point, uint32_t from, uint32_t to)
 {
     for (uint32_t corner = thin->heads[point]; corner != TRIMESH_NONE; corner = thin->next[corner]) {
         uint32_t tri = corner / 3;
-        if (!thin->gone[tri] && !thin->hidden[tri] && !(has(thin, tri, from) && has(thin, tri, to)))
+        if (!thin->gone[tri] && !thin->hidden[tri] && has(thin, tri, from) != has(thin, tri, to))
             return true;
     }
     return false;
@@ -140,7 +141,7 @@ static bool can_go_to(const struct thin *thin, const struct star *star, uint32_t
     for (size_t i = 0; i < star->count; i++) {
         const struct face *face = &star->faces[i];
         uint32_t b = corner_of(thin, face, 1), c = corner_of(thin, face, 2);
-        if (!thin->hidden[face->tri] && (b == to || c == to) && !stays_seen(thin, b == to ? c : b, star->point, to))
+        if (!thin->hidden[face->tri] && (b == to || c == to) && !stays_joined(thin, b == to ? c : b, star->point, to))
             return false;
     }
     return true;
