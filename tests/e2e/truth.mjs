@@ -156,6 +156,7 @@ test('a slow link that comes to a halt: the last picture stays, marked as old, a
 test('a page that was kept from another version loads itself anew, once', options, async () => {
     const asked = [];
     await withPage(url, TABLET, async (page, browser) => {
+        await page.goto('about:blank'); // so that it asks for no part any more
         browser.page.on('domcontentloaded', () => asked.push('loaded'));
         let first = true;
         await page.route('**/made/version.js', (route) => {
@@ -163,7 +164,7 @@ test('a page that was kept from another version loads itself anew, once', option
             first = false;
             return route.fulfill({ contentType: 'text/javascript', body: `export const version = '${version}';\n` });
         });
-        await page.reload();
+        await page.goto(url);
         await waitForPicture(page);
         await page.waitForFunction(() => sessionStorage.getItem('plantcast.renewed') === 'bbbbbbbbbbbb');
         await page.waitForFunction(() => globalThis.plantcast?.session.picture);

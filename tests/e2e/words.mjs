@@ -91,6 +91,8 @@ for (const [lang, decimal, date] of READERS) {
             assert.ok((await page.locator('.reading .value').allTextContents()).some((text) => number.test(text)));
             for (const [name, { viewport }] of [['tablet', TABLET], ['phone', PHONE]]) {
                 await page.setViewportSize(viewport);
+                await page.waitForFunction(() => innerWidth > 1023 || // narrow from the start, the page has its sheet at once
+                    [...document.styleSheets].some(({ href }) => href?.endsWith('/narrow.css')));
                 await settle(page);
                 await look(`page-${name}`);
             }

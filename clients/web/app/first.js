@@ -18,7 +18,8 @@ document.documentElement.lang = language;
 sayAll(document);
 const backdrop = chooseTheme(query);
 export const narrow = window.matchMedia('(max-width: 1023px)'); // there the list of equipment lies over the picture
-const fold = () => narrow.matches && styled('narrow').catch(() => {});
+const turned = window.matchMedia('(any-pointer: coarse)'); // in the hand, perhaps while there is no server
+const fold = () => (narrow.matches || turned.matches) && styled('narrow').catch(() => {});
 narrow.addEventListener('change', fold);
 document.querySelector('.stage').classList.toggle('without-assets', narrow.matches);
 await fold();
