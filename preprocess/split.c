@@ -10,7 +10,6 @@
 #include "preprocess/split_impl.h"
 #include "surface/vec.h"
 
-#define AIM SPLIT_AIM
 #define MOST_ROUNDS 16
 #define MOST_KEPT 512    /* shares of a place */
 #define LARGE 0.25       /* of the way to the nearest sensor */
@@ -78,13 +77,13 @@ static bool is_line(const struct split *split, const struct cut_tri *tri)
 
 void split_measure_new_edges(struct split *split, struct split_finding *findings, size_t count)
 {
-    split_measure_edges(split, findings, count, AIM);
+    split_measure_edges(split, findings, count, SPLIT_AIM);
     for (size_t i = 0; i < count; i++) {
         struct cut_edge *edge = &split->mesh.cuts[findings[i].number];
         edge->error = findings[i].error;
         edge->barred = findings[i].barred;
         edge->jumps = findings[i].jumps;
-        edge->proven = findings[i].error <= (float)AIM && findings[i].barred <= (float)AIM;
+        edge->proven = findings[i].error <= (float)SPLIT_AIM && findings[i].barred <= (float)SPLIT_AIM;
         if (edge->middle == TRIMESH_NONE)
             edge->share = findings[i].share;
     }
@@ -163,7 +162,7 @@ static void measure_insides(struct split *split, double limit)
     }
     split_measure_insides(split, findings, count);
     for (size_t i = 0; i < count; i++)
-        if ((double)findings[i].error > AIM) {
+        if ((double)findings[i].error > SPLIT_AIM) {
             const struct cut_tri *tri = &mesh->tris[findings[i].number];
             struct cut_edge *edge = &mesh->cuts[tri->e[longest_edge(split, tri)]];
             edge->error = findings[i].error;
@@ -286,8 +285,8 @@ static bool comes_to_bound(const struct split *split)
     for (size_t t = 0; t < mesh->tri_count && !split->finest; t++)
         for (int i = 0; i < 3; i++) {
             double error = (double)mesh->cuts[mesh->tris[t].e[i]].error;
-            if (error > AIM)
-                needed += ceil(0.5 * log2(error / AIM));
+            if (error > SPLIT_AIM)
+                needed += ceil(0.5 * log2(error / SPLIT_AIM));
         }
     return !split->finest && needed > (double)split->most_tris;
 }
@@ -295,7 +294,7 @@ static bool comes_to_bound(const struct split *split)
 /* Large errors go first: should the level come to its bound, the smaller ones are what is left. */
 static void split_level(struct split *split, struct level *level, size_t finer_tris)
 {
-    static const double limits[] = { 16 * AIM, 4 * AIM, 2 * AIM, AIM };
+    static const double limits[] = { 16 * SPLIT_AIM, 4 * SPLIT_AIM, 2 * SPLIT_AIM, SPLIT_AIM };
     double error_m = (double)level->error_m, tolerance_m = surface_report(split->in->surface)->tolerance_m;
     split->finest = finer_tris == 0;
     split->error_m = error_m;

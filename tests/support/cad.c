@@ -4,13 +4,24 @@
 
 #include <math.h>
 #include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include "base/mem.h"
 
 #define PI 3.14159265358979323846
 #define PATCHES 14
 #define NONE UINT32_MAX
+
+void cad_random_start(struct cad_random *random)
+{
+    const char *seed = getenv("PLANTCAST_SEED");
+    random->state = seed ? strtoull(seed, NULL, 10) : (uint64_t)time(NULL);
+    printf("# PLANTCAST_SEED=%llu\n", (unsigned long long)random->state);
+    fflush(stdout);
+}
 
 double cad_random(struct cad_random *random)
 {

@@ -14,7 +14,8 @@ struct cad {
 struct cad_random {
     uint64_t state;
 };
-double cad_random(struct cad_random *random); /* 0 <= x < 1 */
+void cad_random_start(struct cad_random *random); /* from PLANTCAST_SEED, or else the clock; says which */
+double cad_random(struct cad_random *random);     /* 0 <= x < 1 */
 
 void cad_finish(struct cad *cad);
 

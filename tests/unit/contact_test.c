@@ -9,7 +9,6 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <cmocka.h>
 
 #include "base/mem.h"
@@ -26,10 +25,8 @@ static struct cad_random chance;
 
 static int set_up(void **state)
 {
-    const char *seed = getenv("PLANTCAST_SEED");
     (void)state;
-    chance.state = seed ? strtoull(seed, NULL, 10) : (uint64_t)time(NULL);
-    print_message("# PLANTCAST_SEED=%llu\n", (unsigned long long)chance.state);
+    cad_random_start(&chance);
     the_log = log_create(LOG_ERROR);
     workers = workers_create(0);
     return 0;

@@ -7,8 +7,6 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <stdlib.h>
-#include <time.h>
 #include <cmocka.h>
 
 #include "tests/support/cad.h"
@@ -20,10 +18,8 @@ static struct cad_random chance;
 
 static int set_up(void **state)
 {
-    const char *seed = getenv("PLANTCAST_SEED");
     (void)state;
-    chance.state = seed ? strtoull(seed, NULL, 10) : (uint64_t)time(NULL);
-    print_message("# PLANTCAST_SEED=%llu\n", (unsigned long long)chance.state);
+    cad_random_start(&chance);
     return 0;
 }
 

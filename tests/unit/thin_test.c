@@ -7,9 +7,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <cmocka.h>
 
 #include "base/mem.h"
@@ -29,10 +27,8 @@ static double between(double low, double high)
 
 static int set_up(void **state)
 {
-    const char *seed = getenv("PLANTCAST_SEED");
     (void)state;
-    chance.state = seed ? strtoull(seed, NULL, 10) : (uint64_t)time(NULL);
-    print_message("# PLANTCAST_SEED=%llu\n", (unsigned long long)chance.state);
+    cad_random_start(&chance);
     return 0;
 }
 

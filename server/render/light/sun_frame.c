@@ -71,7 +71,7 @@ void sun_frame_fit(struct sun_frame *frame, const struct stage *stage, const dou
     double best[3][3], axes[3][3];
     struct extent extent = { 0 };
     for (int turn = 0; turn < TURNS; turn++) {
-        axes_of(towards, turn * 1.5707963267948966 / TURNS, axes);
+        axes_of(towards, turn * M_PI_2 / TURNS, axes);
         struct extent tried = extent_of(stage, (const double(*)[3])axes, shown);
         if (turn > 0 && longer_side(&tried) >= longer_side(&extent))
             continue;
