@@ -8,9 +8,8 @@
 
 #include "base/mem.h"
 #include "surface/bvh.h"
+#include "surface/piece.h"
 #include "surface/vec.h"
-
-#define ON_EDGE 1e-9 /* a weight below this is on the edge */
 
 void attach_init(struct attach *attach)
 {
@@ -21,6 +20,7 @@ void attach_finish(struct attach *attach)
 {
     mem_free(attach->items);
     mem_free(attach->pairs);
+    mem_free(attach->joins);
     *attach = (struct attach){ 0 };
 }
 
@@ -51,6 +51,12 @@ void attach_to_tri(struct attach *attach, uint32_t point, uint32_t tri, double d
     add_item(attach, (struct attach_item){ .point = point, .a = TRIMESH_NONE, .b = TRIMESH_NONE, .tri = tri }, distance_m);
 }
 
+void attach_join(struct attach *attach, uint32_t a, uint32_t b)
+{
+    mem_grow(&attach->joins, &attach->join_capacity, attach->join_count + 1, sizeof(*attach->joins));
+    attach->joins[attach->join_count++] = (struct attach_pair){ a, b };
+}
+
 /* --- carrying it out ------------------------------------------------------------------------------------------------------ */
 
 static void find_targets(const struct attach *attach, size_t point_count, uint32_t *target)
@@ -69,6 +75,9 @@ struct lists { /* items by edge (lower points first, then by t) and by triangle 
     uint32_t *edge_first, *tri_first; /* of each edge number, each triangle; one more at the end */
     struct attach_item *by_edge;
     uint32_t *by_tri;
+    uint32_t *target;                   /* of each point: the one it becomes */
+    uint32_t *partner_first, *partners; /* of each of these: those that it is joined to; NULL: none is */
+    uint32_t *slot;                     /* likewise: one more than its place in the piece in hand, 0: it is not in it */
 };
 
 static int by_t(const void *a, const void *b)
@@ -77,8 +86,31 @@ static int by_t(const void *a, const void *b)
     return p->t < q->t ? -1 : p->t > q->t;
 }
 
+/* Both ways, of what the points become. */
+static void lists_partners(struct lists *lists, const struct attach_pair *joins, size_t count, size_t point_count)
+{
+    if (!count)
+        return;
+    lists->partner_first = mem_array(point_count + 2, sizeof(*lists->partner_first));
+    lists->partners = mem_array(2 * count, sizeof(*lists->partners));
+    lists->slot = mem_array(point_count, sizeof(*lists->slot));
+    for (size_t i = 0; i < count; i++) {
+        lists->partner_first[lists->target[joins[i].a] + 2]++;
+        lists->partner_first[lists->target[joins[i].b] + 2]++;
+    }
+    for (size_t i = 2; i < point_count + 2; i++)
+        lists->partner_first[i] += lists->partner_first[i - 1];
+    for (size_t i = 0; i < count; i++) {
+        uint32_t a = lists->target[joins[i].a], b = lists->target[joins[i].b];
+        lists->partners[lists->partner_first[a + 1]++] = b;
+        lists->partners[lists->partner_first[b + 1]++] = a;
+    }
+}
+
 static void lists_init(struct lists *lists, const struct attach *attach, const struct trimesh *mesh)
 {
+    *lists = (struct lists){ .target = mem_array(mesh->point_count, sizeof(*lists->target)) };
+    find_targets(attach, mesh->point_count, lists->target);
     edge_table_init(&lists->edges, attach->item_count);
     for (size_t i = 0; i < attach->item_count; i++)
         if (attach->items[i].a != TRIMESH_NONE)
@@ -107,6 +139,7 @@ static void lists_init(struct lists *lists, const struct attach *attach, const s
     }
     for (size_t e = 0; e < lists->edges.count; e++)
         qsort(lists->by_edge + lists->edge_first[e], lists->edge_first[e + 1] - lists->edge_first[e], sizeof(*lists->by_edge), by_t);
+    lists_partners(lists, attach->joins, attach->join_count, mesh->point_count);
 }
 
 static void lists_finish(struct lists *lists)
@@ -116,29 +149,10 @@ static void lists_finish(struct lists *lists)
     mem_free(lists->tri_first);
     mem_free(lists->by_edge);
     mem_free(lists->by_tri);
-}
-
-struct piece { /* one triangle on the way to being cut up: local points, in its plane */
-    uint32_t *ids;
-    double (*at)[2];
-    uint32_t (*tris)[3];
-    size_t count, capacity, at_capacity, tri_count, tri_capacity;
-};
-
-static uint32_t piece_point(struct piece *piece, uint32_t id, double x, double y)
-{
-    mem_grow(&piece->ids, &piece->capacity, piece->count + 1, sizeof(*piece->ids));
-    mem_grow(&piece->at, &piece->at_capacity, piece->count + 1, sizeof(*piece->at));
-    piece->ids[piece->count] = id;
-    piece->at[piece->count][0] = x;
-    piece->at[piece->count][1] = y;
-    return (uint32_t)piece->count++;
-}
-
-static void piece_tri(struct piece *piece, uint32_t a, uint32_t b, uint32_t c)
-{
-    mem_grow(&piece->tris, &piece->tri_capacity, piece->tri_count + 1, sizeof(*piece->tris));
-    memcpy(piece->tris[piece->tri_count++], (const uint32_t[3]){ a, b, c }, sizeof(*piece->tris));
+    mem_free(lists->target);
+    mem_free(lists->partner_first);
+    mem_free(lists->partners);
+    mem_free(lists->slot);
 }
 
 static bool is_corner(const uint32_t corners[3], uint32_t point)
@@ -186,65 +200,6 @@ static void zip(struct piece *piece, const uint32_t *low, size_t low_count, cons
             j++;
         }
     }
-}
-
-static double twice_area(const struct piece *piece, uint32_t a, uint32_t b, uint32_t c)
-{
-    const double *p = piece->at[a], *q = piece->at[b], *r = piece->at[c];
-    return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
-}
-
-/* The sub-triangle that holds a local point: the one whose smallest weight is largest. */
-static size_t locate(const struct piece *piece, uint32_t point, double weights[3])
-{
-    size_t best = 0;
-    double best_weight = -INFINITY;
-    for (size_t t = 0; t < piece->tri_count; t++) {
-        const uint32_t *v = piece->tris[t];
-        double area = twice_area(piece, v[0], v[1], v[2]), w[3];
-        if (!(fabs(area) > 0))
-            continue;
-        for (int i = 0; i < 3; i++)
-            w[i] = twice_area(piece, point, v[(i + 1) % 3], v[(i + 2) % 3]) / area;
-        double least = min_of(w[0], min_of(w[1], w[2]));
-        if (least > best_weight) {
-            best_weight = least;
-            best = t;
-            memcpy(weights, w, sizeof(w));
-        }
-    }
-    return best;
-}
-
-/* Splits every sub-triangle that has the side u-v at the point. */
-static void split_side(struct piece *piece, uint32_t u, uint32_t v, uint32_t point)
-{
-    size_t count = piece->tri_count;
-    for (size_t t = 0; t < count; t++)
-        for (int i = 0; i < 3; i++) {
-            uint32_t a = piece->tris[t][i], b = piece->tris[t][(i + 1) % 3], c = piece->tris[t][(i + 2) % 3];
-            if (!((a == u && b == v) || (a == v && b == u)))
-                continue;
-            memcpy(piece->tris[t], (const uint32_t[3]){ a, point, c }, sizeof(*piece->tris));
-            piece_tri(piece, point, b, c);
-            break;
-        }
-}
-
-static void set_inside(struct piece *piece, uint32_t point)
-{
-    double w[3] = { 0 };
-    size_t t = locate(piece, point, w);
-    uint32_t v[3];
-    memcpy(v, piece->tris[t], sizeof(v));
-    for (int i = 0; i < 3; i++)
-        if (w[i] < ON_EDGE) {
-            split_side(piece, v[(i + 1) % 3], v[(i + 2) % 3], point);
-            return;
-        }
-    memcpy(piece->tris[t], (const uint32_t[3]){ v[0], v[1], point }, sizeof(*piece->tris));
-    piece_tri(piece, v[1], v[2], point);
-    piece_tri(piece, v[2], v[0], point);
 }
 
 static size_t list_chain(struct piece *piece, const struct lists *lists, const uint32_t corners[3], const uint32_t *way, int steps,
@@ -311,7 +266,25 @@ static void set_point(struct piece *piece, const struct trimesh *mesh, const uin
     for (size_t i = 0; i < piece->count; i++)
         if (piece->ids[i] == id)
             return; /* it is there already, as a corner or on a side */
-    set_inside(piece, piece_point(piece, id, x, y));
+    piece_set_inside(piece, piece_point(piece, id, x, y));
+}
+
+static void join_points(struct piece *piece, const struct lists *lists)
+{
+    if (!lists->partners)
+        return;
+    for (uint32_t i = 0; i < piece->count; i++)
+        lists->slot[lists->target[piece->ids[i]]] = i + 1;
+    for (uint32_t i = 0; i < piece->count; i++) {
+        uint32_t own = lists->target[piece->ids[i]];
+        for (uint32_t n = lists->partner_first[own]; n < lists->partner_first[own + 1]; n++) {
+            uint32_t other = lists->slot[lists->partners[n]];
+            if (other > i + 1)
+                piece_join(piece, i, other - 1);
+        }
+    }
+    for (uint32_t i = 0; i < piece->count; i++)
+        lists->slot[lists->target[piece->ids[i]]] = 0;
 }
 
 static void cut(struct cutter *cutter, const struct lists *lists, struct trimesh *mesh, size_t t)
@@ -330,6 +303,7 @@ static void cut(struct cutter *cutter, const struct lists *lists, struct trimesh
     zip(piece, cutter->low, low, cutter->high, high);
     for (uint32_t i = lists->tri_first[t]; i < lists->tri_first[t + 1]; i++)
         set_point(piece, mesh, corners, lists->by_tri[i]);
+    join_points(piece, lists);
     for (size_t i = 0; i < piece->tri_count; i++) {
         const uint32_t *v = piece->tris[i];
         if (i == 0)
@@ -348,12 +322,10 @@ void attach_apply(const struct attach *attach, struct trimesh *mesh, uint32_t *t
     for (size_t t = 0; t < tri_count; t++)
         if (touched(&lists, mesh->tris[t], t))
             cut(&cutter, &lists, mesh, t);
+    memcpy(target, lists.target, mesh->point_count * sizeof(*target));
     lists_finish(&lists);
-    mem_free(cutter.piece.ids);
-    mem_free(cutter.piece.at);
-    mem_free(cutter.piece.tris);
+    piece_finish(&cutter.piece);
     mem_free(cutter.low);
     mem_free(cutter.high);
-    find_targets(attach, mesh->point_count, target);
     trimesh_rename(mesh, target, &dropped, &repeated);
 }

@@ -11,8 +11,8 @@ struct attach {
     } * items;
     struct attach_pair {
         uint32_t a, b;
-    } * pairs; /* points that are one */
-    size_t item_count, item_capacity, pair_count, pair_capacity;
+    } * pairs, *joins, *lines; /* points that are one; that get an edge; ends of edges that stay such, over what is set into them */
+    size_t item_count, item_capacity, pair_count, pair_capacity, join_count, join_capacity;
     double longest_m;
 };
 
@@ -21,6 +21,8 @@ void attach_finish(struct attach *attach);
 void attach_points(struct attach *attach, uint32_t a, uint32_t b, double distance_m);
 void attach_to_edge(struct attach *attach, uint32_t point, uint32_t a, uint32_t b, double t, double distance_m);
 void attach_to_tri(struct attach *attach, uint32_t point, uint32_t tri, double distance_m);
+/* In each triangle that is cut up and has both points, there will be an edge between them. */
+void attach_join(struct attach *attach, uint32_t a, uint32_t b);
 
 /* Carries all of it out. target[point]: the point it has become. Triangles that touch a new place are cut up. */
 void attach_apply(const struct attach *attach, struct trimesh *mesh, uint32_t *target);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Bridging what is broken: parts that touch or cross. */
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"
@@ -25,6 +26,7 @@ struct contacts {
     uint32_t *touched; /* of each point: the body that it touches, or TRIMESH_NONE */
     struct crossing {
         uint32_t tri, a, b, c, d; /* edge a-b through tri, or, if that is TRIMESH_NONE, over the edge c-d */
+        uint32_t point;           /* there, once it is set */
         double t, s, weights[3];
         bool own; /* within one part */
     } * crossings;
@@ -213,7 +215,7 @@ static void visit_rim(void *arg, uint32_t tri)
         vec_mix(p, q, t, at);
         vec_mix(a, b, s, beside);
         if (vec_distance(at, beside) <= end && fmin(t, 1 - t) * length > end && fmin(s, 1 - s) * other > end)
-            *add_crossing(c) = (struct crossing){ TRIMESH_NONE, c->edge[0], c->edge[1], u, v, t, s, { 0 }, false };
+            *add_crossing(c) = (struct crossing){ .tri = TRIMESH_NONE, .a = c->edge[0], .b = c->edge[1], .c = u, .d = v, .t = t, .s = s };
     }
 }
 
@@ -237,20 +239,122 @@ static void find_rims(struct contacts *c)
 static void set_crossings(struct contacts *c, struct stitch_report *report)
 {
     for (size_t i = 0; i < c->crossing_count; i++) {
-        const struct crossing *x = &c->crossings[i];
+        struct crossing *x = &c->crossings[i];
         double place[3];
         vec_mix(c->mesh->points[x->a], c->mesh->points[x->b], x->t, place);
-        uint32_t point = trimesh_add_point(c->mesh, place);
-        attach_to_edge(c->attach, point, x->a, x->b, x->t, 0);
+        x->point = trimesh_add_point(c->mesh, place);
+        attach_to_edge(c->attach, x->point, x->a, x->b, x->t, 0);
         if (x->tri == TRIMESH_NONE)
-            attach_to_edge(c->attach, point, x->c, x->d, x->s, 0);
+            attach_to_edge(c->attach, x->point, x->c, x->d, x->s, 0);
         else
-            set_into_face(c, point, x->tri, x->weights, 0);
+            set_into_face(c, x->point, x->tri, x->weights, 0);
         if (!x->own)
             continue;
         mem_grow(&report->crossings, &report->crossing_capacity, report->crossing_count + 1, sizeof(*report->crossings));
-        report->crossings[report->crossing_count++] = point;
+        report->crossings[report->crossing_count++] = x->point;
     }
+}
+
+/* --- the lines along which faces cross ---------------------------------------------------------------------------------------- */
+
+struct meeting { /* of two triangles, at a point of the line along which they cross */
+    uint32_t tris[2], point; /* the lower one first */
+};
+
+struct meetings {
+    struct meeting *at;
+    size_t count, capacity;
+};
+
+static int compare_meetings(const void *a, const void *b)
+{
+    const struct meeting *x = a, *y = b;
+    for (int i = 0; i < 2; i++)
+        if (x->tris[i] != y->tris[i])
+            return x->tris[i] < y->tris[i] ? -1 : 1;
+    return (x->point > y->point) - (x->point < y->point);
+}
+
+/* An edge that passes through a triangle belongs to others: each of them meets it there. */
+static void find_meetings(const struct contacts *c, struct meetings *meetings)
+{
+    struct edge_table edges;
+    uint32_t *number = mem_array(c->crossing_count, sizeof(*number)), *first = mem_array(c->crossing_count + 2, sizeof(*first));
+    edge_table_init(&edges, c->crossing_count);
+    for (size_t i = 0; i < c->crossing_count; i++) {
+        number[i] = edge_table_add(&edges, c->crossings[i].a, c->crossings[i].b);
+        first[number[i] + 2]++;
+    }
+    for (size_t e = 2; e < edges.count + 2; e++)
+        first[e] += first[e - 1];
+    uint32_t *of_edge = mem_array(c->crossing_count, sizeof(*of_edge));
+    for (uint32_t i = 0; i < c->crossing_count; i++)
+        of_edge[first[number[i] + 1]++] = i;
+    for (uint32_t t = 0; t < c->mesh->tri_count; t++)
+        for (int i = 0; i < 3; i++) {
+            uint32_t e = edge_table_find(&edges, c->mesh->tris[t][i], c->mesh->tris[t][(i + 1) % 3]);
+            for (uint32_t n = e == TRIMESH_NONE ? 0 : first[e]; e != TRIMESH_NONE && n < first[e + 1]; n++) {
+                const struct crossing *x = &c->crossings[of_edge[n]];
+                if (x->tri == TRIMESH_NONE || x->tri == t)
+                    continue;
+                mem_grow(&meetings->at, &meetings->capacity, meetings->count + 1, sizeof(*meetings->at));
+                meetings->at[meetings->count++] =
+                    (struct meeting){ { t < x->tri ? t : x->tri, t < x->tri ? x->tri : t }, x->point };
+            }
+        }
+    edge_table_finish(&edges);
+    mem_free(number);
+    mem_free(first);
+    mem_free(of_edge);
+}
+
+/* The line ends at a corner of the one that touches the other. */
+static void join_corners(const struct contacts *c, uint32_t point, uint32_t tri, uint32_t other)
+{
+    const uint32_t *v = c->mesh->tris[tri], *u = c->mesh->tris[other];
+    double w[3], at[3];
+    for (int i = 0; i < 3; i++) {
+        if (c->touched[v[i]] != c->body[other])
+            continue;
+        const double *p = c->mesh->points[v[i]];
+        triangle_nearest(p, c->mesh->points[u[0]], c->mesh->points[u[1]], c->mesh->points[u[2]], w);
+        for (int axis = 0; axis < 3; axis++)
+            at[axis] = w[0] * c->mesh->points[u[0]][axis] + w[1] * c->mesh->points[u[1]][axis] + w[2] * c->mesh->points[u[2]][axis];
+        if (vec_distance(p, at) <= min_of(reach_of(c, tri), reach_of(c, other)))
+            attach_join(c->attach, point, v[i]);
+    }
+}
+
+/* Two triangles cross along a line with two ends; near a corner some may be found twice. */
+static void join_meetings(const struct contacts *c, const struct meeting *meetings, size_t count)
+{
+    size_t far = 0;
+    const double *from = c->mesh->points[meetings[0].point];
+    for (size_t i = 1; i < count; i++)
+        if (vec_distance2(from, c->mesh->points[meetings[i].point]) > vec_distance2(from, c->mesh->points[meetings[far].point]))
+            far = i;
+    for (size_t i = 0; i < count; i++)
+        if (i != far)
+            attach_join(c->attach, meetings[i].point, meetings[far].point);
+    if (count == 1)
+        for (int i = 0; i < 2; i++)
+            join_corners(c, meetings[0].point, meetings[0].tris[i], meetings[0].tris[1 - i]);
+}
+
+/* Both faces are cut along it: what is to either side of it can be told apart then. */
+static void cut_along(struct contacts *c)
+{
+    struct meetings meetings = { 0 };
+    find_meetings(c, &meetings);
+    if (meetings.count)
+        qsort(meetings.at, meetings.count, sizeof(*meetings.at), compare_meetings);
+    for (size_t first = 0, end; first < meetings.count; first = end) {
+        const struct meeting *m = &meetings.at[first];
+        for (end = first + 1; end < meetings.count && meetings.at[end].tris[0] == m->tris[0] && meetings.at[end].tris[1] == m->tris[1];)
+            end++;
+        join_meetings(c, m, end - first);
+    }
+    mem_free(meetings.at);
 }
 
 void stitch_parts(struct trimesh *mesh, struct parts *parts, uint32_t *target, struct stitch_report *report)
@@ -274,6 +378,7 @@ void stitch_parts(struct trimesh *mesh, struct parts *parts, uint32_t *target, s
     find_rims(&contacts);
     bvh_destroy(&bvh);
     set_crossings(&contacts, report);
+    cut_along(&contacts);
     stitch_carry_out(&attach, mesh, target, target_count, contacts.crossing_count, report);
     mem_free(contacts.crossings);
     mem_free(contacts.touched);

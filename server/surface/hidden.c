@@ -19,7 +19,8 @@
 
 struct solid { /* a closed part, as it was before it was cut up */
     uint32_t part;
-    bool winds; /* it passes through itself: its inside is what it goes round */
+    bool is_thin; /* a plate: what ends within it is near both sides of it */
+    bool winds;   /* it passes through itself: its inside is what it goes round */
     double low[3], high[3];
     struct trimesh mesh;     /* its triangles; the arrays belong to others */
     const signed char *side; /* of its triangles, as in struct parts */
@@ -74,6 +75,7 @@ static void solids_init(struct solids *solids, const struct parts *parts)
             solids->of_part[p] = &solids->at[solids->count++];
             *solids->of_part[p] = (struct solid){
                 .part = (uint32_t)p,
+                .is_thin = parts->thin[p],
                 .winds = parts->crossed[p],
                 .mesh = { .points = mesh->points,
                           .point_count = mesh->point_count,
@@ -208,22 +210,25 @@ static bool is_between(const struct face *face, const double normal[3], const st
     return false;
 }
 
-static bool is_hidden_by(const struct face *face, const struct solid *solid, double reach_m)
+static char is_hidden_by(const struct face *face, const struct solid *solid, double reach_m)
 {
     struct bvh_place at;
     double n[3];
     if (!is_near(solid, face->middle, reach_m))
-        return false;
+        return HIDDEN_NOT;
     bvh_nearest(solid->bvh, face->middle, reach_m, NULL, NULL, &at);
     if (at.tri == TRIMESH_NONE)
-        return is_inside(solid, face->middle, BARELY * reach_m);
+        return is_inside(solid, face->middle, BARELY * reach_m) ? HIDDEN_INSIDE : HIDDEN_NOT;
     tri_normal(&solid->mesh, at.tri, n);
     double length = sqrt(vec_dot(n, n));
     for (int axis = 0; axis < 3; axis++)
         n[axis] /= length;
     /* A sliver between points of both looks anywhere. */
-    bool flush = face->height_m < SLIVER * reach_m || fabs(vec_dot(n, face->normal)) > FLUSH;
-    return face->own && flush && is_between(face, n, solid, face->own, BESIDE * reach_m, BARELY * reach_m);
+    bool lies = fabs(vec_dot(n, face->normal)) > FLUSH, flush = lies || face->height_m < SLIVER * reach_m;
+    if (face->own && flush && is_between(face, n, solid, face->own, BESIDE * reach_m, BARELY * reach_m))
+        return HIDDEN_INSIDE;
+    bool across = solid->is_thin && !lies && at.distance_m > BARELY * reach_m;
+    return across && is_inside(solid, face->middle, BARELY * reach_m) ? HIDDEN_ACROSS : HIDDEN_NOT;
 }
 
 static double longest_side(const struct trimesh *mesh, size_t t)
@@ -233,7 +238,7 @@ static double longest_side(const struct trimesh *mesh, size_t t)
     return max_of(max_of(ab, bc), vec_distance(mesh->points[v[2]], mesh->points[v[0]]));
 }
 
-static bool tri_is_hidden(const struct search *s, size_t t)
+static char tri_is_hidden(const struct search *s, size_t t)
 {
     const uint32_t *v = s->mesh->tris[t], part = s->part[t];
     struct face face = { .own = s->solids->of_part[part] };
@@ -245,13 +250,17 @@ static bool tri_is_hidden(const struct search *s, size_t t)
         face.normal[axis] /= length > 0 ? length : 1;
     }
     face.height_m = length / longest_side(s->mesh, t);
+    char found = HIDDEN_NOT;
     for (size_t i = 0; i < s->solids->count; i++) {
         const struct solid *solid = &s->solids->at[i];
-        if (solid->part != part && is_hidden_by(&face, solid, min_of(reach_m, s->parts->reach_m[solid->part])))
-            return true;
+        char hidden = solid->part == part ? HIDDEN_NOT : is_hidden_by(&face, solid, min_of(reach_m, s->parts->reach_m[solid->part]));
+        if (hidden == HIDDEN_INSIDE)
+            return hidden;
+        found = hidden == HIDDEN_ACROSS ? hidden : found;
     }
-    return face.own && s->parts->tangled[part] &&
-           is_between(&face, face.normal, face.own, face.own, 2 * BARELY * reach_m, BARELY * reach_m);
+    bool within = face.own && s->parts->tangled[part] &&
+                  is_between(&face, face.normal, face.own, face.own, 2 * BARELY * reach_m, BARELY * reach_m);
+    return within ? HIDDEN_INSIDE : found;
 }
 
 static void search_some(void *arg, size_t begin, size_t end)
@@ -336,6 +345,7 @@ static void ask(struct search *search, struct workers *workers, const size_t *as
 
 struct vote { /* of a region */
     size_t seen, asked, hidden;
+    char most;
 };
 
 void hidden_find(const struct trimesh *mesh, const uint32_t *part, const struct parts *parts, const uint32_t *crossings,
@@ -362,7 +372,8 @@ void hidden_find(const struct trimesh *mesh, const uint32_t *part, const struct 
         if (untouched(mesh, asked[i], mixed)) {
             struct vote *vote = &votes[region_of(mesh, asked[i], mixed, region)];
             vote->asked++;
-            vote->hidden += (size_t)hidden[asked[i]];
+            vote->hidden += hidden[asked[i]] != HIDDEN_NOT;
+            vote->most = hidden[asked[i]] > vote->most ? hidden[asked[i]] : vote->most;
         }
     asked_count = 0;
     for (size_t t = 0; t < mesh->tri_count; t++) { /* regions that do not agree with themselves are asked in full */
@@ -370,9 +381,10 @@ void hidden_find(const struct trimesh *mesh, const uint32_t *part, const struct 
         if (vote && vote->hidden > 0 && vote->hidden < vote->asked)
             asked[asked_count++] = t;
         else if (vote)
-            hidden[t] = vote->hidden > 0;
+            hidden[t] = vote->most;
     }
     ask(&search, workers, asked, asked_count);
+    hidden_across(mesh, hidden);
     solids_finish(&solids);
     mem_free(mixed);
     mem_free(region);

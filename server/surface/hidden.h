@@ -5,13 +5,17 @@
 #include "base/workers.h"
 #include "surface/parts.h"
 
+enum hidden_kind { HIDDEN_NOT, HIDDEN_INSIDE, HIDDEN_ACROSS };
+
 /* hidden[tri] = 1 where the middle of the triangle is inside a closed part other than its own: rays into five directions say so, four at
    least. Where it lies on the other part's surface (within both parts' reach), it is hidden if it is covered: the other part is
-   on one side of it and its own on the other. In a part that passes through itself, or has walls within, where both sides are inside that
-   part.
+   on one side of it and its own on the other. Within a thin part, where all is within reach, also if it stands across, unless it alone
+   joins what is seen. In a part that passes through itself, or has walls within, where both sides are inside that part.
    part: of mesh's triangles. crossings: points where a part passes through itself. workers may be NULL. */
 void hidden_find(const struct trimesh *mesh, const uint32_t *part, const struct parts *parts, const uint32_t *crossings,
                  size_t crossing_count, struct workers *workers, char *hidden);
+/* Of triangles that are HIDDEN_ACROSS, those are seen after all by which pieces hang together that else would not; others are inside. */
+void hidden_across(const struct trimesh *mesh, char *hidden);
 /* Hides what is left over amid hidden triangles: pieces that hang together by points with nothing else that is seen, all of whose points
    touch hidden triangles, and which are smaller than those. */
 void hidden_islands(const struct trimesh *mesh, char *hidden);

@@ -50,3 +50,35 @@ void hidden_islands(const struct trimesh *mesh, char *hidden)
     mem_free(islands);
     mem_free(touched);
 }
+
+void hidden_across(const struct trimesh *mesh, char *hidden)
+{
+    uint32_t *seen = mem_array(mesh->point_count, sizeof(*seen)), *group = mem_array(mesh->point_count, sizeof(*group));
+    uint32_t *first = mem_array(mesh->point_count, sizeof(*first)); /* of a group, by its lowest point: the first piece that it touches */
+    char *is_seen = mem_array(mesh->point_count, 1), *joins = mem_array(mesh->point_count, 1);
+    for (uint32_t i = 0; i < mesh->point_count; i++) {
+        seen[i] = group[i] = i;
+        first[i] = TRIMESH_NONE;
+    }
+    for (size_t t = 0; t < mesh->tri_count; t++)
+        for (int i = 0; i < 3 && hidden[t] != HIDDEN_INSIDE; i++) {
+            is_seen[mesh->tris[t][i]] |= hidden[t] == HIDDEN_NOT;
+            trimesh_join(hidden[t] ? group : seen, mesh->tris[t][0], mesh->tris[t][i]);
+        }
+    for (size_t t = 0; t < mesh->tri_count; t++)
+        for (int i = 0; i < 3 && hidden[t] == HIDDEN_ACROSS; i++) {
+            uint32_t p = mesh->tris[t][i], g = trimesh_root(group, p), piece = trimesh_root(seen, p);
+            if (!is_seen[p])
+                continue;
+            joins[g] |= first[g] != TRIMESH_NONE && first[g] != piece;
+            first[g] = piece;
+        }
+    for (size_t t = 0; t < mesh->tri_count; t++)
+        if (hidden[t] == HIDDEN_ACROSS)
+            hidden[t] = joins[trimesh_root(group, mesh->tris[t][0])] ? HIDDEN_NOT : HIDDEN_INSIDE;
+    mem_free(seen);
+    mem_free(group);
+    mem_free(first);
+    mem_free(is_seen);
+    mem_free(joins);
+}

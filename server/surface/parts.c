@@ -168,6 +168,7 @@ static void limit_reach(struct parts *parts, double tolerance_m)
         if (parts->closed[p]) {
             double thickness_m = 2 * fabs(volume_m3[p]) / area_m2[p];
             parts->reach_m[p] = min_of(tolerance_m, max_of(OF_THICKNESS * thickness_m, REACH_LEAST * tolerance_m));
+            parts->thin[p] = parts->reach_m[p] < tolerance_m;
         }
     mem_free(area_m2);
     mem_free(volume_m3);
@@ -202,6 +203,7 @@ void parts_init(struct parts *parts, const struct trimesh *mesh, const uint32_t 
     face_outwards(&f);
     drop_walls(&f, source_tris, source_count, vertex_point);
     parts->reach_m = mem_array(parts->count, sizeof(*parts->reach_m));
+    parts->thin = mem_array(parts->count, 1);
     for (size_t p = 0; p < parts->count; p++)
         parts->reach_m[p] = tolerance_m;
     if (is_chosen)
@@ -222,6 +224,7 @@ void parts_finish(struct parts *parts)
     mem_free(parts->closed);
     mem_free(parts->tangled);
     mem_free(parts->crossed);
+    mem_free(parts->thin);
     mem_free(parts->reach_m);
 }
 

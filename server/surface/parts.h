@@ -15,6 +15,7 @@ struct parts {
     char *closed;                         /* of each part: its open edges are short against its size */
     char *tangled;                        /* likewise: it has edges with three faces or more, or passes through itself */
     char *crossed;                        /* likewise: it passes through itself; set by stitch_parts */
+    char *thin;                           /* likewise: it is closed, and its reach is less than the tolerance */
     double *reach_m;                      /* likewise: what is nearer touches it */
     size_t count;
 };

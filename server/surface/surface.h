@@ -92,6 +92,10 @@ bool surface_find_spot_on(const struct surface *surface, const double point_m[3]
 bool surface_find_spot_among(const struct surface *surface, const double point_m[3], double limit_m,
                              bool (*allowed)(const void *arg, uint32_t triangle), const void *arg, struct surface_spot *spot);
 
+/* The spot nearest to a point on one triangle of the sampled surface; of one that was found for the point, the same again. False: there is
+   no such triangle, or it is farther than limit_m. */
+bool surface_spot_on(const struct surface *surface, const double point_m[3], double limit_m, uint32_t tri, struct surface_spot *spot);
+
 /* Metres along the surface from each point (dropped onto the surface first) to every vertex of the model:
    out[point * vertex_count + vertex]. INFINITY where no way leads. Points are spread over all workers.
    False: out of memory, logged. Thread: any number of calls at a time; likewise for all that follows. */

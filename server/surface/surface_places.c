@@ -52,6 +52,21 @@ void surface_find_spot(const struct surface *surface, const double point_m[3], c
     memcpy(spot->weights, at->weights, sizeof(spot->weights));
 }
 
+bool surface_spot_on(const struct surface *surface, const double point_m[3], double limit_m, uint32_t tri, struct surface_spot *spot)
+{
+    if (tri >= surface->visible.tri_count)
+        return false;
+    const uint32_t *v = surface->visible.tris[tri];
+    const double(*points)[3] = (const double(*)[3])surface->visible.points;
+    spot->tri = tri;
+    triangle_nearest(point_m, points[v[0]], points[v[1]], points[v[2]], spot->weights);
+    for (int axis = 0; axis < 3; axis++)
+        spot->point_m[axis] =
+            spot->weights[0] * points[v[0]][axis] + spot->weights[1] * points[v[1]][axis] + spot->weights[2] * points[v[2]][axis];
+    spot->distance_m = vec_distance(spot->point_m, point_m);
+    return spot->distance_m <= limit_m;
+}
+
 struct among {
     const uint32_t *source;
     bool (*allowed)(const void *arg, uint32_t triangle);
@@ -70,12 +85,7 @@ bool surface_find_spot_among(const struct surface *surface, const double point_m
     const struct among among = { surface->visible.tri_source, allowed, arg };
     struct bvh_place at;
     bvh_nearest(surface->bvh, point_m, limit_m, is_among, &among, &at);
-    if (at.tri == TRIMESH_NONE)
-        return false;
-    *spot = (struct surface_spot){ .tri = at.tri, .distance_m = at.distance_m };
-    memcpy(spot->point_m, at.point, sizeof(spot->point_m));
-    memcpy(spot->weights, at.weights, sizeof(spot->weights));
-    return true;
+    return surface_spot_on(surface, point_m, INFINITY, at.tri, spot);
 }
 
 struct planes {
@@ -91,18 +101,9 @@ static bool is_in_one_of(const void *arg, uint32_t triangle)
 
 static void try_piece(const struct surface *surface, const double point_m[3], uint32_t tri, struct surface_spot *spot)
 {
-    const uint32_t *v = surface->visible.tris[tri];
-    const double(*points)[3] = (const double(*)[3])surface->visible.points;
-    double w[3], at[3];
-    triangle_nearest(point_m, points[v[0]], points[v[1]], points[v[2]], w);
-    for (int axis = 0; axis < 3; axis++)
-        at[axis] = w[0] * points[v[0]][axis] + w[1] * points[v[1]][axis] + w[2] * points[v[2]][axis];
-    double distance_m = vec_distance(at, point_m);
-    if (distance_m > spot->distance_m)
-        return;
-    *spot = (struct surface_spot){ .tri = tri, .distance_m = distance_m };
-    memcpy(spot->point_m, at, sizeof(at));
-    memcpy(spot->weights, w, sizeof(w));
+    struct surface_spot at;
+    if (surface_spot_on(surface, point_m, spot->distance_m, tri, &at))
+        *spot = at;
 }
 
 bool surface_find_spot_on(const struct surface *surface, const double point_m[3], double limit_m, const uint32_t triangles[2],

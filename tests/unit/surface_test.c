@@ -434,6 +434,32 @@ static void thin_flanges_are_not_bridged(void **state)
     mem_free(distances);
 }
 
+/* A plate of 3.9 mm, thinner than the tolerance; one duct ends in it, at any depth, and another stands on its far side. */
+static void nothing_leads_through_a_thin_plate(void **state)
+{
+    enum { DEPTHS = 8 };
+    const double thick = 0.0039, truth = hypot(0.2, 8 + 2 * 0.1 + thick); /* unrolled: over the plate's rim */
+    double worst = 0;
+    (void)state;
+    for (int i = 0; i < DEPTHS; i++) {
+        struct cad ducts = { 0 };
+        add_box(&ducts, (const double[3]){ 0, 0, 0 }, (const double[3]){ 0.4, 0.4, 4 + thick * (i ? cad_random(&chance) : 1) });
+        add_box(&ducts, (const double[3]){ -0.1, -0.1, 4 }, (const double[3]){ 0.5, 0.5, 4 + thick });
+        add_box(&ducts, (const double[3]){ 0, 0, 4 + thick }, (const double[3]){ 0.4, 0.4, 8 });
+        struct surface *surface = surface_of(&ducts);
+        float *distances = distances_from(surface, &ducts, 0.2, 0, 0);
+        assert_true(surface_report(surface)->tolerance_m > thick);
+        for (size_t v = 0; v < ducts.vertex_count; v++)
+            if (ducts.positions[v][2] > 7.9f && ducts.positions[v][1] < 0.1f)
+                worst = fmax(worst, fabs((double)distances[v] - truth) / truth);
+        surface_destroy(&surface);
+        cad_finish(&ducts);
+        mem_free(distances);
+    }
+    print_message("# through a thin plate: %.3f %% off at most\n", 100 * worst);
+    assert_true(worst < 0.003);
+}
+
 /* --- places -------------------------------------------------------------------------------------------------------------------- */
 
 static void a_sensor_is_dropped_onto_the_surface(void **state)
@@ -646,6 +672,7 @@ int main(void)
         cmocka_unit_test(a_pipe_that_ends_inside_a_shell_is_joined_to_it),
         cmocka_unit_test(nothing_leads_through_a_closed_part),
         cmocka_unit_test(thin_flanges_are_not_bridged),
+        cmocka_unit_test(nothing_leads_through_a_thin_plate),
         cmocka_unit_test(a_sensor_is_dropped_onto_the_surface),
         cmocka_unit_test(nearest_is_the_nearest),
         cmocka_unit_test(long_thin_strips_are_exact_near_a_source_too),
