@@ -186,10 +186,10 @@ bool geometry_node_place(const struct gltf_model *model, const struct geometry_p
 /* --- putting parts together ------------------------------------------------------------------------------------------------ */
 
 struct room { /* what the arrays of a geometry can hold */
-    size_t positions, normals, texcoords, colors, indices, primitives;
-    float (*all_texcoords)[2];
+    size_t positions, normals, texcoords, second_texcoords, colors, indices, primitives;
+    float (*all_texcoords)[2], (*all_second_texcoords)[2];
     uint8_t (*all_colors)[4];
-    bool any_texcoords, any_colors;
+    bool any_texcoords, any_second_texcoords, any_colors;
 };
 
 static uint32_t add_name(struct geometry *geometry, const char *name)
@@ -206,6 +206,7 @@ static void append(struct geometry *geometry, struct room *room, const struct pa
     mem_grow(&geometry->positions_m, &room->positions, vertices, sizeof(*geometry->positions_m));
     mem_grow(&geometry->normals, &room->normals, vertices, sizeof(*geometry->normals));
     mem_grow(&room->all_texcoords, &room->texcoords, vertices, sizeof(*room->all_texcoords));
+    mem_grow(&room->all_second_texcoords, &room->second_texcoords, vertices, sizeof(*room->all_second_texcoords));
     mem_grow(&room->all_colors, &room->colors, vertices, sizeof(*room->all_colors));
     mem_grow(&geometry->indices, &room->indices, geometry->index_count + mesh->index_count, sizeof(*geometry->indices));
     mem_grow(&geometry->primitives, &room->primitives, geometry->primitive_count + 1u, sizeof(*geometry->primitives));
@@ -215,6 +216,7 @@ static void append(struct geometry *geometry, struct room *room, const struct pa
         memcpy(geometry->positions_m[at], v->position, sizeof(v->position));
         memcpy(geometry->normals[at], v->normal, sizeof(v->normal));
         memcpy(room->all_texcoords[at], v->texcoord, sizeof(v->texcoord));
+        memcpy(room->all_second_texcoords[at], v->second_texcoord, sizeof(v->second_texcoord));
         memcpy(room->all_colors[at], v->color, sizeof(v->color));
     }
     for (size_t i = 0; i < mesh->index_count; i++)
@@ -225,6 +227,7 @@ static void append(struct geometry *geometry, struct room *room, const struct pa
     geometry->vertex_count = (uint32_t)vertices;
     geometry->index_count += (uint32_t)mesh->index_count;
     room->any_texcoords |= part->primitive->texcoords != NULL;
+    room->any_second_texcoords |= part->primitive->second_texcoords != NULL;
     room->any_colors |= part->primitive->colors != NULL;
 }
 
@@ -255,6 +258,13 @@ static uint32_t material_number(struct geometry *geometry, const struct gltf_mod
     return geometry->material_count++;
 }
 
+static void *kept_if(bool wanted, void *array)
+{
+    if (!wanted)
+        mem_free(array);
+    return wanted ? array : NULL;
+}
+
 static bool join_parts(struct geometry *geometry, const struct parts *parts, const struct gltf_model *model,
                        const struct geometry_params *params, char *why)
 {
@@ -281,14 +291,9 @@ static bool join_parts(struct geometry *geometry, const struct parts *parts, con
         wrong(why, "out of memory");
     else if (geometry->index_count == 0)
         good = wrong(why, "none of its %u triangles has an area", geometry->degenerate_triangles);
-    if (room.any_texcoords)
-        geometry->texcoords = room.all_texcoords;
-    else
-        mem_free(room.all_texcoords);
-    if (room.any_colors)
-        geometry->colors = room.all_colors;
-    else
-        mem_free(room.all_colors);
+    geometry->texcoords = kept_if(room.any_texcoords, room.all_texcoords);
+    geometry->second_texcoords = kept_if(room.any_second_texcoords, room.all_second_texcoords);
+    geometry->colors = kept_if(room.any_colors, room.all_colors);
     return good;
 }
 
@@ -310,6 +315,7 @@ void geometry_finish(struct geometry *geometry)
     mem_free(geometry->positions_m);
     mem_free(geometry->normals);
     mem_free(geometry->texcoords);
+    mem_free(geometry->second_texcoords);
     mem_free(geometry->colors);
     mem_free(geometry->indices);
     mem_free(geometry->primitives);

@@ -10,8 +10,9 @@ struct geometry {
     double origin_m[3]; /* the middle of its box; positions are relative to it */
     float (*positions_m)[3];
     float (*normals)[3];
-    float (*texcoords)[2]; /* NULL: no part has any */
-    uint8_t (*colors)[4];  /* NULL: likewise */
+    float (*texcoords)[2];        /* NULL: no part has any */
+    float (*second_texcoords)[2]; /* NULL: likewise */
+    uint8_t (*colors)[4];         /* NULL: likewise */
     uint32_t *indices;
     struct asset_primitive *primitives;
     struct asset_material *materials;

@@ -118,6 +118,8 @@ static void fill_vertex(const struct gltf_primitive *primitive, uint32_t v, cons
     }
     if (primitive->texcoords)
         memcpy(out->texcoord, primitive->texcoords[v], sizeof(out->texcoord));
+    if (primitive->second_texcoords)
+        memcpy(out->second_texcoord, primitive->second_texcoords[v], sizeof(out->second_texcoord));
     if (primitive->colors)
         memcpy(out->color, primitive->colors[v], sizeof(out->color));
     else

@@ -12,7 +12,7 @@ struct part { /* one primitive under one node */
 };
 
 struct vertex { /* every attribute, so that vertices are welded only where all agree */
-    float position[3], normal[3], texcoord[2];
+    float position[3], normal[3], texcoord[2], second_texcoord[2];
     uint8_t color[4];
 };
 

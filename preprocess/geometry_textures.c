@@ -41,8 +41,10 @@ bool geometry_join_textures(struct geometry *geometry, const struct gltf_model *
         uint32_t *uses[] = { &material->base_color_texture, &material->metallic_roughness_texture, &material->normal_texture,
                              &material->occlusion_texture, &material->emissive_texture };
         for (int i = 0; good && i < 5; i++) {
-            if (*uses[i] == ASSET_NO_TEXTURE || !geometry->texcoords) {
+            bool second = material->second >> i & 1;
+            if (*uses[i] == ASSET_NO_TEXTURE || !(second ? geometry->second_texcoords : geometry->texcoords)) {
                 *uses[i] = ASSET_NO_TEXTURE;
+                material->second &= ~(1u << i);
                 continue;
             }
             if (number[*uses[i]] == ASSET_NO_TEXTURE) {

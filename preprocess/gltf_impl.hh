@@ -85,7 +85,15 @@ struct uv_transform {
     int set = 0;          /* TEXCOORD_n */
     bool bounded = false; /* right only inside 0..1: how it goes on beyond cannot be drawn */
 };
-uv_transform uv_of(const tinygltf::Model &m, int material);
+enum { BASE_COLOR, METALLIC_ROUGHNESS, NORMAL, OCCLUSION, EMISSIVE, USE_COUNT }; /* of textures, by a material */
+
+/* The ways in which a material's textures lie on the surface: a vertex keeps two places on them. */
+struct uv_lays {
+    uv_transform at[2];
+    size_t count = 0;
+    size_t of[USE_COUNT] = {}; /* for each use which of them; 2: left out. Of textures that are not there: 0 */
+};
+uv_lays lays_of(const tinygltf::Model &m, int material);
 
 void read_materials(work *w);
 void read_nodes(work *w);

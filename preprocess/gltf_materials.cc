@@ -19,8 +19,6 @@ template <typename Info> use use_of(const Info &info)
     return { info.index, info.texCoord, &info.extensions };
 }
 
-enum { BASE_COLOR, METALLIC_ROUGHNESS, NORMAL, OCCLUSION, EMISSIVE, USE_COUNT };
-
 std::vector<use> uses_of(const tinygltf::Material &m)
 {
     return { use_of(m.pbrMetallicRoughness.baseColorTexture), use_of(m.pbrMetallicRoughness.metallicRoughnessTexture),
@@ -96,21 +94,30 @@ float finite(double value, double otherwise)
     return std::isfinite(out) ? out : static_cast<float>(otherwise);
 }
 
-/* A vertex has one place on a material's textures: those that lie otherwise than the first are left out, and counted. */
+void leave_out(work *w, const std::string &what, size_t number, int set)
+{
+    static const char *const names[USE_COUNT] = { "base colour", "metallic-roughness", "normal", "occlusion", "emissive" };
+    std::string text =
+        what + ": its " + names[number] + " texture (TEXCOORD_" + std::to_string(set) + ") lies on the surface in a third way of its own";
+    w->model->left_out[w->model->left_out_textures++] = mem_strdup(text.c_str());
+}
+
 void read_textures(work *w, const tinygltf::Material &from, asset_material *to, int number, const std::string &what)
 {
     uint32_t *const places[USE_COUNT] = { &to->base_color_texture, &to->metallic_roughness_texture, &to->normal_texture,
                                           &to->occlusion_texture, &to->emissive_texture };
     std::vector<use> uses = uses_of(from);
-    uv_transform lead = uv_of(w->parsed, number);
+    uv_lays lays = lays_of(w->parsed, number);
     for (size_t i = 0; i < USE_COUNT; i++) {
         *places[i] = ASSET_NO_TEXTURE;
         if (uses[i].texture < 0)
             continue;
-        if (lie_alike(transform_of(w->parsed, uses[i]), lead))
-            *places[i] = texture_of(w, uses[i].texture, i == BASE_COLOR || i == EMISSIVE, what);
-        else
-            w->model->left_out_textures++;
+        if (lays.of[i] == 2) {
+            leave_out(w, what, i, transform_of(w->parsed, uses[i]).set);
+            continue;
+        }
+        *places[i] = texture_of(w, uses[i].texture, i == BASE_COLOR || i == EMISSIVE, what);
+        to->second |= static_cast<uint32_t>(lays.of[i]) << i;
     }
 }
 
@@ -135,23 +142,26 @@ void read_material(work *w, const tinygltf::Material &from, asset_material *to, 
 
 } // namespace
 
-uv_transform uv_of(const tinygltf::Model &m, int material)
+uv_lays lays_of(const tinygltf::Model &m, int material)
 {
-    uv_transform uv;
-    bool found = false;
+    uv_lays lays;
     if (material < 0)
-        return uv;
-    for (const use &use : uses_of(m.materials.at(static_cast<size_t>(material)))) {
-        if (use.texture < 0)
+        return lays;
+    std::vector<use> uses = uses_of(m.materials.at(static_cast<size_t>(material)));
+    for (size_t i = 0; i < USE_COUNT; i++) {
+        if (uses[i].texture < 0)
             continue;
-        uv_transform own = transform_of(m, use);
-        if (!found)
-            uv = own;
-        else if (lie_alike(uv, own))
-            uv.bounded = uv.bounded || own.bounded;
-        found = true;
+        uv_transform own = transform_of(m, uses[i]);
+        size_t &lay = lays.of[i];
+        while (lay < lays.count && !lie_alike(lays.at[lay], own))
+            lay++;
+        if (lay == 2)
+            continue;
+        if (lay == lays.count)
+            lays.at[lays.count++] = own;
+        lays.at[lay].bounded = lays.at[lay].bounded || own.bounded;
     }
-    return uv;
+    return lays;
 }
 
 void read_materials(work *w)
@@ -170,6 +180,7 @@ void read_materials(work *w)
     model->materials = new_array<asset_material>(w->parsed.materials.size() + 1);
     model->material_names = new_array<char *>(w->parsed.materials.size() + 1);
     model->textures = new_array<gltf_texture>(USE_COUNT * w->parsed.materials.size() + 1);
+    model->left_out = new_array<char *>(USE_COUNT * w->parsed.materials.size() + 1);
     for (const tinygltf::Material &material : w->parsed.materials) {
         int number = static_cast<int>(model->material_count);
         std::string what = "material " + std::to_string(number) + " '" + material.name.substr(0, 80) + "'";

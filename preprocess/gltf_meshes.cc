@@ -136,17 +136,21 @@ float (*read_vectors(const attribute_reader &reader, const std::string &name))[3
     return out;
 }
 
-void read_texcoords(const attribute_reader &reader, const std::string &name, const uv_transform &uv, gltf_primitive *out)
+/* None where the primitive has no such set. */
+void read_texcoords(const attribute_reader &reader, const uv_transform &uv, float (**out)[2])
 {
+    std::string name = "TEXCOORD_" + std::to_string(uv.set);
+    if (!reader.has(name))
+        return;
     accessor from = reader.open(name, 2);
-    out->texcoords = reinterpret_cast<float(*)[2]>(new_array<float>(2 * reader.used.size() + 1));
+    float(*texcoords)[2] = *out = reinterpret_cast<float(*)[2]>(new_array<float>(2 * reader.used.size() + 1));
     double c = std::cos(uv.rotation), s = std::sin(uv.rotation), t[2];
     for (size_t i = 0; i < reader.used.size(); i++) {
         from.get(reader.used[i], t);
         double u = t[0] * uv.scale[0], v = t[1] * uv.scale[1];
-        out->texcoords[i][0] = narrow(c * u + s * v + uv.offset[0], reader.what);
-        out->texcoords[i][1] = narrow(-s * u + c * v + uv.offset[1], reader.what);
-        if (uv.bounded && (std::fabs(out->texcoords[i][0] - 0.5f) > 0.501f || std::fabs(out->texcoords[i][1] - 0.5f) > 0.501f))
+        texcoords[i][0] = narrow(c * u + s * v + uv.offset[0], reader.what);
+        texcoords[i][1] = narrow(-s * u + c * v + uv.offset[1], reader.what);
+        if (uv.bounded && (std::fabs(texcoords[i][0] - 0.5f) > 0.501f || std::fabs(texcoords[i][1] - 0.5f) > 0.501f))
             refuse("%s: %s: mirrored, or wrapped differently along u and v, which is not supported beyond 0..1", reader.what.c_str(),
                    name.c_str());
     }
@@ -168,13 +172,13 @@ void read_colors(const attribute_reader &reader, gltf_primitive *out)
 
 void read_vertices(const attribute_reader &reader, gltf_primitive *out, int material)
 {
-    uv_transform uv = uv_of(reader.w.parsed, material);
-    std::string set = "TEXCOORD_" + std::to_string(uv.set);
+    uv_lays lays = lays_of(reader.w.parsed, material);
     out->positions = read_vectors(reader, "POSITION");
     if (reader.has("NORMAL"))
         out->normals = read_vectors(reader, "NORMAL");
-    if (reader.has(set))
-        read_texcoords(reader, set, uv, out);
+    read_texcoords(reader, lays.at[0], &out->texcoords);
+    if (lays.count > 1)
+        read_texcoords(reader, lays.at[1], &out->second_texcoords);
     if (reader.has("COLOR_0"))
         read_colors(reader, out);
 }

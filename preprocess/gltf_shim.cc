@@ -101,6 +101,7 @@ extern "C" void gltf_free(struct gltf_model *model)
         mem_free(model->primitives[i].positions);
         mem_free(model->primitives[i].normals);
         mem_free(model->primitives[i].texcoords);
+        mem_free(model->primitives[i].second_texcoords);
         mem_free(model->primitives[i].colors);
         mem_free(model->primitives[i].indices);
     }
@@ -114,6 +115,9 @@ extern "C" void gltf_free(struct gltf_model *model)
         mem_free(model->images[i].name);
         mem_free(model->images[i].bytes);
     }
+    for (uint32_t i = 0; i < model->left_out_textures; i++)
+        mem_free(model->left_out[i]);
+    mem_free(model->left_out);
     mem_free(model->primitives);
     mem_free(model->meshes);
     mem_free(model->nodes);

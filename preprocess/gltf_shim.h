@@ -12,11 +12,12 @@ extern "C" {
 struct gltf_primitive { /* triangles of one material; model units, the mesh's own frame */
     uint32_t vertex_count, index_count;
     float (*positions)[3];
-    float (*normals)[3];   /* NULL: the model has none */
-    float (*texcoords)[2]; /* NULL: none */
-    uint8_t (*colors)[4];  /* NULL: none */
-    uint32_t *indices;     /* a list of triangles, whatever it was */
-    int material;          /* -1: none */
+    float (*normals)[3];          /* NULL: the model has none */
+    float (*texcoords)[2];        /* where its material's textures lie; NULL: none */
+    float (*second_texcoords)[2]; /* likewise those that the material's `second` names */
+    uint8_t (*colors)[4];         /* NULL: none */
+    uint32_t *indices;            /* a list of triangles, whatever it was */
+    int material;                 /* -1: none */
 };
 
 struct gltf_mesh {
@@ -54,7 +55,8 @@ struct gltf_model {
     struct gltf_image *images;
     uint32_t primitive_count, mesh_count, node_count, material_count, texture_count, image_count;
     uint32_t skipped_lines, skipped_points; /* of all meshes */
-    uint32_t left_out_textures;             /* uses that lie on the surface otherwise than their material's first texture */
+    char **left_out; /* a text for each use of a texture that lies on the surface in a third way: there is room for two */
+    uint32_t left_out_textures;
 };
 
 /* Parses and decodes. False: why says what is wrong, by name and number; nothing to free. */

@@ -32,10 +32,30 @@ size_t model_files_add(struct model_files *files, const struct plant_asset *asse
     return files->count++;
 }
 
+static void free_left_out(struct model_file *file)
+{
+    for (uint32_t i = 0; i < file->left_out_textures; i++)
+        mem_free(file->left_out[i]);
+    mem_free(file->left_out);
+    file->left_out = NULL;
+    file->left_out_textures = 0;
+}
+
+static void take_left_out(struct model_file *file)
+{
+    free_left_out(file);
+    file->left_out = file->parsed.left_out;
+    file->left_out_textures = file->parsed.left_out_textures;
+    file->parsed.left_out = NULL;
+    file->parsed.left_out_textures = 0;
+}
+
 void model_files_finish(struct model_files *files)
 {
-    for (size_t i = 0; i < files->count; i++)
+    for (size_t i = 0; i < files->count; i++) {
         model_file_release(&files->at[i]);
+        free_left_out(&files->at[i]);
+    }
     mem_free(files->at);
     *files = (struct model_files){ 0 };
 }
@@ -55,7 +75,7 @@ bool model_file_parse(struct model_file *file)
     file->parse_s = (double)(clock_mono_ns() - start_ns) / NS_PER_S;
     file->skipped_lines = file->parsed.skipped_lines;
     file->skipped_points = file->parsed.skipped_points;
-    file->left_out_textures = file->parsed.left_out_textures;
+    take_left_out(file);
     return true;
 }
 

@@ -16,6 +16,7 @@ struct model_file {
     bool is_parsed, was_parsed;
     double parse_s;
     uint32_t skipped_lines, skipped_points, left_out_textures; /* where was_parsed */
+    char **left_out;                                           /* a text for each of these textures */
 };
 
 struct model_files {

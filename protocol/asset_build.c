@@ -28,11 +28,12 @@ uint64_t asset_checksum(const void *bytes, size_t size)
 
 uint64_t asset_section_bytes(const struct asset_header *h, int section, bool *optional)
 {
-    *optional = section == ASSET_TEXCOORDS || section == ASSET_COLORS;
+    *optional = section == ASSET_TEXCOORDS || section == ASSET_SECOND_TEXCOORDS || section == ASSET_COLORS;
     switch (section) {
     case ASSET_POSITIONS: return 12ull * h->vertex_count;
     case ASSET_NORMALS: return 12ull * h->vertex_count;
-    case ASSET_TEXCOORDS: return 8ull * h->vertex_count;
+    case ASSET_TEXCOORDS:
+    case ASSET_SECOND_TEXCOORDS: return 8ull * h->vertex_count;
     case ASSET_COLORS: return 4ull * h->vertex_count;
     case ASSET_INDICES: return 4ull * h->index_count;
     case ASSET_PRIMITIVES: return (uint64_t)sizeof(struct asset_primitive) * h->primitive_count;
@@ -95,6 +96,7 @@ static void *lay_out(const struct asset_parts *parts, size_t *out_bytes)
         parts->positions_m,
         parts->normals,
         parts->texcoords,
+        parts->second_texcoords,
         parts->colors,
         parts->indices,
         parts->primitives,
@@ -123,7 +125,7 @@ static void *lay_out(const struct asset_parts *parts, size_t *out_bytes)
         end = h.sections[i].offset + h.sections[i].bytes;
     }
     h.file_bytes = align_up(end);
-    char *bytes = aligned_alloc(ASSET_ALIGN, h.file_bytes);
+    char *bytes = parts->make_room ? parts->make_room(parts->room_arg, h.file_bytes) : aligned_alloc(ASSET_ALIGN, h.file_bytes);
     if (!bytes)
         return NULL;
     end = sizeof(h);

@@ -13,8 +13,8 @@
 #define TEXTURE_MAX_PX 16384u
 
 static const char *const section_names[ASSET_SECTION_COUNT] = {
-    "positions", "normals",   "texcoords", "colors", "indices", "primitives", "levels",
-    "clusters",  "materials", "textures",  "texels", "sensors", "geodesic",   "names",
+    "positions", "normals",   "texcoords", "second texcoords", "colors",  "indices",  "primitives", "levels",
+    "clusters",  "materials", "textures",  "texels",           "sensors", "geodesic", "names",
 };
 
 struct check {
@@ -110,6 +110,7 @@ static void view_point(struct check *c)
     v->positions_m = section(c, ASSET_POSITIONS);
     v->normals = section(c, ASSET_NORMALS);
     v->texcoords = section(c, ASSET_TEXCOORDS);
+    v->second_texcoords = section(c, ASSET_SECOND_TEXCOORDS);
     v->colors = section(c, ASSET_COLORS);
     v->indices = section(c, ASSET_INDICES);
     v->primitives = section(c, ASSET_PRIMITIVES);
@@ -155,7 +156,7 @@ static bool vertices_good(struct check *c)
         float length2 = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
         if (!(length2 > 0.98f && length2 < 1.02f))
             return wrong(c, "vertex %u: normal of length %g", i, sqrt((double)length2));
-        if (v->texcoords && !finite_all(v->texcoords[i], 2))
+        if ((v->texcoords && !finite_all(v->texcoords[i], 2)) || (v->second_texcoords && !finite_all(v->second_texcoords[i], 2)))
             return wrong(c, "vertex %u: texture coordinate is not finite", i);
     }
     return true;
@@ -254,9 +255,10 @@ static bool clusters_good(struct check *c)
     return true;
 }
 
-static bool texture_good(const struct check *c, uint32_t texture)
+static bool texture_good(const struct check *c, uint32_t texture, bool second)
 {
-    return texture == ASSET_NO_TEXTURE || (texture < c->view.header->texture_count && c->view.texcoords);
+    return texture == ASSET_NO_TEXTURE ||
+           (texture < c->view.header->texture_count && (second ? c->view.second_texcoords : c->view.texcoords));
 }
 
 static bool unit_range(const float *values, int count)
@@ -273,9 +275,11 @@ static bool material_good(struct check *c, uint32_t number)
     const uint32_t textures[] = { m->base_color_texture, m->metallic_roughness_texture, m->normal_texture, m->occlusion_texture,
                                   m->emissive_texture };
     for (int i = 0; i < 5; i++)
-        if (!texture_good(c, textures[i]))
+        if (!texture_good(c, textures[i], m->second >> i & 1))
             return wrong(c, "material %u: texture %u of %u%s", number, textures[i], c->view.header->texture_count,
-                         c->view.texcoords ? "" : ", without coordinates");
+                         textures[i] < c->view.header->texture_count ? ", without coordinates" : "");
+    if (m->second & ~ASSET_SECOND_MASK)
+        return wrong(c, "material %u: second 0x%x has bits outside 0x%x", number, m->second, ASSET_SECOND_MASK);
     if (!unit_range(m->base_color, 4) || !unit_range(&m->metallic, 1) || !unit_range(&m->roughness, 1) ||
         !unit_range(&m->occlusion_strength, 1))
         return wrong(c, "material %u: a factor lies outside 0..1", number);

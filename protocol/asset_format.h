@@ -8,14 +8,16 @@
 #include <stdint.h>
 
 #define ASSET_MAGIC "PLCASSET"
-#define ASSET_VERSION 3u
+#define ASSET_VERSION 4u
 #define ASSET_ALIGN 64u
 #define ASSET_NO_TEXTURE UINT32_MAX
+#define ASSET_SECOND_MASK 0x1eu /* of asset_material.second */
 
 enum asset_section {
     ASSET_POSITIONS,  /* float[3] per vertex: asset frame (metres, Z up) minus header.origin_m */
     ASSET_NORMALS,    /* float[3] per vertex, unit length */
     ASSET_TEXCOORDS,  /* float[2] per vertex; 0 bytes: no texture anywhere in the asset */
+    ASSET_SECOND_TEXCOORDS, /* likewise; 0 bytes: no material has textures there */
     ASSET_COLORS,     /* uint8[4] per vertex, linear RGBA; 0 bytes: none */
     ASSET_INDICES,    /* uint32 per corner */
     ASSET_PRIMITIVES, /* struct asset_primitive */
@@ -74,6 +76,7 @@ struct asset_material { /* glTF 2.0 metallic-roughness; factors linear */
     float emissive[3], alpha_cutoff;
     uint32_t base_color_texture, metallic_roughness_texture, normal_texture, occlusion_texture, emissive_texture; /* or ASSET_NO_TEXTURE */
     uint32_t alpha, double_sided, name;
+    uint32_t second; /* bit n: the n-th of these textures lies where the second coordinates put it; not the base colour's */
 };
 
 struct asset_texture {
@@ -94,7 +97,8 @@ struct asset_view {
     const struct asset_header *header;
     const float (*positions_m)[3];
     const float (*normals)[3];
-    const float (*texcoords)[2]; /* NULL: none */
+    const float (*texcoords)[2];        /* NULL: none */
+    const float (*second_texcoords)[2]; /* NULL: none */
     const uint8_t (*colors)[4];  /* NULL: none */
     const uint32_t *indices;
     const struct asset_primitive *primitives;
@@ -125,8 +129,9 @@ struct asset_parts {
     double origin_m[3];
     const float (*positions_m)[3];
     const float (*normals)[3];
-    const float (*texcoords)[2]; /* NULL: none */
-    const uint8_t (*colors)[4];  /* NULL: none */
+    const float (*texcoords)[2];        /* NULL: none */
+    const float (*second_texcoords)[2]; /* NULL: none */
+    const uint8_t (*colors)[4];         /* NULL: none */
     const uint32_t *indices;
     const struct asset_primitive *primitives;
     const struct asset_level *levels;     /* NULL: one level that holds everything */
@@ -138,13 +143,15 @@ struct asset_parts {
     const float *geodesic_m;
     void (*write_geodesic)(const void *arg, float *geodesic_m); /* instead of geodesic_m, which may be large: to where it belongs */
     const void *write_arg;
+    void *(*make_room)(void *arg, size_t bytes); /* for the bytes, aligned to ASSET_ALIGN; it may be a file's. NULL: aligned_alloc */
+    void *room_arg;
     const char *names; /* NULL: one empty name */
     uint32_t vertex_count, index_count, primitive_count, level_count, material_count, texture_count, sensor_count, cluster_count;
     size_t texel_bytes, name_bytes;
 };
 
 /* The file's bytes, aligned to ASSET_ALIGN: sections laid out, bounds and checksum computed. Contents are not checked; that is
-   asset_view_init's. NULL: out of memory. Free with free(). */
+   asset_view_init's. NULL: out of memory. Free with free(), unless there is make_room. */
 void *asset_build(const struct asset_parts *parts, size_t *bytes);
 
 #endif

@@ -10,12 +10,12 @@
 #include "field_source.glsl"
 layout(location = 0) centroid in vec3 place;
 layout(location = 1) centroid in vec3 surface_normal;
-layout(location = 2) centroid in vec2 uv;
+layout(location = 2) centroid in vec4 uv; // both places on the textures
 layout(location = 3) centroid in vec4 tint;
 layout(location = 4) centroid in vec2 sky; // ambient light and openness, baked
 layout(location = 5) centroid in FIELD_TYPE field;
 layout(location = 2) uniform int material;
-layout(location = 3) uniform int textures; // bits: base colour, metallic-roughness, normal, occlusion, emissive
+layout(location = 3) uniform int textures; // bits: base colour, metallic-roughness, normal, occlusion, emissive; from 8 on: second uv
 layout(binding = 3) uniform sampler2D base_color_map;
 layout(binding = 4) uniform sampler2D metallic_roughness_map;
 layout(binding = 5) uniform sampler2D normal_map;
@@ -26,17 +26,22 @@ layout(location = 0) out vec4 color;
 #include "section.glsl"
 #endif
 
+vec2 uv_of(int map) // its bit
+{
+    return (textures >> 8 & map) != 0 ? uv.zw : uv.xy;
+}
+
 // The surface's normal with the normal map on it; the tangents come from the derivatives of place and uv.
 vec3 mapped_normal(vec3 n, float scale)
 {
     vec3 dx = dFdx(place), dy = dFdy(place);
-    vec2 du = dFdx(uv), dv = dFdy(uv);
+    vec2 on_map = uv_of(4), du = dFdx(on_map), dv = dFdy(on_map);
     vec3 cross_y = cross(dy, n), cross_x = cross(n, dx);
     vec3 t = cross_y * du.x + cross_x * dv.x, b = cross_y * du.y + cross_x * dv.y;
     float size = max(dot(t, t), dot(b, b)), turn = sign(dot(dx, cross_y)); // rows may run downward
     if (size < 1e-20)
         return n;
-    vec3 m = texture(normal_map, uv).xyz * 2.0 - 1.0;
+    vec3 m = texture(normal_map, on_map).xyz * 2.0 - 1.0;
     m.xy *= scale;
     t *= turn * inversesqrt(size), b *= turn * inversesqrt(size);
     return normalize(t * m.x - b * m.y + n * m.z);
@@ -63,7 +68,7 @@ void main()
 #endif
 #ifdef TEXTURED
     if ((textures & 1) != 0)
-        base *= texture(base_color_map, uv);
+        base *= texture(base_color_map, uv.xy);
     if (base.a < m.emissive.a)
         discard;
 #endif
@@ -81,16 +86,16 @@ void main()
 #endif
 #ifdef TEXTURED
     if ((textures & 2) != 0) {
-        vec4 t = texture(metallic_roughness_map, uv);
+        vec4 t = texture(metallic_roughness_map, uv_of(2));
         s.roughness *= t.g;
         s.metallic *= t.b;
     }
     if ((textures & 4) != 0)
         s.normal = mapped_normal(n, m.factors.z);
     if ((textures & 8) != 0)
-        s.open *= mix(1.0, texture(occlusion_map, uv).r, m.factors.w);
+        s.open *= mix(1.0, texture(occlusion_map, uv_of(8)).r, m.factors.w);
     if ((textures & 16) != 0)
-        glow *= texture(emissive_map, uv).rgb;
+        glow *= texture(emissive_map, uv_of(16)).rgb;
 #endif
 #ifdef GLOSSY // softer light: what lies in shadow, or in a black part of an occlusion map, keeps a colour that can be named
     s.open = mix(0.3, 1.0, s.open);

@@ -9,12 +9,13 @@ layout(location = 3) in vec4 vertex_color;
 layout(location = 4) in vec4 baked;
 layout(location = 5) in float value;
 layout(location = 6) in vec3 flags;
+layout(location = 7) in vec2 second_texcoord;
 layout(location = 0) uniform mat4 clip_from_file;
 layout(location = 1) uniform mat4 eye_from_file;
 layout(location = 4) uniform mat3 eye_from_normal;
 layout(location = 0) centroid out vec3 place;
 layout(location = 1) centroid out vec3 surface_normal;
-layout(location = 2) centroid out vec2 uv;
+layout(location = 2) centroid out vec4 uv; // both places on the textures
 layout(location = 3) centroid out vec4 tint;
 layout(location = 4) centroid out vec2 sky;
 layout(location = 5) centroid out FIELD_TYPE field;
@@ -33,7 +34,7 @@ void main()
 #endif
     place = (eye_from_file * vec4(position_m, 1.0)).xyz;
     surface_normal = eye_from_normal * normal;
-    uv = texcoord;
+    uv = vec4(texcoord, second_texcoord);
     tint = vertex_color;
     sky = baked.yz;
 #ifdef RICH

@@ -4,7 +4,7 @@
 
 #include "gpu/gl.h"
 
-enum { BIND_POSITION, BIND_NORMAL, BIND_TEXCOORD, BIND_COLOR, BIND_LIGHT, BIND_SCALAR };
+enum { BIND_POSITION, BIND_NORMAL, BIND_TEXCOORD, BIND_COLOR, BIND_LIGHT, BIND_SCALAR, BIND_SECOND_TEXCOORD };
 
 GLuint mesh_buffer(struct log *log, const char *name, size_t bytes, const void *data, GLbitfield flags)
 {
@@ -37,6 +37,10 @@ static void describe(const struct mesh *mesh)
         attribute(mesh->vao, MESH_TEXCOORD, BIND_TEXCOORD, 2, GL_FLOAT, GL_FALSE, 0);
         glVertexArrayVertexBuffer(mesh->vao, BIND_TEXCOORD, mesh->texcoords, 0, 8);
     }
+    if (mesh->second_texcoords) {
+        attribute(mesh->vao, MESH_SECOND_TEXCOORD, BIND_SECOND_TEXCOORD, 2, GL_FLOAT, GL_FALSE, 0);
+        glVertexArrayVertexBuffer(mesh->vao, BIND_SECOND_TEXCOORD, mesh->second_texcoords, 0, 8);
+    }
     if (mesh->colors) {
         attribute(mesh->vao, MESH_COLOR, BIND_COLOR, 4, GL_UNSIGNED_BYTE, GL_TRUE, 0);
         glVertexArrayVertexBuffer(mesh->vao, BIND_COLOR, mesh->colors, 0, 4);
@@ -59,10 +63,12 @@ bool mesh_init(struct mesh *mesh, struct log *log, const char *name, const struc
     mesh->indices = mesh_buffer(log, name, params->index_count * 4, params->indices, 0);
     if (params->texcoords)
         mesh->texcoords = mesh_buffer(log, name, vertices * 8, params->texcoords, 0);
+    if (params->second_texcoords)
+        mesh->second_texcoords = mesh_buffer(log, name, vertices * 8, params->second_texcoords, 0);
     if (params->colors)
         mesh->colors = mesh_buffer(log, name, vertices * 4, params->colors, 0);
     if (!mesh->positions || !mesh->normals || !mesh->indices || (params->texcoords && !mesh->texcoords) ||
-        (params->colors && !mesh->colors)) {
+        (params->second_texcoords && !mesh->second_texcoords) || (params->colors && !mesh->colors)) {
         mesh_finish(mesh);
         return false;
     }
@@ -73,7 +79,7 @@ bool mesh_init(struct mesh *mesh, struct log *log, const char *name, const struc
 
 void mesh_finish(struct mesh *mesh)
 {
-    GLuint buffers[] = { mesh->positions, mesh->normals, mesh->texcoords, mesh->colors, mesh->indices };
+    GLuint buffers[] = { mesh->positions, mesh->normals, mesh->texcoords, mesh->second_texcoords, mesh->colors, mesh->indices };
     glDeleteVertexArrays(1, &mesh->vao);
     glDeleteBuffers(sizeof(buffers) / sizeof(buffers[0]), buffers);
     *mesh = (struct mesh){ 0 };

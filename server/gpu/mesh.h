@@ -11,19 +11,20 @@
 #include "base/log.h"
 
 /* Vertex attributes, by the location that every shader uses. Light and scalar come from the instance. */
-enum mesh_attribute { MESH_POSITION, MESH_NORMAL, MESH_TEXCOORD, MESH_COLOR, MESH_LIGHT, MESH_SCALAR, MESH_FLAGS };
+enum mesh_attribute { MESH_POSITION, MESH_NORMAL, MESH_TEXCOORD, MESH_COLOR, MESH_LIGHT, MESH_SCALAR, MESH_FLAGS, MESH_SECOND_TEXCOORD };
 
 struct mesh_params { /* pointers need only live for the call */
     size_t vertex_count, index_count;
     const float (*positions_m)[3];
     const float (*normals)[3];
-    const float (*texcoords)[2]; /* NULL: none */
-    const uint8_t (*colors)[4];  /* NULL: none */
+    const float (*texcoords)[2];        /* NULL: none */
+    const float (*second_texcoords)[2]; /* NULL: none */
+    const uint8_t (*colors)[4];         /* NULL: none */
     const uint32_t *indices;
 };
 
 struct mesh {
-    GLuint vao, positions, normals, texcoords, colors, indices;
+    GLuint vao, positions, normals, texcoords, second_texcoords, colors, indices;
     size_t vertex_count, index_count;
 };
 

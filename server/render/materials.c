@@ -89,8 +89,9 @@ static void find_maps(struct model_material *out, const struct model *model, con
     const uint32_t maps[MODEL_MAPS] = { material->base_color_texture, material->metallic_roughness_texture, material->normal_texture,
                                         material->occlusion_texture, material->emissive_texture };
     out->masked = material->alpha == ASSET_ALPHA_MASK;
+    out->second = (int)material->second;
     for (int i = 0; i < MODEL_MAPS; i++)
-        if (maps[i] != ASSET_NO_TEXTURE && model->mesh.texcoords) {
+        if (maps[i] != ASSET_NO_TEXTURE) {
             out->maps[i] = model->textures[maps[i]];
             out->mask |= 1 << i;
         }

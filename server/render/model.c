@@ -17,6 +17,7 @@ static bool make_mesh(struct model *model, struct gl *gl)
         .positions_m = view->positions_m,
         .normals = view->normals,
         .texcoords = view->texcoords,
+        .second_texcoords = view->second_texcoords,
         .colors = view->colors,
         .indices = view->indices,
     };

@@ -30,6 +30,7 @@ struct model_level {
 struct model_material {
     GLuint maps[MODEL_MAPS]; /* 0: none; owned by the model's textures */
     int mask;                /* bit per map that is there */
+    int second;              /* likewise: it lies where the second texture coordinates put it */
     bool masked;             /* the base colour's alpha cuts holes */
 };
 

@@ -151,7 +151,7 @@ static void set_material(const struct picture *picture, const struct model_mater
         glBindTextureUnit(UNIT_MAPS + MODEL_BASE_COLOR, material->maps[MODEL_BASE_COLOR]);
     if (picture->view->tier == TIER_MOVING)
         return;
-    glUniform1i(TEXTURES, material->mask);
+    glUniform1i(TEXTURES, material->mask | material->second << 8);
     for (GLuint i = 0; i < MODEL_MAPS; i++)
         if (material->maps[i])
             glBindTextureUnit(UNIT_MAPS + i, material->maps[i]);

@@ -57,6 +57,7 @@ static void check_view(const struct asset_view *view)
     for (uint32_t v = 0; v < h->vertex_count; v++) {
         require(isfinite(view->positions_m[v][0]) && isfinite(view->normals[v][2]), "vertices are finite");
         require(!view->texcoords || isfinite(view->texcoords[v][1]), "texture coordinates are finite");
+        require(!view->second_texcoords || isfinite(view->second_texcoords[v][1]), "second texture coordinates are finite");
         sum += view->colors ? view->colors[v][3] : 0;
     }
     for (uint32_t t = 0; t < h->texture_count; t++)

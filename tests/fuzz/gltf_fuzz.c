@@ -47,6 +47,8 @@ static void check_primitive(const struct gltf_model *model, const struct gltf_pr
     require_finite(p->positions[0], 3 * (size_t)p->vertex_count, "positions are finite");
     if (p->normals)
         require_finite(p->normals[0], 3 * (size_t)p->vertex_count, "normals are finite");
+    if (p->second_texcoords)
+        require_finite(p->second_texcoords[0], 2 * (size_t)p->vertex_count, "second texture coordinates are finite");
     if (p->texcoords)
         require_finite(p->texcoords[0], 2 * (size_t)p->vertex_count, "texture coordinates are finite");
     unsigned sum = 0;
@@ -94,6 +96,7 @@ static void check_asset(const struct geometry *g)
         .positions_m = (const float(*)[3])g->positions_m,
         .normals = (const float(*)[3])g->normals,
         .texcoords = (const float(*)[2])g->texcoords,
+        .second_texcoords = (const float(*)[2])g->second_texcoords,
         .colors = (const uint8_t(*)[4])g->colors,
         .indices = g->indices,
         .primitives = g->primitives,

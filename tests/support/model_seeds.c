@@ -382,6 +382,21 @@ static void textured_by_uri(struct maker *m, const struct sheet *s, struct seed 
     finish(m, seed);
 }
 
+/* On two sets of coordinates, and once more on the second in a way of its own. */
+static void textured_twice(struct maker *m, const struct sheet *s, struct seed *seed)
+{
+    int image = maker_add(m, "images", json_pack("{s:i,s:s}", "bufferView", maker_view(m, png, sizeof(png), 0), "mimeType", "image/png"));
+    int texture = maker_add(m, "textures", json_pack("{s:i}", "source", image));
+    json_t *material = json_pack("{s:{s:{s:i}},s:{s:i,s:i},s:{s:i,s:{s:{s:i,s:[f,f]}}}}", "pbrMetallicRoughness", "baseColorTexture",
+                                 "index", texture, "occlusionTexture", "index", texture, "texCoord", 1, "emissiveTexture", "index", texture,
+                                 "extensions", "KHR_texture_transform", "texCoord", 1, "scale", 2.0, 2.0);
+    int mesh = textured_mesh(m, s, material);
+    json_t *attributes = json_object_get(json_array_get(json_object_get(maker_get(m, "meshes", mesh), "primitives"), 0), "attributes");
+    json_object_set_new(attributes, "TEXCOORD_1", json_integer(texcoords(m, s)));
+    maker_node(m, "sheet", mesh, NULL);
+    finish(m, seed);
+}
+
 static void external(struct maker *m, const struct sheet *s, struct seed *seed)
 {
     maker_node(m, "sheet", maker_mesh(m, plain_primitive(m, s)), NULL);
@@ -414,6 +429,7 @@ void seed_make(struct seed *seed, int number, const struct sheet *sheet)
         { "textured.glb", textured, 0 },
         { "textured_by_uri.glb", textured_by_uri, 0 },
         { "external.glb", external, 0 },
+        { "textured_twice.glb", textured_twice, 0 },
     };
     struct maker maker;
     maker_init(&maker);

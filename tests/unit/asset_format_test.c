@@ -16,6 +16,7 @@
 static const float positions[4][3] = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 1, 1, 0.5f } };
 static const float normals[4][3] = { { 0, 0, 1 }, { 0, 0, 1 }, { 0, 0, 1 }, { 0, 0, 1 } };
 static const float texcoords[4][2] = { { 0, 0 }, { 1, 0 }, { 0, 1 }, { 1, 1 } };
+static const float second_texcoords[4][2] = { { 0, 0.5f }, { 0.25f, 0.5f }, { 0, 0.75f }, { 2, 1 } };
 static const uint8_t colors[4][4] = { { 255, 0, 0, 255 } };
 static const uint32_t indices[9] = { 0, 1, 2, 1, 3, 2, 0, 1, 2 };
 static const struct asset_primitive primitives[2] = { { .index_count = 6, .name = 1 }, { .first_index = 6, .index_count = 3, .name = 1 } };
@@ -34,8 +35,8 @@ static const struct asset_material materials[1] = { {
     .alpha_cutoff = 0.5f,
     .metallic_roughness_texture = ASSET_NO_TEXTURE,
     .normal_texture = ASSET_NO_TEXTURE,
-    .occlusion_texture = ASSET_NO_TEXTURE,
     .emissive_texture = ASSET_NO_TEXTURE,
+    .second = 1 << 3, /* its occlusion's */
 } };
 static const struct asset_texture textures[1] = { { .width_px = 2, .height_px = 1, .srgb = 1 } };
 static const uint8_t texels[8] = { 1, 2, 3, 4, 5, 6, 7, 8 };
@@ -48,6 +49,7 @@ static const struct asset_parts good = {
     .positions_m = positions,
     .normals = normals,
     .texcoords = texcoords,
+    .second_texcoords = second_texcoords,
     .colors = colors,
     .indices = indices,
     .primitives = primitives,
@@ -130,6 +132,7 @@ static void what_is_built_is_read_back(void **state)
     assert_memory_equal(v.positions_m, positions, sizeof(positions));
     assert_memory_equal(v.normals, normals, sizeof(normals));
     assert_memory_equal(v.texcoords, texcoords, sizeof(texcoords));
+    assert_memory_equal(v.second_texcoords, second_texcoords, sizeof(second_texcoords));
     assert_memory_equal(v.colors, colors, sizeof(colors));
     assert_memory_equal(v.indices, indices, sizeof(indices));
     assert_memory_equal(v.levels, levels, sizeof(levels));
@@ -146,7 +149,8 @@ static void the_smallest_asset_is_good(void **state)
     (void)state;
     struct asset_material plain = materials[0];
     struct asset_primitive one = { .index_count = 6 };
-    plain.base_color_texture = ASSET_NO_TEXTURE;
+    plain.base_color_texture = plain.occlusion_texture = ASSET_NO_TEXTURE;
+    plain.second = 0;
     struct asset_parts small = { .positions_m = positions,
                                  .normals = normals,
                                  .indices = indices,
@@ -164,6 +168,7 @@ static void the_smallest_asset_is_good(void **state)
     assert_int_equal(v.header->level_count, 1);
     assert_int_equal(v.levels[0].vertex_count, 4);
     assert_null(v.texcoords);
+    assert_null(v.second_texcoords);
     assert_null(v.colors);
     assert_string_equal(v.names, "");
     assert_int_equal(v.header->cluster_count, 1);
@@ -174,22 +179,23 @@ static void the_smallest_asset_is_good(void **state)
 static void the_layout_is_pinned(void **state)
 {
     (void)state;
-    assert_int_equal(sizeof(struct asset_header), 344);
+    assert_int_equal(sizeof(struct asset_header), 360);
     assert_int_equal(offsetof(struct asset_header, checksum), 24);
     assert_int_equal(offsetof(struct asset_header, key), 32);
     assert_int_equal(offsetof(struct asset_header, bounds_min_m), 64);
     assert_int_equal(offsetof(struct asset_header, vertex_count), 88);
     assert_int_equal(offsetof(struct asset_header, sections), 120);
-    assert_int_equal(sizeof(struct asset_material), 80);
+    assert_int_equal(sizeof(struct asset_material), 84);
+    assert_int_equal(offsetof(struct asset_material, second), 80);
     assert_int_equal(offsetof(struct asset_material, base_color_texture), 48);
     assert_int_equal(sizeof(struct asset_level), 20);
     assert_int_equal(sizeof(struct asset_cluster), 48);
     assert_int_equal(sizeof(struct asset_texture), 24);
     assert_int_equal(sizeof(struct asset_sensor), 40);
-    assert_int_equal(ASSET_SECTION_COUNT, 14);
+    assert_int_equal(ASSET_SECTION_COUNT, 15);
     struct file f = build(&good);
-    assert_memory_equal(f.bytes, "PLCASSET\3\0\0\0\x58\1\0\0", 16);
-    assert_int_equal(XXH3_64bits(f.bytes + 344, f.size - 344), 0xe936d56d5444c6beull); /* changes only with the format's version */
+    assert_memory_equal(f.bytes, "PLCASSET\4\0\0\0\x68\1\0\0", 16);
+    assert_int_equal(XXH3_64bits(f.bytes + 360, f.size - 360), 0x2abd732e407f55edull); /* changes only with the format's version */
     free(f.bytes);
 }
 
@@ -206,7 +212,7 @@ static void truncated_or_foreign_files_are_refused(void **state)
     struct file f = build(&good);
     refused(&f, f.size - 64, "truncated: ");
     f = build(&good);
-    refused(&f, 100, "truncated: 100 bytes, the header alone has 344");
+    refused(&f, 100, "truncated: 100 bytes, the header alone has 360");
     f = build(&good);
     f.header->file_bytes -= 64;
     refused(&f, f.size, "too long");
@@ -214,8 +220,8 @@ static void truncated_or_foreign_files_are_refused(void **state)
     memcpy(f.bytes, "glTF", 4);
     refused_sealed(&f, "magic");
     f = build(&good);
-    f.header->version = 4;
-    refused_sealed(&f, "version 4, this program reads version 3");
+    f.header->version = 5;
+    refused_sealed(&f, "version 5, this program reads version 4");
     f = build(&good);
     f.header->header_bytes = 320;
     refused_sealed(&f, "header of 320 bytes");
@@ -297,6 +303,9 @@ static void wrong_vertices_are_refused(void **state)
     f = build(&good);
     ((float *)part(&f, ASSET_TEXCOORDS))[6] = INFINITY;
     refused_sealed(&f, "vertex 3: texture coordinate");
+    f = build(&good);
+    ((float *)part(&f, ASSET_SECOND_TEXCOORDS))[3] = NAN;
+    refused_sealed(&f, "vertex 1: texture coordinate");
     f = build(&good);
     f.header->origin_m[1] = INFINITY;
     refused_sealed(&f, "origin");
@@ -466,6 +475,18 @@ static void wrong_materials_and_textures_are_refused(void **state)
     f = build(&good);
     f.header->sections[ASSET_TEXCOORDS].bytes = 0;
     refused_sealed(&f, "material 0: texture 0 of 1, without coordinates");
+    f = build(&good);
+    f.header->sections[ASSET_SECOND_TEXCOORDS].bytes = 0;
+    refused_sealed(&f, "material 0: texture 0 of 1, without coordinates");
+    f = build(&good);
+    f.header->sections[ASSET_SECOND_TEXCOORDS].bytes -= 8;
+    refused_sealed(&f, "section second texcoords: 24 bytes, expected 32");
+    f = build(&good);
+    ((struct asset_material *)part(&f, ASSET_MATERIALS))->second |= 1;
+    refused_sealed(&f, "material 0: second 0x9 has bits outside 0x1e");
+    f = build(&good);
+    ((struct asset_material *)part(&f, ASSET_MATERIALS))->second |= 1 << 5;
+    refused_sealed(&f, "material 0: second 0x28 has bits outside 0x1e");
     f = build(&good);
     ((struct asset_material *)part(&f, ASSET_MATERIALS))->base_color[1] = NAN;
     refused_sealed(&f, "material 0: a factor");

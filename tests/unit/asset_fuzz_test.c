@@ -51,9 +51,11 @@ static struct asset_parts full_asset(struct asset_material *material)
 {
     struct asset_parts parts = small_asset();
     *material = plain;
-    material->base_color_texture = 0;
+    material->base_color_texture = material->occlusion_texture = 0;
+    material->second = 1 << 3;
     parts.origin_m[0] = 1e6;
     parts.texcoords = texcoords;
+    parts.second_texcoords = texcoords;
     parts.colors = colors;
     parts.index_count = 9;
     parts.primitive_count = parts.level_count = parts.sensor_count = 2;

@@ -491,6 +491,43 @@ static void colors_are_read_in_every_type(void **state)
 
 /* --- materials ----------------------------------------------------------------------------------------------------------- */
 
+/* Another texture of the same material, which lies otherwise: on a set of its own, or on the same one. A third way is one too many. */
+static void second_texcoords_are_read(struct gltf_case *l, const struct sheet *sheet)
+{
+    struct geometry g;
+    char why[MODEL_WHY_BYTES];
+    struct maker maker = seed_open(15, "textured.glb", sheet);
+    json_t *material = maker_get(&maker, "materials", 0), *attributes = json_object_get(primitive_of(&maker), "attributes");
+    json_object_set_new(material, "occlusionTexture", json_pack("{s:i,s:i}", "index", 0, "texCoord", 1));
+    json_object_set_new(material, "normalTexture", json_pack("{s:i,s:i}", "index", 0, "texCoord", 1));
+    json_object_set_new(material, "emissiveTexture", json_pack("{s:i}", "index", 0));
+    json_object_set(attributes, "TEXCOORD_1", json_object_get(attributes, "TEXCOORD_0"));
+    try_model(l, &maker);
+    assert_good(l);
+    const struct gltf_primitive *p = &l->model.primitives[0];
+    for (uint32_t v = 0; v < p->vertex_count; v++) /* the first with its transform, the second without one */
+        assert_true(fabsf(p->second_texcoords[v][0] - sheet->texcoords[v][0]) < 1e-6f && p->texcoords[v][0] != p->second_texcoords[v][0]);
+    const struct asset_material *m = &l->model.materials[0];
+    assert_int_equal(m->second, 1 << 2 | 1 << 3);
+    assert_true(m->base_color_texture != ASSET_NO_TEXTURE && m->normal_texture == m->occlusion_texture);
+    assert_true(m->occlusion_texture != ASSET_NO_TEXTURE && m->emissive_texture == ASSET_NO_TEXTURE);
+    assert_int_equal(l->model.left_out_textures, 1);
+    assert_string_equal(l->model.left_out[0],
+                        "material 0 'paint': its emissive texture (TEXCOORD_0) lies on the surface in a third way of its own");
+    assert_true(geometry_cut(&g, &l->model, &(struct geometry_params){ .unit_m = 1, .up = AXIS_Y }, why));
+    assert_true(g.second_texcoords && g.materials[0].second == m->second);
+    geometry_finish(&g);
+
+    maker = seed_open(15, "textured.glb", sheet); /* there is no such set on the primitive */
+    json_object_set_new(maker_get(&maker, "materials", 0), "occlusionTexture", json_pack("{s:i,s:i}", "index", 0, "texCoord", 7));
+    try_model(l, &maker);
+    assert_good(l);
+    assert_true(geometry_cut(&g, &l->model, &(struct geometry_params){ .unit_m = 1, .up = AXIS_Y }, why));
+    assert_true(!g.second_texcoords && g.materials[0].second == 0 && g.materials[0].occlusion_texture == ASSET_NO_TEXTURE);
+    assert_int_equal(g.materials[0].base_color_texture, 0);
+    geometry_finish(&g);
+}
+
 static void textures_lie_where_their_transform_puts_them(void **state)
 {
     struct gltf_case *l = *state;
@@ -515,12 +552,7 @@ static void textures_lie_where_their_transform_puts_them(void **state)
     assert_memory_equal(g.texels, ((uint8_t[16]){ 255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 255, 255, 255, 255 }), 16);
     geometry_finish(&g);
 
-    maker = seed_open(15, "textured.glb", &sheet); /* another texture of the same material, which lies otherwise */
-    json_object_set_new(maker_get(&maker, "materials", 0), "occlusionTexture", json_pack("{s:i,s:i}", "index", 0, "texCoord", 1));
-    try_model(l, &maker);
-    assert_good(l);
-    assert_int_equal(l->model.left_out_textures, 1);
-    assert_true(l->model.materials[0].occlusion_texture == ASSET_NO_TEXTURE && l->model.materials[0].base_color_texture == 0);
+    second_texcoords_are_read(l, &sheet);
 
     maker = seed_open(15, "textured.glb", &sheet); /* the transform has the last word on which coordinates are meant */
     json_t *attributes = json_object_get(primitive_of(&maker), "attributes");
