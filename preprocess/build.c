@@ -12,7 +12,6 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "preprocess/clusters.h"
-#include "preprocess/folder.h"
 #include "preprocess/measure.h"
 #include "preprocess/order.h"
 #include "preprocess/split.h"
@@ -132,12 +131,15 @@ static void split(struct build *build)
     struct measured *measured = &build->measured;
     struct straight straight;
     struct split_kept kept = { 0 };
+    struct spots spots;
     int64_t since_ns = clock_mono_ns();
     float(*places)[3] = mem_array(input->sensor_count, sizeof(*places));
     for (size_t i = 0; i < input->sensor_count; i++)
         memcpy(places[i], measured->sensors[i].surface_m, sizeof(*places));
     straight_init(&straight, input->plant, input->sensors, input->sensor_count, (const float(*)[3])places);
     bool keep = input->folder && build->geometry.index_count / 3 >= STOCK_TRIANGLES;
+    if (keep)
+        spots_open(&spots, input->folder, input->stock_key);
     if (keep)
         split_kept_open(&kept, input->folder, input->columns_key, &straight);
     build->failed[0] = !split_levels(&build->levels, &build->geometry,
@@ -146,12 +148,17 @@ static void split(struct build *build)
                                                             .field = &measured->field,
                                                             .sensors = measured->sensors,
                                                             .workers = build->workers,
-                                                            .kept = &kept },
+                                                            .kept = &kept,
+                                                            .spots = keep ? &spots : NULL },
                                      &build->distances);
     if (build->failed[0])
         wrong(build->why, "out of memory for the levels of %u vertices", build->geometry.vertex_count);
-    if (keep && !build->failed[0])
+    if (keep && !build->failed[0]) {
         split_kept_write(&kept, input->folder, input->columns_key);
+        spots_write(&spots, input->folder, input->stock_key);
+    }
+    if (keep)
+        spots_close(&spots);
     build->output->report.split_measured = kept.measured_count;
     build->output->report.split_kept = kept.kept_count;
     split_kept_close(&kept);
@@ -255,6 +262,15 @@ static void write_distances(const void *arg, float *geodesic_m)
     rows_turn(&build->distances, build->workers, geodesic_m);
 }
 
+static void *make_file(void *arg, size_t bytes)
+{
+    struct build *build = arg;
+    int status = folder_draft(&build->output->file, build->input->folder, build->input->key, bytes);
+    if (status != 0)
+        wrong(build->why, "its file of %zu bytes cannot be written: %s", bytes, strerror(-status));
+    return build->output->file.bytes;
+}
+
 static bool lay_out(struct build *build, const struct clusters *clusters)
 {
     const struct build_input *input = build->input;
@@ -265,6 +281,7 @@ static bool lay_out(struct build *build, const struct clusters *clusters)
         .positions_m = (const float(*)[3])g->positions_m,
         .normals = (const float(*)[3])g->normals,
         .texcoords = (const float(*)[2])g->texcoords,
+        .second_texcoords = (const float(*)[2])g->second_texcoords,
         .colors = (const uint8_t(*)[4])g->colors,
         .indices = g->indices,
         .primitives = g->primitives,
@@ -278,6 +295,8 @@ static bool lay_out(struct build *build, const struct clusters *clusters)
         .sensors = build->measured.sensors,
         .write_geodesic = write_distances,
         .write_arg = build,
+        .make_room = make_file,
+        .room_arg = build,
         .names = g->names.at,
         .vertex_count = g->vertex_count,
         .index_count = g->index_count,
@@ -290,10 +309,12 @@ static bool lay_out(struct build *build, const struct clusters *clusters)
     };
     char view_why[200];
     memcpy(parts.origin_m, g->origin_m, sizeof(parts.origin_m));
-    output->bytes = asset_build(&parts, &output->size);
-    if (!output->bytes)
-        return wrong(build->why, "out of memory for its file");
-    return asset_view_init(&output->view, output->bytes, output->size, view_why) || /* what a reader would refuse is not written */
+    size_t size;
+    wrong(build->why, "out of memory for its file"); /* unless make_file says something else */
+    void *bytes = asset_build(&parts, &size);
+    if (!bytes)
+        return false;
+    return asset_view_init(&output->view, bytes, size, view_why) || /* what a reader would refuse is not put in its place */
            wrong(build->why, "its file would be wrong: %s", view_why);
 }
 
@@ -364,9 +385,7 @@ bool build_asset(struct log *log, struct workers *workers, const struct build_in
     geometry_finish(&build.geometry);
     text_finish(&build.parts);
     rows_finish(&build.distances);
-    if (!good) {
-        free(output->bytes);
-        output->bytes = NULL;
-    }
+    if (!good)
+        folder_draft_close(&output->file);
     return good;
 }

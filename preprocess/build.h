@@ -5,10 +5,11 @@
 #include "base/log.h"
 #include "base/workers.h"
 #include "plant/sensors.h"
+#include "preprocess/folder.h"
 #include "preprocess/levels.h"
 #include "surface/surface.h"
 
-#define BUILD_REVISION 28u /* grows when the same input shall give another file */
+#define BUILD_REVISION 30u /* grows when the same input shall give another file */
 
 struct stock;
 struct build_input {
@@ -44,14 +45,14 @@ struct build_report {
 };
 
 struct build_output {
-    void *bytes; /* free() */
-    size_t size;
-    struct asset_view view; /* of bytes */
+    struct folder_draft file;
+    struct asset_view view; /* of its bytes */
     struct build_report report;
     int missing_node; /* index of a sensor whose node is not in the model, -1: none */
 };
 
-/* False: why says what is wrong; output->missing_node names the sensor if it is one's fault. Thread: any; work is spread over workers. */
+/* output->file is to be put in its place, and closed. False: why says what is wrong, and there is none; output->missing_node names the
+   sensor if it is one's fault. Thread: any; work is spread over workers. */
 bool build_asset(struct log *log, struct workers *workers, const struct build_input *input, struct build_output *output,
                  char why[MODEL_WHY_BYTES]);
 

@@ -3,6 +3,7 @@
 #include "preprocess/cutmesh.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"
@@ -10,7 +11,8 @@
 bool cutmesh_init(struct cutmesh *mesh, struct geometry *geometry)
 {
     *mesh = (struct cutmesh){ .geometry = geometry, .own_vertices = geometry->vertex_count };
-    mesh->position_capacity = mesh->normal_capacity = mesh->texcoord_capacity = mesh->color_capacity = geometry->vertex_count;
+    mesh->position_capacity = mesh->normal_capacity = mesh->texcoord_capacity = geometry->vertex_count;
+    mesh->second_capacity = mesh->color_capacity = geometry->vertex_count;
     edge_table_init(&mesh->edges, geometry->index_count);
     edge_table_init(&mesh->vertex_edges, geometry->vertex_count / 8 + 16);
     if (!places_init(&mesh->places, (const float(*)[3])geometry->positions_m, geometry->vertex_count))
@@ -27,7 +29,45 @@ void cutmesh_finish(struct cutmesh *mesh)
     mem_free(mesh->cuts);
     mem_free(mesh->vertex_middles);
     mem_free(mesh->tris);
+    mem_free(mesh->next);
+    mem_free(mesh->made.at);
+    mem_free(mesh->open.at);
     *mesh = (struct cutmesh){ 0 };
+}
+
+/* --- lists of triangles --------------------------------------------------------------------------------------------------- */
+
+void cutmesh_list(struct cut_list *list, uint32_t number)
+{
+    list->sorted = list->count == 0 || (list->sorted && list->at[list->count - 1] < number);
+    mem_grow(&list->at, &list->capacity, list->count + 1, sizeof(*list->at));
+    list->at[list->count++] = number;
+}
+
+static int compare_numbers(const void *a, const void *b)
+{
+    uint32_t p = *(const uint32_t *)a, q = *(const uint32_t *)b;
+    return (p > q) - (p < q);
+}
+
+void cutmesh_sort(struct cut_list *list)
+{
+    size_t kept = 0;
+    if (list->sorted || list->count == 0)
+        return;
+    qsort(list->at, list->count, sizeof(*list->at), compare_numbers);
+    for (size_t i = 0; i < list->count; i++)
+        if (i == 0 || list->at[i] != list->at[i - 1])
+            list->at[kept++] = list->at[i];
+    list->count = kept;
+    list->sorted = true;
+}
+
+void cutmesh_list_all(struct cutmesh *mesh)
+{
+    mesh->made.count = 0;
+    for (size_t t = 0; t < mesh->tri_count; t++)
+        cutmesh_list(&mesh->made, (uint32_t)t);
 }
 
 /* --- triangles ------------------------------------------------------------------------------------------------------------ */
@@ -44,7 +84,8 @@ static uint32_t edge_of(struct cutmesh *mesh, uint32_t a, uint32_t b, uint32_t o
     if (mesh->edges.count > before) {
         mem_grow(&mesh->cuts, &mesh->cut_capacity, mesh->edges.count, sizeof(*mesh->cuts));
         mesh->cuts[e] =
-            (struct cut_edge){ .a = a, .b = b, .origin = { origin, TRIMESH_NONE }, .middle = TRIMESH_NONE, .share = 0.5f, .error = -1 };
+            (struct cut_edge){ .a = a, .b = b, .origin = { origin, TRIMESH_NONE }, .middle = TRIMESH_NONE, .corner = TRIMESH_NONE,
+                               .share = 0.5f, .error = -1 };
     } else if (mesh->loads == 1 && mesh->cuts[e].origin[0] != origin) {
         mesh->cuts[e].origin[1] = origin;
     }
@@ -60,19 +101,56 @@ static struct cut_tri make_tri(struct cutmesh *mesh, const struct cut_tri *like,
                          .origin = like->origin };
 }
 
+static void enter(struct cutmesh *mesh, size_t t)
+{
+    bool any_cut = false;
+    for (uint32_t i = 0; i < 3; i++) {
+        struct cut_edge *edge = &mesh->cuts[mesh->tris[t].e[i]];
+        uint32_t corner = 3 * (uint32_t)t + i;
+        mesh->next[corner] = edge->corner;
+        edge->corner = corner;
+        any_cut |= cutmesh_is_cut(mesh, mesh->tris[t].e[i]);
+    }
+    cutmesh_list(&mesh->made, (uint32_t)t);
+    if (any_cut)
+        cutmesh_list(&mesh->open, (uint32_t)t);
+}
+
+static void leave(struct cutmesh *mesh, size_t t)
+{
+    for (uint32_t i = 0; i < 3; i++) {
+        uint32_t *link = &mesh->cuts[mesh->tris[t].e[i]].corner;
+        while (*link != 3 * (uint32_t)t + i)
+            link = &mesh->next[*link];
+        *link = mesh->next[*link];
+    }
+}
+
+static void put_tri(struct cutmesh *mesh, size_t t, const struct cut_tri *tri)
+{
+    leave(mesh, t);
+    mesh->tris[t] = *tri;
+    enter(mesh, t);
+}
+
 static void add_tri(struct cutmesh *mesh, const struct cut_tri *like, uint32_t a, uint32_t b, uint32_t c)
 {
     struct cut_tri tri = make_tri(mesh, like, a, b, c);
     mem_grow(&mesh->tris, &mesh->tri_capacity, mesh->tri_count + 1, sizeof(*mesh->tris));
-    mesh->tris[mesh->tri_count++] = tri;
+    mem_grow(&mesh->next, &mesh->next_capacity, 3 * mesh->tri_count + 3, sizeof(*mesh->next));
+    mesh->tris[mesh->tri_count] = tri;
+    enter(mesh, mesh->tri_count++);
 }
 
 void cutmesh_load(struct cutmesh *mesh, const struct level *level)
 {
     mesh->tri_count = 0;
     mesh->loads++;
-    for (size_t e = 0; e < mesh->edges.count; e++) /* each level has its own idea of what is an error */
+    mesh->made.count = mesh->open.count = 0;
+    for (size_t e = 0; e < mesh->edges.count; e++) { /* each level has its own idea of what is an error */
         mesh->cuts[e].error = mesh->cuts[e].proven ? mesh->cuts[e].error : -1;
+        mesh->cuts[e].corner = TRIMESH_NONE;
+    }
     for (uint32_t p = 0; p < level->primitive_count; p++)
         for (uint32_t i = 0; i < level->primitives[p].index_count; i += 3) {
             uint32_t at = level->primitives[p].first_index + i;
@@ -112,33 +190,42 @@ static uint32_t add_place(struct cutmesh *mesh, const float position_m[3])
     return (uint32_t)mesh->places.count++;
 }
 
+/* The last vertex's place on textures, if there are any. */
+static void add_texcoord(float (**texcoords)[2], size_t *capacity, uint32_t vertex, const uint32_t *from, const double *weights, int count)
+{
+    float mixed[2] = { 0 };
+    if (!*texcoords)
+        return;
+    mem_grow(texcoords, capacity, vertex + 1u, sizeof(**texcoords));
+    for (int i = 0; i < count; i++)
+        for (int c = 0; c < 2; c++)
+            mixed[c] += (float)weights[i] * (*texcoords)[from[i]][c];
+    memcpy((*texcoords)[vertex], mixed, sizeof(mixed));
+}
+
 /* A vertex at a place whose attributes are those of others, mixed. */
 static uint32_t add_vertex(struct cutmesh *mesh, uint32_t place, const uint32_t *from, const double *weights, int count)
 {
     struct geometry *g = mesh->geometry;
     uint32_t vertex = g->vertex_count++;
-    float normal[3] = { 0 }, texcoord[2] = { 0 }, color[4] = { 0 };
+    float normal[3] = { 0 }, color[4] = { 0 };
     mem_grow(&mesh->places.of_vertex, &mesh->of_vertex_capacity, g->vertex_count, sizeof(*mesh->places.of_vertex));
     mem_grow(&g->positions_m, &mesh->position_capacity, g->vertex_count, sizeof(*g->positions_m));
     mem_grow(&g->normals, &mesh->normal_capacity, g->vertex_count, sizeof(*g->normals));
-    if (g->texcoords)
-        mem_grow(&g->texcoords, &mesh->texcoord_capacity, g->vertex_count, sizeof(*g->texcoords));
     if (g->colors)
         mem_grow(&g->colors, &mesh->color_capacity, g->vertex_count, sizeof(*g->colors));
     for (int i = 0; i < count; i++) {
         float w = (float)weights[i];
         for (int c = 0; c < 3; c++)
             normal[c] += w * g->normals[from[i]][c];
-        for (int c = 0; c < 2 && g->texcoords; c++)
-            texcoord[c] += w * g->texcoords[from[i]][c];
         for (int c = 0; c < 4 && g->colors; c++)
             color[c] += w * (float)g->colors[from[i]][c];
     }
     float length = sqrtf(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
     for (int c = 0; c < 3; c++)
         g->normals[vertex][c] = length > 1e-3f ? normal[c] / length : g->normals[from[0]][c];
-    if (g->texcoords)
-        memcpy(g->texcoords[vertex], texcoord, sizeof(texcoord));
+    add_texcoord(&g->texcoords, &mesh->texcoord_capacity, vertex, from, weights, count);
+    add_texcoord(&g->second_texcoords, &mesh->second_capacity, vertex, from, weights, count);
     for (int c = 0; c < 4 && g->colors; c++)
         g->colors[vertex][c] = (uint8_t)(color[c] + 0.5f);
     memcpy(g->positions_m[vertex], mesh->places.positions_m[place], sizeof(*g->positions_m));
@@ -164,15 +251,12 @@ static uint32_t middle_vertex(struct cutmesh *mesh, uint32_t edge, uint32_t a, u
 
 /* --- cutting -------------------------------------------------------------------------------------------------------------- */
 
-bool cutmesh_is_cut(const struct cutmesh *mesh, uint32_t edge)
-{
-    return mesh->cuts[edge].load == mesh->loads;
-}
-
 bool cutmesh_cut(struct cutmesh *mesh, uint32_t edge, const float position_m[3])
 {
     struct cut_edge *cut = &mesh->cuts[edge];
     cut->load = mesh->loads;
+    for (uint32_t corner = cut->corner; corner != TRIMESH_NONE; corner = mesh->next[corner])
+        cutmesh_list(&mesh->open, corner / 3);
     if (cut->middle != TRIMESH_NONE)
         return false;
     cut->middle = add_place(mesh, position_m);
@@ -217,16 +301,28 @@ static void split_tri(struct cutmesh *mesh, size_t t)
         for (int i = 0; i < 3; i++)
             add_tri(mesh, &old, v[i], m[i], m[(i + 2) % 3]);
     }
-    mesh->tris[t] = piece;
+    put_tri(mesh, t, &piece);
 }
 
+static bool is_open(const struct cutmesh *mesh, size_t t)
+{
+    const uint32_t *e = mesh->tris[t].e;
+    return cutmesh_is_cut(mesh, e[0]) || cutmesh_is_cut(mesh, e[1]) || cutmesh_is_cut(mesh, e[2]);
+}
+
+/* Pieces that are still to be split come behind those that were there. */
 size_t cutmesh_apply(struct cutmesh *mesh)
 {
     size_t before = mesh->tri_count;
-    for (size_t t = 0; t < mesh->tri_count; t++)
-        while (cutmesh_is_cut(mesh, mesh->tris[t].e[0]) || cutmesh_is_cut(mesh, mesh->tris[t].e[1]) ||
-               cutmesh_is_cut(mesh, mesh->tris[t].e[2]))
-            split_tri(mesh, t);
+    while (mesh->open.count) {
+        struct cut_list open = mesh->open;
+        mesh->open = (struct cut_list){ 0 };
+        cutmesh_sort(&open);
+        for (size_t i = 0; i < open.count; i++)
+            while (is_open(mesh, open.at[i]))
+                split_tri(mesh, open.at[i]);
+        mem_free(open.at);
+    }
     return mesh->tri_count - before;
 }
 
@@ -234,7 +330,8 @@ uint32_t cutmesh_insert(struct cutmesh *mesh, size_t tri, const double weights[3
 {
     struct cut_tri old = mesh->tris[tri];
     uint32_t vertex = add_vertex(mesh, add_place(mesh, position_m), old.v, weights, 3);
-    mesh->tris[tri] = make_tri(mesh, &old, old.v[0], old.v[1], vertex);
+    struct cut_tri piece = make_tri(mesh, &old, old.v[0], old.v[1], vertex);
+    put_tri(mesh, tri, &piece);
     add_tri(mesh, &old, old.v[1], old.v[2], vertex);
     add_tri(mesh, &old, old.v[2], old.v[0], vertex);
     return vertex;
@@ -266,8 +363,10 @@ void cutmesh_turn(struct cutmesh *mesh, const uint32_t tris[2], uint32_t edge)
     uint32_t v[3], w[3];
     corners_from(&old[0], edge, v);
     corners_from(&old[1], edge, w);
-    mesh->tris[tris[0]] = make_tri(mesh, &old[0], v[0], w[2], v[2]);
-    mesh->tris[tris[1]] = make_tri(mesh, &old[1], w[2], v[1], v[2]);
+    struct cut_tri turned[2] = { make_tri(mesh, &old[0], v[0], w[2], v[2]) };
+    turned[1] = make_tri(mesh, &old[1], w[2], v[1], v[2]);
+    put_tri(mesh, tris[0], &turned[0]);
+    put_tri(mesh, tris[1], &turned[1]);
 }
 
 void cutmesh_normal(const struct cutmesh *mesh, const struct cut_edge *edge, double normal[3])

@@ -112,15 +112,48 @@ void folder_close(struct folder_file *file)
     *file = (struct folder_file){ 0 };
 }
 
-int folder_write(const char *folder, uint64_t key, const void *bytes, size_t size, const char *report)
+int folder_draft(struct folder_draft *draft, const char *folder, uint64_t key, size_t size)
+{
+    char *path = folder_path(folder, key, ASSET);
+    *draft = (struct folder_draft){ .size = size, .path = mem_printf("%s.%ld.new", path, (long)getpid()) };
+    mem_free(path);
+    draft->fd = open(draft->path, O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    int status = draft->fd < 0 ? errno : posix_fallocate(draft->fd, 0, (off_t)size);
+    if (status == 0) {
+        draft->bytes = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_SHARED, draft->fd, 0);
+        status = draft->bytes == MAP_FAILED ? errno : 0;
+        draft->bytes = status ? NULL : draft->bytes;
+    }
+    if (status != 0)
+        folder_draft_close(draft);
+    return -status;
+}
+
+int folder_put(struct folder_draft *draft, const char *folder, uint64_t key, const char *report)
 {
     char *path = folder_path(folder, key, ASSET), *beside = folder_path(folder, key, REPORT);
     int status = report ? text_write_file(beside, report, strlen(report)) : 0;
-    if (status == 0)
-        status = text_write_file(path, bytes, size);
+    if (status == 0 && (msync(draft->bytes, draft->size, MS_SYNC) != 0 || fsync(draft->fd) != 0 || rename(draft->path, path) != 0))
+        status = -errno;
+    if (status == 0) {
+        mem_free(draft->path);
+        draft->path = NULL;
+    }
     mem_free(path);
     mem_free(beside);
     return status;
+}
+
+void folder_draft_close(struct folder_draft *draft)
+{
+    if (draft->bytes)
+        munmap(draft->bytes, draft->size);
+    if (draft->path && draft->fd >= 0)
+        unlink(draft->path);
+    if (draft->size && draft->fd >= 0)
+        close(draft->fd);
+    mem_free(draft->path);
+    *draft = (struct folder_draft){ 0 };
 }
 
 char *folder_report(const char *folder, uint64_t key)
@@ -170,6 +203,7 @@ static const struct kind { /* of files, beside the manifest */
     { REPORT, offsetof(struct folder_entry, key) },
     { FOLDER_STOCK, offsetof(struct folder_entry, stock_key) },
     { FOLDER_SURFACE, offsetof(struct folder_entry, stock_key) },
+    { FOLDER_SPOTS, offsetof(struct folder_entry, stock_key) },
     { FOLDER_COLUMNS, offsetof(struct folder_entry, columns_key) },
     { FOLDER_SPLITTING, offsetof(struct folder_entry, columns_key) },
 };

@@ -26,6 +26,7 @@ int folder_lock(const char *folder, struct log *log, const atomic_bool *stop);
 
 #define FOLDER_STOCK ".stock"     /* stock.h */
 #define FOLDER_SURFACE ".surface" /* surface_store.h; its key is the stock's */
+#define FOLDER_SPOTS ".spots"     /* spots.h; likewise */
 #define FOLDER_COLUMNS ".columns" /* columns.h */
 #define FOLDER_SPLITTING ".splitting" /* split_kept.h; its key is the columns' */
 /* FOLDER/KEY.ending. Free with mem_free. */
@@ -36,8 +37,21 @@ char *folder_path(const char *folder, uint64_t key, const char *ending);
 int folder_open(struct folder_file *file, const char *folder, uint64_t key, char why[200]);
 void folder_close(struct folder_file *file);
 
-/* Writes KEY.report.json, then KEY.asset; so where there is a file, there is its report. report may be NULL. 0 or -errno. */
-int folder_write(const char *folder, uint64_t key, const void *bytes, size_t size, const char *report);
+/* KEY.asset in the making: its bytes are in the file as they are written, so there is one copy of them; for others there is no file until
+   it is put in its place. */
+struct folder_draft {
+    void *bytes; /* mapped; zeros at first. NULL: none */
+    size_t size;
+    int fd;
+    char *path;
+};
+/* 0, or -errno; the disk has room for all of it. */
+int folder_draft(struct folder_draft *draft, const char *folder, uint64_t key, size_t size);
+/* Writes KEY.report.json, then puts KEY.asset in its place; so where there is a file, there is its report. report may be NULL. The bytes
+   are there until the draft is closed. 0 or -errno. */
+int folder_put(struct folder_draft *draft, const char *folder, uint64_t key, const char *report);
+/* One that was not put in its place is removed. A zeroed one is fine. */
+void folder_draft_close(struct folder_draft *draft);
 /* The text of KEY.report.json, NULL: there is none. Free with mem_free. */
 char *folder_report(const char *folder, uint64_t key);
 

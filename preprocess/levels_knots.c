@@ -10,7 +10,7 @@
 #include "surface/trimesh.h"
 
 struct key { /* what keeps vertices apart for the simplifier: a border of material or texture is then a seam, which it keeps */
-    float position[3], texcoord[2];
+    float position[3], texcoord[2], second_texcoord[2];
     uint32_t primitive;
     uint8_t color[4];
 };
@@ -30,6 +30,8 @@ static void fill_keys(const struct geometry *g, struct key *keys)
             key->primitive = p;
             if (textured && g->texcoords)
                 memcpy(key->texcoord, g->texcoords[v], sizeof(key->texcoord));
+            if (m->second && g->second_texcoords)
+                memcpy(key->second_texcoord, g->second_texcoords[v], sizeof(key->second_texcoord));
             if (g->colors)
                 memcpy(key->color, g->colors[v], sizeof(key->color));
         }

@@ -93,6 +93,8 @@ bool order_vertices(struct geometry *geometry, const struct levels *levels, uint
         replace(&geometry->positions_m, moved(geometry->positions_m, sizeof(*geometry->positions_m), count, *new_of, kept));
         replace(&geometry->normals, moved(geometry->normals, sizeof(*geometry->normals), count, *new_of, kept));
         replace(&geometry->texcoords, moved(geometry->texcoords, sizeof(*geometry->texcoords), count, *new_of, kept));
+        replace(&geometry->second_texcoords,
+                moved(geometry->second_texcoords, sizeof(*geometry->second_texcoords), count, *new_of, kept));
         replace(&geometry->colors, moved(geometry->colors, sizeof(*geometry->colors), count, *new_of, kept));
         join_levels(geometry, levels, *new_of, out);
         geometry->vertex_count = kept;

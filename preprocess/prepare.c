@@ -183,11 +183,11 @@ static void sort_out(struct run *run)
 
 /* --- building --------------------------------------------------------------------------------------------------------------- */
 
-static int write_file(const struct run *run, struct prepare_asset *asset, const struct build_output *output)
+static int write_file(const struct run *run, const struct prepare_asset *asset, struct build_output *output)
 {
     json_t *numbers = report_numbers(&output->report);
     char *report = numbers ? json_dumps(numbers, JSON_COMPACT | JSON_REAL_PRECISION(9)) : NULL;
-    int status = folder_write(run->params->folder, asset->key, output->bytes, output->size, report);
+    int status = folder_put(&output->file, run->params->folder, asset->key, report);
     free(report);
     json_decref(numbers);
     return status;
@@ -235,7 +235,7 @@ static void build_one(struct run *run, struct prepare_asset *asset)
     int status = good ? write_file(run, asset, &output) : 0;
     if (good)
         take_file(asset, &output.view);
-    free(output.bytes);
+    folder_draft_close(&output.file);
     stock_close(&asset->stock);
     asset->reported = good;
     asset->report = output.report;

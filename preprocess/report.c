@@ -214,8 +214,10 @@ static void print_models(const struct text_report *report)
         if (model->skipped_lines || model->skipped_points)
             fprintf(report->out, "; passed over: %u primitives of lines and %u of points", model->skipped_lines, model->skipped_points);
         if (model->left_out_textures)
-            fprintf(report->out, "; left out: %u textures, which lie otherwise than their material's first", model->left_out_textures);
+            fprintf(report->out, "; left out: %u textures", model->left_out_textures);
         fprintf(report->out, "\n");
+        for (size_t t = 0; t < model->left_out_textures && t < report->rows; t++)
+            fprintf(report->out, "  left out: %s\n", model->left_out[t]);
     }
 }
 

@@ -37,10 +37,14 @@ static json_t *asset_json(const struct prepare *prepare, const struct prepare_as
 static json_t *model_json(const struct model_file *model)
 {
     json_t *root = json_pack("{s:s,s:b}", "path", model->path, "read", model->was_parsed);
+    json_t *left_out = json_array();
+    for (uint32_t i = 0; i < model->left_out_textures; i++)
+        json_array_append_new(left_out, json_string(model->left_out[i]));
     if (model->was_parsed)
-        json_object_update_new(root, json_pack("{s:f,s:I,s:I,s:I}", "seconds", model->parse_s, "skipped_lines",
+        json_object_update_new(root, json_pack("{s:f,s:I,s:I,s:I,s:O}", "seconds", model->parse_s, "skipped_lines",
                                                (json_int_t)model->skipped_lines, "skipped_points", (json_int_t)model->skipped_points,
-                                               "left_out_textures", (json_int_t)model->left_out_textures));
+                                               "left_out_textures", (json_int_t)model->left_out_textures, "left_out", left_out));
+    json_decref(left_out);
     return root;
 }
 

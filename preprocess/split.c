@@ -13,7 +13,7 @@
 #define MOST_ROUNDS 16
 #define MOST_KEPT 512    /* shares of a place */
 #define LARGE 0.25       /* of the way to the nearest sensor */
-#define INSIDE_LEAST 8.0 /* shortest pieces: smaller triangles are not looked at inside */
+#define INSIDE_LEAST 2.0 /* shortest pieces: smaller triangles are not looked at inside */
 #define FLAT 1e-3        /* a triangle's longest edge is no more than that shorter than the way round over the corner across */
 #define ASIDE 0.1        /* of the edge, at least, that corner is from its ends */
 #define LINE_OF_SIZE 2.5e-7 /* a triangle no higher than that, a few units of the last place, is a line */
@@ -27,6 +27,7 @@
 #define SHORTEST_NEAR 0.125 /* pieces of the finest level, of the tolerance: sensors may stand side by side */
 #define SHORTEST 1.0        /* pieces of coarser levels, of their error: two pixels */
 #define JUMP_WIDTH 8        /* tolerances, or errors */
+#define ON_SURFACE 0.25     /* tolerances: so far apart places may be said to be the same */
 #define SLACK 0.7           /* how far away a coarser level may show what the field is, likewise */
 
 /* --- cutting -------------------------------------------------------------------------------------------------------------- */
@@ -93,10 +94,11 @@ void split_measure_new_edges(struct split *split, struct split_finding *findings
 static void measure_edges(struct split *split)
 {
     struct cutmesh *mesh = &split->mesh;
-    struct split_finding *findings = mem_array(3 * mesh->tri_count, sizeof(*findings));
     size_t count = 0;
-    for (size_t t = 0; t < mesh->tri_count; t++) {
-        struct cut_tri *tri = &mesh->tris[t];
+    cutmesh_sort(&mesh->made);
+    struct split_finding *findings = mem_array(3 * mesh->made.count, sizeof(*findings));
+    for (size_t m = 0; m < mesh->made.count; m++) {
+        const struct cut_tri *tri = &mesh->tris[mesh->made.at[m]];
         bool any_new = mesh->cuts[tri->e[0]].error < 0 || mesh->cuts[tri->e[1]].error < 0 || mesh->cuts[tri->e[2]].error < 0;
         for (int i = 0; i < 3 && any_new && !is_line(split, tri); i++) {
             struct cut_edge *edge = &mesh->cuts[tri->e[i]];
@@ -105,9 +107,9 @@ static void measure_edges(struct split *split)
             edge->error = fmaxf(edge->error, 0);
         }
     }
-    for (size_t t = 0; t < mesh->tri_count; t++)
+    for (size_t m = 0; m < mesh->made.count; m++)
         for (int i = 0; i < 3; i++) {
-            struct cut_edge *edge = &mesh->cuts[mesh->tris[t].e[i]];
+            struct cut_edge *edge = &mesh->cuts[mesh->tris[mesh->made.at[m]].e[i]];
             edge->error = fmaxf(edge->error, 0);
         }
     split_measure_new_edges(split, findings, count);
@@ -147,9 +149,11 @@ static bool inside_may_err(const struct split *split, const struct cut_tri *tri,
 static void measure_insides(struct split *split, double limit)
 {
     struct cutmesh *mesh = &split->mesh;
-    struct split_finding *findings = mem_array(mesh->tri_count, sizeof(*findings));
     size_t count = 0;
-    for (size_t t = 0; t < mesh->tri_count; t++) {
+    cutmesh_sort(&mesh->made);
+    struct split_finding *findings = mem_array(mesh->made.count, sizeof(*findings));
+    for (size_t m = 0; m < mesh->made.count; m++) {
+        uint32_t t = mesh->made.at[m];
         struct cut_tri *tri = &mesh->tris[t];
         double most = 0;
         for (int i = 0; i < 3; i++)
@@ -158,7 +162,7 @@ static void measure_insides(struct split *split, double limit)
             continue;
         tri->good = true;
         if (inside_may_err(split, tri, limit))
-            findings[count++].number = (uint32_t)t;
+            findings[count++].number = t;
     }
     split_measure_insides(split, findings, count);
     for (size_t i = 0; i < count; i++)
@@ -213,10 +217,11 @@ static bool aim_at_corner(struct split *split, const struct cut_tri *tri, uint32
 static void cut_beside_corners(struct split *split)
 {
     struct cutmesh *mesh = &split->mesh;
-    struct split_finding *findings = mem_array(mesh->tri_count, sizeof(*findings));
     size_t count = 0;
-    for (size_t t = 0; t < mesh->tri_count; t++) {
-        const struct cut_tri *tri = &mesh->tris[t];
+    cutmesh_sort(&mesh->open);
+    struct split_finding *findings = mem_array(mesh->open.count, sizeof(*findings));
+    for (size_t m = 0; m < mesh->open.count; m++) {
+        const struct cut_tri *tri = &mesh->tris[mesh->open.at[m]];
         bool others_cut = cutmesh_is_cut(mesh, tri->e[0]) || cutmesh_is_cut(mesh, tri->e[1]) || cutmesh_is_cut(mesh, tri->e[2]);
         if (others_cut && !is_line(split, tri) && aim_at_corner(split, tri, &findings[count].number) &&
             !cutmesh_is_cut(mesh, findings[count].number))
@@ -226,29 +231,50 @@ static void cut_beside_corners(struct split *split)
     mem_free(findings);
 }
 
+/* Edges that err too much, each as often as triangles have it, in the order of these. */
+static struct split_finding *list_errors(const struct split *split, double limit, size_t *count)
+{
+    const struct cutmesh *mesh = &split->mesh;
+    struct cut_list corners = { 0 };
+    for (size_t m = 0; m < mesh->made.count; m++)
+        for (int i = 0; i < 3; i++) {
+            const struct cut_edge *edge = &mesh->cuts[mesh->tris[mesh->made.at[m]].e[i]];
+            for (uint32_t corner = edge->corner; corner != TRIMESH_NONE && (double)edge->error > limit; corner = mesh->next[corner])
+                cutmesh_list(&corners, corner);
+        }
+    cutmesh_sort(&corners);
+    struct split_finding *findings = mem_array(corners.count, sizeof(*findings));
+    for (*count = 0; *count < corners.count; ++*count) {
+        uint32_t e = mesh->tris[corners.at[*count] / 3].e[corners.at[*count] % 3];
+        findings[*count] = (struct split_finding){ .number = e, .error = mesh->cuts[e].error };
+    }
+    mem_free(corners.at);
+    return findings;
+}
+
 /* Cuts the edges that err too much, the worst ones first, as long as the level may grow. False: nothing to do. */
 static bool cut_worst(struct split *split, double limit)
 {
     struct cutmesh *mesh = &split->mesh;
-    struct split_finding *findings = mem_array(3 * mesh->tri_count, sizeof(*findings));
-    size_t count = 0, room = split->most_tris > mesh->tri_count ? (split->most_tris - mesh->tri_count) / 2 : 0;
-    for (size_t t = 0; t < mesh->tri_count; t++)
-        for (int i = 0; i < 3; i++) {
-            const struct cut_edge *edge = &mesh->cuts[mesh->tris[t].e[i]];
-            if ((double)edge->error > limit)
-                findings[count++] = (struct split_finding){ .number = mesh->tris[t].e[i], .error = edge->error };
-        }
-    for (size_t t = 0; t < mesh->tri_count; t++) {
-        if (!mesh->tris[t].aimed)
-            aim_at_corner(split, &mesh->tris[t], &(uint32_t){ 0 });
-        mesh->tris[t].aimed = true;
+    size_t listed, room = split->most_tris > mesh->tri_count ? (split->most_tris - mesh->tri_count) / 2 : 0;
+    cutmesh_sort(&mesh->made);
+    struct split_finding *findings = list_errors(split, limit, &listed);
+    for (size_t m = 0; m < mesh->made.count; m++) {
+        struct cut_tri *tri = &mesh->tris[mesh->made.at[m]];
+        if (!tri->aimed)
+            aim_at_corner(split, tri, &(uint32_t){ 0 });
+        tri->aimed = true;
     }
     split->full = (double)room < FULL * (double)mesh->tri_count;
-    count = keep_worst(findings, count, room);
+    size_t count = keep_worst(findings, listed, room);
     cut_edges(split, findings, count);
     cut_beside_corners(split);
     mem_free(findings);
-    return count > 0 && cutmesh_apply(mesh) > 0 && !split->full;
+    mesh->made.count = 0;
+    bool any = count > 0 && cutmesh_apply(mesh) > 0 && !split->full;
+    if (count < listed)
+        cutmesh_list_all(mesh);
+    return any;
 }
 
 /* --- all ------------------------------------------------------------------------------------------------------------------ */
@@ -298,7 +324,7 @@ static void split_level(struct split *split, struct level *level, size_t finer_t
     double error_m = (double)level->error_m, tolerance_m = surface_report(split->in->surface)->tolerance_m;
     split->finest = finer_tris == 0;
     split->error_m = error_m;
-    split->on_surface_m = split->finest ? 0.25 * tolerance_m : 1.5 * error_m;
+    split->on_surface_m = split->finest ? ON_SURFACE * tolerance_m : fmax(ON_SURFACE * tolerance_m, 1.5 * error_m);
     split->slack_m = SLACK * error_m;
     split->shortest_m = split->finest ? SHORTEST_NEAR * tolerance_m : fmax(tolerance_m, SHORTEST * error_m);
     split->jump_m = JUMP_WIDTH * fmax(tolerance_m, SHORTEST * error_m);
@@ -309,6 +335,8 @@ static void split_level(struct split *split, struct level *level, size_t finer_t
     split->full = split->mesh.tri_count >= split->most_tris;
     for (size_t l = 0; l < sizeof(limits) / sizeof(*limits) && !split->full; l++)
         for (int round = 0; round < MOST_ROUNDS; round++) {
+            if (round == 0)
+                cutmesh_list_all(&split->mesh);
             measure_edges(split);
             if (!split->finest)
                 split_turn_edges(split, limits[l]);

@@ -6,8 +6,9 @@
    only drawn where error_m is less than a pixel. Its surface stays as it is but that edges in flat places may be turned to run the other
    way between two triangles. An edge that a finer level has too, and need not cut, is not looked at.
    Pieces no longer than an eighth of the model's tolerance or, in coarser levels, than their error are not cut; nor, up to eight tolerances
-   or errors long, ones where the distance along the surface jumps because the surface does not hang together there: no cut mends a jump,
-   cuts only close in on it. What is hidden inside another part does not count, nor do triangles that have no width.
+   or errors long, for the field on distances along the surface ones where those jump because the surface does not hang together there: no
+   cut mends a jump, cuts only close in on it. What is hidden deep inside another part does not count (a coarser level's surface may stand
+   out of one that hides it by less than its error), nor do triangles that have no width.
    A level may not grow for ever, so errors are cut in the order of their size: the finest level to three times its triangles or by 100,000,
    whichever is more. A coarser one that would need more than three quarters of the next finer one's triangles is given up.
    What is left is told by its reason (level.left). */
@@ -16,6 +17,7 @@
 #include "preprocess/levels.h"
 #include "preprocess/rows.h"
 #include "preprocess/split_kept.h"
+#include "preprocess/spots.h"
 #include "preprocess/straight.h"
 #include "surface/surface.h"
 
@@ -28,6 +30,7 @@ struct split_input {
     struct asset_sensor *sensors;      /* nearest_vertex becomes the sensor's own vertex of the finest level */
     struct workers *workers;           /* or NULL */
     struct split_kept *kept;           /* from one time to the next; a zeroed one, or NULL: nothing is */
+    struct spots *spots;               /* or NULL */
 };
 
 /* Levels may be fewer afterwards. New vertices come after the geometry's; both faces at an edge are cut at the same vertex, so a level

@@ -2,6 +2,7 @@
 /* What the field is between the vertices, how far that is from straight, and where an edge is best cut. */
 #include <math.h>
 #include <string.h>
+#include <xxhash.h>
 
 #include "base/mem.h"
 #include "preprocess/split_impl.h"
@@ -81,6 +82,7 @@ struct sight { /* which triangles of the model a point may lie on */
     uint32_t origin[2]; /* in the finest level, these */
     uint32_t part;      /* in a coarser one, those of that part which look the same way */
     double normal[3];
+    struct spots_notes *notes; /* the thread's */
 };
 
 static bool is_in_sight(const void *arg, uint32_t triangle)
@@ -90,18 +92,18 @@ static bool is_in_sight(const void *arg, uint32_t triangle)
     return face->part == sight->part && vec_dot(face->normal, sight->normal) > 0;
 }
 
-static struct sight sight_of_edge(const struct split *split, const struct cut_edge *edge)
+static struct sight sight_of_edge(const struct split *split, const struct cut_edge *edge, struct spots_notes *notes)
 {
     struct sight sight = {
-        split, { edge->origin[0], edge->origin[edge->origin[1] != TRIMESH_NONE] }, split->part[place_of(split, edge->a)], { 0 }
+        split, { edge->origin[0], edge->origin[edge->origin[1] != TRIMESH_NONE] }, split->part[place_of(split, edge->a)], { 0 }, notes
     };
     cutmesh_normal(&split->mesh, edge, sight.normal);
     return sight;
 }
 
-static struct sight sight_of_tri(const struct split *split, const struct cut_tri *tri)
+static struct sight sight_of_tri(const struct split *split, const struct cut_tri *tri, struct spots_notes *notes)
 {
-    struct sight sight = { split, { tri->origin, tri->origin }, split->part[place_of(split, tri->v[0])], { 0 } };
+    struct sight sight = { split, { tri->origin, tri->origin }, split->part[place_of(split, tri->v[0])], { 0 }, notes };
     for (int c = 0; c < 3; c++)
         for (int i = 0; i < 3; i++)
             sight.normal[i] += (double)split->mesh.geometry->normals[tri->v[c]][i];
@@ -114,17 +116,61 @@ static void to_doubles(const float point[3], double at[3])
         at[i] = (double)point[i];
 }
 
-/* Distances along the surface, where it is nearest to a coarser level's point. False: the point is hidden inside another part, and nobody
-   sees an error. */
+/* Where a coarser level's point is: on its own part, or else on another one that hides that, out of which it may stand. */
+static bool search(const struct sight *sight, const double at[3], struct surface_spot *spot)
+{
+    const struct split *split = sight->split;
+    if (split->finest)
+        return surface_find_spot_on(split->in->surface, at, split->on_surface_m, sight->origin, spot);
+    if (surface_find_spot_among(split->in->surface, at, split->on_surface_m, is_in_sight, sight, spot))
+        return true;
+    surface_find_spot(split->in->surface, at, sight->normal, spot);
+    return spot->distance_m <= split->on_surface_m;
+}
+
+/* All that the place of a point depends on, but for the surface. */
+static uint64_t key_of(const struct sight *sight, const float point[3])
+{
+    struct {
+        float point[3];
+        uint32_t level, of[2];
+        double normal[3];
+    } all = { .level = sight->split->level };
+    memcpy(all.point, point, sizeof(all.point));
+    if (sight->split->finest)
+        memcpy(all.of, sight->origin, sizeof(all.of));
+    else
+        memcpy(all.normal, sight->normal, sizeof(all.normal));
+    all.of[0] = sight->split->finest ? all.of[0] : sight->part;
+    return XXH3_64bits(&all, sizeof(all));
+}
+
+/* Where it was found the last time, if it is known. */
+static bool find_spot(const struct sight *sight, const float point[3], const double at[3], struct surface_spot *spot)
+{
+    const struct split *split = sight->split;
+    struct spots *spots = split->in->spots;
+    uint64_t key = spots ? key_of(sight, point) : 0;
+    uint32_t tri;
+    bool known = spots && spots_find(spots, key, &tri), seen = false;
+    if (known && tri != TRIMESH_NONE)
+        known = seen = surface_spot_on(split->in->surface, at, split->on_surface_m, tri, spot);
+    if (!known)
+        seen = search(sight, at, spot);
+    if (spots)
+        spots_note(spots, sight->notes, key, seen ? spot->tri : TRIMESH_NONE, known);
+    return seen;
+}
+
+/* Distances along the surface, where it is nearest to a coarser level's point. False: the point is hidden deep inside another part, and
+   nobody sees an error. */
 static bool measure(const struct sight *sight, const float point[3], float *geodesic_m)
 {
     const struct split *split = sight->split;
     struct surface_spot spot;
     double at[3];
     to_doubles(point, at);
-    bool seen = split->finest ? surface_find_spot_on(split->in->surface, at, split->on_surface_m, sight->origin, &spot)
-                              : surface_find_spot_among(split->in->surface, at, split->on_surface_m, is_in_sight, sight, &spot);
-    if (!seen)
+    if (!find_spot(sight, point, at, &spot))
         return false;
     surface_field_at_spot(split->in->field, split->in->surface, &spot, geodesic_m);
     return true;
@@ -154,6 +200,14 @@ struct line { /* points along an edge, from one end to the other */
     float *room; /* for as many points more */
 };
 
+/* Of a point, against a line between two others. */
+static double error_at(const struct line *line, enum straight_modes modes, int from, int to, int point)
+{
+    double t = (line->t[point] - line->t[from]) / (line->t[to] - line->t[from]);
+    return straight_error(line->split->in->straight, modes, line->shares[from], line->shares[to], t, line->shares[point],
+                          line->split->slack_m);
+}
+
 /* A point more, if it is seen; its error against a line between the ends. */
 static double add_point(struct line *line, double t)
 {
@@ -174,7 +228,7 @@ static double add_point(struct line *line, double t)
     line->geodesic_m[i] = geodesic_m;
     line->count++;
     line->room = shares + line->split->samples;
-    return straight_error(straight, line->shares[0], line->shares[line->count - 1], t, shares, line->split->slack_m);
+    return error_at(line, STRAIGHT_BOTH, 0, line->count - 1, i);
 }
 
 static bool jumps(const struct line *line, double length_m)
@@ -194,10 +248,8 @@ static double left_after(const struct line *line, int cut)
     double most = 0;
     for (int i = 1; i < line->count - 1; i++) {
         int from = i < cut ? 0 : cut, to = i < cut ? cut : line->count - 1;
-        double t = (line->t[i] - line->t[from]) / (line->t[to] - line->t[from]);
         if (i != cut)
-            most = fmax(most, straight_error(line->split->in->straight, line->shares[from], line->shares[to], t, line->shares[i],
-                                             line->split->slack_m));
+            most = fmax(most, error_at(line, STRAIGHT_BOTH, from, to, i));
     }
     return most;
 }
@@ -251,17 +303,21 @@ struct room {
     float *points, *corners;
     uint32_t of[CORNERS + 3]; /* which place's, by the place's number; then those for which that is taken */
     uint32_t taken[3];        /* by the corners in hand */
+    struct spots_notes notes;
 };
 
 static void room_init(struct room *room, const struct split *split, size_t points)
 {
+    room->notes.count = room->notes.missed = 0;
     room->points = mem_array(points * (split->samples + split->sensors), sizeof(float));
     room->corners = split->shares ? NULL : mem_array((CORNERS + 3) * split->samples, sizeof(float));
     memset(room->of, 0xff, sizeof(room->of));
 }
 
-static void room_finish(struct room *room)
+static void room_finish(struct room *room, const struct split *split)
 {
+    if (split->in->spots)
+        spots_hand_over(split->in->spots, &room->notes);
     mem_free(room->points);
     mem_free(room->corners);
 }
@@ -283,11 +339,21 @@ static const float *shares_at(const struct split *split, uint32_t vertex, uint32
     return shares;
 }
 
-static void bar(struct split_finding *finding, bool jumps)
+static void bar_short(struct split_finding *finding)
 {
     finding->barred = finding->error;
-    finding->jumps = jumps;
     finding->error = 0;
+}
+
+/* Straight distances do not jump. */
+static void bar_jump(struct split_finding *finding, const struct line *line)
+{
+    finding->jumps = true;
+    finding->error = 0;
+    for (int i = 1; i < line->count - 1; i++) {
+        finding->error = fmaxf(finding->error, (float)error_at(line, STRAIGHT_EUCLIDEAN, 0, line->count - 1, i));
+        finding->barred = fmaxf(finding->barred, (float)error_at(line, STRAIGHT_GEODESIC, 0, line->count - 1, i));
+    }
 }
 
 static void try_edge(const struct job *job, struct split_finding *finding, struct room *room)
@@ -300,7 +366,7 @@ static void try_edge(const struct job *job, struct split_finding *finding, struc
     struct line line = { .split = split,
                          .a = pa,
                          .b = pb,
-                         .sight = sight_of_edge(split, edge),
+                         .sight = sight_of_edge(split, edge, &room->notes),
                          .t = { 0, 1 },
                          .count = 2,
                          .shares = { shares_at(split, edge->a, 0, room) },
@@ -313,7 +379,7 @@ static void try_edge(const struct job *job, struct split_finding *finding, struc
     double nearest_m = straight_nearest(split->in->straight, middle);
     finding->error = (float)add_point(&line, 0.5);
     if (length_m < 2 * split->shortest_m) {
-        bar(finding, false);
+        bar_short(finding);
         return;
     }
     if ((double)finding->error < PROBABLE * job->enough && length_m < CLOSE * nearest_m && line.count == 3)
@@ -323,7 +389,7 @@ static void try_edge(const struct job *job, struct split_finding *finding, struc
     if ((double)finding->error > job->enough && length_m < WIDE * nearest_m)
         find_cut(&line, length_m, job->enough, finding);
     if (length_m < split->jump_m && jumps(&line, length_m))
-        bar(finding, true);
+        bar_jump(finding, &line);
     double margin = fmin(0.5, split->shortest_m / length_m);
     finding->share = (float)fmin(1 - margin, fmax(margin, (double)finding->share));
 }
@@ -343,14 +409,29 @@ static void try_edges(void *arg, size_t begin, size_t end)
     for (size_t i = begin; i < end; i++)
         if (!recall_edge(job->split, &next, &job->findings[i]))
             try_edge(job, &job->findings[i], &room);
-    room_finish(&room);
+    room_finish(&room, job->split);
+}
+
+/* From the middle to a corner, in a triangle in which no cut would mend that. */
+static bool jumps_inside(const struct split *split, const struct cut_tri *tri, const float middle[3], const float *geodesic_m)
+{
+    for (int c = 0; c < 3; c++) {
+        const float *corner_m = split->geodesic_m + place_of(split, tri->v[c]) * split->sensors;
+        double most_m = JUMP * split_length(middle, split_position(split, tri->v[c]));
+        if (split_length(split_position(split, tri->v[c]), split_position(split, tri->v[(c + 1) % 3])) > split->jump_m)
+            return false;
+        for (size_t s = 0; s < split->sensors; s++)
+            if (fabs((double)geodesic_m[s] - (double)corner_m[s]) > most_m)
+                return true;
+    }
+    return false;
 }
 
 static void try_inside(const struct split *split, struct split_finding *finding, struct room *room)
 {
     const struct straight *straight = split->in->straight;
     const struct cut_tri *tri = &split->mesh.tris[finding->number];
-    struct sight sight = sight_of_tri(split, tri);
+    struct sight sight = sight_of_tri(split, tri, &room->notes);
     const float *corners[3];
     float middle[3], *geodesic_m = room->points, *shares = geodesic_m + split->sensors;
     for (uint32_t c = 0; c < 3; c++) {
@@ -361,7 +442,8 @@ static void try_inside(const struct split *split, struct split_finding *finding,
     if (!measure(&sight, middle, geodesic_m))
         return;
     straight_shares(straight, middle, geodesic_m, shares);
-    finding->error = (float)straight_error_inside(straight, corners, shares, split->slack_m);
+    enum straight_modes modes = jumps_inside(split, tri, middle, geodesic_m) ? STRAIGHT_EUCLIDEAN : STRAIGHT_BOTH;
+    finding->error = (float)straight_error_inside(straight, modes, corners, shares, split->slack_m);
 }
 
 static void try_insides(void *arg, size_t begin, size_t end)
@@ -373,19 +455,21 @@ static void try_insides(void *arg, size_t begin, size_t end)
     for (size_t i = begin; i < end; i++)
         if (!split_recall(job->split, job->split->mesh.tris[job->findings[i].number].v, 3, &next, &job->findings[i]))
             try_inside(job->split, &job->findings[i], &room);
-    room_finish(&room);
+    room_finish(&room, job->split);
 }
 
 static void measure_places(void *arg, size_t begin, size_t end)
 {
     const struct job *job = arg;
     const struct split *split = job->split;
+    struct spots_notes notes;
+    notes.count = notes.missed = 0;
     for (size_t i = begin; i < end; i++) {
         uint32_t place = job->first + (uint32_t)i;
         const float *point = split->mesh.places.positions_m[place];
         float *geodesic_m = split->geodesic_m + place * split->sensors;
         if (job->edges) {
-            struct sight sight = sight_of_edge(split, &split->mesh.cuts[job->edges[i]]);
+            struct sight sight = sight_of_edge(split, &split->mesh.cuts[job->edges[i]], &notes);
             measure_always(&sight, point, geodesic_m);
         }
         if (split->shares)
@@ -393,6 +477,8 @@ static void measure_places(void *arg, size_t begin, size_t end)
         if (split->near_m)
             straight_near(split->in->straight, geodesic_m, split->near_m + place * split->in->straight->group_count);
     }
+    if (split->in->spots)
+        spots_hand_over(split->in->spots, &notes);
 }
 
 static void for_all(struct split *split, size_t count, void (*body)(void *arg, size_t begin, size_t end), struct job *job)

@@ -12,26 +12,35 @@
 #define GAIN 0.7           /* of the error, at most, is left */
 #define CROSSING 0.02      /* of either edge: they cross at least so far from its ends */
 
-struct pair { /* triangles at an edge */
-    uint32_t tris[2], count;
-};
-
 struct turn {
     uint32_t edge, tris[2], across;
 };
 
-static struct pair *list_pairs(const struct cutmesh *mesh)
+/* Those that err by more than the limit, of triangles that were made from `first` on in their list. */
+static void list_edges(struct split *split, double limit, size_t first, struct cut_list *edges)
 {
-    struct pair *pairs = mem_array(mesh->edges.count, sizeof(*pairs));
-    for (size_t t = 0; t < mesh->tri_count; t++)
+    const struct cutmesh *mesh = &split->mesh;
+    for (size_t m = first; m < mesh->made.count; m++)
         for (int i = 0; i < 3; i++) {
-            struct pair *pair = &pairs[mesh->tris[t].e[i]];
-            if (pair->count < 2)
-                pair->tris[pair->count] = (uint32_t)t;
-            pair->count++;
+            uint32_t e = mesh->tris[mesh->made.at[m]].e[i];
+            if ((double)mesh->cuts[e].error > limit)
+                cutmesh_list(edges, e);
         }
-    return pairs;
+    cutmesh_sort(edges);
 }
+
+/* False: it is not part of two triangles, no more and no fewer. */
+static bool find_tris(const struct cutmesh *mesh, uint32_t edge, uint32_t tris[2])
+{
+    uint32_t first = mesh->cuts[edge].corner, second = first == TRIMESH_NONE ? first : mesh->next[first];
+    if (second == TRIMESH_NONE || mesh->next[second] != TRIMESH_NONE)
+        return false;
+    tris[0] = (first < second ? first : second) / 3;
+    tris[1] = (first < second ? second : first) / 3;
+    return true;
+}
+
+/* --- turning one ------------------------------------------------------------------------------------------------------------- */
 
 static void position_of(const struct split *split, uint32_t vertex, double at[3])
 {
@@ -68,18 +77,16 @@ static bool may_turn(const struct split *split, const struct turn *turn)
     return cross(a, b, c, d, FLAT_OF_ERROR * split->error_m);
 }
 
-static size_t list_turns(struct split *split, const struct pair *pairs, size_t pair_count, double limit, struct turn *turns)
+static size_t list_turns(struct split *split, const struct cut_list *edges, struct turn *turns)
 {
     struct cutmesh *mesh = &split->mesh;
     size_t count = 0;
-    for (uint32_t e = 0; e < pair_count; e++) {
-        const struct pair *pair = &pairs[e];
-        if (pair->count != 2 || !((double)mesh->cuts[e].error > limit) ||
-            mesh->tris[pair->tris[0]].primitive != mesh->tris[pair->tris[1]].primitive)
+    for (size_t i = 0; i < edges->count; i++) {
+        struct turn turn = { .edge = edges->at[i] };
+        if (!find_tris(mesh, turn.edge, turn.tris) || mesh->tris[turn.tris[0]].primitive != mesh->tris[turn.tris[1]].primitive)
             continue;
-        struct turn turn = { .edge = e, .tris = { pair->tris[0], pair->tris[1] } };
-        turn.across = cutmesh_across(mesh, turn.tris, e);
-        if (turn.across != TRIMESH_NONE && (turn.across >= pair_count || pairs[turn.across].count == 0) && may_turn(split, &turn))
+        turn.across = cutmesh_across(mesh, turn.tris, turn.edge);
+        if (turn.across != TRIMESH_NONE && mesh->cuts[turn.across].corner == TRIMESH_NONE && may_turn(split, &turn))
             turns[count++] = turn;
     }
     return count;
@@ -126,15 +133,16 @@ static size_t turn_better(struct split *split, const struct turn *turns, size_t 
 
 void split_turn_edges(struct split *split, double limit)
 {
-    size_t done = 1;
+    struct cut_list edges = { 0 };
+    size_t done = 1, listed = 0;
     for (int i = 0; i < MOST_TURNS && done > 0; i++) {
-        size_t pair_count = split->mesh.edges.count;
-        struct pair *pairs = list_pairs(&split->mesh);
-        struct turn *turns = mem_array(pair_count, sizeof(*turns));
-        size_t count = list_turns(split, pairs, pair_count, limit, turns);
+        list_edges(split, limit, listed, &edges);
+        listed = split->mesh.made.count;
+        struct turn *turns = mem_array(edges.count, sizeof(*turns));
+        size_t count = list_turns(split, &edges, turns);
         measure_across(split, turns, count);
         done = turn_better(split, turns, count);
-        mem_free(pairs);
         mem_free(turns);
     }
+    mem_free(edges.at);
 }

@@ -93,6 +93,7 @@ static void pack_geometry(struct text *to, const struct geometry *g)
     pack_array(to, g->positions_m, g->vertex_count, sizeof(*g->positions_m));
     pack_array(to, g->normals, g->vertex_count, sizeof(*g->normals));
     pack_array(to, g->texcoords, g->texcoords ? g->vertex_count : 0, sizeof(*g->texcoords));
+    pack_array(to, g->second_texcoords, g->second_texcoords ? g->vertex_count : 0, sizeof(*g->second_texcoords));
     pack_array(to, g->colors, g->colors ? g->vertex_count : 0, sizeof(*g->colors));
     pack_array(to, g->indices, g->index_count, sizeof(*g->indices));
     pack_array(to, g->primitives, g->primitive_count, sizeof(*g->primitives));
@@ -112,7 +113,7 @@ static uint32_t narrow(struct unpack *from, size_t count)
 static void unpack_geometry(struct unpack *from, struct geometry *g)
 {
     struct geometry_numbers numbers = { 0 };
-    size_t positions, normals, texcoords, colors, indices, primitives, materials, textures, name_bytes;
+    size_t positions, normals, texcoords, second_texcoords, colors, indices, primitives, materials, textures, name_bytes;
     unpack_into(from, &numbers, 1, sizeof(numbers));
     *g = (struct geometry){ .node_count = numbers.node_count,
                             .degenerate_triangles = numbers.degenerate_triangles,
@@ -123,6 +124,7 @@ static void unpack_geometry(struct unpack *from, struct geometry *g)
     g->positions_m = unpack_array(from, &positions, sizeof(*g->positions_m));
     g->normals = unpack_array(from, &normals, sizeof(*g->normals));
     g->texcoords = unpack_array(from, &texcoords, sizeof(*g->texcoords));
+    g->second_texcoords = unpack_array(from, &second_texcoords, sizeof(*g->second_texcoords));
     g->colors = unpack_array(from, &colors, sizeof(*g->colors));
     g->indices = unpack_array(from, &indices, sizeof(*g->indices));
     g->primitives = unpack_array(from, &primitives, sizeof(*g->primitives));
@@ -138,7 +140,8 @@ static void unpack_geometry(struct unpack *from, struct geometry *g)
     g->primitive_count = narrow(from, primitives);
     g->material_count = narrow(from, materials);
     g->texture_count = narrow(from, textures);
-    from->bad |= normals != positions || (texcoords && texcoords != positions) || (colors && colors != positions);
+    from->bad |= normals != positions || (texcoords && texcoords != positions) || (second_texcoords && second_texcoords != positions) ||
+                 (colors && colors != positions);
 }
 
 static void pack_levels(struct text *to, const struct levels *levels)

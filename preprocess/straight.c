@@ -142,8 +142,8 @@ static bool has_value(const float *shares, size_t count)
 }
 
 /* The largest of the errors, group by group. Where a group has no value at a corner, because no way leads there, there is no error. */
-static double worst_of(const struct straight *straight, const float *const *corners, const float *weights, size_t corner_count,
-                       const float *sample, double slack_m)
+static double worst_of(const struct straight *straight, enum straight_modes modes, const float *const *corners, const float *weights,
+                       size_t corner_count, const float *sample, double slack_m)
 {
     double most = 0;
     bool reached = true;
@@ -159,7 +159,7 @@ static double worst_of(const struct straight *straight, const float *const *corn
             at[c] = corners[c] + first;
             reached = reached && (g % 2 != INTERPOLATION_SHEPARD || has_value(at[c], count));
         }
-        if (reached)
+        if (reached && modes & 1 << g / 2 / straight->group_count)
             most = fmax(most, (double)shares_error(at, weights, corner_count, sample + first, count) -
                                   fmin(slack_m * (double)sample[straight->share_count + g], MOST_SLACK));
         first += count;
@@ -167,14 +167,16 @@ static double worst_of(const struct straight *straight, const float *const *corn
     return most;
 }
 
-double straight_error(const struct straight *straight, const float *a, const float *b, double t, const float *between, double slack_m)
+double straight_error(const struct straight *straight, enum straight_modes modes, const float *a, const float *b, double t,
+                      const float *between, double slack_m)
 {
-    return worst_of(straight, (const float *const[2]){ a, b }, (const float[2]){ 1 - (float)t, (float)t }, 2, between, slack_m);
+    return worst_of(straight, modes, (const float *const[2]){ a, b }, (const float[2]){ 1 - (float)t, (float)t }, 2, between, slack_m);
 }
 
-double straight_error_inside(const struct straight *straight, const float *const corners[3], const float *inside, double slack_m)
+double straight_error_inside(const struct straight *straight, enum straight_modes modes, const float *const corners[3],
+                             const float *inside, double slack_m)
 {
-    return worst_of(straight, corners, (const float[3]){ 1 / 3.0f, 1 / 3.0f, 1 / 3.0f }, 3, inside, slack_m);
+    return worst_of(straight, modes, corners, (const float[3]){ 1 / 3.0f, 1 / 3.0f, 1 / 3.0f }, 3, inside, slack_m);
 }
 
 void straight_near(const struct straight *straight, const float *geodesic_m, float *near_m)

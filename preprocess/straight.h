@@ -42,9 +42,12 @@ void straight_set_radius(struct straight *straight, const float *const largest_m
 size_t straight_sample_count(const struct straight *straight); /* numbers that straight_shares makes */
 void straight_shares(const struct straight *straight, const float point_m[3], const float *geodesic_m, float *shares);
 /* In parts of the range: samples at a point against a line between two others, at share t of the way; against the mean of three corners.
-   Less what a value may change over slack_m, up to two steps of colour. */
-double straight_error(const struct straight *straight, const float *a, const float *b, double t, const float *between, double slack_m);
-double straight_error_inside(const struct straight *straight, const float *const corners[3], const float *inside, double slack_m);
+   modes: on which distances. Less what a value may change over slack_m, up to two steps of colour. */
+enum straight_modes { STRAIGHT_GEODESIC = 1 << DISTANCE_GEODESIC, STRAIGHT_EUCLIDEAN = 1 << DISTANCE_EUCLIDEAN, STRAIGHT_BOTH = 3 };
+double straight_error(const struct straight *straight, enum straight_modes modes, const float *a, const float *b, double t,
+                      const float *between, double slack_m);
+double straight_error_inside(const struct straight *straight, enum straight_modes modes, const float *const corners[3],
+                             const float *inside, double slack_m);
 /* Of each group, the distance of the nearest sensor. */
 void straight_near(const struct straight *straight, const float *geodesic_m, float *near_m);
 /* Metres from the point to the nearest sensor, as the crow flies. */

@@ -190,10 +190,40 @@ static void what_is_damaged_is_made_anew(void **state)
     }
 }
 
+static ino_t file_number(const char *path)
+{
+    struct stat st;
+    assert_int_equal(stat(path, &st), 0);
+    return st.st_ino;
+}
+
+/* Where points lie is taken from the last time, and is written again only where little of it was known. */
+static void points_are_found_once(void **state)
+{
+    static const char *const places[] = { "1.3,0,0.02", "1.3,0,0.05", "0.8,0.8,0" };
+    struct prep_case *c = *state;
+    bool model_read;
+    json_decref(prepare(c, first_tags, "kept", &model_read));
+    char *spots = kept_file(c, ".spots");
+    for (int i = 0; i < 3; i++) {
+        char *tags = mem_printf("a,,,,t,A,,%s\nb,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,TT-1,,,\n", places[i]);
+        if (i)
+            damage(spots, i == 2);
+        ino_t before = file_number(spots); /* of a file that is there while another one is written */
+        json_t *asset = prepare(c, tags, "kept", &model_read);
+        assert_false(model_read);
+        assert_true((file_number(spots) == before) == (i == 0));
+        assert_as_fresh(c, tags, asset);
+        json_decref(asset);
+        mem_free(tags);
+    }
+    mem_free(spots);
+}
+
 /* --- killed midway ------------------------------------------------------------------------------------------------------------ */
 
-/* Prepares into FOLDER/kept, and is killed by the system where it would write behind so many bytes of a file. */
-static void prepare_killed_at(struct prep_case *c, const char *tags, size_t bytes)
+/* Prepares into FOLDER/kept; where it would write behind so many bytes of a file, it is killed by the system, or told. Its status. */
+static int prepare_limited(struct prep_case *c, const char *tags, size_t bytes, bool told)
 {
     char *program = prep_case_program(), *folder = temp_path(c->folder, "kept");
     int status;
@@ -206,14 +236,21 @@ static void prepare_killed_at(struct prep_case *c, const char *tags, size_t byte
         dup2(nothing, STDERR_FILENO);
         setrlimit(RLIMIT_CORE, &none);
         setrlimit(RLIMIT_FSIZE, &most);
+        signal(SIGXFSZ, told ? SIG_IGN : SIG_DFL);
         execl(program, program, c->plant, "--output", folder, (char *)NULL);
         _exit(127);
     }
     assert_true(pid > 0);
     assert_int_equal(waitpid(pid, &status, 0), pid);
-    assert_true(WIFSIGNALED(status) && WTERMSIG(status) == SIGXFSZ);
     mem_free(program);
     mem_free(folder);
+    return status;
+}
+
+static void prepare_killed_at(struct prep_case *c, const char *tags, size_t bytes)
+{
+    int status = prepare_limited(c, tags, bytes, false);
+    assert_true(WIFSIGNALED(status) && WTERMSIG(status) == SIGXFSZ);
 }
 
 static size_t bytes_of(const char *path)
@@ -260,12 +297,37 @@ static void killed_midway_it_goes_on(void **state)
     mem_free(folder);
 }
 
+/* A file that there is no room for is not begun: the old one stays, nothing lies about, and with room it is made. */
+static void without_room_the_old_file_stays(void **state)
+{
+    static const char tags[] = "a,,,,t,A,,1.3,0,0\nb,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,,0.1,-1.2,0\n";
+    struct prep_case *c = *state;
+    bool model_read;
+    json_t *first = prepare(c, first_tags, "kept", &model_read);
+    char *before = path_of(c, "kept", first), *columns = kept_file(c, ".columns");
+    char *drafts = mem_printf("ls '%s'/kept | grep -q asset.*new", c->folder);
+    size_t size = bytes_of(before);
+    assert_true(size / 2 > bytes_of(columns));
+    int status = prepare_limited(c, tags, size / 2, true);
+    assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 1);
+    assert_int_equal(bytes_of(before), size);
+    assert_int_not_equal(system(drafts), 0);
+    json_t *asset = prepare(c, tags, "kept", &model_read);
+    assert_as_fresh(c, tags, asset);
+    json_decref(asset);
+    json_decref(first);
+    mem_free(before);
+    mem_free(columns);
+    mem_free(drafts);
+}
+
 static void what_nothing_needs_any_more_is_removed(void **state)
 {
     struct prep_case *c = *state;
     bool model_read;
     json_decref(prepare(c, first_tags, "kept", &model_read));
     char *stock = kept_file(c, ".stock"), *surface = kept_file(c, ".surface"), *columns = kept_file(c, ".columns");
+    char *spots = kept_file(c, ".spots");
     char *other = mem_strdup(plant_text);
     memcpy(strstr(other, "up: z"), "up: y", 5);
     prep_case_plant(c, other);
@@ -274,6 +336,8 @@ static void what_nothing_needs_any_more_is_removed(void **state)
     assert_int_not_equal(access(stock, F_OK), 0);
     assert_int_not_equal(access(surface, F_OK), 0);
     assert_int_not_equal(access(columns, F_OK), 0);
+    assert_int_not_equal(access(spots, F_OK), 0);
+    mem_free(spots);
     mem_free(surface);
     mem_free(stock);
     mem_free(columns);
@@ -466,7 +530,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         WITH_PLANT(a_changed_sensor_costs_its_own_distances),
         WITH_PLANT(what_is_damaged_is_made_anew),
+        WITH_PLANT(points_are_found_once),
         WITH_PLANT(killed_midway_it_goes_on),
+        WITH_PLANT(without_room_the_old_file_stays),
         WITH_PLANT(what_nothing_needs_any_more_is_removed),
         WITH_PLANT(one_of_many_sensors_is_split_for_alone),
         cmocka_unit_test(a_surface_comes_back_whole),
