@@ -30,10 +30,11 @@ struct recolor_mixed {
 
 struct recolor_band { /* of rows; written by one worker */
     uint32_t (*triangles)[3]; /* vertices of the picture */
+    float (*corners)[4];      /* of what these carry now: the first corner's; by how much the second's is more, and the third's */
     struct recolor_part *parts;
     struct recolor_mixed *mixed;
     size_t triangle_count, part_count, mixed_count;
-    size_t triangle_capacity, part_capacity, mixed_capacity;
+    size_t triangle_capacity, corner_capacity, part_capacity, mixed_capacity;
 };
 
 struct recolor_mesh { /* an asset with a field */

@@ -22,21 +22,26 @@ static struct {
     struct snapshot *snapshot;
 } stand;
 
-/* A white picture with the mark of one tag in its middle. */
-static struct frame *draw(int tag, bool occluded, bool split)
+/* A white picture with the mark of one tag in its middle; right: of a split view, or NULL. */
+static struct frame *draw_beside(int tag, bool occluded, const struct view *right)
 {
     struct frame *frame = frame_create(WIDTH, HEIGHT);
-    struct view right;
     view_default(&stand.toy->scene, WIDTH, HEIGHT, &frame->view);
-    right = frame->view;
-    if (split)
-        view_split(&frame->view, &right);
+    if (right)
+        view_split(&frame->view, right);
     memset(frame->bgrx, 255, (size_t)frame->stride_bytes * HEIGHT);
     frame->markers = mem_array(1, sizeof(*frame->markers));
     frame->marker_count = 1;
     frame->markers[0] = (struct frame_marker){ .tag = tag, .x_px = 300, .y_px = 200, .occluded = occluded, .value = 1 };
     overlay_draw(frame, &stand.toy->scene, stand.snapshot, NULL);
     return frame;
+}
+
+static struct frame *draw(int tag, bool occluded, bool split)
+{
+    struct view same;
+    view_default(&stand.toy->scene, WIDTH, HEIGHT, &same);
+    return draw_beside(tag, occluded, split ? &same : NULL);
 }
 
 /* Of the left lower corner. */
@@ -113,9 +118,41 @@ static void the_window_is_what_is_left_free(void **state)
     assert_true(none.right == 1);
 }
 
+/* How much of a half's right rim is drawn over, halfway up. */
+static int legend_px(const struct frame *frame, int half)
+{
+    int count = 0;
+    for (int x = WIDTH / 2 * half + WIDTH * 3 / 8; x < WIDTH / 2 * (half + 1); x++)
+        count += frame->bgrx[HEIGHT / 2 * frame->stride_bytes + 4 * x + 1] != 255;
+    return count;
+}
+
+static void halves_share_a_legend_that_says_the_same(void **state)
+{
+    struct view right;
+    (void)state;
+    enum { SAME, DISTANCE, RANGE, MAP, LINES, LOOK, SHOWN, WAYS };
+    for (int way = 0; way < WAYS; way++) {
+        view_default(&stand.toy->scene, WIDTH, HEIGHT, &right);
+        right.field.interpolation = way == DISTANCE ? INTERPOLATION_PAPER : right.field.interpolation;
+        right.range_max += way == RANGE ? 10 : 0;
+        right.colormap += way == MAP;
+        right.paint.line_count = way == LINES;
+        right.paint.lines[0] = 50;
+        right.look = way == LOOK ? LOOK_MATERIALS : right.look;
+        right.field.show = way == SHOWN ? SHOW_DIFFERENCE : right.field.show;
+        struct frame *frame = draw_beside(0, false, &right);
+        bool shared = way == SAME || way == DISTANCE; /* another field, but the same colours for the same values */
+        if ((legend_px(frame, 0) > 20) == shared || (legend_px(frame, 1) > 20) != (way != LOOK))
+            fail_msg("way %d: %d pixels of the left half, %d of the right", way, legend_px(frame, 0), legend_px(frame, 1));
+        frame_unref(&frame);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(halves_share_a_legend_that_says_the_same),
         cmocka_unit_test(alarms_out_of_sight_are_listed),
         cmocka_unit_test(any_number_of_alarms_fits),
         cmocka_unit_test(the_window_is_what_is_left_free),

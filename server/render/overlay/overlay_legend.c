@@ -274,6 +274,42 @@ void overlay_legend(struct pen *pen)
     draw_rows(pen, &legend);
 }
 
+static bool say_the_same(const struct legend *a, const struct legend *b)
+{
+    bool same = !strcmp(a->title, b->title) && !strcmp(a->above, b->above) && !strcmp(a->below, b->below) &&
+                a->row_count == b->row_count && a->note_count == b->note_count;
+    for (int i = 0; same && i < a->row_count; i++)
+        same = a->rows[i] == b->rows[i];
+    for (int i = 0; same && i < a->note_count; i++)
+        same = !strcmp(a->notes[i], b->notes[i]);
+    return same;
+}
+
+static bool are_the_same(const struct scale *a, const struct scale *b)
+{
+    return a->map == b->map && a->min == b->min && a->max == b->max && a->log == b->log && a->interval == b->interval &&
+           a->break_count == b->break_count && !memcmp(a->breaks, b->breaks, (size_t)a->break_count * sizeof(*a->breaks));
+}
+
+bool overlay_legend_is_shared(struct pen *pen)
+{
+    struct legend legends[2] = { { .note_count = 0 } };
+    struct scale scales[2];
+    struct view left = { 0 };
+    for (int half = 0; half < 2; half++) {
+        if (half)
+            left = pen->view;
+        pen_choose_half(pen, half);
+        write_words(pen, &legends[half]);
+        view_scale(&pen->view, &scales[half]);
+    }
+    const struct view *right = &pen->view;
+    const struct paint *a = &left.paint, *b = &right->paint;
+    return left.look != LOOK_MATERIALS && right->look != LOOK_MATERIALS && left.field.group == right->field.group &&
+           left.field.show == right->field.show && say_the_same(&legends[0], &legends[1]) && are_the_same(&scales[0], &scales[1]) &&
+           a->line_count == b->line_count && !memcmp(a->lines, b->lines, (size_t)a->line_count * sizeof(*a->lines));
+}
+
 double overlay_legend_width(struct pen *pen)
 {
     struct legend legend = { .note_count = 0 };

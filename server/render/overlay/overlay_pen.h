@@ -48,6 +48,7 @@ void overlay_bar(struct pen *pen, const struct box *bar);
 double overlay_bar_width(struct pen *pen); /* with all that is written beside it */
 double overlay_bar_left(struct pen *pen);  /* of which before the bar itself */
 void overlay_legend(struct pen *pen);
+bool overlay_legend_is_shared(struct pen *pen); /* of a split view: both halves' say the same. Chooses the right half */
 double overlay_legend_width(struct pen *pen); /* what it takes of the area, with its margins */
 /* A mark's outline: broken where its tag is unproven. */
 void overlay_outline(struct pen *pen, double x, double y, double radius, bool broken);
