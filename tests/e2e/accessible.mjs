@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { after, before, test } from 'node:test';
-import { openPage, PHONE, shoot, TABLET, waitForPicture } from './support/browser.mjs';
+import { drawnAt, openPage, PHONE, shoot, TABLET, waitForPicture } from './support/browser.mjs';
 import { everyPanel, startAlarmed } from './support/panels.mjs';
 import { missing } from './support/tiny_plant.mjs';
 
@@ -75,7 +75,7 @@ async function lookAtTools(look) {
     await page.locator('.measuring').waitFor();
     for (const place of [[0, -0.5, 0.2], [0, -0.5, -0.2]]) {
         const count = await page.evaluate(() => document.querySelectorAll('.measure .end').length);
-        const { x, y } = await page.evaluate((at) => globalThis.plantcast.overlay.pageOf(at), place);
+        const { x, y } = await drawnAt(page, place);
         await page.mouse.click(x, y);
         await page.waitForFunction((n) => document.querySelectorAll('.measure .end').length > n, count);
     }

@@ -85,18 +85,37 @@ test('an acknowledgement is done once, for everybody', options, async () => {
         await waitForPicture(other.page);
         const id = await page.evaluate((hot) => globalThis.plantcast.session.model.alarms.list().find(({ tag, kind }) => tag.name === hot &&
             kind === 'HH').id, HOT);
-        await page.locator(`li[data-alarm="${id}"] button[data-action="acknowledge"]`).click();
+        await page.locator(`li[data-alarm="${id}"] button[data-action="acknowledge"]`).focus();
+        await page.keyboard.press('Enter');
         await other.page.waitForFunction(
             (alarm) => globalThis.plantcast.session.model.alarms.rows.get(alarm)?.state === 'acknowledged', id);
         await page.waitForFunction((alarm) => globalThis.plantcast.session.model.alarms.rows.get(alarm)?.state === 'acknowledged', id);
         assert.ok(await other.page.locator('#alarm-strip').isVisible(), 'on a wall too');
         assert.match(await page.locator(`li[data-alarm="${id}"]`).textContent(), /Acknowledged.*by local/s);
         assert.equal(await page.locator(`li[data-alarm="${id}"] button[data-action="acknowledge"]`).count(), 0);
+        assert.equal(await page.evaluate(() => document.activeElement.closest('li')?.dataset.alarm), id, 'the keyboard stays there');
         await shoot(other.page, 'alarms-wall');
         assert.deepEqual(other.errors, []);
     } finally {
         await other.close();
     }
+});
+
+test('a row under the hand stays while others come, and can be pressed', options, async () => {
+    const { name, limits } = tags.find(({ group, limits: of, name: is }) => group === 'temperature' && of.HH !== null && is !== HOT);
+    const row = page.locator('#alarms-list li', { hasText: HOT }).first(), held = await row.elementHandle();
+    const box = await row.locator('button[data-action="shelve"]').boundingBox();
+    await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+    await page.mouse.down();
+    await plant.ask(`set ${name} ${limits.H + 0.1}`);
+    await page.locator('#alarms-list li', { hasText: `${name} High,` }).waitFor({ timeout: 30000 });
+    assert.ok(await held.evaluate((li) => li.isConnected), 'it is the same');
+    const now = await row.locator('button[data-action="shelve"]').boundingBox();
+    await page.mouse.move(now.x + now.width / 2, now.y + now.height / 2);
+    await page.mouse.up();
+    await page.locator('#shelve[open]').waitFor();
+    await page.locator('#shelve-cancel').click();
+    await plant.ask(`set ${name} ${((limits.L ?? 0) + limits.H) / 2}`);
 });
 
 test('a shelf needs a reason, and keeps the alarm from being seen', options, async () => {

@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { openPage, settle, shoot, view, waitForPicture } from './support/browser.mjs';
+import { drawnAt, openPage, settle, shoot, view, waitForPicture } from './support/browser.mjs';
 import { missing, TinyPlant } from './support/tiny_plant.mjs';
 
 const absent = missing();
@@ -90,10 +90,11 @@ test('a click selects and flies there; what is known of it and its links are sho
 });
 
 test('what is picked in 3D is selected there, a marker with its tag', options, async () => {
-    const [box, marker] = await page.evaluate(() => {
-        const { overlay, session: { model } } = globalThis.plantcast, { min, max } = model.asset('E-137').bounds;
-        return [overlay.pageOf([(min[0] + max[0]) / 2, (min[1] + max[1]) / 2, max[2]]), overlay.pageOf(model.tag('TI-137-0').position)];
+    const places = await page.evaluate(() => {
+        const { model } = globalThis.plantcast.session, { min, max } = model.asset('E-137').bounds;
+        return [[(min[0] + max[0]) / 2, (min[1] + max[1]) / 2, max[2]], model.tag('TI-137-0').position];
     });
+    const [box, marker] = await Promise.all(places.map((place) => drawnAt(page, place)));
     await page.evaluate(() => globalThis.plantcast.session.setParams({ selected: null }));
     await page.mouse.click(box.x, box.y);
     await page.waitForFunction(() => globalThis.plantcast.session.params.selected === 'E-137');
@@ -110,7 +111,7 @@ test('by the keyboard alone', options, async () => {
     await page.keyboard.press('Tab');
     await page.keyboard.press('Home');
     const at = () => page.evaluate(() => document.activeElement.textContent);
-    assert.equal(await at(), 'Unit 029');
+    await page.waitForFunction(() => document.activeElement.textContent === 'Unit 029');
     await page.keyboard.press('ArrowLeft');
     assert.equal(await page.evaluate(() => document.activeElement.getAttribute('aria-expanded')), 'false');
     await page.keyboard.press('ArrowDown');

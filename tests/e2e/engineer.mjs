@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { chmodSync, existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { DESKTOP, openPage, settle, shoot, TABLET, waitForPicture } from './support/browser.mjs';
+import { DESKTOP, drawnAt, openPage, settle, shoot, TABLET, waitForPicture } from './support/browser.mjs';
 import { missing, TinyPlant } from './support/tiny_plant.mjs';
 
 const absent = missing();
@@ -50,7 +50,7 @@ const text = (selector, on = page) => on.locator(selector).textContent();
 const says = (selector, pattern, on = page) => on.waitForFunction(
     ([where, what]) => new RegExp(what).test(document.querySelector(where)?.textContent ?? ''), [selector, pattern], { timeout: 60000 });
 // In the page, where a place of the plant is.
-const at = (place, on = page) => on.evaluate((point) => globalThis.plantcast.overlay.pageOf(point), place);
+const at = (place, on = page) => drawnAt(on, place);
 const moved = (on = page) => on.evaluate(() => [...globalThis.plantcast.session.model.placed.values()][0]?.position ?? null);
 const button = (name, on = page) => on.locator('#engineer').getByRole('button', { name, exact: true });
 

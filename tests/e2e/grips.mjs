@@ -2,7 +2,7 @@
 // What is cut away, by hand: arrows on the plane, on the sides of the box and for all of it, in both halves, for mouse, keys and finger.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
-import { openPage, settle, shoot, TABLET, waitForPicture } from './support/browser.mjs';
+import { drawnAt, openPage, settle, shoot, TABLET, waitForPicture } from './support/browser.mjs';
 import { missing, TinyPlant } from './support/tiny_plant.mjs';
 
 const absent = missing();
@@ -39,11 +39,11 @@ const gripAt = async (on, id) => {
 test('a plane is dragged by its arrow: it goes where the hand goes, and the camera stays', options, async () => {
     await setClip(page, { planes: [[1, 0, 0, 0.1]] });
     const camera = await readCamera(page), [x, y] = await gripAt(page, 'plane0');
-    const to = await page.evaluate(async () => { // where the grip will be half a metre on
+    const to = await drawnAt(page, await page.evaluate(async () => { // where the grip will be half a metre on
         const { spotsOf } = await import('/core/grips.js'), { grip, spot } = document.querySelector('.grip');
         const [px, py, pz] = spotsOf(grip)[spot.number];
-        return globalThis.plantcast.overlay.pageOf([px + 0.5, py, pz]);
-    });
+        return [px + 0.5, py, pz];
+    }));
     await page.mouse.move(x, y);
     await page.mouse.down();
     await page.mouse.move((x + to.x) / 2, (y + to.y) / 2);

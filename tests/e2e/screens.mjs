@@ -167,7 +167,7 @@ test('phone: choose equipment from the list, fly there, tap a sensor', options, 
     const row = page.locator('.asset', { hasText: 'sensors' }).first();
     await shoot(page, 'phone-list');
     await row.tap();
-    assert.equal(await page.locator('#assets').isVisible(), false, 'the list gives way');
+    await page.locator('#assets').waitFor({ state: 'hidden' }); // the list gives way
     await page.waitForTimeout(1000);
     await settle(page);
     const selected = (await view(page)).params.selected;

@@ -80,6 +80,20 @@ test('a click on a marker leads to its trend, with unit and gap', options, async
         return blue;
     });
     assert.ok(ink > 300, `a line of ${ink} pixels`);
+    const names = await page.evaluate(() => { // what is written in the chart, and where
+        const { chart } = globalThis.plantcast.trends, { prototype } = CanvasRenderingContext2D, { fillText } = prototype, found = {};
+        prototype.fillText = function write(words, x, y) {
+            found[words] = { y, inside: x >= chart.bbox.left && x < chart.bbox.left + chart.bbox.width };
+            fillText.call(this, words, x, y);
+        };
+        chart.redraw(false);
+        return new Promise((done) => requestAnimationFrame(() => {
+            prototype.fillText = fillText;
+            done(['H 90', 'HH 95'].map((words) => found[words]?.inside &&
+                Math.abs(found[words].y - chart.valToPos(Number(words.split(' ')[1]), '°C', true))));
+        }));
+    });
+    assert.ok(names.every((away) => away < 8), `each limit's name stands at its line: ${names}`);
     await settle(page);
     await shoot(page, 'trend');
 });
@@ -185,7 +199,7 @@ test('a click into a trend goes there; a link to an instant opens there; a reloa
     await waitForPicture(other.page);
     const first = await shown(other.page);
     assert.deepEqual([first.past, first.dataTimeUs], [true, (BEGIN_S + 600) * 1e6]);
-    assert.equal(await other.page.locator('#timeline').isVisible(), true);
+    await other.page.locator('#timeline').waitFor();
     await settle(other.page);
     await shoot(other.page, 'past-tablet');
     assert.deepEqual(other.errors, []);

@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
 import jsqr from 'jsqr';
-import { grab, openPage, PHONE, readPng, settle, shoot, view, waitForHealth, waitForPicture } from './support/browser.mjs';
+import { drawnAt, grab, openPage, PHONE, readPng, settle, shoot, TABLET, view, waitForHealth, waitForPicture } from './support/browser.mjs';
 import { contrast, deltaE } from './support/pixels.mjs';
 import { missing, TinyPlant } from './support/tiny_plant.mjs';
 
@@ -31,7 +31,7 @@ after(async () => {
 });
 
 // CSS pixels in the page of a place of the plant.
-const placeOf = (point) => page.evaluate((at) => globalThis.plantcast.overlay.pageOf(at), point);
+const placeOf = (point) => drawnAt(page, point);
 
 test('values stand still, and go on again', options, async () => {
     await page.waitForFunction(() => globalThis.plantcast.session.model.readings[0].value === 80);
@@ -79,6 +79,50 @@ test('a distance between two places', options, async () => {
     await page.keyboard.press('Escape');
     assert.equal(await page.locator('#measured').isVisible(), false);
     assert.equal(await page.locator('#card').isVisible(), false, 'a click that measures selects nothing');
+});
+
+test('on a tablet held upright: what is behind More, by taps', options, async () => {
+    const tablet = await openPage(url, { ...TABLET, viewport: { width: 768, height: 1024 } }), on = tablet.page;
+    const tool = async (id) => {
+        await on.locator('#more-toggle').tap();
+        await on.locator(`#more #${id}`).tap();
+    };
+    try {
+        await waitForPicture(on);
+        await on.evaluate(() => {
+            globalThis.plantcast.session.setCamera({ eye: [0.8, -4, 1], target: [0, 0, 0], up: [0, 0, 1], fov: 30 });
+            globalThis.plantcast.viewport.invalidate();
+        });
+        await settle(on);
+        await tool('measure');
+        await on.locator('.measuring').waitFor();
+        for (const [i, end] of [[0, -0.5, 0.2], [0, -0.5, -0.2]].entries()) {
+            const { x, y } = await drawnAt(on, end);
+            await on.touchscreen.tap(x, y);
+            await on.waitForFunction((words) => document.querySelector('.measuring').textContent.includes(words),
+                ['second place', 'measure again'][i]);
+        }
+        assert.ok(Math.abs(parseFloat(await on.locator('#measured').textContent()) - 0.4) < 0.02);
+        await shoot(on, 'tablet-measure');
+        await on.locator('.measuring button').tap();
+        await on.locator('.measuring').waitFor({ state: 'hidden' });
+        await tool('share-open');
+        await on.locator('#share-code svg').waitFor();
+        assert.ok((await scan(on)).startsWith(url));
+        await shoot(on, 'tablet-share');
+        await on.locator('#share .icon').tap();
+        const download = on.waitForEvent('download');
+        await tool('snapshot');
+        assert.match((await download).suggestedFilename(), /\.png$/);
+        await tool('theme');
+        await on.waitForFunction(() => document.documentElement.dataset.theme === 'dark');
+        await tool('help-open');
+        await on.locator('#help[open]').waitFor();
+        await shoot(on, 'tablet-help');
+        assert.deepEqual(tablet.errors, []);
+    } finally {
+        await tablet.close();
+    }
 });
 
 test('a pen turns the picture, and the measurements say how soon it did', options, async () => {
@@ -135,7 +179,7 @@ test('an engineer sets range, factors and one sensor\'s own, and has them as con
         await page.locator(id).fill(text);
         await page.locator(id).blur();
     };
-    await page.evaluate(() => globalThis.plantcast.assets.onTag(globalThis.plantcast.session.model.tag('TI-1')));
+    await page.evaluate(() => globalThis.plantcast.showTag(globalThis.plantcast.session.model.tag('TI-1')));
     await page.locator('#picture-toggle').click();
     await page.locator('#own-factors').waitFor();
     await write('#range-max', '60');
@@ -161,7 +205,7 @@ test('an engineer sets range, factors and one sensor\'s own, and has them as con
 
 test('links to the view, the tag and the equipment, each with a code that a camera reads', options, async () => {
     await page.evaluate(() => globalThis.plantcast.session.setParams({ selected: 'E-101', colormap: 'cividis', range: [0, 120] }));
-    await page.evaluate(() => globalThis.plantcast.assets.onTag(globalThis.plantcast.session.model.tag('TI-1')));
+    await page.evaluate(() => globalThis.plantcast.showTag(globalThis.plantcast.session.model.tag('TI-1')));
     await page.locator('#share-open').click();
     await page.locator('#share-code svg').waitFor();
     const links = {};
@@ -177,6 +221,7 @@ test('links to the view, the tag and the equipment, each with a code that a came
     assert.match(links['This view'], /colormap=cividis.*range=0,120.*camera=/);
     assert.match(await page.locator('#share-note').textContent(), /this machine only/);
     await shoot(page, 'share');
+    assert.match(await page.locator('#share-people').textContent(), /Nobody follows this view, of session \d+\./);
     await page.locator('#share .icon').click();
     const asked = await view(page);
     const other = await openPage(links['This view'], SCREEN);
@@ -229,7 +274,10 @@ test('what the server refuses is said in the reader\'s language', options, async
     await waitForPicture(other.page);
     await other.page.evaluate(() => globalThis.plantcast.session.setParams({ strength: 500 }));
     await other.page.locator('#toast', { hasText: '서버가 거부했습니다: 0–100 범위의 수가 필요합니다' }).waitFor();
-    await other.page.evaluate(() => globalThis.plantcast.session.fit({ side: 'inside out' }));
+    await other.page.evaluate(async () => {
+        const { askFit } = await import('/core/requests.js');
+        askFit(globalThis.plantcast.session, { side: 'inside out' });
+    });
     await other.page.locator('#toast', { hasText: '서버가 거부했습니다: 영어로 “side:' }).waitFor();
     await shoot(other.page, 'refused-ko');
     await other.close();

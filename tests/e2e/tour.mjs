@@ -5,7 +5,7 @@ import assert from 'node:assert/strict';
 import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { openPage, SCREENSHOTS, settle, waitForHealth, waitForPicture } from './support/browser.mjs';
+import { arrive, openPage, SCREENSHOTS, settle, waitForHealth, waitForPicture } from './support/browser.mjs';
 import { missing, startPlant } from './support/plant.mjs';
 import { runProgram } from './support/tiny_plant.mjs';
 
@@ -44,6 +44,7 @@ after(async () => {
 });
 
 async function keep(name) {
+    await arrive(page);
     mkdirSync(SCREENSHOTS, { recursive: true });
     await page.screenshot({ path: join(SCREENSHOTS, `tour-${name}.jpg`), type: 'jpeg', quality: 62 });
 }

@@ -112,6 +112,45 @@ test('a tablet that slept knows that its picture is old, until the server speaks
         assert.equal(await page.locator('#banner').isVisible(), false);
     }));
 
+test('a tablet whose date is wrong tells ages and the plant\'s time all the same', options, () =>
+    withPage(url, TABLET, async (page) => {
+        await waitForHealth(page, 'live');
+        const far = () => page.evaluate(() => Date.now() - globalThis.plantcast.session.clockUs() / 1000);
+        assert.ok(await far() < -3 * 86400e3 + 60000, 'its date is wrong');
+        const told = () => page.evaluate(() => ({ clock: document.getElementById('clock').textContent,
+            age: document.getElementById('age').textContent, health: document.getElementById('health').dataset.kind }));
+        const ages = await page.evaluate(() => new Promise((done) => { // also while somebody sets it back: forth it would be a sleep
+            const seen = [], timer = setInterval(() => {
+                seen.push(document.getElementById('age').textContent);
+                globalThis.wrongMs -= 3600e3;
+                if (seen.length > 20) {
+                    clearInterval(timer);
+                    done(seen);
+                }
+            }, 150);
+        }));
+        assert.deepEqual(ages.filter((age) => !/^[\d.]+ s$/.test(age)), [], 'seconds old, and never days');
+        const { clock, age, health } = await told(), now = new Date();
+        assert.match(age, /^[\d.]+ s$/);
+        assert.ok(parseFloat(age) < 10, age);
+        assert.ok([0, 1000, 2000, 3000, 4000, 5000, 6000, 7000, 8000].some((ms) =>
+            clock.includes(new Date(now.getTime() - ms).toISOString().slice(11, 19))), `${clock} is not ${now.toISOString()}`);
+        assert.equal(health, 'live');
+        await shoot(page, 'wrong-date');
+    }, () => {
+        const Real = Date;
+        globalThis.wrongMs = -3 * 86400e3;
+        globalThis.Date = class extends Real {
+            constructor(...given) {
+                super(...(given.length > 0 ? given : [Real.now() + globalThis.wrongMs]));
+            }
+
+            static now() {
+                return Real.now() + globalThis.wrongMs;
+            }
+        };
+    }));
+
 // Of the picture as it is on the screen: colours of places of a grid.
 const samples = (page) => page.evaluate(() => {
     const canvas = document.getElementById('picture'), c = canvas.getContext('2d');

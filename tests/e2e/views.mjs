@@ -2,7 +2,7 @@
 // Views in the browser: standard views, the parallel projection, a cut, equipment hidden and shown, and what is at a place.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
-import { openPage, settle, shoot, view, waitForHealth, waitForPicture } from './support/browser.mjs';
+import { drawnAt, openPage, settle, shoot, view, waitForHealth, waitForPicture } from './support/browser.mjs';
 import { missing, startPlant } from './support/plant.mjs';
 
 const why = missing();
@@ -13,7 +13,7 @@ before(async () => {
     if (why)
         return;
     plant = await startPlant();
-    browser = await openPage(plant.url, { viewport: { width: 1440, height: 900 } });
+    browser = await openPage(plant.url, { viewport: { width: 1200, height: 720 } });
     page = browser.page;
     await waitForPicture(page);
     await waitForHealth(page, 'live');
@@ -24,22 +24,27 @@ after(async () => {
     await plant?.stop();
 });
 
-const arrive = async () => {
-    await page.waitForTimeout(1200); // flights
+// Until the camera is what is asked for, and nothing flies any more.
+const arrive = async (is, what) => {
+    await page.waitForFunction(is, what, { timeout: 60000 });
+    await page.waitForFunction(() => !globalThis.plantcast.pilot.fly);
     await settle(page);
 };
+// Until the page has it as f says.
+const waitFor = (f, what) => page.waitForFunction(f, what, { timeout: 60000 });
 
 // A place in the page where equipment with a field is and no marker.
-const middleOf = (id) => page.evaluate((asset) => {
-    const { session } = globalThis.plantcast;
-    const { min, max } = session.model.asset(asset).bounds;
-    return globalThis.plantcast.overlay.pageOf(min.map((m, i) => (m + max[i]) / 2));
-}, id);
+const middleOf = async (id) => drawnAt(page, await page.evaluate((asset) => {
+    const { min, max } = globalThis.plantcast.session.model.asset(asset).bounds;
+    return min.map((m, i) => (m + max[i]) / 2);
+}, id));
 
 test('a click tells what is there, and goes on telling it', options, async () => {
     await page.evaluate(() => globalThis.plantcast.session.setParams({ selected: 'TK-101' }));
+    await page.evaluate(() => globalThis.plantcast.parts.get('pilot'));
+    const before = (await view(page)).camera.eye;
     await page.keyboard.press('f');
-    await arrive();
+    await arrive((eye) => globalThis.plantcast.session.camera.eye.some((m, i) => m !== eye[i]), before);
     const at = await middleOf('TK-101');
     await page.mouse.click(at.x + 7, at.y + 7);
     await page.locator('#place').waitFor();
@@ -61,7 +66,10 @@ test('standard views and the parallel projection', options, async () => {
     await page.evaluate(() => globalThis.plantcast.session.setParams({ selected: null }));
     await page.keyboard.press('o');
     await page.keyboard.press('t');
-    await arrive();
+    await arrive(() => {
+        const { eye, target, height_m: high } = globalThis.plantcast.session.camera;
+        return high && Math.abs(eye[0] - target[0]) < 1 && eye[2] > target[2] + 20;
+    });
     const { camera } = await view(page);
     assert.ok(camera.height_m > 20 && camera.height_m < 200, `${camera.height_m} m`);
     assert.ok(camera.eye[2] > camera.target[2] + 20 && Math.abs(camera.eye[0] - camera.target[0]) < 1);
@@ -69,37 +77,36 @@ test('standard views and the parallel projection', options, async () => {
     await shoot(page, 'plan');
     await page.keyboard.press('o');
     await page.keyboard.press('h');
-    await arrive();
+    await arrive(() => globalThis.plantcast.session.camera.height_m === undefined);
     assert.equal((await view(page)).camera.height_m, undefined);
 });
 
 test('a cut, ghosts and hidden equipment', options, async () => {
     await page.keyboard.press('v');
     await page.locator('#cut label', { hasText: 'Y' }).click();
-    await settle(page);
-    const { params } = await view(page);
-    assert.equal(params.clip.planes.length, 1);
-    assert.equal(params.clip.planes[0][1], 1);
+    await waitFor(() => globalThis.plantcast.session.confirmed.clip?.planes?.length === 1);
+    const { clip } = (await view(page)).params;
+    assert.equal(clip.planes[0][1], 1);
     await page.locator('#cut-at').fill('190');
-    await page.waitForTimeout(300);
+    await waitFor((before) => globalThis.plantcast.session.confirmed.clip.planes[0][3] !== before, clip.planes[0][3]);
     await settle(page);
-    assert.notDeepEqual((await view(page)).params.clip, params.clip);
     const [legend, panel] = await Promise.all(['#legend', '#views'].map((id) => page.locator(id).boundingBox()));
     assert.ok(legend.x + legend.width <= panel.x, 'the legend is read beside the panel');
     await shoot(page, 'cut');
     await page.locator('#cut label', { hasText: 'Off' }).click();
     await page.evaluate(() => globalThis.plantcast.session.setParams({ selected: 'T-101' }));
+    const waitForShown = (ghost, hidden) => waitFor((lists) => {
+        const { confirmed } = globalThis.plantcast.session;
+        return JSON.stringify([confirmed.ghost, confirmed.hidden]) === JSON.stringify(lists);
+    }, [ghost, hidden]);
     await page.locator('#shows button', { hasText: 'Ghost' }).click();
+    await waitForShown(['T-101'], []);
     await settle(page);
-    assert.deepEqual((await view(page)).params.ghost, ['T-101']);
     await shoot(page, 'ghost');
     await page.locator('#shows button', { hasText: 'Hide' }).click();
-    await settle(page);
-    assert.deepEqual((await view(page)).params.hidden, ['T-101']);
-    const marked = await page.evaluate(() => globalThis.plantcast.overlay.markers.filter(({ tag }) => tag.asset === 'T-101').length);
-    assert.equal(marked, 0, 'no markers on what is hidden');
+    await waitForShown([], ['T-101']);
+    await waitFor(() => !globalThis.plantcast.overlay.markers.some(({ tag }) => tag.asset === 'T-101')); // nothing marks what is hidden
     await page.locator('#show-all').click();
-    await settle(page);
-    assert.deepEqual((await view(page)).params.hidden, []);
+    await waitForShown([], []);
     assert.deepEqual(browser.errors, []);
 });

@@ -4,16 +4,18 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { readAddress, writeAddress } from '../../clients/web/core/address.js';
 import {
-    ageText, changeText, decimalsFor, numberText, qualityText, shortNumberText, unitText, worst, zoneClock,
+    ageText, changeText, decimalsFor, numberText, shortNumberText, unitText, worst, zoneClock,
 } from '../../clients/web/core/format.js';
-import { nearestMarker } from '../../clients/web/core/labels.js';
-import { halfAt, halves } from '../../clients/web/core/halves.js';
+import { halfAt, nearestMarker } from '../../clients/web/core/nearest.js';
+import { halves } from '../../clients/web/core/halves.js';
 import {
     colourOf, edges, niceStep, placeOf, rampChoices, scaleTicks, spread, ticks, valueAt,
 } from '../../clients/web/core/legend.js';
+import { statusText } from '../../clients/web/core/quality.js';
 import { snapshotQuery } from '../../clients/web/core/query.js';
 import { hatchAt, patternPeriodPx, stippleAt } from '../../clients/web/core/patterns.js';
 import { LatencyMeter, RateMeter } from '../../clients/web/core/meters.js';
+import { learnWords } from '../../clients/web/core/words.js';
 
 test('decimals follow the range, zero has no minus, what is missing is a dash', () => {
     assert.deepEqual([1000, 160, 16, 5, 0.02, 0, NaN].map(decimalsFor), [0, 1, 2, 2, 5, 2, 2]);
@@ -46,10 +48,11 @@ test('the plant clock is in the plant\'s zone and says the offset, winter and su
     assert.deepEqual(nowhere, { date: 'Jan 1, 2026', day: 'Jan 1', time: '00:00:00', offset: 'UTC' });
 });
 
-test('qualities in words', () => {
-    assert.equal(qualityText('good', 'Good'), 'Good');
-    assert.equal(qualityText('bad', 'Bad_WaitingForInitialData'), 'Bad: waiting for initial data');
-    assert.equal(qualityText('uncertain', 'Uncertain_NoCommunicationLastUsableValue'), 'Uncertain: no communication last usable value');
+test('qualities in words', async () => {
+    await learnWords();
+    assert.equal(statusText('good', 'Good'), 'Good');
+    assert.equal(statusText('bad', 'Bad_WaitingForInitialData'), 'Bad: waiting for initial data');
+    assert.equal(statusText('uncertain', 'Uncertain_NoCommunicationLastUsableValue'), 'Uncertain: no communication last usable value');
     assert.equal(worst(['good', 'uncertain', 'good']), 'uncertain');
     assert.equal(worst([]), null);
 });

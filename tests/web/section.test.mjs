@@ -2,7 +2,16 @@
 // What is cut away, hidden and shown alone: to the parameters and back.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { assetLook, AXES, boxAround, cut, readBox, readCut, showAll, showAsset } from '../../clients/web/core/section.js';
+import { AXES, boxAround, cut, readBox, readCut, showAll, showAsset } from '../../clients/web/core/section.js';
+
+// shown, ghost or hidden, by the server's rule.
+function assetLook({ hidden = [], ghost = [], isolate = [] }, id) {
+    if (hidden.includes(id))
+        return 'hidden';
+    if (ghost.includes(id))
+        return 'ghost';
+    return isolate.length > 0 && !isolate.includes(id) ? 'hidden' : 'shown';
+}
 
 test('a cut comes back as it was made', () => {
     for (const axis of AXES) {

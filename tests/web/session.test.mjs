@@ -2,8 +2,10 @@
 // The conversation with the server: what is said first, what is said again, what is ignored.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
+import { actionsFor, asideOf } from '../../clients/web/core/acting.js';
 import { health } from '../../clients/web/core/health.js';
 import { orbit } from '../../clients/web/core/moves.js';
+import { actOnAlarm, giveLead } from '../../clients/web/core/requests.js';
 import { kbitPerS, timingOf } from '../../clients/web/core/timings.js';
 import { makeSession, vector, vectorBytes } from './fixtures.mjs';
 
@@ -104,7 +106,7 @@ test('who leads knows who follows, and gives the lead to one of them', () => {
     session.on('followers', () => heard.push(session.followers));
     socket.say({ type: 'followers', count: 2, sessions: [7, 9] });
     assert.deepEqual(heard, [{ count: 2, sessions: [7, 9] }]);
-    session.lead(9);
+    giveLead(session, 9);
     assert.deepEqual(last(socket.sent), { type: 'lead', session: 9 });
 });
 
@@ -445,19 +447,19 @@ test('alarms: the gravest of a tag, and what is to be done first', () => {
     assert.deepEqual([alarms.mode, alarms.known], ['local', true]);
     assert.deepEqual(alarms.list().map(({ tag, kind, state }) => [tag.index, kind, state]),
         [[0, 'HH', 'unacknowledged'], [1, 'BAD', 'returned']]);
-    assert.deepEqual(alarms.aside().map(({ kind, who, reason }) => [kind, who, reason]),
+    assert.deepEqual(asideOf(alarms).map(({ kind, who, reason }) => [kind, who, reason]),
         [['H', 'Kim (local)', 'transmitter is being changed']]);
     assert.equal(alarms.gravest(0).kind, 'HH');
     assert.deepEqual(alarms.counts(), { all: 2, waiting: 2, of: [0, 1, 0, 1] });
-    assert.deepEqual(alarms.actions(alarms.list()[0], 'operator'), ['acknowledge', 'shelve']);
-    assert.deepEqual(alarms.actions(alarms.list()[0], 'viewer'), [], 'the role does not allow it');
+    assert.deepEqual(actionsFor(alarms.list()[0], alarms.mode, 'operator'), ['acknowledge', 'shelve']);
+    assert.deepEqual(actionsFor(alarms.list()[0], alarms.mode, 'viewer'), [], 'the role does not allow it');
     socket.say(vector('server/alarms-changed.json'));
     assert.deepEqual(alarms.list().map(({ tag, kind }) => [tag.index, kind]), [[1, 'BAD'], [1, 'L']], 'what nobody has seen comes first');
     assert.equal(alarms.gravest(0), null, 'normal again, or set aside');
     assert.equal(model.worstAlarm({ tags: [model.tags[0], model.tags[1]] }).kind, 'L');
     socket.say({ ...vector('server/alarms.json'), mode: 'display' });
-    assert.deepEqual(alarms.actions(alarms.list()[0], 'engineer'), [], 'the control system has its own');
-    session.actOnAlarm('acknowledge', [['TT-101', 'HH']]);
+    assert.deepEqual(actionsFor(alarms.list()[0], alarms.mode, 'engineer'), [], 'the control system has its own');
+    actOnAlarm(session, 'acknowledge', [['TT-101', 'HH']]);
     assert.deepEqual(socket.sent.at(-1), { type: 'alarm', seq: 1, action: 'acknowledge', alarms: [['TT-101', 'HH']] });
 });
 
@@ -467,7 +469,7 @@ test('alarms: a lost device is one, and of no tag', () => {
     socket.say(vector('server/alarms-device.json'));
     assert.deepEqual(alarms.list().map(({ tag, kind }) => [tag.name, tag.index, kind]), [['plc1', null, 'LINK']]);
     assert.deepEqual(alarms.counts(), { all: 1, waiting: 1, of: [0, 0, 1, 0] });
-    assert.deepEqual(alarms.aside().map(({ tag, kind, state, reason }) => [tag.index, kind, state, reason]),
+    assert.deepEqual(asideOf(alarms).map(({ tag, kind, state, reason }) => [tag.index, kind, state, reason]),
         [[0, 'BAD', 'suppressed', ''], [1, 'BAD', 'suppressed', '']]);
     assert.equal(alarms.gravest(0), null);
     socket.say({ type: 'alarms', mode: 'local', all: false, time_us: 2, alarms: [['plc1', 'LINK', 'normal']] });

@@ -3,6 +3,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { sunOf, sunText, towardsSun } from '../../clients/web/core/sun.js';
+import { learnWords } from '../../clients/web/core/words.js';
 
 test('a sun comes back as it was put, in either kind of plant frame', () => {
     for (const isYUp of [false, true]) {
@@ -19,7 +20,8 @@ test('north is y, or -z where y is up; east is x', () => {
     near(towardsSun({ turn: 180, height: 90 }, true), [0, 1, 0]);
 });
 
-test('in words', () => {
+test('in words', async () => {
+    await learnWords();
     assert.equal(sunText({ turn: 225, height: 45 }), 'from SW, 45° high');
     assert.equal(sunText({ turn: 350, height: 5 }), 'from N, 5° high');
 });

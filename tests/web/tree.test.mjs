@@ -3,6 +3,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { linkUrl } from '../../clients/web/core/references.js';
+import { search } from '../../clients/web/core/search.js';
 import { Tree } from '../../clients/web/core/tree.js';
 import { rowAt, rowsInSight, scrollTo, stack } from '../../clients/web/core/window.js';
 
@@ -32,12 +33,13 @@ test('areas in the order of their numbers, then what has none, then tags of noth
 
 test('a search finds assets by all that is said of them, and tags, which open what they belong to', () => {
     const tree = new Tree(plant(), 'Loose');
-    assert.deepEqual(shown(tree.rows('DRUM')), ['1 area Unit 10', '2 asset V-3']);
+    assert.deepEqual(shown(tree.rows(search('DRUM'))), ['1 area Unit 10', '2 asset V-3']);
     const both = ['1 area Unit 9', '2 asset P-2', '3 tag PI-9', '1 area Unit 10', '2 asset E-1', '3 tag TI-1'];
-    assert.deepEqual(shown(tree.rows('inlet')), both);
-    assert.deepEqual(shown(tree.rows('exchanger outlet')), ['1 area Unit 10', '2 asset E-1', '3 tag TI-2'], 'words of both');
-    assert.deepEqual(shown(tree.rows('xi spare')), ['1 asset Loose', '2 tag XI-1']);
-    assert.deepEqual(tree.rows('nothing of that name'), []);
+    assert.deepEqual(shown(tree.rows(search('inlet'))), both);
+    assert.deepEqual(shown(tree.rows(search('exchanger outlet'))), ['1 area Unit 10', '2 asset E-1', '3 tag TI-2'], 'words of both');
+    assert.deepEqual(shown(tree.rows(search('xi spare'))), ['1 asset Loose', '2 tag XI-1']);
+    assert.deepEqual(tree.rows(search('nothing of that name')), []);
+    assert.equal(search(' '), null);
 });
 
 test('rows of unequal height: which are in sight, and where to scroll', () => {

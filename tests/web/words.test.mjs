@@ -1,17 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The words of the page: the same keys in every language, none missing, none for nothing, and how one language is chosen.
+// The words of the page: the same keys in every language, none missing, none for nothing, each in its file, and how one language is chosen.
 import assert from 'node:assert/strict';
 import { readdirSync, readFileSync } from 'node:fs';
 import { test } from 'node:test';
 import { chooseLanguage, LANGUAGES, phrase, readWords, say, sayIfKnown } from '../../clients/web/core/words.js';
+import { graph } from './modules.mjs';
 
 const WEB = new URL('../../clients/web/', import.meta.url);
+const read = (...names) => names.map((name) => readFileSync(new URL(name, WEB), 'utf8')).join('\n');
+const filesOf = (language) => [`words/${language}.js`, `words/parts.${language}.js`]; // said at once; by parts that are loaded later
+const tableOf = async (file) => readWords((await import(`../../clients/web/${file}`)).default);
 const tables = Object.fromEntries(await Promise.all(LANGUAGES.map(async (language) =>
-    [language, readWords((await import(`../../clients/web/words/${language}.js`)).default)])));
-const source = ['core', 'app'].flatMap((folder) => readdirSync(new URL(folder, WEB)).filter((name) => name.endsWith('.js'))
-    .map((name) => readFileSync(new URL(`${folder}/${name}`, WEB), 'utf8'))).join('\n');
+    [language, Object.assign({}, ...await Promise.all(filesOf(language).map(tableOf)))])));
+const source = read(...['core', 'app'].flatMap((folder) => readdirSync(new URL(folder, WEB)).filter((name) => name.endsWith('.js'))
+    .map((name) => `${folder}/${name}`)));
 const html = readdirSync(new URL('app', WEB)).filter((name) => name.endsWith('.html')).map((name) => `app/${name}`);
-const page = ['index.html', ...html].map((name) => readFileSync(new URL(name, WEB), 'utf8')).join('\n');
+const page = read('index.html', ...html);
 
 const blanks = (entry) => [...new Set((typeof entry === 'string' ? entry : entry.other).match(/\{\w+\}|\[[^\]]+\]/g) ?? [])].sort();
 
@@ -34,7 +38,7 @@ test('a file of words: sections, plurals, and lines that say nothing', () => {
 
 test('no key is said twice in a language', () => {
     for (const language of LANGUAGES) {
-        const lines = readFileSync(new URL(`words/${language}.js`, WEB), 'utf8').match(/^[\w. ]+(\(\w+\))?: /gm);
+        const lines = read(...filesOf(language)).match(/^[\w. ]+(\(\w+\))?: /gm);
         const said = Object.values(tables[language]).flatMap((entry) => (typeof entry === 'string' ? [entry] : Object.values(entry)));
         assert.equal(lines.length, said.length, language);
     }
@@ -49,21 +53,37 @@ test('plurals: each form that a language has, and no other', () => {
 });
 
 // Named whole, or by its beginning where the rest is a value: `kind.${kind}`, choices('side', 'top', ...).
-test('no key is unused', () => {
-    const starts = [...source.matchAll(/`([a-z]+\.)\$\{/g)].map(([, start]) => start);
-    const families = [...source.matchAll(/(?:choices|explained)\('(\w+)', ([^)]*)\)/g)].flatMap(([, kind, values]) =>
+function unused(table, modules, markup) {
+    const starts = [...modules.matchAll(/`([a-z]+\.)\$\{/g)].map(([, start]) => start);
+    const families = [...modules.matchAll(/(?:choices|explained)\('(\w+)', ([^)]*)\)/g)].flatMap(([, kind, values]) =>
         [...values.matchAll(/'(\w+)'/g)].flatMap(([, value]) => [`${kind}.${value}`, `${kind}.${value}.why`]));
-    const unused = Object.keys(tables.en).filter((key) => !source.includes(`'${key}'`) && !page.includes(`"${key}"`) &&
+    return Object.keys(table).filter((key) => !modules.includes(`'${key}'`) && !markup.includes(`="${key}"`) &&
         !families.includes(key) && !starts.some((start) => key.startsWith(start)));
-    assert.deepEqual(unused, []);
-});
+}
+
+function asked(modules, markup) {
+    const said = [...modules.matchAll(/\bsay\((?:[^'()]*\? )?'([^']+)'(?: : '([^']+)')?/g)].flatMap(([, ...keys]) => keys);
+    return [...said, ...[...markup.matchAll(/data-(?:say|label|title|hint|name)="([^"]+)"/g)].map(([, key]) => key)].filter(Boolean);
+}
+
+test('no key is unused', () => assert.deepEqual(unused(tables.en, source, page), []));
 
 test('no key that is asked for is missing', () => {
-    const asked = [...source.matchAll(/\bsay\((?:[^'()]*\? )?'([^']+)'(?: : '([^']+)')?/g)].flatMap(([, ...keys]) => keys);
-    asked.push(...[...page.matchAll(/data-(?:say|label|title|hint|name)="([^"]+)"/g)].map(([, key]) => key));
-    const missing = asked.filter((key) => key && tables.en[key] === undefined);
-    assert.deepEqual(missing, []);
-    assert.ok(asked.length > 150, `${asked.length} were found`);
+    const all = asked(source, page);
+    assert.deepEqual(all.filter((key) => tables.en[key] === undefined), []);
+    assert.ok(all.length > 150, `${all.length} were found`);
+});
+
+test('what the page says before any of its parts is loaded is in the first file, and nothing else', async () => {
+    const wordless = [...read('app/parts.js').matchAll(/^    (\w+): \{.*wordless: true/gm)].map(([, name]) => `app/${name}.js`);
+    const paths = new Set(['app/main.js', ...wordless].flatMap((path) => [...graph(path)]));
+    const first = await tableOf(filesOf('en')[0]), modules = read(...paths);
+    const all = asked(modules, read('index.html'));
+    assert.deepEqual(all.filter((key) => first[key] === undefined), []);
+    assert.ok(all.length > 70, `${all.length} were found`);
+    assert.deepEqual(unused(first, modules, read('index.html')), []);
+    for (const language of LANGUAGES)
+        assert.deepEqual(Object.keys(await tableOf(filesOf(language)[0])), Object.keys(first), language);
 });
 
 test('the page itself says nothing in any language', () => {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The list of equipment: areas, assets and their sensors with what they say, search, and the way there. On narrow screens it is loaded
-// when it is first opened.
+// The list of equipment: areas, assets and their sensors with what they say. On narrow screens it is loaded when it is first opened; what
+// hands and keys do in it, and search (rows.js), once they come near.
 import { decimalsFor, numberText, qualityText, unitText } from '../core/format.js';
 import { Tree } from '../core/tree.js';
 import { say } from '../core/words.js';
@@ -9,20 +9,22 @@ import { narrow } from './first.js';
 import { LongList } from './list.js';
 
 const SEARCH_MS = 80, ASSET_PX = 53;
+const KEYS = /^(Arrow(Up|Down|Left|Right)|Home|End|Page(Up|Down)|Enter| )$/; // those of its rows; others go on
 const keyOf = ({ kind, id }) => `${kind}/${id}`;
 
 export class Assets {
-    constructor({ session, selection, parts, selectAsset, showTag }) {
-        Object.assign(this, { session, selection, parts, onAsset: selectAsset, onTag: showTag });
+    constructor({ session, selection, parts }) {
+        Object.assign(this, { session, selection, parts, found: null });
         this.search = byId('assets-search');
         this.setOpen(!narrow.matches);
         this.list = new LongList({
             root: byId('assets-list'), make: (row) => this.make(row), fill: (row, element) => this.fill(row, element), keyOf,
-            height: ({ kind }) => (kind === 'asset' ? ASSET_PX : this.touchPx), onKey: (key, row, i) => this.press(key, row, i),
+            height: ({ kind }) => (kind === 'asset' ? ASSET_PX : this.touchPx),
         });
+        this.listen(this.list.root);
         this.search.addEventListener('input', () => {
             clearTimeout(this.waiting);
-            this.waiting = setTimeout(() => this.filter(), SEARCH_MS);
+            this.waiting = setTimeout(() => this.parts.use('rows', (rows) => rows.search(), 'search'), SEARCH_MS);
         });
         this.search.addEventListener('keydown', ({ key }) => key === 'Escape' && !this.search.value && byId('viewport').focus());
         byId('assets-close').addEventListener('click', () => this.setOpen(false));
@@ -34,6 +36,26 @@ export class Assets {
         window.matchMedia('(pointer: coarse)').addEventListener('change', () => this.filter());
     }
 
+    // f: done by what knows what to do with rows.
+    does(f) {
+        this.parts.use('rows', f);
+    }
+
+    listen(root) {
+        root.addEventListener('pointerover', () => this.parts.prepare('rows'), { once: true });
+        root.addEventListener('focusin', ({ target }) => {
+            const key = target.closest('[data-row]')?.dataset.row;
+            this.does((rows) => rows.isAt(key));
+        });
+        root.addEventListener('keydown', (event) => {
+            if (event.ctrlKey || event.altKey || event.metaKey || !KEYS.test(event.key))
+                return;
+            this.does((rows) => rows.press(event.key));
+            event.preventDefault();
+            event.stopPropagation(); // the plant stands still meanwhile
+        });
+    }
+
     get touchPx() {
         return window.matchMedia('(pointer: coarse)').matches ? 44 : 36;
     }
@@ -42,12 +64,6 @@ export class Assets {
         this.open = open;
         document.querySelector('.stage').classList.toggle('without-assets', !open);
         byId('assets-toggle').setAttribute('aria-expanded', open);
-    }
-
-    openSearch() {
-        this.setOpen(true);
-        this.search.focus();
-        this.search.select();
     }
 
     build() {
@@ -63,7 +79,7 @@ export class Assets {
     filter() {
         if (!this.tree)
             return;
-        const rows = this.tree.rows(this.search.value);
+        const rows = this.tree.rows(this.found);
         byId('assets-nothing').hidden = rows.length > 0;
         this.list.set(rows);
     }
@@ -84,55 +100,18 @@ export class Assets {
         Object.assign(this, { selected, marked: tag });
         this.filter();
         if (reveal)
-            this.list.reveal(reveal);
+            this.parts.use('rows', (rows) => rows.reveal(reveal), 'reveal');
     }
 
     // --- rows
 
-    toggle(row) {
-        this.tree.toggle(row);
-        this.filter();
-    }
-
-    act(row) {
-        const { kind, item } = row;
-        if (kind === 'area')
-            return this.toggle(row);
-        if (kind === 'tag')
-            return this.onTag(item);
-        if (item.id === null)
-            return this.toggle(row);
-        this.onAsset(item);
-        if (narrow.matches)
-            this.setOpen(false);
-        return undefined;
-    }
-
-    // Right opens or goes in, left closes or goes out. True: that was for us.
-    press(key, row, i) {
-        const { rows } = this.list, hasRows = row.kind !== 'tag';
-        if (key === 'Enter' || key === ' ')
-            this.act(row);
-        else if (key === 'ArrowRight' && hasRows && !row.open)
-            this.toggle(row);
-        else if (key === 'ArrowRight')
-            this.list.at(rows[i + 1]?.level > row.level ? i + 1 : i);
-        else if (key === 'ArrowLeft' && hasRows && row.open)
-            this.toggle(row);
-        else if (key === 'ArrowLeft')
-            this.list.at(rows.findLastIndex((one, n) => n < i && one.level < row.level));
-        else
-            return false;
-        return true;
-    }
-
     make(row) {
-        const { kind, item } = row, press = { onclick: () => this.act(this.rowOf(row)) };
+        const { kind, item } = row, key = keyOf(row);
         const twist = make('span', { class: 'twist', 'aria-hidden': 'true', onclick: (event) => {
             event.stopPropagation();
-            this.toggle(this.rowOf(row));
+            this.does((rows) => rows.toggle(key));
         } });
-        const common = { role: 'treeitem', 'aria-level': row.level, ...press };
+        const common = { role: 'treeitem', 'aria-level': row.level, onclick: () => this.does((rows) => rows.act(key)) };
         if (kind === 'area')
             return make('div', { ...common, class: 'area' }, twist, make('b', {}, row.text), make('span', { class: 'flag' }),
                 make('span', { class: 'count' }, String(row.count)));
@@ -143,11 +122,6 @@ export class Assets {
         return make('div', { ...common, class: 'asset' }, count > 0 ? twist : make('span'), glyph('none'),
             make('span', { class: 'text' }, make('b', {}, item.tag || item.id), make('span', {}, item.description ?? '')),
             make('span', { class: 'count' }, make('span', { class: 'flag' }), count > 0 ? say('assets.sensors', { count }) : ''));
-    }
-
-    // As the row is now.
-    rowOf(row) {
-        return this.list.rows[this.list.places.get(keyOf(row))];
     }
 
     fill(row, element) {

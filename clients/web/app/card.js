@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The card of one sensor: what it is, what it says, whether that may be trusted, and how old it is.
-import { ageText, decimalsFor, numberText, qualityText, unitText } from '../core/format.js';
+import { ageText, decimalsFor, numberText, unitText } from '../core/format.js';
+import { statusText } from '../core/quality.js';
 import { say } from '../core/words.js';
 import { linksOf } from './about.js';
 import { standBeside } from './cards.js';
 import { clock } from './clock.js';
-import { byId, closeButton, fill, glyph, make, setText } from './dom.js';
+import { byId, glyph, make, setText } from './dom.js';
+import { closeButton, fill } from './pieces.js';
 
 export class Card {
     constructor({ session, selection, overlay, viewport, selectTag, showTrend }) {
@@ -41,7 +43,7 @@ export class Card {
         const unit = known ? ` ${unitText(tag.unit || group?.unit)}` : '';
         if (this.value.textContent !== number + unit)
             this.value.replaceChildren(number, make('i', {}, unit));
-        const quality = qualityText(reading.quality, reading.qualityName);
+        const quality = statusText(reading.quality, reading.qualityName);
         if (this.quality.textContent !== quality)
             this.quality.replaceChildren(glyph(reading.quality), quality);
         setText(this.age, ageText(model.ageMs(tag.index, clock.now())));

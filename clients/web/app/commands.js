@@ -1,19 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What clicks, keys and buttons do: the selection, the flight to what is chosen, and the parts of the page that they open. Loaded when
 // hands first come near.
+import { nearestMarker } from '../core/nearest.js';
 import { byId } from './dom.js';
 import { changeTheme } from './theme.js';
+import { bandsOf } from './toolbar.js';
 
 const ARRIVAL_MARGIN = 1.7; // around one piece of equipment
+const REACH_PX = { mouse: 14, pen: 18, touch: 26 };
+const HELD_US = 3.5e6;      // what is newer than that counts as now
+
+// Those of the shown group that stand somewhere.
+export const sensorsOf = ({ model, params }) =>
+    model.tags.filter(({ group, asset, position }) => group === params.group && asset && position);
 
 export class Commands {
     constructor(page) {
         Object.assign(this, commandsOf(page));
+        this.point(page.pointed ?? null);
     }
 }
 
 // By name; those of the page, and those of keys (core/keys.js).
-function commandsOf({ session, parts, selection, overlay, toolbar, tools, saveAddress, refresh }) {
+function commandsOf({ session, parts, selection, overlay, saveAddress, refresh }) {
     function selectTag(tag) {
         selection.tag = tag?.name ?? null;
         selection.hover = null;
@@ -67,6 +76,9 @@ function commandsOf({ session, parts, selection, overlay, toolbar, tools, saveAd
     const opens = (name) => (event) => parts.use(name, (part) => part.toggle(event), 'toggle');
     const ofViews = (f) => () => parts.use('views', f);
 
+    const tagAt = (x, y, kind) =>
+        nearestMarker(overlay.markers, x / overlay.unit, y / overlay.unit, REACH_PX[kind] ?? REACH_PX.mouse)?.tag ?? null;
+
     function click(x, y, kind) {
         if (parts.there('engineer')?.takesClick(x, y))
             return;
@@ -74,7 +86,7 @@ function commandsOf({ session, parts, selection, overlay, toolbar, tools, saveAd
             parts.there('measure').click(x, y);
             return;
         }
-        const tag = overlay.at(x, y, kind);
+        const tag = tagAt(x, y, kind);
         selectTag(tag);
         if (tag)
             parts.there('place')?.close();
@@ -86,7 +98,7 @@ function commandsOf({ session, parts, selection, overlay, toolbar, tools, saveAd
     const openPlace = (x, y, camera) => parts.use('place', (place) => camera === session.camera && place.open(x, y));
 
     function point(place) {
-        const tag = place ? overlay.at(place.x, place.y, 'mouse') : null;
+        const tag = place ? tagAt(place.x, place.y, 'mouse') : null;
         byId('viewport').classList.toggle('pointing', tag !== null);
         if (tag !== selection.hover) {
             selection.hover = tag;
@@ -96,8 +108,31 @@ function commandsOf({ session, parts, selection, overlay, toolbar, tools, saveAd
         }
     }
 
+    // What `show` needs besides: a sensor that is chosen, else the first of the group; the instant of now.
+    function showParams(show) {
+        const { model, params } = session;
+        const chosen = [selection.tag, params.sensor].map((name) => model.tag(name)).find((tag) => tag?.group === params.group);
+        const sensor = chosen ?? sensorsOf(session)[0];
+        if (show === 'distance')
+            return sensor ? { show, sensor: sensor.name } : {};
+        return show === 'difference' && !params.baseline ? { show, baseline: 'now' } : { show };
+    }
+
+    function rampParams(value) {
+        const breaks = value === 'chosen' ? session.params.breaks : bandsOf(session)[value];
+        return breaks ? { breaks, ramp_interval: 0 } : { ramp_interval: Number(value), breaks: null };
+    }
+
+    function group(index) {
+        const chosen = session.model?.groups[index];
+        if (chosen && chosen.id !== session.params.group)
+            session.setParams({ group: chosen.id });
+    }
+
     return {
-        selectTag, showTag, flyToTag, selectAsset, fitView, click, point,
+        selectTag, showTag, flyToTag, selectAsset, fitView, click, point, group,
+        show: (value) => session.setParams(showParams(value)),
+        ramp: (value) => session.setParams(rampParams(value)),
         showTrend: (tag) => parts.use('trends', (trends) => trends.add(tag)),
         showAsset: (how, asset) => parts.use('views', (views) => views.show(how, asset.id)),
         engineer: opens('engineer'),
@@ -109,7 +144,11 @@ function commandsOf({ session, parts, selection, overlay, toolbar, tools, saveAd
         past: () => session.recorded && opens('timeline')(),
         live: () => session.time.atUs !== null && session.travel(null),
         assets: () => parts.use('assets', (assets) => assets.setOpen(!assets.open), 'toggle'),
-        search: () => parts.use('assets', (assets) => assets.openSearch()),
+        search: () => parts.use('assets', (assets) => {
+            assets.setOpen(true);
+            assets.search.focus();
+            assets.search.select();
+        }),
         top: ofViews((views) => views.lookFrom('top')),
         corner: ofViews((views) => views.lookFrom('iso')),
         projection: ofViews((views) => views.toggleProjection()),
@@ -119,14 +158,16 @@ function commandsOf({ session, parts, selection, overlay, toolbar, tools, saveAd
         ghost: ofViews((views) => views.show('ghost')),
         only: ofViews((views) => views.show('only')),
         showAll: ofViews((views) => views.showAll()),
-        hold: () => tools.hold(),
+        hold: () => session.recorded && session.travel(session.time.atUs === null ? session.clockUs() - HELD_US : null),
+        display: (event) => parts.use('folded', ({ display }) => display.toggle(event), 'display'),
+        more: (event) => parts.use('folded', ({ more }) => more.toggle(event), 'more'),
         measure: opens('measure'),
         snapshot: () => parts.use('snapshot', (snapshot) => snapshot.save()),
         share: () => parts.use('share', (share) => share.open()),
         theme: () => session.setParams({ backdrop: changeTheme() }),
         escape() {
             parts.giveUp();
-            toolbar.closeDisplay();
+            parts.there('folded')?.display.set(false);
             for (const name of ['views', 'picture'])
                 parts.there(name)?.close();
             const [alarms, measure, place] = ['alarms', 'measure', 'place'].map((name) => parts.there(name));

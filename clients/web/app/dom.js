@@ -45,19 +45,6 @@ export function sayAll(root) {
     }
 }
 
-// Its children from now on; null is none.
-export const fill = (element, ...children) => element.replaceChildren(...children.filter((child) => child !== null));
-
-// A text with [keys] of the keyboard in it, as nodes.
-export const withKeys = (text) => text.split(/(\[[^\]]+\])/).filter(Boolean).map((part) =>
-    (/^\[.+\]$/.test(part) ? make('kbd', {}, part.slice(1, -1)) : part));
-
-// A text with one {name} left to be a node.
-export function around(text, node) {
-    const [before, after] = text.split('\u0000');
-    return [before, node, after];
-}
-
 // Writes only what differs: screen readers and the layout are left alone otherwise.
 export function setText(element, text) {
     if (element.textContent !== text)
@@ -94,9 +81,6 @@ export function glyph(quality) {
     return makeSvg('svg', { viewBox: '-8 -8 16 16', class: `glyph ${GLYPHS[quality] ? quality : 'none'}`, 'aria-hidden': 'true' },
         makeSvg(name, { class: 'mark', ...shape }));
 }
-
-export const closeButton = (key, onclick) =>
-    make('button', { type: 'button', class: 'icon small', 'aria-label': say(key), onclick }, icon('i-close'));
 
 export function icon(id) {
     return makeSvg('svg', { 'aria-hidden': 'true' }, makeSvg('use', { href: `#${id}` }));

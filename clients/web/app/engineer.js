@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The engineer's panel: sensors are placed, and proven. Loaded when it is first opened.
 import { say } from '../core/words.js';
-import { byId, closeButton, make } from './dom.js';
+import { byId, make } from './dom.js';
+import { closeButton } from './pieces.js';
 import { Placing } from './placing.js';
 import { Proving } from './proving.js';
 
@@ -21,14 +22,22 @@ export class Engineer {
         byId('viewport').parentElement.append(this.element);
         this.choose('place');
         page.overlay.drawTried = (tag) => this.mark(tag);
-        page.session.on('welcome', () => { if (page.session.role !== 'engineer' && this.open) this.toggle(); });
+        page.session.on('welcome', () => page.session.role !== 'engineer' && this.close());
     }
 
     get open() {
         return !this.element.hidden;
     }
 
+    close() {
+        if (this.open)
+            this.toggle();
+    }
+
     toggle() {
+        const alarms = this.page.parts.there('alarms');
+        if (!this.open && alarms?.open)
+            alarms.setOpen(false); // they stand in the same place
         this.element.hidden = this.open;
         this.button.setAttribute('aria-expanded', this.open);
         (this.open ? this.element.querySelector('input') : this.button).focus();

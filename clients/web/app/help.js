@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The help: what hands and keys do, and what the markers mean. Made when it is first asked for.
 import { say } from '../core/words.js';
-import { byId, closeButton, make, makeSvg, withKeys } from './dom.js';
+import { byId, make, makeSvg } from './dom.js';
+import { closeButton } from './pieces.js';
 
 // The name of a row, and the words or keys in its columns; '' where there is none.
 const ROWS = [
@@ -35,6 +36,9 @@ const MARKS = [
     ['help.mark.returned', 'circle', { class: 'ring p1 broken', r: 9 }],
 ];
 
+// A text with [keys] of the keyboard in it, as nodes.
+const withKeys = (text) => text.split(/(\[[^\]]+\])/).filter(Boolean).map((part) =>
+    (/^\[.+\]$/.test(part) ? make('kbd', {}, part.slice(1, -1)) : part));
 const cell = (text) => make('td', {}, ...withKeys(/^(help|bar)\./.test(text) ? say(text) : text));
 
 function build(dialog) {

@@ -59,9 +59,25 @@ export class Legend {
         this.lying = window.matchMedia('(max-width: 719px)');
         this.lying.addEventListener('change', () => this.show(true));
         this.shown = '';
+        this.long = 240; // CSS pixels of the bar
+        new ResizeObserver(() => this.fit()).observe(element);
         session.on('params', () => this.show());
         session.on('proofs', () => this.show());
         window.matchMedia(`(resolution: ${window.devicePixelRatio}dppx)`).addEventListener('change', () => this.show(true));
+    }
+
+    // A bar of another length: what is written beside it stands as far apart in pixels.
+    fit() {
+        const bar = this.element.querySelector('.bar'), long = this.lying.matches ? bar?.clientWidth : bar?.clientHeight;
+        if (!long || long === this.long)
+            return;
+        this.long = long;
+        this.show(true);
+    }
+
+    apart(places, uprightPx, lyingPx) {
+        const gap = (this.lying.matches ? lyingPx : uprightPx) / this.long;
+        return spread(places, Math.min(gap, 1 / Math.max(1, places.length - 1)));
     }
 
     show(again = false) {
@@ -145,8 +161,8 @@ export class Legend {
 
     ticks(rule, lines, text) {
         const values = scaleTicks(rule, lines);
-        const places = spread(values.map((value) => placeOf(rule, value)), this.lying.matches ? 0.1 : 0.07);
-        return this.ticksAt(values.map((value) => placeOf(rule, value)), places, values.map(text));
+        const places = values.map((value) => placeOf(rule, value));
+        return this.ticksAt(places, this.apart(places, 15, 32), values.map(text));
     }
 
     // Numbers beside the bar; where they had to move apart, the line from the bar leads to them.
@@ -164,7 +180,7 @@ export class Legend {
         const { min, max } = rule;
         const inside = Object.entries(limits).filter(([, value]) => value !== null && value >= min && value <= max);
         inside.sort((a, b) => a[1] - b[1]);
-        const places = spread(inside.map(([, value]) => placeOf(rule, value)), this.lying.matches ? 0.085 : 0.07);
+        const places = this.apart(inside.map(([, value]) => placeOf(rule, value)), 15, 27);
         return make('div', { class: 'limits' }, ...inside.flatMap(([name, value], i) => [
             at(make('i', {}), placeOf(rule, value)), at(make('span', { title: `${name} ${text(value)}` }, name), places[i]),
         ]));

@@ -19,16 +19,16 @@ const COMMANDS = ['selectTag', 'showTag', 'flyToTag', 'fitView', 'selectAsset', 
 
 const selection = { tag: address.tag, hover: null };
 const parts = new Parts(page, tell);
-const toolbar = new Toolbar({ session, selection });
+const does = (name) => (...given) => parts.use('commands', (commands) => commands[name](...given));
+new Toolbar({ session, does });
 const legend = new Legend({ session, element: byId('legend') });
 new Legend({ session, element: byId('legend-right'), paramsOf: (params) => params.split && { ...params, ...params.split } });
 const overlay = new Overlay({ canvas: byId('overlay'), viewport, session, selection });
 overlay.unit = page.unit;
 const status = new Status({ session, onFreshness: (fresh) => { overlay.fresh = fresh; refresh(); } });
-const tools = new Tools({ session });
+new Tools({ session });
 new AlarmStrip({ session, refresh });
-Object.assign(page, { selection, overlay, parts, toolbar, tools, saveAddress, refresh, tell });
-const does = (name) => (...given) => parts.use('commands', (commands) => commands[name](...given));
+Object.assign(page, { selection, overlay, parts, saveAddress, refresh, tell });
 for (const name of COMMANDS)
     page[name] = does(name);
 page.onUnit = () => {
@@ -45,7 +45,7 @@ function refresh() {
 
 const BUTTONS = { fit: 'fit', home: 'home', measure: 'measure', snapshot: 'snapshot', theme: 'theme', hold: 'hold', 'share-open': 'share',
     'help-open': 'help', 'time-toggle': 'past', 'alarm-strip': 'alarms', 'views-toggle': 'views', 'picture-toggle': 'picture',
-    'engineer-toggle': 'engineer', 'assets-toggle': 'assets' };
+    'engineer-toggle': 'engineer', 'assets-toggle': 'assets', 'display-toggle': 'display', 'more-toggle': 'more' };
 for (const [id, name] of Object.entries(BUTTONS))
     byId(id).addEventListener('click', does(name));
 // What is cut away is moved by hand, but for a wall.
@@ -53,11 +53,21 @@ session.on('params', async () => {
     if (session.params.clip && !document.body.classList.contains('wall') && await parts.get('grips'))
         refresh();
 });
+session.on('params', () => {
+    if ([session.params, session.params.split].some((half) => half?.isolines?.length > 0))
+        parts.get('isolines');
+});
 session.on('proofs', refresh);
 
+// The newest is what counts, also where what it means is still on its way.
+function point(place) {
+    page.pointed = place;
+    parts.there('commands')?.point(place);
+}
+
 page.told = {
-    click: does('click'), point: (place) => parts.there('commands')?.point(place), command: (name) => does(name)(),
-    group: (index) => toolbar.chooseGroup(index),
+    click: does('click'), point, command: (name) => does(name)(),
+    group: does('group'),
 };
 listenToHands(byId('viewport'), parts);
 
@@ -159,10 +169,8 @@ function saveAddress() {
     addressTimer = setTimeout(async () => {
         if (session.leader !== null)
             return; // the link says whom to follow
-        const { camera, params, time, ownParams: own } = session;
-        const { writeAddress } = await import('../core/address.js');
-        const hash = writeAddress({ camera, params, tag: selection.tag, time, own });
-        history.replaceState(null, '', location.pathname + location.search + hash);
+        const { addressOf } = await import('../core/address.js');
+        history.replaceState(null, '', location.pathname + location.search + addressOf(session, selection.tag));
     }, ADDRESS_WAIT_MS);
 }
 

@@ -3,6 +3,7 @@
 import { projector } from '../core/camera.js';
 import { halves } from '../core/halves.js';
 import { measure, metresText } from '../core/measure.js';
+import { askPick } from '../core/requests.js';
 import { say } from '../core/words.js';
 import { byId, make, makeSvg, setText } from './dom.js';
 
@@ -37,7 +38,7 @@ export class Measure {
         if (this.places.length === 2)
             this.places = [];
         this.half = this.session.params.split && x >= this.viewport.width / 2 ? 1 : 0;
-        this.session.pick(...this.viewport.pixelOf(x, y), 'measure');
+        askPick(this.session, this.viewport.pixelOf(x, y), 'measure');
     }
 
     hear({ position }) {

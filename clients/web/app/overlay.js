@@ -2,16 +2,15 @@
 // Markers and labels, drawn crisply over the picture with the camera that the picture was drawn with.
 import { isWaiting } from '../core/alarms.js';
 import { projector } from '../core/camera.js';
-import { changeText, decimalsFor, numberText, shortNumberText, unitText } from '../core/format.js';
+import { changeText, decimalsFor, numberText, unitText } from '../core/format.js';
 import { halves } from '../core/halves.js';
-import { FIRST_FAR, leaderLine, MOST_BAD, nearestMarker, placeLabels } from '../core/labels.js';
+import { FIRST_FAR, leaderLine, MOST_BAD, placeLabels } from '../core/labels.js';
 import { say } from '../core/words.js';
 
-const INK = '#1d252d', INK_2 = '#4d5964', ACCENT = '#2a5f8f';
+export const INK = '#1d252d';
+const INK_2 = '#4d5964', ACCENT = '#2a5f8f';
 const ALARM_COLOURS = [['#c40d20', '#fff'], ['#e06a0a', '#1b0d00'], ['#f2bb0d', '#1b1300'], ['#1b93b5', '#00161d']]; // by priority
 const LABEL_HEIGHT = 20, PADDING = 6, NAMES_UP_TO = 24;
-const ISOLINE_SPACING_PX = 160;
-const REACH_PX = { mouse: 14, pen: 18, touch: 26 };
 
 const SHAPES = {
     good: (c, r) => c.arc(0, 0, r, 0, 2 * Math.PI),
@@ -87,45 +86,6 @@ export class Overlay {
         return markers;
     }
 
-    // Values on isolines, where nothing else is.
-    drawIsolines(blocked) {
-        const { picture, params } = this.session, c = this.context;
-        if (!picture || params.show === 'operator')
-            return;
-        const scale = [this.wide / picture.fullWidth, this.high / picture.fullHeight];
-        const [min, max] = this.session.range, taken = [...blocked];
-        this.setFont(600);
-        c.textBaseline = 'middle';
-        c.textAlign = 'center';
-        for (const { text, x, y } of (this.session.markersOf(picture.seq)?.isolines ?? []).map(([value, px, py]) => ({
-            text: shortNumberText(value, decimalsFor(max - min)), x: px * scale[0], y: py * scale[1],
-        }))) {
-            const wide = c.measureText(text).width + 6, box = { left: x - wide / 2, right: x + wide / 2, top: y - 8, bottom: y + 8, text };
-            const meets = (o) => box.left < o.right && o.left < box.right && box.top < o.bottom && o.top < box.bottom;
-            const near = (o) => o.text === text && Math.hypot(o.left - box.left, o.top - box.top) < ISOLINE_SPACING_PX;
-            if (taken.some((other) => meets(other) || near(other)))
-                continue;
-            taken.push(box);
-            c.fillStyle = 'rgb(255 255 255 / 0.75)';
-            c.fillRect(box.left, box.top, wide, 16);
-            c.fillStyle = INK;
-            c.fillText(text, x, y + 0.5);
-        }
-        c.textAlign = 'start';
-    }
-
-    // Where a place of the plant is in the page; null: behind the eye.
-    pageOf(point) {
-        const { picture, params } = this.session, box = this.viewport.element.getBoundingClientRect();
-        const half = picture && halves(params, picture.fullWidth)[0];
-        const at = picture && projector(picture.camera, half.width, picture.fullHeight)(point);
-        return at && { x: box.left + (at[0] * box.width) / picture.fullWidth, y: box.top + (at[1] * box.height) / picture.fullHeight };
-    }
-
-    at(x, y, kind) {
-        return nearestMarker(this.markers, x / this.unit, y / this.unit, REACH_PX[kind] ?? REACH_PX.mouse)?.tag ?? null;
-    }
-
     marker(tag) {
         return this.markers.find((marker) => marker.tag === tag) ?? null;
     }
@@ -160,7 +120,7 @@ export class Overlay {
             return { left, top, right: left + w, bottom: top + h };
         });
         const marks = this.markers.map(({ x, y }) => ({ left: x - 5, right: x + 5, top: y - 5, bottom: y + 5 }));
-        this.drawIsolines([...this.blocked(), ...boxes, ...marks]);
+        this.isolines?.draw([...this.blocked(), ...boxes, ...marks]);
     }
 
     // What lies over the picture already.

@@ -1,27 +1,31 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Parts of the page that are loaded when they are first used: a module, the styles that it needs, and its markup.
-import { say } from '../core/words.js';
+// Parts of the page that are loaded when they are first used: a module, the styles that it needs, its markup, and with the first of them
+// the words of all.
+import { learnWords, say } from '../core/words.js';
 import { sayAll, styled } from './dom.js';
 import { renewIfOld } from './install.js';
 
 const FIRST_WAIT_MS = 1000, LONGEST_WAIT_MS = 8000; // between tries
 
-// Of each module: its class, its style sheets, and the element that its markup fills.
+// Of each module: its class, its style sheets, the element that its markup fills, and whether it says only what the page says at once.
 const PARTS = {
     about: { type: 'About', styles: ['about'] },
     alarms: { type: 'AlarmList', styles: ['alarms', 'help'], fills: 'alarms' },
     arrival: { type: 'Arrival' },
-    assets: { type: 'Assets' },
+    assets: { type: 'Assets', wordless: true },
     card: { type: 'Card', styles: ['card', 'about'] },
-    commands: { type: 'Commands' },
+    commands: { type: 'Commands', wordless: true },
     engineer: { type: 'Engineer', styles: ['panel', 'help', 'engineer'] },
-    following: { type: 'Following' },
+    folded: { type: 'Folded', styles: ['folded'], wordless: true },
+    following: { type: 'Following', styles: ['following'] },
     grips: { type: 'Grips', styles: ['measure', 'grips'] },
     help: { type: 'Help', styles: ['help'] },
-    measure: { type: 'Measure', styles: ['measure'] },
-    pilot: { type: 'Pilot' },
+    isolines: { type: 'Isolines', wordless: true },
+    measure: { type: 'Measure', styles: ['measure', 'following'] },
+    pilot: { type: 'Pilot', wordless: true },
     picture: { type: 'Picture', styles: ['panel'], fills: 'picture-panel' },
     place: { type: 'Place', styles: ['card', 'panel'] },
+    rows: { type: 'Rows', wordless: true },
     share: { type: 'Share', styles: ['panel', 'help', 'share'] },
     snapshot: { type: 'Snapshot' },
     timeline: { type: 'Timeline', styles: ['timeline'], fills: 'timeline' },
@@ -114,8 +118,9 @@ export class Parts {
 
     // A browser may remember for good that it could not fetch a module by its address, so that another one is asked for again.
     async load(name, tries) {
-        const { type, styles = [], fills } = PARTS[name], again = tries > 0 ? `?again=${tries}` : '';
-        const [module, markup] = await Promise.all([import(`./${name}.js${again}`), fills && markupOf(name), ...styles.map(styled)]);
+        const { type, styles = [], fills, wordless } = PARTS[name], again = tries > 0 ? `?again=${tries}` : '';
+        const [module, markup] = await Promise.all([import(`./${name}.js${again}`), fills && markupOf(name), wordless || learnWords(),
+            ...styles.map(styled)]);
         if (await renewIfOld())
             return new Promise(() => {}); // what came may be of another version than what is here, which goes
         if (fills) {

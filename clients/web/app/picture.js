@@ -3,13 +3,13 @@
 import { quantityText, title, zoneClock } from '../core/format.js';
 import { sunOf, sunText, towardsSun } from '../core/sun.js';
 import { say, sayIfKnown } from '../core/words.js';
+import { sensorsOf } from './commands.js';
 import { byId, make, setText } from './dom.js';
 import { Factors } from './factors.js';
-import { fillSegments, fillSelect, foldPanel, markSegment } from './fields.js';
-import { DISTANCES, INTERPOLATIONS, LOOKS, sensorsOf, SHOWS } from './toolbar.js';
+import { fillSegments, fillSelect, markSegment } from './fields.js';
+import { foldPanel } from './fold.js';
+import { DISTANCES, INTERPOLATIONS, LOOKS, SHOWS } from './toolbar.js';
 
-const SCALES = ['linear', 'log'].map((scale) => [scale, say(`scale.${scale}`)]);
-const FILLS = ['none', 'neighbours'].map((fill) => [fill, say(`fill.${fill}`), say(`fill.${fill}.why`)]);
 const HALF = {
     group: 'bar.quantity', show: 'bar.show', distance: 'bar.distance', interpolation: 'bar.interpolation', colormap: 'bar.colours',
     look: 'bar.look',
@@ -20,8 +20,10 @@ export class Picture {
         Object.assign(this, { session, selection });
         this.panel = byId('picture-panel');
         Object.assign(this, foldPanel(this.panel, byId('picture-toggle'), () => this.update()));
-        fillSegments(byId('scale'), 'scale', SCALES, (scale) => session.setParams({ scale }));
-        fillSegments(byId('fill'), 'fill', FILLS, (fill) => session.setParams({ fill }));
+        const scales = ['linear', 'log'].map((scale) => [scale, say(`scale.${scale}`)]);
+        fillSegments(byId('scale'), 'scale', scales, (scale) => session.setParams({ scale }));
+        const fills = ['none', 'neighbours'].map((fill) => [fill, say(`fill.${fill}`), say(`fill.${fill}.why`)]);
+        fillSegments(byId('fill'), 'fill', fills, (fill) => session.setParams({ fill }));
         byId('environment').addEventListener('change', ({ target }) => session.setParams({ environment: target.value }));
         byId('sensor').addEventListener('change', ({ target }) => session.setParams({ show: 'distance', sensor: target.value }));
         byId('baseline').addEventListener('change', ({ target }) => session.setParams({ show: 'difference', baseline: target.value }));

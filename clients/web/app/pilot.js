@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Hands to camera: pointers, wheel and keys over the viewport, and flights between views.
 // Loaded when hands first come near (hands.js).
-import { fit, home, MIN_DISTANCE_M } from '../core/camera.js';
+import { fit, home, MIN_DISTANCE_M, same } from '../core/camera.js';
 import { flight, FLIGHT_MS } from '../core/flight.js';
 import { Gestures, wheelZoom } from '../core/gestures.js';
-import { halfAt } from '../core/halves.js';
 import { HeldKeys, keyMeaning } from '../core/keys.js';
 import { depthAt, depthOf, elevation, face, lookAround, orbit, pan, sight, zoom } from '../core/moves.js';
+import { halfAt } from '../core/nearest.js';
+import { askPick } from '../core/requests.js';
 import { along } from '../core/vector.js';
 import { clock } from './clock.js';
 import { proveCodecs } from './first.js';
@@ -33,6 +34,7 @@ export class Pilot {
                 Object.assign(this.anchor, { point: position ?? this.anchor.point, sure: true });
         });
         window.addEventListener('blur', () => this.keys.clear());
+        new ResizeObserver(() => this.stayHome()).observe(viewport.element);
         proveCodecs(); // there will be motion
     }
 
@@ -64,7 +66,7 @@ export class Pilot {
         const { half, at, depth } = this.under(camera, x, y);
         const { origin, direction } = sight(camera, at, y, half.width, this.viewport.height);
         this.anchor = { x, y, time, point: depth === null ? null : along(origin, direction, depth) };
-        this.session.pick(...this.viewport.pixelOf(x, y), 'anchor');
+        askPick(this.session, this.viewport.pixelOf(x, y), 'anchor');
     }
 
     // depth: of the nearest box there; null: none.
@@ -193,6 +195,14 @@ export class Pilot {
         const still = window.matchMedia('(prefers-reduced-motion: reduce)').matches;
         this.fly = { path: flight(this.session.camera, camera, still ? 0 : FLIGHT_MS), start: null };
         this.viewport.invalidate();
+    }
+
+    // Who looks at the whole plant goes on doing so in a picture of another shape.
+    stayHome() {
+        const { session, aspect, shape = aspect } = this, { plant } = session.model ?? {};
+        this.shape = aspect;
+        if (plant && session.leader === null && same(session.camera, home(plant, shape)))
+            session.setCamera(home(plant, aspect));
     }
 
     flyHome() {

@@ -3,9 +3,11 @@
 import { projector } from '../core/camera.js';
 import { decimalsFor, numberText, unitText } from '../core/format.js';
 import { halves } from '../core/halves.js';
+import { askPick } from '../core/requests.js';
 import { say } from '../core/words.js';
 import { standBeside } from './cards.js';
-import { byId, closeButton, fill, glyph, make } from './dom.js';
+import { byId, glyph, make } from './dom.js';
+import { closeButton, fill } from './pieces.js';
 
 const SAME_M = 0.05;
 
@@ -35,7 +37,7 @@ export class Place {
     }
 
     pick(x, y) {
-        this.session.pick(...this.viewport.pixelOf(x, y), 'place');
+        askPick(this.session, this.viewport.pixelOf(x, y), 'place');
     }
 
     // Values go on: what is said of the place is said anew.

@@ -2,8 +2,10 @@
 // Sensors are placed: chosen from a list, put onto the surface by a click or dragged there, and the list is saved.
 import { numberText } from '../core/format.js';
 import { refusalText } from '../core/refusals.js';
+import { askPick, tellAsEngineer } from '../core/requests.js';
 import { say } from '../core/words.js';
-import { fill, make, setText } from './dom.js';
+import { make, setText } from './dom.js';
+import { fill } from './pieces.js';
 
 const SHOWN_TAGS = 60, GRAB_PX = { mouse: 14, pen: 18, touch: 26 };
 const metres = (m) => numberText(m, m < 1 ? 3 : 2);
@@ -11,8 +13,8 @@ const along = ({ along: state = 'waiting' } = {}) => say(`eng.${state}`);
 const percent = (share) => numberText(100 * share, share > 0 && share < 0.1 ? 1 : 0);
 
 export class Placing {
-    constructor({ session, viewport, overlay, selection, selectTag, refresh }) {
-        Object.assign(this, { session, viewport, overlay, selection, selectTag, refresh });
+    constructor({ session, viewport, overlay, selection, selectTag, showTag, refresh }) {
+        Object.assign(this, { session, viewport, overlay, selection, selectTag, showTag, refresh });
         this.moves = [];   // { tag, asset, position }
         this.undone = [];  // what the moves were, step by step
         this.tag = null;   // the one to be placed, by name
@@ -31,13 +33,13 @@ export class Placing {
         this.none = make('p', { class: 'quiet' }, say('eng.nomoves'));
         this.undo = button('eng.undo', () => this.step());
         this.back = button('eng.back', () => this.move([]));
-        this.save = button('eng.save', () => this.session.tell('save_tags'));
+        this.save = button('eng.save', () => tellAsEngineer(this.session, 'save_tags'));
         this.gaps = make('div', { class: 'gaps' });
         this.note = make('p', { class: 'note', role: 'status' });
         this.dialog = make('dialog', { class: 'help diff', 'aria-label': say('eng.save') });
         this.element = make('div', { class: 'part' }, this.hint, this.find, this.list, make('h3', {}, say('eng.moves')), this.none,
             this.tried,
-            make('div', { class: 'line' }, this.undo, this.back, button('eng.gaps', () => this.session.tell('gaps')), this.save),
+            make('div', { class: 'line' }, this.undo, this.back, button('eng.gaps', () => tellAsEngineer(this.session, 'gaps')), this.save),
             this.note, this.gaps, this.dialog);
     }
 
@@ -66,7 +68,7 @@ export class Placing {
         this.moves = this.moves.filter(known);
         this.undone = [];
         if (this.moves.length > 0)
-            this.session.tell('place', { moves: this.moves });
+            tellAsEngineer(this.session, 'place', { moves: this.moves });
         this.show();
     }
 
@@ -76,7 +78,7 @@ export class Placing {
         if (keep)
             this.undone.push(this.moves);
         this.moves = moves;
-        this.session.tell('place', { moves });
+        tellAsEngineer(this.session, 'place', { moves });
         this.show();
     }
 
@@ -89,7 +91,7 @@ export class Placing {
         if (!this.tag)
             return false;
         this.begin = this.moves;
-        this.session.pick(...this.viewport.pixelOf(x, y), 'place');
+        askPick(this.session, this.viewport.pixelOf(x, y), 'place');
         return true;
     }
 
@@ -129,7 +131,7 @@ export class Placing {
         this.at = [event.clientX - box.left, event.clientY - box.top];
         this.frame ??= requestAnimationFrame(() => {
             this.frame = null;
-            this.session.pick(...this.viewport.pixelOf(...this.at), 'place');
+            askPick(this.session, this.viewport.pixelOf(...this.at), 'place');
         });
     }
 
@@ -178,8 +180,8 @@ export class Placing {
 
     choose(tag) {
         this.tag = this.tag === tag.name ? null : tag.name;
-        if (this.tag && tag.group !== this.session.params.group)
-            this.session.setParams({ group: tag.group });
+        if (this.tag)
+            this.showTag(tag);
         this.selectTag(null); // its card would lie over the surface
         this.show();
     }
@@ -219,7 +221,7 @@ export class Placing {
         this.dialog.close();
         this.saving = true;
         setText(this.note, say('eng.saving'));
-        this.session.tell('save_tags', { confirm: hash });
+        tellAsEngineer(this.session, 'save_tags', { confirm: hash });
     }
 
     onSaved({ saved, kept, errors }) {

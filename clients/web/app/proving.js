@@ -4,8 +4,10 @@ import { decimalsFor, numberText, unitText } from '../core/format.js';
 import { readExpected, Walk } from '../core/walk.js';
 import { ask } from '../core/history.js';
 import { refusalText } from '../core/refusals.js';
+import { tellAsEngineer } from '../core/requests.js';
 import { say } from '../core/words.js';
-import { fill, make, setText } from './dom.js';
+import { make, setText } from './dom.js';
+import { fill } from './pieces.js';
 
 export class Proving {
     constructor({ session, showTag, refresh }) {
@@ -154,7 +156,7 @@ export class Proving {
         if (wrong.length > 0)
             wrong[0][0].focus();
         else
-            this.session.tell('prove', { tag: this.tag, expected, tolerance, fail, ...(this.remark.value
+            tellAsEngineer(this.session, 'prove', { tag: this.tag, expected, tolerance, fail, ...(this.remark.value
                 ? { remark: this.remark.value } : {}) });
     }
 

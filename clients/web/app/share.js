@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Sharing: links to what is seen, with a code for the camera of a tablet; who follows this view, and giving the lead to one of them.
 import { shareLinks } from '../core/links.js';
+import { giveLead } from '../core/requests.js';
 import { say } from '../core/words.js';
-import { closeButton, make, makeSvg, setText } from './dom.js';
+import { make, makeSvg, setText } from './dom.js';
 import { fillSegments, markSegment } from './fields.js';
+import { closeButton } from './pieces.js';
 
 const QUIET_MODULES = 4; // of white around the code, as readers expect
 let library; // of codes: asked for with the first one
@@ -82,10 +84,11 @@ export class Share {
 
     showPeople() {
         const { followers, following } = this.session;
-        const button = (session) => make('button', { type: 'button', 'data-session': session, onclick: () => this.session.lead(session) },
+        const lead = (session) => () => giveLead(this.session, session);
+        const button = (session) => make('button', { type: 'button', 'data-session': session, onclick: lead(session) },
             say('share.lead', { session }));
         const words = following ? say('following.title', { session: following.session })
-            : say('share.followers', { count: followers.count, session: this.session.id });
+            : say(followers.count > 0 ? 'share.followers' : 'share.alone', { count: followers.count, session: this.session.id });
         this.people.replaceChildren(make('h3', {}, say('share.people')), make('p', {}, words),
             make('div', { class: 'leads' }, ...(following ? [make('button', { type: 'button', onclick: () => this.session.follow(null) },
                 say('following.own'))] : followers.sessions.map(button))));

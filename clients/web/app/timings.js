@@ -3,8 +3,9 @@
 import { numberText } from '../core/format.js';
 import { kbitPerS, STAGES, timingOf } from '../core/timings.js';
 import { say } from '../core/words.js';
-import { around, byId, make } from './dom.js';
 import { clock } from './clock.js';
+import { byId, make } from './dom.js';
+import { around } from './pieces.js';
 
 const ms = (value) => (value === null || value === undefined ? '–' : value < 10 ? numberText(value, 1) : String(Math.round(value)));
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Asks for a token where the server wants one, and keeps it as long as this tab lives.
 import { say } from '../core/words.js';
-import { around, byId, make, setText } from './dom.js';
+import { byId, make, setText } from './dom.js';
+import { around } from './pieces.js';
 import { store } from './stored.js';
 
 export class TokenDialog {

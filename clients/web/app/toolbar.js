@@ -4,7 +4,7 @@ import { numberText, quantityText, title, unitText } from '../core/format.js';
 import { multiples, rampChoices } from '../core/legend.js';
 import { say } from '../core/words.js';
 import { byId, setText } from './dom.js';
-import { fillSegments, fillSelect, foldPanel, markSegment } from './fields.js';
+import { fillSegments, fillSelect, markSegment } from './fields.js';
 
 const choices = (kind, ...values) => values.map((value) => [value, say(`${kind}.${value}`)]);
 const explained = (kind, ...values) => values.map((value) => [value, say(`${kind}.${value}`), say(`${kind}.${value}.why`)]);
@@ -13,31 +13,27 @@ export const INTERPOLATIONS = explained('interpolation', 'shepard', 'paper');
 export const SHOWS = choices('show', 'value', 'operator', 'distance', 'difference');
 export const LOOKS = choices('look', 'default', 'glossy', 'flat', 'materials');
 
-// Those of the shown group that stand somewhere.
-export const sensorsOf = ({ model, params }) =>
-    model.tags.filter(({ group, asset, position }) => group === params.group && asset && position);
-
 const decimalsOf = (step) => Math.max(0, Math.ceil(-Math.log10(step) - 1e-9));
 
+// The group's own bands by name: where they meet.
+export function bandsOf({ group }) {
+    const limits = Object.values(group?.limits ?? {}).filter((limit) => limit !== null).sort((a, b) => a - b);
+    return { group: group?.breaks ?? [], limits };
+}
+
 export class Toolbar {
-    constructor({ session, selection }) {
-        Object.assign(this, { session, selection });
+    // does(name): what does a command (commands.js).
+    constructor({ session, does }) {
+        this.session = session;
         fillSegments(byId('distance'), 'distance', DISTANCES, (distance) => session.setParams({ distance }));
         fillSegments(byId('interpolation'), 'interpolation', INTERPOLATIONS, (interpolation) => session.setParams({ interpolation }));
         byId('colormap').addEventListener('change', (event) => session.setParams({ colormap: event.target.value }));
         byId('look').addEventListener('change', (event) => session.setParams({ look: event.target.value }));
-        byId('ramp').addEventListener('change', (event) => session.setParams(this.rampParams(event.target.value)));
+        byId('ramp').addEventListener('change', ({ target }) => does('ramp')(target.value));
         byId('isolines').addEventListener('change', ({ target }) => session.setParams({ isolines: JSON.parse(target.value) }));
-        byId('show').addEventListener('change', ({ target }) => session.setParams(this.showParams(target.value)));
+        byId('show').addEventListener('change', ({ target }) => does('show')(target.value));
         session.on('welcome', () => this.welcome());
         session.on('params', () => this.show());
-        this.foldDisplay();
-    }
-
-    foldDisplay() {
-        const { set, toggle } = foldPanel(byId('display'), byId('display-toggle'), () => {});
-        byId('display-toggle').addEventListener('click', toggle);
-        this.closeDisplay = () => set(false);
     }
 
     welcome() {
@@ -49,22 +45,6 @@ export class Toolbar {
             return [group.id, name, `${name} (${i + 1})`];
         });
         fillSegments(byId('groups'), 'group', choices, (group) => this.session.setParams({ group }));
-    }
-
-    // What `show` needs besides: a sensor that is chosen, else the first of the group; the instant of now.
-    showParams(show) {
-        const { model, params } = this.session;
-        const chosen = [this.selection.tag, params.sensor].map((name) => model.tag(name)).find((tag) => tag?.group === params.group);
-        const sensor = chosen ?? sensorsOf(this.session)[0];
-        if (show === 'distance')
-            return sensor ? { show, sensor: sensor.name } : {};
-        return show === 'difference' && !params.baseline ? { show, baseline: 'now' } : { show };
-    }
-
-    chooseGroup(index) {
-        const group = this.session.model?.groups[index];
-        if (group && group.id !== this.session.params.group)
-            this.session.setParams({ group: group.id });
     }
 
     show() {
@@ -81,23 +61,11 @@ export class Toolbar {
         fillSelect(byId('show'), SHOWS, params.show ?? 'value');
     }
 
-    // The group's own bands by name: where they meet.
-    bands() {
-        const { group } = this.session;
-        const limits = Object.values(group?.limits ?? {}).filter((limit) => limit !== null).sort((a, b) => a - b);
-        return { group: group?.breaks ?? [], limits };
-    }
-
-    rampParams(value) {
-        const breaks = value === 'chosen' ? this.session.params.breaks : this.bands()[value];
-        return breaks ? { breaks, ramp_interval: 0 } : { ramp_interval: Number(value), breaks: null };
-    }
-
     // Which of the group's own bands are shown.
     breaksName() {
         const { params } = this.session;
         const same = ([, breaks]) => JSON.stringify(params.breaks) === JSON.stringify(breaks);
-        return Object.entries(this.bands()).find(same)?.[0] ?? 'chosen';
+        return Object.entries(bandsOf(this.session)).find(same)?.[0] ?? 'chosen';
     }
 
     isolines() {
@@ -115,7 +83,7 @@ export class Toolbar {
         if (params.ramp_interval > 0)
             steps.add(params.ramp_interval);
         const text = (step) => `${numberText(step, decimalsOf(step))} ${unitText(group?.unit)}`;
-        const own = this.bands();
+        const own = bandsOf(this.session);
         const bands = choices('ramp', 'group', 'limits').filter(([name]) => own[name].length > 0);
         if (params.breaks?.length > 0 && this.breaksName() === 'chosen')
             bands.push(['chosen', say('ramp.chosen')]);

@@ -7,12 +7,12 @@ import { byId, make, setText } from './dom.js';
 import { fillSegments, markSegment } from './fields.js';
 import { dots, hatch, LOOKS } from './ink.js';
 
-const SPANS = [['3600', 'hour'], ['28800', 'shift'], ['86400', 'day'], ['604800', 'week']]
-    .map(([seconds, name]) => [seconds, say(`trends.${name}`), say(`trends.${name}.why`)]);
+const SPANS = [['3600', 'hour'], ['28800', 'shift'], ['86400', 'day'], ['604800', 'week']];
 const DASHES = [[], [8, 4], [2, 3], [10, 3, 2, 3], [5, 5], [1, 4]];
-const MOST = DASHES.length, FRESH_MS = 5000, HEIGHT_PX = 210, AXIS_PX = 58;
+const MOST = DASHES.length, FRESH_MS = 5000, AXIS_PX = 58;
 const EXPAND = 2; // uPlot's: nulls
 const LIMIT_PX = 15;
+const highPx = () => Math.round(Math.max(120, Math.min(210, 0.2 * innerHeight))); // as #trend-chart has it
 
 // Loaded when the first trend is asked for.
 let library;
@@ -31,7 +31,8 @@ export class Trends {
     constructor({ session }) {
         Object.assign(this, { session, tags: [], spanS: 3600, series: [], number: 0 });
         this.element = byId('trends');
-        fillSegments(byId('trend-span'), 'trend-span', SPANS, (span) => {
+        const spans = SPANS.map(([seconds, name]) => [seconds, say(`trends.${name}`), say(`trends.${name}.why`)]);
+        fillSegments(byId('trend-span'), 'trend-span', spans, (span) => {
             this.spanS = Number(span);
             this.refresh();
         });
@@ -173,7 +174,7 @@ export class Trends {
     resize() {
         const width = byId('trend-chart').clientWidth;
         if (this.chart && width > 0 && width !== this.chart.width)
-            this.chart.setSize({ width, height: HEIGHT_PX });
+            this.chart.setSize({ width, height: highPx() });
     }
 
     // --- how it is drawn
@@ -186,7 +187,7 @@ export class Trends {
         const dateOf = (s) => this.clock(s * 1000);
         const tickText = (s) => (this.spanS > 2 * 86400 ? dateOf(s).day : dateOf(s).time.slice(0, 5));
         return {
-            width: Math.max(200, byId('trend-chart').clientWidth), height: HEIGHT_PX,
+            width: Math.max(200, byId('trend-chart').clientWidth), height: highPx(),
             tzDate: (s) => globalThis.uPlot.tzDate(new Date(s * 1000), this.zone),
             scales: { x: { time: true }, ...scales },
             cursor: { drag: { x: false, y: false } },

@@ -3,16 +3,14 @@
 import { isParallel } from '../core/camera.js';
 import { numberText } from '../core/format.js';
 import { toParallel, toPerspective } from '../core/moves.js';
+import { askFit } from '../core/requests.js';
 import { AXES, boxAround, cut, readBox, readCut, showAll, showAsset } from '../core/section.js';
 import { say } from '../core/words.js';
 import { byId, make, setText } from './dom.js';
-import { fillSegments, foldPanel, markSegment } from './fields.js';
+import { fillSegments, markSegment } from './fields.js';
+import { foldPanel } from './fold.js';
 
 const choices = (kind, ...values) => values.map((value) => [value, say(`${kind}.${value}`)]);
-const SIDES = choices('side', 'top', 'front', 'right', 'back', 'left', 'iso');
-const PROJECTIONS = choices('projection', 'perspective', 'parallel');
-const CUTS = [...choices('cut', 'off'), ...AXES.map((axis) => [axis, axis.toUpperCase()]), ...choices('cut', 'box')];
-const SHOWS = choices('shown', 'hide', 'ghost', 'only');
 const STEPS = 500, LARGEST_BOX = 2;
 
 export class Views {
@@ -20,14 +18,18 @@ export class Views {
         Object.assign(this, { session, viewport });
         this.panel = byId('views');
         this.at = byId('cut-at');
-        byId('sides').append(make('div', { class: 'buttons' }, ...SIDES.map(([side, text]) =>
+        const sides = choices('side', 'top', 'front', 'right', 'back', 'left', 'iso');
+        byId('sides').append(make('div', { class: 'buttons' }, ...sides.map(([side, text]) =>
             make('button', { type: 'button', onclick: () => this.lookFrom(side) }, text))));
-        fillSegments(byId('projection'), 'projection', PROJECTIONS, (projection) => this.project(projection === 'parallel'));
-        fillSegments(byId('cut'), 'cut', CUTS, (axis) => this.cutBy(axis));
+        const projections = choices('projection', 'perspective', 'parallel');
+        fillSegments(byId('projection'), 'projection', projections, (projection) => this.project(projection === 'parallel'));
+        const cuts = [...choices('cut', 'off'), ...AXES.map((axis) => [axis, axis.toUpperCase()]), ...choices('cut', 'box')];
+        fillSegments(byId('cut'), 'cut', cuts, (axis) => this.cutBy(axis));
         byId('cut-turn').addEventListener('click', () => this.turn());
         this.at.addEventListener('input', () => this.move());
+        const shows = choices('shown', 'hide', 'ghost', 'only');
         byId('shows').append(make('div', { class: 'buttons' },
-            ...SHOWS.map(([how, text]) => make('button', { type: 'button', 'data-how': how, onclick: () => this.show(how) }, text)),
+            ...shows.map(([how, text]) => make('button', { type: 'button', 'data-how': how, onclick: () => this.show(how) }, text)),
             make('button', { type: 'button', id: 'show-all', onclick: () => this.showAll() }, say('views.all'))));
         Object.assign(this, foldPanel(this.panel, byId('views-toggle'), () => this.update()));
         session.on('fitted', (camera) => parts.use('pilot', (pilot) => pilot.flyTo(camera)));
@@ -41,7 +43,7 @@ export class Views {
     }
 
     lookFrom(side) {
-        this.session.fit({ id: this.session.params.selected ?? null, side, projection: this.projection });
+        askFit(this.session, { id: this.session.params.selected ?? null, side, projection: this.projection });
     }
 
     get projection() {

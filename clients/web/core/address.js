@@ -59,6 +59,8 @@ export function writeAddress({ camera, params = {}, tag = null, time = null, own
     return parts.length > 0 ? `#${parts.join('&')}` : '';
 }
 
+export const addressOf = ({ camera, params, time, ownParams: own }, tag) => writeAddress({ camera, params, tag, time, own });
+
 // group:pressure;look:flat
 function readSplit(text) {
     const pairs = text.split(';').map((part) => [part.slice(0, part.indexOf(':')), part.slice(part.indexOf(':') + 1)]);

@@ -2,12 +2,6 @@
 // The alarms that are not normal, as the server tells them: what is to be seen, and in what order.
 
 const CALLS = ['unacknowledged', 'active', 'returned', 'latched', 'acknowledged']; // what is to be seen
-const ACTIONS = { // by state; what can be done where the site keeps its own alarms
-    unacknowledged: ['acknowledge', 'shelve'], returned: ['acknowledge', 'shelve'], acknowledged: ['shelve'],
-    latched: ['acknowledge', 'reset'],
-    shelved: ['unshelve'], out_of_service: ['in_service'],
-};
-const ROLES = { in_service: ['engineer'], out_of_service: ['engineer'] };
 
 export const calls = (state) => CALLS.includes(state);
 // Where an alarm is not of a tag but of the device that many come from.
@@ -49,10 +43,6 @@ export class Alarms {
             .sort((a, b) => place(a) - place(b) || a.priority - b.priority || b.raisedUs - a.raisedUs);
     }
 
-    aside() {
-        return [...this.rows.values()].filter(({ state }) => !calls(state)).sort((a, b) => (a.tag.index ?? -1) - (b.tag.index ?? -1));
-    }
-
     gravest(index) {
         if (this.then) {
             const { alarm: kind, priority, state } = this.then[index];
@@ -67,12 +57,6 @@ export class Alarms {
         for (const { priority } of list)
             of[priority - 1]++;
         return { all: list.length, waiting: list.filter(({ state }) => isWaiting(state)).length, of };
-    }
-
-    actions(alarm, role) {
-        const may = (action) => (ROLES[action] ?? ['operator', 'engineer']).includes(role);
-        const own = this.mode !== 'local' ? [] : ACTIONS[alarm.state] ?? [];
-        return own.filter(may);
     }
 }
 

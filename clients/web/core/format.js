@@ -87,13 +87,7 @@ function makeClock(timeZone) {
 
 export const QUALITIES = ['good', 'uncertain', 'bad']; // from best to worst
 
-// "bad", "Bad_SensorFailure" -> "Bad: sensor failure". What has no words of ours is told as it is spelt.
-export function qualityText(quality, name = '') {
-    const word = say(QUALITIES.includes(quality) ? `quality.${quality}` : 'quality.unknown');
-    const code = String(name ?? '').replace(/^(good|uncertain|bad)[_ :]*/i, '');
-    const spelt = code.replace(/_/g, ' ').replace(/([a-z])([A-Z])/g, '$1 $2').trim().toLowerCase();
-    return spelt ? say('quality.because', { quality: word, detail: sayIfKnown(`detail.${code}`, spelt) }) : word;
-}
+export const qualityText = (quality) => say(QUALITIES.includes(quality) ? `quality.${quality}` : 'quality.unknown');
 
 export const title = (text) => text.charAt(0).toUpperCase() + text.slice(1);
 

@@ -8,9 +8,3 @@ export function halves(params, width) {
     const left = Math.floor(width / 2);
     return [{ params, left: 0, width: left }, { params: { ...params, ...params.split }, left, width: width - left }];
 }
-
-// The half in which a place of the picture lies.
-export function halfAt(params, width, x) {
-    const all = halves(params, width);
-    return all.find((half) => x < half.left + half.width) ?? all[all.length - 1];
-}

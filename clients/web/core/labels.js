@@ -107,17 +107,3 @@ export function leaderLine({ x, y, width, height }, { left, top }, radius) {
     const away = Math.hypot(to[0] - x, to[1] - y) || 1;
     return [x + ((to[0] - x) * radius) / away, y + ((to[1] - y) * radius) / away, ...to];
 }
-
-// The marker nearest to a place, within reach; null: none. Those in sight come before those behind something.
-export function nearestMarker(markers, x, y, reachPx) {
-    let best = null, bestRank = Infinity;
-    for (const marker of markers) {
-        const away = Math.hypot(marker.x - x, marker.y - y);
-        const rank = away + (marker.occluded ? reachPx : 0);
-        if (away <= reachPx && rank < bestRank) {
-            best = marker;
-            bestRank = rank;
-        }
-    }
-    return best;
-}

@@ -2,9 +2,15 @@
 // How the camera of camera.js moves: turns, goes and looks elsewhere. Every function returns a new camera. Picture places are pixels from
 // the top left.
 import { basis, heightAt, isParallel, MAX_DISTANCE_M, metresPerPixel, MIN_DISTANCE_M, RADIANS, USUAL_FOV } from './camera.js';
-import { add, along, cross, dot, length, middle, scale, subtract, turn, unit } from './vector.js';
+import { add, along, cross, dot, length, middle, scale, subtract, unit } from './vector.js';
 
 export const MAX_ELEVATION_DEG = 89; // straight up or down the horizon has no direction, and the picture would spin
+
+// Rodrigues: v turned by `angle` radians about a unit axis, right-handed.
+function turn(v, axis, angle) {
+    const c = Math.cos(angle), s = Math.sin(angle);
+    return add(add(scale(v, c), scale(cross(axis, v), s)), scale(axis, dot(axis, v) * (1 - c)));
+}
 
 export const distance = (camera) => length(subtract(camera.target, camera.eye));
 

@@ -52,12 +52,3 @@ export function showAll(params) {
     const sets = ['hidden', 'ghost', 'isolate'].filter((name) => params[name]?.length > 0);
     return Object.fromEntries(sets.map((name) => [name, []]));
 }
-
-// shown, ghost or hidden, by the server's rule.
-export function assetLook({ hidden = [], ghost = [], isolate = [] }, id) {
-    if (hidden.includes(id))
-        return 'hidden';
-    if (ghost.includes(id))
-        return 'ghost';
-    return isolate.length > 0 && !isolate.includes(id) ? 'hidden' : 'shown';
-}

@@ -23,7 +23,7 @@ const MOST_BACKLOG_BYTES = 64 * 1024, RECENT_MS = 5000;
 const pick = (from, names) => Object.fromEntries(names.filter((name) => from[name] !== undefined).map((name) => [name, from[name]]));
 
 // A frame's camera has a field of view of 0 where it has none.
-const asAsked = (camera) => (camera.height_m === undefined ? camera : cameraOfMessage({ ...camera, fov: undefined }));
+export const asAsked = (camera) => (camera.height_m === undefined ? camera : cameraOfMessage({ ...camera, fov: undefined }));
 
 export class Session {
     // wanted: { camera or null, params, time } from the page's address. Events: hello (a new connection), welcome, params, time, tags
@@ -244,42 +244,11 @@ export class Session {
         this.emit('following');
     }
 
-    // One of those who follow us leads from now on; the event `following` says that it does.
-    lead(session) {
-        this.post({ type: 'lead', session });
-    }
-
     // Goes to an instant (null: to now; undefined: stays where it is) and plays from there.
     travel(atUs, speed = 0) {
         if (this.leader !== null)
             this.follow(null);
         this.post({ type: 'time', ...(atUs === undefined ? {} : { at_us: atUs && Math.round(atUs) }), speed });
-    }
-
-    // Asks for a camera that looks at something (id: asset, tag or null; side: as in plantcast.v1); answered by the event `fitted`.
-    fit({ id = null, side = 'now', projection } = {}) {
-        this.post({ type: 'fit', seq: ++this.fitSeq, id, side, ...(projection ? { projection } : {}) });
-    }
-
-    // Asks what is at a pixel of the picture on the screen; the event `picked` answers the newest question, and says its purpose.
-    pick(x, y, purpose) {
-        if (!this.welcomed || !this.picture)
-            return;
-        this.pickPurpose = purpose;
-        this.connection.send({ type: 'pick', seq: ++this.pickSeq, x, y, camera: cameraMessage(asAsked(this.picture.camera)) });
-    }
-
-    // alarms: [[tag, kind], ...]; answered by the event `alarmed`.
-    actOnAlarm(action, alarms, more = {}) {
-        this.post({ type: 'alarm', seq: ++this.alarmSeq, action, alarms, ...more });
-    }
-
-    // What engineers say: place, gaps, save_tags, prove; each answer comes as the event of its type. Its number; 0: nobody listens.
-    tell(type, fields = {}) {
-        if (!this.welcomed)
-            return 0;
-        this.connection.send({ type, seq: ++this.toldSeq, ...fields });
-        return this.toldSeq;
     }
 
     // This frame is on the screen.

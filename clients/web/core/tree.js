@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The list of equipment as rows: areas, assets, their tags, and tags that belong to nothing; what of it is open, and what a search finds.
+// The list of equipment as rows: areas, assets, their tags, and tags that belong to nothing; and what of it is open.
 
 // Rows: { kind: area | asset | tag, level, id, open (areas and assets), item (asset or tag), text (of an area), setSize, place }.
 export class Tree {
@@ -7,23 +7,18 @@ export class Tree {
     constructor(model, loose) {
         this.folded = new Set(); // areas
         this.open = new Set();   // assets
-        const low = (...texts) => texts.filter(Boolean).join(' ').toLowerCase();
         const known = new Map();
         for (const asset of model.assets) {
             const area = asset.area ?? '';
-            const tags = asset.tags.map((tag) => ({ tag, text: low(tag.name, tag.description) }));
             if (!known.has(area))
                 known.set(area, []);
-            known.get(area).push({ asset, tags, text: low(asset.id, asset.tag, asset.description, area) });
+            known.get(area).push(asset);
         }
         this.areas = [...known].sort(([a], [b]) => Number(a === '') - Number(b === '') || a.localeCompare(b, undefined, { numeric: true }))
             .map(([name, assets]) => ({ name, assets }));
         const strays = model.tags.filter(({ asset }) => asset === null);
-        if (strays.length > 0) {
-            const tags = strays.map((tag) => ({ tag, text: low(tag.name, tag.description) }));
-            const asset = { id: null, tag: loose, description: '', tags: strays };
-            this.areas.push({ name: '', assets: [{ asset, tags, text: low(loose) }] });
-        }
+        if (strays.length > 0)
+            this.areas.push({ name: '', assets: [{ id: null, tag: loose, description: '', tags: strays }] });
     }
 
     toggle({ kind, id, open }) {
@@ -40,15 +35,14 @@ export class Tree {
         this.folded.delete(asset.area ?? '');
     }
 
-    // words: of a search; each must be found in an asset, with all its tags, or in a tag.
-    rows(search = '') {
-        const words = search.toLowerCase().split(/\s+/).filter(Boolean);
+    // find(asset): { asset, tags, byTag } by a search (search.js), null: not found; null: there is none.
+    rows(find = null) {
         const rows = [];
         for (const { name, assets } of this.areas) {
-            const found = assets.map((one) => find(one, words)).filter(Boolean);
+            const found = assets.map(find ?? all).filter(Boolean);
             if (found.length === 0)
                 continue;
-            const level = name ? 1 : 0, open = words.length > 0 || !this.folded.has(name);
+            const level = name ? 1 : 0, open = find !== null || !this.folded.has(name);
             if (name)
                 rows.push({ kind: 'area', level: 1, id: name, open, text: name, count: found.length });
             if (open)
@@ -63,16 +57,10 @@ export class Tree {
             const at = { setSize: found.length, place: i + 1 };
             rows.push({ kind: 'asset', level, id: asset.id, open: tags.length > 0 && open, item: asset, ...at });
             if (open)
-                tags.forEach(({ tag }, n) =>
+                tags.forEach((tag, n) =>
                     rows.push({ kind: 'tag', level: level + 1, id: tag.index, item: tag, setSize: tags.length, place: n + 1 }));
         });
     }
 }
 
-// An asset that a search finds, with the tags to list; null: it does not. byTag: it is there for its tags.
-function find({ asset, tags, text }, words) {
-    if (words.every((word) => text.includes(word)))
-        return { asset, tags, byTag: false };
-    const those = tags.filter((one) => words.every((word) => one.text.includes(word) || text.includes(word)));
-    return those.length > 0 ? { asset, tags: those, byTag: true } : null;
-}
+const all = (asset) => ({ asset, tags: asset.tags, byTag: false });

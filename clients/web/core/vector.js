@@ -12,9 +12,3 @@ export const unit = (a) => scale(a, 1 / length(a));
 export const middle = (a, b) => scale(add(a, b), 0.5);
 export const mix = (a, b, t) => along(a, subtract(b, a), t);
 export const finite = (a) => Array.isArray(a) && a.length === 3 && a.every(Number.isFinite);
-
-// Rodrigues: v turned by `angle` radians about a unit axis, right-handed.
-export function turn(v, axis, angle) {
-    const c = Math.cos(angle), s = Math.sin(angle);
-    return add(add(scale(v, c), scale(cross(axis, v), s)), scale(axis, dot(axis, v) * (1 - c)));
-}

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the page says, in the language of who reads it: one file of words per language beside this folder, and only one of them is loaded.
+// What the page says, in the language of who reads it: of each language two files beside this folder, of what the page says at once and of
+// what its parts say that are loaded later.
 
 export const LANGUAGES = ['en', 'ko', 'de'];
 
@@ -46,11 +47,23 @@ export function phrase(table, plural, key, values = {}) {
 }
 
 const reader = globalThis.document ? chooseLanguage(location.search, navigator.languages) : chooseLanguage();
-const words = readWords((await import(`../words/${reader.language}.js`)).default);
+const tableOf = async (name, tries = 0) => readWords((await import(`../words/${name}.js${tries > 0 ? `?again=${tries}` : ''}`)).default);
+const words = await tableOf(reader.language);
 const rules = new Intl.PluralRules(reader.language);
 
 export const { language, locale } = reader;
 export const say = (key, values) => phrase(words, rules, key, values);
+
+// The words of parts that are loaded later, there from now on; a promise, which fails where they cannot be fetched.
+let learnt = null, failures = 0;
+export function learnWords() {
+    learnt ??= tableOf(`parts.${language}`, failures).then((more) => Object.assign(words, more), (error) => {
+        learnt = null;
+        failures++;
+        throw error;
+    });
+    return learnt;
+}
 
 // Of what has a name of its own that may be known to us: that, else what it is called.
 export const sayIfKnown = (key, otherwise) => (words[key] === undefined ? otherwise : say(key));

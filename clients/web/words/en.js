@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The words of the page in English. [beginning] of keys, then key: text; {name} is put in, [X] is a key to press, (one) a plural.
+// What the page says at once, in English. [beginning] of keys, then key: text; {name} is put in, [X] is a key to press, (one) a plural.
 export default `
-close: Close
 none: none
 novalue: no value
-sun: from {wind}, {height}° high
 viewport: Plant, 3D view. Arrow keys turn, plus and minus zoom, W A S D move, F fits, question mark helps.
 legend: Legend
 card: Tag
@@ -16,7 +14,6 @@ timings: Measurements
 failed: This part of the page could not be loaded. It comes by itself once the server is there.
 
 [distance]
-metres: {metres} m
 geodesic: Geodesic
 geodesic.why: Distance along the surface: heat does not jump across a gap
 euclidean: Euclidean
@@ -94,89 +91,9 @@ gas: Gas
 
 [picture]
 title: Picture
-from: Distance from
-tag: Tag
-difference: Difference from
-kept: Readings kept
-now: Now
-name: Name for the readings of now
-keep: Keep
-scale: Scale
-fill: Places without data
-light: Light: sun {where}
-turn: Side
-turn.why: Side of the sun, degrees from north
-height: Height
-height.why: Height of the sun, degrees
-around: Around
-around.why: Surroundings
-split: Split view
-right: Right half
-
-[scale]
-linear: Linear
-log: Logarithmic
-
-[fill]
-none: Hatched
-none.why: Where no good sensor reaches nothing is shown
-neighbours: By neighbours
-neighbours.why: Filled and dotted
-
-[split]
-one: One picture
-two: Two halves
-
-[environment]
-sky: Sky
-
-[wind]
-N: N
-NE: NE
-E: E
-SE: SE
-S: S
-SW: SW
-W: W
-NW: NW
 
 [views]
 title: Views
-from: Look from
-projection: Projection
-cut: Cut away
-where: Where to cut
-turn: Other side
-equipment: Equipment: {what}
-select: select some first
-all: Show all
-stays: {axis} {sign} {at} m stays
-part: {percent} % of {what}
-plant: the plant
-
-[side]
-top: Top
-front: Front
-right: Right
-back: Back
-left: Left
-iso: Corner
-
-[projection]
-perspective: Perspective
-parallel: Parallel
-
-[cut]
-off: Off
-box: Box
-move: Move the cut: {axis}
-whole: Move the box: arrow keys along X and Y, page keys along Z
-oblique: oblique
-
-[shown]
-hide: Hide
-ghost: Ghost
-only: Only this
 
 [assets]
 title: Equipment
@@ -187,11 +104,6 @@ sensors(one): {count} sensor
 sensors(other): {count} sensors
 loose: Tags without equipment
 about: About the selected equipment
-description: Description
-area: Area
-size: Size
-place: Middle at
-sensors.name: Sensors
 worst: worst quality: {quality}
 
 [viewport]
@@ -209,65 +121,20 @@ nolimits: No limits
 nodata: No data
 uncertain: Uncertain
 
-[card]
-novalue: No value
-quality: Quality
-age: Age
-on: On
-trend: Trend
-HH: above the highest limit
-H: above the high limit
-L: below the low limit
-LL: below the lowest limit
-BAD: bad measurement
-ALM: alarm
-
-[place]
-measured: Measured here
-between: Between sensors
-no data: No data: its nearest sensor is bad, or none reaches
-context: No sensor of this quantity on it
-inside: Inside of what is cut open
-uncertain: {state}, uncertain
-hide: Hide
-ghost: Ghost
-only: Only
-
 [following]
-title: This is the view of session {session}
 own: Own view
 
 [alarms]
 title: Alarms
-close: Close alarms
 unheard: Alarms: nothing heard yet
 none: No active alarms
 some(one): {count} active alarm
 some(other): {count} active alarms
 waiting: {alarms}, {waiting} not acknowledged
 now: Now: {alarms}
-then: The plant is shown as it was. These alarms are those of now.
 at: {alarm} at {value}
 value: {value} (limit {limit})
-quiet: No active alarms.
-aside: Set aside ({count})
-more: and {count} more
-since: since {time}, {age}
-until: until {time}
-by: by {who}
-held: measurement bad: as it last was
 priority: Priority {priority}
-fly: Fly to {tag}
-
-[state]
-active: Active
-unacknowledged: Unacknowledged
-acknowledged: Acknowledged
-returned: Returned, unacknowledged
-latched: Latched
-shelved: Shelved
-suppressed: Suppressed by design
-out_of_service: Out of service
 
 [kind]
 HH: High high
@@ -278,61 +145,16 @@ BAD: Bad measurement
 ALM: Alarm
 LINK: Device gives no readings
 
-[action]
-acknowledge: Acknowledge
-shelve: Shelve…
-reset: Reset
-unshelve: Unshelve
-in_service: Put in service
-
 [mode]
 display: Shown here, acknowledged in the control system
 mirror: As the control system has them
 local: Local alarms of this site
 
-[shelve]
-title: Shelve {what}
-for: For
-quarter: 15 minutes
-hour: 1 hour
-shift: 8 hours
-day: 1 day
-reason: Reason
-cancel: Cancel
-do: Shelve
-
 [trends]
 title: Trend
-time: Time
-csv: Export CSV
-close: Close trends
-hour: 1 h
-hour.why: Last hour
-shift: Shift
-shift.why: Last 8 hours
-day: Day
-day.why: Last 24 hours
-week: Week
-week.why: Last 7 days
-remove: Remove {tag}
-gaps: Hatched: no value of {tags}
-failed: No trend: {why}
-unsaved: Not exported: {why}
-uncharted: this server was built without its charts (npm was not there)
 
 [time]
 title: History
-play: Play
-pause: Pause
-speed: Speed of play
-span: Time that the slider spans
-slider: Instant that is shown
-live: Back to live
-now: Now
-ago: {instant} · {age} ago
-unrecorded: not recorded
-raised(one): {count} alarm raised
-raised(other): {count} alarms raised
 
 [status]
 clock: Plant time
@@ -391,200 +213,11 @@ good: Good
 uncertain: Uncertain
 bad: Bad
 unknown: Unknown
-because: {quality}: {detail}
-
-[detail]
-CommunicationError: communication error
-ConfigurationError: configuration error
-DeviceFailure: device failure
-NoCommunication: no communication
-OutOfService: out of service
-SensorFailure: sensor failure
-WaitingForInitialData: waiting for initial data
-EngineeringUnitsExceeded: engineering units exceeded
-LastUsableValue: last usable value
-NoCommunicationLastUsableValue: no communication last usable value
-SensorNotAccurate: sensor not accurate
-
-[timings]
-ms: Milliseconds
-half: half
-most: 95 %
-input: Input to picture
-sensor: Reading to picture
-wait: waiting
-field: field
-render: drawing
-encode: encoding
-network: network
-decode: decoding
-rate: {pictures} pictures/s, {kbit} kbit/s
-follow: Session {session}. Who opens {link} sees this view.
-
-[token]
-title: Token
-needed: This server asks who you are.
-bad: This token is not valid, or no longer.
-go: Continue
-note: Whoever runs this server makes tokens: {command}. It is kept until this tab is closed.
-
-[help]
-title: Moving around
-close: Close help
-mouse: Mouse
-touch: Touch
-keys: Keys
-turn: Turn
-turn.mouse: Left drag
-turn.touch: One finger
-move: Move
-move.mouse: Right, middle or [Shift] drag
-move.touch: Two fingers
-look: Look around
-look.mouse: [Ctrl] drag
-look.touch: Three fingers
-zoom: Zoom
-zoom.mouse: Wheel
-zoom.touch: Pinch
-fit: Fit
-fit.mouse: Double click
-fit.touch: Double tap
-home: Home
-from: Look from
-from.keys: [T] top, [I] corner, [O] parallel, [V] all views, [P] picture
-what: What is there
-what.mouse: Click
-what.touch: Tap
-selected: Selected
-selected.keys: [X] hide, [G] ghost, [L] alone, [U] all
-quantity.keys: [1] to [9]
-equipment.keys: [B], search [/]
-history.keys: [Y], back to live [N]
-markers: Markers
-mark.good: good reading
-mark.uncertain: uncertain reading
-mark.bad: bad: no value
-mark.behind: behind something
-mark.alarm: alarm; its colour is the priority
-mark.acknowledged: acknowledged alarm
-mark.returned: returned or latched
-
-[measure]
-first: Click the first place
-second: Click the second place
-done: Click to measure again
-missed: Nothing is there: click on the plant
-end: Done
-parts: level {level} m, rise {rise} m
-
-[snapshot]
-failed: No picture: {why}
-unnamed: a comparison needs readings that were kept under a name
-
-[share]
-title: Share
-what: What to open
-view: This view
-view.why: Opens this view: camera, quantity, colours, instant.
-tag: This tag
-tag.why: Opens at the tag. To be printed and put at the equipment.
-asset: This equipment
-asset.why: Opens at the equipment. To be printed and put there.
-follow: Follow me
-follow.why: Whoever opens it sees what you see, while you look.
-link: Link
-copy: Copy
-copied: Copied
-code: The link as a code to scan
-nocode: This server was built without codes to scan (npm was not there).
-local: Opens on this machine only: its address here is a local one.
-people: Who looks along
-followers(one): {count} follows this view, of session {session}.
-followers(other): {count} follow this view, of session {session}.
-lead: Let session {session} lead
 
 [simulated]
 all: Simulated
 partly: Partly simulated
 
-[factor]
-range: Range of the colours
-min: From
-max: To
-own: The group’s own
-title: How the field is computed
-strength: Strength
-decay: Decay
-power: Power
-radius_m: Radius m, 0: by itself
-reach_m: Reach m, empty: no limit
-of: Of {tag} alone
-choose: Of one sensor: select it first
-reset(one): As configured ({count} sensor)
-reset(other): As configured ({count} sensors)
-
 [proof]
 none: Unproven
-fail: Unproven: failed
-changed: Unproven: changed since
-pass: Proven
-
-[eng]
-title: Engineer
-close: Close the engineer’s panel
-place: Place
-prove: Prove
-what: What to do
-find: Find a tag
-nowhere: stands nowhere yet
-on: on {asset}
-choose: Choose a tag, then click on the surface; or drag its marker.
-click: {tag}: click on the surface, or drag its marker.
-missed: There is no surface at that place.
-moves: Tried out, for you alone
-nomoves: Nothing is moved. What you try out only you can see, until it is saved.
-off: {metres} m off the surface
-waiting: straight distances, those along the surface follow
-straight: straight distances only
-ready: along the surface
-undo: Undo
-back: Take all back
-gaps: Gaps
-save: Save …
-gaps.of: Gaps: {quantity}
-gap: Farthest from any sensor: {metres} m. {far} % of the surface is more than {limit} m away; {lost} % has no data now.
-gap.next: Farthest apart: {a} to {b}, {metres} m.
-gap.off: {tag} is {metres} m off the surface of {asset} (at most {limit} m)
-gap.none: No sensor is off its surface.
-diff: Save {file}?
-diff.before: before
-diff.after: after
-diff.line: line {n}
-diff.note: The list as it is stays beside it. It is then in force for everybody; that takes some seconds.
-diff.conflict: {file} was changed by somebody else and is not loaded yet. Nothing was saved; this is what they changed:
-diff.more: … and {count} more lines
-cancel: Cancel
-confirm: Save and put in force
-saving: Being prepared; everybody is still shown the plant as it was.
-saved: In force. The list before it is {kept}.
-unsaved: Not saved: {text}
-device: Device
-proven: {done} of {count} proven
-expected: Expected
-tolerance: Tolerance ±
-watch: Watch
-watching: Force the transmitter now.
-still: Nothing has moved yet.
-moved: {tag} moved most: by {by}.
-swapped: {tag} moved, not {wanted}: are they swapped?
-compare: Compare
-fails: Fails
-csv: Values from CSV …
-csv.note: {count} expected values were read.
-csv.bad: Columns Tag Name, Expected, Tolerance are needed.
-export: Export results
-remark: Remark
-passed: {tag} passed: {value}.
-failed: {tag} failed: {why}.
-now: now {value}
 `;

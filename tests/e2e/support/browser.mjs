@@ -76,6 +76,19 @@ export async function settle(page, quietMs = 0) {
     }
 }
 
+// Until the picture has the size that it has in the page, and nothing flies any more.
+export const land = (page) => page.waitForFunction(() => {
+    const { pilot, session: { picture, size }, viewport } = globalThis.plantcast, ratio = devicePixelRatio;
+    return !pilot?.fly && Math.abs(size.width - viewport.width * ratio) <= 2 && Math.abs(size.height - viewport.height * ratio) <= 2 &&
+        picture.fullWidth === size.width && picture.fullHeight === size.height;
+}, null, { timeout: 60000 });
+
+// Likewise, and then as settle().
+export async function arrive(page) {
+    await land(page);
+    await settle(page);
+}
+
 // Until the picture at a place is another colour than it was.
 export const waitForChange = (page, { x, y }, { width, rgba }, least) => page.waitForFunction(([px, py, was, step]) => {
     const now = document.getElementById('picture').getContext('2d').getImageData(px, py, 1, 1).data;
@@ -94,6 +107,14 @@ export const pageOf = (page, point) => page.evaluate(async (at) => {
     const box = document.getElementById('viewport').getBoundingClientRect();
     const [x, y] = projector(globalThis.plantcast.session.camera, box.width, box.height)(at);
     return [box.left + x, box.top + y];
+}, point);
+
+// Where the picture on the screen has a place of the plant, in the page: { x, y }.
+export const drawnAt = (page, point) => page.evaluate(async (place) => {
+    const [{ projector }, { halves }] = await Promise.all([import('/core/camera.js'), import('/core/halves.js')]);
+    const { session: { picture, params }, viewport } = globalThis.plantcast, box = viewport.element.getBoundingClientRect();
+    const [x, y] = projector(picture.camera, halves(params, picture.fullWidth)[0].width, picture.fullHeight)(place);
+    return { x: box.left + (x * box.width) / picture.fullWidth, y: box.top + (y * box.height) / picture.fullHeight };
 }, point);
 
 // What the hand took hold of, once the server has said where that is; null: nothing.

@@ -3,6 +3,7 @@
 import assert from 'node:assert/strict';
 import { appendFileSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
+import { drawnAt } from './browser.mjs';
 import { TinyPlant } from './tiny_plant.mjs';
 
 // [plant, url].
@@ -31,10 +32,11 @@ export async function everyPanel(page, f) {
     };
     await page.waitForFunction(() => globalThis.plantcast.session.recorded && globalThis.plantcast.session.model.alarms.list().length > 0);
     await f('page');
-    const at = await page.evaluate(() => {
-        const { overlay, session: { model } } = globalThis.plantcast;
-        return [overlay.pageOf(model.tag('TI-1').position), overlay.pageOf(model.asset('P-101A').bounds.max)];
+    const places = await page.evaluate(() => {
+        const { model } = globalThis.plantcast.session;
+        return [model.tag('TI-1').position, model.asset('P-101A').bounds.max];
     });
+    const at = await Promise.all(places.map((place) => drawnAt(page, place)));
     await page.mouse.click(at[0].x, at[0].y);
     await page.locator('#card').waitFor();
     await f('card');
@@ -51,6 +53,7 @@ export async function everyPanel(page, f) {
     await press('Escape', 'closed');
     if (await page.locator('#display-toggle').isVisible()) {
         await page.locator('#display-toggle').click();
+        await page.locator('#display.open').waitFor();
         await f('display');
         await press('Escape', 'closed');
     }

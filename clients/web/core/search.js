@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a search finds in the list of equipment.
+
+const known = new WeakMap(); // of assets and tags: what a search looks in
+function textOf(item, ...texts) {
+    if (!known.has(item))
+        known.set(item, texts.filter(Boolean).join(' ').toLowerCase());
+    return known.get(item);
+}
+
+// For the rows of a tree: from an asset to { asset, tags to list, byTag: it is there for its tags }, or to null. Each word of the search
+// must be found in an asset, which then comes with all its tags, or in a tag. null: nothing is searched for.
+export function search(wanted) {
+    const words = wanted.toLowerCase().split(/\s+/).filter(Boolean);
+    return words.length === 0 ? null : (asset) => {
+        const text = textOf(asset, asset.id, asset.tag, asset.description, asset.area);
+        if (words.every((word) => text.includes(word)))
+            return { asset, tags: asset.tags, byTag: false };
+        const has = (tag, word) => textOf(tag, tag.name, tag.description).includes(word) || text.includes(word);
+        const tags = asset.tags.filter((tag) => words.every((word) => has(tag, word)));
+        return tags.length > 0 ? { asset, tags, byTag: true } : null;
+    };
+}

@@ -1,0 +1,392 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the parts of the page say that are loaded when they are first used, in German.
+export default `
+close: Schließen
+sun: aus {wind}, {height}° hoch
+
+[distance]
+metres: {metres} m
+
+[picture]
+from: Abstand von
+tag: Messstelle
+difference: Differenz zu
+kept: Behaltene Messwerte
+now: Jetzt
+name: Name für die jetzigen Messwerte
+keep: Behalten
+scale: Skala
+fill: Stellen ohne Daten
+light: Licht: Sonne {where}
+turn: Seite
+turn.why: Seite der Sonne, Grad von Norden
+height: Höhe
+height.why: Höhe der Sonne, Grad
+around: Umgebung
+around.why: Umgebung
+split: Geteilte Ansicht
+right: Rechte Hälfte
+
+[scale]
+linear: Linear
+log: Logarithmisch
+
+[fill]
+none: Schraffiert
+none.why: Wo kein guter Messpunkt hinreicht, wird nichts gezeigt
+neighbours: Aus Nachbarn
+neighbours.why: Gefüllt und gepunktet
+
+[split]
+one: Ein Bild
+two: Zwei Hälften
+
+[environment]
+sky: Himmel
+
+[wind]
+N: N
+NE: NO
+E: O
+SE: SO
+S: S
+SW: SW
+W: W
+NW: NW
+
+[views]
+from: Blick von
+projection: Projektion
+cut: Wegschneiden
+where: Lage des Schnitts
+turn: Andere Seite
+equipment: Anlagenteil: {what}
+select: erst eines wählen
+all: Alle zeigen
+stays: {axis} {sign} {at} m bleibt
+part: {percent} % von {what}
+plant: der Anlage
+
+[side]
+top: Oben
+front: Vorn
+right: Rechts
+back: Hinten
+left: Links
+iso: Schräg
+
+[projection]
+perspective: Perspektive
+parallel: Parallel
+
+[cut]
+off: Aus
+box: Quader
+move: Schnitt verschieben: {axis}
+whole: Quader verschieben: Pfeiltasten entlang X und Y, Bildtasten entlang Z
+oblique: schräg
+
+[shown]
+hide: Ausblenden
+ghost: Durchsichtig
+only: Nur dies
+
+[assets]
+description: Beschreibung
+area: Bereich
+size: Größe
+place: Mitte bei
+sensors.name: Sensoren
+
+[card]
+novalue: Kein Wert
+quality: Qualität
+age: Alter
+on: An
+trend: Trend
+HH: über dem höchsten Grenzwert
+H: über dem oberen Grenzwert
+L: unter dem unteren Grenzwert
+LL: unter dem tiefsten Grenzwert
+BAD: Messung gestört
+ALM: Alarm
+
+[place]
+measured: Hier gemessen
+between: Zwischen Messpunkten
+no data: Keine Daten: der nächste Sensor ist gestört, oder keiner reicht hin
+context: Kein Sensor dieser Messgröße daran
+inside: Inneres des Aufgeschnittenen
+uncertain: {state}, unsicher
+hide: Ausblenden
+ghost: Durchsichtig
+only: Nur dies
+
+[following]
+title: Dies ist die Ansicht von Sitzung {session}
+
+[alarms]
+close: Alarme schließen
+then: Gezeigt wird die Anlage von damals. Diese Alarme sind die von jetzt.
+quiet: Keine aktiven Alarme.
+aside: Zurückgestellt ({count})
+more: und {count} weitere
+since: seit {time}, {age}
+until: bis {time}
+by: durch {who}
+held: Messung gestört: wie zuletzt
+fly: Zu {tag} fliegen
+
+[state]
+active: Aktiv
+unacknowledged: Nicht quittiert
+acknowledged: Quittiert
+returned: Gegangen, nicht quittiert
+latched: Gehalten
+shelved: Zurückgestellt
+suppressed: Planmäßig unterdrückt
+out_of_service: Außer Betrieb
+
+[action]
+acknowledge: Quittieren
+shelve: Zurückstellen …
+reset: Zurücksetzen
+unshelve: Wieder melden
+in_service: In Betrieb nehmen
+
+[shelve]
+title: {what} zurückstellen
+for: Für
+quarter: 15 Minuten
+hour: 1 Stunde
+shift: 8 Stunden
+day: 1 Tag
+reason: Grund
+cancel: Abbrechen
+do: Zurückstellen
+
+[trends]
+time: Zeit
+csv: CSV exportieren
+close: Trends schließen
+hour: 1 h
+hour.why: Letzte Stunde
+shift: Schicht
+shift.why: Letzte 8 Stunden
+day: Tag
+day.why: Letzte 24 Stunden
+week: Woche
+week.why: Letzte 7 Tage
+remove: {tag} entfernen
+gaps: Schraffiert: kein Wert von {tags}
+failed: Kein Trend: {why}
+unsaved: Nicht exportiert: {why}
+uncharted: dieser Server wurde ohne seine Diagramme gebaut (npm fehlte)
+
+[time]
+play: Abspielen
+pause: Anhalten
+speed: Geschwindigkeit
+span: Zeitspanne des Schiebers
+slider: Gezeigter Zeitpunkt
+live: Zurück zu jetzt
+now: Jetzt
+ago: {instant} · vor {age}
+unrecorded: nicht aufgezeichnet
+raised(one): {count} Alarm gekommen
+raised(other): {count} Alarme gekommen
+
+[quality]
+because: {quality}: {detail}
+
+[detail]
+CommunicationError: Kommunikationsfehler
+ConfigurationError: Konfigurationsfehler
+DeviceFailure: Gerätefehler
+NoCommunication: keine Kommunikation
+OutOfService: außer Betrieb
+SensorFailure: Sensorfehler
+WaitingForInitialData: wartet auf erste Daten
+EngineeringUnitsExceeded: außerhalb des Messbereichs
+LastUsableValue: letzter brauchbarer Wert
+NoCommunicationLastUsableValue: keine Kommunikation, letzter brauchbarer Wert
+SensorNotAccurate: Sensor ungenau
+
+[timings]
+ms: Millisekunden
+half: Median
+most: 95 %
+input: Eingabe bis Bild
+sensor: Messwert bis Bild
+wait: Warten
+field: Feld
+render: Zeichnen
+encode: Kodieren
+network: Netz
+decode: Dekodieren
+rate: {pictures} Bilder/s, {kbit} kbit/s
+follow: Sitzung {session}. Wer {link} öffnet, sieht diese Ansicht.
+
+[token]
+title: Token
+needed: Dieser Server fragt, wer Sie sind.
+bad: Dieses Token gilt nicht oder nicht mehr.
+go: Weiter
+note: Tokens macht, wer diesen Server betreibt: {command}. Es wird behalten, bis dieser Tab geschlossen wird.
+
+[help]
+title: Bedienung
+close: Hilfe schließen
+mouse: Maus
+touch: Berühren
+keys: Tasten
+turn: Drehen
+turn.mouse: Links ziehen
+turn.touch: Ein Finger
+move: Verschieben
+move.mouse: Rechts, Mitte oder [Shift] ziehen
+move.touch: Zwei Finger
+look: Umsehen
+look.mouse: Ziehen mit [Ctrl]
+look.touch: Drei Finger
+zoom: Zoomen
+zoom.mouse: Rad
+zoom.touch: Spreizen
+fit: Einpassen
+fit.mouse: Doppelklick
+fit.touch: Doppelt tippen
+home: Grundansicht
+from: Blick von
+from.keys: [T] oben, [I] schräg, [O] parallel, [V] alle Ansichten, [P] Bild
+what: Was dort ist
+what.mouse: Klick
+what.touch: Tippen
+selected: Gewähltes
+selected.keys: [X] ausblenden, [G] durchsichtig, [L] allein, [U] alle
+quantity.keys: [1] bis [9]
+equipment.keys: [B], suchen [/]
+history.keys: [Y], zurück zu jetzt [N]
+markers: Markierungen
+mark.good: guter Messwert
+mark.uncertain: unsicherer Messwert
+mark.bad: gestört: kein Wert
+mark.behind: verdeckt
+mark.alarm: Alarm; die Farbe ist die Priorität
+mark.acknowledged: quittierter Alarm
+mark.returned: gegangen oder gehalten
+
+[measure]
+first: Ersten Punkt anklicken
+second: Zweiten Punkt anklicken
+done: Für eine neue Messung klicken
+missed: Dort ist nichts: auf die Anlage klicken
+end: Fertig
+parts: waagrecht {level} m, Höhe {rise} m
+
+[snapshot]
+failed: Kein Bild: {why}
+unnamed: ein Vergleich braucht Werte, die unter einem Namen behalten wurden
+
+[share]
+title: Teilen
+what: Was sich öffnet
+view: Ansicht
+view.why: Öffnet diese Ansicht: Kamera, Größe, Farben, Zeitpunkt.
+tag: Messstelle
+tag.why: Öffnet sich an der Messstelle. Zum Ausdrucken und Anbringen.
+asset: Apparat
+asset.why: Öffnet sich am Apparat. Zum Ausdrucken und Anbringen.
+follow: Mir folgen
+follow.why: Wer ihn öffnet, sieht mit, solange Sie schauen.
+link: Link
+copy: Kopieren
+copied: Kopiert
+code: Der Link als Code zum Scannen
+nocode: Dieser Server wurde ohne Codes zum Scannen gebaut (npm fehlte).
+local: Öffnet sich nur auf diesem Rechner: seine Adresse hier ist eine lokale.
+people: Wer mitschaut
+alone: Niemand folgt dieser Ansicht, Sitzung {session}.
+followers(one): {count} folgt dieser Ansicht, Sitzung {session}.
+followers(other): {count} folgen dieser Ansicht, Sitzung {session}.
+lead: Sitzung {session} führen lassen
+
+[factor]
+range: Bereich der Farben
+min: Von
+max: Bis
+own: Der eigene der Größe
+title: Wie das Feld berechnet wird
+strength: Stärke
+decay: Abfall
+power: Exponent
+radius_m: Radius m, 0: von selbst
+reach_m: Reichweite m, leer: ohne
+of: Nur von {tag}
+choose: Eines Sensors: erst auswählen
+reset(one): Wie eingestellt ({count} Sensor)
+reset(other): Wie eingestellt ({count} Sensoren)
+
+[proof]
+fail: Ungeprüft: nicht bestanden
+changed: Ungeprüft: seither geändert
+pass: Geprüft
+
+[eng]
+title: Ingenieur
+close: Feld des Ingenieurs schließen
+place: Setzen
+prove: Prüfen
+what: Was zu tun ist
+find: Messstelle suchen
+nowhere: steht noch nirgends
+on: an {asset}
+choose: Eine Messstelle wählen, dann auf die Oberfläche klicken; oder ihr Zeichen ziehen.
+click: {tag}: auf die Oberfläche klicken oder das Zeichen ziehen.
+missed: Dort ist keine Oberfläche.
+moves: Ausprobiert, nur für Sie
+nomoves: Nichts ist versetzt. Was Sie ausprobieren, sehen nur Sie, bis es gespeichert ist.
+off: {metres} m neben der Oberfläche
+waiting: gerade Abstände, die entlang der Oberfläche folgen
+straight: nur gerade Abstände
+ready: entlang der Oberfläche
+undo: Zurück
+back: Alles zurück
+gaps: Lücken
+save: Speichern …
+gaps.of: Lücken: {quantity}
+gap: Am weitesten von jeder Messstelle: {metres} m. {far} % der Oberfläche sind über {limit} m entfernt; {lost} % haben jetzt keine Daten.
+gap.next: Am weitesten auseinander: {a} zu {b}, {metres} m.
+gap.off: {tag} ist {metres} m neben der Oberfläche von {asset} (höchstens {limit} m)
+gap.none: Keine Messstelle steht neben ihrer Oberfläche.
+diff: {file} speichern?
+diff.before: vorher
+diff.after: nachher
+diff.line: Zeile {n}
+diff.note: Die Liste, wie sie ist, bleibt daneben stehen. Danach gilt sie für alle; das dauert einige Sekunden.
+diff.conflict: {file} wurde von jemand anderem geändert und ist noch nicht geladen. Nichts wurde gespeichert; das wurde geändert:
+diff.more: … und {count} weitere Zeilen
+cancel: Abbrechen
+confirm: Speichern und in Kraft setzen
+saving: Wird vorbereitet; alle sehen die Anlage noch, wie sie war.
+saved: In Kraft. Die Liste davor ist {kept}.
+unsaved: Nicht gespeichert: {text}
+device: Gerät
+proven: {done} von {count} geprüft
+expected: Erwartet
+tolerance: Toleranz ±
+watch: Beobachten
+watching: Jetzt den Messumformer verstellen.
+still: Noch hat sich nichts bewegt.
+moved: {tag} hat sich am meisten bewegt: um {by}.
+swapped: {tag} hat sich bewegt, nicht {wanted}: sind sie vertauscht?
+compare: Vergleichen
+fails: Nicht bestanden
+csv: Werte aus CSV …
+csv.note: {count} erwartete Werte wurden gelesen.
+csv.bad: Die Spalten Tag Name, Expected, Tolerance werden gebraucht.
+export: Ergebnisse ausgeben
+remark: Bemerkung
+passed: {tag} bestanden: {value}.
+failed: {tag} nicht bestanden: {why}.
+now: jetzt {value}
+`;

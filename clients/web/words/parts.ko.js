@@ -1,0 +1,391 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the parts of the page say that are loaded when they are first used, in Korean.
+export default `
+close: 닫기
+sun: {wind}쪽, 고도 {height}°
+
+[distance]
+metres: {metres} m
+
+[picture]
+from: 거리의 기준
+tag: 태그
+difference: 차이의 기준
+kept: 저장한 지시값
+now: 지금
+name: 현재 지시값의 이름
+keep: 저장
+scale: 눈금
+fill: 데이터가 없는 곳
+light: 조명: 태양 {where}
+turn: 방향
+turn.why: 태양의 방향, 북쪽에서 잰 각도
+height: 높이
+height.why: 태양의 높이, 각도
+around: 주변
+around.why: 주변 환경
+split: 화면 분할
+right: 오른쪽 화면
+
+[scale]
+linear: 선형
+log: 로그
+
+[fill]
+none: 빗금
+none.why: 정상 센서가 닿지 않는 곳에는 아무 값도 표시하지 않음
+neighbours: 이웃 값
+neighbours.why: 채우고 점으로 표시
+
+[split]
+one: 한 화면
+two: 두 화면
+
+[environment]
+sky: 하늘
+
+[wind]
+N: 북
+NE: 북동
+E: 동
+SE: 남동
+S: 남
+SW: 남서
+W: 서
+NW: 북서
+
+[views]
+from: 보는 방향
+projection: 투영
+cut: 단면
+where: 자를 위치
+turn: 반대쪽
+equipment: 설비: {what}
+select: 먼저 선택하세요
+all: 모두 표시
+stays: {axis} {sign} {at} m 남김
+part: {what}의 {percent} %
+plant: 플랜트
+
+[side]
+top: 위
+front: 앞
+right: 오른쪽
+back: 뒤
+left: 왼쪽
+iso: 모서리
+
+[projection]
+perspective: 원근
+parallel: 평행
+
+[cut]
+off: 끔
+box: 상자
+move: 단면 옮기기: {axis}
+whole: 상자 옮기기: 화살표 키는 X와 Y, Page 키는 Z 방향
+oblique: 비스듬히
+
+[shown]
+hide: 숨기기
+ghost: 투명
+only: 이것만
+
+[assets]
+description: 설명
+area: 구역
+size: 크기
+place: 중심
+sensors.name: 센서
+
+[card]
+novalue: 값 없음
+quality: 품질
+age: 경과
+on: 설비
+trend: 추세
+HH: 최고 한계 초과
+H: 상한 초과
+L: 하한 미만
+LL: 최저 한계 미만
+BAD: 계측 불량
+ALM: 알람
+
+[place]
+measured: 측정된 곳
+between: 센서 사이
+no data: 데이터 없음: 가장 가까운 센서가 불량이거나 닿는 센서가 없음
+context: 이 측정량의 센서가 없는 설비
+inside: 잘린 설비의 내부
+uncertain: {state}, 불확실
+hide: 숨기기
+ghost: 투명
+only: 이것만
+
+[following]
+title: 세션 {session}의 화면입니다
+
+[alarms]
+close: 알람 닫기
+then: 화면은 과거의 플랜트입니다. 이 알람은 현재의 알람입니다.
+quiet: 활성 알람이 없습니다.
+aside: 보류됨 ({count})
+more: 외 {count}건
+since: {time}부터, {age}
+until: {time}까지
+by: 처리: {who}
+held: 계측 불량: 마지막 상태 유지
+fly: {tag}(으)로 이동
+
+[state]
+active: 활성
+unacknowledged: 미확인
+acknowledged: 확인됨
+returned: 복귀, 미확인
+latched: 유지
+shelved: 보류
+suppressed: 설계에 따라 억제
+out_of_service: 사용 중지
+
+[action]
+acknowledge: 확인
+shelve: 보류…
+reset: 리셋
+unshelve: 보류 해제
+in_service: 사용 재개
+
+[shelve]
+title: {what} 보류
+for: 기간
+quarter: 15분
+hour: 1시간
+shift: 8시간
+day: 1일
+reason: 사유
+cancel: 취소
+do: 보류
+
+[trends]
+time: 시각
+csv: CSV 내보내기
+close: 추세 닫기
+hour: 1시간
+hour.why: 지난 1시간
+shift: 근무조
+shift.why: 지난 8시간
+day: 하루
+day.why: 지난 24시간
+week: 일주일
+week.why: 지난 7일
+remove: {tag} 제거
+gaps: 빗금: {tags} 값 없음
+failed: 추세 없음: {why}
+unsaved: 내보내지 못함: {why}
+uncharted: 이 서버는 차트 없이 빌드되었습니다 (npm이 없었음)
+
+[time]
+play: 재생
+pause: 일시 정지
+speed: 재생 속도
+span: 슬라이더의 시간 범위
+slider: 표시하는 시점
+live: 실시간으로
+now: 지금
+ago: {instant} · {age} 전
+unrecorded: 기록 없음
+raised(other): 알람 {count}건 발생
+
+[quality]
+because: {quality}: {detail}
+
+[detail]
+CommunicationError: 통신 오류
+ConfigurationError: 구성 오류
+DeviceFailure: 장치 고장
+NoCommunication: 통신 없음
+OutOfService: 사용 중지
+SensorFailure: 센서 고장
+WaitingForInitialData: 첫 데이터 대기
+EngineeringUnitsExceeded: 측정 범위 초과
+LastUsableValue: 마지막 유효값
+NoCommunicationLastUsableValue: 통신 없음, 마지막 유효값
+SensorNotAccurate: 센서 부정확
+
+[timings]
+ms: 밀리초
+half: 중앙값
+most: 95 %
+input: 입력에서 화면까지
+sensor: 지시값에서 화면까지
+wait: 대기
+field: 필드
+render: 그리기
+encode: 부호화
+network: 네트워크
+decode: 복호화
+rate: 화면 {pictures}/s, {kbit} kbit/s
+follow: 세션 {session}. {link} 링크를 열면 이 화면을 함께 봅니다.
+
+[token]
+title: 토큰
+needed: 이 서버는 사용자 확인이 필요합니다.
+bad: 토큰이 올바르지 않거나 만료되었습니다.
+go: 계속
+note: 토큰은 서버 운영자가 만듭니다: {command}. 이 탭을 닫을 때까지 보관됩니다.
+
+[help]
+title: 조작 방법
+close: 도움말 닫기
+mouse: 마우스
+touch: 터치
+keys: 키보드
+turn: 회전
+turn.mouse: 왼쪽 끌기
+turn.touch: 한 손가락
+move: 이동
+move.mouse: 오른쪽, 가운데 또는 [Shift] 끌기
+move.touch: 두 손가락
+look: 둘러보기
+look.mouse: [Ctrl] 끌기
+look.touch: 세 손가락
+zoom: 확대·축소
+zoom.mouse: 휠
+zoom.touch: 벌리기·오므리기
+fit: 맞춤
+fit.mouse: 두 번 클릭
+fit.touch: 두 번 탭
+home: 기본 시점
+from: 보는 방향
+from.keys: [T] 위, [I] 모서리, [O] 평행 투영, [V] 모든 시점, [P] 화면
+what: 위치 정보
+what.mouse: 클릭
+what.touch: 탭
+selected: 선택한 설비
+selected.keys: [X] 숨기기, [G] 투명, [L] 이것만, [U] 모두
+quantity.keys: [1]부터 [9]까지
+equipment.keys: [B], 검색 [/]
+history.keys: [Y], 실시간으로 [N]
+markers: 표식
+mark.good: 정상 지시값
+mark.uncertain: 불확실한 지시값
+mark.bad: 불량: 값 없음
+mark.behind: 가려짐
+mark.alarm: 알람, 색은 우선순위
+mark.acknowledged: 확인된 알람
+mark.returned: 복귀 또는 유지
+
+[measure]
+first: 첫 번째 지점을 누르세요
+second: 두 번째 지점을 누르세요
+done: 다시 측정하려면 누르세요
+missed: 그곳에는 아무것도 없습니다: 설비를 누르세요
+end: 완료
+parts: 수평 {level} m, 높이 {rise} m
+
+[snapshot]
+failed: 그림 없음: {why}
+unnamed: 비교하려면 이름을 붙여 보관한 값이 필요합니다
+
+[share]
+title: 공유
+what: 무엇을 열까요
+view: 이 화면
+view.why: 이 화면을 엽니다: 카메라, 물리량, 색, 시각.
+tag: 이 태그
+tag.why: 태그 위치에서 열립니다. 인쇄하여 설비에 붙이세요.
+asset: 이 설비
+asset.why: 설비 위치에서 열립니다. 인쇄하여 그곳에 붙이세요.
+follow: 나를 따라 보기
+follow.why: 여는 사람은 내가 보는 동안 같은 화면을 봅니다.
+link: 링크
+copy: 복사
+copied: 복사됨
+code: 스캔할 수 있는 링크 코드
+nocode: 이 서버는 스캔 코드 없이 만들어졌습니다 (npm 없음).
+local: 이 컴퓨터에서만 열립니다: 주소가 로컬 주소입니다.
+people: 함께 보는 사람
+alone: 이 화면(세션 {session})을 따라 보는 사람이 없습니다.
+followers(other): {count}명이 이 화면(세션 {session})을 따라 봅니다.
+lead: 세션 {session}에 주도권 넘기기
+
+[factor]
+range: 색 범위
+min: 최소
+max: 최대
+own: 그룹 기본값
+title: 필드 계산 방법
+strength: 세기
+decay: 감쇠
+power: 지수
+radius_m: 반경 m, 0: 자동
+reach_m: 도달 거리 m, 비움: 무제한
+of: {tag} 하나만
+choose: 센서 하나: 먼저 선택하세요
+reset(other): 설정값으로 (센서 {count}개)
+
+[proof]
+fail: 미확인: 불합격
+changed: 미확인: 이후 변경됨
+pass: 확인됨
+
+[eng]
+title: 엔지니어
+close: 엔지니어 패널 닫기
+place: 배치
+prove: 확인
+what: 할 일
+find: 태그 찾기
+nowhere: 아직 위치 없음
+on: {asset} 위
+choose: 태그를 선택한 다음 표면을 클릭하거나 표식을 끌어다 놓으세요.
+click: {tag}: 표면을 클릭하거나 표식을 끄세요.
+missed: 그곳에는 표면이 없습니다.
+moves: 시험 중, 본인에게만 보임
+nomoves: 옮긴 것이 없습니다. 시험하는 위치는 저장할 때까지 본인에게만 보입니다.
+off: 표면에서 {metres} m 떨어짐
+waiting: 직선 거리, 표면 거리는 곧 이어짐
+straight: 직선 거리만
+ready: 표면을 따라
+undo: 실행 취소
+back: 모두 되돌리기
+gaps: 빈틈
+save: 저장 …
+gaps.of: 빈틈: {quantity}
+gap: 모든 센서에서 가장 먼 곳: {metres} m. 표면의 {far} %가 {limit} m보다 멀고,
+    {lost} %는 지금 데이터가 없습니다.
+gap.next: 가장 멀리 떨어진 이웃: {a} – {b}, {metres} m.
+gap.off: {tag}은(는) {asset} 표면에서 {metres} m 떨어져 있습니다 (최대 {limit} m)
+gap.none: 표면에서 벗어난 센서가 없습니다.
+diff: {file}을(를) 저장할까요?
+diff.before: 이전
+diff.after: 이후
+diff.line: {n}행
+diff.note: 지금의 목록은 옆에 그대로 남습니다. 저장하면 모두에게 적용되며 몇 초가 걸립니다.
+diff.conflict: {file}을(를) 다른 사람이 바꾸었고 아직 불러오지 않았습니다.
+    저장하지 않았습니다. 바뀐 내용:
+diff.more: … 그 밖에 {count}행
+cancel: 취소
+confirm: 저장하고 적용
+saving: 준비 중입니다. 모두에게는 아직 이전의 설비가 보입니다.
+saved: 적용되었습니다. 이전 목록은 {kept}입니다.
+unsaved: 저장하지 않음: {text}
+device: 장치
+proven: {count}개 중 {done}개 확인됨
+expected: 기댓값
+tolerance: 허용 오차 ±
+watch: 지켜보기
+watching: 지금 전송기 값을 강제로 바꾸세요.
+still: 아직 움직인 것이 없습니다.
+moved: {tag}이(가) 가장 많이 움직임: {by}.
+swapped: {wanted}이(가) 아니라 {tag}이(가) 움직였습니다. 서로 바뀌었나요?
+compare: 비교
+fails: 불합격
+csv: CSV의 값 …
+csv.note: 기댓값 {count}개를 읽었습니다.
+csv.bad: Tag Name, Expected, Tolerance 열이 필요합니다.
+export: 결과 내보내기
+remark: 비고
+passed: {tag} 합격: {value}.
+failed: {tag} 불합격: {why}.
+now: 현재 {value}
+`;

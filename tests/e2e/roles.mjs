@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What each role may do about an alarm, by the site's mode: seen in the page, and held to by the server; over plain http, by a name.
+import assert from 'node:assert/strict';
+import { appendFileSync, chmodSync, existsSync, readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { openPage, PHONE, settle, shoot, TABLET, waitForHealth, waitForPicture } from './support/browser.mjs';
+import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+
+const absent = missing(), chromium = process.env.CHROMIUM ?? '/usr/bin/chromium';
+const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : !existsSync(chromium) ? 'chromium is not installed' : false;
+const options = { skip, timeout: 200000 };
+const SCREENS = { viewer: PHONE, operator: { ...TABLET, viewport: { width: 768, height: 1024 } }, engineer: TABLET };
+const DOES = { viewer: [], operator: ['acknowledge', 'shelve'], engineer: ['acknowledge', 'shelve'] }; // about a new one, where it may
+const pages = {};
+let plant, browsers;
+
+const setMode = (mode) => writeFileSync(plant.file, readFileSync(plant.file, 'utf8').replace(/^alarms: \w+$/m, `alarms: ${mode}`));
+
+before(async () => {
+    if (skip)
+        return;
+    plant = await TinyPlant.create();
+    appendFileSync(plant.file, 'alarms: local\n');
+    const tags = join(plant.folder, 'tags.csv');
+    writeFileSync(tags, readFileSync(tags, 'utf8').split('\n').map((line, i) => line && line + (i === 0 ? ',H' : ',60')).join('\n'));
+    assert.equal(plant.prepare().code, 0);
+    await plant.startSim();
+    const file = join(plant.folder, 'tokens'), make = (role) =>
+        runProgram('plantcast', ['token', 'add', file, '--role', role, '--name', `${role}-1`]).out.trim();
+    const tokens = Object.fromEntries(Object.keys(SCREENS).map((role) => [role, make(role)]));
+    chmodSync(file, 0o600);
+    await plant.startDaemon('--behind-proxy', '--host', 'plant.example', '--tokens', file);
+    for (const [tag, value] of [['TI-1', 80], ['TI-2', 20], ['PI-1', 5]])
+        await plant.tell(`set ${tag} ${value}`);
+    browsers = await Promise.all(Object.entries(SCREENS).map(async ([role, screen]) => {
+        const args = ['--host-resolver-rules=MAP plant.example 127.0.0.1'];
+        const browser = await openPage(`http://plant.example:${plant.port}/`, { ...screen, args });
+        pages[role] = browser.page;
+        await browser.page.locator('#token[open]').waitFor();
+        await browser.page.locator('#token-text').fill(tokens[role]);
+        await browser.page.locator('#token-form button').tap();
+        await waitForPicture(browser.page);
+        return browser;
+    }));
+});
+after(async () => {
+    for (const { close } of browsers ?? [])
+        await close();
+    await plant?.destroy();
+});
+
+const everyRole = async (f) => {
+    for (const [role, page] of Object.entries(pages))
+        await f(page, role);
+};
+const waitForState = (page, states) => page.waitForFunction((any) =>
+    any.includes(globalThis.plantcast.session.model.alarms.list()[0]?.state ?? 'none'), states);
+const waitForMode = (page, mode) => page.waitForFunction((is) => globalThis.plantcast.session.welcomed &&
+    globalThis.plantcast.session.model.alarms.known && globalThis.plantcast.session.model.alarms.mode === is, mode);
+// What can be pressed about the first alarm of the list, or of those that are set aside.
+const offered = async (page, list = '#alarms-list') => {
+    await page.locator(`${list} li`).first().waitFor();
+    return page.locator(`${list} li`).first().locator('.do button').evaluateAll((all) => all.map((button) => button.dataset.action));
+};
+// What the server answers to who asks all the same.
+const ask = (page, action) => page.evaluate(async (what) => {
+    const { actOnAlarm } = await import('/core/requests.js'), { session } = globalThis.plantcast;
+    return new Promise((done) => {
+        session.on('alarmed', ({ refused }) => done(refused.map(([, , why]) => why?.code ?? why).join() || 'done'));
+        session.on('error', ({ code }) => done(code));
+        actOnAlarm(session, what, [['TI-1', 'H']], what === 'shelve' ? { reason: 'because', for_s: 900 } : {});
+    });
+}, action);
+
+test('on plain http by a name it is live, in pictures that need no secure page', options, () => everyRole(async (page, role) => {
+    await waitForHealth(page, 'live');
+    assert.deepEqual(await page.evaluate(() => [isSecureContext, globalThis.plantcast.session.codec, globalThis.plantcast.session.role]),
+        [false, 'jpeg', role]);
+}));
+
+test('where alarms are this site\'s own, operators and engineers act on them, viewers only look', options, async () => {
+    await everyRole(async (page, role) => {
+        await waitForState(page, ['unacknowledged']);
+        await page.locator('#alarm-strip').tap();
+        assert.deepEqual(await offered(page), DOES[role], role);
+        await settle(page);
+        await shoot(page, `roles-${role}`);
+    });
+    assert.equal(await ask(pages.viewer, 'acknowledge'), 'not_allowed');
+    assert.equal(await ask(pages.viewer, 'shelve'), 'not_allowed');
+    await waitForState(pages.viewer, ['unacknowledged']); // and nothing came of it
+    await pages.operator.locator('[data-action="shelve"]').tap();
+    await pages.operator.locator('#shelve-reason').fill('calibration');
+    await pages.operator.locator('#shelve button[type="submit"]').tap();
+    await everyRole(async (page, role) => {
+        assert.deepEqual(await offered(page, '#alarms-aside'), role === 'viewer' ? [] : ['unshelve'], role);
+        assert.match(await page.locator('#alarms-aside li').textContent(), /by operator-1, calibration/, 'everybody is told who and why');
+    });
+    await pages.engineer.locator('[data-action="unshelve"]').tap();
+    await everyRole((page) => waitForState(page, ['unacknowledged']));
+    await pages.operator.locator('[data-action="acknowledge"]').tap();
+    await everyRole(async (page, role) => {
+        await waitForState(page, ['acknowledged']);
+        await page.locator('#alarms-list .acknowledged').waitFor();
+        assert.deepEqual(await offered(page), role === 'viewer' ? [] : ['shelve'], role);
+    });
+});
+
+for (const mode of ['display', 'mirror']) {
+    test(`where the control system has them (${mode}), nobody acts on them here`, options, async () => {
+        setMode(mode);
+        plant.daemon.child.kill('SIGHUP');
+        await everyRole(async (page, role) => {
+            await waitForMode(page, mode);
+            await page.waitForFunction((words) => document.getElementById('alarm-mode').textContent === words,
+                mode === 'display' ? 'Shown here, acknowledged in the control system' : 'As the control system has them');
+            if (mode === 'display') // of limits there are alarms; of `mirror` only those that the control system has
+                assert.deepEqual(await offered(page), [], role);
+            assert.equal(await page.locator('#alarms [data-action]').count(), 0, role);
+        });
+        await shoot(pages.operator, `roles-${mode}`);
+        assert.notEqual(await ask(pages.operator, 'acknowledge'), 'done');
+        assert.notEqual(await ask(pages.engineer, 'shelve'), 'done');
+        for (const { errors } of browsers)
+            assert.deepEqual(errors, []);
+    });
+}

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Room for everything on every screen: lists and panels stand beside the picture, and what it is read by stays whole and in sight.
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { arrive, land, openPage, PHONE, shoot, TABLET, waitForPicture } from './support/browser.mjs';
+import { startAlarmed } from './support/panels.mjs';
+import { missing } from './support/tiny_plant.mjs';
+
+const absent = missing();
+const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 200000 };
+const SCREENS = {
+    desk: { viewport: { width: 1280, height: 800 } },
+    'low window': { viewport: { width: 1280, height: 520 } },
+    tablet: TABLET,
+    'tablet upright': { ...TABLET, viewport: { width: 768, height: 1024 } },
+    phone: PHONE,
+    'phone across': { ...PHONE, viewport: { width: 844, height: 390 } },
+};
+let plant, url;
+
+before(async () => {
+    if (!options.skip)
+        [plant, url] = await startAlarmed();
+});
+after(() => plant?.destroy());
+
+// What lies over the picture, or leaves it, and should not; and what of the legend is not there to be read.
+const amiss = (page) => page.evaluate(() => {
+    const box = (element) => element.getBoundingClientRect(), picture = box(document.getElementById('viewport'));
+    const shown = (selector) => [...document.querySelectorAll(selector)].filter((e) => e.checkVisibility() && box(e).width > 0);
+    const within = (a, b) => a.left >= b.left - 1 && a.right <= b.right + 1 && a.top >= b.top - 1 && a.bottom <= b.bottom + 1;
+    const meet = (a, b) => a.left < b.right - 1 && b.left < a.right - 1 && a.top < b.bottom - 1 && b.top < a.bottom - 1;
+    const found = [];
+    for (const panel of shown('.alarms, .engineer, .lower, .alarm-strip, .toolbar'))
+        if (meet(box(panel), picture) || !within(box(panel), { left: 0, top: 0, right: innerWidth, bottom: innerHeight }))
+            found.push(`${panel.className} lies over the picture or leaves the screen`);
+    for (const cell of shown('.status .cell'))
+        if (!within(box(cell), { left: 0, top: 0, right: innerWidth, bottom: innerHeight }))
+            found.push(`${cell.textContent} is cut off`);
+    for (const part of shown('.viewport > .card, .viewport > .legend'))
+        if (!within(box(part), picture))
+            found.push(`${part.id} leaves the picture`);
+    const legend = document.getElementById('legend'), texts = [...legend.querySelectorAll('.ticks span, .limits span, .keys span')];
+    const isSaid = shown('#legend').length > 0 && /No data/.test(legend.querySelector('.keys').textContent);
+    if (picture.height > (innerWidth < 720 ? 125 : 200) && !isSaid)
+        found.push('no legend, or no key for what has no data');
+    for (const [i, text] of texts.entries()) {
+        if (shown('#legend').length > 0 && (!text.checkVisibility() || !within(box(text), box(legend))))
+            found.push(`${text.textContent} is not within the legend`);
+        if (texts.slice(i + 1).some((other) => meet(box(text), box(other))))
+            found.push(`${text.textContent} is written over another`);
+    }
+    return found;
+});
+
+// The marker of a tag is in the picture, and nothing is before it.
+const inSight = (page, name) => page.evaluate((tag) => {
+    const { overlay, session } = globalThis.plantcast, marker = overlay.marker(session.model.tag(tag));
+    if (!marker)
+        return 'no marker';
+    const { x, y } = overlay.placeOf(marker), origin = document.getElementById('viewport').getBoundingClientRect();
+    const before = document.elementFromPoint(origin.left + x, origin.top + y);
+    return before?.closest('.viewport > canvas, .viewport') && !before.closest('.card') ? 'in sight' : before?.id || before?.className;
+}, name);
+
+for (const [name, screen] of Object.entries(SCREENS)) {
+    test(`${name}: an alarm, its place, its trend and the past, and the engineer's panel`, options, async () => {
+        const browser = await openPage(url, screen), { page } = browser, file = name.replace(' ', '-');
+        const press = (selector) => (screen.hasTouch ? page.locator(selector).first().tap() : page.locator(selector).first().click());
+        try {
+            await waitForPicture(page);
+            await page.waitForFunction(() => globalThis.plantcast.session.model.alarms.list().length > 0 &&
+                globalThis.plantcast.session.recorded && !document.getElementById('legend').hidden);
+            await land(page);
+            assert.deepEqual(await amiss(page), [], 'as it opens');
+            await press('#alarm-strip');
+            await page.locator('#alarms-list li').first().waitFor();
+            await land(page);
+            assert.deepEqual(await amiss(page), [], 'alarms');
+            await page.locator('#alarms-list li', { hasText: 'TI-1' }).locator('.alarm-go').first().click();
+            await page.locator('#card').waitFor();
+            await arrive(page);
+            assert.deepEqual(await amiss(page), [], 'flown to');
+            assert.equal(await inSight(page, 'TI-1'), 'in sight');
+            await shoot(page, `room-${file}-alarm`);
+            await press('#card .trend'); // nothing lies over it
+            await page.locator('#trend-chart canvas').waitFor();
+            await press('#time-toggle');
+            await page.locator('#time-slider').waitFor();
+            await arrive(page);
+            assert.deepEqual(await amiss(page), [], 'trend and past');
+            await shoot(page, `room-${file}-trend`);
+            await press('#trend-close');
+            await press('#time-toggle');
+            const listed = await page.locator('#alarms').isVisible();
+            await press('#engineer-toggle');
+            await page.locator('#engineer').waitFor();
+            assert.equal(await page.locator('#alarms').isVisible(), false, 'one of both');
+            if (listed) { // and there is a way to and fro
+                await press('#alarm-strip');
+                await page.locator('#engineer').waitFor({ state: 'hidden' });
+                await press('#engineer-toggle');
+                await page.locator('#alarms').waitFor({ state: 'hidden' });
+            }
+            await page.locator('#engineer .tags button', { hasText: 'TI-2' }).click();
+            await arrive(page);
+            assert.deepEqual(await amiss(page), [], 'engineer');
+            assert.equal(await inSight(page, 'TI-2'), 'in sight');
+            await shoot(page, `room-${file}-engineer`);
+            assert.deepEqual(browser.errors, []);
+        } finally {
+            await browser.close();
+        }
+    });
+}

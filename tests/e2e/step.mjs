@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Markers and labels in step with the picture while a hand moves it, over a link that is slow: each stands where the very frame that is
+// on the screen has its place, not where the camera is by then.
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { openPage, settle, shoot, TABLET, waitForPicture } from './support/browser.mjs';
+import { Relay, relayMissing } from './support/relay.mjs';
+import { missing, TinyPlant } from './support/tiny_plant.mjs';
+
+const absent = [...missing(), relayMissing()].filter(Boolean);
+const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 200000 };
+const LEAST_VIEWS = 10, LEAST_RUN_PX = 12;
+const MARK_PX = 1.5, PICTURE_PX = 5; // edges of what is coded, and coarse while it moves, bleed a little
+let plant, relay;
+
+before(async () => {
+    if (options.skip)
+        return;
+    plant = await TinyPlant.running();
+    await plant.tell('set TI-1 94');
+    await plant.tell('set TI-2 94'); // of one colour all over
+    relay = await Relay.open(plant.port, { bytesPerS: 4e6, delayMs: 120 });
+});
+after(async () => {
+    relay?.close();
+    await plant?.destroy();
+});
+
+// From now on, of every frame as it is drawn: where this test's own perspective has the markers and the corners of the box by that frame's
+// camera and by the camera that the page has by now; where the page says that markers are, the pixels of its markers, and what the picture
+// shows in colour.
+const watch = (page) => page.evaluate((LEAST_RUN_PX) => {
+    const { viewport, session, overlay } = globalThis.plantcast, { onDrawn } = viewport, picture = document.getElementById('picture');
+    const marks = document.getElementById('overlay'), ratio = devicePixelRatio, { min, max } = session.model.asset('E-101').bounds;
+    const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((n) => [0, 1, 2].map((i) => (n & (1 << i) ? max[i] : min[i])));
+    const minus = (a, b) => a.map((v, i) => v - b[i]), dot = (a, b) => a.reduce((sum, v, i) => sum + v * b[i], 0);
+    const cross = ([a, b, c], [d, e, f]) => [b * f - c * e, c * d - a * f, a * e - b * d], unit = (a) => a.map((v) => v / Math.hypot(...a));
+    const seenFrom = ({ eye, target, up, fov }) => (point) => { // a share of the picture's height, from its middle
+        const forward = unit(minus(target, eye)), right = unit(cross(forward, up)), d = minus(point, eye);
+        const far = 2 * Math.tan((fov * Math.PI) / 360) * dot(d, forward);
+        return [dot(d, right) / far, -dot(d, cross(right, forward)) / far];
+    };
+    const inPage = (project, point) => {
+        const [x, y] = project(point), { width, height } = viewport;
+        return [width / 2 + x * height, height / 2 + y * height];
+    };
+    const bounds = (points) => [0, 1].flatMap((i) => [Math.min(...points.map((p) => p[i])), Math.max(...points.map((p) => p[i]))]);
+    // Of runs of coloured pixels: single ones are what a codec left of pictures before.
+    const coloured = () => {
+        const { width, height } = picture, { data } = picture.getContext('2d').getImageData(0, 0, width, height), ends = [];
+        for (let y = 0, run = 0; y < height; y++, run = 0)
+            for (let x = 0, i = 4 * y * width; x <= width; x++, i += 4) {
+                const [r, g, b] = x < width ? [data[i], data[i + 1], data[i + 2]] : [0, 0, 0];
+                if (Math.max(r, g, b) - Math.min(r, g, b) > 60) {
+                    run++;
+                    continue;
+                }
+                if (run >= LEAST_RUN_PX)
+                    ends.push([x - run, y], [x, y + 1]);
+                run = 0;
+            }
+        return ends.length > 100 ? bounds(ends.map(([x, y]) => [(x * viewport.width) / width, (y * viewport.height) / height])) : null;
+    };
+    const whiteAt = ([x, y]) => { // of the disc of a marker
+        const { data } = marks.getContext('2d').getImageData(Math.round(x * ratio), Math.round(y * ratio), 1, 1);
+        return Math.min(...data) > 200;
+    };
+    globalThis.frames = [];
+    viewport.onDrawn = (isNew) => {
+        onDrawn(isNew);
+        if (!isNew)
+            return;
+        const shown = seenFrom(session.picture.camera), asked = seenFrom(session.camera);
+        globalThis.frames.push({
+            eye: session.picture.camera.eye, coloured: coloured(),
+            box: bounds(corners.map((corner) => inPage(shown, corner)).map(([x, y]) => // as much of it as is in the picture
+                [Math.max(0, Math.min(viewport.width, x)), Math.max(0, Math.min(viewport.height, y))])),
+            markers: overlay.markers.filter(({ occluded }) => !occluded).map((marker) => {
+                const at = inPage(shown, marker.tag.position), { x, y } = overlay.placeOf(marker);
+                return { name: marker.tag.name, off: Math.hypot(x - at[0], y - at[1]), white: whiteAt(at),
+                    behind: Math.hypot(...minus(at, inPage(asked, marker.tag.position))) };
+            }),
+        });
+    };
+}, LEAST_RUN_PX);
+
+async function look(page) {
+    await waitForPicture(page);
+    await page.waitForFunction(() => globalThis.plantcast.session.model.readings.slice(0, 2).every(({ value }) => value === 94));
+    await page.evaluate(() => {
+        const { session } = globalThis.plantcast;
+        session.setParams({ look: 'flat', hidden: ['P-101A'] });
+        session.setCamera({ eye: [2.2, -2.6, 1.6], target: [0, 0, 0], up: [0, 0, 1], fov: 45 });
+        globalThis.plantcast.viewport.invalidate();
+    });
+    await page.evaluate(() => globalThis.plantcast.parts.get('pilot'));
+    await settle(page);
+    await watch(page);
+}
+
+// step(i): the hand goes on, until enough was seen.
+async function move(page, step) {
+    const enough = () => page.evaluate((least) => new Set(globalThis.frames.map(({ eye }) => eye.join())).size >= least, LEAST_VIEWS);
+    for (let i = 1; i < 100 || (i < 4000 && !await enough()); i++) {
+        await step(i);
+        await page.waitForTimeout(8);
+    }
+}
+
+async function judge(page, t) {
+    await settle(page);
+    const frames = await page.evaluate(() => globalThis.frames), seen = frames.flatMap(({ markers }) => markers);
+    const views = new Set(frames.map(({ eye }) => eye.map((m) => m.toFixed(4)).join())).size;
+    const [behind, worst] = ['behind', 'off'].map((name) => Math.max(...seen.map((marker) => marker[name])));
+    const edges = frames.filter(({ coloured }) => coloured).map(({ box, coloured }) =>
+        Math.max(...box.map((v, i) => Math.abs(v - coloured[i])))).sort((a, b) => a - b), edge = edges[edges.length >> 1];
+    t.diagnostic(`${frames.length} frames of ${views} cameras, up to ${behind.toFixed(0)} px behind the hand; ` +
+        `markers ${worst.toFixed(2)} px, edges of the picture ${edge.toFixed(1)} px from where the frame's camera has them`);
+    assert.ok(views >= LEAST_VIEWS, `${views} cameras`);
+    assert.ok(behind > 10, 'the hand was ahead of the picture: else this shows nothing');
+    assert.ok(worst <= MARK_PX, `a marker ${worst} px off`);
+    assert.deepEqual(seen.filter(({ white }) => !white), [], 'the marker is drawn there');
+    assert.ok(edge <= PICTURE_PX, `the picture: ${edges}`);
+}
+
+const url = (codec) => `http://127.0.0.1:${relay.port}/?codec=${codec}`;
+const middle = async (page) => {
+    const box = await page.locator('#viewport').boundingBox();
+    return [box.x + box.width / 2, box.y + box.height / 2];
+};
+
+test('by the mouse: turned, moved and zoomed', options, async (t) => {
+    const { page, errors, close } = await openPage(url('h264'), { viewport: { width: 1100, height: 700 } });
+    try {
+        await look(page);
+        const [x, y] = await middle(page);
+        await page.mouse.move(x, y);
+        await page.mouse.down();
+        await move(page, (i) => page.mouse.move(x + 200 * Math.sin(i / 20), y + 40 * Math.sin(i / 9)));
+        await page.mouse.up();
+        await page.mouse.move(x, y);
+        for (const step of [-120, -120, 200, 160]) {
+            await page.mouse.wheel(0, step);
+            await page.waitForTimeout(60);
+        }
+        await judge(page, t);
+        await shoot(page, 'step');
+        assert.deepEqual(errors, []);
+    } finally {
+        await close();
+    }
+});
+
+test('by fingers, on a tablet held upright', options, async (t) => {
+    const { page, errors, close } = await openPage(url('jpeg'), { ...TABLET, viewport: { width: 768, height: 1024 } });
+    try {
+        await look(page);
+        const [x, y] = await middle(page), client = await page.context().newCDPSession(page);
+        const touch = (type, ...touchPoints) => client.send('Input.dispatchTouchEvent', { type, touchPoints });
+        await touch('touchStart', { x, y, id: 0 });
+        await move(page, (i) => touch('touchMove', { x: x + 200 * Math.sin(i / 20), y: y + 40 * Math.sin(i / 9), id: 0 }));
+        await touch('touchEnd');
+        await judge(page, t);
+        await shoot(page, 'step-tablet');
+        assert.deepEqual(errors, []);
+    } finally {
+        await close();
+    }
+});

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The sheets of the page: no rule is for what the page never has.
+import assert from 'node:assert/strict';
+import { readdirSync, readFileSync } from 'node:fs';
+import { test } from 'node:test';
+
+const WEB = new URL('../../clients/web/', import.meta.url);
+const read = (name) => readFileSync(new URL(name, WEB), 'utf8');
+const files = ['app', 'core'].flatMap((folder) => readdirSync(new URL(folder, WEB)).map((name) => `${folder}/${name}`));
+const page = read('index.html') + files.filter((name) => /\.(js|html)$/.test(name)).map(read).join('\n');
+const words = new Set(page.match(/[\w-]+/g));
+const isNumbered = (name) => /^[a-z]\d$/.test(name) && page.includes(` ${name[0]}\${`); // p1, p2, ...
+const isTheChartsOwn = (name) => name.startsWith('u-');
+
+// Selectors of a sheet, without what stands in braces; those of @media and the like are inside of it.
+const selectors = (sheet) => [...sheet.replace(/\/\*.*?\*\//gs, '').matchAll(/([^{};]+)\{/g)].map(([, text]) => text.trim())
+    .filter((text) => !text.startsWith('@'));
+
+test('each class and name in a sheet is one that the page gives', () => {
+    const unknown = [], known = [];
+    for (const file of files.filter((name) => name.endsWith('.css'))) {
+        for (const selector of selectors(read(file))) {
+            for (const [, name] of selector.replace(/"[^"]*"/g, '').matchAll(/[.#]([a-zA-Z][\w-]*)/g))
+                (words.has(name) || isNumbered(name) || isTheChartsOwn(name) ? known : unknown).push(`${file}: ${name}`);
+        }
+    }
+    assert.deepEqual(unknown, []);
+    assert.ok(known.length > 500, `${known.length} were found`);
+});
