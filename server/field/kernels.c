@@ -249,16 +249,19 @@ KERNEL void kernel_value(const struct kernel_value *rule, const double *restrict
     }
 }
 
-float kernel_store(const float *restrict value, size_t count, struct scalar *restrict at, bool *changed)
+KERNEL float kernel_store(const float *restrict value, size_t count, struct scalar *restrict at, bool *changed)
 {
-    float most = 0.0f;
-    bool any = false;
+    int32_t most = 0; /* bits of the largest change: see kernel_largest */
     for (size_t j = 0; j < count; j++) {
         float change = fabsf(value[j] - at[j].value);
-        most = change > most ? change : most;
-        any |= value[j] != at[j].value;
-        at[j].value = value[j];
+        int32_t bits;
+        memcpy(&bits, &change, sizeof(bits));
+        most = bits > most ? bits : most;
     }
-    *changed |= any;
-    return most;
+    for (size_t j = 0; j < count; j++)
+        at[j].value = value[j];
+    *changed |= most > 0;
+    float most_change;
+    memcpy(&most_change, &most, sizeof(most_change));
+    return most_change;
 }
