@@ -113,10 +113,17 @@ test('mouse, wheel and keys move the camera, and the picture follows', options, 
     assert.ok(Number.isFinite(parseInt(await page.locator('#latency').textContent(), 10)), 'latency is measured');
 });
 
+const codec = () => page.evaluate(() => globalThis.plantcast.session.picture.codec);
+// Of tags that are shown as measured.
+const measured = () => page.evaluate(() => globalThis.plantcast.session.model.readings.filter(({ quality }) => quality === 'good').length);
+const waitForMeasured = (count) => page.waitForFunction((least) =>
+    globalThis.plantcast.session.model.readings.filter(({ quality }) => quality === 'good').length >= least, count, { timeout: 60000 });
+
 test('the daemon dies: said in words, the picture stays; it returns: the same view, by itself', options, async () => {
+    await page.evaluate(async () => (await import('/app/first.js')).proveCodecs()); // else it does so at some later picture
     await page.evaluate(() => globalThis.plantcast.session.setParams({ distance: 'euclidean', ramp_interval: 20 }));
     await settle(page, QUIET_MS);
-    const before = await grab(page), asked = await view(page);
+    const before = await grab(page), asked = await view(page), tags = await measured(), coded = await codec();
     await plant.stopDaemon('SIGKILL');
     await waitForHealth(page, 'lost', 5000);
     assert.equal(await page.locator('#health .words').textContent(), 'Disconnected');
@@ -129,11 +136,13 @@ test('the daemon dies: said in words, the picture stays; it returns: the same vi
     await plant.startDaemon();
     await waitForHealth(page, 'live');
     assert.equal(await page.locator('#banner').isVisible(), false);
+    await waitForMeasured(tags);
     await settle(page, QUIET_MS);
     const now = await view(page);
     assert.deepEqual(now.camera, asked.camera);
     for (const name of ['group', 'distance', 'interpolation', 'ramp_interval', 'colormap', 'look'])
         assert.equal(now.params[name], asked.params[name], name);
+    assert.equal(await codec(), coded, 'coded in the same way');
     const again = difference(before, await grab(page));
     assert.ok(countOutside(again, 32, {}) < again.at.length * 0.01, 'the same picture again');
     await shoot(page, 'reconnected');

@@ -384,6 +384,29 @@ test('health: each state has its own kind and words', () => {
     assert.equal(now().detail, 'The server went down. This picture is 6.3 s old. Trying again in 1 s.');
 });
 
+test('health: after a reconnect it is not live before the picture is one of the new connection', () => {
+    const { connection, session, clock, sockets } = makeSession(), kinds = [];
+    const now = () => health(session, clock.now());
+    const status = { type: 'status', time_us: 1, live: true, links: [] };
+    const greet = (socket) => [welcome, status].forEach((message) => socket.say(message));
+    connection.start();
+    sockets[0].accept();
+    greet(sockets[0]);
+    assert.equal(now().kind, 'live', 'no picture is no old one');
+    session.drawn({ seq: 1, cameraSeq: 0 }, 1);
+    sockets[0].fail(1001);
+    connection.onState = () => kinds.push(now().kind);
+    clock.advance(4000);
+    sockets[1].accept();
+    greet(sockets[1]);
+    clock.advance(400);
+    assert.equal(now().kind, 'lost');
+    assert.match(now().detail, /^This picture is 4\.4 s old\./);
+    session.drawn({ seq: 1, cameraSeq: 0 }, 1);
+    assert.equal(now().kind, 'live');
+    assert.deepEqual([...new Set(kinds)], ['lost'], 'nor for a moment');
+});
+
 test('a frame that the server gave up is passed over in silence', () => {
     const { socket, events } = greeted();
     socket.sayBytes(vectorBytes('frame/bad-payload-missing.bin'));

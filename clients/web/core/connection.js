@@ -108,8 +108,9 @@ export class Connection {
         this.pingAt = null; // of the first one that nothing came after
         this.nextPing = this.lastHeard + PING_MS;
         this.watch();
+        this.state = 'open';
+        this.onOpen(); // before anybody is told: what the last server said holds no more
         this.become('open');
-        this.onOpen();
     }
 
     heard(data) {

@@ -13,7 +13,7 @@ export function health(session, now) {
         const detail = [say('health.silent', { age: ageText(now - connection.lastHeard) }), old].filter(Boolean).join(' ');
         return { kind: 'silent', words: say('health.noanswer'), detail, banner: true };
     }
-    if (connection.state !== 'open' || !session.welcomed || model.live === null)
+    if (connection.state !== 'open' || !session.isCurrent || model.live === null)
         return lost(connection, picture, old, now);
     if (session.time.atUs !== null || picture?.past)
         return past(session);

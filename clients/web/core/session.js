@@ -46,7 +46,8 @@ export class Session {
         this.cameraInput = null; // when a hand made it; latency counts from there
         this.markers = new Map();
         this.serverTime = null;  // { us, at }
-        this.freshAt = null;     // when a greeted server last spoke: how old the picture is once it stops
+        this.freshAt = null;     // when the server of the picture last spoke: how old it is once that stops
+        this.outlived = null;    // the picture of a connection that is gone
         this.rate = new RateMeter();
         this.latency = new LatencyMeter();
         this.recent = [];        // pictures of the last moments, and how they came: { picture, decodeMs, hereUs }
@@ -63,7 +64,7 @@ export class Session {
         this.unheard = null;     // texts, while nobody is there to hear what they say: [[when, text], ...]
         connection.onText = (text) => (this.unheard ? this.unheard.push([this.now(), text]) : this.hear(text));
         connection.onBytes = (bytes) => this.guard(() => {
-            this.freshAt = this.now();
+            this.freshen();
             if (!isGivenUp(bytes))
                 this.emit('frame', decodeFrame(bytes));
         });
@@ -129,6 +130,7 @@ export class Session {
     // parts: what of our view to ask for.
     hello(parts) {
         this.welcomed = false;
+        this.outlived = this.picture;
         if (this.unheard)
             this.unheard = []; // of a connection that is gone
         this.emit('hello');
@@ -251,6 +253,16 @@ export class Session {
         this.post({ type: 'time', ...(atUs === undefined ? {} : { at_us: atUs && Math.round(atUs) }), speed });
     }
 
+    // Whether what is said is said of the picture that is seen.
+    get isCurrent() {
+        return this.welcomed && (!this.picture || this.picture !== this.outlived);
+    }
+
+    freshen() {
+        if (this.isCurrent)
+            this.freshAt = this.now();
+    }
+
     // This frame is on the screen.
     drawn(frame, decodeMs) {
         const now = this.now();
@@ -259,6 +271,7 @@ export class Session {
         if (this.following)
             this.camera = asAsked(frame.camera);
         this.picture = { ...frame, payload: null, bytes: frame.payload?.length ?? 0, at: now };
+        this.freshen();
         this.recent = this.recent.filter(({ picture }) => now - picture.at <= RECENT_MS);
         this.recent.push({ picture: this.picture, decodeMs, hereUs: this.skew ? now * 1000 + this.skew.us : this.clockUs(now) });
         this.connection.send({ type: 'ack', seq: frame.seq, decode_ms: Math.round(decodeMs * 100) / 100 });
@@ -286,8 +299,7 @@ export class Session {
         const ofThen = this.time.atUs !== null && OF_THE_INSTANT.includes(message.type);
         if (message.time_us !== undefined && !ofThen)
             this.serverTime = { us: message.time_us, at: this.now() };
-        if (this.welcomed)
-            this.freshAt = this.now();
+        this.freshen();
         const handler = HANDLERS[message.type];
         if (!handler)
             this.emit('ignored', `message of type ${message.type}`);
