@@ -11,7 +11,7 @@ struct attach {
     } * items;
     struct attach_pair {
         uint32_t a, b;
-    } * pairs, *joins, *lines; /* points that are one; that get an edge; ends of edges that stay such, over what is set into them */
+    } * pairs, *joins; /* points that are one; that get an edge */
     size_t item_count, item_capacity, pair_count, pair_capacity, join_count, join_capacity;
     double longest_m;
 };

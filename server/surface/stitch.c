@@ -121,7 +121,8 @@ struct seams {
     const struct borders *borders;
     struct attach *attach;
     double tolerance_m, end_m; /* places nearer to the end of an edge than end_m are left to the joining of points */
-    struct nearest {           /* of each border point: the best place found on an open edge that is not its own */
+    bool runs_along; /* only where a border runs along the edge: with cracks everywhere, a point lies just on one that it is not of */
+    struct nearest { /* of each border point: the best place found on an open edge that is not its own */
         double distance_m, t;
         uint32_t edge;
     } * nearest;
@@ -133,6 +134,21 @@ static void join_near(void *arg, size_t i, size_t j, double distance_m)
     const struct borders *b = s->borders;
     if (i < j && distance_m < GAP_OF_EDGE * min_of(b->shortest_m[i], b->shortest_m[j]))
         attach_points(s->attach, b->points[i], b->points[j], distance_m);
+}
+
+/* Whether the border at a point runs along the edge: its next point is on the edge's line as well. */
+static bool runs_along(const struct seams *s, size_t i, const double a[3], const double along[3])
+{
+    const struct borders *b = s->borders;
+    for (uint32_t n = b->first[i]; n < b->first[i + 1]; n++) {
+        const uint32_t *edge = b->edges[b->at[n]];
+        double from[3], across[3];
+        vec_sub(s->mesh->points[edge[edge[0] == b->points[i]]], a, from);
+        vec_cross(from, along, across);
+        if (vec_dot(across, across) <= s->tolerance_m * s->tolerance_m * vec_dot(along, along))
+            return true;
+    }
+    return false;
 }
 
 static void try_edge(struct seams *s, size_t i, uint32_t e)
@@ -152,7 +168,7 @@ static void try_edge(struct seams *s, size_t i, uint32_t e)
         return;
     vec_mix(a, c, t, at);
     double distance_m = vec_distance(at, q);
-    if (distance_m <= s->tolerance_m && distance_m < s->nearest[i].distance_m)
+    if (distance_m <= s->tolerance_m && distance_m < s->nearest[i].distance_m && (!s->runs_along || runs_along(s, i, a, ac)))
         s->nearest[i] = (struct nearest){ .distance_m = distance_m, .t = t, .edge = e };
 }
 
@@ -197,7 +213,9 @@ static void seam_round(struct trimesh *mesh, double tolerance_m, double end_m, b
 {
     struct borders borders;
     struct attach attach;
-    struct seams seams = { .mesh = mesh, .borders = &borders, .attach = &attach, .tolerance_m = tolerance_m, .end_m = end_m };
+    struct seams seams = {
+        .mesh = mesh, .borders = &borders, .attach = &attach, .tolerance_m = tolerance_m, .end_m = end_m, .runs_along = end_m > 0
+    };
     borders_init(&borders, mesh);
     attach_init(&attach);
     if (into_edges) {
@@ -220,7 +238,8 @@ void stitch_seams(struct trimesh *mesh, double tolerance_m, uint32_t *target, st
     size_t target_count = mesh->point_count;
     for (uint32_t i = 0; i < target_count; i++)
         target[i] = i;
-    /* What fits exactly first: it is no border any more when gaps are closed, and is not drawn to a neighbour. */
+    /* What fits exactly first: it is no border any more when gaps are closed, and is not drawn to a neighbour. A point that lies on an edge
+       by chance does not fit: pieces of that edge too short to be closed would keep its own gap open. */
     for (int i = 0; i < 2; i++) {
         seam_round(mesh, tolerances_m[i], 0, false, target, target_count, report);
         seam_round(mesh, tolerances_m[i], i == 0 ? tolerance_m : 0, true, target, target_count, report);

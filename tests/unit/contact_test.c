@@ -216,17 +216,50 @@ static void a_foot_stands_on_a_base(void **state)
     cad_finish(&foot);
 }
 
+static void make_flange(struct cad *plate, struct cad *pipe)
+{
+    cad_box(plate, &chance, 36, 40, 4, 0.05);
+    cad_closed_pipe(pipe, &chance, 0.4 + 0.2 * cad_random(&chance), 1, 64, 20, 8, 0, (const double[3]){ 0, 0, 0.5 });
+    move(pipe, 0.1, 0.9, 1, (double)(4 * 0.05f));
+}
+
 static void a_flange_lies_on_a_plate(void **state)
 {
     struct cad plate = { 0 }, pipe = { 0 };
     (void)state;
     skip_if_watched();
-    cad_box(&plate, &chance, 36, 40, 4, 0.05);
-    cad_closed_pipe(&pipe, &chance, 0.4 + 0.2 * cad_random(&chance), 1, 64, 20, 8, 0, (const double[3]){ 0, 0, 0.5 });
-    move(&pipe, 0.1, 0.9, 1, (double)(4 * 0.05f));
+    make_flange(&plate, &pipe);
     test_pair("flange on a plate", &plate, &pipe, 0, false);
     cad_finish(&plate);
     cad_finish(&pipe);
+}
+
+/* A gap of the one runs over a gap of the other, and a vertex at it lies just on the other's edge: as they were drawn when such a vertex
+   was set into that edge, and both bodies became one. */
+static void gaps_of_a_flange_and_its_plate_run_over_each_other(void **state)
+{
+    static const struct {
+        uint64_t shape, gaps;
+    } drawn[] = { { 24, 12172029404843593626u }, { 16, 5872334337837050722u }, { 11, 16606944144200248149u } };
+    const struct cad_random was = chance;
+    (void)state;
+    skip_if_watched();
+    for (size_t i = 0; i < sizeof(drawn) / sizeof(drawn[0]); i++) {
+        struct cad plate = { 0 }, pipe = { 0 }, both = { 0 };
+        struct outer outer;
+        chance.state = drawn[i].shape;
+        make_flange(&plate, &pipe);
+        append(&both, &plate);
+        append(&both, &pipe);
+        outer_init(&outer, &plate, &pipe, &both);
+        chance.state = drawn[i].gaps;
+        assert_true(score("flange, gaps over gaps", &both, &outer, CAD_GAPS, WORST_MAX) >= covered(&outer, &both));
+        outer_finish(&outer);
+        cad_finish(&plate);
+        cad_finish(&pipe);
+        cad_finish(&both);
+    }
+    chance = was;
 }
 
 /* The same vertices on both sides, so that one face is left of two, or two with other diagonals. */
@@ -286,6 +319,7 @@ int main(void)
         cmocka_unit_test(a_tube_passes_through_itself),
         cmocka_unit_test(a_foot_stands_on_a_base),
         cmocka_unit_test(a_flange_lies_on_a_plate),
+        cmocka_unit_test(gaps_of_a_flange_and_its_plate_run_over_each_other),
         cmocka_unit_test(boxes_are_stacked),
         cmocka_unit_test(a_box_stands_at_the_edge_of_another),
     };
