@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { after, before, test } from 'node:test';
-import { drawnAt, openPage, PHONE, shoot, TABLET, waitForPicture } from './support/browser.mjs';
+import { drawnAt, openPage, PHONE, shoot, TABLET, travel, waitForPicture } from './support/browser.mjs';
 import { everyPanel, startAlarmed } from './support/panels.mjs';
 import { missing } from './support/tiny_plant.mjs';
 
@@ -53,10 +53,10 @@ async function lookAtEverything(theme) {
         assert.deepEqual(await findings(page), [], name);
     };
     await everyPanel(page, look);
-    await page.evaluate(() => globalThis.plantcast.session.travel(globalThis.plantcast.session.clockUs() - 5e6));
+    await travel(page, await page.evaluate(() => globalThis.plantcast.session.clockUs() - 5e6));
     await page.waitForFunction(() => globalThis.plantcast.session.picture.past && document.body.classList.contains('shows-past'));
     await look('past');
-    await page.evaluate(() => globalThis.plantcast.session.travel(null));
+    await travel(page, null);
     await page.waitForFunction(() => !globalThis.plantcast.session.picture.past);
     await lookAtTools(look);
     for (const name of ['page', 'card', 'place', 'picture', 'split', 'views', 'trend', 'alarms', 'shelve', 'timings', 'help'])

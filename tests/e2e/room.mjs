@@ -113,3 +113,40 @@ for (const [name, screen] of Object.entries(SCREENS)) {
         }
     });
 }
+
+test('until a picture of the new shape comes, the last one is not distorted, and marks stay where it has them', options, async () => {
+    const { page, close, errors } = await openPage(`${url}?lang=en`, SCREENS.desk);
+    try {
+        await waitForPicture(page);
+        await arrive(page);
+        await page.waitForFunction(() => globalThis.plantcast.overlay.markers.length > 0);
+        await page.evaluate(() => { globalThis.plantcast.session.resize = () => {}; }); // none comes
+        const seen = () => page.evaluate(async () => {
+            const { projector } = await import('/core/camera.js');
+            const { overlay, session: { picture }, viewport } = globalThis.plantcast, canvas = document.getElementById('picture');
+            const box = canvas.getBoundingClientRect(), place = viewport.element.getBoundingClientRect();
+            const project = projector(picture.camera, canvas.width, canvas.height);
+            const across = box.width / canvas.width, up = box.height / canvas.height;
+            const off = overlay.markers.map(({ tag, x, y }) => {
+                const [px, py] = project(tag.position);
+                return Math.hypot(box.left + px * across - place.left - x, box.top + py * up - place.top - y);
+            });
+            return { across, up, off: Math.max(...off), width: place.width, count: off.length };
+        });
+        const first = await seen();
+        for (const id of ['assets-close', 'alarm-strip']) {
+            const before = await seen();
+            await page.locator(`#${id}`).click();
+            await page.waitForFunction((width) => document.getElementById('viewport').clientWidth !== width, before.width);
+            await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+            const { across, up, off, count } = await seen();
+            await shoot(page, `shape-${id}`);
+            assert.ok(Math.abs(across - up) < 0.005 * up, `${id}: ${across.toFixed(3)} across, ${up.toFixed(3)} up`);
+            assert.ok(count > 0 && off < 1.5, `${id}: marks up to ${off.toFixed(1)} px off`);
+        }
+        assert.ok(Math.abs(first.across - first.up) < 1e-3 && first.off < 1.5, JSON.stringify(first));
+        assert.deepEqual(errors, []);
+    } finally {
+        await close();
+    }
+});

@@ -109,6 +109,9 @@ test('desktop: two sets of parameters side by side, each with legend and markers
     await page.waitForTimeout(2000); // two polls
     await page.locator('#picture-toggle').click();
     await page.locator('#split-on label').nth(1).click();
+    await page.locator('#legend-right').waitFor();
+    assert.deepEqual(await page.locator('.legend:visible').evaluateAll((all) => all.map(({ id }) => id)), ['legend-right'],
+        'halves that say the same share one legend');
     await choose('right-group', 'pressure');
     await page.keyboard.press('Escape');
     await choose('isolines', { index: 2 });

@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { openPage, PHONE, settle, shoot, TABLET, waitForHealth, waitForPicture } from './support/browser.mjs';
+import { openPage, PHONE, settle, shoot, TABLET, travel, waitForHealth, waitForPicture } from './support/browser.mjs';
 import { contrastRatio } from './support/pixels.mjs';
 import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 
@@ -162,7 +162,7 @@ test('the slider goes to an instant, and nobody can take it for now', options, a
 });
 
 test('a gap is a gap in the picture too', options, async () => {
-    await page.evaluate((us) => globalThis.plantcast.session.travel(us), (BEGIN_S + 1350) * 1e6);
+    await travel(page, (BEGIN_S + 1350) * 1e6);
     await page.waitForFunction((us) => globalThis.plantcast.session.picture.dataTimeUs === us, (BEGIN_S + 1350) * 1e6);
     await page.waitForFunction(() => globalThis.plantcast.session.model.readings[0].quality === 'bad');
     await settle(page);
@@ -170,7 +170,7 @@ test('a gap is a gap in the picture too', options, async () => {
 });
 
 test('it plays, pauses, and goes back to live', options, async () => {
-    await page.evaluate((us) => globalThis.plantcast.session.travel(us), (BEGIN_S + 100) * 1e6);
+    await travel(page, (BEGIN_S + 100) * 1e6);
     await page.waitForFunction((us) => globalThis.plantcast.session.time.atUs === us, (BEGIN_S + 100) * 1e6);
     await page.locator('#time-speed').selectOption('300');
     await page.locator('#time-play').click();
@@ -205,7 +205,7 @@ test('a click into a trend goes there; a link to an instant opens there; a reloa
     assert.deepEqual(other.errors, []);
     await other.close();
     await page.keyboard.press('Escape');
-    await page.evaluate(() => globalThis.plantcast.session.travel(null));
+    await travel(page, null);
     await waitForHealth(page, 'live');
 });
 

@@ -168,6 +168,20 @@ test('what hands and keys do first is done, though what steers by them is still 
         }));
 });
 
+test('a drag that began before what steers was there is followed, however long that takes', options, () => withPage(async (page) => {
+    await page.evaluate((camera) => globalThis.plantcast.session.setCamera(camera), ELSEWHERE);
+    const { x, y, width, height } = await page.locator('#viewport').boundingBox(), [left, top] = [x + width / 2, y + height / 2];
+    await page.mouse.move(left, top);
+    await page.mouse.down();
+    await page.waitForTimeout(2500); // longer than a click is worth waiting for
+    await page.mouse.move(left + 90, top, { steps: 3 });
+    assert.equal(await isPilotThere(page), false);
+    assert.deepEqual(await eye(page), ELSEWHERE.eye);
+    await page.unroute('**/app/pilot.js*');
+    await waitForMove(page, ELSEWHERE.eye);
+    await page.mouse.up();
+}, (page) => page.route('**/app/pilot.js*', (route) => route.abort())));
+
 test('what a hand points at is said, though it moved no more since', options, () => withPage(async (page) => {
     await page.waitForFunction(() => globalThis.plantcast.overlay.markers.some(({ occluded }) => !occluded));
     const marker = await page.evaluate(() => {

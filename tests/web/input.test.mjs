@@ -2,6 +2,7 @@
 // Pointers, wheel and keys to camera moves.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
+import { listenToHands } from '../../clients/web/app/hands.js';
 import { Gestures, wheelZoom } from '../../clients/web/core/gestures.js';
 import { HeldKeys, HOLD_S, keyMeaning, TAP_S } from '../../clients/web/core/keys.js';
 
@@ -117,4 +118,28 @@ test('a key whose shift was let go first does not stay down', () => {
     keys.press('KeyA');
     keys.release({ key: 'ArrowLeft', code: 'ArrowLeft', shiftKey: false });
     assert.equal(keys.moving, false);
+});
+
+test('what hands did before the pilot came: of what is old only a drag is told that has not ended, or has just', async () => {
+    const on = new Map(), now = performance.now();
+    globalThis.document = { addEventListener: () => {} };
+    const element = { addEventListener: (name, f) => on.set(name, f), setPointerCapture: () => {}, focus: () => {} };
+    const target = { closest: () => null };
+    const toldOf = async (...events) => {
+        const told = [];
+        let come;
+        const pilot = { hear: ({ type }) => told.push(type) }, coming = new Promise((done) => { come = done; });
+        listenToHands(element, { there: () => null, get: () => coming, prepare: () => coming });
+        for (const [type, ago] of events)
+            on.get(type)({ type, target, timeStamp: now - ago, preventDefault: () => {} });
+        come(pilot);
+        await coming;
+        return told;
+    };
+    assert.deepEqual(await toldOf(['pointerdown', 5000], ['pointermove', 4000]), ['pointerdown', 'pointermove']);
+    assert.deepEqual(await toldOf(['pointerdown', 5000], ['pointermove', 4000], ['pointerup', 100]),
+        ['pointerdown', 'pointermove', 'pointerup']);
+    assert.deepEqual(await toldOf(['pointerdown', 5000], ['pointerup', 4000], ['pointermove', 100]), ['pointermove']);
+    assert.deepEqual(await toldOf(['wheel', 4000]), []);
+    delete globalThis.document;
 });

@@ -5,7 +5,7 @@ import { test } from 'node:test';
 import { actionsFor, asideOf } from '../../clients/web/core/acting.js';
 import { health } from '../../clients/web/core/health.js';
 import { orbit } from '../../clients/web/core/moves.js';
-import { actOnAlarm, giveLead } from '../../clients/web/core/requests.js';
+import { actOnAlarm, giveLead, travel } from '../../clients/web/core/requests.js';
 import { kbitPerS, timingOf } from '../../clients/web/core/timings.js';
 import { makeSession, vector, vectorBytes } from './fixtures.mjs';
 
@@ -502,9 +502,9 @@ test('alarms: a lost device is one, and of no tag', () => {
 test('in the past its clock stands apart, ages stand still, and a new connection goes back there', () => {
     const { session, socket, sockets, clock } = greeted();
     const time = vector('server/time.json');
-    session.travel(time.at_us + 0.25, 60);
+    travel(session, time.at_us + 0.25, 60);
     assert.deepEqual(last(socket.sent), { type: 'time', at_us: time.at_us, speed: 60 });
-    session.travel(undefined, 0);
+    travel(session, undefined, 0);
     assert.deepEqual(last(socket.sent), { type: 'time', speed: 0 });
     socket.say({ type: 'status', links: [], time_us: 1793500000000000, live: true });
     socket.say(time);

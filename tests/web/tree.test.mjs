@@ -5,7 +5,8 @@ import { test } from 'node:test';
 import { linkUrl } from '../../clients/web/core/references.js';
 import { search } from '../../clients/web/core/search.js';
 import { Tree } from '../../clients/web/core/tree.js';
-import { rowAt, rowsInSight, scrollTo, stack } from '../../clients/web/core/window.js';
+import { scrollTo } from '../../clients/web/core/scroll.js';
+import { rowAt, rowsInSight, stack } from '../../clients/web/core/window.js';
 
 function plant() {
     const tags = [['TI-1', 'inlet', 'E-1'], ['TI-2', 'outlet', 'E-1'], ['PI-9', 'inlet', 'P-2'], ['XI-1', 'spare', null]]

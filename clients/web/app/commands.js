@@ -2,8 +2,10 @@
 // What clicks, keys and buttons do: the selection, the flight to what is chosen, and the parts of the page that they open. Loaded when
 // hands first come near.
 import { nearestMarker } from '../core/nearest.js';
+import { travel } from '../core/requests.js';
 import { byId } from './dom.js';
-import { changeTheme } from './theme.js';
+import { store } from './stored.js';
+import { wear } from './theme.js';
 import { bandsOf } from './toolbar.js';
 
 const ARRIVAL_MARGIN = 1.7; // around one piece of equipment
@@ -19,6 +21,13 @@ export class Commands {
         Object.assign(this, commandsOf(page));
         this.point(page.pointed ?? null);
     }
+}
+
+// Returns which it is now.
+function changeTheme() {
+    const theme = document.documentElement.dataset.theme === 'dark' ? 'light' : 'dark';
+    store('theme', theme);
+    return wear(theme);
 }
 
 // By name; those of the page, and those of keys (core/keys.js).
@@ -142,7 +151,7 @@ function commandsOf({ session, parts, selection, overlay, saveAddress, refresh }
         timings: opens('timings'),
         alarms: opens('alarms'),
         past: () => session.recorded && opens('timeline')(),
-        live: () => session.time.atUs !== null && session.travel(null),
+        live: () => session.time.atUs !== null && travel(session, null),
         assets: () => parts.use('assets', (assets) => assets.setOpen(!assets.open), 'toggle'),
         search: () => parts.use('assets', (assets) => {
             assets.setOpen(true);
@@ -158,7 +167,7 @@ function commandsOf({ session, parts, selection, overlay, saveAddress, refresh }
         ghost: ofViews((views) => views.show('ghost')),
         only: ofViews((views) => views.show('only')),
         showAll: ofViews((views) => views.showAll()),
-        hold: () => session.recorded && session.travel(session.time.atUs === null ? session.clockUs() - HELD_US : null),
+        hold: () => session.recorded && travel(session, session.time.atUs === null ? session.clockUs() - HELD_US : null),
         display: (event) => parts.use('folded', ({ display }) => display.toggle(event), 'display'),
         more: (event) => parts.use('folded', ({ more }) => more.toggle(event), 'more'),
         measure: opens('measure'),

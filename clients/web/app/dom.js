@@ -28,7 +28,8 @@ function furnish(element, attributes, children) {
 }
 
 // Puts the words into what names them: data-say for its text, data-label, data-title, data-hint (of an empty field), data-name for
-// label and title; data-key is the key on the keyboard that does the same. data-icon is drawn before its text.
+// label and title; data-key is the key on the keyboard that does the same. data-icon is drawn before its text. In the folded
+// list each says its name.
 export function sayAll(root) {
     for (const element of root.querySelectorAll('[data-say], [data-label], [data-title], [data-hint], [data-name], [data-icon]')) {
         const { say: text, label, title, hint, name, key, icon: drawn } = element.dataset;
@@ -36,6 +37,8 @@ export function sayAll(root) {
             element.textContent = say(text);
         if (drawn)
             element.prepend(icon(`i-${drawn}`));
+        if (element.parentNode.id === 'more')
+            element.append(make('span', { class: 'words' }, say(name)));
         if (hint)
             element.placeholder = say(hint);
         if (label ?? hint ?? name)

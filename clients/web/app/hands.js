@@ -24,7 +24,7 @@ function takeAtOnce(event, element) {
 }
 
 export function listenToHands(element, parts) {
-    let untold = [];
+    let untold = [], drag = { from: Infinity, to: 0 }; // a drag is as fresh as its end
 
     function hear(event) {
         takeAtOnce(event, element);
@@ -33,7 +33,12 @@ export function listenToHands(element, parts) {
             pilot.hear(event);
             return;
         }
+        const { type, timeStamp } = event;
         untold = [...untold.filter(isFresh), event];
+        if (type === 'pointerdown' && drag.to < Infinity)
+            drag = { from: timeStamp, to: Infinity };
+        else if (/^pointer[uc]/.test(type))
+            drag.to = timeStamp;
         (isMeant(event) ? parts.get('pilot') : parts.prepare('pilot')).then(tellAll);
     }
 
@@ -43,7 +48,7 @@ export function listenToHands(element, parts) {
     }
 
     const near = () => ['pilot', 'commands'].forEach((name) => parts.prepare(name));
-    const isFresh = ({ timeStamp }) => performance.now() - timeStamp < STALE_MS;
+    const isFresh = ({ timeStamp: at }) => performance.now() - (at >= drag.from ? Math.max(at, drag.to) : at) < STALE_MS;
     const listen = (on, names) => names.forEach((name) => on.addEventListener(name, hear, { passive: false }));
     listen(element, ON_PICTURE);
     listen(document, ON_PAGE);

@@ -16,13 +16,13 @@ export class Isolines {
         const { overlay } = this, { picture, params } = this.session, c = overlay.context;
         if (!picture || params.show === 'operator')
             return;
-        const scale = [overlay.wide / picture.fullWidth, overlay.high / picture.fullHeight];
+        const { fullWidth, shownWidth, fullHeight } = picture, scale = [overlay.wide / shownWidth, overlay.high / fullHeight];
         const [min, max] = this.session.range, taken = [...blocked];
         overlay.setFont(600);
         c.textBaseline = 'middle';
         c.textAlign = 'center';
         for (const { text, x, y } of (this.session.markersOf(picture.seq)?.isolines ?? []).map(([value, px, py]) => ({
-            text: shortNumberText(value, decimalsFor(max - min)), x: px * scale[0], y: py * scale[1],
+            text: shortNumberText(value, decimalsFor(max - min)), x: (px + (shownWidth - fullWidth) / 2) * scale[0], y: py * scale[1],
         }))) {
             const wide = c.measureText(text).width + 6, box = { left: x - wide / 2, right: x + wide / 2, top: y - 8, bottom: y + 8, text };
             const meets = (o) => box.left < o.right && o.left < box.right && box.top < o.bottom && o.top < box.bottom;

@@ -54,7 +54,7 @@ const LIMIT_PLACES = { LL: -2, L: -1, H: 1, HH: 2 };
 
 export class Legend {
     // paramsOf: from the session's parameters to those of the half that this legend is for; null: there is none.
-    constructor({ session, element, paramsOf = (params) => params }) {
+    constructor({ session, element, paramsOf }) {
         Object.assign(this, { session, element, paramsOf });
         this.lying = window.matchMedia('(max-width: 719px)');
         this.lying.addEventListener('change', () => this.show(true));
@@ -80,16 +80,21 @@ export class Legend {
         return spread(places, Math.min(gap, 1 / Math.max(1, places.length - 1)));
     }
 
+    // What decides how it looks.
+    contents(params) {
+        const { group, show, colormap, ramp_interval, scale, breaks, isolines, look, unit } = params;
+        return JSON.stringify([group, show, colormap, ramp_interval, this.session.rangeOf(params), scale, breaks, isolines, look, unit,
+            this.unproven(params)]);
+    }
+
     show(again = false) {
-        const { model } = this.session, params = this.paramsOf(this.session.params);
-        const group = params && model?.group(params.group);
+        const { model } = this.session, params = model && this.paramsOf(this.session.params);
+        const group = params && model.group(params.group);
         this.element.hidden = !group || params.look === 'materials'; // no field, nothing to explain
         if (!group)
             return;
         const range = this.session.rangeOf(params);
-        const { show, colormap, ramp_interval, scale, breaks, isolines, look } = params;
-        const wanted = JSON.stringify([params.group, show, colormap, ramp_interval, range, scale, breaks, isolines, look, params.unit,
-            this.unproven(params)]);
+        const { show, colormap, ramp_interval, scale, breaks, isolines, look } = params, wanted = this.contents(params);
         if (wanted === this.shown && !again)
             return;
         this.shown = wanted;

@@ -21,8 +21,10 @@ const selection = { tag: address.tag, hover: null };
 const parts = new Parts(page, tell);
 const does = (name) => (...given) => parts.use('commands', (commands) => commands[name](...given));
 new Toolbar({ session, does });
-const legend = new Legend({ session, element: byId('legend') });
-new Legend({ session, element: byId('legend-right'), paramsOf: (params) => params.split && { ...params, ...params.split } });
+const rightOf = (params) => params.split && { ...params, ...params.split };
+const isShared = (params, right) => right && legend.contents(params) === legend.contents(right); // then the right one is enough
+const legend = new Legend({ session, element: byId('legend'), paramsOf: (params) => !isShared(params, rightOf(params)) && params });
+new Legend({ session, element: byId('legend-right'), paramsOf: rightOf });
 const overlay = new Overlay({ canvas: byId('overlay'), viewport, session, selection });
 overlay.unit = page.unit;
 const status = new Status({ session, onFreshness: (fresh) => { overlay.fresh = fresh; refresh(); } });

@@ -58,14 +58,14 @@ export class Measure {
     show() {
         setText(this.note.querySelector('span'), this.words);
         const { picture, params } = this.session;
-        const half = picture && (halves(params, picture.fullWidth)[this.half] ?? null);
+        const half = picture && (halves(params, picture.shownWidth)[this.half] ?? null);
         this.label.hidden = true;
         if (!half || this.places.length === 0) {
             this.line.replaceChildren();
             return;
         }
         const project = projector(picture.camera, half.width, picture.fullHeight);
-        const scale = [this.viewport.width / picture.fullWidth, this.viewport.height / picture.fullHeight];
+        const scale = [this.viewport.width / picture.shownWidth, this.viewport.height / picture.fullHeight];
         const ends = this.places.map(project).map((at) => at && [(half.left + at[0]) * scale[0], at[1] * scale[1]]);
         this.draw(ends);
     }

@@ -57,12 +57,12 @@ export class Overlay {
         if (!model || !picture)
             return [];
         const known = this.session.markersOf(picture.seq);
-        return halves(params, picture.fullWidth).flatMap((half, number) => this.projectHalf(half, number, known));
+        return halves(params, picture.shownWidth).flatMap((half, number) => this.projectHalf(half, number, known));
     }
 
     projectHalf({ params, left, width }, number, known) {
         const { model, picture } = this.session;
-        const scale = [this.wide / picture.fullWidth, this.high / picture.fullHeight];
+        const scale = [this.wide / picture.shownWidth, this.high / picture.fullHeight];
         const rim = params.split ? 0 : 20; // what lies beyond would be seen in the other half
         const project = projector(picture.camera, width, picture.fullHeight);
         const markers = [];
@@ -244,10 +244,10 @@ export class Overlay {
         if (reading.quality === 'bad' && !occluded) {
             c.beginPath();
             const arm = this.radius - 2;
-            c.moveTo(-arm, -arm);
-            c.lineTo(arm, arm);
-            c.moveTo(arm, -arm);
-            c.lineTo(-arm, arm);
+            for (const side of [-arm, arm]) {
+                c.moveTo(-arm, -side);
+                c.lineTo(arm, side);
+            }
             c.stroke();
         }
         if (chosen) {

@@ -77,11 +77,12 @@ export class Place {
 
     project() {
         const { picture, params } = this.session;
-        const half = picture && halves(params, picture.fullWidth)[this.half];
+        const half = picture && halves(params, picture.shownWidth)[this.half];
         if (!half)
             return null;
         const at = projector(picture.camera, half.width, picture.fullHeight)(this.picked.position);
-        return at && [((half.left + at[0]) * this.viewport.width) / picture.fullWidth, (at[1] * this.viewport.height) / picture.fullHeight];
+        const { width, height } = this.viewport;
+        return at && [((half.left + at[0]) * width) / picture.shownWidth, (at[1] * height) / picture.fullHeight];
     }
 
     number(value) {

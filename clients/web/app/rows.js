@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What hands and keys do in the list of equipment: they search, go from row to row, open and close them, select and lead
 // there.
+import { scrollTo } from '../core/scroll.js';
 import { search } from '../core/search.js';
-import { scrollTo } from '../core/window.js';
 import { narrow } from './first.js';
 
 export class Rows {

@@ -2,6 +2,7 @@
 // The time bar: a slider over what was recorded, with the alarms that were raised, play, speed, and the way back to now.
 import { ageText, zoneClock } from '../core/format.js';
 import { ask, raised, ticks } from '../core/history.js';
+import { travel } from '../core/requests.js';
 import { say } from '../core/words.js';
 import { byId, makeSvg, setText } from './dom.js';
 import { fillSelect } from './fields.js';
@@ -17,9 +18,9 @@ export class Timeline {
         fillSelect(byId('time-span'), SPANS.map(([seconds, unit, n]) => [seconds, say(`age.${unit}`, { n })]), 3600);
         fillSelect(byId('time-speed'), SPEEDS.map((speed) => [speed, `${speed}×`]), 60);
         byId('time-span').addEventListener('change', () => this.turnTo(this.atUs));
-        byId('time-speed').addEventListener('change', () => session.time.speed && session.travel(undefined, this.speed));
+        byId('time-speed').addEventListener('change', () => session.time.speed && travel(session, undefined, this.speed));
         byId('time-play').addEventListener('click', () => this.play());
-        byId('time-live').addEventListener('click', () => session.travel(null));
+        byId('time-live').addEventListener('click', () => travel(session, null));
         this.slider.addEventListener('input', () => this.drag());
         session.greeted(() => { this.clock = zoneClock(session.model.plant.time_zone); });
         session.on('time', () => this.hear());
@@ -51,7 +52,7 @@ export class Timeline {
         if (open)
             this.turnTo(this.atUs);
         else if (this.atUs !== null)
-            this.session.travel(null);
+            travel(this.session, null);
     }
 
     hear() {
@@ -87,7 +88,7 @@ export class Timeline {
         const now = this.session.clockUs();
         if (this.wanted === null)
             requestAnimationFrame(() => {
-                this.session.travel(this.wanted > now - NOW_US ? null : this.wanted);
+                travel(this.session, this.wanted > now - NOW_US ? null : this.wanted);
                 this.wanted = null;
             });
         this.wanted = at;
@@ -98,11 +99,11 @@ export class Timeline {
     play() {
         const { time } = this.session;
         if (time.speed)
-            this.session.travel(undefined, 0);
+            travel(this.session, undefined, 0);
         else if (time.atUs !== null)
-            this.session.travel(undefined, this.speed);
+            travel(this.session, undefined, this.speed);
         else
-            this.session.travel(this.toUs - this.spanUs, this.speed);
+            travel(this.session, this.toUs - this.spanUs, this.speed);
     }
 
     async askMarks() {

@@ -2,6 +2,7 @@
 // Trends of tags: what was recorded of the last hour, shift, day or week, with limits, gaps in quality and units; several compared.
 import { decimalsFor, numberText, shortNumberText, unitText, zoneClock, zoneOf } from '../core/format.js';
 import { ask, BAD, gaps, limitLines, line } from '../core/history.js';
+import { travel } from '../core/requests.js';
 import { say } from '../core/words.js';
 import { byId, make, setText } from './dom.js';
 import { fillSegments, markSegment } from './fields.js';
@@ -310,7 +311,7 @@ export class Trends {
     goTo(chart) {
         const seconds = chart.posToVal(chart.cursor.left, 'x');
         if (this.session.recorded && Number.isFinite(seconds))
-            this.session.travel(seconds * 1e6);
+            travel(this.session, seconds * 1e6);
     }
 
     async save() {

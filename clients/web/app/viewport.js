@@ -100,7 +100,8 @@ export class Viewport {
         });
     }
 
-    // Parts of a picture wait for the rest of it.
+    // Parts of a picture wait for the rest of it. Until one of the place's shape comes, it is as high as that and not distorted;
+    // picture.shownWidth: what of it would be as wide.
     draw() {
         const complete = this.decoded.findLastIndex(({ frame }) => !frame.more) + 1, drawn = this.decoded.splice(0, complete);
         for (const { frame, picture } of drawn) {
@@ -120,6 +121,9 @@ export class Viewport {
             this.session.drawn(frame, decodeMs);
             decodeMs = 0;
         }
+        const { picture, params } = this.session;
+        if (picture)
+            picture.shownWidth = params.split ? picture.fullWidth : (picture.fullHeight * this.width) / this.height;
         this.onDrawn(drawn.length > 0);
     }
 }

@@ -8,6 +8,13 @@ export function askFit(session, { id = null, side = 'now', projection } = {}) {
     session.post({ type: 'fit', seq: ++session.fitSeq, id, side, ...(projection ? { projection } : {}) });
 }
 
+// Goes to an instant (null: to now; undefined: stays where it is) and plays from there.
+export function travel(session, atUs, speed = 0) {
+    if (session.leader !== null)
+        session.follow(null);
+    session.post({ type: 'time', ...(atUs === undefined ? {} : { at_us: atUs && Math.round(atUs) }), speed });
+}
+
 // Asks what is at a pixel of the picture on the screen; the event `picked` answers the newest question, and says its purpose.
 export function askPick(session, [x, y], purpose) {
     if (!session.welcomed || !session.picture)

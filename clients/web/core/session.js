@@ -246,13 +246,6 @@ export class Session {
         this.emit('following');
     }
 
-    // Goes to an instant (null: to now; undefined: stays where it is) and plays from there.
-    travel(atUs, speed = 0) {
-        if (this.leader !== null)
-            this.follow(null);
-        this.post({ type: 'time', ...(atUs === undefined ? {} : { at_us: atUs && Math.round(atUs) }), speed });
-    }
-
     // Whether what is said is said of the picture that is seen.
     get isCurrent() {
         return this.welcomed && (!this.picture || this.picture !== this.outlived);

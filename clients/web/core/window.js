@@ -26,10 +26,3 @@ export function rowsInSight(tops, scrollTop, height, more) {
     const count = tops.length - 1;
     return count === 0 ? [0, 0] : [Math.max(0, rowAt(tops, scrollTop) - more), Math.min(count, rowAt(tops, scrollTop + height) + 1 + more)];
 }
-
-// Where to scroll so that a row is wholly seen; unchanged where it is.
-export function scrollTo(tops, row, scrollTop, height) {
-    if (tops[row] < scrollTop)
-        return tops[row];
-    return tops[row + 1] > scrollTop + height ? tops[row + 1] - height : scrollTop;
-}

@@ -47,6 +47,12 @@ export async function openPage(url, screen = DESKTOP, before = null, arrange = (
     };
 }
 
+// One that remembers nothing from page to page.
+export async function openBrowser() {
+    const { chromium } = await import('playwright-core');
+    return chromium.launch({ executablePath: CHROMIUM, args: QUIET });
+}
+
 export async function shoot(page, name) {
     mkdirSync(SCREENSHOTS, { recursive: true });
     await page.screenshot({ path: join(SCREENSHOTS, `${name}.png`) });
@@ -100,6 +106,12 @@ export const view = (page) => page.evaluate(() => {
     const { camera, params } = globalThis.plantcast.session;
     return { camera, params };
 });
+
+// Goes to an instant; null: to now.
+export const travel = (page, us) => page.evaluate(async (to) => {
+    const requests = await import('/core/requests.js');
+    requests.travel(globalThis.plantcast.session, to);
+}, us);
 
 // Where a place of the plant is in the page by the camera that the page asks for: [x, y].
 export const pageOf = (page, point) => page.evaluate(async (at) => {
