@@ -114,6 +114,58 @@ for (const [name, screen] of Object.entries(SCREENS)) {
     });
 }
 
+// What of panels and dialogs leaves the screen, or lies over the buttons that opened it; and text that leaves them.
+const panelsAmiss = (page) => page.evaluate(() => {
+    const box = (element) => element.getBoundingClientRect(), found = [];
+    const buttons = box(document.querySelector('.actions'));
+    const open = [...document.querySelectorAll('.panel.open, .display.open, .more.open, dialog[open]')];
+    for (const panel of open) {
+        const { left, top, right, bottom } = box(panel), legend = document.getElementById('legend');
+        if (left < 0 || top < 0 || right > innerWidth || bottom > innerHeight)
+            found.push(`${panel.id} leaves the screen: ${[left, top, right, bottom].map(Math.round)}`);
+        if (panel.localName !== 'dialog' && top < buttons.bottom)
+            found.push(`${panel.id} lies over the buttons`);
+        const isCut = panel.scrollHeight > panel.clientHeight + 1 && getComputedStyle(panel).overflowY !== 'auto';
+        if (panel.scrollWidth > panel.clientWidth + 1 || isCut)
+            found.push(`${panel.id} is cut off`);
+        if (panel.matches('.panel, .display') && innerWidth >= 720 && legend.checkVisibility() && box(legend).right > left)
+            found.push(`${panel.id} lies over the legend`);
+        if (legend.scrollWidth > legend.clientWidth + 1)
+            found.push(`beside ${panel.id} the legend is too narrow`);
+    }
+    return open.length === 1 ? found : [...found, `${open.length} are open`];
+});
+
+test('panels and the help are whole, on every screen', options, async (t) => {
+    for (const [name, screen] of Object.entries(SCREENS))
+        for (const language of ['en', 'de', 'ko'])
+            await t.test(`${name}, ${language}`, async () => {
+                const { page, close, errors } = await openPage(`${url}?lang=${language}`, screen);
+                try {
+                    await waitForPicture(page);
+                    for (const [key, opened] of [['v', '#views.open'], ['p', '#picture-panel.open'], ['?', '#help[open]']]) {
+                        await page.locator('#viewport').focus();
+                        await page.keyboard.press(key);
+                        await page.locator(opened).waitFor();
+                        assert.deepEqual(await panelsAmiss(page), [], opened);
+                        await page.keyboard.press('Escape');
+                        await page.locator(opened).waitFor({ state: 'hidden' });
+                    }
+                    for (const id of ['display', 'more']) {
+                        if (!await page.locator(`#${id}-toggle`).isVisible())
+                            continue;
+                        await page.locator(`#${id}-toggle`).click();
+                        await page.locator(`#${id}.open`).waitFor();
+                        assert.deepEqual(await panelsAmiss(page), [], id);
+                        await page.locator(`#${id}-toggle`).click();
+                    }
+                    assert.deepEqual(errors, []);
+                } finally {
+                    await close();
+                }
+            });
+});
+
 test('until a picture of the new shape comes, the last one is not distorted, and marks stay where it has them', options, async () => {
     const { page, close, errors } = await openPage(`${url}?lang=en`, SCREENS.desk);
     try {
