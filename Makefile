@@ -95,6 +95,9 @@ $(out)/lib/$(1).a: $(call objects,$(filter-out $(without),$(wildcard $(foreach d
     $(if $(filter base,$(1)),$(embedded)) $(if $(filter gpu,$(1)),$(glad))
 endef
 $(foreach l,$(layers),$(eval $(call archive_rule,$(l))))
+# Loops of drafts once more for machines with AVX2 (render/draft/draft_kernels.h).
+wide_sources := $(foreach f,color faces kernels raster,server/render/draft/draft_$(f).c)
+$(out)/lib/render.a: $(if $(filter x86_64%,$(shell $(CC) -dumpmachine 2>/dev/null)),$(patsubst %.c,$(out)/obj/%.wide.o,$(wide_sources)))
 $(out)/lib/protocol.a: $(call objects,$(wildcard protocol/*.c))
 $(out)/lib/prep.a: $(call objects,$(prep_sources))
 $(out)/lib/sim.a: $(call objects,$(filter-out %/sim.c,$(sim_sources)))
@@ -109,6 +112,9 @@ $(out)/obj/%.o: %.c Makefile $(out)/codecs | $(gen)/glad/include/glad/gl.h
 $(out)/obj/%.o: %.cc Makefile
 	@mkdir -p $(@D); echo "  CXX  $<"
 	@$(CXX) $(cxxflags) -c -o $@ $<
+$(out)/obj/%.wide.o: %.c Makefile | $(gen)/glad/include/glad/gl.h
+	@mkdir -p $(@D); echo "  CC   $< (wide)"
+	@$(CC) $(cflags) -mavx2 -DDRAFT_WIDE -c -o $@ $<
 $(out)/obj/%.pic.o: %.c Makefile
 	@mkdir -p $(@D); echo "  CC   $< (shared)"
 	@$(CC) $(cflags) -fPIC -c -o $@ $<

@@ -12,6 +12,8 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
+#include "render/draft/draft_kernels.h"
+#include "render/renderer_impl.h"
 #include "tests/support/rig.h"
 #include "value/quality.h"
 
@@ -259,6 +261,33 @@ static void test_lines_of_a_still_camera(void **state)
     }
 }
 
+/* The loops for wider registers leave the same bits as those for any machine. */
+static void test_kernels(void **state)
+{
+    const struct draft_kernels **kernels = &stand.renderer->draft->kernels, *widest = *kernels;
+    static const int widths_px[] = { 640, 333, 37 };
+    struct view view;
+    (void)state;
+    if (widest == &draft_kernels_plain) {
+        print_message("SKIP: this machine has no wider registers\n");
+        skip();
+    }
+    for (int i = 0; i < 24; i++) {
+        start_view(&view, widths_px[i % 3], widths_px[i % 3] * 9 / 16);
+        stand_look(&stand, i / 2, &view);
+        view.selected_asset = i % 4 == 2 ? 0 : -1;
+        if (i % 4 == 1)
+            draw_lines_every(&view, 5);
+        struct frame *wide = draw(&view, false);
+        *kernels = &draft_kernels_plain;
+        struct frame *plain = draw(&view, false); /* the second of its view: drawn, and kept to be coloured again */
+        *kernels = widest;
+        assert_memory_equal(wide->bgrx, plain->bgrx, (size_t)wide->stride_bytes * (size_t)wide->height_px);
+        frame_unref(&wide);
+        frame_unref(&plain);
+    }
+}
+
 static void test_left_to_gl(void **state)
 {
     (void)state;
@@ -280,6 +309,7 @@ int main(void)
         cmocka_unit_test(test_hidden_assets), cmocka_unit_test(test_still_camera),
         cmocka_unit_test(test_moves_after_standing), cmocka_unit_test(test_lines_and_scales),
         cmocka_unit_test(test_operator), cmocka_unit_test(test_lines_of_a_still_camera), cmocka_unit_test(test_left_to_gl),
+        cmocka_unit_test(test_kernels),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
     if (!rig_init(&rig, "draft_test"))

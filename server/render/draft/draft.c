@@ -4,16 +4,27 @@
 
 #include "base/mem.h"
 #include "render/content.h"
-#include "render/draft/draft_impl.h"
+#include "render/draft/draft_kernels.h"
 #include "render/draft/draft_simd.h"
 #include "render/markers.h"
 
 static const size_t KEPT_BYTES = (size_t)128 << 20; /* some five pictures of 1920x1080 */
 
+/* The widest ones that this machine has. */
+static const struct draft_kernels *choose_kernels(void)
+{
+#ifdef __x86_64__
+    if (__builtin_cpu_supports("avx2"))
+        return &draft_kernels_wide;
+#endif
+    return &draft_kernels_plain;
+}
+
 struct draft *draft_create(struct workers *workers, const struct stage *stage, const struct sky *sky)
 {
     struct draft *draft = mem_new(sizeof(*draft));
     draft->workers = workers;
+    draft->kernels = choose_kernels();
     draft->stage = stage;
     draft->kept.bound_bytes = KEPT_BYTES;
     draft->parts = mem_array(stage->model_count, sizeof(*draft->parts));

@@ -1,100 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A rectangle of the picture: from marks to colours. Only what is seen comes here: the sun's shadow and the backdrop are looked up per
    pixel. */
-#include <math.h>
 #include <string.h>
 
-#include "render/draft/draft_impl.h"
+#include "render/draft/draft_kernels.h"
 #include "render/draft/draft_look.h"
-#include "render/light/sky.h"
-#include "render/matrix.h"
-#include "render/solid.h"
-
-/* --- matrices --------------------------------------------------------------------------------------------------------------- */
-
-static void copy_columns(const double from[16], float to[4][4])
-{
-    for (int c = 0; c < 4; c++)
-        for (int r = 0; r < 4; r++)
-            to[c][r] = (float)from[4 * c + r];
-}
-
-/* Clip space from pixels and depth, for w = 1. */
-static void clip_from_pixel(const struct draft *draft, double out[16])
-{
-    matrix_identity(out);
-    out[0] = 2.0 / draft->width_px;
-    out[5] = -2.0 / draft->height_px;
-    out[12] = -1;
-    out[13] = 1;
-}
-
-static void aim_sun(struct draft *draft, const double clip[16])
-{
-    const struct picture *picture = draft->picture;
-    double plant_from_clip[16], out[16];
-    matrix_invert(picture->shot.clip_from_plant, plant_from_clip);
-    matrix_multiply(picture->light->texture_from_plant, plant_from_clip, out);
-    matrix_multiply(out, clip, out);
-    for (int c = 0; c < 4; c++)
-        out[4 * c + 2] += solid_sun_slack(picture) * out[4 * c + 3];
-    copy_columns(out, draft->sun_from_pixel);
-}
-
-/* Where a pixel looks: near.xyz / near.w of shaders/sky.vert, whose w is the same everywhere. */
-static void aim_rays(struct draft *draft, const double clip[16])
-{
-    double eye_from_clip[16], out[16];
-    matrix_invert(draft->picture->shot.clip_from_eye, eye_from_clip);
-    matrix_multiply(eye_from_clip, clip, out);
-    double w = out[11] + out[15]; /* at depth 1 */
-    for (int r = 0; r < 3; r++) {
-        draft->ray_from_pixel[0][r] = (float)(out[r] / w);
-        draft->ray_from_pixel[1][r] = (float)(out[4 + r] / w);
-        draft->ray_from_pixel[2][r] = (float)((out[8 + r] + out[12 + r]) / w);
-    }
-}
-
-/* The ground is flat: its coordinates and the picture's map to each other by 3x3 matrices. */
-static void aim_ground(struct draft *draft, const struct light *light)
-{
-    double clip[16];
-    float(*to)[3] = draft->ground_from_pixel;
-    draft->has_ground = sky_sees_ground(draft->picture, light);
-    matrix_multiply(draft->picture->shot.clip_from_plant, light->plant_from_ground, clip);
-    double h[3][3]; /* rows: x w, y w in pixels, w; columns: u, v, 1 */
-    for (int c = 0; c < 3; c++) {
-        const double *column = &clip[c == 2 ? 12 : 4 * c];
-        h[0][c] = 0.5 * draft->width_px * (column[3] + column[0]);
-        h[1][c] = 0.5 * draft->height_px * (column[3] - column[1]);
-        h[2][c] = column[3];
-    }
-    double determinant = 0;
-    for (int c = 0; c < 3; c++) {
-        int a = (c + 1) % 3, b = (c + 2) % 3;
-        determinant += h[0][c] * (h[1][a] * h[2][b] - h[1][b] * h[2][a]);
-        for (int r = 0; r < 3; r++) { /* adjugate */
-            int p = (r + 1) % 3, q = (r + 2) % 3;
-            to[c][r] = (float)(h[p][a] * h[q][b] - h[p][b] * h[q][a]);
-        }
-    }
-    double sign = determinant < 0 ? -1 : 1, size = 0;
-    for (int i = 0; i < 9; i++)
-        size = fmax(size, fabs((double)to[i / 3][i % 3]));
-    for (int i = 0; i < 9; i++)
-        to[i / 3][i % 3] = (float)((double)to[i / 3][i % 3] * sign / size);
-}
-
-void draft_aim(struct draft *draft, const struct light *light)
-{
-    double clip[16];
-    clip_from_pixel(draft, clip);
-    aim_sun(draft, clip);
-    aim_rays(draft, clip);
-    aim_ground(draft, light);
-}
-
-/* --- pixels ----------------------------------------------------------------------------------------------------------------- */
 
 /* How much of the sun is seen, 0..1. */
 DRAFT_INLINE lanes sun_at(const struct draft *draft, lanes x, float y, lanes depth)
@@ -188,12 +98,9 @@ DRAFT_INLINE lanes_int color_at(const struct draft *draft, const struct heights 
     const uint32_t *mark = draft->marks + place;
     lanes_int marks = *(const lanes_int *)mark, color;
     if (!lanes_any(~marks & (int32_t)MARK_FIELD)) {
-        uint32_t colors[LANES];
-        for (int i = 0; i < LANES; i++)
-            colors[i] = draft->palette[mark[i] & MARK_PLACE];
+        color = gather(draft->palette, marks & (int32_t)MARK_PLACE);
         if (lanes_any(marks & MARK_LINE_WHOLE << MARK_LINE))
-            draw_lines(mark, colors);
-        memcpy(&color, colors, sizeof(color));
+            color = lined(mark, color);
         return color;
     }
     if (!lanes_any(marks))
@@ -211,7 +118,7 @@ DRAFT_INLINE lanes_int color_at(const struct draft *draft, const struct heights 
     return color;
 }
 
-DRAFT_KERNEL void draft_color(const struct draft *draft, const struct draft_rect *rect)
+void draft_color(const struct draft *draft, const struct draft_rect *rect)
 {
     for (int row = rect->top; row <= rect->bottom; row++) {
         uint8_t *out = draft->out + (size_t)row * draft->out_stride_bytes;

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The vertices of a part into the picture, and those of its triangles that cover a pixel's middle there and look this way. */
-#include "render/draft/draft_tile.h"
+#include <string.h>
+
+#include "render/draft/draft_kernels.h"
 
 #define FARTHEST 1e6f /* columns: what lies so far outside the scale is outside all the same */
 
@@ -15,8 +17,8 @@ DRAFT_INLINE void fetch_carried(const struct draft_mesh *mesh, const uint32_t ve
         __builtin_prefetch(mesh->baked[vertices[l]]);
 }
 
-DRAFT_KERNEL void draft_place_part(struct draft_tile *tile, const struct draft_mesh *mesh, const struct draft_parts *parts,
-                                   const struct draft_part *part)
+void draft_place_part(struct draft_tile *tile, const struct draft_mesh *mesh, const struct draft_parts *parts,
+                      const struct draft_part *part)
 {
     struct draft_corners *corners = &tile->corners;
     int rounded = (part->vertex_count + LANES - 1) / LANES * LANES;
@@ -35,8 +37,8 @@ DRAFT_KERNEL void draft_place_part(struct draft_tile *tile, const struct draft_m
         *(lanes *)(corners->y + i) = at[1] * inverse;
         *(lanes *)(corners->depth + i) = at[2] * inverse;
         *(lanes *)(corners->inverse_w + i) = inverse;
-        low = lanes_choose(inverse < low, inverse, low);
-        high = lanes_choose(inverse > high, inverse, high);
+        low = lanes_least(inverse, low);
+        high = lanes_most(inverse, high);
     }
     float least = low[0], most = high[0];
     for (int l = 1; l < LANES; l++) {
@@ -126,8 +128,8 @@ static int list_used(const struct draft_tile *tile, uint8_t numbers[PART_VERTICE
     return count;
 }
 
-DRAFT_KERNEL void draft_carry_part(struct draft_tile *tile, const struct draft_mesh *mesh, const struct draft_parts *parts,
-                                   const struct draft_part *part)
+void draft_carry_part(struct draft_tile *tile, const struct draft_mesh *mesh, const struct draft_parts *parts,
+                      const struct draft_part *part)
 {
     const uint32_t *vertices = parts->vertices + part->first_vertex;
     uint8_t numbers[PART_VERTICES + LANES];
@@ -142,24 +144,14 @@ DRAFT_KERNEL void draft_carry_part(struct draft_tile *tile, const struct draft_m
 
 /* --- faces ------------------------------------------------------------------------------------------------------------------ */
 
-DRAFT_INLINE lanes look_up(const float *table, const uint8_t *at)
-{
-    lanes out;
-    for (int l = 0; l < LANES; l++)
-        out[l] = table[at[l]];
-    return out;
-}
-
 DRAFT_INLINE lanes least_of(lanes a, lanes b, lanes c)
 {
-    lanes least = lanes_choose(a < b, a, b);
-    return lanes_choose(least < c, least, c);
+    return lanes_least(lanes_least(a, b), c);
 }
 
 DRAFT_INLINE lanes most_of(lanes a, lanes b, lanes c)
 {
-    lanes most = lanes_choose(a > b, a, b);
-    return lanes_choose(most > c, most, c);
+    return lanes_most(lanes_most(a, b), c);
 }
 
 /* The first pixel whose middle may be covered, and the last one, kept to the tile. */
@@ -173,21 +165,42 @@ DRAFT_INLINE lanes_int last_pixel(lanes x, int high)
     return lanes_whole(lanes_clamp(x + 0.5f, 0, (float)high + 1)) - 1;
 }
 
-DRAFT_INLINE bool is_hidden(const struct draft_tile *tile, const struct draft_face *face)
+/* Behind what was drawn in all of its blocks. */
+DRAFT_INLINE bool is_hidden(const struct draft_tile *tile, const struct draft_face *face, float nearest)
 {
-    const float *depth = tile->corners.depth;
-    float p = depth[face->corners[0]], q = depth[face->corners[1]], r = depth[face->corners[2]];
-    float nearest = p > q ? p : q;
-    nearest = nearest > r ? nearest : r;
     unsigned top = (unsigned)(face->top - tile->rect.top) / BLOCK_PX, bottom = (unsigned)(face->bottom - tile->rect.top) / BLOCK_PX;
     unsigned left = (unsigned)(face->left - tile->rect.left) / BLOCK_PX, right = (unsigned)(face->right - tile->rect.left) / BLOCK_PX;
-    if (top == bottom && left == right)
-        return nearest < tile->farthest[top][left];
     for (unsigned row = top; row <= bottom; row++)
         for (unsigned column = left; column <= right; column++)
             if (nearest >= tile->farthest[row][column])
                 return false;
     return true;
+}
+
+struct eight { /* triangles */
+    lanes_int corners[3];
+    lanes_int left, right, top, bottom;
+    lanes_int kept, doubtful; /* doubtful: hidden in the blocks of its corners, if there are others between them */
+    lanes nearest;
+};
+
+/* Leaves out what is hidden, where four blocks tell. */
+DRAFT_INLINE void hide(const struct draft_tile *tile, struct eight *eight)
+{
+    const float *farthest = &tile->farthest[0][0], *depth = tile->corners.depth;
+    lanes_int top = (eight->top - tile->rect.top) & eight->kept, bottom = (eight->bottom - tile->rect.top) & eight->kept;
+    lanes_int left = (eight->left - tile->rect.left) & eight->kept, right = (eight->right - tile->rect.left) & eight->kept;
+    top = (top >> BLOCK_SHIFT) * BLOCK_COLUMNS; /* 0 or more */
+    bottom = (bottom >> BLOCK_SHIFT) * BLOCK_COLUMNS;
+    left >>= BLOCK_SHIFT;
+    right >>= BLOCK_SHIFT;
+    lanes far = lanes_least(lanes_least(lanes_look_up(farthest, top + left), lanes_look_up(farthest, top + right)),
+                            lanes_least(lanes_look_up(farthest, bottom + left), lanes_look_up(farthest, bottom + right)));
+    eight->nearest = most_of(lanes_look_up(depth, eight->corners[0]), lanes_look_up(depth, eight->corners[1]),
+                             lanes_look_up(depth, eight->corners[2]));
+    lanes_int hidden = eight->nearest < far, wide = (bottom - top > BLOCK_COLUMNS) | (right - left > 1);
+    eight->kept &= ~hidden | wide;
+    eight->doubtful = hidden & wide;
 }
 
 /* Which of eight triangles may look this way: less than 0 is behind. Rounding does not lose one. */
@@ -198,8 +211,28 @@ DRAFT_INLINE lanes_int may_face(const float *planes, int rounded, const float ey
     return x * eye_m[0] + y * eye_m[1] + z * eye_m[2] + slack_m >= *(const lanes *)(planes + 3 * rounded);
 }
 
-DRAFT_KERNEL void draft_find_faces(struct draft_tile *tile, const struct draft_mesh *mesh, const struct draft_found *found,
-                                   const struct draft_part *part)
+/* first: of the eight, in the part. */
+DRAFT_INLINE void keep_faces(struct draft_tile *tile, const struct eight *eight, int first)
+{
+    uint32_t words[sizeof(struct draft_face) / sizeof(uint32_t)][LANES]; /* as they lie in memory */
+    float nearest[LANES];
+    *(lanes_int *)words[0] = eight->corners[0] | eight->corners[1] << 16;
+    *(lanes_int *)words[1] = eight->corners[2] | ((lanes_int){ 0, 1, 2, 3, 4, 5, 6, 7 } + first) << 16;
+    *(lanes_int *)words[2] = eight->left | eight->right << 16;
+    *(lanes_int *)words[3] = eight->top | eight->bottom << 16;
+    *(lanes *)nearest = eight->nearest;
+    uint32_t doubtful = lanes_bits(eight->doubtful);
+    for (uint32_t bits = lanes_bits(eight->kept); bits; bits &= bits - 1) {
+        int l = __builtin_ctz(bits);
+        struct draft_face *face = &tile->faces[tile->face_count];
+        uint32_t row[] = { words[0][l], words[1][l], words[2][l], words[3][l] };
+        memcpy(face, row, sizeof(row));
+        tile->face_count += !(doubtful >> l & 1) || !is_hidden(tile, face, nearest[l]);
+    }
+}
+
+void draft_find_faces(struct draft_tile *tile, const struct draft_mesh *mesh, const struct draft_found *found,
+                      const struct draft_part *part)
 {
     const struct draft_corners *corners = &tile->corners;
     const struct draft_parts *parts = found->parts;
@@ -211,20 +244,45 @@ DRAFT_KERNEL void draft_find_faces(struct draft_tile *tile, const struct draft_m
     for (int i = 0; i < part->triangle_count; i += LANES) {
         if (one_side && !lanes_any(may_face(planes + i, part->rounded, found->eye_m)))
             continue;
-        lanes x0 = look_up(corners->x, first + i), x1 = look_up(corners->x, second + i), x2 = look_up(corners->x, third + i);
-        lanes y0 = look_up(corners->y, first + i), y1 = look_up(corners->y, second + i), y2 = look_up(corners->y, third + i);
+        lanes_int p = lanes_from_bytes(first + i), q = lanes_from_bytes(second + i), r = lanes_from_bytes(third + i);
+        lanes x0 = lanes_look_up(corners->x, p), x1 = lanes_look_up(corners->x, q), x2 = lanes_look_up(corners->x, r);
+        lanes y0 = lanes_look_up(corners->y, p), y1 = lanes_look_up(corners->y, q), y2 = lanes_look_up(corners->y, r);
         lanes area = (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0); /* rows go down: what faces us is negative */
         lanes_int turned = area > 0.0f;
-        lanes_int left = first_pixel(least_of(x0, x1, x2), tile->rect.left), right = last_pixel(most_of(x0, x1, x2), tile->rect.right);
-        lanes_int top = first_pixel(least_of(y0, y1, y2), tile->rect.top), bottom = last_pixel(most_of(y0, y1, y2), tile->rect.bottom);
-        lanes_int kept = (area != 0.0f) & (any_side | ~(turned ^ mirrored)) & (left <= right) & (top <= bottom);
-        for (uint32_t bits = lanes_bits(kept); bits; bits &= bits - 1) {
-            int l = __builtin_ctz(bits);
-            struct draft_face *face = &tile->faces[tile->face_count];
-            uint8_t q = second[i + l], r = third[i + l];
-            *face = (struct draft_face){ { first[i + l], turned[l] ? q : r, turned[l] ? r : q }, (uint16_t)(i + l),
-                                         (int16_t)left[l], (int16_t)right[l], (int16_t)top[l], (int16_t)bottom[l] };
-            tile->face_count += !is_hidden(tile, face);
-        }
+        struct eight eight = {
+            .corners = { p, lanes_choose_int(turned, q, r), lanes_choose_int(turned, r, q) },
+            .left = first_pixel(least_of(x0, x1, x2), tile->rect.left),
+            .right = last_pixel(most_of(x0, x1, x2), tile->rect.right),
+            .top = first_pixel(least_of(y0, y1, y2), tile->rect.top),
+            .bottom = last_pixel(most_of(y0, y1, y2), tile->rect.bottom),
+        };
+        eight.kept = (area != 0.0f) & (any_side | ~(turned ^ mirrored)) & (eight.left <= eight.right) & (eight.top <= eight.bottom);
+        if (!lanes_any(eight.kept))
+            continue;
+        hide(tile, &eight);
+        keep_faces(tile, &eight, i);
     }
+}
+
+/* --- what they leave behind ---------------------------------------------------------------------------------------------------- */
+
+DRAFT_INLINE float farthest_in(const struct draft_tile *tile, int left, int top)
+{
+    int bottom = top + BLOCK_PX - 1 < tile->rect.bottom ? top + BLOCK_PX - 1 : tile->rect.bottom;
+    lanes least = (lanes){ 0 } + 1.0f;
+    for (int row = top; row <= bottom; row++) {
+        lanes here = *(const lanes *)(tile->draft->depth + (size_t)row * (size_t)tile->draft->pitch_px + left);
+        least = lanes_least(here, least);
+    }
+    float farthest = least[0];
+    for (int i = 1; i < LANES; i++)
+        farthest = least[i] < farthest ? least[i] : farthest;
+    return farthest;
+}
+
+void draft_look_again(struct draft_tile *tile, const struct draft_rect *blocks)
+{
+    for (int row = blocks->top; row <= blocks->bottom; row++)
+        for (int column = blocks->left; column <= blocks->right; column++)
+            tile->farthest[row][column] = farthest_in(tile, tile->rect.left + column * BLOCK_PX, tile->rect.top + row * BLOCK_PX);
 }

@@ -112,8 +112,10 @@ struct draft_light { /* a light_set, read back */
 };
 enum { DRAFT_LIGHTS = 2, DRAFT_SHAPES = 16 };
 
+struct draft_kernels;
 struct draft {
     struct workers *workers;
+    const struct draft_kernels *kernels;
     const struct stage *stage;
     uint32_t *ramps, *ramp_of_model; /* colours, RAMP_STEPS to a row; first row, by number of the model */
     size_t ramp_count;
@@ -170,7 +172,6 @@ void draft_tiles(struct draft *draft, bool color);              /* depth and mar
 bool draft_make_room(struct draft *draft, const struct frame *frame, int band_rows); /* false: out of memory */
 void draft_place(struct draft *draft, size_t begin, size_t end); /* vertices */
 void draft_sort(struct draft *draft, size_t begin, size_t end);  /* triangles of chunks into bands */
-void draft_color(const struct draft *draft, const struct draft_rect *rect); /* from marks; begins at a whole STRETCH */
 enum draft_rim { RIM_NONE, RIM_LIGHT, RIM_DARK };
 const uint8_t *draft_rim(const struct draft *draft); /* per pixel, rows of pitch_px; in place of depth */
 /* What is needed to colour it again, while draft->ids says what is seen and the frame has all but rims: no ink and no markers yet. NULL:

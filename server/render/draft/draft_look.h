@@ -16,10 +16,14 @@ DRAFT_INLINE lanes whole_part(lanes x) /* x >= 0 */
 
 DRAFT_INLINE lanes_int gather(const uint32_t *table, lanes_int at)
 {
+#ifdef __AVX2__
+    return (lanes_int)_mm256_i32gather_epi32((const int *)table, (__m256i)at, sizeof(*table));
+#else
     lanes_int out;
     for (int i = 0; i < LANES; i++)
         out[i] = (int32_t)table[at[i]];
     return out;
+#endif
 }
 
 DRAFT_INLINE lanes byte_of(lanes_int packed, int number)

@@ -3,6 +3,7 @@
 
    A pixel on an edge that two triangles share belongs to exactly one of them: both compute the edge from the same end in the same way,
    and one takes what is not negative, the other what is. */
+#include "render/draft/draft_kernels.h"
 #include "render/draft/draft_small.h"
 
 /* Which triangle a pixel shows, where that is asked for. */
@@ -166,7 +167,7 @@ DRAFT_INLINE void draw_face(const struct draft_tile *tile, const struct draft_fa
 
 /* --- all -------------------------------------------------------------------------------------------------------------------- */
 
-DRAFT_KERNEL static void draw_any(const struct draft_tile *tile, const struct draft_face *face, uint32_t mark, const struct ink *ink)
+static void draw_any(const struct draft_tile *tile, const struct draft_face *face, uint32_t mark, const struct ink *ink)
 {
     struct draft_vertex v[3];
     struct setup setup;
@@ -176,7 +177,7 @@ DRAFT_KERNEL static void draw_any(const struct draft_tile *tile, const struct dr
     draw_face(tile, face, &setup, ink);
 }
 
-DRAFT_KERNEL void draft_raster_faces(const struct draft_tile *tile, uint32_t mark)
+void draft_raster_faces(const struct draft_tile *tile, uint32_t mark)
 {
     struct ink ink = ink_of(tile->draft);
     const struct draft_face *waiting[LANES];

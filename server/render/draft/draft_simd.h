@@ -1,8 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Eight numbers at a time, by the compiler's vector extensions: the same bits on every machine. Private to draft*.c and plate*.c. */
+/* Eight numbers at a time, by the compiler's vector extensions, which do not find all that a machine can: the same bits on every machine.
+   Private to draft*.c and plate*.c. */
 #ifndef RENDER_DRAFT_SIMD_H
 #define RENDER_DRAFT_SIMD_H
 #include <stdint.h>
+#ifdef __AVX2__
+#include <immintrin.h>
+#endif
 
 /* Built for wider registers too; the loader takes what the machine has. Not under sanitizers, whose run time starts after the loader. */
 #if defined(__x86_64__) && defined(__linux__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && !defined(__clang__)
@@ -18,6 +22,7 @@ typedef int32_t lanes_int __attribute__((vector_size(32), aligned(4)));
 typedef uint32_t lanes_uint __attribute__((vector_size(32), aligned(4)));
 typedef float quad __attribute__((vector_size(16), aligned(4)));
 typedef int32_t quad_int __attribute__((vector_size(16), aligned(4)));
+typedef uint8_t lanes_bytes __attribute__((vector_size(8)));
 typedef int64_t lanes_pair __attribute__((vector_size(16)));
 
 DRAFT_INLINE lanes lanes_choose(lanes_int mask, lanes a, lanes b)
@@ -30,26 +35,51 @@ DRAFT_INLINE lanes_int lanes_choose_int(lanes_int mask, lanes_int a, lanes_int b
     return (mask & a) | (~mask & b);
 }
 
+/* a < b ? a : b */
+DRAFT_INLINE lanes lanes_least(lanes a, lanes b)
+{
+#ifdef __AVX2__
+    return (lanes)_mm256_min_ps((__m256)a, (__m256)b);
+#else
+    return lanes_choose(a < b, a, b);
+#endif
+}
+
+/* a > b ? a : b */
+DRAFT_INLINE lanes lanes_most(lanes a, lanes b)
+{
+#ifdef __AVX2__
+    return (lanes)_mm256_max_ps((__m256)a, (__m256)b);
+#else
+    return lanes_choose(a > b, a, b);
+#endif
+}
+
 DRAFT_INLINE lanes lanes_clamp(lanes x, float low, float high)
 {
-    lanes lows = (lanes){ 0 } + low, highs = (lanes){ 0 } + high;
-    x = lanes_choose(x < lows, lows, x);
-    return lanes_choose(x > highs, highs, x);
+    return lanes_least((lanes){ 0 } + high, lanes_most((lanes){ 0 } + low, x));
 }
 
 DRAFT_INLINE int lanes_any(lanes_int mask)
 {
+#ifdef __AVX2__
+    return !_mm256_testz_si256((__m256i)mask, (__m256i)mask);
+#else
     union {
         lanes_int all;
         lanes_pair halves[2];
     } u = { mask };
     lanes_pair both = u.halves[0] | u.halves[1];
     return (both[0] | both[1]) != 0;
+#endif
 }
 
 /* A bit for each lane, the first one lowest. */
 DRAFT_INLINE uint32_t lanes_bits(lanes_int mask)
 {
+#ifdef __AVX2__
+    return (uint32_t)_mm256_movemask_ps((__m256)mask);
+#else
     union {
         lanes_int all;
         lanes_pair halves[2];
@@ -57,6 +87,7 @@ DRAFT_INLINE uint32_t lanes_bits(lanes_int mask)
     lanes_pair both = u.halves[0] | u.halves[1];
     uint64_t bits = (uint64_t)(both[0] | both[1]);
     return (uint32_t)(bits | bits >> 32);
+#endif
 }
 
 DRAFT_INLINE lanes_int lanes_whole(lanes x)
@@ -82,9 +113,33 @@ DRAFT_INLINE lanes lanes_log2(lanes x)
 
 DRAFT_INLINE lanes lanes_root(lanes x)
 {
+#ifdef __AVX2__
+    return (lanes)_mm256_sqrt_ps((__m256)x);
+#else
     for (int i = 0; i < LANES; i++)
         x[i] = __builtin_sqrtf(x[i]);
     return x;
+#endif
+}
+
+DRAFT_INLINE lanes_int lanes_from_bytes(const uint8_t *at)
+{
+    lanes_bytes eight;
+    __builtin_memcpy(&eight, at, sizeof(eight));
+    return __builtin_convertvector(eight, lanes_int);
+}
+
+/* table[at] */
+DRAFT_INLINE lanes lanes_look_up(const float *table, lanes_int at)
+{
+#ifdef __AVX2__
+    return (lanes)_mm256_i32gather_ps(table, (__m256i)at, sizeof(float));
+#else
+    lanes out;
+    for (int l = 0; l < LANES; l++)
+        out[l] = table[at[l]];
+    return out;
+#endif
 }
 
 #define LANES_IOTA ((lanes){ 0, 1, 2, 3, 4, 5, 6, 7 })

@@ -36,10 +36,10 @@ struct small { /* eight of them: a row of lanes is one number of each */
 
 DRAFT_INLINE lanes corner_values(const float *table, const struct draft_face *const faces[LANES], int corner)
 {
-    lanes out;
+    lanes_int at;
     for (int l = 0; l < LANES; l++)
-        out[l] = table[faces[l]->corners[corner]];
-    return out;
+        at[l] = faces[l]->corners[corner];
+    return lanes_look_up(table, at);
 }
 
 DRAFT_INLINE void small_init(struct small *small, const struct draft_corners *corners, const struct draft_face *const faces[LANES])
@@ -61,16 +61,16 @@ DRAFT_INLINE void small_init(struct small *small, const struct draft_corners *co
     }
     lanes x1 = x[1] - x[0], y1 = y[1] - y[0], x2 = x[2] - x[0], y2 = y[2] - y[0];
     lanes area = x1 * y2 - x2 * y1, over = 1.0f / area, one = x1 * x1 + y1 * y1, two = x2 * x2 + y2 * y2;
-    small->thin = area * area < 1e-3f * lanes_choose(one > two, one, two);
+    small->thin = area * area < 1e-3f * lanes_most(one, two);
     small->x = x[0];
     small->y = y[0];
     const float *tables[3] = { corners->depth, corners->a, corners->b };
     for (int p = 0; p < 3; p++) {
         lanes v0 = corner_values(tables[p], faces, 0), v1 = corner_values(tables[p], faces, 1), v2 = corner_values(tables[p], faces, 2);
-        lanes d1 = v1 - v0, d2 = v2 - v0, low = lanes_choose(v1 < v0, v1, v0), high = lanes_choose(v1 > v0, v1, v0);
+        lanes d1 = v1 - v0, d2 = v2 - v0, low = lanes_least(v1, v0), high = lanes_most(v1, v0);
         small->at[p] = v0;
-        small->low[p] = lanes_choose(v2 < low, v2, low);
-        small->high[p] = lanes_choose(v2 > high, v2, high);
+        small->low[p] = lanes_least(v2, low);
+        small->high[p] = lanes_most(v2, high);
         small->dx[p] = (d1 * y2 - d2 * y1) * over;
         small->dy[p] = (d2 * x1 - d1 * x2) * over;
     }
@@ -171,23 +171,42 @@ DRAFT_INLINE void draw_small(const struct draft_tile *tile, const struct draft_f
     }
 }
 
-/* Fewer stamps of two rows cover it than of one. */
-DRAFT_INLINE bool is_narrow(const struct draft_tile *tile, const struct draft_face *face)
+struct kinds { /* a bit for each of eight */
+    uint32_t one, two; /* one stamp of two rows covers it; fewer of these than of one row do */
+};
+
+DRAFT_INLINE struct kinds kinds_of(const struct draft_tile *tile, const struct draft_face *const faces[LANES], int count)
 {
-    int width = face->right - face->left, height = face->bottom - face->top;
-    return tile->rect.bottom > tile->rect.top && (width / 4 + 1) * (height / 2 + 1) < (width / LANES + 1) * (height + 1);
+    struct kinds kinds = { 0, 0 };
+    if (tile->rect.bottom <= tile->rect.top)
+        return kinds;
+    for (int l = 0; l < count; l++) {
+        unsigned width = (unsigned)(faces[l]->right - faces[l]->left), height = (unsigned)(faces[l]->bottom - faces[l]->top);
+        unsigned two = (width / 4 + 1) * (height / 2 + 1), rows = (width / LANES + 1) * (height + 1);
+        kinds.one |= (uint32_t)(two == 1) << l;
+        kinds.two |= (uint32_t)(two < rows) << l;
+    }
+    kinds.two &= ~kinds.one;
+    return kinds;
 }
 
+/* Kind by kind, or the processor would guess wrong with each. */
 DRAFT_INLINE void draw_eight(const struct draft_tile *tile, const struct draft_face *const faces[LANES], int count, uint32_t mark,
                              const struct ink *ink)
 {
     struct small small;
+    struct kinds kinds = kinds_of(tile, faces, count);
+    uint32_t rows = ((1u << count) - 1) & ~(kinds.one | kinds.two);
     small_init(&small, &tile->corners, faces);
-    for (int l = 0; l < count; l++)
-        if (is_narrow(tile, faces[l]))
-            draw_small(tile, faces[l], &small, l, mark, ink, true);
-        else
-            draw_small(tile, faces[l], &small, l, mark, ink, false);
+    for (uint32_t bits = kinds.one; bits; bits &= bits - 1) {
+        int l = __builtin_ctz(bits), last_left = tile->rect.right + 1 - LANES / 2, last_top = tile->rect.bottom - 1;
+        int left = faces[l]->left < last_left ? faces[l]->left : last_left, top = faces[l]->top < last_top ? faces[l]->top : last_top;
+        draw_stamp(tile, faces[l], &small, l, left, top, mark, ink, true, true);
+    }
+    for (uint32_t bits = kinds.two; bits; bits &= bits - 1)
+        draw_small(tile, faces[__builtin_ctz(bits)], &small, __builtin_ctz(bits), mark, ink, true);
+    for (uint32_t bits = rows; bits; bits &= bits - 1)
+        draw_small(tile, faces[__builtin_ctz(bits)], &small, __builtin_ctz(bits), mark, ink, false);
 }
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Tile by tile: the parts that may be seen in it, nearest first; what lies behind what was drawn is left out. */
-#include "render/draft/draft_tile.h"
+#include "render/draft/draft_kernels.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -74,27 +74,6 @@ static bool is_hidden(const struct draft_tile *tile, const struct draft_rect *bl
     return true;
 }
 
-DRAFT_INLINE float farthest_in(const struct draft_tile *tile, int left, int top)
-{
-    int bottom = top + BLOCK_PX - 1 < tile->rect.bottom ? top + BLOCK_PX - 1 : tile->rect.bottom;
-    lanes least = (lanes){ 0 } + 1.0f;
-    for (int row = top; row <= bottom; row++) {
-        lanes here = *(const lanes *)(tile->draft->depth + (size_t)row * (size_t)tile->draft->pitch_px + left);
-        least = lanes_choose(here < least, here, least);
-    }
-    float farthest = least[0];
-    for (int i = 1; i < LANES; i++)
-        farthest = least[i] < farthest ? least[i] : farthest;
-    return farthest;
-}
-
-DRAFT_KERNEL static void look_again(struct draft_tile *tile, const struct draft_rect *blocks)
-{
-    for (int row = blocks->top; row <= blocks->bottom; row++)
-        for (int column = blocks->left; column <= blocks->right; column++)
-            tile->farthest[row][column] = farthest_in(tile, tile->rect.left + column * BLOCK_PX, tile->rect.top + row * BLOCK_PX);
-}
-
 /* Where its faces are. */
 static struct draft_rect faces_rect(const struct draft_tile *tile)
 {
@@ -113,25 +92,26 @@ static void draw_part(struct draft_tile *tile, const struct draft_mesh *mesh, co
                       const struct draft_item *item)
 {
     const struct draft_part *part = &found->parts->parts[item->part];
+    const struct draft_kernels *kernels = tile->draft->kernels;
     struct draft_rect blocks = blocks_of(tile, &item->rect);
     if (is_hidden(tile, &blocks, item->near))
         return;
-    draft_place_part(tile, mesh, found->parts, part);
+    kernels->place_part(tile, mesh, found->parts, part);
     if (tile->corners.cut) {
-        draft_carry_part(tile, mesh, found->parts, part);
+        kernels->carry_part(tile, mesh, found->parts, part);
         draft_cut_faces(tile, mesh, found->parts, part, found->both_sides);
     } else {
-        draft_find_faces(tile, mesh, found, part);
+        kernels->find_faces(tile, mesh, found, part);
         if (tile->face_count > 0)
-            draft_carry_part(tile, mesh, found->parts, part);
+            kernels->carry_part(tile, mesh, found->parts, part);
     }
     if (tile->face_count == 0)
         return;
     tile->first_id = found->first_id + (uint32_t)(item - found->items) * PART_TRIANGLES;
-    draft_raster_faces(tile, mesh->has_field ? MARK_FIELD : MARK_CONTEXT | (found->ramp + part->material) << 16);
+    kernels->raster_faces(tile, mesh->has_field ? MARK_FIELD : MARK_CONTEXT | (found->ramp + part->material) << 16);
     struct draft_rect rect = faces_rect(tile);
     blocks = blocks_of(tile, &rect);
-    look_again(tile, &blocks);
+    kernels->look_again(tile, &blocks);
 }
 
 static void clear(const struct draft_tile *tile)
@@ -185,7 +165,7 @@ static void draw_tiles(void *arg, size_t begin, size_t end)
             int left = (int)t % columns_of(draft) * TILE_WIDTH_PX, top = (int)t / columns_of(draft) * TILE_HEIGHT_PX;
             int right = left + TILE_WIDTH_PX < draft->width_px ? left + TILE_WIDTH_PX : draft->width_px;
             int bottom = top + TILE_HEIGHT_PX < draft->height_px ? top + TILE_HEIGHT_PX : draft->height_px;
-            draft_color(draft, &(struct draft_rect){ left, top, right - 1, bottom - 1 });
+            draft->kernels->color(draft, &(struct draft_rect){ left, top, right - 1, bottom - 1 });
         }
     }
     mem_free(list.entries);

@@ -5,7 +5,7 @@
 #include "render/draft/draft_impl.h"
 #include "render/draft/draft_simd.h"
 
-enum { TILE_WIDTH_PX = 320, TILE_HEIGHT_PX = 184, BLOCK_PX = 8 };
+enum { TILE_WIDTH_PX = 320, TILE_HEIGHT_PX = 184, BLOCK_SHIFT = 3, BLOCK_PX = 1 << BLOCK_SHIFT };
 enum { BLOCK_COLUMNS = TILE_WIDTH_PX / BLOCK_PX, BLOCK_ROWS = TILE_HEIGHT_PX / BLOCK_PX };
 enum { MOST_FACES = 2 * PART_TRIANGLES, MOST_CORNERS = PART_VERTICES + 4 * PART_TRIANGLES }; /* the near plane may make two of one */
 
@@ -36,17 +36,8 @@ struct draft_tile {
     uint32_t first_id; /* of the part's triangles, in draft->ids */
 };
 
-/* The vertices of a part: first where all of them are, then what those of its faces carry of field and light; all, if some are cut. */
-void draft_place_part(struct draft_tile *tile, const struct draft_mesh *mesh, const struct draft_parts *parts,
-                      const struct draft_part *part);
-void draft_carry_part(struct draft_tile *tile, const struct draft_mesh *mesh, const struct draft_parts *parts,
-                      const struct draft_part *part);
-/* Its faces, out of corners that were placed; if some are cut, they must carry too. */
-void draft_find_faces(struct draft_tile *tile, const struct draft_mesh *mesh, const struct draft_found *found,
-                      const struct draft_part *part);
+/* The faces of a part out of corners that were placed, some of them nearer than the near plane, and that carry. */
 void draft_cut_faces(struct draft_tile *tile, const struct draft_mesh *mesh, const struct draft_parts *parts,
                      const struct draft_part *part, bool both_sides);
-/* Depth and marks of all faces. */
-void draft_raster_faces(const struct draft_tile *tile, uint32_t mark);
 
 #endif
