@@ -41,7 +41,7 @@ const amiss = (page) => page.evaluate(() => {
         if (!within(box(part), picture))
             found.push(`${part.id} leaves the picture`);
     const legend = document.getElementById('legend'), texts = [...legend.querySelectorAll('.ticks span, .limits span, .keys span')];
-    const isSaid = shown('#legend').length > 0 && /No data/.test(legend.querySelector('.keys').textContent);
+    const isSaid = shown('#legend').length > 0 && /No data|Keine Daten/.test(legend.querySelector('.keys').textContent);
     if (picture.height > (innerWidth < 720 ? 125 : 200) && !isSaid)
         found.push('no legend, or no key for what has no data');
     for (const [i, text] of texts.entries()) {
@@ -164,6 +164,32 @@ test('panels and the help are whole, on every screen', options, async (t) => {
                     await close();
                 }
             });
+});
+
+test('what says that the picture is old lies over no legend', options, async () => {
+    const more = { 'large desk': { viewport: { width: 1440, height: 900 } }, wall: { viewport: { width: 3840, height: 2160 } } };
+    for (const [name, screen] of Object.entries({ ...more, ...SCREENS })) {
+        const { page, close } = await openPage(`${url}?lang=de${name === 'wall' ? '&wall' : ''}`, screen);
+        try {
+            await waitForPicture(page);
+            await page.locator('.legend:visible').first().waitFor();
+            await page.evaluate(() => {
+                const { connection } = globalThis.plantcast.session;
+                connection.connect = () => {};
+                connection.lose('Der Server ist nicht erreichbar');
+            });
+            await page.locator('#banner').waitFor();
+            await page.waitForFunction(() => {
+                const [a, b] = ['banner', 'legend'].map((id) => document.getElementById(id).getBoundingClientRect());
+                return b.width === 0 || a.bottom <= b.top || a.right <= b.left;
+            }, null, { timeout: 20000 }).catch(() => assert.fail(name));
+            if (name !== 'phone across') // there it is cut off: no room for both
+                assert.deepEqual(await amiss(page), [], name);
+            await shoot(page, `old-${name.replace(' ', '-')}`);
+        } finally {
+            await close();
+        }
+    }
 });
 
 test('until a picture of the new shape comes, the last one is not distorted, and marks stay where it has them', options, async () => {

@@ -4,7 +4,7 @@ import { ageText, zoneClock } from '../core/format.js';
 import { health, simulatedText } from '../core/health.js';
 import { say } from '../core/words.js';
 import { clock } from './clock.js';
-import { byId, make, setText } from './dom.js';
+import { byId, make, setText, setVariable } from './dom.js';
 
 export class Status {
     // onFreshness(bool): whether what is shown comes from a server that speaks to us.
@@ -28,15 +28,15 @@ export class Status {
     }
 
     showHealth({ kind, words, detail, banner }) {
-        const chip = byId('health'), strip = byId('banner');
+        const chip = byId('health'), strip = byId('banner'), picture = byId('viewport'), { classList } = picture;
         chip.dataset.kind = kind;
         chip.title = detail;
         setText(chip.querySelector('.words'), words);
         const fresh = kind !== 'lost' && kind !== 'silent';
-        byId('viewport').classList.toggle('is-old', !fresh);
-        byId('viewport').classList.toggle('is-past', kind === 'past');
+        classList.toggle('is-old', !fresh);
+        classList.toggle('is-past', kind === 'past');
         const simulated = simulatedText(this.session);
-        byId('viewport').classList.toggle('is-simulated', simulated !== '');
+        classList.toggle('is-simulated', simulated !== '');
         byId('simulated').hidden = simulated === '';
         setText(byId('simulated'), simulated);
         if (fresh !== this.fresh)
@@ -47,6 +47,8 @@ export class Status {
         setText(strip.querySelector('strong'), words);
         setText(strip.querySelector('.detail'), detail);
         byId('retry').hidden = kind !== 'lost';
+        if (banner)
+            setVariable(picture, '--below', `${strip.getBoundingClientRect().bottom - picture.getBoundingClientRect().top}px`);
     }
 
     // The clock is the one of what is shown.
