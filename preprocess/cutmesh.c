@@ -3,7 +3,6 @@
 #include "preprocess/cutmesh.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"
@@ -44,10 +43,29 @@ void cutmesh_list(struct cut_list *list, uint32_t number)
     list->at[list->count++] = number;
 }
 
-static int compare_numbers(const void *a, const void *b)
+#define DIGIT_BITS 11
+
+/* By one digit after the other, the lowest first. */
+static void sort_numbers(uint32_t *numbers, size_t count)
 {
-    uint32_t p = *(const uint32_t *)a, q = *(const uint32_t *)b;
-    return (p > q) - (p < q);
+    uint32_t *other = mem_array(count, sizeof(*other)), *from = numbers, *to = other, most = 0;
+    for (size_t i = 0; i < count; i++)
+        most |= numbers[i];
+    for (unsigned shift = 0; shift < 32 && most >> shift; shift += DIGIT_BITS) {
+        size_t first[(1 << DIGIT_BITS) + 1] = { 0 };
+        for (size_t i = 0; i < count; i++)
+            first[(from[i] >> shift & ((1 << DIGIT_BITS) - 1)) + 1]++;
+        for (size_t d = 0; d < 1 << DIGIT_BITS; d++)
+            first[d + 1] += first[d];
+        for (size_t i = 0; i < count; i++)
+            to[first[from[i] >> shift & ((1 << DIGIT_BITS) - 1)]++] = from[i];
+        uint32_t *sorted = to;
+        to = from;
+        from = sorted;
+    }
+    if (from != numbers)
+        memcpy(numbers, from, count * sizeof(*numbers));
+    mem_free(other);
 }
 
 void cutmesh_sort(struct cut_list *list)
@@ -55,7 +73,7 @@ void cutmesh_sort(struct cut_list *list)
     size_t kept = 0;
     if (list->sorted || list->count == 0)
         return;
-    qsort(list->at, list->count, sizeof(*list->at), compare_numbers);
+    sort_numbers(list->at, list->count);
     for (size_t i = 0; i < list->count; i++)
         if (i == 0 || list->at[i] != list->at[i - 1])
             list->at[kept++] = list->at[i];

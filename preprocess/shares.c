@@ -95,36 +95,78 @@ WIDE_BODY void raise_lanes(lanes *x, float power)
 }
 
 /* Weights as shares of the nearest one's, so that no power is too large for a float. */
-WIDE_BODY float shepard(const struct shares_group *group, const float *distance_m, float *shares)
+WIDE_BODY void shepard_weight(const struct shares_group *group, size_t i, float near_m, const float *distance_m, lanes *weight)
 {
     const lanes floor_m = (lanes){ 0 } + LEAST_M;
-    lanes sum = { 0 }, slope = { 0 }, far, weight, strength;
-    float near_m = least(distance_m, group->count);
-    if (near_m == INFINITY) {
-        memset(shares, 0, group->count * sizeof(*shares));
-        return 0;
-    }
-    near_m = near_m < LEAST_M ? LEAST_M : near_m;
-    for (size_t i = 0; i < group->count; i += L) {
-        load(distance_m + i, &far);
-        load(group->strength + i, &strength);
-        take_more(&floor_m, &far);
-        weight = near_m / far;
-        raise_lanes(&weight, group->power);
-        weight *= strength;
-        sum += weight;
-        store(&weight, shares + i);
-    }
-    float total = sum_of(&sum), per = total > 0 ? 1 / total : 0;
+    lanes far, strength;
+    load(distance_m + i, &far);
+    load(group->strength + i, &strength);
+    take_more(&floor_m, &far);
+    *weight = near_m / far;
+    raise_lanes(weight, group->power);
+    *weight *= strength;
+}
+
+WIDE_BODY float shepard_slope(const struct shares_group *group, const float *distance_m, const float *shares)
+{
+    const lanes floor_m = (lanes){ 0 } + LEAST_M;
+    lanes slope = { 0 }, far, weight;
     for (size_t i = 0; i < group->count; i += L) {
         load(distance_m + i, &far);
         load(shares + i, &weight);
         take_more(&floor_m, &far);
-        weight *= per;
         slope += weight * (1 - weight) / far;
-        store(&weight, shares + i);
     }
     return group->power * sum_of(&slope);
+}
+
+WIDE_BODY float shepard(const struct shares_group *group, const float *distance_m, bool slopes, float *shares, struct shares_norm *norm)
+{
+    lanes sum = { 0 }, weight;
+    float near_m = least(distance_m, group->count);
+    *norm = (struct shares_norm){ .near_m = near_m < LEAST_M ? LEAST_M : near_m };
+    if (near_m == INFINITY) {
+        memset(shares, 0, group->count * sizeof(*shares));
+        return 0;
+    }
+    for (size_t i = 0; i < group->count; i += L) {
+        shepard_weight(group, i, norm->near_m, distance_m, &weight);
+        sum += weight;
+        store(&weight, shares + i);
+    }
+    float total = sum_of(&sum);
+    norm->per = total > 0 ? 1 / total : 0;
+    for (size_t i = 0; i < group->count; i += L) {
+        load(shares + i, &weight);
+        weight *= norm->per;
+        store(&weight, shares + i);
+    }
+    return slopes ? shepard_slope(group, distance_m, shares) : 0;
+}
+
+WIDE_BODY void shepard_norm(const struct shares_group *group, const float *distance_m, struct shares_norm *norm)
+{
+    lanes sum = { 0 }, weight;
+    float near_m = least(distance_m, group->count);
+    *norm = (struct shares_norm){ .near_m = near_m < LEAST_M ? LEAST_M : near_m };
+    for (size_t i = 0; i < group->count && near_m < INFINITY; i += L) {
+        shepard_weight(group, i, norm->near_m, distance_m, &weight);
+        sum += weight;
+    }
+    float total = sum_of(&sum);
+    norm->per = total > 0 ? 1 / total : 0;
+}
+
+WIDE_BODY void shepard_again(const struct shares_group *group, const float *distance_m, const struct shares_norm *norm, float *shares)
+{
+    lanes weight;
+    for (size_t i = 0; i < group->count && norm->near_m < INFINITY; i += L) {
+        shepard_weight(group, i, norm->near_m, distance_m, &weight);
+        weight *= norm->per;
+        store(&weight, shares + i);
+    }
+    if (norm->near_m == INFINITY)
+        memset(shares, 0, group->count * sizeof(*shares));
 }
 
 /* --- paper -------------------------------------------------------------------------------------------------------------------- */
@@ -258,9 +300,21 @@ WIDE_TARGET static float least_wide(const float *values, size_t count)
     return least(values, count);
 }
 
-WIDE_TARGET static float shepard_wide(const struct shares_group *group, const float *distance_m, float *shares)
+WIDE_TARGET static float shepard_wide(const struct shares_group *group, const float *distance_m, bool slopes, float *shares,
+                                      struct shares_norm *norm)
 {
-    return shepard(group, distance_m, shares);
+    return shepard(group, distance_m, slopes, shares, norm);
+}
+
+WIDE_TARGET static void shepard_norm_wide(const struct shares_group *group, const float *distance_m, struct shares_norm *norm)
+{
+    shepard_norm(group, distance_m, norm);
+}
+
+WIDE_TARGET static void shepard_again_wide(const struct shares_group *group, const float *distance_m, const struct shares_norm *norm,
+                                           float *shares)
+{
+    shepard_again(group, distance_m, norm, shares);
 }
 
 WIDE_TARGET static float paper_wide(const struct shares_group *group, float radius_m, const float *distance_m, float *shares)
@@ -287,9 +341,25 @@ float shares_least(const float *values, size_t count)
     return wide_is_there() ? least_wide(values, count) : least(values, count);
 }
 
-float shares_shepard(const struct shares_group *group, const float *distance_m, float *shares)
+float shares_shepard(const struct shares_group *group, const float *distance_m, bool slopes, float *shares, struct shares_norm *norm)
 {
-    return wide_is_there() ? shepard_wide(group, distance_m, shares) : shepard(group, distance_m, shares);
+    return wide_is_there() ? shepard_wide(group, distance_m, slopes, shares, norm) : shepard(group, distance_m, slopes, shares, norm);
+}
+
+void shares_shepard_norm(const struct shares_group *group, const float *distance_m, struct shares_norm *norm)
+{
+    if (wide_is_there())
+        shepard_norm_wide(group, distance_m, norm);
+    else
+        shepard_norm(group, distance_m, norm);
+}
+
+void shares_shepard_again(const struct shares_group *group, const float *distance_m, const struct shares_norm *norm, float *shares)
+{
+    if (wide_is_there())
+        shepard_again_wide(group, distance_m, norm, shares);
+    else
+        shepard_again(group, distance_m, norm, shares);
 }
 
 float shares_paper(const struct shares_group *group, float radius_m, const float *distance_m, float *shares)

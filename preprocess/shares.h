@@ -22,9 +22,16 @@ struct shares_group {
     float power;
     size_t count;
 };
-/* They return the most that a value changes over a metre there, whatever the readings. */
-float shares_shepard(const struct shares_group *group, const float *distance_m, float *shares);
+struct shares_norm { /* what makes shares of shepard's weights: these are parts of the nearest sensor's */
+    float near_m, per; /* INFINITY: there is none within reach */
+};
+/* They return the most that a value changes over a metre there, whatever the readings: unless `slopes`, 0. */
+float shares_shepard(const struct shares_group *group, const float *distance_m, bool slopes, float *shares, struct shares_norm *norm);
 float shares_paper(const struct shares_group *group, float radius_m, const float *distance_m, float *shares);
+
+void shares_shepard_norm(const struct shares_group *group, const float *distance_m, struct shares_norm *norm); /* it alone */
+/* The same shares, in less than half the time. */
+void shares_shepard_again(const struct shares_group *group, const float *distance_m, const struct shares_norm *norm, float *shares);
 
 /* Shares at a point against those at corners, weighted: the sum of what is more, or of what is less, whichever is larger. */
 float shares_error(const float *const *corners, const float *weights, size_t corner_count, const float *sample, size_t count);

@@ -24,6 +24,8 @@
 #define FINEST_GROWTH 2.0
 #define FINEST_GROWTH_TRIS 100000.0
 #define WORTH 0.85          /* a coarser level that would get more than so much of the next finer one is of no use */
+#define SAMPLE_WORTH 9000   /* levels of so many triangles or more are first tried on a sample: those of fewer hang on too few of them */
+#define SAMPLE_ROUNDS 4     /* of cuts, then it is known or never will be */
 #define SHORTEST_NEAR 0.125 /* pieces of the finest level, of the tolerance: sensors may stand side by side */
 #define SHORTEST 1.0        /* pieces of coarser levels, of their error: two pixels */
 #define JUMP_WIDTH 8        /* tolerances, or errors */
@@ -302,19 +304,42 @@ static void tell_left(const struct cutmesh *mesh, struct level *level)
     mem_free(told);
 }
 
-/* A coarser level that is sure to come to its bound, which is best known before it is cut that far: an edge that errs has to be cut itself,
-   and half as often as its error can be halved, since a cut leaves a quarter of it where the field bends evenly and more where it peaks. */
-static bool comes_to_bound(const struct split *split)
+/* Until no edge errs by more than the limit. */
+static void cut_to(struct split *split, double limit)
 {
-    const struct cutmesh *mesh = &split->mesh;
-    double needed = (double)mesh->tri_count;
-    for (size_t t = 0; t < mesh->tri_count && !split->finest; t++)
-        for (int i = 0; i < 3; i++) {
-            double error = (double)mesh->cuts[mesh->tris[t].e[i]].error;
-            if (error > SPLIT_AIM)
-                needed += ceil(0.5 * log2(error / SPLIT_AIM));
-        }
-    return !split->finest && needed > (double)split->most_tris;
+    int rounds = split->sample_blocks ? SAMPLE_ROUNDS : MOST_ROUNDS;
+    for (int round = 0; round < rounds; round++) {
+        if (round == 0)
+            cutmesh_list_all(&split->mesh);
+        measure_edges(split);
+        if (!split->finest)
+            split_turn_edges(split, limit);
+        split->full = split_comes_to_bound(split);
+        if (split->full)
+            break;
+        measure_insides(split, limit);
+        if (!cut_worst(split, limit))
+            break;
+    }
+}
+
+/* What becomes of a sample when large errors are cut says that the level is no use: most of the work for such levels is saved. */
+static bool is_hopeless(struct split *split, const struct level *level, double large)
+{
+    struct level sample;
+    if (level->index_count / 3 < SAMPLE_WORTH)
+        return false;
+    split->sample_blocks = split_take_sample(&sample, level);
+    split->full = false;
+    if (split->sample_blocks > 1) {
+        split->sample_of = (double)level->index_count / (double)sample.index_count;
+        cutmesh_load(&split->mesh, &sample);
+        split_place_sensors(split, split->error_m);
+        cut_to(split, large);
+    }
+    split->sample_blocks = 0;
+    level_finish(&sample);
+    return split->full;
 }
 
 /* Large errors go first: should the level come to its bound, the smaller ones are what is left. */
@@ -328,25 +353,15 @@ static void split_level(struct split *split, struct level *level, size_t finer_t
     split->slack_m = SLACK * error_m;
     split->shortest_m = split->finest ? SHORTEST_NEAR * tolerance_m : fmax(tolerance_m, SHORTEST * error_m);
     split->jump_m = JUMP_WIDTH * fmax(tolerance_m, SHORTEST * error_m);
-    cutmesh_load(&split->mesh, level);
-    double tris = (double)split->mesh.tri_count;
+    double tris = (double)(level->index_count / 3);
     split->most_tris = (size_t)(split->finest ? tris + fmax(FINEST_GROWTH * tris, FINEST_GROWTH_TRIS) : WORTH * (double)finer_tris);
+    if (!split->finest && is_hopeless(split, level, limits[0]))
+        return;
+    cutmesh_load(&split->mesh, level);
     split_place_sensors(split, error_m);
     split->full = split->mesh.tri_count >= split->most_tris;
     for (size_t l = 0; l < sizeof(limits) / sizeof(*limits) && !split->full; l++)
-        for (int round = 0; round < MOST_ROUNDS; round++) {
-            if (round == 0)
-                cutmesh_list_all(&split->mesh);
-            measure_edges(split);
-            if (!split->finest)
-                split_turn_edges(split, limits[l]);
-            split->full = comes_to_bound(split);
-            if (split->full)
-                break;
-            measure_insides(split, limits[l]);
-            if (!cut_worst(split, limits[l]))
-                break;
-        }
+        cut_to(split, limits[l]);
     if (split->full && !split->finest)
         return;
     measure_edges(split);
@@ -408,10 +423,8 @@ static bool start(struct split *split, struct geometry *geometry)
         split->share_capacity = places * split->samples;
         split->shares = mem_try_array(split->share_capacity, sizeof(*split->shares));
     }
-    if (split->in->kept && split->in->kept->applies) {
-        split->near_capacity = places * split->in->straight->group_count;
-        split->near_m = mem_array(split->near_capacity, sizeof(*split->near_m));
-    }
+    split->norm_capacity = places * split->norm_count;
+    split->norms = mem_array(split->norm_capacity, sizeof(*split->norms));
     if (!split->geodesic_m || (split->samples <= MOST_KEPT && !split->shares))
         return false;
     for (uint32_t v = 0; v < geometry->vertex_count; v++)
@@ -441,7 +454,10 @@ static void take_rows(struct split *split, struct rows *rows)
 
 bool split_levels(struct levels *levels, struct geometry *geometry, const struct split_input *input, struct rows *distances)
 {
-    struct split split = { .in = input, .sensors = input->straight->sensor_count, .samples = straight_sample_count(input->straight) };
+    struct split split = { .in = input,
+                           .sensors = input->straight->sensor_count,
+                           .samples = straight_sample_count(input->straight),
+                           .norm_count = 2 * input->straight->group_count };
     bool good = start(&split, geometry);
     *distances = (struct rows){ 0 };
     if (good) {
@@ -451,7 +467,7 @@ bool split_levels(struct levels *levels, struct geometry *geometry, const struct
     cutmesh_finish(&split.mesh);
     mem_free(split.geodesic_m);
     mem_free(split.shares);
-    mem_free(split.near_m);
+    mem_free(split.norms);
     mem_free(split.part);
     mem_free(split.faces);
     return good;

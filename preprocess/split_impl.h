@@ -13,8 +13,8 @@ struct split {
     const uint32_t *model;      /* the finest level's triangles before any is cut: the model's */
     size_t sensors, samples;    /* samples: of each place */
     float *geodesic_m, *shares; /* [place][sensor]; [place][sample], or NULL: too many */
-    float *near_m;              /* [place][group]: along the surface, to the nearest sensor; NULL unless something is kept */
-    size_t geodesic_capacity, share_capacity, near_capacity;
+    struct shares_norm *norms;  /* [place][norm] */
+    size_t geodesic_capacity, share_capacity, norm_capacity, norm_count; /* norm_count: of each place */
     uint32_t *part; /* of each place: what hangs together by edges */
     struct split_face {
         double normal[3]; /* of no certain length */
@@ -29,6 +29,8 @@ struct split {
     double error_m, shortest_m, slack_m;
     double jump_m; /* where a distance jumps, shorter edges are not cut */
     bool full;                     /* it may hardly grow any more */
+    size_t sample_blocks; /* while a sample of the level is in hand: blocks of it; else 0 */
+    double sample_of;     /* triangles of the level for each of the sample's */
     size_t most_tris, first_count; /* first_count: before sensors were placed */
 };
 
@@ -57,6 +59,13 @@ void split_measure_edges(struct split *split, struct split_finding *findings, si
 void split_measure_new_edges(struct split *split, struct split_finding *findings, size_t count);
 /* Of triangles, at their middles. */
 void split_measure_insides(struct split *split, struct split_finding *findings, size_t count);
+
+/* --- levels that are no use (split_bound.c) --- */
+
+/* A coarser level, or what its sample stands for, that is sure to come to its bound: this is best known before it is cut that far. */
+bool split_comes_to_bound(const struct split *split);
+/* Some of a level's triangles, a few neighbours at a time; to be finished. Returns how many such blocks there are. */
+size_t split_take_sample(struct level *sample, const struct level *level);
 
 /* --- keeping (split_kept.c) --- */
 

@@ -208,7 +208,6 @@ static float bend_of(const struct split *split, const struct split_change *chang
 static float share_of_changes(const struct split *split, const uint32_t *corners, size_t count, float *off)
 {
     const struct split_kept *kept = split->in->kept;
-    const size_t groups = split->in->straight->group_count;
     float middle[3] = { 0 }, share = 0;
     double wide_m = 0;
     *off = 0;
@@ -222,7 +221,7 @@ static float share_of_changes(const struct split *split, const uint32_t *corners
         double near_m = 0, far_m = fmax(1e-9, split_length(middle, change->place_m) - wide_m - split->on_surface_m);
         for (size_t c = 0; c < count; c++) {
             uint32_t place = split->mesh.places.of_vertex[corners[c]];
-            near_m = fmax(near_m, (double)split->near_m[place * groups + change->group]);
+            near_m = fmax(near_m, (double)split->norms[place * split->norm_count + change->group].near_m);
         }
         double ratio = (near_m + wide_m) / far_m;
         float own = ratio < 1 ? powf((float)ratio, change->power) : 1;

@@ -198,6 +198,7 @@ struct line { /* points along an edge, from one end to the other */
     const float *shares[POINTS], *geodesic_m[POINTS];
     int count;
     float *room; /* for as many points more */
+    struct shares_norm *norms;
 };
 
 /* Of a point, against a line between two others. */
@@ -217,7 +218,7 @@ static double add_point(struct line *line, double t)
     split_mix(line->a, line->b, t, point);
     if (line->count == POINTS || !measure(&line->sight, point, geodesic_m))
         return 0;
-    straight_shares(straight, point, geodesic_m, shares);
+    straight_shares(straight, point, geodesic_m, line->split->slack_m > 0, shares, line->norms);
     for (; line->t[i - 1] > t; i--) {
         line->t[i] = line->t[i - 1];
         line->shares[i] = line->shares[i - 1];
@@ -301,6 +302,7 @@ struct job {
 /* A thread's room: for points, and for the shares at corners last looked at, since the next edge likely has some of them too. */
 struct room {
     float *points, *corners;
+    struct shares_norm *norms; /* of the point last looked at */
     uint32_t of[CORNERS + 3]; /* which place's, by the place's number; then those for which that is taken */
     uint32_t taken[3];        /* by the corners in hand */
     struct spots_notes notes;
@@ -311,6 +313,7 @@ static void room_init(struct room *room, const struct split *split, size_t point
     room->notes.count = room->notes.missed = 0;
     room->points = mem_array(points * (split->samples + split->sensors), sizeof(float));
     room->corners = split->shares ? NULL : mem_array((CORNERS + 3) * split->samples, sizeof(float));
+    room->norms = mem_array(split->norm_count, sizeof(*room->norms));
     memset(room->of, 0xff, sizeof(room->of));
 }
 
@@ -320,6 +323,7 @@ static void room_finish(struct room *room, const struct split *split)
         spots_hand_over(split->in->spots, &room->notes);
     mem_free(room->points);
     mem_free(room->corners);
+    mem_free(room->norms);
 }
 
 /* Of a corner of the edge or triangle in hand. Kept by place while they are few. */
@@ -334,7 +338,8 @@ static const float *shares_at(const struct split *split, uint32_t vertex, uint32
     room->taken[corner] = number;
     float *shares = room->corners + number * split->samples;
     if (room->of[number] != place)
-        straight_shares(split->in->straight, split_position(split, vertex), split->geodesic_m + place * split->sensors, shares);
+        straight_shares_again(split->in->straight, split->mesh.places.positions_m[place], split->geodesic_m + place * split->sensors,
+                              split->norms + place * split->norm_count, shares);
     room->of[number] = place;
     return shares;
 }
@@ -356,6 +361,17 @@ static void bar_jump(struct split_finding *finding, const struct line *line)
     }
 }
 
+/* Of which the middle was looked at last. */
+static double nearest_to_middle(const struct line *line)
+{
+    const struct straight *straight = line->split->in->straight;
+    float middle[3];
+    if (line->count == 3)
+        return straight_nearest_of(straight, line->norms);
+    split_mix(line->a, line->b, 0.5, middle);
+    return straight_nearest(straight, middle);
+}
+
 static void try_edge(const struct job *job, struct split_finding *finding, struct room *room)
 {
     const struct split *split = job->split;
@@ -372,12 +388,11 @@ static void try_edge(const struct job *job, struct split_finding *finding, struc
                          .shares = { shares_at(split, edge->a, 0, room) },
                          .geodesic_m = { split->geodesic_m + place_of(split, edge->a) * split->sensors,
                                          split->geodesic_m + place_of(split, edge->b) * split->sensors },
-                         .room = room->points };
+                         .room = room->points,
+                         .norms = room->norms };
     line.shares[1] = shares_at(split, edge->b, 1, room);
-    float middle[3];
-    split_mix(pa, pb, 0.5, middle);
-    double nearest_m = straight_nearest(split->in->straight, middle);
     finding->error = (float)add_point(&line, 0.5);
+    double nearest_m = nearest_to_middle(&line);
     if (length_m < 2 * split->shortest_m) {
         bar_short(finding);
         return;
@@ -441,7 +456,7 @@ static void try_inside(const struct split *split, struct split_finding *finding,
     *finding = (struct split_finding){ .number = finding->number };
     if (!measure(&sight, middle, geodesic_m))
         return;
-    straight_shares(straight, middle, geodesic_m, shares);
+    straight_shares(straight, middle, geodesic_m, split->slack_m > 0, shares, room->norms);
     enum straight_modes modes = jumps_inside(split, tri, middle, geodesic_m) ? STRAIGHT_EUCLIDEAN : STRAIGHT_BOTH;
     finding->error = (float)straight_error_inside(straight, modes, corners, shares, split->slack_m);
 }
@@ -472,10 +487,11 @@ static void measure_places(void *arg, size_t begin, size_t end)
             struct sight sight = sight_of_edge(split, &split->mesh.cuts[job->edges[i]], &notes);
             measure_always(&sight, point, geodesic_m);
         }
+        struct shares_norm *norms = split->norms + place * split->norm_count;
         if (split->shares)
-            straight_shares(split->in->straight, point, geodesic_m, split->shares + place * split->samples);
-        if (split->near_m)
-            straight_near(split->in->straight, geodesic_m, split->near_m + place * split->in->straight->group_count);
+            straight_shares(split->in->straight, point, geodesic_m, false, split->shares + place * split->samples, norms);
+        else
+            straight_norms(split->in->straight, point, geodesic_m, norms);
     }
     if (split->in->spots)
         spots_hand_over(split->in->spots, &notes);
@@ -515,8 +531,7 @@ void split_add_place(struct split *split, uint32_t place, uint32_t part)
     mem_grow(&split->geodesic_m, &split->geodesic_capacity, (place + 1) * split->sensors, sizeof(*split->geodesic_m));
     if (split->shares)
         mem_grow(&split->shares, &split->share_capacity, (place + 1) * split->samples, sizeof(*split->shares));
-    if (split->near_m)
-        mem_grow(&split->near_m, &split->near_capacity, (place + 1) * split->in->straight->group_count, sizeof(*split->near_m));
+    mem_grow(&split->norms, &split->norm_capacity, (place + 1) * split->norm_count, sizeof(*split->norms));
     mem_grow(&split->part, &split->part_capacity, place + 1, sizeof(*split->part));
     split->part[place] = part;
 }

@@ -102,31 +102,71 @@ static void room_finish(struct room *room)
         mem_free(room->at);
 }
 
-static void pick(const struct straight_group *group, const float *from, float *distance_m)
+/* Of the group's sensors: `from` itself where these are all that it holds, else copied into the room. */
+static const float *pick(const struct straight_group *group, const float *from, float *distance_m)
 {
+    if (group->in_a_row && group->count == group->of.count)
+        return from + group->columns[0];
     if (group->in_a_row)
         memcpy(distance_m, from + group->columns[0], group->count * sizeof(*distance_m));
     for (size_t i = 0; i < group->count && !group->in_a_row; i++)
         distance_m[i] = from[group->columns[i]];
     for (size_t i = group->count; i < group->of.count; i++)
         distance_m[i] = INFINITY;
+    return distance_m;
 }
 
-void straight_shares(const struct straight *straight, const float point_m[3], const float *geodesic_m, float *shares)
+void straight_shares(const struct straight *straight, const float point_m[3], const float *geodesic_m, bool slopes, float *shares,
+                     struct shares_norm *norms)
 {
     float *slope = shares + straight->share_count;
     struct room rooms[2];
     size_t all = shares_padded(straight->sensor_count);
-    float *straight_m = room_for(&rooms[0], all), *distance_m = room_for(&rooms[1], straight->most_count);
+    float *straight_m = room_for(&rooms[0], all), *room_m = room_for(&rooms[1], straight->most_count);
     shares_euclidean(point_m, (const float *const *)straight->axes_m, all, straight_m);
     for (int mode = 0; mode < 2; mode++)
         for (size_t g = 0; g < straight->group_count; g++) {
             const struct straight_group *group = &straight->groups[g];
-            const float *from = mode == DISTANCE_GEODESIC ? geodesic_m : straight_m;
-            pick(group, from, distance_m);
-            *slope++ = shares_shepard(&group->of, distance_m, shares);
+            const float *distance_m = pick(group, mode == DISTANCE_GEODESIC ? geodesic_m : straight_m, room_m);
+            *slope++ = shares_shepard(&group->of, distance_m, slopes, shares, norms++);
             shares += group->of.count;
             *slope++ = group->papers ? shares_paper(&group->of, (float)group->radius_m[mode], distance_m, shares) : 0;
+            shares += group->papers ? group->of.count : 0;
+        }
+    room_finish(&rooms[0]);
+    room_finish(&rooms[1]);
+}
+
+void straight_norms(const struct straight *straight, const float point_m[3], const float *geodesic_m, struct shares_norm *norms)
+{
+    struct room rooms[2];
+    size_t all = shares_padded(straight->sensor_count);
+    float *straight_m = room_for(&rooms[0], all), *room_m = room_for(&rooms[1], straight->most_count);
+    shares_euclidean(point_m, (const float *const *)straight->axes_m, all, straight_m);
+    for (int mode = 0; mode < 2; mode++)
+        for (size_t g = 0; g < straight->group_count; g++) {
+            const struct straight_group *group = &straight->groups[g];
+            shares_shepard_norm(&group->of, pick(group, mode == DISTANCE_GEODESIC ? geodesic_m : straight_m, room_m), norms++);
+        }
+    room_finish(&rooms[0]);
+    room_finish(&rooms[1]);
+}
+
+void straight_shares_again(const struct straight *straight, const float point_m[3], const float *geodesic_m,
+                           const struct shares_norm *norms, float *shares)
+{
+    struct room rooms[2];
+    size_t all = shares_padded(straight->sensor_count);
+    float *straight_m = room_for(&rooms[0], all), *room_m = room_for(&rooms[1], straight->most_count);
+    shares_euclidean(point_m, (const float *const *)straight->axes_m, all, straight_m);
+    for (int mode = 0; mode < 2; mode++)
+        for (size_t g = 0; g < straight->group_count; g++) {
+            const struct straight_group *group = &straight->groups[g];
+            const float *distance_m = pick(group, mode == DISTANCE_GEODESIC ? geodesic_m : straight_m, room_m);
+            shares_shepard_again(&group->of, distance_m, norms++, shares);
+            shares += group->of.count;
+            if (group->papers)
+                shares_paper(&group->of, (float)group->radius_m[mode], distance_m, shares);
             shares += group->papers ? group->of.count : 0;
         }
     room_finish(&rooms[0]);
@@ -179,15 +219,12 @@ double straight_error_inside(const struct straight *straight, enum straight_mode
     return worst_of(straight, modes, corners, (const float[3]){ 1 / 3.0f, 1 / 3.0f, 1 / 3.0f }, 3, inside, slack_m);
 }
 
-void straight_near(const struct straight *straight, const float *geodesic_m, float *near_m)
+double straight_nearest_of(const struct straight *straight, const struct shares_norm *norms)
 {
-    struct room room;
-    float *distance_m = room_for(&room, straight->most_count);
-    for (size_t g = 0; g < straight->group_count; g++) {
-        pick(&straight->groups[g], geodesic_m, distance_m);
-        near_m[g] = shares_least(distance_m, straight->groups[g].of.count);
-    }
-    room_finish(&room);
+    float nearest_m = INFINITY;
+    for (size_t g = 0; g < straight->group_count; g++)
+        nearest_m = fminf(nearest_m, norms[DISTANCE_EUCLIDEAN * straight->group_count + g].near_m);
+    return (double)nearest_m;
 }
 
 double straight_nearest(const struct straight *straight, const float point_m[3])

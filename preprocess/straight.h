@@ -40,7 +40,15 @@ void straight_set_radius(struct straight *straight, const float *const largest_m
    then paper's (of groups with few sensors). Then, in that order, the most that a value may change there over a metre. geodesic_m: by
    column; INFINITY: not reached. */
 size_t straight_sample_count(const struct straight *straight); /* numbers that straight_shares makes */
-void straight_shares(const struct straight *straight, const float point_m[3], const float *geodesic_m, float *shares);
+/* norms: two of each group, for geodesic distances and then for straight ones. Without `slopes` what shepard may change is left 0. */
+void straight_shares(const struct straight *straight, const float point_m[3], const float *geodesic_m, bool slopes, float *shares,
+                     struct shares_norm *norms);
+void straight_norms(const struct straight *straight, const float point_m[3], const float *geodesic_m, struct shares_norm *norms);
+/* The same shares, in less time where paper is not looked at; nothing after them. */
+void straight_shares_again(const struct straight *straight, const float point_m[3], const float *geodesic_m,
+                           const struct shares_norm *norms, float *shares);
+/* From norms: metres to the nearest sensor, as the crow flies. */
+double straight_nearest_of(const struct straight *straight, const struct shares_norm *norms);
 /* In parts of the range: samples at a point against a line between two others, at share t of the way; against the mean of three corners.
    modes: on which distances. Less what a value may change over slack_m, up to two steps of colour. */
 enum straight_modes { STRAIGHT_GEODESIC = 1 << DISTANCE_GEODESIC, STRAIGHT_EUCLIDEAN = 1 << DISTANCE_EUCLIDEAN, STRAIGHT_BOTH = 3 };
@@ -48,8 +56,6 @@ double straight_error(const struct straight *straight, enum straight_modes modes
                       const float *between, double slack_m);
 double straight_error_inside(const struct straight *straight, enum straight_modes modes, const float *const corners[3],
                              const float *inside, double slack_m);
-/* Of each group, the distance of the nearest sensor. */
-void straight_near(const struct straight *straight, const float *geodesic_m, float *near_m);
 /* Metres from the point to the nearest sensor, as the crow flies. */
 double straight_nearest(const struct straight *straight, const float point_m[3]);
 

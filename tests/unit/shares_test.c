@@ -61,7 +61,13 @@ static void shepards_shares_are_those_of_a_plain_loop(void **state)
             weights[i] = isfinite(d) ? (double)trial.strength[i] * pow(near_m / d, (double)trial.group.power) : 0;
             sum += weights[i];
         }
-        float found = shares_shepard(&trial.group, trial.distance_m, shares);
+        struct shares_norm norm, alone;
+        float again[MOST], found = shares_shepard(&trial.group, trial.distance_m, true, shares, &norm);
+        shares_shepard_norm(&trial.group, trial.distance_m, &alone);
+        shares_shepard_again(&trial.group, trial.distance_m, &alone, again);
+        assert_memory_equal(&norm, &alone, sizeof(norm));
+        assert_memory_equal(again, shares, trial.padded * sizeof(*shares));
+        assert_float_equal((double)norm.near_m, near_m, 1e-6 * near_m);
         for (size_t i = 0; i < trial.padded; i++) {
             double share = i < trial.count && sum > 0 ? weights[i] / sum : 0;
             assert_float_equal(shares[i], share, SAME);

@@ -1,0 +1,72 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Which coarser levels will need too many triangles, before they are cut that far. */
+#include <math.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "preprocess/split_impl.h"
+
+#define SAMPLE_OF 8 /* blocks of triangles, of which one is taken: a power of 2 */
+#define BLOCK 8     /* triangles */
+#define SURE 1.5    /* standard deviations that the sample has to be beyond the bound */
+
+/* How many triangles it takes to mend this one: an edge that errs has to be cut itself, and half as often as its error can be halved, since
+   a cut leaves a quarter of it where the field bends evenly and more where it peaks. */
+static double tris_needed(const struct split *split, const struct cut_tri *tri)
+{
+    double needed = 1;
+    for (int i = 0; i < 3; i++) {
+        double error = (double)split->mesh.cuts[tri->e[i]].error;
+        if (error > SPLIT_AIM)
+            needed += ceil(0.5 * log2(error / SPLIT_AIM));
+    }
+    return needed;
+}
+
+/* Blocks of a sample say how far it may be from the whole. */
+static double least_needed_by_sample(const struct split *split)
+{
+    const struct cutmesh *mesh = &split->mesh;
+    const double blocks = (double)split->sample_blocks;
+    double sum = 0, squares = 0, *needed = mem_array(split->sample_blocks, sizeof(*needed));
+    for (size_t t = 0; t < mesh->tri_count; t++)
+        needed[mesh->tris[t].origin / BLOCK] += tris_needed(split, &mesh->tris[t]);
+    for (size_t b = 0; b < split->sample_blocks; b++) {
+        sum += needed[b];
+        squares += needed[b] * needed[b];
+    }
+    mem_free(needed);
+    double mean = sum / blocks, deviation = sqrt(fmax(0, squares / blocks - mean * mean) / blocks);
+    return split->sample_of * blocks * (mean - SURE * deviation);
+}
+
+bool split_comes_to_bound(const struct split *split)
+{
+    double needed = 0;
+    if (split->sample_blocks)
+        return least_needed_by_sample(split) > (double)split->most_tris;
+    for (size_t t = 0; t < split->mesh.tri_count && !split->finest; t++)
+        needed += tris_needed(split, &split->mesh.tris[t]);
+    return !split->finest && needed > (double)split->most_tris;
+}
+
+size_t split_take_sample(struct level *sample, const struct level *level)
+{
+    *sample = (struct level){ 0 };
+    sample->indices = mem_array(level->index_count, sizeof(*sample->indices));
+    sample->primitives = mem_array(level->primitive_count, sizeof(*sample->primitives));
+    for (uint32_t p = 0; p < level->primitive_count; p++) {
+        struct asset_primitive *to = &sample->primitives[sample->primitive_count++];
+        *to = level->primitives[p];
+        to->first_index = sample->index_count;
+        for (uint32_t i = 0; i + 3 * BLOCK <= level->primitives[p].index_count; i += 3 * BLOCK) {
+            uint32_t at = level->primitives[p].first_index + i;
+            if (at / (3 * BLOCK) * 0x9e3779b9u >> 16 & (SAMPLE_OF - 1)) /* nothing that a model repeats falls in step with it */
+                continue;
+            memcpy(sample->indices + sample->index_count, level->indices + at, 3 * BLOCK * sizeof(*sample->indices));
+            sample->index_count += 3 * BLOCK;
+        }
+        to->index_count = sample->index_count - to->first_index;
+    }
+    return sample->index_count / (3 * BLOCK);
+}
