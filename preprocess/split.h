@@ -8,7 +8,7 @@
    Pieces no longer than an eighth of the model's tolerance or, in coarser levels, than their error are not cut; nor, up to eight tolerances
    or errors long, for the field on distances along the surface ones where those jump because the surface does not hang together there: no
    cut mends a jump, cuts only close in on it. What is hidden deep inside another part does not count (a coarser level's surface may stand
-   out of one that hides it by less than its error), nor do triangles that have no width.
+   out of one that hides it by less than its error), nor do triangles that have no width; of what stands out of it, what is seen does.
    A level may not grow for ever, so errors are cut in the order of their size: the finest level to three times its triangles or by 100,000,
    whichever is more. A coarser one that would need more than three quarters of the next finer one's triangles is given up.
    What is left is told by its reason (level.left). */

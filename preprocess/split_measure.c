@@ -6,6 +6,7 @@
 
 #include "base/mem.h"
 #include "preprocess/split_impl.h"
+#include "surface/bvh.h"
 #include "surface/vec.h"
 
 #define PROBABLE 0.4 /* of an error that would matter: if an edge errs by less at its middle, it does so everywhere */
@@ -162,6 +163,22 @@ static bool find_spot(const struct sight *sight, const float point[3], const dou
     return seen;
 }
 
+/* Where a triangle of the finest level is seen, nearest to a place in it that is not: large ones stand out of other parts. */
+static bool find_seen(const struct sight *sight, const double corners[3][3], const double from[3], double weights[3],
+                      struct surface_spot *spot)
+{
+    const struct split *split = sight->split;
+    double at[3], limit_m = 0;
+    for (int c = 0; c < 3; c++)
+        limit_m = fmax(limit_m, vec_distance(from, corners[c]));
+    if (!surface_find_spot_on(split->in->surface, from, limit_m, sight->origin, spot))
+        return false;
+    triangle_nearest(spot->point_m, corners[0], corners[1], corners[2], weights);
+    for (int i = 0; i < 3; i++)
+        at[i] = weights[0] * corners[0][i] + weights[1] * corners[1][i] + weights[2] * corners[2][i];
+    return vec_distance(at, spot->point_m) <= split->on_surface_m;
+}
+
 /* Distances along the surface, where it is nearest to a coarser level's point. False: the point is hidden deep inside another part, and
    nobody sees an error. */
 static bool measure(const struct sight *sight, const float point[3], float *geodesic_m)
@@ -270,13 +287,17 @@ static int best_cut(const struct line *line, double *left)
     return best;
 }
 
+static void add_eighths(struct line *line, struct split_finding *finding)
+{
+    for (int i = 1; i < 8; i += 2)
+        finding->error = fmaxf(finding->error, (float)add_point(line, i / 8.0));
+}
+
 /* A field bends evenly, then the middle is best; or it has a kink, where two ways round are equally long, and straight pieces beside it.
    Where it jumps, no cut mends anything, and only halves come to an end: they close in on it. */
 static void find_cut(struct line *line, double length_m, double enough, struct split_finding *finding)
 {
     double left;
-    for (int i = 1; i < 8; i += 2)
-        finding->error = fmaxf(finding->error, (float)add_point(line, i / 8.0));
     int best = best_cut(line, &left);
     if (left > NO_GAIN * (double)finding->error && jumps(line, length_m))
         return;
@@ -401,8 +422,14 @@ static void try_edge(const struct job *job, struct split_finding *finding, struc
         return;
     if ((double)finding->error <= job->enough || length_m < WIDE * nearest_m)
         finding->error = fmaxf(finding->error, (float)fmax(add_point(&line, 0.25), add_point(&line, 0.75)));
-    if ((double)finding->error > job->enough && length_m < WIDE * nearest_m)
+    bool partly_seen = split->finest && line.count < 5 && (double)finding->error <= job->enough;
+    if (partly_seen)
+        add_eighths(&line, finding);
+    if ((double)finding->error > job->enough && length_m < WIDE * nearest_m) {
+        if (!partly_seen)
+            add_eighths(&line, finding);
         find_cut(&line, length_m, job->enough, finding);
+    }
     if (length_m < split->jump_m && jumps(&line, length_m))
         bar_jump(finding, &line);
     double margin = fmin(0.5, split->shortest_m / length_m);
@@ -442,23 +469,60 @@ static bool jumps_inside(const struct split *split, const struct cut_tri *tri, c
     return false;
 }
 
+struct inside { /* a triangle, looked at inside */
+    struct sight sight;
+    const struct cut_tri *tri;
+    const float *shares[3]; /* at its corners */
+    double corners[3][3];
+    float *points; /* room for one */
+    struct shares_norm *norms;
+};
+
+static void place_in(const struct inside *inside, const double weights[3], double at[3])
+{
+    for (int i = 0; i < 3; i++)
+        at[i] = weights[0] * inside->corners[0][i] + weights[1] * inside->corners[1][i] + weights[2] * inside->corners[2][i];
+}
+
+/* At a place with these weights, where the surface is there. */
+static double error_inside(const struct inside *inside, const double weights[3], const struct surface_spot *spot)
+{
+    const struct split *split = inside->sight.split;
+    const struct straight *straight = split->in->straight;
+    float *geodesic_m = inside->points, *shares = geodesic_m + split->sensors;
+    double at[3];
+    place_in(inside, weights, at);
+    const float point[3] = { (float)at[0], (float)at[1], (float)at[2] };
+    surface_field_at_spot(split->in->field, split->in->surface, spot, geodesic_m);
+    straight_shares(straight, point, geodesic_m, split->slack_m > 0, shares, inside->norms);
+    enum straight_modes modes = jumps_inside(split, inside->tri, point, geodesic_m) ? STRAIGHT_EUCLIDEAN : STRAIGHT_BOTH;
+    return straight_error_inside(straight, modes, inside->shares, weights, shares, split->slack_m);
+}
+
+/* At the middle; where that is not seen, on the finest level at what is seen nearest to it and to places beside the corners. */
 static void try_inside(const struct split *split, struct split_finding *finding, struct room *room)
 {
-    const struct straight *straight = split->in->straight;
+    static const double places[4][3] = {
+        { 1 / 3.0, 1 / 3.0, 1 / 3.0 }, { 2 / 3.0, 1 / 6.0, 1 / 6.0 }, { 1 / 6.0, 2 / 3.0, 1 / 6.0 }, { 1 / 6.0, 1 / 6.0, 2 / 3.0 }
+    };
     const struct cut_tri *tri = &split->mesh.tris[finding->number];
-    struct sight sight = sight_of_tri(split, tri, &room->notes);
-    const float *corners[3];
-    float middle[3], *geodesic_m = room->points, *shares = geodesic_m + split->sensors;
+    struct inside inside = { .sight = sight_of_tri(split, tri, &room->notes), .tri = tri, .points = room->points, .norms = room->norms };
+    struct surface_spot spot;
+    double at[3], weights[3];
     for (uint32_t c = 0; c < 3; c++) {
-        corners[c] = shares_at(split, tri->v[c], c, room);
-        middle[c] = (split_position(split, tri->v[0])[c] + split_position(split, tri->v[1])[c] + split_position(split, tri->v[2])[c]) / 3;
+        inside.shares[c] = shares_at(split, tri->v[c], c, room);
+        to_doubles(split_position(split, tri->v[c]), inside.corners[c]);
     }
     *finding = (struct split_finding){ .number = finding->number };
-    if (!measure(&sight, middle, geodesic_m))
-        return;
-    straight_shares(straight, middle, geodesic_m, split->slack_m > 0, shares, room->norms);
-    enum straight_modes modes = jumps_inside(split, tri, middle, geodesic_m) ? STRAIGHT_EUCLIDEAN : STRAIGHT_BOTH;
-    finding->error = (float)straight_error_inside(straight, modes, corners, shares, split->slack_m);
+    place_in(&inside, places[0], at);
+    bool middle_seen = find_spot(&inside.sight, (const float[3]){ (float)at[0], (float)at[1], (float)at[2] }, at, &spot);
+    if (middle_seen)
+        finding->error = (float)error_inside(&inside, places[0], &spot);
+    for (int p = 0; p < 4 && split->finest && !middle_seen; p++) {
+        place_in(&inside, places[p], at);
+        if (find_seen(&inside.sight, (const double(*)[3])inside.corners, at, weights, &spot))
+            finding->error = fmaxf(finding->error, (float)error_inside(&inside, weights, &spot));
+    }
 }
 
 static void try_insides(void *arg, size_t begin, size_t end)

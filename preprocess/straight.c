@@ -214,9 +214,10 @@ double straight_error(const struct straight *straight, enum straight_modes modes
 }
 
 double straight_error_inside(const struct straight *straight, enum straight_modes modes, const float *const corners[3],
-                             const float *inside, double slack_m)
+                             const double weights[3], const float *inside, double slack_m)
 {
-    return worst_of(straight, modes, corners, (const float[3]){ 1 / 3.0f, 1 / 3.0f, 1 / 3.0f }, 3, inside, slack_m);
+    const float shares[3] = { (float)weights[0], (float)weights[1], (float)weights[2] };
+    return worst_of(straight, modes, corners, shares, 3, inside, slack_m);
 }
 
 double straight_nearest_of(const struct straight *straight, const struct shares_norm *norms)

@@ -49,13 +49,14 @@ void straight_shares_again(const struct straight *straight, const float point_m[
                            const struct shares_norm *norms, float *shares);
 /* From norms: metres to the nearest sensor, as the crow flies. */
 double straight_nearest_of(const struct straight *straight, const struct shares_norm *norms);
-/* In parts of the range: samples at a point against a line between two others, at share t of the way; against the mean of three corners.
+/* In parts of the range: samples at a point against a line between two others, at share t of the way; against the plane
+   through three corners, with these weights.
    modes: on which distances. Less what a value may change over slack_m, up to two steps of colour. */
 enum straight_modes { STRAIGHT_GEODESIC = 1 << DISTANCE_GEODESIC, STRAIGHT_EUCLIDEAN = 1 << DISTANCE_EUCLIDEAN, STRAIGHT_BOTH = 3 };
 double straight_error(const struct straight *straight, enum straight_modes modes, const float *a, const float *b, double t,
                       const float *between, double slack_m);
 double straight_error_inside(const struct straight *straight, enum straight_modes modes, const float *const corners[3],
-                             const float *inside, double slack_m);
+                             const double weights[3], const float *inside, double slack_m);
 /* Metres from the point to the nearest sensor, as the crow flies. */
 double straight_nearest(const struct straight *straight, const float point_m[3]);
 

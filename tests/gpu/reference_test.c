@@ -278,7 +278,7 @@ static void test_plant_room(void **state)
     (void)state;
     if (!site_is_there("plm_plant_equipment.glb"))
         skip();
-    test_plant("tests/plants/plant_room.yaml", "plant_room", &(struct bounds){ 0.025, 0.015, 0.01 });
+    test_plant("tests/plants/plant_room.yaml", "plant_room", &(struct bounds){ 0.0005, 0.015, 0.01 });
 }
 
 static void test_cookie_line(void **state)
@@ -286,7 +286,7 @@ static void test_cookie_line(void **state)
     (void)state;
     if (!site_is_there("cookie_factory_mixer.glb"))
         skip();
-    test_plant("tests/plants/cookie_line.yaml", "cookie_line", &(struct bounds){ 0.003, 0.02, 0.004 });
+    test_plant("tests/plants/cookie_line.yaml", "cookie_line", &(struct bounds){ 0.0005, 0.02, 0.004 });
 }
 
 int main(void)
