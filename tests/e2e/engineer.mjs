@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { chmodSync, existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { DESKTOP, drawnAt, openPage, settle, shoot, TABLET, waitForPicture } from './support/browser.mjs';
+import { DESKTOP, drawnAt, land, openPage, settle, shoot, TABLET, waitForPicture } from './support/browser.mjs';
 import { missing, TinyPlant } from './support/tiny_plant.mjs';
 
 const absent = missing();
@@ -59,6 +59,7 @@ test('a tag that stands nowhere is put onto the surface by a click, and its fiel
     await says('#engineer .tags li', 'TI-9 spare.*stands nowhere yet');
     await page.locator('#engineer .tags button').first().click();
     await says('#engineer .hint', '^TI-9: click on the surface');
+    await land(page); // the panel has made room for itself
     const { x, y } = await at([0.2, -0.5, 0.2]);
     await page.mouse.click(x, y);
     await says('#engineer .moves', 'TI-9 on E-101 .*\\d{3}along the surface');

@@ -125,8 +125,8 @@ export const pageOf = (page, point) => page.evaluate(async (at) => {
 export const drawnAt = (page, point) => page.evaluate(async (place) => {
     const [{ projector }, { halves }] = await Promise.all([import('/core/camera.js'), import('/core/halves.js')]);
     const { session: { picture, params }, viewport } = globalThis.plantcast, box = viewport.element.getBoundingClientRect();
-    const [x, y] = projector(picture.camera, halves(params, picture.fullWidth)[0].width, picture.fullHeight)(place);
-    return { x: box.left + (x * box.width) / picture.fullWidth, y: box.top + (y * box.height) / picture.fullHeight };
+    const [x, y] = projector(picture.camera, halves(params, picture.shownWidth)[0].width, picture.fullHeight)(place);
+    return { x: box.left + (x * box.width) / picture.shownWidth, y: box.top + (y * box.height) / picture.fullHeight };
 }, point);
 
 // What the hand took hold of, once the server has said where that is; null: nothing.
