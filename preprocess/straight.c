@@ -102,9 +102,33 @@ static void room_finish(struct room *room)
         mem_free(room->at);
 }
 
-/* Of the group's sensors: `from` itself where these are all that it holds, else copied into the room. */
-static const float *pick(const struct straight_group *group, const float *from, float *distance_m)
+/* From a point to every sensor, by both modes. */
+struct distances {
+    const float *of[2]; /* by enum distance_mode */
+    struct room straight_m, picked_m;
+};
+
+static void distances_init(struct distances *distances, const struct straight *straight, const float point_m[3], const float *geodesic_m)
 {
+    size_t all = shares_padded(straight->sensor_count);
+    float *straight_m = room_for(&distances->straight_m, all);
+    room_for(&distances->picked_m, straight->most_count);
+    shares_euclidean(point_m, (const float *const *)straight->axes_m, all, straight_m);
+    distances->of[DISTANCE_GEODESIC] = geodesic_m;
+    distances->of[DISTANCE_EUCLIDEAN] = straight_m;
+}
+
+static void distances_finish(struct distances *distances)
+{
+    room_finish(&distances->straight_m);
+    room_finish(&distances->picked_m);
+}
+
+/* Of the group's sensors: until the next ones are picked. Not copied where these are all that it holds. */
+static const float *pick(const struct straight_group *group, struct distances *distances, int mode)
+{
+    const float *from = distances->of[mode];
+    float *distance_m = distances->picked_m.at;
     if (group->in_a_row && group->count == group->of.count)
         return from + group->columns[0];
     if (group->in_a_row)
@@ -120,57 +144,48 @@ void straight_shares(const struct straight *straight, const float point_m[3], co
                      struct shares_norm *norms)
 {
     float *slope = shares + straight->share_count;
-    struct room rooms[2];
-    size_t all = shares_padded(straight->sensor_count);
-    float *straight_m = room_for(&rooms[0], all), *room_m = room_for(&rooms[1], straight->most_count);
-    shares_euclidean(point_m, (const float *const *)straight->axes_m, all, straight_m);
+    struct distances distances;
+    distances_init(&distances, straight, point_m, geodesic_m);
     for (int mode = 0; mode < 2; mode++)
         for (size_t g = 0; g < straight->group_count; g++) {
             const struct straight_group *group = &straight->groups[g];
-            const float *distance_m = pick(group, mode == DISTANCE_GEODESIC ? geodesic_m : straight_m, room_m);
+            const float *distance_m = pick(group, &distances, mode);
             *slope++ = shares_shepard(&group->of, distance_m, slopes, shares, norms++);
             shares += group->of.count;
             *slope++ = group->papers ? shares_paper(&group->of, (float)group->radius_m[mode], distance_m, shares) : 0;
             shares += group->papers ? group->of.count : 0;
         }
-    room_finish(&rooms[0]);
-    room_finish(&rooms[1]);
+    distances_finish(&distances);
 }
 
 void straight_norms(const struct straight *straight, const float point_m[3], const float *geodesic_m, struct shares_norm *norms)
 {
-    struct room rooms[2];
-    size_t all = shares_padded(straight->sensor_count);
-    float *straight_m = room_for(&rooms[0], all), *room_m = room_for(&rooms[1], straight->most_count);
-    shares_euclidean(point_m, (const float *const *)straight->axes_m, all, straight_m);
+    struct distances distances;
+    distances_init(&distances, straight, point_m, geodesic_m);
     for (int mode = 0; mode < 2; mode++)
         for (size_t g = 0; g < straight->group_count; g++) {
             const struct straight_group *group = &straight->groups[g];
-            shares_shepard_norm(&group->of, pick(group, mode == DISTANCE_GEODESIC ? geodesic_m : straight_m, room_m), norms++);
+            shares_shepard_norm(&group->of, pick(group, &distances, mode), norms++);
         }
-    room_finish(&rooms[0]);
-    room_finish(&rooms[1]);
+    distances_finish(&distances);
 }
 
 void straight_shares_again(const struct straight *straight, const float point_m[3], const float *geodesic_m,
                            const struct shares_norm *norms, float *shares)
 {
-    struct room rooms[2];
-    size_t all = shares_padded(straight->sensor_count);
-    float *straight_m = room_for(&rooms[0], all), *room_m = room_for(&rooms[1], straight->most_count);
-    shares_euclidean(point_m, (const float *const *)straight->axes_m, all, straight_m);
+    struct distances distances;
+    distances_init(&distances, straight, point_m, geodesic_m);
     for (int mode = 0; mode < 2; mode++)
         for (size_t g = 0; g < straight->group_count; g++) {
             const struct straight_group *group = &straight->groups[g];
-            const float *distance_m = pick(group, mode == DISTANCE_GEODESIC ? geodesic_m : straight_m, room_m);
+            const float *distance_m = pick(group, &distances, mode);
             shares_shepard_again(&group->of, distance_m, norms++, shares);
             shares += group->of.count;
             if (group->papers)
                 shares_paper(&group->of, (float)group->radius_m[mode], distance_m, shares);
             shares += group->papers ? group->of.count : 0;
         }
-    room_finish(&rooms[0]);
-    room_finish(&rooms[1]);
+    distances_finish(&distances);
 }
 
 static bool has_value(const float *shares, size_t count)
