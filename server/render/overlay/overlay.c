@@ -136,15 +136,17 @@ static bool shows_simulated(const struct pen *pen)
     return false;
 }
 
-static double header_height(const struct pen *pen)
+/* The plant's name, then lines of small text. */
+static double header_height(const struct pen *pen, int lines)
 {
-    return 2.6 * pen->text_px + 12 * pen->unit;
+    return (1.25 + 1.35 * lines) * pen->text_px + 12 * pen->unit;
 }
 
-/* Plant name; its clock; the age of the oldest value that takes part; and whether any of it was not measured. */
+/* Plant name; its clock and the age of the oldest value that takes part; and what speaks against them: a clock that is not set, values
+   that were not measured. It has a line of its own, so that the card hides less of the plant. */
 static void draw_header(struct pen *pen)
 {
-    char clock[CLOCK_BYTES], line[200], age[40] = "no values";
+    char clock[CLOCK_BYTES], lines[2][120], age[40] = "no values";
     format_clock(pen->frame->data_utc_ns, clock);
     if (pen->frame->oldest_age_ns != INT64_MAX)
         format_age(pen->frame->oldest_age_ns, age);
@@ -152,22 +154,26 @@ static void draw_header(struct pen *pen)
         snprintf(age, sizeof(age), "configuration %s", pen->scene->plant->hash);
     const struct view *view = &pen->frame->view;
     bool has_age = view->split || (view->field.show != SHOW_DISTANCE && view->look != LOOK_MATERIALS); /* else no value takes part */
-    const char *unset = pen->frame->clock_unset ? "  ·  CLOCK NOT SYNCHRONISED" : "";
-    snprintf(line, sizeof(line), "%s%s%s%s%s", clock, unset, has_age ? "  ·  " : "", has_age ? age : "",
-             has_age && shows_simulated(pen) ? "  ·  SIMULATED" : "");
+    bool unset = pen->frame->clock_unset, simulated = has_age && shows_simulated(pen);
+    snprintf(lines[0], sizeof(lines[0]), "%s%s%s", clock, has_age ? "  ·  " : "", has_age ? age : "");
+    snprintf(lines[1], sizeof(lines[1]), "%s%s%s", unset ? "CLOCK NOT SYNCHRONISED" : "", unset && simulated ? "  ·  " : "",
+             simulated ? "SIMULATED" : "");
+    int count = lines[1][0] ? 2 : 1;
     double pad = 8 * pen->unit;
     pen_font(pen, 1.15, true);
-    double name_width = pen_text_width(pen, pen->scene->plant->name);
+    double width = pen_text_width(pen, pen->scene->plant->name);
     pen_font(pen, 0.92, false);
-    double line_width = pen_text_width(pen, line);
-    struct box box = { pad, pad, fmax(name_width, line_width) + 2 * pad, header_height(pen) };
+    for (int i = 0; i < count; i++)
+        width = fmax(width, pen_text_width(pen, lines[i]));
+    struct box box = { pad, pad, width + 2 * pad, header_height(pen, count) };
     pen_card(pen, &box);
     pen_ink(pen, 1);
     pen_font(pen, 1.15, true);
     pen_text(pen, box.x + pad, box.y + pad + pen->text_px, pen->scene->plant->name);
     pen_font(pen, 0.92, false);
     pen_ink(pen, 0.8);
-    pen_text(pen, box.x + pad, box.y + pad + 2.45 * pen->text_px, line);
+    for (int i = 0; i < count; i++)
+        pen_text(pen, box.x + pad, box.y + pad + (2.45 + 1.35 * i) * pen->text_px, lines[i]);
     pen_take(pen, &box);
 }
 
@@ -272,7 +278,8 @@ void overlay_window(const struct scene *scene, const struct view *view, struct c
         if (pen->view.look != LOOK_MATERIALS)
             legend_px = fmax(legend_px, overlay_legend_width(pen));
     }
-    *out = (struct camera_window){ -1, 1 - 2 * legend_px / width_px, -1, 1 - 2 * (header_height(pen) + 8 * pen->unit) / view->height_px };
+    double header_px = header_height(pen, 2) + 8 * pen->unit;
+    *out = (struct camera_window){ -1, 1 - 2 * legend_px / width_px, -1, 1 - 2 * header_px / view->height_px };
     cairo_destroy(pen->cairo);
     cairo_surface_destroy(surface);
     mem_free(pen);
