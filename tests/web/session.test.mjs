@@ -437,6 +437,51 @@ test('following another: its parameters and camera are shown, until a hand moves
     assert.deepEqual([session.following, session.params.group], [null, 'pressure']);
 });
 
+test('whoever leads no longer follows: the camera is that of what is shown then, until one is said', () => {
+    const eyes = (x) => ({ camera: { eye: [x, 8, 7], target: [1, 1, 1], up: [0, 0, 1], fov: 40 }, waitUs: 0, fieldUs: 0, renderUs: 0,
+        encodeUs: 0, sentTimeUs: 0 });
+    // What the server says on the way, and pictures; the last one is of the view that is ours then.
+    const ways = {
+        'given the lead before any picture of the leader': [vector('server/following.json'), vector('server/following-nobody.json'), 5],
+        'given the lead while the leader moves': [vector('server/following.json'), 3, vector('server/following-nobody.json'), 4, 5],
+        'given the lead at once': [vector('server/following-nobody.json'), 5],
+        'on our own again': [vector('server/following.json'), 3, null, 3, vector('server/following-nobody.json'), 5],
+    };
+    for (const [how, way] of Object.entries(ways)) {
+        const { session, socket, events } = greeted();
+        session.follow(12);
+        way.forEach((step, i) => {
+            if (step === null)
+                session.follow(null);
+            else if (typeof step === 'number')
+                session.drawn({ seq: i, cameraSeq: 0, ...eyes(step) }, 1);
+            else
+                socket.say(step);
+        });
+        assert.deepEqual(session.camera.eye, [5, 8, 7], how);
+        assert.equal(events.at(-1)[0], 'camera', how); // the address says it, too
+        const said = events.length, sent = socket.sent.length;
+        session.flush();
+        assert.equal(socket.sent.length, sent, 'the server knows it');
+        const own = orbit(session.camera, 3, 0);
+        session.setCamera(own);
+        session.drawn({ seq: 20, cameraSeq: 0, ...eyes(5) }, 1);
+        assert.deepEqual(session.camera, own, 'what was on its way changes nothing');
+        assert.equal(events.length, said + 1);
+    }
+});
+
+test('who moves while another is followed goes on from there, whatever was on its way', () => {
+    const { session, socket } = greeted();
+    session.follow(12);
+    socket.say(vector('server/following.json'));
+    const own = orbit(session.camera, 3, 0);
+    session.setCamera(own);
+    socket.say(vector('server/following-nobody.json'));
+    session.drawn({ seq: 1, cameraSeq: 0, camera: { eye: [9, 8, 7], target: [1, 1, 1], up: [0, 0, 1], fov: 40 } }, 1);
+    assert.deepEqual(session.camera, own);
+});
+
 test('stages of the pictures of the last seconds', () => {
     const picture = (ms, at, hereUs = 1e6 + 9000, more = {}) => ({
         picture: { waitUs: ms * 1000, fieldUs: 0, renderUs: 2000, encodeUs: 1000, sentTimeUs: 1e6, bytes: 1000, at, ...more },

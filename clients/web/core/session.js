@@ -55,6 +55,7 @@ export class Session {
         this.id = null;          // by which others can follow this session
         this.following = null;   // whose view is shown: { session, width, height }
         this.leader = null;      // whom to follow once there is a connection
+        this.lent = false;       // the camera is that of the picture: another's, or what he left to us
         this.followers = { count: 0, sessions: [] }; // who follows us
         this.time = { ...NOW, ...wanted.time }; // what the server shows: atUs null: now; fromUs null: nothing is recorded
         connection.onOpen = () => {
@@ -189,6 +190,7 @@ export class Session {
         if (this.leader !== null)
             this.follow(null);
         this.camera = camera;
+        this.lent = false;
         this.cameraNews = true;
         this.cameraInput = this.cameraInput ?? inputTime;
         this.emit('camera');
@@ -237,7 +239,7 @@ export class Session {
         this.cameraInput = null;
     }
 
-    // null: nobody any more; the camera stays where it was seen last.
+    // null: nobody any more; our own view of before comes back, unless a camera is said.
     follow(session) {
         this.leader = session;
         if (session === null)
@@ -261,13 +263,20 @@ export class Session {
         const now = this.now();
         this.rate.count(now);
         this.latency.drawn(frame.cameraSeq, now);
-        if (this.following)
-            this.camera = asAsked(frame.camera);
+        if (this.lent)
+            this.borrow(asAsked(frame.camera));
         this.picture = { ...frame, payload: null, bytes: frame.payload?.length ?? 0, at: now };
         this.freshen();
         this.recent = this.recent.filter(({ picture }) => now - picture.at <= RECENT_MS);
         this.recent.push({ picture: this.picture, decodeMs, hereUs: this.skew ? now * 1000 + this.skew.us : this.clockUs(now) });
         this.connection.send({ type: 'ack', seq: frame.seq, decode_ms: Math.round(decodeMs * 100) / 100 });
+    }
+
+    borrow(camera) {
+        const moved = !this.following && !same(camera, this.camera);
+        this.camera = camera;
+        if (moved)
+            this.emit('camera');
     }
 
     // What cannot be decoded is acknowledged too: more of it would change nothing.
@@ -365,6 +374,7 @@ const HANDLERS = {
         this.welcomed = true;
         this.id = message.session;
         this.following = this.skew = null;
+        this.lent = false;
         this.followers = { count: 0, sessions: [] };
         this.resume = message.resume ?? null;
         this.role = message.role ?? null;
@@ -414,6 +424,7 @@ const HANDLERS = {
     },
 
     following({ session, width, height, ...shown }) {
+        this.lent ||= session !== null || this.leader !== null;
         this.following = session === null ? null : { session, width, height };
         this.leader = session;
         this.confirmed = this.params = pick(shown, SAID);
