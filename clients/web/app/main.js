@@ -50,16 +50,6 @@ const BUTTONS = { fit: 'fit', home: 'home', measure: 'measure', snapshot: 'snaps
     'engineer-toggle': 'engineer', 'assets-toggle': 'assets', 'display-toggle': 'display', 'more-toggle': 'more' };
 for (const [id, name] of Object.entries(BUTTONS))
     byId(id).addEventListener('click', does(name));
-// What is cut away is moved by hand, but for a wall.
-session.on('params', async () => {
-    if (session.params.clip && !document.body.classList.contains('wall') && await parts.get('grips'))
-        refresh();
-});
-session.on('params', () => {
-    if ([session.params, session.params.split].some((half) => half?.isolines?.length > 0))
-        parts.get('isolines');
-});
-session.on('proofs', refresh);
 
 // The newest is what counts, also where what it means is still on its way.
 function point(place) {
@@ -94,8 +84,8 @@ viewport.onDrawn = (newPicture) => {
 new ResizeObserver(refresh).observe(byId('viewport'));
 setInterval(() => parts.there('card')?.tag && refresh(), 500); // its age goes on
 
-session.on('tags', refresh);
-session.on('alarms', refresh);
+for (const name of ['tags', 'alarms', 'proofs'])
+    session.on(name, refresh);
 session.on('time', () => {
     byId('time-toggle').hidden = false;
     if (session.time.atUs !== null)
@@ -104,10 +94,15 @@ session.on('time', () => {
     status.show();
     refresh();
 });
-session.on('params', () => {
-    byId('viewport').classList.toggle('split', Boolean(session.params.split));
+session.on('params', async () => {
+    const { params } = session;
+    byId('viewport').classList.toggle('split', Boolean(params.split));
     saveAddress();
     refresh();
+    if ([params, params.split].some((half) => half?.isolines?.length > 0))
+        parts.get('isolines');
+    if (params.clip && !document.body.classList.contains('wall') && await parts.get('grips')) // by hand, but for a wall
+        refresh();
 });
 let moved = false;
 session.on('camera', () => {

@@ -55,7 +55,7 @@ export class Session {
         this.id = null;          // by which others can follow this session
         this.following = null;   // whose view is shown: { session, width, height }
         this.leader = null;      // whom to follow once there is a connection
-        this.lent = false;       // the camera is that of the picture: another's, or what he left to us
+        this.lent = null;        // the camera is that of the picture: another's, or what he left us
         this.followers = { count: 0, sessions: [] }; // who follows us
         this.time = { ...NOW, ...wanted.time }; // what the server shows: atUs null: now; fromUs null: nothing is recorded
         connection.onOpen = () => {
@@ -190,9 +190,9 @@ export class Session {
         if (this.leader !== null)
             this.follow(null);
         this.camera = camera;
-        this.lent = false;
+        this.lent = null;
         this.cameraNews = true;
-        this.cameraInput = this.cameraInput ?? inputTime;
+        this.cameraInput ??= inputTime;
         this.emit('camera');
     }
 
@@ -239,7 +239,7 @@ export class Session {
         this.cameraInput = null;
     }
 
-    // null: nobody any more; our own view of before comes back, unless a camera is said.
+    // null: nobody any more; our own view comes back.
     follow(session) {
         this.leader = session;
         if (session === null)
@@ -263,19 +263,15 @@ export class Session {
         const now = this.now();
         this.rate.count(now);
         this.latency.drawn(frame.cameraSeq, now);
+        const was = this.camera;
         if (this.lent)
-            this.borrow(asAsked(frame.camera));
+            this.camera = asAsked(frame.camera);
         this.picture = { ...frame, payload: null, bytes: frame.payload?.length ?? 0, at: now };
         this.freshen();
         this.recent = this.recent.filter(({ picture }) => now - picture.at <= RECENT_MS);
         this.recent.push({ picture: this.picture, decodeMs, hereUs: this.skew ? now * 1000 + this.skew.us : this.clockUs(now) });
         this.connection.send({ type: 'ack', seq: frame.seq, decode_ms: Math.round(decodeMs * 100) / 100 });
-    }
-
-    borrow(camera) {
-        const moved = !this.following && !same(camera, this.camera);
-        this.camera = camera;
-        if (moved)
+        if (!this.following && !same(was, this.camera))
             this.emit('camera');
     }
 
@@ -333,11 +329,8 @@ export class Session {
     // not in it has no marker there: hidden, cut away or behind the eye. null: nothing was said.
     markersOf(seq) {
         let newest = null;
-        for (const known of [...this.markers.keys()].sort((a, b) => a - b)) {
-            if (known > seq)
-                break;
-            if (newest !== null)
-                this.markers.delete(newest);
+        for (const known of [...this.markers.keys()].sort((a, b) => a - b).filter((key) => key <= seq)) {
+            this.markers.delete(newest);
             newest = known;
         }
         return this.markers.get(newest) ?? null;
@@ -373,8 +366,7 @@ const HANDLERS = {
         this.markers.clear(); // also where the plant was loaded anew
         this.welcomed = true;
         this.id = message.session;
-        this.following = this.skew = null;
-        this.lent = false;
+        this.following = this.skew = this.lent = null;
         this.followers = { count: 0, sessions: [] };
         this.resume = message.resume ?? null;
         this.role = message.role ?? null;
@@ -383,7 +375,7 @@ const HANDLERS = {
         this.confirmed = this.params = pick(message.view, SAID);
         if (!this.helloParts.includes('camera') || (before && before.identity !== this.model.identity))
             this.camera = null;
-        this.camera = this.camera ?? home(this.model.plant, this.size.width / this.size.height);
+        this.camera ??= home(this.model.plant, this.size.width / this.size.height);
         this.cameraNews = !same(this.camera, this.greetedCamera ?? this.model.plant.home);
         this.catchUp();
         if (this.leader !== null)
@@ -424,7 +416,7 @@ const HANDLERS = {
     },
 
     following({ session, width, height, ...shown }) {
-        this.lent ||= session !== null || this.leader !== null;
+        this.lent ||= session ?? this.leader;
         this.following = session === null ? null : { session, width, height };
         this.leader = session;
         this.confirmed = this.params = pick(shown, SAID);
