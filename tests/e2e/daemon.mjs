@@ -460,6 +460,15 @@ test('an encoder that is not there is said by its name, and clients get JPEG', {
     }
 });
 
+test('a daemon that falls over is no test\'s secret', { skip }, async () => {
+    const other = await TinyPlant.create();
+    assert.equal(other.prepare().code, 0);
+    await other.startDaemon();
+    other.daemon.child.kill('SIGKILL');
+    await other.daemon.ended;
+    await assert.rejects(other.destroy(), /plantcastd ended by itself: SIGKILL.*/);
+});
+
 test('no GL at all is said, and ends with 1', { skip }, () => {
     const { status, stderr } = spawnSync(join(BIN, 'plantcastd'), [plant.file, '--port', '0', '--gl', 'egl-device'], {
         encoding: 'utf8', timeout: 30000, env: { ...process.env, __EGL_VENDOR_LIBRARY_DIRS: '/nonexistent' },

@@ -47,11 +47,17 @@ function start(program, args, ready) {
             fail(new Error(`${program} ended with ${code}\n${said}`));
         });
     });
+    let ending = false;
+    const running = () => child.exitCode === null && child.signalCode === null;
     const end = async (signal) => {
+        ending = true;
         child.kill(signal);
         await exit;
     };
-    return up.then(() => ({ end, said: () => said, running: () => child.exitCode === null && child.signalCode === null }));
+    // Why it ended by itself, or null.
+    const fault = () => (running() || ending ? null
+        : `${program} ended by itself: ${child.signalCode ?? child.exitCode}: ${said.slice(-1000)}`);
+    return up.then(() => ({ end, said: () => said, running, fault }));
 }
 
 // One line to the simulator, one line back.
@@ -110,11 +116,14 @@ export async function startPlant(more = '', arrange = () => {}) {
                 await plant.ask(`set ${tag} ${await plant.ask(`get ${tag}`)}`);
         },
         async stop() {
+            const fault = daemon?.fault() ?? sim?.fault();
             for (const process of [daemon, sim]) {
                 if (process?.running())
                     await process.end('SIGTERM');
             }
             rmSync(folder, { recursive: true, force: true });
+            if (fault)
+                throw new Error(fault);
         },
     };
     try {

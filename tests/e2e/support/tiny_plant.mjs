@@ -78,8 +78,11 @@ export function runProgram(name, args, timeout = 30000) {
     return { code: status, out: stdout, err: stderr };
 }
 
+const REPORTED = /WARNING: ThreadSanitizer|ERROR: \w*Sanitizer|runtime error:/;
+
 class Program {
     constructor(name, args, as = {}) {
+        this.name = name;
         this.said = '';
         this.child = spawn(join(BIN, name), args, { stdio: ['ignore', 'pipe', 'pipe'], ...as });
         this.ended = new Promise((done) => this.child.once('exit', (code, signal) => done({ code, signal })));
@@ -90,8 +93,10 @@ class Program {
     async line(pattern, timeoutMs = 60000) {
         for (const end = performance.now() + timeoutMs; ;) {
             const found = this.said.match(pattern);
-            if (found)
+            if (found) {
+                this.began = true;
                 return found;
+            }
             if (this.child.exitCode !== null || performance.now() > end)
                 throw new Error(`no ${pattern} in:\n${this.said}`);
             await new Promise((done) => setTimeout(done, 20));
@@ -99,8 +104,18 @@ class Program {
     }
 
     async stop(signal = 'SIGTERM') {
+        this.stopped = true;
         this.child.kill(signal);
         return this.ended;
+    }
+
+    // What went wrong in it, whatever the tests saw of that: it fell over, or a sanitizer found something; or null.
+    get fault() {
+        const { exitCode, signalCode } = this.child, fell = this.began && !this.stopped && (exitCode !== null || signalCode !== null);
+        if (!fell && !REPORTED.test(this.said))
+            return null;
+        const from = this.said.search(REPORTED), words = from < 0 ? this.said.slice(-1000) : this.said.slice(from, from + 1000);
+        return `${this.name}${fell ? ` ended by itself: ${signalCode ?? exitCode}` : ''}: ${words}`;
     }
 }
 
@@ -163,9 +178,12 @@ export class TinyPlant {
     }
 
     async destroy() {
-        for (const program of [this.daemon, this.sim])
-            if (program && program.child.exitCode === null)
+        const programs = [this.daemon, this.sim].filter(Boolean), fault = programs.map((program) => program.fault).find(Boolean);
+        for (const program of programs)
+            if (program.child.exitCode === null)
                 await program.stop('SIGKILL');
         rmSync(this.folder, { recursive: true, force: true });
+        if (fault)
+            throw new Error(fault);
     }
 }
