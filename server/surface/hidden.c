@@ -343,6 +343,33 @@ static void ask(struct search *search, struct workers *workers, const size_t *as
         search_some(search, 0, count);
 }
 
+/* A few triangles of a region may be missed by those that are asked of it. They show at a point within it where triangles that are hidden
+   meet others: all at it are asked, until no more such points come up. */
+static void ask_beside(struct search *search, struct workers *workers, const char *mixed, size_t *asked, char *was_asked)
+{
+    const struct trimesh *mesh = search->mesh;
+    char *kinds = mem_array(mesh->point_count, 1); /* of the triangles at each point: 1: seen, 2: hidden */
+    size_t count;
+    do {
+        memset(kinds, 0, mesh->point_count);
+        count = 0;
+        for (size_t t = 0; t < mesh->tri_count; t++)
+            for (int i = 0; i < 3; i++)
+                kinds[mesh->tris[t][i]] |= search->hidden[t] == HIDDEN_NOT ? 1 : 2;
+        for (size_t t = 0; t < mesh->tri_count; t++) {
+            bool differ = false;
+            for (int i = 0; i < 3 && !was_asked[t]; i++)
+                differ = differ || (kinds[mesh->tris[t][i]] == 3 && !mixed[mesh->tris[t][i]]);
+            if (!differ)
+                continue;
+            was_asked[t] = 1;
+            asked[count++] = t;
+        }
+        ask(search, workers, asked, count);
+    } while (count);
+    mem_free(kinds);
+}
+
 struct vote { /* of a region */
     size_t seen, asked, hidden;
     char most;
@@ -368,6 +395,9 @@ void hidden_find(const struct trimesh *mesh, const uint32_t *part, const struct 
             asked[asked_count++] = t;
     }
     ask(&search, workers, asked, asked_count);
+    char *was_asked = mem_array(mesh->tri_count, 1);
+    for (size_t i = 0; i < asked_count; i++)
+        was_asked[asked[i]] = 1;
     for (size_t i = 0; i < asked_count; i++)
         if (untouched(mesh, asked[i], mixed)) {
             struct vote *vote = &votes[region_of(mesh, asked[i], mixed, region)];
@@ -384,6 +414,10 @@ void hidden_find(const struct trimesh *mesh, const uint32_t *part, const struct 
             hidden[t] = vote->most;
     }
     ask(&search, workers, asked, asked_count);
+    for (size_t i = 0; i < asked_count; i++)
+        was_asked[asked[i]] = 1;
+    ask_beside(&search, workers, mixed, asked, was_asked);
+    mem_free(was_asked);
     hidden_across(mesh, hidden);
     solids_finish(&solids);
     mem_free(mixed);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Bridging what is broken: seams along open edges. */
+/* Bridging what is broken: seams along open edges, and along those that hiding opened. */
 #include "surface/stitch.h"
 
 #include <math.h>
@@ -7,6 +7,7 @@
 
 #include "base/mem.h"
 #include "surface/attach.h"
+#include "surface/borders.h"
 #include "surface/bvh.h"
 #include "surface/cloud.h"
 #include "surface/stitch_impl.h"
@@ -14,105 +15,7 @@
 
 #define GAP_OF_EDGE 0.45 /* two points become one only if they are nearer than this share of the shortest edge at either */
 #define EXACT_OF_TOLERANCE 0.01
-
-/* --- open edges ------------------------------------------------------------------------------------------------------------ */
-
-struct borders {
-    uint32_t (*edges)[2], *edge_tri; /* open edges and their one triangle */
-    size_t edge_count;
-    uint32_t *points; /* points on them */
-    size_t point_count;
-    uint32_t *slot;       /* point -> place in points, or TRIMESH_NONE */
-    double *shortest_m;   /* of each point in points: the shortest edge of any triangle at it */
-    uint32_t *first, *at; /* open edges at each point in points */
-};
-
-static void borders_finish(struct borders *b)
-{
-    mem_free(b->edges);
-    mem_free(b->edge_tri);
-    mem_free(b->points);
-    mem_free(b->slot);
-    mem_free(b->shortest_m);
-    mem_free(b->first);
-    mem_free(b->at);
-}
-
-static void find_open_edges(struct borders *b, const struct trimesh *mesh)
-{
-    struct edge_table edges;
-    edge_table_init(&edges, mesh->tri_count * 3 / 2);
-    unsigned char *faces = mem_array(mesh->tri_count * 3, 1);
-    for (size_t t = 0; t < mesh->tri_count; t++)
-        for (int i = 0; i < 3; i++) {
-            uint32_t e = edge_table_add(&edges, mesh->tris[t][i], mesh->tris[t][(i + 1) % 3]);
-            faces[e] = (unsigned char)(faces[e] < 2 ? faces[e] + 1 : 2);
-        }
-    for (size_t e = 0; e < edges.count; e++)
-        b->edge_count += faces[e] == 1;
-    b->edges = mem_array(b->edge_count, sizeof(*b->edges));
-    b->edge_tri = mem_array(b->edge_count, sizeof(*b->edge_tri));
-    size_t n = 0;
-    for (uint32_t t = 0; t < mesh->tri_count; t++)
-        for (int i = 0; i < 3; i++) {
-            uint32_t p = mesh->tris[t][i], q = mesh->tris[t][(i + 1) % 3];
-            if (faces[edge_table_find(&edges, p, q)] != 1)
-                continue;
-            b->edges[n][0] = p;
-            b->edges[n][1] = q;
-            b->edge_tri[n++] = t;
-        }
-    mem_free(faces);
-    edge_table_finish(&edges);
-}
-
-static void find_border_points(struct borders *b, const struct trimesh *mesh)
-{
-    b->slot = mem_array(mesh->point_count, sizeof(*b->slot));
-    b->points = mem_array(2 * b->edge_count, sizeof(*b->points));
-    memset(b->slot, 0xff, mesh->point_count * sizeof(*b->slot));
-    for (size_t e = 0; e < b->edge_count; e++)
-        for (int i = 0; i < 2; i++) {
-            uint32_t p = b->edges[e][i];
-            if (b->slot[p] == TRIMESH_NONE) {
-                b->slot[p] = (uint32_t)b->point_count;
-                b->points[b->point_count++] = p;
-            }
-        }
-    b->shortest_m = mem_array(b->point_count, sizeof(*b->shortest_m));
-    for (size_t i = 0; i < b->point_count; i++)
-        b->shortest_m[i] = INFINITY;
-    for (size_t t = 0; t < mesh->tri_count; t++)
-        for (int i = 0; i < 3; i++)
-            for (int j = 0; j < 3; j++) {
-                uint32_t s = b->slot[mesh->tris[t][i]];
-                if (i != j && s != TRIMESH_NONE)
-                    b->shortest_m[s] =
-                        min_of(b->shortest_m[s], vec_distance(mesh->points[mesh->tris[t][i]], mesh->points[mesh->tris[t][j]]));
-            }
-}
-
-static void find_edges_at(struct borders *b)
-{
-    b->first = mem_array(b->point_count + 2, sizeof(*b->first));
-    b->at = mem_array(2 * b->edge_count, sizeof(*b->at));
-    for (size_t e = 0; e < b->edge_count; e++)
-        for (int i = 0; i < 2; i++)
-            b->first[b->slot[b->edges[e][i]] + 2]++;
-    for (size_t i = 2; i < b->point_count + 2; i++)
-        b->first[i] += b->first[i - 1];
-    for (uint32_t e = 0; e < b->edge_count; e++)
-        for (int i = 0; i < 2; i++)
-            b->at[b->first[b->slot[b->edges[e][i]] + 1]++] = e;
-}
-
-static void borders_init(struct borders *b, const struct trimesh *mesh)
-{
-    *b = (struct borders){ 0 };
-    find_open_edges(b, mesh);
-    find_border_points(b, mesh);
-    find_edges_at(b);
-}
+#define FLUSH 0.99 /* cosine between faces that lie on each other, at least; between edges that run along each other */
 
 /* --- seams: one round joins points, the next sets points into edges ---------------------------------------------------------- */
 
@@ -121,25 +24,76 @@ struct seams {
     const struct borders *borders;
     struct attach *attach;
     double tolerance_m, end_m; /* places nearer to the end of an edge than end_m are left to the joining of points */
-    bool runs_along; /* only where a border runs along the edge: with cracks everywhere, a point lies just on one that it is not of */
+    bool fits; /* only what fits exactly */
     struct nearest { /* of each border point: the best place found on an open edge that is not its own */
         double distance_m, t;
         uint32_t edge;
     } * nearest;
 };
 
+static void outwards(const struct seams *s, uint32_t e, uint32_t p, double along[3])
+{
+    const uint32_t *edge = s->borders->edges[e];
+    vec_sub(s->mesh->points[edge[edge[0] == p]], s->mesh->points[p], along);
+}
+
+/* Of two edges that run along each other: do their faces lie on each other? */
+static bool lie_on_each_other(const struct seams *s, uint32_t e, uint32_t f)
+{
+    const uint32_t edges[2] = { e, f };
+    double side[2][3];
+    for (int i = 0; i < 2; i++) {
+        const uint32_t *edge = s->borders->edges[edges[i]], *v = s->mesh->tris[s->borders->edge_tri[edges[i]]];
+        uint32_t apex = v[0] ^ v[1] ^ v[2] ^ edge[0] ^ edge[1];
+        double along[3];
+        outwards(s, edges[i], edge[0], along);
+        vec_sub(s->mesh->points[apex], s->mesh->points[edge[0]], side[i]);
+        double share = vec_dot(side[i], along) / vec_dot(along, along);
+        for (int axis = 0; axis < 3; axis++)
+            side[i][axis] -= share * along[axis];
+    }
+    return vec_dot(side[0], side[1]) > FLUSH * sqrt(vec_dot(side[0], side[0]) * vec_dot(side[1], side[1]));
+}
+
+/* Would two points, become one, close an edge of the one's against an edge of the other's though their faces lie on each other? Such faces
+   are of bodies that touch, and what is across the gap would be left with nothing to close with. */
+static bool would_fold(const struct seams *s, size_t i, size_t j)
+{
+    const struct borders *b = s->borders;
+    for (uint32_t n = b->first[i]; n < b->first[i + 1]; n++)
+        for (uint32_t m = b->first[j]; m < b->first[j + 1]; m++) {
+            double one[3], other[3];
+            outwards(s, b->at[n], b->points[i], one);
+            outwards(s, b->at[m], b->points[j], other);
+            if (vec_dot(one, other) > FLUSH * sqrt(vec_dot(one, one) * vec_dot(other, other)) && lie_on_each_other(s, b->at[n], b->at[m]))
+                return true;
+        }
+    return false;
+}
+
+static double limit_of(const struct seams *s, size_t i, size_t j)
+{
+    const double *reach_m = s->borders->reach_m;
+    return reach_m ? min_of(reach_m[i], reach_m[j]) : s->tolerance_m;
+}
+
 static void join_near(void *arg, size_t i, size_t j, double distance_m)
 {
     struct seams *s = arg;
     const struct borders *b = s->borders;
-    if (i < j && distance_m < GAP_OF_EDGE * min_of(b->shortest_m[i], b->shortest_m[j]))
+    if (i < j && distance_m <= limit_of(s, i, j) && distance_m < GAP_OF_EDGE * min_of(b->shortest_m[i], b->shortest_m[j]) &&
+        !(s->fits && would_fold(s, i, j)))
         attach_points(s->attach, b->points[i], b->points[j], distance_m);
 }
 
-/* Whether the border at a point runs along the edge: its next point is on the edge's line as well. */
-static bool runs_along(const struct seams *s, size_t i, const double a[3], const double along[3])
+/* Whether the border at a point runs along the edge: its next point is on the edge's line as well. With cracks everywhere, points lie just
+   on edges that they are not of. */
+static bool runs_along(const struct seams *s, size_t i, uint32_t e)
 {
     const struct borders *b = s->borders;
+    const double *a = s->mesh->points[b->edges[e][0]];
+    double along[3];
+    outwards(s, e, b->edges[e][0], along);
     for (uint32_t n = b->first[i]; n < b->first[i + 1]; n++) {
         const uint32_t *edge = b->edges[b->at[n]];
         double from[3], across[3];
@@ -168,7 +122,7 @@ static void try_edge(struct seams *s, size_t i, uint32_t e)
         return;
     vec_mix(a, c, t, at);
     double distance_m = vec_distance(at, q);
-    if (distance_m <= s->tolerance_m && distance_m < s->nearest[i].distance_m && (!s->runs_along || runs_along(s, i, a, ac)))
+    if (distance_m <= limit_of(s, i, b->slot[u]) && distance_m < s->nearest[i].distance_m && (!s->fits || runs_along(s, i, e)))
         s->nearest[i] = (struct nearest){ .distance_m = distance_m, .t = t, .edge = e };
 }
 
@@ -208,27 +162,24 @@ static void set_into_edges(struct seams *s)
 }
 
 /* Joins points on open edges, or sets them into open edges, where they are within tolerance_m. */
-static void seam_round(struct trimesh *mesh, double tolerance_m, double end_m, bool into_edges, uint32_t *target, size_t target_count,
-                       struct stitch_report *report)
+static void seam_round(struct trimesh *mesh, const struct borders *borders, double tolerance_m, double end_m, bool fits, bool into_edges,
+                       uint32_t *target, size_t target_count, struct stitch_report *report)
 {
-    struct borders borders;
     struct attach attach;
     struct seams seams = {
-        .mesh = mesh, .borders = &borders, .attach = &attach, .tolerance_m = tolerance_m, .end_m = end_m, .runs_along = end_m > 0
+        .mesh = mesh, .borders = borders, .attach = &attach, .tolerance_m = tolerance_m, .end_m = end_m, .fits = fits
     };
-    borders_init(&borders, mesh);
     attach_init(&attach);
     if (into_edges) {
         set_into_edges(&seams);
     } else {
-        double(*cloud)[3] = mem_array(borders.point_count, sizeof(*cloud));
-        for (size_t i = 0; i < borders.point_count; i++)
-            memcpy(cloud[i], mesh->points[borders.points[i]], sizeof(*cloud));
-        int k = cloud_near((const double(*)[3])cloud, borders.point_count, tolerance_m, join_near, &seams);
+        double(*cloud)[3] = mem_array(borders->point_count, sizeof(*cloud));
+        for (size_t i = 0; i < borders->point_count; i++)
+            memcpy(cloud[i], mesh->points[borders->points[i]], sizeof(*cloud));
+        int k = cloud_near((const double(*)[3])cloud, borders->point_count, tolerance_m, join_near, &seams);
         report->k = k < 0 || report->k < 0 ? -1 : k > report->k ? k : report->k;
         mem_free(cloud);
     }
-    borders_finish(&borders);
     stitch_carry_out(&attach, mesh, target, target_count, 0, report);
 }
 
@@ -240,8 +191,57 @@ void stitch_seams(struct trimesh *mesh, double tolerance_m, uint32_t *target, st
         target[i] = i;
     /* What fits exactly first: it is no border any more when gaps are closed, and is not drawn to a neighbour. A point that lies on an edge
        by chance does not fit: pieces of that edge too short to be closed would keep its own gap open. */
-    for (int i = 0; i < 2; i++) {
-        seam_round(mesh, tolerances_m[i], 0, false, target, target_count, report);
-        seam_round(mesh, tolerances_m[i], i == 0 ? tolerance_m : 0, true, target, target_count, report);
+    for (int round = 0; round < 4; round++) {
+        struct borders borders;
+        borders_init(&borders, mesh);
+        seam_round(mesh, &borders, tolerances_m[round / 2], round == 1 ? tolerance_m : 0, round < 2, round % 2 == 1, target, target_count,
+                   report);
+        borders_finish(&borders);
     }
+}
+
+/* --- rims ------------------------------------------------------------------------------------------------------------------- */
+
+/* Takes the triangles with hidden[tri] == which. */
+static void take(struct trimesh *to, const struct trimesh *from, const char *hidden, char which)
+{
+    *to = (struct trimesh){ .points = from->points, .point_count = from->point_count };
+    for (size_t t = 0; t < from->tri_count; t++)
+        if (hidden[t] == which)
+            trimesh_add_tri(to, from->tris[t][0], from->tris[t][1], from->tris[t][2], from->tri_source[t]);
+}
+
+size_t stitch_rims(struct trimesh *mesh, const char *hidden, const struct parts *parts, uint32_t *target, struct stitch_report *report)
+{
+    struct trimesh seen, rest;
+    double widest_m = 0;
+    for (uint32_t i = 0; i < mesh->point_count; i++)
+        target[i] = i;
+    for (size_t p = 0; p < parts->count; p++)
+        widest_m = max_of(widest_m, parts->reach_m[p]);
+    take(&seen, mesh, hidden, 0);
+    take(&rest, mesh, hidden, 1);
+    for (int round = 0; round < 2 && rest.tri_count; round++) {
+        struct borders borders;
+        size_t degenerate = 0, repeated = 0;
+        uint32_t *then = mem_array(mesh->point_count, sizeof(*then));
+        for (uint32_t i = 0; i < mesh->point_count; i++)
+            then[i] = i;
+        borders_init_rims(&borders, &seen, &rest, parts);
+        seam_round(&seen, &borders, widest_m, 0, false, round == 1, then, mesh->point_count, report);
+        borders_finish(&borders);
+        trimesh_rename(&rest, then, &degenerate, &repeated);
+        for (uint32_t i = 0; i < mesh->point_count; i++)
+            target[i] = then[target[i]];
+        mem_free(then);
+    }
+    size_t seen_count = seen.tri_count;
+    for (size_t t = 0; t < rest.tri_count; t++)
+        trimesh_add_tri(&seen, rest.tris[t][0], rest.tris[t][1], rest.tris[t][2], rest.tri_source[t]);
+    rest.points = mesh->points = NULL;
+    trimesh_finish(&rest);
+    seen.point_capacity = mesh->point_capacity;
+    trimesh_finish(mesh);
+    *mesh = seen;
+    return seen_count;
 }

@@ -30,4 +30,9 @@ void stitch_seams(struct trimesh *mesh, double tolerance_m, uint32_t *target, st
    part crosses an edge there, a point is set into both edges. */
 void stitch_parts(struct trimesh *mesh, struct parts *parts, uint32_t *target, struct stitch_report *report);
 
+/* Rims that are open because what else met there is hidden: where bodies that have vertices in common at some of the rim have a gap between
+   them at the rest of it, the faces in between closed both, and what is outside would have to be reached through them. Closed as seams
+   are, within both parts' reach. hidden: 0 or 1. Puts visible triangles first. Returns how many there are. */
+size_t stitch_rims(struct trimesh *mesh, const char *hidden, const struct parts *parts, uint32_t *target, struct stitch_report *report);
+
 #endif

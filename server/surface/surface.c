@@ -173,6 +173,20 @@ static void thin_out(struct surface *surface, const uint32_t *part, size_t added
     mem_free(keep);
 }
 
+/* What hiding opened. */
+static void close_rims(struct surface *surface, const struct parts *parts, char **hidden)
+{
+    struct stitch_report made = { 0 };
+    uint32_t *target = mem_array(surface->mesh.point_count, sizeof(*target));
+    size_t seen = stitch_rims(&surface->mesh, *hidden, parts, target, &made);
+    follow(surface, target);
+    note_bridges(surface, &made);
+    mem_free(target);
+    mem_free(*hidden);
+    *hidden = mem_array(surface->mesh.tri_count, 1);
+    memset(*hidden + seen, 1, surface->mesh.tri_count - seen);
+}
+
 static void join_parts(struct surface *surface, struct parts *parts)
 {
     struct stitch_report made = { 0 };
@@ -187,6 +201,9 @@ static void join_parts(struct surface *surface, struct parts *parts)
     uint32_t *part = parts_spread(&surface->mesh, parts->of_source);
     hidden_find(&surface->mesh, part, parts, made.crossings, made.crossing_count, surface->workers, hidden);
     hidden_islands(&surface->mesh, hidden);
+    mem_free(part);
+    close_rims(surface, parts, &hidden);
+    part = parts_spread(&surface->mesh, parts->of_source);
     thin_out(surface, part, own, hidden);
     size_t visible_count = sort_hidden(&surface->mesh, hidden);
     target = mem_array(surface->mesh.point_count, sizeof(*target));

@@ -108,7 +108,7 @@ static void outer_finish(struct outer *outer)
 }
 
 /* Breaks the shape in one way, turns it, and holds what comes out against the truth. Returns how many of its vertices are hidden. */
-static size_t score(const char *name, const struct cad *shape, const struct outer *outer, enum cad_fault fault, double worst_max)
+static size_t score(const char *name, const struct cad *shape, const struct outer *outer, enum cad_fault fault)
 {
     struct cad broken;
     struct cad_place place;
@@ -139,7 +139,7 @@ static size_t score(const char *name, const struct cad *shape, const struct oute
     print_message("# %-26s %-17s mean %.3f %%  worst %.3f %%  %zu vertices hidden, %zu pieces\n", name, cad_fault_names[fault],
                   100 * mean / count / largest, 100 * worst / largest, hidden, surface_report(surface)->components_after);
     assert_true(mean / count / largest <= MEAN_MAX);
-    assert_true(worst / largest <= worst_max);
+    assert_true(worst / largest <= WORST_MAX);
     if (fault != CAD_FINS) /* some fins end up between the bodies, alone */
         assert_int_equal(surface_report(surface)->components_after, 1);
     surface_destroy(&surface);
@@ -167,8 +167,7 @@ static size_t covered_corners(const struct outer *outer, const struct cad *shape
 }
 
 /* Two bodies, with a gap in z between the tested ones: the truth has none. Vertices within are hidden, those outside are not. Where they
-   have vertices in common, hanging ones in the faces between them are left out, since they fit neither body; and where gaps were drawn at
-   such vertices, some edges of the rim may stay apart, since the faces between the bodies close both there: only the mean is held. */
+   have vertices in common, hanging ones in the faces between them are left out, since they fit neither body. */
 static void test_pair(const char *name, const struct cad *below, const struct cad *above, double gap, bool shared)
 {
     struct cad both = { 0 };
@@ -181,7 +180,7 @@ static void test_pair(const char *name, const struct cad *below, const struct ca
     for (int fault = 0; fault < CAD_FAULTS; fault++) {
         if (fault == CAD_HANGING && shared)
             continue;
-        size_t hidden = score(name, &both, &outer, (enum cad_fault)fault, shared && fault == CAD_GAPS ? 1 : WORST_MAX);
+        size_t hidden = score(name, &both, &outer, (enum cad_fault)fault);
         if (fault == CAD_CLEAN)
             assert_in_range(hidden, covered(&outer, &both) * 9 / 10, covered(&outer, &both));
     }
@@ -253,7 +252,7 @@ static void gaps_of_a_flange_and_its_plate_run_over_each_other(void **state)
         append(&both, &pipe);
         outer_init(&outer, &plate, &pipe, &both);
         chance.state = drawn[i].gaps;
-        assert_true(score("flange, gaps over gaps", &both, &outer, CAD_GAPS, WORST_MAX) >= covered(&outer, &both));
+        assert_true(score("flange, gaps over gaps", &both, &outer, CAD_GAPS) >= covered(&outer, &both));
         outer_finish(&outer);
         cad_finish(&plate);
         cad_finish(&pipe);
@@ -262,15 +261,20 @@ static void gaps_of_a_flange_and_its_plate_run_over_each_other(void **state)
     chance = was;
 }
 
+static void make_boxes(struct cad *below, struct cad *above, bool stacked)
+{
+    cad_box(below, &chance, stacked ? 20 : 30, 24, 10, 0.05);
+    cad_box(above, &chance, stacked ? 20 : 14, 24, 22, 0.05);
+    move(above, 0, 0, 0, (double)(10 * 0.05f));
+}
+
 /* The same vertices on both sides, so that one face is left of two, or two with other diagonals. */
 static void boxes_are_stacked(void **state)
 {
     struct cad below = { 0 }, above = { 0 };
     (void)state;
     skip_if_watched();
-    cad_box(&below, &chance, 20, 24, 10, 0.05);
-    cad_box(&above, &chance, 20, 24, 22, 0.05);
-    move(&above, 0, 0, 0, (double)(10 * 0.05f));
+    make_boxes(&below, &above, true);
     test_pair("stacked boxes", &below, &above, 0, true);
     cad_finish(&below);
     cad_finish(&above);
@@ -282,12 +286,42 @@ static void a_box_stands_at_the_edge_of_another(void **state)
     struct cad below = { 0 }, above = { 0 };
     (void)state;
     skip_if_watched();
-    cad_box(&below, &chance, 30, 24, 10, 0.05);
-    cad_box(&above, &chance, 14, 24, 22, 0.05);
-    move(&above, 0, 0, 0, (double)(10 * 0.05f));
+    make_boxes(&below, &above, false);
     test_pair("box at a box's edge", &below, &above, 0, true);
     cad_finish(&below);
     cad_finish(&above);
+}
+
+/* As they were drawn when a slit stayed at the rim: along it; behind a few faces in it that nobody asked after; and when a gap's edge below
+   fitted the one above and closed with that, so that nothing at all was hidden. */
+static void gaps_at_a_rim_that_boxes_share(void **state)
+{
+    static const struct {
+        bool stacked;
+        uint64_t shape, gaps;
+    } drawn[] = { { false, 4572757393123136864u, 9974078172818400498u },
+                  { true, 15637282480159728428u, 4190595509245954882u },
+                  { true, 8255063493486768376u, 17951463482698918783u },
+                  { true, 11029998158218764781u, 5666404303935474837u } };
+    const struct cad_random was = chance;
+    (void)state;
+    skip_if_watched();
+    for (size_t i = 0; i < sizeof(drawn) / sizeof(drawn[0]); i++) {
+        struct cad below = { 0 }, above = { 0 }, both = { 0 };
+        struct outer outer;
+        chance.state = drawn[i].shape;
+        make_boxes(&below, &above, drawn[i].stacked);
+        append(&both, &below);
+        append(&both, &above);
+        outer_init(&outer, &below, &above, &both);
+        chance.state = drawn[i].gaps;
+        score("boxes, gaps at their rim", &both, &outer, CAD_GAPS);
+        outer_finish(&outer);
+        cad_finish(&below);
+        cad_finish(&above);
+        cad_finish(&both);
+    }
+    chance = was;
 }
 
 /* --- through itself ------------------------------------------------------------------------------------------------------------ */
@@ -304,7 +338,7 @@ static void a_tube_passes_through_itself(void **state)
     cad_eight(&down, &chance, 150, 36, radius, 2);
     outer_init(&outer, &up, &down, &tube);
     for (int fault = 0; fault < CAD_FAULTS; fault++)
-        assert_in_range(score("tube through itself", &tube, &outer, (enum cad_fault)fault, WORST_MAX), covered(&outer, &tube) * 9 / 10,
+        assert_in_range(score("tube through itself", &tube, &outer, (enum cad_fault)fault), covered(&outer, &tube) * 9 / 10,
                         covered_corners(&outer, &tube));
     outer_finish(&outer);
     cad_finish(&tube);
@@ -322,6 +356,7 @@ int main(void)
         cmocka_unit_test(gaps_of_a_flange_and_its_plate_run_over_each_other),
         cmocka_unit_test(boxes_are_stacked),
         cmocka_unit_test(a_box_stands_at_the_edge_of_another),
+        cmocka_unit_test(gaps_at_a_rim_that_boxes_share),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

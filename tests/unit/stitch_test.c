@@ -73,9 +73,49 @@ static void a_gap_is_not_set_into_one_that_it_runs_over(void **state)
     trimesh_finish(&mesh);
 }
 
+/* Two faces at a gap along x = 0, and two just on them that fit those to the left, all cut along the gap: left closes with right, not with
+   what lies on it. */
+static void a_gap_is_closed_across_not_with_what_lies_on_it(void **state)
+{
+    static const float corners[4][8] = {
+        { -1, 0, 0, 0, 0, 1, -1, 1 },
+        { GAP_M, 0, 1, 0, 1, 1, GAP_M, 1 },
+        { -1, 0, 0, 0, 0, 1, -1, 1 },
+        { GAP_M, 0, 1, 0, 1, 1, GAP_M, 1 },
+    };
+    float positions[16][3] = { { 0 } };
+    uint32_t triangles[24], vertex_point[16], target[16];
+    struct trimesh mesh = { 0 };
+    struct stitch_report report = { 0 };
+    size_t degenerate = 0, repeated = 0;
+    (void)state;
+    for (uint32_t q = 0; q < 4; q++) {
+        static const uint32_t turned[2][6] = { { 0, 1, 2, 0, 2, 3 }, { 0, 1, 3, 1, 2, 3 } };
+        for (int i = 0; i < 8; i++)
+            positions[4 * q + (uint32_t)i / 2][i % 2] = corners[q][i];
+        for (int i = 0; i < 4 && q >= 2; i++)
+            positions[4 * q + (uint32_t)i][2] = (float)(0.005 * TOLERANCE_M); /* it "fits exactly" */
+        for (int i = 0; i < 6; i++)
+            triangles[6 * q + (uint32_t)i] = 4 * q + turned[q / 2][i];
+    }
+    assert_true(trimesh_weld(&mesh, (const float(*)[3])positions, 16, triangles, 8, 1e-9, vertex_point, &degenerate, &repeated));
+    stitch_seams(&mesh, TOLERANCE_M, target, &report);
+    for (int i = 0; i < 2; i++) { /* what is at the gap's ends is one */
+        static const uint32_t ends[2][4] = { { 1, 4, 9, 12 }, { 2, 7, 10, 15 } };
+        for (int j = 1; j < 4; j++)
+            assert_int_equal(target[vertex_point[ends[i][j]]], target[vertex_point[ends[i][0]]]);
+    }
+    assert_int_equal(open_edges(&mesh), 0);
+    mem_free(report.made);
+    trimesh_finish(&mesh);
+}
+
 int main(void)
 {
     cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = { cmocka_unit_test(a_gap_is_not_set_into_one_that_it_runs_over) };
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_gap_is_not_set_into_one_that_it_runs_over),
+        cmocka_unit_test(a_gap_is_closed_across_not_with_what_lies_on_it),
+    };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
