@@ -23,6 +23,7 @@ struct cut_edge {       /* between two places; all levels share them */
     float error;        /* of the field along it, if cutting may mend that; less than 0: not known yet */
     float barred;       /* of the field along it, if not */
     bool jumps;         /* likewise: because the distance jumps, not because it is short */
+    bool unasked;       /* in the level in hand it is too short to be cut: what it errs by is not known */
     bool proven;        /* measured, and needs no cut; coarser levels ask for no more */
 };
 

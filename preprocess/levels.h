@@ -11,7 +11,9 @@
    along the surface jumps there. */
 enum level_limit { LEVEL_LIMIT_TRIANGLES, LEVEL_LIMIT_LENGTH, LEVEL_LIMIT_JUMP, LEVEL_LIMITS };
 
-struct level_left { /* after splitting: edges along which the field errs by more than a step of colour, and by how many at most */
+/* After splitting: edges along which the field errs by more than a step of colour, and by how many at most. Of the short edges of coarser
+   levels some are looked at, and stand for the rest. */
+struct level_left {
     uint32_t edges;
     float steps;
 };

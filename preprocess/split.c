@@ -13,11 +13,13 @@
 #define MOST_ROUNDS 16
 #define MOST_KEPT 512    /* shares of a place */
 #define LARGE 0.25       /* of the way to the nearest sensor */
+#define LIKELY 1.0       /* errors of the edges together, in limits: with less, one of 500 large triangles errs more inside */
 #define INSIDE_LEAST 2.0 /* shortest pieces: smaller triangles are not looked at inside */
 #define FLAT 1e-3        /* a triangle's longest edge is no more than that shorter than the way round over the corner across */
 #define ASIDE 0.1        /* of the edge, at least, that corner is from its ends */
 #define LINE_OF_SIZE 2.5e-7 /* a triangle no higher than that, a few units of the last place, is a line */
 #define MORE_PLACES 12.0 /* room for places, in those that the model has */
+#define MOST_ASKED 2000  /* short edges of a coarser level that are looked at for what is told of it */
 #define FULL 2e-4        /* a level that may grow by less than that is done: each round takes half of what is left */
 
 /* How many triangles the finest level may get more: so much of its own, or so many, whichever is more. */
@@ -86,13 +88,21 @@ void split_measure_new_edges(struct split *split, struct split_finding *findings
         edge->error = findings[i].error;
         edge->barred = findings[i].barred;
         edge->jumps = findings[i].jumps;
+        edge->unasked = false;
         edge->proven = findings[i].error <= (float)SPLIT_AIM && findings[i].barred <= (float)SPLIT_AIM;
         if (edge->middle == TRIMESH_NONE)
             edge->share = findings[i].share;
     }
 }
 
-/* Measures edges that are new. One that only lines have is not seen; were it cut, they would become ever more. */
+/* In a coarser level: it stays as it is, whatever it errs by. */
+static bool is_too_short(const struct split *split, const struct cut_edge *edge)
+{
+    return !split->finest && split_length(split_position(split, edge->a), split_position(split, edge->b)) < 2 * split->shortest_m;
+}
+
+/* Measures edges that are new. One that only lines have is not seen; were it cut, they would become ever more. Half of the edges of coarser
+   levels are too short to be cut: what they err by does not matter. */
 static void measure_edges(struct split *split)
 {
     struct cutmesh *mesh = &split->mesh;
@@ -104,15 +114,19 @@ static void measure_edges(struct split *split)
         bool any_new = mesh->cuts[tri->e[0]].error < 0 || mesh->cuts[tri->e[1]].error < 0 || mesh->cuts[tri->e[2]].error < 0;
         for (int i = 0; i < 3 && any_new && !is_line(split, tri); i++) {
             struct cut_edge *edge = &mesh->cuts[tri->e[i]];
-            if (edge->error < 0)
+            if (edge->error >= 0)
+                continue;
+            edge->error = edge->barred = 0;
+            edge->unasked = is_too_short(split, edge);
+            if (!edge->unasked)
                 findings[count++].number = tri->e[i];
-            edge->error = fmaxf(edge->error, 0);
         }
     }
     for (size_t m = 0; m < mesh->made.count; m++)
         for (int i = 0; i < 3; i++) {
             struct cut_edge *edge = &mesh->cuts[mesh->tris[mesh->made.at[m]].e[i]];
-            edge->error = fmaxf(edge->error, 0);
+            if (edge->error < 0)
+                edge->error = edge->barred = 0;
         }
     split_measure_new_edges(split, findings, count);
     mem_free(findings);
@@ -133,7 +147,8 @@ static int longest_edge(const struct split *split, const struct cut_tri *tri)
 }
 
 /* Where a field bends evenly, it errs at the middle by 4/9 of what it errs along the three edges together. In a triangle that is large
-   beside the way to the nearest sensor, anything may happen. */
+   beside the way to the nearest sensor, anything may happen: but before the last limit the few are left for later that err by more than the
+   limit though their edges do not. */
 static bool inside_may_err(const struct split *split, const struct cut_tri *tri, double limit)
 {
     const struct cutmesh *mesh = &split->mesh;
@@ -143,8 +158,10 @@ static bool inside_may_err(const struct split *split, const struct cut_tri *tri,
     double length_m = split_length(a, b);
     for (int e = 0; e < 3; e++)
         sum += (double)mesh->cuts[tri->e[e]].error;
-    return length_m > INSIDE_LEAST * split->shortest_m &&
-           (sum > 9 / 4.0 * limit || length_m > LARGE * straight_nearest(split->in->straight, a));
+    if (length_m <= INSIDE_LEAST * split->shortest_m)
+        return false;
+    bool any_error = sum > LIKELY * limit || limit <= SPLIT_AIM;
+    return sum > 9 / 4.0 * limit || (any_error && length_m > LARGE * straight_nearest(split->in->straight, a));
 }
 
 /* Measures new triangles whose edges are good: has those that err inside cut at the longest edge. */
@@ -162,8 +179,8 @@ static void measure_insides(struct split *split, double limit)
             most = fmax(most, (double)mesh->cuts[tri->e[i]].error);
         if (tri->good || most > limit)
             continue;
-        tri->good = true;
-        if (inside_may_err(split, tri, limit))
+        tri->good = inside_may_err(split, tri, limit);
+        if (tri->good)
             findings[count++].number = t;
     }
     split_measure_insides(split, findings, count);
@@ -171,7 +188,7 @@ static void measure_insides(struct split *split, double limit)
         if ((double)findings[i].error > SPLIT_AIM) {
             const struct cut_tri *tri = &mesh->tris[findings[i].number];
             struct cut_edge *edge = &mesh->cuts[tri->e[longest_edge(split, tri)]];
-            edge->error = findings[i].error;
+            edge->error = fmaxf(edge->error, findings[i].error);
             edge->proven = false;
         }
     mem_free(findings);
@@ -281,16 +298,37 @@ static bool cut_worst(struct split *split, double limit)
 
 /* --- all ------------------------------------------------------------------------------------------------------------------ */
 
-static void note_left(struct level *level, enum level_limit limit, float error)
+static void note_left(struct level *level, enum level_limit limit, float error, uint32_t edges)
 {
     if ((double)error <= SPLIT_ERROR)
         return;
-    level->left[limit].edges++;
+    level->left[limit].edges += edges;
     level->left[limit].steps = fmaxf(level->left[limit].steps, error / (float)SPLIT_ERROR);
 }
 
-static void tell_left(const struct cutmesh *mesh, struct level *level)
+/* Of those that were too short to be asked for, some; the rest errs as they do. Returns how many each of these stands for. */
+static uint32_t ask_some(struct split *split)
 {
+    struct cutmesh *mesh = &split->mesh;
+    struct split_finding *findings = mem_array(mesh->edges.count, sizeof(*findings));
+    size_t count = 0, asked = 0;
+    for (uint32_t e = 0; e < mesh->edges.count; e++)
+        if (mesh->cuts[e].unasked && mesh->cuts[e].corner != TRIMESH_NONE)
+            findings[count++].number = e;
+    const size_t of = 1 + count / MOST_ASKED;
+    for (size_t i = 0; i < count; i += of)
+        findings[asked++].number = findings[i].number;
+    split_measure_new_edges(split, findings, asked);
+    for (size_t i = 0; i < asked; i++)
+        mesh->cuts[findings[i].number].unasked = true;
+    mem_free(findings);
+    return (uint32_t)of;
+}
+
+static void tell_left(struct split *split, struct level *level)
+{
+    const struct cutmesh *mesh = &split->mesh;
+    const uint32_t of = ask_some(split);
     char *told = mem_array(mesh->edges.count, 1);
     for (size_t t = 0; t < mesh->tri_count; t++)
         for (int i = 0; i < 3; i++) {
@@ -298,8 +336,8 @@ static void tell_left(const struct cutmesh *mesh, struct level *level)
             if (told[edge - mesh->cuts])
                 continue;
             told[edge - mesh->cuts] = 1;
-            note_left(level, LEVEL_LIMIT_TRIANGLES, edge->error);
-            note_left(level, edge->jumps ? LEVEL_LIMIT_JUMP : LEVEL_LIMIT_LENGTH, edge->barred);
+            note_left(level, LEVEL_LIMIT_TRIANGLES, edge->error, 1);
+            note_left(level, edge->jumps ? LEVEL_LIMIT_JUMP : LEVEL_LIMIT_LENGTH, edge->barred, edge->unasked ? of : 1);
         }
     mem_free(told);
 }
@@ -365,7 +403,7 @@ static void split_level(struct split *split, struct level *level, size_t finer_t
     if (split->full && !split->finest)
         return;
     measure_edges(split);
-    tell_left(&split->mesh, level);
+    tell_left(split, level);
     cutmesh_store(&split->mesh, level);
 }
 

@@ -99,7 +99,7 @@ static void measure_across(struct split *split, const struct turn *turns, size_t
     size_t new_count = 0;
     for (size_t i = 0; i < count; i++) {
         struct cut_edge *edge = &mesh->cuts[turns[i].across];
-        if (edge->error < 0)
+        if (edge->error < 0 || edge->unasked)
             findings[new_count++].number = turns[i].across;
         edge->error = fmaxf(edge->error, 0);
     }
