@@ -380,6 +380,11 @@ static bool is_hopeless(struct split *split, const struct level *level, double l
     return split->full;
 }
 
+static bool is_known_hopeless(const struct split *split)
+{
+    return split->in->kept && split->in->kept->hopeless >> split->level & 1;
+}
+
 /* Large errors go first: should the level come to its bound, the smaller ones are what is left. */
 static void split_level(struct split *split, struct level *level, size_t finer_tris)
 {
@@ -393,7 +398,8 @@ static void split_level(struct split *split, struct level *level, size_t finer_t
     split->jump_m = JUMP_WIDTH * fmax(tolerance_m, SHORTEST * error_m);
     double tris = (double)(level->index_count / 3);
     split->most_tris = (size_t)(split->finest ? tris + fmax(FINEST_GROWTH * tris, FINEST_GROWTH_TRIS) : WORTH * (double)finer_tris);
-    if (!split->finest && is_hopeless(split, level, limits[0]))
+    split->full = !split->finest && (is_known_hopeless(split) || is_hopeless(split, level, limits[0]));
+    if (split->full)
         return;
     cutmesh_load(&split->mesh, level);
     split_place_sensors(split, error_m);
@@ -416,6 +422,8 @@ static void split_all(struct split *split, struct levels *levels)
         split->level = (uint32_t)l;
         split_level(split, level, finer_tris);
         if (finer_tris > 0 && split->full) {
+            if (split->in->kept)
+                split->in->kept->given_up |= 1ull << l;
             level_finish(level);
             continue;
         }

@@ -29,8 +29,9 @@ struct sensor { /* all that its shares depend on */
     uint32_t group;
 };
 
-struct counts {
-    uint64_t sensors, findings;
+struct head {
+    uint64_t sensors, findings;      /* how many follow */
+    uint64_t given_up, changes_since; /* split_kept.h */
 };
 
 /* --- sensors ---------------------------------------------------------------------------------------------------------------------- */
@@ -117,19 +118,23 @@ static void index_findings(struct split_kept *kept, size_t count)
 
 static void read_file(struct split_kept *kept, const struct straight *straight)
 {
-    struct counts counts = { 0 };
-    if (kept->file.count < sizeof(counts))
+    struct head head = { 0 };
+    if (kept->file.count < sizeof(head))
         return;
-    memcpy(&counts, kept->file.bytes, sizeof(counts));
-    size_t left = kept->file.count - sizeof(counts);
-    if (counts.sensors > left / sizeof(struct sensor) || counts.findings > UINT32_MAX / 2 ||
-        left != counts.sensors * sizeof(struct sensor) + counts.findings * sizeof(struct split_kept_finding))
+    memcpy(&head, kept->file.bytes, sizeof(head));
+    size_t left = kept->file.count - sizeof(head);
+    if (head.sensors > left / sizeof(struct sensor) || head.findings > UINT32_MAX / 2 ||
+        left != head.sensors * sizeof(struct sensor) + head.findings * sizeof(struct split_kept_finding))
         return;
-    const char *sensors = kept->file.bytes + sizeof(counts), *findings = sensors + counts.sensors * sizeof(struct sensor);
-    if (!find_changes(kept, straight, (const struct sensor *)(const void *)sensors, counts.sensors))
+    const char *sensors = kept->file.bytes + sizeof(head), *findings = sensors + head.sensors * sizeof(struct sensor);
+    if (!find_changes(kept, straight, (const struct sensor *)(const void *)sensors, head.sensors))
         return;
     kept->findings = (const struct split_kept_finding *)(const void *)findings;
-    index_findings(kept, counts.findings);
+    index_findings(kept, head.findings);
+    if (FEW * (head.changes_since + kept->change_count) < kept->sensors.length / sizeof(struct sensor)) {
+        kept->hopeless = head.given_up;
+        kept->changes_since = head.changes_since + kept->change_count;
+    }
 }
 
 void split_kept_open(struct split_kept *kept, const char *folder, uint64_t key, const struct straight *straight)
@@ -157,12 +162,13 @@ void split_kept_close(struct split_kept *kept)
 
 void split_kept_write(const struct split_kept *kept, const char *folder, uint64_t key)
 {
-    const struct counts counts = { kept->sensors.length / sizeof(struct sensor), kept->found.length / sizeof(struct split_kept_finding) };
+    const struct head head = { kept->sensors.length / sizeof(struct sensor), kept->found.length / sizeof(struct split_kept_finding),
+                               kept->given_up, kept->changes_since };
     struct text file = { 0 };
     if (!kept->applies)
         return;
     char *path = folder_path(folder, key, FOLDER_SPLITTING);
-    text_add_bytes(&file, &counts, sizeof(counts));
+    text_add_bytes(&file, &head, sizeof(head));
     text_add_bytes(&file, kept->sensors.at, kept->sensors.length);
     text_add_bytes(&file, kept->found.at, kept->found.length);
     kept_write(path, MAGIC, key, file.at, file.length);

@@ -7,6 +7,7 @@
    is far below the tenth of a step of colour by which the splitting keeps within SPLIT_ERROR. Where doubts are larger, a finding still
    holds if it is so far from what matters that no such change brings it there. That is so for shepard with one strength for
    all sensors of a group. In paper every sensor has a share everywhere: nothing is kept for an asset with a group that is looked at in it.
+   Coarser levels that were given up are not tried again before as many sensors have changed as findings may outlive at once.
    Safe to delete; one that is no good counts as none. */
 #ifndef PREPROCESS_SPLIT_KEPT_H
 #define PREPROCESS_SPLIT_KEPT_H
@@ -26,6 +27,8 @@ struct split_kept {
         uint32_t column; /* of a new one; UINT32_MAX: it is gone */
     } * changes;
     size_t change_count;
+    uint64_t hopeless, given_up; /* levels by bits: those that need not be tried; those given up this time */
+    uint64_t changes_since;      /* they were tried */
     struct text sensors, found; /* of this time */
     size_t measured_count, kept_count;
 };
