@@ -21,13 +21,16 @@ import vtk
 from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
 
 SECONDS, MOST_FRAMES, SETS = 3.0, 96, 3
-POSITIONS, INDICES, PRIMITIVES, LEVELS = 0, 4, 5, 6  # sections, protocol/ASSET.md
+VERSION, SECTIONS, POSITIONS, INDICES, PRIMITIVES, LEVELS = 4, 15, 0, 5, 6, 7  # protocol/ASSET.md
 
 
 def read_asset(folder):
     with open(glob.glob(folder + "/plant.prepared/*.asset")[0], "rb") as f:
         data = f.read()
-    section = [struct.unpack_from("<QQ", data, 120 + 16 * i) for i in range(14)]
+    version = struct.unpack_from("<I", data, 8)[0]
+    if version != VERSION:
+        sys.exit("asset file of version %d: this program reads %d" % (version, VERSION))
+    section = [struct.unpack_from("<QQ", data, 120 + 16 * i) for i in range(SECTIONS)]
     positions = numpy.frombuffer(data, "<f4", section[POSITIONS][1] // 4, section[POSITIONS][0]).reshape(-1, 3)
     first, count = struct.unpack_from("<II", data, section[LEVELS][0])
     runs = [struct.unpack_from("<II", data, section[PRIMITIVES][0] + 16 * (first + i)) for i in range(count)]
@@ -112,6 +115,8 @@ def main():
             times.append(1e3 * (time.monotonic() - start))
             work.append(1e3 * (time.process_time() - worked))
     covered = (vtk_to_numpy(pixels).reshape(-1, 3) != vtk_to_numpy(pixels).reshape(-1, 3)[0]).any(axis=1).mean()
+    if not covered:
+        sys.exit("VTK drew nothing: its times say nothing")
     times.sort()
     print(json.dumps({"value": round(times[len(times) // 2], 2), "p95": round(times[len(times) * 95 // 100], 2),
                       "cpu": round(sorted(work)[len(work) // 2], 2), "triangles": len(triangles) * len(meshes),
