@@ -98,7 +98,7 @@ void split_measure_new_edges(struct split *split, struct split_finding *findings
 /* In a coarser level: it stays as it is, whatever it errs by. */
 static bool is_too_short(const struct split *split, const struct cut_edge *edge)
 {
-    return !split->finest && split_length(split_position(split, edge->a), split_position(split, edge->b)) < 2 * split->shortest_m;
+    return !split->finest && split_is_short(split, split_length(split_position(split, edge->a), split_position(split, edge->b)));
 }
 
 /* Measures edges that are new. One that only lines have is not seen; were it cut, they would become ever more. Half of the edges of coarser

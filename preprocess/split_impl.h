@@ -37,6 +37,7 @@ struct split {
 void split_mix(const float a[3], const float b[3], double t, float out[3]);
 double split_length(const float a[3], const float b[3]);
 const float *split_position(const struct split *split, uint32_t vertex);
+bool split_is_short(const struct split *split, double length_m); /* too short to be cut: a piece may not be so short */
 
 /* --- measuring (split_measure.c) --- */
 

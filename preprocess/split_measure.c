@@ -30,6 +30,11 @@ double split_length(const float a[3], const float b[3])
     return sqrt(x * x + y * y + z * z);
 }
 
+bool split_is_short(const struct split *split, double length_m)
+{
+    return length_m < 2 * split->shortest_m;
+}
+
 const float *split_position(const struct split *split, uint32_t vertex)
 {
     return split->mesh.geometry->positions_m[vertex];
@@ -414,7 +419,7 @@ static void try_edge(const struct job *job, struct split_finding *finding, struc
     line.shares[1] = shares_at(split, edge->b, 1, room);
     finding->error = (float)add_point(&line, 0.5);
     double nearest_m = nearest_to_middle(&line);
-    if (length_m < 2 * split->shortest_m) {
+    if (split_is_short(split, length_m)) {
         bar_short(finding);
         return;
     }

@@ -5,6 +5,7 @@ import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, symlinkSync
 import { connect, createServer } from 'node:net';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
+import { faultOf } from './fault.mjs';
 
 export const BIN = resolve(process.env.PLANTCAST_BIN ?? 'build');
 export const BUILD = resolve('build');
@@ -54,9 +55,7 @@ function start(program, args, ready) {
         child.kill(signal);
         await exit;
     };
-    // Why it ended by itself, or null.
-    const fault = () => (running() || ending ? null
-        : `${program} ended by itself: ${child.signalCode ?? child.exitCode}: ${said.slice(-1000)}`);
+    const fault = () => faultOf(program, child, said, ending);
     return up.then(() => ({ end, said: () => said, running, fault }));
 }
 

@@ -5,6 +5,7 @@ import { chownSync, existsSync, mkdtempSync, readdirSync, rmSync, writeFileSync 
 import { connect, createServer } from 'node:net';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
+import { faultOf } from './fault.mjs';
 
 export const BIN = resolve(process.env.PLANTCAST_BIN ?? 'build');
 const NOBODY = 65534;
@@ -78,8 +79,6 @@ export function runProgram(name, args, timeout = 30000) {
     return { code: status, out: stdout, err: stderr };
 }
 
-const REPORTED = /WARNING: ThreadSanitizer|ERROR: \w*Sanitizer|runtime error:/;
-
 class Program {
     constructor(name, args, as = {}) {
         this.name = name;
@@ -109,13 +108,8 @@ class Program {
         return this.ended;
     }
 
-    // What went wrong in it, whatever the tests saw of that: it fell over, or a sanitizer found something; or null.
     get fault() {
-        const { exitCode, signalCode } = this.child, fell = this.began && !this.stopped && (exitCode !== null || signalCode !== null);
-        if (!fell && !REPORTED.test(this.said))
-            return null;
-        const from = this.said.search(REPORTED), words = from < 0 ? this.said.slice(-1000) : this.said.slice(from, from + 1000);
-        return `${this.name}${fell ? ` ended by itself: ${signalCode ?? exitCode}` : ''}: ${words}`;
+        return faultOf(this.name, this.child, this.said, this.stopped || !this.began);
     }
 }
 
