@@ -192,6 +192,36 @@ test('a slow link that comes to a halt: the last picture stays, marked as old, a
     relay.close();
 });
 
+test('legend and markers are of the picture that is seen, however late the one comes that was asked for', options, async () => {
+    const relay = await Relay.open(plant.port, { bytesPerS: 1e8, delayMs: 0 });
+    await withPage(`http://127.0.0.1:${relay.port}/`, TABLET, async (page) => {
+        await waitForHealth(page, 'live');
+        await settle(page);
+        const said = () => page.evaluate(() => {
+            const { overlay, session } = globalThis.plantcast;
+            const legends = [...document.querySelectorAll('.legend')].filter((element) => element.checkVisibility());
+            return [session.params.group, legends.map((element) => element.querySelector('h2').textContent.trim()),
+                overlay.markers.map(({ tag, x, half }) => [tag.name, Math.round(x), half])];
+        });
+        const [group, legend, markers] = await said();
+        assert.deepEqual([group, legend], ['temperature', ['Temperature °C']]);
+        assert.ok(markers.length > 0);
+        relay.child.kill('SIGSTOP');
+        try {
+            await page.evaluate(() => globalThis.plantcast.session.setParams({ group: 'pressure', split: { group: 'temperature' } }));
+            await page.waitForTimeout(300); // some animation frames
+            assert.deepEqual(await said(), ['pressure', legend, markers]);
+        } finally {
+            relay.child.kill('SIGCONT');
+        }
+        await page.waitForFunction(() => globalThis.plantcast.overlay.markers.some(({ half }) => half === 1));
+        const [, both, then] = await said();
+        assert.deepEqual(both, ['Pressure bar', 'Temperature °C']);
+        assert.deepEqual(then.filter(([name]) => name === 'PI-1').map(([, , half]) => half), [0], JSON.stringify(then));
+    });
+    relay.close();
+});
+
 test('a page that was kept from another version loads itself anew, once', options, async () => {
     const asked = [];
     await withPage(url, TABLET, async (page, browser) => {

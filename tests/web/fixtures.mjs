@@ -86,7 +86,7 @@ export function makeSession(wanted) {
     const bench = makeConnection();
     const session = new Session({ connection: bench.connection, now: bench.clock.now, wanted });
     const events = [];
-    for (const name of ['welcome', 'params', 'tags', 'status', 'frame', 'camera', 'error', 'astray', 'denied', 'ignored'])
+    for (const name of ['welcome', 'params', 'shown', 'tags', 'status', 'frame', 'camera', 'error', 'astray', 'denied', 'ignored'])
         session.on(name, (value) => events.push([name, value]));
     return { ...bench, session, events };
 }

@@ -238,6 +238,36 @@ test('parameters: shown at once, corrected by the answer, restored when refused'
     assert.equal(session.params.colormap, 'viridis');
 });
 
+test('what lies over the picture goes by the parameters that the picture shows', () => {
+    const { session, socket, sockets, clock, events } = greeted();
+    const frame = { seq: 1, cameraSeq: 0, paramsSeq: 0, waitUs: 0, fieldUs: 0, renderUs: 0, encodeUs: 0, sentTimeUs: 0 };
+    const draw = (paramsSeq) => session.drawn({ ...frame, paramsSeq }, 1);
+    const news = () => events.splice(0).filter(([name]) => name === 'shown').length;
+    draw(0);
+    session.setParams({ group: 'pressure' });
+    session.setParams({ split: {} });
+    session.setParams({ colormap: 'viridis' });
+    assert.deepEqual([session.shown.group, session.shown.split, news()], ['temperature', null, 0]);
+    draw(1);
+    assert.deepEqual([session.shown.group, session.shown.split, news()], ['pressure', null, 1]);
+    draw(3); // none was made of the second
+    assert.deepEqual([session.shown, news()], [session.params, 1]);
+    draw(3);
+    assert.equal(news(), 0);
+    socket.fail(); // and while there is no connection
+    session.setParams({ group: 'temperature' });
+    clock.advance(500);
+    sockets[1].accept();
+    session.setParams({ colormap: 'cividis' });
+    sockets[1].say({ ...welcome, view: { ...welcome.view, group: 'temperature' } });
+    assert.deepEqual([session.params.group, session.shown.group, session.shown.colormap], ['temperature', 'pressure', 'viridis']);
+    draw(2);
+    assert.deepEqual([session.shown, session.shown.colormap, news()], [session.params, 'cividis', 1]);
+    session.setParams({ colormap: 'plaid' });
+    sockets[1].say({ type: 'error', code: 'bad_field', text: 'colormap: plaid', about: 'params' });
+    assert.equal(session.shown, session.params, 'no picture comes of what was refused');
+});
+
 test('what is chosen or resized between hello and welcome is not lost', () => {
     const { connection, sockets, session } = makeSession();
     connection.start();

@@ -38,8 +38,8 @@ export class Grips {
 
     // One, or those of a split view: their cameras are the same.
     get views() {
-        const { picture, params } = this.session, { width, height } = this.viewport, scale = width / picture.shownWidth;
-        return halves(params, picture.shownWidth).map((half) => {
+        const { picture, shown } = this.session, { width, height } = this.viewport, scale = width / picture.shownWidth;
+        return halves(shown, picture.shownWidth).map((half) => {
             const left = half.left * scale, wide = half.width * scale, flat = projector(picture.camera, wide, height);
             const project = (point) => {
                 const at = flat(point);

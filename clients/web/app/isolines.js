@@ -13,8 +13,8 @@ export class Isolines {
     }
 
     draw(blocked) {
-        const { overlay } = this, { picture, params } = this.session, c = overlay.context;
-        if (!picture || params.show === 'operator')
+        const { overlay } = this, { picture, shown } = this.session, c = overlay.context;
+        if (!picture || shown.show === 'operator')
             return;
         const { fullWidth, shownWidth, fullHeight } = picture, scale = [overlay.wide / shownWidth, overlay.high / fullHeight];
         const [min, max] = this.session.range, taken = [...blocked];

@@ -53,7 +53,7 @@ function at(element, place) {
 const LIMIT_PLACES = { LL: -2, L: -1, H: 1, HH: 2 };
 
 export class Legend {
-    // paramsOf: from the session's parameters to those of the half that this legend is for; null: there is none.
+    // paramsOf: from the picture's parameters to those of the half that this legend is for; null: there is none.
     constructor({ session, element, paramsOf }) {
         Object.assign(this, { session, element, paramsOf });
         this.lying = window.matchMedia('(max-width: 719px)');
@@ -61,8 +61,8 @@ export class Legend {
         this.shown = '';
         this.long = 240; // CSS pixels of the bar
         new ResizeObserver(() => this.fit()).observe(element);
-        session.on('params', () => this.show());
-        session.on('proofs', () => this.show());
+        for (const name of ['params', 'shown', 'proofs'])
+            session.on(name, () => this.show());
         window.matchMedia(`(resolution: ${window.devicePixelRatio}dppx)`).addEventListener('change', () => this.show(true));
     }
 
@@ -88,7 +88,7 @@ export class Legend {
     }
 
     show(again = false) {
-        const { model } = this.session, params = model && this.paramsOf(this.session.params);
+        const { model } = this.session, params = model && this.paramsOf(this.session.shown);
         const group = params && model.group(params.group);
         this.element.hidden = !group || params.look === 'materials'; // no field, nothing to explain
         if (!group)

@@ -70,6 +70,7 @@ viewport.onTick = (now) => parts.there('pilot')?.tick(now);
 viewport.onDrawn = (newPicture) => {
     if (newPicture) {
         byId('waiting').hidden = true;
+        byId('viewport').classList.toggle('split', Boolean(session.shown.split));
         if (++pictures === MANY_PICTURES)
             proveCodecs();
     }
@@ -96,7 +97,6 @@ session.on('time', () => {
 });
 session.on('params', async () => {
     const { params } = session;
-    byId('viewport').classList.toggle('split', Boolean(params.split));
     saveAddress();
     refresh();
     if ([params, params.split].some((half) => half?.isolines?.length > 0))
@@ -123,6 +123,7 @@ session.on('welcome', () => {
 });
 session.on('status', () => status.show());
 session.on('denied', ({ code }) => parts.use('token', (token) => token.ask(code)));
+session.on('followers', () => parts.get('share'));
 session.on('following', () => session.following && parts.get('following'));
 session.on('ignored', (what) => console.warn(`ignored: ${what}`));
 

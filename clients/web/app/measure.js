@@ -37,7 +37,7 @@ export class Measure {
     click(x, y) {
         if (this.places.length === 2)
             this.places = [];
-        this.half = this.session.params.split && x >= this.viewport.width / 2 ? 1 : 0;
+        this.half = this.session.shown.split && x >= this.viewport.width / 2 ? 1 : 0;
         askPick(this.session, this.viewport.pixelOf(x, y), 'measure');
     }
 
@@ -57,8 +57,8 @@ export class Measure {
     // In step with the picture.
     show() {
         setText(this.note.querySelector('span'), this.words);
-        const { picture, params } = this.session;
-        const half = picture && (halves(params, picture.shownWidth)[this.half] ?? null);
+        const { picture, shown } = this.session;
+        const half = picture && (halves(shown, picture.shownWidth)[this.half] ?? null);
         this.label.hidden = true;
         if (!half || this.places.length === 0) {
             this.line.replaceChildren();

@@ -53,11 +53,11 @@ export class Overlay {
 
     // Sensors of the shown group, where the last drawn picture has them.
     project() {
-        const { model, picture, params } = this.session;
+        const { model, picture, shown } = this.session;
         if (!model || !picture)
             return [];
         const known = this.session.markersOf(picture.seq);
-        return halves(params, picture.shownWidth).flatMap((half, number) => this.projectHalf(half, number, known));
+        return halves(shown, picture.shownWidth).flatMap((half, number) => this.projectHalf(half, number, known));
     }
 
     projectHalf({ params, left, width }, number, known) {
@@ -133,7 +133,7 @@ export class Overlay {
             top: (box.top - origin.top) / unit, bottom: (box.bottom - origin.top) / unit,
         }));
         const middle = this.wide / 2; // no label in both halves
-        return this.session.params.split ? [...own, { left: middle - 1, right: middle + 1, top: 0, bottom: this.high }] : own;
+        return this.session.shown.split ? [...own, { left: middle - 1, right: middle + 1, top: 0, bottom: this.high }] : own;
     }
 
     isChosen(tag) {
@@ -142,8 +142,8 @@ export class Overlay {
 
     // Each half for itself.
     place(labels) {
-        const { params } = this.session, { wide: width, high: height } = this, blocked = this.blocked();
-        const placed = halves(params, width).map((half, number) => placeLabels(labels.filter((label) => label.half === number), {
+        const { shown } = this.session, { wide: width, high: height } = this, blocked = this.blocked();
+        const placed = halves(shown, width).map((half, number) => placeLabels(labels.filter((label) => label.half === number), {
             area: { left: half.left, top: 0, right: half.left + half.width, bottom: height }, blocked,
         }));
         return new Map(placed.flatMap((one) => [...one]));

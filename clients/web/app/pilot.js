@@ -71,7 +71,7 @@ export class Pilot {
 
     // depth: of the nearest box there; null: none.
     under(camera, x, y) {
-        const half = halfAt(this.session.params, this.viewport.width, x), at = x - half.left;
+        const half = halfAt(this.session.shown, this.viewport.width, x), at = x - half.left;
         const boxes = this.session.model?.assets.map((asset) => asset.bounds) ?? [];
         return { half, at, depth: depthAt(camera, at, y, half.width, this.viewport.height, boxes) };
     }

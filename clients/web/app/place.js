@@ -27,7 +27,7 @@ export class Place {
     // CSS pixels of the viewport.
     open(x, y) {
         this.asked = 'new';
-        this.half = this.session.params.split && x >= this.viewport.width / 2 ? 1 : 0;
+        this.half = this.session.shown.split && x >= this.viewport.width / 2 ? 1 : 0;
         this.pick(x, y);
     }
 
@@ -76,8 +76,8 @@ export class Place {
     }
 
     project() {
-        const { picture, params } = this.session;
-        const half = picture && halves(params, picture.shownWidth)[this.half];
+        const { picture, shown } = this.session;
+        const half = picture && halves(shown, picture.shownWidth)[this.half];
         if (!half)
             return null;
         const at = projector(picture.camera, half.width, picture.fullHeight)(this.picked.position);

@@ -3,7 +3,7 @@
 import { shareLinks } from '../core/links.js';
 import { giveLead } from '../core/requests.js';
 import { say } from '../core/words.js';
-import { make, makeSvg, setText } from './dom.js';
+import { byId, make, makeSvg, setText } from './dom.js';
 import { fillSegments, markSegment } from './fields.js';
 import { closeButton } from './pieces.js';
 
@@ -14,6 +14,9 @@ export class Share {
     constructor({ session, selection }) {
         Object.assign(this, { session, selection, kind: 'view' });
         this.build();
+        for (const name of ['followers', 'welcome'])
+            session.on(name, () => this.count());
+        this.count();
         for (const name of ['followers', 'following', 'params', 'camera', 'welcome', 'time'])
             session.on(name, () => this.dialog.open && this.show());
     }
@@ -30,6 +33,14 @@ export class Share {
             make('div', { class: 'line' }, this.link, this.copied), this.code, this.note, this.people);
         this.dialog.addEventListener('click', (event) => event.target === this.dialog && this.dialog.close());
         document.body.append(this.dialog);
+    }
+
+    // How many look along is said by the button itself.
+    count() {
+        const { count } = this.session.followers;
+        byId('share-open').toggleAttribute('data-count', count > 0);
+        if (count > 0)
+            byId('share-open').dataset.count = count;
     }
 
     open() {

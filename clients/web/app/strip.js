@@ -19,9 +19,8 @@ export function limitText(model, { tag, value, limit }) {
 export class AlarmStrip {
     constructor({ session, refresh }) {
         Object.assign(this, { session, refresh });
-        session.on('welcome', () => this.show());
-        session.on('alarms', () => this.show());
-        session.on('time', () => this.show());
+        for (const name of ['welcome', 'alarms', 'time'])
+            session.on(name, () => this.show());
         setInterval(() => this.tick(), 500);
     }
 

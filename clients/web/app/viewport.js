@@ -121,9 +121,9 @@ export class Viewport {
             this.session.drawn(frame, decodeMs);
             decodeMs = 0;
         }
-        const { picture, params } = this.session;
+        const { picture, shown } = this.session;
         if (picture)
-            picture.shownWidth = params.split ? picture.fullWidth : (picture.fullHeight * this.width) / this.height;
+            picture.shownWidth = shown.split ? picture.fullWidth : (picture.fullHeight * this.width) / this.height;
         this.onDrawn(drawn.length > 0);
     }
 }

@@ -26,8 +26,8 @@ const pick = (from, names) => Object.fromEntries(names.filter((name) => from[nam
 export const asAsked = (camera) => (camera.height_m === undefined ? camera : cameraOfMessage({ ...camera, fov: undefined }));
 
 export class Session {
-    // wanted: { camera or null, params, time } from the page's address. Events: hello (a new connection), welcome, params, time, tags
-    // (indices), status, alarms, alarmed (message), frame (frame), camera, error (message), astray (text: why a part of our view
+    // wanted: { camera or null, params, time } from the page's address. Events: hello (a new connection), welcome, params, shown, time,
+    // tags (indices), status, alarms, alarmed (message), frame (frame), camera, error (message), astray (text: why a part of our view
     // is not asked for again), denied (message: we need a token, or another one), ignored (what).
     constructor({ connection, now, wanted = { camera: null, params: {} }, codecs = ['jpeg', 'png'] }) {
         Object.assign(this, { connection, now, codecs });
@@ -41,6 +41,7 @@ export class Session {
         this.size = { width: 640, height: 360 };
         this.visible = true;
         this.unsent = {};        // parameters that were changed while nobody listened
+        this.asked = new Map();  // by seq, parameters before the newest: pictures may still show them
         this.cameraSeq = this.paramsSeq = this.fitSeq = this.pickSeq = this.alarmSeq = this.toldSeq = 0;
         this.cameraNews = false; // the server does not know the camera yet
         this.cameraInput = null; // when a hand made it; latency counts from there
@@ -130,6 +131,7 @@ export class Session {
 
     // parts: what of our view to ask for.
     hello(parts) {
+        const { shown } = this;
         this.welcomed = false;
         this.outlived = this.picture;
         if (this.unheard)
@@ -141,6 +143,9 @@ export class Session {
         this.markers.clear();
         this.latency.clear();
         this.cameraSeq = this.paramsSeq = 0;
+        this.asked = new Map([[-1, shown]]);
+        if (this.picture)
+            this.picture.paramsSeq = -1; // of a connection that is gone
         this.greetedCamera = parts.includes('camera') ? this.camera : null;
         const message = { type: 'hello', ...this.size, ...this.proofs(), codecs: this.codecs };
         if (this.time.atUs !== null)
@@ -201,6 +206,7 @@ export class Session {
             this.follow(null);
         const own = change.group && change.group !== this.params.group ? pick(this.model?.group(change.group) ?? {}, GROUPS_OWN) : {};
         const split = change.split && { split: { ...this.params.split, ...change.split } };
+        this.asked.set(this.paramsSeq, this.params);
         this.params = { ...this.params, ...own, ...change, ...split, ...this.mergedSensors(change.sensors) };
         if (this.welcomed)
             this.connection.send({ type: 'params', seq: ++this.paramsSeq, ...change });
@@ -263,10 +269,13 @@ export class Session {
         const now = this.now();
         this.rate.count(now);
         this.latency.drawn(frame.cameraSeq, now);
-        const was = this.camera;
+        const { camera: was, shown } = this;
         if (this.lent)
             this.camera = asAsked(frame.camera);
         this.picture = { ...frame, payload: null, bytes: frame.payload?.length ?? 0, at: now };
+        this.asked.forEach((params, seq) => seq < frame.paramsSeq && this.asked.delete(seq));
+        if (this.shown !== shown)
+            this.emit('shown');
         this.freshen();
         this.recent = this.recent.filter(({ picture }) => now - picture.at <= RECENT_MS);
         this.recent.push({ picture: this.picture, decodeMs, hereUs: this.skew ? now * 1000 + this.skew.us : this.clockUs(now) });
@@ -340,6 +349,11 @@ export class Session {
 
     get group() {
         return this.model?.group(this.params.group) ?? null;
+    }
+
+    // The parameters of the picture on the screen: what was asked for since is still on its way.
+    get shown() {
+        return this.asked.get(this.picture?.paramsSeq) ?? this.params;
     }
 
     // [min, max] of the colours, of one half.
@@ -420,6 +434,7 @@ const HANDLERS = {
         this.following = session === null ? null : { session, width, height };
         this.leader = session;
         this.confirmed = this.params = pick(shown, SAID);
+        this.asked.clear();
         this.emit('params');
         this.emit('following');
     },
@@ -488,6 +503,7 @@ const HANDLERS = {
             this.leader = null; // there is no such session
         if (message.about === 'params' && this.confirmed) {
             this.params = this.confirmed;
+            this.asked.clear();
             this.emit('params');
         }
         this.emit('error', message);
