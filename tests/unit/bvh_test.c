@@ -1,0 +1,166 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The nearest place on triangles, against every triangle tried; equally near ones go by their numbers. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "surface/bvh.h"
+#include "surface/vec.h"
+#include "tests/support/cad.h"
+
+#define POINTS 400
+#define FAR 1e-9 /* of the coordinates: between places as near as that, rounding decides */
+
+static struct cad_random chance;
+
+static int set_up(void **state)
+{
+    (void)state;
+    cad_random_start(&chance);
+    return 0;
+}
+
+static double between(double low, double high)
+{
+    return low + (high - low) * cad_random(&chance);
+}
+
+/* A lattice of points, so that many triangles have a corner or an edge in common, and loose ones of all sizes and shapes. */
+static void make_mesh(struct trimesh *mesh, size_t tri_count, double shift_m)
+{
+    const uint32_t side = 6;
+    *mesh = (struct trimesh){ 0 };
+    for (uint32_t p = 0; p < side * side * side; p++)
+        trimesh_add_point(mesh, (const double[3]){ shift_m + p % side, shift_m + p / side % side, p / (side * side) });
+    for (uint32_t p = 0; p < 100; p++)
+        trimesh_add_point(mesh, (const double[3]){ shift_m + between(-3, 9), shift_m + between(-3, 9), between(-3, 9) });
+    while (mesh->tri_count < tri_count) {
+        uint32_t a = (uint32_t)between(0, side * side * side - side * side - side - 1), v[3] = { a, a + 1, a + side };
+        if (mesh->tri_count % 3 == 1)
+            v[2] = a + side * side;
+        if (mesh->tri_count % 3 == 2)
+            for (int c = 0; c < 3; c++)
+                v[c] = side * side * side + (uint32_t)between(0, 99.9);
+        if (v[0] != v[1] && v[1] != v[2] && v[2] != v[0])
+            trimesh_add_tri(mesh, v[0], v[1], v[2], (uint32_t)mesh->tri_count);
+    }
+}
+
+static bool of_third(const void *arg, uint32_t tri)
+{
+    return tri % 3 == *(const uint32_t *)arg;
+}
+
+static double distance_of(const struct trimesh *mesh, uint32_t tri, const double point[3])
+{
+    const uint32_t *v = mesh->tris[tri];
+    double w[3], q[3];
+    triangle_nearest(point, mesh->points[v[0]], mesh->points[v[1]], mesh->points[v[2]], w);
+    for (int axis = 0; axis < 3; axis++)
+        q[axis] = w[0] * mesh->points[v[0]][axis] + w[1] * mesh->points[v[1]][axis] + w[2] * mesh->points[v[2]][axis];
+    return sqrt(vec_distance2(point, q));
+}
+
+/* Every triangle tried: the first of those that are nearest. */
+static uint32_t find_slowly(const struct trimesh *mesh, const double point[3], const uint32_t *third, double *distance_m)
+{
+    uint32_t best = TRIMESH_NONE;
+    *distance_m = INFINITY;
+    for (uint32_t t = 0; t < mesh->tri_count; t++) {
+        double m = third && !of_third(third, t) ? INFINITY : distance_of(mesh, t, point);
+        if (m < *distance_m) {
+            *distance_m = m;
+            best = t;
+        }
+    }
+    return best;
+}
+
+static void check_point(const struct trimesh *mesh, const struct bvh *bvh, const double point[3], const uint32_t *third)
+{
+    struct bvh_place place;
+    double distance_m, at[3] = { 0 };
+    uint32_t tri = find_slowly(mesh, point, third, &distance_m);
+    const double near_m = FAR * (1 + fabs(point[0]) + fabs(point[1]));
+    bvh_nearest(bvh, point, INFINITY, third ? of_third : NULL, third, &place);
+    if (tri == TRIMESH_NONE) {
+        assert_int_equal(place.tri, TRIMESH_NONE);
+        return;
+    }
+    assert_true(place.tri < mesh->tri_count && (!third || of_third(third, place.tri)));
+    assert_true(fabs(place.distance_m - distance_m) <= near_m);
+    assert_true(fabs(distance_of(mesh, place.tri, point) - distance_m) <= near_m);
+    for (int c = 0; c < 3; c++)
+        for (int axis = 0; axis < 3; axis++)
+            at[axis] += place.weights[c] * mesh->points[mesh->tris[place.tri][c]][axis];
+    assert_true(vec_distance(at, place.point) <= near_m);
+    assert_true(bvh_any_within(bvh, point, distance_m + near_m, third ? of_third : NULL, third));
+    if (distance_m <= near_m)
+        return;
+    bvh_nearest(bvh, point, distance_m - near_m, third ? of_third : NULL, third, &place);
+    assert_int_equal(place.tri, TRIMESH_NONE);
+    assert_false(bvh_any_within(bvh, point, distance_m - near_m, third ? of_third : NULL, third));
+}
+
+/* Counts that fill the nodes, just do not, and just exceed them; far from the origin, where floats are coarse; points far away, on
+   corners, and on planes. */
+static void test_finds_the_nearest(void **state)
+{
+    static const size_t counts[] = { 0, 1, 7, 8, 9, 63, 64, 65, 512, 513, 3000 };
+    static const double shifts_m[] = { 0, 3e4 };
+    (void)state;
+    for (size_t i = 0; i < sizeof(counts) / sizeof(*counts); i++)
+        for (size_t j = 0; j < 2; j++) {
+            struct trimesh mesh;
+            make_mesh(&mesh, counts[i], shifts_m[j]);
+            struct bvh *bvh = bvh_create(&mesh);
+            for (int p = 0; p < POINTS; p++) {
+                double reach = p % 5 == 0 ? 1e5 : 12, point[3];
+                const uint32_t third = (uint32_t)p % 3;
+                for (int axis = 0; axis < 3; axis++)
+                    point[axis] = (axis < 2 ? shifts_m[j] : 0) + between(-reach, reach);
+                if (p % 4 == 1)
+                    point[p % 3] = round(point[p % 3]);
+                if (p % 4 == 2)
+                    memcpy(point, mesh.points[(size_t)p % mesh.point_count], sizeof(point));
+                check_point(&mesh, bvh, point, NULL);
+                check_point(&mesh, bvh, point, &third);
+            }
+            bvh_destroy(&bvh);
+            trimesh_finish(&mesh);
+        }
+}
+
+/* Points of a lattice, and over them: numbers that come out even. */
+static void test_equally_near_ones_go_by_number(void **state)
+{
+    (void)state;
+    struct trimesh mesh;
+    make_mesh(&mesh, 3000, 0);
+    struct bvh *bvh = bvh_create(&mesh);
+    for (int p = 0; p < 216; p++)
+        for (int raised = 0; raised < 2; raised++) {
+            const double point[3] = { p % 6, p / 6 % 6, p / 36 + 3 * raised };
+            const uint32_t third = (uint32_t)(p / 2) % 2;
+            struct bvh_place place;
+            double distance_m;
+            uint32_t tri = find_slowly(&mesh, point, &third, &distance_m);
+            bvh_nearest(bvh, point, INFINITY, of_third, &third, &place);
+            assert_int_equal(place.tri, tri);
+            assert_true(place.distance_m == distance_m);
+        }
+    bvh_destroy(&bvh);
+    trimesh_finish(&mesh);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_finds_the_nearest),
+                                        cmocka_unit_test(test_equally_near_ones_go_by_number) };
+    return cmocka_run_group_tests(tests, set_up, NULL);
+}
