@@ -300,8 +300,7 @@ static void forget_state(struct field *field, struct state *state)
     state_remove(field, link);
 }
 
-/* Looks at the readings; begins what there is to do. False: out of memory, the state is gone. */
-static bool begin_update(struct field *field, struct state *state, const struct snapshot *snapshot, size_t count)
+bool field_begin_update(struct field *field, struct state *state, const struct snapshot *snapshot, size_t count)
 {
     read_inputs(field, state, snapshot);
     if (state_needs_weights(state) && !weights_take(field, state)) {
@@ -338,7 +337,7 @@ static const struct scalars *advance(struct field *field, int asset, const struc
         return &state->scalars;
     }
     state->wanted = state->wanted > count ? state->wanted : count;
-    if (!begin_update(field, state, snapshot, count))
+    if (!field_begin_update(field, state, snapshot, count))
         return NULL;
     *done = !state->update || update_go_on(state, field->workers, work, &field->versions);
     return &state->scalars;

@@ -101,6 +101,11 @@ const struct scalars *field_scalars(struct field *field, int asset, const struct
 /* The same, but only the first `count` vertices must be up to date (scalars->ready of them are): those of a level of detail. */
 const struct scalars *field_scalars_of(struct field *field, int asset, const struct field_params *params, const struct snapshot *snapshot,
                                        size_t count);
+/* Brings these fields up to date side by side, each on one core: small ones are not worth waking another thread for each. What it leaves
+   (large ones, trials, where memory is short) field_scalars_of does, which is to be called next for all of them. counts: by place in
+   assets. */
+void field_update_all(struct field *field, const int *assets, const size_t *counts, size_t asset_count, const struct field_params *params,
+                      const struct snapshot *snapshot);
 /* Works towards that for about so many nanoseconds of one core, so that much to do at once holds nobody up. True: it would be had at
    once now. While false comes, the readings are those of the first call, and these scalars must not be read. */
 bool field_advance(struct field *field, int asset, const struct field_params *params, const struct snapshot *snapshot, size_t count,

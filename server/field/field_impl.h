@@ -35,4 +35,7 @@ void field_trials_finish(struct field *field);
 /* Found or made; not brought up to date. NULL: no sensor of the group on the asset, or out of memory. */
 struct state *field_state(struct field *field, int asset, const struct field_params *params);
 
+/* Looks at the readings; begins what there is to do. False: out of memory, the state is gone. */
+bool field_begin_update(struct field *field, struct state *state, const struct snapshot *snapshot, size_t count);
+
 #endif

@@ -15,6 +15,7 @@
 #define STEP_LIMIT 1e6   /* times the range: a larger step would leave its rounding in the sum for good */
 #define ADDED_MOST 4096  /* updates before all is summed anew: what rounding leaves behind stays below 1e-9 of the range */
 #define JOB_WORK 30000.0 /* worth waking another thread for */
+#define SMALL_WORK 1e6   /* less is not cut in two where there are many */
 #define MAKE_WORK 1.0    /* of one column at one vertex: made and added */
 #define ADD_WORK 0.15    /* only added */
 
@@ -185,7 +186,8 @@ static bool sum_block(const struct update *update, size_t block, size_t begin, s
     weights_add(weights, begin, count, &update->all, &sums);
     for (size_t j = 0; total_wanted && j < count; j++)
         weights->total[begin + j] = (float)total[j];
-    weights->known[block] |= KNOWN_TOTAL;
+    if (total_wanted) /* what is complete is not written to: others may read it */
+        weights->known[block] |= KNOWN_TOTAL;
     return flags && set_flags(update, begin, count, total, marked);
 }
 
@@ -217,7 +219,29 @@ static double block_work(const struct update *update, size_t block)
     return KERNEL_BLOCK * ((double)(step ? update->changed.count : update->all.count) * each + 4);
 }
 
-static void finish(struct state *state, uint64_t *versions)
+bool update_is_light(const struct state *state)
+{
+    const struct update *update = state->update;
+    const struct weights *weights = state->weights;
+    double work = 0;
+    if (weights->interpolation == INTERPOLATION_PAPER && update->marks)
+        return false;
+    for (size_t block = update->next; block < update->end; block++) {
+        if (!weights_is_complete(weights, block * KERNEL_BLOCK))
+            return false;
+        work += block_work(update, block);
+    }
+    return work < SMALL_WORK;
+}
+
+void update_run(struct state *state)
+{
+    struct update *update = state->update;
+    update_blocks(update, 0, update->end - update->next);
+    update->next = update->end;
+}
+
+void update_end(struct state *state, uint64_t *versions)
 {
     struct update *update = state->update;
     struct scalars *scalars = &state->scalars;
@@ -245,7 +269,7 @@ bool update_go_on(struct state *state, struct workers *workers, double work, uin
     update->next += count;
     if (update->next < update->end)
         return false;
-    finish(state, versions);
+    update_end(state, versions);
     return true;
 }
 

@@ -9,6 +9,11 @@
 void update_begin(struct state *state, size_t count);
 /* Does so much of it (about nanoseconds of one core), and a little at least. True: done, and state->update is NULL. */
 bool update_go_on(struct state *state, struct workers *workers, double work, uint64_t *versions);
+/* The same on one core, for one that is light: all of it, by any thread, beside others; then what belongs to the field's thread. Light:
+   little to do, and it only reads its weights. */
+bool update_is_light(const struct state *state);
+void update_run(struct state *state);
+void update_end(struct state *state, uint64_t *versions);
 void update_forget(struct state *state); /* none under way is fine */
 
 #endif

@@ -232,6 +232,12 @@ bool weights_has_columns(const struct weights *weights, size_t begin)
     return kept && !memchr(kept, 0, weights->member_count);
 }
 
+bool weights_is_complete(const struct weights *weights, size_t begin)
+{
+    uint8_t all = KNOWN_NEAR | KNOWN_TOP | KNOWN_TOTAL;
+    return (weights->known[begin / KERNEL_BLOCK] & all) == all && weights_has_columns(weights, begin);
+}
+
 static const float *distances(const struct weights *weights, size_t sensor, size_t begin, size_t count, float *scratch)
 {
     return layout_distances(weights->layout, weights->distance, sensor, begin, count, scratch);
@@ -280,9 +286,11 @@ void weights_prepare(struct weights *weights, size_t begin, size_t count)
     float scratch[KERNEL_BLOCK], *top = weights->top + begin;
     const float *near_m = weights->near_m + begin;
     uint8_t *known = &weights->known[begin / KERNEL_BLOCK];
+    bool had_top = *known & KNOWN_TOP;
+    if (had_top && *known & KNOWN_NEAR)
+        return;
     if (!(*known & KNOWN_NEAR))
         nearest(weights, begin, count);
-    bool had_top = *known & KNOWN_TOP;
     *known |= KNOWN_NEAR | KNOWN_TOP;
     if (had_top)
         return;
@@ -342,7 +350,7 @@ void weights_add(struct weights *weights, size_t begin, size_t count, const stru
             float *column = weights->columns ? weights->columns + (before + member) * KERNEL_BLOCK : room.terms[k];
             if (!weights->columns || !weights->kept[before + member] || (paper && sums->total))
                 make_column(weights, member, begin, count, &room, sums->total ? room.weights[k] : NULL, column);
-            if (weights->columns)
+            if (weights->columns && !weights->kept[before + member])
                 weights->kept[before + member] = 1;
             columns[k] = column;
             heavy[k] = paper ? room.weights[k] : column;

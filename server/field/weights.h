@@ -91,5 +91,7 @@ struct weights_sums {       /* of one block; added to */
 void weights_add(struct weights *weights, size_t begin, size_t count, const struct weights_terms *terms, const struct weights_sums *sums);
 /* Whether all columns of a block are there, so that they need only be added. */
 bool weights_has_columns(const struct weights *weights, size_t begin);
+/* And all else: its sums only read (but for those of `paper` where some sensor is Uncertain). */
+bool weights_is_complete(const struct weights *weights, size_t begin);
 
 #endif

@@ -90,16 +90,23 @@ static bool can_be_seen(struct fields_entry *entry, const struct scalars *now)
     return error >= half;
 }
 
-static void show(struct fields_entry *entry, const struct scalars *now)
+/* Any thread. */
+static void show(struct fields_entry *entry)
 {
-    entry->ready = now->ready;
-    memcpy(entry->shown, now->at, now->ready * sizeof(*entry->shown));
-    entry->uploaded = false;
-    entry->hashed = 0;
-    entry->flags_version = now->flags_version;
-    entry->travel = now->travel;
-    glDeleteBuffers(1, &entry->sensors);
-    entry->sensors = 0;
+    const struct scalars *now = entry->behind;
+    if (now) {
+        entry->ready = now->ready;
+        memcpy(entry->shown, now->at, now->ready * sizeof(*entry->shown));
+        entry->uploaded = false;
+        entry->hashed = 0;
+        entry->flags_version = now->flags_version;
+        entry->travel = now->travel;
+        entry->behind = NULL;
+    }
+    if (entry->hashed != entry->wanted) {
+        entry->content = XXH3_64bits(entry->shown, entry->wanted * sizeof(*entry->shown));
+        entry->hashed = entry->wanted;
+    }
 }
 
 static void upload(struct fields_entry *entry)
@@ -108,37 +115,79 @@ static void upload(struct fields_entry *entry)
     entry->uploaded = true;
 }
 
-const struct fields_entry *fields_get(struct fields *fields, int asset, const struct field_params *params, double step,
-                                      const struct snapshot *snapshot, size_t count)
+/* What there is to show of one asset, and whether it is behind. NULL: nothing. */
+static struct fields_entry *look(struct fields *fields, const struct fields_ask *ask, int asset, size_t count)
 {
     struct field_params room;
-    params = field_params_of(fields->field, asset, params, &room);
-    const struct scalars *scalars = field_scalars_of(fields->field, asset, params, snapshot, count);
+    const struct field_params *params = field_params_of(fields->field, asset, ask->params, &room);
+    const struct scalars *scalars = field_scalars_of(fields->field, asset, params, ask->snapshot, count);
     if (!scalars && !field_covers(fields->field, asset, params))
         return NULL;
     if (!scalars) {
         log_err(fields->log, "field of asset %d: out of memory; shown as no data", asset);
         return &fields->lost;
     }
-    struct fields_entry *entry = entry_find(fields, asset, params, step);
+    struct fields_entry *entry = entry_find(fields, asset, params, ask->step);
     bool fresh = !entry;
     if (fresh)
-        entry = entry_create(fields, asset, params, step, scalars->count);
+        entry = entry_create(fields, asset, params, ask->step, scalars->count);
     if (!entry)
         return &fields->lost;
-    if (fresh || entry->ready < count || can_be_seen(entry, scalars))
-        show(entry, scalars);
-    if (!entry->uploaded && !fields->without_gl)
-        upload(entry);
-    if (fields->reference && !entry->sensors)
-        entry->sensors = reference_sensors(fields->reference, asset, params);
-    if (entry->hashed != count) {
-        entry->content = XXH3_64bits(entry->shown, count * sizeof(*entry->shown));
-        entry->hashed = count;
+    if (fresh || entry->ready < count || can_be_seen(entry, scalars)) {
+        entry->behind = scalars;
+        glDeleteBuffers(1, &entry->sensors);
+        entry->sensors = 0;
     }
+    entry->wanted = count;
     entry->oldest_age_ns = scalars->oldest_age_ns;
     entry->used = ++fields->uses;
     return entry;
+}
+
+struct showing {
+    struct fields_entry **entries;
+};
+
+static void show_some(void *arg, size_t begin, size_t end)
+{
+    const struct showing *showing = arg;
+    for (size_t i = begin; i < end; i++)
+        show(showing->entries[i]);
+}
+
+static void to_gpu(struct fields *fields, struct fields_entry *entry)
+{
+    if (!entry->uploaded && !fields->without_gl)
+        upload(entry);
+    if (fields->reference && !entry->sensors)
+        entry->sensors = reference_sensors(fields->reference, entry->asset, &entry->params);
+}
+
+/* Fields of one set of parameters stay where they are while others of it are asked for, however little room there is; of a trial, each
+   asset may have its own set, so these are not put off. */
+void fields_get(struct fields *fields, const struct fields_ask *ask, const struct fields_entry **entries)
+{
+    struct fields_entry **changed = mem_array(ask->asset_count, sizeof(*changed));
+    struct showing showing = { changed };
+    size_t count = 0;
+    field_update_all(fields->field, ask->assets, ask->counts, ask->asset_count, ask->params, ask->snapshot);
+    for (size_t i = 0; i < ask->asset_count; i++) {
+        struct fields_entry *entry = look(fields, ask, ask->assets[i], ask->counts[i]);
+        entries[ask->assets[i]] = entry;
+        if (!entry || entry == &fields->lost || (!entry->behind && entry->hashed == entry->wanted))
+            continue;
+        if (!ask->params->trial) {
+            changed[count++] = entry;
+            continue;
+        }
+        show(entry);
+        to_gpu(fields, entry);
+    }
+    workers_for(field_workers(fields->field), count, 1, show_some, &showing);
+    mem_free(changed);
+    for (size_t i = 0; i < ask->asset_count; i++)
+        if (entries[ask->assets[i]] && entries[ask->assets[i]] != &fields->lost)
+            to_gpu(fields, (struct fields_entry *)entries[ask->assets[i]]);
 }
 
 void fields_trim(struct fields *fields)

@@ -23,6 +23,8 @@ struct fields_entry { /* buffer 0: it could not be worked out or kept; drawn as 
     GLuint sensors; /* 0, or for fragments that work the field out themselves (render/reference.h) */
     int64_t oldest_age_ns;
     uint64_t used;
+    const struct scalars *behind; /* not NULL: to be shown next */
+    size_t wanted;                /* of which so many are hashed */
 };
 
 struct fields {
@@ -38,10 +40,17 @@ struct fields {
 
 void fields_init(struct fields *fields, struct log *log, struct field *field);
 void fields_finish(struct fields *fields);
-/* Its first `count` vertices at least. NULL: the asset has nothing to show. Where there is no room (logged) that is shown as no data.
-   Valid until the next fields_trim. */
-const struct fields_entry *fields_get(struct fields *fields, int asset, const struct field_params *params, double step,
-                                      const struct snapshot *snapshot, size_t count);
+struct fields_ask {
+    const int *assets;    /* none twice */
+    const size_t *counts; /* by place in assets: so many of the first vertices at least */
+    size_t asset_count;
+    const struct field_params *params;
+    double step;
+    const struct snapshot *snapshot;
+};
+/* Into entries, by asset. NULL: that asset has nothing to show. Where there is no room (logged) that is shown as no data. Valid until the
+   next fields_trim. */
+void fields_get(struct fields *fields, const struct fields_ask *ask, const struct fields_entry **entries);
 /* Between frames: drops what is beyond the bound. */
 void fields_trim(struct fields *fields);
 

@@ -186,13 +186,20 @@ static void picture_init(struct renderer *renderer, struct picture *picture, con
     memset(renderer->asset_fields, 0, renderer->scene->asset_count * sizeof(*renderer->asset_fields));
     struct scale scale;
     view_scale(view, &scale);
-    double step = scale_step(&scale);
-    for (size_t i = 0; i < picture->visible_count; i++) {
-        int asset = renderer->visible[i];
-        if (view->look != LOOK_MATERIALS)
-            renderer->asset_fields[asset] =
-                fields_get(&renderer->fields, asset, &view->field, step, snapshot, count_vertices(picture, asset));
-    }
+    if (view->look == LOOK_MATERIALS)
+        return;
+    size_t *counts = mem_array(picture->visible_count, sizeof(*counts));
+    for (size_t i = 0; i < picture->visible_count; i++)
+        counts[i] = count_vertices(picture, renderer->visible[i]);
+    fields_get(&renderer->fields,
+               &(struct fields_ask){ .assets = renderer->visible,
+                                     .counts = counts,
+                                     .asset_count = picture->visible_count,
+                                     .params = &view->field,
+                                     .step = scale_step(&scale),
+                                     .snapshot = snapshot },
+               renderer->asset_fields);
+    mem_free(counts);
 }
 
 bool renderer_prepare(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot, int64_t budget_ns)

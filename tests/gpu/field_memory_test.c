@@ -5,6 +5,8 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
 
 #include <cmocka.h>
 
@@ -13,7 +15,7 @@
 #include "tests/support/rig.h"
 #include "value/quality.h"
 
-enum { CELLS = 12, VERTICES = (CELLS + 1) * (CELLS + 1), SIDE_PX = 128 };
+enum { PLATES = 6, CELLS = 12, VERTICES = (CELLS + 1) * (CELLS + 1), SIDE_PX = 128 };
 static struct rig rig;
 static struct stand stand;
 
@@ -53,6 +55,24 @@ static int set_up(void **state)
     stand_init(&stand, &rig, toy);
     toy_set(stand.snapshot, 0, 30, QUALITY_GOOD);
     toy_set(stand.snapshot, 1, 70, QUALITY_GOOD);
+    return 0;
+}
+
+/* Several plates side by side, of two sensors each. */
+static int set_up_many(void **state)
+{
+    static const double sensors[2][3] = { { 0, 0, 0 }, { 1.5, 3.5, 0 } };
+    struct toy *toy = toy_create();
+    (void)state;
+    fault = ALL_WELL;
+    for (int i = 0; i < PLATES; i++) {
+        struct shape shape = { 0 };
+        char name[8];
+        snprintf(name, sizeof(name), "P%d", i);
+        shape_plate(&shape, TOY_BLUE, (double[3]){ 0, 0, 0 }, (double[3]){ 1.5, 0, 0 }, (double[3]){ 0, 3.5, 0 }, CELLS);
+        toy_add(toy, name, &shape, (double[3]){ 2.0 * (i % 2), 4.0 * (i / 2) - 4, 0 }, sensors, 2);
+    }
+    stand_init(&stand, &rig, toy);
     return 0;
 }
 
@@ -126,11 +146,47 @@ static void test_bit_by_bit_too(void **state)
     frame_unref(&frame);
 }
 
+/* Fields that are worked out for the same picture do not push each other out, nor what is shown of them. */
+static void test_with_little_room_many_are_shown_alike(void **state)
+{
+    struct view view;
+    (void)state;
+    struct field *poor = field_create(rig.workers, &stand.toy->scene);
+    struct renderer *frugal = renderer_create(rig.log, rig.gl, &stand.toy->scene, poor);
+    assert_non_null(frugal);
+    field_set_bound(poor, 1);
+    look_down(&view);
+    view.camera.eye_m[2] = 40;
+    for (int round = 0; round < 24; round++) {
+        view.tier = round % 3 == 2 ? TIER_STILL : TIER_MOVING;
+        view.field.interpolation = round % 2 ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
+        view.field.power = 2 + round / 2 % 2;
+        for (int i = 0; i < 2 * PLATES; i++)
+            if ((i + round) % 3)
+                toy_set(stand.snapshot, i, (i * 37 + round * 11) % 100, (i + round) % 11 ? QUALITY_GOOD : QUALITY_BAD_SENSOR_FAILURE);
+        struct frame *want = stand_draw(&stand, &view), *got = renderer_draw(frugal, &view, stand.snapshot);
+        assert_non_null(got);
+        int shown = 0;
+        for (int i = 0; i < SIDE_PX * SIDE_PX; i++) {
+            const uint8_t *a = frame_pixel(want, i % SIDE_PX, i / SIDE_PX), *b = frame_pixel(got, i % SIDE_PX, i / SIDE_PX);
+            shown += a[0] != a[1] || a[1] != a[2];
+            for (int c = 0; c < 3; c++)
+                assert_true(abs(a[c] - b[c]) <= 2); /* sums made anew are rounded otherwise */
+        }
+        assert_true(shown > SIDE_PX * SIDE_PX / 10);
+        frame_unref(&want);
+        frame_unref(&got);
+    }
+    renderer_destroy(&frugal);
+    field_destroy(&poor);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(test_without_memory_there_is_no_data, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_bit_by_bit_too, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_with_little_room_many_are_shown_alike, set_up_many, tear_down),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
     if (!rig_init(&rig, "field_memory_test"))

@@ -909,6 +909,44 @@ static void test_scalars_of_the_same_parameters_stay(void **state)
     rig_finish(&rig);
 }
 
+/* Side by side as one after another, whatever changed, while weights are filled in and after, however little room there is. */
+static void test_many_at_once_are_as_one_by_one(void **state)
+{
+    (void)state;
+    enum { ASSETS = 12, SENSORS = 5, VERTICES = 1500 };
+    struct rig rig = rig_create(synthetic_create(.vertices = VERTICES, .sensors = SENSORS, .assets = ASSETS));
+    struct field *alone = field_create(workers, &rig.plant->scene);
+    uint64_t random = fresh_seed();
+    size_t bounds[] = { FIELD_DEFAULT_BYTES, 100000 };
+    for (int round = 0; round < 60; round++) {
+        int assets[ASSETS];
+        size_t counts[ASSETS], asset_count = 0;
+        rig.params.interpolation = round / 10 % 2 ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
+        field_set_bound(rig.field, bounds[round / 30]);
+        for (size_t i = 0; i < ASSETS * SENSORS; i++)
+            if (synthetic_random(&random) % 3 == 0)
+                set(&rig, i, (double)(synthetic_random(&random) % 1000) / 10, synthetic_random(&random) % 16 == 0 ? QUALITY_UNCERTAIN : QUALITY_GOOD);
+        for (int asset = 0; asset < ASSETS; asset++)
+            if (synthetic_random(&random) % 4) {
+                assets[asset_count] = asset;
+                counts[asset_count++] = synthetic_random(&random) % 4 ? VERTICES : VERTICES / 3;
+            }
+        field_update_all(rig.field, assets, counts, asset_count, &rig.params, rig.plant->snapshot);
+        for (size_t i = 0; i < asset_count; i++) {
+            const struct scalars *want = field_scalars_of(alone, assets[i], &rig.params, rig.plant->snapshot, counts[i]);
+            const struct scalars *got = field_scalars_of(rig.field, assets[i], &rig.params, rig.plant->snapshot, counts[i]);
+            assert_int_equal(got->asset, assets[i]);
+            for (size_t v = 0; v < counts[i]; v++) { /* sums that were dropped and made anew are rounded otherwise */
+                assert_true(fabsf(got->at[v].value - want->at[v].value) < 1e-4f);
+                assert_true(got->at[v].no_data == want->at[v].no_data && got->at[v].uncertain == want->at[v].uncertain &&
+                            got->at[v].lacking == want->at[v].lacking && got->at[v].no_limits == want->at[v].no_limits);
+            }
+        }
+    }
+    field_destroy(&alone);
+    rig_finish(&rig);
+}
+
 /* --- levels, pieces ------------------------------------------------------------------------------------------------------- */
 
 /* The first vertices are as those of a field that has never seen anything else. */
@@ -1300,6 +1338,7 @@ int main(void)
         cmocka_unit_test(test_dragging_stays_under_the_bound),
         cmocka_unit_test(test_without_room_for_columns_the_bits_are_the_same),
         cmocka_unit_test(test_scalars_of_the_same_parameters_stay),
+        cmocka_unit_test(test_many_at_once_are_as_one_by_one),
         cmocka_unit_test(test_a_level_is_a_prefix),
         cmocka_unit_test(test_a_prefix_costs_less),
         cmocka_unit_test(test_in_pieces_it_is_the_same),

@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Fields of many assets, brought up to date side by side. */
+#include "base/mem.h"
+#include "field/field_impl.h"
+#include "field/update.h"
+
+struct together {
+    struct state **states;
+    size_t count;
+};
+
+static void update_some(void *arg, size_t begin, size_t end)
+{
+    const struct together *together = arg;
+    for (size_t i = begin; i < end; i++)
+        update_run(together->states[i]);
+}
+
+/* Instances share weights: at once only where nothing of these is left to be filled in. */
+void field_update_all(struct field *field, const int *assets, const size_t *counts, size_t asset_count, const struct field_params *params,
+                      const struct snapshot *snapshot)
+{
+    if (asset_count < 2 || params->show == SHOW_DISTANCE || params->trial)
+        return;
+    struct together together = { mem_array(asset_count, sizeof(*together.states)), 0 };
+    for (size_t i = 0; i < asset_count; i++) {
+        field->tick++;
+        struct state *state = field_state(field, assets[i], params);
+        if (!state || state->update)
+            continue;
+        state->used = field->tick;
+        state->wanted = state->wanted > counts[i] ? state->wanted : counts[i];
+        if (field_begin_update(field, state, snapshot, counts[i]) && state->update && update_is_light(state))
+            together.states[together.count++] = state;
+    }
+    workers_for(field->workers, together.count, 1, update_some, &together);
+    for (size_t i = 0; i < together.count; i++)
+        update_end(together.states[i], &field->versions);
+    mem_free(together.states);
+}
