@@ -23,7 +23,7 @@ struct field *field_create(struct workers *workers, const struct scene *scene)
 
 static void columns_drop(struct field *field, struct weights *weights)
 {
-    field->bytes -= weights_column_bytes(weights);
+    field->bytes -= weights_kept_bytes(weights);
     weights_drop_columns(weights);
 }
 
@@ -161,14 +161,21 @@ static bool make_room(struct field *field, size_t need, const struct field_param
 }
 
 /* Columns are worth their memory from the second sum on: while somebody drags a parameter there is none. They only push out what was
-   used longer ago than these weights before, or two busy fields would push each other out for ever. */
+   used longer ago than these weights before, or two busy fields would push each other out for ever. Where not all fit, as many as do:
+   of the first vertices, which all levels of detail have. */
 static void keep_columns(struct field *field, struct weights *weights, const struct field_params *params, uint64_t previous)
 {
-    size_t bytes = weights_column_bytes(weights);
-    if (weights->columns || weights->sums == 0 || bytes == 0 || bytes > field->bound || !make_room(field, bytes, params, previous))
+    size_t bytes = weights_column_bytes(weights), had = weights_kept_bytes(weights);
+    if (weights->sums == 0 || had == bytes)
         return;
-    if (weights_keep(weights))
-        field->bytes += bytes;
+    if (had == 0)
+        make_room(field, bytes < field->bound ? bytes : field->bound, params, previous);
+    else if (field->bytes - had + bytes > field->bound) /* there is no more room than there was */
+        return;
+    else
+        columns_drop(field, weights);
+    if (field->bytes < field->bound)
+        field->bytes += weights_keep(weights, field->bound - field->bytes);
 }
 
 /* --- finding what is there, making what is not -------------------------------------------------------------------------- */

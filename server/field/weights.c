@@ -203,19 +203,33 @@ size_t weights_bytes(const struct layout *layout)
            layout->sensor_count * each_sensor;
 }
 
-size_t weights_column_bytes(const struct weights *weights)
+/* Of one block. */
+static size_t block_bytes(const struct weights *weights)
 {
-    return block_count(weights->layout->vertex_count) * weights->member_count * (KERNEL_BLOCK * sizeof(float) + 1);
+    return weights->member_count * (KERNEL_BLOCK * sizeof(float) + 1);
 }
 
-bool weights_keep(struct weights *weights)
+size_t weights_column_bytes(const struct weights *weights)
 {
-    size_t count = block_count(weights->layout->vertex_count) * weights->member_count;
-    weights->columns = mem_try_array(count, KERNEL_BLOCK * sizeof(float));
-    weights->kept = mem_try_array(count, 1);
+    return block_count(weights->layout->vertex_count) * block_bytes(weights);
+}
+
+size_t weights_kept_bytes(const struct weights *weights)
+{
+    return weights->kept_blocks * block_bytes(weights);
+}
+
+size_t weights_keep(struct weights *weights, size_t bytes)
+{
+    size_t blocks = block_count(weights->layout->vertex_count), fit = weights->member_count ? bytes / block_bytes(weights) : 0;
+    weights->kept_blocks = fit < blocks ? fit : blocks;
+    if (weights->kept_blocks == 0)
+        return 0;
+    weights->columns = mem_try_array(weights->kept_blocks * weights->member_count, KERNEL_BLOCK * sizeof(float));
+    weights->kept = mem_try_array(weights->kept_blocks * weights->member_count, 1);
     if (!weights->columns || !weights->kept)
         weights_drop_columns(weights);
-    return weights->columns;
+    return weights_kept_bytes(weights);
 }
 
 void weights_drop_columns(struct weights *weights)
@@ -224,12 +238,13 @@ void weights_drop_columns(struct weights *weights)
     mem_free(weights->kept);
     weights->columns = NULL;
     weights->kept = NULL;
+    weights->kept_blocks = 0;
 }
 
 bool weights_has_columns(const struct weights *weights, size_t begin)
 {
-    const uint8_t *kept = weights->columns ? weights->kept + begin / KERNEL_BLOCK * weights->member_count : NULL;
-    return kept && !memchr(kept, 0, weights->member_count);
+    size_t block = begin / KERNEL_BLOCK;
+    return block < weights->kept_blocks && !memchr(weights->kept + block * weights->member_count, 0, weights->member_count);
 }
 
 bool weights_is_complete(const struct weights *weights, size_t begin)
@@ -337,7 +352,7 @@ static void make_column(const struct weights *weights, uint32_t member, size_t b
 void weights_add(struct weights *weights, size_t begin, size_t count, const struct weights_terms *terms, const struct weights_sums *sums)
 {
     static const double ones[KERNEL_COLUMNS] = { 1, 1, 1, 1, 1, 1, 1, 1 };
-    bool paper = weights->interpolation == INTERPOLATION_PAPER;
+    bool paper = weights->interpolation == INTERPOLATION_PAPER, keeps = begin / KERNEL_BLOCK < weights->kept_blocks;
     size_t before = begin / KERNEL_BLOCK * weights->member_count; /* columns of the blocks before */
     struct workroom room;
     if (!paper && weights->power != 2.0f)
@@ -347,10 +362,10 @@ void weights_add(struct weights *weights, size_t begin, size_t count, const stru
         const float *columns[KERNEL_COLUMNS], *heavy[KERNEL_COLUMNS];
         for (size_t k = 0; k < number; k++) {
             uint32_t member = terms->members[first + k];
-            float *column = weights->columns ? weights->columns + (before + member) * KERNEL_BLOCK : room.terms[k];
-            if (!weights->columns || !weights->kept[before + member] || (paper && sums->total))
+            float *column = keeps ? weights->columns + (before + member) * KERNEL_BLOCK : room.terms[k];
+            if (!keeps || !weights->kept[before + member] || (paper && sums->total))
                 make_column(weights, member, begin, count, &room, sums->total ? room.weights[k] : NULL, column);
-            if (weights->columns && !weights->kept[before + member])
+            if (keeps && !weights->kept[before + member])
                 weights->kept[before + member] = 1;
             columns[k] = column;
             heavy[k] = paper ? room.weights[k] : column;

@@ -47,8 +47,9 @@ struct weights {
     uint8_t *place;      /* by vertex: enum place */
     uint8_t *lost;       /* by vertex: how far nearer the nearest lost sensor is than near_m, as weights_lacking */
     uint8_t *known;      /* by block: bits of enum weights_known, what is filled of the four above */
-    float *columns;      /* [block][member][KERNEL_BLOCK], or NULL: made anew each time */
+    float *columns;      /* [block][member][KERNEL_BLOCK] of the first kept_blocks, or NULL; of others they are made anew each time */
     uint8_t *kept;       /* [block][member]: its column is filled; beside columns */
+    size_t kept_blocks;
     int users;           /* states that hold it */
     uint64_t used, sums; /* tick of the last use; how often it was summed */
     struct weights *next;
@@ -68,8 +69,10 @@ void weights_learn(struct weights *weights, const struct weights *from);
 void weights_destroy(struct weights **weights); /* &NULL is fine; leaves NULL */
 size_t weights_bytes(const struct layout *layout);
 size_t weights_column_bytes(const struct weights *weights); /* of all columns, kept or not */
-/* From now on columns are kept as they are made. False: out of memory, nothing changed. */
-bool weights_keep(struct weights *weights);
+size_t weights_kept_bytes(const struct weights *weights);   /* of those that are kept */
+/* From now on as many columns as fit into so many bytes, of the first vertices, are kept as they are made. Only where none are. Returns
+   weights_kept_bytes; 0: none fit, or out of memory. */
+size_t weights_keep(struct weights *weights, size_t bytes);
 void weights_drop_columns(struct weights *weights);
 
 /* Metres beyond the rim of the data, negative within it, as struct scalar's `lacking`. */

@@ -867,15 +867,18 @@ static void test_dragging_stays_under_the_bound(void **state)
     rig_finish(&rig);
 }
 
-/* Columns pushed out or never kept give the same bits as kept ones. */
+/* Columns pushed out or never kept, or kept for a part of the vertices, give the same bits as kept ones. */
 static void test_without_room_for_columns_the_bits_are_the_same(void **state)
 {
     (void)state;
     uint64_t random = fresh_seed();
     struct rig rig = rig_create(synthetic_create(.vertices = 3000, .sensors = 37, .seed = random));
-    struct field *tight = field_create(workers, &rig.plant->scene);
+    struct field *tight = field_create(workers, &rig.plant->scene), *half = field_create(workers, &rig.plant->scene);
+    const size_t columns = (size_t)3000 * 37 * sizeof(float);
     field_set_bound(tight, 1);
     for (int tick = 0; tick < 60; tick++) {
+        size_t bound = tick % 20 < 15 ? columns / 2 + 500000 : 4 * columns; /* what is not columns takes some 450,000 */
+        field_set_bound(half, bound);
         rig.params.interpolation = tick / 20 == 1 ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
         rig.params.power = tick / 20 == 2 ? 3.1 : 2;
         set(&rig, synthetic_random(&random) % 37, between(&random, 0, 100), QUALITY_GOOD);
@@ -883,10 +886,35 @@ static void test_without_room_for_columns_the_bits_are_the_same(void **state)
             set(&rig, 11, 50, QUALITY_UNCERTAIN_LAST_USABLE + (synthetic_random(&random) % 2 ? 0x40000000u : 0));
         const struct scalars *want = show(&rig), *got = field_scalars(tight, 0, &rig.params, rig.plant->snapshot);
         assert_memory_equal(got->at, want->at, want->count * sizeof(*want->at));
+        got = field_scalars(half, 0, &rig.params, rig.plant->snapshot);
+        assert_memory_equal(got->at, want->at, want->count * sizeof(*want->at));
+        assert_true(field_bytes(half) <= bound);
     }
-    assert_true(field_bytes(tight) < (size_t)3000 * 37 * sizeof(float));
-    assert_true(field_bytes(rig.field) > (size_t)3000 * 37 * sizeof(float));
+    assert_true(field_bytes(tight) < columns);
+    assert_true(field_bytes(half) > columns && field_bytes(rig.field) > columns);
     field_destroy(&tight);
+    field_destroy(&half);
+    rig_finish(&rig);
+}
+
+/* Where there is not room for all columns, all that there is is used, and once there is room for all, that. */
+static void test_as_many_columns_as_fit_are_kept(void **state)
+{
+    (void)state;
+    struct rig rig = rig_create(synthetic_create(.vertices = 3000, .sensors = 37));
+    const size_t block = (size_t)37 * (256 * sizeof(float) + 1), columns = (3000 + 255) / 256 * block;
+    set(&rig, 0, 1, QUALITY_GOOD);
+    show(&rig);
+    size_t bare = field_bytes(rig.field), rooms[] = { block - 1, 4 * block + 100, 2 * columns };
+    size_t want[] = { 0, 4 * block, columns };
+    for (int room = 0; room < 3; room++) {
+        field_set_bound(rig.field, bare + rooms[room]);
+        for (int round = 0; round < 3; round++) {
+            set(&rig, 0, room + round * 0.1, QUALITY_GOOD);
+            show(&rig);
+        }
+        assert_int_equal(field_bytes(rig.field), bare + want[room]);
+    }
     rig_finish(&rig);
 }
 
@@ -925,7 +953,8 @@ static void test_many_at_once_are_as_one_by_one(void **state)
         field_set_bound(rig.field, bounds[round / 30]);
         for (size_t i = 0; i < ASSETS * SENSORS; i++)
             if (synthetic_random(&random) % 3 == 0)
-                set(&rig, i, (double)(synthetic_random(&random) % 1000) / 10, synthetic_random(&random) % 16 == 0 ? QUALITY_UNCERTAIN : QUALITY_GOOD);
+                set(&rig, i, (double)(synthetic_random(&random) % 1000) / 10,
+                    synthetic_random(&random) % 16 == 0 ? QUALITY_UNCERTAIN : QUALITY_GOOD);
         for (int asset = 0; asset < ASSETS; asset++)
             if (synthetic_random(&random) % 4) {
                 assets[asset_count] = asset;
@@ -1337,6 +1366,7 @@ int main(void)
         cmocka_unit_test(test_instances_share_their_weights),
         cmocka_unit_test(test_dragging_stays_under_the_bound),
         cmocka_unit_test(test_without_room_for_columns_the_bits_are_the_same),
+        cmocka_unit_test(test_as_many_columns_as_fit_are_kept),
         cmocka_unit_test(test_scalars_of_the_same_parameters_stay),
         cmocka_unit_test(test_many_at_once_are_as_one_by_one),
         cmocka_unit_test(test_a_level_is_a_prefix),
