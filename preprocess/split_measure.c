@@ -168,7 +168,7 @@ static bool find_spot(const struct sight *sight, const float point[3], const dou
     return seen;
 }
 
-/* Where a triangle of the finest level is seen, nearest to a place in it that is not: large ones stand out of other parts. */
+/* Where a triangle is seen, nearest to a place in it that is not: large ones stand out of other parts. */
 static bool find_seen(const struct sight *sight, const double corners[3][3], const double from[3], double weights[3],
                       struct surface_spot *spot)
 {
@@ -176,7 +176,8 @@ static bool find_seen(const struct sight *sight, const double corners[3][3], con
     double at[3], limit_m = 0;
     for (int c = 0; c < 3; c++)
         limit_m = fmax(limit_m, vec_distance(from, corners[c]));
-    if (!surface_find_spot_on(split->in->surface, from, limit_m, sight->origin, spot))
+    if (split->finest ? !surface_find_spot_on(split->in->surface, from, limit_m, sight->origin, spot)
+                      : !surface_find_spot_among(split->in->surface, from, limit_m, is_in_sight, sight, spot))
         return false;
     triangle_nearest(spot->point_m, corners[0], corners[1], corners[2], weights);
     for (int i = 0; i < 3; i++)
@@ -427,7 +428,7 @@ static void try_edge(const struct job *job, struct split_finding *finding, struc
         return;
     if ((double)finding->error <= job->enough || length_m < WIDE * nearest_m)
         finding->error = fmaxf(finding->error, (float)fmax(add_point(&line, 0.25), add_point(&line, 0.75)));
-    bool partly_seen = split->finest && line.count < 5 && (double)finding->error <= job->enough;
+    bool partly_seen = line.count < 5 && (double)finding->error <= job->enough;
     if (partly_seen)
         add_eighths(&line, finding);
     if ((double)finding->error > job->enough && length_m < WIDE * nearest_m) {
@@ -504,7 +505,7 @@ static double error_inside(const struct inside *inside, const double weights[3],
     return straight_error_inside(straight, modes, inside->shares, weights, shares, split->slack_m);
 }
 
-/* At the middle; where that is not seen, on the finest level at what is seen nearest to it and to places beside the corners. */
+/* At the middle; where that is not seen, at what is seen nearest to it and to places beside the corners. */
 static void try_inside(const struct split *split, struct split_finding *finding, struct room *room)
 {
     static const double places[4][3] = {
@@ -523,7 +524,7 @@ static void try_inside(const struct split *split, struct split_finding *finding,
     bool middle_seen = find_spot(&inside.sight, (const float[3]){ (float)at[0], (float)at[1], (float)at[2] }, at, &spot);
     if (middle_seen)
         finding->error = (float)error_inside(&inside, places[0], &spot);
-    for (int p = 0; p < 4 && split->finest && !middle_seen; p++) {
+    for (int p = 0; p < 4 && !middle_seen; p++) {
         place_in(&inside, places[p], at);
         if (find_seen(&inside.sight, (const double(*)[3])inside.corners, at, weights, &spot))
             finding->error = fmaxf(finding->error, (float)error_inside(&inside, weights, &spot));
