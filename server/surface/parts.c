@@ -177,21 +177,12 @@ static void limit_reach(struct parts *parts, double tolerance_m)
 
 /* --- all ------------------------------------------------------------------------------------------------------------------ */
 
-static void copy_mesh(struct trimesh *to, const struct trimesh *from)
-{
-    *to = (struct trimesh){ .point_count = from->point_count, .tri_count = from->tri_count };
-    to->points = mem_array(from->point_count, sizeof(*to->points));
-    to->tris = mem_array(from->tri_count, sizeof(*to->tris));
-    memcpy(to->points, from->points, from->point_count * sizeof(*to->points));
-    memcpy(to->tris, from->tris, from->tri_count * sizeof(*to->tris));
-}
-
 void parts_init(struct parts *parts, const struct trimesh *mesh, const uint32_t *source_tris, size_t source_count,
                 const uint32_t *vertex_point, double tolerance_m, bool is_chosen)
 {
     struct finding f = { .parts = parts };
     *parts = (struct parts){ 0 };
-    copy_mesh(&parts->solid, mesh);
+    trimesh_copy(&parts->solid, mesh);
     parts->of_tri = mem_array(mesh->tri_count, sizeof(*parts->of_tri));
     parts->side = mem_array(mesh->tri_count, 1);
     parts->of_source = mem_array(source_count, sizeof(*parts->of_source));

@@ -18,6 +18,7 @@
 #define WELD_OF_SIZE 1e-6 /* vertices this near are one: float positions are no finer */
 #define TOLERANCE_OF_SIZE 5e-4
 #define SAMPLES 15000.0        /* of an even surface; what the model has beyond that comes on top */
+#define WIDER 1.25             /* so much at a time, where that would be too many */
 #define POINTS_PER_SPACING 2.7 /* points on one square spacing of a surface sampled by halving edges: measured */
 
 static double size_of(const float (*positions)[3], const uint32_t *triangles, size_t triangle_count)
@@ -217,14 +218,23 @@ static void join_parts(struct surface *surface, struct parts *parts)
     mem_free(made.crossings);
 }
 
+/* Rods and narrow strips take more points than their area says. Where these are too many the spacing grows: what is left as it was beside
+   a surface that is sampled has edges as long as the asset, and distances there are not worth much. */
 static void sample(struct surface *surface)
 {
     struct surface_report *report = &surface->report;
-    double wanted = SAMPLES;
+    struct trimesh whole = { 0 };
+    size_t before = surface->mesh.point_count, limit = before + (size_t)(2 * SAMPLES);
     if (report->spacing_m <= 0)
-        report->spacing_m = sqrt(POINTS_PER_SPACING * trimesh_area(&surface->mesh) / wanted);
-    size_t before = surface->mesh.point_count;
-    trimesh_sample(&surface->mesh, report->spacing_m, before + (size_t)(2 * wanted));
+        report->spacing_m = sqrt(POINTS_PER_SPACING * trimesh_area(&surface->mesh) / SAMPLES);
+    trimesh_copy(&whole, &surface->mesh);
+    trimesh_sample(&surface->mesh, report->spacing_m, limit);
+    while (surface->mesh.point_count >= limit) {
+        report->spacing_m *= WIDER;
+        trimesh_copy(&surface->mesh, &whole);
+        trimesh_sample(&surface->mesh, report->spacing_m, limit);
+    }
+    trimesh_finish(&whole);
     report->samples = surface->mesh.point_count - before;
 }
 

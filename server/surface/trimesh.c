@@ -93,6 +93,18 @@ void trimesh_finish(struct trimesh *mesh)
     *mesh = (struct trimesh){ 0 };
 }
 
+void trimesh_copy(struct trimesh *copy, const struct trimesh *mesh)
+{
+    mem_grow(&copy->points, &copy->point_capacity, mesh->point_count, sizeof(*copy->points));
+    mem_grow(&copy->tris, &copy->tri_capacity, mesh->tri_count, sizeof(*copy->tris));
+    mem_grow(&copy->tri_source, &copy->source_capacity, mesh->tri_count, sizeof(*copy->tri_source));
+    memcpy(copy->points, mesh->points, mesh->point_count * sizeof(*copy->points));
+    memcpy(copy->tris, mesh->tris, mesh->tri_count * sizeof(*copy->tris));
+    memcpy(copy->tri_source, mesh->tri_source, mesh->tri_count * sizeof(*copy->tri_source));
+    copy->point_count = mesh->point_count;
+    copy->tri_count = mesh->tri_count;
+}
+
 uint32_t trimesh_add_point(struct trimesh *mesh, const double point[3])
 {
     mem_grow(&mesh->points, &mesh->point_capacity, mesh->point_count + 1, sizeof(*mesh->points));

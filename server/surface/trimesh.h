@@ -20,6 +20,7 @@ struct trimesh {
 bool trimesh_weld(struct trimesh *mesh, const float (*positions)[3], size_t vertex_count, const uint32_t *triangles, size_t triangle_count,
                   double weld_m, uint32_t *vertex_point, size_t *degenerate, size_t *repeated);
 void trimesh_finish(struct trimesh *mesh);
+void trimesh_copy(struct trimesh *copy, const struct trimesh *mesh); /* copy: zero-initialised, or a mesh that is given up */
 
 uint32_t trimesh_add_point(struct trimesh *mesh, const double point[3]);
 void trimesh_add_tri(struct trimesh *mesh, uint32_t a, uint32_t b, uint32_t c, uint32_t source);

@@ -35,6 +35,7 @@ struct unfold_walk {   /* one thread's; zero-initialise, used again and again */
         uint32_t point, next;
     } * items;
     uint64_t at; /* the bucket in hand */
+    double source_m[3];
     size_t item_count, item_capacity;
 };
 void unfold_walk_finish(struct unfold_walk *walk);

@@ -51,8 +51,18 @@ static inline void fetch_fans(const struct unfold *unfold, uint32_t point)
         __builtin_prefetch(from);
 }
 
-static inline void offer(const struct unfold *unfold, struct unfold_walk *walk, uint32_t point, float distance_m)
+/* No way is shorter than the straight line. What is offered may be: an edge's two ends have their distances by ways round a fold, or round
+   a rod, and a source that is laid out to fit both is nearer than either. */
+static inline float not_shorter(const struct unfold *unfold, const struct unfold_walk *walk, uint32_t point, float distance_m)
 {
+    const double *p = unfold->mesh->points[point], *q = walk->source_m;
+    double x = p[0] - q[0], y = p[1] - q[1], z = p[2] - q[2], straight2 = x * x + y * y + z * z;
+    return (double)distance_m * (double)distance_m < straight2 ? (float)sqrt(straight2) : distance_m;
+}
+
+static inline void offer(const struct unfold *unfold, struct unfold_walk *walk, uint32_t point, float offered_m)
+{
+    float distance_m = not_shorter(unfold, walk, point, offered_m);
     if (!(distance_m < walk->distance_m[point]))
         return;
     if (walk->distance_m[point] == INFINITY)
@@ -361,14 +371,13 @@ bool unfold_from(const struct unfold *unfold, struct unfold_walk *walk, uint32_t
 {
     const struct trimesh *mesh = unfold->mesh;
     const uint32_t *v = mesh->tris[tri];
-    double source[3];
     if (!clear(unfold, walk))
         return false;
     for (int axis = 0; axis < 3; axis++)
-        source[axis] =
+        walk->source_m[axis] =
             weights[0] * mesh->points[v[0]][axis] + weights[1] * mesh->points[v[1]][axis] + weights[2] * mesh->points[v[2]][axis];
     for (int i = 0; i < 3; i++)
-        offer(unfold, walk, v[i], (float)vec_distance(source, mesh->points[v[i]]));
+        offer(unfold, walk, v[i], (float)vec_distance(walk->source_m, mesh->points[v[i]]));
     look_around(unfold, walk, tri, weights);
     (wide_is_there() ? go_on_wide : go_on_plain)(unfold, walk);
     return true;
