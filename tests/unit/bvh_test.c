@@ -162,5 +162,6 @@ int main(void)
 {
     const struct CMUnitTest tests[] = { cmocka_unit_test(test_finds_the_nearest),
                                         cmocka_unit_test(test_equally_near_ones_go_by_number) };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests(tests, set_up, NULL);
 }
