@@ -16,6 +16,7 @@
 #define CORNERS 61   /* whose shares are at hand */
 #define STEPS 2      /* in which the best place for a cut is narrowed down */
 #define NO_GAIN 0.5  /* of the error, left by the best cut: a bend leaves a quarter, a kink nothing */
+#define ROUNDING 1e-9 /* of a distance, more than it is off by */
 #define JUMP 1.5     /* times the way gone: a distance cannot grow by more, unless the surface does not hang together there */
 
 void split_mix(const float a[3], const float b[3], double t, float out[3])
@@ -130,8 +131,7 @@ static bool search(const struct sight *sight, const double at[3], struct surface
         return surface_find_spot_on(split->in->surface, at, split->on_surface_m, sight->origin, spot);
     if (surface_find_spot_among(split->in->surface, at, split->on_surface_m, is_in_sight, sight, spot))
         return true;
-    surface_find_spot(split->in->surface, at, sight->normal, spot);
-    return spot->distance_m <= split->on_surface_m;
+    return surface_find_spot_within(split->in->surface, at, sight->normal, split->on_surface_m, spot);
 }
 
 /* All that the place of a point depends on, but for the surface. */
@@ -168,16 +168,24 @@ static bool find_spot(const struct sight *sight, const float point[3], const dou
     return seen;
 }
 
-/* Where a triangle is seen, nearest to a place in it that is not: large ones stand out of other parts. */
+/* Where a triangle is seen, nearest to a place in it that is not: large ones stand out of other parts. *spot: what was found from another
+   place, or none; what is found from this one, though it be too far to count; none: nothing of the triangle is seen. */
 static bool find_seen(const struct sight *sight, const double corners[3][3], const double from[3], double weights[3],
                       struct surface_spot *spot)
 {
     const struct split *split = sight->split;
-    double at[3], limit_m = 0;
+    double at[3], reach_m = 0;
     for (int c = 0; c < 3; c++)
-        limit_m = fmax(limit_m, vec_distance(from, corners[c]));
+        reach_m = fmax(reach_m, vec_distance(from, corners[c]));
+    double limit_m = reach_m + split->on_surface_m;
+    if (spot->tri != TRIMESH_NONE)
+        limit_m = fmin(limit_m, vec_distance(from, spot->point_m) * (1 + ROUNDING));
     if (split->finest ? !surface_find_spot_on(split->in->surface, from, limit_m, sight->origin, spot)
-                      : !surface_find_spot_among(split->in->surface, from, limit_m, is_in_sight, sight, spot))
+                      : !surface_find_spot_among(split->in->surface, from, limit_m, is_in_sight, sight, spot)) {
+        spot->tri = TRIMESH_NONE;
+        return false;
+    }
+    if (vec_distance2(from, spot->point_m) > reach_m * reach_m)
         return false;
     triangle_nearest(spot->point_m, corners[0], corners[1], corners[2], weights);
     for (int i = 0; i < 3; i++)
@@ -524,7 +532,8 @@ static void try_inside(const struct split *split, struct split_finding *finding,
     bool middle_seen = find_spot(&inside.sight, (const float[3]){ (float)at[0], (float)at[1], (float)at[2] }, at, &spot);
     if (middle_seen)
         finding->error = (float)error_inside(&inside, places[0], &spot);
-    for (int p = 0; p < 4 && !middle_seen; p++) {
+    spot.tri = TRIMESH_NONE;
+    for (int p = 0; p < 4 && !middle_seen && (p == 0 || spot.tri != TRIMESH_NONE); p++) {
         place_in(&inside, places[p], at);
         if (find_seen(&inside.sight, (const double(*)[3])inside.corners, at, weights, &spot))
             finding->error = fmaxf(finding->error, (float)error_inside(&inside, weights, &spot));

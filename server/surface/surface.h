@@ -85,8 +85,11 @@ struct surface_spot {
     double weights[3], point_m[3], distance_m; /* weights: of tri's corners; distance_m: from the point asked for */
 };
 void surface_find_spot(const struct surface *surface, const double point_m[3], const double normal[3], struct surface_spot *spot);
-/* The same within limit_m, on pieces of two triangles of the model (which may be one); on pieces of those for which allowed(arg, triangle)
-   holds. False: none is near and seen. */
+/* Whether that spot is within limit_m; it is not looked for farther away. */
+bool surface_find_spot_within(const struct surface *surface, const double point_m[3], const double normal[3], double limit_m,
+                              struct surface_spot *spot);
+/* The nearest one within limit_m, on pieces of two triangles of the model (which may be one); on pieces of those for which
+   allowed(arg, triangle) holds. False: none is near and seen. */
 bool surface_find_spot_on(const struct surface *surface, const double point_m[3], double limit_m, const uint32_t triangles[2],
                           struct surface_spot *spot);
 bool surface_find_spot_among(const struct surface *surface, const double point_m[3], double limit_m,

@@ -10,6 +10,7 @@
 #define ON_PIECE 1e-5        /* likewise: no nearer piece is looked for */
 #define FEW_PIECES 24        /* of a triangle of the model are tried one by one */
 #define SPOT_PATIENCE 4.0    /* how much farther than the nearest a triangle may be that faces the right way */
+#define ROUNDING 1e-9        /* of a distance, more than it is off by */
 
 void surface_nearest(const struct surface *surface, const double point_m[3], struct surface_place *place)
 {
@@ -38,11 +39,12 @@ bool surface_faces(const void *arg, uint32_t tri)
     return vec_dot(n, facing->normal) > 0;
 }
 
-void surface_find_spot(const struct surface *surface, const double point_m[3], const double normal[3], struct surface_spot *spot)
+bool surface_find_spot_within(const struct surface *surface, const double point_m[3], const double normal[3], double limit_m,
+                              struct surface_spot *spot)
 {
     struct bvh_place any, facing = { .tri = TRIMESH_NONE };
-    bvh_nearest(surface->bvh, point_m, INFINITY, NULL, NULL, &any);
-    if (normal && any.distance_m > surface->edge_m * SPOT_ON_SURFACE)
+    bvh_nearest(surface->bvh, point_m, limit_m * (1 + ROUNDING), NULL, NULL, &any);
+    if (normal && any.tri != TRIMESH_NONE && any.distance_m > surface->edge_m * SPOT_ON_SURFACE)
         bvh_nearest(surface->bvh, point_m, any.distance_m * SPOT_PATIENCE, surface_faces,
                     &(struct surface_facing){ &surface->visible, normal }, &facing);
     const struct bvh_place *at = facing.tri == TRIMESH_NONE ? &any : &facing;
@@ -50,6 +52,12 @@ void surface_find_spot(const struct surface *surface, const double point_m[3], c
     spot->distance_m = at->distance_m;
     memcpy(spot->point_m, at->point, sizeof(spot->point_m));
     memcpy(spot->weights, at->weights, sizeof(spot->weights));
+    return spot->tri != TRIMESH_NONE && spot->distance_m <= limit_m;
+}
+
+void surface_find_spot(const struct surface *surface, const double point_m[3], const double normal[3], struct surface_spot *spot)
+{
+    surface_find_spot_within(surface, point_m, normal, INFINITY, spot);
 }
 
 bool surface_spot_on(const struct surface *surface, const double point_m[3], double limit_m, uint32_t tri, struct surface_spot *spot)

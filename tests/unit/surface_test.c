@@ -505,6 +505,42 @@ static void nearest_is_the_nearest(void **state)
     cad_finish(&torus);
 }
 
+/* With the right side's triangles farther than the limit too, at places in the tube. */
+static void within_a_limit_is_the_same_spot_or_none(void **state)
+{
+    struct cad torus = { 0 };
+    int within = 0, beyond = 0, other_side = 0;
+    (void)state;
+    cad_torus(&torus, &chance, 160, 64, 0.3, 0.5);
+    struct surface *surface = surface_of(&torus);
+    for (int i = 0; i < 2000; i++) {
+        double p[3], normal[3];
+        for (int axis = 0; axis < 3; axis++) {
+            p[axis] = 2.8 * cad_random(&chance) - 1.4;
+            normal[axis] = 2 * cad_random(&chance) - 1;
+        }
+        p[2] *= 0.25;
+        struct surface_spot spot, near, any;
+        surface_find_spot(surface, p, normal, &spot);
+        surface_find_spot(surface, p, NULL, &any);
+        double limit_m = spot.distance_m * (0.2 + 1.6 * cad_random(&chance));
+        bool found = surface_find_spot_within(surface, p, normal, limit_m, &near);
+        assert_int_equal(found, spot.distance_m <= limit_m);
+        if (found) {
+            assert_int_equal(near.tri, spot.tri);
+            assert_memory_equal(near.weights, spot.weights, sizeof(spot.weights));
+            assert_memory_equal(near.point_m, spot.point_m, sizeof(spot.point_m));
+        }
+        within += found;
+        beyond += !found;
+        other_side += !found && any.distance_m <= limit_m;
+    }
+    assert_true(within > 500 && beyond > 500 && other_side > 20);
+    assert_false(surface_find_spot_within(surface, (const double[3]){ 9, 9, 9 }, NULL, 1, &(struct surface_spot){ 0 }));
+    surface_destroy(&surface);
+    cad_finish(&torus);
+}
+
 /* Sources and places in the middle of strips, far from any vertex of the model: a pipe as CAD writes it. */
 static void long_thin_strips_are_exact_near_a_source_too(void **state)
 {
@@ -675,6 +711,7 @@ int main(void)
         cmocka_unit_test(nothing_leads_through_a_thin_plate),
         cmocka_unit_test(a_sensor_is_dropped_onto_the_surface),
         cmocka_unit_test(nearest_is_the_nearest),
+        cmocka_unit_test(within_a_limit_is_the_same_spot_or_none),
         cmocka_unit_test(long_thin_strips_are_exact_near_a_source_too),
         cmocka_unit_test(short_ways_are_exact_whatever_edges_are_flipped),
         cmocka_unit_test(many_sources_at_once_are_as_one_by_one),
