@@ -14,33 +14,12 @@
 
 #include "base/mem.h"
 #include "tests/oracle/geodesic.h"
-#include "tests/support/cad.h"
+#include "tests/support/surface_case.h"
 
 #define MEAN_MAX 0.006 /* of the largest distance */
 #define WORST_MAX 0.03
 #define SOURCES 2
 #define SAME_PLACE 1e-5
-
-static struct log *the_log;
-static struct workers *workers;
-static struct cad_random chance;
-
-static int set_up(void **state)
-{
-    (void)state;
-    cad_random_start(&chance);
-    the_log = log_create(LOG_ERROR);
-    workers = workers_create(0);
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    (void)state;
-    workers_destroy(&workers);
-    log_destroy(&the_log);
-    return 0;
-}
 
 /* --- the truth ---------------------------------------------------------------------------------------------------------------- */
 
@@ -238,5 +217,5 @@ int main(void)
         cmocka_unit_test(thin_walled_box),
         cmocka_unit_test(interpenetrating_pipes),
     };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
+    return cmocka_run_group_tests(tests, surface_case_set_up, surface_case_tear_down);
 }

@@ -13,32 +13,11 @@
 
 #include "base/mem.h"
 #include "tests/oracle/geodesic.h"
-#include "tests/support/cad.h"
+#include "tests/support/surface_case.h"
 
 #define MEAN_MAX 0.006 /* of the largest distance */
 #define WORST_MAX 0.03
 #define SAME_PLACE 1e-5f
-
-static struct log *the_log;
-static struct workers *workers;
-static struct cad_random chance;
-
-static int set_up(void **state)
-{
-    (void)state;
-    cad_random_start(&chance);
-    the_log = log_create(LOG_ERROR);
-    workers = workers_create(0);
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    (void)state;
-    workers_destroy(&workers);
-    log_destroy(&the_log);
-    return 0;
-}
 
 static void append(struct cad *cad, const struct cad *other)
 {
@@ -358,5 +337,5 @@ int main(void)
         cmocka_unit_test(a_box_stands_at_the_edge_of_another),
         cmocka_unit_test(gaps_at_a_rim_that_boxes_share),
     };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
+    return cmocka_run_group_tests(tests, surface_case_set_up, surface_case_tear_down);
 }

@@ -15,38 +15,13 @@
 #include "base/mem.h"
 #include "preprocess/geometry.h"
 #include "preprocess/model_source.h"
-#include "tests/support/cad.h"
+#include "surface/vec.h"
+#include "tests/support/surface_case.h"
 
 #define SOURCES 6
 #define MODELS "../shared/data/models/"
 #define LONGEST 2.0   /* spacings: across what was cut on two sides */
 #define ROUNDING 1e-5 /* of the straight line: floats */
-
-static struct log *the_log;
-static struct workers *workers;
-static struct cad_random chance;
-
-static int set_up(void **state)
-{
-    (void)state;
-    cad_random_start(&chance);
-    the_log = log_create(LOG_ERROR);
-    workers = workers_create(0);
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    (void)state;
-    workers_destroy(&workers);
-    log_destroy(&the_log);
-    return 0;
-}
-
-static double apart(const double a[3], const double b[3])
-{
-    return hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
-}
 
 static size_t draw(size_t count)
 {
@@ -66,7 +41,7 @@ static void check_sources(const char *name, const struct surface *surface, const
         surface_nearest(surface, sources_m[s], &dropped);
         for (size_t v = 0; v < vertex_count; v++) {
             const double p[3] = { (double)positions_m[v][0], (double)positions_m[v][1], (double)positions_m[v][2] };
-            double straight_m = apart(p, dropped.position_m), by_m = straight_m - (double)found[(size_t)s * vertex_count + v];
+            double straight_m = vec_distance(p, dropped.position_m), by_m = straight_m - (double)found[(size_t)s * vertex_count + v];
             below += by_m > tolerance_m + ROUNDING * straight_m;
             least_m = fmax(least_m, by_m);
         }
@@ -86,7 +61,7 @@ static void check_edges(const char *name, const struct surface *surface)
     surface_look(surface, &look);
     for (size_t t = 0; t < look.visible_count; t++)
         for (int i = 0; i < 3; i++)
-            longest_m = fmax(longest_m, apart(look.points_m[look.tris[t][i]], look.points_m[look.tris[t][(i + 1) % 3]]));
+            longest_m = fmax(longest_m, vec_distance(look.points_m[look.tris[t][i]], look.points_m[look.tris[t][(i + 1) % 3]]));
     if (longest_m > LONGEST * surface_report(surface)->spacing_m)
         print_message("# %s: an edge is %.2f spacings long\n", name, longest_m / surface_report(surface)->spacing_m);
     assert_true(longest_m <= LONGEST * surface_report(surface)->spacing_m);
@@ -237,5 +212,5 @@ int main(void)
         cmocka_unit_test(shapes),     cmocka_unit_test(a_grating_of_rods), cmocka_unit_test(supports),
         cmocka_unit_test(plant_room), cmocka_unit_test(platform),
     };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
+    return cmocka_run_group_tests(tests, surface_case_set_up, surface_case_tear_down);
 }

@@ -13,32 +13,11 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
-#include "tests/support/cad.h"
+#include "tests/support/surface_case.h"
 
 #define MEAN_MAX 0.003 /* of the largest distance */
 #define WORST_MAX 0.01
 #define METHODS_MAX 0.02
-
-static struct log *the_log;
-static struct workers *workers;
-static struct cad_random chance;
-
-static int set_up(void **state)
-{
-    (void)state;
-    cad_random_start(&chance);
-    the_log = log_create(LOG_ERROR);
-    workers = workers_create(0);
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    (void)state;
-    workers_destroy(&workers);
-    log_destroy(&the_log);
-    return 0;
-}
 
 static struct surface *surface_of(const struct cad *cad)
 {
@@ -718,5 +697,5 @@ int main(void)
         cmocka_unit_test(vertices_of_flat_triangles_take_their_neighbours_distance),
         cmocka_unit_test(a_surface_without_area_is_refused),
     };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
+    return cmocka_run_group_tests(tests, surface_case_set_up, surface_case_tear_down);
 }
