@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Triangles of a part that the near plane may cut. */
+/* Triangles of a part that the near plane or the edge of the band may cut. */
 #include <math.h>
 
 #include "render/draft/draft_near.h"
@@ -19,15 +19,16 @@ static int add_corner(struct draft_corners *corners, const struct near_corner *c
     return number;
 }
 
-static int cut(struct draft_corners *corners, const struct draft_mesh *mesh, const uint32_t *vertices, const int numbers[3], int out[4])
+static int cut(const struct draft *draft, struct draft_corners *corners, const struct draft_mesh *mesh, const uint32_t *vertices,
+               const int numbers[3], int out[NEAR_CORNERS])
 {
-    struct near_corner at[3], left[4];
+    struct near_corner at[3], left[NEAR_CORNERS];
     uint32_t flags = 0;
     for (int i = 0; i < 3; i++) {
         at[i] = near_corner_of(mesh, vertices[numbers[i]], corners->a[numbers[i]], corners->b[numbers[i]]);
         flags |= corners->flags[numbers[i]];
     }
-    int count = near_cut(at, left);
+    int count = near_cut(draft, at, left);
     for (int i = 0; i < count; i++)
         out[i] = add_corner(corners, &left[i], flags);
     return count;
@@ -68,12 +69,12 @@ void draft_cut_faces(struct draft_tile *tile, const struct draft_mesh *mesh, con
     bool any_side = both_sides || part->double_sided;
     tile->face_count = 0;
     for (int i = 0; i < part->triangle_count; i++) {
-        int at[3] = { of_part[i], of_part[part->rounded + i], of_part[2 * part->rounded + i] }, out[4], count;
+        int at[3] = { of_part[i], of_part[part->rounded + i], of_part[2 * part->rounded + i] }, out[NEAR_CORNERS], count;
         if (corners->inverse_w[at[0]] > 0 && corners->inverse_w[at[1]] > 0 && corners->inverse_w[at[2]] > 0) {
             add_face(tile, i, any_side, mesh->mirrored, at[0], at[1], at[2]);
             continue;
         }
-        count = cut(corners, mesh, parts->vertices + part->first_vertex, at, out);
+        count = cut(tile->draft, corners, mesh, parts->vertices + part->first_vertex, at, out);
         for (int c = 2; c < count; c++)
             add_face(tile, i, any_side, mesh->mirrored, out[0], out[c - 1], out[c]);
     }

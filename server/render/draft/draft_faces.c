@@ -25,13 +25,16 @@ void draft_place_part(struct draft_tile *tile, const struct draft_mesh *mesh, co
     const float *places = draft_part_places(parts, part);
     const uint32_t *vertices = parts->vertices + part->first_vertex;
     lanes none = { 0 }, low = none + 1e30f, high = none;
+    float width = (float)tile->draft->width_px, height = (float)tile->draft->height_px;
     for (int i = 0; i < part->vertex_count; i += LANES) {
         fetch_carried(mesh, vertices + i);
         lanes x = *(const lanes *)(places + i), y = *(const lanes *)(places + rounded + i), z = *(const lanes *)(places + 2 * rounded + i);
         lanes at[4];
         for (int r = 0; r < 4; r++)
             at[r] = mesh->place[0][r] * x + mesh->place[1][r] * y + mesh->place[2][r] * z + mesh->place[3][r];
+        lanes right = at[3] * (2 * width), below = at[3] * (2 * height), left = at[3] * -width, above = at[3] * -height;
         lanes_int before = (at[3] > 0.0f) & (at[2] <= at[3]);
+        before &= (at[0] >= left) & (at[0] <= right) & (at[1] >= above) & (at[1] <= below);
         lanes inverse = lanes_choose(before, 1.0f / lanes_choose(before, at[3], none + 1.0f), none);
         *(lanes *)(corners->x + i) = at[0] * inverse;
         *(lanes *)(corners->y + i) = at[1] * inverse;

@@ -20,10 +20,10 @@ enum { MOST_RAMPS = 1 << 14 };
 
 struct draft_vertex {
     float x, y, depth;     /* pixels from the top left; 1 near, 0 far */
-    float inverse_w;       /* 0: nearer than the near plane */
+    float inverse_w;       /* 0: nearer than the near plane, or beyond the band (draft_near.h) */
     float a, b;            /* field: column and row of the palette (logarithmic: value and row); context: ambient, facing the sun */
     uint32_t flags;        /* draft_flags */
-    uint32_t source;       /* of one that the near plane made: first index of the triangle that was cut */
+    uint32_t source;       /* of one that a cut made: first index of the triangle that was cut */
 };
 /* Two bytes, scalar.uncertain and from bit DRAFT_LACKING on scalar.lacking; and a bit. Where flags of corners were joined: no less than
    any. */
@@ -72,7 +72,7 @@ struct draft_triangle {
 struct draft_chunk { /* what one job sorts into bands; kept from picture to picture */
     size_t first_draw, draw_count;
     struct draft_triangle *triangles;
-    struct draft_vertex *extra; /* where the near plane cuts */
+    struct draft_vertex *extra; /* where triangles are cut */
     uint32_t *bands;            /* of each triangle: first | last << 16 */
     uint16_t *sorted;           /* triangles, band by band */
     uint32_t *starts;           /* in sorted, by band; one more at the end */

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One triangle against the near plane. */
+/* One triangle against the near plane and the band. */
+#include <string.h>
+
 #include "render/draft/draft_near.h"
 
 struct near_corner near_corner_of(const struct draft_mesh *mesh, uint32_t vertex, float a, float b)
@@ -11,24 +13,57 @@ struct near_corner near_corner_of(const struct draft_mesh *mesh, uint32_t vertex
     return corner;
 }
 
-static struct near_corner between(const struct near_corner *from, const struct near_corner *to, float part)
+/* Over 0 on the side that stays. plane: 0 the near one, then left, right, top, bottom of the band. */
+static float inside(const struct draft *draft, const struct near_corner *corner, int plane)
 {
-    struct near_corner corner = { .a = from->a + part * (to->a - from->a), .b = from->b + part * (to->b - from->b) };
+    const float *at = corner->at;
+    float width = (float)draft->width_px * at[3], height = (float)draft->height_px * at[3];
+    switch (plane) {
+    case 0:
+        return at[3] - at[2];
+    case 1:
+        return at[0] + width;
+    case 2:
+        return 2 * width - at[0];
+    case 3:
+        return at[1] + height;
+    default:
+        return 2 * height - at[1];
+    }
+}
+
+/* Where an edge leaves. The same for both triangles that share it, though they go along it in opposite directions. */
+static struct near_corner between(const struct near_corner *in, const struct near_corner *out, float part)
+{
+    struct near_corner corner = { .a = in->a + part * (out->a - in->a), .b = in->b + part * (out->b - in->b) };
     for (int r = 0; r < 4; r++)
-        corner.at[r] = from->at[r] + part * (to->at[r] - from->at[r]);
+        corner.at[r] = in->at[r] + part * (out->at[r] - in->at[r]);
     return corner;
 }
 
-int near_cut(const struct near_corner at[3], struct near_corner out[4])
+static int cut_by(const struct draft *draft, int plane, const struct near_corner *at, int count, struct near_corner *out)
 {
-    int count = 0;
-    for (int i = 0; i < 3; i++) {
-        const struct near_corner *here = &at[i], *next = &at[(i + 1) % 3];
-        float inside = here->at[3] - here->at[2], after = next->at[3] - next->at[2];
-        if (inside >= 0)
-            out[count++] = *here;
-        if ((inside >= 0) != (after >= 0))
-            out[count++] = between(here, next, inside / (inside - after));
+    int kept = 0;
+    for (int i = 0; i < count; i++) {
+        const struct near_corner *here = &at[i], *next = &at[(i + 1) % count];
+        float from = inside(draft, here, plane), to = inside(draft, next, plane);
+        if (from >= 0)
+            out[kept++] = *here;
+        if (from >= 0 && to < 0)
+            out[kept++] = between(here, next, from / (from - to));
+        if (from < 0 && to >= 0)
+            out[kept++] = between(next, here, to / (to - from));
+    }
+    return kept;
+}
+
+int near_cut(const struct draft *draft, const struct near_corner at[3], struct near_corner out[NEAR_CORNERS])
+{
+    struct near_corner before[NEAR_CORNERS];
+    int count = cut_by(draft, 0, at, 3, out);
+    for (int plane = 1; plane < 5; plane++) {
+        memcpy(before, out, (size_t)count * sizeof(*before));
+        count = cut_by(draft, plane, before, count, out);
     }
     return count >= 3 ? count : 0;
 }

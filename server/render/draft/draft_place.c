@@ -8,12 +8,13 @@
 enum { BLOCK = 2048 };
 #define FARTHEST 1e6f /* columns: what lies so far outside the scale is outside all the same */
 
-static inline void place_one(const struct draft_mesh *mesh, const float p[3], struct draft_vertex *out)
+static inline void place_one(const struct draft *draft, const struct draft_mesh *mesh, const float p[3], struct draft_vertex *out)
 {
     float at[4];
     for (int r = 0; r < 4; r++)
         at[r] = mesh->place[0][r] * p[0] + mesh->place[1][r] * p[1] + mesh->place[2][r] * p[2] + mesh->place[3][r];
-    bool before = at[3] > 0 && at[2] <= at[3];
+    float width = (float)draft->width_px * at[3], height = (float)draft->height_px * at[3];
+    bool before = at[3] > 0 && at[2] <= at[3] && at[0] >= -width && at[0] <= 2 * width && at[1] >= -height && at[1] <= 2 * height;
     float inverse = before ? 1 / at[3] : 0;
     out->x = at[0] * inverse;
     out->y = at[1] * inverse;
@@ -50,7 +51,7 @@ static void place_range(const struct draft *draft, const struct draft_mesh *mesh
 {
     struct draft_vertex *out = draft->vertices + mesh->first_vertex;
     for (uint32_t v = begin; v < end; v++)
-        place_one(mesh, mesh->file->positions_m[v], &out[v]);
+        place_one(draft, mesh, mesh->file->positions_m[v], &out[v]);
     for (uint32_t v = begin; v < end; v++) {
         if (mesh->scalars)
             carry_field(draft, mesh, v, &out[v]);

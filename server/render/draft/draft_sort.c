@@ -6,7 +6,7 @@
 #include "base/mem.h"
 #include "render/draft/draft_near.h"
 
-/* --- the near plane --------------------------------------------------------------------------------------------------------- */
+/* --- the near plane and the band -------------------------------------------------------------------------------------------- */
 
 static uint32_t add_extra(struct draft_chunk *chunk, const struct near_corner *corner, uint32_t flags, uint32_t source)
 {
@@ -26,16 +26,16 @@ static uint32_t add_extra(struct draft_chunk *chunk, const struct near_corner *c
 }
 
 static int cut(const struct draft *draft, struct draft_chunk *chunk, const struct draft_mesh *mesh, const uint32_t *indices,
-               uint32_t corners[4])
+               uint32_t corners[NEAR_CORNERS])
 {
-    struct near_corner at[3], left[4];
+    struct near_corner at[3], left[NEAR_CORNERS];
     uint32_t flags = 0, source = (uint32_t)(indices - mesh->file->indices);
     for (int i = 0; i < 3; i++) {
         const struct draft_vertex *vertex = &draft->vertices[mesh->first_vertex + indices[i]];
         at[i] = near_corner_of(mesh, indices[i], vertex->a, vertex->b);
         flags |= vertex->flags;
     }
-    int count = near_cut(at, left);
+    int count = near_cut(draft, at, left);
     for (int i = 0; i < count; i++)
         corners[i] = add_extra(chunk, &left[i], flags, source);
     return count;
@@ -104,7 +104,7 @@ static void add_draw(const struct draft *draft, struct draft_chunk *chunk, const
             add_triangle(draft, chunk, draw, mesh->first_vertex + at[0], mesh->first_vertex + at[1], mesh->first_vertex + at[2]);
             continue;
         }
-        uint32_t corners[4];
+        uint32_t corners[NEAR_CORNERS];
         int count = cut(draft, chunk, mesh, at, corners);
         for (int c = 2; c < count; c++)
             add_triangle(draft, chunk, draw, corners[0], corners[c - 1], corners[c]);
@@ -136,7 +136,7 @@ static void sort_chunks(void *arg, size_t begin, size_t end)
     struct draft *draft = sorting->draft;
     for (size_t c = sorting->first + begin; c < sorting->first + end; c++) {
         struct draft_chunk *chunk = &draft->chunks[c];
-        size_t starts = (size_t)draft->band_count + 1, most_triangles = 2 * CHUNK_TRIANGLES; /* the near plane may make two of one */
+        size_t starts = (size_t)draft->band_count + 1, most_triangles = NEAR_TRIANGLES * CHUNK_TRIANGLES;
         chunk->triangle_count = chunk->extra_count = 0;
         mem_grow(&chunk->triangles, &chunk->triangle_capacity, most_triangles, sizeof(*chunk->triangles));
         mem_grow(&chunk->bands, &chunk->band_capacity, most_triangles, sizeof(*chunk->bands));

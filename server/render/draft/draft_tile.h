@@ -2,22 +2,22 @@
 /* A rectangle of the picture while one thread draws it, part by part, nearest first. Private to draft*.c. */
 #ifndef RENDER_DRAFT_TILE_H
 #define RENDER_DRAFT_TILE_H
-#include "render/draft/draft_impl.h"
+#include "render/draft/draft_near.h"
 #include "render/draft/draft_simd.h"
 
 enum { TILE_WIDTH_PX = 320, TILE_HEIGHT_PX = 184, BLOCK_SHIFT = 3, BLOCK_PX = 1 << BLOCK_SHIFT };
 enum { BLOCK_COLUMNS = TILE_WIDTH_PX / BLOCK_PX, BLOCK_ROWS = TILE_HEIGHT_PX / BLOCK_PX };
-enum { MOST_FACES = 2 * PART_TRIANGLES, MOST_CORNERS = PART_VERTICES + 4 * PART_TRIANGLES }; /* the near plane may make two of one */
+enum { MOST_FACES = NEAR_TRIANGLES * PART_TRIANGLES, MOST_CORNERS = PART_VERTICES + NEAR_CORNERS * PART_TRIANGLES };
 
 #define DRAFT_LITTLE 1.02f /* from the nearest to the farthest: perspective is not seen */
 
-struct draft_corners { /* vertices of a part, as struct draft_vertex, then those that the near plane made */
+struct draft_corners { /* vertices of a part, as struct draft_vertex, then those that cuts made */
     float x[MOST_CORNERS], y[MOST_CORNERS], depth[MOST_CORNERS], inverse_w[MOST_CORNERS], a[MOST_CORNERS], b[MOST_CORNERS];
     uint32_t flags[MOST_CORNERS];
     int count;
     uint32_t all_flags; /* of any of them */
     bool flat;          /* no perspective to speak of */
-    bool cut;           /* some are nearer than the near plane */
+    bool cut;           /* some are nearer than the near plane, or beyond the band */
 };
 
 struct draft_face { /* a triangle that faces the eye and covers a pixel's middle in the tile; its area as pixels go is over 0 */
@@ -36,7 +36,7 @@ struct draft_tile {
     uint32_t first_id; /* of the part's triangles, in draft->ids */
 };
 
-/* The faces of a part out of corners that were placed, some of them nearer than the near plane, and that carry. */
+/* The faces of a part out of corners that were placed, some of them to be cut off, and that carry. */
 void draft_cut_faces(struct draft_tile *tile, const struct draft_mesh *mesh, const struct draft_parts *parts,
                      const struct draft_part *part, bool both_sides);
 

@@ -83,7 +83,7 @@ struct corners { /* of eight triangles, seen from the spots: what the weights ar
     float z[3][LANES], g[3][LANES]; /* depth times g, and g: 1, or w */
 };
 
-/* A triangle that the near plane cuts: its corners may lie behind the eye. */
+/* A triangle that was cut: its corners may lie behind the eye. */
 static inline void see_cut_corner(const struct draft_mesh *mesh, uint32_t v, const struct item *item, int k, int i,
                                   struct corners *out)
 {
@@ -130,7 +130,7 @@ DRAFT_INLINE lanes load(const float at[LANES])
 }
 
 /* e: twice the areas to the corners, negative where the spot lies beyond an edge: it moves to the nearest place of the rim. Weights that
-   are just cut off at 0 would be those of a place far along a sliver. Triangles that the near plane cuts are cut off all the same. */
+   are just cut off at 0 would be those of a place far along a sliver. Triangles that were cut are cut off all the same. */
 DRAFT_INLINE void keep_within(const struct corners *corners, lanes e[3])
 {
     lanes_int outside = (e[0] < 0.0f) | (e[1] < 0.0f) | (e[2] < 0.0f);
