@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Pictures against those in tests/golden, made on llvmpipe. GOLDEN_UPDATE=1 makes them anew; look at them before you commit them. */
+/* Pictures against those in tests/golden, made on llvmpipe: as a session without a GPU has them (render/draft, render/plate; the code is
+   the same with each context), and drawn by the context itself. GOLDEN_UPDATE=1 makes them anew; look at them before you commit them. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -91,12 +92,13 @@ static double compare(const uint8_t *got, const uint8_t *want, uint8_t *differen
     return (double)far / (WIDTH * HEIGHT);
 }
 
-static void judge(const struct golden *golden, const uint8_t *got)
+static void judge(const struct golden *golden, bool by_gl, const uint8_t *got)
 {
     const char *out = getenv("PLANTCAST_OUT");
-    char *folder = mem_printf("%s/golden-%s", out ? out : "build", gl_kind_name(rig.gl->kind));
+    char *folder = mem_printf("%s/golden-%s%s", out ? out : "build", gl_kind_name(rig.gl->kind), by_gl ? "-by-gl" : "");
     uint8_t *want = load(golden->name), *differences = mem_array(BYTES, 1);
     double far = compare(got, want, differences);
+    print_message("# %s%s: %.2f %% of the pixels differ by more than %d\n", golden->name, by_gl ? ", by GL" : "", 100 * far, FAR);
     if (far > golden->far_part) {
         mkdir(folder, 0777);
         save(folder, golden->name, "-got", got);
@@ -148,14 +150,17 @@ static void test_golden(void **state)
         open_up(&view);
     if (golden->split)
         split_up(&view);
-    struct frame *frame = canvas_draw(stand.renderer, &view, stand.snapshot);
-    frame_read_markers(frame, stand.snapshot, NULL);
-    if (golden->overlay)
-        overlay_draw(frame, &stand.toy->scene, stand.snapshot, NULL);
-    if (getenv("GOLDEN_UPDATE"))
-        save("tests/golden", golden->name, "", frame->bgrx);
-    judge(golden, frame->bgrx);
-    frame_unref(&frame);
+    for (int by_gl = 0; by_gl <= 1; by_gl++) {
+        renderer_use_gl(stand.renderer, by_gl);
+        struct frame *frame = canvas_draw(stand.renderer, &view, stand.snapshot);
+        frame_read_markers(frame, stand.snapshot, NULL);
+        if (golden->overlay)
+            overlay_draw(frame, &stand.toy->scene, stand.snapshot, NULL);
+        if (getenv("GOLDEN_UPDATE") && !by_gl)
+            save("tests/golden", golden->name, "", frame->bgrx);
+        judge(golden, by_gl, frame->bgrx);
+        frame_unref(&frame);
+    }
 }
 
 /* Values, a sensor beyond the range, one that is uncertain and one that is bad. */
