@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What is hidden, isolated, ghosted or cut away: colours, markers and content of the pictures; and orthographic ones. */
+/* What is hidden, isolated, ghosted or cut away: colours, markers and content of the pictures; and orthographic ones. As a session without
+   a GPU has them: some are left to GL then, and what is the same in two pictures must be so across that border; and all by GL. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -18,6 +19,13 @@ enum { EXCHANGER, TANK, PIPE, SLAB, PUMP };
 static struct rig rig;
 static struct stand stand;
 static struct view view;
+static bool by_gl;
+
+static void set_up(struct stand *own, struct toy *toy)
+{
+    stand_init(own, &rig, toy);
+    renderer_use_gl(own->renderer, by_gl);
+}
 
 /* The exchanger is 30 degrees all over, the tank 80: each has one colour of its own. */
 static int reset(void **state)
@@ -42,13 +50,22 @@ static int count_value(const struct frame *frame, double value)
     return count;
 }
 
-static int count_different(const struct frame *a, const struct frame *b)
+enum { ROUNDING = 3 }; /* between a picture by GL and one that is not (draft_test.c) */
+
+static int count_farther(const struct frame *a, const struct frame *b, int most)
 {
     int count = 0;
     for (int y = 0; y < a->height_px; y++)
-        for (int x = 0; x < a->width_px; x++)
-            count += memcmp(frame_pixel(a, x, y), frame_pixel(b, x, y), 3) != 0;
+        for (int x = 0; x < a->width_px; x++) {
+            const uint8_t *one = frame_pixel(a, x, y), *other = frame_pixel(b, x, y);
+            count += abs(one[0] - other[0]) > most || abs(one[1] - other[1]) > most || abs(one[2] - other[2]) > most;
+        }
     return count;
+}
+
+static int count_different(const struct frame *a, const struct frame *b)
+{
+    return count_farther(a, b, 0);
 }
 
 static void assert_looks(double exchanger_least, double tank_least, size_t markers)
@@ -141,9 +158,9 @@ static void test_ghosts_change_few_colours(void **state)
         struct frame *hidden = stand_draw(&stand, &view);
         int behind = count_value(hidden, 30), before = count_value(solid, 30), seen = count_value(ghost, 30);
         assert_true(before < 0.7 * behind);
-        assert_true(seen > 0.75 * behind && seen < behind);
+        assert_true(seen > (by_gl ? 0.75 : 0.7) * behind && seen < behind); /* plates mix fewer colours along edges than GL does */
         assert_int_equal(count_value(ghost, 80), 0);
-        int changed = count_different(ghost, hidden), covered = count_value(solid, 80);
+        int changed = count_farther(ghost, hidden, ROUNDING), covered = count_value(solid, 80);
         assert_true(changed > 0.04 * covered && changed < 0.35 * covered);
         assert_int_equal(ghost->marker_count, 8);
         frame_unref(&solid);
@@ -254,7 +271,7 @@ static void test_a_cut_closes_bodies(void **state)
     for (int way = 0; way < 3; way++)
         for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++) {
             struct stand own;
-            stand_init(&own, &rig, nested(way == 1, way == 2));
+            set_up(&own, nested(way == 1, way == 2));
             toy_set(own.snapshot, 0, 30, QUALITY_GOOD);
             toy_set(own.snapshot, 1, 80, QUALITY_GOOD);
             cut_through(&own, (enum tier)tier, false, &first_m, &last_m, &pick);
@@ -370,7 +387,7 @@ static void stand_room(struct stand *room, struct view *of)
     shape_box(&walls, TOY_CONCRETE, (double[3]){ -1.2, -1.2, -1.2 }, (double[3]){ 1.2, 1.2, 1.2 });
     toy_add(toy, "BALL", &ball, (double[3]){ 0, 0, 2 }, NULL, 0);
     toy_add(toy, "WALLS", &walls, (double[3]){ 0, 0, 2 }, NULL, 0);
-    stand_init(room, &rig, toy);
+    set_up(room, toy);
     view_default(&toy->scene, 240, 180, of);
     of->tier = TIER_STILL;
     of->look = LOOK_MATERIALS;
@@ -422,10 +439,13 @@ int main(void)
     cmocka_set_message_output(CM_OUTPUT_TAP);
     if (!rig_init(&rig, "visibility_test"))
         return 0;
-    stand_init(&stand, &rig, toy_unit());
-    renderer_use_gl(stand.renderer, true); /* pictures are compared with one another */
-    int failed = cmocka_run_group_tests(tests, NULL, NULL);
-    stand_finish(&stand);
+    int failed = 0;
+    for (int way = 0; way <= 1; way++) {
+        by_gl = way == 1;
+        set_up(&stand, toy_unit());
+        failed += cmocka_run_group_tests_name(by_gl ? "by GL" : "as without a GPU", tests, NULL, NULL);
+        stand_finish(&stand);
+    }
     rig_finish(&rig);
     return failed;
 }
