@@ -12,13 +12,13 @@
 
 struct attempt {
     const struct gl_impl *impl;
-    bool automatic, software; /* tried by `auto`; may be a software device then */
+    bool software, again; /* may be a software device, if none is asked for; differs in that alone from one before */
 };
 static const struct attempt attempts[] = {
-    { &gl_egl_device_impl, true, false },
-    { &gl_egl_surfaceless_impl, true, true },
+    { &gl_egl_device_impl, false, false },
+    { &gl_egl_surfaceless_impl, true, false },
     { &gl_egl_device_impl, true, true },
-    { &gl_osmesa_impl, true, true },
+    { &gl_osmesa_impl, true, false },
 };
 enum { ATTEMPTS = sizeof(attempts) / sizeof(attempts[0]) };
 
@@ -95,12 +95,13 @@ static void set_conventions(struct gl *gl)
 /* why: the reasons of those that do not work, each after "; ". */
 static struct gl *attempt_all(enum gl_kind kind, const struct gl_device *device, struct text *why)
 {
+    bool asked = kind != GL_AUTO || device; /* then it may be a software device at once */
     for (int i = 0; i < ATTEMPTS; i++) {
         const struct attempt *attempt = &attempts[i];
         bool wanted = kind == GL_AUTO ? !device || attempt->impl->kind == GL_EGL_DEVICE : attempt->impl->kind == kind;
-        if (living.count > 0 && attempt->impl->kind != living.kind)
+        if ((living.count > 0 && attempt->impl->kind != living.kind) || (asked && attempt->again))
             continue;
-        struct gl *gl = wanted ? attempt->impl->create(device, kind != GL_AUTO || device || attempt->software, why) : NULL;
+        struct gl *gl = wanted ? attempt->impl->create(device, asked || attempt->software, why) : NULL;
         if (gl)
             return gl;
     }

@@ -4,6 +4,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
@@ -182,6 +183,95 @@ static void test_no_drivers(void **state)
     assert_int_equal(WEXITSTATUS(status), 0);
 }
 
+/* --- devices by index and by address, in a process of its own, too -------------------------------------------------------------- */
+
+enum { NO_DEVICES = 77 };
+
+static int count_of(const char *text, const char *words)
+{
+    int count = 0;
+    for (const char *at = strstr(text, words); at; at = strstr(at + 1, words))
+        count++;
+    return count;
+}
+
+static bool draws_with(struct log *log, const char *name, const char *renderer)
+{
+    struct gl_device device;
+    struct gl *gl = gl_device_parse(name, &device) ? gl_create(log, GL_AUTO, &device) : NULL;
+    bool good = gl && gl->kind == GL_EGL_DEVICE && strcmp(gl->renderer, renderer) == 0;
+    gl_destroy(&gl);
+    return good;
+}
+
+/* Those of the list that can be used, by either name. */
+static bool right_devices_draw(struct log *log, char *list)
+{
+    for (char *line = strtok(list, "\n"); line; line = strtok(NULL, "\n")) {
+        char index[12], address[20];
+        int at = 0;
+        if (sscanf(line, "%11s  %14c  %n", index, address, &at) != 2 || strncmp(line + at, "cannot be used", 14) == 0)
+            continue;
+        address[strspn(address, "0123456789abcdef:.")] = 0;
+        if (!draws_with(log, index, line + at) || (address[0] && !draws_with(log, address, line + at)))
+            return false;
+    }
+    return true;
+}
+
+/* There is no context by it, even one of software, and the reason is said once. */
+static bool is_refused(struct log *log, FILE *said, const char *name, const char *reason)
+{
+    char text[4096] = "";
+    struct gl_device device;
+    rewind(said);
+    if (ftruncate(fileno(said), 0) != 0 || !gl_device_parse(name, &device) || gl_create(log, GL_AUTO, &device))
+        return false;
+    rewind(said);
+    text[fread(text, 1, sizeof(text) - 1, said)] = 0;
+    return count_of(text, reason) == 1 && count_of(text, "egl-device:") == 1;
+}
+
+static int ask_for_devices(void)
+{
+    char *list = NULL;
+    size_t size = 0;
+    FILE *out = open_memstream(&list, &size), *said = tmpfile();
+    int count = gl_list_devices(out);
+    fclose(out);
+    if (count == 0)
+        return NO_DEVICES;
+    if (dup2(fileno(said), STDERR_FILENO) < 0)
+        return 1;
+    struct log *log = log_create(LOG_INFO);
+    if (!is_refused(log, said, "999", "device 999 asked for, there are"))
+        return 2;
+    if (!is_refused(log, said, "ffff:ff:1f.7", "devices is at PCI address ffff:ff:1f.7"))
+        return 3;
+    return right_devices_draw(log, list) ? 0 : 4;
+}
+
+static pid_t asks_for_devices;
+
+static pid_t try_devices(void)
+{
+    pid_t child = fork();
+    if (child == 0)
+        _exit(ask_for_devices());
+    return child;
+}
+
+static void test_devices_that_are_asked_for(void **state)
+{
+    (void)state;
+    int status = -1;
+    assert_int_equal(waitpid(asks_for_devices, &status, 0), asks_for_devices);
+    assert_true(WIFEXITED(status));
+    if (WEXITSTATUS(status) == NO_DEVICES)
+        skip();
+    assert_int_equal(WEXITSTATUS(status), 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -191,9 +281,10 @@ int main(void)
         cmocka_unit_test(test_pass_tells_its_errors),      cmocka_unit_test(test_program_that_does_not_compile),
         cmocka_unit_test(test_program_that_does_not_link), cmocka_unit_test(test_defines_and_includes_reach_the_compiler),
         cmocka_unit_test(test_readback_from_the_top),      cmocka_unit_test(test_target_too_large_is_refused),
-        cmocka_unit_test(test_no_drivers),
+        cmocka_unit_test(test_no_drivers),                 cmocka_unit_test(test_devices_that_are_asked_for),
     };
     without_drivers = try_without_drivers();
+    asks_for_devices = try_devices();
     cmocka_set_message_output(CM_OUTPUT_TAP);
     if (!rig_init(&rig, "gl_test"))
         return 0;
