@@ -168,6 +168,16 @@ test('the picture that is kept is the one that is seen', options, async () => {
     await page.evaluate(() => globalThis.plantcast.session.setParams({ show: 'value', ghost: [] }));
 });
 
+test('the legend says that values are not to be read from a glossy look', options, async () => {
+    const notes = () => page.locator('#legend .note').allTextContents();
+    assert.deepEqual(await notes(), []);
+    await page.evaluate(() => globalThis.plantcast.session.setParams({ look: 'glossy' }));
+    await page.locator('#legend .note').waitFor();
+    assert.deepEqual(await notes(), ['Glossy look: light changes the colours. Do not read values.']);
+    await page.evaluate(() => globalThis.plantcast.session.setParams({ look: 'default' }));
+    await page.locator('#legend .note').waitFor({ state: 'detached' });
+});
+
 // What a camera reads from the code on the screen.
 async function scan(where) {
     const { width, height, rgba } = await readPng(where, await where.locator('#share-code svg').screenshot());

@@ -22,19 +22,27 @@ static struct {
     struct snapshot *snapshot;
 } stand;
 
-/* A white picture with the mark of one tag in its middle; right: of a split view, or NULL. */
-static struct frame *draw_beside(int tag, bool occluded, const struct view *right)
+/* A white picture with the mark of one tag in its middle. */
+static struct frame *draw_view(int tag, bool occluded, const struct view *view)
 {
     struct frame *frame = frame_create(WIDTH, HEIGHT);
-    view_default(&stand.toy->scene, WIDTH, HEIGHT, &frame->view);
-    if (right)
-        view_split(&frame->view, right);
+    frame->view = *view;
     memset(frame->bgrx, 255, (size_t)frame->stride_bytes * HEIGHT);
     frame->markers = mem_array(1, sizeof(*frame->markers));
     frame->marker_count = 1;
     frame->markers[0] = (struct frame_marker){ .tag = tag, .x_px = 300, .y_px = 200, .occluded = occluded, .value = 1 };
     overlay_draw(frame, &stand.toy->scene, stand.snapshot, NULL);
     return frame;
+}
+
+/* right: of a split view, or NULL. */
+static struct frame *draw_beside(int tag, bool occluded, const struct view *right)
+{
+    struct view view;
+    view_default(&stand.toy->scene, WIDTH, HEIGHT, &view);
+    if (right)
+        view_split(&view, right);
+    return draw_view(tag, occluded, &view);
 }
 
 static struct frame *draw(int tag, bool occluded, bool split)
@@ -149,12 +157,38 @@ static void halves_share_a_legend_that_says_the_same(void **state)
     }
 }
 
+/* Of its quarter of the picture, in another look than the default one. */
+static int legend_differs_px(enum look look)
+{
+    struct view view;
+    view_default(&stand.toy->scene, WIDTH, HEIGHT, &view);
+    struct frame *plain = draw_view(0, false, &view);
+    view.look = look;
+    struct frame *other = draw_view(0, false, &view);
+    int count = 0;
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = WIDTH * 3 / 4; x < WIDTH; x++)
+            count += memcmp(plain->bgrx + y * plain->stride_bytes + 4 * x, other->bgrx + y * other->stride_bytes + 4 * x, 3) != 0;
+    frame_unref(&plain);
+    frame_unref(&other);
+    return count;
+}
+
+/* Values read from it may be wrong: two lines of words say so. */
+static void the_legend_says_glossy(void **state)
+{
+    (void)state;
+    assert_int_equal(legend_differs_px(LOOK_FLAT), 0);
+    assert_true(legend_differs_px(LOOK_GLOSSY) > 500);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(halves_share_a_legend_that_says_the_same),
         cmocka_unit_test(alarms_out_of_sight_are_listed),
         cmocka_unit_test(any_number_of_alarms_fits),
+        cmocka_unit_test(the_legend_says_glossy),
         cmocka_unit_test(the_window_is_what_is_left_free),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
