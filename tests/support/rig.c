@@ -81,6 +81,22 @@ int map_index_exact(const struct colormap *map, const uint8_t *bgrx)
     return -1;
 }
 
+static bool is_color(const uint8_t *bgrx, const uint8_t rgb[3])
+{
+    return bgrx[2] == rgb[0] && bgrx[1] == rgb[1] && bgrx[0] == rgb[2];
+}
+
+int map_colors_off(const struct colormap *map, const uint8_t *bgrx, double place)
+{
+    int wanted = (int)fmin(fmax(256 * place, 0), 255);
+    if ((place > 0.999 && is_color(bgrx, map->above)) || (place < 0.001 && is_color(bgrx, map->below)))
+        return 0;
+    for (int off = 0; off < 256; off++)
+        if ((wanted >= off && is_color(bgrx, map->rgb[wanted - off])) || (wanted + off < 256 && is_color(bgrx, map->rgb[wanted + off])))
+            return off;
+    return -1;
+}
+
 /* Linear light as a deuteranope sees it (Machado, Oliveira, Fernandes 2009, severity 1). */
 static void see_without_green(double c[3])
 {

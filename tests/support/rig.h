@@ -34,6 +34,8 @@ struct frame *stand_draw(struct stand *stand, const struct view *view); /* never
 const uint8_t *frame_pixel(const struct frame *frame, int x, int y); /* b, g, r, x */
 /* Place on the map (0..255) of a colour that is exactly one of its own, or -1. */
 int map_index_exact(const struct colormap *map, const uint8_t *bgrx);
+/* By how many colours of the map a pixel's is another one than of that place (0..1, or outside); -1: it is none of the map. */
+int map_colors_off(const struct colormap *map, const uint8_t *bgrx, double place);
 /* Place on the map of the colour nearest in CIELAB: what a reader of the legend would say; or one who sees no green, to whom both look
    as Machado, Oliveira and Fernandes (2009) have it. */
 int map_index_nearest(const struct colormap *map, const uint8_t *bgrx, bool deuteranope);

@@ -10,7 +10,7 @@
 #include "base/mem.h"
 #include "value/quality.h"
 
-enum { MAX_ASSETS = 32, MAX_TAGS = 64 };
+enum { MAX_ASSETS = 32, MAX_TAGS = 1024 };
 
 struct toy *toy_create(void)
 {

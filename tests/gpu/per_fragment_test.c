@@ -1,0 +1,205 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The field worked out at each fragment, with more sensors than the paper's 512, against plain loops over all of them in double precision:
+   numbers, and the colours of what is drawn. A plate seen straight from above, so that a pixel's place on it is known. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "tests/support/cad.h"
+#include "tests/support/rig.h"
+#include "tests/support/synthetic.h"
+#include "value/quality.h"
+
+enum { SENSORS = 701, CELLS = 40, SIDE_PX = 160, SAMPLES = 1500, BAD_EVERY = 60 };
+static const double SIDE_M = 4, TOLERANCE = 1.0 / 255;
+static struct rig rig;
+static struct stand stand;
+static uint64_t random_state;
+
+static double between(double low, double high)
+{
+    return low + (high - low) * synthetic_random_unit(&random_state);
+}
+
+static int set_up(void **state)
+{
+    struct shape shape = { 0 };
+    struct toy *toy = toy_create();
+    double(*places)[3] = mem_array(SENSORS, sizeof(*places));
+    (void)state;
+    for (int i = 0; i < SENSORS; i++)
+        for (int c = 0; c < 2; c++)
+            places[i][c] = between(0, SIDE_M);
+    shape_plate(&shape, TOY_STEEL, (double[3]){ 0, 0, 0 }, (double[3]){ SIDE_M, 0, 0 }, (double[3]){ 0, SIDE_M, 0 }, CELLS);
+    toy_add(toy, "PLATE", &shape, (double[3]){ 0, 0, 0 }, (const double(*)[3])places, SENSORS);
+    mem_free(places);
+    stand_init(&stand, &rig, toy);
+    for (int i = 0; i < SENSORS; i++) {
+        toy->plant.tags[i].strength = between(0.5, 2);
+        toy->plant.tags[i].decay = between(0, 2);
+        toy_set(stand.snapshot, i, between(0, 100), i % BAD_EVERY == 7 ? QUALITY_BAD_SENSOR_FAILURE : QUALITY_GOOD);
+    }
+    renderer_set_per_fragment(stand.renderer, true);
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    stand_finish(&stand);
+    return 0;
+}
+
+static const struct asset_view *file(void)
+{
+    return &stand.toy->scene.assets[0].file->view;
+}
+
+/* --- slow truth --------------------------------------------------------------------------------------------------------------- */
+
+struct spot { /* a place on the plate: where in which triangle */
+    double at_m[2], parts[3];
+    const uint32_t *corners;
+};
+
+static bool find_spot(double x_m, double y_m, struct spot *spot)
+{
+    for (uint32_t i = 0; i < file()->header->index_count; i += 3) {
+        const uint32_t *corners = &file()->indices[i];
+        const float *a = file()->positions_m[corners[0]], *b = file()->positions_m[corners[1]], *c = file()->positions_m[corners[2]];
+        double bx = (double)b[0] - a[0], by = (double)b[1] - a[1], cx = (double)c[0] - a[0], cy = (double)c[1] - a[1];
+        double px = x_m - (double)a[0], py = y_m - (double)a[1], area = bx * cy - by * cx;
+        double v = (px * cy - py * cx) / area, w = (bx * py - by * px) / area;
+        if (v < 0 || w < 0 || v + w > 1)
+            continue;
+        *spot = (struct spot){ .at_m = { x_m, y_m }, .parts = { 1 - v - w, v, w }, .corners = corners };
+        return true;
+    }
+    return false;
+}
+
+static double distance_of(const struct spot *spot, int sensor, enum distance_mode mode)
+{
+    const float *along_m = file()->geodesic_m + (size_t)sensor * file()->header->vertex_count, *at = file()->sensors[sensor].surface_m;
+    double sum = 0;
+    if (mode == DISTANCE_EUCLIDEAN)
+        return hypot(spot->at_m[0] - (double)at[0], spot->at_m[1] - (double)at[1]);
+    for (int c = 0; c < 3; c++)
+        sum += spot->parts[c] * (double)along_m[spot->corners[c]];
+    return sum;
+}
+
+/* The largest distance on the asset: the toy's are straight, along the surface too. */
+static double largest_m(void)
+{
+    double most_m = 0;
+    for (int i = 0; i < SENSORS; i++)
+        for (uint32_t v = 0; v < file()->header->vertex_count; v++)
+            most_m = fmax(most_m, (double)file()->geodesic_m[(size_t)i * file()->header->vertex_count + v]);
+    return most_m;
+}
+
+struct truth {
+    double value;        /* place in the range */
+    bool no_data, a_tie; /* a tie: a pixel's worth of rounding decides */
+};
+
+static struct truth truth_at(const struct spot *spot, enum interpolation interpolation, enum distance_mode mode, double radius_m)
+{
+    double sum = 0, weights = 0, near_m = INFINITY, lost_m = INFINITY;
+    for (int i = 0; i < SENSORS; i++) {
+        const struct reading *reading = &stand.snapshot->readings[i];
+        const struct plant_tag *tag = &stand.toy->plant.tags[i];
+        double d = distance_of(spot, i, mode), near = fmax(0, 1 - d / radius_m), place = reading->value / 100;
+        bool bad = quality_is_bad(reading->quality);
+        *(bad ? &lost_m : &near_m) = fmin(bad ? lost_m : near_m, d);
+        if (bad)
+            continue;
+        double weight = interpolation == INTERPOLATION_PAPER ? exp(near * tag->strength) : tag->strength / (d * d);
+        sum += place * weight * (interpolation == INTERPOLATION_PAPER ? pow(near, tag->decay) : 1);
+        weights += weight;
+    }
+    return (struct truth){ sum / weights, lost_m < near_m, fabs(lost_m - near_m) < 1e-4 };
+}
+
+/* --- against what is drawn -------------------------------------------------------------------------------------------------- */
+
+static void look_down(struct view *view, enum interpolation interpolation, enum distance_mode distance)
+{
+    view_default(&stand.toy->scene, SIDE_PX, SIDE_PX, view);
+    view->camera = (struct camera){ .eye_m = { SIDE_M / 2, SIDE_M / 2, 10 }, .target_m = { SIDE_M / 2, SIDE_M / 2, 0 }, .up = { 0, 1, 0 } };
+    view->camera.height_m = SIDE_M;
+    view->look = LOOK_FLAT;
+    view->tier = TIER_MOVING;
+    view->field.interpolation = interpolation;
+    view->field.distance = distance;
+}
+
+struct tally {
+    double worst;
+    int most_off, flags_differ, no_data; /* most_off: colours of the map */
+};
+
+static void compare(const struct view *view, const float (*numbers)[4], const struct frame *frame, double radius_m, struct tally *tally)
+{
+    int x = (int)between(0, SIDE_PX), y = (int)between(0, SIDE_PX);
+    double metre = SIDE_M / SIDE_PX;
+    struct spot spot = { 0 };
+    assert_true(find_spot((x + 0.5) * metre, (SIDE_PX - y - 0.5) * metre, &spot));
+    struct truth truth = truth_at(&spot, view->field.interpolation, view->field.distance, radius_m);
+    const float *number = numbers[y * SIDE_PX + x];
+    if (truth.a_tie)
+        return;
+    tally->flags_differ += (number[1] > 0.5f) != truth.no_data;
+    tally->no_data += truth.no_data;
+    tally->worst = fmax(tally->worst, fabs((double)number[0] - truth.value));
+    if (truth.no_data)
+        return;
+    int off = map_colors_off(colormap_at((size_t)view->colormap), frame_pixel(frame, x, y), truth.value);
+    assert_true(off >= 0);
+    tally->most_off = off > tally->most_off ? off : tally->most_off;
+}
+
+static void test_more_than_512_sensors(void **state)
+{
+    (void)state;
+    double radius_m = largest_m();
+    float(*numbers)[4] = mem_array((size_t)SIDE_PX * SIDE_PX, sizeof(*numbers));
+    for (int way = 0; way < 4; way++) {
+        struct view view;
+        struct tally tally = { 0 };
+        look_down(&view, way & 1 ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD, way & 2 ? DISTANCE_EUCLIDEAN : DISTANCE_GEODESIC);
+        assert_true(renderer_measure(stand.renderer, &view, stand.snapshot, true, numbers));
+        struct frame *frame = stand_draw(&stand, &view);
+        for (int i = 0; i < SAMPLES; i++)
+            compare(&view, (const float(*)[4])numbers, frame, radius_m, &tally);
+        print_message("# %s, %s: worst %.6f, of colours %d; no data %d, other flags %d\n", way & 1 ? "paper" : "shepard",
+                      way & 2 ? "euclidean" : "geodesic", tally.worst, tally.most_off, tally.no_data, tally.flags_differ);
+        assert_int_equal(tally.flags_differ, 0);
+        assert_true(tally.no_data > 0 && tally.no_data < SAMPLES / 4);
+        assert_true(tally.worst <= TOLERANCE / 10 && tally.most_off <= 1);
+        frame_unref(&frame);
+    }
+    mem_free(numbers);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = { cmocka_unit_test_setup_teardown(test_more_than_512_sensors, set_up, tear_down) };
+    struct cad_random random;
+    cad_random_start(&random);
+    random_state = random.state;
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    if (!rig_init(&rig, "per_fragment_test"))
+        return 0;
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    rig_finish(&rig);
+    return failed;
+}
