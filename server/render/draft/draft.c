@@ -14,6 +14,9 @@ static const size_t KEPT_BYTES = (size_t)128 << 20; /* some five pictures of 192
 static const struct draft_kernels *choose_kernels(void)
 {
 #ifdef __x86_64__
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw") &&
+        __builtin_cpu_supports("avx512dq"))
+        return &draft_kernels_widest;
     if (__builtin_cpu_supports("avx2"))
         return &draft_kernels_wide;
 #endif

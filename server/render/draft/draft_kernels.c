@@ -1,14 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The loops, once for any machine, once for wider registers. */
+/* The loops of one set. */
 #include "render/draft/draft_kernels.h"
 
-#ifdef DRAFT_WIDE
-#define TABLE draft_kernels_wide
-#else
-#define TABLE draft_kernels_plain
-#endif
-
-const struct draft_kernels TABLE = {
+const struct draft_kernels draft_kernels_of_set = {
     .place_part = draft_place_part,
     .carry_part = draft_carry_part,
     .find_faces = draft_find_faces,

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The loops that take most of a draft's time. Their files are compiled once for any machine and, for x86, once more for those with AVX2
-   (Makefile): names end in _wide there. The same bits come out. Private to draft*.c. */
+   and once for those with AVX-512 (Makefile): names end in _plain, _wide and _widest. The same bits come out. Private to draft*.c. */
 #ifndef RENDER_DRAFT_KERNELS_H
 #define RENDER_DRAFT_KERNELS_H
 #include "render/draft/draft_tile.h"
@@ -21,16 +21,20 @@ struct draft_kernels {
     /* From marks; begins at a whole STRETCH. */
     void (*color)(const struct draft *draft, const struct draft_rect *rect);
 };
-extern const struct draft_kernels draft_kernels_plain, draft_kernels_wide; /* wide: on x86 only */
+extern const struct draft_kernels draft_kernels_plain, draft_kernels_wide, draft_kernels_widest; /* but for plain: on x86 only */
 
-#ifdef DRAFT_WIDE
-#define draft_place_part draft_place_part_wide
-#define draft_carry_part draft_carry_part_wide
-#define draft_find_faces draft_find_faces_wide
-#define draft_raster_faces draft_raster_faces_wide
-#define draft_look_again draft_look_again_wide
-#define draft_color draft_color_wide
+#ifndef DRAFT_SET /* which of them is compiled */
+#define DRAFT_SET _plain
 #endif
+#define DRAFT_JOIN(name, set) name##set
+#define DRAFT_IN_SET(name, set) DRAFT_JOIN(name, set)
+#define draft_kernels_of_set DRAFT_IN_SET(draft_kernels, DRAFT_SET)
+#define draft_place_part DRAFT_IN_SET(draft_place_part, DRAFT_SET)
+#define draft_carry_part DRAFT_IN_SET(draft_carry_part, DRAFT_SET)
+#define draft_find_faces DRAFT_IN_SET(draft_find_faces, DRAFT_SET)
+#define draft_raster_faces DRAFT_IN_SET(draft_raster_faces, DRAFT_SET)
+#define draft_look_again DRAFT_IN_SET(draft_look_again, DRAFT_SET)
+#define draft_color DRAFT_IN_SET(draft_color, DRAFT_SET)
 void draft_place_part(struct draft_tile *tile, const struct draft_mesh *mesh, const struct draft_parts *parts,
                       const struct draft_part *part);
 void draft_carry_part(struct draft_tile *tile, const struct draft_mesh *mesh, const struct draft_parts *parts,

@@ -25,14 +25,24 @@ typedef int32_t quad_int __attribute__((vector_size(16), aligned(4)));
 typedef uint8_t lanes_bytes __attribute__((vector_size(8)));
 typedef int64_t lanes_pair __attribute__((vector_size(16)));
 
-DRAFT_INLINE lanes lanes_choose(lanes_int mask, lanes a, lanes b)
-{
-    return (lanes)((mask & (lanes_int)a) | (~mask & (lanes_int)b));
-}
+#ifdef __AVX512VL__
+#define LANES_CHOOSE_AT_ONCE 1 /* one instruction does it */
+#else
+#define LANES_CHOOSE_AT_ONCE 0
+#endif
 
 DRAFT_INLINE lanes_int lanes_choose_int(lanes_int mask, lanes_int a, lanes_int b)
 {
+#if LANES_CHOOSE_AT_ONCE
+    return (lanes_int)_mm256_ternarylogic_epi32((__m256i)mask, (__m256i)a, (__m256i)b, 0xca);
+#else
     return (mask & a) | (~mask & b);
+#endif
+}
+
+DRAFT_INLINE lanes lanes_choose(lanes_int mask, lanes a, lanes b)
+{
+    return (lanes)lanes_choose_int(mask, (lanes_int)a, (lanes_int)b);
 }
 
 /* a < b ? a : b */
