@@ -128,6 +128,7 @@ static void shape_of(const struct scene_asset *asset, struct mover_shape *shape)
     const struct asset_level *finest = &view->levels[0];
     const struct asset_primitive *first = &view->primitives[finest->first_primitive], *last = first + finest->primitive_count - 1;
     *shape = (struct mover_shape){ .positions_m = view->positions_m,
+                                   .normals = view->normals,
                                    .vertex_count = view->header->vertex_count,
                                    .triangles = view->indices + first->first_index,
                                    .triangle_count = (last->first_index + last->index_count - first->first_index) / 3,

@@ -2,6 +2,7 @@
 /* Finding vertices on a surface by their place. */
 #include "surface/anchors.h"
 
+#include <math.h>
 #include <string.h>
 #include <xxhash.h>
 
@@ -64,12 +65,18 @@ struct job {
     struct table table;
     const float (*positions_m)[3];
     double (*normals)[3]; /* of no certain length */
+    char *is_off;         /* no triangle of the finest level has it: it may be nearer to another side than to its own */
 };
 
-static bool find_normals(struct job *job, const uint32_t *triangles, size_t triangle_count)
+static bool find_normals(struct job *job, const float (*normals)[3], const uint32_t *triangles, size_t triangle_count)
 {
-    job->normals = mem_try_array(job->anchors->count, sizeof(*job->normals));
-    for (size_t t = 0; job->normals && t < triangle_count; t++) {
+    const size_t count = job->anchors->count;
+    job->normals = mem_try_array(count, sizeof(*job->normals));
+    job->is_off = mem_try_array(count, 1);
+    if (!job->normals || !job->is_off)
+        return false;
+    memset(job->is_off, 1, count);
+    for (size_t t = 0; t < triangle_count; t++) {
         const uint32_t *v = triangles + 3 * t;
         double p[3][3], ab[3], ac[3], n[3];
         for (int i = 0; i < 3; i++)
@@ -78,18 +85,24 @@ static bool find_normals(struct job *job, const uint32_t *triangles, size_t tria
         vec_sub(p[1], p[0], ab);
         vec_sub(p[2], p[0], ac);
         vec_cross(ab, ac, n);
-        for (int i = 0; i < 3; i++)
+        for (int i = 0; i < 3; i++) {
+            job->is_off[v[i]] = 0;
             for (int axis = 0; axis < 3; axis++)
                 job->normals[v[i]][axis] += n[axis];
+        }
     }
-    return job->normals != NULL;
+    for (size_t v = 0; v < count && normals; v++)
+        for (int axis = 0; axis < 3 && job->is_off[v]; axis++)
+            job->normals[v][axis] = (double)normals[v][axis];
+    return true;
 }
 
-static void find_spot(const struct surface *surface, const double place_m[3], const double normal[3], struct surface_spot *spot)
+static void find_spot(const struct surface *surface, const double place_m[3], const double normal[3], bool is_off,
+                      struct surface_spot *spot)
 {
     struct bvh_place at;
     const struct surface_facing facing = { &surface->visible, normal };
-    bvh_nearest(surface->bvh, place_m, ON_SURFACE * surface->edge_m, surface_faces, &facing, &at);
+    bvh_nearest(surface->bvh, place_m, is_off ? INFINITY : ON_SURFACE * surface->edge_m, surface_faces, &facing, &at);
     if (at.tri == TRIMESH_NONE) {
         surface_find_spot(surface, place_m, normal, spot);
         return;
@@ -108,17 +121,17 @@ static void find_some(void *arg, size_t begin, size_t end)
         struct anchor *anchor = &job->anchors->at[v];
         anchor->point = job->table.points[slot_of(&job->table, place_m)];
         if (anchor->point == TRIMESH_NONE)
-            find_spot(job->anchors->surface, place_m, job->normals[v], &anchor->spot);
+            find_spot(job->anchors->surface, place_m, job->normals[v], job->is_off[v], &anchor->spot);
     }
 }
 
-struct anchors *anchors_create(const struct surface *surface, const float (*positions_m)[3], size_t count, const uint32_t *triangles,
-                               size_t triangle_count)
+struct anchors *anchors_create(const struct surface *surface, const float (*positions_m)[3], const float (*normals)[3], size_t count,
+                               const uint32_t *triangles, size_t triangle_count)
 {
     struct anchors *anchors = mem_new(sizeof(*anchors));
     struct job job = { .anchors = anchors, .positions_m = positions_m };
     *anchors = (struct anchors){ surface, count, mem_try_array(count, sizeof(*anchors->at)) };
-    if (!anchors->at || !table_init(&job.table, &surface->mesh) || !find_normals(&job, triangles, triangle_count)) {
+    if (!anchors->at || !table_init(&job.table, &surface->mesh) || !find_normals(&job, normals, triangles, triangle_count)) {
         log_err(surface->log, "surface of %zu points: out of memory for %zu vertices on it", surface->mesh.point_count, count);
         anchors_destroy(&anchors);
     } else if (surface->workers) {
@@ -128,6 +141,7 @@ struct anchors *anchors_create(const struct surface *surface, const float (*posi
     }
     mem_free(job.table.points);
     mem_free(job.normals);
+    mem_free(job.is_off);
     return anchors;
 }
 

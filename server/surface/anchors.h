@@ -8,10 +8,11 @@
 struct anchors;
 
 /* Each at the surface's point of the same place; else at the nearest spot that is seen, and where faces lie on each other, on that which
-   looks the same way as its own triangles. surface must outlive it, the others need not. NULL: out of memory, logged. Spread over the
-   surface's workers. */
-struct anchors *anchors_create(const struct surface *surface, const float (*positions_m)[3], size_t count, const uint32_t *triangles,
-                               size_t triangle_count);
+   looks the same way as its own triangles. triangles: the finest level's; vertices that only coarser ones have may stand farther off than
+   a wall is thick, and are on the nearest face that looks along their normal (normals may be NULL: on the nearest face). surface must
+   outlive it, the others need not. NULL: out of memory, logged. Spread over the surface's workers. */
+struct anchors *anchors_create(const struct surface *surface, const float (*positions_m)[3], const float (*normals)[3], size_t count,
+                               const uint32_t *triangles, size_t triangle_count);
 void anchors_destroy(struct anchors **anchors); /* &NULL is fine; leaves NULL */
 
 /* out[vertex]: metres along the surface from the place nearest to point_m. False: out of memory, logged. */

@@ -198,8 +198,8 @@ static struct surface *read_surface(const struct mover *mover, struct anchors **
         surface = surface_unpack(&(struct unpack){ kept.bytes, kept.count, false }, mover->log, mover->workers);
     kept_close(&kept);
     if (surface)
-        *anchors = anchors_create(surface, mover->shape.positions_m, mover->shape.vertex_count, mover->shape.triangles,
-                                  mover->shape.triangle_count);
+        *anchors = anchors_create(surface, mover->shape.positions_m, mover->shape.normals, mover->shape.vertex_count,
+                                  mover->shape.triangles, mover->shape.triangle_count);
     if (surface && !*anchors)
         surface_destroy(&surface);
     return surface;

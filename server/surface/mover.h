@@ -14,6 +14,7 @@ struct mover;
 
 struct mover_shape { /* an asset's finest level; what it points to must outlive the mover */
     const float (*positions_m)[3];
+    const float (*normals)[3]; /* by which vertices that only coarser levels have are told which side they are on; NULL: they are not */
     size_t vertex_count;
     const uint32_t *triangles; /* 3 each */
     size_t triangle_count;

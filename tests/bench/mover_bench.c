@@ -87,6 +87,7 @@ static struct mover *create_mover(struct log *log, struct workers *workers, cons
         char *path = mem_printf(PREPARED "/%s", entry->surface);
         mover = mover_create(log, workers,
                              &(struct mover_shape){ .positions_m = view->positions_m,
+                                                    .normals = view->normals,
                                                     .vertex_count = view->header->vertex_count,
                                                     .triangles = view->indices + first->first_index,
                                                     .triangle_count = (last->first_index + last->index_count - first->first_index) / 3,

@@ -104,6 +104,7 @@ static struct mover_shape finest_of(const struct asset *asset)
     const struct asset_level *finest = &view->levels[0];
     const struct asset_primitive *first = &view->primitives[finest->first_primitive], *last = first + finest->primitive_count - 1;
     return (struct mover_shape){ .positions_m = view->positions_m,
+                                 .normals = view->normals,
                                  .vertex_count = finest->vertex_count,
                                  .triangles = view->indices + first->first_index,
                                  .triangle_count = (last->first_index + last->index_count - first->first_index) / 3 };
