@@ -7,6 +7,7 @@
 #include "base/mem.h"
 #include "surface/attach.h"
 #include "surface/bvh.h"
+#include "surface/sight.h"
 #include "surface/stitch.h"
 #include "surface/stitch_impl.h"
 #include "surface/vec.h"
@@ -148,8 +149,12 @@ static void find_touch(const struct contacts *c, const double point_m[3], struct
         bvh_nearest(c->bvh, point_m, c->reach_m, other_body_as_far, c, place);
 }
 
+/* What is nearer to a thin part than half its thickness touches it, from whichever side; what is farther must be looked at. That is a gap
+   to be bridged, not one in which anything were hidden: rims and the lines of crossing faces go by the reach alone. */
 static void find_touches(struct contacts *c)
 {
+    struct sight sight;
+    sight_init(&sight, c->mesh, c->parts, c->body, c->bvh);
     char *seen = mem_array(c->mesh->point_count, 1);
     memset(c->touched, 0xff, c->mesh->point_count * sizeof(*c->touched));
     for (uint32_t t = 0; t < c->mesh->tri_count; t++)
@@ -162,12 +167,14 @@ static void find_touches(struct contacts *c)
             c->own = c->body[t];
             c->reach_m = reach_of(c, t);
             find_touch(c, c->mesh->points[p], &place);
-            if (place.tri == TRIMESH_NONE)
+            if (place.tri != TRIMESH_NONE)
+                c->touched[p] = c->body[place.tri];
+            else if (!sight_find(&sight, p, c->own, &place))
                 continue;
-            c->touched[p] = c->body[place.tri];
             if (!stitch_tri_has(c->mesh, place.tri, p))
                 set_into_face(c, p, place.tri, place.weights, place.distance_m);
         }
+    sight_finish(&sight);
     mem_free(seen);
 }
 

@@ -199,6 +199,10 @@ void parts_init(struct parts *parts, const struct trimesh *mesh, const uint32_t 
         parts->reach_m[p] = tolerance_m;
     if (is_chosen)
         limit_reach(parts, tolerance_m);
+    parts->tolerance_m = tolerance_m;
+    parts->side_of_source = mem_array(source_count, 1);
+    for (size_t t = 0; t < mesh->tri_count; t++)
+        parts->side_of_source[mesh->tri_source[t]] = parts->side[t];
     mem_free(f.uses);
     mem_free(f.edge);
     mem_free(f.patch);
@@ -212,6 +216,7 @@ void parts_finish(struct parts *parts)
     mem_free(parts->side);
     mem_free(parts->of_source);
     mem_free(parts->body_of_source);
+    mem_free(parts->side_of_source);
     mem_free(parts->closed);
     mem_free(parts->tangled);
     mem_free(parts->crossed);

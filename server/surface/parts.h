@@ -12,17 +12,19 @@ struct parts {
     uint32_t *of_tri;                     /* of the solid's triangles: part */
     signed char *side;                    /* likewise: +1 or -1, by which each patch faces the same way throughout; 0: it bounds nothing */
     uint32_t *of_source, *body_of_source; /* of the model's triangles: part; body, mostly the part */
+    signed char *side_of_source;          /* likewise: side */
     char *closed;                         /* of each part: its open edges are short against its size */
     char *tangled;                        /* likewise: it has edges with three faces or more, or passes through itself */
     char *crossed;                        /* likewise: it passes through itself; set by stitch_parts */
     char *thin;                           /* likewise: it is closed, and its reach is less than the tolerance */
     double *reach_m;                      /* likewise: what is nearer touches it */
+    double tolerance_m;                   /* the longest reach */
     size_t count;
 };
 
 /* mesh: the model's triangles (source_tris of them), welded, seams closed; vertex_point[vertex of the model] = point. tolerance_m is every
    part's reach; if it is the program's choice, that of a closed part is at most half of its thickness, or what touches a thin plate's one
-   side would touch its other side too. */
+   side would touch its other side too; beyond that it is joined to what it looks at (sight.h). */
 void parts_init(struct parts *parts, const struct trimesh *mesh, const uint32_t *source_tris, size_t source_count,
                 const uint32_t *vertex_point, double tolerance_m, bool is_chosen);
 void parts_finish(struct parts *parts);

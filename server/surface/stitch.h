@@ -26,7 +26,8 @@ void stitch_seams(struct trimesh *mesh, double tolerance_m, uint32_t *target, st
 
 /* Contacts between parts: where an edge passes through a face, also of its own part (parts->crossed, tangled), a point is set into both,
    and both are cut along the line where two faces cross;
-   where a point lies within both parts' reach of another body's surface, it is set into that; where the rim of a face that lies on another
+   where a point lies within both parts' reach of another body's surface, or within the tolerance and both look at each other (sight.h), it
+   is set into that; where the rim of a face that lies on another
    part crosses an edge there, a point is set into both edges. */
 void stitch_parts(struct trimesh *mesh, struct parts *parts, uint32_t *target, struct stitch_report *report);
 
