@@ -82,6 +82,13 @@ struct build {
     struct asset_level file[LEVELS_MAX]; /* the levels as the file has them */
     struct text parts;                   /* of a stock, unless there is one */
     struct rows distances;               /* of the vertices, as they come to be numbered */
+    struct clusters_making *making[LEVELS_MAX];
+    size_t making_count;
+    bool keeps; /* what splitting found out */
+    struct split_kept kept;
+    struct spots spots;
+    struct build_report stock_report;
+    struct workers_task *keeping; /* writes what is kept for the next time */
     void (*tasks[2])(struct build *build); /* side by side */
     bool failed[2];
     char *why;
@@ -125,43 +132,56 @@ static void find_distances(struct build *build)
 
 /* --- and so do splitting and the check ----------------------------------------------------------------------------------------- */
 
+/* One level while the next one is split: meshoptimizer works on one core. */
+static void begin_clusters(void *arg, const struct level *level)
+{
+    struct build *build = arg;
+    const struct geometry *g = &build->geometry;
+    build->making[build->making_count++] =
+        clusters_begin(build->workers, level, (const float(*)[3])g->positions_m, g->vertex_count);
+}
+
+/* Before levels are put together. */
+static void end_clusters(struct build *build, struct clusters *clusters)
+{
+    uint32_t first_index = 0;
+    for (size_t l = 0; l < build->making_count; l++) {
+        clusters_end(&build->making[l], first_index, clusters);
+        first_index += build->levels.at[l].index_count;
+    }
+    build->making_count = 0;
+}
+
 static void split(struct build *build)
 {
     const struct build_input *input = build->input;
     struct measured *measured = &build->measured;
     struct straight straight;
-    struct split_kept kept = { 0 };
-    struct spots spots;
     int64_t since_ns = clock_mono_ns();
     float(*places)[3] = mem_array(input->sensor_count, sizeof(*places));
     for (size_t i = 0; i < input->sensor_count; i++)
         memcpy(places[i], measured->sensors[i].surface_m, sizeof(*places));
     straight_init(&straight, input->plant, input->sensors, input->sensor_count, (const float(*)[3])places);
-    bool keep = input->folder && build->geometry.index_count / 3 >= STOCK_TRIANGLES;
-    if (keep)
-        spots_open(&spots, input->folder, input->stock_key);
-    if (keep)
-        split_kept_open(&kept, input->folder, input->columns_key, &straight);
+    build->keeps = input->folder && build->geometry.index_count / 3 >= STOCK_TRIANGLES;
+    if (build->keeps) {
+        spots_open(&build->spots, input->folder, input->stock_key);
+        split_kept_open(&build->kept, input->folder, input->columns_key, &straight);
+    }
     build->failed[0] = !split_levels(&build->levels, &build->geometry,
                                      &(struct split_input){ .straight = &straight,
                                                             .surface = measured->surface,
                                                             .field = &measured->field,
                                                             .sensors = measured->sensors,
                                                             .workers = build->workers,
-                                                            .kept = &kept,
-                                                            .spots = keep ? &spots : NULL },
+                                                            .kept = &build->kept,
+                                                            .spots = build->keeps ? &build->spots : NULL,
+                                                            .level_done = begin_clusters,
+                                                            .arg = build },
                                      &build->distances);
     if (build->failed[0])
         wrong(build->why, "out of memory for the levels of %u vertices", build->geometry.vertex_count);
-    if (keep && !build->failed[0]) {
-        split_kept_write(&kept, input->folder, input->columns_key);
-        spots_write(&spots, input->folder, input->stock_key);
-    }
-    if (keep)
-        spots_close(&spots);
-    build->output->report.split_measured = kept.measured_count;
-    build->output->report.split_kept = kept.kept_count;
-    split_kept_close(&kept);
+    build->output->report.split_measured = build->kept.measured_count;
+    build->output->report.split_kept = build->kept.kept_count;
     straight_finish(&straight);
     mem_free(places);
     build->output->report.split_s = seconds_since(&since_ns);
@@ -216,7 +236,7 @@ static bool write_surface(const struct build *build)
 }
 
 /* If it cannot be written, the next time takes longer; that is all. */
-static void write_stock(struct build *build)
+static void write_stock(const struct build *build)
 {
     const struct build_input *input = build->input;
     bool any_new = !input->stock;
@@ -227,8 +247,19 @@ static void write_stock(struct build *build)
     if (size && !input->stock && !write_surface(build))
         size = 0;
     if (any_new && size)
-        stock_write(input->folder, input->stock_key, parts, size, &build->output->report, nodes, count);
+        stock_write(input->folder, input->stock_key, parts, size, &build->stock_report, nodes, count);
     mem_free(nodes);
+}
+
+static void write_kept(void *arg)
+{
+    const struct build *build = arg;
+    const struct build_input *input = build->input;
+    if (build->keeps) {
+        split_kept_write(&build->kept, input->folder, input->columns_key);
+        spots_write(&build->spots, input->folder, input->stock_key);
+    }
+    write_stock(build);
 }
 
 /* Levels first, then each is split; so a level has no more vertices than it needs. */
@@ -321,23 +352,23 @@ static bool lay_out(struct build *build, const struct clusters *clusters)
 static bool build_file(struct build *build)
 {
     const struct build_input *input = build->input;
-    struct geometry *g = &build->geometry;
     struct clusters clusters = { 0 };
     bool any = input->sensor_count > 0;
-    uint32_t own = g->vertex_count;
+    uint32_t own = build->geometry.vertex_count;
     if (!run_both(build, input->stock ? NULL : make_levels, any ? find_distances : NULL))
         return false;
     if (any) {
         pack_parts(build);
         if (!run_both(build, split, input->stock ? NULL : check))
             return false;
-        write_stock(build);
+        build->stock_report = build->output->report;
+        build->keeping = workers_begin(build->workers, write_kept, build);
         surface_field_finish(&build->measured.field); /* it is large */
     }
-    if (!put_in_order(build, own))
-        return false;
-    clusters_make(&clusters, g, build->workers);
-    bool good = lay_out(build, &clusters);
+    for (size_t l = 0; l < build->levels.count && !any; l++)
+        begin_clusters(build, &build->levels.at[l]);
+    end_clusters(build, &clusters);
+    bool good = put_in_order(build, own) && lay_out(build, &clusters);
     clusters_finish(&clusters);
     return good;
 }
@@ -379,7 +410,14 @@ bool build_asset(struct log *log, struct workers *workers, const struct build_in
 {
     struct build build = { .log = log, .workers = workers, .input = input, .output = output, .why = why };
     *output = (struct build_output){ .missing_node = -1 };
+    struct clusters left = { 0 };
     bool good = begin(&build) && build_file(&build);
+    workers_end(&build.keeping);
+    end_clusters(&build, &left);
+    clusters_finish(&left);
+    split_kept_close(&build.kept);
+    if (build.keeps)
+        spots_close(&build.spots);
     measured_finish(&build.measured);
     levels_finish(&build.levels);
     geometry_finish(&build.geometry);

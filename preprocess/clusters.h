@@ -3,17 +3,23 @@
 #ifndef PREPROCESS_CLUSTERS_H
 #define PREPROCESS_CLUSTERS_H
 #include "base/workers.h"
-#include "preprocess/geometry.h"
+#include "preprocess/levels.h"
 
 #define CLUSTERS_MAX_TRIANGLES 256 /* in one */
 
 struct clusters {
     struct asset_cluster *at; /* primitive by primitive */
     uint32_t count;
+    size_t capacity;
 };
 
-/* Brings each primitive's indices into the order of its clusters, good for a vertex cache within each. workers may be NULL. */
-void clusters_make(struct clusters *clusters, struct geometry *geometry, struct workers *workers);
+/* Begins to cut a level's primitives on an idle worker, and to bring the indices of each into the order of its clusters, good for a vertex
+   cache within each. The level's arrays must stay where they are until clusters_end; positions are copied. workers may be NULL. */
+struct clusters_making;
+struct clusters_making *clusters_begin(struct workers *workers, const struct level *level, const float (*positions_m)[3],
+                                       uint32_t vertex_count);
+/* Adds them to those of finer levels, whose indices come first: so many. Leaves NULL. */
+void clusters_end(struct clusters_making **making, uint32_t first_index, struct clusters *clusters);
 void clusters_finish(struct clusters *clusters);
 
 #endif

@@ -429,6 +429,8 @@ static void split_all(struct split *split, struct levels *levels)
         }
         finer_tris = split->mesh.tri_count;
         levels->at[kept++] = *level;
+        if (split->in->level_done)
+            split->in->level_done(split->in->arg, &levels->at[kept - 1]);
     }
     levels->given_up = levels->count - kept;
     levels->count = kept;

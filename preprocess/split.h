@@ -31,6 +31,9 @@ struct split_input {
     struct workers *workers;           /* or NULL */
     struct split_kept *kept;           /* from one time to the next; a zeroed one, or NULL: nothing is */
     struct spots *spots;               /* or NULL */
+    /* Or NULL. Of a level that will not be changed any more; where it begins in `levels` may. */
+    void (*level_done)(void *arg, const struct level *level);
+    void *arg;
 };
 
 /* Levels may be fewer afterwards. New vertices come after the geometry's; both faces at an edge are cut at the same vertex, so a level

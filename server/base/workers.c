@@ -148,6 +148,28 @@ static void loop_help(void *arg)
     loop_unref(arg);
 }
 
+/* All users but the caller are workers. */
+static struct loop *loop_begin(struct workers *workers, const struct loop *like)
+{
+    struct loop *loop = mem_new(sizeof(*loop));
+    *loop = *like;
+    pthread_mutex_init(&loop->lock, NULL);
+    pthread_cond_init(&loop->done, NULL);
+    for (int i = 1; i < like->users; i++)
+        workers_submit(workers, loop_help, loop);
+    return loop;
+}
+
+static void loop_end(struct loop *loop)
+{
+    loop_work(loop);
+    pthread_mutex_lock(&loop->lock);
+    while (loop->finished < loop->count)
+        pthread_cond_wait(&loop->done, &loop->lock);
+    pthread_mutex_unlock(&loop->lock);
+    loop_unref(loop);
+}
+
 void workers_for(struct workers *workers, size_t count, size_t grain, void (*body)(void *arg, size_t begin, size_t end), void *arg)
 {
     if (count == 0)
@@ -160,16 +182,36 @@ void workers_for(struct workers *workers, size_t count, size_t grain, void (*bod
     }
     size_t pieces = (count + grain - 1) / grain;
     int helpers = pieces - 1 < (size_t)(workers->count - 1) ? (int)(pieces - 1) : workers->count - 1;
-    struct loop *loop = mem_new(sizeof(*loop));
-    *loop = (struct loop){ .count = count, .grain = grain, .body = body, .arg = arg, .users = helpers + 1 };
-    pthread_mutex_init(&loop->lock, NULL);
-    pthread_cond_init(&loop->done, NULL);
-    for (int i = 0; i < helpers; i++)
-        workers_submit(workers, loop_help, loop);
-    loop_work(loop);
-    pthread_mutex_lock(&loop->lock);
-    while (loop->finished < loop->count)
-        pthread_cond_wait(&loop->done, &loop->lock);
-    pthread_mutex_unlock(&loop->lock);
-    loop_unref(loop);
+    loop_end(loop_begin(workers, &(struct loop){ .count = count, .grain = grain, .body = body, .arg = arg, .users = helpers + 1 }));
+}
+
+struct workers_task {
+    struct loop *loop;
+    void (*body)(void *arg);
+    void *arg;
+};
+
+static void run_task(void *arg, size_t begin, size_t end)
+{
+    const struct workers_task *task = arg;
+    (void)begin;
+    (void)end;
+    task->body(task->arg);
+}
+
+struct workers_task *workers_begin(struct workers *workers, void (*body)(void *arg), void *arg)
+{
+    struct workers_task *task = mem_new(sizeof(*task));
+    *task = (struct workers_task){ .body = body, .arg = arg };
+    task->loop = loop_begin(workers, &(struct loop){ .count = 1, .grain = 1, .body = run_task, .arg = task, .users = workers ? 2 : 1 });
+    return task;
+}
+
+void workers_end(struct workers_task **task)
+{
+    if (!*task)
+        return;
+    loop_end((*task)->loop);
+    mem_free(*task);
+    *task = NULL;
 }

@@ -17,4 +17,9 @@ void workers_submit(struct workers *workers, void (*job)(void *arg), void *arg);
    all is done. May be called from a job. */
 void workers_for(struct workers *workers, size_t count, size_t grain, void (*body)(void *arg, size_t begin, size_t end), void *arg);
 
+/* Runs body(arg) on an idle worker beside what the caller does, or else in workers_end. workers may be NULL. May be called from a job. */
+struct workers_task;
+struct workers_task *workers_begin(struct workers *workers, void (*body)(void *arg), void *arg);
+void workers_end(struct workers_task **task); /* returns when it is done. &NULL is fine; leaves NULL */
+
 #endif

@@ -122,6 +122,47 @@ static void loops_inside_of_jobs_end(void **state)
     mem_free(visits);
 }
 
+struct waiter {
+    struct workers *workers;
+    _Atomic int *done, *wrong;
+};
+
+/* Every worker waits for tasks that none is left to begin. */
+static void begin_and_end(void *arg)
+{
+    const struct waiter *waiter = arg;
+    struct workers_task *tasks[3];
+    for (int i = 0; i < 3; i++)
+        tasks[i] = workers_begin(waiter->workers, count_one, waiter->done);
+    for (int i = 0; i < 3; i++) {
+        workers_end(&tasks[i]);
+        if (tasks[i] || *waiter->done <= i)
+            atomic_fetch_add(waiter->wrong, 1);
+    }
+}
+
+static void a_task_is_done_when_it_has_ended(void **state)
+{
+    (void)state;
+    for (int threads = 0; threads <= 3; threads++) {
+        struct workers *workers = threads ? workers_create(threads) : NULL;
+        _Atomic int done[20] = { 0 }, wrong = 0;
+        struct waiter waiters[20];
+        for (int i = 0; i < 20; i++) {
+            waiters[i] = (struct waiter){ workers, &done[i], &wrong };
+            if (workers)
+                workers_submit(workers, begin_and_end, &waiters[i]);
+            else
+                begin_and_end(&waiters[i]);
+        }
+        workers_destroy(&workers);
+        assert_int_equal(wrong, 0);
+        for (int i = 0; i < 20; i++)
+            assert_int_equal(done[i], 3);
+    }
+    workers_end(&(struct workers_task *){ NULL });
+}
+
 int main(void)
 {
     cmocka_set_message_output(CM_OUTPUT_TAP);
@@ -130,6 +171,7 @@ int main(void)
         cmocka_unit_test(one_worker_keeps_the_order),
         cmocka_unit_test(a_loop_covers_its_range_once),
         cmocka_unit_test(loops_inside_of_jobs_end),
+        cmocka_unit_test(a_task_is_done_when_it_has_ended),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
