@@ -89,6 +89,7 @@ struct build {
     struct spots spots;
     struct build_report stock_report;
     struct workers_task *keeping; /* writes what is kept for the next time */
+    struct workers_task *sending; /* the asset's file to the disk */
     void (*tasks[2])(struct build *build); /* side by side */
     bool failed[2];
     char *why;
@@ -287,10 +288,17 @@ static bool put_in_order(struct build *build, uint32_t own)
     return good || wrong(build->why, "out of memory for the levels of %u vertices", g->vertex_count);
 }
 
-static void write_distances(const void *arg, float *geodesic_m)
+static void send_file(void *arg)
 {
-    const struct build *build = arg;
+    folder_draft_send(arg);
+}
+
+/* They are most of the file: while it is summed up and checked, it goes to the disk. */
+static void write_distances(void *arg, float *geodesic_m)
+{
+    struct build *build = arg;
     rows_turn(&build->distances, build->workers, geodesic_m);
+    build->sending = workers_begin(build->workers, send_file, &build->output->file);
 }
 
 static void *make_file(void *arg, size_t bytes)
@@ -345,7 +353,7 @@ static bool lay_out(struct build *build, const struct clusters *clusters)
     void *bytes = asset_build(&parts, &size);
     if (!bytes)
         return false;
-    return asset_view_init(&output->view, bytes, size, view_why) || /* what a reader would refuse is not put in its place */
+    return asset_view_fresh(&output->view, bytes, size, view_why) || /* what a reader would refuse is not put in its place */
            wrong(build->why, "its file would be wrong: %s", view_why);
 }
 
@@ -413,6 +421,7 @@ bool build_asset(struct log *log, struct workers *workers, const struct build_in
     struct clusters left = { 0 };
     bool good = begin(&build) && build_file(&build);
     workers_end(&build.keeping);
+    workers_end(&build.sending);
     end_clusters(&build, &left);
     clusters_finish(&left);
     split_kept_close(&build.kept);

@@ -129,6 +129,11 @@ int folder_draft(struct folder_draft *draft, const char *folder, uint64_t key, s
     return -status;
 }
 
+void folder_draft_send(const struct folder_draft *draft)
+{
+    sync_file_range(draft->fd, 0, (off_t)draft->size, SYNC_FILE_RANGE_WRITE); /* where it cannot, all is written in folder_put */
+}
+
 int folder_put(struct folder_draft *draft, const char *folder, uint64_t key, const char *report)
 {
     char *path = folder_path(folder, key, ASSET), *beside = folder_path(folder, key, REPORT);

@@ -47,6 +47,8 @@ struct folder_draft {
 };
 /* 0, or -errno; the disk has room for all of it. */
 int folder_draft(struct folder_draft *draft, const char *folder, uint64_t key, size_t size);
+/* The disk begins to write what is there so far; folder_put waits for the rest. Not waited for. */
+void folder_draft_send(const struct folder_draft *draft);
 /* Writes KEY.report.json, then puts KEY.asset in its place; so where there is a file, there is its report. report may be NULL. The bytes
    are there until the draft is closed. 0 or -errno. */
 int folder_put(struct folder_draft *draft, const char *folder, uint64_t key, const char *report);

@@ -164,15 +164,13 @@ void split_kept_write(const struct split_kept *kept, const char *folder, uint64_
 {
     const struct head head = { kept->sensors.length / sizeof(struct sensor), kept->found.length / sizeof(struct split_kept_finding),
                                kept->given_up, kept->changes_since };
-    struct text file = { 0 };
+    const struct text_part parts[] = { { &head, sizeof(head) },
+                                       { kept->sensors.at, kept->sensors.length },
+                                       { kept->found.at, kept->found.length } };
     if (!kept->applies)
         return;
     char *path = folder_path(folder, key, FOLDER_SPLITTING);
-    text_add_bytes(&file, &head, sizeof(head));
-    text_add_bytes(&file, kept->sensors.at, kept->sensors.length);
-    text_add_bytes(&file, kept->found.at, kept->found.length);
-    kept_write(path, MAGIC, key, file.at, file.length);
-    text_finish(&file);
+    kept_write_parts(path, MAGIC, key, parts, sizeof(parts) / sizeof(*parts));
     mem_free(path);
 }
 

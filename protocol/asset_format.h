@@ -115,6 +115,8 @@ struct asset_view {
 /* Checks everything: magic, version, size, checksum, section bounds, every index, finiteness. False: why[] says what is wrong
    (with numbers), the view is not usable. bytes must be aligned to ASSET_ALIGN. */
 bool asset_view_init(struct asset_view *view, const void *bytes, size_t size, char why[200]);
+/* Likewise, of what asset_build has just made: the checksum is taken for right. */
+bool asset_view_fresh(struct asset_view *view, const void *bytes, size_t size, char why[200]);
 
 /* The cluster's box and cone, from its indices. */
 void asset_cluster_measure(struct asset_cluster *cluster, const float (*positions_m)[3], const uint32_t *indices);
@@ -141,8 +143,8 @@ struct asset_parts {
     const uint8_t *texels;
     const struct asset_sensor *sensors;
     const float *geodesic_m;
-    void (*write_geodesic)(const void *arg, float *geodesic_m); /* instead of geodesic_m, which may be large: to where it belongs */
-    const void *write_arg;
+    void (*write_geodesic)(void *arg, float *geodesic_m); /* instead of geodesic_m, which may be large: to where it belongs */
+    void *write_arg;
     void *(*make_room)(void *arg, size_t bytes); /* for the bytes, aligned to ASSET_ALIGN; it may be a file's. NULL: aligned_alloc */
     void *room_arg;
     const char *names; /* NULL: one empty name */

@@ -7,9 +7,10 @@
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#define XXH_STATIC_LINKING_ONLY /* the hash state on the stack */
 #include <xxhash.h>
 
-#include "base/text.h"
+#include "base/mem.h"
 
 struct head {
     char magic[8];
@@ -54,12 +55,26 @@ void kept_close(struct kept *kept)
 
 int kept_write(const char *path, const char *magic, uint64_t key, const void *bytes, size_t count)
 {
-    struct head head = { .key = key, .count = count, .checksum = XXH3_64bits_withSeed(bytes, count, key) };
-    struct text file = { 0 };
+    return kept_write_parts(path, magic, key, &(struct text_part){ bytes, count }, 1);
+}
+
+/* Not put together first: there may be tens of megabytes. */
+int kept_write_parts(const char *path, const char *magic, uint64_t key, const struct text_part *parts, size_t part_count)
+{
+    struct head head = { .key = key };
+    struct text_part *all = mem_array(part_count + 1, sizeof(*all));
+    XXH3_state_t state;
+    XXH3_INITSTATE(&state);
+    XXH3_64bits_reset_withSeed(&state, key);
     memcpy(head.magic, magic, sizeof(head.magic));
-    text_add_bytes(&file, &head, sizeof(head));
-    text_add_bytes(&file, bytes, count);
-    int status = text_write_file(path, file.at, file.length);
-    text_finish(&file);
+    for (size_t i = 0; i < part_count; i++) {
+        XXH3_64bits_update(&state, parts[i].bytes, parts[i].count);
+        head.count += parts[i].count;
+        all[i + 1] = parts[i];
+    }
+    head.checksum = XXH3_64bits_digest(&state);
+    all[0] = (struct text_part){ &head, sizeof(head) };
+    int status = text_write_parts(path, all, part_count + 1);
+    mem_free(all);
     return status;
 }

@@ -95,6 +95,11 @@ error:;
 
 int text_write_file(const char *path, const void *bytes, size_t count)
 {
+    return text_write_parts(path, &(struct text_part){ bytes, count }, 1);
+}
+
+int text_write_parts(const char *path, const struct text_part *parts, size_t part_count)
+{
     int status = 0;
     char *beside = mem_printf("%s.%ld.new", path, (long)getpid());
     FILE *file = fopen(beside, "wb");
@@ -102,7 +107,10 @@ int text_write_file(const char *path, const void *bytes, size_t count)
         status = -errno;
         goto done;
     }
-    if (fwrite(bytes, 1, count, file) != count || fflush(file) != 0 || fsync(fileno(file)) != 0)
+    for (size_t i = 0; i < part_count && !status; i++)
+        if (fwrite(parts[i].bytes, 1, parts[i].count, file) != parts[i].count)
+            status = errno ? -errno : -EIO;
+    if (!status && (fflush(file) != 0 || fsync(fileno(file)) != 0))
         status = errno ? -errno : -EIO;
     if (fclose(file) != 0 && !status)
         status = -errno;
