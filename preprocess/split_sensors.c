@@ -3,12 +3,14 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/mem.h"
 #include "preprocess/split_impl.h"
 #include "surface/bvh.h"
 #include "surface/vec.h"
 
 #define ON_OF_SIZE 1e-5 /* a sensor as near to a vertex or an edge stands on it */
 #define MOST_CUTS 30    /* of edges that the other levels cut elsewhere */
+#define FEW 32          /* sensors, for which a search tree of the level is not worth making */
 
 struct hit { /* where a sensor meets a level */
     size_t tri;
@@ -20,6 +22,12 @@ static void corners_of(const struct split *split, const struct cut_tri *tri, dou
     for (int c = 0; c < 3; c++)
         for (int axis = 0; axis < 3; axis++)
             corners[c][axis] = (double)split_position(split, tri->v[c])[axis];
+}
+
+static void place_of(const struct split *split, size_t sensor, double point[3])
+{
+    for (int axis = 0; axis < 3; axis++)
+        point[axis] = (double)split->in->sensors[sensor].surface_m[axis];
 }
 
 static double try_piece(const struct split *split, size_t t, const double point[3], double best_m, struct hit *hit)
@@ -93,14 +101,12 @@ static uint32_t put_into_triangle(struct split *split, const struct hit *hit, co
 
 /* A vertex that is there, or a new one in an edge or in a triangle. An edge that another level cut elsewhere is cut there first. False: the
    part that the sensor stands on is not in this level. */
-static bool find_vertex(struct split *split, const struct bvh *bvh, const double point[3], double error_m, uint32_t *vertex)
+static bool find_vertex(struct split *split, uint32_t tri, const double point[3], double error_m, uint32_t *vertex)
 {
-    struct bvh_place place;
     struct hit hit = { 0 };
-    bvh_nearest(bvh, point, INFINITY, NULL, NULL, &place);
     for (int tries = 0; tries < MOST_CUTS; tries++) {
         float at[3];
-        if (find_piece(split, place.tri, point, &hit) > 2 * error_m + ON_OF_SIZE * split->size_m)
+        if (find_piece(split, tri, point, &hit) > 2 * error_m + ON_OF_SIZE * split->size_m)
             return false;
         for (int axis = 0; axis < 3; axis++)
             at[axis] = (float)hit.point[axis];
@@ -117,12 +123,13 @@ static bool find_vertex(struct split *split, const struct bvh *bvh, const double
     return false;
 }
 
-static void stand(struct split *split, const struct bvh *bvh, size_t sensor, double error_m)
+static void stand(struct split *split, uint32_t tri, size_t sensor, double error_m)
 {
     struct asset_sensor *at = &split->in->sensors[sensor];
-    const double point[3] = { (double)at->surface_m[0], (double)at->surface_m[1], (double)at->surface_m[2] };
+    double point[3];
     uint32_t vertex, place;
-    if (!find_vertex(split, bvh, point, error_m, &vertex) || !split->finest)
+    place_of(split, sensor, point);
+    if (!find_vertex(split, tri, point, error_m, &vertex) || !split->finest)
         return;
     place = split->mesh.places.of_vertex[vertex];
     at->nearest_vertex = vertex;
@@ -131,9 +138,36 @@ static void stand(struct split *split, const struct bvh *bvh, size_t sensor, dou
     split_measure_places(split, place, NULL, 1);
 }
 
-void split_place_sensors(struct split *split, double error_m)
+/* --- where they are nearest to the level: of triangles that are as near, the first ----------------------------------------------- */
+
+static void look_at_all(const struct split *split, uint32_t *nearest)
 {
-    struct cutmesh *mesh = &split->mesh;
+    double *best2 = mem_array(split->sensors, sizeof(*best2));
+    for (size_t s = 0; s < split->sensors; s++)
+        best2[s] = INFINITY;
+    for (size_t t = 0; t < split->mesh.tri_count; t++) {
+        double corners[3][3], point[3], weights[3], at[3];
+        corners_of(split, &split->mesh.tris[t], corners);
+        for (size_t s = 0; s < split->sensors; s++) {
+            place_of(split, s, point);
+            if (triangle_is_farther(point, corners[0], corners[1], corners[2], sqrt(best2[s])))
+                continue;
+            triangle_nearest(point, corners[0], corners[1], corners[2], weights);
+            for (int axis = 0; axis < 3; axis++)
+                at[axis] = weights[0] * corners[0][axis] + weights[1] * corners[1][axis] + weights[2] * corners[2][axis];
+            double distance2 = vec_distance2(at, point);
+            if (distance2 < best2[s]) {
+                best2[s] = distance2;
+                nearest[s] = (uint32_t)t;
+            }
+        }
+    }
+    mem_free(best2);
+}
+
+static void look_in_tree(const struct split *split, uint32_t *nearest)
+{
+    const struct cutmesh *mesh = &split->mesh;
     struct trimesh trimesh = { 0 };
     for (size_t p = 0; p < mesh->places.count; p++) {
         const float *at = mesh->places.positions_m[p];
@@ -142,10 +176,24 @@ void split_place_sensors(struct split *split, double error_m)
     for (size_t t = 0; t < mesh->tri_count; t++)
         trimesh_add_tri(&trimesh, mesh->places.of_vertex[mesh->tris[t].v[0]], mesh->places.of_vertex[mesh->tris[t].v[1]],
                         mesh->places.of_vertex[mesh->tris[t].v[2]], (uint32_t)t);
-    split->first_count = mesh->tri_count;
     struct bvh *bvh = bvh_create(&trimesh);
-    for (size_t s = 0; s < split->sensors; s++)
-        stand(split, bvh, s, error_m);
+    for (size_t s = 0; s < split->sensors; s++) {
+        struct bvh_place place;
+        double point[3];
+        place_of(split, s, point);
+        bvh_nearest(bvh, point, INFINITY, NULL, NULL, &place);
+        nearest[s] = place.tri;
+    }
     bvh_destroy(&bvh);
     trimesh_finish(&trimesh);
+}
+
+void split_place_sensors(struct split *split, double error_m)
+{
+    uint32_t *nearest = mem_array(split->sensors, sizeof(*nearest));
+    (split->sensors <= FEW ? look_at_all : look_in_tree)(split, nearest);
+    split->first_count = split->mesh.tri_count;
+    for (size_t s = 0; s < split->sensors; s++)
+        stand(split, nearest[s], s, error_m);
+    mem_free(nearest);
 }
