@@ -12,14 +12,12 @@
 
 /* How many triangles it takes to mend this one: an edge that errs has to be cut itself, and half as often as its error can be halved, since
    a cut leaves a quarter of it where the field bends evenly and more where it peaks. */
-static double tris_needed(const struct split *split, const struct cut_tri *tri)
+static size_t tris_needed(const struct split *split, const struct cut_tri *tri)
 {
-    double needed = 1;
-    for (int i = 0; i < 3; i++) {
-        double error = (double)split->mesh.cuts[tri->e[i]].error;
-        if (error > SPLIT_AIM)
-            needed += ceil(0.5 * log2(error / SPLIT_AIM));
-    }
+    size_t needed = 1;
+    for (int i = 0; i < 3; i++)
+        for (double left = (double)split->mesh.cuts[tri->e[i]].error; left > SPLIT_AIM; left /= 4)
+            needed++;
     return needed;
 }
 
@@ -30,7 +28,7 @@ static double least_needed_by_sample(const struct split *split)
     const double blocks = (double)split->sample_blocks;
     double sum = 0, squares = 0, *needed = mem_array(split->sample_blocks, sizeof(*needed));
     for (size_t t = 0; t < mesh->tri_count; t++)
-        needed[mesh->tris[t].origin / BLOCK] += tris_needed(split, &mesh->tris[t]);
+        needed[mesh->tris[t].origin / BLOCK] += (double)tris_needed(split, &mesh->tris[t]);
     for (size_t b = 0; b < split->sample_blocks; b++) {
         sum += needed[b];
         squares += needed[b] * needed[b];
@@ -42,12 +40,12 @@ static double least_needed_by_sample(const struct split *split)
 
 bool split_comes_to_bound(const struct split *split)
 {
-    double needed = 0;
+    size_t needed = 0;
     if (split->sample_blocks)
         return least_needed_by_sample(split) > (double)split->most_tris;
     for (size_t t = 0; t < split->mesh.tri_count && !split->finest; t++)
         needed += tris_needed(split, &split->mesh.tris[t]);
-    return !split->finest && needed > (double)split->most_tris;
+    return !split->finest && needed > split->most_tris;
 }
 
 size_t split_take_sample(struct level *sample, const struct level *level)
