@@ -1,0 +1,107 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* `plantcast-prep distances` from a CAD file to what it prints: round a cylinder, against the formula. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "tests/support/cad.h"
+#include "tests/support/model_maker.h"
+#include "tests/support/prep_case.h"
+#include "tests/support/temp.h"
+
+enum { AROUND = 160, ALONG = 130 };
+static const double LENGTH_M = 3, MOVED_M[3] = { 10, -20, 5 };
+
+/* Of radius 1, open, its axis along z from 0. */
+static size_t write_cylinder(struct prep_case *c, struct cad_random *random)
+{
+    struct cad cad = { 0 };
+    struct maker maker;
+    size_t size;
+    cad_cylinder(&cad, random, AROUND, ALONG, LENGTH_M, 0.5);
+    maker_init(&maker);
+    int positions = maker_numbers(&maker, cad.positions, cad.vertex_count * 12, FLOAT, cad.vertex_count, "VEC3");
+    int indices = maker_numbers(&maker, cad.triangles, cad.triangle_count * 12, UINT, 3 * cad.triangle_count, "SCALAR");
+    maker_node(&maker, "cylinder",
+               maker_mesh(&maker, json_pack("{s:{s:i},s:i}", "attributes", "POSITION", positions, "indices", indices)), NULL);
+    char *glb = maker_glb(&maker, &size);
+    mem_free(temp_write(c->folder, "model.glb", glb, size));
+    mem_free(glb);
+    maker_finish(&maker);
+    size_t vertices = cad.vertex_count;
+    cad_finish(&cad);
+    return vertices;
+}
+
+static double along_surface(const double a[2], const double b[2]) /* turn, height */
+{
+    double turn = fabs(remainder(a[0] - b[0], 2 * M_PI));
+    return hypot(turn, a[1] - b[1]);
+}
+
+/* What is printed for a sensor there, at every vertex. */
+static void check(struct prep_case *c, const char *tag, const double sensor[2], size_t vertices)
+{
+    char *arguments = mem_printf("distances $PLANT --asset A --sensor %s", tag);
+    double sum_m = 0, worst_m = 0, worst_straight_m = 0, longest_m = 0;
+    size_t lines = 0;
+    prep_case_expect(c, arguments, 0);
+    prep_case_says(&c->out, "x,y,z,geodesic_m,euclidean_m\n");
+    for (char *line = strchr(c->out.at, '\n') + 1; *line; line = strchr(line, '\n') + 1) {
+        double at[3], geodesic_m, euclidean_m;
+        assert_int_equal(sscanf(line, "%lf,%lf,%lf,%lf,%lf", &at[0], &at[1], &at[2], &geodesic_m, &euclidean_m), 5);
+        for (int k = 0; k < 3; k++)
+            at[k] -= MOVED_M[k];
+        double want_m = along_surface(sensor, (double[2]){ atan2(at[1], at[0]), at[2] }), error_m = fabs(geodesic_m - want_m);
+        double x = at[0] - cos(sensor[0]), y = at[1] - sin(sensor[0]), z = at[2] - sensor[1];
+        worst_straight_m = fmax(worst_straight_m, fabs(euclidean_m - sqrt(x * x + y * y + z * z)));
+        worst_m = fmax(worst_m, error_m);
+        longest_m = fmax(longest_m, want_m);
+        sum_m += error_m;
+        lines++;
+    }
+    print_message("# %s: %.3f %% in the mean, %.3f %% at worst, straight %.6f m\n", tag, 100 * sum_m / (double)lines / longest_m,
+                  100 * worst_m / longest_m, worst_straight_m);
+    assert_int_equal(lines, vertices);
+    assert_true(sum_m / (double)lines <= 0.006 * longest_m && worst_m <= 0.03 * longest_m);
+    assert_true(worst_straight_m < 0.002); /* the sensor is moved onto a flat triangle */
+    mem_free(arguments);
+}
+
+static void round_a_cylinder(void **state)
+{
+    struct prep_case *c = *state;
+    struct cad_random random;
+    cad_random_start(&random);
+    size_t vertices = write_cylinder(c, &random);
+    const double sensors[2][2] = { { 6.283 * cad_random(&random), LENGTH_M * (0.1 + 0.8 * cad_random(&random)) }, { 0.3, 0 } };
+    struct text tags = { 0 };
+    for (int i = 0; i < 2; i++)
+        text_add(&tags, "T%d,%d,Float,plc,t,A,,%.6f,%.6f,%.6f\n", i + 1, 400001 + 2 * i, MOVED_M[0] + cos(sensors[i][0]),
+                 MOVED_M[1] + sin(sensors[i][0]), MOVED_M[2] + sensors[i][1]);
+    prep_case_plant(c, "plant: { name: Cylinder }\n"
+                       "assets: [{ id: A, model: model.glb, up: z, placement: { translate: [10, -20, 5] } }]\n"
+                       "groups: [{ id: t, unit: K, min: 0, max: 1 }]\n"
+                       "sources: [{ id: plc, type: modbus, host: 127.0.0.1, byte_order: CDAB, address_base: 1 }]\ntags: tags.csv\n");
+    prep_case_tags(c, tags.at);
+    for (int i = 0; i < 2; i++)
+        check(c, i ? "T2" : "T1", sensors[i], vertices);
+    text_finish(&tags);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(round_a_cylinder, prep_case_set_up, prep_case_tear_down),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
