@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One row of the bench's table."""
+"""One row of the bench's table, and how many instances and sensors the paper's experiments have there."""
 
+COUNTS = {"instances": (1, 5, 25, 100, 400), "sensors": (5, 10, 20, 32, 64, 128, 256, 512, 1024, 4096)}
 EXTRAS = ("cpu", "tier", "coverage", "triangles", "columns_per_s", "frames", "values_per_s", "kept_percent", "note")
 
 
