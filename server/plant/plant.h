@@ -9,6 +9,8 @@
 
 #include "base/diag.h"
 
+#define PLANT_MAX_M 1e7 /* nothing is farther from the origin: plants may lie where their survey has them, 5,500 km north (UTM) */
+
 enum interpolation { INTERPOLATION_SHEPARD, INTERPOLATION_PAPER };
 enum distance_mode { DISTANCE_GEODESIC, DISTANCE_EUCLIDEAN };
 enum fill_mode { FILL_NONE, FILL_NEIGHBOURS };       /* may neighbours paint the place of a lost sensor? */

@@ -5,7 +5,6 @@
 #include "plant/plant.h"
 #include "plant/yaml_reader.h"
 
-#define PLANT_MAX_M 1e6      /* nothing is further from the origin */
 #define PLANT_MAX_VALUE 1e30 /* of a reading or a limit: the field is computed in floats */
 
 /* Reads plant.yaml into a plant whose path and folder are set. Findings go to diag. tags_path stays NULL if it cannot be read. */

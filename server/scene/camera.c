@@ -5,7 +5,6 @@
 #include <math.h>
 #include <string.h>
 
-#define FAR_M 1e6
 #define FIT_MARGIN 1.06      /* the box may fill 1/1.06 of the picture */
 #define LEAST_BOX_M 0.1      /* a smaller box, or one that is empty, is looked at as if it had this size */
 #define NEAR_TO_FAR 1e-4     /* never less, so that 24 bits of depth resolve what is near */
@@ -57,16 +56,21 @@ static bool lens_valid(const struct camera *camera)
 {
     if (camera->height_m == 0)
         return camera->fov_deg >= 1 && camera->fov_deg <= 120;
-    return camera->height_m >= LEAST_HEIGHT_M && camera->height_m <= FAR_M;
+    return camera->height_m >= LEAST_HEIGHT_M && camera->height_m <= PLANT_MAX_M;
+}
+
+static bool is_placed(const double v[3])
+{
+    return fabs(v[0]) <= PLANT_MAX_M && fabs(v[1]) <= PLANT_MAX_M && fabs(v[2]) <= PLANT_MAX_M;
 }
 
 bool camera_valid(const struct camera *camera)
 {
     struct basis basis;
     double forward[3], apart_m = 0;
+    if (!is_placed(camera->eye_m) || !is_placed(camera->target_m) || !is_placed(camera->up))
+        return false;
     for (int i = 0; i < 3; i++) {
-        if (!(fabs(camera->eye_m[i]) <= FAR_M) || !(fabs(camera->target_m[i]) <= FAR_M) || !(fabs(camera->up[i]) <= FAR_M))
-            return false;
         forward[i] = camera->target_m[i] - camera->eye_m[i];
         apart_m += fabs(forward[i]);
     }

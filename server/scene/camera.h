@@ -12,7 +12,7 @@ struct camera {
     double height_m; /* what an orthographic picture is high; 0: perspective */
 };
 
-/* Finite, eye apart from target, up not along the view, all |m| <= 1e6; 1 <= fov <= 120, or 1e-3 <= height <= 1e6. */
+/* Finite, eye apart from target, up not along the view, 1 <= fov <= 120, or 1e-3 <= height; nothing beyond PLANT_MAX_M. */
 bool camera_valid(const struct camera *camera);
 /* Looks at the whole box, filling the picture, from a raised south-west corner of a plant that is Z up. Sets every field. */
 void camera_fit(struct camera *camera, const double min_m[3], const double max_m[3], double aspect);

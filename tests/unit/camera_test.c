@@ -18,9 +18,10 @@ static void nonsense_is_refused(void **state)
 {
     (void)state;
     assert_true(camera_valid(&good));
-    struct camera c = good;
+    struct camera c = { .eye_m = { 412345, 5512345, 120 }, .target_m = { 412355, 5512345, 118 }, .up = { 0, 0, 1 }, .fov_deg = 45 };
+    assert_true(camera_valid(&c)); /* a survey's coordinates */
     double *const numbers[] = { &c.eye_m[0], &c.target_m[1], &c.up[2], &c.fov_deg };
-    const double wrong[] = { NAN, INFINITY, -INFINITY, 2e6 };
+    const double wrong[] = { NAN, INFINITY, -INFINITY, 2e7 };
     for (size_t i = 0; i < 4; i++)
         for (size_t k = 0; k < 4; k++) {
             c = good;

@@ -221,7 +221,7 @@ static void places_are_whole(void **state)
                     "C,40001,temp,E-101,,1,nan,3\n"
                     "D,40001,temp,E-101,,1,2,abc\n"
                     "E,40001,temp,E-101,,1,2,\"3,5\"\n"
-                    "F,40001,temp,E-101,,1,2,1e7\n"
+                    "F,40001,temp,E-101,,1,2,2e7\n"
                     "G,40001,temp,E-101,N,1,2,3\n"
                     "H,40001,temp,,,,,\n"
                     "I,40001,,E-101,,,,\n");
@@ -230,7 +230,7 @@ static void places_are_whole(void **state)
           { "tags.csv", 3, 23, "Y: expected a number, since a position needs X, Y and Z" },
           { "tags.csv", 4, 23, "Y: expected a finite number, found 'nan'" }, { "tags.csv", 5, 25, "Z: expected a number, found 'abc'" },
           { "tags.csv", 6, 25, "Z: expected a number with a decimal point, found '3,5'" },
-          { "tags.csv", 7, 25, "Z: expected a number from -1000000 to 1000000, found '1e7'" },
+          { "tags.csv", 7, 25, "Z: expected a number from -10000000 to 10000000, found '2e7'" },
           { "tags.csv", 8, 20, "Node has no effect, since X, Y, Z are given too" },
           { "tags.csv", 9, 14, "'H' has a group but no asset, so it is in no field" });
     plant_case_load(c, yaml, "Tag Name,Address,Group,Asset\nA,40001,temp,E-101\n");

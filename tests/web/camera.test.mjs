@@ -188,9 +188,10 @@ test('home is the plant\'s own view, and the whole plant in a narrow window', ()
 
 test('valid refuses what the server refuses', () => {
     assert.ok(valid(camera));
+    assert.ok(valid({ ...camera, eye: [412345, 5512345, 120], target: [412355, 5512345, 118] }), 'a survey’s coordinates');
     for (const bad of [
         null, {}, { ...camera, eye: [NaN, 0, 0] }, { ...camera, eye: [1, 2] }, { ...camera, eye: camera.target }, { ...camera, fov: 0.5 },
-        { ...camera, fov: 121 }, { ...camera, eye: [2e6, 0, 0] }, { ...camera, up: [0, 0, 0] }, { ...camera, eye: [1, 0.5, 20] },
+        { ...camera, fov: 121 }, { ...camera, eye: [2e7, 0, 0] }, { ...camera, up: [0, 0, 0] }, { ...camera, eye: [1, 0.5, 20] },
     ])
         assert.ok(!valid(bad), JSON.stringify(bad));
 });

@@ -7,7 +7,7 @@ import { along, cross, dot, finite, length, middle, scale, subtract, unit } from
 export const RADIANS = Math.PI / 180;
 export const MIN_DISTANCE_M = 0.05;
 export const MAX_DISTANCE_M = 1e5;
-const MAX_COORDINATE_M = 1e6; // what the server accepts
+const MAX_COORDINATE_M = 1e7; // what the server accepts
 const MIN_HEIGHT_M = 1e-3;
 export const USUAL_FOV = 45;
 

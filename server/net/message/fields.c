@@ -64,8 +64,8 @@ bool may_vector(const json_t *o, const char *name, double out[3], bool *given, s
     if (!array)
         return true;
     for (size_t i = 0; i < 3; i++)
-        if (json_array_size(array) != 3 || !in_range(json_array_get(array, i), -1e6, 1e6)) {
-            message_fail(error, "bad_field", "%s: three numbers within +-1e6 expected", name);
+        if (json_array_size(array) != 3 || !in_range(json_array_get(array, i), -PLANT_MAX_M, PLANT_MAX_M)) {
+            message_fail(error, "bad_field", "%s: three numbers within +-%g expected", name, PLANT_MAX_M);
             return false;
         }
     for (size_t i = 0; i < 3; i++)

@@ -6,8 +6,6 @@
 
 #include "net/message/fields.h"
 
-static const double PLACE_MAX_M = 1e6;
-
 static bool parse_set(const struct plant *plant, const json_t *o, const char *name, struct asset_set *out, struct message_error *error)
 {
     const json_t *list = json_object_get(o, name);
@@ -55,13 +53,13 @@ static bool parse_plane(const json_t *array, double plane[4])
     for (size_t i = 0; i < 4; i++) {
         const json_t *number = json_array_get(array, i);
         plane[i] = json_number_value(number);
-        if (json_array_size(array) != 4 || !json_is_number(number) || !(fabs(plane[i]) <= PLACE_MAX_M))
+        if (json_array_size(array) != 4 || !json_is_number(number) || !(fabs(plane[i]) <= PLANT_MAX_M))
             return false;
     }
     double length = sqrt(plane[0] * plane[0] + plane[1] * plane[1] + plane[2] * plane[2]);
     for (int i = 0; i < 4; i++)
         plane[i] /= length;
-    return length >= 1e-6 && fabs(plane[3]) <= PLACE_MAX_M;
+    return length >= 1e-6 && fabs(plane[3]) <= PLANT_MAX_M;
 }
 
 static bool parse_planes(const json_t *planes, struct clip *clip, struct message_error *error)
