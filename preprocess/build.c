@@ -120,6 +120,7 @@ static void make_levels(struct build *build)
     build->failed[0] = !levels_make(&build->levels, &build->geometry, build->workers);
     if (build->failed[0])
         wrong(build->why, "out of memory for the levels of %u vertices", build->geometry.vertex_count);
+    report->repeated_triangles = (uint32_t)build->levels.repeated;
     report->levels_s = seconds_since(&since_ns);
 }
 
@@ -407,6 +408,7 @@ static bool begin(struct build *build)
                                      .read_s = seconds_since(&since_ns) };
     if (input->stock) {
         struct surface_report *surface = &report->surface;
+        report->repeated_triangles = input->stock->report.repeated_triangles;
         *surface = input->stock->report.surface;
         surface->weld_s = surface->bridge_s = surface->sample_s = surface->laplacian_s = surface->factor_s = surface->check_s = 0;
     }

@@ -35,20 +35,25 @@ static size_t slot_of(const struct deviation *surface, uint64_t hash)
     return slot;
 }
 
-static void know_triangles(struct deviation *surface, const uint32_t *triangles, size_t triangle_count)
+static void make_room_to_know(struct deviation *surface, size_t triangle_count)
 {
     surface->known_mask = 15;
     while (surface->known_mask < 2 * triangle_count)
         surface->known_mask = surface->known_mask * 2 + 1;
     surface->known = mem_array(surface->known_mask + 1, sizeof(*surface->known));
-    for (size_t t = 0; t < triangle_count; t++) {
-        uint64_t hash = triangle_hash(triangles + 3 * t);
-        surface->known[slot_of(surface, hash)] = hash;
-    }
 }
 
-void deviation_init(struct deviation *surface, const float (*positions_m)[3], const uint32_t *part, size_t part_count,
-                    const uint32_t *triangles, size_t triangle_count)
+/* False: one with the same corners is known already. */
+static bool know_triangle(struct deviation *surface, const uint32_t v[3])
+{
+    uint64_t hash = triangle_hash(v), *slot = &surface->known[slot_of(surface, hash)];
+    bool is_new = *slot == 0;
+    *slot = hash;
+    return is_new;
+}
+
+void deviation_init(struct deviation *surface, const float (*positions_m)[3], const uint32_t *first_there, const uint32_t *part,
+                    size_t part_count, const uint32_t *triangles, size_t triangle_count)
 {
     *surface = (struct deviation){ .part = part, .has_part = mem_array(part_count, 1) };
     for (size_t i = 0; i < 3 * triangle_count; i++)
@@ -56,23 +61,27 @@ void deviation_init(struct deviation *surface, const float (*positions_m)[3], co
     surface->has = mem_array(surface->highest + 1, 1);
     uint32_t *point_of = mem_array(surface->highest + 1, sizeof(*point_of));
     size_t capacity = 0;
+    make_room_to_know(surface, triangle_count);
     for (size_t t = 0; t < triangle_count; t++) {
-        uint32_t corners[3];
+        uint32_t corners[3], v[3];
+        for (size_t c = 0; c < 3; c++)
+            v[c] = first_there[triangles[3 * t + c]];
+        if (!know_triangle(surface, v))
+            continue;
         for (int c = 0; c < 3; c++) {
-            uint32_t v = triangles[3 * t + (size_t)c];
-            const double p[3] = { (double)positions_m[v][0], (double)positions_m[v][1], (double)positions_m[v][2] };
-            if (!surface->has[v]) {
-                surface->has[v] = surface->has_part[part[v]] = 1;
-                point_of[v] = trimesh_add_point(&surface->mesh, p);
+            const float *at = positions_m[v[c]];
+            const double p[3] = { (double)at[0], (double)at[1], (double)at[2] };
+            if (!surface->has[v[c]]) {
+                surface->has[v[c]] = surface->has_part[part[v[c]]] = 1;
+                point_of[v[c]] = trimesh_add_point(&surface->mesh, p);
                 mem_grow(&surface->index, &capacity, surface->mesh.point_count, sizeof(*surface->index));
-                surface->index[point_of[v]] = v;
+                surface->index[point_of[v[c]]] = v[c];
             }
-            corners[c] = point_of[v];
+            corners[c] = point_of[v[c]];
         }
         trimesh_add_tri(&surface->mesh, corners[0], corners[1], corners[2], (uint32_t)t);
     }
     mem_free(point_of);
-    know_triangles(surface, triangles, triangle_count);
     surface->bvh = bvh_create(&surface->mesh);
 }
 

@@ -13,6 +13,8 @@
 #include "preprocess/geometry_parts.h"
 
 #define MAX_TRIANGLES 50000000ull /* of one asset */
+#define MAX_SIZE_M 1e7
+#define MIN_SIZE_M 1e-6 /* smaller is a wrong unit; and squares of squares of lengths have to be numbers */
 
 /* --- which nodes --------------------------------------------------------------------------------------------------------- */
 
@@ -146,12 +148,15 @@ static bool find_origin(struct geometry *geometry, const struct parts *parts, co
         part_world(params, parts->at[i].node, world);
         box_add_primitive(&box, parts->at[i].primitive, world);
     }
+    double size_m = 0;
     for (int axis = 0; axis < 3; axis++) {
+        double side_m = box.high[axis] - box.low[axis];
         geometry->origin_m[axis] = (box.low[axis] + box.high[axis]) / 2;
-        if (!isfinite(geometry->origin_m[axis]) || box.high[axis] - box.low[axis] > 1e7)
-            return wrong(why, "its size is %g m along axis %d", box.high[axis] - box.low[axis], axis);
+        size_m = fmax(size_m, side_m);
+        if (!isfinite(geometry->origin_m[axis]) || side_m > MAX_SIZE_M)
+            return wrong(why, "its size is %g m along axis %d, more than %g m", side_m, axis, MAX_SIZE_M);
     }
-    return true;
+    return size_m >= MIN_SIZE_M || wrong(why, "its size is %g m, less than %g m: is its unit right?", size_m, MIN_SIZE_M);
 }
 
 bool geometry_node_place(const struct gltf_model *model, const struct geometry_params *params, const char *name, double place_m[3])

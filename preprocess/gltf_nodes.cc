@@ -10,6 +10,7 @@ namespace
 {
 
 constexpr uint32_t MAX_NODES = 4'000'000, MAX_DEPTH = 512, ELEMENTS_PER_INSTANCE = 16;
+constexpr double ROTATION_SLACK = 0.01, LEAST_ROTATION = 1e-6; /* in bytes, of instances, a rotation is off by 0.008 */
 
 void multiply(const double a[16], const double b[16], double out[16])
 {
@@ -37,6 +38,15 @@ void compose(const double t[3], const double q[4], const double s[3], double out
     out[15] = 1;
 }
 
+/* A unit quaternion, says glTF. One of another length turns as it would with length 1, as elsewhere, and is counted; rounding is not. */
+void check_rotation(work *w, const double q[4], const std::string &what)
+{
+    double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    if (!(length >= LEAST_ROTATION))
+        refuse("%s: its rotation [%g, %g, %g, %g] turns nowhere: its length is to be 1", what.c_str(), q[0], q[1], q[2], q[3]);
+    w->model->scaled_rotations += std::fabs(length - 1) > ROTATION_SLACK;
+}
+
 void check_affine(double m[16], const std::string &what)
 {
     for (int i = 0; i < 16; i++)
@@ -55,12 +65,13 @@ void take(const std::vector<double> &from, size_t count, double *to)
         to[i] = from[i];
 }
 
-void local_of(const tinygltf::Node &node, double out[16], const std::string &what)
+void local_of(work *w, const tinygltf::Node &node, double out[16], const std::string &what)
 {
     double t[3] = { 0, 0, 0 }, q[4] = { 0, 0, 0, 1 }, s[3] = { 1, 1, 1 };
     take(node.translation, 3, t);
     take(node.rotation, 4, q);
     take(node.scale, 3, s);
+    check_rotation(w, q, what);
     compose(t, q, s, out);
     take(node.matrix, 16, out);
     check_affine(out, what);
@@ -119,6 +130,7 @@ void add_instances(tree *tree, int number, int parent, const tinygltf::Value &ex
         for (int p = 0; p < 3; p++)
             if (used[p] >= 0)
                 values[static_cast<size_t>(used[p])].get(i, parts[p]);
+        check_rotation(tree->w, q, what);
         compose(t, q, s, local);
         multiply(tree->out[static_cast<size_t>(parent)].world, local, world);
         check_affine(world, what);
@@ -141,7 +153,7 @@ void walk(tree *tree, int number, int parent, const double parent_world[16], uin
         if (weight != 0)
             refuse("%s: its mesh is morphed, which is not supported", what.c_str());
     double local[16], world[16];
-    local_of(node, local, what);
+    local_of(tree->w, node, local, what);
     multiply(parent_world, local, world);
     check_affine(world, what);
     int self = static_cast<int>(tree->out.size());

@@ -153,7 +153,7 @@ static float error_of_lost(const struct making *making, const uint32_t *knots, s
     for (uint32_t p = 0; p < of->part_count; p++)
         any |= lost[p] = making->version[p] == ABSENT && !making->omissions[p].alone;
     if (any) {
-        deviation_init(&level, (const float(*)[3])of->positions_m, of->part, of->part_count, knots, count / 3);
+        deviation_init(&level, (const float(*)[3])of->positions_m, of->first_there, of->part, of->part_count, knots, count / 3);
         deviation_measure_lost(&making->versions.first, &level, lost, expected_m, apart_m, making->workers);
         deviation_finish(&level);
     }
@@ -241,6 +241,7 @@ bool levels_make(struct levels *levels, const struct geometry *geometry, struct 
         copy_finest(&levels->at[0], geometry);
         making.omissions = mem_array(making.knots.part_count, sizeof(*making.omissions));
         versions_make(&making.versions, &making.knots, workers);
+        levels->repeated = making.tri_count - making.versions.first.mesh.tri_count;
         omissions_find(making.omissions, &making.knots, workers);
         make_coarse(&making, levels);
     }

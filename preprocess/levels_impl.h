@@ -18,6 +18,7 @@ struct knots {
     uint32_t *primitive;                      /* of each knot */
     uint32_t *first, *vertices;               /* of each knot: its vertices */
     uint32_t *part;                           /* of each knot */
+    uint32_t *first_there;                    /* of each knot: the first one at its place */
     float (*low_m)[3], (*high_m)[3], *size_m; /* of each part: its box, and that box's diagonal */
     double whole_m;                           /* of them all */
 };

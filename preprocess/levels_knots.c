@@ -87,6 +87,19 @@ static void number_parts(struct knots *knots, const struct places *places, uint3
     mem_free(number);
 }
 
+static void find_first_there(struct knots *knots, const struct places *places)
+{
+    uint32_t *first = mem_array(places->count, sizeof(*first));
+    memset(first, 0xff, places->count * sizeof(*first));
+    knots->first_there = mem_array(knots->count, sizeof(*knots->first_there));
+    for (uint32_t k = 0; k < knots->count; k++) {
+        uint32_t *at = &first[places->of_vertex[knots->vertices[knots->first[k]]]];
+        *at = *at == UINT32_MAX ? k : *at;
+        knots->first_there[k] = *at;
+    }
+    mem_free(first);
+}
+
 static float diagonal(const float low[3], const float high[3])
 {
     return hypotf(high[0] - low[0], hypotf(high[1] - low[1], high[2] - low[2]));
@@ -133,6 +146,7 @@ static bool find_parts(struct knots *knots)
             trimesh_join(parent, places.of_vertex[g->indices[i + c]], places.of_vertex[g->indices[i]]);
     knots->part = mem_array(knots->count, sizeof(*knots->part));
     number_parts(knots, &places, parent);
+    find_first_there(knots, &places);
     mem_free(parent);
     places_finish(&places);
     measure_parts(knots);
@@ -153,6 +167,7 @@ void knots_finish(struct knots *knots)
     mem_free(knots->first);
     mem_free(knots->vertices);
     mem_free(knots->part);
+    mem_free(knots->first_there);
     mem_free(knots->low_m);
     mem_free(knots->high_m);
     mem_free(knots->size_m);

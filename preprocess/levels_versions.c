@@ -65,7 +65,8 @@ static void measure(struct version *version, const struct version *before, const
 {
     struct deviation surface;
     char *changed = mem_array(knots->part_count, 1);
-    deviation_init(&surface, (const float(*)[3])knots->positions_m, knots->part, knots->part_count, version->knots, version->count / 3);
+    deviation_init(&surface, (const float(*)[3])knots->positions_m, knots->first_there, knots->part, knots->part_count, version->knots,
+                   version->count / 3);
     memcpy(version->error_m, before->error_m, knots->part_count * sizeof(*version->error_m));
     for (size_t p = 0; p < knots->part_count; p++)
         changed[p] = version->tris[p] != before->tris[p] && (double)before->error_m[p] <= LEVELS_FARTHEST * knots->whole_m;
@@ -93,7 +94,8 @@ void versions_make(struct versions *versions, const struct knots *knots, struct 
     for (size_t i = 0; i < model->count; i++)
         model->knots[i] = knots->of_vertex[g->indices[i]];
     count_tris(model, knots);
-    deviation_init(&versions->first, (const float(*)[3])knots->positions_m, knots->part, knots->part_count, model->knots, model->count / 3);
+    deviation_init(&versions->first, (const float(*)[3])knots->positions_m, knots->first_there, knots->part, knots->part_count,
+                   model->knots, model->count / 3);
     while (versions->count < VERSIONS_MAX && triangles_of(versions) > LEAST_TRIANGLES) {
         const struct version *before = &versions->at[versions->count - 1];
         struct version *version = add_version(versions, knots, before->count);

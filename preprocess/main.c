@@ -4,12 +4,15 @@
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "base/mem.h"
 #include "preprocess/debug_views.h"
 #include "preprocess/diff.h"
 #include "preprocess/distances.h"
 #include "preprocess/report.h"
+
+enum { GRACE_S = 5 }; /* what stops services and containers kills after 10 s and more */
 
 static const char usage[] =
     "usage: plantcast-prep PLANT.yaml [--output DIR] [--report text|json]\n"
@@ -34,6 +37,7 @@ static const char usage[] =
     "  --tolerance M   less is no change (default: 0.01 m, or 1 % of the asset's diagonal if that is less)\n"
     "  --help          this text\n"
     "\n"
+    "SIGINT and SIGTERM end it within 5 s: what is finished by then is kept, and the next run goes on from there.\n"
     "Exit status: 0 good, 1 something is wrong with the input or the disk, 2 wrong use.\n";
 
 struct options {
@@ -44,16 +48,29 @@ struct options {
 
 static atomic_bool interrupted;
 
-/* What is begun is finished, and the next run goes on from there; a second signal ends the program at once. */
+/* What is begun is finished if it takes no longer than GRACE_S, and the next run goes on from there; a second signal ends the program at
+   once. Files come to their names whole, so that it may end anywhere. */
 static void on_signal(int signal)
 {
     (void)signal;
     atomic_store(&interrupted, true);
+    alarm(GRACE_S);
+}
+
+static void give_up(int signal)
+{
+    static const char words[] =
+        "\nplantcast-prep: interrupted; what was begun is given up, what is finished is kept: the next run goes on from there\n";
+    (void)signal;
+    if (write(STDERR_FILENO, words, sizeof(words) - 1) < 0)
+        _exit(1);
+    _exit(1);
 }
 
 static void catch_signals(void)
 {
-    struct sigaction action = { .sa_handler = on_signal, .sa_flags = (int)SA_RESETHAND };
+    struct sigaction action = { .sa_handler = on_signal, .sa_flags = (int)SA_RESETHAND }, last = { .sa_handler = give_up };
+    sigaction(SIGALRM, &last, NULL);
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
 }

@@ -97,13 +97,14 @@ bool measure_sensors(struct measured *measured, struct log *log, struct workers 
     measured->sensors = mem_array(input->sensor_count, sizeof(*measured->sensors));
     if (!place_sensors(input, g, measured->places_m, &output->missing_node, why))
         return false;
+    char cause[SURFACE_WHY_BYTES] = "out of memory";
     if (!measured->surface)
         measured->surface =
             surface_create(log, workers, (const float(*)[3])g->positions_m, g->vertex_count, g->indices, g->index_count / 3,
-                           &(struct surface_params){ .tolerance_m = input->geometry.tolerance_m });
+                           &(struct surface_params){ .tolerance_m = input->geometry.tolerance_m, .why = cause });
     int64_t made_ns = clock_mono_ns();
     if (!measured->surface || !solve(measured, input, g->index_count / 3, &report->kept_sensors))
-        return wrong(why, "its distances to %zu sensors cannot be computed", input->sensor_count);
+        return wrong(why, "its distances to %zu sensors cannot be computed: %s", input->sensor_count, cause);
     drop_sensors(measured->surface, input, (const double(*)[3])measured->places_m, measured->sensors);
     report->unreachable_vertices = unreachable(measured, g->vertex_count);
     report->surface_s = (double)(made_ns - start_ns) / NS_PER_S;

@@ -74,6 +74,7 @@ bool model_file_parse(struct model_file *file)
     file->is_parsed = file->was_parsed = true;
     file->parse_s = (double)(clock_mono_ns() - start_ns) / NS_PER_S;
     file->skipped_lines = file->parsed.skipped_lines;
+    file->scaled_rotations = file->parsed.scaled_rotations;
     file->skipped_points = file->parsed.skipped_points;
     take_left_out(file);
     return true;

@@ -15,7 +15,7 @@ struct model_file {
     struct gltf_model parsed; /* between model_file_parse and model_file_release */
     bool is_parsed, was_parsed;
     double parse_s;
-    uint32_t skipped_lines, skipped_points, left_out_textures; /* where was_parsed */
+    uint32_t skipped_lines, skipped_points, scaled_rotations, left_out_textures; /* where was_parsed */
     char **left_out;                                           /* a text for each of these textures */
 };
 

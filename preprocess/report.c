@@ -47,8 +47,8 @@ static void print_assets(const struct text_report *report)
 {
     static const struct table_column columns[] = {
         { "", false },        { "asset", false }, { "state", false },  { "nodes", true },        { "triangles", true },
-        { "vertices", true }, { "added", true },  { "sensors", true }, { "without area", true }, { "normals made", true },
-        { "lines", true },    { "points", true }, { "seconds", true },
+        { "vertices", true }, { "added", true },  { "sensors", true }, { "without area", true }, { "repeated", true },
+        { "normals made", true }, { "lines", true }, { "points", true }, { "seconds", true },
     };
     struct table table = { .columns = columns, .column_count = sizeof(columns) / sizeof(columns[0]) };
     for (size_t i = 0; i < report->count; i++) {
@@ -63,12 +63,14 @@ static void print_assets(const struct text_report *report)
         table_add(&table, "%s", asset->reported ? NUMBER(report_added(asset)) : "");
         table_add(&table, "%s", NUMBER(asset->sensor_count));
         table_add(&table, "%s", r->degenerate_triangles ? NUMBER(r->degenerate_triangles) : "");
+        table_add(&table, "%s", r->repeated_triangles ? NUMBER(r->repeated_triangles) : "");
         table_add(&table, "%s", r->computed_normals ? NUMBER(r->computed_normals) : "");
         table_add(&table, "%s", r->skipped_lines ? NUMBER(r->skipped_lines) : "");
         table_add(&table, "%s", r->skipped_points ? NUMBER(r->skipped_points) : "");
         table_add(&table, "%.2f", asset->seconds);
     }
-    print(report, "Assets (added: vertices that preparing added; lines, points: primitives passed over)", &table);
+    print(report, "Assets (added: vertices that preparing added; repeated: triangles there twice; lines, points: primitives passed over)",
+          &table);
 }
 
 static void print_surfaces(const struct text_report *report)
@@ -213,6 +215,8 @@ static void print_models(const struct text_report *report)
         fprintf(report->out, "%s: read in %.2f s", model->path, model->parse_s);
         if (model->skipped_lines || model->skipped_points)
             fprintf(report->out, "; passed over: %u primitives of lines and %u of points", model->skipped_lines, model->skipped_points);
+        if (model->scaled_rotations)
+            fprintf(report->out, "; %u rotations whose length is not 1, taken as if it were", model->scaled_rotations);
         if (model->left_out_textures)
             fprintf(report->out, "; left out: %u textures", model->left_out_textures);
         fprintf(report->out, "\n");

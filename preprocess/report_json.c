@@ -41,8 +41,9 @@ static json_t *model_json(const struct model_file *model)
     for (uint32_t i = 0; i < model->left_out_textures; i++)
         json_array_append_new(left_out, json_string(model->left_out[i]));
     if (model->was_parsed)
-        json_object_update_new(root, json_pack("{s:f,s:I,s:I,s:I,s:O}", "seconds", model->parse_s, "skipped_lines",
+        json_object_update_new(root, json_pack("{s:f,s:I,s:I,s:I,s:I,s:O}", "seconds", model->parse_s, "skipped_lines",
                                                (json_int_t)model->skipped_lines, "skipped_points", (json_int_t)model->skipped_points,
+                                               "scaled_rotations", (json_int_t)model->scaled_rotations,
                                                "left_out_textures", (json_int_t)model->left_out_textures, "left_out", left_out));
     json_decref(left_out);
     return root;

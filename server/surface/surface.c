@@ -3,6 +3,8 @@
 #include "surface/surface.h"
 
 #include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "base/clock.h"
@@ -66,25 +68,36 @@ static size_t components_of(const struct trimesh *mesh)
     return count;
 }
 
-static bool weld(struct surface *surface, const float (*positions)[3], const uint32_t *triangles, size_t triangle_count, double size_m)
+static bool no_surface(const struct surface *surface, char *why, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
+static bool no_surface(const struct surface *surface, char *why, const char *fmt, ...)
+{
+    char text[SURFACE_WHY_BYTES];
+    va_list ap;
+    va_start(ap, fmt);
+    vsnprintf(text, sizeof(text), fmt, ap);
+    va_end(ap);
+    if (why)
+        memcpy(why, text, sizeof(text));
+    else
+        log_err(surface->log, "surface of %zu vertices: %s", surface->vertex_count, text);
+    return false;
+}
+
+static bool weld(struct surface *surface, const float (*positions)[3], const uint32_t *triangles, size_t triangle_count, double size_m,
+                 char *why)
 {
     struct surface_report *report = &surface->report;
     surface->vertex_point = mem_try_array(surface->vertex_count, sizeof(*surface->vertex_point));
     if (!surface->vertex_point ||
         !trimesh_weld(&surface->mesh, positions, surface->vertex_count, triangles, triangle_count, size_m * WELD_OF_SIZE,
-                      surface->vertex_point, &report->degenerate_triangles, &report->repeated_triangles)) {
-        log_err(surface->log, "surface of %zu vertices: out of memory", surface->vertex_count);
-        return false;
-    }
+                      surface->vertex_point, &report->degenerate_triangles, &report->repeated_triangles))
+        return no_surface(surface, why, "out of memory");
     report->triangles = triangle_count;
     report->welded_vertices = surface->mesh.point_count;
     report->border_edges = border_edges(&surface->mesh);
     report->components = components_of(&surface->mesh);
-    if (surface->mesh.tri_count == 0) {
-        log_err(surface->log, "surface of %zu triangles: none has an area", triangle_count);
-        return false;
-    }
-    return true;
+    return surface->mesh.tri_count > 0 || no_surface(surface, why, "none of %zu triangles has an area once places within %g m are one",
+                                                     triangle_count, size_m * WELD_OF_SIZE);
 }
 
 static void follow(struct surface *surface, const uint32_t *target)
@@ -106,7 +119,7 @@ static void note_bridges(struct surface *surface, struct stitch_report *made)
     report->k = report->k > made->k ? report->k : made->k;
 }
 
-static bool close_seams(struct surface *surface)
+static bool close_seams(struct surface *surface, char *why)
 {
     struct stitch_report made = { 0 };
     uint32_t *target = mem_array(surface->mesh.point_count, sizeof(*target));
@@ -114,9 +127,7 @@ static bool close_seams(struct surface *surface)
     follow(surface, target);
     note_bridges(surface, &made);
     mem_free(target);
-    if (made.k < 0)
-        log_err(surface->log, "neighbours of %zu points: out of memory", surface->mesh.point_count);
-    return made.k >= 0;
+    return made.k >= 0 || no_surface(surface, why, "out of memory for neighbours of %zu points", surface->mesh.point_count);
 }
 
 /* Puts visible triangles first. Returns how many there are. */
@@ -318,10 +329,10 @@ struct surface *surface_create(struct log *log, struct workers *workers, const f
     surface->size_m = size_m;
     report->tolerance_m = params->tolerance_m > 0 ? params->tolerance_m : size_m * TOLERANCE_OF_SIZE;
     report->spacing_m = params->spacing_m;
-    if (!weld(surface, positions_m, triangles, triangle_count, size_m))
+    if (!weld(surface, positions_m, triangles, triangle_count, size_m, params->why))
         goto error;
     report->weld_s = seconds_since(&since_ns);
-    if (!close_seams(surface))
+    if (!close_seams(surface, params->why))
         goto error;
     parts_init(&parts, &surface->mesh, triangles, triangle_count, surface->vertex_point, report->tolerance_m, params->tolerance_m <= 0);
     report->border_edges_after = border_edges(&surface->mesh);

@@ -34,7 +34,9 @@ struct surface;
 struct surface_params { /* zero: chosen from the model */
     double tolerance_m; /* gaps up to this are closed; if it is chosen, at thin parts smaller ones (parts.h) */
     double spacing_m;   /* longest edge of the sampled surface */
+    char *why;          /* NULL, or SURFACE_WHY_BYTES: takes what was wrong where there is no surface */
 };
+#define SURFACE_WHY_BYTES 160
 
 struct surface_report {
     double tolerance_m, spacing_m, time_m2; /* as chosen; time_m2: the heat method's t */
@@ -51,7 +53,7 @@ struct surface_report {
 };
 
 /* positions: count vertices in metres; triangles: indices, 3 each. Everything is copied. workers may be NULL, else it must
-   outlive the surface. NULL on failure, already logged: no triangle has an area, or out of memory.
+   outlive the surface. NULL on failure, already logged unless params->why takes it: no triangle has an area, or out of memory.
    Thread: one call at a time per surface; different surfaces are independent. */
 struct surface *surface_create(struct log *log, struct workers *workers, const float (*positions_m)[3], size_t vertex_count,
                                const uint32_t *triangles, size_t triangle_count, const struct surface_params *params);

@@ -12,6 +12,7 @@
 #define ASIDE 1e-3  /* of the way to the side across: a place beside a corner */
 #define ANY_ORDER 2 /* buckets within which a point may be taken before a nearer one */
 #define DEEPEST 32  /* triangles that a straight line near the source passes through */
+#define NO_LENGTH 1e-300 /* only so that nothing is divided by 0 */
 
 typedef float lanes __attribute__((vector_size(4 * UNFOLD_FAN)));
 typedef int32_t mask __attribute__((vector_size(4 * UNFOLD_FAN))); /* of each lane all bits, or none */
@@ -180,10 +181,11 @@ static double cross(const double a[2], const double b[2])
     return a[0] * b[1] - a[1] * b[0];
 }
 
-/* The third corner of the triangle beyond. */
+/* The third corner of the triangle beyond. An edge is taken as long as it is, however short: with another length the corner would not lie
+   beyond it but on it, inside every window, and 2^DEEPEST windows would be looked through. */
 static void lay_out_apex(const struct window *window, double to_l_m, double to_r_m, double apex[2])
 {
-    double e[2] = { window->r[0] - window->l[0], window->r[1] - window->l[1] }, length = max_of(hypot(e[0], e[1]), 1e-30);
+    double e[2] = { window->r[0] - window->l[0], window->r[1] - window->l[1] }, length = max_of(hypot(e[0], e[1]), NO_LENGTH);
     double along = (to_l_m * to_l_m - to_r_m * to_r_m + length * length) / (2 * length);
     double off = sqrt(max_of(to_l_m * to_l_m - along * along, 0));
     apex[0] = window->l[0] + (along * e[0] + off * e[1]) / length;
@@ -195,11 +197,13 @@ static void look_through(const struct unfold *unfold, struct unfold_walk *walk, 
     const struct intrinsic *in = unfold->in;
     uint32_t t = window->entered / 3, side = window->entered % 3;
     double apex[2];
-    if (min_of(hypot(window->l[0], window->l[1]), hypot(window->r[0], window->r[1])) >= unfold->near_m)
+    if (!(min_of(hypot(window->l[0], window->l[1]), hypot(window->r[0], window->r[1])) < unfold->near_m))
         return;
     lay_out_apex(window, in->lengths[t][(side + 1) % 3], in->lengths[t][(side + 2) % 3], apex);
     double distance_m = hypot(apex[0], apex[1]);
     bool after_low = cross(window->low, apex) >= 0, before_high = cross(apex, window->high) >= 0;
+    if (!after_low && !before_high) /* a corner beyond an edge is not behind the source: its place is no number, and windows stay wide */
+        return;
     if (after_low && before_high && distance_m < unfold->near_m)
         offer(unfold, walk, in->points[t][(side + 2) % 3], (float)distance_m);
     for (uint32_t i = 0; i < 2; i++) {

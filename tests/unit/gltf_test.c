@@ -164,6 +164,24 @@ static void nodes_are_put_in_place(void **state)
     assert_float_equal(l->model.nodes[2].world[12], 5, 0);
 }
 
+#define TURNED(rotation)                                                                                                                   \
+    HEAD "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"name\":\"valve\",\"mesh\":0,\"rotation\":" rotation "}]," MESH(SQUARE) ACCESSORS "}"
+
+/* As a unit quaternion turns, other lengths do, and are counted; one without a length turns nowhere. */
+static void rotations_have_a_length(void **state)
+{
+    struct gltf_case *l = *state;
+    good(l, TURNED("[0,0,0.7071,0.7071]"));
+    assert_int_equal(l->model.scaled_rotations, 0);
+    good(l, TURNED("[0,0,2,2]"));
+    assert_int_equal(l->model.scaled_rotations, 1);
+    assert_float_equal(l->model.nodes[0].world[0], 0, 1e-12);
+    assert_float_equal(l->model.nodes[0].world[1], 1, 1e-12);
+    assert_float_equal(l->model.nodes[0].world[10], 1, 1e-12);
+    refused(l, TURNED("[0,0,0,0]"), "node 0 'valve': its rotation [0, 0, 0, 0] turns nowhere");
+    refused(l, TURNED("[0,0,1e-9,0]"), "node 0 'valve': its rotation");
+}
+
 static void wrong_numbers_are_refused(void **state)
 {
     struct gltf_case *l = *state;
@@ -399,7 +417,7 @@ static void what_cannot_be_cut_is_refused(void **state)
           "none of its 2 triangles has an area" },
         { HEAD "\"scenes\":[{\"nodes\":[0,1]}],\"nodes\":[{\"mesh\":0},{\"mesh\":0,\"translation\":[0,2e7,0]}]," MESH(SQUARE) ACCESSORS
                "}",
-          "its size is 2e+07 m along axis 1" },
+          "its size is 2e+07 m along axis 1, more than 1e+07 m" },
     };
     for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
         struct geometry g;
@@ -480,6 +498,7 @@ static void real_models_go_through(void **state)
             fail_msg("%s: %s", path, l->why);
         struct geometry g = cut(l, &(struct geometry_params){ .unit_m = 1, .up = AXIS_Y });
         assert_true(g.index_count > 3000);
+        assert_int_equal(l->model.scaled_rotations, 0);
         for (uint32_t v = 0; v < g.vertex_count; v++) {
             const float *n = g.normals[v];
             assert_float_equal(n[0] * n[0] + n[1] * n[1] + n[2] * n[2], 1, 1e-3);
@@ -500,6 +519,7 @@ int main(void)
         WITH_MODEL(every_kind_of_index_and_position_is_read),
         WITH_MODEL(lines_and_points_are_skipped_and_counted),
         WITH_MODEL(nodes_are_put_in_place),
+        WITH_MODEL(rotations_have_a_length),
         WITH_MODEL(wrong_numbers_are_refused),
         WITH_MODEL(wrong_trees_are_refused),
         WITH_MODEL(unknown_extensions_are_refused),

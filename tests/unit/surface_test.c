@@ -677,6 +677,30 @@ static void a_surface_without_area_is_refused(void **state)
     log_destroy(&quiet);
 }
 
+/* Lengths whose squares are no numbers any more; what comes out does not matter, that it ends does. */
+static void a_speck_ends(void **state)
+{
+    static const float sizes[] = { 1e-15f, 1e-24f, 1e-30f };
+    (void)state;
+    for (size_t i = 0; i < sizeof(sizes) / sizeof(sizes[0]); i++) {
+        struct cad plate = { 0 };
+        cad_plate(&plate, &chance, 10, 10, 1, 1, 0);
+        for (size_t v = 0; v < plate.vertex_count; v++)
+            for (int axis = 0; axis < 3; axis++)
+                plate.positions[v][axis] *= sizes[i];
+        const double source[1][3] = { { 0.41 * (double)sizes[i], 0.37 * (double)sizes[i], 0 } };
+        struct surface *surface =
+            surface_create(the_log, workers, (const float(*)[3])plate.positions, plate.vertex_count, plate.triangles, plate.triangle_count,
+                           &(struct surface_params){ .spacing_m = 0.2 * (double)sizes[i] }); /* searches look at all there is */
+        assert_non_null(surface);
+        float *distances = mem_array(plate.vertex_count, sizeof(*distances));
+        surface_distances(surface, source, 1, distances);
+        mem_free(distances);
+        surface_destroy(&surface);
+        cad_finish(&plate);
+    }
+}
+
 int main(void)
 {
     cmocka_set_message_output(CM_OUTPUT_TAP);
@@ -696,6 +720,7 @@ int main(void)
         cmocka_unit_test(many_sources_at_once_are_as_one_by_one),
         cmocka_unit_test(vertices_of_flat_triangles_take_their_neighbours_distance),
         cmocka_unit_test(a_surface_without_area_is_refused),
+        cmocka_unit_test(a_speck_ends),
     };
     return cmocka_run_group_tests(tests, surface_case_set_up, surface_case_tear_down);
 }

@@ -1,0 +1,251 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* plantcast-prep on models that are far away, tiny, narrow, or there many times over; and that it ends when it is told to. */
+#include <fcntl.h>
+#include <jansson.h>
+#include <math.h>
+#include <setjmp.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#include <cmocka.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "base/text.h"
+#include "tests/support/model_maker.h"
+#include "tests/support/prep_case.h"
+#include "tests/support/temp.h"
+
+#define PLANT(asset)                                                                                                                       \
+    "plant: { name: Odd }\n"                                                                                                               \
+    "assets:\n"                                                                                                                            \
+    "  - { id: A, model: model.glb, up: z, " asset " }\n"                                                                                  \
+    "groups: [{ id: temperature, unit: K, min: 0, max: 1 }]\n"                                                                             \
+    "sources: [{ id: plc, type: modbus, host: 127.0.0.1, byte_order: CDAB, address_base: 1 }]\n"                                           \
+    "tags: tags.csv\n"
+
+enum {
+    LEVELS_S = 15,    /* what takes milliseconds is done by then, and what takes minutes is not */
+    WELL_BEGUN_S = 3, /* of the processor: more than reading a model takes */
+    ENDS_S = 30,      /* it says 5; a machine may be busy */
+};
+
+/* model.glb: a plate of squares, `copies` times in one place. */
+static void write_plates(struct prep_case *c, uint32_t across, uint32_t up, const double size_m[2], uint32_t copies, const double at_m[3])
+{
+    struct maker maker;
+    struct text places = { 0 }, corners = { 0 };
+    for (uint32_t y = 0; y <= up; y++)
+        for (uint32_t x = 0; x <= across; x++) {
+            const float p[3] = { (float)(size_m[0] * x / across), (float)(size_m[1] * y / up), 0 };
+            text_add_bytes(&places, p, sizeof(p));
+        }
+    for (uint32_t y = 0; y < up; y++)
+        for (uint32_t x = 0; x < across; x++) {
+            uint32_t a = y * (across + 1) + x, b = a + across + 1;
+            const uint32_t six[6] = { a, a + 1, b, b, a + 1, b + 1 };
+            text_add_bytes(&corners, six, sizeof(six));
+        }
+    maker_init(&maker);
+    int positions = maker_numbers(&maker, places.at, places.length, FLOAT, (size_t)(across + 1) * (up + 1), "VEC3");
+    int indices = maker_numbers(&maker, corners.at, corners.length, UINT, (size_t)across * up * 6, "SCALAR");
+    int mesh = maker_mesh(&maker, json_pack("{s:{s:i},s:i}", "attributes", "POSITION", positions, "indices", indices));
+    for (uint32_t i = 0; i < copies; i++)
+        maker_node(&maker, "plate", mesh, json_pack("{s:[f,f,f]}", "translation", at_m[0], at_m[1], at_m[2]));
+    size_t size;
+    char *glb = maker_glb(&maker, &size);
+    mem_free(temp_write(c->folder, "model.glb", glb, size));
+    mem_free(glb);
+    maker_finish(&maker);
+    text_finish(&places);
+    text_finish(&corners);
+}
+
+static const double here[3] = { 0, 0, 0 };
+
+/* --- far away --------------------------------------------------------------------------------------------------------------- */
+
+struct row {
+    double place_m[3], geodesic_m, euclidean_m;
+};
+
+static size_t read_distances(struct prep_case *c, struct row *rows, size_t most)
+{
+    size_t count = 0;
+    prep_case_expect(c, "distances $PLANT --asset A --sensor T1", 0);
+    for (char *line = strchr(c->out.at, '\n') + 1; *line && count < most; line = strchr(line, '\n') + 1, count++) {
+        struct row *r = &rows[count];
+        int got = sscanf(line, "%lf,%lf,%lf,%lf,%lf", &r->place_m[0], &r->place_m[1], &r->place_m[2], &r->geodesic_m, &r->euclidean_m);
+        assert_int_equal(got, 5);
+    }
+    return count;
+}
+
+static void where_a_survey_has_it_distances_are_as_at_the_origin(void **state)
+{
+    static const double far_off_m[3] = { 412345, 5512345, 120 };
+    struct prep_case *c = *state;
+    struct row near[66], far[66], home[66];
+    write_plates(c, 10, 5, (double[]){ 2, 1 }, 1, here);
+    prep_case_plant(c, PLANT("tag: A"));
+    prep_case_tags(c, "T1,400001,Float,plc,temperature,A,,0.5,0.5,0\n");
+    assert_int_equal(read_distances(c, near, 66), 66);
+    write_plates(c, 10, 5, (double[]){ 2, 1 }, 1, far_off_m);
+    prep_case_tags(c, "T1,400001,Float,plc,temperature,A,,412345.5,5512345.5,120\n");
+    assert_int_equal(read_distances(c, far, 66), 66);
+    prep_case_plant(c, PLANT("placement: { translate: [-412345, -5512345, -120] }"));
+    prep_case_tags(c, "T1,400001,Float,plc,temperature,A,,0.5,0.5,0\n");
+    assert_int_equal(read_distances(c, home, 66), 66);
+    for (int i = 0; i < 66; i++) {
+        assert_float_equal(far[i].geodesic_m, near[i].geodesic_m, 1e-3);
+        assert_float_equal(far[i].euclidean_m, near[i].euclidean_m, 1e-3);
+        assert_float_equal(home[i].geodesic_m, near[i].geodesic_m, 1e-3);
+        for (int axis = 0; axis < 3; axis++) {
+            assert_float_equal(far[i].place_m[axis], near[i].place_m[axis] + far_off_m[axis], 1e-3);
+            assert_float_equal(home[i].place_m[axis], near[i].place_m[axis], 1e-3);
+        }
+    }
+}
+
+/* --- tiny, narrow ----------------------------------------------------------------------------------------------------------- */
+
+static void a_speck_is_refused(void **state)
+{
+    static const double sizes_m[] = { 1e-30, 1e-24, 1e-7 };
+    struct prep_case *c = *state;
+    prep_case_plant(c, PLANT("tag: A"));
+    prep_case_tags(c, "T1,400001,Float,plc,temperature,A,,0,0,0\n");
+    for (size_t i = 0; i < sizeof(sizes_m) / sizeof(sizes_m[0]); i++) {
+        char words[100];
+        write_plates(c, 10, 10, (double[]){ sizes_m[i], sizes_m[i] }, 1, here);
+        prep_case_expect(c, "$PLANT", 1);
+        snprintf(words, sizeof(words), "its size is %g m, less than 1e-06 m", sizes_m[i]);
+        prep_case_says(&c->err, "plant.yaml:3: error: asset A: ");
+        prep_case_says(&c->err, words);
+    }
+    write_plates(c, 10, 10, (double[]){ 2e-6, 2e-6 }, 1, here);
+    prep_case_expect(c, "$PLANT", 0);
+}
+
+static void why_there_are_no_distances_is_said(void **state)
+{
+    struct prep_case *c = *state;
+    prep_case_plant(c, PLANT("tag: A"));
+    prep_case_tags(c, "T1,400001,Float,plc,temperature,A,,0,0,0\n");
+    write_plates(c, 10, 1, (double[]){ 1, 1e-7 }, 1, here);
+    prep_case_expect(c, "$PLANT", 1);
+    prep_case_says(&c->err, "plant.yaml:3: error: asset A: ");
+    prep_case_says(&c->err, "model.glb: its distances to 1 sensors cannot be computed: none of 20 triangles has an area once places within "
+                            "1e-06 m are one");
+}
+
+/* --- many times over -------------------------------------------------------------------------------------------------------- */
+
+static void copies_in_one_place_are_counted_and_measured_once(void **state)
+{
+    struct prep_case *c = *state;
+    prep_case_plant(c, PLANT("tag: A"));
+    prep_case_tags(c, "");
+    write_plates(c, 4, 4, (double[]){ 1, 1 }, 400, here);
+    prep_case_expect(c, "$PLANT --report json", 0);
+    json_t *report = prep_case_json(&c->out);
+    assert_true(prep_case_number(report, "assets.0.model_triangles") == 400 * 32);
+    assert_true(prep_case_number(report, "assets.0.repeated_triangles") == 399 * 32);
+    assert_true(prep_case_number(report, "assets.0.stage_seconds.levels") < LEVELS_S); /* measured: 4 ms; before, minutes */
+    json_decref(report);
+    write_plates(c, 4, 4, (double[]){ 1, 1 }, 1, here);
+    prep_case_expect(c, "$PLANT --report json", 0);
+    report = prep_case_json(&c->out);
+    assert_true(prep_case_number(report, "assets.0.repeated_triangles") == 0);
+    json_decref(report);
+}
+
+/* --- told to end ------------------------------------------------------------------------------------------------------------ */
+
+static pid_t start(struct prep_case *c)
+{
+    char *program = prep_case_program(), *err = temp_write_text(c->folder, "err", "");
+    pid_t child = fork();
+    if (child == 0) {
+        dup2(open(err, O_WRONLY | O_APPEND), 2);
+        dup2(2, 1);
+        execl(program, program, c->plant, (char *)NULL);
+        _exit(99);
+    }
+    mem_free(program);
+    mem_free(err);
+    return child;
+}
+
+/* Of the processor; 0: it is not there. */
+static double seconds_of(pid_t child)
+{
+    char path[40], text[1000] = "";
+    unsigned long user = 0, kernel = 0;
+    snprintf(path, sizeof(path), "/proc/%ld/stat", (long)child);
+    FILE *file = fopen(path, "r");
+    size_t got = file ? fread(text, 1, sizeof(text) - 1, file) : 0;
+    const char *rest = got ? strrchr(text, ')') : NULL;
+    if (rest)
+        sscanf(rest, ") %*c %*d %*d %*d %*d %*d %*u %*u %*u %*u %*u %lu %lu", &user, &kernel);
+    if (file)
+        fclose(file);
+    return (double)(user + kernel) / (double)sysconf(_SC_CLK_TCK);
+}
+
+/* Two million triangles take longer than the program goes on with what is begun. */
+static void what_is_told_to_end_ends(void **state)
+{
+    static const int signals[] = { SIGTERM, SIGINT };
+    struct prep_case *c = *state;
+    prep_case_plant(c, PLANT("tag: A"));
+    prep_case_tags(c, "T1,400001,Float,plc,temperature,A,,0,0,0\n");
+    write_plates(c, 1200, 800, (double[]){ 12, 8 }, 1, here);
+    for (int i = 0; i < 2; i++) {
+        int status = 0;
+        pid_t child = start(c), ended = 0;
+        for (int tries = 0; tries < 12000 && seconds_of(child) < WELL_BEGUN_S; tries++)
+            usleep(10000);
+        kill(child, signals[i]);
+        int64_t told_ns = clock_mono_ns();
+        while (!ended && clock_mono_ns() - told_ns < ENDS_S * NS_PER_S) {
+            usleep(10000);
+            ended = waitpid(child, &status, WNOHANG);
+        }
+        if (!ended) {
+            kill(child, SIGKILL);
+            waitpid(child, &status, 0);
+            fail_msg("it goes on %d s after a signal", ENDS_S);
+        }
+        assert_true(WIFEXITED(status));
+        assert_int_equal(WEXITSTATUS(status), 1);
+        prep_case_read(c, "err", &c->err);
+        prep_case_says(&c->err, "interrupted");
+    }
+    write_plates(c, 10, 10, (double[]){ 1, 1 }, 1, here);
+    prep_case_expect(c, "$PLANT", 0); /* what they left is in nobody's way */
+    char *drafts = mem_printf("ls '%s'/plant.prepared/*.new 2>/dev/null", c->folder);
+    assert_int_not_equal(system(drafts), 0);
+    mem_free(drafts);
+}
+
+#define WITH_FOLDER(test) cmocka_unit_test_setup_teardown(test, prep_case_set_up, prep_case_tear_down)
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        WITH_FOLDER(where_a_survey_has_it_distances_are_as_at_the_origin),
+        WITH_FOLDER(a_speck_is_refused),
+        WITH_FOLDER(why_there_are_no_distances_is_said),
+        WITH_FOLDER(copies_in_one_place_are_counted_and_measured_once),
+        WITH_FOLDER(what_is_told_to_end_ends),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
