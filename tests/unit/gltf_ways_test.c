@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One surface said in every way that glTF knows is always the same surface; compressed by the compressions' own encoders. */
+/* One surface said in every way that glTF knows is always the same surface; compressed by the compressions' own encoders, and by the
+   programs that people compress with. */
 #include "preprocess/geometry.h"
 
 #include <math.h>
@@ -7,6 +8,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 #include <cmocka.h>
@@ -173,6 +175,81 @@ static void great_meshes_are_decompressed(void **state)
         assert_int_equal(l->model.primitives[0].vertex_count, 60501);
     }
     sheet_finish(&sheet);
+}
+
+/* --- by other programs --------------------------------------------------------------------------------------------------- */
+
+static bool has_program(const char *name)
+{
+    char *command = mem_printf("command -v %s >/dev/null", name);
+    int status = system(command);
+    mem_free(command);
+    return status == 0;
+}
+
+static size_t write_plain(struct gltf_case *l, const struct sheet *sheet)
+{
+    struct maker maker;
+    size_t size, count = sheet->vertex_count;
+    maker_init(&maker);
+    int positions = maker_numbers(&maker, sheet->positions, count * 12, FLOAT, count, "VEC3");
+    int normals = maker_numbers(&maker, sheet->normals, count * 12, FLOAT, count, "VEC3");
+    int colors = maker_numbers(&maker, sheet->colors, count * 4, UBYTE, count, "VEC4");
+    int indices = maker_numbers(&maker, sheet->indices, sheet->index_count * (size_t)4, UINT, sheet->index_count, "SCALAR");
+    json_object_set_new(maker_get(&maker, "accessors", colors), "normalized", json_true());
+    maker_node(&maker, "sheet",
+               maker_mesh(&maker, json_pack("{s:{s:i,s:i,s:i},s:i}", "attributes", "POSITION", positions, "NORMAL", normals, "COLOR_0",
+                                            colors, "indices", indices)),
+               NULL);
+    maker_add(&maker, "scenes", json_pack("{s:[i]}", "nodes", 0));
+    json_object_set_new(maker.root, "scene", json_integer(0)); /* without, draco_transcoder finds nothing */
+    char *bytes = maker_glb(&maker, &size);
+    maker_finish(&maker);
+    mem_free(temp_write(l->folder, "plain.glb", bytes, size));
+    mem_free(bytes);
+    return size;
+}
+
+/* FOLDER/plain.glb by that command into FOLDER/packed.glb, which says that it has that extension. */
+static void try_packed(struct gltf_case *l, const char *program, const char *options, const char *extension, double tolerance_m)
+{
+    struct sheet sheet;
+    size_t size;
+    sheet_init(&sheet, 24, 10);
+    size_t before = write_plain(l, &sheet);
+    char *command = mem_printf("cd '%s' && %s %s -i plain.glb -o packed.glb >said 2>&1", l->folder, program, options);
+    char *path = temp_path(l->folder, "packed.glb");
+    assert_int_equal(system(command), 0);
+    char *bytes = text_read_file(path, (size_t)1 << 20, &size);
+    assert_non_null(bytes);
+    gltf_case_read(l, path);
+    print_message("# %s %-14s %6zu bytes, %zu before: %s\n", program, options, size, before, l->good ? "read" : l->why);
+    assert_non_null(memmem(bytes, size, extension, strlen(extension)));
+    assert_good(l);
+    assert_int_equal(drawn_triangles(&l->model), sheet.index_count / 3);
+    assert_sheet(&l->model, first_drawn(&l->model), &sheet, tolerance_m);
+    mem_free(bytes);
+    mem_free(path);
+    mem_free(command);
+    sheet_finish(&sheet);
+}
+
+static void what_gltfpack_writes_is_read(void **state)
+{
+    static const char *const options[] = { "-c", "-cc", "-cf", "-cc -vpn" };
+    if (!has_program("gltfpack"))
+        skip();
+    for (size_t i = 0; i < sizeof(options) / sizeof(options[0]); i++)
+        try_packed(*state, "gltfpack", options[i], "EXT_meshopt_compression", 2e-4);
+    try_packed(*state, "gltfpack", "", "KHR_mesh_quantization", 2e-4);
+}
+
+static void what_draco_writes_is_read(void **state)
+{
+    if (!has_program("draco_transcoder"))
+        skip();
+    try_packed(*state, "draco_transcoder", "-qp 14 -qn 10", "KHR_draco_mesh_compression", 2e-4);
+    try_packed(*state, "draco_transcoder", "", "KHR_draco_mesh_compression", 1e-3);
 }
 
 /* --- what is broken in them ---------------------------------------------------------------------------------------------- */
@@ -871,6 +948,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         WITH_MODEL(every_way_gives_the_same_surface),
         WITH_MODEL(great_meshes_are_decompressed),
+        WITH_MODEL(what_gltfpack_writes_is_read),
+        WITH_MODEL(what_draco_writes_is_read),
         WITH_MODEL(broken_compression_is_refused_or_harmless),
         WITH_MODEL(false_claims_of_compressed_views_are_refused),
         WITH_MODEL(false_claims_of_draco_are_refused),
