@@ -3,6 +3,7 @@
 #include "preprocess/build.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -30,6 +31,8 @@ static void hash_field(XXH3_state_t *state, const struct plant *plant, const str
     const struct plant_group *group = &plant->groups[tag->group];
     const double numbers[5] = { tag->group, tag->strength, tag->decay, group->power, group->radius_m };
     XXH3_64bits_update(state, numbers, sizeof(numbers));
+    if (group->reach_m < INFINITY)
+        XXH3_64bits_update(state, &group->reach_m, sizeof(group->reach_m));
 }
 
 uint64_t build_stock_key(uint64_t model_hash, const struct geometry_params *geometry)

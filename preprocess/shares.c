@@ -94,6 +94,19 @@ WIDE_BODY void raise_lanes(lanes *x, float power)
             (*x)[l] = powf(base[l], power);
 }
 
+/* Towards the reach, by what is left of it against what the nearest has left; from there on, 0 for all but the nearest. */
+WIDE_BODY void fade(const struct shares_group *group, float near_m, const lanes *far, lanes *weight)
+{
+    const lanes zero = { 0 }, near = zero + near_m;
+    float own_m = group->reach_m - near_m;
+    mask nearest = *far <= near;
+    lanes one = zero + 1, left = (group->reach_m - *far) * (own_m > 0 ? 1 / own_m : 0);
+    mask within = left > zero;
+    keep(&within, &left);
+    left = (lanes)((nearest & (mask)one) | (~nearest & (mask)(left * left)));
+    *weight *= left;
+}
+
 /* Weights as shares of the nearest one's, so that no power is too large for a float. */
 WIDE_BODY void shepard_weight(const struct shares_group *group, size_t i, float near_m, const float *distance_m, lanes *weight)
 {
@@ -105,19 +118,34 @@ WIDE_BODY void shepard_weight(const struct shares_group *group, size_t i, float 
     *weight = near_m / far;
     raise_lanes(weight, group->power);
     *weight *= strength;
+    if (group->reach_m < INFINITY)
+        fade(group, near_m, &far, weight);
+}
+
+/* How fast a weight fades, in parts of itself. */
+WIDE_BODY void per_left(const struct shares_group *group, const lanes *far, lanes *out)
+{
+    const lanes least_m = (lanes){ 0 } + LEAST_M;
+    lanes left = group->reach_m - *far;
+    take_more(&least_m, &left);
+    *out = 2 / left;
 }
 
 WIDE_BODY float shepard_slope(const struct shares_group *group, const float *distance_m, const float *shares)
 {
     const lanes floor_m = (lanes){ 0 } + LEAST_M;
-    lanes slope = { 0 }, far, weight;
+    lanes slope = { 0 }, fading = { 0 }, far, weight;
     for (size_t i = 0; i < group->count; i += L) {
         load(distance_m + i, &far);
         load(shares + i, &weight);
         take_more(&floor_m, &far);
         slope += weight * (1 - weight) / far;
+        if (group->reach_m < INFINITY) {
+            per_left(group, &far, &far);
+            fading += weight * (1 - weight) * far;
+        }
     }
-    return group->power * sum_of(&slope);
+    return group->power * sum_of(&slope) + sum_of(&fading);
 }
 
 WIDE_BODY float shepard(const struct shares_group *group, const float *distance_m, bool slopes, float *shares, struct shares_norm *norm)
@@ -188,6 +216,11 @@ WIDE_BODY void exponential(lanes *x)
     *x = p * (lanes)((n + 127) << 23);
 }
 
+struct softmax {
+    float per_m, largest; /* exponent of those that take part */
+    float near_m;         /* with a reach */
+};
+
 /* 1 at the sensor, 0 at the radius and beyond. */
 WIDE_BODY void nearness(const float *distance_m, float per_m, lanes *out)
 {
@@ -198,33 +231,41 @@ WIDE_BODY void nearness(const float *distance_m, float per_m, lanes *out)
 }
 
 /* Softmax weights, not yet divided by their sum; `near` of each. */
-WIDE_BODY void paper_weight(const struct shares_group *group, size_t i, float per_m, const float *distance_m, float largest, lanes *near,
+WIDE_BODY void paper_weight(const struct shares_group *group, size_t i, const struct softmax *softmax, const float *distance_m, lanes *near,
                             lanes *weight)
 {
     const lanes infinite = (lanes){ 0 } + INFINITY;
     lanes strength, far;
     load(distance_m + i, &far);
     mask reached = far < infinite;
-    nearness(distance_m + i, per_m, near);
+    nearness(distance_m + i, softmax->per_m, near);
     load(group->strength + i, &strength);
-    *weight = *near * strength - largest;
+    *weight = *near * strength - softmax->largest;
     exponential(weight);
     keep(&reached, weight);
+    if (group->reach_m < INFINITY)
+        fade(group, softmax->near_m, &far, weight);
 }
 
 /* The most that a value changes where all nearnesses change by one at most: a sensor's changes its own share, by its weight's part and its
    decay's, and the weights of the others, of whose shares there are all but its own. Beyond the radius nothing changes. */
-WIDE_BODY float paper_slope(const struct shares_group *group, float per_m, const float *distance_m, float largest, float per,
+WIDE_BODY float paper_slope(const struct shares_group *group, const struct softmax *softmax, const float *distance_m, float per,
                             const float *shares, float all)
 {
     const lanes zero = { 0 }, least_near = (lanes){ 0 } + LEAST_NEAR;
-    lanes sum = { 0 }, near, weight, strength, decay, share;
+    lanes sum = { 0 }, near, weight, strength, decay, share, far;
     for (size_t i = 0; i < group->count; i += L) {
-        paper_weight(group, i, per_m, distance_m, largest, &near, &weight);
+        paper_weight(group, i, softmax, distance_m, &near, &weight);
         load(group->strength + i, &strength);
         load(group->decay + i, &decay);
         load(shares + i, &share);
         mask within = near > zero;
+        if (group->reach_m < INFINITY) {
+            load(distance_m + i, &far);
+            within |= weight > zero;
+            per_left(group, &far, &far);
+            strength += far / softmax->per_m;
+        }
         take_more(&least_near, &near);
         weight *= per;
         lanes own = strength * share * (1 - weight) + decay * share / near, others = strength * weight * (all - share);
@@ -237,19 +278,28 @@ WIDE_BODY float paper_slope(const struct shares_group *group, float per_m, const
 
 WIDE_BODY float paper(const struct shares_group *group, float radius_m, const float *distance_m, float *shares)
 {
-    lanes high = { 0 }, sum = { 0 }, valued = { 0 }, d, weight, strength;
-    float per_m = 1 / radius_m, largest;
+    lanes high = { 0 }, sum = { 0 }, valued = { 0 }, d, weight, strength, far;
+    struct softmax softmax = { .per_m = 1 / radius_m, .near_m = INFINITY };
+    if (group->reach_m < INFINITY) {
+        softmax.near_m = least(distance_m, group->count);
+        softmax.near_m = softmax.near_m < LEAST_M ? LEAST_M : softmax.near_m;
+    }
     for (size_t i = 0; i < group->count; i += L) {
-        nearness(distance_m + i, per_m, &d);
+        nearness(distance_m + i, softmax.per_m, &d);
         load(group->strength + i, &strength);
         weight = d * strength;
+        if (group->reach_m < INFINITY) {
+            load(distance_m + i, &far);
+            mask in = (far < group->reach_m) | (far <= softmax.near_m);
+            keep(&in, &weight);
+        }
         take_more(&weight, &high);
     }
-    largest = high[0];
+    softmax.largest = high[0];
     for (int l = 1; l < L; l++)
-        largest = high[l] > largest ? high[l] : largest;
+        softmax.largest = high[l] > softmax.largest ? high[l] : softmax.largest;
     for (size_t i = 0; i < group->count; i += L) {
-        paper_weight(group, i, per_m, distance_m, largest, &d, &weight);
+        paper_weight(group, i, &softmax, distance_m, &d, &weight);
         sum += weight;
         for (int l = 0; l < L && group->decays; l++)
             d[l] = powf(d[l], group->decay[i + (size_t)l]);
@@ -263,7 +313,7 @@ WIDE_BODY float paper(const struct shares_group *group, float radius_m, const fl
         weight *= per;
         store(&weight, shares + i);
     }
-    return per_m * paper_slope(group, per_m, distance_m, largest, per, shares, per * sum_of(&valued));
+    return softmax.per_m * paper_slope(group, &softmax, distance_m, per, shares, per * sum_of(&valued));
 }
 
 /* --- errors ------------------------------------------------------------------------------------------------------------------- */

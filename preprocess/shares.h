@@ -19,7 +19,7 @@ float shares_least(const float *values, size_t count);
 struct shares_group {
     const float *strength, *decay;
     bool decays; /* some decay is not 1 */
-    float power;
+    float power, reach_m; /* INFINITY: no limit; where nobody reaches, the nearest has all of a value */
     size_t count;
 };
 struct shares_norm { /* what makes shares of shepard's weights: these are parts of the nearest sensor's */

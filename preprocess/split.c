@@ -161,7 +161,8 @@ static bool inside_may_err(const struct split *split, const struct cut_tri *tri,
     if (length_m <= INSIDE_LEAST * split->shortest_m)
         return false;
     bool any_error = sum > LIKELY * limit || limit <= SPLIT_AIM;
-    return sum > 9 / 4.0 * limit || (any_error && length_m > LARGE * straight_nearest(split->in->straight, a));
+    const struct shares_norm *norms = split->norms + mesh->places.of_vertex[tri->v[i]] * split->norm_count;
+    return sum > 9 / 4.0 * limit || (any_error && length_m > LARGE * straight_nearest_of(split->in->straight, norms));
 }
 
 /* Measures new triangles whose edges are good: has those that err inside cut at the longest edge. */

@@ -41,7 +41,7 @@ static bool is_local(const struct straight_group *group)
     for (size_t i = 0; i < group->count; i++)
         if (!(group->of.strength[i] > 0) || group->of.strength[i] != group->of.strength[0])
             return false;
-    return !group->papers;
+    return !group->papers && !(group->of.reach_m < INFINITY);
 }
 
 static int compare_sensors(const void *a, const void *b)

@@ -6,7 +6,8 @@
    does one that is gone. Such shares add up from one time to the next (doubt) until an edge is measured again; what they may be together
    is far below the tenth of a step of colour by which the splitting keeps within SPLIT_ERROR. Where doubts are larger, a finding still
    holds if it is so far from what matters that no such change brings it there. That is so for shepard with one strength for
-   all sensors of a group. In paper every sensor has a share everywhere: nothing is kept for an asset with a group that is looked at in it.
+   all sensors of a group. In paper every sensor has a share everywhere, and with a reach shares bend where it ends: nothing is kept for an
+   asset with a group that is looked at in paper, or that has a reach.
    Coarser levels that were given up are not tried again before as many sensors have changed as findings may outlive at once.
    Safe to delete; one that is no good counts as none. */
 #ifndef PREPROCESS_SPLIT_KEPT_H

@@ -224,6 +224,7 @@ static void measure_always(const struct sight *sight, const float point[3], floa
 struct line { /* points along an edge, from one end to the other */
     const struct split *split;
     const float *a, *b; /* positions of the ends */
+    double length_m;
     struct sight sight;
     double t[POINTS];
     const float *shares[POINTS], *geodesic_m[POINTS];
@@ -237,7 +238,7 @@ static double error_at(const struct line *line, enum straight_modes modes, int f
 {
     double t = (line->t[point] - line->t[from]) / (line->t[to] - line->t[from]);
     return straight_error(line->split->in->straight, modes, line->shares[from], line->shares[to], t, line->shares[point],
-                          line->split->slack_m);
+                          line->length_m, line->split->slack_m);
 }
 
 /* A point more, if it is seen; its error against a line between the ends. */
@@ -397,14 +398,15 @@ static void bar_jump(struct split_finding *finding, const struct line *line)
 }
 
 /* Of which the middle was looked at last. */
-static double nearest_to_middle(const struct line *line)
+static double nearest_to_middle(const struct line *line, uint32_t end)
 {
     const struct straight *straight = line->split->in->straight;
     float middle[3];
     if (line->count == 3)
         return straight_nearest_of(straight, line->norms);
     split_mix(line->a, line->b, 0.5, middle);
-    return straight_nearest(straight, middle);
+    return fmin(straight_nearest(straight, middle),
+                straight_rim_of(straight, line->split->norms + place_of(line->split, end) * line->split->norm_count));
 }
 
 static void try_edge(const struct job *job, struct split_finding *finding, struct room *room)
@@ -417,6 +419,7 @@ static void try_edge(const struct job *job, struct split_finding *finding, struc
     struct line line = { .split = split,
                          .a = pa,
                          .b = pb,
+                         .length_m = length_m,
                          .sight = sight_of_edge(split, edge, &room->notes),
                          .t = { 0, 1 },
                          .count = 2,
@@ -427,7 +430,7 @@ static void try_edge(const struct job *job, struct split_finding *finding, struc
                          .norms = room->norms };
     line.shares[1] = shares_at(split, edge->b, 1, room);
     finding->error = (float)add_point(&line, 0.5);
-    double nearest_m = nearest_to_middle(&line);
+    double nearest_m = nearest_to_middle(&line, edge->a);
     if (split_is_short(split, length_m)) {
         bar_short(finding);
         return;
@@ -510,7 +513,10 @@ static double error_inside(const struct inside *inside, const double weights[3],
     surface_field_at_spot(split->in->field, split->in->surface, spot, geodesic_m);
     straight_shares(straight, point, geodesic_m, split->slack_m > 0, shares, inside->norms);
     enum straight_modes modes = jumps_inside(split, inside->tri, point, geodesic_m) ? STRAIGHT_EUCLIDEAN : STRAIGHT_BOTH;
-    return straight_error_inside(straight, modes, inside->shares, weights, shares, split->slack_m);
+    double wide_m = 0;
+    for (int c = 0; c < 3; c++)
+        wide_m = fmax(wide_m, vec_distance(at, inside->corners[c]));
+    return straight_error_inside(straight, modes, inside->shares, weights, shares, wide_m, split->slack_m);
 }
 
 /* At the middle; where that is not seen, at what is seen nearest to it and to places beside the corners. */

@@ -30,7 +30,9 @@ static void add_group(struct straight *straight, const struct plant *plant, int 
     }
     size_t padded = shares_padded(to->count);
     float *strength = mem_array(padded, sizeof(*strength)), *decay = mem_array(padded, sizeof(*decay));
-    to->of = (struct shares_group){ .strength = strength, .decay = decay, .power = (float)from->power, .count = padded };
+    to->of = (struct shares_group){
+        .strength = strength, .decay = decay, .power = (float)from->power, .reach_m = (float)from->reach_m, .count = padded
+    };
     for (size_t i = 0; i < padded; i++) {
         const struct plant_tag *tag = i < to->count ? &plant->tags[sensors[to->columns[i]].tag] : NULL;
         strength[i] = tag ? (float)factor_of(tag->strength) : 0;
@@ -150,10 +152,14 @@ void straight_shares(const struct straight *straight, const float point_m[3], co
         for (size_t g = 0; g < straight->group_count; g++) {
             const struct straight_group *group = &straight->groups[g];
             const float *distance_m = pick(group, &distances, mode);
-            *slope++ = shares_shepard(&group->of, distance_m, slopes, shares, norms++);
+            float *of = slope;
+            *slope++ = shares_shepard(&group->of, distance_m, slopes, shares, norms);
             shares += group->of.count;
             *slope++ = group->papers ? shares_paper(&group->of, (float)group->radius_m[mode], distance_m, shares) : 0;
             shares += group->papers ? group->of.count : 0;
+            float beyond_m = norms++->near_m - group->of.reach_m;
+            if (beyond_m > 0)
+                of[0] = of[1] = -beyond_m;
         }
     distances_finish(&distances);
 }
@@ -196,9 +202,15 @@ static bool has_value(const float *shares, size_t count)
     return i < count;
 }
 
+struct question {
+    enum straight_modes modes;
+    const float *const *corners, *weights;
+    size_t corner_count;
+    double wide_m, slack_m;
+};
+
 /* The largest of the errors, group by group. Where a group has no value at a corner, because no way leads there, there is no error. */
-static double worst_of(const struct straight *straight, enum straight_modes modes, const float *const *corners, const float *weights,
-                       size_t corner_count, const float *sample, double slack_m)
+static double worst_of(const struct straight *straight, const struct question *question, const float *sample)
 {
     double most = 0;
     bool reached = true;
@@ -210,29 +222,42 @@ static double worst_of(const struct straight *straight, enum straight_modes mode
             continue;
         if (g % 2 == INTERPOLATION_SHEPARD)
             reached = has_value(sample + first, count);
-        for (size_t c = 0; c < corner_count; c++) {
-            at[c] = corners[c] + first;
+        for (size_t c = 0; c < question->corner_count; c++) {
+            at[c] = question->corners[c] + first;
             reached = reached && (g % 2 != INTERPOLATION_SHEPARD || has_value(at[c], count));
         }
-        if (reached && modes & 1 << g / 2 / straight->group_count)
-            most = fmax(most, (double)shares_error(at, weights, corner_count, sample + first, count) -
-                                  fmin(slack_m * (double)sample[straight->share_count + g], MOST_SLACK));
+        double slope = (double)sample[straight->share_count + g]; /* or metres beyond the data, less than 0 */
+        if (reached && slope >= -question->wide_m && question->modes & 1 << g / 2 / straight->group_count)
+            most = fmax(most, (double)shares_error(at, question->weights, question->corner_count, sample + first, count) -
+                                  fmin(question->slack_m * fmax(slope, 0), MOST_SLACK));
         first += count;
     }
     return most;
 }
 
 double straight_error(const struct straight *straight, enum straight_modes modes, const float *a, const float *b, double t,
-                      const float *between, double slack_m)
+                      const float *between, double wide_m, double slack_m)
 {
-    return worst_of(straight, modes, (const float *const[2]){ a, b }, (const float[2]){ 1 - (float)t, (float)t }, 2, between, slack_m);
+    const float *const corners[2] = { a, b }, weights[2] = { 1 - (float)t, (float)t };
+    return worst_of(straight, &(struct question){ modes, corners, weights, 2, wide_m, slack_m }, between);
 }
 
 double straight_error_inside(const struct straight *straight, enum straight_modes modes, const float *const corners[3],
-                             const double weights[3], const float *inside, double slack_m)
+                             const double weights[3], const float *inside, double wide_m, double slack_m)
 {
     const float shares[3] = { (float)weights[0], (float)weights[1], (float)weights[2] };
-    return worst_of(straight, modes, corners, shares, 3, inside, slack_m);
+    return worst_of(straight, &(struct question){ modes, corners, shares, 3, wide_m, slack_m }, inside);
+}
+
+double straight_rim_of(const struct straight *straight, const struct shares_norm *norms)
+{
+    float rim_m = INFINITY;
+    for (size_t n = 0; n < 2 * straight->group_count; n++) {
+        float reach_m = straight->groups[n % straight->group_count].of.reach_m;
+        if (reach_m < INFINITY)
+            rim_m = fminf(rim_m, fabsf(reach_m - norms[n].near_m));
+    }
+    return (double)rim_m;
 }
 
 double straight_nearest_of(const struct straight *straight, const struct shares_norm *norms)
@@ -240,7 +265,7 @@ double straight_nearest_of(const struct straight *straight, const struct shares_
     float nearest_m = INFINITY;
     for (size_t g = 0; g < straight->group_count; g++)
         nearest_m = fminf(nearest_m, norms[DISTANCE_EUCLIDEAN * straight->group_count + g].near_m);
-    return (double)nearest_m;
+    return fmin((double)nearest_m, straight_rim_of(straight, norms));
 }
 
 double straight_nearest(const struct straight *straight, const float point_m[3])

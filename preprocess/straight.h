@@ -6,7 +6,7 @@
    is looked for over every group with sensors on the asset, in both interpolations and on both distances, with the parameters that the
    plant file gives.
 
-   A sensor's limited reach is left aside: it makes a jump, which no cutting mends. */
+   Where no sensor of a group reaches, there is no data, and the nearest's value is carried on. */
 #ifndef PREPROCESS_STRAIGHT_H
 #define PREPROCESS_STRAIGHT_H
 #include "plant/plant.h"
@@ -47,16 +47,19 @@ void straight_norms(const struct straight *straight, const float point_m[3], con
 /* The same shares, in less time where paper is not looked at; nothing after them. */
 void straight_shares_again(const struct straight *straight, const float point_m[3], const float *geodesic_m,
                            const struct shares_norm *norms, float *shares);
-/* From norms: metres to the nearest sensor, as the crow flies. */
+/* From norms: metres to where a group's data end, at least. Where reaches of two sensors end at once, its field peaks. */
+double straight_rim_of(const struct straight *straight, const struct shares_norm *norms);
+/* And metres to the nearest sensor, as the crow flies, or to there, whichever is less. */
 double straight_nearest_of(const struct straight *straight, const struct shares_norm *norms);
 /* In parts of the range: samples at a point against a line between two others, at share t of the way; against the plane
    through three corners, with these weights.
-   modes: on which distances. Less what a value may change over slack_m, up to two steps of colour. */
+   modes: on which distances. Less what a value may change over slack_m, up to two steps of colour. Farther than wide_m from where a group
+   has data, it does not err; nearer, what is shown there goes into what is shown of the data, if the edge or triangle is so wide. */
 enum straight_modes { STRAIGHT_GEODESIC = 1 << DISTANCE_GEODESIC, STRAIGHT_EUCLIDEAN = 1 << DISTANCE_EUCLIDEAN, STRAIGHT_BOTH = 3 };
 double straight_error(const struct straight *straight, enum straight_modes modes, const float *a, const float *b, double t,
-                      const float *between, double slack_m);
+                      const float *between, double wide_m, double slack_m);
 double straight_error_inside(const struct straight *straight, enum straight_modes modes, const float *const corners[3],
-                             const double weights[3], const float *inside, double slack_m);
+                             const double weights[3], const float *inside, double wide_m, double slack_m);
 /* Metres from the point to the nearest sensor, as the crow flies. */
 double straight_nearest(const struct straight *straight, const float point_m[3]);
 

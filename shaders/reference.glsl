@@ -54,6 +54,13 @@ float nearness(float distance_m)
     return max(0.0, 1.0 - distance_m / numbers.y);
 }
 
+// What a weight is times towards the reach, in parts of the nearest one's.
+float faded(float distance_m, float near_m)
+{
+    float left = isinf(numbers.z) || distance_m <= near_m ? 1.0 : max(0.0, numbers.z - distance_m) / (numbers.z - near_m);
+    return left * left;
+}
+
 // x: the scalar; y: no data; z: uncertain.
 vec3 reference_field()
 {
@@ -86,6 +93,7 @@ vec3 reference_field()
             continue;
         float near = nearness(d);
         float weight = choice.x != 0 ? exp(near * strength - top) : d <= near_m ? strength : strength * pow(near_m / d, numbers.x);
+        weight *= faded(d, near_m);
         sum += sensors[i].value * weight * (choice.x != 0 && sensors[i].decay > 0.0 ? pow(near, sensors[i].decay) : 1.0);
         weights += weight;
         marked += (sensors[i].state & 4u) != 0u ? weight : 0.0;

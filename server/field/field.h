@@ -6,7 +6,10 @@
              v~ = clamp((v - MIN)/(MAX - MIN));  the scalar handed out is MIN + value (MAX - MIN)
    shepard:  value = sum_i s_i v_i / D_i^p  /  sum_i s_i / D_i^p; exactly v_i where D_i = 0
 
-   A sensor takes part at a point if it is of the group and the asset, its quality is not Bad, D is finite and D <= reach_m.
+   A sensor takes part at a point if it is of the group and the asset, its quality is not Bad, D is finite and D <= reach_m. Towards its
+   reach it counts less and less: where reach_m is set, weights are (1 - D/reach_m)^2 times those above (for shepard's p = 2 these are the
+   weights of Franke and Nielson, 1980), so that the field has no edge where a sensor leaves the sums. The nearest one's is never seen to
+   fade, since weights are divided by their sum.
    In shepard a sensor of strength 0 never takes part; a common factor on all strengths cancels out, and decay has no part.
    There is no data where nobody takes part, and where a configured sensor that does not is nearer than all that do (`fill` may ask to
    have such places filled; they are flagged uncertain). The value there is carried on from the nearest that takes part; else MIN.

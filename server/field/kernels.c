@@ -65,9 +65,20 @@ static inline float exp2_down(float x)
 
 static inline bool takes_part(float distance_m, float near_m, float reach_m)
 {
-    float limit_m = near_m > reach_m ? near_m : reach_m;
-    limit_m = limit_m < FLT_MAX ? limit_m : FLT_MAX;
-    return distance_m <= limit_m;
+    bool within = distance_m < reach_m, nearest = distance_m <= near_m, finite = distance_m <= FLT_MAX;
+    return (within | nearest) & finite;
+}
+
+/* Weights fade towards the reach: by what is left of it, squared, in parts of what the nearest has left. */
+static inline void fade(const struct kernel_column *column, float *restrict weight)
+{
+    const float *distance_m = column->distance_m, *near_m = column->near_m;
+    const float reach_m = column->reach_m;
+    for (size_t j = 0; j < column->count; j++) {
+        float left = (reach_m - distance_m[j]) / (reach_m - near_m[j]);
+        left = distance_m[j] <= near_m[j] ? 1.0f : left;
+        weight[j] = takes_part(distance_m[j], near_m[j], reach_m) ? weight[j] * left * left : 0.0f;
+    }
 }
 
 KERNEL void kernel_euclidean(const float (*positions_m)[3], size_t count, const float point_m[3], float *restrict out_m)
@@ -166,7 +177,9 @@ KERNEL void kernel_shepard(const struct kernel_column *column, float *restrict w
         part_of_nearest(column, weight);
     for (size_t j = 0; !column->alike && j < column->count; j++)
         weight[j] = weight[j] * strength / top[j];
-    for (size_t j = 0; j < column->count; j++)
+    if (reach_m < INFINITY)
+        fade(column, weight);
+    for (size_t j = 0; !(reach_m < INFINITY) && j < column->count; j++)
         weight[j] = takes_part(distance_m[j], near_m[j], reach_m) ? weight[j] : 0.0f;
 }
 
@@ -196,6 +209,10 @@ KERNEL void kernel_paper(const struct kernel_column *column, float *restrict wei
             float raised = exp2_down(exponent[j] + decay * log2_from_tiny(d[j]));
             term[j] = d[j] > TINY ? raised : 0.0f;
         }
+    if (reach_m < INFINITY)
+        fade(column, term);
+    if (reach_m < INFINITY && weight)
+        fade(column, weight);
 }
 
 KERNEL static void add_one(double *restrict sum, const float *restrict a, double factor, size_t count)

@@ -20,7 +20,7 @@ void kernel_nearest(const float *restrict distance_m, size_t count, float *restr
 float kernel_largest(const float *distance_m, size_t count, float most_m);
 
 /* The scale of each vertex' weights, so that the largest is 1 and none overflows: for Shepard the largest strength among the
-   nearest sensors, for Algorithm 1 the largest exponent. A sensor takes part where distance <= max(reach, near): where none is within
+   nearest sensors, for Algorithm 1 the largest exponent. A sensor takes part where it is within reach or the nearest: where none is within
    reach, the nearest alone carries its value on, so that a triangle with one reached corner can be interpolated. */
 void kernel_top_shepard(const float *restrict distance_m, const float *restrict near_m, size_t count, float strength, float *restrict top);
 void kernel_top_paper(const float *restrict distance_m, const float *restrict near_m, size_t count, float reach_m, float radius_m,
@@ -38,7 +38,8 @@ struct kernel_column {
     bool alike;             /* shepard: all strengths are equal */
     float radius_m;         /* paper */
 };
-/* (strength / top) (near / distance)^power; exactly 1 for the strongest of the nearest, exactly 0 for all others where near is 0. */
+/* (strength / top) (near / distance)^power; exactly 1 for the strongest of the nearest, exactly 0 for all others where near is 0.
+   Either way, with a reach, times ((reach - distance) / (reach - near))^2: 1 for the nearest, 0 for others from the reach on. */
 void kernel_shepard(const struct kernel_column *column, float *restrict weight);
 /* weight = exp(d strength - top) (NULL: not wanted), term = weight d^decay, d = max(0, 1 - distance / radius). */
 void kernel_paper(const struct kernel_column *column, float *restrict weight, float *restrict term);

@@ -59,7 +59,8 @@ static double slow_value(const struct site *site, const struct view *view, const
 {
     double numerator = 0, denominator = 0;
     for (int i = 0; i < pick->nearest_count; i++) {
-        double weight = site->scene->plant->tags[pick->nearest[i].tag].strength / pow(pick->nearest[i].distance_m, view->field.power);
+        double distance_m = pick->nearest[i].distance_m, left = 1 - distance_m / view->field.reach_m;
+        double weight = site->scene->plant->tags[pick->nearest[i].tag].strength * left * left / pow(distance_m, view->field.power);
         numerator += weight * pick->nearest[i].value;
         denominator += weight;
     }

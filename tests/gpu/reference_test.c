@@ -201,7 +201,8 @@ static void compare_views(struct site *site, const struct way *way, struct tally
         struct view view;
         view_default(site->scene, WIDTH_PX, HEIGHT_PX, &view);
         view.tier = way->tier;
-        view.field.reach_m = (double)INFINITY; /* where a sensor's reach ends the field itself is broken off */
+        if (i % 2) /* else as the plant says */
+            view.field.reach_m = (double)INFINITY;
         view.field.interpolation = way->interpolation;
         view.field.distance = way->distance;
         site->random = way->seed + (uint64_t)i; /* views stay what they are where levels change */

@@ -58,10 +58,19 @@ static double truth_radius(const struct synthetic *plant, const struct field_par
     return most;
 }
 
-/* Weights of those that take part: all within `limit_m`. */
-static void truth_weights(struct sight *s, size_t count, const struct plant_tag *tags, const struct field_params *params, double limit_m,
+/* What a weight is times towards the reach, in parts of the nearest one's. */
+static double faded(const struct field_params *params, double near_m, double distance_m)
+{
+    if (isinf(params->reach_m) || distance_m <= near_m)
+        return 1;
+    return pow((1 - distance_m / params->reach_m) / (1 - near_m / params->reach_m), 2);
+}
+
+/* Weights of those that take part: all within reach, or the nearest. */
+static void truth_weights(struct sight *s, size_t count, const struct plant_tag *tags, const struct field_params *params, double near_m,
                           double radius_m)
 {
+    double limit_m = fmax(near_m, params->reach_m);
     bool at_sensor = false;
     double top = -INFINITY;
     for (size_t i = 0; i < count; i++) {
@@ -84,6 +93,8 @@ static void truth_weights(struct sight *s, size_t count, const struct plant_tag 
         } else {
             s->weight[i] = s->term[i] = tags[i].strength / pow(s->distance_m[i], params->power);
         }
+        s->weight[i] *= faded(params, near_m, s->distance_m[i]);
+        s->term[i] *= faded(params, near_m, s->distance_m[i]);
     }
 }
 
@@ -106,7 +117,7 @@ static struct truth truth_at(const struct synthetic *plant, const struct field_p
     bool reached = isfinite(nearest_usable) && nearest_usable <= params->reach_m, lost = nearest_configured < nearest_usable;
     struct truth truth = { .value = plant->group.min, .no_data = !reached || (lost && params->fill == FILL_NONE) };
     truth.near_tie = fabs(nearest_usable - params->reach_m) < 1e-5;
-    truth_weights(&s, count, plant->plant.tags, params, reached ? params->reach_m : nearest_usable, radius_m);
+    truth_weights(&s, count, plant->plant.tags, params, nearest_usable, radius_m);
     for (size_t i = 0; i < count; i++) {
         const struct reading *r = &plant->snapshot->readings[i];
         if (s.weight[i] == 0)
@@ -116,6 +127,8 @@ static struct truth truth_at(const struct synthetic *plant, const struct field_p
         total += s.weight[i];
         uncertain += quality_is_uncertain(r->quality) ? s.weight[i] : 0;
         truth.near_tie |= s.distance_m[i] > params->reach_m - 1e-5;
+        bool at_the_rim = s.distance_m[i] > nearest_usable && nearest_usable > 0.999 * params->reach_m; /* both have hardly any weight */
+        truth.near_tie |= at_the_rim && s.distance_m[i] < params->reach_m;
     }
     for (size_t i = 0; i < count; i++) {
         truth.near_tie |= fabs(s.distance_m[i] - params->reach_m) < 1e-5;
@@ -592,6 +605,39 @@ static void test_reach_ends_the_field(void **state)
     assert_int_equal(scalars->at[22].lacking, 128);
     assert_true(scalars->at[20].lacking < 127 && scalars->at[23].lacking > 128);
     rig_finish(&rig);
+}
+
+/* Far from any edge: nobody sees where a sensor leaves the sums. */
+static void test_a_sensor_fades_towards_its_reach(void **state)
+{
+    (void)state;
+    for (int paper = 0; paper < 2; paper++) {
+        struct rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 2));
+        rig.params.interpolation = paper ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
+        rig.params.decay = 0;
+        rig.params.radius_m = 8;
+        rig.params.reach_m = 4;
+        set(&rig, 0, 20, QUALITY_GOOD);
+        set(&rig, 1, 80, QUALITY_GOOD);
+        for (size_t k = 0; k < 200; k++) { /* the second one's reach ends at 150 */
+            synthetic_geodesic(rig.plant, 0)[20 + k] = 2;
+            synthetic_geodesic(rig.plant, 1)[20 + k] = 2.5f + 0.01f * (float)k;
+        }
+        synthetic_geodesic(rig.plant, 0)[20] = synthetic_geodesic(rig.plant, 1)[20] = 4; /* as far as both reach: of both */
+        synthetic_geodesic(rig.plant, 0)[21] = 3.999f;                                  /* alone, it is not seen to fade */
+        synthetic_geodesic(rig.plant, 1)[21] = 4.001f;
+        const struct scalar *at = show(&rig)->at + 20;
+        double weight = (paper ? exp(-1 / 8.0) : pow(2 / 3.0, 2)) * pow(0.5, 2); /* at 3 m it has half of what the nearest has left */
+        double part = weight / (1 + weight);
+        assert_true(fabs((double)at[50].value - (20 + 60 * part)) < 1e-4);
+        assert_true(fabs((double)at[0].value - 50) < 1e-4 && at[0].no_data == 0);
+        assert_true(at[1].value == 20 && at[1].no_data == 0);
+        for (int k = 2; k < 199; k++) {
+            assert_true(at[k + 1].value <= at[k].value && at[k].value - at[k + 1].value < 0.4f);
+            assert_true(k < 150 || at[k].value == 20);
+        }
+        rig_finish(&rig);
+    }
 }
 
 static void test_a_sensor_of_strength_0_has_no_say(void **state)
@@ -1351,6 +1397,7 @@ int main(void)
         cmocka_unit_test(test_a_part_that_nobody_reaches),
         cmocka_unit_test(test_a_sensor_out_of_reach_does_not_make_its_place_lost),
         cmocka_unit_test(test_reach_ends_the_field),
+        cmocka_unit_test(test_a_sensor_fades_towards_its_reach),
         cmocka_unit_test(test_a_sensor_of_strength_0_has_no_say),
         cmocka_unit_test(test_a_sensor_acts_on_its_own_asset_only),
         cmocka_unit_test(test_an_asset_without_sensors_of_the_group_has_no_field),

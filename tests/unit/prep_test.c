@@ -193,6 +193,28 @@ static void only_what_changed_is_made_anew(void **state)
     mem_free(old);
 }
 
+static void group_says(struct prep_case *s, const char *more)
+{
+    const char *at = strstr(plant_text, "max: 1 }");
+    char *text = mem_printf("%.*smax: 1%s%s", (int)(at - plant_text), plant_text, more, at + strlen("max: 1"));
+    prep_case_plant(s, text);
+    mem_free(text);
+}
+
+/* Triangles are cut where its field bends, and that is also where a reach ends; a limit bends nothing. */
+static void another_reach_is_another_file(void **state)
+{
+    struct prep_case *s = *state;
+    assert_states(s, "built", "shared", "built");
+    group_says(s, ", limits: { H: 0.5 }");
+    assert_states(s, "unchanged", "shared", "unchanged");
+    group_says(s, ", reach_m: 1.5");
+    assert_states(s, "built", "shared", "built");
+    group_says(s, ", reach_m: 1.25");
+    assert_states(s, "built", "shared", "built");
+    assert_states(s, "unchanged", "shared", "unchanged");
+}
+
 static void two_at_a_time_take_turns(void **state)
 {
     struct prep_case *s = *state;
@@ -353,6 +375,7 @@ int main(void)
         WITH_PLANT(a_second_run_does_nothing),
         WITH_PLANT(damaged_files_are_made_anew_and_said),
         WITH_PLANT(only_what_changed_is_made_anew),
+        WITH_PLANT(another_reach_is_another_file),
         WITH_PLANT(two_at_a_time_take_turns),
         WITH_PLANT(who_waits_says_for_whom_and_can_be_stopped),
         WITH_PLANT(distances_are_printed),

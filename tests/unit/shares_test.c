@@ -29,6 +29,35 @@ struct trial {
     struct shares_group group;
 };
 
+static bool takes_part(const struct trial *trial, double near_m, double d)
+{
+    return isfinite(d) && (d < (double)trial->group.reach_m || d <= near_m);
+}
+
+/* What a weight is times towards the reach: of the nearest, 1. */
+static double faded(const struct trial *trial, double near_m, double d)
+{
+    double reach_m = (double)trial->group.reach_m;
+    if (!takes_part(trial, near_m, d))
+        return 0;
+    return isinf(reach_m) || d <= near_m ? 1 : pow((reach_m - d) / (reach_m - near_m), 2);
+}
+
+static double least_of(const struct trial *trial)
+{
+    double near_m = INFINITY;
+    for (size_t i = 0; i < trial->count; i++)
+        near_m = fmin(near_m, fmax(1e-5, (double)trial->distance_m[i]));
+    return near_m;
+}
+
+/* By how much of itself a weight changes over a metre, since it fades. */
+static double fading(const struct trial *trial, double d)
+{
+    double reach_m = (double)trial->group.reach_m;
+    return isinf(reach_m) ? 0 : 2 / fmax(1e-5, reach_m - d);
+}
+
 /* Some sensors are not reached, some stand at the point itself. */
 static void make(struct trial *trial, bool decays)
 {
@@ -41,7 +70,11 @@ static void make(struct trial *trial, bool decays)
         trial->strength[i] = there ? (float)exp(4 * cad_random(&chance) - 2) : 0;
         trial->decay[i] = there && decays ? (float)(3 * cad_random(&chance)) : 1;
     }
-    trial->group = (struct shares_group){ .strength = trial->strength, .decay = trial->decay, .decays = decays, .count = trial->padded };
+    trial->group = (struct shares_group){ .strength = trial->strength,
+                                          .decay = trial->decay,
+                                          .decays = decays,
+                                          .reach_m = cad_random(&chance) < 0.5 ? INFINITY : (float)exp(6 * cad_random(&chance) - 3),
+                                          .count = trial->padded };
 }
 
 static void shepards_shares_are_those_of_a_plain_loop(void **state)
@@ -51,14 +84,14 @@ static void shepards_shares_are_those_of_a_plain_loop(void **state)
     for (int n = 0; n < 2000; n++) {
         struct trial trial;
         float shares[MOST];
-        double weights[MOST], sum = 0, slope = 0, near_m = INFINITY;
+        double weights[MOST], sum = 0, slope = 0, fade = 0, fastest = 0;
         make(&trial, false);
         trial.group.power = powers[n % 5];
-        for (size_t i = 0; i < trial.count; i++)
-            near_m = fmin(near_m, fmax(1e-5, (double)trial.distance_m[i]));
+        double near_m = least_of(&trial);
         for (size_t i = 0; i < trial.count; i++) {
             double d = fmax(1e-5, (double)trial.distance_m[i]);
             weights[i] = isfinite(d) ? (double)trial.strength[i] * pow(near_m / d, (double)trial.group.power) : 0;
+            weights[i] *= faded(&trial, near_m, d);
             sum += weights[i];
         }
         struct shares_norm norm, alone;
@@ -73,9 +106,14 @@ static void shepards_shares_are_those_of_a_plain_loop(void **state)
             assert_float_equal(shares[i], share, SAME);
             if (i < trial.count && isfinite(trial.distance_m[i]))
                 slope += share * (1 - share) / fmax(1e-5, (double)trial.distance_m[i]);
+            if (i >= trial.count || !(share > 0))
+                continue;
+            fade += share * (1 - share) * fading(&trial, fmax(1e-5, (double)trial.distance_m[i]));
+            fastest = fmax(fastest, fading(&trial, fmax(1e-5, (double)trial.distance_m[i])));
         }
-        slope *= (double)trial.group.power;
-        assert_true(fabs((double)found - slope) <= 1e-4 * slope + 2e-6 * (double)trial.group.power * MOST / fmin(near_m, 1));
+        slope = slope * (double)trial.group.power + fade;
+        assert_true(fabs((double)found - slope) <= 1e-4 * slope + 2e-6 * (double)trial.group.power * MOST / fmin(near_m, 1) + 1e-3 * fade +
+                                                         2e-6 * MOST * fastest);
     }
 }
 
@@ -87,9 +125,11 @@ static void papers_shares_are_those_of_a_plain_loop(void **state)
         float shares[MOST], radius_m = (float)exp(4 * cad_random(&chance) - 1);
         double weights[MOST], near[MOST], sum = 0, all = 0, slope = 0;
         make(&trial, n % 2);
+        double near_m = least_of(&trial);
         for (size_t i = 0; i < trial.count; i++) {
             near[i] = fmax(0, 1 - (double)trial.distance_m[i] / (double)radius_m);
             weights[i] = isfinite(trial.distance_m[i]) ? exp(near[i] * (double)trial.strength[i]) : 0;
+            weights[i] *= faded(&trial, near_m, (double)trial.distance_m[i]);
             sum += weights[i];
         }
         float found = shares_paper(&trial.group, radius_m, trial.distance_m, shares);
@@ -100,7 +140,8 @@ static void papers_shares_are_those_of_a_plain_loop(void **state)
         }
         for (size_t i = 0; i < trial.count; i++) {
             double weight = sum > 0 ? weights[i] / sum : 0, share = (double)shares[i], s = (double)trial.strength[i];
-            if (near[i] > 0)
+            s += fading(&trial, (double)trial.distance_m[i]) * (double)radius_m;
+            if (near[i] > 0 || (isfinite(trial.group.reach_m) && weight > 0))
                 slope += fmax(s * share * (1 - weight) + (double)trial.decay[i] * share / fmax(near[i], 1e-3), s * weight * (all - share));
         }
         slope /= (double)radius_m;
@@ -117,9 +158,17 @@ static void no_value_changes_faster_than_is_said(void **state)
         float shares[2][MOST], radius_m = (float)exp(4 * cad_random(&chance) - 1), step_m = 1e-3f * radius_m;
         double more = 0, less = 0;
         make(&trial, n % 2);
-        for (size_t i = 0; i < trial.count; i++)
+        if (isfinite(trial.group.reach_m))
+            trial.group.reach_m = radius_m * (float)(0.5 + 2 * cad_random(&chance));
+        const float reach_m = trial.group.reach_m;
+        for (size_t i = 0; i < trial.count; i++) {
             if (trial.distance_m[i] < radius_m)
                 trial.distance_m[i] = fminf(fmaxf(trial.distance_m[i], step_m), 0.95f * radius_m);
+            if (fabsf(trial.distance_m[i] - reach_m) < 0.2f * reach_m) /* there it changes slowly at first, then faster */
+                trial.distance_m[i] = i % 2 ? 0.8f * reach_m : 1.2f * reach_m;
+        }
+        if (least_of(&trial) > (double)reach_m) /* then all is the nearest one's, whichever that is */
+            continue;
         float said = shares_paper(&trial.group, radius_m, trial.distance_m, shares[0]);
         for (size_t i = 0; i < trial.count; i++)
             if (trial.distance_m[i] < radius_m)

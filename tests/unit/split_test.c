@@ -35,6 +35,7 @@ struct body { /* a surface with sensors of two groups, prepared by hand */
     double (*distance)(const double a[3], const double b[3]); /* along the surface */
     size_t own_triangles;
     double radius_m[2][2]; /* paper's: [group][geodesic] */
+    double reach_m[2];     /* of the groups; 0: no limit */
 };
 
 static double random_unit(uint32_t *seed)
@@ -138,6 +139,9 @@ static void make_plant(struct body *body)
     plant->tag_count = SENSORS;
     plant->groups[0] = (struct plant_group){ .max = 1, .power = 2, .reach_m = INFINITY };
     plant->groups[1] = (struct plant_group){ .max = 1, .power = 3, .radius_m = 4, .reach_m = INFINITY };
+    for (int g = 0; g < 2; g++)
+        if (body->reach_m[g] > 0)
+            plant->groups[g].reach_m = body->reach_m[g];
     for (int i = 0; i < SENSORS; i++) {
         plant->tags[i] = (struct plant_tag){ .group = i >= 4, .strength = i == 1 ? 2 : 1, .decay = i == 2 ? 2 : 1 };
         body->sensors[i].tag = i;
@@ -155,10 +159,19 @@ static void finish(struct body *body)
     mem_free(body->plant.tags);
 }
 
-/* Shepard or Algorithm 1, of sensors that read 0 or 1, from distances. */
+static double nearest(const struct body *body, int group, const double *distance_m)
+{
+    double near_m = INFINITY;
+    for (int i = 0; i < SENSORS; i++)
+        if (body->plant.tags[i].group == group)
+            near_m = fmin(near_m, distance_m[i]);
+    return near_m;
+}
+
+/* Shepard or Algorithm 1, of sensors that read 0 or 1, from distances. Where none reaches, of the nearest alone. */
 static double field(const struct body *body, int group, bool paper, const double *distance_m, double radius_m, unsigned readings)
 {
-    double value = 0, weight = 0;
+    double value = 0, weight = 0, near_m = nearest(body, group, distance_m), reach_m = body->plant.groups[group].reach_m;
     for (int i = 0; i < SENSORS; i++) {
         const struct plant_tag *tag = &body->plant.tags[i];
         if (tag->group != group)
@@ -167,6 +180,8 @@ static double field(const struct body *body, int group, bool paper, const double
         if (!paper && distance_m[i] < 1e-6)
             return v;
         double w = paper ? exp(d * tag->strength) : tag->strength / pow(distance_m[i], body->plant.groups[group].power);
+        if (isfinite(reach_m) && distance_m[i] > near_m)
+            w = distance_m[i] < reach_m ? w * pow((reach_m - distance_m[i]) / (reach_m - near_m), 2) : 0;
         weight += w;
         value += w * v * (paper ? pow(d, tag->decay) : 1);
     }
@@ -252,6 +267,8 @@ static double true_field(const struct body *body, const struct showing *showing,
 {
     double distance_m[SENSORS];
     true_distances(body, p, showing->geodesic, distance_m);
+    if (nearest(body, showing->group, distance_m) > body->plant.groups[showing->group].reach_m)
+        return NAN; /* there is no data */
     return field(body, showing->group, showing->paper, distance_m, body->radius_m[showing->group][showing->geodesic], showing->readings);
 }
 
@@ -558,6 +575,51 @@ static void nine_triangles_show_the_field(void **state)
     finish(&body);
 }
 
+/* By area: where two sensors' reaches end at once, and the data with them, is a point at which the field jumps, and triangles around it as
+   small as they may be. */
+static void assert_plate(const struct body *body)
+{
+    struct seen finest;
+    double *errors = mem_array(POINTS, sizeof(*errors));
+    size_t count = 0, over = 0;
+    uint32_t seed = 11;
+    seen_init(&finest, &body->g, body->levels.at[0].indices, body->levels.at[0].index_count);
+    for (int i = 0; i < POINTS; i++) {
+        const double from[3] = { 6 * random_unit(&seed), 4 * random_unit(&seed), 1 }, down[3] = { 0, 0, -1 };
+        double place[3], w[3];
+        struct showing showing;
+        struct first_hit hit;
+        random_showing(&showing, &seed);
+        if (!look(&finest, from, down, &hit, place, w))
+            continue;
+        double error = fabs(shown_field(body, &showing, finest.mesh.tris[hit.tri], w) - true_field(body, &showing, place));
+        if (isnan(error))
+            continue;
+        errors[count++] = error;
+        over += error > 1 / 255.0;
+    }
+    seen_finish(&finest);
+    say_errors(body, 0, "plate with reaches", "with data", errors, count);
+    assert_true(count > POINTS / 3);
+    assert_in_range(over, 0, count / 2000);
+    mem_free(errors);
+}
+
+static void nine_triangles_show_how_far_sensors_reach(void **state)
+{
+    static const double reaches_m[][2] = { { 2.2, 3 }, { 3.5, 6 }, { 20, 1.5 } };
+    (void)state;
+    for (size_t i = 0; i < sizeof(reaches_m) / sizeof(*reaches_m); i++) {
+        struct body body = { .as_solved = true, .reach_m = { reaches_m[i][0], reaches_m[i][1] } };
+        make_plate(&body);
+        prepare(&body, plate_sensors);
+        assert_sensors(&body);
+        assert_no_cracks(&body, 20);
+        assert_plate(&body);
+        finish(&body);
+    }
+}
+
 /* A plate of two triangles through a box, whose middle is inside that and seen by nobody: what stands out is as true as anything. */
 static void make_plate_through_box(struct body *body)
 {
@@ -837,6 +899,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(nine_triangles_show_the_field),
+        cmocka_unit_test(nine_triangles_show_how_far_sensors_reach),
         cmocka_unit_test(what_stands_out_of_a_body_shows_the_field),
         cmocka_unit_test(what_stands_out_is_true_on_coarser_levels_too),
         cmocka_unit_test(straight_edges_are_not_cut),
