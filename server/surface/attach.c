@@ -310,6 +310,8 @@ static void cut(struct cutter *cutter, const struct lists *lists, struct trimesh
             memcpy(mesh->tris[t], (const uint32_t[3]){ piece->ids[v[0]], piece->ids[v[1]], piece->ids[v[2]] }, sizeof(*mesh->tris));
         else
             trimesh_add_tri(mesh, piece->ids[v[0]], piece->ids[v[1]], piece->ids[v[2]], source);
+        if (mesh->tri_times && i > 0)
+            mesh->tri_times[mesh->tri_count - 1] = mesh->tri_times[t];
     }
 }
 

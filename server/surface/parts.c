@@ -9,7 +9,7 @@
 #include "surface/parts_impl.h"
 #include "surface/vec.h"
 
-#define DOUBLES 0.9    /* of a wall's triangles, at least */
+#define DOUBLES 0.75   /* of a wall's area, at least: slits that stay in one layer leave single pieces at a wall */
 #define OF_THICKNESS 0.5
 #define REACH_LEAST 0.05 /* tolerances */
 
@@ -77,72 +77,30 @@ static void face_outwards(struct finding *f)
     mem_free(votes);
 }
 
-static uint32_t triple_of(struct edge_table *pairs, struct edge_table *triples, const uint32_t tri[3])
-{
-    uint32_t low = tri[0] < tri[1] ? tri[0] : tri[1], high = tri[0] < tri[1] ? tri[1] : tri[0], last = tri[2];
-    if (last < low) {
-        uint32_t swap = last;
-        last = high;
-        high = low;
-        low = swap;
-    } else if (last < high) {
-        uint32_t swap = last;
-        last = high;
-        high = swap;
-    }
-    /* Pair and point are numbers of different kinds: keep them apart, the table does not know order. */
-    return edge_table_add(triples, edge_table_add(pairs, low, high) * 2u, last * 2u + 1u);
-}
-
-/* How often each triangle is there in the model; 0: it is a piece of one that a seam cut. */
-static uint32_t *count_repeats(const struct trimesh *mesh, const uint32_t *source_tris, size_t source_count, const uint32_t *vertex_point)
-{
-    struct edge_table pairs, triples;
-    uint32_t *often = mem_array(mesh->tri_count + source_count, sizeof(*often)), *of_tri = mem_array(mesh->tri_count, sizeof(*of_tri));
-    edge_table_init(&pairs, mesh->tri_count * 3 / 2);
-    edge_table_init(&triples, mesh->tri_count);
-    for (size_t t = 0; t < mesh->tri_count; t++)
-        of_tri[t] = triple_of(&pairs, &triples, mesh->tris[t]);
-    for (size_t s = 0; s < source_count; s++) {
-        const uint32_t *v = source_tris + 3 * s;
-        const uint32_t tri[3] = { vertex_point[v[0]], vertex_point[v[1]], vertex_point[v[2]] };
-        often[triple_of(&pairs, &triples, tri)]++;
-    }
-    for (size_t t = 0; t < mesh->tri_count; t++)
-        of_tri[t] = often[of_tri[t]];
-    edge_table_finish(&pairs);
-    edge_table_finish(&triples);
-    mem_free(often);
-    return of_tri;
-}
-
 /* Where two bodies touch with the same vertices, welding left one face of two: it is a wall between them. A patch that ends at edges of
    three faces or more, and whose triangles are there twice as often as others of its part, is such a wall. What stands on a surface,
    like a fin, bounds nothing either. */
-static void drop_walls(struct finding *f, const uint32_t *source_tris, size_t source_count, const uint32_t *vertex_point)
+static void drop_walls(struct finding *f, const uint32_t *times)
 {
     struct parts *parts = f->parts;
     const struct trimesh *mesh = &parts->solid;
-    uint32_t *often = NULL, *least = mem_array(parts->count, sizeof(*least));
-    for (size_t t = 0; t < mesh->tri_count && !often; t++)
-        if (f->patches[f->patch[t]].branching_m > 0)
-            often = count_repeats(mesh, source_tris, source_count, vertex_point);
-    for (size_t t = 0; often && t < mesh->tri_count; t++) {
+    uint32_t *least = mem_array(parts->count, sizeof(*least));
+    for (size_t t = 0; t < mesh->tri_count; t++) {
         uint32_t *low = &least[parts->of_tri[t]];
-        *low = often[t] && (!*low || often[t] < *low) ? often[t] : *low;
+        *low = !*low || times[t] < *low ? times[t] : *low;
     }
-    for (size_t t = 0; often && t < mesh->tri_count; t++) {
+    for (size_t t = 0; t < mesh->tri_count; t++) {
         struct patch *patch = &f->patches[f->patch[t]];
-        patch->tris += often[t] > 0;
-        patch->doubles += often[t] >= 2 * least[parts->of_tri[t]];
+        double n[3];
+        tri_cross(mesh, t, n);
+        patch->doubles_m2 += times[t] >= 2 * least[parts->of_tri[t]] ? sqrt(vec_dot(n, n)) / 2 : 0;
     }
-    for (size_t t = 0; often && t < mesh->tri_count; t++) {
+    for (size_t t = 0; t < mesh->tri_count; t++) {
         const struct patch *patch = &f->patches[f->patch[t]];
-        bool fin = patch->open_m > patch->branching_m, wall = (double)patch->doubles > DOUBLES * (double)patch->tris;
+        bool fin = patch->open_m > patch->branching_m, wall = patch->doubles_m2 > DOUBLES * patch->area_m2;
         if (patch->loose || (patch->branching_m > 0 && (fin || wall)))
             parts->side[t] = 0;
     }
-    mem_free(often);
     mem_free(least);
 }
 
@@ -177,8 +135,7 @@ static void limit_reach(struct parts *parts, double tolerance_m)
 
 /* --- all ------------------------------------------------------------------------------------------------------------------ */
 
-void parts_init(struct parts *parts, const struct trimesh *mesh, const uint32_t *source_tris, size_t source_count,
-                const uint32_t *vertex_point, double tolerance_m, bool is_chosen)
+void parts_init(struct parts *parts, const struct trimesh *mesh, size_t source_count, double tolerance_m, bool is_chosen)
 {
     struct finding f = { .parts = parts };
     *parts = (struct parts){ 0 };
@@ -192,7 +149,7 @@ void parts_init(struct parts *parts, const struct trimesh *mesh, const uint32_t 
     parts_number(&f, mesh);
     face_one_way(&f);
     face_outwards(&f);
-    drop_walls(&f, source_tris, source_count, vertex_point);
+    drop_walls(&f, mesh->tri_times);
     parts->reach_m = mem_array(parts->count, sizeof(*parts->reach_m));
     parts->thin = mem_array(parts->count, 1);
     for (size_t p = 0; p < parts->count; p++)

@@ -22,11 +22,10 @@ struct parts {
     size_t count;
 };
 
-/* mesh: the model's triangles (source_tris of them), welded, seams closed; vertex_point[vertex of the model] = point. tolerance_m is every
-   part's reach; if it is the program's choice, that of a closed part is at most half of its thickness, or what touches a thin plate's one
-   side would touch its other side too; beyond that it is joined to what it looks at (sight.h). */
-void parts_init(struct parts *parts, const struct trimesh *mesh, const uint32_t *source_tris, size_t source_count,
-                const uint32_t *vertex_point, double tolerance_m, bool is_chosen);
+/* mesh: the model's triangles (source_count of them), welded, seams closed, and still counted. tolerance_m is every part's reach; if it is
+   the program's choice, that of a closed part is at most half of its thickness, or what touches a thin plate's one side would touch its
+   other side too; beyond that it is joined to what it looks at (sight.h). */
+void parts_init(struct parts *parts, const struct trimesh *mesh, size_t source_count, double tolerance_m, bool is_chosen);
 void parts_finish(struct parts *parts);
 
 /* of_source for each triangle of the mesh as it is now; mem_free. */

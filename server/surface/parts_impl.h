@@ -15,7 +15,7 @@ struct finding {
     uint32_t *patch;                         /* of each triangle: its lowest one */
     struct patch {                           /* by its lowest triangle */
         double open_m, branching_m, area_m2; /* edges with one face; with three or more, of which it has only one */
-        size_t tris, doubles;
+        double doubles_m2;                   /* of triangles that are there twice as often as others of the part */
         bool loose; /* it stands on others, and is open */
     } * patches;
 };

@@ -194,6 +194,8 @@ void stitch_seams(struct trimesh *mesh, double tolerance_m, uint32_t *target, st
     for (int round = 0; round < 4; round++) {
         struct borders borders;
         borders_init(&borders, mesh);
+        if (round == 1)
+            stitch_hanging(mesh, &borders, tolerances_m[0], target, target_count, report);
         seam_round(mesh, &borders, tolerances_m[round / 2], round == 1 ? tolerance_m : 0, round < 2, round % 2 == 1, target, target_count,
                    report);
         borders_finish(&borders);

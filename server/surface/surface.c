@@ -334,7 +334,8 @@ struct surface *surface_create(struct log *log, struct workers *workers, const f
     report->weld_s = seconds_since(&since_ns);
     if (!close_seams(surface, params->why))
         goto error;
-    parts_init(&parts, &surface->mesh, triangles, triangle_count, surface->vertex_point, report->tolerance_m, params->tolerance_m <= 0);
+    parts_init(&parts, &surface->mesh, triangle_count, report->tolerance_m, params->tolerance_m <= 0);
+    trimesh_stop_counting(&surface->mesh);
     report->border_edges_after = border_edges(&surface->mesh);
     report->bridge_s = seconds_since(&since_ns);
     sample(surface);

@@ -90,7 +90,15 @@ void trimesh_finish(struct trimesh *mesh)
     mem_free(mesh->points);
     mem_free(mesh->tris);
     mem_free(mesh->tri_source);
+    mem_free(mesh->tri_times);
     *mesh = (struct trimesh){ 0 };
+}
+
+void trimesh_stop_counting(struct trimesh *mesh)
+{
+    mem_free(mesh->tri_times);
+    mesh->tri_times = NULL;
+    mesh->times_capacity = 0;
 }
 
 void trimesh_copy(struct trimesh *copy, const struct trimesh *mesh)
@@ -101,6 +109,7 @@ void trimesh_copy(struct trimesh *copy, const struct trimesh *mesh)
     memcpy(copy->points, mesh->points, mesh->point_count * sizeof(*copy->points));
     memcpy(copy->tris, mesh->tris, mesh->tri_count * sizeof(*copy->tris));
     memcpy(copy->tri_source, mesh->tri_source, mesh->tri_count * sizeof(*copy->tri_source));
+    trimesh_stop_counting(copy);
     copy->point_count = mesh->point_count;
     copy->tri_count = mesh->tri_count;
 }
@@ -116,6 +125,10 @@ void trimesh_add_tri(struct trimesh *mesh, uint32_t a, uint32_t b, uint32_t c, u
 {
     mem_grow(&mesh->tris, &mesh->tri_capacity, mesh->tri_count + 1, sizeof(*mesh->tris));
     mem_grow(&mesh->tri_source, &mesh->source_capacity, mesh->tri_count + 1, sizeof(*mesh->tri_source));
+    if (mesh->tri_times) {
+        mem_grow(&mesh->tri_times, &mesh->times_capacity, mesh->tri_count + 1, sizeof(*mesh->tri_times));
+        mesh->tri_times[mesh->tri_count] = 1;
+    }
     uint32_t *tri = mesh->tris[mesh->tri_count];
     tri[0] = a;
     tri[1] = b;
@@ -222,16 +235,14 @@ static void sort3(uint32_t v[3])
             }
 }
 
-/* A set of triangles: the edge of the two lower points, numbered, and the third. */
-static bool tri_is_new(struct edge_table *pairs, struct edge_table *seen, const uint32_t tri[3])
+/* A set of triangles: the edge of the two lower points, numbered, and the third. The number that the triangle has there. */
+static uint32_t tri_number(struct edge_table *pairs, struct edge_table *seen, const uint32_t tri[3])
 {
     uint32_t v[3] = { tri[0], tri[1], tri[2] };
     sort3(v);
     uint32_t pair = edge_table_add(pairs, v[0], v[1]);
-    size_t before = seen->count;
     /* Pair and point are numbers of different kinds: keep them apart, the table does not know order. */
-    edge_table_add(seen, pair * 2u, v[2] * 2u + 1u);
-    return seen->count > before;
+    return edge_table_add(seen, pair * 2u, v[2] * 2u + 1u);
 }
 
 static bool tri_has_area(const struct trimesh *mesh, uint32_t a, uint32_t b, uint32_t c)
@@ -261,10 +272,15 @@ static void clean(struct trimesh *mesh, size_t *degenerate, size_t *repeated)
             ++*degenerate;
             continue;
         }
-        if (!tri_is_new(&pairs, &seen, v)) {
+        uint32_t number = tri_number(&pairs, &seen, v);
+        if (number < kept) {
             ++*repeated;
+            if (mesh->tri_times)
+                mesh->tri_times[number] += mesh->tri_times[t];
             continue;
         }
+        if (mesh->tri_times)
+            mesh->tri_times[kept] = mesh->tri_times[t];
         memmove(mesh->tris[kept], v, sizeof(*mesh->tris));
         mesh->tri_source[kept++] = mesh->tri_source[t];
     }
@@ -280,6 +296,7 @@ bool trimesh_weld(struct trimesh *mesh, const float (*positions)[3], size_t vert
     *degenerate = *repeated = 0;
     if (!weld_points(mesh, positions, vertex_count, weld_m, vertex_point))
         return false;
+    mem_grow(&mesh->tri_times, &mesh->times_capacity, triangle_count, sizeof(*mesh->tri_times));
     for (size_t t = 0; t < triangle_count; t++) {
         const uint32_t *v = triangles + 3 * t;
         trimesh_add_tri(mesh, vertex_point[v[0]], vertex_point[v[1]], vertex_point[v[2]], (uint32_t)t);

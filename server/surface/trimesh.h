@@ -12,15 +12,18 @@ struct trimesh {
     double (*points)[3];
     uint32_t (*tris)[3];
     uint32_t *tri_source; /* the model's triangle that this one is a piece of */
-    size_t point_count, point_capacity, tri_count, tri_capacity, source_capacity;
+    uint32_t *tri_times;  /* how many of the model's lay there, each with the same three points; NULL: not counted (any more) */
+    size_t point_count, point_capacity, tri_count, tri_capacity, source_capacity, times_capacity;
 };
 
 /* The model with vertices closer than weld_m made one. vertex_point[vertex] = point. Triangles without area are left out, and of
-   triangles with the same three points all but one. False: out of memory. */
+   triangles with the same three points all but one, which counts them. False: out of memory. */
 bool trimesh_weld(struct trimesh *mesh, const float (*positions)[3], size_t vertex_count, const uint32_t *triangles, size_t triangle_count,
                   double weld_m, uint32_t *vertex_point, size_t *degenerate, size_t *repeated);
 void trimesh_finish(struct trimesh *mesh);
-void trimesh_copy(struct trimesh *copy, const struct trimesh *mesh); /* copy: zero-initialised, or a mesh that is given up */
+void trimesh_stop_counting(struct trimesh *mesh);
+/* copy: zero-initialised, or a mesh that is given up; it does not count. */
+void trimesh_copy(struct trimesh *copy, const struct trimesh *mesh);
 
 uint32_t trimesh_add_point(struct trimesh *mesh, const double point[3]);
 void trimesh_add_tri(struct trimesh *mesh, uint32_t a, uint32_t b, uint32_t c, uint32_t source);
