@@ -325,7 +325,7 @@ static void a_tube_passes_through_itself(void **state)
 {
     struct cad tube = { 0 }, up = { 0 }, down = { 0 };
     struct outer outer;
-    double radius = 0.12 + 0.06 * cad_random(&chance);
+    double radius = 0.12 + 0.05 * cad_random(&chance); /* its sharpest bend has 0.178: more would fold there */
     (void)state;
     skip_if_watched();
     cad_eight(&tube, &chance, 150, 36, radius, 0);
