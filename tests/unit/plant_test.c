@@ -464,7 +464,8 @@ static void numbers_have_ranges(void **state)
     FOUND(f, { "plant.yaml", 1, 51, "target: expected another point than eye" },
           { "plant.yaml", 1, 67, "fov: expected a number from 1 to 120" });
     load_with(f, 2, "assets: [{ id: E, model: m.glb, placement: { translate: [0, 2e7, 0], scale: 0 } }]");
-    FOUND(f, { "plant.yaml", 2, 61, "translate: expected a number from -10000000 to 10000000" }, { "plant.yaml", 2, 77, "scale: expected" });
+    FOUND(f, { "plant.yaml", 2, 61, "translate: expected a number from -10000000 to 10000000" },
+          { "plant.yaml", 2, 77, "scale: expected" });
 }
 
 static void meaning_is_checked(void **state)
