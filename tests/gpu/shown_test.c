@@ -47,18 +47,7 @@ static bool is_clear(const struct scene *scene, const double eye_m[3])
 static void look_at_some_asset(struct site *site, double away, struct view *view)
 {
     do {
-        const struct scene_asset *asset;
-        do
-            asset = &site->scene->assets[synthetic_random(&site->random) % site->scene->asset_count];
-        while (!field_scalars(site->field, (int)(asset - site->scene->assets), &view->field, site->snapshot));
-        double size = 0, turn = 6.283 * synthetic_random_unit(&site->random), height = 0.2 + 0.8 * synthetic_random_unit(&site->random);
-        for (int c = 0; c < 3; c++) {
-            view->camera.target_m[c] = 0.5 * (asset->bounds_min_m[c] + asset->bounds_max_m[c]);
-            size = fmax(size, asset->bounds_max_m[c] - asset->bounds_min_m[c]);
-        }
-        view->camera.eye_m[0] = view->camera.target_m[0] + away * size * cos(turn);
-        view->camera.eye_m[1] = view->camera.target_m[1] + away * size * sin(turn);
-        view->camera.eye_m[2] = view->camera.target_m[2] + away * size * height;
+        site_look_at_some(site, away, view);
         away *= 1.05;
     } while (!is_clear(site->scene, view->camera.eye_m));
 }

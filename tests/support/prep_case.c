@@ -2,6 +2,7 @@
 /* Running plantcast-prep. */
 #include "tests/support/prep_case.h"
 
+#include <dirent.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -92,6 +93,23 @@ void prep_case_expect(struct prep_case *c, const char *arguments, int status)
     int got = prep_case_run(c, arguments);
     if (got != status)
         fail_msg("%s: exit status %d, expected %d\n%s%s", arguments, got, status, c->out.at ? c->out.at : "", c->err.at ? c->err.at : "");
+}
+
+char *prep_case_file(const struct prep_case *c, const char *ending, uint64_t *key)
+{
+    char *folder = temp_path(c->folder, "plant.prepared"), *path = NULL;
+    DIR *dir = opendir(folder);
+    assert_non_null(dir);
+    for (const struct dirent *entry; (entry = readdir(dir)) != NULL;)
+        if (strstr(entry->d_name, ending)) {
+            assert_null(path);
+            path = mem_printf("%s/%s", folder, entry->d_name);
+            *key = strtoull(entry->d_name, NULL, 16);
+        }
+    closedir(dir);
+    mem_free(folder);
+    assert_non_null(path);
+    return path;
 }
 
 void prep_case_says(const struct text *text, const char *words)

@@ -3,6 +3,7 @@
 #ifndef TESTS_PREP_CASE_H
 #define TESTS_PREP_CASE_H
 #include <jansson.h>
+#include <stdint.h>
 
 #include "base/text.h"
 
@@ -26,6 +27,8 @@ void prep_case_expect(struct prep_case *c, const char *arguments, int status);
 char *prep_case_program(void); /* its path; skips if there is none. mem_free */
 
 void prep_case_read(struct prep_case *c, const char *name, struct text *to);
+/* The one file of the kind (its ending) that was prepared, and the key that it is named by; mem_free. */
+char *prep_case_file(const struct prep_case *c, const char *ending, uint64_t *key);
 void prep_case_says(const struct text *text, const char *words);
 json_t *prep_case_json(const struct text *text);
 /* The number at a path such as "assets.0.surface.bridges"; fails where there is none. */

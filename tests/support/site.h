@@ -20,5 +20,7 @@ bool site_is_there(const char *model); /* in ../shared/data/models */
 /* name: of the folder that it is prepared into, once for all who run at a time; NULL: it is prepared already. False: failed. */
 bool site_init(struct site *site, struct rig *rig, const char *path, const char *name);
 void site_finish(struct site *site);
+/* The camera: from a random side of a random asset with a field; `away` times as far as it is large. */
+void site_look_at_some(struct site *site, double away, struct view *view);
 
 #endif

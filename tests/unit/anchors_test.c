@@ -2,7 +2,6 @@
 /* Vertices of an asset held fast on its surface: those of coarser levels stand off it, and have the distances of their own side. */
 #include "surface/anchors.h"
 
-#include <dirent.h>
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -69,29 +68,11 @@ static void write_model(const struct prep_case *c, const struct cad *cad)
     maker_finish(&maker);
 }
 
-/* The one file of the kind in the folder that was prepared; mem_free. */
-static char *prepared_file(const struct prep_case *c, const char *ending, uint64_t *key)
-{
-    char *folder = temp_path(c->folder, "plant.prepared"), *path = NULL;
-    DIR *dir = opendir(folder);
-    assert_non_null(dir);
-    for (const struct dirent *entry; (entry = readdir(dir)) != NULL;)
-        if (strstr(entry->d_name, ending)) {
-            assert_null(path);
-            path = mem_printf("%s/%s", folder, entry->d_name);
-            *key = strtoull(entry->d_name, NULL, 16);
-        }
-    closedir(dir);
-    mem_free(folder);
-    assert_non_null(path);
-    return path;
-}
-
 static struct surface *kept_surface(const struct prep_case *c)
 {
     struct kept kept;
     uint64_t key;
-    char *path = prepared_file(c, ".surface", &key);
+    char *path = prep_case_file(c, ".surface", &key);
     assert_true(kept_open(&kept, path, SURFACE_MAGIC, key));
     struct surface *surface = surface_unpack(&(struct unpack){ kept.bytes, kept.count, false }, the_log, NULL);
     assert_non_null(surface);
@@ -210,7 +191,7 @@ static void coarser_levels_have_the_distances_of_their_own_side(void **state)
     prep_case_tags(c, "out,,,,t,A,,0.1,0.55,0.83\n"
                       "in,,,,t,A,,-0.2,0.6,0.7\n");
     prep_case_expect(c, "$PLANT", 0);
-    char *path = prepared_file(c, ".asset", &key);
+    char *path = prep_case_file(c, ".asset", &key);
     struct asset *asset = asset_open(the_log, path);
     assert_non_null(asset);
     struct surface *surface = kept_surface(c);

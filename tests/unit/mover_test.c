@@ -2,7 +2,6 @@
 /* Sensors moved on a loaded asset: the distances that plantcast-prep would store, each ask answered once, and what is refused. */
 #include "surface/mover.h"
 
-#include <dirent.h>
 #include <math.h>
 #include <pthread.h>
 #include <setjmp.h>
@@ -79,24 +78,6 @@ static int tear_down(void **state)
 }
 
 /* --- against plantcast-prep --------------------------------------------------------------------------------------------------- */
-
-/* Of the one asset that is prepared in the folder. Free with mem_free. */
-static char *surface_path(const struct prep_case *c, uint64_t *key)
-{
-    char *folder = temp_path(c->folder, "plant.prepared"), *path = NULL;
-    DIR *dir = opendir(folder);
-    assert_non_null(dir);
-    for (const struct dirent *entry; (entry = readdir(dir)) != NULL;)
-        if (strstr(entry->d_name, ".surface")) {
-            assert_null(path);
-            path = mem_printf("%s/%s", folder, entry->d_name);
-            *key = strtoull(entry->d_name, NULL, 16);
-        }
-    closedir(dir);
-    mem_free(folder);
-    assert_non_null(path);
-    return path;
-}
 
 static struct mover_shape finest_of(const struct asset *asset)
 {
@@ -251,7 +232,7 @@ static void a_moved_sensor_has_the_distances_that_would_be_stored(void **state)
     static const struct most as_made_anew[] = { { 5e-4, 0.05, 0.015 }, { 2e-3, 0.08, 0.06 } };
     struct asset *asset = prepared(*state);
     struct mover_shape shape = finest_of(asset);
-    char *path = surface_path(*state, &shape.surface_key);
+    char *path = prep_case_file(*state, ".surface", &shape.surface_key);
     shape.surface_path = path;
     enum sight *sights = sights_of(&shape);
     try_sensors(asset, &shape, sights, as_stored);
