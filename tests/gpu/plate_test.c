@@ -186,6 +186,22 @@ static struct frame *draw_box_over_floor(uint32_t strips, const double light[3])
 }
 
 /* A pixel's middle may lie beside the sliver that it is told by: it must not slip along it. */
+/* By one that never drew anything: of two that are under way at a time, one is new. */
+static void test_nothing_in_sight(void **state)
+{
+    (void)state;
+    struct view view;
+    start_view(&view, 320, 180);
+    for (int c = 0; c < 3; c++) /* the sky behind */
+        view.camera.target_m[c] = 2 * view.camera.eye_m[c] - view.camera.target_m[c];
+    struct stroke *first = renderer_begin(stand.renderer, &view, stand.snapshot);
+    assert_non_null(first);
+    assert_like_gl(&view, 0);
+    struct frame *frame = renderer_end(stand.renderer, &first);
+    assert_non_null(frame);
+    frame_unref(&frame);
+}
+
 static void test_shadows_on_slivers(void **state)
 {
     (void)state;
@@ -314,6 +330,7 @@ int main(void)
         cmocka_unit_test(test_suns),
         cmocka_unit_test(test_outlines),
         cmocka_unit_test(test_hidden_assets),
+        cmocka_unit_test(test_nothing_in_sight),
         cmocka_unit_test(test_shadows_on_slivers),
         cmocka_unit_test(test_new_readings_are_a_new_picture),
         cmocka_unit_test(test_new_colors_too),

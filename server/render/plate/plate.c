@@ -231,7 +231,7 @@ static bool collect(struct plate *plate, const struct frame *frame, const struct
         return false;
     note_meshes(plate);
     aim(plate, light);
-    if (plate->attribute_capacity < draft->vertex_count) {
+    if (!plate->attributes || plate->attribute_capacity < draft->vertex_count) { /* also of a first picture that shows nothing */
         mem_free(plate->attributes);
         plate->attributes = mem_try_array(draft->vertex_capacity, sizeof(*plate->attributes));
         plate->attribute_capacity = plate->attributes ? draft->vertex_capacity : 0;
