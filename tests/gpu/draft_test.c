@@ -37,15 +37,20 @@ static int difference(const uint8_t *a, const uint8_t *b)
 }
 
 /* Pixels may differ where an edge, a band of colours or a shadow's rim runs through them. */
-static void assert_same(const struct view *view, double may_differ)
+static void assert_same_pixels(const struct frame *draft, const struct frame *gl, double may_differ)
 {
-    struct frame *draft = draw(view, false), *gl = draw(view, true);
-    int far = 0, pixels = view->width_px * view->height_px;
+    int far = 0, pixels = gl->width_px * gl->height_px;
     for (int i = 0; i < pixels; i++)
         far += difference(draft->bgrx + 4 * i, gl->bgrx + 4 * i) > 3;
     if (far > may_differ * pixels)
         print_message("%d of %d pixels differ by more than 3\n", far, pixels);
     assert_true(far <= may_differ * pixels);
+}
+
+static void assert_same(const struct view *view, double may_differ)
+{
+    struct frame *draft = draw(view, false), *gl = draw(view, true);
+    assert_same_pixels(draft, gl, may_differ);
     assert_int_equal(draft->marker_count, gl->marker_count);
     assert_true(draft->marker_count > 0);
     for (size_t i = 0; i < gl->marker_count; i++) {
@@ -226,6 +231,59 @@ static void test_lines_and_scales(void **state)
     }
 }
 
+/* From the side that the surface looks to, at the middle of an edge, so near that its triangles lead far out of the picture. */
+static void look_closely(const struct scene_asset *asset, uint32_t v, uint32_t w, struct view *view)
+{
+    const struct asset_view *file = &asset->file->view;
+    double edge_m = 0, normal[3] = { 0 }, length = 0;
+    for (int c = 0; c < 3; c++) {
+        double along = (double)file->positions_m[w][c] - (double)file->positions_m[v][c];
+        view->camera.target_m[c] = asset->placement[12 + c] + (double)file->positions_m[v][c] + 0.5 * along;
+        normal[c] = file->normals[v][c] + file->normals[w][c];
+        length += normal[c] * normal[c];
+        edge_m += along * along;
+    }
+    for (int c = 0; c < 3; c++)
+        view->camera.eye_m[c] = view->camera.target_m[c] + 2 * sqrt(edge_m / length) * normal[c];
+    view->camera.fov_deg = 5;
+}
+
+static bool is_rim(int a, int b)
+{
+    return (a > 127) != (b > 127);
+}
+
+/* Where data end, and where they are uncertain, in triangles that are cut because they lead far out of the picture. */
+static void test_patterns_close_by(void **state)
+{
+    enum { TANK = 1 }; /* has a sensor that is bad and one that is uncertain */
+    const struct scene_asset *asset = &stand.toy->scene.assets[TANK];
+    int looked = 0, rims = 0;
+    struct view view;
+    (void)state;
+    start_view(&view, 160, 120);
+    view.look = LOOK_FLAT;
+    const struct scalars *scalars = field_scalars(stand.field, TANK, &view.field, stand.snapshot);
+    assert_non_null(scalars);
+    for (uint32_t i = 0; i + 1 < asset->file->view.header->index_count; i++) {
+        uint32_t v = asset->file->view.indices[i], w = asset->file->view.indices[i + 1];
+        const struct scalar *from = &scalars->at[v], *to = &scalars->at[w];
+        if (i % 3 == 2 || !(is_rim(from->lacking, to->lacking) || is_rim(from->uncertain, to->uncertain)) || rims++ % 23 != 0)
+            continue;
+        look_closely(asset, v, w, &view);
+        if (!camera_valid(&view.camera))
+            continue;
+        struct frame *draft = draw(&view, false), *gl = draw(&view, true);
+        assert_same_pixels(draft, gl, 0.02);
+        frame_unref(&draft);
+        frame_unref(&gl);
+        scalars = field_scalars(stand.field, TANK, &view.field, stand.snapshot);
+        looked++;
+    }
+    print_message("# %d places of %d edges where patterns begin\n", looked, rims);
+    assert_true(looked >= 8);
+}
+
 /* One tag without limits: what is near it is plain. What has no field is grey. */
 static void test_operator(void **state)
 {
@@ -325,7 +383,8 @@ int main(void)
         cmocka_unit_test(test_cameras), cmocka_unit_test(test_sun),   cmocka_unit_test(test_outlines),
         cmocka_unit_test(test_hidden_assets), cmocka_unit_test(test_still_camera),
         cmocka_unit_test(test_moves_after_standing), cmocka_unit_test(test_lines_and_scales),
-        cmocka_unit_test(test_operator), cmocka_unit_test(test_lines_of_a_still_camera), cmocka_unit_test(test_left_to_gl),
+        cmocka_unit_test(test_patterns_close_by), cmocka_unit_test(test_operator),
+        cmocka_unit_test(test_lines_of_a_still_camera), cmocka_unit_test(test_left_to_gl),
         cmocka_unit_test(test_kernels),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);

@@ -5,7 +5,13 @@
 #include "render/draft/draft_near.h"
 #include "render/draft/draft_tile.h"
 
-static int add_corner(struct draft_corners *corners, const struct near_corner *corner, uint32_t flags)
+static uint32_t flags_of(const struct near_patterns *patterns)
+{
+    return (patterns->no_data > 0.5f ? DRAFT_NO_DATA : 0) | (patterns->uncertain > 0.5f ? DRAFT_UNCERTAIN : 0) |
+           (patterns->no_limits > 0.5f ? DRAFT_NO_LIMITS : 0);
+}
+
+static int add_corner(struct draft_corners *corners, const struct near_corner *corner)
 {
     float inverse = 1 / fmaxf(corner->at[3], 1e-30f);
     int number = corners->count++;
@@ -15,7 +21,8 @@ static int add_corner(struct draft_corners *corners, const struct near_corner *c
     corners->inverse_w[number] = inverse;
     corners->a[number] = corner->a;
     corners->b[number] = corner->b;
-    corners->flags[number] = flags;
+    corners->flags[number] = flags_of(&corner->patterns);
+    corners->cut_patterns[number - corners->placed] = corner->patterns;
     return number;
 }
 
@@ -23,14 +30,13 @@ static int cut(const struct draft *draft, struct draft_corners *corners, const s
                const int numbers[3], int out[NEAR_CORNERS])
 {
     struct near_corner at[3], left[NEAR_CORNERS];
-    uint32_t flags = 0;
     for (int i = 0; i < 3; i++) {
-        at[i] = near_corner_of(mesh, vertices[numbers[i]], corners->a[numbers[i]], corners->b[numbers[i]]);
-        flags |= corners->flags[numbers[i]];
+        int n = numbers[i];
+        at[i] = near_corner_of(mesh, vertices[n], corners->a[n], corners->b[n], corners->flags[n]);
     }
     int count = near_cut(draft, at, left);
     for (int i = 0; i < count; i++)
-        out[i] = add_corner(corners, &left[i], flags);
+        out[i] = add_corner(corners, &left[i]);
     return count;
 }
 

@@ -48,7 +48,7 @@ void draft_place_part(struct draft_tile *tile, const struct draft_mesh *mesh, co
         least = low[l] < least ? low[l] : least;
         most = high[l] > most ? high[l] : most;
     }
-    corners->count = part->vertex_count;
+    corners->count = corners->placed = part->vertex_count;
     corners->cut = least == 0;
     corners->flat = most <= DRAFT_LITTLE * least;
 }

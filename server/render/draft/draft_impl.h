@@ -25,8 +25,7 @@ struct draft_vertex {
     uint32_t flags;        /* draft_flags */
     uint32_t source;       /* of one that a cut made: first index of the triangle that was cut */
 };
-/* Two bytes, scalar.uncertain and from bit DRAFT_LACKING on scalar.lacking; and a bit. Where flags of corners were joined: no less than
-   any. */
+/* Two bytes, scalar.uncertain and from bit DRAFT_LACKING on scalar.lacking; and a bit. */
 enum { DRAFT_LACKING = 8, DRAFT_NO_DATA = 0x8000, DRAFT_UNCERTAIN = 0x80, DRAFT_NO_LIMITS = 0x10000 };
 enum { DRAFT_PATTERNS = DRAFT_NO_DATA | DRAFT_UNCERTAIN | DRAFT_NO_LIMITS };
 #define DRAFT_NOTHING_KNOWN (255u << DRAFT_LACKING)
@@ -42,6 +41,10 @@ static inline float draft_lacking(uint32_t flags)
 static inline float draft_uncertain(uint32_t flags)
 {
     return (float)(flags & 0xff) * (1 / 255.0f);
+}
+static inline float draft_no_limits(uint32_t flags)
+{
+    return flags & DRAFT_NO_LIMITS ? 1 : 0;
 }
 
 struct draft_mesh { /* one asset in this picture */

@@ -4,10 +4,10 @@
 
 #include "render/draft/draft_near.h"
 
-struct near_corner near_corner_of(const struct draft_mesh *mesh, uint32_t vertex, float a, float b)
+struct near_corner near_corner_of(const struct draft_mesh *mesh, uint32_t vertex, float a, float b, uint32_t flags)
 {
     const float *p = mesh->file->positions_m[vertex];
-    struct near_corner corner = { .a = a, .b = b };
+    struct near_corner corner = { .a = a, .b = b, .patterns = near_patterns_of(flags) };
     for (int r = 0; r < 4; r++)
         corner.at[r] = mesh->place[0][r] * p[0] + mesh->place[1][r] * p[1] + mesh->place[2][r] * p[2] + mesh->place[3][r];
     return corner;
@@ -32,12 +32,20 @@ static float inside(const struct draft *draft, const struct near_corner *corner,
     }
 }
 
+static float part_way(float in, float out, float part)
+{
+    return in + part * (out - in);
+}
+
 /* Where an edge leaves. The same for both triangles that share it, though they go along it in opposite directions. */
 static struct near_corner between(const struct near_corner *in, const struct near_corner *out, float part)
 {
-    struct near_corner corner = { .a = in->a + part * (out->a - in->a), .b = in->b + part * (out->b - in->b) };
+    struct near_corner corner = { .a = part_way(in->a, out->a, part), .b = part_way(in->b, out->b, part) };
     for (int r = 0; r < 4; r++)
-        corner.at[r] = in->at[r] + part * (out->at[r] - in->at[r]);
+        corner.at[r] = part_way(in->at[r], out->at[r], part);
+    corner.patterns.no_data = part_way(in->patterns.no_data, out->patterns.no_data, part);
+    corner.patterns.uncertain = part_way(in->patterns.uncertain, out->patterns.uncertain, part);
+    corner.patterns.no_limits = part_way(in->patterns.no_limits, out->patterns.no_limits, part);
     return corner;
 }
 

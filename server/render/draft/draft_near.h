@@ -9,10 +9,18 @@ enum { NEAR_CORNERS = 3 + 5, NEAR_TRIANGLES = NEAR_CORNERS - 2 }; /* what five p
 
 struct near_corner { /* in clip space, x and y in pixels; a and b as a vertex carries them */
     float at[4], a, b;
+    struct near_patterns { /* draft_lacking, draft_uncertain and draft_no_limits of its flags; between corners what is between these */
+        float no_data, uncertain, no_limits;
+    } patterns;
 };
 
-struct near_corner near_corner_of(const struct draft_mesh *mesh, uint32_t vertex, float a, float b);
+struct near_corner near_corner_of(const struct draft_mesh *mesh, uint32_t vertex, float a, float b, uint32_t flags);
 /* What lies beyond the near plane and in the band. How many corners it has, in order: 0, or 3 and more. */
 int near_cut(const struct draft *draft, const struct near_corner at[3], struct near_corner out[NEAR_CORNERS]);
+
+static inline struct near_patterns near_patterns_of(uint32_t flags)
+{
+    return (struct near_patterns){ draft_lacking(flags), draft_uncertain(flags), draft_no_limits(flags) };
+}
 
 #endif

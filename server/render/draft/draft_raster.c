@@ -21,7 +21,7 @@ struct setup {
     float x, y; /* of the first corner: what planes start from */
     struct edge edges[3];
     struct plane depth, a, b, inverse_w;
-    struct plane no_data, uncertain, no_limits; /* where flags are set: as draft_lacking, draft_uncertain; 1 there */
+    struct plane no_data, uncertain, no_limits; /* where flags are set; as struct near_patterns */
     uint32_t mark, flags;
     bool flat; /* no perspective to speak of */
     bool thin; /* so much so that rounding may lead out of what lies between its corners */
@@ -42,7 +42,20 @@ DRAFT_INLINE struct plane part_plane(const struct slopes *slopes, const struct d
     return plane_of(slopes, at[0], at[1], at[2]);
 }
 
-DRAFT_INLINE void setup_init(struct setup *setup, const struct draft_vertex v[3], uint32_t mark)
+DRAFT_INLINE struct near_patterns patterns_of(const struct draft_corners *corners, int i)
+{
+    return i < corners->placed ? near_patterns_of(corners->flags[i]) : corners->cut_patterns[i - corners->placed];
+}
+
+DRAFT_INLINE void setup_patterns(struct setup *setup, const struct slopes *slopes, const struct draft_vertex v[3],
+                                 const struct near_patterns at[3])
+{
+    setup->no_data = part_plane(slopes, v, (float[3]){ at[0].no_data, at[1].no_data, at[2].no_data }, setup->flat);
+    setup->uncertain = part_plane(slopes, v, (float[3]){ at[0].uncertain, at[1].uncertain, at[2].uncertain }, setup->flat);
+    setup->no_limits = part_plane(slopes, v, (float[3]){ at[0].no_limits, at[1].no_limits, at[2].no_limits }, setup->flat);
+}
+
+DRAFT_INLINE void setup_init(struct setup *setup, const struct draft_vertex v[3], const struct near_patterns patterns[3], uint32_t mark)
 {
     float low = smallest(v[0].inverse_w, v[1].inverse_w, v[2].inverse_w), high = largest(v[0].inverse_w, v[1].inverse_w, v[2].inverse_w);
     struct slopes slopes = { v[1].x - v[0].x, v[1].y - v[0].y, v[2].x - v[0].x, v[2].y - v[0].y };
@@ -68,17 +81,8 @@ DRAFT_INLINE void setup_init(struct setup *setup, const struct draft_vertex v[3]
         setup->inverse_w = plane_of(&slopes, v[0].inverse_w, v[1].inverse_w, v[2].inverse_w);
     }
     setup->no_data = setup->uncertain = setup->no_limits = setup->depth; /* not looked at */
-    if (setup->flags) {
-        float lacking[3], uncertain[3], no_limits[3];
-        for (int i = 0; i < 3; i++) {
-            lacking[i] = draft_lacking(v[i].flags);
-            uncertain[i] = draft_uncertain(v[i].flags);
-            no_limits[i] = v[i].flags & DRAFT_NO_LIMITS ? 1 : 0;
-        }
-        setup->no_data = part_plane(&slopes, v, lacking, setup->flat);
-        setup->uncertain = part_plane(&slopes, v, uncertain, setup->flat);
-        setup->no_limits = part_plane(&slopes, v, no_limits, setup->flat);
-    }
+    if (setup->flags)
+        setup_patterns(setup, &slopes, v, patterns);
 }
 
 /* w: 1 over inverse_w there; looked at if there is perspective. */
@@ -170,10 +174,13 @@ DRAFT_INLINE void draw_face(const struct draft_tile *tile, const struct draft_fa
 static void draw_any(const struct draft_tile *tile, const struct draft_face *face, uint32_t mark, const struct ink *ink)
 {
     struct draft_vertex v[3];
+    struct near_patterns patterns[3];
     struct setup setup;
-    for (int i = 0; i < 3; i++)
+    for (int i = 0; i < 3; i++) {
         v[i] = vertex_of(&tile->corners, face->corners[i]);
-    setup_init(&setup, v, mark);
+        patterns[i] = patterns_of(&tile->corners, face->corners[i]);
+    }
+    setup_init(&setup, v, patterns, mark);
     draw_face(tile, face, &setup, ink);
 }
 

@@ -8,7 +8,7 @@
 
 /* --- the near plane and the band -------------------------------------------------------------------------------------------- */
 
-static uint32_t add_extra(struct draft_chunk *chunk, const struct near_corner *corner, uint32_t flags, uint32_t source)
+static uint32_t add_extra(struct draft_chunk *chunk, const struct near_corner *corner, uint32_t source)
 {
     float inverse = 1 / fmaxf(corner->at[3], 1e-30f);
     mem_grow(&chunk->extra, &chunk->extra_capacity, chunk->extra_count + 1, sizeof(*chunk->extra));
@@ -19,7 +19,6 @@ static uint32_t add_extra(struct draft_chunk *chunk, const struct near_corner *c
         .inverse_w = inverse,
         .a = corner->a,
         .b = corner->b,
-        .flags = flags,
         .source = source,
     };
     return EXTRA_VERTEX | (uint32_t)chunk->extra_count++;
@@ -29,15 +28,14 @@ static int cut(const struct draft *draft, struct draft_chunk *chunk, const struc
                uint32_t corners[NEAR_CORNERS])
 {
     struct near_corner at[3], left[NEAR_CORNERS];
-    uint32_t flags = 0, source = (uint32_t)(indices - mesh->file->indices);
+    uint32_t source = (uint32_t)(indices - mesh->file->indices);
     for (int i = 0; i < 3; i++) {
         const struct draft_vertex *vertex = &draft->vertices[mesh->first_vertex + indices[i]];
-        at[i] = near_corner_of(mesh, indices[i], vertex->a, vertex->b);
-        flags |= vertex->flags;
+        at[i] = near_corner_of(mesh, indices[i], vertex->a, vertex->b, 0);
     }
     int count = near_cut(draft, at, left);
     for (int i = 0; i < count; i++)
-        corners[i] = add_extra(chunk, &left[i], flags, source);
+        corners[i] = add_extra(chunk, &left[i], source);
     return count;
 }
 

@@ -13,8 +13,9 @@ enum { MOST_FACES = NEAR_TRIANGLES * PART_TRIANGLES, MOST_CORNERS = PART_VERTICE
 
 struct draft_corners { /* vertices of a part, as struct draft_vertex, then those that cuts made */
     float x[MOST_CORNERS], y[MOST_CORNERS], depth[MOST_CORNERS], inverse_w[MOST_CORNERS], a[MOST_CORNERS], b[MOST_CORNERS];
-    uint32_t flags[MOST_CORNERS];
-    int count;
+    uint32_t flags[MOST_CORNERS]; /* of those that cuts made: DRAFT_PATTERNS alone, and beside it */
+    struct near_patterns cut_patterns[MOST_CORNERS - PART_VERTICES];
+    int count, placed; /* placed: that no cut made, the first ones */
     uint32_t all_flags; /* of any of them */
     bool flat;          /* no perspective to speak of */
     bool cut;           /* some are nearer than the near plane, or beyond the band */
