@@ -50,6 +50,22 @@ static void count_asset(struct caps *caps, const struct picture *picture, int as
     model_draw_closed(&caps->draws, model, solid_level(picture, asset));
 }
 
+/* Cuts by the planes that rays come in by. What lies beyond the way out of what is left is met, too: a ray that leaves a body there was in
+   it. In clip space a plane is come in by everywhere or nowhere, by how it rises with depth; neither, where it holds the eye. */
+static void clip_entries(const struct picture *picture)
+{
+    const struct clip *clip = &picture->view->visibility.clip;
+    double plant_from_clip[16], plane[4];
+    float in_clip[4];
+    matrix_invert(picture->shot.clip_from_plant, plant_from_clip);
+    for (int i = 0; i < clip->plane_count; i++) {
+        clip_plane(clip, i, plane);
+        matrix_plane(plant_from_clip, plane, in_clip);
+        if (in_clip[2] < 0)
+            glEnable(GL_CLIP_DISTANCE0 + (GLenum)i);
+    }
+}
+
 /* Returns how many texels there are to a pixel's side. */
 static int count_bodies(struct caps *caps, const struct picture *picture)
 {
@@ -65,7 +81,7 @@ static int count_bodies(struct caps *caps, const struct picture *picture)
     glEnable(GL_BLEND);
     glBlendFunc(GL_ONE, GL_ONE);
     glUseProgram(caps->count_program);
-    stage_clip_begin(clip);
+    clip_entries(picture);
     for (size_t i = 0; i < picture->visible_count; i++)
         if (is_cut(picture, picture->visible[i]))
             count_asset(caps, picture, picture->visible[i]);
