@@ -136,7 +136,7 @@ struct heat *heat_create(struct log *log, const struct intrinsic *in, const uint
     heat->common.print = 0;
     heat->common.final_ll = 1;
     heat->common.nmethods = 1;
-    heat->common.method[0].ordering = CHOLMOD_METIS;
+    heat->common.method[0].ordering = CHOLMOD_AMD;
     heat->common.postorder = 1;
     heat->row_of = mem_try_array(in->point_count, sizeof(*heat->row_of));
     heat->slopes = mem_try_array(in->tri_count, sizeof(*heat->slopes));

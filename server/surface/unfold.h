@@ -29,6 +29,7 @@ void unfold_finish(struct unfold *unfold);
 
 struct unfold_walk {   /* one thread's; zero-initialise, used again and again */
     float *distance_m; /* of all points; INFINITY where no way leads */
+    float *straight_m; /* and as the crow flies */
     char *settled;
     uint32_t *buckets;
     struct unfold_item {

@@ -20,6 +20,7 @@ typedef int32_t mask __attribute__((vector_size(4 * UNFOLD_FAN))); /* of each la
 void unfold_walk_finish(struct unfold_walk *walk)
 {
     mem_free(walk->distance_m);
+    mem_free(walk->straight_m);
     mem_free(walk->settled);
     mem_free(walk->buckets);
     mem_free(walk->items);
@@ -31,9 +32,10 @@ static bool clear(const struct unfold *unfold, struct unfold_walk *walk)
     size_t count = unfold->mesh->point_count;
     if (!walk->distance_m) {
         walk->distance_m = mem_try_array(count, sizeof(*walk->distance_m));
+        walk->straight_m = mem_try_array(count, sizeof(*walk->straight_m));
         walk->settled = mem_try_array(count, 1);
         walk->buckets = mem_try_array(unfold->bucket_count, sizeof(*walk->buckets));
-        if (!walk->distance_m || !walk->settled || !walk->buckets)
+        if (!walk->distance_m || !walk->straight_m || !walk->settled || !walk->buckets)
             return false;
         memset(walk->buckets, 0xff, unfold->bucket_count * sizeof(*walk->buckets)); /* a walk leaves them empty */
     }
@@ -54,16 +56,9 @@ static inline void fetch_fans(const struct unfold *unfold, uint32_t point)
 
 /* No way is shorter than the straight line. What is offered may be: an edge's two ends have their distances by ways round a fold, or round
    a rod, and a source that is laid out to fit both is nearer than either. */
-static inline float not_shorter(const struct unfold *unfold, const struct unfold_walk *walk, uint32_t point, float distance_m)
-{
-    const double *p = unfold->mesh->points[point], *q = walk->source_m;
-    double x = p[0] - q[0], y = p[1] - q[1], z = p[2] - q[2], straight2 = x * x + y * y + z * z;
-    return (double)distance_m * (double)distance_m < straight2 ? (float)sqrt(straight2) : distance_m;
-}
-
 static inline void offer(const struct unfold *unfold, struct unfold_walk *walk, uint32_t point, float offered_m)
 {
-    float distance_m = not_shorter(unfold, walk, point, offered_m);
+    float distance_m = offered_m < walk->straight_m[point] ? walk->straight_m[point] : offered_m;
     if (!(distance_m < walk->distance_m[point]))
         return;
     if (walk->distance_m[point] == INFINITY)
@@ -346,6 +341,17 @@ static void look_around(const struct unfold *unfold, struct unfold_walk *walk, u
     }
 }
 
+/* From the source to all points: one after another, since places of points that offers go to lie all over the memory. */
+WIDE_BODY void measure_straight(const struct trimesh *mesh, struct unfold_walk *walk)
+{
+    const double q[3] = { walk->source_m[0], walk->source_m[1], walk->source_m[2] }, (*points)[3] = (const double(*)[3])mesh->points;
+    float *restrict straight_m = walk->straight_m;
+    for (size_t i = 0; i < mesh->point_count; i++) {
+        double x = points[i][0] - q[0], y = points[i][1] - q[1], z = points[i][2] - q[2];
+        straight_m[i] = (float)sqrt(x * x + y * y + z * z);
+    }
+}
+
 /* From what is in the buckets outwards. */
 WIDE_BODY void go_on(const struct unfold *unfold, struct unfold_walk *walk)
 {
@@ -359,6 +365,16 @@ WIDE_BODY void go_on(const struct unfold *unfold, struct unfold_walk *walk)
                 spread(unfold, walk, item.point);
         }
     }
+}
+
+static void measure_straight_plain(const struct trimesh *mesh, struct unfold_walk *walk)
+{
+    measure_straight(mesh, walk);
+}
+
+WIDE_TARGET static void measure_straight_wide(const struct trimesh *mesh, struct unfold_walk *walk)
+{
+    measure_straight(mesh, walk);
 }
 
 static void go_on_plain(const struct unfold *unfold, struct unfold_walk *walk)
@@ -380,6 +396,7 @@ bool unfold_from(const struct unfold *unfold, struct unfold_walk *walk, uint32_t
     for (int axis = 0; axis < 3; axis++)
         walk->source_m[axis] =
             weights[0] * mesh->points[v[0]][axis] + weights[1] * mesh->points[v[1]][axis] + weights[2] * mesh->points[v[2]][axis];
+    (wide_is_there() ? measure_straight_wide : measure_straight_plain)(mesh, walk);
     for (int i = 0; i < 3; i++)
         offer(unfold, walk, v[i], (float)vec_distance(walk->source_m, mesh->points[v[i]]));
     look_around(unfold, walk, tri, weights);
