@@ -1,12 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rows into columns, a block at a time that fits into a core's own memory. */
+/* Rows into columns, a tile at a time that fits into a core's own memory. */
 #include "preprocess/rows.h"
+
+#include <stdatomic.h>
+#include <unistd.h>
 
 #include "base/mem.h"
 #include "surface/trimesh.h"
 
-#define LINE 16u  /* floats */
-#define BLOCK 64u /* vertices */
+#define LINE 16u    /* floats: sensors of a tile */
+#define TILE 16384u /* its vertices: 64 kB of a column are written at once */
+#define APART (TILE + LINE) /* of a tile's columns, in floats, so that they do not meet in the cache */
 
 void rows_finish(struct rows *rows)
 {
@@ -28,33 +32,59 @@ void rows_renumber(struct rows *rows, const uint32_t *new_of, uint32_t kept)
 
 struct turn {
     const struct rows *rows;
-    float *columns;
+    int fd;
+    off_t at;
+    size_t lines; /* tiles beside each other */
+    atomic_bool failed;
 };
 
-static void turn_blocks(void *arg, size_t begin, size_t end)
+static void turn_tile(const struct rows *rows, size_t first, size_t last, size_t line, size_t width, float *tile)
 {
-    const struct turn *turn = arg;
-    const struct rows *rows = turn->rows;
-    const size_t count = rows->vertex_count, sensors = rows->sensor_count;
-    for (size_t first = begin * BLOCK; first < end * BLOCK && first < count; first += BLOCK) {
-        size_t last = first + BLOCK < count ? first + BLOCK : count;
-        for (size_t line = 0; line < sensors; line += LINE) {
-            size_t width = line + LINE < sensors ? LINE : sensors - line;
-            for (size_t v = first; v < last; v++) {
-                const float *row = rows->distances_m + rows->place_of[v] * sensors + line;
-                for (size_t s = 0; s < width; s++)
-                    turn->columns[(line + s) * count + v] = row[s];
-            }
-        }
+    for (size_t v = first; v < last; v++) {
+        const float *row = rows->distances_m + rows->place_of[v] * rows->sensor_count + line;
+        for (size_t s = 0; s < width; s++)
+            tile[s * APART + v - first] = row[s];
     }
 }
 
-void rows_turn(const struct rows *rows, struct workers *workers, float *columns)
+static bool write_all(int fd, const void *from, size_t bytes, off_t at)
 {
-    struct turn turn = { rows, columns };
-    size_t blocks = (rows->vertex_count + BLOCK - 1) / BLOCK;
+    for (const char *p = from; bytes;) {
+        ssize_t put = pwrite(fd, p, bytes, at);
+        if (put <= 0)
+            return false;
+        p += put;
+        at += put;
+        bytes -= (size_t)put;
+    }
+    return true;
+}
+
+static void turn_tiles(void *arg, size_t begin, size_t end)
+{
+    struct turn *turn = arg;
+    const struct rows *rows = turn->rows;
+    const size_t count = rows->vertex_count, sensors = rows->sensor_count;
+    float *tile = mem_array(LINE * APART, sizeof(*tile));
+    for (size_t i = begin; i < end && !turn->failed; i++) {
+        size_t first = i / turn->lines * TILE, line = i % turn->lines * LINE;
+        size_t last = first + TILE < count ? first + TILE : count, width = line + LINE < sensors ? LINE : sensors - line;
+        turn_tile(rows, first, last, line, width, tile);
+        for (size_t s = 0; s < width; s++)
+            if (!write_all(turn->fd, tile + s * APART, (last - first) * sizeof(*tile),
+                           turn->at + (off_t)(((line + s) * count + first) * sizeof(*tile))))
+                turn->failed = true;
+    }
+    mem_free(tile);
+}
+
+bool rows_write(const struct rows *rows, struct workers *workers, int fd, off_t at)
+{
+    struct turn turn = { .rows = rows, .fd = fd, .at = at, .lines = (rows->sensor_count + LINE - 1) / LINE };
+    size_t tiles = (rows->vertex_count + TILE - 1) / TILE * turn.lines;
     if (workers)
-        workers_for(workers, blocks, 16, turn_blocks, &turn);
+        workers_for(workers, tiles, 4, turn_tiles, &turn);
     else
-        turn_blocks(&turn, 0, blocks);
+        turn_tiles(&turn, 0, tiles);
+    return !turn.failed;
 }

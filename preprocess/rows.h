@@ -2,8 +2,10 @@
 /* Distances place by place, as splitting finds them; turned into columns vertex by vertex, as an asset file has them. */
 #ifndef PREPROCESS_ROWS_H
 #define PREPROCESS_ROWS_H
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <sys/types.h>
 
 #include "base/workers.h"
 
@@ -17,7 +19,8 @@ struct rows {
 void rows_finish(struct rows *rows); /* a zeroed one is fine */
 /* Vertices follow to their new numbers; those without one (TRIMESH_NONE) are dropped, and `kept` are left. */
 void rows_renumber(struct rows *rows, const uint32_t *new_of, uint32_t kept);
-/* columns: [sensor][vertex]. workers may be NULL. */
-void rows_turn(const struct rows *rows, struct workers *workers, float *columns);
+/* Columns, [sensor][vertex], into a file from `at` on: where a mapped one is stored to instead, each page costs as much again. workers may
+   be NULL. False: not all could be written. */
+bool rows_write(const struct rows *rows, struct workers *workers, int fd, off_t at);
 
 #endif

@@ -6,6 +6,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -217,6 +218,20 @@ static double largest(const struct body *body, int group, bool geodesic)
     return most;
 }
 
+/* As they come into a file. */
+static void take_columns(const struct rows *rows, float *columns)
+{
+    const size_t bytes = rows->vertex_count * rows->sensor_count * sizeof(*columns), before = 12;
+    FILE *file = tmpfile();
+    assert_non_null(file);
+    assert_true(rows_write(rows, NULL, fileno(file), (off_t)before));
+    assert_int_equal(fseek(file, 0, SEEK_END), 0);
+    assert_int_equal(ftell(file), before + bytes);
+    assert_int_equal(fseek(file, (long)before, SEEK_SET), 0);
+    assert_int_equal(fread(columns, 1, bytes, file), bytes);
+    fclose(file);
+}
+
 static void prepare(struct body *body, const double (*points)[3])
 {
     float(*places)[3] = mem_array(SENSORS, sizeof(*places));
@@ -240,7 +255,7 @@ static void prepare(struct body *body, const double (*points)[3])
                                  .straight = &straight, .surface = body->surface, .field = &body->field, .sensors = body->places },
                              &rows));
     body->distances = mem_array((size_t)g->vertex_count * SENSORS, sizeof(*body->distances));
-    rows_turn(&rows, NULL, body->distances);
+    take_columns(&rows, body->distances);
     rows_finish(&rows);
     straight_finish(&straight);
     mem_free(places);
