@@ -121,6 +121,7 @@ struct probe { /* a point, and the part that it is of */
     uint32_t part;
     double known_m;
     double point[3];
+    uint32_t *near; /* the thread's: a triangle of `to` that was near to some point before, or TRIMESH_NONE */
 };
 
 static uint32_t part_of(const struct deviation *surface, uint32_t tri)
@@ -141,7 +142,8 @@ static double distance_of(const struct probe *probe, double expected_m)
     bool (*counts)(const void *, uint32_t) = probe->anywhere ? NULL : is_of_part;
     if (!probe->anywhere && !probe->to->has_part[probe->part])
         return INFINITY;
-    if (isinf(probe->known_m) || (probe->known_m > 0 && bvh_any_within(probe->to->bvh, probe->point, probe->known_m, counts, probe)))
+    if (isinf(probe->known_m) ||
+        (probe->known_m > 0 && bvh_any_within(probe->to->bvh, probe->point, probe->known_m, counts, probe, probe->near)))
         return 0;
     bvh_nearest(probe->to->bvh, probe->point, 2 * expected_m, counts, probe, &place);
     if (place.tri == TRIMESH_NONE)
@@ -149,15 +151,17 @@ static double distance_of(const struct probe *probe, double expected_m)
     return place.distance_m;
 }
 
-static struct probe probe_of(const struct probing *probing, uint32_t part)
+static struct probe probe_of(const struct probing *probing, uint32_t part, uint32_t *near)
 {
-    return (struct probe){ .to = probing->to, .anywhere = probing->anywhere, .part = part, .known_m = (double)probing->known_m[part] };
+    return (struct probe){
+        .to = probing->to, .anywhere = probing->anywhere, .part = part, .known_m = (double)probing->known_m[part], .near = near
+    };
 }
 
-static void probe_point(const struct probing *probing, size_t i)
+static void probe_point(const struct probing *probing, size_t i, uint32_t *near)
 {
     const struct deviation *from = probing->from;
-    struct probe probe = probe_of(probing, from->part[from->index[i]]);
+    struct probe probe = probe_of(probing, from->part[from->index[i]], near);
     if ((probing->only && !probing->only[probe.part]) || shares_point(probing->to, from->index[i]))
         return;
     memcpy(probe.point, from->mesh.points[i], sizeof(probe.point));
@@ -170,30 +174,30 @@ static double longest_edge(const struct trimesh *mesh, const uint32_t v[3])
                   max_of(vec_distance(mesh->points[v[1]], mesh->points[v[2]]), vec_distance(mesh->points[v[2]], mesh->points[v[0]])));
 }
 
-static double probe_at(const struct probing *probing, size_t t, const double w[3])
+static double probe_at(const struct probing *probing, size_t t, const double w[3], uint32_t *near)
 {
     const struct trimesh *mesh = &probing->from->mesh;
     const uint32_t *v = mesh->tris[t];
-    struct probe probe = probe_of(probing, part_of(probing->from, (uint32_t)t));
+    struct probe probe = probe_of(probing, part_of(probing->from, (uint32_t)t), near);
     for (int axis = 0; axis < 3; axis++)
         probe.point[axis] = w[0] * mesh->points[v[0]][axis] + w[1] * mesh->points[v[1]][axis] + w[2] * mesh->points[v[2]][axis];
     return distance_of(&probe, probing->expected_m);
 }
 
-static double probe_inside(const struct probing *probing, size_t t, int cuts)
+static double probe_inside(const struct probing *probing, size_t t, int cuts, uint32_t *near)
 {
     double most_m = 0;
     for (int i = 0; i <= cuts; i++)
         for (int j = 0; i + j <= cuts; j++) {
             const double w[3] = { (double)i / cuts, (double)j / cuts, (double)(cuts - i - j) / cuts };
             if (i != cuts && j != cuts && i + j != 0)
-                most_m = max_of(most_m, probe_at(probing, t, w));
+                most_m = max_of(most_m, probe_at(probing, t, w, near));
         }
     return most_m;
 }
 
 /* Corners are probed; a triangle no larger than what is expected cannot stray much farther. */
-static void probe_triangle(const struct probing *probing, size_t t)
+static void probe_triangle(const struct probing *probing, size_t t, uint32_t *near)
 {
     const struct deviation *from = probing->from;
     const uint32_t *v = from->mesh.tris[t], indices[3] = { from->index[v[0]], from->index[v[1]], from->index[v[2]] };
@@ -203,20 +207,21 @@ static void probe_triangle(const struct probing *probing, size_t t)
     if (longest_m <= probing->expected_m || shares_triangle(probing->to, indices))
         return;
     if (longest_m < SMALL * probing->expected_m)
-        most_m = probe_at(probing, t, (const double[3]){ 1 / 3.0, 1 / 3.0, 1 / 3.0 });
+        most_m = probe_at(probing, t, (const double[3]){ 1 / 3.0, 1 / 3.0, 1 / 3.0 }, near);
     else
-        most_m = probe_inside(probing, t, longest_m > LARGE * probing->expected_m ? 4 : 2);
+        most_m = probe_inside(probing, t, longest_m > LARGE * probing->expected_m ? 4 : 2, near);
     probing->found_m[from->mesh.point_count + t] = (float)most_m;
 }
 
 static void probe_some(void *arg, size_t begin, size_t end)
 {
     const struct probing *probing = arg;
+    uint32_t near = TRIMESH_NONE;
     for (size_t i = begin; i < end; i++)
         if (i < probing->from->mesh.point_count)
-            probe_point(probing, i);
+            probe_point(probing, i, &near);
         else
-            probe_triangle(probing, i - probing->from->mesh.point_count);
+            probe_triangle(probing, i - probing->from->mesh.point_count, &near);
 }
 
 static void measure(const struct deviation *from, const struct deviation *to, const char *only, bool anywhere, double expected_m,

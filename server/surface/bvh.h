@@ -20,9 +20,10 @@ struct bvh_place {
 void bvh_nearest(const struct bvh *bvh, const double point[3], double limit_m, bool (*allowed)(const void *arg, uint32_t tri),
                  const void *arg, struct bvh_place *place);
 
-/* Whether there is such a place: quicker than which one is nearest. */
+/* Whether there is such a place: quicker than which one is nearest. *tri: the triangle to be tried first, as near points often have theirs
+   on the same one, or TRIMESH_NONE; then that on which there is one. */
 bool bvh_any_within(const struct bvh *bvh, const double point[3], double limit_m, bool (*allowed)(const void *arg, uint32_t tri),
-                    const void *arg);
+                    const void *arg, uint32_t *tri);
 
 /* Calls visit(arg, tri) for every triangle whose box comes within margin_m of the box low..high. */
 void bvh_overlaps(const struct bvh *bvh, const double low[3], const double high[3], double margin_m, void (*visit)(void *arg, uint32_t tri),

@@ -286,10 +286,15 @@ void bvh_nearest(const struct bvh *bvh, const double point[3], double limit_m, b
 }
 
 bool bvh_any_within(const struct bvh *bvh, const double point[3], double limit_m, bool (*allowed)(const void *arg, uint32_t tri),
-                    const void *arg)
+                    const void *arg, uint32_t *tri)
 {
     struct bvh_place place = { .tri = TRIMESH_NONE };
     struct search s = { bvh, point, allowed, arg, true, limit_m * limit_m, &place };
-    (wide_is_there() ? search_wide : search_plain)(&s);
+    if (*tri != TRIMESH_NONE && (!allowed || allowed(arg, *tri)))
+        try_tri(bvh, *tri, point, &s.best2, &place);
+    if (place.tri == TRIMESH_NONE)
+        (wide_is_there() ? search_wide : search_plain)(&s);
+    if (place.tri != TRIMESH_NONE)
+        *tri = place.tri;
     return place.tri != TRIMESH_NONE;
 }

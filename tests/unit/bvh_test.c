@@ -81,6 +81,18 @@ static uint32_t find_slowly(const struct trimesh *mesh, const double point[3], c
     return best;
 }
 
+/* Whatever is tried first, a triangle that there is is told, and one that is too far or not allowed is not taken for one. */
+static void check_any(const struct trimesh *mesh, const struct bvh *bvh, const double point[3], const uint32_t *third, double limit_m,
+                      size_t first, bool any)
+{
+    uint32_t tri = (uint32_t)first;
+    assert_int_equal(bvh_any_within(bvh, point, limit_m, third ? of_third : NULL, third, &tri), any);
+    if (any)
+        assert_true(tri < mesh->tri_count && (!third || of_third(third, tri)) && distance_of(mesh, tri, point) <= limit_m * (1 + FAR));
+    else
+        assert_int_equal(tri, first);
+}
+
 static void check_point(const struct trimesh *mesh, const struct bvh *bvh, const double point[3], const uint32_t *third)
 {
     struct bvh_place place;
@@ -99,12 +111,15 @@ static void check_point(const struct trimesh *mesh, const struct bvh *bvh, const
         for (int axis = 0; axis < 3; axis++)
             at[axis] += place.weights[c] * mesh->points[mesh->tris[place.tri][c]][axis];
     assert_true(vec_distance(at, place.point) <= near_m);
-    assert_true(bvh_any_within(bvh, point, distance_m + near_m, third ? of_third : NULL, third));
+    check_any(mesh, bvh, point, third, distance_m + near_m, TRIMESH_NONE, true);
+    check_any(mesh, bvh, point, third, distance_m + near_m, tri, true);
+    check_any(mesh, bvh, point, third, distance_m + near_m, mesh->tri_count / 2, true);
     if (distance_m <= near_m)
         return;
     bvh_nearest(bvh, point, distance_m - near_m, third ? of_third : NULL, third, &place);
     assert_int_equal(place.tri, TRIMESH_NONE);
-    assert_false(bvh_any_within(bvh, point, distance_m - near_m, third ? of_third : NULL, third));
+    check_any(mesh, bvh, point, third, distance_m - near_m, TRIMESH_NONE, false);
+    check_any(mesh, bvh, point, third, distance_m - near_m, tri, false);
 }
 
 /* Counts that fill the nodes, just do not, and just exceed them; far from the origin, where floats are coarse; points far away, on
