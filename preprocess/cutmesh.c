@@ -160,6 +160,13 @@ static void add_tri(struct cutmesh *mesh, const struct cut_tri *like, uint32_t a
     enter(mesh, mesh->tri_count++);
 }
 
+#define AHEAD 8 /* triangles */
+static void prefetch_edges(const struct cutmesh *mesh, const uint32_t v[3])
+{
+    for (int c = 0; c < 3; c++)
+        edge_table_prefetch(&mesh->edges, place_of(mesh, v[c]), place_of(mesh, v[(c + 1) % 3]));
+}
+
 void cutmesh_load(struct cutmesh *mesh, const struct level *level)
 {
     mesh->tri_count = 0;
@@ -174,6 +181,8 @@ void cutmesh_load(struct cutmesh *mesh, const struct level *level)
             uint32_t at = level->primitives[p].first_index + i;
             const uint32_t *v = level->indices + at;
             const struct cut_tri like = { .primitive = p, .origin = at / 3 };
+            if (i + 3 * AHEAD < level->primitives[p].index_count)
+                prefetch_edges(mesh, v + (size_t)3 * AHEAD);
             add_tri(mesh, &like, v[0], v[1], v[2]);
         }
 }

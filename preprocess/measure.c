@@ -41,20 +41,36 @@ static bool place_sensors(const struct build_input *input, const struct geometry
     return true;
 }
 
-static void drop_sensors(const struct surface *surface, const struct build_input *input, const double (*places)[3],
-                         struct asset_sensor *out)
+struct drop {
+    const struct surface *surface;
+    const struct build_input *input;
+    const double (*places)[3];
+    struct asset_sensor *out;
+};
+
+static void drop_some(void *arg, size_t begin, size_t end)
 {
-    for (size_t i = 0; i < input->sensor_count; i++) {
+    const struct drop *drop = arg;
+    for (size_t i = begin; i < end; i++) {
         struct surface_place at;
-        surface_nearest(surface, places[i], &at);
+        surface_nearest(drop->surface, drop->places[i], &at);
         for (int axis = 0; axis < 3; axis++) {
-            out[i].position_m[axis] = (float)places[i][axis];
-            out[i].surface_m[axis] = (float)at.position_m[axis];
+            drop->out[i].position_m[axis] = (float)drop->places[i][axis];
+            drop->out[i].surface_m[axis] = (float)at.position_m[axis];
         }
-        out[i].surface_distance_m = (float)at.distance_m;
-        out[i].nearest_vertex = at.vertex;
-        out[i].node_hash = input->sensors[i].node_hash;
+        drop->out[i].surface_distance_m = (float)at.distance_m;
+        drop->out[i].nearest_vertex = at.vertex;
+        drop->out[i].node_hash = drop->input->sensors[i].node_hash;
     }
+}
+
+static void drop_sensors(const struct measured *measured, struct workers *workers, const struct build_input *input)
+{
+    struct drop drop = { measured->surface, input, (const double(*)[3])measured->places_m, measured->sensors };
+    if (workers)
+        workers_for(workers, input->sensor_count, 8, drop_some, &drop);
+    else
+        drop_some(&drop, 0, input->sensor_count);
 }
 
 /* Vertices without a finite distance. */
@@ -105,7 +121,7 @@ bool measure_sensors(struct measured *measured, struct log *log, struct workers 
     int64_t made_ns = clock_mono_ns();
     if (!measured->surface || !solve(measured, input, g->index_count / 3, &report->kept_sensors))
         return wrong(why, "its distances to %zu sensors cannot be computed: %s", input->sensor_count, cause);
-    drop_sensors(measured->surface, input, (const double(*)[3])measured->places_m, measured->sensors);
+    drop_sensors(measured, workers, input);
     report->unreachable_vertices = unreachable(measured, g->vertex_count);
     report->surface_s = (double)(made_ns - start_ns) / NS_PER_S;
     report->solve_s = (double)(clock_mono_ns() - made_ns) / NS_PER_S;

@@ -11,6 +11,7 @@
 #include "surface/vec.h"
 
 #define MOST_ROUNDS 16
+#define GRAIN 2048       /* triangles: a few tenths of a millisecond */
 #define MOST_KEPT 512    /* shares of a place */
 #define LARGE 0.25       /* of the way to the nearest sensor */
 #define LIKELY 1.0       /* errors of the edges together, in limits: with less, one of 500 large triangles errs more inside */
@@ -73,7 +74,7 @@ static bool is_line(const struct split *split, const struct cut_tri *tri)
         for (int axis = 0; axis < 3; axis++)
             p[c][axis] = (double)split_position(split, tri->v[c])[axis];
     for (int c = 0; c < 3; c++)
-        longest_m = fmax(longest_m, vec_distance(p[c], p[(c + 1) % 3]));
+        longest_m = max_of(longest_m, vec_distance(p[c], p[(c + 1) % 3]));
     vec_sub(p[1], p[0], ab);
     vec_sub(p[2], p[0], ac);
     vec_cross(ab, ac, normal);
@@ -112,7 +113,8 @@ static void measure_edges(struct split *split)
     for (size_t m = 0; m < mesh->made.count; m++) {
         const struct cut_tri *tri = &mesh->tris[mesh->made.at[m]];
         bool any_new = mesh->cuts[tri->e[0]].error < 0 || mesh->cuts[tri->e[1]].error < 0 || mesh->cuts[tri->e[2]].error < 0;
-        for (int i = 0; i < 3 && any_new && !is_line(split, tri); i++) {
+        bool asks = any_new && !is_line(split, tri);
+        for (int i = 0; i < 3 && asks; i++) {
             struct cut_edge *edge = &mesh->cuts[tri->e[i]];
             if (edge->error >= 0)
                 continue;
@@ -165,25 +167,43 @@ static bool inside_may_err(const struct split *split, const struct cut_tri *tri,
     return sum > 9 / 4.0 * limit || (any_error && length_m > LARGE * straight_nearest_of(split->in->straight, norms));
 }
 
+struct insides {
+    const struct split *split;
+    double limit;
+    char *asked; /* of the triangles made */
+};
+
+static void choose_insides(void *arg, size_t begin, size_t end)
+{
+    const struct insides *insides = arg;
+    const struct cutmesh *mesh = &insides->split->mesh;
+    for (size_t m = begin; m < end; m++) {
+        const struct cut_tri *tri = &mesh->tris[mesh->made.at[m]];
+        double most = 0;
+        for (int i = 0; i < 3; i++)
+            most = max_of(most, (double)mesh->cuts[tri->e[i]].error);
+        insides->asked[m] = !tri->good && most <= insides->limit && inside_may_err(insides->split, tri, insides->limit);
+    }
+}
+
 /* Measures new triangles whose edges are good: has those that err inside cut at the longest edge. */
 static void measure_insides(struct split *split, double limit)
 {
     struct cutmesh *mesh = &split->mesh;
     size_t count = 0;
     cutmesh_sort(&mesh->made);
-    struct split_finding *findings = mem_array(mesh->made.count, sizeof(*findings));
-    for (size_t m = 0; m < mesh->made.count; m++) {
-        uint32_t t = mesh->made.at[m];
-        struct cut_tri *tri = &mesh->tris[t];
-        double most = 0;
-        for (int i = 0; i < 3; i++)
-            most = fmax(most, (double)mesh->cuts[tri->e[i]].error);
-        if (tri->good || most > limit)
-            continue;
-        tri->good = inside_may_err(split, tri, limit);
-        if (tri->good)
-            findings[count++].number = t;
-    }
+    struct insides insides = { split, limit, mem_array(mesh->made.count, 1) };
+    split_for_all(split, mesh->made.count, GRAIN, choose_insides, &insides);
+    for (size_t m = 0; m < mesh->made.count; m++)
+        count += insides.asked[m] != 0;
+    struct split_finding *findings = mem_array(count, sizeof(*findings));
+    count = 0;
+    for (size_t m = 0; m < mesh->made.count; m++)
+        if (insides.asked[m]) {
+            mesh->tris[mesh->made.at[m]].good = true;
+            findings[count++].number = mesh->made.at[m];
+        }
+    mem_free(insides.asked);
     split_measure_insides(split, findings, count);
     for (size_t i = 0; i < count; i++)
         if ((double)findings[i].error > SPLIT_AIM) {
@@ -226,7 +246,7 @@ static bool aim_at_corner(struct split *split, const struct cut_tri *tri, uint32
            cb = split_length(split_position(split, v[2]), split_position(split, v[1]));
     struct cut_edge *at = &mesh->cuts[tri->e[i]];
     *edge = tri->e[i];
-    if (fmin(ca, cb) < fmax(split->shortest_m, ASIDE * ab) || ca + cb > ab * (1 + FLAT))
+    if (min_of(ca, cb) < max_of(split->shortest_m, ASIDE * ab) || ca + cb > ab * (1 + FLAT))
         return false;
     if (at->middle == TRIMESH_NONE)
         at->share = (float)((mesh->places.of_vertex[v[0]] == mesh->places.of_vertex[at->a] ? ca : cb) / (ca + cb));
@@ -393,12 +413,12 @@ static void split_level(struct split *split, struct level *level, size_t finer_t
     double error_m = (double)level->error_m, tolerance_m = surface_report(split->in->surface)->tolerance_m;
     split->finest = finer_tris == 0;
     split->error_m = error_m;
-    split->on_surface_m = split->finest ? ON_SURFACE * tolerance_m : fmax(ON_SURFACE * tolerance_m, 1.5 * error_m);
+    split->on_surface_m = split->finest ? ON_SURFACE * tolerance_m : max_of(ON_SURFACE * tolerance_m, 1.5 * error_m);
     split->slack_m = SLACK * error_m;
-    split->shortest_m = split->finest ? SHORTEST_NEAR * tolerance_m : fmax(tolerance_m, SHORTEST * error_m);
-    split->jump_m = JUMP_WIDTH * fmax(tolerance_m, SHORTEST * error_m);
+    split->shortest_m = split->finest ? SHORTEST_NEAR * tolerance_m : max_of(tolerance_m, SHORTEST * error_m);
+    split->jump_m = JUMP_WIDTH * max_of(tolerance_m, SHORTEST * error_m);
     double tris = (double)(level->index_count / 3);
-    split->most_tris = (size_t)(split->finest ? tris + fmax(FINEST_GROWTH * tris, FINEST_GROWTH_TRIS) : WORTH * (double)finer_tris);
+    split->most_tris = (size_t)(split->finest ? tris + max_of(FINEST_GROWTH * tris, FINEST_GROWTH_TRIS) : WORTH * (double)finer_tris);
     split->full = !split->finest && (is_known_hopeless(split) || is_hopeless(split, level, limits[0]));
     if (split->full)
         return;

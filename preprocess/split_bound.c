@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Which coarser levels will need too many triangles, before they are cut that far. */
 #include <math.h>
+#include <stdatomic.h>
 #include <string.h>
 
 #include "base/mem.h"
@@ -8,6 +9,7 @@
 
 #define SAMPLE_OF 8 /* blocks of triangles, of which one is taken: a power of 2 */
 #define BLOCK 8     /* triangles */
+#define GRAIN 4096  /* triangles: a few tenths of a millisecond */
 #define SURE 1.5    /* standard deviations that the sample has to be beyond the bound */
 
 /* How many triangles it takes to mend this one: an edge that errs has to be cut itself, and half as often as its error can be halved, since
@@ -38,14 +40,29 @@ static double least_needed_by_sample(const struct split *split)
     return split->sample_of * blocks * (mean - SURE * deviation);
 }
 
+struct sum {
+    const struct split *split;
+    atomic_size_t needed;
+};
+
+static void add_needed(void *arg, size_t begin, size_t end)
+{
+    struct sum *sum = arg;
+    size_t needed = 0;
+    for (size_t t = begin; t < end; t++)
+        needed += tris_needed(sum->split, &sum->split->mesh.tris[t]);
+    sum->needed += needed;
+}
+
 bool split_comes_to_bound(const struct split *split)
 {
-    size_t needed = 0;
+    struct sum sum = { .split = split };
     if (split->sample_blocks)
         return least_needed_by_sample(split) > (double)split->most_tris;
-    for (size_t t = 0; t < split->mesh.tri_count && !split->finest; t++)
-        needed += tris_needed(split, &split->mesh.tris[t]);
-    return !split->finest && needed > split->most_tris;
+    if (split->finest)
+        return false;
+    split_for_all(split, split->mesh.tri_count, GRAIN, add_needed, &sum);
+    return sum.needed > split->most_tris;
 }
 
 size_t split_take_sample(struct level *sample, const struct level *level)

@@ -39,6 +39,9 @@ double split_length(const float a[3], const float b[3]);
 const float *split_position(const struct split *split, uint32_t vertex);
 bool split_is_short(const struct split *split, double length_m); /* too short to be cut: a piece may not be so short */
 
+/* Over [0, count) on all cores, in pieces of about `grain`. */
+void split_for_all(const struct split *split, size_t count, size_t grain, void (*body)(void *arg, size_t begin, size_t end), void *arg);
+
 /* --- measuring (split_measure.c) --- */
 
 struct split_finding { /* about one edge or one triangle */

@@ -12,6 +12,7 @@
 #define PROBABLE 0.4 /* of an error that would matter: if an edge errs by less at its middle, it does so everywhere */
 #define CLOSE 0.5    /* of the way to the nearest sensor: only of shorter edges that is true */
 #define WIDE 0.3     /* likewise: longer edges are cut in the middle, so that cuts of neighbours lie side by side */
+#define GRAIN 256    /* edges, triangles or places, at least: half a millisecond */
 #define POINTS 16    /* of an edge that are looked at, at most */
 #define CORNERS 61   /* whose shares are at hand */
 #define STEPS 2      /* in which the best place for a cut is narrowed down */
@@ -176,10 +177,10 @@ static bool find_seen(const struct sight *sight, const double corners[3][3], con
     const struct split *split = sight->split;
     double at[3], reach_m = 0;
     for (int c = 0; c < 3; c++)
-        reach_m = fmax(reach_m, vec_distance(from, corners[c]));
+        reach_m = max_of(reach_m, vec_distance(from, corners[c]));
     double limit_m = reach_m + split->on_surface_m;
     if (spot->tri != TRIMESH_NONE)
-        limit_m = fmin(limit_m, vec_distance(from, spot->point_m) * (1 + ROUNDING));
+        limit_m = min_of(limit_m, vec_distance(from, spot->point_m) * (1 + ROUNDING));
     if (split->finest ? !surface_find_spot_on(split->in->surface, from, limit_m, sight->origin, spot)
                       : !surface_find_spot_among(split->in->surface, from, limit_m, is_in_sight, sight, spot)) {
         spot->tri = TRIMESH_NONE;
@@ -282,7 +283,7 @@ static double left_after(const struct line *line, int cut)
     for (int i = 1; i < line->count - 1; i++) {
         int from = i < cut ? 0 : cut, to = i < cut ? cut : line->count - 1;
         if (i != cut)
-            most = fmax(most, error_at(line, STRAIGHT_BOTH, from, to, i));
+            most = max_of(most, error_at(line, STRAIGHT_BOTH, from, to, i));
     }
     return most;
 }
@@ -405,7 +406,7 @@ static double nearest_to_middle(const struct line *line, uint32_t end)
     if (line->count == 3)
         return straight_nearest_of(straight, line->norms);
     split_mix(line->a, line->b, 0.5, middle);
-    return fmin(straight_nearest(straight, middle),
+    return min_of(straight_nearest(straight, middle),
                 straight_rim_of(straight, line->split->norms + place_of(line->split, end) * line->split->norm_count));
 }
 
@@ -438,7 +439,7 @@ static void try_edge(const struct job *job, struct split_finding *finding, struc
     if ((double)finding->error < PROBABLE * job->enough && length_m < CLOSE * nearest_m && line.count == 3)
         return;
     if ((double)finding->error <= job->enough || length_m < WIDE * nearest_m)
-        finding->error = fmaxf(finding->error, (float)fmax(add_point(&line, 0.25), add_point(&line, 0.75)));
+        finding->error = fmaxf(finding->error, (float)max_of(add_point(&line, 0.25), add_point(&line, 0.75)));
     bool partly_seen = line.count < 5 && (double)finding->error <= job->enough;
     if (partly_seen)
         add_eighths(&line, finding);
@@ -449,8 +450,8 @@ static void try_edge(const struct job *job, struct split_finding *finding, struc
     }
     if (length_m < split->jump_m && jumps(&line, length_m))
         bar_jump(finding, &line);
-    double margin = fmin(0.5, split->shortest_m / length_m);
-    finding->share = (float)fmin(1 - margin, fmax(margin, (double)finding->share));
+    double margin = min_of(0.5, split->shortest_m / length_m);
+    finding->share = (float)min_of(1 - margin, max_of(margin, (double)finding->share));
 }
 
 static bool recall_edge(const struct split *split, uint32_t *next, struct split_finding *finding)
@@ -515,7 +516,7 @@ static double error_inside(const struct inside *inside, const double weights[3],
     enum straight_modes modes = jumps_inside(split, inside->tri, point, geodesic_m) ? STRAIGHT_EUCLIDEAN : STRAIGHT_BOTH;
     double wide_m = 0;
     for (int c = 0; c < 3; c++)
-        wide_m = fmax(wide_m, vec_distance(at, inside->corners[c]));
+        wide_m = max_of(wide_m, vec_distance(at, inside->corners[c]));
     return straight_error_inside(straight, modes, inside->shares, weights, shares, wide_m, split->slack_m);
 }
 
@@ -582,17 +583,17 @@ static void measure_places(void *arg, size_t begin, size_t end)
         spots_hand_over(split->in->spots, &notes);
 }
 
-static void for_all(struct split *split, size_t count, void (*body)(void *arg, size_t begin, size_t end), struct job *job)
+void split_for_all(const struct split *split, size_t count, size_t grain, void (*body)(void *arg, size_t begin, size_t end), void *arg)
 {
     if (split->in->workers)
-        workers_for(split->in->workers, count, 256, body, job);
+        workers_for(split->in->workers, count, grain, body, arg);
     else
-        body(job, 0, count);
+        body(arg, 0, count);
 }
 
 void split_measure_edges(struct split *split, struct split_finding *findings, size_t count, double enough)
 {
-    for_all(split, count, try_edges, &(struct job){ .split = split, .findings = findings, .enough = enough });
+    split_for_all(split, count, GRAIN, try_edges, &(struct job){ .split = split, .findings = findings, .enough = enough });
     for (size_t i = 0; i < count; i++) {
         const struct cut_edge *edge = &split->mesh.cuts[findings[i].number];
         split_remember(split, (const uint32_t[2]){ edge->a, edge->b }, 2, &findings[i]);
@@ -601,14 +602,14 @@ void split_measure_edges(struct split *split, struct split_finding *findings, si
 
 void split_measure_insides(struct split *split, struct split_finding *findings, size_t count)
 {
-    for_all(split, count, try_insides, &(struct job){ .split = split, .findings = findings });
+    split_for_all(split, count, GRAIN, try_insides, &(struct job){ .split = split, .findings = findings });
     for (size_t i = 0; i < count; i++)
         split_remember(split, split->mesh.tris[findings[i].number].v, 3, &findings[i]);
 }
 
 void split_measure_places(struct split *split, uint32_t first, const uint32_t *edges, size_t count)
 {
-    for_all(split, count, measure_places, &(struct job){ .split = split, .edges = edges, .first = first });
+    split_for_all(split, count, GRAIN, measure_places, &(struct job){ .split = split, .edges = edges, .first = first });
 }
 
 void split_add_place(struct split *split, uint32_t place, uint32_t part)

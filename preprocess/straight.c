@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "surface/vec.h"
 
 #define MOST_SLACK (2 / 255.0) /* of the range */
 #define MANY 64 /* sensors: with more, each has so small a share in paper that its bends are far below shepard's, and are not looked at */
@@ -80,7 +81,7 @@ void straight_set_radius(struct straight *straight, const float *const largest_m
             struct straight_group *group = &straight->groups[g];
             double largest = 0;
             for (size_t i = 0; i < group->count; i++)
-                largest = fmax(largest, (double)largest_m[mode][group->columns[i]]);
+                largest = max_of(largest, (double)largest_m[mode][group->columns[i]]);
             if (!(group->radius_m[mode] > 0))
                 group->radius_m[mode] = largest > 0 ? largest : 1;
         }
@@ -228,8 +229,9 @@ static double worst_of(const struct straight *straight, const struct question *q
         }
         double slope = (double)sample[straight->share_count + g]; /* or metres beyond the data, less than 0 */
         if (reached && slope >= -question->wide_m && question->modes & 1 << g / 2 / straight->group_count)
-            most = fmax(most, (double)shares_error(at, question->weights, question->corner_count, sample + first, count) -
-                                  fmin(question->slack_m * fmax(slope, 0), MOST_SLACK));
+            most = max_of((double)shares_error(at, question->weights, question->corner_count, sample + first, count) -
+                              min_of(question->slack_m * max_of(slope, 0), MOST_SLACK),
+                          most); /* in this order: what is no number is left out */
         first += count;
     }
     return most;
@@ -265,7 +267,7 @@ double straight_nearest_of(const struct straight *straight, const struct shares_
     float nearest_m = INFINITY;
     for (size_t g = 0; g < straight->group_count; g++)
         nearest_m = fminf(nearest_m, norms[DISTANCE_EUCLIDEAN * straight->group_count + g].near_m);
-    return fmin((double)nearest_m, straight_rim_of(straight, norms));
+    return min_of((double)nearest_m, straight_rim_of(straight, norms));
 }
 
 double straight_nearest(const struct straight *straight, const float point_m[3])

@@ -291,12 +291,15 @@ static void index_some(void *arg, size_t begin, size_t end)
 {
     struct surface *surface = arg;
     for (size_t i = begin; i < end; i++)
-        if (i == 0)
-            surface->bvh = bvh_create(&surface->visible);
-        else if (i == 1)
+        if (i == 0) {
+            if (!surface->intrinsic.points)
+                intrinsic_init(&surface->intrinsic, &surface->visible);
             unfold_init(&surface->unfold, &surface->mesh, surface->visible.tri_count, &surface->intrinsic);
-        else
+        } else if (i == 1) {
+            surface->bvh = bvh_create(&surface->visible);
+        } else {
             list_pieces(surface);
+        }
 }
 
 void surface_index(struct surface *surface)
@@ -345,7 +348,6 @@ struct surface *surface_create(struct log *log, struct workers *workers, const f
     report->bridge_s += seconds_since(&since_ns);
     surface->component = mem_array(surface->mesh.point_count, sizeof(*surface->component));
     report->components_after = trimesh_components(&surface->visible, surface->component);
-    intrinsic_init(&surface->intrinsic, &surface->visible);
     surface_index(surface);
     find_strays(surface);
     surface->edge_m = mean_edge(&surface->intrinsic);

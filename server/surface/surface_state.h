@@ -33,7 +33,7 @@ struct surface {
     size_t bridge_count, bridge_capacity;
 };
 
-/* Makes bvh, unfold and the lists of pieces, of mesh and intrinsic. */
+/* Makes bvh, unfold and the lists of pieces, of mesh and intrinsic; and this too, if it is not there. */
 void surface_index(struct surface *surface);
 
 /* For bvh_nearest: only triangles whose front looks along the normal. */

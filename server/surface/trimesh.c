@@ -83,6 +83,13 @@ uint32_t edge_table_find(const struct edge_table *table, uint32_t a, uint32_t b)
     return table->keys[slot] ? table->numbers[slot] : TRIMESH_NONE;
 }
 
+void edge_table_prefetch(const struct edge_table *table, uint32_t a, uint32_t b)
+{
+    size_t slot = hash64(edge_key(a, b)) & table->mask;
+    __builtin_prefetch(&table->keys[slot]);
+    __builtin_prefetch(&table->numbers[slot]);
+}
+
 /* --- building ------------------------------------------------------------------------------------------------------------ */
 
 void trimesh_finish(struct trimesh *mesh)

@@ -57,5 +57,6 @@ void edge_table_finish(struct edge_table *table);
 /* The edge's number; a new edge gets table->count. */
 uint32_t edge_table_add(struct edge_table *table, uint32_t a, uint32_t b);
 uint32_t edge_table_find(const struct edge_table *table, uint32_t a, uint32_t b); /* TRIMESH_NONE: not there */
+void edge_table_prefetch(const struct edge_table *table, uint32_t a, uint32_t b);  /* it will be asked for soon */
 
 #endif

@@ -102,7 +102,8 @@ static void a_sample_says_what_the_level_needs(void **state)
         needed += 1 + 3 * (errors[t] > 1 ? ceil(log((double)errors[t]) / log(4)) : 0);
     }
     size_t blocks = split_take_sample(&sample, &level);
-    struct split whole = { 0 }, part = { .sample_blocks = blocks, .sample_of = (double)level.index_count / sample.index_count };
+    const struct split_input alone = { .workers = NULL };
+    struct split whole = { .in = &alone }, part = { .sample_blocks = blocks, .sample_of = (double)level.index_count / sample.index_count };
     take_in_hand(&whole, &level, errors);
     take_in_hand(&part, &sample, errors);
     assert_true(comes_to(&whole, needed - 100));
