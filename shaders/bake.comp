@@ -3,6 +3,7 @@
 #include "light.glsl"
 #include "shadow.glsl"
 #include "environment.glsl"
+#include "normal.glsl"
 layout(local_size_x = 64) in;
 layout(binding = 1) uniform sampler2DArrayShadow sky_maps;
 layout(std430, binding = 1) readonly buffer Directions {
@@ -24,7 +25,7 @@ layout(location = 11) uniform vec3 ground_up;
 const int TAPS = 4;
 const float SPREAD = 0.004;
 layout(std430, binding = 2) readonly buffer Positions { float positions_m[]; };
-layout(std430, binding = 3) readonly buffer Normals { float normals[]; };
+layout(std430, binding = 3) readonly buffer Normals { uint normals[]; }; // folded
 layout(std430, binding = 4) buffer Light { uint baked[]; }; // light, ambient, openness, how far it faces the sun
 layout(std430, binding = 5) readonly buffer Corners { uint corners[]; }; // of large triangles: render/light/bake_faces.h
 layout(std430, binding = 6) buffer Sums { uint sums[]; }; // of each vertex, from these: weight, openness, sun
@@ -76,7 +77,7 @@ vec3 vertex_place(uint i)
 
 vec3 vertex_normal(uint i)
 {
-    return normalize(plant_from_normal * vec3(normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]));
+    return normalize(plant_from_normal * unfold_normal(unpackSnorm2x16(normals[i])));
 }
 #endif
 

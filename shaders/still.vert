@@ -2,8 +2,9 @@
 // Still tier: all that shading by pixel needs.
 #include "frame.glsl"
 #include "clip.glsl"
+#include "normal.glsl"
 layout(location = 0) in vec3 position_m;
-layout(location = 1) in vec3 normal;
+layout(location = 1) in vec2 normal; // folded
 layout(location = 2) in vec2 texcoord;
 layout(location = 3) in vec4 vertex_color;
 layout(location = 4) in vec4 baked;
@@ -33,7 +34,7 @@ void main()
     clip_away();
 #endif
     place = (eye_from_file * vec4(position_m, 1.0)).xyz;
-    surface_normal = eye_from_normal * normal;
+    surface_normal = eye_from_normal * unfold_normal(normal);
     uv = vec4(texcoord, second_texcoord);
     tint = vertex_color;
     sky = baked.yz;

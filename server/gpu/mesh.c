@@ -2,6 +2,9 @@
 /* Vertex and index buffers, and how shaders see them. */
 #include "gpu/mesh.h"
 
+#include <math.h>
+
+#include "base/mem.h"
 #include "gpu/gl.h"
 
 enum { BIND_POSITION, BIND_NORMAL, BIND_TEXCOORD, BIND_COLOR, BIND_LIGHT, BIND_SCALAR, BIND_SECOND_TEXCOORD };
@@ -27,20 +30,22 @@ static void attribute(GLuint vao, enum mesh_attribute location, GLuint binding, 
     glVertexArrayAttribBinding(vao, location, binding);
 }
 
+static void describe_texcoords(const struct mesh *mesh, enum mesh_attribute location, GLuint binding, GLuint buffer, bool is_short)
+{
+    attribute(mesh->vao, location, binding, 2, is_short ? GL_UNSIGNED_SHORT : GL_FLOAT, is_short, 0);
+    glVertexArrayVertexBuffer(mesh->vao, binding, buffer, 0, is_short ? 4 : 8);
+}
+
 static void describe(const struct mesh *mesh)
 {
     attribute(mesh->vao, MESH_POSITION, BIND_POSITION, 3, GL_FLOAT, GL_FALSE, 0);
     glVertexArrayVertexBuffer(mesh->vao, BIND_POSITION, mesh->positions, 0, 12);
-    attribute(mesh->vao, MESH_NORMAL, BIND_NORMAL, 3, GL_FLOAT, GL_FALSE, 0);
-    glVertexArrayVertexBuffer(mesh->vao, BIND_NORMAL, mesh->normals, 0, 12);
-    if (mesh->texcoords) {
-        attribute(mesh->vao, MESH_TEXCOORD, BIND_TEXCOORD, 2, GL_FLOAT, GL_FALSE, 0);
-        glVertexArrayVertexBuffer(mesh->vao, BIND_TEXCOORD, mesh->texcoords, 0, 8);
-    }
-    if (mesh->second_texcoords) {
-        attribute(mesh->vao, MESH_SECOND_TEXCOORD, BIND_SECOND_TEXCOORD, 2, GL_FLOAT, GL_FALSE, 0);
-        glVertexArrayVertexBuffer(mesh->vao, BIND_SECOND_TEXCOORD, mesh->second_texcoords, 0, 8);
-    }
+    attribute(mesh->vao, MESH_NORMAL, BIND_NORMAL, 2, GL_SHORT, GL_TRUE, 0);
+    glVertexArrayVertexBuffer(mesh->vao, BIND_NORMAL, mesh->normals, 0, 4);
+    if (mesh->texcoords)
+        describe_texcoords(mesh, MESH_TEXCOORD, BIND_TEXCOORD, mesh->texcoords, mesh->short_texcoords);
+    if (mesh->second_texcoords)
+        describe_texcoords(mesh, MESH_SECOND_TEXCOORD, BIND_SECOND_TEXCOORD, mesh->second_texcoords, mesh->short_second_texcoords);
     if (mesh->colors) {
         attribute(mesh->vao, MESH_COLOR, BIND_COLOR, 4, GL_UNSIGNED_BYTE, GL_TRUE, 0);
         glVertexArrayVertexBuffer(mesh->vao, BIND_COLOR, mesh->colors, 0, 4);
@@ -54,17 +59,68 @@ static void describe(const struct mesh *mesh)
     glVertexArrayElementBuffer(mesh->vao, mesh->indices);
 }
 
+/* --- packing -------------------------------------------------------------------------------------------------------------- */
+
+static int16_t to_short(float part)
+{
+    return (int16_t)lrintf(32767 * part);
+}
+
+/* None at all: up, as good as any. */
+static void fold(const float n[3], int16_t out[2])
+{
+    float sum = fabsf(n[0]) + fabsf(n[1]) + fabsf(n[2]);
+    float x = sum > 0 ? n[0] / sum : 0, y = sum > 0 ? n[1] / sum : 0;
+    bool below = n[2] < 0;
+    out[0] = to_short(below ? copysignf(1 - fabsf(y), x) : x);
+    out[1] = to_short(below ? copysignf(1 - fabsf(x), y) : y);
+}
+
+static GLuint upload_normals(struct log *log, const char *name, size_t count, const float (*normals)[3])
+{
+    int16_t(*folded)[2] = mem_try_array(count, sizeof(*folded));
+    if (!folded) {
+        log_err(log, "%s: out of memory for %zu normals", name, count);
+        return 0;
+    }
+    for (size_t i = 0; i < count; i++)
+        fold(normals[i], folded[i]);
+    GLuint buffer = mesh_buffer(log, name, count * sizeof(*folded), folded, 0);
+    mem_free(folded);
+    return buffer;
+}
+
+/* is_short: whether they became 16-bit numbers, where they can and there is memory to do it. */
+static GLuint upload_texcoords(struct log *log, const char *name, size_t count, const float (*texcoords)[2], bool *is_short)
+{
+    const float *at = texcoords[0];
+    size_t numbers = 2 * count, i = 0;
+    while (i < numbers && at[i] >= 0 && at[i] <= 1)
+        i++;
+    uint16_t *packed = i == numbers ? mem_try_array(numbers, sizeof(*packed)) : NULL;
+    *is_short = packed != NULL;
+    if (!packed)
+        return mesh_buffer(log, name, numbers * sizeof(*at), at, 0);
+    for (i = 0; i < numbers; i++)
+        packed[i] = (uint16_t)lrintf(65535 * at[i]);
+    GLuint buffer = mesh_buffer(log, name, numbers * sizeof(*packed), packed, 0);
+    mem_free(packed);
+    return buffer;
+}
+
+/* --- life ----------------------------------------------------------------------------------------------------------------- */
+
 bool mesh_init(struct mesh *mesh, struct log *log, const char *name, const struct mesh_params *params)
 {
     size_t vertices = params->vertex_count;
     *mesh = (struct mesh){ .vertex_count = vertices, .index_count = params->index_count };
     mesh->positions = mesh_buffer(log, name, vertices * 12, params->positions_m, 0);
-    mesh->normals = mesh_buffer(log, name, vertices * 12, params->normals, 0);
+    mesh->normals = upload_normals(log, name, vertices, params->normals);
     mesh->indices = mesh_buffer(log, name, params->index_count * 4, params->indices, 0);
     if (params->texcoords)
-        mesh->texcoords = mesh_buffer(log, name, vertices * 8, params->texcoords, 0);
+        mesh->texcoords = upload_texcoords(log, name, vertices, params->texcoords, &mesh->short_texcoords);
     if (params->second_texcoords)
-        mesh->second_texcoords = mesh_buffer(log, name, vertices * 8, params->second_texcoords, 0);
+        mesh->second_texcoords = upload_texcoords(log, name, vertices, params->second_texcoords, &mesh->short_second_texcoords);
     if (params->colors)
         mesh->colors = mesh_buffer(log, name, vertices * 4, params->colors, 0);
     if (!mesh->positions || !mesh->normals || !mesh->indices || (params->texcoords && !mesh->texcoords) ||
@@ -75,6 +131,17 @@ bool mesh_init(struct mesh *mesh, struct log *log, const char *name, const struc
     glCreateVertexArrays(1, &mesh->vao);
     describe(mesh);
     return true;
+}
+
+static size_t texcoord_bytes(GLuint buffer, bool is_short)
+{
+    return !buffer ? 0 : is_short ? 4 : 8;
+}
+
+size_t mesh_vertex_bytes(const struct mesh *mesh)
+{
+    return 12 + 4 + texcoord_bytes(mesh->texcoords, mesh->short_texcoords) +
+           texcoord_bytes(mesh->second_texcoords, mesh->short_second_texcoords) + (mesh->colors ? 4 : 0);
 }
 
 void mesh_finish(struct mesh *mesh)

@@ -1,0 +1,176 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What vertices become on the GPU: folded normals as shaders unfold them, texture coordinates in few bits where they fit. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "gpu/mesh.h"
+#include "gpu/program.h"
+#include "tests/support/rig.h"
+#include "tests/support/synthetic.h"
+
+enum { COUNT = 20000 };
+static const double MOST_DEG = 0.005; /* as server/gpu/mesh.h promises */
+static struct rig rig;
+static uint64_t seed = 71;
+static float positions_m[COUNT][3], normals[COUNT][3], texcoords[COUNT][2];
+static uint8_t colors[COUNT][4];
+static const uint32_t indices[3] = { 0, 1, 2 };
+
+static float random_signed(void)
+{
+    return (float)(2 * synthetic_random_unit(&seed) - 1);
+}
+
+/* The poles, the middles of edges and faces, rims where the halves meet, and any. */
+static void make_normals(void)
+{
+    size_t count = 0;
+    for (int i = 0; i < 27; i++)
+        if (i != 13)
+            memcpy(normals[count++], (float[3]){ (float)(i % 3 - 1), (float)(i / 3 % 3 - 1), (float)(i / 9 - 1) }, sizeof(normals[0]));
+    for (; count < 1000; count++)
+        memcpy(normals[count], (float[3]){ random_signed(), random_signed(), 1e-5F * random_signed() }, sizeof(normals[0]));
+    for (; count < COUNT; count++)
+        memcpy(normals[count], (float[3]){ random_signed(), random_signed(), random_signed() }, sizeof(normals[0]));
+    for (size_t i = 0; i < COUNT; i++) {
+        float length = sqrtf(normals[i][0] * normals[i][0] + normals[i][1] * normals[i][1] + normals[i][2] * normals[i][2]);
+        for (int c = 0; c < 3; c++)
+            normals[i][c] = length > 0 ? normals[i][c] / length : c == 2;
+    }
+}
+
+static struct mesh make(bool with_texcoords, bool with_colors)
+{
+    struct mesh mesh;
+    struct mesh_params params = {
+        .vertex_count = COUNT, .index_count = 3, .positions_m = positions_m, .normals = normals, .indices = indices
+    };
+    if (with_texcoords)
+        params.texcoords = params.second_texcoords = texcoords;
+    if (with_colors)
+        params.colors = colors;
+    assert_true(mesh_init(&mesh, rig.log, "mesh", &params));
+    return mesh;
+}
+
+static void unfold(const struct mesh *mesh, float (*out)[4])
+{
+    GLuint stages[2] = { program_compile(rig.log, GL_COMPUTE_SHADER, "unfold",
+                                         "#include \"normal.glsl\"\n"
+                                         "layout(local_size_x = 1) in;\n"
+                                         "layout(std430, binding = 0) readonly buffer In { uint folded[]; };\n"
+                                         "layout(std430, binding = 1) writeonly buffer Out { vec4 normals[]; };\n"
+                                         "void main() { uint i = gl_WorkGroupID.x;\n"
+                                         "normals[i] = vec4(unfold_normal(unpackSnorm2x16(folded[i])), 0.0); }\n",
+                                         NULL) };
+    GLuint program = program_link(rig.log, "unfold", stages), buffer = mesh_buffer(rig.log, "normals", COUNT * sizeof(*out), NULL, 0);
+    assert_true(program && buffer);
+    glUseProgram(program);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, mesh->normals);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, buffer);
+    glDispatchCompute(COUNT, 1, 1);
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    glGetNamedBufferSubData(buffer, 0, COUNT * (GLsizeiptr)sizeof(*out), out);
+    glDeleteBuffers(1, &buffer);
+    program_destroy(&program);
+}
+
+static void test_normals_come_back(void **state)
+{
+    (void)state;
+    static float out[COUNT][4];
+    double most = 0;
+    struct mesh mesh = make(false, false);
+    unfold(&mesh, out);
+    for (size_t i = 0; i < COUNT; i++) {
+        double square = 0;
+        for (int c = 0; c < 3; c++)
+            square += pow((double)out[i][c] - (double)normals[i][c], 2);
+        most = fmax(most, sqrt(square) * 180 / M_PI);
+    }
+    print_message("# normals: off by %.5f degrees at most\n", most);
+    assert_true(most > 0 && most <= MOST_DEG);
+    mesh_finish(&mesh);
+}
+
+static void set_texcoords(float low, float high)
+{
+    for (size_t i = 0; i < COUNT; i++)
+        for (int c = 0; c < 2; c++)
+            texcoords[i][c] = low + (high - low) * (float)synthetic_random_unit(&seed);
+    texcoords[0][0] = low;
+    texcoords[COUNT - 1][1] = high;
+}
+
+static void test_texture_coordinates_that_fit_are_short(void **state)
+{
+    (void)state;
+    static uint16_t packed[COUNT][2];
+    set_texcoords(0, 1);
+    struct mesh mesh = make(true, false);
+    assert_true(mesh.short_texcoords && mesh.short_second_texcoords);
+    glGetNamedBufferSubData(mesh.second_texcoords, 0, sizeof(packed), packed);
+    for (size_t i = 0; i < COUNT; i++)
+        for (int c = 0; c < 2; c++)
+            assert_true(fabs(packed[i][c] / 65535.0 - (double)texcoords[i][c]) <= 0.51 / 65535);
+    assert_true(packed[0][0] == 0 && packed[COUNT - 1][1] == 65535);
+    mesh_finish(&mesh);
+}
+
+static void test_others_stay_as_they_are(void **state)
+{
+    (void)state;
+    static float back[COUNT][2];
+    for (int above = 0; above < 2; above++) {
+        set_texcoords(above ? 0 : -1e-6F, above ? 1.000001F : 1);
+        struct mesh mesh = make(true, false);
+        assert_false(mesh.short_texcoords || mesh.short_second_texcoords);
+        glGetNamedBufferSubData(mesh.texcoords, 0, sizeof(back), back);
+        assert_memory_equal(back, texcoords, sizeof(back));
+        mesh_finish(&mesh);
+    }
+}
+
+static void test_bytes_of_a_vertex(void **state)
+{
+    (void)state;
+    set_texcoords(0, 1);
+    for (int more = 0; more < 4; more++) {
+        struct mesh mesh = make(more & 1, more & 2);
+        GLuint buffers[] = { mesh.positions, mesh.normals, mesh.texcoords, mesh.second_texcoords, mesh.colors };
+        size_t sum = 0;
+        for (size_t i = 0; i < sizeof(buffers) / sizeof(buffers[0]); i++) {
+            GLint64 bytes = 0;
+            if (buffers[i])
+                glGetNamedBufferParameteri64v(buffers[i], GL_BUFFER_SIZE, &bytes);
+            sum += (size_t)bytes;
+        }
+        assert_int_equal(sum, COUNT * mesh_vertex_bytes(&mesh));
+        assert_int_equal(mesh_vertex_bytes(&mesh), 16 + (more & 1 ? 8 : 0) + (more & 2 ? 4 : 0));
+        mesh_finish(&mesh);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_normals_come_back),
+        cmocka_unit_test(test_texture_coordinates_that_fit_are_short),
+        cmocka_unit_test(test_others_stay_as_they_are),
+        cmocka_unit_test(test_bytes_of_a_vertex),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    if (!rig_init(&rig, "mesh_test"))
+        return 0;
+    make_normals();
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    rig_finish(&rig);
+    return failed;
+}
