@@ -12,11 +12,12 @@ float at(ivec2 pixel)
     return texelFetch(ghosts, clamp(pixel, ivec2(0), textureSize(ghosts, 0) - 1), 0).r;
 }
 
-// x: how far it falls to either side, y: how much it bends; as parts of the distance.
+// x: how far it falls to either side, beyond how it rises to the other (a plane does, however steep), y: how much it bends; as parts of the
+// distance.
 vec2 shape(ivec2 pixel, float here, float scale, ivec2 side)
 {
     float a = at(pixel - side), b = at(pixel + side);
-    return vec2(here - min(a, b), abs(a + b - 2.0 * here)) * scale;
+    return vec2(here - min(a, b) - max(max(a, b) - here, 0.0), abs(a + b - 2.0 * here)) * scale;
 }
 
 void main()

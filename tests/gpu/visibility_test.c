@@ -169,6 +169,27 @@ static void test_ghosts_change_few_colours(void **state)
     }
 }
 
+/* A plane that runs away from the eye falls far from pixel to pixel; that is no line. */
+static void test_a_steep_ghost_is_seen_through(void **state)
+{
+    (void)state;
+    view.camera = (struct camera){ .eye_m = { -8, -1, 1.5 }, .target_m = { 0, 0.5, 0 }, .up = { 0, 0, 1 }, .fov_deg = 30 };
+    asset_set_add(&view.visibility.isolated, SLAB);
+    struct frame *solid = stand_draw(&stand, &view);
+    asset_set_add(&view.visibility.hidden, SLAB);
+    struct frame *hidden = stand_draw(&stand, &view);
+    view.visibility = (struct visibility){ 0 };
+    asset_set_add(&view.visibility.ghosts, SLAB);
+    asset_set_add(&view.visibility.isolated, SLAB);
+    struct frame *ghost = stand_draw(&stand, &view);
+    int covered = count_farther(solid, hidden, 8), changed = count_farther(ghost, hidden, 8);
+    assert_true(covered > 5000);
+    assert_true(changed > 0.02 * covered && changed < 0.2 * covered);
+    frame_unref(&solid);
+    frame_unref(&hidden);
+    frame_unref(&ghost);
+}
+
 static void test_a_ghost_behind_something_is_not_seen(void **state)
 {
     (void)state;
@@ -432,7 +453,7 @@ int main(void)
         each(test_what_is_hidden_has_no_age),
         each(test_content_sees_what_is_shown),
         each(test_ghosts_change_few_colours),
-        each(test_a_ghost_behind_something_is_not_seen),
+        each(test_a_steep_ghost_is_seen_through), each(test_a_ghost_behind_something_is_not_seen),
         each(test_a_cut_opens_a_neutral_inside),
         each(test_a_cut_closes_bodies),
         each(test_a_cut_leaves_the_rest_alone),
