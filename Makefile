@@ -120,7 +120,7 @@ $(out)/obj/%.wide.o: %.c Makefile | $(gen)/glad/include/glad/gl.h
 $(out)/obj/%.widest.o: %.c Makefile | $(gen)/glad/include/glad/gl.h
 	@mkdir -p $(@D); echo "  CC   $< (widest)"
 	@$(CC) $(cflags) -mavx2 $(addprefix -mavx512,f vl bw dq) -mprefer-vector-width=256 -ffp-contract=off -DDRAFT_SET=_widest -c -o $@ $<
-$(out)/obj/%.pic.o: %.c Makefile
+$(out)/obj/%.pic.o: %.c Makefile | $(gen)/glad/include/glad/gl.h
 	@mkdir -p $(@D); echo "  CC   $< (shared)"
 	@$(CC) $(cflags) -fPIC -c -o $@ $<
 $(out)/obj/%.pic.o: %.cc Makefile
@@ -154,6 +154,9 @@ $(out)/tests/%: $(out)/obj/tests/%.o $(support) $(archives) $(out)/lib/prep.a $(
 	$(link) -lcmocka
 # Draws as the command line does.
 $(out)/tests/gallery/album: $(filter-out %/main.o,$(call objects,$(cli_sources)))
+# What stands before the real one, where a GPU is to fail.
+$(out)/tests/faults/libEGL.so.1: $(out)/obj/tests/faults/gl_faults.pic.o
+	@mkdir -p $(@D); echo "  LINK $@"; $(CC) $(ldflags) -shared -o $@ $<
 # Where memory runs out: the test decides.
 $(out)/tests/unit/mover_test: ldflags += -Wl,--wrap=mem_try_array
 $(out)/tests/gpu/field_memory_test: ldflags += -Wl,--wrap=mem_try_array,--wrap=mesh_buffer

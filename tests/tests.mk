@@ -26,7 +26,7 @@ soak: all tests
 .PHONY: soak
 
 checked: all tests demo style layers headers
-tests: $(unit_tests) $(gpu_tests) $(out)/tests/scale/facility $(out)/tests/relay/relay
+tests: $(unit_tests) $(gpu_tests) $(out)/tests/scale/facility $(out)/tests/relay/relay $(out)/tests/faults/libEGL.so.1
 unit: tests
 	@tests/run $(out) $(bin) unit
 gpu: tests

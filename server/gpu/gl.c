@@ -152,10 +152,29 @@ void gl_destroy(struct gl **gl)
     *gl = NULL;
 }
 
+static _Thread_local unsigned shortages;
+
+static GLenum next_error(void)
+{
+    GLenum error = glGetError();
+    shortages += error == GL_OUT_OF_MEMORY;
+    return error;
+}
+
 void gl_forget_errors(void)
 {
-    for (int i = 0; i < 8 && glGetError() != GL_NO_ERROR; i++) { /* a lost context has no end of them */
+    for (int i = 0; i < 8 && next_error() != GL_NO_ERROR; i++) { /* a lost context has no end of them */
     }
+}
+
+bool gl_good(void)
+{
+    return next_error() == GL_NO_ERROR;
+}
+
+unsigned gl_shortages(void)
+{
+    return shortages;
 }
 
 void gl_pass_enter(const char *name)
@@ -166,7 +185,7 @@ void gl_pass_enter(const char *name)
 bool gl_pass_leave(struct gl *gl, const char *name)
 {
     glPopDebugGroup();
-    GLenum error = glGetError();
+    GLenum error = next_error();
     if (error == GL_NO_ERROR)
         return true;
     log_err(gl->log, "gl: pass %s: error 0x%04x", name, error);

@@ -15,7 +15,7 @@ GLuint mesh_buffer(struct log *log, const char *name, size_t bytes, const void *
     gl_forget_errors();
     glCreateBuffers(1, &buffer);
     glNamedBufferStorage(buffer, (GLsizeiptr)bytes, data, flags);
-    if (glGetError() == GL_NO_ERROR)
+    if (gl_good())
         return buffer;
     log_err(log, "%s: the GPU has no room for %zu bytes", name, bytes);
     glDeleteBuffers(1, &buffer);

@@ -26,7 +26,8 @@ struct layer {
     int width_px, height_px;
     GLuint framebuffer, texture;
 };
-void layer_fit(struct layer *layer, GLenum format, GLenum attachment, int width_px, int height_px);
+/* False: out of GPU memory; it is tried again the next time. */
+bool layer_fit(struct layer *layer, GLenum format, GLenum attachment, int width_px, int height_px);
 void layer_finish(struct layer *layer);
 
 #endif

@@ -66,13 +66,14 @@ static void clip_entries(const struct picture *picture)
     }
 }
 
-/* Returns how many texels there are to a pixel's side. */
+/* Returns how many texels there are to a pixel's side; 0: no room for them. */
 static int count_bodies(struct caps *caps, const struct picture *picture)
 {
     const struct target *target = picture->target;
     const struct clip *clip = &picture->view->visibility.clip;
     int texels = target->samples > 1 && target->width_px * target->height_px <= MOST_PIXELS ? 2 : 1;
-    layer_fit(&caps->bodies, GL_R16F, GL_COLOR_ATTACHMENT0, target->width_px * texels, target->height_px * texels);
+    if (!layer_fit(&caps->bodies, GL_R16F, GL_COLOR_ATTACHMENT0, target->width_px * texels, target->height_px * texels))
+        return 0;
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, caps->bodies.framebuffer);
     glViewport(0, 0, target->width_px * texels, target->height_px * texels);
     glClearBufferfv(GL_COLOR, 0, (float[4]){ 0 });
@@ -120,6 +121,8 @@ void caps_draw(struct caps *caps, const struct picture *picture)
     if (!any)
         return;
     gl_pass_enter("caps");
-    draw_planes(caps, picture, count_bodies(caps, picture));
+    int texels = count_bodies(caps, picture);
+    if (texels > 0)
+        draw_planes(caps, picture, texels);
     gl_pass_leave(picture->stage->gl, "caps");
 }

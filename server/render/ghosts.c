@@ -85,7 +85,10 @@ void ghosts_draw(struct ghosts *ghosts, const struct picture *picture)
     if (!any_ghost(picture))
         return;
     gl_pass_enter("ghosts");
-    layer_fit(&ghosts->depth, GL_DEPTH_COMPONENT32F, GL_DEPTH_ATTACHMENT, picture->target->width_px, picture->target->height_px);
+    if (!layer_fit(&ghosts->depth, GL_DEPTH_COMPONENT32F, GL_DEPTH_ATTACHMENT, picture->target->width_px, picture->target->height_px)) {
+        gl_pass_leave(picture->stage->gl, "ghosts");
+        return;
+    }
     scissor(picture);
     draw_depth(ghosts, picture);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, picture->target->over_framebuffer);

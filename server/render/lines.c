@@ -57,7 +57,10 @@ void lines_draw_outline(struct lines *lines, const struct picture *picture)
         !shot_sees(&picture->shot, &picture->stage->scene->assets[asset]))
         return;
     gl_pass_enter("outline");
-    layer_fit(&lines->mask, GL_R8, GL_COLOR_ATTACHMENT0, picture->target->width_px, picture->target->height_px);
+    if (!layer_fit(&lines->mask, GL_R8, GL_COLOR_ATTACHMENT0, picture->target->width_px, picture->target->height_px)) {
+        gl_pass_leave(picture->stage->gl, "outline");
+        return;
+    }
     glClearNamedFramebufferfv(lines->mask.framebuffer, GL_COLOR, 0, (float[4]){ 0 });
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, lines->mask.framebuffer);
     glDisable(GL_DEPTH_TEST);

@@ -126,7 +126,7 @@ bool materials_upload(struct model *model, struct gl *gl, GLuint ramp_program)
         fill_block(&blocks[i], view, i);
         find_maps(&model->materials[i], model, &view->materials[i]);
     }
-    if (glGetError() == GL_NO_ERROR)
+    if (gl_good())
         model->material_buffer = mesh_buffer(gl->log, model->file->path, model->material_count * sizeof(*blocks), blocks, 0);
     mem_free(blocks);
     if (!model->material_buffer)

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "gpu/gl.h"
 
 static bool same_numbers(const double *a, int a_count, const double *b, int b_count)
 {
@@ -60,10 +61,15 @@ struct palette palettes_get(struct palettes *palettes, const struct view *view)
         entry->used = palettes->uses;
         return entry->palette;
     }
+    gl_forget_errors();
     wanted.palette.colors = palette_create(&wanted.scale, shaded_of(palettes, view, wanted.scale.map));
     wanted.palette.version = palettes->uses;
     if (wanted.line_count > 0)
         wanted.palette.lines = palette_create_lines(&wanted.scale, wanted.lines, wanted.line_count);
+    if (!gl_good()) {
+        entry_finish(&wanted);
+        return (struct palette){ 0 };
+    }
     struct palettes_entry *entry = make_room(palettes);
     *entry = wanted;
     return entry->palette;

@@ -26,7 +26,7 @@ struct palettes {           /* zero-initialise */
     uint64_t uses;
 };
 
-/* Valid until PALETTES others were asked for. */
+/* Valid until PALETTES others were asked for. Nothing in it: out of GPU memory. */
 struct palette palettes_get(struct palettes *palettes, const struct view *view);
 void palettes_finish(struct palettes *palettes);
 

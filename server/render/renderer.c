@@ -265,7 +265,7 @@ bool renderer_take_up(struct renderer *renderer, struct picture *picture)
     if (!picture->light)
         picture->light = light_get(&renderer->light, &picture->lit_by);
     picture->palette = palettes_get(&renderer->palettes, picture->view);
-    if (!picture->light)
+    if (!picture->light || !picture->palette.colors)
         return false;
     environments_bind(&renderer->environments, picture->lit_by.environment);
     frame_block_fill(&block, picture);
@@ -301,7 +301,7 @@ static struct frame *draw_draft(struct renderer *renderer, const struct view *vi
     int64_t start_ns = clock_mono_ns();
     picture.light = light_get(&renderer->light, &picture.lit_by);
     picture.palette = palettes_get(&renderer->palettes, view);
-    if (!picture.light || !draft_draw(renderer->draft, &picture, &renderer->light, &renderer->isolines, frame))
+    if (!picture.light || !picture.palette.colors || !draft_draw(renderer->draft, &picture, &renderer->light, &renderer->isolines, frame))
         frame_unref(&frame);
     else
         frame->render_ns = clock_mono_ns() - start_ns;
@@ -329,7 +329,7 @@ static struct frame *draw_again(struct renderer *renderer, const struct view *vi
     int64_t start_ns = clock_mono_ns();
     picture.light = light_get(&renderer->light, &picture.lit_by);
     picture.palette = palettes_get(&renderer->palettes, view);
-    if (!picture.light || !plates_recolor(renderer->plates, &picture, frame))
+    if (!picture.light || !picture.palette.colors || !plates_recolor(renderer->plates, &picture, frame))
         frame_unref(&frame);
     else
         frame->render_ns = clock_mono_ns() - start_ns;

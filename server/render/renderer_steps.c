@@ -155,6 +155,7 @@ bool renderer_step(struct renderer *renderer, struct stroke *stroke, int64_t bud
         return false;
     if (stroke->plate)
         return step_plate(renderer, stroke, budget_ns);
+    unsigned shortages = gl_shortages();
     if (stroke->next < cells && !take_up_stroke(renderer, stroke))
         stroke->next = cells; /* renderer_end fails likewise */
     while (stroke->next < cells && (spent_ns == 0 || spent_ns + (last_ns > BIT_NS ? last_ns : BIT_NS) <= budget_ns)) {
@@ -165,6 +166,7 @@ bool renderer_step(struct renderer *renderer, struct stroke *stroke, int64_t bud
         last_ns = clock_mono_ns() - start_ns - spent_ns;
         spent_ns += last_ns;
     }
+    stroke->short_of_memory |= gl_shortages() != shortages;
     stroke->frame->render_ns += spent_ns;
     if (!renderer->gl->software && stroke->view.tier == TIER_STILL && stroke->next == cells)
         renderer->still_ns = stroke->frame->render_ns;
@@ -191,6 +193,8 @@ static bool launch(struct renderer *renderer, struct stroke *stroke)
 {
     struct log *log = renderer->gl->log;
     int64_t start_ns = clock_mono_ns();
+    gl_forget_errors();
+    unsigned shortages = gl_shortages();
     struct flight *flight = flights_take(&renderer->flights, log);
     if (!flight || !take_up_stroke(renderer, stroke)) {
         flights_give(flight);
@@ -204,8 +208,12 @@ static bool launch(struct renderer *renderer, struct stroke *stroke)
     bool good = markers_start(&flight->markers, &stroke->picture) &&
                 isolines_start(&flight->labels, &stroke->picture, &stroke->isolines) &&
                 readback_start(&flight->readback, log, &stroke->target);
+    gl_forget_errors();
+    stroke->short_of_memory |= gl_shortages() != shortages;
     stroke->frame->render_ns += clock_mono_ns() - start_ns;
-    return good;
+    if (good && stroke->short_of_memory)
+        log_err(log, "picture of %dx%d: the GPU ran out of memory while it was drawn", stroke->view.width_px, stroke->view.height_px);
+    return good && !stroke->short_of_memory;
 }
 
 /* What was launched. NULL: it failed, logged. */

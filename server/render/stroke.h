@@ -24,6 +24,7 @@ struct stroke {
     int block_px, columns, rows; /* blocks of cells; in a block the cells follow a Z, so that tiles of any size follow one another */
     int next, span;              /* the next cell, counted through all passes, and how many cells its tile has; 0: not chosen yet */
     size_t drawn;                /* of the tile's assets, nearest first */
+    bool short_of_memory;        /* the GPU was, while it was drawn: it shows anything */
 };
 
 /* Takes the frame and the target over, copies the lists of the picture and its view. whole: one tile holds all. */

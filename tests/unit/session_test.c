@@ -301,8 +301,34 @@ static void a_view_that_cannot_be_drawn_is_said_once(void **state)
         paint_nothing(f, &wish);
         assert_int_equal(f->session->close_code, 0);
     }
-    f->now_ns += NS_PER_S;
+    f->now_ns += 3 * NS_PER_S;
     show(f);
+}
+
+/* Nothing changes: what there was no memory for is tried again all the same, and not all the time. */
+static void a_view_that_cannot_be_drawn_is_tried_again(void **state)
+{
+    struct session_case *f = *state;
+    struct wish wish;
+    greet(f);
+    show(f);
+    say(f, "{\"type\":\"camera\",\"seq\":1,\"eye\":[9,9,5],\"target\":[0,0,1]}");
+    assert_true(ask(f, &wish));
+    paint_nothing(f, &wish);
+    int tries = 0;
+    for (int tenth = 0; tenth < 100; tenth++) {
+        f->now_ns += 100 * MS;
+        if (!ask(f, &wish))
+            continue;
+        assert_true(wish.view.tier == TIER_STILL && wish.view.camera_seq == 1);
+        paint_nothing(f, &wish);
+        tries++;
+    }
+    assert_in_range(tries, 3, 6);
+    f->now_ns += 3 * NS_PER_S;
+    assert_int_equal(show(f).view.tier, TIER_STILL);
+    f->now_ns += 10 * NS_PER_S;
+    assert_false(ask(f, &wish));
 }
 
 static void overtaken_pictures_are_not_sent(void **state)
@@ -820,6 +846,7 @@ int main(void)
         TEST(equal_pictures_free_their_place),
         TEST(without_a_first_picture_a_session_is_refused),
         TEST(a_view_that_cannot_be_drawn_is_said_once),
+        TEST(a_view_that_cannot_be_drawn_is_tried_again),
         TEST(overtaken_pictures_are_not_sent),
         TEST(data_under_a_still_view_is_drawn_once_and_refined),
         TEST(readings_come_with_the_next_camera_of_a_slow_drag),

@@ -10,6 +10,7 @@ static const int64_t FIELD_NS = 6 * NS_PER_MS;              /* of a field that t
 static const int64_t IDLE_NS = 5 * NS_PER_MS;               /* of what nobody waits for, before looking whether somebody does */
 static const int64_t REHEARSE_NS = 10 * NS_PER_S;           /* of a field, before anyone asks; what is left is worked on as for others */
 static const int64_t REBUILD_NS = 100 * NS_PER_MS, REBUILD_MAX_NS = 5 * NS_PER_S; /* between attempts at a new context */
+static const int64_t SAME_NS = 60 * NS_PER_S; /* a driver that restarts is waited for so long, before anything else will do */
 
 /* Under lock. It is wanted as before; true: a newer wish of its client is there already, and stands for it. */
 static bool wish_again(const struct order *order, void *arg)
@@ -328,14 +329,22 @@ static bool draw(struct drawing *drawing, struct batch *batch)
 
 /* --- life of the render thread -------------------------------------------------------------------------------------------------- */
 
-/* GL and what hangs on it. */
-static bool gl_begin(struct drawing *drawing)
+/* GL and what hangs on it. kind: GL_AUTO or that of a context that is gone; hardware: a processor will not do. */
+static bool gl_begin(struct drawing *drawing, enum gl_kind kind, bool hardware)
 {
     const struct painter_params *params = &drawing->painter->params;
-    drawing->gl = gl_create(params->log, params->gl, params->gl_device);
+    unsigned shortages = gl_shortages();
+    drawing->gl = gl_create(params->log, kind, params->gl_device);
+    if (drawing->gl && hardware && drawing->gl->software) {
+        log_warn(params->log, "gl: the GPU is not back yet");
+        return false;
+    }
     if (drawing->gl)
         drawing->renderer = renderer_create(params->log, drawing->gl, params->scene, drawing->field);
-    if (!drawing->renderer)
+    bool complete = gl_shortages() == shortages;
+    if (!complete)
+        log_err(params->log, "gl: the GPU has no room for the plant");
+    if (!drawing->renderer || !complete)
         return false;
     renderer_set_per_fragment(drawing->renderer, params->per_fragment);
     renderer_use_gl(drawing->renderer, params->by_gl);
@@ -394,7 +403,7 @@ static bool drawing_init(struct drawing *drawing, struct painter *painter)
     drawing->slow.snapshot = snapshot_create(params->scene->plant->tag_count);
     flying_init(&drawing->flying, params->scene->plant->tag_count);
     store_snapshot(params->store, clock_mono_ns(), clock_utc_ns(), drawing->snapshot);
-    return gl_begin(drawing);
+    return gl_begin(drawing, params->gl, false);
 }
 
 static void drawing_finish(struct drawing *drawing)
@@ -442,6 +451,8 @@ static void rebuild(struct drawing *drawing)
 {
     struct painter *painter = drawing->painter;
     int64_t pause_ns = REBUILD_NS, lost_ns = clock_mono_ns();
+    enum gl_kind kind = drawing->gl->kind;
+    bool hardware = !drawing->gl->software;
     log_err(painter->params.log, "gl: the context is lost; making a new one");
     counter_inc(painter->losses, 1);
     set_lost(painter, true);
@@ -449,11 +460,15 @@ static void rebuild(struct drawing *drawing)
         fail(drawing, &drawing->flying.at[i].batch);
     fail(drawing, &drawing->slow.batch);
     gl_end(drawing);
-    while (!gl_begin(drawing)) {
+    while (!gl_begin(drawing, kind, hardware)) {
         gl_end(drawing);
         if (!pause_for(painter, pause_ns))
             return;
         pause_ns = pause_ns * 2 > REBUILD_MAX_NS ? REBUILD_MAX_NS : pause_ns * 2;
+        if (clock_mono_ns() - lost_ns >= SAME_NS) {
+            kind = painter->params.gl;
+            hardware = false;
+        }
     }
     renderer_idle(drawing->renderer, INT64_MAX); /* pictures go on as they were */
     set_lost(painter, false);

@@ -93,6 +93,7 @@ struct session {
     bool measured;          /* pacer.acked is new */
 
     bool failure_said;      /* of the view as it is */
+    int64_t failed_ns;      /* when the newest picture that there was no memory for was asked for; 0: none */
 
     struct session *leader; /* whose view it is shown; NULL: its own. The hub keeps it right */
     bool follow_asked;

@@ -12,19 +12,23 @@ static const int64_t SLOW_STILL_NS = 500 * NS_PER_MS;    /* refined pictures tha
 static const int64_t CALM_NS = 1000 * NS_PER_MS;         /* the second one after so long */
 static const int64_t START_NS = 1000 * NS_PER_MS;        /* the network is not waited for any longer */
 static const int64_t GIVE_UP_NS = 100 * NS_PER_MS;       /* what is left of a refined picture, when its view has changed */
+static const int64_t AGAIN_NS = 2000 * NS_PER_MS;        /* what there was no memory for is tried again after so long */
 static const double STILL_OVER_MOVING = 3;               /* in bytes, before one was seen */
 static const struct encoder_params STILL = { .quality = 92, .full_chroma = true }, DRAFT = { .quality = 42 };
 static const int64_t SOON_NS = 120 * NS_PER_MS;          /* cameras of one movement follow each other so soon */
 enum { SMALL_PX = 128 }; /* sides that are not made smaller */
 
 /* The one who already has a picture keeps it; a new one would look at nothing. */
-static void on_failure(struct session *session, const struct view *view)
+static void on_failure(struct session *session, const struct wish *wish)
 {
+    const struct view *view = &wish->view;
     struct message_error error = { 0 };
     if (session->newest_number == 0) {
         session_close(session, 1013, "no memory for another picture: try later, or a smaller one");
         return;
     }
+    session->refined = REFINED_NOT;
+    session->failed_ns = wish->asked_ns;
     if (session->failure_said)
         return;
     session->failure_said = true;
@@ -47,7 +51,7 @@ static void note_refined(struct session *session, const struct wish *wish)
 void session_on_picture(struct session *session, struct picture *picture)
 {
     if (picture->failed)
-        on_failure(session, &picture->wish.view);
+        on_failure(session, &picture->wish);
     bool late = picture->number < session->newest_number;
     if (!picture->packet || late) {
         session->dropped += late;
@@ -99,7 +103,8 @@ static bool refine_due(const struct session *session, int64_t now_ns)
     bool others_move = now_ns < world->moving_until_ns && now_ns - session->input_ns < PATIENCE_NS;
     bool short_of = world->loaded || is_slow(session);
     bool data_moves = short_of && now_ns - session->moved_ns < LOADED_STILL_NS && now_ns - session->refined_ns < LOADED_SHARE_NS;
-    if (session->refined == REFINED_FULL || session->pacer.asked > 0 || others_move || data_moves)
+    bool failed = session->failed_ns && now_ns - session->failed_ns < AGAIN_NS;
+    if (session->refined == REFINED_FULL || session->pacer.asked > 0 || others_move || data_moves || failed)
         return false;
     return session->refined == REFINED_DRAFT ? is_calm(session, now_ns) : now_ns - session->input_ns >= STILL_NS;
 }

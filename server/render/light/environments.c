@@ -96,7 +96,7 @@ static bool upload(struct environments *environments, struct environment_slot *s
     glTextureParameteri(slot->mirrored, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
     glTextureParameteri(slot->mirrored, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
     glTextureParameteri(slot->mirrored, GL_TEXTURE_WRAP_R, GL_CLAMP_TO_EDGE);
-    return slot->irradiance && glGetError() == GL_NO_ERROR;
+    return slot->irradiance && gl_good();
 }
 
 static void make_brdf(struct environments *environments)
