@@ -217,6 +217,45 @@ static void test_shadows_on_slivers(void **state)
     }
 }
 
+static int darkest(const struct frame *frame, int y)
+{
+    const uint8_t *row = frame->bgrx + (size_t)y * (size_t)frame->stride_bytes;
+    int level = 255;
+    for (int x = 0; x < frame->width_px; x++)
+        level = row[4 * x + 1] < level ? row[4 * x + 1] : level;
+    return level;
+}
+
+/* A leaning pole: here it is 3 pixels wide, there 4, and its lines must not show that. */
+static void test_thin_poles_have_no_beads(void **state)
+{
+    (void)state;
+    enum { FIRST = 80, LAST = 220 };
+    struct toy *toy = toy_create();
+    struct shape pole = { 0 };
+    struct stand others = stand;
+    struct view view;
+    shape_box(&pole, TOY_STEEL, (double[3]){ -0.056, -0.056, 0 }, (double[3]){ 0.056, 0.056, 8 });
+    toy_add(toy, "POLE", &pole, (double[3]){ 0, 0, 0 }, NULL, 0);
+    stand_init(&stand, &rig, toy);
+    start_view(&view, 200, 300);
+    view.camera = (struct camera){ .eye_m = { 0, -30, 4 }, .target_m = { 0, 0, 4 }, .up = { 0.05, 0, 1 }, .fov_deg = 17.6 };
+    struct frame *frames[] = { draw_anew(&view), draw_by_gl(&view) };
+    for (int by_gl = 0; by_gl < 2; by_gl++) {
+        int least = 255, most = 0;
+        for (int y = FIRST; y < LAST; y++) {
+            int level = darkest(frames[by_gl], y);
+            least = level < least ? level : least;
+            most = level > most ? level : most;
+        }
+        print_message("# beside a pole of 3.6 pixels%s: levels of %d to %d\n", by_gl ? ", by GL" : "", least, most);
+        assert_true(most < 210 && most - least <= 35);
+        frame_unref(&frames[by_gl]);
+    }
+    stand_finish(&stand);
+    stand = others;
+}
+
 /* --- once more ------------------------------------------------------------------------------------------------------------------- */
 
 static bool is_quick(const struct view *view)
@@ -332,6 +371,7 @@ int main(void)
         cmocka_unit_test(test_hidden_assets),
         cmocka_unit_test(test_nothing_in_sight),
         cmocka_unit_test(test_shadows_on_slivers),
+        cmocka_unit_test(test_thin_poles_have_no_beads),
         cmocka_unit_test(test_new_readings_are_a_new_picture),
         cmocka_unit_test(test_new_colors_too),
         cmocka_unit_test(test_what_else_changes_is_drawn),

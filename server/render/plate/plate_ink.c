@@ -33,16 +33,31 @@ DRAFT_INLINE lanes high(lanes a, lanes b)
     return lanes_choose(a > b, a, b);
 }
 
-/* From here, one pixel to that side: how much nearer, as a part. */
-DRAFT_INLINE lanes rise(const struct view_of_depth *view, int x, int y, lanes here, int dx, int dy)
+DRAFT_INLINE lanes line(lanes rise)
 {
-    lanes next = at(view, x + dx, y + dy), zero = { 0 };
+    lanes t = lanes_clamp((rise - 0.006f) * (1 / (0.03f - 0.006f)), 0, 1);
+    return t * t * (3.0f - 2.0f * t);
+}
+
+enum { THIN = 3, WIDE = 6 };
+
+/* From here, one pixel to that side: whether it is nearer. */
+DRAFT_INLINE lanes edge(const struct view_of_depth *view, int x, int y, lanes here, int dx, int dy)
+{
+    lanes next = at(view, x + dx, y + dy), zero = { 0 }, lines = zero;
     if (!lanes_any(next > here))
         return zero;
-    lanes wide = low(at(view, x + 3 * dx, y + 3 * dy), at(view, x + 4 * dx, y + 4 * dy));
-    lanes tall = high(at(view, x + dx + 2 * dy, y + dy + 2 * dx), at(view, x + dx - 2 * dy, y + dy - 2 * dx));
-    lanes back = at(view, x - dx, y - dy);
-    return (low(next, low(wide, tall)) - here - high(here - back, zero)) / high(next, zero + 1e-9f);
+    lanes level = here + high(here - at(view, x - dx, y - dy), zero), least = high(next, zero + 1e-9f);
+    lanes ahead = next, left = next, right = next;
+    if (!lanes_any(next > level))
+        return zero;
+    for (int i = THIN; i <= WIDE; i++) {
+        ahead = low(ahead, at(view, x + i * dx, y + i * dy));
+        left = low(left, at(view, x + dx + (i - 1) * dy, y + dy + (i - 1) * dx));
+        right = low(right, at(view, x + dx - (i - 1) * dy, y + dy - (i - 1) * dx));
+        lines += line((low(ahead, high(left, right)) - level) / least);
+    }
+    return lines * (1.0f / (WIDE - THIN + 1));
 }
 
 DRAFT_KERNEL void plate_ink_band(const struct plate *plate, int number)
@@ -53,13 +68,12 @@ DRAFT_KERNEL void plate_ink_band(const struct plate *plate, int number)
     for (int y = number * PLATE_ROWS; y < end; y++)
         for (int x = 0; x < draft->width_px; x += LANES) {
             lanes here = at(&view, x, y);
-            lanes most = high(high(rise(&view, x, y, here, 1, 0), rise(&view, x, y, here, -1, 0)),
-                              high(rise(&view, x, y, here, 0, 1), rise(&view, x, y, here, 0, -1)));
-            lanes t = lanes_clamp((most - 0.006f) * (1 / (0.03f - 0.006f)), 0, 1), edge = t * t * (3.0f - 2.0f * t);
+            lanes most = high(high(edge(&view, x, y, here, 1, 0), edge(&view, x, y, here, -1, 0)),
+                              high(edge(&view, x, y, here, 0, 1), edge(&view, x, y, here, 0, -1)));
             uint8_t *ink = plate->recolor->ink + (size_t)y * (size_t)draft->width_px + (size_t)x;
-            if (!lanes_any(edge > 0.0f))
+            if (!lanes_any(most > 0.0f))
                 continue;
             for (int i = 0; i < LANES && x + i < draft->width_px; i++)
-                ink[i] = (uint8_t)(edge[i] * RECOLOR_INK + 0.5f);
+                ink[i] = (uint8_t)(most[i] * RECOLOR_INK + 0.5f);
         }
 }
