@@ -344,7 +344,7 @@ static void compare_kernels(const struct view *view, const struct draft_kernels 
 static void test_kernels(void **state)
 {
     const struct draft_kernels *widest = stand.renderer->draft->kernels;
-    static const int widths_px[] = { 640, 333, 37 };
+    static const int widths_px[] = { 640, 333, 37, 322, 330 }; /* the last tile is 16 or 8 columns wide, and a row high */
     struct view view;
     (void)state;
     if (widest == &draft_kernels_plain) {
@@ -354,7 +354,7 @@ static void test_kernels(void **state)
     for (int i = 0; i < 24 * OTHER_KERNELS; i++) {
         if (other_kernels[i / 24] == widest)
             break;
-        start_view(&view, widths_px[i % 3], widths_px[i % 3] * 9 / 16);
+        start_view(&view, widths_px[i % 5], widths_px[i % 5] * 9 / 16);
         stand_look(&stand, i % 24 / 2, &view);
         view.selected_asset = i % 4 == 2 ? 0 : -1;
         if (i % 4 == 1)

@@ -4,7 +4,7 @@
    A pixel on an edge that two triangles share belongs to exactly one of them: both compute the edge from the same end in the same way,
    and one takes what is not negative, the other what is. */
 #include "render/draft/draft_kernels.h"
-#include "render/draft/draft_small.h"
+#include "render/draft/draft_sixteen.h"
 
 /* Which triangle a pixel shows, where that is asked for. */
 DRAFT_INLINE void keep_id(const struct draft_tile *tile, const struct draft_face *face, size_t at, lanes_int seen)
@@ -167,6 +167,44 @@ DRAFT_INLINE void draw_face(const struct draft_tile *tile, const struct draft_fa
             keep_id(tile, face, start + (size_t)column, seen);
         }
     }
+}
+
+/* --- small ones ------------------------------------------------------------------------------------------------------------- */
+
+/* What is at most four wide, two rows of it. */
+DRAFT_INLINE void draw_by_one(const struct draft_tile *tile, const struct draft_face *face, const struct small *small, int l, int top,
+                              uint32_t mark, const struct ink *ink)
+{
+    int last_left = tile->rect.right + 1 - LANES / 2, last_top = tile->rect.bottom - 1;
+    int left = face->left < last_left ? face->left : last_left;
+    draw_stamp(tile, face, small, l, left, top < last_top ? top : last_top, mark, ink, true, true);
+}
+
+/* Kind by kind, or the processor would guess wrong with each. In this order on every machine: of what lies at one depth the last one
+   stays. */
+DRAFT_INLINE void draw_eight(const struct draft_tile *tile, const struct draft_face *const faces[LANES], int count, uint32_t mark,
+                             const struct ink *ink)
+{
+    struct small small;
+    struct eight_faces eight = read_faces(faces);
+    struct kinds kinds = kinds_of(tile, &eight, count);
+    uint32_t rows = ((1u << count) - 1) & ~(kinds.one | kinds.four | kinds.two | kinds.low);
+    small_init(&small, &tile->corners, eight.corners);
+    for (uint32_t bits = kinds.one; bits; bits &= bits - 1)
+        draw_by_one(tile, faces[__builtin_ctz(bits)], &small, __builtin_ctz(bits), faces[__builtin_ctz(bits)]->top, mark, ink);
+    if (can_draw_sixteen(tile, ink)) {
+        draw_sixteen(tile, faces, &small, &kinds, rows, mark, ink);
+        return;
+    }
+    for (uint32_t bits = kinds.four; bits; bits &= bits - 1)
+        for (int half = 0; half < 4; half += 2)
+            draw_by_one(tile, faces[__builtin_ctz(bits)], &small, __builtin_ctz(bits), faces[__builtin_ctz(bits)]->top + half, mark, ink);
+    for (uint32_t bits = kinds.two; bits; bits &= bits - 1)
+        draw_small(tile, faces[__builtin_ctz(bits)], &small, __builtin_ctz(bits), mark, ink, true);
+    uint32_t row[] = { kinds.low, rows };
+    for (int i = 0; i < 2; i++)
+        for (uint32_t bits = row[i]; bits; bits &= bits - 1)
+            draw_small(tile, faces[__builtin_ctz(bits)], &small, __builtin_ctz(bits), mark, ink, false);
 }
 
 /* --- all -------------------------------------------------------------------------------------------------------------------- */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Small faces without flags and perspective: set up eight at a time, drawn by stamps of eight pixels. Private to draft_raster.c. */
+/* Small faces without flags and perspective: set up eight at a time, drawn by stamps of eight pixels, or of sixteen. Private to
+   draft_raster.c. */
 #ifndef RENDER_DRAFT_SMALL_H
 #define RENDER_DRAFT_SMALL_H
 #include "render/draft/draft_marks.h"
@@ -34,20 +35,37 @@ struct small { /* eight of them: a row of lanes is one number of each */
     lanes_int thin;
 };
 
-DRAFT_INLINE lanes corner_values(const float *table, const struct draft_face *const faces[LANES], int corner)
+struct eight_faces { /* their numbers, a lane for each face */
+    lanes_int corners[3];
+    lanes_int width, height; /* less one */
+};
+
+DRAFT_INLINE struct eight_faces read_faces(const struct draft_face *const faces[LANES])
 {
-    lanes_int at;
-    for (int l = 0; l < LANES; l++)
-        at[l] = faces[l]->corners[corner];
-    return lanes_look_up(table, at);
+    lanes_int pairs[4], words[4];
+    for (int i = 0; i < 4; i++)
+        pairs[i] = __builtin_shufflevector(*(const quad_int *)faces[i], *(const quad_int *)faces[i + 4], 0, 1, 2, 3, 4, 5, 6, 7);
+    for (int i = 0; i < 4; i += 2) { /* columns of what is four high and as wide, twice */
+        words[i] = __builtin_shufflevector(pairs[i], pairs[i + 1], 0, 8, 1, 9, 4, 12, 5, 13);
+        words[i + 1] = __builtin_shufflevector(pairs[i], pairs[i + 1], 2, 10, 3, 11, 6, 14, 7, 15);
+    }
+    lanes_int first = __builtin_shufflevector(words[0], words[2], 0, 1, 8, 9, 4, 5, 12, 13);
+    lanes_int second = __builtin_shufflevector(words[0], words[2], 2, 3, 10, 11, 6, 7, 14, 15);
+    lanes_int across = __builtin_shufflevector(words[1], words[3], 0, 1, 8, 9, 4, 5, 12, 13);
+    lanes_int down = __builtin_shufflevector(words[1], words[3], 2, 3, 10, 11, 6, 7, 14, 15);
+    return (struct eight_faces){
+        .corners = { first & 0xffff, first >> 16, second & 0xffff },
+        .width = (across >> 16) - (across & 0xffff),
+        .height = (down >> 16) - (down & 0xffff),
+    };
 }
 
-DRAFT_INLINE void small_init(struct small *small, const struct draft_corners *corners, const struct draft_face *const faces[LANES])
+DRAFT_INLINE void small_init(struct small *small, const struct draft_corners *corners, const lanes_int at[3])
 {
     lanes x[3], y[3];
     for (int i = 0; i < 3; i++) {
-        x[i] = corner_values(corners->x, faces, i);
-        y[i] = corner_values(corners->y, faces, i);
+        x[i] = lanes_look_up(corners->x, at[i]);
+        y[i] = lanes_look_up(corners->y, at[i]);
     }
     for (int e = 0; e < 3; e++) {
         lanes px = x[e], py = y[e], qx = x[(e + 1) % 3], qy = y[(e + 1) % 3];
@@ -66,7 +84,7 @@ DRAFT_INLINE void small_init(struct small *small, const struct draft_corners *co
     small->y = y[0];
     const float *tables[3] = { corners->depth, corners->a, corners->b };
     for (int p = 0; p < 3; p++) {
-        lanes v0 = corner_values(tables[p], faces, 0), v1 = corner_values(tables[p], faces, 1), v2 = corner_values(tables[p], faces, 2);
+        lanes v0 = lanes_look_up(tables[p], at[0]), v1 = lanes_look_up(tables[p], at[1]), v2 = lanes_look_up(tables[p], at[2]);
         lanes d1 = v1 - v0, d2 = v2 - v0, low = lanes_least(v1, v0), high = lanes_most(v1, v0);
         small->at[p] = v0;
         small->low[p] = lanes_least(v2, low);
@@ -172,41 +190,23 @@ DRAFT_INLINE void draw_small(const struct draft_tile *tile, const struct draft_f
 }
 
 struct kinds { /* a bit for each of eight */
-    uint32_t one, two; /* one stamp of two rows covers it; fewer of these than of one row do */
+    uint32_t one, four; /* at most four wide and two high; else at most four high */
+    uint32_t two, low;  /* fewer stamps of two rows cover it than of one row; else one row high */
 };
 
-DRAFT_INLINE struct kinds kinds_of(const struct draft_tile *tile, const struct draft_face *const faces[LANES], int count)
+DRAFT_INLINE struct kinds kinds_of(const struct draft_tile *tile, const struct eight_faces *eight, int count)
 {
-    struct kinds kinds = { 0, 0 };
     if (tile->rect.bottom <= tile->rect.top)
-        return kinds;
-    for (int l = 0; l < count; l++) {
-        unsigned width = (unsigned)(faces[l]->right - faces[l]->left), height = (unsigned)(faces[l]->bottom - faces[l]->top);
-        unsigned two = (width / 4 + 1) * (height / 2 + 1), rows = (width / LANES + 1) * (height + 1);
-        kinds.one |= (uint32_t)(two == 1) << l;
-        kinds.two |= (uint32_t)(two < rows) << l;
-    }
-    kinds.two &= ~kinds.one;
-    return kinds;
-}
-
-/* Kind by kind, or the processor would guess wrong with each. */
-DRAFT_INLINE void draw_eight(const struct draft_tile *tile, const struct draft_face *const faces[LANES], int count, uint32_t mark,
-                             const struct ink *ink)
-{
-    struct small small;
-    struct kinds kinds = kinds_of(tile, faces, count);
-    uint32_t rows = ((1u << count) - 1) & ~(kinds.one | kinds.two);
-    small_init(&small, &tile->corners, faces);
-    for (uint32_t bits = kinds.one; bits; bits &= bits - 1) {
-        int l = __builtin_ctz(bits), last_left = tile->rect.right + 1 - LANES / 2, last_top = tile->rect.bottom - 1;
-        int left = faces[l]->left < last_left ? faces[l]->left : last_left, top = faces[l]->top < last_top ? faces[l]->top : last_top;
-        draw_stamp(tile, faces[l], &small, l, left, top, mark, ink, true, true);
-    }
-    for (uint32_t bits = kinds.two; bits; bits &= bits - 1)
-        draw_small(tile, faces[__builtin_ctz(bits)], &small, __builtin_ctz(bits), mark, ink, true);
-    for (uint32_t bits = rows; bits; bits &= bits - 1)
-        draw_small(tile, faces[__builtin_ctz(bits)], &small, __builtin_ctz(bits), mark, ink, false);
+        return (struct kinds){ 0, 0, 0, 0 };
+    lanes_int two = ((eight->width >> 2) + 1) * ((eight->height >> 1) + 1), rows = ((eight->width >> 3) + 1) * (eight->height + 1);
+    lanes_int narrow = eight->width < 4, fewer = two < rows;
+    uint32_t all = (1u << count) - 1, one = lanes_bits(two == 1) & all, four = lanes_bits(narrow & (eight->height < 4)) & all & ~one;
+    return (struct kinds){
+        .one = one,
+        .four = four,
+        .two = lanes_bits(fewer) & all & ~(one | four),
+        .low = lanes_bits(~fewer & (eight->height == 0)) & all & ~(one | four),
+    };
 }
 
 #endif
