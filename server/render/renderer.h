@@ -26,6 +26,11 @@ bool renderer_is_quick(struct renderer *renderer, const struct view *view, const
 struct frame *renderer_draw(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot);
 /* Without a GPU most moving pictures are drawn by other means (render/draft/draft.h), unless GL shall draw them always: to compare. */
 void renderer_use_gl(struct renderer *renderer, bool always);
+/* What other assets hide is left out of pictures of so many triangles. INT_MAX: of none, but clusters that are not seen. From the
+   beginning: what pays. */
+void renderer_leave_out(struct renderer *renderer, int least_triangles);
+/* So many assets were left out of the last picture that GL drew; waits for it. */
+size_t renderer_left_out(const struct renderer *renderer);
 
 /* A light that is not baked yet: pictures of the moving tier show the one most like it for now, and bake on for about that long each.
    Where none is, a rough one is made for now. Without this, and in the still tier, a picture takes the time that its light takes.

@@ -46,7 +46,7 @@ static GLuint make_program(struct log *log, enum solid_kind kind, int tier, int 
 
 bool solid_init(struct solid *solid, struct log *log)
 {
-    bool good = true;
+    bool good = hidden_init(&solid->hidden, log);
     solid->log = log;
     for (int tier = 0; tier < 2; tier++)
         for (int variant = 0; variant < SOLID_VARIANTS; variant++)
@@ -59,6 +59,7 @@ bool solid_init(struct solid *solid, struct log *log)
 
 void solid_finish(struct solid *solid)
 {
+    hidden_finish(&solid->hidden);
     model_draws_finish(&solid->draws);
     for (int i = 0; i < SOLID_KINDS * 2 * SOLID_VARIANTS; i++)
         program_destroy(&solid->programs[i / (2 * SOLID_VARIANTS)][i / SOLID_VARIANTS % 2][i % SOLID_VARIANTS]);
@@ -164,8 +165,9 @@ const struct model_level *solid_level(const struct picture *picture, int asset)
     return stage_level(picture->stage, &picture->shot, asset, LEVEL_ERROR_PX[picture->view->tier]);
 }
 
-/* One asset's surfaces, those that are blended or those that are not. A field is never blended: it would mix its colours. */
-static void draw_asset(struct solid *solid, const struct picture *picture, int index, bool blend)
+/* One asset's surfaces, those that are blended or those that are not. A field is never blended: it would mix its colours. seen: not NULL:
+   it is drawn by these commands, if others do not hide it. */
+static void draw_asset(struct solid *solid, const struct picture *picture, int index, bool blend, const struct hidden_asset *seen)
 {
     const struct model *model = picture->stage->of_asset[index];
     const struct model_level *level = solid_level(picture, index);
@@ -175,10 +177,11 @@ static void draw_asset(struct solid *solid, const struct picture *picture, int i
     bool cut = clip_touches(clip, asset->bounds_min_m, asset->bounds_max_m);
     struct culling culling;
     GLuint bound = 0;
+    size_t command = seen ? seen->first_command : 0;
     culling_init(&culling, &picture->shot, asset);
     if (cut)
         stage_clip_begin(clip);
-    for (size_t b = 0; b < level->batch_count; b++) {
+    for (size_t b = 0; b < level->batch_count; command += (size_t)level->batches[b++].draws) {
         const struct model_batch *batch = &level->batches[b];
         const struct model_material *material = &model->materials[batch->material];
         GLuint program = choose_program(solid, picture, material, field, cut);
@@ -201,7 +204,9 @@ static void draw_asset(struct solid *solid, const struct picture *picture, int i
         set_material(picture, material, batch, field != NULL, cut);
         if (is_per_fragment(picture, field))
             reference_draw_batch(batch);
-        else if (picture->stage->gl->software && !picture->measured)
+        else if (seen)
+            hidden_draw_batch(&solid->hidden, command, batch);
+        else if (solid->least_hiding == INT_MAX && !picture->measured)
             solid->triangles += model_draw_seen(&solid->draws, model, batch, &culling, batch->double_sided || cut);
         else
             model_draw_batch(batch);
@@ -241,12 +246,34 @@ static void end_pass(const struct picture *picture)
     gl_pass_leave(picture->stage->gl, "solid");
 }
 
+static bool leaves_out(struct solid *solid, const struct picture *picture)
+{
+    return !picture->measured && !picture->reference && hidden_begin(&solid->hidden, picture, solid->least_hiding);
+}
+
+/* In rounds, nearest first: each is tested against all before it. */
+static void draw_seen(struct solid *solid, const struct picture *picture)
+{
+    struct hidden *hidden = &solid->hidden;
+    for (size_t first = 0, end; first < picture->visible_count; first = end) {
+        end = first + hidden_round(hidden, first);
+        if (first > 0)
+            hidden_test(hidden, first, end);
+        for (size_t i = first; i < end; i++)
+            draw_asset(solid, picture, picture->visible[i], false, first > 0 && hidden->assets[i].tested ? &hidden->assets[i] : NULL);
+    }
+}
+
 size_t solid_draw_some(struct solid *solid, const struct picture *picture, size_t first, int triangles)
 {
     int before = solid->triangles;
     begin_pass(picture);
+    if (first == 0 && triangles == INT_MAX && leaves_out(solid, picture)) {
+        draw_seen(solid, picture);
+        first = picture->visible_count;
+    }
     while (first < picture->visible_count && solid->triangles - before < triangles)
-        draw_asset(solid, picture, picture->visible[first++], false);
+        draw_asset(solid, picture, picture->visible[first++], false, NULL);
     end_pass(picture);
     return first;
 }
@@ -258,7 +285,7 @@ void solid_draw_blended(struct solid *solid, const struct picture *picture)
         glEnable(GL_BLEND);
     glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE);
     for (size_t i = picture->visible_count; i-- > 0;)
-        draw_asset(solid, picture, picture->visible[i], true);
+        draw_asset(solid, picture, picture->visible[i], true, NULL);
     end_pass(picture);
 }
 

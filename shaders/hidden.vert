@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The boxes of assets, as one strip of 14 corners each: render/hidden.h.
+layout(location = 0) in mat4 clip_from_box; // whose corners are 0 and 1
+layout(location = 4) in uvec2 commands_of;
+layout(location = 0) flat out uvec2 commands_here; // the first, and how many
+
+void main()
+{
+    int corner = 1 << gl_VertexID;
+    gl_Position = clip_from_box * vec4((0x287a & corner) != 0, (0x02af & corner) != 0, (0x31e3 & corner) != 0, 1.0);
+    commands_here = commands_of;
+}

@@ -1,0 +1,236 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What others hide is left out, and not a pixel of the picture differs: from outside, from among and from within what is drawn. */
+#include <limits.h>
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "tests/support/site.h"
+#include "tests/support/synthetic.h"
+
+enum { WIDTH_PX = 320, HEIGHT_PX = 180 };
+static struct rig rig;
+static uint64_t seed;
+
+struct tally {
+    size_t pictures, left_out, different;
+};
+
+/* Not left out: the same triangles without that, since culling of clusters may lose a pixel of one that is seen edge on. */
+static struct frame *draw(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot, bool leave_out,
+                          size_t *count)
+{
+    renderer_leave_out(renderer, leave_out ? 0 : INT_MAX - 1);
+    struct frame *frame = renderer_draw(renderer, view, snapshot);
+    assert_non_null(frame);
+    *count = renderer_left_out(renderer);
+    return frame;
+}
+
+static void compare(struct tally *tally, struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
+{
+    size_t none = 1, some = 0;
+    struct frame *all = draw(renderer, view, snapshot, false, &none), *seen = draw(renderer, view, snapshot, true, &some);
+    assert_int_equal(none, 0);
+    int count = 0;
+    for (int y = 0; y < HEIGHT_PX; y++)
+        for (int x = 0; x < WIDTH_PX; x++)
+            count += memcmp(frame_pixel(all, x, y), frame_pixel(seen, x, y), 4) != 0;
+    if (count > 0)
+        print_message("picture %zu: %d pixels differ; eye %.3f %.3f %.3f m\n", tally->pictures, count, view->camera.eye_m[0],
+                      view->camera.eye_m[1], view->camera.eye_m[2]);
+    assert_int_equal(all->marker_count, seen->marker_count);
+    for (size_t i = 0; i < all->marker_count; i++)
+        assert_int_equal(all->markers[i].occluded, seen->markers[i].occluded);
+    tally->pictures++;
+    tally->left_out += some;
+    tally->different += count > 0;
+    frame_unref(&all);
+    frame_unref(&seen);
+}
+
+static double random_between(double low, double high)
+{
+    return low + (high - low) * synthetic_random_unit(&seed);
+}
+
+/* Within an asset's box, beside it or far off; sometimes orthographic, cut, with ghosts, or with some of it hidden. */
+static void look_anyhow(const struct scene *scene, struct view *view)
+{
+    const struct scene_asset *asset = &scene->assets[synthetic_random(&seed) % scene->asset_count];
+    double away = (double[]){ 0, 0.5, 1, 5 }[synthetic_random(&seed) % 4], middle[3], far[3];
+    view_default(scene, WIDTH_PX, HEIGHT_PX, view);
+    view->tier = synthetic_random(&seed) % 3 ? TIER_MOVING : TIER_STILL;
+    for (int c = 0; c < 3; c++) {
+        double size = asset->bounds_max_m[c] - asset->bounds_min_m[c] + 0.2;
+        middle[c] = scene->bounds_min_m[c] + random_between(0.2, 0.8) * (scene->bounds_max_m[c] - scene->bounds_min_m[c]);
+        view->camera.eye_m[c] = random_between(asset->bounds_min_m[c] - away * size, asset->bounds_max_m[c] + away * size);
+        view->camera.target_m[c] = away < 5 ? view->camera.eye_m[c] + random_between(-1, 1) : middle[c];
+        far[c] = random_between(middle[c], scene->bounds_max_m[c] + 1);
+    }
+    view->camera.fov_deg = random_between(20, 90);
+    if (synthetic_random(&seed) % 4 == 0)
+        view->camera.height_m = random_between(1, 30);
+    if (synthetic_random(&seed) % 4 == 0)
+        clip_box(&view->visibility.clip, scene->bounds_min_m, far);
+    if (synthetic_random(&seed) % 4 == 0)
+        asset_set_add(&view->visibility.ghosts, (int)(asset - scene->assets));
+    if (synthetic_random(&seed) % 4 == 0)
+        asset_set_add(&view->visibility.hidden, (int)(synthetic_random(&seed) % scene->asset_count));
+    if (synthetic_random(&seed) % 4 == 0)
+        view->look = LOOK_MATERIALS;
+}
+
+static void finish(const char *what, const struct tally *tally, size_t least)
+{
+    print_message("# %s: %zu pictures, %zu times an asset was left out, %zu pictures differ\n", what, tally->pictures, tally->left_out,
+                  tally->different);
+    assert_int_equal(tally->different, 0);
+    assert_true(tally->left_out >= least);
+}
+
+static void test_the_demo_plant(void **state)
+{
+    (void)state;
+    struct site site;
+    struct tally tally = { 0 };
+    assert_true(site_init(&site, &rig, SITE_DEMO, NULL));
+    renderer_use_gl(site.renderer, true);
+    for (int i = 0; i < 40; i++) {
+        struct view view;
+        look_anyhow(site.scene, &view);
+        compare(&tally, site.renderer, &view, site.snapshot);
+    }
+    finish("demo", &tally, 4);
+    site_finish(&site);
+}
+
+/* --- assets that fill their boxes, side by side -------------------------------------------------------------------------------- */
+
+enum { ROW = 3, SIDE = 6 }; /* assets to a side; squares to the side of a face */
+
+static void add_cube(struct toy *toy, const char *id, const double at[3])
+{
+    struct shape shape = { 0 };
+    for (int face = 0; face < 6; face++) {
+        double corner[3] = { 0 }, u[3] = { 0 }, v[3] = { 0 };
+        int axis = face / 2, far = face % 2; /* u x v points out */
+        corner[axis] = far;
+        u[(axis + (far ? 1 : 2)) % 3] = 1;
+        v[(axis + (far ? 2 : 1)) % 3] = 1;
+        shape_plate(&shape, TOY_STEEL, corner, u, v, SIDE);
+    }
+    toy_add(toy, id, &shape, at, NULL, 0);
+}
+
+static struct toy *make_city(double gap_m)
+{
+    struct toy *toy = toy_create();
+    for (int i = 0; i < ROW * ROW * ROW; i++) {
+        char id[16];
+        snprintf(id, sizeof(id), "cube-%d", i);
+        add_cube(toy, id, (double[3]){ (1 + gap_m) * (i % ROW), (1 + gap_m) * (i / ROW % ROW), (1 + gap_m) * (i / ROW / ROW) });
+    }
+    return toy;
+}
+
+static void test_cubes(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 3; i++) {
+        struct stand stand;
+        struct tally tally = { 0 };
+        double gap_m = (double[]){ 0, 0.02, 0.3 }[i];
+        stand_init(&stand, &rig, make_city(gap_m));
+        renderer_use_gl(stand.renderer, true);
+        for (int k = 0; k < 25; k++) {
+            struct view view;
+            look_anyhow(&stand.toy->scene, &view);
+            compare(&tally, stand.renderer, &view, stand.snapshot);
+        }
+        char what[32];
+        snprintf(what, sizeof(what), "cubes %g m apart", gap_m);
+        finish(what, &tally, tally.pictures);
+        stand_finish(&stand);
+    }
+}
+
+/* Seen from before a face of the city, which is as much as is drawn before anything is tested: all other cubes are left out. */
+static void test_a_wall_hides_what_is_behind(void **state)
+{
+    (void)state;
+    struct stand stand;
+    struct view view;
+    size_t count = 0;
+    stand_init(&stand, &rig, make_city(0.02));
+    renderer_use_gl(stand.renderer, true);
+    view_default(&stand.toy->scene, WIDTH_PX, HEIGHT_PX, &view);
+    view.tier = TIER_MOVING;
+    view.width_px = 1280; /* where the rim round boxes is less than what is between the cubes */
+    view.height_px = 720;
+    double middle_m = 0.5 * (ROW + 0.02 * (ROW - 1));
+    view.camera =
+        (struct camera){ .eye_m = { -9, middle_m, middle_m }, .target_m = { 0, middle_m, middle_m }, .up = { 0, 0, 1 }, .fov_deg = 40 };
+    struct frame *frame = draw(stand.renderer, &view, stand.snapshot, true, &count);
+    frame_unref(&frame);
+    print_message("# a wall: %zu of %d cubes left out\n", count, ROW * ROW * ROW);
+    assert_int_equal(count, (ROW - 1) * ROW * ROW);
+    clip_box(&view.visibility.clip, (double[3]){ 1.1, -1, -1 }, (double[3]){ 9, 9, 9 }); /* the wall is cut away: behind it is another */
+    frame = draw(stand.renderer, &view, stand.snapshot, true, &count);
+    frame_unref(&frame);
+    assert_int_equal(count, (ROW - 2) * ROW * ROW);
+    stand_finish(&stand);
+}
+
+/* The eye is in the box of two balls; a wall that fills the picture hides all of the box, and one ball is before it. */
+static void test_the_eye_in_a_box(void **state)
+{
+    (void)state;
+    struct toy *toy = toy_create();
+    struct shape wall = { 0 }, balls = { 0 };
+    struct stand stand;
+    struct view view;
+    struct tally tally = { 0 };
+    shape_plate(&wall, TOY_BLUE, (double[3]){ -4, 3, -4 }, (double[3]){ 8, 0, 0 }, (double[3]){ 0, 0, 8 }, 20);
+    shape_sphere(&balls, TOY_STEEL, (double[3]){ 0, 2, 0 }, 0.3, 6);
+    shape_sphere(&balls, TOY_STEEL, (double[3]){ 9, -9, 9 }, 0.3, 6);
+    shape_sphere(&balls, TOY_STEEL, (double[3]){ -9, 9, -9 }, 0.3, 6);
+    toy_add(toy, "wall", &wall, (double[3]){ 0 }, NULL, 0);
+    toy_add(toy, "balls", &balls, (double[3]){ 0 }, NULL, 0);
+    stand_init(&stand, &rig, toy);
+    renderer_use_gl(stand.renderer, true);
+    view_default(&toy->scene, WIDTH_PX, HEIGHT_PX, &view);
+    for (int parallel = 0; parallel < 2; parallel++) {
+        view.camera = (struct camera){ .target_m = { 0, 1, 0 }, .up = { 0, 0, 1 }, .fov_deg = 40, .height_m = parallel ? 2 : 0 };
+        compare(&tally, stand.renderer, &view, stand.snapshot);
+    }
+    stand_finish(&stand);
+    finish("a ball before a wall", &tally, 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_the_demo_plant),
+        cmocka_unit_test(test_cubes),
+        cmocka_unit_test(test_a_wall_hides_what_is_behind),
+        cmocka_unit_test(test_the_eye_in_a_box),
+    };
+    const char *given = getenv("PLANTCAST_SEED");
+    seed = given ? strtoull(given, NULL, 10) : 4;
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    if (!rig_init(&rig, "hidden_test"))
+        return 0;
+    print_message("# PLANTCAST_SEED=%llu\n", (unsigned long long)seed);
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    rig_finish(&rig);
+    return failed;
+}
