@@ -163,7 +163,7 @@ static void test_cubes(void **state)
     }
 }
 
-/* Seen from before a face of the city, which is as much as is drawn before anything is tested: all other cubes are left out. */
+/* Seen from before a face of the city: all cubes but those of that face are left out. */
 static void test_a_wall_hides_what_is_behind(void **state)
 {
     (void)state;
