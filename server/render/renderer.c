@@ -433,5 +433,5 @@ void renderer_leave_out(struct renderer *renderer, int least_triangles)
 
 size_t renderer_left_out(const struct renderer *renderer)
 {
-    return hidden_count(&renderer->solid.hidden);
+    return occlusion_count(&renderer->solid.occlusion);
 }

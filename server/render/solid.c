@@ -46,7 +46,7 @@ static GLuint make_program(struct log *log, enum solid_kind kind, int tier, int 
 
 bool solid_init(struct solid *solid, struct log *log)
 {
-    bool good = hidden_init(&solid->hidden, log);
+    bool good = occlusion_init(&solid->occlusion, log);
     solid->log = log;
     for (int tier = 0; tier < 2; tier++)
         for (int variant = 0; variant < SOLID_VARIANTS; variant++)
@@ -59,7 +59,7 @@ bool solid_init(struct solid *solid, struct log *log)
 
 void solid_finish(struct solid *solid)
 {
-    hidden_finish(&solid->hidden);
+    occlusion_finish(&solid->occlusion);
     model_draws_finish(&solid->draws);
     for (int i = 0; i < SOLID_KINDS * 2 * SOLID_VARIANTS; i++)
         program_destroy(&solid->programs[i / (2 * SOLID_VARIANTS)][i / SOLID_VARIANTS % 2][i % SOLID_VARIANTS]);
@@ -167,7 +167,7 @@ const struct model_level *solid_level(const struct picture *picture, int asset)
 
 /* One asset's surfaces, those that are blended or those that are not. A field is never blended: it would mix its colours. seen: not NULL:
    it is drawn by these commands, if others do not hide it. */
-static void draw_asset(struct solid *solid, const struct picture *picture, int index, bool blend, const struct hidden_asset *seen)
+static void draw_asset(struct solid *solid, const struct picture *picture, int index, bool blend, const struct occlusion_asset *seen)
 {
     const struct model *model = picture->stage->of_asset[index];
     const struct model_level *level = solid_level(picture, index);
@@ -205,7 +205,7 @@ static void draw_asset(struct solid *solid, const struct picture *picture, int i
         if (is_per_fragment(picture, field))
             reference_draw_batch(batch);
         else if (seen)
-            hidden_draw_batch(&solid->hidden, command, batch);
+            occlusion_draw_batch(&solid->occlusion, command, batch);
         else if (solid->least_hiding == INT_MAX && !picture->measured)
             solid->triangles += model_draw_seen(&solid->draws, model, batch, &culling, batch->double_sided || cut);
         else
@@ -248,19 +248,19 @@ static void end_pass(const struct picture *picture)
 
 static bool leaves_out(struct solid *solid, const struct picture *picture)
 {
-    return !picture->measured && !picture->reference && hidden_begin(&solid->hidden, picture, solid->least_hiding);
+    return !picture->measured && !picture->reference && occlusion_begin(&solid->occlusion, picture, solid->least_hiding);
 }
 
 /* In rounds, nearest first: each is tested against all before it. */
 static void draw_seen(struct solid *solid, const struct picture *picture)
 {
-    struct hidden *hidden = &solid->hidden;
+    struct occlusion *occlusion = &solid->occlusion;
     for (size_t first = 0, end; first < picture->visible_count; first = end) {
-        end = first + hidden_round(hidden, first);
+        end = first + occlusion_round(occlusion, first);
         if (first > 0)
-            hidden_test(hidden, first, end);
+            occlusion_test(occlusion, first, end);
         for (size_t i = first; i < end; i++)
-            draw_asset(solid, picture, picture->visible[i], false, first > 0 && hidden->assets[i].tested ? &hidden->assets[i] : NULL);
+            draw_asset(solid, picture, picture->visible[i], false, first > 0 && occlusion->assets[i].tested ? &occlusion->assets[i] : NULL);
     }
 }
 

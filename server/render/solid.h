@@ -2,7 +2,7 @@
 /* The pass that draws the plant itself, in either tier. Thread: the one of the GL context. */
 #ifndef RENDER_SOLID_H
 #define RENDER_SOLID_H
-#include "render/hidden.h"
+#include "render/occlusion.h"
 #include "render/picture.h"
 
 /* What a program can do; each does only what it must, since a software GL runs every branch. Rich: lines, and
@@ -14,7 +14,7 @@ enum solid_kind { SOLID_PICTURE, SOLID_PER_FRAGMENT, SOLID_MEASURE, SOLID_MEASUR
 
 struct solid {
     struct log *log;
-    struct hidden hidden;
+    struct occlusion occlusion;
     int least_hiding; /* of pictures of so many triangles what others hide is left out; INT_MAX: of none, but clusters that are not seen */
     struct model_draws draws;
     int triangles; /* drawn without those that are not seen; whoever wants to know sets it to 0 before */

@@ -227,7 +227,7 @@ int main(void)
     const char *given = getenv("PLANTCAST_SEED");
     seed = given ? strtoull(given, NULL, 10) : 4;
     cmocka_set_message_output(CM_OUTPUT_TAP);
-    if (!rig_init(&rig, "hidden_test"))
+    if (!rig_init(&rig, "occlusion_test"))
         return 0;
     print_message("# PLANTCAST_SEED=%llu\n", (unsigned long long)seed);
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
