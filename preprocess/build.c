@@ -2,7 +2,6 @@
 /* One asset from a parsed model to the bytes of its file. */
 #include "preprocess/build.h"
 
-#include <errno.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -96,6 +95,7 @@ struct build {
     struct workers_task *sending; /* the asset's file to the disk */
     void (*tasks[2])(struct build *build); /* side by side */
     bool failed[2];
+    int write_error; /* errno; 0: none */
     char *why;
 };
 
@@ -304,7 +304,7 @@ static void write_distances(void *arg, float *geodesic_m)
     struct build *build = arg;
     struct folder_draft *file = &build->output->file;
     off_t at = (char *)geodesic_m - (char *)file->bytes;
-    build->failed[0] |= !rows_write(&build->distances, build->workers, file->fd, at);
+    build->write_error = rows_write(&build->distances, build->workers, file->fd, at);
     build->sending = workers_begin(build->workers, send_file, &build->output->file);
 }
 
@@ -358,8 +358,8 @@ static bool lay_out(struct build *build, const struct clusters *clusters)
     size_t size;
     wrong(build->why, "out of memory for its file"); /* unless make_file says something else */
     void *bytes = asset_build(&parts, &size);
-    if (bytes && build->failed[0])
-        return wrong(build->why, "its distances cannot be written: %s", strerror(EIO));
+    if (bytes && build->write_error)
+        return wrong(build->why, "its distances cannot be written: %s", strerror(build->write_error));
     if (!bytes)
         return false;
     return asset_view_fresh(&output->view, bytes, size, view_why) || /* what a reader would refuse is not put in its place */

@@ -9,6 +9,7 @@
 #include <xxhash.h>
 
 #include "base/mem.h"
+#include "preprocess/file_io.h"
 #include "preprocess/folder.h"
 
 struct slot { /* the column follows */
@@ -32,32 +33,6 @@ static uint64_t checksum_of(const struct columns *columns, size_t place, const f
     return XXH3_64bits_withSeed(distances_m, columns->length * sizeof(*distances_m), seed);
 }
 
-static bool read_all(int fd, void *to, size_t bytes, off_t at)
-{
-    for (char *p = to; bytes;) {
-        ssize_t got = pread(fd, p, bytes, at);
-        if (got <= 0)
-            return false;
-        p += got;
-        at += got;
-        bytes -= (size_t)got;
-    }
-    return true;
-}
-
-static bool write_all(int fd, const void *from, size_t bytes, off_t at)
-{
-    for (const char *p = from; bytes;) {
-        ssize_t put = pwrite(fd, p, bytes, at);
-        if (put <= 0)
-            return false;
-        p += put;
-        at += put;
-        bytes -= (size_t)put;
-    }
-    return true;
-}
-
 /* Which place each slot belongs to; the others get the free slots, and then new ones. */
 static void deal_slots(struct columns *columns)
 {
@@ -66,7 +41,7 @@ static void deal_slots(struct columns *columns)
     char *taken = mem_array(there, 1);
     for (size_t i = 0; i < there; i++) {
         struct slot slot;
-        if (!read_all(columns->fd, &slot, sizeof(slot), slot_at(columns, i)))
+        if (!file_read(columns->fd, &slot, sizeof(slot), slot_at(columns, i)))
             continue;
         for (size_t p = 0; p < columns->count && !taken[i]; p++)
             if (columns->slots[p] == SIZE_MAX && memcmp(slot.place_m, columns->places_m[p], sizeof(slot.place_m)) == 0) {
@@ -112,9 +87,9 @@ static bool fetch(void *arg, size_t source, float *distances_m)
     struct columns *columns = arg;
     struct slot slot;
     off_t at = slot_at(columns, columns->slots[source]);
-    bool good = read_all(columns->fd, &slot, sizeof(slot), at) &&
+    bool good = file_read(columns->fd, &slot, sizeof(slot), at) &&
                 memcmp(slot.place_m, columns->places_m[source], sizeof(slot.place_m)) == 0 &&
-                read_all(columns->fd, distances_m, columns->length * sizeof(*distances_m), at + (off_t)sizeof(slot)) &&
+                file_read(columns->fd, distances_m, columns->length * sizeof(*distances_m), at + (off_t)sizeof(slot)) &&
                 slot.checksum == checksum_of(columns, source, distances_m);
     columns->kept += good;
     return good;
@@ -126,8 +101,8 @@ static void keep(void *arg, size_t source, const float *distances_m)
     struct slot slot = { .checksum = checksum_of(columns, source, distances_m) };
     off_t at = slot_at(columns, columns->slots[source]);
     memcpy(slot.place_m, columns->places_m[source], sizeof(slot.place_m));
-    if (!columns->may_write || !write_all(columns->fd, &slot, sizeof(slot), at) ||
-        !write_all(columns->fd, distances_m, columns->length * sizeof(*distances_m), at + (off_t)sizeof(slot)))
+    if (!columns->may_write || !file_write(columns->fd, &slot, sizeof(slot), at) ||
+        !file_write(columns->fd, distances_m, columns->length * sizeof(*distances_m), at + (off_t)sizeof(slot)))
         columns->may_write = false; /* what is there of it has another checksum */
 }
 

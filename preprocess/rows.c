@@ -2,14 +2,15 @@
 /* Rows into columns, a tile at a time that fits into a core's own memory. */
 #include "preprocess/rows.h"
 
+#include <errno.h>
 #include <stdatomic.h>
-#include <unistd.h>
 
 #include "base/mem.h"
+#include "preprocess/file_io.h"
 #include "surface/trimesh.h"
 
-#define LINE 16u    /* floats: sensors of a tile */
-#define TILE 16384u /* its vertices: 64 kB of a column are written at once */
+#define LINE 16u            /* floats: sensors of a tile */
+#define TILE 16384u         /* its vertices: 64 kB of a column are written at once */
 #define APART (TILE + LINE) /* of a tile's columns, in floats, so that they do not meet in the cache */
 
 void rows_finish(struct rows *rows)
@@ -34,8 +35,8 @@ struct turn {
     const struct rows *rows;
     int fd;
     off_t at;
-    size_t lines; /* tiles beside each other */
-    atomic_bool failed;
+    size_t lines;     /* tiles beside each other */
+    atomic_int error; /* errno */
 };
 
 static void turn_tile(const struct rows *rows, size_t first, size_t last, size_t line, size_t width, float *tile)
@@ -47,38 +48,25 @@ static void turn_tile(const struct rows *rows, size_t first, size_t last, size_t
     }
 }
 
-static bool write_all(int fd, const void *from, size_t bytes, off_t at)
-{
-    for (const char *p = from; bytes;) {
-        ssize_t put = pwrite(fd, p, bytes, at);
-        if (put <= 0)
-            return false;
-        p += put;
-        at += put;
-        bytes -= (size_t)put;
-    }
-    return true;
-}
-
 static void turn_tiles(void *arg, size_t begin, size_t end)
 {
     struct turn *turn = arg;
     const struct rows *rows = turn->rows;
     const size_t count = rows->vertex_count, sensors = rows->sensor_count;
     float *tile = mem_array(LINE * APART, sizeof(*tile));
-    for (size_t i = begin; i < end && !turn->failed; i++) {
+    for (size_t i = begin; i < end && !turn->error; i++) {
         size_t first = i / turn->lines * TILE, line = i % turn->lines * LINE;
         size_t last = first + TILE < count ? first + TILE : count, width = line + LINE < sensors ? LINE : sensors - line;
         turn_tile(rows, first, last, line, width, tile);
         for (size_t s = 0; s < width; s++)
-            if (!write_all(turn->fd, tile + s * APART, (last - first) * sizeof(*tile),
-                           turn->at + (off_t)(((line + s) * count + first) * sizeof(*tile))))
-                turn->failed = true;
+            if (!file_write(turn->fd, tile + s * APART, (last - first) * sizeof(*tile),
+                            turn->at + (off_t)(((line + s) * count + first) * sizeof(*tile))))
+                turn->error = errno;
     }
     mem_free(tile);
 }
 
-bool rows_write(const struct rows *rows, struct workers *workers, int fd, off_t at)
+int rows_write(const struct rows *rows, struct workers *workers, int fd, off_t at)
 {
     struct turn turn = { .rows = rows, .fd = fd, .at = at, .lines = (rows->sensor_count + LINE - 1) / LINE };
     size_t tiles = (rows->vertex_count + TILE - 1) / TILE * turn.lines;
@@ -86,5 +74,5 @@ bool rows_write(const struct rows *rows, struct workers *workers, int fd, off_t 
         workers_for(workers, tiles, 4, turn_tiles, &turn);
     else
         turn_tiles(&turn, 0, tiles);
-    return !turn.failed;
+    return turn.error;
 }

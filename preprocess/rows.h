@@ -2,7 +2,6 @@
 /* Distances place by place, as splitting finds them; turned into columns vertex by vertex, as an asset file has them. */
 #ifndef PREPROCESS_ROWS_H
 #define PREPROCESS_ROWS_H
-#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <sys/types.h>
@@ -20,7 +19,7 @@ void rows_finish(struct rows *rows); /* a zeroed one is fine */
 /* Vertices follow to their new numbers; those without one (TRIMESH_NONE) are dropped, and `kept` are left. */
 void rows_renumber(struct rows *rows, const uint32_t *new_of, uint32_t kept);
 /* Columns, [sensor][vertex], into a file from `at` on: where a mapped one is stored to instead, each page costs as much again. workers may
-   be NULL. False: not all could be written. */
-bool rows_write(const struct rows *rows, struct workers *workers, int fd, off_t at);
+   be NULL. Returns 0, or the errno of what could not be written. */
+int rows_write(const struct rows *rows, struct workers *workers, int fd, off_t at);
 
 #endif
