@@ -55,7 +55,7 @@ static void state_remove(struct field *field, struct state **link)
     struct state *state = *link;
     *link = state->next;
     weights_release(state);
-    field->bytes -= state_bytes(state->layout);
+    field->bytes -= state_bytes(state);
     state_destroy(&state);
 }
 
@@ -250,14 +250,35 @@ struct state *field_state(struct field *field, int asset, const struct field_par
     struct layout *layout = field_layout(field, asset, params);
     if (!layout)
         return NULL;
-    make_room(field, state_bytes(layout), params, field->tick);
     state = state_create(asset, layout, params);
-    if (!state)
-        return NULL;
+    make_room(field, state_bytes(state), params, field->tick);
     state->next = field->states[asset];
     field->states[asset] = state;
-    field->bytes += state_bytes(layout);
+    field->bytes += state_bytes(state);
     return state;
+}
+
+static void forget_state(struct field *field, struct state *state)
+{
+    struct state **link = &field->states[state->scalars.asset];
+    while (*link != state)
+        link = &(*link)->next;
+    state_remove(field, link);
+}
+
+/* False: out of memory, the state is gone. */
+static bool grow_state(struct field *field, struct state *state, size_t count)
+{
+    size_t more = state_more_bytes(state, count);
+    if (more == 0)
+        return true;
+    make_room(field, more, &state->params, field->tick);
+    if (!state_grow(state, count)) {
+        forget_state(field, state);
+        return false;
+    }
+    field->bytes += more;
+    return true;
 }
 
 /* -1: it does not stand on the asset. */
@@ -279,6 +300,8 @@ static const struct scalars *distance_scalars(struct field *field, int asset, co
     state->used = field->tick;
     state_read(state, snapshot, NULL);
     state->scalars.oldest_age_ns = INT64_MAX;
+    if (!grow_state(field, state, state->scalars.count))
+        return NULL;
     if (state->scalars.version == 0)
         state_measure(state, (size_t)sensor, &field->versions);
     return &state->scalars;
@@ -299,14 +322,6 @@ static void read_inputs(const struct field *field, struct state *state, const st
         baselines_give(field->baselines, &baseline);
 }
 
-static void forget_state(struct field *field, struct state *state)
-{
-    struct state **link = &field->states[state->scalars.asset];
-    while (*link != state)
-        link = &(*link)->next;
-    state_remove(field, link);
-}
-
 bool field_begin_update(struct field *field, struct state *state, const struct snapshot *snapshot, size_t count)
 {
     read_inputs(field, state, snapshot);
@@ -319,6 +334,8 @@ bool field_begin_update(struct field *field, struct state *state, const struct s
     weights->used = field->tick;
     if (!state_is_behind(state) && state->scalars.ready >= count)
         return true;
+    if (!grow_state(field, state, state->wanted > count ? state->wanted : count))
+        return false;
     keep_columns(field, weights, &state->params, previous);
     weights->sums++;
     update_begin(state, count);

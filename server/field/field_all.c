@@ -23,6 +23,7 @@ void field_update_all(struct field *field, const int *assets, const size_t *coun
     if (asset_count < 2 || params->show == SHOW_DISTANCE || params->trial)
         return;
     struct together together = { mem_array(asset_count, sizeof(*together.states)), 0 };
+    size_t begun = 0;
     for (size_t i = 0; i < asset_count; i++) {
         field->tick++;
         struct state *state = field_state(field, assets[i], params);
@@ -30,9 +31,12 @@ void field_update_all(struct field *field, const int *assets, const size_t *coun
             continue;
         state->used = field->tick;
         state->wanted = state->wanted > counts[i] ? state->wanted : counts[i];
-        if (field_begin_update(field, state, snapshot, counts[i]) && state->update && update_is_light(state))
-            together.states[together.count++] = state;
+        if (field_begin_update(field, state, snapshot, counts[i]) && state->update)
+            together.states[begun++] = state;
     }
+    for (size_t i = 0; i < begun; i++) /* only now: to begin one may take others' columns away */
+        if (update_is_light(together.states[i]))
+            together.states[together.count++] = together.states[i];
     workers_for(field->workers, together.count, 1, update_some, &together);
     for (size_t i = 0; i < together.count; i++)
         update_end(together.states[i], &field->versions);

@@ -20,9 +20,7 @@ struct state *state_create(int asset, struct layout *layout, const struct field_
     struct state *state = mem_new(sizeof(*state));
     state->params = *params;
     state->layout = layout;
-    state->at = mem_try_array(layout->vertex_count, sizeof(*state->at));
-    state->sums = mem_try_array(layout->vertex_count, sizeof(*state->sums));
-    state->scalars = (struct scalars){ .asset = asset, .count = layout->vertex_count, .at = state->at };
+    state->scalars = (struct scalars){ .asset = asset, .count = layout->vertex_count };
     state->now = mem_array(layout->sensor_count, sizeof(*state->now));
     state->shown = mem_array(layout->sensor_count, sizeof(*state->shown));
     state->usable = mem_array(layout->sensor_count, 1);
@@ -31,8 +29,6 @@ struct state *state_create(int asset, struct layout *layout, const struct field_
         state->lists[i].factors = mem_array(layout->sensor_count, sizeof(*state->lists[i].factors));
         state->lists[i].marked = mem_array(layout->sensor_count, 1);
     }
-    if (!state->at || !state->sums)
-        state_destroy(&state);
     return state;
 }
 
@@ -56,10 +52,59 @@ void state_destroy(struct state **state_ptr)
     *state_ptr = NULL;
 }
 
-size_t state_bytes(const struct layout *layout)
+/* To add up few columns anew takes no longer than to read and write sums. */
+static bool keeps_sums(const struct state *state)
+{
+    return state->layout->sensor_count > KERNEL_COLUMNS;
+}
+
+static size_t each_vertex(const struct state *state)
+{
+    return sizeof(*state->at) + (keeps_sums(state) ? sizeof(*state->sums) : 0);
+}
+
+size_t state_bytes(const struct state *state)
 {
     size_t each_sensor = 2 * sizeof(struct state_input) + 1 + 2 * (sizeof(uint32_t) + sizeof(double) + 1);
-    return sizeof(struct state) + layout->vertex_count * (sizeof(struct scalar) + sizeof(double)) + layout->sensor_count * each_sensor;
+    return sizeof(struct state) + state->room * each_vertex(state) + state->layout->sensor_count * each_sensor;
+}
+
+/* Whole blocks. */
+static size_t room_for(const struct state *state, size_t count)
+{
+    size_t whole = (count + KERNEL_BLOCK - 1) / KERNEL_BLOCK * KERNEL_BLOCK;
+    return whole < state->layout->vertex_count ? whole : state->layout->vertex_count;
+}
+
+size_t state_more_bytes(const struct state *state, size_t count)
+{
+    size_t room = room_for(state, count);
+    return room > state->room ? (room - state->room) * each_vertex(state) : 0;
+}
+
+bool state_grow(struct state *state, size_t count)
+{
+    size_t room = room_for(state, count);
+    if (room <= state->room)
+        return true;
+    struct scalar *at = mem_try_array(room, sizeof(*at));
+    double *sums = keeps_sums(state) ? mem_try_array(room, sizeof(*sums)) : NULL;
+    if (!at || (keeps_sums(state) && !sums)) {
+        mem_free(at);
+        mem_free(sums);
+        return false;
+    }
+    if (state->room > 0)
+        memcpy(at, state->at, state->room * sizeof(*at));
+    if (state->room > 0 && sums)
+        memcpy(sums, state->sums, state->room * sizeof(*sums));
+    mem_free(state->at);
+    mem_free(state->sums);
+    state->at = at;
+    state->sums = sums;
+    state->scalars.at = at;
+    state->room = room;
+    return true;
 }
 
 static double limited(double x, double low, double high)

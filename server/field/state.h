@@ -18,7 +18,8 @@ struct state {
     struct weights *weights; /* counted in weights->users */
     struct scalars scalars;  /* scalars.version 0: nothing computed yet */
     struct scalar *at;
-    double *sums;                    /* by vertex: numerator */
+    double *sums;                    /* by vertex: numerator; NULL: few sensors, always summed anew */
+    size_t room;                     /* for so many of the first vertices in these two */
     unsigned added;                  /* updates since they were made anew */
     struct state_input *now, *shown; /* by sensor of the layout: asked for, and in the scalars */
     uint8_t *usable;                 /* by sensor of the layout, of `now` */
@@ -33,10 +34,13 @@ struct state {
     struct state *next;
 };
 
-/* NULL: out of memory. */
-struct state *state_create(int asset, struct layout *layout, const struct field_params *params);
+struct state *state_create(int asset, struct layout *layout, const struct field_params *params); /* without room for vertices */
 void state_destroy(struct state **state); /* &NULL is fine; leaves NULL */
-size_t state_bytes(const struct layout *layout);
+size_t state_bytes(const struct state *state);
+/* Room for the first `count` vertices: a far asset needs few of them. False: out of memory, nothing has changed. state_more_bytes: by how
+   much state_bytes would grow. */
+size_t state_more_bytes(const struct state *state, size_t count);
+bool state_grow(struct state *state, size_t count);
 
 /* Reads the snapshot into state->now and state->usable, and its ages. baseline: what a difference is from; NULL: not known. */
 void state_read(struct state *state, const struct snapshot *snapshot, const struct snapshot *baseline);

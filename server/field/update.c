@@ -111,7 +111,7 @@ void update_begin(struct state *state, size_t count)
     update->all = choose_terms(state, true);
     update->changed = choose_terms(state, false);
     update->flags = qualities_changed(state);
-    update->anew = update->flags || state->added >= ADDED_MOST || !steps_are_small(update);
+    update->anew = !state->sums || update->flags || state->added >= ADDED_MOST || !steps_are_small(update);
     for (size_t i = 0; i < update->all.count; i++)
         update->marks |= update->all.marked[i];
     if (!update->anew && update->changed.count == 0) /* only more vertices than before */
@@ -166,12 +166,12 @@ static bool set_flags(const struct update *update, size_t begin, size_t count, c
     return changed;
 }
 
-/* Returns whether a flag changed. */
-static bool sum_block(const struct update *update, size_t block, size_t begin, size_t count)
+/* Into `values`. Returns whether a flag changed. */
+static bool sum_block(const struct update *update, size_t block, size_t begin, size_t count, double *values)
 {
     struct weights *weights = update->state->weights;
     double total[KERNEL_BLOCK], marked[KERNEL_BLOCK];
-    struct weights_sums sums = { .values = update->state->sums + begin };
+    struct weights_sums sums = { .values = values };
     if (!update->anew && block < update->old) {
         weights_add(weights, begin, count, &update->changed, &sums);
         return false;
@@ -196,11 +196,13 @@ static void update_blocks(void *arg, size_t begin, size_t end)
     struct update *update = arg;
     struct state *state = update->state;
     float values[KERNEL_BLOCK], most = 0;
+    double room[KERNEL_BLOCK];
     bool value_changed = false, flag_changed = false;
     for (size_t block = update->next + begin; block < update->next + end; block++) {
         size_t at = block * KERNEL_BLOCK, left = state->scalars.count - at, count = left < KERNEL_BLOCK ? left : KERNEL_BLOCK;
-        flag_changed |= sum_block(update, block, at, count);
-        kernel_value(&update->rule, state->sums + at, state->weights->total + at, count, values);
+        double *sums = state->sums ? state->sums + at : room;
+        flag_changed |= sum_block(update, block, at, count, sums);
+        kernel_value(&update->rule, sums, state->weights->total + at, count, values);
         most = fmaxf(most, kernel_store(values, count, state->at + at, &value_changed));
     }
     pthread_mutex_lock(&update->lock);

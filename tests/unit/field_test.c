@@ -755,12 +755,12 @@ static void test_a_day_of_changes_leaves_no_drift(void **state)
 {
     (void)state;
     uint64_t random = fresh_seed();
-    struct rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 8, .seed = random));
+    struct rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 12, .seed = random));
     for (int tick = 0; tick < 86400; tick++) {
-        set(&rig, synthetic_random(&random) % 8, between(&random, -1000, 1000), QUALITY_GOOD);
+        set(&rig, synthetic_random(&random) % 12, between(&random, -1000, 1000), QUALITY_GOOD);
         show(&rig);
     }
-    for (size_t i = 0; i < 8; i++)
+    for (size_t i = 0; i < 12; i++)
         set(&rig, i, 30 + (double)i, QUALITY_GOOD);
     set(&rig, 0, 31, QUALITY_GOOD);
     assert_true_field(&rig, 1e-5);
@@ -983,12 +983,22 @@ static void test_scalars_of_the_same_parameters_stay(void **state)
     rig_finish(&rig);
 }
 
-/* Side by side as one after another, whatever changed, while weights are filled in and after, however little room there is. */
-static void test_many_at_once_are_as_one_by_one(void **state)
+/* The first vertices are as those of a field that has never seen anything else. */
+static void assert_first_as_fresh(const struct rig *rig, size_t count)
 {
-    (void)state;
-    enum { ASSETS = 12, SENSORS = 5, VERTICES = 1500 };
-    struct rig rig = rig_create(synthetic_create(.vertices = VERTICES, .sensors = SENSORS, .assets = ASSETS));
+    struct field *fresh = field_create(workers, &rig->plant->scene);
+    const struct scalars *want = field_scalars(fresh, 0, &rig->params, rig->plant->snapshot);
+    const struct scalars *got = field_scalars_of(rig->field, 0, &rig->params, rig->plant->snapshot, count);
+    assert_true(got->ready >= count);
+    assert_memory_equal(got->at, want->at, got->ready * sizeof(*want->at));
+    field_destroy(&fresh);
+}
+
+/* Side by side as one after another, whatever changed, while weights are filled in and after, however little room there is. */
+static void check_many_at_once(size_t sensors)
+{
+    enum { ASSETS = 12, VERTICES = 1500 };
+    struct rig rig = rig_create(synthetic_create(.vertices = VERTICES, .sensors = sensors, .assets = ASSETS));
     struct field *alone = field_create(workers, &rig.plant->scene);
     uint64_t random = fresh_seed();
     size_t bounds[] = { FIELD_DEFAULT_BYTES, 100000 };
@@ -997,7 +1007,7 @@ static void test_many_at_once_are_as_one_by_one(void **state)
         size_t counts[ASSETS], asset_count = 0;
         rig.params.interpolation = round / 10 % 2 ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
         field_set_bound(rig.field, bounds[round / 30]);
-        for (size_t i = 0; i < ASSETS * SENSORS; i++)
+        for (size_t i = 0; i < ASSETS * sensors; i++)
             if (synthetic_random(&random) % 3 == 0)
                 set(&rig, i, (double)(synthetic_random(&random) % 1000) / 10,
                     synthetic_random(&random) % 16 == 0 ? QUALITY_UNCERTAIN : QUALITY_GOOD);
@@ -1022,18 +1032,56 @@ static void test_many_at_once_are_as_one_by_one(void **state)
     rig_finish(&rig);
 }
 
-/* --- levels, pieces ------------------------------------------------------------------------------------------------------- */
-
-/* The first vertices are as those of a field that has never seen anything else. */
-static void assert_first_as_fresh(const struct rig *rig, size_t count)
+static void test_many_at_once_are_as_one_by_one(void **state)
 {
-    struct field *fresh = field_create(workers, &rig->plant->scene);
-    const struct scalars *want = field_scalars(fresh, 0, &rig->params, rig->plant->snapshot);
-    const struct scalars *got = field_scalars_of(rig->field, 0, &rig->params, rig->plant->snapshot, count);
-    assert_true(got->ready >= count);
-    assert_memory_equal(got->at, want->at, got->ready * sizeof(*want->at));
-    field_destroy(&fresh);
+    (void)state;
+    check_many_at_once(5); /* summed anew each time */
+    check_many_at_once(12);
 }
+
+/* Of which only the first vertices are drawn: there is room for these, so that their shares are kept, too. */
+static void check_far_assets(size_t sensors)
+{
+    enum { ASSETS = 40, VERTICES = 20000, DRAWN = 300 };
+    struct rig rig = rig_create(synthetic_create(.vertices = VERTICES, .sensors = sensors, .assets = ASSETS));
+    int assets[ASSETS];
+    size_t counts[ASSETS], columns = (size_t)(VERTICES + 255) / 256 * sensors * (256 * sizeof(float) + 1), last = 0, bound = 4 << 20;
+    field_set_bound(rig.field, columns + bound);
+    for (int round = 0; round < 4; round++) {
+        for (int i = 0; i < ASSETS; i++) {
+            assets[i] = i;
+            counts[i] = DRAWN;
+            set(&rig, (size_t)i * sensors, i + round, QUALITY_GOOD);
+        }
+        field_update_all(rig.field, assets, counts, ASSETS, &rig.params, rig.plant->snapshot);
+        for (int i = 0; i < ASSETS; i++)
+            assert_true(field_scalars_of(rig.field, i, &rig.params, rig.plant->snapshot, DRAWN)->at[0].value == (float)(i + round));
+        assert_true(round == 0 || field_bytes(rig.field) > columns);
+        assert_true(round < 2 || field_bytes(rig.field) == last);
+        last = field_bytes(rig.field);
+    }
+    size_t each = sizeof(struct scalar) + (sensors > 8 ? sizeof(double) : 0); /* of a vertex */
+    for (size_t count = DRAWN, had = 512; count < VERTICES; count *= 4) {
+        size_t room = (count + 255) / 256 * 256;
+        field_scalars_of(rig.field, 0, &rig.params, rig.plant->snapshot, count);
+        assert_int_equal(field_bytes(rig.field), last + (room - had) * each);
+        assert_first_as_fresh(&rig, count);
+        last = field_bytes(rig.field);
+        had = room;
+    }
+    assert_true(last <= columns + bound);
+    assert_as_fresh(&rig);
+    rig_finish(&rig);
+}
+
+static void test_far_assets_have_room_for_what_is_drawn(void **state)
+{
+    (void)state;
+    check_far_assets(5);
+    check_far_assets(12);
+}
+
+/* --- levels, pieces ------------------------------------------------------------------------------------------------------- */
 
 static void test_a_level_is_a_prefix(void **state)
 {
@@ -1416,6 +1464,7 @@ int main(void)
         cmocka_unit_test(test_as_many_columns_as_fit_are_kept),
         cmocka_unit_test(test_scalars_of_the_same_parameters_stay),
         cmocka_unit_test(test_many_at_once_are_as_one_by_one),
+        cmocka_unit_test(test_far_assets_have_room_for_what_is_drawn),
         cmocka_unit_test(test_a_level_is_a_prefix),
         cmocka_unit_test(test_a_prefix_costs_less),
         cmocka_unit_test(test_in_pieces_it_is_the_same),
