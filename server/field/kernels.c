@@ -2,6 +2,7 @@
 /* The field's inner loops: branch-free, elementwise, in order of the sensors, so that every machine and every cut gives equal bits. */
 #include "field/kernels.h"
 
+#include <assert.h>
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -254,31 +255,98 @@ KERNEL void kernel_add_both(double *restrict sum, double *restrict total, const 
     }
 }
 
+static inline float value_of(const struct kernel_value *rule, double sum, float weight)
+{
+    float v = (float)sum / weight * rule->scale + rule->offset;
+    v = v > rule->low ? v : rule->low;
+    v = v < rule->high ? v : rule->high;
+    return weight > 0.0f ? v : rule->empty;
+}
+
 KERNEL void kernel_value(const struct kernel_value *rule, const double *restrict sum, const float *restrict weight, size_t count,
                          float *restrict value)
 {
-    const float low = rule->low, high = rule->high, scale = rule->scale, offset = rule->offset, empty = rule->empty;
-    for (size_t j = 0; j < count; j++) {
-        float v = (float)sum[j] / weight[j] * scale + offset;
-        v = v > low ? v : low;
-        v = v < high ? v : high;
-        value[j] = weight[j] > 0.0f ? v : empty;
-    }
+    const struct kernel_value own = *rule;
+    for (size_t j = 0; j < count; j++)
+        value[j] = value_of(&own, sum[j], weight[j]);
+}
+
+/* A scalar is read and written as one number: its value is in the lower half, which flags are not. Returns the bits of the change, whose
+   order is that of what they mean: see kernel_largest. */
+static inline int32_t put(struct scalar *restrict at, float value)
+{
+    _Static_assert(sizeof(*at) == 8 && offsetof(struct scalar, value) == 0 && __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "value first");
+    uint64_t both;
+    uint32_t bits;
+    float before, change;
+    int32_t change_bits;
+    memcpy(&both, at, sizeof(both));
+    bits = (uint32_t)both;
+    memcpy(&before, &bits, sizeof(before));
+    change = fabsf(value - before);
+    memcpy(&change_bits, &change, sizeof(change_bits));
+    memcpy(&bits, &value, sizeof(bits));
+    both = (both & 0xffffffff00000000u) | bits;
+    memcpy(at, &both, sizeof(both));
+    return change_bits;
+}
+
+static inline float change_of(int32_t most, bool *changed)
+{
+    float change;
+    memcpy(&change, &most, sizeof(change));
+    *changed |= most > 0;
+    return change;
 }
 
 KERNEL float kernel_store(const float *restrict value, size_t count, struct scalar *restrict at, bool *changed)
 {
-    int32_t most = 0; /* bits of the largest change: see kernel_largest */
+    int32_t most = 0;
     for (size_t j = 0; j < count; j++) {
-        float change = fabsf(value[j] - at[j].value);
-        int32_t bits;
-        memcpy(&bits, &change, sizeof(bits));
-        most = bits > most ? bits : most;
+        int32_t change = put(&at[j], value[j]);
+        most = change > most ? change : most;
     }
-    for (size_t j = 0; j < count; j++)
-        at[j].value = value[j];
-    *changed |= most > 0;
-    float most_change;
-    memcpy(&most_change, &most, sizeof(most_change));
-    return most_change;
+    return change_of(most, changed);
+}
+
+struct few {
+    struct kernel_value rule;
+    const float *column[KERNEL_COLUMNS - 1];
+    double factor[KERNEL_COLUMNS - 1];
+};
+
+/* column_count: known where this is put in. */
+static inline __attribute__((always_inline)) int32_t put_few(const struct few *few, size_t column_count, const float *restrict weight,
+                                                             size_t count, struct scalar *restrict at)
+{
+    const struct few own = *few;
+    int32_t most = 0;
+    for (size_t j = 0; j < count; j++) {
+        double sum = 0;
+        for (size_t k = 0; k < column_count; k++)
+            sum += (double)own.column[k][j] * own.factor[k];
+        int32_t change = put(&at[j], value_of(&own.rule, sum, weight[j]));
+        most = change > most ? change : most;
+    }
+    return most;
+}
+
+KERNEL float kernel_few(const struct kernel_value *rule, const float *const *columns, const double *factors, size_t column_count,
+                        const float *restrict weight, size_t count, struct scalar *restrict at, bool *changed)
+{
+    struct few few = { .rule = *rule };
+    int32_t most = 0;
+    memcpy(few.column, columns, column_count * sizeof(*columns));
+    memcpy(few.factor, factors, column_count * sizeof(*factors));
+    switch (column_count) {
+    case 1: most = put_few(&few, 1, weight, count, at); break;
+    case 2: most = put_few(&few, 2, weight, count, at); break;
+    case 3: most = put_few(&few, 3, weight, count, at); break;
+    case 4: most = put_few(&few, 4, weight, count, at); break;
+    case 5: most = put_few(&few, 5, weight, count, at); break;
+    case 6: most = put_few(&few, 6, weight, count, at); break;
+    case 7: most = put_few(&few, 7, weight, count, at); break;
+    default: assert(!"few columns");
+    }
+    return change_of(most, changed);
 }

@@ -58,5 +58,8 @@ void kernel_value(const struct kernel_value *rule, const double *restrict sum, c
                   float *restrict value);
 /* Puts values in their places. Returns the largest change; *changed is set when any differs. */
 float kernel_store(const float *restrict value, size_t count, struct scalar *restrict at, bool *changed);
+/* kernel_add to zeros, kernel_value and kernel_store at once, with the same bits; column_count < KERNEL_COLUMNS. */
+float kernel_few(const struct kernel_value *rule, const float *const *columns, const double *factors, size_t column_count,
+                 const float *restrict weight, size_t count, struct scalar *restrict at, bool *changed);
 
 #endif

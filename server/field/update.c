@@ -191,6 +191,23 @@ static bool sum_block(const struct update *update, size_t block, size_t begin, s
     return flags && set_flags(update, begin, count, total, marked);
 }
 
+/* Few columns, all kept, and no flag to set: all in one go. */
+static bool is_simple(const struct update *update, size_t block, size_t begin)
+{
+    return !update->state->sums && !update->flags && block < update->old && update->all.count > 0 && update->all.count < KERNEL_COLUMNS &&
+           weights_is_complete(update->state->weights, begin);
+}
+
+static float sum_few(const struct update *update, size_t begin, size_t count, bool *changed)
+{
+    const struct weights *weights = update->state->weights;
+    const float *columns[KERNEL_COLUMNS];
+    for (size_t k = 0; k < update->all.count; k++)
+        columns[k] = weights_column(weights, begin, update->all.members[k]);
+    return kernel_few(&update->rule, columns, update->all.factors, update->all.count, weights->total + begin, count,
+                      update->state->at + begin, changed);
+}
+
 static void update_blocks(void *arg, size_t begin, size_t end)
 {
     struct update *update = arg;
@@ -200,6 +217,10 @@ static void update_blocks(void *arg, size_t begin, size_t end)
     bool value_changed = false, flag_changed = false;
     for (size_t block = update->next + begin; block < update->next + end; block++) {
         size_t at = block * KERNEL_BLOCK, left = state->scalars.count - at, count = left < KERNEL_BLOCK ? left : KERNEL_BLOCK;
+        if (is_simple(update, block, at)) {
+            most = fmaxf(most, sum_few(update, at, count, &value_changed));
+            continue;
+        }
         double *sums = state->sums ? state->sums + at : room;
         flag_changed |= sum_block(update, block, at, count, sums);
         kernel_value(&update->rule, sums, state->weights->total + at, count, values);

@@ -247,6 +247,11 @@ bool weights_has_columns(const struct weights *weights, size_t begin)
     return block < weights->kept_blocks && !memchr(weights->kept + block * weights->member_count, 0, weights->member_count);
 }
 
+const float *weights_column(const struct weights *weights, size_t begin, uint32_t member)
+{
+    return weights->columns + (begin / KERNEL_BLOCK * weights->member_count + member) * KERNEL_BLOCK;
+}
+
 bool weights_is_complete(const struct weights *weights, size_t begin)
 {
     uint8_t all = KNOWN_NEAR | KNOWN_TOP | KNOWN_TOTAL;

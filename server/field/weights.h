@@ -92,6 +92,8 @@ struct weights_sums {       /* of one block; added to */
 };
 /* Adds the terms at a block that is prepared. Fills the columns of those members, where columns are kept. */
 void weights_add(struct weights *weights, size_t begin, size_t count, const struct weights_terms *terms, const struct weights_sums *sums);
+/* One that is there. */
+const float *weights_column(const struct weights *weights, size_t begin, uint32_t member);
 /* Whether all columns of a block are there, so that they need only be added. */
 bool weights_has_columns(const struct weights *weights, size_t begin);
 /* And all else: its sums only read (but for those of `paper` where some sensor is Uncertain). */

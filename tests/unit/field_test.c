@@ -983,6 +983,37 @@ static void test_scalars_of_the_same_parameters_stay(void **state)
     rig_finish(&rig);
 }
 
+/* Few sensors are summed in one go once their shares are known; that gives the bits of the long way, and the same account of changes. */
+static void test_few_sensors_are_summed_in_one_go(void **state)
+{
+    (void)state;
+    enum { VERTICES = 1100 };
+    uint64_t random = fresh_seed();
+    for (size_t sensors = 1; sensors <= 9; sensors++)
+        for (int paper = 0; paper < 2; paper++) {
+            struct rig rig = rig_create(synthetic_create(.vertices = VERTICES, .sensors = sensors, .seed = random + sensors));
+            float before[VERTICES] = { 0 };
+            double travel = 0;
+            rig.params.interpolation = paper ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
+            for (int round = 0; round < 6; round++) {
+                for (size_t i = 0; i < sensors; i++)
+                    set(&rig, i, between(&random, -20, 120), QUALITY_GOOD);
+                const struct scalars *now = show(&rig);
+                double most = 0;
+                for (size_t v = 0; v < VERTICES; v++) {
+                    most = fmax(most, fabs((double)(now->at[v].value - before[v])));
+                    before[v] = now->at[v].value;
+                }
+                assert_true(most > 0 && fabs(now->travel - travel - most) < 1e-9);
+                travel = now->travel;
+                uint64_t version = now->version;
+                assert_true(show(&rig)->version == version);
+                assert_as_fresh(&rig);
+            }
+            rig_finish(&rig);
+        }
+}
+
 /* The first vertices are as those of a field that has never seen anything else. */
 static void assert_first_as_fresh(const struct rig *rig, size_t count)
 {
@@ -1463,6 +1494,7 @@ int main(void)
         cmocka_unit_test(test_without_room_for_columns_the_bits_are_the_same),
         cmocka_unit_test(test_as_many_columns_as_fit_are_kept),
         cmocka_unit_test(test_scalars_of_the_same_parameters_stay),
+        cmocka_unit_test(test_few_sensors_are_summed_in_one_go),
         cmocka_unit_test(test_many_at_once_are_as_one_by_one),
         cmocka_unit_test(test_far_assets_have_room_for_what_is_drawn),
         cmocka_unit_test(test_a_level_is_a_prefix),
