@@ -52,12 +52,14 @@ float place_of(float value)
     return ((frame.scale.z > 0.5 ? log2(max(value, 1e-30)) : value) - frame.scale.x) * frame.scale.y;
 }
 
-// How much of the pixel an isoline covers: its width is the same wherever the field is steep or not. No line where it is level.
+// How much of the pixel an isoline covers: its width is the same wherever the field is steep or not. No line where it is level, but for
+// what interpolating rounds: parts of the largest value on the scale.
 float line_part(float place, int column)
 {
     float slope = length(vec2(dFdx(place), dFdy(place)));
+    float rounding = 4e-6 * (1.0 + (abs(frame.scale.x) + 2.0 * frame.scale.z) * abs(frame.scale.y));
     float nearest = texelFetch(lines, ivec2(clamp(column - 1, 0, PLACES - 1), 0), 0).r;
-    return slope > 1e-7 ? clamp(0.5 * frame.lines.x + 0.5 - abs(place - nearest) / slope, 0.0, 1.0) : 0.0;
+    return slope > rounding ? clamp(0.5 * frame.lines.x + 0.5 - abs(place - nearest) / slope, 0.0, 1.0) : 0.0;
 }
 #endif
 

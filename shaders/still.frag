@@ -12,7 +12,7 @@ layout(location = 0) centroid in vec3 place;
 layout(location = 1) centroid in vec3 surface_normal;
 layout(location = 2) centroid in vec4 uv; // both places on the textures
 layout(location = 3) centroid in vec4 tint;
-layout(location = 4) centroid in vec2 sky; // ambient light and openness, baked
+layout(location = 4) centroid in vec3 sky; // ambient light and openness, baked; 1, as centroids make it
 layout(location = 5) centroid in FIELD_TYPE field;
 layout(location = 2) uniform int material;
 layout(location = 3) uniform int textures; // bits: base colour, metallic-roughness, normal, occlusion, emissive; from 8 on: second uv
@@ -74,8 +74,8 @@ void main()
 #endif
     float sun_visible = sun_visibility(frame.sun_from_eye, place, n, frame.sun.w);
     float ambient = sky.x;
-#ifdef FIELD
-    color = vec4(field_color(field_here(field), light_scalar(ambient, max(dot(n, l), 0.0) * sun_visible)), 1.0);
+#ifdef FIELD // llvmpipe interpolates to the centroid, but divides by the depth at the middle of the pixel: by what that makes of 1
+    color = vec4(field_color(field_here(field / sky.z), light_scalar(ambient, max(dot(n, l), 0.0) * sun_visible)), 1.0);
 #endif
 #if !defined(FIELD) || defined(GLOSSY)
     Surface s = Surface(base.rgb, m.factors.x, m.factors.y, n, turned ? max(sky.y, OPEN_BEHIND) : sky.y, sun_visible);

@@ -18,7 +18,7 @@ layout(location = 0) centroid out vec3 place;
 layout(location = 1) centroid out vec3 surface_normal;
 layout(location = 2) centroid out vec4 uv; // both places on the textures
 layout(location = 3) centroid out vec4 tint;
-layout(location = 4) centroid out vec2 sky;
+layout(location = 4) centroid out vec3 sky;
 layout(location = 5) centroid out FIELD_TYPE field;
 #ifdef PER_FRAGMENT
 layout(location = 7) out vec3 file_place;
@@ -37,7 +37,7 @@ void main()
     surface_normal = eye_from_normal * unfold_normal(normal);
     uv = vec4(texcoord, second_texcoord);
     tint = vertex_color;
-    sky = baked.yz;
+    sky = vec3(baked.yz, baked.w < 0.0 ? 0.0 : 1.0); // 1, and compilers cannot know it: what is known is not interpolated
 #ifdef RICH
     field = vec4(value, flags);
 #else
