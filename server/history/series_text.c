@@ -14,7 +14,7 @@ static void add_number(struct text *out, double value, const char *none)
     if (isnan(value))
         text_add(out, "%s", none);
     else
-        text_add(out, "%.10g", value);
+        text_add(out, "%.10g", value + 0.0); /* of -0.0 it makes 0.0 */
 }
 
 void series_text_string(struct text *out, const char *string)

@@ -16,6 +16,7 @@
 #include "base/text.h"
 #include "field/colormap.h"
 #include "net/message/query.h"
+#include "net/message/reply.h"
 #include "tests/support/small_scene.h"
 
 #define FOLDER "protocol/vectors/client"
@@ -460,6 +461,42 @@ static void damaged_messages_stay_harmless(void **state)
     assert_true(taken > 1000);
 }
 
+static void a_refused_number_is_told_why(void **state)
+{
+    static const char *const said[][2] = {
+        { "\"range\":[1e-300,1e300]", "range: a number from -1e+12 to 1e+12 expected" },
+        { "\"range\":[-1e13,0]", "range: a number from -1e+12 to 1e+12 expected" },
+        { "\"range\":[20,20]", "range: [min, max] with min < max, or null expected" },
+        { "\"range\":[20]", "range: [min, max] with min < max, or null expected" },
+        { "\"range\":[0,1e-10]", "range: [min, max] with min < max by more than 1e-09 expected" },
+        { "\"breaks\":[1,1e13]", "breaks: a number from -1e+12 to 1e+12 expected" },
+        { "\"breaks\":[2,1]", "breaks: at most 16 numbers, ascending, or 'group', 'limits' or null expected" },
+        { "\"isolines\":[1e13]", "isolines: a number from -1e+12 to 1e+12 expected" },
+        { "\"isolines\":1e13", "isolines: a number from 0 to 1e+12 expected" },
+        { "\"isolines\":-1", "isolines: at most 32 numbers, ascending, or a step above 0, or null expected" },
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof(said) / sizeof(said[0]); i++) {
+        struct message_error error = { 0 };
+        char *text = mem_printf("{\"type\":\"params\",\"seq\":1,%s}", said[i][0]);
+        assert_false(take(text, strlen(text), &error));
+        assert_string_equal(error.text, said[i][1]);
+        mem_free(text);
+    }
+}
+
+static void no_number_is_minus_nought(void **state)
+{
+    struct pick_answer answer = { .pick = { .sensor = -1, .state = PICK_BETWEEN, .value = -0.0, .position_m = { -0.0, 2, -0.0 } } };
+    (void)state;
+    view_default(small_scene(), 640, 360, &answer.order.view);
+    char *text = reply_picked_text(plant(), &answer);
+    assert_non_null(strstr(text, "\"position\":[0.0,2.0,0.0]"));
+    assert_non_null(strstr(text, "\"value\":0.0"));
+    assert_null(strstr(text, "-0.0"));
+    mem_free(text);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -472,6 +509,8 @@ int main(void)
         cmocka_unit_test(what_is_fitted_lies_beside_the_legend),
         cmocka_unit_test(queries_make_views),
         cmocka_unit_test(bad_queries_are_named),
+        cmocka_unit_test(a_refused_number_is_told_why),
+        cmocka_unit_test(no_number_is_minus_nought),
         cmocka_unit_test(damaged_messages_stay_harmless),
         cmocka_unit_test(what_is_shown_brings_its_own_range_and_colors),
         cmocka_unit_test(overrides_of_sensors_are_merged),

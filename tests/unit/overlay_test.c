@@ -2,6 +2,7 @@
 /* What is drawn over pictures: alarms that no mark shows are listed, those in sight are not; nothing covers what is fitted. */
 #include "render/overlay/overlay.h"
 
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -11,6 +12,7 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
+#include "render/overlay/overlay_pen.h"
 #include "tests/support/toy.h"
 #include "value/alarm.h"
 #include "value/quality.h"
@@ -182,6 +184,13 @@ static void the_legend_says_glossy(void **state)
     assert_true(legend_differs_px(LOOK_GLOSSY) > 500);
 }
 
+static void what_rounds_to_nought_has_no_sign(void **state)
+{
+    (void)state;
+    assert_true(pen_rounded(-0.04, 1) == 0 && !signbit(pen_rounded(-0.04, 1)) && pen_rounded(0.04, 1) == 0);
+    assert_true(pen_rounded(-0.06, 1) == -0.06 && pen_rounded(-0.4, 0) == 0 && pen_rounded(-0.0, 6) == 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -189,6 +198,7 @@ int main(void)
         cmocka_unit_test(alarms_out_of_sight_are_listed),
         cmocka_unit_test(any_number_of_alarms_fits),
         cmocka_unit_test(the_legend_says_glossy),
+        cmocka_unit_test(what_rounds_to_nought_has_no_sign),
         cmocka_unit_test(the_window_is_what_is_left_free),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);

@@ -21,7 +21,7 @@ const char *alarm_mode_name(enum alarm_mode mode)
 
 static json_t *number(double value)
 {
-    return isfinite(value) ? json_real(value) : json_null();
+    return isfinite(value) ? json_real(value + 0.0) : json_null(); /* of -0.0 it makes 0.0 */
 }
 
 static json_t *string(const char *text)
@@ -194,7 +194,7 @@ static void add_csv_text(struct text *out, const char *text)
 static void add_csv_number(struct text *out, double value)
 {
     if (isfinite(value))
-        text_add(out, "%.9g", value);
+        text_add(out, "%.9g", value + 0.0); /* of -0.0 it makes 0.0 */
 }
 
 static void add_csv_alarm(struct listing *listing, const struct alarm *alarm)

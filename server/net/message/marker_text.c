@@ -16,14 +16,14 @@ static const float SAME_PX = 0.05f;
 
 static json_t *tenths(double px)
 {
-    return json_real(round(px * 10) / 10);
+    return json_real(round(px * 10) / 10 + 0.0); /* of -0.0 it makes 0.0 */
 }
 
 static json_t *value_of(const struct frame *frame, const struct frame_marker *marker)
 {
     const struct field_params *params = frame->view.split && marker->half ? &frame->view.right.field : &frame->view.field;
     bool lost = quality_is_bad(marker->quality) && params->show != SHOW_DISTANCE;
-    return lost || !isfinite(marker->value) ? json_null() : json_real(marker->value);
+    return lost || !isfinite(marker->value) ? json_null() : json_real(marker->value + 0.0);
 }
 
 static int class_of(const struct frame_marker *marker)

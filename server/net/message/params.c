@@ -7,7 +7,7 @@
 #include "net/message/fields.h"
 #include "net/message/visibility.h"
 
-static const double NUMBER_MAX = 1e12;
+static const double NUMBER_MAX = 1e12, RANGE_LEAST = 1e-9;
 
 static bool parse_group(const struct plant *plant, const json_t *o, struct params_change *out, struct message_error *error)
 {
@@ -98,12 +98,16 @@ static bool parse_range(const json_t *o, struct params_change *out, struct messa
     const json_t *low = json_array_get(value, 0), *high = json_array_get(value, 1);
     out->range_min = json_number_value(low);
     out->range_max = json_number_value(high);
-    if (json_array_size(value) != 2 || !json_is_number(low) || !json_is_number(high) || !(fabs(out->range_min) <= NUMBER_MAX) ||
-        !(fabs(out->range_max) <= NUMBER_MAX) || !(out->range_max - out->range_min > 1e-9)) {
+    bool numbers = json_array_size(value) == 2 && json_is_number(low) && json_is_number(high);
+    if (!numbers || !(out->range_max > out->range_min))
         message_fail(error, "bad_field", "range: [min, max] with min < max, or null expected");
-        return false;
-    }
-    return true;
+    else if (!(fabs(out->range_min) <= NUMBER_MAX && fabs(out->range_max) <= NUMBER_MAX))
+        message_fail(error, "bad_field", "range: a number from %g to %g expected", -NUMBER_MAX, NUMBER_MAX);
+    else if (!(out->range_max - out->range_min > RANGE_LEAST))
+        message_fail(error, "bad_field", "range: [min, max] with min < max by more than %g expected", RANGE_LEAST);
+    else
+        return true;
+    return false;
 }
 
 static bool parse_colormap(const json_t *o, struct params_change *out, struct message_error *error)

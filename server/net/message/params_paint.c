@@ -34,6 +34,17 @@ static bool take_list(const json_t *list, double *numbers, int most, int *count)
     return json_is_array(list);
 }
 
+/* Why take_list refused it. else_text: what else may be given. */
+static void fail_list(const json_t *list, const char *name, int most, const char *else_text, struct message_error *error)
+{
+    for (size_t i = 0; i < json_array_size(list); i++)
+        if (fabs(json_number_value(json_array_get(list, i))) > NUMBER_MAX) {
+            message_fail(error, "bad_field", "%s: a number from %g to %g expected", name, -NUMBER_MAX, NUMBER_MAX);
+            return;
+        }
+    message_fail(error, "bad_field", "%s: at most %d numbers, ascending, or %s expected", name, most, else_text);
+}
+
 static bool parse_breaks(const json_t *o, struct params_change *out, struct message_error *error)
 {
     const json_t *value = json_object_get(o, "breaks");
@@ -46,7 +57,7 @@ static bool parse_breaks(const json_t *o, struct params_change *out, struct mess
     if (json_is_null(value) || out->breaks_of_group || out->breaks_of_limits ||
         take_list(value, out->paint.breaks, SCALE_BREAKS, &out->paint.break_count))
         return true;
-    message_fail(error, "bad_field", "breaks: at most %d numbers, ascending, or 'group', 'limits' or null expected", SCALE_BREAKS);
+    fail_list(value, "breaks", SCALE_BREAKS, "'group', 'limits' or null", error);
     return false;
 }
 
@@ -60,7 +71,10 @@ static bool parse_isolines(const json_t *o, struct params_change *out, struct me
     if (json_is_null(value) || (out->isoline_step > 0 && out->isoline_step <= NUMBER_MAX) ||
         take_list(value, out->paint.lines, VIEW_LINES, &out->paint.line_count))
         return true;
-    message_fail(error, "bad_field", "isolines: at most %d numbers, ascending, or a step above 0, or null expected", VIEW_LINES);
+    if (out->isoline_step > NUMBER_MAX)
+        message_fail(error, "bad_field", "isolines: a number from 0 to %g expected", NUMBER_MAX);
+    else
+        fail_list(value, "isolines", VIEW_LINES, "a step above 0, or null", error);
     return false;
 }
 

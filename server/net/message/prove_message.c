@@ -41,7 +41,7 @@ static char *print(json_t *object)
 
 static json_t *number(double value)
 {
-    return isfinite(value) ? json_real(value) : json_null();
+    return isfinite(value) ? json_real(value + 0.0) : json_null(); /* of -0.0 it makes 0.0 */
 }
 
 char *prove_do(struct proofs *proofs, const struct plant *plant, const struct snapshot *now, const struct message *message,

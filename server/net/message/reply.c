@@ -28,7 +28,7 @@ static char *print(json_t *object, int digits)
 
 static json_t *number(double value)
 {
-    return isfinite(value) ? json_real(value) : json_null();
+    return isfinite(value) ? json_real(value + 0.0) : json_null(); /* of -0.0 it makes 0.0 */
 }
 
 static json_t *string(const char *text)

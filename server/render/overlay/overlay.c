@@ -92,6 +92,11 @@ void pen_number(double value, double range, char out[40])
     snprintf(out, 40, "%.*f", decimals, fabs(value) < range / 5000 ? 0.0 : value);
 }
 
+double pen_rounded(double value, int decimals)
+{
+    return fabs(value) < 0.5 * pow(10, -decimals) ? 0 : value;
+}
+
 int pen_decimals(double range)
 {
     return (int)fmin(fmax(ceil(-log10(range / 500)), 0), 6);

@@ -60,7 +60,8 @@ static void format_reading(const struct pen *pen, int tag, char out[200])
     if (quality_is_bad(reading->quality))
         snprintf(out, 200, "%.120s  BAD  %s", of->name, kind);
     else
-        snprintf(out, 200, "%.120s  %.*f %.20s  %s", of->name, decimals, reading->value, of->unit ? of->unit : "", kind);
+        snprintf(out, 200, "%.120s  %.*f %.20s  %s", of->name, decimals, pen_rounded(reading->value, decimals),
+                 of->unit ? of->unit : "", kind);
 }
 
 static void draw_rows(struct pen *pen, const struct box *card, double pad, const struct unseen *list, size_t rows)

@@ -90,14 +90,14 @@ static void format_value(const struct pen *pen, const struct frame_marker *marke
     bool difference = pen->view.field.show == SHOW_DIFFERENCE, lost = quality_is_bad(pen->snapshot->readings[marker->tag].quality);
     const char *alarm = alarm_kind_name((enum alarm_kind)pen->snapshot->readings[marker->tag].alarm);
     int decimals = pen_decimals(group->max - group->min);
+    double value = pen_rounded(marker->value, decimals);
     if (pen->view.field.show == SHOW_DISTANCE)
         snprintf(out, 64, isnan(marker->value) ? "no distance" : "%.2f m", marker->value);
     else if (quality_is_bad(marker->quality))
         snprintf(out, 64, lost ? "BAD" : "not known then");
     else
-        snprintf(out, 64, "%s%s%.*f %s%s%s%s", difference ? "Δ " : "", difference && marker->value > 0 ? "+" : "", decimals,
-                 marker->value, tag->unit ? tag->unit : "", quality_is_uncertain(marker->quality) ? " ?" : "", alarm ? " " : "",
-                 alarm ? alarm : "");
+        snprintf(out, 64, "%s%s%.*f %s%s%s%s", difference ? "Δ " : "", difference && value > 0 ? "+" : "", decimals, value,
+                 tag->unit ? tag->unit : "", quality_is_uncertain(marker->quality) ? " ?" : "", alarm ? " " : "", alarm ? alarm : "");
 }
 
 struct label_text {

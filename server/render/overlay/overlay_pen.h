@@ -42,6 +42,7 @@ void pen_text(struct pen *pen, double x, double y, const char *text); /* from x,
 void pen_number(double value, double range, char out[40]);
 /* How many decimals tell values apart that differ by a 500th of the range. */
 int pen_decimals(double range);
+double pen_rounded(double value, int decimals); /* to print with so many: 0 where that would be -0 */
 
 /* The scale of pen->view: colours from MIN at the bottom to MAX at the top, ticks to the right, the group's limits to the left. */
 void overlay_bar(struct pen *pen, const struct box *bar);
