@@ -363,6 +363,38 @@ static void test_kernels(void **state)
     }
 }
 
+/* Nothing but sky: wide and high pictures, narrow and wide angles, level and leaning. */
+static void test_sky(void **state)
+{
+    static const int sizes_px[][2] = { { 640, 360 }, { 1600, 40 }, { 40, 600 }, { 320, 240 } };
+    static const double fovs_deg[] = { 10, 40, 100, 140 };
+    int worst = 0;
+    (void)state;
+    for (int i = 0; i < 4 * 4 * 3; i++) {
+        struct view view;
+        double lean = i / 16 * 0.7;
+        start_view(&view, sizes_px[i % 4][0], sizes_px[i % 4][1]);
+        view.camera.fov_deg = fovs_deg[i / 4 % 4];
+        for (int c = 0; c < 3; c++) { /* away from the plant, and up */
+            view.camera.eye_m[c] = stand.toy->scene.bounds_max_m[c] + 5;
+            view.camera.target_m[c] = view.camera.eye_m[c] + (c < 2 ? 1 : 1.2);
+            view.camera.up[c] = c < 2 ? sin(lean) * (c ? 1 : -1) : cos(lean);
+        }
+        struct frame *draft = draw(&view, false), *gl = draw(&view, true);
+        int most = 0;
+        for (int k = 0; k < gl->width_px * gl->height_px; k++) {
+            int by = difference(draft->bgrx + 4 * k, gl->bgrx + 4 * k);
+            most = by > most ? by : most;
+        }
+        if (most > 2)
+            print_message("# %dx%d, %g degrees, leaning %.1f: %d of 255\n", view.width_px, view.height_px, view.camera.fov_deg, lean, most);
+        worst = most > worst ? most : worst;
+        frame_unref(&draft);
+        frame_unref(&gl);
+    }
+    assert_in_range(worst, 0, 2);
+}
+
 static void test_left_to_gl(void **state)
 {
     (void)state;
@@ -384,7 +416,7 @@ int main(void)
         cmocka_unit_test(test_hidden_assets), cmocka_unit_test(test_still_camera),
         cmocka_unit_test(test_moves_after_standing), cmocka_unit_test(test_lines_and_scales),
         cmocka_unit_test(test_patterns_close_by), cmocka_unit_test(test_operator),
-        cmocka_unit_test(test_lines_of_a_still_camera), cmocka_unit_test(test_left_to_gl),
+        cmocka_unit_test(test_lines_of_a_still_camera), cmocka_unit_test(test_left_to_gl), cmocka_unit_test(test_sky),
         cmocka_unit_test(test_kernels),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);

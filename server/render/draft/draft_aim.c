@@ -50,6 +50,27 @@ static void aim_rays(struct draft *draft, const double clip[16])
     }
 }
 
+/* Over n pixels a straight line errs from the sine of a ray's height by at most 0.15 n^2 / f^2, f being the eye's distance from the picture
+   in pixels: the direction of a ray turns by 1 / f at most from pixel to pixel, and its second difference is no more than 1.2 / f^2. */
+static void choose_stretch(struct draft *draft)
+{
+    static const double most = 1; /* columns of the backdrop: half a level at the horizon, where it changes most */
+    const float(*m)[3] = draft->ray_from_pixel;
+    double step2 = 0, area2 = 0, volume = 0;
+    for (int r = 0; r < 3; r++) {
+        int a = (r + 1) % 3, b = (r + 2) % 3;
+        double normal = (double)m[0][a] * (double)m[1][b] - (double)m[0][b] * (double)m[1][a];
+        step2 += (double)m[0][r] * (double)m[0][r];
+        area2 += normal * normal;
+        volume += normal * (double)m[2][r];
+    }
+    double turn2 = step2 * area2 / (volume * volume); /* 1 / f^2 */
+    int n = DRAFT_STRETCH_MOST;
+    while (n >= DRAFT_STRETCH_LEAST && !(0.15 * n * n * turn2 * SKY_BACKDROPS / 2 <= most))
+        n /= 2;
+    draft->stretch_px = n >= DRAFT_STRETCH_LEAST ? n : 1;
+}
+
 /* The ground is flat: its coordinates and the picture's map to each other by 3x3 matrices. */
 static void aim_ground(struct draft *draft, const struct light *light)
 {
@@ -86,5 +107,6 @@ void draft_aim(struct draft *draft, const struct light *light)
     clip_from_pixel(draft, clip);
     aim_sun(draft, clip);
     aim_rays(draft, clip);
+    choose_stretch(draft);
     aim_ground(draft, light);
 }

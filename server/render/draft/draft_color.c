@@ -124,7 +124,7 @@ void draft_color(const struct draft *draft, const struct draft_rect *rect)
         uint8_t *out = draft->out + (size_t)row * draft->out_stride_bytes;
         struct heights heights = { 0 };
         for (int column = rect->left; column <= rect->right; column += LANES) {
-            if (column % STRETCH == 0)
+            if ((column & (draft->stretch_px - 1)) == 0)
                 heights = heights_from(draft, column, row);
             lanes_int color = color_at(draft, &heights, column, row);
             int count = draft->width_px - column;

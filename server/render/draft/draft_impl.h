@@ -9,7 +9,7 @@
 #include "render/recolor.h"
 #include "render/visibility_buffers.h"
 
-enum { BAND_ROWS = 32, CHUNK_TRIANGLES = 2048, RAMP_STEPS = MODEL_LIGHT_STEPS };
+enum { BAND_ROWS = 32, CHUNK_TRIANGLES = 2048, RAMP_STEPS = MODEL_LIGHT_STEPS, DRAFT_STRETCH_MOST = 64, DRAFT_STRETCH_LEAST = 8 };
 
 /* Marks of pixels. 0: nothing. Else a colour of the palette, or a material and the light on it, to be looked up. */
 #define MARK_FIELD 0x40000000u   /* | palette row * PALETTE_COLUMNS + column (MARK_PLACE) | so much of an isoline << MARK_LINE (8 bits) */
@@ -157,6 +157,7 @@ struct draft {
     bool has_ground;
     bool greys; /* context has no colours */
     float sun_from_pixel[4][4], ground_from_pixel[3][3], ray_from_pixel[3][3]; /* columns */
+    int stretch_px; /* of the sky: from DRAFT_STRETCH_LEAST to DRAFT_STRETCH_MOST, a power of two; 1: each pixel by itself */
 };
 
 /* From the GPU: what is the same in all pictures (false: the context is lost); light (NULL: out of memory, logged); a palette. */

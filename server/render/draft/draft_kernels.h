@@ -18,7 +18,7 @@ struct draft_kernels {
     void (*raster_faces)(const struct draft_tile *tile, uint32_t mark);
     /* How far these blocks reach now. */
     void (*look_again)(struct draft_tile *tile, const struct draft_rect *blocks);
-    /* From marks; begins at a whole STRETCH. */
+    /* From marks; begins at a whole DRAFT_STRETCH_MOST. */
     void (*color)(const struct draft *draft, const struct draft_rect *rect);
 };
 extern const struct draft_kernels draft_kernels_plain, draft_kernels_wide, draft_kernels_widest; /* but for plain: on x86 only */

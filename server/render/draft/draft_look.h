@@ -52,8 +52,8 @@ DRAFT_INLINE lanes sun_tap(const struct draft_light *light, lanes s, lanes t, la
     return upper + v_part * (lower - upper);
 }
 
-/* Heights over the horizon, as columns of the backdrop. They bend so little that they are worked out at the ends of stretches only. */
-enum { STRETCH = 64 };
+/* Heights over the horizon, as columns of the backdrop. They bend so little that they are worked out at the ends of stretches only: of
+   draft->stretch_px, as long as the picture lets them be. */
 struct heights {
     float first, step; /* at the middle of the first pixel; from pixel to pixel */
 };
@@ -74,13 +74,15 @@ static float height_at(const struct draft *draft, float x, float y)
 static inline struct heights heights_from(const struct draft *draft, int column, int row)
 {
     float y = (float)row + 0.5f, x = (float)column + 0.5f, first = height_at(draft, x, y);
-    return (struct heights){ first, (height_at(draft, x + STRETCH, y) - first) / STRETCH };
+    return (struct heights){ first, (height_at(draft, x + (float)draft->stretch_px, y) - first) / (float)draft->stretch_px };
 }
 
 DRAFT_INLINE lanes_int backdrop_at(const struct draft *draft, const struct heights *heights, int column, int row)
 {
     lanes x = LANES_IOTA + ((float)column + 0.5f);
-    lanes height = (LANES_IOTA + (float)(column % STRETCH)) * heights->step + heights->first;
+    lanes height = (LANES_IOTA + (float)(column & (draft->stretch_px - 1))) * heights->step + heights->first;
+    for (int i = 0; i < LANES && draft->stretch_px == 1; i++)
+        height[i] = height_at(draft, (float)(column + i) + 0.5f, (float)row + 0.5f);
     lanes_int at = lanes_whole(lanes_clamp(height, 0, SKY_BACKDROPS - 1));
     lanes_int tile = (draft->picture->view->dark ? SKY_ROUNDINGS : 0) + (row & 3) * 4 + (lanes_whole(x) & 3);
     return gather(draft->backdrops, tile * SKY_BACKDROPS + at);

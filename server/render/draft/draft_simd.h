@@ -16,7 +16,7 @@
 #endif
 #define DRAFT_INLINE static inline __attribute__((always_inline))
 
-enum { LANES = 8 };
+enum { LANES = 8 }; /* DRAFT_STRETCH_LEAST is no less */
 typedef float lanes __attribute__((vector_size(32), aligned(4)));
 typedef int32_t lanes_int __attribute__((vector_size(32), aligned(4)));
 typedef uint32_t lanes_uint __attribute__((vector_size(32), aligned(4)));

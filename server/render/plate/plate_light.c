@@ -83,7 +83,7 @@ DRAFT_KERNEL void plate_shade_sky(const struct plate *plate, int row, const uint
     for (int column = 0; column < draft->width_px; column += LANES) {
         uint64_t any;
         memcpy(&any, wanted + column, sizeof(any));
-        if (column % STRETCH == 0)
+        if ((column & (draft->stretch_px - 1)) == 0)
             heights = heights_from(draft, column, row);
         if (!any)
             continue;
