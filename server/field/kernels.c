@@ -21,6 +21,7 @@
 #endif
 
 #define TINY 1e-37f
+#define LINE 16 /* floats that come from memory at a time */
 
 /* log2 of x, or of TINY where x is less; to 1e-7, exactly 0 at 1. Minimax polynomial of log2(1 + x)/x over
    [sqrt(1/2) - 1, sqrt(2) - 1]. Limits are put on integers: a limit on floats splits the loop into paths, which ends SIMD. */
@@ -222,22 +223,36 @@ KERNEL static void add_one(double *restrict sum, const float *restrict a, double
         sum[j] += (double)a[j] * factor;
 }
 
-KERNEL void kernel_add(double *restrict sum, const float *const *columns, const double *factors, size_t column_count, size_t count)
+/* Of KERNEL_COLUMNS columns. */
+static inline __attribute__((always_inline)) void add_eight(double *restrict sum, const float *const *columns, const double *factors,
+                                                            size_t begin, size_t end)
 {
+    const float *restrict a = columns[0], *restrict b = columns[1], *restrict c = columns[2], *restrict d = columns[3];
+    const float *restrict e = columns[4], *restrict f = columns[5], *restrict g = columns[6], *restrict h = columns[7];
+    const double fa = factors[0], fb = factors[1], fc = factors[2], fd = factors[3], fe = factors[4], ff = factors[5], fg = factors[6],
+                 fh = factors[7];
+    for (size_t j = begin; j < end; j++) {
+        double first = ((double)a[j] * fa + (double)b[j] * fb) + ((double)c[j] * fc + (double)d[j] * fd);
+        double second = ((double)e[j] * fe + (double)f[j] * ff) + ((double)g[j] * fg + (double)h[j] * fh);
+        sum[j] += first + second;
+    }
+}
+
+KERNEL void kernel_add(double *restrict sum, const float *const *columns, const double *factors, size_t column_count, size_t count,
+                       const float *const *next)
+{
+    size_t begin = 0;
     if (column_count < KERNEL_COLUMNS) {
         for (size_t i = 0; i < column_count; i++)
             add_one(sum, columns[i], factors[i], count);
         return;
     }
-    const float *restrict a = columns[0], *restrict b = columns[1], *restrict c = columns[2], *restrict d = columns[3];
-    const float *restrict e = columns[4], *restrict f = columns[5], *restrict g = columns[6], *restrict h = columns[7];
-    const double fa = factors[0], fb = factors[1], fc = factors[2], fd = factors[3], fe = factors[4], ff = factors[5], fg = factors[6],
-                 fh = factors[7];
-    for (size_t j = 0; j < count; j++) {
-        double first = ((double)a[j] * fa + (double)b[j] * fb) + ((double)c[j] * fc + (double)d[j] * fd);
-        double second = ((double)e[j] * fe + (double)f[j] * ff) + ((double)g[j] * fg + (double)h[j] * fh);
-        sum[j] += first + second;
+    for (; next && begin + LINE <= count; begin += LINE) {
+        for (int k = 0; k < KERNEL_COLUMNS; k++)
+            __builtin_prefetch(next[k] + begin, 0, 2);
+        add_eight(sum, columns, factors, begin, begin + LINE);
     }
+    add_eight(sum, columns, factors, begin, count);
 }
 
 KERNEL void kernel_add_both(double *restrict sum, double *restrict total, const float *const columns[KERNEL_COLUMNS],

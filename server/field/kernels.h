@@ -44,8 +44,10 @@ void kernel_shepard(const struct kernel_column *column, float *restrict weight);
 /* weight = exp(d strength - top) (NULL: not wanted), term = weight d^decay, d = max(0, 1 - distance / radius). */
 void kernel_paper(const struct kernel_column *column, float *restrict weight, float *restrict term);
 
-/* sum += columns[0] factor[0] + ... , column_count <= KERNEL_COLUMNS */
-void kernel_add(double *restrict sum, const float *const *columns, const double *factors, size_t column_count, size_t count);
+/* sum += columns[0] factor[0] + ... , column_count <= KERNEL_COLUMNS. next: as many columns that are read after these, which are then
+   on their way from memory; NULL: not known. */
+void kernel_add(double *restrict sum, const float *const *columns, const double *factors, size_t column_count, size_t count,
+                const float *const *next);
 
 /* All KERNEL_COLUMNS of them: as kernel_add, and total += columns[0] + ... */
 void kernel_add_both(double *restrict sum, double *restrict total, const float *const columns[KERNEL_COLUMNS],

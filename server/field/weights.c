@@ -8,6 +8,7 @@
 #include <xxhash.h>
 
 #include "base/mem.h"
+#include "base/pages.h"
 
 struct key_head { /* without holes: compared as bytes */
     const struct asset *file;
@@ -229,6 +230,7 @@ size_t weights_keep(struct weights *weights, size_t bytes)
     weights->kept = mem_try_array(weights->kept_blocks * weights->member_count, 1);
     if (!weights->columns || !weights->kept)
         weights_drop_columns(weights);
+    pages_make_large(weights->columns, weights->kept_blocks * weights->member_count * KERNEL_BLOCK * sizeof(float));
     return weights_kept_bytes(weights);
 }
 
@@ -354,6 +356,22 @@ static void make_column(const struct weights *weights, uint32_t member, size_t b
         kernel_shepard(&column, term);
 }
 
+/* Kept columns of the terms that are added after the first so many: of this block, or else the first ones of the next. They need not be
+   filled yet. NULL: there are not KERNEL_COLUMNS of them. */
+static const float *const *columns_after(const struct weights *weights, size_t begin, const struct weights_terms *terms, size_t done,
+                                         const float **room)
+{
+    if (done + KERNEL_COLUMNS > terms->count) {
+        begin += KERNEL_BLOCK;
+        done = 0;
+    }
+    if (done + KERNEL_COLUMNS > terms->count || begin / KERNEL_BLOCK >= weights->kept_blocks)
+        return NULL;
+    for (size_t k = 0; k < KERNEL_COLUMNS; k++)
+        room[k] = weights_column(weights, begin, terms->members[done + k]);
+    return room;
+}
+
 void weights_add(struct weights *weights, size_t begin, size_t count, const struct weights_terms *terms, const struct weights_sums *sums)
 {
     static const double ones[KERNEL_COLUMNS] = { 1, 1, 1, 1, 1, 1, 1, 1 };
@@ -364,7 +382,7 @@ void weights_add(struct weights *weights, size_t begin, size_t count, const stru
         kernel_log2(weights->near_m + begin, count, room.near_log2);
     for (size_t first = 0; first < terms->count; first += KERNEL_COLUMNS) {
         size_t left = terms->count - first, number = left < KERNEL_COLUMNS ? left : KERNEL_COLUMNS;
-        const float *columns[KERNEL_COLUMNS], *heavy[KERNEL_COLUMNS];
+        const float *columns[KERNEL_COLUMNS], *heavy[KERNEL_COLUMNS], *after[KERNEL_COLUMNS];
         for (size_t k = 0; k < number; k++) {
             uint32_t member = terms->members[first + k];
             float *column = keeps ? weights->columns + (before + member) * KERNEL_BLOCK : room.terms[k];
@@ -378,12 +396,13 @@ void weights_add(struct weights *weights, size_t begin, size_t count, const stru
         if (sums->total && !paper && number == KERNEL_COLUMNS) {
             kernel_add_both(sums->values, sums->total, columns, terms->factors + first, count);
         } else {
-            kernel_add(sums->values, columns, terms->factors + first, number, count);
+            kernel_add(sums->values, columns, terms->factors + first, number, count,
+                       columns_after(weights, begin, terms, first + number, after));
             if (sums->total)
-                kernel_add(sums->total, heavy, ones, number, count);
+                kernel_add(sums->total, heavy, ones, number, count, NULL);
         }
         for (size_t k = 0; sums->marked && k < number; k++)
             if (terms->marked[first + k])
-                kernel_add(sums->marked, &heavy[k], ones, 1, count);
+                kernel_add(sums->marked, &heavy[k], ones, 1, count, NULL);
     }
 }
