@@ -313,7 +313,7 @@ static void *make_file(void *arg, size_t bytes)
     struct build *build = arg;
     int status = folder_draft(&build->output->file, build->input->folder, build->input->key, bytes);
     if (status != 0)
-        wrong(build->why, "its file of %zu bytes cannot be written: %s", bytes, strerror(-status));
+        wrong(build->why, "its file of %zu bytes cannot be written into %s: %s", bytes, build->input->folder, strerror(-status));
     return build->output->file.bytes;
 }
 
@@ -359,7 +359,7 @@ static bool lay_out(struct build *build, const struct clusters *clusters)
     wrong(build->why, "out of memory for its file"); /* unless make_file says something else */
     void *bytes = asset_build(&parts, &size);
     if (bytes && build->write_error)
-        return wrong(build->why, "its distances cannot be written: %s", strerror(build->write_error));
+        return wrong(build->why, "its distances cannot be written into %s: %s", input->folder, strerror(build->write_error));
     if (!bytes)
         return false;
     return asset_view_fresh(&output->view, bytes, size, view_why) || /* what a reader would refuse is not put in its place */

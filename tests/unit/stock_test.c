@@ -225,7 +225,7 @@ static void points_are_found_once(void **state)
 /* Prepares into FOLDER/kept; where it would write behind so many bytes of a file, it is killed by the system, or told. Its status. */
 static int prepare_limited(struct prep_case *c, const char *tags, size_t bytes, bool told)
 {
-    char *program = prep_case_program(), *folder = temp_path(c->folder, "kept");
+    char *program = prep_case_program(), *folder = temp_path(c->folder, "kept"), *said = temp_path(c->folder, "said");
     int status;
     prep_case_tags(c, tags);
     pid_t pid = fork();
@@ -233,7 +233,7 @@ static int prepare_limited(struct prep_case *c, const char *tags, size_t bytes, 
         const struct rlimit most = { bytes, bytes }, none = { 0, 0 };
         int nothing = open("/dev/null", O_WRONLY);
         dup2(nothing, STDOUT_FILENO);
-        dup2(nothing, STDERR_FILENO);
+        dup2(told ? open(said, O_WRONLY | O_CREAT | O_TRUNC, 0600) : nothing, STDERR_FILENO);
         setrlimit(RLIMIT_CORE, &none);
         setrlimit(RLIMIT_FSIZE, &most);
         signal(SIGXFSZ, told ? SIG_IGN : SIG_DFL);
@@ -244,6 +244,7 @@ static int prepare_limited(struct prep_case *c, const char *tags, size_t bytes, 
     assert_int_equal(waitpid(pid, &status, 0), pid);
     mem_free(program);
     mem_free(folder);
+    mem_free(said);
     return status;
 }
 
@@ -306,12 +307,14 @@ static void without_room_the_old_file_stays(void **state)
     json_t *first = prepare(c, first_tags, "kept", &model_read);
     char *before = path_of(c, "kept", first), *columns = kept_file(c, ".columns");
     char *drafts = mem_printf("ls '%s'/kept | grep -q asset.*new", c->folder);
+    char *names_folder = mem_printf("grep -q 'cannot be written into %s/kept: File too large' '%s'/said", c->folder, c->folder);
     size_t size = bytes_of(before);
     assert_true(size / 2 > bytes_of(columns));
     int status = prepare_limited(c, tags, size / 2, true);
     assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 1);
     assert_int_equal(bytes_of(before), size);
     assert_int_not_equal(system(drafts), 0);
+    assert_int_equal(system(names_folder), 0);
     json_t *asset = prepare(c, tags, "kept", &model_read);
     assert_as_fresh(c, tags, asset);
     json_decref(asset);
@@ -319,6 +322,7 @@ static void without_room_the_old_file_stays(void **state)
     mem_free(before);
     mem_free(columns);
     mem_free(drafts);
+    mem_free(names_folder);
 }
 
 static void what_nothing_needs_any_more_is_removed(void **state)
