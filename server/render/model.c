@@ -58,6 +58,7 @@ static void make_level(struct model_level *level, const struct asset_view *view,
             fill_batch(batch, view, from, m);
             if (batch->draws) {
                 level->batch_count++;
+                level->triangles += batch->triangles;
             } else {
                 mem_free(batch->counts);
                 mem_free(batch->offsets);

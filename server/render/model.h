@@ -23,6 +23,7 @@ struct model_level {
     struct model_batch *batches; /* opaque ones first */
     size_t batch_count;
     float error_m;
+    int triangles;
     uint32_t vertex_count;
     uint32_t first_primitive, primitive_count, first_cluster; /* in the file */
 };

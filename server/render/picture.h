@@ -22,7 +22,7 @@ struct picture {
     size_t visible_count;
     struct palette palette;
     struct reference *reference; /* NULL: the field is interpolated between vertices; else worked out at each fragment */
-    bool finest;                 /* no coarser levels of detail */
+    double error_px;             /* of levels of detail, at most (render/detail.h); 0: no coarser ones */
     bool measured;               /* the field's numbers instead of colours, into floats */
 };
 

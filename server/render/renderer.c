@@ -11,6 +11,7 @@
 #include "base/mem.h"
 #include "gpu/mesh.h"
 #include "render/content.h"
+#include "render/detail.h"
 #include "render/frame_block.h"
 #include "render/matrix.h"
 #include "render/measure.h"
@@ -170,6 +171,7 @@ static void look(struct renderer *renderer, struct picture *picture, const struc
     picture->lit_by = choose_light(renderer, view);
     aim(renderer, view, &picture->shot);
     find_visible(renderer, picture);
+    picture->error_px = detail_error_px(picture);
 }
 
 /* So many of the first vertices are drawn, or looked at for labels. */
@@ -186,7 +188,8 @@ static void picture_init(struct renderer *renderer, struct picture *picture, con
                          bool finest)
 {
     look(renderer, picture, view);
-    picture->finest = finest;
+    if (finest)
+        picture->error_px = 0;
     fields_trim(&renderer->fields);
     memset(renderer->asset_fields, 0, renderer->scene->asset_count * sizeof(*renderer->asset_fields));
     struct scale scale;

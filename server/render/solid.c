@@ -7,11 +7,11 @@
 #include "base/text.h"
 #include "gpu/program.h"
 #include "render/culling.h"
+#include "render/detail.h"
 #include "render/matrix.h"
 
 /* Uniform locations and texture units, as in the shaders. */
 enum { CLIP_FROM_FILE = 0, EYE_FROM_FILE = 1, SUN_FROM_FILE = 1, MATERIAL = 2, TEXTURES = 3, EYE_FROM_NORMAL = 4 };
-static const double LEVEL_ERROR_PX[] = { [TIER_MOVING] = 1.0, [TIER_STILL] = 0.7 }; /* of the silhouette */
 /* Of how much depth changes from pixel to pixel, for each step of scene_asset.front: GPUs round corners to parts of a pixel, each triangle
    in its own way. */
 static const double FORWARD_SLOPE = 0.05;
@@ -160,9 +160,7 @@ static void set_material(const struct picture *picture, const struct model_mater
 
 const struct model_level *solid_level(const struct picture *picture, int asset)
 {
-    if (picture->finest || (picture->reference && !picture->measured))
-        return &picture->stage->of_asset[asset]->levels[0];
-    return stage_level(picture->stage, &picture->shot, asset, LEVEL_ERROR_PX[picture->view->tier]);
+    return detail_level(picture, asset, picture->reference && !picture->measured ? 0 : picture->error_px);
 }
 
 /* One asset's surfaces, those that are blended or those that are not. A field is never blended: it would mix its colours. seen: not NULL:
@@ -213,14 +211,6 @@ static void draw_asset(struct solid *solid, const struct picture *picture, int i
     }
     if (cut)
         stage_clip_end(clip);
-}
-
-static int level_triangles(const struct model_level *level)
-{
-    int count = 0;
-    for (size_t b = 0; b < level->batch_count; b++)
-        count += level->batches[b].triangles;
-    return count;
 }
 
 static void begin_pass(const struct picture *picture)
@@ -299,6 +289,6 @@ int solid_triangles(const struct picture *picture)
 {
     int count = 0;
     for (size_t i = 0; i < picture->visible_count; i++)
-        count += level_triangles(solid_level(picture, picture->visible[i]));
+        count += solid_level(picture, picture->visible[i])->triangles;
     return count;
 }

@@ -1,11 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which level of detail is drawn: the coarsest that errs by less than asked for where the asset is nearest. */
+/* Which level of detail is drawn: the coarsest that errs by less than asked for where the asset is nearest; and what is asked for, which is
+   less where a picture has room for more triangles. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <cmocka.h>
 
+#include "base/mem.h"
+#include "render/detail.h"
 #include "render/stage.h"
 
 /* A box of 2 m whose near side is `away` metres from the camera, with levels that err by 0, 1, 10 and 100 mm. */
@@ -45,9 +48,57 @@ static void levels_change_within_a_pixel(void **state)
     }
 }
 
+/* So many boxes 10 m away, of a million, 300,000, 100,000 and 30,000 triangles divided by `fewer`, by levels that err by 0, 2, 4 and 8 mm:
+   1 mm is 0.1 pixels. */
+static double error_among(size_t assets, int fewer, enum tier tier)
+{
+    struct model_level levels[4] = { { .triangles = 1000000 / fewer },
+                                     { .triangles = 300000 / fewer, .error_m = 0.002f },
+                                     { .triangles = 100000 / fewer, .error_m = 0.004f },
+                                     { .triangles = 30000 / fewer, .error_m = 0.008f } };
+    struct model model = { .levels = levels, .level_count = 4 };
+    const struct model **of_asset = mem_array(assets, sizeof(const struct model *));
+    struct scene scene = { .assets = mem_array(assets, sizeof(*scene.assets)), .asset_count = assets };
+    struct stage stage = { .scene = &scene, .of_asset = of_asset };
+    int *visible = mem_array(assets, sizeof(*visible));
+    struct view view = { .tier = tier };
+    for (size_t i = 0; i < assets; i++) {
+        of_asset[i] = &model;
+        visible[i] = (int)i;
+        scene.assets[i] = (struct scene_asset){ .bounds_min_m = { 10, -1, -1 }, .bounds_max_m = { 12, 1, 1 } };
+    }
+    const struct picture picture = {
+        .stage = &stage, .view = &view, .shot = { .pixel_per_radian = 1000 }, .visible = visible, .visible_count = assets
+    };
+    double error_px = detail_error_px(&picture);
+    mem_free(visible);
+    mem_free(scene.assets);
+    mem_free(of_asset);
+    return error_px;
+}
+
+static void pictures_with_room_are_drawn_finer(void **state)
+{
+    (void)state;
+    assert_float_equal(error_among(3, 1, TIER_STILL), 0, 0); /* all that it may have, and no more */
+    assert_float_equal(error_among(4, 1, TIER_STILL), 0.35, 1e-9); /* 2 mm */
+    assert_float_equal(error_among(10, 1, TIER_STILL), 0.35, 1e-9);
+    assert_float_equal(error_among(11, 1, TIER_STILL), 0.7, 1e-9);
+    assert_float_equal(error_among(1000, 1, TIER_STILL), 0.7, 1e-9); /* never coarser than shapes allow */
+    assert_float_equal(error_among(3, 10, TIER_MOVING), 0, 0);
+    assert_float_equal(error_among(4, 10, TIER_MOVING), 0.25, 1e-9);
+    assert_float_equal(error_among(11, 10, TIER_MOVING), 0.5, 1e-9);
+    assert_float_equal(error_among(31, 10, TIER_MOVING), 1, 1e-9);
+    assert_float_equal(error_among(1000, 10, TIER_MOVING), 1, 1e-9);
+    assert_float_equal(error_among(0, 1, TIER_MOVING), 0, 0);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(levels_change_within_a_pixel) };
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(levels_change_within_a_pixel),
+        cmocka_unit_test(pictures_with_room_are_drawn_finer),
+    };
     cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
