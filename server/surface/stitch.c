@@ -15,6 +15,7 @@
 
 #define GAP_OF_EDGE 0.45 /* two points become one only if they are nearer than this share of the shortest edge at either */
 #define EXACT_OF_TOLERANCE 0.01
+#define STRAIGHT 0.1 /* of that: a straight border is no straighter, and points are no nearer to each other, once they are welded */
 #define FLUSH 0.99 /* cosine between faces that lie on each other, at least; between edges that run along each other */
 
 /* --- seams: one round joins points, the next sets points into edges ---------------------------------------------------------- */
@@ -86,25 +87,61 @@ static void join_near(void *arg, size_t i, size_t j, double distance_m)
         attach_points(s->attach, b->points[i], b->points[j], distance_m);
 }
 
+/* The other end of the edge with this place in the list of those at a point. */
+static uint32_t beyond(const struct seams *s, uint32_t n, uint32_t p)
+{
+    const uint32_t *edge = s->borders->edges[s->borders->at[n]];
+    return edge[edge[0] == p];
+}
+
 /* Whether the border at a point runs along the edge: its next point is on the edge's line as well. With cracks everywhere, points lie just
-   on edges that they are not of. */
-static bool runs_along(const struct seams *s, size_t i, uint32_t e)
+   on edges that they are not of. towards: the way along the edge that is meant; NULL: either. */
+static bool runs_along(const struct seams *s, uint32_t p, uint32_t e, const double towards[3], double within_m)
 {
     const struct borders *b = s->borders;
     const double *a = s->mesh->points[b->edges[e][0]];
     double along[3];
     outwards(s, e, b->edges[e][0], along);
-    for (uint32_t n = b->first[i]; n < b->first[i + 1]; n++) {
-        const uint32_t *edge = b->edges[b->at[n]];
-        double from[3], across[3];
-        vec_sub(s->mesh->points[edge[edge[0] == b->points[i]]], a, from);
+    for (uint32_t n = b->first[b->slot[p]]; n < b->first[b->slot[p] + 1]; n++) {
+        double from[3], across[3], next[3];
+        vec_sub(s->mesh->points[beyond(s, n, p)], a, from);
         vec_cross(from, along, across);
-        if (vec_dot(across, across) <= s->tolerance_m * s->tolerance_m * vec_dot(along, along))
+        outwards(s, b->at[n], p, next);
+        if (vec_dot(across, across) <= within_m * within_m * vec_dot(along, along) && (!towards || vec_dot(next, towards) > 0))
             return true;
     }
     return false;
 }
 
+/* Does the border run straight through a point, along the edge? Then it hangs there; gaps seldom run as straight. */
+static bool hangs(const struct seams *s, uint32_t p, uint32_t e)
+{
+    double forth[3], back[3], within_m = STRAIGHT * s->tolerance_m;
+    outwards(s, e, s->borders->edges[e][0], forth);
+    outwards(s, e, s->borders->edges[e][1], back);
+    return s->fits && runs_along(s, p, e, forth, within_m) && runs_along(s, p, e, back, within_m);
+}
+
+static bool have_an_edge(const struct seams *s, uint32_t p, uint32_t q)
+{
+    const struct borders *b = s->borders;
+    for (uint32_t n = b->first[b->slot[p]]; n < b->first[b->slot[p] + 1]; n++)
+        if (beyond(s, n, p) == q)
+            return true;
+    return false;
+}
+
+/* Is p, so far from an end of an edge, at that end? Points that hang in one line are apart, however near they are. */
+static bool is_at_end(const struct seams *s, uint32_t p, uint32_t e, uint32_t end, double distance_m, double length_m)
+{
+    if (distance_m > max_of(STITCH_AT_END * length_m, s->end_m))
+        return false;
+    bool apart = s->fits && distance_m > STRAIGHT * s->tolerance_m;
+    return !(apart && (have_an_edge(s, p, end) || (hangs(s, p, e) && hangs(s, end, e))));
+}
+
+/* What fits is set into all edges that run there: set into the nearest only, points of several edges close some of them with each other,
+   and what is left of the others stays open. */
 static void try_edge(struct seams *s, size_t i, uint32_t e)
 {
     const struct borders *b = s->borders;
@@ -116,13 +153,16 @@ static void try_edge(struct seams *s, size_t i, uint32_t e)
     vec_sub(c, a, ac);
     vec_sub(q, a, aq);
     length2 = vec_dot(ac, ac);
-    double t = length2 > 0 ? vec_dot(aq, ac) / length2 : 0;
-    double end = max_of(STITCH_AT_END, length2 > 0 ? s->end_m / sqrt(length2) : 1);
-    if (t <= end || t >= 1 - end)
+    double length_m = sqrt(length2), t = length2 > 0 ? vec_dot(aq, ac) / length2 : 0;
+    if (t <= 0 || t >= 1 || is_at_end(s, p, e, u, t * length_m, length_m) || is_at_end(s, p, e, v, (1 - t) * length_m, length_m))
         return;
     vec_mix(a, c, t, at);
     double distance_m = vec_distance(at, q);
-    if (distance_m <= limit_of(s, i, b->slot[u]) && distance_m < s->nearest[i].distance_m && (!s->fits || runs_along(s, i, e)))
+    if (distance_m > limit_of(s, i, b->slot[u]) || (s->fits && !runs_along(s, p, e, NULL, s->tolerance_m)))
+        return;
+    if (hangs(s, p, e))
+        attach_to_edge(s->attach, p, u, v, t, distance_m);
+    else if (distance_m < s->nearest[i].distance_m)
         s->nearest[i] = (struct nearest){ .distance_m = distance_m, .t = t, .edge = e };
 }
 
@@ -136,9 +176,9 @@ static void visit_border_tri(void *arg, uint32_t tri)
     struct edge_search *search = arg;
     const struct borders *b = search->seams->borders;
     for (int i = 0; i < 3; i++) {
-        uint32_t s = b->slot[search->seams->mesh->tris[tri][i]];
+        uint32_t corner = search->seams->mesh->tris[tri][i], s = b->slot[corner];
         for (uint32_t n = s == TRIMESH_NONE ? 0 : b->first[s]; s != TRIMESH_NONE && n < b->first[s + 1]; n++)
-            if (b->edge_tri[b->at[n]] == tri)
+            if (b->edge_tri[b->at[n]] == tri && b->edges[b->at[n]][0] == corner)
                 try_edge(search->seams, search->point, b->at[n]);
     }
 }
