@@ -196,7 +196,7 @@ static void split(struct build *build)
 static void check(struct build *build)
 {
     struct measured *measured = &build->measured;
-    build->failed[1] = !surface_check(measured->surface, (const double(*)[3])measured->places_m, build->input->sensor_count);
+    build->failed[1] = !surface_check(measured->surface, &measured->field);
     if (build->failed[1])
         wrong(build->why, "out of memory for the check of its distances");
     build->output->report.surface = *surface_report(measured->surface);

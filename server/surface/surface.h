@@ -128,8 +128,8 @@ void surface_field_finish(struct surface_field *field);
 void surface_field_at_vertex(const struct surface_field *field, const struct surface *surface, uint32_t vertex, float *out);
 void surface_field_at_spot(const struct surface_field *field, const struct surface *surface, const struct surface_spot *spot, float *out);
 
-/* Holds distances against the heat method's, for some of these points: the report's heat_disagreement, time_m2, factor_s. False: out of
-   memory, logged. Thread: one at a time, beside calls that do not ask for the report. */
-bool surface_check(struct surface *surface, const double (*points_m)[3], size_t point_count);
+/* Holds distances against the heat method's, for some of the field's sources: the report's heat_disagreement, time_m2, factor_s. False: out
+   of memory, logged. Thread: one at a time, beside calls that do not ask for the report. */
+bool surface_check(struct surface *surface, const struct surface_field *field);
 
 #endif

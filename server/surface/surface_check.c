@@ -25,7 +25,7 @@ static double reach_of(const struct surface *surface)
             best = t;
     struct unfold_walk walk = { 0 };
     double reach_m = 0;
-    if (unfold_from(&surface->unfold, &walk, best, (const double[3]){ 1, 0, 0 }))
+    if (unfold_from(&surface->unfold, &walk, &(struct unfold_source){ best, (const double[3]){ 1, 0, 0 } }, 1))
         for (size_t i = 0; i < mesh->point_count; i++)
             if (walk.distance_m[i] < INFINITY)
                 reach_m = max_of(reach_m, (double)walk.distance_m[i]);
@@ -37,11 +37,11 @@ static double reach_of(const struct surface *surface)
 /* How far the two methods differ, as a share of the largest distance. Heat leaves a constant open: it is taken so that they agree on
    average. Heat smooths ridges and borders over about one root of t, so some percent at single points are its nature; more is a sign that
    the surface does not hang together as it looks. */
-static double disagreement_of(const struct unfold *unfold, const float *walked, const double *heat_m)
+static double disagreement_of(const struct unfold *unfold, const struct surface_field *field, size_t source, const double *heat_m)
 {
     double sum = 0, squares = 0, largest_m = 0, count = 0;
     for (size_t p = 0; p < unfold->mesh->point_count; p++) {
-        double walked_m = (double)walked[p], difference_m = walked_m - heat_m[p];
+        double walked_m = (double)field->distances_m[p * field->source_count + source], difference_m = walked_m - heat_m[p];
         if (unfold->hidden[p] || walked_m == INFINITY)
             continue;
         count++;
@@ -55,51 +55,43 @@ static double disagreement_of(const struct unfold *unfold, const float *walked, 
 
 struct check {
     const struct surface *surface;
+    const struct surface_field *field;
     const struct heat *heat;
-    struct surface_spot *spots;
     size_t count;
-    double *disagreement; /* of each spot */
+    double *disagreement; /* of each source checked */
     atomic_bool failed;
 };
+
+static size_t source_of(const struct check *check, size_t i)
+{
+    return i * check->field->source_count / check->count;
+}
 
 static void check_block(void *arg, size_t begin, size_t end)
 {
     struct check *check = arg;
     const struct surface *surface = check->surface;
     size_t points = surface->mesh.point_count, count = end - begin;
-    struct unfold_walk walk = { 0 };
     struct heat_source *sources = mem_array(count, sizeof(*sources));
     double *heat_m = mem_try_array(count * points, sizeof(*heat_m));
     for (size_t s = 0; s < count; s++) {
-        memcpy(sources[s].points, surface->visible.tris[check->spots[begin + s].tri], sizeof(sources[s].points));
-        memcpy(sources[s].weights, check->spots[begin + s].weights, sizeof(sources[s].weights));
+        const struct surface_spot *spot = &check->field->sources[source_of(check, begin + s)];
+        memcpy(sources[s].points, surface->visible.tris[spot->tri], sizeof(sources[s].points));
+        memcpy(sources[s].weights, spot->weights, sizeof(sources[s].weights));
     }
-    bool good = heat_m && heat_solve(check->heat, sources, count, heat_m);
-    for (size_t s = 0; s < count && good; s++) {
-        good = unfold_from(&surface->unfold, &walk, check->spots[begin + s].tri, check->spots[begin + s].weights);
-        if (good)
-            check->disagreement[begin + s] = disagreement_of(&surface->unfold, walk.distance_m, heat_m + s * points);
-    }
-    if (!good)
+    if (!heat_m || !heat_solve(check->heat, sources, count, heat_m))
         check->failed = true;
-    unfold_walk_finish(&walk);
+    for (size_t s = 0; s < count && !check->failed; s++)
+        check->disagreement[begin + s] =
+            disagreement_of(&surface->unfold, check->field, source_of(check, begin + s), heat_m + s * points);
     mem_free(sources);
     mem_free(heat_m);
 }
 
-static void choose_spots(struct check *check, const double (*points_m)[3], size_t point_count)
-{
-    check->count = point_count < MOST_SOURCES ? point_count : MOST_SOURCES;
-    check->spots = mem_array(check->count, sizeof(*check->spots));
-    check->disagreement = mem_array(check->count, sizeof(*check->disagreement));
-    for (size_t i = 0; i < check->count; i++)
-        surface_find_spot(check->surface, points_m[i * point_count / check->count], NULL, &check->spots[i]);
-}
-
-bool surface_check(struct surface *surface, const double (*points_m)[3], size_t point_count)
+bool surface_check(struct surface *surface, const struct surface_field *field)
 {
     struct surface_report *report = &surface->report;
-    struct check check = { .surface = surface };
+    struct check check = { .surface = surface, .field = field };
     int64_t start_ns = clock_mono_ns(), factored_ns;
     double decay_m = max_of(sqrt(TIME_OF_SPACING) * surface->edge_m, 2 * reach_of(surface) / LONGEST_DECAY);
     struct heat *heat = heat_create(surface->log, &surface->intrinsic, surface->component, decay_m * decay_m);
@@ -107,7 +99,8 @@ bool surface_check(struct surface *surface, const double (*points_m)[3], size_t 
     if (!heat)
         return false;
     check.heat = heat;
-    choose_spots(&check, points_m, point_count);
+    check.count = field->source_count < MOST_SOURCES ? field->source_count : MOST_SOURCES;
+    check.disagreement = mem_array(check.count, sizeof(*check.disagreement));
     if (surface->workers)
         workers_for(surface->workers, check.count, BLOCK, check_block, &check);
     else
@@ -120,7 +113,6 @@ bool surface_check(struct surface *surface, const double (*points_m)[3], size_t 
     report->check_s = (double)(clock_mono_ns() - factored_ns) / NS_PER_S;
     if (check.failed)
         log_err(surface->log, "heat method beside %zu places: out of memory", check.count);
-    mem_free(check.spots);
     mem_free(check.disagreement);
     return !check.failed;
 }

@@ -59,30 +59,53 @@ static void take_rows(const struct solve *solve, const float *block, size_t firs
             solve->field->distances_m[p * solve->field->source_count + first + s] = block[s * points + p];
 }
 
+struct abreast { /* sources that are walked at once */
+    struct unfold_walk walks[UNFOLD_ABREAST];
+    struct unfold_source from[UNFOLD_ABREAST];
+    size_t source[UNFOLD_ABREAST], count;
+};
+
+/* block: columns of the sources from `first` on, if it is for a field. */
+static bool walk(const struct solve *solve, struct abreast *abreast, float *block, size_t first)
+{
+    const struct surface *surface = solve->surface;
+    size_t points = surface->mesh.point_count;
+    if (!unfold_from(&surface->unfold, abreast->walks, abreast->from, abreast->count))
+        return false;
+    for (size_t i = 0; i < abreast->count; i++) {
+        const float *distance_m = abreast->walks[i].distance_m;
+        size_t s = abreast->source[i];
+        if (block)
+            memcpy(block + (s - first) * points, distance_m, points * sizeof(*block));
+        else
+            take_vertices(surface, distance_m, solve->out + s * surface->vertex_count);
+        if (solve->columns)
+            solve->columns->keep(solve->columns->arg, s, distance_m);
+    }
+    abreast->count = 0;
+    return true;
+}
+
 static void solve_block(void *arg, size_t begin, size_t end)
 {
     struct solve *solve = arg;
-    const struct surface *surface = solve->surface;
-    size_t points = surface->mesh.point_count;
-    struct unfold_walk walk = { 0 };
+    size_t points = solve->surface->mesh.point_count;
+    struct abreast abreast = { 0 };
     float *block = solve->field ? mem_try_array((end - begin) * points, sizeof(*block)) : NULL;
     solve->failed = solve->failed || (solve->field && !block);
     for (size_t s = begin; s < end && !solve->failed; s++) {
-        float *column = block ? block + (s - begin) * points : NULL;
-        if (solve->columns && solve->columns->fetch(solve->columns->arg, s, column))
-            continue;
-        if (!unfold_from(&surface->unfold, &walk, solve->spots[s].tri, solve->spots[s].weights))
+        bool known = solve->columns && solve->columns->fetch(solve->columns->arg, s, block + (s - begin) * points);
+        if (!known) {
+            abreast.from[abreast.count] = (struct unfold_source){ solve->spots[s].tri, solve->spots[s].weights };
+            abreast.source[abreast.count++] = s;
+        }
+        if (abreast.count > 0 && (abreast.count == UNFOLD_ABREAST || s + 1 == end) && !walk(solve, &abreast, block, begin))
             solve->failed = true;
-        else if (solve->field)
-            memcpy(column, walk.distance_m, points * sizeof(*block));
-        else
-            take_vertices(surface, walk.distance_m, solve->out + s * surface->vertex_count);
-        if (solve->columns && !solve->failed)
-            solve->columns->keep(solve->columns->arg, s, column);
     }
     if (block && !solve->failed)
         take_rows(solve, block, begin, end - begin);
-    unfold_walk_finish(&walk);
+    for (size_t i = 0; i < UNFOLD_ABREAST; i++)
+        unfold_walk_finish(&abreast.walks[i]);
     mem_free(block);
 }
 

@@ -41,7 +41,13 @@ struct unfold_walk {   /* one thread's; zero-initialise, used again and again */
 };
 void unfold_walk_finish(struct unfold_walk *walk);
 
-/* Distances of all points from the place with these weights on triangle tri. False: out of memory. */
-bool unfold_from(const struct unfold *unfold, struct unfold_walk *walk, uint32_t tri, const double weights[3]);
+#define UNFOLD_ABREAST 2 /* walks that one thread takes at once, at most: it waits less for each */
+struct unfold_source {
+    uint32_t tri;
+    const double *weights; /* of its corners */
+};
+/* Distances of all points from each source, in the walk of its number; the same whatever others are walked beside it. False: out of
+   memory. */
+bool unfold_from(const struct unfold *unfold, struct unfold_walk *walks, const struct unfold_source *sources, size_t count);
 
 #endif

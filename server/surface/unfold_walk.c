@@ -136,30 +136,64 @@ WIDE_BODY void offers_of(const lanes *d_of_p, const lanes *reached, const lanes 
     choose(&less, &through, &along, out);
 }
 
-WIDE_BODY void spread(const struct unfold *unfold, struct unfold_walk *walk, uint32_t point)
+/* Where a walk is. */
+struct front {
+    struct unfold_walk *walk;
+    const struct unfold_fan *fan, *end; /* the fan in hand; the end of its point's */
+    lanes d, reached;                   /* of the point */
+    uint32_t empty;                     /* buckets in a row */
+    float offered_m[UNFOLD_FAN];        /* to the fan's points */
+    uint32_t takes;                     /* a bit for each of those that may take it */
+};
+
+/* Takes the next point in hand. False: there is none left. */
+WIDE_BODY bool next_point(const struct unfold *unfold, struct front *front)
 {
-    const lanes d = walk->distance_m[point] - (lanes){ 0 }, zero = { 0 }, reached = d + ANY_ORDER / unfold->steps_per_m;
-    const struct unfold_fan *end = unfold->fans + unfold->first[point + 1];
-    walk->settled[point] = 1;
-    for (const struct unfold_fan *fan = unfold->fans + unfold->first[point]; fan < end; fan++) {
-        lanes each, length, cosine, sine, offers;
-        float offered_m[UNFOLD_FAN];
-        for (int i = 0; i < UNFOLD_FAN; i++)
-            each[i] = walk->distance_m[fan->to[i]];
-        memcpy(&length, fan->length_m, sizeof(length));
-        mask waits = (each > d) & (length >= zero);
-        if (!bits_of(&waits))
-            continue;
-        memcpy(&cosine, fan->cosine, sizeof(cosine));
-        memcpy(&sine, fan->sine, sizeof(sine));
-        length = (lanes)((mask)length & INT32_MAX);
-        offers_of(&d, &reached, &each, &length, &cosine, &sine, &offers);
-        waits &= offers < each;
-        memcpy(offered_m, &offers, sizeof(offered_m));
-        for (uint32_t left = bits_of(&waits); left; left &= left - 1) {
-            int i = __builtin_ctz(left);
-            offer(unfold, walk, fan->to[i], offered_m[i]);
+    struct unfold_walk *walk = front->walk;
+    for (; front->empty < unfold->bucket_count; walk->at++) {
+        uint32_t *bucket = &walk->buckets[walk->at & (unfold->bucket_count - 1)];
+        front->empty = *bucket == TRIMESH_NONE ? front->empty + 1 : 0;
+        while (*bucket != TRIMESH_NONE) {
+            struct unfold_item item = walk->items[*bucket];
+            *bucket = item.next;
+            if (walk->settled[item.point]) /* it was reached by a shorter way */
+                continue;
+            walk->settled[item.point] = 1;
+            front->d = walk->distance_m[item.point] - (lanes){ 0 };
+            front->reached = front->d + ANY_ORDER / unfold->steps_per_m;
+            front->fan = unfold->fans + unfold->first[item.point];
+            front->end = unfold->fans + unfold->first[item.point + 1];
+            if (front->fan < front->end)
+                return true;
         }
+    }
+    return false;
+}
+
+/* What the point in hand offers to those of its fan: no branches, so that those of several walks are under way at once. */
+WIDE_BODY void look_round(struct front *front)
+{
+    const lanes zero = { 0 };
+    const struct unfold_fan *fan = front->fan;
+    lanes each, length, cosine, sine, offers;
+    for (int i = 0; i < UNFOLD_FAN; i++)
+        each[i] = front->walk->distance_m[fan->to[i]];
+    memcpy(&length, fan->length_m, sizeof(length));
+    memcpy(&cosine, fan->cosine, sizeof(cosine));
+    memcpy(&sine, fan->sine, sizeof(sine));
+    mask takes = (each > front->d) & (length >= zero);
+    length = (lanes)((mask)length & INT32_MAX);
+    offers_of(&front->d, &front->reached, &each, &length, &cosine, &sine, &offers);
+    takes &= offers < each;
+    memcpy(front->offered_m, &offers, sizeof(offers));
+    front->takes = bits_of(&takes);
+}
+
+WIDE_BODY void hand_out(const struct unfold *unfold, struct front *front)
+{
+    for (uint32_t left = front->takes; left; left &= left - 1) {
+        int i = __builtin_ctz(left);
+        offer(unfold, front->walk, front->fan->to[i], front->offered_m[i]);
     }
 }
 
@@ -352,17 +386,24 @@ WIDE_BODY void measure_straight(const struct trimesh *mesh, struct unfold_walk *
     }
 }
 
-/* From what is in the buckets outwards. */
-WIDE_BODY void go_on(const struct unfold *unfold, struct unfold_walk *walk)
+/* From what is in the buckets outwards: the walks take turns, a fan each. A walk's next fan hangs on what the last one's came to, and the
+   processor would wait for that; walks know nothing of each other. */
+WIDE_BODY void go_on(const struct unfold *unfold, struct unfold_walk *walks, size_t count)
 {
-    for (uint32_t empty = 0; empty < unfold->bucket_count; walk->at++) {
-        uint32_t *bucket = &walk->buckets[walk->at & (unfold->bucket_count - 1)];
-        empty = *bucket == TRIMESH_NONE ? empty + 1 : 0;
-        while (*bucket != TRIMESH_NONE) {
-            struct unfold_item item = walk->items[*bucket];
-            *bucket = item.next;
-            if (!walk->settled[item.point]) /* else it was reached by a shorter way */
-                spread(unfold, walk, item.point);
+    struct front fronts[UNFOLD_ABREAST] = { { 0 } };
+    size_t left = 0;
+    for (size_t i = 0; i < count; i++) {
+        fronts[left].walk = &walks[i];
+        fronts[left].empty = 0;
+        left += next_point(unfold, &fronts[left]);
+    }
+    while (left > 0) {
+        for (size_t i = 0; i < left; i++)
+            look_round(&fronts[i]);
+        for (size_t i = left; i-- > 0;) {
+            hand_out(unfold, &fronts[i]);
+            if (++fronts[i].fan == fronts[i].end && !next_point(unfold, &fronts[i]))
+                fronts[i] = fronts[--left];
         }
     }
 }
@@ -377,17 +418,17 @@ WIDE_TARGET static void measure_straight_wide(const struct trimesh *mesh, struct
     measure_straight(mesh, walk);
 }
 
-static void go_on_plain(const struct unfold *unfold, struct unfold_walk *walk)
+static void go_on_plain(const struct unfold *unfold, struct unfold_walk *walks, size_t count)
 {
-    go_on(unfold, walk);
+    go_on(unfold, walks, count);
 }
 
-WIDE_TARGET static void go_on_wide(const struct unfold *unfold, struct unfold_walk *walk)
+WIDE_TARGET static void go_on_wide(const struct unfold *unfold, struct unfold_walk *walks, size_t count)
 {
-    go_on(unfold, walk);
+    go_on(unfold, walks, count);
 }
 
-bool unfold_from(const struct unfold *unfold, struct unfold_walk *walk, uint32_t tri, const double weights[3])
+static bool set_out(const struct unfold *unfold, struct unfold_walk *walk, uint32_t tri, const double weights[3])
 {
     const struct trimesh *mesh = unfold->mesh;
     const uint32_t *v = mesh->tris[tri];
@@ -400,6 +441,14 @@ bool unfold_from(const struct unfold *unfold, struct unfold_walk *walk, uint32_t
     for (int i = 0; i < 3; i++)
         offer(unfold, walk, v[i], (float)vec_distance(walk->source_m, mesh->points[v[i]]));
     look_around(unfold, walk, tri, weights);
-    (wide_is_there() ? go_on_wide : go_on_plain)(unfold, walk);
+    return true;
+}
+
+bool unfold_from(const struct unfold *unfold, struct unfold_walk *walks, const struct unfold_source *sources, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        if (!set_out(unfold, &walks[i], sources[i].tri, sources[i].weights))
+            return false;
+    (wide_is_there() ? go_on_wide : go_on_plain)(unfold, walks, count);
     return true;
 }

@@ -211,7 +211,10 @@ static void test_shape(const struct shape *shape)
             assert_true(score.worst <= WORST_MAX);
         }
         assert_int_equal(surface_report(surface)->components_after, 1);
-        assert_true(surface_check(surface, (const double(*)[3])put, 2));
+        struct surface_field field;
+        assert_true(surface_field_init(&field, surface, (const double(*)[3])put, 2, NULL));
+        assert_true(surface_check(surface, &field));
+        surface_field_finish(&field);
         assert_true(surface_report(surface)->heat_disagreement > 0);
         assert_true(surface_report(surface)->heat_disagreement < METHODS_MAX);
         surface_destroy(&surface);
@@ -621,25 +624,31 @@ static void short_ways_are_exact_whatever_edges_are_flipped(void **state)
     assert_true(worst < 0.03);
 }
 
+/* On the smaller of two pieces, a walk ends sooner than the one beside it. */
 static void many_sources_at_once_are_as_one_by_one(void **state)
 {
     enum { SOURCES = 21 };
-    struct cad torus = { 0 };
+    struct cad both = { 0 }, torus = { 0 }, plate = { 0 };
     double sources[SOURCES][3];
     (void)state;
     cad_torus(&torus, &chance, 60, 24, 0.3, 0.5);
+    cad_plate(&plate, &chance, 16, 16, 1, 1, 0);
+    append(&both, &torus, 0, 0, 0);
+    append(&both, &plate, 5, 0, 0);
     for (int s = 0; s < SOURCES; s++)
-        choose_source(&torus, true, sources[s]);
-    struct surface *surface = surface_of(&torus);
-    float *together = mem_array(SOURCES * torus.vertex_count, sizeof(*together));
+        choose_source(&both, true, sources[s]);
+    struct surface *surface = surface_of(&both);
+    float *together = mem_array(SOURCES * both.vertex_count, sizeof(*together));
     assert_true(surface_distances(surface, (const double(*)[3])sources, SOURCES, together));
     for (size_t s = 0; s < SOURCES; s++) {
-        float *alone = distances_from(surface, &torus, sources[s][0], sources[s][1], sources[s][2]);
-        assert_memory_equal(alone, together + s * torus.vertex_count, torus.vertex_count * sizeof(*alone));
+        float *alone = distances_from(surface, &both, sources[s][0], sources[s][1], sources[s][2]);
+        assert_memory_equal(alone, together + s * both.vertex_count, both.vertex_count * sizeof(*alone));
         mem_free(alone);
     }
     surface_destroy(&surface);
     cad_finish(&torus);
+    cad_finish(&plate);
+    cad_finish(&both);
     mem_free(together);
 }
 
