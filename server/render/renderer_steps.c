@@ -68,8 +68,8 @@ static double draw_surfaces(struct renderer *renderer, struct stroke *stroke, co
     stroke->drawn = solid_draw_some(&renderer->solid, &picture, first, triangles);
     *done = stroke->drawn == picture.visible_count;
     if (*done) {
+        sky_draw(&renderer->sky, &picture, &renderer->light); /* seen through what is blended */
         solid_draw_blended(&renderer->solid, &picture);
-        sky_draw(&renderer->sky, &picture, &renderer->light);
         target_resolve(&stroke->target, tile->x_px, tile->y_px, tile->width_px, tile->height_px);
     }
     return TRIANGLE_NS * renderer->solid.triangles;
