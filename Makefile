@@ -159,7 +159,7 @@ $(out)/tests/faults/libEGL.so.1: $(out)/obj/tests/faults/gl_faults.pic.o
 	@mkdir -p $(@D); echo "  LINK $@"; $(CC) $(ldflags) -shared -o $@ $<
 # Where memory runs out: the test decides.
 $(out)/tests/unit/mover_test: ldflags += -Wl,--wrap=mem_try_array
-$(out)/tests/gpu/field_memory_test: ldflags += -Wl,--wrap=mem_try_array,--wrap=mesh_buffer
+$(out)/tests/gpu/field_memory_test: ldflags += -Wl,--wrap=mem_try_array,--wrap=pool_take
 # The wall clock: the test sets it.
 $(out)/tests/unit/historian_test: ldflags += -Wl,--wrap=clock_utc_ns
 .SECONDARY:

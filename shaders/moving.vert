@@ -2,12 +2,8 @@
 // Moving tier: a place, a baked light and, on assets with a field, a scalar. llvmpipe runs this on one thread: keep it short.
 #include "frame.glsl"
 #include "clip.glsl"
+#include "instance.glsl"
 layout(location = 0) in vec3 position_m;
-layout(location = 4) in vec4 baked;
-layout(location = 5) in float value;
-layout(location = 6) in vec3 flags;
-layout(location = 0) uniform mat4 clip_from_file;
-layout(location = 1) uniform mat4 sun_from_file; // texture coordinates and depth of the shadow map
 #ifdef FIELD
 layout(location = 0) out float light;
 layout(location = 1) out FIELD_TYPE field;
@@ -40,15 +36,12 @@ void main()
     clip_away();
     place = (frame.eye_from_clip * gl_Position).xyz;
 #endif
+    vec4 baked = light_here();
 #ifdef FIELD
     light = baked.x;
-#ifdef RICH
-    field = vec4(value, flags);
-#else
-    field = vec3((value - frame.scale.x) * frame.scale.y, flags.xy);
-#endif
+    field = scalar_here();
 #else
     light = baked.yw;
-    sun_place = (sun_from_file * vec4(position_m, 1.0)).xyz;
+    sun_place = vec4(position_m, 1.0) * from_file;
 #endif
 }

@@ -7,7 +7,7 @@
 #include "base/mem.h"
 #include "gpu/gl.h"
 
-enum { BIND_POSITION, BIND_NORMAL, BIND_TEXCOORD, BIND_COLOR, BIND_LIGHT, BIND_SCALAR, BIND_SECOND_TEXCOORD };
+enum { BIND_POSITION, BIND_NORMAL, BIND_TEXCOORD, BIND_COLOR, BIND_SECOND_TEXCOORD, BIND_INSTANCE };
 
 GLuint mesh_buffer(struct log *log, const char *name, size_t bytes, const void *data, GLbitfield flags)
 {
@@ -30,33 +30,37 @@ static void attribute(GLuint vao, enum mesh_attribute location, GLuint binding, 
     glVertexArrayAttribBinding(vao, location, binding);
 }
 
-static void describe_texcoords(const struct mesh *mesh, enum mesh_attribute location, GLuint binding, GLuint buffer, bool is_short)
+static void describe_texcoords(GLuint vao, enum mesh_attribute location, GLuint binding, GLuint buffer, bool is_short)
 {
-    attribute(mesh->vao, location, binding, 2, is_short ? GL_UNSIGNED_SHORT : GL_FLOAT, is_short, 0);
-    glVertexArrayVertexBuffer(mesh->vao, binding, buffer, 0, is_short ? 4 : 8);
+    attribute(vao, location, binding, 2, is_short ? GL_UNSIGNED_SHORT : GL_FLOAT, is_short, 0);
+    glVertexArrayVertexBuffer(vao, binding, buffer, 0, is_short ? 4 : 8);
 }
 
-static void describe(const struct mesh *mesh)
+static GLuint describe(const struct mesh *mesh)
 {
-    attribute(mesh->vao, MESH_POSITION, BIND_POSITION, 3, GL_FLOAT, GL_FALSE, 0);
-    glVertexArrayVertexBuffer(mesh->vao, BIND_POSITION, mesh->positions, 0, 12);
-    attribute(mesh->vao, MESH_NORMAL, BIND_NORMAL, 2, GL_SHORT, GL_TRUE, 0);
-    glVertexArrayVertexBuffer(mesh->vao, BIND_NORMAL, mesh->normals, 0, 4);
+    GLuint vao = 0;
+    glCreateVertexArrays(1, &vao);
+    attribute(vao, MESH_POSITION, BIND_POSITION, 3, GL_FLOAT, GL_FALSE, 0);
+    glVertexArrayVertexBuffer(vao, BIND_POSITION, mesh->positions, 0, 12);
+    attribute(vao, MESH_NORMAL, BIND_NORMAL, 2, GL_SHORT, GL_TRUE, 0);
+    glVertexArrayVertexBuffer(vao, BIND_NORMAL, mesh->normals, 0, 4);
     if (mesh->texcoords)
-        describe_texcoords(mesh, MESH_TEXCOORD, BIND_TEXCOORD, mesh->texcoords, mesh->short_texcoords);
+        describe_texcoords(vao, MESH_TEXCOORD, BIND_TEXCOORD, mesh->texcoords, mesh->short_texcoords);
     if (mesh->second_texcoords)
-        describe_texcoords(mesh, MESH_SECOND_TEXCOORD, BIND_SECOND_TEXCOORD, mesh->second_texcoords, mesh->short_second_texcoords);
+        describe_texcoords(vao, MESH_SECOND_TEXCOORD, BIND_SECOND_TEXCOORD, mesh->second_texcoords, mesh->short_second_texcoords);
     if (mesh->colors) {
-        attribute(mesh->vao, MESH_COLOR, BIND_COLOR, 4, GL_UNSIGNED_BYTE, GL_TRUE, 0);
-        glVertexArrayVertexBuffer(mesh->vao, BIND_COLOR, mesh->colors, 0, 4);
+        attribute(vao, MESH_COLOR, BIND_COLOR, 4, GL_UNSIGNED_BYTE, GL_TRUE, 0);
+        glVertexArrayVertexBuffer(vao, BIND_COLOR, mesh->colors, 0, 4);
     }
-    glVertexArrayAttribFormat(mesh->vao, MESH_LIGHT, 4, GL_UNSIGNED_BYTE, GL_TRUE, 0);
-    glVertexArrayAttribBinding(mesh->vao, MESH_LIGHT, BIND_LIGHT);
-    glVertexArrayAttribFormat(mesh->vao, MESH_SCALAR, 1, GL_FLOAT, GL_FALSE, 0);
-    glVertexArrayAttribBinding(mesh->vao, MESH_SCALAR, BIND_SCALAR);
-    glVertexArrayAttribFormat(mesh->vao, MESH_FLAGS, 3, GL_UNSIGNED_BYTE, GL_TRUE, 4);
-    glVertexArrayAttribBinding(mesh->vao, MESH_FLAGS, BIND_SCALAR);
-    glVertexArrayElementBuffer(mesh->vao, mesh->indices);
+    glVertexArrayElementBuffer(vao, mesh->indices);
+    return vao;
+}
+
+static void describe_instances(GLuint vao)
+{
+    for (GLuint i = 0; i < MESH_INSTANCE_VECTORS; i++)
+        attribute(vao, i < 3 ? MESH_INSTANCE_NORMALS + i : MESH_INSTANCE_PLACES + i - 3, BIND_INSTANCE, 4, GL_FLOAT, GL_FALSE, 16 * i);
+    glVertexArrayBindingDivisor(vao, BIND_INSTANCE, 1);
 }
 
 /* --- packing -------------------------------------------------------------------------------------------------------------- */
@@ -128,8 +132,9 @@ bool mesh_init(struct mesh *mesh, struct log *log, const char *name, const struc
         mesh_finish(mesh);
         return false;
     }
-    glCreateVertexArrays(1, &mesh->vao);
-    describe(mesh);
+    mesh->vao = describe(mesh);
+    mesh->instanced_vao = describe(mesh);
+    describe_instances(mesh->instanced_vao);
     return true;
 }
 
@@ -147,25 +152,18 @@ size_t mesh_vertex_bytes(const struct mesh *mesh)
 void mesh_finish(struct mesh *mesh)
 {
     GLuint buffers[] = { mesh->positions, mesh->normals, mesh->texcoords, mesh->second_texcoords, mesh->colors, mesh->indices };
-    glDeleteVertexArrays(1, &mesh->vao);
+    glDeleteVertexArrays(2, (GLuint[2]){ mesh->vao, mesh->instanced_vao });
     glDeleteBuffers(sizeof(buffers) / sizeof(buffers[0]), buffers);
     *mesh = (struct mesh){ 0 };
 }
 
-static void bind_optional(GLuint vao, enum mesh_attribute location, GLuint binding, GLuint buffer, GLsizei stride)
+void mesh_bind(const struct mesh *mesh)
 {
-    if (buffer) {
-        glVertexArrayVertexBuffer(vao, binding, buffer, 0, stride);
-        glEnableVertexArrayAttrib(vao, location);
-    } else {
-        glDisableVertexArrayAttrib(vao, location);
-    }
+    glBindVertexArray(mesh->vao);
 }
 
-void mesh_bind(const struct mesh *mesh, GLuint light, GLuint scalars)
+void mesh_bind_instances(const struct mesh *mesh, GLuint instances)
 {
-    bind_optional(mesh->vao, MESH_LIGHT, BIND_LIGHT, light, 4);
-    bind_optional(mesh->vao, MESH_SCALAR, BIND_SCALAR, scalars, 8);
-    bind_optional(mesh->vao, MESH_FLAGS, BIND_SCALAR, scalars, 8);
-    glBindVertexArray(mesh->vao);
+    glVertexArrayVertexBuffer(mesh->instanced_vao, BIND_INSTANCE, instances, 0, 16 * MESH_INSTANCE_VECTORS);
+    glBindVertexArray(mesh->instanced_vao);
 }

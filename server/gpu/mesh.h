@@ -10,8 +10,10 @@
 
 #include "base/log.h"
 
-/* Vertex attributes, by the location that every shader uses. Light and scalar come from the instance. */
-enum mesh_attribute { MESH_POSITION, MESH_NORMAL, MESH_TEXCOORD, MESH_COLOR, MESH_LIGHT, MESH_SCALAR, MESH_FLAGS, MESH_SECOND_TEXCOORD };
+/* Vertex attributes, by the location that every shader uses. */
+enum mesh_attribute { MESH_POSITION, MESH_NORMAL, MESH_TEXCOORD, MESH_COLOR, MESH_INSTANCE_NORMALS, MESH_SECOND_TEXCOORD = 7,
+                      MESH_INSTANCE_PLACES };
+enum { MESH_INSTANCE_VECTORS = 10 }; /* of 4 floats: 3 from the location of normals on, then 7 from that of places on */
 
 struct mesh_params { /* pointers need only live for the call */
     size_t vertex_count, index_count;
@@ -27,7 +29,7 @@ struct mesh_params { /* pointers need only live for the call */
    Normals are folded into 2 x 16 bits (shaders/normal.glsl), off by 0.005 degrees at most; texture coordinates are 2 x 16 bits where all
    lie in 0..1, off by 1/131,070. */
 struct mesh {
-    GLuint vao, positions, normals, texcoords, second_texcoords, colors, indices;
+    GLuint vao, instanced_vao, positions, normals, texcoords, second_texcoords, colors, indices;
     size_t vertex_count, index_count;
     bool short_texcoords, short_second_texcoords;
 };
@@ -36,8 +38,8 @@ bool mesh_init(struct mesh *mesh, struct log *log, const char *name,
                const struct mesh_params *params); /* false: out of memory, logged */
 void mesh_finish(struct mesh *mesh);
 size_t mesh_vertex_bytes(const struct mesh *mesh); /* of each vertex, without light and scalar */
-/* Light (4 bytes a vertex) and scalars (8 bytes a vertex, struct scalar) for the next draw; 0: none. */
-void mesh_bind(const struct mesh *mesh, GLuint light, GLuint scalars);
+void mesh_bind(const struct mesh *mesh); /* for the next draws */
+void mesh_bind_instances(const struct mesh *mesh, GLuint instances); /* of MESH_INSTANCE_VECTORS each, from its beginning */
 
 /* An immutable buffer, or 0 when the GPU is out of memory (logged). */
 GLuint mesh_buffer(struct log *log, const char *name, size_t bytes, const void *data, GLbitfield flags);

@@ -46,7 +46,7 @@ static void count_asset(struct caps *caps, const struct picture *picture, int as
     matrix_to_float(clip_from_file, matrix);
     glUniformMatrix4fv(0, 1, GL_FALSE, matrix);
     stage_set_front_face(at);
-    mesh_bind(&model->mesh, 0, 0);
+    mesh_bind(&model->mesh);
     model_draw_closed(&caps->draws, model, solid_level(picture, asset));
 }
 

@@ -9,7 +9,6 @@
 #include <xxhash.h>
 
 #include "base/mem.h"
-#include "gpu/mesh.h"
 #include "render/reference.h"
 
 static const uint64_t LOST = 0x6c6f7374; /* content that no other has */
@@ -18,12 +17,13 @@ static const size_t BOUND_BYTES = (size_t)384 << 20; /* on the GPU, and as much 
 void fields_init(struct fields *fields, struct log *log, struct field *field)
 {
     *fields = (struct fields){ .log = log, .field = field, .lost = { .asset = -1, .content = LOST, .oldest_age_ns = INT64_MAX } };
+    fields->pool = pool_create(log, "field", GL_RG32UI, sizeof(struct scalar), GL_DYNAMIC_STORAGE_BIT);
 }
 
 static void entry_destroy(struct fields *fields, struct fields_entry *entry)
 {
     fields->bytes -= entry->count * sizeof(*entry->shown);
-    glDeleteBuffers(1, &entry->buffer);
+    pool_release(&entry->slice);
     glDeleteBuffers(1, &entry->sensors);
     mem_free(entry->shown);
     mem_free(entry);
@@ -34,6 +34,7 @@ void fields_finish(struct fields *fields)
     for (size_t i = 0; i < fields->count; i++)
         entry_destroy(fields, fields->entries[i]);
     mem_free(fields->entries);
+    pool_destroy(&fields->pool);
     *fields = (struct fields){ 0 };
 }
 
@@ -53,9 +54,8 @@ static struct fields_entry *entry_create(struct fields *fields, int asset, const
     struct fields_entry *entry = mem_new(sizeof(*entry));
     *entry = (struct fields_entry){ .asset = asset, .params = *params, .step = step, .count = count };
     entry->shown = mem_try_array(count, sizeof(*entry->shown));
-    entry->buffer = mesh_buffer(fields->log, "field", bytes, NULL, GL_DYNAMIC_STORAGE_BIT);
     fields->bytes += bytes;
-    if (!entry->shown || !entry->buffer) {
+    if (!entry->shown) {
         log_err(fields->log, "field of asset %d: no room for %zu vertices; shown as no data", asset, count);
         entry_destroy(fields, entry);
         return NULL;
@@ -63,6 +63,22 @@ static struct fields_entry *entry_create(struct fields *fields, int asset, const
     mem_grow(&fields->entries, &fields->capacity, fields->count + 1, sizeof(*fields->entries));
     fields->entries[fields->count++] = entry;
     return entry;
+}
+
+/* False: there is none, logged; the entry is gone. */
+static bool take_slice(struct fields *fields, struct fields_entry *entry)
+{
+    size_t at = 0;
+    if (!entry->slice)
+        entry->slice = pool_take(fields->pool, entry->count);
+    if (entry->slice)
+        return true;
+    log_err(fields->log, "field of asset %d: no room for %zu vertices; shown as no data", entry->asset, entry->count);
+    while (fields->entries[at] != entry)
+        at++;
+    fields->entries[at] = fields->entries[--fields->count];
+    entry_destroy(fields, entry);
+    return false;
 }
 
 /* How far the values have moved from what is shown; no farther than is enough. */
@@ -109,10 +125,19 @@ static void show(struct fields_entry *entry)
     }
 }
 
-static void upload(struct fields_entry *entry)
+/* What a picture under way shows stays as it is. False: there is no room for another, logged. */
+static bool upload(struct fields *fields, struct fields_entry *entry)
 {
-    glNamedBufferSubData(entry->buffer, 0, (GLsizeiptr)(entry->ready * sizeof(*entry->shown)), entry->shown);
-    entry->uploaded = true;
+    if (entry->slice->holds > 1) {
+        struct pool_slice *fresh = pool_take(fields->pool, entry->count);
+        pool_release(&entry->slice);
+        entry->slice = fresh;
+    }
+    if (!entry->slice)
+        return false;
+    glNamedBufferSubData(entry->slice->page->buffer, (GLintptr)pool_offset(entry->slice),
+                         (GLsizeiptr)(entry->ready * sizeof(*entry->shown)), entry->shown);
+    return entry->uploaded = true;
 }
 
 /* What there is to show of one asset, and whether it is behind. NULL: nothing. */
@@ -135,13 +160,32 @@ static struct fields_entry *look(struct fields *fields, const struct fields_ask 
         return &fields->lost;
     if (fresh || entry->ready < count || can_be_seen(entry, scalars)) {
         entry->behind = scalars;
-        glDeleteBuffers(1, &entry->sensors);
+        if (entry->sensors)
+            glDeleteBuffers(1, &entry->sensors);
         entry->sensors = 0;
     }
     entry->wanted = count;
     entry->oldest_age_ns = scalars->oldest_age_ns;
     entry->used = ++fields->uses;
     return entry;
+}
+
+/* Those that have no place yet shall lie together. */
+static void make_room(struct fields *fields, const struct fields_ask *ask, const struct fields_entry **entries)
+{
+    size_t texels = 0, slices = 0;
+    for (size_t i = 0; i < ask->asset_count; i++) {
+        const struct fields_entry *entry = entries[ask->assets[i]];
+        bool without = entry && entry != &fields->lost && !entry->slice;
+        texels += without ? entry->count : 0;
+        slices += without;
+    }
+    pool_expect(fields->pool, texels, slices);
+    for (size_t i = 0; i < ask->asset_count && slices > 0; i++) {
+        struct fields_entry *entry = (struct fields_entry *)entries[ask->assets[i]];
+        if (entry && entry != &fields->lost && !take_slice(fields, entry))
+            entries[ask->assets[i]] = &fields->lost;
+    }
 }
 
 struct showing {
@@ -155,12 +199,14 @@ static void show_some(void *arg, size_t begin, size_t end)
         show(showing->entries[i]);
 }
 
-static void to_gpu(struct fields *fields, struct fields_entry *entry)
+/* False: it is shown as no data, for now. */
+static bool to_gpu(struct fields *fields, struct fields_entry *entry)
 {
-    if (!entry->uploaded && !fields->without_gl)
-        upload(entry);
+    if (!entry->uploaded && !fields->without_gl && !upload(fields, entry))
+        return false;
     if (fields->reference && !entry->sensors)
         entry->sensors = reference_sensors(fields->reference, entry->asset, &entry->params);
+    return true;
 }
 
 /* Fields of one set of parameters stay where they are while others of it are asked for, however little room there is; of a trial, each
@@ -181,13 +227,16 @@ void fields_get(struct fields *fields, const struct fields_ask *ask, const struc
             continue;
         }
         show(entry);
-        to_gpu(fields, entry);
+        if (!take_slice(fields, entry) || !to_gpu(fields, entry))
+            entries[ask->assets[i]] = &fields->lost;
     }
     workers_for(field_workers(fields->field), count, 1, show_some, &showing);
     mem_free(changed);
+    make_room(fields, ask, entries);
     for (size_t i = 0; i < ask->asset_count; i++)
-        if (entries[ask->assets[i]] && entries[ask->assets[i]] != &fields->lost)
-            to_gpu(fields, (struct fields_entry *)entries[ask->assets[i]]);
+        if (entries[ask->assets[i]] && entries[ask->assets[i]] != &fields->lost &&
+            !to_gpu(fields, (struct fields_entry *)entries[ask->assets[i]]))
+            entries[ask->assets[i]] = &fields->lost;
 }
 
 void fields_trim(struct fields *fields)

@@ -7,8 +7,9 @@
 #include <glad/gl.h>
 
 #include "gpu/gl.h"
+#include "gpu/pool.h"
 
-struct fields_entry { /* buffer 0: it could not be worked out or kept; drawn as no data */
+struct fields_entry { /* without a slice: it could not be worked out or kept; drawn as no data */
     int asset;
     struct field_params params;
     double step;            /* a value step that can be seen (scale_step) */
@@ -18,8 +19,8 @@ struct fields_entry { /* buffer 0: it could not be worked out or kept; drawn as 
     size_t hashed;
     struct scalar *shown;
     size_t count, ready; /* vertices: of the file; of which so many of the first are shown */
-    GLuint buffer;
-    bool uploaded; /* the buffer holds what is shown */
+    struct pool_slice *slice;
+    bool uploaded; /* the slice holds what is shown */
     GLuint sensors; /* 0, or for fragments that work the field out themselves (render/reference.h) */
     int64_t oldest_age_ns;
     uint64_t used;
@@ -31,7 +32,8 @@ struct fields {
     struct log *log;
     const struct reference *reference; /* NULL: not used */
     struct field *field;
-    bool without_gl; /* who asks now reads `shown` only: buffers may stay behind */
+    bool without_gl; /* who asks now reads `shown` only: slices may stay behind */
+    struct pool *pool;
     struct fields_entry **entries;
     struct fields_entry lost; /* stands for all that there is no room for */
     size_t count, capacity, bytes;

@@ -141,7 +141,7 @@ void isolines_collect(struct isolines *isolines, const struct picture *picture, 
     for (size_t i = 0; line_count > 0 && i < picture->visible_count; i++) {
         int asset = picture->visible[i];
         struct isoline_set *set = &isolines->sets[asset];
-        if (!picture->fields[asset] || !picture->fields[asset]->buffer)
+        if (!picture->fields[asset] || !picture->fields[asset]->slice)
             continue;
         update_set(set, &picture->stage->scene->assets[asset], picture->fields[asset], lines, line_count);
         if (set->count == 0)

@@ -5,7 +5,6 @@
 #include <math.h>
 
 #include "base/mem.h"
-#include "render/culling.h"
 #include "render/materials.h"
 
 static bool make_mesh(struct model *model, struct gl *gl)
@@ -124,19 +123,6 @@ void model_draw_batch(const struct model_batch *batch)
         glMultiDrawElements(GL_TRIANGLES, batch->counts, GL_UNSIGNED_INT, batch->offsets, batch->draws);
 }
 
-static size_t first_cluster(const struct asset_view *file, uint32_t first_index)
-{
-    size_t low = 0, high = file->header->cluster_count;
-    while (low < high) {
-        size_t middle = (low + high) / 2;
-        if (file->clusters[middle].first_index < first_index)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low;
-}
-
 /* Neighbours are drawn as one. */
 static size_t add_draw(struct model_draws *draws, size_t count, uint32_t first_index, uint32_t index_count)
 {
@@ -150,25 +136,6 @@ static size_t add_draw(struct model_draws *draws, size_t count, uint32_t first_i
     draws->counts[count] = (GLsizei)index_count;
     draws->offsets[count] = offset;
     return count + 1;
-}
-
-int model_draw_seen(struct model_draws *draws, const struct model *model, const struct model_batch *batch, const struct culling *culling,
-                    bool double_sided)
-{
-    const struct asset_view *file = &model->file->view;
-    size_t count = 0;
-    uint32_t indices = 0;
-    for (GLsizei d = 0; d < batch->draws; d++) {
-        uint32_t first = (uint32_t)((uintptr_t)batch->offsets[d] / 4), end = first + (uint32_t)batch->counts[d];
-        for (size_t c = first_cluster(file, first); c < file->header->cluster_count && file->clusters[c].first_index < end; c++)
-            if (culling_sees(culling, &file->clusters[c], double_sided)) {
-                count = add_draw(draws, count, file->clusters[c].first_index, file->clusters[c].index_count);
-                indices += file->clusters[c].index_count;
-            }
-    }
-    if (count > 0)
-        glMultiDrawElements(GL_TRIANGLES, draws->counts, GL_UNSIGNED_INT, draws->offsets, (GLsizei)count);
-    return (int)(indices / 3);
 }
 
 void model_draw_closed(struct model_draws *draws, const struct model *model, const struct model_level *level)

@@ -52,16 +52,12 @@ struct model_draws { /* zero-initialise: memory for one batch's draws */
 };
 void model_draws_finish(struct model_draws *draws);
 
-struct culling;
 /* ramp_program: compiled ramp.comp. False: logged; finish copes with what is half-made. */
 bool model_init(struct model *model, struct gl *gl, const struct asset *file, GLuint ramp_program);
 void model_finish(struct model *model);
 /* The coarsest level that errs by at most that. */
 const struct model_level *model_level(const struct model *model, double error_m);
 void model_draw_batch(const struct model_batch *batch);
-/* The same without the clusters that are not seen, where vertices are the cost. Returns how many triangles were drawn. */
-int model_draw_seen(struct model_draws *draws, const struct model *model, const struct model_batch *batch, const struct culling *culling,
-                    bool double_sided);
 /* Only closed bodies (scene/closed.h), all of them. */
 void model_draw_closed(struct model_draws *draws, const struct model *model, const struct model_level *level);
 

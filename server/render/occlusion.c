@@ -6,12 +6,11 @@
 #include <math.h>
 
 #include "base/mem.h"
-#include "gpu/mesh.h"
 #include "gpu/program.h"
 #include "render/matrix.h"
 #include "render/solid.h"
 
-enum { BIND_COMMANDS = 1, STRIP_VERTICES = 14 };
+enum { BIND_COMMANDS = 1, BIND_PLACES = 2, STRIP_VERTICES = 14 };
 enum { FIRST_PART = 8 };              /* of all triangles: drawn before anything is tested; then as many as until then */
 static const int BOX_TRIANGLES = 200; /* an asset of fewer costs no more than its box */
 static const double RIM_PART = 1e-3;  /* of its size, all round: places are 32-bit floats */
@@ -39,9 +38,7 @@ void occlusion_finish(struct occlusion *occlusion)
     program_destroy(&occlusion->program);
     glDeleteVertexArrays(1, &occlusion->vao);
     glDeleteBuffers(1, &occlusion->box_buffer);
-    glDeleteBuffers(1, &occlusion->command_buffer);
     mem_free(occlusion->boxes);
-    mem_free(occlusion->commands);
     mem_free(occlusion->assets);
     *occlusion = (struct occlusion){ 0 };
 }
@@ -81,33 +78,18 @@ static bool make_box(const struct shot *shot, const struct scene_asset *asset, s
     return true;
 }
 
-static void add_commands(struct occlusion *occlusion, const struct model_level *level)
-{
-    for (size_t b = 0; b < level->batch_count; b++) {
-        const struct model_batch *batch = &level->batches[b];
-        mem_grow(&occlusion->commands, &occlusion->command_capacity, occlusion->command_count + (size_t)batch->draws,
-                 sizeof(*occlusion->commands));
-        for (GLsizei d = 0; d < batch->draws; d++)
-            occlusion->commands[occlusion->command_count++] =
-                (struct occlusion_command){ .count = (uint32_t)batch->counts[d],
-                                            .first_index = (uint32_t)((uintptr_t)batch->offsets[d] / 4) };
-    }
-}
-
 /* What is brought forward where faces coincide may come out of its box: that is drawn in any case. */
 static struct occlusion_asset add_asset(struct occlusion *occlusion, const struct picture *picture, int index)
 {
     const struct scene_asset *asset = &picture->stage->scene->assets[index];
     const struct model_level *level = solid_level(picture, index);
-    struct occlusion_asset it = { .boxes_before = occlusion->box_count, .first_command = occlusion->command_count };
-    struct occlusion_box box = { .first_command = (uint32_t)occlusion->command_count };
+    struct occlusion_asset it = { .boxes_before = occlusion->box_count };
+    struct occlusion_box box = { 0 };
     for (size_t b = 0; b < level->batch_count; b++)
         it.triangles += level->batches[b].triangles;
     it.tested = asset->front == 0 && it.triangles >= BOX_TRIANGLES && make_box(&picture->shot, asset, &box);
     if (!it.tested)
         return it;
-    add_commands(occlusion, level);
-    box.command_count = (uint32_t)(occlusion->command_count - it.first_command);
     mem_grow(&occlusion->boxes, &occlusion->box_capacity, occlusion->box_count + 1, sizeof(*occlusion->boxes));
     occlusion->boxes[occlusion->box_count++] = box;
     return it;
@@ -115,25 +97,11 @@ static struct occlusion_asset add_asset(struct occlusion *occlusion, const struc
 
 /* --- a picture ------------------------------------------------------------------------------------------------------------ */
 
-static bool upload(struct occlusion *occlusion, GLuint *buffer, size_t *room, size_t bytes, const void *data)
-{
-    if (*room < bytes) {
-        glDeleteBuffers(1, buffer);
-        *room = bytes + bytes / 2;
-        *buffer = mesh_buffer(occlusion->log, "boxes of assets", *room, NULL, GL_DYNAMIC_STORAGE_BIT);
-        if (!*buffer)
-            *room = 0;
-    }
-    if (*buffer)
-        glNamedBufferSubData(*buffer, 0, (GLsizeiptr)bytes, data);
-    return *buffer != 0;
-}
-
 bool occlusion_begin(struct occlusion *occlusion, const struct picture *picture, int least_triangles)
 {
     size_t count = picture->visible_count;
     int64_t triangles = 0;
-    occlusion->box_count = occlusion->command_count = occlusion->asset_count = 0;
+    occlusion->box_count = occlusion->asset_count = 0;
     if (least_triangles == INT_MAX)
         return false;
     mem_grow(&occlusion->assets, &occlusion->asset_capacity, count + 1, sizeof(*occlusion->assets));
@@ -143,14 +111,22 @@ bool occlusion_begin(struct occlusion *occlusion, const struct picture *picture,
     }
     occlusion->assets[count] = (struct occlusion_asset){ .boxes_before = occlusion->box_count };
     occlusion->asset_count = count;
-    if (triangles < least_triangles || occlusion->box_count == 0 ||
-        !upload(occlusion, &occlusion->box_buffer, &occlusion->box_room, occlusion->box_count * sizeof(*occlusion->boxes),
-                occlusion->boxes) ||
-        !upload(occlusion, &occlusion->command_buffer, &occlusion->command_room, occlusion->command_count * sizeof(*occlusion->commands),
-                occlusion->commands)) {
+    if (triangles < least_triangles)
         occlusion->box_count = occlusion->asset_count = 0;
+    return occlusion->box_count > 0;
+}
+
+void occlusion_decides(struct occlusion *occlusion, const struct occlusion_asset *asset, size_t first_command, size_t count)
+{
+    occlusion->boxes[asset->boxes_before].first_place = (uint32_t)first_command;
+    occlusion->boxes[asset->boxes_before].place_count = (uint32_t)count;
+}
+
+bool occlusion_upload(struct occlusion *occlusion)
+{
+    if (!bundles_refill(occlusion->log, &occlusion->box_buffer, &occlusion->box_room, occlusion->box_count * sizeof(*occlusion->boxes),
+                        occlusion->boxes))
         return false;
-    }
     glVertexArrayVertexBuffer(occlusion->vao, 0, occlusion->box_buffer, 0, sizeof(struct occlusion_box));
     return true;
 }
@@ -169,14 +145,15 @@ size_t occlusion_round(const struct occlusion *occlusion, size_t first)
     return end - first;
 }
 
-void occlusion_test(const struct occlusion *occlusion, size_t first, size_t end)
+void occlusion_test(const struct occlusion *occlusion, const struct bundles *bundles, size_t first, size_t end)
 {
     size_t first_box = occlusion->assets[first].boxes_before, count = occlusion->assets[end].boxes_before - first_box;
     if (count == 0)
         return;
     glUseProgram(occlusion->program);
     glBindVertexArray(occlusion->vao);
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, BIND_COMMANDS, occlusion->command_buffer);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, BIND_COMMANDS, bundles->command_buffer);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, BIND_PLACES, bundles->place_buffer);
     glDisable(GL_CULL_FACE);
     glPolygonOffset(0, 0);
     glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
@@ -184,26 +161,22 @@ void occlusion_test(const struct occlusion *occlusion, size_t first, size_t end)
     glDrawArraysInstancedBaseInstance(GL_TRIANGLE_STRIP, 0, STRIP_VERTICES, (GLsizei)count, (GLuint)first_box);
     glDepthMask(GL_TRUE);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, BIND_COMMANDS, 0);
+    glBindBuffersBase(GL_SHADER_STORAGE_BUFFER, BIND_COMMANDS, 2, NULL);
     glMemoryBarrier(GL_COMMAND_BARRIER_BIT);
 }
 
-void occlusion_draw_batch(const struct occlusion *occlusion, size_t command, const struct model_batch *batch)
-{
-    glBindBuffer(GL_DRAW_INDIRECT_BUFFER, occlusion->command_buffer);
-    glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT, (const void *)(command * sizeof(struct occlusion_command)), batch->draws, 0);
-}
-
-size_t occlusion_count(const struct occlusion *occlusion)
+size_t occlusion_count(const struct occlusion *occlusion, const struct bundles *bundles)
 {
     size_t count = 0, first_round = occlusion_round(occlusion, 0);
     for (size_t i = first_round; i < occlusion->asset_count; i++) {
-        struct occlusion_command command;
-        size_t offset = occlusion->assets[i].first_command * sizeof(command);
-        if (!occlusion->assets[i].tested)
+        const struct occlusion_asset *asset = &occlusion->assets[i];
+        const struct occlusion_box *box = &occlusion->boxes[asset->boxes_before];
+        struct bundle_command command;
+        if (!asset->tested || box->place_count == 0)
             continue;
         glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-        glGetNamedBufferSubData(occlusion->command_buffer, (GLintptr)offset, sizeof(command), &command);
+        glGetNamedBufferSubData(bundles->command_buffer, (GLintptr)(bundles->place_of[box->first_place] * sizeof(command)),
+                                sizeof(command), &command);
         count += command.instances == 0;
     }
     return count;

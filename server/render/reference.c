@@ -139,10 +139,11 @@ bool reference_bind(struct reference *reference, int asset, GLuint sensors)
     return true;
 }
 
-void reference_draw_batch(const struct model_batch *batch)
+void reference_draw(const struct bundle_command *commands, size_t count)
 {
-    for (GLsizei i = 0; i < batch->draws; i++) {
-        glUniform1i(FIRST_TRIANGLE, (GLint)((uintptr_t)batch->offsets[i] / 12));
-        glDrawElements(GL_TRIANGLES, batch->counts[i], GL_UNSIGNED_INT, batch->offsets[i]);
+    for (size_t i = 0; i < count; i++) {
+        glUniform1i(FIRST_TRIANGLE, (GLint)(commands[i].first_index / 3));
+        glDrawElementsInstancedBaseInstance(GL_TRIANGLES, (GLsizei)commands[i].count, GL_UNSIGNED_INT,
+                                            (const void *)((uintptr_t)commands[i].first_index * 4), 1, commands[i].base_instance);
     }
 }

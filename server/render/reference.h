@@ -5,6 +5,7 @@
 #ifndef RENDER_REFERENCE_H
 #define RENDER_REFERENCE_H
 #include "field/field.h"
+#include "render/bundles.h"
 #include "render/stage.h"
 
 struct reference_model { /* of one asset file */
@@ -23,6 +24,6 @@ void reference_finish(struct reference *reference); /* a zeroed one is fine */
 GLuint reference_sensors(const struct reference *reference, int asset, const struct field_params *params);
 /* For the next draws of that asset. False: out of GPU memory, logged. */
 bool reference_bind(struct reference *reference, int asset, GLuint sensors);
-void reference_draw_batch(const struct model_batch *batch); /* the program in use is one that is made with PER_FRAGMENT */
+void reference_draw(const struct bundle_command *commands, size_t count); /* the program in use is one that is made with PER_FRAGMENT */
 
 #endif

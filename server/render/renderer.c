@@ -289,7 +289,7 @@ bool renderer_take_up(struct renderer *renderer, struct picture *picture)
 static bool has_lost(const struct picture *picture)
 {
     for (size_t i = 0; i < picture->visible_count; i++)
-        if (picture->fields[picture->visible[i]] && !picture->fields[picture->visible[i]]->buffer)
+        if (picture->fields[picture->visible[i]] && !picture->fields[picture->visible[i]]->slice)
             return true;
     return false;
 }
@@ -434,7 +434,12 @@ void renderer_leave_out(struct renderer *renderer, int least_triangles)
     renderer->solid.least_hiding = least_triangles;
 }
 
+void renderer_draw_one_by_one(struct renderer *renderer, bool one_by_one)
+{
+    renderer->solid.one_by_one = one_by_one;
+}
+
 size_t renderer_left_out(const struct renderer *renderer)
 {
-    return occlusion_count(&renderer->solid.occlusion);
+    return occlusion_count(&renderer->solid.occlusion, &renderer->solid.solids);
 }

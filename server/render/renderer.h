@@ -29,6 +29,8 @@ void renderer_use_gl(struct renderer *renderer, bool always);
 /* What other assets hide is left out of pictures of so many triangles. INT_MAX: of none, but clusters that are not seen. From the
    beginning: what pays. */
 void renderer_leave_out(struct renderer *renderer, int least_triangles);
+/* By GL each asset is drawn by calls of its own, not with all that are alike: to compare. */
+void renderer_draw_one_by_one(struct renderer *renderer, bool one_by_one);
 /* So many assets were left out of the last picture that GL drew; waits for it. */
 size_t renderer_left_out(const struct renderer *renderer);
 

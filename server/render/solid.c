@@ -11,12 +11,12 @@
 #include "render/matrix.h"
 
 /* Uniform locations and texture units, as in the shaders. */
-enum { CLIP_FROM_FILE = 0, EYE_FROM_FILE = 1, SUN_FROM_FILE = 1, MATERIAL = 2, TEXTURES = 3, EYE_FROM_NORMAL = 4 };
+enum { MATERIAL = 2, TEXTURES = 3 };
 /* Of how much depth changes from pixel to pixel, for each step of scene_asset.front: GPUs round corners to parts of a pixel, each triangle
    in its own way. */
 static const double FORWARD_SLOPE = 0.05;
 static const double SUN_SLACK_TEXELS = 3;                                           /* against surfaces that shade themselves */
-enum { UNIT_PALETTE = 0, UNIT_RAMPS = 1, UNIT_SUN_MAP = 2, UNIT_MAPS = 3, UNIT_LINES = 15 };
+enum { UNIT_PALETTE = 0, UNIT_RAMPS = 1, UNIT_SUN_MAP = 2, UNIT_MAPS = 3, UNIT_LIGHTS = 12, UNIT_SCALARS = 13, UNIT_LINES = 15 };
 
 /* From the beginning. Of textures the moving tier has only the holes that they cut; rich scales and gloss go with a field. */
 static bool is_used(int tier, int variant)
@@ -47,7 +47,7 @@ static GLuint make_program(struct log *log, enum solid_kind kind, int tier, int 
 bool solid_init(struct solid *solid, struct log *log)
 {
     bool good = occlusion_init(&solid->occlusion, log);
-    solid->log = log;
+    solid->log = solid->solids.log = solid->blended.log = log;
     for (int tier = 0; tier < 2; tier++)
         for (int variant = 0; variant < SOLID_VARIANTS; variant++)
             if (is_used(tier, variant)) {
@@ -60,7 +60,8 @@ bool solid_init(struct solid *solid, struct log *log)
 void solid_finish(struct solid *solid)
 {
     occlusion_finish(&solid->occlusion);
-    model_draws_finish(&solid->draws);
+    bundles_finish(&solid->solids);
+    bundles_finish(&solid->blended);
     for (int i = 0; i < SOLID_KINDS * 2 * SOLID_VARIANTS; i++)
         program_destroy(&solid->programs[i / (2 * SOLID_VARIANTS)][i / SOLID_VARIANTS % 2][i % SOLID_VARIANTS]);
 }
@@ -78,9 +79,8 @@ static enum solid_kind kind_of(const struct picture *picture, const struct field
     return reference ? SOLID_PER_FRAGMENT : SOLID_PICTURE;
 }
 
-/* cut: some of the asset is cut away. 0: it could not be made; logged. */
-static GLuint choose_program(struct solid *solid, const struct picture *picture, const struct model_material *material,
-                             const struct fields_entry *field, bool cut)
+/* cut: some of the asset is cut away. */
+static int choose_variant(const struct picture *picture, const struct model_material *material, const struct fields_entry *field, bool cut)
 {
     const struct view *view = picture->view;
     int variant = field ? SOLID_FIELD : 0;
@@ -94,15 +94,26 @@ static GLuint choose_program(struct solid *solid, const struct picture *picture,
         variant |= SOLID_TEXTURED;
     if (view->tier == TIER_STILL && material->mask && (!field || view->look == LOOK_GLOSSY || material->masked))
         variant |= SOLID_TEXTURED;
-    enum solid_kind kind = kind_of(picture, field);
     if (picture->measured)
         variant &= SOLID_FIELD;
-    if (cut)
-        variant |= SOLID_CLIP;
-    GLuint *program = &solid->programs[kind][view->tier][variant];
+    return variant | (cut ? SOLID_CLIP : 0);
+}
+
+/* 0: it could not be made; logged. */
+static GLuint choose_program(struct solid *solid, const struct picture *picture, const struct fields_entry *field, int variant)
+{
+    enum solid_kind kind = kind_of(picture, field);
+    int tier = picture->view->tier;
+    GLuint *program = &solid->programs[kind][tier][variant];
     if (!*program)
-        *program = make_program(solid->log, kind, view->tier, variant);
+        *program = make_program(solid->log, kind, tier, variant);
     return *program;
+}
+
+static bool looks_at_material(const struct picture *picture, int variant)
+{
+    bool rich_light = picture->view->tier == TIER_STILL && variant & SOLID_GLOSSY;
+    return !picture->measured && (!(variant & SOLID_FIELD) || variant & SOLID_TEXTURED || rich_light);
 }
 
 double solid_sun_slack(const struct picture *picture)
@@ -110,52 +121,37 @@ double solid_sun_slack(const struct picture *picture)
     return SUN_SLACK_TEXELS * picture->light->texel_m / picture->light->depth_m;
 }
 
-static void set_placement(const struct picture *picture, const struct scene_asset *asset)
+static void to_rows(const double matrix[16], float rows[3][4])
 {
-    const struct shot *shot = &picture->shot;
-    double clip_from_file[16], eye_from_file[16], sun_from_file[16];
-    float matrix[16], normals[9];
-    matrix_multiply(shot->clip_from_plant, asset->placement, clip_from_file);
-    shot_bring_forward(shot, asset, clip_from_file);
-    matrix_to_float(clip_from_file, matrix);
-    glUniformMatrix4fv(CLIP_FROM_FILE, 1, GL_FALSE, matrix);
-    if (picture->measured)
-        return;
-    if (picture->view->tier == TIER_MOVING) {
-        matrix_multiply(picture->light->texture_from_plant, asset->placement, sun_from_file);
-        sun_from_file[14] += solid_sun_slack(picture);
-        matrix_to_float(sun_from_file, matrix);
-        glUniformMatrix4fv(SUN_FROM_FILE, 1, GL_FALSE, matrix);
-        return;
-    }
-    matrix_translation((double[3]){ -shot->eye_m[0], -shot->eye_m[1], -shot->eye_m[2] }, eye_from_file);
-    matrix_multiply(eye_from_file, asset->placement, eye_from_file);
-    matrix_to_float(eye_from_file, matrix);
-    glUniformMatrix4fv(EYE_FROM_FILE, 1, GL_FALSE, matrix);
-    matrix_normals(asset->placement, normals);
-    glUniformMatrix3fv(EYE_FROM_NORMAL, 1, GL_FALSE, normals);
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 4; c++)
+            rows[r][c] = (float)matrix[4 * c + r];
 }
 
-/* cut: its inner side shows. */
-static void set_material(const struct picture *picture, const struct model_material *material, const struct model_batch *batch,
-                         bool field, bool cut)
+static void place_instance(const struct picture *picture, int index, const struct fields_entry *field, struct bundle_instance *out)
 {
-    if (batch->double_sided || cut)
-        glDisable(GL_CULL_FACE);
-    else
-        glEnable(GL_CULL_FACE);
-    bool holes = picture->view->tier == TIER_MOVING && material->masked;
-    if (picture->measured || (picture->view->tier == TIER_MOVING && field && !holes))
-        return;
-    glUniform1i(MATERIAL, (GLint)batch->material);
-    if (holes && material->maps[MODEL_BASE_COLOR])
-        glBindTextureUnit(UNIT_MAPS + MODEL_BASE_COLOR, material->maps[MODEL_BASE_COLOR]);
-    if (picture->view->tier == TIER_MOVING)
-        return;
-    glUniform1i(TEXTURES, material->mask | material->second << 8);
-    for (GLuint i = 0; i < MODEL_MAPS; i++)
-        if (material->maps[i])
-            glBindTextureUnit(UNIT_MAPS + i, material->maps[i]);
+    const struct shot *shot = &picture->shot;
+    const struct scene_asset *asset = &picture->stage->scene->assets[index];
+    double clip_from_file[16], from_file[16];
+    float normals[9];
+    matrix_multiply(shot->clip_from_plant, asset->placement, clip_from_file);
+    shot_bring_forward(shot, asset, clip_from_file);
+    matrix_to_float(clip_from_file, out->clip_from_file);
+    if (picture->view->tier == TIER_MOVING) {
+        matrix_multiply(picture->light->texture_from_plant, asset->placement, from_file);
+        from_file[14] += solid_sun_slack(picture);
+    } else {
+        matrix_translation((double[3]){ -shot->eye_m[0], -shot->eye_m[1], -shot->eye_m[2] }, from_file);
+        matrix_multiply(from_file, asset->placement, from_file);
+    }
+    to_rows(from_file, out->from_file);
+    matrix_normals(asset->placement, normals);
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++)
+            out->normals[r][c] = normals[3 * c + r];
+    out->normals[0][3] = (float)picture->light->baked[index]->block;
+    out->normals[1][3] = field && field->slice ? (float)field->slice->block : -1;
+    out->normals[2][3] = 0;
 }
 
 const struct model_level *solid_level(const struct picture *picture, int asset)
@@ -163,54 +159,111 @@ const struct model_level *solid_level(const struct picture *picture, int asset)
     return detail_level(picture, asset, picture->reference && !picture->measured ? 0 : picture->error_px);
 }
 
-/* One asset's surfaces, those that are blended or those that are not. A field is never blended: it would mix its colours. seen: not NULL:
-   it is drawn by these commands, if others do not hide it. */
-static void draw_asset(struct solid *solid, const struct picture *picture, int index, bool blend, const struct occlusion_asset *seen)
+/* One asset's surfaces, those that are blended or those that are not. A field is never blended: it would mix its colours. hidden: it is
+   drawn only if the GPU says so. */
+static void gather(struct solid *solid, struct bundles *bundles, const struct picture *picture, int index, bool hidden)
 {
-    const struct model *model = picture->stage->of_asset[index];
+    const struct stage *stage = picture->stage;
+    const struct model *model = stage->of_asset[index];
     const struct model_level *level = solid_level(picture, index);
     const struct fields_entry *field = picture->fields[index];
-    const struct clip *clip = &picture->view->visibility.clip;
-    const struct scene_asset *asset = &picture->stage->scene->assets[index];
-    bool cut = clip_touches(clip, asset->bounds_min_m, asset->bounds_max_m);
+    const struct scene_asset *asset = &stage->scene->assets[index];
+    bool blend = bundles == &solid->blended, alone = is_per_fragment(picture, field);
+    bool all = alone || solid->least_hiding != INT_MAX || picture->measured, placed = false;
+    struct bundle_state state = { .model = model,
+                                  .light = picture->light->baked[index]->page,
+                                  .field = field && field->slice ? field->slice->page : NULL,
+                                  .front = asset->front,
+                                  .alone = alone ? index : -1,
+                                  .mirrored = stage_mirrored(asset),
+                                  .blend = blend,
+                                  .cut = clip_touches(&picture->view->visibility.clip, asset->bounds_min_m, asset->bounds_max_m) };
     struct culling culling;
-    GLuint bound = 0;
-    size_t command = seen ? seen->first_command : 0;
-    culling_init(&culling, &picture->shot, asset);
-    if (cut)
-        stage_clip_begin(clip);
-    for (size_t b = 0; b < level->batch_count; command += (size_t)level->batches[b++].draws) {
+    uint32_t instance = 0;
+    for (size_t b = 0; b < level->batch_count; b++) {
         const struct model_batch *batch = &level->batches[b];
-        const struct model_material *material = &model->materials[batch->material];
-        GLuint program = choose_program(solid, picture, material, field, cut);
-        if (!program || (batch->blend && !field) != blend)
+        int variant = choose_variant(picture, &model->materials[batch->material], field, state.cut);
+        if ((batch->blend && !field) != blend)
             continue;
-        if (!bound) {
-            stage_set_front_face(asset);
-            glPolygonOffset((float)(FORWARD_SLOPE * asset->front), 0);
-            mesh_bind(&model->mesh, picture->light->baked[index], field ? field->buffer : 0);
-            glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, model->material_buffer);
-            glBindTextureUnit(UNIT_RAMPS, picture->view->look == LOOK_MATERIALS ? model->own_ramps : model->ramps);
-            if (is_per_fragment(picture, field) && !reference_bind(picture->reference, index, field->sensors))
-                return;
+        state.program = choose_program(solid, picture, field, variant);
+        if (!state.program)
+            continue;
+        state.two_sided = batch->double_sided || state.cut; /* the inner side of what is cut shows */
+        state.material = looks_at_material(picture, variant) ? (int)batch->material : -1;
+        if (!placed) {
+            struct bundle_instance place;
+            place_instance(picture, index, field, &place);
+            instance = bundles_add_instance(bundles, &place);
+            if (!all)
+                culling_init(&culling, &picture->shot, asset);
+            placed = true;
         }
-        if (bound != program) {
-            glUseProgram(program);
-            set_placement(picture, asset);
-            bound = program;
-        }
-        set_material(picture, material, batch, field != NULL, cut);
-        if (is_per_fragment(picture, field))
-            reference_draw_batch(batch);
-        else if (seen)
-            occlusion_draw_batch(&solid->occlusion, command, batch);
-        else if (solid->least_hiding == INT_MAX && !picture->measured)
-            solid->triangles += model_draw_seen(&solid->draws, model, batch, &culling, batch->double_sided || cut);
+        size_t bundle = bundles_choose(bundles, &state, (size_t)(model - stage->models), blend);
+        if (all)
+            bundles_add_batch(bundles, bundle, batch, instance, !hidden);
         else
-            model_draw_batch(batch);
+            solid->triangles += bundles_add_seen(bundles, bundle, batch, instance, &culling);
     }
-    if (cut)
-        stage_clip_end(clip);
+}
+
+/* --- drawing ---------------------------------------------------------------------------------------------------------------- */
+
+static void set_material(const struct picture *picture, const struct bundle_state *state)
+{
+    const struct model_material *material = &state->model->materials[state->material];
+    glUniform1i(MATERIAL, state->material);
+    if (picture->view->tier == TIER_STILL)
+        glUniform1i(TEXTURES, material->mask | material->second << 8);
+    if (material->mask)
+        glBindTextures(UNIT_MAPS, MODEL_MAPS, material->maps);
+}
+
+/* was: what is set; NULL: nothing. */
+static void set_state(const struct bundles *bundles, const struct picture *picture, const struct bundle_state *is,
+                      const struct bundle_state *was)
+{
+    const struct clip *clip = &picture->view->visibility.clip;
+    if (!was || is->program != was->program)
+        glUseProgram(is->program);
+    if (!was || is->two_sided != was->two_sided)
+        (is->two_sided ? glDisable : glEnable)(GL_CULL_FACE);
+    if (!was || is->mirrored != was->mirrored)
+        glFrontFace(is->mirrored ? GL_CW : GL_CCW);
+    if (!was || is->front != was->front)
+        glPolygonOffset((float)(FORWARD_SLOPE * is->front), 0);
+    if (is->cut != (was && was->cut))
+        (is->cut ? stage_clip_begin : stage_clip_end)(clip);
+    if (!was || is->model != was->model) {
+        mesh_bind_instances(&is->model->mesh, bundles->instance_buffer);
+        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, is->model->material_buffer);
+        glBindTextureUnit(UNIT_RAMPS, picture->view->look == LOOK_MATERIALS ? is->model->own_ramps : is->model->ramps);
+    }
+    if (!was || is->light != was->light)
+        glBindTextureUnit(UNIT_LIGHTS, is->light->texture);
+    if (is->field && (!was || is->field != was->field))
+        glBindTextureUnit(UNIT_SCALARS, is->field->texture);
+    if (is->material >= 0 && (!was || is->program != was->program || is->model != was->model || is->material != was->material))
+        set_material(picture, is);
+}
+
+/* The bundles from `first` on. */
+static void draw_bundles(const struct bundles *bundles, const struct picture *picture, size_t first, size_t end)
+{
+    const struct bundle_state *was = NULL;
+    for (size_t i = first; i < end; i++) {
+        const struct bundle *bundle = &bundles->at[i];
+        const struct bundle_state *is = &bundle->state;
+        if (bundle->count == 0)
+            continue;
+        set_state(bundles, picture, is, was);
+        was = is;
+        if (is->alone < 0)
+            bundles_draw(bundles, bundle);
+        else if (reference_bind(picture->reference, is->alone, picture->fields[is->alone]->sensors))
+            reference_draw(&bundles->sorted[bundle->first], bundle->count);
+    }
+    if (was && was->cut)
+        stage_clip_end(&picture->view->visibility.clip);
 }
 
 static void begin_pass(const struct picture *picture)
@@ -224,8 +277,6 @@ static void begin_pass(const struct picture *picture)
     glBindTextureUnit(UNIT_LINES, picture->palette.lines);
     glBindTextureUnit(UNIT_SUN_MAP, picture->light->sun_map);
     glVertexAttrib4f(MESH_COLOR, 1, 1, 1, 1);
-    glVertexAttrib1f(MESH_SCALAR, 0); /* of a field without a buffer: no data */
-    glVertexAttrib2f(MESH_FLAGS, 1, 0);
 }
 
 static void end_pass(const struct picture *picture)
@@ -234,6 +285,13 @@ static void end_pass(const struct picture *picture)
     glDisable(GL_CULL_FACE);
     glDisable(GL_POLYGON_OFFSET_FILL);
     gl_pass_leave(picture->stage->gl, "solid");
+}
+
+static void draw_gathered(struct bundles *bundles, const struct picture *picture)
+{
+    if (bundles->command_count > 0 && bundles_upload(bundles, false))
+        draw_bundles(bundles, picture, 0, bundles->count);
+    bundles_begin(bundles, picture->stage->model_count);
 }
 
 static bool leaves_out(struct solid *solid, const struct picture *picture)
@@ -245,25 +303,47 @@ static bool leaves_out(struct solid *solid, const struct picture *picture)
 static void draw_seen(struct solid *solid, const struct picture *picture)
 {
     struct occlusion *occlusion = &solid->occlusion;
+    struct bundles *bundles = &solid->solids;
+    size_t ends[OCCLUSION_ROUNDS], rounds = 0;
     for (size_t first = 0, end; first < picture->visible_count; first = end) {
         end = first + occlusion_round(occlusion, first);
-        if (first > 0)
-            occlusion_test(occlusion, first, end);
-        for (size_t i = first; i < end; i++)
-            draw_asset(solid, picture, picture->visible[i], false, first > 0 && occlusion->assets[i].tested ? &occlusion->assets[i] : NULL);
+        bundles->from = bundles->count;
+        for (size_t i = first; i < end; i++) {
+            struct occlusion_asset *asset = &occlusion->assets[i];
+            size_t command = bundles->command_count;
+            bool hidden = first > 0 && asset->tested;
+            gather(solid, bundles, picture, picture->visible[i], hidden);
+            if (hidden)
+                occlusion_decides(occlusion, asset, command, bundles->command_count - command);
+        }
+        ends[rounds++] = bundles->count;
     }
+    bool good = bundles_upload(bundles, true) && occlusion_upload(occlusion);
+    for (size_t first = 0, end, round = 0; good && first < picture->visible_count; first = end, round++) {
+        end = first + occlusion_round(occlusion, first);
+        if (round > 0)
+            occlusion_test(occlusion, bundles, first, end);
+        draw_bundles(bundles, picture, round ? ends[round - 1] : 0, ends[round]);
+    }
+    bundles->command_count = 0;
 }
 
 size_t solid_draw_some(struct solid *solid, const struct picture *picture, size_t first, int triangles)
 {
+    struct bundles *bundles = &solid->solids;
     int before = solid->triangles;
     begin_pass(picture);
+    bundles_begin(bundles, picture->stage->model_count);
     if (first == 0 && triangles == INT_MAX && leaves_out(solid, picture)) {
         draw_seen(solid, picture);
         first = picture->visible_count;
     }
-    while (first < picture->visible_count && solid->triangles - before < triangles)
-        draw_asset(solid, picture, picture->visible[first++], false, NULL);
+    while (first < picture->visible_count && solid->triangles - before < triangles) {
+        gather(solid, bundles, picture, picture->visible[first++], false);
+        if (solid->one_by_one)
+            draw_gathered(bundles, picture);
+    }
+    draw_gathered(bundles, picture);
     end_pass(picture);
     return first;
 }
@@ -274,8 +354,13 @@ void solid_draw_blended(struct solid *solid, const struct picture *picture)
     if (!picture->measured)
         glEnable(GL_BLEND);
     glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE);
-    for (size_t i = picture->visible_count; i-- > 0;)
-        draw_asset(solid, picture, picture->visible[i], true, NULL);
+    bundles_begin(&solid->blended, picture->stage->model_count);
+    for (size_t i = picture->visible_count; i-- > 0;) {
+        gather(solid, &solid->blended, picture, picture->visible[i], false);
+        if (solid->one_by_one)
+            draw_gathered(&solid->blended, picture);
+    }
+    draw_gathered(&solid->blended, picture);
     end_pass(picture);
 }
 

@@ -2,6 +2,7 @@
 /* The pass that draws the plant itself, in either tier. Thread: the one of the GL context. */
 #ifndef RENDER_SOLID_H
 #define RENDER_SOLID_H
+#include "render/bundles.h"
 #include "render/occlusion.h"
 #include "render/picture.h"
 
@@ -16,7 +17,8 @@ struct solid {
     struct log *log;
     struct occlusion occlusion;
     int least_hiding; /* of pictures of so many triangles what others hide is left out; INT_MAX: of none, but clusters that are not seen */
-    struct model_draws draws;
+    bool one_by_one; /* each asset by calls of its own: to compare */
+    struct bundles solids, blended;
     int triangles; /* drawn without those that are not seen; whoever wants to know sets it to 0 before */
     GLuint programs[SOLID_KINDS][2][SOLID_VARIANTS]; /* by tier; 0: not used, or not made yet */
 };

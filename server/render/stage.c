@@ -183,7 +183,7 @@ void stage_draw_depth(const struct stage *stage, const double clip_from_plant[16
     matrix_to_float(clip_from_file, matrix);
     glDisable(GL_CULL_FACE);
     stage_clip_begin(clip);
-    mesh_bind(&model->mesh, 0, 0);
+    mesh_bind(&model->mesh);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, model->material_buffer);
     for (size_t b = 0; b < level->batch_count; b++) {
         const struct model_batch *batch = &level->batches[b];

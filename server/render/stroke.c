@@ -32,7 +32,7 @@ static GLuint copy_buffer(struct log *log, GLuint from)
 {
     GLint64 bytes = 0;
     glGetNamedBufferParameteri64v(from, GL_BUFFER_SIZE, &bytes);
-    GLuint copy = mesh_buffer(log, "field of a picture", (size_t)bytes, NULL, 0);
+    GLuint copy = mesh_buffer(log, "sensors of a picture", (size_t)bytes, NULL, 0);
     if (copy)
         glCopyNamedBufferSubData(from, copy, 0, 0, bytes);
     return copy;
@@ -44,9 +44,10 @@ static bool copy_field(const struct stroke *stroke, const struct fields_entry *f
     struct log *log = stroke->picture.stage->gl->log;
     *copy = *from;
     copy->shown = NULL;
-    copy->buffer = copy->sensors = 0;
+    copy->sensors = 0;
+    copy->slice = stroke->plate ? NULL : pool_hold(from->slice);
     if (!stroke->plate)
-        return (copy->buffer = copy_buffer(log, from->buffer)) && (!from->sensors || (copy->sensors = copy_buffer(log, from->sensors)));
+        return !from->sensors || (copy->sensors = copy_buffer(log, from->sensors));
     copy->shown = mem_try_array(from->ready, sizeof(*copy->shown));
     if (!copy->shown) {
         log_err(log, "field of a picture: out of memory: %zu vertices", from->ready);
@@ -63,7 +64,7 @@ bool stroke_hold_fields(struct stroke *stroke)
     for (size_t i = 0; i < stroke->picture.visible_count; i++) {
         int asset = stroke->visible[i];
         const struct fields_entry *from = stroke->fields[asset];
-        if (!from || !from->buffer)
+        if (!from || !from->slice)
             continue;
         if (!copy_field(stroke, from, &stroke->copies[asset]))
             return false;
@@ -75,7 +76,8 @@ bool stroke_hold_fields(struct stroke *stroke)
 void stroke_finish(struct stroke *stroke)
 {
     for (size_t i = 0; stroke->copies && i < stroke->picture.stage->scene->asset_count; i++) {
-        glDeleteBuffers(2, (GLuint[2]){ stroke->copies[i].buffer, stroke->copies[i].sensors });
+        pool_release(&stroke->copies[i].slice);
+        glDeleteBuffers(1, &stroke->copies[i].sensors);
         mem_free(stroke->copies[i].shown);
     }
     light_release(stroke->light);

@@ -18,7 +18,7 @@ struct stroke {
     struct flight *flight;   /* it is given to the GPU, whole; NULL: not yet */
     struct light_set *light; /* held from when it is ready; NULL: not yet */
     const struct fields_entry **fields; /* per asset */
-    struct fields_entry *copies;        /* per asset, with buffers of their own; NULL: drawn at once, no copies needed */
+    struct fields_entry *copies;        /* per asset; the slices are held fast; NULL: drawn at once, no copies needed */
     int *visible, *in_tile;
     struct isoline_points isolines;
     int block_px, columns, rows; /* blocks of cells; in a block the cells follow a Z, so that tiles of any size follow one another */

@@ -29,7 +29,7 @@ static void *bytes_of(const struct stage *stage, const struct light_set *set, si
 {
     *count = 4 * stage->of_asset[asset]->mesh.vertex_count;
     uint8_t *bytes = malloc(*count);
-    glGetNamedBufferSubData(set->baked[asset], 0, (GLsizeiptr)*count, bytes);
+    glGetNamedBufferSubData(set->baked[asset]->page->buffer, (GLintptr)pool_offset(set->baked[asset]), (GLsizeiptr)*count, bytes);
     return bytes;
 }
 

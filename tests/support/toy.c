@@ -10,7 +10,7 @@
 #include "base/mem.h"
 #include "value/quality.h"
 
-enum { MAX_ASSETS = 32, MAX_TAGS = 1024 };
+enum { MAX_ASSETS = 512, MAX_TAGS = 1024 };
 
 struct toy *toy_create(void)
 {
@@ -47,10 +47,12 @@ void toy_destroy(struct toy **toy_ptr)
     struct plant *plant = &toy->plant;
     for (size_t i = 0; i < toy->scene.asset_count; i++) {
         struct asset *file = toy->scene.assets[i].file;
-        asset_forget_closed(file);
-        free((void *)file->view.header);
-        mem_free(file->path);
-        mem_free(file);
+        if (--file->refs == 0) {
+            asset_forget_closed(file);
+            free((void *)file->view.header);
+            mem_free(file->path);
+            mem_free(file);
+        }
         mem_free(toy->scene.assets[i].sensors);
         mem_free(plant->assets[i].id);
         mem_free(plant->assets[i].tag);
@@ -144,6 +146,15 @@ static struct asset *make_file(const char *id, const struct shape *shape, const 
     return file;
 }
 
+static void place_point(const double placement[16], const float point_m[3], double out[3])
+{
+    for (int r = 0; r < 3; r++) {
+        out[r] = placement[12 + r];
+        for (int c = 0; c < 3; c++)
+            out[r] += placement[4 * c + r] * (double)point_m[c];
+    }
+}
+
 static void add_tags(struct toy *toy, struct scene_asset *asset, int index)
 {
     const struct asset_view *view = &asset->file->view;
@@ -161,14 +172,33 @@ static void add_tags(struct toy *toy, struct scene_asset *asset, int index)
                                                    .has_position = true,
                                                    .limits = { NAN, NAN, NAN, NAN } };
         *sensor = (struct scene_sensor){ .tag = tag, .column = (int)i, .surface_distance_m = view->sensors[i].surface_distance_m };
+        place_point(asset->placement, view->sensors[i].position_m, sensor->position_m);
+        place_point(asset->placement, view->sensors[i].surface_m, sensor->surface_m);
+    }
+}
+
+static void find_bounds(struct scene_asset *asset)
+{
+    const struct asset_header *header = asset->file->view.header;
+    for (int c = 0; c < 3; c++) {
+        asset->bounds_min_m[c] = DBL_MAX;
+        asset->bounds_max_m[c] = -DBL_MAX;
+    }
+    for (int corner = 0; corner < 8; corner++) {
+        float point_m[3];
+        double out[3];
+        for (int c = 0; c < 3; c++)
+            point_m[c] = corner >> c & 1 ? header->bounds_max_m[c] : header->bounds_min_m[c];
+        place_point(asset->placement, point_m, out);
         for (int c = 0; c < 3; c++) {
-            sensor->position_m[c] = view->sensors[i].position_m[c] + asset->placement[12 + c];
-            sensor->surface_m[c] = view->sensors[i].surface_m[c] + asset->placement[12 + c];
+            asset->bounds_min_m[c] = fmin(asset->bounds_min_m[c], out[c]);
+            asset->bounds_max_m[c] = fmax(asset->bounds_max_m[c], out[c]);
         }
     }
 }
 
-int toy_add(struct toy *toy, const char *id, struct shape *shape, const double at_m[3], const double (*sensors)[3], size_t sensor_count)
+/* Takes the file. */
+static int add(struct toy *toy, const char *id, struct asset *file, const double placement[16])
 {
     int index = (int)toy->scene.asset_count++;
     struct scene_asset *asset = &toy->scene.assets[index];
@@ -176,18 +206,33 @@ int toy_add(struct toy *toy, const char *id, struct shape *shape, const double a
     toy->plant.asset_count = toy->scene.asset_count;
     *plant_asset = (struct plant_asset){ .id = mem_strdup(id), .tag = mem_strdup(id), .unit_m = 1, .up = AXIS_Z };
     asset->plant = plant_asset;
-    asset->file = make_file(id, shape, sensors, sensor_count);
-    for (int i = 0; i < 16; i++)
-        asset->placement[i] = plant_asset->placement[i] = i >= 12 && i < 15 ? at_m[i - 12] : i % 5 == 0;
+    asset->file = file;
+    memcpy(asset->placement, placement, sizeof(asset->placement));
+    memcpy(plant_asset->placement, placement, sizeof(asset->placement));
+    find_bounds(asset);
     for (int c = 0; c < 3; c++) {
-        asset->bounds_min_m[c] = asset->file->view.header->bounds_min_m[c] + at_m[c];
-        asset->bounds_max_m[c] = asset->file->view.header->bounds_max_m[c] + at_m[c];
         toy->scene.bounds_min_m[c] = fmin(toy->scene.bounds_min_m[c], asset->bounds_min_m[c]);
         toy->scene.bounds_max_m[c] = fmax(toy->scene.bounds_max_m[c], asset->bounds_max_m[c]);
     }
     add_tags(toy, asset, index);
+    return index;
+}
+
+int toy_add(struct toy *toy, const char *id, struct shape *shape, const double at_m[3], const double (*sensors)[3], size_t sensor_count)
+{
+    double placement[16];
+    for (int i = 0; i < 16; i++)
+        placement[i] = i >= 12 && i < 15 ? at_m[i - 12] : i % 5 == 0;
+    int index = add(toy, id, make_file(id, shape, sensors, sensor_count), placement);
     shape_finish(shape);
     return index;
+}
+
+int toy_add_again(struct toy *toy, const char *id, int of, const double plant_from_shape[16])
+{
+    struct asset *file = toy->scene.assets[of].file;
+    file->refs++;
+    return add(toy, id, file, plant_from_shape);
 }
 
 struct snapshot *toy_snapshot(const struct toy *toy)

@@ -73,7 +73,8 @@ static bool read_baked(const struct draft *draft, struct draft_light *light, con
         light->baked[i] = mem_try_array(vertices, 4);
         if (!light->baked[i])
             return fail(draft, "light");
-        glGetNamedBufferSubData(set->baked[i], 0, (GLsizeiptr)(4 * vertices), light->baked[i]);
+        glGetNamedBufferSubData(set->baked[i]->page->buffer, (GLintptr)pool_offset(set->baked[i]), (GLsizeiptr)(4 * vertices),
+                                light->baked[i]);
     }
     return true;
 }

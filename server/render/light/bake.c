@@ -65,9 +65,10 @@ void light_set_finish(struct light_set *set, const struct stage *stage)
 {
     glDeleteTextures(1, &set->sun_map);
     glDeleteTextures(1, &set->ground);
-    if (set->baked)
-        glDeleteBuffers((GLsizei)stage->scene->asset_count, set->baked);
+    for (size_t i = 0; set->baked && i < stage->scene->asset_count; i++)
+        pool_release(&set->baked[i]);
     mem_free(set->baked);
+    pool_destroy(&set->pool);
     *set = (struct light_set){ 0 };
 }
 
@@ -230,7 +231,8 @@ static void bind_vertices(const struct bake *bake)
     const struct mesh *mesh = &bake->stage->of_asset[bake->asset]->mesh;
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, mesh->positions);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, mesh->normals);
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, bake->set.baked[bake->asset]);
+    const struct pool_slice *baked = bake->set.baked[bake->asset];
+    glBindBufferRange(GL_SHADER_STORAGE_BUFFER, 4, baked->page->buffer, (GLintptr)pool_offset(baked), (GLsizeiptr)pool_bytes(baked));
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 5, bake->faces.corners);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 6, bake->faces.sums);
 }
@@ -309,17 +311,22 @@ static bool make_buffers(struct bake *bake, const struct light_set *from)
     const struct stage *stage = bake->stage;
     struct light_set *set = &bake->set;
     size_t assets = stage->scene->asset_count;
+    size_t texels = 0;
     set->baked = mem_array(assets, sizeof(*set->baked));
+    set->pool = pool_create(stage->gl->log, "light", GL_RGBA8, 4, 0);
+    for (size_t i = 0; i < assets; i++)
+        texels += stage->of_asset[i]->mesh.vertex_count;
+    pool_expect(set->pool, texels, assets);
     for (size_t i = 0; i < assets; i++) {
-        size_t bytes = 4 * stage->of_asset[i]->mesh.vertex_count;
-        set->baked[i] = mesh_buffer(stage->gl->log, stage->scene->assets[i].plant->id, bytes, NULL, 0);
-        if (!set->baked[i])
+        struct pool_slice *slice = set->baked[i] = pool_take(set->pool, stage->of_asset[i]->mesh.vertex_count);
+        if (!slice)
             return false;
         if (set->key.rough)
-            glClearNamedBufferData(set->baked[i], GL_RGBA8UI, GL_RGBA_INTEGER, GL_UNSIGNED_BYTE,
-                                   (const uint8_t[]){ 0, 0, ROUGH_OPENNESS, 0 });
+            glClearNamedBufferSubData(slice->page->buffer, GL_RGBA8UI, (GLintptr)pool_offset(slice), (GLsizeiptr)pool_bytes(slice),
+                                      GL_RGBA_INTEGER, GL_UNSIGNED_BYTE, (const uint8_t[]){ 0, 0, ROUGH_OPENNESS, 0 });
         if (from)
-            glCopyNamedBufferSubData(from->baked[i], set->baked[i], 0, 0, (GLsizeiptr)bytes);
+            glCopyNamedBufferSubData(from->baked[i]->page->buffer, slice->page->buffer, (GLintptr)pool_offset(from->baked[i]),
+                                     (GLintptr)pool_offset(slice), (GLsizeiptr)pool_bytes(slice));
     }
     glCreateTextures(GL_TEXTURE_2D, 1, &set->ground);
     glTextureStorage2D(set->ground, 1, GL_RG8, GROUND_PX, GROUND_PX);
@@ -401,7 +408,7 @@ bool bake_end(struct bake **bake_ptr, struct light_set *set)
 {
     struct bake *bake = *bake_ptr;
     gl_pass_enter("light");
-    glMemoryBarrier(GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
     bool good = gl_pass_leave(bake->stage->gl, "light");
     if (good) {
         *set = bake->set;

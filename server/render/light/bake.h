@@ -5,6 +5,7 @@
    shown, it is only kept from being too dark. Thread: the one of the GL context. */
 #ifndef RENDER_BAKE_H
 #define RENDER_BAKE_H
+#include "gpu/pool.h"
 #include "render/stage.h"
 
 struct light_key {
@@ -21,7 +22,8 @@ struct light_set {
     double texel_m, depth_m;       /* of sun_map: side of a texel; what its depths span */
     GLuint sun_map;
     GLuint ground; /* RG8: sun and openness on the ground */
-    GLuint *baked; /* per asset: 4 bytes a vertex: light, ambient, openness, sun */
+    struct pool *pool;
+    struct pool_slice **baked; /* per asset: 4 bytes a vertex: light, ambient, openness, sun */
     size_t bytes;
     uint64_t used;
     int holds;

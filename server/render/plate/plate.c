@@ -94,7 +94,7 @@ bool plates_can(const struct plates *plates, const struct picture *picture)
     for (size_t i = 0; i < picture->visible_count; i++) {
         int asset = picture->visible[i];
         size_t model = (size_t)(picture->stage->of_asset[asset] - picture->stage->models);
-        bool field = picture->fields[asset] != NULL, lost = field && !picture->fields[asset]->buffer; /* only GL hatches without scalars */
+        bool field = picture->fields[asset] != NULL, lost = field && !picture->fields[asset]->slice; /* only GL hatches without scalars */
         if (lost || plates->masked[model] || (!field && (plates->textured[model] || plates->blended[model])))
             return false;
     }
