@@ -66,7 +66,7 @@ static int set_up_many(void **state)
     fault = ALL_WELL;
     for (int i = 0; i < PLATES; i++) {
         struct shape shape = { 0 };
-        char name[8];
+        char name[16];
         snprintf(name, sizeof(name), "P%d", i);
         shape_plate(&shape, TOY_BLUE, (double[3]){ 0, 0, 0 }, (double[3]){ 1.5, 0, 0 }, (double[3]){ 0, 3.5, 0 }, CELLS);
         toy_add(toy, name, &shape, (double[3]){ 2.0 * (i % 2), 4.0 * (i / 2) - 4, 0 }, sensors, 2);

@@ -135,7 +135,7 @@ static struct toy *make_city(double gap_m)
 {
     struct toy *toy = toy_create();
     for (int i = 0; i < ROW * ROW * ROW; i++) {
-        char id[16];
+        char id[20];
         snprintf(id, sizeof(id), "cube-%d", i);
         add_cube(toy, id, (double[3]){ (1 + gap_m) * (i % ROW), (1 + gap_m) * (i / ROW % ROW), (1 + gap_m) * (i / ROW / ROW) });
     }
