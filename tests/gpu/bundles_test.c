@@ -113,6 +113,12 @@ static void read_anyhow(const struct stand *stand)
         toy_set(stand->snapshot, (int)i, random_between(0, 100), one_in(8) ? QUALITY_BAD_SENSOR_FAILURE : QUALITY_GOOD);
 }
 
+static void read_all(const struct stand *stand, double value)
+{
+    for (size_t i = 0; i < stand->toy->plant.tag_count; i++)
+        toy_set(stand->snapshot, (int)i, value, QUALITY_GOOD);
+}
+
 static void look_anyhow(const struct scene *scene, struct view *view)
 {
     struct view right;
@@ -204,19 +210,19 @@ static void test_a_picture_under_way_keeps_its_readings(void **state)
     renderer_use_gl(stand.renderer, true);
     view_default(&stand.toy->scene, WIDTH_PX, HEIGHT_PX, &view);
     view.tier = TIER_STILL;
-    read_anyhow(&stand);
+    read_all(&stand, 10);
     struct frame *want = stand_draw(&stand, &view);
     struct stroke *stroke = renderer_begin(stand.renderer, &view, stand.snapshot);
     assert_non_null(stroke);
     renderer_step(stand.renderer, stroke, 1);
     for (int i = 0; i < 3; i++) {
-        read_anyhow(&stand);
+        read_all(&stand, 90 - i);
         struct frame *other = stand_draw(&stand, &view);
-        assert_true(count_different(want, other) > 100);
+        assert_true(count_different(want, other) > RIM_PART * WIDTH_PX * HEIGHT_PX);
         frame_unref(&other);
     }
     struct frame *got = renderer_end(stand.renderer, &stroke);
-    assert_int_equal(count_different(want, got), 0);
+    assert_true(count_different(want, got) <= RIM_PART * WIDTH_PX * HEIGHT_PX / 4);
     frame_unref(&want);
     frame_unref(&got);
     stand_finish(&stand);
