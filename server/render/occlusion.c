@@ -82,11 +82,8 @@ static bool make_box(const struct shot *shot, const struct scene_asset *asset, s
 static struct occlusion_asset add_asset(struct occlusion *occlusion, const struct picture *picture, int index)
 {
     const struct scene_asset *asset = &picture->stage->scene->assets[index];
-    const struct model_level *level = solid_level(picture, index);
-    struct occlusion_asset it = { .boxes_before = occlusion->box_count };
+    struct occlusion_asset it = { .boxes_before = occlusion->box_count, .triangles = solid_level(picture, index)->triangles };
     struct occlusion_box box = { 0 };
-    for (size_t b = 0; b < level->batch_count; b++)
-        it.triangles += level->batches[b].triangles;
     it.tested = asset->front == 0 && it.triangles >= BOX_TRIANGLES && make_box(&picture->shot, asset, &box);
     if (!it.tested)
         return it;

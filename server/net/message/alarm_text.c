@@ -10,6 +10,7 @@
 #include "alarm/devices.h"
 #include "base/mem.h"
 #include "history/when.h"
+#include "net/message/number.h"
 
 enum { ROWS_DEFAULT = 1000, ROWS_MOST = 10000, DIGITS = 7 };
 
@@ -17,11 +18,6 @@ const char *alarm_mode_name(enum alarm_mode mode)
 {
     static const char *const names[] = { [ALARMS_DISPLAY] = "display", [ALARMS_MIRROR] = "mirror", [ALARMS_LOCAL] = "local" };
     return names[mode];
-}
-
-static json_t *number(double value)
-{
-    return isfinite(value) ? json_real(value + 0.0) : json_null(); /* of -0.0 it makes 0.0 */
 }
 
 static json_t *string(const char *text)

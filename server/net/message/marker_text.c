@@ -9,6 +9,7 @@
 
 #include "base/mem.h"
 #include "base/text.h"
+#include "net/message/number.h"
 #include "value/quality.h"
 
 enum { DIGITS = 7 };
@@ -16,14 +17,14 @@ static const float SAME_PX = 0.05f;
 
 static json_t *tenths(double px)
 {
-    return json_real(round(px * 10) / 10 + 0.0); /* of -0.0 it makes 0.0 */
+    return number(round(px * 10) / 10);
 }
 
 static json_t *value_of(const struct frame *frame, const struct frame_marker *marker)
 {
     const struct field_params *params = frame->view.split && marker->half ? &frame->view.right.field : &frame->view.field;
     bool lost = quality_is_bad(marker->quality) && params->show != SHOW_DISTANCE;
-    return lost || !isfinite(marker->value) ? json_null() : json_real(marker->value + 0.0);
+    return lost ? json_null() : number(marker->value);
 }
 
 static int class_of(const struct frame_marker *marker)

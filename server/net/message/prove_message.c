@@ -8,6 +8,7 @@
 
 #include "base/mem.h"
 #include "net/message/fields.h"
+#include "net/message/number.h"
 #include "value/quality.h"
 
 bool prove_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
@@ -37,11 +38,6 @@ static char *print(json_t *object)
     free(dumped);
     json_decref(object);
     return text;
-}
-
-static json_t *number(double value)
-{
-    return isfinite(value) ? json_real(value + 0.0) : json_null(); /* of -0.0 it makes 0.0 */
 }
 
 char *prove_do(struct proofs *proofs, const struct plant *plant, const struct snapshot *now, const struct message *message,

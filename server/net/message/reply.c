@@ -3,13 +3,13 @@
 #include "net/message/reply.h"
 
 #include <libwebsockets.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"
 #include "field/colormap.h"
 #include "net/message/names.h"
+#include "net/message/number.h"
 #include "net/message/visibility.h"
 #include "value/alarm.h"
 #include "value/quality.h"
@@ -24,11 +24,6 @@ static char *print(json_t *object, int digits)
     free(dumped);
     json_decref(object);
     return text;
-}
-
-static json_t *number(double value)
-{
-    return isfinite(value) ? json_real(value + 0.0) : json_null(); /* of -0.0 it makes 0.0 */
 }
 
 static json_t *string(const char *text)
