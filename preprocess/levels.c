@@ -21,7 +21,8 @@ struct making {
     struct knots knots;
     struct versions versions;
     struct omission *omissions;
-    char *used; /* vertices of the level before */
+    char *used;     /* vertices of the level before */
+    char *contrary; /* of each part */
     /* so far: */
     uint32_t *version; /* of each part; ABSENT: it is left out */
     size_t tri_count;
@@ -75,23 +76,6 @@ static void let_happen(struct making *making, const struct event *event)
 
 /* --- one level ------------------------------------------------------------------------------------------------------------ */
 
-static void face_normal(const struct making *making, const uint32_t knots[3], float n[3])
-{
-    const float *a = making->knots.positions_m[knots[0]], *b = making->knots.positions_m[knots[1]],
-                *c = making->knots.positions_m[knots[2]];
-    double u[3], v[3], m[3], length2 = 0;
-    for (int i = 0; i < 3; i++) {
-        u[i] = (double)b[i] - (double)a[i];
-        v[i] = (double)c[i] - (double)a[i];
-    }
-    for (int i = 0; i < 3; i++) {
-        m[i] = u[(i + 1) % 3] * v[(i + 2) % 3] - u[(i + 2) % 3] * v[(i + 1) % 3];
-        length2 += m[i] * m[i];
-    }
-    for (int i = 0; i < 3; i++)
-        n[i] = length2 > 0 ? (float)(m[i] / sqrt(length2)) : 0;
-}
-
 /* Of a knot's vertices the one whose normal suits the face, also where the face is wound the wrong way. */
 static uint32_t choose_vertex(const struct making *making, uint32_t knot, const float n[3])
 {
@@ -130,7 +114,7 @@ static void write_level(struct making *making, struct level *level, const uint32
     for (size_t i = 0; i < count; i += 3) {
         float n[3];
         uint32_t *at = &fill[making->knots.primitive[knots[i]]];
-        face_normal(making, knots + i, n);
+        levels_normal(&making->knots, knots + i, n);
         for (size_t c = 0; c < 3; c++)
             level->indices[(*at)++] = choose_vertex(making, knots[i + c], n);
     }
@@ -175,6 +159,32 @@ static float error_of(const struct making *making, const uint32_t *knots, size_t
     return fmaxf(most_m, error_of_lost(making, knots, count, (double)most_m));
 }
 
+/* Returns how far the parts err of which faces were moved. */
+static float face_parts(const struct making *making, uint32_t *knots, size_t count)
+{
+    const struct knots *of = &making->knots;
+    float *most_m = mem_array(of->part_count, sizeof(*most_m)), *apart_m = mem_array(of->part_count, sizeof(*apart_m)), error_m = 0;
+    char *moved = mem_array(of->part_count, 1);
+    for (uint32_t p = 0; p < of->part_count; p++)
+        most_m[p] = making->version[p] == ABSENT ? 0 : making->versions.at[making->version[p]].error_m[p];
+    if (levels_face(of, making->used, making->contrary, most_m, knots, count, moved)) {
+        struct deviation level;
+        const struct deviation *first = &making->versions.first;
+        deviation_init(&level, (const float(*)[3])of->positions_m, of->first_there, of->part, of->part_count, knots, count / 3);
+        for (uint32_t p = 0; p < of->part_count; p++)
+            error_m = fmaxf(error_m, moved[p] ? most_m[p] : 0);
+        deviation_measure(&level, first, moved, (double)error_m, apart_m, making->workers);
+        deviation_measure(first, &level, moved, (double)error_m, apart_m, making->workers);
+        deviation_finish(&level);
+        for (uint32_t p = 0; p < of->part_count; p++)
+            error_m = fmaxf(error_m, apart_m[p]);
+    }
+    mem_free(most_m);
+    mem_free(apart_m);
+    mem_free(moved);
+    return error_m;
+}
+
 static void add_level(struct making *making, struct levels *levels)
 {
     uint32_t *knots = mem_array(3 * making->tri_count, sizeof(*knots));
@@ -188,8 +198,9 @@ static void add_level(struct making *making, struct levels *levels)
             }
     }
     struct level *level = &levels->at[levels->count++];
+    float moved_m = face_parts(making, knots, count);
     write_level(making, level, knots, count);
-    level->error_m = fmaxf(error_of(making, knots, count), (level - 1)->error_m);
+    level->error_m = fmaxf(fmaxf(error_of(making, knots, count), moved_m), (level - 1)->error_m);
     mem_free(knots);
 }
 
@@ -218,6 +229,8 @@ static void make_coarse(struct making *making, struct levels *levels)
     making->used = mem_array(making->knots.geometry->vertex_count, 1);
     making->version = mem_array(making->knots.part_count, sizeof(*making->version));
     memset(making->used, 1, making->knots.geometry->vertex_count);
+    making->contrary = mem_array(making->knots.part_count, 1);
+    levels_find_contrary(&making->knots, making->contrary);
     for (size_t i = 0; i < count && levels->count < LEVELS_MAX;) {
         let_happen(making, &events[i++]);
         if (!is_worth(making, &levels->at[levels->count - 1], events[i - 1].error_m))
@@ -249,6 +262,7 @@ bool levels_make(struct levels *levels, const struct geometry *geometry, struct 
     knots_finish(&making.knots);
     mem_free(making.omissions);
     mem_free(making.used);
+    mem_free(making.contrary);
     mem_free(making.version);
     return good;
 }

@@ -57,4 +57,15 @@ struct omission {
    all others of its kind around it together. */
 void omissions_find(struct omission *omissions, const struct knots *knots, struct workers *workers);
 
+/* --- faces of what has no thickness any more (levels_facing.c) --- */
+
+/* Unit length, or 0. */
+void levels_normal(const struct knots *knots, const uint32_t corners[3], float n[3]);
+/* By part: some face of the model looks the other way than its vertices. */
+void levels_find_contrary(const struct knots *knots, char *contrary);
+/* Moves corners of faces (knots, three each) that have no used vertex of their side to a knot beside that has one, if it is no farther than
+   most_m, by part. Knots that had corners still have some. moved: by part. False: nothing was moved. */
+bool levels_face(const struct knots *knots, const char *used, const char *contrary, const float *most_m, uint32_t *corners, size_t count,
+                 char *moved);
+
 #endif

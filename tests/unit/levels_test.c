@@ -377,6 +377,56 @@ static void what_is_alone_and_small_goes_but_no_crowd(void **state)
     geometry_finish(&g);
 }
 
+/* A corner whose vertex looks away from the face carries the light of the other side. */
+static size_t looking_away(const struct geometry *g, const struct level *level)
+{
+    size_t count = 0;
+    for (uint32_t i = 0; i < level->index_count; i++) {
+        const uint32_t *v = level->indices + i / 3 * 3;
+        double at[3][3], n[3], u[3], w[3], dot = 0;
+        for (int c = 0; c < 3; c++)
+            for (int axis = 0; axis < 3; axis++)
+                at[c][axis] = (double)g->positions_m[v[c]][axis];
+        for (int axis = 0; axis < 3; axis++) {
+            u[axis] = at[1][axis] - at[0][axis];
+            w[axis] = at[2][axis] - at[0][axis];
+        }
+        for (int axis = 0; axis < 3; axis++) {
+            n[axis] = u[(axis + 1) % 3] * w[(axis + 2) % 3] - u[(axis + 2) % 3] * w[(axis + 1) % 3];
+            dot += n[axis] * (double)g->normals[level->indices[i]][axis];
+        }
+        count += dot < -0.5 * sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    }
+    return count;
+}
+
+/* Levels that err by more than a deck is thick have faces above and below all the same, each on vertices of its own side. */
+static void thin_plates_keep_their_sides(void **state)
+{
+    struct set_of s = { 0 };
+    uint32_t seed = 11;
+    size_t thinner = 0;
+    (void)state;
+    begin_boxes(&s.g, 60);
+    for (int i = 0; i < 60; i++)
+        add_box(&s.g, 1.02 * (i % 10), 1.02 * (i / 10), 0.001 * i, 1, 1, 0.02 + 0.001 * (i % 7));
+    assert_true(levels_make(&s.levels, &s.g, NULL));
+    for (size_t l = 1; l < s.levels.count; l++) {
+        const struct level *level = &s.levels.at[l];
+        double stray_m = fmax(stray(&s, &s.levels.at[0], level, &seed), stray(&s, level, &s.levels.at[0], &seed));
+        print_message("# level %zu: %u triangles, error %.4f m, found %.4f m (seed 11)\n", l, level->index_count / 3,
+                      (double)level->error_m, stray_m);
+        assert_int_equal(looking_away(&s.g, level), 0);
+        assert_true(stray_m <= (double)level->error_m);
+        thinner += level->error_m >= 0.0199f;
+    }
+    assert_true(thinner > 0);
+    void *of_plates = &s;
+    levels_are_nested(&of_plates);
+    levels_finish(&s.levels);
+    geometry_finish(&s.g);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -388,6 +438,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(a_level_is_a_prefix, set_up, tear_down),
         cmocka_unit_test(bolts_go_where_they_hardly_stand_out),
         cmocka_unit_test(what_is_alone_and_small_goes_but_no_crowd),
+        cmocka_unit_test(thin_plates_keep_their_sides),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,0 +1,168 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Where a thin part has lost its thickness, a face may stand on vertices of its other side only, which look away from it and carry that
+   side's light. It is moved back to its own side. */
+#include <math.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "preprocess/levels_impl.h"
+
+#define AWAY (-0.5f) /* cosines: the vertex that suits a face best looks away from it; */
+#define ALONG 0.7f   /* one beside it looks its way */
+#define BESIDE 1.25f /* times the error: a slanting sheet errs by less than a thickness */
+#define NONE UINT32_MAX
+
+struct need { /* of a corner */
+    size_t corner;
+    float normal[3]; /* of its face */
+    float score;     /* of the best so far */
+    uint32_t knot;   /* that one */
+    size_t next;     /* need of the same knot; SIZE_MAX: none */
+};
+
+struct facing {
+    const struct knots *knots;
+    const char *used;
+    const float *most_m;
+    struct need *needs;
+    size_t count, capacity;
+    size_t *first; /* need of each knot */
+};
+
+void levels_normal(const struct knots *knots, const uint32_t corners[3], float n[3])
+{
+    const float *a = knots->positions_m[corners[0]], *b = knots->positions_m[corners[1]], *c = knots->positions_m[corners[2]];
+    double u[3], v[3], m[3], length2 = 0;
+    for (int i = 0; i < 3; i++) {
+        u[i] = (double)b[i] - (double)a[i];
+        v[i] = (double)c[i] - (double)a[i];
+    }
+    for (int i = 0; i < 3; i++) {
+        m[i] = u[(i + 1) % 3] * v[(i + 2) % 3] - u[(i + 2) % 3] * v[(i + 1) % 3];
+        length2 += m[i] * m[i];
+    }
+    for (int i = 0; i < 3; i++)
+        n[i] = length2 > 0 ? (float)(m[i] / sqrt(length2)) : 0;
+}
+
+/* The cosine of that used vertex of a knot which suits a face best, as levels.c chooses; of all that look its way only, or of any. */
+static float look(const struct facing *facing, uint32_t knot, const float n[3], bool any)
+{
+    float best = -1, best_score = -1;
+    for (uint32_t i = facing->knots->first[knot]; i < facing->knots->first[knot + 1]; i++) {
+        const float *m = facing->knots->geometry->normals[facing->knots->vertices[i]];
+        float dot = n[0] * m[0] + n[1] * m[1] + n[2] * m[2], score = any ? fabsf(dot) + 1e-3f * dot : dot;
+        if (facing->used[facing->knots->vertices[i]] && score > best_score) {
+            best = dot;
+            best_score = score;
+        }
+    }
+    return best;
+}
+
+static float distance_m(const struct knots *knots, uint32_t a, uint32_t b)
+{
+    const float *p = knots->positions_m[a], *q = knots->positions_m[b];
+    return hypotf(p[0] - q[0], hypotf(p[1] - q[1], p[2] - q[2]));
+}
+
+void levels_find_contrary(const struct knots *knots, char *contrary)
+{
+    const struct geometry *g = knots->geometry;
+    for (uint32_t i = 0; i < g->index_count; i += 3) {
+        float n[3];
+        const uint32_t *v = g->indices + i, of[3] = { knots->of_vertex[v[0]], knots->of_vertex[v[1]], knots->of_vertex[v[2]] };
+        levels_normal(knots, of, n);
+        for (int c = 0; c < 3; c++)
+            contrary[knots->part[of[0]]] |= n[0] * g->normals[v[c]][0] + n[1] * g->normals[v[c]][1] + n[2] * g->normals[v[c]][2] < 0;
+    }
+}
+
+static void find_needs(struct facing *facing, const uint32_t *corners, size_t count, const char *contrary)
+{
+    for (size_t i = 0; i < count; i++) {
+        float n[3];
+        uint32_t knot = corners[i];
+        levels_normal(facing->knots, corners + i / 3 * 3, n);
+        if (contrary[facing->knots->part[knot]] || look(facing, knot, n, true) > AWAY)
+            continue;
+        mem_grow(&facing->needs, &facing->capacity, facing->count + 1, sizeof(*facing->needs));
+        facing->needs[facing->count] = (struct need){ i, { n[0], n[1], n[2] }, ALONG, NONE, facing->first[knot] };
+        facing->first[knot] = facing->count++;
+    }
+}
+
+/* Along an edge of the model from one knot to another: of those that look its way, the nearest. */
+static void offer(struct facing *facing, uint32_t from, uint32_t to)
+{
+    if (facing->first[from] == SIZE_MAX || facing->knots->primitive[from] != facing->knots->primitive[to])
+        return;
+    float far_m = distance_m(facing->knots, from, to), most_m = BESIDE * facing->most_m[facing->knots->part[from]];
+    for (size_t i = facing->first[from]; i != SIZE_MAX && far_m <= most_m; i = facing->needs[i].next) {
+        struct need *need = &facing->needs[i];
+        float score = 2 - far_m / most_m;
+        if (score > need->score && look(facing, to, need->normal, false) >= ALONG) {
+            need->score = score;
+            need->knot = to;
+        }
+    }
+}
+
+/* Not where it would turn, or shrink to a line. */
+static void move_faces(const struct facing *facing, uint32_t *corners)
+{
+    for (size_t i = 0; i < facing->count;) {
+        size_t at = facing->needs[i].corner / 3 * 3, end = i;
+        uint32_t moved[3];
+        float n[3];
+        memcpy(moved, corners + at, sizeof(moved));
+        for (; end < facing->count && facing->needs[end].corner < at + 3; end++)
+            if (facing->needs[end].knot != NONE)
+                moved[facing->needs[end].corner - at] = facing->needs[end].knot;
+        levels_normal(facing->knots, moved, n);
+        const float *was = facing->needs[i].normal;
+        if (n[0] * was[0] + n[1] * was[1] + n[2] * was[2] > ALONG)
+            memcpy(corners + at, moved, sizeof(moved));
+        i = end;
+    }
+}
+
+/* Coarser levels stand on knots of this one: those that no corner has any more get all of theirs back. */
+static void keep_knots(const struct facing *facing, const uint32_t *before, uint32_t *corners, size_t count)
+{
+    char *kept = mem_array(facing->knots->count, 1);
+    for (size_t i = 0; i < count; i++)
+        kept[corners[i]] = 1;
+    for (size_t i = 0; i < count; i += 3)
+        if (!kept[before[i]] || !kept[before[i + 1]] || !kept[before[i + 2]])
+            memcpy(corners + i, before + i, 3 * sizeof(*corners));
+    mem_free(kept);
+}
+
+bool levels_face(const struct knots *knots, const char *used, const char *contrary, const float *most_m, uint32_t *corners, size_t count,
+                 char *moved)
+{
+    const struct geometry *g = knots->geometry;
+    struct facing facing = { .knots = knots, .used = used, .most_m = most_m };
+    bool any = false;
+    facing.first = mem_array(knots->count, sizeof(*facing.first));
+    memset(facing.first, 0xff, knots->count * sizeof(*facing.first));
+    find_needs(&facing, corners, count, contrary);
+    for (uint32_t i = 0; i < g->index_count && facing.count; i++) {
+        uint32_t from = knots->of_vertex[g->indices[i]], to = knots->of_vertex[g->indices[i % 3 == 2 ? i - 2 : i + 1]];
+        offer(&facing, from, to);
+        offer(&facing, to, from);
+    }
+    if (facing.count) {
+        uint32_t *before = mem_array(count, sizeof(*before));
+        memcpy(before, corners, count * sizeof(*before));
+        move_faces(&facing, corners);
+        keep_knots(&facing, before, corners, count);
+        for (size_t i = 0; i < count; i++)
+            any |= moved[knots->part[before[i]]] |= corners[i] != before[i];
+        mem_free(before);
+    }
+    mem_free(facing.needs);
+    mem_free(facing.first);
+    return any;
+}
