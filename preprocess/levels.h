@@ -36,7 +36,7 @@ struct levels {
 
 /* Each level has at most 0.6 of the triangles of the one before, far ones 0.85: many instances are drawn with these. Borders between
    materials, texture seams and vertex colours stay where they are, within the error. Parts that lie on much larger ones are left out of
-   levels that err by half as much again as they stand out (bolts in a flange); so are small parts that no others are near, from where they
+   levels that err by a tenth more than they stand out (bolts in a flange); so are small parts that no others are near, from where they
    are no larger than the error: a pixel. For those alone, no point of the level is near their points. False: out of memory; nothing to
    finish. */
 bool levels_make(struct levels *levels, const struct geometry *geometry, struct workers *workers);

@@ -11,7 +11,7 @@
 
 #define MUCH_LARGER 4.0f /* times: a part that another may lie on */
 #define MOST_PX 8.0f     /* a part that lies on another is left out once it is no larger than so many pixels */
-#define OVER 1.5f        /* times as far as it is from those, their own error included, it will about err */
+#define OVER 1.1f        /* times as far as it is from those, it will about err: they err, too, and what comes out is measured */
 #define SMALL 0.1        /* of the whole: larger parts are never left out */
 #define AROUND 4.0f      /* sizes: parts so near to each other are looked at together */
 #define PROBES 4         /* on each edge of a part's triangles */

@@ -347,6 +347,33 @@ static void bolts_go_where_they_hardly_stand_out(void **state)
     geometry_finish(&g);
 }
 
+/* Nuts stand 2 cm out of a slab, under a torus that has a level for each error: none that errs by more than a tenth more has nuts. */
+static void nuts_go_once_they_stand_out_by_less(void **state)
+{
+    struct geometry g;
+    struct levels levels;
+    size_t with = 0, without = 0;
+    (void)state;
+    begin_boxes(&g, 101 + AROUND * TUBE / 4);
+    g.primitive_count = 0;
+    add_part(&g, 0, AROUND, 0);
+    add_box(&g, -5, -5, -1.5, 10, 10, 0.5);
+    for (int i = 0; i < 100; i++)
+        add_box(&g, -4.5 + i % 10, -4.5 + i / 10, -1.01, 0.05, 0.05, 0.03);
+    assert_true(levels_make(&levels, &g, NULL));
+    for (size_t l = 0; l < levels.count; l++) {
+        bool any = vertices_above(&g, &levels.at[l], -0.99) > vertices_above(&g, &levels.at[l], -0.9);
+        double error_m = (double)levels.at[l].error_m;
+        print_message("# level %zu: error %.4f m, %s nuts\n", l, error_m, any ? "with" : "without");
+        assert_true(any ? error_m <= 0.0221 : error_m >= 0.0199);
+        with += any;
+        without += !any;
+    }
+    assert_true(with > 1 && without > 0);
+    levels_finish(&levels);
+    geometry_finish(&g);
+}
+
 /* A block of 5 cm alone, 20 m away, goes with levels that err by its size or more. A grating of as small bars is no small thing. */
 static void what_is_alone_and_small_goes_but_no_crowd(void **state)
 {
@@ -437,6 +464,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(error_is_a_bound, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_level_is_a_prefix, set_up, tear_down),
         cmocka_unit_test(bolts_go_where_they_hardly_stand_out),
+        cmocka_unit_test(nuts_go_once_they_stand_out_by_less),
         cmocka_unit_test(what_is_alone_and_small_goes_but_no_crowd),
         cmocka_unit_test(thin_plates_keep_their_sides),
     };
