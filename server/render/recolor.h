@@ -25,11 +25,12 @@ enum { RECOLOR_SHARES = 4 };
 struct recolor_mixed {
     uint32_t blue_red, first_part; /* of what is fixed: blue and red times share, 16 bits each */
     uint16_t green;                /* likewise */
-    uint8_t part_count;
+    uint16_t x, row;               /* in the band */
+    uint8_t part_count, ink;       /* ink: once it is settled */
 };
 
 struct recolor_band { /* of rows; written by one worker */
-    uint32_t (*triangles)[3]; /* vertices of the picture */
+    uint32_t (*triangles)[3]; /* vertices of the picture; once it is settled, of what is kept */
     float (*corners)[4];      /* of what these carry now: the first corner's; by how much the second's is more, and the third's */
     struct recolor_part *parts;
     struct recolor_mixed *mixed;
@@ -39,7 +40,7 @@ struct recolor_band { /* of rows; written by one worker */
 
 struct recolor_mesh { /* an asset with a field */
     int asset;
-    uint32_t first_vertex, vertex_count;
+    uint32_t first_vertex, vertex_count; /* of the picture; once it is settled, of what is kept */
     bool read;        /* what its vertices show now: */
     uint64_t content; /* of struct fields_entry */
 };
@@ -49,11 +50,12 @@ struct recolor {
     uint32_t *surfaces; /* per pixel, as above */
     uint32_t *weights;  /* of the triangle's second and third corner, 16 bits each */
     uint8_t *rows;      /* of the palette */
-    uint8_t *ink;
+    uint8_t *ink;       /* once it is settled: not of what is fixed, which has it */
     struct recolor_band *bands;
     struct recolor_mesh *meshes;
     size_t mesh_count, mesh_capacity, vertex_count;
     float scale[4]; /* of struct frame_block, when the vertices were read */
+    uint32_t *vertices; /* those that are kept, by mesh: which of the asset's */
     float *carried; /* per vertex: column of the palette (on a logarithmic scale: the value); NAN: look at flags */
     float *plain;   /* the same without NAN */
     uint16_t *flags; /* as draft_flags */
@@ -67,7 +69,8 @@ size_t recolor_bytes(const struct recolor *recolor);
 /* On a worker: number of that triangle in the band. */
 uint32_t recolor_triangle(struct recolor_band *band, const uint32_t vertices[3]);
 void recolor_add_mesh(struct recolor *recolor, const struct recolor_mesh *mesh);
-bool recolor_make_vertices(struct recolor *recolor, size_t count); /* after the last mesh. False: out of memory */
+/* When all pixels are there, and what is drawn over them. Of vertices only those are kept that are seen. False: out of memory. */
+bool recolor_settle(struct recolor *recolor, struct workers *workers);
 
 /* The fields of the picture, into what vertices carry. */
 void recolor_read(struct recolor *recolor, const struct picture *picture, struct workers *workers);

@@ -321,7 +321,9 @@ bool renderer_is_quick(struct renderer *renderer, const struct view *view, const
     struct picture picture;
     if (view->tier == TIER_MOVING || !renderer->plates || renderer->always_gl)
         return view->tier == TIER_MOVING || (renderer->still_ns > 0 && renderer->still_ns <= QUICK_NS);
+    renderer->fields.without_gl = true;
     picture_init(renderer, &picture, view, snapshot, false);
+    renderer->fields.without_gl = false;
     return plates_know(renderer->plates, &picture);
 }
 
@@ -331,7 +333,9 @@ static struct frame *draw_again(struct renderer *renderer, const struct view *vi
     struct picture picture;
     if (!renderer->plates || !renderer_is_quick(renderer, view, snapshot))
         return NULL;
+    renderer->fields.without_gl = true;
     struct frame *frame = renderer_start(renderer, view, snapshot, &picture);
+    renderer->fields.without_gl = false;
     if (!frame)
         return NULL;
     int64_t start_ns = clock_mono_ns();

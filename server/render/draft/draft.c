@@ -162,7 +162,7 @@ static bool draw_all(struct draft *draft, struct isolines *isolines, struct fram
     isolines_find(draft->picture, &points, draft->depth, (size_t)draft->pitch_px, frame);
     mem_free(points.at);
     bool good = draw_selected(draft, recolor);
-    if (recolor && good)
+    if (recolor && good && recolor_settle(recolor, draft->workers))
         draft_give(&draft->kept, draft->picture, recolor, frame);
     else
         recolor_destroy(&recolor);

@@ -132,10 +132,6 @@ struct recolor *draft_keep(struct draft *draft)
             recolor_add_mesh(recolor, &(struct recolor_mesh){
                                          .asset = mesh->asset, .first_vertex = mesh->first_vertex, .vertex_count = mesh->vertex_count });
     }
-    if (!recolor_make_vertices(recolor, draft->vertex_count)) {
-        recolor_destroy(&recolor);
-        return NULL;
-    }
     struct keeping keeping = { draft, recolor };
     workers_for(draft->workers, (size_t)recolor->band_count, 1, keep_bands, &keeping);
     return recolor;

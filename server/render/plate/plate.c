@@ -13,7 +13,7 @@
 #include "render/solid.h"
 
 /* Of a step, for each core: some milliseconds' worth. */
-enum { VERTICES = 65536, CHUNKS = 32, SHADED_BANDS = 1, BANDS = 8 };
+enum { VERTICES = 65536, CHUNKS = 32, SHADED_BANDS = 1, BANDS = 16 };
 static const size_t KEPT_BYTES = (size_t)256 << 20; /* some ten pictures of 1920 x 1080 */
 static const double OFF_SURFACE_TEXELS = 2.58; /* as sun_visibility in shaders/shadow.glsl */
 
@@ -236,7 +236,7 @@ static bool collect(struct plate *plate, const struct frame *frame, const struct
         plate->attributes = mem_try_array(draft->vertex_capacity, sizeof(*plate->attributes));
         plate->attribute_capacity = plate->attributes ? draft->vertex_capacity : 0;
     }
-    return plate->attributes && recolor_make_vertices(plate->recolor, draft->vertex_count);
+    return plate->attributes;
 }
 
 static void place_mesh(const struct plate *plate, size_t m, size_t begin, size_t end)
@@ -363,10 +363,8 @@ bool plate_step(struct plate *plate, const struct picture *picture, const struct
         done = advance(plate, bands, BANDS, &begin, &end);
         piece.first = begin;
         workers_for(workers, end - begin, 1, ink_some, &piece);
-        if (done) {
+        if (done)
             markers_find(picture, draft->depth, (size_t)draft->pitch_px, frame);
-            recolor_read(plate->recolor, picture, workers);
-        }
         break;
     case PLATE_MARK:
         if (is_selected_shown(picture) && !mark(plate, frame))
@@ -375,6 +373,11 @@ bool plate_step(struct plate *plate, const struct picture *picture, const struct
     case PLATE_RIM:
         if (is_selected_shown(picture))
             draft_keep_rim(plate->draft, plate->recolor);
+        break;
+    case PLATE_SETTLE:
+        if (!recolor_settle(plate->recolor, workers))
+            return complain(plate);
+        recolor_read(plate->recolor, picture, workers);
         break;
     case PLATE_COLOR:
         done = advance(plate, bands, BANDS, &begin, &end);

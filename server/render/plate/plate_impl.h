@@ -8,7 +8,7 @@
 #include "render/plate/plate.h"
 #include "render/visibility_buffers.h"
 
-enum { PLATE_ROWS = 16, SAMPLES = RECOLOR_SHARES, BRDF_PX = 48, TONES = 4096 };
+enum { PLATE_ROWS = 8, SAMPLES = RECOLOR_SHARES, BRDF_PX = 48, TONES = 4096 };
 /* From a pixel's middle: a square turned so that edges of any slant take all steps. */
 extern const float plate_samples[SAMPLES][2];
 
@@ -55,7 +55,18 @@ struct plates {
 struct plate {
     struct plates *plates;
     struct draft *draft; /* vertices, triangles, depth */
-    enum { PLATE_COLLECT, PLATE_PLACE, PLATE_SORT, PLATE_SHADE, PLATE_INK, PLATE_MARK, PLATE_RIM, PLATE_COLOR, PLATE_DONE } step;
+    enum {
+        PLATE_COLLECT,
+        PLATE_PLACE,
+        PLATE_SORT,
+        PLATE_SHADE,
+        PLATE_INK,
+        PLATE_MARK,
+        PLATE_RIM,
+        PLATE_SETTLE,
+        PLATE_COLOR,
+        PLATE_DONE
+    } step;
     size_t at; /* in the step */
     bool failed;
     float (*normals)[9]; /* per mesh, columns: plant from file */

@@ -146,9 +146,14 @@ static void add_color(struct recolor_mixed *mixed, uint32_t color, unsigned shar
     mixed->green = (uint16_t)(mixed->green + (color >> 8 & 0xff) * share);
 }
 
-static uint32_t keep_mixed(struct recolor_band *band, const struct row *row, const struct mixed *from)
+static uint32_t keep_mixed(struct recolor_band *band, const struct row *row, const struct mixed *from, int y)
 {
-    struct recolor_mixed mixed = { .part_count = from->field_count, .first_part = (uint32_t)band->part_count };
+    struct recolor_mixed mixed = {
+        .part_count = from->field_count,
+        .first_part = (uint32_t)band->part_count,
+        .x = (uint16_t)from->column,
+        .row = (uint16_t)(y % PLATE_ROWS),
+    };
     if (from->sky)
         add_color(&mixed, row->sky_colors[from->column], from->sky);
     for (uint32_t i = from->first_surface; i < from->first_surface + from->surface_count; i++)
@@ -184,7 +189,7 @@ static void keep_row(const struct plate *plate, struct recolor_band *band, const
         recolor->rows[start + (size_t)column] = row->rows[i];
     }
     for (size_t i = 0; i < row->mixed_count; i++)
-        surfaces[row->mixed[i].column] = keep_mixed(band, row, &row->mixed[i]);
+        surfaces[row->mixed[i].column] = keep_mixed(band, row, &row->mixed[i], y);
 }
 
 static void shade_rows(const struct plate *plate, int number, const struct samples *samples, struct row *row)
