@@ -130,7 +130,8 @@ static void cut_into_chunks(struct draft *draft)
 /* False: out of memory. */
 static bool finish(struct draft *draft)
 {
-    qsort(draft->draws, draft->draw_count, sizeof(*draft->draws), by_distance);
+    if (draft->draw_count > 0)
+        qsort(draft->draws, draft->draw_count, sizeof(*draft->draws), by_distance);
     cut_into_chunks(draft);
     if (draft->vertex_count <= draft->vertex_capacity)
         return true;
