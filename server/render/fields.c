@@ -16,7 +16,9 @@ static const size_t BOUND_BYTES = (size_t)384 << 20; /* on the GPU, and as much 
 
 void fields_init(struct fields *fields, struct log *log, struct field *field)
 {
-    *fields = (struct fields){ .log = log, .field = field, .lost = { .asset = -1, .content = LOST, .oldest_age_ns = INT64_MAX } };
+    *fields = (struct fields){
+        .log = log, .field = field, .lost = { .asset = -1, .content = LOST, .oldest_age_ns = INT64_MAX }, .bound_bytes = BOUND_BYTES
+    };
     fields->pool = pool_create(log, "field", GL_RG32UI, sizeof(struct scalar), GL_DYNAMIC_STORAGE_BIT);
 }
 
@@ -239,14 +241,18 @@ void fields_get(struct fields *fields, const struct fields_ask *ask, const struc
             entries[ask->assets[i]] = &fields->lost;
 }
 
+/* Not what the last picture showed, which is what the next one shows, mostly: it would be worked out anew for each. */
 void fields_trim(struct fields *fields)
 {
-    while (fields->bytes > BOUND_BYTES && fields->count > 1) {
+    while (fields->bytes > fields->bound_bytes && fields->count > 0) {
         size_t oldest = 0;
         for (size_t i = 1; i < fields->count; i++)
             if (fields->entries[i]->used < fields->entries[oldest]->used)
                 oldest = i;
+        if (fields->entries[oldest]->used > fields->trimmed)
+            break;
         entry_destroy(fields, fields->entries[oldest]);
         fields->entries[oldest] = fields->entries[--fields->count];
     }
+    fields->trimmed = fields->uses;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The scalars of assets on the GPU, per asset and field parameters: uploaded when they differ by half a colour step or more from
-   what is there. Least recently used ones go beyond a bound. Thread: the one of the GL context. */
+   what is there. Least recently used ones go beyond a bound, but not those of the last picture. Thread: the one of the GL context. */
 #ifndef RENDER_FIELDS_H
 #define RENDER_FIELDS_H
 #include "field/field.h"
@@ -36,8 +36,8 @@ struct fields {
     struct pool *pool;
     struct fields_entry **entries;
     struct fields_entry lost; /* stands for all that there is no room for */
-    size_t count, capacity, bytes;
-    uint64_t uses;
+    size_t count, capacity, bytes, bound_bytes;
+    uint64_t uses, trimmed; /* trimmed: uses when that was done last */
 };
 
 void fields_init(struct fields *fields, struct log *log, struct field *field);

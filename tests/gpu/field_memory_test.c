@@ -7,11 +7,13 @@
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include <cmocka.h>
 
 #include "gpu/pool.h"
 #include "render/palette.h"
+#include "render/renderer_impl.h"
 #include "tests/support/rig.h"
 #include "value/quality.h"
 
@@ -180,12 +182,45 @@ static void test_with_little_room_many_are_shown_alike(void **state)
     field_destroy(&poor);
 }
 
+static void assert_kept(const struct fields *fields, struct fields_entry *const was[PLATES])
+{
+    assert_int_equal(fields->count, PLATES);
+    for (int i = 0; i < PLATES; i++)
+        assert_ptr_equal(fields->entries[i], was[i]);
+}
+
+/* A plant of which one picture needs more than there is room for: its fields are not made anew for each. Others go. */
+static void test_what_one_picture_needs_stays(void **state)
+{
+    struct view view;
+    struct frame *frame;
+    struct fields *fields = &stand.renderer->fields;
+    struct fields_entry *was[PLATES];
+    (void)state;
+    fields->bound_bytes = 1;
+    look_down(&view);
+    view.camera.eye_m[2] = 40;
+    for (int way = 0; way < 2; way++) {
+        view.field.power = 2 + way;
+        for (int i = 0; i < 4; i++) {
+            view.camera.eye_m[0] += 0.01;
+            frame = stand_draw(&stand, &view);
+            frame_unref(&frame);
+            if (i == 1)
+                memcpy(was, fields->entries, sizeof(was));
+            if (i > 1)
+                assert_kept(fields, was);
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(test_without_memory_there_is_no_data, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_bit_by_bit_too, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_with_little_room_many_are_shown_alike, set_up_many, tear_down),
+        cmocka_unit_test_setup_teardown(test_what_one_picture_needs_stays, set_up_many, tear_down),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
     if (!rig_init(&rig, "field_memory_test"))
