@@ -191,9 +191,55 @@ static void what_rounds_to_nought_has_no_sign(void **state)
     assert_true(pen_rounded(-0.06, 1) == -0.06 && pen_rounded(-0.4, 0) == 0 && pen_rounded(-0.0, 6) == 0);
 }
 
+/* Pixels that two pictures do not share, in the upper left corner of a half. */
+static int caption_px(const struct frame *frame, const struct frame *plain, int half)
+{
+    int count = 0, left = half ? WIDTH / 2 + 4 : 4;
+    for (int y = 4; y < 160; y++)
+        for (int x = left; x < left + 240; x++)
+            count += frame->bgrx[y * frame->stride_bytes + 4 * x] != plain->bgrx[y * plain->stride_bytes + 4 * x];
+    return count;
+}
+
+static void differ(struct view *right, int way)
+{
+    switch (way) {
+    case 0: right->field.distance = DISTANCE_EUCLIDEAN; break;
+    case 1: right->field.interpolation = INTERPOLATION_PAPER; break;
+    case 2: right->field.power = 3.5; break;
+    case 3: right->field.strength = 2; break;
+    case 4: right->field.decay = 0.5; break;
+    case 5: right->field.reach_m = 12; break;
+    case 6: right->field.fill = right->field.fill == FILL_NONE ? FILL_NEIGHBOURS : FILL_NONE; break;
+    case 7: right->look = LOOK_FLAT; break;
+    default: field_params_override(&right->field, (struct field_override){ 0, 2, FIELD_AS_CONFIGURED }); break;
+    }
+}
+
+/* Two pictures that are made otherwise say how; the legend does not tell one from the other. */
+static void halves_say_what_they_differ_in(void **state)
+{
+    (void)state;
+    struct frame *plain = draw(0, false, true);
+    for (int x = 0; x < 240; x++) /* nothing to say */
+        assert_int_equal(plain->bgrx[20 * plain->stride_bytes + 4 * (WIDTH / 2 + 4 + x)], 255);
+    for (int way = 0; way < 9; way++) {
+        struct view right;
+        view_default(&stand.toy->scene, WIDTH, HEIGHT, &right);
+        differ(&right, way);
+        struct frame *frame = draw_beside(0, false, &right);
+        for (int half = 0; half < 2; half++)
+            if (caption_px(frame, plain, half) < 300)
+                fail_msg("way %d, half %d: %d pixels of a caption", way, half, caption_px(frame, plain, half));
+        frame_unref(&frame);
+    }
+    frame_unref(&plain);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(halves_say_what_they_differ_in),
         cmocka_unit_test(halves_share_a_legend_that_says_the_same),
         cmocka_unit_test(alarms_out_of_sight_are_listed),
         cmocka_unit_test(any_number_of_alarms_fits),

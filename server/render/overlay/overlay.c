@@ -252,6 +252,8 @@ void overlay_draw(struct frame *frame, const struct scene *scene, const struct s
         draw_past(pen);
     else if (!is_live(pen))
         draw_banner(pen, "NO LIVE DATA", NO_DATA_RGB);
+    if (frame->view.split)
+        overlay_halves(pen);
     bool shared = frame->view.split && overlay_legend_is_shared(pen);
     for (int half = shared ? 1 : 0; half < (frame->view.split ? 2 : 1); half++) {
         pen_choose_half(pen, half);
