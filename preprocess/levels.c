@@ -76,23 +76,6 @@ static void let_happen(struct making *making, const struct event *event)
 
 /* --- one level ------------------------------------------------------------------------------------------------------------ */
 
-/* Of a knot's vertices the one whose normal suits the face, also where the face is wound the wrong way. */
-static uint32_t choose_vertex(const struct making *making, uint32_t knot, const float n[3])
-{
-    uint32_t best = UINT32_MAX;
-    float best_score = -INFINITY;
-    for (uint32_t i = making->knots.first[knot]; i < making->knots.first[knot + 1]; i++) {
-        uint32_t v = making->knots.vertices[i];
-        const float *m = making->knots.geometry->normals[v];
-        float dot = n[0] * m[0] + n[1] * m[1] + n[2] * m[2], score = fabsf(dot) + 1e-3f * dot;
-        if (making->used[v] && score > best_score) {
-            best = v;
-            best_score = score;
-        }
-    }
-    return best;
-}
-
 /* From knots to vertices, primitive by primitive in the geometry's order. */
 static void write_level(struct making *making, struct level *level, const uint32_t *knots, size_t count)
 {
@@ -116,7 +99,7 @@ static void write_level(struct making *making, struct level *level, const uint32
         uint32_t *at = &fill[making->knots.primitive[knots[i]]];
         levels_normal(&making->knots, knots + i, n);
         for (size_t c = 0; c < 3; c++)
-            level->indices[(*at)++] = choose_vertex(making, knots[i + c], n);
+            level->indices[(*at)++] = levels_vertex(&making->knots, making->used, knots[i + c], n, false);
     }
     memset(making->used, 0, g->vertex_count);
     for (uint32_t i = 0; i < level->index_count; i++)

@@ -6,6 +6,7 @@
 
 #include "base/mem.h"
 #include "preprocess/levels_impl.h"
+#include "surface/vec.h"
 
 #define AWAY (-0.5f) /* cosines: the vertex that suits a face best looks away from it; */
 #define ALONG 0.7f   /* one beside it looks its way */
@@ -31,33 +32,44 @@ struct facing {
 
 void levels_normal(const struct knots *knots, const uint32_t corners[3], float n[3])
 {
-    const float *a = knots->positions_m[corners[0]], *b = knots->positions_m[corners[1]], *c = knots->positions_m[corners[2]];
-    double u[3], v[3], m[3], length2 = 0;
-    for (int i = 0; i < 3; i++) {
-        u[i] = (double)b[i] - (double)a[i];
-        v[i] = (double)c[i] - (double)a[i];
-    }
-    for (int i = 0; i < 3; i++) {
-        m[i] = u[(i + 1) % 3] * v[(i + 2) % 3] - u[(i + 2) % 3] * v[(i + 1) % 3];
-        length2 += m[i] * m[i];
-    }
+    double at[3][3], u[3], v[3], m[3];
+    for (int c = 0; c < 3; c++)
+        for (int i = 0; i < 3; i++)
+            at[c][i] = (double)knots->positions_m[corners[c]][i];
+    vec_sub(at[1], at[0], u);
+    vec_sub(at[2], at[0], v);
+    vec_cross(u, v, m);
+    double length2 = vec_dot(m, m);
     for (int i = 0; i < 3; i++)
         n[i] = length2 > 0 ? (float)(m[i] / sqrt(length2)) : 0;
 }
 
-/* The cosine of that used vertex of a knot which suits a face best, as levels.c chooses; of all that look its way only, or of any. */
-static float look(const struct facing *facing, uint32_t knot, const float n[3], bool any)
+static float cosine_of(const struct knots *knots, uint32_t vertex, const float n[3])
 {
-    float best = -1, best_score = -1;
-    for (uint32_t i = facing->knots->first[knot]; i < facing->knots->first[knot + 1]; i++) {
-        const float *m = facing->knots->geometry->normals[facing->knots->vertices[i]];
-        float dot = n[0] * m[0] + n[1] * m[1] + n[2] * m[2], score = any ? fabsf(dot) + 1e-3f * dot : dot;
-        if (facing->used[facing->knots->vertices[i]] && score > best_score) {
-            best = dot;
+    const float *m = knots->geometry->normals[vertex];
+    return n[0] * m[0] + n[1] * m[1] + n[2] * m[2];
+}
+
+uint32_t levels_vertex(const struct knots *knots, const char *used, uint32_t knot, const float n[3], bool one_side)
+{
+    uint32_t best = UINT32_MAX;
+    float best_score = -INFINITY;
+    for (uint32_t i = knots->first[knot]; i < knots->first[knot + 1]; i++) {
+        uint32_t vertex = knots->vertices[i];
+        float dot = cosine_of(knots, vertex, n), score = one_side ? dot : fabsf(dot) + 1e-3f * dot;
+        if (used[vertex] && score > best_score) {
+            best = vertex;
             best_score = score;
         }
     }
     return best;
+}
+
+/* The cosine of the vertex that suits a face best; -1: none is used. */
+static float look(const struct facing *facing, uint32_t knot, const float n[3], bool one_side)
+{
+    uint32_t vertex = levels_vertex(facing->knots, facing->used, knot, n, one_side);
+    return vertex == UINT32_MAX ? -1 : cosine_of(facing->knots, vertex, n);
 }
 
 static float distance_m(const struct knots *knots, uint32_t a, uint32_t b)
@@ -74,17 +86,18 @@ void levels_find_contrary(const struct knots *knots, char *contrary)
         const uint32_t *v = g->indices + i, of[3] = { knots->of_vertex[v[0]], knots->of_vertex[v[1]], knots->of_vertex[v[2]] };
         levels_normal(knots, of, n);
         for (int c = 0; c < 3; c++)
-            contrary[knots->part[of[0]]] |= n[0] * g->normals[v[c]][0] + n[1] * g->normals[v[c]][1] + n[2] * g->normals[v[c]][2] < 0;
+            contrary[knots->part[of[0]]] |= cosine_of(knots, v[c], n) < 0;
     }
 }
 
 static void find_needs(struct facing *facing, const uint32_t *corners, size_t count, const char *contrary)
 {
+    float n[3];
     for (size_t i = 0; i < count; i++) {
-        float n[3];
         uint32_t knot = corners[i];
-        levels_normal(facing->knots, corners + i / 3 * 3, n);
-        if (contrary[facing->knots->part[knot]] || look(facing, knot, n, true) > AWAY)
+        if (i % 3 == 0)
+            levels_normal(facing->knots, corners + i, n);
+        if (contrary[facing->knots->part[knot]] || look(facing, knot, n, false) > AWAY)
             continue;
         mem_grow(&facing->needs, &facing->capacity, facing->count + 1, sizeof(*facing->needs));
         facing->needs[facing->count] = (struct need){ i, { n[0], n[1], n[2] }, ALONG, NONE, facing->first[knot] };
@@ -101,7 +114,7 @@ static void offer(struct facing *facing, uint32_t from, uint32_t to)
     for (size_t i = facing->first[from]; i != SIZE_MAX && far_m <= most_m; i = facing->needs[i].next) {
         struct need *need = &facing->needs[i];
         float score = 2 - far_m / most_m;
-        if (score > need->score && look(facing, to, need->normal, false) >= ALONG) {
+        if (score > need->score && look(facing, to, need->normal, true) >= ALONG) {
             need->score = score;
             need->knot = to;
         }

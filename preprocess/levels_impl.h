@@ -61,6 +61,9 @@ void omissions_find(struct omission *omissions, const struct knots *knots, struc
 
 /* Unit length, or 0. */
 void levels_normal(const struct knots *knots, const uint32_t corners[3], float n[3]);
+/* Of a knot's used vertices the one whose normal suits a face best, also where it is wound the wrong way; one_side: whose normal looks
+   its way most. UINT32_MAX: none is used. */
+uint32_t levels_vertex(const struct knots *knots, const char *used, uint32_t knot, const float n[3], bool one_side);
 /* By part: some face of the model looks the other way than its vertices. */
 void levels_find_contrary(const struct knots *knots, char *contrary);
 /* Moves corners of faces (knots, three each) that have no used vertex of their side to a knot beside that has one, if it is no farther than

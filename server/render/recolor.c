@@ -55,7 +55,9 @@ void recolor_destroy(struct recolor **recolor_ptr)
 size_t recolor_bytes(const struct recolor *recolor)
 {
     size_t pixels = (size_t)recolor->width_px * (size_t)recolor->height_px;
-    size_t bytes = pixels * (sizeof(*recolor->surfaces) + sizeof(*recolor->weights) + 2) + recolor->vertex_count * 14;
+    size_t bytes = pixels * (sizeof(*recolor->surfaces) + sizeof(*recolor->weights) + 2);
+    bytes += recolor->vertex_count *
+             (sizeof(*recolor->vertices) + sizeof(*recolor->carried) + sizeof(*recolor->plain) + sizeof(*recolor->flags));
     for (int i = 0; i < recolor->band_count; i++) {
         const struct recolor_band *band = &recolor->bands[i];
         bytes += band->triangle_capacity * (sizeof(*band->triangles) + sizeof(*band->corners)) +
@@ -95,15 +97,6 @@ static void settle_inks(struct recolor *recolor, size_t begin, size_t end)
         }
 }
 
-static void settle_mixed(struct recolor *recolor, size_t number)
-{
-    struct recolor_band *band = &recolor->bands[number];
-    for (size_t i = 0; i < band->mixed_count; i++) {
-        struct recolor_mixed *mixed = &band->mixed[i];
-        mixed->ink = recolor->ink[(number * (size_t)recolor->band_rows + mixed->row) * (size_t)recolor->width_px + mixed->x];
-    }
-}
-
 static void settle_bands(void *arg, size_t begin, size_t end)
 {
     const struct settling *settling = arg;
@@ -112,7 +105,6 @@ static void settle_bands(void *arg, size_t begin, size_t end)
     for (size_t b = begin; b < end; b++) {
         const struct recolor_band *band = &recolor->bands[b];
         settle_inks(recolor, b * rows * row, ((b + 1) * rows < height ? (b + 1) * rows : height) * row);
-        settle_mixed(recolor, b);
         for (size_t t = 0; t < band->triangle_count; t++)
             for (int i = 0; i < 3; i++)
                 __atomic_store_n(&settling->numbers[band->triangles[t][i]], 1, __ATOMIC_RELAXED);

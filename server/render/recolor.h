@@ -26,7 +26,7 @@ struct recolor_mixed {
     uint32_t blue_red, first_part; /* of what is fixed: blue and red times share, 16 bits each */
     uint16_t green;                /* likewise */
     uint16_t x, row;               /* in the band */
-    uint8_t part_count, ink;       /* ink: once it is settled */
+    uint8_t part_count;
 };
 
 struct recolor_band { /* of rows; written by one worker */

@@ -196,8 +196,10 @@ DRAFT_INLINE void color_mixed(const struct coloring *coloring, const struct reco
             sum = flagged_sum(coloring, band, mixed, &ahead, (float)mixed->x + 0.5f, (float)(top + mixed->row) + 0.5f);
         sum = (sum + half + mixed->blue_red + ((uint64_t)mixed->green << 32)) / RECOLOR_SHARES;
         uint32_t color = (uint32_t)(sum & 0xff00ff) | (uint32_t)(sum >> 24 & 0xff00);
-        uint8_t *line = coloring->frame->bgrx + (size_t)(top + mixed->row) * (size_t)coloring->frame->stride_bytes;
-        ((uint32_t *)(void *)line)[mixed->x] = (mixed->ink ? inked(color, mixed->ink) : color) | 0xff000000;
+        size_t row = (size_t)(top + mixed->row);
+        uint8_t *line = coloring->frame->bgrx + row * (size_t)coloring->frame->stride_bytes;
+        uint8_t ink = coloring->recolor->ink[row * (size_t)coloring->recolor->width_px + mixed->x];
+        ((uint32_t *)(void *)line)[mixed->x] = (ink ? inked(color, ink) : color) | 0xff000000;
     }
 }
 

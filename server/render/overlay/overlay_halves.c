@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "render/overlay/overlay_pen.h"
 
@@ -28,12 +29,23 @@ static void add_number(struct caption *caption, const char *form, double value)
     add_line(caption, form, number);
 }
 
+/* otherwise: where it is not given in metres. */
+static void add_metres(struct caption *caption, const char *what, bool given, double value_m, const char *otherwise)
+{
+    char number[40];
+    if (given) {
+        pen_number(value_m, fabs(value_m), number);
+        add_line(caption, "%s %s m", what, number);
+    } else {
+        add_line(caption, "%s %s", what, otherwise);
+    }
+}
+
 /* What `own` has where `other` has something else, in the words of the options. */
 static void write_caption(struct caption *caption, const struct view *own, const struct view *other)
 {
     static const char *const looks[] = { "Default look", "Glossy look", "Flat look", "Materials" }; /* by enum look */
     const struct field_params *a = &own->field, *b = &other->field;
-    bool blends = a->show == SHOW_VALUE || a->show == SHOW_DIFFERENCE || a->show == SHOW_OPERATOR;
     caption->count = 0;
     if (own->look != other->look)
         add_line(caption, "%s", looks[own->look]);
@@ -41,7 +53,7 @@ static void write_caption(struct caption *caption, const struct view *own, const
         return;
     if (a->distance != b->distance)
         add_line(caption, "%s distance", a->distance == DISTANCE_GEODESIC ? "Geodesic" : "Euclidean");
-    if (!blends || a->show != b->show)
+    if (a->show == SHOW_DISTANCE || a->show != b->show)
         return;
     if (a->interpolation != b->interpolation)
         add_line(caption, "%s", a->interpolation == INTERPOLATION_PAPER ? "Algorithm 1 of the paper" : "Shepard");
@@ -51,20 +63,14 @@ static void write_caption(struct caption *caption, const struct view *own, const
         add_number(caption, "Strength %s", a->strength);
     if (a->decay != b->decay)
         add_number(caption, "Decay %s", a->decay);
-    if (a->radius_m != b->radius_m && a->interpolation == INTERPOLATION_PAPER && a->radius_m > 0)
-        add_number(caption, "Radius %s m", a->radius_m);
-    else if (a->radius_m != b->radius_m && a->interpolation == INTERPOLATION_PAPER)
-        add_line(caption, "Radius automatic");
-    if (a->reach_m != b->reach_m && isfinite(a->reach_m))
-        add_number(caption, "Reach %s m", a->reach_m);
-    else if (a->reach_m != b->reach_m)
-        add_line(caption, "Reach without limit");
+    if (a->radius_m != b->radius_m && a->interpolation == INTERPOLATION_PAPER)
+        add_metres(caption, "Radius", a->radius_m > 0, a->radius_m, "automatic");
+    if (a->reach_m != b->reach_m)
+        add_metres(caption, "Reach", isfinite(a->reach_m), a->reach_m, "without limit");
     if (a->fill != b->fill)
         add_line(caption, a->fill == FILL_NONE ? "Not filled" : "Filled by neighbours");
-    bool same_sensors = a->override_count == b->override_count;
-    for (size_t i = 0; i < a->override_count && same_sensors; i++)
-        same_sensors = a->overrides[i].tag == b->overrides[i].tag && a->overrides[i].strength == b->overrides[i].strength &&
-                       a->overrides[i].decay == b->overrides[i].decay;
+    bool same_sensors = a->override_count == b->override_count && /* as field_params_equal has it */
+                        !memcmp(a->overrides, b->overrides, a->override_count * sizeof(*a->overrides));
     if (!same_sensors && a->override_count > 0)
         add_line(caption, "Sensors weighted by hand: %zu", a->override_count);
     else if (!same_sensors)
@@ -85,7 +91,7 @@ static void draw_caption(struct pen *pen, const struct caption *caption)
     pen_card(pen, &box);
     pen_ink(pen, 1);
     for (int i = 0; i < caption->count; i++)
-        pen_text(pen, box.x + pad, box.y + 0.7 * pad + (0.8 + 1.0 * i) * line_px, caption->lines[i]);
+        pen_text(pen, box.x + pad, box.y + 0.7 * pad + (0.8 + i) * line_px, caption->lines[i]);
     pen_take(pen, &box);
 }
 
