@@ -39,6 +39,20 @@ static void hash_files(struct plant *plant)
     XXH3_freeState(state);
 }
 
+static int compare_ids(const void *pa, const void *pb, void *assets_ptr)
+{
+    const struct plant_asset *assets = assets_ptr;
+    return strcmp(assets[*(const int *)pa].id, assets[*(const int *)pb].id);
+}
+
+static void sort_assets(struct plant *plant)
+{
+    plant->assets_by_id = mem_array(plant->asset_count, sizeof(*plant->assets_by_id));
+    for (size_t i = 0; i < plant->asset_count; i++)
+        plant->assets_by_id[i] = (int)i;
+    qsort_r(plant->assets_by_id, plant->asset_count, sizeof(*plant->assets_by_id), compare_ids, plant->assets);
+}
+
 static struct plant *load(const char *path, bool keeps_orphans, struct diag *diag)
 {
     int errors = diag->errors;
@@ -52,6 +66,8 @@ static struct plant *load(const char *path, bool keeps_orphans, struct diag *dia
     hash_files(plant);
     if (diag->errors != errors)
         plant_destroy(&plant);
+    else
+        sort_assets(plant);
     return plant;
 }
 
@@ -85,6 +101,7 @@ static void free_assets(struct plant *plant)
         plant_properties_free(asset);
     }
     mem_free(plant->assets);
+    mem_free(plant->assets_by_id);
 }
 
 static void free_groups(struct plant *plant)
@@ -155,8 +172,27 @@ void plant_destroy(struct plant **plant_ptr)
     *plant_ptr = NULL;
 }
 
+/* Of things that begin with `char *id`, in an order by it: index or -1. */
+static int find_sorted(const int *order, size_t count, const void *things, size_t stride, const char *id)
+{
+    size_t low = 0, high = count;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        int difference = strcmp(*(char *const *)((const char *)things + (size_t)order[middle] * stride), id);
+        if (difference == 0)
+            return order[middle];
+        if (difference < 0)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return -1;
+}
+
 int plant_find_asset(const struct plant *plant, const char *id)
 {
+    if (plant->assets_by_id)
+        return find_sorted(plant->assets_by_id, plant->asset_count, plant->assets, sizeof(*plant->assets), id);
     for (size_t i = 0; i < plant->asset_count; i++)
         if (!strcmp(plant->assets[i].id, id))
             return (int)i;
@@ -173,18 +209,7 @@ int plant_find_group(const struct plant *plant, const char *id)
 
 int plant_find_tag(const struct plant *plant, const char *name)
 {
-    size_t low = 0, high = plant->tag_count;
-    while (low < high) {
-        size_t middle = low + (high - low) / 2;
-        int tag = plant->tags_by_name[middle], order = strcmp(plant->tags[tag].name, name);
-        if (order == 0)
-            return tag;
-        if (order < 0)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return -1;
+    return find_sorted(plant->tags_by_name, plant->tag_count, plant->tags, sizeof(*plant->tags), name);
 }
 
 static char *beside(const struct plant *plant, const char *ending)

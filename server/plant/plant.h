@@ -213,7 +213,7 @@ struct plant {
     size_t asset_count, group_count, source_count, tag_count;
     struct plant_colormap colormaps[PLANT_COLORMAPS];
     size_t colormap_count;
-    int *tags_by_name;                /* indices of tags, sorted by name */
+    int *assets_by_id, *tags_by_name; /* indices, sorted by id, by name. assets_by_id: NULL until all is read */
     int *derived;                     /* of tags with an expression, each after those that it is computed from */
     size_t derived_count;
 };

@@ -17,6 +17,7 @@
 #include "field/colormap.h"
 #include "net/message/query.h"
 #include "net/message/reply.h"
+#include "net/message/visibility.h"
 #include "tests/support/small_scene.h"
 
 #define FOLDER "protocol/vectors/client"
@@ -497,9 +498,82 @@ static void no_number_is_minus_nought(void **state)
     mem_free(text);
 }
 
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+enum { MOST_MESSAGE_MS = 50 }; /* they make it slower */
+#else
+enum { MOST_MESSAGE_MS = 5 };
+#endif
+
+/* As many as can be hidden, with ids as long as a message of 64 KiB holds. */
+enum { MANY_ASSETS = ASSET_SET_MAX };
+
+static struct plant *load_many(void)
+{
+    char folder[] = "/tmp/plantcast-message-XXXXXX";
+    struct text yaml = { 0 };
+    char *model = realpath("tests/fuzz/gltf/data_uri.gltf", NULL);
+    assert_true(model && mkdtemp(folder));
+    char *path = mem_printf("%s/plant.yaml", folder), *tags = mem_printf("%s/tags.csv", folder);
+    text_add(&yaml, "plant: { name: Many }\ngroups:\n  - { id: t, unit: K, min: 0, max: 1 }\ntags: tags.csv\nassets:\n");
+    for (int i = MANY_ASSETS - 1; i >= 0; i--)
+        text_add(&yaml, "  - { id: EQUIP-%06d, model: %s }\n", i, model);
+    FILE *file = fopen(path, "w");
+    assert_int_equal(fwrite(yaml.at, 1, yaml.length, file), yaml.length);
+    assert_int_equal(fclose(file), 0);
+    file = fopen(tags, "w");
+    assert_true(fputs("Tag Name,Address,Data Type\n", file) >= 0 && fclose(file) == 0);
+    struct plant *many = plant_load_or_print(path);
+    assert_non_null(many);
+    assert_int_equal(remove(path) | remove(tags) | remove(folder), 0);
+    mem_free(path);
+    mem_free(tags);
+    text_finish(&yaml);
+    free(model);
+    return many;
+}
+
+static double thread_ms(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
+}
+
+/* The loop serves everybody: no message may hold it for long. */
+static void a_long_list_of_hidden_assets_is_quick(void **state)
+{
+    struct plant *many = load_many();
+    struct text said = { 0 };
+    double least_ms = INFINITY;
+    (void)state;
+    text_add(&said, "{\"type\":\"params\",\"seq\":1,\"hidden\":[");
+    for (int i = 0; i < MANY_ASSETS; i++)
+        text_add(&said, "%s\"EQUIP-%06d\"", i ? "," : "", i);
+    text_add(&said, "]}");
+    assert_in_range(said.length, 60000, WIRE_MAX_MESSAGE_BYTES);
+    for (int i = 0; i < 5; i++) {
+        struct message message;
+        struct message_error error;
+        double began_ms = thread_ms();
+        bool good = message_parse(many, said.at, said.length, &message, &error);
+        json_t *answer = json_object();
+        visibility_print(many, &message.params.visibility, answer);
+        least_ms = fmin(least_ms, thread_ms() - began_ms);
+        assert_true(good);
+        assert_int_equal(message.params.visibility.hidden.count, MANY_ASSETS);
+        assert_int_equal(json_array_size(json_object_get(answer, "hidden")), MANY_ASSETS);
+        json_decref(answer);
+    }
+    print_message("# %zu bytes take %.2f ms\n", said.length, least_ms);
+    assert_true(least_ms < MOST_MESSAGE_MS);
+    text_finish(&said);
+    plant_destroy(&many);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_long_list_of_hidden_assets_is_quick),
         cmocka_unit_test(vectors_are_taken_or_refused),
         cmocka_unit_test(fields_arrive),
         cmocka_unit_test(what_is_left_out_stays),
