@@ -14,6 +14,7 @@
 enum interpolation { INTERPOLATION_SHEPARD, INTERPOLATION_PAPER };
 enum distance_mode { DISTANCE_GEODESIC, DISTANCE_EUCLIDEAN };
 enum fill_mode { FILL_NONE, FILL_NEIGHBOURS };       /* may neighbours paint the place of a lost sensor? */
+enum plant_show { PLANT_SHOW_VALUE, PLANT_SHOW_OPERATOR }; /* what a client begins with: readings, or their places between limits */
 enum axis { AXIS_Y, AXIS_Z };                        /* which way is up */
 enum data_type { DATA_BIT, DATA_INT16, DATA_UINT16, DATA_INT32, DATA_UINT32, DATA_FLOAT32, DATA_INT64, DATA_UINT64, DATA_FLOAT64,
                  DATA_BCD /* 4 digits, one register */, DATA_LBCD /* 8 digits, two */ };
@@ -200,6 +201,7 @@ struct plant {
     char *name, *time_zone;           /* IANA name; default UTC */
     enum axis up;                     /* of the plant frame */
     struct plant_view view;
+    enum plant_show show;
     struct plant_environment environments[PLANT_ENVIRONMENTS]; /* the first is shown where nobody asks for another */
     size_t environment_count;
     struct plant_link links[PLANT_LINKS];

@@ -23,6 +23,7 @@ struct plant_file {
 };
 
 static const struct choice up_choices[] = { { "z", AXIS_Z }, { "y", AXIS_Y }, { 0 } };
+static const struct choice show_choices[] = { { "value", PLANT_SHOW_VALUE }, { "operator", PLANT_SHOW_OPERATOR }, { 0 } };
 static const struct choice unit_choices[] = { { "m", 1 }, { "mm", 1e-3 }, { "cm", 1e-2 }, { "in", 0.0254 }, { "ft", 0.3048 }, { 0 } };
 static const struct choice frame_choices[] = { { "plant", 0 }, { "asset", 1 }, { 0 } };
 static const struct choice interpolation_choices[] = { { "shepard", INTERPOLATION_SHEPARD }, { "paper", INTERPOLATION_PAPER }, { 0 } };
@@ -73,6 +74,7 @@ static void read_plant(struct yaml_reader *reader, yaml_node_t *node, void *reco
         { "time_zone", KEY_NAME, false, offsetof(struct plant, time_zone), 0, 0, NULL, NULL },
         { "up", KEY_CHOICE, false, offsetof(struct plant, up), 0, 0, up_choices, NULL },
         { "view", KEY_CUSTOM, false, 0, 0, 0, NULL, read_view },
+        { "show", KEY_CHOICE, false, offsetof(struct plant, show), 0, 0, show_choices, NULL },
         { 0 }
     };
     struct plant *plant = ((struct plant_file *)record)->plant;

@@ -53,6 +53,7 @@ void view_default(const struct scene *scene, int width_px, int height_px, struct
     view->tier = TIER_STILL;
     if (plant->group_count > 0) {
         field_params_default(plant, 0, &view->field);
+        view->field.show = plant->show == PLANT_SHOW_OPERATOR ? SHOW_OPERATOR : SHOW_VALUE;
         view_own_scale(scene, view);
     }
     default_light(scene, view->light_dir);

@@ -167,6 +167,21 @@ static void a_new_group_brings_its_settings(void **state)
     assert_int_equal(other.colormap, view.colormap);
 }
 
+static void a_plant_may_begin_with_limits(void **state)
+{
+    (void)state;
+    struct plant *ours = (struct plant *)plant();
+    struct view view;
+    ours->show = PLANT_SHOW_OPERATOR;
+    view_default(small_scene(), 640, 360, &view);
+    ours->show = PLANT_SHOW_VALUE;
+    assert_true(view_is_operator(&view));
+    struct view other = changed(view, "{\"type\":\"params\",\"seq\":1,\"group\":\"pressure\"}");
+    assert_true(view_is_operator(&other));
+    struct view value = changed(view, "{\"type\":\"params\",\"seq\":2,\"show\":\"value\"}");
+    assert_true(value.field.show == SHOW_VALUE && value.range_min == 20 && value.range_max == 180);
+}
+
 static struct view both_changed(struct view view, const char *text)
 {
     struct message m = parse(text);
@@ -578,6 +593,7 @@ int main(void)
         cmocka_unit_test(fields_arrive),
         cmocka_unit_test(what_is_left_out_stays),
         cmocka_unit_test(a_new_group_brings_its_settings),
+        cmocka_unit_test(a_plant_may_begin_with_limits),
         cmocka_unit_test(bands_and_lines),
         cmocka_unit_test(a_view_splits),
         cmocka_unit_test(what_is_fitted_lies_beside_the_legend),

@@ -76,6 +76,7 @@ static void everything_is_read(void **state)
          "  name: Werk Süd\n"
          "  time_zone: Europe/Berlin\n"
          "  up: y\n"
+         "  show: operator\n"
          "  view: { eye: [1, 2.5, -3], target: [0, 0, 1e1], fov: 60 }\n"
          "assets:\n"
          "  - { id: 101, tag: T, description: d, model: m.glb, nodes: 'E*', units: ft, up: z, sensor_frame: asset }\n"
@@ -95,6 +96,7 @@ static void everything_is_read(void **state)
     const struct plant *p = f->plant;
     assert_string_equal(p->name, "Werk Süd");
     assert_true(p->up == AXIS_Y && p->view.set && p->view.eye_m[1] == 2.5 && p->view.target_m[2] == 10 && p->view.fov_deg == 60);
+    assert_int_equal(p->show, PLANT_SHOW_OPERATOR);
     const struct plant_asset *a = &p->assets[0];
     assert_string_equal(a->id, "101");
     assert_string_equal(a->nodes, "E*");
@@ -246,7 +248,7 @@ static void unknown_keys_are_named(void **state)
     load_with(f, 1, "plant: { name: P, timezone: UTC }");
     FOUND(f, { "plant.yaml", 1, 19, "unknown key 'timezone' in plant; did you mean 'time_zone'?" });
     load_with(f, 1, "plant: { name: P, colour: red }");
-    FOUND(f, { "plant.yaml", 1, 19, "unknown key 'colour' in plant; expected one of: name, time_zone, up, view" });
+    FOUND(f, { "plant.yaml", 1, 19, "unknown key 'colour' in plant; expected one of: name, time_zone, up, view, show" });
     load_with(f, 5, "tags: tags.csv\nsorces: []");
     FOUND(f, { "plant.yaml", 6, 1, "did you mean 'sources'?" });
     load_with(f, 1, "plant: { name: P, [a]: 1 }");
