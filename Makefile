@@ -10,7 +10,7 @@ CC := gcc
 endif
 CXX := $(if $(findstring clang,$(CC)),clang++,g++)
 
-flags_release := -O3 -DNDEBUG -g1
+flags_release := -O3 -DNDEBUG -g1 -fstack-protector-strong -U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=3
 flags_debug   := -O0 -g3
 flags_asan    := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer
 flags_tsan    := -O1 -g -fsanitize=thread
@@ -38,10 +38,10 @@ pkg_libs   := $(shell pkg-config --libs $(packages) 2>/dev/null) -lflann -lcholm
 
 warn   := -Wall -Wextra -Wshadow -Wpointer-arith -Wvla -Wundef -Wno-psabi
 include := -I. -Iserver -I$(gen) -isystem $(gen)/glad/include -isystem /usr/include/suitesparse $(pkg_cflags)
-common := $(flags_$(config)) $(defines) $(include) -MMD -MP -pthread -fno-math-errno
+common := $(flags_$(config)) $(defines) $(include) -MMD -MP -pthread -fno-math-errno -fPIE
 cflags   = -std=c11 -D_GNU_SOURCE $(warn) -Wstrict-prototypes -Wmissing-prototypes $(common) $(CFLAGS)
 cxxflags = -std=c++17 -D_GNU_SOURCE $(warn) $(common) $(CXXFLAGS)
-ldflags  = $(flags_$(config)) -pthread -Wl,--as-needed $(LDFLAGS)
+ldflags  = $(flags_$(config)) -pthread -Wl,--as-needed -Wl,-z,relro,-z,now $(LDFLAGS)
 
 # --- what is built: one archive per layer, left to right ------------------------------------------------------------------
 layers   := base plant surface value history alarm proving scene field placing gpu render encode net
@@ -50,7 +50,7 @@ without  := $(if $(filter h264,$(CODECS)),,$(wildcard server/encode/h264*))
 archives := $(foreach l,$(layers),$(out)/lib/$(l).a) $(out)/lib/protocol.a
 objects   = $(patsubst %,$(out)/obj/%.o,$(basename $(1)))
 link      = @mkdir -p $(@D); echo "  LINK $@"; \
-            $(CXX) $(ldflags) -o $@ $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group $(pkg_libs)
+            $(CXX) $(ldflags) -pie -o $@ $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group $(pkg_libs)
 
 sim_sources      := $(filter-out %/generate.c,$(wildcard deploy/demo/*.c))
 generate_sources := $(wildcard deploy/demo/generate*.c deploy/demo/generate/*.c)
