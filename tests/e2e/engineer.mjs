@@ -109,6 +109,7 @@ const snapshot = async () => {
 
 test('the list is saved: what changes is shown, then it is in force', options, async () => {
     const old = readFileSync(tagsFile, 'utf8');
+    await says('#assets-list', 'E-101.*2 sensors.*Tags without equipment.*1 sensor');
     await button('Save …').click();
     await says('dialog.diff[open]', 'line 5');
     await shoot(page, 'engineer-diff');
@@ -121,6 +122,8 @@ test('the list is saved: what changes is shown, then it is in force', options, a
     assert.match(readFileSync(tagsFile, 'utf8'), /TI-9,400007,Float,°C,spare,temperature,E-101,0\.\d+,-0\.5,0\.\d+,1/);
     await page.waitForFunction(() => globalThis.plantcast.session.model.tag('TI-9').position !== null);
     assert.equal(await moved(), null);
+    await says('#assets-list', 'E-101.*3 sensors');
+    assert.doesNotMatch(await text('#assets-list'), /without equipment/);
     await ready(page);
     instant = new Date().toISOString();
     await page.waitForFunction((us) => globalThis.plantcast.session.clockUs() > us + 3e6, Date.now() * 1000);

@@ -73,7 +73,7 @@ export class Assets {
             Object.assign(this.tree, { open: before.open, folded: before.folded }); // a new connection finds it as it was
         setText(byId('assets-count'), String(model.assets.length));
         this.selected = undefined;
-        this.mark();
+        this.list.renew(() => this.mark()); // the same name may be of something else now
     }
 
     filter() {

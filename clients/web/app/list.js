@@ -16,6 +16,16 @@ export class LongList {
         new ResizeObserver(() => this.show()).observe(root);
     }
 
+    // All rows are made anew by change(), which sets them; the keyboard stays where it is.
+    renew(change) {
+        const { root } = this, hasFocus = root.contains(document.activeElement);
+        this.space.replaceChildren();
+        this.shown.clear();
+        change();
+        if (hasFocus)
+            this.shown.get(this.active)?.focus({ preventScroll: true });
+    }
+
     // Elements stay those of their rows.
     set(rows) {
         this.rows = rows;
