@@ -7,7 +7,8 @@
 #include "value/modbus_impl.h"
 #include "value/quality.h"
 
-static const int64_t REFUSED_NS = 60 * NS_PER_S; /* how long a refused register is believed to be wrong */
+/* A refused register is left alone for so long, twice as long each time, and a minute at most: a device may say no while it starts. */
+static const int64_t REFUSED_NS = 2 * NS_PER_S, REFUSED_MOST_NS = 60 * NS_PER_S;
 static const int64_t BUSY_NS = 50 * NS_PER_MS;
 enum { BUSY_TRIES = 4 };
 
@@ -36,7 +37,8 @@ void modbus_take_values(struct modbus_source *modbus, struct plan_block *block, 
         modbus->samples[i].tag = index;
         decode_sample(tag, words + (tag->register_index - block->first), &modbus->samples[i]);
     }
-    block->busy_count = 0;
+    block->busy_count = block->refused_count = 0;
+    block->answered = true;
     store_write(modbus->store, modbus->samples, block->tag_count, clock_mono_ns(), clock_utc_ns());
     bool repaired = note_refused(modbus, block, false, "read again");
     modbus_unit_is_up(modbus, modbus_unit_of(modbus, block)); /* may make the plan anew: block is of the old one then */
@@ -67,6 +69,11 @@ static uint32_t quality_of_exception(int code)
     }
 }
 
+static int64_t refused_pause_ns(int before)
+{
+    return before < 5 ? REFUSED_NS << before : REFUSED_MOST_NS;
+}
+
 void modbus_take_exception(struct modbus_source *modbus, size_t index, int code, int64_t now_ns)
 {
     struct plan_block *block = &modbus->plan.blocks[index];
@@ -84,6 +91,11 @@ void modbus_take_exception(struct modbus_source *modbus, size_t index, int code,
             block->busy_count = 0;
         return;
     }
+    if (block->answered) { /* it has been read before: one such answer is no verdict yet */
+        block->answered = false;
+        block->due_ns = now_ns;
+        return;
+    }
     modbus->plan_cut = true;
     if (code != MODBUS_EXCEPTION_ILLEGAL_FUNCTION && block->tag_count > 1) {
         block->due_ns = now_ns; /* both halves at once, and so on down to the register that is to blame */
@@ -91,7 +103,7 @@ void modbus_take_exception(struct modbus_source *modbus, size_t index, int code,
         return;
     }
     if (quality == QUALITY_BAD_CONFIGURATION)
-        block->due_ns = now_ns + REFUSED_NS;
+        block->due_ns = now_ns + refused_pause_ns(block->refused_count++);
     take_refusal(modbus, block, quality, why);
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* libmodbus over a socket or a line of ours: opened with a deadline, thrown away after any error. */
+/* A socket or a line of ours: opened with a deadline, thrown away after any error. RTU frames are libmodbus's. */
 #include "value/modbus_link.h"
 
 #include <errno.h>
@@ -18,13 +18,15 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "value/lookup.h"
+#include "value/modbus_tcp.h"
 #include "value/plan.h"
 
 static const int64_t SETTLE_NS = 50 * NS_PER_MS;
 
 struct modbus_link {
     const struct plant_source *source;
-    modbus_t *modbus;
+    modbus_t *modbus; /* NULL: of RTU frames only */
+    uint16_t number;  /* of the last question in TCP frames */
     int stop_fd;
     int null_fd;
     int slot_fd;   /* taken early and kept for life, the connection is put into it: libmodbus calls select(), whose sets end at
@@ -40,9 +42,7 @@ struct modbus_link {
 static modbus_t *new_modbus(const struct plant_source *source)
 {
     bool line = source->transport == TRANSPORT_RTU;
-    modbus_t *modbus = source->transport == TRANSPORT_TCP
-                           ? modbus_new_tcp("127.0.0.1", MODBUS_TCP_DEFAULT_PORT)
-                           : modbus_new_rtu(line ? source->device : "/dev/null", source->baud, (char)source->parity, 8, source->stop_bits);
+    modbus_t *modbus = modbus_new_rtu(line ? source->device : "/dev/null", source->baud, (char)source->parity, 8, source->stop_bits);
     if (!modbus)
         return NULL;
     modbus_set_response_timeout(modbus, (uint32_t)(source->timeout_ms / 1000), (uint32_t)(source->timeout_ms % 1000) * 1000);
@@ -70,12 +70,13 @@ struct modbus_link *modbus_link_create(struct log *log, const struct plant_sourc
         log_err(log, "source %s: no file descriptor below %d is free", source->id, FD_SETSIZE);
         goto error;
     }
-    link->modbus = new_modbus(source);
-    if (!link->modbus) {
+    bool framed = source->transport == TRANSPORT_TCP;
+    if (!framed && !(link->modbus = new_modbus(source))) {
         log_err(log, "source %s: libmodbus: %s", source->id, modbus_strerror(errno));
         goto error;
     }
-    modbus_set_socket(link->modbus, link->slot_fd);
+    if (link->modbus)
+        modbus_set_socket(link->modbus, link->slot_fd);
     name_link(link);
     return link;
 error:
@@ -243,18 +244,38 @@ static int read_words(modbus_t *modbus, enum register_table table, int first, in
                                 : modbus_read_registers(modbus, first, count, words);
 }
 
-static int ask(struct modbus_link *link, enum register_table table, int first, int count, uint16_t *words)
+/* What a call of libmodbus came to. */
+static int status_of(int got, int count)
 {
-    bool bits = table == TABLE_COIL || table == TABLE_DISCRETE;
+    int cause = errno;
+    if (got == count)
+        return 0;
+    if (got < 0 && cause > MODBUS_ENOBASE && cause < MODBUS_ENOBASE + MODBUS_EXCEPTION_MAX)
+        return cause - MODBUS_ENOBASE;
+    return got < 0 && cause > 0 && cause < MODBUS_ENOBASE ? -cause : -EPROTO;
+}
+
+/* 0, an exception code, or -errno. */
+static int ask(struct modbus_link *link, const struct modbus_question *question, uint16_t *words)
+{
+    enum register_table table = question->table;
     flush(link);
-    return bits ? read_bits(link->modbus, table, first, count, words) : read_words(link->modbus, table, first, count, words);
+    if (!link->modbus) {
+        struct modbus_question numbered = *question;
+        numbered.number = ++link->number;
+        return modbus_tcp_ask(link->slot_fd, link->stop_fd, clock_mono_ns() + link->source->timeout_ms * NS_PER_MS, &numbered, words);
+    }
+    bool bits = table == TABLE_COIL || table == TABLE_DISCRETE;
+    int got = bits ? read_bits(link->modbus, table, question->first, question->count, words)
+                   : read_words(link->modbus, table, question->first, question->count, words);
+    return status_of(got, question->count);
 }
 
 /* RTU frames have no numbers: what was given up may come as the answer to the next question. So after an error one answer is thrown
    away, and then whatever else comes for a while. False: nobody answers. */
-static bool clear_line(struct modbus_link *link, enum register_table table, int first, int count, uint16_t *words)
+static bool clear_line(struct modbus_link *link, const struct modbus_question *question, uint16_t *words)
 {
-    if (ask(link, table, first, count, words) < 0 && errno == ETIMEDOUT)
+    if (ask(link, question, words) == -ETIMEDOUT)
         return false;
     wait_for(-1, 0, link->stop_fd, clock_mono_ns() + link->source->timeout_ms * NS_PER_MS);
     link->suspect = false;
@@ -263,29 +284,31 @@ static bool clear_line(struct modbus_link *link, enum register_table table, int 
 
 /* An answer with the number of another question: one that came twice, or late. What belongs to that is let come, and the question put
    once more; who answers wrongly again is disconnected. */
-static int ask_anew(struct modbus_link *link, enum register_table table, int first, int count, uint16_t *words)
+static int ask_anew(struct modbus_link *link, const struct modbus_question *question, uint16_t *words)
 {
     wait_for(-1, 0, link->stop_fd, clock_mono_ns() + SETTLE_NS);
-    return ask(link, table, first, count, words);
+    return ask(link, question, words);
+}
+
+/* 0..247, and 255 over TCP: the device at the address itself. */
+static bool can_ask_unit(struct modbus_link *link, int unit)
+{
+    return link->modbus ? modbus_set_slave(link->modbus, unit) == 0 : (unit >= 0 && unit <= 247) || unit == 255;
 }
 
 int modbus_link_read(struct modbus_link *link, int unit, enum register_table table, int first, int count, uint16_t *words)
 {
-    if (modbus_set_slave(link->modbus, unit) != 0)
-        return MODBUS_EXCEPTION_ILLEGAL_DATA_VALUE; /* libmodbus asks units 0..247, and 255 over TCP */
-    int got = -1;
-    errno = ETIMEDOUT;
-    if (!link->suspect || clear_line(link, table, first, count, words))
-        got = ask(link, table, first, count, words);
-    if (got < 0 && errno == EMBBADDATA && link->source->transport == TRANSPORT_TCP)
-        got = ask_anew(link, table, first, count, words);
-    int cause = errno;
-    if (got == count)
-        return 0;
-    if (got < 0 && cause > MODBUS_ENOBASE && cause < MODBUS_ENOBASE + MODBUS_EXCEPTION_MAX)
-        return cause - MODBUS_ENOBASE;
-    modbus_link_close(link);
-    return got < 0 && cause > 0 && cause < MODBUS_ENOBASE ? -cause : -EPROTO;
+    const struct modbus_question question = { .unit = (uint8_t)unit, .table = table, .first = first, .count = count };
+    if (!can_ask_unit(link, unit))
+        return MODBUS_EXCEPTION_ILLEGAL_DATA_VALUE;
+    int status = -ETIMEDOUT;
+    if (!link->suspect || clear_line(link, &question, words))
+        status = ask(link, &question, words);
+    if (status == -EBADMSG)
+        status = ask_anew(link, &question, words);
+    if (status < 0)
+        modbus_link_close(link);
+    return status == -EBADMSG ? -EPROTO : status;
 }
 
 void modbus_link_interrupt(struct modbus_link *link)

@@ -17,6 +17,8 @@ struct plan_block { /* one request: no tag in two blocks; between its tags at mo
     size_t first_tag, tag_count; /* in plan.tags */
     int64_t due_ns;            /* for the reader; 0 in a new plan, copied by plan_split */
     int busy_count;            /* likewise: answers in a row that said "busy" */
+    int refused_count;         /* likewise: how often in a row it was refused, alone */
+    bool answered;             /* likewise: by its last answer */
 };
 
 struct plan { /* zero-initialise */

@@ -111,17 +111,32 @@ static void reply_wrong(struct device_thread *t, int fd, const uint8_t *request,
     (void)!write(fd, reply, (size_t)count); /* the client may have had enough */
 }
 
+/* As if another unit had been asked: an RTU frame has a sum over that too. */
+static int catch_foreign(struct device_thread *t, const uint8_t *request, int bytes, uint8_t *reply)
+{
+    uint8_t foreign[MODBUS_TCP_MAX_ADU_LENGTH];
+    memcpy(foreign, request, (size_t)bytes);
+    foreign[t->header - 1] ^= 7;
+    modbus_set_slave(t->modbus, foreign[t->header - 1]);
+    int count = catch_reply(t, foreign, bytes, t->wrong, reply);
+    modbus_set_slave(t->modbus, request[t->header - 1]);
+    return count;
+}
+
 /* The answer, and then some of it is wrong. */
 static void reply_spoilt(struct device_thread *t, int fd, const uint8_t *request, int bytes, int manner)
 {
     uint8_t reply[MODBUS_TCP_MAX_ADU_LENGTH];
-    int count = catch_reply(t, request, bytes, t->mapping, reply);
+    int count = manner == DEVICE_FOREIGN ? catch_foreign(t, request, bytes, reply)
+                                         : catch_reply(t, request, bytes, manner == DEVICE_MEASURED ? t->wrong : t->mapping, reply);
     if (manner == DEVICE_SHORT)
         count--;
     if (manner == DEVICE_LONG)
         reply[t->header + 1] = (uint8_t)(reply[t->header + 1] + 2);
-    if (manner == DEVICE_FOREIGN)
-        reply[t->header - 1] ^= 7;
+    if (manner == DEVICE_MEASURED) {
+        reply[4] = (uint8_t)(t->device->said_length >> 8);
+        reply[5] = (uint8_t)t->device->said_length;
+    }
     for (int i = 0; i < count && manner == DEVICE_GARBAGE; i++)
         reply[i] = (uint8_t)rand();
     (void)!write(fd, reply, (size_t)count);
@@ -170,6 +185,8 @@ static bool answer(struct device_thread *t, int fd, const uint8_t *request, int 
     }
     if (device->bad_code && asks_for(request, t->header, device->bad_register)) {
         refuse(t, request, device->bad_code);
+        if (device->bad_times && atomic_fetch_sub(&device->bad_times, 1) == 1)
+            device->bad_code = 0;
         return true;
     }
     if (manner == DEVICE_DRIPPING) {

@@ -17,7 +17,8 @@ enum device_manner {
     DEVICE_SHORT,       /* all but the last byte of the answer */
     DEVICE_LONG,        /* an answer that says it has more values than were asked for */
     DEVICE_GARBAGE,     /* random bytes */
-    DEVICE_FOREIGN,     /* the answer of another unit */
+    DEVICE_FOREIGN,     /* the answer of another unit, with its values */
+    DEVICE_MEASURED,    /* wrong values in an answer whose header says that it is said_length long */
 };
 enum device_wire { DEVICE_TCP, DEVICE_RTU_TCP, DEVICE_LINE };
 #define DEVICE_WRONG_VALUE 0x7777
@@ -25,6 +26,8 @@ enum device_wire { DEVICE_TCP, DEVICE_RTU_TCP, DEVICE_LINE };
 struct device { /* set what you like before or while it runs */
     _Atomic int manner, late_ms;
     _Atomic int bad_register, bad_code;  /* a request for this register is refused with this exception; code 0: none */
+    _Atomic int bad_times;               /* so often, then no more; 0: always */
+    _Atomic int said_length;             /* of DEVICE_MEASURED */
     _Atomic int dead_unit;               /* refused with exception 11; 0: none */
     _Atomic int silent_unit;             /* not answered; 0: none */
     _Atomic int requests, refused, connections;

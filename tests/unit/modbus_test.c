@@ -299,6 +299,39 @@ static void exceptions_become_qualities(void **state)
     }
 }
 
+/* A controller that restarts a task says no once. */
+static void one_refusal_loses_nothing(void **state)
+{
+    struct modbus_case *s = *state;
+    modbus_case_add_registers(s, 10);
+    device_start(&s->device);
+    modbus_case_start(s);
+    for (int code = 1; code <= 4; code++) {
+        modbus_case_expect(s, 9, QUALITY_GOOD, 3);
+        s->device.bad_times = 1;
+        s->device.bad_code = code;
+        for (int after = s->device.requests + 4; s->device.requests < after || s->device.bad_code;) {
+            for (int tag = 0; tag < 10; tag++)
+                assert_int_equal(modbus_case_look(s, tag)->quality, QUALITY_GOOD);
+            clock_sleep_ns(2 * NS_PER_MS);
+        }
+    }
+    assert_int_equal(s->device.refused, 4);
+    assert_int_equal(s->device.most, 10); /* and nothing was cut */
+}
+
+static void what_was_refused_is_asked_again_after_seconds(void **state)
+{
+    struct modbus_case *s = *state;
+    modbus_case_add_registers(s, 10);
+    s->device.bad_code = 1;
+    device_start(&s->device);
+    modbus_case_start(s);
+    modbus_case_expect(s, 9, QUALITY_BAD_CONFIGURATION, 3);
+    s->device.bad_code = 0;
+    modbus_case_expect(s, 9, QUALITY_GOOD, 4);
+}
+
 static void device_failure_is_asked_again(void **state)
 {
     struct modbus_case *s = *state;
@@ -531,6 +564,8 @@ int main(void)
         modbus_test(one_bad_register_does_not_lose_the_rest),
         modbus_test(what_was_refused_is_asked_anew_when_the_link_is_back),
         modbus_test(exceptions_become_qualities),
+        modbus_test(one_refusal_loses_nothing),
+        modbus_test(what_was_refused_is_asked_again_after_seconds),
         modbus_test(device_failure_is_asked_again),
         modbus_test(busy_is_no_verdict),
         modbus_test(dead_unit_behind_a_gateway_leaves_the_others_alone),

@@ -227,6 +227,28 @@ static void answers_of_other_units(void **state)
 {
     check_hostile(*state, DEVICE_TCP, DEVICE_FOREIGN);
 }
+static void answers_of_other_units_on_a_line(void **state)
+{
+    check_hostile(*state, DEVICE_LINE, DEVICE_FOREIGN);
+}
+static void answers_of_other_units_in_rtu_over_tcp(void **state)
+{
+    check_hostile(*state, DEVICE_RTU_TCP, DEVICE_FOREIGN);
+}
+static void answers_of_no_length(void **state)
+{
+    check_hostile(*state, DEVICE_TCP, DEVICE_MEASURED);
+}
+static void answers_of_length_1(void **state)
+{
+    ((struct modbus_case *)*state)->device.said_length = 1;
+    check_hostile(*state, DEVICE_TCP, DEVICE_MEASURED);
+}
+static void answers_of_length_65535(void **state)
+{
+    ((struct modbus_case *)*state)->device.said_length = 65535;
+    check_hostile(*state, DEVICE_TCP, DEVICE_MEASURED);
+}
 static void short_answers_in_rtu_over_tcp(void **state)
 {
     check_hostile(*state, DEVICE_RTU_TCP, DEVICE_SHORT);
@@ -250,6 +272,11 @@ int main(void)
         modbus_test(garbage),
         modbus_test(garbage_on_a_line),
         modbus_test(answers_of_other_units),
+        modbus_test(answers_of_other_units_on_a_line),
+        modbus_test(answers_of_other_units_in_rtu_over_tcp),
+        modbus_test(answers_of_no_length),
+        modbus_test(answers_of_length_1),
+        modbus_test(answers_of_length_65535),
         modbus_test(short_answers_in_rtu_over_tcp),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
