@@ -13,14 +13,6 @@ const char *alarm_event_name(enum alarm_event event)
     return event_names[event];
 }
 
-enum alarm_event alarm_event_find(const char *name)
-{
-    int i = 0;
-    while (i < ALARM_EVENTS && strcmp(event_names[i], name) != 0)
-        i++;
-    return (enum alarm_event)i;
-}
-
 /* It is to be seen from now on. */
 static void call(struct alarm_state *state, const struct alarm_rule *rule)
 {

@@ -44,6 +44,5 @@ enum alarm_outcome { ALARM_CHANGED, ALARM_AS_IT_WAS, ALARM_REFUSED /* it is not 
 enum alarm_outcome alarm_state_step(struct alarm_state *state, const struct alarm_rule *rule, enum alarm_event event);
 enum alarm_word alarm_state_word(const struct alarm_state *state, const struct alarm_rule *rule);
 const char *alarm_event_name(enum alarm_event event); /* "acknowledge" */
-enum alarm_event alarm_event_find(const char *name);  /* ALARM_EVENTS: there is none of that name */
 
 #endif

@@ -131,17 +131,4 @@ struct field_sensor {
    (mem_free). 0: there are none. */
 size_t field_sensors(struct field *field, int asset, const struct field_params *params, struct field_sensor **out, float *radius_m);
 
-enum probe_kind { PROBE_NO_DATA, PROBE_MEASURED, PROBE_BETWEEN };
-#define PROBE_NEAREST 4
-struct probe {
-    enum probe_kind kind; /* measured: a value or difference at a sensor's own vertex, in an interpolation that keeps readings */
-    bool uncertain;       /* as scalar.uncertain */
-    double value;
-    int nearest_tag[PROBE_NEAREST]; /* sensors that take part there, nearest first; -1: none */
-    double nearest_m[PROBE_NEAREST];
-};
-/* The field at one vertex, from the same sums. An asset without a sensor of the group has no data. */
-void field_probe(struct field *field, int asset, const struct field_params *params, const struct snapshot *snapshot, unsigned vertex,
-                 struct probe *out);
-
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What one session wants to see: a small struct, copied through its mailbox. */
+/* What one session wants to see: a small struct, copied from thread to thread. */
 #ifndef RENDER_VIEW_H
 #define RENDER_VIEW_H
 #include <stdbool.h>

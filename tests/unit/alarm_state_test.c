@@ -108,8 +108,6 @@ static void every_state_has_its_word(void **unused)
         assert_string_equal(alarm_word_name(alarm_state_word(&states[i].state, &rule)), states[i].word);
     for (int i = 0; i < ALARM_WORDS; i++)
         assert_int_equal(alarm_word_find(alarm_word_name((enum alarm_word)i)), i);
-    for (int i = 0; i < ALARM_EVENTS; i++)
-        assert_int_equal(alarm_event_find(alarm_event_name((enum alarm_event)i)), i);
     for (int i = 1; i < ALARM_KINDS; i++)
         assert_int_equal(alarm_kind_find(alarm_kind_name((enum alarm_kind)i)), i);
     assert_int_equal(alarm_kind_find("XX"), ALARM_NONE);

@@ -681,10 +681,6 @@ static void test_an_asset_without_sensors_of_the_group_has_no_field(void **state
     struct rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 2));
     rig.plant->plant.tags[0].group = rig.plant->plant.tags[1].group = 3;
     assert_null(field_scalars(rig.field, 0, &rig.params, rig.plant->snapshot));
-    struct probe probe;
-    field_probe(rig.field, 0, &rig.params, rig.plant->snapshot, 5, &probe);
-    assert_int_equal(probe.kind, PROBE_NO_DATA);
-    assert_int_equal(probe.nearest_tag[0], -1);
     rig_finish(&rig);
 }
 
@@ -1266,48 +1262,11 @@ static void test_parameters_out_of_range(void **state)
     rig_finish(&rig);
 }
 
-static void test_probe(void **state)
-{
-    (void)state;
-    struct rig rig = rig_create(synthetic_create(.vertices = 900, .sensors = 6, .island = 3, .seed = fresh_seed()));
-    struct probe probe;
-    field_probe(rig.field, 0, &rig.params, rig.plant->snapshot, 2, &probe);
-    assert_int_equal(probe.kind, PROBE_MEASURED);
-    assert_true(probe.value == (double)(float)rig.plant->snapshot->readings[2].value);
-    assert_int_equal(probe.nearest_tag[0], 2);
-    assert_true(probe.nearest_m[0] == 0);
-    set(&rig, 2, 1, QUALITY_BAD_SENSOR_FAILURE);
-    field_probe(rig.field, 0, &rig.params, rig.plant->snapshot, 2, &probe);
-    assert_int_equal(probe.kind, PROBE_NO_DATA);
-    for (int k = 0; k < PROBE_NEAREST; k++) {
-        assert_true(probe.nearest_tag[k] >= 0 && probe.nearest_tag[k] != 2);
-        assert_true(probe.nearest_m[k] == (double)synthetic_geodesic(rig.plant, (size_t)probe.nearest_tag[k])[2]);
-        assert_true(k == 0 || probe.nearest_m[k] >= probe.nearest_m[k - 1]);
-    }
-    set(&rig, 2, 50, QUALITY_UNCERTAIN_LAST_USABLE);
-    field_probe(rig.field, 0, &rig.params, rig.plant->snapshot, 2, &probe);
-    assert_true(probe.kind == PROBE_MEASURED && probe.uncertain);
-    for (unsigned vertex = 6; vertex < 897; vertex += 50) {
-        field_probe(rig.field, 0, &rig.params, rig.plant->snapshot, vertex, &probe);
-        assert_int_equal(probe.kind, PROBE_BETWEEN);
-        assert_true(probe.value == (double)show(&rig)->at[vertex].value);
-    }
-    field_probe(rig.field, 0, &rig.params, rig.plant->snapshot, 898, &probe);
-    assert_true(probe.kind == PROBE_NO_DATA && probe.nearest_tag[0] == -1);
-    field_probe(rig.field, 0, &rig.params, rig.plant->snapshot, 900, &probe);
-    assert_int_equal(probe.kind, PROBE_NO_DATA);
-    rig.params.interpolation = INTERPOLATION_PAPER; /* does not keep readings */
-    field_probe(rig.field, 0, &rig.params, rig.plant->snapshot, 2, &probe);
-    assert_int_equal(probe.kind, PROBE_BETWEEN);
-    rig_finish(&rig);
-}
-
 static void test_distance_from_one_sensor(void **state)
 {
     (void)state;
     struct rig rig = rig_create(synthetic_create(.vertices = 500, .sensors = 3, .assets = 2, .island = 20));
     struct field_params straight = rig.params;
-    struct probe probe;
     double low, high;
     rig.params.show = straight.show = SHOW_DISTANCE;
     rig.params.sensor = straight.sensor = 4;
@@ -1333,8 +1292,6 @@ static void test_distance_from_one_sensor(void **state)
     uint64_t version = way->version;
     set(&rig, 4, 7, QUALITY_BAD_SENSOR_FAILURE); /* its place stays where it is */
     assert_int_equal(field_scalars(rig.field, 1, &rig.params, rig.plant->snapshot)->version, version);
-    field_probe(rig.field, 1, &rig.params, rig.plant->snapshot, 100, &probe);
-    assert_true(probe.kind == PROBE_BETWEEN && probe.value == (double)want[100] && probe.nearest_tag[0] != 4);
     rig_finish(&rig);
 }
 
@@ -1534,7 +1491,6 @@ int main(void)
         cmocka_unit_test(test_in_pieces_it_is_the_same),
         cmocka_unit_test(test_what_is_under_way_may_be_dropped),
         cmocka_unit_test(test_parameters_out_of_range),
-        cmocka_unit_test(test_probe),
         cmocka_unit_test(test_distance_from_one_sensor),
         cmocka_unit_test(test_difference_is_that_of_two_fields),
         cmocka_unit_test(test_difference_needs_both),

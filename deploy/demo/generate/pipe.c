@@ -110,14 +110,6 @@ void pipe_control_valve(struct pipe *pipe, double along, struct vec actuator)
     fitting_control_valve(pipe->item, on_last_leg(pipe, along, actuator), pipe->r);
 }
 
-void pipe_flanges(struct pipe *pipe, double along)
-{
-    struct frame at = on_last_leg(pipe, along, vec(0, 0, 1));
-    fitting_flange(bare_mesh(pipe), at, pipe->r);
-    fitting_flange(bare_mesh(pipe), frame_facing(at.o, vec_scale(at.z, -1.0), at.x), pipe->r);
-    fitting_studs(item_part(pipe->item, "bolts", MATERIAL_BOLTING), at, pipe->r);
-}
-
 void pipe_post(struct pipe *pipe, double along)
 {
     struct frame at = on_last_leg(pipe, along, vec(0, 0, 1));

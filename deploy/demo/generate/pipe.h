@@ -32,7 +32,6 @@ void pipe_into_nozzle(struct pipe *pipe, const char *axes, const char *nozzle);
 /* Things on the last leg, `along` metres after its beginning. */
 void pipe_gate_valve(struct pipe *pipe, double along, struct vec wheel);
 void pipe_control_valve(struct pipe *pipe, double along, struct vec actuator);
-void pipe_flanges(struct pipe *pipe, double along);
 void pipe_post(struct pipe *pipe, double along);
 /* Closes the first or the last point with a blind. */
 void pipe_blind_first(struct pipe *pipe);

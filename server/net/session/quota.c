@@ -54,11 +54,6 @@ bool quotas_parse(struct quotas *quotas, const char *text)
     return false;
 }
 
-const char *quota_name(enum quota quota)
-{
-    return table[quota].name;
-}
-
 void quotas_print(FILE *out)
 {
     for (int i = 0; i < QUOTA_COUNT; i++)

@@ -30,7 +30,6 @@ struct quotas {
 struct quotas quotas_default(void);
 /* NAME=N. False: there is no such limit, or N is out of its range. */
 bool quotas_parse(struct quotas *quotas, const char *text);
-const char *quota_name(enum quota quota);
 void quotas_print(FILE *out); /* names, defaults and meaning, for --help */
 
 #endif

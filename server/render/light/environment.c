@@ -333,15 +333,3 @@ void environment_finish(struct environment *environment)
     mem_free(environment->mirrored);
     *environment = (struct environment){ 0 };
 }
-
-void environment_irradiance(const struct environment *environment, const double normal[3], double out[3])
-{
-    double terms[ENVIRONMENT_TERMS];
-    terms_of(normal, terms);
-    for (int c = 0; c < 3; c++) {
-        out[c] = 0;
-        for (int t = 0; t < ENVIRONMENT_TERMS; t++)
-            out[c] += terms[t] * (double)environment->irradiance[t][c];
-        out[c] = fmax(out[c], 0);
-    }
-}

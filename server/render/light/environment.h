@@ -23,7 +23,6 @@ struct environment {
    NULL: the built-in sky. False: it is all black. */
 bool environment_init(struct environment *environment, const struct image_float *image, bool y_up, struct workers *workers);
 void environment_finish(struct environment *environment);
-void environment_irradiance(const struct environment *environment, const double normal[3], double out[3]);
 /* Towards the texel's centre; the mapping of `mirrored`. */
 void environment_texel(int x, int y, int side_px, double towards[3]);
 
