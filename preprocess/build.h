@@ -48,7 +48,7 @@ struct build_output {
     struct folder_draft file;
     struct asset_view view; /* of its bytes */
     struct build_report report;
-    int missing_node; /* index of a sensor whose node is not in the model, -1: none */
+    int missing_node; /* index of a sensor whose node is not in the model, or not the only one; -1: none */
 };
 
 /* output->file is to be put in its place, and closed. False: why says what is wrong, and there is none; output->missing_node names the
@@ -56,9 +56,9 @@ struct build_output {
 bool build_asset(struct log *log, struct workers *workers, const struct build_input *input, struct build_output *output,
                  char why[MODEL_WHY_BYTES]);
 
-/* In the asset frame. False: its node is not in the model. */
+/* In the asset frame. False: why says that its node is not in the model, or not the only one. */
 bool build_sensor_place(const struct gltf_model *model, const struct geometry_params *geometry, const struct plant_sensor *sensor,
-                        double place_m[3]);
+                        double place_m[3], char why[MODEL_WHY_BYTES]);
 
 /* The key of all that no sensor has a part in. */
 uint64_t build_stock_key(uint64_t model_hash, const struct geometry_params *geometry);

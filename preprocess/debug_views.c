@@ -60,8 +60,8 @@ static bool place_sensors(struct subject *subject, const struct plant *plant, co
     subject->places_m = mem_array(subject->sensor_count, sizeof(*subject->places_m));
     for (size_t i = 0; i < subject->sensor_count; i++) {
         const struct plant_sensor *sensor = &subject->sensors[i];
-        if (!build_sensor_place(subject->model, &subject->params, sensor, subject->places_m[i]))
-            return wrong(why, "the model has no node '%.200s'", sensor->node);
+        if (!build_sensor_place(subject->model, &subject->params, sensor, subject->places_m[i], why))
+            return false;
         for (int axis = 0; axis < 3; axis++)
             subject->places_m[i][axis] -= subject->geometry.origin_m[axis];
         if (wanted && strcmp(plant->tags[sensor->tag].name, wanted) == 0)

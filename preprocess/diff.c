@@ -150,8 +150,8 @@ static void compare_sensor(struct diff *diff, struct pair *pair, const struct si
     const struct side_shape *shape = &pair->new_half.shape;
     double place_m[2][3], surface_m[2][3];
     if (tag->column >= shape->sensor_count || isnan(shape->places_m[tag->column][0])) {
-        const char *node = tag->column < shape->sensor_count ? shape->nodes[tag->column] : NULL;
-        orphan(diff, tag->name, tag->asset, mem_printf("the model has no node '%s'", node ? node : ""));
+        const char *why = tag->column < shape->sensor_count ? shape->whys[tag->column] : NULL;
+        orphan(diff, tag->name, tag->asset, mem_strdup(why ? why : "its prepared file has no place for it"));
         return;
     }
     struct diff_sensor found = { .tag = tag->name, .asset = tag->asset, .limit_m = pair->limit_m, .tolerance_m = pair->tolerance_m };

@@ -98,10 +98,10 @@ static bool shape_of_plant(struct side *side, const struct side_asset *asset, st
     geometry_finish(&g);
     shape->sensor_count = plant_sensors(side->plant, (int)(asset->plant - side->plant->assets), &sensors);
     shape->places_m = mem_array(shape->sensor_count, sizeof(*shape->places_m));
-    shape->nodes = mem_array(shape->sensor_count, sizeof(*shape->nodes));
+    shape->whys = mem_array(shape->sensor_count, sizeof(*shape->whys));
     for (size_t s = 0; s < shape->sensor_count; s++) {
-        bool there = build_sensor_place(model, &params, &sensors[s], shape->places_m[s]);
-        shape->nodes[s] = sensors[s].node;
+        bool there = build_sensor_place(model, &params, &sensors[s], shape->places_m[s], why);
+        shape->whys[s] = there ? NULL : mem_strdup(why);
         for (int axis = 0; axis < 3; axis++)
             shape->places_m[s][axis] = there ? shape->places_m[s][axis] - shape->origin_m[axis] : (double)NAN;
     }
@@ -169,7 +169,7 @@ static bool shape_of_folder(struct side *side, const struct side_asset *asset, s
         shape->index_count += view->primitives[finest->first_primitive + p].index_count;
     shape->sensor_count = view->header->sensor_count;
     shape->places_m = mem_array(shape->sensor_count, sizeof(*shape->places_m));
-    shape->nodes = mem_array(shape->sensor_count, sizeof(*shape->nodes));
+    shape->whys = mem_array(shape->sensor_count, sizeof(*shape->whys));
     for (size_t s = 0; s < shape->sensor_count; s++)
         for (int axis = 0; axis < 3; axis++)
             shape->places_m[s][axis] = (double)view->sensors[s].position_m[axis];
@@ -210,7 +210,9 @@ void side_shape_finish(struct side_shape *shape)
         mem_free((void *)(uintptr_t)shape->indices);
     }
     mem_free(shape->places_m);
-    mem_free(shape->nodes);
+    for (size_t s = 0; shape->whys && s < shape->sensor_count; s++)
+        mem_free(shape->whys[s]);
+    mem_free(shape->whys);
     folder_close(&shape->file);
     *shape = (struct side_shape){ 0 };
 }

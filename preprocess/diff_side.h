@@ -48,7 +48,7 @@ struct side_shape { /* an asset's triangles, and where its sensors are; less ori
     const uint32_t *indices;
     size_t vertex_count, index_count;
     double (*places_m)[3]; /* of its sensors; NaN where the node is not there */
-    const char **nodes;    /* where a place comes from a node, its name */
+    char **whys;           /* why a node is not there, or not the only one; else NULL */
     size_t sensor_count;
     bool own; /* the arrays are a geometry's */
     struct folder_file file;

@@ -2,36 +2,52 @@
 /* Cutting an asset out of a model. */
 #include "preprocess/geometry.h"
 
-#include <fnmatch.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"
-#include "plant/suggest.h"
+#include "plant/nodes.h"
 #include "plant/transform.h"
 #include "preprocess/geometry_parts.h"
 
 #define MAX_TRIANGLES 50000000ull /* of one asset */
 #define MAX_SIZE_M 1e7
+#define SAME_PLACE_M 1e-3 /* nodes of one name that are no farther apart are as good as one */
+#define SHOWN_NODES 6
 #define MIN_SIZE_M 1e-6 /* smaller is a wrong unit; and squares of squares of lengths have to be numbers */
 
 /* --- which nodes --------------------------------------------------------------------------------------------------------- */
 
-/* A name that is there as it stands is meant as it stands, also where it has brackets or stars. */
-static bool is_literal(const struct gltf_model *model, const char *pattern)
+/* The nodes as patterns see them. Free with mem_free. */
+static struct model_node *nodes_of(const struct gltf_model *model)
 {
-    if (pattern && !strpbrk(pattern, "*?[\\"))
-        return true;
-    for (uint32_t i = 0; pattern && i < model->node_count; i++)
-        if (strcmp(pattern, model->nodes[i].name) == 0)
-            return true;
-    return false;
+    struct model_node *nodes = mem_array(model->node_count, sizeof(*nodes));
+    for (uint32_t i = 0; i < model->node_count; i++) {
+        const struct gltf_node *node = &model->nodes[i];
+        bool instanced = node->mesh < 0 && i + 1 < node->end && node[1].number == node->number;
+        int mesh = instanced ? node[1].mesh : node->mesh;
+        nodes[i] = (struct model_node){ .name = node->name,
+                                        .mesh = mesh >= 0 && model->meshes[mesh].name ? model->meshes[mesh].name : "",
+                                        .parent = node->parent,
+                                        .end = node->end,
+                                        .number = node->number };
+    }
+    return nodes;
 }
 
-static bool node_matches(const char *pattern, bool literally, const struct gltf_node *node)
+/* Which nodes belong to the asset. NULL: why says that a pattern matches none. Free with mem_free. */
+static bool *taken_nodes(const struct gltf_model *model, const char *patterns, char *why)
 {
-    return !pattern || (literally ? strcmp(pattern, node->name) : fnmatch(pattern, node->name, 0)) == 0;
+    struct model_node *nodes = nodes_of(model);
+    bool *taken = mem_array(model->node_count + 1u, sizeof(*taken));
+    if (!nodes_take(patterns, nodes, model->node_count, taken, why, MODEL_WHY_BYTES)) {
+        mem_free(taken);
+        taken = NULL;
+    }
+    mem_free(nodes);
+    return taken;
 }
 
 static int by_material(const void *a, const void *b)
@@ -63,58 +79,49 @@ static void add_parts(struct parts *parts, struct geometry *geometry, const stru
     }
 }
 
-static bool no_match(const struct gltf_model *model, const char *pattern, char *why)
-{
-    const char *near = suggest_nearest(pattern, model->nodes, model->node_count, sizeof(*model->nodes));
-    return wrong(why, "no node's name matches '%.120s'%s%.120s%s", pattern, near ? ": did you mean '" : "", near ? near : "",
-                 near ? "'?" : "");
-}
-
 static bool no_triangles(const struct geometry *geometry, const char *pattern, char *why)
 {
     return wrong(why, "%s%.120s%s has no triangles (%u primitives of lines and %u of points)", pattern ? "'" : "the model",
                  pattern ? pattern : "", pattern ? "'" : "", geometry->skipped_lines, geometry->skipped_points);
 }
 
-uint64_t geometry_triangles(const struct gltf_model *model, const struct geometry_params *params)
+static uint64_t count_triangles(const struct gltf_model *model, const bool *taken)
 {
     uint64_t corners = 0;
-    bool literally = is_literal(model, params->nodes);
-    for (uint32_t i = 0; i < model->node_count;) {
-        if (!node_matches(params->nodes, literally, &model->nodes[i])) {
-            i++;
-            continue;
-        }
-        for (uint32_t end = model->nodes[i].end; i < end; i++)
-            corners += model->nodes[i].mesh >= 0 ? model->meshes[model->nodes[i].mesh].index_count : 0;
-    }
+    for (uint32_t i = 0; i < model->node_count; i++)
+        corners += taken[i] && model->nodes[i].mesh >= 0 ? model->meshes[model->nodes[i].mesh].index_count : 0;
     return corners / 3;
 }
 
-/* A node that matches brings its whole sub-tree, once. Sorted by material, blended ones last. */
+uint64_t geometry_triangles(const struct gltf_model *model, const struct geometry_params *params)
+{
+    char why[MODEL_WHY_BYTES];
+    bool *taken = taken_nodes(model, params->nodes, why);
+    uint64_t triangles = taken ? count_triangles(model, taken) : 0;
+    mem_free(taken);
+    return triangles;
+}
+
+/* Sorted by material, blended ones last. */
 static bool find_parts(struct parts *parts, struct geometry *geometry, const struct gltf_model *model, const struct geometry_params *params,
                        char *why)
 {
-    const char *pattern = params->nodes;
-    bool literally = is_literal(model, pattern);
-    uint64_t triangles = geometry_triangles(model, params);
+    bool *taken = taken_nodes(model, params->nodes, why);
+    if (!taken)
+        return false;
+    uint64_t triangles = count_triangles(model, taken);
+    for (uint32_t i = 0; i < model->node_count && triangles <= MAX_TRIANGLES; i++) {
+        geometry->node_count += taken[i];
+        if (taken[i] && model->nodes[i].mesh >= 0)
+            add_parts(parts, geometry, model, &model->nodes[i]);
+    }
+    mem_free(taken);
     if (triangles > MAX_TRIANGLES)
         return wrong(why, "%llu triangles are more than %llu", (unsigned long long)triangles, MAX_TRIANGLES);
-    for (uint32_t i = 0; i < model->node_count;) {
-        if (!node_matches(pattern, literally, &model->nodes[i])) {
-            i++;
-            continue;
-        }
-        for (uint32_t end = model->nodes[i].end; i < end; i++) {
-            geometry->node_count++;
-            if (model->nodes[i].mesh >= 0)
-                add_parts(parts, geometry, model, &model->nodes[i]);
-        }
-    }
     if (geometry->node_count == 0)
-        return pattern ? no_match(model, pattern, why) : wrong(why, "the scene has no node");
+        return wrong(why, model->node_count ? "no node is left" : "the scene has no node");
     if (triangles == 0)
-        return no_triangles(geometry, pattern, why);
+        return no_triangles(geometry, params->nodes, why);
     qsort(parts->at, parts->count, sizeof(*parts->at), by_material);
     return true;
 }
@@ -159,33 +166,65 @@ static bool find_origin(struct geometry *geometry, const struct parts *parts, co
     return size_m >= MIN_SIZE_M || wrong(why, "its size is %g m, less than %g m: is its unit right?", size_m, MIN_SIZE_M);
 }
 
-bool geometry_node_place(const struct gltf_model *model, const struct geometry_params *params, const char *name, double place_m[3])
+static void place_of_node(const struct gltf_model *model, const struct geometry_params *params, uint32_t found, double place_m[3])
 {
-    const struct gltf_node *found = NULL;
-    bool literally = is_literal(model, params->nodes), inside = false;
-    for (uint32_t i = 0; i < model->node_count && !inside; i++) {
-        if (strcmp(model->nodes[i].name, name) != 0)
-            continue;
-        for (int up = (int)i; up >= 0 && !inside; up = model->nodes[up].parent)
-            inside = node_matches(params->nodes, literally, &model->nodes[up]);
-        if (!found || inside)
-            found = &model->nodes[i];
-    }
-    if (!found)
-        return false;
     struct box box = empty_box;
-    for (uint32_t i = (uint32_t)(found - model->nodes); i < found->end; i++) {
+    double world[16];
+    for (uint32_t i = found; i < model->nodes[found].end; i++) {
         const struct gltf_node *node = &model->nodes[i];
-        double world[16];
         part_world(params, node, world);
         for (uint32_t p = 0; node->mesh >= 0 && p < model->meshes[node->mesh].primitive_count; p++)
             box_add_primitive(&box, &model->primitives[model->meshes[node->mesh].first_primitive + p], world);
     }
-    double world[16];
-    part_world(params, found, world);
+    part_world(params, &model->nodes[found], world);
     for (int axis = 0; axis < 3; axis++)
         place_m[axis] = box.low[axis] <= box.high[axis] ? (box.low[axis] + box.high[axis]) / 2 : world[12 + axis];
-    return true;
+}
+
+static bool several_places(const struct gltf_model *model, const char *pattern, const uint32_t *found, size_t count, char *why)
+{
+    char numbers[120] = "";
+    for (size_t i = 0, length = 0; i < count && i < SHOWN_NODES; i++)
+        length += (size_t)snprintf(numbers + length, sizeof(numbers) - length, "%s#%u", i ? ", " : "", model->nodes[found[i]].number);
+    return wrong(why, "the model has %zu nodes '%.200s', in different places (%s%s): name one of them by its number or its path", count,
+                 pattern, numbers, count > SHOWN_NODES ? ", ..." : "");
+}
+
+/* Those inside the asset, or all where none is. */
+static size_t prefer_own(const struct gltf_model *model, const struct geometry_params *params, uint32_t *found, size_t count)
+{
+    char why[MODEL_WHY_BYTES];
+    bool *taken = count > 1 ? taken_nodes(model, params->nodes, why) : NULL;
+    size_t own = 0;
+    for (size_t i = 0; taken && i < count; i++)
+        own += taken[found[i]];
+    for (size_t i = 0, next = 0; own > 0 && i < count; i++)
+        if (taken[found[i]])
+            found[next++] = found[i];
+    mem_free(taken);
+    return own > 0 ? own : count;
+}
+
+bool geometry_node_place(const struct gltf_model *model, const struct geometry_params *params, const char *pattern, double place_m[3],
+                         char why[MODEL_WHY_BYTES])
+{
+    struct model_node *nodes = nodes_of(model);
+    uint32_t *found = mem_array(model->node_count, sizeof(*found));
+    size_t count = nodes_find(pattern, nodes, model->node_count, found, why, MODEL_WHY_BYTES);
+    bool good = count > 0;
+    count = prefer_own(model, params, found, count);
+    if (good)
+        place_of_node(model, params, found[0], place_m);
+    for (size_t i = 1; good && i < count; i++) {
+        double other_m[3];
+        place_of_node(model, params, found[i], other_m);
+        for (int axis = 0; good && axis < 3; axis++)
+            if (!(fabs(other_m[axis] - place_m[axis]) <= SAME_PLACE_M))
+                good = several_places(model, pattern, found, count, why);
+    }
+    mem_free(found);
+    mem_free(nodes);
+    return good;
 }
 
 /* --- putting parts together ------------------------------------------------------------------------------------------------ */

@@ -26,7 +26,7 @@ struct geometry {
 };
 
 struct geometry_params {
-    const char *nodes; /* pattern (fnmatch); NULL: all */
+    const char *nodes; /* patterns (plant/nodes.h); NULL: all */
     double unit_m;
     enum axis up;
     double tolerance_m; /* not for cutting: gaps up to this are closed when distances are found; 0: chosen from the model */
@@ -40,8 +40,9 @@ void geometry_finish(struct geometry *geometry);
 /* How many triangles that would take, before those without area are left out. 0 where geometry_cut would find nothing. */
 uint64_t geometry_triangles(const struct gltf_model *model, const struct geometry_params *params);
 
-/* The place of a node, in the asset frame: the middle of the box around its sub-tree's meshes, else its origin. Nodes inside the asset are
-   preferred to others of the same name. False: no node has this name. */
-bool geometry_node_place(const struct gltf_model *model, const struct geometry_params *params, const char *name, double place_m[3]);
+/* The place of the node that a pattern names, in the asset frame: the middle of the box around its sub-tree's meshes, else its origin.
+   Nodes inside the asset are preferred to others. False: why says that there is none, or that several stand in different places. */
+bool geometry_node_place(const struct gltf_model *model, const struct geometry_params *params, const char *pattern, double place_m[3],
+                         char why[MODEL_WHY_BYTES]);
 
 #endif

@@ -89,13 +89,15 @@ std::string node_what(const tinygltf::Model &m, int number)
     return "node " + std::to_string(number) + (name.empty() ? "" : " '" + name.substr(0, 80) + "'");
 }
 
-void add(tree *tree, const std::string &name, int parent, int mesh, const double world[16])
+void add(tree *tree, int number, int parent, int mesh, const double world[16])
 {
+    const std::string &name = tree->w->parsed.nodes[static_cast<size_t>(number)].name;
     if (tree->out.size() >= MAX_NODES)
         refuse("more than %u nodes", MAX_NODES);
     gltf_node node = {};
     node.parent = parent;
     node.mesh = mesh;
+    node.number = static_cast<uint32_t>(number);
     memcpy(node.world, world, sizeof(node.world));
     tree->out.push_back(node);
     tree->out.back().name = mem_strdup(name.c_str());
@@ -134,7 +136,7 @@ void add_instances(tree *tree, int number, int parent, const tinygltf::Value &ex
         compose(t, q, s, local);
         multiply(tree->out[static_cast<size_t>(parent)].world, local, world);
         check_affine(world, what);
-        add(tree, node.name, parent, node.mesh, world);
+        add(tree, number, parent, node.mesh, world);
     }
 }
 
@@ -159,7 +161,7 @@ void walk(tree *tree, int number, int parent, const double parent_world[16], uin
     int self = static_cast<int>(tree->out.size());
     auto instancing = node.extensions.find("EXT_mesh_gpu_instancing");
     bool instanced = instancing != node.extensions.end() && node.mesh >= 0;
-    add(tree, node.name, parent, instanced ? -1 : node.mesh, world);
+    add(tree, number, parent, instanced ? -1 : node.mesh, world);
     if (instanced)
         add_instances(tree, number, self, instancing->second);
     for (int child : node.children)

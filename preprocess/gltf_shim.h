@@ -31,6 +31,7 @@ struct gltf_node {    /* depth first: a node's sub-tree are the nodes [node, end
     char *name;       /* "" where it has none */
     int parent, mesh; /* or -1 */
     uint32_t end;
+    uint32_t number;  /* in the file's list; instances below a node have its number */
     double world[16]; /* column-major */
 };
 

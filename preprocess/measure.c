@@ -12,16 +12,16 @@
 #include "preprocess/stock.h"
 
 bool build_sensor_place(const struct gltf_model *model, const struct geometry_params *geometry, const struct plant_sensor *sensor,
-                        double place_m[3])
+                        double place_m[3], char why[MODEL_WHY_BYTES])
 {
     memcpy(place_m, sensor->position_m, sizeof(sensor->position_m));
-    return !sensor->node || geometry_node_place(model, geometry, sensor->node, place_m);
+    return !sensor->node || geometry_node_place(model, geometry, sensor->node, place_m, why);
 }
 
-static bool find_place(const struct build_input *input, const struct plant_sensor *sensor, double place_m[3])
+static bool find_place(const struct build_input *input, const struct plant_sensor *sensor, double place_m[3], char *why)
 {
     return (sensor->node && input->stock && stock_node_place(input->stock, sensor->node, place_m)) ||
-           build_sensor_place(input->model, &input->geometry, sensor, place_m);
+           build_sensor_place(input->model, &input->geometry, sensor, place_m, why);
 }
 
 /* Where each sensor is, less the origin. */
@@ -30,9 +30,8 @@ static bool place_sensors(const struct build_input *input, const struct geometry
     for (size_t i = 0; i < input->sensor_count; i++) {
         const struct plant_sensor *sensor = &input->sensors[i];
         double place[3];
-        if (!find_place(input, sensor, place)) {
+        if (!find_place(input, sensor, place, why)) {
             *missing = (int)i;
-            snprintf(why, MODEL_WHY_BYTES, "the model has no node '%.200s'", sensor->node);
             return false;
         }
         for (int axis = 0; axis < 3; axis++)

@@ -46,7 +46,7 @@ struct plant_asset {
     char *id, *tag, *description; /* tag defaults to id */
     char *area;                   /* of the plant, by which assets are listed; "": none */
     char *model;                  /* path, relative names resolved against the plant file's folder */
-    char *nodes;                  /* glob (fnmatch) on node names; a node that matches brings its whole sub-tree. NULL: the whole model */
+    char *nodes;                  /* patterns (nodes.h), one a line; a node that matches brings its whole sub-tree. NULL: the whole model */
     double unit_m;                /* metres per model unit, placement's scale taken in */
     enum axis up;                 /* of the model */
     double tolerance_m;           /* gaps up to this are closed when distances are found; 0: chosen from the model */

@@ -161,6 +161,20 @@ static void read_properties(struct yaml_reader *reader, yaml_node_t *node, void 
     plant_properties_read(reader, node, &((struct asset_record *)record)->asset);
 }
 
+static void read_nodes(struct yaml_reader *reader, yaml_node_t *node, void *record)
+{
+    plant_nodes_read(reader, node, &((struct asset_record *)record)->asset);
+}
+
+/* An unquoted `nodes: #12` is a comment to YAML, and `nodes: !base` a type without a value: the whole model, silently. */
+static void check_nodes(struct yaml_reader *reader, const struct yaml_map *map, const struct plant_asset *asset, int errors)
+{
+    struct place at = yaml_map_place(map, "nodes");
+    if (yaml_map_has(map, "nodes") && !asset->nodes && reader->diag->errors == errors)
+        diag_warning(reader->diag, reader->path, at.line, at.column,
+                     "nodes: has no value, so the whole model is taken; patterns with # or ! stand in quotes, such as \"#12\"");
+}
+
 static void read_asset(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant, struct plant_asset *asset)
 {
     static const struct key keys[] = {
@@ -170,7 +184,7 @@ static void read_asset(struct yaml_reader *reader, yaml_node_t *node, struct pla
         { "area", KEY_TEXT, false, offsetof(struct asset_record, asset.area), 0, 0, NULL, NULL },
         { "properties", KEY_CUSTOM, false, 0, 0, 0, NULL, read_properties },
         { "model", KEY_NAME, true, offsetof(struct asset_record, asset.model), 0, 0, NULL, NULL },
-        { "nodes", KEY_NAME, false, offsetof(struct asset_record, asset.nodes), 0, 0, NULL, NULL },
+        { "nodes", KEY_CUSTOM, false, 0, 0, 0, NULL, read_nodes },
         { "units", KEY_FACTOR, false, offsetof(struct asset_record, asset.unit_m), 0, 0, unit_choices, NULL },
         { "up", KEY_CHOICE, false, offsetof(struct asset_record, asset.up), 0, 0, up_choices, NULL },
         { "placement", KEY_CUSTOM, false, 0, 0, 0, NULL, read_placement },
@@ -180,12 +194,14 @@ static void read_asset(struct yaml_reader *reader, yaml_node_t *node, struct pla
     };
     struct asset_record record = { .asset = { .unit_m = 1, .up = AXIS_Y, .line = yaml_place(node).line }, .scale = 1 };
     struct yaml_map map;
+    int errors = reader->diag->errors;
     bool is_map = yaml_map_read(reader, node, "an asset", keys, &record, &map);
     *asset = record.asset;
     asset->unit_m *= record.scale; /* distances are measured on the model as it stands, not as it was drawn */
     transform_compose(record.translate_m, record.rotate_deg, asset->placement);
     if (!is_map)
         return;
+    check_nodes(reader, &map, asset, errors);
     plant_resolve_path(plant, &asset->model);
     if (yaml_map_good(&map, "model"))
         check_model(reader, &map, asset->model);

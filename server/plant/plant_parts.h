@@ -13,6 +13,8 @@ void plant_file_read(struct plant *plant, struct diag *diag);
 void plant_environments_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
 /* Likewise the list `links`. */
 void plant_links_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
+/* An asset's `nodes`: a pattern, or a list of them. */
+void plant_nodes_read(struct yaml_reader *reader, yaml_node_t *node, struct plant_asset *asset);
 /* An asset's `properties`. */
 void plant_properties_read(struct yaml_reader *reader, yaml_node_t *node, struct plant_asset *asset);
 void plant_properties_free(struct plant_asset *asset);

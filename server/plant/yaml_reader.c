@@ -360,6 +360,11 @@ bool yaml_map_good(const struct yaml_map *map, const char *name)
     return map->keys && map->good[find_key(map->keys, name)];
 }
 
+bool yaml_map_has(const struct yaml_map *map, const char *name)
+{
+    return map->values[find_key(map->keys, name)].line != 0;
+}
+
 struct place yaml_map_place(const struct yaml_map *map, const char *name)
 {
     struct place place = map->values[find_key(map->keys, name)];

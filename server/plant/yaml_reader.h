@@ -73,6 +73,7 @@ bool yaml_number(struct yaml_reader *reader, const yaml_node_t *node, const char
 bool yaml_map_read(struct yaml_reader *reader, yaml_node_t *node, const char *what, const struct key *keys, void *record,
                    struct yaml_map *map);
 bool yaml_map_good(const struct yaml_map *map, const char *name);
+bool yaml_map_has(const struct yaml_map *map, const char *name); /* the key is there, whatever its value */
 /* Of the value; of the mapping where the key is absent. */
 struct place yaml_map_place(const struct yaml_map *map, const char *name);
 

@@ -394,15 +394,46 @@ static void a_nodes_place_is_the_middle_of_its_meshes(void **state)
 {
     struct gltf_case *l = *state;
     double place[3];
+    char why[MODEL_WHY_BYTES];
     struct geometry_params params = { .nodes = "P-101B", .unit_m = 1, .up = AXIS_Z };
     good(l, FACILITY);
-    assert_true(geometry_node_place(&l->model, &params, "P-101B/seal", place));
+    assert_true(geometry_node_place(&l->model, &params, "P-101B/seal", place, why));
     assert_float_equal(place[0], 10.5, 1e-9);
     assert_float_equal(place[2], 1, 1e-9);
-    assert_true(geometry_node_place(&l->model, &params, "P-101B", place));
+    assert_true(geometry_node_place(&l->model, &params, "P-101B", place, why));
     assert_float_equal(place[2], 0.5, 1e-9); /* with its seal */
-    assert_true(geometry_node_place(&l->model, &params, "P-101A", place));
-    assert_false(geometry_node_place(&l->model, &params, "TT-1", place));
+    assert_true(geometry_node_place(&l->model, &params, "P-101A", place, why));
+    assert_false(geometry_node_place(&l->model, &params, "TT-1", place, why));
+}
+
+/* Three pumps of one name in two areas, and a node without a name. */
+#define PUMP(x) "{\"name\":\"pump\",\"mesh\":0,\"translation\":[" #x ",0,0]}"
+#define ALIKE                                                                                                                              \
+    HEAD "\"scenes\":[{\"nodes\":[0,3]}],\"nodes\":[{\"name\":\"north\",\"children\":[1,2]}," PUMP(0) "," PUMP(10) ","                         \
+         "{\"name\":\"south\",\"children\":[4,5]}," PUMP(20) ",{\"mesh\":0,\"translation\":[30,0,0]}]," MESH(SQUARE) ACCESSORS "}"
+
+static void a_name_that_is_there_several_times_is_refused(void **state)
+{
+    struct gltf_case *l = *state;
+    double place[3];
+    char why[MODEL_WHY_BYTES];
+    struct geometry_params params = { .unit_m = 1, .up = AXIS_Z };
+    good(l, ALIKE);
+    assert_false(geometry_node_place(&l->model, &params, "pump", place, why));
+    assert_string_equal(why, "the model has 3 nodes 'pump', in different places (#1, #2, #4): name one of them by its number or its path");
+    assert_true(geometry_node_place(&l->model, &params, "#2", place, why));
+    assert_float_equal(place[0], 10.5, 1e-9);
+    assert_true(geometry_node_place(&l->model, &params, "south/pump", place, why));
+    assert_float_equal(place[0], 20.5, 1e-9);
+    params.nodes = "south"; /* only one of them is in the asset */
+    assert_true(geometry_node_place(&l->model, &params, "pump", place, why));
+    assert_float_equal(place[0], 20.5, 1e-9);
+    assert_true(geometry_node_place(&l->model, &params, "south/", place, why)); /* without a name */
+    assert_float_equal(place[0], 30.5, 1e-9);
+    struct geometry g = cut(l, &(struct geometry_params){ .nodes = "north\n#5\n!#1", .unit_m = 1, .up = AXIS_Z });
+    assert_int_equal(g.primitive_count, 2);
+    assert_float_equal(g.origin_m[0], 20.5, 1e-9);
+    geometry_finish(&g);
 }
 
 /* What cannot become an asset, though its file is whole. */
@@ -530,6 +561,7 @@ int main(void)
         WITH_MODEL(mirrored_nodes_keep_their_outside),
         WITH_MODEL(triangles_without_area_are_left_out),
         WITH_MODEL(a_nodes_place_is_the_middle_of_its_meshes),
+        WITH_MODEL(a_name_that_is_there_several_times_is_refused),
         WITH_MODEL(what_cannot_be_cut_is_refused),
         WITH_MODEL(wrong_instances_and_sparse_elements_are_refused),
         WITH_MODEL(real_models_go_through),

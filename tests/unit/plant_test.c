@@ -137,6 +137,32 @@ static void names_of_a_long_list_are_found(void **state)
     text_finish(&csv);
 }
 
+static void nodes_are_a_pattern_or_a_list(void **state)
+{
+    struct plant_case *f = *state;
+    static const char rest[] = "plant: { name: P }\ngroups: [{ id: g, unit: K, min: 0, max: 1 }]\ntags: tags.csv\nassets:\n";
+    char *good = mem_printf("%s- { id: A, model: m.glb, nodes: [P-1, '!motor', '#12', 'mesh:cap*', north/P-2] }\n"
+                            "- { id: B, model: m.glb, nodes: 'P*' }\n",
+                            rest);
+    plant_case_load(f, good, "Tag Name\n");
+    plant_case_assert_loaded(f, 0);
+    assert_string_equal(f->plant->assets[0].nodes, "P-1\n!motor\n#12\nmesh:cap*\nnorth/P-2");
+    assert_string_equal(f->plant->assets[1].nodes, "P*");
+    mem_free(good);
+    char *unquoted = mem_printf("%s- id: A\n  model: m.glb\n  nodes: #12\n- id: B\n  model: m.glb\n  nodes: !motor\n", rest);
+    plant_case_load(f, unquoted, "Tag Name\n");
+    plant_case_assert_loaded(f, 2);
+    FOUND(f, { "plant.yaml", 7, 9, "nodes: has no value, so the whole model is taken" }, { "plant.yaml", 10, 10, "in quotes" });
+    mem_free(unquoted);
+    char *bad = mem_printf("%s- { id: A, model: m.glb, nodes: [] }\n- { id: B, model: m.glb, nodes: [P, ~] }\n"
+                           "- { id: C, model: m.glb, nodes: { P: 1 } }\n- { id: D, model: m.glb, nodes: \"a\\nb\" }\n",
+                           rest);
+    plant_case_load(f, bad, "Tag Name\n");
+    FOUND(f, { "plant.yaml", 5, 33, "expected at least one pattern" }, { "plant.yaml", 6, 37, "a node's name or a pattern" },
+          { "plant.yaml", 7, 33, "found a mapping" }, { "plant.yaml", 8, 33, "has a line break" });
+    mem_free(bad);
+}
+
 static void assert_point(const double point[3], double x, double y, double z)
 {
     const double expected[3] = { x, y, z };
@@ -671,6 +697,7 @@ int main(void)
         TEST(defaults_are_as_documented),
         TEST(everything_is_read),
         TEST(names_of_a_long_list_are_found),
+        TEST(nodes_are_a_pattern_or_a_list),
         TEST(sensors_are_given_in_the_asset_frame),
         TEST(an_asset_stands_upright_in_a_plant_that_is_y_up),
         TEST(the_locale_changes_nothing),
