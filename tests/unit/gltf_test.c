@@ -408,9 +408,12 @@ static void a_nodes_place_is_the_middle_of_its_meshes(void **state)
 
 /* Three pumps of one name in two areas, and a node without a name. */
 #define PUMP(x) "{\"name\":\"pump\",\"mesh\":0,\"translation\":[" #x ",0,0]}"
+#define NORTH "{\"name\":\"north\",\"children\":[1,2]},"
+#define SOUTH "{\"name\":\"south\",\"children\":[4,5]},"
+#define NAMELESS "{\"mesh\":0,\"translation\":[30,0,0]}"
 #define ALIKE                                                                                                                              \
-    HEAD "\"scenes\":[{\"nodes\":[0,3]}],\"nodes\":[{\"name\":\"north\",\"children\":[1,2]}," PUMP(0) "," PUMP(10) ","                         \
-         "{\"name\":\"south\",\"children\":[4,5]}," PUMP(20) ",{\"mesh\":0,\"translation\":[30,0,0]}]," MESH(SQUARE) ACCESSORS "}"
+    HEAD "\"scenes\":[{\"nodes\":[0,3]}],\"nodes\":[" NORTH PUMP(0) "," PUMP(10) "," SOUTH PUMP(20) "," NAMELESS "]," MESH(SQUARE)         \
+        ACCESSORS "}"
 
 static void a_name_that_is_there_several_times_is_refused(void **state)
 {
