@@ -189,7 +189,7 @@ static void add_counters(struct alarming *alarming)
         alarming->counters.words[i] = counters_add(c, name, "gauge", "Alarms by their state.");
         mem_free(name);
     }
-    alarming->counters.active = counters_add(c, "plantcast_alarms_active", "gauge", "Alarms that are to be seen.");
+    alarming->counters.active = counters_add(c, "plantcast_alarms_active", "gauge", "Alarms that are to be seen and whose cause is there.");
     alarming->counters.standing = counters_add(c, "plantcast_alarms_standing", "gauge", "Of these, there for more than a day.");
     alarming->counters.chattering =
         counters_add(c, "plantcast_alarms_chattering", "gauge", "Alarms raised three times or more within the last minute.");

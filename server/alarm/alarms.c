@@ -278,9 +278,8 @@ enum alarm_word alarm_word_of(const struct alarm *alarm)
 
 static bool graver(const struct alarm *a, const struct alarm *b)
 {
-    if (a->priority != b->priority)
-        return a->priority < b->priority;
-    return a->state.unacknowledged && !b->state.unacknowledged;
+    const struct alarm_grade x = { a->priority, a->kind, alarm_word_of(a) }, y = { b->priority, b->kind, alarm_word_of(b) };
+    return alarm_graver(&x, &y);
 }
 
 void alarms_find_gravest(struct alarms *alarms, int tag)

@@ -86,7 +86,7 @@ int alarms_newest(const struct alarms *alarms);                      /* the one 
 
 struct alarm_counts {
     int words[ALARM_WORDS];
-    int active;      /* to be seen */
+    int active;      /* to be seen, and their cause is there */
     int standing;    /* of these, for longer than a day */
     int chattering;  /* raised three times or more within the last minute */
     int held;

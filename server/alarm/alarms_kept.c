@@ -100,7 +100,7 @@ void alarms_counts(const struct alarms *alarms, int64_t now_mono_ns, struct alar
         bool calls = alarm_word_calls(word);
         out->words[ALARM_NORMAL]--;
         out->words[word]++;
-        out->active += calls;
+        out->active += calls && !alarm_word_gone(word);
         out->held += calls && alarm->held;
         out->standing += calls && alarm->state.active && now_mono_ns - alarm->raised_mono_ns >= ALARM_STANDING_NS;
         out->chattering += chatters(alarm, now_mono_ns);

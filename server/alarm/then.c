@@ -18,12 +18,14 @@ static void on_any(void *arg, const struct journal_row *row)
     then->begun = true;
 }
 
-/* The same order as of those that are kept now: by priority, then what nobody has acknowledged. */
 static bool graver(const struct plant_tag *tag, enum alarm_kind kind, enum alarm_word word, const struct reading *than)
 {
-    int mine = alarm_priority(tag, kind), other = alarm_priority(tag, (enum alarm_kind)than->alarm);
-    return than->alarm == ALARM_NONE || mine < other ||
-           (mine == other && word == ALARM_UNACKNOWLEDGED && than->alarm_word != ALARM_UNACKNOWLEDGED);
+    enum alarm_kind other = (enum alarm_kind)than->alarm;
+    if (other == ALARM_NONE)
+        return true;
+    const struct alarm_grade x = { alarm_priority(tag, kind), kind, word },
+                             y = { alarm_priority(tag, other), other, (enum alarm_word)than->alarm_word };
+    return alarm_graver(&x, &y);
 }
 
 static void on_alarm(void *arg, const struct journal_row *row)

@@ -42,6 +42,32 @@ bool alarm_word_calls(enum alarm_word word)
     return word != ALARM_NORMAL && word < ALARM_SHELVED;
 }
 
+bool alarm_word_gone(enum alarm_word word)
+{
+    return word == ALARM_RETURNED || word == ALARM_LATCHED;
+}
+
+static bool is_outer(enum alarm_kind kind)
+{
+    return kind == ALARM_LL || kind == ALARM_HH;
+}
+
+static bool is_waiting(enum alarm_word word)
+{
+    return word == ALARM_UNACKNOWLEDGED || word == ALARM_RETURNED;
+}
+
+bool alarm_graver(const struct alarm_grade *a, const struct alarm_grade *b)
+{
+    if (alarm_word_gone(a->word) != alarm_word_gone(b->word))
+        return alarm_word_gone(b->word);
+    if (a->priority != b->priority)
+        return a->priority < b->priority;
+    if (is_outer(a->kind) != is_outer(b->kind))
+        return is_outer(a->kind);
+    return is_waiting(a->word) && !is_waiting(b->word);
+}
+
 int alarm_priority(const struct plant_tag *tag, enum alarm_kind kind)
 {
     int priority = tag->alarming.priority ? tag->alarming.priority : ALARM_PRIORITY_DEFAULT;

@@ -32,8 +32,18 @@ enum alarm_kind alarm_kind_find(const char *name); /* ALARM_NONE: there is none 
 const char *alarm_word_name(enum alarm_word word); /* "out_of_service" */
 enum alarm_word alarm_word_find(const char *name); /* ALARM_WORDS: likewise */
 bool alarm_word_calls(enum alarm_word word);       /* it is to be seen: neither normal nor set aside */
+bool alarm_word_gone(enum alarm_word word);        /* its cause is no longer there: returned or latched */
 
 int alarm_priority(const struct plant_tag *tag, enum alarm_kind kind); /* 1, the most urgent, to ALARM_PRIORITIES */
+
+/* Which of a tag's alarms stands for all of them: one whose cause is there before one whose cause has gone, then the more urgent, then the
+   outer limit, which holds the inner one, then one that nobody has acknowledged. */
+struct alarm_grade {
+    int priority;
+    enum alarm_kind kind;
+    enum alarm_word word;
+};
+bool alarm_graver(const struct alarm_grade *a, const struct alarm_grade *b);
 
 /* The limit that a usable reading is at or beyond, the graver of two; ALARM_NONE: none. */
 enum alarm_kind alarm_beyond(const struct plant_tag *tag, const struct reading *reading);

@@ -360,12 +360,31 @@ static void counts_are_what_there_is(void **unused)
     assert_int_equal(counts.words[ALARM_UNACKNOWLEDGED], 1);
     assert_int_equal(counts.words[ALARM_RETURNED], 1);
     assert_int_equal(counts.words[ALARM_NORMAL], (int)alarms_count(s.alarms) - 2);
-    assert_int_equal(counts.active, 2);
+    assert_int_equal(counts.active, 1); /* what has returned is not */
     assert_int_equal(counts.chattering, 1);
     assert_int_equal(counts.standing, 0);
     alarms_counts(s.alarms, 20 * S + ALARM_STANDING_NS, &counts);
     assert_int_equal(counts.standing, 1);
     assert_int_equal(counts.chattering, 0);
+    end(&s);
+}
+
+/* TT: LL 0, L 10, a deadband of 2. */
+static void what_is_there_stands_before_what_has_gone(void **unused)
+{
+    struct stage s;
+    (void)unused;
+    begin(&s, ALARMS_LOCAL);
+    hear(&s, 1, 0, -5, QUALITY_GOOD);
+    assert_int_equal(s.told[0], ALARM_LL);
+    act(&s, 2, 0, ALARM_L, ALARM_ACKNOWLEDGE, 0);
+    hear(&s, 3, 0, 5, QUALITY_GOOD); /* LL returns unacknowledged; L is there, and acknowledged */
+    assert_string_equal(word(&s, 0, ALARM_LL), "returned");
+    assert_int_equal(s.told[0], ALARM_L);
+    hear(&s, 4, 0, 50, QUALITY_GOOD);
+    assert_int_equal(s.told[0], ALARM_LL);
+    const struct alarm_grade high = { 4, ALARM_H, ALARM_UNACKNOWLEDGED }, highest = { 4, ALARM_HH, ALARM_ACKNOWLEDGED };
+    assert_true(alarm_graver(&highest, &high) && !alarm_graver(&high, &highest)); /* the outer one, where both are of one priority */
     end(&s);
 }
 
@@ -572,6 +591,7 @@ int main(void)
         cmocka_unit_test(a_reload_keeps_what_stays),
         cmocka_unit_test(changes_come_newest_first),
         cmocka_unit_test(counts_are_what_there_is),
+        cmocka_unit_test(what_is_there_stands_before_what_has_gone),
         cmocka_unit_test(a_lost_device_is_one_alarm),
         cmocka_unit_test(those_that_went_before_are_carried_too),
         cmocka_unit_test(a_stopped_controller_is_one_and_a_failed_sensor_its_own),

@@ -51,7 +51,7 @@ void overlay_ring(struct pen *pen, double x, double y, double radius, int priori
 {
     static const double colors[ALARM_PRIORITIES][3] = { { 0.80, 0.05, 0.12 }, { 0.93, 0.42, 0.04 }, { 0.96, 0.74, 0.05 },
                                                         { 0.10, 0.60, 0.74 } };
-    const double *color = colors[priority - 1], gap = 0.55 * radius;
+    const double *color = colors[priority - 1];
     double wide = word == ALARM_ACKNOWLEDGED ? 0.22 : 0.42;
     cairo_new_path(pen->cairo);
     cairo_arc(pen->cairo, x, y, radius, 0, 2 * M_PI);
@@ -60,10 +60,13 @@ void overlay_ring(struct pen *pen, double x, double y, double radius, int priori
     cairo_stroke_preserve(pen->cairo);
     cairo_set_source_rgb(pen->cairo, color[0], color[1], color[2]);
     cairo_set_line_width(pen->cairo, fmax(1.8, wide * radius));
-    if (word == ALARM_RETURNED || word == ALARM_LATCHED)
-        cairo_set_dash(pen->cairo, &gap, 1, 0);
-    cairo_stroke(pen->cairo);
-    cairo_set_dash(pen->cairo, NULL, 0, 0);
+    cairo_stroke_preserve(pen->cairo);
+    if (alarm_word_gone(word)) {
+        cairo_set_source_rgb(pen->cairo, 1, 1, 1);
+        cairo_set_line_width(pen->cairo, fmax(1.0, 0.5 * wide * radius));
+        cairo_stroke(pen->cairo);
+    }
+    cairo_new_path(pen->cairo);
 }
 
 static const struct reading *reading_of(const struct pen *pen, const struct frame_marker *marker)

@@ -57,7 +57,7 @@ void overlay_halves(struct pen *pen);
 void overlay_outline(struct pen *pen, double x, double y, double radius, bool broken);
 bool overlay_unproven(const struct pen *pen, int tag);
 /* Around a place with an alarm: its colour says the priority, its form how it is. Thick: it calls; thin: it is acknowledged;
-   broken: its cause is gone. */
+   hollow: its cause is gone. */
 void overlay_ring(struct pen *pen, double x, double y, double radius, int priority, enum alarm_word word);
 void overlay_markers(struct pen *pen);
 /* Within the half that is chosen, with nothing before it, and under nothing that was drawn over the picture so far. */
