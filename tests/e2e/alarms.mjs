@@ -7,7 +7,7 @@ import { missing, startPlant } from './support/plant.mjs';
 
 const why = missing();
 const options = { skip: why ?? false, timeout: 200000 };
-const HOT = 'TE-101';
+const HOT = 'TE-101', LOW = 'TE-101';
 let plant, browser, page, tags;
 
 before(async () => {
@@ -50,7 +50,7 @@ test('what comes beyond its limit is counted, marked and listed, the most urgent
     await page.waitForFunction(
         (hot) => globalThis.plantcast.session.model.alarms.list().some(({ tag, kind }) => tag.name === hot && kind === 'HH'),
         HOT, { timeout: 30000 });
-    assert.match(await words(), /^\d+ active alarms, \d+ not acknowledged$/);
+    assert.match(await words(), /^\d+ active alarms, \d+ to be acknowledged$/);
     assert.match(await page.locator('#alarm-mode').textContent(), /Local alarms of this site/);
     await waitForRing(HOT);
     assert.deepEqual((({ kind, state }) => [kind, state])(await ring(HOT)), ['HH', 'unacknowledged']);
@@ -148,6 +148,92 @@ test('a click flies there, in its own group, and back to normal is said', option
     await page.waitForFunction((hot) => globalThis.plantcast.session.model.alarms.list().every(({ tag, state }) => tag.name !== hot ||
         state === 'returned'), HOT, { timeout: 30000 });
     assert.deepEqual(browser.errors, []);
+});
+
+const rowOf = (name) => page.locator('#alarms-list li').filter({ has: page.locator('.what b', { hasText: new RegExp(`^${name}$`) }) });
+const settleAll = async () => { // nothing is beyond a limit, and nothing waits for anybody
+    for (const { name, limits } of tags.filter((tag) => tag.limits.H !== null))
+        await plant.ask(`set ${name} ${((limits.L ?? 0) + limits.H) / 2}`);
+    const gone = () => globalThis.plantcast.session.model.alarms.counts().active === 0;
+    await page.waitForFunction(gone, null, { timeout: 30000 });
+    await page.evaluate(() => {
+        const { session } = globalThis.plantcast, alarms = [...session.model.alarms.rows.values()].map(({ tag, kind }) => [tag.name, kind]);
+        for (const action of ['unshelve', 'acknowledge'])
+            session.post({ type: 'alarm', seq: ++session.alarmSeq, action, alarms });
+    });
+    await waitForWords('^No active alarms$');
+};
+
+test('one row and one count for a tag; what has returned is not active, and drawn hollow', options, async () => {
+    await settleAll();
+    const { LL, L, H } = limitOf(LOW);
+    await plant.ask(`set ${LOW} ${LL - 1}`);
+    await page.waitForFunction((low) => [...globalThis.plantcast.session.model.alarms.rows.values()]
+        .filter(({ tag }) => tag.name === low).length === 2, LOW, { timeout: 30000 });
+    await waitForWords('^1 active alarm, 1 to be acknowledged$');
+    assert.equal(await rowOf(LOW).count(), 1);
+    assert.match(await rowOf(LOW).textContent(), /Low low.*also Low \(Unacknowledged\)/s);
+    await plant.ask(`set ${LOW} ${(L + H) / 2}`);
+    await waitForWords('^0 active, 1 to be acknowledged$');
+    assert.equal(await page.locator('#alarm-counts .hollow').count(), 1);
+    await page.evaluate(() => globalThis.plantcast.session.setParams({ group: 'temperature' }));
+    await waitForRing(LOW);
+    await settle(page);
+    const at = await ring(LOW);
+    assert.equal(at.state, 'returned');
+    // Through the middle of the line of the ring: white, where what is there is of the colour of its priority.
+    const [r, g, b] = await page.evaluate(({ x, y }) => {
+        const box = document.getElementById('viewport').getBoundingClientRect(), { canvas, unit } = globalThis.plantcast.overlay;
+        const ratio = canvas.width / box.width;
+        globalThis.plantcast.overlay.draw();
+        const px = [(x - box.left) * ratio, (y - box.top - 10 * unit) * ratio].map(Math.round);
+        return [...canvas.getContext('2d').getImageData(px[0], px[1], 1, 1).data];
+    }, at);
+    assert.ok(Math.min(r, g, b) > 200, `${[r, g, b]}`);
+    await shoot(page, 'alarms-returned');
+    await rowOf(LOW).locator('button[data-action="acknowledge"]').click();
+    await waitForWords('^No active alarms$');
+});
+
+test('several are acknowledged at once, only those that are seen; a filter', options, async () => {
+    const three = tags.filter(({ group, limits }) => group === 'temperature' && limits.H !== null).slice(0, 3).map(({ name }) => name);
+    for (const name of three)
+        await plant.ask(`set ${name} ${limitOf(name).H + 0.1}`);
+    await waitForWords('^3 active alarms, 3 to be acknowledged$');
+    await page.locator('#alarms-words').fill(three[0]);
+    assert.equal(await page.locator('#alarms-list li').count(), 1);
+    assert.ok(await page.locator('#alarms-many').isHidden(), 'one has a button of its own');
+    await page.locator('#alarms-words').fill('');
+    await page.locator('#alarms-which').selectOption('gone');
+    assert.equal(await page.locator('#alarms-none').textContent(), 'None of 3 passes the filter.');
+    await page.locator('#alarms-which').selectOption('waiting');
+    await page.locator('#alarms-all').check();
+    await rowOf(three[0]).locator('.choose').uncheck();
+    assert.equal(await page.locator('#alarms-acknowledge').textContent(), 'Acknowledge 2');
+    await shoot(page, 'alarms-several');
+    await page.locator('#alarms-acknowledge').click();
+    await waitForWords('^3 active alarms, 1 to be acknowledged$');
+    assert.deepEqual(await page.locator('#alarms-list li .what b').allTextContents(), [three[0]]);
+    await page.locator('#alarms-which').selectOption('all');
+});
+
+test('without a connection the strip says as of when, and offers nothing', options, async () => {
+    const before = await words();
+    await page.evaluate(() => {
+        const { connection } = globalThis.plantcast.session;
+        connection.hold(100000);
+        connection.socket.close();
+    });
+    await waitForWords('^As of \\d\\d:\\d\\d:\\d\\d: ');
+    assert.equal((await words()).replace(/^As of [\d:]+: /, ''), before);
+    assert.ok(await page.locator('#alarm-strip.stale').isVisible());
+    await page.waitForFunction(() => document.querySelectorAll('#alarms .do button').length === 0);
+    assert.match(await page.locator('#alarms-stale').textContent(), /^Not of now: as of \d\d:\d\d:\d\d/);
+    assert.equal(await page.evaluate(() => document.body.classList.contains('alarm-blink')), false);
+    await shoot(page, 'alarms-disconnected');
+    await page.evaluate(() => globalThis.plantcast.session.connection.retryNow());
+    await waitForWords(`^${before}$`);
+    assert.ok(await page.locator('#alarm-strip:not(.stale)').isVisible());
 });
 
 test('on a tablet in both orientations', options, async () => {

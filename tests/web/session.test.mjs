@@ -2,7 +2,7 @@
 // The conversation with the server: what is said first, what is said again, what is ignored.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { actionsFor, asideOf } from '../../clients/web/core/acting.js';
+import { actionsFor, asideOf, inMessages, passes, rowActions, targetsOf } from '../../clients/web/core/acting.js';
 import { health } from '../../clients/web/core/health.js';
 import { orbit } from '../../clients/web/core/moves.js';
 import { actOnAlarm, giveLead, travel } from '../../clients/web/core/requests.js';
@@ -548,11 +548,13 @@ test('alarms: the gravest of a tag, and what is to be done first', () => {
     assert.deepEqual(asideOf(alarms).map(({ kind, who, reason }) => [kind, who, reason]),
         [['H', 'Kim (local)', 'transmitter is being changed']]);
     assert.equal(alarms.gravest(0).kind, 'HH');
-    assert.deepEqual(alarms.counts(), { all: 2, waiting: 2, of: [0, 1, 0, 1] });
+    assert.deepEqual(alarms.counts(), { active: 1, waiting: 2, latched: 0, of: [0, 1, 0, 0], gone: [0, 0, 0, 1] });
     assert.deepEqual(actionsFor(alarms.list()[0], alarms.mode, 'operator'), ['acknowledge', 'shelve']);
     assert.deepEqual(actionsFor(alarms.list()[0], alarms.mode, 'viewer'), [], 'the role does not allow it');
     socket.say(vector('server/alarms-changed.json'));
-    assert.deepEqual(alarms.list().map(({ tag, kind }) => [tag.index, kind]), [[1, 'BAD'], [1, 'L']], 'what nobody has seen comes first');
+    assert.deepEqual(alarms.list().map(({ tag, kind }) => [tag.index, kind]), [[1, 'L']], 'what is there before what has gone');
+    const [{ waiting, others }] = alarms.list();
+    assert.deepEqual([waiting, others.map(({ kind }) => kind)], [true, ['BAD']], 'which nobody has seen');
     assert.equal(alarms.gravest(0), null, 'normal again, or set aside');
     assert.equal(model.worstAlarm({ tags: [model.tags[0], model.tags[1]] }).kind, 'L');
     socket.say({ ...vector('server/alarms.json'), mode: 'display' });
@@ -561,12 +563,48 @@ test('alarms: the gravest of a tag, and what is to be done first', () => {
     assert.deepEqual(socket.sent.at(-1), { type: 'alarm', seq: 1, action: 'acknowledge', alarms: [['TT-101', 'HH']] });
 });
 
+// [tag, kind, state, priority, raised_us]
+const alarmRow = ([tag, kind, state, priority, us]) =>
+    [tag, kind, state, priority, us, 1, 1, !['returned', 'latched'].includes(state), false];
+const alarmRows = (...rows) => ({ type: 'alarms', mode: 'local', all: true, time_us: 1, alarms: rows.map(alarmRow) });
+
+test('alarms: a tag counts once, by its worst that is there', () => {
+    const { session, socket } = greeted();
+    const { alarms } = session.model;
+    socket.say(alarmRows([0, 'L', 'unacknowledged', 2, 1], [0, 'LL', 'unacknowledged', 1, 2],
+        [1, 'H', 'acknowledged', 4, 1], [1, 'HH', 'acknowledged', 4, 1]));
+    assert.deepEqual(alarms.list().map(({ tag, kind, others }) => [tag.index, kind, others.map((other) => other.kind)]),
+        [[0, 'LL', ['L']], [1, 'HH', ['H']]], 'the outer limit, also where both are of one priority');
+    assert.deepEqual(alarms.counts(), { active: 2, waiting: 1, latched: 0, of: [1, 0, 0, 1], gone: [0, 0, 0, 0] });
+    socket.say(alarmRows([0, 'L', 'acknowledged', 2, 1], [0, 'LL', 'returned', 1, 2]));
+    assert.deepEqual([alarms.gravest(0).kind, alarms.gravest(0).state, alarms.gravest(0).waiting], ['L', 'acknowledged', true]);
+    socket.say(alarmRows([0, 'L', 'returned', 2, 1], [0, 'LL', 'returned', 1, 2], [1, 'H', 'latched', 3, 2]));
+    assert.deepEqual(alarms.counts(), { active: 0, waiting: 1, latched: 1, of: [0, 0, 0, 0], gone: [1, 0, 1, 0] });
+});
+
+test('alarms: what is done to a row is done to all of its tag that it can be done to; a filter', () => {
+    const { session, socket } = greeted();
+    const { alarms } = session.model;
+    socket.say(alarmRows([0, 'L', 'returned', 2, 1], [0, 'LL', 'unacknowledged', 1, 2], [1, 'H', 'latched', 3, 2]));
+    const [low, high] = alarms.list();
+    const kinds = (row, action, role) => targetsOf(row, action, 'local', role).map(({ kind }) => kind);
+    assert.deepEqual(kinds(low, 'acknowledge', 'operator'), ['LL', 'L']);
+    assert.deepEqual(kinds(low, 'acknowledge', 'viewer'), []);
+    assert.deepEqual([kinds(low, 'reset', 'operator'), kinds(high, 'reset', 'operator')], [[], ['H']]);
+    assert.deepEqual(rowActions(low, 'local', 'operator'), ['acknowledge', 'shelve']);
+    const which = (name, words = '') => [low, high].map((row) => passes(row, `${row.tag.name} pump`, { which: name, words }));
+    assert.deepEqual(['all', 'waiting', 'active', 'gone', '1', '3'].map((name) => which(name)),
+        [[true, true], [true, false], [true, false], [false, true], [true, false], [false, true]]);
+    assert.deepEqual(which('all', ` PUMP  ${low.tag.name.toLowerCase()}`), [true, false]);
+    assert.deepEqual(inMessages(Array(600).fill(0)).map(({ length }) => length), [256, 256, 88]);
+});
+
 test('alarms: a lost device is one, and of no tag', () => {
     const { session, socket } = greeted();
     const { alarms } = session.model;
     socket.say(vector('server/alarms-device.json'));
     assert.deepEqual(alarms.list().map(({ tag, kind }) => [tag.name, tag.index, kind]), [['plc1', null, 'LINK']]);
-    assert.deepEqual(alarms.counts(), { all: 1, waiting: 1, of: [0, 0, 1, 0] });
+    assert.deepEqual(alarms.counts(), { active: 1, waiting: 1, latched: 0, of: [0, 0, 1, 0], gone: [0, 0, 0, 0] });
     assert.deepEqual(asideOf(alarms).map(({ tag, kind, state, reason }) => [tag.index, kind, state, reason]),
         [[0, 'BAD', 'suppressed', ''], [1, 'BAD', 'suppressed', '']]);
     assert.equal(alarms.gravest(0), null);

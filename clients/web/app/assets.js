@@ -4,7 +4,7 @@
 import { decimalsFor, numberText, qualityText, unitText } from '../core/format.js';
 import { Tree } from '../core/tree.js';
 import { say } from '../core/words.js';
-import { byId, glyph, make, setText } from './dom.js';
+import { byId, glyph, limitFlag, make, setText } from './dom.js';
 import { narrow } from './first.js';
 import { LongList } from './list.js';
 
@@ -174,11 +174,11 @@ function put(element, name, value) {
 }
 
 function setAlarm(element, alarm) {
-    const text = alarm ? `${alarm.kind} p${alarm.priority}` : '';
+    const text = alarm ? `${alarm.kind} p${alarm.priority} ${alarm.state}` : '';
     if ((element.dataset.alarm ?? '') === text)
         return;
     element.dataset.alarm = text;
-    const flag = alarm ? [make('span', { class: `limit-flag p${alarm.priority}` }, alarm.kind)] : [];
+    const flag = alarm ? [limitFlag(alarm)] : [];
     element.querySelector('.flag').replaceChildren(...flag);
 }
 

@@ -6,7 +6,7 @@ import { say } from '../core/words.js';
 import { linksOf } from './about.js';
 import { standBeside } from './cards.js';
 import { clock } from './clock.js';
-import { byId, glyph, make, setText } from './dom.js';
+import { byId, glyph, limitFlag, make, setText } from './dom.js';
 import { closeButton, fill } from './pieces.js';
 
 export class Card {
@@ -52,8 +52,7 @@ export class Card {
         const alarm = model.alarms.gravest(tag.index);
         this.limit.hidden = !alarm;
         if (alarm) {
-            const flag = make('span', { class: `limit-flag p${alarm.priority}` }, alarm.kind);
-            this.limit.replaceChildren(flag, ` ${say(`card.${alarm.kind}`)}, ${say(`state.${alarm.state}`)}`);
+            this.limit.replaceChildren(limitFlag(alarm), ` ${say(`card.${alarm.kind}`)}, ${say(`state.${alarm.state}`)}`);
         }
     }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Small helpers around the document. Nothing here writes inline markup: the page runs under a strict content policy.
 
+import { isGone } from '../core/alarms.js';
 import { say } from '../core/words.js';
 
 const SVG = 'http://www.w3.org/2000/svg';
@@ -84,6 +85,10 @@ export function glyph(quality) {
     return makeSvg('svg', { viewBox: '-8 -8 16 16', class: `glyph ${GLYPHS[quality] ? quality : 'none'}`, 'aria-hidden': 'true' },
         makeSvg(name, { class: 'mark', ...shape }));
 }
+
+// What kind of alarm, in the colour of its priority; hollow once its cause has gone.
+export const limitFlag = ({ kind, priority, state }) =>
+    make('span', { class: `limit-flag p${priority}${isGone(state) ? ' hollow' : ''}` }, kind);
 
 export function icon(id) {
     return makeSvg('svg', { 'aria-hidden': 'true' }, makeSvg('use', { href: `#${id}` }));

@@ -33,7 +33,7 @@ const MARKS = [
     ['help.mark.behind', 'circle', { class: 'mark hidden-mark', r: 2.5 }],
     ['help.mark.alarm', 'circle', { class: 'ring p1', r: 9 }],
     ['help.mark.acknowledged', 'circle', { class: 'ring p1 thin', r: 9 }],
-    ['help.mark.returned', 'circle', { class: 'ring p1 broken', r: 9 }],
+    ['help.mark.returned', 'path', { class: 'ring p1 thin', d: 'M0-10.5A10.5 10.5 0 1 0 .1-10.5zM0-7A7 7 0 1 0 .1-7z' }],
 ];
 
 // A text with [keys] of the keyboard in it, as nodes.
@@ -45,7 +45,7 @@ function build(dialog) {
     const head = ['help.mouse', 'help.touch', 'help.keys'].map((key) => make('th', { scope: 'col' }, say(key)));
     const rows = ROWS.map(([name, ...cells]) => make('tr', {}, make('th', { scope: 'row' }, say(name)), ...cells.map(cell)));
     const marks = MARKS.map(([key, shape, attributes]) => {
-        const side = attributes.r === 9 ? 12 : 8, viewBox = `${-side} ${-side} ${2 * side} ${2 * side}`;
+        const side = attributes.class.startsWith('ring') ? 12 : 8, viewBox = `${-side} ${-side} ${2 * side} ${2 * side}`;
         return make('li', {}, makeSvg('svg', { viewBox, 'aria-hidden': 'true' }, makeSvg(shape, attributes)), say(key));
     });
     dialog.append(

@@ -27,9 +27,13 @@ const legend = new Legend({ session, element: byId('legend'), paramsOf: (params)
 new Legend({ session, element: byId('legend-right'), paramsOf: rightOf });
 const overlay = new Overlay({ canvas: byId('overlay'), viewport, session, selection });
 overlay.unit = page.unit;
-const status = new Status({ session, onFreshness: (fresh) => { overlay.fresh = fresh; refresh(); } });
+const strip = new AlarmStrip({ session, refresh });
+const status = new Status({ session, onFreshness: (fresh) => {
+    overlay.fresh = fresh;
+    strip.setFresh(fresh);
+    refresh();
+} });
 new Tools({ session });
-new AlarmStrip({ session, refresh });
 Object.assign(page, { selection, overlay, parts, saveAddress, refresh, tell });
 for (const name of COMMANDS)
     page[name] = does(name);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Markers and labels, drawn crisply over the picture with the camera that the picture was drawn with.
-import { isWaiting } from '../core/alarms.js';
+import { isGone } from '../core/alarms.js';
 import { projector } from '../core/camera.js';
 import { changeText, decimalsFor, numberText, unitText } from '../core/format.js';
 import { halves } from '../core/halves.js';
@@ -203,20 +203,18 @@ export class Overlay {
         this.context.font = `${weight} 12.5px ${this.font}`;
     }
 
-    // Its colour says the priority, its form the state: thick, and slowly blinking while nobody has acknowledged it; thin; broken.
-    drawAlarm({ priority, state }) {
-        const c = this.context, blinks = isWaiting(state) && document.body.classList.contains('alarm-blink');
-        const wide = state === 'acknowledged' || blinks ? 2 : 4, colour = ALARM_COLOURS[priority - 1][0];
-        const broken = state === 'returned' || state === 'latched' ? [6, 4] : [];
-        for (const [style, width, dash] of [[INK, wide + 2, []], [colour, wide, broken]]) {
+    // Its colour says the priority, its form the state: thick, and slowly blinking while nobody has acknowledged it; thin; hollow once its
+    // cause has gone.
+    drawAlarm({ priority, state, waiting }) {
+        const c = this.context, blinks = waiting && document.body.classList.contains('alarm-blink');
+        const wide = !waiting || blinks ? 2 : 4, colour = ALARM_COLOURS[priority - 1][0], solid = [[INK, wide + 2], [colour, wide]];
+        for (const [style, width] of isGone(state) ? [[INK, wide + 4.5], [colour, wide + 3], ['#fff', 2.5]] : solid) {
             c.beginPath();
             c.arc(0, 0, 10, 0, 2 * Math.PI);
             c.lineWidth = width;
             c.strokeStyle = style;
-            c.setLineDash(dash);
             c.stroke();
         }
-        c.setLineDash([]);
     }
 
     drawMarker({ tag, x, y, occluded, reading, alarm }) {
@@ -284,12 +282,18 @@ export class Overlay {
         let at = x + PADDING;
         for (const part of parts) {
             const wide = this.width(part);
-            if (part[2] === null) {
-                c.fillStyle = ALARM_COLOURS[alarm.priority - 1][0];
+            const flag = part[2] === null, hollow = flag && isGone(alarm.state);
+            const [ground, ink] = flag ? ALARM_COLOURS[alarm.priority - 1] : [];
+            if (hollow) {
+                c.strokeStyle = ground;
+                c.lineWidth = 2;
+                c.strokeRect(at - 2, y + 3.5, wide + 4, height - 7);
+            } else if (flag) {
+                c.fillStyle = ground;
                 c.fillRect(at - 3, y + 2.5, wide + 6, height - 5);
             }
             this.setFont(part[1]);
-            c.fillStyle = part[2] ?? ALARM_COLOURS[alarm.priority - 1][1];
+            c.fillStyle = hollow ? INK : part[2] ?? ink;
             c.fillText(part[0], at, y + height / 2 + 0.5);
             at += wide + 5;
         }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What is known of the plant: what `welcome` said, and the newest value, quality and age of every tag.
-import { Alarms } from './alarms.js';
+import { Alarms, graver } from './alarms.js';
 import { worst } from './format.js';
 import { decodeBase64 } from './wire.js';
 
@@ -122,7 +122,7 @@ export class Model {
     // The gravest alarm of its tags that is to be seen, or null.
     worstAlarm(asset) {
         const alarms = asset.tags.map((tag) => this.alarms.gravest(tag.index)).filter(Boolean);
-        return alarms.sort((a, b) => a.priority - b.priority)[0] ?? null;
+        return alarms.sort(graver)[0] ?? null;
     }
 
     worstQuality(asset) {

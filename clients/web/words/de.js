@@ -130,7 +130,11 @@ unheard: Alarme: noch nichts gehört
 none: Keine aktiven Alarme
 some(one): {count} aktiver Alarm
 some(other): {count} aktive Alarme
-waiting: {alarms}, {waiting} unquittiert
+zero: 0 aktiv
+waiting: {waiting} zu quittieren
+latched: {latched} zurückzusetzen
+asof: Stand {time}: {alarms}
+gone: Priorität {priority}, Ursache gegangen
 now: Jetzt: {alarms}
 at: {alarm} bei {value}
 value: {value} (Grenzwert {limit})

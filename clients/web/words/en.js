@@ -130,7 +130,11 @@ unheard: Alarms: nothing heard yet
 none: No active alarms
 some(one): {count} active alarm
 some(other): {count} active alarms
-waiting: {alarms}, {waiting} not acknowledged
+zero: 0 active
+waiting: {waiting} to be acknowledged
+latched: {latched} to be reset
+asof: As of {time}: {alarms}
+gone: Priority {priority}, its cause has gone
 now: Now: {alarms}
 at: {alarm} at {value}
 value: {value} (limit {limit})

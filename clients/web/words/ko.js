@@ -128,7 +128,11 @@ title: 알람
 unheard: 알람: 아직 수신 없음
 none: 활성 알람 없음
 some(other): 활성 알람 {count}건
-waiting: {alarms}, 미확인 {waiting}건
+zero: 활성 0건
+waiting: 확인할 것 {waiting}건
+latched: 리셋할 것 {latched}건
+asof: {time} 기준: {alarms}
+gone: 우선순위 {priority}, 원인 사라짐
 now: 현재: {alarms}
 at: {alarm}, {value}
 value: {value} (한계 {limit})

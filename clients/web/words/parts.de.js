@@ -136,6 +136,20 @@ until: bis {time}
 by: durch {who}
 held: Messung gestört: wie zuletzt
 fly: Zu {tag} fliegen
+stale: Nicht von jetzt: Stand {time}, als die Verbindung abbrach.
+which: Welche Alarme
+search: Filtern
+filtered: Der Filter lässt keinen von {count} durch.
+choose: {tag} auswählen
+chooseall: Alle gezeigten
+acknowledge: {count} quittieren
+also: auch {what}
+
+[which]
+all: Alle
+waiting: Zu quittieren
+active: Aktiv
+gone: Ursache gegangen
 
 [state]
 active: Aktiv

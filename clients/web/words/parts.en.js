@@ -136,6 +136,20 @@ until: until {time}
 by: by {who}
 held: measurement bad: as it last was
 fly: Fly to {tag}
+stale: Not of now: as of {time}, when the connection was lost.
+which: Which alarms
+search: Filter
+filtered: None of {count} passes the filter.
+choose: Choose {tag}
+chooseall: All of these
+acknowledge: Acknowledge {count}
+also: also {what}
+
+[which]
+all: All
+waiting: To be acknowledged
+active: Active
+gone: Cause has gone
 
 [state]
 active: Active

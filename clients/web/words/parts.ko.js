@@ -136,6 +136,20 @@ until: {time}까지
 by: 처리: {who}
 held: 계측 불량: 마지막 상태 유지
 fly: {tag}(으)로 이동
+stale: 현재가 아님: 연결이 끊긴 {time} 기준입니다.
+which: 알람 종류
+search: 필터
+filtered: {count}건 중 필터에 맞는 것이 없습니다.
+choose: {tag} 선택
+chooseall: 표시된 것 모두
+acknowledge: {count}건 확인
+also: 또한 {what}
+
+[which]
+all: 전체
+waiting: 확인할 것
+active: 활성
+gone: 원인 사라짐
 
 [state]
 active: 활성
