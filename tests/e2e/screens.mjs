@@ -135,8 +135,15 @@ test('desktop: two sets of parameters side by side, each with legend and markers
     await page.locator('#sun-turn').fill('90');
     await choose('show', 'distance');
     await settle(page);
-    assert.match(await page.locator('#legend h2').textContent(), /Distance m/);
     const { light, sensor } = (await view(page)).params;
+    assert.match(await page.locator('#legend h2').textContent(), new RegExp(`Distance from ${sensor} m`));
+    const labels = await page.evaluate(() => {
+        const { overlay } = globalThis.plantcast;
+        return overlay.labels().filter(({ id }) => overlay.places.has(id))
+            .map(({ parts, alarm }) => ({ text: parts.map(([part]) => part).join(' '), alarm: Boolean(alarm) }));
+    });
+    assert.ok(labels.every(({ text, alarm }) => alarm || / m$|\u202fm/.test(text)), JSON.stringify(labels)); // none says nothing
+    assert.ok(labels.some(({ text }) => text.startsWith(`${sensor} 0.00`)), `where it is measured from: ${JSON.stringify(labels)}`);
     assert.ok(light[0] > 0.3 && Math.abs(light[1]) < 0.02, `the sun stands in the east: ${light}`);
     assert.equal(await page.locator('#sensor').inputValue(), sensor);
     await shoot(page, 'distance');
@@ -145,7 +152,7 @@ test('desktop: two sets of parameters side by side, each with legend and markers
     await page.locator('#baseline-keep').click();
     await settle(page);
     assert.equal(await page.locator('#baseline').inputValue(), 'before');
-    assert.match(await page.locator('#legend h2').textContent(), /Δ Temperature/);
+    assert.match(await page.locator('#legend h2').textContent(), /Δ Temperature °C since before, \d\d:\d\d:\d\d$/);
     await page.keyboard.press('Escape');
     await choose('show', 'operator');
     await settle(page);

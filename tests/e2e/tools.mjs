@@ -194,9 +194,20 @@ test('an engineer sets range, factors and one sensor\'s own, and has them as con
     };
     await page.evaluate(() => globalThis.plantcast.showTag(globalThis.plantcast.session.model.tag('TI-1')));
     await page.locator('#picture-toggle').click();
+    await page.locator('#range-max').press('Control+a');
+    await page.keyboard.type('62'); // a digit that is written chooses no quantity
+    await page.keyboard.press('Tab');
+    await waitForParam('range', [0, 62]);
+    assert.equal((await params()).group, 'temperature');
+    await page.keyboard.press('Escape');
+    await page.locator('#engineer-toggle').click();
+    await page.locator('#engineer label', { hasText: 'Field' }).click();
     await page.locator('#own-factors').waitFor();
-    await write('#range-max', '60');
-    await waitForParam('range', [0, 60]);
+    for (const [id, choice] of [['distance', 'Euclidean'], ['interpolation', 'Paper'], ['fill', 'By neighbours'],
+        ['distance', 'Geodesic'], ['interpolation', 'Shepard'], ['fill', 'Hatched']]) {
+        await page.locator(`#${id} label`, { hasText: choice }).click();
+        await waitForParam(id, await page.locator(`#${id} input:checked`).inputValue());
+    }
     await write('#factor-power', '4');
     await waitForParam('power', 4);
     await write('#factor-reach_m', '0.4');
@@ -210,6 +221,8 @@ test('an engineer sets range, factors and one sensor\'s own, and has them as con
     await waitForParam('sensors', {});
     await write('#factor-reach_m', '');
     await waitForParam('reach_m', null);
+    await page.locator('#engineer-toggle').click();
+    await page.locator('#picture-toggle').click();
     await page.locator('#range-own').click();
     await waitForParam('range', [0, 100]);
     assert.equal((await params()).power, 4);

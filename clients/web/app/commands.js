@@ -40,6 +40,7 @@ function commandsOf({ session, parts, selection, overlay, saveAddress, refresh }
             parts.get('card');
         }
         parts.there('assets')?.mark();
+        parts.there('engineer')?.onSelection();
         saveAddress();
         refresh();
     }

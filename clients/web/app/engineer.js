@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The engineer's panel: sensors are placed, and proven. Loaded when it is first opened.
+// The engineer's panel: sensors are placed, and proven; how the field is computed. Loaded when it is first opened.
 import { say } from '../core/words.js';
 import { byId, make } from './dom.js';
+import { Method } from './method.js';
 import { closeButton } from './pieces.js';
 import { Placing } from './placing.js';
 import { Proving } from './proving.js';
@@ -10,15 +11,16 @@ export class Engineer {
     constructor(page) {
         this.page = page;
         this.button = byId('engineer-toggle');
-        this.parts = { place: new Placing(page), prove: new Proving(page) };
+        this.parts = { place: new Placing(page), prove: new Proving(page), method: new Method(page) };
         const choice = (name) => make('label', {},
             make('input', { type: 'radio', name: 'engineer-part', value: name, checked: name === 'place',
                 onchange: () => this.choose(name) }),
             make('span', {}, say(`eng.${name}`)));
         this.element = make('section', { class: 'engineer', id: 'engineer', hidden: true, 'aria-label': say('eng.title') },
             make('header', {}, make('h2', {}, say('eng.title')), closeButton('eng.close', () => this.toggle())),
-            make('fieldset', { class: 'segments' }, make('legend', {}, say('eng.what')), choice('place'), choice('prove')),
-            this.parts.place.element, this.parts.prove.element);
+            make('fieldset', { class: 'segments' }, make('legend', {}, say('eng.what')), choice('place'), choice('prove'),
+                choice('method')),
+            ...Object.values(this.parts).map(({ element }) => element));
         byId('viewport').parentElement.append(this.element);
         this.choose('place');
         page.overlay.drawTried = (tag) => this.mark(tag);
@@ -51,6 +53,12 @@ export class Engineer {
             element.hidden = name !== part;
         this.parts[part].show();
         this.page.refresh();
+    }
+
+    // What is selected is another.
+    onSelection() {
+        if (this.part === 'method')
+            this.parts.method.show();
     }
 
     takesClick(x, y) {

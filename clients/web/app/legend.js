@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The legend: the colours as the server uses them, with units, limits, and the patterns for what is not known.
-import { decimalsFor, quantityText, shortNumberText, unitText } from '../core/format.js';
+import { decimalsFor, quantityText, shortNumberText, unitText, zoneClock } from '../core/format.js';
 import { colourOf, edges, LIMIT_BANDS, placeOf, scaleTicks, spread, valueAt } from '../core/legend.js';
 import { hatchAt, patternPeriodPx, ruleAt, stippleAt } from '../core/patterns.js';
 import { say } from '../core/words.js';
@@ -82,9 +82,9 @@ export class Legend {
 
     // What decides how it looks.
     contents(params) {
-        const { group, show, colormap, ramp_interval, scale, breaks, isolines, look, unit } = params;
-        return JSON.stringify([group, show, colormap, ramp_interval, this.session.rangeOf(params), scale, breaks, isolines, look, unit,
-            this.unproven(params)]);
+        const { group, show, sensor, colormap, ramp_interval, scale, breaks, isolines, look, unit } = params;
+        return JSON.stringify([group, show, sensor, this.since(params), colormap, ramp_interval, this.session.rangeOf(params), scale,
+            breaks, isolines, look, unit, this.unproven(params)]);
     }
 
     show(again = false) {
@@ -118,9 +118,21 @@ export class Legend {
         ].filter(Boolean);
     }
 
-    heading(group, { show, unit }) {
-        const name = quantityText(group), text = { difference: `Δ ${name}`, distance: say('legend.distance') }[show] ?? name;
-        return make('h2', {}, text, ' ', make('span', {}, show === 'operator' ? '' : unitText(unit ?? group.unit)));
+    heading(group, params) {
+        const { show, sensor, unit } = params, name = quantityText(group), since = this.since(params);
+        const text = { difference: `Δ ${name}`, distance: say('legend.distance', { tag: sensor ?? '–' }) }[show] ?? name;
+        return make('h2', {}, text, ' ', make('span', {}, show === 'operator' ? '' : unitText(unit ?? group.unit)),
+            since && make('span', { class: 'since' }, ` ${since}`));
+    }
+
+    // From when on a difference is: the name of what was kept, and the plant's time then; null: none is shown, or it is not known.
+    since({ show, baseline }) {
+        const { model } = this.session;
+        if (show !== 'difference' || !baseline?.time_us)
+            return null;
+        const clock = zoneClock(model.plant.time_zone), then = clock(baseline.time_us / 1000), now = clock(this.session.clockUs() / 1000);
+        const when = then.date === now.date ? then.time : `${then.day} ${then.time}`;
+        return say('legend.since', { when: baseline.name ? `${baseline.name}, ${when}` : when });
     }
 
     // below: whether there may be values below the range.

@@ -80,7 +80,8 @@ export class Overlay {
                 tag, x: (left + place[0]) * scale[0], y: place[1] * scale[1], depth: place[2], half: number,
                 occluded: said.occluded, reading: difference || away ? newest : pictured, alarm,
                 change: difference && (said.quality === 'bad' ? null : said.value ?? null), // false: the reading itself is shown
-                distance_m: away && (said.value ?? null), // likewise; null: not known
+                distance_m: away && (said.value ?? null), // likewise; null: none, as on other equipment
+                origin: away && tag.name === params.sensor,
             });
         }
         return markers;
@@ -160,10 +161,11 @@ export class Overlay {
             const { tag, reading } = marker, id = `${tag.index}/${marker.half}`;
             const { alarm } = marker;
             const onSelected = tag.asset === this.session.params.selected;
-            const parts = this.parts(marker, named || onSelected || alarm !== null);
+            const parts = this.parts(marker, named || onSelected || marker.origin || alarm !== null);
             const width = Math.ceil(parts.reduce((sum, part) => sum + this.width(part), 0) + 2 * PADDING + (parts.length - 1) * 5);
-            const bad = reading.quality === 'bad', silent = (marker.occluded && !alarm) || this.isChosen(tag) || (bad && tooMany);
-            const rank = silent ? -1 : alarm ? 3 : bad ? 2 : reading.quality !== 'good' || onSelected ? 1 : 0;
+            const bad = reading.quality === 'bad', unseen = (marker.occluded || marker.distance_m === null) && !alarm;
+            const silent = unseen || this.isChosen(tag) || (bad && tooMany);
+            const rank = silent ? -1 : alarm || marker.origin ? 3 : bad ? 2 : reading.quality !== 'good' || onSelected ? 1 : 0;
             const { x, y, depth, half } = marker;
             const held = this.places.get(id)?.slot, ring = alarm !== null;
             return { id, half, x, y, width, height: LABEL_HEIGHT, rank, depth, held, parts, alarm, ring };
@@ -175,7 +177,8 @@ export class Overlay {
         const parts = withName ? [[tag.name, 400, INK_2]] : [];
         const group = this.session.model.group(tag.group), decimals = decimalsFor(group.max - group.min);
         if (distance_m !== false) {
-            parts.push([distance_m === null ? '–' : `${numberText(distance_m, 2)}\u202fm`, 650, INK]);
+            if (distance_m !== null)
+                parts.push([`${numberText(distance_m, 2)}\u202fm`, 650, INK]);
         } else if (change !== false && reading.quality !== 'bad') {
             parts.push([changeText(change, decimals), ...(this.fresh ? [650, INK] : [400, INK_2])]);
             parts.push([change === null ? '' : unitText(tag.unit || group.unit), 400, INK_2]);
@@ -217,7 +220,7 @@ export class Overlay {
         }
     }
 
-    drawMarker({ tag, x, y, occluded, reading, alarm }) {
+    drawMarker({ tag, x, y, occluded, reading, alarm, origin }) {
         const c = this.context, chosen = this.isChosen(tag);
         c.save();
         c.translate(x, y);
@@ -248,11 +251,11 @@ export class Overlay {
             }
             c.stroke();
         }
-        if (chosen) {
+        if (chosen || origin) {
             c.beginPath();
             c.arc(0, 0, alarm ? 14.5 : 9.5, 0, 2 * Math.PI);
             c.lineWidth = 2.5;
-            c.strokeStyle = ACCENT;
+            c.strokeStyle = chosen ? ACCENT : INK;
             c.stroke();
         }
         c.restore();

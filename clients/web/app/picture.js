@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The panel of the picture: what is compared with what, the scale, the light, and the right half of a split view.
+// The panel of the picture: what is compared with what, scale and range, the light, and the right half of a split view.
 import { quantityText, title, zoneClock } from '../core/format.js';
 import { sunOf, sunText, towardsSun } from '../core/sun.js';
 import { say, sayIfKnown } from '../core/words.js';
 import { sensorsOf } from './commands.js';
 import { byId, make, setText } from './dom.js';
-import { Factors } from './factors.js';
+import { distances, interpolations, Range } from './factors.js';
 import { fillSegments, fillSelect, markSegment } from './fields.js';
 import { foldPanel } from './fold.js';
-import { DISTANCES, INTERPOLATIONS, LOOKS, SHOWS } from './toolbar.js';
+import { LOOKS, SHOWS } from './toolbar.js';
 
 const HALF = {
     group: 'bar.quantity', show: 'bar.show', distance: 'bar.distance', interpolation: 'bar.interpolation', colormap: 'bar.colours',
     look: 'bar.look',
 };
+const ENGINEERS_HALF = ['distance', 'interpolation'];
 
 export class Picture {
     constructor({ session, selection }) {
@@ -22,8 +23,6 @@ export class Picture {
         Object.assign(this, foldPanel(this.panel, byId('picture-toggle'), () => this.update()));
         const scales = ['linear', 'log'].map((scale) => [scale, say(`scale.${scale}`)]);
         fillSegments(byId('scale'), 'scale', scales, (scale) => session.setParams({ scale }));
-        const fills = ['none', 'neighbours'].map((fill) => [fill, say(`fill.${fill}`), say(`fill.${fill}.why`)]);
-        fillSegments(byId('fill'), 'fill', fills, (fill) => session.setParams({ fill }));
         byId('environment').addEventListener('change', ({ target }) => session.setParams({ environment: target.value }));
         byId('sensor').addEventListener('change', ({ target }) => session.setParams({ show: 'distance', sensor: target.value }));
         byId('baseline').addEventListener('change', ({ target }) => session.setParams({ show: 'difference', baseline: target.value }));
@@ -33,7 +32,7 @@ export class Picture {
         for (const id of ['sun-turn', 'sun-height'])
             byId(id).addEventListener('input', () => this.moveSun());
         this.addHalf();
-        this.factors = new Factors(this);
+        this.range = new Range(this);
         session.on('params', () => this.update());
         session.on('welcome', () => this.update());
     }
@@ -102,11 +101,13 @@ export class Picture {
         const needs = SHOWS.filter(([value]) => ['value', 'operator', right.show].includes(value) ||
             (value === 'distance' && params.sensor) || (value === 'difference' && params.baseline));
         const choices = {
-            group: model.groups.map((group) => [group.id, quantityText(group)]), show: plain(needs), distance: plain(DISTANCES),
-            interpolation: plain(INTERPOLATIONS), colormap: model.colormaps.map(({ name }) => [name, title(name)]), look: plain(LOOKS),
+            group: model.groups.map((group) => [group.id, quantityText(group)]), show: plain(needs), distance: plain(distances()),
+            interpolation: plain(interpolations()), colormap: model.colormaps.map(({ name }) => [name, title(name)]), look: plain(LOOKS),
         };
         for (const name of Object.keys(HALF))
             fillSelect(this.half[name], choices[name], right[name]);
+        for (const name of ENGINEERS_HALF)
+            this.half[name].parentElement.hidden = this.session.role !== 'engineer';
     }
 
     update() {
@@ -120,10 +121,9 @@ export class Picture {
         fillSelect(byId('baseline'), now ? kept : [['', this.instantText(params.baseline)], ...kept], now);
         byId('scale').disabled = !(this.session.range[0] > 0) || params.show === 'operator';
         markSegment(byId('scale'), params.scale ?? 'linear');
-        markSegment(byId('fill'), params.fill ?? 'none');
         this.updateLight(this.session);
         this.updateHalf(this.session);
-        this.factors.update();
+        this.range.update();
     }
 
     instantText(baseline) {

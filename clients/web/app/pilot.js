@@ -18,6 +18,7 @@ const DOUBLE_CLICK_MS = 350, DOUBLE_CLICK_PX = 24;
 const ANCHOR_MS = 600, ANCHOR_PX = 10; // a wheel that goes on, about the same place
 const LEAST_ARRIVAL_DEG = 15;   // nobody wants to arrive below the floor
 const TAG_DISTANCE_M = 5;
+const WRITTEN = 'input:not([type="radio"], [type="checkbox"], [type="range"]), select, textarea'; // keys write there
 
 export class Pilot {
     // told: who is told what hands say that moves no camera: { click(x, y, kind), point({ x, y } or null), command(name), group(index) }.
@@ -127,7 +128,7 @@ export class Pilot {
     }
 
     keydown(event) {
-        if (document.querySelector('dialog[open]') || event.target.closest('input[type="search"], input[type="text"], select'))
+        if (document.querySelector('dialog[open]') || event.target.closest(WRITTEN))
             return;
         const meaning = keyMeaning(event);
         if (!meaning || (meaning.motion?.startsWith('Arrow') && event.target.closest('fieldset')))

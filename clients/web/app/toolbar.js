@@ -7,9 +7,6 @@ import { byId, setText } from './dom.js';
 import { fillSegments, fillSelect, markSegment } from './fields.js';
 
 const choices = (kind, ...values) => values.map((value) => [value, say(`${kind}.${value}`)]);
-const explained = (kind, ...values) => values.map((value) => [value, say(`${kind}.${value}`), say(`${kind}.${value}.why`)]);
-export const DISTANCES = explained('distance', 'geodesic', 'euclidean');
-export const INTERPOLATIONS = explained('interpolation', 'shepard', 'paper');
 export const SHOWS = choices('show', 'value', 'operator', 'distance', 'difference');
 export const LOOKS = choices('look', 'default', 'glossy', 'flat', 'materials');
 
@@ -25,8 +22,6 @@ export class Toolbar {
     // does(name): what does a command (commands.js).
     constructor({ session, does }) {
         this.session = session;
-        fillSegments(byId('distance'), 'distance', DISTANCES, (distance) => session.setParams({ distance }));
-        fillSegments(byId('interpolation'), 'interpolation', INTERPOLATIONS, (interpolation) => session.setParams({ interpolation }));
         byId('colormap').addEventListener('change', (event) => session.setParams({ colormap: event.target.value }));
         byId('look').addEventListener('change', (event) => session.setParams({ look: event.target.value }));
         byId('ramp').addEventListener('change', ({ target }) => does('ramp')(target.value));
@@ -52,8 +47,6 @@ export class Toolbar {
         if (!model)
             return;
         markSegment(byId('groups'), params.group);
-        markSegment(byId('distance'), params.distance);
-        markSegment(byId('interpolation'), params.interpolation);
         fillSelect(byId('colormap'), model.colormaps.map((map) => [map.name, title(map.name)]), params.colormap);
         fillSelect(byId('look'), LOOKS, params.look);
         fillSelect(byId('ramp'), this.ramps(), params.breaks?.length > 0 ? this.breaksName() : params.ramp_interval ?? 0);

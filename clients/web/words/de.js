@@ -13,12 +13,6 @@ timings: Messungen
 [part]
 failed: Dieser Teil der Seite konnte nicht geladen werden. Er kommt von selbst, sobald der Server da ist.
 
-[distance]
-geodesic: Geodätisch
-geodesic.why: Abstand entlang der Oberfläche: Wärme springt nicht über einen Spalt
-euclidean: Euklidisch
-euclidean.why: Gerader Abstand durch den Raum
-
 [age]
 s: {n} s
 min: {n} min
@@ -29,8 +23,6 @@ d: {n} d
 equipment: Anlagenliste
 quantity: Messgröße
 display: Darstellung
-distance: Abstand
-interpolation: Interpolation
 colours: Farben
 ramp: Stufen
 lines: Linien
@@ -50,13 +42,7 @@ measure: Abstand messen
 snapshot: Bild speichern
 share: Teilen
 theme: Dunkel oder hell
-engineer: Ingenieur: Messstellen setzen und prüfen
-
-[interpolation]
-shepard: Shepard
-shepard.why: Inverser Abstand: an jedem Messpunkt genau der Messwert
-paper: Paper
-paper.why: Algorithmus 1 von Kim & Suh 2025: glatter, erreicht die Messwerte nicht
+engineer: Ingenieur: Messstellen und Feld
 
 [show]
 value: Werte
@@ -112,7 +98,8 @@ waiting: Warten auf das erste Bild
 [legend]
 right: Legende der rechten Hälfte
 colours: Farben von {min} bis {max}
-distance: Abstand
+distance: Abstand von {tag}
+since: seit {when}
 operator: Nach den Grenzwerten jeder Messstelle.
 log: Logarithmische Skala.
 unsafe: Diese Farben können täuschen.

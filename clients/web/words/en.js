@@ -13,12 +13,6 @@ timings: Measurements
 [part]
 failed: This part of the page could not be loaded. It comes by itself once the server is there.
 
-[distance]
-geodesic: Geodesic
-geodesic.why: Distance along the surface: heat does not jump across a gap
-euclidean: Euclidean
-euclidean.why: Straight distance through space
-
 [age]
 s: {n} s
 min: {n} min
@@ -29,8 +23,6 @@ d: {n} d
 equipment: Equipment list
 quantity: Quantity
 display: Display settings
-distance: Distance
-interpolation: Interpolation
 colours: Colours
 ramp: Ramp
 lines: Lines
@@ -50,13 +42,7 @@ measure: Measure a distance
 snapshot: Save a picture
 share: Share
 theme: Dark or light
-engineer: Engineer: place and prove sensors
-
-[interpolation]
-shepard: Shepard
-shepard.why: Inverse distance: exactly the reading at each sensor
-paper: Paper
-paper.why: Algorithm 1 of Kim & Suh 2025: smoother, does not reach the readings
+engineer: Engineer: sensors and field
 
 [show]
 value: Values
@@ -112,7 +98,8 @@ waiting: Waiting for the first picture
 [legend]
 right: Legend of the right half
 colours: Colours from {min} to {max}
-distance: Distance
+distance: Distance from {tag}
+since: since {when}
 operator: By each tag’s own limits.
 log: Logarithmic scale.
 unsafe: These colours may be misread.

@@ -13,12 +13,6 @@ timings: 성능 측정
 [part]
 failed: 화면의 이 부분을 불러오지 못했습니다. 서버가 응답하면 저절로 나타납니다.
 
-[distance]
-geodesic: 측지 거리
-geodesic.why: 표면을 따르는 거리: 열은 틈을 건너뛰지 않습니다
-euclidean: 직선 거리
-euclidean.why: 공간을 가로지르는 직선 거리
-
 [age]
 s: {n}초
 min: {n}분
@@ -29,8 +23,6 @@ d: {n}일
 equipment: 설비 목록
 quantity: 측정량
 display: 표시 설정
-distance: 거리
-interpolation: 보간
 colours: 색상표
 ramp: 색 단계
 lines: 등치선
@@ -50,13 +42,7 @@ measure: 거리 측정
 snapshot: 그림 저장
 share: 공유
 theme: 어둡게 또는 밝게
-engineer: 엔지니어: 센서 배치와 확인
-
-[interpolation]
-shepard: Shepard
-shepard.why: 역거리 가중: 각 센서 위치에서 지시값과 정확히 일치
-paper: 논문식
-paper.why: Kim & Suh 2025의 알고리즘 1: 더 부드럽지만 지시값에 도달하지 않음
+engineer: 엔지니어: 센서와 필드
 
 [show]
 value: 값
@@ -111,7 +97,8 @@ waiting: 첫 화면을 기다리는 중
 [legend]
 right: 오른쪽 화면의 범례
 colours: {min}부터 {max}까지의 색
-distance: 거리
+distance: {tag}에서의 거리
+since: {when} 이후
 operator: 태그마다 정해진 한계 기준.
 log: 로그 눈금.
 unsafe: 잘못 읽기 쉬운 색입니다.

@@ -6,6 +6,20 @@ sun: aus {wind}, {height}° hoch
 
 [distance]
 metres: {metres} m
+geodesic: Geodätisch
+geodesic.why: Abstand entlang der Oberfläche: Wärme springt nicht über einen Spalt
+euclidean: Euklidisch
+euclidean.why: Gerader Abstand durch den Raum
+
+[interpolation]
+shepard: Shepard
+shepard.why: Inverser Abstand: an jedem Messpunkt genau der Messwert
+paper: Paper
+paper.why: Algorithmus 1 von Kim & Suh 2025: glatter, erreicht die Messwerte nicht
+
+[bar]
+distance: Abstand
+interpolation: Interpolation
 
 [picture]
 from: Abstand von
@@ -350,6 +364,7 @@ title: Ingenieur
 close: Feld des Ingenieurs schließen
 place: Setzen
 prove: Prüfen
+method: Feld
 what: Was zu tun ist
 find: Messstelle suchen
 nowhere: steht noch nirgends

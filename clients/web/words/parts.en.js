@@ -6,6 +6,20 @@ sun: from {wind}, {height}° high
 
 [distance]
 metres: {metres} m
+geodesic: Geodesic
+geodesic.why: Distance along the surface: heat does not jump across a gap
+euclidean: Euclidean
+euclidean.why: Straight distance through space
+
+[interpolation]
+shepard: Shepard
+shepard.why: Inverse distance: exactly the reading at each sensor
+paper: Paper
+paper.why: Algorithm 1 of Kim & Suh 2025: smoother, does not reach the readings
+
+[bar]
+distance: Distance
+interpolation: Interpolation
 
 [picture]
 from: Distance from
@@ -350,6 +364,7 @@ title: Engineer
 close: Close the engineer’s panel
 place: Place
 prove: Prove
+method: Field
 what: What to do
 find: Find a tag
 nowhere: stands nowhere yet

@@ -6,6 +6,20 @@ sun: {wind}쪽, 고도 {height}°
 
 [distance]
 metres: {metres} m
+geodesic: 측지 거리
+geodesic.why: 표면을 따르는 거리: 열은 틈을 건너뛰지 않습니다
+euclidean: 직선 거리
+euclidean.why: 공간을 가로지르는 직선 거리
+
+[interpolation]
+shepard: Shepard
+shepard.why: 역거리 가중: 각 센서 위치에서 지시값과 정확히 일치
+paper: 논문식
+paper.why: Kim & Suh 2025의 알고리즘 1: 더 부드럽지만 지시값에 도달하지 않음
+
+[bar]
+distance: 거리
+interpolation: 보간
 
 [picture]
 from: 거리의 기준
@@ -347,6 +361,7 @@ title: 엔지니어
 close: 엔지니어 패널 닫기
 place: 배치
 prove: 확인
+method: 필드
 what: 할 일
 find: 태그 찾기
 nowhere: 아직 위치 없음

@@ -86,6 +86,12 @@ static void draw_alarm(struct pen *pen, const struct frame_marker *marker)
     overlay_ring(pen, marker->x_px, marker->y_px, 9.5 * pen->unit, priority, (enum alarm_word)reading->alarm_word);
 }
 
+/* On equipment that has no distance from the chosen sensor: there is nothing to say of it, but for its alarm. */
+static bool is_elsewhere(const struct pen *pen, const struct frame_marker *marker)
+{
+    return pen->view.field.show == SHOW_DISTANCE && isnan(marker->value);
+}
+
 static void format_value(const struct pen *pen, const struct frame_marker *marker, char out[64])
 {
     const struct plant_tag *tag = &pen->scene->plant->tags[marker->tag];
@@ -94,8 +100,10 @@ static void format_value(const struct pen *pen, const struct frame_marker *marke
     const char *alarm = alarm_kind_name((enum alarm_kind)pen->snapshot->readings[marker->tag].alarm);
     int decimals = pen_decimals(group->max - group->min);
     double value = pen_rounded(marker->value, decimals);
-    if (pen->view.field.show == SHOW_DISTANCE)
-        snprintf(out, 64, isnan(marker->value) ? "no distance" : "%.2f m", marker->value);
+    if (is_elsewhere(pen, marker))
+        snprintf(out, 64, "%s", alarm ? alarm : "");
+    else if (pen->view.field.show == SHOW_DISTANCE)
+        snprintf(out, 64, "%.2f m", marker->value);
     else if (quality_is_bad(marker->quality))
         snprintf(out, 64, lost ? "BAD" : "not known then");
     else
@@ -179,7 +187,7 @@ static void add_wanted(struct pen *pen, const struct frame_marker *marker, struc
     item->height = 0.95 * pen->text_px + 2 * pad;
     item->depth_m = depth_of(pen, marker->tag);
     item->ring = has_alarm(pen, marker);
-    item->rank = marker->occluded                                                                  ? LABEL_NOT_WANTED
+    item->rank = marker->occluded || (is_elsewhere(pen, marker) && !has_alarm(pen, marker))        ? LABEL_NOT_WANTED
                  : has_alarm(pen, marker)                                                          ? LABEL_BEYOND
                  : is_bad(marker)                                                                  ? LABEL_BAD
                  : quality_is_uncertain(marker->quality) || tag->asset == pen->view.selected_asset ? LABEL_DOUBTFUL
