@@ -25,7 +25,8 @@ static void print_usage(FILE *out)
           "       plantcast history export PLANT.yaml --tags A,B [--from INSTANT] [--to INSTANT] [--points N] [--folder DIR]\n"
           "\n"
           "import takes series into the plant's history, also while its daemon records: what happened before it was there.\n"
-          "The CSV has the columns Tag, Time, Value and perhaps Quality, or Time and one column for each tag. Times are instants\n"
+          "The CSV has the columns Tag, Time, Value and perhaps Quality and Unit, or Time and one column for each tag. Values are in\n"
+          "the tag's Eng Units, as its device gives them, unless Unit says another. Times are instants\n"
           "such as 2026-11-20T10:00:00Z, or, with --start, numbers that count from there in the first column or `Time`.\n"
           "Nothing is imported where anything is wrong; every error is printed with its line.\n"
           "\n"
@@ -91,17 +92,18 @@ static int run_import(const struct history_options *options, const struct plant 
 
 /* --- export --------------------------------------------------------------------------------------------------------------------- */
 
-static bool export_tag(struct history_reader *reader, const char *tag, int64_t from_us, int64_t to_us, int points, int *was_buckets)
+static bool export_tag(struct history_reader *reader, const struct plant_tag *tag, int64_t from_us, int64_t to_us, int points,
+                       int *was_buckets)
 {
     struct history_series series;
     struct text text = { 0 };
-    bool good = history_series(reader, tag, from_us, to_us, points, &series) == 0;
+    bool good = history_series(reader, tag->name, from_us, to_us, points, &series) == 0;
     if (good && *was_buckets != (series.bucket_us > 0)) {
         *was_buckets = series.bucket_us > 0;
         series_text_csv_head(&text, series.bucket_us > 0);
     }
     if (good)
-        series_text_csv(&text, tag, &series);
+        series_text_csv(&text, tag->name, tag->unit, &series);
     if (text.at)
         fwrite(text.at, 1, text.length, stdout);
     text_finish(&text);
@@ -126,10 +128,11 @@ static int run_export(const struct history_options *options, const struct plant 
     int was_buckets = -1;
     bool good = true;
     for (char *tag; good && (tag = strsep(&rest, ","));) {
-        good = plant_find_tag(plant, tag) >= 0;
+        int index = plant_find_tag(plant, tag);
+        good = index >= 0;
         if (!good)
             fprintf(stderr, "plantcast: %s: there is no tag '%s'\n", options->plant, tag);
-        good = good && export_tag(reader, tag, from_us, to_us, options->points, &was_buckets);
+        good = good && export_tag(reader, &plant->tags[index], from_us, to_us, options->points, &was_buckets);
     }
     mem_free(names);
     history_reader_destroy(&reader);

@@ -10,7 +10,7 @@
 #include "value/quality.h"
 
 struct columns {
-    int tag, value, quality;
+    int tag, value, quality, unit;
 };
 
 /* Without a header the first row is data. */
@@ -19,11 +19,12 @@ static bool find_columns(const struct csv *csv, struct columns *columns)
     columns->tag = csv_find(csv, "tag");
     columns->value = csv_find(csv, "value");
     columns->quality = csv_find(csv, "quality");
+    columns->unit = csv_find(csv, "unit");
     if (columns->tag < 0)
         columns->tag = csv_find(csv, "tag name");
     if (columns->tag >= 0 && columns->value >= 0)
         return true;
-    *columns = (struct columns){ .tag = 0, .value = 1, .quality = 2 };
+    *columns = (struct columns){ .tag = 0, .value = 1, .quality = 2, .unit = -1 };
     return false;
 }
 
@@ -49,6 +50,21 @@ static const char *cell(const struct csv_row *row, int column)
     return column >= 0 && (size_t)column < row->count ? row->cells[column].text : "";
 }
 
+/* From the unit that the row says, else the tag's own. */
+static bool take_unit(const struct csv *csv, const struct csv_row *row, const struct columns *columns, const struct plant_tag *tag,
+                      double *value)
+{
+    const char *unit = cell(row, columns->unit);
+    struct unit_change change = tag->change;
+    if (*unit && units_compare(unit, tag->unit, &change) > UNITS_CONVERT) {
+        diag_error(csv->diag, csv->path, row->cells[columns->unit].line, row->cells[columns->unit].column,
+                   "unit '%s' cannot be converted to '%s', in which %s is shown", unit, tag->unit, tag->name);
+        return false;
+    }
+    *value = unit_change_value(&change, *value);
+    return true;
+}
+
 static void row_read(const struct plant *plant, const struct csv *csv, const struct csv_row *row, const struct columns *columns,
                      struct snapshot *snapshot)
 {
@@ -67,6 +83,8 @@ static void row_read(const struct plant *plant, const struct csv *csv, const str
     if (*value == 0 || !isfinite(reading.value))
         reading = (struct reading){ .quality = QUALITY_BAD_SENSOR_FAILURE, .received_utc_ns = snapshot->taken_utc_ns };
     if (tag < 0)
+        return;
+    if (!take_unit(csv, row, columns, &plant->tags[tag], &reading.value))
         return;
     reading.changes = snapshot->readings[tag].changes + 1;
     snapshot->readings[tag] = reading;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Readings from a CSV file: `tag,value[,quality]`, with or without that header; quality is good (default), uncertain or bad;
-   an empty value is bad. */
+/* Readings from a CSV file: `tag,value[,quality]`, with or without that header, which may have a column `unit` too; quality is good
+   (default), uncertain or bad; an empty value is bad. Values are in the unit of the tag's row (own_unit) unless `unit` says another. */
 #ifndef CLI_VALUES_H
 #define CLI_VALUES_H
 #include <stdbool.h>

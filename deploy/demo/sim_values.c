@@ -52,13 +52,13 @@ static enum process_kind kind_of(const struct plant *plant, const struct plant_t
     return mentions(quantity, vibration) || mentions(unit, speeds) ? PROCESS_VIBRATION : PROCESS_OTHER;
 }
 
-/* Where nothing is said, the tag runs at 40 % of its range. */
+/* A device gives values in its own unit. Where nothing is said, the tag runs at 40 % of its range. */
 static void choose_range(const struct plant *plant, const struct plant_tag *tag, struct process_tag *out)
 {
     double low = 0, high = 100;
     if (tag->group >= 0) {
-        low = plant->groups[tag->group].min;
-        high = plant->groups[tag->group].max;
+        low = unit_change_back(&tag->change, plant->groups[tag->group].min);
+        high = unit_change_back(&tag->change, plant->groups[tag->group].max);
     } else if (tag->scaling != SCALING_NONE) {
         low = tag->scaled_low;
         high = tag->scaled_high;

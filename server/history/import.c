@@ -22,7 +22,7 @@ enum { FLUSH_ROWS = 500000, MAX_ERRORS = 50 };
 struct import {
     const struct import_params *params;
     struct csv csv;
-    int time, tag, value, quality; /* columns; tag -1: wide */
+    int time, tag, value, quality, unit; /* columns; tag -1: wide */
     int *tags;                     /* wide: of each column; -1: passed over */
     int64_t *last_us;              /* by tag */
     bool *seen;
@@ -64,13 +64,16 @@ static bool find_columns(struct import *import)
     import->tag = csv_find(&import->csv, "Tag");
     import->value = csv_find(&import->csv, "Value");
     import->quality = csv_find(&import->csv, "Quality");
+    import->unit = -1;
     import->time = find_time(import);
     if (import->time < 0) {
         diag_error(import->csv.diag, import->csv.path, 1, 1, "a column 'Time' is needed");
         return false;
     }
-    if (import->tag >= 0 && import->value >= 0)
+    if (import->tag >= 0 && import->value >= 0) {
+        import->unit = csv_find(&import->csv, "Unit");
         return true;
+    }
     import->tag = -1;
     return find_wide(import);
 }
@@ -118,6 +121,20 @@ static bool take_quality(struct import *import, uint32_t *quality)
     return false;
 }
 
+/* From the unit that the row says, else the tag's own. */
+static bool take_unit(struct import *import, int tag, double *value)
+{
+    const struct plant_tag *of = &import->params->plant->tags[tag];
+    const char *unit = csv_text(&import->csv, import->unit), *to = of->unit ? of->unit : "";
+    struct unit_change change = of->change;
+    if (*unit && units_compare(unit, to, &change) > UNITS_CONVERT) {
+        csv_error(&import->csv, import->unit, "'%.60s' cannot be converted to '%.60s', in which %s is recorded", unit, to, of->name);
+        return false;
+    }
+    *value = unit_change_value(&change, *value);
+    return true;
+}
+
 /* One cell: a number, or nothing while the quality is Bad. */
 static bool take_cell(struct import *import, take_sample *take, void *arg, int tag, int column, int64_t t_us, uint32_t quality)
 {
@@ -127,7 +144,7 @@ static bool take_cell(struct import *import, take_sample *take, void *arg, int t
         csv_error(&import->csv, column, "expected a number, found '%.60s'", text);
         return false;
     }
-    return take(import, arg, tag, &point, column);
+    return take_unit(import, tag, &point.value) && take(import, arg, tag, &point, column);
 }
 
 static bool take_long(struct import *import, take_sample *take, void *arg, int64_t t_us)

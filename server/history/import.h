@@ -20,7 +20,8 @@ struct import_counts {
     int64_t from_us, to_us;
 };
 
-/* Long: columns Tag, Time, Value and perhaps Quality (0x80050000, Good, Uncertain, Bad). Wide: Time, then one column for each tag; a
+/* Long: columns Tag, Time, Value and perhaps Quality (0x80050000, Good, Uncertain, Bad) and Unit; where it says none, values are in the
+   unit of the tag's row (own_unit), as a device gives them. Wide: Time, then one column for each tag; a
    blank cell is no sample. Each tag's rows ascend in time. Every finding goes to diag; nothing is imported if one is an error.
    False: findings, or the folder cannot be written (logged). */
 bool history_import(const struct import_params *params, struct diag *diag, struct import_counts *counts);

@@ -26,7 +26,7 @@ struct recorder {
 static double span_of(const struct plant *plant, const struct plant_tag *tag)
 {
     if (tag->has_range)
-        return fabs(tag->scaled_high - tag->scaled_low);
+        return unit_change_span(&tag->change, fabs(tag->scaled_high - tag->scaled_low));
     return tag->group >= 0 ? plant->groups[tag->group].max - plant->groups[tag->group].min : 0;
 }
 

@@ -83,18 +83,25 @@ static void begin_row(struct text *out, const char *tag, int64_t t_us)
     text_add(out, ",%s,", when);
 }
 
-void series_text_csv_head(struct text *out, bool buckets)
+static void end_row(struct text *out, const char *unit)
 {
-    text_add(out, buckets ? "Tag,Time,Low,High,Mean,First,Last,Bad s,Quality\r\n" : "Tag,Time,Value,Quality\r\n");
+    add_cell(out, unit);
+    text_add(out, "\r\n");
 }
 
-void series_text_csv(struct text *out, const char *tag, const struct history_series *series)
+void series_text_csv_head(struct text *out, bool buckets)
+{
+    text_add(out, buckets ? "Tag,Time,Low,High,Mean,First,Last,Bad s,Quality,Unit\r\n" : "Tag,Time,Value,Quality,Unit\r\n");
+}
+
+void series_text_csv(struct text *out, const char *tag, const char *unit, const struct history_series *series)
 {
     for (size_t i = 0; i < series->points.count; i++) {
         const struct history_point *point = &series->points.at[i];
         begin_row(out, tag, point->t_us);
         add_number(out, history_point_usable(point) ? point->value : NAN, "");
-        text_add(out, ",0x%08X\r\n", point->quality);
+        text_add(out, ",0x%08X,", point->quality);
+        end_row(out, unit);
     }
     for (size_t i = 0; i < series->buckets.count; i++) {
         const struct history_bucket *bucket = &series->buckets.at[i];
@@ -104,6 +111,7 @@ void series_text_csv(struct text *out, const char *tag, const struct history_ser
             add_number(out, values[k], "");
             text_add(out, ",");
         }
-        text_add(out, "%.6g,0x%08X\r\n", (double)bucket->bad_us / US_PER_S, bucket->quality);
+        text_add(out, "%.6g,0x%08X,", (double)bucket->bad_us / US_PER_S, bucket->quality);
+        end_row(out, unit);
     }
 }

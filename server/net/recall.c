@@ -137,7 +137,8 @@ static void print_csv(struct recall *recall, const struct recall_order *order, c
     for (int i = 0; i < order->tag_count; i++) {
         if (i == 0 || (series[i].bucket_us > 0) != buckets)
             series_text_csv_head(out, buckets = series[i].bucket_us > 0);
-        series_text_csv(out, recall->plant->tags[order->tags[i]].name, &series[i]);
+        const struct plant_tag *tag = &recall->plant->tags[order->tags[i]];
+        series_text_csv(out, tag->name, tag->unit ? tag->unit : "", &series[i]);
     }
 }
 

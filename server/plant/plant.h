@@ -8,6 +8,7 @@
 #include <stdint.h>
 
 #include "base/diag.h"
+#include "plant/units.h"
 
 #define PLANT_MAX_M 1e7 /* nothing is farther from the origin: plants may lie where their survey has them, 5,500 km north (UTM) */
 
@@ -73,6 +74,7 @@ struct plant_mirror { /* a bit of another alarm system */
 enum { PLANT_BREAKS = 16, PLANT_ISOLINES = 32 };
 struct plant_group {
     char *id, *quantity, *unit;
+    bool as_written;              /* units: as-written; what its tags measure is taken for its unit, whatever their rows say */
     double min, max;
     double limits[LIMIT_COUNT];   /* NaN: none */
     struct plant_alarming alarming;
@@ -145,7 +147,10 @@ struct plant_quality_tag {
 
 enum { PLANT_SENTINELS = 4 };
 struct plant_tag {
-    char *name, *description, *unit;  /* unit: engineering units */
+    char *name, *description;
+    char *unit;                       /* of its readings, limits and deadbands: its group's, else as the row says */
+    char *own_unit;                   /* of what its address gives, and of scaled_low and scaled_high: as the row says, else unit */
+    struct unit_change change;        /* from own_unit to unit */
     int source, group, asset;         /* index, or -1 */
     char *lost_asset;                 /* the id of an asset that is not there (plant_load_with_orphans), or NULL */
     char *address;                    /* as written: of a register, the name of a series, or = and an expression */
@@ -157,7 +162,7 @@ struct plant_tag {
     enum byte_order byte_order;       /* resolved for 32 and 64 bits. 16 bits: as the row says, else NONE (the standard); bits: NONE */
     int scan_ms;                      /* 0: the source's poll_ms */
     enum scaling scaling;
-    double raw_low, raw_high, scaled_low, scaled_high;
+    double raw_low, raw_high, scaled_low, scaled_high; /* scaled: in own_unit */
     bool has_range;                   /* scaled_low to scaled_high is what the instrument can measure */
     bool ne43;                        /* raw_low and raw_high are 4 and 20 mA, and NAMUR NE 43 says what is beyond */
     struct plant_sentinel sentinels[PLANT_SENTINELS];
@@ -173,7 +178,7 @@ struct plant_tag {
     struct expression *expression;    /* of a derived tag: what its value is; else NULL */
     struct plant_quality_tag quality;
     double limits[LIMIT_COUNT];       /* resolved: own, else the group's; NaN: none */
-    double deadband;                  /* engineering units: history is within this of what was read; NaN: the plant's history says */
+    double deadband;                  /* history is within this of what was read; NaN: the plant's history says */
     struct plant_alarming alarming;   /* resolved: own, else the group's */
     int suppressed_by;                /* while this tag, a bit, is 1, by design; -1: none */
     struct plant_mirror mirror;

@@ -86,7 +86,8 @@ void plant_alarms_read_row(struct tag_columns *columns, struct plant *plant, str
     *alarming = (struct plant_alarming){ .priority = ALARM_PRIORITY_DEFAULT };
     if (tag->group >= 0)
         *alarming = plant->groups[tag->group].alarming;
-    cell_number(columns, COL_ALARM_DEADBAND, 0, PLANT_MAX_VALUE, &alarming->deadband);
+    if (cell_number(columns, COL_ALARM_DEADBAND, 0, PLANT_MAX_VALUE, &alarming->deadband))
+        alarming->deadband = unit_change_span(&tag->change, alarming->deadband);
     cell_number(columns, COL_ON_DELAY, 0, MAX_DELAY_S, &alarming->on_delay_s);
     cell_number(columns, COL_OFF_DELAY, 0, MAX_DELAY_S, &alarming->off_delay_s);
     read_priority(columns, alarming);

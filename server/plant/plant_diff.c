@@ -80,7 +80,8 @@ static void compare_tags(struct plant_diff *diff, const struct plant *before, co
             a->scaled_low != b->scaled_low || a->scaled_high != b->scaled_high || a->negate != b->negate, "scaling");
     add(what, sizeof(what), a->scan_ms != b->scan_ms || a->stale_s != b->stale_s, "timing");
     add(what, sizeof(what), a->strength != b->strength || a->decay != b->decay, "strength, decay");
-    add(what, sizeof(what), !same_text(a->unit, b->unit) || !same_text(a->description, b->description), "unit, description");
+    add(what, sizeof(what), !same_text(a->unit, b->unit) || !same_text(a->own_unit, b->own_unit) ||
+            !same_text(a->description, b->description), "unit, description");
     add(what, sizeof(what), !same_number(a->deadband, b->deadband), "deadband");
     add(what, sizeof(what), a->alarming.deadband != b->alarming.deadband || a->alarming.on_delay_s != b->alarming.on_delay_s ||
             a->alarming.off_delay_s != b->alarming.off_delay_s || a->alarming.priority != b->alarming.priority ||
@@ -125,7 +126,8 @@ static void diff_assets(struct plant_diff *diff, const struct plant *before, con
 
 static bool same_group(const struct plant_group *a, const struct plant_group *b)
 {
-    bool same = same_text(a->unit, b->unit) && same_text(a->quantity, b->quantity) && a->min == b->min && a->max == b->max;
+    bool same = same_text(a->unit, b->unit) && a->as_written == b->as_written && same_text(a->quantity, b->quantity) &&
+                a->min == b->min && a->max == b->max;
     for (int i = 0; i < LIMIT_COUNT; i++)
         same = same && same_number(a->limits[i], b->limits[i]);
     return same && a->interpolation == b->interpolation && a->distance == b->distance && a->strength == b->strength &&

@@ -29,6 +29,7 @@ static const struct choice frame_choices[] = { { "plant", 0 }, { "asset", 1 }, {
 static const struct choice interpolation_choices[] = { { "shepard", INTERPOLATION_SHEPARD }, { "paper", INTERPOLATION_PAPER }, { 0 } };
 static const struct choice distance_choices[] = { { "geodesic", DISTANCE_GEODESIC }, { "euclidean", DISTANCE_EUCLIDEAN }, { 0 } };
 static const struct choice fill_choices[] = { { "none", FILL_NONE }, { "neighbours", FILL_NEIGHBOURS }, { 0 } };
+static const struct choice units_choices[] = { { "convert", 0 }, { "as-written", 1 }, { 0 } };
 static const struct choice scale_choices[] = { { "linear", 0 }, { "log", 1 }, { 0 } };
 
 /* --- plant ------------------------------------------------------------------------------------------------------------------ */
@@ -318,6 +319,7 @@ static void read_group(struct yaml_reader *reader, yaml_node_t *node, struct pla
         { "id", KEY_NAME, true, offsetof(struct plant_group, id), 0, 0, NULL, NULL },
         { "quantity", KEY_TEXT, false, offsetof(struct plant_group, quantity), 0, 0, NULL, NULL },
         { "unit", KEY_TEXT, true, offsetof(struct plant_group, unit), 0, 0, NULL, NULL },
+        { "units", KEY_FLAG, false, offsetof(struct plant_group, as_written), 0, 0, units_choices, NULL },
         { "min", KEY_NUMBER, true, offsetof(struct plant_group, min), -PLANT_MAX_VALUE, PLANT_MAX_VALUE, NULL, NULL },
         { "max", KEY_NUMBER, true, offsetof(struct plant_group, max), -PLANT_MAX_VALUE, PLANT_MAX_VALUE, NULL, NULL },
         { "limits", KEY_CUSTOM, false, 0, 0, 0, NULL, read_limits },

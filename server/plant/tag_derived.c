@@ -29,6 +29,25 @@ static bool parse(const struct tag_link *link, struct plant *plant, struct diag 
     return tag->expression != NULL;
 }
 
+/* Of units in which one kind of thing is measured there should be one in an expression: it computes in those that the rows say. */
+static void check_units(const struct tag_link *link, const struct plant *plant, struct diag *diag)
+{
+    const struct plant_tag *tag = &plant->tags[link->tag];
+    const int *inputs;
+    size_t count = expression_inputs(tag->expression, &inputs);
+    for (size_t i = 0; i < count; i++) {
+        const struct plant_tag *first = &plant->tags[inputs[0]], *one = &plant->tags[inputs[i]];
+        const struct plant_tag *other = unit_kind(tag->own_unit) && unit_kind(tag->own_unit) == unit_kind(one->own_unit) ? tag : first;
+        struct unit_change change;
+        if (units_compare(one->own_unit, other->own_unit, &change) != UNITS_CONVERT)
+            continue;
+        diag_warning(diag, plant->tags_path, link->line, link->column,
+                     "Address: '%.60s' takes %.60s in %.20s, as its row says, but %.60s is in %.20s; the expression has to convert one",
+                     tag->address, one->name, one->own_unit, other->name, other->own_unit);
+        return;
+    }
+}
+
 /* Depth first: what a tag needs comes before it. A tag is stale where it says so, else no sooner than what it needs. */
 static bool visit(struct walk *walk, int index)
 {
@@ -55,8 +74,12 @@ void tag_derived_resolve(const struct tag_links *derived, struct plant *plant, s
 {
     struct walk walk = { .plant = plant, .marks = mem_array(plant->tag_count, 1) };
     size_t good = 0;
-    for (size_t i = 0; i < derived->count; i++)
-        good += parse(&derived->at[i], plant, diag);
+    for (size_t i = 0; i < derived->count; i++) {
+        if (!parse(&derived->at[i], plant, diag))
+            continue;
+        check_units(&derived->at[i], plant, diag);
+        good++;
+    }
     plant->derived = mem_array(good, sizeof(*plant->derived));
     for (size_t i = 0; i < derived->count; i++) {
         const struct tag_link *link = &derived->at[i];

@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The tag list: rows into tags, and what must hold in each row. PLANT.md describes the form. */
-#include <ctype.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 #include "base/mem.h"
 #include "plant/plant_alarms.h"
@@ -101,6 +100,40 @@ static void read_place(struct tag_list *list)
 
 /* --- meaning ---------------------------------------------------------------------------------------------------------------- */
 
+/* Why values of the row cannot become values of its group. */
+static void report_unit(struct tag_list *list, enum unit_match match, const char *text)
+{
+    static const char otherwise[] = "'units: as-written' in the group takes values as they stand";
+    const char *of_group = list->group->unit, *kind = unit_kind(text);
+    char near[UNIT_NAME_BYTES], hint[UNIT_NAME_BYTES + 40] = "";
+    if (!kind && unit_suggest(text, near))
+        snprintf(hint, sizeof(hint), "; did you mean '%s'?", near);
+    if (match == UNITS_OTHER_KIND)
+        cell_error(&list->columns, COL_ENG_UNITS,
+                   "Eng Units: '%.60s' (%s) cannot be converted to '%.60s' (%s), the unit of its group; %s", text, kind, of_group,
+                   unit_kind(of_group), otherwise);
+    else
+        cell_error(&list->columns, COL_ENG_UNITS,
+                   "Eng Units: '%.60s' cannot be converted to '%.60s', the unit of its group, since %s is not known%s; %s", text, of_group,
+                   kind ? "that" : "it", hint, otherwise);
+}
+
+static void read_unit(struct tag_list *list)
+{
+    const char *text = cell_text(&list->columns, COL_ENG_UNITS), *of_group = list->group ? list->group->unit : NULL;
+    struct plant_tag *tag = list->tag;
+    enum unit_match match = UNITS_SAME;
+    if (*text && of_group && !*of_group)
+        cell_warning(&list->columns, COL_ENG_UNITS, "Eng Units: '%.60s', but its group has no unit", text);
+    else if (*text && of_group && !list->group->as_written)
+        match = units_compare(text, of_group, &tag->change);
+    tag->own_unit = mem_strdup(*text || !of_group ? text : of_group);
+    tag->unit = mem_strdup(match == UNITS_CONVERT ? of_group : tag->own_unit);
+    if (match == UNITS_OTHER_KIND || match == UNITS_UNKNOWN)
+        report_unit(list, match, text);
+}
+
+/* What the row itself gives is in its own unit. */
 static void read_limits(struct tag_list *list)
 {
     static const enum tag_column names[LIMIT_COUNT] = { [LIMIT_LL] = COL_LL, [LIMIT_L] = COL_L, [LIMIT_H] = COL_H, [LIMIT_HH] = COL_HH };
@@ -111,42 +144,15 @@ static void read_limits(struct tag_list *list)
     for (int i = 0; i < LIMIT_COUNT; i++) {
         limits[i] = list->group ? list->group->limits[i] : NAN;
         own[i] = cell_number(columns, names[i], -PLANT_MAX_VALUE, PLANT_MAX_VALUE, &limits[i]);
+        if (own[i])
+            limits[i] = unit_change_value(&list->tag->change, limits[i]);
         any |= own[i];
     }
     if (any && plant_limits_wrong(limits, &lower, &upper))
-        cell_error(columns, names[own[upper] ? upper : lower], "%s%s is %.9g, but %s%s is %.9g; expected LL < L < H < HH",
+        cell_error(columns, names[own[upper] ? upper : lower], "%s%s is %.9g, but %s%s is %.9g%s%s; expected LL < L < H < HH",
                    plant_limit_names[lower], own[lower] ? "" : " of the group", limits[lower], plant_limit_names[upper],
-                   own[upper] ? "" : " of the group", limits[upper]);
-}
-
-static const char *skip_degree(const char *unit)
-{
-    static const char *const skipped[] = { "\xC2\xB0", "deg", " " };
-    for (size_t i = 0; i < 3; i++)
-        if (!strncasecmp(unit, skipped[i], strlen(skipped[i])))
-            return skip_degree(unit + strlen(skipped[i]));
-    return unit;
-}
-
-/* "degC", "°C" and "C" are the same. */
-static bool same_unit(const char *a, const char *b)
-{
-    for (;; a++, b++) {
-        a = skip_degree(a);
-        b = skip_degree(b);
-        if (tolower((unsigned char)*a) != tolower((unsigned char)*b))
-            return false;
-        if (!*a)
-            return true;
-    }
-}
-
-static void read_unit(struct tag_list *list)
-{
-    const char *text = cell_text(&list->columns, COL_ENG_UNITS), *of_group = list->group ? list->group->unit : NULL;
-    list->tag->unit = mem_strdup(*text || !of_group ? text : of_group);
-    if (*text && of_group && !same_unit(text, of_group))
-        cell_warning(&list->columns, COL_ENG_UNITS, "Eng Units: '%.60s' is not the unit of its group, '%s'", text, of_group);
+                   own[upper] ? "" : " of the group", limits[upper], list->tag->change.converts ? ", in " : "",
+                   list->tag->change.converts ? list->tag->unit : "");
 }
 
 static void read_timing(struct tag_list *list)
@@ -165,7 +171,8 @@ static void read_timing(struct tag_list *list)
 static void read_deadband(struct tag_list *list)
 {
     list->tag->deadband = NAN;
-    cell_number(&list->columns, COL_DEADBAND, 0, PLANT_MAX_VALUE, &list->tag->deadband);
+    if (cell_number(&list->columns, COL_DEADBAND, 0, PLANT_MAX_VALUE, &list->tag->deadband))
+        list->tag->deadband = unit_change_span(&list->tag->change, list->tag->deadband);
 }
 
 static void read_weights(struct tag_list *list)
@@ -197,8 +204,8 @@ static void read_row(struct tag_list *list)
     tag_wire_read(&list->columns, plant, list->tag);
     tag_links_add(&list->links, &list->derived, &list->columns, plant, plant->tag_count - 1);
     read_place(list);
-    read_limits(list);
     read_unit(list);
+    read_limits(list);
     read_timing(list);
     read_weights(list);
     read_deadband(list);

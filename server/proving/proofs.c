@@ -45,6 +45,8 @@ uint64_t proof_fingerprint(const struct plant *plant, int index)
              tag->negate);
     text_add(&text, "%s|%s|%.17g|%.17g|%.17g", tag->asset >= 0 ? plant->assets[tag->asset].id : "", tag->node ? tag->node : "",
              tag->position_m[0], tag->position_m[1], tag->position_m[2]);
+    if (tag->change.converts)
+        text_add(&text, "|%.17g|%.17g", tag->change.factor, tag->change.offset);
     uint64_t hash = XXH3_64bits(text.at, text.length);
     text_finish(&text);
     return hash;

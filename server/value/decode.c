@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Byte order, data type, scaling: from registers to engineering units. */
+/* Byte order, data type, scaling, unit: from registers to readings. */
 #include "value/decode.h"
 
 #include <math.h>
@@ -148,8 +148,8 @@ void decode_sample(const struct plant_tag *tag, const uint16_t *words, struct sa
         out->quality = judge_range(tag, value);
         value = tag->scaling == SCALING_NONE ? value : scale(tag, value);
     }
-    if (!is_bit(tag) && tag->negate)
-        value = -value;
+    if (!is_bit(tag))
+        value = unit_change_value(&tag->change, tag->negate ? -value : value);
     out->value = isfinite(value) ? value : 0;
     if (!isfinite(value))
         out->quality = QUALITY_BAD_SENSOR_FAILURE;

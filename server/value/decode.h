@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* From the registers or the bit of a tag to its reading in engineering units. No I/O, no clock. */
+/* From the registers or the bit of a tag to its reading, in the unit of the tag. No I/O, no clock. */
 #ifndef VALUE_DECODE_H
 #define VALUE_DECODE_H
 #include <stdint.h>

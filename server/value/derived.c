@@ -58,16 +58,18 @@ void derived_destroy(struct derived_state **state)
     *state = NULL;
 }
 
-/* The value, the worst quality of its inputs, and the age of the newest. */
-static struct reading combine(const struct derived_state *state, const struct expression *expression)
+/* An expression computes in the units that the rows of its tags say. The value, the worst quality of its inputs, and the age of the
+   newest. */
+static struct reading combine(const struct derived_state *state, const struct plant_tag *tag)
 {
+    const struct plant *plant = state->plant;
     const int *inputs;
-    size_t count = expression_inputs(expression, &inputs);
+    size_t count = expression_inputs(tag->expression, &inputs);
     struct reading all = { .quality = QUALITY_GOOD, .age_ns = count ? INT64_MAX : 0 };
     double values[EXPRESSION_INPUTS];
     for (size_t i = 0; i < count; i++) {
         const struct reading *one = &state->snapshot->readings[inputs[i]];
-        values[i] = one->value;
+        values[i] = unit_change_back(&plant->tags[inputs[i]].change, one->value);
         if (one->quality >> 30 > all.quality >> 30)
             all.quality = one->quality;
         if (one->age_ns < all.age_ns)
@@ -75,7 +77,7 @@ static struct reading combine(const struct derived_state *state, const struct ex
     }
     if (quality_is_bad(all.quality))
         return all;
-    all.value = expression_value(expression, values);
+    all.value = unit_change_value(&tag->change, expression_value(tag->expression, values));
     if (!isfinite(all.value)) {
         all.value = 0;
         all.quality = QUALITY_BAD_SENSOR_FAILURE;
@@ -105,7 +107,7 @@ void derived_compute(struct derived_state *state, struct store *store, int64_t n
     store_snapshot(store, now_mono_ns, now_utc_ns, state->snapshot);
     for (size_t i = 0; i < plant->derived_count; i++) {
         struct reading *reading = &state->snapshot->readings[plant->derived[i]];
-        *reading = combine(state, plant->tags[plant->derived[i]].expression); /* those after it see it */
+        *reading = combine(state, &plant->tags[plant->derived[i]]); /* those after it see it */
         write_new(state, store, i, reading);
     }
 }

@@ -83,7 +83,8 @@ static void play_lane(struct replay *replay, struct lane *lane, int64_t now_mono
     for (int64_t due; !ended(replay, lane) && (due = due_ns(replay, lane, lane->next)) <= now_mono_ns; step(replay, lane)) {
         if (now_mono_ns - due > LATEST_NS)
             continue;
-        const struct sample sample = { .tag = lane->tag, .value = lane->series.value[lane->next] };
+        const struct unit_change *change = &replay->plant->tags[lane->tag].change;
+        const struct sample sample = { .tag = lane->tag, .value = unit_change_value(change, lane->series.value[lane->next]) };
         store_write(replay->store, &sample, 1, due, now_utc_ns - (now_mono_ns - due));
         counter_inc(replay->samples, 1);
     }

@@ -100,6 +100,14 @@ static int find_source(const struct plant *plant, const char *id)
     return i;
 }
 
+/* A reading says nothing in another unit; the next one is not far. */
+static bool same_unit(const struct plant_tag *a, const struct plant_tag *b)
+{
+    struct unit_change change;
+    bool changed = a->change.converts != b->change.converts || a->change.factor != b->change.factor || a->change.offset != b->change.offset;
+    return !changed && (!a->unit || !b->unit || units_compare(a->unit, b->unit, &change) == UNITS_SAME);
+}
+
 void store_adopt(struct store *store, struct store *before)
 {
     pthread_mutex_lock(&before->lock);
@@ -107,7 +115,7 @@ void store_adopt(struct store *store, struct store *before)
     for (size_t i = 0; i < before->plant->tag_count; i++) {
         int tag = plant_find_tag(store->plant, before->plant->tags[i].name);
         struct held *to = tag < 0 ? NULL : &store->tags[tag];
-        if (!to)
+        if (!to || !same_unit(&before->plant->tags[i], &store->plant->tags[tag]))
             continue;
         const struct held own = *to;
         *to = before->tags[i];

@@ -166,7 +166,7 @@ static void out_and_in_again_is_the_same(void **state)
     assert_true(s->counts.points < s->counts.samples / 3);
     struct history_series one = read_series(s, "one", "TT-1");
     series_text_csv_head(&out, false);
-    series_text_csv(&out, "TT-1", &one);
+    series_text_csv(&out, "TT-1", "", &one);
     s->plant->tags[1].deadband = 0;
     assert_true(import(s, "two", out.at, INT64_MIN, 0));
     struct history_series two = read_series(s, "two", "TT-1");

@@ -92,7 +92,7 @@ static void everything_is_read(void **state)
          "Source,Group,Asset,Node,X,Y,Z,Strength,Decay,Byte Order,Stale s,LL,L,H,HH\n"
          "A,40001,Float,500,Square Root,0,27648,-50,150,mm,1,say \"hi\",s,g,101,,1,2,3,7,8,BADC,9,-2,,,2\n"
          "B,3!300007.4,,,,,,,,,,,,g,101,TI-B,,,,,,,,,,,\n");
-    plant_case_assert_loaded(f, 1); /* mm is not the group's unit */
+    plant_case_assert_loaded(f, 1); /* the group has no unit, its tag has mm */
     const struct plant *p = f->plant;
     assert_string_equal(p->name, "Werk Süd");
     assert_true(p->up == AXIS_Y && p->view.set && p->view.eye_m[1] == 2.5 && p->view.target_m[2] == 10 && p->view.fov_deg == 60);

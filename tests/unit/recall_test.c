@@ -148,9 +148,9 @@ static void csv_has_quotes_where_it_needs_them(void **state)
     order.to_us = NOW;
     assert_true(recall_ask(s->recall, &order));
     struct recall_answer *answer = wait_for(s, 1);
-    assert_string_equal(answer->text, "Tag,Time,Value,Quality\r\n"
-                                      "\"A \"\"1\"\"\",2026-11-01T02:26:38.000Z,48,0x00000000\r\n"
-                                      "\"A \"\"1\"\"\",2026-11-01T02:26:39.000Z,49,0x00000000\r\n");
+    assert_string_equal(answer->text, "Tag,Time,Value,Quality,Unit\r\n"
+                                      "\"A \"\"1\"\"\",2026-11-01T02:26:38.000Z,48,0x00000000,\r\n"
+                                      "\"A \"\"1\"\"\",2026-11-01T02:26:39.000Z,49,0x00000000,\r\n");
     mem_free(answer->text);
     mem_free(answer);
 }
