@@ -18,7 +18,7 @@ static void print_usage(FILE *out)
           "                  [--gl-device INDEX|PCI] [--prepared DIR] [--history DIR] [--web DIR]\n"
           "                  [--log-level error|warn|info|debug] [--threads N] [--field vertices|per-fragment]\n"
           "                  [--h264 ENCODER|off] [--tls-cert FILE --tls-key FILE] [--tokens FILE] [--open-viewers]\n"
-          "                  [--behind-proxy] [--host NAME] [--origin URL] [--limit NAME=N]\n"
+          "                  [--trust-local] [--behind-proxy] [--host NAME] [--origin URL] [--limit NAME=N]\n"
           "       plantcastd --check PLANT.yaml [--prepared DIR]\n"
           "       plantcastd --dump-plan PLANT.yaml\n"
           "       plantcastd --list-gl-devices | --version | --help\n"
@@ -40,11 +40,12 @@ static void print_usage(FILE *out)
           "  --check          read everything, report every error, start nothing\n"
           "  --dump-plan      print what field devices will be asked: requests, addresses on the wire, and the load\n"
           "\n"
-          "Who may look: from this machine, anyone. On any other address, TLS and tokens, or --open-viewers.\n"
+          "Who may look: from this machine, anyone, unless there are tokens. On any other address, TLS and tokens, or --open-viewers.\n"
           "\n"
           "  --tls-cert FILE, --tls-key FILE   certificate (with its chain) and private key, PEM; taken anew when they change\n"
-          "  --tokens FILE    who is let in as what: `plantcast token` makes it; taken anew when it changes\n"
+          "  --tokens FILE    who is let in as what, on this machine too: `plantcast token` makes it; taken anew when it changes\n"
           "  --open-viewers   let anyone who reaches ADDR look at the pictures, and at nothing else\n"
+          "  --trust-local    with --tokens: who is on this machine needs none, and is an engineer\n"
           "  --behind-proxy   a proxy on this machine speaks for others, and says for whom in X-Forwarded-For; takes --host\n"
           "  --host NAME      a name by which browsers ask for this server, beside its own; up to 16 times\n"
           "  --origin URL     a page of another host that may connect, such as https://portal.example; up to 16 times\n"
@@ -120,6 +121,7 @@ enum {
     OPTION_TLS_KEY,
     OPTION_TOKENS,
     OPTION_PROXY,
+    OPTION_TRUST,
     OPTION_HOST,
     OPTION_ORIGIN,
     OPTION_LIMIT,
@@ -147,6 +149,7 @@ static const struct option options[] = {
     { "tls-key", required_argument, NULL, OPTION_TLS_KEY },
     { "tokens", required_argument, NULL, OPTION_TOKENS },
     { "behind-proxy", no_argument, NULL, OPTION_PROXY },
+    { "trust-local", no_argument, NULL, OPTION_TRUST },
     { "host", required_argument, NULL, OPTION_HOST },
     { "origin", required_argument, NULL, OPTION_ORIGIN },
     { "limit", required_argument, NULL, OPTION_LIMIT },
@@ -185,6 +188,7 @@ static int take_access_option(int option, struct access_params *access)
     case OPTION_TLS_KEY: access->tls_key_path = optarg; return -1;
     case OPTION_TOKENS: access->tokens_path = optarg; return -1;
     case OPTION_PROXY: access->behind_proxy = true; return -1;
+    case OPTION_TRUST: access->trust_local = true; return -1;
     case OPTION_HOST: return add_host(access, optarg) ? -1 : usage_error("--host: not a name without port, or one too many:", optarg);
     case OPTION_ORIGIN: return add_origin(access, optarg) ? -1 : usage_error("--origin: not SCHEME://HOST[:PORT], or too many:", optarg);
     case OPTION_LIMIT: return quotas_parse(&access->quotas, optarg) ? -1 : usage_error("--limit: no such limit, or out of range:", optarg);

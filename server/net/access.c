@@ -19,6 +19,8 @@ bool access_allowed_at(const struct access_params *params, bool loopback, const 
         *why = "--behind-proxy: who comes through the proxy needs a token (--tokens FILE), or --open-viewers";
     else if (params->behind_proxy && params->host_count == 0)
         *why = "--behind-proxy: --host NAME says by which name the proxy is asked for";
+    else if (params->behind_proxy && params->trust_local)
+        *why = "--trust-local: with --behind-proxy everyone would look like somebody on this machine";
     else if ((params->tls_cert_path != NULL) != (params->tls_key_path != NULL))
         *why = "--tls-cert and --tls-key belong together";
     else if (!loopback && !params->open_viewers && !(tls && params->tokens_path))

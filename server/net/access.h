@@ -18,6 +18,7 @@ enum { ACCESS_MAX_NAMES = 16 };
 struct access_params {
     bool open_viewers;       /* who has no token gets pictures */
     bool behind_proxy;       /* a proxy on this machine speaks for others: no connection is trusted for being local */
+    bool trust_local;        /* who is on this machine needs no token, though others do */
     const char *tokens_path; /* NULL: there are none */
     const char *tls_cert_path, *tls_key_path; /* NULL: no TLS */
     const char *hosts[ACCESS_MAX_NAMES];      /* names under which the daemon may be asked for, beside those it knows */

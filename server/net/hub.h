@@ -37,6 +37,7 @@ struct hub {
     struct peers *peers;
     int connection_count;
     struct tokens *tokens;   /* NULL: there are none */
+    struct logins *logins;
     struct tls *tls;         /* NULL: there is none */
     struct admission admission;
     bool local_only;         /* bound to a loopback address, and no proxy is in front */
@@ -54,7 +55,7 @@ struct hub {
     struct stages stages;
     struct {
         counter *sessions, *sessions_all, *frames, *frame_bytes, *messages, *errors, *dropped, *given_up, *stalled, *requests, *refused,
-            *connections, *busy, *clock_set;
+            *connections, *busy, *clock_set, *logins_wrong, *logins_held, *logins_slowed;
     } counters;
 };
 

@@ -139,6 +139,7 @@ static void on_tick(lws_sorted_usec_list_t *sul)
     admission_on_tick(&net->hub.admission, now_ns);
     counter_set(net->hub.counters.busy, admission_busy_percent(&net->hub.admission));
     counter_set(net->hub.counters.connections, net->hub.connection_count);
+    counter_set(net->hub.counters.logins_slowed, logins_slowed(net->hub.logins, now_ns));
     bool data_changed = take_snapshot(&net->hub), links_changed = look_at_links(&net->hub);
     if (net->hub.past)
         net->hub.world.history_first_us = past_first_us(net->hub.past);
@@ -288,6 +289,11 @@ static void add_counters(struct hub *hub)
     hub->counters.errors = counters_add(c, "plantcast_message_errors_total", "counter", "Messages of clients answered with an error.");
     hub->counters.clock_set =
         counters_add(c, "plantcast_clock_synchronised", "gauge", "1 while something keeps this machine's clock right.");
+    hub->counters.logins_wrong = counters_add(c, "plantcast_logins_wrong_total", "counter", "Tokens that were nobody's, or no longer.");
+    hub->counters.logins_held =
+        counters_add(c, "plantcast_logins_held_total", "counter", "Tokens that were not looked at, of addresses that are slowed.");
+    hub->counters.logins_slowed =
+        counters_add(c, "plantcast_logins_slowed_addresses", "gauge", "Addresses that are slowed, for ten wrong tokens within a minute.");
     hub->counters.requests = counters_add(c, "plantcast_http_requests_total", "counter", "HTTP requests.");
 }
 
@@ -403,6 +409,7 @@ struct net *net_create(const struct net_params *params)
     hub->quotas = &hub->params.access.quotas;
     hub->admission.quotas = hub->quotas;
     hub->peers = peers_create(hub->quotas);
+    hub->logins = logins_create();
     hub->world = (struct session_world){
         .alarms_said = &hub->alarms_said,
         .tags_said = &hub->tags_said,
@@ -412,6 +419,7 @@ struct net *net_create(const struct net_params *params)
         .quotas = hub->quotas,
         .resumes = resumes_create(),
         .admission = &hub->admission,
+        .logins = hub->logins,
     };
     add_counters(hub);
     net_look_at_plant(net);
@@ -435,6 +443,7 @@ void net_destroy(struct net **net_ptr)
     tls_destroy(&net->hub.tls);
     tokens_destroy(&net->hub.tokens);
     peers_destroy(&net->hub.peers);
+    logins_destroy(&net->hub.logins);
     mem_free(net->hub.by_client);
     resumes_destroy(&net->hub.world.resumes);
     alarms_said_finish(&net->hub.alarms_said);

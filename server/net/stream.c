@@ -53,6 +53,7 @@ static void on_open(struct hub *hub, struct lws *wsi, struct stream **slot)
     stream->session = session_create(&hub->world, hub->next_client++, clock_mono_ns());
     stream->session->starting = true;
     stream->peer = visitor_of(wsi)->client;
+    memcpy(stream->session->address, stream->peer->address, sizeof(stream->session->address));
     stream->session->role = visitor_of(wsi)->role;
     stream->session->holder = visitor_of(wsi)->holder;
     *slot = hub->streams = stream;
@@ -295,6 +296,22 @@ void stream_say(struct hub *hub, uint64_t client, const char *text)
     pump(hub, stream);
 }
 
+/* Once for each session that was let in, and for each token that was not. */
+static void note_login(struct hub *hub, struct stream *stream, bool was_in)
+{
+    const struct session *session = stream->session;
+    bool good = login_is_good(session->login);
+    struct token_holder holder = session->holder;
+    if (was_in || (good && !session->hello))
+        return;
+    if (good)
+        holder.role = session->role;
+    if (!good)
+        counter_inc(hub->counters.refused, session->login != LOGIN_HELD); /* whoever gets 1013 is counted there */
+    if (!good || session->role > ROLE_OPEN)
+        visitor_note_login(hub, stream->wsi, "stream", &holder, good ? LOGIN_GOOD_NEW : session->login);
+}
+
 /* It goes to the thread that loads the plant anew. */
 static void save_resolve(struct hub *hub, struct session *session)
 {
@@ -311,12 +328,14 @@ static void on_message(struct hub *hub, struct stream *stream)
 {
     struct session *session = stream->session;
     int64_t now_ns = clock_mono_ns();
+    bool was_in = session->hello || session->close_code;
     if (!peers_count_message(hub->peers, stream->peer, now_ns))
         session_too_fast(session, hub->quotas->at[QUOTA_ADDRESS_MESSAGES], "of this address ");
     if (stream->in_count > (size_t)hub->quotas->at[QUOTA_MESSAGE_BYTES])
         session_on_oversize(session, stream->in_count, now_ns);
     else
         session_on_message(session, stream->in.at ? stream->in.at : "", stream->in.length, now_ns, clock_utc_ns());
+    note_login(hub, stream, was_in);
     follow_resolve(hub, stream);
     save_resolve(hub, session);
     if (session->measured)

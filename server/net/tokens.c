@@ -226,12 +226,12 @@ size_t tokens_count(const struct tokens *tokens)
     return tokens->count;
 }
 
-/* Takes as long for every hash. */
+/* Whose it is, also where its time is over, if nobody else has it. Takes as long for every hash. */
 static const struct token_holder *find(const struct tokens *tokens, const uint8_t hash[TOKEN_HASH_BYTES], int64_t now_utc_ns)
 {
     const struct token_holder *found = NULL;
     for (size_t i = 0; i < tokens->count; i++)
-        if (CRYPTO_memcmp(tokens->holders[i].hash, hash, TOKEN_HASH_BYTES) == 0 && now_utc_ns < tokens->holders[i].until_utc_ns)
+        if (CRYPTO_memcmp(tokens->holders[i].hash, hash, TOKEN_HASH_BYTES) == 0 && (!found || now_utc_ns < tokens->holders[i].until_utc_ns))
             found = &tokens->holders[i];
     return found;
 }
@@ -241,13 +241,12 @@ bool tokens_find(const struct tokens *tokens, const char *token, int64_t now_utc
     uint8_t hash[TOKEN_HASH_BYTES];
     tokens_hash(token, hash);
     const struct token_holder *found = find(tokens, hash, now_utc_ns);
-    if (found)
-        *out = *found;
-    return found != NULL;
+    *out = found ? *found : (struct token_holder){ .role = ROLE_NOBODY };
+    return found && now_utc_ns < found->until_utc_ns;
 }
 
 enum role tokens_role(const struct tokens *tokens, const struct token_holder *holder, int64_t now_utc_ns)
 {
     const struct token_holder *found = find(tokens, holder->hash, now_utc_ns);
-    return found ? found->role : ROLE_NOBODY;
+    return found && now_utc_ns < found->until_utc_ns ? found->role : ROLE_NOBODY;
 }

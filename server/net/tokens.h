@@ -24,7 +24,7 @@ void tokens_destroy(struct tokens **tokens); /* &NULL is fine; leaves NULL */
 bool tokens_look(struct tokens *tokens);
 size_t tokens_count(const struct tokens *tokens);
 
-/* False: nobody's, or its time is over. */
+/* False: nobody's, or its time is over; then *out is whose it was, with its role, or ROLE_NOBODY. */
 bool tokens_find(const struct tokens *tokens, const char *token, int64_t now_utc_ns, struct token_holder *out);
 /* What the holder of a token may by now; ROLE_NOBODY: it was revoked, or its time is over. */
 enum role tokens_role(const struct tokens *tokens, const struct token_holder *holder, int64_t now_utc_ns);

@@ -8,6 +8,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "net/message/names.h"
 #include "net/tls.h"
 
 static const struct refusal WRONG_HOST = { 403, "this server is not asked for by that name (Host); --host NAME lets it\n" };
@@ -16,6 +17,7 @@ static const struct refusal PROXY = { 403, "a proxy speaks for somebody here; th
 static const struct refusal IN_QUERY = { 400, "a token does not belong in a URL, where logs and histories keep it: send it as "
                                               "Authorization: Bearer, in the subprotocol list, or in hello\n" };
 static const struct refusal BAD_TOKEN = { 401, "this token is not, or no longer, let in\n" };
+static const struct refusal HELD = { 429, "too many wrong tokens came from this address; try again in 5 s\n" };
 static const struct refusal TOO_LONG = { 431, "a header is too long\n" };
 
 /* --- connections ---------------------------------------------------------------------------------------------------------------- */
@@ -104,20 +106,29 @@ static bool is_ours(const struct hub *hub, const char *name)
     return access_name_is_address(name) || (hub->machine[0] && !strcmp(name, hub->machine)) || (hub->tls && tls_is_called(hub->tls, name));
 }
 
+/* What a proxy adds to the requests of others. lws knows some of these names, and those it does not find among the custom ones. */
 static bool has_forwarding(struct lws *wsi)
 {
-    return lws_hdr_total_length(wsi, WSI_TOKEN_X_FORWARDED_FOR) > 0 || lws_hdr_custom_length(wsi, "forwarded:", 10) > 0 ||
-           lws_hdr_custom_length(wsi, "x-real-ip:", 10) > 0;
+    static const enum lws_token_indexes known[] = { WSI_TOKEN_X_FORWARDED_FOR, WSI_TOKEN_HTTP_X_REAL_IP, WSI_TOKEN_HTTP_VIA };
+    static const char *const custom[] = { "forwarded:", "x-forwarded-host:", "x-forwarded-proto:" };
+    for (size_t i = 0; i < sizeof(known) / sizeof(known[0]); i++)
+        if (lws_hdr_total_length(wsi, known[i]) > 0)
+            return true;
+    for (size_t i = 0; i < sizeof(custom) / sizeof(custom[0]); i++)
+        if (lws_hdr_custom_length(wsi, custom[i], (int)strlen(custom[i])) >= 0)
+            return true;
+    return false;
 }
 
 static void find_client(struct hub *hub, struct lws *wsi, struct visitor *visitor)
 {
-    char list[512], address[64];
+    char list[512], *address = visitor->address;
     peers_unref(hub->peers, &visitor->client);
     bool named = hub->params.access.behind_proxy && visitor->peer->local &&
-                 visitor_header(wsi, WSI_TOKEN_X_FORWARDED_FOR, list, sizeof(list)) && access_forwarded(list, address, sizeof(address));
+                 visitor_header(wsi, WSI_TOKEN_X_FORWARDED_FOR, list, sizeof(list)) &&
+                 access_forwarded(list, address, sizeof(visitor->address));
     if (!named)
-        lws_get_peer_simple(wsi, address, sizeof(address));
+        lws_get_peer_simple(wsi, address, sizeof(visitor->address));
     visitor->client = peers_ref(hub->peers, address);
 }
 
@@ -147,12 +158,58 @@ static bool find_token(struct lws *wsi, char token[TOKEN_MAX_CHARS + 1])
     return true;
 }
 
+void visitor_note_login(struct hub *hub, struct lws *wsi, const char *way, const struct token_holder *holder, enum login login)
+{
+    const struct visitor *visitor = visitor_of(wsi);
+    struct log *log = hub->params.log;
+    bool known = holder->role != ROLE_NOBODY;
+    const char *role = known ? name_of(names_role, (int)holder->role) : "none", *name = holder->name[0] ? holder->name : "(none)";
+    int failures = logins_failures(hub->logins, visitor->client->address, clock_mono_ns());
+    if (login == LOGIN_NONE || login == LOGIN_GOOD_NEW)
+        log_info(log, "login from %s by %s: token %s, role %s: let in", visitor->address, way, name, role);
+    if (login == LOGIN_HELD)
+        counter_inc(hub->counters.logins_held, 1);
+    if (login != LOGIN_WRONG && login != LOGIN_WRONG_SLOWS)
+        return;
+    counter_inc(hub->counters.logins_wrong, 1);
+    log_warn(log, "login from %s by %s: token %s, role %s: refused, %s (%d within a minute)", visitor->address, way,
+             known ? holder->name : "(unknown)", role, known ? "its time is over" : "nobody's", failures);
+    if (login == LOGIN_WRONG_SLOWS)
+        log_warn(log, "login from %s: slowed, to one token in %d s, until there was no wrong one for a minute", visitor->address,
+                 LOGIN_WAIT_S);
+}
+
+/* NULL: it is let in, and visitor->holder is whose it is. */
+static const struct refusal *judge_token(struct hub *hub, struct lws *wsi, const char *token)
+{
+    struct visitor *visitor = visitor_of(wsi);
+    struct token_holder holder;
+    bool good = tokens_find(hub->tokens, token, clock_utc_ns(), &holder);
+    bool stream = lws_hdr_total_length(wsi, WSI_TOKEN_UPGRADE) > 0; /* one that is let in is noted at its hello */
+    enum login login = logins_judge(hub->logins, visitor->client->address, good ? holder.hash : NULL, clock_mono_ns());
+    if (!stream || !login_is_good(login))
+        visitor_note_login(hub, wsi, stream ? "stream" : "HTTP", &holder, login);
+    if (login_is_good(login))
+        visitor->holder = holder;
+    return login_is_good(login) ? NULL : login == LOGIN_HELD ? &HELD : &BAD_TOKEN;
+}
+
+/* Somebody on this machine, who asks for it by a local name, and whom no token is wanted from. */
+static bool is_trusted(const struct hub *hub, const struct visitor *visitor, const char *name)
+{
+    const struct access_params *params = &hub->params.access;
+    if (!visitor->peer->local || params->behind_proxy || (hub->tokens && !params->trust_local))
+        return false;
+    return !name[0] || access_name_is_local(name) || (params->trust_local && is_named(params, name));
+}
+
 bool visitor_enter(struct hub *hub, struct lws *wsi, struct refusal *refusal)
 {
     const struct access_params *params = &hub->params.access;
     struct visitor *visitor = visitor_of(wsi);
     char host[256], name[256] = "", token[TOKEN_MAX_CHARS + 1];
-    bool has_host = lws_hdr_total_length(wsi, WSI_TOKEN_HOST) > 0, direct = visitor->peer->local && !params->behind_proxy;
+    bool has_host = lws_hdr_total_length(wsi, WSI_TOKEN_HOST) > 0;
+    const struct refusal *bad_token;
     *refusal = (struct refusal){ 0 };
     visitor->holder = (struct token_holder){ 0 };
     visitor->role = ROLE_NOBODY;
@@ -160,19 +217,19 @@ bool visitor_enter(struct hub *hub, struct lws *wsi, struct refusal *refusal)
     if (has_host && (!visitor_header(wsi, WSI_TOKEN_HOST, host, sizeof(host)) || !access_host_name(host, name, sizeof(name)) ||
                      !is_ours(hub, name)))
         *refusal = hub->local_only ? LOCAL_ONLY : WRONG_HOST;
-    else if (hub->local_only && has_forwarding(wsi))
+    else if (visitor->peer->local && !params->behind_proxy && has_forwarding(wsi))
         *refusal = PROXY;
     else if (has_token_in_query(wsi))
         *refusal = IN_QUERY;
     else if (!find_token(wsi, token))
         *refusal = TOO_LONG;
-    else if (token[0] && hub->tokens && !tokens_find(hub->tokens, token, clock_utc_ns(), &visitor->holder))
-        *refusal = BAD_TOKEN;
+    else if (token[0] && hub->tokens && (bad_token = judge_token(hub, wsi, token)))
+        *refusal = *bad_token;
     if (refusal->status)
         return false;
     if (visitor->holder.role != ROLE_NOBODY)
         visitor->role = visitor->holder.role;
-    else if (direct && (!has_host || access_name_is_local(name) || is_named(params, name)))
+    else if (is_trusted(hub, visitor, name))
         visitor->role = ROLE_ENGINEER;
     else if (params->open_viewers)
         visitor->role = ROLE_OPEN;

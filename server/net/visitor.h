@@ -7,6 +7,7 @@
 struct visitor { /* belongs to a connection */
     struct peer *peer;   /* of the connection */
     struct peer *client; /* who is meant by the last request: behind a proxy, whom that names */
+    char address[64];    /* the client's, for the log */
     enum role role;      /* by the last request's headers */
     struct token_holder holder;
 };
@@ -23,6 +24,9 @@ struct refusal {
 };
 /* Reads the headers of a request. False: *refusal is the answer. */
 bool visitor_enter(struct hub *hub, struct lws *wsi, struct refusal *refusal);
+/* One line in the log, and the counters, for what became of a token, or of a session that needed none. way: static; holder: whose the
+   token is; role ROLE_NOBODY: nobody's. */
+void visitor_note_login(struct hub *hub, struct lws *wsi, const char *way, const struct token_holder *holder, enum login login);
 /* A header; "": there is none. False: it is too long. */
 bool visitor_header(struct lws *wsi, enum lws_token_indexes token, char *out, int size);
 /* Names the machine goes by, beside those of params. Once. */

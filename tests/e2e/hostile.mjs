@@ -24,7 +24,8 @@ before(async () => {
     assert.equal(plant.prepare().code, 0);
     const tokens = join(plant.folder, 'tokens');
     assert.equal(runProgram('plantcast', ['token', 'add', tokens, '--role', 'viewer', '--name', 'somebody']).code, 0);
-    await plant.startDaemon('--tokens', tokens, '--limit', `patience=${PATIENCE_S}`, '--limit', `connections=${SILENT + 200}`);
+    await plant.startDaemon('--tokens', tokens, '--trust-local', '--limit', `patience=${PATIENCE_S}`,
+        '--limit', `connections=${SILENT + 200}`);
 });
 after(() => plant?.destroy());
 
@@ -129,7 +130,7 @@ test('all at once: nobody else is slowed, and each has its answer', { skip }, as
     assert.match((await closed(mute)).text, /no hello/);
     assert.ok(guesses.length >= 5);
     for (const guess of guesses)
-        assert.equal((await closed(guess)).code, 1008);
+        assert.ok([1008, 1013].includes((await closed(guess)).code)); // the first ten, then they are slowed
     assert.equal(guesses[0].texts[0].code, 'bad_token');
     flood.close();
     assert.ok(beside > 0.7 * alone, `${alone.toFixed(1)} frames/s alone, ${beside.toFixed(1)} beside all of them`);

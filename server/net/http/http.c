@@ -64,9 +64,9 @@ static const char RELOAD_PATH[] = "/api/v1/reload"; /* POST */
 
 static int refuse(struct request *request, const struct refusal *refusal)
 {
-    bool whose = refusal->status == HTTP_STATUS_UNAUTHORIZED;
+    bool whose = refusal->status == HTTP_STATUS_UNAUTHORIZED, held = refusal->status == 429;
     return request_answer(request, refusal->status, HTTP_TEXT, mem_strdup(refusal->text), strlen(refusal->text),
-                  whose ? "www-authenticate:" : NULL, "Bearer realm=\"plantcast\"");
+                  whose ? "www-authenticate:" : held ? "retry-after:" : NULL, whose ? "Bearer realm=\"plantcast\"" : "5");
 }
 
 /* Pages of other sites may link to us, but not have us draw. */
@@ -113,8 +113,10 @@ static int serve(struct hub *hub, struct request *request, const char *path)
         return request_answer(request, HTTP_STATUS_METHOD_NOT_ALLOWED, HTTP_TEXT, mem_strdup(text), strlen(text),
                       "allow:", "GET, HEAD");
     }
-    if (!visitor_enter(hub, request->wsi, &refusal))
+    if (!visitor_enter(hub, request->wsi, &refusal)) {
+        counter_inc(hub->counters.refused, 1);
         return refuse(request, &refusal);
+    }
     if (post)
         return serve_reload(hub, request);
     for (size_t i = 0; i < sizeof(routes) / sizeof(routes[0]); i++)

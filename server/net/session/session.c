@@ -252,6 +252,8 @@ void session_on_message(struct session *session, const char *text, size_t count,
     struct message message;
     struct message_error error;
     count_message(session, now_ns);
+    if (!login_is_good(session->login)) /* it is being closed */
+        return;
     if (!message_parse(session->world->plant, text, count, &message, &error) || !in_order(session, &message, &error) ||
         !act(session, &message, now_ns, now_utc_ns, &error))
         session_reply_error(session, &error);

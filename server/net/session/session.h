@@ -3,6 +3,7 @@
 #ifndef NET_SESSION_H
 #define NET_SESSION_H
 #include "base/text.h"
+#include "net/logins.h"
 #include "net/message/message.h"
 #include "net/paint/picks.h"
 #include "net/paint/picture.h"
@@ -44,6 +45,7 @@ struct session_world {
     const char *version;
     const struct quotas *quotas;
     const struct tokens *tokens;  /* NULL: there are none */
+    struct logins *logins;        /* changed by hello; NULL: nobody counts wrong tokens */
     struct resumes *resumes;      /* changed by hello */
     struct admission *admission;  /* its pixels are changed by hello and resize */
     struct tags_said *tags_said; /* NULL: every text is made anew */
@@ -65,6 +67,8 @@ struct session {
     uint64_t id;
     const struct session_world *world;
     enum role role;
+    uint8_t address[16];        /* of the client, as in struct peer */
+    enum login login;           /* what became of the token in hello */
     struct token_holder holder; /* of whose token it is; nobody's: it needed none, or has yet to say it */
     int64_t opened_ns;
     bool hello, hidden;

@@ -4,18 +4,32 @@
 
 #include "net/session/session_impl.h"
 
-/* With a token, its holder's role counts, even where none is needed. */
-static bool identify(struct session *session, const struct message *message, int64_t now_utc_ns, struct message_error *error)
+static bool judge_token(struct session *session, const char *token, int64_t now_ns, int64_t now_utc_ns, struct message_error *error)
 {
-    const struct tokens *tokens = session->world->tokens;
-    if (message->token[0] && tokens) {
-        if (!tokens_find(tokens, message->token, now_utc_ns, &session->holder)) {
-            message_fail(error, "bad_token", "this token is not, or no longer, let in");
-            session_close(session, 1008, "this token is not let in");
-            return false;
-        }
+    const struct session_world *world = session->world;
+    bool good = tokens_find(world->tokens, token, now_utc_ns, &session->holder);
+    session->login = world->logins ? logins_judge(world->logins, session->address, good ? session->holder.hash : NULL, now_ns)
+                     : good        ? LOGIN_GOOD
+                                   : LOGIN_WRONG;
+    if (session->login == LOGIN_HELD) {
+        message_fail(error, "full", "too many wrong tokens came from this address");
+        error->retry_after_s = LOGIN_WAIT_S;
+        session_close(session, 1013, "full: too many wrong tokens came from this address; try again later");
+    } else if (!good) {
+        message_fail(error, "bad_token", "this token is not, or no longer, let in");
+        session_close(session, 1008, "this token is not let in");
+    } else {
         session->role = session->holder.role;
     }
+    return login_is_good(session->login);
+}
+
+/* With a token, its holder's role counts, even where none is needed. */
+static bool identify(struct session *session, const struct message *message, int64_t now_ns, int64_t now_utc_ns,
+                     struct message_error *error)
+{
+    if (message->token[0] && session->world->tokens && !judge_token(session, message->token, now_ns, now_utc_ns, error))
+        return false;
     if (access_message(session->role, message, error))
         return true;
     if (session->role == ROLE_NOBODY)
@@ -106,7 +120,7 @@ bool session_hello(struct session *session, const struct message *message, int64
     const struct session_world *world = session->world;
     struct resumed resumed = { .live = NULL };
     struct view view;
-    if (!identify(session, message, now_utc_ns, error))
+    if (!identify(session, message, now_ns, now_utc_ns, error))
         return false;
     bool back = message->resume[0] && resumes_find(world->resumes, message->resume, session, now_ns, &resumed);
     if (!begin_view(session, message, back ? &resumed : NULL, &view, error) ||

@@ -167,7 +167,7 @@ export class TinyPlant {
 
     async startDaemon(...args) {
         this.daemon = new Program('plantcastd', [this.file, '--port', '0', ...args], this.as);
-        const [, port] = await this.daemon.line(/^plantcastd: ready https?:\/\/127\.0\.0\.1:(\d+)\/$/m);
+        const [, port] = await this.daemon.line(/^plantcastd: ready https?:\/\/[\d.]+:(\d+)\/$/m);
         this.port = Number(port);
     }
 

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Who comes through a proxy that the daemon was not told of is nobody, however it listens; and who is let in, or is not, is in the log.
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import http from 'node:http';
+import https from 'node:https';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { PlainClient } from './support/plain_client.mjs';
+import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+
+const absent = missing();
+const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
+const FORWARDED = {
+    'X-Forwarded-For': '203.0.113.7', Forwarded: 'for=203.0.113.7', 'X-Real-IP': '203.0.113.7', Via: '1.1 proxy.example',
+    'X-Forwarded-Host': 'plant.example', 'X-Forwarded-Proto': 'https',
+};
+const UPGRADE = {
+    Connection: 'Upgrade', Upgrade: 'websocket', 'Sec-WebSocket-Version': 13, 'Sec-WebSocket-Key': 'AAAAAAAAAAAAAAAAAAAAAA==',
+    'Sec-WebSocket-Protocol': 'plantcast.v1',
+};
+let plant, tokensFile, tokens, tls;
+
+before(async () => {
+    if (skip)
+        return;
+    plant = await TinyPlant.create();
+    assert.equal(plant.prepare().code, 0);
+    tokensFile = join(plant.folder, 'tokens');
+    tokens = {};
+    for (const [role, ...more] of [['viewer'], ['engineer'], ['operator', '--until', '2001-01-01']])
+        tokens[role] = runProgram('plantcast', ['token', 'add', tokensFile, '--role', role, '--name', `${role}-1`, ...more]).out.trim();
+    const key = join(plant.folder, 'key.pem'), cert = join(plant.folder, 'cert.pem');
+    assert.equal(spawnSync('openssl', ['req', '-x509', '-newkey', 'ec', '-pkeyopt', 'ec_paramgen_curve:prime256v1', '-nodes', '-keyout', key,
+        '-out', cert, '-days', '30', '-subj', '/CN=plant.example', '-addext', 'subjectAltName=DNS:plant.example']).status, 0);
+    tls = ['--tls-cert', cert, '--tls-key', key];
+});
+after(() => plant?.destroy());
+
+async function serve(...args) {
+    await plant.daemon?.stop();
+    await plant.startDaemon(...args);
+}
+// { status, headers } of a request from this machine.
+function ask(path, headers = {}, secure = false) {
+    return new Promise((done, fail) => {
+        const options = { port: plant.port, host: '127.0.0.1', path, headers: { Host: 'localhost', ...headers }, rejectUnauthorized: false };
+        const asked = (secure ? https : http).request(options, (response) => {
+            response.resume();
+            done({ status: response.statusCode, headers: response.headers });
+        });
+        asked.on('upgrade', (response, socket) => { socket.destroy(); done({ status: 101, headers: response.headers }); });
+        asked.on('error', fail).end();
+    });
+}
+const bearer = (token) => ({ Authorization: `Bearer ${token}` });
+const metric = async (name) => {
+    const answer = await fetch(`http://127.0.0.1:${plant.port}/metrics`, { headers: bearer(tokens.viewer) });
+    return Number((await answer.text()).match(new RegExp(`^${name} (\\d+)`, 'm'))?.[1]);
+};
+
+test('through a proxy that nobody told of: 403, on every way to listen', { skip }, async () => {
+    const any = ['--listen', '0.0.0.0', '--host', 'plant.example'], more = ['--tokens', tokensFile];
+    const ways = [ // arguments, and what somebody on this machine gets without a token
+        [[], 200], [more, 401], [[...more, '--trust-local'], 200], [[...tls, ...more], 401], [[...any, '--open-viewers'], 200],
+        [[...any, '--open-viewers', ...more], 403], [[...any, ...tls, ...more], 401], [[...any, ...tls, ...more, '--trust-local'], 200],
+    ];
+    for (const [args, direct] of ways) {
+        const secure = args.includes('--tls-cert'), what = args.join(' ');
+        await serve(...args);
+        assert.equal((await ask('/api/v1/tags', {}, secure)).status, direct, what);
+        for (const [name, value] of Object.entries(FORWARDED))
+            for (const Host of args.includes('--host') ? ['localhost', 'plant.example'] : ['localhost'])
+                for (const [path, headers] of [['/api/v1/tags', {}], ['/metrics', bearer(tokens.viewer)], ['/stream', UPGRADE]])
+                    assert.equal((await ask(path, { ...headers, Host, [name]: value }, secure)).status, 403, `${what}: ${name} ${path}`);
+        if (args.includes('--host') && !args.includes('--trust-local')) // nor is who asks by a name that others have, too
+            assert.ok([401, 403].includes((await ask('/api/v1/tags', { Host: 'plant.example' }, secure)).status), what);
+    }
+});
+
+test('every token that is let in, or is not, is a line in the log; ten wrong ones slow an address', { skip }, async () => {
+    await serve('--tokens', tokensFile);
+    const before = await metric('plantcast_sessions_refused_total');
+    const wrong = 'pc_0123456789', lines = (pattern) => plant.daemon.said.match(pattern) ?? [];
+    for (let i = 0; i < 6; i++)
+        assert.equal((await ask('/api/v1/tags', bearer(wrong))).status, 401);
+    assert.equal((await ask('/api/v1/tags', bearer(tokens.operator))).status, 401);
+    const guess = await PlainClient.open(plant.port);
+    guess.say({ type: 'hello', width: 320, height: 180, codecs: ['jpeg'], token: wrong });
+    assert.equal((await guess.until('a close', (c) => c.closed)).code, 1008);
+    const engineer = await PlainClient.open(plant.port);
+    assert.equal((await engineer.hello({ token: tokens.engineer })).role, 'engineer');
+    engineer.close();
+    await plant.daemon.line(/token engineer-1/); // and what was said before
+    assert.equal(lines(/login from 127\.0\.0\.1 by HTTP: token \(unknown\), role none: refused, nobody's \(\d within/g).length, 6);
+    assert.equal(lines(/by HTTP: token operator-1, role operator: refused, its time is over/g).length, 1);
+    assert.equal(lines(/by stream: token \(unknown\), role none: refused/g).length, 1);
+    assert.equal(lines(/by stream: token engineer-1, role engineer: let in/g).length, 1);
+    assert.equal(lines(/by HTTP: token viewer-1, role viewer: let in/g).length, 1);
+    assert.equal(await metric('plantcast_sessions_refused_total') - before, 8);
+    assert.equal(await metric('plantcast_logins_wrong_total'), 8);
+    assert.equal(await metric('plantcast_logins_slowed_addresses'), 0);
+
+    for (let i = 0; i < 2; i++)
+        await ask('/stream', { ...UPGRADE, ...bearer(wrong) });
+    const held = await ask('/api/v1/tags', bearer(wrong));
+    assert.deepEqual([held.status, held.headers['retry-after']], [429, '5']);
+    const late = await PlainClient.open(plant.port);
+    late.say({ type: 'hello', width: 320, height: 180, codecs: ['jpeg'], token: wrong });
+    assert.equal((await late.text('error')).retry_after_s, 5);
+    assert.equal((await late.until('a close', (c) => c.closed)).code, 1013);
+    assert.equal((await ask('/api/v1/tags', bearer(tokens.viewer))).status, 200, 'who was let in before is not held up');
+    await new Promise((done) => setTimeout(done, 200)); // gauges are set ten times a second
+    assert.equal(await metric('plantcast_logins_slowed_addresses'), 1);
+    assert.equal(await metric('plantcast_logins_held_total'), 2);
+    await plant.daemon.line(/: slowed/);
+    assert.equal(lines(/warn +login from 127\.0\.0\.1: slowed/g).length, 1);
+    for (const token of [wrong, ...Object.values(tokens)])
+        assert.ok(!plant.daemon.said.includes(token.slice(3)), 'no token is in the log');
+});
