@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Views in the browser: standard views, the parallel projection, a cut, equipment hidden and shown, and what is at a place.
 import assert from 'node:assert/strict';
+import { readFileSync, writeFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
 import { drawnAt, openPage, settle, shoot, view, waitForHealth, waitForPicture } from './support/browser.mjs';
 import { missing, startPlant } from './support/plant.mjs';
+import { TinyPlant } from './support/tiny_plant.mjs';
 
 const why = missing();
 const options = { skip: why ?? false, timeout: 200000 };
@@ -102,11 +104,78 @@ test('a cut, ghosts and hidden equipment', options, async () => {
     await page.locator('#shows button', { hasText: 'Ghost' }).click();
     await waitForShown(['T-101'], []);
     await settle(page);
+    assert.match(await page.locator('#shown span').textContent(), /^1 see-through$/);
     await shoot(page, 'ghost');
     await page.locator('#shows button', { hasText: 'Hide' }).click();
     await waitForShown([], ['T-101']);
+    assert.match(await page.locator('#shown span').textContent(), /^1 of \d+ hidden$/);
     await waitFor(() => !globalThis.plantcast.overlay.markers.some(({ tag }) => tag.asset === 'T-101')); // nothing marks what is hidden
     await page.locator('#show-all').click();
     await waitForShown([], []);
+    assert.equal(await page.locator('#shown').isVisible(), false);
+    await page.locator('#shows button', { hasText: 'Only this' }).click();
+    await waitFor(() => globalThis.plantcast.session.confirmed.isolate.length === 1);
+    const count = await page.evaluate(() => globalThis.plantcast.session.model.assets.length);
+    assert.ok((await page.locator('#shown span').textContent()).startsWith(`${count - 1} of ${count} hidden`));
+    await page.keyboard.press('Escape');
+    await settle(page);
+    await shoot(page, 'only');
+    await page.locator('#shown button').click();
+    await waitFor(() => globalThis.plantcast.session.confirmed.isolate.length === 0);
+    assert.equal(await page.locator('#shown').isVisible(), false);
     assert.deepEqual(browser.errors, []);
+});
+
+// Of every sixth tag: whether it would be seen from its own side at 5 m, and whether it is where one arrives.
+test('who flies to a tag sees it', options, async (t) => {
+    const arrived = await page.evaluate(async () => {
+        const { session, pilot } = globalThis.plantcast, { face } = await import('/core/moves.js'), from = session.camera;
+        const { approach } = pilot, found = [];
+        for (const tag of session.model.tags.filter(({ position, asset }, i) => position && asset && i % 6 === 0)) {
+            if (tag.group !== session.params.group)
+                session.setParams({ group: tag.group });
+            session.setCamera(from);
+            const asset = session.model.asset(tag.asset);
+            const own = await approach.look(face(from, tag.position, asset.bounds, 5), tag);
+            let to = null;
+            await approach.go(tag, asset, (camera) => { to = camera; });
+            found.push({ name: tag.name, own: own.seen, seen: (await approach.look(to, tag)).seen });
+        }
+        return found;
+    });
+    t.diagnostic(`of ${arrived.length} tags ${arrived.filter(({ own }) => own).length} are in sight from their own side`);
+    assert.ok(arrived.length >= 20 && arrived.some(({ own }) => !own));
+    assert.deepEqual(arrived.filter(({ seen }) => !seen), []);
+});
+
+test('what stands before a tag on all sides becomes a ghost; Backspace goes back, and all is as it was', options, async () => {
+    const tiny = await TinyPlant.create(), text = readFileSync(tiny.file, 'utf8');
+    writeFileSync(tiny.file, text.replace('groups:', '  - { id: HOUSE, model: box.gltf, placement: { scale: 3 } }\ngroups:'));
+    assert.equal(tiny.prepare().code, 0);
+    await tiny.startSim();
+    await tiny.startDaemon();
+    const own = await openPage(`http://127.0.0.1:${tiny.port}/`, { viewport: { width: 1200, height: 720 } }), on = own.page;
+    const ghosts = (ids) => on.waitForFunction((all) => globalThis.plantcast.session.confirmed.ghost.join() === all, ids.join());
+    try {
+        await waitForPicture(on);
+        await on.evaluate(() => globalThis.plantcast.parts.get('pilot'));
+        const { camera: before } = await view(on);
+        await on.locator('#assets-list .asset', { hasText: 'E-101' }).locator('.twist').click();
+        await on.locator('.reading', { hasText: 'TI-1' }).click();
+        await ghosts(['HOUSE']);
+        await on.waitForFunction(() => !globalThis.plantcast.pilot.fly);
+        await settle(on);
+        await on.waitForFunction(() => globalThis.plantcast.overlay.markers.find(({ tag }) => tag.name === 'TI-1')?.occluded === false);
+        assert.match(await on.locator('#shown span').textContent(), /^1 see-through$/);
+        await shoot(on, 'seen-through');
+        await on.locator('#viewport').focus();
+        await on.keyboard.press('Backspace');
+        await ghosts([]);
+        await on.waitForFunction((eye) => Math.hypot(...globalThis.plantcast.session.camera.eye.map((m, i) => m - eye[i])) < 1e-6, before.eye);
+        assert.equal(await on.locator('#shown').isVisible(), false);
+        assert.deepEqual(own.errors, []);
+    } finally {
+        await own.close();
+        await tiny.destroy();
+    }
 });

@@ -147,6 +147,7 @@ function commandsOf({ session, parts, selection, overlay, saveAddress, refresh }
         showAsset: (how, asset) => parts.use('views', (views) => views.show(how, asset.id)),
         engineer: opens('engineer'),
         fit: fitView,
+        back: () => parts.there('pilot')?.goBack(),
         home: () => session.model && parts.use('pilot', (pilot) => pilot.flyHome()),
         help: () => parts.use('help', (help) => help.open()),
         timings: opens('timings'),

@@ -12,6 +12,7 @@ const ROWS = [
     ['help.zoom', 'help.zoom.mouse', 'help.zoom.touch', '[+] [−]'],
     ['help.fit', 'help.fit.mouse', 'help.fit.touch', '[F]'],
     ['help.home', '', '', '[H]'],
+    ['help.back', '', '', '[⌫]'],
     ['help.from', '', '', 'help.from.keys'],
     ['help.what', 'help.what.mouse', 'help.what.touch', ''],
     ['help.selected', '', '', 'help.selected.keys'],

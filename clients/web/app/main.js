@@ -103,6 +103,8 @@ session.on('params', async () => {
     const { params } = session;
     saveAddress();
     refresh();
+    if ([params.hidden, params.isolate, params.ghost].some((ids) => ids?.length > 0))
+        parts.get('shown');
     if ([params, params.split].some((half) => half?.isolines?.length > 0))
         parts.get('isolines');
     if (params.clip && !document.body.classList.contains('wall') && await parts.get('grips')) // by hand, but for a wall

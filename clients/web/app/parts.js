@@ -27,6 +27,7 @@ const PARTS = {
     place: { type: 'Place', styles: ['card', 'panel'] },
     rows: { type: 'Rows', wordless: true },
     share: { type: 'Share', styles: ['panel', 'help', 'share'] },
+    shown: { type: 'Shown', styles: ['shown'] },
     snapshot: { type: 'Snapshot' },
     timeline: { type: 'Timeline', styles: ['timeline'], fills: 'timeline' },
     timings: { type: 'TimingsPanel', styles: ['timings'] },

@@ -5,10 +5,11 @@ import { fit, home, MIN_DISTANCE_M, same } from '../core/camera.js';
 import { flight, FLIGHT_MS } from '../core/flight.js';
 import { Gestures, wheelZoom } from '../core/gestures.js';
 import { HeldKeys, keyMeaning } from '../core/keys.js';
-import { depthAt, depthOf, elevation, face, lookAround, orbit, pan, sight, zoom } from '../core/moves.js';
+import { depthAt, depthOf, elevation, lookAround, orbit, pan, sight, zoom } from '../core/moves.js';
 import { halfAt } from '../core/nearest.js';
 import { askPick } from '../core/requests.js';
 import { along } from '../core/vector.js';
+import { Approach } from './approach.js';
 import { clock } from './clock.js';
 import { proveCodecs } from './first.js';
 import { isOnPicture } from './hands.js';
@@ -17,7 +18,7 @@ const DEGREES_PER_HEIGHT = 180; // a drag over the whole height of the picture
 const DOUBLE_CLICK_MS = 350, DOUBLE_CLICK_PX = 24;
 const ANCHOR_MS = 600, ANCHOR_PX = 10; // a wheel that goes on, about the same place
 const LEAST_ARRIVAL_DEG = 15;   // nobody wants to arrive below the floor
-const TAG_DISTANCE_M = 5;
+const MOST_BACK = 30;           // flights that can be taken back
 const WRITTEN = 'input:not([type="radio"], [type="checkbox"], [type="range"]), select, textarea'; // keys write there
 
 export class Pilot {
@@ -27,6 +28,8 @@ export class Pilot {
         this.gestures = new Gestures();
         this.keys = new HeldKeys();
         this.fly = null;
+        this.before = [];   // { camera, ghosts }: from where flights began
+        this.approach = new Approach({ session, viewport });
         this.lastTick = null;
         this.lastClick = null;
         this.anchor = null; // what a hand took hold of: { x, y, time, point }; the point as the boxes have it until the server says it
@@ -52,7 +55,7 @@ export class Pilot {
     pointerdown(event) {
         if (!isOnPicture(event))
             return;
-        this.fly = null;
+        this.land();
         const place = this.place(event);
         if (!this.gestures.active)
             this.takeHold(place);
@@ -118,7 +121,7 @@ export class Pilot {
     wheel(event) {
         if (!isOnPicture(event))
             return;
-        this.fly = null;
+        this.land();
         const place = this.place(event), { x, y, time } = place, { anchor } = this;
         if (!anchor || time - anchor.time > ANCHOR_MS || Math.hypot(x - anchor.x, y - anchor.y) > ANCHOR_PX)
             this.takeHold(place);
@@ -137,7 +140,7 @@ export class Pilot {
             return; // it presses what has the focus
         event.preventDefault();
         if (meaning.motion) {
-            this.fly = null;
+            this.land();
             this.apply(this.keys.press(meaning.motion), event.timeStamp);
             this.viewport.invalidate();
         } else if (meaning.command) {
@@ -192,10 +195,38 @@ export class Pilot {
         return halfAt(this.session.params, this.viewport.width, 0).width / this.viewport.height;
     }
 
+    // A person takes over.
+    land() {
+        this.fly = null;
+        this.approach.stop();
+    }
+
     flyTo(camera) {
+        this.approach.stop();
+        this.remember();
+        this.approach.setGhosts([]);
+        this.steer(camera);
+    }
+
+    steer(camera) {
         const still = window.matchMedia('(prefers-reduced-motion: reduce)').matches;
         this.fly = { path: flight(this.session.camera, camera, still ? 0 : FLIGHT_MS), start: null };
         this.viewport.invalidate();
+    }
+
+    // Whoever is on the way somewhere comes back to where they began.
+    remember() {
+        if (!this.fly)
+            this.before = [...this.before.slice(1 - MOST_BACK), { camera: this.session.camera, ghosts: this.approach.ghosts }];
+    }
+
+    goBack() {
+        const last = this.before.pop();
+        if (!last)
+            return;
+        this.approach.stop();
+        this.approach.setGhosts(last.ghosts);
+        this.steer(last.camera);
     }
 
     // Who looks at the whole plant goes on doing so in a picture of another shape.
@@ -210,8 +241,9 @@ export class Pilot {
         this.flyTo(home(this.session.model.plant, this.aspect));
     }
 
-    flyToTag({ position }, { bounds }) {
-        this.flyTo(face(this.session.camera, position, bounds, TAG_DISTANCE_M));
+    flyToTag(tag, asset) {
+        this.remember();
+        this.approach.go(tag, asset, (camera) => this.steer(camera));
     }
 
     flyToBox(box, margin) {

@@ -8,7 +8,7 @@ const MOTIONS = { // per second: [orbit right, orbit up] degrees, [pan right, pa
 };
 const SHIFTED = { ArrowLeft: 'KeyA', ArrowRight: 'KeyD', ArrowUp: 'KeyW', ArrowDown: 'KeyS' };
 const COMMANDS = {
-    f: 'fit', h: 'home', '?': 'help', b: 'assets', '/': 'search', Escape: 'escape',
+    f: 'fit', h: 'home', '?': 'help', b: 'assets', '/': 'search', Escape: 'escape', Backspace: 'back',
     t: 'top', i: 'corner', o: 'projection', v: 'views', p: 'picture', x: 'hide', g: 'ghost', l: 'only', u: 'showAll', m: 'timings',
     e: 'alarms', y: 'past', n: 'live', ' ': 'hold', r: 'measure', c: 'snapshot', k: 'share', z: 'theme',
 };

@@ -15,12 +15,14 @@ export function travel(session, atUs, speed = 0) {
     session.post({ type: 'time', ...(atUs === undefined ? {} : { at_us: atUs && Math.round(atUs) }), speed });
 }
 
-// Asks what is at a pixel of the picture on the screen; the event `picked` answers the newest question, and says its purpose.
-export function askPick(session, [x, y], purpose) {
+// Asks what is at a pixel of the picture on the screen, or of another camera's; the event `picked` answers the newest question, and says
+// its purpose.
+export function askPick(session, [x, y], purpose, camera = null) {
     if (!session.welcomed || !session.picture)
         return;
     session.pickPurpose = purpose;
-    session.connection.send({ type: 'pick', seq: ++session.pickSeq, x, y, camera: cameraMessage(asAsked(session.picture.camera)) });
+    const from = camera ?? asAsked(session.picture.camera);
+    session.connection.send({ type: 'pick', seq: ++session.pickSeq, x, y, camera: cameraMessage(from) });
 }
 
 // alarms: [[tag, kind], ...]; answered by the event `alarmed`.

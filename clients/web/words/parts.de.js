@@ -104,6 +104,9 @@ oblique: schräg
 hide: Ausblenden
 ghost: Durchsichtig
 only: Nur dies
+hidden: {hidden} von {all} ausgeblendet
+ghosts(one): {count} durchsichtig
+ghosts(other): {count} durchsichtig
 
 [assets]
 description: Beschreibung
@@ -284,6 +287,7 @@ fit: Einpassen
 fit.mouse: Doppelklick
 fit.touch: Doppelt tippen
 home: Grundansicht
+back: Zurück vor den letzten Flug
 from: Blick von
 from.keys: [T] oben, [I] schräg, [O] parallel, [V] alle Ansichten, [P] Bild
 what: Was dort ist

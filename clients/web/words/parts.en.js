@@ -104,6 +104,9 @@ oblique: oblique
 hide: Hide
 ghost: Ghost
 only: Only this
+hidden: {hidden} of {all} hidden
+ghosts(one): {count} see-through
+ghosts(other): {count} see-through
 
 [assets]
 description: Description
@@ -284,6 +287,7 @@ fit: Fit
 fit.mouse: Double click
 fit.touch: Double tap
 home: Home
+back: Back to where one flew from
 from: Look from
 from.keys: [T] top, [I] corner, [O] parallel, [V] all views, [P] picture
 what: What is there

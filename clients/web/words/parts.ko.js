@@ -104,6 +104,8 @@ oblique: 비스듬히
 hide: 숨기기
 ghost: 투명
 only: 이것만
+hidden: {all}개 중 {hidden}개 숨김
+ghosts(other): {count}개 반투명
 
 [assets]
 description: 설명
@@ -283,6 +285,7 @@ fit: 맞춤
 fit.mouse: 두 번 클릭
 fit.touch: 두 번 탭
 home: 기본 시점
+back: 이전 시점으로
 from: 보는 방향
 from.keys: [T] 위, [I] 모서리, [O] 평행 투영, [V] 모든 시점, [P] 화면
 what: 위치 정보

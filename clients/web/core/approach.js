@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From where a sensor is looked at: cameras to try, the best first.
+import { face, orbit } from './moves.js';
+import { subtract } from './vector.js';
+
+const LEAST_M = 5, MOST_M = 12, PART = 1.1;
+const TURNS = [ // degrees: about the vertical, up
+    [0, 0], [35, 0], [-35, 0], [0, 30], [70, 0], [-70, 0], [35, 30], [-35, 30], [0, 55], [110, 0], [-110, 0], [0, -20], [145, 0], [-145, 0],
+    [180, 0], [70, 30], [-70, 30], [180, 30], [50, -20], [-50, -20], [0, -45], [90, -45], [-90, -45], [180, -45],
+];
+
+// So far off that what it stands on is recognised: by the middle one of its box's sides, since a pipe or a column is long.
+export function approachDistance({ min, max }) {
+    const [, middle] = subtract(max, min).sort((a, b) => a - b);
+    return Math.max(LEAST_M, Math.min(MOST_M, PART * middle));
+}
+
+// Of a point of something with these bounds.
+export function approaches(camera, point, bounds) {
+    const first = face(camera, point, bounds, approachDistance(bounds));
+    return TURNS.map(([azimuth, rise]) => orbit(first, azimuth, rise));
+}
