@@ -171,7 +171,8 @@ test('what stands before a tag on all sides becomes a ghost; Backspace goes back
         await on.locator('#viewport').focus();
         await on.keyboard.press('Backspace');
         await ghosts([]);
-        await on.waitForFunction((eye) => Math.hypot(...globalThis.plantcast.session.camera.eye.map((m, i) => m - eye[i])) < 1e-6, before.eye);
+        await on.waitForFunction((eye) =>
+            Math.hypot(...globalThis.plantcast.session.camera.eye.map((m, i) => m - eye[i])) < 1e-6, before.eye);
         assert.equal(await on.locator('#shown').isVisible(), false);
         assert.deepEqual(own.errors, []);
     } finally {
