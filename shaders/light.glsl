@@ -39,8 +39,8 @@ float grey_of(vec3 c)
     return dot(c, vec3(0.30, 0.59, 0.11));
 }
 
-// Assets without a field are context: paler and greyer than they are, so that no material is taken for a value. sRGB in and out.
+// Assets without a field are context: paler than they are and without hue, so that no material is taken for a value. sRGB in and out.
 vec3 mute(vec3 c)
 {
-    return mix(mix(vec3(grey_of(c)), c, 0.30), vec3(0.88), 0.48);
+    return mix(vec3(grey_of(c)), vec3(0.88), 0.48);
 }

@@ -537,6 +537,51 @@ static void test_default_look_keeps_to_the_palette(void **state)
 
 #define each(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
 
+/* Strips in the colours of the map itself, as a model may have them, and no sensor: in no picture of a field is any of them a colour. */
+static void test_context_has_no_color(void **state)
+{
+    enum { STRIPS = 16 };
+    static const double low[3] = { 0, 0, 0 };
+    struct asset_material materials[STRIPS];
+    struct shape shape = { .materials = materials, .material_count = STRIPS };
+    struct toy *toy = toy_create();
+    struct view view;
+    (void)state;
+    for (uint32_t i = 0; i < STRIPS; i++) {
+        const uint8_t *rgb = colormap_at(0)->rgb[i * 255 / (STRIPS - 1)];
+        materials[i] = (struct asset_material){ .base_color = { rgb[0] / 255.0f, rgb[1] / 255.0f, rgb[2] / 255.0f, 1 },
+                                                .roughness = 0.7f,
+                                                .normal_scale = 1,
+                                                .occlusion_strength = 1,
+                                                .base_color_texture = ASSET_NO_TEXTURE,
+                                                .metallic_roughness_texture = ASSET_NO_TEXTURE,
+                                                .normal_texture = ASSET_NO_TEXTURE,
+                                                .occlusion_texture = ASSET_NO_TEXTURE,
+                                                .emissive_texture = ASSET_NO_TEXTURE };
+        shape_plate(&shape, i, (double[3]){ side_m * i / STRIPS, 0, 0 }, (double[3]){ side_m / STRIPS, 0, 0 },
+                    (double[3]){ 0, side_m, 0 }, 2);
+    }
+    tear_down(NULL);
+    toy_add(toy, "STEEL", &shape, low, NULL, 0);
+    stand_init(&stand, &rig, toy);
+    look_down(&view);
+    for (int by_gl = 0; by_gl <= 1; by_gl++)
+        for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++)
+            for (int look = LOOK_DEFAULT; look <= LOOK_FLAT; look++) {
+                view.tier = (enum tier)tier;
+                view.look = (enum look)look;
+                renderer_use_gl(stand.renderer, by_gl);
+                struct frame *frame = stand_draw(&stand, &view);
+                int coloured = 0;
+                for (int i = 0; i < SIDE_PX * SIDE_PX; i++) {
+                    const uint8_t *c = frame_pixel(frame, i % SIDE_PX, i / SIDE_PX);
+                    coloured += abs(c[0] - c[1]) > 2 || abs(c[1] - c[2]) > 2;
+                }
+                assert_int_equal(coloured, 0);
+                frame_unref(&frame);
+            }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -556,6 +601,7 @@ int main(void)
         each(test_a_clock_that_is_not_set_is_said),
         each(test_unproven_tags_are_marked),
         each(test_default_look_keeps_to_the_palette),
+        each(test_context_has_no_color),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
     if (!rig_init(&rig, "field_colors_test"))

@@ -164,7 +164,7 @@ DRAFT_INLINE lanes grey_of(vec c)
 
 DRAFT_INLINE vec mute(vec c)
 {
-    return between(between(grey(grey_of(c)), c, all(0.30f)), grey(all(0.88f)), all(0.48f));
+    return between(grey(grey_of(c)), grey(all(0.88f)), all(0.48f));
 }
 
 DRAFT_KERNEL void plate_shade_surfaces(const struct plate *plate, const struct item *items, size_t count, uint32_t *colors)
