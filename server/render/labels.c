@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Labels by rank, distance and room. */
-#include "render/labels.h"
+#include "render/labels_impl.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -9,24 +9,7 @@
 
 enum { PASSES = 3 };
 static const double SPACINGS[PASSES] = { 0.16, 0.08, 0 }, HELD = 0.8;
-static const double MARK = 5, RING = 13, CLEARANCE = 3, NEAR_GAP = 8, FAR_GAP = 22, ROOM = 0.06, CELL = 96;
-
-struct cell_entry {
-    struct box box;
-    int owner, next;
-};
-
-struct layout { /* of one picture */
-    const struct label_item *items;
-    const struct label_area *area;
-    int *slots;
-    int columns, rows, *heads; /* a grid of what is taken */
-    struct cell_entry *entries;
-    size_t entry_count, entry_capacity;
-    int *labelled; /* items whose labels stand */
-    int labelled_count;
-    double used;
-};
+static const double MARK = 5, RING = 13, NEAR_GAP = 8, FAR_GAP = 22, ROOM = 0.06, CELL = 96;
 
 static bool is_held(const struct label_item *item)
 {
@@ -67,7 +50,7 @@ static void cells_of(const struct layout *layout, const struct box *box, int ran
     range[3] = clamp((y + box->height) / cell, layout->rows);
 }
 
-static void take(struct layout *layout, const struct box *box, int owner)
+static void take(struct layout *layout, const struct box *box, int owner, enum label_over kind)
 {
     int range[4];
     cells_of(layout, box, range);
@@ -75,12 +58,12 @@ static void take(struct layout *layout, const struct box *box, int owner)
         for (int row = range[2]; row <= range[3]; row++) {
             int *head = &layout->heads[row * layout->columns + column];
             mem_grow(&layout->entries, &layout->entry_capacity, layout->entry_count + 1, sizeof(*layout->entries));
-            layout->entries[layout->entry_count] = (struct cell_entry){ .box = *box, .owner = owner, .next = *head };
+            layout->entries[layout->entry_count] = (struct cell_entry){ .box = *box, .owner = owner, .next = *head, .kind = kind };
             *head = (int)layout->entry_count++;
         }
 }
 
-static bool is_free(const struct layout *layout, const struct box *box, int owner)
+bool layout_is_free(const struct layout *layout, const struct box *box, int owner, enum label_over over)
 {
     int range[4];
     cells_of(layout, box, range);
@@ -88,7 +71,8 @@ static bool is_free(const struct layout *layout, const struct box *box, int owne
         for (int row = range[2]; row <= range[3]; row++)
             for (int i = layout->heads[row * layout->columns + column]; i >= 0; i = layout->entries[i].next) {
                 const struct box *other = &layout->entries[i].box;
-                if (layout->entries[i].owner != owner && box->x < other->x + other->width && other->x < box->x + box->width &&
+                bool counts = layout->entries[i].owner != owner && layout->entries[i].kind > over;
+                if (counts && box->x < other->x + other->width && other->x < box->x + box->width &&
                     box->y < other->y + other->height && other->y < box->y + box->height)
                     return false;
             }
@@ -97,27 +81,38 @@ static bool is_free(const struct layout *layout, const struct box *box, int owne
 
 /* --- one label -------------------------------------------------------------------------------------------------------------- */
 
-struct box label_box(const struct label_item *item, int slot, double unit)
+struct box layout_box(const struct label_item *item, int slot, double unit, double across, double down)
 {
     static const double places[LABEL_SLOTS][2] = { { 1, -0.5 }, { -1, -0.5 }, { 1, -1.3 }, { 1, 0.3 }, { -1, -1.3 }, { -1, 0.3 },
                                                    { 0, -1.9 }, { 0, 0.9 },   { 1, -2 },   { -1, -2 }, { 1, 1 },     { -1, 1 },
                                                    { 1, -3.2 }, { -1, -3.2 }, { 1, 2.2 },  { -1, 2.2 } };
     double side = places[slot][0], gap = (slot < LABEL_FIRST_FAR ? NEAR_GAP : FAR_GAP) * unit;
     double above = places[slot][1] < -0.5 ? -1 : places[slot][1] > -0.5 ? 1 : 0, more = item->ring ? (RING - MARK) * unit : 0;
-    double x = side > 0 ? item->x + gap + more : side < 0 ? item->x - gap - more - item->width : item->x - item->width / 2;
-    return (struct box){ x, item->y + places[slot][1] * item->height + (side == 0 ? above * more : 0), item->width, item->height };
+    double beside = across + gap + more;
+    double x = side > 0 ? item->x + beside : side < 0 ? item->x - beside - item->width : item->x - item->width / 2;
+    double y = item->y + places[slot][1] * item->height + (side == 0 ? above * (more + down) : 0);
+    return (struct box){ x, y, item->width, item->height };
+}
+
+struct box label_box(const struct label_item *item, int slot, double unit)
+{
+    return layout_box(item, slot, unit, 0, 0);
+}
+
+bool layout_is_inside(const struct layout *layout, const struct box *box)
+{
+    const struct box *area = &layout->area->box;
+    return box->x >= area->x && box->y >= area->y && box->x + box->width <= area->x + area->width &&
+           box->y + box->height <= area->y + area->height;
 }
 
 static bool fits(const struct layout *layout, int index, int slot)
 {
     const struct label_item *item = &layout->items[index];
-    const struct box *area = &layout->area->box;
     struct box box = label_box(item, slot, layout->area->unit);
-    double more = slot == item->held ? 0 : CLEARANCE * layout->area->unit;
-    if (box.x < area->x || box.y < area->y || box.x + box.width > area->x + area->width || box.y + box.height > area->y + area->height)
-        return false;
+    double more = slot == item->held ? 0 : LABEL_CLEARANCE * layout->area->unit;
     struct box grown = { box.x - more, box.y - more, box.width + 2 * more, box.height + 2 * more };
-    return is_free(layout, &grown, index);
+    return layout_is_inside(layout, &box) && layout_is_free(layout, &grown, index, OVER_NOTHING);
 }
 
 static void place(struct layout *layout, int index)
@@ -128,8 +123,8 @@ static void place(struct layout *layout, int index)
         if (!fits(layout, index, slot))
             continue;
         struct box box = label_box(item, slot, layout->area->unit);
-        take(layout, &box, index);
-        layout->slots[index] = slot;
+        take(layout, &box, index, OVER_ALL);
+        layout->places[index] = (struct label_place){ box, slot, LABEL_NONE };
         layout->labelled[layout->labelled_count++] = index;
         layout->used += item->width * item->height;
         return;
@@ -154,35 +149,56 @@ static void place_rank(struct layout *layout, const int *order, size_t count)
             const struct label_item *item = &layout->items[order[i]];
             bool room = item->rank >= LABEL_BAD || layout->used < ROOM * area->width * area->height;
             double least = SPACINGS[pass] * area->width * (is_held(item) ? HELD : 1);
-            if (room && layout->slots[order[i]] == LABEL_NONE && is_apart(layout, item, least))
+            if (room && layout->places[order[i]].slot == LABEL_NONE && is_apart(layout, item, least))
                 place(layout, order[i]);
         }
 }
 
-void labels_place(const struct label_item *items, size_t count, const struct label_area *area, int *slots)
+void layout_set(struct layout *layout, const int *members, size_t count, const struct box *box, int slot)
+{
+    take(layout, box, members[0], OVER_ALL);
+    for (size_t i = 0; i < count; i++) {
+        layout->places[members[i]] = (struct label_place){ *box, slot, count > 1 ? members[0] : LABEL_NONE };
+        layout->labelled[layout->labelled_count++] = members[i];
+    }
+    layout->used += box->width * box->height;
+}
+
+static void layout_init(struct layout *layout, const struct label_item *items, size_t count, const struct label_area *area,
+                        struct label_place *places)
 {
     double cell = CELL * area->unit;
-    struct layout layout = { .items = items, .area = area, .slots = slots };
-    layout.columns = (int)(area->box.width / cell) + 1;
-    layout.rows = (int)(area->box.height / cell) + 1;
-    layout.heads = mem_array((size_t)layout.columns * (size_t)layout.rows, sizeof(*layout.heads));
-    layout.labelled = mem_array(count, sizeof(*layout.labelled));
-    int *order = mem_array(count, sizeof(*order));
-    size_t wanted = 0;
-    for (int i = 0; i < layout.columns * layout.rows; i++)
-        layout.heads[i] = -1;
+    *layout = (struct layout){ .items = items, .area = area, .places = places };
+    layout->columns = (int)(area->box.width / cell) + 1;
+    layout->rows = (int)(area->box.height / cell) + 1;
+    layout->heads = mem_array((size_t)layout->columns * (size_t)layout->rows, sizeof(*layout->heads));
+    layout->labelled = mem_array(count, sizeof(*layout->labelled));
+    for (int i = 0; i < layout->columns * layout->rows; i++)
+        layout->heads[i] = -1;
     for (size_t i = 0; i < area->blocked_count; i++)
-        take(&layout, &area->blocked[i], -1);
+        take(layout, &area->blocked[i], -1, OVER_ALL);
     for (size_t i = 0; i < count; i++) {
         double radius = (items[i].ring ? RING : MARK) * area->unit;
         struct box mark = { items[i].x - radius, items[i].y - radius, 2 * radius, 2 * radius };
-        take(&layout, &mark, (int)i);
-        slots[i] = LABEL_NONE;
+        take(layout, &mark, (int)i, items[i].ring ? OVER_RINGS : OVER_MARKS);
+        places[i] = (struct label_place){ .slot = LABEL_NONE, .callout = LABEL_NONE };
+    }
+}
+
+void labels_place(const struct label_item *items, size_t count, const struct label_area *area, struct label_place *places)
+{
+    struct layout layout;
+    int *order = mem_array(count, sizeof(*order));
+    size_t wanted = 0, rings = 0;
+    layout_init(&layout, items, count, area, places);
+    for (size_t i = 0; i < count; i++)
         if (items[i].rank != LABEL_NOT_WANTED)
             order[wanted++] = (int)i;
-    }
     qsort_r(order, wanted, sizeof(*order), by_importance, (void *)items);
-    for (size_t begin = 0, end; begin < wanted; begin = end) {
+    while (rings < wanted && items[order[rings]].rank == LABEL_BEYOND)
+        rings++;
+    layout_place_rings(&layout, order, rings);
+    for (size_t begin = rings, end; begin < wanted; begin = end) {
         for (end = begin; end < wanted && items[order[end]].rank == items[order[begin]].rank;)
             end++;
         place_rank(&layout, order + begin, end - begin);

@@ -16,18 +16,26 @@ struct label_item {             /* every marker in sight */
     double x, y, width, height; /* of the marker; of its label */
     double depth_m;
     enum label_rank rank;
-    int held;  /* its slot in the picture before, or LABEL_NONE */
-    bool ring; /* of alarm colours around it */
+    int held;    /* its slot in the picture before, or LABEL_NONE */
+    bool ring;   /* of alarm colours around it: those of rank LABEL_BEYOND */
+    int callout; /* the one that it was in in the picture before, or LABEL_NONE */
 };
 struct label_area {
     struct box box;
     double unit;
     const struct box *blocked;
     size_t blocked_count;
+    void (*measure)(void *arg, const int *members, size_t count, double size[2]); /* of the call-out of these items */
+    void *arg;
+};
+struct label_place {
+    struct box box;
+    int slot;    /* LABEL_NONE: no label */
+    int callout; /* the item that leads the call-out that it is in, or LABEL_NONE: a label of its own */
 };
 
-/* slots: by item; LABEL_NONE: no label. */
-void labels_place(const struct label_item *items, size_t count, const struct label_area *area, int *slots);
+/* places: by item. */
+void labels_place(const struct label_item *items, size_t count, const struct label_area *area, struct label_place *places);
 struct box label_box(const struct label_item *item, int slot, double unit);
 
 #endif

@@ -27,6 +27,15 @@ static struct box box_of(const json_t *array)
     return (struct box){ at(array, 0), at(array, 1), at(array, 2) - at(array, 0), at(array, 3) - at(array, 1) };
 }
 
+/* As wide and high as it says, whatever is in it. */
+static void measure(void *arg, const int *members, size_t count, double size[2])
+{
+    const json_t *list = arg;
+    assert_true(count > 1 && members[0] >= 0);
+    size[0] = at(list, 0);
+    size[1] = at(list, 1);
+}
+
 static void check_vector(const char *name)
 {
     char *path = mem_printf("%s/%s", FOLDER, name);
@@ -36,26 +45,34 @@ static void check_vector(const char *name)
     size_t count = json_array_size(list), blocked_count = json_array_size(blocked);
     struct label_item *items = mem_array(count, sizeof(*items));
     struct box *boxes = mem_array(blocked_count, sizeof(*boxes));
-    int *slots = mem_array(count, sizeof(*slots));
+    struct label_place *places = mem_array(count, sizeof(*places));
     for (size_t i = 0; i < count; i++) {
         const json_t *item = json_array_get(list, i);
         items[i] =
             (struct label_item){ at(item, 0), at(item, 1), at(item, 2), at(item, 3), at(item, 5), (int)at(item, 4), (int)at(item, 6),
-                                 at(item, 7) > 0 }; /* left out: no ring */
+                                 at(item, 7) > 0, LABEL_NONE }; /* left out: no ring */
+        if (json_array_size(item) > 8)
+            items[i].callout = (int)at(item, 8);
     }
     for (size_t i = 0; i < blocked_count; i++)
         boxes[i] = box_of(json_array_get(blocked, i));
     struct label_area area = { .box = box_of(json_object_get(vector, "area")),
                                .unit = json_number_value(json_object_get(vector, "unit")),
                                .blocked = boxes,
-                               .blocked_count = blocked_count };
-    labels_place(items, count, &area, slots);
-    for (size_t i = 0; i < count; i++)
-        if (slots[i] != (int)at(json_object_get(vector, "slots"), i))
-            fail_msg("%s: item %zu has slot %d, not %g", name, i, slots[i], at(json_object_get(vector, "slots"), i));
+                               .blocked_count = blocked_count,
+                               .measure = measure,
+                               .arg = json_object_get(vector, "callout") };
+    const json_t *slots = json_object_get(vector, "slots"), *callouts = json_object_get(vector, "callouts");
+    labels_place(items, count, &area, places);
+    for (size_t i = 0; i < count; i++) {
+        if (places[i].slot != (int)at(slots, i))
+            fail_msg("%s: item %zu has slot %d, not %g", name, i, places[i].slot, at(slots, i));
+        if (places[i].callout != (callouts ? (int)at(callouts, i) : LABEL_NONE))
+            fail_msg("%s: item %zu is in call-out %d, not %g", name, i, places[i].callout, at(callouts, i));
+    }
     mem_free(items);
     mem_free(boxes);
-    mem_free(slots);
+    mem_free(places);
     mem_free(path);
     json_decref(vector);
 }
@@ -81,7 +98,7 @@ static void many_labels_do_not_overlap(void **state)
     (void)state;
     enum { COUNT = 4096 };
     static struct label_item items[COUNT];
-    static int slots[COUNT];
+    static struct label_place places[COUNT];
     uint64_t seed = 11;
     for (int i = 0; i < COUNT; i++)
         items[i] = (struct label_item){ .x = 1920 * synthetic_random_unit(&seed),
@@ -89,17 +106,18 @@ static void many_labels_do_not_overlap(void **state)
                                         .width = 60,
                                         .height = 18,
                                         .depth_m = 1 + synthetic_random_unit(&seed),
-                                        .rank = i % 5 - 1,
-                                        .held = LABEL_NONE };
-    labels_place(items, COUNT, &(struct label_area){ .box = { 0, 0, 1920, 1080 }, .unit = 1 }, slots);
+                                        .rank = i % 4 - 1,
+                                        .held = LABEL_NONE,
+                                        .callout = LABEL_NONE };
+    labels_place(items, COUNT, &(struct label_area){ .box = { 0, 0, 1920, 1080 }, .unit = 1 }, places);
     int shown = 0;
     for (int i = 0; i < COUNT; i++) {
-        if (slots[i] == LABEL_NONE)
+        if (places[i].slot == LABEL_NONE)
             continue;
-        struct box a = label_box(&items[i], slots[i], 1);
+        struct box a = places[i].box;
         assert_true(items[i].rank != LABEL_NOT_WANTED && a.x >= 0 && a.y >= 0 && a.x + a.width <= 1920 && a.y + a.height <= 1080);
         for (int k = 0; k < i; k++) {
-            struct box b = slots[k] == LABEL_NONE ? (struct box){ 0 } : label_box(&items[k], slots[k], 1);
+            struct box b = places[k].slot == LABEL_NONE ? (struct box){ 0 } : places[k].box;
             assert_true(a.x >= b.x + b.width || b.x >= a.x + a.width || a.y >= b.y + b.height || b.y >= a.y + a.height);
         }
         shown++;

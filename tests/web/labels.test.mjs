@@ -4,6 +4,7 @@ import assert from 'node:assert/strict';
 import { readdirSync, readFileSync } from 'node:fs';
 import { test } from 'node:test';
 import { projector } from '../../clients/web/core/camera.js';
+import { placeRings } from '../../clients/web/core/callouts.js';
 import { FIRST_FAR, leaderLine, placeLabels } from '../../clients/web/core/labels.js';
 
 const folder = new URL('../../protocol/vectors/labels/', import.meta.url);
@@ -12,10 +13,15 @@ const box = ([left, top, right, bottom]) => ({ left, top, right, bottom });
 for (const name of readdirSync(folder)) {
     const vector = JSON.parse(readFileSync(new URL(name, folder), 'utf8'));
     test(`labels ${name}: ${vector.what}`, () => {
-        const names = ['x', 'y', 'width', 'height', 'rank', 'depth', 'held', 'ring'];
+        const names = ['x', 'y', 'width', 'height', 'rank', 'depth', 'held', 'ring', 'callout'];
         const items = vector.items.map((row, id) => ({ id, ...Object.fromEntries(names.map((n, i) => [n, row[i]])) }));
-        const placed = placeLabels(items, { area: box(vector.area), unit: vector.unit, blocked: vector.blocked.map(box) });
+        for (const item of items)
+            item.callout = item.callout >= 0 ? item.callout : undefined;
+        const measure = () => ({ width: vector.callout[0], height: vector.callout[1] });
+        const placed = placeLabels(items, { area: box(vector.area), unit: vector.unit, blocked: vector.blocked.map(box), rings: placeRings,
+            measure });
         assert.deepEqual(items.map(({ id }) => placed.get(id)?.slot ?? -1), vector.slots);
+        assert.deepEqual(items.map(({ id }) => placed.get(id)?.callout ?? -1), vector.callouts ?? items.map(() => -1));
     });
 }
 
@@ -53,6 +59,35 @@ test('none over another, none over a mark, all inside; important ones are not cr
     }
 });
 
+// From a phone's picture to a wall's, from a few rings to many, with a legend in the way.
+test('every ring is in a label or a call-out, within the picture and over no legend', () => {
+    for (let round = 0; round < 300; round++) {
+        const [right, bottom] = [random(150, 1300), random(110, 700)], legend = { left: right - 90, right, top: 0, bottom: bottom * 0.8 };
+        const near = random(0, 1) < 0.5 ? 40 : 2000, centre = [random(0, right), random(0, bottom)];
+        const clamp = (x, most) => Math.max(0, Math.min(most, x));
+        const items = Array.from({ length: 1 + Math.floor(random(0, 60)) }, (_, id) => {
+            const ring = id % 4 > 0;
+            return { id, x: clamp(centre[0] + random(-near, near), right), y: clamp(centre[1] + random(-near, near), bottom), width: 110,
+                height: 20, rank: ring ? 3 : 0, ring, depth: random(1, 90) };
+        });
+        const placed = placeLabels(items, { area: { left: 0, top: 0, right, bottom }, blocked: [legend], rings: placeRings,
+            measure: () => ({ width: 130, height: 36 }) });
+        const rings = items.filter(({ ring }) => ring), boxes = new Map();
+        for (const { id } of rings) {
+            const place = placed.get(id);
+            assert.ok(place, `ring ${id} of ${rings.length} has none, in ${right} x ${bottom}`);
+            boxes.set(place.callout ?? id, { ...place, right: place.left + place.width, bottom: place.top + place.height });
+        }
+        const list = [...boxes.values()];
+        assert.ok(list.every((a) => a.left >= 0 && a.top >= 0 && a.right <= right && a.bottom <= bottom));
+        if (bottom * 0.2 < 60 && right - 90 < 165)
+            continue; // beside the legend there is hardly room for one
+        for (const [i, a] of list.entries())
+            assert.ok([legend, ...list.slice(0, i)].every((b) => a.left >= b.right || b.left >= a.right || a.top >= b.bottom ||
+                b.top >= a.bottom));
+    }
+});
+
 // A camera that turns about a plant of sensors, a quarter of a degree each picture; and one that trembles by a fraction of a pixel.
 const sensors = Array.from({ length: 60 }, (_, i) => {
     const away = 12 * Math.sqrt(i / 60);
@@ -63,9 +98,10 @@ function labelsFrom(angle, places) {
     const project = projector(camera, 1280, 720);
     const items = sensors.map((sensor, id) => {
         const [x, y, depth] = project(sensor);
-        return { id, x, y, width: 64, height: 20, rank: id % 9 === 0 ? 3 : 0, depth, held: places.get(id)?.slot };
+        return { id, x, y, width: 64, height: 20, rank: id % 9 === 0 ? 3 : 0, ring: id % 9 === 0, depth, held: places.get(id)?.slot,
+            callout: places.get(id)?.callout };
     });
-    return placeLabels(items, { area });
+    return placeLabels(items, { area, rings: placeRings, measure: () => ({ width: 130, height: 36 }) });
 }
 
 test('while the camera turns labels stay, and do not come and go', () => {

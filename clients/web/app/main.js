@@ -27,6 +27,7 @@ const legend = new Legend({ session, element: byId('legend'), paramsOf: (params)
 new Legend({ session, element: byId('legend-right'), paramsOf: rightOf });
 const overlay = new Overlay({ canvas: byId('overlay'), viewport, session, selection });
 overlay.unit = page.unit;
+overlay.onRings = () => parts.prepare('callouts');
 const strip = new AlarmStrip({ session, refresh });
 const status = new Status({ session, onFreshness: (fresh) => {
     overlay.fresh = fresh;

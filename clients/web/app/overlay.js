@@ -4,13 +4,14 @@ import { isGone } from '../core/alarms.js';
 import { projector } from '../core/camera.js';
 import { changeText, decimalsFor, numberText, unitText } from '../core/format.js';
 import { halves } from '../core/halves.js';
-import { FIRST_FAR, leaderLine, MOST_BAD, placeLabels } from '../core/labels.js';
+import { FIRST_FAR, leaderLine, MOST_BAD, placeLabels, RANK_RING } from '../core/labels.js';
 import { say } from '../core/words.js';
 
 export const INK = '#1d252d';
-const INK_2 = '#4d5964', ACCENT = '#2a5f8f';
+export const INK_2 = '#4d5964', ACCENT = '#2a5f8f';
 const ALARM_COLOURS = [['#c40d20', '#fff'], ['#e06a0a', '#1b0d00'], ['#f2bb0d', '#1b1300'], ['#1b93b5', '#00161d']]; // by priority
-const LABEL_HEIGHT = 20, PADDING = 6, NAMES_UP_TO = 24;
+export const LABEL_HEIGHT = 20;
+const PADDING = 6, NAMES_UP_TO = 24;
 
 const SHAPES = {
     good: (c, r) => c.arc(0, 0, r, 0, 2 * Math.PI),
@@ -39,6 +40,7 @@ export class Overlay {
         this.markers = []; // { tag, x, y, depth, occluded, reading }, in units
         this.places = new Map();
         this.widths = new Map();
+        this.onRings = () => {}; // there are several, or one without a label: call-outs are needed
         this.dirty = true;
         this.fresh = true; // false: the values are those of a lost connection
     }
@@ -111,14 +113,10 @@ export class Overlay {
         this.places = this.place(labels);
         for (const marker of this.markers)
             this.drawMarker(marker);
-        for (const label of labels) {
-            const place = this.places.get(label.id);
-            if (place)
-                this.drawLabel(label, place);
-        }
+        this.drawLabels(labels);
         const boxes = labels.filter(({ id }) => this.places.has(id)).map(({ id, width: w, height: h }) => {
-            const { left, top } = this.places.get(id);
-            return { left, top, right: left + w, bottom: top + h };
+            const { left, top, width: wide = w, height: high = h } = this.places.get(id);
+            return { left, top, right: left + wide, bottom: top + high };
         });
         const marks = this.markers.map(({ x, y }) => ({ left: x - 5, right: x + 5, top: y - 5, bottom: y + 5 }));
         this.isolines?.draw([...this.blocked(), ...boxes, ...marks]);
@@ -141,13 +139,17 @@ export class Overlay {
         return tag.name === this.selection.tag || tag === this.selection.hover;
     }
 
-    // Each half for itself.
+    // Each half for itself. Call-outs come when there are rings that may need them.
     place(labels) {
-        const { shown } = this.session, { wide: width, high: height } = this, blocked = this.blocked();
+        const { shown } = this.session, { wide: width, high: height, callouts } = this, blocked = this.blocked();
         const placed = halves(shown, width).map((half, number) => placeLabels(labels.filter((label) => label.half === number), {
             area: { left: half.left, top: 0, right: half.left + half.width, bottom: height }, blocked,
+            rings: callouts?.place, measure: (members) => callouts.measure(members),
         }));
-        return new Map(placed.flatMap((one) => [...one]));
+        const all = new Map(placed.flatMap((one) => [...one])), rings = labels.filter(({ rank }) => rank === RANK_RING);
+        if (!callouts && (rings.length > 1 || rings.some(({ id }) => !all.has(id))))
+            this.onRings();
+        return all;
     }
 
     // All marks in sight and all rings, in order of tags; the card speaks for the chosen.
@@ -162,13 +164,13 @@ export class Overlay {
             const { alarm } = marker;
             const onSelected = tag.asset === this.session.params.selected;
             const parts = this.parts(marker, named || onSelected || marker.origin || alarm !== null);
-            const width = Math.ceil(parts.reduce((sum, part) => sum + this.width(part), 0) + 2 * PADDING + (parts.length - 1) * 5);
+            const width = this.lineWidth(parts);
             const bad = reading.quality === 'bad', unseen = (marker.occluded || marker.distance_m === null) && !alarm;
             const silent = unseen || this.isChosen(tag) || (bad && tooMany);
-            const rank = silent ? -1 : alarm || marker.origin ? 3 : bad ? 2 : reading.quality !== 'good' || onSelected ? 1 : 0;
+            const rank = silent ? -1 : alarm ? RANK_RING : bad || marker.origin ? 2 : reading.quality !== 'good' || onSelected ? 1 : 0;
             const { x, y, depth, half } = marker;
-            const held = this.places.get(id)?.slot, ring = alarm !== null;
-            return { id, half, x, y, width, height: LABEL_HEIGHT, rank, depth, held, parts, alarm, ring };
+            const { slot: held, callout } = this.places.get(id) ?? {}, ring = alarm !== null;
+            return { id, half, x, y, width, height: LABEL_HEIGHT, rank, depth, held, callout, parts, alarm, ring, tag };
         });
     }
 
@@ -261,28 +263,48 @@ export class Overlay {
         c.restore();
     }
 
-    drawLabel(label, place) {
-        const { width, height, parts, alarm } = label, { left, top } = place;
-        const c = this.context;
-        if (place.slot >= FIRST_FAR) {
-            const [x1, y1, x2, y2] = leaderLine(label, place, this.radius);
-            c.beginPath();
-            c.moveTo(x1, y1);
-            c.lineTo(x2, y2);
-            c.lineWidth = 1;
-            c.strokeStyle = 'rgb(29 37 45 / 0.7)';
-            c.stroke();
+    drawLabels(labels) {
+        const places = labels.map((label) => [label, this.places.get(label.id)]).filter(([, place]) => place);
+        for (const [label, place] of places) {
+            if (place.slot >= FIRST_FAR || place.callout !== undefined)
+                this.drawLeader(label, place);
         }
-        const x = Math.round(left), y = Math.round(top);
+        for (const [label, place] of places) {
+            if (place.callout === undefined) {
+                this.drawPlate(place, label);
+                this.drawParts(label.parts, place, label.alarm);
+            } else if (place.callout === label.id) {
+                this.callouts.draw(places.filter((one) => one[1].callout === label.id).map(([member]) => member), place);
+            }
+        }
+    }
+
+    drawLeader(label, place) {
+        const c = this.context, [x1, y1, x2, y2] = leaderLine({ ...label, ...place }, place, label.ring ? 12 : this.radius);
         c.beginPath();
-        c.roundRect(x + 0.5, y + 0.5, width - 1, height - 1, 4);
+        c.moveTo(x1, y1);
+        c.lineTo(x2, y2);
+        c.lineWidth = 1;
+        c.strokeStyle = 'rgb(29 37 45 / 0.7)';
+        c.stroke();
+    }
+
+    drawPlate({ left, top }, { width, height }) {
+        const c = this.context;
+        c.beginPath();
+        c.roundRect(Math.round(left) + 0.5, Math.round(top) + 0.5, width - 1, height - 1, 4);
         c.fillStyle = 'rgb(255 255 255 / 0.9)';
         c.fill();
         c.lineWidth = 1;
         c.strokeStyle = 'rgb(29 37 45 / 0.3)';
         c.stroke();
+    }
+
+    // A line of text.
+    drawParts(parts, { left, top }, alarm) {
+        const c = this.context, y = Math.round(top);
         c.textBaseline = 'middle';
-        let at = x + PADDING;
+        let at = Math.round(left) + PADDING;
         for (const part of parts) {
             const wide = this.width(part);
             const flag = part[2] === null, hollow = flag && isGone(alarm.state);
@@ -290,15 +312,20 @@ export class Overlay {
             if (hollow) {
                 c.strokeStyle = ground;
                 c.lineWidth = 2;
-                c.strokeRect(at - 2, y + 3.5, wide + 4, height - 7);
+                c.strokeRect(at - 2, y + 3.5, wide + 4, LABEL_HEIGHT - 7);
             } else if (flag) {
                 c.fillStyle = ground;
-                c.fillRect(at - 3, y + 2.5, wide + 6, height - 5);
+                c.fillRect(at - 3, y + 2.5, wide + 6, LABEL_HEIGHT - 5);
             }
             this.setFont(part[1]);
             c.fillStyle = hollow ? INK : part[2] ?? ink;
-            c.fillText(part[0], at, y + height / 2 + 0.5);
+            c.fillText(part[0], at, y + LABEL_HEIGHT / 2 + 0.5);
             at += wide + 5;
         }
+    }
+
+    // As wide as a label with this text.
+    lineWidth(parts) {
+        return Math.ceil(parts.reduce((sum, part) => sum + this.width(part), 0) + 2 * PADDING + (parts.length - 1) * 5);
     }
 }

@@ -13,6 +13,7 @@ const PARTS = {
     alarms: { type: 'AlarmList', styles: ['alarms', 'help'], fills: 'alarms' },
     arrival: { type: 'Arrival' },
     assets: { type: 'Assets', wordless: true },
+    callouts: { type: 'Callouts' },
     card: { type: 'Card', styles: ['card', 'about'] },
     commands: { type: 'Commands', wordless: true },
     engineer: { type: 'Engineer', styles: ['panel', 'help', 'engineer'] },

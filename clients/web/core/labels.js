@@ -2,17 +2,19 @@
 // Which labels are shown beside their markers, and where: the rule of protocol/LABELS.md.
 
 const SPACINGS = [0.16, 0.08, 0], HELD = 0.8; // of the area's width; what is held counts so much
-const MARK = 5, RING = 13, CLEARANCE = 3, NEAR_GAP = 8, FAR_GAP = 22; // units
+const MARK = 5, RING = 13, NEAR_GAP = 8, FAR_GAP = 22; // units
+export const CLEARANCE = 3;
 const ROOM = 0.06;                            // of the area
 export const FIRST_FAR = 8;                   // from this slot on with a leader line
+export const RANK_RING = 3;
 export const MOST_BAD = 12;
 
-const SLOTS = [ // side, upper edge in heights
+export const SLOTS = [ // side, upper edge in heights
     [1, -0.5], [-1, -0.5], [1, -1.3], [1, 0.3], [-1, -1.3], [-1, 0.3], [0, -1.9], [0, 0.9],
     [1, -2], [-1, -2], [1, 1], [-1, 1], [1, -3.2], [-1, -3.2], [1, 2.2], [-1, 2.2],
 ];
 
-const meets = (a, b) => a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
+export const meets = (a, b) => a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
 
 // A grid, so that thousands of labels do not each look at all others.
 class Taken {
@@ -35,24 +37,27 @@ class Taken {
             this.cells.set(key, [...(this.cells.get(key) ?? []), box]);
     }
 
-    meets(box, owner) {
-        return this.keys(box).some((key) => (this.cells.get(key) ?? []).some((other) => other.owner !== owner && meets(box, other)));
+    // over: what it may lie over: 1: marks without a ring; 2: any marks.
+    meets(box, owner, over = 0) {
+        return this.keys(box).some((key) => (this.cells.get(key) ?? []).some((other) =>
+            other.owner !== owner && !(other.mark <= over) && meets(box, other)));
     }
 }
 
-function boxAt({ x, y, width, height, ring }, slot, unit) {
+// across, down: from the middle of several markers to the outermost.
+export function boxAt({ x, y, width, height, ring, across = 0, down = 0 }, slot, unit) {
     const [side, edge] = SLOTS[slot];
     const gap = (slot < FIRST_FAR ? NEAR_GAP : FAR_GAP) * unit;
     const more = ring ? (RING - MARK) * unit : 0;
-    const left = side > 0 ? x + gap + more : side < 0 ? x - gap - more - width : x - width / 2;
-    const top = y + edge * height + (side === 0 ? Math.sign(edge + 0.5) * more : 0);
+    const left = side > 0 ? x + across + gap + more : side < 0 ? x - across - gap - more - width : x - width / 2;
+    const top = y + edge * height + (side === 0 ? Math.sign(edge + 0.5) * (more + down) : 0);
     return { left, top, right: left + width, bottom: top + height };
 }
 
-// items: { id, x, y (the marker), width, height, rank, depth, held (slot or undefined), ring (of alarm colours around it) };
-// area: { left, top, right, bottom }.
-// Returns Map id -> { left, top, slot }.
-export function placeLabels(items, { area, unit = 1, blocked = [] }) {
+// items: { id, x, y (the marker), width, height, rank, depth, held (slot or undefined), ring (of alarm colours around it), callout (the
+// one that it was in) }; area: { left, top, right, bottom }; rings: placeRings of callouts.js; measure(items): the size of a call-out.
+// Returns Map id -> { left, top, slot }; of rings also width, height and callout (undefined: it has a label of its own).
+export function placeLabels(items, { area, unit = 1, blocked = [], rings = null, measure = null }) {
     const wide = area.right - area.left, room = ROOM * wide * (area.bottom - area.top);
     const taken = new Taken(96 * unit), placed = new Map(), centres = [];
     const clearance = CLEARANCE * unit;
@@ -61,7 +66,7 @@ export function placeLabels(items, { area, unit = 1, blocked = [] }) {
         taken.add(box);
     for (const { id, x, y, ring } of items) {
         const radius = (ring ? RING : MARK) * unit;
-        taken.add({ left: x - radius, right: x + radius, top: y - radius, bottom: y + radius, owner: id });
+        taken.add({ left: x - radius, right: x + radius, top: y - radius, bottom: y + radius, owner: id, mark: ring ? 2 : 1 });
     }
     const isHeld = (item) => item.held !== undefined && item.held !== null && item.held >= 0;
     const far = (item) => item.depth * (isHeld(item) ? HELD : 1);
@@ -86,7 +91,16 @@ export function placeLabels(items, { area, unit = 1, blocked = [] }) {
             return;
         }
     };
-    for (let rank = 3; rank >= 0; rank--) {
+    for (const { members, box, slot } of rings?.(order.filter((item) => item.rank === RANK_RING), { area, unit, taken, measure }) ?? []) {
+        const callout = members.length > 1 ? members[0].id : undefined;
+        taken.add({ ...box, owner: members[0].id });
+        for (const item of members) {
+            placed.set(item.id, { left: box.left, top: box.top, width: box.right - box.left, height: box.bottom - box.top, slot, callout });
+            centres.push(item);
+        }
+        used += (box.right - box.left) * (box.bottom - box.top);
+    }
+    for (let rank = RANK_RING; rank >= 0; rank--) {
         const mine = order.filter((item) => item.rank === rank);
         for (const spacing of SPACINGS) {
             for (const item of mine) {

@@ -115,6 +115,10 @@ size: Größe
 place: Mitte bei
 sensors.name: Sensoren
 
+[callout]
+count: {count} Alarme
+worst: schwerster
+
 [card]
 novalue: Kein Wert
 quality: Qualität

@@ -115,6 +115,10 @@ size: Size
 place: Middle at
 sensors.name: Sensors
 
+[callout]
+count: {count} alarms
+worst: worst
+
 [card]
 novalue: No value
 quality: Quality

@@ -114,6 +114,10 @@ size: 크기
 place: 중심
 sensors.name: 센서
 
+[callout]
+count: 알람 {count}건
+worst: 가장 심각
+
 [card]
 novalue: 값 없음
 quality: 품질

@@ -116,11 +116,13 @@ struct label_text {
     double name_width;
 };
 
-/* From the mark's rim to the nearest point of the label. */
+/* From the rim of the mark, or of its ring, to the nearest point of the label. */
 static void draw_leader(struct pen *pen, const struct label_item *item, const struct box *box)
 {
     double x = fmax(box->x, fmin(box->x + box->width, item->x)), y = fmax(box->y, fmin(box->y + box->height, item->y));
-    double away = fmax(hypot(x - item->x, y - item->y), 1e-6), rim = 5 * pen->unit / away;
+    double away = fmax(hypot(x - item->x, y - item->y), 1e-6), rim = (item->ring ? 11 : 5) * pen->unit / away;
+    if (rim >= 1)
+        return;
     cairo_move_to(pen->cairo, item->x + (x - item->x) * rim, item->y + (y - item->y) * rim);
     cairo_line_to(pen->cairo, x, y);
     cairo_set_line_width(pen->cairo, fmax(1, pen->unit));
@@ -168,51 +170,121 @@ static bool is_inside(const struct pen *pen, const struct frame_marker *marker)
 struct wanted {
     struct label_item *items;
     struct label_text *texts;
+    int *tags;
     size_t count, bad;
+    struct pen *pen;
 };
 
 static void add_wanted(struct pen *pen, const struct frame_marker *marker, struct wanted *wanted)
 {
     const struct plant_tag *tag = &pen->scene->plant->tags[marker->tag];
     struct label_item *item = &wanted->items[wanted->count];
-    struct label_text *text = &wanted->texts[wanted->count++];
+    struct label_text *text = &wanted->texts[wanted->count];
+    wanted->tags[wanted->count++] = marker->tag;
     double pad = 4 * pen->unit;
     format_value(pen, marker, text->value);
     snprintf(text->name, sizeof(text->name), "%s  ", tag->name);
     pen_font(pen, 0.85, false);
     text->name_width = pen_text_width(pen, text->name);
     pen_font(pen, 0.85, true);
-    *item = (struct label_item){ .x = (double)marker->x_px, .y = (double)marker->y_px, .held = LABEL_NONE };
+    *item = (struct label_item){ .x = (double)marker->x_px, .y = (double)marker->y_px, .held = LABEL_NONE, .callout = LABEL_NONE };
     item->width = text->name_width + pen_text_width(pen, text->value) + 2 * pad;
     item->height = 0.95 * pen->text_px + 2 * pad;
     item->depth_m = depth_of(pen, marker->tag);
     item->ring = has_alarm(pen, marker);
-    item->rank = marker->occluded || (is_elsewhere(pen, marker) && !has_alarm(pen, marker))        ? LABEL_NOT_WANTED
-                 : has_alarm(pen, marker)                                                          ? LABEL_BEYOND
+    item->rank = item->ring                                                                        ? LABEL_BEYOND
+                 : marker->occluded || is_elsewhere(pen, marker)                                   ? LABEL_NOT_WANTED
                  : is_bad(marker)                                                                  ? LABEL_BAD
                  : quality_is_uncertain(marker->quality) || tag->asset == pen->view.selected_asset ? LABEL_DOUBTFUL
                                                                                                     : LABEL_PLAIN;
     wanted->bad += item->rank == LABEL_BAD;
 }
 
+/* --- call-outs: the alarms of several rings together --------------------------------------------------------------------------- */
+
+struct callout_text {
+    char what[200], worst[200];
+};
+
+/* The asset, where it is only one; how many alarms; and the gravest of them. */
+static void write_callout(const struct wanted *wanted, const int *members, size_t count, struct callout_text *text)
+{
+    const struct plant *plant = wanted->pen->scene->plant;
+    const struct reading *readings = wanted->pen->snapshot->readings;
+    int asset = plant->tags[wanted->tags[members[0]]].asset, worst = -1, least = 0;
+    for (size_t i = 0; i < count; i++) {
+        int tag = wanted->tags[members[i]], word = (int)readings[tag].alarm_word;
+        bool gone = word == ALARM_RETURNED || word == ALARM_LATCHED; /* these come last */
+        int grave = alarm_priority(&plant->tags[tag], (enum alarm_kind)readings[tag].alarm) + (gone ? ALARM_PRIORITIES : 0);
+        if (worst < 0 || grave < least || (grave == least && tag < worst)) {
+            worst = tag;
+            least = grave;
+        }
+        if (plant->tags[tag].asset != asset)
+            asset = -1;
+    }
+    const char *where = asset >= 0 ? plant->assets[asset].tag : "";
+    snprintf(text->what, sizeof(text->what), "%.120s%s%zu alarms", where, *where ? ", " : "", count);
+    snprintf(text->worst, sizeof(text->worst), "worst %s %.120s", alarm_kind_name((enum alarm_kind)readings[worst].alarm),
+             plant->tags[worst].name);
+}
+
+static const double LINE = 1.25; /* of text_px */
+
+static void measure_callout(void *arg, const int *members, size_t count, double size[2])
+{
+    const struct wanted *wanted = arg;
+    struct pen *pen = wanted->pen;
+    struct callout_text text;
+    write_callout(wanted, members, count, &text);
+    pen_font(pen, 0.85, true);
+    size[0] = fmax(pen_text_width(pen, text.what), pen_text_width(pen, text.worst)) + 8 * pen->unit;
+    size[1] = (0.95 + LINE) * pen->text_px + 8 * pen->unit;
+}
+
+/* lead: the first of its items. */
+static void draw_callout(const struct wanted *wanted, const struct label_place *places, size_t lead)
+{
+    struct pen *pen = wanted->pen;
+    const struct box *box = &places[lead].box;
+    struct callout_text text;
+    double pad = 4 * pen->unit;
+    size_t count = 0;
+    int *members = mem_array(wanted->count, sizeof(*members));
+    for (size_t i = 0; i < wanted->count; i++)
+        if (places[i].callout == (int)lead)
+            members[count++] = (int)i;
+    write_callout(wanted, members, count, &text);
+    mem_free(members);
+    pen_card(pen, box);
+    pen_font(pen, 0.85, true);
+    pen_ink(pen, 1);
+    pen_text(pen, box->x + pad, box->y + pad + 0.72 * pen->text_px, text.what);
+    pen_text(pen, box->x + pad, box->y + pad + (0.72 + LINE) * pen->text_px, text.worst);
+}
+
 static void place_labels(struct pen *pen, struct wanted *wanted, int cards)
 {
-    struct label_area area = { .box = pen->area, .unit = pen->unit, .blocked = pen->taken, .blocked_count = (size_t)cards };
-    int *slots = mem_array(wanted->count, sizeof(*slots));
+    struct label_area area = { .box = pen->area, .unit = pen->unit, .blocked = pen->taken, .blocked_count = (size_t)cards,
+                               .measure = measure_callout, .arg = wanted };
+    struct label_place *places = mem_array(wanted->count, sizeof(*places));
     for (size_t i = 0; i < wanted->count; i++)
         if (wanted->bad > LABEL_MOST_BAD && wanted->items[i].rank == LABEL_BAD)
             wanted->items[i].rank = LABEL_NOT_WANTED;
-    labels_place(wanted->items, wanted->count, &area, slots);
+    labels_place(wanted->items, wanted->count, &area, places);
+    for (size_t i = 0; i < wanted->count; i++)
+        if (places[i].slot >= LABEL_FIRST_FAR || places[i].callout != LABEL_NONE)
+            draw_leader(pen, &wanted->items[i], &places[i].box);
     for (size_t i = 0; i < wanted->count; i++) {
-        if (slots[i] == LABEL_NONE)
+        if (places[i].slot == LABEL_NONE || (places[i].callout != LABEL_NONE && places[i].callout != (int)i))
             continue;
-        struct box box = label_box(&wanted->items[i], slots[i], pen->unit);
-        if (slots[i] >= LABEL_FIRST_FAR)
-            draw_leader(pen, &wanted->items[i], &box);
-        draw_label(pen, &box, &wanted->texts[i]);
-        pen_take(pen, &box);
+        if (places[i].callout == (int)i)
+            draw_callout(wanted, places, i);
+        else
+            draw_label(pen, &places[i].box, &wanted->texts[i]);
+        pen_take(pen, &places[i].box);
     }
-    mem_free(slots);
+    mem_free(places);
 }
 
 static bool is_under(const struct pen *pen, int cards, const struct box *mark)
@@ -268,9 +340,10 @@ bool overlay_marker_seen(const struct pen *pen, const struct frame_marker *marke
 void overlay_markers(struct pen *pen)
 {
     int cards = pen->taken_count; /* what lies over the picture already */
-    struct wanted wanted = { 0 };
+    struct wanted wanted = { .pen = pen };
     wanted.items = mem_array(pen->frame->marker_count, sizeof(*wanted.items));
     wanted.texts = mem_array(pen->frame->marker_count, sizeof(*wanted.texts));
+    wanted.tags = mem_array(pen->frame->marker_count, sizeof(*wanted.tags));
     for (size_t i = 0; i < pen->frame->marker_count; i++) {
         const struct frame_marker *marker = &pen->frame->markers[i];
         struct box mark = mark_box(pen, marker);
@@ -288,4 +361,5 @@ void overlay_markers(struct pen *pen)
     label_isolines(pen);
     mem_free(wanted.items);
     mem_free(wanted.texts);
+    mem_free(wanted.tags);
 }

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Rings of alarms: each in a label of its own, or in a call-out together with those close to it: the rule of protocol/LABELS.md.
+import { boxAt, CLEARANCE, meets, SLOTS } from './labels.js';
+
+const CLOSE = 26, STILL_CLOSE = 34;         // units between rings that share a call-out; between those that did in the picture before
+const STEP_X = 24, STEP_Y = 15, STEPS = 60; // units: where else a label may be, from the middle of its rings
+const FARTHEST = 170;                       // units, unless there is no other label to join
+
+const OFFSETS = []; // [x, y, squared distance], the nearest first
+for (let j = -STEPS; j <= STEPS; j++) {
+    for (let i = -STEPS; i <= STEPS; i++)
+        OFFSETS.push([i * STEP_X, j * STEP_Y, (i * STEP_X) ** 2 + (j * STEP_Y) ** 2]);
+}
+OFFSETS.sort((a, b) => a[2] - b[2]); // stable: by rows
+
+// [[index, ...], ...], each ascending, in the order of their first ones: what linked(i, k), k < i, joins.
+function components(count, linked) {
+    const first = Array.from({ length: count }, (_, i) => i);
+    const root = (i) => (first[i] === i ? i : (first[i] = root(first[i])));
+    for (let i = 0; i < count; i++) {
+        for (let k = 0; k < i; k++) {
+            const [a, b] = [root(i), root(k)];
+            if (a !== b && linked(i, k))
+                first[Math.max(a, b)] = Math.min(a, b);
+        }
+    }
+    const out = new Map();
+    for (let i = 0; i < count; i++)
+        out.set(root(i), [...(out.get(root(i)) ?? []), i]);
+    return [...out.values()];
+}
+
+function group(members, measure) {
+    const xs = members.map(({ x }) => x), ys = members.map(({ y }) => y);
+    const [left, right, top, bottom] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
+    const [one] = members, alone = members.length === 1, { width, height } = alone ? one : measure(members);
+    const before = members.find(({ callout }) => (callout === undefined) === alone); // it had such a label, or another kind
+    return {
+        members, x: (left + right) / 2, y: (top + bottom) / 2, across: (right - left) / 2, down: (bottom - top) / 2, width, height,
+        ring: true, held: before?.held ?? -1, owner: alone ? one.id : null,
+    };
+}
+
+function boxOf(one, slot, unit) {
+    if (slot < SLOTS.length)
+        return boxAt(one, slot, unit);
+    const [dx, dy] = OFFSETS[slot - SLOTS.length];
+    const left = one.x + dx * unit - one.width / 2, top = one.y + dy * unit - one.height / 2;
+    return { left, top, right: left + one.width, bottom: top + one.height };
+}
+
+// order: items with rings, the most important first; measure(members): { width, height } of their call-out; taken: of labels.js.
+// Returns [{ members, box, slot }, ...]: every item is in one of them.
+export function placeRings(order, { area, unit, taken, measure }) {
+    const close = (i, k) => {
+        const a = order[i], b = order[k], did = a.callout !== undefined && a.callout === b.callout;
+        return (a.x - b.x) ** 2 + (a.y - b.y) ** 2 < ((did ? STILL_CLOSE : CLOSE) * unit) ** 2;
+    };
+    let groups = components(order.length, close).map((list) => group(list.map((i) => order[i]), measure));
+    for (;;) {
+        const out = [], lost = [], alone = groups.length === 1;
+        for (const one of groups) {
+            const slot = find(one, out, alone);
+            if (slot === null)
+                lost.push(groups.indexOf(one));
+            else
+                out.push({ members: one.members, slot: Math.min(slot, 1e6), box: slot > 1e6 ? forced(one) : boxOf(one, slot, unit) });
+        }
+        if (lost.length === 0)
+            return out;
+        const mates = new Map(lost.map((i) => [i, nearest(i)]));
+        groups = components(groups.length, (i, k) => mates.get(i) === k || mates.get(k) === i)
+            .map((list) => group(order.filter((item) => list.some((i) => groups[i].members.includes(item))), measure));
+    }
+
+    // null: nowhere near; Infinity: nowhere at all, and there is nothing to join.
+    function find(one, out, alone) {
+        const free = (slot, more, over) => {
+            const box = boxOf(one, slot, unit), owner = slot < SLOTS.length ? one.owner : null;
+            const grown = { left: box.left - more, right: box.right + more, top: box.top - more, bottom: box.bottom + more };
+            return box.left >= area.left && box.top >= area.top && box.right <= area.right && box.bottom <= area.bottom &&
+                !taken.meets(grown, owner, over) && !out.some((other) => meets(grown, other.box));
+        };
+        if (one.held >= 0 && one.held < SLOTS.length + OFFSETS.length && free(one.held, 0, 1))
+            return one.held;
+        for (const over of [0, 1]) {
+            for (let slot = 0; slot < SLOTS.length; slot++) {
+                if (free(slot, CLEARANCE * unit, over))
+                    return slot;
+            }
+        }
+        for (const over of alone ? [1, 2] : [1]) { // at last over its own rings
+            for (let n = 0; n < OFFSETS.length && (alone || OFFSETS[n][2] <= FARTHEST ** 2); n++) {
+                if (free(SLOTS.length + n, CLEARANCE * unit, over))
+                    return SLOTS.length + n;
+            }
+        }
+        return alone ? Infinity : null;
+    }
+
+    // Over other things, but within the area.
+    function forced(one) {
+        const left = Math.max(area.left, Math.min(area.right - one.width, one.x - one.width / 2));
+        const top = Math.max(area.top, Math.min(area.bottom - one.height, one.y - one.height / 2));
+        return { left, top, right: left + one.width, bottom: top + one.height };
+    }
+
+    function nearest(i) {
+        const a = groups[i], apart = groups.map((b, k) => (k === i ? Infinity
+            : Math.max(0, Math.abs(a.x - b.x) - a.across - b.across) ** 2 + Math.max(0, Math.abs(a.y - b.y) - a.down - b.down) ** 2));
+        return apart.indexOf(Math.min(...apart));
+    }
+}

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Alarms in the picture: every ring is in a label or in a call-out, however small the picture, and none of these lies over a legend.
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { openPage, PHONE, settle, shoot, waitForPicture } from './support/browser.mjs';
+import { missing, startPlant } from './support/plant.mjs';
+
+const why = missing();
+const options = { skip: why ?? false, timeout: 200000 };
+const SCREENS = {
+    desk: { viewport: { width: 1280, height: 800 } },
+    'desk at 200 %': { viewport: { width: 640, height: 400 }, deviceScaleFactor: 2 },
+    phone: PHONE,
+    wall: { viewport: { width: 1920, height: 1080 }, query: '?wall=55,4' },
+    'far wall': { viewport: { width: 1920, height: 1080 }, query: '?wall=85,8' },
+};
+// Beyond their limits: what lies close together on one machine, behind something, and far from all others.
+const ALARMS = ['TE-161', 'TE-162', 'TE-164', 'VT-161', 'VT-162', 'VT-163', 'VT-164', 'TE-151', 'TE-152',
+    'TE-211', 'TE-212', 'TE-171', 'TE-101'];
+let plant;
+
+before(async () => {
+    if (why)
+        return;
+    plant = await startPlant();
+    for (const tag of ALARMS)
+        await plant.ask(`set ${tag} 200`);
+});
+after(() => plant?.stop());
+
+const look = (page) => page.evaluate(() => {
+    const { overlay } = globalThis.plantcast, rings = overlay.markers.filter(({ alarm }) => alarm);
+    const placeOf = ({ tag, half }) => overlay.places.get(`${tag.index}/${half}`);
+    const legends = overlay.blocked();
+    const over = rings.map(placeOf).filter((place) => place && legends.some((box) => place.left < box.right &&
+        box.left < place.left + place.width && place.top < box.bottom && box.top < place.top + place.height));
+    return {
+        rings: rings.length, without: rings.filter((ring) => !placeOf(ring)).map(({ tag }) => tag.name), over: over.length,
+        callouts: new Set(rings.map((ring) => placeOf(ring)?.callout).filter((id) => id !== undefined)).size,
+    };
+});
+
+for (const [name, { query = '', ...screen }] of Object.entries(SCREENS))
+    test(name, options, async (t) => {
+        const { page, close, errors } = await openPage(`${plant.url}${query}`, screen);
+        try {
+            await waitForPicture(page);
+            await page.waitForFunction((least) => globalThis.plantcast.overlay.callouts &&
+                globalThis.plantcast.overlay.markers.filter(({ alarm }) => alarm).length >= least, ALARMS.length - 2);
+            await settle(page);
+            for (const group of ['temperature', 'vibration']) {
+                await page.evaluate((id) => globalThis.plantcast.session.setParams({ group: id }), group);
+                await settle(page);
+                const seen = await look(page);
+                t.diagnostic(`${group}: ${seen.rings} rings, ${seen.callouts} call-outs`);
+                assert.deepEqual({ without: seen.without, over: seen.over }, { without: [], over: 0 });
+                assert.ok(seen.callouts > 0);
+            }
+            await shoot(page, `rings-${name.replace(/\W+/g, '-')}`);
+            assert.deepEqual(errors, []);
+        } finally {
+            await close();
+        }
+    });
