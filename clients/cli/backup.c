@@ -17,7 +17,7 @@
 #include "commands.h"
 #include "history/copy.h"
 #include "history/month.h"
-#include "history/when.h"
+#include "base/when.h"
 #include "plant/plant.h"
 #include "proving/proofs.h"
 

@@ -12,7 +12,7 @@
 #include "history/import.h"
 #include "history/month.h"
 #include "history/series_text.h"
-#include "history/when.h"
+#include "base/when.h"
 
 struct history_options {
     const char *plant, *folder, *csv, *tags, *from, *to, *start, *unit;
@@ -27,7 +27,8 @@ static void print_usage(FILE *out)
           "import takes series into the plant's history, also while its daemon records: what happened before it was there.\n"
           "The CSV has the columns Tag, Time, Value and perhaps Quality and Unit, or Time and one column for each tag. Values are in\n"
           "the tag's Eng Units, as its device gives them, unless Unit says another. Times are instants\n"
-          "such as 2026-11-20T10:00:00Z, or, with --start, numbers that count from there in the first column or `Time`.\n"
+          "such as 2026-11-20T10:00:00Z (without a zone: the plant's), or, with --start, numbers that count from there. They are in a\n"
+          "column called Time, Timestamp, UTC, DateTime or Date, or in the first one.\n"
           "Nothing is imported where anything is wrong; every error is printed with its line.\n"
           "\n"
           "export prints what import takes: the points that were kept (of the last hour, unless --from and --to say otherwise).\n"
@@ -76,7 +77,9 @@ static int run_import(const struct history_options *options, const struct plant 
     };
     struct import_counts counts;
     struct diag diag = { 0 };
-    if (options->start && !when_parse(options->start, clock_utc_ns() / 1000, &params.start_us))
+    when_use_zone(plant->time_zone);
+    if (options->start && !when_parse(options->start, clock_utc_ns() / 1000, &params.start_us) &&
+        !when_parse_local(options->start, INT64_MIN, &params.start_us))
         return wrong("--start: expected " WHEN_FORMS ", found", options->start);
     if (options->unit && (!options->start || !parse_unit(options->unit, &params.unit_us)))
         return wrong("--unit: expected ms, s, min or h, and --start, found", options->unit);

@@ -9,7 +9,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
-#include "history/when.h"
+#include "base/when.h"
 
 static const char snapshot_usage[] =
     "usage: plantcast snapshot (PLANT.yaml | http://HOST:PORT/) -o OUT.png [options]\n"

@@ -12,7 +12,7 @@
 #include "base/mem.h"
 #include "encode/encoder.h"
 #include "field/colormap.h"
-#include "history/when.h"
+#include "base/when.h"
 #include "net/message/query.h"
 #include "plant/image_ramp.h"
 #include "render/overlay/overlay.h"

@@ -15,6 +15,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "base/when.h"
 #include "sim_process.h"
 
 enum { TICK_MS = 100, EXIT_USAGE = 2, MAX_SPEED = 10000 };
@@ -26,7 +27,8 @@ static const char usage_text[] =
     "  --port N         listen there instead of at the port of the first source; further ports follow it\n"
     "  --bind ADDRESS   IPv4 address to listen at (127.0.0.1)\n"
     "  --values FILE    CSV of recorded series; may be given several times. Wide: a header line, the time in a column whose\n"
-    "                   name ends in _ms, _s, _min or _h. Long: no header, lines of time in ms,type,entity,property,value\n"
+    "                   name ends in _ms, _s, _min or _h, or as instants (2026-11-20T10:00:00Z; without a zone: the plant's).\n"
+    "                   One value a line: Tag, Time, Value. Long: no header, lines of time in ms,type,entity,property,value\n"
     "  --map TAG=SERIES[*SCALE[+OFFSET]]\n"
     "                   feed the tag from a column, or from entity/property of a long file; may be given several times\n"
     "  --map-file FILE  lines as for --map, `values FILE` (beside the map file), `speed X`, `loop`, # comments.\n"
@@ -220,6 +222,7 @@ static int run(struct options *options)
     bool good = false;
     struct plant *plant = plant_load(options->plant, &diag);
     if (plant) {
+        when_use_zone(plant->time_zone); /* of recorded times */
         read_map_file(options, &diag);
         values = sim_values_create(plant, &options->map, options->loop || options->map.loop, &diag);
     }

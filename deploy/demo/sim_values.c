@@ -16,6 +16,7 @@ struct tag_value {
     double forced_to;
     const struct series *series; /* NULL: the process */
     double scale, offset;
+    struct unit_change change;   /* of the series' values to what a device gives */
 };
 
 struct sim_values {
@@ -113,6 +114,15 @@ static const struct series *find_series(struct sim_values *values, const struct 
     return found ? &values->series[values->series_count++] : NULL;
 }
 
+/* A file that says a unit is in it; a device gives values in that of its tag's row. */
+static void take_unit(struct sim_values *values, const struct sim_map_entry *entry, size_t tag, struct diag *diag)
+{
+    const char *unit = values->tags[tag].series ? values->tags[tag].series->unit : NULL, *own = values->plant->tags[tag].own_unit;
+    if (unit && *unit && units_compare(unit, own, &values->tags[tag].change) > UNITS_CONVERT)
+        diag_error(diag, entry->file, entry->line, 0, "%s: %s is in '%.60s', which cannot be converted to '%.60s'", entry->tag,
+                   entry->series, unit, own);
+}
+
 static void apply_map(struct sim_values *values, const struct sim_map *map, struct diag *diag)
 {
     values->series = mem_array(map->count, sizeof(*values->series));
@@ -124,6 +134,7 @@ static void apply_map(struct sim_values *values, const struct sim_map *map, stru
             continue;
         }
         values->tags[tag].series = find_series(values, map, entry, diag);
+        take_unit(values, entry, (size_t)tag, diag);
         values->tags[tag].scale = entry->scale;
         values->tags[tag].offset = entry->offset;
     }
@@ -169,7 +180,7 @@ double sim_values_at(const struct sim_values *values, size_t tag)
     if (value->forced)
         return value->forced_to;
     if (value->series)
-        return series_at(value->series, values->now_s, values->loop) * value->scale + value->offset;
+        return unit_change_value(&value->change, series_at(value->series, values->now_s, values->loop)) * value->scale + value->offset;
     return process_value(values->process, tag);
 }
 

@@ -12,7 +12,7 @@
 #include "history/history.h"
 #include "history/month.h"
 #include "history/recorder.h"
-#include "history/when.h"
+#include "base/when.h"
 #include "plant/csv.h"
 #include "plant/number.h"
 #include "value/quality.h"
@@ -26,6 +26,7 @@ struct import {
     int *tags;                     /* wide: of each column; -1: passed over */
     int64_t *last_us;              /* by tag */
     bool *seen;
+    int64_t row_us;                /* wide: of the last row; else INT64_MIN */
     struct import_counts *counts;
 };
 
@@ -35,11 +36,11 @@ typedef bool take_sample(struct import *import, void *arg, int tag, const struct
 
 static int find_time(struct import *import)
 {
-    static const char *const names[] = { "Time", "Timestamp", "UTC" };
+    static const char *const names[] = { "Time", "Timestamp", "UTC", "DateTime", "Date" };
     for (size_t i = 0; i < sizeof(names) / sizeof(names[0]); i++)
         if (csv_find(&import->csv, names[i]) >= 0)
             return csv_find(&import->csv, names[i]);
-    return import->params->start_us != INT64_MIN ? 0 : -1; /* numbers: in the first column, whatever it is called */
+    return plant_find_tag(import->params->plant, import->csv.header.cells[0].text) < 0 ? 0 : -1; /* whatever it is called */
 }
 
 static bool find_wide(struct import *import)
@@ -80,14 +81,17 @@ static bool find_columns(struct import *import)
 
 /* --- rows ----------------------------------------------------------------------------------------------------------------------- */
 
-static bool take_time(struct import *import, int64_t *t_us)
+/* Of rows in the hour that was there twice, those that do not come after the one before are of the second. */
+static bool take_time(struct import *import, int64_t after_us, int64_t *t_us)
 {
     const char *text = csv_text(&import->csv, import->time);
     double count;
     if (import->params->start_us == INT64_MIN) {
-        if (*text != '-' && when_parse(text, 0, t_us))
+        if (*text != '-' && (when_parse(text, 0, t_us) || when_parse_local(text, after_us, t_us)))
             return true;
-        csv_error(&import->csv, import->time, "expected an instant with its zone, such as 2026-11-20T10:00:00Z, found '%.60s'", text);
+        csv_error(&import->csv, import->time,
+                  "expected an instant such as 2026-11-20T10:00:00Z (without Z or an offset: one that clocks in %s showed), found '%.60s'",
+                  import->params->plant->time_zone ? import->params->plant->time_zone : "UTC", text);
         return false;
     }
     if (number_parse(text, &count) == NUMBER_GOOD && fabs(count) < 1e12) {
@@ -144,14 +148,21 @@ static bool take_cell(struct import *import, take_sample *take, void *arg, int t
         csv_error(&import->csv, column, "expected a number, found '%.60s'", text);
         return false;
     }
-    return take_unit(import, tag, &point.value) && take(import, arg, tag, &point, column);
+    if (!take_unit(import, tag, &point.value) || !take(import, arg, tag, &point, column))
+        return false;
+    import->seen[tag] = true;
+    import->last_us[tag] = t_us;
+    return true;
 }
 
-static bool take_long(struct import *import, take_sample *take, void *arg, int64_t t_us)
+static bool take_long(struct import *import, take_sample *take, void *arg)
 {
     const char *name = csv_text(&import->csv, import->tag);
     int tag = plant_find_tag(import->params->plant, name);
     uint32_t quality;
+    int64_t t_us;
+    if (!take_time(import, tag >= 0 && import->seen[tag] ? import->last_us[tag] : INT64_MIN, &t_us))
+        return false;
     if (tag < 0)
         csv_error(&import->csv, import->tag, "the plant has no tag '%.60s'", name);
     return tag >= 0 && take_quality(import, &quality) && take_cell(import, take, arg, tag, import->value, t_us, quality);
@@ -160,9 +171,11 @@ static bool take_long(struct import *import, take_sample *take, void *arg, int64
 static bool take_row(struct import *import, take_sample *take, void *arg)
 {
     int64_t t_us;
-    bool good = take_time(import, &t_us);
-    if (good && import->tag >= 0)
-        return take_long(import, take, arg, t_us);
+    if (import->tag >= 0)
+        return take_long(import, take, arg);
+    bool good = take_time(import, import->row_us, &t_us);
+    if (good)
+        import->row_us = t_us;
     for (size_t i = 0; good && i < import->csv.header.count; i++)
         if (import->tags[i] >= 0 && *csv_text(&import->csv, (int)i))
             good = take_cell(import, take, arg, import->tags[i], (int)i, t_us, QUALITY_GOOD);
@@ -172,7 +185,7 @@ static bool take_row(struct import *import, take_sample *take, void *arg)
 /* Every row, to `take`. False: findings, or it said so. */
 static bool read_file(const struct import_params *params, struct diag *diag, struct import_counts *counts, take_sample *take, void *arg)
 {
-    struct import import = { .params = params, .counts = counts };
+    struct import import = { .params = params, .counts = counts, .row_us = INT64_MIN };
     int errors = diag->errors;
     bool going = true;
     if (!csv_open(&import.csv, params->path, diag))
@@ -207,8 +220,6 @@ static bool check_sample(struct import *import, void *arg, int tag, const struct
         counts->to_us = point->t_us;
     counts->samples++;
     counts->tags += !import->seen[tag];
-    import->seen[tag] = true;
-    import->last_us[tag] = point->t_us;
     return true;
 }
 

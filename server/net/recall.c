@@ -10,7 +10,7 @@
 #include "base/text.h"
 #include "history/history.h"
 #include "history/series_text.h"
-#include "history/when.h"
+#include "base/when.h"
 
 /* --- what is asked ------------------------------------------------------------------------------------------------------------ */
 

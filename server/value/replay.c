@@ -4,6 +4,7 @@
 
 #include <errno.h>
 #include <pthread.h>
+#include <stdio.h>
 #include <string.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
@@ -19,6 +20,7 @@ static const int64_t LATEST_NS = 10 * NS_PER_S; /* after a sleep of the machine,
 
 struct lane { /* a tag and its series */
     int tag;
+    struct unit_change change; /* of its values to readings */
     struct series series; /* count 0: there is none */
     size_t next;
     int64_t rounds;       /* of a loop */
@@ -51,8 +53,14 @@ static void read_lane(struct replay *replay, struct lane *lane)
     const struct plant_tag *tag = &replay->plant->tags[lane->tag];
     char why[200];
     bool found;
-    if (series_read(&lane->series, replay->config->file, *tag->address ? tag->address : tag->name, &found, why) && found)
-        return;
+    lane->change = tag->change;
+    if (series_read(&lane->series, replay->config->file, *tag->address ? tag->address : tag->name, &found, why) && found) {
+        const char *unit = lane->series.unit;
+        if (!unit || !*unit || units_compare(unit, tag->unit, &lane->change) <= UNITS_CONVERT)
+            return;
+        snprintf(why, sizeof(why), "'%.60s', as the file says, cannot be converted to '%.60s'", unit, tag->unit);
+        series_finish(&lane->series);
+    }
     log_err(replay->log, "source %s: %s: %s", replay->config->id, tag->name, why);
     const struct sample none = { .tag = lane->tag, .quality = QUALITY_BAD_CONFIGURATION };
     store_write(replay->store, &none, 1, clock_mono_ns(), clock_utc_ns());
@@ -83,8 +91,7 @@ static void play_lane(struct replay *replay, struct lane *lane, int64_t now_mono
     for (int64_t due; !ended(replay, lane) && (due = due_ns(replay, lane, lane->next)) <= now_mono_ns; step(replay, lane)) {
         if (now_mono_ns - due > LATEST_NS)
             continue;
-        const struct unit_change *change = &replay->plant->tags[lane->tag].change;
-        const struct sample sample = { .tag = lane->tag, .value = unit_change_value(change, lane->series.value[lane->next]) };
+        const struct sample sample = { .tag = lane->tag, .value = unit_change_value(&lane->change, lane->series.value[lane->next]) };
         store_write(replay->store, &sample, 1, due, now_utc_ns - (now_mono_ns - due));
         counter_inc(replay->samples, 1);
     }

@@ -7,9 +7,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "base/mem.h"
 #include "base/text.h"
+#include "base/when.h"
 
 enum { MAX_BYTES = 512 * 1024 * 1024, LONG_CELLS = 5 };
 
@@ -35,7 +37,8 @@ static bool next_line(struct lines *lines)
     for (;;) {
         size_t length = strcspn(at, ",;\t\r\n");
         mem_grow(&lines->cells, &lines->capacity, lines->count + 1, sizeof(*lines->cells));
-        lines->cells[lines->count++] = (struct cell){ at, length };
+        bool quoted = length > 1 && *at == '"' && at[length - 1] == '"';
+        lines->cells[lines->count++] = (struct cell){ at + quoted, length - 2 * quoted };
         at += length;
         if (at >= end || *at == '\r')
             break;
@@ -48,6 +51,20 @@ static bool next_line(struct lines *lines)
 static bool is(const struct cell *cell, const char *text, size_t length)
 {
     return cell->length == length && !memcmp(cell->at, text, length);
+}
+
+/* Upper and lower case do not matter. */
+static bool is_called(const struct cell *cell, const char *name)
+{
+    return cell->length == strlen(name) && !strncasecmp(cell->at, name, cell->length);
+}
+
+static size_t column_called(const struct lines *lines, const char *name)
+{
+    size_t i = 0;
+    while (i < lines->count && !is_called(&lines->cells[i], name))
+        i++;
+    return i;
 }
 
 static bool number_of(const struct cell *cell, double *out)
@@ -80,20 +97,52 @@ static void add(struct series *series, double time_s, double value)
 }
 
 struct clock { /* of one file */
+    bool instants;  /* dates and times; else numbers */
+    bool begun;     /* first or first_us is set */
     double unit_s, first, last_s;
-    size_t ticks; /* different times */
+    int64_t first_us, last_us;
+    size_t ticks;   /* different times */
 };
 
-/* The line's time since the first line. False: it is no number, or lies before the line above. */
-static bool tick(struct clock *clock, const struct cell *cell, double *time_s)
+static bool instant_of(const struct cell *cell, int64_t after_us, int64_t *t_us)
+{
+    char text[40];
+    if (cell->length >= sizeof(text))
+        return false;
+    memcpy(text, cell->at, cell->length);
+    text[cell->length] = 0;
+    return when_parse_local(text, after_us, t_us);
+}
+
+static bool read_instant(struct clock *clock, const struct cell *cell, double *time_s)
+{
+    int64_t t_us;
+    if (!instant_of(cell, clock->ticks ? clock->last_us - 1 : INT64_MIN, &t_us))
+        return false;
+    if (!clock->begun)
+        clock->first_us = t_us;
+    clock->begun = true;
+    clock->last_us = t_us;
+    *time_s = (double)(t_us - clock->first_us) / 1e6;
+    return true;
+}
+
+static bool read_number(struct clock *clock, const struct cell *cell, double *time_s)
 {
     double stamp;
     if (!number_of(cell, &stamp))
         return false;
-    if (clock->ticks == 0)
+    if (!clock->begun)
         clock->first = stamp;
+    clock->begun = true;
     *time_s = (stamp - clock->first) * clock->unit_s;
-    if (*time_s < clock->last_s)
+    return true;
+}
+
+/* The line's time since the first line. False: it is none, or lies before the line above. */
+static bool tick(struct clock *clock, const struct cell *cell, double *time_s)
+{
+    if (!(clock->instants ? read_instant : read_number)(clock, cell, time_s) || *time_s < clock->last_s)
         return false;
     clock->ticks += clock->ticks == 0 || *time_s > clock->last_s;
     clock->last_s = *time_s;
@@ -143,29 +192,115 @@ static bool read_long(struct series *series, struct lines *lines, struct clock *
     return true;
 }
 
-static bool read_header(const struct lines *lines, const char *name, size_t *time_column, size_t *column, double *unit_s)
+struct header { /* columns; the number of columns where there is none */
+    size_t time, column;                     /* wide: of the series */
+    size_t tag, value, unit;                 /* of lines of one value each */
+    bool of_values;
+};
+
+/* The file's first and last time and the number of its lines: tags may come one after the other. */
+static void scan_values(struct lines lines, const struct header *header, struct clock *clock)
 {
-    *time_column = *column = lines->count;
-    for (size_t i = lines->count; i-- > 0;) {
-        if (is(&lines->cells[i], name, strlen(name)))
-            *column = i;
-        if (unit_of_time(&lines->cells[i]) > 0) {
-            *time_column = i;
-            *unit_s = unit_of_time(&lines->cells[i]);
-        }
+    int64_t t_us;
+    lines.cells = NULL;
+    lines.capacity = 0;
+    while (next_line(&lines)) {
+        if (header->time >= lines.count || !instant_of(&lines.cells[header->time], INT64_MIN, &t_us))
+            continue;
+        clock->first_us = !clock->begun || t_us < clock->first_us ? t_us : clock->first_us;
+        clock->last_us = !clock->begun || t_us > clock->last_us ? t_us : clock->last_us;
+        clock->begun = true;
+        clock->ticks++;
     }
-    return *time_column < lines->count;
+    mem_free(lines.cells);
+}
+
+/* Lines of one tag, one value: what `plantcast history export` prints. A value of Bad quality is none. */
+static bool read_values(struct series *series, struct lines *lines, const struct header *header, struct clock *file, char why[200])
+{
+    double time_s, value;
+    scan_values(*lines, header, file);
+    struct clock own = { .instants = true, .begun = true, .first_us = file->first_us };
+    file->last_s = (double)(file->last_us - file->first_us) / 1e6;
+    while (next_line(lines)) {
+        if (lines->count == 1 && lines->cells[0].length == 0)
+            continue;
+        if (lines->count <= header->time || lines->count <= header->tag || lines->count <= header->value) {
+            snprintf(why, 200, "%s:%d: expected as many cells as the first line has", lines->path, lines->number);
+            return false;
+        }
+        if (!is(&lines->cells[header->tag], series->name, strlen(series->name)))
+            continue;
+        if (!tick(&own, &lines->cells[header->time], &time_s)) {
+            snprintf(why, 200, "%s:%d: expected a time that is not before the last of %s", lines->path, lines->number, series->name);
+            return false;
+        }
+        if (lines->cells[header->value].length == 0)
+            continue;
+        if (!number_of(&lines->cells[header->value], &value)) {
+            snprintf(why, 200, "%s:%d: %s: expected a number", lines->path, lines->number, series->name);
+            return false;
+        }
+        const struct cell *unit = header->unit < lines->count ? &lines->cells[header->unit] : NULL;
+        if (unit && series->unit && !is(unit, series->unit, strlen(series->unit))) {
+            snprintf(why, 200, "%s:%d: %s: expected the unit of the lines before, %s", lines->path, lines->number, series->name,
+                     series->unit);
+            return false;
+        }
+        if (unit && !series->unit)
+            series->unit = mem_printf("%.*s", (int)unit->length, unit->at);
+        add(series, time_s, value);
+    }
+    return true;
+}
+
+/* The first line below the header, whose time may be an instant whatever its column is called. */
+static bool begins_with_instant(const struct lines *header, size_t column)
+{
+    struct lines next = { .at = header->at };
+    int64_t t_us;
+    while (next_line(&next) && next.count == 1 && next.cells[0].length == 0)
+        continue;
+    bool begins = column < next.count && instant_of(&next.cells[column], INT64_MIN, &t_us);
+    mem_free(next.cells);
+    return begins;
+}
+
+static bool read_header(const struct lines *lines, const char *name, struct header *header, struct clock *clock)
+{
+    static const char *const times[] = { "Time", "Timestamp", "UTC", "DateTime", "Date" };
+    *header = (struct header){ .time = lines->count, .column = lines->count, .tag = column_called(lines, "Tag"),
+                               .value = column_called(lines, "Value"), .unit = column_called(lines, "Unit") };
+    for (size_t i = lines->count; i-- > 0;)
+        if (is(&lines->cells[i], name, strlen(name)))
+            header->column = i;
+    for (size_t i = 0; i < sizeof(times) / sizeof(*times) && !clock->instants; i++) {
+        header->time = column_called(lines, times[i]);
+        clock->instants = header->time < lines->count && begins_with_instant(lines, header->time);
+    }
+    for (size_t i = lines->count; i-- > 0 && !clock->instants;)
+        if (unit_of_time(&lines->cells[i]) > 0) {
+            header->time = i;
+            clock->unit_s = unit_of_time(&lines->cells[i]);
+        }
+    if (header->time >= lines->count && begins_with_instant(lines, 0)) {
+        header->time = 0;
+        clock->instants = true;
+    }
+    header->of_values = clock->instants && header->tag < lines->count && header->value < lines->count;
+    return clock->instants || (header->time < lines->count && unit_of_time(&lines->cells[header->time]) > 0);
 }
 
 bool series_read(struct series *series, const char *path, const char *name, bool *found, char why[200])
 {
-    size_t bytes, time_column = 0, column = 0;
+    size_t bytes;
+    struct header header;
     double number;
     bool good = false;
     *found = false;
     *series = (struct series){ .name = mem_strdup(name) };
     char *text = text_read_file(path, MAX_BYTES, &bytes);
-    struct lines lines = { .path = path, .at = text ? text : "" };
+    struct lines lines = { .path = path, .at = !text ? "" : strncmp(text, "\xEF\xBB\xBF", 3) ? text : text + 3 };
     struct clock clock = { .unit_s = 0.001 };
     if (!text) {
         snprintf(why, 200, "%s: %s", path, strerror(errno));
@@ -177,10 +312,13 @@ bool series_read(struct series *series, const char *path, const char *name, bool
     }
     if (number_of(&lines.cells[0], &number)) {
         good = read_long(series, &lines, &clock, why);
-    } else if (!read_header(&lines, name, &time_column, &column, &clock.unit_s)) {
-        snprintf(why, 200, "%s:1: no column is the time: expected a name that ends in _ms, _s, _min or _h", path);
+    } else if (!read_header(&lines, name, &header, &clock)) {
+        snprintf(why, 200, "%s:1: no column is the time: expected a name that ends in _ms, _s, _min or _h, or instants such as "
+                 "2026-11-20T10:00:00Z", path);
+    } else if (header.of_values) {
+        good = read_values(series, &lines, &header, &clock, why);
     } else {
-        good = column == lines.count || read_wide(series, &lines, time_column, column, &clock, why);
+        good = header.column == lines.count || read_wide(series, &lines, header.time, header.column, &clock, why);
     }
     *found = good && series->count > 0;
     if (good && !*found)
@@ -197,6 +335,7 @@ error:
 void series_finish(struct series *series)
 {
     mem_free(series->name);
+    mem_free(series->unit);
     mem_free(series->time_s);
     mem_free(series->value);
     *series = (struct series){ 0 };

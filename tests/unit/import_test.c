@@ -10,6 +10,7 @@
 
 #include "base/mem.h"
 #include "base/text.h"
+#include "base/when.h"
 #include "history/history.h"
 #include "history/import.h"
 #include "history/month.h"
@@ -73,7 +74,7 @@ static struct history_series read_series(struct setup *s, const char *folder_nam
     char *folder = temp_path(s->folder, folder_name);
     struct history_reader *reader = history_reader_create(s->log, folder);
     struct history_series series;
-    assert_int_equal(history_series(reader, tag, OCTOBER_25 - US_PER_S, OCTOBER_25 + 86400 * US_PER_S, 100000, &series), 0);
+    assert_int_equal(history_series(reader, tag, OCTOBER_25 - 3600 * US_PER_S, OCTOBER_25 + 86400 * US_PER_S, 100000, &series), 0);
     history_reader_destroy(&reader);
     mem_free(folder);
     return series;
@@ -118,7 +119,7 @@ static void everything_wrong_is_said_and_nothing_is_taken(void **state)
     assert_false(import(s, "h",
                         "Tag,Time,Value\n"
                         "FT-1,2026-10-25T00:00:00Z,1\n"
-                        "FT-1,2026-10-25T02:30:00,1\n"
+                        "FT-1,25.10.2026 02:30,1\n"
                         "FT-2,2026-10-25T00:00:01Z,1\n"
                         "FT-1,2026-10-25T00:00:00Z,1\n"
                         "FT-1,2026-10-25T00:00:05Z,hot\n",
@@ -127,7 +128,7 @@ static void everything_wrong_is_said_and_nothing_is_taken(void **state)
         int line, column;
         const char *text;
     } wanted[] = {
-        { 3, 6, "expected an instant with its zone" },
+        { 3, 6, "expected an instant such as 2026-11-20T10:00:00Z (without Z or an offset: one that clocks in UTC showed)" },
         { 4, 1, "the plant has no tag 'FT-2'" },
         { 5, 27, "FT-1: expected a time after its last sample, 2026-10-25T00:00:00.000Z" },
         { 6, 27, "expected a number, found 'hot'" },
@@ -143,6 +144,27 @@ static void everything_wrong_is_said_and_nothing_is_taken(void **state)
     mem_free(month_list(folder, &months));
     assert_int_equal(months, 0);
     mem_free(folder);
+}
+
+/* Clocks of the plant: in the night that has an hour twice, rows go on; an hour that never was is refused. */
+static void times_without_a_zone_are_the_plant_s(void **state)
+{
+    struct setup *s = *state;
+    when_use_zone("Europe/Berlin");
+    assert_true(import(s, "wide", "time,FT-1\n2026-10-25 01:30,1\n2026-10-25 02:30,2\n2026-10-25 02:00,3\n2026-10-25 02:30,4\n"
+                                  "2026-10-25 03:30,5\n", INT64_MIN, 0));
+    assert_true(import(s, "long", "Tag,Time,Value\nTT-1,2026-10-25T02:30,7\nTT-1,2026-10-25T02:30,8\nFT-1,2026-10-25T02:30:00.5,9\n",
+                       INT64_MIN, 0));
+    struct history_series wide = read_series(s, "wide", "FT-1"), fresh = read_series(s, "long", "FT-1");
+    static const int minutes[] = { -30, 30, 60, 90, 150 };
+    assert_int_equal(wide.points.count, 5);
+    for (int i = 0; i < 5; i++)
+        assert_true(wide.points.at[i].t_us == OCTOBER_25 + minutes[i] * 60 * US_PER_S);
+    assert_true(fresh.points.at[0].t_us == OCTOBER_25 + 30 * 60 * US_PER_S + US_PER_S / 2);
+    history_series_finish(&wide);
+    history_series_finish(&fresh);
+    assert_false(import(s, "gap", "Time,FT-1\n2026-03-29 02:30,1\n", INT64_MIN, 0));
+    when_use_zone("UTC");
 }
 
 static void files_that_are_no_series_are_refused(void **state)
@@ -185,6 +207,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(long_rows_are_taken, set_up, tear_down),
         cmocka_unit_test_setup_teardown(wide_rows_count_from_a_start, set_up, tear_down),
         cmocka_unit_test_setup_teardown(everything_wrong_is_said_and_nothing_is_taken, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(times_without_a_zone_are_the_plant_s, set_up, tear_down),
         cmocka_unit_test_setup_teardown(files_that_are_no_series_are_refused, set_up, tear_down),
         cmocka_unit_test_setup_teardown(out_and_in_again_is_the_same, set_up, tear_down),
     };

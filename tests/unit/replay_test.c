@@ -12,9 +12,11 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "base/when.h"
 #include "tests/support/plant_case.h"
 #include "tests/support/temp.h"
 #include "value/quality.h"
+#include "value/series.h"
 #include "value/source.h"
 
 enum { MOST = 4000 };
@@ -171,6 +173,61 @@ static void nothing_in_the_file_is_ours(void **state)
     assert_false(store_link_is_up(s->store, 0));
 }
 
+static void check_series(const char *path, const char *name, size_t count, double last_s, double last)
+{
+    struct series series;
+    char why[200] = "";
+    bool found;
+    if (!series_read(&series, path, name, &found, why) || !found)
+        fail_msg("%s: %s", name, why);
+    assert_int_equal(series.count, count);
+    assert_true(fabs(series.time_s[count - 1] - last_s) < 1e-6 && series.value[count - 1] == last);
+    series_finish(&series);
+}
+
+/* As historians write them: with a zone, with an offset, or as the plant's clocks went, an hour of one night twice. */
+static void times_may_be_instants(void **state)
+{
+    static const char *const wide[] = {
+        "t_start,Time,a\n9,2026-10-25T00:00:00Z,1\n9,2026-10-25T01:00:00.5Z,2\n",
+        "delay_s;Timestamp;a\n5;2026-10-25T00:00:00Z;1\n0;\"2026-10-25T02:00:00.5+01:00\";2\n",
+        "\xEF\xBB\xBFwhen,a\r\n2026-10-25 02:00,1\r\n\r\n2026-10-25 02:00:00.5,2\r\n",
+    };
+    struct setup *s = *state;
+    when_use_zone("Europe/Berlin");
+    for (size_t i = 0; i < 3; i++) {
+        char *path = temp_write_text(s->c->folder, "series.csv", wide[i]);
+        check_series(path, "a", 2, i < 2 ? 3600.5 : 0.5, 2);
+        mem_free(path);
+    }
+    char *path = temp_write_text(s->c->folder, "series.csv", "time,a\n2026-10-25 02:30,1\n2026-10-25 02:10,2\n");
+    check_series(path, "a", 2, 2400, 2);
+    mem_free(temp_write_text(s->c->folder, "series.csv", "Tag,Time,Value,Quality,Unit\nb,2026-10-25T00:00:10Z,3,0,K\n"
+                             "b,2026-10-25T00:00:20Z,4,0,K\na,2026-10-25T00:00:00Z,1,0,\na,2026-10-25T00:00:07Z,,0x80050000,\n"));
+    check_series(path, "b", 2, 20, 4);
+    check_series(path, "a", 1, 0, 1);
+    mem_free(temp_write_text(s->c->folder, "series.csv", "Time,a\n25.10.2026 02:30,1\n"));
+    struct series series;
+    char why[200];
+    bool found;
+    assert_false(series_read(&series, path, "a", &found, why));
+    assert_non_null(strstr(why, "series.csv:1: no column is the time: expected a name that ends in _ms, _s, _min or _h, or instants"));
+    mem_free(path);
+    when_use_zone("UTC");
+}
+
+static void a_file_with_units_is_converted(void **state)
+{
+    struct setup *s = *state;
+    struct heard got[2] = { 0 };
+    play(s, "speed: 1", "Tag,Time,Value,Unit\nA,2026-10-25T00:00:00Z,20,degC\nB,2026-10-25T00:00:00Z,3,bar\n",
+         "Tag Name,Address,Group,Asset,X,Y,Z\nA,,g,A,0,0,0\nB,,g,A,0,0,0\n");
+    wait_for_heard(s, 2);
+    assert_int_equal(of_tag(s, 0, got, 1), 1);
+    assert_true(fabs(got[0].value - 293.15) < 1e-9);
+    assert_true(s->heard.at[0].tag == 1 && s->heard.at[0].quality == QUALITY_BAD_CONFIGURATION);
+}
+
 int main(void)
 {
     cmocka_set_message_output(CM_OUTPUT_TAP);
@@ -180,6 +237,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(a_long_file_is_read, set_up, tear_down),
         cmocka_unit_test_setup_teardown(what_is_not_in_the_file_is_bad, set_up, tear_down),
         cmocka_unit_test_setup_teardown(nothing_in_the_file_is_ours, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(times_may_be_instants, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_file_with_units_is_converted, set_up, tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -9,7 +9,7 @@
 
 #include "alarm/devices.h"
 #include "base/mem.h"
-#include "history/when.h"
+#include "base/when.h"
 #include "net/message/number.h"
 
 enum { ROWS_DEFAULT = 1000, ROWS_MOST = 10000, DIGITS = 7 };

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "history/when.h"
+#include "base/when.h"
 #include "net/message/fields.h"
 #include "net/message/framing.h"
 #include "net/past.h"

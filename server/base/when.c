@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads and writes instants, whatever the locale and the time zone of this computer. */
-#include "history/when.h"
+/* Reads and writes instants, whatever the locale and, but for local times, the time zone of this computer. */
+#include "base/when.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
-#include "history/month.h"
+#define US_PER_S INT64_C(1000000)
 
 /* Digits only: 1 to `most` of them. */
 static bool digits(const char **text, int least, int most, int *out)
@@ -58,28 +59,63 @@ static int days_of(int year, int month)
     return days[month - 1] + (month == 2 && leap);
 }
 
-static bool parse_date(const char *text, int64_t *t_us)
+/* What the clocks of the program's zone showed. At most twice: in summer time and not. */
+static bool from_local(const struct tm *shown, int64_t after_us, int64_t us, int64_t *t_us)
 {
-    struct tm tm = { 0 };
+    int64_t found_us[2];
+    int count = 0;
+    for (int dst = 0; dst < 2; dst++) {
+        struct tm tm = *shown;
+        tm.tm_isdst = dst;
+        int64_t at_us = (int64_t)mktime(&tm) * US_PER_S + us;
+        if (tm.tm_hour == shown->tm_hour && tm.tm_min == shown->tm_min && tm.tm_mday == shown->tm_mday)
+            found_us[count++] = at_us;
+    }
+    if (count == 0)
+        return false;
+    int64_t early_us = found_us[0], late_us = found_us[count - 1];
+    if (late_us < early_us) {
+        early_us = found_us[count - 1];
+        late_us = found_us[0];
+    }
+    *t_us = early_us > after_us ? early_us : late_us;
+    return true;
+}
+
+struct date {
+    struct tm tm;
+    int64_t us;
+    bool has_zone;
     int offset_s;
-    if (!digits(&text, 4, 4, &tm.tm_year) || !sign(&text, '-') || !digits(&text, 2, 2, &tm.tm_mon) || !sign(&text, '-') ||
-        !digits(&text, 2, 2, &tm.tm_mday) || (*text != 'T' && *text != 't' && *text != ' '))
+};
+
+static bool parse_date(const char *text, struct date *date)
+{
+    struct tm *tm = &date->tm;
+    *date = (struct date){ 0 };
+    if (!digits(&text, 4, 4, &tm->tm_year) || !sign(&text, '-') || !digits(&text, 2, 2, &tm->tm_mon) || !sign(&text, '-') ||
+        !digits(&text, 2, 2, &tm->tm_mday) || (*text != 'T' && *text != 't' && *text != ' '))
         return false;
     text++;
-    if (!digits(&text, 2, 2, &tm.tm_hour) || !sign(&text, ':') || !digits(&text, 2, 2, &tm.tm_min))
+    if (!digits(&text, 2, 2, &tm->tm_hour) || !sign(&text, ':') || !digits(&text, 2, 2, &tm->tm_min))
         return false;
-    if (*text == ':' && (text++, !digits(&text, 2, 2, &tm.tm_sec)))
+    if (*text == ':' && (text++, !digits(&text, 2, 2, &tm->tm_sec)))
         return false;
-    int64_t us = fraction(&text);
-    if (!zone(&text, &offset_s) || *text)
+    date->us = fraction(&text);
+    date->has_zone = *text != 0;
+    if (date->has_zone && (!zone(&text, &date->offset_s) || *text))
         return false;
-    if (tm.tm_year < 1970 || tm.tm_year > 2200 || tm.tm_mon < 1 || tm.tm_mon > 12 || tm.tm_mday < 1 ||
-        tm.tm_mday > days_of(tm.tm_year, tm.tm_mon) || tm.tm_hour > 23 || tm.tm_min > 59 || tm.tm_sec > 60)
+    if (tm->tm_year < 1970 || tm->tm_year > 2200 || tm->tm_mon < 1 || tm->tm_mon > 12 || tm->tm_mday < 1 ||
+        tm->tm_mday > days_of(tm->tm_year, tm->tm_mon) || tm->tm_hour > 23 || tm->tm_min > 59 || tm->tm_sec > 60)
         return false;
-    tm.tm_year -= 1900;
-    tm.tm_mon--;
-    *t_us = ((int64_t)timegm(&tm) - offset_s) * US_PER_S + us;
+    tm->tm_year -= 1900;
+    tm->tm_mon--;
     return true;
+}
+
+static int64_t with_zone_us(struct date *date)
+{
+    return ((int64_t)timegm(&date->tm) - date->offset_s) * US_PER_S + date->us;
 }
 
 static bool parse_back(const char *text, int64_t now_us, int64_t *t_us)
@@ -117,7 +153,30 @@ bool when_parse(const char *text, int64_t now_us, int64_t *t_us)
     }
     if (*text == '-')
         return parse_back(text, now_us, t_us);
-    return strlen(text) > 4 && text[4] == '-' ? parse_date(text, t_us) : parse_seconds(text, t_us);
+    struct date date;
+    if (strlen(text) <= 4 || text[4] != '-')
+        return parse_seconds(text, t_us);
+    if (!parse_date(text, &date) || !date.has_zone)
+        return false;
+    *t_us = with_zone_us(&date);
+    return true;
+}
+
+bool when_parse_local(const char *text, int64_t after_us, int64_t *t_us)
+{
+    struct date date;
+    if (!parse_date(text, &date))
+        return false;
+    if (!date.has_zone)
+        return from_local(&date.tm, after_us, date.us, t_us);
+    *t_us = with_zone_us(&date);
+    return true;
+}
+
+void when_use_zone(const char *iana_name)
+{
+    setenv("TZ", iana_name, 1);
+    tzset();
 }
 
 void when_print(int64_t t_us, char text[WHEN_BYTES])
