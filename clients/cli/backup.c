@@ -38,10 +38,12 @@ static void print_usage(FILE *out)
           "       plantcast restore FOLDER PLANT.yaml [--history DIR]\n"
           "\n"
           "backup copies history, the journal of alarms, what was proven, the plant file and its tag list into a new folder, also\n"
-          "while the daemon records: each database as it was at one moment. Models are not in it.\n"
+          "while the daemon records: each database as it was at one moment. Models are not in it. Nobody but its maker may read it.\n"
+          "Links are not followed, and what belongs to somebody else than its folder does is not read: neither for root.\n"
           "\n"
-          "restore checks that a backup is whole and puts it in place: the plant file as PLANT.yaml, its tag list beside it, history\n"
-          "where the plant file says. Nothing is overwritten: where a file is in the way, nothing is restored.\n"
+          "restore checks that a backup is whole and puts it in place: the plant file as PLANT.yaml, its tag list and history where the\n"
+          "plant file says. By root, each file belongs to whom its folder belongs to. Nothing is overwritten: where a file is in the\n"
+          "way, nothing is restored.\n"
           "\n"
           "  --history DIR    where history is, or is to be (as the plant file says; else beside it)\n",
           out);
@@ -58,12 +60,23 @@ static char *history_folder(const struct job *job, const struct plant *plant)
     return job->history ? mem_strdup(job->history) : plant_history_folder(plant);
 }
 
-/* The tag list's name, as the plant file of the copy finds it: below its own folder. NULL: it lies elsewhere. */
-static const char *tags_name(const struct plant *plant)
+/* As the plant file means it: below its own folder, or anywhere. */
+static const char *as_written(const struct plant *plant, const char *path)
 {
     size_t n = strlen(plant->folder);
-    const char *rest = plant->tags_path + n;
-    return !strncmp(plant->tags_path, plant->folder, n) && *rest == '/' && !strchr(rest + 1, '/') ? rest + 1 : NULL;
+    return !strncmp(path, plant->folder, n) && path[n] == '/' ? path + n + 1 : path;
+}
+
+static const char *base_name(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+static bool is_ours(const char *name)
+{
+    int month;
+    return month_parse(name, &month) || !strcmp(name, JOURNAL_FILE) || !strcmp(name, PROOFS_FILE);
 }
 
 /* --- backup --------------------------------------------------------------------------------------------------------------------- */
@@ -105,20 +118,18 @@ static bool add_history(struct job *job, const char *folder)
     return good;
 }
 
-/* As the plant file means it: below its own folder, or anywhere. NULL: beside it. */
+/* NULL: beside the plant file. */
 static const char *history_name(const struct plant *plant)
 {
-    size_t n = strlen(plant->folder);
-    const char *folder = plant->history.folder;
-    return folder && !strncmp(folder, plant->folder, n) && folder[n] == '/' ? folder + n + 1 : folder;
+    return plant->history.folder ? as_written(plant, plant->history.folder) : NULL;
 }
 
 static bool write_manifest(struct job *job, const struct plant *plant)
 {
     char now[WHEN_BYTES];
     when_print(clock_utc_ns() / 1000, now);
-    json_t *manifest = json_pack("{s:i,s:s,s:s?,s:O}", "version", MANIFEST_VERSION, "made", now, "history", history_name(plant),
-                                 "files", job->files);
+    json_t *manifest = json_pack("{s:i,s:s,s:s?,s:s,s:O}", "version", MANIFEST_VERSION, "made", now, "history", history_name(plant),
+                                 "tags", as_written(plant, plant->tags_path), "files", job->files);
     char *path = mem_printf("%s/" MANIFEST, job->folder), *text = json_dumps(manifest, JSON_INDENT(2));
     int error = text_write_file(path, text, strlen(text));
     if (error)
@@ -145,15 +156,15 @@ static void remove_folder(const char *folder)
 /* The folder has its name once all is in it. */
 static bool back_up(struct job *job, const struct plant *plant, const char *out)
 {
-    const char *tags = tags_name(plant);
+    const char *tags = base_name(plant->tags_path);
     char *history = history_folder(job, plant), *part = mem_printf("%s.part", out);
     bool good = false;
     job->folder = part;
-    if (!tags)
-        say(plant->tags_path, "the tag list lies in another folder than the plant file; it cannot be backed up with it");
+    if (is_ours(tags) || !strcmp(tags, PLANT_FILE) || !strcmp(tags, MANIFEST))
+        say(plant->tags_path, "something else in a backup has that name");
     else if (access(out, F_OK) == 0)
         say(out, "is there already");
-    else if (mkdir(part, 0777) != 0)
+    else if (mkdir(part, 0700) != 0)
         say(part, strerror(errno));
     else {
         good = add(job, copy_file, plant->path, PLANT_FILE) && add(job, copy_file, plant->tags_path, tags) && add_history(job, history) &&
@@ -219,22 +230,35 @@ static bool is_whole(struct job *job)
 
 static bool is_free(const char *path)
 {
-    return access(path, F_OK) != 0 || say(path, "is in the way; nothing was restored");
+    struct stat st;
+    return lstat(path, &st) != 0 || say(path, "is in the way; nothing was restored");
 }
 
-/* Where a file of the backup goes. */
-static char *place_of(const char *name, const char *plant_path, const char *history)
+/* Where a file of the backup goes. tags: as the plant file writes it; NULL: beside it. */
+static char *place_of(const char *name, const char *plant_path, const char *history, const char *tags)
 {
-    const char *slash = strrchr(plant_path, '/');
     if (!strcmp(name, PLANT_FILE))
         return mem_strdup(plant_path);
-    int month;
-    if (month_parse(name, &month) || !strcmp(name, JOURNAL_FILE) || !strcmp(name, PROOFS_FILE))
+    if (is_ours(name))
         return mem_printf("%s/%s", history, name);
-    return slash ? mem_printf("%.*s/%s", (int)(slash - plant_path), plant_path, name) : mem_strdup(name);
+    const char *path = tags && !strcmp(base_name(tags), name) ? tags : name;
+    return *path == '/' ? mem_strdup(path) : mem_printf("%.*s%s", (int)(base_name(plant_path) - plant_path), plant_path, path);
 }
 
-static bool each_file(struct job *job, const char *plant_path, const char *history, bool put)
+/* A folder, and no link to one; a new one belongs to whom the one around it belongs to. */
+static bool make_folder(const char *path)
+{
+    struct stat st, around;
+    char *parent = mem_printf("%s/..", path);
+    bool made = mkdir(path, 0750) == 0;
+    bool good = lstat(path, &st) == 0 && S_ISDIR(st.st_mode);
+    if (good && made && geteuid() == 0)
+        good = stat(parent, &around) == 0 && lchown(path, around.st_uid, around.st_gid) == 0;
+    mem_free(parent);
+    return good || say(path, "is no folder, and cannot be made one");
+}
+
+static bool each_file(struct job *job, const char *plant_path, const char *history, const char *tags, bool put)
 {
     size_t i;
     json_t *file;
@@ -242,7 +266,7 @@ static bool each_file(struct job *job, const char *plant_path, const char *histo
     json_array_foreach(job->files, i, file)
     {
         const char *name = json_string_value(json_object_get(file, "name"));
-        char *from = mem_printf("%s/%s", job->folder, name), *to = place_of(name, plant_path, history);
+        char *from = mem_printf("%s/%s", job->folder, name), *to = place_of(name, plant_path, history, tags);
         good = good && (put ? copy_file(job->log, from, to) : is_free(to));
         mem_free(from);
         mem_free(to);
@@ -267,10 +291,9 @@ static bool restore(struct job *job, const char *plant_path)
     json_t *manifest = read_manifest(job->folder);
     job->files = json_object_get(manifest, "files");
     char *history = manifest && is_whole(job) ? future_history(job, manifest, plant_path) : NULL;
-    bool good = history && each_file(job, plant_path, history, false);
-    if (good && mkdir(history, 0777) != 0 && errno != EEXIST)
-        good = say(history, strerror(errno));
-    good = good && each_file(job, plant_path, history, true);
+    const char *tags = json_string_value(json_object_get(manifest, "tags"));
+    bool good = history && each_file(job, plant_path, history, tags, false);
+    good = good && make_folder(history) && each_file(job, plant_path, history, tags, true);
     if (good)
         printf("%s: restored, as of %s; its history is in %s\n", plant_path, json_string_value(json_object_get(manifest, "made")), history);
     mem_free(history);
@@ -311,6 +334,7 @@ int cmd_backup(int argc, char **argv)
     struct plant *plant = plant_load_or_print(argv[optind]);
     if (!plant)
         return 1;
+    umask(0077); /* readings, names and remarks are for whoever made it */
     job.log = log_create(LOG_WARN);
     job.files = json_array();
     code = back_up(&job, plant, out) ? 0 : 1;

@@ -26,7 +26,8 @@ static void print_usage(FILE *out)
           "\n"
           "add makes a token and prints it, once: the file, which it makes if need be, holds only its SHA-256. plantcastd --tokens FILE\n"
           "sees within 3 seconds what was added or revoked, and closes the sessions of what was revoked.\n"
-          "Under another user than root's or the daemon's, the file must be given to it: chown root:plantcast FILE; chmod 640 FILE\n",
+          "It lies in a folder of root's, or of yours, and is no link. The daemon has to be able to read it: chown root:plantcast FILE;\n"
+          "chmod 640 FILE\n",
           out);
 }
 
@@ -36,31 +37,83 @@ static int fail_at(const char *path, const char *why)
     return 1;
 }
 
-/* NULL: printed. A file that is not there is empty if it may be. */
-static char *read_file(const char *path, bool may_be_new)
+static bool is_foreign(const struct stat *st)
 {
-    size_t count;
-    char *text = text_read_file(path, MAX_FILE_BYTES, &count);
-    if (!text && errno == ENOENT && may_be_new)
-        return mem_strdup("");
-    if (!text)
-        fail_at(path, strerror(errno));
+    return st->st_uid != 0 && st->st_uid != geteuid();
+}
+
+/* Who may write a folder can put another file, or a link, in the place of one in it. NULL: nobody else may. */
+static const char *folder_fault(const char *path)
+{
+    struct stat st;
+    const char *slash = strrchr(path, '/'), *fault = NULL;
+    char *folder = slash ? mem_printf("%.*s", slash > path ? (int)(slash - path) : 1, path) : mem_strdup(".");
+    if (stat(folder, &st) != 0)
+        fault = strerror(errno);
+    else if (is_foreign(&st))
+        fault = "its folder belongs to somebody else, who could put another in its place; keep it in one of root's";
+    else if ((st.st_mode & S_IWOTH) && !(st.st_mode & S_ISVTX))
+        fault = "others may write its folder";
+    mem_free(folder);
+    return fault;
+}
+
+/* NULL: it may be read, and another put in its place. */
+static const char *file_fault(const struct stat *st)
+{
+    if (!S_ISREG(st->st_mode))
+        return "it is not a file";
+    if (is_foreign(st))
+        return "it belongs neither to root nor to you; chown root";
+    return st->st_size > MAX_FILE_BYTES ? "it is too large" : NULL;
+}
+
+static char *read_all(int fd, size_t size)
+{
+    char *text = mem_array(size + 1, 1);
+    ssize_t n = read(fd, text, size);
+    text[n > 0 ? n : 0] = 0;
     return text;
 }
 
-/* In one step, with the owner and rights that it had; a new one is its maker's alone. */
+/* NULL: printed. A file that is not there is empty if it may be. */
+static char *read_file(const char *path, bool may_be_new)
+{
+    struct stat st;
+    char *text = NULL;
+    const char *fault = folder_fault(path);
+    int fd = fault ? -1 : open(path, O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+    if (!fault && fd < 0 && errno == ENOENT && may_be_new)
+        return mem_strdup("");
+    if (!fault && fd < 0)
+        fault = errno == ELOOP ? "it is a symbolic link" : strerror(errno);
+    if (!fault)
+        fault = fstat(fd, &st) == 0 ? file_fault(&st) : strerror(errno);
+    if (fault)
+        fail_at(path, fault);
+    else
+        text = read_all(fd, (size_t)st.st_size);
+    if (fd >= 0)
+        close(fd);
+    return text;
+}
+
+/* In one step, with the owner and rights that it had; a new one is its maker's alone. What is there under the name of the step is
+   somebody else's, and stays. */
 static int write_file(const char *path, const struct text *text)
 {
     struct stat st;
-    bool old = stat(path, &st) == 0;
-    char *beside = mem_printf("%s.new", path);
-    int fd = open(beside, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0600);
+    bool old = lstat(path, &st) == 0;
+    char *beside = mem_printf("%s.%ld.new", path, (long)getpid());
+    int fd = open(beside, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0600);
     bool good = fd >= 0 && (!old || (fchown(fd, st.st_uid, st.st_gid) == 0 && fchmod(fd, st.st_mode & 07777) == 0)) &&
                 write(fd, text->at, text->length) == (ssize_t)text->length && fsync(fd) == 0;
     if (fd >= 0)
         good = close(fd) == 0 && good;
     good = good && rename(beside, path) == 0;
     int result = good ? 0 : fail_at(path, strerror(errno));
+    if (!good && fd >= 0)
+        unlink(beside);
     mem_free(beside);
     return result;
 }

@@ -6,11 +6,15 @@
 #include <fcntl.h>
 #include <sqlite3.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #define XXH_INLINE_ALL
 #include <xxhash.h>
+
+#include "base/mem.h"
 
 enum { BUFFER_BYTES = 1 << 16, BUSY_MS = 10000 };
 
@@ -22,12 +26,74 @@ static bool failed(struct log *log, const char *path, const char *doing, const c
 
 static bool sync_file(struct log *log, const char *path)
 {
-    int fd = open(path, O_RDONLY | O_CLOEXEC);
+    int fd = open(path, O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
     bool good = fd >= 0 && fsync(fd) == 0;
     int cause = errno;
     if (fd >= 0)
         close(fd);
     return good || failed(log, path, "cannot be brought to the disk", strerror(cause));
+}
+
+/* --- whose a file is ---------------------------------------------------------------------------------------------------------- */
+
+/* The folder that a file lies in; mem_free. */
+static char *folder_of(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash == path ? mem_strdup("/") : slash ? mem_printf("%.*s", (int)(slash - path), path) : mem_strdup(".");
+}
+
+static bool stat_folder(const char *path, struct stat *st)
+{
+    char *folder = folder_of(path);
+    bool good = stat(folder, st) == 0;
+    mem_free(folder);
+    return good;
+}
+
+/* What may be read: who owns a folder can put a link there to what only we may read. NULL: nothing is wrong. */
+static const char *fault_of(const char *path, const struct stat *st)
+{
+    struct stat folder;
+    if (!S_ISREG(st->st_mode))
+        return "it is not a file";
+    if (!stat_folder(path, &folder))
+        return strerror(errno);
+    if (st->st_uid != folder.st_uid && st->st_uid != geteuid())
+        return "it belongs to somebody else than its folder does";
+    return st->st_nlink > 1 && st->st_uid != folder.st_uid ? "it has another name elsewhere" : NULL;
+}
+
+/* -1: logged. */
+static int open_source(struct log *log, const char *path)
+{
+    struct stat st;
+    int fd = open(path, O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+    const char *fault = fd < 0 ? errno == ELOOP ? "it is a symbolic link" : strerror(errno) : NULL;
+    if (!fault)
+        fault = fstat(fd, &st) == 0 ? fault_of(path, &st) : strerror(errno);
+    if (!fault)
+        return fd;
+    failed(log, path, "cannot be copied", fault);
+    if (fd >= 0)
+        close(fd);
+    return -1;
+}
+
+/* A new file, for us and its folder's group to read at most; it belongs to whom the folder belongs to. -1: logged. */
+static int create_target(struct log *log, const char *path)
+{
+    struct stat folder;
+    int fd = open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0640);
+    bool good = fd >= 0 && (geteuid() != 0 || (stat_folder(path, &folder) && fchown(fd, folder.st_uid, folder.st_gid) == 0));
+    if (good)
+        return fd;
+    failed(log, path, "cannot be made", strerror(errno));
+    if (fd >= 0) {
+        unlink(path);
+        close(fd);
+    }
+    return -1;
 }
 
 /* "ok", or the first thing that is wrong. */
@@ -53,13 +119,23 @@ static int copy_pages(sqlite3 *from, sqlite3 *to)
     return code == SQLITE_DONE ? end : code;
 }
 
-bool copy_database(struct log *log, const char *from_path, const char *to_path)
+/* Its path without links on the way, which SQLite wants where it is to follow none; free. NULL: logged. */
+static char *path_of_database(struct log *log, const char *path)
+{
+    int fd = open_source(log, path);
+    char *real = fd >= 0 ? realpath(path, NULL) : NULL;
+    if (fd >= 0)
+        close(fd);
+    return real;
+}
+
+static bool copy_state(struct log *log, const char *from_path, const char *to_path)
 {
     sqlite3 *from = NULL, *to = NULL;
-    int code = sqlite3_open_v2(from_path, &from, SQLITE_OPEN_READONLY, NULL);
+    int code = sqlite3_open_v2(from_path, &from, SQLITE_OPEN_READONLY | SQLITE_OPEN_NOFOLLOW, NULL);
     sqlite3_busy_timeout(from, BUSY_MS);
     if (code == SQLITE_OK)
-        code = sqlite3_open_v2(to_path, &to, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, NULL);
+        code = sqlite3_open_v2(to_path, &to, SQLITE_OPEN_READWRITE, NULL);
     if (code == SQLITE_OK)
         code = copy_pages(from, to);
     if (code == SQLITE_OK)
@@ -67,9 +143,21 @@ bool copy_database(struct log *log, const char *from_path, const char *to_path)
     bool good = code == SQLITE_OK ? is_whole(log, to, to_path) : failed(log, from_path, "cannot be copied", sqlite3_errstr(code));
     sqlite3_close(to);
     sqlite3_close(from);
-    good = good && sync_file(log, to_path);
-    if (!good)
-        unlink(to_path);
+    return good && sync_file(log, to_path);
+}
+
+bool copy_database(struct log *log, const char *from_path, const char *to_path)
+{
+    char *from = path_of_database(log, from_path);
+    int target = from ? create_target(log, to_path) : -1;
+    bool good = target >= 0;
+    if (good) {
+        close(target);
+        good = copy_state(log, from, to_path);
+        if (!good)
+            unlink(to_path);
+    }
+    free(from);
     return good;
 }
 
@@ -84,10 +172,11 @@ static bool copy_bytes(FILE *from, FILE *to)
 
 bool copy_file(struct log *log, const char *from_path, const char *to_path)
 {
-    FILE *from = fopen(from_path, "rb"), *to = from ? fopen(to_path, "wb") : NULL;
+    int source = open_source(log, from_path), target = source >= 0 ? create_target(log, to_path) : -1;
+    FILE *from = source >= 0 ? fdopen(source, "rb") : NULL, *to = target >= 0 ? fdopen(target, "wb") : NULL;
     bool good = from && to && copy_bytes(from, to);
-    if (!good)
-        failed(log, from ? to_path : from_path, "cannot be copied", strerror(errno));
+    if (from && to && !good)
+        failed(log, to_path, "cannot be copied", strerror(errno));
     if (from)
         fclose(from);
     if (to && fclose(to) != 0)

@@ -8,7 +8,10 @@
 
 enum { COPY_HASH_BYTES = 33 }; /* 32 hexadecimal digits and a 0 */
 
-/* One state of `from`, as of one moment, as a single file; checked, and on the disk. False: logged; `to` is removed. */
+/* Neither follows a link, nor reads what belongs to somebody else than its folder does (or us): root may copy out of a folder of the
+   daemon's. `to` is new, has the folder's owner if root makes it, and is read by nobody but that one and his group.
+
+   One state of `from`, as of one moment, as a single file; checked, and on the disk. False: logged; `to` is removed. */
 bool copy_database(struct log *log, const char *from, const char *to);
 /* Bytes as they are, likewise. */
 bool copy_file(struct log *log, const char *from, const char *to);

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the compiler and the linker put between a fault of ours and whoever finds it: in every program, as it is installed.
+// What stands between a fault of ours and whoever finds it: what compiler and linker put into every program, and what the unit leaves a
+// daemon that somebody else has got hold of.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
+import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
-import { BIN, missing, PROGRAMS } from './support/tiny_plant.mjs';
+import { get, PlainClient } from './support/plain_client.mjs';
+import { BIN, missing, PROGRAMS, TinyPlant } from './support/tiny_plant.mjs';
 
 const absent = missing();
 const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
+const UNIT = 'deploy/plantcastd.service', has = (program) => spawnSync('which', [program]).status === 0;
 const read = (program, ...what) => spawnSync('readelf', ['-W', ...what, join(BIN, program)], { encoding: 'utf8' }).stdout;
 
 test('programs have PIE, full RELRO, stack protectors and checked library calls', { skip }, () => {
@@ -20,5 +24,45 @@ test('programs have PIE, full RELRO, stack protectors and checked library calls'
         assert.match(symbols, /__(mem|str|v?s?n?printf|fread|read)\w*_chk/, `${program}: _FORTIFY_SOURCE`);
         const stack = read(program, '-l').match(/GNU_STACK.*/)[0];
         assert.match(stack, / RW /, `${program}: no program in its stack`);
+    }
+});
+
+test('the unit is as closed as it can be: systemd-analyze says at most 3 of 10', {
+    skip: has('systemd-analyze') ? false : 'systemd-analyze is not installed',
+}, () => {
+    const said = spawnSync('systemd-analyze', ['security', '--offline=true', '--threshold=30', UNIT], { encoding: 'utf8' });
+    const score = Number(said.stdout.match(/Overall exposure level.*: ([\d.]+)/)[1]);
+    console.log(`# exposure ${score}`);
+    assert.ok(score <= 3 && said.status === 0, said.stdout);
+    for (const line of [/^MemoryMax=/m, /^UMask=0027$/m, /^CapabilityBoundingSet=$/m, /^StateDirectory=plantcast$/m])
+        assert.match(readFileSync(UNIT, 'utf8'), line);
+    assert.doesNotMatch(readFileSync(UNIT, 'utf8'), /^ReadWritePaths=/m, 'nothing but its own state');
+});
+
+test('with the system calls that the unit leaves it, the daemon draws on llvmpipe, streams and records', {
+    skip: skip || (has('systemd-analyze') && spawnSync('/usr/bin/python3', ['-c', 'import seccomp']).status === 0 ? false
+        : 'python3-seccomp or systemd-analyze is not installed'),
+}, async () => {
+    const plant = await TinyPlant.create();
+    try {
+        assert.equal(plant.prepare().code, 0);
+        plant.disown();
+        plant.confine('tests/support/confined.py', UNIT);
+        await plant.startDaemon('--gl', 'egl-surfaceless');
+        assert.match(readFileSync(`/proc/${plant.daemon.child.pid}/status`, 'utf8'), /^Seccomp:\t2$/m);
+        const client = await PlainClient.open(plant.port);
+        await client.hello({ codecs: ['h264', 'jpeg'] });
+        const frame = await client.frameWhere('a frame', (f) => f.payload.length > 0);
+        assert.deepEqual([frame.full_width, frame.full_height], [320, 180]);
+        client.say({ type: 'params', seq: 1, baseline: 'now' });
+        await client.text('params');
+        client.say({ type: 'prove', seq: 1, tag: 'TI-1', expected: 1, tolerance: 1, fail: true }); // written and synced
+        assert.equal((await client.text('proved')).kept, true);
+        client.close();
+        assert.equal((await get(plant.port, '/snapshot.png?width=320&height=200')).status, 200);
+        assert.deepEqual(await plant.daemon.stop(), { code: 0, signal: null }, plant.daemon.said);
+        assert.doesNotMatch(plant.daemon.said, /not permitted/);
+    } finally {
+        await plant.destroy();
     }
 });

@@ -28,11 +28,14 @@ before(async () => {
     assert.equal(plant.prepare().code, 0);
     tokensFile = join(plant.folder, 'tokens');
     tokens = {};
-    for (const [role, ...more] of [['viewer'], ['engineer'], ['operator', '--until', '2001-01-01']])
-        tokens[role] = runProgram('plantcast', ['token', 'add', tokensFile, '--role', role, '--name', `${role}-1`, ...more]).out.trim();
+    for (const [role, ...more] of [['viewer'], ['engineer'], ['operator', '--until', '2001-01-01']]) {
+        const added = runProgram('plantcast', ['token', 'add', tokensFile, '--role', role, '--name', `${role}-1`, ...more]);
+        tokens[role] = added.out.trim();
+    }
     const key = join(plant.folder, 'key.pem'), cert = join(plant.folder, 'cert.pem');
-    assert.equal(spawnSync('openssl', ['req', '-x509', '-newkey', 'ec', '-pkeyopt', 'ec_paramgen_curve:prime256v1', '-nodes', '-keyout', key,
-        '-out', cert, '-days', '30', '-subj', '/CN=plant.example', '-addext', 'subjectAltName=DNS:plant.example']).status, 0);
+    assert.equal(spawnSync('openssl', ['req', '-x509', '-newkey', 'ec', '-pkeyopt', 'ec_paramgen_curve:prime256v1', '-nodes',
+        '-keyout', key, '-out', cert, '-days', '30', '-subj', '/CN=plant.example',
+        '-addext', 'subjectAltName=DNS:plant.example']).status, 0);
     tls = ['--tls-cert', cert, '--tls-key', key];
 });
 after(() => plant?.destroy());
@@ -44,7 +47,8 @@ async function serve(...args) {
 // { status, headers } of a request from this machine.
 function ask(path, headers = {}, secure = false) {
     return new Promise((done, fail) => {
-        const options = { port: plant.port, host: '127.0.0.1', path, headers: { Host: 'localhost', ...headers }, rejectUnauthorized: false };
+        const to = { port: plant.port, host: '127.0.0.1', path }, all = { Host: 'localhost', ...headers };
+        const options = { ...to, headers: all, rejectUnauthorized: false };
         const asked = (secure ? https : http).request(options, (response) => {
             response.resume();
             done({ status: response.statusCode, headers: response.headers });

@@ -80,10 +80,11 @@ export function runProgram(name, args, timeout = 30000) {
 }
 
 class Program {
-    constructor(name, args, as = {}) {
+    constructor(name, args, as = {}, before = []) {
+        const [program, ...all] = [...before, join(BIN, name), ...args];
         this.name = name;
         this.said = '';
-        this.child = spawn(join(BIN, name), args, { stdio: ['ignore', 'pipe', 'pipe'], ...as });
+        this.child = spawn(program, all, { stdio: ['ignore', 'pipe', 'pipe'], ...as });
         this.ended = new Promise((done) => this.child.once('exit', (code, signal) => done({ code, signal })));
         for (const pipe of [this.child.stdout, this.child.stderr])
             pipe.on('data', (chunk) => { this.said = (this.said + chunk).slice(-100000); });
@@ -156,6 +157,11 @@ export class TinyPlant {
             chownSync(join(this.folder, name), NOBODY, NOBODY);
     }
 
+    // From now on the daemon is started by another program, which takes its path and arguments after these.
+    confine(...before) {
+        this.before = before;
+    }
+
     // One line to the simulator, one line back.
     tell(line) {
         return new Promise((done, fail) => {
@@ -166,7 +172,7 @@ export class TinyPlant {
     }
 
     async startDaemon(...args) {
-        this.daemon = new Program('plantcastd', [this.file, '--port', '0', ...args], this.as);
+        this.daemon = new Program('plantcastd', [this.file, '--port', '0', ...args], this.as, this.before);
         const [, port] = await this.daemon.line(/^plantcastd: ready https?:\/\/[\d.]+:(\d+)\/$/m);
         this.port = Number(port);
     }

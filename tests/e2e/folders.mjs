@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Root's programs in a folder that the daemon may write: backup, restore and token are not led out of it by links, nor by files of others,
+// and what they make is for nobody else to read. As deploy/INSTALL.md lays the folders out.
+import assert from 'node:assert/strict';
+import {
+    chmodSync, chownSync, existsSync, linkSync, lstatSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, renameSync, rmSync,
+    symlinkSync, unlinkSync, writeFileSync,
+} from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+
+const NOBODY = 65534, absent = missing();
+const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : process.getuid() !== 0 ? 'only root can be led astray' : false;
+let plant, root, state, history, secret;
+
+// The plant file in a folder of root's; tag list and history in one of the daemon's.
+before(async () => {
+    if (skip)
+        return;
+    plant = await TinyPlant.create();
+    root = mkdtempSync(join(tmpdir(), 'plantcast-root-'));
+    state = join(root, 'state');
+    history = join(state, 'history');
+    mkdirSync(state);
+    renameSync(join(plant.folder, 'tags.csv'), join(state, 'tags.csv'));
+    writeFileSync(plant.file, `${readFileSync(plant.file, 'utf8').replace('tags: tags.csv', `tags: ${join(state, 'tags.csv')}`)}`
+        + `history:\n  folder: ${history}\n`);
+    const now = Math.floor(Date.now() / 1000);
+    writeFileSync(join(root, 'series.csv'), `Tag,Time,Value\nTI-1,${now - 60},1\nTI-1,${now - 30},2\n`);
+    const imported = runProgram('plantcast', ['history', 'import', plant.file, join(root, 'series.csv')]);
+    assert.equal(imported.code, 0, imported.err);
+    writeFileSync(join(history, 'proofs.csv'), 'Time,Tag Name\n');
+    for (const name of ['.', ...readdirSync(state, { recursive: true })])
+        chownSync(join(state, name), NOBODY, NOBODY);
+    secret = join(root, 'secret');
+    writeFileSync(secret, 'root only\n', { mode: 0o600 });
+});
+after(async () => {
+    if (root)
+        rmSync(root, { recursive: true, force: true });
+    await plant?.destroy();
+});
+
+const rights = (path) => (lstatSync(path).mode & 0o7777).toString(8);
+const backUp = (name) => runProgram('plantcast', ['backup', plant.file, '-o', join(root, name)]);
+
+test('a backup is for its maker alone, and has the tag list from where it lies', { skip }, () => {
+    const made = backUp('one');
+    assert.equal(made.code, 0, made.err);
+    assert.equal(rights(join(root, 'one')), '700');
+    const names = readdirSync(join(root, 'one'));
+    assert.ok(['backup.json', 'plant.yaml', 'proofs.csv', 'tags.csv'].every((name) => names.includes(name)), names.join(' '));
+    for (const name of names)
+        assert.equal(rights(join(root, 'one', name)), '600', name);
+});
+
+test('what leads out of the folder is not copied, by whatever name', { skip }, () => {
+    const names = ['proofs.csv', readdirSync(history).find((name) => /^history-.*sqlite$/.test(name)), '../tags.csv'];
+    const ways = [[(path) => symlinkSync(secret, path), /symbolic link/],
+        [(path) => linkSync(secret, path), /another name elsewhere/],
+        [(path) => { writeFileSync(path, 'x'); chownSync(path, 1, 1); }, /belongs to somebody else/],
+        [(path) => mkdirSync(path), /not a file/]];
+    for (const name of names) {
+        const path = join(history, name);
+        for (const [put, why] of ways) {
+            renameSync(path, `${path}.kept`);
+            put(path);
+            const made = backUp('two');
+            assert.equal(made.code, 1, `${name} ${why}`);
+            if (name !== '../tags.csv') // the plant is not read, either, where its list is no list
+                assert.match(made.err, why, name);
+            assert.ok(!existsSync(join(root, 'two')) && !existsSync(join(root, 'two.part')), name);
+            rmSync(path, { recursive: true });
+            renameSync(`${path}.kept`, path);
+        }
+    }
+    assert.equal(backUp('two').code, 0);
+});
+
+test('restored files belong to whom their folder belongs to, and nothing is written through a link', { skip }, () => {
+    renameSync(state, `${state}.was`);
+    renameSync(plant.file, `${plant.file}.was`);
+    mkdirSync(state);
+    chownSync(state, NOBODY, NOBODY);
+    symlinkSync(join(root, 'made-by-root'), join(state, 'tags.csv'));
+    const restore = () => runProgram('plantcast', ['restore', join(root, 'one'), plant.file]);
+    assert.match(restore().err, /in the way/);
+    unlinkSync(join(state, 'tags.csv'));
+    mkdirSync(join(root, 'elsewhere'));
+    symlinkSync(join(root, 'elsewhere'), history);
+    assert.match(restore().err, /is no folder/);
+    assert.deepEqual(readdirSync(join(root, 'elsewhere')), []);
+    unlinkSync(history);
+    const restored = restore();
+    assert.equal(restored.code, 0, restored.err);
+    for (const name of ['tags.csv', 'history', 'history/proofs.csv']) {
+        assert.equal(lstatSync(join(state, name)).uid, NOBODY, name);
+        assert.match(rights(join(state, name)), /^(6[04]0|750)$/, name);
+    }
+    assert.equal(lstatSync(plant.file).uid, 0);
+    assert.ok(!existsSync(join(root, 'made-by-root')));
+});
+
+test('token: neither through links, nor in a folder of somebody else', { skip }, () => {
+    const token = (...args) => runProgram('plantcast', ['token', ...args]), who = ['--role', 'viewer', '--name', 'wall'];
+    const folder = join(root, 'config'), file = join(folder, 'tokens');
+    mkdirSync(folder);
+    symlinkSync(secret, file);
+    for (const args of [['add', file, ...who], ['list', file], ['revoke', file, 'wall']]) {
+        const answer = token(...args);
+        assert.deepEqual([answer.code, /symbolic link/.test(answer.err)], [1, true], args[0]);
+    }
+    unlinkSync(file);
+    assert.equal(token('add', file, ...who).code, 0);
+    assert.equal(rights(file), '600');
+    chownSync(file, NOBODY, NOBODY);
+    assert.match(token('list', file).err, /neither to root nor to you/);
+    chownSync(file, 0, 0);
+    chownSync(folder, NOBODY, NOBODY);
+    assert.match(token('revoke', file, 'wall').err, /folder belongs to somebody else/);
+    chownSync(folder, 0, 0);
+    chmodSync(folder, 0o777);
+    assert.match(token('revoke', file, 'wall').err, /others may write/);
+    assert.equal(readFileSync(secret, 'utf8'), 'root only\n');
+});
