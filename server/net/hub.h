@@ -32,7 +32,7 @@ struct hub {
     struct stream *streams, **by_client; /* all of them; the same, by number, ascending */
     size_t by_client_capacity;
     struct request *snapshots; /* HTTP requests that wait for their picture */
-    int stream_count, snapshot_count;
+    int stream_count, picture_count; /* the latter for HTTP, that are being made */
     const struct quotas *quotas;
     struct peers *peers;
     int connection_count;

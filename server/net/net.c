@@ -408,7 +408,7 @@ struct net *net_create(const struct net_params *params)
     hub->next_client = 1;
     hub->quotas = &hub->params.access.quotas;
     hub->admission.quotas = hub->quotas;
-    hub->peers = peers_create(hub->quotas);
+    hub->peers = peers_create(hub->quotas, !params->access.behind_proxy);
     hub->logins = logins_create();
     hub->world = (struct session_world){
         .alarms_said = &hub->alarms_said,

@@ -12,12 +12,15 @@ struct peers {
     const struct quotas *quotas;
     struct peer **all; /* some thousands at most, and looked up once per connection */
     size_t count, capacity;
+    uint64_t payers; /* numbers given */
+    bool exempt;
 };
 
-struct peers *peers_create(const struct quotas *quotas)
+struct peers *peers_create(const struct quotas *quotas, bool exempt)
 {
     struct peers *peers = mem_new(sizeof(*peers));
     peers->quotas = quotas;
+    peers->exempt = exempt;
     return peers;
 }
 
@@ -51,6 +54,11 @@ static void read_address(const char *text, struct peer *out)
     out->local |= memcmp(out->address, mapped, sizeof(mapped)) == 0 && out->address[12] == 127;
 }
 
+static bool is_exempt(const struct peers *peers, const struct peer *peer, enum quota quota)
+{
+    return peers->exempt && peer->local && !peers->quotas->given[quota];
+}
+
 struct peer *peers_ref(struct peers *peers, const char *address)
 {
     struct peer read = { .refs = 1 };
@@ -63,6 +71,8 @@ struct peer *peers_ref(struct peers *peers, const char *address)
     mem_grow(&peers->all, &peers->capacity, peers->count + 1, sizeof(struct peer *));
     struct peer *peer = mem_new(sizeof(*peer));
     *peer = read;
+    peer->share.payer = ++peers->payers;
+    peer->share.exempt_pixels = is_exempt(peers, peer, QUOTA_ADDRESS_PIXELS);
     return peers->all[peers->count++] = peer;
 }
 
@@ -81,7 +91,7 @@ void peers_unref(struct peers *peers, struct peer **peer_ptr)
 
 static bool below(const struct peers *peers, const struct peer *peer, enum quota quota, int64_t count)
 {
-    return (peer->local && !peers->quotas->given[quota]) || count < peers->quotas->at[quota];
+    return is_exempt(peers, peer, quota) || count < peers->quotas->at[quota];
 }
 
 bool peers_may_connect(const struct peers *peers, const struct peer *peer)
@@ -89,9 +99,19 @@ bool peers_may_connect(const struct peers *peers, const struct peer *peer)
     return below(peers, peer, QUOTA_ADDRESS_CONNECTIONS, peer->connections);
 }
 
+bool peers_may_be_named(const struct peers *peers, const struct peer *peer)
+{
+    return below(peers, peer, QUOTA_ADDRESS_CONNECTIONS, peer->named);
+}
+
 bool peers_may_stream(const struct peers *peers, const struct peer *peer)
 {
     return below(peers, peer, QUOTA_ADDRESS_SESSIONS, peer->sessions);
+}
+
+bool peers_may_draw(const struct peers *peers, const struct peer *peer)
+{
+    return below(peers, peer, QUOTA_ADDRESS_SNAPSHOTS, peer->pictures);
 }
 
 bool peers_count_message(const struct peers *peers, struct peer *peer, int64_t now_ns)

@@ -64,6 +64,8 @@ static void on_open(struct hub *hub, struct lws *wsi, struct stream **slot)
     tune_socket(wsi);
     bool address_full = !peers_may_stream(hub->peers, stream->peer);
     stream->peer->sessions++;
+    stream->session->share = &stream->peer->share;
+    admission_join(&hub->admission, stream->session->share);
     if (address_full)
         session_close(stream->session, 1013, "full: this address has as many sessions as one may have; try again later");
     else if (hub->stream_count > hub->quotas->at[QUOTA_SESSIONS])
@@ -109,6 +111,7 @@ static void on_close(struct hub *hub, struct stream **slot)
         past_forget(hub->past, stream->session->id);
     stream->peer->sessions--;
     session_leave(stream->session, may_return(stream), clock_mono_ns());
+    admission_leave(&hub->admission, stream->session->share);
     session_destroy(&stream->session);
     picture_destroy(&stream->sending);
     text_finish(&stream->in);
@@ -169,12 +172,12 @@ static bool is_loaded(const struct hub *hub)
     return count * hub->still_ns > NS_PER_S;
 }
 
-static int count_moving(const struct hub *hub, int64_t now_ns)
+static void count_moving(const struct hub *hub, int64_t now_ns)
 {
-    int count = 0;
+    for (struct share *share = hub->admission.shares; share; share = share->next)
+        share->moving = 0;
     for (const struct stream *stream = hub->streams; stream; stream = stream->next)
-        count += stream->session->hello && now_ns - stream->session->input_ns < NS_PER_S;
-    return count;
+        stream->session->share->moving += stream->session->hello && now_ns - stream->session->input_ns < NS_PER_S;
 }
 
 void streams_check_tokens(struct hub *hub, int64_t now_utc_ns)
@@ -201,7 +204,7 @@ void streams_on_tick(struct hub *hub, bool data_changed, bool links_changed)
 {
     int64_t now_ns = clock_mono_ns(), patience_ns = hub->quotas->at[QUOTA_PATIENCE_S] * NS_PER_S;
     hub->world.loaded = is_loaded(hub);
-    hub->world.moving = count_moving(hub, now_ns);
+    count_moving(hub, now_ns);
     follow_share_steps(hub);
     follow_tell(hub, now_ns);
     for (struct stream *stream = hub->streams; stream; stream = stream->next) {
@@ -247,7 +250,7 @@ void stream_on_picture(struct hub *hub, struct picture *picture)
     const struct frame *frame = picture->packet ? picture->packet->frame : NULL;
     if (frame && frame->view.tier == TIER_STILL && picture->wish.urgency >= URGENCY_REFINE)
         hub->still_ns = frame->render_ns + frame->readback_ns;
-    admission_on_picture(&hub->admission, picture);
+    admission_on_picture(&hub->admission, stream->session->share, picture);
     session_on_picture(stream->session, picture);
     pump(hub, stream);
 }

@@ -19,6 +19,7 @@ static const struct refusal IN_QUERY = { 400, "a token does not belong in a URL,
 static const struct refusal BAD_TOKEN = { 401, "this token is not, or no longer, let in\n" };
 static const struct refusal HELD = { 429, "too many wrong tokens came from this address; try again in 5 s\n" };
 static const struct refusal TOO_LONG = { 431, "a header is too long\n" };
+static const struct refusal TOO_MANY = { 503, "this address has as many connections as one may have; try again later\n" };
 
 /* --- connections ---------------------------------------------------------------------------------------------------------------- */
 
@@ -54,6 +55,13 @@ void visitor_come(struct hub *hub, struct lws *wsi)
     lws_set_opaque_user_data(wsi, visitor);
 }
 
+static void leave_client(struct hub *hub, struct visitor *visitor)
+{
+    if (visitor->client)
+        visitor->client->named--;
+    peers_unref(hub->peers, &visitor->client);
+}
+
 void visitor_go(struct hub *hub, struct lws *wsi)
 {
     struct visitor *visitor = visitor_of(wsi);
@@ -61,7 +69,7 @@ void visitor_go(struct hub *hub, struct lws *wsi)
         return;
     visitor->peer->connections--;
     hub->connection_count--;
-    peers_unref(hub->peers, &visitor->client);
+    leave_client(hub, visitor);
     peers_unref(hub->peers, &visitor->peer);
     mem_free(visitor);
     lws_set_opaque_user_data(wsi, NULL);
@@ -120,16 +128,21 @@ static bool has_forwarding(struct lws *wsi)
     return false;
 }
 
-static void find_client(struct hub *hub, struct lws *wsi, struct visitor *visitor)
+/* Behind a proxy its connections are those of whom it names. False: *refusal. */
+static bool find_client(struct hub *hub, struct lws *wsi, struct visitor *visitor, struct refusal *refusal)
 {
-    char list[512], *address = visitor->address;
-    peers_unref(hub->peers, &visitor->client);
-    bool named = hub->params.access.behind_proxy && visitor->peer->local &&
-                 visitor_header(wsi, WSI_TOKEN_X_FORWARDED_FOR, list, sizeof(list)) &&
-                 access_forwarded(list, address, sizeof(visitor->address));
-    if (!named)
+    bool proxied = hub->params.access.behind_proxy && visitor->peer->local;
+    char list[512] = "", *address = visitor->address;
+    leave_client(hub, visitor);
+    if (proxied && !visitor_header(wsi, WSI_TOKEN_X_FORWARDED_FOR, list, sizeof(list)))
+        *refusal = TOO_LONG;
+    if (!list[0] || !access_forwarded(list, address, sizeof(visitor->address)))
         lws_get_peer_simple(wsi, address, sizeof(visitor->address));
     visitor->client = peers_ref(hub->peers, address);
+    if (proxied && !refusal->status && !peers_may_be_named(hub->peers, visitor->client))
+        *refusal = TOO_MANY;
+    visitor->client->named++;
+    return !refusal->status;
 }
 
 static bool has_token_in_query(struct lws *wsi)
@@ -213,7 +226,8 @@ bool visitor_enter(struct hub *hub, struct lws *wsi, struct refusal *refusal)
     *refusal = (struct refusal){ 0 };
     visitor->holder = (struct token_holder){ 0 };
     visitor->role = ROLE_NOBODY;
-    find_client(hub, wsi, visitor);
+    if (!find_client(hub, wsi, visitor, refusal))
+        return false;
     if (has_host && (!visitor_header(wsi, WSI_TOKEN_HOST, host, sizeof(host)) || !access_host_name(host, name, sizeof(name)) ||
                      !is_ours(hub, name)))
         *refusal = hub->local_only ? LOCAL_ONLY : WRONG_HOST;

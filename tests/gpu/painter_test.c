@@ -123,6 +123,39 @@ static void test_mover_is_served_during_a_refinement(void **state)
     assert_true(count_of("plantcast_render_steps_total") > steps + 4);
 }
 
+/* A small picture of another address does not wait for the end of a large one. */
+static void test_a_small_picture_overtakes_a_large_one_of_another(void **state)
+{
+    (void)state;
+    if (hardware)
+        skip();
+    int64_t steps = count_of("plantcast_render_steps_total");
+    struct wish wish = { .codec = WIRE_CODEC_JPEG, .quality = { .quality = 80 }, .urgency = URGENCY_SNAPSHOT, .always = true };
+    const struct {
+        uint64_t client, payer;
+        int width_px, height_px;
+    } asked[] = { { REFINER, 1, 2400, 1600 }, { PICKER, 1, 320, 200 }, { MOVER, 2, 320, 200 } };
+    for (int i = 0; i < 3; i++) {
+        wish.asked_ns = clock_mono_ns();
+        wish.payer = asked[i].payer;
+        view_default(&toy->scene, asked[i].width_px, asked[i].height_px, &wish.view);
+        wish.view.tier = TIER_STILL;
+        wish.view.camera.eye_m[0] += 7 + i;
+        assert_int_equal(painter_ask(painter, asked[i].client, &wish), PAINTER_ADDED);
+        painter_go(painter);
+        if (i == 0)
+            await_step(steps + 2);
+    }
+    static const uint64_t order[] = { MOVER, REFINER, PICKER };
+    for (int i = 0; i < 3; i++) {
+        struct picture *picture = next();
+        assert_true(picture->packet && picture->client == order[i]);
+        picture_destroy(&picture);
+    }
+    for (int i = 0; i < 3; i++)
+        painter_forget(painter, asked[i].client);
+}
+
 static void test_mover_gives_its_own_refinement_up(void **state)
 {
     (void)state;
@@ -671,6 +704,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_mover_is_served_during_a_refinement),
+        cmocka_unit_test(test_a_small_picture_overtakes_a_large_one_of_another),
         cmocka_unit_test(test_mover_gives_its_own_refinement_up),
         cmocka_unit_test(test_refinement_ends_while_others_go_on_moving),
         cmocka_unit_test(test_refining_one_costs_a_mover_little),

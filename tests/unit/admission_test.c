@@ -40,7 +40,7 @@ static void limits_are_set_by_name_and_within_range(void **state)
 static void an_address_is_one_however_it_is_written(void **state)
 {
     (void)state;
-    struct peers *peers = peers_create(&quotas);
+    struct peers *peers = peers_create(&quotas, true);
     struct peer *four = peers_ref(peers, "203.0.113.7"), *mapped = peers_ref(peers, "::ffff:203.0.113.7");
     struct peer *six = peers_ref(peers, "2001:db8:1:2::1"), *near_it = peers_ref(peers, "2001:db8:1:2:ffff::9");
     struct peer *far_from_it = peers_ref(peers, "2001:db8:1:3::1");
@@ -58,7 +58,7 @@ static void an_address_is_one_however_it_is_written(void **state)
 static void an_address_has_its_limits_and_this_machine_only_those_set(void **state)
 {
     (void)state;
-    struct peers *peers = peers_create(&quotas);
+    struct peers *peers = peers_create(&quotas, true);
     struct peer *peer = peers_ref(peers, "203.0.113.7"), *local = peers_ref(peers, "127.0.0.1");
     peer->connections = local->connections = (int)quotas.at[QUOTA_ADDRESS_CONNECTIONS];
     peer->sessions = local->sessions = (int)quotas.at[QUOTA_ADDRESS_SESSIONS];
@@ -78,7 +78,7 @@ static void messages_of_an_address_are_counted_together(void **state)
     (void)state;
     int64_t now_ns = 1000 * NS_PER_S;
     quotas_parse(&quotas, "address-messages=10");
-    struct peers *peers = peers_create(&quotas);
+    struct peers *peers = peers_create(&quotas, true);
     struct peer *peer = peers_ref(peers, "203.0.113.7");
     for (int i = 0; i < 10; i++)
         assert_true(peers_count_message(peers, peer, now_ns));
@@ -91,7 +91,7 @@ static void messages_of_an_address_are_counted_together(void **state)
 /* --- room ------------------------------------------------------------------------------------------------------------------------ */
 
 /* A second in which `moving` sessions get `fps` pictures each that take cost_ms to draw, and readings wait data_wait_ms. */
-static void a_second(struct admission *admission, int moving, int fps, int cost_ms, int data_wait_ms)
+static void a_second(struct admission *admission, struct share *share, int moving, int fps, int cost_ms, int data_wait_ms)
 {
     static uint64_t content;
     for (int i = 0; i < moving * fps + (data_wait_ms > 0); i++) {
@@ -104,8 +104,8 @@ static void a_second(struct admission *admission, int moving, int fps, int cost_
             picture.wish.urgency = URGENCY_DATA;
             picture.wait_ns = data_wait_ms * NS_PER_MS;
         }
-        admission_on_picture(admission, &picture);
-        admission_on_picture(admission, &picture); /* of another who shares it */
+        admission_on_picture(admission, share, &picture);
+        admission_on_picture(admission, share, &picture); /* of another who shares it */
         packet_unref(&picture.packet);
         frame_unref(&frame);
     }
@@ -113,55 +113,125 @@ static void a_second(struct admission *admission, int moving, int fps, int cost_
     admission_on_tick(admission, admission->begin_ns + NS_PER_S);
 }
 
-static void seconds(struct admission *admission, int moving, int fps, int cost_ms, int data_wait_ms)
+static void seconds(struct admission *admission, struct share *share, int moving, int fps, int cost_ms, int data_wait_ms)
 {
     for (int i = 0; i < ADMISSION_WINDOWS; i++)
-        a_second(admission, moving, fps, cost_ms, data_wait_ms);
+        a_second(admission, share, moving, fps, cost_ms, data_wait_ms);
+}
+
+/* A session more of an address of which so many move. */
+static const char *refuses(const struct admission *admission, struct share *share, int64_t pixels, int moving)
+{
+    share->moving = moving;
+    return admission_refuses(admission, share, pixels);
 }
 
 static void who_would_slow_the_others_down_too_far_is_refused(void **state)
 {
     (void)state;
     struct admission admission = { .quotas = &quotas };
-    assert_null(admission_refuses(&admission, 1000, 0));
-    seconds(&admission, 4, 6, 40, 0); /* 4 at 6 frames/s: a fifth would leave 4.8 */
+    struct share share = { 0 };
+    admission_join(&admission, &share);
+    assert_null(refuses(&admission, &share, 1000, 0));
+    seconds(&admission, &share, 4, 6, 40, 0); /* 4 at 6 frames/s: a fifth would leave 4.8 */
     assert_int_equal(admission_busy_percent(&admission), 96);
-    assert_non_null(admission_refuses(&admission, 1000, 4));
-    seconds(&admission, 4, 7, 34, 0); /* 5.6 */
-    assert_null(admission_refuses(&admission, 1000, 4));
-    a_second(&admission, 4, 1, 40, 0); /* a quiet second */
-    assert_null(admission_refuses(&admission, 1000, 4));
+    assert_non_null(refuses(&admission, &share, 1000, 4));
+    seconds(&admission, &share, 4, 7, 34, 0); /* 5.6 */
+    assert_null(refuses(&admission, &share, 1000, 4));
+    a_second(&admission, &share, 4, 1, 40, 0); /* a quiet second */
+    assert_null(refuses(&admission, &share, 1000, 4));
 }
 
 static void a_busy_second_is_no_reason(void **state)
 {
     (void)state;
     struct admission admission = { .quotas = &quotas };
+    struct share share = { 0 };
+    admission_join(&admission, &share);
     for (int i = 0; i < ADMISSION_WINDOWS - 1; i++)
-        a_second(&admission, 2, 1, 490, 2000);
-    assert_null(admission_refuses(&admission, 1000, 2));
-    a_second(&admission, 2, 1, 490, 2000);
-    assert_non_null(admission_refuses(&admission, 1000, 2));
+        a_second(&admission, &share, 2, 1, 490, 2000);
+    assert_null(refuses(&admission, &share, 1000, 2));
+    a_second(&admission, &share, 2, 1, 490, 2000);
+    assert_non_null(refuses(&admission, &share, 1000, 2));
+}
+
+/* A second in which each address draws `of_each` pictures per moving session, that take cost_ms. */
+static void a_second_of(struct admission *admission, struct share *shares, int count, int of_each, int cost_ms)
+{
+    static uint64_t content = 1 << 20;
+    for (int i = 0; i < count; i++)
+        for (int n = 0; n < shares[i].moving * of_each; n++) {
+            struct frame *frame = frame_create(16, 16);
+            frame->render_ns = cost_ms * NS_PER_MS;
+            frame->content = ++content;
+            struct picture picture = { .packet = packet_create(frame, WIRE_CODEC_JPEG, true, "jpeg", 4), .wish.urgency = URGENCY_INPUT };
+            admission_on_picture(admission, &shares[i], &picture);
+            packet_unref(&picture.packet);
+            frame_unref(&frame);
+        }
+    admission_on_tick(admission, admission->begin_ns + NS_PER_S);
+}
+
+static void one_address_keeps_no_other_out(void **state)
+{
+    (void)state;
+    struct admission admission = { .quotas = &quotas };
+    struct share shares[2] = { { .moving = 30 }, { .moving = 0 } };
+    admission_join(&admission, &shares[0]);
+    for (int i = 0; i < ADMISSION_WINDOWS; i++)
+        a_second_of(&admission, shares, 1, 1, 30); /* 30 sessions with a picture a second each */
+    assert_non_null(admission_refuses(&admission, &shares[0], 1000));
+    assert_null(admission_refuses(&admission, &shares[1], 1000));
+    admission_join(&admission, &shares[1]);
+    shares[1].moving = 1;
+    for (int i = 0; i < ADMISSION_WINDOWS; i++)
+        a_second_of(&admission, shares, 2, 1, 30);
+    assert_null(admission_refuses(&admission, &shares[1], 1000)); /* half of 31 pictures for two */
+    shares[1].moving = 3;
+    assert_non_null(admission_refuses(&admission, &shares[1], 1000)); /* but not for four */
+    struct share third = { 0 };
+    assert_null(admission_refuses(&admission, &third, 1000)); /* a third of 31 pictures is 10 */
+    quotas_parse(&quotas, "least-fps=11");
+    assert_non_null(admission_refuses(&admission, &third, 1000));
+}
+
+static void many_addresses_of_one_session_each_are_as_many_sessions(void **state)
+{
+    (void)state;
+    struct admission admission = { .quotas = &quotas };
+    struct share shares[5] = { { .moving = 1 }, { .moving = 1 }, { .moving = 1 }, { .moving = 1 }, { .moving = 0 } };
+    for (int i = 0; i < 4; i++)
+        admission_join(&admission, &shares[i]);
+    for (int i = 0; i < ADMISSION_WINDOWS; i++)
+        a_second_of(&admission, shares, 4, 6, 40);
+    assert_non_null(admission_refuses(&admission, &shares[4], 1000)); /* a fifth would leave 4.8 */
+    for (int i = 0; i < ADMISSION_WINDOWS; i++)
+        a_second_of(&admission, shares, 4, 7, 34);
+    assert_null(admission_refuses(&admission, &shares[4], 1000));
 }
 
 static void readings_that_are_drawn_too_late_are_a_reason(void **state)
 {
     (void)state;
     struct admission admission = { .quotas = &quotas };
-    seconds(&admission, 1, 30, 30, 900);
-    assert_null(admission_refuses(&admission, 1000, 1));
-    seconds(&admission, 1, 30, 30, 1100);
-    assert_non_null(admission_refuses(&admission, 1000, 1));
+    struct share share = { 0 };
+    admission_join(&admission, &share);
+    seconds(&admission, &share, 1, 30, 30, 900);
+    assert_null(refuses(&admission, &share, 1000, 1));
+    seconds(&admission, &share, 1, 30, 30, 1100);
+    assert_non_null(refuses(&admission, &share, 1000, 1));
 }
 
 static void pixels_of_all_views_have_a_limit(void **state)
 {
     (void)state;
     struct admission admission = { .quotas = &quotas };
+    struct share share = { 0 };
+    admission_join(&admission, &share);
     quotas_parse(&quotas, "pixels=1000000");
     admission.pixels = 900000;
-    assert_null(admission_refuses(&admission, 100000, 0));
-    assert_non_null(admission_refuses(&admission, 100001, 0));
+    assert_null(refuses(&admission, &share, 100000, 0));
+    assert_non_null(refuses(&admission, &share, 100001, 0));
 }
 
 int main(void)
@@ -175,6 +245,8 @@ int main(void)
         TEST(messages_of_an_address_are_counted_together),
         TEST(who_would_slow_the_others_down_too_far_is_refused),
         TEST(a_busy_second_is_no_reason),
+        TEST(one_address_keeps_no_other_out),
+        TEST(many_addresses_of_one_session_each_are_as_many_sessions),
         TEST(readings_that_are_drawn_too_late_are_a_reason),
         TEST(pixels_of_all_views_have_a_limit),
     };

@@ -315,6 +315,64 @@ static void without_room_a_session_is_told_when_to_come_again(void **state)
     leave(f, &second);
 }
 
+static struct session *open_of(struct fixture *f, struct share *share, const char *hello)
+{
+    struct session *session = session_create(&f->world, ++f->next_id, f->now_ns);
+    session->share = share;
+    admission_join(&f->admission, share);
+    say(f, session, hello);
+    return session;
+}
+
+static void leave_share(struct fixture *f, struct session **session)
+{
+    struct share *share = (*session)->share;
+    leave(f, session);
+    admission_leave(&f->admission, share);
+}
+
+static void an_address_has_its_part_of_all_pixels(void **state)
+{
+    struct fixture *f = *state;
+    struct share share = { .payer = 1 }, other = { .payer = 2 };
+    quotas_parse(&f->quotas, "pixels=1000000");
+    quotas_parse(&f->quotas, "address-pixels=300000");
+    struct session *first = open_of(f, &share, HELLO), *second = open_of(f, &share, HELLO), *third = open_of(f, &other, HELLO);
+    expect_welcome(f, first, "engineer", false);
+    expect_error(f, second, "full", 1013);
+    expect_welcome(f, third, "engineer", false);
+    assert_true(share.pixels == 230400 && other.pixels == 230400);
+    leave_share(f, &first);
+    leave_share(f, &second);
+    leave_share(f, &third);
+    assert_true(share.pixels == 0 && other.pixels == 0);
+}
+
+static void who_is_hidden_gives_its_place_back_and_takes_it_again(void **state)
+{
+    struct fixture *f = *state;
+    struct share share = { .payer = 1 }, other = { .payer = 2 };
+    struct wish wish;
+    quotas_parse(&f->quotas, "pixels=300000");
+    struct session *hidden = open_of(f, &share, HELLO);
+    expect_welcome(f, hidden, "engineer", false);
+    say(f, hidden, "{\"type\":\"visible\",\"visible\":false}");
+    session_on_tick(hidden, f->now_ns += 14 * NS_PER_S);
+    assert_int_equal(f->admission.pixels, 230400);
+    session_on_tick(hidden, f->now_ns += NS_PER_S);
+    assert_int_equal(f->admission.pixels, 0);
+    struct session *second = open_of(f, &other, HELLO);
+    expect_welcome(f, second, "engineer", false);
+    say(f, hidden, "{\"type\":\"visible\",\"visible\":true}");
+    expect_error(f, hidden, "limit", 0);
+    assert_false(session_wish(hidden, f->now_ns, &wish));
+    leave_share(f, &second);
+    session_on_tick(hidden, f->now_ns += NS_PER_S); /* there is room again, and nobody has to ask */
+    assert_int_equal(share.pixels, 230400);
+    assert_true(session_wish(hidden, f->now_ns, &wish) && wish.payer == 1);
+    leave_share(f, &hidden);
+}
+
 static void a_view_has_its_own_limit(void **state)
 {
     struct fixture *f = *state;
@@ -356,6 +414,8 @@ int main(void)
         TEST(a_view_belongs_to_a_token),
         TEST(of_many_who_left_the_newest_are_kept),
         TEST(without_room_a_session_is_told_when_to_come_again),
+        TEST(an_address_has_its_part_of_all_pixels),
+        TEST(who_is_hidden_gives_its_place_back_and_takes_it_again),
         TEST(a_view_has_its_own_limit),
         TEST(who_does_not_say_hello_is_sent_away),
     };

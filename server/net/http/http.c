@@ -64,7 +64,8 @@ static const char RELOAD_PATH[] = "/api/v1/reload"; /* POST */
 
 static int refuse(struct request *request, const struct refusal *refusal)
 {
-    bool whose = refusal->status == HTTP_STATUS_UNAUTHORIZED, held = refusal->status == 429;
+    bool whose = refusal->status == HTTP_STATUS_UNAUTHORIZED, held = refusal->status == 429 || refusal->status == 503;
+    request->close |= refusal->status == HTTP_STATUS_SERVICE_UNAVAILABLE;
     return request_answer(request, refusal->status, HTTP_TEXT, mem_strdup(refusal->text), strlen(refusal->text),
                   whose ? "www-authenticate:" : held ? "retry-after:" : NULL, whose ? "Bearer realm=\"plantcast\"" : "5");
 }

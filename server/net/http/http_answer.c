@@ -4,6 +4,7 @@
 
 #include "base/mem.h"
 #include "net/http/http_impl.h"
+#include "net/visitor.h"
 
 static const char *const security[][2] = {
     { "content-security-policy:", "default-src 'self'; connect-src 'self' ws: wss:; img-src 'self' data: blob:; worker-src 'self' blob:; "
@@ -62,6 +63,11 @@ int request_answer_text(struct request *request, int status, const char *text)
     return request_answer(request, status, HTTP_TEXT, mem_strdup(text), strlen(text), NULL, NULL);
 }
 
+int request_answer_later(struct request *request, const char *why)
+{
+    return request_answer(request, HTTP_STATUS_SERVICE_UNAVAILABLE, HTTP_TEXT, mem_strdup(why), strlen(why), "retry-after:", "2");
+}
+
 int request_answer_json(struct request *request, char *text)
 {
     return request_answer(request, HTTP_STATUS_OK, "application/json", text, strlen(text), NULL, NULL);
@@ -101,7 +107,7 @@ void request_await(struct hub *hub, struct request *request)
     request->client = hub->next_client++;
     request->next = hub->snapshots;
     hub->snapshots = request;
-    hub->snapshot_count++;
+    request->peer = visitor_of(request->wsi)->client;
     lws_set_timeout(request->wsi, PENDING_TIMEOUT_HTTP_CONTENT, 60);
 }
 
@@ -121,7 +127,8 @@ void request_forget(struct hub *hub, struct request *request)
     if (!*at)
         return;
     *at = request->next;
-    hub->snapshot_count--;
+    hub->picture_count -= request->asked != NULL;
+    request->peer->pictures -= request->asked != NULL;
     painter_forget(hub->params.plant.painter, request->client);
     if (hub->recall)
         recall_forget(hub->recall, request->client);

@@ -13,6 +13,7 @@ struct asked { /* a picture, or what is at a pixel of it */
 
 struct request {
     struct lws *wsi;
+    struct peer *peer; /* whose it is, while it waits; the connection's visitor keeps it */
     bool head;  /* no body is wanted */
     bool close; /* after the answer */
     char *body;
@@ -38,6 +39,7 @@ struct args { /* of the query, decoded */
 int request_answer(struct request *request, int status, const char *type, char *body, size_t count, const char *extra_name,
                    const char *extra);
 int request_answer_text(struct request *request, int status, const char *text);
+int request_answer_later(struct request *request, const char *why); /* 503, and when to come again */
 int request_answer_json(struct request *request, char *text); /* takes text */
 int request_answer_error(struct request *request, const struct message_error *error);
 int request_done(struct request *request); /* all of its answer was sent */

@@ -47,10 +47,22 @@ static bool may_ask(struct hub *hub, struct request *request, const struct view 
         *result = request_answer_text(request, HTTP_STATUS_NOT_FOUND, HTTP_NOTHING_RECORDED);
         return false;
     }
-    if (hub->snapshot_count < hub->quotas->at[QUOTA_SNAPSHOTS])
-        return true;
-    *result = request_answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "too many pictures are being made; try again\n");
-    return false;
+    const char *why = hub->picture_count >= hub->quotas->at[QUOTA_SNAPSHOTS] ? "too many pictures are being made; try again\n"
+                      : peers_may_draw(hub->peers, visitor_of(request->wsi)->client)
+                          ? NULL
+                          : "as many pictures are being made for this address as one may have; try again\n";
+    if (why)
+        *result = request_answer_later(request, why);
+    return !why;
+}
+
+static struct asked *await_picture(struct hub *hub, struct request *request)
+{
+    request_await(hub, request);
+    request->asked = mem_new(sizeof(*request->asked));
+    request->peer->pictures++;
+    hub->picture_count++;
+    return request->asked;
 }
 
 int ask_snapshot(struct hub *hub, struct request *request)
@@ -63,9 +75,8 @@ int ask_snapshot(struct hub *hub, struct request *request)
     if (!may_ask(hub, request, &wish.view, &result))
         return result;
     wish.asked_ns = wish.view.input_ns = clock_mono_ns();
-    request_await(hub, request);
-    request->asked = mem_new(sizeof(*request->asked));
-    request->asked->wish = wish;
+    wish.payer = visitor_of(request->wsi)->client->share.payer;
+    await_picture(hub, request)->wish = wish;
     begin(hub, request);
     return 0;
 }
@@ -98,13 +109,12 @@ int ask_pick(struct hub *hub, struct request *request)
         return request_answer_error(request, &error);
     if (!may_ask(hub, request, &order.view, &result))
         return result;
-    request_await(hub, request);
+    struct asked *asked = await_picture(hub, request);
     order.client = request->client;
     order.x_px = place[0];
     order.y_px = place[1];
-    request->asked = mem_new(sizeof(*request->asked));
-    request->asked->picks = true;
-    request->asked->pick = order;
+    asked->picks = true;
+    asked->pick = order;
     begin(hub, request);
     return 0;
 }

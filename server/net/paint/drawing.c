@@ -147,6 +147,34 @@ static void stay(struct painter *painter, const struct batch *batch)
 }
 
 /* The instant, if it is one, goes over to it. */
+static void slow_swap(struct drawing *drawing)
+{
+    struct slow parked = drawing->parked;
+    drawing->parked = drawing->slow;
+    drawing->slow = parked;
+}
+
+/* Makes the place free, if whoever is first in the batch may have it at once. */
+static void slow_park(struct drawing *drawing, const struct batch *batch)
+{
+    struct painter *painter = drawing->painter;
+    pthread_mutex_lock(&painter->lock);
+    const struct client *client = painter_find(painter, batch->orders[0].client);
+    bool overtakes = client && drawing_overtakes(drawing, client);
+    pthread_mutex_unlock(&painter->lock);
+    if (overtakes)
+        slow_swap(drawing);
+}
+
+static int64_t spent_by(struct painter *painter, uint64_t id)
+{
+    pthread_mutex_lock(&painter->lock);
+    const struct client *client = painter_find(painter, id);
+    int64_t spent_ns = client ? client->payer->spent_ns[SCHEDULE_LONG] : 0;
+    pthread_mutex_unlock(&painter->lock);
+    return spent_ns;
+}
+
 static void slow_begin(struct drawing *drawing, struct batch *batch, const struct moment **moment, int64_t field_ns)
 {
     const struct wish *wish = &batch->orders[0].wish;
@@ -160,6 +188,10 @@ static void slow_begin(struct drawing *drawing, struct batch *batch, const struc
     drawing->slow.urgency = wish->urgency;
     drawing->slow.asked_ns = wish->asked_ns;
     drawing->slow.field_ns = field_ns;
+    drawing->slow.px = (int64_t)wish->view.width_px * wish->view.height_px;
+    drawing->slow.payer = wish->payer;
+    drawing->slow.payer_spent_ns = spent_by(drawing->painter, batch->orders[0].client);
+    drawing->slow.spent_ns = 0;
     struct batch empty = drawing->slow.batch;
     stay(drawing->painter, batch);
     drawing->slow.batch = *batch;
@@ -210,7 +242,9 @@ static void slow_forget_moment(struct drawing *drawing)
 /* True: it is done. */
 static bool slow_step(struct drawing *drawing)
 {
+    int64_t start_ns = clock_mono_ns();
     bool drawn = canvas_step(drawing->renderer, drawing->slow.canvas, STEP_NS);
+    drawing->slow.spent_ns += clock_mono_ns() - start_ns;
     counter_inc(drawing->painter->steps, 1);
     lose_on_demand(drawing);
     if (!drawn && !gl_lost(drawing->gl))
@@ -281,6 +315,8 @@ static bool draw_of(struct drawing *drawing, struct batch *batch, const struct s
     if (ready && !quick && wish->urgency == URGENCY_DATA)
         choose_other(batch);
     quick = quick || wish->urgency < URGENCY_REFINE;
+    if (ready && !quick && drawing->slow.canvas)
+        slow_park(drawing, batch);
     if ((!ready || (!quick && drawing->slow.canvas)) && held_push(&drawing->held, batch)) {
         counter_inc(drawing->painter->steps, 1);
         return false;
@@ -356,9 +392,11 @@ static void gl_end(struct drawing *drawing)
 {
     for (; drawing->flying.count > 0; flying_gone(drawing))
         canvas_abandon(drawing->renderer, &drawing->flying.at[0].canvas);
-    if (drawing->renderer)
-        canvas_abandon(drawing->renderer, &drawing->slow.canvas);
-    slow_forget_moment(drawing);
+    for (int i = 0; i < 2; i++, slow_swap(drawing)) {
+        if (drawing->renderer)
+            canvas_abandon(drawing->renderer, &drawing->slow.canvas);
+        slow_forget_moment(drawing);
+    }
     renderer_destroy(&drawing->renderer);
     gl_destroy(&drawing->gl);
 }
@@ -401,6 +439,7 @@ static bool drawing_init(struct drawing *drawing, struct painter *painter)
     field_set_trials(drawing->field, params->trials);
     drawing->snapshot = snapshot_create(params->scene->plant->tag_count);
     drawing->slow.snapshot = snapshot_create(params->scene->plant->tag_count);
+    drawing->parked.snapshot = snapshot_create(params->scene->plant->tag_count);
     flying_init(&drawing->flying, params->scene->plant->tag_count);
     store_snapshot(params->store, clock_mono_ns(), clock_utc_ns(), drawing->snapshot);
     return gl_begin(drawing, params->gl, false);
@@ -410,9 +449,11 @@ static void drawing_finish(struct drawing *drawing)
 {
     gl_end(drawing);
     batch_finish(&drawing->slow.batch);
+    batch_finish(&drawing->parked.batch);
     field_destroy(&drawing->field);
     snapshot_destroy(&drawing->snapshot);
     snapshot_destroy(&drawing->slow.snapshot);
+    snapshot_destroy(&drawing->parked.snapshot);
     batch_finish(&drawing->same);
     recent_finish(&drawing->recent);
     held_finish(&drawing->held);
@@ -459,6 +500,7 @@ static void rebuild(struct drawing *drawing)
     for (int i = 0; i < drawing->flying.count; i++)
         fail(drawing, &drawing->flying.at[i].batch);
     fail(drawing, &drawing->slow.batch);
+    fail(drawing, &drawing->parked.batch);
     gl_end(drawing);
     while (!gl_begin(drawing, kind, hardware)) {
         gl_end(drawing);
@@ -479,6 +521,8 @@ static void turn(struct drawing *drawing, struct schedule *schedule, struct batc
 {
     enum urgency urgency = batch->count > 0 ? batch->orders[0].wish.urgency : drawing->slow.urgency;
     bool done = true;
+    if (!drawing->slow.canvas && drawing->parked.canvas)
+        slow_swap(drawing);
     slow_leave(drawing);
     if (batch->count == 0 && !drawing->slow.canvas && drawing->flying.count > 0) {
         land(drawing);

@@ -7,6 +7,19 @@
 #include "net/paint/painter_impl.h"
 #include "net/paint/recent.h"
 
+struct slow { /* a picture that takes long and is drawn step by step */
+    struct canvas *canvas; /* NULL: none */
+    struct batch batch;
+    struct snapshot *snapshot;   /* of what it shows, unless */
+    const struct moment *moment; /* it is of an instant */
+    enum urgency urgency;
+    int64_t asked_ns, field_ns;
+    int64_t px, spent_ns;    /* so far, of time */
+    uint64_t payer;          /* whose */
+    int64_t payer_spent_ns;  /* by that, before */
+    bool keeps; /* when it is done, new readings are quick to show: they need not wait for it, nor it be given up for them */
+};
+
 struct drawing {
     struct painter *painter;
     struct gl *gl;
@@ -15,15 +28,8 @@ struct drawing {
     struct snapshot *snapshot;
     struct batch same;
     struct recent recent;
-    struct { /* the picture that takes long and is drawn step by step; at most one */
-        struct canvas *canvas; /* NULL: none */
-        struct batch batch;
-        struct snapshot *snapshot;   /* of what it shows, unless */
-        const struct moment *moment; /* it is of an instant */
-        enum urgency urgency;
-        int64_t asked_ns, field_ns;
-        bool keeps; /* when it is done, new readings are quick to show: they need not wait for it, nor it be given up for them */
-    } slow;
+    struct slow slow;   /* one at a time */
+    struct slow parked; /* a large one, while a small one of another address is drawn */
     bool warm; /* what only the first pictures cost was paid */
     struct flying flying;
     struct held held; /* pictures whose field takes long: worked on step by step, each in its turn */
@@ -41,6 +47,9 @@ uint64_t sharing_leave_out_same(struct drawing *drawing, const struct snapshot *
 void sharing_take_recent(struct drawing *drawing, struct batch *batch);
 
 /* --- turns.c --- */
+
+/* Under lock. Its small picture that takes long need not wait for the end of another address's large one. */
+bool drawing_overtakes(const struct drawing *drawing, const struct client *client);
 
 /* Under nobody's lock, while nobody wants a picture: some of what the first still one will cost. */
 void drawing_idle(struct drawing *drawing);

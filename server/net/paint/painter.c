@@ -29,7 +29,7 @@ struct client *painter_find(struct painter *painter, uint64_t id)
 }
 
 /* Under lock. */
-static struct client *add_client(struct painter *painter, uint64_t id)
+static struct client *add_client(struct painter *painter, uint64_t id, uint64_t payer)
 {
     size_t place = place_of(painter, id);
     mem_grow(&painter->clients, &painter->client_capacity, painter->client_count + 1, sizeof(struct client *));
@@ -37,6 +37,7 @@ static struct client *add_client(struct painter *painter, uint64_t id)
     painter->client_count++;
     painter->clients[place] = mem_new(sizeof(struct client));
     painter->clients[place]->id = id;
+    painter->clients[place]->payer = payers_join(&painter->payers, payer);
     return painter->clients[place];
 }
 
@@ -135,10 +136,11 @@ enum painter_answer painter_ask(struct painter *painter, uint64_t id, const stru
         answer = PAINTER_REFUSED;
     } else {
         int share = schedule_share(wish->urgency);
-        client = client ? client : add_client(painter, id);
+        client = client ? client : add_client(painter, id, wish->payer);
         client->wish = *wish;
         client->pending = true;
         client->spent_ns[share] = schedule_asked(client->spent_ns[share], painter->spent_ns[share]);
+        payers_asked(&painter->payers, client->payer, share);
     }
     pthread_mutex_unlock(&painter->lock);
     return answer;
@@ -168,6 +170,7 @@ void painter_forget(struct painter *painter, uint64_t id)
     pthread_mutex_lock(&painter->lock);
     size_t place = place_of(painter, id);
     if (place < painter->client_count && painter->clients[place]->id == id) {
+        payers_leave(&painter->payers, &painter->clients[place]->payer);
         mem_free(painter->clients[place]);
         painter->client_count--;
         memmove(painter->clients + place, painter->clients + place + 1, (painter->client_count - place) * sizeof(struct client *));
@@ -285,6 +288,7 @@ void painter_destroy(struct painter **painter_ptr)
     for (size_t i = 0; i < painter->client_count; i++)
         mem_free(painter->clients[i]);
     mem_free(painter->clients);
+    payers_finish(&painter->payers);
     pthread_cond_destroy(&painter->wake);
     pthread_mutex_destroy(&painter->lock);
     mem_free(painter);

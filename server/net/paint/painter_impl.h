@@ -6,6 +6,7 @@
 
 #include "net/paint/encoding.h"
 #include "net/paint/painter.h"
+#include "net/paint/payers.h"
 
 struct client {
     uint64_t id, number;
@@ -14,6 +15,7 @@ struct client {
     struct wish wish;
     uint64_t content; /* of the last picture drawn for it */
     int64_t spent_ns[SCHEDULE_SHARES]; /* of drawing time, its share; see schedule.h */
+    struct payer *payer; /* of its wish */
 };
 
 struct painter {
@@ -32,6 +34,7 @@ struct painter {
     bool lost, lose; /* the GL context; at the next picture */
     struct client **clients; /* by id, ascending */
     size_t client_count, client_capacity;
+    struct payers payers;
     int64_t spent_ns[SCHEDULE_SHARES]; /* what the client that was served last had spent before */
     struct picture *done, **done_last;
     bool announced; /* somebody was told of them */

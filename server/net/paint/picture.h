@@ -11,6 +11,7 @@ struct wish {
     enum wire_codec codec;
     struct encoder_params quality; /* quality and full_chroma; the rest is zero */
     enum urgency urgency;
+    uint64_t payer;    /* whose share of time it takes: the client's address; 0: there are none apart */
     int64_t asked_ns;  /* monotonic */
     int64_t read_ns;   /* likewise: readings that changed later will be asked for when they are noticed */
     int step;          /* of the ladder, where it moves */

@@ -6,6 +6,7 @@
 
 static const int64_t PAUSE_NS = 150 * NS_PER_MS; /* after a moving picture the next of the same session may come */
 static const int64_t SHARE_NS = 3 * NS_PER_S;    /* what takes long gets its turn in this time, whoever moves */
+static const int64_t SNAPSHOT_SHARE_NS = 1 * NS_PER_S; /* likewise a picture that somebody asked for by itself, and has none of yet */
 
 int schedule_share(enum urgency urgency)
 {
@@ -27,9 +28,10 @@ static bool is_pending(int64_t asked_ns)
     return asked_ns != INT64_MAX;
 }
 
-static bool share_due(const struct schedule *schedule, int64_t asked_ns, int64_t now_ns)
+static bool share_due(const struct schedule *schedule, enum urgency urgency, int64_t asked_ns, int64_t now_ns)
 {
-    return schedule->step_next && is_pending(asked_ns) && now_ns - asked_ns >= SHARE_NS && now_ns - schedule->long_ns >= SHARE_NS;
+    int64_t share_ns = urgency == URGENCY_SNAPSHOT ? SNAPSHOT_SHARE_NS : SHARE_NS;
+    return schedule->step_next && is_pending(asked_ns) && now_ns - asked_ns >= share_ns && now_ns - schedule->long_ns >= share_ns;
 }
 
 enum urgency schedule_choose(const struct schedule *schedule, const int64_t asked_ns[URGENCY_COUNT], int64_t now_ns, int64_t *wait_until_ns)
@@ -37,7 +39,7 @@ enum urgency schedule_choose(const struct schedule *schedule, const int64_t aske
     bool input = is_pending(asked_ns[URGENCY_INPUT]), data = is_pending(asked_ns[URGENCY_DATA]);
     enum urgency slow = asked_ns[URGENCY_SNAPSHOT] < asked_ns[URGENCY_REFINE] ? URGENCY_SNAPSHOT : URGENCY_REFINE;
     *wait_until_ns = INT64_MAX;
-    if (share_due(schedule, asked_ns[slow], now_ns))
+    if (share_due(schedule, slow, asked_ns[slow], now_ns))
         return slow;
     if (input && !(data && schedule->data_next))
         return URGENCY_INPUT;

@@ -27,6 +27,7 @@ static bool remember(const struct order *order, void *arg)
     client->has_content = true;
     client->content = now->content;
     client->spent_ns[schedule_share(order->wish.urgency)] += now->cost_ns;
+    client->payer->spent_ns[schedule_share(order->wish.urgency)] += now->cost_ns;
     return true;
 }
 

@@ -4,7 +4,16 @@
 #include "net/paint/drawing_impl.h"
 
 static const int64_t OWN_DATA_NS = 1 * NS_PER_S;            /* changed readings wait so long for a refinement of the same client */
+enum { OVERTAKE_SMALLER = 4 }; /* times, in pixels, than what it overtakes: one more of that size may be in memory, not two */
 static const int64_t SNAPSHOT_MAX_AGE_NS = 100 * NS_PER_MS; /* the clock in the picture, and ages, are no older than this */
+
+static bool slow_is_for(const struct slow *slow, const struct client *client)
+{
+    for (size_t i = 0; slow->canvas && i < slow->batch.count; i++)
+        if (slow->batch.orders[i].client == client->id)
+            return true;
+    return false;
+}
 
 /* Under lock. Its slow picture is under way and still good: what it wants besides can wait for it. */
 static bool waits_for_slow(const struct drawing *drawing, const struct client *client, int64_t now_ns)
@@ -13,10 +22,7 @@ static bool waits_for_slow(const struct drawing *drawing, const struct client *c
     bool soon = client->wish.urgency == URGENCY_DATA && moving && now_ns - client->wish.asked_ns >= OWN_DATA_NS;
     if (client->left || client->wish.urgency == URGENCY_INPUT || soon)
         return false;
-    for (size_t i = 0; drawing->slow.canvas && i < drawing->slow.batch.count; i++)
-        if (drawing->slow.batch.orders[i].client == client->id)
-            return true;
-    return false;
+    return slow_is_for(&drawing->slow, client) || slow_is_for(&drawing->parked, client);
 }
 
 struct turn {
@@ -25,14 +31,34 @@ struct turn {
     int64_t wait_until_ns;
 };
 
+bool drawing_overtakes(const struct drawing *drawing, const struct client *client)
+{
+    const struct slow *slow = &drawing->slow;
+    int share = SCHEDULE_LONG;
+    if (!slow->canvas || drawing->parked.canvas || slow->payer == client->wish.payer)
+        return false;
+    int64_t px = (int64_t)client->wish.view.width_px * client->wish.view.height_px;
+    return px * OVERTAKE_SMALLER <= slow->px && client->payer->spent_ns[share] < slow->payer_spent_ns + slow->spent_ns;
+}
+
+/* Under lock. Addresses first, then their clients. */
+static bool has_had_less(const struct client *client, const struct client *other, int share)
+{
+    const int64_t *a = client->payer->spent_ns, *b = other->payer->spent_ns;
+    if (client->payer == other->payer)
+        a = client->spent_ns, b = other->spent_ns;
+    return schedule_before(a[share], client->wish.asked_ns, b[share], other->wish.asked_ns);
+}
+
 /* Under lock. It can be drawn now, and before the other (NULL: nobody). */
 static bool goes_before(const struct drawing *drawing, const struct client *client, const struct client *other, int64_t now_ns)
 {
     enum urgency urgency = client->wish.urgency;
-    int share = schedule_share(urgency);
-    if (!client->pending || (drawing->slow.canvas && urgency >= URGENCY_REFINE) || waits_for_slow(drawing, client, now_ns))
+    if (!client->pending || waits_for_slow(drawing, client, now_ns))
         return false;
-    return !other || schedule_before(client->spent_ns[share], client->wish.asked_ns, other->spent_ns[share], other->wish.asked_ns);
+    if (drawing->slow.canvas && urgency >= URGENCY_REFINE && !drawing_overtakes(drawing, client))
+        return false;
+    return !other || has_had_less(client, other, schedule_share(urgency));
 }
 
 /* Under lock. */
@@ -53,8 +79,10 @@ static struct turn next_turn(const struct drawing *drawing, const struct schedul
                       : first[i]                                      ? first[i]->wish.asked_ns
                                                                       : INT64_MAX;
     enum urgency urgency = schedule_choose(schedule, asked_ns, now_ns, &turn.wait_until_ns);
-    turn.step = busy && urgency == drawing->slow.urgency;
-    turn.client = first[urgency];
+    struct client *over = first[URGENCY_REFINE] ? first[URGENCY_REFINE] : first[URGENCY_SNAPSHOT];
+    bool slow = urgency == URGENCY_REFINE || urgency == URGENCY_SNAPSHOT;
+    turn.step = busy && slow && !over;
+    turn.client = busy && slow ? over : first[urgency];
     return turn;
 }
 
@@ -85,6 +113,7 @@ static void begin_all(const struct drawing *drawing, struct client *first, struc
     int64_t now_ns = clock_mono_ns();
     int share = schedule_share(first->wish.urgency);
     painter->spent_ns[share] = schedule_asked(first->spent_ns[share], painter->spent_ns[share]);
+    payers_served(&painter->payers, first->payer, share);
     begin(drawing, first, batch, now_ns);
     struct wish wish = batch->orders[0].wish;
     for (size_t i = 0; i < painter->client_count && !wish.overlay; i++) {

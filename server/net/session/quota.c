@@ -19,11 +19,13 @@ static const struct {
     [QUOTA_SESSIONS] = { "sessions", 1000, 1, 50000, "streams" },
     [QUOTA_ADDRESS_SESSIONS] = { "address-sessions", 32, 1, 50000, "likewise of one address" },
     [QUOTA_PIXELS] = { "pixels", 512 << 20, 256, INT64_C(1) << 40, "of all views together" },
+    [QUOTA_ADDRESS_PIXELS] = { "address-pixels", 128 << 20, 256, INT64_C(1) << 40, "of the views of one address" },
     [QUOTA_SESSION_PIXELS] = { "session-pixels", 16 << 20, 256, 16 << 20, "of one view" },
     [QUOTA_MESSAGE_BYTES] = { "message-bytes", WIRE_MAX_MESSAGE_BYTES, 1024, WIRE_MAX_MESSAGE_BYTES, "of one message of a client" },
     [QUOTA_MESSAGES] = { "messages", 1000, 10, 1000000, "of one stream within a second; the next are read after it" },
     [QUOTA_ADDRESS_MESSAGES] = { "address-messages", 8000, 10, 1000000, "likewise of one address" },
     [QUOTA_SNAPSHOTS] = { "snapshots", 8, 1, 1000, "pictures and picks over HTTP that are being made" },
+    [QUOTA_ADDRESS_SNAPSHOTS] = { "address-snapshots", 4, 1, 1000, "likewise for one address" },
     [QUOTA_LEAST_FPS] = { "least-fps", 5, 0, 1000, "frames/s that moving views keep when one more is let in" },
     [QUOTA_PATIENCE_S] = { "patience", 10, 1, 600, "seconds for a request, for hello, and for the rest of a message" },
 };

@@ -38,8 +38,7 @@ void session_destroy(struct session **session_ptr)
 
 void session_leave(struct session *session, bool keep, int64_t now_ns)
 {
-    session->world->admission->pixels -= session->pixels;
-    session->pixels = 0;
+    session_leave_room(session);
     resumes_close(session->world->resumes, session, keep, now_ns);
 }
 
@@ -132,12 +131,6 @@ static bool on_ack(struct session *session, const struct message *message, int64
     return false;
 }
 
-static void on_visible(struct session *session, bool visible)
-{
-    session->always_pending |= visible && session->hidden;
-    session->hidden = !visible;
-}
-
 /* Answered only: the camera is the client's. */
 static void on_fit(struct session *session, const struct message *message)
 {
@@ -193,7 +186,7 @@ static bool act(struct session *session, const struct message *message, int64_t 
     case MESSAGE_PARAMS: session_on_input(session, now_ns); return on_params(session, message, error);
     case MESSAGE_RESIZE: session_on_input(session, now_ns); return on_resize(session, message, error);
     case MESSAGE_ACK: return on_ack(session, message, now_ns, error);
-    case MESSAGE_VISIBLE: on_visible(session, message->visible); return true;
+    case MESSAGE_VISIBLE: session_on_visible(session, message->visible, now_ns); return true;
     case MESSAGE_FOLLOW: session_ask_follow(session, message); return true;
     case MESSAGE_LEAD: session_ask_lead(session, message); return true;
     case MESSAGE_ALARM: return on_alarm(session, message, error);
@@ -277,6 +270,7 @@ void session_on_tick(struct session *session, int64_t now_ns)
     if (pacer_state(&session->pacer, now_ns) != PACER_FLOWS)
         session_pause(session);
     session_choose_again(session, now_ns);
+    session_keep_room(session, now_ns);
     session->owes_time |= session->hello && session->world->moments && session->world->history_first_us && !session->told_beginning;
 }
 

@@ -39,7 +39,6 @@ struct session_world {
     bool clock_is_set;       /* the wall clock is kept right by something */
     int64_t moving_until_ns; /* somebody moves; a refined picture of another would make it stutter */
     bool loaded;             /* refined pictures for all, whenever a reading changes, are more than can be drawn */
-    int moving;              /* sessions whose camera moved within the last second */
     unsigned codecs;         /* a bit, 1 << enum wire_codec, for each that we have; 0: JPEG and PNG */
     double cpu_used;         /* share of all processors of the machine, 0..1 */
     const char *version;
@@ -75,7 +74,9 @@ struct session {
     bool resumed;                   /* welcome says so */
     char resume[RESUME_CHARS + 1];  /* for its return */
     double pixel_ratio;
-    int64_t pixels;                 /* as counted in world->admission */
+    struct share *share;            /* of its address; NULL: of none. The hub's, and so is joining and leaving it */
+    int64_t pixels;                 /* as counted in world->admission, and there; 0: given back while it was hidden */
+    int64_t hidden_ns;              /* since when it is, or is not */
     int close_code;                 /* 0: stays; else the connection is to be closed once what is owed in words has gone */
     const char *close_text;         /* static */
     struct codec_list codecs; /* what it decodes */

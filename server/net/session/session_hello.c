@@ -37,27 +37,10 @@ static bool identify(struct session *session, const struct message *message, int
     return false;
 }
 
-bool session_may_draw(struct session *session, int width_px, int height_px, struct message_error *error)
-{
-    const struct session_world *world = session->world;
-    int64_t pixels = (int64_t)width_px * height_px, most = world->quotas->at[QUOTA_SESSION_PIXELS];
-    if (pixels > most) {
-        message_fail(error, "limit", "width, height: this server draws at most %lld pixels for one view", (long long)most);
-        return false;
-    }
-    if (session->hello && world->admission->pixels - session->pixels + pixels > world->quotas->at[QUOTA_PIXELS]) {
-        message_fail(error, "limit", "width, height: all views together have as many pixels as this server may draw");
-        return false;
-    }
-    world->admission->pixels += pixels - session->pixels;
-    session->pixels = pixels;
-    return true;
-}
-
 static bool admit(struct session *session, const struct view *view, struct message_error *error)
 {
     const struct session_world *world = session->world;
-    const char *why = admission_refuses(world->admission, (int64_t)view->width_px * view->height_px, world->moving);
+    const char *why = admission_refuses(world->admission, session->share, (int64_t)view->width_px * view->height_px);
     if (!why)
         return session_may_draw(session, view->width_px, view->height_px, error);
     message_fail(error, "full", "%s", why);

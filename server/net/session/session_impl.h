@@ -13,8 +13,12 @@ void session_choose_again(struct session *session, int64_t now_ns); /* as bandwi
 void session_reply_error(struct session *session, const struct message_error *error);
 /* session_hello.c: who it is, whether there is room, what it looks at. False: *error, and session->close_code if it is not let in. */
 bool session_hello(struct session *session, const struct message *message, int64_t now_ns, int64_t now_utc_ns, struct message_error *error);
-/* Whether its view may have this size; if so it is counted. */
+/* session_room.c: whether its view may have this size; if so it is counted. */
 bool session_may_draw(struct session *session, int width_px, int height_px, struct message_error *error);
+void session_leave_room(struct session *session);
+bool session_has_room(const struct session *session);
+void session_on_visible(struct session *session, bool visible, int64_t now_ns);
+void session_keep_room(struct session *session, int64_t now_ns); /* every tick */
 bool session_apply_params(const struct session *session, const struct message *message, struct view *view, struct message_error *error);
 
 void session_on_input(struct session *session, int64_t now_ns); /* what it is shown changes */

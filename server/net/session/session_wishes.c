@@ -227,9 +227,10 @@ bool session_wish(const struct session *session, int64_t now_ns, struct wish *wi
     if ((session->starting && now_ns - session->starting_ns < START_NS) || (session->travel.first && !session->leader))
         return false;
     bool may_add = !session->ready && pacer_may_ask(&session->pacer, now_ns);
-    if (!session->hello || session->hidden || (!may_add && session->pacer.asked == 0))
+    if (!session->hello || session->hidden || !session_has_room(session) || (!may_add && session->pacer.asked == 0))
         return false;
     *wish = (struct wish){ .view = session_shown(session), .codec = session->codec, .asked_ns = now_ns, .only_replace = !may_add };
+    wish->payer = session->share ? session->share->payer : 0;
     wish->read_ns = wish->view.at_us ? 0 : session->world->changed_ns; /* what was does not change */
     wish->view.camera_seq = session->view.camera_seq;
     wish->view.params_seq = session->view.params_seq;

@@ -6,9 +6,10 @@ import { connect } from 'node:net';
 const OPCODE = { continuation: 0, text: 1, binary: 2, close: 8, ping: 9, pong: 10 };
 
 // { status, headers (lower case), body } of one HTTP request, written as given.
-export function http(port, head, { timeoutMs = 15000 } = {}) {
+// localAddress: whom it comes from, 127.0.0.1 or another of this machine's.
+export function http(port, head, { timeoutMs = 15000, localAddress } = {}) {
     return new Promise((done, fail) => {
-        const socket = connect(port, '127.0.0.1', () => socket.write(head));
+        const socket = connect({ port, host: '127.0.0.1', localAddress }, () => socket.write(head));
         let bytes = Buffer.alloc(0);
         const timer = setTimeout(() => socket.destroy(new Error(`no answer to ${JSON.stringify(head.slice(0, 80))}`)), timeoutMs);
         const finish = (ended) => {
@@ -32,8 +33,8 @@ export function http(port, head, { timeoutMs = 15000 } = {}) {
         socket.on('error', (error) => { clearTimeout(timer); fail(error); });
     });
 }
-export const get = (port, path, method = 'GET', more = '') =>
-    http(port, `${method} ${path} HTTP/1.1\r\nHost: 127.0.0.1:${port}\r\n${more}\r\n`);
+export const get = (port, path, method = 'GET', more = '', options = {}) =>
+    http(port, `${method} ${path} HTTP/1.1\r\nHost: 127.0.0.1:${port}\r\n${more}\r\n`, options);
 
 export function encodeFrame(opcode, payload, { fin = true } = {}) {
     const body = Buffer.from(payload), n = body.length, key = randomBytes(4);
@@ -64,15 +65,16 @@ export function readFrame(bytes) {
 }
 
 export class PlainClient {
-    // Resolves once the server has agreed. options: protocol (null: none), origin, host, path, headers, acknowledge (true).
+    // Resolves once the server has agreed. options: protocol (null: none), origin, host, path, headers, acknowledge (true),
+    // localAddress.
     static open(port, options = {}) {
         const { protocol = 'plantcast.v1', origin = null, host = `127.0.0.1:${port}`, path = '/stream', headers = [] } = options;
-        const { acknowledge = true } = options;
+        const { acknowledge = true, localAddress } = options;
         const key = randomBytes(16).toString('base64');
         const client = new PlainClient();
         client.acknowledge = acknowledge;
         return new Promise((done, fail) => {
-            const socket = connect(port, '127.0.0.1', () => socket.write([
+            const socket = connect({ port, host: '127.0.0.1', localAddress }, () => socket.write([
                 `GET ${path} HTTP/1.1`, `Host: ${host}`, 'Upgrade: websocket', 'Connection: Upgrade',
                 `Sec-WebSocket-Key: ${key}`, 'Sec-WebSocket-Version: 13', ...(protocol ? [`Sec-WebSocket-Protocol: ${protocol}`] : []),
                 ...(origin ? [`Origin: ${origin}`] : []), ...headers, '', '',

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What there is goes to addresses in equal shares: one that takes all it can get leaves another its place, its frames and its pictures.
+import assert from 'node:assert/strict';
+import { connect } from 'node:net';
+import { after, before, test } from 'node:test';
+import { get, PlainClient } from './support/plain_client.mjs';
+import { missing, TinyPlant } from './support/tiny_plant.mjs';
+
+const absent = missing();
+const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 120000 };
+const GREEDY = { localAddress: '127.0.0.2' }, OTHER = { localAddress: '127.0.0.3' };
+const LARGE = { width: 4096, height: 4096 }, BIG_PICTURE = '/snapshot.png?width=4096&height=4096';
+// This machine's own addresses have limits of an address only where these are given.
+const LIMITS = ['address-sessions=32', 'address-pixels=134217728', 'address-snapshots=4'].flatMap((one) => ['--limit', one]);
+const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
+let plant;
+
+before(async () => {
+    if (options.skip)
+        return;
+    plant = await TinyPlant.create();
+    assert.equal(plant.prepare().code, 0);
+    await plant.startDaemon(...LIMITS);
+});
+after(() => plant?.destroy());
+
+const settled = (client) => client.until('an answer', (c) => c.closed || c.texts.some((m) => m.type === 'welcome'), 30000);
+
+// Sessions of one address, whether or not they are let in.
+async function crowd(count, from, hello) {
+    const clients = await Promise.all(Array.from({ length: count }, () => PlainClient.open(plant.port, from)));
+    for (const client of clients)
+        client.say({ type: 'hello', codecs: ['jpeg'], ...hello });
+    await Promise.all(clients.map(settled));
+    return { clients, admitted: clients.filter((client) => !client.closed), close: () => clients.forEach((client) => client.close()) };
+}
+
+// Frames per second of a camera that moves 30 times a second.
+async function framesPerSecond(client, seconds) {
+    const began = performance.now(), before = client.frames.length;
+    for (let seq = 1; performance.now() - began < seconds * 1000; seq++) {
+        client.say({ type: 'camera', seq, eye: [5 + Math.sin(seq / 10), -6, 4], target: [1, 0, 0] });
+        await sleep(33);
+    }
+    return (client.frames.length - before) / seconds;
+}
+
+test('hidden views of the largest size leave room for another address', options, async () => {
+    const greedy = await crowd(32, GREEDY, LARGE);
+    for (const client of greedy.admitted)
+        client.say({ type: 'visible', visible: false });
+    const refused = greedy.clients.filter((client) => client.closed);
+    assert.equal(greedy.admitted.length, 8, 'of 16 million pixels each');
+    assert.match(refused[0].closed.text, /this address/);
+    const other = await PlainClient.open(plant.port, OTHER);
+    await other.hello({ width: 1920, height: 1080 });
+    await other.frameWhere('the first', () => true);
+    other.close();
+    greedy.close();
+});
+
+test('who has all drawn that may be leaves another address its frames and its pictures', options, async () => {
+    const greedy = await crowd(30, GREEDY, { width: 1920, height: 1080 });
+    assert.ok(greedy.admitted.length > 10);
+    let going = true, turn = 0;
+    const answers = [];
+    const pictures = async () => {
+        while (going)
+            answers.push((await get(plant.port, BIG_PICTURE, 'GET', '', { ...GREEDY, timeoutMs: 60000 })).status);
+    };
+    const timer = setInterval(() => {
+        turn++;
+        for (const [i, client] of greedy.admitted.entries())
+            client.say({ type: 'params', seq: turn, clip: { planes: [[1, 0, 0, -0.5 + ((turn * 31 + i) % 60) / 20]] } });
+    }, 1000);
+    const large = Array.from({ length: 8 }, () => pictures().catch(() => {}));
+    await sleep(3000);
+    const other = await PlainClient.open(plant.port, OTHER);
+    await other.hello();
+    const began = performance.now();
+    const picture = get(plant.port, '/snapshot.png?width=320&height=200', 'GET', '', OTHER).then(({ status }) =>
+        ({ status, seconds: (performance.now() - began) / 1000 }));
+    const rate = await framesPerSecond(other, 5), { status, seconds } = await picture;
+    const crowded = `beside ${greedy.admitted.length} sessions that cut`;
+    console.log(`# ${rate.toFixed(1)} frames/s ${crowded}; a small picture took ${seconds.toFixed(2)} s`);
+    going = false;
+    clearInterval(timer);
+    other.close();
+    greedy.close();
+    await Promise.all(large);
+    assert.ok(rate >= 5, `${rate.toFixed(1)} frames/s`);
+    assert.equal(status, 200);
+    assert.ok(seconds <= 3, `${seconds.toFixed(1)} s`);
+    assert.ok(answers.includes(200) && answers.includes(503), 'the greedy one had some, and not all');
+});
+
+test('behind a proxy, connections are those of the address that it names', options, async () => {
+    const proxied = await TinyPlant.create();
+    try {
+        assert.equal(proxied.prepare().code, 0);
+        await proxied.startDaemon('--behind-proxy', '--host', 'plant.example', '--open-viewers', '--limit', 'connections=200');
+        const head = (from) => `GET /healthz HTTP/1.1\r\nHost: plant.example\r\nX-Forwarded-For: ${from}\r\n\r\n`;
+        // The status that a connection gets which stays open, if it may.
+        const keep = (from) => new Promise((done) => {
+            const socket = connect(proxied.port, '127.0.0.1', () => socket.write(head(from)));
+            socket.once('data', (bytes) => done({ socket, status: Number(bytes.toString().split(' ')[1]) }));
+            socket.once('error', () => done({ socket, status: 0 }));
+            socket.once('close', () => { socket.gone = true; done({ socket, status: 0 }); });
+        });
+        const kept = [];
+        for (let i = 0; i < 250; i++)
+            kept.push(await keep('203.0.113.7'));
+        assert.equal(kept.filter(({ status }) => status === 200).length, 64);
+        assert.ok(kept.slice(64).every(({ status }) => status === 503));
+        assert.equal((await keep('203.0.113.8')).status, 200);
+        assert.equal((await keep(`${'198.51.100.1, '.repeat(50)}203.0.113.9`)).status, 431);
+        assert.equal((await keep('127.0.0.1')).status, 200);
+        for (let i = 0; i < 70; i++)
+            kept.push(await keep('127.0.0.1')); // nobody is near behind a proxy
+        assert.equal(kept.at(-1).status, 503);
+        for (const { socket } of kept)
+            socket.destroy();
+        for (let status = 503, end = performance.now() + 5000; status !== 200 && performance.now() < end; await sleep(50))
+            ({ status } = await keep('203.0.113.7'));
+        assert.equal((await keep('203.0.113.7')).status, 200, 'once they are gone there is room again');
+    } finally {
+        await proxied.destroy();
+    }
+});
