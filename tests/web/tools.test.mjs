@@ -6,7 +6,7 @@ import { health, simulatedText } from '../../clients/web/core/health.js';
 import { shareLinks } from '../../clients/web/core/links.js';
 import { measure, metresText } from '../../clients/web/core/measure.js';
 import { Wake } from '../../clients/web/core/wake.js';
-import { letterMinutes, MINUTES, readWall, wallScale } from '../../clients/web/core/wall.js';
+import { LEAST, letterMinutes, MINUTES, readWall, wallFit, wallScale } from '../../clients/web/core/wall.js';
 import { makeSession, vector } from './fixtures.mjs';
 
 test('a sleep is seen by the calendar going on without the monotonic clock', () => {
@@ -69,6 +69,11 @@ test('the wall: capitals of 16 minutes of arc and more, wherever the screen hang
         assert.ok(letterMinutes(12.5 * scale, at, { width, height }) >= MINUTES - 1e-6, wall);
     }
     assert.equal(wallScale({ inches: 55, metres: 0.5 }, { width: 800, height: 600 }), 1, 'never smaller than on a desk');
+    const screen = { width: 1920, height: 1080 }, far = { inches: 10, metres: 50 }, { scale, metres } = wallFit(far, screen, screen);
+    assert.ok(1920 / scale > LEAST.width - 1e-6 && 1080 / scale > LEAST.height - 1e-6, 'all of it fits');
+    assert.ok(Math.abs(letterMinutes(12.5 * scale, { ...far, metres }, screen) - MINUTES) < 1e-2, 'and is read from as far as it says');
+    const near = { inches: 85, metres: 8 };
+    assert.deepEqual(wallFit(near, screen, screen), { scale: wallScale(near, screen), metres: 8 });
 });
 
 test('distances: straight, level and rise; as many figures as a tape has', () => {

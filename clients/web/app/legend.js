@@ -54,9 +54,8 @@ const LIMIT_PLACES = { LL: -2, L: -1, H: 1, HH: 2 };
 
 export class Legend {
     // paramsOf: from the picture's parameters to those of the half that this legend is for; null: there is none.
-    constructor({ session, element, paramsOf }) {
-        Object.assign(this, { session, element, paramsOf });
-        this.lying = window.matchMedia('(max-width: 719px)');
+    constructor({ session, element, paramsOf, lying = window.matchMedia('(max-width: 719px)') }) {
+        Object.assign(this, { session, element, paramsOf, lying });
         this.lying.addEventListener('change', () => this.show(true));
         this.shown = '';
         this.long = 240; // CSS pixels of the bar
@@ -177,7 +176,7 @@ export class Legend {
     }
 
     ticks(rule, lines, text) {
-        const values = scaleTicks(rule, lines);
+        const values = scaleTicks(rule, lines, Math.min(9, Math.floor(this.long / (this.lying.matches ? 32 : 16)) + 1));
         const places = values.map((value) => placeOf(rule, value));
         return this.ticksAt(places, this.apart(places, 15, 32), values.map(text));
     }
@@ -197,9 +196,11 @@ export class Legend {
         const { min, max } = rule;
         const inside = Object.entries(limits).filter(([, value]) => value !== null && value >= min && value <= max);
         inside.sort((a, b) => a[1] - b[1]);
+        const names = (inside.length - 1) * 15 > this.long ? [0, inside.length - 1] : [...inside.keys()]; // else over one another
         const places = this.apart(inside.map(([, value]) => placeOf(rule, value)), 15, 27);
         return make('div', { class: 'limits' }, ...inside.flatMap(([name, value], i) => [
-            at(make('i', {}), placeOf(rule, value)), at(make('span', { title: `${name} ${text(value)}` }, name), places[i]),
+            at(make('i', {}), placeOf(rule, value)),
+            names.includes(i) ? at(make('span', { title: `${name} ${text(value)}` }, name), places[i]) : null,
         ]));
     }
 

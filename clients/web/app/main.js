@@ -23,8 +23,9 @@ const does = (name) => (...given) => parts.use('commands', (commands) => command
 new Toolbar({ session, does });
 const rightOf = (params) => params.split && { ...params, ...params.split };
 const isShared = (params, right) => right && legend.contents(params) === legend.contents(right); // then the right one is enough
-const legend = new Legend({ session, element: byId('legend'), paramsOf: (params) => !isShared(params, rightOf(params)) && params });
-new Legend({ session, element: byId('legend-right'), paramsOf: rightOf });
+const legend = new Legend({ session, element: byId('legend'), lying: page.lying,
+    paramsOf: (params) => !isShared(params, rightOf(params)) && params });
+new Legend({ session, element: byId('legend-right'), lying: page.lying, paramsOf: rightOf });
 const overlay = new Overlay({ canvas: byId('overlay'), viewport, session, selection });
 overlay.unit = page.unit;
 overlay.onRings = () => parts.prepare('callouts');
@@ -36,6 +37,7 @@ const status = new Status({ session, onFreshness: (fresh) => {
 } });
 new Tools({ session });
 Object.assign(page, { selection, overlay, parts, saveAddress, refresh, tell });
+page.onTell?.(tell);
 for (const name of COMMANDS)
     page[name] = does(name);
 page.onUnit = () => {

@@ -94,7 +94,7 @@ export function scaleTicks(scale, lines, most = 9) {
     if (within.length > 0 && within.length + 2 <= most)
         return [min, ...within, max];
     if (!scale.log)
-        return ticks(min, max);
+        return ticks(min, max, Math.max(1, Math.min(6, most - 1)));
     const decades = [];
     for (let power = 10 ** Math.floor(Math.log10(min)); power <= max; power *= 10)
         decades.push(...[1, 2, 5].map((lead) => Number((lead * power).toPrecision(3))));

@@ -24,6 +24,18 @@ export function wallScale({ inches, metres }, screen) {
     return Math.max(1, needed / (CAPITAL * SMALLEST_PX * millimetresPerPx));
 }
 
+// The least that everything fits into, in units of a desk's pixels: name, alarms, picture, legend, clock and age.
+export const LEAST = { width: 440, height: 250 };
+
+// { scale, metres }: as large as is needed, or as all of it fits into the window; read from so far.
+export function wallFit(wall, screen, { width, height }) {
+    const needed = wallScale(wall, screen), scale = Math.max(0.5, Math.min(needed, width / LEAST.width, height / LEAST.height));
+    return { scale, metres: scale < needed ? (wall.metres * scale) / needed : wall.metres };
+}
+
+// Whether legends lie below the picture or stand beside it, on a wall so many units wide and high.
+export const legendsLie = (width, height, split) => width < height || (split && width < 800);
+
 // Height of a capital letter in minutes of arc, for fontPx on that screen.
 export function letterMinutes(fontPx, { inches, metres }, screen) {
     const millimetres = (CAPITAL * fontPx * inches * 25.4) / Math.hypot(screen.width, screen.height);

@@ -115,6 +115,9 @@ size: Größe
 place: Mitte bei
 sensors.name: Sensoren
 
+[wall]
+far: Auf diesem Bildschirm sind die Buchstaben bis {metres} m groß genug, nicht bis {wanted} m.
+
 [callout]
 count: {count} Alarme
 worst: schwerster

@@ -115,6 +115,9 @@ size: Size
 place: Middle at
 sensors.name: Sensors
 
+[wall]
+far: On this screen letters are large enough up to {metres} m, not {wanted} m.
+
 [callout]
 count: {count} alarms
 worst: worst

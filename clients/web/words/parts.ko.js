@@ -114,6 +114,9 @@ size: 크기
 place: 중심
 sensors.name: 센서
 
+[wall]
+far: 이 화면에서는 글자를 {metres} m까지 읽을 수 있습니다({wanted} m는 불가).
+
 [callout]
 count: 알람 {count}건
 worst: 가장 심각

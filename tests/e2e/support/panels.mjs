@@ -6,10 +6,11 @@ import { join } from 'node:path';
 import { drawnAt } from './browser.mjs';
 import { TinyPlant } from './tiny_plant.mjs';
 
-// [plant, url].
-export async function startAlarmed() {
+// [plant, url]. arrange(file): what else is to be done to the plant file.
+export async function startAlarmed(arrange = () => {}) {
     const plant = await TinyPlant.create();
     appendFileSync(plant.file, 'alarms: local\n');
+    arrange(plant.file);
     const tags = join(plant.folder, 'tags.csv');
     writeFileSync(tags, readFileSync(tags, 'utf8').split('\n').map((line, i) => line && line + (i === 0 ? ',H,HH' : ',60,90')).join('\n'));
     assert.equal(plant.prepare().code, 0);
