@@ -26,6 +26,8 @@ struct encoding {
     struct idle_encoder *idle;
     struct chains chains;
     int jobs;
+    int heavy; /* jobs on the workers that are of pictures over HTTP: of many pixels, maybe, and losslessly */
+    struct job *heavy_waiting, **heavy_last;
     struct batch rest; /* of encoding_submit */
     struct plan plan;
 };
@@ -38,7 +40,8 @@ struct job {
     struct encoder_params quality;
     bool again;
     uint64_t number, *from;
-    struct job *next;
+    struct job *next, *next_heavy;
+    bool heavy;
 };
 
 struct work {                  /* of a chain */
@@ -74,6 +77,7 @@ struct encoding *encoding_create(const struct encoding_params *params)
 {
     struct encoding *encoding = mem_new(sizeof(*encoding));
     encoding->params = *params;
+    encoding->heavy_last = &encoding->heavy_waiting;
     pthread_mutex_init(&encoding->lock, NULL);
     pthread_cond_init(&encoding->job_ended, NULL);
     add_counters(encoding);
@@ -253,6 +257,40 @@ static void job_destroy(struct job *job)
     mem_free(job);
 }
 
+static void run_job(void *arg);
+
+/* Pictures over HTTP leave half of the workers to streams. */
+static void start(struct encoding *encoding, struct job *job)
+{
+    int most = workers_count(encoding->params.workers) / 2;
+    pthread_mutex_lock(&encoding->lock);
+    bool waits = job->heavy && encoding->heavy >= (most > 1 ? most : 1);
+    if (waits) {
+        *encoding->heavy_last = job;
+        encoding->heavy_last = &job->next_heavy;
+    } else {
+        encoding->heavy += job->heavy;
+    }
+    pthread_mutex_unlock(&encoding->lock);
+    if (!waits)
+        workers_submit(encoding->params.workers, run_job, job);
+}
+
+/* One of them is done: the next takes its place. */
+static void start_heavy(struct encoding *encoding)
+{
+    pthread_mutex_lock(&encoding->lock);
+    struct job *job = encoding->heavy_waiting;
+    if (job)
+        encoding->heavy_waiting = job->next_heavy;
+    if (!encoding->heavy_waiting)
+        encoding->heavy_last = &encoding->heavy_waiting;
+    encoding->heavy -= !job;
+    pthread_mutex_unlock(&encoding->lock);
+    if (job)
+        workers_submit(encoding->params.workers, run_job, job);
+}
+
 static void run_job(void *arg)
 {
     struct job *job = arg;
@@ -274,9 +312,12 @@ static void run_job(void *arg)
     if (!next)
         work->last = &work->first;
     pthread_mutex_unlock(&encoding->lock);
+    bool heavy = job->heavy;
     job_destroy(job);
+    if (heavy)
+        start_heavy(encoding);
     if (next)
-        workers_submit(encoding->params.workers, run_job, next);
+        start(encoding, next);
     encoding_sweep(encoding);
     pthread_mutex_lock(&encoding->lock);
     encoding->jobs--;
@@ -302,6 +343,7 @@ static struct job *make_job(struct encoding *encoding, struct frame *frame, stru
     job->quality = orders->orders[0].wish.quality;
     job->quality.key = plan->key;
     job->again = plan->again;
+    job->heavy = job->frame && orders->orders[0].wish.urgency == URGENCY_SNAPSHOT;
     *orders = (struct batch){ 0 };
     plan->from = NULL;
     plan->from_capacity = 0;
@@ -336,7 +378,7 @@ static void submit_group(struct encoding *encoding, struct frame *frame, struct 
         bool starts = append(encoding, job);
         pthread_mutex_unlock(&encoding->lock);
         if (starts)
-            workers_submit(encoding->params.workers, run_job, job);
+            start(encoding, job);
     }
     batch_finish(group);
 }
