@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Which parts far levels may leave out: bolts in a flange, and what is smaller than a pixel. */
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"
+#include "preprocess/box_groups.h"
 #include "preprocess/levels_impl.h"
 #include "surface/bvh.h"
 #include "surface/vec.h"
@@ -95,25 +95,6 @@ static void look_for_larger(void *arg, size_t begin, size_t end)
 
 /* --- alone ---------------------------------------------------------------------------------------------------------------- */
 
-struct box {
-    float low_m[3], high_m[3];
-    uint32_t part;
-};
-
-static int by_low_x(const void *a, const void *b)
-{
-    const struct box *p = a, *q = b;
-    return p->low_m[0] < q->low_m[0] ? -1 : p->low_m[0] > q->low_m[0] ? 1 : p->part < q->part ? -1 : p->part > q->part;
-}
-
-static bool meet(const struct box *a, const struct box *b)
-{
-    for (int axis = 0; axis < 3; axis++)
-        if (a->high_m[axis] < b->low_m[axis] || b->high_m[axis] < a->low_m[axis])
-            return false;
-    return true;
-}
-
 /* The small parts that no larger one hides, each with room around it. */
 static size_t list_boxes(const struct search *search, struct box *boxes)
 {
@@ -130,16 +111,7 @@ static size_t list_boxes(const struct search *search, struct box *boxes)
         }
         count++;
     }
-    qsort(boxes, count, sizeof(*boxes), by_low_x);
     return count;
-}
-
-static void join_boxes(const struct box *boxes, size_t count, uint32_t *parent)
-{
-    for (size_t i = 0; i < count; i++)
-        for (size_t j = i + 1; j < count && boxes[j].low_m[0] <= boxes[i].high_m[0]; j++)
-            if (meet(&boxes[i], &boxes[j]))
-                trimesh_join(parent, boxes[i].part, boxes[j].part);
 }
 
 /* Crowds of small parts: their size together says when they are no more than a pixel. */
@@ -156,7 +128,7 @@ static void look_for_lonely(const struct search *search)
             crowds[p].high_m[axis] = knots->high_m[p][axis];
         }
     }
-    join_boxes(boxes, count, parent);
+    box_groups_join(boxes, count, parent);
     for (size_t i = 0; i < count; i++) {
         struct box *crowd = &crowds[trimesh_root(parent, boxes[i].part)];
         for (int axis = 0; axis < 3; axis++) {

@@ -4,7 +4,7 @@
    Whatever the readings (within MIN and MAX), a value is the sum of readings times the sensors' shares there. So the worst error at a point
    between two others is the sum of the shares that are larger than the line says, or of those that are smaller, in parts of the range. It
    is looked for over every group with sensors on the asset, in both interpolations and on both distances, with the parameters that the
-   plant file gives. A single sensor has all of a value by shepard, everywhere: unless its group is interpolated as paper, that is not looked
+   plant file gives. A single sensor has all of a value by shepard: unless its group is interpolated as paper, that is not looked
    at, or every such asset would be cut for a field that nobody asked for.
 
    Where no sensor of a group reaches, there is no data, and the nearest's value is carried on. */
