@@ -163,7 +163,7 @@ bool studio_travel(struct studio *studio, int64_t at_us, struct view *view)
     }
     view_travel(view, at_us, 0);
     return history_at(studio->reader, studio->tags, at_us, studio->snapshot) == 0 &&
-           alarms_then(studio->log, studio->history, studio->plant, studio->snapshot) == 0;
+           alarms_then(studio->log, studio->reader, studio->history, studio->plant, studio->snapshot) == 0;
 }
 
 struct frame *studio_draw(struct studio *studio, const struct snapshot_options *options, struct view *view)

@@ -3,6 +3,7 @@
 #include "alarm/then.h"
 
 #include "alarm/journal.h"
+#include "base/mem.h"
 #include "value/alarm.h"
 
 struct then {
@@ -43,10 +44,16 @@ static void on_alarm(void *arg, const struct journal_row *row)
     reading->alarm_word = (uint8_t)word;
 }
 
-int alarms_then(struct log *log, const char *folder, const struct plant *plant, struct snapshot *snapshot)
+int alarms_then(struct log *log, struct history_reader *reader, const char *folder, const struct plant *plant, struct snapshot *snapshot)
 {
     struct then then = { plant, snapshot, false };
     int64_t t_us = snapshot->taken_utc_ns / 1000;
+    struct history_gaps gaps;
+    int failed = history_gaps(reader, t_us - 1, t_us + 1, &gaps);
+    bool known = gaps.count == 0;
+    mem_free(gaps.at);
+    if (failed || !known)
+        return failed;
     const struct journal_query first = { .from_us = INT64_MIN, .to_us = t_us, .before_id = INT64_MAX, .limit = 1 };
     int error = journal_read(log, folder, &first, on_any, &then);
     if (!error && then.begun)

@@ -3,10 +3,12 @@
 #ifndef ALARM_THEN_H
 #define ALARM_THEN_H
 #include "base/log.h"
+#include "history/history.h"
 #include "plant/plant.h"
 #include "value/snapshot.h"
 
-/* Of snapshot->taken_utc_ns. folder: of the journal. 0 or -errno, logged. Thread: any. */
-int alarms_then(struct log *log, const char *folder, const struct plant *plant, struct snapshot *snapshot);
+/* Of snapshot->taken_utc_ns; none while nothing was recorded, since nobody knows. folder: of the journal; reader: of the history beside
+   it. 0 or -errno, logged. Thread: that of the reader. */
+int alarms_then(struct log *log, struct history_reader *reader, const char *folder, const struct plant *plant, struct snapshot *snapshot);
 
 #endif

@@ -158,7 +158,7 @@ static struct month_file *open_month(struct historian *historian, int month, int
 
 static void say_gap(struct historian *historian, struct month_file *file, int64_t ended_us)
 {
-    char *text = mem_printf("not recorded for %.0f s", (double)(clock_utc_ns() / 1000 - ended_us) / 1e6);
+    char *text = mem_printf(HISTORY_GAP_TEXT, (double)(clock_utc_ns() / 1000 - ended_us) / 1e6);
     log_info(historian->log, "history: %s", text);
     month_file_note(file, ended_us, "gap", text);
     mem_free(text);
@@ -347,7 +347,7 @@ static int64_t watch_clock(struct historian *historian, const struct now *now)
 /* What follows is not told apart from what was by its time alone, so it is noted. */
 static void note_step(struct historian *historian, int64_t utc_ns, int64_t step_ns)
 {
-    char *text = mem_printf("the clock was set %s by %.1f s", step_ns > 0 ? "forward" : "back", fabs((double)step_ns) / 1e9);
+    char *text = mem_printf(step_ns > 0 ? HISTORY_FORWARD_TEXT : HISTORY_BACK_TEXT, fabs((double)step_ns) / 1e9);
     log_warn(historian->log, "history: %s", text);
     if (historian->file)
         month_file_note(historian->file, utc_ns / 1000, "clock", text);

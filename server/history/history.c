@@ -3,6 +3,7 @@
 #include "history/history.h"
 
 #include <errno.h>
+#include <stdlib.h>
 
 #include "base/mem.h"
 #include "history/month.h"
@@ -279,4 +280,52 @@ bool history_span(struct history_reader *reader, int64_t *first_us, int64_t *las
         last = month_span(reader, months[i - 1], &unused, last_us);
     mem_free(months);
     return first && last;
+}
+
+/* --- when nothing was recorded ------------------------------------------------------------------------------------------------ */
+
+static int by_beginning(const void *a, const void *b)
+{
+    const struct history_gap *x = a, *y = b;
+    return (x->from_us > y->from_us) - (x->from_us < y->from_us);
+}
+
+/* Those that overlap from..to, ascending, joined where they meet. */
+static void tidy_gaps(struct history_gaps *gaps, int64_t from_us, int64_t to_us)
+{
+    size_t kept = 0;
+    if (gaps->count)
+        qsort(gaps->at, gaps->count, sizeof(*gaps->at), by_beginning);
+    for (size_t i = 0; i < gaps->count; i++) {
+        struct history_gap gap = gaps->at[i], *last = kept ? &gaps->at[kept - 1] : NULL;
+        if (gap.to_us <= from_us || gap.from_us >= to_us)
+            continue;
+        if (last && gap.from_us <= last->to_us)
+            last->to_us = gap.to_us > last->to_us ? gap.to_us : last->to_us;
+        else
+            gaps->at[kept++] = gap;
+    }
+    gaps->count = kept;
+}
+
+/* One that began before from..to is told by the newest file from before. */
+int history_gaps(struct history_reader *reader, int64_t from_us, int64_t to_us, struct history_gaps *out)
+{
+    size_t count;
+    int *months = month_list(reader->folder, &count), error = 0, first = month_of(from_us), last = month_of(to_us);
+    *out = (struct history_gaps){ 0 };
+    for (size_t i = 0; i < count && !error; i++) {
+        bool leads = months[i] < first && (i + 1 == count || months[i + 1] >= first);
+        struct month_file *file = leads || (months[i] >= first && months[i] <= last) ? open_month(reader, months[i], &error) : NULL;
+        if (file)
+            error = month_file_gaps(file, out);
+    }
+    mem_free(months);
+    if (error) {
+        mem_free(out->at);
+        *out = (struct history_gaps){ 0 };
+        return error;
+    }
+    tidy_gaps(out, from_us, to_us);
+    return 0;
 }

@@ -27,6 +27,9 @@ void history_series_finish(struct history_series *series);
 
 /* From when to when there is something. False: nothing is there, or it cannot be read (logged). */
 bool history_span(struct history_reader *reader, int64_t *first_us, int64_t *last_us);
+/* When nothing was recorded at all, though something was before and after: what overlaps from..to, ascending, none within another.
+   mem_free(out->at). */
+int history_gaps(struct history_reader *reader, int64_t from_us, int64_t to_us, struct history_gaps *out);
 /* All readings at t, by tag index of the plant that the tags are of. What was never recorded is Bad_WaitingForInitialData. */
 int history_at(struct history_reader *reader, const struct history_tag *tags, int64_t t_us, struct snapshot *into);
 

@@ -59,6 +59,7 @@ static const char *const sql[SQL_COUNT] = {
     [SQL_ALL_HELD] = "SELECT tag, t, v, q FROM held",
     [SQL_CLEAR_HELD] = "DELETE FROM held",
     [SQL_CLEAR_ROLLUPS] = "DELETE FROM rollup WHERE level_s = ? AND tag = ? AND t >= ? AND t < ?",
+    [SQL_EVENTS] = "SELECT t, kind, text FROM event WHERE kind IN ('gap', 'clock')",
     [SQL_NOTE] = "INSERT INTO event(t, kind, text) VALUES(?, ?, ?)",
     [SQL_BEFORE] = "SELECT t, v, q FROM sample WHERE tag = ? AND t <= ? ORDER BY t DESC LIMIT 1",
     [SQL_AFTER] = "SELECT t, v, q FROM sample WHERE tag = ? AND t > ? ORDER BY t LIMIT 1",

@@ -70,6 +70,15 @@ int month_file_points(struct month_file *file, const char *tag, int64_t from_us,
 /* Appends what is rolled up of whole or part buckets in from..to; *until_us: where that ends. */
 int month_file_buckets(struct month_file *file, const char *tag, enum history_level level, int64_t from_us, int64_t to_us,
                        struct history_buckets *out, int64_t *until_us);
+/* Appends the times when nothing was recorded at all, of which this file tells: nobody did, or the clock was set forward. In no order. */
+struct history_gap {
+    int64_t from_us, to_us;
+};
+struct history_gaps {
+    struct history_gap *at; /* mem_free */
+    size_t count, capacity;
+};
+int month_file_gaps(struct month_file *file, struct history_gaps *out);
 /* When the first and the last of its points were; left as they are where it has none. */
 int month_file_span(struct month_file *file, int64_t *first_us, int64_t *last_us);
 /* Of each tag, what lies before or at t, and after; t_us INT64_MIN in a point that is not there. Only those are looked for: the month

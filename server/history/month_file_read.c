@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Reading a month's file. */
 #include <errno.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -258,5 +259,36 @@ int month_file_span(struct month_file *file, int64_t *first_us, int64_t *last_us
         *last_us = sqlite3_column_int64(span, 1);
     }
     sqlite3_reset(span);
+    return month_fail(file, code, "cannot be read");
+}
+
+/* The texts that the historian notes, read back. */
+static bool read_gap(const char *kind, const char *text, int64_t t_us, struct history_gap *out)
+{
+    double seconds;
+    if (!strcmp(kind, "gap") && sscanf(text, "not recorded for %lf s", &seconds) == 1)
+        *out = (struct history_gap){ t_us, t_us + (int64_t)(seconds * 1e6) };
+    else if (!strcmp(kind, "clock") && sscanf(text, "the clock was set forward by %lf s", &seconds) == 1)
+        *out = (struct history_gap){ t_us - (int64_t)(seconds * 1e6), t_us };
+    else
+        return false;
+    return seconds > 0 && seconds < 1e10;
+}
+
+int month_file_gaps(struct month_file *file, struct history_gaps *out)
+{
+    sqlite3_stmt *events = month_sql(file, SQL_EVENTS);
+    struct history_gap gap;
+    int code;
+    if (!events)
+        return month_fail(file, sqlite3_errcode(file->db), "cannot be read");
+    while ((code = sqlite3_step(events)) == SQLITE_ROW) {
+        const char *kind = (const char *)sqlite3_column_text(events, 1), *text = (const char *)sqlite3_column_text(events, 2);
+        if (!kind || !text || !read_gap(kind, text, sqlite3_column_int64(events, 0), &gap))
+            continue;
+        mem_grow(&out->at, &out->capacity, out->count + 1, sizeof(*out->at));
+        out->at[out->count++] = gap;
+    }
+    sqlite3_reset(events);
     return month_fail(file, code, "cannot be read");
 }

@@ -28,4 +28,9 @@ static inline bool history_point_joined(const struct history_point *a, const str
     return !step && history_point_usable(a) && history_point_usable(b) && a->quality == b->quality;
 }
 
+/* What events of a month's file say, with the seconds. */
+#define HISTORY_GAP_TEXT "not recorded for %.0f s"
+#define HISTORY_FORWARD_TEXT "the clock was set forward by %.1f s"
+#define HISTORY_BACK_TEXT "the clock was set back by %.1f s"
+
 #endif

@@ -103,7 +103,7 @@ static bool read_moment(struct past *past, int64_t at_us)
     }
     struct snapshot *snapshot = snapshot_create(past->params.plant->tag_count);
     bool good = history_at(past->reader, past->tags, at_us, snapshot) == 0 &&
-                alarms_then(past->params.log, past->params.folder, past->params.plant, snapshot) == 0;
+                alarms_then(past->params.log, past->reader, past->params.folder, past->params.plant, snapshot) == 0;
     if (good)
         moments_add(past->params.moments, at_us, snapshot);
     snapshot_destroy(&snapshot);

@@ -102,6 +102,26 @@ bool recall_parse(const struct plant *plant, const char *const *args, size_t cou
     return false;
 }
 
+bool recall_parse_gaps(const char *const *args, size_t count, int64_t now_us, struct recall_order *order, struct message_error *error)
+{
+    *order = (struct recall_order){ .gaps = true, .from_us = INT64_MIN, .to_us = now_us };
+    for (size_t i = 0; i < count; i++) {
+        bool from = !strncmp(args[i], "from=", 5);
+        if (!from && strncmp(args[i], "to=", 3) != 0) {
+            message_fail(error, "unknown_field", "there is no argument '%.60s'; from and to are", args[i]);
+            return false;
+        }
+        if (!take_when(from ? "from" : "to", strchr(args[i], '=') + 1, now_us, from ? &order->from_us : &order->to_us, error))
+            return false;
+    }
+    if (order->from_us == INT64_MIN)
+        order->from_us = order->to_us - INT64_C(3600000000);
+    if (order->from_us < order->to_us)
+        return true;
+    message_fail(error, "bad_field", "from: expected an earlier instant than to");
+    return false;
+}
+
 /* --- the thread --------------------------------------------------------------------------------------------------------------- */
 
 struct recall {
@@ -165,6 +185,24 @@ static struct recall_answer *answer_journal(struct recall *recall, const struct 
     return out;
 }
 
+static struct recall_answer *answer_gaps(struct recall *recall, const struct recall_order *order)
+{
+    struct recall_answer *out = mem_new(sizeof(*out));
+    struct history_gaps gaps;
+    struct text text = { 0 };
+    out->client = order->client;
+    if (history_gaps(recall->reader, order->from_us, order->to_us, &gaps))
+        return out;
+    text_add(&text, "{\"from_us\":%lld,\"to_us\":%lld,\"gaps\":[", (long long)order->from_us, (long long)order->to_us);
+    for (size_t i = 0; i < gaps.count; i++)
+        text_add(&text, "%s[%lld,%lld]", i ? "," : "", (long long)gaps.at[i].from_us, (long long)gaps.at[i].to_us);
+    text_add(&text, "]}\n");
+    mem_free(gaps.at);
+    out->text = text.at;
+    out->length = text.length;
+    return out;
+}
+
 static struct recall_answer *answer(struct recall *recall, const struct recall_order *order)
 {
     struct recall_answer *out = mem_new(sizeof(*out));
@@ -208,7 +246,7 @@ static void *run(void *arg)
     struct recall *recall = arg;
     struct recall_order order;
     while (next_order(recall, &order)) {
-        struct recall_answer *one = (order.journal ? answer_journal : answer)(recall, &order);
+        struct recall_answer *one = (order.journal ? answer_journal : order.gaps ? answer_gaps : answer)(recall, &order);
         pthread_mutex_lock(&recall->lock);
         *recall->last = one;
         recall->last = &one->next;

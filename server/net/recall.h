@@ -19,6 +19,7 @@ struct recall_order {
     int tag_count, max_points;
     int64_t from_us, to_us;
     bool csv;
+    bool gaps;    /* asked instead of series: when nothing was recorded */
     bool journal; /* this is asked instead: */
     struct alarm_query alarms;
 };
@@ -26,6 +27,9 @@ struct recall_order {
 /* `tags=A,B&from=-8h&to=now&points=1000&format=csv`, decoded. False: *error says which is wrong. Pure. */
 bool recall_parse(const struct plant *plant, const char *const *args, size_t count, int64_t now_us, struct recall_order *order,
                   struct message_error *error);
+
+/* `from=-8h&to=now`, likewise: when nothing was recorded. Pure. */
+bool recall_parse_gaps(const char *const *args, size_t count, int64_t now_us, struct recall_order *order, struct message_error *error);
 
 struct recall_answer { /* mem_free text and itself */
     uint64_t client;

@@ -142,7 +142,7 @@ test('the slider goes to an instant, and nobody can take it for now', options, a
     assert.equal(await page.locator('#time-live').isDisabled(), true);
     const slider = page.locator('#time-slider');
     await slider.focus();
-    await slider.fill('1000');
+    await slider.fill('1800');
     await waitForHealth(page, 'past');
     await page.waitForFunction(() => globalThis.plantcast.session.picture.past);
     const { atUs, dataTimeUs } = await shown();
@@ -219,23 +219,90 @@ test('alarms are marked where they were raised', options, async () => {
     if (await page.locator('#timeline').isVisible())
         await page.locator('#time-toggle').click();
     await page.locator('#time-toggle').click();
-    const mark = page.locator('#time-track .alarm title', { hasText: /^TI-2 HH?, \d\d:\d\d:\d\d$/ }).first();
+    const mark = page.locator('#time-track .alarm title', { hasText: /^TI-2 HH?, \d\d:\d\d:\d\d/ }).first();
     await mark.waitFor({ state: 'attached' });
     assert.match(await page.locator('#time-alarms').textContent(), /^\d+ alarms? raised$/);
     await settle(page);
     await shoot(page, 'time-alarms');
 });
 
+const instantOf = (us) => page.waitForFunction((to) => globalThis.plantcast.session.time.atUs === to, us);
+const timeText = (us) => new Date(us / 1000).toISOString().slice(0, 19);
+
+test('marks lead to their instant, from alarm to alarm, and to a date', options, async () => {
+    const raises = await page.evaluate(async () => {
+        const { rows } = await (await fetch('/api/v1/alarms/journal')).json();
+        return rows.filter(({ event }) => event === 'raise').map(({ time_us: us }) => us).reverse();
+    });
+    const old = (us) => globalThis.plantcast.session.clockUs() - us > 4e6; // what is newer counts as now
+    await page.waitForFunction(old, raises.at(-1));
+    await page.locator('#time-track .alarm').last().click();
+    await page.waitForFunction((all) => all.includes(globalThis.plantcast.session.time.atUs), raises);
+    await waitForHealth(page, 'past');
+    assert.match(await page.locator('#time-alarms').textContent(), /^TI-2 HH?/);
+    await page.locator('#time-live').click();
+    await waitForHealth(page, 'live');
+    await page.locator('#time-before').click();
+    await instantOf(raises.at(-1));
+    for (const us of [...new Set(raises)].slice(0, -1).reverse()) {
+        await page.locator('#time-before').click();
+        await instantOf(us);
+    }
+    await page.locator('#time-before').click();
+    await page.locator('#toast', { hasText: 'No earlier alarm' }).waitFor();
+    if (new Set(raises).size > 1) {
+        await page.locator('#time-after').click();
+        await instantOf([...new Set(raises)][1]);
+    }
+    const us = (BEGIN_S + 777) * 1e6;
+    await page.locator('#time-date').fill(timeText(us));
+    await instantOf(us);
+    await page.locator('#time-slider').focus();
+    assert.equal(await page.locator('#time-date').inputValue(), timeText(us));
+    await page.locator('#time-span').selectOption('2592000');
+    await page.locator('#time-slider').focus();
+    await page.keyboard.press('ArrowRight');
+    await instantOf(us + 60e6); // a minute, not the 21 of a slider of 2000 steps
+    await page.locator('#time-span').selectOption('3600');
+    await page.locator('#time-live').click();
+    await waitForHealth(page, 'live');
+});
+
+test('while the daemon did not run nothing looks recorded: hatched, without data, without rings of before', options, async () => {
+    assert.ok(await page.evaluate(() => globalThis.plantcast.session.model.alarms.list().length > 0), 'there is one that could linger');
+    await plant.daemon.stop();
+    const stopped = Date.now() * 1e3;
+    await new Promise((done) => setTimeout(done, 3500));
+    await plant.startDaemon();
+    const url = `http://127.0.0.1:${plant.port}/`, { gaps } = await (await fetch(`${url}api/v1/history/gaps?from=-10m`)).json();
+    const [from, to] = gaps.at(-1);
+    assert.ok(Math.abs(from - stopped) < 2e6 && to - from > 3e6, JSON.stringify([stopped, gaps]));
+    const other = await openPage(`${url}#at=${new Date((from + to) / 2000).toISOString()}`, { viewport: { width: 1440, height: 900 } });
+    await waitForPicture(other.page);
+    await other.page.waitForFunction(() => globalThis.plantcast.session.picture.past);
+    const seen = await other.page.evaluate(() => globalThis.plantcast.session.model.tags.map(({ index }) =>
+        [globalThis.plantcast.session.model.readings[index].quality, globalThis.plantcast.session.model.alarms.gravest(index)]));
+    assert.deepEqual(seen, Array(3).fill(['bad', null]));
+    assert.match(await other.page.locator('#banner .detail').textContent(), /No data was recorded then$/);
+    await other.page.locator('#time-span').selectOption('900');
+    await other.page.waitForFunction(() => [...document.querySelectorAll('#time-track .unrecorded')]
+        .some((rect) => Number(rect.getAttribute('width')) < 60));
+    await settle(other.page);
+    await shoot(other.page, 'past-outage');
+    assert.deepEqual(other.errors, []);
+    await other.close();
+});
+
 test('on a phone the bar fits', options, async () => {
     const phone = await openPage(`http://127.0.0.1:${plant.port}/#at=${new Date((BEGIN_S + 600) * 1000).toISOString()}`, PHONE);
     await waitForPicture(phone.page);
     await phone.page.locator('#timeline').waitFor();
+    await settle(phone.page);
+    await shoot(phone.page, 'past-phone');
     const wide = await phone.page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
     assert.ok(wide <= 0, `${wide} px too wide`);
     const box = await phone.page.locator('#time-live').boundingBox();
     assert.ok(box.x + box.width <= 390 && box.height >= 40, JSON.stringify(box));
-    await settle(phone.page);
-    await shoot(phone.page, 'past-phone');
     await phone.close();
     assert.deepEqual(browser.errors, []);
 });

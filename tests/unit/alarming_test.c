@@ -15,8 +15,10 @@
 
 #include "alarm/alarming.h"
 #include "alarm/journal.h"
+#include "alarm/then.h"
 #include "base/clock.h"
 #include "base/mem.h"
+#include "history/month.h"
 #include "tests/support/plant_by_hand.h"
 #include "tests/support/temp.h"
 #include "value/quality.h"
@@ -155,6 +157,40 @@ static void a_thousand_at_once_are_all_written(void **state)
     assert_int_equal(then.unacknowledged, TAGS - 1);
 }
 
+static int alarms_of(struct setup *s, struct history_reader *reader, int64_t at_us)
+{
+    struct snapshot *then = snapshot_create(TAGS);
+    int count = 0;
+    then->taken_utc_ns = at_us * 1000;
+    assert_int_equal(alarms_then(s->log, reader, s->folder, s->plant, then), 0);
+    for (int i = 0; i < TAGS; i++)
+        count += then->readings[i].alarm != ALARM_NONE;
+    snapshot_destroy(&then);
+    return count;
+}
+
+/* What was there when recording ended: nobody knows how long it lasted. */
+static void while_nothing_was_recorded_no_alarm_is_known(void **state)
+{
+    struct setup *s = *state;
+    int error;
+    start(s);
+    give_all(s, 90);
+    assert_int_equal(wait_for(s, ALARM_UNACKNOWLEDGED, TAGS), TAGS);
+    alarming_stop(&s->alarming);
+    int64_t ended_us = clock_utc_ns() / 1000;
+    struct history_tag *tags = history_tags(s->plant);
+    struct month_file *file = month_file_open(s->log, s->folder, month_of(ended_us), tags, TAGS, &error);
+    assert_int_equal(month_file_note(file, ended_us, "gap", "not recorded for 60 s"), 0);
+    month_file_close(&file);
+    mem_free(tags);
+    struct history_reader *reader = history_reader_create(s->log, s->folder);
+    assert_int_equal(alarms_of(s, reader, ended_us - 1000), TAGS);
+    assert_int_equal(alarms_of(s, reader, ended_us + 30 * US_PER_S), 0);
+    assert_int_equal(alarms_of(s, reader, ended_us + 61 * US_PER_S), TAGS);
+    history_reader_destroy(&reader);
+}
+
 /* What was told a second before outlives a kill; what follows goes on from it. */
 static void killed_at_any_moment_it_goes_on(void **state)
 {
@@ -240,6 +276,7 @@ int main(void)
     cmocka_set_message_output(CM_OUTPUT_TAP);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(a_thousand_at_once_are_all_written, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(while_nothing_was_recorded_no_alarm_is_known, set_up, tear_down),
         cmocka_unit_test_setup_teardown(killed_at_any_moment_it_goes_on, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_lost_device_is_no_flood, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_damaged_journal_is_set_aside, set_up, tear_down),

@@ -268,6 +268,34 @@ static void a_restart_leaves_a_gap(void **state)
     snapshot_destroy(&snapshot);
 }
 
+/* In October nobody recorded for ten seconds, nor over the turn of the month; in November the clock was set forward. */
+static void gaps_are_told_in_order_and_joined(void **state)
+{
+    struct setup *s = *state;
+    struct history_gaps gaps;
+    int64_t october = NOVEMBER - 2 * 86400 * S;
+    struct month_file *file = open_file(s, october);
+    assert_int_equal(month_file_note(file, october + 200 * S, "gap", "not recorded for 259200 s"), 0);
+    assert_int_equal(month_file_note(file, october, "gap", "not recorded for 10 s"), 0);
+    assert_int_equal(month_file_note(file, october, "gap", "not recorded for ever"), 0);
+    month_file_close(&file);
+    file = open_file(s, NOVEMBER);
+    assert_int_equal(month_file_note(file, NOVEMBER + 86500 * S, "clock", "the clock was set forward by 200.0 s"), 0);
+    assert_int_equal(month_file_note(file, NOVEMBER + 90000 * S, "clock", "the clock was set back by 200.0 s"), 0);
+    month_file_close(&file);
+    assert_int_equal(history_gaps(s->reader, october - S, NOVEMBER + 200000 * S, &gaps), 0);
+    assert_int_equal(gaps.count, 2);
+    assert_true(gaps.at[0].from_us == october && gaps.at[0].to_us == october + 10 * S);
+    assert_true(gaps.at[1].from_us == october + 200 * S && gaps.at[1].to_us == NOVEMBER + 86600 * S);
+    mem_free(gaps.at);
+    assert_int_equal(history_gaps(s->reader, NOVEMBER + 3600 * S, NOVEMBER + 7200 * S, &gaps), 0); /* began in the month before */
+    assert_int_equal(gaps.count, 1);
+    mem_free(gaps.at);
+    assert_int_equal(history_gaps(s->reader, october + 20 * S, october + 30 * S, &gaps), 0);
+    assert_int_equal(gaps.count, 0);
+    mem_free(gaps.at);
+}
+
 static size_t count_damaged(const char *folder)
 {
     char *command = mem_printf("ls '%s' | grep -c 'damaged-.*sqlite$'", folder);
@@ -493,6 +521,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(lines_cross_the_border_of_a_month, set_up, tear_down),
         cmocka_unit_test_setup_teardown(an_import_is_rolled_up_again, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_restart_leaves_a_gap, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(gaps_are_told_in_order_and_joined, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_damaged_file_is_set_aside, set_up, tear_down),
         cmocka_unit_test_setup_teardown(damage_inside_is_noticed, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_newer_version_is_left_alone, set_up, tear_down),

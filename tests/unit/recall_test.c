@@ -106,6 +106,19 @@ static void queries_are_judged(void **state)
     assert_true(order.from_us == NOW - 1800 * US_PER_S && order.to_us == NOW);
 }
 
+static void gaps_are_asked_by_time_alone(void **state)
+{
+    (void)state;
+    struct recall_order order;
+    struct message_error error = { 0 };
+    assert_true(recall_parse_gaps((const char *const[]){ "from=-8h", "to=-1h" }, 2, NOW, &order, &error));
+    assert_true(order.gaps && order.from_us == NOW - 8 * 3600 * US_PER_S && order.to_us == NOW - 3600 * US_PER_S);
+    assert_false(recall_parse_gaps((const char *const[]){ "tags=A" }, 1, NOW, &order, &error));
+    assert_false(recall_parse_gaps((const char *const[]){ "to" }, 1, NOW, &order, &error));
+    assert_false(recall_parse_gaps((const char *const[]){ "from=noon" }, 1, NOW, &order, &error));
+    assert_false(recall_parse_gaps((const char *const[]){ "from=-1h", "to=-2h" }, 2, NOW, &order, &error));
+}
+
 static struct recall_answer *wait_for(struct setup *s, int count)
 {
     for (int i = 0; i < 1000 && s->notified < count; i++)
@@ -180,6 +193,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(queries_are_judged, set_up, tear_down),
+        cmocka_unit_test(gaps_are_asked_by_time_alone),
         cmocka_unit_test_setup_teardown(answers_hold_what_was_recorded, set_up, tear_down),
         cmocka_unit_test_setup_teardown(csv_has_quotes_where_it_needs_them, set_up, tear_down),
         cmocka_unit_test_setup_teardown(too_many_are_refused, set_up, tear_down),

@@ -3,7 +3,8 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { readAddress, writeAddress } from '../../clients/web/core/address.js';
-import { ask, BAD, gaps, limitLines, line, raised, ticks, UNCERTAIN } from '../../clients/web/core/history.js';
+import { arrowS, ask, BAD, clustered, gaps, limitLines, line, nextTo, raised, ticks, UNCERTAIN } from '../../clients/web/core/history.js';
+import { fieldInstant, fieldText } from '../../clients/web/core/instant.js';
 
 const GOOD_CODE = 0, UNCERTAIN_CODE = 0x408f0000, BAD_CODE = 0x80050000;
 const points = (...list) => ({ step: false, bucket_us: 0, points: list });
@@ -83,4 +84,26 @@ test('limits of several tags: each once, by its axis, with whose it is unless it
     ]);
     assert.deepEqual(limitLines(tags.slice(0, 2), ({ unit }) => unit)[0], { scale: 'degC', name: 'H', value: 60, tags: [] });
     assert.deepEqual(limitLines([], () => ''), []);
+});
+
+test('from alarm to alarm, and marks that stand in one place as one', () => {
+    const marks = [[10, 3], [20, 1], [21, 2], [50, 4]].map(([us, priority]) => ({ us, priority }));
+    assert.deepEqual([nextTo(marks, 20, true).us, nextTo(marks, 20, false).us], [10, 21], 'never the one where it stands');
+    assert.deepEqual([nextTo(marks, 10, true), nextTo(marks, 50, false)], [null, null]);
+    assert.deepEqual(clustered(marks, 5).map(({ us, priority, of }) => [us, priority, of.length]), [[10, 3, 1], [20, 1, 2], [50, 4, 1]]);
+    assert.deepEqual(clustered([], 5), []);
+    assert.deepEqual([900, 3600, 86400, 2592000].map(arrowS), [1, 4, 60, 60], 'a minute at most, also of 30 days');
+});
+
+test('a date field is by the clock of the plant', () => {
+    const at = (text, zone) => { const us = fieldInstant(text, zone); return us && new Date(us / 1000).toISOString(); };
+    assert.equal(at('2026-11-22T07:27:02', 'Asia/Seoul'), '2026-11-21T22:27:02.000Z');
+    assert.equal(at('2026-11-22 07:27', 'America/New_York'), '2026-11-22T12:27:00.000Z');
+    assert.equal(at('2026-07-01', 'Europe/Berlin'), '2026-06-30T22:00:00.000Z');
+    assert.equal(at('2026-10-25T02:30:00', 'Europe/Berlin'), '2026-10-25T00:30:00.000Z', 'the first of the hour that comes twice');
+    assert.equal(at('2026-03-29T02:30:00', 'Europe/Berlin'), '2026-03-29T01:30:00.000Z', 'an hour that is left out: the one after it');
+    for (const bad of ['', 'noon', '2026-13-01T00:00', '26-1-1'])
+        assert.equal(fieldInstant(bad, 'UTC'), null, bad);
+    assert.equal(fieldText(Date.parse('2026-11-21T22:27:02.9Z') * 1000, 'Asia/Seoul'), '2026-11-22T07:27:02');
+    assert.equal(fieldInstant('2026-11-22T07:27:02', 'UTC'), Date.parse('2026-11-22T07:27:02Z') * 1000);
 });

@@ -45,7 +45,8 @@ function past({ picture, time, model }) {
     const us = picture?.past ? picture.dataTimeUs : time.atUs;
     const { date, time: clock, offset } = zoneClock(model.plant.time_zone)(us / 1000);
     const words = say(time.atUs === null ? 'health.returning' : 'health.past');
-    return { kind: 'past', words, detail: played(`${date} ${clock} ${offset}`, time), banner: true };
+    const nothing = picture?.past && picture.noLiveData ? `. ${say('health.nothing')}` : '';
+    return { kind: 'past', words, detail: played(`${date} ${clock} ${offset}`, time) + nothing, banner: true };
 }
 
 function played(instant, { speed }) {

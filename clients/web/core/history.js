@@ -112,6 +112,26 @@ export function raised(rows) {
         .sort((a, b) => a.us - b.us);
 }
 
+// The next of such rows after an instant, or, backwards, before it; null: none is there.
+export const nextTo = (marks, us, backwards) =>
+    (backwards ? marks.findLast((mark) => mark.us < us) : marks.find((mark) => mark.us > us)) ?? null;
+
+// Marks that lie nearer to each other than that are drawn as one: { us (of the gravest), priority, of: all of them }.
+export function clustered(marks, nearUs) {
+    const out = [];
+    for (const mark of marks) {
+        const last = out.at(-1);
+        if (last && mark.us - last.of[0].us < nearUs)
+            last.of.push(mark);
+        else
+            out.push({ of: [mark] });
+    }
+    return out.map(({ of }) => ({ ...of.reduce((gravest, mark) => (mark.priority < gravest.priority ? mark : gravest)), of }));
+}
+
+// What an arrow key moves a slider of so many seconds by: at most a minute.
+export const arrowS = (spanS) => Math.max(1, Math.min(60, Math.round(spanS / 900)));
+
 // Round instants between two, at most so many: [us].
 export function ticks(fromUs, toUs, most, offsetUs = 0) {
     const steps = [1, 5, 10, 30, 60, 300, 600, 1800, 3600, 7200, 14400, 28800, 43200, 86400, 172800, 604800].map((s) => s * 1e6);

@@ -163,6 +163,7 @@ picture: Bild
 retry: Jetzt versuchen
 
 [health]
+nothing: Damals wurden keine Daten aufgezeichnet
 connecting: Verbinden
 live: Live
 partly: Live, teils simuliert

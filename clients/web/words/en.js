@@ -163,6 +163,7 @@ picture: Picture
 retry: Try now
 
 [health]
+nothing: No data was recorded then
 connecting: Connecting
 live: Live
 partly: Live, partly simulated

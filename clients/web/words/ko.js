@@ -161,6 +161,7 @@ picture: 화면
 retry: 지금 시도
 
 [health]
+nothing: 그때 기록된 데이터가 없습니다
 connecting: 연결 중
 live: 실시간
 partly: 실시간, 일부 모의값

@@ -222,6 +222,11 @@ unsaved: Nicht exportiert: {why}
 uncharted: dieser Server wurde ohne seine Diagramme gebaut (npm fehlte)
 
 [time]
+before: Voriger Alarm
+after: Nächster Alarm
+goto: Gehe zu
+first: Kein früherer Alarm ist aufgezeichnet
+last: Kein späterer Alarm ist aufgezeichnet
 play: Abspielen
 pause: Anhalten
 speed: Geschwindigkeit

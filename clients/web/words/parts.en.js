@@ -222,6 +222,11 @@ unsaved: Not exported: {why}
 uncharted: this server was built without its charts (npm was not there)
 
 [time]
+before: Alarm before
+after: Next alarm
+goto: Go to
+first: No earlier alarm was recorded
+last: No later alarm was recorded
 play: Play
 pause: Pause
 speed: Speed of play

@@ -221,6 +221,11 @@ unsaved: 내보내지 못함: {why}
 uncharted: 이 서버는 차트 없이 빌드되었습니다 (npm이 없었음)
 
 [time]
+before: 이전 알람
+after: 다음 알람
+goto: 이동
+first: 더 이른 알람 기록이 없습니다
+last: 더 늦은 알람 기록이 없습니다
 play: 재생
 pause: 일시 정지
 speed: 재생 속도

@@ -57,6 +57,7 @@ static const struct {
     { "/api/v1/proofs", api_proofs, ROLE_VIEWER },
     { "/api/v1/pick", ask_pick, ROLE_VIEWER },
     { "/api/v1/history", ask_history, ROLE_VIEWER },
+    { "/api/v1/history/gaps", ask_gaps, ROLE_VIEWER },
     { "/api/v1/alarms", api_alarms, ROLE_VIEWER },
     { "/api/v1/alarms/journal", ask_journal, ROLE_VIEWER },
 };

@@ -30,6 +30,19 @@ int ask_history(struct hub *hub, struct request *request)
     return await_recalled(hub, request, &order);
 }
 
+int ask_gaps(struct hub *hub, struct request *request)
+{
+    struct recall_order order;
+    struct message_error error = { 0 };
+    struct args args;
+    if (!hub->recall)
+        return request_answer_text(request, HTTP_STATUS_NOT_FOUND, HTTP_NOTHING_RECORDED);
+    if (!request_args(request->wsi, &args, &error) ||
+        !recall_parse_gaps(args.list, args.count, clock_utc_ns() / 1000, &order, &error))
+        return request_answer_error(request, &error);
+    return await_recalled(hub, request, &order);
+}
+
 static bool read_alarm_query(struct hub *hub, struct request *request, bool journal, struct alarm_query *query, struct message_error *error)
 {
     struct args args;

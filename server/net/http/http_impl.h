@@ -54,6 +54,7 @@ void request_answered(struct request *request, int result);   /* result of its a
 int ask_snapshot(struct hub *hub, struct request *request);
 int ask_pick(struct hub *hub, struct request *request);
 int ask_history(struct hub *hub, struct request *request);
+int ask_gaps(struct hub *hub, struct request *request);
 int ask_journal(struct hub *hub, struct request *request);
 int ask_reload(struct hub *hub, struct request *request);
 int api_alarms(struct hub *hub, struct request *request);

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Instants as a date field has them: by the clock of the plant's zone, without saying which zone.
+import { zoneClock } from './format.js';
+
+function offsetMs(clock, utcMs) {
+    const [, sign, hours, minutes, seconds] = clock(utcMs).offset.match(/([+−])(\d\d):(\d\d)(?::(\d\d))?/) ?? [];
+    return sign ? (sign === '+' ? 1 : -1) * ((Number(hours) * 60 + Number(minutes)) * 60 + Number(seconds ?? 0)) * 1000 : 0;
+}
+
+// 2026-11-22T07:27:02
+export function fieldText(us, timeZone) {
+    const utcMs = Math.floor(us / 1e6) * 1000;
+    return new Date(utcMs + offsetMs(zoneClock(timeZone), utcMs)).toISOString().slice(0, 19);
+}
+
+// Microseconds of UTC; null: that is no date. Of an hour that comes twice the first; one that is left out is the one after it.
+export function fieldInstant(text, timeZone) {
+    const [, date, time = '00:00', seconds = ''] = text.trim().match(/^(\d{4}-\d\d-\d\d)(?:[T ](\d\d:\d\d)(:\d\d)?(?:\.\d+)?)?$/) ?? [];
+    const asUtc = date ? Date.parse(`${date}T${time}${seconds || ':00'}Z`) : NaN, clock = zoneClock(timeZone);
+    if (!Number.isFinite(asUtc))
+        return null;
+    const offsets = [-86400e3, 86400e3].map((off) => offsetMs(clock, asUtc + off)); // before and after a change that may be near
+    const fits = offsets.map((offset) => asUtc - offset).filter((utcMs) => fieldText(utcMs * 1000, timeZone) === new Date(asUtc).toISOString()
+        .slice(0, 19));
+    return (fits.length > 0 ? Math.min(...fits) : asUtc - offsets[0]) * 1000;
+}
