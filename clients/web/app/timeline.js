@@ -98,6 +98,7 @@ export class Timeline {
         if (this.wanted === null)
             requestAnimationFrame(() => {
                 this.go(this.wanted);
+                this.draw();
                 this.wanted = null;
             });
         this.wanted = at;
@@ -235,6 +236,9 @@ export class Timeline {
             hatch(from, begin);
         for (const [begins, ends] of this.gaps)
             hatch(begins, ends);
+        const thumb = x(from + Number(this.slider.value) * 1e6); // what is hatched lies over the slider's own
+        if (nodes.some((node) => node.localName === 'rect'))
+            nodes.push(makeSvg('circle', { class: 'thumb', cx: thumb, cy: 20, r: 8 }));
         for (const us of ticks(from, this.toUs, Math.max(2, width / 110))) {
             const { day, time } = this.clock(us / 1000), text = this.spanUs > 2 * 86400e6 ? day : time.slice(0, 5);
             nodes.push(makeSvg('path', { class: 'tick', d: `M${x(us)} 26v5` }));

@@ -20,7 +20,7 @@ export function fieldInstant(text, timeZone) {
     if (!Number.isFinite(asUtc))
         return null;
     const offsets = [-86400e3, 86400e3].map((off) => offsetMs(clock, asUtc + off)); // before and after a change that may be near
-    const fits = offsets.map((offset) => asUtc - offset).filter((utcMs) => fieldText(utcMs * 1000, timeZone) === new Date(asUtc).toISOString()
-        .slice(0, 19));
+    const wanted = new Date(asUtc).toISOString().slice(0, 19);
+    const fits = offsets.map((offset) => asUtc - offset).filter((utcMs) => fieldText(utcMs * 1000, timeZone) === wanted);
     return (fits.length > 0 ? Math.min(...fits) : asUtc - offsets[0]) * 1000;
 }
