@@ -99,8 +99,12 @@ test('a click on a marker leads to its trend, with unit and gap', options, async
 });
 
 test('several tags are compared, each by its unit, and exported', options, async () => {
-    for (const name of ['TI-2', 'PI-1'])
-        await page.evaluate((tag) => globalThis.plantcast.showTrend(globalThis.plantcast.session.model.tag(tag)), name);
+    assert.ok(await page.locator('#card .add-trend').isHidden(), 'it is there already');
+    for (const name of ['TI-2', 'PI-1']) {
+        await page.evaluate((tag) => globalThis.plantcast.selectTag(globalThis.plantcast.session.model.tag(tag)), name);
+        assert.equal(await page.locator('#trend-tags li').count(), name === 'TI-2' ? 1 : 2, 'what is only chosen replaces nothing');
+        await page.locator('#card .add-trend').click();
+    }
     await page.waitForFunction(() => document.querySelectorAll('#trend-chart .u-legend .u-series').length === 4);
     assert.equal(await page.locator('#trend-tags li').count(), 3);
     const axes = await page.evaluate(() => globalThis.plantcast.trends.chart.axes.filter((axis) => axis.show)
@@ -119,6 +123,11 @@ test('several tags are compared, each by its unit, and exported', options, async
     await settle(page);
     await shoot(page, 'trends');
     await page.locator('#trend-span label', { hasText: '1 h' }).click();
+    await page.locator('#card .trend').click();
+    assert.deepEqual(await page.locator('#trend-tags li b').allTextContents(), ['PI-1'], 'alone again');
+    await page.evaluate(() => globalThis.plantcast.showTrend(globalThis.plantcast.session.model.tag('TI-1')));
+    for (const name of ['TI-2', 'PI-1'])
+        await page.evaluate((tag) => globalThis.plantcast.addTrend(globalThis.plantcast.session.model.tag(tag)), name);
 });
 
 test('in the dark theme the chart is dark, and its lines and limits are read', options, async () => {

@@ -10,8 +10,8 @@ import { byId, glyph, limitFlag, make, setText } from './dom.js';
 import { closeButton, fill } from './pieces.js';
 
 export class Card {
-    constructor({ session, selection, overlay, viewport, selectTag, showTrend }) {
-        Object.assign(this, { session, selection, overlay, viewport, selectTag, showTrend });
+    constructor({ session, selection, overlay, viewport, parts, selectTag, showTrend, addTrend }) {
+        Object.assign(this, { session, selection, overlay, viewport, parts, selectTag, showTrend, addTrend });
         this.element = byId('card');
         this.show();
     }
@@ -49,6 +49,7 @@ export class Card {
         setText(this.age, ageText(model.ageMs(tag.index, clock.now())));
         const unproven = model.unproven(tag);
         setText(this.proof, unproven ? say(`proof.${unproven}`) : '');
+        this.adds.hidden = !this.parts.there('trends')?.takes(tag);
         const alarm = model.alarms.gravest(tag.index);
         this.limit.hidden = !alarm;
         if (alarm) {
@@ -64,13 +65,14 @@ export class Card {
         this.proof = make('p', { class: 'proof' });
         this.quality = make('dd');
         this.age = make('dd');
+        const trend = (name, f, key) => make('button', { type: 'button', class: name, onclick: () => f(tag) }, say(key));
+        this.adds = trend('add-trend', this.addTrend, 'card.add');
         fill(this.element,
             closeButton('close', () => this.selectTag(null)),
             make('h3', {}, tag.name), make('p', { class: 'about' }, tag.description ?? ''), this.value, this.limit, this.proof,
             make('dl', {}, make('dt', {}, say('card.quality')), this.quality, make('dt', {}, say('card.age')), this.age,
                 make('dt', {}, say('card.on')), make('dd', {}, on)),
-            this.session.recorded ?
-                make('button', { type: 'button', class: 'trend', onclick: () => this.showTrend(tag) }, say('card.trend')) : null,
+            this.session.recorded ? make('div', { class: 'trends-of' }, trend('trend', this.showTrend, 'card.trend'), this.adds) : null,
             links.length > 0 ? make('p', { class: 'links' }, ...links) : null);
     }
 

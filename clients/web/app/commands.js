@@ -36,7 +36,6 @@ function commandsOf({ session, parts, selection, overlay, saveAddress, refresh }
         selection.tag = tag?.name ?? null;
         selection.hover = null;
         if (tag) {
-            parts.there('trends')?.follow(tag);
             parts.get('card');
         }
         parts.there('assets')?.mark();
@@ -143,7 +142,8 @@ function commandsOf({ session, parts, selection, overlay, saveAddress, refresh }
         selectTag, showTag, flyToTag, selectAsset, fitView, click, point, group,
         show: (value) => session.setParams(showParams(value)),
         ramp: (value) => session.setParams(rampParams(value)),
-        showTrend: (tag) => parts.use('trends', (trends) => trends.add(tag)),
+        showTrend: (tag) => parts.use('trends', (trends) => trends.only(tag)),
+        addTrend: (tag) => parts.use('trends', (trends) => trends.add(tag)),
         showAsset: (how, asset) => parts.use('views', (views) => views.show(how, asset.id)),
         engineer: opens('engineer'),
         fit: fitView,

@@ -15,7 +15,7 @@ import { Toolbar } from './toolbar.js';
 
 const ADDRESS_WAIT_MS = 400, TOAST_MS = 6000;
 const MANY_PICTURES = 30; // a codec for pictures that change pays from here on
-const COMMANDS = ['selectTag', 'showTag', 'flyToTag', 'fitView', 'selectAsset', 'showTrend', 'showAsset']; // that parts give, too
+const COMMANDS = ['selectTag', 'showTag', 'flyToTag', 'fitView', 'selectAsset', 'showTrend', 'addTrend', 'showAsset']; // of parts, too
 
 const selection = { tag: address.tag, hover: null };
 const parts = new Parts(page, tell);

@@ -62,22 +62,26 @@ export class Trends {
         return !this.element.hidden;
     }
 
-    // One more beside those that are there; alone where none is.
-    add(tag) {
-        if (!this.isOpen)
-            this.tags = [];
-        if (!this.tags.includes(tag))
-            this.tags = [...this.tags, tag].slice(-MOST);
-        this.element.hidden = false;
-        this.show();
-        this.refresh();
+    // In place of what is there.
+    only(tag) {
+        this.tags = [tag];
+        this.open();
     }
 
-    // Another in place of the only one, as somebody goes from marker to marker.
-    follow(tag) {
-        if (!this.isOpen || this.tags.length !== 1 || this.tags[0] === tag)
-            return;
-        this.tags = [tag];
+    // One more beside those that are there.
+    add(tag) {
+        if (this.takes(tag))
+            this.tags = [...this.tags, tag];
+        this.open();
+    }
+
+    // Whether there are others that it can be added to.
+    takes(tag) {
+        return this.isOpen && this.tags.length < MOST && !this.tags.includes(tag);
+    }
+
+    open() {
+        this.element.hidden = false;
         this.show();
         this.refresh();
     }

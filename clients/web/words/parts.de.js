@@ -128,6 +128,7 @@ quality: Qualität
 age: Alter
 on: An
 trend: Trend
+add: Zum Trend dazu
 HH: über dem höchsten Grenzwert
 H: über dem oberen Grenzwert
 L: unter dem unteren Grenzwert

@@ -128,6 +128,7 @@ quality: Quality
 age: Age
 on: On
 trend: Trend
+add: Add to trend
 HH: above the highest limit
 H: above the high limit
 L: below the low limit

@@ -127,6 +127,7 @@ quality: 품질
 age: 경과
 on: 설비
 trend: 추세
+add: 추세에 추가
 HH: 최고 한계 초과
 H: 상한 초과
 L: 하한 미만
