@@ -5,7 +5,7 @@ layout(std140, binding = 0) uniform Frame {
     mat4 eye_from_clip;
     mat4 sun_from_eye;   // to texture coordinates and depth of the shadow map
     vec4 sun;            // towards the sun; w: size of a texel of the shadow map, in metres
-    vec4 up;             // of the plant; w: 1 where assets without a field are muted
+    vec4 up;             // of the plant; w: brightness of assets without a field, which are muted; 0: they are not
     vec4 scale;          // linear: MIN, 1/(MAX - MIN); of the binary logarithms on a logarithmic scale, where z is 1; w: size of a
                          // pattern cell, in pixels
     vec4 shade;          // row of the palette = light * x + y, at most z

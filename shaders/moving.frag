@@ -46,6 +46,8 @@ void main()
 #else
     float sum = light_scalar(light.x, light.y * texture(sun_map, sun_place));
     color.rgb = texelFetch(ramps, ivec2(int(sum * float(textureSize(ramps, 0).x - 1) + 0.5), material), 0).rgb;
+    if (frame.up.w > 0.0)
+        color.rgb *= frame.up.w;
 #ifdef RICH
     color.rgb = vec3(grey_of(color.rgb));
 #endif

@@ -106,7 +106,7 @@ void main()
 #ifdef GLOSSY
     color.rgb = c;
 #else
-    color = vec4(frame.up.w > 0.5 ? mute(c) : c, base.a);
+    color = vec4(frame.up.w > 0.0 ? frame.up.w * mute(c) : c, base.a);
 #ifdef RICH
     color.rgb = vec3(grey_of(color.rgb));
 #endif

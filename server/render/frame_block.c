@@ -68,6 +68,9 @@ static void fill_clip(struct frame_block *block, const struct picture *picture)
     }
 }
 
+/* Before a dark backdrop, what has no field would glare: floors are large and pale. */
+static const float DIM_CONTEXT = 0.55f;
+
 void frame_block_fill(struct frame_block *block, const struct picture *picture)
 {
     const struct view *view = picture->view;
@@ -83,7 +86,7 @@ void frame_block_fill(struct frame_block *block, const struct picture *picture)
         block->back[i] = (float)shot->back[i];
     }
     block->sun[3] = (float)picture->light->texel_m;
-    block->up[3] = view->look != LOOK_MATERIALS;
+    block->up[3] = view->look == LOOK_MATERIALS ? 0 : view->dark ? DIM_CONTEXT : 1;
     fill_clip(block, picture);
     block->back[3] = (float)shot->depth_scale;
     fill_scale(block, picture);

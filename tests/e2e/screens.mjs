@@ -3,6 +3,7 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { DESKTOP, markers, openPage, PHONE, settle, shoot, TABLET, view, waitForHealth, waitForPicture } from './support/browser.mjs';
+import { contrastRatio } from './support/pixels.mjs';
 import { missing, startPlant } from './support/plant.mjs';
 
 const why = missing();
@@ -47,10 +48,10 @@ async function touches(page) {
 const distance = ({ camera }) => Math.hypot(...camera.eye.map((x, i) => x - camera.target[i]));
 
 // What is pressed by a finger and smaller than it.
-const tooSmall = (page) => page.evaluate(() => [...document.querySelectorAll('button, select, .segments label, input[type="search"]')]
-    .filter((e) => e.getClientRects().length > 0)
-    .map((e) => ({ what: e.id || e.textContent, box: e.getBoundingClientRect() }))
-    .filter(({ box }) => box.height < 43.5 || box.width < 41.5)
+const tooSmall = (page) => page.evaluate(() => [...document.querySelectorAll(
+    'button, select, .segments label, input:not([type="radio"], [type="checkbox"])')].filter((e) => e.checkVisibility())
+    .map((e) => ({ what: e.id || e.className || e.textContent, box: e.getBoundingClientRect() }))
+    .filter(({ box }) => box.height < 43.5 || box.width < 43.5)
     .map(({ what, box }) => `${what}: ${box.width}x${box.height}`));
 
 // Parts of the page that leave the screen, or text of a button that leaves the button.
@@ -188,4 +189,54 @@ test('phone: choose equipment from the list, fly there, tap a sensor', options, 
     assert.match(await page.locator('#card h3').textContent(), new RegExp(sensor.name));
     assert.deepEqual(await sticksOut(page), []);
     await shoot(page, 'phone-card');
+}));
+
+// [wide, high]: a phone upright, one on its side, a small one, one that is folded.
+const HELD = [[390, 844], [844, 390], [360, 740], [280, 653]];
+
+test('phones: name and state are read, nothing is cut off, all is as large as a finger', options, () => withPage(PHONE, async (page) => {
+    const rgb = (text) => text.match(/[\d.]+/g).slice(0, 3).map(Number);
+    for (const [width, height] of HELD) {
+        const name = `${width}x${height}`;
+        await page.setViewportSize({ width, height });
+        await page.waitForFunction((wide) => Math.abs(globalThis.plantcast.viewport.width - wide) < 2, width);
+        const words = await page.evaluate(() => ['plant-name', 'health'].map((id) => document.getElementById(id))
+            .filter((e) => e.clientWidth < 30 || e.scrollWidth > e.clientWidth + 1).map((e) => e.id));
+        assert.deepEqual(words, [], name);
+        assert.deepEqual(await tooSmall(page), [], name);
+        const quantities = await page.locator('#groups label').allTextContents(); // which may be cut short
+        assert.deepEqual((await sticksOut(page)).filter((what) => !quantities.includes(what)), [], name);
+        await shoot(page, `phone-${name}`);
+
+        await page.locator('#more-toggle').tap();
+        await page.locator('#more.open').waitFor();
+        const [more, legend] = await Promise.all(['#more', '#legend'].map((id) => page.locator(id).boundingBox()));
+        const apart = more.x >= legend.x + legend.width || more.y >= legend.y + legend.height;
+        assert.ok(apart, `${name}: the legend is read beside it: ${JSON.stringify([more, legend])}`);
+        assert.ok(more.y >= 0 && more.x >= 0 && more.y + more.height <= height && more.x + more.width <= width, name);
+        assert.deepEqual(await tooSmall(page), [], name);
+        await page.keyboard.press('Escape');
+        await page.locator('#more.open').waitFor({ state: 'hidden' });
+    }
+    await page.locator('#more-toggle').tap();
+    await page.locator('#measure').tap();
+    await page.locator('#measure[aria-pressed="true"]').waitFor({ state: 'attached' });
+    await page.locator('#more-toggle').tap();
+    const [ink, ground] = await page.locator('#measure').evaluate((e) =>
+        [getComputedStyle(e.querySelector('.words')).color, getComputedStyle(e).backgroundColor]);
+    assert.ok(contrastRatio(rgb(ink), rgb(ground)) >= 4.5, `${ink} on ${ground}`);
+    await page.locator('#measure').tap();
+
+    await page.setViewportSize({ width: 390, height: 844 });
+    await page.locator('#views-toggle').tap();
+    await page.locator('#cut').waitFor();
+    assert.deepEqual(await tooSmall(page), [], 'views');
+    await page.keyboard.press('Escape');
+    await page.waitForFunction(() => globalThis.plantcast.session.recorded);
+    await page.locator('#time-toggle').tap();
+    await page.locator('#time-slider').waitFor();
+    assert.deepEqual(await tooSmall(page), [], 'history');
+    await page.evaluate(() => globalThis.plantcast.showTrend(globalThis.plantcast.session.model.tags.find(({ group }) => group)));
+    await page.locator('#trends .drop').first().waitFor();
+    assert.deepEqual(await tooSmall(page), [], 'trend');
 }));

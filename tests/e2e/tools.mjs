@@ -353,6 +353,8 @@ test('dark, and light again; it stays as it was left', options, async () => {
         const canvas = document.getElementById('picture');
         return Math.max(...canvas.getContext('2d').getImageData(4, Math.floor(canvas.height / 2), 1, 1).data.slice(0, 3)) < 110;
     });
+    const rim = await page.locator('#legend .end.below canvas').evaluate((e) => getComputedStyle(e).outline);
+    assert.match(rim, /rgba\(255, 255, 255.*solid/, 'the colour below the range is as dark as the legend');
     await shoot(page, 'dark');
     await page.reload();
     await waitForPicture(page);

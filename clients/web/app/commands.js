@@ -178,7 +178,8 @@ function commandsOf({ session, parts, selection, overlay, saveAddress, refresh }
         theme: () => session.setParams({ backdrop: changeTheme() }),
         escape() {
             parts.giveUp();
-            parts.there('folded')?.display.set(false);
+            for (const one of ['display', 'more'])
+                parts.there('folded')?.[one].set(false);
             for (const name of ['views', 'picture'])
                 parts.there(name)?.close();
             const [alarms, measure, place] = ['alarms', 'measure', 'place'].map((name) => parts.there(name));

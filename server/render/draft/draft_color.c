@@ -23,10 +23,13 @@ DRAFT_INLINE lanes_int context_color(const struct draft *draft, lanes_int marks,
     lanes sum = lanes_clamp(0.52f * ambient + 0.48f * facing * sun_at(draft, x, y, depth), 0, 1); /* light_scalar in light.glsl */
     lanes_int step = lanes_whole(sum * (RAMP_STEPS - 1) + 0.5f);
     lanes_int color = gather(draft->ramps, (marks >> 16 & (MOST_RAMPS - 1)) * RAMP_STEPS + step);
-    if (!draft->greys)
+    float bright = draft->block.up[3] > 0 ? draft->block.up[3] : 1;
+    if (!draft->greys && bright == 1)
         return color;
-    lanes grey = 0.11f * byte_of(color, 0) + 0.59f * byte_of(color, 1) + 0.30f * byte_of(color, 2);
-    return lanes_whole(grey + 0.5f) * 0x010101 | (int32_t)0xff000000;
+    lanes blue = bright * byte_of(color, 0), green = bright * byte_of(color, 1), red = bright * byte_of(color, 2);
+    if (!draft->greys)
+        return lanes_whole(blue + 0.5f) | lanes_whole(green + 0.5f) << 8 | lanes_whole(red + 0.5f) << 16 | (int32_t)0xff000000;
+    return lanes_whole(0.11f * blue + 0.59f * green + 0.30f * red + 0.5f) * 0x010101 | (int32_t)0xff000000;
 }
 
 /* Where isolines run, as field_color in shaders/field.glsl. */

@@ -170,7 +170,8 @@ DRAFT_INLINE vec mute(vec c)
 DRAFT_KERNEL void plate_shade_surfaces(const struct plate *plate, const struct item *items, size_t count, uint32_t *colors)
 {
     const struct plates *plates = plate->plates;
-    bool muted = plate->draft->block.up[3] > 0.5f, greys = view_is_operator(plate->picture->view);
+    float bright = plate->draft->block.up[3]; /* of context; 0: as it is */
+    bool greys = view_is_operator(plate->picture->view);
     for (size_t first = 0; first < count; first += LANES) {
         struct spot spot;
         size_t some = count - first < LANES ? count - first : LANES;
@@ -190,7 +191,7 @@ DRAFT_KERNEL void plate_shade_surfaces(const struct plate *plate, const struct i
         vec c = plus(sky_shade(&plates->surroundings, &surface, v), sun_shade(&surface, v, l));
         c = tone_map(plus(c, (vec){ m[EMISSIVE], m[EMISSIVE + 1], m[EMISSIVE + 2] }));
         c = (vec){ srgb_from_linear(plates, c.x), srgb_from_linear(plates, c.y), srgb_from_linear(plates, c.z) };
-        c = muted ? mute(c) : c;
+        c = bright > 0 ? times(mute(c), all(bright)) : c;
         c = greys ? grey(grey_of(c)) : c;
         lanes_int red = lanes_whole(c.x * 255.0f + 0.5f), green = lanes_whole(c.y * 255.0f + 0.5f);
         lanes_int packed = lanes_whole(c.z * 255.0f + 0.5f) | green << 8 | red << 16;
