@@ -20,7 +20,9 @@
 #include "field/colormap.h"
 #include "loaded.h"
 #include "reload.h"
+#include "plant/model_check.h"
 #include "value/plan_text.h"
+#include "value/series_check.h"
 #include "version.h"
 
 struct server {
@@ -274,14 +276,41 @@ static int check_prepared(const struct server_params *params, const struct plant
     return status;
 }
 
+/* A plant without sensors may be meant so, as long as they are placed on the page. */
+static size_t count_sensors(const struct plant *plant, struct diag *diag)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < plant->tag_count; i++)
+        count += plant->tags[i].group >= 0 && plant->tags[i].asset >= 0;
+    if (count == 0 && plant->tag_count > 0)
+        diag_warning(diag, plant->tags_path, 0, 0, "none of the %zu tags is a sensor (Group, Asset and a place): there is no field",
+                     plant->tag_count);
+    return count;
+}
+
 int server_check(const struct server_params *params)
 {
-    struct plant *plant = load_plant(params->plant_path);
+    struct diag diag = { 0 };
+    struct plant *plant = plant_load(params->plant_path, &diag);
+    size_t sensors = 0;
+    if (plant) {
+        models_check(plant, &diag, stdout);
+        series_check(plant, &diag);
+        sensors = count_sensors(plant, &diag);
+    }
+    fflush(stdout);
+    diag_print(&diag, stderr);
+    int status = !plant || diag.errors || check_prepared(params, plant) ? 1 : 0;
     if (!plant)
-        return 1;
-    int status = check_prepared(params, plant);
-    printf("%s: %zu assets, %zu groups, %zu sources, %zu tags: %s\n", params->plant_path, plant->asset_count, plant->group_count,
-           plant->source_count, plant->tag_count, status ? "not good" : "good");
+        fprintf(stderr, "plantcastd: %s: %d error%s\n", params->plant_path, diag.errors, diag.errors == 1 ? "" : "s");
+    else
+        printf("%s: %zu assets, %zu groups, %zu sources, %zu tags, %zu of them sensors: %s", params->plant_path, plant->asset_count,
+               plant->group_count, plant->source_count, plant->tag_count, sensors, status ? "not good" : "good");
+    if (plant && diag.errors + diag.warnings > 0)
+        printf(" (%d error%s, %d warning%s)", diag.errors, diag.errors == 1 ? "" : "s", diag.warnings, diag.warnings == 1 ? "" : "s");
+    if (plant)
+        printf("\n");
+    diag_finish(&diag);
     plant_destroy(&plant);
     return status;
 }

@@ -3,6 +3,7 @@
 #include "base/diag.h"
 
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -17,7 +18,7 @@ void diag_add(struct diag *diag, enum diag_severity severity, const char *file, 
     text_add_v(&text, fmt, ap);
     va_end(ap);
     mem_grow(&diag->items, &diag->capacity, diag->count + 1, sizeof(*diag->items));
-    diag->items[diag->count++] = (struct diag_item){ severity, mem_strdup(file), line, column, text.at };
+    diag->items[diag->count++] = (struct diag_item){ severity, mem_strdup(file), line, column, text.at, fmt };
     if (severity == DIAG_ERROR)
         diag->errors++;
     else
@@ -37,21 +38,84 @@ static int by_place(const void *pa, const void *pb)
     return order;
 }
 
+enum { MOST_ALIKE = 3, PLACES_BYTES = 100 };
+
+static bool is_alike(const struct diag_item *a, const struct diag_item *b)
+{
+    return a->severity == DIAG_WARNING && b->severity == DIAG_WARNING && a->form == b->form && !strcmp(a->file, b->file);
+}
+
+/* Lines of all that are like the first but itself: "4-66, 70". */
+static void print_places(const struct diag_item *const *sorted, size_t first, size_t count, FILE *out)
+{
+    size_t length = 0;
+    int begin = 0, last = 0;
+    fputs(" (line", out);
+    for (size_t i = first + 1; i <= count; i++) {
+        bool alike = i < count && is_alike(sorted[first], sorted[i]);
+        if (alike && last && (sorted[i]->line == last || sorted[i]->line == last + 1)) {
+            last = sorted[i]->line;
+            continue;
+        }
+        if (!alike && i < count)
+            continue;
+        if (last && length < PLACES_BYTES)
+            length += (size_t)(begin == last ? fprintf(out, " %d", begin) : fprintf(out, " %d-%d", begin, last));
+        else if (last && length < 2 * PLACES_BYTES)
+            length += (size_t)fprintf(out, " ...") + PLACES_BYTES;
+        begin = last = i < count ? sorted[i]->line : 0;
+    }
+    fputc(')', out);
+}
+
+static void print_item(const struct diag_item *item, FILE *out)
+{
+    fputs(item->file, out);
+    if (item->line)
+        fprintf(out, ":%d", item->line);
+    if (item->column)
+        fprintf(out, ":%d", item->column);
+    fprintf(out, ": %s: %s", item->severity == DIAG_ERROR ? "error" : "warning", item->text);
+}
+
+struct group { /* of warnings that are alike */
+    size_t first, count;
+};
+
+static struct group *find_group(struct group *groups, size_t *group_count, const struct diag_item *const *sorted, size_t item)
+{
+    size_t g = 0;
+    while (g < *group_count && !is_alike(sorted[groups[g].first], sorted[item]))
+        g++;
+    if (g == *group_count)
+        groups[(*group_count)++] = (struct group){ .first = item };
+    return &groups[g];
+}
+
 void diag_print(const struct diag *diag, FILE *out)
 {
     const struct diag_item **sorted = mem_array(diag->count, sizeof(struct diag_item *));
+    struct group *groups = mem_array(diag->count, sizeof(*groups));
+    size_t group_count = 0;
     for (size_t i = 0; i < diag->count; i++)
         sorted[i] = &diag->items[i];
     qsort(sorted, diag->count, sizeof(*sorted), by_place);
+    for (size_t i = 0; i < diag->count; i++)
+        if (sorted[i]->severity == DIAG_WARNING)
+            find_group(groups, &group_count, sorted, i)->count++;
     for (size_t i = 0; i < diag->count; i++) {
-        const struct diag_item *item = sorted[i];
-        fputs(item->file, out);
-        if (item->line)
-            fprintf(out, ":%d", item->line);
-        if (item->column)
-            fprintf(out, ":%d", item->column);
-        fprintf(out, ": %s: %s\n", item->severity == DIAG_ERROR ? "error" : "warning", item->text);
+        const struct group *group = sorted[i]->severity == DIAG_WARNING ? find_group(groups, &group_count, sorted, i) : NULL;
+        bool is_many = group && group->count > MOST_ALIKE;
+        if (is_many && group->first != i)
+            continue;
+        print_item(sorted[i], out);
+        if (is_many) {
+            fprintf(out, "; %zu more are like this", group->count - 1);
+            print_places(sorted, i, diag->count, out);
+        }
+        fputc('\n', out);
     }
+    mem_free(groups);
     mem_free(sorted);
 }
 

@@ -163,7 +163,7 @@ static void check_header(struct csv *csv)
 bool csv_open(struct csv *csv, const char *path, struct diag *diag)
 {
     size_t bytes;
-    char *text = input_read(path, diag, &bytes);
+    char *text = input_read(path, "a table (CSV)", diag, &bytes);
     if (!text)
         return false;
     *csv = (struct csv){ .path = mem_strdup(path), .diag = diag, .bytes = text, .at = text, .line = 1, .column = 1 };

@@ -9,6 +9,7 @@
 
 #include "base/mem.h"
 #include "base/text.h"
+#include "plant/file_kind.h"
 
 /* Bytes of the UTF-8 character at p (Unicode table 3-7), 0 if it is not one. */
 static size_t character_bytes(const unsigned char *p, size_t left)
@@ -41,13 +42,23 @@ static size_t character_bytes(const unsigned char *p, size_t left)
     return count;
 }
 
-static void check_characters(char *text, size_t bytes, const char *path, struct diag *diag)
+enum { REPORTED_LINES = 10, TEXT_AT_LEAST = 10 /* characters for each byte that is none */ };
+
+/* False: it is no text at all, and nothing was reported. */
+static bool check_characters(char *text, size_t bytes, const char *path, struct diag *diag)
 {
-    int line = 1, column = 1, reported_line = 0;
-    for (size_t i = 0; i < bytes;) {
+    size_t wrong = 0;
+    for (size_t i = 0, count; i < bytes; i += count ? count : 1) {
+        count = character_bytes((unsigned char *)text + i, bytes - i);
+        wrong += count == 0;
+    }
+    if (wrong > REPORTED_LINES && wrong > bytes / TEXT_AT_LEAST)
+        return false;
+    int line = 1, column = 1, reported_line = 0, reported = 0;
+    for (size_t i = 0; i < bytes && wrong > 0;) {
         size_t count = character_bytes((unsigned char *)text + i, bytes - i);
         if (count == 0) {
-            if (reported_line != line)
+            if (reported_line != line && ++reported <= REPORTED_LINES)
                 diag_error(diag, path, line, column, "byte 0x%02X is not UTF-8 text; save the file as UTF-8", (unsigned char)text[i]);
             reported_line = line;
             text[i] = '_';
@@ -60,6 +71,9 @@ static void check_characters(char *text, size_t bytes, const char *path, struct 
         }
         i += count;
     }
+    if (reported > REPORTED_LINES)
+        diag_error(diag, path, reported_line, 0, "%d lines in all have bytes that are not UTF-8 text; this is the last", reported);
+    return true;
 }
 
 static bool starts_with(const char *text, size_t bytes, const char *mark, size_t mark_bytes)
@@ -75,8 +89,13 @@ static bool is_blank(const char *text, size_t bytes)
     return true;
 }
 
-char *input_read(const char *path, struct diag *diag, size_t *bytes)
+char *input_read(const char *path, const char *wanted, struct diag *diag, size_t *bytes)
 {
+    const char *kind = file_kind_of(path);
+    if (kind) {
+        diag_error(diag, path, 0, 0, "is %s; %s is wanted", kind, wanted);
+        return NULL;
+    }
     char *text = text_read_file(path, INPUT_MAX_BYTES, bytes);
     if (!text) {
         if (errno == EFBIG)
@@ -97,8 +116,9 @@ char *input_read(const char *path, struct diag *diag, size_t *bytes)
         diag_error(diag, path, 1, 1, "is empty");
         goto error;
     }
-    check_characters(text, *bytes, path, diag);
-    return text;
+    if (check_characters(text, *bytes, path, diag))
+        return text;
+    diag_error(diag, path, 0, 0, "is no text; %s is wanted", wanted);
 error:
     mem_free(text);
     return NULL;

@@ -8,9 +8,9 @@
 
 #define INPUT_MAX_BYTES (64u * 1024 * 1024)
 
-/* The file without a byte order mark, ended by one 0 byte. Bytes that are not text are reported, the first of each line, and
-   replaced by '_', so that what follows can still be checked. NULL: reported (unreadable, empty, larger than
-   INPUT_MAX_BYTES, UTF-16). Free with mem_free. */
-char *input_read(const char *path, struct diag *diag, size_t *bytes);
+/* The file without a byte order mark, ended by one 0 byte. Bytes that are not text are reported, the first of each line in the first lines
+   that have any, and replaced by '_', so that what follows can still be checked. NULL: reported (unreadable, empty, larger than
+   INPUT_MAX_BYTES, UTF-16, or no text at all; `wanted` says what should stand there, such as "a plant file (YAML)"). Free with mem_free. */
+char *input_read(const char *path, const char *wanted, struct diag *diag, size_t *bytes);
 
 #endif

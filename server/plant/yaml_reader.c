@@ -98,7 +98,7 @@ static bool load_document(struct yaml_reader *reader, const char *text, size_t b
 bool yaml_reader_open(struct yaml_reader *reader, const char *path, struct diag *diag)
 {
     size_t bytes;
-    char *text = input_read(path, diag, &bytes);
+    char *text = input_read(path, "a plant file (YAML)", diag, &bytes);
     if (!text)
         return false;
     *reader = (struct yaml_reader){ .path = mem_strdup(path), .diag = diag };

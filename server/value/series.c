@@ -14,6 +14,8 @@
 #include "base/when.h"
 
 enum { MAX_BYTES = 512 * 1024 * 1024, LONG_CELLS = 5 };
+#define NO_TIME \
+    "%s:1: no column is the time: expected a name that ends in _ms, _s, _min or _h, or instants such as 2026-11-20T10:00:00Z"
 
 struct cell {
     const char *at;
@@ -313,8 +315,7 @@ bool series_read(struct series *series, const char *path, const char *name, bool
     if (number_of(&lines.cells[0], &number)) {
         good = read_long(series, &lines, &clock, why);
     } else if (!read_header(&lines, name, &header, &clock)) {
-        snprintf(why, 200, "%s:1: no column is the time: expected a name that ends in _ms, _s, _min or _h, or instants such as "
-                 "2026-11-20T10:00:00Z", path);
+        snprintf(why, 200, NO_TIME, path);
     } else if (header.of_values) {
         good = read_values(series, &lines, &header, &clock, why);
     } else {
@@ -354,4 +355,93 @@ double series_at(const struct series *series, double time_s, bool loop)
             high = middle;
     }
     return series->value[low];
+}
+
+/* --- what is there -------------------------------------------------------------------------------------------------------------- */
+
+enum { HEAD_BYTES = 32 << 20, HEAD_LINES = 200000 };
+
+static char *read_head(const char *path, bool *whole, char why[200])
+{
+    FILE *file = fopen(path, "rb");
+    char *text = file ? mem_array(HEAD_BYTES + 1, 1) : NULL;
+    size_t count = file ? fread(text, 1, HEAD_BYTES, file) : 0;
+    *whole = count < HEAD_BYTES;
+    if (!file || ferror(file)) {
+        snprintf(why, 200, "%s: %s", path, strerror(errno));
+        mem_free(text);
+        text = NULL;
+    }
+    if (file)
+        fclose(file);
+    return text;
+}
+
+static void add_name(struct series_names *names, char *name)
+{
+    for (size_t i = names->count; i-- > 0;)
+        if (!strcmp(names->at[i], name)) {
+            mem_free(name);
+            return;
+        }
+    mem_grow(&names->at, &names->capacity, names->count + 1, sizeof(*names->at));
+    names->at[names->count++] = name;
+}
+
+/* One name a line: entity/property, or of a tag. */
+static void list_lines(struct series_names *names, struct lines *lines, size_t tag)
+{
+    int first = lines->number;
+    do {
+        const struct cell *cells = lines->cells;
+        if (tag < lines->count)
+            add_name(names, mem_printf("%.*s", (int)cells[tag].length, cells[tag].at));
+        else if (lines->count >= LONG_CELLS)
+            add_name(names, mem_printf("%.*s/%.*s", (int)cells[2].length, cells[2].at, (int)cells[3].length, cells[3].at));
+        if (lines->number - first >= HEAD_LINES)
+            names->whole = false;
+    } while (lines->number - first < HEAD_LINES && next_line(lines));
+}
+
+bool series_list(struct series_names *names, const char *path, char why[200])
+{
+    struct header header;
+    double number;
+    bool good = true;
+    *names = (struct series_names){ 0 };
+    char *text = read_head(path, &names->whole, why);
+    struct lines lines = { .path = path, .at = !text ? "" : strncmp(text, "\xEF\xBB\xBF", 3) ? text : text + 3 };
+    struct clock clock = { 0 };
+    if (!text)
+        return false;
+    if (!next_line(&lines)) {
+        snprintf(why, 200, "%s: is empty", path);
+        good = false;
+    } else if (number_of(&lines.cells[0], &number)) {
+        list_lines(names, &lines, SIZE_MAX);
+    } else if (!read_header(&lines, "", &header, &clock)) {
+        snprintf(why, 200, NO_TIME, path);
+        good = false;
+    } else if (header.of_values) {
+        if (next_line(&lines))
+            list_lines(names, &lines, header.tag);
+    } else {
+        names->whole = true;
+        for (size_t i = 0; i < lines.count; i++)
+            if (i != header.time)
+                add_name(names, mem_printf("%.*s", (int)lines.cells[i].length, lines.cells[i].at));
+    }
+    mem_free(text);
+    mem_free(lines.cells);
+    if (!good)
+        series_names_finish(names);
+    return good;
+}
+
+void series_names_finish(struct series_names *names)
+{
+    for (size_t i = 0; i < names->count; i++)
+        mem_free(names->at[i]);
+    mem_free(names->at);
+    *names = (struct series_names){ 0 };
 }

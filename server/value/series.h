@@ -24,4 +24,14 @@ void series_finish(struct series *series);
 /* The last value recorded at or before time_s; the first one before that. loop: starts again at length_s. */
 double series_at(const struct series *series, double time_s, bool loop);
 
+struct series_names {
+    char **at;
+    size_t count, capacity;
+    bool whole; /* else the file is longer than what was read */
+};
+
+/* What the file has, by its head. False: why. */
+bool series_list(struct series_names *names, const char *path, char why[200]);
+void series_names_finish(struct series_names *names);
+
 #endif

@@ -109,6 +109,31 @@ static void findings_come_in_the_order_of_the_text(void **state)
     assert_int_equal(diag.count, 0);
 }
 
+/* 64 lines that say the same of 64 tags are one; what is said three times, and every error, stays. */
+static void many_warnings_alike_are_one(void **state)
+{
+    (void)state;
+    struct diag diag = { 0 };
+    char *printed = NULL;
+    size_t bytes = 0;
+    FILE *out = open_memstream(&printed, &bytes);
+    for (int i = 0; i < 64; i++)
+        diag_warning(&diag, "a", i < 60 ? 3 + i : 100 + 2 * i, 5, "'T%d' has no asset", i);
+    for (int i = 0; i < 3; i++)
+        diag_warning(&diag, "a", 1, 1 + i, "column %d", i);
+    for (int i = 0; i < 5; i++)
+        diag_error(&diag, "b", 1 + i, 0, "error %d", i);
+    diag_warning(&diag, "b", 9, 5, "'T%d' has no asset", 99);
+    diag_print(&diag, out);
+    fclose(out);
+    assert_string_equal(printed, "a:1:1: warning: column 0\na:1:2: warning: column 1\na:1:3: warning: column 2\n"
+                                 "a:3:5: warning: 'T0' has no asset; 63 more are like this (line 4-62 220 222 224 226)\n"
+                                 "b:1: error: error 0\nb:2: error: error 1\nb:3: error: error 2\nb:4: error: error 3\n"
+                                 "b:5: error: error 4\nb:9:5: warning: 'T99' has no asset\n");
+    free(printed);
+    diag_finish(&diag);
+}
+
 static void counters_are_printed_by_family(void **state)
 {
     (void)state;
@@ -207,6 +232,7 @@ int main(void)
         cmocka_unit_test(files_are_read_whole_and_replaced_at_once),
         cmocka_unit_test(memory_is_zeroed_and_checked),
         cmocka_unit_test(findings_come_in_the_order_of_the_text),
+        cmocka_unit_test(many_warnings_alike_are_one),
         cmocka_unit_test(counters_are_printed_by_family),
         cmocka_unit_test(durations_are_counted_by_bucket),
         cmocka_unit_test(repeats_in_the_log_are_counted),

@@ -11,6 +11,7 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
+#include "base/text.h"
 #include "tests/support/temp.h"
 
 struct fixture {
@@ -162,6 +163,45 @@ static void mistakes_have_a_place(void **state)
     assert_one_error(f, 2, 3, "byte 0xC0 is not UTF-8 text");
 }
 
+/* One line for a file that is something else, ten for a text in another encoding. */
+static void what_is_no_table_is_said_once(void **state)
+{
+    static const struct {
+        const char *begins, *says;
+    } others[] = {
+        { "glTF\2\xFF\xFE\xFD\xFC\n\xFF\n\xFF\n\xFF\n", "is a model (GLB); a table (CSV) is wanted" },
+        { "ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('AUTOMOTIVE_DESIGN'));\n", "is a STEP file; a table (CSV) is wanted" },
+        { "ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('IFC4'));\n", "is an IFC model" },
+        { "PK\x03\x04\x14", "is a ZIP archive, or a document that is one (XLSX, DOCX, 3MF); a table (CSV) is wanted" },
+        { "\xFE\xAA\n\xFE\xAA\n\xFE\xAA\n\xFE\xAA\n\xFE\xAA\n\xFE\xAA\n", "is no text; a table (CSV) is wanted" },
+    };
+    struct fixture *f = *state;
+    for (size_t i = 0; i < sizeof(others) / sizeof(*others); i++) {
+        char *path = temp_write_text(f->folder, "t.csv", others[i].begins);
+        struct diag diag = { 0 };
+        struct csv csv;
+        assert_false(csv_open(&csv, path, &diag));
+        assert_int_equal(diag.errors, 1);
+        assert_non_null(strstr(diag.items[0].text, others[i].says));
+        diag_finish(&diag);
+        mem_free(path);
+    }
+    struct text latin = { 0 };
+    struct csv csv;
+    struct diag diag = { 0 };
+    text_add(&latin, "Tag Name,Eng Units\n");
+    for (int i = 0; i < 300; i++)
+        text_add(&latin, "TT-%d some words of description,\xB0" "C\n", i);
+    char *path = temp_write_text(f->folder, "t.csv", latin.at);
+    assert_true(csv_open(&csv, path, &diag));
+    assert_int_equal(diag.errors, 11);
+    assert_non_null(strstr(diag.items[10].text, "300 lines in all have bytes that are not UTF-8 text"));
+    csv_close(&csv);
+    diag_finish(&diag);
+    text_finish(&latin);
+    mem_free(path);
+}
+
 static void reading_goes_on_after_a_mistake(void **state)
 {
     struct fixture *f = *state;
@@ -194,6 +234,7 @@ int main(void)
         TEST(columns_count_characters),
         TEST(blank_rows_are_passed_over),
         TEST(mistakes_have_a_place),
+        TEST(what_is_no_table_is_said_once),
         TEST(reading_goes_on_after_a_mistake),
         TEST(files_without_a_header_are_refused),
     };

@@ -1,0 +1,145 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What --check finds in the heads of models and of recorded series. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "base/text.h"
+#include "plant/asset_size.h"
+#include "plant/model_check.h"
+#include "plant/model_header.h"
+#include "tests/support/plant_case.h"
+#include "tests/support/temp.h"
+#include "value/series_check.h"
+
+/* Two pumps of 743 x 200 x 400 in their own units, y up, 1,000 apart; the second is turned by a quarter about y and half as large. */
+static const char model[] =
+    "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],"
+    "\"nodes\":[{\"name\":\"hall\",\"children\":[1,2]},{\"name\":\"P-101A\",\"mesh\":0},"
+    "{\"name\":\"P-101B\",\"mesh\":0,\"translation\":[1000,0,0],\"rotation\":[0,0.70710678,0,0.70710678],"
+    "\"scale\":[0.5,0.5,0.5],\"children\":[3]},"
+    "{\"name\":\"P-101A\",\"mesh\":0}],"
+    "\"meshes\":[{\"name\":\"pump\",\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],"
+    "\"accessors\":[{\"componentType\":5126,\"count\":3,\"type\":\"VEC3\",\"min\":[0,0,0],\"max\":[743,200,400]}]}";
+
+static void check(struct plant_case *c, const char *assets, const char *sources, const char *tags, char **printed)
+{
+    char *yaml = mem_printf("plant: { name: P }\nassets:\n%sgroups: [{ id: g, unit: K, min: 0, max: 9 }]\nsources: %s\ntags: tags.csv\n",
+                            assets, sources);
+    size_t bytes;
+    char *text = NULL;
+    FILE *out = open_memstream(&text, &bytes);
+    mem_free(temp_write_text(c->folder, "m.gltf", model));
+    plant_case_load(c, yaml, tags);
+    mem_free(yaml);
+    plant_case_assert_loaded(c, c->diag.warnings);
+    models_check(c->plant, &c->diag, out);
+    series_check(c->plant, &c->diag);
+    fclose(out);
+    if (printed)
+        *printed = text;
+    else
+        free(text);
+}
+
+static void sizes_are_printed_and_doubted(void **state)
+{
+    struct plant_case *c = *state;
+    char *printed;
+    check(c, "  - { id: A, model: m.gltf, nodes: '#1', units: mm }\n  - { id: B, model: m.gltf, nodes: P-101B, units: mm, up: z }\n"
+             "  - { id: C, model: m.gltf, nodes: '#1' }\n  - { id: D, model: m.gltf, nodes: '#1', units: mm, placement: { scale: 0.01 } }\n",
+          "[]", "Tag Name\n", &printed);
+    assert_string_equal(printed, "asset A: 0.743 x 0.4 x 0.2 m\nasset B: 0.2 x 0.1 x 0.371 m\nasset C: 743 x 400 x 200 m\n"
+                                 "asset D: 0.00743 x 0.004 x 0.002 m\n");
+    FOUND(c, { "plant.yaml", 5, 0, "its size is 743 x 400 x 200 m: are its units right? With `units: mm` it would be 0.743 x 0.4 x" },
+          { "plant.yaml", 6, 0, "its size is 0.00743 x 0.004 x 0.002 m: are its units right? With `units: mm` it would be 0.743" });
+    free(printed);
+}
+
+static void what_is_no_model_is_said_so(void **state)
+{
+    struct plant_case *c = *state;
+    mem_free(temp_write_text(c->folder, "s.step", "ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('AUTOMOTIVE_DESIGN'));\n"));
+    mem_free(temp_write_text(c->folder, "o.obj", "v 0 0 0\nv 1 0 0\n"));
+    mem_free(temp_write(c->folder, "cut.glb", "glTF\2\0\0\0\0\1\0\0\0\1\0\0JSON{", 21));
+    check(c, "  - { id: A, model: s.step }\n  - { id: B, model: o.obj }\n  - { id: C, model: cut.glb }\n", "[]", "Tag Name\n", NULL);
+    FOUND(c, { "plant.yaml", 3, 0, "s.step' is a STEP file; glTF 2.0 (.glb or .gltf) is wanted: export it so, or convert it" },
+          { "plant.yaml", 4, 0, "o.obj' is no glTF model; glTF 2.0 (.glb or .gltf) is wanted" },
+          { "plant.yaml", 5, 0, "cut.glb' is cut off: its JSON should have 256 bytes" });
+}
+
+static void nodes_are_looked_up(void **state)
+{
+    struct plant_case *c = *state;
+    check(c, "  - { id: A, model: m.gltf, units: mm }\n  - { id: B, model: m.gltf, nodes: P-102B, units: mm }\n", "[]",
+          "Tag Name,Group,Asset,Node\nT1,g,A,P-101B\nT2,g,A,P101B\nT3,g,A,P-101A\nT4,g,A,#9\nT5,g,A,#3\n", NULL);
+    FOUND(c, { "plant.yaml", 4, 0, "asset B: nodes: no node's name matches 'P-102B': did you mean 'P-101B'?" },
+          { "tags.csv", 3, 1, "tag T2: asset A: the model has no node 'P101B': did you mean 'P-101B'?" },
+          { "tags.csv", 4, 1, "tag T3: asset A: the model has 2 nodes 'P-101A', in different places (#1, #3)" },
+          { "tags.csv", 5, 1, "tag T4: asset A: the model has no node '#9'" });
+}
+
+/* Coordinates on the equipment tell which way it lies and what it is measured in. */
+static void sensors_tell_units_and_axes(void **state)
+{
+    static const struct {
+        const char *asset, *says;
+    } cases[] = {
+        { "{ id: A, model: m.gltf, nodes: '#1', units: cm }", NULL },
+        { "{ id: A, model: m.gltf, nodes: '#1', units: mm }",
+          "3 of the 3 sensors with X, Y, Z are away from it; with `units: cm` they would be on it" },
+        { "{ id: A, model: m.gltf, nodes: '#1', units: cm, up: z }", "with `up: y` they would be on it" },
+        { "{ id: A, model: m.gltf, nodes: '#1', units: cm, placement: { translate: [99, 0, 0] } }",
+          "are units, up, placement and sensor_frame right?" },
+    };
+    struct plant_case *c = *state;
+    for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
+        char *assets = mem_printf("  - %s\n", cases[i].asset);
+        check(c, assets, "[]", "Tag Name,Group,Asset,X,Y,Z\nT1,g,A,1,-3.9,0.1\nT2,g,A,7,-3.8,0.2\nT3,g,A,3,-3.7,1.9\n", NULL);
+        mem_free(assets);
+        size_t found = 0;
+        for (size_t k = 0; k < c->diag.count; k++)
+            found += cases[i].says && strstr(c->diag.items[k].text, cases[i].says) != NULL;
+        if (found != (cases[i].says != NULL))
+            diag_print(&c->diag, stderr);
+        assert_int_equal(found, cases[i].says != NULL);
+        assert_true(cases[i].says || c->diag.count == 0);
+    }
+}
+
+static void series_are_looked_up(void **state)
+{
+    struct plant_case *c = *state;
+    static const char assets[] = "  - { id: A, model: m.gltf, units: mm }\n";
+    mem_free(temp_write_text(c->folder, "wide.csv", "Time,TI_101,TI_102\n2026-10-25T00:00:00Z,1,2\n"));
+    mem_free(temp_write_text(c->folder, "long.csv", "1000,x,pump,flow,7,,\n1000,x,pump,temp,70,,\n"));
+    mem_free(temp_write_text(c->folder, "values.csv", "Tag,Time,Value\nT5,2026-10-25T00:00:00Z,1\n"));
+    mem_free(temp_write_text(c->folder, "none.csv", "a,b\n1,2\n"));
+    check(c, assets, "[{ id: w, type: replay, file: wide.csv }, { id: l, type: replay, file: long.csv },\n"
+                     "  { id: v, type: replay, file: values.csv }, { id: n, type: replay, file: none.csv }]",
+          "Tag Name,Source,Address\nT1,w,TI_101\nT2,w,TI_103\nT3,l,pump/temp\nT4,l,pump/tmp\nT5,v,\nT6,v,\nT7,n,a\n", NULL);
+    FOUND(c, { "plant.yaml", 6, 0, "none.csv:1: no column is the time: expected a name that ends in _ms, _s, _min or _h" },
+          { "tags.csv", 3, 1, "wide.csv has no series 'TI_103'; did you mean 'TI_101'?" },
+          { "tags.csv", 5, 1, "long.csv has no series 'pump/tmp'; did you mean 'pump/temp'?" },
+          { "tags.csv", 7, 1, "values.csv has no series 'T6'; did you mean 'T5'?" });
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(sizes_are_printed_and_doubted, plant_case_set_up, plant_case_tear_down),
+        cmocka_unit_test_setup_teardown(what_is_no_model_is_said_so, plant_case_set_up, plant_case_tear_down),
+        cmocka_unit_test_setup_teardown(nodes_are_looked_up, plant_case_set_up, plant_case_tear_down),
+        cmocka_unit_test_setup_teardown(sensors_tell_units_and_axes, plant_case_set_up, plant_case_tear_down),
+        cmocka_unit_test_setup_teardown(series_are_looked_up, plant_case_set_up, plant_case_tear_down),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
