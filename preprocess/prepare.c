@@ -126,6 +126,7 @@ static void take_file(struct prepare_asset *asset, const struct asset_view *view
     for (int axis = 0; axis < 3; axis++) {
         double side = (double)view->header->bounds_max_m[axis] - (double)view->header->bounds_min_m[axis];
         size2 += side * side;
+        asset->size_m[axis] = side;
     }
     asset->far_m = prepare_far_m(sqrt(size2));
     asset->surface_distances_m = mem_array(asset->sensor_count, sizeof(*asset->surface_distances_m));
@@ -356,6 +357,7 @@ static void share(struct run *run)
         asset->triangles = first->triangles;
         asset->vertices = first->vertices;
         asset->far_m = first->far_m;
+        memcpy(asset->size_m, first->size_m, sizeof(asset->size_m));
         asset->reported = first->reported;
         asset->report = first->report;
         asset->surface_distances_m = mem_array(asset->sensor_count, sizeof(*asset->surface_distances_m));

@@ -20,6 +20,7 @@ struct prepare_asset {
     struct plant_sensor *sensors;
     size_t sensor_count;
     float *surface_distances_m; /* of each sensor; NULL: failed */
+    double size_m[3];           /* in the asset frame, the last is the height; 0: not known */
     double far_m;               /* a sensor farther from its surface than this is worth a warning */
     uint64_t key, stock_key, columns_key;
     struct stock stock; /* while it is built; parts.bytes NULL: none */

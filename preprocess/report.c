@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "base/mem.h"
+#include "plant/asset_size.h"
 #include "preprocess/table.h"
 
 #define ROWS_MAX 40 /* of a table, unless all are asked for */
@@ -47,7 +48,7 @@ static void print_assets(const struct text_report *report)
 {
     static const struct table_column columns[] = {
         { "", false },        { "asset", false }, { "state", false },  { "nodes", true },        { "triangles", true },
-        { "vertices", true }, { "added", true },  { "sensors", true }, { "without area", true }, { "repeated", true },
+        { "vertices", true }, { "added", true }, { "size", false }, { "sensors", true }, { "without area", true }, { "repeated", true },
         { "normals made", true }, { "lines", true }, { "points", true }, { "seconds", true },
     };
     struct table table = { .columns = columns, .column_count = sizeof(columns) / sizeof(columns[0]) };
@@ -61,6 +62,7 @@ static void print_assets(const struct text_report *report)
         table_add(&table, "%s", NUMBER(asset->triangles));
         table_add(&table, "%s", NUMBER(asset->vertices));
         table_add(&table, "%s", asset->reported ? NUMBER(report_added(asset)) : "");
+        table_add(&table, "%s", asset_longest_m(asset->size_m) > 0 ? asset_size_text(asset->size_m, (char[SIZE_TEXT_BYTES]){ 0 }) : "");
         table_add(&table, "%s", NUMBER(asset->sensor_count));
         table_add(&table, "%s", r->degenerate_triangles ? NUMBER(r->degenerate_triangles) : "");
         table_add(&table, "%s", r->repeated_triangles ? NUMBER(r->repeated_triangles) : "");

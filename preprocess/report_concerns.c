@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "base/mem.h"
+#include "plant/asset_size.h"
 #include "preprocess/report.h"
 #include "preprocess/split.h"
 #include "preprocess/table.h"
@@ -60,6 +61,24 @@ static void add_numbers(struct concerns *concerns, const struct prepare_asset *a
                        (double)left->steps, table_number(left->edges).text));
 }
 
+/* Also of those that were not built in this run: wrong units do not become right. */
+static void add_sizes(struct concerns *concerns, const struct prepare *prepare)
+{
+    double *longest_m = mem_array(prepare->asset_count, sizeof(*longest_m));
+    size_t count = 0;
+    for (size_t i = 0; i < prepare->asset_count; i++)
+        if (asset_longest_m(prepare->assets[i].size_m) > 0)
+            longest_m[count++] = asset_longest_m(prepare->assets[i].size_m);
+    double median_m = asset_median_m(longest_m, count);
+    for (size_t i = 0; i < prepare->asset_count; i++) {
+        const struct prepare_asset *asset = &prepare->assets[i];
+        char why[SIZE_WHY_BYTES];
+        if (asset_longest_m(asset->size_m) > 0 && asset_size_doubtful(asset->plant, asset->size_m, median_m, why))
+            add(concerns, asset, 1e6, mem_strdup(why));
+    }
+    mem_free(longest_m);
+}
+
 static int worst_first(const void *a, const void *b)
 {
     const struct report_concern *p = a, *q = b;
@@ -79,6 +98,7 @@ struct report_concern *report_concerns(const struct prepare *prepare, size_t *co
         if (asset->reported && asset->state != PREPARE_SHARED)
             add_numbers(&concerns, asset);
     }
+    add_sizes(&concerns, prepare);
     if (concerns.count)
         qsort(concerns.at, concerns.count, sizeof(*concerns.at), worst_first);
     *count = concerns.count;

@@ -5,6 +5,7 @@
 
 #include "base/mem.h"
 #include "preprocess/folder.h"
+#include "plant/asset_size.h"
 #include "preprocess/report.h"
 #include "preprocess/report_numbers.h"
 
@@ -26,6 +27,8 @@ static json_t *asset_json(const struct prepare *prepare, const struct prepare_as
     json_t *root = json_pack("{s:s,s:s,s:s,s:I,s:I,s:f,s:s?,s:o}", "id", asset->plant->id, "state", report_states[asset->state], "file",
                              file, "triangles", (json_int_t)asset->triangles, "vertices", (json_int_t)asset->vertices, "seconds",
                              asset->seconds, "rebuilt_because", asset->rebuilt_because, "sensors", sensors_json(prepare, asset));
+    if (asset_longest_m(asset->size_m) > 0)
+        json_object_set_new(root, "size_m", json_pack("[f,f,f]", asset->size_m[0], asset->size_m[1], asset->size_m[2]));
     if (asset->reported) {
         json_object_set_new(root, "vertices_added", json_integer(report_added(asset)));
         json_object_update_new(root, report_numbers(&asset->report));

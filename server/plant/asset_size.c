@@ -20,7 +20,11 @@
 
 const char *asset_size_text(const double size_m[3], char out[SIZE_TEXT_BYTES])
 {
-    snprintf(out, SIZE_TEXT_BYTES, "%.3g x %.3g x %.3g m", size_m[0], size_m[1], size_m[2]);
+    size_t length = 0;
+    for (int axis = 0; axis < 3; axis++)
+        length += (size_t)snprintf(out + length, SIZE_TEXT_BYTES - length, size_m[axis] < 99.95 ? "%s%.3g" : "%s%.0f", axis ? " x " : "",
+                                   size_m[axis]);
+    snprintf(out + length, SIZE_TEXT_BYTES - length, " m");
     return out;
 }
 
@@ -66,7 +70,8 @@ bool asset_size_doubtful(const struct plant_asset *asset, const double size_m[3]
         double times = units[i].m / asset->unit_m, other_m[3] = { size_m[0] * times, size_m[1] * times, size_m[2] * times };
         if (fabs(times - 1) < 1e-9 || longest_m * times < USUAL_LOW_M || longest_m * times > USUAL_HIGH_M)
             continue;
-        snprintf(why + length, SIZE_WHY_BYTES - length, " With `units: %s` it would be %s", units[i].name, asset_size_text(other_m, text));
+        snprintf(why + length, SIZE_WHY_BYTES - length, " If its numbers are in %s (`units: %s`), it is %s",
+                 units[i].name, units[i].name, asset_size_text(other_m, text));
         break;
     }
     return true;

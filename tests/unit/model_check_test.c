@@ -54,12 +54,13 @@ static void sizes_are_printed_and_doubted(void **state)
     struct plant_case *c = *state;
     char *printed;
     check(c, "  - { id: A, model: m.gltf, nodes: '#1', units: mm }\n  - { id: B, model: m.gltf, nodes: P-101B, units: mm, up: z }\n"
-             "  - { id: C, model: m.gltf, nodes: '#1' }\n  - { id: D, model: m.gltf, nodes: '#1', units: mm, placement: { scale: 0.01 } }\n",
+             "  - { id: C, model: m.gltf, nodes: '#1' }\n"
+             "  - { id: D, model: m.gltf, nodes: '#1', units: mm, placement: { scale: 0.01 } }\n",
           "[]", "Tag Name\n", &printed);
     assert_string_equal(printed, "asset A: 0.743 x 0.4 x 0.2 m\nasset B: 0.2 x 0.1 x 0.371 m\nasset C: 743 x 400 x 200 m\n"
                                  "asset D: 0.00743 x 0.004 x 0.002 m\n");
-    FOUND(c, { "plant.yaml", 5, 0, "its size is 743 x 400 x 200 m: are its units right? With `units: mm` it would be 0.743 x 0.4 x" },
-          { "plant.yaml", 6, 0, "its size is 0.00743 x 0.004 x 0.002 m: are its units right? With `units: mm` it would be 0.743" });
+    FOUND(c, { "plant.yaml", 5, 0, "743 x 400 x 200 m: are its units right? If its numbers are in mm (`units: mm`), it is 0.7" },
+          { "plant.yaml", 6, 0, "0.00743 x 0.004 x 0.002 m: are its units right? If its numbers are in mm (`units: mm`), it is 0.7" });
     free(printed);
 }
 
