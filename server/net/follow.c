@@ -19,7 +19,7 @@ static void hand_over(struct hub *hub, const struct session *from, struct sessio
 /* What all of them see does not change, but who moves it does. */
 static void resolve_lead(struct hub *hub, struct session *session)
 {
-    const struct stream *other = stream_find(hub, session->lead);
+    const struct stream *other = stream_called(hub, session->lead);
     struct session *heir = other ? other->session : NULL;
     if (!heir || heir->leader != session) {
         session_lead_nobody(session);
@@ -40,7 +40,7 @@ void follow_resolve(struct hub *hub, struct stream *stream)
     if (!session->follow_asked)
         return;
     session->follow_asked = false;
-    struct stream *other = session->follow ? stream_find(hub, session->follow) : NULL;
+    struct stream *other = session->follow ? stream_called(hub, session->follow) : NULL;
     struct session *leader = other ? other->session->leader ? other->session->leader : other->session : NULL;
     if (session->follow && (!leader || leader == session || !leader->hello)) {
         session_follow_nobody(session);
@@ -82,7 +82,7 @@ void follow_tell(struct hub *hub, int64_t now_ns)
             if (other->session->leader != session)
                 continue;
             mem_grow(&followers, &capacity, count + 1, sizeof(*followers));
-            followers[count++] = other->session->id;
+            followers[count++] = other->session->called;
         }
         session_say_followers(session, followers, count, now_ns);
         mem_free(followers);

@@ -48,7 +48,7 @@ struct hub {
     int64_t still_ns;                   /* what the last refined picture cost that was not one before with new readings */
     uint8_t out[LWS_PRE + SLICE_BYTES]; /* lws writes its framing in front of what is sent */
     struct tags_said tags_said;
-    char *lists_said;
+    char *lists_said[2];
     struct alarms_said alarms_said;
     uint64_t alarms_number; /* as sessions were last told to look */
     struct marker_lists marker_lists; /* of the frame that was sent last */

@@ -413,7 +413,7 @@ struct net *net_create(const struct net_params *params)
     hub->world = (struct session_world){
         .alarms_said = &hub->alarms_said,
         .tags_said = &hub->tags_said,
-        .lists_said = &hub->lists_said,
+        .lists_said = hub->lists_said,
         .codecs = params->codecs,
         .version = params->version,
         .quotas = hub->quotas,
@@ -448,7 +448,8 @@ void net_destroy(struct net **net_ptr)
     resumes_destroy(&net->hub.world.resumes);
     alarms_said_finish(&net->hub.alarms_said);
     tags_said_finish(&net->hub.tags_said);
-    mem_free(net->hub.lists_said);
+    for (int i = 0; i < 2; i++)
+        mem_free(net->hub.lists_said[i]);
     marker_lists_finish(&net->hub.marker_lists);
     snapshot_destroy(&net->hub.snapshot);
     mem_free(net->hub.changes);

@@ -101,8 +101,10 @@ void net_let_go(struct net *net)
     resumes_forget_gone(hub->world.resumes);
     tags_said_finish(&hub->tags_said);
     alarms_said_finish(&hub->alarms_said);
-    mem_free(hub->lists_said);
-    hub->lists_said = NULL;
+    for (int i = 0; i < 2; i++) {
+        mem_free(hub->lists_said[i]);
+        hub->lists_said[i] = NULL;
+    }
     marker_lists_finish(&hub->marker_lists);
     hub->marker_lists = (struct marker_lists){ .frame = NULL };
     snapshot_destroy(&hub->snapshot);

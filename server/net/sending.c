@@ -26,7 +26,8 @@ static const struct text *padded(struct text *text)
 static bool write_markers(struct hub *hub, struct stream *stream, bool *wrote)
 {
     struct text text = { 0 };
-    char *markers = marker_text(stream->sending->packet->frame, stream->seq, &stream->said, &hub->marker_lists);
+    bool open = session_is_open(stream->session);
+    char *markers = open ? NULL : marker_text(stream->sending->packet->frame, stream->seq, &stream->said, &hub->marker_lists);
     *wrote = markers != NULL;
     if (!markers)
         return true;

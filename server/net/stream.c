@@ -2,6 +2,7 @@
 /* /stream: connections come and go, and what they say goes to their sessions. */
 #include <netinet/in.h>
 #include <netinet/tcp.h>
+#include <openssl/rand.h>
 #include <string.h>
 
 #include "base/clock.h"
@@ -46,11 +47,24 @@ static size_t place_of(const struct hub *hub, uint64_t client)
     return low;
 }
 
+/* Whoever has it may follow. 48 bits: more than anyone can try, and exact in any JSON. */
+static uint64_t new_number(const struct hub *hub)
+{
+    uint64_t number = 0;
+    while (number == 0 || stream_called(hub, number)) {
+        if (RAND_bytes((unsigned char *)&number, sizeof(number)) != 1)
+            return 0; /* then nobody follows it */
+        number >>= 16;
+    }
+    return number;
+}
+
 static void on_open(struct hub *hub, struct lws *wsi, struct stream **slot)
 {
     struct stream *stream = mem_new(sizeof(*stream));
     *stream = (struct stream){ .wsi = wsi, .next = hub->streams };
     stream->session = session_create(&hub->world, hub->next_client++, clock_mono_ns());
+    stream->session->called = new_number(hub);
     stream->session->starting = true;
     stream->peer = visitor_of(wsi)->client;
     memcpy(stream->session->address, stream->peer->address, sizeof(stream->session->address));
@@ -237,6 +251,14 @@ struct stream *stream_find(const struct hub *hub, uint64_t client)
     size_t place = place_of(hub, client);
     bool there = place < (size_t)hub->stream_count && hub->by_client[place]->session->id == client;
     return there ? hub->by_client[place] : NULL;
+}
+
+struct stream *stream_called(const struct hub *hub, uint64_t number)
+{
+    struct stream *stream = hub->streams;
+    while (stream && stream->session->called != number)
+        stream = stream->next;
+    return stream;
 }
 
 bool stream_owns(const struct hub *hub, uint64_t client)

@@ -2,6 +2,7 @@
 // Who comes through a proxy that the daemon was not told of is nobody, however it listens; and who is let in, or is not, is in the log.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
+import { appendFileSync, readFileSync, writeFileSync } from 'node:fs';
 import http from 'node:http';
 import https from 'node:https';
 import { join } from 'node:path';
@@ -25,6 +26,9 @@ before(async () => {
     if (skip)
         return;
     plant = await TinyPlant.create();
+    appendFileSync(plant.file, 'alarms: local\n');
+    const list = join(plant.folder, 'tags.csv'), lines = readFileSync(list, 'utf8').split('\n');
+    writeFileSync(list, lines.map((line, i) => line && line + (i === 0 ? ',H' : ',60')).join('\n'));
     assert.equal(plant.prepare().code, 0);
     tokensFile = join(plant.folder, 'tokens');
     tokens = {};
@@ -80,6 +84,61 @@ test('through a proxy that nobody told of: 403, on every way to listen', { skip 
         if (args.includes('--host') && !args.includes('--trust-local')) // nor is who asks by a name that others have, too
             assert.ok([401, 403].includes((await ask('/api/v1/tags', { Host: 'plant.example' }, secure)).status), what);
     }
+});
+
+// Its name in what an engineer keeps, says and proves; and numbers of sessions, which nobody is to come by.
+test('anyone who looks on is told of no reading, tag or person, and follows nobody by counting', { skip }, async () => {
+    await plant.startSim();
+    await serve('--behind-proxy', '--host', 'plant.example', '--open-viewers', '--tokens', tokensFile);
+    for (const [tag, value] of [['TI-1', 81.25], ['TI-2', 20.5], ['PI-1', 5]])
+        await plant.tell(`set ${tag} ${value}`);
+    const as = (more = {}) => PlainClient.open(plant.port, { host: 'plant.example' }).then(async (client) => {
+        client.welcome = await client.hello(more);
+        return client;
+    });
+    const engineer = await as({ token: tokens.engineer });
+    engineer.say({ type: 'params', seq: 1, baseline: { set: 'Kim, 7th' } });
+    await engineer.text('params');
+    engineer.say({ type: 'params', seq: 2, sensors: { 'TI-1': { strength: 2 } } });
+    engineer.say({ type: 'prove', seq: 1, tag: 'TI-1', expected: 81, tolerance: 1, remark: 'by Kim' });
+    await engineer.text('proved');
+    engineer.say({ type: 'alarm', seq: 1, action: 'shelve', alarms: [['TI-1', 'H']], reason: 'Kim knows', for_s: 60, name: 'Kim' });
+    await engineer.text('alarmed');
+    assert.equal((await engineer.until('tags', (c) => c.texts.find((m) => m.type === 'tags'))).values.length, 3);
+
+    const stranger = await as(), { welcome } = stranger;
+    assert.deepEqual([welcome.role, welcome.tags, welcome.links], ['open', [], []]);
+    assert.ok(welcome.assets.length === 2 && welcome.assets.every((asset) => !asset.properties));
+    const guesses = [1, 2, 3, 4].concat([-2, -1, 1, 2].map((step) => welcome.session + step));
+    for (const session of guesses) {
+        stranger.say({ type: 'follow', session });
+        assert.equal((await stranger.text('error')).code, 'bad_field', String(session));
+    }
+    assert.ok(Math.abs(engineer.welcome.session - welcome.session) > 1000 && Number.isSafeInteger(welcome.session));
+    stranger.say({ type: 'follow', session: engineer.welcome.session }); // of a link that the engineer gave away
+    const following = await stranger.text('following');
+    assert.deepEqual([following.session, following.sensors, following.baselines], [engineer.welcome.session, {}, []]);
+    stranger.say({ type: 'follow', session: null });
+    stranger.say({ type: 'params', seq: 1, isolines: 20 });
+    await stranger.frameWhere('its own picture', (f) => f.params_seq === 1);
+    const picks = [];
+    for (let x = 40; x < 320; x += 40) {
+        stranger.say({ type: 'pick', seq: x, x, y: 90 });
+        picks.push(await stranger.text('picked'));
+    }
+    assert.ok(picks.some((pick) => pick.asset && pick.position), 'what is there may be asked');
+    assert.ok(picks.every((pick) => pick.value === null && pick.nearest.length === 0 && pick.sensor === null));
+    await plant.tell('set TI-1 82.5');
+    await new Promise((done) => setTimeout(done, 1500)); // whatever would be said of that
+    const types = new Set(stranger.texts.map((m) => m.type));
+    for (const type of ['tags', 'markers', 'alarms', 'proofs', 'alarmed'])
+        assert.ok(!types.has(type), type);
+    const all = JSON.stringify([welcome, following, picks, stranger.texts]);
+    assert.doesNotMatch(all, /TI-\d|PI-\d|Kim|engineer-1|8[12]\.\d|20\.5/);
+    const picture = (headers = {}) => ask('/snapshot.png?width=320&height=200', { Host: 'plant.example', ...headers });
+    assert.equal((await picture()).status, 200);
+    stranger.close();
+    engineer.close();
 });
 
 test('every token that is let in, or is not, is a line in the log; ten wrong ones slow an address', { skip }, async () => {

@@ -106,6 +106,39 @@ static void any_number_of_alarms_fits(void **state)
         stand.snapshot->readings[i].alarm = ALARM_NONE;
 }
 
+/* Where anyone may look on, a picture tells of no sensor: whatever is read there, it is the same. */
+static struct frame *draw_bare(double value, enum alarm_kind alarm)
+{
+    struct frame *frame = frame_create(WIDTH, HEIGHT);
+    view_default(&stand.toy->scene, WIDTH, HEIGHT, &frame->view);
+    memset(frame->bgrx, 255, (size_t)frame->stride_bytes * HEIGHT);
+    frame->markers = mem_array(1, sizeof(*frame->markers));
+    frame->marker_count = 1;
+    frame->markers[0] = (struct frame_marker){ .tag = 2, .x_px = 300, .y_px = 200, .value = (float)value };
+    for (size_t i = 1; i < 3; i++) {
+        stand.snapshot->readings[i].alarm = (uint8_t)alarm;
+        stand.snapshot->readings[i].alarm_word = ALARM_ACTIVE;
+    }
+    overlay_draw_bare(frame, &stand.toy->scene, stand.snapshot, NULL);
+    for (size_t i = 1; i < 3; i++)
+        stand.snapshot->readings[i].alarm = ALARM_NONE;
+    return frame;
+}
+
+static void a_bare_one_tells_of_no_sensor(void **state)
+{
+    (void)state;
+    struct frame *one = draw_bare(1, ALARM_NONE), *other = draw_bare(77, ALARM_HH), *full = draw(2, false, false);
+    size_t bytes = (size_t)one->stride_bytes * HEIGHT;
+    assert_memory_equal(one->bgrx, other->bgrx, bytes);
+    assert_int_not_equal(memcmp(one->bgrx, full->bgrx, bytes), 0);
+    assert_false(has_list(other));
+    assert_int_equal(one->bgrx[200 * one->stride_bytes + 4 * 300], 255);
+    frame_unref(&one);
+    frame_unref(&other);
+    frame_unref(&full);
+}
+
 static void the_window_is_what_is_left_free(void **state)
 {
     (void)state;
@@ -243,6 +276,7 @@ int main(void)
         cmocka_unit_test(halves_share_a_legend_that_says_the_same),
         cmocka_unit_test(alarms_out_of_sight_are_listed),
         cmocka_unit_test(any_number_of_alarms_fits),
+        cmocka_unit_test(a_bare_one_tells_of_no_sensor),
         cmocka_unit_test(the_legend_says_glossy),
         cmocka_unit_test(what_rounds_to_nought_has_no_sign),
         cmocka_unit_test(the_window_is_what_is_left_free),

@@ -123,6 +123,7 @@ session.on('welcome', () => {
     renewIfOld();
     parts.retryNow();
     byId('engineer-toggle').hidden = session.role !== 'engineer';
+    document.body.classList.toggle('looker', session.role === 'open');
     byId('time-toggle').hidden = true; // until the server says that it records
     status.show();
     arrive();

@@ -67,9 +67,10 @@ static struct asked *await_picture(struct hub *hub, struct request *request)
 
 int ask_snapshot(struct hub *hub, struct request *request)
 {
-    struct wish wish = { .codec = WIRE_CODEC_PNG, .quality = LOSSLESS, .urgency = URGENCY_SNAPSHOT, .always = true, .overlay = true };
+    struct wish wish = { .codec = WIRE_CODEC_PNG, .quality = LOSSLESS, .urgency = URGENCY_SNAPSHOT, .always = true };
     struct message_error error = { 0 };
     int result;
+    wish.overlay = visitor_of(request->wsi)->role == ROLE_OPEN ? OVERLAY_BARE : OVERLAY_FULL;
     if (!read_query(hub, request->wsi, &wish.view, NULL, &error))
         return request_answer_error(request, &error);
     if (!may_ask(hub, request, &wish.view, &result))

@@ -160,6 +160,27 @@ static void set_params(json_t *object, const struct session_world *world, const 
     visibility_print(plant, &view->visibility, object);
 }
 
+/* Names that people gave, and of tags: not for anyone who looks on. */
+static void hide_names(json_t *object)
+{
+    json_t *split = json_object_get(object, "split");
+    json_object_set_new(object, "sensor", json_null());
+    json_object_set_new(object, "sensors", json_object());
+    if (json_is_object(json_object_get(object, "baseline")))
+        json_object_set_new(json_object_get(object, "baseline"), "name", json_null());
+    if (json_object_get(object, "baselines"))
+        json_object_set_new(object, "baselines", json_array());
+    if (json_is_object(split))
+        hide_names(split);
+}
+
+static void set_params_for(json_t *object, const struct session_world *world, const struct view *view, bool open)
+{
+    set_params(object, world, view);
+    if (open)
+        hide_names(object);
+}
+
 static json_t *limits(const double values[LIMIT_COUNT])
 {
     return json_pack("{s:o,s:o,s:o,s:o}", "LL", number(values[LIMIT_LL]), "L", number(values[LIMIT_L]), "H", number(values[LIMIT_H]), "HH",
@@ -206,7 +227,7 @@ static json_t *properties(const struct plant_asset *asset)
     return list;
 }
 
-static json_t *assets(const struct scene *scene)
+static json_t *assets(const struct scene *scene, bool open)
 {
     json_t *list = json_array();
     for (size_t i = 0; i < scene->asset_count; i++) {
@@ -215,7 +236,7 @@ static json_t *assets(const struct scene *scene)
         json_t *asset = json_pack("{s:o,s:o,s:o,s:o,s:o}", "id", string(a->plant->id), "tag", string(a->plant->tag),
                                   "description", string(description), "area", string(area), "bounds",
                                   box(a->bounds_min_m, a->bounds_max_m));
-        if (a->plant->property_count > 0)
+        if (a->plant->property_count > 0 && !open)
             json_object_set_new(asset, "properties", properties(a->plant));
         json_array_append_new(list, asset);
     }
@@ -277,15 +298,15 @@ static void set_home(json_t *object, const struct session_world *world, int widt
     json_object_set_new(object, "plant", plant_object(world, &home.camera));
 }
 
-/* The same for everybody, and long. */
-static void set_lists(json_t *object, const struct session_world *world)
+/* Long, and the same for everybody who has a role; open: for anyone who looks on, without what people and tags are called. */
+static void set_lists(json_t *object, const struct session_world *world, bool open)
 {
     json_object_set_new(object, "groups", groups(world->plant));
     json_object_set_new(object, "colormaps", colormaps());
     json_object_set_new(object, "environments", environments(world->plant));
-    json_object_set_new(object, "links", links(world->plant));
-    json_object_set_new(object, "assets", assets(world->scene));
-    json_object_set_new(object, "tags", tags(world));
+    json_object_set_new(object, "links", open ? json_array() : links(world->plant));
+    json_object_set_new(object, "assets", assets(world->scene, open));
+    json_object_set_new(object, "tags", open ? json_array() : tags(world));
 }
 
 static json_t *quotas_json(const struct quotas *quotas)
@@ -294,10 +315,10 @@ static json_t *quotas_json(const struct quotas *quotas)
                      (json_int_t)quotas->at[QUOTA_MESSAGES], "pixels", (json_int_t)quotas->at[QUOTA_SESSION_PIXELS]);
 }
 
-static char *lists_text(const struct session_world *world)
+static char *lists_text(const struct session_world *world, bool open)
 {
     json_t *object = json_object();
-    set_lists(object, world);
+    set_lists(object, world, open);
     return print(object, DIGITS);
 }
 
@@ -311,43 +332,45 @@ static char *join(char *first, char *second)
 }
 
 /* Kept for the next who comes. mem_free. */
-static char *lists_said(const struct session_world *world)
+static char *lists_said(const struct session_world *world, bool open)
 {
     if (!world->lists_said)
-        return lists_text(world);
-    if (!*world->lists_said)
-        *world->lists_said = lists_text(world);
-    return mem_strdup(*world->lists_said);
+        return lists_text(world, open);
+    if (!world->lists_said[open])
+        world->lists_said[open] = lists_text(world, open);
+    return mem_strdup(world->lists_said[open]);
 }
 
 char *reply_welcome_text(const struct session *session, int64_t now_utc_ns)
 {
     const struct view *view = &session->view;
-    json_t *object = json_pack("{s:s,s:s,s:I,s:o,s:I}", "type", "welcome", "protocol", WIRE_SUBPROTOCOL, "session", (json_int_t)session->id,
-                               "codec", string(name_of(names_codec, (int)session->codec)), "time_us", us(now_utc_ns));
+    json_t *object = json_pack("{s:s,s:s,s:I,s:o,s:I}", "type", "welcome", "protocol", WIRE_SUBPROTOCOL, "session",
+                               (json_int_t)session->called, "codec", string(name_of(names_codec, (int)session->codec)), "time_us",
+                               us(now_utc_ns));
     json_t *params = json_object();
     json_object_update_new(object, json_pack("{s:s,s:s,s:I,s:b,s:o}", "role", name_of(names_role, (int)session->role), "resume",
                                              session->resume, "resume_s", (json_int_t)(RESUME_KEPT_NS / 1000000000), "resumed",
                                              session->resumed, "limits", quotas_json(session->world->quotas)));
     set_home(object, session->world, view->width_px, view->height_px);
-    set_params(params, session->world, view);
+    set_params_for(params, session->world, view, session_is_open(session));
     json_object_set_new(object, "view", params);
-    return join(print(object, DIGITS), lists_said(session->world));
+    return join(print(object, DIGITS), lists_said(session->world, session_is_open(session)));
 }
 
-char *reply_params_text(const struct session_world *world, const struct view *view, uint32_t seq)
+char *reply_params_text(const struct session_world *world, const struct view *view, uint32_t seq, bool open)
 {
     json_t *object = json_pack("{s:s,s:I}", "type", "params", "seq", (json_int_t)seq);
-    set_params(object, world, view);
+    set_params_for(object, world, view, open);
     return print(object, DIGITS);
 }
 
-char *reply_following_text(const struct session_world *world, uint64_t session, const struct view *view)
+char *reply_following_text(const struct session *session)
 {
-    json_t *leader = session ? json_integer((json_int_t)session) : json_null();
+    const struct view *view = session_view(session);
+    json_t *leader = session->leader ? json_integer((json_int_t)session->leader->called) : json_null();
     json_t *object = json_pack("{s:s,s:o,s:i,s:i}", "type", "following", "session", leader, "width", view->width_px, "height",
                                view->height_px);
-    set_params(object, world, view);
+    set_params_for(object, session->world, view, session_is_open(session));
     return print(object, DIGITS);
 }
 
@@ -518,7 +541,7 @@ char *reply_api_plant_text(const struct session_world *world)
 {
     json_t *object = json_object();
     set_home(object, world, 1920, 1080);
-    return join(print(object, DIGITS), lists_said(world));
+    return join(print(object, DIGITS), lists_said(world, false));
 }
 
 char *reply_api_tags_text(const struct session_world *world, size_t first, size_t count)

@@ -6,11 +6,12 @@
 #include "net/session/session.h"
 
 char *reply_welcome_text(const struct session *session, int64_t now_utc_ns);
-char *reply_params_text(const struct session_world *world, const struct view *view, uint32_t seq);
+/* open: for anyone who looks on, without names of tags and of baselines. */
+char *reply_params_text(const struct session_world *world, const struct view *view, uint32_t seq, bool open);
 /* Who follows; at most REPLY_FOLLOWERS of them by number. */
 enum { REPLY_FOLLOWERS = 256 };
 char *reply_followers_text(const uint64_t *sessions, size_t count);
-char *reply_following_text(const struct session_world *world, uint64_t session, const struct view *view); /* session 0: nobody */
+char *reply_following_text(const struct session *session);
 /* All values, or those that differ from `sent` (reading.changes by tag index), which is brought up to date. */
 char *reply_tags_text(const struct plant *plant, const struct snapshot *snapshot, uint32_t *sent, bool all);
 char *reply_status_text(const struct session_world *world, int64_t now_utc_ns);

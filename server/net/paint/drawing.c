@@ -75,7 +75,8 @@ static void deliver(struct drawing *drawing, struct frame *frame, const struct s
     frame_read_markers(frame, snapshot, painter->params.baselines);
     frame->clock_unset = !frame->view.at_us && !clock_utc_is_set();
     if (batch->orders[0].wish.overlay)
-        overlay_draw(frame, painter->params.scene, snapshot, proofs_now(painter));
+        (batch->orders[0].wish.overlay == OVERLAY_FULL ? overlay_draw : overlay_draw_bare)(frame, painter->params.scene, snapshot,
+                                                                                           proofs_now(painter));
     counter_inc(painter->renders, 1);
     counter_inc(painter->render_us, (frame->render_ns + frame->readback_ns) / 1000);
     if (!batch->orders[0].wish.overlay)

@@ -22,7 +22,7 @@ struct wish {
     bool only_replace; /* the client may have no more pictures: good only in place of a wish that is not begun */
     bool always;       /* draw and send even if the picture would be the same as the last one of this client */
     bool alone;        /* it must need nothing that was sent before */
-    bool overlay;      /* legend, markers and clock drawn in */
+    enum { OVERLAY_NONE, OVERLAY_FULL, OVERLAY_BARE } overlay; /* legend and clock drawn in, and, when full, sensors and alarms */
 };
 
 struct picture { /* belongs to whoever collected it: picture_destroy */

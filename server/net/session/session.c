@@ -2,6 +2,7 @@
 /* One client: its view, what it is owed, what it may have. */
 #include "net/session/session_impl.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "base/clock.h"
@@ -13,7 +14,8 @@
 struct session *session_create(const struct session_world *world, uint64_t id, int64_t now_ns)
 {
     struct session *session = mem_new(sizeof(*session));
-    *session = (struct session){ .id = id, .world = world, .role = ROLE_ENGINEER, .opened_ns = now_ns, .rate_begin_ns = now_ns };
+    *session = (struct session){ .id = id, .called = id, .world = world, .role = ROLE_ENGINEER, .opened_ns = now_ns };
+    session->rate_begin_ns = now_ns;
     pacer_init(&session->pacer);
     session->common_step = -1;
     session->tag_changes = mem_array(world->plant->tag_count, sizeof(*session->tag_changes));
@@ -161,7 +163,16 @@ bool session_pick(struct session *session, struct pick_order *order)
 
 void session_on_pick(struct session *session, const struct pick_answer *answer)
 {
-    session_reply(session, reply_picked_text(session->world->plant, answer));
+    struct pick_answer said = *answer;
+    if (session_is_open(session)) {
+        said.pick.value = NAN;
+        said.pick.uncertain = false;
+        said.pick.nearest_count = 0;
+        said.pick.sensor = -1;
+        if (said.pick.state == PICK_MEASURED)
+            said.pick.state = PICK_BETWEEN;
+    }
+    session_reply(session, reply_picked_text(session->world->plant, &said));
 }
 
 static bool on_alarm(struct session *session, const struct message *message, struct message_error *error)

@@ -48,7 +48,7 @@ struct session_world {
     struct resumes *resumes;      /* changed by hello */
     struct admission *admission;  /* its pixels are changed by hello and resize */
     struct tags_said *tags_said; /* NULL: every text is made anew */
-    char **lists_said;           /* the part of welcome that all share, once one was made; NULL: likewise */
+    char **lists_said;           /* the part of welcome that all share, and that of those who only look on; NULL: likewise */
 };
 
 /* Where in time a session is. What it shows is view.at_us, and moment. */
@@ -64,6 +64,7 @@ struct travel {
 
 struct session {
     uint64_t id;
+    uint64_t called;            /* its number for other clients: nobody comes by it by counting */
     const struct session_world *world;
     enum role role;
     uint8_t address[16];        /* of the client, as in struct peer */
@@ -168,6 +169,12 @@ void session_asked(struct session *session, const struct wish *wish, bool replac
 /* True: *order is what to ask about a pixel, now. */
 bool session_pick(struct session *session, struct pick_order *order);
 void session_on_pick(struct session *session, const struct pick_answer *answer);
+
+/* Anyone may look on: it gets pictures, and nothing that tells readings, tags or people. */
+static inline bool session_is_open(const struct session *session)
+{
+    return session->role == ROLE_OPEN;
+}
 
 const struct view *session_view(const struct session *session); /* what it is shown: its own, or its leader's */
 const struct snapshot *session_snapshot(const struct session *session); /* the readings that it is shown: of now, or of an instant */

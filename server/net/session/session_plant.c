@@ -12,7 +12,7 @@ char *session_carry(struct session *session)
     session_time_leave(session);
     session_place_leave(session);
     session_drop_ready(session);
-    return session->hello ? reply_params_text(session->world, &session->view, 0) : NULL;
+    return session->hello ? reply_params_text(session->world, &session->view, 0, false) : NULL;
 }
 
 /* What `params` of the server says, as a client would ask for it. */
@@ -72,7 +72,7 @@ void session_view_in(const struct session *session, const struct session_world *
 {
     const struct view *view = session_view(session);
     struct session *other = session_create(world, session->id, 0);
-    char *carried = reply_params_text(session->world, view, 0);
+    char *carried = reply_params_text(session->world, view, 0, false);
     look_again(other, view, carried);
     *out = other->view;
     mem_free(carried);

@@ -27,7 +27,8 @@ static void add_reply(struct session *session, struct text *out)
 
 static bool tags_due(const struct session *session, int64_t now_ns)
 {
-    return session->hello && !session->hidden && (session->owes_tags_all || (session->owes_tags && now_ns - session->tags_ns >= TAGS_NS));
+    return session->hello && !session->hidden && !session_is_open(session) &&
+           (session->owes_tags_all || (session->owes_tags && now_ns - session->tags_ns >= TAGS_NS));
 }
 
 static bool status_due(const struct session *session)
@@ -38,14 +39,14 @@ static bool status_due(const struct session *session)
 static bool alarms_due(const struct session *session)
 {
     const struct session_world *world = session->world;
-    return session->hello && !session->hidden && world->alarming &&
+    return session->hello && !session->hidden && !session_is_open(session) && world->alarming &&
            (!session->alarms_said || alarming_number(world->alarming) > session->alarms_number);
 }
 
 static bool proofs_due(const struct session *session)
 {
     const struct proofs *proofs = session->world->proofs;
-    return session->hello && proofs && (session->owes_proofs || proofs_number(proofs) > session->proofs_said);
+    return session->hello && !session_is_open(session) && proofs && (session->owes_proofs || proofs_number(proofs) > session->proofs_said);
 }
 
 static void add_proofs(struct session *session, struct text *out)
@@ -81,10 +82,10 @@ bool session_next_text(struct session *session, int64_t now_ns, int64_t now_utc_
     } else if (session->reply_count > 0) {
         add_reply(session, out);
     } else if (session->owes_params) {
-        add_owned(out, reply_params_text(world, &session->view, session->params_seq));
+        add_owned(out, reply_params_text(world, &session->view, session->params_seq, session_is_open(session)));
         session->owes_params = false;
     } else if (session->owes_following) {
-        add_owned(out, reply_following_text(world, session->leader ? session->leader->id : 0, session_view(session)));
+        add_owned(out, reply_following_text(session));
         session->owes_following = false;
     } else if (session->owes_time) {
         add_owned(out, reply_time_text(session));

@@ -241,12 +241,13 @@ static void pen_init(struct pen *pen, cairo_surface_t *surface, const struct fra
     pen->text_px = fmax(13 * pen->unit, 9.5);
 }
 
-void overlay_draw(struct frame *frame, const struct scene *scene, const struct snapshot *snapshot, const struct proofs *proofs)
+static void draw(struct frame *frame, const struct scene *scene, const struct snapshot *snapshot, const struct proofs *proofs, bool bare)
 {
     cairo_surface_t *surface =
         cairo_image_surface_create_for_data(frame->bgrx, CAIRO_FORMAT_RGB24, frame->width_px, frame->height_px, frame->stride_bytes);
     struct pen *pen = mem_new(sizeof(*pen));
     pen_init(pen, surface, frame, scene, snapshot, proofs);
+    pen->bare = bare;
     draw_header(pen);
     if (frame->view.at_us)
         draw_past(pen);
@@ -260,7 +261,8 @@ void overlay_draw(struct frame *frame, const struct scene *scene, const struct s
         if (pen->view.look != LOOK_MATERIALS) /* no field, nothing to explain */
             overlay_legend(pen);
     }
-    overlay_alarms(pen);
+    if (!bare)
+        overlay_alarms(pen);
     for (int half = 0; half < (frame->view.split ? 2 : 1); half++) {
         pen_choose_half(pen, half);
         overlay_markers(pen);
@@ -269,6 +271,16 @@ void overlay_draw(struct frame *frame, const struct scene *scene, const struct s
     cairo_surface_finish(surface);
     cairo_surface_destroy(surface);
     mem_free(pen);
+}
+
+void overlay_draw(struct frame *frame, const struct scene *scene, const struct snapshot *snapshot, const struct proofs *proofs)
+{
+    draw(frame, scene, snapshot, proofs, false);
+}
+
+void overlay_draw_bare(struct frame *frame, const struct scene *scene, const struct snapshot *snapshot, const struct proofs *proofs)
+{
+    draw(frame, scene, snapshot, proofs, true);
 }
 
 void overlay_window(const struct scene *scene, const struct view *view, struct camera_window *out)

@@ -9,6 +9,9 @@
    file sets to the plant's. proofs: tags that are unproven are marked as such; NULL: none is. */
 void overlay_draw(struct frame *frame, const struct scene *scene, const struct snapshot *snapshot, const struct proofs *proofs);
 
+/* Likewise, without markers, labels of sensors and alarms: for those who may see the picture and no reading. */
+void overlay_draw_bare(struct frame *frame, const struct scene *scene, const struct snapshot *snapshot, const struct proofs *proofs);
+
 /* What legend and clock leave free of the view, or of either half of one that is split. */
 void overlay_window(const struct scene *scene, const struct view *view, struct camera_window *out);
 

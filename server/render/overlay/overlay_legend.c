@@ -45,7 +45,7 @@ static unsigned priorities_shown(const struct pen *pen)
 {
     const struct plant *plant = pen->scene->plant;
     unsigned priorities = pen->snapshot ? 0 : 1u << ALARM_PRIORITIES;
-    for (size_t i = 0; pen->snapshot && i < plant->tag_count && i < pen->snapshot->count; i++) {
+    for (size_t i = 0; pen->snapshot && !pen->bare && i < plant->tag_count && i < pen->snapshot->count; i++) {
         enum alarm_kind alarm = (enum alarm_kind)pen->snapshot->readings[i].alarm;
         if (alarm)
             priorities |= 1u << alarm_priority(&plant->tags[i], alarm);
@@ -55,7 +55,7 @@ static unsigned priorities_shown(const struct pen *pen)
 
 static bool shows_unproven(const struct pen *pen)
 {
-    for (size_t i = 0; i < pen->frame->marker_count; i++)
+    for (size_t i = 0; i < pen->frame->marker_count && !pen->bare; i++)
         if (pen->frame->markers[i].half == pen->half && overlay_unproven(pen, pen->frame->markers[i].tag))
             return true;
     return false;

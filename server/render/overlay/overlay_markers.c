@@ -344,7 +344,7 @@ void overlay_markers(struct pen *pen)
     wanted.items = mem_array(pen->frame->marker_count, sizeof(*wanted.items));
     wanted.texts = mem_array(pen->frame->marker_count, sizeof(*wanted.texts));
     wanted.tags = mem_array(pen->frame->marker_count, sizeof(*wanted.tags));
-    for (size_t i = 0; i < pen->frame->marker_count; i++) {
+    for (size_t i = 0; i < pen->frame->marker_count && !pen->bare; i++) {
         const struct frame_marker *marker = &pen->frame->markers[i];
         struct box mark = mark_box(pen, marker);
         if (!is_inside(pen, marker) || is_under(pen, cards, &mark))

@@ -23,6 +23,7 @@ struct pen {
     const struct scene *scene;
     const struct snapshot *snapshot;
     const struct proofs *proofs; /* NULL: none */
+    bool bare;                   /* nothing of sensors and alarms */
     double unit, text_px;
     struct box taken[PEN_MAX_TAKEN]; /* where nothing more may be put */
     int taken_count;
