@@ -139,6 +139,8 @@ struct world {
     int64_t rtt_ns, decode_ns;
     double pixels; /* decoding and bytes go by them */
     int64_t now_ns, link_free_ns, decoder_free_ns;
+    int64_t draw_ns;       /* a picture; 0: 20 ms */
+    int64_t busy_until_ns; /* the client does something else, and says nothing of it */
     struct {
         uint32_t seq;
         int64_t at_ns, decode_ns;
@@ -159,7 +161,8 @@ static void deliver(struct world *world, struct pacer *pacer)
     uint32_t seq = send_one(pacer, bytes, world->now_ns);
     int64_t gone_ns = (world->link_free_ns > made_ns ? world->link_free_ns : made_ns) + (int64_t)((double)bytes / world->bytes_per_s * 1e9);
     int64_t there_ns = gone_ns + world->rtt_ns / 2, decode_ns = (int64_t)((double)world->decode_ns * area);
-    int64_t drawn_ns = (world->decoder_free_ns > there_ns ? world->decoder_free_ns : there_ns) + decode_ns;
+    int64_t begun_ns = there_ns > world->busy_until_ns ? there_ns : world->busy_until_ns;
+    int64_t drawn_ns = (world->decoder_free_ns > begun_ns ? world->decoder_free_ns : begun_ns) + decode_ns;
     world->link_free_ns = gone_ns;
     world->decoder_free_ns = drawn_ns;
     world->acks[world->ack_count].seq = seq;
@@ -181,7 +184,7 @@ static void run_world(struct world *world, struct pacer *pacer, double seconds)
         }
         if (pacer->flight_count == 0)
             channel_on_pong(&pacer->channel, world->rtt_ns, world->now_ns);
-        if (world->now_ns / MS % 20 == 0 && pacer_may_ask(pacer, world->now_ns)) /* drawing takes 20 ms */
+        if (world->now_ns % (world->draw_ns ? world->draw_ns : 20 * MS) < MS && pacer_may_ask(pacer, world->now_ns))
             deliver(world, pacer);
     }
 }
@@ -268,6 +271,49 @@ static void what_recovers_gets_its_quality_back(void **state)
     assert_int_equal(pacer.ladder.step, 0);
 }
 
+static void run_busy(struct world *world, struct pacer *pacer, int64_t busy_ns, double seconds)
+{
+    world->busy_until_ns = world->now_ns + busy_ns;
+    run_world(world, pacer, seconds);
+}
+
+/* A page that loads its parts, beside much else that the machine does: neither the network nor the decoder is slow. */
+static void a_client_that_is_busy_for_a_moment_keeps_its_quality(void **state)
+{
+    (void)state;
+    struct pacer pacer = fresh();
+    struct world world = { .bytes_per_s = 100e6, .rtt_ns = MS, .decode_ns = 4 * MS, .pixels = 1280 * 720, .now_ns = NS_PER_S };
+    channel_on_bytes(&pacer.channel, 1000000, 2500 * MS); /* the first texts, while it begins */
+    ladder_begin(&pacer.ladder, &pacer.channel, world.pixels);
+    run_busy(&world, &pacer, 700 * MS, 0.75);
+    run_world(&world, &pacer, 0.1); /* two or three pictures */
+    world.now_ns += 12 * NS_PER_S;
+    for (int i = 0; i < 3; i++) { /* the first move */
+        run_busy(&world, &pacer, 600 * MS, 0.7);
+        assert_true(pacer.ladder.step == 0 && pacer.ladder.size == 0);
+        run_world(&world, &pacer, 0.3);
+        assert_true(pacer.ladder.step == 0 && pacer.ladder.size == 0);
+    }
+}
+
+/* One picture that takes long to decode, as the first of a new codec does, where few others come. */
+static void a_decoder_that_begins_is_not_slow(void **state)
+{
+    (void)state;
+    struct pacer pacer = fresh();
+    struct world world = { .bytes_per_s = 100e6, .rtt_ns = MS, .pixels = 1280 * 720, .draw_ns = 200 * MS };
+    world.now_ns = NS_PER_S + MS;
+    world.decode_ns = 8 * MS;
+    run_world(&world, &pacer, 2);
+    world.decode_ns = 500 * MS;
+    run_world(&world, &pacer, 0.2);
+    world.decode_ns = 8 * MS;
+    for (int i = 0; i < 30; i++) {
+        run_world(&world, &pacer, 0.1);
+        assert_true(pacer.ladder.step == 0 && pacer.ladder.size == 0);
+    }
+}
+
 /* At the edge between two steps it must not swing. */
 static void steps_do_not_swing(void **state)
 {
@@ -347,6 +393,8 @@ int main(void)
         cmocka_unit_test(a_slow_network_gets_small_pictures_in_time),
         cmocka_unit_test(a_slow_decoder_gets_fewer_pixels),
         cmocka_unit_test(what_recovers_gets_its_quality_back),
+        cmocka_unit_test(a_client_that_is_busy_for_a_moment_keeps_its_quality),
+        cmocka_unit_test(a_decoder_that_begins_is_not_slow),
         cmocka_unit_test(steps_do_not_swing),
         cmocka_unit_test(who_see_the_same_take_one_step),
         cmocka_unit_test(random_clients),

@@ -8,11 +8,20 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* A client that is busy for a moment (a page that loads, a decoder that begins) looks like a slow network once or twice, a slow network
+   time and again: what counts is the least of the last few. */
+enum { CHANNEL_LAST = 3 };
+struct channel_last { /* zero-initialise */
+    double at[CHANNEL_LAST];
+    int count; /* of all that there were */
+};
+
 struct channel { /* zero-initialise; 0: not known yet */
     int64_t rtt_ns[2], rtt_begin_ns; /* least of the last moments, and of those before */
     double ns_per_byte; /* smoothed; so a network that slows down is noticed sooner than one that recovers */
     double lag_ns;    /* from sent to acknowledged, without round trip and decoding: what the network adds; smoothed */
     double decode_ns; /* smoothed */
+    struct channel_last last_ns_per_byte, last_lag_ns, last_decode_ns;
     int64_t arrived_ns, acked_ns;
     bool decoding; /* the client decodes without a pause: what it acknowledges had waited there */
 };

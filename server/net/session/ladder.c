@@ -147,7 +147,7 @@ static void follow_decoder(struct ladder *ladder, const struct channel *channel,
 void ladder_on_ack(struct ladder *ladder, const struct channel *channel, int step, size_t bytes, int64_t now_ns)
 {
     double unit = (double)bytes / steps[step].bytes;
-    ladder->unit_bytes = ladder->unit_bytes > 0 ? ladder->unit_bytes + SHARE * (unit - ladder->unit_bytes) : unit;
+    ladder->unit_bytes = ladder->known ? ladder->unit_bytes + SHARE * (unit - ladder->unit_bytes) : unit; /* before, it was a guess */
     if (channel->ns_per_byte > 0) {
         follow_network(ladder, channel, now_ns);
         ladder->known = true;
