@@ -175,6 +175,14 @@ static void convert(struct h264_encoder *h264, const struct frame *frame, struct
     extend(p, frame->width_px, frame->height_px);
 }
 
+/* JPEG's 92 looks as 18 does, 78 as 25. Below that, bytes go down with quality as JPEG's do, and looks more slowly: from 40 on nearly all
+   blocks of a picture that moves are skipped, and it shows what stood there before. */
+static double rate_factor(int quality)
+{
+    static const double fine = 18, moving = 25;
+    return quality >= 100 ? 12 : quality >= 78 ? fine + (92 - quality) * 0.5 : moving + (78 - quality) / 6.0;
+}
+
 static int fill_picture(struct h264_encoder *h264, const struct frame *frame, const struct encoder_params *params)
 {
     AVFrame *p = h264->picture;
@@ -184,8 +192,8 @@ static int fill_picture(struct h264_encoder *h264, const struct frame *frame, co
     convert(h264, frame, params->workers);
     p->pts = h264->next++;
     p->pict_type = params->key ? AV_PICTURE_TYPE_I : AV_PICTURE_TYPE_NONE;
-    if (h264->library->has_crf) /* JPEG's 92 looks as 18 does, 78 as 25, 50 as 39 */
-        av_opt_set_double(h264->context->priv_data, "crf", params->quality >= 100 ? 12 : 18 + (92 - params->quality) * 0.5, 0);
+    if (h264->library->has_crf)
+        av_opt_set_double(h264->context->priv_data, "crf", rate_factor(params->quality), 0);
     return 0;
 }
 

@@ -214,6 +214,53 @@ static void quality_can_change_between_pictures(void **state)
     assert_true(bytes[1] > 2 * bytes[0] && bytes[1] > 2 * bytes[2]);
 }
 
+/* Grey shapes of little contrast on a grey ground, as a building seen from afar; `turn`: so far has the camera gone. */
+static struct frame *building(int w, int h, int turn)
+{
+    struct frame *frame = frame_create(w, h);
+    frame->view.width_px = w;
+    frame->view.height_px = h;
+    for (int y = 0; y < h; y++)
+        for (int x = 0; x < w; x++) {
+            int along = x + turn * (2 + y / 60), row = y / 40, shape = (along / 30 * 7 + row * 5) % 11;
+            int inside = along % 30 < 4 + shape && y % 40 > 3 * shape;
+            memset(frame->bgrx + (size_t)y * (size_t)frame->stride_bytes + (size_t)x * 4, 222 - y / 20 - inside * (30 + 2 * shape), 3);
+        }
+    return frame;
+}
+
+static double mean_off(const struct fixture *f, const struct frame *frame)
+{
+    double sum = 0;
+    size_t pixels = (size_t)frame->width_px * (size_t)frame->height_px;
+    for (size_t i = 0; i < pixels; i++)
+        sum += abs(f->bgrx[4 * i + 1] - frame->bgrx[4 * i + 1]);
+    return sum / (double)pixels;
+}
+
+/* However little quality there is room for: a picture shows where things are now, not where they were. */
+static void what_moves_leaves_nothing_behind(void **state)
+{
+    struct fixture *f = *state;
+    static const int qualities[] = { 78, 42, 30, 25 };
+    for (size_t q = 0; q < sizeof(qualities) / sizeof(qualities[0]); q++) {
+        struct frame *first = building(640, 360, 0);
+        pass(f, first, qualities[q], true, NULL);
+        for (int turn = 1; turn <= 12; turn++) {
+            struct frame *frame = building(640, 360, turn);
+            pass(f, frame, qualities[q], false, NULL);
+            double off = mean_off(f, frame), moved = 0;
+            for (size_t i = 0; i < (size_t)640 * 360; i++)
+                moved += abs(frame->bgrx[4 * i + 1] - first->bgrx[4 * i + 1]) / (640.0 * 360);
+            if (turn == 12)
+                print_message("# quality %d: %zu bytes, %.2f off, where %.2f moved\n", qualities[q], f->bytes, off, moved);
+            assert_true(off < 0.25 * moved);
+            frame_unref(&frame);
+        }
+        frame_unref(&first);
+    }
+}
+
 static void encoders_that_do_not_work_here_are_known(void **state)
 {
     struct fixture *f = *state;
@@ -234,6 +281,7 @@ int main(void)
         TEST(equal_pictures_are_not_sent_and_little_costs_little),
         TEST(what_changes_slowly_arrives),
         TEST(quality_can_change_between_pictures),
+        TEST(what_moves_leaves_nothing_behind),
         TEST(encoders_that_do_not_work_here_are_known),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
