@@ -150,6 +150,7 @@ bool loaded_start_painter(struct loaded *loaded, const struct view *first, size_
         .moments = loaded->moments,
         .trials = placing_trials(loaded->placing),
         .workers = context->workers,
+        .memory_bytes = server->memory_bytes,
         .h264_library = loaded_h264_library(server),
         .counters = context->counters,
         .first = first,

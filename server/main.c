@@ -11,12 +11,13 @@
 #include "version.h"
 
 enum { GOOD = 0, FAILED = 1, USAGE = 2 };
+enum { LEAST_MEMORY_MB = 128, MOST_MEMORY_MB = 1 << 20 };
 
 static void print_usage(FILE *out)
 {
     fputs("usage: plantcastd PLANT.yaml [--listen ADDR] [--port N] [--gl auto|egl-device|egl-surfaceless|osmesa]\n"
           "                  [--gl-device INDEX|PCI] [--prepared DIR] [--history DIR] [--web DIR]\n"
-          "                  [--log-level error|warn|info|debug] [--threads N] [--field vertices|per-fragment]\n"
+          "                  [--log-level error|warn|info|debug] [--threads N] [--memory MB] [--field vertices|per-fragment]\n"
           "                  [--h264 ENCODER|off] [--tls-cert FILE --tls-key FILE] [--tokens FILE] [--open-viewers]\n"
           "                  [--trust-local] [--behind-proxy] [--host NAME] [--origin URL] [--limit NAME=N]\n"
           "       plantcastd --check PLANT.yaml [--prepared DIR]\n"
@@ -33,6 +34,8 @@ static void print_usage(FILE *out)
           "  --history DIR    where readings are recorded (as the plant file says; else beside it)\n"
           "  --web DIR        the web client's files (found from where this program is)\n"
           "  --threads N      workers for the field and for encoding (one per core)\n"
+          "  --memory MB      what it keeps for the next picture goes where all of it would take more (a quarter of the machine, at\n"
+          "                   most 2048); the model itself, and what one picture needs, it takes in any case. /metrics says where it is\n"
           "  --field KIND     vertices: the field at vertices, when a reading changes (the default); per-fragment: anew at each\n"
           "                   fragment, slow, for comparison\n"
           "  --h264 ENCODER   who makes H.264, by its name in libavcodec (libx264): h264_nvenc, h264_vaapi, libopenh264, ...; off:\n"
@@ -115,6 +118,7 @@ enum {
     OPTION_HISTORY,
     OPTION_WEB,
     OPTION_LEVEL,
+    OPTION_MEMORY,
     OPTION_THREADS,
     OPTION_OPEN,
     OPTION_TLS_CERT,
@@ -143,6 +147,7 @@ static const struct option options[] = {
     { "prepared", required_argument, NULL, OPTION_PREPARED },
     { "web", required_argument, NULL, OPTION_WEB },
     { "log-level", required_argument, NULL, OPTION_LEVEL },
+    { "memory", required_argument, NULL, OPTION_MEMORY },
     { "threads", required_argument, NULL, OPTION_THREADS },
     { "open-viewers", no_argument, NULL, OPTION_OPEN },
     { "tls-cert", required_argument, NULL, OPTION_TLS_CERT },
@@ -199,6 +204,7 @@ static int take_access_option(int option, struct access_params *access)
 /* -1: go on; else the exit code. */
 static int take_option(int option, struct server_params *params, int (**task)(const struct server_params *params))
 {
+    int megabytes;
     switch (option) {
     case OPTION_LISTEN:
         params->address = strcmp(optarg, "localhost") == 0 ? "127.0.0.1" : optarg;
@@ -216,6 +222,11 @@ static int take_option(int option, struct server_params *params, int (**task)(co
     case OPTION_PREPARED: params->prepared = optarg; return -1;
     case OPTION_WEB: params->web = optarg; return -1;
     case OPTION_LEVEL: return parse_level(optarg, &params->log_level) ? -1 : usage_error("--log-level: unknown", optarg);
+    case OPTION_MEMORY:
+        if (!parse_int(optarg, LEAST_MEMORY_MB, MOST_MEMORY_MB, &megabytes))
+            return usage_error("--memory: not a number of megabytes from 128 on:", optarg);
+        params->memory_bytes = (size_t)megabytes << 20;
+        return -1;
     case OPTION_THREADS:
         return parse_int(optarg, 0, 1024, &params->threads) ? -1 : usage_error("--threads: not a number of threads", optarg);
     case OPTION_CHECK: *task = server_check; return -1;

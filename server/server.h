@@ -18,6 +18,7 @@ struct server_params {
     const char *web;      /* NULL: found from where the program is */
     enum log_level log_level;
     const char *h264;     /* an encoder of libavcodec, or "off"; NULL: the usual one */
+    size_t memory_bytes; /* 0: what suits the machine */
     int threads; /* workers; 0: one per core */
     struct access_params access;
     bool per_fragment; /* the field anew at each fragment; for comparison */

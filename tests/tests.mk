@@ -15,6 +15,7 @@ test-long: test
 	@REPLAY_S=3600 $(out)/tests/unit/modbus_history_test
 	@PLANTCAST_BIN=$(bin) node --test tests/long/replay.mjs
 	@PLANTCAST_BIN=$(bin) USE_S=1800 node --test --test-name-pattern='memory' tests/e2e/assets.mjs
+	@PLANTCAST_BIN=$(bin) USES=1440 MEMORY_MB=2048 node --test tests/e2e/memory.mjs
 	@PLANTCAST_BIN=$(bin) PLANTCAST_OUT=$(out) LOSSES=20 node --test tests/e2e/gpu.mjs
 	@$(MAKE) --no-print-directory scale soak
 # 10 million triangles in 2,000 assets, prepared, killed and continued, within 8 GB: some minutes.

@@ -64,17 +64,22 @@ struct workers *field_workers(const struct field *field)
     return field->workers;
 }
 
-void field_destroy(struct field **field_ptr)
+void field_rest(struct field *field)
 {
-    struct field *field = *field_ptr;
-    if (!field)
-        return;
     for (size_t i = 0; i < field->scene->asset_count; i++)
         while (field->states[i])
             state_remove(field, &field->states[i]);
     for (size_t i = 0; i < FIELD_BUCKETS; i++)
         while (field->weights[i])
             weights_remove(field, &field->weights[i]);
+}
+
+void field_destroy(struct field **field_ptr)
+{
+    struct field *field = *field_ptr;
+    if (!field)
+        return;
+    field_rest(field);
     for (size_t i = 0; i < field->scene->asset_count * field->scene->plant->group_count; i++)
         layout_destroy(&field->layouts[i]);
     field_trials_finish(field);

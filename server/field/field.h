@@ -93,6 +93,7 @@ bool field_baseline(const struct field *field, const struct field_params *params
 #define FIELD_DEFAULT_BYTES ((size_t)512 << 20)
 void field_set_bound(struct field *field, size_t bytes);
 size_t field_bytes(const struct field *field); /* kept now */
+void field_rest(struct field *field);          /* drops all that is kept */
 
 /* The scalars of one asset, brought up to date with the snapshot: values, metres, or differences. Distances have no data where the
    surface does not lead (the value there is the largest). Belongs to `field`, valid until the next call with other parameters;

@@ -163,3 +163,8 @@ size_t pool_bytes(const struct pool_slice *slice)
 {
     return slice->count * slice->page->pool->texel_bytes;
 }
+
+size_t pool_bytes_taken(const struct pool *pool)
+{
+    return pool->texels * pool->texel_bytes;
+}

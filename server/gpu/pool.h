@@ -37,5 +37,6 @@ struct pool_slice *pool_hold(struct pool_slice *slice); /* NULL is fine */
 void pool_release(struct pool_slice **slice);           /* &NULL is fine; leaves NULL */
 size_t pool_offset(const struct pool_slice *slice);     /* bytes, in the page's buffer */
 size_t pool_bytes(const struct pool_slice *slice);
+size_t pool_bytes_taken(const struct pool *pool); /* of all pages */
 
 #endif

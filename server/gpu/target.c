@@ -47,6 +47,12 @@ bool target_init(struct target *target, struct log *log, int width_px, int heigh
     return false;
 }
 
+size_t target_bytes(const struct target *target)
+{
+    size_t pixels = (size_t)target->width_px * (size_t)target->height_px, samples = (size_t)target->samples;
+    return 8 * pixels * (samples > 1 ? samples + 1 : 1); /* colour and depth, and what they are resolved to */
+}
+
 void target_finish(struct target *target)
 {
     GLuint textures[] = { target->color, target->depth, target->resolved_color, target->resolved_depth };

@@ -6,6 +6,8 @@
 
 #include <glad/gl.h>
 
+#include <stddef.h>
+
 #include "base/log.h"
 
 struct target {
@@ -16,6 +18,7 @@ struct target {
 };
 
 /* False: out of GPU memory, logged. */
+size_t target_bytes(const struct target *target); /* of its textures; an empty one: 0 */
 bool target_init(struct target *target, struct log *log, int width_px, int height_px, int samples);
 void target_finish(struct target *target);
 /* A part: colour averaged, depth of one sample; nothing to do for one sample. */

@@ -31,10 +31,15 @@ static void entry_destroy(struct fields *fields, struct fields_entry *entry)
     mem_free(entry);
 }
 
+void fields_rest(struct fields *fields)
+{
+    while (fields->count > 0)
+        entry_destroy(fields, fields->entries[--fields->count]);
+}
+
 void fields_finish(struct fields *fields)
 {
-    for (size_t i = 0; i < fields->count; i++)
-        entry_destroy(fields, fields->entries[i]);
+    fields_rest(fields);
     mem_free(fields->entries);
     pool_destroy(&fields->pool);
     *fields = (struct fields){ 0 };

@@ -55,5 +55,6 @@ struct fields_ask {
 void fields_get(struct fields *fields, const struct fields_ask *ask, const struct fields_entry **entries);
 /* Between frames: drops what is beyond the bound. */
 void fields_trim(struct fields *fields);
+void fields_rest(struct fields *fields); /* drops all */
 
 #endif

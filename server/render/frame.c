@@ -19,6 +19,7 @@ static struct {
     } at[SPARES];
     int next;
 } spares = { .lock = PTHREAD_MUTEX_INITIALIZER };
+static _Atomic size_t all_bytes;
 
 /* Of any content. NULL: out of memory. */
 static uint8_t *take_pixels(size_t bytes)
@@ -31,7 +32,9 @@ static uint8_t *take_pixels(size_t bytes)
             spares.at[i].pixels = NULL;
         }
     pthread_mutex_unlock(&spares.lock);
-    return pixels ? pixels : mem_try_array(bytes, 1);
+    if (!pixels && (pixels = mem_try_array(bytes, 1)))
+        atomic_fetch_add_explicit(&all_bytes, bytes, memory_order_relaxed);
+    return pixels;
 }
 
 /* Takes them; NULL is fine. */
@@ -40,13 +43,34 @@ static void give_pixels(uint8_t *pixels, size_t bytes)
     if (pixels && bytes <= SPARE_BYTES) {
         pthread_mutex_lock(&spares.lock);
         uint8_t *oldest = spares.at[spares.next].pixels;
+        size_t oldest_bytes = spares.at[spares.next].bytes;
         spares.at[spares.next].pixels = pixels;
         spares.at[spares.next].bytes = bytes;
         spares.next = (spares.next + 1) % SPARES;
         pthread_mutex_unlock(&spares.lock);
         pixels = oldest;
+        bytes = oldest_bytes;
     }
+    if (pixels)
+        atomic_fetch_sub_explicit(&all_bytes, bytes, memory_order_relaxed);
     mem_free(pixels);
+}
+
+size_t frame_bytes(void)
+{
+    return atomic_load_explicit(&all_bytes, memory_order_relaxed);
+}
+
+void frame_rest(void)
+{
+    pthread_mutex_lock(&spares.lock);
+    for (int i = 0; i < SPARES; i++) {
+        if (spares.at[i].pixels)
+            atomic_fetch_sub_explicit(&all_bytes, spares.at[i].bytes, memory_order_relaxed);
+        mem_free(spares.at[i].pixels);
+        spares.at[i].pixels = NULL;
+    }
+    pthread_mutex_unlock(&spares.lock);
 }
 
 static size_t pixel_bytes(const struct frame *frame)

@@ -48,5 +48,8 @@ void frame_read_markers(struct frame *frame, const struct snapshot *snapshot, st
 struct frame *frame_create(int width_px, int height_px); /* NULL: out of memory */
 struct frame *frame_ref(struct frame *frame);
 void frame_unref(struct frame **frame);
+/* Any thread: pixels of all frames that are there, and of some that are gone, for the next. */
+size_t frame_bytes(void);
+void frame_rest(void); /* drops the latter */
 
 #endif

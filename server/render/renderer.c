@@ -32,8 +32,7 @@ static struct light_key wanted_light(const struct view *view)
     return key;
 }
 
-/* The light that most views have. */
-static struct light_key usual_light(const struct renderer *renderer)
+struct light_key renderer_usual_light(const struct renderer *renderer)
 {
     struct view view;
     view_default(renderer->scene, 16, 16, &view);
@@ -389,7 +388,7 @@ bool renderer_landed(const struct stroke *stroke)
 
 bool renderer_hurry(struct renderer *renderer, int64_t bake_ns)
 {
-    struct light_key usual = usual_light(renderer);
+    struct light_key usual = renderer_usual_light(renderer);
     renderer->hurry_ns = bake_ns;
     usual.rough = true;
     return !bake_ns || light_near(&renderer->light, &usual) || light_get(&renderer->light, &usual);
@@ -397,7 +396,7 @@ bool renderer_hurry(struct renderer *renderer, int64_t bake_ns)
 
 bool renderer_idle(struct renderer *renderer, int64_t budget_ns)
 {
-    struct light_key usual = usual_light(renderer);
+    struct light_key usual = renderer_usual_light(renderer);
     return light_step(&renderer->light, &usual, budget_ns);
 }
 

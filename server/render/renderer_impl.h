@@ -55,6 +55,8 @@ struct frame *renderer_start(struct renderer *renderer, const struct view *view,
 bool renderer_take_up(struct renderer *renderer, struct picture *picture);
 /* The whole picture at once by the steps of a stroke. As renderer_draw. */
 struct frame *renderer_draw_stroke(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot);
+/* The light that most views have. */
+struct light_key renderer_usual_light(const struct renderer *renderer);
 /* As renderer_launch. */
 struct stroke *renderer_launch_stroke(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot);
 

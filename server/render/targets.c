@@ -24,6 +24,28 @@ bool targets_take(struct targets *targets, struct log *log, int width_px, int he
     return true;
 }
 
+size_t targets_bytes(const struct targets *targets)
+{
+    size_t bytes = 0;
+    for (int i = 0; i < TARGETS; i++)
+        bytes += target_bytes(&targets->at[i]);
+    return bytes;
+}
+
+/* The oldest go; the newest stays. */
+static void keep_bound(struct targets *targets)
+{
+    for (int i = TARGETS - 1; i > 0 && targets->bound_bytes && targets_bytes(targets) > targets->bound_bytes; i--)
+        if (targets->at[i].width_px)
+            target_finish(&targets->at[i]);
+}
+
+void targets_bound(struct targets *targets, size_t bytes)
+{
+    targets->bound_bytes = bytes;
+    keep_bound(targets);
+}
+
 void targets_give(struct targets *targets, const struct target *target)
 {
     int last = TARGETS - 1;
@@ -31,6 +53,7 @@ void targets_give(struct targets *targets, const struct target *target)
         target_finish(&targets->at[last]);
     memmove(&targets->at[1], &targets->at[0], (size_t)last * sizeof(*target));
     targets->at[0] = *target;
+    keep_bound(targets);
 }
 
 void targets_finish(struct targets *targets)

@@ -56,6 +56,13 @@ void visibility_buffers_give(struct visibility_buffers *store, uint64_t shape, v
     store->bytes += bytes;
 }
 
+void visibility_buffers_bound(struct visibility_buffers *store, size_t bytes)
+{
+    store->bound_bytes = bytes;
+    while (store->bytes > bytes)
+        empty(store, oldest(store, false));
+}
+
 void visibility_buffers_drop(struct visibility_buffers *store, uint64_t shape)
 {
     struct visibility_buffer *buffer = find(store, shape);

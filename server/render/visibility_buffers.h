@@ -25,6 +25,7 @@ struct visibility_buffers { /* zero-initialise, but for the bound */
 void *visibility_buffers_find(struct visibility_buffers *store, uint64_t shape);
 /* Takes over what was made for that shape, in place of what was there before; destroys it at once if it is more than the bound. */
 void visibility_buffers_give(struct visibility_buffers *store, uint64_t shape, void *at, size_t bytes, void (*destroy)(void *at));
+void visibility_buffers_bound(struct visibility_buffers *store, size_t bytes); /* from now on */
 void visibility_buffers_drop(struct visibility_buffers *store, uint64_t shape);
 void visibility_buffers_finish(struct visibility_buffers *store);
 

@@ -10,6 +10,7 @@
 
 #include <cmocka.h>
 
+#include "render/memory.h"
 #include "tests/support/rig.h"
 #include "value/quality.h"
 
@@ -372,6 +373,74 @@ static void test_camera_within_the_plant(void **state)
     frame_unref(&frame);
 }
 
+/* A picture of each of some views, looks, lights and sizes: all that a renderer keeps something of. */
+static void draw_much(void)
+{
+    static const int sizes[][2] = { { 320, 180 }, { 640, 360 }, { 400, 300 } };
+    for (int i = 0; i < 18; i++) {
+        stand_look(&stand, i, &view);
+        view.width_px = sizes[i % 3][0];
+        view.height_px = sizes[i % 3][1];
+        view.tier = i % 2 ? TIER_STILL : TIER_MOVING;
+        view.look = i % 5 == 4 ? LOOK_MATERIALS : LOOK_DEFAULT;
+        view.light_dir[0] = i % 4 == 3 ? 0.6 : 0;
+        view.light_dir[1] = 0;
+        view.light_dir[2] = i % 4 == 3 ? 0.8 : 1;
+        struct frame *frame = stand_draw(&stand, &view);
+        frame_unref(&frame);
+    }
+}
+
+static size_t caches(void)
+{
+    size_t bytes[RENDER_STORES], sum = 0;
+    renderer_measure_memory(stand.renderer, bytes);
+    for (int i = 0; i < RENDER_STORES; i++)
+        sum += i == STORE_MODELS ? 0 : bytes[i];
+    return sum;
+}
+
+static void test_what_is_kept_can_be_had_anew(void **state)
+{
+    (void)state;
+    struct view seen = view;
+    stand_look(&stand, 1, &seen);
+    seen.tier = TIER_STILL;
+    struct frame *before = stand_draw(&stand, &seen);
+    draw_much();
+    size_t full = caches();
+    renderer_rest(stand.renderer);
+    field_rest(stand.field);
+    assert_int_equal(field_bytes(stand.field), 0);
+    size_t bytes[RENDER_STORES];
+    renderer_measure_memory(stand.renderer, bytes);
+    assert_true(bytes[STORE_MODELS] > 0 && bytes[STORE_FIELDS] == 0 && bytes[STORE_PICTURES] == 0 && bytes[STORE_TARGETS] == 0 &&
+                bytes[STORE_ROOM] == 0);
+    assert_true(caches() < full);
+    struct frame *after = stand_draw(&stand, &seen);
+    assert_true(before->content == after->content);
+    assert_memory_equal(before->bgrx, after->bgrx, (size_t)before->stride_bytes * (size_t)before->height_px);
+    frame_unref(&before);
+    frame_unref(&after);
+}
+
+/* Light apart: two sets there are in any case, one to show while the next is baked. */
+static void test_what_is_kept_has_a_bound(void **state)
+{
+    (void)state;
+    size_t full[RENDER_STORES], bytes[RENDER_STORES], bound = (size_t)1 << 20;
+    draw_much();
+    renderer_measure_memory(stand.renderer, full);
+    renderer_bound_memory(stand.renderer, bound);
+    draw_much();
+    renderer_bound_memory(stand.renderer, bound);
+    renderer_measure_memory(stand.renderer, bytes);
+    assert_true(full[STORE_PICTURES] > bound && full[STORE_TARGETS] > 0);
+    assert_true(bytes[STORE_PICTURES] <= bound && bytes[STORE_TARGETS] < full[STORE_TARGETS]);
+    assert_true(bytes[STORE_LIGHT] <= full[STORE_LIGHT] && bytes[STORE_ROOM] <= full[STORE_ROOM]);
+    renderer_bound_memory(stand.renderer, (size_t)1 << 30);
+}
+
 #define each(test) cmocka_unit_test_setup(test, reset)
 
 int main(void)
@@ -394,6 +463,8 @@ int main(void)
         each(test_selection_is_outlined),
         each(test_many_sizes),
         each(test_camera_within_the_plant),
+        each(test_what_is_kept_can_be_had_anew),
+        each(test_what_is_kept_has_a_bound),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
     if (!rig_init(&rig, "renderer_test"))

@@ -5,6 +5,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "base/memory.h"
 #include "net/http/http_impl.h"
 #include "net/message/reply.h"
 
@@ -88,9 +89,22 @@ void http_on_recall(struct hub *hub, struct recall_answer *recalled)
     request_answered(request, status);
 }
 
+/* Of the whole process, when somebody asks. */
+static void count_memory(struct hub *hub)
+{
+    struct counters *counters = hub->params.counters;
+    struct memory_use use;
+    memory_look(&use);
+    counter_set(counters_add(counters, "process_resident_memory_bytes", "gauge", "Resident memory, mapped files and all."),
+                (int64_t)use.resident);
+    counter_set(counters_add(counters, "plantcast_anonymous_bytes", "gauge", "Resident memory that is no file's."), (int64_t)use.anonymous);
+    counter_set(counters_add(counters, "plantcast_heap_bytes", "gauge", "Memory that malloc has handed out."), (int64_t)use.allocated);
+}
+
 int metrics(struct hub *hub, struct request *request)
 {
     struct text text = { 0 };
+    count_memory(hub);
     counters_print(hub->params.counters, &text);
     return request_answer(request, HTTP_STATUS_OK, "text/plain; version=0.0.4; charset=utf-8", text.at, text.length, NULL, NULL);
 }

@@ -443,6 +443,7 @@ static bool drawing_init(struct drawing *drawing, struct painter *painter)
     drawing->parked.snapshot = snapshot_create(params->scene->plant->tag_count);
     flying_init(&drawing->flying, params->scene->plant->tag_count);
     store_snapshot(params->store, clock_mono_ns(), clock_utc_ns(), drawing->snapshot);
+    resting_init(&drawing->resting, painter);
     return gl_begin(drawing, params->gl, false);
 }
 
@@ -464,6 +465,7 @@ static void drawing_finish(struct drawing *drawing)
 void drawing_idle(struct drawing *drawing)
 {
     drawing->warm = renderer_idle(drawing->renderer, IDLE_NS);
+    drawing_stir(drawing);
     if (drawing->warm)
         warm_up(drawing, TIER_STILL);
 }
@@ -547,8 +549,10 @@ void *drawing_main(void *arg)
     struct batch batch = { 0 };
     struct schedule schedule = { 0 };
     bool good = drawing_init(&drawing, painter);
-    if (good)
+    if (good) {
+        drawing_bound(&drawing);
         rehearse(&drawing);
+    }
     pthread_mutex_lock(&painter->lock);
     painter->state = good ? RUNNING : FAILED;
     pthread_cond_broadcast(&painter->wake);
@@ -557,6 +561,7 @@ void *drawing_main(void *arg)
         warm_up(&drawing, TIER_MOVING);
     while (drawing_next(&drawing, &schedule, &batch)) {
         turn(&drawing, &schedule, &batch);
+        drawing_look(&drawing);
         if (gl_lost(drawing.gl))
             rebuild(&drawing);
     }

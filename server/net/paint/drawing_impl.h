@@ -6,6 +6,13 @@
 #include "net/paint/held.h"
 #include "net/paint/painter_impl.h"
 #include "net/paint/recent.h"
+#include "render/memory.h"
+
+struct resting {
+    counter *stores[RENDER_STORES], *fields, *frames, *bound;
+    int64_t looked_ns, alone_since_ns; /* alone: 0: somebody is there */
+    bool rests;                        /* nothing was drawn since all was given back */
+};
 
 struct slow { /* a picture that takes long and is drawn step by step */
     struct canvas *canvas; /* NULL: none */
@@ -33,6 +40,7 @@ struct drawing {
     bool warm; /* what only the first pictures cost was paid */
     struct flying flying;
     struct held held; /* pictures whose field takes long: worked on step by step, each in its turn */
+    struct resting resting;
 };
 
 /* --- sharing.c: one picture for all who want the same, whenever they ask --- */
@@ -45,6 +53,16 @@ uint64_t sharing_leave_out_same(struct drawing *drawing, const struct snapshot *
 /* Likewise who asks a moment later than others for the same view: what was drawn for them will do, if all that changed since is readings
    that he has yet to be told of. Before the field is brought up to date. */
 void sharing_take_recent(struct drawing *drawing, struct batch *batch);
+
+/* --- resting.c: memory --- */
+
+void resting_init(struct resting *resting, struct painter *painter);
+void drawing_bound(struct drawing *drawing); /* what is kept is counted, and brought under its bound */
+void drawing_stir(struct drawing *drawing);  /* something was worked out: it may rest, but not now */
+void drawing_look(struct drawing *drawing);  /* after each turn: that, once a second */
+/* Under the painter's lock: nobody was there for some time, and something is kept. False: not before *wait_until_ns, if it was later. */
+bool drawing_may_rest(struct drawing *drawing, int64_t *wait_until_ns);
+void drawing_rest(struct drawing *drawing); /* all of it is given back; no picture may be under way */
 
 /* --- turns.c --- */
 

@@ -114,6 +114,19 @@ void encoding_forget(struct encoding *encoding, uint64_t client)
     pthread_mutex_unlock(&encoding->lock);
 }
 
+void encoding_rest(struct encoding *encoding)
+{
+    pthread_mutex_lock(&encoding->lock);
+    struct idle_encoder *idle = encoding->idle, *next;
+    encoding->idle = NULL;
+    pthread_mutex_unlock(&encoding->lock);
+    for (; idle; idle = next) {
+        next = idle->next;
+        encoder_destroy(&idle->encoder);
+        mem_free(idle);
+    }
+}
+
 void encoding_destroy(struct encoding **encoding_ptr)
 {
     struct encoding *encoding = *encoding_ptr;
@@ -126,11 +139,7 @@ void encoding_destroy(struct encoding **encoding_ptr)
         chains_forget(&encoding->chains, encoding->chains.links[encoding->chains.link_count - 1].client);
     pthread_mutex_unlock(&encoding->lock);
     encoding_sweep(encoding);
-    for (struct idle_encoder *idle = encoding->idle, *next; idle; idle = next) {
-        next = idle->next;
-        encoder_destroy(&idle->encoder);
-        mem_free(idle);
-    }
+    encoding_rest(encoding);
     mem_free(encoding->chains.links);
     batch_finish(&encoding->rest);
     mem_free(encoding->plan.from);

@@ -24,6 +24,8 @@ void encoding_destroy(struct encoding **encoding);                      /* waits
 /* One packet for each codec and quality in the batch, and for those who cannot share it. Takes its own reference on frame; empties the
    batch. */
 void encoding_submit(struct encoding *encoding, struct frame *frame, struct batch *batch);
+/* Encoders that nobody uses go. */
+void encoding_rest(struct encoding *encoding);
 void encoding_forget(struct encoding *encoding, uint64_t client);
 void encoding_sweep(struct encoding *encoding); /* after that: frees what nobody uses any more */
 

@@ -176,6 +176,8 @@ void painter_forget(struct painter *painter, uint64_t id)
         memmove(painter->clients + place, painter->clients + place + 1, (painter->client_count - place) * sizeof(struct client *));
     }
     encoding_forget(painter->encoding, id);
+    if (painter->client_count == 0)
+        pthread_cond_broadcast(&painter->wake); /* it may rest soon */
     pthread_mutex_unlock(&painter->lock);
     encoding_sweep(painter->encoding);
 }

@@ -24,6 +24,7 @@ struct painter_params {
     struct moments *moments;     /* where views of an instant find it; NULL: there are none */
     struct trials *trials;    /* where views of places that are tried out find them; NULL: there are none */
     struct workers *workers;
+    size_t memory_bytes;      /* what the daemon may take, models and all; 0: what suits the machine */
     const char *h264_library; /* an encoder of libavcodec; NULL: the usual one */
     struct counters *counters;
     const struct view *first;    /* pictures that are drawn, and thrown away, in painter_create: what only the first cost is paid. Need live

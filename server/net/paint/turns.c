@@ -160,6 +160,7 @@ static void answer_pick(struct drawing *drawing)
     pick_at(painter->params.scene, drawing->field, &order.view, snapshot, order.x_px, order.y_px, &pick);
     if (moment)
         moments_give(painter->params.moments, &moment);
+    drawing_stir(drawing);
     counter_inc(painter->picked, 1);
     counter_inc(painter->pick_us, (clock_mono_ns() - start_ns) / 1000);
     if (picks_give(painter->picks, &order, &pick))
@@ -188,6 +189,12 @@ bool drawing_next(struct drawing *drawing, const struct schedule *schedule, stru
         if (!drawing->warm) {
             pthread_mutex_unlock(&painter->lock);
             drawing_idle(drawing);
+            pthread_mutex_lock(&painter->lock);
+            continue;
+        }
+        if (!drawing->slow.canvas && drawing_may_rest(drawing, &turn.wait_until_ns)) {
+            pthread_mutex_unlock(&painter->lock);
+            drawing_rest(drawing);
             pthread_mutex_lock(&painter->lock);
             continue;
         }

@@ -41,31 +41,8 @@ void draft_destroy(struct draft **draft_ptr)
     struct draft *draft = *draft_ptr;
     if (!draft)
         return;
-    for (int i = 0; i < DRAFT_LIGHTS; i++)
-        draft_free_light(draft, &draft->lights[i]);
-    for (size_t i = 0; i < draft->chunk_capacity; i++) {
-        mem_free(draft->chunks[i].triangles);
-        mem_free(draft->chunks[i].extra);
-        mem_free(draft->chunks[i].bands);
-        mem_free(draft->chunks[i].sorted);
-        mem_free(draft->chunks[i].starts);
-    }
-    for (size_t m = 0; draft->parts && m < draft->stage->model_count; m++) {
-        for (size_t l = 0; draft->parts[m] && l < draft->stage->models[m].level_count; l++)
-            draft_parts_finish(&draft->parts[m][l]);
-        mem_free(draft->parts[m]);
-    }
-    for (size_t i = 0; i < draft->found_capacity; i++)
-        mem_free(draft->found[i].items);
-    visibility_buffers_finish(&draft->kept);
+    draft_rest(draft);
     mem_free(draft->parts);
-    mem_free(draft->found);
-    mem_free(draft->chunks);
-    mem_free(draft->meshes);
-    mem_free(draft->draws);
-    mem_free(draft->vertices);
-    mem_free(draft->depth);
-    mem_free(draft->marks);
     mem_free(draft->ramps);
     mem_free(draft->ramp_of_model);
     mem_free(draft->backdrops);

@@ -33,8 +33,8 @@ static void find_ground(struct light *light)
 
 bool light_init(struct light *light, const struct stage *stage, struct environments *environments)
 {
-    size_t two = 2 * bake_bytes(stage); /* one to show while the next is baked */
-    *light = (struct light){ .stage = stage, .environments = environments, .bound_bytes = two > LIGHT_BYTES ? two : LIGHT_BYTES };
+    *light = (struct light){ .stage = stage, .environments = environments };
+    light_bound(light, LIGHT_BYTES);
     find_ground(light);
     return bake_programs_init(&light->programs, stage->gl->log);
 }
@@ -87,6 +87,22 @@ struct light_set *light_near(struct light *light, const struct light_key *key)
     if (nearest)
         nearest->used = ++light->uses;
     return nearest;
+}
+
+void light_bound(struct light *light, size_t bytes)
+{
+    size_t two = 2 * bake_bytes(light->stage);
+    light->bound_bytes = two > bytes ? two : bytes;
+}
+
+void light_rest(struct light *light, const struct light_key *usual)
+{
+    bool known = find(light, usual) != NULL;
+    if (light->bake && (known || !same(bake_key(light->bake), usual)))
+        bake_abandon(&light->bake);
+    for (int i = 0; i < LIGHT_SETS && known; i++) /* where it is not, a rough one may stand for it */
+        if (light->sets[i].id && !light->sets[i].holds && !same(&light->sets[i].key, usual))
+            drop(light, &light->sets[i]);
 }
 
 /* An empty place for another set, with the bound kept as far as what is held allows. NULL: all are held. */

@@ -29,6 +29,9 @@ struct light_set *light_get(struct light *light, const struct light_key *key);
 struct light_set *light_near(struct light *light, const struct light_key *key);
 /* Likewise; bakes on for about that long, and a bit at least, if nothing else is under way. True: light_get does not wait now. */
 bool light_step(struct light *light, const struct light_key *key, int64_t budget_ns);
+/* So many bytes at most, but two sets at least: one to show while the next is baked. */
+void light_bound(struct light *light, size_t bytes);
+void light_rest(struct light *light, const struct light_key *usual); /* drops all but that one, and what is under way */
 /* While it is held, a set stays. */
 void light_hold(struct light_set *set);
 void light_release(struct light_set *set); /* NULL is fine */

@@ -84,6 +84,43 @@ void plates_destroy(struct plates **plates_ptr)
     *plates_ptr = NULL;
 }
 
+void plates_bound(struct plates *plates, size_t bytes)
+{
+    visibility_buffers_bound(&plates->kept, bytes);
+}
+
+size_t plates_kept_bytes(const struct plates *plates)
+{
+    return plates->kept.bytes;
+}
+
+size_t plates_room_bytes(const struct plates *plates)
+{
+    const struct plate *spare = plates->spare;
+    if (!spare)
+        return 0;
+    return draft_room_bytes(spare->draft) + spare->attribute_capacity * sizeof(*spare->attributes) +
+           spare->mesh_capacity * sizeof(*spare->normals) + spare->draw_capacity * sizeof(*spare->draws);
+}
+
+size_t plates_light_bytes(const struct plates *plates)
+{
+    return plates->light.open ? (size_t)plates->light.open_px * (size_t)plates->light.open_px : 0;
+}
+
+void plates_drop_spare(struct plates *plates)
+{
+    destroy(&plates->spare);
+}
+
+void plates_rest(struct plates *plates)
+{
+    plates_drop_spare(plates);
+    visibility_buffers_finish(&plates->kept);
+    mem_free(plates->light.open);
+    plates->light = (struct plate_light){ 0 };
+}
+
 bool plates_can(const struct plates *plates, const struct picture *picture)
 {
     const struct view *view = picture->view;

@@ -27,6 +27,13 @@ bool plate_step(struct plate *plate, const struct picture *picture, const struct
 bool plates_keep(struct plates *plates, struct plate *plate, const struct picture *picture, const struct frame *frame);
 void plate_end(struct plates *plates, struct plate **plate); /* &NULL is fine; leaves NULL */
 
+void plates_bound(struct plates *plates, size_t bytes); /* of what is kept to colour pictures again */
+size_t plates_kept_bytes(const struct plates *plates);  /* of that */
+size_t plates_room_bytes(const struct plates *plates);  /* to draw in, but for a picture that is under way */
+size_t plates_light_bytes(const struct plates *plates); /* read back */
+void plates_drop_spare(struct plates *plates);          /* room to draw in, likewise */
+void plates_rest(struct plates *plates);                /* all three */
+
 /* A picture that differs in values and colours only was drawn, and is kept. */
 bool plates_know(struct plates *plates, const struct picture *picture);
 /* Colours it again: picture with its palette. False: it is not kept. */

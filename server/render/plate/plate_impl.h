@@ -29,6 +29,7 @@ struct plate_draw {
 struct plate_light { /* what drafts do not have of it */
     uint64_t id;
     uint8_t *open; /* of the ground, rows from the top */
+    int open_px;   /* of a side */
 };
 
 struct plate_surroundings {

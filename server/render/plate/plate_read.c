@@ -21,6 +21,7 @@ bool plate_read_light(struct plates *plates, const struct light_set *set)
     mem_free(light->open);
     light->id = 0;
     light->open = mem_try_array(texels, 1);
+    light->open_px = side;
     bool good = both && light->open;
     if (good) {
         glGetTextureImage(set->ground, 0, GL_RG, GL_UNSIGNED_BYTE, (GLsizei)(texels * 2), both);

@@ -56,7 +56,7 @@ function start(program, args, ready) {
         await exit;
     };
     const fault = () => faultOf(program, child, said, ending);
-    return up.then(() => ({ end, said: () => said, running, fault }));
+    return up.then(() => ({ pid: child.pid, end, said: () => said, running, fault }));
 }
 
 // One line to the simulator, one line back.
@@ -95,15 +95,17 @@ function copyPlant(folder, modbusPort, more) {
 }
 
 // more: what else the plant file says. arrange(plant): what to do once its simulator runs, before its daemon does.
-export async function startPlant(more = '', arrange = () => {}) {
+// flags: more of the daemon's.
+export async function startPlant(more = '', arrange = () => {}, flags = []) {
     const folder = mkdtempSync(join(tmpdir(), 'plantcast-e2e-'));
     const [modbusPort, controlPort, httpPort] = [await freePort(), await freePort(), await freePort()];
     const file = copyPlant(folder, modbusPort, more);
-    const startDaemon = () => start('plantcastd', [file, '--port', String(httpPort)], 'plantcastd: ready');
+    const startDaemon = () => start('plantcastd', [file, '--port', String(httpPort), ...flags], 'plantcastd: ready');
     let sim, daemon;
     const plant = {
         file,
         url: `http://127.0.0.1:${httpPort}/`,
+        get pid() { return daemon.pid; },
         ask: (line) => ask(controlPort, line),
         stopDaemon: (signal) => daemon.end(signal),
         async startDaemon() {

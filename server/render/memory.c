@@ -1,0 +1,64 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One bound for all that a renderer keeps. */
+#include "render/memory.h"
+
+#include "render/draft/draft.h"
+#include "render/plate/plate.h"
+#include "render/renderer_impl.h"
+
+const char *const render_store_names[RENDER_STORES] = { "shown fields", "light", "still pictures", "targets", "drawing", "models" };
+
+/* Of what room to draw in leaves. Of fields, half is here and half on the GPU. */
+static const double FIELDS_SHARE = 0.35, LIGHT_SHARE = 0.3, PLATES_SHARE = 0.15, DRAFTS_SHARE = 0.1, TARGETS_SHARE = 0.1;
+/* Room beyond this share is made anew for each picture that needs it. */
+static const double ROOM_SHARE = 0.4;
+
+static size_t room_bytes(const struct renderer *renderer)
+{
+    return renderer->draft ? draft_room_bytes(renderer->draft) + plates_room_bytes(renderer->plates) : 0;
+}
+
+void renderer_measure_memory(const struct renderer *renderer, size_t out[RENDER_STORES])
+{
+    out[STORE_FIELDS] = renderer->fields.bytes + pool_bytes_taken(renderer->fields.pool);
+    out[STORE_LIGHT] = renderer->light.bytes;
+    out[STORE_PICTURES] = 0;
+    out[STORE_TARGETS] = targets_bytes(&renderer->targets);
+    out[STORE_ROOM] = room_bytes(renderer);
+    out[STORE_MODELS] = 0;
+    if (renderer->draft) {
+        out[STORE_LIGHT] += draft_light_bytes(renderer->draft) + plates_light_bytes(renderer->plates);
+        out[STORE_PICTURES] = draft_kept_bytes(renderer->draft) + plates_kept_bytes(renderer->plates);
+    }
+    for (size_t i = 0; i < renderer->stage.model_count; i++) {
+        const struct mesh *mesh = &renderer->stage.models[i].mesh;
+        out[STORE_MODELS] += mesh->vertex_count * mesh_vertex_bytes(mesh) + 4 * mesh->index_count;
+    }
+}
+
+void renderer_bound_memory(struct renderer *renderer, size_t bytes)
+{
+    if (renderer->plates && (double)room_bytes(renderer) > ROOM_SHARE * (double)bytes)
+        plates_drop_spare(renderer->plates);
+    size_t room = room_bytes(renderer), least = bytes - (size_t)(ROOM_SHARE * (double)bytes);
+    double left = (double)(room < bytes - least ? bytes - room : least);
+    renderer->fields.bound_bytes = (size_t)(FIELDS_SHARE * left / 2);
+    light_bound(&renderer->light, (size_t)(LIGHT_SHARE * left));
+    targets_bound(&renderer->targets, (size_t)(TARGETS_SHARE * left));
+    if (renderer->draft) {
+        draft_bound(renderer->draft, (size_t)(DRAFTS_SHARE * left));
+        plates_bound(renderer->plates, (size_t)(PLATES_SHARE * left));
+    }
+}
+
+void renderer_rest(struct renderer *renderer)
+{
+    struct light_key usual = renderer_usual_light(renderer);
+    fields_rest(&renderer->fields);
+    light_rest(&renderer->light, &usual);
+    targets_finish(&renderer->targets);
+    if (renderer->plates)
+        plates_rest(renderer->plates);
+    if (renderer->draft)
+        draft_rest(renderer->draft);
+}

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Memory: somebody tries everything, and the daemon stays under its bound; when all have gone it gives back what it took. What a person
+// does in ten minutes, as fast as the machine answers; in `make test-long` (USES=1440) what he does in an hour.
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { after, before, test } from 'node:test';
+import { Curious, dice } from './support/curious.mjs';
+import { get } from './support/plain_client.mjs';
+import { missing, startPlant } from './support/plant.mjs';
+
+const USES = Number(process.env.USES ?? 240), SEED = Number(process.env.PLANTCAST_SEED ?? 20), LEAVES = 0.02;
+const BOUND_MB = Number(process.env.MEMORY_MB ?? 1024), REST_MS = 60000, GROWN = 1.2;
+const why = missing();
+const options = { skip: why ?? false, timeout: 100000 + 4000 * USES };
+let plant, port, start;
+
+const status = () => readFileSync(`/proc/${plant.pid}/status`, 'utf8');
+const megabytes = (name) => Number(status().match(new RegExp(`${name}:\\s+(\\d+)`))[1]) / 1024;
+const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
+
+// Gauges in MB, by what they are of.
+async function gauges() {
+    const { body } = await get(port, '/metrics'), found = {};
+    for (const [, name, of, value] of body.toString().matchAll(/^plantcast_memory(_bound)?_bytes(?:\{of="(.*)"\})? (\d+)$/gm))
+        found[name ? 'bound' : of] = Number(value) / (1 << 20);
+    return found;
+}
+const told = (all) => Object.entries(all).map(([name, value]) => `${name} ${value.toFixed(0)}`).join(', ');
+
+before(async () => {
+    if (why)
+        return;
+    plant = await startPlant('', () => {}, ['--memory', String(BOUND_MB)]);
+    port = Number(new URL(plant.url).port);
+    start = megabytes('VmRSS');
+});
+after(() => plant?.stop());
+
+test('under its bound, whatever somebody tries', options, async (t) => {
+    const random = dice(SEED), began = performance.now(), done = {};
+    let one = await Curious.come(port, random), most = 0, mostOf = {};
+    for (let n = 0; n < USES; n++) {
+        const name = await one.act(true), now = megabytes('RssAnon');
+        done[name] = (done[name] ?? 0) + 1;
+        if (now > most)
+            [most, mostOf] = [now, await gauges()];
+        assert.ok(now <= BOUND_MB, `after ${n} uses, the last of them ${name}: ${now} MB; ${told(mostOf)}`);
+        const { bound, ...kept } = await gauges(), sum = Object.values(kept).reduce((a, b) => a + b);
+        assert.ok(sum <= bound * 1.02, `${sum} MB are kept: ${told(kept)}`);
+        if (random() < LEAVES) {
+            await one.leave();
+            one = await Curious.come(port, random);
+        }
+    }
+    assert.deepEqual([...new Set(one.refused)], []);
+    await one.leave();
+    t.diagnostic(`${USES} uses in ${((performance.now() - began) / 1000).toFixed(0)} s: ${start.toFixed(0)} MB at first, of its own ` +
+        `${most.toFixed(0)} MB at most (${told(mostOf)})`);
+    t.diagnostic(told(done));
+});
+
+test('when all have gone it is what it was', options, async (t) => {
+    const began = performance.now();
+    while (megabytes('VmRSS') > GROWN * start && performance.now() - began < REST_MS)
+        await sleep(250);
+    const now = megabytes('VmRSS'), seconds = ((performance.now() - began) / 1000).toFixed(0);
+    t.diagnostic(`${now.toFixed(0)} MB after ${seconds} s; ${start.toFixed(0)} MB at first`);
+    assert.ok(now <= GROWN * start, `${now} MB, ${start} MB at first: ${told(await gauges())}`);
+    const one = await Curious.come(port, dice(SEED));
+    await one.leave();
+});
