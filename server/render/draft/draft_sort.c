@@ -91,11 +91,20 @@ static void add_triangle(const struct draft *draft, struct draft_chunk *chunk, c
         chunk->starts[b + 1]++;
 }
 
+/* Room for so many triangles together. */
+static void reserve(struct draft_chunk *chunk, size_t count)
+{
+    mem_grow(&chunk->triangles, &chunk->triangle_capacity, count, sizeof(*chunk->triangles));
+    mem_grow(&chunk->bands, &chunk->band_capacity, count, sizeof(*chunk->bands));
+}
+
+/* Where a triangle is cut there may be more of them than the draw has: few are. */
 static void add_draw(const struct draft *draft, struct draft_chunk *chunk, const struct draft_draw *draw)
 {
     const struct draft_mesh *mesh = &draft->meshes[draw->mesh];
     const uint32_t *indices = mesh->file->indices + draw->first_index;
     const struct draft_vertex *vertices = draft->vertices + mesh->first_vertex;
+    reserve(chunk, chunk->triangle_count + draw->index_count / 3);
     for (uint32_t i = 0; i < draw->index_count; i += 3) {
         const uint32_t *at = &indices[i];
         if (vertices[at[0]].inverse_w > 0 && vertices[at[1]].inverse_w > 0 && vertices[at[2]].inverse_w > 0) {
@@ -104,6 +113,7 @@ static void add_draw(const struct draft *draft, struct draft_chunk *chunk, const
         }
         uint32_t corners[NEAR_CORNERS];
         int count = cut(draft, chunk, mesh, at, corners);
+        reserve(chunk, chunk->triangle_count + (draw->index_count - i) / 3 + NEAR_TRIANGLES);
         for (int c = 2; c < count; c++)
             add_triangle(draft, chunk, draw, corners[0], corners[c - 1], corners[c]);
     }
@@ -134,10 +144,8 @@ static void sort_chunks(void *arg, size_t begin, size_t end)
     struct draft *draft = sorting->draft;
     for (size_t c = sorting->first + begin; c < sorting->first + end; c++) {
         struct draft_chunk *chunk = &draft->chunks[c];
-        size_t starts = (size_t)draft->band_count + 1, most_triangles = NEAR_TRIANGLES * CHUNK_TRIANGLES;
+        size_t starts = (size_t)draft->band_count + 1;
         chunk->triangle_count = chunk->extra_count = 0;
-        mem_grow(&chunk->triangles, &chunk->triangle_capacity, most_triangles, sizeof(*chunk->triangles));
-        mem_grow(&chunk->bands, &chunk->band_capacity, most_triangles, sizeof(*chunk->bands));
         mem_grow(&chunk->starts, &chunk->start_capacity, starts, sizeof(*chunk->starts));
         memset(chunk->starts, 0, starts * sizeof(*chunk->starts));
         for (size_t d = 0; d < chunk->draw_count; d++)
