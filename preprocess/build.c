@@ -45,16 +45,25 @@ static void hash_field(XXH3_state_t *state, const struct plant *plant, const str
         XXH3_64bits_update(state, "s", 1);
 }
 
-uint64_t build_stock_key(uint64_t model_hash, const struct geometry_params *geometry)
+uint64_t build_recipe(uint64_t model_hash, const struct geometry_params *geometry)
+{
+    XXH3_state_t state;
+    XXH3_INITSTATE(&state);
+    XXH3_64bits_reset(&state);
+    XXH3_64bits_update(&state, &(uint64_t){ build_stock_key(model_hash, geometry) }, sizeof(uint64_t));
+    XXH3_64bits_update(&state, geometry->nodes ? "n" : "a", 1);
+    hash_text(&state, geometry->nodes);
+    return XXH3_64bits_digest(&state);
+}
+
+uint64_t build_stock_key(uint64_t geometry_hash, const struct geometry_params *geometry)
 {
     const uint32_t numbers[3] = { ASSET_VERSION, BUILD_REVISION, (uint32_t)geometry->up };
     XXH3_state_t state;
     XXH3_INITSTATE(&state);
     XXH3_64bits_reset(&state);
     XXH3_64bits_update(&state, numbers, sizeof(numbers));
-    XXH3_64bits_update(&state, &model_hash, sizeof(model_hash));
-    XXH3_64bits_update(&state, geometry->nodes ? "n" : "a", 1);
-    hash_text(&state, geometry->nodes);
+    XXH3_64bits_update(&state, &geometry_hash, sizeof(geometry_hash));
     XXH3_64bits_update(&state, &geometry->unit_m, sizeof(geometry->unit_m));
     if (geometry->tolerance_m > 0)
         XXH3_64bits_update(&state, &geometry->tolerance_m, sizeof(geometry->tolerance_m));
@@ -222,23 +231,6 @@ static void pack_parts(struct build *build)
         stock_pack(&build->parts, &build->geometry, &build->levels);
 }
 
-static size_t list_nodes(const struct build *build, struct stock_node *nodes, bool *any_new)
-{
-    const struct build_input *input = build->input;
-    double known_m[3];
-    size_t count = 0;
-    for (size_t s = 0; s < input->sensor_count; s++) {
-        if (!input->sensors[s].node)
-            continue;
-        *any_new |= !input->stock || !stock_node_place(input->stock, input->sensors[s].node, known_m);
-        nodes[count].name = (char *)input->sensors[s].node;
-        for (int axis = 0; axis < 3; axis++)
-            nodes[count].place_m[axis] = build->measured.places_m[s][axis] + build->geometry.origin_m[axis];
-        count++;
-    }
-    return count;
-}
-
 static bool write_surface(const struct build *build)
 {
     const struct build_input *input = build->input;
@@ -255,16 +247,8 @@ static bool write_surface(const struct build *build)
 static void write_stock(const struct build *build)
 {
     const struct build_input *input = build->input;
-    bool any_new = !input->stock;
-    size_t size = build->parts.length;
-    const void *parts = input->stock ? stock_parts(input->stock, &size) : build->parts.at;
-    struct stock_node *nodes = mem_array(input->sensor_count, sizeof(*nodes));
-    size_t count = list_nodes(build, nodes, &any_new);
-    if (size && !input->stock && !write_surface(build))
-        size = 0;
-    if (any_new && size)
-        stock_write(input->folder, input->stock_key, parts, size, &build->stock_report, nodes, count);
-    mem_free(nodes);
+    if (!input->stock && build->parts.length && write_surface(build))
+        stock_write(input->folder, input->stock_key, build->parts.at, build->parts.length, &build->stock_report);
 }
 
 static void write_kept(void *arg)
@@ -437,7 +421,7 @@ bool build_asset(struct log *log, struct workers *workers, const struct build_in
                  char why[MODEL_WHY_BYTES])
 {
     struct build build = { .log = log, .workers = workers, .input = input, .output = output, .why = why };
-    *output = (struct build_output){ .missing_node = -1 };
+    *output = (struct build_output){ 0 };
     struct clusters left = { 0 };
     bool good = begin(&build) && build_file(&build);
     workers_end(&build.keeping);

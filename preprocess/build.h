@@ -9,14 +9,14 @@
 #include "preprocess/levels.h"
 #include "surface/surface.h"
 
-#define BUILD_REVISION 41u /* grows when the same input shall give another file */
+#define BUILD_REVISION 42u /* grows when the same input shall give another file */
 
 struct stock;
 struct build_input {
-    const struct gltf_model *model; /* not looked at where there is a stock, but for sensors' nodes that it does not know */
+    const struct gltf_model *model; /* not looked at where there is a stock */
     struct geometry_params geometry;
     const struct plant *plant; /* its groups and tags say where the field bends */
-    const struct plant_sensor *sensors;
+    const struct plant_sensor *sensors; /* position_m also where it is a node's */
     size_t sensor_count;
     uint64_t key;
     const struct stock *stock; /* of this stock_key; NULL: there is none */
@@ -48,11 +48,9 @@ struct build_output {
     struct folder_draft file;
     struct asset_view view; /* of its bytes */
     struct build_report report;
-    int missing_node; /* index of a sensor whose node is not in the model, or not the only one; -1: none */
 };
 
-/* output->file is to be put in its place, and closed. False: why says what is wrong, and there is none; output->missing_node names the
-   sensor if it is one's fault. Thread: any; work is spread over workers. */
+/* output->file is to be put in its place, and closed. False: why says what is wrong, and there is none. Thread: any; work is spread over workers. */
 bool build_asset(struct log *log, struct workers *workers, const struct build_input *input, struct build_output *output,
                  char why[MODEL_WHY_BYTES]);
 
@@ -60,8 +58,10 @@ bool build_asset(struct log *log, struct workers *workers, const struct build_in
 bool build_sensor_place(const struct gltf_model *model, const struct geometry_params *geometry, const struct plant_sensor *sensor,
                         double place_m[3], char why[MODEL_WHY_BYTES]);
 
-/* The key of all that no sensor has a part in. */
-uint64_t build_stock_key(uint64_t model_hash, const struct geometry_params *geometry);
+/* Of a model and the way in which an asset is cut out of it: where it is known, so is what comes out. */
+uint64_t build_recipe(uint64_t model_hash, const struct geometry_params *geometry);
+/* The key of all that no sensor has a part in. geometry_hash: what geometry_hash says. */
+uint64_t build_stock_key(uint64_t geometry_hash, const struct geometry_params *geometry);
 /* The key of a file that would be made of this. */
 uint64_t build_key(uint64_t stock_key, const struct plant *plant, const struct plant_sensor *sensors, size_t sensor_count);
 

@@ -191,6 +191,9 @@ static char *manifest_text(const char *folder, const struct folder_entry *entrie
             json_array_append_new(tags, json_string(entries[i].tags[t]));
         json_t *asset = json_pack("{s:s, s:s, s:s, s:s, s:o, s:o}", "id", entries[i].id, "file", file, "key", key, "recipe", recipe,
                                   "placement", placement, "tags", tags);
+        json_t *missing = entries[i].missing ? json_string(entries[i].missing) : NULL;
+        if (entries[i].missing)
+            json_object_set_new(asset, "missing", missing ? missing : json_string("it cannot be prepared"));
         add_surface(asset, folder, entries[i].stock_key);
         json_array_append_new(assets, asset);
         mem_free(file);
@@ -258,7 +261,7 @@ int folder_finish(const char *folder, const struct folder_entry *entries, size_t
     int status = text ? 0 : -ENOMEM;
     if (text && (!old || size != strlen(text) || memcmp(old, text, size) != 0))
         status = text_write_file(path, text, strlen(text));
-    if (status == 0)
+    if (status == 0 && removed)
         remove_unnamed(folder, entries, count, removed);
     mem_free(old);
     free(text);

@@ -61,11 +61,13 @@ struct folder_entry {
     const char *id;
     uint64_t key, recipe;    /* recipe: plant/recipe.h */
     uint64_t stock_key, columns_key;
+    const char *missing;     /* why there is no file; NULL: there is */
     const double *placement; /* 16: plant from asset frame */
     const char *const *tags; /* of its sensors, as they stand in the file */
     size_t tag_count;
 };
-/* Writes the manifest unless it says the same already, then removes files of other keys. 0 or -errno; *removed counts. */
+/* Writes the manifest unless it says the same already, then removes files of other keys. 0 or -errno; *removed counts. removed NULL: none
+   is removed. */
 int folder_finish(const char *folder, const struct folder_entry *entries, size_t count, size_t *removed);
 
 #endif

@@ -60,11 +60,6 @@ static int by_material(const void *a, const void *b)
     return p->order < q->order ? -1 : 1;
 }
 
-struct parts {
-    struct part *at;
-    size_t count, capacity;
-};
-
 static void add_parts(struct parts *parts, struct geometry *geometry, const struct gltf_model *model, const struct gltf_node *node)
 {
     const struct gltf_mesh *mesh = &model->meshes[node->mesh];
@@ -102,9 +97,8 @@ uint64_t geometry_triangles(const struct gltf_model *model, const struct geometr
     return triangles;
 }
 
-/* Sorted by material, blended ones last. */
-static bool find_parts(struct parts *parts, struct geometry *geometry, const struct gltf_model *model, const struct geometry_params *params,
-                       char *why)
+bool parts_find(struct parts *parts, struct geometry *geometry, const struct gltf_model *model, const struct geometry_params *params,
+                char *why)
 {
     bool *taken = taken_nodes(model, params->nodes, why);
     if (!taken)
@@ -346,7 +340,7 @@ bool geometry_cut(struct geometry *geometry, const struct gltf_model *model, con
 {
     struct parts parts = { 0 };
     *geometry = (struct geometry){ 0 };
-    bool good = find_parts(&parts, geometry, model, params, why) && find_origin(geometry, &parts, params, why) &&
+    bool good = parts_find(&parts, geometry, model, params, why) && find_origin(geometry, &parts, params, why) &&
                 join_parts(geometry, &parts, model, params, why) && geometry_join_textures(geometry, model, why);
     mem_free(parts.at);
     if (!good)

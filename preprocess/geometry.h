@@ -37,6 +37,9 @@ bool geometry_cut(struct geometry *geometry, const struct gltf_model *model, con
                   char why[MODEL_WHY_BYTES]);
 void geometry_finish(struct geometry *geometry);
 
+/* A hash of all that geometry_cut would take from the model, whatever else is in it; not of params. False: as geometry_cut. */
+bool geometry_hash(uint64_t *out, const struct gltf_model *model, const struct geometry_params *params, char why[MODEL_WHY_BYTES]);
+
 /* How many triangles that would take, before those without area are left out. 0 where geometry_cut would find nothing. */
 uint64_t geometry_triangles(const struct gltf_model *model, const struct geometry_params *params);
 

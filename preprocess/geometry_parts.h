@@ -11,6 +11,15 @@ struct part { /* one primitive under one node */
     bool blend;
 };
 
+struct parts {
+    struct part *at; /* sorted by material, blended ones last */
+    size_t count, capacity;
+};
+/* Of the nodes that params take; counts of nodes and of what is skipped go to geometry. False: why says what is wrong. mem_free(parts->at)
+   in both cases. */
+bool parts_find(struct parts *parts, struct geometry *geometry, const struct gltf_model *model, const struct geometry_params *params,
+                char *why);
+
 struct vertex { /* every attribute, so that vertices are welded only where all agree */
     float position[3], normal[3], texcoord[2], second_texcoord[2];
     uint8_t color[4];

@@ -18,26 +18,12 @@ bool build_sensor_place(const struct gltf_model *model, const struct geometry_pa
     return !sensor->node || geometry_node_place(model, geometry, sensor->node, place_m, why);
 }
 
-static bool find_place(const struct build_input *input, const struct plant_sensor *sensor, double place_m[3], char *why)
-{
-    return (sensor->node && input->stock && stock_node_place(input->stock, sensor->node, place_m)) ||
-           build_sensor_place(input->model, &input->geometry, sensor, place_m, why);
-}
-
 /* Where each sensor is, less the origin. */
-static bool place_sensors(const struct build_input *input, const struct geometry *geometry, double (*places)[3], int *missing, char *why)
+static void place_sensors(const struct build_input *input, const struct geometry *geometry, double (*places)[3])
 {
-    for (size_t i = 0; i < input->sensor_count; i++) {
-        const struct plant_sensor *sensor = &input->sensors[i];
-        double place[3];
-        if (!find_place(input, sensor, place, why)) {
-            *missing = (int)i;
-            return false;
-        }
+    for (size_t i = 0; i < input->sensor_count; i++)
         for (int axis = 0; axis < 3; axis++)
-            places[i][axis] = place[axis] - geometry->origin_m[axis];
-    }
-    return true;
+            places[i][axis] = input->sensors[i].position_m[axis] - geometry->origin_m[axis];
 }
 
 struct drop {
@@ -110,8 +96,7 @@ bool measure_sensors(struct measured *measured, struct log *log, struct workers 
     int64_t start_ns = clock_mono_ns();
     measured->places_m = mem_array(input->sensor_count, sizeof(*measured->places_m));
     measured->sensors = mem_array(input->sensor_count, sizeof(*measured->sensors));
-    if (!place_sensors(input, g, measured->places_m, &output->missing_node, why))
-        return false;
+    place_sensors(input, g, measured->places_m);
     char cause[SURFACE_WHY_BYTES] = "out of memory";
     if (!measured->surface)
         measured->surface =

@@ -14,6 +14,7 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "plant/recipe.h"
+#include "preprocess/cuts.h"
 #include "preprocess/folder.h"
 #include "preprocess/progress.h"
 #include "preprocess/report_numbers.h"
@@ -32,11 +33,13 @@ struct run {
     const struct prepare_params *params;
     size_t *todo; /* assets to build, by model */
     size_t todo_count, batch_begin, batch_end;
+    struct cuts known, cuts; /* of the last time, and of this one */
+    double parsed_triangles; /* of models that were parsed for their keys and wait for their assets to be built */
     pthread_mutex_t lock;
     /* --- below: under lock */
     struct diag *diag;
     struct progress progress;
-    bool failed;
+    bool failed, unusable; /* unusable: also what is not to blame on a model */
 };
 
 struct geometry_params prepare_geometry(const struct plant_asset *asset)
@@ -66,6 +69,13 @@ static void fail_asset(struct run *run, const struct prepare_asset *asset, const
     fail(run, run->prepare->plant->path, asset->plant->line, "asset %s: %s: %s", asset->plant->id, asset->plant->model, why);
 }
 
+/* Its model is no good, or has not what the plant asks of it. */
+static void lose(struct prepare_asset *asset, const char *why)
+{
+    asset->state = PREPARE_FAILED;
+    asset->missing = mem_strdup(why);
+}
+
 static bool is_stopped(const struct run *run)
 {
     return run->params->stop && atomic_load(run->params->stop);
@@ -87,6 +97,97 @@ static size_t first_with_key(const struct run *run, size_t i)
     return i;
 }
 
+/* Of an asset whose model was read before, with the nodes that its sensors stand on. False: it is to be read. */
+static bool recall_cut(struct run *run, struct prepare_asset *asset, uint64_t *geometry)
+{
+    bool known = cuts_find(&run->known, asset->recipe, geometry);
+    for (size_t s = 0; s < asset->sensor_count && known; s++)
+        if (asset->sensors[s].node)
+            known = cuts_find_node(&run->known, asset->recipe, asset->sensors[s].node_hash, asset->sensors[s].position_m);
+    return known;
+}
+
+static double all_triangles(const struct gltf_model *model)
+{
+    double corners = 0;
+    for (uint32_t p = 0; p < model->primitive_count; p++)
+        corners += (double)model->primitives[p].index_count;
+    return corners / 3;
+}
+
+/* False: the model cannot be parsed, which is said once. */
+static bool have_parsed(struct run *run, struct model_file *model)
+{
+    if (model->is_parsed || !model->good)
+        return model->good;
+    if (!model_file_parse(model)) {
+        model->good = false;
+        fail(run, run->prepare->plant->path, model->line, "%s: %s", model->path, model->why);
+    }
+    return model->good;
+}
+
+static bool look_up_cut(struct run *run, struct prepare_asset *asset, uint64_t *geometry)
+{
+    struct model_file *model = &run->prepare->models.at[asset->model];
+    struct geometry_params params = prepare_geometry(asset->plant);
+    char why[MODEL_WHY_BYTES];
+    if (!have_parsed(run, model)) {
+        lose(asset, model->why);
+        return false;
+    }
+    if (!geometry_hash(geometry, &model->parsed, &params, why)) {
+        fail_asset(run, asset, why);
+        lose(asset, why);
+        return false;
+    }
+    for (size_t s = 0; s < asset->sensor_count; s++) {
+        struct plant_sensor *sensor = &asset->sensors[s];
+        const struct plant_tag *tag = &run->prepare->plant->tags[sensor->tag];
+        if (!sensor->node || geometry_node_place(&model->parsed, &params, sensor->node, sensor->position_m, why))
+            continue;
+        fail(run, run->prepare->plant->tags_path, tag->line, "tag %s: asset %s: %s", tag->name, asset->plant->id, why);
+        if (!asset->missing)
+            lose(asset, why);
+    }
+    return asset->state != PREPARE_FAILED;
+}
+
+static void take_cut(struct run *run, struct prepare_asset *asset, uint64_t geometry)
+{
+    struct geometry_params params = prepare_geometry(asset->plant);
+    asset->stock_key = build_stock_key(geometry, &params);
+    asset->key = build_key(asset->stock_key, run->prepare->plant, asset->sensors, asset->sensor_count);
+    asset->columns_key = XXH3_64bits_withSeed(asset->plant->id, strlen(asset->plant->id), asset->stock_key);
+    cuts_add(&run->cuts, asset->recipe, geometry);
+    for (size_t s = 0; s < asset->sensor_count; s++)
+        if (asset->sensors[s].node)
+            cuts_add_node(&run->cuts, asset->recipe, asset->sensors[s].node_hash, asset->sensors[s].position_m);
+}
+
+/* Of the wanted assets of one model. What it takes to parse it is not spent twice unless its triangles take too much room. */
+static void find_keys_of_model(struct run *run, size_t number)
+{
+    struct model_file *model = &run->prepare->models.at[number];
+    for (size_t i = 0; i < run->prepare->asset_count && !is_stopped(run); i++) {
+        struct prepare_asset *asset = &run->prepare->assets[i];
+        struct geometry_params params = prepare_geometry(asset->plant);
+        uint64_t geometry = 0;
+        if (!asset->wanted || asset->model != number || !model->good)
+            continue;
+        asset->recipe = build_recipe(model->hash, &params);
+        if (recall_cut(run, asset, &geometry) || look_up_cut(run, asset, &geometry))
+            take_cut(run, asset, geometry);
+    }
+    if (!model->is_parsed)
+        return;
+    double triangles = all_triangles(&model->parsed);
+    if (run->parsed_triangles + triangles > BATCH_TRIANGLES)
+        model_file_release(model);
+    else
+        run->parsed_triangles += triangles;
+}
+
 static void find_keys(struct run *run)
 {
     struct prepare *prepare = run->prepare;
@@ -97,17 +198,18 @@ static void find_keys(struct run *run)
             continue;
         asset->model = model_files_add(&prepare->models, asset->plant);
         const struct model_file *model = &prepare->models.at[asset->model];
-        struct geometry_params geometry = prepare_geometry(asset->plant);
         asset->sensor_count = plant_sensors(prepare->plant, (int)i, &asset->sensors);
-        if (model->good) {
-            asset->stock_key = build_stock_key(model->hash, &geometry);
-            asset->key = build_key(asset->stock_key, prepare->plant, asset->sensors, asset->sensor_count);
-            asset->columns_key = XXH3_64bits_withSeed(asset->plant->id, strlen(asset->plant->id), asset->stock_key);
-        } else {
-            asset->state = PREPARE_FAILED;
-        }
         if (!model->good && prepare->models.count > known)
             fail_asset(run, asset, model->why);
+        if (!model->good)
+            lose(asset, model->why);
+    }
+    for (size_t m = 0; m < prepare->models.count && !is_stopped(run); m++)
+        find_keys_of_model(run, m);
+    for (size_t i = 0; i < prepare->asset_count && !is_stopped(run); i++) {
+        struct prepare_asset *asset = &prepare->assets[i];
+        if (asset->wanted && asset->state != PREPARE_FAILED && !prepare->models.at[asset->model].good)
+            lose(asset, prepare->models.at[asset->model].why);
         asset->same_as = first_with_key(run, i);
     }
 }
@@ -194,23 +296,11 @@ static int write_file(const struct run *run, const struct prepare_asset *asset, 
     return status;
 }
 
-static void say_failure(struct run *run, const struct prepare_asset *asset, const struct build_output *output, const char *why)
-{
-    const struct plant *plant = run->prepare->plant;
-    if (output->missing_node >= 0) {
-        const struct plant_tag *tag = &plant->tags[asset->sensors[output->missing_node].tag];
-        fail(run, plant->tags_path, tag->line, "tag %s: asset %s: %s", tag->name, asset->plant->id, why);
-    } else {
-        fail_asset(run, asset, why);
-    }
-}
-
 /* False: failed, and said so. Under lock. */
-static bool is_built(struct run *run, const struct prepare_asset *asset, const struct build_output *output, bool good, int status,
-                     const char *why)
+static bool is_built(struct run *run, const struct prepare_asset *asset, bool good, int status, const char *why)
 {
     if (!good)
-        say_failure(run, asset, output, why);
+        fail_asset(run, asset, why);
     else if (status != 0)
         fail(run, run->prepare->plant->path, asset->plant->line, "asset %s: %s cannot be written: %s", asset->plant->id,
              run->params->folder, strerror(-status));
@@ -242,7 +332,10 @@ static void build_one(struct run *run, struct prepare_asset *asset)
     asset->report = output.report;
     asset->seconds = (double)(clock_mono_ns() - start_ns) / NS_PER_S;
     pthread_mutex_lock(&run->lock);
-    asset->state = is_built(run, asset, &output, good, status, why) ? PREPARE_BUILT : PREPARE_FAILED;
+    asset->state = is_built(run, asset, good, status, why) ? PREPARE_BUILT : PREPARE_FAILED;
+    run->unusable |= good && status != 0;
+    if (!good)
+        asset->missing = mem_strdup(why);
     progress_step(&run->progress, asset->work, clock_mono_ns());
     pthread_mutex_unlock(&run->lock);
 }
@@ -267,11 +360,7 @@ static int heavier_first(const void *a, const void *b, void *arg)
 /* False: its model has to be read. */
 static bool find_stock(const struct run *run, struct prepare_asset *asset)
 {
-    double place_m[3];
-    bool all = asset->sensor_count > 0 && stock_open(&asset->stock, run->params->folder, asset->stock_key);
-    for (size_t s = 0; s < asset->sensor_count && all; s++)
-        all = !asset->sensors[s].node || stock_node_place(&asset->stock, asset->sensors[s].node, place_m);
-    return all;
+    return asset->sensor_count > 0 && stock_open(&asset->stock, run->params->folder, asset->stock_key);
 }
 
 static double own_triangles(const struct prepare_asset *asset, const struct model_file *model)
@@ -293,12 +382,10 @@ static void parse_batch(struct run *run)
         bool fresh = run->batch_end == 0 || prepare->assets[run->todo[run->batch_end - 1]].model != asset->model;
         if (fresh && triangles > BATCH_TRIANGLES)
             break;
-        if (!find_stock(run, asset) && model->good && !model->is_parsed && !model_file_parse(model)) {
-            model->good = false;
-            fail(run, prepare->plant->path, model->line, "%s: %s", model->path, model->why);
-        }
+        if (!find_stock(run, asset))
+            have_parsed(run, model);
         if (!model->good) {
-            asset->state = PREPARE_FAILED;
+            lose(asset, model->why);
         } else {
             double own = own_triangles(asset, model);
             asset->work = own + (asset->sensor_count ? SENSORS_WORK : 0);
@@ -352,6 +439,8 @@ static void share(struct run *run)
         if (!is_possible(run, asset) || first == asset)
             continue;
         asset->state = first->state == PREPARE_FAILED || first->state == PREPARE_LEFT ? first->state : PREPARE_SHARED;
+        if (first->missing && !asset->missing)
+            asset->missing = mem_strdup(first->missing);
         if (!first->surface_distances_m)
             continue;
         asset->triangles = first->triangles;
@@ -381,6 +470,26 @@ static void warn(struct run *run, const struct prepare_asset *asset)
     }
 }
 
+/* Those of other assets are kept where these were not asked for. If it cannot be written, the next time takes longer; that is all. */
+static void write_cuts(struct run *run)
+{
+    bool all = !run->params->only && !run->prepare->interrupted;
+    for (size_t i = 0; i < run->known.count && !all; i++)
+        cuts_add(&run->cuts, run->known.at[i].recipe, run->known.at[i].geometry);
+    for (size_t i = 0; i < run->known.node_count && !all; i++)
+        cuts_add_node(&run->cuts, run->known.nodes[i].recipe, run->known.nodes[i].node_hash, run->known.nodes[i].place_m);
+    if (!cuts_same(&run->cuts, &run->known))
+        cuts_write(&run->cuts, run->params->folder);
+}
+
+static bool any_good(const struct prepare *prepare)
+{
+    for (size_t i = 0; i < prepare->asset_count; i++)
+        if (prepare->assets[i].state != PREPARE_FAILED)
+            return true;
+    return false;
+}
+
 static void write_manifest(struct run *run)
 {
     struct prepare *prepare = run->prepare;
@@ -396,11 +505,12 @@ static void write_manifest(struct run *run)
                                             .columns_key = asset->columns_key,
                                             .recipe = plant_recipe(asset->plant, prepare->models.at[asset->model].file_hash),
                                             .placement = asset->plant->placement,
+                                            .missing = asset->missing,
                                             .tags = next,
                                             .tag_count = asset->sensor_count };
         next += asset->sensor_count;
     }
-    int status = folder_finish(run->params->folder, entries, prepare->asset_count, &prepare->removed);
+    int status = folder_finish(run->params->folder, entries, prepare->asset_count, run->failed ? NULL : &prepare->removed);
     if (status != 0)
         fail(run, prepare->plant->path, 0, "%s: the manifest cannot be written: %s", run->params->folder, strerror(-status));
     mem_free(entries);
@@ -423,6 +533,7 @@ bool prepare_run(struct prepare *prepare, struct log *log, struct workers *worke
         fail(&run, plant->path, 0, "%s: cannot be made: %s", params->folder, strerror(errno));
     int lock = run.failed ? -1 : folder_lock(params->folder, log, params->stop);
     if (!run.failed) {
+        cuts_read(&run.known, params->folder);
         find_keys(&run);
         sort_out(&run);
         build_all(&run);
@@ -431,8 +542,12 @@ bool prepare_run(struct prepare *prepare, struct log *log, struct workers *worke
             warn(&run, &prepare->assets[i]);
     }
     prepare->interrupted = is_stopped(&run);
-    if (!run.failed && !params->only && !prepare->interrupted)
+    if (lock >= 0)
+        write_cuts(&run);
+    if (lock >= 0 && !run.unusable && !params->only && !prepare->interrupted && any_good(prepare))
         write_manifest(&run);
+    cuts_finish(&run.known);
+    cuts_finish(&run.cuts);
     if (lock >= 0)
         close(lock);
     prepare->seconds = (double)(clock_mono_ns() - start_ns) / NS_PER_S;
@@ -448,6 +563,7 @@ void prepare_finish(struct prepare *prepare)
         mem_free(prepare->assets[i].sensors);
         mem_free(prepare->assets[i].surface_distances_m);
         mem_free(prepare->assets[i].rebuilt_because);
+        mem_free(prepare->assets[i].missing);
     }
     mem_free(prepare->assets);
     model_files_finish(&prepare->models);

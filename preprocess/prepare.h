@@ -22,7 +22,8 @@ struct prepare_asset {
     float *surface_distances_m; /* of each sensor; NULL: failed */
     double size_m[3];           /* in the asset frame, the last is the height; 0: not known */
     double far_m;               /* a sensor farther from its surface than this is worth a warning */
-    uint64_t key, stock_key, columns_key;
+    uint64_t recipe, key, stock_key, columns_key; /* recipe: build_recipe */
+    char *missing; /* failed because of the model: why it, or a sensor's node, cannot be found there; else NULL */
     struct stock stock; /* while it is built; parts.bytes NULL: none */
     size_t same_as; /* the first asset with this key, which has the file */
     enum prepare_state state;
@@ -51,7 +52,8 @@ struct prepare_params {
 };
 
 /* One process at a time prepares into a folder; another one waits. Findings go to diag (errors by the plant file's or tag list's line).
-   False: something failed or it was interrupted; what is good was written, but the manifest is as it was. Finish in both cases. */
+   False: something failed or it was interrupted; what is good was written. The manifest is as it was unless the models alone are to blame:
+   then it has what is good, and says of the rest why it is missing. Finish in both cases. */
 bool prepare_run(struct prepare *prepare, struct log *log, struct workers *workers, const struct plant *plant,
                  const struct prepare_params *params, struct diag *diag);
 void prepare_finish(struct prepare *prepare);

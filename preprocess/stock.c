@@ -13,7 +13,7 @@
 /* --- reading ------------------------------------------------------------------------------------------------------------------ */
 
 /* The parts come first, and how long they are before them. */
-const void *stock_parts(const struct stock *stock, size_t *size)
+static const void *stock_parts(const struct stock *stock, size_t *size)
 {
     uint64_t bytes;
     memcpy(&bytes, stock->parts.bytes, sizeof(bytes));
@@ -23,23 +23,13 @@ const void *stock_parts(const struct stock *stock, size_t *size)
 
 static bool read_rest(struct stock *stock)
 {
-    size_t size, places, name_bytes, most = stock->parts.count - sizeof(uint64_t);
+    size_t size, most = stock->parts.count - sizeof(uint64_t);
     const char *parts = stock->parts.count < sizeof(uint64_t) ? NULL : stock_parts(stock, &size);
     if (!parts || size > most)
         return false;
     struct unpack rest = { parts + size, most - size, false };
     unpack_into(&rest, &stock->report, 1, sizeof(stock->report));
-    double(*at)[3] = unpack_array(&rest, &places, sizeof(*at));
-    char *names = unpack_array(&rest, &name_bytes, 1), *name = names;
-    stock->nodes = mem_array(places, sizeof(*stock->nodes));
-    for (; stock->node_count < places && name && name < names + name_bytes; name += strlen(name) + 1) {
-        struct stock_node *node = &stock->nodes[stock->node_count];
-        node->name = mem_strdup(name);
-        memcpy(node->place_m, at[stock->node_count++], sizeof(node->place_m));
-    }
-    mem_free(at);
-    mem_free(names);
-    return !rest.bad && stock->node_count == places;
+    return !rest.bad;
 }
 
 bool stock_open(struct stock *stock, const char *folder, uint64_t key)
@@ -58,20 +48,7 @@ void stock_close(struct stock *stock)
 {
     kept_close(&stock->parts);
     kept_close(&stock->surface);
-    for (size_t i = 0; i < stock->node_count; i++)
-        mem_free(stock->nodes[i].name);
-    mem_free(stock->nodes);
     *stock = (struct stock){ 0 };
-}
-
-bool stock_node_place(const struct stock *stock, const char *name, double place_m[3])
-{
-    for (size_t i = 0; i < stock->node_count; i++)
-        if (strcmp(stock->nodes[i].name, name) == 0) {
-            memcpy(place_m, stock->nodes[i].place_m, sizeof(stock->nodes[i].place_m));
-            return true;
-        }
-    return false;
 }
 
 /* --- the parts ---------------------------------------------------------------------------------------------------------------- */
@@ -197,25 +174,15 @@ bool stock_unpack(const struct stock *stock, struct log *log, struct workers *wo
 
 /* --- writing ------------------------------------------------------------------------------------------------------------------ */
 
-int stock_write(const char *folder, uint64_t key, const void *parts, size_t size, const struct build_report *report,
-                const struct stock_node *nodes, size_t node_count)
+int stock_write(const char *folder, uint64_t key, const void *parts, size_t size, const struct build_report *report)
 {
-    struct text file = { 0 }, names = { 0 };
-    double(*places)[3] = mem_array(node_count, sizeof(*places));
+    struct text file = { 0 };
     char *path = folder_path(folder, key, FOLDER_STOCK);
-    for (size_t i = 0; i < node_count; i++) {
-        memcpy(places[i], nodes[i].place_m, sizeof(*places));
-        text_add_bytes(&names, nodes[i].name, strlen(nodes[i].name) + 1);
-    }
     text_add_bytes(&file, &(uint64_t){ size }, sizeof(uint64_t));
     text_add_bytes(&file, parts, size);
     pack_array(&file, report, 1, sizeof(*report));
-    pack_array(&file, places, node_count, sizeof(*places));
-    pack_array(&file, names.at, names.length, 1);
     int status = kept_write(path, MAGIC, key, file.at, file.length);
     text_finish(&file);
-    text_finish(&names);
-    mem_free(places);
     mem_free(path);
     return status;
 }

@@ -9,22 +9,14 @@
 
 #define STOCK_TRIANGLES 10000u /* of assets with fewer, making it all again is about as quick */
 
-struct stock_node { /* where the model has a node that some sensor stands on */
-    char *name;
-    double place_m[3]; /* asset frame */
-};
-
 struct stock { /* checked files; what it points to is its own */
     struct kept parts, surface;
-    struct stock_node *nodes;
-    size_t node_count;
     struct build_report report;
 };
 
 /* False: there is none that is any good; nothing to close. */
 bool stock_open(struct stock *stock, const char *folder, uint64_t key);
 void stock_close(struct stock *stock); /* a zeroed one is fine */
-bool stock_node_place(const struct stock *stock, const char *name, double place_m[3]);
 
 /* Copies of all three are made. False: it is no good after all; nothing to finish. */
 bool stock_unpack(const struct stock *stock, struct log *log, struct workers *workers, struct geometry *geometry, struct levels *levels,
@@ -32,9 +24,7 @@ bool stock_unpack(const struct stock *stock, struct log *log, struct workers *wo
 
 /* Before levels are split. */
 void stock_pack(struct text *parts, const struct geometry *geometry, const struct levels *levels);
-/* The parts just packed, or those of a stock that is open. 0 or -errno. */
-int stock_write(const char *folder, uint64_t key, const void *parts, size_t size, const struct build_report *report,
-                const struct stock_node *nodes, size_t node_count);
-const void *stock_parts(const struct stock *stock, size_t *size);
+/* The parts just packed. 0 or -errno. */
+int stock_write(const char *folder, uint64_t key, const void *parts, size_t size, const struct build_report *report);
 
 #endif

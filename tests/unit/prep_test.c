@@ -44,7 +44,16 @@ static const char tags_text[] = "T1,400001,Float,plc,temperature,A,,0,0,0\n"
                                 "T4,400007,Float,plc,temperature,B,TT-2,,,\n"
                                 "T5,400009,Float,plc,temperature,C,,1,0.5,0.4\n";
 
-static void write_model(struct prep_case *s)
+/* A revision has its second plate elsewhere, a third one, and its nodes and meshes in another order. */
+static const char first_nodes[] = "\"scenes\":[{\"nodes\":[0,1,2]}],\"nodes\":[{\"name\":\"plate-1\",\"mesh\":0},{\"name\":\"plate-2\","
+                                  "\"mesh\":0,\"translation\":[0,5,0]},{\"name\":\"TT-2\",\"translation\":[2,1,0]}],";
+static const char next_nodes[] = "\"scenes\":[{\"nodes\":[0,1,2,3]}],\"nodes\":[{\"name\":\"TT-2\",\"translation\":[2,1,0]},"
+                                 "{\"name\":\"pump\",\"mesh\":0,\"translation\":[0,9,0]},{\"name\":\"plate-1\",\"mesh\":0},"
+                                 "{\"name\":\"plate-2\",\"mesh\":0,\"translation\":[0,6,0]}],";
+static const char moved_node[] = "\"scenes\":[{\"nodes\":[0,1,2]}],\"nodes\":[{\"name\":\"TT-2\",\"translation\":[1,1,0]},"
+                                 "{\"name\":\"plate-1\",\"mesh\":0},{\"name\":\"plate-2\",\"mesh\":0,\"translation\":[0,6,0]}],";
+
+static void write_model(struct prep_case *s, const char *nodes)
 {
     const uint32_t vertices = (ACROSS + 1) * (UP + 1), indices = ACROSS * UP * 6;
     struct text bin = { 0 };
@@ -61,11 +70,10 @@ static void write_model(struct prep_case *s)
         }
     char *json = mem_printf(
         "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":%u}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":%u}],"
-        "\"scenes\":[{\"nodes\":[0,1,2]}],\"nodes\":[{\"name\":\"plate-1\",\"mesh\":0},{\"name\":\"plate-2\",\"mesh\":0,"
-        "\"translation\":[0,5,0]},{\"name\":\"TT-2\",\"translation\":[2,1,0]}],\"meshes\":[{\"primitives\":[{\"attributes\":"
+        "%s\"meshes\":[{\"primitives\":[{\"attributes\":"
         "{\"POSITION\":0},\"indices\":1}]}],\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":%u,\"type\":\"VEC3\"},"
         "{\"bufferView\":0,\"byteOffset\":%u,\"componentType\":5125,\"count\":%u,\"type\":\"SCALAR\"}]}",
-        (unsigned)bin.length, (unsigned)bin.length, vertices, 12 * vertices, indices);
+        (unsigned)bin.length, (unsigned)bin.length, nodes, vertices, 12 * vertices, indices);
     size_t size;
     char *glb = glb_build(json, bin.at, bin.length, &size);
     mem_free(temp_write(s->folder, "model.glb", glb, size));
@@ -78,7 +86,7 @@ static int set_up(void **state)
 {
     prep_case_set_up(state);
     struct prep_case *c = *state;
-    write_model(c);
+    write_model(c, first_nodes);
     prep_case_plant(c, plant_text);
     prep_case_tags(c, tags_text);
     return 0;
@@ -352,6 +360,19 @@ static void a_field_that_is_constant_needs_no_triangles(void **state)
     assert_true(triangles[1] > triangles[0] + 8); /* paper's field has a peak there */
 }
 
+static void a_new_revision_costs_what_it_changes(void **state)
+{
+    struct prep_case *s = *state;
+    assert_states(s, "built", "shared", "built");
+    write_model(s, next_nodes);
+    assert_states(s, "unchanged", "shared", "built"); /* the second plate is elsewhere */
+    assert_states(s, "unchanged", "shared", "unchanged");
+    write_model(s, moved_node);
+    assert_states(s, "built", "shared", "unchanged"); /* a sensor of A and B stands on it */
+    write_model(s, next_nodes);
+    assert_states(s, "built", "shared", "unchanged");
+}
+
 static void what_is_wrong_is_said_with_its_place(void **state)
 {
     struct prep_case *s = *state;
@@ -369,9 +390,19 @@ static void what_is_wrong_is_said_with_its_place(void **state)
     prep_case_says(&s->err, "no node's name matches 'tank*'");
     prep_case_says(&s->err, "plant.yaml:7: error: asset E:");
     prep_case_says(&s->err, "truncated GLB: 4 bytes");
-    char *manifest = temp_path(s->folder, "plant.prepared/manifest.json");
-    assert_int_not_equal(access(manifest, F_OK), 0); /* nothing half-made is offered */
-    mem_free(manifest);
+    struct text manifest = { 0 }; /* offers the rest, and says what is missing */
+    prep_case_read(s, "plant.prepared/manifest.json", &manifest);
+    json_t *root = prep_case_json(&manifest);
+    for (size_t i = 0; i < 5; i++)
+        assert_int_equal(json_object_get(asset_of(root, i), "missing") != NULL, i > 2);
+    assert_non_null(strstr(json_string_value(json_object_get(asset_of(root, 3), "missing")), "no node's name matches 'tank*'"));
+    json_decref(root);
+    text_finish(&manifest);
+    prep_case_expect(s, "$PLANT --report json", 1); /* what was good is there */
+    json_t *report = prep_case_json(&s->out);
+    assert_string_equal(state_of(report, 0), "unchanged");
+    assert_string_equal(state_of(report, 3), "failed");
+    json_decref(report);
     prep_case_expect(s, "$PLANT --output /proc/no/such/place", 1);
     prep_case_says(&s->err, "cannot be made");
 }
@@ -402,6 +433,7 @@ int main(void)
         WITH_PLANT(two_at_a_time_take_turns),
         WITH_PLANT(who_waits_says_for_whom_and_can_be_stopped),
         WITH_PLANT(a_field_that_is_constant_needs_no_triangles),
+        WITH_PLANT(a_new_revision_costs_what_it_changes),
         WITH_PLANT(distances_are_printed),
         WITH_PLANT(textures_are_read),
         WITH_PLANT(what_is_wrong_is_said_with_its_place),
