@@ -50,7 +50,8 @@ struct build_output {
     struct build_report report;
 };
 
-/* output->file is to be put in its place, and closed. False: why says what is wrong, and there is none. Thread: any; work is spread over workers. */
+/* output->file is to be put in its place, and closed. False: why says what is wrong, and there is none. Thread: any; work is spread over
+   workers. */
 bool build_asset(struct log *log, struct workers *workers, const struct build_input *input, struct build_output *output,
                  char why[MODEL_WHY_BYTES]);
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What was found out about models that were read before, so that one that has not changed need not be read again: what each asset takes from
-   it, and where the nodes are that sensors stand on. In the file FOLDER/cuts; safe to delete. Thread: one. */
+/* What was found out about models that were read before, so that one that has not changed need not be read again: what each asset takes
+   from it, and where the nodes are that sensors stand on. In the file FOLDER/cuts; safe to delete. Thread: one. */
 #ifndef PREPROCESS_CUTS_H
 #define PREPROCESS_CUTS_H
 #include <stdbool.h>
