@@ -127,6 +127,7 @@ static int run_export(const struct history_options *options, const struct plant 
     if (from_us >= to_us)
         return wrong("--from: expected an earlier instant than --to, found", options->from ? options->from : "");
     struct history_reader *reader = history_reader_create(log, folder);
+    history_reader_show_by(reader, plant);
     char *names = mem_strdup(options->tags), *rest = names;
     int was_buckets = -1;
     bool good = true;

@@ -14,6 +14,7 @@ enum { OPEN_MONTHS = 4 };
 struct history_reader {
     struct log *log;
     char *folder;
+    const struct plant *plant; /* or NULL */
     struct month_file *files[OPEN_MONTHS];
     int next; /* to be closed for another */
 };
@@ -24,6 +25,11 @@ struct history_reader *history_reader_create(struct log *log, const char *folder
     reader->log = log;
     reader->folder = mem_strdup(folder);
     return reader;
+}
+
+void history_reader_show_by(struct history_reader *reader, const struct plant *plant)
+{
+    reader->plant = plant;
 }
 
 void history_reader_destroy(struct history_reader **reader)
@@ -54,6 +60,8 @@ static struct month_file *open_month(struct history_reader *reader, int month, i
     *place = month_file_read(reader->log, reader->folder, month, error);
     if (*error == -ENOENT)
         *error = 0;
+    if (*place)
+        month_file_show_by(*place, reader->plant);
     return *place;
 }
 

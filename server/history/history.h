@@ -12,6 +12,9 @@ struct history_tag *history_tags(const struct plant *plant);
 
 struct history_reader;
 struct history_reader *history_reader_create(struct log *log, const char *folder); /* never NULL; a folder may come later */
+/* Series are given in the units in which this plant shows its tags, whatever they were when they were recorded; else as they were then.
+   history_at does so by its tags. plant outlives the reader. */
+void history_reader_show_by(struct history_reader *reader, const struct plant *plant);
 void history_reader_destroy(struct history_reader **reader);                       /* &NULL is fine; leaves NULL */
 
 /* One tag from..to: its points, where there are at most max_points of them; else buckets of one length. Spikes are in both. */

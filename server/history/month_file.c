@@ -43,7 +43,7 @@ static const char *const sql[SQL_COUNT] = {
     [SQL_BEGIN_READ] = "BEGIN",
     [SQL_COMMIT] = "COMMIT",
     [SQL_ROLLBACK] = "ROLLBACK",
-    [SQL_FIND_TAG] = "SELECT id, step FROM tag WHERE name = ?",
+    [SQL_FIND_TAG] = "SELECT id, step, unit FROM tag WHERE name = ?",
     [SQL_ADD_TAG] = "INSERT INTO tag(name, unit, step, within) VALUES(?, ?, ?, ?) ON CONFLICT(name) DO UPDATE"
                     " SET unit = excluded.unit, step = excluded.step, within = excluded.within RETURNING id",
     [SQL_ADD_RECENT] = "INSERT INTO recent(tag, t, v, q) VALUES(?, ?, ?, ?)",

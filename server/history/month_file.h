@@ -8,6 +8,7 @@
 #include "base/log.h"
 #include "history/point.h"
 #include "history/rollup.h"
+#include "plant/plant.h"
 
 enum { HISTORY_VERSION = 2 };
 enum history_level { LEVEL_10_S, LEVEL_1_MIN, LEVEL_10_MIN, LEVEL_1_H, LEVEL_COUNT };
@@ -42,6 +43,8 @@ struct month_file *month_file_open(struct log *log, const char *folder, int mont
                                    int *error);
 /* Of a month that has a file already, of any version until this one, to read. -ENOENT: it has none. */
 struct month_file *month_file_read(struct log *log, const char *folder, int month, int *error);
+/* Points and buckets are given in the units in which this plant shows its tags, whatever they were then. plant outlives the file. */
+void month_file_show_by(struct month_file *file, const struct plant *plant);
 void month_file_close(struct month_file **file); /* &NULL is fine; leaves NULL */
 /* Found damaged while in use: closes it and puts it out of the way. */
 void month_file_set_aside(struct month_file **file);
@@ -86,6 +89,7 @@ int month_file_span(struct month_file *file, int64_t *first_us, int64_t *last_us
 struct history_pair {
     struct history_point before, after;
     bool step;
+    struct unit_change change; /* from the unit of the file that was read last */
 };
 int month_file_at(struct month_file *file, int64_t t_us, const struct history_tag *tags, size_t count, struct history_pair *pairs);
 

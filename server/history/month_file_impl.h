@@ -27,6 +27,7 @@ struct month_file {
     ino_t inode;
     sqlite3 *db;
     sqlite3_stmt *statements[SQL_COUNT];
+    const struct plant *shown_by; /* in whose units its values are given; NULL: as they are there */
     const struct history_tag *tags;
     size_t tag_count, waiting;
     int64_t *ids;                  /* of tags; 0: not known yet */

@@ -19,9 +19,22 @@ void month_file_end_read(struct month_file *file)
     month_run(month_sql(file, SQL_COMMIT));
 }
 
-/* 0: the file does not know the tag. */
-static int64_t find_tag(struct month_file *file, const char *name, bool *step)
+void month_file_show_by(struct month_file *file, const struct plant *plant)
 {
+    file->shown_by = plant;
+}
+
+/* In which the plant shows the tag now. NULL: as the file has it. */
+static const char *unit_shown(const struct month_file *file, const char *name)
+{
+    int tag = file->shown_by ? plant_find_tag(file->shown_by, name) : -1;
+    return tag >= 0 ? file->shown_by->tags[tag].unit : NULL;
+}
+
+/* 0: the file does not know the tag. *change: from the unit that it had then to that which is wanted (NULL: the same). */
+static int64_t find_tag(struct month_file *file, const char *name, const char *wanted, bool *step, struct unit_change *change)
+{
+    *change = (struct unit_change){ 0 };
     sqlite3_stmt *find = month_sql(file, SQL_FIND_TAG);
     int64_t id = 0;
     if (!find)
@@ -30,6 +43,8 @@ static int64_t find_tag(struct month_file *file, const char *name, bool *step)
     if (sqlite3_step(find) == SQLITE_ROW) {
         id = sqlite3_column_int64(find, 0);
         *step = sqlite3_column_int(find, 1) != 0;
+        if (wanted)
+            units_compare((const char *)sqlite3_column_text(find, 2), wanted, change);
     }
     sqlite3_reset(find);
     return id;
@@ -133,7 +148,8 @@ static void trim(struct history_points *points, size_t begin, int64_t from_us, i
 int month_file_points(struct month_file *file, const char *tag, int64_t from_us, int64_t to_us, struct history_points *out)
 {
     size_t begin = out->count;
-    int64_t id = find_tag(file, tag, &out->step);
+    struct unit_change change;
+    int64_t id = find_tag(file, tag, unit_shown(file, tag), &out->step, &change);
     if (!id)
         return 0;
     int error = add_samples(file, id, from_us, to_us, out);
@@ -142,6 +158,8 @@ int month_file_points(struct month_file *file, const char *tag, int64_t from_us,
     if (out->count > begin)
         qsort(out->at + begin, out->count - begin, sizeof(*out->at), by_time);
     trim(out, begin, from_us, to_us);
+    for (size_t i = begin; i < out->count; i++)
+        out->at[i].value = unit_change_value(&change, out->at[i].value);
     return error;
 }
 
@@ -149,7 +167,8 @@ int month_file_buckets(struct month_file *file, const char *tag, enum history_le
                        struct history_buckets *out, int64_t *until_us)
 {
     bool step;
-    int64_t id = find_tag(file, tag, &step), length_us = history_level_us[level];
+    struct unit_change change;
+    int64_t id = find_tag(file, tag, unit_shown(file, tag), &step, &change), length_us = history_level_us[level];
     *until_us = from_us;
     if (!id)
         return 0;
@@ -164,11 +183,11 @@ int month_file_buckets(struct month_file *file, const char *tag, enum history_le
     while ((code = sqlite3_step(rollups)) == SQLITE_ROW) {
         struct history_bucket bucket = {
             .t_us = sqlite3_column_int64(rollups, 0),
-            .low = month_value(rollups, 1),
-            .high = month_value(rollups, 2),
-            .mean = month_value(rollups, 3),
-            .first = month_value(rollups, 4),
-            .last = month_value(rollups, 5),
+            .low = unit_change_value(&change, month_value(rollups, 1)),
+            .high = unit_change_value(&change, month_value(rollups, 2)),
+            .mean = unit_change_value(&change, month_value(rollups, 3)),
+            .first = unit_change_value(&change, month_value(rollups, 4)),
+            .last = unit_change_value(&change, month_value(rollups, 5)),
             .good_us = sqlite3_column_int64(rollups, 6),
             .bad_us = sqlite3_column_int64(rollups, 7),
             .quality = (uint32_t)sqlite3_column_int64(rollups, 8),
@@ -183,14 +202,16 @@ int month_file_buckets(struct month_file *file, const char *tag, enum history_le
 
 /* --- one instant -------------------------------------------------------------------------------------------------------------- */
 
-static void take(struct history_pair *pair, const struct history_point *point, int64_t t_us)
+static void take(struct history_pair *pair, const struct history_point *there, int64_t t_us)
 {
-    if (point->t_us == INT64_MIN)
+    struct history_point point = *there;
+    if (point.t_us == INT64_MIN)
         return;
-    if (point->t_us <= t_us && point->t_us >= pair->before.t_us)
-        pair->before = *point;
-    if (point->t_us > t_us && (pair->after.t_us == INT64_MIN || point->t_us < pair->after.t_us))
-        pair->after = *point;
+    point.value = unit_change_value(&pair->change, point.value);
+    if (point.t_us <= t_us && point.t_us >= pair->before.t_us)
+        pair->before = point;
+    if (point.t_us > t_us && (pair->after.t_us == INT64_MIN || point.t_us < pair->after.t_us))
+        pair->after = point;
 }
 
 /* By id of the file, as -1 or an index of tags. NULL: the file has none of them. */
@@ -199,7 +220,7 @@ static int *index_by_id(struct month_file *file, const struct history_tag *tags,
     int64_t *ids = mem_array(count ? count : 1, sizeof(*ids));
     *most = 0;
     for (size_t i = 0; i < count; i++) {
-        ids[i] = find_tag(file, tags[i].name, &pairs[i].step);
+        ids[i] = find_tag(file, tags[i].name, tags[i].unit, &pairs[i].step, &pairs[i].change);
         if (ids[i] > *most)
             *most = ids[i];
     }

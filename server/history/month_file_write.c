@@ -28,12 +28,43 @@ static int end(struct month_file *file, int error)
     return error;
 }
 
+/* Where the plant shows the tag in another unit than when this file was begun, all that the file has of it is converted. */
+static int convert_unit(struct month_file *file, const struct history_tag *of)
+{
+    sqlite3_stmt *find = month_sql(file, SQL_FIND_TAG);
+    struct unit_change change = { 0 };
+    int64_t id = 0;
+    if (!find)
+        return month_fail(file, sqlite3_errcode(file->db), "cannot find a tag");
+    sqlite3_bind_text(find, 1, of->name, -1, SQLITE_STATIC);
+    if (sqlite3_step(find) == SQLITE_ROW) {
+        id = sqlite3_column_int64(find, 0);
+        units_compare((const char *)sqlite3_column_text(find, 2), of->unit, &change);
+    }
+    sqlite3_reset(find);
+    if (!change.converts)
+        return 0;
+    static const char *const columns[][2] = { { "sample", "v" },    { "recent", "v" },    { "held", "v" },       { "rollup", "low" },
+                                              { "rollup", "high" }, { "rollup", "mean" }, { "rollup", "first" }, { "rollup", "last" } };
+    int error = 0;
+    for (size_t i = 0; i < sizeof(columns) / sizeof(columns[0]) && !error; i++) {
+        char *sql = mem_printf("UPDATE %s SET %s = %s * %.17g + %.17g WHERE tag = %lld", columns[i][0], columns[i][1], columns[i][1],
+                               change.factor, change.offset, (long long)id);
+        error = month_fail(file, sqlite3_exec(file->db, sql, NULL, NULL, NULL), "cannot convert units");
+        mem_free(sql);
+    }
+    return error;
+}
+
 static int tag_id(struct month_file *file, int tag, int64_t *id)
 {
     const struct history_tag *of = &file->tags[tag];
     *id = file->ids[tag];
     if (*id)
         return 0;
+    int unit_error = convert_unit(file, of);
+    if (unit_error)
+        return unit_error;
     sqlite3_stmt *add = month_sql(file, SQL_ADD_TAG);
     if (!add)
         return month_fail(file, sqlite3_errcode(file->db), "cannot add a tag");

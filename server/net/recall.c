@@ -265,6 +265,7 @@ struct recall *recall_create(struct log *log, const struct plant *plant, const c
     recall->plant = plant;
     recall->folder = mem_strdup(folder);
     recall->reader = history_reader_create(log, folder);
+    history_reader_show_by(recall->reader, plant);
     recall->notify = notify;
     recall->notify_arg = arg;
     recall->last = &recall->answers;

@@ -250,6 +250,48 @@ static void files_say_their_unit_or_mean_the_row_s(void **state)
     log_destroy(&log);
 }
 
+/* What a plant recorded in one unit is given in the unit in which it shows the tag now, by every way, and one file has one unit. */
+static void what_was_recorded_is_shown_in_the_unit_of_now(void **state)
+{
+    static const int64_t start_us = INT64_C(1792886400) * US_PER_S;
+    static const char rows[] = "Tag Name,Address,Data Type,Group,Asset,X,Y,Z,Eng Units,Deadband\nF,hr:0,Float,%s,A,0,0,0,°F,0\n";
+    struct plant_case *c = *state;
+    struct diag diag = { 0 };
+    struct import_counts counts;
+    struct log *log = log_create(LOG_ERROR);
+    char *taken = mem_printf(rows, "taken"), *converted = mem_printf(rows, "temp"), *folder = temp_path(c->folder, "h");
+    char *path = temp_write_text(c->folder, "s.csv", "Tag,Time,Value\nF,2026-10-25T00:00:01Z,212\nF,2026-10-25T01:00:00Z,212\n");
+    plant_case_load(c, yaml, taken);
+    assert_true(history_import(&(struct import_params){ log, c->plant, folder, path, INT64_MIN, 0 }, &diag, &counts));
+    plant_case_load(c, yaml, converted);
+    for (int pass = 0; pass < 2; pass++) {
+        struct history_reader *reader = history_reader_create(log, folder);
+        struct history_tag *tags = history_tags(c->plant);
+        struct snapshot *snapshot = snapshot_create(1);
+        struct history_series points, buckets;
+        history_reader_show_by(reader, pass ? NULL : c->plant); /* later the file itself has the unit */
+        assert_int_equal(history_series(reader, "F", start_us, start_us + 7200 * US_PER_S, 20000, &points), 0);
+        assert_int_equal(history_series(reader, "F", start_us, start_us + 3600 * US_PER_S, 10, &buckets), 0);
+        assert_int_equal(history_at(reader, tags, start_us + 2 * US_PER_S, snapshot), 0);
+        assert_true(points.points.count >= 2 && fabs(points.points.at[0].value - 100) < 1e-9);
+        assert_true(fabs(points.points.at[points.points.count - 1].value - (pass ? 10 : 100)) < 1e-9);
+        assert_true(buckets.buckets.count > 0 && fabs(buckets.buckets.at[0].high - 100) < 1e-9);
+        assert_true(fabs(snapshot->readings[0].value - 100) < 1e-9);
+        snapshot_destroy(&snapshot);
+        history_series_finish(&points);
+        history_series_finish(&buckets);
+        history_reader_destroy(&reader);
+        mem_free(tags);
+        mem_free(temp_write_text(c->folder, "s.csv", "Tag,Time,Value\nF,2026-10-25T02:00:00Z,50\n"));
+        assert_true(pass || history_import(&(struct import_params){ log, c->plant, folder, path, INT64_MIN, 0 }, &diag, &counts));
+    }
+    mem_free(taken);
+    mem_free(converted);
+    mem_free(folder);
+    mem_free(path);
+    log_destroy(&log);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -260,6 +302,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(what_cannot_be_converted_is_an_error_at_its_cell, plant_case_set_up, plant_case_tear_down),
         cmocka_unit_test_setup_teardown(readings_are_not_adopted_in_another_unit, plant_case_set_up, plant_case_tear_down),
         cmocka_unit_test_setup_teardown(files_say_their_unit_or_mean_the_row_s, plant_case_set_up, plant_case_tear_down),
+        cmocka_unit_test_setup_teardown(what_was_recorded_is_shown_in_the_unit_of_now, plant_case_set_up, plant_case_tear_down),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests(tests, NULL, NULL);
