@@ -8,6 +8,17 @@
 
 static const int64_t TELL_NS = 500 * NS_PER_MS; /* between two lists of followers: hundreds may come at once */
 
+/* Who followed the session that this one has resumed follows it. */
+static void take_back(struct hub *hub, struct session *session)
+{
+    for (struct stream *stream = hub->streams; stream; stream = stream->next) {
+        struct session *other = stream->session;
+        bool was = other->leader && other->leader != session && other->leader->called == session->called;
+        if (other != session && (was || other->left == session->called))
+            session_follow(other, session, clock_mono_ns());
+    }
+}
+
 /* The followers of one become those of another (NULL: of nobody). */
 static void hand_over(struct hub *hub, const struct session *from, struct session *to)
 {
@@ -34,6 +45,9 @@ static void resolve_lead(struct hub *hub, struct session *session)
 void follow_resolve(struct hub *hub, struct stream *stream)
 {
     struct session *session = stream->session;
+    if (session->returned)
+        take_back(hub, session);
+    session->returned = false;
     if (session->lead)
         resolve_lead(hub, session);
     session->lead = 0;
@@ -65,7 +79,13 @@ bool follow_spread(struct hub *hub, const struct stream *leader)
 
 void follow_forget(struct hub *hub, const struct stream *leader)
 {
-    hand_over(hub, leader->session, NULL);
+    const struct stream *newer = stream_called(hub, leader->session->called);
+    struct session *again = newer ? newer->session : NULL; /* has resumed it while it was still there */
+    for (struct stream *stream = hub->streams; stream; stream = stream->next)
+        if (stream->session->leader == leader->session && again && again != stream->session)
+            session_follow(stream->session, again, clock_mono_ns());
+        else if (stream->session->leader == leader->session)
+            session_leader_gone(stream->session, clock_mono_ns());
     if (leader->session->leader)
         leader->session->leader->followers_changed = true;
 }

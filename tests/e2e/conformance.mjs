@@ -229,7 +229,7 @@ test('any number follow one; who leads gives the lead away, and what is shown st
     presenter.say('lead', { session: viewers });
     assert.equal((await presenter.text('error')).code, 'bad_field', 'who follows has no lead to give');
     heir.close();
-    await told(viewer, 'its own again', (m) => m.session === null);
+    await told(viewer, 'that the leader has gone, and what is shown stays', (m) => m.session === heirs && m.gone && m.group === 'pressure');
     presenter.close();
     viewer.close();
 });

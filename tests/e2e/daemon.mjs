@@ -267,8 +267,11 @@ test('any number follow one: its view, its size, its picture', { skip }, async (
     leader.say({ type: 'follow', session: 999999 });
     assert.equal((await leader.text('error')).code, 'bad_field');
     leader.close();
+    await followers[1].until('that it has gone', (c) => c.texts.some((m) => m.type === 'following' && m.session === session && m.gone));
+    const last = await followers[1].frameWhere('its last view, at its own size', (f) => f.full_width === 320);
+    assert.deepEqual(last.eye, seen[0].eye);
+    followers[1].say({ type: 'follow', session: null });
     await followers[1].until('its own view again', (c) => c.texts.some((m) => m.type === 'following' && m.session === null));
-    await followers[1].frameWhere('its own size', (f) => f.full_width === 320);
     for (const client of [...followers, chained])
         client.close();
 });

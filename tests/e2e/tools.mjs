@@ -309,6 +309,44 @@ test('what the server refuses is said in the reader\'s language', options, async
     await other.close();
 });
 
+test('who leads may load the page anew: those who follow stay, and go on', options, async () => {
+    const leader = await openPage(url, { viewport: { width: 900, height: 600 } });
+    try {
+        await waitForPicture(leader.page);
+        const id = await leader.page.evaluate(() => globalThis.plantcast.session.id), link = `${url}#follow=${id}`;
+        const second = await openPage(link, { viewport: { width: 1000, height: 700 } });
+        const follows = (gone) => second.page.waitForFunction(([of, is]) => {
+            const following = globalThis.plantcast?.session.following;
+            return following?.session === of && Boolean(following.gone) === is;
+        }, [id, gone]);
+        try {
+            await follows(false);
+            await leader.page.evaluate(() => globalThis.plantcast.session.setParams({ group: 'pressure' }));
+            await second.page.waitForFunction(() => globalThis.plantcast.session.params.group === 'pressure');
+            await leader.page.goto('about:blank');
+            await follows(true);
+            assert.equal(await second.page.evaluate(() => globalThis.plantcast.session.params.group), 'pressure', 'what is shown stays');
+            assert.match(await second.page.locator('#following').textContent(), /has gone: this is its last view/);
+            assert.equal(second.page.url(), link);
+            await settle(second.page);
+            await shoot(second.page, 'following-gone');
+            await leader.page.goto(url);
+            await waitForPicture(leader.page);
+            assert.equal(await leader.page.evaluate(() => globalThis.plantcast.session.id), id, 'its number is its own');
+            assert.notEqual(await leader.page.evaluate(() => globalThis.plantcast.session.params.group), 'pressure', 'of its link');
+            await follows(false);
+            await second.page.reload();
+            await follows(false);
+            assert.equal(second.page.url(), link);
+            assert.deepEqual([...leader.errors, ...second.errors], []);
+        } finally {
+            await second.close();
+        }
+    } finally {
+        await leader.close();
+    }
+});
+
 test('others follow; the lead is handed over, and what is shown stays', options, async () => {
     const id = await page.evaluate(() => globalThis.plantcast.session.id);
     const second = await openPage(`${url}#follow=${id}`, { viewport: { width: 1000, height: 700 } });

@@ -784,6 +784,24 @@ static void a_follower_is_shown_its_leaders_view(void **state)
     json_decref(following);
     wish = show(f);
     assert_true(wish.view.width_px == 320 && wish.view.camera.eye_m[0] == 9);
+    session_follow(f->session, leader, f->now_ns);
+    session_leader_gone(f->session, f->now_ns); /* what is there stays, at its own size, and is said to be of one who has gone */
+    following = hear(f);
+    assert_int_equal(json_integer_value(json_object_get(following, "session")), 8);
+    assert_true(json_is_true(json_object_get(following, "gone")));
+    assert_string_equal(json_string_value(json_object_get(following, "group")), "pressure");
+    json_decref(following);
+    wish = show(f);
+    assert_true(wish.view.width_px == 320 && wish.view.camera.eye_m[0] == 3);
+    session_follow(f->session, leader, f->now_ns); /* it is back */
+    following = hear(f);
+    assert_null(json_object_get(following, "gone"));
+    json_decref(following);
+    session_leader_gone(f->session, f->now_ns);
+    say(f, "{\"type\":\"follow\",\"session\":null}");
+    session_follow(f->session, NULL, f->now_ns);
+    json_decref(hear(f));
+    assert_true(show(f).view.camera.eye_m[0] == 9); /* its own, which was beneath */
     session_destroy(&leader);
 }
 

@@ -51,6 +51,11 @@ const wanted = { ...address, params: { ...address.params, backdrop } };
 export const session = new Session({ connection, now: clock.now, wanted, codecs: codecs() });
 session.token = stored('token');
 session.leader = Number(new URLSearchParams(location.hash.slice(1)).get('follow')) || null;
+// After a reload those who follow us find us again; of two tabs only one may have the secret, so it is kept between pages alone.
+session.resume = sessionStorage.getItem('resume');
+session.anew = session.resume !== null;
+sessionStorage.removeItem('resume');
+addEventListener('pagehide', () => session.resume && sessionStorage.setItem('resume', session.resume));
 session.wait();
 export const viewport = new Viewport({ element: byId('viewport'), canvas: byId('picture'), session, decoding });
 viewport.onDrawn = (newPicture) => {

@@ -134,7 +134,7 @@ session.on('welcome', () => {
 session.on('status', () => status.show());
 session.on('denied', ({ code }) => parts.use('token', (token) => token.ask(code)));
 session.on('followers', () => parts.get('share'));
-session.on('following', () => session.following && parts.get('following'));
+session.on('following', () => session.leader !== null && parts.get('following'));
 session.on('ignored', (what) => console.warn(`ignored: ${what}`));
 
 // Where a link leads, and what of it, or of the view before, is not in this plant.

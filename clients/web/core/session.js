@@ -37,6 +37,7 @@ export class Session {
         this.params = { ...wanted.params };
         this.token = null;       // lets us in, where one is needed
         this.resume = null;      // secret of our view on the server
+        this.anew = false;       // of that view we want only the number, by which others follow us
         this.confirmed = null;   // what the server last said is in force
         this.size = { width: 640, height: 360 };
         this.visible = true;
@@ -54,8 +55,8 @@ export class Session {
         this.recent = [];        // pictures of the last moments, and how they came: { picture, decodeMs, hereUs }
         this.skew = null;        // the server's clock less ours, in microseconds, by the shortest round trip: { us, roundTripMs }
         this.id = null;          // by which others can follow this session
-        this.following = null;   // whose view is shown: { session, width, height }
-        this.leader = null;      // whom to follow once there is a connection
+        this.following = null;   // whose view is shown: { session, width, height, gone (it is the last of one who has gone) }
+        this.leader = null;      // whom to follow once there is a connection, and that one
         this.lent = null;        // the camera is that of the picture: another's, or what he left us
         this.followers = { count: 0, sessions: [] }; // who follows us
         this.time = { ...NOW, ...wanted.time }; // what the server shows: atUs null: now; fromUs null: nothing is recorded
@@ -160,7 +161,8 @@ export class Session {
 
     // Who we are, and whose view was ours: with it comes back what we do not say ourselves.
     proofs() {
-        return { ...(this.token ? { token: this.token } : {}), ...(this.resume ? { resume: this.resume } : {}) };
+        return { ...(this.token ? { token: this.token } : {}), ...(this.resume ? { resume: this.resume } : {}),
+            ...(this.anew ? { anew: true } : {}) };
     }
 
     // What need not be said of the parameters: a group has it by itself.
@@ -383,6 +385,7 @@ const HANDLERS = {
         this.following = this.skew = this.lent = null;
         this.followers = { count: 0, sessions: [] };
         this.resume = message.resume ?? null;
+        this.anew = false;
         this.role = message.role ?? null;
         this.codec = message.codec;
         this.connection.settle();
@@ -429,9 +432,9 @@ const HANDLERS = {
         this.markers.set(message.seq, known);
     },
 
-    following({ session, width, height, ...shown }) {
+    following({ session, width, height, gone = false, ...shown }) {
         this.lent ||= session ?? this.leader;
-        this.following = session === null ? null : { session, width, height };
+        this.following = session === null ? null : { session, width, height, ...(gone ? { gone } : {}) };
         this.leader = session;
         this.confirmed = this.params = pick(shown, SAID);
         this.asked.clear();
@@ -499,8 +502,10 @@ const HANDLERS = {
             this.helloWithout(message.text.split(':')[0]);
             return;
         }
-        if (message.about === 'follow')
-            this.leader = null; // there is no such session
+        if (message.about === 'follow' && this.leader !== null) { // there is no such session, yet
+            this.emit('following');
+            return;
+        }
         if (message.about === 'params' && this.confirmed) {
             this.params = this.confirmed;
             this.asked.clear();

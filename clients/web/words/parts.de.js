@@ -149,6 +149,8 @@ only: Nur dies
 
 [following]
 title: Dies ist die Ansicht von Sitzung {session}
+gone: Sitzung {session} ist gegangen: dies ist ihre letzte Ansicht
+awaited: Sitzung {session} ist nicht da: es wird auf sie gewartet
 
 [alarms]
 close: Alarme schließen

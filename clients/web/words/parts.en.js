@@ -149,6 +149,8 @@ only: Only
 
 [following]
 title: This is the view of session {session}
+gone: Session {session} has gone: this is its last view
+awaited: Session {session} is not there: waiting for it
 
 [alarms]
 close: Close alarms

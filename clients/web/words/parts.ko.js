@@ -148,6 +148,8 @@ only: 이것만
 
 [following]
 title: 세션 {session}의 화면입니다
+gone: 세션 {session}이(가) 나갔습니다: 마지막 화면입니다
+awaited: 세션 {session}이(가) 없어 기다리는 중입니다
 
 [alarms]
 close: 알람 닫기

@@ -143,6 +143,7 @@ static bool parse_hello(const struct plant *plant, const json_t *o, struct messa
         return false;
     if (json_object_get(o, "at_us") && !parse_time(plant, o, out, error))
         return false;
+    out->anew = json_is_true(json_object_get(o, "anew"));
     out->has_camera = json_is_object(camera);
     out->has_params = json_is_object(params);
     if ((camera && !out->has_camera) || (params && !out->has_params)) {

@@ -367,9 +367,12 @@ char *reply_params_text(const struct session_world *world, const struct view *vi
 char *reply_following_text(const struct session *session)
 {
     const struct view *view = session_view(session);
-    json_t *leader = session->leader ? json_integer((json_int_t)session->leader->called) : json_null();
+    uint64_t called = session->leader ? session->leader->called : session->left;
+    json_t *leader = called ? json_integer((json_int_t)called) : json_null();
     json_t *object = json_pack("{s:s,s:o,s:i,s:i}", "type", "following", "session", leader, "width", view->width_px, "height",
                                view->height_px);
+    if (session->left)
+        json_object_set_new(object, "gone", json_true());
     set_params_for(object, session->world, view, session_is_open(session));
     return print(object, DIGITS);
 }

@@ -11,6 +11,7 @@ char *reply_params_text(const struct session_world *world, const struct view *vi
 /* Who follows; at most REPLY_FOLLOWERS of them by number. */
 enum { REPLY_FOLLOWERS = 256 };
 char *reply_followers_text(const uint64_t *sessions, size_t count);
+/* Whose view it is shown; where that one has gone, so it says. */
 char *reply_following_text(const struct session *session);
 /* All values, or those that differ from `sent` (reading.changes by tag index), which is brought up to date. */
 char *reply_tags_text(const struct plant *plant, const struct snapshot *snapshot, uint32_t *sent, bool all);

@@ -80,7 +80,7 @@ void resumes_close(struct resumes *resumes, const struct session *session, bool 
     forget(resumes, i);
     if (keep) {
         kept.what = (struct resumed){ .view = session->view, .codecs = session->codecs, .pixel_ratio = session->pixel_ratio,
-                                       .speed = session->travel.speed };
+                                       .called = session->called, .speed = session->travel.speed };
         kept.until_ns = now_ns + RESUME_KEPT_NS;
         resumes->kept[resumes->count++] = kept;
     }
@@ -103,8 +103,8 @@ bool resumes_find(const struct resumes *resumes, const char *secret, const struc
     struct session *live = kept->what.live;
     *out = kept->what;
     if (live)
-        *out = (struct resumed){ .view = live->view, .codecs = live->codecs, .pixel_ratio = live->pixel_ratio, .speed = live->travel.speed,
-                                  .live = live };
+        *out = (struct resumed){ .view = live->view, .codecs = live->codecs, .pixel_ratio = live->pixel_ratio, .called = live->called,
+                                  .speed = live->travel.speed, .live = live };
     return true;
 }
 

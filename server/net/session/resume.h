@@ -22,6 +22,7 @@ struct resumed {
     struct view view;
     struct codec_list codecs;
     double pixel_ratio;
+    uint64_t called;      /* its number for others, who follow it by that */
     double speed;         /* of play, where view.at_us is an instant */
     struct session *live; /* NULL: its connection is gone; else the one that is to go now */
 };

@@ -64,7 +64,7 @@ struct travel {
 
 struct session {
     uint64_t id;
-    uint64_t called;            /* its number for other clients: nobody comes by it by counting */
+    uint64_t called;            /* its number for other clients: nobody comes by it by counting; that of the one it resumed, if any */
     const struct session_world *world;
     enum role role;
     uint8_t address[16];        /* of the client, as in struct peer */
@@ -104,6 +104,9 @@ struct session {
     struct session *leader; /* whose view it is shown; NULL: its own. The hub keeps it right */
     bool follow_asked;
     uint64_t follow;            /* whom; 0: nobody */
+    bool returned;              /* it has just resumed another: those who followed that one come along. The hub takes it */
+    uint64_t left;              /* `called` of its leader, who has gone and whose last view it is shown; 0: none */
+    struct view beneath;        /* its own view meanwhile */
     uint64_t lead;              /* who is to have the lead; 0: it stays. Asked for, as follow is */
     bool followers_changed;     /* they are to be said, in follow_tell */
     int64_t followers_ns;       /* when they were */
@@ -184,6 +187,8 @@ void session_on_moment(struct session *session, int64_t at_us, bool good, int64_
 /* Answers session->follow_asked: leader NULL: from now on nobody's; session_follow_nobody: there is none such. */
 void session_follow(struct session *session, struct session *leader, int64_t now_ns);
 void session_follow_nobody(struct session *session);
+/* Its leader goes, for good or for a moment: it is shown the last view of that one until it follows another, or nobody. */
+void session_leader_gone(struct session *session, int64_t now_ns);
 /* Likewise session->lead: from now on the heir shows what the session showed, at its own size, until it says otherwise. */
 void session_inherit(struct session *heir, const struct session *session);
 void session_lead_nobody(struct session *session); /* that one does not follow it */

@@ -24,8 +24,35 @@ void session_ask_follow(struct session *session, const struct message *message)
     session->follow_asked = true;
 }
 
+/* What it was shown of a leader who has gone ends. */
+static void come_to_own(struct session *session)
+{
+    const struct view shown = session->view;
+    session_time_leave(session);
+    session->view = session->beneath;
+    session->view.width_px = shown.width_px;
+    session->view.height_px = shown.height_px;
+    session->view.pixel_ratio = shown.pixel_ratio;
+    session->view.camera_seq = shown.camera_seq;
+    session->view.params_seq = shown.params_seq;
+    view_travel(&session->view, 0, 0);
+    session->left = 0;
+}
+
+void session_leader_gone(struct session *session, int64_t now_ns)
+{
+    uint64_t called = session->leader->called;
+    session->beneath = session->view;
+    session_inherit(session, session->leader);
+    view_try(&session->view, 0); /* what somebody tried out went with him */
+    session_follow(session, NULL, now_ns);
+    session->left = called;
+}
+
 void session_follow(struct session *session, struct session *leader, int64_t now_ns)
 {
+    if (session->left)
+        come_to_own(session);
     if (session->leader)
         session->leader->followers_changed = true;
     if (leader)

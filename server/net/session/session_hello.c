@@ -106,7 +106,8 @@ bool session_hello(struct session *session, const struct message *message, int64
     if (!identify(session, message, now_ns, now_utc_ns, error))
         return false;
     bool back = message->resume[0] && resumes_find(world->resumes, message->resume, session, now_ns, &resumed);
-    if (!begin_view(session, message, back ? &resumed : NULL, &view, error) ||
+    const struct resumed *before = back && !message->anew ? &resumed : NULL; /* of which the view is taken, too */
+    if (!begin_view(session, message, before, &view, error) ||
         !session_choose_codec(session, message->codecs.count ? &message->codecs : &resumed.codecs, error) || !admit(session, &view, error))
         return false;
     if (back)
@@ -114,10 +115,12 @@ bool session_hello(struct session *session, const struct message *message, int64
     session->view = view;
     if (message->time.has_at)
         session_time_begin(session, message->time.at_us, message->time.speed);
-    else if (back)
+    else if (before)
         session_time_begin(session, resumed.view.at_us, resumed.speed);
-    session->resumed = back;
-    session->pixel_ratio = message->pixel_ratio > 0 ? message->pixel_ratio : back ? resumed.pixel_ratio : 1;
+    session->resumed = session->returned = back;
+    if (back)
+        session->called = resumed.called;
+    session->pixel_ratio = message->pixel_ratio > 0 ? message->pixel_ratio : before ? resumed.pixel_ratio : 1;
     resumes_open(world->resumes, session, session->resume);
     session->hello = session->owes_welcome = session->owes_tags_all = session->owes_status = session->always_pending = true;
     session->owes_time = world->moments != NULL;

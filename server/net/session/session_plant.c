@@ -94,6 +94,8 @@ void session_replant(struct session *session, const char *carried)
         pacer_dropped(&session->pacer);
     if (!session->hello)
         return;
+    session->owes_following |= session->left != 0;
+    session->left = 0; /* what is beneath is of the plant before */
     look_again(session, &before, carried);
     session->owes_welcome = session->owes_tags_all = session->owes_status = session->always_pending = true;
     session->owes_params = false;
