@@ -32,7 +32,8 @@ struct hub {
     struct stream *streams, **by_client; /* all of them; the same, by number, ascending */
     size_t by_client_capacity;
     struct request *snapshots; /* HTTP requests that wait for their picture */
-    int stream_count, picture_count; /* the latter for HTTP, that are being made */
+    int stream_count, picture_count, question_count; /* the latter two for HTTP, that are being answered */
+    int64_t answer_bytes; /* of HTTP, that were not read yet */
     const struct quotas *quotas;
     struct peers *peers;
     int connection_count;
@@ -89,7 +90,7 @@ void http_on_pick(struct hub *hub, const struct pick_answer *answer);
 void http_on_moment(struct hub *hub, const struct past_answer *answer);
 void http_let_go(struct hub *hub); /* the plant is loaded anew: what waits for the old one is answered */
 void http_on_reloaded(struct hub *hub, bool good, const char *text);
-void http_on_recall(struct hub *hub, struct recall_answer *recalled); /* takes its text */
+void http_on_recall(struct hub *hub, struct recall_answer *recalled); /* a piece of its answer; may take its text */
 /* A complete short answer in plain text. Returns what the callback is to return. */
 int http_answer(struct lws *wsi, int status, const char *text);
 

@@ -170,7 +170,7 @@ static void collect_recalled(struct hub *hub)
     for (struct recall_answer *next; recalled; recalled = next) {
         next = recalled->next;
         http_on_recall(hub, recalled);
-        mem_free(recalled);
+        recall_answer_free(&recalled);
     }
 }
 

@@ -109,6 +109,16 @@ bool peers_may_stream(const struct peers *peers, const struct peer *peer)
     return below(peers, peer, QUOTA_ADDRESS_SESSIONS, peer->sessions);
 }
 
+bool peers_may_ask(const struct peers *peers, const struct peer *peer)
+{
+    return below(peers, peer, QUOTA_ADDRESS_QUESTIONS, peer->questions);
+}
+
+bool peers_may_hold(const struct peers *peers, const struct peer *peer, size_t count)
+{
+    return below(peers, peer, QUOTA_ADDRESS_ANSWER_BYTES, peer->answer_bytes + (int64_t)count);
+}
+
 bool peers_may_draw(const struct peers *peers, const struct peer *peer)
 {
     return below(peers, peer, QUOTA_ADDRESS_SNAPSHOTS, peer->pictures);

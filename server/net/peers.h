@@ -11,6 +11,7 @@ struct peer {
     int refs, connections, sessions;
     int named;               /* connections of a proxy whose last request was its */
     int pictures, questions; /* of HTTP, that are being answered */
+    int64_t answer_bytes;    /* over HTTP, that it has not read yet */
     struct share share;
     int64_t rate_begin_ns, messages;
 };
@@ -28,6 +29,8 @@ void peers_unref(struct peers *peers, struct peer **peer); /* &NULL is fine; lea
 bool peers_may_connect(const struct peers *peers, const struct peer *peer);
 bool peers_may_stream(const struct peers *peers, const struct peer *peer);
 bool peers_may_be_named(const struct peers *peers, const struct peer *peer);
+bool peers_may_ask(const struct peers *peers, const struct peer *peer);  /* one more question about the past */
+bool peers_may_hold(const struct peers *peers, const struct peer *peer, size_t count); /* so many bytes of answers more */
 bool peers_may_draw(const struct peers *peers, const struct peer *peer); /* one more picture for HTTP */
 /* Counts a message. False: the address has sent too many within this second. */
 bool peers_count_message(const struct peers *peers, struct peer *peer, int64_t now_ns);

@@ -1,260 +1,229 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The thread that reads history for those who ask. */
+/* The threads that read history for those who ask. */
 #include "net/recall.h"
 
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/clock.h"
 #include "base/mem.h"
 #include "base/text.h"
 #include "history/history.h"
 #include "history/series_text.h"
-#include "base/when.h"
 
-/* --- what is asked ------------------------------------------------------------------------------------------------------------ */
+enum { THREADS = 2 }; /* one address takes one at a time: what it asks does not hold up another's question */
+static const size_t PIECE_BYTES = 256 * 1024;        /* a piece ends with the tag that makes it as long, */
+static const int64_t PIECE_NS = 100 * NS_PER_MS;     /* or that took as long */
 
-static bool take_tags(const struct plant *plant, const char *list, struct recall_order *order, struct message_error *error)
-{
-    char name[256];
-    order->tag_count = 0;
-    for (const char *at = list; *at;) {
-        size_t n = strcspn(at, ",");
-        if (n >= sizeof(name) || order->tag_count == RECALL_TAGS) {
-            message_fail(error, "bad_field", "tags: at most %d names of at most %zu bytes", RECALL_TAGS, sizeof(name) - 1);
-            return false;
-        }
-        memcpy(name, at, n);
-        name[n] = 0;
-        int tag = plant_find_tag(plant, name);
-        if (tag < 0) {
-            message_fail(error, "unknown_tag", "tags: there is no tag '%.60s'", name);
-            return false;
-        }
-        order->tags[order->tag_count++] = tag;
-        at += n + (at[n] == ',');
-    }
-    return true;
-}
-
-static bool take_when(const char *name, const char *text, int64_t now_us, int64_t *out, struct message_error *error)
-{
-    if (when_parse(text, now_us, out))
-        return true;
-    message_fail(error, "bad_field", "%s: expected " WHEN_FORMS ", found '%.60s'", name, text);
-    return false;
-}
-
-static bool take_points(const char *text, struct recall_order *order, struct message_error *error)
-{
-    char *end;
-    long points = strtol(text, &end, 10);
-    if (end == text || *end || points < 2 || points > RECALL_POINTS) {
-        message_fail(error, "bad_field", "points: expected a number from 2 to %d, found '%.60s'", RECALL_POINTS, text);
-        return false;
-    }
-    order->max_points = (int)points;
-    return true;
-}
-
-static bool take_format(const char *text, struct recall_order *order, struct message_error *error)
-{
-    order->csv = !strcmp(text, "csv");
-    if (order->csv || !strcmp(text, "json"))
-        return true;
-    message_fail(error, "bad_field", "format: expected json or csv, found '%.60s'", text);
-    return false;
-}
-
-static bool take(const struct plant *plant, const char *arg, int64_t now_us, struct recall_order *order, struct message_error *error)
-{
-    size_t n = strcspn(arg, "=");
-    const char *value = arg[n] ? arg + n + 1 : "";
-    if (n == 4 && !memcmp(arg, "tags", n))
-        return take_tags(plant, value, order, error);
-    if (n == 4 && !memcmp(arg, "from", n))
-        return take_when("from", value, now_us, &order->from_us, error);
-    if (n == 2 && !memcmp(arg, "to", n))
-        return take_when("to", value, now_us, &order->to_us, error);
-    if (n == 6 && !memcmp(arg, "points", n))
-        return take_points(value, order, error);
-    if (n == 6 && !memcmp(arg, "format", n))
-        return take_format(value, order, error);
-    message_fail(error, "unknown_field", "there is no argument '%.*s'; tags, from, to, points and format are", n < 60 ? (int)n : 60, arg);
-    return false;
-}
-
-bool recall_parse(const struct plant *plant, const char *const *args, size_t count, int64_t now_us, struct recall_order *order,
-                  struct message_error *error)
-{
-    *order = (struct recall_order){ .max_points = 1000, .from_us = INT64_MIN, .to_us = now_us };
-    for (size_t i = 0; i < count; i++)
-        if (!take(plant, args[i], now_us, order, error))
-            return false;
-    if (order->from_us == INT64_MIN)
-        order->from_us = order->to_us - INT64_C(3600000000);
-    if (order->tag_count == 0)
-        message_fail(error, "bad_field", "tags: expected the names of tags, with commas between them");
-    else if (order->from_us >= order->to_us)
-        message_fail(error, "bad_field", "from: expected an earlier instant than to");
-    else
-        return true;
-    return false;
-}
-
-bool recall_parse_gaps(const char *const *args, size_t count, int64_t now_us, struct recall_order *order, struct message_error *error)
-{
-    *order = (struct recall_order){ .gaps = true, .from_us = INT64_MIN, .to_us = now_us };
-    for (size_t i = 0; i < count; i++) {
-        bool from = !strncmp(args[i], "from=", 5);
-        if (!from && strncmp(args[i], "to=", 3) != 0) {
-            message_fail(error, "unknown_field", "there is no argument '%.60s'; from and to are", args[i]);
-            return false;
-        }
-        if (!take_when(from ? "from" : "to", strchr(args[i], '=') + 1, now_us, from ? &order->from_us : &order->to_us, error))
-            return false;
-    }
-    if (order->from_us == INT64_MIN)
-        order->from_us = order->to_us - INT64_C(3600000000);
-    if (order->from_us < order->to_us)
-        return true;
-    message_fail(error, "bad_field", "from: expected an earlier instant than to");
-    return false;
-}
-
-/* --- the thread --------------------------------------------------------------------------------------------------------------- */
+struct question {
+    struct recall_order order;
+    int next_tag;  /* to be read */
+    bool buckets;  /* as the last line of a CSV file that names columns says */
+    bool wanted;   /* its next piece is */
+    bool forgotten;
+    uint64_t served; /* when its newest piece was begun; 0: it has none */
+    struct question *next;
+};
 
 struct recall {
     struct log *log;
     const struct plant *plant;
     char *folder;
-    struct history_reader *reader; /* of the thread */
     void (*notify)(void *arg);
     void *notify_arg;
-    pthread_t thread;
-    bool started;
+    pthread_t threads[THREADS];
+    int thread_count;
     pthread_mutex_t lock;
     pthread_cond_t wake;
     /* --- below: under lock */
-    struct recall_order waiting[RECALL_WAITING]; /* oldest first */
-    int waiting_count;
+    struct question *questions; /* newest first; one that a thread is at is not among them */
+    uint64_t at_work[THREADS];  /* payers; 0: none */
+    struct question *working[THREADS];
+    uint64_t served;            /* pieces begun */
+    int count;                  /* of questions, those at work too */
     struct recall_answer *answers, **last;
     bool stopping;
 };
 
-static bool read_series(struct recall *recall, const struct recall_order *order, struct history_series *series)
+/* --- a piece of an answer ------------------------------------------------------------------------------------------------------ */
+
+static void print_csv(struct question *question, const struct plant_tag *tag, const struct history_series *series, struct text *out)
 {
-    int error = 0;
-    for (int i = 0; i < order->tag_count && !error; i++)
-        error = history_series(recall->reader, recall->plant->tags[order->tags[i]].name, order->from_us, order->to_us, order->max_points,
-                               &series[i]);
-    return !error;
+    bool buckets = series->bucket_us > 0;
+    if (question->next_tag == 0 || buckets != question->buckets)
+        series_text_csv_head(out, buckets);
+    question->buckets = buckets;
+    series_text_csv(out, tag->name, tag->unit ? tag->unit : "", series);
 }
 
-static void print_csv(struct recall *recall, const struct recall_order *order, const struct history_series *series, struct text *out)
+static void print_json(const struct question *question, const struct plant_tag *tag, const struct history_series *series, struct text *out)
 {
-    bool buckets = false;
-    for (int i = 0; i < order->tag_count; i++) {
-        if (i == 0 || (series[i].bucket_us > 0) != buckets)
-            series_text_csv_head(out, buckets = series[i].bucket_us > 0);
-        const struct plant_tag *tag = &recall->plant->tags[order->tags[i]];
-        series_text_csv(out, tag->name, tag->unit ? tag->unit : "", &series[i]);
-    }
+    const struct recall_order *order = &question->order;
+    if (question->next_tag == 0)
+        text_add(out, "{\"from_us\":%lld,\"to_us\":%lld,\"series\":[", (long long)order->from_us, (long long)order->to_us);
+    else
+        text_add(out, ",");
+    series_text_json(out, tag->name, tag->unit ? tag->unit : "", series);
+    if (question->next_tag + 1 == order->tag_count)
+        text_add(out, "]}\n");
 }
 
-static void print_json(struct recall *recall, const struct recall_order *order, const struct history_series *series, struct text *out)
+/* The next tag of it. False: history could not be read. */
+static bool read_tag(struct recall *recall, struct history_reader *reader, struct question *question, struct text *out)
 {
-    text_add(out, "{\"from_us\":%lld,\"to_us\":%lld,\"series\":[", (long long)order->from_us, (long long)order->to_us);
-    for (int i = 0; i < order->tag_count; i++) {
-        const struct plant_tag *tag = &recall->plant->tags[order->tags[i]];
-        text_add(out, i ? "," : "");
-        series_text_json(out, tag->name, tag->unit ? tag->unit : "", &series[i]);
-    }
-    text_add(out, "]}\n");
+    const struct recall_order *order = &question->order;
+    const struct plant_tag *tag = &recall->plant->tags[order->tags[question->next_tag]];
+    struct history_series series;
+    bool good = history_series(reader, tag->name, order->from_us, order->to_us, order->max_points, &series) == 0;
+    if (good && order->csv)
+        print_csv(question, tag, &series, out);
+    else if (good)
+        print_json(question, tag, &series, out);
+    history_series_finish(&series);
+    question->next_tag++;
+    return good;
 }
 
-static struct recall_answer *answer_journal(struct recall *recall, const struct recall_order *order)
+static bool print_gaps(struct history_reader *reader, const struct recall_order *order, struct text *out)
 {
-    struct recall_answer *out = mem_new(sizeof(*out));
-    struct text text = { 0 };
-    out->client = order->client;
-    out->csv = order->alarms.csv;
-    alarms_journal_text(recall->log, recall->folder, &order->alarms, &text);
-    out->text = text.at;
-    out->length = text.length;
-    return out;
-}
-
-static struct recall_answer *answer_gaps(struct recall *recall, const struct recall_order *order)
-{
-    struct recall_answer *out = mem_new(sizeof(*out));
     struct history_gaps gaps;
-    struct text text = { 0 };
-    out->client = order->client;
-    if (history_gaps(recall->reader, order->from_us, order->to_us, &gaps))
-        return out;
-    text_add(&text, "{\"from_us\":%lld,\"to_us\":%lld,\"gaps\":[", (long long)order->from_us, (long long)order->to_us);
+    if (history_gaps(reader, order->from_us, order->to_us, &gaps))
+        return false;
+    text_add(out, "{\"from_us\":%lld,\"to_us\":%lld,\"gaps\":[", (long long)order->from_us, (long long)order->to_us);
     for (size_t i = 0; i < gaps.count; i++)
-        text_add(&text, "%s[%lld,%lld]", i ? "," : "", (long long)gaps.at[i].from_us, (long long)gaps.at[i].to_us);
-    text_add(&text, "]}\n");
+        text_add(out, "%s[%lld,%lld]", i ? "," : "", (long long)gaps.at[i].from_us, (long long)gaps.at[i].to_us);
+    text_add(out, "]}\n");
     mem_free(gaps.at);
-    out->text = text.at;
-    out->length = text.length;
-    return out;
+    return true;
 }
 
-static struct recall_answer *answer(struct recall *recall, const struct recall_order *order)
+static struct recall_answer *read_piece(struct recall *recall, struct history_reader *reader, struct question *question)
 {
-    struct recall_answer *out = mem_new(sizeof(*out));
-    struct history_series *series = mem_array((size_t)order->tag_count, sizeof(*series));
+    const struct recall_order *order = &question->order;
+    struct recall_answer *piece = mem_new(sizeof(*piece));
     struct text text = { 0 };
-    out->client = order->client;
-    out->csv = order->csv;
-    if (read_series(recall, order, series))
-        (order->csv ? print_csv : print_json)(recall, order, series, &text);
-    out->text = text.at;
-    out->length = text.length;
-    for (int i = 0; i < order->tag_count; i++)
-        history_series_finish(&series[i]);
-    mem_free(series);
-    return out;
-}
-
-static void drop(struct recall *recall, int index)
-{
-    memmove(recall->waiting + index, recall->waiting + index + 1,
-            (size_t)(recall->waiting_count - index - 1) * sizeof(recall->waiting[0]));
-    recall->waiting_count--;
-}
-
-static bool next_order(struct recall *recall, struct recall_order *order)
-{
-    pthread_mutex_lock(&recall->lock);
-    while (!recall->stopping && !recall->waiting_count)
-        pthread_cond_wait(&recall->wake, &recall->lock);
-    bool stopping = recall->stopping;
-    if (!stopping) {
-        *order = recall->waiting[0];
-        drop(recall, 0);
+    int64_t begin_ns = clock_mono_ns();
+    bool series = !order->journal && !order->gaps, good = true;
+    *piece = (struct recall_answer){ .client = order->client, .csv = order->journal ? order->alarms.csv : order->csv };
+    piece->first = question->next_tag == 0;
+    if (order->journal)
+        alarms_journal_text(recall->log, recall->folder, &order->alarms, &text);
+    else if (order->gaps)
+        good = print_gaps(reader, order, &text);
+    while (good && series && question->next_tag < order->tag_count && text.length < PIECE_BYTES &&
+           (text.length == 0 || clock_mono_ns() - begin_ns < PIECE_NS))
+        good = read_tag(recall, reader, question, &text);
+    piece->last = !good || !series || question->next_tag == order->tag_count;
+    if (good && text.length > 0) { /* a text that grew has room to spare, and it may lie there for long */
+        piece->text = mem_array(text.length + 1, 1);
+        piece->length = text.length;
+        memcpy(piece->text, text.at, text.length);
     }
-    pthread_mutex_unlock(&recall->lock);
-    return !stopping;
+    text_finish(&text);
+    return piece;
 }
+
+/* --- whose turn it is ---------------------------------------------------------------------------------------------------------- */
+
+/* Under lock. */
+static bool is_at_work(const struct recall *recall, uint64_t payer)
+{
+    bool any = false;
+    for (int i = 0; i < THREADS; i++)
+        any |= payer && recall->at_work[i] == payer;
+    return any;
+}
+
+/* Under lock. When the newest piece for its address was begun. */
+static uint64_t served_of(const struct recall *recall, const struct question *question)
+{
+    uint64_t served = question->served;
+    for (const struct question *other = recall->questions; other; other = other->next)
+        if (question->order.payer && other->order.payer == question->order.payer && other->served > served)
+            served = other->served;
+    return served;
+}
+
+static bool goes_before(const struct recall *recall, const struct question *a, const struct question *b)
+{
+    uint64_t a_served = served_of(recall, a), b_served = served_of(recall, b);
+    return a_served < b_served || (a_served == b_served && a->served <= b->served); /* the older one comes later in the list */
+}
+
+/* Under lock. Taken out of the list; NULL: there is nothing to do. */
+static struct question *take_next(struct recall *recall)
+{
+    struct question **best = NULL;
+    for (struct question **at = &recall->questions; *at; at = &(*at)->next)
+        if ((*at)->wanted && !is_at_work(recall, (*at)->order.payer) && (!best || goes_before(recall, *at, *best)))
+            best = at;
+    struct question *question = best ? *best : NULL;
+    if (question)
+        *best = question->next;
+    return question;
+}
+
+/* Under lock. The piece is there. */
+static void give(struct recall *recall, struct question *question, struct recall_answer *piece)
+{
+    bool last = piece->last;
+    if (question->forgotten) {
+        recall_answer_free(&piece);
+    } else {
+        *recall->last = piece;
+        recall->last = &piece->next;
+    }
+    if (question->forgotten || last) {
+        recall->count--;
+        mem_free(question);
+        return;
+    }
+    question->next = recall->questions;
+    recall->questions = question;
+}
+
+struct worker {
+    struct recall *recall;
+    int index;
+};
 
 static void *run(void *arg)
 {
-    struct recall *recall = arg;
-    struct recall_order order;
-    while (next_order(recall, &order)) {
-        struct recall_answer *one = (order.journal ? answer_journal : order.gaps ? answer_gaps : answer)(recall, &order);
+    struct worker *worker = arg;
+    struct recall *recall = worker->recall;
+    struct history_reader *reader = history_reader_create(recall->log, recall->folder);
+    int index = worker->index;
+    history_reader_show_by(reader, recall->plant);
+    mem_free(worker);
+    pthread_mutex_lock(&recall->lock);
+    while (!recall->stopping) {
+        struct question *question = take_next(recall);
+        if (!question) {
+            pthread_cond_wait(&recall->wake, &recall->lock);
+            continue;
+        }
+        question->wanted = false;
+        question->served = ++recall->served;
+        recall->at_work[index] = question->order.payer;
+        recall->working[index] = question;
+        pthread_mutex_unlock(&recall->lock);
+        struct recall_answer *piece = read_piece(recall, reader, question);
         pthread_mutex_lock(&recall->lock);
-        *recall->last = one;
-        recall->last = &one->next;
+        recall->at_work[index] = 0;
+        recall->working[index] = NULL;
+        give(recall, question, piece);
+        pthread_cond_broadcast(&recall->wake); /* another of that address may be read by the other thread */
         pthread_mutex_unlock(&recall->lock);
         recall->notify(recall->notify_arg);
+        pthread_mutex_lock(&recall->lock);
     }
+    pthread_mutex_unlock(&recall->lock);
+    history_reader_destroy(&reader);
     return NULL;
 }
+
+/* --- life ---------------------------------------------------------------------------------------------------------------------- */
 
 struct recall *recall_create(struct log *log, const struct plant *plant, const char *folder, void (*notify)(void *arg), void *arg)
 {
@@ -264,27 +233,29 @@ struct recall *recall_create(struct log *log, const struct plant *plant, const c
     recall->log = log;
     recall->plant = plant;
     recall->folder = mem_strdup(folder);
-    recall->reader = history_reader_create(log, folder);
-    history_reader_show_by(recall->reader, plant);
     recall->notify = notify;
     recall->notify_arg = arg;
     recall->last = &recall->answers;
-    int error = pthread_create(&recall->thread, NULL, run, recall);
-    recall->started = !error;
-    if (error) {
+    for (int i = 0, error = 0; i < THREADS && !error; i++) {
+        struct worker *worker = mem_new(sizeof(*worker));
+        *worker = (struct worker){ recall, i };
+        error = pthread_create(&recall->threads[i], NULL, run, worker);
+        recall->thread_count += !error;
+        if (!error)
+            continue;
+        mem_free(worker);
         log_err(log, "history: no thread to read it: %s", strerror(error));
-        recall_destroy(&recall);
     }
+    if (recall->thread_count < THREADS)
+        recall_destroy(&recall);
     return recall;
 }
 
-static void free_answers(struct recall_answer *answers)
+void recall_answer_free(struct recall_answer **answer)
 {
-    for (struct recall_answer *next; answers; answers = next) {
-        next = answers->next;
-        mem_free(answers->text);
-        mem_free(answers);
-    }
+    mem_free((*answer)->text);
+    mem_free(*answer);
+    *answer = NULL;
 }
 
 void recall_destroy(struct recall **pointer)
@@ -294,12 +265,18 @@ void recall_destroy(struct recall **pointer)
         return;
     pthread_mutex_lock(&recall->lock);
     recall->stopping = true;
-    pthread_cond_signal(&recall->wake);
+    pthread_cond_broadcast(&recall->wake);
     pthread_mutex_unlock(&recall->lock);
-    if (recall->started)
-        pthread_join(recall->thread, NULL);
-    free_answers(recall->answers);
-    history_reader_destroy(&recall->reader);
+    for (int i = 0; i < recall->thread_count; i++)
+        pthread_join(recall->threads[i], NULL);
+    for (struct recall_answer *answer = recall->answers, *next; answer; answer = next) {
+        next = answer->next;
+        recall_answer_free(&answer);
+    }
+    for (struct question *question = recall->questions, *next; question; question = next) {
+        next = question->next;
+        mem_free(question);
+    }
     mem_free(recall->folder);
     pthread_cond_destroy(&recall->wake);
     pthread_mutex_destroy(&recall->lock);
@@ -307,24 +284,48 @@ void recall_destroy(struct recall **pointer)
     *pointer = NULL;
 }
 
+/* --- for the loop -------------------------------------------------------------------------------------------------------------- */
+
 bool recall_ask(struct recall *recall, const struct recall_order *order)
 {
     pthread_mutex_lock(&recall->lock);
-    bool room = recall->waiting_count < RECALL_WAITING;
+    bool room = recall->count < RECALL_QUESTIONS;
     if (room) {
-        recall->waiting[recall->waiting_count++] = *order;
-        pthread_cond_signal(&recall->wake);
+        struct question *question = mem_new(sizeof(*question));
+        *question = (struct question){ .order = *order, .wanted = true, .next = recall->questions };
+        recall->questions = question;
+        recall->count++;
+        pthread_cond_broadcast(&recall->wake);
     }
     pthread_mutex_unlock(&recall->lock);
     return room;
 }
 
+void recall_go_on(struct recall *recall, uint64_t client)
+{
+    pthread_mutex_lock(&recall->lock);
+    for (struct question *question = recall->questions; question; question = question->next)
+        question->wanted |= question->order.client == client;
+    pthread_cond_broadcast(&recall->wake);
+    pthread_mutex_unlock(&recall->lock);
+}
+
 void recall_forget(struct recall *recall, uint64_t client)
 {
     pthread_mutex_lock(&recall->lock);
-    for (int i = recall->waiting_count - 1; i >= 0; i--)
-        if (recall->waiting[i].client == client)
-            drop(recall, i);
+    for (int i = 0; i < THREADS; i++)
+        if (recall->working[i] && recall->working[i]->order.client == client)
+            recall->working[i]->forgotten = true;
+    for (struct question **at = &recall->questions; *at;) {
+        struct question *question = *at;
+        if (question->order.client != client) {
+            at = &question->next;
+            continue;
+        }
+        *at = question->next;
+        recall->count--;
+        mem_free(question);
+    }
     pthread_mutex_unlock(&recall->lock);
 }
 

@@ -11,6 +11,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "base/text.h"
 #include "history/history.h"
 #include "history/month.h"
 #include "net/recall.h"
@@ -87,6 +88,7 @@ static void queries_are_judged(void **state)
         { { "tags=A \"1\"", "points=1" }, "points: expected a number from 2" },
         { { "tags=A \"1\"", "points=1e9" }, "points: expected a number from 2" },
         { { "tags=A \"1\"", "format=xml" }, "format: expected json or csv" },
+        { { "tags=A \"1\",A \"1\"" }, "is named twice" },
         { { "tag=A \"1\"" }, "there is no argument 'tag'" },
         { { "tags" }, "tags: expected the names" },
     };
@@ -149,8 +151,8 @@ static void answers_hold_what_was_recorded(void **state)
     }
     assert_int_equal(json_array_size(json_object_get(json_array_get(series, 1), "points")), 0);
     json_decref(root);
-    mem_free(answer->text);
-    mem_free(answer);
+    assert_true(answer->first && answer->last);
+    recall_answer_free(&answer);
 }
 
 static void csv_has_quotes_where_it_needs_them(void **state)
@@ -164,8 +166,74 @@ static void csv_has_quotes_where_it_needs_them(void **state)
     assert_string_equal(answer->text, "Tag,Time,Value,Quality,Unit\r\n"
                                       "\"A \"\"1\"\"\",2026-11-01T02:26:38.000Z,48,0x00000000,\r\n"
                                       "\"A \"\"1\"\"\",2026-11-01T02:26:39.000Z,49,0x00000000,\r\n");
-    mem_free(answer->text);
-    mem_free(answer);
+    recall_answer_free(&answer);
+}
+
+/* 20,000 points of each tag: more than goes into one piece. */
+static void record_much(struct setup *s)
+{
+    struct history_tag *tags = history_tags(s->plant);
+    int error;
+    struct month_file *file = month_file_open(s->log, s->folder, month_of(NOW), tags, 2, &error);
+    static struct history_point points[20000];
+    for (int tag = 0; tag < 2; tag++) {
+        for (int i = 0; i < 20000; i++)
+            points[i] = (struct history_point){ NOW + i * US_PER_S / 10, i / 7.0, 0 };
+        assert_int_equal(month_file_import(file, tag, points, 20000), 0);
+    }
+    month_file_close(&file);
+    mem_free(tags);
+}
+
+/* Who does not read has one piece, others have their turn, and the pieces are one answer. */
+static void long_answers_come_in_pieces(void **state)
+{
+    struct setup *s = *state;
+    struct recall_order order = { .client = 7, .payer = 1, .tags = { 0, 1 }, .tag_count = 2, .max_points = 20000 };
+    struct text all = { 0 };
+    int pieces = 0;
+    record_much(s);
+    order.from_us = NOW;
+    order.to_us = NOW + 3000 * US_PER_S;
+    assert_true(recall_ask(s->recall, &order));
+    struct recall_answer *answer = wait_for(s, ++pieces);
+    assert_true(answer->first && !answer->last && answer->length > 256 * 1024);
+    clock_sleep_ns(50 * NS_PER_MS);
+    assert_null(recall_collect(s->recall)); /* nothing more before it is wanted */
+    for (;;) {
+        bool last = answer->last;
+        text_add_bytes(&all, answer->text, answer->length);
+        recall_answer_free(&answer);
+        if (last)
+            break;
+        recall_go_on(s->recall, 7);
+        answer = wait_for(s, ++pieces);
+        assert_false(answer->first);
+    }
+    json_t *root = json_loads(all.at, 0, NULL);
+    assert_int_equal(json_array_size(json_object_get(json_array_get(json_object_get(root, "series"), 1), "points")), 20000);
+    assert_int_equal(pieces, 2);
+    json_decref(root);
+    text_finish(&all);
+}
+
+static void who_is_forgotten_leaves_room(void **state)
+{
+    struct setup *s = *state;
+    struct recall_order order = { .payer = 1, .tags = { 0, 1 }, .tag_count = 2, .max_points = 20000, .from_us = NOW };
+    record_much(s);
+    order.to_us = NOW + 3000 * US_PER_S;
+    for (int i = 0; i < 4 * RECALL_QUESTIONS; i++) {
+        order.client = (uint64_t)i + 1;
+        assert_true(recall_ask(s->recall, &order));
+        if (i >= RECALL_QUESTIONS - 2) /* at work, waiting, or with a piece that nobody took */
+            recall_forget(s->recall, order.client - RECALL_QUESTIONS + 2);
+        for (struct recall_answer *answer = recall_collect(s->recall), *next; answer; answer = next) {
+            next = answer->next;
+            recall_answer_free(&answer);
+        }
+        clock_sleep_ns(NS_PER_MS);
+    }
 }
 
 static void too_many_are_refused(void **state)
@@ -184,8 +252,7 @@ static void too_many_are_refused(void **state)
     assert_true(taken < 10000);
     for (struct recall_answer *answer = recall_collect(s->recall), *next; answer; answer = next) {
         next = answer->next;
-        mem_free(answer->text);
-        mem_free(answer);
+        recall_answer_free(&answer);
     }
 }
 
@@ -196,6 +263,8 @@ int main(void)
         cmocka_unit_test(gaps_are_asked_by_time_alone),
         cmocka_unit_test_setup_teardown(answers_hold_what_was_recorded, set_up, tear_down),
         cmocka_unit_test_setup_teardown(csv_has_quotes_where_it_needs_them, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(long_answers_come_in_pieces, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(who_is_forgotten_leaves_room, set_up, tear_down),
         cmocka_unit_test_setup_teardown(too_many_are_refused, set_up, tear_down),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);

@@ -129,6 +129,8 @@ static int serve(struct hub *hub, struct request *request, const char *path)
 
 static int on_writeable(struct hub *hub, struct request *request)
 {
+    if (request->pieces)
+        return pieces_write(hub, request);
     size_t left = request->count - request->sent, slice = left < SLICE_BYTES ? left : SLICE_BYTES;
     if (!request->body)
         return 0;
@@ -156,7 +158,7 @@ static void request_end(struct hub *hub, struct request **slot)
     if (!slot || !*slot)
         return;
     request_forget(hub, *slot);
-    mem_free((*slot)->body);
+    request_hold(*slot, NULL, 0);
     mem_free(*slot);
     *slot = NULL;
 }

@@ -6,6 +6,8 @@
 #include "net/http/http_impl.h"
 #include "net/visitor.h"
 
+enum { SMALL_BYTES = 64 * 1024 }; /* as many connections as there may be have room for these */
+
 static const char *const security[][2] = {
     { "content-security-policy:", "default-src 'self'; connect-src 'self' ws: wss:; img-src 'self' data: blob:; worker-src 'self' blob:; "
                                   "object-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'self'" },
@@ -20,11 +22,22 @@ static bool add_header(struct lws *wsi, const char *name, const char *value, uns
     return lws_add_http_header_by_name(wsi, (const unsigned char *)name, (const unsigned char *)value, (int)strlen(value), p, end) == 0;
 }
 
-static bool write_head(struct request *request, int status, const char *type, const char *extra_name, const char *extra)
+/* What comes in pieces has a length that nobody knows yet. */
+static bool add_first(struct request *request, int status, const char *type, unsigned char **p, unsigned char *end)
+{
+    struct lws *wsi = request->wsi;
+    lws_filepos_t count = request->pieces == PIECES_TO_END ? LWS_ILLEGAL_HTTP_CONTENT_LEN : request->count;
+    if (request->pieces == PIECES_CHUNKED)
+        return lws_add_http_header_status(wsi, (unsigned)status, p, end) == 0 && add_header(wsi, "content-type:", type, p, end) &&
+               add_header(wsi, "transfer-encoding:", "chunked", p, end);
+    return lws_add_http_common_headers(wsi, (unsigned)status, type, status == HTTP_STATUS_NOT_MODIFIED ? 0 : count, p, end) == 0;
+}
+
+bool request_write_head(struct request *request, int status, const char *type, const char *extra_name, const char *extra)
 {
     unsigned char buffer[LWS_PRE + 2048], *start = buffer + LWS_PRE, *p = start, *end = buffer + sizeof(buffer) - 1;
     struct lws *wsi = request->wsi;
-    if (lws_add_http_common_headers(wsi, (unsigned)status, type, status == HTTP_STATUS_NOT_MODIFIED ? 0 : request->count, &p, end))
+    if (!add_first(request, status, type, &p, end))
         return false;
     for (size_t i = 0; i < sizeof(security) / sizeof(security[0]); i++)
         if (!add_header(wsi, security[i][0], security[i][1], &p, end))
@@ -34,11 +47,37 @@ static bool write_head(struct request *request, int status, const char *type, co
     return lws_finalize_write_http_header(wsi, start, &p, end) == 0;
 }
 
+void request_hold(struct request *request, char *body, size_t count)
+{
+    struct hub *hub = hub_of(request->wsi);
+    if (request->holder) {
+        request->holder->answer_bytes -= (int64_t)request->count;
+        hub->answer_bytes -= (int64_t)request->count;
+    }
+    mem_free(request->body);
+    request->holder = body ? visitor_of(request->wsi)->client : NULL;
+    request->body = body;
+    request->count = count;
+    request->sent = 0;
+    if (!request->holder)
+        return;
+    request->holder->answer_bytes += (int64_t)count;
+    hub->answer_bytes += (int64_t)count;
+}
+
+/* A large answer waits for whoever asked for it to read it, for as long as he takes. */
+static bool may_hold(const struct request *request, size_t count)
+{
+    const struct hub *hub = hub_of(request->wsi);
+    const struct visitor *visitor = visitor_of(request->wsi);
+    bool room = hub->answer_bytes + (int64_t)count < hub->quotas->at[QUOTA_ANSWER_BYTES];
+    return count <= SMALL_BYTES || !visitor->client || (room && peers_may_hold(hub->peers, visitor->client, count));
+}
+
 int request_done(struct request *request)
 {
-    mem_free(request->body);
-    request->body = NULL;
-    request->count = request->sent = 0;
+    request_hold(request, NULL, 0);
+    request->pieces = PIECES_NONE;
     return request->close || lws_http_transaction_completed(request->wsi) ? -1 : 0;
 }
 
@@ -46,11 +85,12 @@ int request_done(struct request *request)
 int request_answer(struct request *request, int status, const char *type, char *body, size_t count, const char *extra_name,
                   const char *extra)
 {
-    mem_free(request->body);
-    request->body = body;
-    request->count = count;
-    request->sent = 0;
-    if (!write_head(request, status, type, extra_name, extra))
+    if (!may_hold(request, count)) {
+        mem_free(body);
+        return request_answer_later(request, "too many answers were not read yet; read them, or try again\n");
+    }
+    request_hold(request, body, count);
+    if (!request_write_head(request, status, type, extra_name, extra))
         return -1;
     if (request->head || count == 0)
         return request_done(request);
@@ -83,7 +123,7 @@ int request_answer_error(struct request *request, const struct message_error *er
 int http_answer(struct lws *wsi, int status, const char *text)
 {
     struct request request = { .wsi = wsi, .count = strlen(text) };
-    if (!write_head(&request, status, HTTP_TEXT, NULL, NULL))
+    if (!request_write_head(&request, status, HTTP_TEXT, NULL, NULL))
         return -1;
     return lws_write(wsi, (unsigned char *)text, strlen(text), LWS_WRITE_HTTP_FINAL) < 0 ? -1 : 0;
 }
@@ -129,6 +169,9 @@ void request_forget(struct hub *hub, struct request *request)
     *at = request->next;
     hub->picture_count -= request->asked != NULL;
     request->peer->pictures -= request->asked != NULL;
+    hub->question_count -= request->asks;
+    request->peer->questions -= request->asks;
+    request->asks = false;
     painter_forget(hub->params.plant.painter, request->client);
     if (hub->recall)
         recall_forget(hub->recall, request->client);

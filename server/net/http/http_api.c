@@ -7,14 +7,20 @@
 #include "base/mem.h"
 #include "base/memory.h"
 #include "net/http/http_impl.h"
+#include "net/visitor.h"
 #include "net/message/reply.h"
 
 static int await_recalled(struct hub *hub, struct request *request, struct recall_order *order)
 {
+    struct peer *peer = visitor_of(request->wsi)->client;
     order->client = hub->next_client;
-    if (!recall_ask(hub->recall, order))
-        return request_answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "too much is being asked; try again\n");
+    order->payer = peer->share.payer;
+    if (hub->question_count >= hub->quotas->at[QUOTA_QUESTIONS] || !peers_may_ask(hub->peers, peer) || !recall_ask(hub->recall, order))
+        return request_answer_later(request, "too much is being asked; try again\n");
     request_await(hub, request);
+    request->asks = true;
+    peer->questions++;
+    hub->question_count++;
     return 0;
 }
 
@@ -75,18 +81,39 @@ int ask_journal(struct hub *hub, struct request *request)
     return await_recalled(hub, request, &order);
 }
 
+/* The first piece of several, or one that follows. */
+static int take_piece(struct request *request, struct recall_answer *piece, const char *type)
+{
+    if (piece->first && pieces_begin(request, type) < 0)
+        return -1;
+    pieces_take(request, piece->text, piece->length, piece->last);
+    piece->text = NULL;
+    return 0;
+}
+
+static int answer_whole(struct request *request, struct recall_answer *answer, const char *type)
+{
+    char *text = answer->text;
+    answer->text = NULL;
+    return request_answer(request, HTTP_STATUS_OK, type, text, answer->length, NULL, NULL);
+}
+
 void http_on_recall(struct hub *hub, struct recall_answer *recalled)
 {
     struct request *request = request_find(hub, recalled->client);
-    if (!request) {
-        mem_free(recalled->text);
+    const char *type = recalled->csv ? "text/csv; charset=utf-8" : "application/json";
+    bool whole = recalled->first && recalled->last;
+    if (!request)
+        return;
+    if (recalled->text && !whole && !request->head) {
+        request_answered(request, take_piece(request, recalled, type));
         return;
     }
     request_forget(hub, request);
-    int status = recalled->text ? request_answer(request, HTTP_STATUS_OK, recalled->csv ? "text/csv; charset=utf-8" : "application/json",
-                                         recalled->text, recalled->length, NULL, NULL)
-                                : request_answer_text(request, HTTP_STATUS_INTERNAL_SERVER_ERROR, HTTP_UNREADABLE);
-    request_answered(request, status);
+    if (!recalled->text) /* what was begun cannot be taken back, but it can be seen not to be whole */
+        request_answered(request, recalled->first ? request_answer_text(request, HTTP_STATUS_INTERNAL_SERVER_ERROR, HTTP_UNREADABLE) : -1);
+    else
+        request_answered(request, whole ? answer_whole(request, recalled, type) : pieces_begin(request, type));
 }
 
 /* Of the whole process, when somebody asks. */

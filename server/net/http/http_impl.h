@@ -18,6 +18,10 @@ struct request {
     bool close; /* after the answer */
     char *body;
     size_t count, sent;
+    struct peer *holder;  /* in whose answer_bytes the body is counted; NULL: in none. The connection's visitor keeps it */
+    bool asks;            /* a question about the past is being answered: */
+    enum { PIECES_NONE, PIECES_CHUNKED, PIECES_TO_END } pieces; /* its head was sent, and the body comes in so many pieces as it takes */
+    bool last_piece;      /* the body is */
     uint64_t client;      /* of the painter, while a picture is awaited */
     bool reloads;         /* the plant is: that is what is awaited */
     struct asked *asked;  /* meanwhile; NULL: not for one */
@@ -39,9 +43,16 @@ struct args { /* of the query, decoded */
 int request_answer(struct request *request, int status, const char *type, char *body, size_t count, const char *extra_name,
                    const char *extra);
 int request_answer_text(struct request *request, int status, const char *text);
+/* The same for a body that comes in pieces, each when the one before was sent: http_pieces.c. */
+int pieces_begin(struct request *request, const char *type);
+void pieces_take(struct request *request, char *body, size_t count, bool last); /* takes body */
+int pieces_write(struct hub *hub, struct request *request); /* one write; as on_writeable */
 int request_answer_later(struct request *request, const char *why); /* 503, and when to come again */
 int request_answer_json(struct request *request, char *text); /* takes text */
 int request_answer_error(struct request *request, const struct message_error *error);
+/* Takes body in place of the one before, and counts what there is of it in memory: of all, and of the address. NULL: none. */
+void request_hold(struct request *request, char *body, size_t count);
+bool request_write_head(struct request *request, int status, const char *type, const char *extra_name, const char *extra);
 int request_done(struct request *request); /* all of its answer was sent */
 bool request_args(struct lws *wsi, struct args *args, struct message_error *error);
 

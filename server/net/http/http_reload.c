@@ -35,7 +35,8 @@ static void answer_all(struct hub *hub, bool reloads, int status, const char *ty
             continue;
         request_forget(hub, request);
         request->reloads = false;
-        request_answered(request, request_answer(request, status, type, mem_strdup(text), strlen(text), NULL, NULL));
+        bool begun = request->pieces != PIECES_NONE; /* the rest of it will not come: whoever reads it sees that it is not whole */
+        request_answered(request, begun ? -1 : request_answer(request, status, type, mem_strdup(text), strlen(text), NULL, NULL));
     }
 }
 

@@ -26,6 +26,10 @@ static const struct {
     [QUOTA_ADDRESS_MESSAGES] = { "address-messages", 8000, 10, 1000000, "likewise of one address" },
     [QUOTA_SNAPSHOTS] = { "snapshots", 8, 1, 1000, "pictures and picks over HTTP that are being made" },
     [QUOTA_ADDRESS_SNAPSHOTS] = { "address-snapshots", 4, 1, 1000, "likewise for one address" },
+    [QUOTA_QUESTIONS] = { "questions", 128, 1, 128, "questions about the past over HTTP that are being answered" },
+    [QUOTA_ADDRESS_QUESTIONS] = { "address-questions", 32, 1, 128, "likewise of one address" },
+    [QUOTA_ANSWER_BYTES] = { "answer-bytes", 192 << 20, 1 << 20, INT64_C(1) << 40, "of answers over HTTP that are not read yet" },
+    [QUOTA_ADDRESS_ANSWER_BYTES] = { "address-answer-bytes", 96 << 20, 1 << 20, INT64_C(1) << 40, "likewise of one address" },
     [QUOTA_LEAST_FPS] = { "least-fps", 5, 0, 1000, "frames/s that moving views keep when one more is let in" },
     [QUOTA_PATIENCE_S] = { "patience", 10, 1, 600, "seconds for a request, for hello, and for the rest of a message" },
 };
