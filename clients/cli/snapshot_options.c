@@ -17,7 +17,8 @@ static const char snapshot_usage[] =
     "  -o, --out FILE          PNG file to write\n"
     "  --pick X,Y              print as JSON what is at this pixel: asset, place, value, nearest sensors; no picture without -o\n"
     "  --at INSTANT            as it was then, out of what was recorded; with --values: the time of these\n"
-    "  --values FILE           without a daemon: CSV of tag,value[,quality]; may be repeated. Tags without a value have no data\n";
+    "  --values FILE           without a daemon: CSV of tag,value[,quality] (perhaps unit; else the tag's Eng Units);\n"
+    "                          may be repeated. Tags without a value have no data\n";
 static const char clip_usage[] =
     "usage: plantcast clip (PLANT.yaml | http://HOST:PORT/) -o OUT.mp4 --from INSTANT --to INSTANT [options]\n"
     "\n"

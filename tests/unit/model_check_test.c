@@ -132,6 +132,34 @@ static void series_are_looked_up(void **state)
           { "tags.csv", 7, 1, "values.csv has no series 'T6'; did you mean 'T5'?" });
 }
 
+/* Whatever stands in a file, it is read or refused with a reason. */
+static void broken_models_are_refused(void **state)
+{
+    struct plant_case *c = *state;
+    unsigned seed = 7;
+    int read = 0;
+    char *path = temp_path(c->folder, "m.gltf"), *text = mem_strdup(model);
+    size_t length = strlen(text);
+    for (int round = 0; round < 2000; round++) {
+        static const char signs[] = "0123456789-[]{},:\"eE.x";
+        struct model_header header;
+        char why[300] = "";
+        memcpy(text, model, length);
+        for (int i = rand_r(&seed) % 4; i >= 0; i--)
+            text[(size_t)rand_r(&seed) % length] = signs[(size_t)rand_r(&seed) % (sizeof(signs) - 1)];
+        mem_free(temp_write_text(c->folder, "m.gltf", text));
+        if (model_header_read(&header, path, why, sizeof(why))) {
+            read++;
+            model_header_finish(&header);
+        } else {
+            assert_true(*why);
+        }
+    }
+    assert_true(read > 100 && read < 1900);
+    mem_free(text);
+    mem_free(path);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -140,6 +168,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(nodes_are_looked_up, plant_case_set_up, plant_case_tear_down),
         cmocka_unit_test_setup_teardown(sensors_tell_units_and_axes, plant_case_set_up, plant_case_tear_down),
         cmocka_unit_test_setup_teardown(series_are_looked_up, plant_case_set_up, plant_case_tear_down),
+        cmocka_unit_test_setup_teardown(broken_models_are_refused, plant_case_set_up, plant_case_tear_down),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests(tests, NULL, NULL);
