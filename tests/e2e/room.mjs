@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Room for everything on every screen: lists and panels stand beside the picture, and what it is read by stays whole and in sight.
 import assert from 'node:assert/strict';
+import { readFileSync, writeFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
 import { arrive, land, openPage, PHONE, shoot, TABLET, waitForPicture } from './support/browser.mjs';
 import { startAlarmed } from './support/panels.mjs';
@@ -226,5 +227,36 @@ test('until a picture of the new shape comes, the last one is not distorted, and
         assert.deepEqual(errors, []);
     } finally {
         await close();
+    }
+});
+
+// A finger drags the row; keys and the server's word bring the chosen one in sight.
+test('phone and desk: of seven quantities each is named in full', options, async () => {
+    const names = ['Differential pressure', 'Volume flow', 'Level', 'Vibration velocity', 'Electrical power'];
+    const [many, address] = await startAlarmed((file) => writeFileSync(file, readFileSync(file, 'utf8').replace(/^sources:/m,
+        `${names.map((name, i) => `  - { id: more${i}, quantity: ${name}, unit: bar, min: 0, max: 1 }\n`).join('')}sources:`)));
+    try {
+        for (const [name, screen] of [['phone', PHONE], ['desk', SCREENS.desk], ['tablet', TABLET]]) {
+            const { page, close } = await openPage(`${address}?lang=en`, screen);
+            try {
+                await waitForPicture(page);
+                const cut = await page.evaluate(() => [...document.querySelectorAll('#groups span')]
+                    .filter((e) => e.scrollWidth > e.clientWidth + 1).map((e) => e.textContent));
+                assert.deepEqual(cut, [], name);
+                await shoot(page, `seven-${name}`);
+                await page.evaluate(() => globalThis.plantcast.session.setParams({ group: 'more4' }));
+                await page.waitForFunction(() => {
+                    const row = document.querySelector('#groups .row').getBoundingClientRect();
+                    const { left, right } = document.querySelector('#groups :checked + span').getBoundingClientRect();
+                    return left >= row.left - 1 && right <= row.right + 1 && row.right <= innerWidth;
+                });
+                assert.ok(await page.evaluate(() => document.getElementById('plant-name').clientWidth > 60 &&
+                    document.querySelector('.actions').getBoundingClientRect().right <= innerWidth), name);
+            } finally {
+                await close();
+            }
+        }
+    } finally {
+        await many.destroy();
     }
 });

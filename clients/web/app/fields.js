@@ -13,8 +13,11 @@ export function fillSegments(fieldset, name, choices, onChoose) {
 }
 
 export function markSegment(fieldset, value) {
-    for (const input of fieldset.querySelectorAll('.row input[type="radio"]'))
+    for (const input of fieldset.querySelectorAll('.row input[type="radio"]')) {
         input.checked = input.value === value;
+        if (input.checked)
+            input.parentNode.scrollIntoView({ block: 'nearest', inline: 'nearest' });
+    }
 }
 
 export function fillSelect(select, choices, value) {

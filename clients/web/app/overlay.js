@@ -125,7 +125,8 @@ export class Overlay {
     // What lies over the picture already.
     blocked() {
         const origin = this.viewport.element.getBoundingClientRect();
-        const boxes = [...this.viewport.element.querySelectorAll('.legend, .banner, .card, .simulated-note, .chip')].map((e) => e.getBoundingClientRect());
+        const boxes = [...this.viewport.element.querySelectorAll('.legend, .banner, .card, .simulated-note, .chip')]
+            .map((e) => e.getBoundingClientRect());
         const { unit } = this;
         const own = boxes.filter((box) => box.width > 0).map((box) => ({
             left: (box.left - origin.left) / unit, right: (box.right - origin.left) / unit,
