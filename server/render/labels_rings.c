@@ -7,9 +7,10 @@
 #include "render/labels_impl.h"
 
 static const double CLOSE = 26, STILL_CLOSE = 34; /* units between rings that share a call-out; that did in the picture before */
+static const double FARTHER = 1.25; /* those distances grow by, until there are no more than MOST_GROUPS */
 static const double FARTHEST = 170;               /* units, unless there is no other label to join */
 /* Where else a label may be, from the middle of its rings; steps in units. */
-enum { STEP_X = 24, STEP_Y = 15, STEPS = 60, SIDE = 2 * STEPS + 1, OFFSETS = SIDE * SIDE, NOWHERE = -2, FORCED = 1000000 };
+enum { MOST_GROUPS = 24, STEP_X = 24, STEP_Y = 15, STEPS = 60, SIDE = 2 * STEPS + 1, OFFSETS = SIDE * SIDE, NOWHERE = -2, FORCED = 1000000 };
 
 struct offset {
     int x, y, squared, index;
@@ -28,6 +29,7 @@ struct rings {
     struct layout *layout;
     const int *order;
     size_t count, group_count;
+    double least; /* a unit, or more where many rings are close together */
     struct group *groups;
     int *group_of;          /* by place in `order` */
     int *members;           /* of all groups, one after the other */
@@ -62,7 +64,7 @@ static bool are_close(const struct rings *rings, size_t i, size_t k)
 {
     const struct label_item *a = ring_at(rings, i), *b = ring_at(rings, k);
     bool did = a->callout != LABEL_NONE && a->callout == b->callout;
-    double least = (did ? STILL_CLOSE : CLOSE) * rings->layout->area->unit, dx = a->x - b->x, dy = a->y - b->y;
+    double least = (did ? STILL_CLOSE : CLOSE) * rings->least, dx = a->x - b->x, dy = a->y - b->y;
     return dx * dx + dy * dy < least * least;
 }
 
@@ -77,6 +79,21 @@ static void join(int *first, int i, int k)
 {
     int a = root_of(first, i), b = root_of(first, k);
     first[a > b ? a : b] = a < b ? a : b;
+}
+
+/* Returns how many groups there are. */
+static size_t join_close(const struct rings *rings, int *first)
+{
+    size_t groups = 0;
+    for (size_t i = 0; i < rings->count; i++) {
+        first[i] = (int)i;
+        for (size_t k = 0; k < i; k++)
+            if (are_close(rings, i, k))
+                join(first, (int)i, (int)k);
+    }
+    for (size_t i = 0; i < rings->count; i++)
+        groups += first[i] == (int)i;
+    return groups;
 }
 
 /* A group's place and size, and what it had in the picture before. */
@@ -230,12 +247,7 @@ void layout_place_rings(struct layout *layout, const int *order, size_t count)
     rings.group_of = mem_array(count, sizeof(*rings.group_of));
     rings.members = mem_array(count, sizeof(*rings.members));
     rings.offsets = count ? make_offsets() : NULL;
-    for (size_t i = 0; i < count; i++) {
-        first[i] = (int)i;
-        for (size_t k = 0; k < i; k++)
-            if (are_close(&rings, i, k))
-                join(first, (int)i, (int)k);
-    }
+    for (rings.least = layout->area->unit; join_close(&rings, first) > MOST_GROUPS; rings.least *= FARTHER) {}
     make_groups(&rings, first);
     while (count && !place_groups(&rings)) {
         for (size_t i = 0; i < count; i++) {

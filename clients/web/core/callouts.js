@@ -3,6 +3,7 @@
 import { boxAt, CLEARANCE, meets, SLOTS } from './labels.js';
 
 const CLOSE = 26, STILL_CLOSE = 34;         // units between rings that share a call-out; between those that did in the picture before
+const MOST_GROUPS = 24, FARTHER = 1.25;     // so many labels of rings at most; distances grow by that until there are no more
 const STEP_X = 24, STEP_Y = 15, STEPS = 60; // units: where else a label may be, from the middle of its rings
 const FARTHEST = 170;                       // units, unless there is no other label to join
 
@@ -25,8 +26,11 @@ function components(count, linked) {
         }
     }
     const out = new Map();
-    for (let i = 0; i < count; i++)
-        out.set(root(i), [...(out.get(root(i)) ?? []), i]);
+    for (let i = 0; i < count; i++) {
+        if (root(i) === i)
+            out.set(i, []);
+        out.get(root(i)).push(i);
+    }
     return [...out.values()];
 }
 
@@ -52,11 +56,13 @@ function boxOf(one, slot, unit) {
 // order: items with rings, the most important first; measure(members): { width, height } of their call-out; taken: of labels.js.
 // Returns [{ members, box, slot }, ...]: every item is in one of them.
 export function placeRings(order, { area, unit, taken, measure }) {
+    let lists, least = unit;
     const close = (i, k) => {
         const a = order[i], b = order[k], did = a.callout !== undefined && a.callout === b.callout;
-        return (a.x - b.x) ** 2 + (a.y - b.y) ** 2 < ((did ? STILL_CLOSE : CLOSE) * unit) ** 2;
+        return (a.x - b.x) ** 2 + (a.y - b.y) ** 2 < ((did ? STILL_CLOSE : CLOSE) * least) ** 2;
     };
-    let groups = components(order.length, close).map((list) => group(list.map((i) => order[i]), measure));
+    for (; (lists = components(order.length, close)).length > MOST_GROUPS; least *= FARTHER) {}
+    let groups = lists.map((list) => group(list.map((i) => order[i]), measure));
     for (;;) {
         const out = [], lost = [], alone = groups.length === 1;
         for (const one of groups) {
