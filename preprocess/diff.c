@@ -3,6 +3,7 @@
 #include "preprocess/diff.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -144,6 +145,20 @@ static double place_sensor(const struct half *half, size_t column, double place_
     return distance_m;
 }
 
+/* In the middle of a pipe many places of the surface are equally near, and which one is found hangs on the last bit. So where the surface
+   is still there, and no farther away than the nearest place, it has not moved. */
+static double surface_moved(const struct pair *pair, const double place_m[3], const double old_m[3], const double new_m[3])
+{
+    double plant_to_new[16], at[3], still_m[3], moved_m = vec_distance(old_m, new_m);
+    if (moved_m <= pair->tolerance_m || !transform_invert(pair->new_half.to_plant, plant_to_new))
+        return moved_m;
+    transform_point(plant_to_new, old_m, at);
+    diff_shape_nearest(pair->new_half.tree, at, still_m);
+    transform_point(pair->new_half.to_plant, still_m, still_m);
+    bool as_near = vec_distance(place_m, still_m) <= vec_distance(place_m, new_m) + pair->tolerance_m;
+    return as_near ? min_of(moved_m, vec_distance(old_m, still_m)) : moved_m;
+}
+
 static void compare_sensor(struct diff *diff, struct pair *pair, const struct side_tag *tag)
 {
     const struct side_tag *before = side_find_tag(&diff->old_side, tag->name);
@@ -160,7 +175,7 @@ static void compare_sensor(struct diff *diff, struct pair *pair, const struct si
                before->column < pair->old_half.shape.sensor_count && !isnan(pair->old_half.shape.places_m[before->column][0]);
     if (was) {
         found.distance_m[0] = place_sensor(&pair->old_half, before->column, place_m[0], surface_m[0]);
-        found.moved_m = vec_distance(surface_m[0], surface_m[1]);
+        found.moved_m = surface_moved(pair, place_m[1], surface_m[0], surface_m[1]);
         found.place_moved_m = vec_distance(place_m[0], place_m[1]);
         found.far_moved = found.moved_m > pair->tolerance_m;
         mem_grow(&diff->sensors, &diff->sensor_room, diff->sensor_count + 1, sizeof(*diff->sensors));
@@ -178,6 +193,41 @@ static void compare_sensors(struct diff *diff, struct pair *pair)
         const struct side_tag *tag = &diff->new_side.tags[i];
         if (tag->is_sensor && strcmp(tag->asset, pair->found.id) == 0)
             compare_sensor(diff, pair, tag);
+    }
+}
+
+/* A node of the new model with the old shape in the old place: what was renamed. why says so, in place of a name that is merely like it. */
+static void find_renamed(struct diff *diff, const struct pair *pair, const struct side_asset *asset, double tolerance_m, char *why)
+{
+    struct side_box box;
+    diff_shape_box(pair->old_half.tree, box.low_m, box.high_m);
+    for (int axis = 0; axis < 3; axis++) {
+        box.low_m[axis] += pair->old_half.shape.origin_m[axis];
+        box.high_m[axis] += pair->old_half.shape.origin_m[axis];
+    }
+    double limit_m = tolerance_m > 0 ? tolerance_m : fmin(TOLERANCE_M, TOLERANCE_OF_SIZE * diff_shape_diagonal(pair->old_half.tree));
+    for (uint32_t after = 0;; after++) {
+        struct half half = { 0 };
+        char name[200], cut_why[MODEL_WHY_BYTES], *guess = strstr(why, ": did you mean ");
+        if (!side_node_in_box(&diff->new_side, asset, &box, limit_m, &after, name, sizeof(name)))
+            return;
+        bool same = side_shape_of_node(&diff->new_side, asset, after, &half.shape, cut_why);
+        if (same) {
+            double apart[16], offset_m[3];
+            half.tree = diff_shape_create(&half.shape);
+            vec_sub(half.shape.origin_m, pair->old_half.shape.origin_m, offset_m);
+            memcpy(apart, transform_identity, sizeof(apart));
+            memcpy(apart + 12, offset_m, sizeof(offset_m));
+            same = diff_shape_apart(pair->old_half.tree, half.tree, apart, limit_m) <= limit_m;
+        }
+        half_close(&half);
+        if (!same)
+            continue;
+        if (guess)
+            *guess = 0;
+        size_t length = strlen(why);
+        snprintf(why + length, MODEL_WHY_BYTES - length, ": %s has its shape, in its place", name);
+        return;
     }
 }
 
@@ -199,6 +249,8 @@ static void compare_asset(struct diff *diff, const struct side_asset *new_asset,
     bool was = old_asset && half_open(&pair.old_half, &diff->old_side, old_asset, old_why);
     bool is = half_open(&pair.new_half, &diff->new_side, new_asset, why);
     if (!is) {
+        if (was)
+            find_renamed(diff, &pair, new_asset, tolerance_m, why);
         lose_sensors(diff, new_asset->id, why);
         pair.found.change = DIFF_REMOVED;
         pair.found.why = mem_strdup(why);

@@ -70,6 +70,12 @@ void diff_shape_destroy(struct diff_shape **shape)
     *shape = NULL;
 }
 
+void diff_shape_box(const struct diff_shape *shape, double low_m[3], double high_m[3])
+{
+    memcpy(low_m, shape->low, sizeof(shape->low));
+    memcpy(high_m, shape->high, sizeof(shape->high));
+}
+
 double diff_shape_diagonal(const struct diff_shape *shape)
 {
     return vec_distance(shape->low, shape->high);

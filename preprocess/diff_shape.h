@@ -8,6 +8,7 @@ struct diff_shape; /* with a tree of boxes around its triangles */
 
 struct diff_shape *diff_shape_create(const struct side_shape *shape);
 void diff_shape_destroy(struct diff_shape **shape);
+void diff_shape_box(const struct diff_shape *shape, double low_m[3], double high_m[3]);
 double diff_shape_diagonal(const struct diff_shape *shape); /* m */
 
 /* The place on the surface nearest to a point, and how far. */

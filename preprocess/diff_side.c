@@ -5,6 +5,7 @@
 #include <errno.h>
 #include <jansson.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -79,13 +80,11 @@ static struct gltf_model *parse(struct side *side, struct model_file *model, cha
     return &model->parsed;
 }
 
-static bool shape_of_plant(struct side *side, const struct side_asset *asset, struct side_shape *shape, char *why)
+/* Takes the triangles. */
+static bool cut_shape(const struct gltf_model *model, const struct geometry_params *params, struct side_shape *shape, char *why)
 {
-    struct geometry_params params = prepare_geometry(asset->plant);
-    struct plant_sensor *sensors;
     struct geometry g;
-    const struct gltf_model *model = parse(side, &side->models.at[asset->model], why);
-    if (!model || !geometry_cut(&g, model, &params, why))
+    if (!geometry_cut(&g, model, params, why))
         return false;
     *shape = (struct side_shape){ .positions_m = (const float(*)[3])g.positions_m,
                                   .indices = g.indices,
@@ -96,6 +95,16 @@ static bool shape_of_plant(struct side *side, const struct side_asset *asset, st
     g.positions_m = NULL; /* the shape's now */
     g.indices = NULL;
     geometry_finish(&g);
+    return true;
+}
+
+static bool shape_of_plant(struct side *side, const struct side_asset *asset, struct side_shape *shape, char *why)
+{
+    struct geometry_params params = prepare_geometry(asset->plant);
+    struct plant_sensor *sensors;
+    const struct gltf_model *model = parse(side, &side->models.at[asset->model], why);
+    if (!model || !cut_shape(model, &params, shape, why))
+        return false;
     shape->sensor_count = plant_sensors(side->plant, (int)(asset->plant - side->plant->assets), &sensors);
     shape->places_m = mem_array(shape->sensor_count, sizeof(*shape->places_m));
     shape->whys = mem_array(shape->sensor_count, sizeof(*shape->whys));
@@ -107,6 +116,48 @@ static bool shape_of_plant(struct side *side, const struct side_asset *asset, st
     }
     mem_free(sensors);
     return true;
+}
+
+bool side_node_in_box(struct side *side, const struct side_asset *asset, const struct side_box *box, double tolerance_m, uint32_t *node,
+                      char *name, size_t name_bytes)
+{
+    char why[MODEL_WHY_BYTES];
+    const struct gltf_model *model = side->plant ? parse(side, &side->models.at[asset->model], why) : NULL;
+    if (!model)
+        return false;
+    struct geometry_params params = prepare_geometry(asset->plant);
+    double(*boxes)[2][3] = geometry_node_boxes(model, &params);
+    bool found = false;
+    for (; *node < model->node_count; ++*node) {
+        found = true;
+        for (int axis = 0; axis < 3; axis++)
+            found = found && fabs(boxes[*node][0][axis] - box->low_m[axis]) <= tolerance_m &&
+                    fabs(boxes[*node][1][axis] - box->high_m[axis]) <= tolerance_m;
+        if (found)
+            break;
+    }
+    size_t alike = 0;
+    for (uint32_t i = 0; found && i < model->node_count; i++)
+        alike += strcmp(model->nodes[i].name, model->nodes[*node].name) == 0;
+    if (found && alike == 1 && *model->nodes[*node].name)
+        snprintf(name, name_bytes, "'%.150s'", model->nodes[*node].name);
+    else if (found)
+        snprintf(name, name_bytes, "'#%u'", model->nodes[*node].number);
+    mem_free(boxes);
+    return found;
+}
+
+bool side_shape_of_node(struct side *side, const struct side_asset *asset, uint32_t node, struct side_shape *shape,
+                        char why[MODEL_WHY_BYTES])
+{
+    char pattern[16];
+    struct geometry_params params = prepare_geometry(asset->plant);
+    const struct gltf_model *model = parse(side, &side->models.at[asset->model], why);
+    if (!model)
+        return false;
+    snprintf(pattern, sizeof(pattern), "#%u", model->nodes[node].number);
+    params.nodes = pattern;
+    return cut_shape(model, &params, shape, why);
 }
 
 /* --- a folder of prepared files --------------------------------------------------------------------------------------------------- */

@@ -55,6 +55,16 @@ struct side_shape { /* an asset's triangles, and where its sensors are; less ori
 };
 /* False: why says why there is no such asset in this plant. */
 bool side_shape(struct side *side, const struct side_asset *asset, struct side_shape *shape, char why[MODEL_WHY_BYTES]);
+/* Of a plant file's model: the first node from *node on whose sub-tree has this box in the asset's frame, to tolerance_m, and what it is
+   called: 'name', or its number where there is none or several have it. False: none, or a folder. */
+struct side_box {
+    double low_m[3], high_m[3];
+};
+bool side_node_in_box(struct side *side, const struct side_asset *asset, const struct side_box *box, double tolerance_m, uint32_t *node,
+                      char *name, size_t name_bytes);
+/* As side_shape, without sensors, of that node in place of the asset's own. */
+bool side_shape_of_node(struct side *side, const struct side_asset *asset, uint32_t node, struct side_shape *shape,
+                        char why[MODEL_WHY_BYTES]);
 void side_shape_finish(struct side_shape *shape);
 
 #endif

@@ -160,6 +160,26 @@ static bool find_origin(struct geometry *geometry, const struct parts *parts, co
     return size_m >= MIN_SIZE_M || wrong(why, "its size is %g m, less than %g m: is its unit right?", size_m, MIN_SIZE_M);
 }
 
+double (*geometry_node_boxes(const struct gltf_model *model, const struct geometry_params *params))[2][3]
+{
+    struct box *boxes = mem_array(model->node_count, sizeof(*boxes));
+    for (uint32_t i = model->node_count; i-- > 0;) {
+        const struct gltf_node *node = &model->nodes[i];
+        struct box own = empty_box;
+        double world[16];
+        part_world(params, node, world);
+        for (uint32_t p = 0; node->mesh >= 0 && p < model->meshes[node->mesh].primitive_count; p++)
+            box_add_primitive(&own, &model->primitives[model->meshes[node->mesh].first_primitive + p], world);
+        for (uint32_t child = i + 1; child < node->end; child = model->nodes[child].end)
+            for (int axis = 0; axis < 3; axis++) {
+                own.low[axis] = fmin(own.low[axis], boxes[child].low[axis]);
+                own.high[axis] = fmax(own.high[axis], boxes[child].high[axis]);
+            }
+        boxes[i] = own;
+    }
+    return (double(*)[2][3])boxes;
+}
+
 static void place_of_node(const struct gltf_model *model, const struct geometry_params *params, uint32_t found, double place_m[3])
 {
     struct box box = empty_box;

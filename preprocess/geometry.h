@@ -43,6 +43,9 @@ bool geometry_hash(uint64_t *out, const struct gltf_model *model, const struct g
 /* How many triangles that would take, before those without area are left out. 0 where geometry_cut would find nothing. */
 uint64_t geometry_triangles(const struct gltf_model *model, const struct geometry_params *params);
 
+/* Of each node: the box around its sub-tree's meshes in the asset frame, low and high; infinite where there is none. Free with mem_free. */
+double (*geometry_node_boxes(const struct gltf_model *model, const struct geometry_params *params))[2][3];
+
 /* The place of the node that a pattern names, in the asset frame: the middle of the box around its sub-tree's meshes, else its origin.
    Nodes inside the asset are preferred to others. False: why says that there is none, or that several stand in different places. */
 bool geometry_node_place(const struct gltf_model *model, const struct geometry_params *params, const char *pattern, double place_m[3],
